@@ -1,0 +1,1 @@
+//! Intel i860 XR processor: decode, execute, cycle timing, assembler, disassembler.

@@ -1,0 +1,1 @@
+//! Just-in-time pixels: scan-out-synchronous rendering on Pixel-Planes 5.

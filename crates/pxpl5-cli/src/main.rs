@@ -1,0 +1,3 @@
+//! The command `pxpl5`.
+
+fn main() {}

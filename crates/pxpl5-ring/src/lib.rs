@@ -1,0 +1,1 @@
+//! The 8-channel ring network of Pixel-Planes 5.

@@ -1,0 +1,1 @@
+//! Meshes, spheres, importers, built-in scenes, camera and head motion.

@@ -1,0 +1,1 @@
+//! Discrete-event kernel: exact time, clocks, event queue, parameters with a stated origin.

@@ -1,0 +1,1 @@
+//! Rendering Control: the pipeline of master and slave graphics processors under PPHIGS.

@@ -1,0 +1,1 @@
+//! Slats: one new image every NTSC field on Pixel-Planes 5.

@@ -1,0 +1,1 @@
+//! Head motion, tracker models and prediction for head-mounted displays.

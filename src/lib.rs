@@ -1,0 +1,1 @@
+//! Cycle-accurate emulator of Pixel-Planes 5.
