@@ -1,1 +1,45 @@
-//! What travels on the ring of Pixel-Planes 5: words, messages, addresses, expressions.
+//! What travels on the ring: words, messages, addresses, and the number formats of expressions.
+//!
+//! This crate holds types only. Every board depends on it and no board depends on another, so whatever two
+//! boards must agree on stands here:
+//!
+//! - [`Message`]: at most [`MAX_MESSAGE_WORDS`] words from one [`NodeId`] to another;
+//! - [`Body`]: what the words mean: renderer commands, pixels of a region, or words that firmware defines;
+//! - [`Linear`] and [`Quadratic`]: the expressions that a renderer evaluates at every pixel;
+//! - [`format`]: the fixed-point formats of those expressions;
+//! - [`RegionGrid`]: how a screen is cut into the regions of 128 x 128 renderer pixels.
+//!
+//! Bodies are *lazy*: a message knows its length and the sequence of its command kinds (which is all that time
+//! depends on, since a SIMD array takes the same cycles whatever its data are), and can produce its words when
+//! somebody wants the picture.
+//!
+//! **Not modelled:** routing headers and check words; their cost is the ring's overhead per message.
+//!
+//! Sources: TR94 (message length, regions), F89 (expressions, region size).
+
+mod body;
+mod expression;
+pub mod format;
+mod region;
+
+pub use body::{
+    Body, CommandList, CommandRun, CommandWords, CopyTarget, FieldParity, Lines, Message,
+    PixelSource, RegionPixels,
+};
+pub use expression::{Linear, Quadratic};
+pub use region::{Eye, RegionGrid, RegionId};
+
+/// One word of the ring: 32 bits (TR94).
+pub type Word = u32;
+
+/// Longest message in words (derived: a field region is 15 x 1,024 pixels).
+pub const MAX_MESSAGE_WORDS: u32 = 1024;
+
+/// Width and height of a renderer's pixel array (F89).
+pub const REGION_SIZE: u32 = 128;
+
+/// Position of a board's port on the ring, counted in the direction of travel.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
+pub struct NodeId(pub u16);

@@ -1,0 +1,144 @@
+//! Messages and what their words mean.
+
+use crate::{NodeId, RegionGrid, RegionId, Word};
+use serde::{Deserialize, Serialize};
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// One message on one channel of the ring.
+#[derive(Clone, Debug)]
+pub struct Message {
+    /// The sender's port.
+    pub source: NodeId,
+    /// The receiver's port.
+    pub destination: NodeId,
+    /// Length in words, 1 to [`crate::MAX_MESSAGE_WORDS`].
+    pub words: u32,
+    /// What the words mean.
+    pub body: Body,
+}
+
+/// What a message carries.
+#[derive(Clone, Debug)]
+pub enum Body {
+    /// Renderer commands.
+    Commands(CommandList),
+    /// Part of a region's pixels on the way to a frame buffer.
+    Pixels(RegionPixels),
+    /// Words between two programs, defined by the firmware.
+    Words(Arc<[Word]>),
+}
+
+/// Commands for a renderer, in order.
+#[derive(Clone, Debug)]
+pub struct CommandList {
+    /// The kinds of the commands in order, run by run; this alone decides the time.
+    pub runs: Vec<CommandRun>,
+    /// The command words, produced on demand; `None` where nobody will look at pixels.
+    pub content: Option<Arc<dyn CommandWords>>,
+}
+
+impl CommandList {
+    /// Length in words of all commands.
+    #[must_use]
+    pub fn words(&self) -> u32 {
+        self.runs.iter().map(|run| run.count * run.words_each).sum()
+    }
+}
+
+/// `count` commands of one kind in a row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CommandRun {
+    /// The commands' operation code.
+    pub opcode: u8,
+    /// Length of one command in words.
+    pub words_each: u32,
+    /// How many commands.
+    pub count: u32,
+}
+
+/// Produces the words of commands when somebody needs them.
+pub trait CommandWords: Debug + Send + Sync {
+    /// Appends the words to `out`, always the same ones.
+    fn append_words(&self, out: &mut Vec<Word>);
+}
+
+impl CommandWords for Vec<Word> {
+    fn append_words(&self, out: &mut Vec<Word>) {
+        out.extend_from_slice(self);
+    }
+}
+
+/// Which lines of a frame a picture fills.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Lines {
+    /// All lines.
+    Frame,
+    /// The lines of one field.
+    Field(FieldParity),
+}
+
+/// The two fields of an interlaced frame. Line 0 is the top line of the picture and belongs to the even field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FieldParity {
+    /// Lines 0, 2, 4, ...
+    Even,
+    /// Lines 1, 3, 5, ...
+    Odd,
+}
+
+impl FieldParity {
+    /// The parity of the field that starts at retrace `n`: even numbers scan even lines.
+    #[must_use]
+    pub const fn of_field(n: u64) -> Self {
+        if n.is_multiple_of(2) {
+            Self::Even
+        } else {
+            Self::Odd
+        }
+    }
+
+    /// First line of the field: 0 or 1.
+    #[must_use]
+    pub const fn first_line(self) -> u32 {
+        self as u32
+    }
+}
+
+/// Where in a frame buffer a region goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct CopyTarget {
+    /// Port of the frame buffer.
+    pub frame_buffer: NodeId,
+    /// Which of the two buffers, 0 or 1.
+    pub buffer: u8,
+    /// The lines that the grid's rows stand for.
+    pub lines: Lines,
+    /// How the picture is cut.
+    pub grid: RegionGrid,
+    /// Which piece.
+    pub region: RegionId,
+    /// The picture's number (frame or field), for reports.
+    pub picture: u64,
+}
+
+/// Part of one region's pixels: message `part` of `parts`.
+#[derive(Clone, Debug)]
+pub struct RegionPixels {
+    /// Where they go.
+    pub target: CopyTarget,
+    /// The whole region's pixels.
+    pub image: Arc<dyn PixelSource>,
+    /// Number of this message within the region, from 0.
+    pub part: u32,
+    /// Messages of the whole region.
+    pub parts: u32,
+}
+
+/// Pixels of a region, computed when somebody looks.
+pub trait PixelSource: Debug + Send + Sync {
+    /// One word a pixel, 0x00RRGGBB, row by row, `width * height` of the region's rectangle.
+    fn pixels(&self) -> Arc<[Word]>;
+}

@@ -1,0 +1,99 @@
+//! The expressions that a renderer's evaluator delivers to all pixels at once.
+
+use serde::{Deserialize, Serialize};
+
+/// `a x + b y + c` at the integer pixel (x, y) of the screen, in 32-bit two's complement (sums wrap).
+///
+/// The offset of the pixel's centre is folded into `c` by whoever sets the expression up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Linear {
+    /// Increment per pixel to the right.
+    pub a: i32,
+    /// Increment per line downwards.
+    pub b: i32,
+    /// Value at pixel (0, 0).
+    pub c: i32,
+}
+
+impl Linear {
+    /// The same value everywhere.
+    #[must_use]
+    pub const fn constant(c: i32) -> Self {
+        Self { a: 0, b: 0, c }
+    }
+
+    /// The value at pixel (x, y).
+    #[must_use]
+    pub const fn at(&self, x: i32, y: i32) -> i32 {
+        let ax = self.a.wrapping_mul(x);
+        ax.wrapping_add(self.b.wrapping_mul(y)).wrapping_add(self.c)
+    }
+}
+
+/// `xx x^2 + xy x y + yy y^2 + x x + y y + one` at the integer pixel (x, y), in 64-bit two's complement (sums wrap).
+///
+/// The machine's evaluator forms `A x^2 + B x y + C y^2 + D x + E y + F` (F89). Two words a coefficient are
+/// assumed: 32 bits cannot hold both a screen's range and a small sphere's silhouette.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Quadratic {
+    /// Coefficient of x squared.
+    pub xx: i64,
+    /// Coefficient of x y.
+    pub xy: i64,
+    /// Coefficient of y squared.
+    pub yy: i64,
+    /// Coefficient of x.
+    pub x: i64,
+    /// Coefficient of y.
+    pub y: i64,
+    /// Constant term.
+    pub one: i64,
+}
+
+impl Quadratic {
+    /// The value at pixel (x, y).
+    #[must_use]
+    pub const fn at(&self, x: i32, y: i32) -> i64 {
+        let (px, py) = (x as i64, y as i64);
+        let row = self
+            .xx
+            .wrapping_mul(px)
+            .wrapping_add(self.xy.wrapping_mul(py))
+            .wrapping_add(self.x);
+        let column = self.yy.wrapping_mul(py).wrapping_add(self.y);
+        row.wrapping_mul(px)
+            .wrapping_add(column.wrapping_mul(py))
+            .wrapping_add(self.one)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_linear_expression_is_exact_modulo_two_to_the_32() {
+        let e = Linear {
+            a: i32::MAX,
+            b: -7,
+            c: i32::MIN,
+        };
+        let exact = i64::from(i32::MAX) * 639 - 7 * 479 + i64::from(i32::MIN);
+        assert_eq!(e.at(639, 479), exact as i32);
+    }
+
+    #[test]
+    fn a_circle_is_zero_on_its_rim_and_positive_inside() {
+        // 25 - (x - 10)^2 - (y - 20)^2 expanded.
+        let q = Quadratic {
+            xx: -1,
+            xy: 0,
+            yy: -1,
+            x: 20,
+            y: 40,
+            one: 25 - 100 - 400,
+        };
+        assert_eq!((q.at(10, 20), q.at(13, 24), q.at(15, 20)), (25, 0, 0));
+        assert_eq!(q.at(16, 20), -11);
+    }
+}

@@ -1,0 +1,120 @@
+//! How the screen is cut into regions.
+
+use serde::{Deserialize, Serialize};
+
+/// Which eye's picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Eye {
+    /// The left eye, and the only one of a mono picture.
+    Left,
+    /// The right eye.
+    Right,
+}
+
+impl Eye {
+    /// Both, in the order in which the pipelines take them.
+    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+
+    /// 0 for left, 1 for right.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// A region's number: row by row from the top left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct RegionId(pub u16);
+
+/// A picture cut into a grid of regions. Lengths are in pixels; the last column and row may be smaller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct RegionGrid {
+    /// Width of the picture.
+    pub width: u32,
+    /// Height of the picture in the lines that are drawn (240 for a field).
+    pub height: u32,
+    /// Width of a region, at most 128.
+    pub region_width: u32,
+    /// Height of a region, at most 128.
+    pub region_height: u32,
+}
+
+impl RegionGrid {
+    /// A whole NTSC frame of 640 x 480 in 5 x 4 regions of 128 x 128; the last row has 96 lines (TR94).
+    pub const FRAME: Self = Self {
+        width: 640,
+        height: 480,
+        region_width: 128,
+        region_height: 128,
+    };
+
+    /// One NTSC field of 640 x 240 in 5 x 2 regions of 128 x 120 (TR94).
+    pub const FIELD: Self = Self {
+        width: 640,
+        height: 240,
+        region_width: 128,
+        region_height: 120,
+    };
+
+    /// Regions in a row.
+    #[must_use]
+    pub const fn columns(&self) -> u32 {
+        self.width.div_ceil(self.region_width)
+    }
+
+    /// Rows of regions.
+    #[must_use]
+    pub const fn rows(&self) -> u32 {
+        self.height.div_ceil(self.region_height)
+    }
+
+    /// Regions in all.
+    #[must_use]
+    pub const fn regions(&self) -> u32 {
+        self.columns() * self.rows()
+    }
+
+    /// Left, top, width and height of a region in pixels.
+    #[must_use]
+    pub const fn rectangle(&self, region: RegionId) -> [u32; 4] {
+        let column = region.0 as u32 % self.columns();
+        let row = region.0 as u32 / self.columns();
+        let (left, top) = (column * self.region_width, row * self.region_height);
+        [
+            left,
+            top,
+            min(self.region_width, self.width - left),
+            min(self.region_height, self.height - top),
+        ]
+    }
+}
+
+const fn min(a: u32, b: u32) -> u32 {
+    if a < b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_has_20_regions_that_cover_it_once() {
+        let pixels: u32 = (0..20)
+            .map(|i| RegionGrid::FRAME.rectangle(RegionId(i)))
+            .map(|r| r[2] * r[3])
+            .sum();
+        assert_eq!((RegionGrid::FRAME.regions(), pixels), (20, 640 * 480));
+        assert_eq!(
+            RegionGrid::FRAME.rectangle(RegionId(19)),
+            [512, 384, 128, 96]
+        );
+    }
+
+    #[test]
+    fn a_field_region_is_fifteen_messages_of_pixels() {
+        assert_eq!(RegionGrid::FIELD.regions(), 10);
+        let [_, _, w, h] = RegionGrid::FIELD.rectangle(RegionId(9));
+        assert_eq!(w * h, 15 * crate::MAX_MESSAGE_WORDS);
+    }
+}
