@@ -1,1 +1,43 @@
-//! Discrete-event kernel: exact time, clocks, event queue, parameters with a stated origin.
+//! Discrete-event kernel: exact time, clocks, an ordered event queue, and parameters with a stated origin.
+//!
+//! It knows nothing of Pixel-Planes. A *device* is plain state with a method that handles one event at a time:
+//!
+//! ```text
+//!            event                     own events (later)
+//!   queue ----------> device.handle ---------------------> queue
+//!                        |  outputs (what leaves the board, at least one cycle later)
+//!                        v
+//!                     wiring  (turns an output of one device into an event of another)
+//! ```
+//!
+//! # Ordering contract
+//!
+//! 1. Events happen in order of ([`Time`], [`Phase`]): at one instant all inputs *arrive*, then boards *work* on
+//!    what has arrived, then probes *observe*.
+//! 2. Events of one instant and phase commute: no result may depend on their order. A device that must choose
+//!    between simultaneous requests latches them in `Arrive` and chooses in `Work` by a rule of its own
+//!    (first come, then lowest port).
+//! 3. Without shuffling, ties are taken in the order of scheduling. [`EventQueue::shuffle_ties`] takes them in a
+//!    hashed order instead; tests use it to prove point 2.
+//! 4. Nothing is scheduled in the past; that is a fault of this program and panics.
+//!
+//! # Time
+//!
+//! [`Time`] and [`Span`] are picoseconds in `u64` (213 days). [`Clock`] computes its n-th edge from zero in 128
+//! bits, so no clock drifts. No floating point touches time.
+//!
+//! **Not here:** threads (a simulation is one thread; pixels are computed elsewhere), host time.
+
+mod clock;
+mod context;
+mod parameter;
+mod queue;
+mod time;
+mod trace;
+
+pub use clock::{Clock, Cycles};
+pub use context::{Blocked, Context, TestBench};
+pub use parameter::{ParameterError, ParameterInfo, ParameterTable, Standing};
+pub use queue::{EventQueue, Phase};
+pub use time::{Span, Time};
+pub use trace::{TraceHash, mix};

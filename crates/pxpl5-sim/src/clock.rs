@@ -1,0 +1,100 @@
+//! Clocks whose edges never drift.
+
+use crate::{Span, Time};
+use serde::{Deserialize, Serialize};
+
+/// A number of cycles of one clock. It never leaves the crate that owns the clock.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
+pub struct Cycles(pub u64);
+
+/// A clock whose period is the rational number `numerator_ps / denominator` picoseconds.
+///
+/// Edge n is at floor(n x period), computed from zero in 128 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Clock {
+    numerator_ps: u64,
+    denominator: u64,
+}
+
+impl Clock {
+    /// A clock of period `numerator_ps / denominator`; `None` unless both are positive and the period is a
+    /// picosecond or more.
+    #[must_use]
+    pub const fn new(numerator_ps: u64, denominator: u64) -> Option<Self> {
+        if denominator == 0 || numerator_ps < denominator {
+            return None;
+        }
+        Some(Self {
+            numerator_ps,
+            denominator,
+        })
+    }
+
+    /// A clock of a frequency in hertz; `None` for zero or more than a terahertz.
+    #[must_use]
+    pub const fn from_hz(hz: u64) -> Option<Self> {
+        Self::new(1_000_000_000_000, hz)
+    }
+
+    /// The instant of edge `n`.
+    #[must_use]
+    pub const fn edge(&self, n: u64) -> Time {
+        Time((n as u128 * self.numerator_ps as u128 / self.denominator as u128) as u64)
+    }
+
+    /// The number of the first edge at or after `time`.
+    #[must_use]
+    pub const fn edge_at_or_after(&self, time: Time) -> u64 {
+        let mut n = (time.0 as u128 * self.denominator as u128 / self.numerator_ps as u128) as u64;
+        while self.edge(n).0 < time.0 {
+            n += 1;
+        }
+        n
+    }
+
+    /// The time of `cycles` counted from edge 0 (rounded down to a picosecond).
+    #[must_use]
+    pub const fn span(&self, cycles: Cycles) -> Span {
+        Span(self.edge(cycles.0).0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_retrace_clock_is_exact_after_a_year() {
+        let retrace = Clock::new(1_001_000_000_000_000, 60_000).expect("valid");
+        let fields_of_a_hundred_days = 60_000 * 8_640_000 / 1_001;
+        assert_eq!(retrace.edge(60_000), Time(1_001_000_000_000_000));
+        let exact = fields_of_a_hundred_days as u128 * 1_001_000_000_000_000 / 60_000;
+        assert_eq!(u128::from(retrace.edge(fields_of_a_hundred_days).0), exact);
+        assert_eq!(retrace.edge(1), Time(16_683_333_333));
+    }
+
+    #[test]
+    fn the_edge_at_or_after_an_edge_is_that_edge_and_one_tick_later_the_next() {
+        for clock in [
+            Clock::from_hz(40_000_000),
+            Clock::new(1_001_000_000_000_000, 60_000),
+            Clock::new(7, 3),
+        ] {
+            let clock = clock.expect("valid");
+            for n in [0, 1, 2, 3, 1_000, 123_457] {
+                let edge = clock.edge(n);
+                assert_eq!(clock.edge_at_or_after(edge), n);
+                assert_eq!(clock.edge_at_or_after(edge + Span(1)), n + 1);
+            }
+        }
+    }
+
+    #[test]
+    fn a_clock_without_a_period_is_refused() {
+        assert_eq!(Clock::new(0, 1), None);
+        assert_eq!(Clock::from_hz(0), None);
+        assert_eq!(Clock::from_hz(2_000_000_000_000), None);
+    }
+}

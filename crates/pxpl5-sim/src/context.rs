@@ -1,0 +1,156 @@
+//! What a device sees of the simulation while it handles an event, and a bench to test one device alone.
+
+use crate::{EventQueue, Phase, Span, Time};
+
+/// Collects what a device schedules for itself and what leaves it.
+///
+/// `E` is the device's own event, `O` what it puts out. The wiring drains both after each event.
+#[derive(Debug)]
+pub struct Context<E, O> {
+    now: Time,
+    own: Vec<(Time, Phase, E)>,
+    outputs: Vec<(Time, O)>,
+}
+
+impl<E, O> Default for Context<E, O> {
+    fn default() -> Self {
+        Self {
+            now: Time::ZERO,
+            own: Vec::new(),
+            outputs: Vec::new(),
+        }
+    }
+}
+
+impl<E, O> Context<E, O> {
+    /// A context at `now`, keeping its buffers.
+    pub fn at(&mut self, now: Time) -> &mut Self {
+        debug_assert!(
+            self.own.is_empty() && self.outputs.is_empty(),
+            "the wiring left something undone"
+        );
+        self.now = now;
+        self
+    }
+
+    /// The present.
+    #[must_use]
+    pub const fn now(&self) -> Time {
+        self.now
+    }
+
+    /// Schedules an event of the same device.
+    pub fn schedule(&mut self, time: Time, phase: Phase, event: E) {
+        self.own.push((time, phase, event));
+    }
+
+    /// Schedules an event of the same device after a span, in phase `Work`.
+    pub fn after(&mut self, span: Span, event: E) {
+        self.schedule(self.now + span, Phase::Work, event);
+    }
+
+    /// Puts something out of the device at `time`.
+    pub fn output(&mut self, time: Time, output: O) {
+        self.outputs.push((time, output));
+    }
+
+    /// Takes everything scheduled.
+    pub fn drain_events(&mut self) -> std::vec::Drain<'_, (Time, Phase, E)> {
+        self.own.drain(..)
+    }
+
+    /// Takes everything put out.
+    pub fn drain_outputs(&mut self) -> std::vec::Drain<'_, (Time, O)> {
+        self.outputs.drain(..)
+    }
+}
+
+/// A board that cannot go on, for the report of a deadlock.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Blocked {
+    /// The board's name.
+    pub board: String,
+    /// What it waits for, and from whom.
+    pub waits_for: String,
+}
+
+/// Runs one device alone: feed it events, read its outputs with their times.
+#[derive(Debug)]
+pub struct TestBench<E, O> {
+    queue: EventQueue<E>,
+    context: Context<E, O>,
+    /// Everything the device has put out, in order.
+    pub outputs: Vec<(Time, O)>,
+}
+
+impl<E, O> Default for TestBench<E, O> {
+    fn default() -> Self {
+        Self {
+            queue: EventQueue::new(),
+            context: Context::default(),
+            outputs: Vec::new(),
+        }
+    }
+}
+
+impl<E, O> TestBench<E, O> {
+    /// An empty bench at time zero.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The queue, to shuffle ties or to look at the time.
+    pub fn queue(&mut self) -> &mut EventQueue<E> {
+        &mut self.queue
+    }
+
+    /// Gives the device an event from outside.
+    pub fn feed(&mut self, time: Time, phase: Phase, event: E) {
+        self.queue.schedule(time, phase, event);
+    }
+
+    /// Handles all events up to and including `until`.
+    pub fn run_until(&mut self, until: Time, mut handle: impl FnMut(E, &mut Context<E, O>)) {
+        while self.queue.next_time().is_some_and(|time| time <= until) {
+            let Some((now, _, event)) = self.queue.next_event() else {
+                break;
+            };
+            handle(event, self.context.at(now));
+            for (time, phase, event) in self.context.drain_events() {
+                self.queue.schedule(time, phase, event);
+            }
+            self.outputs.extend(self.context.drain_outputs());
+        }
+    }
+
+    /// Handles all events until none is left.
+    pub fn run(&mut self, handle: impl FnMut(E, &mut Context<E, O>)) {
+        self.run_until(Time(u64::MAX), handle);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A device that puts out every number it is given 10 ps later, and counts down once.
+    fn echo(event: u32, context: &mut Context<u32, u32>) {
+        context.output(context.now() + Span(10), event);
+        if event == 3 {
+            context.after(Span(5), 2);
+        }
+    }
+
+    #[test]
+    fn a_device_is_run_alone_up_to_an_instant_and_no_further() {
+        let mut bench = TestBench::new();
+        bench.feed(Time(100), Phase::Arrive, 3);
+        bench.run_until(Time(99), echo);
+        assert!(bench.outputs.is_empty());
+        bench.run_until(Time(104), echo);
+        assert_eq!(bench.outputs, [(Time(110), 3)]);
+        bench.run(echo);
+        assert_eq!(bench.outputs, [(Time(110), 3), (Time(115), 2)]);
+    }
+}
