@@ -34,9 +34,27 @@ pub enum Body {
 pub struct CommandList {
     /// The kinds of the commands in order, run by run; this alone decides the time.
     pub runs: Vec<CommandRun>,
+    /// The region context of pixel memory on which all commands of this list work.
+    pub context: u8,
+    /// One order for every command that copies a region, in their order.
+    pub copies: Vec<CopyOrder>,
     /// The command words, produced on demand; `None` where nobody will look at pixels.
     pub content: Option<Arc<dyn CommandWords>>,
 }
+
+/// What a copy command asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct CopyOrder {
+    /// Where the region goes.
+    pub target: CopyTarget,
+    /// The region context that holds it.
+    pub context: u8,
+    /// Who is told, by a message of [`COPY_ACKNOWLEDGEMENT_WORDS`], when the last pixel has arrived.
+    pub acknowledge: Option<NodeId>,
+}
+
+/// Length of the message that tells a program that a region has been copied (assumed).
+pub const COPY_ACKNOWLEDGEMENT_WORDS: u32 = 4;
 
 impl CommandList {
     /// Length in words of all commands.
