@@ -1,1 +1,42 @@
-//! Graphics processor board of Pixel-Planes 5: memory, ring port, firmware host.
+//! Graphics processor (GP): an i860 at 40 MHz with 8 MB of memory and a port on the ring.
+//!
+//! ```text
+//!                 +-----------------------------------------------+
+//!   ring in  ---->| inbox -> firmware (async fn, two levels)      |
+//!   retrace  ---->|            | spend      | send                |
+//!                 |           CPU        clump buffer -> DMA -----|---> ring out
+//!                 |            \------- memory, 8 MB -------------|
+//!                 +-----------------------------------------------+
+//! ```
+//!
+//! In the order of the signal:
+//!
+//! - A message that has arrived waits in the inbox, in order of arrival.
+//! - *Firmware* is straight-line `async fn` code that holds a [`Gp`]. Every `.await` is a visible cost
+//!   ([`Gp::spend`]) or wait ([`Gp::receive`], [`Gp::retrace`], [`Gp::until`]).
+//! - The CPU has two levels: an [`Level::Interrupt`] program stops the [`Level::Foreground`] program while it
+//!   spends time. There is one program a level.
+//! - [`Gp::send`] costs the CPU a fixed software time and hands the messages to the DMA, which sends in the
+//!   background. There is one clump buffer, so a second batch waits until the first was accepted.
+//! - [`Memory`] accounts for 8 MB; what does not fit is a [`Fault`] that names the board and the region.
+//!
+//! The host workstation runs on the same board model with its own timing table.
+//!
+//! **Not modelled here:** caches and instructions (that is the `i860` crate), the bus between CPU and DMA,
+//! the cost of taking an interrupt beyond the message's software cost.
+//!
+//! Sources: TR94 (memory, clock, background rendering); the timing table states each number's own.
+
+mod board;
+mod cpu;
+mod firmware;
+mod memory;
+mod probe;
+pub mod timing;
+
+pub use board::{GpBoard, GpEvent, GpOutput};
+pub use cpu::Level;
+pub use firmware::{Fault, Gp, Program, Received, Ticket};
+pub use memory::{Account, Memory, OutOfMemory};
+pub use probe::{Edge, Mark, Stage};
+pub use timing::GpTiming;

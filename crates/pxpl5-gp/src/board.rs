@@ -1,0 +1,358 @@
+//! The board: it polls its programs whenever something has happened to them.
+
+use crate::cpu::{Cpu, Level};
+use crate::firmware::{Fault, Gp, Program, Received, Shared};
+use crate::memory::Memory;
+use crate::probe::Mark;
+use crate::timing::GpTiming;
+use pxpl5_sim::{Blocked, Context, Phase, Span};
+use pxpl5_wire::{Message, NodeId};
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::fmt;
+use std::rc::Rc;
+use std::task::{Context as TaskContext, Poll, Waker};
+
+/// What can happen to the board.
+#[derive(Clone, Debug)]
+pub enum GpEvent {
+    /// The last word of a message has arrived (phase `Arrive`).
+    Delivered(Message),
+    /// The receiver has accepted a batch (phase `Arrive`).
+    Accepted(u64),
+    /// A field begins (phase `Arrive`).
+    Retrace(u64),
+    /// The programs look at what has arrived.
+    Poll,
+    /// The running work ends, if it is still of this generation.
+    WorkEnds(u64),
+}
+
+/// What leaves the board.
+#[derive(Debug)]
+pub enum GpOutput {
+    /// A message for the ring; `ticket` comes back when it was accepted.
+    Send {
+        /// The message.
+        message: Message,
+        /// The batch that its acceptance completes.
+        ticket: Option<u64>,
+    },
+}
+
+struct Task {
+    program: Program,
+    level: Level,
+}
+
+/// One board with its programs.
+pub struct GpBoard {
+    shared: Rc<RefCell<Shared>>,
+    tasks: Vec<Task>,
+    announced: Option<u64>,
+    poll_pending: bool,
+    cycle: Span,
+    fault: Option<Fault>,
+}
+
+impl fmt::Debug for GpBoard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("GpBoard")
+            .field("shared", &self.shared)
+            .field("fault", &self.fault)
+            .finish_non_exhaustive()
+    }
+}
+
+impl GpBoard {
+    /// A board at a port, without a program. `cycle` is the time that anything needs to leave it.
+    #[must_use]
+    pub fn new(node: NodeId, timing: GpTiming, cycle: Span) -> Self {
+        let shared = Shared {
+            node,
+            now: pxpl5_sim::Time::ZERO,
+            timing,
+            cpu: Cpu::default(),
+            memory: Memory::new(node, timing.memory_bytes),
+            inbox: VecDeque::new(),
+            outgoing: Vec::new(),
+            marks: Vec::new(),
+            fields: 0,
+            accepted: 0,
+            issued: 0,
+            progress: 0,
+            waits: [""; 2],
+        };
+        let shared = Rc::new(RefCell::new(shared));
+        Self {
+            shared,
+            tasks: Vec::new(),
+            announced: None,
+            poll_pending: false,
+            cycle,
+            fault: None,
+        }
+    }
+
+    /// A handle for a program at a level.
+    #[must_use]
+    pub fn handle_for(&self, level: Level) -> Gp {
+        Gp {
+            shared: Rc::clone(&self.shared),
+            level,
+        }
+    }
+
+    /// Loads a program; one a level.
+    pub fn load(&mut self, level: Level, program: Program) {
+        self.tasks.push(Task { program, level });
+        self.tasks.sort_by_key(|task| task.level);
+    }
+
+    /// Handles one event.
+    pub fn handle(&mut self, event: GpEvent, context: &mut Context<GpEvent, GpOutput>) {
+        self.shared.borrow_mut().now = context.now();
+        match event {
+            GpEvent::Delivered(message) => self.latch(message, context),
+            GpEvent::Accepted(ticket) => self.arrive(context, |shared| {
+                shared.accepted = shared.accepted.max(ticket)
+            }),
+            GpEvent::Retrace(field) => self.arrive(context, |shared| shared.fields = field),
+            GpEvent::Poll => self.work(context),
+            GpEvent::WorkEnds(generation) if self.announced == Some(generation) => {
+                self.work(context)
+            }
+            GpEvent::WorkEnds(_) => {}
+        }
+    }
+
+    /// Messages of one instant are kept in order of their senders, whatever the order of their events.
+    fn latch(&mut self, message: Message, context: &mut Context<GpEvent, GpOutput>) {
+        let arrived = context.now();
+        self.arrive(context, |shared| {
+            let later = |r: &Received| (r.arrived, r.source) <= (arrived, message.source);
+            let place = shared.inbox.iter().rposition(later).map_or(0, |i| i + 1);
+            shared.inbox.insert(
+                place,
+                Received {
+                    arrived,
+                    source: message.source,
+                    body: message.body,
+                },
+            );
+        });
+    }
+
+    fn arrive(
+        &mut self,
+        context: &mut Context<GpEvent, GpOutput>,
+        latch: impl FnOnce(&mut Shared),
+    ) {
+        latch(&mut self.shared.borrow_mut());
+        if !self.poll_pending {
+            self.poll_pending = true;
+            context.schedule(context.now(), Phase::Work, GpEvent::Poll);
+        }
+    }
+
+    fn work(&mut self, context: &mut Context<GpEvent, GpOutput>) {
+        self.poll_pending = false;
+        {
+            let shared = &mut *self.shared.borrow_mut();
+            shared.cpu.settle(shared.now);
+        }
+        self.poll_until_quiet();
+        let shared = &mut *self.shared.borrow_mut();
+        for outgoing in shared.outgoing.drain(..) {
+            let output = GpOutput::Send {
+                message: outgoing.message,
+                ticket: outgoing.ticket.map(|t| t.0),
+            };
+            context.output(context.now() + self.cycle, output);
+        }
+        let end = shared
+            .cpu
+            .next_end()
+            .filter(|end| self.announced != Some(end.1));
+        if let Some((time, generation)) = end {
+            self.announced = Some(generation);
+            context.schedule(time, Phase::Work, GpEvent::WorkEnds(generation));
+        }
+    }
+
+    fn poll_until_quiet(&mut self) {
+        let mut task_context = TaskContext::from_waker(Waker::noop());
+        loop {
+            let before = self.shared.borrow().progress;
+            let fault = &mut self.fault;
+            self.tasks
+                .retain_mut(|task| match task.program.as_mut().poll(&mut task_context) {
+                    Poll::Pending => true,
+                    Poll::Ready(result) => {
+                        *fault = fault.take().or(result.err());
+                        false
+                    }
+                });
+            if self.shared.borrow().progress == before {
+                return;
+            }
+        }
+    }
+
+    /// The fault that stopped a program.
+    #[must_use]
+    pub const fn fault(&self) -> Option<&Fault> {
+        self.fault.as_ref()
+    }
+
+    /// Takes what the programs have told the observer.
+    pub fn take_marks(&mut self) -> Vec<Mark> {
+        std::mem::take(&mut self.shared.borrow_mut().marks)
+    }
+
+    /// CPU time spent so far.
+    #[must_use]
+    pub fn busy(&self) -> Span {
+        self.shared.borrow().cpu.busy()
+    }
+
+    /// Most bytes of memory ever in use.
+    #[must_use]
+    pub fn memory_peak_bytes(&self) -> u64 {
+        self.shared.borrow().memory.peak()
+    }
+
+    /// What the board waits for.
+    #[must_use]
+    pub fn blocked(&self, name: &str) -> Option<Blocked> {
+        let task = self
+            .tasks
+            .iter()
+            .rev()
+            .find(|task| !self.shared.borrow().waits[task.level as usize].is_empty())?;
+        let waits_for = self.shared.borrow().waits[task.level as usize].to_owned();
+        Some(Blocked {
+            board: name.to_owned(),
+            waits_for,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_sim::{TestBench, Time};
+    use pxpl5_wire::Body;
+
+    const CYCLE: Span = Span(25_000);
+
+    fn words(source: u16, value: u32) -> Message {
+        Message {
+            source: NodeId(source),
+            destination: NodeId(9),
+            words: 1,
+            body: Body::Words([value].into()),
+        }
+    }
+
+    fn value(body: &Body) -> u32 {
+        match body {
+            Body::Words(words) => words[0],
+            _ => panic!("the test sends words only"),
+        }
+    }
+
+    /// Echoes each message to its sender after 100 ns of work.
+    async fn echo(gp: Gp) -> Result<(), Fault> {
+        loop {
+            let received = gp.receive().await;
+            gp.spend(Span::from_ns(100)).await;
+            gp.send(received.source, 1, received.body).await;
+        }
+    }
+
+    fn board() -> GpBoard {
+        let timing = GpTiming {
+            message_ns: 1_000,
+            ..GpTiming::PAPERS
+        };
+        let mut board = GpBoard::new(NodeId(9), timing, CYCLE);
+        let gp = board.handle_for(Level::Foreground);
+        board.load(Level::Foreground, Box::pin(echo(gp)));
+        board
+    }
+
+    fn sent(bench: TestBench<GpEvent, GpOutput>) -> Vec<(Time, u16, u32)> {
+        let of = |(time, GpOutput::Send { message, .. })| {
+            (time, message.destination.0, value(&message.body))
+        };
+        bench.outputs.into_iter().map(of).collect()
+    }
+
+    #[test]
+    fn an_echo_leaves_after_both_software_costs_the_work_and_one_cycle() {
+        let (mut board, mut bench) = (board(), TestBench::new());
+        bench.feed(
+            Time(500_000),
+            Phase::Arrive,
+            GpEvent::Delivered(words(2, 7)),
+        );
+        bench.run(|event, context| board.handle(event, context));
+        assert_eq!(sent(bench), [(Time(500_000 + 2_100_000) + CYCLE, 2, 7)]);
+    }
+
+    #[test]
+    fn simultaneous_messages_are_taken_in_the_order_of_their_senders_whatever_the_tie() {
+        for seed in 0..20 {
+            let (mut board, mut bench) = (board(), TestBench::new());
+            bench.queue().shuffle_ties(seed);
+            for source in [5, 3, 8, 1] {
+                bench.feed(Time(0), Phase::Arrive, GpEvent::Delivered(words(source, 0)));
+            }
+            bench.run(|event, context| board.handle(event, context));
+            assert_eq!(
+                sent(bench).iter().map(|s| s.1).collect::<Vec<_>>(),
+                [1, 3, 5, 8]
+            );
+        }
+    }
+
+    #[test]
+    fn a_batch_waits_for_the_clump_buffer_and_not_for_the_ring() {
+        async fn two_clumps(gp: Gp) -> Result<(), Fault> {
+            for clump in 0..2 {
+                gp.clump_buffer_free().await;
+                gp.send(NodeId(1), 1, Body::Words([clump].into())).await;
+            }
+            Ok(())
+        }
+        let mut board = GpBoard::new(
+            NodeId(9),
+            GpTiming {
+                message_ns: 1_000,
+                ..GpTiming::PAPERS
+            },
+            CYCLE,
+        );
+        let gp = board.handle_for(Level::Foreground);
+        board.load(Level::Foreground, Box::pin(two_clumps(gp)));
+        let mut bench = TestBench::new();
+        bench.feed(Time(0), Phase::Work, GpEvent::Poll);
+        bench.feed(Time(9_000_000), Phase::Arrive, GpEvent::Accepted(1));
+        bench.run(|event, context| board.handle(event, context));
+        let first = Time(1_000_000) + CYCLE;
+        assert_eq!(
+            sent(bench),
+            [(first, 1, 0), (Time(10_000_000) + CYCLE, 1, 1)]
+        );
+    }
+
+    #[test]
+    fn a_blocked_board_names_what_it_waits_for() {
+        let (mut board, mut bench) = (board(), TestBench::new());
+        bench.feed(Time(0), Phase::Work, GpEvent::Poll);
+        bench.run(|event, context| board.handle(event, context));
+        let blocked = board.blocked("GP 9").expect("it waits");
+        assert_eq!(blocked.waits_for, "a message");
+    }
+}

@@ -1,0 +1,103 @@
+//! The processor's time, shared by two levels of programs.
+
+use pxpl5_sim::{Span, Time};
+
+/// Which program may interrupt which.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Level {
+    /// Runs at once; the foreground stands still meanwhile.
+    Interrupt,
+    /// Runs while no interrupt program spends time.
+    Foreground,
+}
+
+impl Level {
+    pub(crate) const ALL: [Self; 2] = [Self::Interrupt, Self::Foreground];
+}
+
+/// Time that each level still has to spend, and who is running.
+#[derive(Debug, Default)]
+pub(crate) struct Cpu {
+    remaining: [Option<Span>; 2],
+    running: Option<(Level, Time)>,
+    generation: u64,
+    busy: Span,
+}
+
+impl Cpu {
+    /// Level `level` begins to spend `span`.
+    pub(crate) fn begin(&mut self, level: Level, span: Span, now: Time) {
+        self.settle(now);
+        self.remaining[level as usize] = Some(span);
+        self.dispatch(now);
+    }
+
+    /// Brings the accounts up to `now`; work that ends exactly now is finished, whoever asks first.
+    pub(crate) fn settle(&mut self, now: Time) {
+        let Some((level, since)) = self.running else {
+            return;
+        };
+        let elapsed = now - since;
+        self.busy += elapsed;
+        let left = self.remaining[level as usize].map_or(Span::ZERO, |left| left - elapsed);
+        self.remaining[level as usize] = (left > Span::ZERO).then_some(left);
+        self.running = None;
+        self.dispatch(now);
+    }
+
+    fn dispatch(&mut self, now: Time) {
+        let first = Level::ALL
+            .into_iter()
+            .find(|level| self.remaining[*level as usize].is_some());
+        let next = first.map(|level| (level, now));
+        if self.running.map(|(level, _)| level) != first {
+            self.generation += 1;
+        }
+        self.running = next;
+    }
+
+    /// Whether `level` has spent all it asked for.
+    pub(crate) fn is_done(&self, level: Level) -> bool {
+        self.remaining[level as usize].is_none()
+    }
+
+    /// When the running work ends, and the generation of that answer.
+    pub(crate) fn next_end(&self) -> Option<(Time, u64)> {
+        let (level, since) = self.running?;
+        Some((since + self.remaining[level as usize]?, self.generation))
+    }
+
+    /// Time spent so far.
+    pub(crate) const fn busy(&self) -> Span {
+        self.busy
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_interrupt_delays_the_foreground_by_exactly_its_own_time() {
+        let mut cpu = Cpu::default();
+        cpu.begin(Level::Foreground, Span(100), Time(0));
+        cpu.begin(Level::Interrupt, Span(30), Time(40));
+        assert_eq!(cpu.next_end().map(|end| end.0), Some(Time(70)));
+        cpu.settle(Time(70));
+        assert!(cpu.is_done(Level::Interrupt) && !cpu.is_done(Level::Foreground));
+        assert_eq!(cpu.next_end().map(|end| end.0), Some(Time(130)));
+        cpu.settle(Time(129));
+        assert!(!cpu.is_done(Level::Foreground));
+        cpu.settle(Time(130));
+        assert!(cpu.is_done(Level::Foreground));
+        assert_eq!(cpu.busy(), Span(130));
+    }
+
+    #[test]
+    fn an_interrupt_at_the_very_end_of_the_foreground_does_not_delay_it() {
+        let mut cpu = Cpu::default();
+        cpu.begin(Level::Foreground, Span(100), Time(0));
+        cpu.begin(Level::Interrupt, Span(30), Time(100));
+        assert!(cpu.is_done(Level::Foreground));
+    }
+}

@@ -1,0 +1,279 @@
+//! The interface between a program and its board.
+
+use crate::cpu::{Cpu, Level};
+use crate::memory::{Account, Memory, OutOfMemory};
+use crate::probe::{Edge, Mark, Stage};
+use crate::timing::GpTiming;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{Body, Eye, Message, NodeId, RegionId};
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::fmt;
+use std::future::{Future, poll_fn};
+use std::pin::Pin;
+use std::rc::Rc;
+use std::task::Poll;
+
+/// A program on a board; it ends only with a fault.
+pub type Program = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
+
+/// A fault of the simulated machine that stops a program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Fault {
+    /// Something did not fit into the board's memory.
+    Memory(OutOfMemory),
+    /// A message that the program does not understand.
+    Protocol {
+        /// The board.
+        node: NodeId,
+        /// What arrived.
+        found: String,
+    },
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Memory(error) => error.fmt(f),
+            Self::Protocol { node, found } => {
+                write!(f, "node {}: unexpected message {found}", node.0)
+            }
+        }
+    }
+}
+
+impl std::error::Error for Fault {}
+
+impl From<OutOfMemory> for Fault {
+    fn from(error: OutOfMemory) -> Self {
+        Self::Memory(error)
+    }
+}
+
+/// A message and when its last word arrived.
+#[derive(Clone, Debug)]
+pub struct Received {
+    /// Arrival of the last word.
+    pub arrived: Time,
+    /// The sender.
+    pub source: NodeId,
+    /// What it carried.
+    pub body: Body,
+}
+
+/// A batch of messages given to the DMA.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Ticket(pub(crate) u64);
+
+/// A message for the ring, with the ticket that its acceptance completes.
+#[derive(Debug)]
+pub(crate) struct Outgoing {
+    pub(crate) message: Message,
+    pub(crate) ticket: Option<Ticket>,
+}
+
+/// What the board and its programs share.
+#[derive(Debug)]
+pub(crate) struct Shared {
+    pub(crate) node: NodeId,
+    pub(crate) now: Time,
+    pub(crate) timing: GpTiming,
+    pub(crate) cpu: Cpu,
+    pub(crate) memory: Memory,
+    pub(crate) inbox: VecDeque<Received>,
+    pub(crate) outgoing: Vec<Outgoing>,
+    pub(crate) marks: Vec<Mark>,
+    pub(crate) fields: u64,
+    pub(crate) accepted: u64,
+    pub(crate) issued: u64,
+    /// Counts completed waits, so that the board polls until nothing moves.
+    pub(crate) progress: u64,
+    pub(crate) waits: [&'static str; 2],
+}
+
+/// A program's handle to its board and to its level of the CPU.
+#[derive(Clone, Debug)]
+pub struct Gp {
+    pub(crate) shared: Rc<RefCell<Shared>>,
+    pub(crate) level: Level,
+}
+
+impl Gp {
+    /// The same board at another level.
+    #[must_use]
+    pub fn at_level(&self, level: Level) -> Self {
+        Self {
+            shared: Rc::clone(&self.shared),
+            level,
+        }
+    }
+
+    /// This board's port.
+    #[must_use]
+    pub fn node(&self) -> NodeId {
+        self.shared.borrow().node
+    }
+
+    /// The present.
+    #[must_use]
+    pub fn now(&self) -> Time {
+        self.shared.borrow().now
+    }
+
+    /// The board's timing table.
+    #[must_use]
+    pub fn timing(&self) -> GpTiming {
+        self.shared.borrow().timing
+    }
+
+    /// The number of the field that is being scanned: that of the last retrace.
+    #[must_use]
+    pub fn field(&self) -> u64 {
+        self.shared.borrow().fields
+    }
+
+    /// Waits until `ready` gives something; `what` names the wait in a report of a deadlock.
+    pub async fn until<T>(&self, what: &'static str, mut ready: impl FnMut() -> Option<T>) -> T {
+        poll_fn(|_| match ready() {
+            Some(value) => {
+                self.shared.borrow_mut().progress += 1;
+                Poll::Ready(value)
+            }
+            None => {
+                self.shared.borrow_mut().waits[self.level as usize] = what;
+                Poll::Pending
+            }
+        })
+        .await
+    }
+
+    /// Spends CPU time at this program's level.
+    pub async fn spend(&self, span: Span) {
+        if span == Span::ZERO {
+            return;
+        }
+        {
+            let shared = &mut *self.shared.borrow_mut();
+            shared.cpu.begin(self.level, span, shared.now);
+        }
+        self.until("the end of its own work", || {
+            self.shared.borrow().cpu.is_done(self.level).then_some(())
+        })
+        .await;
+    }
+
+    /// Waits for the next message in order of arrival and pays the software cost of receiving it.
+    pub async fn receive(&self) -> Received {
+        let received = self
+            .until("a message", || self.shared.borrow_mut().inbox.pop_front())
+            .await;
+        self.spend(Span::from_ns(self.timing().message_ns)).await;
+        received
+    }
+
+    /// Takes a message if one has arrived, without cost; pay for it with [`Gp::spend_message`].
+    #[must_use]
+    pub fn take_message(&self) -> Option<Received> {
+        self.shared.borrow_mut().inbox.pop_front()
+    }
+
+    /// The software cost of one message.
+    pub async fn spend_message(&self) {
+        self.spend(Span::from_ns(self.timing().message_ns)).await;
+    }
+
+    /// Waits for the next retrace and gives the number of the field that it begins.
+    pub async fn retrace(&self) -> u64 {
+        let present = self.field();
+        self.until("a retrace", || {
+            Some(self.field()).filter(|field| *field > present)
+        })
+        .await
+    }
+
+    /// Sends one message in the background: pays the software cost, then queues it behind earlier ones.
+    pub async fn send(&self, destination: NodeId, words: u32, body: Body) -> Ticket {
+        self.send_batch(vec![(destination, words, body)]).await
+    }
+
+    /// Sends several messages as one chain of the DMA: one software cost, then all go in the background.
+    pub async fn send_batch(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
+        self.spend_message().await;
+        self.post(batch)
+    }
+
+    /// Waits until the clump buffer is free: everything sent before has been accepted.
+    pub async fn clump_buffer_free(&self) {
+        let issued = self.shared.borrow().issued;
+        self.accepted(Ticket(issued)).await;
+    }
+
+    /// Waits until a batch has been accepted by its receivers.
+    pub async fn accepted(&self, ticket: Ticket) {
+        self.until("a receiver to accept a message", || {
+            (self.shared.borrow().accepted >= ticket.0).then_some(())
+        })
+        .await;
+    }
+
+    fn post(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
+        let shared = &mut *self.shared.borrow_mut();
+        shared.issued += 1;
+        let (ticket, last, source) = (Ticket(shared.issued), batch.len() - 1, shared.node);
+        shared.outgoing.extend(batch.into_iter().enumerate().map(
+            |(i, (destination, words, body))| Outgoing {
+                message: Message {
+                    source,
+                    destination,
+                    words,
+                    body,
+                },
+                ticket: (i == last).then_some(ticket),
+            },
+        ));
+        ticket
+    }
+
+    /// Sets the bytes that an account of the memory holds.
+    ///
+    /// # Errors
+    ///
+    /// [`Fault::Memory`] when they do not fit.
+    pub fn reserve(
+        &self,
+        account: Account,
+        bytes: u64,
+        region: Option<RegionId>,
+    ) -> Result<(), Fault> {
+        Ok(self
+            .shared
+            .borrow_mut()
+            .memory
+            .set(account, bytes, region)?)
+    }
+
+    /// Tells the observer that a stage begins.
+    pub fn begin(&self, stage: Stage, picture: u64, eye: Option<Eye>) {
+        self.mark(stage, picture, eye, Edge::Begin, self.now());
+    }
+
+    /// Tells the observer that a stage ends.
+    pub fn end(&self, stage: Stage, picture: u64, eye: Option<Eye>) {
+        self.mark(stage, picture, eye, Edge::End, self.now());
+    }
+
+    /// Tells the observer of a stage's edge at a time that the program has read off a message.
+    pub fn mark(&self, stage: Stage, picture: u64, eye: Option<Eye>, edge: Edge, time: Time) {
+        let shared = &mut *self.shared.borrow_mut();
+        let node = shared.node;
+        shared.marks.push(Mark {
+            time,
+            node,
+            picture,
+            eye,
+            stage,
+            edge,
+        });
+    }
+}

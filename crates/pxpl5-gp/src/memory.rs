@@ -1,0 +1,160 @@
+//! The 8 MB of a board, accounted for by use.
+
+use pxpl5_wire::{NodeId, RegionId};
+use serde::Serialize;
+use std::fmt;
+
+/// What memory is used for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+pub enum Account {
+    /// Program, stacks and message buffers.
+    Program,
+    /// Primitives of this GP's share of the scene.
+    DisplayList,
+    /// Renderer commands of one bin context.
+    Commands(u8),
+    /// Pointers in the bins of one bin context.
+    Bins(u8),
+}
+
+impl Account {
+    const SLOTS: usize = 6;
+
+    const fn slot(self) -> usize {
+        match self {
+            Self::Program => 0,
+            Self::DisplayList => 1,
+            Self::Commands(context) => 2 + (context & 1) as usize,
+            Self::Bins(context) => 4 + (context & 1) as usize,
+        }
+    }
+}
+
+impl fmt::Display for Account {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Program => f.write_str("program and buffers"),
+            Self::DisplayList => f.write_str("display list"),
+            Self::Commands(context) => write!(f, "renderer commands of bin context {context}"),
+            Self::Bins(context) => write!(f, "bins of context {context}"),
+        }
+    }
+}
+
+/// A request that did not fit.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct OutOfMemory {
+    /// The board.
+    pub gp: NodeId,
+    /// What the memory was for.
+    pub account: Account,
+    /// The region whose bin overflowed, where it was a bin.
+    pub region: Option<RegionId>,
+    /// Bytes that the account would have needed.
+    pub needed_bytes: u64,
+    /// Bytes that it could have had.
+    pub available_bytes: u64,
+}
+
+impl fmt::Display for OutOfMemory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "graphics processor at node {}: {} ",
+            self.gp.0, self.account
+        )?;
+        if let Some(region) = self.region {
+            write!(f, "(region {}) ", region.0)?;
+        }
+        write!(
+            f,
+            "needs {} bytes, {} are available",
+            self.needed_bytes, self.available_bytes
+        )
+    }
+}
+
+impl std::error::Error for OutOfMemory {}
+
+/// Bytes in use, by account.
+#[derive(Clone, Debug)]
+pub struct Memory {
+    gp: NodeId,
+    capacity: u64,
+    used: [u64; Account::SLOTS],
+    peak: u64,
+}
+
+impl Memory {
+    /// Memory of `capacity` bytes, all free.
+    #[must_use]
+    pub const fn new(gp: NodeId, capacity: u64) -> Self {
+        Self {
+            gp,
+            capacity,
+            used: [0; Account::SLOTS],
+            peak: 0,
+        }
+    }
+
+    /// Sets the bytes that an account holds.
+    ///
+    /// # Errors
+    ///
+    /// [`OutOfMemory`] when they do not fit beside the other accounts; nothing changes then.
+    pub fn set(
+        &mut self,
+        account: Account,
+        bytes: u64,
+        region: Option<RegionId>,
+    ) -> Result<(), OutOfMemory> {
+        let others = self.used() - self.used[account.slot()];
+        let available_bytes = self.capacity.saturating_sub(others);
+        if bytes > available_bytes {
+            return Err(OutOfMemory {
+                gp: self.gp,
+                account,
+                region,
+                needed_bytes: bytes,
+                available_bytes,
+            });
+        }
+        self.used[account.slot()] = bytes;
+        self.peak = self.peak.max(others + bytes);
+        Ok(())
+    }
+
+    /// Bytes in use.
+    #[must_use]
+    pub fn used(&self) -> u64 {
+        self.used.iter().sum()
+    }
+
+    /// Most bytes ever in use.
+    #[must_use]
+    pub const fn peak(&self) -> u64 {
+        self.peak
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_overflow_names_the_board_the_use_and_the_region_and_changes_nothing() {
+        let mut memory = Memory::new(NodeId(3), 1_000);
+        memory.set(Account::DisplayList, 600, None).expect("fits");
+        memory
+            .set(Account::Bins(1), 400, Some(RegionId(7)))
+            .expect("fits exactly");
+        let error = memory
+            .set(Account::Bins(1), 401, Some(RegionId(7)))
+            .expect_err("one byte too many");
+        assert_eq!(
+            error.to_string(),
+            "graphics processor at node 3: bins of context 1 (region 7) needs 401 bytes, 400 are available"
+        );
+        assert_eq!((memory.used(), memory.peak()), (1_000, 1_000));
+    }
+}

@@ -1,0 +1,52 @@
+//! What firmware tells the observer; it costs nothing and changes nothing.
+
+use pxpl5_sim::Time;
+use pxpl5_wire::{Eye, NodeId};
+use serde::{Deserialize, Serialize};
+
+/// A stage of a pipeline, in the papers' words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stage {
+    /// The tracker's pose that the picture shows was sampled.
+    Sample,
+    /// Host to GPs: edits, attributes, transforms.
+    Send,
+    /// GPs apply the edits.
+    Edit,
+    /// Primitives to screen space, commands into bins.
+    Transform,
+    /// Commands to the renderers until the last is accepted.
+    Render,
+    /// Regions to the frame buffer.
+    Copy,
+    /// The finished picture is shown from the retrace on.
+    Swap,
+}
+
+/// Begin or end of a stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Edge {
+    /// The stage begins.
+    Begin,
+    /// The stage ends.
+    End,
+}
+
+/// One fact about the pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Mark {
+    /// When.
+    pub time: Time,
+    /// On which board.
+    pub node: NodeId,
+    /// The picture's number: frame or field, from 0.
+    pub picture: u64,
+    /// The eye, for stages that take one eye at a time.
+    pub eye: Option<Eye>,
+    /// The stage.
+    pub stage: Stage,
+    /// Begin or end.
+    pub edge: Edge,
+}

@@ -1,0 +1,46 @@
+//! Every number of the board.
+
+pxpl5_sim::parameter_table! {
+    /// Times and sizes of a graphics processor and of the code that it runs.
+    pub struct GpTiming {
+        /// Memory of a board.
+        memory_bytes: 8_388_608, "bytes", Published, 8388608..=8388608, "TR94: 8 MB";
+        /// CPU time to send a batch of messages or to receive one.
+        message_ns: 12_000, "ns", Assumed, 10000..=25000, "software of a message; the range is what the published latencies allow";
+        /// CPU time of one triangle and eye: transform, light, set up, make commands.
+        triangle_ns: 21_700, "ns", Derived, 18000..=32000, "870 clocks at 40 MHz for optimised PPHIGS; 1M/32 GPs gives 32 us as design figure";
+        /// CPU time of one entry in a bin.
+        bin_entry_ns: 1_000, "ns", Assumed, 500..=2000, "a pointer store and a count, partly out of cache";
+        /// CPU time of one sphere and eye.
+        sphere_ns: 21_700, "ns", Assumed, 10000..=32000, "one centre to transform instead of three vertices, but a conic to set up; taken as a triangle";
+        /// CPU time to apply one edit to the display list.
+        edit_ns: 10_000, "ns", Assumed, 2000..=50000, "a few hundred instructions of display-list traversal";
+        /// CPU time to begin a pass over the display list.
+        pass_ns: 5_000, "ns", Assumed, 1000..=20000, "concatenate matrices, reset bins";
+    }
+}
+
+impl GpTiming {
+    /// The Slats prototype of 1994: 34 us per triangle and eye, fitted to the limit of 110 triangles (TR94).
+    pub const SLATS_1994: Self = Self {
+        triangle_ns: 34_000,
+        sphere_ns: 34_000,
+        bin_entry_ns: 0,
+        ..Self::PAPERS
+    };
+
+    /// The Slats code of 1995: 58 us per triangle and eye, fitted to the limit of about 100 triangles (I3D95).
+    pub const SLATS_1995: Self = Self {
+        triangle_ns: 58_000,
+        sphere_ns: 58_000,
+        bin_entry_ns: 0,
+        ..Self::PAPERS
+    };
+
+    /// The host workstation: it has no display list to transform, only edits and messages.
+    pub const HOST: Self = Self {
+        memory_bytes: 33_554_432,
+        message_ns: 20_000,
+        ..Self::PAPERS
+    };
+}
