@@ -57,10 +57,7 @@ pub struct GpBoard {
 
 impl fmt::Debug for GpBoard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("GpBoard")
-            .field("shared", &self.shared)
-            .field("fault", &self.fault)
-            .finish_non_exhaustive()
+        f.debug_struct("GpBoard").field("shared", &self.shared).field("fault", &self.fault).finish_non_exhaustive()
     }
 }
 
@@ -84,23 +81,13 @@ impl GpBoard {
             waits: [""; 2],
         };
         let shared = Rc::new(RefCell::new(shared));
-        Self {
-            shared,
-            tasks: Vec::new(),
-            announced: None,
-            poll_pending: false,
-            cycle,
-            fault: None,
-        }
+        Self { shared, tasks: Vec::new(), announced: None, poll_pending: false, cycle, fault: None }
     }
 
     /// A handle for a program at a level.
     #[must_use]
     pub fn handle_for(&self, level: Level) -> Gp {
-        Gp {
-            shared: Rc::clone(&self.shared),
-            level,
-        }
+        Gp { shared: Rc::clone(&self.shared), level }
     }
 
     /// Loads a program; one a level.
@@ -114,14 +101,10 @@ impl GpBoard {
         self.shared.borrow_mut().now = context.now();
         match event {
             GpEvent::Delivered(message) => self.latch(message, context),
-            GpEvent::Accepted(ticket) => self.arrive(context, |shared| {
-                shared.accepted = shared.accepted.max(ticket)
-            }),
+            GpEvent::Accepted(ticket) => self.arrive(context, |shared| shared.accepted = shared.accepted.max(ticket)),
             GpEvent::Retrace(field) => self.arrive(context, |shared| shared.fields = field),
             GpEvent::Poll => self.work(context),
-            GpEvent::WorkEnds(generation) if self.announced == Some(generation) => {
-                self.work(context)
-            }
+            GpEvent::WorkEnds(generation) if self.announced == Some(generation) => self.work(context),
             GpEvent::WorkEnds(_) => {}
         }
     }
@@ -132,22 +115,11 @@ impl GpBoard {
         self.arrive(context, |shared| {
             let later = |r: &Received| (r.arrived, r.source) <= (arrived, message.source);
             let place = shared.inbox.iter().rposition(later).map_or(0, |i| i + 1);
-            shared.inbox.insert(
-                place,
-                Received {
-                    arrived,
-                    source: message.source,
-                    body: message.body,
-                },
-            );
+            shared.inbox.insert(place, Received { arrived, source: message.source, body: message.body });
         });
     }
 
-    fn arrive(
-        &mut self,
-        context: &mut Context<GpEvent, GpOutput>,
-        latch: impl FnOnce(&mut Shared),
-    ) {
+    fn arrive(&mut self, context: &mut Context<GpEvent, GpOutput>, latch: impl FnOnce(&mut Shared)) {
         latch(&mut self.shared.borrow_mut());
         if !self.poll_pending {
             self.poll_pending = true;
@@ -164,16 +136,10 @@ impl GpBoard {
         self.poll_until_quiet();
         let shared = &mut *self.shared.borrow_mut();
         for outgoing in shared.outgoing.drain(..) {
-            let output = GpOutput::Send {
-                message: outgoing.message,
-                ticket: outgoing.ticket.map(|t| t.0),
-            };
+            let output = GpOutput::Send { message: outgoing.message, ticket: outgoing.ticket.map(|t| t.0) };
             context.output(context.now() + self.cycle, output);
         }
-        let end = shared
-            .cpu
-            .next_end()
-            .filter(|end| self.announced != Some(end.1));
+        let end = shared.cpu.next_end().filter(|end| self.announced != Some(end.1));
         if let Some((time, generation)) = end {
             self.announced = Some(generation);
             context.schedule(time, Phase::Work, GpEvent::WorkEnds(generation));
@@ -185,14 +151,13 @@ impl GpBoard {
         loop {
             let before = self.shared.borrow().progress;
             let fault = &mut self.fault;
-            self.tasks
-                .retain_mut(|task| match task.program.as_mut().poll(&mut task_context) {
-                    Poll::Pending => true,
-                    Poll::Ready(result) => {
-                        *fault = fault.take().or(result.err());
-                        false
-                    }
-                });
+            self.tasks.retain_mut(|task| match task.program.as_mut().poll(&mut task_context) {
+                Poll::Pending => true,
+                Poll::Ready(result) => {
+                    *fault = fault.take().or(result.err());
+                    false
+                }
+            });
             if self.shared.borrow().progress == before {
                 return;
             }
@@ -225,16 +190,9 @@ impl GpBoard {
     /// What the board waits for.
     #[must_use]
     pub fn blocked(&self, name: &str) -> Option<Blocked> {
-        let task = self
-            .tasks
-            .iter()
-            .rev()
-            .find(|task| !self.shared.borrow().waits[task.level as usize].is_empty())?;
+        let task = self.tasks.iter().rev().find(|task| !self.shared.borrow().waits[task.level as usize].is_empty())?;
         let waits_for = self.shared.borrow().waits[task.level as usize].to_owned();
-        Some(Blocked {
-            board: name.to_owned(),
-            waits_for,
-        })
+        Some(Blocked { board: name.to_owned(), waits_for })
     }
 }
 
@@ -247,12 +205,7 @@ mod tests {
     const CYCLE: Span = Span(25_000);
 
     fn words(source: u16, value: u32) -> Message {
-        Message {
-            source: NodeId(source),
-            destination: NodeId(9),
-            words: 1,
-            body: Body::Words([value].into()),
-        }
+        Message { source: NodeId(source), destination: NodeId(9), words: 1, body: Body::Words([value].into()) }
     }
 
     fn value(body: &Body) -> u32 {
@@ -272,10 +225,7 @@ mod tests {
     }
 
     fn board() -> GpBoard {
-        let timing = GpTiming {
-            message_ns: 1_000,
-            ..GpTiming::PAPERS
-        };
+        let timing = GpTiming { message_ns: 1_000, ..GpTiming::PAPERS };
         let mut board = GpBoard::new(NodeId(9), timing, CYCLE);
         let gp = board.handle_for(Level::Foreground);
         board.load(Level::Foreground, Box::pin(echo(gp)));
@@ -283,20 +233,14 @@ mod tests {
     }
 
     fn sent(bench: TestBench<GpEvent, GpOutput>) -> Vec<(Time, u16, u32)> {
-        let of = |(time, GpOutput::Send { message, .. })| {
-            (time, message.destination.0, value(&message.body))
-        };
+        let of = |(time, GpOutput::Send { message, .. })| (time, message.destination.0, value(&message.body));
         bench.outputs.into_iter().map(of).collect()
     }
 
     #[test]
     fn an_echo_leaves_after_both_software_costs_the_work_and_one_cycle() {
         let (mut board, mut bench) = (board(), TestBench::new());
-        bench.feed(
-            Time(500_000),
-            Phase::Arrive,
-            GpEvent::Delivered(words(2, 7)),
-        );
+        bench.feed(Time(500_000), Phase::Arrive, GpEvent::Delivered(words(2, 7)));
         bench.run(|event, context| board.handle(event, context));
         assert_eq!(sent(bench), [(Time(500_000 + 2_100_000) + CYCLE, 2, 7)]);
     }
@@ -310,10 +254,7 @@ mod tests {
                 bench.feed(Time(0), Phase::Arrive, GpEvent::Delivered(words(source, 0)));
             }
             bench.run(|event, context| board.handle(event, context));
-            assert_eq!(
-                sent(bench).iter().map(|s| s.1).collect::<Vec<_>>(),
-                [1, 3, 5, 8]
-            );
+            assert_eq!(sent(bench).iter().map(|s| s.1).collect::<Vec<_>>(), [1, 3, 5, 8]);
         }
     }
 
@@ -326,14 +267,7 @@ mod tests {
             }
             Ok(())
         }
-        let mut board = GpBoard::new(
-            NodeId(9),
-            GpTiming {
-                message_ns: 1_000,
-                ..GpTiming::PAPERS
-            },
-            CYCLE,
-        );
+        let mut board = GpBoard::new(NodeId(9), GpTiming { message_ns: 1_000, ..GpTiming::PAPERS }, CYCLE);
         let gp = board.handle_for(Level::Foreground);
         board.load(Level::Foreground, Box::pin(two_clumps(gp)));
         let mut bench = TestBench::new();
@@ -341,10 +275,7 @@ mod tests {
         bench.feed(Time(9_000_000), Phase::Arrive, GpEvent::Accepted(1));
         bench.run(|event, context| board.handle(event, context));
         let first = Time(1_000_000) + CYCLE;
-        assert_eq!(
-            sent(bench),
-            [(first, 1, 0), (Time(10_000_000) + CYCLE, 1, 1)]
-        );
+        assert_eq!(sent(bench), [(first, 1, 0), (Time(10_000_000) + CYCLE, 1, 1)]);
     }
 
     #[test]

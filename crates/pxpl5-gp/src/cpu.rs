@@ -41,19 +41,16 @@ impl Cpu {
         self.busy += elapsed;
         let left = self.remaining[level as usize].map_or(Span::ZERO, |left| left - elapsed);
         self.remaining[level as usize] = (left > Span::ZERO).then_some(left);
-        self.running = None;
+        self.running = (left > Span::ZERO).then_some((level, now));
         self.dispatch(now);
     }
 
     fn dispatch(&mut self, now: Time) {
-        let first = Level::ALL
-            .into_iter()
-            .find(|level| self.remaining[*level as usize].is_some());
-        let next = first.map(|level| (level, now));
+        let first = Level::ALL.into_iter().find(|level| self.remaining[*level as usize].is_some());
         if self.running.map(|(level, _)| level) != first {
             self.generation += 1;
         }
-        self.running = next;
+        self.running = first.map(|level| (level, now));
     }
 
     /// Whether `level` has spent all it asked for.

@@ -103,10 +103,7 @@ impl Gp {
     /// The same board at another level.
     #[must_use]
     pub fn at_level(&self, level: Level) -> Self {
-        Self {
-            shared: Rc::clone(&self.shared),
-            level,
-        }
+        Self { shared: Rc::clone(&self.shared), level }
     }
 
     /// This board's port.
@@ -157,17 +154,12 @@ impl Gp {
             let shared = &mut *self.shared.borrow_mut();
             shared.cpu.begin(self.level, span, shared.now);
         }
-        self.until("the end of its own work", || {
-            self.shared.borrow().cpu.is_done(self.level).then_some(())
-        })
-        .await;
+        self.until("the end of its own work", || self.shared.borrow().cpu.is_done(self.level).then_some(())).await;
     }
 
     /// Waits for the next message in order of arrival and pays the software cost of receiving it.
     pub async fn receive(&self) -> Received {
-        let received = self
-            .until("a message", || self.shared.borrow_mut().inbox.pop_front())
-            .await;
+        let received = self.until("a message", || self.shared.borrow_mut().inbox.pop_front()).await;
         self.spend(Span::from_ns(self.timing().message_ns)).await;
         received
     }
@@ -186,10 +178,7 @@ impl Gp {
     /// Waits for the next retrace and gives the number of the field that it begins.
     pub async fn retrace(&self) -> u64 {
         let present = self.field();
-        self.until("a retrace", || {
-            Some(self.field()).filter(|field| *field > present)
-        })
-        .await
+        self.until("a retrace", || Some(self.field()).filter(|field| *field > present)).await
     }
 
     /// Sends one message in the background: pays the software cost, then queues it behind earlier ones.
@@ -211,27 +200,18 @@ impl Gp {
 
     /// Waits until a batch has been accepted by its receivers.
     pub async fn accepted(&self, ticket: Ticket) {
-        self.until("a receiver to accept a message", || {
-            (self.shared.borrow().accepted >= ticket.0).then_some(())
-        })
-        .await;
+        self.until("a receiver to accept a message", || (self.shared.borrow().accepted >= ticket.0).then_some(()))
+            .await;
     }
 
     fn post(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
         let shared = &mut *self.shared.borrow_mut();
         shared.issued += 1;
         let (ticket, last, source) = (Ticket(shared.issued), batch.len() - 1, shared.node);
-        shared.outgoing.extend(batch.into_iter().enumerate().map(
-            |(i, (destination, words, body))| Outgoing {
-                message: Message {
-                    source,
-                    destination,
-                    words,
-                    body,
-                },
-                ticket: (i == last).then_some(ticket),
-            },
-        ));
+        shared.outgoing.extend(batch.into_iter().enumerate().map(|(i, (destination, words, body))| Outgoing {
+            message: Message { source, destination, words, body },
+            ticket: (i == last).then_some(ticket),
+        }));
         ticket
     }
 
@@ -240,17 +220,8 @@ impl Gp {
     /// # Errors
     ///
     /// [`Fault::Memory`] when they do not fit.
-    pub fn reserve(
-        &self,
-        account: Account,
-        bytes: u64,
-        region: Option<RegionId>,
-    ) -> Result<(), Fault> {
-        Ok(self
-            .shared
-            .borrow_mut()
-            .memory
-            .set(account, bytes, region)?)
+    pub fn reserve(&self, account: Account, bytes: u64, region: Option<RegionId>) -> Result<(), Fault> {
+        Ok(self.shared.borrow_mut().memory.set(account, bytes, region)?)
     }
 
     /// Tells the observer that a stage begins.
@@ -267,13 +238,6 @@ impl Gp {
     pub fn mark(&self, stage: Stage, picture: u64, eye: Option<Eye>, edge: Edge, time: Time) {
         let shared = &mut *self.shared.borrow_mut();
         let node = shared.node;
-        shared.marks.push(Mark {
-            time,
-            node,
-            picture,
-            eye,
-            stage,
-            edge,
-        });
+        shared.marks.push(Mark { time, node, picture, eye, stage, edge });
     }
 }

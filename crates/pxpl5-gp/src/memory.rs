@@ -58,19 +58,11 @@ pub struct OutOfMemory {
 
 impl fmt::Display for OutOfMemory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "graphics processor at node {}: {} ",
-            self.gp.0, self.account
-        )?;
+        write!(f, "graphics processor at node {}: {} ", self.gp.0, self.account)?;
         if let Some(region) = self.region {
             write!(f, "(region {}) ", region.0)?;
         }
-        write!(
-            f,
-            "needs {} bytes, {} are available",
-            self.needed_bytes, self.available_bytes
-        )
+        write!(f, "needs {} bytes, {} are available", self.needed_bytes, self.available_bytes)
     }
 }
 
@@ -89,12 +81,7 @@ impl Memory {
     /// Memory of `capacity` bytes, all free.
     #[must_use]
     pub const fn new(gp: NodeId, capacity: u64) -> Self {
-        Self {
-            gp,
-            capacity,
-            used: [0; Account::SLOTS],
-            peak: 0,
-        }
+        Self { gp, capacity, used: [0; Account::SLOTS], peak: 0 }
     }
 
     /// Sets the bytes that an account holds.
@@ -102,22 +89,11 @@ impl Memory {
     /// # Errors
     ///
     /// [`OutOfMemory`] when they do not fit beside the other accounts; nothing changes then.
-    pub fn set(
-        &mut self,
-        account: Account,
-        bytes: u64,
-        region: Option<RegionId>,
-    ) -> Result<(), OutOfMemory> {
+    pub fn set(&mut self, account: Account, bytes: u64, region: Option<RegionId>) -> Result<(), OutOfMemory> {
         let others = self.used() - self.used[account.slot()];
         let available_bytes = self.capacity.saturating_sub(others);
         if bytes > available_bytes {
-            return Err(OutOfMemory {
-                gp: self.gp,
-                account,
-                region,
-                needed_bytes: bytes,
-                available_bytes,
-            });
+            return Err(OutOfMemory { gp: self.gp, account, region, needed_bytes: bytes, available_bytes });
         }
         self.used[account.slot()] = bytes;
         self.peak = self.peak.max(others + bytes);
@@ -145,12 +121,8 @@ mod tests {
     fn an_overflow_names_the_board_the_use_and_the_region_and_changes_nothing() {
         let mut memory = Memory::new(NodeId(3), 1_000);
         memory.set(Account::DisplayList, 600, None).expect("fits");
-        memory
-            .set(Account::Bins(1), 400, Some(RegionId(7)))
-            .expect("fits exactly");
-        let error = memory
-            .set(Account::Bins(1), 401, Some(RegionId(7)))
-            .expect_err("one byte too many");
+        memory.set(Account::Bins(1), 400, Some(RegionId(7))).expect("fits exactly");
+        let error = memory.set(Account::Bins(1), 401, Some(RegionId(7))).expect_err("one byte too many");
         assert_eq!(
             error.to_string(),
             "graphics processor at node 3: bins of context 1 (region 7) needs 401 bytes, 400 are available"

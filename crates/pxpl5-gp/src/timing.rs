@@ -22,25 +22,11 @@ pxpl5_sim::parameter_table! {
 
 impl GpTiming {
     /// The Slats prototype of 1994: 34 us per triangle and eye, fitted to the limit of 110 triangles (TR94).
-    pub const SLATS_1994: Self = Self {
-        triangle_ns: 34_000,
-        sphere_ns: 34_000,
-        bin_entry_ns: 0,
-        ..Self::PAPERS
-    };
+    pub const SLATS_1994: Self = Self { triangle_ns: 34_000, sphere_ns: 34_000, bin_entry_ns: 0, ..Self::PAPERS };
 
     /// The Slats code of 1995: 58 us per triangle and eye, fitted to the limit of about 100 triangles (I3D95).
-    pub const SLATS_1995: Self = Self {
-        triangle_ns: 58_000,
-        sphere_ns: 58_000,
-        bin_entry_ns: 0,
-        ..Self::PAPERS
-    };
+    pub const SLATS_1995: Self = Self { triangle_ns: 58_000, sphere_ns: 58_000, bin_entry_ns: 0, ..Self::PAPERS };
 
     /// The host workstation: it has no display list to transform, only edits and messages.
-    pub const HOST: Self = Self {
-        memory_bytes: 33_554_432,
-        message_ns: 20_000,
-        ..Self::PAPERS
-    };
+    pub const HOST: Self = Self { memory_bytes: 33_554_432, message_ns: 20_000, ..Self::PAPERS };
 }

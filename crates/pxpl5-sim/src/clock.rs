@@ -4,9 +4,7 @@ use crate::{Span, Time};
 use serde::{Deserialize, Serialize};
 
 /// A number of cycles of one clock. It never leaves the crate that owns the clock.
-#[derive(
-    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
-)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Cycles(pub u64);
 
 /// A clock whose period is the rational number `numerator_ps / denominator` picoseconds.
@@ -26,10 +24,7 @@ impl Clock {
         if denominator == 0 || numerator_ps < denominator {
             return None;
         }
-        Some(Self {
-            numerator_ps,
-            denominator,
-        })
+        Some(Self { numerator_ps, denominator })
     }
 
     /// A clock of a frequency in hertz; `None` for zero or more than a terahertz.
@@ -77,11 +72,7 @@ mod tests {
 
     #[test]
     fn the_edge_at_or_after_an_edge_is_that_edge_and_one_tick_later_the_next() {
-        for clock in [
-            Clock::from_hz(40_000_000),
-            Clock::new(1_001_000_000_000_000, 60_000),
-            Clock::new(7, 3),
-        ] {
+        for clock in [Clock::from_hz(40_000_000), Clock::new(1_001_000_000_000_000, 60_000), Clock::new(7, 3)] {
             let clock = clock.expect("valid");
             for n in [0, 1, 2, 3, 1_000, 123_457] {
                 let edge = clock.edge(n);

@@ -14,21 +14,14 @@ pub struct Context<E, O> {
 
 impl<E, O> Default for Context<E, O> {
     fn default() -> Self {
-        Self {
-            now: Time::ZERO,
-            own: Vec::new(),
-            outputs: Vec::new(),
-        }
+        Self { now: Time::ZERO, own: Vec::new(), outputs: Vec::new() }
     }
 }
 
 impl<E, O> Context<E, O> {
     /// A context at `now`, keeping its buffers.
     pub fn at(&mut self, now: Time) -> &mut Self {
-        debug_assert!(
-            self.own.is_empty() && self.outputs.is_empty(),
-            "the wiring left something undone"
-        );
+        debug_assert!(self.own.is_empty() && self.outputs.is_empty(), "the wiring left something undone");
         self.now = now;
         self
     }
@@ -85,11 +78,7 @@ pub struct TestBench<E, O> {
 
 impl<E, O> Default for TestBench<E, O> {
     fn default() -> Self {
-        Self {
-            queue: EventQueue::new(),
-            context: Context::default(),
-            outputs: Vec::new(),
-        }
+        Self { queue: EventQueue::new(), context: Context::default(), outputs: Vec::new() }
     }
 }
 

@@ -58,11 +58,7 @@ impl fmt::Display for ParameterError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unknown { name, valid } => {
-                write!(
-                    f,
-                    "there is no parameter `{name}`; expected one of {}",
-                    valid.join(", ")
-                )
+                write!(f, "there is no parameter `{name}`; expected one of {}", valid.join(", "))
             }
         }
     }
@@ -170,21 +166,14 @@ mod tests {
         table.set("send_ns", 10_000).expect("known");
         assert_eq!(table.get("send_ns"), Ok(10_000));
         let error = table.set("sned_ns", 1).expect_err("unknown");
-        assert_eq!(
-            error.to_string(),
-            "there is no parameter `sned_ns`; expected one of word_ns, send_ns"
-        );
+        assert_eq!(error.to_string(), "there is no parameter `sned_ns`; expected one of word_ns, send_ns");
     }
 
     #[test]
     fn every_preset_lies_in_its_allowed_range() {
         for info in Table::infos() {
             let value = Table::PAPERS.get(info.name).expect("listed");
-            assert!(
-                (info.range.0..=info.range.1).contains(&value),
-                "{}",
-                info.name
-            );
+            assert!((info.range.0..=info.range.1).contains(&value), "{}", info.name);
         }
     }
 }

@@ -53,13 +53,7 @@ pub struct EventQueue<E> {
 
 impl<E> Default for EventQueue<E> {
     fn default() -> Self {
-        Self {
-            heap: BinaryHeap::new(),
-            now: Time::ZERO,
-            sequence: 0,
-            shuffle: None,
-            popped: 0,
-        }
+        Self { heap: BinaryHeap::new(), now: Time::ZERO, sequence: 0, shuffle: None, popped: 0 }
     }
 }
 
@@ -81,14 +75,8 @@ impl<E> EventQueue<E> {
     ///
     /// When `time` is in the past: a device has broken the contract.
     pub fn schedule(&mut self, time: Time, phase: Phase, event: E) {
-        assert!(
-            time >= self.now,
-            "an event at {time} was scheduled at {}",
-            self.now
-        );
-        let tie = self
-            .shuffle
-            .map_or(0, |seed| mix(seed ^ mix(self.sequence)));
+        assert!(time >= self.now, "an event at {time} was scheduled at {}", self.now);
+        let tie = self.shuffle.map_or(0, |seed| mix(seed ^ mix(self.sequence)));
         let key = (time, phase, tie, self.sequence);
         self.sequence += 1;
         self.heap.push(Reverse(Entry { key, event }));
@@ -139,9 +127,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn drain(queue: &mut EventQueue<u32>) -> Vec<u32> {
-        std::iter::from_fn(|| queue.next_event())
-            .map(|(_, _, event)| event)
-            .collect()
+        std::iter::from_fn(|| queue.next_event()).map(|(_, _, event)| event).collect()
     }
 
     #[test]

@@ -23,9 +23,7 @@ pub struct TraceHash(pub u64);
 impl TraceHash {
     /// Adds one record.
     pub fn record(&mut self, time: Time, facts: &[u64]) {
-        let hash = facts
-            .iter()
-            .fold(mix(time.0), |hash, fact| mix(hash ^ mix(*fact)));
+        let hash = facts.iter().fold(mix(time.0), |hash, fact| mix(hash ^ mix(*fact)));
         self.0 = self.0.wrapping_add(hash);
     }
 }
@@ -42,9 +40,7 @@ mod tests {
 
     fn hash(records: &[(u64, &[u64])]) -> TraceHash {
         let mut hash = TraceHash::default();
-        records
-            .iter()
-            .for_each(|(time, facts)| hash.record(Time(*time), facts));
+        records.iter().for_each(|(time, facts)| hash.record(Time(*time), facts));
         hash
     }
 
@@ -66,9 +62,6 @@ mod tests {
             state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
             out
         };
-        assert_eq!(
-            [next(), next()],
-            [6_457_827_717_110_365_317, 3_203_168_211_198_807_973]
-        );
+        assert_eq!([next(), next()], [6_457_827_717_110_365_317, 3_203_168_211_198_807_973]);
     }
 }

@@ -111,11 +111,7 @@ impl FieldParity {
     /// The parity of the field that starts at retrace `n`: even numbers scan even lines.
     #[must_use]
     pub const fn of_field(n: u64) -> Self {
-        if n.is_multiple_of(2) {
-            Self::Even
-        } else {
-            Self::Odd
-        }
+        if n.is_multiple_of(2) { Self::Even } else { Self::Odd }
     }
 
     /// First line of the field: 0 or 1.

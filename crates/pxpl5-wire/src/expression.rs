@@ -55,15 +55,9 @@ impl Quadratic {
     #[must_use]
     pub const fn at(&self, x: i32, y: i32) -> i64 {
         let (px, py) = (x as i64, y as i64);
-        let row = self
-            .xx
-            .wrapping_mul(px)
-            .wrapping_add(self.xy.wrapping_mul(py))
-            .wrapping_add(self.x);
+        let row = self.xx.wrapping_mul(px).wrapping_add(self.xy.wrapping_mul(py)).wrapping_add(self.x);
         let column = self.yy.wrapping_mul(py).wrapping_add(self.y);
-        row.wrapping_mul(px)
-            .wrapping_add(column.wrapping_mul(py))
-            .wrapping_add(self.one)
+        row.wrapping_mul(px).wrapping_add(column.wrapping_mul(py)).wrapping_add(self.one)
     }
 }
 
@@ -73,11 +67,7 @@ mod tests {
 
     #[test]
     fn a_linear_expression_is_exact_modulo_two_to_the_32() {
-        let e = Linear {
-            a: i32::MAX,
-            b: -7,
-            c: i32::MIN,
-        };
+        let e = Linear { a: i32::MAX, b: -7, c: i32::MIN };
         let exact = i64::from(i32::MAX) * 639 - 7 * 479 + i64::from(i32::MIN);
         assert_eq!(e.at(639, 479), exact as i32);
     }
@@ -85,14 +75,7 @@ mod tests {
     #[test]
     fn a_circle_is_zero_on_its_rim_and_positive_inside() {
         // 25 - (x - 10)^2 - (y - 20)^2 expanded.
-        let q = Quadratic {
-            xx: -1,
-            xy: 0,
-            yy: -1,
-            x: 20,
-            y: 40,
-            one: 25 - 100 - 400,
-        };
+        let q = Quadratic { xx: -1, xy: 0, yy: -1, x: 20, y: 40, one: 25 - 100 - 400 };
         assert_eq!((q.at(10, 20), q.at(13, 24), q.at(15, 20)), (25, 0, 0));
         assert_eq!(q.at(16, 20), -11);
     }

@@ -23,8 +23,8 @@ pub mod format;
 mod region;
 
 pub use body::{
-    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget,
-    FieldParity, Lines, Message, PixelSource, RegionPixels,
+    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, FieldParity, Lines,
+    Message, PixelSource, RegionPixels,
 };
 pub use expression::{Linear, Quadratic};
 pub use region::{Eye, RegionGrid, RegionId};
@@ -39,7 +39,5 @@ pub const MAX_MESSAGE_WORDS: u32 = 1024;
 pub const REGION_SIZE: u32 = 128;
 
 /// Position of a board's port on the ring, counted in the direction of travel.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 pub struct NodeId(pub u16);

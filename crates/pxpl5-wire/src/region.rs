@@ -42,20 +42,10 @@ pub struct RegionGrid {
 
 impl RegionGrid {
     /// A whole NTSC frame of 640 x 480 in 5 x 4 regions of 128 x 128; the last row has 96 lines (TR94).
-    pub const FRAME: Self = Self {
-        width: 640,
-        height: 480,
-        region_width: 128,
-        region_height: 128,
-    };
+    pub const FRAME: Self = Self { width: 640, height: 480, region_width: 128, region_height: 128 };
 
     /// One NTSC field of 640 x 240 in 5 x 2 regions of 128 x 120 (TR94).
-    pub const FIELD: Self = Self {
-        width: 640,
-        height: 240,
-        region_width: 128,
-        region_height: 120,
-    };
+    pub const FIELD: Self = Self { width: 640, height: 240, region_width: 128, region_height: 120 };
 
     /// Regions in a row.
     #[must_use]
@@ -81,12 +71,7 @@ impl RegionGrid {
         let column = region.0 as u32 % self.columns();
         let row = region.0 as u32 / self.columns();
         let (left, top) = (column * self.region_width, row * self.region_height);
-        [
-            left,
-            top,
-            min(self.region_width, self.width - left),
-            min(self.region_height, self.height - top),
-        ]
+        [left, top, min(self.region_width, self.width - left), min(self.region_height, self.height - top)]
     }
 }
 
@@ -100,15 +85,9 @@ mod tests {
 
     #[test]
     fn a_frame_has_20_regions_that_cover_it_once() {
-        let pixels: u32 = (0..20)
-            .map(|i| RegionGrid::FRAME.rectangle(RegionId(i)))
-            .map(|r| r[2] * r[3])
-            .sum();
+        let pixels: u32 = (0..20).map(|i| RegionGrid::FRAME.rectangle(RegionId(i))).map(|r| r[2] * r[3]).sum();
         assert_eq!((RegionGrid::FRAME.regions(), pixels), (20, 640 * 480));
-        assert_eq!(
-            RegionGrid::FRAME.rectangle(RegionId(19)),
-            [512, 384, 128, 96]
-        );
+        assert_eq!(RegionGrid::FRAME.rectangle(RegionId(19)), [512, 384, 128, 96]);
     }
 
     #[test]
