@@ -1,0 +1,257 @@
+//! The input FIFO and the controller that empties it, in closed form per command.
+//!
+//! Rules (assumed where the papers are silent):
+//!
+//! - a word is put on the channel once there is room for it, and needs one word time;
+//! - a command starts when all its words have arrived and the command before it has ended;
+//! - its words leave the FIFO when it starts;
+//! - a *blocking* command (copy of a region) ends when somebody says so; nothing behind it starts before.
+//!
+//! Since a SIMD array takes the same time whatever its data are, all starts and ends follow from the arrivals, and
+//! no event is needed for a command.
+
+use pxpl5_sim::{Span, Time};
+use std::collections::VecDeque;
+
+/// Some equal commands in a row, as the FIFO sees them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Work {
+    pub(crate) words_each: u32,
+    pub(crate) count: u32,
+    /// Execution time of one; `None` for a blocking command.
+    pub(crate) span_each: Option<Span>,
+}
+
+/// What became known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Progress {
+    /// The last word of the message in transit enters at this time.
+    pub(crate) accepted: Option<Time>,
+    /// A blocking command starts at this time.
+    pub(crate) blocks: Option<Time>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Command {
+    words: u32,
+    span: Option<Span>,
+    complete: Time,
+}
+
+/// FIFO and controller.
+#[derive(Debug)]
+pub(crate) struct InputFifo {
+    depth: u64,
+    word: Span,
+    /// Words of the message in transit that have no arrival yet.
+    in_transit: VecDeque<Work>,
+    transit_known: bool,
+    last_word_at: Time,
+    words_in: u64,
+    /// First word and start of each started command, as far as arrivals still need them.
+    left: VecDeque<(u64, Time)>,
+    words_left: u64,
+    waiting: VecDeque<Command>,
+    /// When the controller is free; `None` while a blocking command runs.
+    free_at: Option<Time>,
+    busy: Span,
+}
+
+impl InputFifo {
+    pub(crate) fn new(depth_words: u32, word: Span) -> Self {
+        Self {
+            depth: u64::from(depth_words),
+            word,
+            in_transit: VecDeque::new(),
+            transit_known: true,
+            last_word_at: Time::ZERO,
+            words_in: 0,
+            left: VecDeque::new(),
+            words_left: 0,
+            waiting: VecDeque::new(),
+            free_at: Some(Time::ZERO),
+            busy: Span::ZERO,
+        }
+    }
+
+    /// A message begins to arrive: its first word is on the channel from `begins` on.
+    pub(crate) fn message(&mut self, begins: Time, work: impl IntoIterator<Item = Work>) -> Progress {
+        self.last_word_at = self.last_word_at.max(begins);
+        self.in_transit.extend(work);
+        self.transit_known = false;
+        self.advance()
+    }
+
+    /// The blocking command ends.
+    pub(crate) fn resume(&mut self, now: Time) -> Progress {
+        self.free_at = Some(now);
+        self.advance()
+    }
+
+    /// Execution time so far, without blocking commands.
+    pub(crate) const fn busy(&self) -> Span {
+        self.busy
+    }
+
+    /// Whether the controller stands at a blocking command.
+    pub(crate) const fn is_blocked(&self) -> bool {
+        self.free_at.is_none()
+    }
+
+    fn advance(&mut self) -> Progress {
+        let mut progress = Progress { accepted: None, blocks: self.start_waiting() };
+        while let Some(work) = self.in_transit.front_mut() {
+            if work.count == 0 {
+                self.in_transit.pop_front();
+                continue;
+            }
+            let (words, span) = (work.words_each, work.span_each);
+            let Some(complete) = self.arrival(words) else { return progress };
+            if let Some(work) = self.in_transit.front_mut() {
+                work.count -= 1;
+            }
+            self.words_in += u64::from(words);
+            self.last_word_at = complete;
+            self.waiting.push_back(Command { words, span, complete });
+            progress.blocks = progress.blocks.or(self.start_waiting());
+        }
+        if !self.transit_known {
+            self.transit_known = true;
+            progress.accepted = Some(self.last_word_at);
+        }
+        progress
+    }
+
+    /// When the next `words` words have all entered; `None` while that depends on a blocking command.
+    fn arrival(&mut self, words: u32) -> Option<Time> {
+        let (first, last) = (self.words_in, self.words_in + u64::from(words) - 1);
+        let mut complete = self.last_word_at + self.word * u64::from(words);
+        if last < self.depth {
+            return Some(complete);
+        }
+        if last - self.depth >= self.words_left {
+            return None;
+        }
+        while self.left.get(1).is_some_and(|next| next.0 + self.depth <= first) {
+            self.left.pop_front();
+        }
+        for (start_word, left_at) in self.left.iter().take_while(|left| left.0 + self.depth <= last) {
+            let first_held = (start_word + self.depth).max(first);
+            complete = complete.max(*left_at + self.word * (last - first_held + 1));
+        }
+        Some(complete)
+    }
+
+    /// Starts what can start; the time at which a blocking command starts, if one does.
+    fn start_waiting(&mut self) -> Option<Time> {
+        while let (Some(free_at), Some(command)) = (self.free_at, self.waiting.front().copied()) {
+            self.waiting.pop_front();
+            let start = free_at.max(command.complete);
+            self.left.push_back((self.words_left, start));
+            self.words_left += u64::from(command.words);
+            self.free_at = command.span.map(|span| start + span);
+            match command.span {
+                Some(span) => self.busy += span,
+                None => return Some(start),
+            }
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const WORD: Span = Span(50_000);
+
+    /// The rules, one word at a time.
+    struct Literal {
+        depth: usize,
+        held: VecDeque<Time>,
+        last_word_at: Time,
+        free_at: Time,
+    }
+
+    impl Literal {
+        fn message(&mut self, begins: Time, commands: &[(u32, u64)]) -> (Time, Vec<Time>) {
+            self.last_word_at = self.last_word_at.max(begins);
+            let mut starts = Vec::new();
+            for (words, ns) in commands {
+                for _ in 0..*words {
+                    let room = if self.held.len() < self.depth { Time::ZERO } else { self.held[self.held.len() - self.depth] };
+                    self.last_word_at = self.last_word_at.max(room) + WORD;
+                    self.held.push_back(Time(u64::MAX));
+                }
+                let start = self.free_at.max(self.last_word_at);
+                let n = self.held.len();
+                self.held.iter_mut().skip(n - *words as usize).for_each(|left| *left = start);
+                self.free_at = start + Span::from_ns(*ns);
+                starts.push(start);
+            }
+            (self.last_word_at, starts)
+        }
+    }
+
+    fn work(commands: &[(u32, u64)]) -> Vec<Work> {
+        let of = |(words_each, ns): &(u32, u64)| Work { words_each: *words_each, count: 1, span_each: Some(Span::from_ns(*ns)) };
+        commands.iter().map(of).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn the_closed_form_agrees_with_one_word_at_a_time(
+            depth in 40u32..300,
+            messages in proptest::collection::vec(
+                (0u64..40_000, proptest::collection::vec((1u32..40, 0u64..9_000), 1..30)), 1..12)
+        ) {
+            let mut fifo = InputFifo::new(depth, WORD);
+            let mut literal = Literal { depth: depth as usize, held: VecDeque::new(), last_word_at: Time::ZERO, free_at: Time::ZERO };
+            let mut begins = Time::ZERO;
+            for (gap_ns, commands) in messages {
+                begins = begins.max(literal.last_word_at) + Span::from_ns(gap_ns);
+                let accepted = fifo.message(begins, work(&commands)).accepted;
+                prop_assert_eq!(accepted, Some(literal.message(begins, &commands).0));
+                prop_assert_eq!(fifo.free_at, Some(literal.free_at));
+            }
+        }
+
+        #[test]
+        fn runs_are_the_same_as_single_commands(count in 1u32..60, words in 1u32..40, ns in 0u64..9_000) {
+            let (mut runs, mut singles) = (InputFifo::new(448, WORD), InputFifo::new(448, WORD));
+            let run = Work { words_each: words, count, span_each: Some(Span::from_ns(ns)) };
+            let single = Work { count: 1, ..run };
+            let a = runs.message(Time(7), [run]);
+            let b = singles.message(Time(7), vec![single; count as usize]);
+            prop_assert_eq!(a, b);
+        }
+    }
+
+    #[test]
+    fn behind_a_copy_words_enter_until_the_fifo_is_full_and_no_further() {
+        let mut fifo = InputFifo::new(100, WORD);
+        let copy = Work { words_each: 10, count: 1, span_each: None };
+        let triangle = Work { words_each: 30, count: 1, span_each: Some(Span::from_ns(6_675)) };
+        let first = fifo.message(Time::ZERO, [copy]);
+        assert_eq!(first, Progress { accepted: Some(Time(500_000)), blocks: Some(Time(500_000)) });
+        // The copy's words left when it started, so three triangles (90 words) enter.
+        let second = fifo.message(Time(500_000), [Work { count: 3, ..triangle }]);
+        assert_eq!(second.accepted, Some(Time(500_000 + 90 * 50_000)));
+        // Twenty words of the next have no room before the copy has ended.
+        assert_eq!(fifo.message(Time(5_000_000), [triangle]).accepted, None);
+        let resumed = fifo.resume(Time(80_000_000));
+        assert_eq!(resumed.accepted, Some(Time(80_000_000 + 20 * 50_000)));
+    }
+
+    #[test]
+    fn a_thirty_triangle_clump_stalls_its_sender_by_what_the_fifo_cannot_hold() {
+        // 30 commands of 29 words, 6.675 us each. The first starts when its 29 words are in (1.45 us). Word k >= 448
+        // waits for the command that holds word k - 448, so the last word (869) waits for the start of command
+        // floor((869 - 448) / 29) = 14 at 1.45 + 14 x 6.675 us; it is word 15 of those that wait for it (421 - 406).
+        let mut fifo = InputFifo::new(448, WORD);
+        let clump = Work { words_each: 29, count: 30, span_each: Some(Span::from_ns(6_675)) };
+        let accepted = fifo.message(Time::ZERO, [clump]).accepted;
+        assert_eq!(accepted, Some(Time(1_450_000 + 14 * 6_675_000 + 16 * 50_000)));
+    }
+}
