@@ -156,3 +156,16 @@ pub trait PixelSource: Debug + Send + Sync {
     /// One word a pixel, 0x00RRGGBB, row by row, `width * height` of the region's rectangle.
     fn pixels(&self) -> Arc<[Word]>;
 }
+
+/// First word of the message that tells a program that a region has been copied.
+pub const COPY_ACKNOWLEDGEMENT: Word = 0xC0_11_ED;
+
+impl CopyTarget {
+    /// The words that tell a program that this region has been copied: tag, region, picture, frame buffer.
+    #[must_use]
+    pub fn acknowledgement(&self) -> Arc<[Word]> {
+        let words =
+            [COPY_ACKNOWLEDGEMENT, Word::from(self.region.0), self.picture as Word, Word::from(self.frame_buffer.0)];
+        words.into()
+    }
+}

@@ -23,8 +23,8 @@ pub mod format;
 mod region;
 
 pub use body::{
-    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, FieldParity, Lines,
-    Message, PixelSource, RegionPixels,
+    Body, COPY_ACKNOWLEDGEMENT, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder,
+    CopyTarget, FieldParity, Lines, Message, PixelSource, RegionPixels,
 };
 pub use expression::{Linear, Quadratic};
 pub use region::{Eye, RegionGrid, RegionId};

@@ -1,0 +1,227 @@
+//! The board: input FIFO and controller on one side, the port to the frame buffers on the other.
+
+use crate::command::CommandKind;
+use crate::fifo::{InputFifo, Progress, Work};
+use crate::job::{ArrayPool, NoPixels, PixelJob};
+use crate::timing::RendererTiming;
+use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
+use pxpl5_wire::{
+    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder, MAX_MESSAGE_WORDS, Message,
+    NodeId, PixelSource, RegionPixels,
+};
+use std::collections::VecDeque;
+use std::sync::{Arc, OnceLock};
+
+/// Region contexts that pixel memory can be divided into.
+pub const MAX_CONTEXTS: usize = 8;
+
+/// What can happen to the board.
+#[derive(Clone, Debug)]
+pub enum RendererEvent {
+    /// A message begins to arrive (phase `Arrive`).
+    Announce {
+        /// The message.
+        message: Message,
+        /// Its first word is on the channel from here on.
+        first_word_at: Time,
+    },
+    /// The controller starts the next copy command.
+    CopyBegins,
+    /// The ring has delivered the last pixel of the region being copied (phase `Arrive`).
+    Sent,
+}
+
+/// What leaves the board.
+#[derive(Debug)]
+pub enum RendererOutput {
+    /// The last word of the announced message enters the FIFO at this time.
+    Accept {
+        /// The time.
+        last_word_at: Time,
+    },
+    /// A message for the ring.
+    Send {
+        /// The message.
+        message: Message,
+        /// Whether [`RendererEvent::Sent`] shall come back.
+        ticket: bool,
+        /// Whether the receiver's port stays reserved for the next message.
+        hold: bool,
+    },
+}
+
+/// What the board has done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct RendererStats {
+    /// Commands received.
+    pub commands: u64,
+    /// Words received.
+    pub words: u64,
+    /// Regions copied.
+    pub regions_copied: u64,
+    /// Commands with an operation code that no command has; they are skipped.
+    pub illegal_commands: u64,
+}
+
+/// One renderer.
+#[derive(Debug)]
+pub struct Renderer {
+    node: NodeId,
+    timing: RendererTiming,
+    cycle: Span,
+    fifo: InputFifo,
+    pool: Arc<ArrayPool>,
+    logs: [Vec<Arc<dyn CommandWords>>; MAX_CONTEXTS],
+    copies: VecDeque<PendingCopy>,
+    copying: Option<CopyOrder>,
+    stats: RendererStats,
+}
+
+/// A copy command in the FIFO, with what its region holds when it executes.
+#[derive(Debug)]
+struct PendingCopy {
+    order: CopyOrder,
+    image: Arc<dyn PixelSource>,
+}
+
+impl Renderer {
+    /// A renderer at a port. `word` is the word time of a channel, `cycle` what a signal needs to leave the board.
+    #[must_use]
+    pub fn new(node: NodeId, timing: RendererTiming, word: Span, cycle: Span, pool: Arc<ArrayPool>) -> Self {
+        let fifo = InputFifo::new(timing.fifo_words as u32, word);
+        let logs = std::array::from_fn(|_| Vec::new());
+        let stats = RendererStats::default();
+        Self { node, timing, cycle, fifo, pool, logs, copies: VecDeque::new(), copying: None, stats }
+    }
+
+    /// Handles one event.
+    pub fn handle(&mut self, event: RendererEvent, context: &mut Context<RendererEvent, RendererOutput>) {
+        match event {
+            RendererEvent::Announce { message, first_word_at } => self.announce(message, first_word_at, context),
+            RendererEvent::CopyBegins => self.copy(context),
+            RendererEvent::Sent => self.copied(context),
+        }
+    }
+
+    fn announce(
+        &mut self,
+        message: Message,
+        begins: Time,
+        context: &mut Context<RendererEvent, RendererOutput>,
+    ) {
+        self.stats.words += u64::from(message.words);
+        let work = match message.body {
+            Body::Commands(list) => self.take(list),
+            // Words of no known command still occupy the FIFO and are thrown away.
+            Body::Pixels(_) | Body::Words(_) => {
+                self.stats.illegal_commands += 1;
+                vec![Work { words_each: message.words, count: 1, span_each: Some(Span::ZERO) }]
+            }
+        };
+        let progress = self.fifo.message(begins, work);
+        self.report(progress, context);
+    }
+
+    fn report(&self, progress: Progress, context: &mut Context<RendererEvent, RendererOutput>) {
+        if let Some(last_word_at) = progress.accepted {
+            context.output(context.now() + self.cycle, RendererOutput::Accept { last_word_at });
+        }
+        if let Some(start) = progress.blocks {
+            context.schedule(start, Phase::Work, RendererEvent::CopyBegins);
+        }
+    }
+
+    fn take(&mut self, list: CommandList) -> Vec<Work> {
+        let log = &mut self.logs[usize::from(list.context) % MAX_CONTEXTS];
+        if begins_with_clear(&list.runs) {
+            log.clear();
+        }
+        log.extend(list.content.clone());
+        for order in &list.copies {
+            let image = self.image(order);
+            self.copies.push_back(PendingCopy { order: *order, image });
+        }
+        list.runs.iter().map(|run| self.work(run)).collect()
+    }
+
+    fn work(&mut self, run: &CommandRun) -> Work {
+        self.stats.commands += u64::from(run.count);
+        let span_each = match CommandKind::from_opcode(run.opcode) {
+            Some(kind) => self.timing.span(kind),
+            None => {
+                self.stats.illegal_commands += u64::from(run.count);
+                Some(Span::ZERO)
+            }
+        };
+        Work { words_each: run.words_each, count: run.count, span_each }
+    }
+
+    fn image(&self, order: &CopyOrder) -> Arc<dyn PixelSource> {
+        let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
+        let lists = self.logs[usize::from(order.context) % MAX_CONTEXTS].clone();
+        if lists.is_empty() {
+            return Arc::new(NoPixels { pixels: width * height });
+        }
+        let (pool, context) = (Arc::clone(&self.pool), order.context);
+        Arc::new(PixelJob { pool, lists, context, width, height, done: OnceLock::new() })
+    }
+
+    fn copy(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
+        let Some(PendingCopy { order, image }) = self.copies.pop_front() else {
+            // A copy command without an order addresses no frame buffer; it ends at once.
+            self.stats.illegal_commands += 1;
+            let progress = self.fifo.resume(context.now());
+            return self.report(progress, context);
+        };
+        self.copying = Some(order);
+        let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
+        let (pixels, parts) = (width * height, (width * height).div_ceil(MAX_MESSAGE_WORDS));
+        for part in 0..parts {
+            let words = MAX_MESSAGE_WORDS.min(pixels - part * MAX_MESSAGE_WORDS);
+            let body = Body::Pixels(RegionPixels { target: order.target, image: Arc::clone(&image), part, parts });
+            let message = Message { source: self.node, destination: order.target.frame_buffer, words, body };
+            let last = part + 1 == parts;
+            let output = RendererOutput::Send { message, ticket: last, hold: !last };
+            context.output(context.now() + self.cycle, output);
+        }
+    }
+
+    fn copied(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
+        let Some(order) = self.copying.take() else { return };
+        self.stats.regions_copied += 1;
+        if let Some(destination) = order.acknowledge {
+            let body = Body::Words(order.target.acknowledgement());
+            let message = Message { source: self.node, destination, words: COPY_ACKNOWLEDGEMENT_WORDS, body };
+            context.output(context.now() + self.cycle, RendererOutput::Send { message, ticket: false, hold: false });
+        }
+        let progress = self.fifo.resume(context.now());
+        self.report(progress, context);
+    }
+
+    /// What the board has done so far.
+    #[must_use]
+    pub const fn stats(&self) -> RendererStats {
+        self.stats
+    }
+
+    /// Time spent executing commands, without copies.
+    #[must_use]
+    pub const fn busy(&self) -> Span {
+        self.fifo.busy()
+    }
+
+    /// What the board waits for.
+    #[must_use]
+    pub fn blocked(&self, name: &str) -> Option<Blocked> {
+        let order = self.copying.filter(|_| self.fifo.is_blocked())?;
+        let waits_for = format!("frame buffer at node {} to take region {}", order.target.frame_buffer.0, order.target.region.0);
+        Some(Blocked { board: name.to_owned(), waits_for })
+    }
+}
+
+/// Whether a list overwrites its whole context, so that nothing sent before can be seen any more.
+fn begins_with_clear(runs: &[CommandRun]) -> bool {
+    let kinds = runs.iter().map(|run| CommandKind::from_opcode(run.opcode));
+    kinds.take_while(|kind| matches!(kind, Some(CommandKind::SelectRegion | CommandKind::Clear)))
+        .any(|kind| kind == Some(CommandKind::Clear))
+}

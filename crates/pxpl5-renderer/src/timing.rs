@@ -1,0 +1,50 @@
+//! Every number of the board. Clocks of commands at the transaction level stand here; the instruction level
+//! derives its own from the programs and is compared with these.
+
+use crate::command::CommandKind;
+use pxpl5_sim::{Clock, Cycles, Span};
+
+pxpl5_sim::parameter_table! {
+    /// Times and sizes of a renderer.
+    pub struct RendererTiming {
+        /// Clock of the controller and the array.
+        clock_hz: 40_000_000, "Hz", Published, 40000000..=40000000, "F89, TR94";
+        /// A triangle, in every region that it is sent to.
+        triangle_clocks: 267, "clocks", Derived, 250..=300, "150,000 triangles/s (TR94)";
+        /// A triangle with normals instead of colours.
+        phong_triangle_clocks: 267, "clocks", Derived, 250..=300, "the published rate is for Phong shading; bit budget 262 to 292";
+        /// A sphere.
+        sphere_clocks: 330, "clocks", Assumed, 250..=900, "a little dearer than a triangle: one quadratic for silhouette and depth";
+        /// A sphere with normals.
+        phong_sphere_clocks: 330, "clocks", Assumed, 250..=900, "as a sphere";
+        /// Choice of a region context and its origin.
+        select_clocks: 8, "clocks", Assumed, 1..=64, "one instruction fetch";
+        /// Background colour and farthest depth into all pixels.
+        clear_clocks: 64, "clocks", Assumed, 16..=256, "one clock a bit of colour and depth, and the fetches";
+        /// Deferred shading of a region at the end of the frame.
+        shade_clocks: 6_000, "clocks", Assumed, 4000..=8000, "100 to 200 us";
+        /// Transfer of one 32-bit block of all pixels to or from the backing store.
+        backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096, "51 us";
+        /// Depth of the input FIFO.
+        fifo_words: 448, "words", Derived, 400..=512, "from the published 56.5 ms of a trivial scene (TR94)";
+    }
+}
+
+impl RendererTiming {
+    /// Execution time of one command; `None` for the copy of a region, which ends when the frame buffer has it.
+    #[must_use]
+    pub fn span(&self, kind: CommandKind) -> Option<Span> {
+        let clocks = match kind {
+            CommandKind::SelectRegion => self.select_clocks,
+            CommandKind::Clear => self.clear_clocks,
+            CommandKind::Triangle => self.triangle_clocks,
+            CommandKind::PhongTriangle => self.phong_triangle_clocks,
+            CommandKind::Sphere => self.sphere_clocks,
+            CommandKind::PhongSphere => self.phong_sphere_clocks,
+            CommandKind::Shade => self.shade_clocks,
+            CommandKind::StoreBacking | CommandKind::LoadBacking => self.backing_block_clocks,
+            CommandKind::CopyRegion => return None,
+        };
+        Clock::from_hz(self.clock_hz).map(|clock| clock.span(Cycles(clocks)))
+    }
+}
