@@ -1,0 +1,171 @@
+//! What comes into the ring and what goes out of it.
+
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
+use std::fmt;
+
+/// What happens to the ring.
+#[derive(Clone, Debug)]
+pub enum RingEvent {
+    /// A board hands a message to its port. Phase `Arrive`.
+    Request(Request),
+    /// A receiver that is not elastic says when the last word of the message announced to it enters. Phase `Arrive`.
+    ///
+    /// Earlier than `first_word_at + words x word` is impossible: it is counted as a fault and the earliest time
+    /// is taken. When it is said too late for the sender to be free in time, the sender is free at once.
+    Accept {
+        /// The receiver.
+        destination: NodeId,
+        /// When the last word has entered, including the stall.
+        last_word_at: Time,
+    },
+    /// The ring's own: release what has ended, then grant what can go. Phase `Work`.
+    Arbitrate,
+}
+
+/// A message and how it is to be sent.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The message.
+    pub message: Message,
+    /// Given back in [`RingOutput::Sent`] or [`RingOutput::Refused`]; without one the sender is told nothing.
+    pub ticket: Option<u64>,
+    /// Whether the destination stays reserved for this source afterwards, because more messages of one transfer
+    /// follow. The first message without it ends the reservation.
+    pub hold: bool,
+    /// Place among the messages that reach this port at the same instant, lowest first (events of one instant have
+    /// no order of their own). Messages of different instants keep the order of time whatever stands here.
+    pub order: u32,
+}
+
+/// What the ring puts out.
+#[derive(Clone, Debug)]
+pub enum RingOutput {
+    /// To `message.destination`, which is not elastic: a message is coming; answer with [`RingEvent::Accept`].
+    Announce {
+        /// The message.
+        message: Message,
+        /// When the first word begins to arrive; it can have entered one `word` later.
+        first_word_at: Time,
+        /// Time of one word.
+        word: Span,
+    },
+    /// To `message.destination`, which is elastic: the last word has arrived.
+    Delivered(Message),
+    /// To the sender of a message with a ticket: the last word has been accepted.
+    Sent {
+        /// The sender.
+        source: NodeId,
+        /// Its ticket.
+        ticket: u64,
+    },
+    /// To the sender of a message with a ticket: the message could not be carried.
+    Refused {
+        /// The sender as it named itself.
+        source: NodeId,
+        /// Its ticket.
+        ticket: u64,
+        /// Why.
+        error: RingError,
+    },
+}
+
+/// Why a ring cannot be built or a message not be carried.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum RingError {
+    /// A number of the timing table is outside of what the model can take.
+    Timing {
+        /// The number's name.
+        name: &'static str,
+        /// What it was.
+        found: u64,
+        /// Smallest and largest possible value.
+        expected: (u64, u64),
+    },
+    /// The ring has no port for any board.
+    NoNodes,
+    /// A message names a port that does not exist.
+    NoSuchNode {
+        /// The port.
+        node: NodeId,
+        /// Number of ports.
+        n_nodes: u16,
+    },
+    /// A message is empty or longer than a message can be.
+    Length {
+        /// The sender.
+        source: NodeId,
+        /// The receiver.
+        destination: NodeId,
+        /// Its length in words.
+        words: u32,
+    },
+    /// A receiver answered though nothing had been announced to it, or answered twice.
+    NothingAnnounced {
+        /// The receiver.
+        destination: NodeId,
+    },
+    /// A receiver named a time before the last word can have arrived.
+    AcceptedEarly {
+        /// The receiver.
+        destination: NodeId,
+        /// The earliest possible time.
+        expected: Time,
+        /// The time that it named.
+        found: Time,
+    },
+    /// A reference run was given a time that is no multiple of its tick.
+    OffTick {
+        /// What it is the time of.
+        what: &'static str,
+        /// The time in picoseconds.
+        found_ps: u64,
+        /// The tick.
+        tick: Span,
+    },
+    /// A reference run had not delivered everything when its time was over.
+    Unfinished {
+        /// Messages delivered.
+        delivered: usize,
+        /// Messages in all.
+        of: usize,
+        /// When it was over.
+        until: Time,
+    },
+}
+
+impl fmt::Display for RingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Timing { name, found, expected: (low, high) } => {
+                write!(f, "ring timing: {name} must be {low} to {high}, found {found}")
+            }
+            Self::NoNodes => f.write_str("a ring needs one port at least, found none"),
+            Self::NoSuchNode { node, n_nodes } => {
+                write!(f, "there is no ring port {}: the ring has {n_nodes}, from 0", node.0)
+            }
+            Self::Length { source, destination, words } => write!(
+                f,
+                "message from ring port {} to {}: expected 1 to {MAX_MESSAGE_WORDS} words, found {words}",
+                source.0, destination.0
+            ),
+            Self::NothingAnnounced { destination } => {
+                write!(f, "ring port {} accepted a message that was not announced to it", destination.0)
+            }
+            Self::AcceptedEarly { destination, expected, found } => write!(
+                f,
+                "ring port {} accepted the last word at {found}, but it cannot enter before {expected}",
+                destination.0
+            ),
+            Self::OffTick { what, found_ps, tick } => {
+                write!(f, "{what} of {found_ps} ps is no multiple of the tick of {tick}")
+            }
+            Self::Unfinished { delivered, of, until } => {
+                write!(f, "only {delivered} of {of} messages had been delivered at {until}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for RingError {}

@@ -1,0 +1,1 @@
+//! The rules of the ring word by word: slow, literal, and the measure of the fast ring.

@@ -1,0 +1,397 @@
+//! Ports and arbiter.
+
+use crate::{Refusals, Request, RingError, RingEvent, RingOutput, RingStats, RingTiming, WaitReason, WaitingMessage};
+use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
+use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
+use std::collections::VecDeque;
+
+type Out = Context<RingEvent, RingOutput>;
+
+/// The ring: state of its ports, channels and arbiter.
+#[derive(Clone, Debug)]
+pub struct Ring {
+    timing: RingTiming,
+    word: Span,
+    sources: Vec<Source>,
+    destinations: Vec<Destination>,
+    channels: Vec<Option<Flight>>,
+    /// One bit a channel.
+    free: u64,
+    /// Sources whose first message waits, in the order of grants: (since when it is first, source).
+    heads: Vec<(Time, NodeId)>,
+    /// The instant for which a request has last asked for arbitration.
+    arbitration_at: Option<Time>,
+    stats: RingStats,
+    refusals: Refusals,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Source {
+    queue: VecDeque<Queued>,
+    in_flight: bool,
+}
+
+#[derive(Clone, Debug)]
+struct Queued {
+    at: Time,
+    request: Request,
+}
+
+#[derive(Clone, Debug)]
+struct Destination {
+    elastic: bool,
+    channel: Option<usize>,
+    reserved_for: Option<NodeId>,
+}
+
+/// A message that occupies a channel.
+#[derive(Clone, Debug)]
+struct Flight {
+    source: NodeId,
+    destination: NodeId,
+    words: u32,
+    ticket: Option<u64>,
+    hold: bool,
+    granted: Time,
+    latency: Span,
+    /// Known from the grant on (elastic receivers) or from the answer.
+    ends_at: Option<Time>,
+}
+
+impl Ring {
+    /// A ring of `n_nodes` ports with nothing in it; `elastic` says which receivers take every word as it comes.
+    ///
+    /// # Errors
+    ///
+    /// [`RingError::Timing`] and [`RingError::NoNodes`].
+    pub fn new(timing: RingTiming, n_nodes: u16, elastic: impl Fn(NodeId) -> bool) -> Result<Self, RingError> {
+        timing.check()?;
+        if n_nodes == 0 {
+            return Err(RingError::NoNodes);
+        }
+        let n_channels = timing.channels as usize;
+        Ok(Self {
+            timing,
+            word: timing.word(),
+            sources: vec![Source::default(); usize::from(n_nodes)],
+            destinations: (0..n_nodes).map(|node| Destination::new(elastic(NodeId(node)))).collect(),
+            channels: vec![None; n_channels],
+            free: u64::MAX >> (64 - n_channels),
+            heads: Vec::new(),
+            arbitration_at: None,
+            stats: RingStats { channel_busy: vec![Span::ZERO; n_channels], ..RingStats::default() },
+            refusals: Refusals::default(),
+        })
+    }
+
+    /// Handles one event.
+    pub fn handle(&mut self, event: RingEvent, context: &mut Out) {
+        match event {
+            RingEvent::Request(request) => self.request(request, context),
+            RingEvent::Accept { destination, last_word_at } => self.accept(destination, last_word_at, context),
+            RingEvent::Arbitrate => {
+                self.release_ended(context.now());
+                self.grant_all(context);
+            }
+        }
+    }
+
+    /// The numbers that the ring was built with.
+    #[must_use]
+    pub const fn timing(&self) -> &RingTiming {
+        &self.timing
+    }
+
+    /// Number of ports.
+    #[must_use]
+    pub fn n_nodes(&self) -> u16 {
+        self.sources.len() as u16
+    }
+
+    /// Sums over all messages that have ended.
+    #[must_use]
+    pub const fn stats(&self) -> &RingStats {
+        &self.stats
+    }
+
+    /// Messages and answers that were refused.
+    #[must_use]
+    pub const fn refusals(&self) -> &Refusals {
+        &self.refusals
+    }
+
+    /// Whether nothing is in flight and nothing waits.
+    #[must_use]
+    pub fn is_idle(&self) -> bool {
+        self.heads.is_empty() && self.channels.iter().all(Option::is_none)
+    }
+
+    /// Whether the ring could carry a message.
+    ///
+    /// # Errors
+    ///
+    /// [`RingError::NoSuchNode`] and [`RingError::Length`].
+    pub fn check(&self, message: &Message) -> Result<(), RingError> {
+        for node in [message.source, message.destination] {
+            self.check_node(node)?;
+        }
+        if (1..=MAX_MESSAGE_WORDS).contains(&message.words) {
+            return Ok(());
+        }
+        Err(RingError::Length { source: message.source, destination: message.destination, words: message.words })
+    }
+
+    /// Messages that wait at the head of their queue or for their receiver's answer, by source.
+    #[must_use]
+    pub fn waiting(&self) -> Vec<WaitingMessage> {
+        let unanswered = self.channels.iter().flatten().filter(|flight| flight.ends_at.is_none()).map(Flight::waiting);
+        let heads = self.heads.iter().filter_map(|head| self.waiting_head(*head));
+        let mut all: Vec<_> = unanswered.chain(heads).collect();
+        all.sort_by_key(|message| message.source);
+        all
+    }
+
+    /// The same as lines for a deadlock report; boards are named by their port.
+    #[must_use]
+    pub fn blocked(&self) -> Vec<Blocked> {
+        let name = |node: NodeId| format!("ring port {}", node.0);
+        self.waiting().iter().map(|message| message.blocked(name)).collect()
+    }
+
+    fn check_node(&self, node: NodeId) -> Result<(), RingError> {
+        if usize::from(node.0) < self.sources.len() {
+            return Ok(());
+        }
+        Err(RingError::NoSuchNode { node, n_nodes: self.n_nodes() })
+    }
+
+    fn request(&mut self, request: Request, context: &mut Out) {
+        if let Err(error) = self.check(&request.message) {
+            return self.refuse(&request, error, context);
+        }
+        let (now, id) = (context.now(), request.message.source);
+        let source = &mut self.sources[usize::from(id.0)];
+        let becomes_head = source.queue.is_empty() && !source.in_flight;
+        source.insert(Queued { at: now, request });
+        if becomes_head {
+            self.add_head(now, id);
+            if self.arbitration_at != Some(now) {
+                self.arbitration_at = Some(now);
+                context.schedule(now, Phase::Work, RingEvent::Arbitrate);
+            }
+        }
+    }
+
+    fn refuse(&mut self, request: &Request, error: RingError, context: &mut Out) {
+        if let Some(ticket) = request.ticket {
+            let refused = RingOutput::Refused { source: request.message.source, ticket, error: error.clone() };
+            context.output(context.now() + self.word, refused);
+        }
+        self.refusals.record(context.now(), error);
+    }
+
+    fn add_head(&mut self, now: Time, source: NodeId) {
+        let head = (now, source);
+        let later = self.heads.iter().rev().take_while(|&&h| h > head).count();
+        self.heads.insert(self.heads.len() - later, head);
+    }
+
+    fn release_ended(&mut self, now: Time) {
+        for channel in 0..self.channels.len() {
+            if let Some(flight) = self.channels[channel].take_if(|f| f.has_ended(now)) {
+                self.release(channel, &flight, now);
+            }
+        }
+    }
+
+    fn release(&mut self, channel: usize, flight: &Flight, now: Time) {
+        self.free |= 1 << channel;
+        self.destinations[usize::from(flight.destination.0)].release(flight);
+        let source = &mut self.sources[usize::from(flight.source.0)];
+        source.in_flight = false;
+        if !source.queue.is_empty() {
+            self.add_head(now, flight.source);
+        }
+        let busy = now.since(flight.granted);
+        self.stats.channel_busy[channel] += busy;
+        self.stats.stalled += busy - self.timing.occupancy(flight.words);
+        self.stats.messages += 1;
+        self.stats.words += u64::from(flight.words);
+    }
+
+    /// One pass is enough: a grant makes nothing free.
+    fn grant_all(&mut self, context: &mut Out) {
+        let mut place = 0;
+        while self.free != 0 && place < self.heads.len() {
+            if self.can_go(self.heads[place].1) {
+                let (_, source) = self.heads.remove(place);
+                self.grant(source, context);
+            } else {
+                place += 1;
+            }
+        }
+    }
+
+    fn can_go(&self, source: NodeId) -> bool {
+        self.first_request(source)
+            .is_some_and(|request| self.destinations[usize::from(request.message.destination.0)].takes_from(source))
+    }
+
+    fn first_request(&self, source: NodeId) -> Option<&Request> {
+        let queued = self.sources[usize::from(source.0)].queue.front()?;
+        Some(&queued.request)
+    }
+
+    fn grant(&mut self, source: NodeId, context: &mut Out) {
+        let port = &mut self.sources[usize::from(source.0)];
+        let Some(Queued { at, request }) = port.queue.pop_front() else {
+            return;
+        };
+        port.in_flight = true;
+        let now = context.now();
+        let waited = now.since(at);
+        self.stats.waiting += waited;
+        self.stats.longest_wait = self.stats.longest_wait.max(waited);
+        let channel = self.free.trailing_zeros() as usize;
+        self.free &= !(1 << channel);
+        let destination = &mut self.destinations[usize::from(request.message.destination.0)];
+        destination.channel = Some(channel);
+        let elastic = destination.elastic;
+        let flight = self.flight(&request, now);
+        self.channels[channel] = Some(if elastic {
+            self.deliver(flight, request.message, context)
+        } else {
+            self.announce(flight, request.message, context)
+        });
+    }
+
+    fn flight(&self, request: &Request, now: Time) -> Flight {
+        let Message { source, destination, words, .. } = request.message;
+        Flight {
+            source,
+            destination,
+            words,
+            ticket: request.ticket,
+            hold: request.hold,
+            granted: now,
+            latency: self.timing.latency(source, destination, self.n_nodes()),
+            ends_at: None,
+        }
+    }
+
+    fn deliver(&self, mut flight: Flight, message: Message, context: &mut Out) -> Flight {
+        let end = flight.granted + self.timing.occupancy(flight.words);
+        flight.ends_at = Some(end);
+        context.output(end + flight.latency, RingOutput::Delivered(message));
+        self.tell_sender(&flight, end + flight.latency, context);
+        context.schedule(end, Phase::Work, RingEvent::Arbitrate);
+        flight
+    }
+
+    fn announce(&self, flight: Flight, message: Message, context: &mut Out) -> Flight {
+        let announce = RingOutput::Announce {
+            message,
+            first_word_at: flight.granted + self.timing.occupancy(0) + flight.latency,
+            word: self.word,
+        };
+        context.output(flight.granted + self.word + flight.latency, announce);
+        flight
+    }
+
+    fn tell_sender(&self, flight: &Flight, accepted: Time, context: &mut Out) {
+        if let Some(ticket) = flight.ticket {
+            let source = flight.source;
+            let told = accepted.max(context.now() + self.word);
+            context.output(told, RingOutput::Sent { source, ticket });
+        }
+    }
+
+    fn accept(&mut self, destination: NodeId, last_word_at: Time, context: &mut Out) {
+        let now = context.now();
+        let Some(mut flight) = self.take_unanswered(destination) else {
+            let error = RingError::NothingAnnounced { destination };
+            return self.refusals.record(now, error);
+        };
+        let earliest = flight.granted + self.timing.occupancy(flight.words) + flight.latency;
+        if last_word_at < earliest {
+            let error = RingError::AcceptedEarly { destination, expected: earliest, found: last_word_at };
+            self.refusals.record(now, error);
+        }
+        let accepted = last_word_at.max(earliest);
+        let end = now.max(Time(accepted.0 - flight.latency.0));
+        flight.ends_at = Some(end);
+        self.tell_sender(&flight, accepted, context);
+        let channel = self.destinations[usize::from(destination.0)].channel;
+        self.channels[channel.unwrap_or_default()] = Some(flight);
+        context.schedule(end, Phase::Work, RingEvent::Arbitrate);
+    }
+
+    /// The message announced to a receiver that has not answered.
+    fn take_unanswered(&mut self, destination: NodeId) -> Option<Flight> {
+        let channel = self.destinations.get(usize::from(destination.0))?.channel?;
+        self.channels[channel].take_if(|flight| flight.ends_at.is_none())
+    }
+
+    fn waiting_head(&self, (since, source): (Time, NodeId)) -> Option<WaitingMessage> {
+        let message = &self.first_request(source)?.message;
+        Some(WaitingMessage {
+            source,
+            destination: message.destination,
+            words: message.words,
+            since,
+            reason: self.wait_reason(source, message.destination),
+        })
+    }
+
+    fn wait_reason(&self, source: NodeId, destination: NodeId) -> WaitReason {
+        let port = &self.destinations[usize::from(destination.0)];
+        if let Some(flight) = port.channel.and_then(|channel| self.channels[channel].as_ref()) {
+            return WaitReason::DestinationBusy(flight.source);
+        }
+        match port.reserved_for {
+            Some(holder) if holder != source => WaitReason::DestinationReserved(holder),
+            _ if self.free == 0 => WaitReason::Channel,
+            _ => WaitReason::Arbitration,
+        }
+    }
+}
+
+impl Source {
+    fn insert(&mut self, queued: Queued) {
+        let key = |q: &Queued| (q.at, q.request.order);
+        let new = key(&queued);
+        let later = self.queue.iter().rev().take_while(|q| key(q) > new).count();
+        self.queue.insert(self.queue.len() - later, queued);
+    }
+}
+
+impl Destination {
+    const fn new(elastic: bool) -> Self {
+        Self { elastic, channel: None, reserved_for: None }
+    }
+
+    fn takes_from(&self, source: NodeId) -> bool {
+        self.channel.is_none() && self.reserved_for.is_none_or(|holder| holder == source)
+    }
+
+    fn release(&mut self, flight: &Flight) {
+        self.channel = None;
+        self.reserved_for = flight.hold.then_some(flight.source);
+    }
+}
+
+impl Flight {
+    fn has_ended(&self, now: Time) -> bool {
+        self.ends_at.is_some_and(|end| end <= now)
+    }
+
+    const fn waiting(&self) -> WaitingMessage {
+        WaitingMessage {
+            source: self.source,
+            destination: self.destination,
+            words: self.words,
+            since: self.granted,
+            reason: WaitReason::Acceptance,
+        }
+    }
+}

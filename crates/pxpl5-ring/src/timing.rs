@@ -1,0 +1,106 @@
+//! Every number of the ring.
+
+use crate::RingError;
+use pxpl5_sim::Span;
+use pxpl5_wire::NodeId;
+
+pxpl5_sim::parameter_table! {
+    /// Times and sizes of the ring.
+    pub struct RingTiming {
+        /// Time of one word on a channel.
+        word_ns: 50, "ns", Published, 50..=50, "TR94, F89: 20 Mwords/s per channel";
+        /// Word times of a message besides its words.
+        overhead_words: 16, "words", Derived, 16..=16, "(780 us a region of TR94 - 15,360 words x 50 ns) / 15 messages = 0.8 us";
+        /// Latency from one board to the next.
+        hop_ns: 50, "ns", Assumed, 0..=200, "one word time: every board latches a word once";
+        /// Channels, each carrying one message at a time.
+        channels: 8, "channels", Published, 8..=8, "TR94";
+    }
+}
+
+/// Most channels that the arbiter's free list holds.
+const MAX_CHANNELS: u64 = 64;
+/// Longest time or count that is accepted: the sums of a message then stay far below the range of a time.
+const MAX_VALUE: u64 = 1_000_000;
+
+impl RingTiming {
+    /// Time of one word.
+    #[must_use]
+    pub const fn word(&self) -> Span {
+        Span::from_ns(self.word_ns)
+    }
+
+    /// Time for which a message that is never stalled occupies its channel and ports.
+    #[must_use]
+    pub const fn occupancy(&self, words: u32) -> Span {
+        Span::from_ns((self.overhead_words + words as u64) * self.word_ns)
+    }
+
+    /// Latency from one port to another of a ring of `n_nodes`; to itself a message goes once round.
+    #[must_use]
+    pub fn latency(&self, source: NodeId, destination: NodeId, n_nodes: u16) -> Span {
+        let (from, to, n) = (u64::from(source.0), u64::from(destination.0), u64::from(n_nodes));
+        let hops = if to > from { to - from } else { to + n - from };
+        Span::from_ns(hops * self.hop_ns)
+    }
+
+    /// Checks that a ring can be built with these numbers.
+    ///
+    /// # Errors
+    ///
+    /// [`RingError::Timing`] names the number, what was expected and what was found.
+    pub fn check(&self) -> Result<(), RingError> {
+        check("word_ns", self.word_ns, 1, MAX_VALUE)?;
+        check("overhead_words", self.overhead_words, 0, MAX_VALUE)?;
+        check("hop_ns", self.hop_ns, 0, MAX_VALUE)?;
+        check("channels", self.channels, 1, MAX_CHANNELS)
+    }
+}
+
+fn check(name: &'static str, found: u64, low: u64, high: u64) -> Result<(), RingError> {
+    if (low..=high).contains(&found) {
+        return Ok(());
+    }
+    Err(RingError::Timing { name, found, expected: (low, high) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_sim::ParameterTable;
+
+    #[test]
+    fn fifteen_messages_of_maximum_size_occupy_the_published_780_us() {
+        let message = RingTiming::PAPERS.occupancy(pxpl5_wire::MAX_MESSAGE_WORDS);
+        assert_eq!(message * 15, Span::from_us(780));
+    }
+
+    #[test]
+    fn latency_counts_hops_in_the_direction_of_travel() {
+        let latency = |a, b| RingTiming::PAPERS.latency(NodeId(a), NodeId(b), 10);
+        assert_eq!(latency(2, 5), Span::from_ns(150));
+        assert_eq!(latency(5, 2), Span::from_ns(350));
+        assert_eq!(latency(3, 3), Span::from_ns(500));
+    }
+
+    #[test]
+    fn every_preset_lies_in_its_range_and_passes_the_check() {
+        for info in RingTiming::infos() {
+            let value = RingTiming::PAPERS.get(info.name).expect("listed");
+            assert!((info.range.0..=info.range.1).contains(&value), "{}", info.name);
+        }
+        assert_eq!(RingTiming::PAPERS.check(), Ok(()));
+    }
+
+    #[test]
+    fn a_ring_without_channels_or_with_timeless_words_is_refused() {
+        for (name, value) in
+            [("channels", 0), ("channels", 65), ("word_ns", 0), ("hop_ns", u64::MAX), ("overhead_words", u64::MAX)]
+        {
+            let mut timing = RingTiming::PAPERS;
+            timing.set(name, value).expect("known");
+            let error = timing.check().expect_err(name);
+            assert!(error.to_string().contains(name), "{error}");
+        }
+    }
+}
