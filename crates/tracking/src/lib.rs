@@ -1,1 +1,11 @@
 //! Head motion, tracker models and prediction for head-mounted displays.
+pub mod config;
+mod error;
+pub mod motion;
+pub mod pose;
+mod random;
+pub mod rotation;
+pub mod time;
+pub mod tracker;
+pub use error::ConfigError;
+pub use pose::Pose;

@@ -1,0 +1,81 @@
+//! Where the head is at any instant: closed forms, a seeded generator, and replay of recorded traces.
+
+mod pan;
+mod pendulum;
+mod recording;
+mod spline;
+mod still;
+mod synthetic;
+
+pub use pan::Pan;
+pub use pendulum::Pendulum;
+pub use recording::{LoadError, Recording};
+pub use still::Still;
+pub use synthetic::{Band, Synthetic, SyntheticConfig};
+
+use glam::DVec3;
+
+use crate::pose::Pose;
+use crate::rotation;
+use crate::time::span_s;
+
+/// Half the step of the default central differences: 50 us, at which a 2 Hz motion is off by 2 parts in 10^8.
+const HALF_STEP_PS: u64 = 50_000_000;
+
+/// A motion of the head (or of a pendulum's bob): a pure function of simulated time.
+pub trait Motion {
+    /// Pose at `t_ps`.
+    fn pose(&self, t_ps: u64) -> Pose;
+
+    /// Velocity in m/s, world frame. By default a central difference.
+    fn velocity(&self, t_ps: u64) -> DVec3 {
+        let (before, after) = (t_ps.saturating_sub(HALF_STEP_PS), t_ps.saturating_add(HALF_STEP_PS));
+        (self.pose(after).position - self.pose(before).position) / span_s(before, after)
+    }
+
+    /// Angular velocity in rad/s, world frame. By default a central difference.
+    fn angular_velocity(&self, t_ps: u64) -> DVec3 {
+        let (before, after) = (t_ps.saturating_sub(HALF_STEP_PS), t_ps.saturating_add(HALF_STEP_PS));
+        let turn = rotation::difference(self.pose(before).orientation, self.pose(after).orientation);
+        turn / span_s(before, after)
+    }
+}
+
+impl<M: Motion + ?Sized> Motion for &M {
+    fn pose(&self, t_ps: u64) -> Pose {
+        (**self).pose(t_ps)
+    }
+    fn velocity(&self, t_ps: u64) -> DVec3 {
+        (**self).velocity(t_ps)
+    }
+    fn angular_velocity(&self, t_ps: u64) -> DVec3 {
+        (**self).angular_velocity(t_ps)
+    }
+}
+
+impl<M: Motion + ?Sized> Motion for Box<M> {
+    fn pose(&self, t_ps: u64) -> Pose {
+        (**self).pose(t_ps)
+    }
+    fn velocity(&self, t_ps: u64) -> DVec3 {
+        (**self).velocity(t_ps)
+    }
+    fn angular_velocity(&self, t_ps: u64) -> DVec3 {
+        (**self).angular_velocity(t_ps)
+    }
+}
+
+/// Checks the closed forms of velocity and angular velocity against the pose alone.
+#[cfg(test)]
+fn assert_rates_agree_with_poses(motion: &impl Motion, t_ps: u64, tolerance: f64) {
+    struct PosesOnly<'a, M>(&'a M);
+    impl<M: Motion> Motion for PosesOnly<'_, M> {
+        fn pose(&self, t_ps: u64) -> Pose {
+            self.0.pose(t_ps)
+        }
+    }
+    let differences = PosesOnly(motion);
+    assert!((motion.velocity(t_ps) - differences.velocity(t_ps)).length() < tolerance);
+    let (closed, difference) = (motion.angular_velocity(t_ps), differences.angular_velocity(t_ps));
+    assert!((closed - difference).length() < tolerance, "{closed} {difference} at {t_ps}");
+}

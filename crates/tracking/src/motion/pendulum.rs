@@ -1,0 +1,194 @@
+use core::f64::consts::{FRAC_PI_2, TAU};
+
+use glam::DVec3;
+
+use super::Motion;
+use crate::config::{GRAVITY, PENDULUM_AMPLITUDE, PENDULUM_ARM};
+use crate::error::ConfigError;
+use crate::pose::Pose;
+use crate::rotation;
+use crate::time::{nearest_ps, seconds};
+
+/// An undamped pendulum that swings in the x-y plane, released at rest from `+amplitude` at time 0, in closed form.
+///
+/// With k = sin(amplitude / 2) and w = sqrt(g / arm): sin(angle / 2) = k cd(w t, k), cd being Jacobi's elliptic
+/// function. The exact period is 4 K(k) / w; the small-angle period 2 pi / w is shorter, by 0.77 % at 20 degrees.
+/// The bob hangs `arm` below the origin and turns with the arm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pendulum {
+    arm_m: f64,
+    modulus: f64,
+    /// sqrt(g / arm), rad/s.
+    natural: f64,
+    period_s: f64,
+}
+
+impl Pendulum {
+    /// A pendulum with an arm in metres (above 0) and an amplitude in degrees (above 0, below 180).
+    pub fn new(arm_m: f64, amplitude_deg: f64) -> Result<Self, ConfigError> {
+        ConfigError::check("pendulum arm", arm_m, 1e-3, 1e3)?;
+        ConfigError::check("pendulum amplitude", amplitude_deg, 1e-3, 179.0)?;
+        let modulus = libm::sin(amplitude_deg.to_radians() / 2.0);
+        let natural = (GRAVITY.value / arm_m).sqrt();
+        let period_s = 4.0 * quarter_period(modulus) / natural;
+        Ok(Self { arm_m, modulus, natural, period_s })
+    }
+
+    /// The measuring pendulum: arm 0.5 m, amplitude 20 degrees, both assumed.
+    pub fn rig() -> Self {
+        Self::new(PENDULUM_ARM.value, PENDULUM_AMPLITUDE.value).expect("the table's values are in range")
+    }
+
+    /// Exact period in seconds.
+    pub fn period_s(&self) -> f64 {
+        self.period_s
+    }
+
+    /// Period of an infinitely small swing, 2 pi sqrt(arm / g), in seconds.
+    pub fn small_angle_period_s(&self) -> f64 {
+        TAU / self.natural
+    }
+
+    /// Speed of the bob at the low point, m/s: 2 k sqrt(g arm), from the conservation of energy.
+    pub fn low_point_speed(&self) -> f64 {
+        2.0 * self.modulus * self.natural * self.arm_m
+    }
+
+    /// Instant of low point `n` (0 is the first): (2 n + 1) quarter periods.
+    pub fn low_point_ps(&self, n: u64) -> u64 {
+        nearest_ps((2 * n + 1) as f64 * self.period_s / 4.0)
+    }
+
+    /// Angle from the vertical (rad, positive towards +x) and its rate (rad/s).
+    pub fn angle(&self, t_ps: u64) -> (f64, f64) {
+        let u = self.natural * libm::fmod(seconds(t_ps), self.period_s);
+        let (sn, cn, dn) = jacobi(u, self.modulus);
+        let sine = (self.modulus * cn / dn).clamp(-1.0, 1.0);
+        let complement = (1.0 - self.modulus * self.modulus).sqrt();
+        let rate = -2.0 * self.modulus * complement * self.natural * sn / dn;
+        (2.0 * libm::asin(sine), rate)
+    }
+}
+
+impl Motion for Pendulum {
+    fn pose(&self, t_ps: u64) -> Pose {
+        let (angle, _) = self.angle(t_ps);
+        let (sin, cos) = libm::sincos(angle);
+        Pose { position: DVec3::new(sin, -cos, 0.0) * self.arm_m, orientation: rotation::about_z(angle) }
+    }
+    fn velocity(&self, t_ps: u64) -> DVec3 {
+        let (angle, rate) = self.angle(t_ps);
+        let (sin, cos) = libm::sincos(angle);
+        DVec3::new(cos, sin, 0.0) * (self.arm_m * rate)
+    }
+    fn angular_velocity(&self, t_ps: u64) -> DVec3 {
+        DVec3::Z * self.angle(t_ps).1
+    }
+}
+
+/// Levels of the arithmetic-geometric mean; it converges quadratically, 8 suffice for every modulus below 0.99999.
+const LEVELS: usize = 8;
+
+/// Complete elliptic integral K(k) = pi / (2 agm(1, k')).
+fn quarter_period(modulus: f64) -> f64 {
+    FRAC_PI_2 / mean_ladder(modulus).0
+}
+
+/// Limit of the arithmetic-geometric mean of 1 and k', and the ratios c_n / a_n of its levels.
+fn mean_ladder(modulus: f64) -> (f64, [f64; LEVELS]) {
+    let (mut a, mut b) = (1.0, (1.0 - modulus * modulus).sqrt());
+    let ratios = core::array::from_fn(|_| {
+        let c = (a - b) / 2.0;
+        (a, b) = ((a + b) / 2.0, (a * b).sqrt());
+        c / a
+    });
+    (a, ratios)
+}
+
+/// Jacobi's sn, cn and dn by the descending ladder of Abramowitz and Stegun 16.4.
+fn jacobi(u: f64, modulus: f64) -> (f64, f64, f64) {
+    let (mean, ratios) = mean_ladder(modulus);
+    let top = (1u32 << LEVELS) as f64 * mean * u;
+    let amplitude = ratios.iter().rev().fold(top, |phi, ratio| (phi + libm::asin(ratio * libm::sin(phi))) / 2.0);
+    let (sn, cn) = libm::sincos(amplitude);
+    (sn, cn, (1.0 - modulus * modulus * sn * sn).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::assert_rates_agree_with_poses;
+    use super::*;
+    use crate::time::PS_PER_S;
+
+    /// Runge-Kutta of order 4 on angle'' = -(g / arm) sin(angle): an independent model.
+    fn integrate(arm: f64, amplitude_deg: f64, until_s: f64) -> f64 {
+        let steps = 20_000;
+        let h = until_s / steps as f64;
+        let slope = |(angle, rate): (f64, f64)| (rate, -GRAVITY.value / arm * angle.sin());
+        let ahead = |s: (f64, f64), k: (f64, f64), h: f64| (s.0 + h * k.0, s.1 + h * k.1);
+        (0..steps)
+            .fold((amplitude_deg.to_radians(), 0.0), |s, _| {
+                let k1 = slope(s);
+                let k2 = slope(ahead(s, k1, h / 2.0));
+                let k3 = slope(ahead(s, k2, h / 2.0));
+                let k4 = slope(ahead(s, k3, h));
+                let mean = |a: f64, b: f64, c: f64, d: f64| (a + 2.0 * b + 2.0 * c + d) / 6.0;
+                ahead(s, (mean(k1.0, k2.0, k3.0, k4.0), mean(k1.1, k2.1, k3.1, k4.1)), h)
+            })
+            .0
+    }
+
+    #[test]
+    fn the_closed_form_agrees_with_a_numerical_integration() {
+        for (arm, amplitude, t) in [(0.5, 20.0, 3.3), (0.5, 90.0, 2.1), (1.0, 170.0, 4.7)] {
+            let closed = Pendulum::new(arm, amplitude).unwrap().angle(nearest_ps(t)).0;
+            assert!((closed - integrate(arm, amplitude, t)).abs() < 1e-8, "{arm} {amplitude}");
+        }
+    }
+
+    #[test]
+    fn the_small_angle_period_of_half_a_metre_is_1_419_s() {
+        let pendulum = Pendulum::rig();
+        assert!((pendulum.small_angle_period_s() - TAU * (0.5f64 / 9.80665).sqrt()).abs() < 1e-15);
+        assert!((pendulum.small_angle_period_s() - 1.419).abs() < 5e-4);
+    }
+
+    #[test]
+    fn the_exact_period_follows_the_series_in_the_amplitude() {
+        // T = T0 (1 + a^2/16 + 11 a^4/3072 + 173 a^6/737280 + ...), a in radians.
+        let a = 20f64.to_radians();
+        let series = 1.0 + a.powi(2) / 16.0 + 11.0 * a.powi(4) / 3072.0 + 173.0 * a.powi(6) / 737_280.0;
+        let pendulum = Pendulum::rig();
+        assert!((pendulum.period_s() / pendulum.small_angle_period_s() - series).abs() < 1e-8);
+    }
+
+    #[test]
+    fn the_bob_passes_the_low_point_at_its_greatest_speed() {
+        let pendulum = Pendulum::rig();
+        for n in [0, 1, 2, 7, 5000] {
+            let (angle, rate) = pendulum.angle(pendulum.low_point_ps(n));
+            assert!(angle.abs() < 1e-10, "{n} {angle}");
+            assert!((rate.abs() * 0.5 - pendulum.low_point_speed()).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn energy_after_an_hour_is_the_energy_of_the_release() {
+        let pendulum = Pendulum::rig();
+        let (angle, rate) = pendulum.angle(3600 * PS_PER_S);
+        let energy = 0.5 * (0.5 * rate).powi(2) - 9.80665 * 0.5 * angle.cos();
+        assert!((energy + 9.80665 * 0.5 * 20f64.to_radians().cos()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_rates_are_those_of_the_poses() {
+        (1..20).for_each(|i| assert_rates_agree_with_poses(&Pendulum::rig(), i * 77_777_777_777, 1e-6));
+    }
+
+    #[test]
+    fn a_pendulum_without_an_arm_is_an_error() {
+        assert!(Pendulum::new(0.0, 20.0).is_err());
+        assert!(Pendulum::new(0.5, 180.0).is_err());
+        assert!(Pendulum::new(f64::NAN, 20.0).is_err());
+    }
+}

@@ -1,0 +1,130 @@
+//! Uniform quintic B-splines with random coefficients: smooth noise with random access, no memory and no period.
+
+use glam::DVec3;
+
+use crate::random::{bell, bits, stream, unit};
+use crate::time::seconds;
+
+/// Integral of the squared quintic B-spline: the variance of a spline with independent coefficients of variance 1.
+/// It is the centre value of the B-spline of degree 11, 655177 / 1663200.
+const VARIANCE: f64 = 655_177.0 / 1_663_200.0;
+
+/// Knots that share one level of activity, so that calm and lively spells last some seconds.
+const KNOTS_PER_SPELL: u64 = 8;
+
+/// How lively spells are spread: gain = calm + (1 - calm) u^power, u uniform, scaled to a mean square of 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Activity {
+    pub(super) calm: f64,
+    pub(super) power: u32,
+}
+
+impl Activity {
+    fn mean_square(self) -> f64 {
+        let (calm, lively, power) = (self.calm, 1.0 - self.calm, f64::from(self.power));
+        calm * calm + 2.0 * calm * lively / (power + 1.0) + lively * lively / (2.0 * power + 1.0)
+    }
+
+    fn gain(self, u: f64) -> f64 {
+        (self.calm + (1.0 - self.calm) * u.powi(self.power as i32)) / self.mean_square().sqrt()
+    }
+}
+
+/// Three independent random splines on one grid of knots.
+#[derive(Clone, Debug)]
+pub(super) struct Spline {
+    spacing_ps: u64,
+    /// Standard deviation of each coefficient.
+    scale: DVec3,
+    activity: Activity,
+    seeds: [u64; 3],
+    spells: u64,
+}
+
+impl Spline {
+    /// Splines of these standard deviations. `spells` is shared by those that get lively together.
+    pub(super) fn new(spacing_ps: u64, deviation: DVec3, activity: Activity, seed: u64, spells: u64) -> Self {
+        let seeds = core::array::from_fn(|axis| stream(seed, axis as u64));
+        Self { spacing_ps, scale: deviation / VARIANCE.sqrt(), activity, seeds, spells }
+    }
+
+    /// Values and rates (per second).
+    pub(super) fn at(&self, t_ps: u64) -> (DVec3, DVec3) {
+        let knot = t_ps / self.spacing_ps;
+        let u = (t_ps % self.spacing_ps) as f64 / self.spacing_ps as f64;
+        let (weights, slopes) = basis(u);
+        let (mut value, mut rate) = (DVec3::ZERO, DVec3::ZERO);
+        for i in 0..6 {
+            let coefficient = self.coefficient(knot + i as u64);
+            value += coefficient * weights[i];
+            rate += coefficient * slopes[i];
+        }
+        (value, rate / seconds(self.spacing_ps))
+    }
+
+    fn coefficient(&self, knot: u64) -> DVec3 {
+        let gain = self.activity.gain(unit(bits(self.spells, knot / KNOTS_PER_SPELL)));
+        let [x, y, z] = self.seeds.map(|seed| bell(bits(seed, knot)));
+        DVec3::new(x, y, z) * self.scale * gain
+    }
+}
+
+/// The six quintic B-splines that overlap a knot interval, and their derivatives, at fraction `u` of it.
+fn basis(u: f64) -> ([f64; 6], [f64; 6]) {
+    let v = 1.0 - u;
+    let (u2, v2) = (u * u, v * v);
+    let weights = [
+        v2 * v2 * v,
+        26.0 + u * (-50.0 + u * (20.0 + u * (20.0 + u * (-20.0 + 5.0 * u)))),
+        66.0 + u2 * (-60.0 + u2 * (30.0 - 10.0 * u)),
+        26.0 + u * (50.0 + u * (20.0 + u * (-20.0 + u * (-20.0 + 10.0 * u)))),
+        1.0 + u * (5.0 + u * (10.0 + u * (10.0 + u * (5.0 - 5.0 * u)))),
+        u2 * u2 * u,
+    ];
+    let slopes = [
+        -5.0 * v2 * v2,
+        -50.0 + u * (40.0 + u * (60.0 + u * (-80.0 + 25.0 * u))),
+        u * (-120.0 + u2 * (120.0 - 50.0 * u)),
+        50.0 + u * (40.0 + u * (-60.0 + u * (-80.0 + 50.0 * u))),
+        5.0 + u * (20.0 + u * (30.0 + u * (20.0 - 25.0 * u))),
+        5.0 * u2 * u2,
+    ];
+    (weights.map(|w| w / 120.0), slopes.map(|s| s / 120.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EVEN: Activity = Activity { calm: 1.0, power: 1 };
+
+    #[test]
+    fn the_basis_is_a_partition_of_unity() {
+        for u in [0.0, 0.1, 0.5, 0.77, 1.0] {
+            let (weights, slopes) = basis(u);
+            assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            assert!(slopes.iter().sum::<f64>().abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn value_and_slope_are_continuous_across_a_knot() {
+        let spline = Spline::new(1_000_000, DVec3::ONE, EVEN, 1, 1);
+        for knot in 1..50 {
+            let (before, after) = (spline.at(knot * 1_000_000 - 1), spline.at(knot * 1_000_000));
+            assert!((before.0 - after.0).length() < 1e-5);
+            assert!((before.1 - after.1).length() * seconds(1_000_000) < 1e-5);
+        }
+    }
+
+    #[test]
+    fn the_variance_is_the_square_of_the_deviation() {
+        // 200,000 knots; neighbouring values are correlated, so the standard error is about 0.5 %.
+        for activity in [EVEN, Activity { calm: 0.2, power: 3 }] {
+            let spline = Spline::new(1000, DVec3::new(1.0, 2.0, 0.5), activity, 9, 4);
+            let sum = (0..400_000).map(|i| spline.at(i * 500).0).fold(DVec3::ZERO, |s, x| s + x * x);
+            let ratio = sum / 400_000.0 / DVec3::new(1.0, 4.0, 0.25);
+            assert!((ratio - 1.0).abs().max_element() < 0.03, "{ratio}");
+        }
+    }
+}

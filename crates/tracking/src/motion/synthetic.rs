@@ -1,0 +1,122 @@
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::Motion;
+use super::spline::{Activity, Spline};
+use crate::error::ConfigError;
+use crate::pose::Pose;
+use crate::random::stream;
+use crate::rotation;
+use crate::time::nearest_ps;
+
+/// One band of the generator: three quintic B-splines with random coefficients. Its power falls as sinc^12(f spacing),
+/// so 99.9 % of it lies below 0.53 / spacing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Band {
+    /// Seconds between knots, 0.01 to 1000.
+    pub spacing_s: f64,
+    /// Standard deviations: yaw, pitch and roll in degrees, or x, y and z in metres.
+    pub deviation: [f64; 3],
+    /// Level of the calmest spell against the liveliest, 0 to 1; 1 makes all spells alike.
+    pub calm: f64,
+    /// How rare lively spells are: level = calm + (1 - calm) u^power with u uniform; 1 to 16.
+    pub power: u32,
+}
+
+/// Settings of [`Synthetic`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SyntheticConfig {
+    /// Slow turns of the body: nearly all of the angle.
+    pub turn: Band,
+    /// Glances: nearly all of the angular speed.
+    pub glance: Band,
+    /// Translation about `centre_m`.
+    pub walk: Band,
+    /// Mean position, metres.
+    pub centre_m: [f64; 3],
+}
+
+impl SyntheticConfig {
+    /// Fitted to recorded headset traces: see [`crate::config::TRACE_MEAN`] and its neighbours. The deviations are
+    /// assumed; the statistics that they give are published, and tested.
+    pub fn recorded_use() -> Self {
+        Self {
+            turn: Band { spacing_s: 2.6, deviation: [47.0, 4.0, 1.0], calm: 0.6, power: 1 },
+            glance: Band { spacing_s: 0.188, deviation: [9.1, 3.7, 2.0], calm: 0.14, power: 5 },
+            walk: Band { spacing_s: 1.2, deviation: [0.38, 0.05, 0.38], calm: 0.3, power: 2 },
+            centre_m: [0.0, 1.7, 0.0],
+        }
+    }
+}
+
+/// Seeded, band-limited head motion, without period and without drift: yaw, pitch, roll and position are sums of
+/// random splines, so any instant is found in constant time and memory.
+#[derive(Clone, Debug)]
+pub struct Synthetic {
+    turn: Spline,
+    glance: Spline,
+    walk: Spline,
+    centre: DVec3,
+}
+
+impl Synthetic {
+    /// A generator. One (config, seed) gives one motion on every host.
+    pub fn new(config: &SyntheticConfig, seed: u64) -> Result<Self, ConfigError> {
+        for metres in config.centre_m {
+            ConfigError::check("centre of the motion", metres, -1e6, 1e6)?;
+        }
+        let radians = std::f64::consts::PI / 180.0;
+        Ok(Self {
+            turn: spline(&config.turn, radians, stream(seed, 1))?,
+            glance: spline(&config.glance, radians, stream(seed, 2))?,
+            walk: spline(&config.walk, 1.0, stream(seed, 3))?,
+            centre: DVec3::from_array(config.centre_m),
+        })
+    }
+
+    /// Head motion as in recorded headset use.
+    pub fn recorded_use(seed: u64) -> Self {
+        Self::new(&SyntheticConfig::recorded_use(), seed).expect("the preset is in range")
+    }
+
+    /// Yaw (without wrap), pitch and roll in radians, and their rates in rad/s.
+    pub fn yaw_pitch_roll(&self, t_ps: u64) -> (DVec3, DVec3) {
+        let (turn, glance) = (self.turn.at(t_ps), self.glance.at(t_ps));
+        (turn.0 + glance.0, turn.1 + glance.1)
+    }
+}
+
+impl Motion for Synthetic {
+    fn pose(&self, t_ps: u64) -> Pose {
+        let (angles, _) = self.yaw_pitch_roll(t_ps);
+        Pose {
+            position: self.centre + self.walk.at(t_ps).0,
+            orientation: rotation::from_yaw_pitch_roll(angles.x, angles.y, angles.z),
+        }
+    }
+
+    fn velocity(&self, t_ps: u64) -> DVec3 {
+        self.walk.at(t_ps).1
+    }
+
+    fn angular_velocity(&self, t_ps: u64) -> DVec3 {
+        let (angles, rates) = self.yaw_pitch_roll(t_ps);
+        let yawed = rotation::about_y(angles.x);
+        let pitched = yawed * rotation::about_x(angles.y);
+        DVec3::Y * rates.x + yawed * DVec3::X * rates.y + pitched * DVec3::Z * rates.z
+    }
+}
+
+fn spline(band: &Band, unit: f64, seed: u64) -> Result<Spline, ConfigError> {
+    ConfigError::check("spacing of knots, s", band.spacing_s, 0.01, 1000.0)?;
+    ConfigError::check("level of calm spells", band.calm, 0.0, 1.0)?;
+    ConfigError::check("power of lively spells", f64::from(band.power), 1.0, 16.0)?;
+    for deviation in band.deviation {
+        ConfigError::check("deviation of a band", deviation, 0.0, 1e6)?;
+    }
+    let activity = Activity { calm: band.calm, power: band.power };
+    let deviation = DVec3::from_array(band.deviation) * unit;
+    Ok(Spline::new(nearest_ps(band.spacing_s), deviation, activity, seed, stream(seed, 9)))
+}

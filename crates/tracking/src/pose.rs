@@ -1,0 +1,76 @@
+//! A head's place and attitude.
+
+use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
+
+use crate::rotation;
+
+/// Position in metres and orientation (head to world). Right-handed, y up; the head looks along its own -z.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pose {
+    /// Place of the eye in the world, metres.
+    pub position: DVec3,
+    /// Unit quaternion that turns head axes into world axes.
+    pub orientation: DQuat,
+}
+
+impl Pose {
+    /// At the origin, looking along -z.
+    pub const IDENTITY: Self = Self { position: DVec3::ZERO, orientation: DQuat::IDENTITY };
+
+    /// A pose at `position` that looks along -z.
+    pub fn at(position: DVec3) -> Self {
+        Self { position, ..Self::IDENTITY }
+    }
+
+    /// A pose at the origin with this orientation.
+    pub fn facing(orientation: DQuat) -> Self {
+        Self { orientation, ..Self::IDENTITY }
+    }
+
+    /// A world point in head axes (metres, -z ahead).
+    pub fn view_of(&self, world: DVec3) -> DVec3 {
+        self.orientation.conjugate() * (world - self.position)
+    }
+
+    /// Between two poses: position on the straight line, orientation by slerp. 0 gives `self`, 1 gives `to`.
+    pub fn interpolate(&self, to: &Self, s: f64) -> Self {
+        Self {
+            position: self.position.lerp(to.position, s),
+            orientation: rotation::slerp(self.orientation, to.orientation, s),
+        }
+    }
+
+    /// Distance to another pose in metres.
+    pub fn distance_m(&self, other: &Self) -> f64 {
+        self.position.distance(other.position)
+    }
+
+    /// Angle to another pose in degrees, 0 to 180.
+    pub fn angle_deg(&self, other: &Self) -> f64 {
+        rotation::angle_deg(self.orientation, other.orientation)
+    }
+
+    /// Whether every number is finite.
+    pub fn is_finite(&self) -> bool {
+        self.position.is_finite() && self.orientation.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_ahead_moves_right_in_the_view_when_the_head_turns_left() {
+        let turned = Pose::facing(rotation::about_y(0.1));
+        assert!(turned.view_of(DVec3::NEG_Z).x > 0.0);
+    }
+
+    #[test]
+    fn interpolation_meets_both_ends() {
+        let (a, b) = (Pose::IDENTITY, Pose { position: DVec3::X, orientation: rotation::about_x(1.0) });
+        assert!(a.interpolate(&b, 0.0).angle_deg(&a) < 1e-12 && a.interpolate(&b, 1.0).angle_deg(&b) < 1e-12);
+        assert_eq!(a.interpolate(&b, 0.5).position, DVec3::X * 0.5);
+    }
+}

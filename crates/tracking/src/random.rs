@@ -1,0 +1,99 @@
+//! Seeded random numbers as pure functions of (seed, index): reports and knots can be drawn in any order, on any host.
+
+/// Odd constant nearest to 2^64 / golden ratio, the increment of SplitMix64 (Steele, Lea and Flood 2014).
+const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+
+/// Finaliser of SplitMix64: a bijection in which each input bit flips half of the output bits.
+fn finalise(mut x: u64) -> u64 {
+    x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    x ^ (x >> 31)
+}
+
+/// 64 random bits for (seed, index): element `index` of the SplitMix64 sequence that starts at `seed`.
+pub(crate) fn bits(seed: u64, index: u64) -> u64 {
+    finalise(seed.wrapping_add(index.wrapping_add(1).wrapping_mul(GOLDEN)))
+}
+
+/// Seed of an independent stream. Two rounds, so that streams of neighbouring seeds do not overlap.
+pub(crate) fn stream(seed: u64, name: u64) -> u64 {
+    bits(bits(seed, name), seed)
+}
+
+/// Uniform in [0, 1), 53 bits.
+pub(crate) fn unit(bits: u64) -> f64 {
+    (bits >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// Uniform integer in [0, bound), biased by less than bound / 2^64.
+pub(crate) fn below(bits: u64, bound: u64) -> u64 {
+    ((u128::from(bits) * u128::from(bound)) >> 64) as u64
+}
+
+/// Two independent standard normal deviates (Box and Muller 1958).
+pub(crate) fn normal_pair(seed: u64, index: u64) -> (f64, f64) {
+    let open = 1.0 - unit(bits(seed, 2 * index));
+    let turn = unit(bits(seed, 2 * index + 1));
+    let (sin, cos) = libm::sincos(core::f64::consts::TAU * turn);
+    let radius = (-2.0 * libm::log(open)).sqrt();
+    (radius * cos, radius * sin)
+}
+
+/// Bell-shaped deviate of mean 0 and variance 1 in [-2 sqrt 3, 2 sqrt 3]: four 16-bit uniforms summed (Irwin-Hall).
+/// No transcendental function, hence much cheaper than [`normal_pair`].
+pub(crate) fn bell(bits: u64) -> f64 {
+    let sum = (bits & 0xFFFF) + ((bits >> 16) & 0xFFFF) + ((bits >> 32) & 0xFFFF) + (bits >> 48);
+    (sum as f64 / 65_535.0 - 2.0) * SQRT_3
+}
+
+const SQRT_3: f64 = 1.732_050_807_568_877_2;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn moments(draw: impl Fn(u64) -> f64) -> (f64, f64) {
+        let n = 200_000;
+        let (sum, squares) = (0..n).map(draw).fold((0.0, 0.0), |(s, q), x| (s + x, q + x * x));
+        (sum / n as f64, squares / n as f64)
+    }
+
+    // Tolerances are five standard errors of 200,000 draws: 5 / sqrt(n) = 0.011, and sqrt 2 times that for variances.
+    #[test]
+    fn normal_and_bell_have_mean_0_and_variance_1() {
+        for (mean, variance) in
+            [moments(|i| normal_pair(7, i).0), moments(|i| normal_pair(7, i).1), moments(|i| bell(bits(7, i)))]
+        {
+            assert!(mean.abs() < 0.011 && (variance - 1.0).abs() < 0.016, "{mean} {variance}");
+        }
+    }
+
+    #[test]
+    fn the_two_normals_of_a_pair_are_uncorrelated() {
+        let (mean, _) = moments(|i| {
+            let (a, b) = normal_pair(3, i);
+            a * b
+        });
+        assert!(mean.abs() < 0.011, "{mean}");
+    }
+
+    #[test]
+    fn streams_of_neighbouring_seeds_are_uncorrelated() {
+        let (mean, _) = moments(|i| bell(bits(stream(1, 0), i)) * bell(bits(stream(2, 0), i)));
+        assert!(mean.abs() < 0.011, "{mean}");
+    }
+
+    #[test]
+    fn the_first_value_is_that_of_splitmix64() {
+        // Published test vector of SplitMix64 for seed 1234567.
+        assert_eq!(bits(1_234_567, 0), 6_457_827_717_110_365_317);
+        assert_eq!(bits(1_234_567, 1), 3_203_168_211_198_807_973);
+    }
+
+    #[test]
+    fn below_stays_below_and_reaches_every_value() {
+        let mut seen = [false; 7];
+        (0..1000).for_each(|i| seen[below(bits(5, i), 7) as usize] = true);
+        assert!(seen.iter().all(|&s| s));
+    }
+}

@@ -1,0 +1,158 @@
+//! Quaternions and rotation vectors. Every transcendental function comes from `libm`, so that hosts agree bit for bit.
+//!
+//! Rotation vectors are in radians, in the world frame: `exp(r) * q` turns `q` by `r`. Axes are right-handed, y is up,
+//! and a view looks along -z; so positive yaw turns left, positive pitch up.
+
+use glam::{DQuat, DVec3};
+
+/// Below this squared half angle the series of [`exp`] and [`log`] are exact to the last bit (next term < 1e-18).
+const SERIES_BELOW: f64 = 1e-6;
+
+/// The rotation by the vector `r` (rad). Any length is allowed.
+pub fn exp(r: DVec3) -> DQuat {
+    let half_squared = r.length_squared() / 4.0;
+    let (sinc, cos) = if half_squared < SERIES_BELOW {
+        (1.0 - half_squared / 6.0 * (1.0 - half_squared / 20.0), 1.0 - half_squared / 2.0 * (1.0 - half_squared / 12.0))
+    } else {
+        let half = half_squared.sqrt();
+        let (sin, cos) = libm::sincos(half);
+        (sin / half, cos)
+    };
+    let v = r * (0.5 * sinc);
+    DQuat::from_xyzw(v.x, v.y, v.z, cos)
+}
+
+/// The shortest rotation vector (rad, length at most pi) of the unit quaternion `q`. `q` and `-q` give the same vector.
+pub fn log(q: DQuat) -> DVec3 {
+    let q = if q.w < 0.0 { -q } else { q };
+    let v = DVec3::new(q.x, q.y, q.z);
+    let squared = v.length_squared();
+    if squared < SERIES_BELOW {
+        let ratio = squared / (q.w * q.w);
+        return v * (2.0 / q.w * (1.0 - ratio / 3.0 * (1.0 - 0.6 * ratio)));
+    }
+    let sin = squared.sqrt();
+    v * (2.0 * libm::atan2(sin, q.w) / sin)
+}
+
+/// The world-frame rotation vector that turns `from` into `to` on the shorter way.
+pub fn difference(from: DQuat, to: DQuat) -> DVec3 {
+    log(to * from.conjugate())
+}
+
+/// Angle between two orientations in degrees, 0 to 180.
+pub fn angle_deg(a: DQuat, b: DQuat) -> f64 {
+    difference(a, b).length().to_degrees()
+}
+
+/// Spherical linear interpolation on the shorter way: `from` at 0, `to` at 1.
+pub fn slerp(from: DQuat, to: DQuat, s: f64) -> DQuat {
+    (exp(difference(from, to) * s) * from).normalize()
+}
+
+/// Yaw about y, then pitch about the turned x, then roll about the turned z (radians).
+pub fn from_yaw_pitch_roll(yaw: f64, pitch: f64, roll: f64) -> DQuat {
+    about_y(yaw) * about_x(pitch) * about_z(roll)
+}
+
+/// Yaw, pitch and roll in radians, the inverse of [`from_yaw_pitch_roll`]; pitch is within +-pi/2.
+/// Straight up or down, where yaw and roll are one, roll takes what is left after yaw 0.
+pub fn to_yaw_pitch_roll(q: DQuat) -> (f64, f64, f64) {
+    let forward = q * DVec3::NEG_Z;
+    let level = (forward.x * forward.x + forward.z * forward.z).sqrt();
+    let yaw = if level > 1e-12 { libm::atan2(-forward.x, -forward.z) } else { 0.0 };
+    let pitch = libm::atan2(forward.y, level);
+    let rest = (about_y(yaw) * about_x(pitch)).conjugate() * q;
+    (yaw, pitch, 2.0 * libm::atan2(rest.z, rest.w))
+}
+
+/// Rotation about x by `angle` radians.
+pub fn about_x(angle: f64) -> DQuat {
+    let (sin, cos) = libm::sincos(angle / 2.0);
+    DQuat::from_xyzw(sin, 0.0, 0.0, cos)
+}
+
+/// Rotation about y by `angle` radians.
+pub fn about_y(angle: f64) -> DQuat {
+    let (sin, cos) = libm::sincos(angle / 2.0);
+    DQuat::from_xyzw(0.0, sin, 0.0, cos)
+}
+
+/// Rotation about z by `angle` radians.
+pub fn about_z(angle: f64) -> DQuat {
+    let (sin, cos) = libm::sincos(angle / 2.0);
+    DQuat::from_xyzw(0.0, 0.0, sin, cos)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::PI;
+    use proptest::prelude::*;
+
+    fn vector(limit: f64) -> impl Strategy<Value = DVec3> {
+        (-1.0..1.0, -1.0..1.0, -1.0..1.0, 0.0..limit)
+            .prop_map(|(x, y, z, length)| DVec3::new(x, y, z).normalize_or(DVec3::X) * length)
+    }
+
+    proptest! {
+        #[test]
+        fn log_undoes_exp_up_to_half_a_turn(r in vector(PI - 1e-6)) {
+            prop_assert!((log(exp(r)) - r).length() < 1e-9);
+        }
+
+        #[test]
+        fn log_undoes_exp_for_tiny_angles_to_machine_precision(r in vector(1e-3)) {
+            prop_assert!((log(exp(r)) - r).length() <= 4.0 * f64::EPSILON * r.length());
+        }
+
+        #[test]
+        fn exp_is_a_unit_quaternion(r in vector(20.0)) {
+            prop_assert!((exp(r).length() - 1.0).abs() < 1e-14);
+        }
+
+        #[test]
+        fn exp_agrees_with_an_independent_library(r in vector(6.0)) {
+            let oracle = nalgebra::UnitQuaternion::from_scaled_axis(nalgebra::Vector3::new(r.x, r.y, r.z));
+            let q = exp(r);
+            for (ours, theirs) in [(q.x, oracle.i), (q.y, oracle.j), (q.z, oracle.k), (q.w, oracle.w)] {
+                prop_assert!((ours - theirs).abs() < 1e-14);
+            }
+        }
+
+        #[test]
+        fn both_signs_of_a_quaternion_have_one_log(r in vector(3.0)) {
+            prop_assert_eq!(log(exp(r)), log(-exp(r)));
+        }
+
+        #[test]
+        fn yaw_pitch_and_roll_come_back(yaw in -3.1..3.1f64, pitch in -1.5..1.5f64, roll in -3.1..3.1f64) {
+            let (y, p, r) = to_yaw_pitch_roll(from_yaw_pitch_roll(yaw, pitch, roll));
+            prop_assert!((y - yaw).abs() < 1e-10 && (p - pitch).abs() < 1e-10 && (r - roll).abs() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn log_of_exactly_half_a_turn_has_length_pi() {
+        assert!((log(DQuat::from_xyzw(0.0, 1.0, 0.0, 0.0)).length() - PI).abs() < 1e-15);
+    }
+
+    #[test]
+    fn slerp_takes_the_shorter_way_through_the_double_cover() {
+        let (a, b) = (about_y(0.2), -about_y(0.6));
+        assert!(angle_deg(slerp(a, b, 0.5), about_y(0.4)) < 1e-12);
+    }
+
+    #[test]
+    fn looking_straight_up_is_not_undefined() {
+        let q = from_yaw_pitch_roll(0.0, PI / 2.0, 0.3);
+        let (yaw, pitch, roll) = to_yaw_pitch_roll(q);
+        assert!(angle_deg(from_yaw_pitch_roll(yaw, pitch, roll), q) < 1e-6);
+    }
+
+    #[test]
+    fn positive_yaw_turns_left_and_positive_pitch_up() {
+        assert!((about_y(PI / 2.0) * DVec3::NEG_Z - DVec3::NEG_X).length() < 1e-15);
+        assert!((about_x(PI / 2.0) * DVec3::NEG_Z - DVec3::Y).length() < 1e-15);
+    }
+}

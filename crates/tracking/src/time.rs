@@ -1,0 +1,53 @@
+//! Conversions between picoseconds and seconds. Instants stay integers; only differences become floating point.
+
+/// Picoseconds in a second.
+pub const PS_PER_S: u64 = 1_000_000_000_000;
+
+/// Picoseconds in a millisecond.
+pub const PS_PER_MS: u64 = 1_000_000_000;
+
+/// An instant in seconds. Whole seconds are split off first, so an instant beyond 2^53 ps keeps its fraction.
+pub fn seconds(t_ps: u64) -> f64 {
+    (t_ps / PS_PER_S) as f64 + (t_ps % PS_PER_S) as f64 / PS_PER_S as f64
+}
+
+/// Seconds from `from_ps` to `to_ps`, negative when `to_ps` is the earlier.
+pub fn span_s(from_ps: u64, to_ps: u64) -> f64 {
+    if to_ps >= from_ps { seconds(to_ps - from_ps) } else { -seconds(from_ps - to_ps) }
+}
+
+/// Instant of event `n` of a clock that ticks `rate` times in `seconds` s: floor(n x seconds / rate), so nothing
+/// drifts. `None` past the end of time (2^64 ps, 213 days).
+pub(crate) fn tick_ps(n: u64, seconds: u32, rate: u32) -> Option<u64> {
+    let ps = u128::from(n) * u128::from(PS_PER_S) * u128::from(seconds) / u128::from(rate);
+    u64::try_from(ps).ok()
+}
+
+/// Seconds to the nearest picosecond. The argument must be finite, not negative and below 2^64 ps.
+pub(crate) fn nearest_ps(seconds: f64) -> u64 {
+    let whole = libm::floor(seconds);
+    whole as u64 * PS_PER_S + libm::round((seconds - whole) * PS_PER_S as f64) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_tick_after_an_hour_at_120_hz_is_exact() {
+        assert_eq!(tick_ps(432_000, 1, 120), Some(3600 * PS_PER_S));
+        assert_eq!(tick_ps(1, 1, 120), Some(8_333_333_333));
+    }
+
+    #[test]
+    fn a_tick_past_the_end_of_time_is_none() {
+        assert_eq!(tick_ps(u64::MAX, 1, 1), None);
+    }
+
+    #[test]
+    fn an_instant_of_a_hundred_days_keeps_its_picoseconds() {
+        let day_100 = 8_640_000 * PS_PER_S;
+        assert_eq!(span_s(day_100 + 7, day_100), -7e-12);
+        assert_eq!(nearest_ps(0.008_333_333_333), 8_333_333_333);
+    }
+}

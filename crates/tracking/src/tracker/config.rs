@@ -1,0 +1,138 @@
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+use super::{Fault, HostLine, MagneticDistortion, SerialLine};
+use crate::config as table;
+use crate::config::Parameter;
+
+/// Settings of a tracker, its cable and the host's port. Presets take every number from [`crate::config`].
+///
+/// Solution n is begun at the n-th sync (floor of n x receivers / rate) and is ready for the cable
+/// `sync_to_output_ps` later; a latency counts back from there to the instant at which the pose was true.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrackerConfig {
+    /// Name for reports.
+    pub name: String,
+    /// Solutions a second over all receivers, 1 to 10,000.
+    pub rate_hz: u32,
+    /// Receivers that share the rate, 1 to 16. The head's is the first to be sent.
+    pub receivers: u32,
+    /// From sync to the first character on the cable.
+    pub sync_to_output_ps: u64,
+    /// Age of a position when its first character is sent, at most `sync_to_output_ps`.
+    pub position_latency_ps: u64,
+    /// Age of an orientation when its first character is sent, at most `sync_to_output_ps`.
+    pub orientation_latency_ps: u64,
+    /// White noise of each axis, rms, m.
+    pub position_noise_m: f64,
+    /// White noise about each axis, rms, degrees.
+    pub orientation_noise_deg: f64,
+    /// a of the tracker's filter x' = a x + (1 - a) x'; 1 is no filter. Above 0.
+    pub filter_gain: f64,
+    /// The cable; `None` when the latency above includes it.
+    pub serial: Option<SerialLine>,
+    /// The host's port.
+    pub host: HostLine,
+    /// From the first report to the crash of a host that interrupts per character; `None` never crashes. TR94 tells
+    /// of the Flock that it does.
+    pub crashes_patched_host_after_ps: Option<u64>,
+    /// Metal near a magnetic tracker.
+    pub distortion: Option<MagneticDistortion>,
+    /// Faults to inject.
+    pub faults: Vec<Fault>,
+}
+
+impl TrackerConfig {
+    /// Polhemus Fastrak, one receiver, filter off, 115,200 baud, patched kernel.
+    pub fn fastrak() -> Self {
+        let latency_ps = table::FASTRAK_LATENCY.ms_to_ps();
+        Self {
+            sync_to_output_ps: table::FASTRAK_SYNC_TO_OUTPUT.ms_to_ps(),
+            position_latency_ps: latency_ps,
+            orientation_latency_ps: latency_ps,
+            serial: Some(SerialLine::fastrak()),
+            ..Self::ideal()
+                .named("Polhemus Fastrak", table::FASTRAK_RATE)
+                .with_noise(table::FASTRAK_POSITION_NOISE, table::FASTRAK_ORIENTATION_NOISE)
+        }
+    }
+
+    /// Ascension Flock of Birds, filters off, on the unpatched kernel: the patched one crashes with it.
+    pub fn flock_of_birds() -> Self {
+        let position_latency_ps = table::FLOCK_POSITION_LATENCY.ms_to_ps();
+        Self {
+            sync_to_output_ps: position_latency_ps,
+            position_latency_ps,
+            orientation_latency_ps: table::FLOCK_ORIENTATION_LATENCY.ms_to_ps(),
+            host: HostLine::unix(),
+            crashes_patched_host_after_ps: Some(table::FLOCK_CRASH.ms_to_ps()),
+            ..Self::ideal()
+                .named("Ascension Flock of Birds", table::FLOCK_RATE)
+                .with_noise(table::FLOCK_POSITION_NOISE, table::FLOCK_ORIENTATION_NOISE)
+        }
+    }
+
+    /// The Flock on a patched host, which dies of it after a second: for fault injection.
+    pub fn flock_of_birds_on_patched_host() -> Self {
+        Self { host: HostLine::InterruptPerCharacter, ..Self::flock_of_birds() }
+    }
+
+    /// UNC optical ceiling tracker: 33 ms in all.
+    pub fn optical_ceiling() -> Self {
+        Self::ideal()
+            .named("UNC optical ceiling tracker", table::OPTICAL_RATE)
+            .with_noise(table::OPTICAL_POSITION_NOISE, table::OPTICAL_ORIENTATION_NOISE)
+            .with_latency_ps(table::OPTICAL_LATENCY.ms_to_ps())
+    }
+
+    /// Polhemus 3Space above a steel floor, transmitter at the origin, unpatched kernel.
+    pub fn polhemus_3space() -> Self {
+        Self {
+            host: HostLine::unix(),
+            distortion: Some(MagneticDistortion::floor_below(DVec3::ZERO)),
+            ..Self::ideal()
+                .named("Polhemus 3Space", table::SPACE_RATE)
+                .with_noise(table::SPACE_POSITION_NOISE, table::SPACE_ORIENTATION_NOISE)
+                .with_latency_ps(table::SPACE_LATENCY.ms_to_ps())
+        }
+    }
+
+    /// No error, no delay, 1,000 reports a second.
+    pub fn ideal() -> Self {
+        Self {
+            name: "ideal".to_owned(),
+            rate_hz: table::IDEAL_RATE.value as u32,
+            receivers: 1,
+            sync_to_output_ps: 0,
+            position_latency_ps: 0,
+            orientation_latency_ps: 0,
+            position_noise_m: 0.0,
+            orientation_noise_deg: 0.0,
+            filter_gain: 1.0,
+            serial: None,
+            host: HostLine::InterruptPerCharacter,
+            crashes_patched_host_after_ps: None,
+            distortion: None,
+            faults: Vec::new(),
+        }
+    }
+
+    /// The same with one latency for position and orientation, counted from sync to output.
+    pub fn with_latency_ps(self, latency_ps: u64) -> Self {
+        Self {
+            sync_to_output_ps: latency_ps,
+            position_latency_ps: latency_ps,
+            orientation_latency_ps: latency_ps,
+            ..self
+        }
+    }
+
+    fn named(self, name: &str, rate: Parameter) -> Self {
+        Self { name: name.to_owned(), rate_hz: rate.value as u32, ..self }
+    }
+
+    fn with_noise(self, position_mm: Parameter, orientation_deg: Parameter) -> Self {
+        Self { position_noise_m: position_mm.value / 1e3, orientation_noise_deg: orientation_deg.value, ..self }
+    }
+}

@@ -1,0 +1,65 @@
+use serde::{Deserialize, Serialize};
+
+use crate::error::ConfigError;
+
+/// Most likely random fault: more would be a tracker that hardly reports.
+const MOST_LIKELY: f64 = 0.99;
+
+/// A fault to inject. Several can be combined; where two random faults want one report, the first listed wins.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Fault {
+    /// The tracker falls silent for good: nothing reaches the host at or after this instant.
+    Silence {
+        /// First silent instant.
+        from_ps: u64,
+    },
+    /// No solutions are measured in [from, to).
+    Dropout {
+        /// First instant without.
+        from_ps: u64,
+        /// First instant with solutions again.
+        to_ps: u64,
+    },
+    /// Each solution is lost with this probability.
+    RandomDropout {
+        /// 0 to 0.99.
+        probability: f64,
+    },
+    /// Each report is made of NaN with this probability.
+    NotANumber {
+        /// 0 to 0.99.
+        probability: f64,
+    },
+    /// Each report is, with this probability, moved and turned in a random direction.
+    Jump {
+        /// 0 to 0.99.
+        probability: f64,
+        /// How far, m.
+        distance_m: f64,
+        /// How much, degrees.
+        angle_deg: f64,
+    },
+}
+
+impl Fault {
+    pub(super) fn check(&self) -> Result<(), ConfigError> {
+        match *self {
+            Self::Silence { .. } => Ok(()),
+            Self::Dropout { from_ps, to_ps } if from_ps > to_ps => {
+                Err(ConfigError::Contradiction { what: "a dropout ends before it begins" })
+            }
+            Self::Dropout { .. } => Ok(()),
+            Self::RandomDropout { probability } | Self::NotANumber { probability } => likely(probability),
+            Self::Jump { probability, distance_m, angle_deg } => {
+                ConfigError::check("distance of a jump", distance_m, 0.0, 1e6)?;
+                ConfigError::check("angle of a jump", angle_deg, 0.0, 180.0)?;
+                likely(probability)
+            }
+        }
+    }
+}
+
+fn likely(probability: f64) -> Result<(), ConfigError> {
+    ConfigError::check("probability of a fault", probability, 0.0, MOST_LIKELY)
+}

@@ -1,0 +1,15 @@
+//! Trackers: when they measure, how wrong they are, and when the host gets to know.
+
+mod config;
+mod distortion;
+mod fault;
+mod model;
+mod reports;
+mod serial;
+
+pub use config::TrackerConfig;
+pub use distortion::MagneticDistortion;
+pub use fault::Fault;
+pub use model::TrackerModel;
+pub use reports::{Report, Reports};
+pub use serial::{HostLine, SerialLine};

@@ -1,0 +1,149 @@
+use super::reports::Reports;
+use super::{Fault, HostLine, TrackerConfig};
+use crate::error::ConfigError;
+use crate::motion::Motion;
+use crate::time::{PS_PER_S, tick_ps};
+
+/// Longest latency or poll period that a configuration may name.
+const LONGEST_PS: u64 = 10 * PS_PER_S;
+
+/// A tracker whose settings have been checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrackerModel {
+    config: TrackerConfig,
+}
+
+impl TrackerModel {
+    /// Checks the settings, once.
+    pub fn new(config: TrackerConfig) -> Result<Self, ConfigError> {
+        check_times(&config)?;
+        ConfigError::check("position noise, m", config.position_noise_m, 0.0, 10.0)?;
+        ConfigError::check("orientation noise, deg", config.orientation_noise_deg, 0.0, 90.0)?;
+        ConfigError::check("filter gain", config.filter_gain, 1e-6, 1.0)?;
+        if let Some(serial) = config.serial {
+            ConfigError::check("record, bytes", f64::from(serial.record_bytes), 1.0, 1000.0)?;
+            ConfigError::check("line rate, baud", f64::from(serial.baud), 300.0, 1e6)?;
+        }
+        config.distortion.map_or(Ok(()), |d| d.check())?;
+        config.faults.iter().try_for_each(Fault::check)?;
+        Ok(Self { config })
+    }
+
+    /// The settings.
+    pub fn config(&self) -> &TrackerConfig {
+        &self.config
+    }
+
+    /// Time between solutions of the head's receiver, rounded down to a picosecond.
+    pub fn period_ps(&self) -> u64 {
+        PS_PER_S * u64::from(self.config.receivers) / u64::from(self.config.rate_hz)
+    }
+
+    /// Delay of the tracker's own filter behind a steady motion: period x (1 - a) / a. Time stamps do not know of it.
+    pub fn filter_delay_ps(&self) -> u64 {
+        let gain = self.config.filter_gain;
+        (self.period_ps() as f64 * (1.0 - gain) / gain) as u64
+    }
+
+    /// Time of the head's record on the cable.
+    pub fn transfer_ps(&self) -> u64 {
+        self.config.serial.map_or(0, |serial| serial.transfer_ps(1))
+    }
+
+    /// What the host receives while the head follows `motion`, in order of arrival. It ends when the tracker falls
+    /// silent for good. One (model, motion, seed) gives one sequence on every host.
+    pub fn reports<'a, M: Motion + ?Sized>(&'a self, motion: &'a M, seed: u64) -> Reports<'a, M> {
+        Reports::new(self, motion, seed)
+    }
+
+    /// Instant of sync `n`; `None` past the end of time.
+    pub(super) fn sync_ps(&self, n: u64) -> Option<u64> {
+        tick_ps(n, self.config.receivers, self.config.rate_hz)
+    }
+
+    /// The first solution whose sync is at or after `t_ps`.
+    pub(super) fn solution_at(&self, t_ps: u64) -> u64 {
+        let per_ps = u128::from(t_ps) * u128::from(self.config.rate_hz);
+        let n = (per_ps / (u128::from(PS_PER_S) * u128::from(self.config.receivers))) as u64;
+        if self.sync_ps(n).is_some_and(|sync| sync < t_ps) { n + 1 } else { n }
+    }
+}
+
+fn check_times(config: &TrackerConfig) -> Result<(), ConfigError> {
+    ConfigError::check("tracker rate, Hz", f64::from(config.rate_hz), 1.0, 10_000.0)?;
+    ConfigError::check("receivers", f64::from(config.receivers), 1.0, 16.0)?;
+    let longest = LONGEST_PS as f64;
+    ConfigError::check("sync to output, ps", config.sync_to_output_ps as f64, 0.0, longest)?;
+    if config.position_latency_ps.max(config.orientation_latency_ps) > config.sync_to_output_ps {
+        return Err(ConfigError::Contradiction { what: "a latency is longer than the time from sync to output" });
+    }
+    if let HostLine::Polled { period_ps } = config.host {
+        ConfigError::check("poll period, ps", period_ps as f64, 1.0, longest)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tracker::SerialLine;
+
+    fn model(config: TrackerConfig) -> TrackerModel {
+        TrackerModel::new(config).unwrap()
+    }
+
+    #[test]
+    fn the_first_solution_at_an_instant_is_the_first_sync_not_before_it() {
+        for config in [TrackerConfig::fastrak(), TrackerConfig { receivers: 3, ..TrackerConfig::fastrak() }] {
+            let tracker = model(config);
+            for n in [0, 1, 2, 7, 1_000_003] {
+                let sync = tracker.sync_ps(n).unwrap();
+                assert_eq!(tracker.solution_at(sync), n);
+                assert_eq!(tracker.solution_at(sync + 1), n + 1);
+            }
+        }
+    }
+
+    #[test]
+    fn every_preset_passes_the_check() {
+        for config in [
+            TrackerConfig::fastrak(),
+            TrackerConfig::flock_of_birds(),
+            TrackerConfig::flock_of_birds_on_patched_host(),
+            TrackerConfig::optical_ceiling(),
+            TrackerConfig::polhemus_3space(),
+            TrackerConfig::ideal(),
+        ] {
+            assert!(TrackerModel::new(config).is_ok());
+        }
+    }
+
+    #[test]
+    fn bad_settings_are_errors() {
+        let good = TrackerConfig::fastrak;
+        let bad = [
+            TrackerConfig { rate_hz: 0, ..good() },
+            TrackerConfig { receivers: 0, ..good() },
+            TrackerConfig { filter_gain: 0.0, ..good() },
+            TrackerConfig { filter_gain: f64::NAN, ..good() },
+            TrackerConfig { position_noise_m: -1.0, ..good() },
+            TrackerConfig { position_latency_ps: u64::MAX, ..good() },
+            TrackerConfig { host: HostLine::Polled { period_ps: 0 }, ..good() },
+            TrackerConfig { serial: Some(SerialLine { record_bytes: 47, baud: 0 }), ..good() },
+            TrackerConfig { faults: vec![Fault::RandomDropout { probability: 1.0 }], ..good() },
+            TrackerConfig { faults: vec![Fault::Dropout { from_ps: 2, to_ps: 1 }], ..good() },
+        ];
+        for config in bad {
+            assert!(TrackerModel::new(config.clone()).is_err(), "{config:?}");
+        }
+    }
+
+    #[test]
+    fn a_configuration_survives_a_file_and_unknown_keys_do_not() {
+        let config = TrackerConfig::polhemus_3space();
+        let text = serde_json::to_string(&config).unwrap();
+        assert_eq!(serde_json::from_str::<TrackerConfig>(&text).unwrap(), config);
+        let odd = text.replacen("rate_hz", "rate_hertz", 1);
+        assert!(serde_json::from_str::<TrackerConfig>(&odd).is_err());
+    }
+}

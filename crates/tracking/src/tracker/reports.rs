@@ -1,0 +1,198 @@
+use glam::{DQuat, DVec3};
+
+use super::{Fault, HostLine, TrackerModel};
+use crate::motion::Motion;
+use crate::pose::Pose;
+use crate::random::{below, bits, normal_pair, stream, unit};
+use crate::rotation;
+
+/// What the host gets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Report {
+    /// Number of the solution; a step of more than one tells of dropped solutions.
+    pub solution: u64,
+    /// When the orientation was true.
+    pub measured_ps: u64,
+    /// When the position was true: as `measured_ps`, except that the Flock's is older.
+    pub position_measured_ps: u64,
+    /// When the host sees it.
+    pub arrives_ps: u64,
+    /// The pose, wrong as trackers are.
+    pub pose: Pose,
+}
+
+/// Reports of a tracker in order of arrival: see [`TrackerModel::reports`].
+#[derive(Clone, Debug)]
+pub struct Reports<'a, M: ?Sized> {
+    model: &'a TrackerModel,
+    motion: &'a M,
+    noise: u64,
+    faults: u64,
+    poll_phase_ps: u64,
+    next_solution: u64,
+    filtered: Option<Pose>,
+    line_free_ps: u64,
+    silent_from_ps: u64,
+    crashes: bool,
+}
+
+impl<'a, M: Motion + ?Sized> Reports<'a, M> {
+    pub(super) fn new(model: &'a TrackerModel, motion: &'a M, seed: u64) -> Self {
+        let config = model.config();
+        let poll_phase_ps = match config.host {
+            HostLine::Polled { period_ps } => below(bits(stream(seed, 1), 0), period_ps),
+            HostLine::InterruptPerCharacter => 0,
+        };
+        let silence = config.faults.iter().filter_map(|fault| match fault {
+            Fault::Silence { from_ps } => Some(*from_ps),
+            _ => None,
+        });
+        Self {
+            model,
+            motion,
+            noise: stream(seed, 2),
+            faults: stream(seed, 3),
+            poll_phase_ps,
+            next_solution: 0,
+            filtered: None,
+            line_free_ps: 0,
+            silent_from_ps: silence.min().unwrap_or(u64::MAX),
+            crashes: config.host == HostLine::InterruptPerCharacter,
+        }
+    }
+
+    /// The tracker's own result, noise, metal and filter included, and the times at which its parts were true.
+    fn solve(&mut self, solution: u64, output_ps: u64) -> Report {
+        let config = self.model.config();
+        let position_measured_ps = output_ps - config.position_latency_ps;
+        let measured_ps = output_ps - config.orientation_latency_ps;
+        let mut pose = self.motion.pose(measured_ps);
+        if position_measured_ps != measured_ps {
+            pose.position = self.motion.pose(position_measured_ps).position;
+        }
+        if let Some(distortion) = config.distortion {
+            pose = distortion.distort(&pose);
+        }
+        let pose = self.filter(self.with_noise(pose, solution));
+        Report { solution, measured_ps, position_measured_ps, arrives_ps: output_ps, pose }
+    }
+
+    fn with_noise(&self, pose: Pose, solution: u64) -> Pose {
+        let config = self.model.config();
+        if config.position_noise_m == 0.0 && config.orientation_noise_deg == 0.0 {
+            return pose;
+        }
+        let [(a, b), (c, d), (e, f)] =
+            core::array::from_fn(|i| normal_pair(self.noise, solution.wrapping_mul(3) + i as u64));
+        let turn = DVec3::new(d, e, f) * config.orientation_noise_deg.to_radians();
+        Pose {
+            position: pose.position + DVec3::new(a, b, c) * config.position_noise_m,
+            orientation: rotation::exp(turn) * pose.orientation,
+        }
+    }
+
+    fn filter(&mut self, pose: Pose) -> Pose {
+        let gain = self.model.config().filter_gain;
+        let filtered = match self.filtered {
+            Some(old) if gain < 1.0 => old.interpolate(&pose, gain),
+            _ => pose,
+        };
+        self.filtered = Some(filtered);
+        filtered
+    }
+
+    /// Whether the solution is lost; an interval of loss is skipped in one step.
+    fn is_lost(&mut self, solution: u64, sync_ps: u64) -> bool {
+        let model = self.model;
+        for (i, fault) in model.config().faults.iter().enumerate() {
+            match *fault {
+                Fault::Dropout { from_ps, to_ps } if (from_ps..to_ps).contains(&sync_ps) => {
+                    self.next_solution = model.solution_at(to_ps);
+                    return true;
+                }
+                Fault::RandomDropout { probability } if self.strikes(i, solution, probability) => return true,
+                _ => {}
+            }
+        }
+        false
+    }
+
+    fn strikes(&self, fault: usize, solution: u64, probability: f64) -> bool {
+        unit(bits(stream(self.faults, fault as u64), solution)) < probability
+    }
+
+    /// What the cable makes of the pose.
+    fn corrupt(&self, report: &mut Report) {
+        let struck = |i, probability| self.strikes(i, report.solution, probability);
+        for (i, fault) in self.model.config().faults.iter().enumerate() {
+            match *fault {
+                Fault::NotANumber { probability } if struck(i, probability) => {
+                    report.pose = Pose { position: DVec3::NAN, orientation: DQuat::NAN };
+                    return;
+                }
+                Fault::Jump { probability, distance_m, angle_deg } if struck(i, probability) => {
+                    let draws = stream(stream(self.faults, i as u64), report.solution);
+                    report.pose.position += direction(draws, 0) * distance_m;
+                    let turn = rotation::exp(direction(draws, 2) * angle_deg.to_radians());
+                    report.pose.orientation = turn * report.pose.orientation;
+                    return;
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Sends a ready solution if the cable is free, and says when the host sees it.
+    fn send(&mut self, ready_ps: u64) -> Option<u64> {
+        if ready_ps < self.line_free_ps {
+            return None;
+        }
+        let config = self.model.config();
+        let busy_ps = config.serial.map_or(0, |serial| serial.transfer_ps(config.receivers));
+        self.line_free_ps = ready_ps.saturating_add(busy_ps);
+        let complete_ps = ready_ps.saturating_add(self.model.transfer_ps());
+        Some(config.host.seen_ps(complete_ps, self.poll_phase_ps))
+    }
+
+    /// The first arrival on a patched host starts the way to its crash.
+    fn light_the_fuse(&mut self, arrives_ps: u64) {
+        if let Some(after_ps) = self.model.config().crashes_patched_host_after_ps.filter(|_| self.crashes) {
+            self.silent_from_ps = self.silent_from_ps.min(arrives_ps.saturating_add(after_ps));
+            self.crashes = false;
+        }
+    }
+}
+
+impl<M: Motion + ?Sized> Iterator for Reports<'_, M> {
+    type Item = Report;
+
+    fn next(&mut self) -> Option<Report> {
+        loop {
+            let solution = self.next_solution;
+            let sync_ps = self.model.sync_ps(solution)?;
+            let output_ps = sync_ps.checked_add(self.model.config().sync_to_output_ps)?;
+            if output_ps >= self.silent_from_ps {
+                return None;
+            }
+            self.next_solution += 1;
+            if self.is_lost(solution, sync_ps) {
+                continue;
+            }
+            let mut report = self.solve(solution, output_ps);
+            let Some(arrives_ps) = self.send(output_ps) else { continue };
+            report.arrives_ps = arrives_ps;
+            self.corrupt(&mut report);
+            self.light_the_fuse(arrives_ps);
+            if arrives_ps >= self.silent_from_ps {
+                return None;
+            }
+            return Some(report);
+        }
+    }
+}
+
+/// A random unit vector, from draws `first` and `first + 1`.
+fn direction(seed: u64, first: u64) -> DVec3 {
+    let ((x, y), (z, _)) = (normal_pair(seed, first), normal_pair(seed, first + 1));
+    DVec3::new(x, y, z).normalize_or(DVec3::Y)
+}

@@ -1,0 +1,85 @@
+use serde::{Deserialize, Serialize};
+
+use crate::config::{FASTRAK_BAUD, FASTRAK_RECORD, HOST_POLL, SERIAL_BITS};
+use crate::time::PS_PER_S;
+
+/// The cable from tracker to host. One record travels at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SerialLine {
+    /// Bytes of one receiver's record, 1 to 1000.
+    pub record_bytes: u32,
+    /// Line rate, 300 to 1,000,000.
+    pub baud: u32,
+}
+
+impl SerialLine {
+    /// A 47-byte Fastrak record at 115,200 baud: 4.08 ms.
+    pub fn fastrak() -> Self {
+        Self { record_bytes: FASTRAK_RECORD.value as u32, baud: FASTRAK_BAUD.value as u32 }
+    }
+
+    /// Time of `records` records on the line: bytes x 10 bits / baud.
+    pub fn transfer_ps(&self, records: u32) -> u64 {
+        let bits = u128::from(self.record_bytes) * SERIAL_BITS.value as u128 * u128::from(records);
+        (bits * u128::from(PS_PER_S) / u128::from(self.baud)) as u64
+    }
+}
+
+/// How the host's kernel looks at its serial port.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum HostLine {
+    /// The kernel looks at every multiple of the period, from a phase that the seed picks: a record waits 0 to one
+    /// period, uniformly over seeds.
+    Polled {
+        /// Time between looks, above 0.
+        period_ps: u64,
+    },
+    /// The patched kernel: no wait.
+    InterruptPerCharacter,
+}
+
+impl HostLine {
+    /// The unpatched kernel, which looks every 30 ms (TR94).
+    pub fn unix() -> Self {
+        Self::Polled { period_ps: HOST_POLL.ms_to_ps() }
+    }
+
+    /// When a record that is complete at `t_ps` is seen. `phase_ps` is the instant of the first look.
+    pub fn seen_ps(&self, t_ps: u64, phase_ps: u64) -> u64 {
+        match *self {
+            Self::InterruptPerCharacter => t_ps,
+            Self::Polled { .. } if t_ps <= phase_ps => phase_ps,
+            Self::Polled { period_ps } => phase_ps + (t_ps - phase_ps).div_ceil(period_ps).saturating_mul(period_ps),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::time::PS_PER_MS;
+
+    #[test]
+    fn a_fastrak_record_takes_4_ms_at_115200_and_49_ms_at_9600_baud() {
+        let fast = SerialLine::fastrak();
+        assert_eq!((fast.transfer_ps(1) + PS_PER_MS / 2) / PS_PER_MS, 4);
+        let slow = SerialLine { baud: 9600, ..fast };
+        assert_eq!((slow.transfer_ps(1) + PS_PER_MS / 2) / PS_PER_MS, 49);
+    }
+
+    #[test]
+    fn a_record_that_completes_at_the_look_is_seen_and_one_picosecond_later_waits() {
+        let line = HostLine::unix();
+        let look = 5 + 30 * PS_PER_MS;
+        assert_eq!(line.seen_ps(look, 5), look);
+        assert_eq!(line.seen_ps(look + 1, 5), look + 30 * PS_PER_MS);
+        assert_eq!(line.seen_ps(0, 5), 5);
+    }
+
+    #[test]
+    fn a_patched_kernel_adds_nothing() {
+        assert_eq!(HostLine::InterruptPerCharacter.seen_ps(123, 5), 123);
+    }
+}

@@ -1,0 +1,210 @@
+//! When reports are true, when they arrive, and how wrong they are.
+
+use glam::DVec3;
+use tracking::Pose;
+use tracking::motion::{Motion, Pan, Still, Synthetic};
+use tracking::time::{PS_PER_MS, PS_PER_S};
+use tracking::tracker::{Fault, HostLine, Report, SerialLine, TrackerConfig, TrackerModel};
+
+const HEAD: Still = Still(Pose { position: DVec3::new(0.3, 1.7, -0.2), orientation: glam::DQuat::IDENTITY });
+
+fn model(config: TrackerConfig) -> TrackerModel {
+    TrackerModel::new(config).unwrap()
+}
+
+fn reports(config: TrackerConfig, motion: &dyn Motion, seed: u64, n: usize) -> Vec<Report> {
+    model(config).reports(motion, seed).take(n).collect()
+}
+
+fn noiseless(config: TrackerConfig) -> TrackerConfig {
+    TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..config }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, n) = values.fold((0.0, 0.0), |(s, n), x| (s + x, n + 1.0));
+    sum / n
+}
+
+#[test]
+fn an_ideal_report_is_the_truth_at_once() {
+    let motion = Synthetic::recorded_use(1);
+    for report in reports(TrackerConfig::ideal(), &motion, 0, 1000) {
+        assert_eq!(report.arrives_ps, report.measured_ps);
+        assert_eq!(report.pose, motion.pose(report.measured_ps));
+    }
+}
+
+#[test]
+fn a_fastrak_report_arrives_a_transfer_after_5_5_ms_and_was_true_3_75_ms_before_output() {
+    for report in reports(TrackerConfig::fastrak(), &HEAD, 0, 100) {
+        let output_ps = report.solution * PS_PER_S / 120 + 5_500_000_000;
+        assert_eq!(report.measured_ps, output_ps - 3_750_000_000);
+        assert_eq!(report.arrives_ps, output_ps + 47 * 10 * PS_PER_S / 115_200);
+    }
+}
+
+#[test]
+fn two_receivers_halve_the_rate() {
+    let config = TrackerConfig { receivers: 2, ..TrackerConfig::fastrak() };
+    let all = reports(config, &HEAD, 0, 61);
+    assert_eq!(all[60].measured_ps - all[0].measured_ps, PS_PER_S);
+}
+
+#[test]
+fn at_9600_baud_five_of_six_fastrak_solutions_are_dropped() {
+    // 48.96 ms of transfer over 8.33 ms of period: the next ready solution after 5.88 periods is the sixth.
+    let serial = Some(SerialLine { record_bytes: 47, baud: 9600 });
+    let all = reports(TrackerConfig { serial, ..TrackerConfig::fastrak() }, &HEAD, 0, 100);
+    assert!(all.windows(2).all(|w| w[1].solution - w[0].solution == 6));
+}
+
+#[test]
+fn at_115200_baud_no_fastrak_solution_is_dropped() {
+    let all = reports(TrackerConfig::fastrak(), &HEAD, 0, 100);
+    assert!(all.windows(2).all(|w| w[1].solution - w[0].solution == 1));
+}
+
+#[test]
+fn the_flocks_position_is_5_5_ms_older_than_its_orientation() {
+    let motion = Synthetic::recorded_use(4);
+    for report in reports(noiseless(TrackerConfig::flock_of_birds()), &motion, 0, 50) {
+        assert_eq!(report.measured_ps - report.position_measured_ps, 5_500_000_000);
+        assert_eq!(report.pose.position, motion.pose(report.position_measured_ps).position);
+        assert_eq!(report.pose.orientation, motion.pose(report.measured_ps).orientation);
+    }
+}
+
+#[test]
+fn the_optical_ceiling_is_33_ms_late() {
+    for report in reports(TrackerConfig::optical_ceiling(), &HEAD, 0, 50) {
+        assert_eq!(report.arrives_ps - report.measured_ps, 33 * PS_PER_MS);
+    }
+}
+
+#[test]
+fn a_polled_line_adds_0_to_30_ms_uniformly_over_seeds() {
+    let polled = TrackerConfig { host: HostLine::unix(), ..TrackerConfig::optical_ceiling() };
+    let tracker = model(polled);
+    let waits: Vec<f64> = (0..3000)
+        .map(|seed| tracker.reports(&HEAD, seed).next().unwrap())
+        .map(|r| (r.arrives_ps - r.measured_ps - 33 * PS_PER_MS) as f64 / PS_PER_MS as f64)
+        .collect();
+    assert!(waits.iter().all(|wait| (0.0..30.0).contains(wait)));
+    // Standard errors: of the mean 8.66 ms / sqrt 3000 = 0.16 ms, of a count of 300 in 3000 16.
+    assert!((mean(waits.iter().copied()) - 15.0).abs() < 0.65);
+    for tenth in 0..10 {
+        let n = waits.iter().filter(|w| (**w / 3.0) as i32 == tenth).count();
+        assert!((230..370).contains(&n), "tenth {tenth}: {n} of 300 +- 16");
+    }
+}
+
+#[test]
+fn polling_never_changes_the_order() {
+    let config = TrackerConfig { host: HostLine::unix(), ..TrackerConfig::fastrak() };
+    let all = reports(config, &HEAD, 7, 2000);
+    assert!(all.windows(2).all(|w| w[0].arrives_ps <= w[1].arrives_ps));
+}
+
+#[test]
+fn noise_has_the_configured_deviation_on_each_axis() {
+    // 20,000 reports: the standard error of a deviation is 0.5 %.
+    let all = reports(TrackerConfig::fastrak(), &HEAD, 3, 20_000);
+    for axis in 0..3 {
+        let place = mean(all.iter().map(|r| (r.pose.position - HEAD.0.position)[axis].powi(2))).sqrt();
+        assert!((place / 0.8e-3 - 1.0).abs() < 0.025, "{place}");
+        let turn = mean(all.iter().map(|r| tracking::rotation::log(r.pose.orientation)[axis].powi(2))).sqrt();
+        assert!((turn.to_degrees() / 0.15 - 1.0).abs() < 0.025, "{turn}");
+    }
+}
+
+#[test]
+fn noise_belongs_to_the_seed() {
+    let run = |seed| reports(TrackerConfig::fastrak(), &HEAD, seed, 10);
+    assert_eq!(run(1), run(1));
+    assert_ne!(run(1)[0].pose, run(2)[0].pose);
+}
+
+#[test]
+fn the_filter_lags_a_pan_by_dt_times_1_minus_a_over_a() {
+    for gain in [0.2, 0.5, 0.8] {
+        let config = TrackerConfig { filter_gain: gain, ..noiseless(TrackerConfig::fastrak()) };
+        let tracker = model(config);
+        let pan = Pan::at(200.0);
+        let settled = tracker.reports(&pan, 0).nth(400).unwrap();
+        let lag_s = settled.pose.angle_deg(&pan.pose(settled.measured_ps)) / 200.0;
+        assert!((lag_s - (1.0 - gain) / gain / 120.0).abs() < 1e-9, "{gain}: {lag_s}");
+        assert!((lag_s - tracking::time::seconds(tracker.filter_delay_ps())).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn the_filter_cuts_white_noise_by_the_root_of_a_over_2_minus_a() {
+    let config = TrackerConfig { filter_gain: 0.2, ..TrackerConfig::fastrak() };
+    let all = reports(config, &HEAD, 3, 40_000);
+    let place = mean(all.iter().skip(100).map(|r| (r.pose.position.x - 0.3).powi(2))).sqrt();
+    assert!((place / (0.8e-3 * (0.2f64 / 1.8).sqrt()) - 1.0).abs() < 0.04, "{place}");
+}
+
+#[test]
+fn a_still_head_near_metal_is_misplaced_by_3space() {
+    let all = reports(noiseless(TrackerConfig::polhemus_3space()), &HEAD, 0, 3);
+    assert!(all[0].pose.distance_m(&HEAD.0) > 0.01);
+    assert_eq!(all[0].pose, all[2].pose);
+}
+
+#[test]
+fn a_dropout_leaves_no_report_between_its_ends() {
+    let (from_ps, to_ps) = (PS_PER_S, PS_PER_S + 300 * PS_PER_MS);
+    let config = TrackerConfig { faults: vec![Fault::Dropout { from_ps, to_ps }], ..TrackerConfig::ideal() };
+    let all = reports(config, &HEAD, 0, 1500);
+    assert!(all.iter().all(|r| !(from_ps..to_ps).contains(&r.measured_ps)));
+    assert!(all.iter().any(|r| r.measured_ps == to_ps) && all.iter().any(|r| r.measured_ps == from_ps - PS_PER_MS));
+}
+
+#[test]
+fn a_dropout_for_all_time_ends_the_reports() {
+    let faults = vec![Fault::Dropout { from_ps: 0, to_ps: u64::MAX }];
+    assert_eq!(reports(TrackerConfig { faults, ..TrackerConfig::fastrak() }, &HEAD, 0, 1), []);
+}
+
+#[test]
+fn random_faults_strike_as_often_as_told() {
+    // 20,000 draws at 0.1: standard error 0.002.
+    let near = |found: usize| (found as f64 / 20_000.0 - 0.1).abs() < 0.011;
+    let with = |fault| TrackerConfig { faults: vec![fault], ..TrackerConfig::ideal() };
+    let lost = reports(with(Fault::RandomDropout { probability: 0.1 }), &HEAD, 1, 18_000);
+    assert!((lost.last().unwrap().solution as f64 - 20_000.0).abs() < 250.0);
+    let nan = reports(with(Fault::NotANumber { probability: 0.1 }), &HEAD, 1, 20_000);
+    assert!(near(nan.iter().filter(|r| !r.pose.is_finite()).count()));
+    let jump = Fault::Jump { probability: 0.1, distance_m: 0.5, angle_deg: 40.0 };
+    let jumped = reports(with(jump), &HEAD, 1, 20_000);
+    let off = |r: &&Report| {
+        (r.pose.distance_m(&HEAD.0) - 0.5).abs() < 1e-9 && (r.pose.angle_deg(&HEAD.0) - 40.0).abs() < 1e-9
+    };
+    assert!(near(jumped.iter().filter(off).count()));
+}
+
+#[test]
+fn a_silent_tracker_says_nothing_from_that_instant() {
+    let faults = vec![Fault::Silence { from_ps: PS_PER_S }];
+    let all = reports(TrackerConfig { faults, ..TrackerConfig::ideal() }, &HEAD, 0, 5000);
+    assert_eq!(all.len(), 1000);
+    assert_eq!(all[999].arrives_ps, 999 * PS_PER_MS);
+}
+
+#[test]
+fn the_patched_host_dies_of_the_flock_and_of_no_other() {
+    let all = reports(TrackerConfig::flock_of_birds_on_patched_host(), &HEAD, 0, 5000);
+    assert!(all.len() < 5000);
+    let (first, last) = (all[0].arrives_ps, all[all.len() - 1].arrives_ps);
+    assert!(last < first + PS_PER_S && last >= first + PS_PER_S - 10 * PS_PER_MS);
+    assert_eq!(reports(TrackerConfig::flock_of_birds(), &HEAD, 0, 5000).len(), 5000);
+    assert_eq!(reports(TrackerConfig::fastrak(), &HEAD, 0, 5000).len(), 5000);
+}
+
+#[test]
+fn after_an_hour_the_reports_are_still_on_the_grid() {
+    let tracker = model(TrackerConfig::fastrak());
+    let report = tracker.reports(&HEAD, 0).nth(432_000).unwrap();
+    assert_eq!(report.measured_ps, 3600 * PS_PER_S + 1_750_000_000);
+}
