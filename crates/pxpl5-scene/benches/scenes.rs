@@ -1,0 +1,44 @@
+//! Host time to make and to load scenes, and to ask for a pose.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use pxpl5_scene::{Format, Hmd, HmdConfig, builtin, from_bytes};
+
+fn scenes(c: &mut Criterion) {
+    for name in ["mig", "molecules", "head", "full-screen:12"] {
+        c.bench_function(name, |b| b.iter(|| builtin(black_box(name))));
+    }
+    let motion = *builtin("mig").expect("a built-in scene").motion();
+    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
+    let mut time_ps = 0;
+    c.bench_function("pose and stereo views", |b| {
+        b.iter(|| {
+            time_ps += 16_683_333_333;
+            hmd.stereo(&motion.pose(time_ps))
+        });
+    });
+}
+
+/// 20,000 quads of 20,000 points.
+fn strip() -> String {
+    let mut text = String::new();
+    for i in 0..20_000 {
+        text += &format!("v {i} {} 0.5\n", i % 7);
+    }
+    for i in 0..20_000 {
+        let corner = |k: u32| (i + k) % 20_000 + 1;
+        text += &format!("f {} {} {} {}\n", corner(0), corner(1), corner(2), corner(3));
+    }
+    text
+}
+
+fn files(c: &mut Criterion) {
+    let obj = strip();
+    c.bench_function("OBJ, 40,000 triangles", |b| {
+        b.iter(|| from_bytes(black_box(obj.as_bytes()), Format::Obj, "strip.obj"));
+    });
+}
+
+criterion_group!(benches, scenes, files);
+criterion_main!(benches);

@@ -1,0 +1,172 @@
+//! A human head: the surface of [`super::head_shape`] sampled on a grid of meridians and parallels.
+
+use glam::DVec3;
+
+use super::head_shape::{EYE, EYE_RADIUS, distance, normal};
+use super::solid::Colour;
+use crate::config::FIT_RADIUS_M;
+use crate::import::Mesh;
+use crate::motion::HeadMotion;
+use crate::scene::{Lighting, Scene, SceneParts, bounding_sphere};
+use crate::trig;
+
+/// Meridians and parallels: 2 x 156 x 191 = 59,592 triangles, counting the two caps of 156.
+const MERIDIANS: usize = 156;
+const PARALLELS: usize = 191;
+
+const SKIN: Colour = [226, 178, 150];
+const LIPS: Colour = [196, 104, 100];
+const HAIR: Colour = [84, 56, 38];
+const WHITE: Colour = [240, 238, 232];
+const IRIS: Colour = [64, 110, 140];
+const PUPIL: Colour = [18, 16, 20];
+
+pub(super) fn scene() -> Scene {
+    let mut mesh = grid();
+    let (centre, radius) = bounding_sphere(mesh.positions.iter().map(|&p| (p, 0.0)));
+    for position in &mut mesh.positions {
+        *position = (*position - centre) * (FIT_RADIUS_M / radius);
+    }
+    let parts = SceneParts {
+        name: "head".to_owned(),
+        vertices: mesh.vertices(),
+        triangles: mesh.triangles,
+        spheres: Vec::new(),
+        structures: Vec::new(),
+        lighting: Lighting::over_the_shoulder(),
+        motion: HeadMotion::looking_at(glam::Vec3::ZERO, FIT_RADIUS_M),
+    };
+    Scene::new(parts).expect("pxpl5-scene: generators check what they make")
+}
+
+/// A pole, the parallels from crown to neck, a pole.
+fn grid() -> Mesh {
+    let mut mesh = Mesh::default();
+    let crown = push(&mut mesh, Ray::new(0.0, 0.0));
+    for parallel in 0..PARALLELS {
+        for meridian in 0..MERIDIANS {
+            let down = (parallel as f64 + 1.0) / (PARALLELS as f64 + 1.0);
+            push(&mut mesh, Ray::new(down, meridian as f64 / MERIDIANS as f64));
+        }
+    }
+    let base = push(&mut mesh, Ray::new(1.0, 0.0));
+    let index = |parallel: usize, meridian: usize| (1 + parallel * MERIDIANS + meridian % MERIDIANS) as u32;
+    for m in 0..MERIDIANS {
+        mesh.fan(&[crown, index(0, m), index(0, m + 1)]);
+        for p in 0..PARALLELS - 1 {
+            mesh.fan(&[index(p, m), index(p + 1, m), index(p + 1, m + 1), index(p, m + 1)]);
+        }
+        mesh.fan(&[base, index(PARALLELS - 1, m + 1), index(PARALLELS - 1, m)]);
+    }
+    mesh
+}
+
+fn push(mesh: &mut Mesh, ray: Ray) -> u32 {
+    let point = ray.hit();
+    mesh.push(point, normal(point), colour(point))
+}
+
+/// From a point of the spine outwards.
+struct Ray {
+    origin: DVec3,
+    direction: DVec3,
+}
+
+/// The spine from crown to base: share of the parallels, height of the origin, degrees below the horizon.
+const SPINE: [(f64, f64, f64); 8] = [
+    (0.0, 2.5, -90.0),
+    (0.24, 2.5, -24.0),
+    (0.36, 1.6, 0.0),
+    (0.50, -3.0, 0.0),
+    (0.66, -8.2, 0.0),
+    (0.76, -9.8, 8.0),
+    (0.92, -15.8, 10.0),
+    (1.0, -16.5, 90.0),
+];
+
+impl Ray {
+    /// `down` from 0 at the crown to 1 at the base; `round` in turns from the back, denser in front.
+    fn new(down: f64, round: f64) -> Self {
+        let above = SPINE.windows(2).find(|pair| down <= pair[1].0);
+        let pair = above.unwrap_or(&SPINE[6..]);
+        let t = (down - pair[0].0) / (pair[1].0 - pair[0].0);
+        let mix = |a: f64, b: f64| a + (b - a) * t;
+        let (sin_e, cos_e) = trig::sin_cos_deg(mix(pair[0].2, pair[1].2));
+        let turns = round + 0.075 * trig::sin_turns(round);
+        let (sin, cos) = (trig::sin_turns(turns), trig::cos_turns(turns));
+        let height = mix(pair[0].1, pair[1].1);
+        Self {
+            origin: DVec3::new(0.0, height, -1.0 + 0.13 * height.min(0.0)),
+            direction: DVec3::new(-sin * cos_e, -sin_e, -cos * cos_e),
+        }
+    }
+
+    /// The outermost point of the surface on the ray: steps inwards until inside, then halves the last step.
+    fn hit(&self) -> DVec3 {
+        let point = |t: f64| self.origin + self.direction * t;
+        let (mut outside, mut inside) = (24.0, 24.0);
+        while inside > 0.0 {
+            let d = distance(point(inside));
+            if d < 0.0 {
+                break;
+            }
+            outside = inside;
+            inside -= (d * 0.7).max(0.02);
+        }
+        for _ in 0..24 {
+            let middle = (inside + outside) / 2.0;
+            if distance(point(middle)) < 0.0 {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+        point((inside + outside) / 2.0)
+    }
+}
+
+fn colour(point: DVec3) -> Colour {
+    let p = DVec3::new(point.x.abs(), point.y, point.z);
+    if let Some(colour) = eye_colour(p) {
+        return colour;
+    }
+    if is_lip(p) {
+        LIPS
+    } else if is_brow(p) || is_hair(p) {
+        HAIR
+    } else {
+        SKIN
+    }
+}
+
+fn eye_colour(p: DVec3) -> Option<Colour> {
+    let from_centre = p - EYE;
+    if from_centre.length() > EYE_RADIUS + 0.04 || p.z < EYE.z {
+        return None;
+    }
+    let off_axis = DVec3::new(from_centre.x, from_centre.y + 0.05, 0.0).length();
+    Some(match off_axis {
+        r if r < 0.24 => PUPIL,
+        r if r < 0.62 => IRIS,
+        _ => WHITE,
+    })
+}
+
+fn is_lip(p: DVec3) -> bool {
+    let across = p.x / 2.25;
+    let along = (p.y + 5.85) / (0.85 * (1.0 - across * across).max(0.0) + 0.01);
+    p.z > 6.5 && across < 1.0 && along.abs() < 1.0
+}
+
+fn is_brow(p: DVec3) -> bool {
+    let middle = 2.55 + 0.25 * (1.0 - ((p.x - 3.2) / 2.0).powi(2));
+    p.z > 5.0 && (1.2..5.2).contains(&p.x) && (p.y - middle).abs() < 0.36 - 0.05 * (p.x - 1.2)
+}
+
+/// Behind a line from the forehead over the temples, round the ears, to the nape.
+fn is_hair(p: DVec3) -> bool {
+    let is_ear = p.x > 6.9 && p.z > -4.6 && p.y < 3.2;
+    let hairline = 8.2 - 0.05 * p.x * p.x;
+    let scalp = p.y > hairline || (p.y > -8.0 && p.z < 2.2 - (hairline - p.y) * 0.32);
+    scalp && !is_ear
+}

@@ -1,0 +1,162 @@
+//! Myoglobin twice, as atoms and as a ribbon, and a water molecule.
+//!
+//! Coordinates: Protein Data Bank entry 1MBN, H. C. Watson, 1969; unchanged in `assets/1mbn.pdb`.
+
+use glam::DVec3;
+
+use super::solid::{Colour, Solid};
+use crate::config::FIT_RADIUS_M;
+use crate::import::{Atom, Source, read_atoms};
+use crate::motion::HeadMotion;
+use crate::scene::{Lighting, Scene, SceneParts, Sphere, bounding_sphere};
+
+static MYOGLOBIN: &[u8] = include_bytes!("../../assets/1mbn.pdb");
+
+/// Cross-sections of the ribbon: (2,620 triangles - 2 ends of 2) / 8 + 1.
+const SECTIONS: usize = 328;
+
+/// Half the distance between the two molecules' centres, Ångström: their radius is about 25.
+const APART: f64 = 25.0;
+
+/// Two successive residues in the same helix have alpha carbons closer than this over three steps, Ångström: 5.0 in an
+/// ideal alpha helix, above 8 in extended chain (derived from rise 1.5, radius 2.3 and 100 degrees a residue).
+const HELIX_STEP: f64 = 6.2;
+
+pub(super) fn scene() -> Scene {
+    let source = Source { name: "1mbn.pdb", bytes: MYOGLOBIN };
+    let atoms = read_atoms(&source).expect("pxpl5-scene: the stored molecule is sound");
+    let (centre, _) = bounding_sphere(atoms.iter().map(|a| (a.position, a.element.radius)));
+    let mut spheres: Vec<Sphere> = atoms
+        .iter()
+        .map(|a| sphere(a.position - centre - DVec3::X * APART, a.element.radius, a.element.colour))
+        .collect();
+    spheres.extend(water());
+    let mut solid = Solid::default();
+    ribbon(&mut solid, &backbone(&atoms, DVec3::X * APART - centre));
+    fitted(solid, spheres)
+}
+
+fn sphere(centre: DVec3, radius: f64, colour: Colour) -> Sphere {
+    Sphere { centre: centre.as_vec3(), radius: radius as f32, colour }
+}
+
+/// One oxygen and two hydrogens: bonds of 0.957 Ångström at 104.5 degrees, below and between the molecules.
+fn water() -> [Sphere; 3] {
+    let oxygen = DVec3::new(0.0, -20.0, 6.0);
+    // 0.957 times sine and cosine of 52.25 degrees.
+    let hydrogen = |side: f64| oxygen + DVec3::new(side * 0.7567, -0.5859, 0.0);
+    [
+        sphere(oxygen, 1.52, [240, 24, 24]),
+        sphere(hydrogen(1.0), 1.20, [255, 255, 255]),
+        sphere(hydrogen(-1.0), 1.20, [255, 255, 255]),
+    ]
+}
+
+/// One residue of the chain.
+struct Residue {
+    alpha: DVec3,
+    /// From the carbonyl carbon to its oxygen: along the axis in a helix, so the ribbon lies flat on it.
+    across: DVec3,
+    /// Half the width of the ribbon, Ångström.
+    width: f64,
+}
+
+fn backbone(atoms: &[Atom], shift: DVec3) -> Vec<Residue> {
+    let of = |name: &str| -> Vec<DVec3> {
+        let named = atoms.iter().filter(|a| a.name == name);
+        named.map(|a| a.position + shift).collect()
+    };
+    let (alphas, carbons, oxygens) = (of("CA"), of("C"), of("O"));
+    let mut across = DVec3::X;
+    let residue = |(i, &alpha): (usize, &DVec3)| {
+        let mut direction = (oxygens[i] - carbons[i]).normalize_or(across);
+        if direction.dot(across) < 0.0 {
+            direction = -direction;
+        }
+        across = direction;
+        let width = if in_helix(&alphas, i) { 1.5 } else { 0.45 };
+        Residue { alpha, across, width }
+    };
+    alphas.iter().enumerate().map(residue).collect()
+}
+
+fn in_helix(alphas: &[DVec3], i: usize) -> bool {
+    let first = i.saturating_sub(3);
+    let last = (i + 3).min(alphas.len() - 1);
+    (first..=last.saturating_sub(3)).any(|j| (alphas[j + 3] - alphas[j]).length() < HELIX_STEP)
+}
+
+/// A band of rectangular section along the chain, blue at its beginning, red at its end.
+fn ribbon(solid: &mut Solid, chain: &[Residue]) {
+    let place = |i: usize| i as f64 / (SECTIONS - 1) as f64;
+    let sections: Vec<[DVec3; 4]> = (0..SECTIONS).map(|i| section(chain, place(i))).collect();
+    let first = solid.mesh.positions.len();
+    let sections: Vec<Vec<DVec3>> = sections.iter().map(|s| s.to_vec()).collect();
+    solid.plates(&sections, [0; 3]);
+    // Each of the four plates has two vertices a section.
+    for vertex in first..solid.mesh.positions.len() {
+        let along = (vertex - first) / 2 % SECTIONS;
+        solid.mesh.colours[vertex] = rainbow(place(along));
+    }
+    let mut start = sections[0].clone();
+    start.reverse();
+    solid.face(&start, rainbow(0.0));
+    solid.face(&sections[SECTIONS - 1], rainbow(1.0));
+}
+
+/// The four corners at a place from 0 to 1 along the chain, anticlockwise seen from its end.
+fn section(chain: &[Residue], place: f64) -> [DVec3; 4] {
+    let along = place * (chain.len() - 1) as f64;
+    let i = (along as usize).min(chain.len() - 2);
+    let t = along - i as f64;
+    let near = |k: usize| &chain[(i + k).saturating_sub(1).min(chain.len() - 1)];
+    let alphas = [0, 1, 2, 3].map(|k| near(k).alpha);
+    let centre = spline(alphas, t);
+    let forward = (spline(alphas, t + 0.01) - spline(alphas, t - 0.01)).normalize_or(DVec3::Z);
+    let across = spline([0, 1, 2, 3].map(|k| near(k).across), t);
+    let across = (across - forward * across.dot(forward)).normalize_or(DVec3::X);
+    let width = near(1).width + (near(2).width - near(1).width) * t;
+    let (wide, thick) = (across * width, forward.cross(across) * 0.3);
+    [wide + thick, thick - wide, -wide - thick, wide - thick].map(|corner| centre + corner)
+}
+
+/// Uniform cubic B-spline: it passes near its points, which irons the zigzag out of a chain.
+fn spline(p: [DVec3; 4], t: f64) -> DVec3 {
+    let u = 1.0 - t;
+    let weights = [u * u * u, 3.0 * t * t * t - 6.0 * t * t + 4.0, 3.0 * u * u * u - 6.0 * u * u + 4.0, t * t * t];
+    p.iter().zip(weights).map(|(&p, w)| p * (w / 6.0)).sum()
+}
+
+/// Blue, cyan, green, yellow, red.
+fn rainbow(place: f64) -> Colour {
+    const STOPS: [[f64; 3]; 5] =
+        [[40.0, 70.0, 240.0], [30.0, 200.0, 230.0], [50.0, 210.0, 70.0], [250.0, 220.0, 40.0], [235.0, 40.0, 40.0]];
+    let along = place.clamp(0.0, 1.0) * 4.0;
+    let i = (along as usize).min(3);
+    let t = along - i as f64;
+    [0, 1, 2].map(|k| (STOPS[i][k] + (STOPS[i + 1][k] - STOPS[i][k]) * t) as u8)
+}
+
+fn fitted(mut solid: Solid, mut spheres: Vec<Sphere>) -> Scene {
+    let points = solid.mesh.positions.iter().map(|&p| (p, 0.0));
+    let balls = spheres.iter().map(|s| (s.centre.as_dvec3(), f64::from(s.radius)));
+    let (centre, radius) = bounding_sphere(points.chain(balls));
+    let scale = FIT_RADIUS_M / radius;
+    for position in &mut solid.mesh.positions {
+        *position = (*position - centre) * scale;
+    }
+    for sphere in &mut spheres {
+        sphere.centre = ((sphere.centre.as_dvec3() - centre) * scale).as_vec3();
+        sphere.radius = (f64::from(sphere.radius) * scale) as f32;
+    }
+    let parts = SceneParts {
+        name: "molecules".to_owned(),
+        vertices: solid.mesh.vertices(),
+        triangles: solid.mesh.triangles,
+        spheres,
+        structures: Vec::new(),
+        lighting: Lighting::over_the_shoulder(),
+        motion: HeadMotion::looking_at(glam::Vec3::ZERO, FIT_RADIUS_M),
+    };
+    Scene::new(parts).expect("pxpl5-scene: generators check what they make")
+}

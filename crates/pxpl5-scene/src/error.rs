@@ -1,0 +1,191 @@
+//! What can be wrong with a file, a scene, a display or a motion.
+
+use std::fmt;
+use std::io;
+
+use thiserror::Error;
+
+/// Where in a file a fault was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// A line, counted from 1.
+    Line(u64),
+    /// An offset from the beginning of the file, in bytes.
+    Byte(u64),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Line(line) => write!(f, "line {line}"),
+            Place::Byte(byte) => write!(f, "byte {byte}"),
+        }
+    }
+}
+
+/// Why a model could not be loaded. Every message names the file, the place, what was expected and what was found.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// The operating system refused: the file is missing, unreadable, or the disk failed.
+    #[error("{file}: expected a readable file, found: {source}")]
+    Io {
+        /// Path as given.
+        file: String,
+        /// What the operating system said.
+        source: io::Error,
+    },
+    /// The path leads to a directory, a device or a pipe.
+    #[error("{file}: expected a regular file, found {found}")]
+    NotAFile {
+        /// Path as given.
+        file: String,
+        /// What it is.
+        found: &'static str,
+    },
+    /// The extension is none that an importer reads.
+    #[error("{file}: expected an extension .ply, .obj or .pdb, found {found:?}")]
+    UnknownFormat {
+        /// Path as given.
+        file: String,
+        /// The extension, empty if there is none.
+        found: String,
+    },
+    /// The file is larger than [`crate::config::MAX_FILE_BYTES`].
+    #[error("{file}: expected at most {expected} bytes, found more")]
+    TooLarge {
+        /// Name of the file.
+        file: String,
+        /// The limit in bytes.
+        expected: u64,
+    },
+    /// The file has no bytes, or nothing but white space.
+    #[error("{file}: expected a model, found an empty file")]
+    Empty {
+        /// Name of the file.
+        file: String,
+    },
+    /// A byte that is not UTF-8 in a file, or part of a file, that must be text.
+    #[error("{file}: {at}: expected UTF-8 text, found byte {found:#04x}")]
+    NotText {
+        /// Name of the file.
+        file: String,
+        /// Where.
+        at: Place,
+        /// The first byte that does not belong.
+        found: u8,
+    },
+    /// The file breaks the rules of its format.
+    #[error("{file}: {at}: expected {expected}, found {found}")]
+    Syntax {
+        /// Name of the file.
+        file: String,
+        /// Where.
+        at: Place,
+        /// What the format asks for.
+        expected: String,
+        /// What stands there.
+        found: String,
+    },
+    /// The file ends before everything that it announces; also how an absurd count in a header shows.
+    #[error("{file}: {at}: expected {expected}, found {found}")]
+    Truncated {
+        /// Name of the file.
+        file: String,
+        /// Where.
+        at: Place,
+        /// What was announced.
+        expected: String,
+        /// What there is.
+        found: String,
+    },
+    /// A corner refers to a vertex or a normal that does not exist.
+    #[error("{file}: {at}: expected an index of one of {expected} {what}, found {found}")]
+    Index {
+        /// Name of the file.
+        file: String,
+        /// Where.
+        at: Place,
+        /// What is indexed: "vertices" or "normals".
+        what: &'static str,
+        /// How many there are.
+        expected: usize,
+        /// The index as written.
+        found: i64,
+    },
+    /// A coordinate is not a number, infinite, or beyond [`crate::config::MAX_COORDINATE`].
+    #[error("{file}: {at}: expected a coordinate between -{expected:e} and {expected:e}, found {found}")]
+    Coordinate {
+        /// Name of the file.
+        file: String,
+        /// Where.
+        at: Place,
+        /// The limit, in units of the file.
+        expected: f64,
+        /// The coordinate.
+        found: f64,
+    },
+    /// The file is well formed but holds nothing to draw.
+    #[error("{file}: expected at least one {expected}, found none")]
+    NothingToDraw {
+        /// Name of the file.
+        file: String,
+        /// "triangle" or "atom".
+        expected: &'static str,
+    },
+}
+
+/// Why a scene could not be had or made.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// No built-in scene has this name.
+    #[error("scene {found:?}: expected one of {valid}; the nearest is {nearest:?}")]
+    UnknownScene {
+        /// The name asked for.
+        found: String,
+        /// The valid name with the fewest edits to it.
+        nearest: String,
+        /// All valid names.
+        valid: String,
+    },
+    /// The N of `full-screen:N` is no number or out of range.
+    #[error("scene full-screen:N: expected N from 1 to {expected}, found {found:?}")]
+    TriangleCount {
+        /// Largest N.
+        expected: u32,
+        /// What stands after the colon.
+        found: String,
+    },
+    /// A part of a hand-made scene breaks a rule of [`crate::Scene`].
+    #[error("scene {scene}: {what} {index}: expected {expected}, found {found}")]
+    Part {
+        /// Name of the scene.
+        scene: String,
+        /// "vertex", "triangle", "sphere" or "structure".
+        what: &'static str,
+        /// Which one.
+        index: usize,
+        /// The rule.
+        expected: String,
+        /// What was given.
+        found: String,
+    },
+}
+
+/// Why a display or a head motion could not be made: a number out of its range.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{what}: expected {expected}, found {found}")]
+pub struct RangeError {
+    /// Name of the number, with its unit.
+    pub what: &'static str,
+    /// The allowed range.
+    pub expected: &'static str,
+    /// The number given.
+    pub found: f64,
+}
+
+/// `Ok` if `holds`, otherwise the error.
+pub(crate) fn require(holds: bool, what: &'static str, expected: &'static str, found: f64) -> Result<(), RangeError> {
+    if holds { Ok(()) } else { Err(RangeError { what, expected, found }) }
+}

@@ -1,0 +1,149 @@
+//! What all mesh readers end in: positions in double precision, fans, normals, the fit into the view.
+
+use glam::DVec3;
+
+use super::Source;
+use crate::config::FIT_RADIUS_M;
+use crate::error::LoadError;
+use crate::motion::HeadMotion;
+use crate::scene::{Lighting, Scene, SceneParts, Sphere, Structure, Vertex, bounding_sphere};
+
+/// Where normals come from that the file does not give.
+#[derive(Clone, Copy)]
+pub(crate) enum Normals {
+    /// From the triangles around each vertex.
+    OfVertices,
+    /// From the triangles around each point (the given one per vertex), where several vertices share one.
+    OfPoints,
+}
+
+/// A mesh before it is scaled.
+#[derive(Default)]
+pub(crate) struct Mesh {
+    pub(crate) positions: Vec<DVec3>,
+    /// Not yet of unit length; zero where the file gives none.
+    pub(crate) normals: Vec<DVec3>,
+    pub(crate) colours: Vec<[u8; 3]>,
+    /// Which point of the file each vertex lies on.
+    pub(crate) points: Vec<u32>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// Adds a vertex that is a point of its own.
+    pub(crate) fn push(&mut self, position: DVec3, normal: DVec3, colour: [u8; 3]) -> u32 {
+        let index = self.positions.len() as u32;
+        self.push_on_point(index, position, normal, colour);
+        index
+    }
+
+    pub(crate) fn push_on_point(&mut self, point: u32, position: DVec3, normal: DVec3, colour: [u8; 3]) {
+        self.positions.push(position);
+        self.normals.push(normal);
+        self.colours.push(colour);
+        self.points.push(point);
+    }
+
+    /// Cuts a polygon into triangles that share its first corner.
+    pub(crate) fn fan(&mut self, corners: &[u32]) {
+        if let [first, rest @ ..] = corners {
+            let fan = rest.windows(2).map(|pair| [*first, pair[0], pair[1]]);
+            self.triangles.extend(fan);
+        }
+    }
+
+    /// Gives a unit normal to every vertex without one: the mean over its triangles, weighted by area; +z if it has
+    /// only triangles without area.
+    pub(crate) fn complete_normals(&mut self, normals: Normals) {
+        let group: Vec<u32> = match normals {
+            Normals::OfVertices => (0..self.positions.len() as u32).collect(),
+            Normals::OfPoints => self.points.clone(),
+        };
+        let groups = group.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut sums = vec![DVec3::ZERO; groups];
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.map(|corner| self.positions[corner as usize]);
+            let area = (b - a).cross(c - a);
+            for &corner in triangle {
+                sums[group[corner as usize] as usize] += area;
+            }
+        }
+        for (normal, &group) in self.normals.iter_mut().zip(&group) {
+            let given = normal.try_normalize();
+            *normal = given.unwrap_or_else(|| sums[group as usize].normalize_or(DVec3::Z));
+        }
+    }
+
+    /// A fitted scene of the mesh.
+    pub(crate) fn into_scene(mut self, source: &Source<'_>) -> Result<Scene, LoadError> {
+        if self.triangles.is_empty() {
+            return Err(LoadError::NothingToDraw { file: source.name.to_owned(), expected: "triangle" });
+        }
+        let fit = Fit::new(self.triangles.iter().flatten().map(|&corner| {
+            let position = self.positions[corner as usize];
+            (position, 0.0)
+        }));
+        // Before the normals, whose sums of areas would otherwise leave the range of f64 for the tiniest models.
+        for position in &mut self.positions {
+            *position = fit.place(*position);
+        }
+        self.complete_normals(Normals::OfPoints);
+        Ok(fitted_scene(source.name, self, Vec::new()))
+    }
+
+    /// Single-precision vertices.
+    pub(crate) fn vertices(&self) -> Vec<Vertex> {
+        let positions = self.positions.iter().zip(&self.normals).zip(&self.colours);
+        positions
+            .map(|((position, normal), &colour)| Vertex {
+                position: position.as_vec3(),
+                normal: normal.as_vec3(),
+                colour,
+            })
+            .collect()
+    }
+}
+
+/// The scene of things already fitted to the default view.
+pub(crate) fn fitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
+    fitted_structures(name, mesh, spheres, Vec::new(), HeadMotion::looking_at(glam::Vec3::ZERO, FIT_RADIUS_M))
+}
+
+pub(crate) fn fitted_structures(
+    name: &str,
+    mesh: Mesh,
+    spheres: Vec<Sphere>,
+    structures: Vec<Structure>,
+    motion: HeadMotion,
+) -> Scene {
+    let parts = SceneParts {
+        name: name.to_owned(),
+        vertices: mesh.vertices(),
+        triangles: mesh.triangles,
+        spheres,
+        structures,
+        lighting: Lighting::over_the_shoulder(),
+        motion,
+    };
+    Scene::new(parts).expect("pxpl5-scene: readers and generators check what they make")
+}
+
+/// Moves the centre of a model to the origin and scales its radius to [`FIT_RADIUS_M`].
+pub(crate) struct Fit {
+    centre: DVec3,
+    pub(crate) scale: f64,
+}
+
+impl Fit {
+    /// From all balls (centre, radius) of the model. A model without extent is only moved.
+    pub(crate) fn new(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> Self {
+        let (centre, radius) = bounding_sphere(balls);
+        let scale = FIT_RADIUS_M / radius;
+        let scale = if scale.is_finite() { scale } else { 1.0 };
+        Self { centre, scale }
+    }
+
+    pub(crate) fn place(&self, point: DVec3) -> DVec3 {
+        (point - self.centre) * self.scale
+    }
+}

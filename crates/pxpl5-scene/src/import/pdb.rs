@@ -1,0 +1,132 @@
+//! Protein Data Bank files: fixed columns, counted from 1 as in the format's guide, version 3.3.
+
+use glam::DVec3;
+
+use super::mesh::{Fit, fitted_scene};
+use super::source::excerpt;
+use super::{Mesh, Source};
+use crate::error::{LoadError, Place};
+use crate::scene::{Scene, Sphere};
+
+/// One atom of a file.
+pub(crate) struct Atom {
+    /// Such as "CA": the name within its residue.
+    pub(crate) name: String,
+    /// Ångström.
+    pub(crate) position: DVec3,
+    pub(crate) element: Element,
+}
+
+/// How an element is drawn.
+#[derive(Clone, Copy)]
+pub(crate) struct Element {
+    symbol: &'static str,
+    /// Van der Waals radius, Ångström.
+    pub(crate) radius: f64,
+    /// After the colours of Corey, Pauling and Koltun's models.
+    pub(crate) colour: [u8; 3],
+}
+
+const fn element(symbol: &'static str, radius: f64, colour: [u8; 3]) -> Element {
+    Element { symbol, radius, colour }
+}
+
+/// Radii: published, Bondi 1964, for H to I; metals assumed 2.0 (1.4 to 2.5), as Bondi gives none for Fe, Ca, Mn and Co.
+/// Colours: the custom of molecular graphics; assumed, any.
+const ELEMENTS: [Element; 20] = [
+    element("H", 1.20, [255, 255, 255]),
+    element("D", 1.20, [255, 255, 255]),
+    element("C", 1.70, [144, 144, 144]),
+    element("N", 1.55, [48, 80, 248]),
+    element("O", 1.52, [240, 24, 24]),
+    element("F", 1.47, [144, 224, 80]),
+    element("P", 1.80, [255, 128, 0]),
+    element("S", 1.80, [255, 216, 48]),
+    element("CL", 1.75, [32, 224, 32]),
+    element("BR", 1.85, [166, 41, 41]),
+    element("I", 1.98, [148, 0, 148]),
+    element("SE", 1.90, [255, 161, 0]),
+    element("NA", 2.27, [171, 92, 242]),
+    element("MG", 1.73, [138, 255, 0]),
+    element("K", 2.75, [143, 64, 212]),
+    element("ZN", 1.39, [125, 128, 176]),
+    element("FE", 2.00, [224, 102, 51]),
+    element("CA", 2.00, [61, 255, 0]),
+    element("MN", 2.00, [156, 122, 199]),
+    element("CO", 2.00, [240, 144, 160]),
+];
+
+/// Any other element. Assumed: within the range of the table.
+const OTHER: Element = element("?", 1.80, [255, 20, 147]);
+
+pub(super) fn read(source: &Source<'_>) -> Result<Scene, LoadError> {
+    let atoms = read_atoms(source)?;
+    if atoms.is_empty() {
+        return Err(LoadError::NothingToDraw { file: source.name.to_owned(), expected: "atom" });
+    }
+    let fit = Fit::new(atoms.iter().map(|a| (a.position, a.element.radius)));
+    let spheres = atoms.iter().map(|a| a.sphere(a.position, &fit)).collect();
+    Ok(fitted_scene(source.name, Mesh::default(), spheres))
+}
+
+impl Atom {
+    /// The atom as a sphere, moved to `position` (Ångström).
+    pub(crate) fn sphere(&self, position: DVec3, fit: &Fit) -> Sphere {
+        Sphere {
+            centre: fit.place(position).as_vec3(),
+            radius: (self.element.radius * fit.scale) as f32,
+            colour: self.element.colour,
+        }
+    }
+}
+
+/// The atoms of the first model, in the order of the file.
+pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, LoadError> {
+    let mut atoms = Vec::new();
+    for (number, line) in source.lines()? {
+        let at = Place::Line(number);
+        match columns(line, 1, 6) {
+            "ATOM" | "HETATM" if is_first_location(line) => atoms.push(atom(source, at, line)?),
+            "ENDMDL" => break,
+            _ => {}
+        }
+    }
+    Ok(atoms)
+}
+
+fn is_first_location(line: &str) -> bool {
+    matches!(columns(line, 17, 17), "" | "A" | "1")
+}
+
+fn atom(source: &Source<'_>, at: Place, line: &str) -> Result<Atom, LoadError> {
+    let mut position = [0.0; 3];
+    for (x, (axis, first)) in position.iter_mut().zip([("x", 31), ("y", 39), ("z", 47)]) {
+        let field = columns(line, first, first + 7);
+        *x = field.parse().map_err(|_| {
+            let expected = format!("a number for {axis} in columns {first} to {}", first + 7);
+            source.syntax(at, expected, excerpt(field))
+        })?;
+    }
+    Ok(Atom {
+        name: columns(line, 13, 16).to_owned(),
+        position: DVec3::from_array(source.coordinates(at, position)?),
+        element: element_of(line),
+    })
+}
+
+/// Columns 77 and 78; in files older than 1996, which lack them, columns 13 and 14.
+fn element_of(line: &str) -> Element {
+    let symbol = match columns(line, 77, 78) {
+        "" => columns(line, 13, 14),
+        symbol => symbol,
+    };
+    let symbol = symbol.trim_start_matches(|c: char| c.is_ascii_digit());
+    let known = ELEMENTS.iter().find(|e| e.symbol.eq_ignore_ascii_case(symbol));
+    known.copied().unwrap_or(OTHER)
+}
+
+/// Columns `first` to `last` without white space around; empty beyond the line's end.
+fn columns(line: &str, first: usize, last: usize) -> &str {
+    let end = last.min(line.len());
+    line.get(first - 1..end).unwrap_or_default().trim()
+}

@@ -1,0 +1,215 @@
+//! Head motion: the pose of a head at any simulated time, the same for the same seed on every host.
+
+use glam::{DMat3, DQuat, DVec3, Vec3};
+use serde::{Deserialize, Serialize};
+
+use crate::config::FIT_DISTANCE_RADII;
+use crate::error::{RangeError, require};
+use crate::sway::{self, Sway, Swing};
+use crate::trig;
+use crate::view::Pose;
+
+/// Largest coordinate, distance or rate in a motion. Assumed: any run fits, and no product overflows.
+const LIMIT: f64 = 1e9;
+
+/// What the head would do without sway. Lengths in metres, angles in degrees, world coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Path {
+    /// Stands at `eye` and looks at `target`.
+    Still {
+        /// Place of the head.
+        eye: Vec3,
+        /// What it looks at.
+        target: Vec3,
+    },
+    /// Stands at `eye`, looks along -z at time 0 and turns left (about +y) at a steady rate.
+    Pan {
+        /// Place of the head.
+        eye: Vec3,
+        /// Rate of turn; negative turns right.
+        deg_per_s: f64,
+    },
+    /// Circles round `target` in a level plane and looks at it; at time 0 it is on the +z side.
+    Orbit {
+        /// What it looks at.
+        target: Vec3,
+        /// Radius of the circle.
+        distance: f64,
+        /// Height above the target.
+        height: f64,
+        /// Rate of the circle; positive goes towards +x first.
+        deg_per_s: f64,
+    },
+    /// Looks at `target` from the +z side and leans and walks to and fro around it as [`Sway`] says.
+    Look {
+        /// What it looks at.
+        target: Vec3,
+        /// Mean distance from it.
+        distance: f64,
+    },
+    /// Flies round `target` and looks at it, near and far by turns: five approaches in two laps.
+    FlyThrough {
+        /// What it looks at.
+        target: Vec3,
+        /// Least distance from it.
+        nearest: f64,
+        /// Greatest distance from it.
+        farthest: f64,
+        /// Time of a lap, seconds.
+        lap_s: f64,
+    },
+}
+
+/// A head's motion: a path, and sway upon it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked", into = "Unchecked")]
+pub struct HeadMotion {
+    path: Path,
+    sway: Sway,
+}
+
+/// The same before its numbers are checked.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Unchecked {
+    path: Path,
+    sway: Sway,
+}
+
+impl TryFrom<Unchecked> for HeadMotion {
+    type Error = RangeError;
+
+    fn try_from(unchecked: Unchecked) -> Result<Self, RangeError> {
+        Self::new(unchecked.path, unchecked.sway)
+    }
+}
+
+impl From<HeadMotion> for Unchecked {
+    fn from(motion: HeadMotion) -> Self {
+        Self { path: motion.path, sway: motion.sway }
+    }
+}
+
+impl HeadMotion {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    ///
+    /// [`RangeError`] names the first number out of its range.
+    pub fn new(path: Path, sway: Sway) -> Result<Self, RangeError> {
+        path.check()?;
+        require((0.0..=10.0).contains(&sway.scale), "sway scale", "0 to 10", sway.scale)?;
+        Ok(Self { path, sway })
+    }
+
+    /// Looks at a model with the published head speeds ([`Path::Look`], sway of scale 1, seed 1).
+    ///
+    /// The distance is [`crate::config::FIT_DISTANCE_RADII`] times `radius` (metres); so the model, if it lies within
+    /// `radius` of `centre`, roughly fills the default view.
+    #[must_use]
+    pub fn looking_at(centre: Vec3, radius: f64) -> Self {
+        let path = Path::Look { target: centre, distance: radius * FIT_DISTANCE_RADII };
+        Self { path, sway: Sway { seed: 1, scale: 1.0 } }
+    }
+
+    /// The path.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The sway.
+    #[must_use]
+    pub fn sway(&self) -> &Sway {
+        &self.sway
+    }
+
+    /// The same motion with another seed.
+    #[must_use]
+    pub fn with_seed(mut self, seed: u64) -> Self {
+        self.sway.seed = seed;
+        self
+    }
+
+    /// The pose at simulated time `time_ps`, picoseconds.
+    ///
+    /// Computed in double precision with software trigonometry. The time is held to 2 ns after 200 days.
+    #[must_use]
+    pub fn pose(&self, time_ps: u64) -> Pose {
+        let seconds = time_ps as f64 * 1e-12;
+        let swing = self.sway.at(seconds);
+        let (eye, gaze) = self.path.eye_and_gaze(seconds, &swing);
+        Pose { position: eye.as_vec3(), orientation: (gaze * swing.gaze()).normalize().as_quat() }
+    }
+}
+
+impl Path {
+    fn check(&self) -> Result<(), RangeError> {
+        let point = |what, v: Vec3| {
+            let reach = f64::from(v.abs().max_element());
+            let reach = if v.is_nan() { f64::NAN } else { reach };
+            require(reach <= LIMIT, what, "coordinates of at most 1e9", reach)
+        };
+        let length = |what, v: f64| require((1e-9..=LIMIT).contains(&v), what, "1e-9 to 1e9", v);
+        let rate = |what, v: f64| require(v.abs() <= LIMIT, what, "-1e9 to 1e9", v);
+        match *self {
+            Path::Still { eye, target } => point("eye", eye).and(point("target", target)),
+            Path::Pan { eye, deg_per_s } => point("eye", eye).and(rate("deg_per_s", deg_per_s)),
+            Path::Orbit { target, distance, height, deg_per_s } => point("target", target)
+                .and(length("distance", distance))
+                .and(rate("height", height))
+                .and(rate("deg_per_s", deg_per_s)),
+            Path::Look { target, distance } => point("target", target).and(length("distance", distance)),
+            Path::FlyThrough { target, nearest, farthest, lap_s } => point("target", target)
+                .and(length("nearest", nearest))
+                .and(require(farthest >= nearest, "farthest", "at least nearest", farthest))
+                .and(length("farthest", farthest))
+                .and(length("lap_s", lap_s)),
+        }
+    }
+
+    /// Place of the head, and its orientation before the gaze wanders.
+    fn eye_and_gaze(&self, seconds: f64, swing: &Swing) -> (DVec3, DQuat) {
+        match *self {
+            Path::Still { eye, target } => facing(eye.as_dvec3(), target.as_dvec3()),
+            Path::Pan { eye, deg_per_s } => (eye.as_dvec3(), sway::turn(DVec3::Y, deg_per_s * seconds)),
+            Path::Orbit { target, distance, height, deg_per_s } => {
+                let arm = direction(deg_per_s * seconds, 0.0) * distance + DVec3::Y * height;
+                facing(target.as_dvec3() + arm, target.as_dvec3())
+            }
+            Path::Look { target, distance } => {
+                let arm = direction(swing.azimuth_deg, swing.elevation_deg) * distance;
+                let target = target.as_dvec3();
+                facing(target + arm * swing.distance_factor, target)
+            }
+            Path::FlyThrough { target, nearest, farthest, lap_s } => {
+                let arm = fly(seconds / lap_s, nearest, farthest);
+                facing(target.as_dvec3() + arm, target.as_dvec3())
+            }
+        }
+    }
+}
+
+/// Two and a half approaches a lap, each from another side and height.
+fn fly(laps: f64, nearest: f64, farthest: f64) -> DVec3 {
+    let (middle, half) = ((farthest + nearest) / 2.0, (farthest - nearest) / 2.0);
+    let distance = middle + half * trig::cos_turns(2.5 * laps);
+    let elevation_deg = 12.0 + 28.0 * trig::sin_turns(1.5 * laps);
+    direction(360.0 * laps, elevation_deg) * distance
+}
+
+/// Unit vector `azimuth_deg` from +z towards +x, raised by `elevation_deg`.
+fn direction(azimuth_deg: f64, elevation_deg: f64) -> DVec3 {
+    let (sin_a, cos_a) = trig::sin_cos_deg(azimuth_deg);
+    let (sin_e, cos_e) = trig::sin_cos_deg(elevation_deg);
+    DVec3::new(sin_a * cos_e, sin_e, cos_a * cos_e)
+}
+
+/// At `eye`, upright, looking at `target`; along -z if they coincide; feet towards +z if it looks straight up.
+fn facing(eye: DVec3, target: DVec3) -> (DVec3, DQuat) {
+    let back = (eye - target).normalize_or(DVec3::Z);
+    let right = DVec3::Y.cross(back).normalize_or(DVec3::X);
+    let axes = DMat3::from_cols(right, back.cross(right), back);
+    (eye, DQuat::from_mat3(&axes).normalize())
+}

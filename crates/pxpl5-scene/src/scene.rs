@@ -1,0 +1,337 @@
+//! The display list: vertices, triangles, spheres, and the structures that edits can move.
+
+use std::ops::Range;
+
+use glam::{DMat4, DVec3, Mat4, Vec3};
+
+use crate::edit::{Edit, Hinge};
+use crate::error::SceneError;
+use crate::motion::HeadMotion;
+
+/// A corner of triangles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vertex {
+    /// Metres.
+    pub position: Vec3,
+    /// Outward, of unit length.
+    pub normal: Vec3,
+    /// Diffuse red, green, blue, 8 bits each.
+    pub colour: [u8; 3],
+}
+
+/// A sphere primitive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sphere {
+    /// Metres.
+    pub centre: Vec3,
+    /// Metres, above zero.
+    pub radius: f32,
+    /// Diffuse red, green, blue, 8 bits each.
+    pub colour: [u8; 3],
+}
+
+/// What the coordinates of a structure are fixed to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Frame {
+    /// The room; the head moves through it.
+    World,
+    /// The head; it is always at the same place of the view.
+    Head,
+}
+
+/// A named run of primitives with one model matrix.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Structure {
+    /// Name, for people.
+    pub name: String,
+    /// Its vertices; only its own triangles use them.
+    pub vertices: Range<usize>,
+    /// Its triangles.
+    pub triangles: Range<usize>,
+    /// Its spheres.
+    pub spheres: Range<usize>,
+    /// What its coordinates are fixed to.
+    pub frame: Frame,
+    /// Its scripted motion, if it has one.
+    pub hinge: Option<Hinge>,
+}
+
+/// One directional light, the same for all scenes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lighting {
+    /// Towards the light, of unit length, world coordinates.
+    pub towards_light: Vec3,
+    /// Part of the colour that is seen in shadow, 0 to 1.
+    pub ambient: f32,
+    /// Part of the colour added where the light falls square, 0 to 1.
+    pub diffuse: f32,
+    /// Red, green, blue where nothing is drawn.
+    pub background: [u8; 3],
+}
+
+impl Lighting {
+    /// From above, behind the viewer's right shoulder: direction (2, 3, 6) / 7. Assumed, any.
+    #[must_use]
+    pub fn over_the_shoulder() -> Self {
+        Self {
+            towards_light: Vec3::new(2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0),
+            ambient: 0.3,
+            diffuse: 0.7,
+            background: [16, 24, 48],
+        }
+    }
+}
+
+/// What a scene is made of, before it is checked by [`Scene::new`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneParts {
+    /// Name, for reports.
+    pub name: String,
+    /// Corners.
+    pub vertices: Vec<Vertex>,
+    /// Indices of three vertices, anticlockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Spheres.
+    pub spheres: Vec<Sphere>,
+    /// In order, they divide all vertices, triangles and spheres among them. Empty stands for one structure of all.
+    pub structures: Vec<Structure>,
+    /// The light.
+    pub lighting: Lighting,
+    /// How a head moves that looks at this scene.
+    pub motion: HeadMotion,
+}
+
+/// A checked scene: every index is in range, every number finite, every normal of unit length, every radius above zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    parts: SceneParts,
+}
+
+impl Scene {
+    /// Checks the parts.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::Part`] names the first part that breaks a rule.
+    pub fn new(mut parts: SceneParts) -> Result<Self, SceneError> {
+        if parts.structures.is_empty() {
+            parts.structures.push(whole(&parts));
+        }
+        parts.check()?;
+        Ok(Self { parts })
+    }
+
+    /// Name, for reports.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.parts.name
+    }
+
+    /// All vertices.
+    #[must_use]
+    pub fn vertices(&self) -> &[Vertex] {
+        &self.parts.vertices
+    }
+
+    /// All triangles: indices into [`Self::vertices`], anticlockwise seen from outside.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.parts.triangles
+    }
+
+    /// All spheres.
+    #[must_use]
+    pub fn spheres(&self) -> &[Sphere] {
+        &self.parts.spheres
+    }
+
+    /// At least one; in order they divide the primitives among them.
+    #[must_use]
+    pub fn structures(&self) -> &[Structure] {
+        &self.parts.structures
+    }
+
+    /// The light.
+    #[must_use]
+    pub fn lighting(&self) -> &Lighting {
+        &self.parts.lighting
+    }
+
+    /// How a head moves that looks at this scene: the model stays in view however long the run.
+    #[must_use]
+    pub fn motion(&self) -> &HeadMotion {
+        &self.parts.motion
+    }
+
+    /// Takes the scene apart, to change it and check it again.
+    #[must_use]
+    pub fn into_parts(self) -> SceneParts {
+        self.parts
+    }
+
+    /// The edits of a frame begun at simulated time `time_ps` (picoseconds): one for each structure with a script.
+    #[must_use]
+    pub fn edits_at(&self, time_ps: u64) -> Vec<Edit> {
+        let structures = self.structures().iter().enumerate();
+        structures
+            .filter_map(|(structure, s)| {
+                let model = s.hinge?.model(time_ps);
+                Some(Edit { structure, model })
+            })
+            .collect()
+    }
+
+    /// A copy with `edits` applied to positions and normals, for code that knows no model matrices.
+    ///
+    /// The matrices must turn, move and scale alike in all directions. Edits of structures that the scene does not
+    /// have change nothing.
+    #[must_use]
+    pub fn posed(&self, edits: &[Edit]) -> Scene {
+        let mut posed = self.clone();
+        for edit in edits {
+            if let Some(structure) = self.structures().get(edit.structure) {
+                posed.parts.move_structure(structure, &edit.model);
+            }
+        }
+        posed
+    }
+
+    /// Centre of the box around everything, and distance from it to the farthest point; metres.
+    #[must_use]
+    pub fn bounding_sphere(&self) -> (Vec3, f32) {
+        let points = self.vertices().iter().map(|v| (v.position.as_dvec3(), 0.0));
+        let spheres = self.spheres().iter();
+        let balls = spheres.map(|s| (s.centre.as_dvec3(), f64::from(s.radius)));
+        let (centre, radius) = bounding_sphere(points.chain(balls));
+        (centre.as_vec3(), radius as f32)
+    }
+}
+
+/// Centre of the box around the balls (centre, radius), and the farthest reach of one from it. (0, 0) without balls.
+pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> (DVec3, f64) {
+    let inverted = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = balls
+        .clone()
+        .fold(inverted, |(low, high), (centre, radius)| (low.min(centre - radius), high.max(centre + radius)));
+    if low.x > high.x {
+        return (DVec3::ZERO, 0.0);
+    }
+    let middle = (low + high) / 2.0;
+    let reach = |(centre, radius): (DVec3, f64)| (centre - middle).length() + radius;
+    (middle, balls.map(reach).fold(0.0, f64::max))
+}
+
+fn whole(parts: &SceneParts) -> Structure {
+    Structure {
+        name: parts.name.clone(),
+        vertices: 0..parts.vertices.len(),
+        triangles: 0..parts.triangles.len(),
+        spheres: 0..parts.spheres.len(),
+        frame: Frame::World,
+        hinge: None,
+    }
+}
+
+impl SceneParts {
+    fn move_structure(&mut self, structure: &Structure, model: &Mat4) {
+        let model: DMat4 = model.as_dmat4();
+        for vertex in &mut self.vertices[structure.vertices.clone()] {
+            let normal = model.transform_vector3(vertex.normal.as_dvec3());
+            vertex.position = model.transform_point3(vertex.position.as_dvec3()).as_vec3();
+            vertex.normal = normal.normalize_or(DVec3::Y).as_vec3();
+        }
+        let scale = model.x_axis.truncate().length();
+        for sphere in &mut self.spheres[structure.spheres.clone()] {
+            sphere.centre = model.transform_point3(sphere.centre.as_dvec3()).as_vec3();
+            sphere.radius = (f64::from(sphere.radius) * scale) as f32;
+        }
+    }
+
+    fn check(&self) -> Result<(), SceneError> {
+        self.check_structures()?;
+        self.check_vertices()?;
+        self.check_spheres()?;
+        self.structures.iter().try_for_each(|s| self.check_triangles(s))
+    }
+
+    fn fault(&self, what: &'static str, index: usize, expected: impl ToString, found: impl ToString) -> SceneError {
+        SceneError::Part {
+            scene: self.name.clone(),
+            what,
+            index,
+            expected: expected.to_string(),
+            found: found.to_string(),
+        }
+    }
+
+    fn check_vertices(&self) -> Result<(), SceneError> {
+        for (i, v) in self.vertices.iter().enumerate() {
+            if !v.position.is_finite() {
+                return Err(self.fault("vertex", i, "a finite position", v.position));
+            }
+            // f32 keeps a unit length to about 1e-7; 1e-3 passes what other programs wrote with few digits.
+            let length = v.normal.length();
+            if !((length - 1.0).abs() < 1e-3) {
+                return Err(self.fault("vertex", i, "a normal of length 1", length));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_spheres(&self) -> Result<(), SceneError> {
+        for (i, s) in self.spheres.iter().enumerate() {
+            if !(s.centre.is_finite() && s.radius.is_finite() && s.radius > 0.0) {
+                let found = format!("{} and {}", s.centre, s.radius);
+                let expected = "a finite centre and a radius above 0";
+                return Err(self.fault("sphere", i, expected, found));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_structures(&self) -> Result<(), SceneError> {
+        let mut ends = [0; 3];
+        for (i, s) in self.structures.iter().enumerate() {
+            for (range, end) in [&s.vertices, &s.triangles, &s.spheres].into_iter().zip(&mut ends) {
+                if range.start != *end || range.end < range.start {
+                    let expected = format!("a range from {end}");
+                    return Err(self.fault("structure", i, expected, format!("{range:?}")));
+                }
+                *end = range.end;
+            }
+            self.check_hinge(i, s)?;
+        }
+        let expected = [self.vertices.len(), self.triangles.len(), self.spheres.len()];
+        if ends != expected {
+            let last = self.structures.len().saturating_sub(1);
+            let expected = format!("ends at {expected:?} (vertices, triangles, spheres)");
+            return Err(self.fault("structure", last, expected, format!("{ends:?}")));
+        }
+        Ok(())
+    }
+
+    fn check_hinge(&self, index: usize, structure: &Structure) -> Result<(), SceneError> {
+        let Some(hinge) = structure.hinge else {
+            return Ok(());
+        };
+        let axis = hinge.axis.length();
+        let finite = hinge.point.is_finite() && hinge.amplitude_deg.is_finite();
+        if finite && hinge.phase_turns.is_finite() && axis > 0.0 && axis.is_finite() && hinge.period_ps > 0 {
+            return Ok(());
+        }
+        let expected = "a hinge of finite numbers, an axis and a period above 0";
+        Err(self.fault("structure", index, expected, format!("{hinge:?}")))
+    }
+
+    fn check_triangles(&self, structure: &Structure) -> Result<(), SceneError> {
+        for i in structure.triangles.clone() {
+            for corner in self.triangles[i] {
+                if !structure.vertices.contains(&(corner as usize)) {
+                    let expected = format!("vertices from {:?}", structure.vertices);
+                    return Err(self.fault("triangle", i, expected, corner));
+                }
+            }
+        }
+        Ok(())
+    }
+}

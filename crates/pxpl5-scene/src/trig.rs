@@ -1,0 +1,16 @@
+//! Trigonometry that gives the same bits on every host: double precision, in software.
+
+use std::f64::consts::{PI, TAU};
+
+pub(crate) fn sin_turns(turns: f64) -> f64 {
+    libm::sin(TAU * (turns - libm::floor(turns)))
+}
+
+pub(crate) fn cos_turns(turns: f64) -> f64 {
+    libm::cos(TAU * (turns - libm::floor(turns)))
+}
+
+/// Sine and cosine of an angle in degrees.
+pub(crate) fn sin_cos_deg(degrees: f64) -> (f64, f64) {
+    (libm::sin(degrees * PI / 180.0), libm::cos(degrees * PI / 180.0))
+}
