@@ -1,0 +1,144 @@
+//! Host time of transform, binning and set-up, per triangle.
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use glam::{Mat4, Vec3};
+use pxpl5_geometry::{Culling, Light, Mesh, MeshScratch, SetupStats, Transform, Triangle, ViewTransform, Viewport};
+use std::hint::black_box;
+
+/// A sphere of `2 * 186 * 160` = 59,520 triangles, as many as the head of the published measurements.
+struct Ball {
+    positions: Vec<Vec3>,
+    colours: Vec<[u8; 3]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Ball {
+    const COLUMNS: u32 = 186;
+    const ROWS: u32 = 160;
+
+    fn new() -> Self {
+        let mut ball = Self { positions: Vec::new(), colours: Vec::new(), triangles: Vec::new() };
+        let turn = |n: u32, of: u32| std::f32::consts::TAU * n as f32 / of as f32;
+        for row in 0..=Self::ROWS {
+            let polar = turn(row, 2 * Self::ROWS);
+            for column in 0..Self::COLUMNS {
+                let around = turn(column, Self::COLUMNS);
+                ball.positions.push(Vec3::new(polar.sin() * around.cos(), polar.cos(), polar.sin() * around.sin()));
+                ball.colours.push([200, (row % 256) as u8, (column % 256) as u8]);
+            }
+        }
+        for row in 0..Self::ROWS {
+            for column in 0..Self::COLUMNS {
+                let at = |r: u32, c: u32| (row + r) * Self::COLUMNS + (column + c) % Self::COLUMNS;
+                ball.triangles.push([at(0, 0), at(1, 0), at(1, 1)]);
+                ball.triangles.push([at(0, 0), at(1, 1), at(0, 1)]);
+            }
+        }
+        ball
+    }
+
+    fn mesh(&self) -> Mesh<'_> {
+        Mesh::new(&self.positions, &self.positions, &self.colours, &self.triangles).expect("indices are in range")
+    }
+}
+
+fn view() -> Transform {
+    let view = ViewTransform {
+        model_view: Mat4::from_translation(Vec3::new(0.1, 0.05, -2.6)),
+        projection: Mat4::perspective_rh(0.9, 4.0 / 3.0, 0.1, 10.0),
+    };
+    Transform::new(&view, Viewport::FRAME, Culling::None).expect("a finite view")
+}
+
+fn transform(c: &mut Criterion) {
+    let ball = Ball::new();
+    let mesh = ball.mesh();
+    let triangles: Vec<Triangle> = (0..mesh.triangles().len()).filter_map(|n| mesh.triangle(n)).collect();
+    let view = view();
+    let mut group = c.benchmark_group("transform");
+    group.throughput(Throughput::Elements(triangles.len() as u64));
+    group.bench_function("bin/triangle", |b| {
+        let mut bins = Vec::new();
+        b.iter(|| {
+            bins.clear();
+            let mut stats = SetupStats::default();
+            for t in &triangles {
+                view.bin(black_box(&t.positions), &mut stats, |mask| bins.push(mask));
+            }
+            stats
+        });
+    });
+    group.bench_function("bin/mesh", |b| {
+        let (mut bins, mut scratch) = (Vec::new(), MeshScratch::default());
+        b.iter(|| {
+            bins.clear();
+            let mut stats = SetupStats::default();
+            view.bin_mesh(black_box(&mesh), &mut scratch, &mut stats, |_, mask| bins.push(mask));
+            stats
+        });
+    });
+    group.bench_function("gouraud/triangle", |b| {
+        let mut out = Vec::new();
+        b.iter(|| {
+            out.clear();
+            let mut stats = SetupStats::default();
+            for t in &triangles {
+                view.gouraud(black_box(t), &Light::HEADLIGHT, &mut stats, |t| out.push(t));
+            }
+            stats
+        });
+    });
+    group.bench_function("gouraud/mesh", |b| {
+        let (mut out, mut scratch) = (Vec::new(), MeshScratch::default());
+        b.iter(|| {
+            out.clear();
+            let mut stats = SetupStats::default();
+            let light = &Light::HEADLIGHT;
+            view.gouraud_mesh(&mesh, light, &mut scratch, &mut stats, |_, t| out.push(t));
+            stats
+        });
+    });
+    group.bench_function("phong/triangle", |b| {
+        let mut out = Vec::new();
+        b.iter(|| {
+            out.clear();
+            let mut stats = SetupStats::default();
+            for t in &triangles {
+                view.phong(black_box(t), &mut stats, |t| out.push(t));
+            }
+            stats
+        });
+    });
+    group.finish();
+}
+
+fn setup(c: &mut Criterion) {
+    let ball = Ball::new();
+    let (view, mut stats) = (view(), SetupStats::default());
+    let (mut gouraud, mut phong) = (Vec::new(), Vec::new());
+    let mesh = ball.mesh();
+    for t in (0..mesh.triangles().len()).filter_map(|n| mesh.triangle(n)) {
+        view.gouraud(&t, &Light::HEADLIGHT, &mut stats, |t| gouraud.push(t));
+        view.phong(&t, &mut stats, |t| phong.push(t));
+    }
+    let mut group = c.benchmark_group("setup");
+    group.throughput(Throughput::Elements(gouraud.len() as u64));
+    group.bench_function("gouraud", |b| {
+        b.iter(|| {
+            for t in &gouraud {
+                black_box(black_box(t).gouraud(&Viewport::FRAME, &mut stats));
+            }
+        });
+    });
+    group.bench_function("phong", |b| {
+        b.iter(|| {
+            for t in &phong {
+                black_box(black_box(t).phong(&Viewport::FRAME, &mut stats));
+            }
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, transform, setup);
+criterion_main!(benches);

@@ -1,0 +1,257 @@
+//! Binning: which regions a screen triangle touches.
+//!
+//! A region is *touched* when both hold:
+//!
+//! - its pixels meet the pixels whose centres lie in the triangle's bounding box, and
+//! - for each edge, some point of the region's *pixel-centre box* (the smallest rectangle around the centres of its
+//!   pixels) is on the inner side, with the tie rule of the edge.
+//!
+//! This is the separating-axis test, so it is exact for the question "does the triangle, of which a right or
+//! bottom edge is not a part, meet the pixel-centre box". Every region with a covered pixel is touched. The reverse
+//! does not hold: a triangle that passes between the pixel centres of a region touches it without a pixel.
+
+use crate::{Outline, Viewport};
+use pxpl5_wire::{Linear, RegionId};
+use serde::{Deserialize, Serialize};
+
+/// A set of regions of one picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct RegionMask(u128);
+
+impl RegionMask {
+    /// Most regions in a picture.
+    pub const CAPACITY: u32 = u128::BITS;
+
+    /// No region.
+    pub const EMPTY: Self = Self(0);
+
+    /// One region; empty if its number is [`Self::CAPACITY`] or more.
+    #[must_use]
+    pub const fn only(region: RegionId) -> Self {
+        if region.0 as u32 >= Self::CAPACITY {
+            return Self::EMPTY;
+        }
+        Self(1 << region.0)
+    }
+
+    /// Whether the set is empty.
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Number of regions.
+    #[must_use]
+    pub const fn len(self) -> u32 {
+        self.0.count_ones()
+    }
+
+    /// Whether `region` is in the set.
+    #[must_use]
+    pub const fn contains(self, region: RegionId) -> bool {
+        Self::only(region).0 & self.0 != 0
+    }
+
+    /// Regions in either set.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// The set as bits: bit n is region n.
+    #[must_use]
+    pub const fn bits(self) -> u128 {
+        self.0
+    }
+
+    /// The regions by rising number.
+    pub fn iter(self) -> impl Iterator<Item = RegionId> {
+        let mut rest = self.0;
+        std::iter::from_fn(move || {
+            let region = rest.trailing_zeros();
+            rest &= rest.wrapping_sub(1);
+            (region < Self::CAPACITY).then_some(RegionId(region as u16))
+        })
+    }
+}
+
+/// First and last pixel of an interval along one axis; empty if `first > last`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Range {
+    pub(crate) first: i32,
+    pub(crate) last: i32,
+}
+
+impl Range {
+    pub(crate) const fn is_empty(self) -> bool {
+        self.first > self.last
+    }
+
+    /// Pixels whose centres lie in [low, high), in subpixels. The tie rule draws nothing at `high`.
+    #[inline(always)]
+    pub(crate) const fn of_centres(low: i32, high: i32) -> Self {
+        Self { first: (low + 7) >> 4, last: (high - 9) >> 4 }
+    }
+
+    #[inline(always)]
+    pub(crate) fn within(self, size: i32) -> Self {
+        Self { first: self.first.max(0), last: self.last.min(size - 1) }
+    }
+}
+
+/// The regions of a picture, ready for look-up by pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Binner {
+    width: i32,
+    height: i32,
+    columns: i32,
+    column_reciprocal: u32,
+    row_reciprocal: u32,
+    region_width: i32,
+    region_height: i32,
+    line_shift: u32,
+    first_line: i32,
+}
+
+/// `n / size == n * reciprocal(size) >> 20` for n below 2^13 and size up to 128: the excess of the reciprocal, below
+/// `size / 2^20`, times n stays below `1 / size`.
+const fn reciprocal(size: u32) -> u32 {
+    (1_u32 << 20).div_ceil(size)
+}
+
+#[inline(always)]
+const fn quotient(n: i32, reciprocal: u32) -> i32 {
+    ((n as u64 * reciprocal as u64) >> 20) as i32
+}
+
+impl Binner {
+    pub(crate) fn new(viewport: &Viewport) -> Self {
+        let grid = viewport.grid();
+        Self {
+            width: grid.width as i32,
+            height: grid.height as i32,
+            columns: grid.columns() as i32,
+            column_reciprocal: reciprocal(grid.region_width),
+            row_reciprocal: reciprocal(grid.region_height),
+            region_width: grid.region_width as i32,
+            region_height: grid.region_height as i32,
+            line_shift: viewport.line_step() - 1,
+            first_line: viewport.first_line() as i32,
+        }
+    }
+
+    /// Picture rows of a range of frame lines.
+    #[inline(always)]
+    fn rows_of_lines(&self, lines: Range) -> Range {
+        let round_up = (1 << self.line_shift) - 1;
+        Range {
+            first: (lines.first - self.first_line + round_up) >> self.line_shift,
+            last: (lines.last - self.first_line) >> self.line_shift,
+        }
+    }
+
+    /// The regions that a rectangle of pixels, given in frame lines, meets.
+    pub(crate) fn rectangle(&self, x: Range, lines: Range) -> RegionMask {
+        let (x, y) = (x.within(self.width), self.rows_of_lines(lines).within(self.height));
+        if x.is_empty() || y.is_empty() {
+            return RegionMask::EMPTY;
+        }
+        self.cells(x, y, |_, _| true)
+    }
+
+    /// The regions that a triangle touches, as defined at the top of this file.
+    #[inline(always)]
+    pub(crate) fn triangle(&self, outline: &Outline) -> RegionMask {
+        let [low_x, high_x] = extent(&outline.x);
+        let [low_y, high_y] = extent(&outline.y);
+        let x = Range::of_centres(low_x, high_x).within(self.width);
+        let y = self.rows_of_lines(Range::of_centres(low_y, high_y)).within(self.height);
+        if x.is_empty() || y.is_empty() {
+            return RegionMask::EMPTY;
+        }
+        let column = quotient(x.first, self.column_reciprocal);
+        let row = quotient(y.first, self.row_reciprocal);
+        let (left, right) = self.column_box(column);
+        let (top, bottom) = self.row_box(row);
+        let inside =
+            low_x >= left * 16 + 8 && high_x <= right * 16 + 8 && low_y >= top * 16 + 8 && high_y <= bottom * 16 + 8;
+        if inside {
+            return RegionMask(1 << (row * self.columns + column));
+        }
+        self.test_edges(outline, x, y)
+    }
+
+    #[inline(never)]
+    fn test_edges(&self, outline: &Outline, x: Range, y: Range) -> RegionMask {
+        let edges = outline.edges();
+        self.cells(x, y, |column, row| {
+            let (across, down) = (self.column_box(column), self.row_box(row));
+            edges.iter().all(|e| greatest(e, across, down) >= 0)
+        })
+    }
+
+    /// The cells of the grid that hold pixels of `x` and `y` and pass `test(column, row)`.
+    fn cells(&self, x: Range, y: Range, test: impl Fn(i32, i32) -> bool) -> RegionMask {
+        let columns = [x.first, x.last].map(|n| quotient(n, self.column_reciprocal));
+        let rows = [y.first, y.last].map(|n| quotient(n, self.row_reciprocal));
+        let mut mask = 0;
+        for row in rows[0]..=rows[1] {
+            for column in columns[0]..=columns[1] {
+                mask |= u128::from(test(column, row)) << (row * self.columns + column);
+            }
+        }
+        RegionMask(mask)
+    }
+
+    /// First and last pixel of a column of regions.
+    #[inline(always)]
+    fn column_box(&self, column: i32) -> (i32, i32) {
+        let left = column * self.region_width;
+        (left, (left + self.region_width).min(self.width) - 1)
+    }
+
+    /// First and last frame line of a row of regions.
+    #[inline(always)]
+    fn row_box(&self, row: i32) -> (i32, i32) {
+        let top = row * self.region_height;
+        let bottom = (top + self.region_height).min(self.height) - 1;
+        let line = |y: i32| (y << self.line_shift) + self.first_line;
+        (line(top), line(bottom))
+    }
+}
+
+/// Largest value of an edge expression over a box of pixels. No overflow: see [`crate::GUARD_PIXELS`].
+fn greatest(edge: &Linear, (left, right): (i32, i32), (top, bottom): (i32, i32)) -> i32 {
+    let x = if edge.a > 0 { right } else { left };
+    let y = if edge.b > 0 { bottom } else { top };
+    edge.at(x, y)
+}
+
+/// Smallest and largest of three.
+#[inline(always)]
+pub(crate) fn extent(v: &[i32; 3]) -> [i32; 2] {
+    [v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quotients_by_reciprocal_are_exact_for_every_pixel_and_region_size() {
+        for size in 1..=pxpl5_wire::REGION_SIZE {
+            for n in 0..crate::MAX_PICTURE {
+                assert_eq!(quotient(n as i32, reciprocal(size)), (n / size) as i32, "{n} / {size}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_mask_iterates_its_regions_by_rising_number() {
+        let mask = [0, 5, 127].into_iter().fold(RegionMask::EMPTY, |m, r| m.union(RegionMask::only(RegionId(r))));
+        let found: Vec<u16> = mask.iter().map(|r| r.0).collect();
+        assert_eq!((mask.len(), found), (3, vec![0, 5, 127]));
+        assert!(RegionMask::only(RegionId(128)).is_empty());
+        assert!(!mask.contains(RegionId(128)));
+    }
+}

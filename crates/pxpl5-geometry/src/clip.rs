@@ -1,0 +1,187 @@
+//! Clipping in homogeneous clip coordinates, before the divide.
+//!
+//! Only as far as the formats need: by the near plane (z = 0), the far plane (z = w), and four planes of a guard
+//! band some 4,000 px from the picture. Whatever leaves the picture but not the guard band is left to the edge
+//! expressions.
+//!
+//! An edge that two triangles share is cut at the same point in both, bit for bit: the point is computed from the
+//! lesser to the greater end in one fixed order of clip coordinates, whichever way the triangle runs. So the cut
+//! opens no gap.
+
+use std::cmp::Ordering;
+
+/// Largest clip coordinate. Larger ones, infinities and NaN are refused, so that no step overflows.
+pub const MAX_CLIP: f32 = 1e30;
+
+/// Smallest w that is divided by: its reciprocal times a clip coordinate stays finite.
+pub(crate) const MIN_W: f32 = 1e-30;
+
+/// Most corners after cutting a triangle by six planes.
+const MAX_CORNERS: usize = 9;
+
+/// A vertex in clip coordinates with `N` numbers that vary linearly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Vertex<const N: usize> {
+    pub(crate) clip: [f32; 4],
+    pub(crate) extra: [f32; N],
+}
+
+/// The guard band: |x| at most `x w`, |y| at most `y w`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Guard {
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+}
+
+/// A convex polygon.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Polygon<const N: usize> {
+    corners: [Vertex<N>; MAX_CORNERS],
+    len: usize,
+}
+
+impl<const N: usize> Polygon<N> {
+    fn empty() -> Self {
+        let nowhere = Vertex { clip: [0.0; 4], extra: [0.0; N] };
+        Self { corners: [nowhere; MAX_CORNERS], len: 0 }
+    }
+
+    pub(crate) fn corners(&self) -> &[Vertex<N>] {
+        &self.corners[..self.len]
+    }
+
+    /// Rounding can make a polygon slightly concave; more corners than a convex one can have are left out.
+    fn push(&mut self, vertex: Vertex<N>) {
+        if let Some(slot) = self.corners.get_mut(self.len) {
+            *slot = vertex;
+            self.len += 1;
+        }
+    }
+}
+
+impl Guard {
+    /// Signed distances of a point from the six planes; not negative is inside.
+    fn distance(self, plane: usize, [x, y, z, w]: [f32; 4]) -> f32 {
+        match plane {
+            0 => z,
+            1 => w - z,
+            2 => self.x * w - x,
+            3 => self.x * w + x,
+            4 => self.y * w - y,
+            _ => self.y * w + y,
+        }
+    }
+
+    /// Whether a vertex needs no clipping; false for NaN and for coordinates beyond [`MAX_CLIP`].
+    #[inline(always)]
+    pub(crate) fn contains(self, [x, y, z, w]: [f32; 4]) -> bool {
+        (x.abs() <= self.x * w) & (y.abs() <= self.y * w) & (z >= 0.0) & (z <= w) & (MIN_W <= w) & (w <= MAX_CLIP)
+    }
+
+    /// What is left of a triangle.
+    pub(crate) fn clip<const N: usize>(self, triangle: &[Vertex<N>; 3]) -> Polygon<N> {
+        let mut polygon = Polygon::empty();
+        triangle.iter().for_each(|v| polygon.push(*v));
+        for plane in 0..6 {
+            let outside = |v: &Vertex<N>| self.distance(plane, v.clip) < 0.0;
+            if polygon.corners().iter().any(outside) {
+                polygon = self.cut(plane, &polygon);
+            }
+        }
+        polygon
+    }
+
+    fn cut<const N: usize>(self, plane: usize, polygon: &Polygon<N>) -> Polygon<N> {
+        let corners = polygon.corners();
+        let mut out = Polygon::empty();
+        for (i, from) in corners.iter().enumerate() {
+            let to = &corners[(i + 1) % corners.len()];
+            let inside = self.distance(plane, from.clip) >= 0.0;
+            if inside {
+                out.push(*from);
+            }
+            if inside != (self.distance(plane, to.clip) >= 0.0) {
+                out.push(self.crossing(plane, from, to));
+            }
+        }
+        out
+    }
+
+    /// Where an edge crosses a plane, computed from its lesser end.
+    fn crossing<const N: usize>(self, plane: usize, one: &Vertex<N>, other: &Vertex<N>) -> Vertex<N> {
+        let (from, to) = match order(&one.clip, &other.clip) {
+            Ordering::Greater => (other, one),
+            _ => (one, other),
+        };
+        let (near, far) = (self.distance(plane, from.clip), self.distance(plane, to.clip));
+        let t = near / (near - far);
+        let between = |a: f32, b: f32| a + (b - a) * t;
+        Vertex {
+            clip: std::array::from_fn(|i| between(from.clip[i], to.clip[i])),
+            extra: std::array::from_fn(|i| between(from.extra[i], to.extra[i])),
+        }
+    }
+}
+
+/// A total order of clip coordinates.
+fn order(a: &[f32; 4], b: &[f32; 4]) -> Ordering {
+    a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
+}
+
+/// Whether all corners lie beyond one side of the picture, before the near plane or behind the far plane.
+pub(crate) fn all_outside(corners: &[[f32; 4]; 3]) -> bool {
+    let all = |f: fn(&[f32; 4]) -> bool| corners.iter().all(f);
+    all(|[x, _, _, w]| x > w)
+        || all(|[x, _, _, w]| -x > *w)
+        || all(|[_, y, _, w]| y > w)
+        || all(|[_, y, _, w]| -y > *w)
+        || all(|[_, _, z, _]| *z < 0.0)
+        || all(|[_, _, z, w]| z > w)
+}
+
+/// Whether every coordinate is a number of at most [`MAX_CLIP`].
+pub(crate) fn representable(corners: &[[f32; 4]; 3]) -> bool {
+    corners.iter().flatten().all(|v| v.abs() <= MAX_CLIP)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GUARD: Guard = Guard { x: 10.0, y: 10.0 };
+
+    fn vertex(clip: [f32; 4], extra: f32) -> Vertex<1> {
+        Vertex { clip, extra: [extra] }
+    }
+
+    #[test]
+    fn a_shared_edge_is_cut_at_the_same_point_from_both_sides() {
+        let a = vertex([0.3, -0.7, -1.3, 0.9], 1.0);
+        let b = vertex([-2.1, 0.2, 1.7, 3.1], 7.0);
+        let c = vertex([5.0, 5.0, 1.0, 3.0], 0.0);
+        let d = vertex([-5.0, -5.0, 1.0, 3.0], 0.0);
+        let near = |p: Polygon<1>| -> Vec<Vertex<1>> {
+            p.corners().iter().filter(|v| v.clip[2].abs() < 1e-6).copied().collect()
+        };
+        let (one, other) = (near(GUARD.clip(&[a, b, c])), near(GUARD.clip(&[b, a, d])));
+        assert!(one.iter().any(|v| other.contains(v)), "{one:?} {other:?}");
+    }
+
+    #[test]
+    fn a_corner_before_the_near_plane_leaves_a_quadrilateral() {
+        let polygon = GUARD.clip(&[
+            vertex([0.0, 0.0, -1.0, 1.0], 0.0),
+            vertex([1.0, 0.0, 1.0, 2.0], 2.0),
+            vertex([0.0, 1.0, 1.0, 2.0], 4.0),
+        ]);
+        let extras: Vec<f32> = polygon.corners().iter().map(|v| v.extra[0]).collect();
+        assert_eq!(extras, [1.0, 2.0, 4.0, 2.0]);
+    }
+
+    #[test]
+    fn vertices_behind_the_eye_never_pass_the_guard_band() {
+        for clip in [[0.0, 0.0, -1.0, -1.0], [0.0, 0.0, 0.5, -1.0], [f32::NAN, 0.0, 0.0, 1.0]] {
+            assert!(!GUARD.contains(clip), "{clip:?}");
+        }
+    }
+}

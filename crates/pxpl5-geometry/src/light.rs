@@ -1,0 +1,67 @@
+//! Lighting of vertices, and normals for deferred shading.
+
+use crate::Light;
+use crate::view::Columns;
+use glam::Vec3;
+
+/// A light seen from one eye.
+pub(crate) struct Lighting<'a> {
+    model_view: &'a Columns,
+    light: &'a Light,
+}
+
+#[inline(always)]
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
+}
+
+/// The eye-space normal of unit length; towards +Z if it has no direction.
+#[inline(always)]
+fn unit_normal(model_view: &Columns, normal: Vec3) -> [f32; 3] {
+    let n = model_view.direction(normal);
+    let square = dot(n, n);
+    if (f32::MIN_POSITIVE..=f32::MAX).contains(&square) {
+        let inverse = 1.0 / square.sqrt();
+        n.map(|v| v * inverse)
+    } else {
+        [0.0, 0.0, 1.0]
+    }
+}
+
+/// How far a normal at `position` turns towards the eye.
+#[inline(always)]
+fn towards_eye(model_view: &Columns, position: Vec3, normal: [f32; 3]) -> f32 {
+    let [x, y, z, _] = model_view.point(position);
+    -dot([x, y, z], normal)
+}
+
+impl<'a> Lighting<'a> {
+    pub(crate) fn new(model_view: &'a Columns, light: &'a Light) -> Self {
+        Self { model_view, light }
+    }
+
+    /// Lit colour in 1/256 of a unit, 0 to 255 * 256. Two-sided: the normal counts as the one that faces the eye.
+    #[inline(always)]
+    pub(crate) fn colour(&self, position: Vec3, normal: Vec3, colour: [u8; 3]) -> [f32; 3] {
+        let n = unit_normal(self.model_view, normal);
+        let toward_light = dot(n, self.light.direction);
+        let facing = towards_eye(self.model_view, position, n);
+        let cosine = if facing < 0.0 { -toward_light } else { toward_light };
+        let intensity = self.intensity(cosine);
+        colour.map(|c| f32::from(c) * 256.0 * intensity)
+    }
+
+    /// Part of the colour seen, 0 to 1; 0 for NaN.
+    #[inline(always)]
+    fn intensity(&self, cosine: f32) -> f32 {
+        let sum = self.light.ambient + self.light.diffuse * cosine.max(0.0);
+        if sum >= 0.0 { sum.min(1.0) } else { 0.0 }
+    }
+}
+
+/// Unit normals in eye coordinates, all three turned over if the surface faces away.
+pub(crate) fn facing_normals(model_view: &Columns, positions: &[Vec3; 3], normals: &[Vec3; 3]) -> [[f32; 3]; 3] {
+    let n = normals.map(|n| unit_normal(model_view, n));
+    let facing = |i: usize| towards_eye(model_view, positions[i], n[i]);
+    if (facing(0) + facing(1)) + facing(2) < 0.0 { n.map(|n| n.map(|v| -v)) } else { n }
+}

@@ -1,0 +1,211 @@
+//! Screen triangles: what is kept between transform and set-up.
+
+use crate::bin::extent;
+use crate::{RegionMask, SetupStats, Viewport, plane};
+use pxpl5_wire::{Linear, format};
+
+/// Vertices of a screen triangle lie at most this many pixels from pixel (0, 0), along x and along y.
+///
+/// Twice the area of a triangle inside the square of side 2 x 4096 px is at most `(2^17)^2 = 2^34` in units of
+/// 1/256 px, so an edge expression (in 1/16 of that) is at most 2^30 at any pixel inside the square, and no
+/// sum leaves 32 bits.
+pub const GUARD_PIXELS: i32 = 4096;
+
+/// Subpixels of a pixel.
+pub(crate) const SUBPIXELS: i32 = 1 << format::SUBPIXEL_BITS;
+
+/// Depth of the near plane in pixel depth with [`format::Z_FRACTION_BITS`] fraction bits: 8 units of pixel depth.
+///
+/// The margin at both ends is larger than the rounding error of a plane on a [`crate::MAX_PICTURE`] picture
+/// (below 1,026), so that a depth never wraps from near to far.
+pub const DEPTH_NEAR: u32 = 8 * DEPTH_ONE;
+
+/// Depth of the far plane in the same units.
+pub const DEPTH_FAR: u32 = u32::MAX - 8 * DEPTH_ONE;
+
+/// One unit of pixel depth in fractions.
+pub(crate) const DEPTH_ONE: u32 = 1 << format::Z_FRACTION_BITS;
+
+/// Depth in fixed point; what lies outside [0, 1] is clamped, NaN is near.
+#[inline(always)]
+pub(crate) fn depth_fixed(depth: f32) -> u32 {
+    let scaled = f64::from(depth) * f64::from(DEPTH_FAR - DEPTH_NEAR);
+    (scaled + f64::from(DEPTH_NEAR) + 0.5).clamp(f64::from(DEPTH_NEAR), f64::from(DEPTH_FAR)) as u32
+}
+
+/// Corners and depths of a triangle on the screen, and the regions it touches.
+///
+/// The corners run clockwise as seen on the screen (y grows downwards), whatever the input's winding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outline {
+    /// Distance from the picture's left border in 1/16 px.
+    pub x: [i32; 3],
+    /// Distance from the frame's top border in 1/16 px, also for a field.
+    pub y: [i32; 3],
+    /// Depths, from [`DEPTH_NEAR`] to [`DEPTH_FAR`].
+    pub z: [u32; 3],
+    /// Regions touched.
+    pub regions: RegionMask,
+}
+
+/// A triangle on the screen with what its surface needs, `A` for each corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ScreenTriangle<A> {
+    /// Where it is.
+    pub outline: Outline,
+    /// What it looks like.
+    pub surface: A,
+}
+
+/// Lit colours of the corners for Gouraud shading: red, green, blue in 1/256 of a colour unit, 0 to 255 * 256.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LitColours(pub [[u16; 3]; 3]);
+
+/// Normals of the corners in eye coordinates for Phong shading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SurfaceNormals {
+    /// x, y, z of each corner's unit normal in 1/2^14.
+    pub normals: [[i16; 3]; 3],
+    /// Red, green, blue of the whole triangle: its first corner's colour.
+    pub colour: [u8; 3],
+}
+
+/// A value of 1.0 in [`SurfaceNormals::normals`].
+pub const NORMAL_UNIT: i16 = 1 << 14;
+
+/// The expressions of a Gouraud triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GouraudTriangle {
+    /// A pixel is covered where all three are at least 0.
+    pub edges: [Linear; 3],
+    /// Depth with [`format::Z_FRACTION_BITS`] fraction bits.
+    pub z: Linear,
+    /// Red, green and blue with [`format::COLOUR_FRACTION_BITS`] fraction bits.
+    pub rgb: [Linear; 3],
+}
+
+/// The expressions of a Phong triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PhongTriangle {
+    /// A pixel is covered where all three are at least 0.
+    pub edges: [Linear; 3],
+    /// Depth with [`format::Z_FRACTION_BITS`] fraction bits.
+    pub z: Linear,
+    /// x, y, z of the normal in eye coordinates with [`format::NORMAL_FRACTION_BITS`] fraction bits below
+    /// [`format::NORMAL_ONE_BITS`].
+    pub normal: [Linear; 3],
+    /// Red, green and blue.
+    pub colour: [u8; 3],
+}
+
+impl Outline {
+    /// Twice the area in 1/256 square px; positive unless the corners lie on one line.
+    #[inline(always)]
+    pub(crate) fn twice_area(&self) -> i64 {
+        let (x, y) = (&self.x, &self.y);
+        i64::from(x[1] - x[0]) * i64::from(y[2] - y[0]) - i64::from(y[1] - y[0]) * i64::from(x[2] - x[0])
+    }
+
+    /// The edges from corner 0 to 1, 1 to 2 and 2 to 0 at the pixels of the *frame*.
+    #[inline(always)]
+    pub(crate) fn edges(&self) -> [Linear; 3] {
+        [self.edge(0, 1), self.edge(1, 2), self.edge(2, 0)]
+    }
+
+    /// Twice the area of (from, to, pixel centre), in 1/16 square px, rounded down.
+    ///
+    /// The area in 1/256 square px is `16 (dx y - dy x) + k` at pixel (x, y). It is at least 0 exactly where
+    /// `dx y - dy x + floor(k / 16)` is, so nothing is lost. A pixel centre on the line itself belongs to the
+    /// triangle only along a top or a left edge: elsewhere k is less by one.
+    #[inline(always)]
+    fn edge(&self, from: usize, to: usize) -> Linear {
+        let (dx, dy) = (self.x[to] - self.x[from], self.y[to] - self.y[from]);
+        let top_left = dy < 0 || (dy == 0 && dx > 0);
+        let k = i64::from(dx) * i64::from(SUBPIXELS / 2 - self.y[from])
+            - i64::from(dy) * i64::from(SUBPIXELS / 2 - self.x[from])
+            - i64::from(!top_left);
+        Linear { a: -dy, b: dx, c: (k >> format::SUBPIXEL_BITS) as i32 }
+    }
+
+    /// The picture's pixel, in frame lines, nearest to the middle of the bounding box: planes are most exact there.
+    fn middle(&self, viewport: &Viewport) -> [i32; 2] {
+        let centre = |v: &[i32; 3], size: u32| {
+            let [low, high] = extent(v);
+            let last = size as i32 * SUBPIXELS - 1;
+            (low.clamp(0, last) + high.clamp(0, last)) / (2 * SUBPIXELS)
+        };
+        [centre(&self.x, viewport.grid().width), centre(&self.y, viewport.frame_lines())]
+    }
+}
+
+/// An expression over the frame's pixels, restated for the rows of the picture: exactly the same values.
+#[inline(always)]
+fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
+    Linear {
+        a: frame.a,
+        b: frame.b.wrapping_mul(viewport.line_step() as i32),
+        c: frame.c.wrapping_add(frame.b.wrapping_mul(viewport.first_line() as i32)),
+    }
+}
+
+impl<A> ScreenTriangle<A> {
+    /// The edge expressions alone, at the picture's pixels.
+    #[must_use]
+    pub fn edges(&self, viewport: &Viewport) -> [Linear; 3] {
+        self.outline.edges().map(|e| for_rows(e, viewport))
+    }
+
+    fn depth_plane(&self, planes: &plane::Planes, stats: &mut SetupStats) -> Linear {
+        planes.through(self.outline.z.map(f64::from), stats)
+    }
+}
+
+impl ScreenTriangle<LitColours> {
+    /// Computes the expressions for the picture that the triangle was transformed for.
+    #[must_use]
+    pub fn gouraud(&self, viewport: &Viewport, stats: &mut SetupStats) -> GouraudTriangle {
+        let planes = plane::Planes::of(&self.outline, self.outline.middle(viewport));
+        let colours = &self.surface.0;
+        let rgb = std::array::from_fn(|i| {
+            let corners = colours.map(|c| colour_value(c[i]));
+            for_rows(planes.through(corners, stats), viewport)
+        });
+        GouraudTriangle { edges: self.edges(viewport), z: for_rows(self.depth_plane(&planes, stats), viewport), rgb }
+    }
+}
+
+impl ScreenTriangle<SurfaceNormals> {
+    /// Computes the expressions for the picture that the triangle was transformed for.
+    #[must_use]
+    pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongTriangle {
+        let planes = plane::Planes::of(&self.outline, self.outline.middle(viewport));
+        let normals = &self.surface.normals;
+        let normal = std::array::from_fn(|i| {
+            let corners = normals.map(|n| normal_value(n[i]));
+            for_rows(planes.through(corners, stats), viewport)
+        });
+        PhongTriangle {
+            edges: self.edges(viewport),
+            z: for_rows(self.depth_plane(&planes, stats), viewport),
+            normal,
+            colour: self.surface.colour,
+        }
+    }
+}
+
+/// A colour in the expression's units. The half unit rounds when the renderer cuts the fraction off, and keeps
+/// 0 and 255 half a unit away from wrapping, far more than a plane's rounding error.
+#[inline(always)]
+fn colour_value(colour: u16) -> f64 {
+    const SCALE: u32 = 1 << (format::COLOUR_FRACTION_BITS - 8);
+    const HALF: u32 = 1 << (format::COLOUR_FRACTION_BITS - 1);
+    f64::from(u32::from(colour) * SCALE + HALF)
+}
+
+/// A component of a normal in the expression's units, with half a unit for rounding.
+#[inline(always)]
+fn normal_value(component: i16) -> f64 {
+    const SCALE: i32 = (1 << (format::NORMAL_ONE_BITS + format::NORMAL_FRACTION_BITS)) / NORMAL_UNIT as i32;
+    const HALF: i32 = 1 << (format::NORMAL_FRACTION_BITS - 1);
+    f64::from(i32::from(component) * SCALE + HALF)
+}

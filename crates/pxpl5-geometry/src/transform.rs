@@ -1,0 +1,384 @@
+//! Transform: from triangles in the world to triangles on the screen.
+
+use crate::bin::Binner;
+use crate::clip::{self, Guard, Vertex};
+use crate::light::Lighting;
+use crate::screen::{self, LitColours, Outline, ScreenTriangle, SurfaceNormals};
+use crate::view::{Columns, ViewError};
+use crate::{Light, Mesh, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Which triangles are dropped for the way they face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Culling {
+    /// None.
+    #[default]
+    None,
+    /// Those whose corners run clockwise on the screen.
+    Back,
+}
+
+/// A view of the world on one picture, ready to transform primitives.
+#[derive(Clone, Debug)]
+pub struct Transform {
+    pub(crate) viewport: Viewport,
+    pub(crate) model_view: Columns,
+    pub(crate) projection: Columns,
+    to_clip: Columns,
+    to_screen: ToScreen,
+    guard: Guard,
+    pub(crate) binner: Binner,
+    culling: Culling,
+}
+
+/// From normalised device coordinates to subpixels of the frame: `scale * v + centre`.
+#[derive(Clone, Copy, Debug)]
+struct ToScreen {
+    scale: [f32; 2],
+    centre: [f32; 2],
+}
+
+/// A vertex on the screen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Snapped {
+    x: i32,
+    y: i32,
+    z: u32,
+}
+
+/// A transformed vertex of a mesh.
+#[derive(Clone, Copy, Debug)]
+struct MeshVertex {
+    clip: [f32; 4],
+    snapped: Snapped,
+    inside: bool,
+}
+
+/// Memory that [`Transform::bin_mesh`] and its siblings use again from call to call.
+#[derive(Clone, Debug, Default)]
+pub struct MeshScratch {
+    vertices: Vec<MeshVertex>,
+    extras: Vec<[f32; 3]>,
+}
+
+/// 1.5 * 2^23: adding it rounds to an integer, to even, for absolute values below 2^22.
+const ROUND: f32 = 12_582_912.0;
+
+/// Nearest integer of a value below 2^22 in absolute value.
+#[inline(always)]
+fn rounded(value: f32) -> i32 {
+    ((value + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
+}
+
+impl ToScreen {
+    fn new(viewport: &Viewport) -> Self {
+        let half = |size: u32| (size * screen::SUBPIXELS as u32) as f32 * 0.5;
+        let (x, y) = (half(viewport.grid().width), half(viewport.frame_lines()));
+        Self { scale: [x, -y], centre: [x, y] }
+    }
+
+    /// The guard band lies one pixel inside [`screen::GUARD_PIXELS`], so that rounding cannot reach beyond.
+    fn guard(&self) -> Guard {
+        let limit = ((screen::GUARD_PIXELS - 1) * screen::SUBPIXELS) as f32;
+        Guard { x: (limit - self.centre[0]) / self.centre[0], y: (limit - self.centre[1]) / self.centre[1] }
+    }
+
+    /// Divides by w and snaps. Only for vertices inside the guard band.
+    #[inline(always)]
+    fn snap(&self, [x, y, z, w]: [f32; 4]) -> Snapped {
+        let inverse = 1.0 / w;
+        Snapped {
+            x: rounded((x * inverse) * self.scale[0] + self.centre[0]),
+            y: rounded((y * inverse) * self.scale[1] + self.centre[1]),
+            z: screen::depth_fixed(z * inverse),
+        }
+    }
+
+    /// Divides by w and snaps a vertex that clipping made; `None` if it is not inside even so (w near 0).
+    fn snap_checked(&self, clip: [f32; 4]) -> Option<Snapped> {
+        let limit = (screen::GUARD_PIXELS * screen::SUBPIXELS) as f32;
+        let inverse = 1.0 / clip[3];
+        let x = (clip[0] * inverse) * self.scale[0] + self.centre[0];
+        let y = (clip[1] * inverse) * self.scale[1] + self.centre[1];
+        let fits = x.abs() <= limit && y.abs() <= limit && clip[3] >= clip::MIN_W;
+        fits.then(|| self.snap(clip))
+    }
+}
+
+/// Corners of a screen triangle and where each came from.
+struct Assembled {
+    outline: Outline,
+    /// Whether corners 1 and 2 changed places to run clockwise.
+    swapped: bool,
+}
+
+impl Transform {
+    /// Prepares a view.
+    ///
+    /// # Errors
+    /// [`ViewError::NotFinite`] if a matrix holds NaN or an infinity.
+    pub fn new(view: &ViewTransform, viewport: Viewport, culling: Culling) -> Result<Self, ViewError> {
+        let (model_view, projection) = (Columns::of(&view.model_view), Columns::of(&view.projection));
+        for (matrix, columns) in [("model-view", &model_view), ("projection", &projection)] {
+            if !columns.is_finite() {
+                return Err(ViewError::NotFinite { matrix });
+            }
+        }
+        let to_screen = ToScreen::new(&viewport);
+        Ok(Self {
+            viewport,
+            to_clip: projection.after(&model_view),
+            model_view,
+            projection,
+            guard: to_screen.guard(),
+            to_screen,
+            binner: Binner::new(&viewport),
+            culling,
+        })
+    }
+
+    /// The picture.
+    #[must_use]
+    pub const fn viewport(&self) -> &Viewport {
+        &self.viewport
+    }
+
+    /// Transforms one triangle as far as its regions: calls `sink` for each screen triangle that touches any.
+    ///
+    /// The same screen triangles, in the same order, as [`Self::gouraud`] and [`Self::phong`] give.
+    #[inline]
+    pub fn bin(&self, positions: &[Vec3; 3], stats: &mut SetupStats, mut sink: impl FnMut(RegionMask)) {
+        stats.triangles += 1;
+        let clip = positions.map(|p| self.to_clip.point(p));
+        if clip.iter().all(|c| self.guard.contains(*c)) {
+            let corners = clip.map(|c| self.to_screen.snap(c));
+            if let Some(whole) = self.assemble(corners, stats) {
+                sink(whole.outline.regions);
+            }
+            return;
+        }
+        let corners = clip.map(|clip| Vertex { clip, extra: [] });
+        self.clipped(&corners, stats, |piece, _| sink(piece.outline.regions));
+    }
+
+    /// Transforms and lights one triangle: calls `sink` for each screen triangle that touches a region.
+    #[inline]
+    pub fn gouraud(
+        &self,
+        triangle: &Triangle,
+        light: &Light,
+        stats: &mut SetupStats,
+        mut sink: impl FnMut(ScreenTriangle<LitColours>),
+    ) {
+        let lighting = Lighting::new(&self.model_view, light);
+        let lit = |i: usize| lighting.colour(triangle.positions[i], triangle.normals[i], triangle.colours[i]);
+        self.triangle(&triangle.positions, lit, stats, |outline, colours| {
+            sink(lit_triangle(outline, colours));
+        });
+    }
+
+    /// Transforms one triangle with its normals: calls `sink` for each screen triangle that touches a region.
+    #[inline]
+    pub fn phong(
+        &self,
+        triangle: &Triangle,
+        stats: &mut SetupStats,
+        mut sink: impl FnMut(ScreenTriangle<SurfaceNormals>),
+    ) {
+        let normals = crate::light::facing_normals(&self.model_view, &triangle.positions, &triangle.normals);
+        let colour = triangle.colours[0];
+        self.triangle(
+            &triangle.positions,
+            |i| normals[i],
+            stats,
+            |outline, n| {
+                sink(normal_triangle(outline, n, colour));
+            },
+        );
+    }
+
+    /// Transforms a triangle; `extra` gives three more numbers of a corner, asked for only when it is seen.
+    #[inline(always)]
+    fn triangle(
+        &self,
+        positions: &[Vec3; 3],
+        extra: impl Fn(usize) -> [f32; 3],
+        stats: &mut SetupStats,
+        mut sink: impl FnMut(Outline, [[f32; 3]; 3]),
+    ) {
+        stats.triangles += 1;
+        let clip = positions.map(|p| self.to_clip.point(p));
+        if clip.iter().all(|c| self.guard.contains(*c)) {
+            let corners = clip.map(|c| self.to_screen.snap(c));
+            if let Some(whole) = self.assemble(corners, stats) {
+                let order = if whole.swapped { [0, 2, 1] } else { [0, 1, 2] };
+                sink(whole.outline, order.map(&extra));
+            }
+            return;
+        }
+        let corners = std::array::from_fn(|i| Vertex { clip: clip[i], extra: extra(i) });
+        self.clipped(&corners, stats, |piece, extras| sink(piece.outline, extras));
+    }
+
+    /// Transforms all triangles of a mesh as far as their regions, each vertex once. `sink` gets the triangle's number.
+    pub fn bin_mesh(
+        &self,
+        mesh: &Mesh<'_>,
+        scratch: &mut MeshScratch,
+        stats: &mut SetupStats,
+        mut sink: impl FnMut(usize, RegionMask),
+    ) {
+        self.transform_vertices(mesh.positions(), scratch);
+        for (number, indices) in mesh.triangles().iter().enumerate() {
+            stats.triangles += 1;
+            let corners = indices.map(|i| scratch.vertices[i as usize]);
+            if corners.iter().all(|v| v.inside) {
+                if let Some(whole) = self.assemble(corners.map(|v| v.snapped), stats) {
+                    sink(number, whole.outline.regions);
+                }
+            } else {
+                let corners = corners.map(|v| Vertex { clip: v.clip, extra: [] });
+                self.clipped(&corners, stats, |piece, _| sink(number, piece.outline.regions));
+            }
+        }
+    }
+
+    /// Transforms and lights all triangles of a mesh, each vertex once. `sink` gets the triangle's number.
+    pub fn gouraud_mesh(
+        &self,
+        mesh: &Mesh<'_>,
+        light: &Light,
+        scratch: &mut MeshScratch,
+        stats: &mut SetupStats,
+        mut sink: impl FnMut(usize, ScreenTriangle<LitColours>),
+    ) {
+        let lighting = Lighting::new(&self.model_view, light);
+        scratch.extras.clear();
+        let vertices = mesh.positions().iter().zip(mesh.normals()).zip(mesh.colours());
+        let lit = vertices.map(|((p, n), c)| lighting.colour(*p, *n, *c));
+        scratch.extras.extend(lit);
+        self.transform_vertices(mesh.positions(), scratch);
+        for (number, indices) in mesh.triangles().iter().enumerate() {
+            stats.triangles += 1;
+            self.mesh_triangle(scratch, indices, stats, |outline, colours| {
+                sink(number, lit_triangle(outline, colours));
+            });
+        }
+    }
+
+    fn mesh_triangle(
+        &self,
+        scratch: &MeshScratch,
+        indices: &[u32; 3],
+        stats: &mut SetupStats,
+        mut sink: impl FnMut(Outline, [[f32; 3]; 3]),
+    ) {
+        let indices = indices.map(|i| i as usize);
+        let corners = indices.map(|i| scratch.vertices[i]);
+        if corners.iter().all(|v| v.inside) {
+            if let Some(whole) = self.assemble(corners.map(|v| v.snapped), stats) {
+                let order = if whole.swapped { [0, 2, 1] } else { [0, 1, 2] };
+                sink(whole.outline, order.map(|i| scratch.extras[indices[i]]));
+            }
+            return;
+        }
+        let corners = indices.map(|i| Vertex { clip: scratch.vertices[i].clip, extra: scratch.extras[i] });
+        self.clipped(&corners, stats, |piece, extras| sink(piece.outline, extras));
+    }
+
+    fn transform_vertices(&self, positions: &[Vec3], scratch: &mut MeshScratch) {
+        scratch.vertices.clear();
+        scratch.vertices.extend(positions.iter().map(|p| {
+            let clip = self.to_clip.point(*p);
+            let inside = self.guard.contains(clip);
+            let snapped = if inside { self.to_screen.snap(clip) } else { Snapped::default() };
+            MeshVertex { clip, snapped, inside }
+        }));
+    }
+
+    /// Corners in clockwise order with the regions touched; `None`, counted, if there is nothing to draw.
+    #[inline(always)]
+    fn assemble(&self, corners: [Snapped; 3], stats: &mut SetupStats) -> Option<Assembled> {
+        let [p, q, r] = corners;
+        let mut outline =
+            Outline { x: [p.x, q.x, r.x], y: [p.y, q.y, r.y], z: [p.z, q.z, r.z], regions: RegionMask::EMPTY };
+        let twice_area = outline.twice_area();
+        if twice_area == 0 {
+            stats.degenerate += 1;
+            return None;
+        }
+        let swapped = twice_area < 0;
+        if swapped {
+            outline.x.swap(1, 2);
+            outline.y.swap(1, 2);
+            outline.z.swap(1, 2);
+        } else if self.culling == Culling::Back {
+            stats.back_facing += 1;
+            return None;
+        }
+        outline.regions = self.binner.triangle(&outline);
+        if outline.regions.is_empty() {
+            stats.untouched += 1;
+            return None;
+        }
+        stats.screen_triangles += 1;
+        Some(Assembled { outline, swapped })
+    }
+
+    /// Clips a triangle and hands out the fan of what is left.
+    #[inline(never)]
+    fn clipped<const N: usize>(
+        &self,
+        corners: &[Vertex<N>; 3],
+        stats: &mut SetupStats,
+        mut sink: impl FnMut(Assembled, [[f32; N]; 3]),
+    ) {
+        let clip = corners.map(|v| v.clip);
+        if !clip::representable(&clip) {
+            stats.not_finite += 1;
+            return;
+        }
+        if clip::all_outside(&clip) {
+            stats.outside += 1;
+            return;
+        }
+        stats.clipped += 1;
+        let polygon = self.guard.clip(corners);
+        let [first, rest @ ..] = polygon.corners() else {
+            return;
+        };
+        for pair in rest.windows(2) {
+            let piece = [*first, pair[0], pair[1]];
+            if let Some(assembled) = self.piece(&piece, stats) {
+                let extras = piece.map(|v| v.extra);
+                let order = if assembled.swapped { [0, 2, 1] } else { [0, 1, 2] };
+                sink(assembled, order.map(|i| extras[i]));
+            }
+        }
+    }
+
+    fn piece<const N: usize>(&self, piece: &[Vertex<N>; 3], stats: &mut SetupStats) -> Option<Assembled> {
+        let [p, q, r] = piece.map(|v| self.to_screen.snap_checked(v.clip));
+        let (Some(p), Some(q), Some(r)) = (p, q, r) else {
+            stats.not_finite += 1;
+            return None;
+        };
+        self.assemble([p, q, r], stats)
+    }
+}
+
+#[inline(always)]
+fn lit_triangle(outline: Outline, colours: [[f32; 3]; 3]) -> ScreenTriangle<LitColours> {
+    ScreenTriangle { outline, surface: LitColours(colours.map(|c| c.map(|v| rounded(v) as u16))) }
+}
+
+#[inline(always)]
+fn normal_triangle(outline: Outline, normals: [[f32; 3]; 3], colour: [u8; 3]) -> ScreenTriangle<SurfaceNormals> {
+    let unit = f32::from(screen::NORMAL_UNIT);
+    ScreenTriangle {
+        outline,
+        surface: SurfaceNormals { normals: normals.map(|n| n.map(|v| rounded(v * unit) as i16)), colour },
+    }
+}

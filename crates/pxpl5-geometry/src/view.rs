@@ -1,0 +1,243 @@
+//! From world to clip coordinates: the eye's matrices and the picture that they fill.
+
+use glam::{Mat4, Vec3};
+use pxpl5_wire::{Lines, RegionGrid};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Largest width, and height in frame lines, of a picture in pixels.
+///
+/// With vertices at most [`crate::GUARD_PIXELS`] from pixel (0, 0) this keeps edge expressions in 32 bits.
+pub const MAX_PICTURE: u32 = 2048;
+
+/// The matrices of one eye. Right-handed eye coordinates, looking along -Z; depth 0 at the near plane to 1 at the
+/// far plane (what `Mat4::perspective_rh` and `Mat4::orthographic_rh` give).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewTransform {
+    /// World (or model) to eye coordinates; for lighting and spheres a rotation, translation and uniform scale.
+    pub model_view: Mat4,
+    /// Eye to clip coordinates.
+    pub projection: Mat4,
+}
+
+/// A picture: how it is cut into regions, and which lines of the frame it holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "PictureFields", into = "PictureFields")]
+pub struct Viewport {
+    grid: RegionGrid,
+    lines: Lines,
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PictureFields {
+    grid: RegionGrid,
+    lines: Lines,
+}
+
+/// Why a picture or a view is refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ViewError {
+    /// The picture is empty or larger than [`MAX_PICTURE`].
+    PictureSize {
+        /// Width found, in pixels.
+        width: u32,
+        /// Height found, in frame lines.
+        frame_lines: u32,
+    },
+    /// A region is empty or larger than the renderer's array.
+    RegionSize {
+        /// Width found, in pixels.
+        width: u32,
+        /// Height found, in lines.
+        height: u32,
+    },
+    /// More regions than a [`crate::RegionMask`] holds.
+    Regions {
+        /// Number found.
+        found: u32,
+    },
+    /// A matrix holds NaN or an infinity.
+    NotFinite {
+        /// `"model-view"` or `"projection"`.
+        matrix: &'static str,
+    },
+}
+
+impl fmt::Display for ViewError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::PictureSize { width, frame_lines } => write!(
+                f,
+                "picture: expected 1 to {MAX_PICTURE} pixels by 1 to {MAX_PICTURE} frame lines, \
+                 found {width} x {frame_lines}"
+            ),
+            Self::RegionSize { width, height } => write!(
+                f,
+                "region: expected 1 to {0} pixels by 1 to {0} lines, found {width} x {height}",
+                pxpl5_wire::REGION_SIZE
+            ),
+            Self::Regions { found } => {
+                write!(f, "picture: expected at most {} regions, found {found}", crate::RegionMask::CAPACITY)
+            }
+            Self::NotFinite { matrix } => {
+                write!(f, "{matrix} matrix: expected finite numbers, found NaN or infinity")
+            }
+        }
+    }
+}
+
+impl std::error::Error for ViewError {}
+
+impl Viewport {
+    /// A whole NTSC frame: 640 x 480 in 20 regions (TR94).
+    pub const FRAME: Self = Self { grid: RegionGrid::FRAME, lines: Lines::Frame };
+
+    /// One NTSC field: 640 x 240 in 10 regions (TR94). Row r of it is line 2r (even) or 2r + 1 (odd) of the frame.
+    #[must_use]
+    pub const fn field(parity: pxpl5_wire::FieldParity) -> Self {
+        Self { grid: RegionGrid::FIELD, lines: Lines::Field(parity) }
+    }
+
+    /// Any other picture.
+    ///
+    /// # Errors
+    /// [`ViewError`] if a size is zero or too large, or there are more regions than a mask holds.
+    pub fn new(grid: RegionGrid, lines: Lines) -> Result<Self, ViewError> {
+        let step = Self { grid, lines }.line_step();
+        let frame_lines = grid.height.saturating_mul(step);
+        let fits = |n: u32, most: u32| (1..=most).contains(&n);
+        if !fits(grid.width, MAX_PICTURE) || !fits(frame_lines, MAX_PICTURE) {
+            return Err(ViewError::PictureSize { width: grid.width, frame_lines });
+        }
+        let (width, height) = (grid.region_width, grid.region_height);
+        if !fits(width, pxpl5_wire::REGION_SIZE) || !fits(height, pxpl5_wire::REGION_SIZE) {
+            return Err(ViewError::RegionSize { width, height });
+        }
+        if grid.regions() > crate::RegionMask::CAPACITY {
+            return Err(ViewError::Regions { found: grid.regions() });
+        }
+        Ok(Self { grid, lines })
+    }
+
+    /// How the picture is cut.
+    #[must_use]
+    pub const fn grid(&self) -> RegionGrid {
+        self.grid
+    }
+
+    /// Which lines of the frame the picture's rows are.
+    #[must_use]
+    pub const fn lines(&self) -> Lines {
+        self.lines
+    }
+
+    /// Frame lines from one row of the picture to the next: 1 or 2.
+    #[must_use]
+    pub const fn line_step(&self) -> u32 {
+        match self.lines {
+            Lines::Frame => 1,
+            Lines::Field(_) => 2,
+        }
+    }
+
+    /// Frame line of the picture's row 0: 0 or 1.
+    #[must_use]
+    pub const fn first_line(&self) -> u32 {
+        match self.lines {
+            Lines::Frame => 0,
+            Lines::Field(parity) => parity.first_line(),
+        }
+    }
+
+    /// Lines of the frame that the picture belongs to.
+    #[must_use]
+    pub const fn frame_lines(&self) -> u32 {
+        self.grid.height * self.line_step()
+    }
+}
+
+impl TryFrom<PictureFields> for Viewport {
+    type Error = ViewError;
+
+    fn try_from(fields: PictureFields) -> Result<Self, ViewError> {
+        Self::new(fields.grid, fields.lines)
+    }
+}
+
+impl From<Viewport> for PictureFields {
+    fn from(viewport: Viewport) -> Self {
+        Self { grid: viewport.grid, lines: viewport.lines }
+    }
+}
+
+/// Columns of a 4 x 4 matrix, multiplied in one fixed order on every host.
+///
+/// glam's own product uses the host's vector unit, whose order of additions differs from the scalar one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Columns(pub(crate) [[f32; 4]; 4]);
+
+impl Columns {
+    pub(crate) fn of(matrix: &Mat4) -> Self {
+        Self(matrix.to_cols_array_2d())
+    }
+
+    pub(crate) fn is_finite(&self) -> bool {
+        self.0.iter().flatten().all(|v| v.is_finite())
+    }
+
+    /// `self * right`, formed in 64 bits and rounded once.
+    pub(crate) fn after(&self, right: &Self) -> Self {
+        let mut out = [[0.0; 4]; 4];
+        for (column, from) in out.iter_mut().zip(&right.0) {
+            for (row, cell) in column.iter_mut().enumerate() {
+                let term = |k: usize| f64::from(self.0[k][row]) * f64::from(from[k]);
+                *cell = (((term(0) + term(1)) + term(2)) + term(3)) as f32;
+            }
+        }
+        Self(out)
+    }
+
+    /// Transforms the point (p, 1).
+    #[inline(always)]
+    pub(crate) fn point(&self, p: Vec3) -> [f32; 4] {
+        let [cx, cy, cz, cw] = &self.0;
+        std::array::from_fn(|i| ((cx[i] * p.x + cy[i] * p.y) + cz[i] * p.z) + cw[i])
+    }
+
+    /// Transforms the direction (v, 0), rows x, y, z.
+    #[inline(always)]
+    pub(crate) fn direction(&self, v: Vec3) -> [f32; 3] {
+        let [cx, cy, cz, _] = &self.0;
+        std::array::from_fn(|i| (cx[i] * v.x + cy[i] * v.y) + cz[i] * v.z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn absurd_pictures_are_refused_with_what_was_found() {
+        let grid = |width, height, region_width| RegionGrid { width, height, region_width, region_height: 128 };
+        let refuse = |g| Viewport::new(g, Lines::Frame).unwrap_err().to_string();
+        assert!(refuse(grid(0, 480, 128)).contains("found 0 x 480"));
+        assert!(refuse(grid(640, u32::MAX, 128)).contains("4294967295"));
+        assert!(refuse(grid(640, 480, 0)).contains("found 0 x 128"));
+        assert!(refuse(grid(640, 480, 129)).contains("found 129 x 128"));
+        assert!(refuse(grid(2048, 480, 8)).contains("found 1024"));
+    }
+
+    #[test]
+    fn the_design_maximum_of_1280_x_1024_is_accepted() {
+        let grid = RegionGrid { width: 1280, height: 1024, ..RegionGrid::FRAME };
+        assert!(Viewport::new(grid, Lines::Frame).is_ok());
+    }
+
+    #[test]
+    fn rows_of_a_field_are_every_second_line_of_the_frame() {
+        let odd = Viewport::field(pxpl5_wire::FieldParity::Odd);
+        assert_eq!((odd.line_step(), odd.first_line(), odd.frame_lines()), (2, 1, 480));
+    }
+}
