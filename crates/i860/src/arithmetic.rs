@@ -1,0 +1,133 @@
+//! IEEE arithmetic on bit patterns: round to nearest even, the same bits on every host.
+//!
+//! Host `f32` and `f64` add, subtract, multiply, divide and square root are exact IEEE operations everywhere; only
+//! the NaN that comes out differs between hosts. So a NaN result is replaced: the first NaN operand made quiet, or
+//! the default NaN (sign set, as Intel's other parts) when the operation made it.
+
+use crate::state::Stage;
+
+const NAN32: u32 = 0xFFC0_0000;
+const NAN64: u64 = 0xFFF8_0000_0000_0000;
+const QUIET32: u32 = 0x0040_0000;
+const QUIET64: u64 = 0x0008_0000_0000_0000;
+
+/// The four operations of adder and multiplier.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Operation {
+    Add,
+    Subtract,
+    Multiply,
+}
+
+#[cold]
+fn nan32(a: f32, b: f32) -> u32 {
+    match (a.is_nan(), b.is_nan()) {
+        (true, _) => a.to_bits() | QUIET32,
+        (_, true) => b.to_bits() | QUIET32,
+        _ => NAN32,
+    }
+}
+
+#[cold]
+fn nan64(a: f64, b: f64) -> u64 {
+    match (a.is_nan(), b.is_nan()) {
+        (true, _) => a.to_bits() | QUIET64,
+        (_, true) => b.to_bits() | QUIET64,
+        _ => NAN64,
+    }
+}
+
+#[inline]
+fn single(operation: Operation, a: f32, b: f32, flush: bool) -> u32 {
+    let result = match operation {
+        Operation::Add => a + b,
+        Operation::Subtract => a - b,
+        Operation::Multiply => a * b,
+    };
+    match () {
+        () if result.is_nan() => nan32(a, b),
+        () if flush && result.is_subnormal() => result.to_bits() & 0x8000_0000,
+        () => result.to_bits(),
+    }
+}
+
+#[inline]
+fn double(operation: Operation, a: f64, b: f64, flush: bool) -> u64 {
+    let result = match operation {
+        Operation::Add => a + b,
+        Operation::Subtract => a - b,
+        Operation::Multiply => a * b,
+    };
+    match () {
+        () if result.is_nan() => nan64(a, b),
+        () if flush && result.is_subnormal() => result.to_bits() & (1 << 63),
+        () => result.to_bits(),
+    }
+}
+
+/// A single as a double, bit patterns.
+#[inline]
+pub(crate) fn widen(bits: u32) -> u64 {
+    let value = f32::from_bits(bits);
+    if value.is_nan() { widen_nan(bits) } else { f64::from(value).to_bits() }
+}
+
+#[cold]
+fn widen_nan(bits: u32) -> u64 {
+    let sign = u64::from(bits >> 31) << 63;
+    sign | 0x7FF0_0000_0000_0000 | u64::from(bits & 0x007F_FFFF) << 29 | QUIET64
+}
+
+/// A double as a single, rounded to nearest even.
+#[inline]
+pub(crate) fn narrow(bits: u64, flush: bool) -> u32 {
+    let value = f64::from_bits(bits);
+    if value.is_nan() {
+        return (bits >> 32) as u32 & 0x8000_0000 | 0x7FC0_0000 | (bits >> 29) as u32 & 0x003F_FFFF;
+    }
+    let result = value as f32;
+    if flush && result.is_subnormal() { result.to_bits() & 0x8000_0000 } else { result.to_bits() }
+}
+
+/// One operation with the precisions of an instruction's S and R bits. Operands are in source precision.
+#[inline]
+pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result: bool, flush: bool) -> Stage {
+    if !source && !result {
+        let bits = single(operation, f32::from_bits(a as u32), f32::from_bits(b as u32), flush);
+        return Stage { bits: u64::from(bits), double: false };
+    }
+    let (a, b) = if source { (a, b) } else { (widen(a as u32), widen(b as u32)) };
+    let bits = double(operation, f64::from_bits(a), f64::from_bits(b), flush);
+    Stage { bits, double: true }
+}
+
+/// A value made with one precision, read with another.
+#[inline]
+pub(crate) fn convert(value: Stage, double: bool, flush: bool) -> u64 {
+    match (value.double, double) {
+        (false, true) => widen(value.bits as u32),
+        (true, false) => u64::from(narrow(value.bits, flush)),
+        _ => value.bits,
+    }
+}
+
+/// fsr.RM: to nearest even, down, up, towards zero.
+pub(crate) fn round(value: f64, mode: u32) -> f64 {
+    match mode {
+        0 => value.round_ties_even(),
+        1 => value.floor(),
+        2 => value.ceil(),
+        _ => value.trunc(),
+    }
+}
+
+/// The low word of `fix` and `ftrunc`. Out of range the part traps; here the value saturates, and NaN gives 0.
+pub(crate) fn to_integer(rounded: f64) -> u32 {
+    rounded as i32 as u32
+}
+
+/// The low 53 bits of the product of two fraction fields.
+pub(crate) fn multiply_low(a: u64, b: u64) -> u64 {
+    const FRACTION: u64 = (1 << 53) - 1;
+    (a & FRACTION).wrapping_mul(b & FRACTION) & FRACTION
+}

@@ -1,0 +1,120 @@
+//! What the processor is plugged into.
+
+use std::fmt;
+
+/// An access that no memory or device answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unmapped;
+
+/// Memory and devices as the processor sees them: little-endian, physical byte addresses.
+///
+/// The processor checks alignment before it asks, so an address is always a multiple of the access size. A
+/// 16-byte access arrives as two of 8.
+pub trait Bus {
+    /// Reads `size` (1, 2, 4 or 8) bytes at `address`, zero-extended.
+    ///
+    /// # Errors
+    /// [`Unmapped`] when nothing answers; the processor takes a data or instruction access trap.
+    fn read(&mut self, address: u32, size: u32) -> Result<u64, Unmapped>;
+
+    /// Writes the low `size` (1, 2, 4 or 8) bytes of `value` at `address`.
+    ///
+    /// # Errors
+    /// [`Unmapped`] when nothing answers; the processor takes a data access trap.
+    fn write(&mut self, address: u32, size: u32, value: u64) -> Result<(), Unmapped>;
+
+    /// Whether the caches may hold the line of `address` (the KEN# pin). Devices answer false.
+    fn is_cacheable(&self, _address: u32) -> bool {
+        true
+    }
+}
+
+/// Plain memory from a base address.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Ram {
+    base: u32,
+    bytes: Vec<u8>,
+}
+
+impl Ram {
+    /// `len` zero bytes from address `base`.
+    #[must_use]
+    pub fn new(base: u32, len: usize) -> Ram {
+        Ram { base, bytes: vec![0; len] }
+    }
+
+    /// The contents, lowest address first.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// Puts `bytes` at `address`.
+    ///
+    /// # Errors
+    /// [`Unmapped`] when they do not fit; nothing is written then.
+    pub fn load(&mut self, address: u32, bytes: &[u8]) -> Result<(), Unmapped> {
+        let at = self.offset(address, bytes.len())?;
+        self.bytes[at..at + bytes.len()].copy_from_slice(bytes);
+        Ok(())
+    }
+
+    /// Puts 32-bit words at `address`.
+    ///
+    /// # Errors
+    /// [`Unmapped`] when they do not fit; nothing is written then.
+    pub fn load_words(&mut self, address: u32, words: &[u32]) -> Result<(), Unmapped> {
+        let bytes: Vec<u8> = words.iter().flat_map(|w| w.to_le_bytes()).collect();
+        self.load(address, &bytes)
+    }
+
+    /// Reads `count` 32-bit words from `address`.
+    ///
+    /// # Errors
+    /// [`Unmapped`] when they are not all there.
+    pub fn words(&self, address: u32, count: usize) -> Result<Vec<u32>, Unmapped> {
+        let at = self.offset(address, count.saturating_mul(4))?;
+        let words = self.bytes[at..at + count * 4].chunks_exact(4);
+        Ok(words.map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+    }
+
+    fn offset(&self, address: u32, len: usize) -> Result<usize, Unmapped> {
+        let at = address.wrapping_sub(self.base) as usize;
+        let end = at.checked_add(len).ok_or(Unmapped)?;
+        if address < self.base || end > self.bytes.len() { Err(Unmapped) } else { Ok(at) }
+    }
+}
+
+impl fmt::Debug for Ram {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Ram {{ base: {:#010x}, len: {:#x} }}", self.base, self.bytes.len())
+    }
+}
+
+impl Bus for Ram {
+    #[inline]
+    fn read(&mut self, address: u32, size: u32) -> Result<u64, Unmapped> {
+        let at = address.wrapping_sub(self.base) as usize;
+        let bytes = self.bytes.get(at..).ok_or(Unmapped)?;
+        let value = match size {
+            1 => bytes.first().map(|b| u64::from(*b)),
+            2 => bytes.first_chunk().map(|b| u64::from(u16::from_le_bytes(*b))),
+            4 => bytes.first_chunk().map(|b| u64::from(u32::from_le_bytes(*b))),
+            _ => bytes.first_chunk().map(|b| u64::from_le_bytes(*b)),
+        };
+        value.ok_or(Unmapped)
+    }
+
+    #[inline]
+    fn write(&mut self, address: u32, size: u32, value: u64) -> Result<(), Unmapped> {
+        let at = address.wrapping_sub(self.base) as usize;
+        let place = self.bytes.get_mut(at..).and_then(|b| b.get_mut(..size as usize)).ok_or(Unmapped)?;
+        match size {
+            4 => place.copy_from_slice(&(value as u32).to_le_bytes()),
+            8 => place.copy_from_slice(&value.to_le_bytes()),
+            2 => place.copy_from_slice(&(value as u16).to_le_bytes()),
+            _ => place[0] = value as u8,
+        }
+        Ok(())
+    }
+}

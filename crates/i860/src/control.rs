@@ -1,0 +1,152 @@
+//! Execution of branches, traps by instruction, and the core half as a whole.
+
+use crate::bus::Bus;
+use crate::cpu::{Cpu, TrapCause};
+use crate::decoded::Decoded;
+use crate::instruction::{Flags, Instruction, Op};
+use crate::state::{Mode, epsr, psr};
+use crate::timing::Freeze;
+
+/// How control goes on after a unit (an instruction or a pair).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Flow {
+    /// To what follows.
+    Next,
+    /// To a target, at once.
+    Jump(u32),
+    /// To a target, after the next unit.
+    Delayed(u32),
+    /// To what follows the next unit.
+    Skip,
+}
+
+impl Cpu {
+    /// Executes a core instruction at `pc`.
+    #[inline]
+    pub(crate) fn core<B: Bus>(&mut self, d: &Decoded, pc: u32, bus: &mut B) -> Result<Flow, TrapCause> {
+        match d.instruction.op {
+            Op::LdB | Op::LdS | Op::LdL => self.load_integer(d, bus)?,
+            Op::StB | Op::StS | Op::StL => self.store_integer(d, bus)?,
+            Op::Fld => self.load_floating(d, bus)?,
+            Op::Fst => self.store_floating(d, bus)?,
+            Op::Pfld => self.load_pipelined(d, bus)?,
+            Op::Pst => self.store_pixels(d, bus)?,
+            op if op >= Op::LdC && op <= Op::Intovr => return self.system(&d.instruction, pc),
+            op if op <= Op::Bla => return Ok(self.branch(&d.instruction, pc)),
+            _ => self.integer(&d.instruction),
+        }
+        Ok(Flow::Next)
+    }
+
+    fn system(&mut self, i: &Instruction, pc: u32) -> Result<Flow, TrapCause> {
+        match i.op {
+            Op::LdC => self.state.set_r(i.dest, self.read_control(i.src2)),
+            Op::StC => {
+                self.write_control(i.src2, self.state.r(i.src1));
+                self.time.charge(Freeze::ControlStore);
+            }
+            Op::Ixfr => self.state.set_f32(i.dest, self.state.r(i.src1)),
+            Op::Flush => self.flush_line(i),
+            Op::Trap => return Err(TrapCause::Instruction),
+            Op::Intovr if self.state.epsr & epsr::OF != 0 => return Err(TrapCause::Overflow),
+            Op::Calli => return Ok(self.call_indirect(i, pc)),
+            Op::Lock => self.set_lock(true),
+            Op::Unlock => self.set_lock(false),
+            _ => {}
+        }
+        Ok(Flow::Next)
+    }
+
+    /// Address behind the delay slot of a branch at `pc`; the slot is a pair when the next unit is dual.
+    fn behind_slot(&self, pc: u32) -> u32 {
+        pc.wrapping_add(if self.next_mode.is_dual() { 12 } else { 8 })
+    }
+
+    fn call_indirect(&mut self, i: &Instruction, pc: u32) -> Flow {
+        let target = self.state.r(i.src1);
+        self.state.set_r(1, self.behind_slot(pc));
+        self.time.charge(Freeze::IndirectBranch);
+        Flow::Delayed(target & !3)
+    }
+
+    #[inline]
+    fn branch(&mut self, i: &Instruction, pc: u32) -> Flow {
+        let target = pc.wrapping_add(4).wrapping_add((i.imm as u32) << 2);
+        let condition = self.state.psr & psr::CC != 0;
+        match i.op {
+            Op::Br => Flow::Delayed(target),
+            Op::Call => {
+                self.state.set_r(1, self.behind_slot(pc));
+                Flow::Delayed(target)
+            }
+            Op::Bri => self.branch_indirect(i),
+            Op::Bc => self.immediate(condition, target, Freeze::BranchTaken),
+            Op::Bnc => self.immediate(!condition, target, Freeze::BranchTaken),
+            Op::BcT => self.delayed(condition, target),
+            Op::BncT => self.delayed(!condition, target),
+            Op::Bla => self.branch_on_loop(i, target),
+            _ => self.compare_and_branch(i, target),
+        }
+    }
+
+    #[inline]
+    fn immediate(&mut self, taken: bool, target: u32, cost: Freeze) -> Flow {
+        if !taken {
+            return Flow::Next;
+        }
+        self.time.charge(cost);
+        Flow::Jump(target)
+    }
+
+    #[inline]
+    fn delayed(&mut self, taken: bool, target: u32) -> Flow {
+        if taken {
+            return Flow::Delayed(target);
+        }
+        self.time.charge(Freeze::DelayedBranchNotTaken);
+        Flow::Skip
+    }
+
+    fn compare_and_branch(&mut self, i: &Instruction, target: u32) -> Flow {
+        let first = if i.has(Flags::IMMEDIATE) { u32::from(i.src1) } else { self.state.r(i.src1) };
+        let equal = first == self.state.r(i.src2);
+        self.immediate(equal == (i.op == Op::Bte), target, Freeze::CompareBranchTaken)
+    }
+
+    /// Branches on the old LCC; the new one tells whether the sum of the operands is not negative.
+    fn branch_on_loop(&mut self, i: &Instruction, target: u32) -> Flow {
+        let (a, b) = (self.state.r(i.src1), self.state.r(i.src2));
+        let taken = self.state.psr & psr::LCC != 0;
+        let sum = i64::from(a as i32) + i64::from(b as i32);
+        self.state.set_psr_bit(psr::LCC, sum >= 0);
+        self.state.set_r(i.src2, a.wrapping_add(b));
+        if taken {
+            return Flow::Delayed(target);
+        }
+        self.time.charge(Freeze::DelayedBranchNotTaken);
+        Flow::Next
+    }
+
+    /// `bri` also returns from a trap: while a trap bit is set it restores U, IM and the pairing mode.
+    fn branch_indirect(&mut self, i: &Instruction) -> Flow {
+        let target = self.state.r(i.src1);
+        self.time.charge(Freeze::IndirectBranch);
+        if self.state.psr & psr::TRAPS != 0 {
+            self.return_from_trap();
+        }
+        Flow::Delayed(target & !3)
+    }
+
+    fn return_from_trap(&mut self) {
+        let old = self.state.psr;
+        self.state.psr = old & !(psr::TRAPS | psr::DIM | psr::DS);
+        self.state.set_psr_bit(psr::U, old & psr::PU != 0);
+        self.state.set_psr_bit(psr::IM, old & psr::PIM != 0);
+        self.mode_after_slot = Some(match (old & psr::DIM != 0, old & psr::DS != 0) {
+            (true, true) => Mode::DualOnce,
+            (true, false) => Mode::Dual,
+            (false, true) => Mode::Entering,
+            (false, false) => Mode::Single,
+        });
+    }
+}

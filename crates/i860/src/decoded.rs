@@ -1,0 +1,186 @@
+//! Predecoded instructions: what the timing model asks about an instruction, answered once.
+
+use crate::instruction::{Flags, Instruction, Op};
+
+/// What an instruction can be held up by; a bit per hazard that lasts some clocks.
+pub(crate) mod hazard {
+    pub(crate) const SCALAR: u16 = 1 << 0;
+    pub(crate) const DOUBLE_MULTIPLY: u16 = 1 << 1;
+    pub(crate) const CONDITION: u16 = 1 << 2;
+    pub(crate) const TRANSFER_IN_MISS: u16 = 1 << 3;
+    pub(crate) const ACCESS_IN_MISS: u16 = 1 << 4;
+    pub(crate) const STORE_HIT: u16 = 1 << 5;
+    pub(crate) const GRAPHICS: u16 = 1 << 6;
+    pub(crate) const FLUSH: u16 = 1 << 7;
+    pub(crate) const STORED: u16 = 1 << 8;
+    pub(crate) const COUNT: usize = 9;
+}
+
+/// What an instruction leaves behind.
+pub(crate) mod arm {
+    pub(crate) const LOAD: u16 = 1 << 0;
+    pub(crate) const LONG_LOAD: u16 = 1 << 1;
+    pub(crate) const CONDITION: u16 = 1 << 2;
+    pub(crate) const LOGICAL: u16 = 1 << 3;
+    pub(crate) const SCALAR: u16 = 1 << 4;
+    pub(crate) const SCALAR_DOUBLE_MULTIPLY: u16 = 1 << 5;
+    pub(crate) const DOUBLE_MULTIPLY: u16 = 1 << 6;
+    pub(crate) const GRAPHICS: u16 = 1 << 7;
+    pub(crate) const FLUSH: u16 = 1 << 8;
+    pub(crate) const STORED: u16 = 1 << 9;
+    pub(crate) const SEED: u16 = 1 << 10;
+    pub(crate) const FLOATING_RESULT: u16 = 1 << 11;
+}
+
+/// No register.
+pub(crate) const NONE: u8 = 0xFF;
+
+/// A decoded instruction with its timing classes. `tag` is the address that it was decoded from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Decoded {
+    pub(crate) reads: u64,
+    pub(crate) tag: u32,
+    pub(crate) instruction: Instruction,
+    pub(crate) sensitive: u16,
+    pub(crate) arms: u16,
+    /// First source when the multiplier reads it, else [`NONE`].
+    pub(crate) multiplier_source: u8,
+    pub(crate) is_floating: bool,
+    pub(crate) is_branch: bool,
+    pub(crate) dual: bool,
+}
+
+/// An address that no instruction has.
+pub(crate) const EMPTY: u32 = 1;
+
+impl Decoded {
+    pub(crate) fn new(instruction: Instruction, tag: u32) -> Decoded {
+        let i = &instruction;
+        Decoded {
+            reads: reads(i) & !(1 | 3 << 32),
+            tag,
+            instruction,
+            sensitive: sensitive(i),
+            arms: arms(i),
+            multiplier_source: multiplier_source(i),
+            is_floating: i.is_floating(),
+            is_branch: i.is_branch(),
+            dual: i.is_floating() && i.has(Flags::DUAL),
+        }
+    }
+
+    pub(crate) fn empty() -> Decoded {
+        Decoded::new(Instruction::new(Op::Fnop), EMPTY)
+    }
+}
+
+/// Register mask of `bytes` of floating-point registers from `n`.
+pub(crate) fn float_mask(n: u8, bytes: u8) -> u64 {
+    let n = u32::from(n);
+    let low = match bytes {
+        16 => 15 << (n & 28),
+        8 => 3 << (n & 30),
+        _ => 1 << n,
+    };
+    low << 32
+}
+
+fn reads(i: &Instruction) -> u64 {
+    if i.is_floating() {
+        return floating_reads(i);
+    }
+    let (a, b) = (1u64 << i.src1, 1u64 << i.src2);
+    let first = if i.has(Flags::IMMEDIATE) { 0 } else { a };
+    match i.op {
+        Op::StB | Op::StS | Op::StL | Op::Bla => a | b,
+        Op::Fst | Op::Pst => first | b | float_mask(i.dest, i.size),
+        Op::Bri | Op::Calli | Op::Ixfr | Op::StC => a,
+        Op::LdC | Op::Br | Op::Call | Op::Bc | Op::BcT | Op::Bnc | Op::BncT => 0,
+        Op::Lock | Op::Unlock | Op::Intovr | Op::Trap => 0,
+        _ => first | b,
+    }
+}
+
+fn floating_reads(i: &Instruction) -> u64 {
+    let wide = |double: bool| if double { 8 } else { 4 };
+    let (s, r) = (i.has(Flags::SOURCE_DOUBLE), i.has(Flags::RESULT_DOUBLE));
+    let (a, b) = (float_mask(i.src1, wide(s)), float_mask(i.src2, wide(s)));
+    match i.op {
+        Op::Fnop => 0,
+        Op::Frcp | Op::Frsqr => b,
+        Op::Fix | Op::Ftrunc | Op::Famov | Op::Form => a,
+        Op::Fxfr => float_mask(i.src1, 4),
+        Op::DualOp => float_mask(i.src1, wide(s || r)) | float_mask(i.src2, wide(s || r)),
+        _ => a | b,
+    }
+}
+
+fn sensitive(i: &Instruction) -> u16 {
+    use Op::{Bc, BcT, Bnc, BncT, Calli, Call, Fld, Flush, Fst, Ixfr, LdB, LdC, LdL, LdS, Pfld, Pst, StB, StC, StL, StS};
+    match i.op {
+        Op::Fnop => 0,
+        _ if i.is_floating() => floating_sensitive(i),
+        Bc | BcT | Bnc | BncT => hazard::CONDITION,
+        Call | Calli | Ixfr | LdC | StC => hazard::TRANSFER_IN_MISS,
+        LdB | LdS | LdL | Fld => hazard::ACCESS_IN_MISS | hazard::STORE_HIT,
+        Fst | Pst => hazard::ACCESS_IN_MISS | hazard::SCALAR,
+        StB | StS | StL | Pfld => hazard::ACCESS_IN_MISS,
+        Flush => hazard::ACCESS_IN_MISS | hazard::FLUSH,
+        _ => 0,
+    }
+}
+
+fn floating_sensitive(i: &Instruction) -> u16 {
+    let mut bits = hazard::SCALAR | hazard::GRAPHICS;
+    if i.uses_multiplier() {
+        bits |= hazard::DOUBLE_MULTIPLY;
+    }
+    if i.has(Flags::PIPELINED) || i.op == Op::DualOp {
+        bits |= hazard::STORED;
+    }
+    if i.op == Op::Fxfr { bits | hazard::TRANSFER_IN_MISS } else { bits }
+}
+
+fn arms(i: &Instruction) -> u16 {
+    use Op::{Adds, Addu, Call, Calli, Fld, Flush, Fst, Fxfr, Ixfr, LdB, LdC, LdL, LdS, Pfld, Pst, Subs, Subu};
+    match i.op {
+        LdB | LdS | LdL | LdC | Call | Calli => arm::LOAD,
+        Fld | Pfld | Ixfr => arm::LONG_LOAD,
+        Addu | Adds | Subu | Subs => arm::CONDITION,
+        Fst | Pst => arm::STORED,
+        Flush => arm::FLUSH,
+        Fxfr => arm::LOAD,
+        Op::Fnop => 0,
+        _ if i.is_floating() => floating_arms(i),
+        _ if i.sets_condition() => arm::LOGICAL,
+        _ => 0,
+    }
+}
+
+fn floating_arms(i: &Instruction) -> u16 {
+    let pipelined = i.has(Flags::PIPELINED) || i.op == Op::DualOp;
+    let double = i.has(Flags::SOURCE_DOUBLE);
+    let mut bits = if i.dest < 2 { 0 } else { arm::FLOATING_RESULT };
+    bits |= match i.op {
+        Op::Frcp | Op::Frsqr => arm::SEED,
+        Op::Pfgt | Op::Pfle | Op::Pfeq => arm::CONDITION,
+        Op::Fmul if double && !pipelined => arm::SCALAR_DOUBLE_MULTIPLY,
+        _ if i.uses_graphics() => arm::GRAPHICS,
+        _ if !pipelined => arm::SCALAR,
+        _ => 0,
+    };
+    if double && matches!(i.op, Op::Fmul | Op::Fmlow | Op::DualOp) { bits | arm::DOUBLE_MULTIPLY } else { bits }
+}
+
+/// In a dual operation the first source goes to the multiplier for four of the sixteen data paths.
+fn multiplier_source(i: &Instruction) -> u8 {
+    let reads_first = match i.op {
+        Op::Fmul | Op::Fmlow => true,
+        Op::DualOp => matches!(i.imm & 15, 9 | 11 | 13 | 15),
+        _ => false,
+    };
+    if !reads_first || i.src1 < 2 {
+        return NONE;
+    }
+    if i.has(Flags::SOURCE_DOUBLE) { i.src1 & 30 } else { i.src1 }
+}

@@ -1,0 +1,168 @@
+//! The external bus and the page-mode memory behind it, in closed form: a request gives the clocks of its data.
+
+use crate::timing::{BUS_BYTES, BUS_DEPTH, DramTiming};
+
+/// When the data of a request pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Transfer {
+    /// Clock at which the first (needed) 8 bytes are there.
+    pub(crate) first: u64,
+    /// Clock at which the last 8 bytes are there.
+    pub(crate) last: u64,
+}
+
+/// State of bus and memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Dram {
+    timing: DramTiming,
+    /// Clock from which a new request can start.
+    free: u64,
+    open_page: u64,
+    next_refresh: u64,
+    next_dma: u64,
+    /// Ends of the latest requests, oldest first.
+    outstanding: [u64; BUS_DEPTH],
+    pub(crate) transfers: u64,
+    pub(crate) page_misses: u64,
+}
+
+const CLOSED: u64 = u64::MAX;
+
+impl Dram {
+    pub(crate) fn new(timing: DramTiming) -> Dram {
+        Dram {
+            timing,
+            free: 0,
+            open_page: CLOSED,
+            next_refresh: u64::from(timing.refresh_interval),
+            next_dma: u64::from(timing.dma_interval),
+            outstanding: [0; BUS_DEPTH],
+            transfers: 0,
+            page_misses: 0,
+        }
+    }
+
+    /// Clock at which the address pipe has room.
+    pub(crate) fn accepts_at(&self) -> u64 {
+        self.outstanding[0]
+    }
+
+    /// Clock at which everything requested so far is done.
+    pub(crate) fn idle_at(&self) -> u64 {
+        self.outstanding[BUS_DEPTH - 1].max(self.free)
+    }
+
+    /// Refreshes and transfers of other masters that fall due before a request at `now`.
+    fn steal(&mut self, now: u64) {
+        let t = self.timing;
+        for (interval, clocks, due) in [
+            (t.refresh_interval, t.refresh_clocks, &mut self.next_refresh),
+            (t.dma_interval, t.dma_clocks, &mut self.next_dma),
+        ] {
+            if interval == 0 || clocks == 0 || *due > now {
+                continue;
+            }
+            let missed = (now - *due) / u64::from(interval);
+            let latest = *due + missed * u64::from(interval);
+            self.free = self.free.max(latest) + u64::from(clocks);
+            *due = latest + u64::from(interval);
+            self.open_page = CLOSED;
+        }
+    }
+
+    fn begin(&mut self, now: u64, address: u32) -> (u64, bool) {
+        self.steal(now);
+        let page = u64::from(address / self.timing.page_bytes.max(BUS_BYTES));
+        let hit = page == self.open_page;
+        self.open_page = page;
+        self.transfers += 1;
+        self.page_misses += u64::from(!hit);
+        (self.free.max(now), hit)
+    }
+
+    fn finish(&mut self, transfer: Transfer) -> Transfer {
+        let [_, second, third] = self.outstanding;
+        self.outstanding = [second, third, transfer.last.max(third)];
+        transfer
+    }
+
+    /// Reads `beats` transfers of 8 bytes, the needed one first.
+    ///
+    /// Requests to the open row overlap: the next one's first data follow `next` clocks after this one's last.
+    pub(crate) fn read(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
+        let (start, hit) = self.begin(now, address);
+        let t = self.timing;
+        let first = start + u64::from(if hit { t.first_hit } else { t.first_miss });
+        let last = first + u64::from(beats - 1) * u64::from(t.next);
+        let opening = if hit { 0 } else { u64::from(t.first_miss.saturating_sub(t.first_hit)) };
+        self.free = start + opening + u64::from(beats) * u64::from(t.next);
+        self.finish(Transfer { first, last })
+    }
+
+    /// Writes `beats` transfers of 8 bytes within one row.
+    pub(crate) fn write(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
+        let (start, hit) = self.begin(now, address);
+        let t = self.timing;
+        let first = start + u64::from(if hit { t.write_hit } else { t.write_miss });
+        let last = first + u64::from(beats - 1) * u64::from(t.write_hit);
+        self.free = last;
+        self.finish(Transfer { first, last })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Dram, Transfer};
+    use crate::timing::DramTiming;
+
+    fn quiet() -> DramTiming {
+        DramTiming { refresh_interval: 0, ..DramTiming::board() }
+    }
+
+    #[test]
+    fn a_line_fill_takes_the_first_access_and_three_more() {
+        let t = quiet();
+        let mut dram = Dram::new(t);
+        let opening = dram.read(0, 0, 4);
+        let last = u64::from(t.first_miss + 3 * t.next);
+        assert_eq!(opening, Transfer { first: u64::from(t.first_miss), last });
+        let open = dram.read(1000, 32, 4);
+        assert_eq!(open.last - 1000, u64::from(t.first_hit + 3 * t.next));
+    }
+
+    #[test]
+    fn overlapped_reads_of_the_open_row_arrive_one_after_another() {
+        let t = quiet();
+        let mut dram = Dram::new(t);
+        let first = dram.read(0, 0, 1);
+        let second = dram.read(1, 8, 1);
+        assert_eq!(second.first - first.last, u64::from(t.next));
+    }
+
+    #[test]
+    fn another_row_costs_the_opening_again() {
+        let t = quiet();
+        let mut dram = Dram::new(t);
+        dram.read(0, 0, 1);
+        assert_eq!(dram.read(1000, t.page_bytes, 1).first - 1000, u64::from(t.first_miss));
+        assert_eq!(dram.page_misses, 2);
+    }
+
+    #[test]
+    fn a_refresh_due_holds_a_request_and_one_due_a_clock_later_does_not() {
+        let t = DramTiming { refresh_interval: 100, refresh_clocks: 7, ..DramTiming::board() };
+        let mut due = Dram::new(t);
+        assert_eq!(due.read(100, 0, 1).first, 100 + 7 + u64::from(t.first_miss));
+        let mut early = Dram::new(t);
+        assert_eq!(early.read(99, 0, 1).first, 99 + u64::from(t.first_miss));
+    }
+
+    #[test]
+    fn the_address_pipe_has_room_when_the_oldest_of_three_is_done() {
+        let mut dram = Dram::new(quiet());
+        let oldest = dram.read(0, 0, 1);
+        dram.read(0, 8, 1);
+        dram.read(0, 16, 1);
+        assert_eq!(dram.accepts_at(), oldest.last);
+    }
+}

@@ -1,0 +1,132 @@
+//! Execution of the integer core: arithmetic, logic, shifts, control registers.
+
+use crate::cpu::Cpu;
+use crate::instruction::{Flags, Instruction, Op};
+use crate::state::{dirbase, epsr, psr};
+
+impl Cpu {
+    #[inline]
+    fn first_source(&self, i: &Instruction) -> u32 {
+        if i.has(Flags::IMMEDIATE) { i.imm as u32 } else { self.state.r(i.src1) }
+    }
+
+    /// Arithmetic, logic and shifts.
+    #[inline]
+    pub(crate) fn integer(&mut self, i: &Instruction) {
+        let (a, b) = (self.first_source(i), self.state.r(i.src2));
+        let result = match i.op {
+            Op::Addu => self.add_unsigned(a, b),
+            Op::Subu => self.subtract_unsigned(a, b),
+            Op::Adds => self.add_signed(a, b),
+            Op::Subs => self.subtract_signed(a, b),
+            Op::Shl => b << (a & 31),
+            Op::Shr => self.shift_right(a, b),
+            Op::Shrd => ((u64::from(a) << 32 | u64::from(b)) >> self.shift_count()) as u32,
+            Op::Shra => (b as i32 >> (a & 31)) as u32,
+            _ => self.logical(i.op, a, b),
+        };
+        self.state.set_r(i.dest, result);
+    }
+
+    #[inline]
+    fn logical(&mut self, op: Op, a: u32, b: u32) -> u32 {
+        let result = match op {
+            Op::And => a & b,
+            Op::Andh => a << 16 & b,
+            Op::Andnot => !a & b,
+            Op::Andnoth => !(a << 16) & b,
+            Op::Or => a | b,
+            Op::Orh => a << 16 | b,
+            Op::Xor => a ^ b,
+            _ => a << 16 ^ b,
+        };
+        self.state.set_psr_bit(psr::CC, result == 0);
+        result
+    }
+
+    #[inline]
+    fn add_unsigned(&mut self, a: u32, b: u32) -> u32 {
+        let (sum, carry) = a.overflowing_add(b);
+        self.state.set_psr_bit(psr::CC, carry);
+        self.state.set_overflow(carry);
+        sum
+    }
+
+    #[inline]
+    fn subtract_unsigned(&mut self, a: u32, b: u32) -> u32 {
+        let no_borrow = b <= a;
+        self.state.set_psr_bit(psr::CC, no_borrow);
+        self.state.set_overflow(!no_borrow);
+        a.wrapping_sub(b)
+    }
+
+    #[inline]
+    fn add_signed(&mut self, a: u32, b: u32) -> u32 {
+        let (sum, overflow) = (a as i32).overflowing_add(b as i32);
+        let negative = i64::from(a as i32) + i64::from(b as i32) < 0;
+        self.state.set_psr_bit(psr::CC, negative);
+        self.state.set_overflow(overflow);
+        sum as u32
+    }
+
+    #[inline]
+    fn subtract_signed(&mut self, a: u32, b: u32) -> u32 {
+        let (difference, overflow) = (a as i32).overflowing_sub(b as i32);
+        self.state.set_psr_bit(psr::CC, b as i32 > a as i32);
+        self.state.set_overflow(overflow);
+        difference as u32
+    }
+
+    fn shift_count(&self) -> u32 {
+        (self.state.psr & psr::SC) >> psr::SC_SHIFT
+    }
+
+    #[inline]
+    fn shift_right(&mut self, a: u32, b: u32) -> u32 {
+        self.state.psr = self.state.psr & !psr::SC | (a & 31) << psr::SC_SHIFT;
+        b >> (a & 31)
+    }
+
+    pub(crate) fn read_control(&self, register: u8) -> u32 {
+        match register {
+            0 => self.state.fir,
+            1 => self.state.psr,
+            2 => self.state.dirbase,
+            3 => self.state.db,
+            4 => self.state.fsr,
+            _ => self.state.epsr,
+        }
+    }
+
+    /// Writes a control register; in user mode only the user's bits of psr, OF, and fsr change.
+    pub(crate) fn write_control(&mut self, register: u8, value: u32) {
+        let user = self.state.psr & psr::U != 0;
+        let merge = |old: u32, mask: u32| old & !mask | value & mask;
+        match register {
+            1 => self.state.psr = merge(self.state.psr, if user { psr::USER } else { !0 }),
+            4 => self.state.fsr = value,
+            5 => self.state.epsr = merge(self.state.epsr, if user { epsr::OF } else { epsr::WRITABLE }),
+            _ if user => {}
+            0 => self.state.fir = value,
+            2 => self.write_directory_base(value),
+            _ => self.state.db = value,
+        }
+    }
+
+    fn write_directory_base(&mut self, value: u32) {
+        self.state.dirbase = value & !dirbase::ITI;
+        if value & dirbase::ITI != 0 {
+            self.invalidate_code();
+            self.time.invalidate_instruction_cache();
+        }
+        let directory = value & dirbase::DTB;
+        self.time.set_translation((value & dirbase::ATE != 0).then_some(directory));
+    }
+
+    pub(crate) fn set_lock(&mut self, on: bool) {
+        let il = if on { epsr::IL } else { 0 };
+        let bl = if on { dirbase::BL } else { 0 };
+        self.state.epsr = self.state.epsr & !epsr::IL | il;
+        self.state.dirbase = self.state.dirbase & !dirbase::BL | bl;
+    }
+}

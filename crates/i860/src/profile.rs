@@ -1,0 +1,101 @@
+//! Where the clocks of a run went.
+
+use crate::timing::{FREEZES, Freeze, N_FREEZES};
+use std::fmt;
+
+/// Clocks by cause since reset (or since [`Cpu::clear_profile`](crate::Cpu::clear_profile)).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Profile {
+    /// Instructions executed; a pair counts two, `fnop` and `nop` included.
+    pub instructions: u64,
+    /// Clocks in which an instruction or a pair issued.
+    pub issue: u64,
+    /// Clocks lost, in the order of [`FREEZES`].
+    pub frozen: [u64; N_FREEZES],
+    /// Requests on the bus.
+    pub bus_requests: u64,
+    /// Requests that had to open a row of the memory.
+    pub page_misses: u64,
+    /// Instruction-cache misses.
+    pub instruction_misses: u64,
+    /// Data-cache misses of loads.
+    pub data_misses: u64,
+}
+
+impl Profile {
+    pub(crate) fn new() -> Profile {
+        Profile {
+            instructions: 0,
+            issue: 0,
+            frozen: [0; N_FREEZES],
+            bus_requests: 0,
+            page_misses: 0,
+            instruction_misses: 0,
+            data_misses: 0,
+        }
+    }
+
+    /// Clocks lost to one row.
+    #[must_use]
+    pub fn frozen_by(&self, id: Freeze) -> u64 {
+        self.frozen[id as usize]
+    }
+
+    /// All clocks: issue and freezes.
+    #[must_use]
+    pub fn clocks(&self) -> u64 {
+        self.issue + self.frozen.iter().sum::<u64>()
+    }
+}
+
+impl fmt::Display for Profile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{:>12}  clocks", self.clocks())?;
+        writeln!(f, "{:>12}  issue ({} instructions)", self.issue, self.instructions)?;
+        for (row, clocks) in FREEZES.iter().zip(self.frozen).filter(|(_, clocks)| *clocks != 0) {
+            writeln!(f, "{clocks:>12}  row {}: {}", row.number, row.condition)?;
+        }
+        writeln!(f, "{:>12}  instruction-cache misses", self.instruction_misses)?;
+        writeln!(f, "{:>12}  data-cache misses of loads", self.data_misses)?;
+        write!(f, "{:>12}  bus requests, {} opened a row", self.bus_requests, self.page_misses)
+    }
+}
+
+/// Clocks and visits of every word in a range of addresses.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AddressProfile {
+    base: u32,
+    rows: Vec<(u64, u64)>,
+}
+
+impl AddressProfile {
+    /// Watches `words` instruction words from `base`.
+    #[must_use]
+    pub fn new(base: u32, words: usize) -> AddressProfile {
+        AddressProfile { base, rows: vec![(0, 0); words] }
+    }
+
+    pub(crate) fn add(&mut self, pc: u32, clocks: u64) {
+        let at = (pc.wrapping_sub(self.base) / 4) as usize;
+        if let Some(row) = self.rows.get_mut(at) {
+            row.0 += clocks;
+            row.1 += 1;
+        }
+    }
+
+    /// Clocks and visits of the word (the pair) at an address; zero outside the range.
+    #[must_use]
+    pub fn at(&self, pc: u32) -> (u64, u64) {
+        let at = (pc.wrapping_sub(self.base) / 4) as usize;
+        self.rows.get(at).copied().unwrap_or_default()
+    }
+
+    /// Clocks between each label and the next, for labels sorted by address. Clocks before the first are left out.
+    #[must_use]
+    pub fn by_label<'a>(&self, labels: &[(&'a str, u32)]) -> Vec<(&'a str, u64)> {
+        let end = self.base.wrapping_add(4 * self.rows.len() as u32);
+        let span = |n: usize| labels[n].1..labels.get(n + 1).map_or(end, |next| next.1);
+        let sum = |n: usize| span(n).step_by(4).map(|pc| self.at(pc).0).sum();
+        labels.iter().enumerate().map(|(n, (name, _))| (*name, sum(n))).collect()
+    }
+}

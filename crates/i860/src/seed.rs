@@ -1,0 +1,136 @@
+//! The reciprocal and reciprocal square-root seeds, frcp and frsqr.
+//!
+//! The part's table is not public; what is known is that the fraction error stays below 2^-7. So the table is a
+//! named choice. Programs that refine by Newton steps differ in the last bit or two between the choices, never in
+//! their clocks.
+
+use crate::arithmetic::{narrow, widen};
+
+/// What `frcp` and `frsqr` return.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SeedTable {
+    /// The correctly rounded double, its fraction cut to 8 bits: relative error below 2^-8, always too small in
+    /// magnitude. Assumed; the usual choice of functional emulators.
+    Truncated8,
+    /// The value at the middle of the operand's interval of 8 fraction bits, rounded to 8 fraction bits: what a
+    /// 256-entry ROM (512 for frsqr, by the parity of the exponent) would hold. Assumed.
+    Midpoint8,
+    /// The correctly rounded result, for telling table effects from others.
+    Exact,
+}
+
+const FRACTION: u64 = (1 << 52) - 1;
+const DROPPED: u32 = 52 - 8;
+
+fn cut(bits: u64) -> u64 {
+    bits >> DROPPED << DROPPED
+}
+
+fn round8(bits: u64) -> u64 {
+    cut(bits + (1 << (DROPPED - 1)))
+}
+
+fn is_finite_nonzero(x: f64) -> bool {
+    x.is_finite() && x != 0.0
+}
+
+fn midpoint(x: f64) -> f64 {
+    f64::from_bits(cut(x.to_bits()) | 1 << (DROPPED - 1))
+}
+
+impl SeedTable {
+    /// Relative error that a table keeps below.
+    #[must_use]
+    pub fn relative_error_bound(self) -> f64 {
+        match self {
+            SeedTable::Truncated8 | SeedTable::Midpoint8 => 1.0 / 256.0,
+            SeedTable::Exact => f64::EPSILON,
+        }
+    }
+
+    fn apply(self, x: f64, exact: impl Fn(f64) -> f64) -> u64 {
+        let value = exact(x);
+        if !is_finite_nonzero(value) || value.to_bits() & !(1 << 63) <= FRACTION {
+            return value.to_bits();
+        }
+        match self {
+            SeedTable::Truncated8 => cut(value.to_bits()),
+            SeedTable::Midpoint8 => round8(exact(midpoint(x)).to_bits()),
+            SeedTable::Exact => value.to_bits(),
+        }
+    }
+
+    /// Reciprocal of a double.
+    #[must_use]
+    pub fn reciprocal(self, bits: u64) -> u64 {
+        quiet(bits, self.apply(f64::from_bits(bits), |x| 1.0 / x))
+    }
+
+    /// Reciprocal square root of a double.
+    #[must_use]
+    pub fn reciprocal_root(self, bits: u64) -> u64 {
+        quiet(bits, self.apply(f64::from_bits(bits), |x| 1.0 / x.sqrt()))
+    }
+
+    /// Reciprocal of a single.
+    #[must_use]
+    pub fn reciprocal32(self, bits: u32) -> u32 {
+        narrow(self.reciprocal(widen(bits)), false)
+    }
+
+    /// Reciprocal square root of a single.
+    #[must_use]
+    pub fn reciprocal_root32(self, bits: u32) -> u32 {
+        narrow(self.reciprocal_root(widen(bits)), false)
+    }
+}
+
+/// NaN results as the rest of the unit makes them.
+fn quiet(operand: u64, result: u64) -> u64 {
+    match (f64::from_bits(result).is_nan(), f64::from_bits(operand).is_nan()) {
+        (true, true) => operand | 0x0008_0000_0000_0000,
+        (true, false) => 0xFFF8_0000_0000_0000,
+        _ => result,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SeedTable;
+
+    fn worst(table: SeedTable, root: bool) -> f64 {
+        let error = |n: u32| {
+            let x = 1.0 + 3.0 * f64::from(n) / 50_000.0;
+            let (got, want) = if root {
+                (table.reciprocal_root(x.to_bits()), 1.0 / x.sqrt())
+            } else {
+                (table.reciprocal(x.to_bits()), 1.0 / x)
+            };
+            (f64::from_bits(got) / want - 1.0).abs()
+        };
+        (0..50_000).map(error).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn every_table_keeps_its_error_bound_over_two_octaves() {
+        for table in [SeedTable::Truncated8, SeedTable::Midpoint8, SeedTable::Exact] {
+            for root in [false, true] {
+                assert!(worst(table, root) <= table.relative_error_bound(), "{table:?} root {root}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_seed_of_zero_is_infinite_and_of_a_negative_root_not_a_number() {
+        let table = SeedTable::Truncated8;
+        assert_eq!(table.reciprocal32(0), f32::INFINITY.to_bits());
+        assert!(f32::from_bits(table.reciprocal_root32((-1.0f32).to_bits())).is_nan());
+    }
+
+    #[test]
+    fn a_power_of_two_has_an_exact_truncated_seed() {
+        assert_eq!(SeedTable::Truncated8.reciprocal32(4.0f32.to_bits()), 0.25f32.to_bits());
+        assert_eq!(SeedTable::Truncated8.reciprocal_root32(16.0f32.to_bits()), 0.25f32.to_bits());
+    }
+}

@@ -1,0 +1,282 @@
+//! Conformance vectors: a program, a starting memory, and what must come out. One JSON object per line.
+//!
+//! ```text
+//! {"id","group","what","load","code":["hex32",...],"entry","stop",
+//!  "mem":[[address,"hex32"],...],"expect":{"r":[32 hex],"f":[32 hex],"mem":[[address,"hex32"],...]}}
+//! ```
+//! Every register starts at zero, pc at `entry`; the run ends when pc is `stop` in single-instruction mode.
+
+use crate::{Bus, Config, Cpu, Outcome, Trap, Unmapped};
+use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// A run longer than this fails (vectors stay below 1,000).
+pub const BUDGET: u64 = 10_000;
+
+/// One vector.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+pub struct Vector {
+    /// Name.
+    pub id: String,
+    /// Group of the collection.
+    #[serde(default)]
+    pub group: String,
+    /// What it tries.
+    #[serde(default)]
+    pub what: String,
+    /// Address of the first word of `code`.
+    pub load: u32,
+    /// Instruction words.
+    #[serde(deserialize_with = "hex_list")]
+    pub code: Vec<u32>,
+    /// First pc.
+    pub entry: u32,
+    /// Last pc.
+    pub stop: u32,
+    /// Words placed before the run.
+    #[serde(default, deserialize_with = "hex_pairs")]
+    pub mem: Vec<(u32, u32)>,
+    /// What must come out.
+    pub expect: Expectation,
+}
+
+/// The state after a vector.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+pub struct Expectation {
+    /// Integer registers, bit patterns.
+    #[serde(deserialize_with = "registers")]
+    pub r: [u32; 32],
+    /// Floating-point registers, bit patterns.
+    #[serde(deserialize_with = "registers")]
+    pub f: [u32; 32],
+    /// Words of memory.
+    #[serde(default, deserialize_with = "hex_pairs")]
+    pub mem: Vec<(u32, u32)>,
+}
+
+fn hex<E: serde::de::Error>(text: &str) -> Result<u32, E> {
+    let digits = text.len() == 8 && text.bytes().all(|b| b.is_ascii_hexdigit());
+    let value = u32::from_str_radix(text, 16).ok().filter(|_| digits);
+    value.ok_or_else(|| E::custom(format_args!("expected 8 hexadecimal digits, found {text:?}")))
+}
+
+fn hex_list<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u32>, D::Error> {
+    Vec::<String>::deserialize(from)?.iter().map(|text| hex(text)).collect()
+}
+
+fn hex_pairs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(u32, u32)>, D::Error> {
+    let pairs = Vec::<(u32, String)>::deserialize(from)?;
+    pairs.iter().map(|(address, text)| Ok((*address, hex(text)?))).collect()
+}
+
+fn registers<'de, D: Deserializer<'de>>(from: D) -> Result<[u32; 32], D::Error> {
+    let list = hex_list(from)?;
+    let found = list.len();
+    let wrong = |_| serde::de::Error::custom(format_args!("expected 32 registers, found {found}"));
+    list.try_into().map_err(wrong)
+}
+
+/// Memory that exists everywhere and is zero until written.
+#[derive(Clone, Debug, Default)]
+struct Sparse(BTreeMap<u32, u32>);
+
+impl Sparse {
+    fn word(&self, address: u32) -> u32 {
+        self.0.get(&(address & !3)).copied().unwrap_or(0)
+    }
+
+    fn put(&mut self, address: u32, value: u32, mask: u32) {
+        let old = self.word(address);
+        self.0.insert(address & !3, old & !mask | value & mask);
+    }
+}
+
+impl Bus for Sparse {
+    fn read(&mut self, address: u32, size: u32) -> Result<u64, Unmapped> {
+        let word = u64::from(self.word(address));
+        Ok(match size {
+            8 => u64::from(self.word(address.wrapping_add(4))) << 32 | word,
+            4 => word,
+            _ => word >> (8 * (address & 3)) & ((1 << (8 * size)) - 1),
+        })
+    }
+
+    fn write(&mut self, address: u32, size: u32, value: u64) -> Result<(), Unmapped> {
+        if size >= 4 {
+            self.put(address, value as u32, !0);
+        }
+        match size {
+            8 => self.put(address.wrapping_add(4), (value >> 32) as u32, !0),
+            4 => {}
+            _ => {
+                let shift = 8 * (address & 3);
+                self.put(address, (value as u32) << shift, ((1u32 << (8 * size)) - 1) << shift);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// One difference between the state expected and the state found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// `r5`, `f12`, or the address of a word.
+    pub place: String,
+    /// Bit pattern that the vector asks for.
+    pub expected: u32,
+    /// Bit pattern of this model.
+    pub found: u32,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: expected {:08x}, found {:08x}", self.place, self.expected, self.found)
+    }
+}
+
+/// Why a vector failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Failure {
+    /// The program trapped.
+    Trapped(Trap),
+    /// The program did not reach its stop address.
+    Exhausted {
+        /// Where it was.
+        pc: u32,
+    },
+    /// Registers or memory differ.
+    Differs(Vec<Difference>),
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::Trapped(trap) => write!(f, "{trap}"),
+            Failure::Exhausted { pc } => write!(f, "not at its stop after {BUDGET} instructions, pc {pc:#010x}"),
+            Failure::Differs(list) => {
+                let shown: Vec<String> = list.iter().map(Difference::to_string).collect();
+                f.write_str(&shown.join("; "))
+            }
+        }
+    }
+}
+
+/// A line that is no vector.
+#[derive(Debug)]
+pub struct MalformedLine {
+    /// From 1.
+    pub line: usize,
+    /// What is wrong with it.
+    pub reason: String,
+}
+
+impl fmt::Display for MalformedLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}: not a vector: {}", self.line, self.reason)
+    }
+}
+
+impl std::error::Error for MalformedLine {}
+
+/// Reads vectors from JSON lines; empty lines are passed over.
+///
+/// # Errors
+/// The first line that is no vector, by number.
+pub fn parse(text: &str) -> Result<Vec<Vector>, MalformedLine> {
+    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    lines.map(|(n, line)| parse_line(n + 1, line)).collect()
+}
+
+fn parse_line(line: usize, text: &str) -> Result<Vector, MalformedLine> {
+    let vector: Vector =
+        serde_json::from_str(text).map_err(|e| MalformedLine { line, reason: e.to_string() })?;
+    let unaligned = [vector.load, vector.entry, vector.stop].iter().any(|address| address % 4 != 0);
+    if unaligned {
+        let reason = "load, entry and stop must be multiples of 4".to_owned();
+        return Err(MalformedLine { line, reason });
+    }
+    Ok(vector)
+}
+
+impl Vector {
+    fn memory(&self) -> Sparse {
+        let mut memory = Sparse::default();
+        for (n, word) in self.code.iter().enumerate() {
+            memory.put(self.load.wrapping_add(4 * n as u32), *word, !0);
+        }
+        for (address, word) in &self.mem {
+            memory.put(*address, *word, !0);
+        }
+        memory
+    }
+
+    /// Runs the vector.
+    ///
+    /// # Errors
+    /// What differs, or why the program did not come to its end.
+    pub fn check(&self, config: Config) -> Result<(), Failure> {
+        let mut cpu = Cpu::at(config, self.entry);
+        self.check_on(&mut cpu)
+    }
+
+    /// Runs the vector on a processor that was built before; it is reset first.
+    ///
+    /// # Errors
+    /// As [`Vector::check`].
+    pub fn check_on(&self, cpu: &mut Cpu) -> Result<(), Failure> {
+        cpu.reset();
+        cpu.state.pc = self.entry;
+        let mut memory = self.memory();
+        match cpu.run(&mut memory, Some(self.stop), BUDGET) {
+            Outcome::Stopped => self.compare(cpu, &memory),
+            Outcome::Trapped(trap) => Err(Failure::Trapped(trap)),
+            Outcome::Exhausted => Err(Failure::Exhausted { pc: cpu.state.pc }),
+        }
+    }
+
+    fn compare(&self, cpu: &Cpu, memory: &Sparse) -> Result<(), Failure> {
+        let register = |file: &str, n: usize| format!("{file}{n}");
+        let r = (0..32).map(|n| (register("r", n), self.expect.r[n], cpu.state.r[n]));
+        let f = (0..32).map(|n| (register("f", n), self.expect.f[n], cpu.state.f[n]));
+        let words = self.expect.mem.iter();
+        let mem = words.map(|(a, word)| (format!("memory {a:#010x}"), *word, memory.word(*a)));
+        let differences: Vec<Difference> = (r.chain(f).chain(mem))
+            .filter(|(_, expected, found)| expected != found)
+            .map(|(place, expected, found)| Difference { place, expected, found })
+            .collect();
+        if differences.is_empty() { Ok(()) } else { Err(Failure::Differs(differences)) }
+    }
+}
+
+/// Result of a file of vectors.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Summary {
+    /// Vectors that came out as asked.
+    pub passed: usize,
+    /// The others: identifier, description, reason.
+    pub failures: Vec<(String, String, Failure)>,
+}
+
+impl Summary {
+    /// Number of vectors that failed.
+    #[must_use]
+    pub fn failed(&self) -> usize {
+        self.failures.len()
+    }
+}
+
+/// Runs all vectors.
+#[must_use]
+pub fn run(vectors: &[Vector], config: Config) -> Summary {
+    let mut cpu = Cpu::new(config);
+    let mut summary = Summary::default();
+    for vector in vectors {
+        match vector.check_on(&mut cpu) {
+            Ok(()) => summary.passed += 1,
+            Err(failure) => summary.failures.push((vector.id.clone(), vector.what.clone(), failure)),
+        }
+    }
+    summary
+}
