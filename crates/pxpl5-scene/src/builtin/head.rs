@@ -125,48 +125,54 @@ impl Ray {
     }
 }
 
+/// Paint in layers with soft edges: the grid is too coarse for hard ones.
 fn colour(point: DVec3) -> Colour {
     let p = DVec3::new(point.x.abs(), point.y, point.z);
-    if let Some(colour) = eye_colour(p) {
-        return colour;
-    }
-    if is_lip(p) {
-        LIPS
-    } else if is_brow(p) || is_hair(p) {
-        HAIR
-    } else {
-        SKIN
-    }
-}
-
-fn eye_colour(p: DVec3) -> Option<Colour> {
-    let from_centre = p - EYE;
-    if from_centre.length() > EYE_RADIUS + 0.04 || p.z < EYE.z {
-        return None;
-    }
-    let off_axis = DVec3::new(from_centre.x, from_centre.y + 0.05, 0.0).length();
-    Some(match off_axis {
-        r if r < 0.24 => PUPIL,
-        r if r < 0.62 => IRIS,
-        _ => WHITE,
+    let eye_depth = (p - EYE).length() - EYE_RADIUS - 0.05;
+    let layers = [
+        (HAIR, hair(p), 0.35),
+        (HAIR, brow(p), 0.2),
+        (LIPS, lips(p), 0.2),
+        (WHITE, eye_depth.max(EYE.z - p.z), 0.08),
+        (IRIS, eye_depth.max(off_axis(p) - 0.62), 0.12),
+        (PUPIL, eye_depth.max(off_axis(p) - 0.27), 0.12),
+    ];
+    layers.into_iter().fold(SKIN, |under, (over, outside, edge)| {
+        let share = (0.5 - outside / edge / 2.0).clamp(0.0, 1.0);
+        [0, 1, 2].map(|k| {
+            let (under, over) = (f64::from(under[k]), f64::from(over[k]));
+            (under + (over - under) * share + 0.5) as u8
+        })
     })
 }
 
-fn is_lip(p: DVec3) -> bool {
-    let across = p.x / 2.25;
-    let along = (p.y + 5.85) / (0.85 * (1.0 - across * across).max(0.0) + 0.01);
-    p.z > 6.5 && across < 1.0 && along.abs() < 1.0
+// Each mask below is about the distance in centimetres by which a point lies outside of the painted patch.
+
+/// From the axis of the gaze, which is a little lowered.
+fn off_axis(p: DVec3) -> f64 {
+    DVec3::new(p.x - EYE.x, p.y - EYE.y + 0.05, 0.0).length()
 }
 
-fn is_brow(p: DVec3) -> bool {
-    let middle = 2.55 + 0.25 * (1.0 - ((p.x - 3.2) / 2.0).powi(2));
-    p.z > 5.0 && (1.2..5.2).contains(&p.x) && (p.y - middle).abs() < 0.36 - 0.05 * (p.x - 1.2)
+fn lips(p: DVec3) -> f64 {
+    let across = p.x / 2.3;
+    let half_height = 0.85 * (1.0 - across * across).max(0.0);
+    ((p.y + 5.85).abs() - half_height).max(7.0 - p.z)
 }
 
-/// Behind a line from the forehead over the temples, round the ears, to the nape.
-fn is_hair(p: DVec3) -> bool {
-    let is_ear = p.x > 6.9 && p.z > -4.6 && p.y < 3.2;
+/// An arch that thins outwards.
+fn brow(p: DVec3) -> f64 {
+    let off_middle = (p.x - 3.2) / 2.0;
+    let middle = 2.5 + 0.3 * (1.0 - off_middle * off_middle);
+    let half_height = 0.36 - 0.06 * (p.x - 1.2);
+    let end = (1.2 - p.x).max(p.x - 5.3);
+    ((p.y - middle).abs() - half_height).max(end).max(5.0 - p.z)
+}
+
+/// Behind a line from the forehead over the temples, in front of and round the ears, to the nape.
+fn hair(p: DVec3) -> f64 {
     let hairline = 8.2 - 0.05 * p.x * p.x;
-    let scalp = p.y > hairline || (p.y > -8.0 && p.z < 2.2 - (hairline - p.y) * 0.32);
-    scalp && !is_ear
+    let behind = p.z - 2.0 + (hairline - p.y).max(0.0) * 0.3;
+    let scalp = (hairline - p.y).min(behind).max(-7.5 - p.y);
+    let ear = (6.8 - p.x).max(-4.4 - p.z).max(p.y - 3.0);
+    scalp.max(-ear)
 }

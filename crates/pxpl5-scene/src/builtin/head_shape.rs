@@ -10,8 +10,8 @@ const fn at(x: f64, y: f64, z: f64) -> DVec3 {
 }
 
 /// Centre of the left eyeball, and its radius.
-pub(super) const EYE: DVec3 = at(3.15, 0.75, 6.75);
-pub(super) const EYE_RADIUS: f64 = 1.32;
+pub(super) const EYE: DVec3 = at(3.15, 0.75, 6.6);
+pub(super) const EYE_RADIUS: f64 = 1.3;
 
 /// Signed distance, exact near the surface to about a tenth; symmetric in x.
 pub(super) fn distance(point: DVec3) -> f64 {
@@ -28,7 +28,7 @@ fn skull(p: DVec3) -> f64 {
     let face = ellipsoid(p, at(0.0, -3.2, 2.3), at(5.7, 7.4, 6.0));
     let jaw = capsule(p, at(4.9, -5.6, 0.2), at(1.4, -9.4, 5.6), 1.5, 1.35);
     let chin = ellipsoid(p, at(0.0, -9.5, 6.3), at(1.9, 1.35, 1.5));
-    let forehead = ellipsoid(p, at(0.0, 5.2, 2.6), at(6.0, 5.6, 5.7));
+    let forehead = ellipsoid(p, at(0.0, 4.6, 2.2), at(6.1, 5.6, 5.9));
     let d = join(cranium, face, 2.5);
     let d = join(d, forehead, 1.5);
     join(join(d, jaw, 2.0), chin, 1.6)
@@ -47,17 +47,17 @@ fn nose(p: DVec3) -> f64 {
     let bridge = capsule(p, at(0.0, 1.6, 7.8), at(0.0, -2.3, 9.9), 0.75, 0.95);
     let tip = ellipsoid(p, at(0.0, -2.55, 10.1), at(0.95, 0.8, 0.85));
     let wing = ellipsoid(p, at(1.25, -2.85, 8.7), at(0.75, 0.7, 1.05));
-    join(join(bridge, tip, 0.5), wing, 0.6)
+    join(join(bridge, tip, 0.5), wing, 0.9)
 }
 
 /// Brows, sockets, eyes, cheekbones, mouth: cut into and laid upon what is there.
 fn face(d: f64, p: DVec3) -> f64 {
-    let brow = capsule(p, at(1.3, 2.3, 7.9), at(5.0, 2.35, 6.1), 0.75, 0.55);
-    let cheekbone = ellipsoid(p, at(4.3, -2.2, 5.0), at(1.9, 1.3, 1.9));
+    let brow = capsule(p, at(1.3, 2.2, 7.7), at(5.0, 2.3, 5.9), 0.75, 0.5);
+    let cheekbone = ellipsoid(p, at(4.0, -2.4, 4.9), at(1.9, 1.4, 1.9));
     let socket = ellipsoid(p, at(3.2, 0.7, 8.6), at(1.95, 1.25, 1.9));
-    let mut d = join(join(d, brow, 1.0), cheekbone, 1.6);
+    let mut d = join(join(d, brow, 1.0), cheekbone, 2.4);
     d = carve(d, socket, 0.9);
-    d = join(d, eyelids(p), 0.25);
+    d = join(d, eyelids(p), 0.6);
     d = join(d, (p - EYE).length() - EYE_RADIUS, 0.06);
     mouth(d, p)
 }
@@ -65,7 +65,7 @@ fn face(d: f64, p: DVec3) -> f64 {
 /// A shell round the eyeball with a slit.
 fn eyelids(p: DVec3) -> f64 {
     let shell = (p - EYE).length() - (EYE_RADIUS + 0.2);
-    let slit = ellipsoid(p, at(3.2, 0.65, 8.4), at(1.45, 0.6, 1.6));
+    let slit = ellipsoid(p, at(3.2, 0.65, 8.4), at(1.5, 0.5, 1.9));
     carve(shell, slit, 0.12)
 }
 

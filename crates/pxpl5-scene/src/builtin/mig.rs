@@ -1,7 +1,7 @@
 //! A swept-wing jet fighter in the manner of the MiG-17: 417 triangles.
 //!
-//! Its length is along z with the nose at +z, +y is up, +x its left. Lengths are in tenths of a wing's half span or
-//! so; the finished aircraft is scaled to a radius of 2 m.
+//! Its length is along z with the nose at +z, +y is up, +x its left. Lengths are about metres of the real one, which is
+//! 11 m long; the finished aircraft is scaled to a radius of 2 m.
 
 use glam::DVec3;
 
@@ -13,13 +13,13 @@ use crate::scene::{Lighting, Scene, SceneParts, bounding_sphere};
 use crate::sway::Sway;
 use crate::trig;
 
-const SILVER: Colour = [176, 184, 194];
-const BELLY: Colour = [138, 148, 160];
-const RED: Colour = [204, 32, 28];
+const SILVER: Colour = [214, 220, 228];
+const BELLY: Colour = [164, 174, 188];
+const RED: Colour = [224, 36, 30];
 const DARK: Colour = [34, 32, 36];
 const DUCT: Colour = [70, 66, 66];
-const GLASS: Colour = [96, 160, 206];
-const STEEL: Colour = [120, 116, 112];
+const GLASS: Colour = [90, 170, 226];
+const STEEL: Colour = [140, 136, 132];
 
 /// Radius of the finished model, metres. Assumed, 0.5 to 8: a flight round it passes at several metres a second.
 const RADIUS_M: f64 = 2.0;
@@ -58,11 +58,10 @@ fn finish(mut solid: Solid) -> Scene {
     for hinge in solid.structures.iter_mut().filter_map(|s| s.hinge.as_mut()) {
         hinge.point = place(hinge.point.as_dvec3()).as_vec3();
     }
-    let Mesh { triangles, .. } = &solid.mesh;
     let parts = SceneParts {
         name: "mig".to_owned(),
         vertices: solid.mesh.vertices(),
-        triangles: triangles.clone(),
+        triangles: solid.mesh.triangles,
         spheres: Vec::new(),
         structures: solid.structures,
         lighting: Lighting { background: [92, 140, 200], ..Lighting::over_the_shoulder() },
@@ -107,10 +106,10 @@ fn fuselage(solid: &mut Solid) {
     solid.paint(whole, RED, |p| p.z > 5.5);
     let [pipe, intake] = [&rings[0], &rings[7]];
     let deep_pipe = ring(-4.9, 0.14, 0.42, 0.44);
-    solid.skin(&[deep_pipe.clone(), pipe.clone()].map(reversed), STEEL);
+    solid.skin(&[deep_pipe.clone(), pipe.clone()], STEEL);
     solid.cone(&reversed(deep_pipe), DVec3::new(0.0, 0.14, -5.3), DARK);
     let deep_intake = ring(4.9, -0.07, 0.40, 0.42);
-    solid.skin(&[intake.clone(), deep_intake.clone()].map(reversed), DUCT);
+    solid.skin(&[intake.clone(), deep_intake.clone()], DUCT);
     solid.cone(&deep_intake, DVec3::new(0.0, -0.07, 5.35), DARK);
 }
 

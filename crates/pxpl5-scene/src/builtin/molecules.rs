@@ -156,7 +156,8 @@ fn fitted(mut solid: Solid, mut spheres: Vec<Sphere>) -> Scene {
         spheres,
         structures: Vec::new(),
         lighting: Lighting::over_the_shoulder(),
-        motion: HeadMotion::looking_at(glam::Vec3::ZERO, FIT_RADIUS_M),
+        // Half as high as wide: seen from nearer than a ball it fills the width of the view.
+        motion: HeadMotion::looking_at(glam::Vec3::ZERO, 0.8 * FIT_RADIUS_M),
     };
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }

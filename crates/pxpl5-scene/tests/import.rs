@@ -1,0 +1,354 @@
+//! Importers against files written by hand: what they read, and how they refuse.
+
+use glam::Vec3;
+use pxpl5_scene::config::{DEFAULT_COLOUR, FIT_RADIUS_M};
+use pxpl5_scene::{Format, LoadError, Place, Scene, from_bytes, load};
+
+fn read(format: Format, text: impl AsRef<[u8]>) -> Result<Scene, LoadError> {
+    from_bytes(text.as_ref(), format, "test")
+}
+
+fn obj(text: &str) -> Scene {
+    read(Format::Obj, text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn ply(text: impl AsRef<[u8]>) -> Scene {
+    read(Format::Ply, text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The square with corners (+-1, +-1, 0) fitted: centre 0, farthest corner at the radius.
+fn fitted_square() -> [Vec3; 4] {
+    let half = FIT_RADIUS_M as f32 / 2.0_f32.sqrt();
+    [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| Vec3::new(x, y, 0.0))
+}
+
+fn assert_square(scene: &Scene) {
+    assert_eq!(scene.triangles(), [[0, 1, 2], [0, 2, 3]]);
+    for (vertex, expected) in scene.vertices().iter().zip(fitted_square()) {
+        assert!((vertex.position - expected).length() < 1e-6, "{}", vertex.position);
+        assert!((vertex.normal - Vec3::Z).length() < 1e-6);
+    }
+}
+
+const SQUARE_OBJ: &str = "# a square, 5 right and 2 wide\no s\nv 4 -1 0\nv 6 -1 0\nv 6 1 0\nv 4 1 0\ng x\nusemtl m\n";
+
+#[test]
+fn a_quad_is_cut_into_a_fan_and_fitted_to_the_view() {
+    assert_square(&obj(&format!("{SQUARE_OBJ}f 1 2 3 4\n")));
+}
+
+#[test]
+fn negative_indices_count_back_from_the_last_vertex_so_far() {
+    assert_square(&obj(&format!("{SQUARE_OBJ}f -4 -3 -2 -1\nv 4.5 0 0\n")));
+}
+
+#[test]
+fn texture_coordinates_are_passed_over_in_every_notation() {
+    assert_square(&obj(&format!("{SQUARE_OBJ}vt 0 0\nvn 0 0 2\nf 1/1 2/1/1 3//1 4\n")));
+    assert_square(&obj(&format!("{SQUARE_OBJ}vt 0 0\nf 1/1/ 2/1 3// 4 # comment\r\n")));
+}
+
+#[test]
+fn given_normals_win_over_computed_ones_and_split_a_vertex() {
+    let scene = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvn 1 0 0\nvn 0 3 0\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n");
+    assert_eq!(scene.vertices().len(), 6);
+    assert_eq!(scene.vertices()[0].normal, Vec3::X);
+    assert_eq!(scene.vertices()[3].normal, Vec3::Y);
+    assert_eq!(scene.vertices()[0].position, scene.vertices()[3].position);
+}
+
+#[test]
+fn missing_normals_are_the_mean_of_the_triangles_weighted_by_area() {
+    // At the shared corner: a triangle of area 1/2 facing +z, one of area 1 facing +x. Mean (2, 0, 1) / sqrt 5.
+    let scene = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 2 0\nv 0 0 1\nf 1 2 3\nf 1 4 5\n");
+    let expected = Vec3::new(2.0, 0.0, 1.0) / 5.0_f32.sqrt();
+    assert!((scene.vertices()[0].normal - expected).length() < 1e-6);
+    assert_eq!(scene.vertices()[0].colour, DEFAULT_COLOUR);
+}
+
+#[test]
+fn a_model_without_extent_is_drawn_at_the_origin() {
+    let scene = obj("v 3 4 5\nf 1 1 1\n");
+    assert_eq!((scene.vertices()[0].position, scene.vertices()[0].normal), (Vec3::ZERO, Vec3::Z));
+}
+
+#[test]
+fn models_of_any_size_fit() {
+    for size in ["1e-300", "1e-40", "1e15"] {
+        let scene = obj(&format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nf 1 2 3\n"));
+        let (_, radius) = scene.bounding_sphere();
+        assert!((f64::from(radius) - FIT_RADIUS_M).abs() < 1e-6, "{size}: {radius}");
+        assert_eq!(scene.vertices()[0].normal, Vec3::Z, "{size}");
+    }
+}
+
+const SQUARE_HEADER: &str = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+    property uchar red\nproperty uchar green\nproperty uchar blue\n\
+    element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+
+/// The square as a binary file; `word` writes 4 bytes in the file's order.
+fn binary_square(encoding: &str, word: fn(u32) -> [u8; 4]) -> Vec<u8> {
+    let mut file = format!("ply\nformat {encoding} 1.0\n{SQUARE_HEADER}").into_bytes();
+    for (x, y) in [(4.0_f32, -1.0_f32), (6.0, -1.0), (6.0, 1.0), (4.0, 1.0)] {
+        for value in [x, y, 0.0] {
+            file.extend(word(value.to_bits()));
+        }
+        file.extend([10, 20, 30]);
+    }
+    file.push(4);
+    (0..4).for_each(|corner| file.extend(word(corner)));
+    file
+}
+
+fn ascii_square() -> String {
+    let rows = "4 -1 0 10 20 30\n6 -1 0 10 20 30\n6 1 0 10 20 30\n4 1 0 10 20 30\n4 0 1 2 3\n";
+    format!("ply\nformat ascii 1.0\ncomment by hand\n{SQUARE_HEADER}{rows}")
+}
+
+#[test]
+fn the_three_encodings_of_ply_give_the_same_scene() {
+    let ascii = ply(ascii_square());
+    assert_square(&ascii);
+    assert_eq!(ascii.vertices()[2].colour, [10, 20, 30]);
+    assert_eq!(ply(binary_square("binary_little_endian", u32::to_le_bytes)), ascii);
+    assert_eq!(ply(binary_square("binary_big_endian", u32::to_be_bytes)), ascii);
+}
+
+#[test]
+fn normals_doubles_fractional_colours_and_foreign_elements_of_ply_are_understood() {
+    let scene = ply("ply\nformat ascii 1.0\nelement junk 2\nproperty int a\nelement vertex 3\nproperty double x\n\
+        property double y\nproperty double z\nproperty float nx\nproperty float ny\nproperty float nz\n\
+        property float red\nproperty float green\nproperty float blue\nproperty float quality\n\
+        element face 1\nproperty list uchar uint vertex_index\nend_header\n\
+        1\n2\n0 0 0 0 2 0 1 0.5 0 9\n1 0 0 0 2 0 1 0.5 0 9\n0 1 0 0 2 0 1 0.5 0 9\n3 0 1 2\n");
+    assert_eq!((scene.vertices()[1].normal, scene.vertices()[1].colour), (Vec3::Y, [255, 128, 0]));
+}
+
+/// A scene as an ASCII PLY file, with all the digits of its numbers.
+fn written(scene: &Scene) -> String {
+    let (vertices, triangles) = (scene.vertices(), scene.triangles());
+    let mut text = format!("ply\nformat ascii 1.0\nelement vertex {}\n", vertices.len());
+    for name in ["x", "y", "z", "nx", "ny", "nz"] {
+        text += &format!("property float {name}\n");
+    }
+    for name in ["red", "green", "blue"] {
+        text += &format!("property uchar {name}\n");
+    }
+    text += &format!("element face {}\nproperty list uchar int vertex_indices\nend_header\n", triangles.len());
+    for v in vertices {
+        let ([x, y, z], [a, b, c], [red, green, blue]) = (v.position.to_array(), v.normal.to_array(), v.colour);
+        text += &format!("{x} {y} {z} {a} {b} {c} {red} {green} {blue}\n");
+    }
+    triangles.iter().for_each(|[a, b, c]| text += &format!("3 {a} {b} {c}\n"));
+    text
+}
+
+#[test]
+fn a_scene_comes_back_from_a_ply_file() {
+    let mig = pxpl5_scene::builtin("mig").expect("a built-in scene");
+    let back = ply(written(&mig));
+    let again = ply(written(&back));
+    assert_eq!(back.triangles(), mig.triangles());
+    // From a radius of 2 m to the fitted one, and centred as before; then unchanged but for rounding.
+    let scale = (FIT_RADIUS_M / 2.0) as f32;
+    for ((a, b), c) in mig.vertices().iter().zip(back.vertices()).zip(again.vertices()) {
+        assert!((a.position * scale - b.position).length() < 1e-6);
+        assert!((b.position - c.position).length() < 1e-6);
+        assert!((a.normal - b.normal).length() < 1e-6);
+        assert_eq!(a.colour, b.colour);
+    }
+}
+
+const SERINE: &str = "\
+HEADER    TEST\n\
+ATOM      1  N   SER A   1      11.000  -2.000   0.500  1.00  0.00           N  \n\
+ATOM      2  CA ASER A   1      13.000  -2.000   0.500  1.00  0.00           C  \n\
+ATOM      3  CA BSER A   1      14.000  -2.000   0.500  1.00  0.00           C  \n\
+HETATM    4 FE   HEM A   2      12.000   1.000   0.500  1.00  0.00          FE  \n\
+HETATM    5  O   HOH A   3      12.000  -1.000   0.500\n\
+ENDMDL\n\
+ATOM      6  N   SER A   1      99.000  -2.000   0.500  1.00  0.00           N  \n";
+
+#[test]
+fn atoms_become_spheres_with_van_der_waals_radii_and_their_colours() {
+    let scene = read(Format::Pdb, SERINE).expect("sound");
+    // N, C of the first location, Fe, O; not the second location, not the second model. Radii: Bondi 1964.
+    let radii: Vec<f32> = scene.spheres().iter().map(|s| s.radius / scene.spheres()[0].radius).collect();
+    for (radius, expected) in radii.iter().zip([1.55, 1.70, 2.00, 1.52]) {
+        assert!((radius - expected / 1.55).abs() < 1e-6);
+    }
+    assert_eq!(radii.len(), 4);
+    assert_eq!(scene.spheres()[3].colour, [240, 24, 24]);
+    // 2 Ångström apart along x, as many times as large as the nitrogen's radius of 1.55.
+    let apart = scene.spheres()[1].centre - scene.spheres()[0].centre;
+    assert!((apart.x / scene.spheres()[0].radius - 2.0 / 1.55).abs() < 1e-5);
+}
+
+#[test]
+fn an_empty_file_is_refused_in_every_format() {
+    for format in [Format::Ply, Format::Obj, Format::Pdb] {
+        for text in ["", " \r\n\n"] {
+            assert!(matches!(read(format, text), Err(LoadError::Empty { .. })));
+        }
+    }
+}
+
+#[test]
+fn a_file_with_nothing_to_draw_says_what_is_missing() {
+    let nothing = |format, text: &str| match read(format, text) {
+        Err(LoadError::NothingToDraw { expected, .. }) => expected,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(nothing(Format::Obj, "v 0 0 0\n"), "triangle");
+    let header =
+        "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    assert_eq!(nothing(Format::Ply, header), "triangle");
+    assert_eq!(nothing(Format::Pdb, "HEADER\n"), "atom");
+}
+
+#[test]
+fn a_coordinate_that_is_no_place_is_refused() {
+    for bad in ["nan", "inf", "-inf", "1e16", "-1e300", "1e999"] {
+        match read(Format::Obj, format!("v 0 0 0\nv 0 {bad} 0\nf 1 2 1\n")) {
+            Err(LoadError::Coordinate { at, .. }) => assert_eq!(at, Place::Line(2)),
+            other => panic!("{bad}: {other:?}"),
+        }
+    }
+    let mut file = binary_square("binary_little_endian", u32::to_le_bytes);
+    let second_vertex = file.len() - 17 - 3 * 15;
+    file[second_vertex..second_vertex + 4].copy_from_slice(&f32::NAN.to_le_bytes());
+    match read(Format::Ply, file) {
+        Err(LoadError::Coordinate { at, found, .. }) => {
+            assert!(found.is_nan());
+            assert_eq!(at, Place::Byte(second_vertex as u64));
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn an_index_out_of_range_is_named_with_its_line() {
+    for (corner, found) in
+        [("5", 5), ("0", 0), ("-5", -5), ("99999999999", 99_999_999_999), ("-9223372036854775808", i64::MIN)]
+    {
+        let text = format!("{SQUARE_OBJ}f 1 2 {corner}\n");
+        match read(Format::Obj, text) {
+            Err(LoadError::Index { at, what, expected, found: written, .. }) => {
+                assert_eq!((at, what, expected, written), (Place::Line(9), "vertices", 4, found));
+            }
+            other => panic!("{corner}: {other:?}"),
+        }
+    }
+    let error = read(Format::Obj, format!("{SQUARE_OBJ}f 1//1 2//1 3//1\n")).expect_err("no normals");
+    assert_eq!(error.to_string(), "test: line 9: expected an index of one of 0 normals, found 1");
+}
+
+#[test]
+fn an_index_of_ply_out_of_range_is_named_with_its_place() {
+    let ascii = ascii_square().replace("4 0 1 2 3", "4 0 1 2 -3");
+    let error = read(Format::Ply, ascii).expect_err("a negative index").to_string();
+    assert_eq!(error, "test: line 17: expected an index of one of 4 vertices, found -3");
+    let mut file = binary_square("binary_big_endian", u32::to_be_bytes);
+    let face = file.len() - 17;
+    file[face + 4] = 4;
+    match read(Format::Ply, file) {
+        Err(LoadError::Index { at, found, .. }) => assert_eq!((at, found), (Place::Byte(face as u64), 4)),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_ply_file_cut_anywhere_is_refused() {
+    for file in
+        [binary_square("binary_little_endian", u32::to_le_bytes), binary_square("binary_big_endian", u32::to_be_bytes)]
+    {
+        for length in 0..file.len() {
+            assert!(read(Format::Ply, &file[..length]).is_err(), "{length} bytes");
+        }
+        let last = read(Format::Ply, &file[..file.len() - 1]);
+        assert!(matches!(last, Err(LoadError::Truncated { .. })), "{last:?}");
+    }
+    let text = ascii_square();
+    let last_row = text.len() - "4 0 1 2 3\n".len();
+    let cut = read(Format::Ply, &text[..last_row]);
+    assert!(matches!(cut, Err(LoadError::Truncated { .. })), "{cut:?}");
+}
+
+#[test]
+fn an_absurd_count_in_a_header_is_refused_at_once() {
+    for encoding in ["ascii", "binary_little_endian", "binary_big_endian"] {
+        for count in ["4000000000", "18446744073709551615"] {
+            let header = SQUARE_HEADER.replace("vertex 4", &format!("vertex {count}"));
+            let file = format!("ply\nformat {encoding} 1.0\n{header}0 0 0 0 0 0\n");
+            let answer = read(Format::Ply, file);
+            assert!(matches!(answer, Err(LoadError::Truncated { .. })), "{answer:?}");
+        }
+    }
+    let endless = "ply\nformat binary_little_endian 1.0\nelement nothing 4000000000\nend_header\n";
+    assert!(matches!(read(Format::Ply, endless), Err(LoadError::Truncated { .. })));
+}
+
+#[test]
+fn an_absurd_count_of_corners_is_refused_at_once() {
+    let mut file =
+        b"ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list uint int vertex_indices\nend_header\n"
+            .to_vec();
+    file.extend(4_000_000_000_u32.to_le_bytes());
+    let answer = read(Format::Ply, file);
+    assert!(matches!(answer, Err(LoadError::Truncated { .. })), "{answer:?}");
+}
+
+#[test]
+fn what_breaks_a_format_is_named_with_line_expectation_and_finding() {
+    let message = |format, text: &str| read(format, text).expect_err(text).to_string();
+    assert_eq!(message(Format::Obj, "v 1 two 3\n"), "test: line 1: expected a number for y, found \"two\"");
+    assert_eq!(message(Format::Obj, "v 1 2\n"), "test: line 1: expected a number for z, found \"\"");
+    assert_eq!(message(Format::Obj, "v 1 2 3\nf 1 x 1\n"), "test: line 2: expected an index of vertices, found \"x\"");
+    assert_eq!(
+        message(Format::Obj, "v 1 2 3\nf 1 1\n"),
+        "test: line 2: expected a face of at least 3 corners, found 2 in \"f 1 1\""
+    );
+    assert_eq!(
+        message(Format::Pdb, "ATOM      1  N   SER A   1      11.0x0\n"),
+        "test: line 1: expected a number for x in columns 31 to 38, found \"11.0x0\""
+    );
+    assert!(message(Format::Ply, "plx\n").starts_with("test: line 1: expected a PLY header, found"));
+    let row = ascii_square().replace("6 1 0", "6 one 0");
+    assert!(message(Format::Ply, &row).starts_with("test: line 15: expected a row of \"vertex\", found"));
+    let list = ascii_square().replace("property float y\n", "property list uchar float y\n");
+    assert!(message(Format::Ply, &list).contains("line 13"), "{}", message(Format::Ply, &list));
+}
+
+#[test]
+fn text_that_is_not_utf8_is_refused_with_its_place() {
+    for format in [Format::Obj, Format::Pdb] {
+        match read(format, b"# caf\xe9\nv 0 0 0\n") {
+            Err(LoadError::NotText { at, found, .. }) => assert_eq!((at, found), (Place::Byte(5), 0xe9)),
+            other => panic!("{other:?}"),
+        }
+    }
+    let header = read(Format::Ply, b"ply\nformat ascii 1.0\ncomment \xff\nend_header\n");
+    assert!(header.is_err());
+    let mut rows = ascii_square().into_bytes();
+    rows.push(0xff);
+    assert!(matches!(read(Format::Ply, rows), Err(LoadError::NotText { found: 0xff, .. })));
+}
+
+#[test]
+fn paths_that_lead_to_no_model_are_refused() {
+    let folder = std::env::temp_dir().join(format!("pxpl5-scene-{}", std::process::id()));
+    let directory = folder.join("directory.ply");
+    std::fs::create_dir_all(&directory).expect("a temporary directory");
+    assert!(matches!(load(&directory), Err(LoadError::NotAFile { .. })));
+    assert!(matches!(load(&folder), Err(LoadError::NotAFile { .. })));
+    assert!(matches!(load(folder.join("missing.obj")), Err(LoadError::Io { .. })));
+    let strange = folder.join("model.stl");
+    std::fs::write(&strange, "solid").expect("a temporary file");
+    assert!(matches!(load(&strange), Err(LoadError::UnknownFormat { found, .. }) if found == "stl"));
+    let good = folder.join("SQUARE.OBJ");
+    std::fs::write(&good, format!("{SQUARE_OBJ}f 1 2 3 4\n")).expect("a temporary file");
+    assert_square(&load(&good).expect("a square"));
+    let error = load(folder.join("missing.obj")).expect_err("missing").to_string();
+    assert!(error.contains("missing.obj: expected a readable file, found:"), "{error}");
+    std::fs::remove_dir_all(&folder).expect("its own directory");
+}

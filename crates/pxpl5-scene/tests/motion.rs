@@ -1,0 +1,195 @@
+//! Head motion against the published statistics of recorded heads.
+
+use glam::{DVec3, Vec3};
+use pxpl5_scene::config::{MAX_HEAD_SPEED_DEG_PER_S, MEAN_HEAD_SPEED_DEG_PER_S};
+use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Path, Pose, Sway, builtin};
+
+const SECOND: u64 = 1_000_000_000_000;
+/// Ten samples a second see every sine below 2 Hz; a tenth of a field's worth of time between poses gives speeds.
+const STEP: u64 = SECOND / 100;
+
+fn forward(pose: &Pose) -> Vec3 {
+    pose.orientation * Vec3::NEG_Z
+}
+
+/// Angle between two orientations, degrees.
+fn angle_deg(a: &Pose, b: &Pose) -> f64 {
+    let turn = a.orientation.as_dquat().conjugate() * b.orientation.as_dquat();
+    let sine = DVec3::new(turn.x, turn.y, turn.z).length();
+    2.0 * sine.atan2(turn.w.abs()).to_degrees()
+}
+
+fn speeds(motion: &HeadMotion, seconds: u64) -> Vec<f64> {
+    let samples = 0..seconds * 10;
+    let speed = |i: u64| {
+        let (a, b) = (motion.pose(i * SECOND / 10), motion.pose(i * SECOND / 10 + STEP));
+        angle_deg(&a, &b) / 0.01
+    };
+    samples.map(speed).collect()
+}
+
+fn swaying(seed: u64) -> HeadMotion {
+    HeadMotion::looking_at(Vec3::ZERO, 0.25).with_seed(seed)
+}
+
+#[test]
+fn the_mean_angular_speed_is_that_of_recorded_heads() {
+    for seed in [0, 1, 2, 99, u64::MAX] {
+        let speeds = speeds(&swaying(seed), 600);
+        let mean = speeds.iter().sum::<f64>() / speeds.len() as f64;
+        assert!((mean / MEAN_HEAD_SPEED_DEG_PER_S - 1.0).abs() < 0.1, "seed {seed}: {mean}");
+    }
+}
+
+#[test]
+fn no_head_turns_faster_than_recorded_ones() {
+    for seed in 0..8 {
+        let fastest = speeds(&swaying(seed), 600).into_iter().fold(0.0, f64::max);
+        assert!(fastest < MAX_HEAD_SPEED_DEG_PER_S, "seed {seed}: {fastest}");
+    }
+}
+
+#[test]
+fn the_mean_translation_is_about_that_of_recorded_heads() {
+    // Published: 0.37 m/s in the mean; within a quarter of it.
+    let motion = swaying(1);
+    let moved = (0..6_000).map(|i| {
+        let (a, b) = (motion.pose(i * SECOND / 10), motion.pose(i * SECOND / 10 + STEP));
+        f64::from(a.position.distance(b.position)) / 0.01
+    });
+    let mean = moved.sum::<f64>() / 6_000.0;
+    assert!((mean / 0.37 - 1.0).abs() < 0.25, "{mean}");
+}
+
+#[test]
+fn practically_all_energy_of_yaw_lies_below_2_hz_and_95_percent_below_0_14_hz() {
+    // Discrete Fourier transform of 400 s at 8 Hz, mean removed; a Hann window keeps lines from leaking upwards.
+    let motion = swaying(5);
+    let count = 3_200_usize;
+    let mut previous = 0.0_f64;
+    let yaw = (0..count).map(|i| {
+        let f = forward(&motion.pose(i as u64 * SECOND / 8));
+        let angle = f64::from(-f.x).atan2(f64::from(-f.z));
+        // Unwrapped: the next turn is the nearest one.
+        previous +=
+            (angle - previous + 3.0 * std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
+        previous
+    });
+    let yaw: Vec<f64> = yaw.collect();
+    let mean = yaw.iter().sum::<f64>() / count as f64;
+    let energy = |bin: usize| {
+        let (mut re, mut im) = (0.0, 0.0);
+        for (i, y) in yaw.iter().enumerate() {
+            let turn = std::f64::consts::TAU / count as f64;
+            let window = 1.0 - (turn * i as f64).cos();
+            let (sin, cos) = (turn * ((bin * i) % count) as f64).sin_cos();
+            (re, im) = (re + (y - mean) * window * cos, im + (y - mean) * window * sin);
+        }
+        re * re + im * im
+    };
+    let all: Vec<f64> = (1..count / 2).map(energy).collect();
+    let below = |hz: f64| all[..(hz * 400.0) as usize].iter().sum::<f64>() / all.iter().sum::<f64>();
+    assert!(below(0.145) > 0.95, "{}", below(0.145));
+    assert!(below(2.0) > 0.999, "{}", below(2.0));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_pose_and_another_seed_another() {
+    let time = 123_456_789_012_345;
+    assert_eq!(swaying(3).pose(time), swaying(3).pose(time));
+    assert_ne!(swaying(3).pose(time), swaying(4).pose(time));
+}
+
+#[test]
+fn a_pan_of_90_degrees_per_second_looks_left_after_a_second() {
+    let path = Path::Pan { eye: Vec3::ONE, deg_per_s: 90.0 };
+    let motion = HeadMotion::new(path, Sway::none()).expect("in range");
+    assert!((forward(&motion.pose(0)) - Vec3::NEG_Z).length() < 1e-6);
+    assert!((forward(&motion.pose(SECOND)) - Vec3::NEG_X).length() < 1e-6);
+    assert_eq!(motion.pose(SECOND).position, Vec3::ONE);
+}
+
+#[test]
+fn a_pan_turns_by_the_rate_times_the_time() {
+    // JITP: 200 deg/s give 3.3 deg in a sixtieth of a second.
+    let path = Path::Pan { eye: Vec3::ZERO, deg_per_s: 200.0 };
+    let motion = HeadMotion::new(path, Sway::none()).expect("in range");
+    let turned = angle_deg(&motion.pose(5 * SECOND), &motion.pose(5 * SECOND + SECOND / 60));
+    assert!((turned - 200.0 / 60.0).abs() < 1e-3, "{turned}");
+}
+
+#[test]
+fn an_orbit_faces_its_target_from_the_stated_distance() {
+    let target = Vec3::new(1.0, 0.0, -2.0);
+    let path = Path::Orbit { target, distance: 3.0, height: 0.0, deg_per_s: 90.0 };
+    let motion = HeadMotion::new(path, Sway::none()).expect("in range");
+    assert!((motion.pose(0).position - Vec3::new(1.0, 0.0, 1.0)).length() < 1e-6);
+    let pose = motion.pose(SECOND);
+    assert!((pose.position - Vec3::new(4.0, 0.0, -2.0)).length() < 1e-6);
+    assert!((forward(&pose) - Vec3::NEG_X).length() < 1e-6);
+}
+
+#[test]
+fn a_still_head_stays_upright_even_when_it_looks_straight_down() {
+    let path = Path::Still { eye: Vec3::Y, target: Vec3::ZERO };
+    let pose = HeadMotion::new(path, Sway::none()).expect("in range").pose(SECOND);
+    assert!((forward(&pose) - Vec3::NEG_Y).length() < 1e-6);
+    assert!((pose.orientation.length() - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn the_default_motion_of_every_scene_keeps_the_centre_of_the_model_in_view_for_hours() {
+    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
+    for name in ["mig", "molecules", "head"] {
+        let scene = builtin(name).expect("a built-in scene");
+        let (centre, _) = scene.bounding_sphere();
+        for i in 0..5_000 {
+            let view = hmd.mono(&scene.motion().pose(i * 7_777 * SECOND / 1_000));
+            let p = (view.projection * view.world_to_eye).project_point3(centre);
+            assert!(p.x.abs() < 1.0 && p.y.abs() < 1.0 && (0.0..1.0).contains(&p.z), "{name} {p}");
+        }
+    }
+}
+
+/// Share of a 64 x 48 grid of the view's pixels that lies in the box around the model's vertices on the screen.
+fn boxed_share(name: &str, time_ps: u64) -> f32 {
+    let scene = builtin(name).expect("a built-in scene");
+    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
+    let view = hmd.mono(&scene.motion().pose(time_ps));
+    let to_clip = view.projection * view.world_to_eye;
+    let points = scene.vertices().iter().map(|v| to_clip * v.position.extend(1.0));
+    let ahead = points.filter(|p| p.w > 0.05).map(|p| p.truncate().truncate() / p.w);
+    let edge = glam::Vec2::ONE;
+    let low = ahead.clone().fold(edge, |a, b| a.min(b)).max(-edge);
+    let high = ahead.fold(-edge, |a, b| a.max(b)).min(edge);
+    let size = (high - low).max(glam::Vec2::ZERO);
+    size.x * size.y / 4.0
+}
+
+#[test]
+fn mig_at_times_fills_the_view_and_at_times_is_small_in_it() {
+    let shares: Vec<f32> = (0..80).map(|i| boxed_share("mig", i * SECOND / 2)).collect();
+    assert!(shares.iter().filter(|&&s| s > 0.9).count() >= 8, "{shares:?}");
+    assert!(shares.iter().filter(|&&s| s < 0.1).count() >= 8, "{shares:?}");
+}
+
+#[test]
+fn the_head_fills_about_a_third_of_the_view_at_all_times() {
+    for i in 0..20 {
+        let share = boxed_share("head", i * 37 * SECOND);
+        assert!((0.2..0.8).contains(&share), "{share}");
+    }
+}
+
+#[test]
+fn numbers_out_of_range_are_refused_also_from_a_file() {
+    let nan = Path::Pan { eye: Vec3::ZERO, deg_per_s: f64::NAN };
+    assert_eq!(HeadMotion::new(nan, Sway::none()).expect_err("not a number").what, "deg_per_s");
+    let far = Path::Look { target: Vec3::splat(f32::INFINITY), distance: 1.0 };
+    assert_eq!(HeadMotion::new(far, Sway::none()).expect_err("infinite").what, "target");
+    let text = serde_json::to_string(&swaying(7)).expect("plain data");
+    assert_eq!(serde_json::from_str::<HeadMotion>(&text).expect("its own text"), swaying(7));
+    let wild = text.replace("\"scale\":1.0", "\"scale\":-1.0");
+    let error = serde_json::from_str::<HeadMotion>(&wild).expect_err("a negative scale").to_string();
+    assert!(error.contains("sway scale: expected 0 to 10, found -1"), "{error}");
+}

@@ -1,0 +1,218 @@
+//! The built-in scenes are what their descriptions say.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec3, Vec3};
+use pxpl5_scene::{Frame, Hmd, HmdConfig, Pose, Scene, SceneError, builtin, names};
+
+fn scene(name: &str) -> Scene {
+    builtin(name).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn counts(name: &str) -> (usize, usize) {
+    let scene = scene(name);
+    (scene.triangles().len(), scene.spheres().len())
+}
+
+fn corners(scene: &Scene, triangle: &[u32; 3]) -> [DVec3; 3] {
+    triangle.map(|corner| scene.vertices()[corner as usize].position.as_dvec3())
+}
+
+/// Six times the volume inside a closed surface whose triangles are anticlockwise seen from outside.
+fn six_volumes(scene: &Scene) -> f64 {
+    let triangles = scene.triangles().iter();
+    triangles.map(|t| corners(scene, t)).map(|[a, b, c]| a.dot(b.cross(c))).sum()
+}
+
+#[test]
+fn each_scene_has_the_stated_number_of_primitives() {
+    assert_eq!(counts("mig"), (417, 0)); // published TR94
+    assert_eq!(counts("molecules"), (2_620, 1_219));
+    assert_eq!(counts("head"), (59_592, 0));
+    assert_eq!(counts("full-screen:12"), (12, 0)); // published TR94
+    assert_eq!(counts("full-screen:1"), (1, 0));
+}
+
+#[test]
+fn every_listed_name_is_had_with_n_replaced() {
+    for (name, sentence) in names() {
+        scene(&name.replace('N', "3"));
+        assert!(sentence.ends_with('.'), "{sentence}");
+    }
+}
+
+#[test]
+fn the_same_name_gives_the_same_scene() {
+    for name in ["mig", "molecules", "head", "full-screen:7"] {
+        assert_eq!(scene(name), scene(name));
+    }
+}
+
+#[test]
+fn a_misspelt_name_is_answered_with_the_nearest() {
+    for (wrong, right) in
+        [("mgi", "mig"), ("Haed", "head"), ("molecule", "molecules"), ("fullscreen:4", "full-screen:N")]
+    {
+        let Err(SceneError::UnknownScene { found, nearest, .. }) = builtin(wrong) else {
+            panic!("{wrong} must not be a scene");
+        };
+        assert_eq!((found.as_str(), nearest.as_str()), (wrong, right));
+    }
+}
+
+#[test]
+fn a_count_of_triangles_out_of_range_is_refused() {
+    for count in ["", "0", "-1", "1000001", "many", "99999999999999999999"] {
+        let answer = builtin(&format!("full-screen:{count}"));
+        assert!(matches!(answer, Err(SceneError::TriangleCount { .. })), "{count}");
+    }
+}
+
+#[test]
+fn every_edge_of_the_head_is_used_once_in_each_direction() {
+    let head = scene("head");
+    let mut edges: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    for &[a, b, c] in head.triangles() {
+        for edge in [(a, b), (b, c), (c, a)] {
+            *edges.entry(edge).or_default() += 1;
+        }
+    }
+    assert_eq!(edges.len(), 3 * 59_592); // each once
+    assert!(edges.keys().all(|&(a, b)| edges.contains_key(&(b, a))));
+    // Euler: a surface without holes has V - E + F = 2.
+    assert_eq!(head.vertices().len() as i64 - edges.len() as i64 / 2 + 59_592, 2);
+}
+
+#[test]
+fn the_head_is_turned_outwards_and_its_normals_follow_its_triangles() {
+    let head = scene("head");
+    assert!(six_volumes(&head) > 0.0);
+    let against = head.triangles().iter().filter(|t| {
+        let [a, b, c] = corners(&head, t);
+        let face = (b - a).cross(c - a);
+        t.iter().all(|&corner| head.vertices()[corner as usize].normal.as_dvec3().dot(face) < 0.0)
+    });
+    assert_eq!(against.count(), 0);
+}
+
+#[test]
+fn the_head_is_symmetric_and_taller_than_wide() {
+    let head = scene("head");
+    let extent = |axis: Vec3| {
+        let along = head.vertices().iter().map(|v| v.position.dot(axis));
+        along.clone().fold(f32::MIN, f32::max) - along.fold(f32::MAX, f32::min)
+    };
+    assert!(extent(Vec3::Y) > 1.5 * extent(Vec3::X));
+    let sum: f64 = head.vertices().iter().map(|v| f64::from(v.position.x)).sum();
+    assert!((sum / head.vertices().len() as f64).abs() < 1e-4);
+}
+
+#[test]
+fn all_normals_are_of_unit_length() {
+    for name in ["mig", "molecules", "head", "full-screen:12"] {
+        for vertex in scene(name).vertices() {
+            assert!((vertex.normal.length() - 1.0).abs() < 1e-5, "{name}");
+        }
+    }
+}
+
+#[test]
+fn the_normals_of_mig_point_the_way_its_triangles_face() {
+    let mig = scene("mig");
+    for triangle in mig.triangles() {
+        let [a, b, c] = corners(&mig, triangle);
+        let face = (b - a).cross(c - a);
+        let normals = triangle.map(|corner| mig.vertices()[corner as usize].normal.as_dvec3());
+        assert!(face.length() > 0.0 && normals.iter().sum::<DVec3>().dot(face) > 0.0);
+    }
+    assert!(six_volumes(&mig) > 0.0);
+}
+
+#[test]
+fn mig_moves_its_five_control_surfaces_and_nothing_else() {
+    let mig = scene("mig");
+    let edits = mig.edits_at(700_000_000_000);
+    let moved: Vec<&str> = edits.iter().map(|e| mig.structures()[e.structure].name.as_str()).collect();
+    let surfaces = ["left aileron", "right aileron", "left tailplane", "right tailplane", "rudder"];
+    assert_eq!(moved, surfaces);
+    let posed = mig.posed(&edits);
+    let airframe = mig.structures()[0].vertices.clone();
+    assert_eq!(posed.vertices()[airframe.clone()], mig.vertices()[airframe.clone()]);
+    let last = airframe.end..mig.vertices().len();
+    let still = last.filter(|&i| posed.vertices()[i].position == mig.vertices()[i].position);
+    assert!(still.count() < 12, "only points on a hinge's axis may stay");
+}
+
+#[test]
+fn the_ailerons_of_mig_deflect_oppositely() {
+    let mig = scene("mig");
+    let posed = mig.posed(&mig.edits_at(1_000_000_000_000)); // a quarter of their 4 s
+    let rise = |structure: usize| -> f32 {
+        let range = mig.structures()[structure].vertices.clone();
+        range.map(|i| posed.vertices()[i].position.y - mig.vertices()[i].position.y).sum()
+    };
+    assert!(rise(1) * rise(2) < 0.0 && (rise(1) + rise(2)).abs() < 0.01 * rise(1).abs());
+}
+
+#[test]
+fn full_screen_triangles_cover_every_corner_of_both_screens_however_the_head_turns() {
+    let scene = scene("full-screen:12");
+    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
+    let pose = Pose { position: Vec3::new(3.0, -2.0, 9.0), orientation: glam::Quat::from_xyzw(0.5, 0.5, -0.5, 0.5) };
+    assert!(scene.structures().iter().all(|s| s.frame == Frame::Head));
+    for view in hmd.stereo(&pose) {
+        let to_clip = view.projection * view.to_eye(Frame::Head);
+        for triangle in scene.triangles() {
+            let p = triangle.map(|c| to_clip.project_point3(scene.vertices()[c as usize].position));
+            assert!(p.iter().all(|p| (0.0..1.0).contains(&p.z)));
+            for corner in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(glam::Vec2::from) {
+                let sides =
+                    [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (p[j] - p[i]).truncate().perp_dot(corner - p[i].truncate()));
+                assert!(sides.iter().all(|&side| side > 0.0), "{:?}", view.eye);
+            }
+        }
+    }
+}
+
+#[test]
+fn full_screen_triangles_lie_at_different_depths() {
+    let scene = scene("full-screen:12");
+    let mut depths: Vec<f32> = scene.vertices().chunks(3).map(|t| t[0].position.z).collect();
+    depths.dedup();
+    assert_eq!(depths.len(), 12);
+}
+
+#[test]
+fn the_first_atoms_of_molecules_are_those_of_myoglobin() {
+    // 783 carbons, 216 nitrogens, 215 oxygens, 2 sulphurs in the entry; and a water molecule.
+    let molecules = scene("molecules");
+    let of = |colour: [u8; 3]| molecules.spheres().iter().filter(|s| s.colour == colour).count();
+    assert_eq!([of([144, 144, 144]), of([48, 80, 248]), of([255, 216, 48])], [783, 216, 2]);
+    assert_eq!([of([240, 24, 24]), of([255, 255, 255])], [216, 2]);
+}
+
+#[test]
+fn a_triangle_may_not_use_the_vertex_of_another_structure() {
+    let mut parts = scene("mig").into_parts();
+    parts.triangles[0][0] = parts.vertices.len() as u32 - 1;
+    let error = Scene::new(parts).expect_err("the vertex belongs to the rudder");
+    let text = error.to_string();
+    assert!(text.contains("scene mig: triangle 0: expected vertices from 0.."), "{text}");
+}
+
+#[test]
+fn a_hand_made_scene_is_checked_in_every_part() {
+    let broken: [fn(&mut pxpl5_scene::SceneParts); 6] = [
+        |p| p.vertices[3].position.y = f32::NAN,
+        |p| p.vertices[3].normal = Vec3::ZERO,
+        |p| p.spheres[0].radius = 0.0,
+        |p| p.spheres[0].centre.x = f32::INFINITY,
+        |p| p.structures[0].spheres.end -= 1,
+        |p| p.structures[0].triangles.start += 1,
+    ];
+    for damage in broken {
+        let mut parts = scene("molecules").into_parts();
+        damage(&mut parts);
+        assert!(matches!(Scene::new(parts), Err(SceneError::Part { .. })));
+    }
+}
