@@ -1,0 +1,104 @@
+//! One of the two buffers: the regions written into it, as far as one of their pixels can still be seen.
+
+use crate::region::RegionWrite;
+use pxpl5_sim::Span;
+use pxpl5_wire::CopyTarget;
+use std::sync::Arc;
+
+/// Regions as they are handed to a viewer, oldest first.
+pub(crate) type Regions = Arc<[Arc<RegionWrite>]>;
+
+/// Regions that may be kept before the hidden ones are searched for pixel by pixel.
+const FEW: usize = 128;
+
+#[derive(Clone, Debug)]
+pub(crate) struct Buffer {
+    held: Vec<Held>,
+    /// `held` as it was handed out last; `None` when it has changed since.
+    shared: Option<Regions>,
+    search_above: usize,
+}
+
+#[derive(Clone, Debug)]
+struct Held {
+    region: Arc<RegionWrite>,
+    hidden: bool,
+}
+
+impl Buffer {
+    pub(crate) fn new() -> Self {
+        Self { held: Vec::new(), shared: None, search_above: FEW }
+    }
+
+    /// The region of this target that is arriving.
+    pub(crate) fn arriving(&mut self, target: &CopyTarget) -> Option<usize> {
+        let is_arriving = |held: &Held| !held.region.is_complete() && held.region.target == *target;
+        self.held.iter().rposition(is_arriving)
+    }
+
+    pub(crate) fn add(&mut self, region: RegionWrite) -> usize {
+        self.held.push(Held { region: Arc::new(region), hidden: false });
+        self.held.len() - 1
+    }
+
+    pub(crate) fn region(&self, place: usize) -> &RegionWrite {
+        &self.held[place].region
+    }
+
+    /// The region for a change; a viewer keeps what it was given.
+    pub(crate) fn region_mut(&mut self, place: usize) -> &mut RegionWrite {
+        self.shared = None;
+        Arc::make_mut(&mut self.held[place].region)
+    }
+
+    /// Marks what a complete region hides.
+    pub(crate) fn hide_below(&mut self, place: usize) {
+        let (below, above) = self.held.split_at_mut(place);
+        let target = above[0].region.target;
+        for held in below.iter_mut().filter(|h| h.region.covers_same(&target)) {
+            held.hidden = true;
+        }
+    }
+
+    /// Everything written, oldest first.
+    pub(crate) fn share(&mut self) -> Regions {
+        let held = &self.held;
+        let collect = || held.iter().map(|h| Arc::clone(&h.region)).collect();
+        Arc::clone(self.shared.get_or_insert_with(collect))
+    }
+
+    pub(crate) fn regions(&self) -> Regions {
+        let collect = || self.held.iter().map(|h| Arc::clone(&h.region)).collect();
+        self.shared.clone().unwrap_or_else(collect)
+    }
+
+    /// Forgets what cannot be seen any more.
+    pub(crate) fn prune(&mut self, width: u32, height: u32) {
+        if self.held.iter().any(|held| held.hidden) {
+            self.held.retain(|held| !held.hidden);
+            self.shared = None;
+        }
+        if self.held.len() > self.search_above {
+            self.forget_covered(width, height);
+            self.search_above = FEW.max(2 * self.held.len());
+        }
+    }
+
+    /// Regions of different cuts hide each other only in parts, so pixels decide. Only the newest can still be
+    /// arriving, since a port takes one region at a time.
+    fn forget_covered(&mut self, width: u32, height: u32) {
+        let mut covered = vec![false; (width * height) as usize];
+        for (age, held) in self.held.iter_mut().rev().enumerate() {
+            held.hidden = age > 0 || held.region.is_complete();
+            for segment in held.region.segments(Span::ZERO) {
+                let begin = (segment.y * width + segment.x) as usize;
+                for pixel in &mut covered[begin..begin + segment.length as usize] {
+                    held.hidden &= *pixel;
+                    *pixel = true;
+                }
+            }
+        }
+        self.held.retain(|held| !held.hidden);
+        self.shared = None;
+    }
+}

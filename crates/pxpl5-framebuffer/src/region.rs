@@ -1,0 +1,144 @@
+//! One region on its way into a buffer, and after.
+
+use crate::FrameBufferFault;
+use crate::video::{Video, frame_line, rectangle};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{CopyTarget, MAX_MESSAGE_WORDS, PixelSource, REGION_SIZE, RegionPixels};
+use std::ops::Range;
+use std::sync::Arc;
+
+const MAX_PARTS: usize = (REGION_SIZE * REGION_SIZE).div_ceil(MAX_MESSAGE_WORDS) as usize;
+const NEVER: Time = Time(u64::MAX);
+
+/// A region with the arrival of each of its messages.
+#[derive(Clone, Debug)]
+pub(crate) struct RegionWrite {
+    pub(crate) target: CopyTarget,
+    pub(crate) image: Arc<dyn PixelSource>,
+    rectangle: [u32; 4],
+    parts: u32,
+    n_arrived: u32,
+    arrived: [Time; MAX_PARTS],
+}
+
+/// Pixels of one line of a region that came with one message.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Segment {
+    /// Line of the frame.
+    pub(crate) y: u32,
+    /// First pixel.
+    pub(crate) x: u32,
+    /// Number of pixels.
+    pub(crate) length: u32,
+    /// Place of the first pixel in the region's image.
+    pub(crate) index: u32,
+    /// When the first pixel's word arrived.
+    first_at: Time,
+    /// When the message's last word arrived.
+    pub(crate) message_at: Time,
+}
+
+impl Segment {
+    /// When the word of the `i`-th pixel arrived.
+    pub(crate) fn arrival(&self, i: u32, word: Span) -> Time {
+        self.first_at + word * u64::from(i)
+    }
+
+    pub(crate) fn image_range(&self) -> Range<usize> {
+        self.index as usize..(self.index + self.length) as usize
+    }
+}
+
+impl RegionWrite {
+    /// A region of which nothing has arrived.
+    pub(crate) fn new(pixels: &RegionPixels, video: &Video) -> Result<Self, FrameBufferFault> {
+        let target = pixels.target;
+        let outside = || FrameBufferFault::Region { target, frame: [video.width(), video.height()] };
+        let rectangle = rectangle(video, &target).ok_or_else(outside)?;
+        let [_, _, width, height] = rectangle;
+        if width > REGION_SIZE || height > REGION_SIZE {
+            return Err(outside());
+        }
+        let expected = (width * height).div_ceil(MAX_MESSAGE_WORDS);
+        if pixels.parts != expected {
+            let found = pixels.parts;
+            return Err(FrameBufferFault::Parts { target, expected, found });
+        }
+        Ok(Self {
+            target,
+            image: Arc::clone(&pixels.image),
+            rectangle,
+            parts: expected,
+            n_arrived: 0,
+            arrived: [NEVER; MAX_PARTS],
+        })
+    }
+
+    /// Whether message `part` exists and is missing.
+    pub(crate) fn lacks(&self, part: u32) -> bool {
+        part < self.parts && self.arrived[part as usize] == NEVER
+    }
+
+    pub(crate) fn arrive(&mut self, part: u32, now: Time) {
+        self.arrived[part as usize] = now;
+        self.n_arrived += 1;
+    }
+
+    pub(crate) const fn is_complete(&self) -> bool {
+        self.n_arrived == self.parts
+    }
+
+    /// When the first message arrived; never, if none has.
+    pub(crate) fn first_at(&self) -> Time {
+        self.arrived.iter().copied().min().unwrap_or(NEVER)
+    }
+
+    /// When the last message arrived; `None` while one is missing.
+    pub(crate) fn last_at(&self) -> Option<Time> {
+        let arrived = &self.arrived[..self.parts as usize];
+        arrived.iter().copied().max().filter(|last| *last != NEVER)
+    }
+
+    /// Whether it fills the same pixels as another region.
+    pub(crate) fn covers_same(&self, other: &CopyTarget) -> bool {
+        let key = |target: &CopyTarget| (target.region, target.lines, target.grid);
+        key(&self.target) == key(other)
+    }
+
+    /// The pixels that have arrived, line by line, each line cut where one message ends and the next begins.
+    pub(crate) fn segments(&self, word: Span) -> impl Iterator<Item = Segment> + '_ {
+        let [_, _, _, height] = self.rectangle;
+        (0..height).flat_map(move |row| self.row(row, word)).filter(|segment| segment.message_at != NEVER)
+    }
+
+    /// As `segments`, with those that never arrived.
+    pub(crate) fn row(&self, row: u32, word: Span) -> impl Iterator<Item = Segment> + '_ {
+        let [_, _, width, _] = self.rectangle;
+        let (begin, end) = (row * width, (row + 1) * width);
+        let parts = begin / MAX_MESSAGE_WORDS..=(end - 1) / MAX_MESSAGE_WORDS;
+        parts.map(move |part| {
+            let first = begin.max(part * MAX_MESSAGE_WORDS);
+            let last = end.min((part + 1) * MAX_MESSAGE_WORDS);
+            self.segment(row, part, first..last, word)
+        })
+    }
+
+    pub(crate) fn rows(&self) -> Range<u32> {
+        0..self.rectangle[3]
+    }
+
+    fn segment(&self, row: u32, part: u32, words: Range<u32>, word: Span) -> Segment {
+        let [left, top, width, height] = self.rectangle;
+        let message_at = self.arrived[part as usize];
+        let message_end = (width * height).min((part + 1) * MAX_MESSAGE_WORDS);
+        let before_end = word * u64::from(message_end - 1 - words.start);
+        Segment {
+            y: frame_line(self.target.lines, top + row),
+            x: left + words.start - row * width,
+            length: words.end - words.start,
+            index: words.start,
+            first_at: Time(message_at.0.saturating_sub(before_end.0)),
+            message_at,
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! What a viewer sees.
+
+use crate::buffer::Regions;
+use crate::picture::Canvas;
+use crate::region::{RegionWrite, Segment};
+use crate::video::Video;
+use image::RgbImage;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{CopyTarget, FieldParity};
+
+/// One field as it was scanned: lazy, cheap to clone, independent of what the board does later.
+#[derive(Clone, Debug)]
+pub struct SeenField {
+    pub(crate) field: u64,
+    pub(crate) buffer: u8,
+    pub(crate) ends_at: Time,
+    pub(crate) video: Video,
+    pub(crate) word: Span,
+    pub(crate) regions: Regions,
+}
+
+/// A region of which pixels were scanned before they had arrived, so that older ones are seen in their place. For
+/// which field it was meant the board cannot know: compare `target.picture`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LateRegion {
+    /// The region.
+    pub target: CopyTarget,
+    /// When its last message arrived; `None` when that was not before the end of the field.
+    pub arrived_at: Option<Time>,
+    /// The first line of the frame with an older pixel.
+    pub first_line: u32,
+    /// Number of such lines in this field.
+    pub lines: u32,
+    /// Longest time between the scan of a pixel and its arrival; for a pixel that did not come in this field the
+    /// time to its end.
+    pub lateness: Span,
+}
+
+impl SeenField {
+    /// The number of the field.
+    #[must_use]
+    pub const fn field(&self) -> u64 {
+        self.field
+    }
+
+    /// The buffer that was scanned.
+    #[must_use]
+    pub const fn buffer(&self) -> u8 {
+        self.buffer
+    }
+
+    /// Which lines of the frame were scanned.
+    #[must_use]
+    pub const fn parity(&self) -> FieldParity {
+        FieldParity::of_field(self.field)
+    }
+
+    /// The scanned lines alone, black where nothing was ever written: 640 x 240 for NTSC.
+    #[must_use]
+    pub fn picture(&self) -> RgbImage {
+        let mut canvas = Canvas::new(self.video.width(), self.video.height() / 2);
+        for region in self.regions.iter() {
+            self.paint(region, &mut canvas, |y| y / 2);
+        }
+        canvas.into_image()
+    }
+
+    /// Two fields interlaced, as on a screen: 640 x 480 for NTSC. Two fields of the same lines give the later one
+    /// on a black frame.
+    #[must_use]
+    pub fn interlaced_with(&self, other: &Self) -> RgbImage {
+        let mut fields = [self, other];
+        fields.sort_by_key(|seen| seen.field);
+        let mut canvas = Canvas::new(self.video.width(), self.video.height());
+        for seen in fields {
+            canvas.clear_lines(seen.parity());
+            for region in seen.regions.iter() {
+                seen.paint(region, &mut canvas, |y| y);
+            }
+        }
+        canvas.into_image()
+    }
+
+    /// Regions that came too late for this field, in order of their arrival.
+    #[must_use]
+    pub fn late_regions(&self) -> Vec<LateRegion> {
+        let during = self.regions.iter().filter(|region| self.may_be_late(region));
+        during.filter_map(|region| self.late(region)).collect()
+    }
+
+    fn may_be_late(&self, region: &RegionWrite) -> bool {
+        let begun = region.first_at() < self.ends_at;
+        begun && region.last_at().is_none_or(|last| last > self.video.retrace(self.field))
+    }
+
+    fn paint(&self, region: &RegionWrite, canvas: &mut Canvas, row_of: impl Fn(u32) -> u32) {
+        let pixels = region.image.pixels();
+        for segment in region.segments(self.word) {
+            let Some(scanned_at) = self.video.when(segment.x, segment.y, self.field) else {
+                continue;
+            };
+            let place = [segment.x, row_of(segment.y)];
+            let source = pixels.get(segment.image_range()).unwrap_or_default();
+            if segment.message_at <= scanned_at {
+                canvas.put(place, source);
+            } else {
+                let in_time = |i: u32| self.in_time(&segment, i);
+                canvas.put_some(place, source, in_time);
+            }
+        }
+    }
+
+    fn in_time(&self, segment: &Segment, i: u32) -> bool {
+        self.lateness(segment, i) == Some(Span::ZERO)
+    }
+
+    /// How much later than the beam a pixel's word came; `None` where the field scans no pixel.
+    fn lateness(&self, segment: &Segment, i: u32) -> Option<Span> {
+        let scanned_at = self.video.when(segment.x + i, segment.y, self.field)?;
+        let arrived = segment.arrival(i, self.word);
+        Some(arrived.min(self.ends_at).since(scanned_at))
+    }
+
+    fn late(&self, region: &RegionWrite) -> Option<LateRegion> {
+        let mut late = LateRegion {
+            target: region.target,
+            arrived_at: region.last_at().filter(|last| *last < self.ends_at),
+            first_line: 0,
+            lines: 0,
+            lateness: Span::ZERO,
+        };
+        for row in region.rows() {
+            // Beam and words both advance evenly, so the worst pixel stands at one end of a segment.
+            let ends = region.row(row, self.word).flat_map(|s| [(s, 0), (s, s.length - 1)]);
+            let worst = ends.filter_map(|(s, i)| Some((s.y, self.lateness(&s, i)?))).max_by_key(|w| w.1);
+            if let Some((y, lateness)) = worst.filter(|w| w.1 > Span::ZERO) {
+                late.add(y, lateness);
+            }
+        }
+        (late.lines > 0).then_some(late)
+    }
+}
+
+impl LateRegion {
+    fn add(&mut self, y: u32, lateness: Span) {
+        if self.lines == 0 {
+            self.first_line = y;
+        }
+        self.lines += 1;
+        self.lateness = self.lateness.max(lateness);
+    }
+}
+
+/// A whole buffer as it is: lazy, cheap to clone.
+#[derive(Clone, Debug)]
+pub struct BufferContents {
+    pub(crate) video: Video,
+    pub(crate) regions: Regions,
+}
+
+impl BufferContents {
+    /// Both fields, with all messages that have arrived; black where nothing was ever written.
+    #[must_use]
+    pub fn picture(&self) -> RgbImage {
+        let mut canvas = Canvas::new(self.video.width(), self.video.height());
+        for region in self.regions.iter() {
+            let pixels = region.image.pixels();
+            for segment in region.segments(Span::ZERO) {
+                let source = pixels.get(segment.image_range()).unwrap_or_default();
+                canvas.put([segment.x, segment.y], source);
+            }
+        }
+        canvas.into_image()
+    }
+}

@@ -1,0 +1,122 @@
+//! Where the beam is, exactly.
+
+use crate::{ConfigError, VideoTiming};
+use pxpl5_sim::{Clock, Time};
+use pxpl5_wire::{CopyTarget, FieldParity, Lines, RegionGrid};
+
+/// Times of retraces, lines and pixels, all computed from zero.
+///
+/// Field `n` begins at retrace `n`, scans the even lines of the frame if `n` is even, and else the odd ones. Lines
+/// follow an uninterrupted line clock; since a field has 262.5 of them, an odd field begins in the middle of one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Video {
+    timing: VideoTiming,
+    pixel: Clock,
+    line: Clock,
+    field: Clock,
+}
+
+impl Video {
+    /// Video of these numbers.
+    ///
+    /// # Errors
+    ///
+    /// As [`VideoTiming::check`], and [`ConfigError::Clock`].
+    pub fn new(timing: VideoTiming) -> Result<Self, ConfigError> {
+        timing.check()?;
+        Ok(Self {
+            timing,
+            pixel: timing.pixel_clock().ok_or(ConfigError::Clock)?,
+            line: timing.line_clock().ok_or(ConfigError::Clock)?,
+            field: timing.field_clock().ok_or(ConfigError::Clock)?,
+        })
+    }
+
+    /// The start of field `n`.
+    #[must_use]
+    pub const fn retrace(&self, n: u64) -> Time {
+        self.field.edge(n)
+    }
+
+    /// The field that is being scanned at `time`; at a retrace the one that begins.
+    #[must_use]
+    pub const fn field_at(&self, time: Time) -> u64 {
+        let n = self.field.edge_at_or_after(time);
+        if self.field.edge(n).0 == time.0 { n } else { n - 1 }
+    }
+
+    /// When the beam begins line `y` of the frame (its blanking) in a field; `None` when that field does not scan it.
+    #[must_use]
+    pub fn line_start(&self, y: u32, field: u64) -> Option<Time> {
+        Some(self.line.edge(self.line_number(y, field)?))
+    }
+
+    /// When the beam is at pixel `x` of line `y` of the frame in a field; `None` when that field does not scan it.
+    #[must_use]
+    pub fn when(&self, x: u32, y: u32, field: u64) -> Option<Time> {
+        if x >= self.width() {
+            return None;
+        }
+        let line = self.line_number(y, field)?;
+        let blanked = line.saturating_mul(self.timing.line_pixels).saturating_add(self.timing.left_blanking);
+        Some(self.pixel.edge(blanked.saturating_add(u64::from(x))))
+    }
+
+    /// When the beam is at the first pixel of a region that a field scans: the region must have arrived by then.
+    /// `None` for a region outside of the frame, or without a line in that field.
+    #[must_use]
+    pub fn reaches(&self, target: &CopyTarget, field: u64) -> Option<Time> {
+        let [left, top, _, height] = rectangle(self, target)?;
+        (top..top + height).find_map(|row| self.when(left, frame_line(target.lines, row), field))
+    }
+
+    /// Visible pixels of a line.
+    #[must_use]
+    pub const fn width(&self) -> u32 {
+        self.timing.visible_pixels as u32
+    }
+
+    /// Visible lines of a frame.
+    #[must_use]
+    pub const fn height(&self) -> u32 {
+        self.timing.visible_lines as u32 * 2
+    }
+
+    /// The numbers that all this follows from.
+    #[must_use]
+    pub const fn timing(&self) -> &VideoTiming {
+        &self.timing
+    }
+
+    /// The number of a line since time zero. The half line of an odd field's start is blanked.
+    fn line_number(&self, y: u32, field: u64) -> Option<u64> {
+        let parity = FieldParity::of_field(field);
+        if y >= self.height() || y % 2 != parity.first_line() {
+            return None;
+        }
+        let start = field.saturating_mul(self.timing.frame_lines).div_ceil(2);
+        Some(start + self.timing.top_blanking + u64::from(y / 2))
+    }
+}
+
+/// The line of the frame that row `row` of a picture fills.
+pub(crate) const fn frame_line(lines: Lines, row: u32) -> u32 {
+    match lines {
+        Lines::Frame => row,
+        Lines::Field(parity) => parity.first_line() + 2 * row,
+    }
+}
+
+/// Left, top, width and height of a region in the rows of its picture; `None` when it does not lie in the frame.
+pub(crate) fn rectangle(video: &Video, target: &CopyTarget) -> Option<[u32; 4]> {
+    let RegionGrid { width, height, region_width, region_height } = target.grid;
+    let rows = match target.lines {
+        Lines::Frame => video.height(),
+        Lines::Field(_) => video.height() / 2,
+    };
+    let fits = (1..=video.width()).contains(&width) && (1..=rows).contains(&height);
+    if !fits || region_width == 0 || region_height == 0 {
+        return None;
+    }
+    (u32::from(target.region.0) < target.grid.regions()).then(|| target.grid.rectangle(target.region))
+}
