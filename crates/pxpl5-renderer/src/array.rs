@@ -1,0 +1,142 @@
+//! What every pixel array does, whatever its inside.
+
+use crate::isa::{DecodeErrorKind, Operand};
+use pxpl5_wire::{CopyTarget, REGION_SIZE, Word};
+use std::fmt;
+
+/// Pixels of the array: 128 x 128 (F89).
+pub const PIXELS: usize = (REGION_SIZE * REGION_SIZE) as usize;
+
+/// One bit of every pixel: pixel (x, y) is bit `x % 64` of word `2 y + x / 64`.
+pub type Plane = [u64; PIXELS / 64];
+
+/// A plane of zeros.
+pub const EMPTY_PLANE: Plane = [0; PIXELS / 64];
+
+/// A 128 x 128 array of one-bit processors with 208 bits of memory each.
+///
+/// All arrays agree in every bit of pixel memory and Enable after every instruction, and in [`Executed`].
+pub trait PixelArray {
+    /// Runs a list of instructions.
+    ///
+    /// # Errors
+    /// [`Fault`] at the first illegal word or operand. What stands before it has been executed; it and the rest of the
+    /// list have not. Faults are counted.
+    fn execute(&mut self, words: &[Word]) -> Result<Executed, Fault>;
+
+    /// Bit `bit` (0 to 207) of all pixels.
+    ///
+    /// # Panics
+    /// If `bit` is 208 or more.
+    fn plane(&self, bit: usize) -> Plane;
+
+    /// Overwrites bit `bit` (0 to 207) of all pixels.
+    ///
+    /// # Panics
+    /// If `bit` is 208 or more.
+    fn set_plane(&mut self, bit: usize, plane: &Plane);
+
+    /// The Enable register of all pixels.
+    fn enable(&self) -> Plane;
+
+    /// Overwrites the Enable register of all pixels.
+    fn set_enable(&mut self, plane: &Plane);
+
+    /// The colour of the selected context, 0x00RRGGBB, row by row, of the left top `width` x `height` pixels (at most
+    /// 128 x 128).
+    fn read_colour(&self, width: u32, height: u32) -> Vec<Word>;
+
+    /// Everything to zero: pixel memory, Enable, backing store, selected region, count of faults.
+    fn reset(&mut self);
+
+    /// Faults since the last reset.
+    fn faults(&self) -> u64;
+}
+
+/// What a list of instructions did besides changing pixels.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Executed {
+    /// Instructions.
+    pub instructions: u32,
+    /// Clocks in which the array was busy.
+    pub clocks: u64,
+    /// Regions that were sent to a frame buffer.
+    pub outputs: Vec<OutputRegion>,
+}
+
+/// The pixels of an output instruction.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutputRegion {
+    /// Where they go.
+    pub target: CopyTarget,
+    /// One word a pixel, 0x00RRGGBB, row by row of the region's rectangle.
+    pub pixels: Vec<Word>,
+}
+
+/// An instruction that cannot be executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Index of the instruction's first word in the list.
+    pub position: usize,
+    /// What is wrong.
+    pub kind: FaultKind,
+}
+
+/// Why an instruction cannot be executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FaultKind {
+    /// The words are no instruction.
+    Illegal(DecodeErrorKind),
+    /// A relative field ends beyond pixel memory in the selected context.
+    FieldOutOfRange {
+        /// The field.
+        operand: Operand,
+        /// Base of the context.
+        base: u8,
+    },
+    /// An operand overlaps the destination in a way that the instruction does not allow.
+    Overlap {
+        /// First bit of the destination.
+        destination: u8,
+        /// First bit of the operand.
+        operand: u8,
+    },
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.kind {
+            FaultKind::Illegal(kind) => {
+                write!(f, "word {}: {kind}", self.position)
+            }
+            FaultKind::FieldOutOfRange { operand, base } => write!(
+                f,
+                "word {}: {} bits at {base} + {} reach beyond pixel memory",
+                self.position, operand.width, operand.address
+            ),
+            FaultKind::Overlap { destination, operand } => write!(
+                f,
+                "word {}: the operand at bit {operand} overlaps the destination at bit {destination}",
+                self.position
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Fault {}
+
+/// Runs the lists of a region one after the other and returns what they sent to frame buffers.
+///
+/// # Errors
+/// The index of the first list with a fault, and the fault.
+pub fn execute_all<'a>(
+    array: &mut impl PixelArray,
+    lists: impl IntoIterator<Item = &'a [Word]>,
+) -> Result<Vec<OutputRegion>, (usize, Fault)> {
+    let mut outputs = Vec::new();
+    for (i, words) in lists.into_iter().enumerate() {
+        outputs.extend(array.execute(words).map_err(|fault| (i, fault))?.outputs);
+    }
+    Ok(outputs)
+}

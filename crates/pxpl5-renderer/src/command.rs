@@ -1,0 +1,319 @@
+//! Commands: fixed-length programs of instructions, which the graphics processors send.
+//!
+//! A command holds typed operands; its program follows from them and from the [`Layout`]. The first instruction of a
+//! command that draws is *enable all*, whose label is the command's kind. The array ignores the label; it lets a
+//! reader (and the fast pixel array) recognise the command.
+//!
+//! # Formats
+//!
+//! - Edge: a pixel is inside where the expression is `>= 0`; the tie rule is folded into `c` by the sender.
+//! - Depth: `(z >> Z_FRACTION_BITS) & (2^24 - 1)`, nearer is smaller; a pixel passes where the new depth is **strictly
+//!   less** than the stored one. A layout with a narrower Z stores and compares its upper bits.
+//! - Colour component: `(e >> COLOUR_FRACTION_BITS) & 255`. Outside of 0 to 255 it wraps, as bits do; senders keep
+//!   triangles inside. Spheres are limited to 0 .. 255.
+//! - Normal component: `(e >> NORMAL_FRACTION_BITS)` in 12 bits, two's complement, wraps.
+//!
+//! # Words and clocks
+//!
+//! | kind | words | clocks | published or assumed |
+//! |---|---|---|---|
+//! | triangle (Gouraud) | 30 | 267 | 267 (TR94, 150,000 a second) |
+//! | Phong triangle | 32 | 302 | 267; budget 262 to 292. The object's colour costs 29 |
+//! | sphere | 53 | 826 (Slats 764) | assumed "a little dearer than a triangle"; see [`Sphere`] |
+//! | Phong sphere | 38 | 515 | the same |
+//! | shade | 89 | 3,831 = 96 us | assumed 4,000 to 8,000 (100 to 200 us) |
+//! | clear | 5 | 65 | |
+
+mod copy;
+mod draw;
+mod shade;
+mod sphere;
+
+pub use copy::{Clear, CopyRegion, LoadBacking, SelectRegion, StoreBacking};
+pub use draw::{PhongTriangle, Triangle};
+pub use shade::{SPECULAR_SQUARINGS, Shade};
+pub use sphere::{PhongSphere, Sphere};
+
+use crate::isa::{DecodeError, DecodeErrorKind, Instruction};
+use crate::layout::Layout;
+use pxpl5_wire::Word;
+use std::fmt;
+
+/// What a command does; the value is its opcode in [`pxpl5_wire::CommandRun`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(u8)]
+pub enum CommandKind {
+    /// [`SelectRegion`].
+    SelectRegion = 1,
+    /// [`Clear`].
+    Clear = 2,
+    /// [`Triangle`].
+    Triangle = 3,
+    /// [`PhongTriangle`].
+    PhongTriangle = 4,
+    /// [`Sphere`].
+    Sphere = 5,
+    /// [`PhongSphere`].
+    PhongSphere = 6,
+    /// [`Shade`].
+    Shade = 7,
+    /// [`CopyRegion`].
+    CopyRegion = 8,
+    /// [`StoreBacking`].
+    StoreBacking = 9,
+    /// [`LoadBacking`].
+    LoadBacking = 10,
+    /// Waits until the backing store is idle.
+    WaitBacking = 11,
+}
+
+impl CommandKind {
+    /// All kinds in the order of their opcodes.
+    pub const ALL: [Self; 11] = [
+        Self::SelectRegion,
+        Self::Clear,
+        Self::Triangle,
+        Self::PhongTriangle,
+        Self::Sphere,
+        Self::PhongSphere,
+        Self::Shade,
+        Self::CopyRegion,
+        Self::StoreBacking,
+        Self::LoadBacking,
+        Self::WaitBacking,
+    ];
+
+    /// The kind with this opcode.
+    #[must_use]
+    pub const fn from_opcode(opcode: u8) -> Option<Self> {
+        match opcode {
+            1..=11 => Some(Self::ALL[opcode as usize - 1]),
+            _ => None,
+        }
+    }
+
+    /// The opcode in [`pxpl5_wire::CommandRun`].
+    #[must_use]
+    pub const fn opcode(self) -> u8 {
+        self as u8
+    }
+
+    /// Length in words; the same in every layout.
+    #[must_use]
+    pub const fn words(self) -> u32 {
+        match self {
+            Self::SelectRegion => 2,
+            Self::Clear => 5,
+            Self::Triangle => 30,
+            Self::PhongTriangle => 32,
+            Self::Sphere => 53,
+            Self::PhongSphere => 38,
+            Self::Shade => 89,
+            Self::CopyRegion => 9,
+            Self::StoreBacking | Self::LoadBacking | Self::WaitBacking => 1,
+        }
+    }
+
+    /// Clocks in which the array is busy, from the command's program.
+    ///
+    /// # Errors
+    /// [`Unsupported`] where the layout lacks a field that the program needs.
+    pub fn clocks(self, layout: &Layout) -> Result<u32, Unsupported> {
+        let program = Command::blank(self).program(layout)?;
+        Ok(program.iter().map(Instruction::clocks).sum())
+    }
+
+    /// Clocks in which the backing store is busy afterwards, beside the array.
+    #[must_use]
+    pub const fn backing_clocks(self) -> u32 {
+        match self {
+            Self::StoreBacking | Self::LoadBacking => crate::isa::timing::BACKING_CLOCKS,
+            _ => 0,
+        }
+    }
+}
+
+/// A layout lacks a field that a command needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unsupported {
+    /// The command.
+    pub kind: CommandKind,
+    /// The layout's name.
+    pub layout: &'static str,
+    /// What is missing.
+    pub missing: &'static str,
+}
+
+impl fmt::Display for Unsupported {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?} needs {}, which layout {} lacks", self.kind, self.missing, self.layout)
+    }
+}
+
+impl std::error::Error for Unsupported {}
+
+/// A command with its operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// Selects context and region.
+    SelectRegion(SelectRegion),
+    /// Clears colour and Z.
+    Clear(Clear),
+    /// Gouraud triangle.
+    Triangle(Triangle),
+    /// Triangle whose pixels are shaded at the end of the frame.
+    PhongTriangle(PhongTriangle),
+    /// Sphere with interpolated colour.
+    Sphere(Sphere),
+    /// Sphere whose pixels are shaded at the end of the frame.
+    PhongSphere(PhongSphere),
+    /// Deferred shading of all pixels.
+    Shade(Shade),
+    /// Copies the region to a frame buffer.
+    CopyRegion(CopyRegion),
+    /// Stores 32 bits in the backing store.
+    StoreBacking(StoreBacking),
+    /// Loads 32 bits from the backing store.
+    LoadBacking(LoadBacking),
+    /// Waits until the backing store is idle.
+    WaitBacking,
+}
+
+impl Command {
+    /// The command's kind.
+    #[must_use]
+    pub const fn kind(&self) -> CommandKind {
+        match self {
+            Self::SelectRegion(_) => CommandKind::SelectRegion,
+            Self::Clear(_) => CommandKind::Clear,
+            Self::Triangle(_) => CommandKind::Triangle,
+            Self::PhongTriangle(_) => CommandKind::PhongTriangle,
+            Self::Sphere(_) => CommandKind::Sphere,
+            Self::PhongSphere(_) => CommandKind::PhongSphere,
+            Self::Shade(_) => CommandKind::Shade,
+            Self::CopyRegion(_) => CommandKind::CopyRegion,
+            Self::StoreBacking(_) => CommandKind::StoreBacking,
+            Self::LoadBacking(_) => CommandKind::LoadBacking,
+            Self::WaitBacking => CommandKind::WaitBacking,
+        }
+    }
+
+    /// Its program of instructions.
+    ///
+    /// # Errors
+    /// [`Unsupported`] where the layout lacks a field that the program needs.
+    pub fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Unsupported> {
+        let program = match self {
+            Self::SelectRegion(command) => Ok(command.program(layout)),
+            Self::Clear(command) => Ok(command.program(layout)),
+            Self::Triangle(command) => Ok(command.program(layout)),
+            Self::PhongTriangle(command) => command.program(layout),
+            Self::Sphere(command) => command.program(layout),
+            Self::PhongSphere(command) => command.program(layout),
+            Self::Shade(command) => command.program(layout),
+            Self::CopyRegion(command) => Ok(command.program(layout)),
+            Self::StoreBacking(command) => Ok(vec![command.instruction()]),
+            Self::LoadBacking(command) => Ok(vec![command.instruction()]),
+            Self::WaitBacking => Ok(vec![Instruction::Wait]),
+        };
+        let (kind, layout) = (self.kind(), layout.plan().name);
+        program.map_err(|Missing(missing)| Unsupported { kind, layout, missing })
+    }
+
+    /// Appends the command's words.
+    ///
+    /// # Errors
+    /// [`Unsupported`] where the layout lacks a field that the program needs.
+    pub fn encode(&self, layout: &Layout, out: &mut Vec<Word>) -> Result<(), Unsupported> {
+        for instruction in self.program(layout)? {
+            instruction.encode(out);
+        }
+        Ok(())
+    }
+
+    /// Reads the command that begins at `position`; returns it and its length in words.
+    ///
+    /// # Errors
+    /// [`DecodeError`] where the words are no instructions, or not the program of a command in this layout.
+    pub fn decode(words: &[Word], position: usize, layout: &Layout) -> Result<(Self, usize), DecodeError> {
+        let (first, _) = Instruction::decode(words, position)?;
+        let word = words[position];
+        let not = |label| DecodeError { position, word, kind: DecodeErrorKind::NotTheCommand(label) };
+        let kind = kind_of(&first).ok_or(not((word >> 16) as u8))?;
+        let length = kind.words() as usize;
+        let end = words.len().min(position + length);
+        let program = decode_range(&words[..end], position)?;
+        let command = Self::from_program(kind, &program, layout).ok_or(not(kind.opcode()))?;
+        match command.program(layout) {
+            Ok(expected) if expected == program => Ok((command, length)),
+            _ => Err(not(kind.opcode())),
+        }
+    }
+
+    /// A command of this kind whose operands are zero.
+    fn blank(kind: CommandKind) -> Self {
+        match kind {
+            CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::default()),
+            CommandKind::Clear => Self::Clear(Clear::default()),
+            CommandKind::Triangle => Self::Triangle(Triangle::default()),
+            CommandKind::PhongTriangle => Self::PhongTriangle(PhongTriangle::default()),
+            CommandKind::Sphere => Self::Sphere(Sphere::default()),
+            CommandKind::PhongSphere => Self::PhongSphere(PhongSphere::default()),
+            CommandKind::Shade => Self::Shade(Shade::default()),
+            CommandKind::CopyRegion => Self::CopyRegion(CopyRegion::blank()),
+            CommandKind::StoreBacking => Self::StoreBacking(StoreBacking::default()),
+            CommandKind::LoadBacking => Self::LoadBacking(LoadBacking::default()),
+            CommandKind::WaitBacking => Self::WaitBacking,
+        }
+    }
+
+    /// Picks the operands out of a program that may be another; the caller compares.
+    fn from_program(kind: CommandKind, program: &[Instruction], layout: &Layout) -> Option<Self> {
+        Some(match kind {
+            CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::read(program, layout)?),
+            CommandKind::Clear => Self::Clear(Clear::read(program)?),
+            CommandKind::Triangle => Self::Triangle(Triangle::read(program)?),
+            CommandKind::PhongTriangle => Self::PhongTriangle(PhongTriangle::read(program)?),
+            CommandKind::Sphere => Self::Sphere(Sphere::read(program, layout)?),
+            CommandKind::PhongSphere => Self::PhongSphere(PhongSphere::read(program, layout)?),
+            CommandKind::Shade => Self::Shade(Shade::read(program)?),
+            CommandKind::CopyRegion => Self::CopyRegion(CopyRegion::read(program)?),
+            CommandKind::StoreBacking => Self::StoreBacking(StoreBacking::read(program)?),
+            CommandKind::LoadBacking => Self::LoadBacking(LoadBacking::read(program)?),
+            CommandKind::WaitBacking => Self::WaitBacking,
+        })
+    }
+}
+
+/// What a layout lacks.
+struct Missing(&'static str);
+
+fn kind_of(first: &Instruction) -> Option<CommandKind> {
+    match first {
+        Instruction::EnableAll { label } => CommandKind::from_opcode(*label),
+        Instruction::Select { .. } => Some(CommandKind::SelectRegion),
+        Instruction::Output { .. } => Some(CommandKind::CopyRegion),
+        Instruction::StoreBlock { .. } => Some(CommandKind::StoreBacking),
+        Instruction::LoadBlock { .. } => Some(CommandKind::LoadBacking),
+        Instruction::Wait => Some(CommandKind::WaitBacking),
+        _ => None,
+    }
+}
+
+fn decode_range(words: &[Word], from: usize) -> Result<Vec<Instruction>, DecodeError> {
+    let mut out = Vec::with_capacity(16);
+    let mut position = from;
+    while position < words.len() {
+        let (instruction, used) = Instruction::decode(words, position)?;
+        out.push(instruction);
+        position += used;
+    }
+    Ok(out)
+}
+
+const fn enable(kind: CommandKind) -> Instruction {
+    Instruction::EnableAll { label: kind.opcode() }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,131 @@
+//! Commands around drawing: region, clearing, copying, backing store.
+
+use super::{CommandKind, enable};
+use crate::isa::{Instruction, Operand};
+use crate::layout::Layout;
+use pxpl5_wire::{CopyTarget, Lines, NodeId, RegionGrid, RegionId};
+
+/// Selects the context and the screen position of the region that the following commands work on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SelectRegion {
+    /// Context of pixel memory, below the layout's number of contexts.
+    pub context: u8,
+    /// Screen x of the region's left column, in pixels.
+    pub left: u16,
+    /// Screen y of the region's top row, in the lines that are drawn.
+    pub top: u16,
+}
+
+impl SelectRegion {
+    pub(super) fn program(&self, layout: &Layout) -> Vec<Instruction> {
+        let context_base = layout.context_base(self.context);
+        vec![Instruction::Select { context_base, left: self.left, top: self.top }]
+    }
+
+    pub(super) fn read(program: &[Instruction], layout: &Layout) -> Option<Self> {
+        let &[Instruction::Select { context_base, left, top }] = program else { return None };
+        let context = context_base.checked_div(layout.plan().context_bits)?;
+        Some(Self { context, left, top })
+    }
+}
+
+/// Sets colour to the background and Z to the far plane, in the whole array.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Clear {
+    /// Background, 0x00RRGGBB.
+    pub colour: u32,
+}
+
+impl Clear {
+    pub(super) fn program(&self, layout: &Layout) -> Vec<Instruction> {
+        let constant = |destination, value| Instruction::LoadConstant { destination, value };
+        vec![
+            enable(CommandKind::Clear),
+            constant(layout.plan().colour, self.colour),
+            constant(layout.plan().z, u32::MAX),
+        ]
+    }
+
+    pub(super) fn read(program: &[Instruction]) -> Option<Self> {
+        match program.get(1)? {
+            &Instruction::LoadConstant { value: colour, .. } => Some(Self { colour }),
+            _ => None,
+        }
+    }
+}
+
+/// Copies the region's colour to a frame buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CopyRegion {
+    /// Where to.
+    pub target: CopyTarget,
+}
+
+impl CopyRegion {
+    pub(super) fn program(&self, layout: &Layout) -> Vec<Instruction> {
+        vec![Instruction::Output { field: layout.plan().colour, target: self.target }]
+    }
+
+    pub(super) fn read(program: &[Instruction]) -> Option<Self> {
+        match program {
+            &[Instruction::Output { target, .. }] => Some(Self { target }),
+            _ => None,
+        }
+    }
+
+    pub(super) const fn blank() -> Self {
+        let target = CopyTarget {
+            frame_buffer: NodeId(0),
+            buffer: 0,
+            lines: Lines::Frame,
+            grid: RegionGrid::FRAME,
+            region: RegionId(0),
+            picture: 0,
+        };
+        Self { target }
+    }
+}
+
+/// Stores 32 bits of every pixel in a block of the backing store.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StoreBacking {
+    /// Block, 0 to 127.
+    pub block: u8,
+    /// First bit of pixel memory, absolute, 0 to 176.
+    pub address: u8,
+}
+
+impl StoreBacking {
+    pub(super) const fn instruction(self) -> Instruction {
+        Instruction::StoreBlock { field: Operand::absolute(self.address, 32), block: self.block }
+    }
+
+    pub(super) fn read(program: &[Instruction]) -> Option<Self> {
+        match program {
+            &[Instruction::StoreBlock { field, block }] => Some(Self { block, address: field.address }),
+            _ => None,
+        }
+    }
+}
+
+/// Loads 32 bits of every pixel from a block of the backing store.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LoadBacking {
+    /// Block, 0 to 127.
+    pub block: u8,
+    /// First bit of pixel memory, absolute, 0 to 176.
+    pub address: u8,
+}
+
+impl LoadBacking {
+    pub(super) const fn instruction(self) -> Instruction {
+        Instruction::LoadBlock { field: Operand::absolute(self.address, 32), block: self.block }
+    }
+
+    pub(super) fn read(program: &[Instruction]) -> Option<Self> {
+        match program {
+            &[Instruction::LoadBlock { field, block }] => Some(Self { block, address: field.address }),
+            _ => None,
+        }
+    }
+}

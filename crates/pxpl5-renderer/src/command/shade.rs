@@ -1,0 +1,183 @@
+//! Deferred shading at the end of the frame.
+
+use super::{CommandKind, Missing, enable};
+use crate::isa::{ArithmeticOp, Instruction, Operand, Test};
+use crate::layout::Layout;
+
+/// How often the cosine of the highlight is squared: a power of 2^5 = 32 (assumed).
+pub const SPECULAR_SQUARINGS: u32 = 5;
+
+/// Shades every pixel that a command has covered (Z nearer than the far plane); the others keep the background.
+///
+/// With the normal N, the object's colour C and a light and an eye at infinity:
+///
+/// ```text
+/// d = limit(N . light / |N|)        10 bits, 1.0 = 1024
+/// s = limit(N . half / |N|)^32      10 bits
+/// i = limit((d diffuse + 1024 ambient) / 1024)
+/// C := limit((C i >> 8) + (s specular >> 10))
+/// ```
+///
+/// |N| is a bit-serial square root of 12 bits, the quotients are bit-serial divisions, and the power is five squarings
+/// that keep 10 bits. The limits are 0 and all ones. A normal of zero counts as turned to the light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Shade {
+    /// Unit vector towards the light, 1.0 = 1024, each component in 12 bits two's complement; at most 2.0 long.
+    pub light: [i16; 3],
+    /// Unit vector half way between light and eye, in the same format.
+    pub half: [i16; 3],
+    /// Share of the object's colour without light, 1.0 = 256.
+    pub ambient: u8,
+    /// Share of the object's colour in full light, 1.0 = 256.
+    pub diffuse: u8,
+    /// White of the highlight, 255 is full.
+    pub specular: u8,
+}
+
+/// Bits of a component of the constant vectors.
+const VECTOR_BITS: u8 = 12;
+const COSINE_BITS: u8 = 10;
+
+/// Fields of the program; 104 bits of scratch.
+struct Fields {
+    normal: [Operand; 3],
+    colour: [Operand; 3],
+    z: Operand,
+    a: Operand,
+    b: Operand,
+    c: Operand,
+    root: Operand,
+    diffuse: Operand,
+    specular: Operand,
+}
+
+impl Fields {
+    fn of(layout: &Layout) -> Result<Self, Missing> {
+        let normal = |i| layout.normal(i).ok_or(Missing("a normal"));
+        let normal = [normal(0)?, normal(1)?, normal(2)?];
+        let scratch = layout.plan().scratch.filter(|all| all.width >= 104);
+        let scratch = scratch.ok_or(Missing("104 bits of scratch"))?;
+        Ok(Self {
+            normal,
+            colour: [0, 1, 2].map(|i| layout.component(i)),
+            z: layout.plan().z,
+            a: scratch.part(0, 24),
+            b: scratch.part(24, 24),
+            c: scratch.part(48, 24),
+            root: scratch.part(72, 12),
+            diffuse: scratch.part(84, COSINE_BITS),
+            specular: scratch.part(94, COSINE_BITS),
+        })
+    }
+}
+
+impl Shade {
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
+        let f = Fields::of(layout)?;
+        let mut out = vec![
+            enable(CommandKind::Shade),
+            Instruction::CompareConstant { test: Test::NotEqual, a: f.z, value: u32::MAX },
+        ];
+        length(&f, &mut out);
+        cosine(&f, self.light, f.diffuse, &mut out);
+        cosine(&f, self.half, f.specular, &mut out);
+        let highlight = power(&f, &mut out);
+        self.intensities(&f, highlight, &mut out);
+        for component in f.colour {
+            out.extend(combine(&f, component));
+        }
+        Ok(out)
+    }
+
+    /// b's low 8 bits := light on the object's colour; c's bits 10 .. 18 := highlight.
+    fn intensities(&self, f: &Fields, highlight: Operand, out: &mut Vec<Instruction>) {
+        let sum = f.b.part(0, 19);
+        let ambient = u32::from(self.ambient) << COSINE_BITS;
+        out.extend([
+            multiply_constant(f.b.part(0, 18), f.diffuse, i32::from(self.diffuse), 9),
+            Instruction::LoadConstant { destination: f.c.part(0, 18), value: ambient },
+            arithmetic(ArithmeticOp::Add, sum, f.b.part(0, 18), f.c.part(0, 18)),
+            Instruction::Saturate { destination: f.diffuse.part(0, 8), source: sum.part(10, 9) },
+            multiply_constant(f.c.part(0, 18), highlight, i32::from(self.specular), 9),
+        ]);
+    }
+
+    pub(super) fn read(program: &[Instruction]) -> Option<Self> {
+        let light = read_vector(program, 8)?;
+        let half = read_vector(program, 15)?;
+        let (diffuse, ambient) = (read_factor(program, 27)?, program.get(28)?);
+        let &Instruction::LoadConstant { value, .. } = ambient else { return None };
+        Some(Self {
+            light,
+            half,
+            ambient: u8::try_from(value >> COSINE_BITS).ok()?,
+            diffuse: u8::try_from(diffuse).ok()?,
+            specular: u8::try_from(read_factor(program, 31)?).ok()?,
+        })
+    }
+}
+
+const fn arithmetic(op: ArithmeticOp, destination: Operand, a: Operand, b: Operand) -> Instruction {
+    Instruction::Arithmetic { op, destination, a, b }
+}
+
+const fn multiply_constant(destination: Operand, source: Operand, factor: i32, factor_bits: u8) -> Instruction {
+    Instruction::MultiplyConstant { destination, source, factor, factor_bits }
+}
+
+/// root := |N|.
+fn length(f: &Fields, out: &mut Vec<Instruction>) {
+    let [x, y, z] = f.normal;
+    out.push(arithmetic(ArithmeticOp::Multiply, f.a, x, x));
+    for component in [y, z] {
+        out.push(arithmetic(ArithmeticOp::Multiply, f.b, component, component));
+        out.push(arithmetic(ArithmeticOp::Add, f.a, f.a, f.b));
+    }
+    out.push(Instruction::SquareRoot { destination: f.root, radicand: f.a });
+}
+
+/// cosine := limit(N . vector / |N|).
+fn cosine(f: &Fields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Instruction>) {
+    let factors = vector.map(|v| i32::from(v << 4 >> 4));
+    out.push(multiply_constant(f.c, f.normal[0], factors[0], VECTOR_BITS));
+    for i in 1..3 {
+        out.push(multiply_constant(f.b, f.normal[i], factors[i], VECTOR_BITS));
+        out.push(arithmetic(ArithmeticOp::Add, f.c, f.c, f.b));
+    }
+    let positive = f.c.part(0, 23);
+    out.push(Instruction::Saturate { destination: positive, source: f.c.signed() });
+    out.push(arithmetic(ArithmeticOp::Divide, cosine, positive, f.root));
+}
+
+/// Squares the cosine of the highlight, to and fro between a and b; returns where the power is.
+fn power(f: &Fields, out: &mut Vec<Instruction>) -> Operand {
+    let mut base = f.specular;
+    for i in 0..SPECULAR_SQUARINGS {
+        let square = if i % 2 == 0 { f.a } else { f.b }.part(0, 2 * COSINE_BITS);
+        out.push(arithmetic(ArithmeticOp::Multiply, square, base, base));
+        base = square.part(COSINE_BITS, COSINE_BITS);
+    }
+    base
+}
+
+/// component := limit((component * light >> 8) + highlight).
+fn combine(f: &Fields, component: Operand) -> [Instruction; 3] {
+    let (product, sum) = (f.a.part(0, 16), f.b.part(0, 9));
+    [
+        arithmetic(ArithmeticOp::Multiply, product, component, f.diffuse.part(0, 8)),
+        arithmetic(ArithmeticOp::Add, sum, product.part(8, 8), f.c.part(10, 8)),
+        Instruction::Saturate { destination: component, source: sum },
+    ]
+}
+
+fn read_factor(program: &[Instruction], index: usize) -> Option<i32> {
+    match program.get(index)? {
+        Instruction::MultiplyConstant { factor, .. } => Some(*factor),
+        _ => None,
+    }
+}
+
+fn read_vector(program: &[Instruction], first: usize) -> Option<[i16; 3]> {
+    let component = |i| i16::try_from(read_factor(program, first + i)?).ok();
+    Some([component(0)?, component(1)?, component(3)?])
+}

@@ -1,0 +1,247 @@
+//! Spheres, exact in silhouette, with their depth from a square root.
+
+use super::draw::{load, read_linear};
+use super::{CommandKind, Missing, enable};
+use crate::isa::{Expression, ExpressionUse, Instruction, Operand, Test};
+use crate::layout::Layout;
+use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
+use pxpl5_wire::{Linear, Quadratic};
+
+/// What all spheres share: silhouette and depth.
+///
+/// Under perspective the inverse depth along a pixel's ray is `linear + k sqrt(Q)`, where Q is the quadratic that is
+/// zero on the silhouette. The sender scales Q so that its root needs no factor:
+///
+/// ```text
+/// root  = floor(sqrt((silhouette >> root_shift) & (2^24 - 1)))        12 bits; r = root at the middle < 4096
+/// depth = (depth - (root << depth_shift)) >> Z_FRACTION_BITS          24 bits, as for a triangle
+/// ```
+///
+/// So `silhouette = 2^root_shift (bulge / 2^depth_shift)^2` at the middle, where *bulge* is how far the middle stands
+/// before the plane `depth`, in units of the depth expression. To keep 11 bits or more of the root, choose
+/// `depth_shift` such that `bulge >> depth_shift` is in 2048 .. 4096. The silhouette must stay within 48 bits on the
+/// whole region. A layout with 10 root bits uses the upper bits of the same operands.
+///
+/// Cost beyond a triangle: a quadratic is 12 words and 48 clocks and is needed twice (sign, radicand); the root takes
+/// 202 bit clocks and the depth, which now depends on a stored root, three passes instead of two. A sphere with
+/// interpolated colour further needs a product and a limit for each component (133 clocks each).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sphere {
+    /// Inside where it is `>= 0`; 48 bits.
+    pub silhouette: Quadratic,
+    /// Low bits of the silhouette that are left out of the root, 0 to 24.
+    pub root_shift: u8,
+    /// Depth of the plane of the silhouette, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
+    pub depth: Linear,
+    /// Left shift of the root before it is subtracted from the depth, 0 to 20.
+    pub depth_shift: u8,
+    /// Linear part of red, green and blue with [`COLOUR_FRACTION_BITS`].
+    pub colour: [Linear; 3],
+    /// What the root contributes, -512 to 511: component = limit(linear + ((root >> 4) * factor >> 8)), where the sum
+    /// must fit -512 to 511 (it wraps) and the limit is 0 to 255.
+    pub root_factor: [i16; 3],
+}
+
+/// A sphere that is shaded at the end of the frame (Phong).
+///
+/// The z of its normal is `root >> 2`, so that the middle of the sphere has `r / 4`; the sender scales x and y alike
+/// (shading normalises). Under perspective the normal's x and y are taken as linear.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PhongSphere {
+    /// See [`Sphere::silhouette`].
+    pub silhouette: Quadratic,
+    /// See [`Sphere::root_shift`].
+    pub root_shift: u8,
+    /// See [`Sphere::depth`].
+    pub depth: Linear,
+    /// See [`Sphere::depth_shift`].
+    pub depth_shift: u8,
+    /// x and y of the normal with [`NORMAL_FRACTION_BITS`].
+    pub normal: [Linear; 2],
+    /// Colour of the object, 0x00RRGGBB.
+    pub colour: u32,
+}
+
+/// Root bits for which the operands are defined.
+const ROOT_BITS: u8 = 12;
+/// Upper bits of the root that a colour's factor multiplies.
+const COLOUR_ROOT_BITS: u8 = 8;
+const FACTOR_BITS: u8 = 10;
+
+/// Temporaries of a sphere's program.
+#[derive(Clone, Copy)]
+struct Scratch {
+    radicand: Operand,
+    root: Operand,
+    /// In the place of the radicand, which the root has used up.
+    z: Operand,
+    /// In the same place; 8 + 10 bits.
+    product: Operand,
+}
+
+impl Scratch {
+    fn of(layout: &Layout) -> Result<Self, Missing> {
+        let missing = Missing("30 bits of scratch");
+        let (Some(all), Some(bits)) = (layout.plan().scratch, layout.root_bits()) else {
+            return Err(missing);
+        };
+        let (z_bits, radicand_bits) = (layout.plan().z.width, 2 * bits);
+        let low = z_bits.max(radicand_bits);
+        if low + bits > all.width {
+            return Err(missing);
+        }
+        Ok(Self {
+            radicand: all.part(0, radicand_bits),
+            root: all.part(low, bits),
+            z: all.part(0, z_bits),
+            product: all.part(0, COLOUR_ROOT_BITS + FACTOR_BITS),
+        })
+    }
+
+    /// Bits that the root lacks.
+    const fn short(&self) -> u8 {
+        ROOT_BITS - self.root.width
+    }
+
+    const fn upper_root(&self, bits: u8) -> Operand {
+        self.root.part(self.root.width - bits, bits)
+    }
+}
+
+struct Body {
+    silhouette: Quadratic,
+    root_shift: u8,
+    depth: Linear,
+    depth_shift: u8,
+}
+
+/// Silhouette, root, depth: compare, disable where not nearer, store.
+fn coverage(body: &Body, layout: &Layout, scratch: &Scratch, out: &mut Vec<Instruction>) {
+    let evaluate = |expression, usage| Instruction::Evaluate { expression, usage };
+    let z = layout.plan().z;
+    out.extend([
+        evaluate(Expression::Quadratic(body.silhouette), ExpressionUse::DisableNegative),
+        evaluate(
+            Expression::QuadraticAgain,
+            ExpressionUse::Load { field: scratch.radicand, shift: body.root_shift.min(24) + 2 * scratch.short() },
+        ),
+        Instruction::SquareRoot { destination: scratch.root, radicand: scratch.radicand },
+        evaluate(
+            Expression::Linear(body.depth),
+            ExpressionUse::LoadMinus {
+                field: scratch.z,
+                shift: layout.z_shift(),
+                subtrahend: scratch.root,
+                left_shift: body.depth_shift.min(20) + scratch.short(),
+            },
+        ),
+        Instruction::Compare { test: Test::Less, a: scratch.z, b: z },
+        Instruction::ShiftRight { destination: z, source: scratch.z, by: 0 },
+    ]);
+}
+
+fn read_coverage(program: &[Instruction], layout: &Layout) -> Option<Body> {
+    let short = Scratch::of(layout).ok()?.short();
+    let &[
+        _,
+        Instruction::Evaluate { expression: Expression::Quadratic(silhouette), .. },
+        Instruction::Evaluate { usage: ExpressionUse::Load { shift, .. }, .. },
+        _,
+        Instruction::Evaluate {
+            expression: Expression::Linear(depth),
+            usage: ExpressionUse::LoadMinus { left_shift, .. },
+        },
+        ..,
+    ] = program
+    else {
+        return None;
+    };
+    let root_shift = shift.checked_sub(2 * short)?;
+    let depth_shift = left_shift.checked_sub(short)?;
+    Some(Body { silhouette, root_shift, depth, depth_shift })
+}
+
+impl Sphere {
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
+        let scratch = Scratch::of(layout)?;
+        let mut out = vec![enable(CommandKind::Sphere)];
+        coverage(&self.body(), layout, &scratch, &mut out);
+        for (i, (linear, factor)) in (0..).zip(self.colour.into_iter().zip(self.root_factor)) {
+            let component = layout.component(i);
+            out.extend(shade_component(linear, factor, component, &scratch));
+        }
+        Ok(out)
+    }
+
+    const fn body(&self) -> Body {
+        Body {
+            silhouette: self.silhouette,
+            root_shift: self.root_shift,
+            depth: self.depth,
+            depth_shift: self.depth_shift,
+        }
+    }
+
+    pub(super) fn read(program: &[Instruction], layout: &Layout) -> Option<Self> {
+        let Body { silhouette, root_shift, depth, depth_shift } = read_coverage(program, layout)?;
+        let mut colour = [Linear::default(); 3];
+        let mut root_factor = [0; 3];
+        for (i, part) in program.get(7..16)?.chunks_exact(3).enumerate() {
+            let Instruction::MultiplyConstant { factor, .. } = part[0] else { return None };
+            root_factor[i] = i16::try_from(factor).ok()?;
+            colour[i] = read_linear(&part[1])?;
+        }
+        Some(Self { silhouette, root_shift, depth, depth_shift, colour, root_factor })
+    }
+}
+
+/// component := limit(linear + (upper root * factor >> 8)), in the upper 10 bits of the product.
+fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &Scratch) -> [Instruction; 3] {
+    let sum = scratch.product.part(8, 10).signed();
+    [
+        Instruction::MultiplyConstant {
+            destination: scratch.product,
+            source: scratch.upper_root(COLOUR_ROOT_BITS),
+            factor: i32::from(factor << 6 >> 6),
+            factor_bits: FACTOR_BITS,
+        },
+        Instruction::Evaluate {
+            expression: Expression::Linear(linear),
+            usage: ExpressionUse::Add { field: sum, shift: COLOUR_FRACTION_BITS as u8 },
+        },
+        Instruction::Saturate { destination: component, source: sum },
+    ]
+}
+
+impl PhongSphere {
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
+        let scratch = Scratch::of(layout)?;
+        let normal = |i| layout.normal(i).ok_or(Missing("a normal"));
+        let mut out = vec![enable(CommandKind::PhongSphere)];
+        coverage(&self.body(), layout, &scratch, &mut out);
+        for (i, component) in (0..).zip(self.normal) {
+            out.push(load(component, normal(i)?, NORMAL_FRACTION_BITS as u8));
+        }
+        out.extend([
+            Instruction::ShiftRight { destination: normal(2)?, source: scratch.upper_root(10), by: 0 },
+            Instruction::LoadConstant { destination: layout.plan().colour, value: self.colour },
+        ]);
+        Ok(out)
+    }
+
+    const fn body(&self) -> Body {
+        Body {
+            silhouette: self.silhouette,
+            root_shift: self.root_shift,
+            depth: self.depth,
+            depth_shift: self.depth_shift,
+        }
+    }
+
+    pub(super) fn read(program: &[Instruction], layout: &Layout) -> Option<Self> {
+        let Body { silhouette, root_shift, depth, depth_shift } = read_coverage(program, layout)?;
+        let normal = [read_linear(program.get(7)?)?, read_linear(program.get(8)?)?];
+        let &Instruction::LoadConstant { value: colour, .. } = program.get(10)? else { return None };
+        Some(Self { silhouette, root_shift, depth, depth_shift, normal, colour })
+    }
+}

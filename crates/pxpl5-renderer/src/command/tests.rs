@@ -1,0 +1,226 @@
+use super::*;
+use crate::isa::timing::SET_UP_CLOCKS;
+use proptest::prelude::*;
+use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, Quadratic, RegionGrid, RegionId};
+
+fn linear() -> impl Strategy<Value = Linear> {
+    any::<[i32; 3]>().prop_map(|[a, b, c]| Linear { a, b, c })
+}
+
+fn three() -> impl Strategy<Value = [Linear; 3]> {
+    [linear(), linear(), linear()]
+}
+
+fn quadratic() -> impl Strategy<Value = Quadratic> {
+    any::<[i64; 6]>().prop_map(|[xx, xy, yy, x, y, one]| Quadratic { xx, xy, yy, x, y, one })
+}
+
+fn triangle() -> impl Strategy<Value = Command> {
+    (three(), linear(), three()).prop_map(|(edges, depth, colour)| Command::Triangle(Triangle { edges, depth, colour }))
+}
+
+fn phong_triangle() -> impl Strategy<Value = Command> {
+    (three(), linear(), three(), any::<u32>()).prop_map(|(edges, depth, normal, colour)| {
+        Command::PhongTriangle(PhongTriangle { edges, depth, normal, colour })
+    })
+}
+
+fn sphere() -> impl Strategy<Value = Command> {
+    let factor = || -512_i16..512;
+    let factors = [factor(), factor(), factor()];
+    (quadratic(), 0..=24_u8, linear(), 0..=20_u8, three(), factors).prop_map(
+        |(silhouette, root_shift, depth, depth_shift, colour, root_factor)| {
+            let sphere = Sphere { silhouette, root_shift, depth, depth_shift, colour, root_factor };
+            Command::Sphere(sphere)
+        },
+    )
+}
+
+fn phong_sphere() -> impl Strategy<Value = Command> {
+    (quadratic(), 0..=24_u8, linear(), 0..=20_u8, [linear(), linear()], any::<u32>()).prop_map(
+        |(silhouette, root_shift, depth, depth_shift, normal, colour)| {
+            let sphere = PhongSphere { silhouette, root_shift, depth, depth_shift, normal, colour };
+            Command::PhongSphere(sphere)
+        },
+    )
+}
+
+fn shade() -> impl Strategy<Value = Command> {
+    let vector = || [-2048_i16..2048, -2048_i16..2048, -2048_i16..2048];
+    (vector(), vector(), any::<[u8; 3]>()).prop_map(|(light, half, [ambient, diffuse, specular])| {
+        Command::Shade(Shade { light, half, ambient, diffuse, specular })
+    })
+}
+
+fn copy() -> impl Strategy<Value = Command> {
+    (any::<u16>(), any::<u8>(), 0..3, 0..10_u16, any::<u64>()).prop_map(|(node, buffer, lines, region, picture)| {
+        let lines = match lines {
+            0 => Lines::Frame,
+            1 => Lines::Field(FieldParity::Even),
+            _ => Lines::Field(FieldParity::Odd),
+        };
+        let target = CopyTarget {
+            frame_buffer: NodeId(node),
+            buffer,
+            lines,
+            grid: RegionGrid::FIELD,
+            region: RegionId(region),
+            picture,
+        };
+        Command::CopyRegion(CopyRegion { target })
+    })
+}
+
+fn control() -> impl Strategy<Value = Command> {
+    prop_oneof![
+        (0..4_u8, any::<u16>(), any::<u16>())
+            .prop_map(|(context, left, top)| { Command::SelectRegion(SelectRegion { context, left, top }) }),
+        any::<u32>().prop_map(|colour| Command::Clear(Clear { colour })),
+        (0..128_u8, 0..=176_u8).prop_map(|(block, address)| Command::StoreBacking(StoreBacking { block, address })),
+        (0..128_u8, 0..=176_u8).prop_map(|(block, address)| Command::LoadBacking(LoadBacking { block, address })),
+        Just(Command::WaitBacking),
+    ]
+}
+
+fn any_command() -> impl Strategy<Value = Command> {
+    prop_oneof![triangle(), phong_triangle(), sphere(), phong_sphere(), shade(), copy(), control()]
+}
+
+fn phong() -> Layout {
+    Layout::rendering_control_phong()
+}
+
+proptest! {
+    #[test]
+    fn every_command_comes_back_from_its_words(
+        command in any_command().prop_filter("one context", |c| !matches!(c, Command::SelectRegion(s) if s.context > 0)),
+    ) {
+        let mut words = vec![0xdead_beef; 3];
+        command.encode(&phong(), &mut words).unwrap();
+        let used = command.kind().words() as usize;
+        prop_assert_eq!(words.len(), 3 + used);
+        prop_assert_eq!(Command::decode(&words, 3, &phong()), Ok((command, used)));
+    }
+
+    #[test]
+    fn slats_commands_come_back_with_a_narrow_z(
+        command in prop_oneof![triangle(), sphere(), control(), copy()],
+    ) {
+        let mut words = Vec::new();
+        command.encode(&Layout::slats(), &mut words).unwrap();
+        let used = command.kind().words() as usize;
+        prop_assert_eq!(Command::decode(&words, 0, &Layout::slats()), Ok((command, used)));
+    }
+
+    #[test]
+    fn any_words_decode_or_name_the_position_without_a_panic(words in any::<Vec<u32>>()) {
+        if let Err(error) = Instruction::decode_all(&words) {
+            prop_assert!(error.position < words.len());
+        }
+        let _ = Command::decode(&words, 0, &phong());
+    }
+
+    #[test]
+    fn a_legal_instruction_encodes_to_the_words_it_came_from(
+        opcode in 1..0x71_u32,
+        rest in any::<[u32; 12]>(),
+    ) {
+        let mut words = vec![opcode << 24 | rest[0] & 0xff_ffff];
+        words.extend(rest);
+        if let Ok((instruction, used)) = Instruction::decode(&words, 0) {
+            let mut again = Vec::new();
+            instruction.encode(&mut again);
+            prop_assert_eq!(&again[..], &words[..used]);
+        }
+    }
+}
+
+#[test]
+fn a_triangle_takes_the_published_267_clocks() {
+    // 150,000 triangles a second at 40 MHz (TR94).
+    assert_eq!(CommandKind::Triangle.clocks(&phong()), Ok(40_000_000 / 150_000 + 1));
+    assert_eq!(CommandKind::Triangle.clocks(&Layout::slats()), Ok(267));
+}
+
+#[test]
+fn the_clocks_of_a_triangle_are_those_of_its_formats() {
+    let program = Command::Triangle(Triangle::default()).program(&phong()).unwrap();
+    let bits: Vec<_> = program.iter().map(Instruction::bit_clocks).collect();
+    assert_eq!(bits, [2, 32, 32, 32, 32, 32, 20, 20, 20]);
+    assert_eq!(267, bits.iter().sum::<u32>() + 9 * SET_UP_CLOCKS);
+}
+
+#[test]
+fn every_kind_has_the_words_and_opcode_that_it_says() {
+    for kind in CommandKind::ALL {
+        let mut words = Vec::new();
+        Command::blank(kind).encode(&phong(), &mut words).unwrap();
+        assert_eq!(words.len() as u32, kind.words(), "{kind:?}");
+        assert_eq!(CommandKind::from_opcode(kind.opcode()), Some(kind));
+    }
+    assert_eq!(CommandKind::from_opcode(0), None);
+    assert_eq!(CommandKind::from_opcode(12), None);
+}
+
+fn clocks(kind: CommandKind) -> u32 {
+    kind.clocks(&phong()).unwrap()
+}
+
+#[test]
+fn a_phong_triangle_pays_for_its_normals_and_the_objects_colour() {
+    // Three normals of 10 + 12 bits, and a constant of 24 bits, instead of three colours of 12 + 8.
+    let expected = 267 - 3 * 20 + 3 * 22 + SET_UP_CLOCKS + 24;
+    assert_eq!(clocks(CommandKind::PhongTriangle), expected);
+    assert_eq!(expected, 302);
+}
+
+#[test]
+fn a_sphere_pays_for_two_quadratics_a_root_and_three_products() {
+    // Enable; sign; radicand; root; depth; compare; store.
+    let coverage = |root: u32, z: u32| 2 + 48 + 48 + root + 32 + 2 * z + 7 * SET_UP_CLOCKS;
+    // Product of 8 by 10 bits; 12 + 10 bits of the linear part; limit.
+    let component = 10 * 9 + 22 + 10 + 3 * SET_UP_CLOCKS;
+    assert_eq!(clocks(CommandKind::Sphere), coverage(202, 24) + 3 * component);
+    assert_eq!(clocks(CommandKind::Sphere), 826);
+    let slats = CommandKind::Sphere.clocks(&Layout::slats()).unwrap();
+    assert_eq!(slats, coverage(148, 20) + 3 * component);
+    assert_eq!(slats, 764);
+    let normals = 2 * 22 + 12 + 24 + 4 * SET_UP_CLOCKS;
+    assert_eq!(clocks(CommandKind::PhongSphere), coverage(202, 24) + normals);
+    assert_eq!(clocks(CommandKind::PhongSphere), 515);
+}
+
+#[test]
+fn shading_takes_96_microseconds() {
+    let length = 3 * 12 * 13 + 2 * 24 + 202;
+    let quotient: u32 = (0..10).map(|j| 2 * (23 - j)).sum();
+    let cosine = 3 * 12 * 13 + 2 * 24 + 24 + quotient;
+    let power = SPECULAR_SQUARINGS * 10 * 11;
+    let intensities = 2 * (8 * 11 + 10) + 18 + 19 + 9;
+    let combine = 3 * (8 * 9 + 9 + 9);
+    let bits = 2 + 24 + length + 2 * cosine + power + intensities + combine;
+    assert_eq!(clocks(CommandKind::Shade), bits + 41 * SET_UP_CLOCKS);
+    assert_eq!(clocks(CommandKind::Shade), 3831);
+}
+
+#[test]
+fn clearing_takes_two_constants() {
+    assert_eq!(clocks(CommandKind::Clear), 2 + 24 + 24 + 3 * SET_UP_CLOCKS);
+}
+
+#[test]
+fn a_command_that_the_layout_cannot_hold_is_an_error_that_says_what_is_missing() {
+    let error = CommandKind::Shade.clocks(&Layout::slats()).unwrap_err();
+    assert_eq!(error.to_string(), "Shade needs a normal, which layout Slats lacks");
+    let error = CommandKind::Sphere.clocks(&Layout::slats_quarters()).unwrap_err();
+    assert_eq!(error.missing, "30 bits of scratch");
+}
+
+#[test]
+fn a_label_on_another_program_is_no_command() {
+    let mut words = Vec::new();
+    Command::Triangle(Triangle::default()).encode(&phong(), &mut words).unwrap();
+    words[13] ^= 1;
+    let error = Command::decode(&words, 0, &phong()).unwrap_err();
+    assert_eq!((error.position, error.kind), (0, DecodeErrorKind::NotTheCommand(3)));
+}

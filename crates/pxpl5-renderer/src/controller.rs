@@ -1,0 +1,181 @@
+//! The controller in front of the array: selected region, held coefficients, checks of operands.
+
+use crate::array::FaultKind;
+use crate::isa::{ArithmeticOp, Expression, ExpressionUse, Instruction, MEMORY_BITS, Operand, QUADRATIC_BITS};
+use pxpl5_wire::{Linear, Quadratic};
+
+/// A field of pixel memory whose address is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Bits {
+    pub(crate) first: usize,
+    pub(crate) width: usize,
+    pub(crate) signed: bool,
+}
+
+impl Bits {
+    pub(crate) const fn end(&self) -> usize {
+        self.first + self.width
+    }
+
+    const fn overlaps(&self, other: &Self) -> bool {
+        self.first < other.end() && other.first < self.end()
+    }
+}
+
+/// State of the controller.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Controller {
+    pub(crate) base: u8,
+    pub(crate) left: u16,
+    pub(crate) top: u16,
+    linear: Linear,
+    quadratic: Quadratic,
+}
+
+/// An expression over the array's own columns and rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Local {
+    Linear(Linear),
+    Quadratic(Quadratic),
+}
+
+impl Controller {
+    pub(crate) fn select(&mut self, base: u8, left: u16, top: u16) {
+        (self.base, self.left, self.top) = (base, left, top);
+    }
+
+    /// Takes the coefficients over, or repeats those held, and applies the region's origin.
+    pub(crate) fn latch(&mut self, expression: &Expression) -> Local {
+        match expression {
+            Expression::Linear(linear) => self.linear = *linear,
+            Expression::Quadratic(quadratic) => self.quadratic = *quadratic,
+            Expression::LinearAgain | Expression::QuadraticAgain => {}
+        }
+        if expression.is_quadratic() {
+            Local::Quadratic(self.localise_quadratic())
+        } else {
+            Local::Linear(self.localise(&self.linear))
+        }
+    }
+
+    /// Moves the origin of a linear expression to the array's left top pixel.
+    pub(crate) fn localise(&self, e: &Linear) -> Linear {
+        Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }
+    }
+
+    pub(crate) fn hold(&mut self, linear: Linear) {
+        self.linear = linear;
+    }
+
+    pub(crate) fn hold_quadratic(&mut self, quadratic: Quadratic) {
+        self.quadratic = quadratic;
+    }
+
+    pub(crate) fn localise_quadratic(&self) -> Quadratic {
+        let q = self.quadratic;
+        let (x, y) = (i64::from(self.left), i64::from(self.top));
+        let twice = |c: i64, p: i64| c.wrapping_mul(2 * p);
+        Quadratic {
+            x: q.x.wrapping_add(twice(q.xx, x)).wrapping_add(q.xy.wrapping_mul(y)),
+            y: q.y.wrapping_add(twice(q.yy, y)).wrapping_add(q.xy.wrapping_mul(x)),
+            one: q.at(i32::from(self.left), i32::from(self.top)),
+            ..q
+        }
+    }
+
+    /// The bits that an operand names in the selected context.
+    pub(crate) fn bits(&self, operand: Operand) -> Result<Bits, FaultKind> {
+        let base = if operand.relative { self.base } else { 0 };
+        let bits = Bits {
+            first: usize::from(base) + usize::from(operand.address),
+            width: usize::from(operand.width),
+            signed: operand.signed,
+        };
+        if bits.end() <= MEMORY_BITS as usize {
+            Ok(bits)
+        } else {
+            Err(FaultKind::FieldOutOfRange { operand, base: self.base })
+        }
+    }
+
+    /// Checks all operands of an instruction in the selected context.
+    pub(crate) fn check(&self, instruction: &Instruction) -> Result<(), FaultKind> {
+        match *instruction {
+            Instruction::EnableLoad(bit) | Instruction::EnableStore(bit) | Instruction::EnableAnd(bit) => {
+                self.bits(bit).map(drop)
+            }
+            Instruction::Evaluate { usage, .. } => self.check_use(&usage),
+            Instruction::ShiftRight { destination, source, .. }
+            | Instruction::ShiftLeft { destination, source, .. }
+            | Instruction::Saturate { destination, source } => self.aligned(destination, source),
+            Instruction::SquareRoot { destination, radicand: source }
+            | Instruction::MultiplyConstant { destination, source, .. } => self.apart(destination, source),
+            Instruction::Arithmetic { op, destination, a, b } => self.check_arithmetic(op, destination, a, b),
+            Instruction::Compare { a, b, .. } => self.bits(a).and(self.bits(b)).map(drop),
+            Instruction::CompareConstant { a, .. } => self.bits(a).map(drop),
+            Instruction::LoadConstant { destination: field, .. }
+            | Instruction::StoreBlock { field, .. }
+            | Instruction::LoadBlock { field, .. }
+            | Instruction::Output { field, .. } => self.bits(field).map(drop),
+            _ => Ok(()),
+        }
+    }
+
+    fn check_use(&self, usage: &ExpressionUse) -> Result<(), FaultKind> {
+        match *usage {
+            ExpressionUse::DisableNegative => Ok(()),
+            ExpressionUse::Load { field, .. }
+            | ExpressionUse::Add { field, .. }
+            | ExpressionUse::DisableNotLess { field, .. } => self.bits(field).map(drop),
+            ExpressionUse::LoadMinus { field, subtrahend, .. } => self.apart(field, subtrahend),
+        }
+    }
+
+    fn check_arithmetic(
+        &self,
+        op: ArithmeticOp,
+        destination: Operand,
+        a: Operand,
+        b: Operand,
+    ) -> Result<(), FaultKind> {
+        match op {
+            ArithmeticOp::Multiply => self.apart(destination, a).and(self.apart(destination, b)),
+            ArithmeticOp::Divide => self.apart(destination, a).and(self.apart(destination, b)).and(self.apart(a, b)),
+            _ => self.aligned(destination, a).and(self.aligned(destination, b)),
+        }
+    }
+
+    fn apart(&self, destination: Operand, operand: Operand) -> Result<(), FaultKind> {
+        let (d, o) = (self.bits(destination)?, self.bits(operand)?);
+        if d.overlaps(&o) { Err(overlap(&d, &o)) } else { Ok(()) }
+    }
+
+    fn aligned(&self, destination: Operand, operand: Operand) -> Result<(), FaultKind> {
+        let (d, o) = (self.bits(destination)?, self.bits(operand)?);
+        if d.overlaps(&o) && d.first != o.first { Err(overlap(&d, &o)) } else { Ok(()) }
+    }
+}
+
+const fn overlap(destination: &Bits, operand: &Bits) -> FaultKind {
+    FaultKind::Overlap { destination: destination.first as u8, operand: operand.first as u8 }
+}
+
+impl Local {
+    /// The value at a column and row, sign-extended from the bits in which it is evaluated.
+    pub(crate) fn at(&self, x: i32, y: i32) -> i64 {
+        match self {
+            Self::Linear(e) => i64::from(e.at(x, y)),
+            Self::Quadratic(q) => {
+                let unused = 64 - QUADRATIC_BITS;
+                q.at(x, y) << unused >> unused
+            }
+        }
+    }
+
+    pub(crate) const fn bits(&self) -> u32 {
+        match self {
+            Self::Linear(_) => crate::isa::LINEAR_BITS,
+            Self::Quadratic(_) => QUADRATIC_BITS,
+        }
+    }
+}

@@ -1,0 +1,392 @@
+//! From words to instructions.
+
+use super::encode::{AGAIN, opcode};
+use super::{ArithmeticOp, BACKING_BLOCKS, Expression, ExpressionUse, Instruction, MEMORY_BITS, Operand, Test};
+use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, Quadratic, RegionGrid, RegionId, Word};
+use std::fmt;
+
+/// A word that is no instruction, and where it stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DecodeError {
+    /// Index of the instruction's first word in the list.
+    pub position: usize,
+    /// The instruction's first word.
+    pub word: Word,
+    /// What is wrong.
+    pub kind: DecodeErrorKind,
+}
+
+/// What is wrong with an instruction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum DecodeErrorKind {
+    /// No instruction has this opcode.
+    UnknownOpcode,
+    /// The list ends inside the instruction.
+    Truncated {
+        /// Words that the instruction needs.
+        expected: usize,
+        /// Words that are left.
+        found: usize,
+    },
+    /// Bits that must be zero are set.
+    ReservedBits,
+    /// A field reaches beyond pixel memory.
+    FieldOutOfRange(Operand),
+    /// A field has a width that this instruction cannot use.
+    Width {
+        /// The field.
+        field: Operand,
+        /// Bits that it must have (at most, for shifts).
+        expected: u32,
+    },
+    /// Operands are signed where they must not be, or differ in signedness.
+    Signedness,
+    /// No backing-store block has this number.
+    UnknownBlock(u8),
+    /// An output's frame, lines or region make no sense.
+    BadTarget,
+    /// The words are instructions, but not those of the command that their label names.
+    NotTheCommand(u8),
+}
+
+impl fmt::Display for DecodeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "word {} ({:#010x}): {}", self.position, self.word, self.kind)
+    }
+}
+
+impl fmt::Display for DecodeErrorKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::UnknownOpcode => write!(f, "no instruction has this opcode"),
+            Self::Truncated { expected, found } => {
+                write!(f, "the instruction needs {expected} words, the list has {found} left")
+            }
+            Self::ReservedBits => write!(f, "bits are set that must be zero"),
+            Self::FieldOutOfRange(field) => write!(
+                f,
+                "{} bits at address {} reach beyond the {MEMORY_BITS} bits of pixel memory",
+                field.width, field.address
+            ),
+            Self::Width { field, expected } => {
+                write!(f, "the field at address {} has {} bits, expected {expected}", field.address, field.width)
+            }
+            Self::Signedness => write!(f, "signedness of the operands does not fit"),
+            Self::UnknownBlock(block) => {
+                write!(f, "backing store block {block}, expected less than {BACKING_BLOCKS}")
+            }
+            Self::BadTarget => write!(f, "the copy's target is no region of a frame"),
+            Self::NotTheCommand(label) => {
+                write!(f, "labelled as command {label}, but not its program in this layout")
+            }
+        }
+    }
+}
+
+impl std::error::Error for DecodeError {}
+
+type Kind = DecodeErrorKind;
+
+impl Instruction {
+    /// Reads the instruction at `position`.
+    ///
+    /// # Errors
+    /// [`DecodeError`] names the position and what is wrong there. Never panics.
+    pub fn decode(words: &[Word], position: usize) -> Result<(Self, usize), DecodeError> {
+        let rest = words.get(position..).unwrap_or(&[]);
+        let word = rest.first().copied().unwrap_or(0);
+        decode(rest).map_err(|kind| DecodeError { position, word, kind })
+    }
+
+    /// Reads all instructions of a list.
+    ///
+    /// # Errors
+    /// The first [`DecodeError`].
+    pub fn decode_all(words: &[Word]) -> Result<Vec<Self>, DecodeError> {
+        let mut out = Vec::new();
+        let mut position = 0;
+        while position < words.len() {
+            let (instruction, used) = Self::decode(words, position)?;
+            out.push(instruction);
+            position += used;
+        }
+        Ok(out)
+    }
+}
+
+/// The parts of an instruction's first word, and the words behind it.
+struct Head<'a> {
+    opcode: u8,
+    modifier: u8,
+    operand: u32,
+    tail: &'a [Word],
+}
+
+impl Head<'_> {
+    fn tail<const N: usize>(&self) -> Result<[Word; N], Kind> {
+        self.tail.first_chunk().copied().ok_or(Kind::Truncated { expected: N + 1, found: self.tail.len() + 1 })
+    }
+
+    fn field(&self) -> Result<Operand, Kind> {
+        checked(self.operand)
+    }
+
+    /// The field in the upper half of the second word; the lower half must be zero.
+    fn source(&self) -> Result<Operand, Kind> {
+        let [word] = self.tail()?;
+        reserved(word & 0xffff)?;
+        checked(word >> 16)
+    }
+
+    fn pair(&self) -> Result<(Operand, Operand), Kind> {
+        let [word] = self.tail()?;
+        Ok((checked(word >> 16)?, checked(word & 0xffff)?))
+    }
+
+    fn no_modifier(&self) -> Result<(), Kind> {
+        reserved(u32::from(self.modifier))
+    }
+}
+
+fn reserved(bits: u32) -> Result<(), Kind> {
+    if bits == 0 { Ok(()) } else { Err(Kind::ReservedBits) }
+}
+
+fn checked(bits: u32) -> Result<Operand, Kind> {
+    let field = Operand::from_bits(bits);
+    let end = u32::from(field.address) + u32::from(field.width);
+    if end <= MEMORY_BITS { Ok(field) } else { Err(Kind::FieldOutOfRange(field)) }
+}
+
+fn width(field: Operand, expected: u32) -> Result<Operand, Kind> {
+    if u32::from(field.width) == expected { Ok(field) } else { Err(Kind::Width { field, expected }) }
+}
+
+fn unsigned(fields: &[Operand]) -> Result<(), Kind> {
+    if fields.iter().any(|field| field.signed) { Err(Kind::Signedness) } else { Ok(()) }
+}
+
+fn alike(a: Operand, b: Operand) -> Result<(), Kind> {
+    if a.signed == b.signed { Ok(()) } else { Err(Kind::Signedness) }
+}
+
+fn decode(words: &[Word]) -> Result<(Instruction, usize), Kind> {
+    let Some((&first, tail)) = words.split_first() else {
+        return Err(Kind::Truncated { expected: 1, found: 0 });
+    };
+    let head = Head { opcode: (first >> 24) as u8, modifier: (first >> 16) as u8, operand: first & 0xffff, tail };
+    match head.opcode {
+        opcode::ENABLE_ALL..=opcode::SELECT => control(&head),
+        opcode::LINEAR..=0x14 | opcode::QUADRATIC..=0x24 => evaluate(&head),
+        opcode::SHIFT_RIGHT..=opcode::SQUARE_ROOT => one_source(&head),
+        opcode::ARITHMETIC..=0x3c => arithmetic(&head),
+        opcode::COMPARE..=0x43 => compare(&head),
+        opcode::COMPARE_CONSTANT..=0x4b | opcode::LOAD_CONSTANT | opcode::MULTIPLY_CONSTANT => constant(&head),
+        opcode::STORE_BLOCK | opcode::LOAD_BLOCK | opcode::WAIT => backing(&head),
+        opcode::OUTPUT => output(&head),
+        _ => Err(Kind::UnknownOpcode),
+    }
+}
+
+fn control(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
+    if matches!(head.opcode, opcode::ENABLE_ALL | opcode::SELECT) {
+        reserved(head.operand)?;
+    } else {
+        head.no_modifier()?;
+    }
+    let bit = || head.field().and_then(|field| width(field, 1));
+    Ok(match head.opcode {
+        opcode::ENABLE_ALL => (Instruction::EnableAll { label: head.modifier }, 1),
+        opcode::ENABLE_LOAD => (Instruction::EnableLoad(bit()?), 1),
+        opcode::ENABLE_STORE => (Instruction::EnableStore(bit()?), 1),
+        opcode::ENABLE_AND => (Instruction::EnableAnd(bit()?), 1),
+        opcode::SELECT => {
+            let [origin] = head.tail()?;
+            let (left, top) = (origin as u16, (origin >> 16) as u16);
+            (Instruction::Select { context_base: head.modifier, left, top }, 2)
+        }
+        other => {
+            reserved(head.operand)?;
+            let all = other == opcode::ENABLE_NONE;
+            (if all { Instruction::EnableNone } else { Instruction::EnableInvert }, 1)
+        }
+    })
+}
+
+fn evaluate(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
+    let quadratic = head.opcode >= opcode::QUADRATIC;
+    let use_code = head.opcode & 15;
+    let (usage, used) = expression_use(head, use_code)?;
+    let rest = Head { tail: head.tail.get(used - 1..).unwrap_or(&[]), ..*head };
+    let lost = |_| Kind::Truncated { expected: used + if quadratic { 12 } else { 3 }, found: head.tail.len() + 1 };
+    let (expression, more) = match (quadratic, head.modifier & AGAIN != 0) {
+        (false, true) => (Expression::LinearAgain, 0),
+        (true, true) => (Expression::QuadraticAgain, 0),
+        (false, false) => (Expression::Linear(linear(rest.tail().map_err(lost)?)), 3),
+        (true, false) => (Expression::Quadratic(quadratic_of(rest.tail().map_err(lost)?)), 12),
+    };
+    check_use(&usage, expression.bits())?;
+    Ok((Instruction::Evaluate { expression, usage }, used + more))
+}
+
+fn expression_use(head: &Head<'_>, code: u8) -> Result<(ExpressionUse, usize), Kind> {
+    reserved(u32::from(head.modifier & 0x40))?;
+    let shift = head.modifier & 63;
+    Ok(match code {
+        0 => {
+            reserved(head.operand | u32::from(shift))?;
+            (ExpressionUse::DisableNegative, 1)
+        }
+        1 => (ExpressionUse::Load { field: head.field()?, shift }, 1),
+        2 => (ExpressionUse::Add { field: head.field()?, shift }, 1),
+        3 => (ExpressionUse::DisableNotLess { field: head.field()?, shift }, 1),
+        _ => {
+            let [word] = head.tail()?;
+            reserved(word & 0xffc0)?;
+            let (field, subtrahend) = (head.field()?, checked(word >> 16)?);
+            let left_shift = (word & 63) as u8;
+            (ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift }, 2)
+        }
+    })
+}
+
+fn check_use(usage: &ExpressionUse, bits: u32) -> Result<(), Kind> {
+    match *usage {
+        ExpressionUse::DisableNegative => Ok(()),
+        ExpressionUse::Load { field, shift }
+        | ExpressionUse::Add { field, shift }
+        | ExpressionUse::DisableNotLess { field, shift }
+        | ExpressionUse::LoadMinus { field, shift, .. } => {
+            let room = bits.saturating_sub(u32::from(shift));
+            if u32::from(field.width) <= room { Ok(()) } else { Err(Kind::Width { field, expected: room }) }
+        }
+    }
+}
+
+fn linear(words: [Word; 3]) -> Linear {
+    let [a, b, c] = words.map(|word| word as i32);
+    Linear { a, b, c }
+}
+
+fn quadratic_of(words: [Word; 12]) -> Quadratic {
+    let long = |i: usize| (u64::from(words[2 * i + 1]) << 32 | u64::from(words[2 * i])) as i64;
+    Quadratic { xx: long(0), xy: long(1), yy: long(2), x: long(3), y: long(4), one: long(5) }
+}
+
+fn one_source(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
+    let (destination, source, by) = (head.field()?, head.source()?, head.modifier);
+    let instruction = match head.opcode {
+        opcode::SHIFT_RIGHT => Instruction::ShiftRight { destination, source, by },
+        opcode::SHIFT_LEFT => Instruction::ShiftLeft { destination, source, by },
+        opcode::SATURATE => {
+            head.no_modifier()?;
+            Instruction::Saturate { destination, source }
+        }
+        _ => {
+            head.no_modifier()?;
+            unsigned(&[source])?;
+            width(source, 2 * u32::from(destination.width))?;
+            Instruction::SquareRoot { destination, radicand: source }
+        }
+    };
+    reserved(u32::from(by & 0xc0))?;
+    Ok((instruction, 2))
+}
+
+fn arithmetic(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
+    head.no_modifier()?;
+    let (destination, (a, b)) = (head.field()?, head.pair()?);
+    let op = ArithmeticOp::ALL[usize::from(head.opcode - opcode::ARITHMETIC)];
+    match op {
+        ArithmeticOp::Divide => {
+            unsigned(&[a, b])?;
+            if destination.width > a.width {
+                return Err(Kind::Width { field: destination, expected: u32::from(a.width) });
+            }
+        }
+        ArithmeticOp::Minimum | ArithmeticOp::Maximum => alike(a, b)?,
+        _ => {}
+    }
+    Ok((Instruction::Arithmetic { op, destination, a, b }, 2))
+}
+
+fn compare(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
+    reserved(u32::from(head.modifier) | head.operand)?;
+    let (a, b) = head.pair()?;
+    alike(a, b)?;
+    let test = Test::ALL[usize::from(head.opcode - opcode::COMPARE)];
+    Ok((Instruction::Compare { test, a, b }, 2))
+}
+
+fn constant(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
+    let destination = head.field()?;
+    if head.opcode == opcode::MULTIPLY_CONSTANT {
+        let source = head.source()?;
+        let [_, factor] = head.tail()?;
+        reserved(u32::from(head.modifier & 0xe0))?;
+        let (factor, factor_bits) = (factor as i32, head.modifier + 1);
+        return Ok((Instruction::MultiplyConstant { destination, source, factor, factor_bits }, 3));
+    }
+    head.no_modifier()?;
+    let [value] = head.tail()?;
+    if head.opcode == opcode::LOAD_CONSTANT {
+        return Ok((Instruction::LoadConstant { destination, value }, 2));
+    }
+    let test = Test::ALL[usize::from(head.opcode - opcode::COMPARE_CONSTANT)];
+    Ok((Instruction::CompareConstant { test, a: destination, value }, 2))
+}
+
+fn backing(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
+    if head.opcode == opcode::WAIT {
+        reserved(u32::from(head.modifier) | head.operand)?;
+        return Ok((Instruction::Wait, 1));
+    }
+    let (field, block) = (width(head.field()?, 32)?, head.modifier);
+    if block >= BACKING_BLOCKS {
+        return Err(Kind::UnknownBlock(block));
+    }
+    Ok(if head.opcode == opcode::STORE_BLOCK {
+        (Instruction::StoreBlock { field, block }, 1)
+    } else {
+        (Instruction::LoadBlock { field, block }, 1)
+    })
+}
+
+fn output(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
+    head.no_modifier()?;
+    let field = width(head.field()?, 24)?;
+    let target = target(head.tail()?)?;
+    Ok((Instruction::Output { field, target }, 9))
+}
+
+fn target(words: [Word; 8]) -> Result<CopyTarget, Kind> {
+    let [place, how, width, height, region_width, region_height, low, high] = words;
+    let lines = match how >> 8 {
+        0 => Lines::Frame,
+        1 => Lines::Field(FieldParity::Even),
+        2 => Lines::Field(FieldParity::Odd),
+        _ => return Err(Kind::BadTarget),
+    };
+    let target = CopyTarget {
+        frame_buffer: NodeId((place >> 16) as u16),
+        buffer: how as u8,
+        lines,
+        grid: RegionGrid { width, height, region_width, region_height },
+        region: RegionId(place as u16),
+        picture: u64::from(high) << 32 | u64::from(low),
+    };
+    if sensible(&target) { Ok(target) } else { Err(Kind::BadTarget) }
+}
+
+/// The region exists, and fits the array and the 16-bit coordinates.
+fn sensible(target: &CopyTarget) -> bool {
+    let grid = &target.grid;
+    let picture = 1..=1 << 16;
+    let region = 1..=pxpl5_wire::REGION_SIZE;
+    picture.contains(&grid.width)
+        && picture.contains(&grid.height)
+        && region.contains(&grid.region_width)
+        && region.contains(&grid.region_height)
+        && u32::from(target.region.0) < grid.regions()
+}

@@ -1,0 +1,61 @@
+//! Operands: fields of pixel memory.
+
+/// A field of pixel memory as an instruction names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Operand {
+    /// Address of the least significant bit.
+    pub address: u8,
+    /// Bits, 1 to 64.
+    pub width: u8,
+    /// The address counts from the selected context's base.
+    pub relative: bool,
+    /// Two's complement.
+    pub signed: bool,
+}
+
+const SIGNED: u32 = 1 << 15;
+const RELATIVE: u32 = 1 << 14;
+
+impl Operand {
+    /// An unsigned field in the selected context.
+    #[must_use]
+    pub const fn context(address: u8, width: u8) -> Self {
+        Self { address, width, relative: true, signed: false }
+    }
+
+    /// An unsigned field at an absolute address.
+    #[must_use]
+    pub const fn absolute(address: u8, width: u8) -> Self {
+        Self { address, width, relative: false, signed: false }
+    }
+
+    /// The same field, two's complement.
+    #[must_use]
+    pub const fn signed(self) -> Self {
+        Self { signed: true, ..self }
+    }
+
+    /// `width` bits of this field from its bit `low` upwards; signedness is kept.
+    #[must_use]
+    pub const fn part(self, low: u8, width: u8) -> Self {
+        Self { address: self.address + low, width, ..self }
+    }
+
+    /// The 16 bits that stand in an instruction word.
+    #[must_use]
+    pub const fn to_bits(self) -> u32 {
+        let flags = (self.signed as u32) << 15 | (self.relative as u32) << 14;
+        flags | ((self.width as u32 - 1) & 63) << 8 | self.address as u32
+    }
+
+    /// Reads 16 bits of an instruction word.
+    #[must_use]
+    pub const fn from_bits(bits: u32) -> Self {
+        Self {
+            address: bits as u8,
+            width: (bits >> 8 & 63) as u8 + 1,
+            relative: bits & RELATIVE != 0,
+            signed: bits & SIGNED != 0,
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Clocks of instructions. The array is SIMD: nothing here depends on data.
+//!
+//! | number | unit | value | standing |
+//! |---|---|---|---|
+//! | [`CLOCK_HZ`] | Hz | 40,000,000 | published (F89, TR94) |
+//! | [`SET_UP_CLOCKS`] | clocks an instruction | 5 | derived, see there |
+//! | [`CONTROL_CLOCKS`] | clocks | 2 | assumed (1 to 4) |
+//! | [`BACKING_CLOCKS`] | clocks a block | 2,048 = 51.2 us | assumed: 64 chips x 4 bits a clock |
+//!
+//! One bit of one field takes one clock (assumed: one full adder a pixel, whose operands and result move in the same
+//! clock). An expression arrives least significant bit first, so a field of `w` bits above `s` bits that are left out
+//! takes `s + w` clocks.
+
+use super::{ArithmeticOp, Expression, ExpressionUse, Instruction, LINEAR_BITS, QUADRATIC_BITS};
+
+/// Clock of the array in Hz. Published: 40 MHz (F89, TR94).
+pub const CLOCK_HZ: u64 = 40_000_000;
+
+/// Clocks to fetch an instruction and to fill the evaluator's pipeline.
+///
+/// Derived: a triangle takes 267 clocks (150,000 a second, TR94) in 9 instructions; the wire formats ask for
+/// 3 x 32 (edges) + 32 (compare Z) + 32 (store Z) + 3 x 20 (colour) = 220 bit clocks and the enable for
+/// [`CONTROL_CLOCKS`]; (267 - 220 - 2) / 9 = 5. Range 4 to 8 with other fractions.
+pub const SET_UP_CLOCKS: u32 = 5;
+
+/// Clocks of an instruction that moves no field. Assumed: the 2 of "enable all" in the bit budget; range 1 to 4.
+pub const CONTROL_CLOCKS: u32 = 2;
+
+/// Clocks in which one 32-bit block of all pixels moves to or from the backing store, in the background.
+///
+/// Assumed: 51 us; 16,384 pixels x 32 bits over 64 chips with 4 bits a clock each are 2,048 clocks = 51.2 us.
+pub const BACKING_CLOCKS: u32 = 2048;
+
+/// Clocks of a square root with `n` bits: per digit a trial comparison and a subtraction over the bits that the
+/// remainder can occupy, 2 for the first digit and `j + 3` for digit `j`.
+#[must_use]
+pub const fn square_root_clocks(n: u32) -> u32 {
+    // 2 (2 + sum of j + 3 for j = 1 .. n - 1)
+    match n {
+        0 => 0,
+        _ => 2 * (2 + (n - 1) * (n + 6) / 2),
+    }
+}
+
+/// Clocks of a product of `a` by `b` bits in `w` bits: per bit of b one addition of a with its carry, then the fill.
+#[must_use]
+pub fn multiply_clocks(w: u32, a: u32, b: u32) -> u32 {
+    let additions: u32 = (0..b.min(w)).map(|j| (a + 1).min(w - j)).sum();
+    additions + w.saturating_sub(a + b)
+}
+
+/// Clocks of a quotient of `w` bits: per digit a comparison over the divisor and a subtraction over the remainder.
+#[must_use]
+pub fn divide_clocks(w: u32, a: u32, b: u32) -> u32 {
+    (0..w).map(|j| (a - j).max(b) + (a - j)).sum()
+}
+
+impl Instruction {
+    /// Clocks in which the array and its controller are busy.
+    #[must_use]
+    pub fn clocks(&self) -> u32 {
+        SET_UP_CLOCKS + self.bit_clocks()
+    }
+
+    /// Clocks in which the backing store is busy afterwards, beside the array.
+    #[must_use]
+    pub const fn backing_clocks(&self) -> u32 {
+        match self {
+            Self::StoreBlock { .. } | Self::LoadBlock { .. } => BACKING_CLOCKS,
+            _ => 0,
+        }
+    }
+
+    /// Clocks without [`SET_UP_CLOCKS`].
+    #[must_use]
+    pub fn bit_clocks(&self) -> u32 {
+        match *self {
+            Self::Evaluate { expression, usage } => evaluate_clocks(&expression, &usage),
+            Self::ShiftRight { destination, .. }
+            | Self::ShiftLeft { destination, .. }
+            | Self::LoadConstant { destination, .. } => w(destination),
+            Self::Saturate { destination, source } => w(destination) + w(source).saturating_sub(w(destination)).max(1),
+            Self::SquareRoot { destination, .. } => square_root_clocks(w(destination)),
+            Self::Arithmetic { op, destination, a, b } => arithmetic_clocks(op, w(destination), w(a), w(b)),
+            Self::Compare { a, b, .. } => w(a).max(w(b)),
+            Self::CompareConstant { a, .. } => w(a),
+            Self::MultiplyConstant { destination, source, factor_bits, .. } => {
+                multiply_clocks(w(destination), w(source), u32::from(factor_bits))
+            }
+            _ => CONTROL_CLOCKS,
+        }
+    }
+}
+
+const fn w(operand: super::Operand) -> u32 {
+    operand.width as u32
+}
+
+fn arithmetic_clocks(op: ArithmeticOp, w: u32, a: u32, b: u32) -> u32 {
+    match op {
+        ArithmeticOp::Multiply => multiply_clocks(w, a, b),
+        ArithmeticOp::Divide => divide_clocks(w, a, b),
+        ArithmeticOp::Minimum | ArithmeticOp::Maximum => w + a.max(b),
+        _ => w,
+    }
+}
+
+fn evaluate_clocks(expression: &Expression, usage: &ExpressionUse) -> u32 {
+    if expression.is_quadratic() {
+        return QUADRATIC_BITS;
+    }
+    match *usage {
+        ExpressionUse::DisableNegative => LINEAR_BITS,
+        ExpressionUse::Load { field, shift }
+        | ExpressionUse::Add { field, shift }
+        | ExpressionUse::DisableNotLess { field, shift }
+        | ExpressionUse::LoadMinus { field, shift, .. } => u32::from(shift) + w(field),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_twelve_bit_root_takes_the_sum_of_its_digits() {
+        let digits: u32 = (0..12).map(|j| if j == 0 { 2 } else { j + 3 }).sum();
+        assert_eq!(square_root_clocks(12), 2 * digits);
+        assert_eq!(square_root_clocks(1), 4);
+    }
+
+    #[test]
+    fn a_full_product_takes_one_addition_a_bit() {
+        assert_eq!(multiply_clocks(24, 12, 12), 12 * 13);
+        assert_eq!(multiply_clocks(8, 12, 3), 8 + 7 + 6);
+        assert_eq!(multiply_clocks(18, 8, 9), 9 * 9 + 1);
+    }
+}

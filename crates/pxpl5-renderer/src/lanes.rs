@@ -1,0 +1,117 @@
+//! `Lanes`: the array by values. Fast, and bit for bit what [`crate::BitSerial`] defines.
+
+mod columns;
+mod general;
+mod values;
+
+use crate::array::{EMPTY_PLANE, Executed, Fault, FaultKind, PIXELS, PixelArray, Plane};
+use crate::controller::{Bits, Controller};
+use crate::isa::{BACKING_BLOCKS, Instruction};
+use crate::layout::Layout;
+use columns::Columns;
+use pxpl5_wire::{REGION_SIZE, Word};
+
+/// The array by values: one word a pixel and field.
+///
+/// Commands of the layout that it was made for are recognised whole and touch only the pixels that they can change;
+/// any other instruction works on all pixels of one field after the other.
+#[derive(Clone, Debug)]
+pub struct Lanes {
+    layout: Layout,
+    controller: Controller,
+    columns: Columns,
+    /// 255 where the pixel is enabled, else 0.
+    enable: Box<[u8; PIXELS]>,
+    backing: Vec<Option<Box<[u64]>>>,
+    operands: [Vec<u64>; 2],
+    faults: u64,
+}
+
+impl Lanes {
+    /// An array of zeros whose fast path serves the commands of `layout`.
+    #[must_use]
+    pub fn new(layout: &Layout) -> Self {
+        Self {
+            layout: *layout,
+            controller: Controller::default(),
+            columns: Columns::new(layout),
+            enable: Box::new([0; PIXELS]),
+            backing: vec![None; usize::from(BACKING_BLOCKS)],
+            operands: [vec![0; PIXELS], vec![0; PIXELS]],
+            faults: 0,
+        }
+    }
+
+    fn run(&mut self, words: &[Word]) -> Result<Executed, Fault> {
+        let mut executed = Executed::default();
+        let mut position = 0;
+        while position < words.len() {
+            position += self.step(words, position, &mut executed)?;
+        }
+        Ok(executed)
+    }
+
+    fn step(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> Result<usize, Fault> {
+        let (instruction, used) = Instruction::decode(words, position)
+            .map_err(|error| Fault { position, kind: FaultKind::Illegal(error.kind) })?;
+        self.controller
+            .check(&instruction)
+            .and_then(|()| self.instruction(&instruction, executed))
+            .map_err(|kind| Fault { position, kind })?;
+        executed.instructions += 1;
+        executed.clocks += u64::from(instruction.clocks());
+        Ok(used)
+    }
+
+    fn colour(&self, field: Bits, width: u32, height: u32) -> Vec<Word> {
+        let mut values = vec![0; PIXELS];
+        self.columns.gather(field, &mut values);
+        let rows = values.chunks(REGION_SIZE as usize).take(height as usize);
+        rows.flat_map(|row| row.iter().take(width as usize).map(|v| *v as Word)).collect()
+    }
+}
+
+impl PixelArray for Lanes {
+    fn execute(&mut self, words: &[Word]) -> Result<Executed, Fault> {
+        self.run(words).inspect_err(|_| self.faults += 1)
+    }
+
+    fn plane(&self, bit: usize) -> Plane {
+        self.columns.plane(bit)
+    }
+
+    fn set_plane(&mut self, bit: usize, plane: &Plane) {
+        self.columns.set_plane(bit, plane);
+    }
+
+    fn enable(&self) -> Plane {
+        let mut plane = EMPTY_PLANE;
+        for (pixel, enable) in self.enable.iter().enumerate() {
+            plane[pixel / 64] |= u64::from(enable & 1) << (pixel % 64);
+        }
+        plane
+    }
+
+    fn set_enable(&mut self, plane: &Plane) {
+        for (pixel, enable) in self.enable.iter_mut().enumerate() {
+            *enable = if plane[pixel / 64] >> (pixel % 64) & 1 == 1 { 255 } else { 0 };
+        }
+    }
+
+    fn read_colour(&self, width: u32, height: u32) -> Vec<Word> {
+        let colour = self.controller.bits(self.layout.plan().colour);
+        colour.map_or_else(|_| Vec::new(), |field| self.colour(field, width, height))
+    }
+
+    fn reset(&mut self) {
+        self.controller = Controller::default();
+        self.columns.clear();
+        self.enable.fill(0);
+        self.backing.fill(None);
+        self.faults = 0;
+    }
+
+    fn faults(&self) -> u64 {
+        self.faults
+    }
+}

@@ -1,0 +1,199 @@
+//! Pixel memory by values: every field of the layout is a column of one 32-bit word a pixel.
+
+use crate::array::{PIXELS, Plane};
+use crate::controller::Bits;
+use crate::isa::MEMORY_BITS;
+use crate::layout::Layout;
+
+/// Bits `first .. first + width` of all pixels, one word a pixel.
+#[derive(Clone, Debug)]
+pub(super) struct Column {
+    pub(super) first: usize,
+    pub(super) width: usize,
+    pub(super) values: Box<[u32; PIXELS]>,
+}
+
+/// All 208 bits.
+#[derive(Clone, Debug)]
+pub(super) struct Columns {
+    columns: Vec<Column>,
+    /// For each bit the column that holds it.
+    column_of: [u8; MEMORY_BITS as usize],
+}
+
+/// Where a piece of a field lies: bits `low ..` of a column are bits `at ..` of the field.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    column: usize,
+    low: usize,
+    at: usize,
+    width: usize,
+}
+
+impl Columns {
+    pub(super) fn new(layout: &Layout) -> Self {
+        let columns: Vec<_> = cuts(layout).windows(2).map(|cut| column(cut[0], cut[1])).collect();
+        let mut column_of = [0; MEMORY_BITS as usize];
+        for (i, column) in columns.iter().enumerate() {
+            column_of[column.first..column.first + column.width].fill(i as u8);
+        }
+        Self { columns, column_of }
+    }
+
+    /// The column that holds exactly the field, if one does.
+    pub(super) fn find(&self, first: usize, width: usize) -> Option<usize> {
+        let index = usize::from(*self.column_of.get(first)?);
+        let column = &self.columns[index];
+        (column.first == first && column.width == width).then_some(index)
+    }
+
+    pub(super) fn values(&self, index: usize) -> &[u32; PIXELS] {
+        &self.columns[index].values
+    }
+
+    pub(super) fn values_mut(&mut self, index: usize) -> &mut [u32; PIXELS] {
+        &mut self.columns[index].values
+    }
+
+    /// Several different columns at once.
+    pub(super) fn many_mut<const N: usize>(&mut self, indices: [usize; N]) -> Option<[&mut [u32; PIXELS]; N]> {
+        let columns = self.columns.get_disjoint_mut(indices).ok()?;
+        Some(columns.map(|column| &mut *column.values))
+    }
+
+    pub(super) fn clear(&mut self) {
+        for column in &mut self.columns {
+            column.values.fill(0);
+        }
+    }
+
+    pub(super) fn plane(&self, bit: usize) -> Plane {
+        let column = &self.columns[usize::from(self.column_of[bit])];
+        let low = bit - column.first;
+        let word = |i: usize| {
+            let pixels = column.values[64 * i..64 * i + 64].iter().enumerate();
+            pixels.fold(0, |word, (x, value)| word | u64::from(value >> low & 1) << x)
+        };
+        std::array::from_fn(word)
+    }
+
+    pub(super) fn set_plane(&mut self, bit: usize, plane: &Plane) {
+        let column = &mut self.columns[usize::from(self.column_of[bit])];
+        let low = bit - column.first;
+        for (pixel, value) in column.values.iter_mut().enumerate() {
+            let new = (plane[pixel / 64] >> (pixel % 64) & 1) as u32;
+            *value = *value & !(1 << low) | new << low;
+        }
+    }
+
+    /// The field of all pixels, extended to 64 bits by its signedness.
+    pub(super) fn gather(&self, field: Bits, out: &mut [u64]) {
+        out.fill(0);
+        for piece in self.pieces(field) {
+            let mask = ones(piece.width);
+            let values = &self.columns[piece.column].values;
+            for (out, value) in out.iter_mut().zip(values.iter()) {
+                *out |= (u64::from(*value) >> piece.low & mask) << piece.at;
+            }
+        }
+        if field.signed {
+            let unused = 64 - field.width;
+            out.iter_mut().for_each(|v| *v = ((*v << unused) as i64 >> unused) as u64);
+        }
+    }
+
+    /// Stores the low bits of `values` where `mask` has all bits set; elsewhere the mask is zero.
+    pub(super) fn scatter(&mut self, field: Bits, values: &[u64], mask: &[u8]) {
+        for piece in self.pieces(field) {
+            let bits = (ones(piece.width) << piece.low) as u32;
+            let column = self.columns[piece.column].values.iter_mut();
+            for ((old, new), enable) in column.zip(values).zip(mask) {
+                let taken = if *enable == 0 { 0 } else { bits };
+                let new = ((new >> piece.at) << piece.low) as u32;
+                *old = *old & !taken | new & taken;
+            }
+        }
+    }
+
+    fn pieces(&self, field: Bits) -> Vec<Piece> {
+        let mut out = Vec::new();
+        let mut bit = field.first;
+        while bit < field.end() {
+            let index = usize::from(self.column_of[bit]);
+            let column = &self.columns[index];
+            let low = bit - column.first;
+            let width = (column.width - low).min(field.end() - bit);
+            out.push(Piece { column: index, low, at: bit - field.first, width });
+            bit += width;
+        }
+        out
+    }
+}
+
+const fn ones(width: usize) -> u64 {
+    u64::MAX >> (64 - width)
+}
+
+fn column(first: usize, end: usize) -> Column {
+    let values = vec![0; PIXELS].into_boxed_slice();
+    let values = values.try_into().expect("the length is that of the array");
+    Column { first, width: end - first, values }
+}
+
+/// Where columns begin: at the borders of the layout's fields, and so that none has more than 32 bits.
+fn cuts(layout: &Layout) -> Vec<usize> {
+    let mut cuts = vec![0, MEMORY_BITS as usize];
+    for range in layout.ranges() {
+        cuts.extend([range.first as usize, (range.first + range.width) as usize]);
+    }
+    let base = |context| usize::from(layout.context_base(context));
+    for context in 0..layout.plan().contexts {
+        for normal in (0..3).filter_map(|i| layout.normal(i)) {
+            cuts.push(base(context) + usize::from(normal.address));
+        }
+    }
+    cuts.sort_unstable();
+    cuts.dedup();
+    split_wide(&cuts)
+}
+
+fn split_wide(cuts: &[usize]) -> Vec<usize> {
+    let mut out = vec![0];
+    for pair in cuts.windows(2) {
+        out.extend((pair[0]..pair[1]).skip(1).filter(|bit| (bit - pair[0]).is_multiple_of(32)));
+        out.push(pair[1]);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_cover_every_bit_once_in_every_layout() {
+        let layouts = [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()];
+        for layout in layouts {
+            let columns = Columns::new(&layout).columns;
+            let mut next = 0;
+            for column in &columns {
+                assert_eq!(column.first, next);
+                assert!((1..=32).contains(&column.width));
+                next += column.width;
+            }
+            assert_eq!(next, MEMORY_BITS as usize);
+        }
+    }
+
+    #[test]
+    fn a_field_across_columns_comes_back() {
+        let mut columns = Columns::new(&Layout::slats());
+        let field = Bits { first: 20, width: 30, signed: true };
+        let values: Vec<u64> = (0..PIXELS as u64).map(|i| i.wrapping_mul(0x9e37_79b9_7f4a_7c15)).collect();
+        columns.scatter(field, &values, &[255; PIXELS]);
+        let mut back = vec![0; PIXELS];
+        columns.gather(field, &mut back);
+        let expected: Vec<_> = values.iter().map(|v| ((v << 34) as i64 >> 34) as u64).collect();
+        assert_eq!(back, expected);
+    }
+}

@@ -1,0 +1,63 @@
+//! What each operation does to values: 64-bit words that hold a field, extended by its signedness.
+
+use crate::isa::{ArithmeticOp, Test};
+
+/// The low `width` bits.
+pub(super) const fn low(value: u64, width: usize) -> u64 {
+    value & (u64::MAX >> (64 - width))
+}
+
+/// a op b, not yet cut to the destination's width; division is apart.
+pub(super) fn arithmetic(op: ArithmeticOp, a: u64, b: u64, signed: bool) -> u64 {
+    match op {
+        ArithmeticOp::Add => a.wrapping_add(b),
+        ArithmeticOp::Subtract => a.wrapping_sub(b),
+        ArithmeticOp::Multiply => a.wrapping_mul(b),
+        ArithmeticOp::And => a & b,
+        ArithmeticOp::Or => a | b,
+        ArithmeticOp::Xor => a ^ b,
+        ArithmeticOp::Minimum if less(a, b, signed) => a,
+        ArithmeticOp::Minimum => b,
+        ArithmeticOp::Maximum if less(a, b, signed) => b,
+        ArithmeticOp::Maximum => a,
+        ArithmeticOp::Divide => divide(a, b, 64).0,
+    }
+}
+
+/// a < b.
+pub(super) const fn less(a: u64, b: u64, signed: bool) -> bool {
+    if signed { (a as i64) < b as i64 } else { a < b }
+}
+
+/// Whether the test holds.
+pub(super) const fn holds(test: Test, a: u64, b: u64, signed: bool) -> bool {
+    match test {
+        Test::Less => less(a, b, signed),
+        Test::NotLess => !less(a, b, signed),
+        Test::Equal => a == b,
+        Test::NotEqual => a != b,
+    }
+}
+
+/// Quotient of at most `width` bits and remainder a - quotient b; all ones where b is zero.
+pub(super) fn divide(a: u64, b: u64, width: usize) -> (u64, u64) {
+    let largest = u64::MAX >> (64 - width);
+    let quotient = a.checked_div(b).unwrap_or(largest).min(largest);
+    (quotient, a - quotient.wrapping_mul(b))
+}
+
+/// Limits to 0 .. 2^width - 1.
+pub(super) fn saturate(value: u64, signed: bool, width: usize) -> u64 {
+    if signed && (value as i64) < 0 { 0 } else { value.min(u64::MAX >> (64 - width)) }
+}
+
+/// value >> by, filled by the sign of a signed field.
+pub(super) const fn shift_right(value: u64, by: u8, signed: bool) -> u64 {
+    if signed { (value as i64 >> by) as u64 } else { value >> by }
+}
+
+/// Extends the low `width` bits by their sign, or by zeros.
+pub(super) const fn extend(value: u64, width: u32, signed: bool) -> u64 {
+    let unused = 64 - width;
+    if signed { ((value << unused) as i64 >> unused) as u64 } else { value << unused >> unused }
+}

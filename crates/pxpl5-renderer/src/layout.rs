@@ -1,0 +1,322 @@
+//! How the 208 bits of pixel memory are divided, as data.
+
+use crate::isa::{MEMORY_BITS, Operand};
+use pxpl5_wire::format::{COLOUR_BITS, NORMAL_BITS, Z_BITS, Z_FRACTION_BITS};
+use std::fmt::{self, Write as _};
+
+/// A division of pixel memory that nobody has checked yet.
+///
+/// Fields of a context are relative to its base; context `i` begins at bit `i * context_bits`. Scratch is absolute
+/// and shared by all contexts, which is right because a command leaves nothing there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plan {
+    /// For messages.
+    pub name: &'static str,
+    /// Regions that share the array.
+    pub contexts: u8,
+    /// Bits of each.
+    pub context_bits: u8,
+    /// 24 bits, 0xRRGGBB.
+    pub colour: Operand,
+    /// Depth; nearer is smaller.
+    pub z: Operand,
+    /// x, y and z of the normal, two's complement, one after the other; `None` without Phong shading.
+    pub normal: Option<Operand>,
+    /// Temporaries of spheres and shading.
+    pub scratch: Option<Operand>,
+}
+
+/// A division of pixel memory that fits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout(Plan);
+
+/// Why a plan does not fit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum LayoutError {
+    /// Fields lie outside of pixel memory or over each other; the text draws them.
+    DoesNotFit {
+        /// The plan's name.
+        name: &'static str,
+        /// One line a field.
+        drawing: String,
+    },
+    /// A field has a width that the commands cannot use.
+    Width {
+        /// The field.
+        field: &'static str,
+        /// Bits that are allowed.
+        expected: &'static str,
+        /// Bits that it has.
+        found: u8,
+    },
+}
+
+impl fmt::Display for LayoutError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::DoesNotFit { name, drawing } => {
+                write!(f, "layout {name} does not fit {MEMORY_BITS} bits:\n{drawing}")
+            }
+            Self::Width { field, expected, found } => {
+                write!(f, "{field} has {found} bits, expected {expected}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for LayoutError {}
+
+/// Rendering Control with Phong shading: one region, 24 colour + 24 Z + 36 normal, and 124 bits of scratch.
+const RENDERING_CONTROL_PHONG: Plan = Plan {
+    name: "rendering control, Phong",
+    contexts: 1,
+    context_bits: 84,
+    colour: Operand::context(0, 24),
+    z: Operand::context(24, 24),
+    normal: Some(Operand::context(48, 36)),
+    scratch: Some(Operand::absolute(84, 124)),
+};
+
+/// Slats: four regions of 24 colour + 20 Z, and 32 bits of scratch that they share.
+const SLATS: Plan = Plan {
+    name: "Slats",
+    contexts: 4,
+    context_bits: 44,
+    colour: Operand::context(0, 24),
+    z: Operand::context(24, 20),
+    normal: None,
+    scratch: Some(Operand::absolute(176, 32)),
+};
+
+/// Slats with its memory in equal parts: four regions of 24 colour + 24 Z + 4 flags, and no scratch.
+const SLATS_QUARTERS: Plan = Plan {
+    name: "Slats in quarters",
+    contexts: 4,
+    context_bits: 52,
+    colour: Operand::context(0, 24),
+    z: Operand::context(24, 24),
+    normal: None,
+    scratch: None,
+};
+
+impl Layout {
+    /// Rendering Control with Phong shading: one region, 24 bits of colour, 24 of Z, 36 of normal, 124 of scratch.
+    #[must_use]
+    pub const fn rendering_control_phong() -> Self {
+        Self(RENDERING_CONTROL_PHONG)
+    }
+
+    /// Slats: four regions of 24 bits of colour and 20 of Z, and 32 bits of scratch that they share.
+    ///
+    /// Four contexts in 208 bits are published (TR94). Four equal parts of 52 leave nothing for the temporaries of a
+    /// sphere (30 bits), which every context needs only while a command runs; so Z gives up 4 bits (assumed).
+    #[must_use]
+    pub const fn slats() -> Self {
+        Self(SLATS)
+    }
+
+    /// Slats in four equal parts of 52 bits: 24 colour + 24 Z + 4 flags; triangles only.
+    #[must_use]
+    pub const fn slats_quarters() -> Self {
+        Self(SLATS_QUARTERS)
+    }
+
+    /// Checks a plan.
+    ///
+    /// # Errors
+    /// [`LayoutError::DoesNotFit`] draws the bit ranges; [`LayoutError::Width`] names a field of a wrong width.
+    pub fn new(plan: Plan) -> Result<Self, LayoutError> {
+        check_widths(&plan)?;
+        let ranges = ranges(&plan);
+        let bad = conflicts(&plan, &ranges);
+        if bad.iter().all(Option::is_none) {
+            return Ok(Self(plan));
+        }
+        Err(LayoutError::DoesNotFit { name: plan.name, drawing: draw(&ranges, &bad) })
+    }
+
+    /// The plan.
+    #[must_use]
+    pub const fn plan(&self) -> &Plan {
+        &self.0
+    }
+
+    /// First bit of a context.
+    #[must_use]
+    pub const fn context_base(&self, context: u8) -> u8 {
+        context.wrapping_mul(self.0.context_bits)
+    }
+
+    /// Colour component 0 (red), 1 (green) or 2 (blue).
+    #[must_use]
+    pub const fn component(&self, index: u8) -> Operand {
+        self.0.colour.part((2 - index) * COLOUR_BITS as u8, COLOUR_BITS as u8)
+    }
+
+    /// Low bits of a depth's expression that the layout does not store.
+    #[must_use]
+    pub const fn z_shift(&self) -> u8 {
+        (Z_FRACTION_BITS + Z_BITS) as u8 - self.0.z.width
+    }
+
+    /// Component 0 (x), 1 (y) or 2 (z) of the normal.
+    #[must_use]
+    pub fn normal(&self, index: u8) -> Option<Operand> {
+        let all = self.0.normal?;
+        Some(all.part(index * NORMAL_BITS as u8, NORMAL_BITS as u8).signed())
+    }
+
+    /// Bits of a sphere's root: 12, or 10 where the scratch is smaller than 36 bits; `None` below 30.
+    #[must_use]
+    pub fn root_bits(&self) -> Option<u8> {
+        match self.0.scratch?.width {
+            36.. => Some(12),
+            30..36 => Some(10),
+            _ => None,
+        }
+    }
+
+    /// All fields with their first bit, bits and name, in order of the plan.
+    #[must_use]
+    pub fn ranges(&self) -> Vec<FieldRange> {
+        ranges(&self.0)
+    }
+}
+
+/// A named range of pixel memory.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FieldRange {
+    /// Context and field.
+    pub name: String,
+    /// First bit.
+    pub first: u32,
+    /// Bits.
+    pub width: u32,
+}
+
+impl FieldRange {
+    const fn end(&self) -> u32 {
+        self.first + self.width
+    }
+}
+
+fn check_widths(plan: &Plan) -> Result<(), LayoutError> {
+    let wrong = |field, expected, found| Err(LayoutError::Width { field, expected, found });
+    if plan.colour.width != 24 {
+        return wrong("colour", "24", plan.colour.width);
+    }
+    if !(8..=24).contains(&plan.z.width) {
+        return wrong("z", "8 to 24", plan.z.width);
+    }
+    match plan.normal {
+        Some(normal) if normal.width != 36 => wrong("normal", "36", normal.width),
+        _ => Ok(()),
+    }
+}
+
+fn ranges(plan: &Plan) -> Vec<FieldRange> {
+    let mut out = Vec::new();
+    let fields = [("colour", Some(plan.colour)), ("z", Some(plan.z)), ("normal", plan.normal)];
+    for context in 0..u32::from(plan.contexts) {
+        for (name, field) in fields {
+            out.extend(field.map(|field| FieldRange {
+                name: format!("context {context} {name}"),
+                first: context * u32::from(plan.context_bits) + u32::from(field.address),
+                width: u32::from(field.width),
+            }));
+        }
+    }
+    out.extend(plan.scratch.map(|field| FieldRange {
+        name: "scratch".to_owned(),
+        first: u32::from(field.address),
+        width: u32::from(field.width),
+    }));
+    out
+}
+
+/// For each range what is wrong with it, if anything.
+fn conflicts(plan: &Plan, ranges: &[FieldRange]) -> Vec<Option<String>> {
+    let conflict = |(i, range): (usize, &FieldRange)| {
+        if range.end() > MEMORY_BITS {
+            return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));
+        }
+        let before = ranges[..i].iter().find(|other| overlap(range, other));
+        before.map(|other| format!("overlaps {}", other.name))
+    };
+    let mut out: Vec<_> = ranges.iter().enumerate().map(conflict).collect();
+    let whole = u32::from(plan.contexts) * u32::from(plan.context_bits);
+    if (plan.contexts == 0 || whole > MEMORY_BITS) && !out.is_empty() {
+        let i = out.len() - 1;
+        out[i].get_or_insert(format!("{} contexts take {whole} bits", plan.contexts));
+    }
+    out
+}
+
+const fn overlap(a: &FieldRange, b: &FieldRange) -> bool {
+    a.first < b.end() && b.first < a.end()
+}
+
+/// One line a field: range, a bar of one mark per four bits, name, conflict.
+fn draw(ranges: &[FieldRange], conflicts: &[Option<String>]) -> String {
+    let mut out = String::new();
+    for (range, conflict) in ranges.iter().zip(conflicts) {
+        let bar: String = (0..MEMORY_BITS / 4).map(|i| if overlap(range, &quad(i)) { '#' } else { '.' }).collect();
+        let last = range.end().max(1) - 1;
+        let _ = write!(out, "{:>4}-{last:<4}|{bar}| {}", range.first, range.name);
+        match conflict {
+            Some(text) => {
+                let _ = writeln!(out, "  <- {text}");
+            }
+            None => out.push('\n'),
+        }
+    }
+    out
+}
+
+const fn quad(i: u32) -> FieldRange {
+    FieldRange { name: String::new(), first: 4 * i, width: 4 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_three_layouts_fit() {
+        for plan in [RENDERING_CONTROL_PHONG, SLATS, SLATS_QUARTERS] {
+            Layout::new(plan).unwrap();
+        }
+    }
+
+    #[test]
+    fn slats_fills_pixel_memory_to_the_last_bit() {
+        let used: u32 = Layout::slats().ranges().iter().map(|range| range.width).sum();
+        assert_eq!(used, MEMORY_BITS);
+        assert_eq!(Layout::slats().root_bits(), Some(10));
+        assert_eq!(Layout::slats_quarters().root_bits(), None);
+    }
+
+    #[test]
+    fn a_plan_that_does_not_fit_is_drawn_with_its_bit_ranges() {
+        let plan = Plan { scratch: Some(Operand::absolute(172, 32)), ..SLATS };
+        let text = Layout::new(plan).unwrap_err().to_string();
+        assert!(text.contains("172-203"), "{text}");
+        assert!(text.contains("scratch  <- overlaps context 3 z"), "{text}");
+    }
+
+    #[test]
+    fn phong_in_four_contexts_does_not_fit() {
+        let normal = Some(Operand::context(48, 36));
+        let plan = Plan { normal, context_bits: 84, ..SLATS_QUARTERS };
+        let text = Layout::new(plan).unwrap_err().to_string();
+        assert!(text.contains("ends beyond bit 207"), "{text}");
+    }
+
+    #[test]
+    fn a_wrong_width_is_named() {
+        let plan = Plan { z: Operand::context(24, 28), ..SLATS };
+        let expected = LayoutError::Width { field: "z", expected: "8 to 24", found: 28 };
+        assert_eq!(Layout::new(plan), Err(expected));
+    }
+}
