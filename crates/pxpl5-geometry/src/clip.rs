@@ -75,7 +75,9 @@ impl Guard {
     /// Whether a vertex needs no clipping; false for NaN and for coordinates beyond [`MAX_CLIP`].
     #[inline(always)]
     pub(crate) fn contains(self, [x, y, z, w]: [f32; 4]) -> bool {
-        (x.abs() <= self.x * w) & (y.abs() <= self.y * w) & (z >= 0.0) & (z <= w) & (MIN_W <= w) & (w <= MAX_CLIP)
+        let side = |v: f32, limit: f32| v.abs() <= limit * w;
+        let depth = (z >= 0.0) & (z <= w);
+        side(x, self.x) & side(y, self.y) & depth & (MIN_W..=MAX_CLIP).contains(&w)
     }
 
     /// What is left of a triangle.

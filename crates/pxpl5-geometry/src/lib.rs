@@ -4,10 +4,13 @@
 
 mod bin;
 mod clip;
+mod conic;
 mod input;
 mod light;
 mod plane;
 mod screen;
+mod sphere;
+mod sphere_setup;
 mod stats;
 mod transform;
 mod view;
@@ -20,6 +23,8 @@ pub use screen::{
     DEPTH_FAR, DEPTH_NEAR, GUARD_PIXELS, GouraudTriangle, LitColours, NORMAL_UNIT, Outline, PhongTriangle,
     ScreenTriangle, SurfaceNormals,
 };
+pub use sphere::ScreenSphere;
+pub use sphere_setup::{GouraudSphere, PhongSphere, SphereSetup};
 pub use stats::SetupStats;
 pub use transform::{Culling, MeshScratch, Transform};
 pub use view::{MAX_PICTURE, ViewError, ViewTransform, Viewport};

@@ -140,7 +140,7 @@ impl Outline {
 
 /// An expression over the frame's pixels, restated for the rows of the picture: exactly the same values.
 #[inline(always)]
-fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
+pub(crate) fn for_rows(frame: Linear, viewport: &Viewport) -> Linear {
     Linear {
         a: frame.a,
         b: frame.b.wrapping_mul(viewport.line_step() as i32),

@@ -36,6 +36,8 @@ pub struct SetupStats {
     pub spheres_outside: u64,
     /// Spheres dropped because a number is NaN, infinite or huge, or the radius is negative.
     pub spheres_not_finite: u64,
+    /// Spheres dropped because the projection is neither perspective nor parallel along -Z.
+    pub spheres_unprojectable: u64,
 }
 
 impl SetupStats {
@@ -56,5 +58,6 @@ impl SetupStats {
         self.spheres_across_far += other.spheres_across_far;
         self.spheres_outside += other.spheres_outside;
         self.spheres_not_finite += other.spheres_not_finite;
+        self.spheres_unprojectable += other.spheres_unprojectable;
     }
 }

@@ -4,6 +4,7 @@ use crate::bin::Binner;
 use crate::clip::{self, Guard, Vertex};
 use crate::light::Lighting;
 use crate::screen::{self, LitColours, Outline, ScreenTriangle, SurfaceNormals};
+use crate::sphere::Lens;
 use crate::view::{Columns, ViewError};
 use crate::{Light, Mesh, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
 use glam::Vec3;
@@ -25,7 +26,8 @@ pub enum Culling {
 pub struct Transform {
     pub(crate) viewport: Viewport,
     pub(crate) model_view: Columns,
-    pub(crate) projection: Columns,
+    /// `None` where spheres cannot be drawn.
+    pub(crate) lens: Option<Lens>,
     to_clip: Columns,
     to_screen: ToScreen,
     guard: Guard,
@@ -130,8 +132,8 @@ impl Transform {
         Ok(Self {
             viewport,
             to_clip: projection.after(&model_view),
+            lens: Lens::of(&projection, viewport.grid().width, viewport.frame_lines()),
             model_view,
-            projection,
             guard: to_screen.guard(),
             to_screen,
             binner: Binner::new(&viewport),

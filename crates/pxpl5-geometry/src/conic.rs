@@ -1,0 +1,218 @@
+//! Conics on the screen: the pictures of spheres, in floating point and in the renderer's fixed point.
+
+use pxpl5_wire::Quadratic;
+
+/// Bits of a silhouette's value within its regions: one less than the renderer evaluates, sign included.
+const VALUE_BITS: i32 = 46;
+
+/// Most bits of a root.
+pub(crate) const ROOT_BITS: i32 = 12;
+
+/// Most low bits of a silhouette that a root can leave out.
+const MAX_ROOT_SHIFT: i32 = 24;
+
+/// Largest left shift of a root.
+const MAX_DEPTH_SHIFT: i32 = 20;
+
+/// `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`, (dx, dy) in pixels from `origin`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Conic {
+    /// In pixels of the frame; (0, 0) is the centre of the top left pixel.
+    pub(crate) origin: [f64; 2],
+    pub(crate) constant: f64,
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) xx: f64,
+    pub(crate) xy: f64,
+    pub(crate) yy: f64,
+}
+
+/// A conic in fixed point: `Q = 2^root_shift (bulge / 2^depth_shift)^2`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct FixedConic {
+    pub(crate) quadratic: Quadratic,
+    pub(crate) root_shift: u8,
+    pub(crate) depth_shift: u8,
+}
+
+/// 2 to a power from -1022 to 1023, exactly.
+pub(crate) fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((exponent.clamp(-1022, 1023) + 1023) as u64) << 52)
+}
+
+/// The power of two just above `value`: `value < 2^n`; 0 gives -1022.
+fn exponent_above(value: f64) -> i32 {
+    ((value.to_bits() >> 52) & 0x7ff) as i32 - 1022
+}
+
+impl Conic {
+    pub(crate) fn scaled(self, factor: f64) -> Self {
+        Self {
+            origin: self.origin,
+            constant: self.constant * factor,
+            x: self.x * factor,
+            y: self.y * factor,
+            xx: self.xx * factor,
+            xy: self.xy * factor,
+            yy: self.yy * factor,
+        }
+    }
+
+    /// The same conic from another origin.
+    pub(crate) fn around(&self, origin: [f64; 2]) -> Self {
+        let (dx, dy) = (origin[0] - self.origin[0], origin[1] - self.origin[1]);
+        Self {
+            origin,
+            constant: self.at(dx, dy),
+            x: (self.x + 2.0 * self.xx * dx) + self.xy * dy,
+            y: (self.y + 2.0 * self.yy * dy) + self.xy * dx,
+            ..*self
+        }
+    }
+
+    /// The value at (dx, dy) from the origin.
+    fn at(&self, dx: f64, dy: f64) -> f64 {
+        let row = (self.xx * dx + self.xy * dy) + self.x;
+        (row * dx + (self.yy * dy + self.y) * dy) + self.constant
+    }
+
+    /// `4 xx yy - xy^2`, positive for an ellipse.
+    fn determinant(&self) -> f64 {
+        4.0 * self.xx * self.yy - self.xy * self.xy
+    }
+
+    /// From the origin to the greatest value, for an ellipse.
+    fn to_peak(self) -> [f64; 2] {
+        let determinant = self.determinant();
+        [
+            (self.xy * self.y - 2.0 * self.yy * self.x) / determinant,
+            (self.xy * self.x - 2.0 * self.xx * self.y) / determinant,
+        ]
+    }
+
+    /// Where the greatest value is, in the frame's pixels.
+    pub(crate) fn peak(&self) -> [f64; 2] {
+        let [dx, dy] = self.to_peak();
+        [self.origin[0] + dx, self.origin[1] + dy]
+    }
+
+    /// The greatest value.
+    pub(crate) fn peak_value(&self) -> f64 {
+        let [dx, dy] = self.to_peak();
+        self.constant + (self.x * dx + self.y * dy) * 0.5
+    }
+
+    /// Half the width and half the height of the ellipse in pixels.
+    pub(crate) fn half_size(&self) -> [f64; 2] {
+        let scale = -4.0 * self.peak_value() / self.determinant();
+        [(scale * self.yy).sqrt(), (scale * self.xx).sqrt()]
+    }
+
+    /// Least and greatest x and y of the ellipse in the frame's pixels; `None` if it is none (NaN, overflow).
+    pub(crate) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
+        let ([x, y], [half_x, half_y]) = (self.peak(), self.half_size());
+        let bounds = [[x - half_x, x + half_x], [y - half_y, y + half_y]];
+        bounds.iter().flatten().all(|v| v.is_finite()).then_some(bounds)
+    }
+
+    /// Rounds for evaluation on the frame's pixels of `rectangle` (first and last along x, and along y).
+    ///
+    /// The values are powers of two times the conic's, as large as fits in 46 bits on the whole rectangle.
+    /// Coefficients are rounded around a pixel in its middle and restated exactly for pixel (0, 0), so the error
+    /// grows from there and not from the picture's corner.
+    pub(crate) fn fixed(&self, rectangle: [[i32; 2]; 2]) -> FixedConic {
+        let [px, py] = rectangle.map(|[first, last]| (first + last) / 2);
+        let local = self.around([f64::from(px), f64::from(py)]);
+        let peak = self.peak_value();
+        let depth_shift = ((exponent_above(peak) + 1).div_euclid(2) - ROOT_BITS).clamp(0, MAX_DEPTH_SHIFT);
+        let unshifted = power_of_two(-2 * depth_shift);
+        let greatest = self.greatest_on(rectangle).max(peak) * unshifted;
+        let root_shift = (VALUE_BITS - exponent_above(greatest)).clamp(0, MAX_ROOT_SHIFT);
+        let scaled = local.scaled(unshifted * power_of_two(root_shift));
+        FixedConic {
+            quadratic: scaled.rounded(i64::from(px), i64::from(py)),
+            root_shift: root_shift as u8,
+            depth_shift: depth_shift as u8,
+        }
+    }
+
+    /// Greatest absolute value at the corners of a rectangle; with the peak this bounds a concave conic.
+    fn greatest_on(&self, [across, down]: [[i32; 2]; 2]) -> f64 {
+        let corner = |x: i32, y: i32| self.at(f64::from(x) - self.origin[0], f64::from(y) - self.origin[1]).abs();
+        let pairs = across.into_iter().flat_map(|x| down.map(|y| corner(x, y)));
+        pairs.fold(0.0, f64::max)
+    }
+
+    /// Coefficients as integers around pixel (px, py), then exactly around pixel (0, 0).
+    fn rounded(&self, px: i64, py: i64) -> Quadratic {
+        let integer = |v: f64| (v + 0.5).floor() as i64;
+        let (xx, xy, yy) = (integer(self.xx), integer(self.xy), integer(self.yy));
+        let (x, y) = (integer(self.x), integer(self.y));
+        Quadratic {
+            xx,
+            xy,
+            yy,
+            x: x.wrapping_sub(xx.wrapping_mul(2 * px)).wrapping_sub(xy.wrapping_mul(py)),
+            y: y.wrapping_sub(yy.wrapping_mul(2 * py)).wrapping_sub(xy.wrapping_mul(px)),
+            one: Quadratic { xx, xy, yy, x: x.wrapping_neg(), y: y.wrapping_neg(), one: 0 }
+                .at(px as i32, py as i32)
+                .wrapping_add(integer(self.constant)),
+        }
+    }
+}
+
+/// A quadratic over the frame's pixels, restated for every `step`-th line from `first`: exactly the same values.
+pub(crate) fn for_rows(frame: Quadratic, step: i64, first: i64) -> Quadratic {
+    Quadratic {
+        xx: frame.xx,
+        xy: frame.xy.wrapping_mul(step),
+        yy: frame.yy.wrapping_mul(step * step),
+        x: frame.x.wrapping_add(frame.xy.wrapping_mul(first)),
+        y: frame.yy.wrapping_mul(2 * first).wrapping_add(frame.y).wrapping_mul(step),
+        one: frame.at(0, first as i32),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHIFTED: Conic = Conic { origin: [3.25, -7.5], constant: 20.0, x: 3.0, y: -2.0, xx: -1.0, xy: 0.5, yy: -2.0 };
+
+    #[test]
+    fn a_conic_keeps_its_values_when_its_origin_moves() {
+        let moved = SHIFTED.around([10.0, 4.0]);
+        for (x, y) in [(0.0, 0.0), (3.0, -7.0), (11.5, 2.25)] {
+            let old = SHIFTED.at(x - 3.25, y + 7.5);
+            assert!((old - moved.at(x - 10.0, y - 4.0)).abs() < 1e-9);
+        }
+        assert!((moved.peak_value() - SHIFTED.peak_value()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn nothing_is_greater_than_the_peak() {
+        let [x, y] = SHIFTED.peak();
+        for (dx, dy) in [(0.1, 0.0), (-0.1, 0.05), (0.0, 0.1), (0.0, -0.1)] {
+            assert!(SHIFTED.at(x + dx - 3.25, y + dy + 7.5) < SHIFTED.peak_value());
+        }
+    }
+
+    #[test]
+    fn rows_of_a_field_have_the_values_of_their_frame_lines() {
+        let frame = Quadratic { xx: -3, xy: 5, yy: -7, x: 11, y: 13, one: -17 };
+        for first in [0, 1] {
+            let field = for_rows(frame, 2, i64::from(first));
+            for (x, row) in [(0, 0), (5, 3), (639, 239)] {
+                assert_eq!(field.at(x, row), frame.at(x, 2 * row + first));
+            }
+        }
+    }
+
+    #[test]
+    fn exponents_bound_their_values() {
+        for v in [0.75, 1.0, 3.0, 4096.0, 1e20] {
+            let n = exponent_above(v);
+            assert!(v < power_of_two(n) && v >= power_of_two(n - 1), "{v}");
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Spheres: one quadratic each, exact under perspective.
+//!
+//! A pixel's ray is `t d`, where d is linear in the pixel's coordinates and has z = -1, so that t is the distance
+//! along -Z. It meets the sphere of centre c and radius r where, with u = 1/t and D = c.c - r^2,
+//!
+//! ```text
+//! D u^2 - 2 (d.c) u + d.d = 0,   u = (d.c + sqrt(Q)) / D,   Q = (d.c)^2 - D (d.d) = r^2 d.d - |d x c|^2
+//! ```
+//!
+//! Q is a quadratic in the pixel's coordinates and at least 0 exactly on the sphere's picture, an ellipse. Depth is
+//! linear in u, so it is a plane less a multiple of the root of Q. Under a parallel projection
+//! `Q = r^2 - |p - c|^2` and depth is a constant less a multiple of its root.
+//!
+//! **Not drawn, but counted:** spheres that the near plane cuts (one quadratic cannot show the hole, and this holds
+//! the eye inside a sphere too) and spheres whose picture reaches beyond the far plane.
+
+use crate::bin::Range;
+use crate::conic::Conic;
+use crate::screen::{DEPTH_FAR, DEPTH_NEAR};
+use crate::transform::Transform;
+use crate::view::Columns;
+use crate::{RegionMask, SetupStats, Sphere};
+
+/// Largest eye coordinate and radius of a sphere; the squares of larger ones could overflow.
+const MAX_COORDINATE: f64 = 1e30;
+
+/// How eye coordinates become pixels and depths, as far as spheres need it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lens {
+    parallel: bool,
+    /// Eye units per pixel along x and along y (negative: y grows downwards), at distance 1 under perspective.
+    pub(crate) step: [f64; 2],
+    /// Eye x and y of the centre of the frame's pixel (0, 0), at distance 1 under perspective.
+    pub(crate) corner: [f64; 2],
+    /// Depth is `constant + slope u`, u = 1/t under perspective, -t under a parallel projection.
+    constant: f64,
+    slope: f64,
+}
+
+impl Lens {
+    /// `None` unless the matrix is a perspective or parallel projection along -Z, possibly off centre.
+    pub(crate) fn of(projection: &Columns, width: u32, lines: u32) -> Option<Self> {
+        let at = |row: usize, column: usize| f64::from(projection.0[column][row]);
+        let zero = |cells: &[(usize, usize)]| cells.iter().all(|&(r, c)| at(r, c) == 0.0);
+        if !zero(&[(0, 1), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1)]) {
+            return None;
+        }
+        let parallel = match (at(3, 2), at(3, 3)) {
+            (-1.0, 0.0) if zero(&[(0, 3), (1, 3)]) => false,
+            (0.0, 1.0) if zero(&[(0, 2), (1, 2)]) => true,
+            _ => return None,
+        };
+        let [slope, constant] = if parallel { [at(2, 2), at(2, 3)] } else { [at(2, 3), -at(2, 2)] };
+        let shift = |row: usize| if parallel { -at(row, 3) } else { at(row, 2) };
+        let [half_x, half_y] = [width, lines].map(|n| f64::from(n) * 0.5);
+        let (scale_x, scale_y) = (at(0, 0), at(1, 1));
+        let lens = Self {
+            parallel,
+            step: [1.0 / (half_x * scale_x), -1.0 / (half_y * scale_y)],
+            corner: [(0.5 / half_x - 1.0 + shift(0)) / scale_x, (1.0 - 0.5 / half_y + shift(1)) / scale_y],
+            constant,
+            slope,
+        };
+        (scale_x > 0.0 && scale_y > 0.0 && lens.slope < 0.0).then_some(lens)
+    }
+
+    /// Depth at distance t along -Z.
+    fn depth(&self, t: f64) -> f64 {
+        let u = if self.parallel { -t } else { 1.0 / t };
+        self.constant + self.slope * u
+    }
+}
+
+/// A sphere on the screen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScreenSphere {
+    /// Regions that the bounding box of its picture meets: all that it touches, and perhaps corners beside it.
+    pub regions: RegionMask,
+    /// Red, green and blue.
+    pub colour: [u8; 3],
+    /// The picture, with `Q = bulge^2`: how far, in units of the depth expression, the surface stands before its
+    /// plane of depth.
+    pub(crate) conic: Conic,
+    /// Value at the conic's centre and slopes per pixel of the plane of depth.
+    pub(crate) depth: [f64; 3],
+    /// Greatest depth on the silhouette.
+    pub(crate) deepest: f64,
+    /// The middle of the sphere as seen from the eye: unit vectors across, up and towards the eye.
+    pub(crate) axes: [[f64; 3]; 3],
+}
+
+pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
+}
+
+fn unit(v: [f64; 3]) -> [f64; 3] {
+    let length = dot(v, v).sqrt();
+    v.map(|c| c / length)
+}
+
+/// What of `v` is at a right angle to the unit vector `axis`, with length 1.
+fn across(v: [f64; 3], axis: [f64; 3]) -> [f64; 3] {
+    let along = dot(v, axis);
+    unit(std::array::from_fn(|i| v[i] - along * axis[i]))
+}
+
+/// A sphere in eye coordinates.
+#[derive(Clone, Copy, Debug)]
+struct EyeSphere {
+    centre: [f64; 3],
+    radius: f64,
+}
+
+impl EyeSphere {
+    /// The largest scale along an axis counts; `None` for NaN, huge numbers and a negative radius.
+    fn new(model_view: &Columns, sphere: &Sphere) -> Option<Self> {
+        let [x, y, z, _] = model_view.point(sphere.centre).map(f64::from);
+        let square = |column: &[f32; 4]| {
+            let v = [column[0], column[1], column[2]].map(f64::from);
+            dot(v, v)
+        };
+        let scale = model_view.0[..3].iter().map(square).fold(0.0, f64::max).sqrt();
+        let radius = f64::from(sphere.radius) * scale;
+        let fits = |v: f64| v.abs() <= MAX_COORDINATE;
+        (radius >= 0.0 && [x, y, z, radius].into_iter().all(fits)).then_some(Self { centre: [x, y, z], radius })
+    }
+
+    /// Greatest distance t on the silhouette under perspective: the farthest point of the circle of tangents.
+    fn farthest_tangent(&self) -> f64 {
+        let square = dot(self.centre, self.centre);
+        let shrink = 1.0 - self.radius * self.radius / square;
+        let tilt = 1.0 - self.centre[2] * self.centre[2] / square;
+        -self.centre[2] * shrink + self.radius * (shrink * tilt.max(0.0)).sqrt()
+    }
+}
+
+enum Sight {
+    Visible,
+    Outside,
+    AcrossNear,
+    AcrossFar,
+}
+
+impl Lens {
+    fn sight(&self, sphere: &EyeSphere) -> Sight {
+        let (front, back) = (-sphere.centre[2] - sphere.radius, -sphere.centre[2] + sphere.radius);
+        let before = |t: f64| (!self.parallel && t <= 0.0) || self.depth(t) < 0.0;
+        if before(front) {
+            return if before(back) { Sight::Outside } else { Sight::AcrossNear };
+        }
+        if self.depth(front) > 1.0 {
+            return Sight::Outside;
+        }
+        if self.depth(self.deepest(sphere)) > 1.0 {
+            return Sight::AcrossFar;
+        }
+        Sight::Visible
+    }
+
+    fn deepest(&self, sphere: &EyeSphere) -> f64 {
+        if self.parallel { -sphere.centre[2] } else { sphere.farthest_tangent() }
+    }
+
+    /// Pixel coordinates of an eye position in the plane t = 1 (any plane if parallel).
+    fn pixel(&self, x: f64, y: f64) -> [f64; 2] {
+        [(x - self.corner[0]) / self.step[0], (y - self.corner[1]) / self.step[1]]
+    }
+
+    /// The picture scaled to bulges, and the plane of depth around its centre.
+    fn picture(&self, sphere: &EyeSphere) -> (Conic, [f64; 3]) {
+        let range = f64::from(DEPTH_FAR - DEPTH_NEAR);
+        let ([cx, cy, cz], r) = (sphere.centre, sphere.radius);
+        let ([gx, gy], rr) = (self.step, r * r);
+        let base = f64::from(DEPTH_NEAR);
+        if self.parallel {
+            let k = range * self.slope;
+            let conic = Conic {
+                origin: self.pixel(cx, cy),
+                constant: rr,
+                x: 0.0,
+                y: 0.0,
+                xx: -(gx * gx),
+                xy: 0.0,
+                yy: -(gy * gy),
+            };
+            let depth = base + range * self.depth(-cz);
+            return (conic.scaled(k * k), [depth, 0.0, 0.0]);
+        }
+        let (dx, dy) = (cx / -cz, cy / -cz);
+        let dd = (dx * dx + dy * dy) + 1.0;
+        let conic = Conic {
+            origin: self.pixel(dx, dy),
+            constant: rr * dd,
+            x: 2.0 * rr * gx * dx,
+            y: 2.0 * rr * gy * dy,
+            xx: gx * gx * (rr - (cy * cy + cz * cz)),
+            xy: 2.0 * gx * gy * cx * cy,
+            yy: gy * gy * (rr - (cx * cx + cz * cz)),
+        };
+        let k = range * self.slope / (dot(sphere.centre, sphere.centre) - rr);
+        // At the origin d = -c / c_z, hence d.c = c.c / -c_z.
+        let along = dot(sphere.centre, sphere.centre) / -cz;
+        let depth = (base + range * self.constant) + k * along;
+        (conic.scaled(k * k), [depth, k * gx * cx, k * gy * cy])
+    }
+
+    fn axes(&self, sphere: &EyeSphere) -> [[f64; 3]; 3] {
+        let towards = if self.parallel { [0.0, 0.0, 1.0] } else { unit(sphere.centre.map(|v| -v)) };
+        [across([1.0, 0.0, 0.0], towards), across([0.0, 1.0, 0.0], towards), towards]
+    }
+}
+
+impl Transform {
+    /// Transforms a sphere; `None`, counted, if it is not drawn.
+    ///
+    /// The model-view matrix must be a rotation, translation and uniform scale, the projection along -Z; other
+    /// projections are counted as [`SetupStats::spheres_unprojectable`].
+    pub fn sphere(&self, sphere: &Sphere, stats: &mut SetupStats) -> Option<ScreenSphere> {
+        stats.spheres += 1;
+        let Some(lens) = &self.lens else {
+            stats.spheres_unprojectable += 1;
+            return None;
+        };
+        let Some(eye) = EyeSphere::new(&self.model_view, sphere) else {
+            stats.spheres_not_finite += 1;
+            return None;
+        };
+        match lens.sight(&eye) {
+            Sight::AcrossNear => stats.spheres_across_near += 1,
+            Sight::AcrossFar => stats.spheres_across_far += 1,
+            Sight::Outside => stats.spheres_outside += 1,
+            Sight::Visible => return self.visible(lens, &eye, sphere.colour, stats),
+        }
+        None
+    }
+
+    fn visible(&self, lens: &Lens, eye: &EyeSphere, colour: [u8; 3], stats: &mut SetupStats) -> Option<ScreenSphere> {
+        let (conic, depth) = lens.picture(eye);
+        let regions = conic.bounds().map_or(RegionMask::EMPTY, |bounds| {
+            let [x, y] = bounds.map(pixels);
+            self.binner.rectangle(x, y)
+        });
+        if regions.is_empty() {
+            stats.spheres_outside += 1;
+            return None;
+        }
+        stats.screen_spheres += 1;
+        let range = f64::from(DEPTH_FAR - DEPTH_NEAR);
+        Some(ScreenSphere {
+            regions,
+            colour,
+            conic,
+            depth,
+            deepest: f64::from(DEPTH_NEAR) + range * lens.depth(lens.deepest(eye)),
+            axes: lens.axes(eye),
+        })
+    }
+}
+
+/// Slack around a bounding box in pixels, more than the rounding of the quadratic can move the silhouette.
+const SLACK: f64 = 1.0 / 64.0;
+
+/// The pixels whose centres lie in an interval of pixel coordinates (0 is the centre of pixel 0).
+fn pixels([low, high]: [f64; 2]) -> Range {
+    let limit = |v: f64| v.clamp(-4096.0, 4096.0);
+    Range { first: limit((low - SLACK).ceil()) as i32, last: limit((high + SLACK).floor()) as i32 }
+}

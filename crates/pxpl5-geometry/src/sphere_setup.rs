@@ -1,0 +1,170 @@
+//! Set-up of spheres: from a conic and a plane to the renderer's operands.
+
+use crate::conic::{self, FixedConic};
+use crate::screen::DEPTH_FAR;
+use crate::sphere::ScreenSphere;
+use crate::{Light, SetupStats, Viewport};
+use pxpl5_wire::{Linear, Quadratic, REGION_SIZE, format};
+
+/// Silhouette and depth of a sphere, common to both kinds of shading.
+///
+/// ```text
+/// root  = floor(sqrt((silhouette >> root_shift) & (2^24 - 1)))
+/// depth = (depth - (root << depth_shift)) >> Z_FRACTION_BITS
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SphereSetup {
+    /// Inside where at least 0. Within the regions that it was computed for it fits in 48 bits.
+    ///
+    /// Its scale is not that of [`format::QUADRATIC_FRACTION_BITS`]: it is chosen so that the root needs no factor.
+    pub silhouette: Quadratic,
+    /// Low bits of the silhouette that are left out of the root, 0 to 24.
+    pub root_shift: u8,
+    /// Depth of the plane of the silhouette with [`format::Z_FRACTION_BITS`], rounded for the root.
+    pub depth: Linear,
+    /// Left shift of the root before it is subtracted from the depth, 0 to 20.
+    pub depth_shift: u8,
+}
+
+/// A sphere with interpolated colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GouraudSphere {
+    /// Silhouette and depth.
+    pub setup: SphereSetup,
+    /// Linear part of red, green and blue with [`format::COLOUR_FRACTION_BITS`].
+    pub rgb: [Linear; 3],
+    /// Component = limit(linear + ((root >> 4) * factor >> 8)), factors 0 to 511.
+    pub root_factor: [u16; 3],
+}
+
+/// A sphere for deferred shading. The z of its normal is `root >> 2`; x and y have the same scale.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PhongSphere {
+    /// Silhouette and depth.
+    pub setup: SphereSetup,
+    /// x and y of the normal in eye coordinates with [`format::NORMAL_FRACTION_BITS`].
+    pub normal: [Linear; 2],
+    /// Red, green and blue.
+    pub colour: [u8; 3],
+}
+
+/// A plane by its value at a point of the frame and its slopes.
+struct Slope {
+    origin: [f64; 2],
+    value: f64,
+    slope: [f64; 2],
+}
+
+impl Slope {
+    /// In fixed point, most exact at `pixel`; modulo 2^32 like every linear expression. A slope beyond 2^31 is
+    /// limited, the plane counted as flattened.
+    fn fixed(&self, pixel: [i32; 2], stats: &mut SetupStats) -> Linear {
+        const LIMIT: f64 = 2_147_483_648.0;
+        let integer = |v: f64| (v + 0.5).floor() as i64 as i32;
+        if self.slope.iter().any(|s| s.abs() >= LIMIT) {
+            stats.flattened_planes += 1;
+            return Linear::constant(integer(self.value));
+        }
+        let offset = |i: usize| f64::from(pixel[i]) - self.origin[i];
+        let there = (self.value + self.slope[0] * offset(0)) + self.slope[1] * offset(1);
+        let [a, b] = self.slope.map(integer);
+        let back = a.wrapping_mul(pixel[0]).wrapping_add(b.wrapping_mul(pixel[1]));
+        Linear { a, b, c: integer(there).wrapping_sub(back) }
+    }
+}
+
+fn rows(linear: Linear, viewport: &Viewport) -> Linear {
+    crate::screen::for_rows(linear, viewport)
+}
+
+impl ScreenSphere {
+    /// Frame pixels that the renderers of the touched regions evaluate, beyond the picture's border too.
+    fn rectangle(&self, viewport: &Viewport) -> [[i32; 2]; 2] {
+        let grid = viewport.grid();
+        let corners = self.regions.iter().map(|r| grid.rectangle(r));
+        let bounds = corners.fold([[u32::MAX, 0], [u32::MAX, 0]], |[x, y], [left, top, ..]| {
+            [[x[0].min(left), x[1].max(left)], [y[0].min(top), y[1].max(top)]]
+        });
+        let line = |row: u32| (row * viewport.line_step() + viewport.first_line()) as i32;
+        let [[left, right], [top, bottom]] = bounds;
+        [[left as i32, (right + REGION_SIZE - 1) as i32], [line(top), line(bottom + REGION_SIZE - 1)]]
+    }
+
+    /// Where planes are rounded: the visible part's middle.
+    fn middle(&self, rectangle: [[i32; 2]; 2]) -> [i32; 2] {
+        let peak = self.conic.peak();
+        std::array::from_fn(|i| {
+            let [first, last] = rectangle[i].map(f64::from);
+            (peak[i] + 0.5).floor().clamp(first, last) as i32
+        })
+    }
+
+    /// Greatest value of the root, before it is rounded down.
+    fn greatest_root(&self, conic: &FixedConic) -> f64 {
+        self.conic.peak_value().sqrt() * conic::power_of_two(-i32::from(conic.depth_shift))
+    }
+
+    fn common(&self, viewport: &Viewport, stats: &mut SetupStats) -> (SphereSetup, FixedConic) {
+        let rectangle = self.rectangle(viewport);
+        let conic = self.conic.fixed(rectangle);
+        let [value, slope_x, slope_y] = self.depth;
+        // Half a step of the root, as far as the far plane leaves room, turns rounding down into rounding.
+        let half_step = conic::power_of_two(i32::from(conic.depth_shift) - 1);
+        let room = (f64::from(DEPTH_FAR) - self.deepest).max(0.0);
+        let plane = Slope { origin: self.conic.origin, value: value + half_step.min(room), slope: [slope_x, slope_y] };
+        let (step, first) = (viewport.line_step(), viewport.first_line());
+        let setup = SphereSetup {
+            silhouette: conic::for_rows(conic.quadratic, step.into(), first.into()),
+            root_shift: conic.root_shift,
+            depth: rows(plane.fixed(self.middle(rectangle), stats), viewport),
+            depth_shift: conic.depth_shift,
+        };
+        (setup, conic)
+    }
+
+    /// `scale` times the x (0) or y (1) of a unit normal in the sphere's own axes, plus `value`.
+    fn tilt(&self, scale: [f64; 2], value: f64) -> Slope {
+        let [half_x, half_y] = self.conic.half_size();
+        Slope { origin: self.conic.peak(), value, slope: [scale[0] / half_x, -scale[1] / half_y] }
+    }
+
+    /// Computes the operands for interpolated colour.
+    ///
+    /// The normal is taken as linear on the screen but for its part towards the eye, which is the root. Where it
+    /// turns from the light a sphere gets darker than ambient light, and light from behind adds nothing.
+    #[must_use]
+    pub fn gouraud(&self, viewport: &Viewport, light: &Light, stats: &mut SetupStats) -> GouraudSphere {
+        let (setup, conic) = self.common(viewport, stats);
+        let direction = light.direction.map(f64::from);
+        let [across, up, towards] = self.axes.map(|axis| crate::sphere::dot(axis, direction));
+        let middle = self.middle(self.rectangle(viewport));
+        let unit = f64::from(1_u32 << format::COLOUR_FRACTION_BITS);
+        let (ambient, diffuse) = (f64::from(light.ambient), f64::from(light.diffuse));
+        let rgb = self.colour.map(|c| {
+            let full = f64::from(c) * unit;
+            let scale = [across, up].map(|l| full * diffuse * l);
+            let plane = self.tilt(scale, full * ambient + unit * 0.5);
+            rows(plane.fixed(middle, stats), viewport)
+        });
+        let steps = self.greatest_root(&conic) * (1.0 / 16.0);
+        let root_factor = self.colour.map(|c| {
+            let factor = f64::from(c) * diffuse * towards * 256.0 / steps;
+            (factor + 0.5).clamp(0.0, 511.0) as u16
+        });
+        GouraudSphere { setup, rgb, root_factor }
+    }
+
+    /// Computes the operands for deferred shading.
+    #[must_use]
+    pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongSphere {
+        let (setup, conic) = self.common(viewport, stats);
+        let middle = self.middle(self.rectangle(viewport));
+        let unit = f64::from(1_u32 << format::NORMAL_FRACTION_BITS);
+        let scale = self.greatest_root(&conic) * 0.25 * unit;
+        let normal = [[scale, 0.0], [0.0, scale]].map(|scale| {
+            let plane = self.tilt(scale, unit * 0.5);
+            rows(plane.fixed(middle, stats), viewport)
+        });
+        PhongSphere { setup, normal, colour: self.colour }
+    }
+}
