@@ -3,6 +3,7 @@ pub mod config;
 mod error;
 pub mod motion;
 pub mod pose;
+pub mod predict;
 mod random;
 pub mod rotation;
 pub mod time;

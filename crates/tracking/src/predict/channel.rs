@@ -1,0 +1,39 @@
+use glam::{DQuat, DVec3};
+
+use crate::rotation;
+
+/// A filter of one quantity, position or orientation. Updates come with rising times; the gate sees to that.
+pub(super) trait Channel<T> {
+    /// Forgets everything but this value.
+    fn restart(&mut self, t_ps: u64, value: T);
+    /// Takes a measured value.
+    fn update(&mut self, t_ps: u64, value: T);
+    /// The value `dt_s` after the last one, or before it if negative.
+    fn extrapolate(&self, dt_s: f64) -> T;
+}
+
+/// Values whose differences are vectors: positions (m) and orientations (rotation vectors, rad).
+pub(super) trait Movable: Copy {
+    /// The vector from `origin` to `self`.
+    fn since(self, origin: Self) -> DVec3;
+    /// `self`, moved by a vector.
+    fn moved(self, by: DVec3) -> Self;
+}
+
+impl Movable for DVec3 {
+    fn since(self, origin: Self) -> DVec3 {
+        self - origin
+    }
+    fn moved(self, by: DVec3) -> Self {
+        self + by
+    }
+}
+
+impl Movable for DQuat {
+    fn since(self, origin: Self) -> DVec3 {
+        rotation::difference(origin, self)
+    }
+    fn moved(self, by: DVec3) -> Self {
+        (rotation::exp(by) * self).normalize()
+    }
+}

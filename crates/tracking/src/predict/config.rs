@@ -1,0 +1,120 @@
+use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
+
+use super::Predictor;
+use super::extrapolation::{Extrapolation, Order};
+use super::orientation_kalman::OrientationKalman;
+use super::position_kalman::{Belief, PositionKalman};
+use super::predicting::Predicting;
+use crate::config as table;
+use crate::config::Parameter;
+use crate::error::ConfigError;
+use crate::tracker::TrackerConfig;
+
+/// Least noise a Kalman filter may believe in; 0 would make its covariance singular.
+const LEAST_NOISE_M: f64 = 1e-6;
+const LEAST_NOISE_DEG: f64 = 1e-4;
+
+/// Which filter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum PredictorKind {
+    /// The last report, as it is.
+    None,
+    /// Last report plus velocity x time.
+    ConstantVelocity,
+    /// Last report plus velocity x time plus half the acceleration x time squared.
+    ConstantAcceleration,
+    /// Linear Kalman filter [p, v, a] for position, extended Kalman filter [q, omega, domega] for orientation.
+    Kalman,
+}
+
+impl PredictorKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::None, Self::ConstantVelocity, Self::ConstantAcceleration, Self::Kalman];
+}
+
+/// Settings of a predictor.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PredictorConfig {
+    /// Which filter.
+    pub kind: PredictorKind,
+    /// Reports between the points of a difference, 1 to 16. Kalman filters do not use it.
+    pub baseline_reports: u32,
+    /// Noise of each axis of a report, rms, m.
+    pub position_noise_m: f64,
+    /// Noise about each axis of a report, rms, degrees.
+    pub orientation_noise_deg: f64,
+    /// Root of the spectral density of the white jerk of positions, m/s^3/sqrt(Hz).
+    pub position_jerk: f64,
+    /// The same of orientations, rad/s^3/sqrt(Hz).
+    pub orientation_jerk: f64,
+    /// Longest prediction, ps; beyond it the prediction stands still.
+    pub horizon_ps: u64,
+}
+
+impl PredictorConfig {
+    /// A filter that knows the noise of this tracker.
+    pub fn for_tracker(kind: PredictorKind, tracker: &TrackerConfig) -> Self {
+        Self {
+            kind,
+            baseline_reports: table::BASELINE.value as u32,
+            position_noise_m: tracker.position_noise_m.max(LEAST_NOISE_M),
+            orientation_noise_deg: tracker.orientation_noise_deg.max(LEAST_NOISE_DEG),
+            position_jerk: table::JERK_POSITION.value,
+            orientation_jerk: table::JERK_ORIENTATION.value,
+            horizon_ps: table::HORIZON.ms_to_ps(),
+        }
+    }
+
+    /// Checks the settings and builds the filter.
+    pub fn build(&self) -> Result<Box<dyn Predictor>, ConfigError> {
+        self.check()?;
+        Ok(match self.kind {
+            PredictorKind::None => self.extrapolation(Order::Zeroth),
+            PredictorKind::ConstantVelocity => self.extrapolation(Order::First),
+            PredictorKind::ConstantAcceleration => self.extrapolation(Order::Second),
+            PredictorKind::Kalman => self.kalman(),
+        })
+    }
+
+    fn check(&self) -> Result<(), ConfigError> {
+        ConfigError::check("baseline, reports", f64::from(self.baseline_reports), 1.0, 16.0)?;
+        ConfigError::check("position noise, m", self.position_noise_m, LEAST_NOISE_M, 10.0)?;
+        ConfigError::check("orientation noise, deg", self.orientation_noise_deg, LEAST_NOISE_DEG, 90.0)?;
+        within("position jerk", self.position_jerk, &table::JERK_POSITION)?;
+        within("orientation jerk", self.orientation_jerk, &table::JERK_ORIENTATION)?;
+        within("horizon, ms", crate::time::seconds(self.horizon_ps) * 1e3, &table::HORIZON)
+    }
+
+    fn extrapolation(&self, order: Order) -> Box<dyn Predictor> {
+        let baseline = self.baseline_reports as usize;
+        Box::new(Predicting::new(
+            Extrapolation::new(order, baseline, DVec3::ZERO),
+            Extrapolation::new(order, baseline, DQuat::IDENTITY),
+            crate::time::seconds(self.horizon_ps),
+        ))
+    }
+
+    fn kalman(&self) -> Box<dyn Predictor> {
+        let position = Belief {
+            measurement: self.position_noise_m.powi(2),
+            jerk: self.position_jerk.powi(2),
+            start: (table::START_SPEED.value.powi(2), table::START_ACCELERATION.value.powi(2)),
+        };
+        let orientation = Belief {
+            measurement: self.orientation_noise_deg.to_radians().powi(2),
+            jerk: self.orientation_jerk.powi(2),
+            start: (table::START_TURN.value.powi(2), table::START_TURN_ACCELERATION.value.powi(2)),
+        };
+        Box::new(Predicting::new(
+            PositionKalman::new(position),
+            OrientationKalman::new(orientation),
+            crate::time::seconds(self.horizon_ps),
+        ))
+    }
+}
+
+fn within(what: &'static str, found: f64, parameter: &Parameter) -> Result<(), ConfigError> {
+    ConfigError::check(what, found, parameter.range.0, parameter.range.1)
+}

@@ -1,0 +1,56 @@
+use super::{Predictor, PredictorConfig};
+use crate::error::ConfigError;
+use crate::motion::Motion;
+use crate::pose::Pose;
+use crate::tracker::TrackerModel;
+
+/// How far predictions were from the truth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PredictionError {
+    /// Number of predictions.
+    pub n: u64,
+    /// Mean distance, m.
+    pub mean_m: f64,
+    /// Greatest distance, m.
+    pub max_m: f64,
+    /// Mean angle, degrees.
+    pub mean_deg: f64,
+    /// Greatest angle, degrees.
+    pub max_deg: f64,
+}
+
+impl PredictionError {
+    fn add(&mut self, predicted: &Pose, truth: &Pose) {
+        let (metres, degrees) = (predicted.distance_m(truth), predicted.angle_deg(truth));
+        self.n += 1;
+        self.mean_m += (metres - self.mean_m) / self.n as f64;
+        self.mean_deg += (degrees - self.mean_deg) / self.n as f64;
+        self.max_m = self.max_m.max(metres);
+        self.max_deg = self.max_deg.max(degrees);
+    }
+}
+
+/// Errors of a predictor for each of `horizons_ps`, counted from the instant at which the last report was true, over
+/// the reports true in [from, until).
+pub fn prediction_errors<M: Motion + ?Sized>(
+    motion: &M,
+    tracker: &TrackerModel,
+    config: &PredictorConfig,
+    seed: u64,
+    horizons_ps: &[u64],
+    (from_ps, until_ps): (u64, u64),
+) -> Result<Vec<PredictionError>, ConfigError> {
+    let mut predictor: Box<dyn Predictor> = config.build()?;
+    let mut errors = vec![PredictionError::default(); horizons_ps.len()];
+    for report in tracker.reports(motion, seed).take_while(|r| r.measured_ps < until_ps) {
+        predictor.observe(&report);
+        if report.measured_ps < from_ps {
+            continue;
+        }
+        for (error, horizon_ps) in errors.iter_mut().zip(horizons_ps) {
+            let at_ps = report.measured_ps + horizon_ps;
+            error.add(&predictor.predict(at_ps), &motion.pose(at_ps));
+        }
+    }
+    Ok(errors)
+}

@@ -1,0 +1,142 @@
+use std::collections::VecDeque;
+
+use glam::DVec3;
+
+use super::channel::{Channel, Movable};
+use crate::time::span_s;
+
+/// Highest derivative that an extrapolation uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Order {
+    /// The last value: no prediction.
+    Zeroth,
+    /// Constant velocity.
+    First,
+    /// Constant acceleration.
+    Second,
+}
+
+/// The Newton polynomial through the last value and one or two earlier ones, `baseline` reports apart. It is exact for
+/// motions of its order, whatever the times of the reports.
+#[derive(Clone, Debug)]
+pub(super) struct Extrapolation<T> {
+    order: Order,
+    baseline: usize,
+    /// Newest first, never empty.
+    past: VecDeque<(u64, T)>,
+}
+
+impl<T: Movable> Extrapolation<T> {
+    pub(super) fn new(order: Order, baseline: usize, start: T) -> Self {
+        Self { order, baseline, past: VecDeque::from([(0, start)]) }
+    }
+
+    /// Time (s, negative) and offset of an earlier value, both from the newest.
+    fn point(&self, age: usize) -> (f64, DVec3) {
+        let (newest_ps, newest) = self.past[0];
+        let (t_ps, value) = self.past[age];
+        (span_s(newest_ps, t_ps), value.since(newest))
+    }
+
+    fn first_order(&self, dt_s: f64) -> DVec3 {
+        let (t, offset) = self.point(self.baseline.min(self.past.len() - 1));
+        offset / t * dt_s
+    }
+
+    fn second_order(&self, dt_s: f64) -> DVec3 {
+        let oldest = (2 * self.baseline).min(self.past.len() - 1);
+        let (t1, offset1) = self.point(oldest / 2);
+        let (t2, offset2) = self.point(oldest);
+        let slope = offset1 / t1;
+        let curvature = ((offset2 - offset1) / (t2 - t1) - slope) / t2;
+        slope * dt_s + curvature * (dt_s * (dt_s - t1))
+    }
+}
+
+impl<T: Movable> Channel<T> for Extrapolation<T> {
+    fn restart(&mut self, t_ps: u64, value: T) {
+        self.past.clear();
+        self.past.push_front((t_ps, value));
+    }
+
+    fn update(&mut self, t_ps: u64, value: T) {
+        self.past.truncate(2 * self.baseline);
+        self.past.push_front((t_ps, value));
+    }
+
+    fn extrapolate(&self, dt_s: f64) -> T {
+        let newest = self.past[0].1;
+        match (self.order, self.past.len()) {
+            (Order::Zeroth, _) | (_, 1) => newest,
+            (Order::First, _) | (_, 2) => newest.moved(self.first_order(dt_s)),
+            (Order::Second, _) => newest.moved(self.second_order(dt_s)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rotation;
+    use crate::time::PS_PER_MS;
+    use glam::DQuat;
+
+    /// Uneven times, in ms.
+    const TIMES: [u64; 7] = [0, 3, 11, 12, 20, 31, 33];
+
+    fn fed<T: Movable>(order: Order, baseline: usize, value: impl Fn(f64) -> T) -> Extrapolation<T> {
+        let mut filter = Extrapolation::new(order, baseline, value(0.0));
+        filter.restart(0, value(0.0));
+        TIMES[1..].iter().for_each(|&t| filter.update(t * PS_PER_MS, value(t as f64 / 1e3)));
+        filter
+    }
+
+    #[test]
+    fn first_order_is_exact_for_constant_velocity() {
+        let line = |t: f64| DVec3::new(1.0 - 2.0 * t, 0.3 * t, 5.0);
+        for baseline in [1, 2, 3] {
+            let filter = fed(Order::First, baseline, line);
+            assert!((filter.extrapolate(0.2) - line(0.233)).length() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn second_order_is_exact_for_constant_acceleration() {
+        let parabola = |t: f64| DVec3::new(1.0 - 2.0 * t + 4.0 * t * t, 3.0 * t * t, 0.1);
+        for baseline in [1, 2, 3] {
+            let filter = fed(Order::Second, baseline, parabola);
+            assert!((filter.extrapolate(0.2) - parabola(0.233)).length() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn both_orders_are_exact_for_a_pan_through_180_degrees() {
+        let pan = |t: f64| rotation::about_y(3.0 + 6.0 * t);
+        for order in [Order::First, Order::Second] {
+            assert!(rotation::angle_deg(fed(order, 2, pan).extrapolate(0.1), pan(0.133)) < 1e-10);
+        }
+    }
+
+    #[test]
+    fn second_order_is_exact_for_a_turn_that_speeds_up_about_one_axis() {
+        let turn = |t: f64| rotation::about_x(0.5 * t + 9.0 * t * t);
+        assert!(rotation::angle_deg(fed(Order::Second, 2, turn).extrapolate(0.1), turn(0.133)) < 1e-10);
+    }
+
+    #[test]
+    fn with_few_reports_the_order_falls() {
+        let mut filter = Extrapolation::new(Order::Second, 4, DVec3::ZERO);
+        filter.restart(0, DVec3::X);
+        assert_eq!(filter.extrapolate(1.0), DVec3::X);
+        filter.update(1000 * PS_PER_MS, DVec3::X * 2.0);
+        assert_eq!(filter.extrapolate(1.0), DVec3::X * 3.0);
+    }
+
+    #[test]
+    fn a_sign_change_of_the_quaternion_is_no_turn() {
+        let mut filter = Extrapolation::new(Order::First, 1, DQuat::IDENTITY);
+        filter.restart(0, DQuat::IDENTITY);
+        filter.update(PS_PER_MS, -DQuat::IDENTITY);
+        assert!(rotation::angle_deg(filter.extrapolate(0.1), DQuat::IDENTITY) < 1e-12);
+    }
+}

@@ -1,0 +1,111 @@
+//! What prediction by derivatives does to a sinusoidal motion, in closed form.
+//!
+//! Predicting x = e^(j w t) by p seconds with exact derivatives multiplies it by a gain G(w p); perfect prediction would
+//! multiply it by e^(j w p). The arguments below are w p in radians: 2 pi x frequency x prediction time.
+
+/// A complex gain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gain {
+    /// Real part.
+    pub re: f64,
+    /// Imaginary part.
+    pub im: f64,
+}
+
+impl Gain {
+    /// Magnitude.
+    pub fn magnitude(self) -> f64 {
+        libm::hypot(self.re, self.im)
+    }
+
+    /// Phase in radians.
+    pub fn phase(self) -> f64 {
+        libm::atan2(self.im, self.re)
+    }
+}
+
+/// Perfect prediction, e^(j w p).
+pub fn perfect(wp: f64) -> Gain {
+    let (im, re) = libm::sincos(wp);
+    Gain { re, im }
+}
+
+/// No prediction: 1.
+pub fn none(_wp: f64) -> Gain {
+    Gain { re: 1.0, im: 0.0 }
+}
+
+/// x + v p: 1 + j w p.
+pub fn constant_velocity(wp: f64) -> Gain {
+    Gain { re: 1.0, im: wp }
+}
+
+/// x + v p + a p^2 / 2: 1 + j w p - (w p)^2 / 2, magnitude sqrt(1 + (w p)^4 / 4).
+pub fn constant_acceleration(wp: f64) -> Gain {
+    Gain { re: 1.0 - wp * wp / 2.0, im: wp }
+}
+
+/// Error relative to the motion's amplitude, |e^(j w p) - G|: 2 sin(w p / 2) without prediction, about (w p)^2 / 2 and
+/// (w p)^3 / 6 with the first and the second order.
+pub fn relative_error(gain: fn(f64) -> Gain, wp: f64) -> f64 {
+    let (wanted, got) = (perfect(wp), gain(wp));
+    Gain { re: wanted.re - got.re, im: wanted.im - got.im }.magnitude()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::TAU;
+
+    /// Frequency (Hz), prediction (s), published errors of no, first-order and second-order prediction.
+    const PUBLISHED: [(f64, f64, [f64; 3]); 4] = [
+        (1.0, 0.05, [0.313, 0.049, 0.005]),
+        (1.0, 0.10, [0.618, 0.195, 0.041]),
+        (2.0, 0.10, [1.18, 0.76, 0.32]),
+        (2.0, 0.20, [1.90, 2.64, 2.35]),
+    ];
+
+    #[test]
+    fn relative_errors_are_those_published_to_their_last_digit() {
+        for (hz, p, published) in PUBLISHED {
+            let digit = if published[0] < 1.0 { 5.1e-4 } else { 5.1e-3 };
+            for (gain, expected) in [none, constant_velocity, constant_acceleration].into_iter().zip(published) {
+                let error = relative_error(gain, TAU * hz * p);
+                assert!((error - expected).abs() < digit, "{hz} Hz {p} s: {error} for {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_magnitude_of_the_second_order_is_the_root_of_1_plus_wp_to_the_4_over_4() {
+        for wp in [1e-3, 0.3, 1.0, 2.5, 10.0f64] {
+            let expected = (1.0 + wp.powi(4) / 4.0).sqrt();
+            assert!((constant_acceleration(wp).magnitude() / expected - 1.0).abs() < 4.0 * f64::EPSILON);
+        }
+    }
+
+    #[test]
+    fn without_prediction_the_error_is_a_chord() {
+        for wp in [0.1, 1.0, 2.5f64] {
+            assert!((relative_error(none, wp) - 2.0 * (wp / 2.0).sin()).abs() < 4.0 * f64::EPSILON);
+        }
+    }
+
+    #[test]
+    fn small_errors_follow_the_first_missing_power() {
+        let wp = 1e-2f64;
+        assert!((relative_error(constant_velocity, wp) / (wp.powi(2) / 2.0) - 1.0).abs() < 1e-4);
+        assert!((relative_error(constant_acceleration, wp) / (wp.powi(3) / 6.0) - 1.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn the_gain_is_what_x_plus_vp_plus_ap2_over_2_does_to_a_sinusoid() {
+        let (w, p) = (TAU * 1.3, 0.07);
+        let gain = constant_acceleration(w * p);
+        for i in 0..50 {
+            let (sin, cos) = (w * f64::from(i) * 0.013).sin_cos();
+            let extrapolated = sin + w * cos * p - w * w * sin * p * p / 2.0;
+            assert!((extrapolated - (gain.re * sin + gain.im * cos)).abs() < 1e-14);
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Where the head will be: predictors that are told the exact time to predict for.
+
+mod channel;
+mod config;
+mod evaluate;
+mod extrapolation;
+pub mod gain;
+mod gate;
+mod orientation_kalman;
+mod position_kalman;
+mod predicting;
+
+pub use config::{PredictorConfig, PredictorKind};
+pub use evaluate::{PredictionError, prediction_errors};
+pub use gate::Counts;
+
+use crate::pose::Pose;
+use crate::tracker::Report;
+
+/// Something that turns late reports into a pose at a wanted instant.
+pub trait Predictor {
+    /// Takes a report in order of arrival. Reports that cannot be true are rejected and counted, never an error.
+    fn observe(&mut self, report: &Report);
+
+    /// The pose at `at_ps`. Before the first accepted report it is [`Pose::IDENTITY`]; farther from the last report
+    /// than the horizon of the configuration it stands still.
+    fn predict(&self, at_ps: u64) -> Pose;
+
+    /// What became of the reports so far.
+    fn counts(&self) -> Counts;
+}

@@ -1,0 +1,151 @@
+use glam::{DMat3, DQuat, DVec3};
+
+use super::channel::Channel;
+use super::position_kalman::{Belief, symmetric, white_jerk};
+use crate::rotation;
+use crate::time::span_s;
+
+/// Longest turn between two reports, rad, for which the first order of a turn stands for the turn. A peak turn (LIST83)
+/// at 120 Hz is 0.05.
+const LARGEST_LINEAR_TURN: f64 = 1.0;
+
+/// The covariance of (rotation error, angular velocity, angular acceleration), 9 x 9, as its six different blocks.
+#[derive(Clone, Copy, Debug)]
+struct Covariance {
+    angle: DMat3,
+    angle_rate: DMat3,
+    angle_acceleration: DMat3,
+    rate: DMat3,
+    rate_acceleration: DMat3,
+    acceleration: DMat3,
+}
+
+/// Extended Kalman filter with state [q, omega, domega], driven by white angular jerk.
+///
+/// The error of the quaternion is a world-frame rotation vector (the multiplicative form), so the covariance is 9 x 9
+/// and regular, and the quaternion keeps its length. omega (rad/s) and domega (rad/s^2) are in the world frame.
+#[derive(Clone, Debug)]
+pub(super) struct OrientationKalman {
+    belief: Belief,
+    t_ps: u64,
+    orientation: DQuat,
+    rate: DVec3,
+    acceleration: DVec3,
+    covariance: Covariance,
+}
+
+impl OrientationKalman {
+    pub(super) fn new(belief: Belief) -> Self {
+        Self {
+            belief,
+            t_ps: 0,
+            orientation: DQuat::IDENTITY,
+            rate: DVec3::ZERO,
+            acceleration: DVec3::ZERO,
+            covariance: Covariance::start(&belief),
+        }
+    }
+
+    /// The rotation vector of `dt` seconds of steady angular acceleration: the first two terms of Magnus' series. The
+    /// second is there because the axis turns.
+    fn turn(&self, dt: f64) -> DVec3 {
+        let sideways = self.rate.cross(self.acceleration) * (dt * dt * dt / 12.0);
+        self.rate * dt + self.acceleration * (dt * dt / 2.0) - sideways
+    }
+
+    fn predict(&mut self, dt: f64) {
+        let turn = self.turn(dt);
+        self.orientation = (rotation::exp(turn) * self.orientation).normalize();
+        self.rate += self.acceleration * dt;
+        self.covariance.predict(turn, dt, self.belief.jerk);
+    }
+
+    fn correct(&mut self, measured: DQuat) {
+        let surprise = rotation::difference(self.orientation, measured);
+        let weighted = self.covariance.weigh(surprise, self.belief.measurement);
+        self.orientation = (rotation::exp(self.covariance.angle * weighted) * self.orientation).normalize();
+        self.rate += self.covariance.angle_rate.transpose() * weighted;
+        self.acceleration += self.covariance.angle_acceleration.transpose() * weighted;
+        self.covariance.correct(self.belief.measurement);
+    }
+}
+
+impl Covariance {
+    fn start(belief: &Belief) -> Self {
+        let (rate, acceleration) = belief.start;
+        Self {
+            angle: DMat3::IDENTITY * belief.measurement,
+            angle_rate: DMat3::ZERO,
+            angle_acceleration: DMat3::ZERO,
+            rate: DMat3::IDENTITY * rate,
+            rate_acceleration: DMat3::ZERO,
+            acceleration: DMat3::IDENTITY * acceleration,
+        }
+    }
+
+    /// F P F^T + Q with F = [R, A, B; 0, 1, dt; 0, 0, 1]: R turns old errors along with the head; A and B are the
+    /// integrals of the errors of rate and acceleration, turned by what is left of `turn`, to its first order.
+    fn predict(&mut self, turn: DVec3, dt: f64, jerk: f64) {
+        let r = DMat3::from_quat(rotation::exp(turn));
+        let small = turn.clamp_length_max(LARGEST_LINEAR_TURN);
+        let a = (DMat3::IDENTITY + cross(small / 2.0)) * dt;
+        let b = (DMat3::IDENTITY + cross(small / 3.0)) * (dt * dt / 2.0);
+        let to_angle = r * self.angle + a * self.angle_rate.transpose() + b * self.angle_acceleration.transpose();
+        let to_rate = r * self.angle_rate + a * self.rate + b * self.rate_acceleration.transpose();
+        let to_acceleration = r * self.angle_acceleration + a * self.rate_acceleration + b * self.acceleration;
+        let q = white_jerk(dt) * jerk;
+        let noise = |entry: f64| DMat3::from_diagonal(DVec3::splat(entry));
+        self.angle = symmetric(to_angle * r.transpose() + to_rate * a.transpose() + to_acceleration * b.transpose())
+            + noise(q.x_axis.x);
+        self.angle_rate = to_rate + to_acceleration * dt + noise(q.x_axis.y);
+        self.angle_acceleration = to_acceleration + noise(q.x_axis.z);
+        let cross_rate = self.rate_acceleration;
+        self.rate_acceleration += self.acceleration * dt + noise(q.y_axis.z);
+        self.rate += (cross_rate + cross_rate.transpose()) * dt + self.acceleration * (dt * dt) + noise(q.y_axis.y);
+        self.acceleration += noise(q.z_axis.z);
+    }
+
+    /// S^-1 times a surprise; S = P + r 1.
+    fn weigh(&self, surprise: DVec3, measurement: f64) -> DVec3 {
+        (self.angle + DMat3::from_diagonal(DVec3::splat(measurement))).inverse() * surprise
+    }
+
+    /// P - P H^T S^-1 H P. In the rows of the angle 1 - P S^-1 is written as r S^-1, which cannot lose its sign.
+    fn correct(&mut self, measurement: f64) {
+        let inverse = symmetric((self.angle + DMat3::from_diagonal(DVec3::splat(measurement))).inverse());
+        let rate_gain = self.angle_rate.transpose() * inverse;
+        let acceleration_gain = self.angle_acceleration.transpose() * inverse;
+        self.rate = symmetric(self.rate - rate_gain * self.angle_rate);
+        self.rate_acceleration -= rate_gain * self.angle_acceleration;
+        self.acceleration = symmetric(self.acceleration - acceleration_gain * self.angle_acceleration);
+        let keep = inverse * measurement;
+        self.angle = symmetric(keep * self.angle);
+        self.angle_rate = keep * self.angle_rate;
+        self.angle_acceleration = keep * self.angle_acceleration;
+    }
+}
+
+impl Channel<DQuat> for OrientationKalman {
+    fn restart(&mut self, t_ps: u64, orientation: DQuat) {
+        *self = Self { t_ps, orientation, ..Self::new(self.belief) };
+    }
+
+    fn update(&mut self, t_ps: u64, orientation: DQuat) {
+        self.predict(span_s(self.t_ps, t_ps));
+        self.t_ps = t_ps;
+        self.correct(orientation);
+    }
+
+    fn extrapolate(&self, dt_s: f64) -> DQuat {
+        (rotation::exp(self.turn(dt_s)) * self.orientation).normalize()
+    }
+}
+
+/// The matrix of a cross product with `v` on the left.
+fn cross(v: DVec3) -> DMat3 {
+    DMat3::from_cols(DVec3::new(0.0, v.z, -v.y), DVec3::new(-v.z, 0.0, v.x), DVec3::new(v.y, -v.x, 0.0))
+}
+
+#[cfg(test)]
+#[path = "orientation_kalman_tests.rs"]
+mod tests;

@@ -1,0 +1,156 @@
+use super::*;
+use crate::time::{PS_PER_S, nearest_ps};
+use nalgebra::{Matrix3, SMatrix};
+use proptest::prelude::*;
+
+type Matrix9 = SMatrix<f64, 9, 9>;
+
+const BELIEF: Belief = Belief { measurement: 6.9e-6, jerk: 1e4, start: (4.0, 400.0) };
+
+/// The blocks as one dense matrix of another library.
+fn dense(c: &Covariance) -> Matrix9 {
+    let blocks = [
+        [c.angle, c.angle_rate, c.angle_acceleration],
+        [c.angle_rate.transpose(), c.rate, c.rate_acceleration],
+        [c.angle_acceleration.transpose(), c.rate_acceleration.transpose(), c.acceleration],
+    ];
+    let mut m = Matrix9::zeros();
+    for (i, row) in blocks.iter().enumerate() {
+        for (j, block) in row.iter().enumerate() {
+            let block = Matrix3::from_column_slice(&block.to_cols_array());
+            m.fixed_view_mut::<3, 3>(3 * i, 3 * j).copy_from(&block);
+        }
+    }
+    m
+}
+
+fn turning() -> OrientationKalman {
+    let mut filter = OrientationKalman::new(BELIEF);
+    let motion = |t: f64| rotation::from_yaw_pitch_roll(3.0 * t, 0.4 * (5.0 * t).sin(), t * t);
+    (1..=60u64).for_each(|i| filter.update(i * PS_PER_S / 120, motion(i as f64 / 120.0)));
+    filter
+}
+
+/// The state after `dt`, by many small steps of the differential equation: an independent propagation.
+fn integrate(filter: &OrientationKalman, dt: f64) -> DQuat {
+    let n = 20_000;
+    let h = dt / f64::from(n);
+    (0..n).fold(filter.orientation, |q, i| {
+        let rate = filter.rate + filter.acceleration * ((f64::from(i) + 0.5) * h);
+        rotation::exp(rate * h) * q
+    })
+}
+
+#[test]
+fn extrapolation_solves_the_differential_equation_of_a_turning_axis() {
+    let filter = OrientationKalman {
+        rate: DVec3::new(1.0, 3.0, -0.5),
+        acceleration: DVec3::new(10.0, -4.0, 6.0),
+        ..OrientationKalman::new(BELIEF)
+    };
+    // Magnus' third term is of order |rate|^2 |acceleration| dt^4 / 240: below 1e-4 rad at 100 ms.
+    assert!(rotation::angle_deg(filter.extrapolate(0.1), integrate(&filter, 0.1)) < 0.006);
+    let without = rotation::exp(filter.rate * 0.1 + filter.acceleration * 0.005) * filter.orientation;
+    assert!(rotation::angle_deg(without, integrate(&filter, 0.1)) > 0.1, "the second term is needed");
+}
+
+/// F by differences of the propagation itself.
+fn jacobian(filter: &OrientationKalman, dt: f64) -> Matrix9 {
+    let step = 1e-6;
+    let end = filter.extrapolate(dt);
+    let mut f = Matrix9::identity();
+    for column in 0..9 {
+        let mut moved = filter.clone();
+        let by = DVec3::AXES[column % 3] * step;
+        match column / 3 {
+            0 => moved.orientation = rotation::exp(by) * moved.orientation,
+            1 => moved.rate += by,
+            _ => moved.acceleration += by,
+        }
+        let change = rotation::difference(end, moved.extrapolate(dt)) / step;
+        (0..3).for_each(|row| f[(row, column)] = change[row]);
+        if column >= 6 {
+            f[(column - 3, column)] = dt;
+        }
+    }
+    f
+}
+
+#[test]
+fn the_covariance_grows_by_the_jacobian_of_the_propagation() {
+    let filter = turning();
+    for dt in [1e-4, 1.0 / 120.0, 0.05] {
+        let f = jacobian(&filter, dt);
+        let mut q = Matrix9::zeros();
+        for (i, entry) in white_jerk(dt).to_cols_array().into_iter().enumerate() {
+            (0..3).for_each(|axis| q[(i % 3 * 3 + axis, i / 3 * 3 + axis)] = entry * BELIEF.jerk);
+        }
+        let expected = f * dense(&filter.covariance) * f.transpose() + q;
+        let mut predicted = filter.clone();
+        predicted.predict(dt);
+        let error = (dense(&predicted.covariance) - expected).norm() / expected.norm();
+        assert!(error < 2e-4, "{dt}: {error}");
+    }
+}
+
+#[test]
+fn a_correction_is_the_textbooks_in_another_library() {
+    let mut filter = turning();
+    let p = dense(&filter.covariance);
+    let h = SMatrix::<f64, 3, 9>::identity();
+    let s = h * p * h.transpose() + Matrix3::identity() * BELIEF.measurement;
+    let k = p * h.transpose() * s.try_inverse().unwrap();
+    let surprise = DVec3::new(0.01, -0.02, 0.005);
+    let step = k * nalgebra::Vector3::new(surprise.x, surprise.y, surprise.z);
+    let before = filter.clone();
+    filter.correct(rotation::exp(surprise) * filter.orientation);
+    let expected = (Matrix9::identity() - k * h) * p;
+    assert!((dense(&filter.covariance) - expected).norm() < 1e-9 * expected.norm());
+    let moved = rotation::difference(before.orientation, filter.orientation);
+    for axis in 0..3 {
+        assert!((moved[axis] - step[axis]).abs() < 1e-9);
+        assert!(((filter.rate - before.rate)[axis] - step[3 + axis]).abs() < 1e-9);
+        assert!(((filter.acceleration - before.acceleration)[axis] - step[6 + axis]).abs() < 1e-8);
+    }
+}
+
+proptest! {
+    #[test]
+    fn the_covariance_stays_positive_definite_for_any_times_turns_and_noise(
+        steps in prop::collection::vec((-4.3..-0.7f64, -0.2..0.2f64, -0.2..0.2f64), 1..100),
+        noise in -10.0..-2.0f64,
+        jerk in 0.0..6.0f64,
+    ) {
+        let belief = Belief { measurement: 10f64.powf(noise), jerk: 10f64.powf(jerk), start: (4.0, 400.0) };
+        let (mut filter, mut t_ps, mut q) = (OrientationKalman::new(belief), 0, DQuat::IDENTITY);
+        for (step, yaw, roll) in steps {
+            t_ps += nearest_ps(10f64.powf(step));
+            q = rotation::from_yaw_pitch_roll(yaw, 0.0, roll) * q;
+            filter.update(t_ps, q);
+            prop_assert!(dense(&filter.covariance).cholesky().is_some(), "{:?}", filter.covariance);
+        }
+    }
+}
+
+#[test]
+fn a_pan_through_180_degrees_is_followed_for_turns() {
+    let mut filter = OrientationKalman::new(Belief { measurement: 1e-10, ..BELIEF });
+    let pan = |t: f64| rotation::about_y(3.5 * t);
+    for i in 1..=1200u64 {
+        // Alternate signs: the double cover must not matter.
+        let q = pan(i as f64 / 120.0);
+        filter.update(i * PS_PER_S / 120, if i % 2 == 0 { -q } else { q });
+        if i > 120 {
+            let ahead = pan(i as f64 / 120.0 + 0.1);
+            assert!(rotation::angle_deg(filter.extrapolate(0.1), ahead) < 1e-2, "report {i}");
+        }
+    }
+}
+
+#[test]
+fn a_report_half_a_turn_away_leaves_a_unit_quaternion() {
+    let mut filter = turning();
+    let opposite = rotation::about_y(std::f64::consts::PI) * filter.orientation;
+    filter.update(filter.t_ps + PS_PER_S / 120, opposite);
+    assert!((filter.orientation.length() - 1.0).abs() < 1e-12 && filter.rate.is_finite());
+}

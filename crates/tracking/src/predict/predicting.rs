@@ -1,0 +1,60 @@
+use glam::{DQuat, DVec3};
+
+use super::Predictor;
+use super::channel::Channel;
+use super::gate::{Counts, Gate, Verdict};
+use crate::pose::Pose;
+use crate::time::span_s;
+use crate::tracker::Report;
+
+/// A gate in front of two filters, one for position and one for orientation, each with its own time stamps.
+#[derive(Clone, Debug)]
+pub(super) struct Predicting<P, O> {
+    gate: Gate,
+    position: P,
+    orientation: O,
+    /// Stamps of position and orientation; `None` before the first report.
+    newest_ps: Option<(u64, u64)>,
+    horizon_s: f64,
+}
+
+impl<P, O> Predicting<P, O> {
+    pub(super) fn new(position: P, orientation: O, horizon_s: f64) -> Self {
+        Self { gate: Gate::default(), position, orientation, newest_ps: None, horizon_s }
+    }
+
+    fn ahead(&self, newest_ps: u64, at_ps: u64) -> f64 {
+        span_s(newest_ps, at_ps).clamp(-self.horizon_s, self.horizon_s)
+    }
+}
+
+impl<P: Channel<DVec3>, O: Channel<DQuat>> Predictor for Predicting<P, O> {
+    fn observe(&mut self, report: &Report) {
+        let stamps = (report.position_measured_ps, report.measured_ps);
+        let orientation = report.pose.orientation.normalize();
+        match self.gate.judge(report) {
+            Verdict::Reject => return,
+            Verdict::Restart => {
+                self.position.restart(stamps.0, report.pose.position);
+                self.orientation.restart(stamps.1, orientation);
+            }
+            Verdict::Update => {
+                self.position.update(stamps.0, report.pose.position);
+                self.orientation.update(stamps.1, orientation);
+            }
+        }
+        self.newest_ps = Some(stamps);
+    }
+
+    fn predict(&self, at_ps: u64) -> Pose {
+        let Some((position_ps, orientation_ps)) = self.newest_ps else { return Pose::IDENTITY };
+        Pose {
+            position: self.position.extrapolate(self.ahead(position_ps, at_ps)),
+            orientation: self.orientation.extrapolate(self.ahead(orientation_ps, at_ps)),
+        }
+    }
+
+    fn counts(&self) -> Counts {
+        self.gate.counts
+    }
+}
