@@ -22,6 +22,13 @@ pub enum GpEvent {
     Accepted(u64),
     /// A field begins (phase `Arrive`).
     Retrace(u64),
+    /// A status line of another board changes (phase `Arrive`).
+    Status {
+        /// The board.
+        from: NodeId,
+        /// The new value.
+        value: u64,
+    },
     /// The programs look at what has arrived.
     Poll,
     /// The running work ends, if it is still of this generation.
@@ -75,6 +82,7 @@ impl GpBoard {
             outgoing: Vec::new(),
             marks: Vec::new(),
             fields: 0,
+            status: Vec::new(),
             accepted: 0,
             issued: 0,
             progress: 0,
@@ -103,6 +111,7 @@ impl GpBoard {
             GpEvent::Delivered(message) => self.latch(message, context),
             GpEvent::Accepted(ticket) => self.arrive(context, |shared| shared.accepted = shared.accepted.max(ticket)),
             GpEvent::Retrace(field) => self.arrive(context, |shared| shared.fields = field),
+            GpEvent::Status { from, value } => self.arrive(context, |shared| shared.set_status(from, value)),
             GpEvent::Poll => self.work(context),
             GpEvent::WorkEnds(generation) if self.announced == Some(generation) => self.work(context),
             GpEvent::WorkEnds(_) => {}

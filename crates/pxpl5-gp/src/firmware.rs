@@ -85,11 +85,21 @@ pub(crate) struct Shared {
     pub(crate) outgoing: Vec<Outgoing>,
     pub(crate) marks: Vec<Mark>,
     pub(crate) fields: u64,
+    pub(crate) status: Vec<(NodeId, u64)>,
     pub(crate) accepted: u64,
     pub(crate) issued: u64,
     /// Counts completed waits, so that the board polls until nothing moves.
     pub(crate) progress: u64,
     pub(crate) waits: [&'static str; 2],
+}
+
+impl Shared {
+    pub(crate) fn set_status(&mut self, from: NodeId, value: u64) {
+        match self.status.iter_mut().find(|status| status.0 == from) {
+            Some(status) => status.1 = value,
+            None => self.status.push((from, value)),
+        }
+    }
 }
 
 /// A program's handle to its board and to its level of the CPU.
@@ -128,6 +138,12 @@ impl Gp {
     #[must_use]
     pub fn field(&self) -> u64 {
         self.shared.borrow().fields
+    }
+
+    /// The status line of another board (how often a frame buffer has swapped); zero before it first changed.
+    #[must_use]
+    pub fn status(&self, from: NodeId) -> u64 {
+        self.shared.borrow().status.iter().find(|status| status.0 == from).map_or(0, |status| status.1)
     }
 
     /// Waits until `ready` gives something; `what` names the wait in a report of a deadlock.

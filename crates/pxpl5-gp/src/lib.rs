@@ -39,4 +39,4 @@ pub use cpu::Level;
 pub use firmware::{Fault, Gp, Program, Received, Ticket};
 pub use memory::{Account, Memory, OutOfMemory};
 pub use probe::{Edge, Mark, Stage};
-pub use timing::GpTiming;
+pub use timing::{GpTiming, HostTiming};

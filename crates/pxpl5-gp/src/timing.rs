@@ -1,4 +1,6 @@
-//! Every number of the board.
+//! Every number of the board, and of the host that runs on the same model.
+
+use pxpl5_sim::Span;
 
 pxpl5_sim::parameter_table! {
     /// Times and sizes of a graphics processor and of the code that it runs.
@@ -26,7 +28,30 @@ impl GpTiming {
 
     /// The Slats code of 1995: 58 us per triangle and eye, fitted to the limit of about 100 triangles (I3D95).
     pub const SLATS_1995: Self = Self { triangle_ns: 58_000, sphere_ns: 58_000, bin_entry_ns: 0, ..Self::PAPERS };
+}
 
-    /// The host workstation: it has no display list to transform, only edits and messages.
-    pub const HOST: Self = Self { memory_bytes: 33_554_432, message_ns: 20_000, ..Self::PAPERS };
+pxpl5_sim::parameter_table! {
+    /// Times of the host workstation and of its link to the ring.
+    pub struct HostTiming {
+        /// Rate of the link from the host to the ring.
+        link_bytes_per_s: 5_000_000, "bytes/s", Assumed, 4000000..=10000000, "a workstation's parallel interface";
+        /// CPU time of the host to send or receive a message.
+        message_ns: 20_000, "ns", Assumed, 10000..=100000, "a system call";
+        /// Time between two views that the host sends unasked (Slats).
+        view_period_ns: 16_683_333, "ns", Assumed, 8333333..=50000000, "a tracker at about the field rate; TR94 gives 20 to 120 Hz";
+    }
+}
+
+impl HostTiming {
+    /// Time of `words` words on the link, rounded down to a picosecond.
+    #[must_use]
+    pub const fn link_span(&self, words: u32) -> Span {
+        Span((words as u128 * 4 * 1_000_000_000_000 / self.link_bytes_per_s as u128) as u64)
+    }
+
+    /// The host as a board: only its software costs and the size of its memory matter.
+    #[must_use]
+    pub const fn board(&self) -> GpTiming {
+        GpTiming { message_ns: self.message_ns, ..GpTiming::PAPERS }
+    }
 }

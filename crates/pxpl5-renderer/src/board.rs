@@ -71,10 +71,17 @@ pub struct Renderer {
     cycle: Span,
     fifo: InputFifo,
     pool: Arc<ArrayPool>,
-    logs: [Vec<Arc<dyn CommandWords>>; MAX_CONTEXTS],
+    logs: [Log; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
     copying: Option<CopyOrder>,
     stats: RendererStats,
+}
+
+/// What was sent to a region context, as far as it can still be seen.
+#[derive(Clone, Debug, Default)]
+struct Log {
+    cleared: bool,
+    lists: Vec<Arc<dyn CommandWords>>,
 }
 
 /// A copy command in the FIFO, with what its region holds when it executes.
@@ -89,7 +96,7 @@ impl Renderer {
     #[must_use]
     pub fn new(node: NodeId, timing: RendererTiming, word: Span, cycle: Span, pool: Arc<ArrayPool>) -> Self {
         let fifo = InputFifo::new(timing.fifo_words as u32, word);
-        let logs = std::array::from_fn(|_| Vec::new());
+        let logs = std::array::from_fn(|_| Log::default());
         let stats = RendererStats::default();
         Self { node, timing, cycle, fifo, pool, logs, copies: VecDeque::new(), copying: None, stats }
     }
@@ -134,9 +141,9 @@ impl Renderer {
     fn take(&mut self, list: CommandList) -> Vec<Work> {
         let log = &mut self.logs[usize::from(list.context) % MAX_CONTEXTS];
         if begins_with_clear(&list.runs) {
-            log.clear();
+            *log = Log { cleared: true, lists: Vec::new() };
         }
-        log.extend(list.content.clone());
+        log.lists.extend(list.content.clone());
         for order in &list.copies {
             let image = self.image(order);
             self.copies.push_back(PendingCopy { order: *order, image });
@@ -158,12 +165,12 @@ impl Renderer {
 
     fn image(&self, order: &CopyOrder) -> Arc<dyn PixelSource> {
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
-        let lists = self.logs[usize::from(order.context) % MAX_CONTEXTS].clone();
+        let Log { cleared, lists } = self.logs[usize::from(order.context) % MAX_CONTEXTS].clone();
         if lists.is_empty() {
             return Arc::new(NoPixels { pixels: width * height });
         }
-        let (pool, context) = (Arc::clone(&self.pool), order.context);
-        Arc::new(PixelJob { pool, lists, context, width, height, done: OnceLock::new() })
+        let (pool, done) = (Arc::clone(&self.pool), OnceLock::new());
+        Arc::new(PixelJob { pool, lists, cleared, width, height, done })
     }
 
     fn copy(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {

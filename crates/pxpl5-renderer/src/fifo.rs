@@ -180,7 +180,8 @@ mod tests {
             let mut starts = Vec::new();
             for (words, ns) in commands {
                 for _ in 0..*words {
-                    let room = if self.held.len() < self.depth { Time::ZERO } else { self.held[self.held.len() - self.depth] };
+                    let room =
+                        if self.held.len() < self.depth { Time::ZERO } else { self.held[self.held.len() - self.depth] };
                     self.last_word_at = self.last_word_at.max(room) + WORD;
                     self.held.push_back(Time(u64::MAX));
                 }
@@ -195,7 +196,11 @@ mod tests {
     }
 
     fn work(commands: &[(u32, u64)]) -> Vec<Work> {
-        let of = |(words_each, ns): &(u32, u64)| Work { words_each: *words_each, count: 1, span_each: Some(Span::from_ns(*ns)) };
+        let of = |(words_each, ns): &(u32, u64)| Work {
+            words_each: *words_each,
+            count: 1,
+            span_each: Some(Span::from_ns(*ns)),
+        };
         commands.iter().map(of).collect()
     }
 

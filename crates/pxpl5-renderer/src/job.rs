@@ -38,7 +38,8 @@ impl ArrayPool {
 pub(crate) struct PixelJob {
     pub(crate) pool: Arc<ArrayPool>,
     pub(crate) lists: Vec<Arc<dyn CommandWords>>,
-    pub(crate) context: u8,
+    /// Whether the first list overwrites whatever the array held.
+    pub(crate) cleared: bool,
     pub(crate) width: u32,
     pub(crate) height: u32,
     pub(crate) done: OnceLock<Arc<[Word]>>,
@@ -48,13 +49,16 @@ impl PixelJob {
     fn compute(&self) -> Arc<[Word]> {
         let mut words = Vec::new();
         self.pool.with_array(|array| {
+            if !self.cleared {
+                array.reset();
+            }
             for list in &self.lists {
                 words.clear();
                 list.append_words(&mut words);
                 // A fault stops the list, as on the hardware; what was drawn before stays.
                 let _ = array.execute(&words);
             }
-            array.colour(self.context, self.width, self.height).into()
+            array.read_colour(self.width, self.height).into()
         })
     }
 }

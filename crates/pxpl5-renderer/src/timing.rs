@@ -42,7 +42,9 @@ impl RendererTiming {
             CommandKind::Sphere => self.sphere_clocks,
             CommandKind::PhongSphere => self.phong_sphere_clocks,
             CommandKind::Shade => self.shade_clocks,
-            CommandKind::StoreBacking | CommandKind::LoadBacking => self.backing_block_clocks,
+            // The transfer itself goes on beside the array.
+            CommandKind::StoreBacking | CommandKind::LoadBacking => self.select_clocks,
+            CommandKind::WaitBacking => self.backing_block_clocks,
             CommandKind::CopyRegion => return None,
         };
         Clock::from_hz(self.clock_hz).map(|clock| clock.span(Cycles(clocks)))

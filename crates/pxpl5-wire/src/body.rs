@@ -169,3 +169,21 @@ impl CopyTarget {
         words.into()
     }
 }
+
+/// First word of the message that asks a frame buffer to swap at the next retrace; the buffer's number follows.
+pub const SWAP_REQUEST: Word = 0x0005_3A9F;
+
+/// The words of a request to show `buffer` from the next retrace on.
+#[must_use]
+pub fn swap_request(buffer: u8) -> Arc<[Word]> {
+    [SWAP_REQUEST, Word::from(buffer)].into()
+}
+
+/// The buffer that a message asks to show, if it is a request to swap.
+#[must_use]
+pub fn read_swap_request(words: &[Word]) -> Option<u8> {
+    match words {
+        [SWAP_REQUEST, buffer] => u8::try_from(*buffer).ok(),
+        _ => None,
+    }
+}

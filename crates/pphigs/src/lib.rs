@@ -1,0 +1,29 @@
+//! Display list and primitives as the code of the graphics processors holds them.
+//!
+//! PPHIGS was the graphics library of Pixel-Planes 5. This crate is the part of it that both pipelines need:
+//!
+//! ```text
+//!   DisplayList --deal--> Share --transform(FrameView, eye)--> Pass --command_list(region)--> CommandList
+//!   (all of it)    (one GP's)                             (bins: counts now,           (kinds now,
+//!                                                          pixels' words on demand)     words on demand)
+//! ```
+//!
+//! - [`DisplayList`]: triangles, spheres, and structures with a model matrix each.
+//! - [`Share`]: every n-th primitive, as primitives are dealt to the GPs round-robin (TR94).
+//! - [`FrameView`]: what the host sends for a frame: viewing transforms and edits, as words.
+//! - [`Pass`]: one TRANSFORM: which primitives touch which regions, counted at once; screen triangles and command
+//!   words are made when somebody wants pixels, from the same numbers.
+//!
+//! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
+//!
+//! Sources: TR94 (round-robin dealing, bins that hold pointers to shared commands).
+
+mod commands;
+mod list;
+mod pass;
+mod view;
+
+pub use commands::{Around, copy_message, region_messages};
+pub use list::{Counts, DisplayList, Frame, Share, Structure};
+pub use pass::{Binning, Pass, Picture, Shading};
+pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit, ViewWordsError};

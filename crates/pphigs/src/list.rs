@@ -1,0 +1,215 @@
+//! The display list and its division among GPs.
+
+use crate::pass::{Pass, Picture};
+use crate::view::FrameView;
+use glam::{Mat4, Vec3};
+use pxpl5_geometry::{Sphere, Triangle};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// What the coordinates of a structure are fixed to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frame {
+    /// The room.
+    World,
+    /// The viewer's head.
+    Head,
+}
+
+/// A run of primitives with one model matrix.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Structure {
+    /// Its triangles.
+    pub triangles: Range<usize>,
+    /// Its spheres.
+    pub spheres: Range<usize>,
+    /// What it is fixed to.
+    pub frame: Frame,
+}
+
+/// Everything to be drawn, in structures that divide it in order.
+#[derive(Clone, Debug, Default)]
+pub struct DisplayList {
+    /// Corner positions.
+    pub positions: Vec<Vec3>,
+    /// Corner normals, as many.
+    pub normals: Vec<Vec3>,
+    /// Corner colours, as many.
+    pub colours: Vec<[u8; 3]>,
+    /// Indices of corners.
+    pub triangles: Vec<[u32; 3]>,
+    /// Spheres.
+    pub spheres: Vec<Sphere>,
+    /// In order.
+    pub structures: Vec<Structure>,
+    /// Towards the light, unit length, in each structure's frame.
+    pub towards_light: Vec3,
+    /// Part of the colour that is seen in shadow, 0 to 1.
+    pub ambient: f32,
+    /// Part of the colour added where the light falls square, 0 to 1.
+    pub diffuse: f32,
+    /// Red, green, blue where nothing is drawn.
+    pub background: [u8; 3],
+}
+
+/// Numbers of primitives or commands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Triangles.
+    pub triangles: u32,
+    /// Spheres.
+    pub spheres: u32,
+}
+
+impl Counts {
+    /// Both together.
+    #[must_use]
+    pub const fn total(self) -> u32 {
+        self.triangles + self.spheres
+    }
+}
+
+impl DisplayList {
+    pub(crate) fn triangle(&self, number: usize) -> Triangle {
+        let corners = self.triangles[number].map(|i| i as usize);
+        Triangle {
+            positions: corners.map(|i| self.positions[i]),
+            normals: corners.map(|i| self.normals[i]),
+            colours: corners.map(|i| self.colours[i]),
+        }
+    }
+
+    pub(crate) fn corners(&self, number: usize) -> [Vec3; 3] {
+        self.triangles[number].map(|i| self.positions[i as usize])
+    }
+}
+
+/// The primitives that one GP holds: numbers `first`, `first + step`, ... of triangles and of spheres; or some of them
+/// in a row.
+#[derive(Clone, Debug)]
+pub struct Share {
+    pub(crate) list: Arc<DisplayList>,
+    first: usize,
+    step: usize,
+    /// Which of the held triangles, counted in held ones.
+    triangles: Range<usize>,
+    /// Which of the held spheres.
+    spheres: Range<usize>,
+}
+
+impl Share {
+    /// Bytes of a triangle in a GP's memory: three corners of position, normal and colour, and a header (assumed).
+    pub const TRIANGLE_BYTES: u64 = 3 * 28 + 12;
+
+    /// Bytes of a sphere in a GP's memory: centre, radius, colour, header (assumed).
+    pub const SPHERE_BYTES: u64 = 32;
+
+    /// GP `index` of `of`; dealt round-robin.
+    ///
+    /// # Panics
+    ///
+    /// If `of` is zero: a configuration that was not checked.
+    #[must_use]
+    pub fn new(list: Arc<DisplayList>, index: usize, of: usize) -> Self {
+        assert!(of > 0, "primitives need a graphics processor");
+        let held = |all: usize| 0..all.saturating_sub(index).div_ceil(of);
+        let (triangles, spheres) = (held(list.triangles.len()), held(list.spheres.len()));
+        Self { list, first: index, step: of, triangles, spheres }
+    }
+
+    /// The whole display list, of which this is a share.
+    #[must_use]
+    pub fn list(&self) -> &Arc<DisplayList> {
+        &self.list
+    }
+
+    /// Primitives held.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        Counts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
+    }
+
+    /// The share cut into pieces of at most `size` primitives, triangles first.
+    ///
+    /// # Panics
+    ///
+    /// If `size` is zero.
+    pub fn clumps(&self, size: usize) -> impl Iterator<Item = Self> {
+        let (triangles, spheres) = (self.triangles.clone(), self.spheres.clone());
+        let all = triangles.len() + spheres.len();
+        let part = move |range: &Range<usize>, from: usize, to: usize| {
+            let clamp = |i: usize| (range.start + i).min(range.end);
+            clamp(from)..clamp(to)
+        };
+        let share = self.clone();
+        (0..all).step_by(size).map(move |from| {
+            let past = |i: usize| i.saturating_sub(triangles.len());
+            let triangles = part(&triangles, from, from + size);
+            let spheres = part(&spheres, past(from), past(from + size));
+            Self { triangles, spheres, ..share.clone() }
+        })
+    }
+
+    /// Bytes that the primitives take in the GP's memory.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let Counts { triangles, spheres } = self.counts();
+        u64::from(triangles) * Self::TRIANGLE_BYTES + u64::from(spheres) * Self::SPHERE_BYTES
+    }
+
+    /// One TRANSFORM of all held primitives for one eye.
+    #[must_use]
+    pub fn transform(&self, view: &FrameView, eye: usize, picture: Picture) -> Arc<Pass> {
+        Arc::new(Pass::new(self.clone(), view, eye, picture))
+    }
+
+    pub(crate) fn held_triangles(&self, of: &Range<usize>) -> impl Iterator<Item = usize> + use<> {
+        self.held(&self.triangles, of)
+    }
+
+    pub(crate) fn held_spheres(&self, of: &Range<usize>) -> impl Iterator<Item = usize> + use<> {
+        self.held(&self.spheres, of)
+    }
+
+    /// Numbers of the primitives of `of` that are among the held ones `positions`.
+    fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl Iterator<Item = usize> + use<> {
+        let position = |number: usize| number.saturating_sub(self.first).div_ceil(self.step);
+        let from = position(of.start).max(positions.start);
+        let to = position(of.end).min(positions.end);
+        let (first, step) = (self.first, self.step);
+        (from..to.max(from)).map(move |k| first + k * step)
+    }
+}
+
+/// The model matrix of a structure that was never edited.
+pub(crate) const UNMOVED: Mat4 = Mat4::IDENTITY;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_hold_every_primitive_once() {
+        let list = Arc::new(DisplayList { triangles: vec![[0; 3]; 417], ..DisplayList::default() });
+        let shares: Vec<_> = (0..12).map(|i| Share::new(Arc::clone(&list), i, 12)).collect();
+        for range in [0..417, 5..17, 100..101, 416..417, 3..3] {
+            let mut held: Vec<_> = shares.iter().flat_map(|share| share.held_triangles(&range)).collect();
+            held.sort_unstable();
+            assert_eq!(held, range.collect::<Vec<_>>());
+        }
+        assert_eq!(shares.iter().map(|share| share.counts().triangles).sum::<u32>(), 417);
+    }
+
+    #[test]
+    fn clumps_hold_every_primitive_of_a_share_once_triangles_first() {
+        let sphere = Sphere { centre: Vec3::ZERO, radius: 1.0, colour: [0; 3] };
+        let list = DisplayList { triangles: vec![[0; 3]; 70], spheres: vec![sphere; 25], ..DisplayList::default() };
+        let clumps: Vec<_> = Share::new(Arc::new(list), 0, 1).clumps(30).collect();
+        let counts: Vec<_> = clumps.iter().map(|c| (c.counts().triangles, c.counts().spheres)).collect();
+        assert_eq!(counts, [(30, 0), (30, 0), (10, 20), (0, 5)]);
+        let triangles: Vec<_> = clumps.iter().flat_map(|c| c.held_triangles(&(0..70))).collect();
+        assert_eq!(triangles, (0..70).collect::<Vec<_>>());
+        let spheres: Vec<_> = clumps.iter().flat_map(|c| c.held_spheres(&(0..25))).collect();
+        assert_eq!(spheres, (0..25).collect::<Vec<_>>());
+    }
+}

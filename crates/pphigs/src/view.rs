@@ -1,0 +1,146 @@
+//! What the host sends for a frame: viewing transforms and edits, as words of the ring.
+
+use glam::{DMat4, Mat4};
+use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
+use std::fmt;
+
+/// The matrices of one eye.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EyeView {
+    /// World to eye coordinates.
+    pub world_to_eye: Mat4,
+    /// Head to eye coordinates.
+    pub head_to_eye: Mat4,
+    /// Eye to clip coordinates.
+    pub projection: Mat4,
+}
+
+/// A structure's new model matrix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelEdit {
+    /// The structure's number.
+    pub structure: u32,
+    /// From its own to its frame's coordinates.
+    pub model: Mat4,
+}
+
+/// One frame's transforms and edits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameView {
+    /// Number of the frame, or of the update.
+    pub number: u64,
+    /// One eye, or left and right.
+    pub eyes: Vec<EyeView>,
+    /// Edits since the frame before.
+    pub edits: Vec<ModelEdit>,
+}
+
+const EYE_WORDS: usize = 48;
+const EDIT_WORDS: usize = 17;
+const HEADER_WORDS: usize = 4;
+
+/// Most edits that fit into one message beside the transforms of two eyes.
+pub const MAX_EDITS: usize = (MAX_MESSAGE_WORDS as usize - 8 - HEADER_WORDS - 2 * EYE_WORDS) / EDIT_WORDS;
+
+/// Words that are not a frame's view.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ViewWordsError {
+    /// Words expected from the header.
+    pub expected: usize,
+    /// Words found.
+    pub found: usize,
+}
+
+impl fmt::Display for ViewWordsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a view of {} words was expected, {} were found", self.expected, self.found)
+    }
+}
+
+impl std::error::Error for ViewWordsError {}
+
+impl FrameView {
+    /// The words: number (two), eyes, edits; then the matrices column by column.
+    #[must_use]
+    pub fn to_words(&self) -> Vec<Word> {
+        let header =
+            [self.number as Word, (self.number >> 32) as Word, self.eyes.len() as Word, self.edits.len() as Word];
+        let mut words = header.to_vec();
+        for eye in &self.eyes {
+            [eye.world_to_eye, eye.head_to_eye, eye.projection].iter().for_each(|m| push_matrix(&mut words, m));
+        }
+        for edit in &self.edits {
+            words.push(edit.structure);
+            push_matrix(&mut words, &edit.model);
+        }
+        words
+    }
+
+    /// Reads words made by [`FrameView::to_words`].
+    ///
+    /// # Errors
+    ///
+    /// [`ViewWordsError`] when the length is not what the header says.
+    pub fn from_words(words: &[Word]) -> Result<Self, ViewWordsError> {
+        let count = |i: usize| words.get(i).map_or(0, |word| *word as usize);
+        let (n_eyes, n_edits) = (count(2), count(3));
+        let expected =
+            HEADER_WORDS + n_eyes.saturating_mul(EYE_WORDS).saturating_add(n_edits.saturating_mul(EDIT_WORDS));
+        if words.len() != expected {
+            return Err(ViewWordsError { expected, found: words.len() });
+        }
+        let (eyes, edits) = words[HEADER_WORDS..].split_at(n_eyes * EYE_WORDS);
+        Ok(Self {
+            number: u64::from(words[0]) | u64::from(words[1]) << 32,
+            eyes: eyes.chunks_exact(EYE_WORDS).map(eye).collect(),
+            edits: edits
+                .chunks_exact(EDIT_WORDS)
+                .map(|e| ModelEdit { structure: e[0], model: matrix(&e[1..]) })
+                .collect(),
+        })
+    }
+}
+
+fn push_matrix(words: &mut Vec<Word>, matrix: &Mat4) {
+    words.extend(matrix.to_cols_array().map(f32::to_bits));
+}
+
+fn matrix(words: &[Word]) -> Mat4 {
+    Mat4::from_cols_array(&std::array::from_fn(|i| f32::from_bits(words[i])))
+}
+
+fn eye(words: &[Word]) -> EyeView {
+    let [world_to_eye, head_to_eye, projection] = [0, 16, 32].map(|i| matrix(&words[i..i + 16]));
+    EyeView { world_to_eye, head_to_eye, projection }
+}
+
+/// `left * right` formed in double precision and rounded once, the same on every host.
+pub(crate) fn product(left: &Mat4, right: &Mat4) -> Mat4 {
+    let (left, right): (DMat4, DMat4) = (left.as_dmat4(), right.as_dmat4());
+    (left * right).as_mat4()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_view_survives_its_words_bit_for_bit() {
+        let m = |k: f32| Mat4::from_cols_array(&std::array::from_fn(|i| k + i as f32 / 3.0));
+        let eye = |k| EyeView { world_to_eye: m(k), head_to_eye: m(k + 0.1), projection: m(-k) };
+        let edits = vec![ModelEdit { structure: 3, model: m(9.0) }];
+        let view = FrameView { number: 1 << 40, eyes: vec![eye(1.0), eye(2.0)], edits };
+        assert_eq!(FrameView::from_words(&view.to_words()), Ok(view));
+    }
+
+    #[test]
+    fn words_of_the_wrong_length_are_refused() {
+        assert!(FrameView::from_words(&[]).is_err());
+        assert!(FrameView::from_words(&[0, 0, u32::MAX, u32::MAX]).is_err());
+    }
+
+    #[test]
+    fn a_message_holds_the_most_edits() {
+        assert!(HEADER_WORDS + 2 * EYE_WORDS + MAX_EDITS * EDIT_WORDS + 8 <= MAX_MESSAGE_WORDS as usize);
+    }
+}

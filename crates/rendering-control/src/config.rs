@@ -1,0 +1,75 @@
+//! Who takes part.
+
+use pphigs::{Picture, Share};
+use pxpl5_geometry::Viewport;
+use pxpl5_wire::{CopyTarget, Eye, Lines, NodeId, RegionGrid, RegionId};
+
+/// The boards and the kind of picture.
+#[derive(Clone, Debug)]
+pub struct Config {
+    /// The host interface.
+    pub host: NodeId,
+    /// The master GP.
+    pub master: NodeId,
+    /// The slave GPs, at least one.
+    pub slaves: Vec<NodeId>,
+    /// The renderers, at least one.
+    pub renderers: Vec<NodeId>,
+    /// One frame buffer for mono, or left and right.
+    pub frame_buffers: Vec<NodeId>,
+    /// What is drawn of each eye.
+    pub picture: Picture,
+}
+
+/// Bytes of program, stacks and message buffers on a GP (assumed).
+pub(crate) const PROGRAM_BYTES: u64 = 1 << 20;
+
+/// Bytes of a pointer in a bin.
+pub(crate) const BIN_ENTRY_BYTES: u64 = 4;
+
+impl Config {
+    /// Eyes of a frame: 1 or 2.
+    #[must_use]
+    pub fn eyes(&self) -> u64 {
+        self.frame_buffers.len() as u64
+    }
+
+    pub(crate) fn frame_of(&self, picture: u64) -> u64 {
+        picture / self.eyes()
+    }
+
+    pub(crate) fn eye_of(&self, picture: u64) -> Eye {
+        Eye::BOTH[(picture % self.eyes()) as usize]
+    }
+
+    pub(crate) fn grid(&self) -> RegionGrid {
+        self.viewport().grid()
+    }
+
+    pub(crate) fn viewport(&self) -> Viewport {
+        self.picture.viewport
+    }
+
+    /// The half of the frame buffer that is not shown while this frame is drawn; buffer 0 is shown at the start.
+    pub(crate) fn buffer_of(frame: u64) -> u8 {
+        ((frame + 1) % 2) as u8
+    }
+
+    pub(crate) fn target(&self, picture: u64, region: RegionId) -> CopyTarget {
+        let frame = self.frame_of(picture);
+        CopyTarget {
+            frame_buffer: self.frame_buffers[self.eye_of(picture).index()],
+            buffer: Self::buffer_of(frame),
+            lines: Lines::Frame,
+            grid: self.grid(),
+            region,
+            picture: frame,
+        }
+    }
+
+    /// The primitives that slave `index` holds.
+    #[must_use]
+    pub fn share(&self, list: &std::sync::Arc<pphigs::DisplayList>, index: usize) -> Share {
+        Share::new(std::sync::Arc::clone(list), index, self.slaves.len())
+    }
+}

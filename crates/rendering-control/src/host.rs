@@ -1,0 +1,39 @@
+//! The host: SEND.
+
+use crate::config::Config;
+use crate::protocol::Order;
+use pphigs::FrameView;
+use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
+use pxpl5_sim::Time;
+
+/// Sends frame after frame: reads the tracker, sends view and edits over the link to all GPs, and waits until the
+/// edits have been applied.
+///
+/// `view_of` gives the view of a frame whose pose is sampled at a time.
+///
+/// # Errors
+///
+/// [`Fault::Protocol`] when something else than the master's answer arrives.
+pub async fn host(
+    gp: Gp,
+    config: Config,
+    timing: HostTiming,
+    mut view_of: impl FnMut(u64, Time) -> FrameView,
+) -> Result<(), Fault> {
+    for frame in 0.. {
+        gp.begin(Stage::Sample, frame, None);
+        gp.begin(Stage::Send, frame, None);
+        let (words, body) = Order::Send(view_of(frame, gp.now())).message();
+        gp.spend(timing.link_span(words)).await;
+        let receivers = config.slaves.iter().chain([&config.master]);
+        let batch = receivers.map(|node| (*node, words, body.clone())).collect();
+        let sent = gp.send_batch(batch).await;
+        gp.accepted(sent).await;
+        gp.end(Stage::Send, frame, None);
+        let received = gp.receive().await;
+        if Order::read(&received, gp.node())? != Order::EditsDone(frame) {
+            return Err(Fault::Protocol { node: gp.node(), found: format!("while frame {frame} is being edited") });
+        }
+    }
+    Ok(())
+}

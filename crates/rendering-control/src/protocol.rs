@@ -1,0 +1,158 @@
+//! The messages between host, master and slaves, as words.
+
+use pphigs::FrameView;
+use pxpl5_gp::{Fault, Received};
+use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, NodeId, RegionId, Word};
+
+const SEND: Word = 1;
+const EDIT: Word = 2;
+const EDITED: Word = 3;
+const TRANSFORM: Word = 4;
+const TRANSFORMED: Word = 5;
+const TOKEN: Word = 6;
+const ACCEPTED: Word = 7;
+const EDITS_DONE: Word = 8;
+
+/// A token: who holds it may send commands of one region to one renderer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Token {
+    /// Number of the eye's picture, from 0.
+    pub(crate) picture: u64,
+    pub(crate) region: RegionId,
+    /// Index of the renderer.
+    pub(crate) renderer: u16,
+    /// Slaves that have not had it yet, this one included.
+    pub(crate) slaves_left: u16,
+    /// Whether the last slave adds the copy command.
+    pub(crate) copy: bool,
+}
+
+/// Everything that is said.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Order {
+    /// Host to all: view and edits of a frame.
+    Send(FrameView),
+    /// Master to slaves: apply the edits of a frame.
+    Edit(u64),
+    /// Slave to master: edits of a frame applied.
+    Edited(u64),
+    /// Master to host: all edits of a frame applied.
+    EditsDone(u64),
+    /// Master to slaves: an eye's picture may be transformed.
+    Transform(u64),
+    /// Slave to master: transformed; entries of each region's bin.
+    Transformed(u64, Vec<u32>),
+    /// A token on its way.
+    Token(Token),
+    /// Last slave to master: a region's commands were accepted.
+    Accepted(Token),
+    /// Renderer to master: a region has arrived in a frame buffer (by its node).
+    Copied { frame_buffer: NodeId },
+}
+
+impl Order {
+    /// Length in words and body.
+    pub(crate) fn message(&self) -> (u32, Body) {
+        let words = self.words();
+        (words.len() as u32, Body::Words(words.into()))
+    }
+
+    fn words(&self) -> Vec<Word> {
+        let numbered = |tag: Word, n: u64| vec![tag, n as Word, (n >> 32) as Word];
+        match self {
+            Self::Send(view) => [vec![SEND], view.to_words()].concat(),
+            Self::Edit(frame) => numbered(EDIT, *frame),
+            Self::Edited(frame) => numbered(EDITED, *frame),
+            Self::EditsDone(frame) => numbered(EDITS_DONE, *frame),
+            Self::Transform(picture) => numbered(TRANSFORM, *picture),
+            Self::Transformed(picture, entries) => [numbered(TRANSFORMED, *picture), entries.clone()].concat(),
+            Self::Token(token) => token.words(TOKEN),
+            Self::Accepted(token) => token.words(ACCEPTED),
+            Self::Copied { frame_buffer } => vec![COPY_ACKNOWLEDGEMENT, 0, 0, Word::from(frame_buffer.0)],
+        }
+    }
+
+    /// Reads a received message.
+    pub(crate) fn read(received: &Received, at: NodeId) -> Result<Self, Fault> {
+        let unknown = |found: String| Fault::Protocol { node: at, found };
+        let Body::Words(words) = &received.body else {
+            return Err(unknown("of commands or pixels at a processor".to_owned()));
+        };
+        let number = || words.get(1).zip(words.get(2)).map(|(low, high)| u64::from(*low) | u64::from(*high) << 32);
+        let order = match words.first() {
+            Some(&SEND) => FrameView::from_words(&words[1..]).ok().map(Self::Send),
+            Some(&EDIT) => number().map(Self::Edit),
+            Some(&EDITED) => number().map(Self::Edited),
+            Some(&EDITS_DONE) => number().map(Self::EditsDone),
+            Some(&TRANSFORM) => number().map(Self::Transform),
+            Some(&TRANSFORMED) => number().map(|n| Self::Transformed(n, words[3..].to_vec())),
+            Some(&TOKEN) => Token::read(words).map(Self::Token),
+            Some(&ACCEPTED) => Token::read(words).map(Self::Accepted),
+            Some(&COPY_ACKNOWLEDGEMENT) => words.get(3).map(|node| Self::Copied { frame_buffer: NodeId(*node as u16) }),
+            _ => None,
+        };
+        order.ok_or_else(|| unknown(format!("{words:x?} from node {}", received.source.0)))
+    }
+}
+
+impl Token {
+    fn words(self, tag: Word) -> Vec<Word> {
+        let regions = u32::from(self.region.0) | u32::from(self.renderer) << 16;
+        vec![
+            tag,
+            self.picture as Word,
+            (self.picture >> 32) as Word,
+            regions,
+            u32::from(self.slaves_left),
+            self.copy.into(),
+        ]
+    }
+
+    fn read(words: &[Word]) -> Option<Self> {
+        let [_, low, high, regions, slaves_left, copy] = *words else { return None };
+        Some(Self {
+            picture: u64::from(low) | u64::from(high) << 32,
+            region: RegionId(regions as u16),
+            renderer: (regions >> 16) as u16,
+            slaves_left: slaves_left as u16,
+            copy: copy != 0,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_sim::Time;
+
+    fn through_words(order: &Order) -> Order {
+        let (_, body) = order.message();
+        let received = Received { arrived: Time::ZERO, source: NodeId(1), body };
+        Order::read(&received, NodeId(0)).expect("our own words")
+    }
+
+    #[test]
+    fn every_order_survives_its_words() {
+        let token = Token { picture: 1 << 33, region: RegionId(19), renderer: 4, slaves_left: 12, copy: true };
+        let view = FrameView { number: 3, eyes: Vec::new(), edits: Vec::new() };
+        let orders = [
+            Order::Send(view),
+            Order::Edit(1),
+            Order::Edited(2),
+            Order::EditsDone(1 << 40),
+            Order::Transform(3),
+            Order::Transformed(4, vec![7; 20]),
+            Order::Token(token),
+            Order::Accepted(token),
+            Order::Copied { frame_buffer: NodeId(20) },
+        ];
+        orders.iter().for_each(|order| assert_eq!(&through_words(order), order));
+    }
+
+    #[test]
+    fn unknown_words_are_a_fault_that_shows_them() {
+        let received = Received { arrived: Time::ZERO, source: NodeId(7), body: Body::Words([0xBAD].into()) };
+        let fault = Order::read(&received, NodeId(3)).expect_err("not an order");
+        assert_eq!(fault.to_string(), "node 3: unexpected message [bad] from node 7");
+    }
+}

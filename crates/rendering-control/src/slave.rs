@@ -1,0 +1,167 @@
+//! A slave GP: EDIT and TRANSFORM in the foreground, tokens in the background.
+
+use crate::config::{BIN_ENTRY_BYTES, Config, PROGRAM_BYTES};
+use crate::master::copy_order;
+use crate::protocol::{Order, Token};
+use pphigs::{Around, FrameView, Pass, Share, region_messages};
+use pxpl5_gp::{Account, Fault, Gp, Level, Stage};
+use pxpl5_sim::Span;
+use pxpl5_wire::{Body, CommandList, RegionId};
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// What both programs of a slave share.
+#[derive(Debug, Default)]
+struct State {
+    views: VecDeque<FrameView>,
+    /// Frames whose EDIT may begin, and pictures whose TRANSFORM may.
+    edits_allowed: u64,
+    transforms_allowed: u64,
+    /// The two bin contexts.
+    bins: [Option<Arc<Pass>>; 2],
+}
+
+type Shared = Rc<RefCell<State>>;
+
+/// The programs of slave number `index`, for both levels of its board.
+///
+/// Each fails with [`Fault::Memory`] when display list, commands or bins do not fit, and with [`Fault::Protocol`] for
+/// a message that no board sends.
+pub fn slave(
+    gp: &Gp,
+    config: &Config,
+    share: Share,
+    index: usize,
+) -> [(Level, impl Future<Output = Result<(), Fault>> + use<>); 2] {
+    let state = Shared::default();
+    let program = |level| {
+        let (gp, config, share, state) = (gp.at_level(level), config.clone(), share.clone(), Rc::clone(&state));
+        let future = async move {
+            match level {
+                Level::Foreground => transform_program(gp, config, share, state).await,
+                Level::Interrupt => token_program(gp, config, index, state).await,
+            }
+        };
+        (level, future)
+    };
+    [program(Level::Interrupt), program(Level::Foreground)]
+}
+
+async fn transform_program(gp: Gp, config: Config, share: Share, state: Shared) -> Result<(), Fault> {
+    gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
+    gp.reserve(Account::DisplayList, share.bytes(), None)?;
+    for frame in 0.. {
+        let view = edit(&gp, &config, &state, frame).await;
+        for eye in 0..config.eyes() {
+            let picture = frame * config.eyes() + eye;
+            gp.until("leave to TRANSFORM", || (state.borrow().transforms_allowed > picture).then_some(())).await;
+            transform(&gp, &config, &share, &state, &view, picture).await?;
+        }
+    }
+    Ok(())
+}
+
+/// EDIT: applies the edits of a frame and tells the master.
+async fn edit(gp: &Gp, config: &Config, state: &Shared, frame: u64) -> FrameView {
+    gp.until("leave to EDIT", || (state.borrow().edits_allowed > frame).then_some(())).await;
+    let view = gp.until("SEND of the frame", || state.borrow_mut().views.pop_front()).await;
+    gp.begin(Stage::Edit, frame, None);
+    gp.spend(Span::from_ns(gp.timing().edit_ns) * view.edits.len() as u64).await;
+    gp.end(Stage::Edit, frame, None);
+    tell_master(gp, config, &Order::Edited(frame)).await;
+    view
+}
+
+/// TRANSFORM: makes commands of all held primitives and puts them into bins.
+async fn transform(
+    gp: &Gp,
+    config: &Config,
+    share: &Share,
+    state: &Shared,
+    view: &FrameView,
+    picture: u64,
+) -> Result<(), Fault> {
+    let (frame, eye) = (config.frame_of(picture), config.eye_of(picture));
+    gp.begin(Stage::Transform, frame, Some(eye));
+    let pass = share.transform(view, eye.index(), config.picture);
+    reserve_bins(gp, &pass, (picture % 2) as u8)?;
+    gp.spend(transform_span(gp, &pass)).await;
+    let regions = config.grid().regions() as u16;
+    let entries = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
+    state.borrow_mut().bins[(picture % 2) as usize] = Some(pass);
+    gp.end(Stage::Transform, frame, Some(eye));
+    tell_master(gp, config, &Order::Transformed(picture, entries)).await;
+    Ok(())
+}
+
+fn transform_span(gp: &Gp, pass: &Pass) -> Span {
+    let (timing, counts) = (gp.timing(), pass.transformed());
+    let primitives = timing.triangle_ns * u64::from(counts.triangles) + timing.sphere_ns * u64::from(counts.spheres);
+    Span::from_ns(timing.pass_ns + primitives + timing.bin_entry_ns * pass.entries())
+}
+
+/// Accounts for commands and bins; an overflow names the region whose bin was being filled.
+fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
+    gp.reserve(Account::Commands(context), pass.command_bytes(), None)?;
+    let mut bytes = 0;
+    for region in 0..pass.picture().viewport.grid().regions() as u16 {
+        bytes += u64::from(pass.counts(RegionId(region)).total()) * BIN_ENTRY_BYTES;
+        gp.reserve(Account::Bins(context), bytes, Some(RegionId(region)))?;
+    }
+    Ok(())
+}
+
+/// Handles whatever arrives.
+async fn token_program(gp: Gp, config: Config, index: usize, state: Shared) -> Result<(), Fault> {
+    loop {
+        let received = gp.receive().await;
+        match Order::read(&received, gp.node())? {
+            Order::Send(view) => state.borrow_mut().views.push_back(view),
+            Order::Edit(frame) => {
+                let state = &mut *state.borrow_mut();
+                state.edits_allowed = frame + 1;
+                state.transforms_allowed = frame * config.eyes() + 1;
+            }
+            Order::Transform(picture) => state.borrow_mut().transforms_allowed = picture + 1,
+            Order::Token(token) => walk(&gp, &config, index, &state, token).await,
+            other => return Err(Fault::Protocol { node: gp.node(), found: format!("at a slave: {other:?}") }),
+        }
+    }
+}
+
+/// Sends this slave's bin of the token's region, then passes the token on.
+async fn walk(gp: &Gp, config: &Config, index: usize, state: &Shared, token: Token) {
+    let pass = state.borrow().bins[(token.picture % 2) as usize].clone();
+    let renderer = config.renderers[usize::from(token.renderer)];
+    for list in pass.iter().flat_map(|pass| messages(config, pass, token)) {
+        gp.clump_buffer_free().await;
+        gp.send(renderer, list.words(), Body::Commands(list)).await;
+    }
+    let last = token.slaves_left == 1;
+    let next = Token { slaves_left: token.slaves_left - 1, ..token };
+    let (receiver, order) = if last {
+        (config.master, Order::Accepted(next))
+    } else {
+        (config.slaves[(index + 1) % config.slaves.len()], Order::Token(next))
+    };
+    let (words, body) = order.message();
+    gp.send(receiver, words, body).await;
+}
+
+/// The first slave begins the region, the last one ends it.
+fn messages(config: &Config, pass: &Arc<Pass>, token: Token) -> Vec<CommandList> {
+    let last = token.slaves_left == 1;
+    let around = Around {
+        begin: usize::from(token.slaves_left) == config.slaves.len(),
+        shade: last,
+        copy: (last && token.copy).then(|| copy_order(config, token.picture, token.region)),
+    };
+    region_messages(pass, token.region, 0, around)
+}
+
+async fn tell_master(gp: &Gp, config: &Config, order: &Order) {
+    let (words, body) = order.message();
+    gp.send(config.master, words, body).await;
+}

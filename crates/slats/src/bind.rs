@@ -1,0 +1,144 @@
+//! Which renderer keeps which region, in which context, and in which order regions are copied.
+
+use crate::config::{ConfigError, Copy};
+use pxpl5_wire::{Eye, RegionGrid, RegionId};
+
+/// A region's place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct BoundRegion {
+    /// Which eye's.
+    pub eye: Eye,
+    /// Which region of the field.
+    pub region: RegionId,
+    /// Index of the renderer.
+    pub renderer: usize,
+    /// Context of its pixel memory.
+    pub context: u8,
+}
+
+impl BoundRegion {
+    /// Whether the region is in the upper half of the picture.
+    #[must_use]
+    pub const fn is_top(&self) -> bool {
+        (self.region.0 as u32) < RegionGrid::FIELD.columns()
+    }
+}
+
+/// All regions of both eyes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Binding {
+    regions: Vec<BoundRegion>,
+    renderers: usize,
+    copy: Copy,
+}
+
+impl Binding {
+    /// Deals the regions to renderers: all of one kind (half and eye) before the next, so that each renderer gets as
+    /// equal a share of every kind as possible, and clumps that follow this order keep all renderers busy.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError::TooFewRenderers`] when a renderer would need more than `contexts` contexts.
+    pub fn new(renderers: usize, contexts: u8, copy: Copy) -> Result<Self, ConfigError> {
+        let columns = RegionGrid::FIELD.columns() as u16;
+        let kinds = [(0, Eye::Left), (0, Eye::Right), (1, Eye::Left), (1, Eye::Right)];
+        let all = kinds.iter().flat_map(|(row, eye)| (0..columns).map(move |c| (*eye, RegionId(row * columns + c))));
+        let total = kinds.len() * usize::from(columns);
+        let expected = total.div_ceil(usize::from(contexts.max(1)));
+        if renderers < expected {
+            return Err(ConfigError::TooFewRenderers { found: renderers, expected });
+        }
+        let bind =
+            |(i, (eye, region))| BoundRegion { eye, region, renderer: i % renderers, context: (i / renderers) as u8 };
+        Ok(Self { regions: all.enumerate().map(bind).collect(), renderers, copy })
+    }
+
+    /// All regions in the order in which clumps are sent.
+    #[must_use]
+    pub fn regions(&self) -> &[BoundRegion] {
+        &self.regions
+    }
+
+    /// The regions of a renderer in the order of copying, left and right eye alternately.
+    ///
+    /// Whole: all halves, beginning left. Split: those of one half (`top`), the odd renderers beginning right.
+    #[must_use]
+    pub fn copies(&self, renderer: usize, top: bool) -> Vec<BoundRegion> {
+        let mine = |b: &&BoundRegion| b.renderer == renderer && (self.copy == Copy::Whole || b.is_top() == top);
+        let mut mine: Vec<_> = self.regions.iter().filter(mine).copied().collect();
+        if self.copy == Copy::Split && renderer % 2 == 1 {
+            mine.sort_by_key(|b| std::cmp::Reverse(b.eye));
+        }
+        alternate(mine)
+    }
+
+    /// Number of renderers.
+    #[must_use]
+    pub const fn renderers(&self) -> usize {
+        self.renderers
+    }
+}
+
+/// Reorders so that eyes alternate as long as both are left, beginning with the first one's.
+fn alternate(regions: Vec<BoundRegion>) -> Vec<BoundRegion> {
+    let Some(first) = regions.first().map(|b| b.eye) else { return regions };
+    let (mut ours, mut others): (Vec<_>, Vec<_>) = regions.into_iter().partition(|b| b.eye == first);
+    ours.reverse();
+    others.reverse();
+    let mut out = Vec::new();
+    while !ours.is_empty() || !others.is_empty() {
+        out.extend(ours.pop());
+        out.extend(others.pop());
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn five_renderers_keep_four_regions_each_top_and_bottom_of_both_eyes() {
+        let binding = Binding::new(5, 4, Copy::Whole).expect("five are enough");
+        for renderer in 0..5 {
+            let copies = binding.copies(renderer, true);
+            let kinds: Vec<_> = copies.iter().map(|b| (b.eye, b.is_top())).collect();
+            assert_eq!(kinds, [(Eye::Left, true), (Eye::Right, true), (Eye::Left, false), (Eye::Right, false)]);
+        }
+    }
+
+    #[test]
+    fn a_split_copy_begins_on_both_frame_buffers() {
+        let binding = Binding::new(5, 4, Copy::Split).expect("five are enough");
+        let first: Vec<_> = (0..5).map(|renderer| binding.copies(renderer, false)[0].eye).collect();
+        assert_eq!(first, [Eye::Left, Eye::Right, Eye::Left, Eye::Right, Eye::Left]);
+        assert!((0..5).all(|renderer| binding.copies(renderer, false).iter().all(|b| !b.is_top())));
+    }
+
+    #[test]
+    fn every_region_is_bound_and_copied_once_on_any_number_of_renderers() {
+        for renderers in 5..=20 {
+            for copy in [Copy::Whole, Copy::Split] {
+                let binding = Binding::new(renderers, 4, copy).expect("enough");
+                let halves = if copy == Copy::Whole { vec![true] } else { vec![true, false] };
+                let each = |top: bool| (0..renderers).map(move |renderer| (renderer, top));
+                let mut copied: Vec<_> = halves
+                    .into_iter()
+                    .flat_map(each)
+                    .flat_map(|(r, top)| binding.copies(r, top))
+                    .map(|b| (b.eye, b.region))
+                    .collect();
+                copied.sort_unstable();
+                copied.dedup();
+                assert_eq!(copied.len(), 20);
+                assert!(binding.regions().iter().all(|b| b.context < 4));
+            }
+        }
+    }
+
+    #[test]
+    fn four_renderers_are_too_few() {
+        let error = Binding::new(4, 4, Copy::Whole).expect_err("16 contexts for 20 regions");
+        assert!(error.to_string().contains("at least 5 renderers"));
+    }
+}

@@ -1,0 +1,219 @@
+//! A graphics processor under Slats.
+
+use crate::bind::{Binding, BoundRegion};
+use crate::config::{Config, Copy};
+use pphigs::{Around, Counts, FrameView, Pass, Picture, Share, ViewWordsError, copy_message, region_messages};
+use pxpl5_gp::{Account, Fault, Gp, Level, Stage, Ticket};
+use pxpl5_sim::Span;
+use pxpl5_wire::{Body, CommandList, CopyOrder, Eye, FieldParity, NodeId, Word};
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Primitives of a clump: what fits into one message (TR94).
+pub const CLUMP: usize = 30;
+
+/// Bytes of program, stacks and message buffers on a GP (assumed).
+const PROGRAM_BYTES: u64 = 1 << 20;
+
+/// First word of the message that tells the leading GP that a field's clumps have been accepted.
+const CLUMPS_ACCEPTED: Word = 0x000C_1A3D;
+
+/// First word of the message by which the leading GP begins a field on the others; number and view follow.
+const BEGIN: Word = 0x00BE_6123;
+
+#[derive(Debug, Default)]
+struct State {
+    /// The newest view from the host, on the leading GP.
+    newest: Option<FrameView>,
+    /// Fields that the leading GP has begun, on the others.
+    begun: VecDeque<(u64, FrameView)>,
+    /// How many other GPs have finished each of the fields being drawn: (field, GPs).
+    finished: Vec<(u64, usize)>,
+}
+
+type Shared = Rc<RefCell<State>>;
+
+/// The programs of GP number `index`, for both levels of its board.
+///
+/// Each fails with [`Fault::Memory`] when the display list does not fit, and with [`Fault::Protocol`] for a message
+/// that no board sends.
+pub fn processor(
+    gp: &Gp,
+    config: &Config,
+    binding: &Binding,
+    share: Share,
+    index: usize,
+) -> [(Level, impl Future<Output = Result<(), Fault>> + use<>); 2] {
+    let state = Shared::default();
+    let program = |level| {
+        let (gp, config, binding) = (gp.at_level(level), config.clone(), binding.clone());
+        let (share, state) = (share.clone(), Rc::clone(&state));
+        let future = async move {
+            match level {
+                Level::Foreground => Processor { gp, config, binding, share, state, index }.fields().await,
+                Level::Interrupt => listen(gp, state).await,
+            }
+        };
+        (level, future)
+    };
+    [program(Level::Interrupt), program(Level::Foreground)]
+}
+
+/// Keeps the newest view and counts finished GPs.
+async fn listen(gp: Gp, state: Shared) -> Result<(), Fault> {
+    loop {
+        let received = gp.receive().await;
+        let Body::Words(words) = &received.body else {
+            return Err(Fault::Protocol { node: gp.node(), found: "of commands or pixels at a processor".to_owned() });
+        };
+        let note = state.borrow_mut().note(words);
+        note.map_err(|error| Fault::Protocol { node: gp.node(), found: error.to_string() })?;
+    }
+}
+
+impl State {
+    fn note(&mut self, words: &[Word]) -> Result<(), ViewWordsError> {
+        let number = |low: Word, high: Word| u64::from(low) | u64::from(high) << 32;
+        match words {
+            [CLUMPS_ACCEPTED, low, high] => self.note_finished(number(*low, *high)),
+            [BEGIN, low, high, view @ ..] => self.begun.push_back((number(*low, *high), FrameView::from_words(view)?)),
+            view => self.newest = Some(FrameView::from_words(view)?),
+        }
+        Ok(())
+    }
+
+    fn note_finished(&mut self, field: u64) {
+        match self.finished.iter_mut().find(|entry| entry.0 == field) {
+            Some(entry) => entry.1 += 1,
+            None => self.finished.push((field, 1)),
+        }
+    }
+
+    fn finished(&mut self, field: u64) -> usize {
+        self.finished.retain(|entry| entry.0 >= field);
+        self.finished.iter().find(|entry| entry.0 == field).map_or(0, |entry| entry.1)
+    }
+}
+
+struct Processor {
+    gp: Gp,
+    config: Config,
+    binding: Binding,
+    share: Share,
+    state: Shared,
+    index: usize,
+}
+
+impl Processor {
+    async fn fields(self) -> Result<(), Fault> {
+        self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
+        self.gp.reserve(Account::DisplayList, self.share.bytes(), None)?;
+        if self.index == 0 { self.lead().await } else { self.follow().await }
+    }
+
+    /// Begins a field at every retrace at which the one before is done.
+    async fn lead(self) -> Result<(), Fault> {
+        self.gp.until("the first view from the host", || self.state.borrow().newest.as_ref().map(|_| ())).await;
+        let mut begin_at = self.gp.field() + 1;
+        loop {
+            let field = self.gp.until("a retrace", || Some(self.gp.field()).filter(|now| *now >= begin_at)).await + 1;
+            let view = self.gp.until("a view", || self.state.borrow().newest.clone()).await;
+            self.tell_others(field, &view).await;
+            self.field(field, &view).await;
+            let others = self.config.processors.len() - 1;
+            let finished = || (self.state.borrow_mut().finished(field) >= others).then_some(());
+            self.gp.until("the clumps of the other processors", finished).await;
+            self.gp.end(Stage::Render, field, None);
+            self.copy(field, true).await;
+            begin_at = if self.gp.field() < field { field } else { self.gp.field() + 1 };
+            if self.config.copy == Copy::Split {
+                self.gp.until("the retrace", || (self.gp.field() >= field).then_some(())).await;
+                self.copy(field, false).await;
+            }
+        }
+    }
+
+    /// Draws its share of every field that the leading GP begins.
+    async fn follow(self) -> Result<(), Fault> {
+        loop {
+            let (field, view) =
+                self.gp.until("the leading processor", || self.state.borrow_mut().begun.pop_front()).await;
+            self.field(field, &view).await;
+            // Queued behind the clumps, so it arrives when they have been accepted.
+            let words = [CLUMPS_ACCEPTED, field as Word, (field >> 32) as Word];
+            self.gp.send(self.config.processors[0], 3, Body::Words(words.into())).await;
+        }
+    }
+
+    async fn tell_others(&self, field: u64, view: &FrameView) {
+        let header = vec![BEGIN, field as Word, (field >> 32) as Word];
+        let words: Arc<[Word]> = [header, view.to_words()].concat().into();
+        let message = |node: &NodeId| (*node, words.len() as u32, Body::Words(Arc::clone(&words)));
+        let batch: Vec<_> = self.config.processors.iter().skip(1).map(message).collect();
+        if !batch.is_empty() {
+            self.gp.send_batch(batch).await;
+        }
+    }
+
+    /// Draws this GP's share of what is shown from the retrace of `field` on.
+    async fn field(&self, field: u64, view: &FrameView) {
+        self.gp.begin(Stage::Transform, field, None);
+        self.gp.spend(Span::from_ns(self.gp.timing().pass_ns)).await;
+        let picture = self.config.picture(FieldParity::of_field(field));
+        let mut clumps = self.share.clumps(CLUMP).peekable();
+        // Without a primitive the regions must be cleared all the same.
+        let nothing = clumps.peek().is_none().then(|| self.share.clone());
+        for (i, clump) in clumps.chain(nothing).enumerate() {
+            let passes = self.transform(&clump, view, picture).await;
+            self.gp.clump_buffer_free().await;
+            if i == 0 {
+                self.gp.begin(Stage::Render, field, None);
+            }
+            self.send(&passes, i == 0 && self.index == 0).await;
+        }
+        self.gp.end(Stage::Transform, field, None);
+    }
+
+    /// One pass over a clump for both eyes.
+    async fn transform(&self, clump: &Share, view: &FrameView, picture: Picture) -> [Arc<Pass>; 2] {
+        let passes = Eye::BOTH.map(|eye| clump.transform(view, eye.index(), picture));
+        let (timing, Counts { triangles, spheres }) = (self.gp.timing(), clump.counts());
+        let each = timing.triangle_ns * u64::from(triangles) + timing.sphere_ns * u64::from(spheres);
+        let entries: u64 = passes.iter().map(|pass| pass.entries()).sum();
+        self.gp.spend(Span::from_ns(2 * each + timing.bin_entry_ns * entries)).await;
+        passes
+    }
+
+    /// Sends a clump to all its regions as one chain of messages.
+    async fn send(&self, passes: &[Arc<Pass>; 2], begin: bool) {
+        let around = Around { begin, ..Around::default() };
+        let lists = self.binding.regions().iter().flat_map(|bound| {
+            let lists = region_messages(&passes[bound.eye.index()], bound.region, bound.context, around);
+            lists.into_iter().map(|list| self.addressed(bound.renderer, list))
+        });
+        let batch: Vec<_> = lists.collect();
+        if !batch.is_empty() {
+            self.gp.send_batch(batch).await;
+        }
+    }
+
+    fn addressed(&self, renderer: usize, list: CommandList) -> (NodeId, u32, Body) {
+        (self.config.renderers[renderer], list.words(), Body::Commands(list))
+    }
+
+    async fn copy(&self, field: u64, top: bool) -> Ticket {
+        let batch = (0..self.binding.renderers()).filter_map(|renderer| {
+            let regions = self.binding.copies(renderer, top);
+            let orders: Vec<_> = regions.iter().map(|bound| self.order(bound, field)).collect();
+            let list = copy_message(self.config.layout, orders, self.config.pixels);
+            (!regions.is_empty()).then(|| self.addressed(renderer, list))
+        });
+        self.gp.send_batch(batch.collect()).await
+    }
+
+    fn order(&self, bound: &BoundRegion, field: u64) -> CopyOrder {
+        CopyOrder { target: self.config.target(bound, field), context: bound.context, acknowledge: None }
+    }
+}
