@@ -1,5 +1,6 @@
 //! Instruction words to [`Instruction`].
 
+use crate::encode::register_mask;
 use crate::instruction::{Flags, Instruction, Op};
 use std::fmt;
 
@@ -54,7 +55,17 @@ pub fn decode(word: u32) -> Result<Instruction, IllegalWord> {
         op @ (0x10 | 0x11 | 0x14..=0x17 | 0x1A..=0x1F | 0x2D) => control(word, op, i),
         op => integer(word, op, i),
     }
+    .map(without_reserved_fields)
     .ok_or(IllegalWord(word))
+}
+
+/// Register fields that mean nothing for the operation read as zero.
+fn without_reserved_fields(mut i: Instruction) -> Instruction {
+    let mask = register_mask(&i, i.has(Flags::IMMEDIATE));
+    i.dest &= field(mask, 16);
+    i.src1 &= field(mask, 11);
+    i.src2 &= field(mask, 21);
+    i
 }
 
 fn memory(word: u32, op: u32, mut i: Instruction) -> Option<Instruction> {

@@ -16,27 +16,29 @@ pub fn encode(i: &Instruction) -> u32 {
         return FNOP | u32::from(i.has(Flags::DUAL)) << 9;
     }
     if i.is_floating() {
-        return 0x12 << 26 | registers | floating_code(i);
+        return 0x12 << 26 | floating_code(i) | registers & register_mask(i, false);
     }
     let immediate = u32::from(i.has(Flags::IMMEDIATE));
     let (code, low) = core_code(i, immediate);
     code << 26 | low | registers & register_mask(i, immediate != 0)
 }
 
-/// Which register fields exist next to the immediate or offset of this instruction.
-fn register_mask(i: &Instruction, immediate: bool) -> u32 {
-    use Op::{Bc, BcT, Bnc, BncT, Br, Call};
+/// Which register fields of the word mean something for this instruction.
+pub(crate) fn register_mask(i: &Instruction, immediate: bool) -> u32 {
+    use crate::mnemonic::Syntax;
     const SRC2: u32 = 31 << 21;
     const DEST: u32 = 31 << 16;
     const SRC1: u32 = 31 << 11;
-    match i.op {
-        Br | Call | Bc | BcT | Bnc | BncT => 0,
-        Op::StB | Op::StS | Op::StL | Op::Bte | Op::Btne | Op::Bla => SRC2 | SRC1,
-        Op::LdC => SRC2 | DEST,
-        Op::StC => SRC2 | SRC1,
-        Op::Lock | Op::Unlock | Op::Intovr | Op::Trap => SRC2 | DEST | SRC1,
-        _ if immediate => SRC2 | DEST,
-        _ => SRC2 | DEST | SRC1,
+    let first = if immediate { 0 } else { SRC1 };
+    match Syntax::of(i.op) {
+        Syntax::Bare | Syntax::Branch => 0,
+        Syntax::Store | Syntax::CompareBranch | Syntax::LoopBranch | Syntax::StoreControl => SRC2 | SRC1,
+        Syntax::LoadControl | Syntax::Second => SRC2 | DEST,
+        Syntax::Flush => SRC2,
+        Syntax::Register => SRC1,
+        Syntax::ToFloating | Syntax::ToInteger | Syntax::First => SRC1 | DEST,
+        Syntax::Trap | Syntax::Three => SRC2 | DEST | SRC1,
+        Syntax::Integer | Syntax::Load | Syntax::FloatingLoad | Syntax::FloatingStore => SRC2 | DEST | first,
     }
 }
 

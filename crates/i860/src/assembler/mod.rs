@@ -1,0 +1,376 @@
+//! Assembler in Intel's syntax: `operation src1, src2, dest`, addresses as `8(r4)`, `r5(r4)`, `8(r4)++`.
+//!
+//! | written | meaning |
+//! |---|---|
+//! | `label:` | the current address |
+//! | `name = expression`, `.equ name, expression` | a constant |
+//! | `.org`, `.align`, `.space` | places; gaps between instructions are filled with `nop` |
+//! | `.long .short .byte .float .double` | data |
+//! | `.macro name a, b` … `.endm` | `\a` is an argument, `\@` a number unique to the call |
+//! | `.rept n` … `.endr` | repetition |
+//! | `h%x l%x ha%x` | halves of a constant; `ha%` goes with a signed `l%` |
+//! | `mov`, `nop`, `fmov.ss .dd .sd .ds` | the usual pseudo-operations; `mov constant, r` takes one or two words |
+//!
+//! After layout every instruction is checked: see the list in the module `check`.
+
+mod check;
+mod expression;
+mod operand;
+mod source;
+
+use crate::encode::encode;
+use crate::instruction::{Flags, Instruction, Op};
+use crate::mnemonic::lookup;
+use expression::{Symbols, evaluate};
+use operand::Filler;
+use source::Line;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// A fault in the source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AssemblyError {
+    /// File name as given.
+    pub file: String,
+    /// Line from 1; of the call, for text from a macro.
+    pub line: usize,
+    /// What is wrong: expected and found.
+    pub reason: String,
+}
+
+impl fmt::Display for AssemblyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}: {}", self.file, self.line, self.reason)
+    }
+}
+
+impl std::error::Error for AssemblyError {}
+
+/// All faults of a source, in the order of its lines.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AssemblyErrors(
+    /// At least one.
+    pub Vec<AssemblyError>,
+);
+
+impl fmt::Display for AssemblyErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let lines: Vec<String> = self.0.iter().map(AssemblyError::to_string).collect();
+        f.write_str(&lines.join("\n"))
+    }
+}
+
+impl std::error::Error for AssemblyErrors {}
+
+/// An assembled program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Program {
+    /// Address of the first byte.
+    pub base: u32,
+    /// Contents from `base`.
+    pub bytes: Vec<u8>,
+    /// Labels and constants.
+    pub symbols: BTreeMap<String, u32>,
+    /// Labels only, by address.
+    pub labels: Vec<(String, u32)>,
+    /// Source line of every instruction, by address.
+    pub lines: Vec<(u32, usize)>,
+}
+
+impl Program {
+    /// The contents as words (the last one filled up with zeros).
+    #[must_use]
+    pub fn words(&self) -> Vec<u32> {
+        let word = |b: &[u8]| (0..4).map(|n| u32::from(b.get(n).copied().unwrap_or(0)) << (8 * n)).sum();
+        self.bytes.chunks(4).map(word).collect()
+    }
+
+    /// Value of a label or constant.
+    #[must_use]
+    pub fn symbol(&self, name: &str) -> Option<u32> {
+        self.symbols.get(name).copied()
+    }
+}
+
+/// What a line puts into memory.
+#[derive(Clone, Debug)]
+enum Item {
+    Instruction { template: Instruction, operands: String },
+    Integers { size: u32, values: Vec<String> },
+    Floats { double: bool, values: Vec<String> },
+    Gap { end: u32 },
+}
+
+#[derive(Clone, Debug)]
+struct Placed {
+    address: u32,
+    line: usize,
+    item: Item,
+}
+
+/// `label: rest`, or no label.
+fn split_label(text: &str) -> (Option<&str>, &str) {
+    match text.split_once(':') {
+        Some((label, rest)) if is_name(label.trim()) => (Some(label.trim()), rest.trim()),
+        _ => (None, text),
+    }
+}
+
+fn is_name(text: &str) -> bool {
+    let starts = text.starts_with(|c: char| c.is_ascii_alphabetic() || "_.$".contains(c));
+    starts && text.chars().all(|c| c.is_ascii_alphanumeric() || "_.$@".contains(c))
+}
+
+/// Bytes that a program may occupy.
+const MOST_BYTES: u32 = 16 << 20;
+
+struct Assembler<'a> {
+    file: &'a str,
+    base: u32,
+    here: u32,
+    symbols: Symbols,
+    labels: Vec<(String, u32)>,
+    placed: Vec<Placed>,
+    errors: Vec<AssemblyError>,
+}
+
+/// Assembles a source; `file` names it in errors, `base` is the address of its first byte.
+///
+/// # Errors
+/// All faults, each with file, line and reason.
+///
+/// ```
+/// let program = i860::assemble("sum.s", 0x1000, "
+///     loop: adds  r5, r6, r6
+///           bla   r7, r8, loop
+///           nop
+/// ").unwrap();
+/// assert_eq!(program.words()[2], 0xA000_0000);
+/// assert_eq!(program.symbol("loop"), Some(0x1000));
+/// ```
+pub fn assemble(file: &str, base: u32, source: &str) -> Result<Program, AssemblyErrors> {
+    let lines = source::expand(file, source).map_err(|e| AssemblyErrors(vec![e]))?;
+    let mut assembler = Assembler {
+        file,
+        base,
+        here: base,
+        symbols: Symbols::new(),
+        labels: Vec::new(),
+        placed: Vec::new(),
+        errors: Vec::new(),
+    };
+    for line in &lines {
+        if let Err(reason) = assembler.place(line) {
+            assembler.fault(line.number, reason);
+        }
+    }
+    assembler.finish()
+}
+
+/// Assembles one instruction at an address, without the checks that need its neighbours.
+///
+/// # Errors
+/// What is wrong with the text.
+pub fn instruction_word(text: &str, pc: u32) -> Result<u32, String> {
+    let (word, rest) = split_word(text.trim());
+    let instructions = pseudo(word, rest).unwrap_or_else(|| Ok(vec![plain(word, rest)?]))?;
+    let [(i, operands)] = instructions.as_slice() else {
+        return Err(format!("`{text}` takes more than one word"));
+    };
+    let symbols = Symbols::new();
+    Filler { i: *i, pc, symbols: &symbols }.fill(&operand::split(operands)).map(|i| encode(&i))
+}
+
+fn split_word(text: &str) -> (&str, &str) {
+    text.split_once(char::is_whitespace).map_or((text, ""), |(word, rest)| (word, rest.trim()))
+}
+
+fn plain(word: &str, operands: &str) -> Result<(Instruction, String), String> {
+    let i = lookup(word).ok_or_else(|| format!("`{word}` is not an operation"))?;
+    Ok((i, operands.to_owned()))
+}
+
+type Instructions = Result<Vec<(Instruction, String)>, String>;
+
+/// Operations that stand for others.
+fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
+    let (prefix, name) = word.strip_prefix("d.").map_or(("", word), |rest| ("d.", rest));
+    let (pipe, name) = name.strip_prefix('p').filter(|n| n.starts_with("fmov")).map_or(("", name), |n| ("p", n));
+    let parts = operand::split(operands);
+    let one = |name: String, operands: String| Some(plain(&name, &operands).map(|i| vec![i]));
+    match (name, parts.as_slice()) {
+        ("nop", []) if prefix.is_empty() => one("shl".to_owned(), "r0, r0, r0".to_owned()),
+        ("mov", [from, to]) if prefix.is_empty() => Some(mov(from, to)),
+        ("fmov.ss" | "fmov.dd", [from, to]) => {
+            one(format!("{prefix}{pipe}fiadd{}", &name[4..]), format!("{from}, f0, {to}"))
+        }
+        ("fmov.sd" | "fmov.ds", [from, to]) => one(format!("{prefix}{pipe}famov{}", &name[4..]), format!("{from}, {to}")),
+        _ => None,
+    }
+}
+
+/// A register move, or a constant in one word where a plain number allows it, else two.
+fn mov(from: &str, to: &str) -> Instructions {
+    if from.starts_with(['r', 's', 'f']) && !from.contains('%') {
+        return Ok(vec![plain("shl", &format!("r0, {from}, {to}"))?]);
+    }
+    let low = |base: &str| plain("or", &format!("l%({from}), {base}, {to}"));
+    match evaluate(from, &Symbols::new()) {
+        Ok(value) if !(-0x8000_0000..=0xFFFF_FFFF).contains(&value) => Err(format!("{value} does not fit 32 bits")),
+        Ok(value) if (0..0x1_0000).contains(&value) => Ok(vec![low("r0")?]),
+        Ok(value) if (-0x8000..0).contains(&value) => Ok(vec![plain("adds", &format!("{value}, r0, {to}"))?]),
+        Ok(value) if value & 0xFFFF == 0 => Ok(vec![plain("orh", &format!("h%({from}), r0, {to}"))?]),
+        _ => Ok(vec![plain("orh", &format!("h%({from}), r0, {to}"))?, low(to)?]),
+    }
+}
+
+impl Assembler<'_> {
+    fn fault(&mut self, line: usize, reason: String) {
+        self.errors.push(AssemblyError { file: self.file.to_owned(), line, reason });
+    }
+
+    fn define(&mut self, name: &str, value: i64) -> Result<(), String> {
+        if !is_name(name) {
+            return Err(format!("`{name}` is not a name"));
+        }
+        match self.symbols.insert(name.to_owned(), value) {
+            Some(_) => Err(format!("`{name}` is defined twice")),
+            None => Ok(()),
+        }
+    }
+
+    fn place(&mut self, line: &Line) -> Result<(), String> {
+        let (label, statement) = split_label(&line.text);
+        if let Some(label) = label {
+            self.define(label, i64::from(self.here))?;
+            self.labels.push((label.to_owned(), self.here));
+        }
+        if let Some((name, value)) = statement.split_once('=').filter(|(name, _)| is_name(name.trim())) {
+            let value = evaluate(value, &self.symbols)?;
+            return self.define(name.trim(), value);
+        }
+        let (word, rest) = split_word(statement);
+        match word {
+            "" => Ok(()),
+            _ if word.starts_with('.') => self.directive(word, rest, line.number),
+            _ => self.instruction(word, rest, line.number),
+        }
+    }
+
+    fn push(&mut self, line: usize, item: Item, bytes: u32) -> Result<(), String> {
+        let used = self.here.wrapping_sub(self.base);
+        if used.checked_add(bytes).is_none_or(|total| total > MOST_BYTES) {
+            return Err(format!("the program is longer than {MOST_BYTES} bytes"));
+        }
+        self.placed.push(Placed { address: self.here, line, item });
+        self.here = self.here.wrapping_add(bytes);
+        Ok(())
+    }
+
+    fn instruction(&mut self, word: &str, rest: &str, line: usize) -> Result<(), String> {
+        if self.here % 4 != 0 {
+            return Err(format!("an instruction at {:#x}, which is not a multiple of 4", self.here));
+        }
+        let instructions = pseudo(word, rest).unwrap_or_else(|| Ok(vec![plain(word, rest)?]))?;
+        for (template, operands) in instructions {
+            self.push(line, Item::Instruction { template, operands }, 4)?;
+        }
+        Ok(())
+    }
+
+    fn directive(&mut self, word: &str, rest: &str, line: usize) -> Result<(), String> {
+        let values = || operand::split(rest).into_iter().map(str::to_owned).collect::<Vec<_>>();
+        let count = values().len() as u32;
+        match word {
+            ".text" | ".data" | ".globl" | ".file" => Ok(()),
+            ".equ" | ".set" => {
+                let (name, value) = rest.split_once(',').ok_or_else(|| format!("{word} needs a name and a value"))?;
+                let value = evaluate(value, &self.symbols)?;
+                self.define(name.trim(), value)
+            }
+            ".long" | ".word" => self.push(line, Item::Integers { size: 4, values: values() }, 4 * count),
+            ".short" => self.push(line, Item::Integers { size: 2, values: values() }, 2 * count),
+            ".byte" => self.push(line, Item::Integers { size: 1, values: values() }, count),
+            ".float" => self.push(line, Item::Floats { double: false, values: values() }, 4 * count),
+            ".double" => self.push(line, Item::Floats { double: true, values: values() }, 8 * count),
+            ".org" | ".align" | ".space" => self.gap(word, rest, line),
+            _ => Err(format!("`{word}` is not a directive")),
+        }
+    }
+
+    fn gap(&mut self, word: &str, rest: &str, line: usize) -> Result<(), String> {
+        let value = evaluate(rest, &self.symbols)?;
+        let number = u32::try_from(value).map_err(|_| format!("{word} {value} is out of range"))?;
+        let end = match word {
+            ".align" if !number.is_power_of_two() => return Err(format!(".align {number} is not a power of two")),
+            ".align" => self.here.checked_next_multiple_of(number),
+            ".space" => self.here.checked_add(number),
+            _ => Some(number).filter(|n| *n >= self.here),
+        };
+        let end = end.ok_or_else(|| format!("{word} {number:#x} does not lie ahead of {:#x}", self.here))?;
+        self.push(line, Item::Gap { end }, end - self.here)
+    }
+
+    fn finish(mut self) -> Result<Program, AssemblyErrors> {
+        let (mut bytes, mut instructions) = (Vec::new(), Vec::new());
+        for placed in std::mem::take(&mut self.placed) {
+            match self.emit(&placed) {
+                Ok((data, decoded)) => {
+                    bytes.extend(data);
+                    instructions.extend(decoded.map(|i| (placed.address, placed.line, i)));
+                }
+                Err(reason) => self.fault(placed.line, reason),
+            }
+        }
+        for (line, reason) in check::faults(&instructions) {
+            self.fault(line, reason);
+        }
+        self.errors.sort_by_key(|e| e.line);
+        if !self.errors.is_empty() {
+            return Err(AssemblyErrors(self.errors));
+        }
+        let symbols = self.symbols.into_iter().map(|(name, value)| (name, value as u32)).collect();
+        let lines = instructions.iter().map(|(address, line, _)| (*address, *line)).collect();
+        self.labels.sort_by_key(|(_, address)| *address);
+        Ok(Program { base: self.base, bytes, symbols, labels: self.labels, lines })
+    }
+
+    fn emit(&self, placed: &Placed) -> Result<(Vec<u8>, Option<Instruction>), String> {
+        let mut bytes = Vec::new();
+        match &placed.item {
+            Item::Instruction { template, operands } => {
+                let filler = Filler { i: *template, pc: placed.address, symbols: &self.symbols };
+                let i = filler.fill(&operand::split(operands))?;
+                return Ok((encode(&i).to_le_bytes().to_vec(), Some(i)));
+            }
+            Item::Integers { size, values } => {
+                for text in values {
+                    let value = evaluate(text, &self.symbols)?;
+                    let bits = 8 * size;
+                    if !(-(1 << (bits - 1))..1 << bits).contains(&value) {
+                        return Err(format!("{value} does not fit {bits} bits"));
+                    }
+                    bytes.extend(&value.to_le_bytes()[..*size as usize]);
+                }
+            }
+            Item::Floats { double, values } => {
+                for text in values {
+                    let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+                    match double {
+                        true => bytes.extend(value.to_le_bytes()),
+                        false => bytes.extend((value as f32).to_le_bytes()),
+                    }
+                }
+            }
+            Item::Gap { end } => fill_gap(&mut bytes, placed.address, *end),
+        }
+        Ok((bytes, None))
+    }
+}
+
+/// Whole words are `nop`, so that code can run across an alignment.
+fn fill_gap(bytes: &mut Vec<u8>, from: u32, to: u32) {
+    let nop = Instruction { op: Op::Shl, flags: Flags(0), ..Instruction::new(Op::Shl) };
+    let nop = encode(&nop).to_le_bytes();
+    bytes.extend((from..to).map(|address| if from % 4 == 0 && to % 4 == 0 { nop[(address % 4) as usize] } else { 0 }));
+}

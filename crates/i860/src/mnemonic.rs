@@ -1,0 +1,328 @@
+//! Names of instructions, both ways, and the operands that each takes.
+
+use crate::decode::decode;
+use crate::encode::encode;
+use crate::instruction::{Flags, Instruction, Op};
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+/// Which operands an instruction is written with, in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Syntax {
+    /// None.
+    Bare,
+    /// `src1 or immediate, src2, dest`.
+    Integer,
+    /// `address, dest`.
+    Load,
+    /// `src1, address`.
+    Store,
+    /// `address, fdest`, perhaps with `++`.
+    FloatingLoad,
+    /// `fdest, address`, perhaps with `++`.
+    FloatingStore,
+    /// `control, dest`.
+    LoadControl,
+    /// `src1, control`.
+    StoreControl,
+    /// `src1, fdest`.
+    ToFloating,
+    /// `fsrc1, dest`.
+    ToInteger,
+    /// `address`, perhaps with `++`.
+    Flush,
+    /// `src1, src2, dest`, or nothing.
+    Trap,
+    /// `src1`.
+    Register,
+    /// `target`.
+    Branch,
+    /// `src1 or 5-bit constant, src2, target`.
+    CompareBranch,
+    /// `src1, src2, target`.
+    LoopBranch,
+    /// `fsrc1, fsrc2, fdest`.
+    Three,
+    /// `fsrc1, fdest`.
+    First,
+    /// `fsrc2, fdest`.
+    Second,
+}
+
+impl Syntax {
+    pub(crate) fn of(op: Op) -> Syntax {
+        use Op::{Bc, BcT, Bnc, BncT, Br, Bri, Bte, Btne, Call, Calli, LdB, LdC, LdL, LdS, Pfld, StB, StC, StL, StS};
+        match op {
+            Op::Lock | Op::Unlock | Op::Intovr | Op::Fnop => Syntax::Bare,
+            LdB | LdS | LdL => Syntax::Load,
+            StB | StS | StL => Syntax::Store,
+            Op::Fld | Pfld => Syntax::FloatingLoad,
+            Op::Fst | Op::Pst => Syntax::FloatingStore,
+            LdC => Syntax::LoadControl,
+            StC => Syntax::StoreControl,
+            Op::Ixfr => Syntax::ToFloating,
+            Op::Fxfr => Syntax::ToInteger,
+            Op::Flush => Syntax::Flush,
+            Op::Trap => Syntax::Trap,
+            Bri | Calli => Syntax::Register,
+            Br | Call | Bc | BcT | Bnc | BncT => Syntax::Branch,
+            Bte | Btne => Syntax::CompareBranch,
+            Op::Bla => Syntax::LoopBranch,
+            Op::Frcp | Op::Frsqr => Syntax::Second,
+            Op::Fix | Op::Ftrunc | Op::Famov | Op::Form => Syntax::First,
+            _ if op > Op::Fnop => Syntax::Three,
+            _ => Syntax::Integer,
+        }
+    }
+}
+
+/// Names of the data paths by DPC with `_` for p (plus) or s (minus): pfam/pfsm, then pfmam/pfmsm.
+const PATHS: [[&str; 16]; 2] = [
+    [
+        "r2_1", "r2_t", "r2a_1", "r2a_t", "i2_1", "i2_t", "i2a_1", "i2a_t", "rat1_2", "m12a_m", "ra1_2", "m12tt_a",
+        "iat1_2", "m12t_m", "ia1_2", "m12t_a",
+    ],
+    [
+        "mr2_1", "mr2_t", "mr2m_1", "mr2m_t", "mi2_1", "mi2_t", "mi2m_1", "mi2m_t", "mrmt1_2", "mm12m_m", "mrm1_2",
+        "mm12tt_m", "mimt1_2", "mm12t_m", "mim1_2", "",
+    ],
+];
+
+fn base_name(op: Op) -> &'static str {
+    match op {
+        Op::LdB => "ld.b",
+        Op::LdS => "ld.s",
+        Op::LdL => "ld.l",
+        Op::StB => "st.b",
+        Op::StS => "st.s",
+        Op::StL => "st.l",
+        Op::Fld => "fld",
+        Op::Fst => "fst",
+        Op::Pfld => "pfld",
+        Op::Pst => "pst",
+        Op::LdC => "ld.c",
+        Op::StC => "st.c",
+        Op::Ixfr => "ixfr",
+        Op::Flush => "flush",
+        Op::Trap => "trap",
+        Op::Lock => "lock",
+        Op::Unlock => "unlock",
+        Op::Calli => "calli",
+        Op::Intovr => "intovr",
+        Op::Bri => "bri",
+        Op::Bte => "bte",
+        Op::Btne => "btne",
+        Op::Br => "br",
+        Op::Call => "call",
+        Op::Bc => "bc",
+        Op::BcT => "bc.t",
+        Op::Bnc => "bnc",
+        Op::BncT => "bnc.t",
+        Op::Bla => "bla",
+        _ => arithmetic_name(op),
+    }
+}
+
+fn arithmetic_name(op: Op) -> &'static str {
+    match op {
+        Op::Addu => "addu",
+        Op::Subu => "subu",
+        Op::Adds => "adds",
+        Op::Subs => "subs",
+        Op::Shl => "shl",
+        Op::Shr => "shr",
+        Op::Shrd => "shrd",
+        Op::Shra => "shra",
+        Op::And => "and",
+        Op::Andh => "andh",
+        Op::Andnot => "andnot",
+        Op::Andnoth => "andnoth",
+        Op::Or => "or",
+        Op::Orh => "orh",
+        Op::Xor => "xor",
+        Op::Xorh => "xorh",
+        _ => floating_name(op),
+    }
+}
+
+fn floating_name(op: Op) -> &'static str {
+    match op {
+        Op::Fnop => "fnop",
+        Op::Fmul => "fmul",
+        Op::Fmlow => "fmlow",
+        Op::Frcp => "frcp",
+        Op::Frsqr => "frsqr",
+        Op::Fadd => "fadd",
+        Op::Fsub => "fsub",
+        Op::Fix => "fix",
+        Op::Famov => "famov",
+        Op::Pfgt => "fgt",
+        Op::Pfle => "fle",
+        Op::Pfeq => "feq",
+        Op::Ftrunc => "ftrunc",
+        Op::Fxfr => "fxfr",
+        Op::Fiadd => "fiadd",
+        Op::Fisub => "fisub",
+        Op::Faddp => "faddp",
+        Op::Faddz => "faddz",
+        Op::Fzchkl => "fzchkl",
+        Op::Form => "form",
+        _ => "fzchks",
+    }
+}
+
+fn path_name(i: &Instruction) -> String {
+    let table = &PATHS[usize::from(!i.has(Flags::PIPELINED))];
+    let sign = if i.imm & 16 != 0 { "s" } else { "p" };
+    table[(i.imm & 15) as usize].replace('_', sign)
+}
+
+fn suffix(i: &Instruction) -> &'static str {
+    let (s, r) = (i.has(Flags::SOURCE_DOUBLE), i.has(Flags::RESULT_DOUBLE));
+    match i.op {
+        Op::Fld | Op::Fst | Op::Pfld | Op::Pst => match i.size {
+            4 => ".l",
+            8 => ".d",
+            _ => ".q",
+        },
+        Op::Fnop | Op::Fxfr | Op::Faddp | Op::Faddz | Op::Fzchkl | Op::Fzchks | Op::Form => "",
+        Op::Pfgt | Op::Pfle | Op::Pfeq => [".ss", ".dd"][usize::from(s)],
+        _ if i.is_floating() => [".ss", ".sd", ".ds", ".dd"][2 * usize::from(s) + usize::from(r)],
+        _ => "",
+    }
+}
+
+/// The mnemonic of an instruction, with its `d.` prefix.
+#[must_use]
+pub fn mnemonic(i: &Instruction) -> String {
+    let dual = if i.is_floating() && i.has(Flags::DUAL) { "d." } else { "" };
+    if i.op == Op::DualOp {
+        return format!("{dual}{}{}", path_name(i), suffix(i));
+    }
+    let pipelined = if i.is_floating() && i.has(Flags::PIPELINED) { "p" } else { "" };
+    format!("{dual}{pipelined}{}{}", base_name(i.op), suffix(i))
+}
+
+/// A fixed choice where the encoding leaves one: the bits that Intel's assembler sets.
+fn is_canonical(i: &Instruction) -> bool {
+    let double = Flags(Flags::SOURCE_DOUBLE.0 | Flags::RESULT_DOUBLE.0);
+    match i.op {
+        Op::Faddp | Op::Faddz | Op::Fzchkl | Op::Fzchks | Op::Form => i.has(double),
+        Op::Fxfr => i.flags.0 & double.0 == 0,
+        Op::Pfeq => !i.has(Flags::RESULT_DOUBLE),
+        _ => true,
+    }
+}
+
+/// All mnemonics without `d.`, each with its instruction, registers and immediates zero.
+pub(crate) fn templates() -> &'static BTreeMap<String, Instruction> {
+    static TABLE: OnceLock<BTreeMap<String, Instruction>> = OnceLock::new();
+    TABLE.get_or_init(|| {
+        let mut table = BTreeMap::new();
+        for i in every_word().filter_map(|word| decode(word).ok()).filter(is_canonical) {
+            let name = mnemonic(&i);
+            let plain = Flags(i.flags.0 & !(Flags::IMMEDIATE.0 | Flags::AUTOINCREMENT.0));
+            table.entry(name).or_insert(Instruction { flags: plain, ..i });
+        }
+        table
+    })
+}
+
+/// One word of every form: all major opcodes, sizes, escapes, and floating-point operations.
+fn every_word() -> impl Iterator<Item = u32> {
+    let floating = (0..2048u32).filter(|low| low & 0x200 == 0).map(|low| 0x12 << 26 | low);
+    let core = (0..64u32).filter(|op| *op != 0x12).flat_map(|op| (0..8).map(move |low| op << 26 | low));
+    core.chain(floating).chain([crate::decode::FNOP])
+}
+
+/// The instruction that a mnemonic names, with its D bit.
+pub(crate) fn lookup(name: &str) -> Option<Instruction> {
+    let (plain, dual) = match name.strip_prefix("d.") {
+        Some(rest) => (rest, true),
+        None => (name, false),
+    };
+    let mut i = *templates().get(plain)?;
+    if dual && !i.is_floating() {
+        return None;
+    }
+    i.flags = i.flags.with(Flags::DUAL, dual);
+    Some(i)
+}
+
+/// Control registers by number.
+pub(crate) const CONTROL_REGISTERS: [&str; 6] = ["fir", "psr", "dirbase", "db", "fsr", "epsr"];
+
+/// The text of a word at an address, as the assembler takes it; `.long` when no instruction gives the word back.
+#[must_use]
+pub fn disassemble(word: u32, pc: u32) -> String {
+    let text = decode(word).ok().map(|i| text(&i, pc));
+    let faithful = text.filter(|text| crate::assembler::instruction_word(text, pc).ok() == Some(word));
+    faithful.unwrap_or_else(|| format!(".long {word:#010x}"))
+}
+
+fn text(i: &Instruction, pc: u32) -> String {
+    let operands = operands(i, pc);
+    let name = mnemonic(i);
+    if encode(i) == 0xA000_0000 {
+        return "nop".to_owned();
+    }
+    if operands.is_empty() { name } else { format!("{name} {operands}") }
+}
+
+fn address(i: &Instruction) -> String {
+    let increment = if i.has(Flags::AUTOINCREMENT) { "++" } else { "" };
+    if i.has(Flags::IMMEDIATE) || matches!(i.op, Op::StB | Op::StS | Op::StL) {
+        format!("{}(r{}){increment}", i.imm, i.src2)
+    } else {
+        format!("r{}(r{}){increment}", i.src1, i.src2)
+    }
+}
+
+fn operands(i: &Instruction, pc: u32) -> String {
+    let (a, b, d) = (i.src1, i.src2, i.dest);
+    let target = pc.wrapping_add(4).wrapping_add((i.imm as u32) << 2);
+    let control = |n: u8| CONTROL_REGISTERS.get(usize::from(n)).copied().unwrap_or("?");
+    let first = match i.has(Flags::IMMEDIATE) {
+        true if i.op == Op::Bte || i.op == Op::Btne => a.to_string(),
+        true => i.imm.to_string(),
+        false => format!("r{a}"),
+    };
+    match Syntax::of(i.op) {
+        Syntax::Bare => String::new(),
+        Syntax::Integer => format!("{first}, r{b}, r{d}"),
+        Syntax::Load => format!("{}, r{d}", address(i)),
+        Syntax::Store => format!("r{a}, {}", address(i)),
+        Syntax::FloatingLoad => format!("{}, f{d}", address(i)),
+        Syntax::FloatingStore => format!("f{d}, {}", address(i)),
+        Syntax::LoadControl => format!("{}, r{d}", control(b)),
+        Syntax::StoreControl => format!("r{a}, {}", control(b)),
+        Syntax::ToFloating => format!("r{a}, f{d}"),
+        Syntax::ToInteger => format!("f{a}, r{d}"),
+        Syntax::Flush => address(i),
+        Syntax::Trap => format!("r{a}, r{b}, r{d}"),
+        Syntax::Register => format!("r{a}"),
+        Syntax::Branch => format!("{target:#x}"),
+        Syntax::CompareBranch => format!("{first}, r{b}, {target:#x}"),
+        Syntax::LoopBranch => format!("r{a}, r{b}, {target:#x}"),
+        Syntax::Three => format!("f{a}, f{b}, f{d}"),
+        Syntax::First => format!("f{a}, f{d}"),
+        Syntax::Second => format!("f{b}, f{d}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::templates;
+
+    #[test]
+    fn the_mnemonics_of_the_xr_part_are_all_there() {
+        let names: Vec<&str> = templates().keys().map(String::as_str).collect();
+        // 4 families of dual operations, 16 + 16 + 15 + 15 data paths in the three precisions .ss .sd .dd.
+        let is_path = |n: &&&str| n.starts_with(['r', 'i', 'm']) && !["ixfr", "intovr"].contains(n);
+        assert_eq!(names.iter().filter(is_path).count(), 62 * 3);
+        for name in ["ld.c", "pst.d", "fst.q", "pfmul.dd", "famov.ds", "pfle.dd", "m12apm.ss", "mim1s2.dd", "bla"] {
+            assert!(names.contains(&name), "{name}");
+        }
+        assert!(!names.contains(&"pfld.q") && !names.contains(&"fadd.ds") && !names.contains(&"frcp.ds"));
+    }
+}

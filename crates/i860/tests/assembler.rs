@@ -1,0 +1,152 @@
+//! Assembler and disassembler: round trips, and every check with its line and reason.
+
+use i860::{assemble, decode, disassemble, encode, instruction_word};
+use proptest::prelude::*;
+
+#[track_caller]
+fn fault(source: &str) -> (usize, String) {
+    let errors = assemble("t.s", 0x1000, source).expect_err("the source is wrong").0;
+    (errors[0].line, errors[0].reason.clone())
+}
+
+#[track_caller]
+fn assert_fault(source: &str, line: usize, reason: &str) {
+    let (at, found) = fault(source);
+    assert!(at == line && found.contains(reason), "line {at}: {found}");
+}
+
+#[test]
+fn words_known_from_published_encodings_come_out() {
+    for (text, word) in [
+        ("nop", 0xA000_0000),
+        ("fnop", 0xB000_0000),
+        ("d.fnop", 0xB000_0200),
+        ("fmul.ss f4, f5, f6", 0x48A6_2020),
+        ("pfgt.dd f4, f6, f0", 0x48C0_2534),
+        ("m12apm.ss f4, f6, f0", 0x48C0_2409),
+        ("adds -1, r4, r4", 0x9484_FFFF),
+        ("orh 0x1234, r0, r31", 0xEC1F_1234),
+        ("fld.d 8(r4)++, f8", 0x2488_0009),
+    ] {
+        let found = instruction_word(text, 0).expect(text);
+        assert_eq!(found, word, "{text}: {found:08x}");
+    }
+}
+
+#[test]
+fn labels_macros_and_constants_make_a_program() {
+    let program = assemble(
+        "t.s",
+        0x1000,
+        "size = 4 * 3
+         .macro add3 a, b
+         loop\\@: adds \\a, \\b, \\b
+         br loop\\@
+         nop
+         .endm
+         start: add3 r5, r6
+         add3 r7, r8
+         .align 16
+         data: .long size, start
+         .float 1.5
+         mov 0x12345678, r9",
+    )
+    .expect("correct");
+    let words = program.words();
+    assert_eq!(program.symbol("data"), Some(0x1020));
+    assert_eq!(words[8..11], [12, 0x1000, 1.5f32.to_bits()]);
+    assert_eq!(disassemble(words[1], 0x1004), "br 0x1000");
+    assert_eq!(disassemble(words[4], 0x1010), "br 0x100c");
+    assert_eq!(words[6], 0xA000_0000, "alignment is filled with nop");
+    assert_eq!((disassemble(words[11], 0), disassemble(words[12], 0)), ("orh 4660, r0, r9".into(), "or 22136, r9, r9".into()));
+}
+
+#[test]
+fn repetition_writes_its_block_out() {
+    let program = assemble("t.s", 0, ".rept 3\nadds 1, r4, r4\n.endr").expect("correct");
+    assert_eq!(program.words(), vec![0x9484_0001; 3]);
+}
+
+#[test]
+fn pairing_faults_name_their_line() {
+    assert_fault("nop\nd.fadd.ss f2, f3, f4\nnop", 2, "multiple of 8");
+    assert_fault("d.fnop\nnop\nnop\nnop", 3, "expected a floating-point instruction");
+    assert_fault("d.fnop\nnop\nd.fnop\nfadd.ss f2, f3, f4", 4, "expected a core instruction");
+    assert_fault("d.fnop\nnop\nd.fadd.ss f2,f3,f4\nfld.l 0(r5),f4", 4, "the same register");
+    assert_fault("d.fnop\nnop\nd.pfgt.ss f2,f3,f0\nadds 1,r4,r4", 4, "set CC");
+    assert_fault("d.fnop\nnop\nd.pfgt.ss f2,f3,f0\nbc.t 0x1000\nd.fnop\nnop", 4, "beside a compare");
+    assert_fault("d.fnop\nnop\nd.fnop", 3, "lacks its core instruction");
+}
+
+#[test]
+fn a_stretch_that_leaves_dual_mode_by_the_rule_is_accepted() {
+    let pairs = "d.fnop\nnop\nd.fnop\nnop\nfnop\nnop\nfnop\nnop\nadds 1,r4,r4\nadds 1,r4,r4";
+    assert!(assemble("t.s", 0, pairs).is_ok());
+    let short = "d.fnop\nnop\nfnop\nnop\nadds 1,r4,r4";
+    assert!(assemble("t.s", 0, short).is_ok());
+}
+
+#[test]
+fn single_instruction_faults_name_their_line() {
+    assert_fault("nop\nfoo r1", 2, "`foo` is not an operation");
+    assert_fault("adds r1, r2", 1, "expected 3 operands, found 2");
+    assert_fault("adds 40000, r2, r3", 1, "40000 is not in");
+    assert_fault("and -1, r2, r3", 1, "-1 is not in");
+    assert_fault("fadd.dd f3, f4, f6", 1, "multiple of 2");
+    assert_fault("fld.q 0(r4), f6", 1, "multiple of 4");
+    assert_fault("fld.d 4(r4), f6", 1, "displacement 4 is not a multiple of 8");
+    assert_fault("ld.l 0(r4)++, r6", 1, "increment");
+    assert_fault("br nowhere\nnop", 1, "`nowhere` is not defined");
+    assert_fault("bte r1, r2, 0x100000", 1, "words away");
+    assert_fault("a: nop\na: nop", 2, "defined twice");
+    assert_fault("pfmul.ss f4, f5, f4", 1, "first source as destination");
+    assert_fault("bla r4, r4, 0x1000\nnop", 1, "two different registers");
+    assert_fault("br 0x1000\nbr 0x1000\nnop", 2, "in the slot");
+    assert_fault("call 0x1000\nmov r0, r1", 2, "must not write r1");
+    assert_fault("r9: nop\n.org 0x10", 2, "does not lie ahead");
+    assert_fault(".macro m a\nm \\a\n.endm\nm 1", 4, "calls itself");
+    assert_fault("d.adds r1, r2, r3", 1, "is not an operation");
+}
+
+#[test]
+fn all_faults_of_a_source_are_reported_in_line_order() {
+    let errors = assemble("t.s", 0, "foo\nadds r1\nbte 32, r1, 0").expect_err("wrong").0;
+    assert_eq!(errors.iter().map(|e| e.line).collect::<Vec<_>>(), [1, 2, 3]);
+    assert_eq!(errors[0].to_string(), "t.s:1: `foo` is not an operation");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn what_is_decoded_encodes_to_a_word_that_decodes_alike(word: u32) {
+        if let Ok(i) = decode(word) {
+            prop_assert_eq!(decode(encode(&i)), Ok(i));
+        }
+    }
+
+    #[test]
+    fn the_text_of_any_word_assembles_to_that_word(word: u32, pc in 0u32..0x1000_0000) {
+        let pc = pc & !7;
+        let text = disassemble(word, pc);
+        if !text.starts_with(".long") {
+            prop_assert_eq!(instruction_word(&text, pc), Ok(word));
+        }
+    }
+
+    #[test]
+    fn floating_words_have_a_text(low in 0u32..2048, registers: u32) {
+        let word = 0x12 << 26 | (registers & 0x03DE_F000) | low;
+        let text = disassemble(word, 0);
+        let bits_without_meaning = [0x40, 0x50, 0x51, 0x57, 0x5A, 0x5F, 0x35].contains(&(low & 0x7F));
+        let fields_used = decode(word).is_ok_and(|i| encode(&i) == word);
+        if fields_used && !bits_without_meaning {
+            prop_assert!(!text.starts_with(".long"), "{:08x} {}", word, text);
+        }
+    }
+
+    #[test]
+    fn any_source_gives_a_program_or_errors(source in "[a-z0-9 .,:()%+\\-\n\\\\]{0,200}") {
+        let _ = assemble("any.s", 0, &source);
+    }
+}
