@@ -217,8 +217,14 @@ pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone)
         return (DVec3::ZERO, 0.0);
     }
     let middle = (low + high) / 2.0;
-    let reach = |(centre, radius): (DVec3, f64)| (centre - middle).length() + radius;
+    let reach = |(centre, radius): (DVec3, f64)| length(centre - middle) + radius;
     (middle, balls.map(reach).fold(0.0, f64::max))
+}
+
+/// Length of a vector whose square may leave the range of f64.
+fn length(v: DVec3) -> f64 {
+    let largest = v.abs().max_element();
+    if largest > 0.0 { (v / largest).length() * largest } else { 0.0 }
 }
 
 fn whole(parts: &SceneParts) -> Structure {
@@ -271,7 +277,7 @@ impl SceneParts {
             }
             // f32 keeps a unit length to about 1e-7; 1e-3 passes what other programs wrote with few digits.
             let length = v.normal.length();
-            if !((length - 1.0).abs() < 1e-3) {
+            if length.is_nan() || (length - 1.0).abs() > 1e-3 {
                 return Err(self.fault("vertex", i, "a normal of length 1", length));
             }
         }

@@ -14,7 +14,7 @@ use crate::trig;
 /// the speeds have no long tail: a sum of sines is nearly Gaussian.
 ///
 /// On [`crate::Path::Look`] the head moves round the target and the gaze wanders; on all other paths only the gaze
-/// wanders, by at most 8 degrees a scale.
+/// wanders, by at most 11 degrees a scale.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sway {
@@ -27,18 +27,22 @@ pub struct Sway {
 /// Frequency in hertz and amplitude of one sine.
 type Sine = (f64, f64);
 
-/// Degrees round the target. Assumed within the published band and energy: frequencies without common period.
-const AZIMUTH: [Sine; 5] = [(0.041, 26.0), (0.067, 25.0), (0.097, 24.0), (0.131, 22.0), (0.43, 3.0)];
+// Amplitudes and frequencies are assumed, within the published band and energy; frequencies have no common period.
+// Their root mean square angular speed, sqrt(sum (2 pi f A)^2 / 2) over all but the distance, is 44 degrees per
+// second, whose mean, for speeds nearly Gaussian in three unequal directions, is about nine tenths: 40.
+
+/// Degrees round the target.
+const AZIMUTH: [Sine; 5] = [(0.041, 41.0), (0.067, 40.0), (0.097, 38.0), (0.131, 35.0), (0.43, 5.0)];
 /// Degrees above the target.
-const ELEVATION: [Sine; 3] = [(0.053, 9.0), (0.113, 7.0), (0.47, 3.0)];
+const ELEVATION: [Sine; 3] = [(0.053, 12.0), (0.113, 9.0), (0.47, 4.0)];
 /// Fraction of the distance.
 const DISTANCE: [Sine; 2] = [(0.059, 0.06), (0.149, 0.04)];
 /// Degrees of gaze left of the target.
-const GAZE_YAW: [Sine; 3] = [(0.37, 3.0), (0.89, 2.6), (1.61, 2.0)];
+const GAZE_YAW: [Sine; 3] = [(0.37, 3.4), (0.89, 2.9), (1.61, 2.2)];
 /// Degrees of gaze above the target.
-const GAZE_PITCH: [Sine; 3] = [(0.31, 2.4), (0.97, 2.0), (1.73, 1.4)];
+const GAZE_PITCH: [Sine; 3] = [(0.31, 2.7), (0.97, 2.2), (1.73, 1.6)];
 /// Degrees of tilt of the head to its left.
-const GAZE_ROLL: [Sine; 3] = [(0.17, 3.0), (0.71, 2.2), (1.37, 1.4)];
+const GAZE_ROLL: [Sine; 3] = [(0.17, 3.4), (0.71, 2.5), (1.37, 1.6)];
 
 /// The sway at one time.
 pub(crate) struct Swing {

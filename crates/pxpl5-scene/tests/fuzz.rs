@@ -92,7 +92,7 @@ fn assert_sound(scene: Scene) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 4_000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn no_damaged_file_makes_a_reader_panic(which in 0..5_usize, damages in prop::collection::vec(damage(), 1..6)) {

@@ -101,7 +101,7 @@ fn binary_square(encoding: &str, word: fn(u32) -> [u8; 4]) -> Vec<u8> {
 }
 
 fn ascii_square() -> String {
-    let rows = "4 -1 0 10 20 30\n6 -1 0 10 20 30\n6 1 0 10 20 30\n4 1 0 10 20 30\n4 0 1 2 3\n";
+    let rows = "4e0 -1 0 10 20 30\n6 -10e-1 +0.0 10 20 30\n6 1 0 10 20 30\n4 1 0 10 20 30\n4 0 1 2 3\n";
     format!("ply\nformat ascii 1.0\ncomment by hand\n{SQUARE_HEADER}{rows}")
 }
 
@@ -247,7 +247,7 @@ fn an_index_out_of_range_is_named_with_its_line() {
 fn an_index_of_ply_out_of_range_is_named_with_its_place() {
     let ascii = ascii_square().replace("4 0 1 2 3", "4 0 1 2 -3");
     let error = read(Format::Ply, ascii).expect_err("a negative index").to_string();
-    assert_eq!(error, "test: line 17: expected an index of one of 4 vertices, found -3");
+    assert_eq!(error, "test: line 18: expected an index of one of 4 vertices, found -3");
     let mut file = binary_square("binary_big_endian", u32::to_be_bytes);
     let face = file.len() - 17;
     file[face + 4] = 4;
@@ -312,11 +312,21 @@ fn what_breaks_a_format_is_named_with_line_expectation_and_finding() {
         message(Format::Pdb, "ATOM      1  N   SER A   1      11.0x0\n"),
         "test: line 1: expected a number for x in columns 31 to 38, found \"11.0x0\""
     );
-    assert!(message(Format::Ply, "plx\n").starts_with("test: line 1: expected a PLY header, found"));
+    assert_eq!(message(Format::Ply, "plx\n"), "test: line 1: expected a line of a PLY header, found \"plx\"");
+    assert_eq!(
+        message(Format::Ply, "ply\nformat ascii 1.0\nelement vertex many\nend_header\n"),
+        "test: line 3: expected a line of a PLY header, found \"element vertex many\""
+    );
+    // Thirteen lines of header come before the rows.
     let row = ascii_square().replace("6 1 0", "6 one 0");
-    assert!(message(Format::Ply, &row).starts_with("test: line 15: expected a row of \"vertex\", found"));
+    assert_eq!(
+        message(Format::Ply, &row),
+        "test: line 16: expected a row of \"vertex\" (x y z red green blue), found \"6 one 0 10 20 30\""
+    );
     let list = ascii_square().replace("property float y\n", "property list uchar float y\n");
-    assert!(message(Format::Ply, &list).contains("line 13"), "{}", message(Format::Ply, &list));
+    let list = list.replace("4e0 -1 0", "4 1 -1 0");
+    let text = message(Format::Ply, &list);
+    assert!(text.starts_with("test: line 14: ") && text.contains("List(UChar, Float)"), "{text}");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use pxpl5_scene::config::{MAX_HEAD_SPEED_DEG_PER_S, MEAN_HEAD_SPEED_DEG_PER_S};
-use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Path, Pose, Sway, builtin};
+use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Path, Pose, Scene, Sway, builtin};
 
 const SECOND: u64 = 1_000_000_000_000;
 /// Ten samples a second see every sine below 2 Hz; a tenth of a field's worth of time between poses gives speeds.
@@ -144,16 +144,15 @@ fn the_default_motion_of_every_scene_keeps_the_centre_of_the_model_in_view_for_h
         let scene = builtin(name).expect("a built-in scene");
         let (centre, _) = scene.bounding_sphere();
         for i in 0..5_000 {
-            let view = hmd.mono(&scene.motion().pose(i * 7_777 * SECOND / 1_000));
+            let view = hmd.mono(&scene.motion().pose(i * 7_777 * (SECOND / 1_000)));
             let p = (view.projection * view.world_to_eye).project_point3(centre);
             assert!(p.x.abs() < 1.0 && p.y.abs() < 1.0 && (0.0..1.0).contains(&p.z), "{name} {p}");
         }
     }
 }
 
-/// Share of a 64 x 48 grid of the view's pixels that lies in the box around the model's vertices on the screen.
-fn boxed_share(name: &str, time_ps: u64) -> f32 {
-    let scene = builtin(name).expect("a built-in scene");
+/// Share of the view that lies in the box around the model's vertices on the screen.
+fn boxed_share(scene: &Scene, time_ps: u64) -> f32 {
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
     let view = hmd.mono(&scene.motion().pose(time_ps));
     let to_clip = view.projection * view.world_to_eye;
@@ -168,15 +167,18 @@ fn boxed_share(name: &str, time_ps: u64) -> f32 {
 
 #[test]
 fn mig_at_times_fills_the_view_and_at_times_is_small_in_it() {
-    let shares: Vec<f32> = (0..80).map(|i| boxed_share("mig", i * SECOND / 2)).collect();
-    assert!(shares.iter().filter(|&&s| s > 0.9).count() >= 8, "{shares:?}");
-    assert!(shares.iter().filter(|&&s| s < 0.1).count() >= 8, "{shares:?}");
+    // Each at least a twentieth of two laps.
+    let mig = builtin("mig").expect("a built-in scene");
+    let shares: Vec<f32> = (0..80).map(|i| boxed_share(&mig, i * SECOND / 2)).collect();
+    assert!(shares.iter().filter(|&&s| s > 0.9).count() >= 4, "{shares:?}");
+    assert!(shares.iter().filter(|&&s| s < 0.1).count() >= 4, "{shares:?}");
 }
 
 #[test]
 fn the_head_fills_about_a_third_of_the_view_at_all_times() {
+    let head = builtin("head").expect("a built-in scene");
     for i in 0..20 {
-        let share = boxed_share("head", i * 37 * SECOND);
+        let share = boxed_share(&head, i * 37 * SECOND);
         assert!((0.2..0.8).contains(&share), "{share}");
     }
 }

@@ -146,12 +146,17 @@ fn mig_moves_its_five_control_surfaces_and_nothing_else() {
 #[test]
 fn the_ailerons_of_mig_deflect_oppositely() {
     let mig = scene("mig");
-    let posed = mig.posed(&mig.edits_at(1_000_000_000_000)); // a quarter of their 4 s
-    let rise = |structure: usize| -> f32 {
+    let heights = |structure: usize, time_ps: u64| -> f32 {
+        let posed = mig.posed(&mig.edits_at(time_ps));
         let range = mig.structures()[structure].vertices.clone();
-        range.map(|i| posed.vertices()[i].position.y - mig.vertices()[i].position.y).sum()
+        range.map(|i| posed.vertices()[i].position.y).sum()
     };
-    assert!(rise(1) * rise(2) < 0.0 && (rise(1) + rise(2)).abs() < 0.01 * rise(1).abs());
+    // A quarter and three quarters of their 4 s: full deflection one way and the other.
+    let (early, late) = (1_000_000_000_000, 3_000_000_000_000);
+    assert!(heights(1, early) > heights(1, 0) && heights(2, early) < heights(2, 0));
+    // The right one is the mirror image of the left one half a swing later.
+    assert!((heights(1, early) - heights(2, late)).abs() < 1e-5);
+    assert!((heights(1, late) - heights(2, early)).abs() < 1e-5);
 }
 
 #[test]

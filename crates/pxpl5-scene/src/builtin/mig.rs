@@ -73,7 +73,7 @@ fn finish(mut solid: Solid) -> Scene {
 /// From inside the span of the wings, where the aircraft overflows the view, to five radii away, where it is small.
 fn fly_through() -> HeadMotion {
     let path =
-        Path::FlyThrough { target: glam::Vec3::ZERO, nearest: 0.8 * RADIUS_M, farthest: 5.0 * RADIUS_M, lap_s: 20.0 };
+        Path::FlyThrough { target: glam::Vec3::ZERO, nearest: 0.65 * RADIUS_M, farthest: 5.0 * RADIUS_M, lap_s: 20.0 };
     HeadMotion::new(path, Sway { seed: 1, scale: 1.0 }).expect("pxpl5-scene: constants are in range")
 }
 
@@ -255,8 +255,8 @@ fn canopy(solid: &mut Solid) {
 }
 
 fn boom(solid: &mut Solid) {
-    let at = |x: f64, y: f64| DVec3::new(0.34 + x, 0.24 + y, 5.2);
-    solid.cone(&[at(0.06, -0.04), at(0.0, 0.07), at(-0.06, -0.04)], DVec3::new(0.34, 0.24, 6.7), STEEL);
+    let at = |x: f64, y: f64| DVec3::new(0.3 + x, 0.42 + y, 5.0);
+    solid.cone(&[at(0.06, -0.04), at(0.0, 0.07), at(-0.06, -0.04)], DVec3::new(0.3, 0.42, 6.7), STEEL);
 }
 
 fn hinge(point: DVec3, axis: DVec3, amplitude_deg: f64, period_s: u64, phase_turns: f64) -> Hinge {

@@ -8,6 +8,7 @@ use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
+use super::source::excerpt;
 use super::{Mesh, Source};
 use crate::config::DEFAULT_COLOUR;
 use crate::error::{LoadError, Place};
@@ -46,8 +47,8 @@ impl<'a> Rows<'a> {
         let cursor = reader.into_inner();
         source.text(cursor.position() as usize)?;
         let header = parsed.map_err(|e| {
-            let at = Place::Line(e.line().map_or(line.max(1), |line| line as u64));
-            fault(source, at, "a PLY header", &e)
+            let line = e.line().map_or(line, |line| line as u64);
+            header_fault(source, line.max(1), &e)
         })?;
         if header.encoding == Encoding::Ascii {
             source.text(source.bytes.len())?;
@@ -86,8 +87,19 @@ impl<'a> Rows<'a> {
             Encoding::BinaryLittleEndian => parser.read_little_endian_element(&mut self.cursor, element),
             Encoding::BinaryBigEndian => parser.read_big_endian_element(&mut self.cursor, element),
         };
-        let expected = || format!("a row of {:?}", element.name);
-        row.map(|row| (at, row)).map_err(|e| fault(self.source, at, &expected(), &e))
+        row.map(|row| (at, row)).map_err(|e| self.row_fault(at, element, &e))
+    }
+
+    fn row_fault(&self, at: Place, element: &ElementDef, error: &ParseError) -> LoadError {
+        let expected = row_of(element);
+        match (self.header.encoding, error.kind()) {
+            (_, ErrorKind::UnexpectedEof) => self.source.truncated(at, expected, "the end of the file"),
+            // The numbers are there, but the header gives a property a type that it cannot have.
+            (_, ErrorKind::InvalidData) | (Encoding::BinaryLittleEndian | Encoding::BinaryBigEndian, _) => {
+                self.source.syntax(at, expected, message(error))
+            }
+            (Encoding::Ascii, _) => self.source.syntax(at, expected, excerpt(&self.text)),
+        }
     }
 
     /// Blank lines are passed over.
@@ -96,8 +108,8 @@ impl<'a> Rows<'a> {
             self.text.clear();
             let read = self.cursor.read_line(&mut self.text);
             if !matches!(read, Ok(1..)) {
-                let expected = format!("a row of {:?}", element.name);
-                return Err(self.source.truncated(self.place(), expected, "the end of the file"));
+                let at = self.place();
+                return Err(self.source.truncated(at, row_of(element), "the end of the file"));
             }
             self.line += 1;
             if !self.text.trim().is_empty() {
@@ -142,14 +154,31 @@ impl<'a> Rows<'a> {
     }
 }
 
-fn fault(source: &Source<'_>, at: Place, expected: &str, error: &ParseError) -> LoadError {
-    if error.kind() == ErrorKind::UnexpectedEof {
-        return source.truncated(at, expected, "the end of the file");
+/// Such as: a row of "vertex" (x y z).
+fn row_of(element: &ElementDef) -> String {
+    let properties: Vec<&str> = element.properties.keys().map(String::as_str).collect();
+    let properties: String = properties.join(" ").chars().take(80).collect();
+    format!("a row of {:?} ({properties})", element.name)
+}
+
+fn header_fault(source: &Source<'_>, line: u64, error: &ParseError) -> LoadError {
+    let at = Place::Line(line);
+    let text = String::from_utf8_lossy(source.bytes);
+    match (error.kind(), text.lines().nth(line as usize - 1)) {
+        (ErrorKind::UnexpectedEof, _) | (_, None) => {
+            source.truncated(at, "a line of a PLY header", "the end of the file")
+        }
+        (_, Some(_)) if error.line().is_none() => {
+            source.syntax(at, "a PLY header with a format of version 1.0", message(error))
+        }
+        (_, Some(text)) => source.syntax(at, "a line of a PLY header", excerpt(text)),
     }
-    // The library quotes whole lines, one to a line of its own.
-    let found: String = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-    let found: String = found.chars().take(200).collect();
-    source.syntax(at, expected, found)
+}
+
+/// The library's message on one line, cut.
+fn message(error: &ParseError) -> String {
+    let words: Vec<String> = error.to_string().split_whitespace().map(str::to_owned).collect();
+    words.join(" ").chars().take(200).collect()
 }
 
 /// At least one, so that rows without properties cannot be announced without end.

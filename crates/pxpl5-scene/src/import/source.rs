@@ -34,7 +34,7 @@ impl<'a> Source<'a> {
 
     /// The vector, if each of its coordinates is usable.
     pub(crate) fn coordinates(&self, at: Place, v: [f64; 3]) -> Result<[f64; 3], LoadError> {
-        match v.into_iter().find(|x| !(x.abs() <= MAX_COORDINATE)) {
+        match v.into_iter().find(|x| x.is_nan() || x.abs() > MAX_COORDINATE) {
             None => Ok(v),
             Some(found) => {
                 Err(LoadError::Coordinate { file: self.name.to_owned(), at, expected: MAX_COORDINATE, found })
