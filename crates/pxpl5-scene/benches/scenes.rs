@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use criterion::{Criterion, criterion_group, criterion_main};
+use criterion::Criterion;
 use pxpl5_scene::{Format, Hmd, HmdConfig, builtin, from_bytes};
 
 fn scenes(c: &mut Criterion) {
@@ -40,5 +40,9 @@ fn files(c: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, scenes, files);
-criterion_main!(benches);
+fn main() {
+    let mut criterion = Criterion::default().configure_from_args();
+    scenes(&mut criterion);
+    files(&mut criterion);
+    criterion.final_summary();
+}

@@ -82,6 +82,15 @@ fn models_of_any_size_fit() {
     }
 }
 
+#[test]
+fn points_that_no_face_uses_are_dropped_however_far_they_lie() {
+    let scene = ply("ply\nformat ascii 1.0\nelement vertex 5\nproperty double x\nproperty double y\n\
+        property double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+        1e15 0 0\n0 0 0\n-1e15 0 0\n1e-300 0 0\n0 1e-300 0\n3 1 3 4\n");
+    assert_eq!((scene.vertices().len(), scene.triangles()), (3, &[[0, 1, 2]][..]));
+    assert!((f64::from(scene.bounding_sphere().1) - FIT_RADIUS_M).abs() < 1e-6);
+}
+
 const SQUARE_HEADER: &str = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
     property uchar red\nproperty uchar green\nproperty uchar blue\n\
     element face 1\nproperty list uchar int vertex_indices\nend_header\n";

@@ -96,7 +96,8 @@ fn an_orientation_of_any_length_counts_by_its_direction() {
 
 #[test]
 fn numbers_out_of_range_are_named() {
-    let damage: [(&str, fn(&mut HmdConfig)); 6] = [
+    type Damage = fn(&mut HmdConfig);
+    let damage: [(&str, Damage); 6] = [
         ("eye_separation_m", |c| c.eye_separation_m = -0.1),
         ("horizontal_fov_deg", |c| c.horizontal_fov_deg = 180.0),
         ("width_px", |c| c.width_px = 0),

@@ -1,12 +1,12 @@
 //! What all mesh readers end in: positions in double precision, fans, normals, the fit into the view.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::Source;
 use crate::config::FIT_RADIUS_M;
 use crate::error::LoadError;
 use crate::motion::HeadMotion;
-use crate::scene::{Lighting, Scene, SceneParts, Sphere, Structure, Vertex, bounding_sphere};
+use crate::scene::{Lighting, Scene, SceneParts, Sphere, Vertex, bounding_sphere};
 
 /// Where normals come from that the file does not give.
 #[derive(Clone, Copy)]
@@ -74,15 +74,34 @@ impl Mesh {
         }
     }
 
+    /// Keeps the vertices that triangles use: others must not decide on the fit, nor cost time in every frame.
+    fn drop_unused(&mut self) {
+        let mut used = vec![false; self.positions.len()];
+        for &corner in self.triangles.iter().flatten() {
+            used[corner as usize] = true;
+        }
+        let before = |count: &mut u32, &used: &bool| {
+            let index = *count;
+            *count += u32::from(used);
+            Some(index)
+        };
+        let moved: Vec<u32> = used.iter().scan(0, before).collect();
+        for corner in self.triangles.iter_mut().flatten() {
+            *corner = moved[*corner as usize];
+        }
+        retain(&mut self.positions, &used);
+        retain(&mut self.normals, &used);
+        retain(&mut self.colours, &used);
+        retain(&mut self.points, &used);
+    }
+
     /// A fitted scene of the mesh.
     pub(crate) fn into_scene(mut self, source: &Source<'_>) -> Result<Scene, LoadError> {
         if self.triangles.is_empty() {
             return Err(LoadError::NothingToDraw { file: source.name.to_owned(), expected: "triangle" });
         }
-        let fit = Fit::new(self.triangles.iter().flatten().map(|&corner| {
-            let position = self.positions[corner as usize];
-            (position, 0.0)
-        }));
+        self.drop_unused();
+        let fit = Fit::new(self.positions.iter().map(|&position| (position, 0.0)));
         // Before the normals, whose sums of areas would otherwise leave the range of f64 for the tiniest models.
         for position in &mut self.positions {
             *position = fit.place(*position);
@@ -104,28 +123,23 @@ impl Mesh {
     }
 }
 
-/// The scene of things already fitted to the default view.
-pub(crate) fn fitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
-    fitted_structures(name, mesh, spheres, Vec::new(), HeadMotion::looking_at(glam::Vec3::ZERO, FIT_RADIUS_M))
+fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {
+    let mut keep = keep.iter();
+    items.retain(|_| keep.next() == Some(&true));
 }
 
-pub(crate) fn fitted_structures(
-    name: &str,
-    mesh: Mesh,
-    spheres: Vec<Sphere>,
-    structures: Vec<Structure>,
-    motion: HeadMotion,
-) -> Scene {
+/// The scene of a model already fitted to the default view.
+pub(crate) fn fitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
     let parts = SceneParts {
         name: name.to_owned(),
         vertices: mesh.vertices(),
         triangles: mesh.triangles,
         spheres,
-        structures,
+        structures: Vec::new(),
         lighting: Lighting::over_the_shoulder(),
-        motion,
+        motion: HeadMotion::looking_at(Vec3::ZERO, FIT_RADIUS_M),
     };
-    Scene::new(parts).expect("pxpl5-scene: readers and generators check what they make")
+    Scene::new(parts).expect("pxpl5-scene: readers check what they make")
 }
 
 /// Moves the centre of a model to the origin and scales its radius to [`FIT_RADIUS_M`].
