@@ -1,1 +1,248 @@
 //! The rules of the ring word by word: slow, literal, and the measure of the fast ring.
+//!
+//! Time advances tick by tick. In every tick, in this order:
+//!
+//! 1. messages whose time has come join the queue of their source port;
+//! 2. every occupied channel that has reached the end of a word slot moves one word on: first the slots of the
+//!    overhead, then the words of the message. A word that its receiver has no room for stays in its slot and is
+//!    offered again in the next tick. When the last word has moved and the receiver has answered, channel and ports
+//!    are free;
+//! 3. the heads of the queues are granted, one after the other by (time as head, source), each if a channel and
+//!    its destination are free and the destination is not reserved for another source.
+//!
+//! Hops only shift what a receiver sees: its word slots lie that much later than those of the sender. There is no
+//! shortcut: no end is computed ahead, no event is skipped.
+
+use crate::{RingError, RingTiming};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::NodeId;
+use std::collections::VecDeque;
+
+/// A message to be sent. Those of one instant and source keep the order in which they are listed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Traffic {
+    /// When the board hands it to its port.
+    pub at: Time,
+    /// The sender.
+    pub source: NodeId,
+    /// The receiver.
+    pub destination: NodeId,
+    /// Length in words.
+    pub words: u32,
+    /// Whether the destination stays reserved afterwards.
+    pub hold: bool,
+}
+
+/// What became of a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Passage {
+    /// The channel, from 0.
+    pub channel: usize,
+    /// When channel and ports were granted.
+    pub granted: Time,
+    /// When the last word had entered the receiver.
+    pub last_word_at: Time,
+    /// When channel and ports were free again.
+    pub released: Time,
+}
+
+/// The receivers' side, asked word by word. Times are as the receiver sees them.
+pub trait Receivers {
+    /// A message has been announced; returns how long after that the receiver gives its answer.
+    fn announced(&mut self, destination: NodeId, at: Time) -> Span;
+
+    /// A word has reached the end of its slot: whether it enters now.
+    fn takes_word(&mut self, destination: NodeId, at: Time) -> bool;
+}
+
+/// Receivers that take every word as it comes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Elastic;
+
+impl Receivers for Elastic {
+    fn announced(&mut self, _: NodeId, _: Time) -> Span {
+        Span::ZERO
+    }
+
+    fn takes_word(&mut self, _: NodeId, _: Time) -> bool {
+        true
+    }
+}
+
+/// A ring that is stepped.
+#[derive(Debug)]
+pub struct SteppedRing<'a, R> {
+    timing: RingTiming,
+    n_nodes: u16,
+    traffic: &'a [Traffic],
+    receivers: R,
+    /// Per source: numbers of messages, the first since when.
+    queues: Vec<(VecDeque<usize>, Time)>,
+    sending: Vec<bool>,
+    receiving: Vec<bool>,
+    reserved_for: Vec<Option<NodeId>>,
+    channels: Vec<Option<Slots>>,
+    passages: Vec<Option<Passage>>,
+}
+
+/// A message on a channel.
+#[derive(Clone, Copy, Debug)]
+struct Slots {
+    message: usize,
+    overhead_left: u64,
+    words_left: u32,
+    slot_began: Time,
+    latency: Span,
+    answered_at: Time,
+}
+
+impl<'a, R: Receivers> SteppedRing<'a, R> {
+    /// A ring that will carry `traffic`.
+    ///
+    /// # Errors
+    ///
+    /// [`RingError::Timing`], [`RingError::NoNodes`] and [`RingError::NoSuchNode`].
+    pub fn new(timing: RingTiming, n_nodes: u16, traffic: &'a [Traffic], receivers: R) -> Result<Self, RingError> {
+        timing.check()?;
+        if n_nodes == 0 {
+            return Err(RingError::NoNodes);
+        }
+        let mut nodes = traffic.iter().flat_map(|t| [t.source, t.destination]);
+        if let Some(node) = nodes.find(|node| node.0 >= n_nodes) {
+            return Err(RingError::NoSuchNode { node, n_nodes });
+        }
+        let n = usize::from(n_nodes);
+        Ok(Self {
+            timing,
+            n_nodes,
+            traffic,
+            receivers,
+            queues: vec![(VecDeque::new(), Time::ZERO); n],
+            sending: vec![false; n],
+            receiving: vec![false; n],
+            reserved_for: vec![None; n],
+            channels: vec![None; timing.channels as usize],
+            passages: vec![None; traffic.len()],
+        })
+    }
+
+    /// Steps until everything is delivered; what became of each message, in the order of the traffic.
+    ///
+    /// # Errors
+    ///
+    /// [`RingError::OffTick`] when a time of the timing table or of the traffic is no multiple of `tick`,
+    /// [`RingError::Unfinished`] when something has not been delivered at `until`.
+    pub fn run(mut self, tick: Span, until: Time) -> Result<Vec<Passage>, RingError> {
+        self.check_tick(tick)?;
+        let mut now = Time::ZERO;
+        while self.passages.iter().any(Option::is_none) || self.channels.iter().any(Option::is_some) {
+            if now > until {
+                return Err(self.unfinished(until));
+            }
+            self.join(now);
+            self.move_words(now);
+            self.grant(now);
+            now += tick;
+        }
+        Ok(self.passages.into_iter().flatten().collect())
+    }
+
+    fn check_tick(&self, tick: Span) -> Result<(), RingError> {
+        let times = self.traffic.iter().map(|t| ("the time of a message", t.at.0));
+        let table = [("word_ns", self.timing.word().0), ("hop_ns", Span::from_ns(self.timing.hop_ns).0)];
+        match table.into_iter().chain(times).find(|(_, ps)| tick.0 == 0 || ps % tick.0 != 0) {
+            Some((what, found_ps)) => Err(RingError::OffTick { what, found_ps, tick }),
+            None => Ok(()),
+        }
+    }
+
+    fn unfinished(&self, until: Time) -> RingError {
+        let delivered = self.passages.iter().flatten().count();
+        RingError::Unfinished { delivered, of: self.passages.len(), until }
+    }
+
+    fn join(&mut self, now: Time) {
+        for (message, traffic) in self.traffic.iter().enumerate().filter(|(_, t)| t.at == now) {
+            let source = usize::from(traffic.source.0);
+            let (queue, since) = &mut self.queues[source];
+            if queue.is_empty() && !self.sending[source] {
+                *since = now;
+            }
+            queue.push_back(message);
+        }
+    }
+
+    fn move_words(&mut self, now: Time) {
+        for channel in 0..self.channels.len() {
+            let Some(mut slots) = self.channels[channel].take() else { continue };
+            if now.since(slots.slot_began) >= self.timing.word() {
+                self.move_word(&mut slots, now);
+            }
+            if slots.words_left == 0 && slots.answered_at <= now {
+                self.release(slots.message, now);
+            } else {
+                self.channels[channel] = Some(slots);
+            }
+        }
+    }
+
+    fn move_word(&mut self, slots: &mut Slots, now: Time) {
+        let destination = self.traffic[slots.message].destination;
+        let seen_at = now + slots.latency;
+        if slots.overhead_left > 0 {
+            slots.overhead_left -= 1;
+            slots.slot_began = now;
+        } else if slots.words_left > 0 && self.receivers.takes_word(destination, seen_at) {
+            slots.words_left -= 1;
+            slots.slot_began = now;
+            if let Some(passage) = &mut self.passages[slots.message] {
+                passage.last_word_at = seen_at;
+            }
+        }
+    }
+
+    fn release(&mut self, message: usize, now: Time) {
+        let Traffic { source, destination, hold, .. } = self.traffic[message];
+        self.sending[usize::from(source.0)] = false;
+        self.receiving[usize::from(destination.0)] = false;
+        self.reserved_for[usize::from(destination.0)] = hold.then_some(source);
+        self.queues[usize::from(source.0)].1 = now;
+        if let Some(passage) = &mut self.passages[message] {
+            passage.released = now;
+        }
+    }
+
+    fn grant(&mut self, now: Time) {
+        let mut heads: Vec<_> = (0..self.queues.len())
+            .filter(|source| !self.sending[*source])
+            .filter_map(|source| Some((self.queues[source].1, source, *self.queues[source].0.front()?)))
+            .collect();
+        heads.sort_unstable();
+        for (_, source, message) in heads {
+            let destination = usize::from(self.traffic[message].destination.0);
+            let reserved = self.reserved_for[destination].is_some_and(|holder| usize::from(holder.0) != source);
+            let free = self.channels.iter().position(Option::is_none);
+            if let Some(channel) = free.filter(|_| !reserved && !self.receiving[destination]) {
+                self.start(message, channel, now);
+            }
+        }
+    }
+
+    fn start(&mut self, message: usize, channel: usize, now: Time) {
+        let Traffic { source, destination, words, .. } = self.traffic[message];
+        self.queues[usize::from(source.0)].0.pop_front();
+        self.sending[usize::from(source.0)] = true;
+        self.receiving[usize::from(destination.0)] = true;
+        let latency = self.timing.latency(source, destination, self.n_nodes);
+        let announced_at = now + self.timing.word() + latency;
+        self.channels[channel] = Some(Slots {
+            message,
+            overhead_left: self.timing.overhead_words,
+            words_left: words,
+            slot_began: now,
+            latency,
+            answered_at: announced_at + self.receivers.announced(destination, announced_at),
+        });
+        self.passages[message] = Some(Passage { channel, granted: now, last_word_at: now, released: now });
+    }
+}

@@ -71,19 +71,16 @@ impl WaitingMessage {
     /// A line for a deadlock report; `name` gives the boards' names.
     #[must_use]
     pub fn blocked(&self, name: impl Fn(NodeId) -> String) -> Blocked {
-        let to = name(self.destination);
-        let cause = match self.reason {
-            WaitReason::Acceptance => format!("{to} to accept"),
-            WaitReason::DestinationBusy(by) => format!("{to}, which receives from {},", name(by)),
+        let (to, words) = (name(self.destination), self.words);
+        let what = match self.reason {
+            WaitReason::Acceptance => format!("{to} to accept {words} words sent"),
+            WaitReason::DestinationBusy(by) => format!("{to}, busy with {}, to take {words} words", name(by)),
             WaitReason::DestinationReserved(by) => {
-                format!("{to}, reserved for an unfinished transfer of {},", name(by))
+                format!("{to}, reserved for an unfinished transfer of {}, to take {words} words", name(by))
             }
-            WaitReason::Channel => format!("a free channel to {to} for"),
-            WaitReason::Arbitration => format!("arbitration to {to} for"),
+            WaitReason::Channel => format!("a free channel to {to} for {words} words"),
+            WaitReason::Arbitration => format!("arbitration to {to} for {words} words"),
         };
-        Blocked {
-            board: name(self.source),
-            waits_for: format!("{cause} a message of {} words since {}", self.words, self.since),
-        }
+        Blocked { board: name(self.source), waits_for: format!("{what} since {}", self.since) }
     }
 }

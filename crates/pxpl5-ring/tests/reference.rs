@@ -1,0 +1,140 @@
+//! The fast ring and the word-by-word one give the same times, whatever is sent.
+
+mod support;
+
+use proptest::prelude::*;
+use pxpl5_ring::RingTiming;
+use pxpl5_ring::reference::{Passage, SteppedRing, Traffic};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::NodeId;
+use support::{Receiver, Stepped, run_fast};
+
+#[derive(Clone, Debug)]
+struct Case {
+    timing: RingTiming,
+    tick: Span,
+    receivers: Vec<Receiver>,
+    traffic: Vec<Traffic>,
+}
+
+/// Each transfer is up to four messages to one destination, all but the last with `hold`.
+fn transfers(n_nodes: u16, tick: Span) -> impl Strategy<Value = Vec<Traffic>> {
+    let words = prop_oneof![8 => 1u32..40, 2 => 40u32..200, 1 => Just(1_024u32)];
+    let transfer = (0u64..600, 0..n_nodes, 0..n_nodes, words, 1usize..5);
+    prop::collection::vec(transfer, 1..30).prop_map(move |transfers| {
+        let mut traffic: Vec<_> = transfers.iter().flat_map(|t| parts(t, tick)).collect();
+        traffic.sort_by_key(|t| t.at);
+        traffic
+    })
+}
+
+fn parts(transfer: &(u64, u16, u16, u32, usize), tick: Span) -> Vec<Traffic> {
+    let (at, source, destination, words, n) = *transfer;
+    let part = |i| Traffic {
+        at: Time::ZERO + tick * at,
+        source: NodeId(source),
+        destination: NodeId(destination),
+        words,
+        hold: i + 1 < n,
+    };
+    (0..n).map(part).collect()
+}
+
+fn receiver(tick: Span) -> impl Strategy<Value = Receiver> {
+    let fifo = (1usize..60, 0u64..30, 0u64..400, 1u64..900).prop_map(move |(words, drain, opens, answers)| {
+        Receiver::Fifo { words, drain: tick * drain, opens_after: tick * opens, answers_after: tick * answers }
+    });
+    prop_oneof![Just(Receiver::Elastic), fifo]
+}
+
+/// Hops are short against the overhead, so that the words of two messages never overlap at a receiver.
+fn cases() -> impl Strategy<Value = Case> {
+    (2u16..20, 1u64..=8, 16u64..20, 0u64..3, prop_oneof![Just(1u64), Just(2), Just(5)]).prop_flat_map(
+        |(n_nodes, channels, overhead_words, hop_ticks, word_ticks)| {
+            let tick = Span::from_ns(10);
+            let timing = RingTiming {
+                word_ns: 10 * word_ticks,
+                overhead_words,
+                hop_ns: 10 * hop_ticks * u64::from(hop_ticks * u64::from(n_nodes) <= 16 * word_ticks),
+                channels,
+            };
+            let receivers = prop::collection::vec(receiver(tick), usize::from(n_nodes));
+            (receivers, transfers(n_nodes, tick)).prop_map(move |(receivers, traffic)| Case {
+                timing,
+                tick,
+                receivers,
+                traffic,
+            })
+        },
+    )
+}
+
+fn step(case: &Case) -> Vec<Passage> {
+    let receivers = Stepped::new(&case.receivers);
+    let n_nodes = case.receivers.len() as u16;
+    let ring = SteppedRing::new(case.timing, n_nodes, &case.traffic, receivers).expect("valid");
+    ring.run(case.tick, Time(1_000_000_000_000)).expect("everything is delivered")
+}
+
+/// When the sender is told: with the last word, but one word time after the receiver's answer at least.
+fn told(case: &Case, message: usize, passage: &Passage) -> Time {
+    let t = case.traffic[message];
+    match case.receivers[usize::from(t.destination.0)] {
+        Receiver::Elastic => passage.last_word_at,
+        Receiver::Fifo { answers_after, .. } => {
+            let latency = case.timing.latency(t.source, t.destination, case.receivers.len() as u16);
+            let answered = passage.granted + case.timing.word() + latency + answers_after;
+            passage.last_word_at.max(answered + case.timing.word())
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn closed_form_and_word_by_word_agree_to_the_picosecond(case in cases(), seed in any::<u64>()) {
+        let passages = step(&case);
+        let (ring, times) = run_fast(case.timing, &case.receivers, &case.traffic, Some(seed));
+        prop_assert_eq!(ring.refusals().count, 0);
+        prop_assert!(ring.is_idle());
+        prop_assert_eq!(times.accepted.len(), case.traffic.len());
+        for (message, passage) in passages.iter().enumerate() {
+            let number = message as u64;
+            prop_assert_eq!(times.accepted[&number], passage.last_word_at, "message {}", message);
+            prop_assert_eq!(times.sent[&number], told(&case, message, passage), "message {}", message);
+        }
+        for (channel, busy) in ring.stats().channel_busy.iter().enumerate() {
+            let on_channel = passages.iter().filter(|passage| passage.channel == channel);
+            let slots: Span = on_channel.map(|passage| passage.released - passage.granted).sum();
+            prop_assert_eq!(*busy, slots, "channel {}", channel);
+        }
+        let waited: Span = passages.iter().zip(&case.traffic).map(|(p, t)| p.granted - t.at).sum();
+        prop_assert_eq!(ring.stats().waiting, waited);
+    }
+
+    #[test]
+    fn the_order_of_simultaneous_events_changes_no_time(case in cases(), seeds in any::<[u64; 4]>()) {
+        let (_, times) = run_fast(case.timing, &case.receivers, &case.traffic, None);
+        for seed in seeds {
+            let (_, shuffled) = run_fast(case.timing, &case.receivers, &case.traffic, Some(seed));
+            prop_assert_eq!(&shuffled, &times);
+        }
+    }
+}
+
+/// Random traffic seldom fills eight channels for long; this does. 20 boards send to their neighbours at once.
+#[test]
+fn both_agree_when_twenty_messages_want_eight_channels_at_once() {
+    let tick = Span::from_ns(50);
+    let traffic: Vec<_> = (0..20).flat_map(|node| parts(&(3, node, (node + 1) % 20, 1_024, 3), tick)).collect();
+    let timing = RingTiming { hop_ns: 0, ..RingTiming::PAPERS };
+    let case = Case { timing, tick, receivers: vec![Receiver::Elastic; 20], traffic };
+    let (ring, times) = run_fast(case.timing, &case.receivers, &case.traffic, None);
+    let passages = step(&case);
+    assert!(passages.iter().zip(0u64..).all(|(passage, i)| times.accepted[&i] == passage.last_word_at));
+    // 60 messages of 52 us on 8 channels: seven rounds full, four messages in the eighth.
+    let last = times.accepted.values().max().expect("some");
+    assert_eq!(*last, Time::ZERO + tick * 3 + Span::from_us(8 * 52));
+    assert_eq!(ring.stats().channel_busy[7], Span::from_us(7 * 52));
+}

@@ -1,0 +1,263 @@
+//! Each rule of the ring alone. Expected values are the published figures or sums of the timing table.
+
+mod support;
+
+use pxpl5_ring::reference::Traffic;
+use pxpl5_ring::{Ring, RingError, RingEvent, RingOutput, RingTiming, WaitReason};
+use pxpl5_sim::{Phase, Span, TestBench, Time};
+use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId};
+use support::{ELASTIC, message, request, run_fast};
+
+const TIMING: RingTiming = RingTiming::PAPERS;
+/// Occupancy of a message of maximum size: (16 + 1,024) x 50 ns.
+const FULL: Span = Span::from_us(52);
+const HOP: Span = Span::from_ns(50);
+
+fn us(us: u64) -> Time {
+    Time::ZERO + Span::from_us(us)
+}
+
+fn traffic(at: Time, source: u16, destination: u16, words: u32) -> Traffic {
+    Traffic { at, source: NodeId(source), destination: NodeId(destination), words, hold: false }
+}
+
+/// A region of 15,360 pixels: fifteen messages, held together.
+fn region(at: Time, source: u16, destination: u16) -> impl Iterator<Item = Traffic> {
+    let part = traffic(at, source, destination, MAX_MESSAGE_WORDS);
+    (0..15).map(move |i| Traffic { hold: i < 14, ..part })
+}
+
+fn accepted(traffic: &[Traffic]) -> Vec<Time> {
+    let (_, times) = run_fast(TIMING, &ELASTIC[..20], traffic, Some(7));
+    times.accepted.into_values().collect()
+}
+
+fn bench() -> TestBench<RingEvent, RingOutput> {
+    TestBench::new()
+}
+
+/// A ring of ten ports of which only port 9 is not elastic.
+fn ring_with_a_fifo() -> Ring {
+    Ring::new(TIMING, 10, |node| node != NodeId(9)).expect("valid")
+}
+
+#[test]
+fn a_message_has_arrived_after_its_overhead_its_words_and_its_hops() {
+    let times = accepted(&[traffic(us(3), 2, 5, 100)]);
+    assert_eq!(times, [us(3) + Span::from_ns((16 + 100) * 50) + HOP * 3]);
+}
+
+#[test]
+fn a_region_of_fifteen_messages_takes_the_published_780_us() {
+    let messages: Vec<_> = region(us(0), 0, 1).collect();
+    let times = accepted(&messages);
+    assert_eq!(*times.last().expect("15"), us(780) + HOP);
+    let gaps: Vec<_> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert_eq!(gaps, [FULL; 14]);
+}
+
+/// TR94: five renderers copy 20 field regions, each left and right in turn, to two frame buffers; at each end one
+/// board idles for one region.
+#[test]
+fn twenty_regions_to_two_frame_buffers_take_eleven_region_times() {
+    let mut messages = Vec::new();
+    for renderer in 0..5 {
+        for turn in 0..4 {
+            messages.extend(region(us(0), renderer, 5 + turn % 2));
+        }
+    }
+    let (ring, times) = run_fast(TIMING, &ELASTIC[..7], &messages, Some(1));
+    let last = times.accepted.into_values().max().expect("some");
+    let longest_way = HOP * 6;
+    assert!(last >= us(11 * 780) && last <= us(11 * 780) + longest_way, "{last}");
+    assert_eq!(ring.stats().messages, 300);
+    assert_eq!(ring.stats().words, 20 * 15_360);
+}
+
+#[test]
+fn the_ninth_message_waits_until_a_channel_is_free_and_not_a_picosecond_longer() {
+    let messages: Vec<_> = (0..9).map(|i| traffic(us(0), 2 * i, 2 * i + 1, MAX_MESSAGE_WORDS)).collect();
+    let times = accepted(&messages);
+    assert_eq!(times[..8], [us(52) + HOP; 8]);
+    assert_eq!(times[8], us(104) + HOP);
+}
+
+#[test]
+fn what_a_board_sends_does_not_disturb_what_it_receives() {
+    let times = accepted(&[traffic(us(0), 0, 1, 1_000), traffic(us(0), 1, 0, 1_000)]);
+    let occupied = Span::from_ns(1_016 * 50);
+    assert_eq!(times, [us(0) + occupied + HOP, us(0) + occupied + HOP * 19]);
+}
+
+#[test]
+fn a_source_sends_one_message_at_a_time_and_a_destination_takes_one() {
+    let from_one = accepted(&[traffic(us(0), 0, 1, 1_024), traffic(us(0), 0, 2, 1_024)]);
+    assert_eq!(from_one, [us(52) + HOP, us(104) + HOP * 2]);
+    let to_one = accepted(&[traffic(us(0), 0, 2, 1_024), traffic(us(0), 1, 2, 1_024)]);
+    assert_eq!(to_one, [us(52) + HOP * 2, us(104) + HOP]);
+}
+
+#[test]
+fn of_two_that_wait_the_one_that_came_first_goes_first_and_at_one_instant_the_lowest_source() {
+    let busy = traffic(us(0), 9, 3, 1_024);
+    let first_come = accepted(&[busy, traffic(us(2), 1, 3, 1_024), traffic(us(1), 2, 3, 1_024)]);
+    assert_eq!(first_come[1..], [us(156) + HOP * 2, us(104) + HOP]);
+    let together = accepted(&[busy, traffic(us(1), 2, 3, 1_024), traffic(us(1), 1, 3, 1_024)]);
+    assert_eq!(together[1..], [us(156) + HOP, us(104) + HOP * 2]);
+}
+
+/// Port 0 asked for port 3 before port 1 did, but then it had another message to send first.
+#[test]
+fn a_message_queues_for_its_destination_from_when_it_is_first_at_its_source() {
+    let times = accepted(&[
+        traffic(us(0), 9, 3, 1_024),
+        traffic(us(0), 0, 5, 100),
+        traffic(us(1), 0, 3, 1_024),
+        traffic(us(2), 1, 3, 1_024),
+    ]);
+    assert_eq!(times[3], us(104) + HOP * 2);
+    assert_eq!(times[2], us(156) + HOP * 3);
+}
+
+#[test]
+fn a_message_that_must_wait_does_not_hold_up_a_later_one() {
+    let times = accepted(&[traffic(us(0), 0, 3, 1_024), traffic(us(1), 1, 3, 1_024), traffic(us(2), 2, 4, 1_024)]);
+    assert_eq!(times[2], us(54) + HOP * 2);
+}
+
+#[test]
+fn messages_of_one_instant_and_source_go_in_their_order() {
+    let mut bench = bench();
+    let mut ring = ring_with_a_fifo();
+    for number in [2, 0, 1] {
+        bench.feed(us(0), Phase::Arrive, RingEvent::Request(request(number, 0, 1, 1_024)));
+    }
+    bench.run(|event, context| ring.handle(event, context));
+    let mut sent: Vec<_> = bench
+        .outputs
+        .iter()
+        .filter_map(|(time, output)| match output {
+            RingOutput::Sent { ticket, .. } => Some((*time, *ticket)),
+            _ => None,
+        })
+        .collect();
+    sent.sort_unstable();
+    assert_eq!(sent, [(us(52) + HOP, 0), (us(104) + HOP, 1), (us(156) + HOP, 2)]);
+}
+
+#[test]
+fn a_held_destination_waits_for_its_source_and_a_released_one_goes_to_the_first_come() {
+    let hold = Traffic { hold: true, ..traffic(us(0), 0, 2, 1_024) };
+    let end_of_transfer = traffic(us(100), 0, 2, 1_024);
+    let other = traffic(us(1), 1, 2, 1_024);
+    let times = accepted(&[hold, end_of_transfer, other]);
+    assert_eq!(times, [us(52) + HOP * 2, us(152) + HOP * 2, us(204) + HOP]);
+}
+
+#[test]
+fn a_receiver_with_a_fifo_is_told_before_the_first_word_and_its_answer_ends_the_message() {
+    let mut bench = bench();
+    let mut ring = ring_with_a_fifo();
+    bench.feed(us(0), Phase::Arrive, RingEvent::Request(request(1, 0, 9, 100)));
+    bench.feed(us(0), Phase::Arrive, RingEvent::Request(request(2, 0, 1, 100)));
+    bench.run(|event, context| ring.handle(event, context));
+    let [(announced, RingOutput::Announce { first_word_at, word, .. })] = bench.outputs[..] else {
+        panic!("{:?}", bench.outputs)
+    };
+    let latency = HOP * 9;
+    assert_eq!(announced, us(0) + word + latency);
+    assert_eq!(first_word_at, us(0) + word * 16 + latency);
+    assert_eq!(ring.waiting()[0].reason, WaitReason::Acceptance);
+
+    let stall = Span::from_ns(12_345);
+    let last_word_at = first_word_at + word * 100 + stall;
+    let accept = RingEvent::Accept { destination: NodeId(9), last_word_at };
+    bench.feed(us(2), Phase::Arrive, accept);
+    bench.run(|event, context| ring.handle(event, context));
+    let sent = |n: usize| matches!(bench.outputs[n], (_, RingOutput::Sent { .. })).then_some(bench.outputs[n].0);
+    assert_eq!(sent(1), Some(last_word_at));
+    let released = us(0) + word * 116 + stall;
+    assert_eq!(sent(3), Some(released + word * 116 + HOP));
+    assert_eq!(ring.stats().stalled, stall);
+}
+
+#[test]
+fn an_answer_that_comes_after_the_last_word_frees_the_sender_at_once() {
+    let mut bench = bench();
+    let mut ring = ring_with_a_fifo();
+    bench.feed(us(0), Phase::Arrive, RingEvent::Request(request(1, 8, 9, 10)));
+    let earliest = us(0) + Span::from_ns(26 * 50) + HOP;
+    bench.feed(us(30), Phase::Arrive, RingEvent::Accept { destination: NodeId(9), last_word_at: earliest });
+    bench.run(|event, context| ring.handle(event, context));
+    assert!(matches!(bench.outputs[1], (time, RingOutput::Sent { .. }) if time == us(30) + Span::from_ns(50)));
+    assert_eq!(ring.stats().channel_busy[0], Span::from_us(30));
+    assert_eq!(ring.refusals().count, 0);
+}
+
+#[test]
+fn what_no_ring_can_carry_is_refused_and_its_sender_told() {
+    let mut bench = bench();
+    let mut ring = ring_with_a_fifo();
+    for (number, (source, destination, words)) in (0..).zip([(0, 1, 0), (0, 1, 1_025), (10, 1, 5), (0, 10, 5)]) {
+        bench.feed(us(number), Phase::Arrive, RingEvent::Request(request(number, source, destination, words)));
+    }
+    bench.run(|event, context| ring.handle(event, context));
+    let told = bench.outputs.iter().filter(|(_, output)| matches!(output, RingOutput::Refused { .. })).count();
+    assert_eq!((told, bench.outputs.len()), (4, 4));
+    assert_eq!(ring.refusals().count, 4);
+    let (time, error) = ring.refusals().first.clone().expect("refused");
+    assert_eq!(time, us(0));
+    assert_eq!(error.to_string(), "message from ring port 0 to 1: expected 1 to 1024 words, found 0");
+    assert_eq!(ring.check(&message(0, 0, 10, 5)), Err(RingError::NoSuchNode { node: NodeId(10), n_nodes: 10 }));
+    assert!(ring.is_idle());
+}
+
+#[test]
+fn an_answer_to_nothing_and_an_impossible_answer_are_faults_without_a_panic() {
+    let mut bench = bench();
+    let mut ring = ring_with_a_fifo();
+    for destination in [9, 1, 500] {
+        let accept = RingEvent::Accept { destination: NodeId(destination), last_word_at: us(1) };
+        bench.feed(us(0), Phase::Arrive, accept);
+    }
+    bench.run(|event, context| ring.handle(event, context));
+    assert_eq!(ring.refusals().count, 3);
+
+    bench.feed(us(1), Phase::Arrive, RingEvent::Request(request(1, 8, 9, 10)));
+    bench.feed(us(2), Phase::Arrive, RingEvent::Accept { destination: NodeId(9), last_word_at: us(2) });
+    bench.run(|event, context| ring.handle(event, context));
+    assert_eq!(ring.refusals().count, 4);
+    let earliest = us(1) + Span::from_ns(26 * 50) + HOP;
+    assert!(matches!(bench.outputs[1], (time, RingOutput::Sent { .. }) if time == earliest));
+}
+
+#[test]
+fn a_deadlock_report_names_who_waits_on_whom() {
+    let mut bench = bench();
+    let mut ring = ring_with_a_fifo();
+    let mut held = request(1, 0, 1, 10);
+    held.hold = true;
+    bench.feed(us(0), Phase::Arrive, RingEvent::Request(held));
+    bench.feed(us(5), Phase::Arrive, RingEvent::Request(request(2, 2, 1, 20)));
+    bench.feed(us(6), Phase::Arrive, RingEvent::Request(request(3, 3, 9, 30)));
+    bench.feed(us(7), Phase::Arrive, RingEvent::Request(request(4, 4, 9, 40)));
+    bench.run(|event, context| ring.handle(event, context));
+    let lines: Vec<_> = ring.blocked().into_iter().map(|b| format!("{} waits for {}", b.board, b.waits_for)).collect();
+    assert_eq!(
+        lines,
+        [
+            "ring port 2 waits for ring port 1, reserved for an unfinished transfer of ring port 0, to take 20 words since 5.000000 us",
+            "ring port 3 waits for ring port 9 to accept 30 words sent since 6.000000 us",
+            "ring port 4 waits for ring port 9, busy with ring port 3, to take 40 words since 7.000000 us",
+        ]
+    );
+}
+
+#[test]
+fn a_ring_that_cannot_be_built_says_why() {
+    let none = Ring::new(TIMING, 0, |_| true).expect_err("no ports");
+    assert_eq!(none.to_string(), "a ring needs one port at least, found none");
+    let no_channels = RingTiming { channels: 0, ..TIMING };
+    let error = Ring::new(no_channels, 3, |_| true).expect_err("no channels");
+    assert_eq!(error.to_string(), "ring timing: channels must be 1 to 64, found 0");
+}

@@ -1,0 +1,164 @@
+//! A machine of nothing but a ring and receivers.
+
+#![allow(dead_code, reason = "each test binary uses a part")]
+
+use pxpl5_ring::reference::{Receivers, Traffic};
+use pxpl5_ring::{Request, Ring, RingEvent, RingOutput, RingTiming};
+use pxpl5_sim::{Context, EventQueue, Phase, Span, Time};
+use pxpl5_wire::{Body, Message, NodeId};
+use std::collections::{BTreeMap, VecDeque};
+
+/// A receiver: elastic, or a FIFO that is emptied at a steady pace.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Receiver {
+    Elastic,
+    Fifo {
+        words: usize,
+        /// Time for which each word occupies the way out.
+        drain: Span,
+        /// Nothing enters before this time after the announcement.
+        opens_after: Span,
+        /// Time from the announcement to the answer, one tick at least.
+        answers_after: Span,
+    },
+}
+
+pub(crate) const ELASTIC: [Receiver; 64] = [Receiver::Elastic; 64];
+
+/// When each message's last word had entered, and when its sender was told, by number in the traffic.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Times {
+    pub(crate) accepted: BTreeMap<u64, Time>,
+    pub(crate) sent: BTreeMap<u64, Time>,
+}
+
+/// A message whose only word that matters is its number.
+pub(crate) fn message(number: u64, source: u16, destination: u16, words: u32) -> Message {
+    let body = Body::Words(vec![number as u32].into());
+    Message { source: NodeId(source), destination: NodeId(destination), words, body }
+}
+
+pub(crate) fn request(number: u64, source: u16, destination: u16, words: u32) -> Request {
+    let message = message(number, source, destination, words);
+    Request { message, ticket: Some(number), hold: false, order: number as u32 }
+}
+
+fn number(message: &Message) -> u64 {
+    match &message.body {
+        Body::Words(words) => u64::from(words[0]),
+        _ => unreachable!("the tests send words"),
+    }
+}
+
+/// Sends the traffic over the fast ring.
+pub(crate) fn run_fast(
+    timing: RingTiming,
+    receivers: &[Receiver],
+    traffic: &[Traffic],
+    shuffle: Option<u64>,
+) -> (Ring, Times) {
+    let elastic = |node: NodeId| matches!(receivers[usize::from(node.0)], Receiver::Elastic);
+    let ring = Ring::new(timing, receivers.len() as u16, elastic).expect("valid");
+    let mut queue = EventQueue::new();
+    if let Some(seed) = shuffle {
+        queue.shuffle_ties(seed);
+    }
+    for (i, t) in (0..).zip(traffic) {
+        let request = Request { hold: t.hold, ..request(i, t.source.0, t.destination.0, t.words) };
+        queue.schedule(t.at, Phase::Arrive, RingEvent::Request(request));
+    }
+    run_queue(ring, queue, receivers)
+}
+
+fn run_queue(mut ring: Ring, mut queue: EventQueue<RingEvent>, receivers: &[Receiver]) -> (Ring, Times) {
+    let mut fifos = vec![VecDeque::new(); receivers.len()];
+    let (mut context, mut times) = (Context::default(), Times::default());
+    while let Some((now, _, event)) = queue.next_event() {
+        ring.handle(event, context.at(now));
+        for (time, phase, event) in context.drain_events() {
+            queue.schedule(time, phase, event);
+        }
+        for (time, output) in context.drain_outputs() {
+            match output {
+                RingOutput::Delivered(message) => drop(times.accepted.insert(number(&message), time)),
+                RingOutput::Sent { ticket, .. } => drop(times.sent.insert(ticket, time)),
+                RingOutput::Refused { error, .. } => panic!("{error}"),
+                RingOutput::Announce { message, first_word_at, word } => {
+                    let node = usize::from(message.destination.0);
+                    let Receiver::Fifo { opens_after, answers_after, .. } = receivers[node] else { unreachable!() };
+                    let slots = Slots { begins: first_word_at, opens: time + opens_after, word, n: message.words };
+                    let last_word_at = last_word(receivers[node], &mut fifos[node], slots);
+                    times.accepted.insert(number(&message), last_word_at);
+                    let accept = RingEvent::Accept { destination: message.destination, last_word_at };
+                    queue.schedule(time + answers_after, Phase::Arrive, accept);
+                }
+            }
+        }
+    }
+    (ring, times)
+}
+
+struct Slots {
+    begins: Time,
+    opens: Time,
+    word: Span,
+    n: u32,
+}
+
+/// Entry of the last word by recurrence: a word enters one slot after the one before it, when there is room, when
+/// the receiver is open; `departures` holds when each of the last words leaves the FIFO.
+fn last_word(receiver: Receiver, departures: &mut VecDeque<Time>, slots: Slots) -> Time {
+    let Receiver::Fifo { words, drain, .. } = receiver else { unreachable!() };
+    let mut entered = slots.begins;
+    for _ in 0..slots.n {
+        let room = if departures.len() == words { departures.pop_front() } else { None };
+        entered = (entered + slots.word).max(slots.opens).max(room.unwrap_or(Time::ZERO));
+        let leaves = departures.back().map_or(entered, |last| entered.max(*last)) + drain;
+        departures.push_back(leaves);
+    }
+    entered
+}
+
+/// The same receivers as the stepped ring asks them: counters, no recurrence.
+#[derive(Debug)]
+pub(crate) struct Stepped {
+    fifos: Vec<(Receiver, Counters)>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Counters {
+    level: usize,
+    opens_at: Time,
+    next_leaves_at: Option<Time>,
+}
+
+impl Stepped {
+    pub(crate) fn new(receivers: &[Receiver]) -> Self {
+        let fifos = receivers.iter().map(|receiver| (*receiver, Counters::default()));
+        Self { fifos: fifos.collect() }
+    }
+}
+
+impl Receivers for Stepped {
+    fn announced(&mut self, destination: NodeId, at: Time) -> Span {
+        let (receiver, counters) = &mut self.fifos[usize::from(destination.0)];
+        let Receiver::Fifo { opens_after, answers_after, .. } = *receiver else { return Span::ZERO };
+        counters.opens_at = at + opens_after;
+        answers_after
+    }
+
+    fn takes_word(&mut self, destination: NodeId, at: Time) -> bool {
+        let (receiver, counters) = &mut self.fifos[usize::from(destination.0)];
+        let Receiver::Fifo { words, drain, .. } = *receiver else { return true };
+        while let Some(leaves) = counters.next_leaves_at.filter(|leaves| *leaves <= at) {
+            counters.level -= 1;
+            counters.next_leaves_at = (counters.level > 0).then_some(leaves + drain);
+        }
+        if at < counters.opens_at || counters.level == words {
+            return false;
+        }
+        counters.level += 1;
+        counters.next_leaves_at.get_or_insert(at + drain);
+        true
+    }
+}
