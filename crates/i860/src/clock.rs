@@ -151,14 +151,20 @@ impl Clock {
 
     fn fill_instruction_line<B: Bus>(&mut self, pc: u32, bus: &B) {
         self.profile.instruction_misses += 1;
-        if self.now < self.miss_last {
-            self.charge(Freeze::InstructionMissBehindData);
-        }
-        if !bus.is_cacheable(pc) {
+        let behind_data = self.now < self.miss_last;
+        if bus.is_cacheable(pc) {
+            self.request_instruction_line(pc);
+        } else {
             let word = self.bus.read(self.now, pc, 1);
             self.line = NO_LINE;
-            return self.freeze_until(word.first, Freeze::InstructionMiss);
+            self.freeze_until(word.first, Freeze::InstructionMiss);
         }
+        if behind_data {
+            self.charge(Freeze::InstructionMissBehindData);
+        }
+    }
+
+    fn request_instruction_line(&mut self, pc: u32) {
         let random = self.chance.next();
         self.instruction_cache.fill(pc, random);
         let line = self.bus.read(self.now, pc, 4);
@@ -308,7 +314,8 @@ impl Clock {
     }
 
     fn behind_store(&self, wait: Wait, i: &Instruction) -> Wait {
-        if float_mask(i.dest, 8) & self.stored == 0 || i.dest < 2 { NO_WAIT } else { wait }
+        let bytes = if i.has(Flags::RESULT_DOUBLE) { 8 } else { 4 };
+        if float_mask(i.dest, bytes) & self.stored == 0 || i.dest < 2 { NO_WAIT } else { wait }
     }
 
     // ---- what an instruction leaves behind

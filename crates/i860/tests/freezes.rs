@@ -1,0 +1,367 @@
+//! Every row of the freeze table alone: what it costs at its moment, and nothing one instruction later.
+//!
+//! A program runs twice, with no row and with the one under test; the difference is the row's cost. Expected values
+//! are the table's constants and, where memory takes part, sums of the DRAM parameters.
+
+use i860::timing::{DramTiming, FREEZES, Freeze, FreezeRules};
+use i860::{Config, Cpu, Outcome, Ram, assemble};
+
+const CODE: u32 = 0x1000;
+const DATA: u32 = 0x8000;
+
+fn dram() -> DramTiming {
+    DramTiming { refresh_interval: 0, ..DramTiming::board() }
+}
+
+fn clocks_with(rules: FreezeRules, source: &str) -> u64 {
+    let program = assemble("freeze.s", CODE, &format!("{source}\nend:")).unwrap_or_else(|e| panic!("{e}"));
+    let mut ram = Ram::new(0, 0x20000);
+    ram.load(CODE, &program.bytes).expect("fits");
+    let mut cpu = Cpu::at(Config { freezes: rules, dram: dram(), ..Config::cycle() }, CODE);
+    cpu.state.r[4] = DATA;
+    let outcome = cpu.run(&mut ram, program.symbol("end"), 1000);
+    assert_eq!(outcome, Outcome::Stopped, "{source}");
+    assert_eq!(cpu.profile().clocks(), cpu.clocks(), "every clock has a cause");
+    cpu.clocks()
+}
+
+fn cost(row: Freeze, source: &str) -> u64 {
+    cost_beside(FreezeRules::none(), row, source)
+}
+
+fn cost_beside(others: FreezeRules, row: Freeze, source: &str) -> u64 {
+    clocks_with(others.with(row), source) - clocks_with(others, source)
+}
+
+/// What each row of the table says, checked against the list in the specification.
+#[test]
+fn the_table_holds_the_constants_of_the_list() {
+    let constants: Vec<(&str, u32)> = FREEZES.iter().map(|row| (row.number, row.clocks)).collect();
+    let expected = [
+        ("1a", 0), ("1b", 2), ("2", 1), ("3", 1), ("4", 1), ("5", 1), ("6", 1), ("7", 2), ("8", 1), ("9", 1),
+        ("10a", 2), ("10b", 3), ("10c", 1), ("10d", 1), ("11", 1), ("12", 5), ("13", 1), ("14", 2), ("15", 1),
+        ("16", 0), ("17", 1), ("18", 1), ("19a", 1), ("19b", 2), ("20", 1), ("21", 2), ("22a", 1), ("22b", 1),
+        ("23", 2), ("24", 1), ("25", 1),
+    ];
+    assert_eq!(constants, expected);
+    assert!(FREEZES.iter().enumerate().all(|(n, row)| row.id as usize == n));
+}
+
+#[test]
+fn row_1_an_instruction_miss_waits_for_the_word_needed() {
+    let t = dram();
+    assert_eq!(cost(Freeze::InstructionMiss, ".rept 8\nnop\n.endr"), u64::from(t.first_miss));
+    let second_line = u64::from(t.first_miss) + u64::from(t.first_hit);
+    assert_eq!(cost(Freeze::InstructionMiss, ".rept 9\nnop\n.endr"), second_line);
+}
+
+#[test]
+fn row_1_leaving_the_line_early_waits_for_the_rest_of_it() {
+    let t = dram();
+    let there_and_back = "br away\nnop\nback: br end\nnop\n.align 32\naway: br back\nnop";
+    // Two clocks of br and slot run while the line comes in; its last word is 3 x next behind the first.
+    let rest = u64::from(3 * t.next) - 2;
+    let second_line = u64::from(t.first_hit) + u64::from(3 * t.next) - 2;
+    assert_eq!(cost(Freeze::InstructionMiss, there_and_back), u64::from(t.first_miss) + rest + second_line);
+}
+
+#[test]
+fn row_1_a_line_that_is_held_costs_nothing() {
+    let t = dram();
+    let twice = "adds 1, r0, r8\nloop: bte r8, r9, end\nmov r8, r9\nbr loop\nnop";
+    assert_eq!(cost(Freeze::InstructionMiss, twice), u64::from(t.first_miss));
+}
+
+#[test]
+fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
+    let t = dram();
+    let others = FreezeRules::none().with(Freeze::InstructionMiss);
+    // A load, then a loop of two clocks a turn, then the next line.
+    let source = |turns: u32| {
+        format!(".align 32\nmov {turns}, r7\nld.l 0(r4), r5\nl: adds -1, r7, r7\nbtne r0, r7, l\nnop\nnop\nnop\nnop\nnop")
+    };
+    let fill = t.first_miss + 3 * t.next;
+    let turns_until_full = (fill - 4).div_ceil(2);
+    let row = Freeze::InstructionMissBehindData;
+    assert_eq!(cost_beside(others, row, &source(1)), 2);
+    assert_eq!(cost_beside(others, row, &source(turns_until_full - 1)), 2);
+    assert_eq!(cost_beside(others, row, &source(turns_until_full + 1)), 0);
+}
+
+#[test]
+fn row_2_the_destination_of_a_load_that_missed_is_waited_for() {
+    let t = dram();
+    let read = u64::from(t.first_miss);
+    assert_eq!(cost(Freeze::LoadMissUse, "ld.l 0(r4), r5\nadds r5, r0, r6"), 1 + read);
+    assert_eq!(cost(Freeze::LoadMissUse, "ld.l 0(r4), r5\nnop\nnop\nadds r5, r0, r6"), 1 + read - 2);
+    let nops = "nop\n".repeat(t.first_miss as usize);
+    assert_eq!(cost(Freeze::LoadMissUse, &format!("ld.l 0(r4), r5\n{nops}adds r5, r0, r6")), 1);
+    assert_eq!(cost(Freeze::LoadMissUse, &format!("ld.l 0(r4), r5\n{nops}nop\nadds r5, r0, r6")), 0);
+    assert_eq!(cost(Freeze::LoadMissUse, "ld.l 0(r4), r5\nadds r7, r0, r6"), 0);
+}
+
+#[test]
+fn row_3_a_floating_load_that_misses_blocks_and_one_that_hits_does_not() {
+    let read = u64::from(dram().first_miss);
+    assert_eq!(cost(Freeze::FloatingLoadMiss, "fld.d 0(r4), f8"), 1 + read);
+    assert_eq!(cost(Freeze::FloatingLoadMiss, "fld.d 0(r4), f8\nfld.d 24(r4), f8"), 1 + read);
+}
+
+#[test]
+fn row_4_transfers_wait_for_the_first_word_of_a_fill() {
+    let read = u64::from(dram().first_miss);
+    for transfer in ["ixfr r6, f8", "fxfr f8, r6", "ld.c psr, r6", "st.c r0, fsr"] {
+        let source = |gap: &str| format!("ld.l 0(r4), r5\n{gap}{transfer}");
+        assert_eq!(cost(Freeze::TransferDuringMiss, &source("")), 1 + read, "{transfer}");
+        assert_eq!(cost(Freeze::TransferDuringMiss, &source(&"nop\n".repeat(read as usize))), 1);
+        assert_eq!(cost(Freeze::TransferDuringMiss, &source(&"nop\n".repeat(read as usize + 1))), 0);
+    }
+}
+
+#[test]
+fn row_5_accesses_wait_for_the_whole_line() {
+    let t = dram();
+    let line = u64::from(t.first_miss + 3 * t.next);
+    for access in ["ld.l 4(r4), r6", "st.l r6, 4(r4)", "fld.d 8(r4), f8", "fst.d f8, 8(r4)"] {
+        let source = |gap: u64| format!("ld.l 0(r4), r5\n{}{access}", "nop\n".repeat(gap as usize));
+        assert_eq!(cost(Freeze::AccessDuringMiss, &source(0)), 1 + line, "{access}");
+        assert_eq!(cost(Freeze::AccessDuringMiss, &source(line)), 1);
+        assert_eq!(cost(Freeze::AccessDuringMiss, &source(line + 1)), 0);
+    }
+}
+
+#[test]
+fn row_6_the_next_instruction_waits_for_a_load_and_the_one_after_does_not() {
+    for (load, user) in [
+        ("ld.l 0(r4), r5", "adds r5, r0, r6"),
+        ("ld.c psr, r5", "adds r5, r0, r6"),
+        ("fxfr f8, r5", "adds r5, r0, r6"),
+        ("call f\nadds r1, r0, r6\nf: nop", "nop"),
+    ] {
+        assert_eq!(cost(Freeze::LoadUse, &format!("{load}\n{user}")), 1, "{load}");
+    }
+    assert_eq!(cost(Freeze::LoadUse, "ld.l 0(r4), r5\nnop\nadds r5, r0, r6"), 0);
+    assert_eq!(cost(Freeze::LoadUse, "ld.l 0(r4), r5\nadds r7, r0, r6"), 0);
+}
+
+#[test]
+fn row_7_a_floating_load_is_waited_for_by_two_instructions() {
+    for load in ["fld.d 0(r4), f8", "pfld.d 0(r4), f8", "ixfr r5, f8"] {
+        let source = |gap: &str| format!("{load}\n{gap}pfadd.ss f8, f10, f12");
+        assert_eq!(cost(Freeze::FloatingLoadUse, &source("")), 2, "{load}");
+        assert_eq!(cost(Freeze::FloatingLoadUse, &source("nop\n")), 1);
+        assert_eq!(cost(Freeze::FloatingLoadUse, &source("nop\nnop\n")), 0);
+    }
+    assert_eq!(cost(Freeze::FloatingLoadUse, "fld.q 0(r4), f8\npfadd.ss f11, f2, f3"), 2);
+    assert_eq!(cost(Freeze::FloatingLoadUse, "fld.d 0(r4), f8\npfadd.ss f10, f2, f3"), 0);
+}
+
+#[test]
+fn row_8_a_branch_waits_for_a_condition_just_set() {
+    for setter in ["adds 1, r5, r5", "subu r5, r6, r7", "pfgt.ss f8, f9, f0"] {
+        assert_eq!(cost(Freeze::ConditionUse, &format!("{setter}\nbc end")), 1, "{setter}");
+        assert_eq!(cost(Freeze::ConditionUse, &format!("{setter}\nnop\nbc end")), 0);
+    }
+    assert_eq!(cost(Freeze::ConditionUse, "and 1, r5, r5\nbnc end"), 0);
+    let mut rules = FreezeRules::none().with(Freeze::ConditionUse);
+    rules.logicals_delay_branches = true;
+    assert_eq!(clocks_with(rules, "and 1, r5, r5\nbnc end"), 3);
+}
+
+#[test]
+fn row_9_the_first_source_of_a_multiply_waits_for_the_result_before_it() {
+    let row = Freeze::MultiplierFirstSource;
+    assert_eq!(cost(row, "pfadd.ss f8, f9, f10\npfmul.ss f10, f9, f11"), 1);
+    assert_eq!(cost(row, "pfadd.ss f8, f9, f10\npfmul.ss f9, f10, f11"), 0, "the second source does not");
+    assert_eq!(cost(row, "pfadd.ss f8, f9, f10\nnop\npfmul.ss f10, f9, f11"), 0);
+    assert_eq!(cost(row, "pfadd.ss f8, f9, f10\nm12apm.ss f10, f9, f11"), 1);
+    assert_eq!(cost(row, "pfadd.ss f8, f9, f10\nr2p1.ss f10, f9, f11"), 0, "r2p1 sends it to the adder");
+}
+
+#[test]
+fn row_10_a_scalar_operation_holds_the_unit_for_two_clocks_more() {
+    for scalar in ["fadd.ss f8, f9, f10", "fmul.ss f8, f9, f10", "famov.ss f8, f10"] {
+        for next in ["fadd.ss f2, f3, f4", "fst.l f3, 0(r4)", "fiadd.ss f2, f3, f4", "pfadd.ss f2, f3, f0"] {
+            let source = |gap: &str| format!("{scalar}\n{gap}{next}");
+            assert_eq!(cost(Freeze::ScalarBusy, &source("")), 2, "{scalar} {next}");
+            assert_eq!(cost(Freeze::ScalarBusy, &source("nop\n")), 1);
+            assert_eq!(cost(Freeze::ScalarBusy, &source("nop\nnop\n")), 0);
+        }
+    }
+    assert_eq!(cost(Freeze::ScalarBusy, "frcp.ss f8, f10\nfadd.ss f2, f3, f4"), 0);
+}
+
+#[test]
+fn row_10b_a_double_multiply_holds_it_for_three() {
+    let row = Freeze::ScalarDoubleMultiplyBusy;
+    assert_eq!(cost(row, "fmul.dd f8, f10, f12\nfadd.dd f2, f4, f6"), 3);
+    assert_eq!(cost(row, "fmul.dd f8, f10, f12\nnop\nnop\nfadd.dd f2, f4, f6"), 1);
+    assert_eq!(cost(row, "fmul.dd f8, f10, f12\nnop\nnop\nnop\nfadd.dd f2, f4, f6"), 0);
+}
+
+#[test]
+fn rows_10c_and_10d_add_to_a_wait_but_make_none() {
+    let busy = FreezeRules::none().with(Freeze::ScalarBusy);
+    let change = |gap: &str| cost_beside(busy, Freeze::ScalarPrecisionChange, &format!("fadd.ss f8,f9,f10\n{gap}fadd.dd f2,f4,f6"));
+    assert_eq!((change(""), change("nop\n"), change("nop\nnop\n")), (1, 1, 0));
+    let pipe = |next: &str| cost_beside(busy, Freeze::ScalarThenPipelined, &format!("fadd.ss f8,f9,f10\n{next}"));
+    assert_eq!((pipe("pfadd.ss f2,f3,f4"), pipe("pfadd.ss f2,f3,f0"), pipe("fadd.ss f2,f3,f4")), (1, 0, 0));
+}
+
+#[test]
+fn row_11_the_multiplier_takes_a_double_every_second_clock() {
+    let row = Freeze::DoubleMultiply;
+    assert_eq!(cost(row, "pfmul.dd f8, f10, f12\npfmul.dd f8, f10, f12"), 1);
+    assert_eq!(cost(row, "pfmul.dd f8, f10, f12\npfadd.dd f8, f10, f12\npfmul.dd f8, f10, f12"), 0);
+    assert_eq!(cost(row, "pfmul.dd f8, f10, f12\npfadd.dd f8, f10, f12"), 0);
+    assert_eq!(cost(row, "pfmul.ss f8, f10, f12\npfmul.ss f8, f10, f12"), 0);
+}
+
+#[test]
+fn row_12_a_page_seen_first_costs_five_and_two_reads() {
+    let t = dram();
+    let translation_on = "adds 1, r0, r5\nst.c r5, dirbase\n";
+    let load = |n: u32| format!("{translation_on}{}", "ld.l 0(r4), r6\n".repeat(n as usize));
+    let reads = u64::from(t.first_miss) + u64::from(t.first_miss);
+    assert_eq!(cost(Freeze::TlbMiss, &load(1)), 5 + reads);
+    assert_eq!(cost(Freeze::TlbMiss, &load(3)), 5 + reads);
+    assert_eq!(cost(Freeze::TlbMiss, "ld.l 0(r4), r6"), 0, "translation is off");
+}
+
+#[test]
+fn row_13_the_fourth_pipelined_load_waits_for_the_first() {
+    let t = dram();
+    let loads = |n: usize| "pfld.d 8(r4)++, f8\n".repeat(n);
+    assert_eq!(cost(Freeze::LoadPipeFull, &loads(3)), 0);
+    // The first was requested after one clock; the fourth issues, then waits, at clock 4.
+    assert_eq!(cost(Freeze::LoadPipeFull, &loads(4)), u64::from(t.first_miss) + 1 - 4 + 1);
+    let late = format!("{}{}{}", loads(3), "nop\n".repeat(t.first_miss as usize - 3), loads(1));
+    assert_eq!(cost(Freeze::LoadPipeFull, &late), 0);
+}
+
+#[test]
+fn row_14_a_pipelined_load_that_hits_waits_for_the_bus_and_two_more() {
+    let t = dram();
+    let line = u64::from(t.first_miss + 3 * t.next);
+    let after = |gap: u64| format!("ld.l 0(r4), r5\n{}pfld.d 8(r4), f8", "nop\n".repeat(gap as usize));
+    assert_eq!(cost(Freeze::PipelinedLoadHit, &after(line + 10)), 2);
+    // The line ends `line` clocks after the load's issue, and one of them is this instruction's own.
+    assert_eq!(cost(Freeze::PipelinedLoadHit, &after(0)), line - 1 + 2);
+}
+
+#[test]
+fn row_15_the_fourth_store_waits_for_the_first_to_leave() {
+    let t = dram();
+    let stores = |n: u32| (0..n).map(|k| format!("st.l r5, {}(r4)\n", 8 * k)).collect::<String>();
+    assert_eq!(cost(Freeze::StorePipeFull, &stores(3)), 0);
+    // The first is requested at clock 1 and ends at 1 + write_miss; the fourth has issued at clock 4.
+    assert_eq!(cost(Freeze::StorePipeFull, &stores(4)), u64::from(t.write_miss) + 1 - 4 + 1);
+}
+
+#[test]
+fn row_16_a_fourth_request_waits_for_the_first_to_end() {
+    let t = dram();
+    // Pipelined loads without row 13 use the address pipe alone: requests at 1, 2, 3, then 4.
+    let loads = |n: usize| "pfld.d 8(r4)++, f8\n".repeat(n);
+    assert_eq!(cost(Freeze::AddressPipeFull, &loads(3)), 0);
+    assert_eq!(cost(Freeze::AddressPipeFull, &loads(4)), 1 + u64::from(t.first_miss) - 4);
+}
+
+#[test]
+fn row_17_a_load_right_behind_a_store_that_hit_waits() {
+    let fill = format!("ld.l 0(r4), r5\n{}", "nop\n".repeat(30));
+    let source = |gap: &str| format!("{fill}st.l r5, 4(r4)\n{gap}ld.l 8(r4), r6");
+    assert_eq!(cost(Freeze::LoadAfterStoreHit, &source("")), 1);
+    assert_eq!(cost(Freeze::LoadAfterStoreHit, &source("nop\n")), 0);
+    assert_eq!(cost(Freeze::LoadAfterStoreHit, "st.l r5, 4(r4)\nld.l 8(r4), r6"), 0, "the store missed");
+}
+
+#[test]
+fn row_18_a_delayed_branch_not_taken_costs_one_and_taken_none() {
+    let row = Freeze::DelayedBranchNotTaken;
+    assert_eq!(cost(row, "bc.t end\nnop"), 1);
+    assert_eq!(cost(row, "bnc.t end\nnop"), 0);
+    assert_eq!(cost(row, "adds -1, r0, r5\nmov 9, r6\nbla r5, r6, end\nnop"), 1, "LCC was clear");
+    assert_eq!(cost(row, "adds -1, r0, r5\nmov 9, r6\nbla r5, r6, a\nnop\na: bla r5, r6, end\nnop"), 1, "then set");
+}
+
+#[test]
+fn row_19_a_branch_without_slot_costs_when_taken() {
+    assert_eq!(cost(Freeze::BranchTaken, "bnc end\nnop"), 1);
+    assert_eq!(cost(Freeze::BranchTaken, "bc end\nnop"), 0);
+    assert_eq!(cost(Freeze::CompareBranchTaken, "bte r0, r0, end\nnop"), 2);
+    assert_eq!(cost(Freeze::CompareBranchTaken, "btne r0, r0, end\nnop"), 0);
+}
+
+#[test]
+fn row_20_a_branch_through_a_register_costs_one() {
+    assert_eq!(cost(Freeze::IndirectBranch, "mov end, r5\nbri r5\nnop"), 1);
+    assert_eq!(cost(Freeze::IndirectBranch, "mov end, r5\ncalli r5\nnop"), 1);
+    assert_eq!(cost(Freeze::IndirectBranch, "br end\nnop"), 0);
+}
+
+#[test]
+fn row_21_a_write_to_a_control_register_costs_two() {
+    assert_eq!(cost(Freeze::ControlStore, "st.c r0, fsr\nld.c fsr, r5"), 2);
+    assert_eq!(cost(Freeze::ControlStore, "ld.c fsr, r5"), 0);
+}
+
+#[test]
+fn row_22_a_graphics_result_is_late_by_one() {
+    let first = "fiadd.ss f8, f9, f10";
+    assert_eq!(cost(Freeze::GraphicsToFloating, &format!("{first}\npfadd.ss f10, f2, f3")), 1);
+    assert_eq!(cost(Freeze::GraphicsToFloating, &format!("{first}\nnop\npfadd.ss f10, f2, f3")), 0);
+    assert_eq!(cost(Freeze::GraphicsToFloating, &format!("{first}\npfadd.ss f12, f2, f3")), 0);
+    assert_eq!(cost(Freeze::GraphicsToGraphics, &format!("{first}\nfiadd.ss f10, f2, f3")), 1);
+    assert_eq!(cost(Freeze::GraphicsToGraphics, &format!("{first}\npfadd.ss f10, f2, f3")), 0);
+}
+
+#[test]
+fn row_23_a_flush_waits_for_the_flush_before() {
+    let row = Freeze::FlushAfterFlush;
+    let source = |gap: &str| format!("flush 0(r4)\n{gap}flush 32(r4)");
+    assert_eq!((cost(row, &source("")), cost(row, &source("nop\n")), cost(row, &source("nop\nnop\n"))), (2, 1, 0));
+}
+
+#[test]
+fn row_24_a_pipelined_result_waits_for_the_store_of_its_register() {
+    let row = Freeze::StoreThenOverwrite;
+    assert_eq!(cost(row, "fst.l f8, 0(r4)\npfadd.ss f2, f3, f8"), 1);
+    assert_eq!(cost(row, "fst.l f8, 0(r4)\nnop\npfadd.ss f2, f3, f8"), 0);
+    assert_eq!(cost(row, "fst.l f8, 0(r4)\npfadd.ss f2, f3, f9"), 0);
+    assert_eq!(cost(row, "fst.l f8, 0(r4)\nfadd.ss f2, f3, f8"), 0);
+}
+
+#[test]
+fn row_25_a_seed_is_late_by_one() {
+    assert_eq!(cost(Freeze::SeedUse, "frcp.ss f8, f9\nfmul.ss f9, f9, f10"), 1);
+    assert_eq!(cost(Freeze::SeedUse, "frcp.ss f8, f9\nnop\nfmul.ss f9, f9, f10"), 0);
+}
+
+#[test]
+fn simultaneous_freezes_cost_the_longest() {
+    let source = "fadd.ss f8, f9, f10\nfld.l 0(r4), f2\nfadd.ss f2, f10, f11";
+    let (scalar, load) = (Freeze::ScalarBusy, Freeze::FloatingLoadUse);
+    assert_eq!((cost(scalar, source), cost(load, source)), (1, 2));
+    let both = FreezeRules::none().with(scalar).with(load);
+    assert_eq!(clocks_with(both, source) - clocks_with(FreezeRules::none(), source), 2);
+}
+
+#[test]
+fn both_halves_of_a_pair_wait_together_for_the_longer_freeze() {
+    let halves = |low: &str, high: &str| format!("d.fnop\nnop\nd.fnop\nixfr r5, f8\nd.{low}\n{high}\nfnop\nnop\nfnop\nnop");
+    let plain = halves("pfadd.ss f0, f0, f0", "ld.l 0(r4), r6");
+    let waiting = halves("pfadd.ss f8, f0, f0", "ld.l 0(r4), r6");
+    // Two single instructions, then one clock for each of four pairs; the first pair is dual once the word is over.
+    assert_eq!(clocks_with(FreezeRules::none(), &plain), 2 + 4);
+    let row = FreezeRules::none().with(Freeze::FloatingLoadUse);
+    assert_eq!(clocks_with(row, &plain), 2 + 4);
+    assert_eq!(clocks_with(row, &waiting), 2 + 4 + 2);
+}
+
+#[test]
+fn a_row_switched_off_among_all_others_costs_nothing() {
+    let all_but = FreezeRules::all().without(Freeze::ConditionUse);
+    let source = "adds 1, r5, r5\nbc end";
+    assert_eq!(clocks_with(FreezeRules::all(), source) - clocks_with(all_but, source), 1);
+}
