@@ -101,6 +101,9 @@ parameters! {
     LED_BEAM = "width of the LED's beam at the pendulum", 2.0 "mm", Assumed "TR94 gives none", 0.1..20.0;
     PHOTODIODE_LINE = "visible line of the screen under the photodiode", 120.0 "lines", Assumed "middle of a 240-line field; TR94 gives none", 0.0..239.0;
 
+    NTSC_FIELD = "time from one vertical retrace to the next", 16.683333333333334 "ms", Published "NTSC, 1001/60000 s", 16.68..16.69;
+    NTSC_LINE = "time from one scanline to the next", 63.55555555555556 "us", Published "NTSC, 4004/63 us", 63.55..63.56;
+
     VIEW_WIDTH = "width of the head-mounted display", 640.0 "px", Published "TR94", 1.0..16384.0;
     VIEW_HEIGHT = "height of the head-mounted display", 480.0 "px", Published "TR94", 1.0..16384.0;
     VIEW_ANGLE = "horizontal angle of view", 60.0 "deg", Published "JITP", 1.0..170.0;

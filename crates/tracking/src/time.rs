@@ -23,6 +23,14 @@ pub(crate) fn tick_ps(n: u64, seconds: u32, rate: u32) -> Option<u64> {
     u64::try_from(ps).ok()
 }
 
+/// One NTSC field, floor(1001 / 60000 s).
+pub const NTSC_FIELD_PS: u64 = 1_001 * PS_PER_S / 60_000;
+
+/// From the first visible line of an NTSC field to line `n` of it: floor(n x 4004/63 us).
+pub fn ntsc_lines_ps(n: u32) -> u64 {
+    u64::from(n) * 4_004_000_000 / 63
+}
+
 /// Seconds to the nearest picosecond. The argument must be finite, not negative and below 2^64 ps.
 pub(crate) fn nearest_ps(seconds: f64) -> u64 {
     let whole = libm::floor(seconds);
@@ -37,6 +45,12 @@ mod tests {
     fn the_tick_after_an_hour_at_120_hz_is_exact() {
         assert_eq!(tick_ps(432_000, 1, 120), Some(3600 * PS_PER_S));
         assert_eq!(tick_ps(1, 1, 120), Some(8_333_333_333));
+    }
+
+    #[test]
+    fn a_field_takes_262_and_a_half_lines() {
+        assert_eq!(NTSC_FIELD_PS, 16_683_333_333);
+        assert_eq!(ntsc_lines_ps(525) / 2, NTSC_FIELD_PS);
     }
 
     #[test]

@@ -39,6 +39,12 @@ impl TrackerModel {
         PS_PER_S * u64::from(self.config.receivers) / u64::from(self.config.rate_hz)
     }
 
+    /// Time between reports: the period, or as many periods as a transfer of all receivers takes.
+    pub fn report_interval_ps(&self) -> u64 {
+        let transfer_ps = self.config.serial.map_or(0, |s| s.transfer_ps(self.config.receivers));
+        self.period_ps() * transfer_ps.div_ceil(self.period_ps()).max(1)
+    }
+
     /// Delay of the tracker's own filter behind a steady motion: period x (1 - a) / a. Time stamps do not know of it.
     pub fn filter_delay_ps(&self) -> u64 {
         let gain = self.config.filter_gain;

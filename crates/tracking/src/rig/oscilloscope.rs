@@ -1,0 +1,73 @@
+/// A step on a channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Edge {
+    /// When.
+    pub t_ps: u64,
+    /// Level from then on.
+    pub high: bool,
+}
+
+/// One channel of the oscilloscope, low before its first edge.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Trace {
+    /// What the probe touches.
+    pub name: &'static str,
+    edges: Vec<Edge>,
+}
+
+impl Trace {
+    /// A line that changes its level at each of these instants.
+    pub(super) fn toggling(name: &'static str, mut instants: Vec<u64>) -> Self {
+        instants.sort_unstable();
+        let edges = instants.into_iter().enumerate().map(|(i, t_ps)| Edge { t_ps, high: i % 2 == 0 });
+        Self { name, edges: edges.collect() }
+    }
+
+    /// A line with a pulse of this width about each of these instants.
+    pub(super) fn pulsing(name: &'static str, instants: impl Iterator<Item = u64>, width_ps: u64) -> Self {
+        let ends = instants.flat_map(|t| [t.saturating_sub(width_ps / 2), t.saturating_add(width_ps / 2)]);
+        Self::toggling(name, ends.collect())
+    }
+
+    /// The steps, in order of time.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// Level at an instant; at an edge already the new one.
+    pub fn level(&self, t_ps: u64) -> bool {
+        let after = self.edges.partition_point(|edge| edge.t_ps <= t_ps);
+        after > 0 && self.edges[after - 1].high
+    }
+
+    /// The channel as a time series: levels 0 and 1 at `from`, `from + step`, ... before `to`. A step of 0 counts as 1.
+    pub fn samples(&self, from_ps: u64, to_ps: u64, step_ps: u64) -> impl Iterator<Item = (u64, f64)> {
+        (from_ps..to_ps)
+            .step_by(usize::try_from(step_ps.max(1)).unwrap_or(usize::MAX))
+            .map(|t_ps| (t_ps, f64::from(u8::from(self.level(t_ps)))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_toggling_line_is_low_then_high_then_low() {
+        let trace = Trace::toggling("screen", vec![30, 10]);
+        assert_eq!([9, 10, 29, 30].map(|t| trace.level(t)), [false, true, true, false]);
+    }
+
+    #[test]
+    fn a_pulse_is_centred_on_its_instant() {
+        let trace = Trace::pulsing("low point", [100, 200].into_iter(), 10);
+        assert_eq!([94, 95, 104, 105, 195].map(|t| trace.level(t)), [false, true, true, false, true]);
+    }
+
+    #[test]
+    fn samples_are_the_levels() {
+        let trace = Trace::toggling("screen", vec![10, 30]);
+        let levels: Vec<f64> = trace.samples(0, 50, 10).map(|(_, v)| v).collect();
+        assert_eq!(levels, [0.0, 1.0, 1.0, 0.0, 0.0]);
+    }
+}

@@ -1,0 +1,178 @@
+use glam::{DVec2, DVec3};
+
+use crate::config::{VIEW_ANGLE, VIEW_HEIGHT, VIEW_WIDTH};
+use crate::error::ConfigError;
+use crate::pose::Pose;
+use crate::time::seconds;
+
+/// Nearest distance before the eye, m, that can be projected.
+const NEAREST_M: f64 = 1e-6;
+
+/// The flat picture of a head-mounted display, seen from one eye. Pixel (0, 0) is the upper left corner, x to the
+/// right, y down, the axis of view in the middle; pixels are square.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HmdView {
+    width_px: f64,
+    height_px: f64,
+    horizontal_deg: f64,
+    focal_px: f64,
+}
+
+/// How far a point is from where it should be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelError {
+    /// Shown place minus true place, px, x to the right and y down.
+    pub offset_px: DVec2,
+    /// Its length.
+    pub pixels: f64,
+    /// The angle between the two directions, seen from the eye.
+    pub degrees: f64,
+}
+
+impl HmdView {
+    /// A view of this size (1 to 16,384 px each) and horizontal angle (1 to 170 degrees).
+    pub fn new(width_px: u32, height_px: u32, horizontal_deg: f64) -> Result<Self, ConfigError> {
+        let check = |parameter: crate::config::Parameter, found| {
+            ConfigError::check(parameter.name, found, parameter.range.0, parameter.range.1)
+        };
+        let (width_px, height_px) = (f64::from(width_px), f64::from(height_px));
+        check(VIEW_WIDTH, width_px)?;
+        check(VIEW_HEIGHT, height_px)?;
+        check(VIEW_ANGLE, horizontal_deg)?;
+        let focal_px = width_px / 2.0 / libm::tan(horizontal_deg.to_radians() / 2.0);
+        Ok(Self { width_px, height_px, horizontal_deg, focal_px })
+    }
+
+    /// 640 x 480 pixels, 60 degrees.
+    pub fn ntsc() -> Self {
+        Self::new(VIEW_WIDTH.value as u32, VIEW_HEIGHT.value as u32, VIEW_ANGLE.value)
+            .expect("the table's values are in range")
+    }
+
+    /// Distance of the eye from the picture, in pixels.
+    pub fn focal_px(&self) -> f64 {
+        self.focal_px
+    }
+
+    /// Middle of the picture.
+    pub fn centre_px(&self) -> DVec2 {
+        DVec2::new(self.width_px, self.height_px) / 2.0
+    }
+
+    /// Pixels per degree, averaged over the width: the papers' measure. A flat picture has fewer in the middle and
+    /// more at the edge.
+    pub fn mean_px_per_deg(&self) -> f64 {
+        self.width_px / self.horizontal_deg
+    }
+
+    /// Where a point in head axes (m, -z ahead) is shown; `None` behind the eye. It may lie outside of the picture.
+    pub fn project(&self, point: DVec3) -> Option<DVec2> {
+        let depth = -point.z;
+        (depth > NEAREST_M).then(|| self.centre_px() + DVec2::new(point.x, -point.y) * (self.focal_px / depth))
+    }
+
+    /// Whether a place lies within the picture.
+    pub fn contains(&self, place: DVec2) -> bool {
+        (0.0..=self.width_px).contains(&place.x) && (0.0..=self.height_px).contains(&place.y)
+    }
+
+    /// Error of a world point that was drawn for one pose and is seen from another; `None` if either has it behind
+    /// the eye.
+    pub fn pixel_error(&self, world: DVec3, drawn_for: &Pose, seen_from: &Pose) -> Option<PixelError> {
+        let (drawn, seen) = (drawn_for.view_of(world), seen_from.view_of(world));
+        let offset_px = self.project(drawn)? - self.project(seen)?;
+        let degrees = angle_between(drawn, seen).to_degrees();
+        Some(PixelError { offset_px, pixels: offset_px.length(), degrees })
+    }
+
+    /// The papers' measure of a late frame: the point `distance_m` ahead on the axis of view when the frame was begun,
+    /// and how far from there it should be when the frame is shown.
+    pub fn centre_error(&self, begun: &Pose, shown: &Pose, distance_m: f64) -> Option<PixelError> {
+        let point = begun.position + begun.orientation * (DVec3::NEG_Z * distance_m);
+        self.pixel_error(point, begun, shown)
+    }
+}
+
+/// Angle in degrees that a steady turn covers in a span.
+pub fn drift_deg(deg_per_s: f64, span_ps: u64) -> f64 {
+    deg_per_s * seconds(span_ps)
+}
+
+/// Angle between two vectors, radians, exact for small angles too.
+pub(super) fn angle_between(a: DVec3, b: DVec3) -> f64 {
+    libm::atan2(a.cross(b).length(), a.dot(b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::{NTSC_FIELD, NTSC_LINE};
+    use crate::motion::{Motion, Pan};
+    use crate::rotation;
+    use crate::time::{NTSC_FIELD_PS, PS_PER_MS, ntsc_lines_ps};
+
+    #[test]
+    fn the_edge_of_a_60_degree_view_is_30_degrees_off_the_axis() {
+        let edge = rotation::about_y(-30f64.to_radians()) * DVec3::NEG_Z;
+        let place = HmdView::ntsc().project(edge).unwrap();
+        assert!((place - DVec2::new(640.0, 240.0)).length() < 1e-9);
+    }
+
+    #[test]
+    fn up_is_a_smaller_y() {
+        assert!(HmdView::ntsc().project(DVec3::new(0.0, 0.1, -1.0)).unwrap().y < 240.0);
+    }
+
+    #[test]
+    fn behind_the_eye_there_is_no_picture() {
+        assert_eq!(HmdView::ntsc().project(DVec3::Z), None);
+        assert_eq!(HmdView::ntsc().project(DVec3::X), None);
+        let behind = Pose::facing(rotation::about_y(3.0));
+        assert_eq!(HmdView::ntsc().pixel_error(DVec3::NEG_Z, &Pose::IDENTITY, &behind), None);
+    }
+
+    // J1 and J2 of the published figures: 200 deg/s, 60 degrees, 600 px.
+    #[test]
+    fn one_transform_a_field_is_3_3_degrees_and_33_px_off() {
+        let view = HmdView::new(600, 480, 60.0).unwrap();
+        let degrees = drift_deg(200.0, NTSC_FIELD_PS);
+        assert!((degrees - 3.3).abs() < 0.05);
+        assert!((degrees * view.mean_px_per_deg() - 33.0).abs() < 0.5);
+        assert!((NTSC_FIELD.value * 1e9 - NTSC_FIELD_PS as f64).abs() < 1.0);
+    }
+
+    #[test]
+    fn one_transform_a_scanline_is_0_013_degrees_and_0_13_px_off() {
+        let view = HmdView::new(600, 480, 60.0).unwrap();
+        let degrees = drift_deg(200.0, ntsc_lines_ps(1));
+        assert!((degrees - 0.013).abs() < 5e-4);
+        assert!((degrees * view.mean_px_per_deg() - 0.13).abs() < 5e-3);
+        assert!((NTSC_LINE.value * 1e6 - ntsc_lines_ps(1) as f64).abs() < 1.0);
+    }
+
+    #[test]
+    fn a_pan_moves_the_centre_by_the_focal_length_times_the_tangent() {
+        let pan = Pan::at(200.0);
+        let error = HmdView::ntsc().centre_error(&pan.pose(0), &pan.pose(NTSC_FIELD_PS), 5.0).unwrap();
+        let expected = 320.0 / 30f64.to_radians().tan() * drift_deg(200.0, NTSC_FIELD_PS).to_radians().tan();
+        assert!((error.pixels - expected).abs() < 1e-9);
+        assert!((error.degrees - drift_deg(200.0, NTSC_FIELD_PS)).abs() < 1e-9);
+        assert!(error.offset_px.x < 0.0, "turning left, the point should have gone right");
+    }
+
+    #[test]
+    fn latencies_of_90_and_50_ms_err_as_1_8_to_1() {
+        // At 40 deg/s, the mean of recorded use; the tangent adds 0.1 %.
+        let pan = Pan::at(40.0);
+        let error =
+            |ms: u64| HmdView::ntsc().centre_error(&pan.pose(0), &pan.pose(ms * PS_PER_MS), 5.0).unwrap().pixels;
+        assert!((error(90) / error(50) - 1.8).abs() < 0.004);
+    }
+
+    #[test]
+    fn views_without_pixels_or_angle_are_errors() {
+        assert!(HmdView::new(0, 480, 60.0).is_err());
+        assert!(HmdView::new(640, 480, 180.0).is_err());
+        assert!(HmdView::new(640, 480, f64::NAN).is_err());
+    }
+}
