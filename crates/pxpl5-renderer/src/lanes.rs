@@ -8,6 +8,7 @@ use crate::array::{EMPTY_PLANE, Executed, Fault, FaultKind, PIXELS, PixelArray, 
 use crate::controller::{Bits, Controller};
 use crate::isa::{BACKING_BLOCKS, Instruction};
 use crate::layout::Layout;
+use crate::simd::{Present, Vectors};
 use columns::Columns;
 use pxpl5_wire::{REGION_SIZE, Word};
 
@@ -18,6 +19,7 @@ use pxpl5_wire::{REGION_SIZE, Word};
 #[derive(Clone, Debug)]
 pub struct Lanes {
     layout: Layout,
+    vectors: Present,
     controller: Controller,
     columns: Columns,
     /// 255 where the pixel is enabled, else 0.
@@ -31,8 +33,15 @@ impl Lanes {
     /// An array of zeros whose fast path serves the commands of `layout`.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
+        Self::with_vectors(layout, Vectors::best())
+    }
+
+    /// The same on a chosen vector unit, or the portable one where the processor lacks it.
+    #[must_use]
+    pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
             layout: *layout,
+            vectors: Present::or_portable(vectors),
             controller: Controller::default(),
             columns: Columns::new(layout),
             enable: Box::new([0; PIXELS]),

@@ -165,7 +165,7 @@ fn encode_target(target: &CopyTarget, out: &mut Vec<Word>) {
 }
 
 impl ArithmeticOp {
-    pub(super) const ALL: [Self; 9] = [
+    pub(crate) const ALL: [Self; 9] = [
         Self::Add,
         Self::Subtract,
         Self::Multiply,
@@ -179,5 +179,5 @@ impl ArithmeticOp {
 }
 
 impl Test {
-    pub(super) const ALL: [Self; 4] = [Self::Less, Self::NotLess, Self::Equal, Self::NotEqual];
+    pub(crate) const ALL: [Self; 4] = [Self::Less, Self::NotLess, Self::Equal, Self::NotEqual];
 }

@@ -1,0 +1,276 @@
+//! Instructions on fields of pixel memory, bit by bit.
+
+use super::{BitSerial, planes};
+use crate::array::{EMPTY_PLANE, FaultKind, Plane};
+use crate::controller::Bits;
+use crate::isa::{ArithmeticOp, Instruction, Test};
+use planes::FULL_PLANE;
+
+/// An operand that is read least significant bit first and then extended. The sign is latched at the start, since the
+/// result may overwrite it.
+pub(super) struct Source {
+    bits: Bits,
+    extension: Plane,
+}
+
+impl Source {
+    pub(super) fn bit(&self, memory: &[Plane], i: usize) -> Plane {
+        if i < self.bits.width { memory[self.bits.first + i] } else { self.extension }
+    }
+}
+
+/// The second factor of a product.
+enum Factor {
+    Field(Source),
+    Constant(i32),
+}
+
+impl BitSerial {
+    pub(super) fn field_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
+        let controller = self.controller;
+        let bits = |operand| controller.bits(operand);
+        match *instruction {
+            Instruction::Evaluate { expression, usage } => self.evaluate(&expression, &usage)?,
+            Instruction::ShiftRight { destination, source, by } => {
+                self.shift_right(bits(destination)?, bits(source)?, by.into());
+            }
+            Instruction::ShiftLeft { destination, source, by } => {
+                self.shift_left(bits(destination)?, bits(source)?, by.into());
+            }
+            Instruction::Saturate { destination, source } => self.saturate(bits(destination)?, bits(source)?),
+            Instruction::SquareRoot { destination, radicand } => {
+                self.square_root(bits(destination)?, bits(radicand)?);
+            }
+            Instruction::Arithmetic { op, destination, a, b } => {
+                self.arithmetic(op, bits(destination)?, bits(a)?, bits(b)?);
+            }
+            Instruction::Compare { test, a, b } => {
+                let (a, b) = (bits(a)?, bits(b)?);
+                let source = self.source(b);
+                self.compare(test, a, a.width.max(b.width), |memory, i| source.bit(memory, i));
+            }
+            Instruction::CompareConstant { test, a, value } => {
+                let a = bits(a)?;
+                self.compare(test, a, a.width, |_, i| constant_bit(value, i, a.signed));
+            }
+            Instruction::LoadConstant { destination, value } => {
+                let field = bits(destination)?;
+                self.each_bit(field, |_, i| constant_bit(value, i, field.signed));
+            }
+            Instruction::MultiplyConstant { destination, source, factor, factor_bits } => {
+                let factor = Factor::Constant(factor);
+                self.multiply(bits(destination)?, bits(source)?, &factor, factor_bits.into(), true);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    pub(super) fn source(&self, bits: Bits) -> Source {
+        let extension = if bits.signed { self.memory[bits.end() - 1] } else { EMPTY_PLANE };
+        Source { bits, extension }
+    }
+
+    /// Stores one bit where enabled.
+    fn store(&mut self, bit: usize, new: &Plane) {
+        planes::store(&mut self.memory[bit], new, &self.enable);
+    }
+
+    /// field := the bits that `f` gives, least significant first, one a clock.
+    fn each_bit(&mut self, field: Bits, mut f: impl FnMut(&[Plane], usize) -> Plane) {
+        for i in 0..field.width {
+            let new = f(&self.memory, i);
+            self.store(field.first + i, &new);
+            self.clock += 1;
+        }
+    }
+
+    fn shift_right(&mut self, destination: Bits, source: Bits, by: usize) {
+        let source = self.source(source);
+        self.each_bit(destination, |memory, i| source.bit(memory, i + by));
+    }
+
+    /// Most significant bit first, so that a field can be shifted in its place.
+    fn shift_left(&mut self, destination: Bits, source: Bits, by: usize) {
+        let source = self.source(source);
+        for i in (0..destination.width).rev() {
+            let bit = i.checked_sub(by).map(|i| source.bit(&self.memory, i));
+            self.store(destination.first + i, &bit.unwrap_or(EMPTY_PLANE));
+            self.clock += 1;
+        }
+    }
+
+    fn saturate(&mut self, destination: Bits, source: Bits) {
+        let (w, wa) = (destination.width, source.width);
+        let digits = if source.signed { wa - 1 } else { wa };
+        let source = self.source(source);
+        let mut over = EMPTY_PLANE;
+        for i in w..digits {
+            planes::or(&mut over, &source.bit(&self.memory, i));
+        }
+        self.clock += wa.saturating_sub(w).max(1) as u64;
+        self.each_bit(destination, |memory, i| {
+            let limited = planes::combine(&source.bit(memory, i), &over, |bit, over| bit | over);
+            planes::combine(&limited, &source.extension, |bit, negative| bit & !negative)
+        });
+    }
+
+    fn arithmetic(&mut self, op: ArithmeticOp, destination: Bits, a: Bits, b: Bits) {
+        let (x, y) = (self.source(a), self.source(b));
+        let mut carry = EMPTY_PLANE;
+        let mut logic = |f: fn(u64, u64) -> u64| {
+            self.each_bit(destination, |m, i| planes::combine(&x.bit(m, i), &y.bit(m, i), f));
+        };
+        match op {
+            ArithmeticOp::And => logic(|a, b| a & b),
+            ArithmeticOp::Or => logic(|a, b| a | b),
+            ArithmeticOp::Xor => logic(|a, b| a ^ b),
+            ArithmeticOp::Add | ArithmeticOp::Subtract => self.each_bit(destination, |memory, i| {
+                let mut sum = x.bit(memory, i);
+                let step = if op == ArithmeticOp::Add { planes::add } else { planes::subtract };
+                step(&mut sum, &y.bit(memory, i), &mut carry);
+                sum
+            }),
+            ArithmeticOp::Multiply => self.multiply(destination, a, &Factor::Field(y), b.width, b.signed),
+            ArithmeticOp::Divide => self.divide(destination, a, b),
+            ArithmeticOp::Minimum | ArithmeticOp::Maximum => {
+                let mut less = self.less(a, a.width.max(b.width), |memory, i| y.bit(memory, i));
+                if op == ArithmeticOp::Maximum {
+                    less.iter_mut().for_each(|l| *l = !*l);
+                }
+                self.each_bit(destination, |memory, i| {
+                    let mut first = x.bit(memory, i);
+                    planes::and(&mut first, &less);
+                    let second = planes::combine(&y.bit(memory, i), &less, |bit, less| bit & !less);
+                    planes::combine(&first, &second, |first, second| first | second)
+                });
+            }
+        }
+    }
+
+    /// Where a < b, from the borrow of their difference over `clocks` bits.
+    fn less(&mut self, a: Bits, clocks: usize, b: impl Fn(&[Plane], usize) -> Plane) -> Plane {
+        let x = self.source(a);
+        let mut borrow = EMPTY_PLANE;
+        for i in 0..clocks {
+            planes::borrow(&x.bit(&self.memory, i), &b(&self.memory, i), &mut borrow);
+        }
+        self.clock += clocks as u64;
+        if a.signed {
+            // Of two's complement numbers with different signs the negative one is less: the borrow turns around.
+            let last = clocks - 1;
+            let signs =
+                planes::combine(&x.bit(&self.memory, last), &b(&self.memory, last), |a, b| a ^ b);
+            borrow = planes::combine(&borrow, &signs, |borrow, signs| borrow ^ signs);
+        }
+        borrow
+    }
+
+    fn compare(&mut self, test: Test, a: Bits, clocks: usize, b: impl Fn(&[Plane], usize) -> Plane) {
+        let holds = match test {
+            Test::Less | Test::NotLess => self.less(a, clocks, b),
+            Test::Equal | Test::NotEqual => {
+                let x = self.source(a);
+                let mut differ = EMPTY_PLANE;
+                for i in 0..clocks {
+                    let bit = planes::combine(&x.bit(&self.memory, i), &b(&self.memory, i), |a, b| a ^ b);
+                    planes::or(&mut differ, &bit);
+                }
+                self.clock += clocks as u64;
+                differ
+            }
+        };
+        match test {
+            Test::Less | Test::NotEqual => planes::and(&mut self.enable, &holds),
+            Test::NotLess | Test::Equal => planes::and_not(&mut self.enable, &holds),
+        }
+    }
+
+    /// destination := a * b: for each bit of b, a is added to the bits from there on, with one clock for the carry; a
+    /// negative last bit subtracts. Bits above the product repeat its sign.
+    fn multiply(&mut self, destination: Bits, a: Bits, b: &Factor, b_width: usize, b_signed: bool) {
+        let x = self.source(a);
+        for j in 0..b_width.min(destination.width) {
+            let gate = match b {
+                Factor::Field(field) => field.bit(&self.memory, j),
+                Factor::Constant(constant) if constant >> j & 1 == 1 => FULL_PLANE,
+                Factor::Constant(_) => EMPTY_PLANE,
+            };
+            self.add_product(destination, &x, j, &gate, b_signed && j + 1 == b_width);
+        }
+        let sign_at = a.width + b_width - 1;
+        for i in sign_at + 1..destination.width {
+            let signed = a.signed || b_signed;
+            let sign = if signed { self.memory[destination.first + sign_at] } else { EMPTY_PLANE };
+            self.store(destination.first + i, &sign);
+            self.clock += 1;
+        }
+    }
+
+    /// Adds `x << j` where `gate` is set, or subtracts it.
+    fn add_product(&mut self, destination: Bits, x: &Source, j: usize, gate: &Plane, negative: bool) {
+        let top = j + x.bits.width;
+        let signed = x.bits.signed && j > 0;
+        let extension = if signed { self.memory[destination.first + top - 1] } else { EMPTY_PLANE };
+        let mut carry = EMPTY_PLANE;
+        for i in j..destination.width.min(top + 1) {
+            let mut sum = match i {
+                _ if j == 0 => EMPTY_PLANE,
+                _ if i == top => extension,
+                _ => self.memory[destination.first + i],
+            };
+            let addend = planes::combine(&x.bit(&self.memory, i - j), gate, |bit, gate| bit & gate);
+            let step = if negative { planes::subtract } else { planes::add };
+            step(&mut sum, &addend, &mut carry);
+            self.store(destination.first + i, &sum);
+            self.clock += 1;
+        }
+    }
+
+    /// For each digit from the top: compare the rest with the divisor, then subtract it where it is not larger.
+    fn divide(&mut self, destination: Bits, a: Bits, b: Bits) {
+        let divisor = self.source(b);
+        for j in (0..destination.width).rev() {
+            let rest = Bits { first: a.first + j, width: a.width - j, signed: false };
+            let mut digit = self.less(rest, rest.width.max(b.width), |memory, i| divisor.bit(memory, i));
+            digit.iter_mut().for_each(|d| *d = !*d);
+            self.store(destination.first + j, &digit);
+            self.subtract_gated(rest, &digit, |memory, i| divisor.bit(memory, i));
+        }
+    }
+
+    fn subtract_gated(&mut self, rest: Bits, gate: &Plane, b: impl Fn(&[Plane], usize) -> Plane) {
+        let mut borrow = EMPTY_PLANE;
+        self.each_bit(rest, |memory, i| {
+            let mut difference = memory[rest.first + i];
+            let gated = planes::combine(&b(memory, i), gate, |bit, gate| bit & gate);
+            planes::subtract(&mut difference, &gated, &mut borrow);
+            difference
+        });
+    }
+
+    /// For each digit from the top: the trial is the root so far, then 01, over the bits that the rest can occupy.
+    fn square_root(&mut self, destination: Bits, radicand: Bits) {
+        let n = destination.width;
+        for i in (0..n).rev() {
+            let digits = n - 1 - i;
+            let width = (digits + 3).min(radicand.width - 2 * i);
+            let rest = Bits { first: radicand.first + 2 * i, width, signed: false };
+            let trial = |memory: &[Plane], k: usize| match k {
+                0 => FULL_PLANE,
+                2.. if k - 2 < digits => memory[destination.first + i + k - 1],
+                _ => EMPTY_PLANE,
+            };
+            let mut digit = self.less(rest, width, trial);
+            digit.iter_mut().for_each(|d| *d = !*d);
+            self.store(destination.first + i, &digit);
+            self.subtract_gated(rest, &digit, trial);
+        }
+    }
+}
+
+fn constant_bit(value: u32, i: usize, signed: bool) -> Plane {
+    let at = if i < 32 { i } else { 31 };
+    let set = value >> at & 1 == 1 && (i < 32 || signed);
+    if set { FULL_PLANE } else { EMPTY_PLANE }
+}

@@ -1,0 +1,284 @@
+//! The suite that every pixel array has to pass: equality with another in every bit, after every list.
+//!
+//! [`crate::BitSerial`] is the definition. A test of an array calls [`instructions`], [`commands`] and, for as long as
+//! it likes, [`random_round`] with numbers that it counts up; a failing round is repeated by its number alone.
+
+mod random;
+
+pub use random::Random;
+
+use crate::array::{EMPTY_PLANE, PixelArray, Plane};
+use crate::isa::{
+    ArithmeticOp, Expression, ExpressionUse, Instruction, MEMORY_BITS, Operand, Test,
+};
+use crate::layout::Layout;
+use pxpl5_wire::{Linear, Quadratic, Word};
+use std::fmt;
+
+/// Two arrays differ.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mismatch {
+    /// What was executed.
+    pub after: String,
+    /// What differs, with the first pixel.
+    pub difference: String,
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "after {}: {}", self.after, self.difference)
+    }
+}
+
+impl std::error::Error for Mismatch {}
+
+/// Executes a list on both arrays and compares results, Enable and all 208 bits of all pixels.
+///
+/// # Errors
+/// The first [`Mismatch`].
+pub fn agree(
+    definition: &mut impl PixelArray,
+    subject: &mut impl PixelArray,
+    words: &[Word],
+    after: &dyn fmt::Debug,
+) -> Result<(), Mismatch> {
+    let (expected, found) = (definition.execute(words), subject.execute(words));
+    let mismatch = |difference| Err(Mismatch { after: format!("{after:?}"), difference });
+    if expected != found {
+        return mismatch(format!("expected {expected:?}, found {found:?}"));
+    }
+    if definition.faults() != subject.faults() {
+        return mismatch("the counts of faults differ".to_owned());
+    }
+    first_difference(definition, subject).map_or(Ok(()), mismatch)
+}
+
+fn first_difference(definition: &impl PixelArray, subject: &impl PixelArray) -> Option<String> {
+    let enable = difference("Enable", &definition.enable(), &subject.enable());
+    enable.or_else(|| {
+        (0..MEMORY_BITS as usize).find_map(|bit| {
+            difference(&format!("bit {bit}"), &definition.plane(bit), &subject.plane(bit))
+        })
+    })
+}
+
+fn difference(what: &str, expected: &Plane, found: &Plane) -> Option<String> {
+    let i = expected.iter().zip(found).position(|(a, b)| a != b)?;
+    let x = (expected[i] ^ found[i]).trailing_zeros() as usize;
+    let bit = expected[i] >> x & 1;
+    let pixels: u32 = expected.iter().zip(found).map(|(a, b)| (a ^ b).count_ones()).sum();
+    let (x, y) = (64 * (i % 2) + x, i / 2);
+    Some(format!("{what} of pixel ({x}, {y}) is not {bit}; {pixels} pixels differ"))
+}
+
+/// Fills both arrays with the same noise, in which zeros and ones also come in long runs.
+pub fn scramble(random: &mut Random, a: &mut impl PixelArray, b: &mut impl PixelArray) {
+    for bit in 0..MEMORY_BITS as usize {
+        let plane = noise(random);
+        a.set_plane(bit, &plane);
+        b.set_plane(bit, &plane);
+    }
+    let plane = noise(random);
+    a.set_enable(&plane);
+    b.set_enable(&plane);
+}
+
+fn noise(random: &mut Random) -> Plane {
+    let mut plane = EMPTY_PLANE;
+    let kind = random.below(8);
+    plane.iter_mut().for_each(|word| {
+        *word = match kind {
+            0 => 0,
+            1 => u64::MAX,
+            2 => random.next() & random.next(),
+            3 => random.next() | random.next(),
+            _ => random.next(),
+        }
+    });
+    plane
+}
+
+/// Runs every instruction with corner operands on noise.
+///
+/// # Errors
+/// The first [`Mismatch`].
+pub fn instructions(
+    definition: &mut impl PixelArray,
+    subject: &mut impl PixelArray,
+) -> Result<(), Mismatch> {
+    let mut random = Random::new(1);
+    scramble(&mut random, definition, subject);
+    for instruction in corner_instructions() {
+        let mut words = Vec::new();
+        Instruction::EnableAll { label: 0 }.encode(&mut words);
+        Instruction::EnableLoad(Operand::absolute(207, 1)).encode(&mut words);
+        instruction.encode(&mut words);
+        agree(definition, subject, &words, &instruction)?;
+    }
+    Ok(())
+}
+
+/// Runs each command of the layout, between lists of several, on noise.
+///
+/// # Errors
+/// The first [`Mismatch`].
+pub fn commands(
+    layout: &Layout,
+    definition: &mut impl PixelArray,
+    subject: &mut impl PixelArray,
+) -> Result<(), Mismatch> {
+    for number in 0..24 {
+        random_round(layout, number, definition, subject)?;
+    }
+    Ok(())
+}
+
+/// One round of the differential fuzzer: noise, then lists of commands, single instructions and wild words.
+///
+/// # Errors
+/// The first [`Mismatch`], which names the round.
+pub fn random_round(
+    layout: &Layout,
+    number: u64,
+    definition: &mut impl PixelArray,
+    subject: &mut impl PixelArray,
+) -> Result<(), Mismatch> {
+    let mut random = Random::new(number);
+    scramble(&mut random, definition, subject);
+    for step in 0..12 {
+        let words = random.list(layout);
+        agree(definition, subject, &words, &format!("round {number}, step {step}"))?;
+    }
+    Ok(())
+}
+
+fn corner_instructions() -> Vec<Instruction> {
+    let mut out = vec![
+        Instruction::EnableInvert,
+        Instruction::EnableNone,
+        Instruction::EnableLoad(Operand::absolute(0, 1)),
+        Instruction::EnableStore(Operand::absolute(207, 1)),
+        Instruction::EnableAnd(Operand::absolute(3, 1)),
+        Instruction::Select { context_base: 52, left: u16::MAX, top: 384 },
+        Instruction::Wait,
+    ];
+    out.extend(corner_expressions());
+    out.extend(corner_fields());
+    out.extend(corner_constants());
+    for block in [0, 127] {
+        let field = Operand::absolute(176, 32);
+        out.push(Instruction::StoreBlock { field, block });
+        out.push(Instruction::LoadBlock { field: Operand::absolute(7, 32), block });
+        out.push(Instruction::LoadBlock { field, block: block / 2 });
+    }
+    out
+}
+
+const EXTREMES: [i32; 6] = [0, 1, -1, i32::MAX, i32::MIN, 0x5555_5555];
+
+fn corner_expressions() -> Vec<Instruction> {
+    let mut out = Vec::new();
+    for (i, a) in EXTREMES.into_iter().enumerate() {
+        let (b, c) = (EXTREMES[(i + 1) % 6], EXTREMES[(i + 3) % 6]);
+        let linear = Expression::Linear(Linear { a, b, c });
+        let wide = |v: i32| i64::from(v) << 17 | 1;
+        let quadratic = Quadratic {
+            xx: wide(a),
+            xy: wide(c),
+            yy: wide(b),
+            x: wide(c),
+            y: wide(a),
+            one: wide(b),
+        };
+        let quadratic = Expression::Quadratic(quadratic);
+        for (expression, again) in
+            [(linear, Expression::LinearAgain), (quadratic, Expression::QuadraticAgain)]
+        {
+            out.extend(uses(expression));
+            out.extend(uses(again));
+        }
+    }
+    out
+}
+
+fn uses(expression: Expression) -> Vec<Instruction> {
+    let mut usages = vec![ExpressionUse::DisableNegative];
+    for (width, shift) in [(1, 31), (32, 0), (24, 8), (8, 12)] {
+        let field = Operand::absolute(40, width);
+        let subtrahend = Operand::absolute(120, 12);
+        usages.extend([
+            ExpressionUse::Load { field, shift },
+            ExpressionUse::Add { field, shift },
+            ExpressionUse::DisableNotLess { field, shift },
+            ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift: shift },
+            ExpressionUse::LoadMinus {
+                field,
+                shift,
+                subtrahend: subtrahend.signed(),
+                left_shift: 63,
+            },
+        ]);
+    }
+    usages.into_iter().map(|usage| Instruction::Evaluate { expression, usage }).collect()
+}
+
+/// Widths of destination and operands: equal, narrower, wider, one bit, the most.
+const WIDTHS: [[u8; 3]; 7] =
+    [[8, 8, 8], [5, 12, 9], [20, 7, 11], [1, 1, 1], [64, 64, 64], [64, 3, 33], [2, 40, 1]];
+
+fn corner_fields() -> Vec<Instruction> {
+    let mut out = Vec::new();
+    for [w, wa, wb] in WIDTHS {
+        for signs in 0..4 {
+            let sign = |field: Operand, bit| if signs >> bit & 1 == 1 { field.signed() } else { field };
+            let destination = Operand::absolute(0, w);
+            let (a, b) = (sign(Operand::absolute(64, wa), 0), sign(Operand::absolute(128, wb), 1));
+            out.extend(two_operands(destination, a, b));
+            out.extend(one_operand(destination, a));
+            let in_place = Operand { address: 0, ..a };
+            out.extend(one_operand(destination, in_place));
+            let op = ArithmeticOp::Subtract;
+            out.push(Instruction::Arithmetic { op, destination, a: in_place, b });
+        }
+    }
+    for n in [1, 2, 5, 12, 31, 32] {
+        let (destination, radicand) = (Operand::absolute(0, n), Operand::absolute(64, 2 * n));
+        out.push(Instruction::SquareRoot { destination, radicand });
+    }
+    out
+}
+
+fn two_operands(destination: Operand, a: Operand, b: Operand) -> Vec<Instruction> {
+    let arithmetic = |op| Instruction::Arithmetic { op, destination, a, b };
+    let compare = |test| Instruction::Compare { test, a, b };
+    let ops = ArithmeticOp::ALL.into_iter().map(arithmetic);
+    ops.chain(Test::ALL.into_iter().map(compare)).collect()
+}
+
+fn one_operand(destination: Operand, source: Operand) -> Vec<Instruction> {
+    let mut out = vec![Instruction::Saturate { destination, source }];
+    for by in [0, 1, 7, 63] {
+        out.push(Instruction::ShiftRight { destination, source, by });
+        out.push(Instruction::ShiftLeft { destination, source, by });
+    }
+    for (factor, factor_bits) in [(0, 1), (-1, 1), (5, 4), (-128, 8), (i32::MIN, 32)] {
+        out.push(Instruction::MultiplyConstant { destination, source, factor, factor_bits });
+    }
+    out
+}
+
+fn corner_constants() -> Vec<Instruction> {
+    let mut out = Vec::new();
+    for width in [1, 8, 31, 32, 33, 64] {
+        for field in [Operand::absolute(70, width), Operand::absolute(70, width).signed()] {
+            for value in EXTREMES.map(|v| v as u32) {
+                out.push(Instruction::LoadConstant { destination: field, value });
+                out.extend(
+                    Test::ALL
+                        .map(|test| Instruction::CompareConstant { test, a: field, value }),
+                );
+            }
+        }
+    }
+    out
+}

@@ -1,0 +1,194 @@
+//! Random lists of words, the same for the same number on every host.
+
+use crate::command::{
+    Clear, Command, LoadBacking, PhongSphere, PhongTriangle, SelectRegion, Shade, Sphere, StoreBacking, Triangle,
+};
+use crate::isa::Instruction;
+use crate::layout::Layout;
+use pxpl5_wire::{Linear, Quadratic, Word};
+
+/// A generator of random numbers (SplitMix64, Steele and others 2014) and of lists made with it.
+#[derive(Clone, Copy, Debug)]
+pub struct Random(u64);
+
+impl Random {
+    /// Each seed gives another sequence.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0xd129_0d3b_3f4b_7ec5))
+    }
+
+    /// The next 64 bits.
+    #[allow(clippy::should_implement_trait)] // An iterator that never ends would make every caller unwrap.
+    pub const fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let a = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let b = (a ^ a >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        b ^ b >> 31
+    }
+
+    /// A number from 0 to `n` - 1.
+    pub const fn below(&mut self, n: u64) -> u64 {
+        self.next() % n
+    }
+
+    /// A number from `low` to `high` - 1.
+    fn between(&mut self, low: i64, high: i64) -> i64 {
+        low + self.below((high - low) as u64) as i64
+    }
+
+    /// A list: mostly commands of the layout, some single instructions, some words that mean nothing.
+    pub fn list(&mut self, layout: &Layout) -> Vec<Word> {
+        let mut words = Vec::new();
+        let commands = 1 + self.below(4);
+        for _ in 0..commands {
+            match self.below(8) {
+                0 => self.instructions(&mut words),
+                _ => self.command(layout).encode(layout, &mut words).unwrap_or(()),
+            }
+        }
+        if self.below(16) == 0 && !words.is_empty() {
+            let at = self.below(words.len() as u64) as usize;
+            words[at] ^= 1 << self.below(32);
+        }
+        words
+    }
+
+    /// Legal instructions with random operands.
+    fn instructions(&mut self, words: &mut Vec<Word>) {
+        let mut wanted = 1 + self.below(6);
+        while wanted > 0 {
+            let opcode = 1 + self.below(0x6f) as u32;
+            let mut trial = vec![opcode << 24 | self.next() as u32 & 0x3f_ffff];
+            trial.extend((0..12).map(|_| self.next() as u32));
+            if let Ok((instruction, _)) = Instruction::decode(&trial, 0) {
+                instruction.encode(words);
+                wanted -= 1;
+            }
+        }
+    }
+
+    fn command(&mut self, layout: &Layout) -> Command {
+        match self.below(20) {
+            0 => Command::Clear(Clear { colour: self.next() as u32 }),
+            1 => self.select(layout),
+            2 => Command::Shade(self.shade()),
+            3..=5 => Command::Sphere(self.sphere()),
+            6..=7 => Command::PhongSphere(self.phong_sphere()),
+            8..=11 => Command::PhongTriangle(self.phong_triangle()),
+            12 => self.backing(),
+            _ => Command::Triangle(self.triangle()),
+        }
+    }
+
+    fn select(&mut self, layout: &Layout) -> Command {
+        let context = self.below(layout.plan().contexts.into()) as u8;
+        let left = 128 * self.below(5) as u16;
+        let top = [0, 120, 128, 384][self.below(4) as usize];
+        Command::SelectRegion(SelectRegion { context, left, top })
+    }
+
+    fn backing(&mut self) -> Command {
+        let (block, address) = (self.below(3) as u8, self.below(177) as u8);
+        match self.below(3) {
+            0 => Command::WaitBacking,
+            1 => Command::StoreBacking(StoreBacking { block, address }),
+            _ => Command::LoadBacking(LoadBacking { block, address }),
+        }
+    }
+
+    fn triangle(&mut self) -> Triangle {
+        let colour = [self.plane(20), self.plane(20), self.plane(20)];
+        Triangle { edges: self.edges(), depth: self.plane(32), colour }
+    }
+
+    fn phong_triangle(&mut self) -> PhongTriangle {
+        let normal = [self.plane(22), self.plane(22), self.plane(22)];
+        let colour = self.next() as u32;
+        PhongTriangle { edges: self.edges(), depth: self.plane(32), normal, colour }
+    }
+
+    fn sphere(&mut self) -> Sphere {
+        let PhongSphere { silhouette, root_shift, depth, depth_shift, .. } = self.phong_sphere();
+        let colour = [self.plane(20), self.plane(20), self.plane(20)];
+        let root_factor = std::array::from_fn(|_| self.between(-512, 512) as i16);
+        Sphere { silhouette, root_shift, depth, depth_shift, colour, root_factor }
+    }
+
+    fn phong_sphere(&mut self) -> PhongSphere {
+        PhongSphere {
+            silhouette: self.silhouette(),
+            root_shift: self.below(25) as u8,
+            depth: self.plane(32),
+            depth_shift: self.below(21) as u8,
+            normal: [self.plane(22), self.plane(22)],
+            colour: self.next() as u32,
+        }
+    }
+
+    fn shade(&mut self) -> Shade {
+        let mut vector = || std::array::from_fn(|_| self.between(-1500, 1500) as i16);
+        let (light, half) = (vector(), vector());
+        let [ambient, diffuse, specular, ..] = self.next().to_le_bytes();
+        Shade { light, half, ambient, diffuse, specular }
+    }
+
+    /// Edges of a triangle around a random pixel, of all sizes; sometimes degenerate, sometimes wild.
+    fn edges(&mut self) -> [Linear; 3] {
+        if self.below(10) == 0 {
+            return std::array::from_fn(|_| self.wild());
+        }
+        let size = [16, 64, 256, 2_000, 20_000, 200_000][self.below(6) as usize];
+        let mut centre = || self.between(-16 * 32, 16 * 672);
+        let (x, y) = (centre(), centre());
+        let mut vertex = || [x + self.between(-size, size), y + self.between(-size, size)];
+        let v = [vertex(), vertex(), vertex()];
+        let flip = self.below(2) == 0;
+        let pair = |i: usize| if flip { (v[(i + 1) % 3], v[i]) } else { (v[i], v[(i + 1) % 3]) };
+        std::array::from_fn(|i| edge(pair(i)))
+    }
+
+    fn wild(&mut self) -> Linear {
+        match self.below(4) {
+            0 => Linear::constant(self.next() as i32),
+            _ => {
+                let shift = self.below(32);
+                let mut coefficient = || (self.next() as i32) >> shift;
+                Linear { a: coefficient(), b: coefficient(), c: coefficient() }
+            }
+        }
+    }
+
+    /// A plane whose values use about `bits` bits over a screen.
+    fn plane(&mut self, bits: u32) -> Linear {
+        let mut part = |bits: u32| (self.next() as i32) >> (32 - bits.min(32));
+        Linear { a: part(bits - 9), b: part(bits - 9), c: part(bits) }
+    }
+
+    /// An ellipse around a random pixel, or anything.
+    fn silhouette(&mut self) -> Quadratic {
+        if self.below(8) == 0 {
+            let mut any = || (self.next() as i64) >> 20;
+            return Quadratic { xx: any(), xy: any(), yy: any(), x: any(), y: any(), one: any() };
+        }
+        let radius = [2, 10, 60, 500][self.below(4) as usize];
+        let (x, y, r) = (self.between(-20, 660), self.between(-20, 500), self.between(1, radius));
+        let scale = 1 << self.below(20);
+        let tilt = self.between(-scale / 2, scale / 2 + 1);
+        Quadratic {
+            xx: -scale,
+            xy: tilt,
+            yy: -scale,
+            x: 2 * scale * x - tilt * y,
+            y: 2 * scale * y - tilt * x,
+            one: scale * (r * r - x * x - y * y) + tilt * x * y,
+        }
+    }
+}
+
+/// The edge from p to q, in sixteenths of a pixel, inside on its left; cut to 32 bits.
+fn edge((p, q): ([i64; 2], [i64; 2])) -> Linear {
+    let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+    let c = dy * p[0] - dx * p[1];
+    Linear { a: -dy as i32, b: dx as i32, c: c.div_euclid(16) as i32 }
+}

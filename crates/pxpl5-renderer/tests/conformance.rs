@@ -1,0 +1,75 @@
+//! Both pixel arrays agree in every bit. `PXPL5_FUZZ_SECONDS` sets how long the random part runs.
+
+use pxpl5_renderer::conformance::{self, Mismatch};
+use pxpl5_renderer::{BitSerial, Lanes, Layout, PixelArray, Vectors};
+use std::time::{Duration, Instant};
+
+/// Rounds of each layout without the variable.
+const ROUNDS: u64 = 60;
+
+fn layouts() -> [Layout; 3] {
+    [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()]
+}
+
+fn check(result: Result<(), Mismatch>) {
+    if let Err(mismatch) = result {
+        panic!("{mismatch}");
+    }
+}
+
+#[test]
+fn every_instruction_agrees_with_corner_operands() {
+    for layout in layouts() {
+        let mut definition = BitSerial::new(&layout);
+        check(conformance::instructions(&mut definition, &mut Lanes::new(&layout)));
+    }
+}
+
+#[test]
+fn commands_agree_on_every_vector_unit() {
+    for vectors in Vectors::available() {
+        for layout in layouts() {
+            let mut definition = BitSerial::with_vectors(&layout, Vectors::Portable);
+            let mut subject = Lanes::with_vectors(&layout, vectors);
+            check(conformance::commands(&layout, &mut definition, &mut subject));
+        }
+    }
+}
+
+#[test]
+fn bit_planes_agree_on_every_vector_unit() {
+    let layout = Layout::rendering_control_phong();
+    for vectors in Vectors::available() {
+        let mut definition = BitSerial::with_vectors(&layout, Vectors::Portable);
+        let mut subject = BitSerial::with_vectors(&layout, vectors);
+        check(conformance::commands(&layout, &mut definition, &mut subject));
+    }
+}
+
+#[test]
+fn random_lists_agree() {
+    let seconds = std::env::var("PXPL5_FUZZ_SECONDS").ok();
+    let limit = seconds.map(|text| Duration::from_secs(text.parse().expect("a number of seconds")));
+    let start = Instant::now();
+    let more = |round: u64| limit.map_or(round < ROUNDS, |limit| start.elapsed() < limit);
+    let layouts = layouts();
+    let mut arrays = layouts.map(|layout| (BitSerial::new(&layout), Lanes::new(&layout)));
+    let mut round = 0;
+    while more(round) {
+        for (layout, (definition, subject)) in layouts.iter().zip(&mut arrays) {
+            check(conformance::random_round(layout, 1000 + round, definition, subject));
+        }
+        round += 1;
+    }
+}
+
+#[test]
+fn a_single_wrong_bit_is_found() {
+    let layout = Layout::slats();
+    let (mut a, mut b) = (BitSerial::new(&layout), BitSerial::new(&layout));
+    let mut plane = b.plane(207);
+    plane[3] |= 1 << 5;
+    b.set_plane(207, &plane);
+    let mismatch = conformance::agree(&mut a, &mut b, &[], &"nothing").unwrap_err();
+    assert!(mismatch.difference.starts_with("bit 207 of pixel (69, 1)"), "{mismatch}");
+}
