@@ -220,13 +220,22 @@ impl Gp {
             .await;
     }
 
+    /// Hands a chain of messages to the DMA whose software cost was paid before by [`Gp::spend_message`].
+    pub fn send_prepared(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
+        self.post(batch)
+    }
+
     fn post(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
         let shared = &mut *self.shared.borrow_mut();
         shared.issued += 1;
-        let (ticket, last, source) = (Ticket(shared.issued), batch.len() - 1, shared.node);
+        let (ticket, messages, source) = (Ticket(shared.issued), batch.len(), shared.node);
+        if messages == 0 {
+            shared.issued -= 1;
+            return Ticket(shared.issued);
+        }
         shared.outgoing.extend(batch.into_iter().enumerate().map(|(i, (destination, words, body))| Outgoing {
             message: Message { source, destination, words, body },
-            ticket: (i == last).then_some(ticket),
+            ticket: (i + 1 == messages).then_some(ticket),
         }));
         ticket
     }

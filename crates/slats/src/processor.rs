@@ -3,7 +3,7 @@
 use crate::bind::{Binding, BoundRegion};
 use crate::config::{Config, Copy};
 use pphigs::{Around, Counts, FrameView, Pass, Picture, Share, ViewWordsError, copy_message, region_messages};
-use pxpl5_gp::{Account, Fault, Gp, Level, Stage, Ticket};
+use pxpl5_gp::{Account, Fault, Gp, Level, Stage};
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, CopyOrder, Eye, FieldParity, NodeId, Word};
 use std::cell::RefCell;
@@ -126,11 +126,16 @@ impl Processor {
             let finished = || (self.state.borrow_mut().finished(field) >= others).then_some(());
             self.gp.until("the clumps of the other processors", finished).await;
             self.gp.end(Stage::Render, field, None);
-            self.copy(field, true).await;
+            self.gp.spend_message().await;
+            self.gp.send_prepared(self.copies(field, true));
+            if self.config.copy == Copy::Split {
+                // The chain for the bottom regions is ready before the retrace and starts with it.
+                self.gp.spend_message().await;
+            }
             begin_at = if self.gp.field() < field { field } else { self.gp.field() + 1 };
             if self.config.copy == Copy::Split {
-                self.gp.until("the retrace", || (self.gp.field() >= field).then_some(())).await;
-                self.copy(field, false).await;
+                self.gp.until("a retrace", || (self.gp.field() >= field).then_some(())).await;
+                self.gp.send_prepared(self.copies(field, false));
             }
         }
     }
@@ -159,6 +164,7 @@ impl Processor {
 
     /// Draws this GP's share of what is shown from the retrace of `field` on.
     async fn field(&self, field: u64, view: &FrameView) {
+        self.gp.begin(Stage::Sample, field, None);
         self.gp.begin(Stage::Transform, field, None);
         self.gp.spend(Span::from_ns(self.gp.timing().pass_ns)).await;
         let picture = self.config.picture(FieldParity::of_field(field));
@@ -203,14 +209,15 @@ impl Processor {
         (self.config.renderers[renderer], list.words(), Body::Commands(list))
     }
 
-    async fn copy(&self, field: u64, top: bool) -> Ticket {
+    /// The copy commands of the top regions and, of a whole copy, the bottom ones; or of the bottom regions.
+    fn copies(&self, field: u64, top: bool) -> Vec<(NodeId, u32, Body)> {
         let batch = (0..self.binding.renderers()).filter_map(|renderer| {
             let regions = self.binding.copies(renderer, top);
             let orders: Vec<_> = regions.iter().map(|bound| self.order(bound, field)).collect();
             let list = copy_message(self.config.layout, orders, self.config.pixels);
             (!regions.is_empty()).then(|| self.addressed(renderer, list))
         });
-        self.gp.send_batch(batch.collect()).await
+        batch.collect()
     }
 
     fn order(&self, bound: &BoundRegion, field: u64) -> CopyOrder {

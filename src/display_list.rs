@@ -1,0 +1,66 @@
+//! From a scene to what graphics processors hold and hosts send.
+
+use crate::pipelines::Views;
+use pphigs::{DisplayList, EyeView, Frame, FrameView, MAX_EDITS, ModelEdit, Structure};
+use pxpl5_geometry::Sphere;
+use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Scene};
+use pxpl5_sim::Time;
+use std::sync::Arc;
+
+/// The scene's primitives as a display list.
+pub(crate) fn display_list(scene: &Scene) -> Result<DisplayList, String> {
+    if scene.triangles().is_empty() && scene.spheres().is_empty() {
+        return Err(format!("scene {} has neither triangles nor spheres", scene.name()));
+    }
+    let edits = scene.edits_at(0).len();
+    if edits > MAX_EDITS {
+        return Err(format!(
+            "scene {} moves {edits} structures a frame; the host sends at most {MAX_EDITS}",
+            scene.name()
+        ));
+    }
+    let structure = |s: &pxpl5_scene::Structure| Structure {
+        triangles: s.triangles.clone(),
+        spheres: s.spheres.clone(),
+        frame: match s.frame {
+            pxpl5_scene::Frame::World => Frame::World,
+            pxpl5_scene::Frame::Head => Frame::Head,
+        },
+    };
+    let sphere = |s: &pxpl5_scene::Sphere| Sphere { centre: s.centre, radius: s.radius, colour: s.colour };
+    let light = scene.lighting();
+    Ok(DisplayList {
+        positions: scene.vertices().iter().map(|v| v.position).collect(),
+        normals: scene.vertices().iter().map(|v| v.normal).collect(),
+        colours: scene.vertices().iter().map(|v| v.colour).collect(),
+        triangles: scene.triangles().to_vec(),
+        spheres: scene.spheres().iter().map(sphere).collect(),
+        structures: scene.structures().iter().map(structure).collect(),
+        towards_light: light.towards_light,
+        ambient: light.ambient,
+        diffuse: light.diffuse,
+        background: light.background,
+    })
+}
+
+/// The views of the scene's own head motion with a seed, through the papers' head-mounted display.
+pub(crate) fn views(scene: &Arc<Scene>, seed: u64, eyes: usize) -> Views {
+    let scene = Arc::clone(scene);
+    let motion: HeadMotion = scene.motion().clone().with_seed(seed);
+    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
+    Arc::new(move |number, time: Time| {
+        let pose = motion.pose(time.0);
+        let views = if eyes == 1 { vec![hmd.mono(&pose)] } else { hmd.stereo(&pose).to_vec() };
+        let eye = |v: &pxpl5_scene::View| EyeView {
+            world_to_eye: v.world_to_eye,
+            head_to_eye: v.head_to_eye,
+            projection: v.projection,
+        };
+        let edit = |e: &pxpl5_scene::Edit| ModelEdit { structure: e.structure as u32, model: e.model };
+        FrameView {
+            number,
+            eyes: views.iter().map(eye).collect(),
+            edits: scene.edits_at(time.0).iter().map(edit).collect(),
+        }
+    })
+}

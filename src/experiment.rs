@@ -1,0 +1,346 @@
+//! An experiment: a machine, a pipeline, a scene and a head motion; and what came of it.
+
+use crate::config::{ConfigError, MachineConfig};
+use crate::display_list::{display_list, views};
+use crate::machine::{Machine, RunError};
+use crate::observation::Observation;
+use crate::pipelines::{PictureTimes, Pipeline, Setup};
+use crate::report::{Report, Statistics};
+use image::RgbImage;
+use pxpl5_scene::Scene;
+use pxpl5_sim::Time;
+use pxpl5_wire::Eye;
+use std::fmt;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Which pixels are computed. It changes no time and no trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Pixels {
+    /// None.
+    Off,
+    /// Those that somebody looks at, when he does.
+    Lazy,
+    /// All, on worker threads, while the simulation goes on.
+    All,
+}
+
+/// Why an experiment gave no result.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum ExperimentError {
+    /// The machine or its numbers are impossible, or the pipeline cannot run on it.
+    Config(ConfigError),
+    /// The number of fields is out of range.
+    Fields {
+        /// Smallest and largest.
+        expected: (u64, u64),
+        /// What was asked for.
+        found: u64,
+    },
+    /// Nothing was shown in the time given.
+    TooShort {
+        /// Fields simulated.
+        fields: u64,
+        /// Pictures that were shown; the first ones are discarded.
+        pictures: usize,
+    },
+    /// The scene has nothing to draw, or too many moving structures.
+    Scene(String),
+    /// The run ended early; what was observed until then is kept.
+    Run {
+        /// Why.
+        error: RunError,
+        /// Everything until then.
+        partial: Box<Outcome>,
+    },
+}
+
+impl fmt::Display for ExperimentError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Config(error) => error.fmt(f),
+            Self::Fields { expected: (low, high), found } => write!(f, "fields must be {low} to {high}, found {found}"),
+            Self::TooShort { fields, pictures } => write!(
+                f,
+                "only {pictures} pictures were shown in {fields} fields and the first {WARM_UP_PICTURES} are discarded; simulate more fields"
+            ),
+            Self::Scene(text) => f.write_str(text),
+            Self::Run { error, partial } => {
+                write!(f, "{error} ({} pictures had been shown)", partial.pictures().len())
+            }
+        }
+    }
+}
+
+impl std::error::Error for ExperimentError {}
+
+impl From<ConfigError> for ExperimentError {
+    fn from(error: ConfigError) -> Self {
+        Self::Config(error)
+    }
+}
+
+/// Pictures that are discarded because the pipeline is still filling (TR94 discards the first frames too).
+pub const WARM_UP_PICTURES: usize = 4;
+
+/// Smallest and largest number of fields.
+pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
+
+/// What is to be run.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    config: MachineConfig,
+    pipeline: Arc<dyn Pipeline>,
+    scene: Arc<Scene>,
+    fields: u64,
+    pixels: Pixels,
+    seed: u64,
+    threads: usize,
+    shuffle: Option<u64>,
+}
+
+impl Experiment {
+    /// A pipeline on a machine with a scene; 120 fields, pixels when looked at, seed 1.
+    #[must_use]
+    pub fn new(config: MachineConfig, pipeline: impl Pipeline + 'static, scene: impl Into<Arc<Scene>>) -> Self {
+        Self::with(config, Arc::new(pipeline), scene.into())
+    }
+
+    /// The same with a pipeline that was chosen at run time.
+    #[must_use]
+    pub fn with(config: MachineConfig, pipeline: Arc<dyn Pipeline>, scene: Arc<Scene>) -> Self {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        Self { config, pipeline, scene, fields: 120, pixels: Pixels::Lazy, seed: 1, threads, shuffle: None }
+    }
+
+    /// Number of fields to simulate.
+    #[must_use]
+    pub const fn fields(mut self, fields: u64) -> Self {
+        self.fields = fields;
+        self
+    }
+
+    /// Which pixels are computed.
+    #[must_use]
+    pub const fn pixels(mut self, pixels: Pixels) -> Self {
+        self.pixels = pixels;
+        self
+    }
+
+    /// Seed of the head motion.
+    #[must_use]
+    pub const fn seed(mut self, seed: u64) -> Self {
+        self.seed = seed;
+        self
+    }
+
+    /// Worker threads for [`Pixels::All`].
+    #[must_use]
+    pub const fn threads(mut self, threads: usize) -> Self {
+        self.threads = threads;
+        self
+    }
+
+    /// Takes simultaneous events in an order hashed from a seed; no result may change.
+    #[must_use]
+    pub const fn shuffle_ties(mut self, seed: u64) -> Self {
+        self.shuffle = Some(seed);
+        self
+    }
+
+    /// Builds the machine, switched on, with the pipeline's programs loaded.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError`] for a machine, scene or number of fields that cannot be simulated.
+    pub fn build(&self) -> Result<Machine, ExperimentError> {
+        if !(FIELDS_RANGE.0..=FIELDS_RANGE.1).contains(&self.fields) {
+            return Err(ExperimentError::Fields { expected: FIELDS_RANGE, found: self.fields });
+        }
+        let config = self.pipeline.adapt(self.config.clone());
+        let mut machine = Machine::new(&config, self.pipeline.eyes(), self.pipeline.layout())?;
+        let setup = Setup {
+            list: Arc::new(display_list(&self.scene).map_err(ExperimentError::Scene)?),
+            views: views(&self.scene, self.seed, self.pipeline.eyes()),
+            host: config.host,
+            pixels: self.pixels != Pixels::Off,
+        };
+        self.pipeline.load(&mut machine, &setup)?;
+        if let Some(seed) = self.shuffle {
+            machine.shuffle_ties(seed);
+        }
+        if self.pixels == Pixels::All {
+            machine.compute_all_pixels(self.threads);
+        }
+        machine.switch_on();
+        Ok(machine)
+    }
+
+    /// Runs it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Experiment::build`]; [`ExperimentError::Run`] with everything observed so far when the run ends early;
+    /// [`ExperimentError::TooShort`] when nothing was shown.
+    pub fn run(&self) -> Result<Outcome, ExperimentError> {
+        self.run_with(|_, _| {})
+    }
+
+    /// Runs it and reports progress: fields simulated, of all.
+    ///
+    /// # Errors
+    ///
+    /// As [`Experiment::run`].
+    pub fn run_with(&self, mut progress: impl FnMut(u64, u64)) -> Result<Outcome, ExperimentError> {
+        let host_time = Instant::now();
+        let mut machine = self.build()?;
+        let mut result = Ok(());
+        for field in (PROGRESS_FIELDS..self.fields).step_by(PROGRESS_FIELDS as usize).chain([self.fields]) {
+            let until = machine.video().retrace(field);
+            result = machine.run_until(until);
+            if result.is_err() {
+                break;
+            }
+            progress(field, self.fields);
+        }
+        machine.finish_pixels();
+        let host_seconds = host_time.elapsed().as_secs_f64();
+        let outcome = Outcome::new(self.clone(), machine, host_seconds);
+        match result {
+            Err(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
+            Ok(()) if outcome.steady_pictures().is_empty() => {
+                Err(ExperimentError::TooShort { fields: self.fields, pictures: outcome.pictures().len() })
+            }
+            Ok(()) => Ok(outcome),
+        }
+    }
+}
+
+/// Fields between two reports of progress.
+const PROGRESS_FIELDS: u64 = 60;
+
+/// What came of an experiment.
+#[derive(Debug)]
+pub struct Outcome {
+    experiment: Experiment,
+    machine: Machine,
+    pictures: Vec<PictureTimes>,
+    host_seconds: f64,
+}
+
+impl Outcome {
+    fn new(experiment: Experiment, machine: Machine, host_seconds: f64) -> Self {
+        let end = machine.video().retrace(experiment.fields);
+        let pictures = experiment.pipeline.pictures(&machine, end);
+        Self { experiment, machine, pictures, host_seconds }
+    }
+
+    /// All pictures that were shown.
+    #[must_use]
+    pub fn pictures(&self) -> &[PictureTimes] {
+        &self.pictures
+    }
+
+    /// The pictures after the first [`WARM_UP_PICTURES`].
+    #[must_use]
+    pub fn steady_pictures(&self) -> &[PictureTimes] {
+        self.pictures.get(WARM_UP_PICTURES..).unwrap_or_default()
+    }
+
+    /// The machine as it stands at the end.
+    #[must_use]
+    pub const fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// What was observed.
+    #[must_use]
+    pub const fn observation(&self) -> &Observation {
+        self.machine.observation()
+    }
+
+    /// The pipeline that ran.
+    #[must_use]
+    pub fn pipeline(&self) -> &dyn Pipeline {
+        self.experiment.pipeline.as_ref()
+    }
+
+    /// Fields simulated.
+    #[must_use]
+    pub const fn fields(&self) -> u64 {
+        self.experiment.fields
+    }
+
+    /// The end of the run.
+    #[must_use]
+    pub fn end(&self) -> Time {
+        self.machine.video().retrace(self.experiment.fields)
+    }
+
+    /// Latency in milliseconds over the pictures after the warm-up, as the pipeline defines it.
+    #[must_use]
+    pub fn latency_ms(&self) -> Statistics {
+        Statistics::of(self.steady_pictures().iter().map(|times| (times.shown_at - times.transform_at).as_ms()))
+    }
+
+    /// The same in fields.
+    #[must_use]
+    pub fn latency_fields(&self) -> Statistics {
+        let field_ms = self.machine.video().retrace(60_000).since(Time::ZERO).as_ms() / 60_000.0;
+        let fields = |times: &PictureTimes| (times.shown_at - times.transform_at).as_ms() / field_ms;
+        Statistics::of(self.steady_pictures().iter().map(fields))
+    }
+
+    /// What the eye sees at the end; `None` without pixels, or before anything was shown.
+    #[must_use]
+    pub fn picture(&self, eye: Eye) -> Option<RgbImage> {
+        if self.experiment.pixels == Pixels::Off {
+            return None;
+        }
+        self.experiment.pipeline.picture(&self.machine, eye)
+    }
+
+    /// Everything as numbers.
+    #[must_use]
+    pub fn report(&self) -> Report {
+        let experiment = &self.experiment;
+        let pictures = self.steady_pictures();
+        let late = experiment.pipeline.late_regions(&self.machine, self.end());
+        Report {
+            schema: Report::SCHEMA.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            pipeline: experiment.pipeline.name().to_owned(),
+            machine: experiment.config.preset.clone(),
+            n_gps: experiment.config.n_gps,
+            n_renderers: experiment.config.n_renderers,
+            scene: experiment.scene.name().to_owned(),
+            triangles: experiment.scene.triangles().len(),
+            spheres: experiment.scene.spheres().len(),
+            level: "transaction".to_owned(),
+            fields: experiment.fields,
+            pictures: pictures.len(),
+            latency_fields: self.latency_fields().defined(experiment.pipeline.latency_definition()),
+            latency_ms: self.latency_ms().defined(experiment.pipeline.latency_definition()),
+            updates_hz: updates_hz(pictures),
+            missed_retraces: experiment.pipeline.missed_retraces(pictures),
+            missed_retraces_definition: experiment.pipeline.missed_definition().to_owned(),
+            late_regions: late.len(),
+            first_late_regions: late.into_iter().take(20).collect(),
+            trace_hash: self.machine.trace_hash().to_string(),
+            seed: experiment.seed,
+            events: self.machine.events(),
+            host_seconds: self.host_seconds,
+        }
+    }
+}
+
+/// Complete pictures per second of simulated time.
+fn updates_hz(pictures: &[PictureTimes]) -> f64 {
+    let complete: Vec<_> = pictures.iter().filter(|times| times.complete).collect();
+    match complete[..] {
+        [first, .., last] => (complete.len() - 1) as f64 * 1e3 / (last.shown_at - first.shown_at).as_ms(),
+        _ => 0.0,
+    }
+}

@@ -1,0 +1,45 @@
+//! Worker threads that compute pixels, apart from simulated time.
+
+use crossbeam_channel::{Sender, bounded};
+use pxpl5_wire::{PixelSource, RegionPixels};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+
+/// Regions that may wait for a worker; more would only hold memory.
+const WAITING_REGIONS: usize = 256;
+
+/// A pool of threads.
+#[derive(Debug)]
+pub(crate) struct PixelWorkers {
+    regions: Sender<Arc<dyn PixelSource>>,
+    threads: Vec<JoinHandle<u64>>,
+}
+
+impl PixelWorkers {
+    pub(crate) fn new(threads: usize) -> Self {
+        let (regions, waiting) = bounded::<Arc<dyn PixelSource>>(WAITING_REGIONS);
+        let worker = |_| {
+            let waiting = waiting.clone();
+            std::thread::spawn(move || waiting.iter().map(|region| region.pixels()).count() as u64)
+        };
+        Self { regions, threads: (0..threads.max(1)).map(worker).collect() }
+    }
+
+    /// Computes a region whose first part is on its way.
+    pub(crate) fn compute(&self, pixels: &RegionPixels) {
+        if pixels.part == 0 {
+            // The workers live as long as this sender, so there is always a receiver.
+            let _ = self.regions.send(Arc::clone(&pixels.image));
+        }
+    }
+
+    /// Waits until everything is computed; the number of regions.
+    ///
+    /// # Panics
+    ///
+    /// When a worker panicked: a bug of ours.
+    pub(crate) fn finish(self) -> u64 {
+        drop(self.regions);
+        self.threads.into_iter().map(|thread| thread.join().expect("a pixel worker panicked")).sum()
+    }
+}
