@@ -118,10 +118,9 @@ impl Conic {
     /// Rounds for evaluation on the frame's pixels of `rectangle` (first and last along x, and along y).
     ///
     /// The values are powers of two times the conic's, as large as fits in 46 bits on the whole rectangle.
-    /// Coefficients are rounded around a pixel in its middle and restated exactly for pixel (0, 0), so the error
-    /// grows from there and not from the picture's corner.
-    pub(crate) fn fixed(&self, rectangle: [[i32; 2]; 2]) -> FixedConic {
-        let [px, py] = rectangle.map(|[first, last]| (first + last) / 2);
+    /// Coefficients are rounded around `pixel` and restated exactly for pixel (0, 0), so the error grows from
+    /// there and not from the picture's corner. With the pixel of the peak no small sphere is lost.
+    pub(crate) fn fixed(&self, rectangle: [[i32; 2]; 2], [px, py]: [i32; 2]) -> FixedConic {
         let local = self.around([f64::from(px), f64::from(py)]);
         let peak = self.peak_value();
         let depth_shift = ((exponent_above(peak) + 1).div_euclid(2) - ROOT_BITS).clamp(0, MAX_DEPTH_SHIFT);

@@ -1,12 +1,12 @@
 //! Lighting of vertices, and normals for deferred shading.
 
 use crate::Light;
-use crate::view::Columns;
+use crate::view::FromWorld;
 use glam::Vec3;
 
 /// A light seen from one eye.
 pub(crate) struct Lighting<'a> {
-    model_view: &'a Columns,
+    to_eye: &'a FromWorld,
     light: &'a Light,
 }
 
@@ -17,8 +17,8 @@ fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
 
 /// The eye-space normal of unit length; towards +Z if it has no direction.
 #[inline(always)]
-fn unit_normal(model_view: &Columns, normal: Vec3) -> [f32; 3] {
-    let n = model_view.direction(normal);
+fn unit_normal(to_eye: &FromWorld, normal: Vec3) -> [f32; 3] {
+    let n = to_eye.direction(normal);
     let square = dot(n, n);
     if (f32::MIN_POSITIVE..=f32::MAX).contains(&square) {
         let inverse = 1.0 / square.sqrt();
@@ -30,22 +30,22 @@ fn unit_normal(model_view: &Columns, normal: Vec3) -> [f32; 3] {
 
 /// How far a normal at `position` turns towards the eye.
 #[inline(always)]
-fn towards_eye(model_view: &Columns, position: Vec3, normal: [f32; 3]) -> f32 {
-    let [x, y, z, _] = model_view.point(position);
+fn towards_eye(to_eye: &FromWorld, position: Vec3, normal: [f32; 3]) -> f32 {
+    let [x, y, z, _] = to_eye.point(position);
     -dot([x, y, z], normal)
 }
 
 impl<'a> Lighting<'a> {
-    pub(crate) fn new(model_view: &'a Columns, light: &'a Light) -> Self {
-        Self { model_view, light }
+    pub(crate) fn new(to_eye: &'a FromWorld, light: &'a Light) -> Self {
+        Self { to_eye, light }
     }
 
     /// Lit colour in 1/256 of a unit, 0 to 255 * 256. Two-sided: the normal counts as the one that faces the eye.
     #[inline(always)]
     pub(crate) fn colour(&self, position: Vec3, normal: Vec3, colour: [u8; 3]) -> [f32; 3] {
-        let n = unit_normal(self.model_view, normal);
+        let n = unit_normal(self.to_eye, normal);
         let toward_light = dot(n, self.light.direction);
-        let facing = towards_eye(self.model_view, position, n);
+        let facing = towards_eye(self.to_eye, position, n);
         let cosine = if facing < 0.0 { -toward_light } else { toward_light };
         let intensity = self.intensity(cosine);
         colour.map(|c| f32::from(c) * 256.0 * intensity)
@@ -60,8 +60,8 @@ impl<'a> Lighting<'a> {
 }
 
 /// Unit normals in eye coordinates, all three turned over if the surface faces away.
-pub(crate) fn facing_normals(model_view: &Columns, positions: &[Vec3; 3], normals: &[Vec3; 3]) -> [[f32; 3]; 3] {
-    let n = normals.map(|n| unit_normal(model_view, n));
-    let facing = |i: usize| towards_eye(model_view, positions[i], n[i]);
+pub(crate) fn facing_normals(to_eye: &FromWorld, positions: &[Vec3; 3], normals: &[Vec3; 3]) -> [[f32; 3]; 3] {
+    let n = normals.map(|n| unit_normal(to_eye, n));
+    let facing = |i: usize| towards_eye(to_eye, positions[i], n[i]);
     if (facing(0) + facing(1)) + facing(2) < 0.0 { n.map(|n| n.map(|v| -v)) } else { n }
 }

@@ -18,7 +18,7 @@ use crate::bin::Range;
 use crate::conic::Conic;
 use crate::screen::{DEPTH_FAR, DEPTH_NEAR};
 use crate::transform::Transform;
-use crate::view::Columns;
+use crate::view::{Columns, FromWorld};
 use crate::{RegionMask, SetupStats, Sphere};
 
 /// Largest eye coordinate and radius of a sphere; the squares of larger ones could overflow.
@@ -112,15 +112,10 @@ struct EyeSphere {
 }
 
 impl EyeSphere {
-    /// The largest scale along an axis counts; `None` for NaN, huge numbers and a negative radius.
-    fn new(model_view: &Columns, sphere: &Sphere) -> Option<Self> {
-        let [x, y, z, _] = model_view.point(sphere.centre).map(f64::from);
-        let square = |column: &[f32; 4]| {
-            let v = [column[0], column[1], column[2]].map(f64::from);
-            dot(v, v)
-        };
-        let scale = model_view.0[..3].iter().map(square).fold(0.0, f64::max).sqrt();
-        let radius = f64::from(sphere.radius) * scale;
+    /// `None` for NaN, huge numbers and a negative radius.
+    fn new(to_eye: &FromWorld, sphere: &Sphere) -> Option<Self> {
+        let [x, y, z, _] = to_eye.point(sphere.centre).map(f64::from);
+        let radius = f64::from(sphere.radius) * to_eye.scale();
         let fits = |v: f64| v.abs() <= MAX_COORDINATE;
         (radius >= 0.0 && [x, y, z, radius].into_iter().all(fits)).then_some(Self { centre: [x, y, z], radius })
     }
@@ -221,7 +216,7 @@ impl Transform {
             stats.spheres_unprojectable += 1;
             return None;
         };
-        let Some(eye) = EyeSphere::new(&self.model_view, sphere) else {
+        let Some(eye) = EyeSphere::new(&self.to_eye, sphere) else {
             stats.spheres_not_finite += 1;
             return None;
         };

@@ -106,7 +106,8 @@ impl ScreenSphere {
 
     fn common(&self, viewport: &Viewport, stats: &mut SetupStats) -> (SphereSetup, FixedConic) {
         let rectangle = self.rectangle(viewport);
-        let conic = self.conic.fixed(rectangle);
+        let middle = self.middle(rectangle);
+        let conic = self.conic.fixed(rectangle, middle);
         let [value, slope_x, slope_y] = self.depth;
         // Half a step of the root, as far as the far plane leaves room, turns rounding down into rounding.
         let half_step = conic::power_of_two(i32::from(conic.depth_shift) - 1);
@@ -116,7 +117,7 @@ impl ScreenSphere {
         let setup = SphereSetup {
             silhouette: conic::for_rows(conic.quadratic, step.into(), first.into()),
             root_shift: conic.root_shift,
-            depth: rows(plane.fixed(self.middle(rectangle), stats), viewport),
+            depth: rows(plane.fixed(middle, stats), viewport),
             depth_shift: conic.depth_shift,
         };
         (setup, conic)

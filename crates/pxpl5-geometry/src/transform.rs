@@ -5,7 +5,7 @@ use crate::clip::{self, Guard, Vertex};
 use crate::light::Lighting;
 use crate::screen::{self, LitColours, Outline, ScreenTriangle, SurfaceNormals};
 use crate::sphere::Lens;
-use crate::view::{Columns, ViewError};
+use crate::view::{Columns, FromWorld, ViewError};
 use crate::{Light, Mesh, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -25,10 +25,10 @@ pub enum Culling {
 #[derive(Clone, Debug)]
 pub struct Transform {
     pub(crate) viewport: Viewport,
-    pub(crate) model_view: Columns,
+    pub(crate) to_eye: FromWorld,
     /// `None` where spheres cannot be drawn.
     pub(crate) lens: Option<Lens>,
-    to_clip: Columns,
+    to_clip: FromWorld,
     to_screen: ToScreen,
     guard: Guard,
     pub(crate) binner: Binner,
@@ -131,9 +131,9 @@ impl Transform {
         let to_screen = ToScreen::new(&viewport);
         Ok(Self {
             viewport,
-            to_clip: projection.after(&model_view),
+            to_clip: FromWorld::to_clip(&projection, &model_view),
+            to_eye: FromWorld::to_eye(&model_view),
             lens: Lens::of(&projection, viewport.grid().width, viewport.frame_lines()),
-            model_view,
             guard: to_screen.guard(),
             to_screen,
             binner: Binner::new(&viewport),
@@ -174,7 +174,7 @@ impl Transform {
         stats: &mut SetupStats,
         mut sink: impl FnMut(ScreenTriangle<LitColours>),
     ) {
-        let lighting = Lighting::new(&self.model_view, light);
+        let lighting = Lighting::new(&self.to_eye, light);
         let lit = |i: usize| lighting.colour(triangle.positions[i], triangle.normals[i], triangle.colours[i]);
         self.triangle(&triangle.positions, lit, stats, |outline, colours| {
             sink(lit_triangle(outline, colours));
@@ -189,7 +189,7 @@ impl Transform {
         stats: &mut SetupStats,
         mut sink: impl FnMut(ScreenTriangle<SurfaceNormals>),
     ) {
-        let normals = crate::light::facing_normals(&self.model_view, &triangle.positions, &triangle.normals);
+        let normals = crate::light::facing_normals(&self.to_eye, &triangle.positions, &triangle.normals);
         let colour = triangle.colours[0];
         self.triangle(
             &triangle.positions,
@@ -256,7 +256,7 @@ impl Transform {
         stats: &mut SetupStats,
         mut sink: impl FnMut(usize, ScreenTriangle<LitColours>),
     ) {
-        let lighting = Lighting::new(&self.model_view, light);
+        let lighting = Lighting::new(&self.to_eye, light);
         scratch.extras.clear();
         let vertices = mesh.positions().iter().zip(mesh.normals()).zip(mesh.colours());
         let lit = vertices.map(|((p, n), c)| lighting.colour(*p, *n, *c));

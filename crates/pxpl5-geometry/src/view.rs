@@ -187,30 +187,82 @@ impl Columns {
         self.0.iter().flatten().all(|v| v.is_finite())
     }
 
-    /// `self * right`, formed in 64 bits and rounded once.
-    pub(crate) fn after(&self, right: &Self) -> Self {
-        let mut out = [[0.0; 4]; 4];
-        for (column, from) in out.iter_mut().zip(&right.0) {
-            for (row, cell) in column.iter_mut().enumerate() {
-                let term = |k: usize| f64::from(self.0[k][row]) * f64::from(from[k]);
-                *cell = (((term(0) + term(1)) + term(2)) + term(3)) as f32;
-            }
-        }
-        Self(out)
+    /// `self * v`, formed in 64 bits.
+    fn times(&self, v: [f64; 4]) -> [f64; 4] {
+        std::array::from_fn(|row| {
+            let term = |k: usize| f64::from(self.0[k][row]) * v[k];
+            ((term(0) + term(1)) + term(2)) + term(3)
+        })
     }
 
-    /// Transforms the point (p, 1).
+    /// The point that an affine matrix takes to the origin; the origin itself if there is none.
+    fn origin(&self) -> Vec3 {
+        let [x, y, z, t] = self.0.map(|c| [c[0], c[1], c[2]].map(f64::from));
+        let cross = |a: [f64; 3], b: [f64; 3]| {
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        };
+        let dot = |a: [f64; 3], b: [f64; 3]| (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+        let determinant = dot(x, cross(y, z));
+        let solved = [cross(y, z), cross(z, x), cross(x, y)].map(|row| (-dot(row, t) / determinant) as f32);
+        let origin = Vec3::from_array(solved);
+        if origin.is_finite() { origin } else { Vec3::ZERO }
+    }
+}
+
+/// Takes points of the world to eye or clip coordinates, relative to the eye.
+///
+/// `A p + t` loses the difference of two large numbers where p is far from the world's origin. `A (p - o) + t'`,
+/// with o the eye's position and `t' = A o + t` formed in 64 bits, does not: the subtraction is wrong by half a last
+/// bit of its result at most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FromWorld {
+    columns: [[f32; 4]; 4],
+    origin: Vec3,
+}
+
+impl FromWorld {
+    /// World to eye coordinates.
+    pub(crate) fn to_eye(model_view: &Columns) -> Self {
+        let identity = Columns(Mat4::IDENTITY.to_cols_array_2d());
+        Self::to_clip(&identity, model_view)
+    }
+
+    /// World to clip coordinates.
+    pub(crate) fn to_clip(projection: &Columns, model_view: &Columns) -> Self {
+        let origin = model_view.origin();
+        let product = |v: [f64; 4]| projection.times(model_view.times(v)).map(|v| v as f32);
+        let [x, y, z] = origin.to_array().map(f64::from);
+        let columns = [
+            product([1.0, 0.0, 0.0, 0.0]),
+            product([0.0, 1.0, 0.0, 0.0]),
+            product([0.0, 0.0, 1.0, 0.0]),
+            product([x, y, z, 1.0]),
+        ];
+        Self { columns, origin }
+    }
+
+    /// Transforms a point.
     #[inline(always)]
     pub(crate) fn point(&self, p: Vec3) -> [f32; 4] {
-        let [cx, cy, cz, cw] = &self.0;
-        std::array::from_fn(|i| ((cx[i] * p.x + cy[i] * p.y) + cz[i] * p.z) + cw[i])
+        let [x, y, z] = [p.x - self.origin.x, p.y - self.origin.y, p.z - self.origin.z];
+        let [cx, cy, cz, ct] = &self.columns;
+        std::array::from_fn(|i| ((cx[i] * x + cy[i] * y) + cz[i] * z) + ct[i])
     }
 
-    /// Transforms the direction (v, 0), rows x, y, z.
+    /// Transforms a direction, rows x, y, z.
     #[inline(always)]
     pub(crate) fn direction(&self, v: Vec3) -> [f32; 3] {
-        let [cx, cy, cz, _] = &self.0;
+        let [cx, cy, cz, _] = &self.columns;
         std::array::from_fn(|i| (cx[i] * v.x + cy[i] * v.y) + cz[i] * v.z)
+    }
+
+    /// The greatest factor by which an axis is stretched.
+    pub(crate) fn scale(&self) -> f64 {
+        let square = |column: &[f32; 4]| {
+            let [x, y, z] = [column[0], column[1], column[2]].map(f64::from);
+            (x * x + y * y) + z * z
+        };
+        self.columns[..3].iter().map(square).fold(0.0, f64::max).sqrt()
     }
 }
 

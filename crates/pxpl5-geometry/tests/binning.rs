@@ -1,0 +1,163 @@
+//! Regions touched, against brute force and against an independent exact test.
+
+mod support;
+
+use glam::Vec3;
+use proptest::prelude::*;
+use pxpl5_geometry::{Culling, Light, Outline, RegionMask, SetupStats, Transform, Triangle, Viewport};
+use pxpl5_wire::{FieldParity, Lines, RegionGrid, RegionId};
+use support::{at_pixel, pixel_view};
+
+fn viewports() -> [Viewport; 4] {
+    let small = RegionGrid { width: 200, height: 100, region_width: 40, region_height: 16 };
+    [
+        Viewport::FRAME,
+        Viewport::field(FieldParity::Even),
+        Viewport::field(FieldParity::Odd),
+        Viewport::new(small, Lines::Frame).expect("a small picture"),
+    ]
+}
+
+fn screen(viewport: Viewport, points: [[i32; 2]; 3]) -> (Option<Outline>, SetupStats) {
+    // Places in 1/16 px of a frame of 640 x 480; scaled for smaller pictures.
+    let [sx, sy] = [viewport.grid().width as f32 / 640.0, viewport.frame_lines() as f32 / 480.0];
+    let place = |[x, y]: [i32; 2]| at_pixel(x as f32 / 16.0 / sx, y as f32 / 16.0 / sy, 1.0);
+    let transform = Transform::new(&pixel_view(1.0, 16_384.0), viewport, Culling::None).expect("a finite view");
+    let triangle = Triangle { positions: points.map(place), normals: [Vec3::Z; 3], colours: [[0; 3]; 3] };
+    let (mut found, mut stats) = (Vec::new(), SetupStats::default());
+    transform.gouraud(&triangle, &Light::NONE, &mut stats, |t| found.push(t.outline));
+    let mut masks = Vec::new();
+    transform.bin(&triangle.positions, &mut SetupStats::default(), |m| masks.push(m));
+    assert_eq!(masks, found.iter().map(|o| o.regions).collect::<Vec<_>>());
+    assert!(found.len() <= 1);
+    (found.first().copied(), stats)
+}
+
+/// Frame line of a row.
+fn line(viewport: &Viewport, row: u32) -> i32 {
+    (row * viewport.line_step() + viewport.first_line()) as i32
+}
+
+fn edge(o: &Outline, i: usize, [x, y]: [i64; 2]) -> i64 {
+    let (p, q) = (i, (i + 1) % 3);
+    let [px, py, qx, qy] = [o.x[p], o.y[p], o.x[q], o.y[q]].map(i64::from);
+    let (dx, dy) = (qx - px, qy - py);
+    let tie = i64::from(!(dy < 0 || (dy == 0 && dx > 0)));
+    dx * (y - py) - dy * (x - px) - tie
+}
+
+fn covered(o: &Outline, x: i32, y: i32) -> bool {
+    let centre = [16 * i64::from(x) + 8, 16 * i64::from(y) + 8];
+    (0..3).all(|i| edge(o, i, centre) >= 0)
+}
+
+/// Whether a region holds a covered pixel.
+fn holds_a_pixel(viewport: &Viewport, o: &Outline, region: RegionId) -> bool {
+    let [left, top, width, height] = viewport.grid().rectangle(region);
+    let rows = top..top + height;
+    rows.clone().any(|row| (left..left + width).any(|x| covered(o, x as i32, line(viewport, row))))
+}
+
+/// Whether the closed triangle meets the closed box of a region's pixel centres: some corner of one in the other, or
+/// some edge crosses a side. In 1/16 px, exactly.
+fn meets(viewport: &Viewport, o: &Outline, region: RegionId) -> bool {
+    let [left, top, width, height] = viewport.grid().rectangle(region);
+    let x = [left, left + width - 1].map(|v| 16 * i64::from(v) + 8);
+    let y = [top, top + height - 1].map(|v| 16 * i64::from(line(viewport, v)) + 8);
+    let corners = [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]];
+    let points: [[i64; 2]; 3] = std::array::from_fn(|i| [o.x[i].into(), o.y[i].into()]);
+    let in_box = |[px, py]: [i64; 2]| (x[0]..=x[1]).contains(&px) && (y[0]..=y[1]).contains(&py);
+    let area = |a: [i64; 2], b: [i64; 2], c: [i64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    let in_triangle = |c: [i64; 2]| (0..3).all(|i| area(points[i], points[(i + 1) % 3], c) >= 0);
+    let cross = |a, b, c, d| {
+        let signs = |p, q, r, s| area(p, q, r).signum() * area(p, q, s).signum();
+        signs(a, b, c, d) <= 0 && signs(c, d, a, b) <= 0
+    };
+    points.iter().any(|&p| in_box(p))
+        || corners.iter().any(|&c| in_triangle(c))
+        || (0..3).any(|i| (0..4).any(|k| cross(points[i], points[(i + 1) % 3], corners[k], corners[(k + 1) % 4])))
+}
+
+fn point() -> impl Strategy<Value = [i32; 2]> {
+    let anywhere = [-600..10_840_i32, -600..8_280_i32];
+    let border = (0..6_i32, 0..5_i32, -12..12_i32, -12..12_i32)
+        .prop_map(|(column, row, dx, dy)| [column * 2048 + dx, row * 1920 + dy]);
+    prop_oneof![anywhere, border]
+}
+
+fn triangle() -> impl Strategy<Value = [[i32; 2]; 3]> {
+    let shrunk = ([point(), point(), point()], 1..200_i32).prop_map(|([a, b, c], s)| {
+        let near = |p: [i32; 2]| [a[0] + (p[0] - a[0]) / s, a[1] + (p[1] - a[1]) / s];
+        [a, near(b), near(c)]
+    });
+    prop_oneof![shrunk, [point(), point(), point()]]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn every_region_with_a_covered_pixel_is_touched_and_every_touched_region_meets_the_triangle(
+        points in triangle(),
+    ) {
+        for viewport in viewports() {
+            let (outline, stats) = screen(viewport, points);
+            // Without regions the outline is not handed out, but is needed here: take it from the whole picture.
+            let Some(outline) = outline else {
+                prop_assert_eq!(stats.untouched + stats.degenerate + stats.outside, 1);
+                continue;
+            };
+            for n in 0..viewport.grid().regions() {
+                let region = RegionId(n as u16);
+                let touched = outline.regions.contains(region);
+                if touched {
+                    prop_assert!(meets(&viewport, &outline, region), "{outline:?} does not meet {n}");
+                } else {
+                    prop_assert!(!holds_a_pixel(&viewport, &outline, region), "{outline:?} has pixels in {n}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_touches_no_region_covers_no_pixel(points in triangle()) {
+        let viewport = Viewport::FRAME;
+        let (outline, stats) = screen(viewport, points);
+        if outline.is_none() && stats.untouched == 1 {
+            let [x, y] = [0, 1].map(|i| points.map(|p| p[i]));
+            let mut all = Outline { x, y, z: [0; 3], regions: RegionMask::EMPTY };
+            if edge(&all, 0, [x[2].into(), y[2].into()]) < 0 {
+                (all.x, all.y) = ([x[0], x[2], x[1]], [y[0], y[2], y[1]]);
+            }
+            for n in 0..20 {
+                prop_assert!(!holds_a_pixel(&viewport, &all, RegionId(n)));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_triangle_inside_one_region_touches_it_alone() {
+    let (outline, _) = screen(Viewport::FRAME, [[2080, 2080], [2240, 2080], [2080, 2240]]);
+    assert_eq!(outline.expect("it is on the screen").regions, RegionMask::only(RegionId(6)));
+}
+
+#[test]
+fn a_triangle_over_the_whole_screen_touches_all_twenty_regions() {
+    let (outline, _) = screen(Viewport::FRAME, [[-16_000, -160], [26_000, -160], [5_000, 30_000]]);
+    assert_eq!(outline.expect("it is on the screen").regions.len(), 20);
+}
+
+#[test]
+fn a_diagonal_leaves_out_the_corner_regions_that_its_bounding_box_holds() {
+    let (outline, _) = screen(Viewport::FRAME, [[8, 8], [24, 8], [10_000, 7_600]]);
+    let regions = outline.expect("it is on the screen").regions;
+    assert!(regions.contains(RegionId(0)) && regions.contains(RegionId(19)));
+    assert!(!regions.contains(RegionId(4)) && !regions.contains(RegionId(15)));
+}
+
+#[test]
+fn a_triangle_between_pixel_centres_touches_nothing() {
+    let (outline, stats) = screen(Viewport::FRAME, [[2057, 2057], [2070, 2058], [2060, 2069]]);
+    assert_eq!((outline, stats.untouched), (None, 1));
+}

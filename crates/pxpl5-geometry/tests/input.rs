@@ -1,0 +1,265 @@
+//! What a user can hand in: meshes, bad numbers, culling, spheres out of sight.
+
+mod support;
+
+use glam::{Mat4, Vec3};
+use pxpl5_geometry::{
+    Culling, Light, LitColours, Mesh, MeshScratch, ScreenTriangle, SetupStats, Sphere, Transform, Triangle, ViewError,
+    ViewTransform, Viewport,
+};
+use support::random::Random;
+use support::spheres::{self, ExactSphere, native};
+use support::{at_pixel, cases, pixel_view};
+
+fn transform(culling: Culling) -> Transform {
+    Transform::new(&pixel_view(1.0, 16_384.0), Viewport::FRAME, culling).expect("a finite view")
+}
+
+fn triangle(positions: [Vec3; 3]) -> Triangle {
+    Triangle { positions, normals: [Vec3::Z; 3], colours: [[10, 20, 30], [40, 50, 60], [70, 80, 90]] }
+}
+
+fn drawn(transform: &Transform, positions: [Vec3; 3]) -> (Vec<ScreenTriangle<LitColours>>, SetupStats) {
+    let (mut out, mut stats) = (Vec::new(), SetupStats::default());
+    transform.gouraud(&triangle(positions), &Light::NONE, &mut stats, |t| out.push(t));
+    (out, stats)
+}
+
+fn clockwise() -> [Vec3; 3] {
+    [at_pixel(100.0, 100.0, 1.0), at_pixel(200.0, 100.0, 1.0), at_pixel(100.0, 200.0, 1.0)]
+}
+
+#[test]
+fn nan_infinite_and_huge_coordinates_are_counted_and_never_drawn() {
+    for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX] {
+        for axis in 0..3 {
+            let mut positions = clockwise();
+            positions[1][axis] = bad;
+            let (out, stats) = drawn(&transform(Culling::None), positions);
+            assert_eq!((out.len(), stats.not_finite, stats.triangles), (0, 1, 1), "{bad} on axis {axis}");
+        }
+    }
+}
+
+#[test]
+fn nan_normals_give_a_colour_and_no_panic() {
+    let mut bad = triangle(clockwise());
+    bad.normals = [Vec3::NAN, Vec3::ZERO, Vec3::splat(f32::MAX)];
+    let (mut out, mut stats) = (Vec::new(), SetupStats::default());
+    transform(Culling::None).gouraud(&bad, &Light::HEADLIGHT, &mut stats, |t| out.push(t));
+    assert_eq!(out[0].surface.0, bad.colours.map(|c| c.map(|v| u16::from(v) * 256)));
+}
+
+#[test]
+fn a_view_with_nan_is_refused_by_name() {
+    let mut view = pixel_view(1.0, 10.0);
+    view.model_view.w_axis.x = f32::NAN;
+    let error = Transform::new(&view, Viewport::FRAME, Culling::None).unwrap_err();
+    assert_eq!(error, ViewError::NotFinite { matrix: "model-view" });
+    view = pixel_view(1.0, 1.0);
+    let error = Transform::new(&view, Viewport::FRAME, Culling::None).unwrap_err();
+    assert_eq!(error, ViewError::NotFinite { matrix: "projection" });
+}
+
+#[test]
+fn back_faces_are_dropped_only_on_request() {
+    let [a, b, c] = clockwise();
+    assert_eq!(drawn(&transform(Culling::None), [a, b, c]).0.len(), 1);
+    let (out, stats) = drawn(&transform(Culling::Back), [a, b, c]);
+    assert_eq!((out.len(), stats.back_facing), (0, 1));
+    assert_eq!(drawn(&transform(Culling::Back), [a, c, b]).0.len(), 1);
+}
+
+#[test]
+fn colours_follow_their_corners_when_a_triangle_is_turned_clockwise() {
+    let [a, b, c] = clockwise();
+    let (out, _) = drawn(&transform(Culling::None), [a, c, b]);
+    assert_eq!(out[0].outline.x, [1600, 3200, 1600]);
+    let expected = [[10, 20, 30], [70, 80, 90], [40, 50, 60]].map(|c| c.map(|v: u16| v * 256));
+    assert_eq!(out[0].surface.0, expected);
+}
+
+#[test]
+fn a_vertex_that_faces_the_light_has_its_full_colour_and_one_edge_on_the_ambient_part() {
+    let mut lit = triangle(clockwise());
+    lit.normals = [Vec3::Z, Vec3::NEG_Z * 7.0, Vec3::X];
+    lit.colours = [[200; 3]; 3];
+    let light = Light { direction: [0.0, 0.0, 1.0], ambient: 0.25, diffuse: 0.5 };
+    let (mut out, mut stats) = (Vec::new(), SetupStats::default());
+    transform(Culling::None).gouraud(&lit, &light, &mut stats, |t| out.push(t));
+    // Two-sided: a normal that points away counts like its opposite.
+    assert_eq!(out[0].surface.0.map(|c| c[0]), [200 * 192, 200 * 192, 200 * 64]);
+}
+
+#[test]
+fn phong_normals_are_unit_length_and_face_the_eye() {
+    let mut away = triangle(clockwise());
+    away.normals = [Vec3::NEG_Z * 3.0, Vec3::new(0.0, -3.0, -4.0), Vec3::NEG_Z];
+    let (mut out, mut stats) = (Vec::new(), SetupStats::default());
+    transform(Culling::None).phong(&away, &mut stats, |t| out.push(t));
+    // 0.6 and 0.8 in 1/2^14, rounded.
+    assert_eq!(out[0].surface.normals, [[0, 0, 16_384], [0, 9830, 13_107], [0, 0, 16_384]]);
+    assert_eq!(out[0].surface.colour, [10, 20, 30]);
+}
+
+/// A mesh and the same triangles one by one.
+#[test]
+fn a_mesh_gives_what_its_triangles_give() {
+    for case in cases::all().iter().filter(|c| !c.tiling) {
+        let positions: Vec<Vec3> = case.triangles.iter().flat_map(|t| t.positions).collect();
+        let colours: Vec<[u8; 3]> = case.triangles.iter().flat_map(|t| t.colours).collect();
+        let normals = vec![Vec3::new(0.3, 0.4, 0.8); positions.len()];
+        let triangles: Vec<[u32; 3]> =
+            (0..case.triangles.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
+        let mesh = Mesh::new(&positions, &normals, &colours, &triangles).expect("indices are in range");
+        let transform = Transform::new(&case.view, Viewport::FRAME, Culling::None).expect("a finite view");
+        let (mut stats, mut each) = ([SetupStats::default(); 3], Vec::new());
+        for n in 0..triangles.len() {
+            let t = mesh.triangle(n).expect("it exists");
+            transform.gouraud(&t, &Light::HEADLIGHT, &mut stats[0], |t| each.push((n, t)));
+        }
+        let (mut all, mut masks, mut scratch) = (Vec::new(), Vec::new(), MeshScratch::default());
+        transform.gouraud_mesh(&mesh, &Light::HEADLIGHT, &mut scratch, &mut stats[1], |n, t| all.push((n, t)));
+        transform.bin_mesh(&mesh, &mut scratch, &mut stats[2], |n, mask| masks.push((n, mask)));
+        assert_eq!(each, all, "{}", case.name);
+        let regions: Vec<_> = each.iter().map(|(n, t)| (*n, t.outline.regions)).collect();
+        assert_eq!(masks, regions, "{}", case.name);
+        assert_eq!((stats[0], stats[0]), (stats[1], stats[2]), "{}", case.name);
+    }
+}
+
+#[test]
+fn a_mesh_with_a_wrong_index_or_length_is_refused_with_what_was_found() {
+    let (p, c) = ([Vec3::ZERO; 3], [[0_u8; 3]; 3]);
+    let error = Mesh::new(&p, &p, &c, &[[0, 1, 2], [0, 3, 1]]).unwrap_err().to_string();
+    assert_eq!(error, "mesh: triangle 1 names vertex 3, expected less than 3");
+    let error = Mesh::new(&p, &p[..2], &c, &[]).unwrap_err().to_string();
+    assert!(error.contains("(3), found 2 and 3"), "{error}");
+}
+
+#[test]
+fn spheres_behind_around_or_cut_are_counted_each_under_its_own_name() {
+    let one = |z: f32, radius: f32| {
+        let mut stats = SetupStats::default();
+        let sphere = Sphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [1; 3] };
+        let found = spheres::transform().sphere(&sphere, &mut stats);
+        assert_eq!(found.is_some(), stats.screen_spheres == 1);
+        stats
+    };
+    assert_eq!(one(50.0, 10.0).spheres_outside, 1);
+    assert_eq!(one(0.0, 10.0).spheres_across_near, 1);
+    assert_eq!(one(-5.0, 4.5).spheres_across_near, 1);
+    assert_eq!(one(-16_390.0, 100.0).spheres_across_far, 1);
+    assert_eq!(one(-20_000.0, 100.0).spheres_outside, 1);
+    assert_eq!(one(f32::NAN, 1.0).spheres_not_finite, 1);
+    assert_eq!(one(-5.0, -1.0).spheres_not_finite, 1);
+    assert_eq!(one(-5.0, f32::INFINITY).spheres_not_finite, 1);
+    assert_eq!(one(-5.0, 3.9).screen_spheres, 1);
+}
+
+#[test]
+fn a_projection_that_is_neither_perspective_nor_parallel_draws_no_spheres() {
+    let mut view = pixel_view(1.0, 10.0);
+    view.projection.x_axis.y = 0.5;
+    let transform = Transform::new(&view, Viewport::FRAME, Culling::None).expect("a finite view");
+    let mut stats = SetupStats::default();
+    let sphere = Sphere { centre: Vec3::new(0.0, 0.0, -5.0), radius: 1.0, colour: [1; 3] };
+    assert!(transform.sphere(&sphere, &mut stats).is_none());
+    assert_eq!(stats.spheres_unprojectable, 1);
+}
+
+#[test]
+fn silhouettes_are_exact_to_the_pixel_and_regions_miss_none_of_it() {
+    let (mut random, mut pixels) = (Random(77), 0);
+    for _ in 0..25 {
+        let radius = random.between(0.02, 1.0);
+        let centre = at_pixel(random.between(0.0, 640.0), random.between(0.0, 480.0), random.between(0.01, 1.0));
+        let sphere = Sphere { centre, radius: radius * radius * -centre.z * 0.7, colour: [200; 3] };
+        let exact = ExactSphere::new(&sphere);
+        let mut stats = SetupStats::default();
+        let Some(screen) = spheres::transform().sphere(&sphere, &mut stats) else { continue };
+        let setup = screen.phong(&Viewport::FRAME, &mut stats).setup;
+        for y in 0..480 {
+            for x in 0..640 {
+                let touched = screen.regions.contains(support::native::region_of(x, y));
+                let value = setup.silhouette.at(x, y);
+                assert!(!touched || value.unsigned_abs() < 1 << 47, "48 bits at {x}, {y}");
+                let found = touched && native(&setup, x, y).is_some();
+                pixels += u32::from(found);
+                assert_eq!(found, exact.covers(x, y), "{sphere:?} at {x}, {y}");
+            }
+        }
+    }
+    assert!(pixels > 100_000);
+}
+
+#[test]
+fn a_sphere_of_a_field_is_every_second_line_of_the_frame() {
+    let sphere = Sphere { centre: Vec3::new(20.0, 30.0, -200.0), radius: 60.0, colour: [200, 100, 50] };
+    let view = pixel_view(1.0, 16_384.0);
+    for parity in [pxpl5_wire::FieldParity::Even, pxpl5_wire::FieldParity::Odd] {
+        let operands = |viewport: Viewport| {
+            let transform = Transform::new(&view, viewport, Culling::None).expect("a finite view");
+            let mut stats = SetupStats::default();
+            let screen = transform.sphere(&sphere, &mut stats).expect("it is in sight");
+            screen.gouraud(&viewport, &Light::HEADLIGHT, &mut stats)
+        };
+        let (frame, field) = (operands(Viewport::FRAME), operands(Viewport::field(parity)));
+        for row in 0..240 {
+            let line = 2 * row + parity.first_line() as i32;
+            for x in 0..640 {
+                let (a, b) = (native(&field.setup, x, row), native(&frame.setup, x, line));
+                assert_eq!(a.is_some(), b.is_some(), "{x}, {row}");
+                // Planes may be rounded around another pixel: one unit of depth.
+                assert!(a.unwrap_or(0).abs_diff(b.unwrap_or(0)) <= 1);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_sphere_under_a_parallel_projection_is_a_circle_with_a_root_for_its_depth() {
+    // 64 px a unit along both axes, depth 0 to 1 from 1 to 9.
+    let view = ViewTransform {
+        model_view: Mat4::IDENTITY,
+        projection: Mat4::orthographic_rh(-5.0, 5.0, -3.75, 3.75, 1.0, 9.0),
+    };
+    let transform = Transform::new(&view, Viewport::FRAME, Culling::None).expect("a finite view");
+    let sphere = Sphere { centre: Vec3::new(1.0, -0.5, -5.0), radius: 1.5, colour: [255; 3] };
+    let mut stats = SetupStats::default();
+    let setup = transform.sphere(&sphere, &mut stats).expect("in sight").phong(&Viewport::FRAME, &mut stats).setup;
+    let mut seen = 0;
+    for y in 0..480 {
+        for x in 0..640 {
+            let (dx, dy) = ((f64::from(x) + 0.5 - 384.0) / 64.0, (f64::from(y) + 0.5 - 272.0) / 64.0);
+            let square = 2.25 - dx * dx - dy * dy;
+            if square.abs() > 1e-4 {
+                assert_eq!(native(&setup, x, y).is_some(), square > 0.0, "{x}, {y}");
+            }
+            if let (true, Some(depth)) = (square > 0.0, native(&setup, x, y)) {
+                seen += 1;
+                let exact = (4.0 - square.sqrt()) / 8.0 * 16_777_216.0;
+                // Half a step of a 12-bit root that spans 1.5 / 8 of the depth range; near the rim the root is steep.
+                let allowed = 1.5 / 8.0 * 16_777_216.0 / 2048.0 + 20.0;
+                assert!((f64::from(depth) - exact).abs() <= allowed, "{depth} {exact}");
+            }
+        }
+    }
+    assert!(seen > 28_000);
+}
+
+#[test]
+fn a_gouraud_sphere_is_full_in_the_middle_and_ambient_at_its_rim_under_a_headlight() {
+    let sphere = Sphere { centre: Vec3::new(0.0, 0.0, -1920.0), radius: 600.0, colour: [200, 0, 0] };
+    let mut stats = SetupStats::default();
+    let screen = spheres::transform().sphere(&sphere, &mut stats).expect("in sight");
+    let sphere = screen.gouraud(&Viewport::FRAME, &Light::HEADLIGHT, &mut stats);
+    let red = |x: i32, y: i32| {
+        let value = sphere.setup.silhouette.at(x, y).max(0) >> sphere.setup.root_shift;
+        let root = (value as u64 & 0xff_ffff).isqrt() as i32;
+        (sphere.rgb[0].at(x, y) >> 12) + ((root >> 4) * i32::from(sphere.root_factor[0]) >> 8)
+    };
+    assert!((198..=200).contains(&red(320, 240)), "{}", red(320, 240));
+    // 600 at 1920 is 105 px in radius; the rim has the ambient quarter.
+    assert!((50..=70).contains(&red(320 + 104, 240)), "{}", red(424, 240));
+}

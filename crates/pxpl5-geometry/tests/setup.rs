@@ -1,0 +1,226 @@
+//! Set-up against exact integers: edges, planes, ranges.
+
+mod support;
+
+use proptest::prelude::*;
+use pxpl5_geometry::{
+    DEPTH_FAR, DEPTH_NEAR, LitColours, NORMAL_UNIT, Outline, RegionMask, ScreenTriangle, SetupStats, SurfaceNormals,
+    Viewport,
+};
+use pxpl5_wire::{FieldParity, Linear, format};
+use support::native::Piece;
+
+const GUARD: i32 = pxpl5_geometry::GUARD_PIXELS * 16;
+
+/// A clockwise triangle that touches every region, so that brute force looks everywhere.
+fn screen(x: [i32; 3], y: [i32; 3], z: [u32; 3], colours: [[u16; 3]; 3]) -> Option<Piece> {
+    let regions = (0..20).map(|n| RegionMask::only(pxpl5_wire::RegionId(n)));
+    let mut outline = Outline { x, y, z, regions: regions.fold(RegionMask::EMPTY, RegionMask::union) };
+    let area = |o: &Outline| {
+        i64::from(o.x[1] - o.x[0]) * i64::from(o.y[2] - o.y[0])
+            - i64::from(o.y[1] - o.y[0]) * i64::from(o.x[2] - o.x[0])
+    };
+    if area(&outline) < 0 {
+        (outline.x, outline.y) = ([x[0], x[2], x[1]], [y[0], y[2], y[1]]);
+    }
+    let surface = LitColours(colours);
+    let screen = ScreenTriangle { outline, surface };
+    (area(&outline) != 0).then(|| Piece::new(screen, &mut SetupStats::default()))
+}
+
+/// Coordinates near the screen, in the whole guard band, and on pixel centres.
+fn coordinate(size: i32) -> impl Strategy<Value = i32> {
+    prop_oneof![
+        4 => -160..(size + 10) * 16,
+        1 => -GUARD..=GUARD,
+        2 => (-2..size + 2).prop_map(|p| p * 16 + 8),
+        1 => (0..6).prop_map(|p| p * 2048),
+    ]
+}
+
+fn corners() -> impl Strategy<Value = ([i32; 3], [i32; 3])> {
+    let triple = |size| [coordinate(size), coordinate(size), coordinate(size)];
+    let near = (triple(640), triple(480), 1..40_i32).prop_map(|(x, y, s)| {
+        // Small and thin triangles around the first corner.
+        let pull = |v: [i32; 3]| [v[0], v[0] + (v[1] - v[0]) / s, v[0] + (v[2] - v[0]) / s];
+        (pull(x), pull(y))
+    });
+    prop_oneof![(triple(640), triple(480)), near]
+}
+
+fn depths() -> impl Strategy<Value = [u32; 3]> {
+    let depth = || prop_oneof![Just(DEPTH_NEAR), Just(DEPTH_FAR), DEPTH_NEAR..=DEPTH_FAR];
+    [depth(), depth(), depth()]
+}
+
+fn colours() -> impl Strategy<Value = [[u16; 3]; 3]> {
+    let part = || prop_oneof![Just(0_u16), Just(255 * 256), 0..=255_u16 * 256];
+    let corner = || [part(), part(), part()];
+    [corner(), corner(), corner()]
+}
+
+/// The tie rule and the edge in 1/256 square px, as their definitions say, in 128 bits.
+fn inside(outline: &Outline, x: i32, y: i32) -> bool {
+    let centre = [16 * i128::from(x) + 8, 16 * i128::from(y) + 8];
+    let corner = |i: usize| [i128::from(outline.x[i % 3]), i128::from(outline.y[i % 3])];
+    (0..3).all(|i| {
+        let (from, to) = (corner(i), corner(i + 1));
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let area = dx * (centre[1] - from[1]) - dy * (centre[0] - from[0]);
+        area > 0 || (area == 0 && (dy < 0 || (dy == 0 && dx > 0)))
+    })
+}
+
+fn value(e: &Linear, x: i32, y: i32) -> i128 {
+    i128::from(e.a) * i128::from(x) + i128::from(e.b) * i128::from(y) + i128::from(e.c)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn a_pixel_is_inside_exactly_where_all_edges_are_not_negative((x, y) in corners()) {
+        let Some(piece) = screen(x, y, [DEPTH_NEAR; 3], [[0; 3]; 3]) else { return Ok(()) };
+        for py in (0..480).step_by(7) {
+            for px in (0..640).step_by(5) {
+                prop_assert_eq!(piece.inside_edges(px, py), inside(&piece.screen.outline, px, py));
+            }
+        }
+    }
+
+    #[test]
+    fn edges_never_leave_32_bits_within_the_largest_picture((x, y) in corners()) {
+        let Some(piece) = screen(x, y, [DEPTH_NEAR; 3], [[0; 3]; 3]) else { return Ok(()) };
+        for e in piece.planes.edges {
+            for (px, py) in [(0, 0), (2047, 0), (0, 2047), (2047, 2047)] {
+                let exact = value(&e, px, py);
+                prop_assert_eq!(exact, i128::from(e.at(px, py)));
+                prop_assert!(exact.abs() <= (1 << 30) + 1);
+            }
+        }
+    }
+
+    #[test]
+    fn depth_is_within_its_stated_error_and_never_wraps(
+        (x, y) in corners(), z in depths(),
+    ) {
+        let Some(piece) = screen(x, y, z, [[0; 3]; 3]) else { return Ok(()) };
+        let mut stats = SetupStats::default();
+        let _ = piece.screen.gouraud(&Viewport::FRAME, &mut stats);
+        let mut failure = None;
+        piece.pixels(|px, py| {
+            let (sum, area) = piece.exact_plane(piece.depth_corners(), px, py);
+            let found = i128::from(piece.planes.z.at(px, py) as u32);
+            // Half the picture's width plus height, rounding of slopes and constant.
+            let allowed = if stats.flattened_planes > 0 { 1_i128 << 32 } else { 280 + 2 };
+            if (found * area - sum).abs() > allowed * area {
+                failure = Some((px, py, found, sum / area));
+            }
+        });
+        prop_assert_eq!(failure, None);
+    }
+
+    #[test]
+    fn colours_are_rounded_to_the_nearest_and_never_wrap(
+        (x, y) in corners(), colours in colours(),
+    ) {
+        let Some(piece) = screen(x, y, [DEPTH_NEAR; 3], colours) else { return Ok(()) };
+        let mut stats = SetupStats::default();
+        let _ = piece.screen.gouraud(&Viewport::FRAME, &mut stats);
+        let mut failure = None;
+        piece.pixels(|px, py| {
+            for i in 0..3 {
+                let (sum, area) = piece.exact_plane(piece.colour_corners(i), px, py);
+                let found = i128::from(piece.colour(i, px, py)) * 256;
+                // Half a unit, and 282/4096 of a unit for the plane.
+                let allowed = if stats.flattened_planes > 0 { 256 * 256 } else { 128 + 18 };
+                if (found * area - sum).abs() > allowed * area {
+                    failure = Some((px, py, i, found, sum / area));
+                }
+            }
+        });
+        prop_assert_eq!(failure, None);
+    }
+
+    #[test]
+    fn normals_are_within_one_unit(
+        (x, y) in corners(),
+        normals in prop::array::uniform3(prop::array::uniform3(-NORMAL_UNIT..=NORMAL_UNIT)),
+    ) {
+        let Some(piece) = screen(x, y, [DEPTH_NEAR; 3], [[0; 3]; 3]) else { return Ok(()) };
+        let surface = SurfaceNormals { normals, colour: [9, 8, 7] };
+        let screen = ScreenTriangle { outline: piece.screen.outline, surface };
+        let mut stats = SetupStats::default();
+        let planes = screen.phong(&Viewport::FRAME, &mut stats);
+        prop_assume!(stats.flattened_planes == 0);
+        let mut failure = None;
+        piece.pixels(|px, py| {
+            for (i, plane) in planes.normal.iter().enumerate() {
+                let corners = normals.map(|n| i128::from(n[i]));
+                let (sum, area) = piece.exact_plane(corners, px, py);
+                let found = i128::from(plane.at(px, py) >> format::NORMAL_FRACTION_BITS);
+                // One unit of a normal is 16 of the corners' units.
+                if (found * 16 * area - sum).abs() > 16 * area {
+                    failure = Some((px, py, i, found, sum / area));
+                }
+            }
+        });
+        prop_assert_eq!(failure, None);
+        prop_assert_eq!(planes.colour, [9, 8, 7]);
+        prop_assert_eq!(planes.edges, piece.planes.edges);
+        prop_assert_eq!(planes.z, piece.planes.z);
+    }
+
+    #[test]
+    fn rows_of_a_field_have_the_values_of_their_frame_lines(
+        (x, y) in corners(), z in depths(), colours in colours(),
+    ) {
+        let Some(piece) = screen(x, y, z, colours) else { return Ok(()) };
+        for parity in [FieldParity::Even, FieldParity::Odd] {
+            let viewport = Viewport::field(parity);
+            let field = piece.screen.gouraud(&viewport, &mut SetupStats::default());
+            let all = |g: &pxpl5_geometry::GouraudTriangle| {
+                let [e0, e1, e2] = g.edges;
+                let [r, g, b] = [g.rgb[0], g.rgb[1], g.rgb[2]];
+                [e0, e1, e2, r, g, b]
+            };
+            for (px, row) in [(0, 0), (639, 0), (17, 101), (0, 239), (639, 239)] {
+                let line = 2 * row + parity.first_line() as i32;
+                for (f, w) in all(&field).iter().zip(all(&piece.planes)) {
+                    prop_assert_eq!(f.at(px, row), w.at(px, line));
+                }
+                prop_assert_eq!(field.z.at(px, row), piece.planes.z.at(px, line));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_plane_too_steep_for_64_bits_is_flat_and_counted() {
+    // Twice the area is 1/256 square px, the depth range is whole: 2^32 * 2^12 and more per pixel.
+    let piece = screen([0, 8000, 7999], [8, 5008, 5007], [DEPTH_NEAR, DEPTH_NEAR, DEPTH_FAR], [[0; 3]; 3])
+        .expect("it has an area");
+    let mut stats = SetupStats::default();
+    let planes = piece.screen.gouraud(&Viewport::FRAME, &mut stats);
+    let mean = (2 * u64::from(DEPTH_NEAR) + u64::from(DEPTH_FAR)) as f64 / 3.0;
+    assert_eq!((planes.z.a, planes.z.b), (0, 0));
+    assert!((f64::from(planes.z.c as u32) - mean).abs() <= 0.5);
+    assert_eq!(stats.flattened_planes, 1);
+}
+
+#[test]
+fn a_wall_seen_edge_on_keeps_its_depth_though_its_slope_needs_more_than_32_bits() {
+    // One pixel wide, from near to far: a slope of 2^32 per pixel.
+    let piece =
+        screen([100 * 16, 101 * 16, 100 * 16], [0, 0, 480 * 16], [DEPTH_NEAR, DEPTH_FAR, DEPTH_NEAR], [[0; 3]; 3])
+            .expect("it has an area");
+    let slope = f64::from(DEPTH_FAR - DEPTH_NEAR);
+    assert!(slope > 2_147_483_648.0);
+    let mut seen = 0;
+    piece.pixels(|x, y| {
+        seen += 1;
+        let exact = f64::from(DEPTH_NEAR) + slope * (f64::from(x) + 0.5 - 100.0);
+        assert!((f64::from(piece.planes.z.at(x, y) as u32) - exact).abs() <= 282.0);
+    });
+    assert!(seen > 200);
+}

@@ -1,0 +1,272 @@
+//! Hard cases: families of triangles, each with its view.
+
+use super::random::Random;
+use super::{at_pixel, pixel_view};
+use glam::{Mat4, Quat, Vec3};
+use pxpl5_geometry::{Triangle, ViewTransform};
+
+/// Triangles under one view.
+#[derive(Clone, Debug)]
+pub struct Case {
+    pub name: &'static str,
+    pub view: ViewTransform,
+    pub triangles: Vec<Triangle>,
+    /// The triangles tile a part of the screen: no two may share a pixel, and none may be missing between them.
+    pub tiling: bool,
+}
+
+const NEAR: f32 = 1.0;
+const FAR: f32 = 16_384.0;
+
+/// Triangles with random colours.
+fn coloured(random: &mut Random, positions: [Vec3; 3]) -> Triangle {
+    Triangle { positions, normals: [Vec3::Z; 3], colours: [random.colour(), random.colour(), random.colour()] }
+}
+
+fn case(name: &'static str, triangles: Vec<Triangle>) -> Case {
+    Case { name, view: pixel_view(NEAR, FAR), triangles, tiling: false }
+}
+
+fn tiling(name: &'static str, triangles: Vec<Triangle>) -> Case {
+    Case { tiling: true, ..case(name, triangles) }
+}
+
+fn many(seed: u64, count: usize, make: impl Fn(&mut Random) -> [Vec3; 3]) -> Vec<Triangle> {
+    let mut random = Random(seed);
+    (0..count)
+        .map(|_| {
+            let positions = make(&mut random);
+            coloured(&mut random, positions)
+        })
+        .collect()
+}
+
+/// Somewhere on the screen, at one of a few distances.
+fn anywhere(random: &mut Random) -> Vec3 {
+    let (x, y) = (random.between(0.0, 640.0), random.between(0.0, 480.0));
+    at_pixel(x, y, random.between(0.5, 8.0))
+}
+
+/// Within `size` px of a place.
+fn around(random: &mut Random, [x, y]: [f32; 2], size: f32) -> Vec3 {
+    let (dx, dy) = (random.between(-size, size), random.between(-size, size));
+    at_pixel(x + dx, y + dy, random.between(1.0, 1.2))
+}
+
+fn ordinary() -> Case {
+    case(
+        "ordinary, some 100 px",
+        many(1, 200, |r| {
+            let place = [r.between(20.0, 620.0), r.between(20.0, 460.0)];
+            std::array::from_fn(|_| around(r, place, 14.0))
+        }),
+    )
+}
+
+fn large() -> Case {
+    case("ordinary, as large as the screen", many(2, 12, |r| std::array::from_fn(|_| anywhere(r))))
+}
+
+/// 300 px long and `width` px wide, in any direction.
+fn slivers(name: &'static str, width: f32) -> Case {
+    let make = move |r: &mut Random| {
+        let [dx, dy] = r.direction();
+        let (x, y) = (r.between(200.0, 440.0), r.between(160.0, 320.0));
+        [
+            at_pixel(x - 150.0 * dx, y - 150.0 * dy, 1.0),
+            at_pixel(x + 150.0 * dx, y + 150.0 * dy, 2.0),
+            at_pixel(x - dy * width, y + dx * width, 1.5),
+        ]
+    };
+    case(name, many(3, 100, make))
+}
+
+/// Triangles around one corner, as a closed fan.
+fn fan() -> Case {
+    let mut random = Random(4);
+    let hub = at_pixel(320.3, 240.7, 1.0);
+    let count = 48;
+    let rim: Vec<Vec3> = (0..count)
+        .map(|n| {
+            // A square's border, walked once, with a wavy depth.
+            let t = n as f32 * 4.0 / count as f32;
+            let (x, y) = match t as u32 {
+                0 => (t, 0.0),
+                1 => (1.0, t - 1.0),
+                2 => (3.0 - t, 1.0),
+                _ => (0.0, 4.0 - t),
+            };
+            at_pixel(90.1 + x * 460.0, 13.3 + y * 450.0, random.between(0.5, 4.0))
+        })
+        .collect();
+    let triangles = (0..count).map(|n| {
+        let (from, to) = (rim[n], rim[(n + 1) % count]);
+        coloured(&mut random, [hub, from, to])
+    });
+    tiling("fan of 48 around one corner", triangles.collect())
+}
+
+/// A jittered grid, of which neighbours share edges with opposite directions.
+fn grid(name: &'static str, step: f32, jitter: f32) -> Case {
+    let mut random = Random(5);
+    let (columns, rows) = (40_usize, 30_usize);
+    let vertices: Vec<Vec3> = (0..=rows * (columns + 1) + columns)
+        .map(|n| {
+            let (column, row) = (n % (columns + 1), n / (columns + 1));
+            let mut moved = |v: usize| 8.5 + v as f32 * step + random.between(-jitter, jitter);
+            let (x, y) = (moved(column), moved(row));
+            at_pixel(x, y, 1.0 + (n % 7) as f32 * 0.25)
+        })
+        .collect();
+    let mut triangles = Vec::new();
+    for row in 0..rows {
+        for column in 0..columns {
+            let at = |r: usize, c: usize| vertices[(row + r) * (columns + 1) + column + c];
+            let corners = [at(0, 0), at(0, 1), at(1, 0), at(1, 1)];
+            for [a, b, c] in [[0, 1, 2], [3, 2, 1]] {
+                triangles.push(coloured(&mut random, [corners[a], corners[b], corners[c]]));
+            }
+        }
+    }
+    tiling(name, triangles)
+}
+
+fn region_borders() -> Case {
+    let make = |r: &mut Random| {
+        std::array::from_fn(|_| {
+            let (x, y) = (r.integer(0, 5) * 128, r.integer(0, 3) * 128);
+            at_pixel(x as f32, y as f32, 1.0)
+        })
+    };
+    case("corners on region borders", many(6, 60, make))
+}
+
+fn pixel_centres() -> Case {
+    let make = |r: &mut Random| {
+        let (x, y) = (r.integer(20, 600), r.integer(20, 440));
+        std::array::from_fn(|_| {
+            let (dx, dy) = (r.integer(0, 12), r.integer(0, 12));
+            at_pixel((x + dx) as f32 + 0.5, (y + dy) as f32 + 0.5, 1.0)
+        })
+    };
+    case("corners on pixel centres", many(7, 200, make))
+}
+
+fn across_near() -> Case {
+    let make = |r: &mut Random| {
+        let behind = Vec3::new(r.between(-2.0, 2.0), r.between(-2.0, 2.0), r.between(-0.9, 3.0));
+        [anywhere(r), anywhere(r), behind]
+    };
+    case("across the near plane and the eye", many(8, 40, make))
+}
+
+fn across_everything() -> Case {
+    let make = |r: &mut Random| {
+        std::array::from_fn(|_| {
+            let mut far = || r.between(-1.0, 1.0) * 1e6;
+            Vec3::new(far(), far(), far())
+        })
+    };
+    case("across eye and screen by 10^6", many(9, 100, make))
+}
+
+fn off_screen() -> Case {
+    let make = |r: &mut Random| {
+        let mut far = |centre: f32| centre + r.between(-1.0, 1.0) * 1e6;
+        let (x, y) = (far(320.0), far(240.0));
+        let (u, v) = (far(320.0), far(240.0));
+        [at_pixel(x, y, 1.0), at_pixel(u, v, 1.0), anywhere(r)]
+    };
+    case("10^6 px beyond the screen", many(10, 100, make))
+}
+
+fn depth_range() -> Case {
+    let make = |r: &mut Random| {
+        let place = [r.between(50.0, 590.0), r.between(50.0, 430.0)];
+        std::array::from_fn(|_| {
+            let power = r.integer(-19, 9);
+            let (dx, dy) = (r.between(-40.0, 40.0), r.between(-40.0, 40.0));
+            at_pixel(place[0] + dx, place[1] + dy, f32::from_bits(((power + 127) as u32) << 23))
+        })
+    };
+    Case { view: pixel_view(1e-3, 1e6), ..case("depth from 10^-3 to 10^6", many(11, 60, make)) }
+}
+
+/// A view like a user's, with a rotation, of a model of a given size somewhere.
+fn placed(name: &'static str, seed: u64, size: f32, place: Vec3) -> Case {
+    let random = &mut Random(seed);
+    let triangles = (0..100)
+        .map(|_| {
+            let mut part = |spread: f32| random.between(-spread, spread);
+            let centre = Vec3::new(part(1.0), part(0.8), part(0.5));
+            let corners = std::array::from_fn(|_| {
+                let offset = Vec3::new(part(0.06), part(0.06), part(0.06));
+                place + (centre + offset) * size
+            });
+            coloured(random, corners)
+        })
+        .collect();
+    let turn = Quat::from_xyzw(0.1, 0.2, 0.05, 0.973).normalize();
+    let back = Mat4::from_translation(Vec3::new(0.0, 0.0, -3.0 * size));
+    Case {
+        view: ViewTransform {
+            model_view: back * Mat4::from_quat(turn) * Mat4::from_translation(-place),
+            projection: Mat4::perspective_rh(0.8, 4.0 / 3.0, 0.1 * size, 100.0 * size),
+        },
+        ..case(name, triangles)
+    }
+}
+
+fn degenerate() -> Case {
+    let make = |r: &mut Random| {
+        let (a, b) = (anywhere(r), anywhere(r));
+        match r.integer(0, 3) {
+            0 => [a, a, b],
+            1 => [a, b, (a + b) * 0.5],
+            2 => [a, a, a],
+            _ => [a, a * 2.0, b],
+        }
+    };
+    case("degenerate and zero area", many(12, 60, make))
+}
+
+/// A wall that runs away from the eye and is seen almost edge-on.
+fn edge_on() -> Case {
+    let make = |r: &mut Random| {
+        let (x, y) = (r.between(100.0, 540.0), r.between(10.0, 200.0));
+        [
+            at_pixel(x, y, 1.0 / 512.0),
+            at_pixel(x + r.between(0.0, 2.0), y + 20.0, 16.0),
+            at_pixel(x, y + 250.0, 1.0 / 512.0),
+        ]
+    };
+    case("walls seen edge-on, near to far", many(13, 60, make))
+}
+
+/// All families.
+pub fn all() -> Vec<Case> {
+    vec![
+        ordinary(),
+        large(),
+        slivers("slivers, 1 px wide", 1.0),
+        slivers("slivers, 1/10 px", 0.1),
+        slivers("slivers, 1/100 px", 0.01),
+        slivers("slivers, 1/1000 px", 0.001),
+        fan(),
+        grid("grid, cells of 15 px", 15.0, 5.0),
+        grid("grid, cells of 1 px", 1.0, 0.3),
+        pixel_centres(),
+        region_borders(),
+        across_near(),
+        across_everything(),
+        off_screen(),
+        edge_on(),
+        depth_range(),
+        placed("model of 10^6 units", 14, 1e6, Vec3::ZERO),
+        placed("model of 10^-6 units", 14, 1e-6, Vec3::ZERO),
+        placed("10^3 from the origin", 14, 1.0, Vec3::new(1e3, -1e3, 1e3)),
+        placed("10^5 from the origin", 14, 1.0, Vec3::new(1e5, -1e5, 1e5)),
+        placed("10^6 from the origin", 14, 1.0, Vec3::new(1e6, -1e6, 1e6)),
+        degenerate(),
+    ]
+}

@@ -1,0 +1,201 @@
+//! What the pipeline makes of a case, against the oracle.
+
+use super::cases::Case;
+use super::exact::ExactTriangle;
+use super::native::Piece;
+use super::snapped::Snapped;
+use super::{HEIGHT, WIDTH};
+use pxpl5_geometry::{Culling, DEPTH_FAR, DEPTH_NEAR, Light, SetupStats, Transform, Viewport};
+
+/// Finer and coarser grids that the formats are tried with.
+pub const SUBPIXEL_BITS: [u32; 6] = [0, 2, 4, 6, 8, 12];
+
+/// Measurements of one case.
+#[derive(Clone, Debug, Default)]
+pub struct Row {
+    pub triangles: usize,
+    /// Pixels that the exact geometry covers, each triangle by itself.
+    pub exact: u64,
+    /// Pixels covered by only one of both.
+    pub wrong: u64,
+    /// Worst depth error in units of pixel depth: all together, and of the plane alone.
+    pub depth: f64,
+    pub depth_plane: f64,
+    /// Worst colour error in colour units, the same two.
+    pub colour: f64,
+    pub colour_plane: f64,
+    /// For tilings: pixels inside the exact tiling that nothing covers, and pixels covered twice.
+    pub holes: Option<u64>,
+    pub overlaps: Option<u64>,
+    /// Wrong pixels of exact vertices on a grid of [`SUBPIXEL_BITS`], and the exact pixels of those triangles.
+    pub grids: [u64; SUBPIXEL_BITS.len()],
+    pub grid_exact: u64,
+    /// Bits, with sign, of the greatest coefficients: edges a and b, edges c, depth slopes, colour slopes.
+    pub bits: [u32; 4],
+    pub stats: SetupStats,
+}
+
+impl Row {
+    /// Wrong pixels per million of those that are right or wrong.
+    pub fn per_million(wrong: u64, exact: u64) -> f64 {
+        if wrong == 0 { 0.0 } else { wrong as f64 * 1e6 / exact.max(wrong) as f64 }
+    }
+}
+
+/// One count a pixel of the frame.
+struct Counts(Vec<u8>);
+
+impl Counts {
+    fn new() -> Self {
+        Self(vec![0; (WIDTH * HEIGHT) as usize])
+    }
+
+    fn add(&mut self, x: i32, y: i32) {
+        let cell = &mut self.0[(y * WIDTH + x) as usize];
+        *cell = cell.saturating_add(1);
+    }
+
+    fn get(&self, x: i32, y: i32) -> u8 {
+        self.0[(y * WIDTH + x) as usize]
+    }
+}
+
+fn pixels() -> impl Iterator<Item = (i32, i32)> {
+    (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y)))
+}
+
+/// Measures a case.
+pub fn measure(case: &Case) -> Row {
+    let transform = Transform::new(&case.view, Viewport::FRAME, Culling::None).expect("finite views");
+    let mut row = Row { triangles: case.triangles.len(), ..Row::default() };
+    let (mut drawn, mut wanted) = (Counts::new(), Counts::new());
+    for triangle in &case.triangles {
+        let mut pieces = Vec::new();
+        transform.gouraud(triangle, &Light::NONE, &mut row.stats, |t| pieces.push(t));
+        let pieces: Vec<Piece> = pieces.into_iter().map(|t| Piece::new(t, &mut row.stats)).collect();
+        let exact = ExactTriangle::new(&case.view, triangle);
+        row.compare(&pieces, exact.as_ref(), &mut drawn, &mut wanted);
+    }
+    if case.tiling {
+        row.tiling(&drawn, &wanted);
+    }
+    row
+}
+
+impl Row {
+    fn compare(&mut self, pieces: &[Piece], exact: Option<&ExactTriangle>, drawn: &mut Counts, wanted: &mut Counts) {
+        let mut own = Counts::new();
+        for piece in pieces {
+            self.bits(piece);
+            piece.pixels(|x, y| {
+                own.add(x, y);
+                drawn.add(x, y);
+                if (x * 7 + y * 13) % 5 == 0 {
+                    self.plane_errors(piece, x, y);
+                    self.errors(piece, exact, x, y);
+                }
+            });
+        }
+        let spans: Vec<[i32; 2]> = (0..HEIGHT).map(|y| exact.map_or([0, -1], |e| e.span(y))).collect();
+        for (x, y) in pixels() {
+            let [first, last] = spans[y as usize];
+            let inside = (first..=last).contains(&x);
+            if inside {
+                self.exact += 1;
+                wanted.add(x, y);
+            }
+            // A pixel drawn twice by pieces of one triangle is wrong too.
+            if own.get(x, y) != u8::from(inside) {
+                self.wrong += 1;
+            }
+        }
+        if let Some(exact) = exact {
+            self.grids(exact, &spans);
+        }
+    }
+
+    /// The planes against exact planes through the same snapped corners.
+    fn plane_errors(&mut self, piece: &Piece, x: i32, y: i32) {
+        let off = |found: f64, corners: [i128; 3], unit: f64| {
+            let (sum, area) = piece.exact_plane(corners, x, y);
+            (found - sum as f64 / area as f64 / unit).abs()
+        };
+        let depth = off(f64::from(piece.depth(x, y)) + 0.5, piece.depth_corners(), 256.0);
+        self.depth_plane = self.depth_plane.max(depth);
+        for i in 0..3 {
+            let colour = off(f64::from(piece.colour(i, x, y)), piece.colour_corners(i), 256.0);
+            self.colour_plane = self.colour_plane.max(colour);
+        }
+    }
+
+    /// The pixel against exact geometry, where that covers the pixel too.
+    fn errors(&mut self, piece: &Piece, exact: Option<&ExactTriangle>, x: i32, y: i32) {
+        let Some(exact) = exact else { return };
+        let [first, last] = exact.span(y);
+        if !(first..=last).contains(&x) {
+            return;
+        }
+        let range = f64::from(DEPTH_FAR - DEPTH_NEAR);
+        let depth = (f64::from(DEPTH_NEAR) + exact.depth(x, y) * range) / 256.0;
+        self.depth = self.depth.max((f64::from(piece.depth(x, y)) + 0.5 - depth).abs());
+        if exact.whole {
+            for i in 0..3 {
+                let off = (f64::from(piece.colour(i, x, y)) - exact.colour(i, x, y)).abs();
+                self.colour = self.colour.max(off);
+            }
+        }
+    }
+
+    fn grids(&mut self, exact: &ExactTriangle, spans: &[[i32; 2]]) {
+        for (i, bits) in SUBPIXEL_BITS.into_iter().enumerate() {
+            let Some(snapped) = Snapped::new(exact, bits) else { return };
+            let inside = |x: i32, y: i32| {
+                let [first, last] = spans[y as usize];
+                (first..=last).contains(&x)
+            };
+            let ([left, right], [top, bottom]) = (snapped.columns(), snapped.rows());
+            for y in top..=bottom {
+                let [first, last] = spans[y as usize];
+                let range = if first > last { left..=right } else { left.min(first)..=right.max(last) };
+                self.grids[i] += range.filter(|&x| snapped.covers([x, y]) != inside(x, y)).count() as u64;
+            }
+        }
+        let covered = |[first, last]: &[i32; 2]| (last - first + 1).max(0) as u64;
+        self.grid_exact += spans.iter().map(covered).sum::<u64>();
+    }
+
+    fn bits(&mut self, piece: &Piece) {
+        let edges = piece.screen.edges(&Viewport::FRAME);
+        let signed = |v: i128| 129 - v.unsigned_abs().leading_zeros();
+        let mut keep = |i: usize, v: i128| self.bits[i] = self.bits[i].max(signed(v));
+        for e in edges {
+            keep(0, e.a.into());
+            keep(0, e.b.into());
+            keep(1, e.c.into());
+        }
+        let mut slopes = |i: usize, corners: [i128; 3]| {
+            let value = |x, y| {
+                let (sum, area) = piece.exact_plane(corners, x, y);
+                (sum, area.max(1))
+            };
+            let (origin, area) = value(0, 0);
+            keep(i, (value(1, 0).0 - origin) / area);
+            keep(i, (value(0, 1).0 - origin) / area);
+        };
+        slopes(2, piece.depth_corners());
+        for component in 0..3 {
+            // Corners have 8 fraction bits, the expression 12.
+            slopes(3, piece.colour_corners(component).map(|c| c * 16));
+        }
+    }
+
+    fn tiling(&mut self, drawn: &Counts, wanted: &Counts) {
+        let interior = |x: i32, y: i32| {
+            let near = |v: i32, size: i32| (v - 1).max(0)..=(v + 1).min(size - 1);
+            near(y, HEIGHT).all(|y| near(x, WIDTH).all(|x| wanted.get(x, y) > 0))
+        };
+        let holes = pixels().filter(|&(x, y)| drawn.get(x, y) == 0 && interior(x, y)).count();
+        let overlaps = pixels().filter(|&(x, y)| drawn.get(x, y) > 1).count();
+        (self.holes, self.overlaps) = (Some(holes as u64), Some(overlaps as u64));
+    }
+}

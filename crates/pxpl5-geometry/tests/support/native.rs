@@ -1,0 +1,83 @@
+//! Evaluates the pipeline's expressions at pixels, as the renderer's formats define.
+
+use super::{HEIGHT, WIDTH};
+use pxpl5_geometry::{GouraudTriangle, LitColours, RegionMask, ScreenTriangle, SetupStats, Viewport};
+use pxpl5_wire::{RegionGrid, RegionId, format};
+
+/// Number of the region of a frame's pixel.
+pub fn region_of(x: i32, y: i32) -> RegionId {
+    let grid = RegionGrid::FRAME;
+    let column = x as u32 / grid.region_width;
+    let row = y as u32 / grid.region_height;
+    RegionId((row * grid.columns() + column) as u16)
+}
+
+/// A screen triangle with its expressions on the whole frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece {
+    pub screen: ScreenTriangle<LitColours>,
+    pub planes: GouraudTriangle,
+}
+
+impl Piece {
+    pub fn new(screen: ScreenTriangle<LitColours>, stats: &mut SetupStats) -> Self {
+        let planes = screen.gouraud(&Viewport::FRAME, stats);
+        Self { screen, planes }
+    }
+
+    pub fn regions(&self) -> RegionMask {
+        self.screen.outline.regions
+    }
+
+    pub fn inside_edges(&self, x: i32, y: i32) -> bool {
+        self.planes.edges.iter().all(|e| e.at(x, y) >= 0)
+    }
+
+    /// Calls `draw` for each covered pixel of a touched region, by brute force over the bounding box.
+    pub fn pixels(&self, mut draw: impl FnMut(i32, i32)) {
+        let outline = &self.screen.outline;
+        let range = |v: &[i32; 3], size: i32| {
+            let first = v.iter().min().map_or(0, |v| v >> 4);
+            let last = v.iter().max().map_or(0, |v| (v >> 4) + 1);
+            first.max(0)..last.min(size)
+        };
+        for y in range(&outline.y, HEIGHT) {
+            for x in range(&outline.x, WIDTH) {
+                if self.inside_edges(x, y) && self.regions().contains(region_of(x, y)) {
+                    draw(x, y);
+                }
+            }
+        }
+    }
+
+    /// The depth that the renderer stores.
+    pub fn depth(&self, x: i32, y: i32) -> u32 {
+        self.planes.z.at(x, y) as u32 >> format::Z_FRACTION_BITS
+    }
+
+    /// The colour component that the renderer stores.
+    pub fn colour(&self, component: usize, x: i32, y: i32) -> u8 {
+        (self.planes.rgb[component].at(x, y) >> format::COLOUR_FRACTION_BITS) as u8
+    }
+
+    /// The value at a pixel of the plane through three values at the snapped corners, exactly.
+    pub fn exact_plane(&self, corners: [i128; 3], x: i32, y: i32) -> (i128, i128) {
+        let outline = &self.screen.outline;
+        let point = |i: usize| [i128::from(outline.x[i]), i128::from(outline.y[i])];
+        let pixel = [16 * i128::from(x) + 8, 16 * i128::from(y) + 8];
+        let area =
+            |a: [i128; 2], b: [i128; 2], c: [i128; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        let [p, q, r] = [point(0), point(1), point(2)];
+        let weights = [area(q, r, pixel), area(r, p, pixel), area(p, q, pixel)];
+        let sum = weights.iter().zip(corners).map(|(w, v)| w * v).sum();
+        (sum, area(p, q, r))
+    }
+
+    pub fn depth_corners(&self) -> [i128; 3] {
+        self.screen.outline.z.map(i128::from)
+    }
+
+    pub fn colour_corners(&self, component: usize) -> [i128; 3] {
+        self.screen.surface.0.map(|c| i128::from(c[component]))
+    }
+}

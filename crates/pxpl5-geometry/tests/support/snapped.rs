@@ -1,0 +1,67 @@
+//! The formats alone: exact vertices, snapped to a given number of subpixel bits, then exact integers.
+
+use super::exact::ExactTriangle;
+use super::{HEIGHT, WIDTH};
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_traits::ToPrimitive;
+
+/// Corners in subpixels of `2^-bits` px.
+#[derive(Clone, Copy, Debug)]
+pub struct Snapped {
+    x: [i128; 3],
+    y: [i128; 3],
+    bits: u32,
+}
+
+impl Snapped {
+    /// `None` if a corner lies behind the near plane, or so far away that products would overflow.
+    pub fn new(triangle: &ExactTriangle, bits: u32) -> Option<Self> {
+        if !triangle.whole {
+            return None;
+        }
+        let place = |numerator: BigInt, w: &BigInt| -> Option<i128> {
+            // Nearest, ties up: floor(n / 2w + 1/2) on the finer grid.
+            let twice: BigInt = (numerator << bits) + w;
+            twice.div_floor(&(w * 2)).to_i128().filter(|v| v.abs() < 1 << 50)
+        };
+        let mut corners = Self { x: [0; 3], y: [0; 3], bits };
+        for (i, [x, y, _, w]) in triangle.corners.iter().enumerate() {
+            corners.x[i] = place((w + x) * WIDTH, w)?;
+            corners.y[i] = place((w - y) * HEIGHT, w)?;
+        }
+        Some(corners)
+    }
+
+    /// The area of (from, to, pixel centre), made positive inside, less 1 where ties are outside.
+    fn edge(&self, from: usize, to: usize, turn: i128, [x, y]: [i32; 2]) -> i128 {
+        let (dx, dy) = ((self.x[to] - self.x[from]) * turn, (self.y[to] - self.y[from]) * turn);
+        let centre = |pixel: i32| (2 * i128::from(pixel) + 1) << self.bits >> 1;
+        let top_left = dy < 0 || (dy == 0 && dx > 0);
+        let to_pixel = [centre(x) - self.x[from], centre(y) - self.y[from]];
+        dx * to_pixel[1] - dy * to_pixel[0] - i128::from(!top_left)
+    }
+
+    fn turn(&self) -> i128 {
+        let (x, y) = (&self.x, &self.y);
+        ((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0])).signum()
+    }
+
+    pub fn covers(&self, pixel: [i32; 2]) -> bool {
+        let turn = self.turn();
+        let edges = [(0, 1), (1, 2), (2, 0)];
+        turn != 0 && edges.iter().all(|&(from, to)| self.edge(from, to, turn, pixel) >= 0)
+    }
+
+    /// First and last row that can be covered.
+    pub fn rows(&self) -> [i32; 2] {
+        let row = |v: i128| (v >> self.bits).clamp(0, i128::from(HEIGHT - 1)) as i32;
+        [row(*self.y.iter().min().unwrap_or(&0) - (1 << self.bits)), row(*self.y.iter().max().unwrap_or(&0))]
+    }
+
+    /// First and last column that can be covered.
+    pub fn columns(&self) -> [i32; 2] {
+        let column = |v: i128| (v >> self.bits).clamp(0, i128::from(WIDTH - 1)) as i32;
+        [column(*self.x.iter().min().unwrap_or(&0) - (1 << self.bits)), column(*self.x.iter().max().unwrap_or(&0))]
+    }
+}

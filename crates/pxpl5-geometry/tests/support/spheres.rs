@@ -1,0 +1,219 @@
+//! Spheres against exact integers.
+
+use super::exact::fixed;
+use super::native::region_of;
+use super::random::Random;
+use super::{HEIGHT, WIDTH, at_pixel, pixel_view};
+use glam::Vec3;
+use num_bigint::BigInt;
+use num_traits::{Signed, ToPrimitive};
+use pxpl5_geometry::{
+    Culling, DEPTH_FAR, DEPTH_NEAR, ScreenSphere, SetupStats, Sphere, SphereSetup, Transform, Viewport,
+};
+use pxpl5_wire::format;
+
+const NEAR: f32 = 1.0;
+const FAR: f32 = 16_384.0;
+
+/// Spheres of one family.
+pub struct SphereCase {
+    pub name: &'static str,
+    pub spheres: Vec<Sphere>,
+}
+
+/// Measurements of one family.
+#[derive(Clone, Debug, Default)]
+pub struct SphereRow {
+    pub spheres: usize,
+    pub exact: u64,
+    pub wrong: u64,
+    /// Worst depth error in units of pixel depth.
+    pub depth: f64,
+    /// The same as a part of how far the sphere's middle stands before its silhouette.
+    pub depth_of_bulge: f64,
+    /// Bits of the silhouette's greatest value in the touched regions, with sign.
+    pub bits: u32,
+    pub stats: SetupStats,
+}
+
+/// The view of all cases.
+pub fn transform() -> Transform {
+    Transform::new(&pixel_view(NEAR, FAR), Viewport::FRAME, Culling::None).expect("a finite view")
+}
+
+/// The quadratic `r^2 d.d - |d x c|^2` on an integer scale: coefficients of x^2, xy, y^2, x, y, 1.
+pub struct ExactSphere {
+    coefficients: [BigInt; 6],
+    centre: [f64; 3],
+    radius: f64,
+}
+
+impl ExactSphere {
+    pub fn new(sphere: &Sphere) -> Self {
+        let c = sphere.centre.to_array().map(fixed);
+        let r = fixed(sphere.radius);
+        // d = (6x - 1917, 1916 - 8y, -1920): the ray of the pixel's centre, times 1920.
+        let at = |x: i32, y: i32| {
+            let d = [6 * x - 1917, 1916 - 8 * y, -1920].map(BigInt::from);
+            let cross = |i: usize, j: usize| &d[i] * &c[j] - &d[j] * &c[i];
+            let (p, q, s) = (cross(1, 2), cross(2, 0), cross(0, 1));
+            let dd: BigInt = d.iter().map(|v| v * v).sum();
+            &r * &r * dd - (&p * &p + &q * &q + &s * &s)
+        };
+        // From six values by differences; twice the squares' coefficients are even.
+        let one = at(0, 0);
+        let (e, f) = (at(1, 0) - &one, at(0, 1) - &one);
+        let xx: BigInt = (at(2, 0) - &one - &e * 2) / 2;
+        let yy: BigInt = (at(0, 2) - &one - &f * 2) / 2;
+        let xy: BigInt = at(1, 1) - &one - &e - &f;
+        let (x, y) = (e - &xx, f - &yy);
+        Self {
+            coefficients: [xx, xy, yy, x, y, one],
+            centre: sphere.centre.to_array().map(f64::from),
+            radius: f64::from(sphere.radius),
+        }
+    }
+
+    pub fn value(&self, x: i32, y: i32) -> BigInt {
+        let [xx, xy, yy, dx, dy, one] = &self.coefficients;
+        (xx * x + xy * y + dx) * x + (yy * y + dy) * y + one
+    }
+
+    pub fn covers(&self, x: i32, y: i32) -> bool {
+        !self.value(x, y).is_negative()
+    }
+
+    /// Depth in units of pixel depth, where the pixel is covered.
+    pub fn depth(&self, x: i32, y: i32) -> f64 {
+        let d = [6 * x - 1917, 1916 - 8 * y, -1920].map(|v| f64::from(v) / 1920.0);
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let q = self.value(x, y).to_f64().unwrap_or(f64::MAX) / (1920.0 * 1920.0) * 2_f64.powi(-298);
+        let inverse = (dot(d, self.centre) + q.sqrt()) / (dot(self.centre, self.centre) - self.radius * self.radius);
+        pixel_depth(inverse)
+    }
+}
+
+/// Pixel depth at inverse distance `u`.
+fn pixel_depth(u: f64) -> f64 {
+    let projection = pixel_view(NEAR, FAR).projection.to_cols_array_2d();
+    let depth = -f64::from(projection[2][2]) + f64::from(projection[3][2]) * u;
+    (f64::from(DEPTH_NEAR) + depth * f64::from(DEPTH_FAR - DEPTH_NEAR)) / 256.0
+}
+
+/// Whether the renderer draws a pixel, and its depth there.
+pub fn native(setup: &SphereSetup, x: i32, y: i32) -> Option<u32> {
+    let value = setup.silhouette.at(x, y);
+    (value >= 0).then(|| {
+        let radicand = (value >> setup.root_shift) as u64 & 0xff_ffff;
+        let depth = setup.depth.at(x, y).wrapping_sub((radicand.isqrt() as i32) << setup.depth_shift);
+        depth as u32 >> format::Z_FRACTION_BITS
+    })
+}
+
+fn family(name: &'static str, seed: u64, pixels: f32, count: usize, on_centre: bool) -> SphereCase {
+    let mut random = Random(seed);
+    let spheres = (0..count).map(|_| {
+        let (mut x, mut y) = (random.between(20.0, 620.0), random.between(20.0, 460.0));
+        if on_centre {
+            (x, y) = (x.trunc() + 0.5, y.trunc() + 0.5);
+        }
+        let scale = 2.0;
+        let centre = at_pixel(x, y, scale);
+        // A pixel at this distance is 3 * scale wide.
+        Sphere { centre, radius: pixels * 3.0 * scale, colour: random.colour() }
+    });
+    SphereCase { name, spheres: spheres.collect() }
+}
+
+fn beside_the_eye() -> SphereCase {
+    let mut random = Random(30);
+    let spheres = (0..12).map(|_| {
+        let centre = Vec3::new(random.between(-20.0, 20.0), random.between(-20.0, 20.0), random.between(-40.0, -4.0));
+        let radius = (-centre.z - 1.1) * random.between(0.3, 0.999);
+        Sphere { centre, radius, colour: [255; 3] }
+    });
+    SphereCase { name: "beside the eye, long ellipses", spheres: spheres.collect() }
+}
+
+fn not_drawn() -> SphereCase {
+    let sphere = |z: f32, radius: f32| Sphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [255; 3] };
+    SphereCase {
+        name: "behind the eye, around it, across near and far",
+        spheres: vec![
+            sphere(50.0, 10.0),
+            sphere(0.0, 10.0),
+            sphere(-5.0, 4.5),
+            sphere(-16_390.0, 100.0),
+            sphere(-20_000.0, 100.0),
+            sphere(f32::NAN, 1.0),
+            sphere(-5.0, -1.0),
+            sphere(-5.0, f32::INFINITY),
+        ],
+    }
+}
+
+/// All families.
+pub fn all() -> Vec<SphereCase> {
+    vec![
+        family("1/1000 px, on pixel centres", 20, 0.001, 100, true),
+        family("1/1000 px, anywhere", 21, 0.001, 100, false),
+        family("1/10 px, on pixel centres", 22, 0.1, 100, true),
+        family("1 px", 23, 1.0, 100, false),
+        family("10 px", 24, 10.0, 100, false),
+        family("100 px", 25, 100.0, 12, false),
+        family("319 px, larger than the screen is high", 26, 319.0, 6, false),
+        beside_the_eye(),
+        not_drawn(),
+    ]
+}
+
+/// Measures a family.
+pub fn measure(case: &SphereCase) -> SphereRow {
+    let transform = transform();
+    let mut row = SphereRow { spheres: case.spheres.len(), ..SphereRow::default() };
+    for sphere in &case.spheres {
+        if let Some(screen) = transform.sphere(sphere, &mut row.stats) {
+            row.compare(sphere, &screen);
+        }
+    }
+    row
+}
+
+impl SphereRow {
+    fn compare(&mut self, sphere: &Sphere, screen: &ScreenSphere) {
+        let setup = screen.phong(&Viewport::FRAME, &mut self.stats).setup;
+        let exact = ExactSphere::new(sphere);
+        let bulge = Self::bulge(sphere);
+        let small = sphere.radius < 300.0;
+        for y in 0..HEIGHT {
+            for x in 0..WIDTH {
+                let touched = screen.regions.contains(region_of(x, y));
+                // Away from the touched regions of small spheres there is nothing, which the exact quadratic of a
+                // few pixels shows; the tests look everywhere.
+                if !touched && small {
+                    continue;
+                }
+                let value = setup.silhouette.at(x, y);
+                if touched {
+                    self.bits = self.bits.max(65 - value.unsigned_abs().leading_zeros());
+                }
+                let wanted = exact.covers(x, y);
+                let found = native(&setup, x, y).filter(|_| touched);
+                self.exact += u64::from(wanted);
+                self.wrong += u64::from(wanted != found.is_some());
+                if let (true, Some(depth)) = (wanted, found) {
+                    let error = (f64::from(depth) + 0.5 - exact.depth(x, y)).abs();
+                    self.depth = self.depth.max(error);
+                    self.depth_of_bulge = self.depth_of_bulge.max((error - 1.0).max(0.0) / bulge);
+                }
+            }
+        }
+    }
+
+    /// From the front to the silhouette on the axis, in units of pixel depth.
+    fn bulge(sphere: &Sphere) -> f64 {
+        let t = f64::from(-sphere.centre.z);
+        let r = f64::from(sphere.radius);
+        pixel_depth(t / (t * t - r * r)) - pixel_depth(1.0 / (t - r))
+    }
+}

@@ -1,0 +1,132 @@
+//! Shared edges: no hole and no pixel twice, also where clipping cuts them.
+
+mod support;
+
+use glam::{Mat4, Vec3};
+use proptest::prelude::*;
+use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
+use support::native::Piece;
+use support::{HEIGHT, WIDTH, at_pixel, pixel_view};
+
+/// How often each pixel is drawn.
+fn draw(view: &ViewTransform, triangles: &[[Vec3; 3]]) -> (Vec<u8>, SetupStats) {
+    let transform = Transform::new(view, Viewport::FRAME, Culling::None).expect("a finite view");
+    let (mut counts, mut stats) = (vec![0_u8; (WIDTH * HEIGHT) as usize], SetupStats::default());
+    for positions in triangles {
+        let triangle = Triangle { positions: *positions, normals: [Vec3::Z; 3], colours: [[0; 3]; 3] };
+        let mut pieces = Vec::new();
+        transform.gouraud(&triangle, &Light::NONE, &mut stats, |t| pieces.push(t));
+        for piece in pieces {
+            Piece::new(piece, &mut stats).pixels(|x, y| counts[(y * WIDTH + x) as usize] += 1);
+        }
+    }
+    (counts, stats)
+}
+
+fn count(counts: &[u8], x: i32, y: i32) -> u8 {
+    counts[(y * WIDTH + x) as usize]
+}
+
+/// A fan of `rim` around `hub`, every second triangle turned over.
+fn fan(hub: Vec3, rim: &[Vec3]) -> Vec<[Vec3; 3]> {
+    let next = |n: usize| rim[(n + 1) % rim.len()];
+    let turned = |n: usize| {
+        if n.is_multiple_of(2) { [hub, rim[n], next(n)] } else { [next(n), rim[n], hub] }
+    };
+    (0..rim.len()).map(turned).collect()
+}
+
+fn on_screen() -> impl Strategy<Value = [i32; 2]> {
+    // Multiples of half a pixel, so that edges run through pixel centres often.
+    [40..1240, 40..920]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    #[test]
+    fn a_fan_around_any_corner_covers_the_screen_exactly_once(
+        hub in on_screen(), steps in prop::collection::vec(0..64_i32, 4..12),
+    ) {
+        let hub = at_pixel(hub[0] as f32 * 0.5, hub[1] as f32 * 0.5, 1.0);
+        // The rim walks around a frame 10 px outside of the screen.
+        let corners = [[-10, -10], [650, -10], [650, 490], [-10, 490]];
+        let mut rim = Vec::new();
+        for (side, from) in corners.iter().enumerate() {
+            let to = corners[(side + 1) % 4];
+            let mut places: Vec<i32> = steps.iter().skip(side).step_by(4).copied().collect();
+            places.push(0);
+            places.sort_unstable();
+            places.dedup();
+            for place in places {
+                let part = |i: usize| from[i] as f32 + (to[i] - from[i]) as f32 * place as f32 / 64.0;
+                rim.push(at_pixel(part(0), part(1), 1.0 + place as f32 / 32.0));
+            }
+        }
+        let (counts, stats) = draw(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
+        prop_assert!(counts.iter().all(|&n| n == 1), "{stats:?}");
+    }
+
+    #[test]
+    fn two_triangles_on_either_side_of_an_edge_that_is_clipped_share_it_without_a_gap(
+        a in prop::array::uniform3(-3.0..3.0_f32), b in prop::array::uniform3(-3.0..3.0_f32),
+        depth in -4.0..-1.5_f32, scale in prop_oneof![Just(1.0_f32), Just(1e3), Just(1e5)],
+    ) {
+        // A plane through the eye's neighbourhood, cut by lines through a hub: the whole plane once.
+        let view = ViewTransform {
+            model_view: Mat4::IDENTITY,
+            projection: Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.25, 1e6),
+        };
+        let [a, b] = [a, b].map(Vec3::from_array);
+        let hub = Vec3::new(0.1, -0.2, depth);
+        let spokes = [a, b, -a, -b].map(|v| hub + v * scale);
+        let (counts, stats) = draw(&view, &fan(hub, &spokes));
+        prop_assert!(counts.iter().all(|&n| n <= 1), "a pixel twice: {stats:?}");
+        // Holes: a pixel that is not covered between neighbours that are, away from the parallelogram's rim.
+        let inside = |x: i32, y: i32| count(&counts, x, y) == 1;
+        for y in 2..HEIGHT - 2 {
+            for x in 2..WIDTH - 2 {
+                let ring = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
+                let surrounded = ring.iter().all(|&(dx, dy)| inside(x + dx, y + dy));
+                prop_assert!(inside(x, y) || !surrounded, "hole at {x}, {y}: {stats:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_corner_on_a_pixel_centre_belongs_to_exactly_one_of_its_triangles() {
+    let hub = at_pixel(100.5, 100.5, 1.0);
+    let rim = [[90.5, 100.5], [100.5, 90.5], [110.5, 100.5], [100.5, 110.5]].map(|[x, y]| at_pixel(x, y, 1.0));
+    let (counts, _) = draw(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
+    assert_eq!(count(&counts, 100, 100), 1);
+    // The diamond |x| + |y| <= 10 of pixel centres, without its lower and right rim: 221 - 20 - 1 + ...
+    // Row by row: a row at height k from the middle has centres -w..=w with w = 10 - |k|; its left end is on a left
+    // edge and counts, its right end is on a right edge and does not. The bottom corner is on no left or top edge
+    // that contains it as an inner point: its row is empty; the top corner's row is empty too, since it is
+    // on a right edge.
+    let expected: u32 = (-9_i32..=9).map(|k| 2 * (10 - k.unsigned_abs())).sum();
+    assert_eq!(counts.iter().map(|&n| u32::from(n)).sum::<u32>(), expected);
+}
+
+#[test]
+fn a_triangle_that_passes_the_eye_covers_what_is_before_the_near_plane() {
+    // The floor y = -1, from far before the eye to far behind it: below the horizon everything is covered.
+    let view = pixel_view(0.5, 1e6);
+    let corners = [Vec3::new(-1e5, -1.0, 1e4), Vec3::new(1e5, -1.0, 1e4), Vec3::new(0.0, -1.0, -9e5)];
+    let (counts, stats) = draw(&view, &[corners]);
+    assert_eq!(stats.clipped, 1);
+    // y = -1 at distance t is at 240 + 240 / t px: row 479 is at t = 1.002, before the near plane.
+    for y in [242, 300, 479] {
+        assert!((0..WIDTH).all(|x| count(&counts, x, y) == 1), "row {y}");
+    }
+    assert!((0..WIDTH).all(|x| count(&counts, x, 239) == 0));
+}
+
+#[test]
+fn what_the_near_plane_cuts_off_is_not_drawn() {
+    // The floor again, with the near plane at 2: nothing nearer, that is below row 240 + 120.
+    let corners = [Vec3::new(-1e5, -1.0, 1e4), Vec3::new(1e5, -1.0, 1e4), Vec3::new(0.0, -1.0, -9e5)];
+    let (counts, _) = draw(&pixel_view(2.0, 1e6), &[corners]);
+    assert_eq!((count(&counts, 320, 359), count(&counts, 320, 360)), (1, 0));
+}
