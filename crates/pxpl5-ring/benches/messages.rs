@@ -1,5 +1,7 @@
 //! Messages a second of host time: the machine of TR94 with every port busy.
 
+#![allow(missing_docs, reason = "the macros of criterion make public functions without any")]
+
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput, RingTiming};
 use pxpl5_sim::{Context, EventQueue, Phase, Time};

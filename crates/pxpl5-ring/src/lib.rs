@@ -49,6 +49,7 @@
 //! Sources: TR94 (channels, rate, region transfers), F89 (rate). No paper describes the arbiter: its order of
 //! arrival is derived (any other order needs 12, not 11, region times for 20 field regions over two ports).
 
+mod channels;
 mod port;
 pub mod reference;
 mod ring;

@@ -1,5 +1,6 @@
 //! Ports and arbiter.
 
+use crate::channels::{Channels, Flight};
 use crate::{Refusals, Request, RingError, RingEvent, RingOutput, RingStats, RingTiming, WaitReason, WaitingMessage};
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
@@ -14,11 +15,9 @@ pub struct Ring {
     word: Span,
     sources: Vec<Source>,
     destinations: Vec<Destination>,
-    channels: Vec<Option<Flight>>,
-    /// One bit a channel.
-    free: u64,
-    /// Sources whose first message waits, in the order of grants: (since when it is first, source).
-    heads: Vec<(Time, NodeId)>,
+    channels: Channels,
+    /// The first messages of their sources, in the order of grants.
+    heads: Vec<Head>,
     /// The instant for which a request has last asked for arbitration.
     arbitration_at: Option<Time>,
     stats: RingStats,
@@ -44,18 +43,12 @@ struct Destination {
     reserved_for: Option<NodeId>,
 }
 
-/// A message that occupies a channel.
-#[derive(Clone, Debug)]
-struct Flight {
+/// A message that is first at its source and waits. The order of grants is that of the first two fields.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Head {
+    since: Time,
     source: NodeId,
     destination: NodeId,
-    words: u32,
-    ticket: Option<u64>,
-    hold: bool,
-    granted: Time,
-    latency: Span,
-    /// Known from the grant on (elastic receivers) or from the answer.
-    ends_at: Option<Time>,
 }
 
 impl Ring {
@@ -75,8 +68,7 @@ impl Ring {
             word: timing.word(),
             sources: vec![Source::default(); usize::from(n_nodes)],
             destinations: (0..n_nodes).map(|node| Destination::new(elastic(NodeId(node)))).collect(),
-            channels: vec![None; n_channels],
-            free: u64::MAX >> (64 - n_channels),
+            channels: Channels::new(n_channels),
             heads: Vec::new(),
             arbitration_at: None,
             stats: RingStats { channel_busy: vec![Span::ZERO; n_channels], ..RingStats::default() },
@@ -123,7 +115,7 @@ impl Ring {
     /// Whether nothing is in flight and nothing waits.
     #[must_use]
     pub fn is_idle(&self) -> bool {
-        self.heads.is_empty() && self.channels.iter().all(Option::is_none)
+        self.heads.is_empty() && self.channels.is_idle()
     }
 
     /// Whether the ring could carry a message.
@@ -144,9 +136,8 @@ impl Ring {
     /// Messages that wait at the head of their queue or for their receiver's answer, by source.
     #[must_use]
     pub fn waiting(&self) -> Vec<WaitingMessage> {
-        let unanswered = self.channels.iter().flatten().filter(|flight| flight.ends_at.is_none()).map(Flight::waiting);
         let heads = self.heads.iter().filter_map(|head| self.waiting_head(*head));
-        let mut all: Vec<_> = unanswered.chain(heads).collect();
+        let mut all: Vec<_> = self.channels.all_unanswered().chain(heads).collect();
         all.sort_by_key(|message| message.source);
         all
     }
@@ -171,14 +162,15 @@ impl Ring {
         }
         let (now, id) = (context.now(), request.message.source);
         let source = &mut self.sources[usize::from(id.0)];
-        let becomes_head = source.queue.is_empty() && !source.in_flight;
-        source.insert(Queued { at: now, request });
-        if becomes_head {
-            self.add_head(now, id);
-            if self.arbitration_at != Some(now) {
-                self.arbitration_at = Some(now);
-                context.schedule(now, Phase::Work, RingEvent::Arbitrate);
-            }
+        let new_first = source.insert(Queued { at: now, request }) == 0;
+        if !new_first || source.in_flight {
+            return;
+        }
+        self.heads.retain(|head| head.source != id);
+        self.add_head(now, id);
+        if self.arbitration_at != Some(now) {
+            self.arbitration_at = Some(now);
+            context.schedule(now, Phase::Work, RingEvent::Arbitrate);
         }
     }
 
@@ -190,56 +182,38 @@ impl Ring {
         self.refusals.record(context.now(), error);
     }
 
-    fn add_head(&mut self, now: Time, source: NodeId) {
-        let head = (now, source);
+    fn add_head(&mut self, since: Time, source: NodeId) {
+        let Some(first) = self.sources[usize::from(source.0)].queue.front() else { return };
+        let head = Head { since, source, destination: first.request.message.destination };
         let later = self.heads.iter().rev().take_while(|&&h| h > head).count();
         self.heads.insert(self.heads.len() - later, head);
     }
 
     fn release_ended(&mut self, now: Time) {
-        for channel in 0..self.channels.len() {
-            if let Some(flight) = self.channels[channel].take_if(|f| f.has_ended(now)) {
-                self.release(channel, &flight, now);
-            }
-        }
-    }
-
-    fn release(&mut self, channel: usize, flight: &Flight, now: Time) {
-        self.free |= 1 << channel;
-        self.destinations[usize::from(flight.destination.0)].release(flight);
-        let source = &mut self.sources[usize::from(flight.source.0)];
-        source.in_flight = false;
-        if !source.queue.is_empty() {
+        while let Some((channel, flight)) = self.channels.take_ended(now) {
+            self.destinations[usize::from(flight.destination.0)].release(&flight);
+            self.sources[usize::from(flight.source.0)].in_flight = false;
             self.add_head(now, flight.source);
+            let busy = now.since(flight.granted);
+            self.stats.channel_busy[channel] += busy;
+            self.stats.stalled += busy - self.timing.occupancy(flight.words);
+            self.stats.messages += 1;
+            self.stats.words += u64::from(flight.words);
         }
-        let busy = now.since(flight.granted);
-        self.stats.channel_busy[channel] += busy;
-        self.stats.stalled += busy - self.timing.occupancy(flight.words);
-        self.stats.messages += 1;
-        self.stats.words += u64::from(flight.words);
     }
 
     /// One pass is enough: a grant makes nothing free.
     fn grant_all(&mut self, context: &mut Out) {
         let mut place = 0;
-        while self.free != 0 && place < self.heads.len() {
-            if self.can_go(self.heads[place].1) {
-                let (_, source) = self.heads.remove(place);
+        while self.channels.has_free() && place < self.heads.len() {
+            let Head { source, destination, .. } = self.heads[place];
+            if self.destinations[usize::from(destination.0)].takes_from(source) {
+                self.heads.remove(place);
                 self.grant(source, context);
             } else {
                 place += 1;
             }
         }
-    }
-
-    fn can_go(&self, source: NodeId) -> bool {
-        self.first_request(source)
-            .is_some_and(|request| self.destinations[usize::from(request.message.destination.0)].takes_from(source))
-    }
-
-    fn first_request(&self, source: NodeId) -> Option<&Request> {
-        let queued = self.sources[usize::from(source.0)].queue.front()?;
-        Some(&queued.request)
     }
 
     fn grant(&mut self, source: NodeId, context: &mut Out) {
@@ -252,17 +226,15 @@ impl Ring {
         let waited = now.since(at);
         self.stats.waiting += waited;
         self.stats.longest_wait = self.stats.longest_wait.max(waited);
-        let channel = self.free.trailing_zeros() as usize;
-        self.free &= !(1 << channel);
-        let destination = &mut self.destinations[usize::from(request.message.destination.0)];
-        destination.channel = Some(channel);
-        let elastic = destination.elastic;
         let flight = self.flight(&request, now);
-        self.channels[channel] = Some(if elastic {
-            self.deliver(flight, request.message, context)
+        let node = usize::from(flight.destination.0);
+        let end = if self.destinations[node].elastic {
+            Some(self.deliver(&flight, request.message, context))
         } else {
-            self.announce(flight, request.message, context)
-        });
+            self.announce(&flight, request.message, context);
+            None
+        };
+        self.destinations[node].channel = Some(self.channels.occupy(flight, end));
     }
 
     fn flight(&self, request: &Request, now: Time) -> Flight {
@@ -275,27 +247,22 @@ impl Ring {
             hold: request.hold,
             granted: now,
             latency: self.timing.latency(source, destination, self.n_nodes()),
-            ends_at: None,
         }
     }
 
-    fn deliver(&self, mut flight: Flight, message: Message, context: &mut Out) -> Flight {
+    /// All is known at once; returns when channel and ports are free.
+    fn deliver(&self, flight: &Flight, message: Message, context: &mut Out) -> Time {
         let end = flight.granted + self.timing.occupancy(flight.words);
-        flight.ends_at = Some(end);
         context.output(end + flight.latency, RingOutput::Delivered(message));
-        self.tell_sender(&flight, end + flight.latency, context);
+        self.tell_sender(flight, end + flight.latency, context);
         context.schedule(end, Phase::Work, RingEvent::Arbitrate);
-        flight
+        end
     }
 
-    fn announce(&self, flight: Flight, message: Message, context: &mut Out) -> Flight {
-        let announce = RingOutput::Announce {
-            message,
-            first_word_at: flight.granted + self.timing.occupancy(0) + flight.latency,
-            word: self.word,
-        };
+    fn announce(&self, flight: &Flight, message: Message, context: &mut Out) {
+        let first_word_at = flight.granted + self.timing.occupancy(0) + flight.latency;
+        let announce = RingOutput::Announce { message, first_word_at, word: self.word };
         context.output(flight.granted + self.word + flight.latency, announce);
-        flight
     }
 
     fn tell_sender(&self, flight: &Flight, accepted: Time, context: &mut Out) {
@@ -308,60 +275,56 @@ impl Ring {
 
     fn accept(&mut self, destination: NodeId, last_word_at: Time, context: &mut Out) {
         let now = context.now();
-        let Some(mut flight) = self.take_unanswered(destination) else {
+        let Some((channel, flight)) = self.unanswered(destination) else {
             let error = RingError::NothingAnnounced { destination };
             return self.refusals.record(now, error);
         };
         let earliest = flight.granted + self.timing.occupancy(flight.words) + flight.latency;
+        let accepted = last_word_at.max(earliest);
+        let end = now.max(Time(accepted.0 - flight.latency.0));
+        self.tell_sender(flight, accepted, context);
+        self.channels.ends(channel, end);
+        context.schedule(end, Phase::Work, RingEvent::Arbitrate);
         if last_word_at < earliest {
             let error = RingError::AcceptedEarly { destination, expected: earliest, found: last_word_at };
             self.refusals.record(now, error);
         }
-        let accepted = last_word_at.max(earliest);
-        let end = now.max(Time(accepted.0 - flight.latency.0));
-        flight.ends_at = Some(end);
-        self.tell_sender(&flight, accepted, context);
-        let channel = self.destinations[usize::from(destination.0)].channel;
-        self.channels[channel.unwrap_or_default()] = Some(flight);
-        context.schedule(end, Phase::Work, RingEvent::Arbitrate);
     }
 
-    /// The message announced to a receiver that has not answered.
-    fn take_unanswered(&mut self, destination: NodeId) -> Option<Flight> {
+    /// The message announced to a receiver that has not answered, with its channel.
+    fn unanswered(&self, destination: NodeId) -> Option<(usize, &Flight)> {
         let channel = self.destinations.get(usize::from(destination.0))?.channel?;
-        self.channels[channel].take_if(|flight| flight.ends_at.is_none())
+        Some((channel, self.channels.unanswered(channel)?))
     }
 
-    fn waiting_head(&self, (since, source): (Time, NodeId)) -> Option<WaitingMessage> {
-        let message = &self.first_request(source)?.message;
-        Some(WaitingMessage {
-            source,
-            destination: message.destination,
-            words: message.words,
-            since,
-            reason: self.wait_reason(source, message.destination),
-        })
+    fn waiting_head(&self, Head { since, source, destination }: Head) -> Option<WaitingMessage> {
+        let words = self.sources[usize::from(source.0)].queue.front()?.request.message.words;
+        let reason = self.wait_reason(source, destination);
+        Some(WaitingMessage { source, destination, words, since, reason })
     }
 
     fn wait_reason(&self, source: NodeId, destination: NodeId) -> WaitReason {
         let port = &self.destinations[usize::from(destination.0)];
-        if let Some(flight) = port.channel.and_then(|channel| self.channels[channel].as_ref()) {
+        if let Some(flight) = port.channel.and_then(|channel| self.channels.flight(channel)) {
             return WaitReason::DestinationBusy(flight.source);
         }
         match port.reserved_for {
             Some(holder) if holder != source => WaitReason::DestinationReserved(holder),
-            _ if self.free == 0 => WaitReason::Channel,
+            _ if !self.channels.has_free() => WaitReason::Channel,
             _ => WaitReason::Arbitration,
         }
     }
 }
 
 impl Source {
-    fn insert(&mut self, queued: Queued) {
+    /// Queues a message; returns its place.
+    fn insert(&mut self, queued: Queued) -> usize {
         let key = |q: &Queued| (q.at, q.request.order);
         let new = key(&queued);
         let later = self.queue.iter().rev().take_while(|q| key(q) > new).count();
-        self.queue.insert(self.queue.len() - later, queued);
+        let place = self.queue.len() - later;
+        self.queue.insert(place, queued);
+        place
     }
 }
 
@@ -377,21 +340,5 @@ impl Destination {
     fn release(&mut self, flight: &Flight) {
         self.channel = None;
         self.reserved_for = flight.hold.then_some(flight.source);
-    }
-}
-
-impl Flight {
-    fn has_ended(&self, now: Time) -> bool {
-        self.ends_at.is_some_and(|end| end <= now)
-    }
-
-    const fn waiting(&self) -> WaitingMessage {
-        WaitingMessage {
-            source: self.source,
-            destination: self.destination,
-            words: self.words,
-            since: self.granted,
-            reason: WaitReason::Acceptance,
-        }
     }
 }

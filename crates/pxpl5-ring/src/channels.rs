@@ -1,0 +1,90 @@
+//! The channels and what is on them.
+
+use crate::{WaitReason, WaitingMessage};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::NodeId;
+
+const UNKNOWN: Time = Time(u64::MAX);
+
+/// A message that occupies a channel.
+#[derive(Clone, Debug)]
+pub(crate) struct Flight {
+    pub(crate) source: NodeId,
+    pub(crate) destination: NodeId,
+    pub(crate) words: u32,
+    pub(crate) ticket: Option<u64>,
+    pub(crate) hold: bool,
+    pub(crate) granted: Time,
+    pub(crate) latency: Span,
+}
+
+/// All channels; free ones are taken from the lowest number.
+#[derive(Clone, Debug)]
+pub(crate) struct Channels {
+    flights: Vec<Option<Flight>>,
+    /// When each channel is free again; unknown on a free one and until the receiver has answered.
+    ends_at: Vec<Time>,
+    /// One bit a channel.
+    free: u64,
+}
+
+impl Channels {
+    /// 1 to 64 free channels.
+    pub(crate) fn new(n: usize) -> Self {
+        Self { flights: vec![None; n], ends_at: vec![UNKNOWN; n], free: u64::MAX >> (64 - n) }
+    }
+
+    pub(crate) const fn has_free(&self) -> bool {
+        self.free != 0
+    }
+
+    pub(crate) fn is_idle(&self) -> bool {
+        self.flights.iter().all(Option::is_none)
+    }
+
+    /// Puts a message on the lowest free channel, which must exist; its end may be known already.
+    pub(crate) fn occupy(&mut self, flight: Flight, ends_at: Option<Time>) -> usize {
+        let channel = self.free.trailing_zeros() as usize;
+        self.free &= !(1 << channel);
+        self.flights[channel] = Some(flight);
+        self.ends_at[channel] = ends_at.unwrap_or(UNKNOWN);
+        channel
+    }
+
+    pub(crate) fn ends(&mut self, channel: usize, at: Time) {
+        self.ends_at[channel] = at;
+    }
+
+    /// Takes a message whose time is over, with its channel.
+    pub(crate) fn take_ended(&mut self, now: Time) -> Option<(usize, Flight)> {
+        let channel = self.ends_at.iter().position(|end| *end <= now)?;
+        self.ends_at[channel] = UNKNOWN;
+        self.free |= 1 << channel;
+        Some((channel, self.flights[channel].take()?))
+    }
+
+    pub(crate) fn flight(&self, channel: usize) -> Option<&Flight> {
+        self.flights[channel].as_ref()
+    }
+
+    /// The message on a channel if nobody has said when it ends.
+    pub(crate) fn unanswered(&self, channel: usize) -> Option<&Flight> {
+        self.flight(channel).filter(|_| self.ends_at[channel] == UNKNOWN)
+    }
+
+    pub(crate) fn all_unanswered(&self) -> impl Iterator<Item = WaitingMessage> + '_ {
+        (0..self.flights.len()).filter_map(|channel| self.unanswered(channel)).map(Flight::waiting)
+    }
+}
+
+impl Flight {
+    const fn waiting(&self) -> WaitingMessage {
+        WaitingMessage {
+            source: self.source,
+            destination: self.destination,
+            words: self.words,
+            since: self.granted,
+            reason: WaitReason::Acceptance,
+        }
+    }
+}
