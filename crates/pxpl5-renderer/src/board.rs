@@ -143,7 +143,9 @@ impl Renderer {
         if begins_with_clear(&list.runs) {
             *log = Log { cleared: true, lists: Vec::new() };
         }
-        log.lists.extend(list.content.clone());
+        if draws(&list.runs) {
+            log.lists.extend(list.content.clone());
+        }
         for order in &list.copies {
             let image = self.image(order);
             self.copies.push_back(PendingCopy { order: *order, image });
@@ -224,6 +226,12 @@ impl Renderer {
         let waits_for = format!("frame buffer at node {} to take region {}", order.target.frame_buffer.0, order.target.region.0);
         Some(Blocked { board: name.to_owned(), waits_for })
     }
+}
+
+/// Whether a list changes pixels, and does not only select and copy.
+fn draws(runs: &[CommandRun]) -> bool {
+    let kinds = runs.iter().map(|run| CommandKind::from_opcode(run.opcode));
+    kinds.into_iter().any(|kind| !matches!(kind, Some(CommandKind::SelectRegion | CommandKind::CopyRegion)))
 }
 
 /// Whether a list overwrites its whole context, so that nothing sent before can be seen any more.
