@@ -251,7 +251,7 @@ impl Command {
     }
 
     /// A command of this kind whose operands are zero.
-    fn blank(kind: CommandKind) -> Self {
+    pub(crate) fn blank(kind: CommandKind) -> Self {
         match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::default()),
             CommandKind::Clear => Self::Clear(Clear::default()),
