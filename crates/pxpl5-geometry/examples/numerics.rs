@@ -9,7 +9,7 @@ use std::path::Path;
 
 fn main() -> std::io::Result<()> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/numerics.md");
-    std::fs::write(&path, support::report::text())?;
+    std::fs::write(&path, support::report::text(&support::report::Measured::all()))?;
     println!("wrote {}", path.display());
     Ok(())
 }

@@ -40,7 +40,8 @@ y\@:    times   r28, r30, r28
         ld.l    EDGEA+12*\k+8(r2), r30
         adds    r28, r29, r28
         adds    r28, r30, r28
-        bc      outside                     // the sum is negative
+        subs    r28, r0, r0
+        bc      outside                     // 0 > the value
         .endm
 
         .align  32
@@ -79,8 +80,9 @@ bd:     subs    r12, r11, r0                // empty?
         shr     7, r14, r14
         shl     7, r11, r7
         adds    127, r7, r8
-        call    rowbox
         mov     r1, r15
+        call    rowbox
+        nop
         mov     r15, r1
         shl     4, r7, r28                  // wholly inside the pixel centres of one region?
         adds    8, r28, r28

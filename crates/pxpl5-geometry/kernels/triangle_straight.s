@@ -277,14 +277,14 @@ tied\@: fld.d   TMP(r2), f8
         bnc     a\@
         mov     r26, r24
 a\@:    subs    r25, r26, r0
-        bc      b\@
+        bnc     b\@
         mov     r26, r25
 b\@:    ld.l    \at+8(r2), r26
         subs    r26, r24, r0
         bnc     c\@
         mov     r26, r24
 c\@:    subs    r25, r26, r0
-        bc      d\@
+        bnc     d\@
         mov     r26, r25
 d\@:    st.l    r24, \to(r2)
         st.l    r25, \to+4(r2)

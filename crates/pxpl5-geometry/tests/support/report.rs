@@ -1,9 +1,9 @@
 //! docs/numerics.md as text.
 
 use super::cases::{self, Case};
+use super::fighting::{self, Fight};
 use super::measure::{Row, SUBPIXEL_BITS, measure};
-use super::spheres::{self, SphereRow};
-use super::{fighting, spheres::SphereCase};
+use super::spheres::{self, SphereCase, SphereRow};
 use pxpl5_geometry::SetupStats;
 use std::fmt::Write;
 
@@ -13,7 +13,7 @@ const FORMATS: &str = include_str!("numerics_formats.md");
 /// A number short enough for a table.
 fn short(v: f64) -> String {
     match v {
-        v if v == 0.0 => "0".into(),
+        0.0 => "0".into(),
         v if v < 10.0 => format!("{v:.1}"),
         v => grouped(v as u64),
     }
@@ -101,15 +101,32 @@ fn heading(out: &mut String, title: &str, columns: &[&str]) {
     let _ = write!(out, "\n## {title}\n\n| {} |\n| {rule} |\n", columns.join(" | "));
 }
 
+/// All cases with what was measured.
+pub struct Measured {
+    pub triangles: Vec<(Case, Row)>,
+    pub spheres: Vec<(SphereCase, SphereRow)>,
+    pub fights: Vec<Fight>,
+}
+
+impl Measured {
+    pub fn all() -> Self {
+        Self {
+            triangles: cases::all().into_iter().map(|case| (case.clone(), measure(&case))).collect(),
+            spheres: spheres::all().into_iter().map(|case| (case.clone(), spheres::measure(&case))).collect(),
+            fights: fighting::all(),
+        }
+    }
+}
+
 /// The whole file.
-pub fn text() -> String {
-    let rows: Vec<(Case, Row)> = cases::all().into_iter().map(|c| (c.clone(), measure(&c))).collect();
+pub fn text(measured: &Measured) -> String {
+    let rows = &measured.triangles;
     let mut out = HEAD.to_string();
-    triangles(&mut out, &rows);
-    fights(&mut out);
-    all_spheres(&mut out);
-    grids(&mut out, &rows);
-    bits(&mut out, &rows);
+    triangles(&mut out, rows);
+    fights(&mut out, &measured.fights);
+    all_spheres(&mut out, &measured.spheres);
+    grids(&mut out, rows);
+    bits(&mut out, rows);
     out.push('\n');
     out.push_str(FORMATS);
     out
@@ -134,21 +151,19 @@ fn triangles(out: &mut String, rows: &[(Case, Row)]) {
     rows.iter().for_each(|(case, row)| pipeline_row(out, case, row));
 }
 
-fn fights(out: &mut String) {
+fn fights(out: &mut String, fights: &[Fight]) {
     heading(out, "Z fighting: two surfaces", &["case", "apart", "pixels", "wrong", "wrong per million"]);
-    for f in fighting::all() {
+    for f in fights {
         let part = short(Row::per_million(f.wrong, f.pixels));
         let (pixels, wrong) = (grouped(f.pixels), grouped(f.wrong));
         let _ = writeln!(out, "| {} | {} | {pixels} | {wrong} | {part} |", f.name, short(f.apart));
     }
 }
 
-fn all_spheres(out: &mut String) {
+fn all_spheres(out: &mut String, rows: &[(SphereCase, SphereRow)]) {
     let columns = ["case", "spheres", "pixels", "wrong", "depth error", "as part of the bulge", "bits", "counted"];
     heading(out, "Spheres", &columns);
-    for case in spheres::all() {
-        sphere_row(out, &case, &spheres::measure(&case));
-    }
+    rows.iter().for_each(|(case, row)| sphere_row(out, case, row));
 }
 
 fn grids(out: &mut String, rows: &[(Case, Row)]) {
