@@ -2,7 +2,12 @@
 
 mod bounds;
 mod columns;
+mod ellipse;
 mod general;
+mod large;
+mod roots;
+mod shade;
+mod sphere;
 mod triangle;
 mod values;
 mod whole;
