@@ -179,11 +179,13 @@ impl Binner {
         if inside {
             return RegionMask(1 << (row * self.columns + column));
         }
-        self.test_edges(outline, x, y)
+        self.test_edges(outline.x, outline.y, x, y)
     }
 
+    /// Takes the corners alone: were the outline passed on, callers that need no depths would still compute them.
     #[inline(never)]
-    fn test_edges(&self, outline: &Outline, x: Range, y: Range) -> RegionMask {
+    fn test_edges(&self, corners_x: [i32; 3], corners_y: [i32; 3], x: Range, y: Range) -> RegionMask {
+        let outline = Outline { x: corners_x, y: corners_y, z: [0; 3], regions: RegionMask::EMPTY };
         let edges = outline.edges();
         self.cells(x, y, |column, row| {
             let (across, down) = (self.column_box(column), self.row_box(row));
