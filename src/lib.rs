@@ -16,4 +16,5 @@ pub use machine::{Machine, Ports, RunError};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
 pub use pipelines::{Pipeline, RenderingControl, Slats};
 pub use pxpl5_scene as scene;
+pub use pxpl5_wire::Eye;
 pub use report::{DefinedStatistics, Report, Statistics};
