@@ -166,7 +166,8 @@ impl Bench {
             let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
             let program = RenderingControl::stereo().into();
             let summary = self.level.run(&Case { machine, program, scene, fields, seed })?;
-            latencies.extend(summary.latencies_ms.iter().take(self.frames as usize).map(|ms| ms / crate::levels::FIELD_MS));
+            latencies
+                .extend(summary.latencies_ms.iter().take(self.frames as usize).map(|ms| ms / crate::levels::FIELD_MS));
         }
         let frames = latencies.len() as f64;
         let all = Statistics::of(latencies.into_iter());
@@ -222,8 +223,13 @@ fn touched(scene: &Arc<Scene>) -> Result<f64> {
     let list = Arc::new(display_list(scene).map_err(ExperimentError::Scene)?);
     let views = views(scene, 1, 2);
     let (share, layout) = (Share::new(list, 0, 1), Layout::rendering_control_phong());
-    let picture =
-        Picture { viewport: Viewport::FRAME, shading: Shading::Phong, binning: Binning::Touched, layout, pixels: false };
+    let picture = Picture {
+        viewport: Viewport::FRAME,
+        shading: Shading::Phong,
+        binning: Binning::Touched,
+        layout,
+        pixels: false,
+    };
     let (mut entries, mut triangles) = (0u64, 0u64);
     for number in 0..VIEWS {
         let view = views(number, Time(number * VIEW_PERIOD_PS));
