@@ -28,6 +28,8 @@ const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 pub(crate) struct Clock {
     pub(crate) on: bool,
     pub(crate) now: u64,
+    /// Clock at which the profile was started; every clock since then is a freeze or an issue.
+    profile_start: u64,
     rules: FreezeRules,
     pub(crate) profile: Profile,
     pub(crate) sampler: Option<AddressProfile>,
@@ -64,6 +66,7 @@ impl Clock {
         Clock {
             on: config.timing,
             now: 0,
+            profile_start: 0,
             rules: config.freezes,
             profile: Profile::new(),
             sampler: None,
@@ -94,7 +97,9 @@ impl Clock {
     }
 
     pub(crate) fn profile(&self) -> Profile {
+        let frozen: u64 = self.profile.frozen.iter().sum();
         Profile {
+            issue: self.now - self.profile_start - frozen,
             bus_requests: self.bus.transfers,
             page_misses: self.bus.page_misses,
             ..self.profile.clone()
@@ -103,6 +108,7 @@ impl Clock {
 
     pub(crate) fn clear_profile(&mut self) {
         self.profile = Profile::new();
+        self.profile_start = self.now;
         (self.bus.transfers, self.bus.page_misses) = (0, 0);
     }
 
@@ -176,6 +182,11 @@ impl Clock {
         self.freeze_until(line.first, Freeze::InstructionMiss);
     }
 
+    pub(crate) fn empty_caches(&mut self) {
+        self.invalidate_instruction_cache();
+        self.data_cache.clear();
+    }
+
     pub(crate) fn invalidate_instruction_cache(&mut self) {
         self.instruction_cache.clear();
         self.tlb.clear();
@@ -217,7 +228,6 @@ impl Clock {
             self.freeze_until(wait.until, wait.why);
         }
         self.now += 1;
-        self.profile.issue += 1;
     }
 
     /// Issues a pair: both halves wait for the longer freeze.
@@ -238,7 +248,6 @@ impl Clock {
         }
         self.freeze_until(longest.until, longest.why);
         self.now += 1;
-        self.profile.issue += 1;
     }
 
     #[inline]
@@ -333,7 +342,7 @@ impl Clock {
         if d.arms & arm::FLOATING_RESULT != 0 {
             self.last_result = if i.has(Flags::RESULT_DOUBLE) { i.dest & 30 } else { i.dest };
             self.last_result_until = self.now + self.rules.clocks(Freeze::MultiplierFirstSource);
-        } else if d.is_floating && i.op != Op::Fnop {
+        } else if d.is_floating() && i.op != Op::Fnop {
             self.last_result = NO_RESULT;
         }
         if d.arms & (arm::LOAD | arm::LONG_LOAD | arm::SEED) != 0 {

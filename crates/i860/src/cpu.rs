@@ -183,6 +183,11 @@ impl Cpu {
         self.time.clear_profile();
     }
 
+    /// Empties the caches and the TLB without writing back, and waits for nothing: a cold start for measurements.
+    pub fn empty_caches(&mut self) {
+        self.time.empty_caches();
+    }
+
     /// Watches clocks by address from now on (or stops to).
     pub fn watch(&mut self, addresses: Option<AddressProfile>) {
         self.time.sampler = addresses;
@@ -213,20 +218,24 @@ impl Cpu {
         }
     }
 
-    #[inline]
-    fn decoded<B: Bus>(&mut self, pc: u32, bus: &mut B) -> Result<Decoded, TrapCause> {
-        let entry = self.decoded[(pc >> 2) as usize % DECODED];
-        if entry.tag == pc { Ok(entry) } else { self.decode_at(pc, bus) }
+    #[inline(always)]
+    fn locate<B: Bus>(&mut self, pc: u32, bus: &mut B) -> Result<usize, TrapCause> {
+        let at = (pc >> 2) as usize % DECODED;
+        if self.decoded[at].tag != pc {
+            self.decode_at(pc, bus)?;
+        }
+        Ok(at)
     }
 
     #[cold]
-    fn decode_at<B: Bus>(&mut self, pc: u32, bus: &mut B) -> Result<Decoded, TrapCause> {
+    #[inline(never)]
+    fn decode_at<B: Bus>(&mut self, pc: u32, bus: &mut B) -> Result<(), TrapCause> {
         let word = bus.read(pc, 4).map_err(|_| TrapCause::InstructionAccess)? as u32;
         let instruction = decode(word).map_err(|e| TrapCause::Illegal { word: e.0 })?;
         let entry = Decoded::new(instruction, pc);
         self.decoded[(pc >> 2) as usize % DECODED] = entry;
         self.code = (self.code.0.min(pc), self.code.1.max(pc | 3));
-        Ok(entry)
+        Ok(())
     }
 
     /// Runs until `stop` is reached in single-instruction mode, a trap is taken, or `budget` more instructions have
@@ -250,7 +259,7 @@ impl Cpu {
     ///
     /// # Errors
     /// The trap that was taken. The next step executes the first instruction of its handler.
-    #[inline]
+    #[inline(always)]
     pub fn step<B: Bus>(&mut self, bus: &mut B) -> Result<(), Trap> {
         match self.unit(bus) {
             Ok(Flow::Next) => Ok(()),
@@ -268,7 +277,7 @@ impl Cpu {
         }
     }
 
-    #[inline]
+    #[inline(never)]
     fn slot<B: Bus>(&mut self, target: u32, bus: &mut B) -> Result<(), Trap> {
         self.in_slot = true;
         let done = self.unit(bus);
@@ -281,7 +290,7 @@ impl Cpu {
         Ok(())
     }
 
-    #[inline]
+    #[inline(always)]
     fn unit<B: Bus>(&mut self, bus: &mut B) -> Result<Flow, TrapCause> {
         let (pc, before) = (self.state.pc, self.time.now);
         let flow = if self.state.mode.is_dual() { self.pair(pc, bus)? } else { self.single(pc, bus)? };
@@ -291,21 +300,21 @@ impl Cpu {
         Ok(flow)
     }
 
-    #[inline]
+    #[inline(always)]
     fn single<B: Bus>(&mut self, pc: u32, bus: &mut B) -> Result<Flow, TrapCause> {
-        let d = self.decoded(pc, bus)?;
-        if self.in_slot && d.is_branch {
+        let d = self.decoded[self.locate(pc, bus)? % DECODED];
+        if self.in_slot && d.is_branch() {
             return Err(TrapCause::BranchInSlot);
         }
         self.time.fetch(pc, bus);
         self.time.issue(&d);
         self.next_mode = match (pc & 4 != 0, self.state.mode) {
             (true, Mode::Entering) => Mode::DualOnce,
-            (false, _) if d.dual => Mode::Entering,
+            (false, _) if d.dual() => Mode::Entering,
             _ => Mode::Single,
         };
-        let flow = if d.is_floating {
-            let operands = read_operands(&self.state, &d.instruction);
+        let flow = if d.is_floating() {
+            let operands = read_operands(&self.state, &d);
             self.floating(&d.instruction, operands);
             Flow::Next
         } else {
@@ -318,23 +327,24 @@ impl Cpu {
     }
 
     /// A pair: both halves read before either writes, and the core half goes first so that its trap leaves no trace.
-    #[inline]
+    #[inline(always)]
     fn pair<B: Bus>(&mut self, pc: u32, bus: &mut B) -> Result<Flow, TrapCause> {
         if pc & 4 != 0 {
             return Err(TrapCause::PairAlignment);
         }
-        let (low, high) = (self.decoded(pc, bus)?, self.decoded(pc.wrapping_add(4), bus)?);
-        if !low.is_floating || high.is_floating && high.instruction.op != crate::Op::Fnop {
+        let low = self.decoded[self.locate(pc, bus)? % DECODED];
+        let high = self.decoded[self.locate(pc.wrapping_add(4), bus)? % DECODED];
+        if !low.is_floating() || high.is_floating() && high.instruction.op != crate::Op::Fnop {
             return Err(TrapCause::IllegalPair);
         }
-        if self.in_slot && high.is_branch {
+        if self.in_slot && high.is_branch() {
             return Err(TrapCause::BranchInSlot);
         }
         self.time.fetch(pc, bus);
         self.time.issue_pair(&low, &high);
-        self.next_mode = self.state.mode.after_pair(low.dual);
-        let operands = read_operands(&self.state, &low.instruction);
-        let flow = if high.is_floating { Flow::Next } else { self.core(&high, pc.wrapping_add(4), bus)? };
+        self.next_mode = self.state.mode.after_pair(low.dual());
+        let operands = read_operands(&self.state, &low);
+        let flow = if high.is_floating() { Flow::Next } else { self.core(&high, pc.wrapping_add(4), bus)? };
         self.floating(&low.instruction, operands);
         self.time.retire(&low);
         self.time.retire(&high);

@@ -45,9 +45,17 @@ pub(crate) struct Decoded {
     pub(crate) arms: u16,
     /// First source when the multiplier reads it, else [`NONE`].
     pub(crate) multiplier_source: u8,
-    pub(crate) is_floating: bool,
-    pub(crate) is_branch: bool,
-    pub(crate) dual: bool,
+    marks: u8,
+}
+
+/// Bits of `Decoded::marks`.
+mod mark {
+    pub(super) const FLOATING: u8 = 1 << 0;
+    pub(super) const BRANCH: u8 = 1 << 1;
+    pub(super) const DUAL: u8 = 1 << 2;
+    pub(super) const FIRST_DOUBLE: u8 = 1 << 3;
+    pub(super) const SECOND_DOUBLE: u8 = 1 << 4;
+    pub(super) const MAY_BYPASS: u8 = 1 << 5;
 }
 
 /// An address that no instruction has.
@@ -63,15 +71,55 @@ impl Decoded {
             sensitive: sensitive(i),
             arms: arms(i),
             multiplier_source: multiplier_source(i),
-            is_floating: i.is_floating(),
-            is_branch: i.is_branch(),
-            dual: i.is_floating() && i.has(Flags::DUAL),
+            marks: marks(i),
         }
+    }
+
+    #[inline]
+    pub(crate) fn is_floating(&self) -> bool {
+        self.marks & mark::FLOATING != 0
+    }
+
+    #[inline]
+    pub(crate) fn is_branch(&self) -> bool {
+        self.marks & mark::BRANCH != 0
+    }
+
+    /// The D bit.
+    #[inline]
+    pub(crate) fn dual(&self) -> bool {
+        self.marks & mark::DUAL != 0
+    }
+
+    /// Whether the first and the second source are read as pairs of registers.
+    #[inline]
+    pub(crate) fn source_widths(&self) -> (bool, bool) {
+        (self.marks & mark::FIRST_DOUBLE != 0, self.marks & mark::SECOND_DOUBLE != 0)
+    }
+
+    /// Whether the destination of a pipelined operation may be one of its sources.
+    #[inline]
+    pub(crate) fn may_bypass(&self) -> bool {
+        self.marks & mark::MAY_BYPASS != 0
     }
 
     pub(crate) fn empty() -> Decoded {
         Decoded::new(Instruction::new(Op::Fnop), EMPTY)
     }
+}
+
+fn marks(i: &Instruction) -> u8 {
+    let on = |bit: u8, condition: bool| if condition { bit } else { 0 };
+    let floating = i.is_floating();
+    let (first, second) = crate::floating::source_widths(i);
+    let pipelined = i.op == Op::DualOp || i.has(Flags::PIPELINED);
+    let overlaps = i.dest >= 2 && [i.src1, i.src2].iter().any(|n| n & 30 == i.dest & 30);
+    on(mark::FLOATING, floating)
+        | on(mark::BRANCH, i.is_branch())
+        | on(mark::DUAL, floating && i.has(Flags::DUAL))
+        | on(mark::FIRST_DOUBLE, floating && first)
+        | on(mark::SECOND_DOUBLE, floating && second)
+        | on(mark::MAY_BYPASS, floating && pipelined && overlaps)
 }
 
 /// Register mask of `bytes` of floating-point registers from `n`.

@@ -2,6 +2,7 @@
 
 use crate::arithmetic::{Operation, convert, multiply_low, narrow, operate, round, to_integer, widen};
 use crate::cpu::Cpu;
+use crate::decoded::Decoded;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::state::{Stage, State, fsr, psr};
 
@@ -14,6 +15,7 @@ pub(crate) struct Operands {
 
 /// Where a dual operation takes an operand from. M and A are the last stages of multiplier and adder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
 enum Source {
     Kr,
     Ki,
@@ -60,17 +62,23 @@ const ROUTES: [Route; 16] = {
     ]
 };
 
-impl Route {
-    fn of(i: &Instruction) -> Route {
-        let mut route = ROUTES[(i.imm & 15) as usize];
-        if !i.has(Flags::PIPELINED) {
-            for source in route.multiplier.iter_mut().chain(&mut route.adder) {
-                if *source == Source::A {
-                    *source = Source::M;
-                }
-            }
-        }
-        route
+/// The same with every `A` reading `M`.
+const MULTIPLIER_ROUTES: [Route; 16] = {
+    let mut routes = ROUTES;
+    let mut n = 0;
+    while n < 16 {
+        routes[n].multiplier[1] = multiplier_for_adder(routes[n].multiplier[1]);
+        routes[n].adder[0] = multiplier_for_adder(routes[n].adder[0]);
+        routes[n].adder[1] = multiplier_for_adder(routes[n].adder[1]);
+        n += 1;
+    }
+    routes
+};
+
+const fn multiplier_for_adder(source: Source) -> Source {
+    match source {
+        Source::A => Source::M,
+        other => other,
     }
 }
 
@@ -113,32 +121,49 @@ fn read_bypassed(state: &State, n: u8, double: bool, dest: u8, leaving: Stage) -
     }
 }
 
-/// Whether the first source goes to the adder (which has the bypass) and in which precision each source is read.
-fn source_paths(i: &Instruction) -> (bool, bool, bool) {
+/// Whether the first and the second source are read as pairs of registers.
+pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
     let (s, r) = (i.has(Flags::SOURCE_DOUBLE), i.has(Flags::RESULT_DOUBLE));
-    if i.op != Op::DualOp {
-        let always_double = matches!(i.op, Op::Faddp | Op::Faddz | Op::Fzchkl | Op::Fzchks | Op::Form);
-        return (!i.uses_multiplier(), s || always_double, s || always_double);
+    match i.op {
+        Op::Fxfr => (false, false),
+        Op::DualOp => {
+            let route = &ROUTES[(i.imm & 15) as usize];
+            let to_adder = [route.adder[0] == Source::S1, route.adder[1] == Source::S2];
+            let [first, second] = to_adder.map(|adder| if adder { r } else { s });
+            (first, second)
+        }
+        Op::Faddp | Op::Faddz | Op::Fzchkl | Op::Fzchks | Op::Form => (true, true),
+        _ => (s, s),
     }
-    let route = &ROUTES[(i.imm & 15) as usize];
-    let first_to_adder = route.adder[0] == Source::S1;
-    let second_to_adder = route.adder[1] == Source::S2;
-    (first_to_adder, if first_to_adder { r } else { s }, if second_to_adder { r } else { s })
+}
+
+/// Whether the first source goes to the adder or the graphics unit, which have the bypass.
+fn first_has_bypass(i: &Instruction) -> bool {
+    match i.op {
+        Op::DualOp => ROUTES[(i.imm & 15) as usize].adder[0] == Source::S1,
+        _ => !i.uses_multiplier(),
+    }
 }
 
 /// Reads the sources of a floating-point or graphics instruction.
-pub(crate) fn read_operands(state: &State, i: &Instruction) -> Operands {
-    if i.op == Op::Fxfr {
-        return Operands { a: u64::from(state.f32_bits(i.src1)), b: 0 };
+#[inline(always)]
+pub(crate) fn read_operands(state: &State, d: &Decoded) -> Operands {
+    let i = &d.instruction;
+    let (first, second) = d.source_widths();
+    if d.may_bypass() {
+        return read_through(state, i, first, second);
     }
-    let (bypass_first, a_double, b_double) = source_paths(i);
+    Operands { a: state.f_bits(i.src1, first), b: state.f_bits(i.src2, second) }
+}
+
+fn read_through(state: &State, i: &Instruction, first: bool, second: bool) -> Operands {
     let Some(out) = leaving(state, i) else {
-        return Operands { a: state.f_bits(i.src1, a_double), b: state.f_bits(i.src2, b_double) };
+        return Operands { a: state.f_bits(i.src1, first), b: state.f_bits(i.src2, second) };
     };
-    let b = read_bypassed(state, i.src2, b_double, i.dest, out);
-    let a = match bypass_first {
-        true => read_bypassed(state, i.src1, a_double, i.dest, out),
-        false => state.f_bits(i.src1, a_double),
+    let b = read_bypassed(state, i.src2, second, i.dest, out);
+    let a = match first_has_bypass(i) {
+        true => read_bypassed(state, i.src1, first, i.dest, out),
+        false => state.f_bits(i.src1, first),
     };
     Operands { a, b }
 }
@@ -252,16 +277,20 @@ impl Cpu {
     /// pfam, pfsm, pfmam, pfmsm. K and T are read before they are reloaded.
     fn dual_operation(&mut self, i: &Instruction, from: Operands) {
         let (s, r) = (i.has(Flags::SOURCE_DOUBLE), i.has(Flags::RESULT_DOUBLE));
-        let route = Route::of(i);
-        let [m1, m2] = route.multiplier.map(|source| self.source(source, from, s, s));
-        let [a1, a2] = route.adder.map(|source| self.source(source, from, s, r));
+        let pipelined = i.has(Flags::PIPELINED);
+        let route = &(if pipelined { &ROUTES } else { &MULTIPLIER_ROUTES })[(i.imm & 15) as usize];
+        let leaving_product = last_product(&self.state, s);
+        let leaving_sum = self.state.adder[2];
         let flush = self.flush_to_zero();
+        let for_adder = self.sources(from, leaving_product, leaving_sum, r);
+        let for_multiplier =
+            if s == r { for_adder } else { self.sources(from, leaving_product, leaving_sum, s) };
+        let [m1, m2] = route.multiplier.map(|source| for_multiplier[source as usize]);
+        let [a1, a2] = route.adder.map(|source| for_adder[source as usize]);
         let product = operate(Operation::Multiply, m1, m2, s, r, flush);
         let operation = if i.imm & 16 != 0 { Operation::Subtract } else { Operation::Add };
         let sum = operate(operation, a1, a2, r, r, flush);
-        let leaving_product = last_product(&self.state, s);
-        let to_register = if i.has(Flags::PIPELINED) { self.state.adder[2] } else { leaving_product };
-        self.state.set_f(i.dest, to_register);
+        self.state.set_f(i.dest, if pipelined { leaving_sum } else { leaving_product });
         if route.loads_t {
             self.state.t = convert(leaving_product, r, flush);
         }
@@ -272,23 +301,18 @@ impl Cpu {
         self.push_sum(sum);
     }
 
+    /// The values of all [`Source`]s in the precision of one unit, in the order of the enumeration.
+    #[inline(always)]
+    fn sources(&self, from: Operands, product: Stage, sum: Stage, double: bool) -> [u64; 7] {
+        let read = |stage: Stage| match stage.double == double {
+            true => stage.bits,
+            false => convert(stage, double, self.flush_to_zero()),
+        };
+        [self.state.kr, self.state.ki, self.state.t, from.a, from.b, read(product), read(sum)]
+    }
+
     fn load_constant(&mut self, imaginary: bool, value: u64) {
         let register = if imaginary { &mut self.state.ki } else { &mut self.state.kr };
         *register = value;
-    }
-
-    /// An operand of a dual operation in the precision that its unit reads.
-    #[inline]
-    fn source(&self, source: Source, from: Operands, s: bool, double: bool) -> u64 {
-        let flush = self.flush_to_zero();
-        match source {
-            Source::Kr => self.state.kr,
-            Source::Ki => self.state.ki,
-            Source::T => self.state.t,
-            Source::S1 => from.a,
-            Source::S2 => from.b,
-            Source::M => convert(last_product(&self.state, s), double, flush),
-            Source::A => convert(self.state.adder[2], double, flush),
-        }
     }
 }

@@ -1,16 +1,25 @@
 //! Pixels in memory and in files.
 
+use crate::region::Segment;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, RgbImage};
-use pxpl5_wire::{FieldParity, Word};
+use pxpl5_wire::Word;
 use std::fmt;
 use std::io::{self, Write};
+use std::ops::Deref;
+use std::sync::Arc;
 
-/// Words 0x00RRGGBB, row by row.
+/// Mark of a pixel that has been put.
+const PUT: Word = 0xff00_0000;
+
+/// Words 0x00RRGGBB, row by row. A pixel that has been put is not put again: the newest comes first.
 pub(crate) struct Canvas {
     width: u32,
     words: Vec<Word>,
 }
+
+/// Some pixels of one row.
+pub(crate) struct Row<'a>(&'a mut [Word]);
 
 impl Canvas {
     pub(crate) fn new(width: u32, height: u32) -> Self {
@@ -18,41 +27,36 @@ impl Canvas {
         Self { width, words }
     }
 
-    /// Puts a row of pixels whose first stands at [x, y]; it must lie in the canvas.
-    pub(crate) fn put(&mut self, at: [u32; 2], pixels: &[Word]) {
-        let begin = self.index(at);
-        self.words[begin..begin + pixels.len()].copy_from_slice(pixels);
-    }
-
-    /// As `put`, only those pixels whose number is chosen.
-    pub(crate) fn put_some(&mut self, at: [u32; 2], pixels: &[Word], chosen: impl Fn(u32) -> bool) {
-        let begin = self.index(at);
-        for (i, pixel) in (0..).zip(pixels) {
-            if chosen(i) {
-                self.words[begin + i as usize] = *pixel;
-            }
-        }
-    }
-
-    pub(crate) fn clear_lines(&mut self, parity: FieldParity) {
-        let lines = self.words.chunks_exact_mut(self.width as usize);
-        for line in lines.skip(parity.first_line() as usize).step_by(2) {
-            line.fill(0);
-        }
+    /// `length` pixels of which the first stands at [x, y]; they must lie in the canvas.
+    pub(crate) fn row(&mut self, [x, y]: [u32; 2], length: u32) -> Row<'_> {
+        let begin = (y * self.width + x) as usize;
+        Row(&mut self.words[begin..begin + length as usize])
     }
 
     pub(crate) fn into_image(self) -> RgbImage {
         let height = self.words.len() as u32 / self.width;
-        let bytes = self.words.iter().flat_map(|word| {
+        let mut bytes = vec![0; 3 * self.words.len()];
+        for (pixel, word) in bytes.chunks_exact_mut(3).zip(&self.words) {
             let [_, red, green, blue] = word.to_be_bytes();
-            [red, green, blue]
-        });
-        let bytes = bytes.collect();
+            pixel.copy_from_slice(&[red, green, blue]);
+        }
         RgbImage::from_raw(self.width, height, bytes).unwrap_or_default()
     }
+}
 
-    const fn index(&self, [x, y]: [u32; 2]) -> usize {
-        (y * self.width + x) as usize
+impl Row<'_> {
+    /// Puts those pixels of a segment that are chosen; the image is computed only when one of them is missing.
+    pub(crate) fn put(self, image: &impl Deref<Target = Arc<[Word]>>, segment: &Segment, chosen: impl Fn(u32) -> bool) {
+        if self.0.iter().all(|word| word & PUT != 0) {
+            return;
+        }
+        // An image that is too short leaves black.
+        let pixels = image.get(segment.image_range()).unwrap_or_default();
+        for ((i, word), pixel) in (0..).zip(self.0).zip(pixels) {
+            if *word & PUT == 0 && chosen(i) {
+                *word = pixel | PUT;
+            }
+        }
     }
 }
 

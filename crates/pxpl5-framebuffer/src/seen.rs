@@ -7,6 +7,7 @@ use crate::video::Video;
 use image::RgbImage;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, FieldParity};
+use std::cell::LazyCell;
 
 /// One field as it was scanned: lazy, cheap to clone, independent of what the board does later.
 #[derive(Clone, Debug)]
@@ -59,9 +60,7 @@ impl SeenField {
     #[must_use]
     pub fn picture(&self) -> RgbImage {
         let mut canvas = Canvas::new(self.video.width(), self.video.height() / 2);
-        for region in self.regions.iter() {
-            self.paint(region, &mut canvas, |y| y / 2);
-        }
+        self.paint(&mut canvas, |y| y / 2);
         canvas.into_image()
     }
 
@@ -69,14 +68,11 @@ impl SeenField {
     /// on a black frame.
     #[must_use]
     pub fn interlaced_with(&self, other: &Self) -> RgbImage {
-        let mut fields = [self, other];
-        fields.sort_by_key(|seen| seen.field);
+        let (earlier, later) = if self.field < other.field { (self, other) } else { (other, self) };
         let mut canvas = Canvas::new(self.video.width(), self.video.height());
-        for seen in fields {
-            canvas.clear_lines(seen.parity());
-            for region in seen.regions.iter() {
-                seen.paint(region, &mut canvas, |y| y);
-            }
+        later.paint(&mut canvas, |y| y);
+        if earlier.parity() != later.parity() {
+            earlier.paint(&mut canvas, |y| y);
         }
         canvas.into_image()
     }
@@ -93,19 +89,20 @@ impl SeenField {
         begun && region.last_at().is_none_or(|last| last > self.video.retrace(self.field))
     }
 
-    fn paint(&self, region: &RegionWrite, canvas: &mut Canvas, row_of: impl Fn(u32) -> u32) {
-        let pixels = region.image.pixels();
-        for segment in region.segments(self.word) {
-            let Some(scanned_at) = self.video.when(segment.x, segment.y, self.field) else {
-                continue;
-            };
-            let place = [segment.x, row_of(segment.y)];
-            let source = pixels.get(segment.image_range()).unwrap_or_default();
-            if segment.message_at <= scanned_at {
-                canvas.put(place, source);
-            } else {
-                let in_time = |i: u32| self.in_time(&segment, i);
-                canvas.put_some(place, source, in_time);
+    /// Newest first, so that regions that are hidden are never computed.
+    fn paint(&self, canvas: &mut Canvas, row_of: impl Fn(u32) -> u32) {
+        for region in self.regions.iter().rev() {
+            let pixels = LazyCell::new(|| region.image.pixels());
+            for segment in region.segments(self.word) {
+                let Some(scanned_at) = self.video.when(segment.x, segment.y, self.field) else {
+                    continue;
+                };
+                let row = canvas.row([segment.x, row_of(segment.y)], segment.length);
+                if segment.message_at <= scanned_at {
+                    row.put(&pixels, &segment, |_| true);
+                } else {
+                    row.put(&pixels, &segment, |i| self.in_time(&segment, i));
+                }
             }
         }
     }
@@ -163,11 +160,11 @@ impl BufferContents {
     #[must_use]
     pub fn picture(&self) -> RgbImage {
         let mut canvas = Canvas::new(self.video.width(), self.video.height());
-        for region in self.regions.iter() {
-            let pixels = region.image.pixels();
+        for region in self.regions.iter().rev() {
+            let pixels = LazyCell::new(|| region.image.pixels());
             for segment in region.segments(Span::ZERO) {
-                let source = pixels.get(segment.image_range()).unwrap_or_default();
-                canvas.put([segment.x, segment.y], source);
+                let row = canvas.row([segment.x, segment.y], segment.length);
+                row.put(&pixels, &segment, |_| true);
             }
         }
         canvas.into_image()

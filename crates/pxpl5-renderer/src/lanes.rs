@@ -1,15 +1,24 @@
 //! `Lanes`: the array by values. Fast, and bit for bit what [`crate::BitSerial`] defines.
 
+mod bounds;
 mod columns;
+mod ellipse;
 mod general;
+mod large;
+mod roots;
+mod shade;
+mod sphere;
+mod triangle;
 mod values;
+mod whole;
 
 use crate::array::{EMPTY_PLANE, Executed, Fault, FaultKind, PIXELS, PixelArray, Plane};
 use crate::controller::{Bits, Controller};
-use crate::isa::{BACKING_BLOCKS, Instruction};
+use crate::isa::{BACKING_BLOCKS, ENABLE_ALL, Instruction};
 use crate::layout::Layout;
 use crate::simd::{Present, Vectors};
 use columns::Columns;
+use whole::Templates;
 use pxpl5_wire::{REGION_SIZE, Word};
 
 /// The array by values: one word a pixel and field.
@@ -20,6 +29,7 @@ use pxpl5_wire::{REGION_SIZE, Word};
 pub struct Lanes {
     layout: Layout,
     vectors: Present,
+    templates: Templates,
     controller: Controller,
     columns: Columns,
     /// 255 where the pixel is enabled, else 0.
@@ -42,6 +52,7 @@ impl Lanes {
         Self {
             layout: *layout,
             vectors: Present::or_portable(vectors),
+            templates: Templates::new(layout),
             controller: Controller::default(),
             columns: Columns::new(layout),
             enable: Box::new([0; PIXELS]),
@@ -61,6 +72,11 @@ impl Lanes {
     }
 
     fn step(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> Result<usize, Fault> {
+        if words[position] >> 24 == u32::from(ENABLE_ALL)
+            && let Some(used) = self.whole_command(&words[position..], executed)
+        {
+            return Ok(used);
+        }
         let (instruction, used) = Instruction::decode(words, position)
             .map_err(|error| Fault { position, kind: FaultKind::Illegal(error.kind) })?;
         self.controller

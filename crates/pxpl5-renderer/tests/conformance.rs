@@ -5,7 +5,7 @@ use pxpl5_renderer::{BitSerial, Lanes, Layout, PixelArray, Vectors};
 use std::time::{Duration, Instant};
 
 /// Rounds of each layout without the variable.
-const ROUNDS: u64 = 60;
+const ROUNDS: u64 = 20;
 
 fn layouts() -> [Layout; 3] {
     [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()]
@@ -19,10 +19,8 @@ fn check(result: Result<(), Mismatch>) {
 
 #[test]
 fn every_instruction_agrees_with_corner_operands() {
-    for layout in layouts() {
-        let mut definition = BitSerial::new(&layout);
-        check(conformance::instructions(&mut definition, &mut Lanes::new(&layout)));
-    }
+    let layout = Layout::slats();
+    check(conformance::instructions(&mut BitSerial::new(&layout), &mut Lanes::new(&layout)));
 }
 
 #[test]

@@ -108,8 +108,8 @@ parameters! {
     VIEW_HEIGHT = "height of the head-mounted display", 480.0 "px", Published "TR94", 1.0..16384.0;
     VIEW_ANGLE = "horizontal angle of view", 60.0 "deg", Published "JITP", 1.0..170.0;
 
-    JERK_POSITION = "white jerk of the position filter, root of its spectral density", 0.4 "m/s^3/sqrt(Hz)", Assumed "least mean error at 50 ms, synthetic motion, Fastrak: within 10 % from 0.2 to 0.6", 0.01..1000.0;
-    JERK_ORIENTATION = "white jerk of the orientation filter, root of its spectral density", 14.0 "rad/s^3/sqrt(Hz)", Assumed "least mean error at 50 ms, synthetic motion, Fastrak: within 5 % from 10 to 20", 0.1..10000.0;
+    JERK_POSITION = "white jerk of the position filter, root of its spectral density", 0.4 "m/s^3/sqrt(Hz)", Assumed "least mean error 50 ms ahead, flat from 0.2 to 0.6", 0.01..1000.0;
+    JERK_ORIENTATION = "white jerk of the orientation filter, root of its spectral density", 14.0 "rad/s^3/sqrt(Hz)", Assumed "least mean error 50 ms ahead, flat from 10 to 20", 0.1..10000.0;
     START_SPEED = "standard deviation of the speed at the start of a filter", 1.0 "m/s", Assumed "above the mean translation speed", 0.01..10.0;
     START_ACCELERATION = "standard deviation of the acceleration at the start of a filter", 5.0 "m/s^2", Assumed "half of gravity", 0.01..100.0;
     START_TURN = "standard deviation of the angular velocity at the start of a filter", 2.0 "rad/s", Assumed "the 95th percentile of recorded traces", 0.01..20.0;
@@ -122,7 +122,7 @@ parameters! {
     GATE_PATIENCE = "rejected jumps in a row after which the new place is believed", 5.0 "reports", Assumed "42 ms at 120 Hz", 1.0..100.0;
     GATE_GAP = "silence after which velocities are forgotten", 250.0 "ms", Assumed "30 reports at 120 Hz; longer than any planned prediction", 10.0..10000.0;
     GATE_INTERVAL = "least time between two reports", 0.05 "ms", Assumed "half the period of the fastest rate of a tracker", 0.0..1.0;
-    HORIZON = "longest prediction; beyond it the prediction stands still", 500.0 "ms", Assumed "2.5 times the longest measured prediction", 1.0..10000.0;
+    HORIZON = "longest prediction; beyond it the last pose is given", 500.0 "ms", Assumed "2.5 times the longest measured prediction", 1.0..10000.0;
 }
 
 #[cfg(test)]

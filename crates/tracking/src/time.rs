@@ -31,10 +31,12 @@ pub fn ntsc_lines_ps(n: u32) -> u64 {
     u64::from(n) * 4_004_000_000 / 63
 }
 
-/// Seconds to the nearest picosecond. The argument must be finite, not negative and below 2^64 ps.
+/// Seconds to the nearest picosecond. Negative spans and NaN give 0, spans of 2^64 ps and more
+/// the end of time.
 pub(crate) fn nearest_ps(seconds: f64) -> u64 {
     let whole = libm::floor(seconds);
-    whole as u64 * PS_PER_S + libm::round((seconds - whole) * PS_PER_S as f64) as u64
+    let rest_ps = libm::round((seconds - whole) * PS_PER_S as f64) as u64;
+    (whole as u64).saturating_mul(PS_PER_S).saturating_add(rest_ps)
 }
 
 #[cfg(test)]

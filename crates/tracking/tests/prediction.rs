@@ -88,15 +88,29 @@ fn before_the_first_report_the_prediction_is_the_identity() {
 }
 
 #[test]
-fn a_prediction_stands_still_beyond_its_horizon() {
+fn beyond_the_horizon_the_prediction_is_the_last_pose() {
     for kind in PredictorKind::ALL {
         let mut predictor = build(kind, &TrackerConfig::ideal());
         let pan = Pan::at(100.0);
         (0..50).for_each(|i| predictor.observe(&report(i * PS_PER_MS, pan.pose(i * PS_PER_MS))));
-        let at = |ms: u64| predictor.predict((49 + ms) * PS_PER_MS);
-        assert_eq!(at(500), at(501));
-        assert_eq!(at(500), predictor.predict(u64::MAX));
-        assert_eq!(at(499) == at(500), kind == PredictorKind::None);
+        let last_ps = 49 * PS_PER_MS;
+        let at_horizon = predictor.predict(last_ps + 500 * PS_PER_MS);
+        let beyond = predictor.predict(last_ps + 500 * PS_PER_MS + 1);
+        assert!(beyond.angle_deg(&pan.pose(last_ps)) < 1e-2, "{kind:?}");
+        assert_eq!(beyond, predictor.predict(u64::MAX));
+        assert_eq!(at_horizon.angle_deg(&beyond) < 1.0, kind == PredictorKind::None);
+    }
+}
+
+#[test]
+fn when_the_patched_host_dies_predictors_go_on_with_the_last_pose() {
+    let tracker = TrackerModel::new(TrackerConfig::flock_of_birds_on_patched_host()).unwrap();
+    let motion = Synthetic::recorded_use(1);
+    for kind in PredictorKind::ALL {
+        let mut predictor = build(kind, tracker.config());
+        let last = tracker.reports(&motion, 1).inspect(|r| predictor.observe(r)).last().unwrap();
+        let later = predictor.predict(60 * PS_PER_S);
+        assert!(later.distance_m(&last.pose) < 0.02 && later.angle_deg(&last.pose) < 4.0, "{kind:?}");
     }
 }
 

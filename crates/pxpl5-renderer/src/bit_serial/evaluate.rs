@@ -5,7 +5,7 @@ use super::{BitSerial, planes};
 use crate::array::{EMPTY_PLANE, FaultKind, Plane};
 use crate::controller::{Bits, Local};
 use crate::isa::{Expression, ExpressionUse, LINEAR_BITS, Operand};
-use crate::simd::{Kernel, Present};
+use crate::simd::{Kernel, Present, Vector};
 
 /// The bits of an expression on their way to a field.
 struct Delivery {
@@ -126,7 +126,7 @@ impl Kernel for Store<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
+    fn run<V: Vector>(self) {
         planes::store(self.old, self.new, self.enable);
     }
 }
@@ -142,7 +142,7 @@ impl Kernel for Borrow<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
+    fn run<V: Vector>(self) {
         planes::borrow(self.a, self.b, self.borrow);
     }
 }

@@ -8,7 +8,7 @@
 
 use crate::array::{EMPTY_PLANE, Plane};
 use crate::controller::Local;
-use crate::simd::Kernel;
+use crate::simd::{Kernel, Vector};
 use pxpl5_wire::{Linear, Quadratic};
 
 /// One bit for each of 128 columns or rows.
@@ -247,7 +247,7 @@ impl Kernel for Next<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
+    fn run<V: Vector>(self) {
         self.evaluator.next(self.t, self.out);
     }
 }

@@ -3,7 +3,7 @@
 use super::{ArithmeticOp, Expression, ExpressionUse, Instruction, Operand, Test};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, Word};
 
-pub(super) mod opcode {
+pub(crate) mod opcode {
     pub(crate) const ENABLE_ALL: u8 = 0x01;
     pub(crate) const ENABLE_NONE: u8 = 0x02;
     pub(crate) const ENABLE_INVERT: u8 = 0x03;

@@ -56,7 +56,7 @@ impl Pendulum {
 
     /// Instant of low point `n` (0 is the first): (2 n + 1) quarter periods.
     pub fn low_point_ps(&self, n: u64) -> u64 {
-        nearest_ps((2 * n + 1) as f64 * self.period_s / 4.0)
+        nearest_ps((2.0 * n as f64 + 1.0) * self.period_s / 4.0)
     }
 
     /// Angle from the vertical (rad, positive towards +x) and its rate (rad/s).
@@ -183,6 +183,11 @@ mod tests {
     #[test]
     fn the_rates_are_those_of_the_poses() {
         (1..20).for_each(|i| assert_rates_agree_with_poses(&Pendulum::rig(), i * 77_777_777_777, 1e-6));
+    }
+
+    #[test]
+    fn a_low_point_past_the_end_of_time_is_the_end_of_time() {
+        assert_eq!(Pendulum::rig().low_point_ps(u64::MAX), u64::MAX);
     }
 
     #[test]

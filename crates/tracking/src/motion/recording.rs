@@ -17,11 +17,14 @@ const LATEST_S: f64 = 1e7;
 /// How far the length of a recorded quaternion may be from 1; four printed decimals stay well within it.
 const LENGTH_TOLERANCE: f64 = 1e-2;
 
+/// Time stamp (ps) and pose.
+type Sample = (u64, Pose);
+
 /// A recorded trace, replayed: straight lines between positions, slerp between orientations. Before the first sample
 /// and after the last the head stands still.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    samples: Vec<(u64, Pose)>,
+    samples: Vec<Sample>,
 }
 
 impl Recording {
@@ -32,7 +35,7 @@ impl Recording {
         let mut records = reader.records();
         let header = records.next().ok_or(LoadError::Empty)?.map_err(unreadable)?;
         check_header(&header)?;
-        let mut samples: Vec<(u64, Pose)> = Vec::new();
+        let mut samples: Vec<Sample> = Vec::new();
         for record in records {
             let record = record.map_err(unreadable)?;
             let sample = parse(&record)?;
@@ -55,7 +58,7 @@ impl Recording {
     }
 
     /// The samples about `t_ps`; `None` outside of the recording.
-    fn bracket(&self, t_ps: u64) -> Option<(&(u64, Pose), &(u64, Pose))> {
+    fn bracket(&self, t_ps: u64) -> Option<(&Sample, &Sample)> {
         let after = self.samples.partition_point(|(t, _)| *t <= t_ps);
         Some((self.samples.get(after.checked_sub(1)?)?, self.samples.get(after)?))
     }
@@ -175,7 +178,7 @@ fn check_header(header: &csv::StringRecord) -> Result<(), LoadError> {
     Err(LoadError::Header { found: header.iter().collect::<Vec<_>>().join(",") })
 }
 
-fn parse(record: &csv::StringRecord) -> Result<(u64, Pose), LoadError> {
+fn parse(record: &csv::StringRecord) -> Result<Sample, LoadError> {
     if record.len() != COLUMNS.len() {
         return Err(LoadError::Fields { line: line(record), found: record.len() });
     }

@@ -3,7 +3,7 @@ use glam::{DQuat, DVec3};
 use crate::rotation;
 
 /// A filter of one quantity, position or orientation. Updates come with rising times; the gate sees to that.
-pub(super) trait Channel<T> {
+pub(super) trait Channel<T>: Send {
     /// Forgets everything but this value.
     fn restart(&mut self, t_ps: u64, value: T);
     /// Takes a measured value.
@@ -13,7 +13,7 @@ pub(super) trait Channel<T> {
 }
 
 /// Values whose differences are vectors: positions (m) and orientations (rotation vectors, rad).
-pub(super) trait Movable: Copy {
+pub(super) trait Movable: Copy + Send {
     /// The vector from `origin` to `self`.
     fn since(self, origin: Self) -> DVec3;
     /// `self`, moved by a vector.

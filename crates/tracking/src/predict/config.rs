@@ -49,7 +49,7 @@ pub struct PredictorConfig {
     pub position_jerk: f64,
     /// The same of orientations, rad/s^3/sqrt(Hz).
     pub orientation_jerk: f64,
-    /// Longest prediction, ps; beyond it the prediction stands still.
+    /// Longest prediction, ps; beyond it the last pose is given.
     pub horizon_ps: u64,
 }
 

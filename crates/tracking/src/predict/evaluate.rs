@@ -48,7 +48,7 @@ pub fn prediction_errors<M: Motion + ?Sized>(
             continue;
         }
         for (error, horizon_ps) in errors.iter_mut().zip(horizons_ps) {
-            let at_ps = report.measured_ps + horizon_ps;
+            let at_ps = report.measured_ps.saturating_add(*horizon_ps);
             error.add(&predictor.predict(at_ps), &motion.pose(at_ps));
         }
     }

@@ -18,12 +18,12 @@ use crate::pose::Pose;
 use crate::tracker::Report;
 
 /// Something that turns late reports into a pose at a wanted instant.
-pub trait Predictor {
+pub trait Predictor: Send {
     /// Takes a report in order of arrival. Reports that cannot be true are rejected and counted, never an error.
     fn observe(&mut self, report: &Report);
 
     /// The pose at `at_ps`. Before the first accepted report it is [`Pose::IDENTITY`]; farther from the last report
-    /// than the horizon of the configuration it stands still.
+    /// than the horizon of the configuration it is the last pose, as when the tracker has fallen silent.
     fn predict(&self, at_ps: u64) -> Pose;
 
     /// What became of the reports so far.

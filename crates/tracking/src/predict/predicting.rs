@@ -23,8 +23,10 @@ impl<P, O> Predicting<P, O> {
         Self { gate: Gate::default(), position, orientation, newest_ps: None, horizon_s }
     }
 
+    /// Seconds to extrapolate; beyond the horizon none, since the last pose is the best guess then.
     fn ahead(&self, newest_ps: u64, at_ps: u64) -> f64 {
-        span_s(newest_ps, at_ps).clamp(-self.horizon_s, self.horizon_s)
+        let dt_s = span_s(newest_ps, at_ps);
+        if dt_s.abs() <= self.horizon_s { dt_s } else { 0.0 }
     }
 }
 

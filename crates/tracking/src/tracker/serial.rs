@@ -22,7 +22,8 @@ impl SerialLine {
     /// Time of `records` records on the line: bytes x 10 bits / baud.
     pub fn transfer_ps(&self, records: u32) -> u64 {
         let bits = u128::from(self.record_bytes) * SERIAL_BITS.value as u128 * u128::from(records);
-        (bits * u128::from(PS_PER_S) / u128::from(self.baud)) as u64
+        let ps = bits.saturating_mul(u128::from(PS_PER_S)) / u128::from(self.baud.max(1));
+        u64::try_from(ps).unwrap_or(u64::MAX)
     }
 }
 
@@ -51,7 +52,10 @@ impl HostLine {
         match *self {
             Self::InterruptPerCharacter => t_ps,
             Self::Polled { .. } if t_ps <= phase_ps => phase_ps,
-            Self::Polled { period_ps } => phase_ps + (t_ps - phase_ps).div_ceil(period_ps).saturating_mul(period_ps),
+            Self::Polled { period_ps } => {
+                let period_ps = period_ps.max(1);
+                phase_ps.saturating_add((t_ps - phase_ps).div_ceil(period_ps).saturating_mul(period_ps))
+            }
         }
     }
 }
@@ -76,6 +80,13 @@ mod tests {
         assert_eq!(line.seen_ps(look, 5), look);
         assert_eq!(line.seen_ps(look + 1, 5), look + 30 * PS_PER_MS);
         assert_eq!(line.seen_ps(0, 5), 5);
+    }
+
+    #[test]
+    fn unchecked_lines_are_slow_or_late_but_never_a_panic() {
+        assert!(SerialLine { record_bytes: u32::MAX, baud: 0 }.transfer_ps(u32::MAX) > 0);
+        assert_eq!(HostLine::Polled { period_ps: 0 }.seen_ps(9, 5), 9);
+        assert_eq!(HostLine::Polled { period_ps: u64::MAX }.seen_ps(9, 5), u64::MAX);
     }
 
     #[test]

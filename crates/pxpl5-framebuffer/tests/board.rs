@@ -1,0 +1,360 @@
+//! Buffers, swaps and what is seen, rule by rule.
+
+mod support;
+
+use pxpl5_framebuffer::{
+    ConfigError, FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferFault, FrameBufferOutput, PictureError,
+    RgbImage, write_png,
+};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{FieldParity, Lines, NodeId, RegionGrid, RegionPixels};
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use support::{Board, MESSAGE, NODE, WORD, colour, field_target, n_parts, source, target};
+
+const RED: u32 = 0x00ff_0000;
+const GREEN: u32 = 0x0000_ff00;
+
+fn word(picture: &RgbImage, x: u32, y: u32) -> u32 {
+    let [red, green, blue] = picture.get_pixel(x, y).0;
+    u32::from_be_bytes([0, red, green, blue])
+}
+
+/// A board whose buffer 0 is red and buffer 1 green before field 2 begins.
+fn painted() -> Board {
+    let mut board = Board::new();
+    for region in 0..20 {
+        for (buffer, word) in [(0, RED), (1, GREEN)] {
+            let at = Time(1_000_000_000 * (1 + u64::from(region)));
+            board.region(at, target(buffer, Lines::Frame, RegionGrid::FRAME, region, 0), &colour(word));
+        }
+    }
+    board
+}
+
+fn swaps(board: &Board) -> Vec<(Time, u8, u64)> {
+    let swaps = board.bench.outputs.iter().filter_map(|(time, output)| match output {
+        FrameBufferOutput::Swapped { buffer, field } => Some((*time, *buffer, *field)),
+        FrameBufferOutput::RegionArrived { .. } => None,
+    });
+    swaps.collect()
+}
+
+#[test]
+fn a_swap_takes_effect_at_the_next_retrace_only() {
+    let mut board = painted();
+    board.retraces(0..=4);
+    let retrace = board.device.video().retrace(3);
+    board.swap(Time(retrace.0 - 1), 1);
+    board.run();
+    assert_eq!(swaps(&board), [(retrace + WORD, 1, 3)]);
+    let seen = [2, 3].map(|field| word(&board.device.seen(field).expect("kept").picture(), 5, 5));
+    assert_eq!(seen, [RED, GREEN]);
+    assert_eq!(board.device.displayed(), 1);
+}
+
+#[test]
+fn a_swap_asked_for_at_the_instant_of_a_retrace_waits_for_the_next() {
+    for seed in 0..20 {
+        let mut board = Board::new();
+        board.bench.queue().shuffle_ties(seed);
+        board.retraces(0..=4);
+        let [third, fourth] = [3, 4].map(|field| board.device.video().retrace(field));
+        board.swap(third, 1);
+        board.run();
+        assert_eq!(swaps(&board), [(fourth + WORD, 1, 4)]);
+    }
+}
+
+#[test]
+fn the_last_of_several_requests_counts() {
+    let mut board = Board::new();
+    board.retraces(0..=2);
+    board.swap(Time(10), 1);
+    board.swap(Time(20), 0);
+    board.swap(Time(30), 1);
+    board.run();
+    assert_eq!(swaps(&board).len(), 1);
+    assert_eq!((board.device.displayed(), board.device.stats().swaps), (1, 1));
+}
+
+#[test]
+fn a_region_has_arrived_with_its_last_message() {
+    let mut board = Board::new();
+    let top_left = field_target(1, FieldParity::Even, 0, 9);
+    let last_part_at = Time(5_000_000_000);
+    board.region(last_part_at, top_left, &colour(RED));
+    board.run();
+    let first_part_at = Time(last_part_at.0 - (MESSAGE * 14).0);
+    let arrived = FrameBufferOutput::RegionArrived { target: top_left, first_part_at, last_part_at };
+    assert_eq!(board.bench.outputs, [(last_part_at + WORD, arrived)]);
+    assert_eq!((board.device.stats().messages, board.device.stats().regions), (15, 1));
+}
+
+#[test]
+fn rows_of_a_field_region_fill_the_lines_of_that_field() {
+    let mut board = Board::new();
+    let image = source(1, 1, 128 * 120);
+    board.region(Time(2_000_000_000), field_target(0, FieldParity::Odd, 6, 0), &image);
+    board.retraces(0..=3);
+    board.run();
+    let frame = board.device.displayed_frame().picture();
+    // Region 6 is the second of the bottom row: its first row is row 120 of the field, line 241 of the frame.
+    assert_eq!(word(&frame, 128, 241), 1);
+    assert_eq!(word(&frame, 255, 241), 128);
+    assert_eq!(word(&frame, 128, 243), 129);
+    assert_eq!([word(&frame, 128, 242), word(&frame, 127, 241), word(&frame, 256, 241)], [0; 3]);
+    let odd = board.device.seen(1).expect("kept").picture();
+    assert_eq!((odd.dimensions(), word(&odd, 128, 120)), ((640, 240), 1));
+    assert_eq!(word(&board.device.seen(2).expect("kept").picture(), 128, 120), 0);
+}
+
+#[test]
+fn two_fields_make_an_interlaced_frame_in_either_order() {
+    let mut board = painted();
+    let swap = board.device.video().retrace(2);
+    board.swap(swap, 1);
+    board.retraces(0..=4);
+    board.run();
+    let [even, odd] = [2, 3].map(|field| board.device.seen(field).expect("kept"));
+    for frame in [even.interlaced_with(&odd), odd.interlaced_with(&even)] {
+        assert_eq!(frame.dimensions(), (640, 480));
+        assert_eq!([0, 1, 478, 479].map(|y| word(&frame, 639, y)), [RED, GREEN, RED, GREEN]);
+    }
+    let alone = even.interlaced_with(&even);
+    assert_eq!([0, 1].map(|y| word(&alone, 0, y)), [RED, 0]);
+}
+
+/// The last pixel of a message arrives with it: message 0 of a field region ends with row 7, pixel 127.
+#[test]
+fn a_word_that_arrives_with_the_beam_is_seen_and_one_a_picosecond_later_is_not() {
+    for (late, expected) in [(0, GREEN), (1, RED)] {
+        let mut board = painted();
+        board.retraces(0..=3);
+        let beam = board.device.video().when(127, 14, 2).expect("scanned");
+        board.part(beam + Span(late), field_target(0, FieldParity::Even, 0, 1), &colour(GREEN), 0);
+        board.run();
+        let picture = board.device.seen(2).expect("kept").picture();
+        assert_eq!(word(&picture, 127, 7), expected);
+        // The pixel before it is 50 ns earlier on the ring but 81 ns earlier under the beam.
+        assert_eq!(word(&picture, 126, 7), RED);
+    }
+}
+
+/// Words come faster than the beam moves, so a region is in time if its first word is.
+#[test]
+fn a_region_is_late_from_a_picosecond_after_its_first_pixel_was_scanned() {
+    for late in [0, 1] {
+        let mut board = painted();
+        board.retraces(0..=3);
+        let bottom = field_target(0, FieldParity::Even, 5, 1);
+        let reached = board.device.video().reaches(&bottom, 2).expect("scanned");
+        let last = reached + Span(late) + WORD * 1_023 + MESSAGE * 14;
+        board.region(last, bottom, &colour(GREEN));
+        board.run();
+        let seen = board.device.seen(2).expect("kept");
+        let listed = seen.late_regions();
+        assert_eq!(listed.len(), late as usize);
+        for region in listed {
+            assert_eq!((region.target, region.arrived_at), (bottom, Some(last)));
+            assert_eq!((region.first_line, region.lines, region.lateness), (240, 1, Span(1)));
+        }
+        assert_eq!(word(&seen.picture(), 0, 120), if late == 0 { GREEN } else { RED });
+    }
+}
+
+#[test]
+fn a_region_that_misses_its_field_shows_the_old_picture_on_all_its_lines() {
+    let mut board = painted();
+    board.retraces(0..=3);
+    let end = board.device.video().retrace(3);
+    let top = field_target(0, FieldParity::Even, 0, 1);
+    board.region(Time(end.0 + MESSAGE.0), top, &colour(GREEN));
+    board.run();
+    let seen = board.device.seen(2).expect("kept");
+    let listed = seen.late_regions();
+    assert_eq!((listed[0].lines, listed[0].arrived_at), (120, None));
+    // Message 0 came 13 messages before the end of the field, its first word 1,023 words earlier: the latest of all,
+    // since words come faster than the beam moves.
+    let first_scan = board.device.video().reaches(&top, 2).expect("scanned");
+    assert_eq!(listed[0].lateness, end - first_scan - MESSAGE * 13 - WORD * 1_023);
+    assert!((0..120).all(|y| word(&seen.picture(), 64, y) == RED));
+    assert_eq!(word(&board.device.displayed_frame().picture(), 64, 0), GREEN);
+}
+
+#[test]
+fn two_boards_with_the_same_retraces_scan_in_lock_step() {
+    let mut boards = [painted(), painted()];
+    let swap = Time(20_000_000_000);
+    for board in &mut boards {
+        board.retraces(0..=6);
+        board.swap(swap, 1);
+        board.run();
+    }
+    let [left, right] = boards;
+    assert_eq!(swaps(&left), swaps(&right));
+    for field in 5..6 {
+        let [a, b] = [&left, &right].map(|board| board.device.seen(field).expect("kept"));
+        assert_eq!((a.buffer(), a.parity(), a.picture()), (b.buffer(), b.parity(), b.picture()));
+    }
+    assert_eq!([left.device.faults().count, right.device.faults().count], [0, 0]);
+}
+
+#[test]
+fn retraces_of_a_million_fields_are_where_the_board_expects_them() {
+    let mut board = Board::new();
+    for field in 0..1_000_000 {
+        // Exactly n x 1001/60000 s, rounded down.
+        let at = Time(field * 1_001_000_000_000 / 60);
+        board.feed(at, FrameBufferEvent::Retrace { field });
+        if field % 1_000 == 0 {
+            board.run();
+        }
+    }
+    board.run();
+    assert_eq!((board.device.faults().count, board.device.stats().fields), (0, 1_000_000));
+    board.feed(Time(board.device.video().retrace(1_000_000).0 + 1), FrameBufferEvent::Retrace { field: 1_000_000 });
+    board.run();
+    assert_eq!(board.device.faults().count, 1);
+}
+
+#[test]
+fn nobody_computes_pixels_until_somebody_looks_and_hidden_ones_never() {
+    let mut board = Board::new();
+    let hidden = source(RED, 0, 128 * 120);
+    let shown = source(GREEN, 0, 128 * 120);
+    let top = |picture| field_target(0, FieldParity::Even, 3, picture);
+    board.region(Time(1_500_000_000), top(0), &hidden);
+    board.region(Time(17_000_000_000), top(1), &shown);
+    board.retraces(0..=3);
+    board.run();
+    let asked = || [&hidden, &shown].map(|image| image.asked.load(Ordering::Relaxed));
+    assert_eq!(asked(), [0, 0]);
+    let seen = board.device.seen(2).expect("kept");
+    assert_eq!(word(&seen.picture(), 400, 0), GREEN);
+    assert_eq!(asked(), [0, 1]);
+}
+
+#[test]
+fn what_cannot_be_seen_any_more_is_forgotten() {
+    let mut board = Board::new();
+    let mut images = Vec::new();
+    for field in 0..400u64 {
+        board.retraces(field..=field);
+        let begin = board.device.video().retrace(field);
+        for region in 0..10 {
+            let image = colour(RED);
+            images.push(Arc::downgrade(&image));
+            let at = begin + MESSAGE * (15 * (u64::from(region) + 1));
+            let parity = FieldParity::of_field(field / 2);
+            board.region(at, field_target((field % 2) as u8, parity, region, field), &image);
+        }
+        // A region that never becomes complete.
+        board.part(begin + MESSAGE * 200, target(0, Lines::Frame, RegionGrid::FRAME, 3, field), &colour(GREEN), 2);
+        board.run();
+    }
+    let alive = images.iter().filter(|image| image.strong_count() > 0).count();
+    // Two buffers of two fields of ten regions, and what the two remembered fields hold of older ones.
+    assert!((40..=80).contains(&alive), "{alive}");
+}
+
+#[test]
+fn regions_of_other_cuts_are_forgotten_when_newer_ones_cover_them() {
+    let mut board = Board::new();
+    let first = colour(RED);
+    let old = Arc::downgrade(&first);
+    board.region(Time(1_000_000_000), target(0, Lines::Frame, RegionGrid::FRAME, 0, 0), &first);
+    drop(first);
+    let fine = RegionGrid { width: 640, height: 480, region_width: 32, region_height: 32 };
+    for region in 0..300 {
+        board.region(
+            Time(2_000_000_000 + 1_000 * u64::from(region)),
+            target(0, Lines::Frame, fine, region, 0),
+            &colour(1),
+        );
+    }
+    board.retraces(0..=4);
+    board.run();
+    assert_eq!(old.strong_count(), 0);
+    assert_eq!(word(&board.device.displayed_frame().picture(), 127, 127), 1);
+}
+
+#[test]
+fn what_cannot_be_done_is_a_counted_fault_that_says_what() {
+    let frame = |region| target(0, Lines::Frame, RegionGrid::FRAME, region, 0);
+    let huge = RegionGrid { width: u32::MAX, height: u32::MAX, region_width: 1, region_height: 1 };
+    let empty = RegionGrid { width: 640, height: 480, region_width: 0, region_height: 0 };
+    let wide = RegionGrid { width: 640, height: 480, region_width: 640, region_height: 8 };
+    let tall = target(0, Lines::Field(FieldParity::Even), RegionGrid::FRAME, 0, 0);
+    let elsewhere = pxpl5_wire::CopyTarget { frame_buffer: NodeId(1), ..frame(0) };
+    let cases = [
+        (elsewhere, 0, 16, "pixels for node 1 came to the frame buffer at node 7"),
+        (target(2, Lines::Frame, RegionGrid::FRAME, 0, 0), 0, 16, "expected buffer 0 or 1, found 2"),
+        (frame(20), 0, 16, "region 20 of"),
+        (target(0, Lines::Frame, huge, 0, 0), 0, 1, "does not lie in the frame of 640 x 480"),
+        (target(0, Lines::Frame, empty, 0, 0), 0, 1, "does not lie in the frame"),
+        (target(0, Lines::Frame, wide, 0, 0), 0, 5, "exceeds 128 x 128"),
+        (tall, 0, 16, "does not lie in the frame"),
+        (frame(0), 0, 15, "region 0 needs 16 messages of pixels, found 15"),
+        (frame(0), 16, 16, "message 16 of 16 of region 0 does not exist"),
+    ];
+    for (target, part, parts, expected) in cases {
+        let mut board = Board::new();
+        let pixels = RegionPixels { target, image: colour(RED), part, parts };
+        board.feed(Time(5), FrameBufferEvent::Pixels(pixels));
+        board.run();
+        let (time, fault) = board.device.faults().first.clone().expect(expected);
+        assert_eq!(time, Time(5));
+        assert!(fault.to_string().contains(expected), "{fault}");
+    }
+    let mut board = Board::new();
+    board.part(Time(5), frame(0), &colour(RED), 3);
+    board.part(Time(6), frame(0), &colour(RED), 3);
+    board.swap(Time(7), 9);
+    board.run();
+    assert_eq!(board.device.faults().count, 2);
+    let first = board.device.faults().first.clone().map(|fault| fault.1);
+    assert_eq!(first, Some(FrameBufferFault::Part { target: frame(0), found: 3, parts: n_parts(&frame(0)) }));
+}
+
+#[test]
+fn a_source_with_too_few_pixels_leaves_black() {
+    let mut board = Board::new();
+    board.region(Time(2_000_000_000), target(0, Lines::Frame, RegionGrid::FRAME, 0, 0), &source(RED, 0, 100));
+    board.run();
+    let picture = board.device.buffer(0).expect("exists").picture();
+    assert_eq!([word(&picture, 0, 0), word(&picture, 0, 1)], [0, 0]);
+    assert!(board.device.buffer(2).is_none());
+}
+
+#[test]
+fn a_board_that_cannot_be_built_says_why() {
+    let config = FrameBufferConfig { fields_kept: 0, ..FrameBufferConfig::NTSC };
+    let error = FrameBuffer::new(config, NODE).expect_err("nothing kept");
+    assert_eq!(error, ConfigError::Value { name: "fields_kept", found: 0, expected: (1, 1_000) });
+    assert_eq!(error.to_string(), "frame buffer: fields_kept must be 1 to 1000, found 0");
+}
+
+#[test]
+fn a_png_holds_every_pixel_and_a_failing_writer_is_an_error() {
+    let picture = RgbImage::from_fn(5, 3, |x, y| image::Rgb([x as u8, y as u8, 77]));
+    let mut file = Vec::new();
+    write_png(&picture, &mut file).expect("written");
+    let read = image::load_from_memory_with_format(&file, image::ImageFormat::Png).expect("a PNG");
+    assert_eq!(read.to_rgb8(), picture);
+
+    struct Full;
+    impl io::Write for Full {
+        fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+            Err(io::Error::other("disk full"))
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+    let error = write_png(&picture, Full).expect_err("full");
+    assert!(matches!(error, PictureError::Io(_)), "{error:?}");
+    assert_eq!(error.to_string(), "cannot write the picture: disk full");
+    assert!(write_png(&RgbImage::new(0, 0), Vec::new()).is_err());
+}

@@ -1,0 +1,174 @@
+//! Speed of the pixel arrays: host time a command.
+//!
+//! Every list has 64 commands, as a message has about 30, and the time is divided by criterion's throughput.
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use pxpl5_renderer::{
+    BitSerial, Clear, Command, Lanes, Layout, PhongSphere, PhongTriangle, PixelArray, Shade, Sphere, Triangle, Vectors,
+};
+use pxpl5_wire::{Linear, Quadratic};
+use std::hint::black_box;
+
+const COMMANDS: u64 = 64;
+
+/// The edge from p to q in pixels, inside on its left.
+fn edge(p: [i32; 2], q: [i32; 2]) -> Linear {
+    let (dx, dy) = (16 * (q[0] - p[0]), 16 * (q[1] - p[1]));
+    Linear { a: -dy, b: dx, c: dy * p[0] - dx * p[1] }
+}
+
+fn triangle(v: [[i32; 2]; 3]) -> Triangle {
+    let plane = |c: i32| Linear { a: 311, b: -277, c };
+    Triangle {
+        edges: [edge(v[0], v[1]), edge(v[1], v[2]), edge(v[2], v[0])],
+        depth: Linear { a: -1000, b: 3000, c: 1 << 30 },
+        colour: [plane(200 << 12), plane(100 << 12), plane(50 << 12)],
+    }
+}
+
+fn phong(t: Triangle) -> PhongTriangle {
+    PhongTriangle { edges: t.edges, depth: t.depth, normal: t.colour, colour: 0x80_c0_f0 }
+}
+
+/// The same shape at different places of the region.
+fn moved(v: [[i32; 2]; 3], room: i32, i: i32) -> [[i32; 2]; 3] {
+    v.map(|[x, y]| [x + i * 37 % room, y + i * 53 % room])
+}
+
+/// Legs of 14 pixels: 98 pixels.
+const HUNDRED: [[i32; 2]; 3] = [[0, 0], [14, 0], [0, 14]];
+const TEN: [[i32; 2]; 3] = [[0, 0], [5, 0], [0, 4]];
+const SLIVER: [[i32; 2]; 3] = [[0, 0], [100, 93], [98, 93]];
+const WHOLE: [[i32; 2]; 3] = [[-10, -10], [300, -10], [-10, 300]];
+
+fn list(commands: impl Iterator<Item = Command>) -> Vec<u32> {
+    let mut words = Vec::new();
+    for command in commands {
+        command.encode(&Layout::rendering_control_phong(), &mut words).expect("the layout holds all commands");
+    }
+    words
+}
+
+fn triangles(shape: [[i32; 2]; 3], room: i32) -> Vec<u32> {
+    list((0..COMMANDS as i32).map(|i| Command::Triangle(triangle(moved(shape, room, i)))))
+}
+
+fn phong_triangles(shape: [[i32; 2]; 3], room: i32) -> Vec<u32> {
+    list((0..COMMANDS as i32).map(|i| Command::PhongTriangle(phong(triangle(moved(shape, room, i))))))
+}
+
+fn clears() -> Vec<u32> {
+    list((0..COMMANDS as u32).map(|i| Command::Clear(Clear { colour: i })))
+}
+
+/// Spheres of `r` pixels around the middle, nearer one by one.
+fn silhouette(r: i64) -> Quadratic {
+    let scale = 1 << 16;
+    Quadratic {
+        xx: -scale,
+        xy: 0,
+        yy: -scale,
+        x: 128 * scale,
+        y: 128 * scale,
+        one: scale * (r * r - 2 * 64 * 64),
+    }
+}
+
+fn spheres(r: i64) -> Vec<u32> {
+    list((0..COMMANDS as i32).map(|i| {
+        Command::Sphere(Sphere {
+            silhouette: silhouette(r),
+            root_shift: 8,
+            depth: Linear::constant((1 << 30) - i * 1000),
+            depth_shift: 10,
+            colour: [Linear { a: 900, b: 500, c: 30 << 12 }; 3],
+            root_factor: [200; 3],
+        })
+    }))
+}
+
+fn phong_spheres(r: i64) -> Vec<u32> {
+    list((0..COMMANDS as i32).map(|i| {
+        Command::PhongSphere(PhongSphere {
+            silhouette: silhouette(r),
+            root_shift: 8,
+            depth: Linear::constant((1 << 30) - i * 1000),
+            depth_shift: 10,
+            normal: [Linear { a: 16 << 10, b: 0, c: -(1 << 20) }, Linear { a: 0, b: 16 << 10, c: -(1 << 20) }],
+            colour: 0x80_c0_f0,
+        })
+    }))
+}
+
+fn shades() -> Vec<u32> {
+    let shade = Shade { light: [400, 500, 800], half: [200, 250, 970], ambient: 40, diffuse: 180, specular: 255 };
+    list((0..COMMANDS).map(|_| Command::Shade(shade)))
+}
+
+/// Clears, so that every pass draws over the far plane.
+fn prepare(array: &mut impl PixelArray, covered: bool) {
+    let mut words = list(std::iter::once(Command::Clear(Clear { colour: 0 })));
+    if covered {
+        words.extend(list(std::iter::once(Command::PhongTriangle(phong(triangle(WHOLE))))));
+    }
+    array.execute(&words).expect("legal words");
+}
+
+fn lanes(c: &mut Criterion) {
+    let lists = [
+        ("triangle 100 px", triangles(HUNDRED, 110), false),
+        ("triangle 10 px", triangles(TEN, 120), false),
+        ("triangle sliver", triangles(SLIVER, 25), false),
+        ("triangle whole region", triangles(WHOLE, 1), false),
+        ("phong triangle 100 px", phong_triangles(HUNDRED, 110), false),
+        ("phong triangle whole region", phong_triangles(WHOLE, 1), false),
+        ("clear", clears(), false),
+        ("sphere of radius 10", spheres(10), false),
+        ("sphere of radius 60", spheres(60), false),
+        ("phong sphere of radius 60", phong_spheres(60), false),
+        ("shade covered region", shades(), true),
+        ("shade empty region", shades(), false),
+    ];
+    for vectors in Vectors::available() {
+        let mut group = c.benchmark_group(format!("lanes/{vectors:?}"));
+        group.throughput(Throughput::Elements(COMMANDS));
+        for (name, words, covered) in &lists {
+            let mut array = Lanes::with_vectors(&Layout::rendering_control_phong(), vectors);
+            prepare(&mut array, *covered);
+            group.bench_function(BenchmarkId::from_parameter(name), |b| {
+                b.iter(|| array.execute(black_box(words)));
+            });
+        }
+        group.finish();
+    }
+}
+
+fn bit_serial(c: &mut Criterion) {
+    let lists = [
+        ("triangle whole region", triangles(WHOLE, 1)),
+        ("sphere of radius 60", spheres(60)),
+        ("shade covered region", shades()),
+    ];
+    for vectors in Vectors::available() {
+        let mut group = c.benchmark_group(format!("bit serial/{vectors:?}"));
+        group.throughput(Throughput::Elements(COMMANDS));
+        for (name, words) in &lists {
+            let mut array = BitSerial::with_vectors(&Layout::rendering_control_phong(), vectors);
+            prepare(&mut array, true);
+            group.bench_function(BenchmarkId::from_parameter(name), |b| {
+                b.iter(|| array.execute(black_box(words)));
+            });
+        }
+        group.finish();
+    }
+}
+
+fn quick() -> Criterion {
+    Criterion::default()
+        .sample_size(20)
+        .warm_up_time(std::time::Duration::from_millis(200))
+        .measurement_time(std::time::Duration::from_millis(700))
+}
+
+criterion_group! { name = pixels; config = quick(); targets = lanes, bit_serial }
+criterion_main!(pixels);
