@@ -39,7 +39,7 @@ const EXPERIMENTS: [(&str, &str); 3] = [
         r#"
         pipeline = "rendering-control"
         scene = "full-screen:12"
-        fields = 240
+        fields = 360
         published = { figure = 4, source = "TR94", quantity = "latency_ms.mean", value = 56.5 }
         "#,
     ),
@@ -48,7 +48,7 @@ const EXPERIMENTS: [(&str, &str); 3] = [
         r#"
         pipeline = "rendering-control"
         scene = "mig"
-        fields = 240
+        fields = 360
         published = { figure = 7, source = "TR94", quantity = "latency_fields.mean", value = 4.61 }
         "#,
     ),
@@ -58,7 +58,7 @@ const EXPERIMENTS: [(&str, &str); 3] = [
         pipeline = "slats"
         scene = "mig"
         triangles = 140
-        fields = 240
+        fields = 360
         published = { figure = 9, source = "TR94, I3D95", quantity = "latency_fields.mean", value = 1.0 }
         "#,
     ),

@@ -28,7 +28,7 @@ pub(crate) fn table(runs: &[(&Report, Option<&Comparison>)]) -> String {
         rows.push((name, runs.iter().map(|(report, _)| cell(report)).collect()));
     };
     row("pipeline", &|r| r.pipeline.clone());
-    row("machine", &|r| format!("{} ({} GPs, {} renderers)", r.machine, r.n_gps, r.n_renderers));
+    row("machine", &|r| boards(r));
     row("scene", &|r| r.scene.clone());
     row("primitives", &|r| primitives(r));
     row("fields simulated", &|r| r.fields.to_string());
@@ -81,4 +81,9 @@ fn laid_out(rows: &[(&str, Vec<String>)]) -> String {
         format!("{}\n", line.trim_end())
     };
     rows.iter().map(line).collect()
+}
+
+fn boards(report: &Report) -> String {
+    let plural = |n: usize, name: &str| format!("{n} {name}{}", if n == 1 { "" } else { "s" });
+    format!("{} ({}, {})", report.machine, plural(report.n_gps, "GP"), plural(report.n_renderers, "renderer"))
 }
