@@ -2,7 +2,8 @@
 // frame of 640 x 480. A region is touched when its pixels meet the pixels of the bounding box, and every edge has a
 // point of the region on its inner side.
 //
-// In: low x, high x, low y, high y at BOX(r2); a, b, c of three edges at EDGEA(r2); table of bins r19.
+// In: low x, high x, low y, high y at BOX(r2); table of bins r19;
+// macro edgeword k, n, to loads coefficient n (a, b, c) of edge k.
 // Out: number of regions r22. Changes r5 to r15, r23 to r31, f8 to f13.
 
         .macro  insert region
@@ -25,8 +26,8 @@
 
 // to `outside` unless the greatest value of edge k over the region is not negative
         .macro  test k
-        ld.l    EDGEA+12*\k(r2), r28
-        ld.l    EDGEA+12*\k+4(r2), r29
+        edgeword \k, 0, r28
+        edgeword \k, 1, r29
         mov     r7, r30                     // left
         subs    r0, r28, r0
         bnc     x\@
@@ -37,7 +38,7 @@ x\@:    mov     r9, r31                     // top
         mov     r10, r31                    // bottom
 y\@:    times   r28, r30, r28
         times   r29, r31, r29
-        ld.l    EDGEA+12*\k+8(r2), r30
+        edgeword \k, 2, r30
         adds    r28, r29, r28
         adds    r28, r30, r28
         subs    r28, r0, r0

@@ -20,7 +20,7 @@ P_GUARD     = 80          // guard band x, y; least w; greatest w
 P_SCREEN    = 96          // scale x, y; centre x, y (subpixels)
 P_TWO_S     = 112         // 2.0
 P_ROUND_S   = 116         // 1.5 * 2^23
-P_ZERO_S    = 120
+P_FLIP      = 120         // the word 0x97000000: less a biased integer it turns the order round
 // Doubles.
 P_TWO       = 128         // 2.0
 P_DEPTH     = 136         // far - near in depth units

@@ -34,6 +34,10 @@ D1     = 304
 D2     = 312
 SAVE   = 320      // return address
 
+        .macro  edgeword k, n, to
+        ld.l    EDGEA+12*\k+4*\n(r2), \to
+        .endm
+
 // ---- statements
 
 // frame double to = frame double a (op) frame double b

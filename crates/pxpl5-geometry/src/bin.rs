@@ -179,11 +179,13 @@ impl Binner {
         if inside {
             return RegionMask(1 << (row * self.columns + column));
         }
-        self.test_edges(outline, x, y)
+        self.test_edges(outline.x, outline.y, x, y)
     }
 
+    /// Takes the corners alone: were the outline passed on, callers that need no depths would still compute them.
     #[inline(never)]
-    fn test_edges(&self, outline: &Outline, x: Range, y: Range) -> RegionMask {
+    fn test_edges(&self, corners_x: [i32; 3], corners_y: [i32; 3], x: Range, y: Range) -> RegionMask {
+        let outline = Outline { x: corners_x, y: corners_y, z: [0; 3], regions: RegionMask::EMPTY };
         let edges = outline.edges();
         self.cells(x, y, |column, row| {
             let (across, down) = (self.column_box(column), self.row_box(row));
@@ -219,6 +221,17 @@ impl Binner {
         let line = |y: i32| (y << self.line_shift) + self.first_line;
         (line(top), line(bottom))
     }
+}
+
+/// Whether a triangle meets a rectangle of pixels, given as first and last pixel and first and last frame line.
+pub(crate) fn meets(outline: &Outline, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) -> bool {
+    let range = |v: &[i32; 3]| {
+        let [low, high] = extent(v);
+        Range::of_centres(low, high)
+    };
+    let (x, y) = (range(&outline.x), range(&outline.y));
+    let apart = x.first > right || x.last < left || y.first > bottom || y.last < top;
+    !apart && outline.edges().iter().all(|e| greatest(e, (left, right), (top, bottom)) >= 0)
 }
 
 /// Largest value of an edge expression over a box of pixels. No overflow: see [`crate::GUARD_PIXELS`].

@@ -143,10 +143,10 @@ fn length(f: &Fields, out: &mut Vec<Instruction>) {
 
 /// cosine := limit(N . vector / |N|).
 fn cosine(f: &Fields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Instruction>) {
-    let factors = vector.map(|v| i32::from(v << 4 >> 4));
-    out.push(multiply_constant(f.c, f.normal[0], factors[0], VECTOR_BITS));
-    for i in 1..3 {
-        out.push(multiply_constant(f.b, f.normal[i], factors[i], VECTOR_BITS));
+    let [x, y, z] = vector.map(|v| i32::from(v << 4 >> 4));
+    out.push(multiply_constant(f.c, f.normal[0], x, VECTOR_BITS));
+    for (component, factor) in [(f.normal[1], y), (f.normal[2], z)] {
+        out.push(multiply_constant(f.b, component, factor, VECTOR_BITS));
         out.push(arithmetic(ArithmeticOp::Add, f.c, f.c, f.b));
     }
     let positive = f.c.part(0, 23);

@@ -1,8 +1,8 @@
 //! Pixel memory by values: every field of the layout is a column of one 32-bit word a pixel.
 
 use crate::array::{PIXELS, Plane};
-use crate::controller::Bits;
 use crate::command::{ShadeFields, SphereScratch};
+use crate::controller::Bits;
 use crate::isa::{MEMORY_BITS, Operand};
 use crate::layout::Layout;
 

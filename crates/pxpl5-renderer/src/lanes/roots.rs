@@ -3,18 +3,25 @@
 //! IEEE 754 rounds square roots and quotients correctly, so they are the same on every host; all operands here are
 //! exact in 24 bits.
 
+/// The integer nearest to a number from 0 to 2^22. A conversion with `as` would check for overflow, lane by lane.
+#[inline(always)]
+fn nearest(v: f32) -> u32 {
+    // Adding 2^23 leaves no fraction bits: the integer stands in the mantissa.
+    (v + 8_388_608.0).to_bits() & 0x7f_ffff
+}
+
 /// Floor of the square root of a number of 24 bits.
 #[inline(always)]
 pub(super) fn square_root_24(v: u32) -> u32 {
-    // Rounding can reach the next integer, never miss the floor, which is a float itself.
-    let root = (v as i32 as f32).sqrt() as i32 as u32;
+    let root = nearest((v as i32 as f32).sqrt());
     root - u32::from(root * root > v)
 }
 
 /// Quotient of at most 10 bits, and the remainder: a of 23 bits, b of 12; the quotient by 0 is all ones.
 #[inline(always)]
 pub(super) fn divide_10(a: u32, b: u32) -> (u32, u32) {
-    let quotient = (a as i32 as f32 / b.max(1) as i32 as f32) as i32 as u32;
+    let ratio = a as i32 as f32 / b.max(1) as i32 as f32;
+    let quotient = nearest(if ratio < 1024.0 { ratio } else { 1024.0 });
     let quotient = quotient - u32::from(quotient * b > a);
     let quotient = if b == 0 { 1023 } else { quotient.min(1023) };
     (quotient, a - quotient * b)

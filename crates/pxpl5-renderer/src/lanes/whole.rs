@@ -29,11 +29,7 @@ impl Template {
             instruction.encode(&mut words);
             fixed.push((at, words[at]));
         }
-        Some(Self {
-            fixed,
-            words: words.len(),
-            cost: Cost::of(kind, layout)?,
-        })
+        Some(Self { fixed, words: words.len(), cost: Cost::of(kind, layout)? })
     }
 
     #[inline]
