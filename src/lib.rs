@@ -8,6 +8,7 @@ mod machine;
 mod observation;
 pub mod pipelines;
 mod report;
+pub mod timeline;
 mod workers;
 
 pub use config::{ConfigError, MachineConfig, PRESETS, Parameter, Preset};
