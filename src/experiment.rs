@@ -2,6 +2,7 @@
 
 use crate::config::{ConfigError, MachineConfig};
 use crate::display_list::{display_list, views};
+use crate::fingerprint::Fingerprint;
 use crate::machine::{Machine, RunError};
 use crate::observation::{Observation, StageSpan};
 use crate::pipelines::{PictureTimes, Pipeline, Setup};
@@ -10,6 +11,7 @@ use image::RgbImage;
 use pxpl5_scene::Scene;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Eye, MAX_MESSAGE_WORDS};
+use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
@@ -194,16 +196,33 @@ impl Experiment {
     ///
     /// As [`Experiment::run`].
     pub fn run_with(&self, mut progress: impl FnMut(u64, u64)) -> Result<Outcome, ExperimentError> {
+        self.run_stopping(&[], |field, _| {
+            progress(field, self.fields);
+            Ok(())
+        })
+    }
+
+    /// Runs it and stops at the retrace that begins each of some fields, and now and then between: `at` sees the field
+    /// and the machine, before anything of that field has happened, and may end the run.
+    ///
+    /// # Errors
+    ///
+    /// As [`Experiment::run`], and what `at` says.
+    pub fn run_stopping(
+        &self,
+        stops: &[u64],
+        mut at: impl FnMut(u64, &mut Machine) -> Result<(), ExperimentError>,
+    ) -> Result<Outcome, ExperimentError> {
         let host_time = Instant::now();
         let mut machine = self.build()?;
         let mut result = Ok(());
-        for field in (PROGRESS_FIELDS..self.fields).step_by(PROGRESS_FIELDS as usize).chain([self.fields]) {
+        for field in self.stops(stops) {
             let until = machine.video().retrace(field);
             result = machine.run_until(until);
             if result.is_err() {
                 break;
             }
-            progress(field, self.fields);
+            at(field, &mut machine)?;
         }
         machine.finish_pixels();
         let host_seconds = host_time.elapsed().as_secs_f64();
@@ -215,6 +234,25 @@ impl Experiment {
             }
             Ok(()) => Ok(outcome),
         }
+    }
+}
+
+impl Experiment {
+    /// Fields at which to stop: those asked for, every so many for the progress, the last.
+    fn stops(&self, asked: &[u64]) -> BTreeSet<u64> {
+        let regular = (PROGRESS_FIELDS..self.fields).step_by(PROGRESS_FIELDS as usize);
+        asked.iter().copied().filter(|field| *field < self.fields).chain(regular).chain([self.fields]).collect()
+    }
+
+    /// Name of everything on which the trace depends: machine, pipeline and variant, contents of the scene, fields and
+    /// seed.
+    #[must_use]
+    pub fn config_hash(&self) -> Fingerprint {
+        let Self { config, pipeline, fields, seed, .. } = self;
+        let scene = Fingerprint::of_scene(&self.scene);
+        let parameters: Vec<_> = config.parameters().into_iter().map(|p| (p.path, p.value)).collect();
+        let boards = (config.n_gps, config.n_renderers);
+        Fingerprint::of(format!("{boards:?} {parameters:?} {pipeline:?} {scene} {fields} {seed}").as_bytes())
     }
 }
 
@@ -322,14 +360,18 @@ impl Outcome {
         Report {
             schema: Report::SCHEMA.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            pipeline: experiment.pipeline.name().to_owned(),
             machine: experiment.config.preset.clone(),
+            config_hash: experiment.config_hash().to_string(),
+            level: "transaction".to_owned(),
+            seed: experiment.seed,
+            pipeline: experiment.pipeline.name().to_owned(),
+            variant: format!("{:?}", experiment.pipeline),
+            overrides: experiment.config.overrides(),
             n_gps: experiment.config.n_gps,
             n_renderers: experiment.config.n_renderers,
             scene: experiment.scene.name().to_owned(),
             triangles: experiment.scene.triangles().len(),
             spheres: experiment.scene.spheres().len(),
-            level: "transaction".to_owned(),
             fields: experiment.fields,
             pictures: pictures.len(),
             latency_fields: self.latency_fields().defined(experiment.pipeline.latency_definition()),
@@ -340,7 +382,6 @@ impl Outcome {
             late_regions: late.len(),
             first_late_regions: late.into_iter().take(20).collect(),
             trace_hash: self.machine.trace_hash().to_string(),
-            seed: experiment.seed,
             events: self.machine.events(),
             host_seconds: self.host_seconds,
         }

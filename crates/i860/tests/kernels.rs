@@ -36,6 +36,17 @@ fn the_straight_kernel_gives_the_native_words_and_bins() {
 }
 
 #[test]
+fn the_dual_kernel_gives_the_native_words_and_bins() {
+    assert_same_words(Kernel::Dual);
+}
+
+#[test]
+fn the_dual_kernel_fits_the_instruction_cache() {
+    let program = kernel::program(Kernel::Dual);
+    assert!(program.bytes.len() <= 4096, "{} bytes", program.bytes.len());
+}
+
+#[test]
 fn the_straight_kernel_is_larger_than_the_instruction_cache() {
     let program = kernel::program(Kernel::Straight);
     assert!(program.symbol("bins").expect("label") - program.base > 4096);

@@ -141,7 +141,7 @@ fn parameters() -> Vec<u8> {
     let mut singles: Vec<f32> = rows.into_iter().flatten().collect();
     singles.extend(origin.to_array());
     singles.extend([0.0, (limit - cx) / cx, (limit - cy) / cy, 1e-30, pxpl5_geometry::MAX_CLIP]);
-    singles.extend([cx, -cy, cx, cy, 2.0, 12_582_912.0, 0.0, 0.0]);
+    singles.extend([cx, -cy, cx, cy, 2.0, 12_582_912.0, f32::from_bits(0x9700_0000), 0.0]);
     let (near, far) = (pxpl5_geometry::DEPTH_NEAR, pxpl5_geometry::DEPTH_FAR);
     let two52 = (1u64 << 52) as f64;
     let doubles = [
