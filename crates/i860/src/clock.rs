@@ -203,7 +203,9 @@ impl Clock {
     #[inline]
     fn translate(&mut self, address: u32) {
         if let Some(directory) = self.translation
-            && self.rules.applies(Freeze::TlbMiss) && self.tlb.find(address).is_none() {
+            && self.rules.applies(Freeze::TlbMiss)
+            && self.tlb.find(address).is_none()
+        {
             let random = self.chance.next();
             self.tlb.fill(address, random);
             self.charge(Freeze::TlbMiss);
@@ -555,5 +557,4 @@ impl Clock {
             self.write_back_end = self.bus.write(self.now, address, 4).last;
         }
     }
-
 }
