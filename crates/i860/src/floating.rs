@@ -170,7 +170,7 @@ fn read_through(state: &State, i: &Instruction, first: bool, second: bool) -> Op
 
 impl Cpu {
     /// Executes a floating-point or graphics instruction with its operands already read.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn floating(&mut self, i: &Instruction, from: Operands) {
         match i.op {
             Op::Fnop => {}
