@@ -11,6 +11,7 @@ mod measure;
 mod observation;
 pub mod pipelines;
 mod report;
+pub mod sweep;
 mod workers;
 
 pub use config::{ConfigError, MachineConfig, PRESETS, Parameter, Preset};

@@ -136,11 +136,9 @@ impl ExperimentFile {
         self.set(path.trim(), value.unwrap_or_else(|| Value::String(text.trim().to_owned())), place)
     }
 
+    /// Puts a setting under the key that it is kept by.
     fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), FileError> {
-        let canonical = keys::canonical(path);
-        if keys::find(&canonical).is_none() && !keys::is_machine_parameter(&canonical) {
-            return Err(FileError::UnknownKey { place, found: path.to_owned(), nearest: keys::nearest_key(path) });
-        }
+        let canonical = canonical_key(path, &place)?;
         self.settings.insert(canonical, Setting { value, place, folder: folder.to_owned() });
         Ok(())
     }
@@ -150,6 +148,19 @@ impl ExperimentFile {
     pub const fn is_sweep(&self) -> bool {
         self.sweep.is_some()
     }
+}
+
+/// The key by which a path is kept.
+///
+/// # Errors
+///
+/// [`FileError::UnknownKey`] with the nearest valid path.
+pub(crate) fn canonical_key(path: &str, place: &str) -> Result<String, FileError> {
+    let canonical = keys::canonical(path);
+    if keys::find(&canonical).is_some() || keys::is_machine_parameter(&canonical) {
+        return Ok(canonical);
+    }
+    Err(FileError::UnknownKey { place: place.to_owned(), found: path.to_owned(), nearest: keys::nearest_key(path) })
 }
 
 /// The leaves of a value with their paths and places; empty tables are leaves, so that they are not lost.

@@ -121,18 +121,26 @@ impl SceneChoice {
     /// # Errors
     ///
     /// [`FileError`] for an unknown scene, an unusable file, or more primitives to keep than there are.
-    pub fn load(&self) -> Result<Scene, FileError> {
-        let whole =
-            if is_file(&self.name) { pxpl5_scene::load(&self.name)? } else { pxpl5_scene::builtin(&self.name)? };
+    pub fn load(&self) -> Result<Arc<Scene>, FileError> {
+        self.prepared(Arc::new(self.load_whole()?))
+    }
+
+    pub(crate) fn load_whole(&self) -> Result<Scene, FileError> {
+        Ok(if is_file(&self.name) { pxpl5_scene::load(&self.name)? } else { pxpl5_scene::builtin(&self.name)? })
+    }
+
+    /// The whole scene cut and moved as chosen.
+    pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, FileError> {
         let scene = match self.triangles {
-            Some(n) => whole.truncated(n)?,
+            Some(n) => Arc::new(whole.truncated(n)?),
             None => whole,
         };
         if self.motion == MotionChoice::default() {
             return Ok(scene);
         }
         let motion = self.motion.motion(&scene)?;
-        Ok(Scene::new(pxpl5_scene::SceneParts { motion, ..scene.into_parts() })?)
+        let parts = Arc::unwrap_or_clone(scene).into_parts();
+        Ok(Arc::new(Scene::new(pxpl5_scene::SceneParts { motion, ..parts })?))
     }
 }
 
@@ -254,14 +262,17 @@ impl ExperimentFile {
         };
         let preset = self.text("machine.preset")?.unwrap_or(variant.preset());
         let place = self.get("machine.preset").map_or("machine", |setting| &setting.place);
-        let mut machine = MachineConfig::preset(preset).map_err(config(place))?;
+        let machine = MachineConfig::preset(preset).map_err(config(place))?;
+        let mut machine = variant.pipeline().adapt(machine);
+        let adapted = machine.parameters();
         for (path, setting) in &self.settings {
             let Some(parameter) = path.strip_prefix("machine.").filter(|path| *path != "preset") else { continue };
-            if let (true, Some(code)) = (CODE_SETS.contains(&parameter), self.get("code")) {
+            let value = self.integer(path, 0..=u64::MAX)?.unwrap_or_default();
+            let changed = adapted.iter().any(|own| own.path == parameter && own.value != value);
+            if let (true, true, Some(code)) = (changed, CODE_SETS.contains(&parameter), self.get("code")) {
                 let (place, other) = (setting.place.clone(), format!("code = {}", super::read::plain(&code.value)));
                 return Err(FileError::Conflict { place, key: path.clone(), other });
             }
-            let value = self.integer(path, 0..=u64::MAX)?.unwrap_or_default();
             machine.set(parameter, value).map_err(config(&setting.place))?;
         }
         machine.check().map_err(config("machine"))?;
@@ -279,7 +290,7 @@ impl Plan {
     ///
     /// As [`SceneChoice::load`].
     pub fn load_scene(&self) -> Result<Arc<Scene>, FileError> {
-        Ok(Arc::new(self.scene.load()?))
+        self.scene.load()
     }
 
     /// The experiment with the scene loaded.

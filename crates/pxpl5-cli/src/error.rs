@@ -1,6 +1,7 @@
 //! What ends a command early.
 
 use crate::terminal;
+use pxpl5::sweep::SweepError;
 use pxpl5::{ExperimentError, FileError};
 use std::fmt::Display;
 use std::process::ExitCode;
@@ -41,13 +42,21 @@ impl From<FileError> for CliError {
     }
 }
 
+impl From<SweepError> for CliError {
+    fn from(error: SweepError) -> Self {
+        match error {
+            SweepError::File(error) => error.into(),
+            SweepError::NotEmpty { .. } | SweepError::Foreign { .. } => Self::usage(error),
+            _ => Self::failure(error),
+        }
+    }
+}
+
 impl From<ExperimentError> for CliError {
     fn from(error: ExperimentError) -> Self {
         match &error {
             ExperimentError::Config(_) | ExperimentError::Fields { .. } => Self::usage(error),
-            ExperimentError::Run { .. } => {
-                Self::failure(format!("{error}; nothing was written. {MEMORY_ADVICE}", MEMORY_ADVICE = advice(&error)))
-            }
+            ExperimentError::Run { .. } => Self::failure(format!("{error}; nothing was written. {}", advice(&error))),
             _ => Self::failure(error),
         }
     }

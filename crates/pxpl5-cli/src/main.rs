@@ -11,10 +11,12 @@ mod demo;
 mod error;
 mod i860;
 mod machines;
+mod merge;
 mod output;
 mod run;
 mod scenes;
 mod settings;
+mod sweep;
 mod table;
 mod terminal;
 
@@ -52,6 +54,10 @@ enum Command {
     Scenes(scenes::ScenesArgs),
     /// List the machines that are built in.
     Machines(machines::MachinesArgs),
+    /// Run an experiment at every point of a space of settings.
+    Sweep(sweep::SweepArgs),
+    /// Join the shards of a sweep.
+    Merge(merge::MergeArgs),
     /// Work with programs of the graphics processor's CPU.
     I860(i860::I860Args),
     /// Print a completion script for a shell.
@@ -77,6 +83,8 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Check(args)) => check::run(args),
         Some(Command::Scenes(args)) => scenes::run(args),
         Some(Command::Machines(args)) => machines::run(args),
+        Some(Command::Sweep(args)) => sweep::run(args),
+        Some(Command::Merge(args)) => merge::run(args),
         Some(Command::I860(args)) => i860::run(args).map_err(CliError::failure),
         Some(Command::Completions(args)) => completions::run(args),
     }
