@@ -4,13 +4,13 @@ use crate::config::{ConfigError, MachineConfig};
 use crate::display_list::{display_list, views};
 use crate::fingerprint::Fingerprint;
 use crate::machine::{Machine, RunError};
-use crate::observation::Observation;
+use crate::observation::{Observation, StageSpan};
 use crate::pipelines::{PictureTimes, Pipeline, Setup};
 use crate::report::{Report, Statistics};
 use image::RgbImage;
 use pxpl5_scene::Scene;
-use pxpl5_sim::Time;
-use pxpl5_wire::Eye;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{Eye, MAX_MESSAGE_WORDS};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
@@ -50,6 +50,8 @@ pub enum ExperimentError {
     },
     /// The scene has nothing to draw, or too many moving structures.
     Scene(String),
+    /// Whoever watched the run ended it ([`Experiment::run_stopping`]).
+    Stopped(String),
     /// The run ended early; what was observed until then is kept.
     Run {
         /// Why.
@@ -68,7 +70,7 @@ impl fmt::Display for ExperimentError {
                 f,
                 "only {pictures} pictures were shown in {fields} fields and the first {WARM_UP_PICTURES} are discarded; simulate more fields"
             ),
-            Self::Scene(text) => f.write_str(text),
+            Self::Scene(text) | Self::Stopped(text) => f.write_str(text),
             Self::Run { error, partial } => {
                 write!(f, "{error} ({} pictures had been shown)", partial.pictures().len())
             }
@@ -297,6 +299,17 @@ impl Outcome {
     #[must_use]
     pub const fn observation(&self) -> &Observation {
         self.machine.observation()
+    }
+
+    /// All stages of all pictures, COPY as the frame buffers saw it.
+    #[must_use]
+    pub fn stages(&self) -> Vec<StageSpan> {
+        self.observation().stages(self.machine.ring().timing().occupancy(MAX_MESSAGE_WORDS))
+    }
+
+    /// The software time of a message that a GP receives.
+    pub(crate) const fn receive_span(&self) -> Span {
+        Span::from_ns(self.experiment.config.gp.message_ns)
     }
 
     /// The pipeline that ran.

@@ -34,7 +34,7 @@ mod text;
 pub use error::FileError;
 pub use keys::{KEYS, Key};
 pub use motion::MotionChoice;
-pub use plan::{Outputs, PIPELINES, Plan, Published, SceneChoice, Variant};
+pub use plan::{Outputs, PIPELINES, Plan, Published, SceneChoice};
 pub use text::Settings;
 
 use std::collections::BTreeMap;
@@ -141,6 +141,17 @@ impl ExperimentFile {
         let canonical = canonical_key(path, &place)?;
         self.settings.insert(canonical, Setting { value, place, folder: folder.to_owned() });
         Ok(())
+    }
+
+    /// The keys that are set, in order.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.settings.keys().map(String::as_str)
+    }
+
+    /// Takes over all settings of another file, in place of its own.
+    pub fn overlay(&mut self, other: Self) {
+        self.settings.extend(other.settings);
+        self.sweep = other.sweep.or(self.sweep.take());
     }
 
     /// Whether the file describes a sweep.

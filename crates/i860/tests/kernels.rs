@@ -36,6 +36,20 @@ fn the_straight_kernel_gives_the_native_words_and_bins() {
 }
 
 #[test]
+fn the_dual_kernel_gives_the_native_words_and_bins() {
+    assert_same_words(Kernel::Dual);
+}
+
+#[test]
+fn each_pass_of_the_dual_kernel_fits_the_instruction_cache() {
+    let program = kernel::program(Kernel::Dual);
+    let at = |label: &str| program.symbol(label).expect("label");
+    let end = program.base + program.bytes.len() as u32;
+    let (first, second) = (at("second") - at("batch"), end - at("second"));
+    assert!(first <= 4096 && second <= 4096, "{first} and {second} bytes");
+}
+
+#[test]
 fn the_straight_kernel_is_larger_than_the_instruction_cache() {
     let program = kernel::program(Kernel::Straight);
     assert!(program.symbol("bins").expect("label") - program.base > 4096);

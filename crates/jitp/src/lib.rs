@@ -1,1 +1,48 @@
-//! Just-in-time pixels: scan-out-synchronous rendering on Pixel-Planes 5.
+//! Just-in-time pixels: pictures whose every line is drawn for its own moment, and frameless rendering.
+//!
+//! ```text
+//!   host:     report ...... report ......                      as the tracker delivers them
+//!   master:   view, order | view, order | view, order ...      one strip of lines after the other, or random blocks
+//!   slave 0:  strip 0, transform, bin, send ......... strip n
+//!   slave 1:       strip 1, transform, bin, send ......... strip n + 1
+//!   renderers:          commands of strip 0 | strip 1 ...      one column of 128 pixels each
+//!   frame buffer:             strip 0 | strip 1 ...            just before the beam
+//! ```
+//!
+//! - One GP is the [`master`](fn@master): it synchronises with the beam, keeps the newest tracking data and orders the
+//!   strips. Slave k of n computes strips k, k + n, k + 2n, ...; so it has n strip times for each. Every slave holds
+//!   the whole display list.
+//! - A *strip* is one line of a field or a few ([`Schedule::Beam`]); its regions are 128 pixels wide and go through
+//!   the renderers in turn to the frame buffer, which needs no second buffer: one field is written while the other
+//!   one is scanned, or each line just before the beam.
+//! - Which moment a strip is drawn for is the [`Viewpoint`]: one for the whole field (a conventional picture), one for
+//!   each strip, or the *dual display list*: every vertex is transformed for the begin T0 and the end T1 of the field
+//!   and interpolated, on the screen or in the view before the divide ([`Reading`]).
+//! - *Racing the beam* is independent of that: a strip is ordered just in time for the beam, or else one field
+//!   earlier, so that the whole field is there before its retrace.
+//! - A strip whose beam has passed when a slave could begin it is left out; the lines of the field before stay.
+//! - *Frameless* ([`Schedule::Roam`]): blocks in a random order, each order with the newest view, shown at once.
+//!
+//! The reference that evaluates the view at each pixel's own moment is mathematics, not firmware.
+//!
+//! **Not modelled:** culling of the display list by line (a slave transforms every primitive for each strip), transforms
+//! shared among slaves, Phong shading. Frameless pixels come in square blocks: one pixel alone would pay 16 words of
+//! overhead on the ring. A triangle that a corner takes out of the guard band has no place on the screen at T0 or T1;
+//! it is interpolated in the view, and so are spheres.
+//!
+//! Sources: Mine and Bishop, UNC TR93-005 (just-in-time pixels); Bishop et al. 1994 (frameless rendering); I3D95.
+
+mod config;
+mod drawing;
+mod host;
+mod master;
+mod pieces;
+mod protocol;
+mod slave;
+pub mod timing;
+
+pub use config::{Beam, BlockOrder, Config, ConfigError, Reading, Schedule, Viewpoint, Wanted};
+pub use host::host;
+pub use master::master;
+pub use slave::slave;
+pub use timing::JitpTiming;

@@ -257,7 +257,9 @@ impl RegionWords {
     }
 }
 
-fn gouraud_sphere(s: &GouraudSphere) -> Command {
+/// The command of a sphere with Gouraud shading.
+#[must_use]
+pub fn gouraud_sphere(s: &GouraudSphere) -> Command {
     Command::Sphere(Sphere {
         silhouette: s.setup.silhouette,
         root_shift: s.setup.root_shift,

@@ -23,7 +23,7 @@ mod list;
 mod pass;
 mod view;
 
-pub use commands::{Around, copy_message, region_messages};
+pub use commands::{Around, copy_message, gouraud_sphere, region_messages};
 pub use list::{Counts, DisplayList, Frame, Share, Structure};
-pub use pass::{Binning, Pass, Picture, Shading};
+pub use pass::{Binning, Pass, Picture, Placed, Shading, place_all};
 pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit, ViewWordsError};

@@ -70,7 +70,13 @@ impl Counts {
 }
 
 impl DisplayList {
-    pub(crate) fn triangle(&self, number: usize) -> Triangle {
+    /// A triangle with everything at its corners.
+    ///
+    /// # Panics
+    ///
+    /// If there is no triangle of this number, or it names a corner that does not exist.
+    #[must_use]
+    pub fn triangle(&self, number: usize) -> Triangle {
         let corners = self.triangles[number].map(|i| i as usize);
         Triangle {
             positions: corners.map(|i| self.positions[i]),
@@ -79,7 +85,13 @@ impl DisplayList {
         }
     }
 
-    pub(crate) fn corners(&self, number: usize) -> [Vec3; 3] {
+    /// The positions of a triangle's corners.
+    ///
+    /// # Panics
+    ///
+    /// As [`DisplayList::triangle`].
+    #[must_use]
+    pub fn corners(&self, number: usize) -> [Vec3; 3] {
         self.triangles[number].map(|i| self.positions[i as usize])
     }
 }

@@ -1,6 +1,6 @@
 //! One TRANSFORM of a GP's share for one eye.
 
-use crate::list::{Counts, Frame, Share, Structure, UNMOVED};
+use crate::list::{Counts, DisplayList, Frame, Share, Structure, UNMOVED};
 use crate::view::{EyeView, FrameView, product};
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
@@ -44,12 +44,27 @@ pub struct Picture {
     pub pixels: bool,
 }
 
-/// One structure as this eye sees it.
+/// One structure as an eye sees it.
 #[derive(Debug)]
-struct Placed {
-    transform: Option<Transform>,
-    light: Light,
-    structure: Structure,
+pub struct Placed {
+    /// From its coordinates to the picture; `None` where a matrix is not finite, so that it is not drawn.
+    pub transform: Option<Transform>,
+    /// The light in eye coordinates.
+    pub light: Light,
+    /// Its primitives.
+    pub structure: Structure,
+}
+
+/// All structures of a display list as an eye (0, or 0 and 1) of a view sees them.
+///
+/// # Panics
+///
+/// If the view has no eye.
+#[must_use]
+pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<Placed> {
+    let eye = &view.eyes[eye.min(view.eyes.len() - 1)];
+    let structures = list.structures.iter().enumerate();
+    structures.map(|(i, s)| place(list, s, model(view, i), eye, viewport)).collect()
 }
 
 /// Screen triangles in the order in which binning met them.
@@ -87,9 +102,7 @@ const NOWHERE: Outline = Outline { x: [0; 3], y: [0; 3], z: [0; 3], regions: Reg
 impl Pass {
     pub(crate) fn new(share: Share, view: &FrameView, eye: usize, picture: Picture) -> Self {
         let regions = picture.viewport.grid().regions() as usize;
-        let eye = &view.eyes[eye.min(view.eyes.len() - 1)];
-        let structures = share.list.structures.iter().enumerate();
-        let placed = structures.map(|(i, s)| place(&share, s, model(view, i), eye, picture.viewport)).collect();
+        let placed = place_all(&share.list, view, eye, picture.viewport);
         let bins = if picture.pixels { vec![[Vec::new(), Vec::new()]; regions] } else { Vec::new() };
         let mut pass = Self {
             share,
@@ -269,13 +282,12 @@ fn model(view: &FrameView, structure: usize) -> Mat4 {
 }
 
 /// A structure whose matrices are not finite is not drawn.
-fn place(share: &Share, structure: &Structure, model: Mat4, eye: &EyeView, viewport: Viewport) -> Placed {
+fn place(list: &DisplayList, structure: &Structure, model: Mat4, eye: &EyeView, viewport: Viewport) -> Placed {
     let to_eye = match structure.frame {
         Frame::World => eye.world_to_eye,
         Frame::Head => eye.head_to_eye,
     };
     let view = ViewTransform { model_view: product(&to_eye, &model), projection: eye.projection };
-    let list = &share.list;
     let light = Light { direction: turned(&to_eye, list.towards_light), ambient: list.ambient, diffuse: list.diffuse };
     let transform = Transform::new(&view, viewport, Culling::None).ok();
     Placed { transform, light, structure: structure.clone() }

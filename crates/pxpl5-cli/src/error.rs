@@ -2,7 +2,7 @@
 
 use crate::terminal;
 use pxpl5::sweep::SweepError;
-use pxpl5::{ExperimentError, FileError};
+use pxpl5::{ExperimentError, FileError, SnapshotError};
 use std::fmt::Display;
 use std::process::ExitCode;
 
@@ -27,6 +27,10 @@ impl CliError {
         Self { code: USAGE, message: message.to_string() }
     }
 
+    pub(crate) fn message(&self) -> &str {
+        &self.message
+    }
+
     pub(crate) fn report(&self) -> ExitCode {
         terminal::complain(&format!("pxpl5: {}\n", self.message));
         ExitCode::from(self.code)
@@ -39,6 +43,12 @@ impl From<FileError> for CliError {
             FileError::Io { .. } | FileError::Load(_) => Self::failure(error),
             _ => Self::usage(error),
         }
+    }
+}
+
+impl From<SnapshotError> for CliError {
+    fn from(error: SnapshotError) -> Self {
+        Self::failure(error)
     }
 }
 

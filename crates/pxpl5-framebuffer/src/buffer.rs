@@ -2,7 +2,8 @@
 
 use crate::region::RegionWrite;
 use pxpl5_sim::Span;
-use pxpl5_wire::CopyTarget;
+use pxpl5_wire::{CopyTarget, Lines};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Regions as they are handed to a viewer, oldest first.
@@ -17,6 +18,10 @@ pub(crate) struct Buffer {
     /// `held` as it was handed out last; `None` when it has changed since.
     shared: Option<Regions>,
     search_above: usize,
+    /// Places of regions that are arriving; a port takes one at a time, so there are few.
+    arriving: Vec<usize>,
+    /// Place of the newest complete region of each cut: those below it are hidden already.
+    newest: BTreeMap<[u32; 6], usize>,
 }
 
 #[derive(Clone, Debug)]
@@ -27,17 +32,18 @@ struct Held {
 
 impl Buffer {
     pub(crate) fn new() -> Self {
-        Self { held: Vec::new(), shared: None, search_above: FEW }
+        Self { held: Vec::new(), shared: None, search_above: FEW, arriving: Vec::new(), newest: BTreeMap::new() }
     }
 
     /// The region of this target that is arriving.
     pub(crate) fn arriving(&mut self, target: &CopyTarget) -> Option<usize> {
-        let is_arriving = |held: &Held| !held.region.is_complete() && held.region.target == *target;
-        self.held.iter().rposition(is_arriving)
+        let is_its = |place: &&usize| self.held[**place].region.target == *target;
+        self.arriving.iter().rev().find(is_its).copied()
     }
 
     pub(crate) fn add(&mut self, region: RegionWrite) -> usize {
         self.held.push(Held { region: Arc::new(region), hidden: false });
+        self.arriving.push(self.held.len() - 1);
         self.held.len() - 1
     }
 
@@ -53,10 +59,24 @@ impl Buffer {
 
     /// Marks what a complete region hides.
     pub(crate) fn hide_below(&mut self, place: usize) {
-        let (below, above) = self.held.split_at_mut(place);
-        let target = above[0].region.target;
-        for held in below.iter_mut().filter(|h| h.region.covers_same(&target)) {
-            held.hidden = true;
+        self.arriving.retain(|other| *other != place);
+        let newest = self.newest.entry(cut(&self.held[place].region.target)).or_insert(place);
+        if *newest != place {
+            self.held[place.min(*newest)].hidden = true;
+            *newest = place.max(*newest);
+        }
+    }
+
+    /// Finds again what is arriving and what is newest, when places have changed.
+    fn index(&mut self) {
+        self.arriving.clear();
+        self.newest.clear();
+        for (place, held) in self.held.iter().enumerate() {
+            if held.region.is_complete() {
+                self.newest.insert(cut(&held.region.target), place);
+            } else {
+                self.arriving.push(place);
+            }
         }
     }
 
@@ -77,6 +97,7 @@ impl Buffer {
         if self.held.iter().any(|held| held.hidden) {
             self.held.retain(|held| !held.hidden);
             self.shared = None;
+            self.index();
         }
         if self.held.len() > self.search_above {
             self.forget_covered(width, height);
@@ -100,5 +121,16 @@ impl Buffer {
         }
         self.held.retain(|held| !held.hidden);
         self.shared = None;
+        self.index();
     }
+}
+
+/// What two regions that fill the same pixels have in common.
+fn cut(target: &CopyTarget) -> [u32; 6] {
+    let lines = match target.lines {
+        Lines::Frame => 2,
+        Lines::Field(parity) => parity.first_line(),
+    };
+    let grid = target.grid;
+    [lines, u32::from(target.region.0), grid.width, grid.height, grid.region_width, grid.region_height]
 }

@@ -99,12 +99,6 @@ impl RegionWrite {
         self.is_complete().then(|| arrived.iter().copied().max())?
     }
 
-    /// Whether it fills the same pixels as another region.
-    pub(crate) fn covers_same(&self, other: &CopyTarget) -> bool {
-        let key = |target: &CopyTarget| (target.region, target.lines, target.grid);
-        key(&self.target) == key(other)
-    }
-
     /// The pixels that have arrived, line by line, each line cut where one message ends and the next begins.
     pub(crate) fn segments(&self, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, _, height] = self.rectangle;

@@ -223,6 +223,17 @@ impl Binner {
     }
 }
 
+/// Whether a triangle meets a rectangle of pixels, given as first and last pixel and first and last frame line.
+pub(crate) fn meets(outline: &Outline, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) -> bool {
+    let range = |v: &[i32; 3]| {
+        let [low, high] = extent(v);
+        Range::of_centres(low, high)
+    };
+    let (x, y) = (range(&outline.x), range(&outline.y));
+    let apart = x.first > right || x.last < left || y.first > bottom || y.last < top;
+    !apart && outline.edges().iter().all(|e| greatest(e, (left, right), (top, bottom)) >= 0)
+}
+
 /// Largest value of an edge expression over a box of pixels. No overflow: see [`crate::GUARD_PIXELS`].
 fn greatest(edge: &Linear, (left, right): (i32, i32), (top, bottom): (i32, i32)) -> i32 {
     let x = if edge.a > 0 { right } else { left };

@@ -106,6 +106,13 @@ impl Outline {
         i64::from(x[1] - x[0]) * i64::from(y[2] - y[0]) - i64::from(y[1] - y[0]) * i64::from(x[2] - x[0])
     }
 
+    /// Whether the triangle meets the box around the centres of a rectangle's pixels: first and last pixel across,
+    /// first and last line of the frame down. The rule is that of the regions.
+    #[must_use]
+    pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
+        crate::bin::meets(self, across, lines)
+    }
+
     /// The edges from corner 0 to 1, 1 to 2 and 2 to 0 at the pixels of the *frame*.
     #[inline(always)]
     pub(crate) fn edges(&self) -> [Linear; 3] {

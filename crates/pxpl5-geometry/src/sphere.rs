@@ -89,6 +89,19 @@ pub struct ScreenSphere {
     pub(crate) axes: [[f64; 3]; 3],
 }
 
+impl ScreenSphere {
+    /// Whether the box around its picture meets a rectangle: first and last pixel across, first and last line of the
+    /// frame down.
+    #[must_use]
+    pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
+        let overlap = |bounds: [f64; 2], [first, last]: [i32; 2]| {
+            let range = pixels(bounds);
+            range.first <= last && range.last >= first
+        };
+        self.conic.bounds().is_some_and(|[x, y]| overlap(x, across) && overlap(y, lines))
+    }
+}
+
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }

@@ -165,6 +165,12 @@ impl Transform {
         self.clipped(&corners, stats, |piece, _| sink(piece.outline.regions));
     }
 
+    /// As [`Self::bin`], with the whole outlines, for a caller that bins into regions of its own.
+    #[inline]
+    pub fn outlines(&self, positions: &[Vec3; 3], stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
+        self.triangle(positions, |_| [0.0; 3], stats, |outline, _| sink(&outline));
+    }
+
     /// Transforms and lights one triangle: calls `sink` for each screen triangle that touches a region.
     #[inline]
     pub fn gouraud(
@@ -222,6 +228,60 @@ impl Transform {
         }
         let corners = std::array::from_fn(|i| Vertex { clip: clip[i], extra: extra(i) });
         self.clipped(&corners, stats, |piece, extras| sink(piece.outline, extras));
+    }
+
+    /// A triangle whose places on the screen lie the part `s` (0 to 1) of the way from this view to another one of the
+    /// same picture, lit as in this one. False, and nothing, where a corner lies outside of the guard band of either.
+    pub fn gouraud_between(
+        &self,
+        end: &Self,
+        s: f64,
+        triangle: &Triangle,
+        light: &Light,
+        stats: &mut SetupStats,
+        mut sink: impl FnMut(ScreenTriangle<LitColours>),
+    ) -> bool {
+        let Some(corners) = self.between(end, s, &triangle.positions) else { return false };
+        stats.triangles += 1;
+        if let Some(whole) = self.assemble(corners, stats) {
+            let lighting = Lighting::new(&self.to_eye, light);
+            let lit = |i: usize| lighting.colour(triangle.positions[i], triangle.normals[i], triangle.colours[i]);
+            let order = if whole.swapped { [0, 2, 1] } else { [0, 1, 2] };
+            sink(lit_triangle(whole.outline, order.map(lit)));
+        }
+        true
+    }
+
+    /// The outline alone of [`Self::gouraud_between`].
+    pub fn outline_between(
+        &self,
+        end: &Self,
+        s: f64,
+        positions: &[Vec3; 3],
+        stats: &mut SetupStats,
+        mut sink: impl FnMut(&Outline),
+    ) -> bool {
+        let Some(corners) = self.between(end, s, positions) else { return false };
+        stats.triangles += 1;
+        if let Some(whole) = self.assemble(corners, stats) {
+            sink(&whole.outline);
+        }
+        true
+    }
+
+    /// Corners between two views, in whole subpixels.
+    fn between(&self, end: &Self, s: f64, positions: &[Vec3; 3]) -> Option<[Snapped; 3]> {
+        let snapped = |view: &Self| {
+            let clip = positions.map(|p| view.to_clip.point(p));
+            clip.iter().all(|c| view.guard.contains(*c)).then(|| clip.map(|c| view.to_screen.snap(c)))
+        };
+        let (from, to) = (snapped(self)?, snapped(end)?);
+        let lerp = |a: f64, b: f64| (a + (b - a) * s + 0.5).floor();
+        Some(std::array::from_fn(|i| Snapped {
+            x: lerp(f64::from(from[i].x), f64::from(to[i].x)) as i32,
+            y: lerp(f64::from(from[i].y), f64::from(to[i].y)) as i32,
+            z: lerp(f64::from(from[i].z), f64::from(to[i].z)) as u32,
+        }))
     }
 
     /// Transforms all triangles of a mesh as far as their regions, each vertex once. `sink` gets the triangle's number.

@@ -263,6 +263,13 @@ impl Gp {
     pub fn mark(&self, stage: Stage, picture: u64, eye: Option<Eye>, edge: Edge, time: Time) {
         let shared = &mut *self.shared.borrow_mut();
         let node = shared.node;
-        shared.marks.push(Mark { time, node, picture, eye, stage, edge });
+        shared.marks.push(Mark { time, node, picture, eye, stage, edge, view: None });
+    }
+
+    /// Tells the observer that a stage begins on a picture that shows view number `view`.
+    pub fn begin_view(&self, stage: Stage, picture: u64, view: u64) {
+        let shared = &mut *self.shared.borrow_mut();
+        let (time, node) = (shared.now, shared.node);
+        shared.marks.push(Mark { time, node, picture, eye: None, stage, edge: Edge::Begin, view: Some(view) });
     }
 }

@@ -49,4 +49,6 @@ pub struct Mark {
     pub stage: Stage,
     /// Begin or end.
     pub edge: Edge,
+    /// Number of the view that the picture shows, where the program knows it and it is not the picture's number.
+    pub view: Option<u64>,
 }

@@ -164,7 +164,7 @@ impl Processor {
 
     /// Draws this GP's share of what is shown from the retrace of `field` on.
     async fn field(&self, field: u64, view: &FrameView) {
-        self.gp.begin(Stage::Sample, field, None);
+        self.gp.begin_view(Stage::Sample, field, view.number);
         self.gp.begin(Stage::Transform, field, None);
         self.gp.spend(Span::from_ns(self.gp.timing().pass_ns)).await;
         let picture = self.config.picture(FieldParity::of_field(field));

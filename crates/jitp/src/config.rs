@@ -1,0 +1,262 @@
+//! Who takes part, and which variant runs.
+
+use crate::timing::JitpTiming;
+use pxpl5_geometry::Viewport;
+use pxpl5_renderer::Layout;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, RegionGrid, RegionId};
+use std::fmt;
+use std::sync::Arc;
+
+/// How the places of a vertex at the begin and at the end of a field are interpolated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Reading {
+    /// Places on the screen.
+    Screen,
+    /// Positions in the view, before the divide.
+    View,
+}
+
+/// The moments that a field's picture is computed for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Viewpoint {
+    /// One for the whole field: when its first line is scanned.
+    Field,
+    /// One for each strip: when its middle is scanned.
+    Strip,
+    /// Between the first and the last pixel of the field.
+    Dual(Reading),
+}
+
+/// The order in which regions are drawn.
+#[derive(Clone, Debug)]
+pub enum Schedule {
+    /// Strips of a field from top to bottom.
+    Beam {
+        /// The moments that the picture is computed for.
+        viewpoint: Viewpoint,
+        /// Whether strips reach the frame buffer just before the beam, or one field earlier.
+        racing: bool,
+        /// Rows of a strip: 1 to 128.
+        strip_rows: u32,
+    },
+    /// Square blocks of the whole frame in a random order, without end.
+    Roam {
+        /// Width and height of a block, 4 to 128 pixels.
+        block: u32,
+        /// Blocks of one order.
+        batch: u32,
+        /// Which block comes at a step.
+        order: BlockOrder,
+    },
+}
+
+/// A function of (field, row of the field, pixel): when the beam is there.
+#[derive(Clone)]
+pub struct Beam(Arc<dyn Fn(u64, u32, u32) -> Time + Send + Sync>);
+
+/// A function of the step: which block comes.
+#[derive(Clone)]
+pub struct BlockOrder(Arc<dyn Fn(u64) -> RegionId + Send + Sync>);
+
+impl Beam {
+    /// The beam of some video.
+    pub fn new(when: impl Fn(u64, u32, u32) -> Time + Send + Sync + 'static) -> Self {
+        Self(Arc::new(when))
+    }
+
+    /// When the beam is at a pixel of a row of a field.
+    #[must_use]
+    pub fn at(&self, field: u64, row: u32, x: u32) -> Time {
+        (self.0)(field, row, x)
+    }
+}
+
+impl BlockOrder {
+    /// An order of the blocks.
+    pub fn new(block: impl Fn(u64) -> RegionId + Send + Sync + 'static) -> Self {
+        Self(Arc::new(block))
+    }
+
+    pub(crate) fn at(&self, step: u64) -> RegionId {
+        (self.0)(step)
+    }
+}
+
+impl fmt::Debug for Beam {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Beam")
+    }
+}
+
+impl fmt::Debug for BlockOrder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("BlockOrder")
+    }
+}
+
+/// What the master asks of the tracking data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// Number that the view gets: see [`Config::view_number`].
+    pub number: u64,
+    /// Reports that the host had by then have reached the master.
+    pub known: Time,
+    /// When the view will be seen.
+    pub shown_at: Time,
+}
+
+/// The boards and the variant.
+#[derive(Clone, Debug)]
+pub struct Config {
+    /// The host interface.
+    pub host: NodeId,
+    /// The master GP.
+    pub master: NodeId,
+    /// The slave GPs, at least one.
+    pub slaves: Vec<NodeId>,
+    /// The renderers, at least one.
+    pub renderers: Vec<NodeId>,
+    /// The frame buffer.
+    pub frame_buffer: NodeId,
+    /// What is drawn when.
+    pub schedule: Schedule,
+    /// Where the beam is.
+    pub beam: Beam,
+    /// Division of pixel memory.
+    pub layout: Layout,
+    /// Whether somebody may want pixels.
+    pub pixels: bool,
+    /// Times of this firmware.
+    pub timing: JitpTiming,
+}
+
+/// A machine or variant that cannot run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// There is no slave.
+    NoSlave,
+    /// A strip or block has no possible size.
+    Size {
+        /// Smallest and largest.
+        expected: (u32, u32),
+        /// What was asked for.
+        found: u32,
+    },
+}
+
+impl fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSlave => f.write_str("just-in-time pixels need a master and at least one slave GP, found no slave"),
+            Self::Size { expected: (low, high), found } => {
+                write!(f, "strips or blocks must have {low} to {high} lines, found {found}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for ConfigError {}
+
+/// View numbers of a field: one for each strip, at most 240.
+const VIEWS_PER_FIELD: u64 = 256;
+
+impl Config {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError`] says what was expected and what was found.
+    pub fn check(&self) -> Result<(), ConfigError> {
+        if self.slaves.is_empty() {
+            return Err(ConfigError::NoSlave);
+        }
+        let (found, expected) = match self.schedule {
+            Schedule::Beam { strip_rows, .. } => (strip_rows, (1, 128)),
+            Schedule::Roam { block, .. } => (block, (4, 128)),
+        };
+        let fits = (expected.0..=expected.1).contains(&found);
+        if fits { Ok(()) } else { Err(ConfigError::Size { expected, found }) }
+    }
+
+    /// The number of the view of a strip, of the whole field (strip 0), or of the begin (0) and the end (1) of a field.
+    #[must_use]
+    pub const fn view_number(field: u64, strip: u64) -> u64 {
+        field * VIEWS_PER_FIELD + strip
+    }
+
+    /// How the picture is cut.
+    #[must_use]
+    pub fn grid(&self) -> RegionGrid {
+        match self.schedule {
+            Schedule::Beam { strip_rows, .. } => RegionGrid { region_height: strip_rows, ..RegionGrid::FIELD },
+            Schedule::Roam { block, .. } => {
+                RegionGrid { region_width: block, region_height: block, ..RegionGrid::FRAME }
+            }
+        }
+    }
+
+    /// The regions of a strip.
+    pub(crate) fn strip_regions(&self, strip: u32) -> Vec<RegionId> {
+        let columns = self.grid().columns();
+        (strip * columns..(strip + 1) * columns).map(|region| RegionId(region as u16)).collect()
+    }
+
+    pub(crate) fn picture(&self, number: u64) -> (Viewport, Lines) {
+        match self.schedule {
+            Schedule::Beam { .. } => {
+                let parity = FieldParity::of_field(number);
+                (Viewport::field(parity), Lines::Field(parity))
+            }
+            Schedule::Roam { .. } => (Viewport::FRAME, Lines::Frame),
+        }
+    }
+
+    pub(crate) fn target(&self, picture: u64, region: RegionId) -> CopyTarget {
+        let (frame_buffer, grid, lines) = (self.frame_buffer, self.grid(), self.picture(picture).1);
+        CopyTarget { frame_buffer, buffer: 0, lines, grid, region, picture }
+    }
+
+    pub(crate) fn renderer_of(&self, region: RegionId) -> NodeId {
+        self.renderers[usize::from(region.0) % self.renderers.len()]
+    }
+
+    /// First and middle row of a strip.
+    pub(crate) fn rows(&self, strip: u32) -> (u32, u32) {
+        let RegionGrid { height, region_height, .. } = self.grid();
+        let first = strip * region_height;
+        (first, (first + (region_height - 1) / 2).min(height - 1))
+    }
+
+    /// When the first pixel of a strip is scanned, by which it must have arrived.
+    pub(crate) fn deadline(&self, field: u64, strip: u32) -> Time {
+        self.beam.at(field, self.rows(strip).0, 0)
+    }
+
+    /// When the middle of a strip is scanned.
+    #[must_use]
+    pub fn middle(&self, field: u64, strip: u32) -> Time {
+        self.beam.at(field, self.rows(strip).1, self.grid().width / 2)
+    }
+
+    /// The first and the last pixel of a field: T0 and T1.
+    #[must_use]
+    pub fn ends(&self, field: u64) -> (Time, Time) {
+        let RegionGrid { width, height, .. } = self.grid();
+        (self.beam.at(field, 0, 0), self.beam.at(field, height - 1, width - 1))
+    }
+
+    /// How much of the way from T0 to T1 the middle of a strip is.
+    #[must_use]
+    pub fn part(&self, field: u64, strip: u32) -> f64 {
+        let (begin, end) = self.ends(field);
+        self.middle(field, strip).since(begin).0 as f64 / end.since(begin).0 as f64
+    }
+
+    /// From the order of a strip to its beam: every slave has as many strip times as there are slaves.
+    pub(crate) fn lead(&self) -> Span {
+        let strip = self.deadline(0, 1).since(self.deadline(0, 0));
+        strip * self.slaves.len() as u64 + Span::from_ns(self.timing.margin_ns)
+    }
+}

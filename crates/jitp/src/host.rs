@@ -1,0 +1,35 @@
+//! The host: passes on what the tracker delivers.
+
+use crate::config::Config;
+use crate::protocol::Order;
+use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
+use pxpl5_sim::Time;
+
+/// Sends every report of the tracker to the master as it arrives; of several that wait, the newest.
+///
+/// `next_report` gives the arrival of the first report after an instant; `None` when the tracker has fallen silent for
+/// good.
+///
+/// # Errors
+///
+/// None of its own; the type is that of a program.
+pub async fn host(
+    gp: Gp,
+    config: Config,
+    timing: HostTiming,
+    mut next_report: impl FnMut(Time) -> Option<Time>,
+) -> Result<(), Fault> {
+    let mut known = Time::ZERO;
+    for report in 0.. {
+        let Some(arrives_at) = next_report(known) else { break };
+        gp.spend(arrives_at.since(gp.now())).await;
+        known = gp.now().max(arrives_at);
+        gp.begin(Stage::Send, report, None);
+        let (words, body) = Order::Report { known }.message();
+        gp.spend(timing.link_span(words)).await;
+        let sent = gp.send(config.master, words, body).await;
+        gp.accepted(sent).await;
+        gp.end(Stage::Send, report, None);
+    }
+    Ok(())
+}

@@ -1,0 +1,158 @@
+//! Orders as words of the ring.
+
+use pphigs::FrameView;
+use pxpl5_gp::{Fault, Received};
+use pxpl5_sim::Time;
+use pxpl5_wire::{Body, NodeId, Word};
+
+const FIELD: Word = 0x1F1E_1D00;
+const STRIP: Word = 0x1F1E_1D01;
+const BLOCKS: Word = 0x1F1E_1D02;
+const REPORT: Word = 0x1F1E_1D03;
+const DONE: Word = 0x1F1E_1D04;
+
+/// Words of a report from the host: two time stamps, position and quaternion in 64 bits each, and a header.
+pub(crate) const REPORT_WORDS: u32 = 20;
+
+/// What boards tell each other.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Order {
+    /// Transform everything for the views of a field.
+    Field { field: u64, views: Vec<FrameView> },
+    /// Draw a strip, with a view of its own or for the field's.
+    Strip { field: u64, strip: u32, deadline: Time, view: Option<FrameView> },
+    /// Draw blocks from a step of the random order on.
+    Blocks { update: u64, step: u64, view: FrameView },
+    /// All reports that the host had by then are here.
+    Report { known: Time },
+    /// A slave can take another order.
+    Done { slave: u32 },
+}
+
+impl Order {
+    /// The words and their number.
+    pub(crate) fn message(&self) -> (u32, Body) {
+        let mut words = Vec::new();
+        match self {
+            Self::Field { field, views } => {
+                words.extend([FIELD, low(*field), high(*field), views.len() as Word]);
+                for view in views {
+                    push_view(&mut words, view);
+                }
+            }
+            Self::Strip { field, strip, deadline, view } => {
+                words.extend([STRIP, low(*field), high(*field), *strip, low(deadline.0), high(deadline.0)]);
+                view.iter().for_each(|view| push_view(&mut words, view));
+            }
+            Self::Blocks { update, step, view } => {
+                words.extend([BLOCKS, low(*update), high(*update), low(*step), high(*step)]);
+                push_view(&mut words, view);
+            }
+            Self::Report { known } => {
+                words.extend([REPORT, low(known.0), high(known.0)]);
+                words.resize(REPORT_WORDS as usize, 0);
+            }
+            Self::Done { slave } => words.extend([DONE, *slave]),
+        }
+        (words.len() as u32, Body::Words(words.into()))
+    }
+
+    /// Reads a received order.
+    ///
+    /// # Errors
+    ///
+    /// [`Fault::Protocol`] for words that are none.
+    pub(crate) fn read(received: &Received, node: NodeId) -> Result<Self, Fault> {
+        let order = match &received.body {
+            Body::Words(words) => Self::from_words(words),
+            Body::Commands(_) | Body::Pixels(_) => None,
+        };
+        order.ok_or_else(|| Fault::Protocol { node, found: format!("from node {}", received.source.0) })
+    }
+
+    fn from_words(words: &[Word]) -> Option<Self> {
+        Some(match words {
+            [FIELD, a, b, count, rest @ ..] => {
+                let mut rest = rest;
+                let views = (0..*count).map(|_| take_view(&mut rest)).collect::<Option<_>>()?;
+                Self::Field { field: long(*a, *b), views }
+            }
+            [STRIP, a, b, strip, c, d, rest @ ..] => {
+                let mut rest = rest;
+                let view = if rest.is_empty() { None } else { Some(take_view(&mut rest)?) };
+                Self::Strip { field: long(*a, *b), strip: *strip, deadline: Time(long(*c, *d)), view }
+            }
+            [BLOCKS, a, b, c, d, rest @ ..] => {
+                let mut rest = rest;
+                Self::Blocks { update: long(*a, *b), step: long(*c, *d), view: take_view(&mut rest)? }
+            }
+            [REPORT, a, b, ..] => Self::Report { known: Time(long(*a, *b)) },
+            [DONE, slave] => Self::Done { slave: *slave },
+            _ => return None,
+        })
+    }
+}
+
+fn push_view(words: &mut Vec<Word>, view: &FrameView) {
+    let of_view = view.to_words();
+    words.push(of_view.len() as Word);
+    words.extend(of_view);
+}
+
+fn take_view(words: &mut &[Word]) -> Option<FrameView> {
+    let (length, rest) = words.split_first()?;
+    let (view, rest) = rest.split_at_checked(*length as usize)?;
+    *words = rest;
+    FrameView::from_words(view).ok()
+}
+
+const fn low(v: u64) -> Word {
+    v as Word
+}
+
+const fn high(v: u64) -> Word {
+    (v >> 32) as Word
+}
+
+fn long(low: Word, high: Word) -> u64 {
+    u64::from(low) | u64::from(high) << 32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Mat4;
+    use pphigs::EyeView;
+
+    fn view(number: u64) -> FrameView {
+        let eye = EyeView { world_to_eye: Mat4::IDENTITY, head_to_eye: Mat4::IDENTITY, projection: Mat4::IDENTITY };
+        FrameView { number, eyes: vec![eye], edits: Vec::new() }
+    }
+
+    #[test]
+    fn every_order_survives_its_words() {
+        let big = (1 << 40) + 3;
+        for order in [
+            Order::Field { field: big, views: vec![view(1), view(2)] },
+            Order::Strip { field: big, strip: 239, deadline: Time(big), view: None },
+            Order::Strip { field: 1, strip: 0, deadline: Time(2), view: Some(view(big)) },
+            Order::Blocks { update: big, step: big + 1, view: view(3) },
+            Order::Report { known: Time(big) },
+            Order::Done { slave: 11 },
+        ] {
+            let (words, body) = order.message();
+            let received = Received { arrived: Time(0), source: NodeId(1), body };
+            assert_eq!(Order::read(&received, NodeId(0)), Ok(order.clone()));
+            assert!(words <= pxpl5_wire::MAX_MESSAGE_WORDS);
+        }
+    }
+
+    #[test]
+    fn words_cut_short_are_a_fault_and_no_panic() {
+        let (_, body) = Order::Field { field: 1, views: vec![view(1)] }.message();
+        let Body::Words(words) = body else { panic!("orders are words") };
+        for length in 0..words.len() {
+            assert_eq!(Order::from_words(&words[..length]), None, "{length}");
+        }
+    }
+}

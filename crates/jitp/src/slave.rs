@@ -1,0 +1,177 @@
+//! A slave GP: it draws the strips or blocks that the master orders.
+
+use crate::config::{Config, Schedule, Viewpoint};
+use crate::drawing::{Drawing, Ends};
+use crate::master::{PROGRAM_BYTES, transform_span};
+use crate::pieces::{messages, window};
+use crate::protocol::Order;
+use pphigs::{Counts, DisplayList, FrameView, Share};
+use pxpl5_geometry::Viewport;
+use pxpl5_gp::{Account, Fault, Gp, Level, Program};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{Body, NodeId, RegionId};
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Fields that stay transformed: the one being drawn and the next.
+const FIELDS_KEPT: usize = 3;
+
+#[derive(Default)]
+struct State {
+    /// Fields to transform.
+    ordered: VecDeque<(u64, Vec<FrameView>)>,
+    /// Fields transformed, in order.
+    transformed: VecDeque<(u64, Field)>,
+}
+
+/// A field's transforms, and what a conventional picture's strips share.
+#[derive(Clone)]
+struct Field {
+    ends: Ends,
+    whole: Arc<Drawing>,
+}
+
+type Shared = Rc<RefCell<State>>;
+
+/// The programs of slave number `index` for both levels of its board: strips interrupt the transforms of the next
+/// field. Every slave holds the whole display list.
+///
+/// They fail with [`Fault::Memory`] when it does not fit, and with [`Fault::Protocol`] for a message that no board
+/// sends.
+pub fn slave(gp: &Gp, config: &Config, list: &Arc<DisplayList>, index: usize) -> Vec<(Level, Program)> {
+    let share = Share::new(Arc::clone(list), 0, 1);
+    let state = Shared::default();
+    let slave = |level| Slave {
+        gp: gp.at_level(level),
+        config: config.clone(),
+        list: Arc::clone(list),
+        counts: share.counts(),
+        bytes: share.bytes(),
+        state: Rc::clone(&state),
+        index,
+    };
+    let (drawing, preparing) = (slave(Level::Interrupt), slave(Level::Foreground));
+    vec![(Level::Interrupt, Box::pin(drawing.draw())), (Level::Foreground, Box::pin(preparing.prepare()))]
+}
+
+struct Slave {
+    gp: Gp,
+    config: Config,
+    list: Arc<DisplayList>,
+    counts: Counts,
+    bytes: u64,
+    state: Shared,
+    index: usize,
+}
+
+impl Slave {
+    /// Takes orders and draws.
+    async fn draw(self) -> Result<(), Fault> {
+        self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
+        self.gp.reserve(Account::DisplayList, self.bytes, None)?;
+        loop {
+            let received = self.gp.receive().await;
+            match Order::read(&received, self.gp.node())? {
+                Order::Field { field, views } => self.state.borrow_mut().ordered.push_back((field, views)),
+                Order::Strip { field, strip, deadline, view } => self.strip(field, strip, deadline, view).await,
+                Order::Blocks { update, step, view } => self.blocks(update, step, &view).await,
+                other => return Err(Fault::Protocol { node: self.gp.node(), found: format!("at a slave: {other:?}") }),
+            }
+        }
+    }
+
+    /// Transforms everything for the newest field ordered.
+    async fn prepare(self) -> Result<(), Fault> {
+        loop {
+            let newest = || self.state.borrow_mut().ordered.drain(..).next_back();
+            let (field, views) = self.gp.until("the order of a field", newest).await;
+            self.gp.spend(transform_span(&self.gp.timing(), self.counts) * views.len() as u64).await;
+            let viewport = self.config.picture(field).0;
+            let whole = Arc::new(Drawing::of(&self.list, &views[0], viewport));
+            let ends = Ends::new(&self.list, views, viewport);
+            let state = &mut *self.state.borrow_mut();
+            state.transformed.push_back((field, Field { ends, whole }));
+            if state.transformed.len() > FIELDS_KEPT {
+                state.transformed.pop_front();
+            }
+        }
+    }
+
+    /// Draws a strip, unless its beam has passed.
+    async fn strip(&self, field: u64, strip: u32, deadline: Time, view: Option<FrameView>) {
+        if self.gp.now() >= deadline {
+            return;
+        }
+        let viewport = self.config.picture(field).0;
+        let drawing = match &view {
+            Some(view) => {
+                self.gp.spend(transform_span(&self.gp.timing(), self.counts)).await;
+                Some(Arc::new(Drawing::of(&self.list, view, viewport)))
+            }
+            None => self.from_field(field, strip, viewport).await,
+        };
+        let Some(drawing) = drawing.filter(|_| self.gp.now() < deadline) else { return };
+        self.send(field, &self.config.strip_regions(strip), &viewport, &drawing).await;
+    }
+
+    /// The strip as the transforms of its field give it; `None` if they were left out.
+    async fn from_field(&self, field: u64, strip: u32, viewport: Viewport) -> Option<Arc<Drawing>> {
+        let newest = || self.state.borrow().transformed.back().filter(|newest| newest.0 >= field).map(drop);
+        self.gp.until("the transforms of the field", newest).await;
+        let state = self.state.borrow();
+        let (_, ready) = state.transformed.iter().find(|ready| ready.0 == field)?;
+        Some(match self.dual() {
+            Some(reading) => {
+                let part = self.config.part(field, strip);
+                Arc::new(Drawing::between(&self.list, &ready.ends, part, reading, viewport))
+            }
+            None => Arc::clone(&ready.whole),
+        })
+    }
+
+    fn dual(&self) -> Option<crate::config::Reading> {
+        match self.config.schedule {
+            Schedule::Beam { viewpoint: Viewpoint::Dual(reading), .. } => Some(reading),
+            _ => None,
+        }
+    }
+
+    /// Draws the next blocks of the random order and asks for more.
+    async fn blocks(&self, update: u64, step: u64, view: &FrameView) {
+        let Schedule::Roam { batch, order, .. } = &self.config.schedule else { return };
+        let viewport = self.config.picture(update).0;
+        self.gp.spend(transform_span(&self.gp.timing(), self.counts)).await;
+        let drawing = Arc::new(Drawing::of(&self.list, view, viewport));
+        let regions: Vec<_> = (0..u64::from(*batch)).map(|i| order.at(step + i)).collect();
+        self.send(update, &regions, &viewport, &drawing).await;
+        let (words, body) = Order::Done { slave: self.index as u32 }.message();
+        self.gp.send(self.config.master, words, body).await;
+    }
+
+    /// Bins, and sends all regions as one chain of messages.
+    async fn send(&self, picture: u64, regions: &[RegionId], viewport: &Viewport, drawing: &Arc<Drawing>) {
+        let windows: Vec<_> = regions.iter().map(|region| window(&self.config, viewport, *region)).collect();
+        let (counts, any) = drawing.count(&windows);
+        let entries: u64 = counts.iter().map(|c| u64::from(c.total())).sum();
+        let interpolated = if self.dual().is_some() { u64::from(any.total()) } else { 0 };
+        let timing = self.gp.timing();
+        let ns = timing.bin_entry_ns * entries + self.config.timing.interpolate_ns * interpolated;
+        self.gp.spend(Span::from_ns(ns)).await;
+        self.gp.clump_buffer_free().await;
+        let pieces = regions.iter().zip(&windows).zip(&counts);
+        let batch: Vec<_> = pieces
+            .flat_map(|((region, window), counts)| {
+                let target = self.config.target(picture, *region);
+                let lists = messages(&self.config, drawing, (viewport, *window), *counts, target);
+                lists.into_iter().map(|list| self.addressed(*region, list))
+            })
+            .collect();
+        self.gp.send_batch(batch).await;
+    }
+
+    fn addressed(&self, region: RegionId, list: pxpl5_wire::CommandList) -> (NodeId, u32, Body) {
+        (self.config.renderer_of(region), list.words(), Body::Commands(list))
+    }
+}
