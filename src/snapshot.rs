@@ -85,7 +85,7 @@ pub enum SnapshotError {
         /// The file.
         file: String,
         /// Why.
-        error: FileError,
+        error: Box<FileError>,
     },
     /// The run is not the one that was saved.
     #[error(
@@ -173,7 +173,7 @@ impl Snapshot {
     pub fn experiment(&self, file: &str) -> Result<ExperimentFile, SnapshotError> {
         let text = format!("{file}: experiment");
         ExperimentFile::parse(&self.experiment, &text)
-            .map_err(|error| SnapshotError::Experiment { file: file.to_owned(), error })
+            .map_err(|error| SnapshotError::Experiment { file: file.to_owned(), error: Box::new(error) })
     }
 
     /// Compares the scene with the one that was saved.
@@ -240,7 +240,7 @@ mod tests {
         let snapshot = Snapshot::read(&snapshot.to_text(), "s").expect("as written");
         let restored = snapshot
             .experiment("s")
-            .and_then(|file| file.resolve().map_err(|error| SnapshotError::Experiment { file: "s".to_owned(), error }));
+            .and_then(|file| file.resolve().map_err(|error| SnapshotError::Experiment { file: "s".to_owned(), error: Box::new(error) }));
         let restored = restored.expect("as written");
         assert_eq!(restored, plan);
         let scene = restored.load_scene().expect("built in");

@@ -19,6 +19,9 @@ pub struct Merged {
     pub missing: Vec<u64>,
 }
 
+/// Rows by point, each with the file that it is from.
+type Joined = BTreeMap<u64, (Row, String)>;
+
 /// Joins the rows of folders into one folder, in order of the points. Nothing is written unless all is well.
 ///
 /// # Errors
@@ -26,14 +29,14 @@ pub struct Merged {
 /// [`SweepError::Foreign`] when a folder is of another sweep, [`SweepError::Contradiction`] when a point has different
 /// rows, [`SweepError::Missing`] when points are nowhere and that is not allowed.
 pub fn merge(folders: &[PathBuf], out: &Path, allow_missing: bool) -> Result<Merged, SweepError> {
-    let mut all: Option<(Header, BTreeMap<u64, (Row, String)>)> = None;
+    let mut all: Option<(Header, Joined)> = None;
     let mut duplicates = Vec::new();
     for folder in folders {
         let path = folder.join(ROWS_FILE);
         let Found { header, rows, repeated, .. } = found(&path)?;
         let Some(header) = header else { continue };
         duplicates.extend(repeated);
-        let (first, joined) = all.get_or_insert_with(|| (header.clone(), BTreeMap::new()));
+        let (first, joined) = all.get_or_insert_with(|| (header.clone(), Joined::new()));
         check_header(&path, first, Some(&header))?;
         duplicates.extend(join(joined, rows, &path.display().to_string())?);
     }
@@ -60,7 +63,7 @@ fn found(path: &Path) -> Result<Found, SweepError> {
 
 /// Adds rows; gives the points that were there already.
 fn join(
-    joined: &mut BTreeMap<u64, (Row, String)>,
+    joined: &mut Joined,
     rows: BTreeMap<u64, Row>,
     name: &str,
 ) -> Result<Vec<u64>, SweepError> {
