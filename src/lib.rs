@@ -41,6 +41,7 @@ mod experiment;
 mod experiment_file;
 pub mod figures;
 mod fingerprint;
+pub mod intervals;
 pub mod levels;
 pub mod limit;
 mod machine;
