@@ -40,6 +40,7 @@ mod experiment;
 mod experiment_file;
 pub mod figures;
 mod fingerprint;
+mod latency;
 pub mod levels;
 pub mod limit;
 mod machine;
@@ -48,6 +49,7 @@ mod observation;
 mod parallel;
 pub mod pipelines;
 mod report;
+pub mod results;
 pub mod timeline;
 mod workers;
 
@@ -58,6 +60,7 @@ pub use experiment_file::{
     Variant,
 };
 pub use fingerprint::Fingerprint;
+pub use latency::{LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition};
 pub use machine::{Machine, Ports, RunError};
 pub use measure::{Measure, QUANTITIES, Quantity};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
