@@ -58,7 +58,10 @@ fn labels_macros_and_constants_make_a_program() {
     assert_eq!(disassemble(words[1], 0x1004), "br 0x1000");
     assert_eq!(disassemble(words[4], 0x1010), "br 0x100c");
     assert_eq!(words[6], 0xA000_0000, "alignment is filled with nop");
-    assert_eq!((disassemble(words[11], 0), disassemble(words[12], 0)), ("orh 4660, r0, r9".into(), "or 22136, r9, r9".into()));
+    assert_eq!(
+        (disassemble(words[11], 0), disassemble(words[12], 0)),
+        ("orh 4660, r0, r9".into(), "or 22136, r9, r9".into())
+    );
 }
 
 #[test]
