@@ -378,6 +378,7 @@ impl Outcome {
             pictures: pictures.len(),
             latency_fields: self.latency_fields().defined(experiment.pipeline.latency_definition()),
             latency_ms: self.latency_ms().defined(experiment.pipeline.latency_definition()),
+            latency_parts_ms: self.latency_part_statistics(),
             updates_hz: updates_hz(pictures),
             missed_retraces: experiment.pipeline.missed_retraces(pictures),
             missed_retraces_definition: experiment.pipeline.missed_definition().to_owned(),

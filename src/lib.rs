@@ -42,6 +42,7 @@ mod experiment_file;
 pub mod figures;
 mod fingerprint;
 pub mod intervals;
+mod latency;
 pub mod levels;
 pub mod limit;
 mod machine;
@@ -50,6 +51,7 @@ mod observation;
 mod parallel;
 pub mod pipelines;
 mod report;
+pub mod results;
 mod snapshot;
 pub mod sweep;
 pub mod timeline;
@@ -61,6 +63,7 @@ pub use experiment_file::{
     ExperimentFile, FileError, KEYS, Key, MotionChoice, Outputs, PIPELINES, Plan, Published, SceneChoice, Settings,
 };
 pub use fingerprint::Fingerprint;
+pub use latency::{LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition};
 pub use machine::{Machine, Ports, RunError};
 pub use measure::{Measure, QUANTITIES, Quantity};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
