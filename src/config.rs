@@ -6,6 +6,7 @@ use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
 use pxpl5_sim::{ParameterError, ParameterInfo, ParameterTable};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// Boards and their numbers.
@@ -213,6 +214,18 @@ impl MachineConfig {
         list(&mut all, "frame_buffer", &self.frame_buffer.port);
         list(&mut all, "host", &self.host);
         all
+    }
+
+    /// Parameters that differ from the preset's, by path.
+    #[must_use]
+    pub fn overrides(&self) -> BTreeMap<String, u64> {
+        let Ok(preset) = Self::preset(&self.preset) else { return BTreeMap::new() };
+        let boards = [("n_gps", self.n_gps, preset.n_gps), ("n_renderers", self.n_renderers, preset.n_renderers)];
+        let boards = boards.into_iter().filter(|(_, own, other)| own != other);
+        let boards = boards.map(|(path, own, _)| (path.to_owned(), own as u64));
+        let pairs = self.parameters().into_iter().zip(preset.parameters());
+        let changed = pairs.filter(|(own, other)| own.value != other.value);
+        boards.chain(changed.map(|(own, _)| (own.path, own.value))).collect()
     }
 
     /// Changes a parameter by its path, such as `ring.word_ns`, `n_gps` or `n_renderers`.

@@ -2,6 +2,7 @@
 
 use crate::config::{ConfigError, MachineConfig};
 use crate::display_list::{display_list, views};
+use crate::fingerprint::Fingerprint;
 use crate::head_to_light::{FIELDS_WITH_HEAD, Head, HeadViews, Rehearsal};
 use crate::machine::{Machine, RunError};
 use crate::observation::Observation;
@@ -11,6 +12,7 @@ use image::RgbImage;
 use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
 use pxpl5_wire::Eye;
+use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
@@ -211,7 +213,7 @@ impl Experiment {
     fn rehearse(&self) -> Result<Option<Rehearsal>, ExperimentError> {
         let Some(head) = self.head.as_ref().filter(|head| head.predicts()) else { return Ok(None) };
         let plain = Self { head: Some(Arc::new(head.without_prediction())), pixels: Pixels::Off, ..self.clone() };
-        let outcome = plain.perform(None, |_, _| {})?;
+        let outcome = plain.perform(None, &[], |_, _| Ok(()))?;
         Ok(Some(Rehearsal::of(&outcome)))
     }
 
@@ -230,26 +232,44 @@ impl Experiment {
     /// # Errors
     ///
     /// As [`Experiment::run`].
-    pub fn run_with(&self, progress: impl FnMut(u64, u64)) -> Result<Outcome, ExperimentError> {
+    pub fn run_with(&self, mut progress: impl FnMut(u64, u64)) -> Result<Outcome, ExperimentError> {
+        self.run_stopping(&[], |field, _| {
+            progress(field, self.fields);
+            Ok(())
+        })
+    }
+
+    /// Runs it and stops at the retrace that begins each of some fields, and now and then between: `at` sees the field
+    /// and the machine, before anything of that field has happened, and may end the run.
+    ///
+    /// # Errors
+    ///
+    /// As [`Experiment::run`], and what `at` says.
+    pub fn run_stopping(
+        &self,
+        stops: &[u64],
+        at: impl FnMut(u64, &mut Machine) -> Result<(), ExperimentError>,
+    ) -> Result<Outcome, ExperimentError> {
         let rehearsal = if self.pipeline.knows_when_seen() { None } else { self.rehearse()? };
-        self.perform(rehearsal, progress)
+        self.perform(rehearsal, stops, at)
     }
 
     fn perform(
         &self,
         rehearsal: Option<Rehearsal>,
-        mut progress: impl FnMut(u64, u64),
+        stops: &[u64],
+        mut at: impl FnMut(u64, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
         let host_time = Instant::now();
         let (mut machine, head) = self.assemble(rehearsal)?;
         let mut result = Ok(());
-        for field in (PROGRESS_FIELDS..self.fields).step_by(PROGRESS_FIELDS as usize).chain([self.fields]) {
+        for field in self.stops(stops) {
             let until = machine.video().retrace(field);
             result = machine.run_until(until);
             if result.is_err() {
                 break;
             }
-            progress(field, self.fields);
+            at(field, &mut machine)?;
         }
         machine.finish_pixels();
         let host_seconds = host_time.elapsed().as_secs_f64();
@@ -261,6 +281,26 @@ impl Experiment {
             }
             Ok(()) => Ok(outcome),
         }
+    }
+}
+
+impl Experiment {
+    /// Fields at which to stop: those asked for, every so many for the progress, the last.
+    fn stops(&self, asked: &[u64]) -> BTreeSet<u64> {
+        let regular = (PROGRESS_FIELDS..self.fields).step_by(PROGRESS_FIELDS as usize);
+        asked.iter().copied().filter(|field| *field < self.fields).chain(regular).chain([self.fields]).collect()
+    }
+
+    /// Name of everything on which the trace depends: machine, pipeline and variant, contents of the scene, fields and
+    /// seed.
+    #[must_use]
+    pub fn config_hash(&self) -> Fingerprint {
+        let Self { config, pipeline, fields, seed, head, .. } = self;
+        let scene = Fingerprint::of_scene(&self.scene);
+        let parameters: Vec<_> = config.parameters().into_iter().map(|p| (p.path, p.value)).collect();
+        let boards = (config.n_gps, config.n_renderers);
+        let head = head.as_ref().map(|head| format!(" {head:?}")).unwrap_or_default();
+        Fingerprint::of(format!("{boards:?} {parameters:?} {pipeline:?} {scene} {fields} {seed}{head}").as_bytes())
     }
 }
 
@@ -370,14 +410,18 @@ impl Outcome {
         Report {
             schema: Report::SCHEMA.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            pipeline: experiment.pipeline.name().to_owned(),
             machine: experiment.config.preset.clone(),
+            config_hash: experiment.config_hash().to_string(),
+            level: "transaction".to_owned(),
+            seed: experiment.seed,
+            pipeline: experiment.pipeline.name().to_owned(),
+            variant: format!("{:?}", experiment.pipeline),
+            overrides: experiment.config.overrides(),
             n_gps: experiment.config.n_gps,
             n_renderers: experiment.config.n_renderers,
             scene: experiment.scene.name().to_owned(),
             triangles: experiment.scene.triangles().len(),
             spheres: experiment.scene.spheres().len(),
-            level: "transaction".to_owned(),
             fields: experiment.fields,
             pictures: pictures.len(),
             latency_fields: self.latency_fields().defined(experiment.pipeline.latency_definition()),
@@ -388,7 +432,6 @@ impl Outcome {
             late_regions: late.len(),
             first_late_regions: late.into_iter().take(20).collect(),
             trace_hash: self.machine.trace_hash().to_string(),
-            seed: experiment.seed,
             events: self.machine.events(),
             host_seconds: self.host_seconds,
         }

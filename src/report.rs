@@ -2,6 +2,7 @@
 
 use crate::observation::LateRegion;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Mean, sample standard deviation, least and greatest of some numbers. All zero for none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -59,10 +60,20 @@ pub struct Report {
     pub schema: String,
     /// Version of the program.
     pub version: String,
-    /// Pipeline.
-    pub pipeline: String,
     /// Preset of the machine.
     pub machine: String,
+    /// Name of everything on which the trace depends ([`crate::Experiment::config_hash`]).
+    pub config_hash: String,
+    /// Level of modelling.
+    pub level: String,
+    /// Seed of the head motion.
+    pub seed: u64,
+    /// Pipeline.
+    pub pipeline: String,
+    /// Its variant.
+    pub variant: String,
+    /// Parameters of the machine that differ from the preset's, by path.
+    pub overrides: BTreeMap<String, u64>,
     /// Graphics processors.
     pub n_gps: usize,
     /// Renderers.
@@ -73,8 +84,6 @@ pub struct Report {
     pub triangles: usize,
     /// Spheres in the scene.
     pub spheres: usize,
-    /// Level of modelling.
-    pub level: String,
     /// Fields simulated.
     pub fields: u64,
     /// Pictures that the statistics are over.
@@ -95,8 +104,6 @@ pub struct Report {
     pub first_late_regions: Vec<LateRegion>,
     /// Hash of everything that happened.
     pub trace_hash: String,
-    /// Seed of the head motion.
-    pub seed: u64,
     /// Events handled.
     pub events: u64,
     /// Time that the run took on this host.

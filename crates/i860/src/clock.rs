@@ -182,6 +182,11 @@ impl Clock {
         self.freeze_until(line.first, Freeze::InstructionMiss);
     }
 
+    pub(crate) fn empty_caches(&mut self) {
+        self.invalidate_instruction_cache();
+        self.data_cache.clear();
+    }
+
     pub(crate) fn invalidate_instruction_cache(&mut self) {
         self.instruction_cache.clear();
         self.tlb.clear();

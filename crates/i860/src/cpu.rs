@@ -183,6 +183,11 @@ impl Cpu {
         self.time.clear_profile();
     }
 
+    /// Empties the caches and the TLB without writing back, and waits for nothing: a cold start for measurements.
+    pub fn empty_caches(&mut self) {
+        self.time.empty_caches();
+    }
+
     /// Watches clocks by address from now on (or stops to).
     pub fn watch(&mut self, addresses: Option<AddressProfile>) {
         self.time.sampler = addresses;

@@ -1,8 +1,8 @@
 //! `pxpl5 i860`: assemble, disassemble, run with a cycle listing, and conformance vectors.
 
+use ::i860::{AddressProfile, Config, Cpu, Outcome, Program, Ram, assemble, disassemble, vectors};
 use clap::{Args, Subcommand};
 use flate2::read::MultiGzDecoder;
-use ::i860::{AddressProfile, Config, Cpu, Outcome, Program, Ram, assemble, disassemble, vectors};
 use std::fmt::Write as _;
 use std::io::Read;
 use std::path::{Path, PathBuf};

@@ -63,6 +63,8 @@ fn fields(criterion: &mut Criterion) {
         });
     });
     group.bench_function("picture", |bencher| {
+        let (mut board, mut context, _) = new();
+        (0..4).for_each(|field| copy_field(&mut board, &mut context, field, &image));
         let seen = board.last_seen().expect("scanned");
         bencher.iter(|| seen.picture());
     });

@@ -35,11 +35,11 @@ impl Canvas {
 
     pub(crate) fn into_image(self) -> RgbImage {
         let height = self.words.len() as u32 / self.width;
-        let bytes = self.words.iter().flat_map(|word| {
+        let mut bytes = vec![0; 3 * self.words.len()];
+        for (pixel, word) in bytes.chunks_exact_mut(3).zip(&self.words) {
             let [_, red, green, blue] = word.to_be_bytes();
-            [red, green, blue]
-        });
-        let bytes = bytes.collect();
+            pixel.copy_from_slice(&[red, green, blue]);
+        }
         RgbImage::from_raw(self.width, height, bytes).unwrap_or_default()
     }
 }

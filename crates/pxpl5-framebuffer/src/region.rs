@@ -96,7 +96,7 @@ impl RegionWrite {
     /// When the last message arrived; `None` while one is missing.
     pub(crate) fn last_at(&self) -> Option<Time> {
         let arrived = &self.arrived[..self.parts as usize];
-        arrived.iter().copied().max().filter(|last| *last != NEVER)
+        self.is_complete().then(|| arrived.iter().copied().max())?
     }
 
     /// The pixels that have arrived, line by line, each line cut where one message ends and the next begins.

@@ -1,4 +1,5 @@
 //! Host time of transform, binning and set-up, per triangle.
+#![allow(missing_docs, reason = "criterion's macro writes an undocumented function")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{Mat4, Vec3};

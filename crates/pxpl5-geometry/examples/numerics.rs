@@ -5,18 +5,11 @@
 #[path = "../tests/support/mod.rs"]
 mod support;
 
-fn main() {
-    for case in support::cases::all() {
-        if case.name.contains("origin") {
-            let row = support::measure::measure(&case);
-            println!("{} {:?}", case.name, row);
-        }
-    }
-    for f in support::fighting::all() {
-        println!("{f:?}");
-    }
-    for f in support::spheres::all() {
-        let t = std::time::Instant::now();
-        println!("{} {:?} {:?}", f.name, support::spheres::measure(&f), t.elapsed());
-    }
+use std::path::Path;
+
+fn main() -> std::io::Result<()> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/numerics.md");
+    std::fs::write(&path, support::report::text(&support::report::Measured::all()))?;
+    println!("wrote {}", path.display());
+    Ok(())
 }

@@ -2,13 +2,14 @@
 //!
 //! A region is *touched* when both hold:
 //!
-//! - its pixels meet the pixels whose centres lie in the triangle's bounding box, and
+//! - the bounding box of the triangle holds the centre of one of its columns and of one of its rows, and
 //! - for each edge, some point of the region's *pixel-centre box* (the smallest rectangle around the centres of its
 //!   pixels) is on the inner side, with the tie rule of the edge.
 //!
-//! This is the separating-axis test, so it is exact for the question "does the triangle, of which a right or
-//! bottom edge is not a part, meet the pixel-centre box". Every region with a covered pixel is touched. The reverse
-//! does not hold: a triangle that passes between the pixel centres of a region touches it without a pixel.
+//! These are the sides of the sum of triangle and box, so the test is exact for the question "does the triangle, of
+//! which right and bottom edges are not a part, meet the pixel-centre box". Every region with a covered pixel is
+//! touched. The reverse does not hold: a triangle that passes between the pixel centres of a region touches it without
+//! a pixel, unless it passes between two columns or two rows.
 
 use crate::{Outline, Viewport};
 use pxpl5_wire::{Linear, RegionId};
@@ -178,11 +179,13 @@ impl Binner {
         if inside {
             return RegionMask(1 << (row * self.columns + column));
         }
-        self.test_edges(outline, x, y)
+        self.test_edges(outline.x, outline.y, x, y)
     }
 
+    /// Takes the corners alone: were the outline passed on, callers that need no depths would still compute them.
     #[inline(never)]
-    fn test_edges(&self, outline: &Outline, x: Range, y: Range) -> RegionMask {
+    fn test_edges(&self, corners_x: [i32; 3], corners_y: [i32; 3], x: Range, y: Range) -> RegionMask {
+        let outline = Outline { x: corners_x, y: corners_y, z: [0; 3], regions: RegionMask::EMPTY };
         let edges = outline.edges();
         self.cells(x, y, |column, row| {
             let (across, down) = (self.column_box(column), self.row_box(row));

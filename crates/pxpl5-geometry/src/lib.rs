@@ -1,6 +1,78 @@
 //! What graphics-processor code computes between the display list and the renderer's commands.
 //!
-//! Triangles: [`Transform`] gives [`ScreenTriangle`]s with the regions that they touch, these give expressions.
+//! ```text
+//! Triangle, Mesh ---> Transform ---> ScreenTriangle ---> GouraudTriangle, PhongTriangle   (expressions)
+//!                      | bin_mesh         | outline.regions
+//! Sphere -----------> Transform ---> ScreenSphere -----> GouraudSphere, PhongSphere
+//!                      |
+//!                 SetupStats: everything that was dropped, cut or limited
+//! ```
+//!
+//! # Behaviour, in the order of the signal
+//!
+//! 1. **Transform** in 32-bit floating point, relative to the eye (so that models far from the origin lose nothing),
+//!    to clip coordinates: right-handed, looking along -Z, depth 0 to 1.
+//! 2. **Light**: for Gouraud shading each vertex by a directional [`Light`], two-sided; for Phong shading the normals
+//!    in eye coordinates.
+//! 3. **Clip** by the near and far planes and a guard band of [`GUARD_PIXELS`], before the divide. Nothing is clipped by
+//!    the sides of the picture. A shared edge is cut at one point, whichever triangle it is cut for.
+//! 4. **Snap** to 1/16 px of the *frame*. A field is its frame's even or odd lines exactly: the same snapped vertices,
+//!    the expressions restated for every second line.
+//! 5. **Drop** triangles without area and, on request, back faces ([`Culling`]).
+//! 6. **Bin**: the exact set of regions touched ([`RegionMask`]), from the edges; one comparison per side for the many
+//!    triangles inside one region. [`Transform::bin`] and [`Transform::bin_mesh`] stop here.
+//! 7. **Set up** on demand: edges exact in integers (at least 0 is inside, the tie rule folded in, so that each pixel of
+//!    a shared edge is drawn once), planes of depth, colour or normal, spheres as one quadratic with a root for depth.
+//!
+//! # Formats and limits
+//!
+//! | quantity | range | where proved |
+//! |---|---|---|
+//! | vertex | 2^16 subpixels from pixel (0, 0) | [`GUARD_PIXELS`] |
+//! | edge at any pixel | 2^30 | tests/setup.rs |
+//! | depth plane | right to `(abs dx + abs dy) / 2 + 1` of 2^-8 unit; never wraps at a covered pixel | tests/setup.rs |
+//! | colour plane | the same of 2^-12 unit; never wraps at a covered pixel | tests/setup.rs |
+//! | slope | up to [`MAX_SLOPE`], kept modulo 2^32; steeper planes are made flat and counted | tests/setup.rs |
+//! | sphere | silhouette below 2^47 in its regions, root of 12 bits | tests/input.rs |
+//!
+//! docs/numerics.md compares all of this with exact geometry on hard cases. All results are the same on every host:
+//! only additions, multiplications, divisions and square roots, in a fixed order, and no vector types.
+//!
+//! # Example
+//!
+//! ```
+//! use glam::{Mat4, Vec3};
+//! use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
+//!
+//! let view = ViewTransform {
+//!     model_view: Mat4::from_translation(Vec3::new(0.0, 0.0, -3.0)),
+//!     projection: Mat4::perspective_rh(0.8, 4.0 / 3.0, 0.1, 10.0),
+//! };
+//! let transform = Transform::new(&view, Viewport::FRAME, Culling::None)?;
+//! let triangle = Triangle {
+//!     positions: [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)],
+//!     normals: [Vec3::Z; 3],
+//!     colours: [[255, 0, 0]; 3],
+//! };
+//! let (mut stats, mut commands) = (SetupStats::default(), Vec::new());
+//! transform.gouraud(&triangle, &Light::HEADLIGHT, &mut stats, |t| commands.push(t));
+//! let regions: Vec<u16> = commands[0].outline.regions.iter().map(|r| r.0).collect();
+//! let planes = commands[0].gouraud(transform.viewport(), &mut stats);
+//! assert_eq!(regions, [7, 11, 12, 13]);
+//! assert!(planes.edges.iter().all(|e| e.at(320, 240) >= 0));
+//! # Ok::<(), pxpl5_geometry::ViewError>(())
+//! ```
+//!
+//! # Not modelled
+//!
+//! - Colour interpolated with perspective: planes are linear on the screen, as on the machine.
+//! - Spheres that the near or far plane cuts (not drawn, counted) and shadows or specular light on vertices.
+//! - The time all this takes on an i860: that is the firmware's business.
+//!
+//! # Sources
+//!
+//! TR94 (triangle recipe, regions, fields), F89 (quadratic expressions). The formats are assumed, see
+//! `pxpl5_wire::format`.
 
 mod bin;
 mod clip;

@@ -83,8 +83,8 @@ pub struct ScreenSphere {
     pub(crate) conic: Conic,
     /// Value at the conic's centre and slopes per pixel of the plane of depth.
     pub(crate) depth: [f64; 3],
-    /// Greatest depth on the silhouette.
-    pub(crate) deepest: f64,
+    /// Depth of the plane that touches the front, in units of the depth expression: nothing is nearer.
+    pub(crate) front: f64,
     /// The middle of the sphere as seen from the eye: unit vectors across, up and towards the eye.
     pub(crate) axes: [[f64; 3]; 3],
 }
@@ -259,7 +259,7 @@ impl Transform {
             colour,
             conic,
             depth,
-            deepest: f64::from(DEPTH_NEAR) + range * lens.depth(lens.deepest(eye)),
+            front: f64::from(DEPTH_NEAR) + range * lens.depth(-eye.centre[2] - eye.radius),
             axes: lens.axes(eye),
         })
     }

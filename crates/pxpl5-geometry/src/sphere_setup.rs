@@ -1,7 +1,7 @@
 //! Set-up of spheres: from a conic and a plane to the renderer's operands.
 
 use crate::conic::{self, FixedConic};
-use crate::screen::DEPTH_FAR;
+use crate::screen::DEPTH_NEAR;
 use crate::sphere::ScreenSphere;
 use crate::{Light, SetupStats, Viewport};
 use pxpl5_wire::{Linear, Quadratic, REGION_SIZE, format};
@@ -109,10 +109,11 @@ impl ScreenSphere {
         let middle = self.middle(rectangle);
         let conic = self.conic.fixed(rectangle, middle);
         let [value, slope_x, slope_y] = self.depth;
-        // Half a step of the root, as far as the far plane leaves room, turns rounding down into rounding.
+        // Roots are rounded down, so surfaces lie up to a step too deep: half a step nearer, as far as there is room
+        // before depth 0, makes that a rounding to the nearest.
         let half_step = conic::power_of_two(i32::from(conic.depth_shift) - 1);
-        let room = (f64::from(DEPTH_FAR) - self.deepest).max(0.0);
-        let plane = Slope { origin: self.conic.origin, value: value + half_step.min(room), slope: [slope_x, slope_y] };
+        let room = (self.front - f64::from(DEPTH_NEAR) * 0.5).max(0.0);
+        let plane = Slope { origin: self.conic.origin, value: value - half_step.min(room), slope: [slope_x, slope_y] };
         let (step, first) = (viewport.line_step(), viewport.first_line());
         let setup = SphereSetup {
             silhouette: conic::for_rows(conic.quadratic, step.into(), first.into()),

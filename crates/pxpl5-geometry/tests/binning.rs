@@ -94,7 +94,7 @@ fn triangle() -> impl Strategy<Value = [[i32; 2]; 3]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(150))]
+    #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn every_region_with_a_covered_pixel_is_touched_and_every_touched_region_meets_the_triangle(
@@ -140,6 +140,17 @@ proptest! {
 fn a_triangle_inside_one_region_touches_it_alone() {
     let (outline, _) = screen(Viewport::FRAME, [[2080, 2080], [2240, 2080], [2080, 2240]]);
     assert_eq!(outline.expect("it is on the screen").regions, RegionMask::only(RegionId(6)));
+}
+
+#[test]
+fn a_triangle_that_only_leans_over_a_regions_border_must_pass_the_edge_test() {
+    // Region 6 has pixel centres from 128.5 to 255.5 px. The bounding box holds the centre at (128.5, 128.5) and no
+    // other; the hypotenuse passes it at a distance, outside.
+    let (outline, stats) = screen(Viewport::FRAME, [[2049, 2067], [2067, 2049], [2050, 2050]]);
+    assert_eq!(outline.expect("the corner is inside").regions, RegionMask::only(RegionId(6)));
+    assert_eq!(stats.untouched, 0);
+    let (outline, stats) = screen(Viewport::FRAME, [[2049, 2057], [2057, 2049], [2050, 2050]]);
+    assert_eq!((outline, stats.untouched), (None, 1));
 }
 
 #[test]

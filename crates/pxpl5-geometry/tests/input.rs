@@ -194,6 +194,26 @@ fn silhouettes_are_exact_to_the_pixel_and_regions_miss_none_of_it() {
 }
 
 #[test]
+fn depths_of_spheres_that_touch_the_near_or_the_far_plane_never_wrap() {
+    let cases = [(-5.0, 3.999), (-2_000.0, 1_998.9), (-9_000.0, 8_998.0), (-16_380.0, 100.0), (-16_384.0, 600.0)];
+    for (z, radius) in cases {
+        let sphere = Sphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [1; 3] };
+        let mut stats = SetupStats::default();
+        let screen = spheres::transform().sphere(&sphere, &mut stats).unwrap_or_else(|| panic!("{z}: {stats:?}"));
+        let setup = screen.phong(&Viewport::FRAME, &mut stats).setup;
+        let exact = ExactSphere::new(&sphere);
+        // A step of the root, and a few units for planes and pixels.
+        let allowed = f64::from(1_u32 << setup.depth_shift) / 256.0 + 4.0;
+        for (y, x) in (0..480).step_by(3).flat_map(|y| (0..640).step_by(3).map(move |x| (y, x))) {
+            if let (true, Some(depth)) = (exact.covers(x, y), native(&setup, x, y)) {
+                let off = (f64::from(depth) + 0.5 - exact.depth(x, y)).abs();
+                assert!(off <= allowed, "{sphere:?} at {x}, {y}: off by {off}, {allowed} allowed");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_sphere_of_a_field_is_every_second_line_of_the_frame() {
     let sphere = Sphere { centre: Vec3::new(20.0, 30.0, -200.0), radius: 60.0, colour: [200, 100, 50] };
     let view = pixel_view(1.0, 16_384.0);
@@ -257,7 +277,7 @@ fn a_gouraud_sphere_is_full_in_the_middle_and_ambient_at_its_rim_under_a_headlig
     let red = |x: i32, y: i32| {
         let value = sphere.setup.silhouette.at(x, y).max(0) >> sphere.setup.root_shift;
         let root = (value as u64 & 0xff_ffff).isqrt() as i32;
-        (sphere.rgb[0].at(x, y) >> 12) + ((root >> 4) * i32::from(sphere.root_factor[0]) >> 8)
+        (sphere.rgb[0].at(x, y) >> 12) + (((root >> 4) * i32::from(sphere.root_factor[0])) >> 8)
     };
     assert!((198..=200).contains(&red(320, 240)), "{}", red(320, 240));
     // 600 at 1920 is 105 px in radius; the rim has the ambient quarter.

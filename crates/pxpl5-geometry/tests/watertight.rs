@@ -42,7 +42,7 @@ fn on_screen() -> impl Strategy<Value = [i32; 2]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn a_fan_around_any_corner_covers_the_screen_exactly_once(
@@ -121,6 +121,17 @@ fn a_triangle_that_passes_the_eye_covers_what_is_before_the_near_plane() {
         assert!((0..WIDTH).all(|x| count(&counts, x, y) == 1), "row {y}");
     }
     assert!((0..WIDTH).all(|x| count(&counts, x, 239) == 0));
+}
+
+#[test]
+fn triangles_a_million_pixels_beyond_the_screen_still_meet_along_one_line() {
+    // Without the guard band these edges would need 40 bits. Every second triangle is turned over.
+    let far = |x: f32, y: f32| at_pixel(320.0 + x * 1e6, 240.0 + y * 1e6, 1.0);
+    let rim = [far(-1.0, -0.9), far(1.0, -1.1), far(0.8, 1.0), far(-0.7, 1.0)];
+    let hub = at_pixel(300.25, 200.75, 1.0);
+    let (counts, stats) = draw(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
+    assert_eq!(stats.clipped, 4);
+    assert!(counts.iter().all(|&n| n == 1));
 }
 
 #[test]

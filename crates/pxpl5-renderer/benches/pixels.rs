@@ -2,6 +2,8 @@
 //!
 //! Every list has 64 commands, as a message has about 30, and the time is divided by criterion's throughput.
 
+#![allow(missing_docs)] // Of what criterion's macros make.
+
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5_renderer::{
     BitSerial, Clear, Command, Lanes, Layout, PhongSphere, PhongTriangle, PixelArray, Shade, Sphere, Triangle, Vectors,
@@ -64,14 +66,7 @@ fn clears() -> Vec<u32> {
 /// Spheres of `r` pixels around the middle, nearer one by one.
 fn silhouette(r: i64) -> Quadratic {
     let scale = 1 << 16;
-    Quadratic {
-        xx: -scale,
-        xy: 0,
-        yy: -scale,
-        x: 128 * scale,
-        y: 128 * scale,
-        one: scale * (r * r - 2 * 64 * 64),
-    }
+    Quadratic { xx: -scale, xy: 0, yy: -scale, x: 128 * scale, y: 128 * scale, one: scale * (r * r - 2 * 64 * 64) }
 }
 
 fn spheres(r: i64) -> Vec<u32> {

@@ -67,11 +67,7 @@ impl BitSerial {
         Ok(executed)
     }
 
-    fn instruction(
-        &mut self,
-        instruction: &Instruction,
-        executed: &mut Executed,
-    ) -> Result<(), FaultKind> {
+    fn instruction(&mut self, instruction: &Instruction, executed: &mut Executed) -> Result<(), FaultKind> {
         match *instruction {
             Instruction::Select { context_base, left, top } => {
                 self.controller.select(context_base, left, top);

@@ -31,7 +31,9 @@ mod sphere;
 
 pub use copy::{Clear, CopyRegion, LoadBacking, SelectRegion, StoreBacking};
 pub use draw::{PhongTriangle, Triangle};
+pub(crate) use shade::Fields as ShadeFields;
 pub use shade::{SPECULAR_SQUARINGS, Shade};
+pub(crate) use sphere::Scratch as SphereScratch;
 pub use sphere::{PhongSphere, Sphere};
 
 use crate::isa::{DecodeError, DecodeErrorKind, Instruction};
@@ -286,7 +288,7 @@ impl Command {
 }
 
 /// What a layout lacks.
-struct Missing(&'static str);
+pub(crate) struct Missing(&'static str);
 
 fn kind_of(first: &Instruction) -> Option<CommandKind> {
     match first {

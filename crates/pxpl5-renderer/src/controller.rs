@@ -63,14 +63,17 @@ impl Controller {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }
     }
 
+    /// Takes over the last linear coefficients of a command that is executed as a whole.
     pub(crate) fn hold(&mut self, linear: Linear) {
         self.linear = linear;
     }
 
+    /// The same for quadratic ones.
     pub(crate) fn hold_quadratic(&mut self, quadratic: Quadratic) {
         self.quadratic = quadratic;
     }
 
+    /// Moves the origin of the held quadratic expression to the array's left top pixel.
     pub(crate) fn localise_quadratic(&self) -> Quadratic {
         let q = self.quadratic;
         let (x, y) = (i64::from(self.left), i64::from(self.top));

@@ -2,7 +2,12 @@
 
 mod bounds;
 mod columns;
+mod ellipse;
 mod general;
+mod large;
+mod roots;
+mod shade;
+mod sphere;
 mod triangle;
 mod values;
 mod whole;
@@ -13,8 +18,8 @@ use crate::isa::{BACKING_BLOCKS, ENABLE_ALL, Instruction};
 use crate::layout::Layout;
 use crate::simd::{Present, Vectors};
 use columns::Columns;
-use whole::Templates;
 use pxpl5_wire::{REGION_SIZE, Word};
+use whole::Templates;
 
 /// The array by values: one word a pixel and field.
 ///
@@ -133,5 +138,58 @@ impl PixelArray for Lanes {
 
     fn faults(&self) -> u64 {
         self.faults
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::{Command, CommandKind};
+
+    const WHOLE: [CommandKind; 6] = [
+        CommandKind::Clear,
+        CommandKind::Triangle,
+        CommandKind::PhongTriangle,
+        CommandKind::Sphere,
+        CommandKind::PhongSphere,
+        CommandKind::Shade,
+    ];
+
+    #[test]
+    fn every_command_that_draws_is_recognised_as_a_whole() {
+        for layout in [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()] {
+            let mut lanes = Lanes::new(&layout);
+            for kind in WHOLE {
+                let mut words = Vec::new();
+                let possible = Command::blank(kind).encode(&layout, &mut words).is_ok();
+                let used = possible.then(|| lanes.whole_command(&words, &mut Executed::default()));
+                assert_eq!(used, possible.then_some(Some(words.len())), "{kind:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_command_for_another_layout_still_runs_instruction_by_instruction() {
+        let (ours, theirs) = (Layout::rendering_control_phong(), Layout::slats());
+        let mut lanes = Lanes::new(&ours);
+        let mut words = Vec::new();
+        Command::blank(CommandKind::Sphere).encode(&theirs, &mut words).unwrap();
+        assert_eq!(lanes.whole_command(&words, &mut Executed::default()), None);
+        let executed = lanes.execute(&words).unwrap();
+        let clocks = CommandKind::Sphere.clocks(&theirs).unwrap();
+        assert_eq!(executed.clocks, u64::from(clocks));
+    }
+
+    #[test]
+    fn a_fault_names_its_word_is_counted_and_ends_the_list() {
+        let mut lanes = Lanes::new(&Layout::slats());
+        let mut words = Vec::new();
+        Command::blank(CommandKind::Clear).encode(&Layout::slats(), &mut words).unwrap();
+        let at = words.len();
+        words.extend([0xff00_0000, 0x0100_0000]);
+        let fault = lanes.execute(&words).unwrap_err();
+        assert_eq!(fault.position, at);
+        assert_eq!(fault.to_string(), format!("word {at}: no instruction has this opcode"));
+        assert_eq!(lanes.faults(), 1);
     }
 }

@@ -1,9 +1,12 @@
 //! Choice of the vector unit at run time.
 //!
-//! The only `unsafe` of this crate: calling a function that is compiled for a vector unit, after asking the processor
-//! whether it has it. Measured to pay: a triangle over a whole region takes 2.5 to 4 times as long without
-//! (`cargo bench -p pxpl5-renderer`).
-#![allow(unsafe_code)]
+//! The only `unsafe` of this crate is here and in `simd/x86.rs`: calling what is compiled for a vector unit, after
+//! asking the processor whether it has it. Measured to pay: see the bench groups `lanes/Portable` and `lanes/Avx2` of
+//! `cargo bench -p pxpl5-renderer`.
+#![allow(unsafe_code)] // The compiler cannot know what the processor has.
+
+#[cfg(target_arch = "x86_64")]
+mod x86;
 
 /// The vector units that a kernel is compiled for. All give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,32 +69,138 @@ impl Present {
     /// Runs the kernel compiled for this unit.
     #[inline]
     pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
-        #[cfg(target_arch = "x86_64")]
         match self.0 {
             // SAFETY: a `Present` is made only where the processor says that it has these features.
-            Vectors::Avx512 => return unsafe { avx512(kernel) },
+            #[cfg(target_arch = "x86_64")]
+            Vectors::Avx512 => unsafe { avx512(kernel) },
             // SAFETY: as above.
-            Vectors::Avx2 => return unsafe { avx2(kernel) },
-            Vectors::Portable => {}
+            #[cfg(target_arch = "x86_64")]
+            Vectors::Avx2 => unsafe { avx2(kernel) },
+            _ => kernel.run::<Eight>(),
         }
-        kernel.run()
     }
 }
 
 /// A loop worth vectorising. `run` must be `#[inline(always)]`, or it is compiled without the unit's features.
 pub(crate) trait Kernel {
     type Output;
-    fn run(self) -> Self::Output;
+    fn run<V: Vector>(self) -> Self::Output;
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi2")]
 fn avx2<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run()
+    kernel.run::<x86::Avx2>()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi2,avx512f,avx512bw,avx512dq,avx512vl")]
 fn avx512<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run()
+    kernel.run::<x86::Avx512>()
+}
+
+/// 32-bit integers side by side. Compilers find them in plain loops, but not in short ones.
+pub(crate) trait Vector: Copy {
+    /// Integers in a vector; 128 is a multiple.
+    const LANES: usize;
+    /// One truth a lane.
+    type Mask: Copy;
+
+    fn splat(value: i32) -> Self;
+    /// first, first + step, first + 2 step, ...; wraps.
+    fn ramp(first: i32, step: i32) -> Self;
+    /// The first lanes of `from`, which has at least as many.
+    fn load(from: &[u32]) -> Self;
+    fn add(self, other: Self) -> Self;
+    fn or(self, other: Self) -> Self;
+    fn and(self, other: Self) -> Self;
+    /// Shifts zeros in from the left.
+    fn shift_right(self, by: u32) -> Self;
+    /// Shifts zeros in from the right.
+    fn shift_left(self, by: u32) -> Self;
+    /// Where self >= 0 and `new` < `old`, signed.
+    fn passes(self, new: Self, old: Self) -> Self::Mask;
+    /// Overwrites lanes of `to` where the mask is true; `old` is what they hold.
+    fn store(self, mask: Self::Mask, old: Self, to: &mut [u32]);
+    /// 255 where the mask is true, else 0.
+    fn store_mask(mask: Self::Mask, to: &mut [u8]);
+}
+
+/// The portable vector.
+#[derive(Clone, Copy)]
+pub(crate) struct Eight([i32; 8]);
+
+impl Eight {
+    #[inline(always)]
+    fn map(self, f: impl Fn(i32) -> i32) -> Self {
+        Self(self.0.map(f))
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(i32, i32) -> i32) -> Self {
+        Self(std::array::from_fn(|k| f(self.0[k], other.0[k])))
+    }
+}
+
+impl Vector for Eight {
+    const LANES: usize = 8;
+    type Mask = Self;
+
+    #[inline(always)]
+    fn splat(value: i32) -> Self {
+        Self([value; 8])
+    }
+
+    #[inline(always)]
+    fn ramp(first: i32, step: i32) -> Self {
+        Self(std::array::from_fn(|k| first.wrapping_add(step.wrapping_mul(k as i32))))
+    }
+
+    #[inline(always)]
+    fn load(from: &[u32]) -> Self {
+        let from: &[u32; 8] = from.first_chunk().expect("a whole vector");
+        Self(from.map(|v| v as i32))
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, i32::wrapping_add)
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        self.zip(other, |a, b| a | b)
+    }
+
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        self.zip(other, |a, b| a & b)
+    }
+
+    #[inline(always)]
+    fn shift_right(self, by: u32) -> Self {
+        self.map(|v| (v as u32 >> by) as i32)
+    }
+
+    #[inline(always)]
+    fn shift_left(self, by: u32) -> Self {
+        self.map(|v| v << by)
+    }
+
+    #[inline(always)]
+    fn passes(self, new: Self, old: Self) -> Self {
+        let nearer = new.zip(old, |new, old| -i32::from(new < old));
+        self.zip(nearer, |edges, nearer| nearer & !(edges >> 31))
+    }
+
+    #[inline(always)]
+    fn store(self, mask: Self, old: Self, to: &mut [u32]) {
+        let to: &mut [u32; 8] = to.first_chunk_mut().expect("a whole vector");
+        *to = std::array::from_fn(|k| (self.0[k] & mask.0[k] | old.0[k] & !mask.0[k]) as u32);
+    }
+
+    #[inline(always)]
+    fn store_mask(mask: Self, to: &mut [u8]) {
+        to[..8].copy_from_slice(&mask.0.map(|m| m as u8));
+    }
 }

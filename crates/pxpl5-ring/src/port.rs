@@ -31,7 +31,8 @@ pub struct Request {
     /// Given back in [`RingOutput::Sent`] or [`RingOutput::Refused`]; without one the sender is told nothing.
     pub ticket: Option<u64>,
     /// Whether the destination stays reserved for this source afterwards, because more messages of one transfer
-    /// follow. The first message without it ends the reservation.
+    /// follow. The first message without it ends the reservation; without one the destination stays blocked, which
+    /// [`Ring::waiting`](crate::Ring::waiting) shows.
     pub hold: bool,
     /// Place among the messages that reach this port at the same instant, lowest first (events of one instant have
     /// no order of their own). Messages of different instants keep the order of time whatever stands here.

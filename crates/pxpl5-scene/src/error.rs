@@ -157,6 +157,16 @@ pub enum SceneError {
         /// What stands after the colon.
         found: String,
     },
+    /// More primitives are to be kept than there are, or none.
+    #[error("scene {scene}: expected 1 to {expected} triangles to keep, found {found}")]
+    Kept {
+        /// Name of the scene.
+        scene: String,
+        /// How many primitives it has.
+        expected: usize,
+        /// How many were to be kept.
+        found: usize,
+    },
     /// A part of a hand-made scene breaks a rule of [`crate::Scene`].
     #[error("scene {scene}: {what} {index}: expected {expected}, found {found}")]
     Part {

@@ -169,6 +169,23 @@ impl Scene {
         self.parts
     }
 
+    /// The same scene with only the first `n` primitives, triangles before spheres; structures at the end that hold
+    /// none of them are left out, and so are their edits.
+    ///
+    /// # Errors
+    ///
+    /// [`SceneError::Kept`] when `n` is zero or more than there are.
+    pub fn truncated(&self, n: usize) -> Result<Self, SceneError> {
+        let (triangles, spheres) = (self.triangles().len(), self.spheres().len());
+        if n == 0 || n > triangles + spheres {
+            let (scene, expected) = (self.name().to_owned(), triangles + spheres);
+            return Err(SceneError::Kept { scene, expected, found: n });
+        }
+        let mut parts = self.parts.clone();
+        parts.keep(n.min(triangles), n.saturating_sub(triangles));
+        Self::new(parts)
+    }
+
     /// The edits of a frame begun at simulated time `time_ps` (picoseconds): one for each structure with a script.
     #[must_use]
     pub fn edits_at(&self, time_ps: u64) -> Vec<Edit> {
@@ -239,6 +256,20 @@ fn whole(parts: &SceneParts) -> Structure {
 }
 
 impl SceneParts {
+    fn keep(&mut self, triangles: usize, spheres: usize) {
+        for structure in &mut self.structures {
+            let clamp = |range: &Range<usize>, end: usize| range.start.min(end)..range.end.min(end);
+            structure.triangles = clamp(&structure.triangles, triangles);
+            structure.spheres = clamp(&structure.spheres, spheres);
+        }
+        while self.structures.last().is_some_and(|s| s.triangles.is_empty() && s.spheres.is_empty()) {
+            self.structures.pop();
+        }
+        self.vertices.truncate(self.structures.last().map_or(0, |structure| structure.vertices.end));
+        self.triangles.truncate(triangles);
+        self.spheres.truncate(spheres);
+    }
+
     fn move_structure(&mut self, structure: &Structure, model: &Mat4) {
         let model: DMat4 = model.as_dmat4();
         for vertex in &mut self.vertices[structure.vertices.clone()] {

@@ -129,9 +129,9 @@ impl Filler<'_> {
     }
 
     fn result(&self) -> u8 {
-        let compare = matches!(self.i.op, Op::Pfgt | Op::Pfle | Op::Pfeq);
-        if compare {
-            return self.source();
+        // What a pipelined operation writes was started by an earlier one, perhaps in another precision.
+        if self.i.op == Op::DualOp || self.i.has(Flags::PIPELINED) {
+            return 4;
         }
         if self.i.has(Flags::RESULT_DOUBLE) { 8 } else { 4 }
     }

@@ -243,6 +243,20 @@ fn edge_on() -> Case {
     case("walls seen edge-on, near to far", many(13, 60, make))
 }
 
+/// 4,000 px long, half a subpixel thick, from far to near across that: slopes beyond any format.
+fn overflowing() -> Case {
+    let mut random = Random(15);
+    let triangles = (0..20)
+        .map(|n| {
+            let y = 20.0 * n as f32 + 10.0;
+            let at = |x: f32, line: f32, scale: f32| at_pixel(x, y + line / 16.0, scale);
+            let corners = [at(-1500.0, 7.0, 16.0), at(2500.0, 9.0, 16.0), at(1500.0, 9.0, 1.0 / 512.0)];
+            coloured(&mut random, corners)
+        })
+        .collect();
+    Case { view: pixel_view(1.875, FAR), ..case("half a subpixel thick, near to far", triangles) }
+}
+
 /// All families.
 pub fn all() -> Vec<Case> {
     vec![
@@ -261,6 +275,7 @@ pub fn all() -> Vec<Case> {
         across_everything(),
         off_screen(),
         edge_on(),
+        overflowing(),
         depth_range(),
         placed("model of 10^6 units", 14, 1e6, Vec3::ZERO),
         placed("model of 10^-6 units", 14, 1e-6, Vec3::ZERO),

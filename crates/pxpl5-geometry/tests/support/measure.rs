@@ -55,6 +55,10 @@ impl Counts {
         *cell = cell.saturating_add(1);
     }
 
+    fn clear(&mut self, x: i32, y: i32) {
+        self.0[(y * WIDTH + x) as usize] = 0;
+    }
+
     fn get(&self, x: i32, y: i32) -> u8 {
         self.0[(y * WIDTH + x) as usize]
     }
@@ -68,13 +72,13 @@ fn pixels() -> impl Iterator<Item = (i32, i32)> {
 pub fn measure(case: &Case) -> Row {
     let transform = Transform::new(&case.view, Viewport::FRAME, Culling::None).expect("finite views");
     let mut row = Row { triangles: case.triangles.len(), ..Row::default() };
-    let (mut drawn, mut wanted) = (Counts::new(), Counts::new());
+    let [mut drawn, mut wanted, mut own] = [Counts::new(), Counts::new(), Counts::new()];
     for triangle in &case.triangles {
         let mut pieces = Vec::new();
         transform.gouraud(triangle, &Light::NONE, &mut row.stats, |t| pieces.push(t));
         let pieces: Vec<Piece> = pieces.into_iter().map(|t| Piece::new(t, &mut row.stats)).collect();
         let exact = ExactTriangle::new(&case.view, triangle);
-        row.compare(&pieces, exact.as_ref(), &mut drawn, &mut wanted);
+        row.compare(&pieces, exact.as_ref(), [&mut drawn, &mut wanted, &mut own]);
     }
     if case.tiling {
         row.tiling(&drawn, &wanted);
@@ -83,30 +87,37 @@ pub fn measure(case: &Case) -> Row {
 }
 
 impl Row {
-    fn compare(&mut self, pieces: &[Piece], exact: Option<&ExactTriangle>, drawn: &mut Counts, wanted: &mut Counts) {
-        let mut own = Counts::new();
+    /// `own` is empty before and after.
+    fn compare(&mut self, pieces: &[Piece], exact: Option<&ExactTriangle>, counts: [&mut Counts; 3]) {
+        let [drawn, wanted, own] = counts;
+        let spans: Vec<[i32; 2]> = (0..HEIGHT).map(|y| exact.map_or([0, -1], |e| e.span(y))).collect();
+        let mut reach = vec![[WIDTH, -1]; HEIGHT as usize];
         for piece in pieces {
             self.bits(piece);
+            let mut number = 0;
+            let stride = piece.stride();
             piece.pixels(|x, y| {
                 own.add(x, y);
                 drawn.add(x, y);
-                if (x * 7 + y * 13) % 5 == 0 {
+                let [first, last] = &mut reach[y as usize];
+                (*first, *last) = ((*first).min(x), (*last).max(x));
+                number += 1;
+                if number % stride == 0 {
                     self.plane_errors(piece, x, y);
-                    self.errors(piece, exact, x, y);
+                    self.errors(piece, exact, spans[y as usize], x, y);
                 }
             });
         }
-        let spans: Vec<[i32; 2]> = (0..HEIGHT).map(|y| exact.map_or([0, -1], |e| e.span(y))).collect();
-        for (x, y) in pixels() {
-            let [first, last] = spans[y as usize];
-            let inside = (first..=last).contains(&x);
-            if inside {
-                self.exact += 1;
-                wanted.add(x, y);
-            }
-            // A pixel drawn twice by pieces of one triangle is wrong too.
-            if own.get(x, y) != u8::from(inside) {
-                self.wrong += 1;
+        for (y, (span, native)) in (0..).zip(spans.iter().zip(reach)) {
+            for x in span[0].min(native[0])..=span[1].max(native[1]) {
+                let inside = (span[0]..=span[1]).contains(&x);
+                if inside {
+                    self.exact += 1;
+                    wanted.add(x, y);
+                }
+                // A pixel drawn twice by pieces of one triangle is wrong too.
+                self.wrong += u64::from(own.get(x, y) != u8::from(inside));
+                own.clear(x, y);
             }
         }
         if let Some(exact) = exact {
@@ -129,9 +140,8 @@ impl Row {
     }
 
     /// The pixel against exact geometry, where that covers the pixel too.
-    fn errors(&mut self, piece: &Piece, exact: Option<&ExactTriangle>, x: i32, y: i32) {
+    fn errors(&mut self, piece: &Piece, exact: Option<&ExactTriangle>, [first, last]: [i32; 2], x: i32, y: i32) {
         let Some(exact) = exact else { return };
-        let [first, last] = exact.span(y);
         if !(first..=last).contains(&x) {
             return;
         }

@@ -50,6 +50,14 @@ impl Piece {
         }
     }
 
+    /// Every how-many-th covered pixel errors are measured at: all of small triangles, some 2,000 of large ones.
+    pub fn stride(&self) -> u64 {
+        // Twice the area in 1/256 square px, of which some part may be off the screen.
+        let (_, twice_area) = self.exact_plane([0; 3], 0, 0);
+        let pixels = (twice_area / 512).min(i128::from(WIDTH * HEIGHT));
+        1 + pixels as u64 / 2000
+    }
+
     /// The depth that the renderer stores.
     pub fn depth(&self, x: i32, y: i32) -> u32 {
         self.planes.z.at(x, y) as u32 >> format::Z_FRACTION_BITS

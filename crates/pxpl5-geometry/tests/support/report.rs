@@ -1,1 +1,181 @@
+//! docs/numerics.md as text.
 
+use super::cases::{self, Case};
+use super::fighting::{self, Fight};
+use super::measure::{Row, SUBPIXEL_BITS, measure};
+use super::spheres::{self, SphereCase, SphereRow};
+use pxpl5_geometry::SetupStats;
+use std::fmt::Write;
+
+const HEAD: &str = include_str!("numerics_head.md");
+const FORMATS: &str = include_str!("numerics_formats.md");
+
+/// A number short enough for a table.
+fn short(v: f64) -> String {
+    match v {
+        0.0 => "0".into(),
+        v if v < 10.0 => format!("{v:.1}"),
+        v => grouped(v as u64),
+    }
+}
+
+fn grouped(v: u64) -> String {
+    let digits = v.to_string();
+    let groups: Vec<&str> = digits.as_bytes().rchunks(3).rev().filter_map(|g| std::str::from_utf8(g).ok()).collect();
+    groups.join(",")
+}
+
+fn optional(v: Option<u64>) -> String {
+    v.map_or("-".into(), grouped)
+}
+
+/// What was not drawn straight, in words.
+fn counted(s: &SetupStats) -> String {
+    let counts = [
+        (s.clipped, "clipped"),
+        (s.outside, "outside"),
+        (s.degenerate, "degenerate"),
+        (s.untouched, "between pixels or off screen"),
+        (s.not_finite, "not finite"),
+        (s.flattened_planes, "flattened planes"),
+        (s.spheres_outside, "outside"),
+        (s.spheres_across_near, "across near"),
+        (s.spheres_across_far, "across far"),
+        (s.spheres_not_finite, "not finite"),
+    ];
+    let named = counts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}"));
+    let all: Vec<String> = named.collect();
+    if all.is_empty() { "-".into() } else { all.join(", ") }
+}
+
+fn pipeline_row(out: &mut String, case: &Case, row: &Row) {
+    let colour = if row.colour == 0.0 { "-".into() } else { short(row.colour) };
+    let _ = writeln!(
+        out,
+        "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
+        case.name,
+        row.triangles,
+        grouped(row.exact),
+        grouped(row.wrong),
+        short(Row::per_million(row.wrong, row.exact)),
+        short(row.depth),
+        short(row.depth_plane),
+        colour,
+        short(row.colour_plane),
+        optional(row.holes),
+        optional(row.overlaps),
+        counted(&row.stats),
+    );
+}
+
+fn grid_row(out: &mut String, case: &Case, row: &Row) {
+    if row.grid_exact == 0 {
+        return;
+    }
+    let cells = row.grids.map(|wrong| short(Row::per_million(wrong, row.grid_exact)));
+    let _ = writeln!(out, "| {} | {} |", case.name, cells.join(" | "));
+}
+
+fn bits_row(out: &mut String, case: &Case, row: &Row) {
+    let cells = row.bits.map(|bits| bits.to_string());
+    let _ = writeln!(out, "| {} | {} |", case.name, cells.join(" | "));
+}
+
+fn sphere_row(out: &mut String, case: &SphereCase, row: &SphereRow) {
+    let _ = writeln!(
+        out,
+        "| {} | {} | {} | {} | {} | {} | {} | {} |",
+        case.name,
+        row.spheres,
+        grouped(row.exact),
+        grouped(row.wrong),
+        short(row.depth),
+        if row.depth_of_bulge == 0.0 { "-".into() } else { format!("1/{:.0}", 1.0 / row.depth_of_bulge) },
+        row.bits,
+        counted(&row.stats),
+    );
+}
+
+fn heading(out: &mut String, title: &str, columns: &[&str]) {
+    let rule = vec!["---"; columns.len()].join(" | ");
+    let _ = write!(out, "\n## {title}\n\n| {} |\n| {rule} |\n", columns.join(" | "));
+}
+
+/// All cases with what was measured.
+pub struct Measured {
+    pub triangles: Vec<(Case, Row)>,
+    pub spheres: Vec<(SphereCase, SphereRow)>,
+    pub fights: Vec<Fight>,
+}
+
+impl Measured {
+    pub fn all() -> Self {
+        Self {
+            triangles: cases::all().into_iter().map(|case| (case.clone(), measure(&case))).collect(),
+            spheres: spheres::all().into_iter().map(|case| (case.clone(), spheres::measure(&case))).collect(),
+            fights: fighting::all(),
+        }
+    }
+}
+
+/// The whole file.
+pub fn text(measured: &Measured) -> String {
+    let rows = &measured.triangles;
+    let mut out = HEAD.to_string();
+    triangles(&mut out, rows);
+    fights(&mut out, &measured.fights);
+    all_spheres(&mut out, &measured.spheres);
+    grids(&mut out, rows);
+    bits(&mut out, rows);
+    out.push('\n');
+    out.push_str(FORMATS);
+    out
+}
+
+fn triangles(out: &mut String, rows: &[(Case, Row)]) {
+    let columns = [
+        "case",
+        "triangles",
+        "pixels",
+        "wrong",
+        "wrong per million",
+        "depth error",
+        "of the plane",
+        "colour error",
+        "of the plane",
+        "holes",
+        "overlaps",
+        "counted",
+    ];
+    heading(out, "Triangles: the pipeline against exact geometry", &columns);
+    rows.iter().for_each(|(case, row)| pipeline_row(out, case, row));
+}
+
+fn fights(out: &mut String, fights: &[Fight]) {
+    heading(out, "Z fighting: two surfaces", &["case", "apart", "pixels", "wrong", "wrong per million"]);
+    for f in fights {
+        let part = short(Row::per_million(f.wrong, f.pixels));
+        let (pixels, wrong) = (grouped(f.pixels), grouped(f.wrong));
+        let _ = writeln!(out, "| {} | {} | {pixels} | {wrong} | {part} |", f.name, short(f.apart));
+    }
+}
+
+fn all_spheres(out: &mut String, rows: &[(SphereCase, SphereRow)]) {
+    let columns = ["case", "spheres", "pixels", "wrong", "depth error", "as part of the bulge", "bits", "counted"];
+    heading(out, "Spheres", &columns);
+    rows.iter().for_each(|(case, row)| sphere_row(out, case, row));
+}
+
+fn grids(out: &mut String, rows: &[(Case, Row)]) {
+    let bits = SUBPIXEL_BITS.map(|bits| format!("{bits} bits"));
+    let mut columns = vec!["case"];
+    columns.extend(bits.iter().map(String::as_str));
+    heading(out, "Subpixel bits: wrong pixels per million with exact vertices", &columns);
+    rows.iter().for_each(|(case, row)| grid_row(out, case, row));
+}
+
+fn bits(out: &mut String, rows: &[(Case, Row)]) {
+    let columns = ["case", "edge A, B", "edge C", "depth A, B", "colour A, B"];
+    heading(out, "Bits of coefficients, sign included", &columns);
+    rows.iter().for_each(|(case, row)| bits_row(out, case, row));
+}

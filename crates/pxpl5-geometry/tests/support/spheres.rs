@@ -16,6 +16,7 @@ const NEAR: f32 = 1.0;
 const FAR: f32 = 16_384.0;
 
 /// Spheres of one family.
+#[derive(Clone, Debug)]
 pub struct SphereCase {
     pub name: &'static str,
     pub spheres: Vec<Sphere>,

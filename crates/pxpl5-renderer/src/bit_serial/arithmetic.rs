@@ -21,7 +21,7 @@ impl Source {
 
 /// The second factor of a product.
 enum Factor {
-    Field(Source),
+    Field(Box<Source>),
     Constant(i32),
 }
 
@@ -131,7 +131,7 @@ impl BitSerial {
                 step(&mut sum, &y.bit(memory, i), &mut carry);
                 sum
             }),
-            ArithmeticOp::Multiply => self.multiply(destination, a, &Factor::Field(y), b.width, b.signed),
+            ArithmeticOp::Multiply => self.multiply(destination, a, &Factor::Field(Box::new(y)), b.width, b.signed),
             ArithmeticOp::Divide => self.divide(destination, a, b),
             ArithmeticOp::Minimum | ArithmeticOp::Maximum => {
                 let mut less = self.less(a, a.width.max(b.width), |memory, i| y.bit(memory, i));
@@ -159,8 +159,7 @@ impl BitSerial {
         if a.signed {
             // Of two's complement numbers with different signs the negative one is less: the borrow turns around.
             let last = clocks - 1;
-            let signs =
-                planes::combine(&x.bit(&self.memory, last), &b(&self.memory, last), |a, b| a ^ b);
+            let signs = planes::combine(&x.bit(&self.memory, last), &b(&self.memory, last), |a, b| a ^ b);
             borrow = planes::combine(&borrow, &signs, |borrow, signs| borrow ^ signs);
         }
         borrow

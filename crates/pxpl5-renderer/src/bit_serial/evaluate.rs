@@ -5,7 +5,7 @@ use super::{BitSerial, planes};
 use crate::array::{EMPTY_PLANE, FaultKind, Plane};
 use crate::controller::{Bits, Local};
 use crate::isa::{Expression, ExpressionUse, LINEAR_BITS, Operand};
-use crate::simd::{Kernel, Present};
+use crate::simd::{Kernel, Present, Vector};
 
 /// The bits of an expression on their way to a field.
 struct Delivery {
@@ -23,8 +23,9 @@ impl Delivery {
         let top = self.shift + self.width;
         let clocks = if self.local.bits() == LINEAR_BITS { top } else { self.local.bits() as usize };
         for t in 0..clocks {
-            self.vectors.run(Next { evaluator: &mut evaluator, t, out: &mut plane });
-            if (self.shift..top).contains(&t) {
+            let taken = (self.shift..top).contains(&t);
+            self.vectors.run(Next { evaluator: &mut evaluator, t, taken, out: &mut plane });
+            if taken {
                 f(t - self.shift, &mut plane);
             }
         }
@@ -64,8 +65,7 @@ impl BitSerial {
     fn load(&mut self, delivery: &Delivery, field: Operand) -> Result<(), FaultKind> {
         let first = self.controller.bits(field)?.first;
         let (memory, enable) = (&mut self.memory[first..], &self.enable);
-        self.clock +=
-            delivery.each(|i, new| delivery.vectors.run(Store { old: &mut memory[i], new, enable }));
+        self.clock += delivery.each(|i, new| delivery.vectors.run(Store { old: &mut memory[i], new, enable }));
         Ok(())
     }
 
@@ -73,12 +73,10 @@ impl BitSerial {
         let first = self.controller.bits(field)?.first;
         let (memory, enable) = (&mut self.memory[first..], &self.enable);
         let mut carry = EMPTY_PLANE;
-        self.clock += delivery.each(
-            |i, bit| {
-                planes::add(bit, &memory[i], &mut carry);
-                planes::store(&mut memory[i], bit, enable);
-            },
-        );
+        self.clock += delivery.each(|i, bit| {
+            planes::add(bit, &memory[i], &mut carry);
+            planes::store(&mut memory[i], bit, enable);
+        });
         Ok(())
     }
 
@@ -86,8 +84,7 @@ impl BitSerial {
         let first = self.controller.bits(field)?.first;
         let memory = &self.memory[first..];
         let mut less = EMPTY_PLANE;
-        self.clock += delivery
-            .each(|i, a| delivery.vectors.run(Borrow { a, b: &memory[i], borrow: &mut less }));
+        self.clock += delivery.each(|i, a| delivery.vectors.run(Borrow { a, b: &memory[i], borrow: &mut less }));
         planes::and(&mut self.enable, &less);
         Ok(())
     }
@@ -126,7 +123,7 @@ impl Kernel for Store<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
+    fn run<V: Vector>(self) {
         planes::store(self.old, self.new, self.enable);
     }
 }
@@ -142,7 +139,7 @@ impl Kernel for Borrow<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
+    fn run<V: Vector>(self) {
         planes::borrow(self.a, self.b, self.borrow);
     }
 }

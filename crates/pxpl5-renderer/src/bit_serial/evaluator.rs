@@ -8,7 +8,7 @@
 
 use crate::array::{EMPTY_PLANE, Plane};
 use crate::controller::Local;
-use crate::simd::Kernel;
+use crate::simd::{Kernel, Vector};
 use pxpl5_wire::{Linear, Quadratic};
 
 /// One bit for each of 128 columns or rows.
@@ -75,7 +75,7 @@ const fn full_add(a: Leaves, b: Leaves, carry: Leaves) -> (Leaves, Leaves) {
 /// An evaluator at work on one expression.
 #[derive(Debug)]
 pub(super) enum Evaluator {
-    Linear(LinearTrees),
+    Linear(Box<LinearTrees>),
     Quadratic(Box<QuadraticTrees>),
 }
 
@@ -108,15 +108,16 @@ pub(super) struct QuadraticTrees {
 impl Evaluator {
     pub(super) fn new(expression: &Local) -> Self {
         match expression {
-            Local::Linear(e) => Self::Linear(LinearTrees::new(e)),
+            Local::Linear(e) => Self::Linear(Box::new(LinearTrees::new(e))),
             Local::Quadratic(q) => Self::Quadratic(Box::new(QuadraticTrees::new(q))),
         }
     }
 
-    /// Bit `t` of the expression in every pixel; call it with t = 0, 1, 2, ...
+    /// Bit `t` of the expression in every pixel; call it with t = 0, 1, 2, ... A bit that nobody takes may be missing.
     #[inline(always)]
-    pub(super) fn next(&mut self, t: usize, out: &mut Plane) {
+    pub(super) fn next(&mut self, t: usize, taken: bool, out: &mut Plane) {
         match self {
+            Self::Linear(trees) if !taken => trees.skip(t),
             Self::Linear(trees) => trees.next(t, out),
             Self::Quadratic(trees) => trees.next(t, out),
         }
@@ -135,11 +136,57 @@ impl LinearTrees {
 
     #[inline(always)]
     fn next(&mut self, t: usize, out: &mut Plane) {
-        let column = self.columns.add(0, t);
-        let row = self.rows.add(bit(self.constant, t), t);
-        *out = rows_of(row);
-        add_to(out, &columns_of(column), &mut self.carry);
+        let (columns, row) = self.streams(t);
+        for_each_pair(row, out, &mut self.carry, |row, out, carry| {
+            for k in 0..4 {
+                let half = columns[k] ^ row[k];
+                out[k] = half ^ carry[k];
+                carry[k] = columns[k] & row[k] | carry[k] & half;
+            }
+        });
     }
+
+    /// The same where nobody takes the bit.
+    #[inline(always)]
+    fn skip(&mut self, t: usize) {
+        let (columns, row) = self.streams(t);
+        let carries = self.carry.chunks_exact_mut(4).enumerate();
+        for (pair, carry) in carries {
+            let row = pair_of(row, pair);
+            for k in 0..4 {
+                carry[k] = columns[k] & row[k] | carry[k] & (columns[k] ^ row[k]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn streams(&mut self, t: usize) -> ([u64; 4], [u64; 2]) {
+        let row = self.rows.add(bit(self.constant, t), t);
+        (columns_of(self.columns.add(0, t)), [row as u64, (row >> 64) as u64])
+    }
+}
+
+/// Runs `f` on the words of two rows at a time, with the rows' bits.
+#[inline(always)]
+fn for_each_pair(
+    row: [u64; 2],
+    out: &mut Plane,
+    carry: &mut Plane,
+    f: impl Fn([u64; 4], &mut [u64; 4], &mut [u64; 4]),
+) {
+    let words = out.as_chunks_mut::<4>().0.iter_mut().zip(carry.as_chunks_mut::<4>().0);
+    for (pair, (out, carry)) in words.enumerate() {
+        f(pair_of(row, pair), out, carry);
+    }
+}
+
+/// The bits of rows 2 i and 2 i + 1, each in all pixels of its row.
+#[inline(always)]
+fn pair_of(row: [u64; 2], pair: usize) -> [u64; 4] {
+    let half = row[pair / 32];
+    let last = 63 - 2 * (pair as u32 % 32);
+    let spread = |at: u32| (half << at) as i64 >> 63;
+    [spread(last) as u64, spread(last) as u64, spread(last - 1) as u64, spread(last - 1) as u64]
 }
 
 impl QuadraticTrees {
@@ -167,10 +214,11 @@ impl QuadraticTrees {
         *out = rows_of(row);
         add_to(out, &columns_of(column), &mut self.sum);
         let mut product = EMPTY_PLANE;
-        for l in 0..NUMBER_BITS {
-            let mut addend = rows_of(self.late[l]);
-            and_with(&mut addend, &columns_of(NUMBERS[l]));
-            add_to(&mut product, &addend, &mut self.product[l]);
+        let levels = self.late.iter().zip(&NUMBERS).zip(&mut self.product);
+        for ((late, columns), carry) in levels {
+            let mut addend = rows_of(*late);
+            and_with(&mut addend, &columns_of(*columns));
+            add_to(&mut product, &addend, carry);
         }
         add_to(out, &product, &mut self.carry);
     }
@@ -180,8 +228,9 @@ impl QuadraticTrees {
 #[inline(always)]
 fn rows_of(row: Leaves) -> Plane {
     let mut out = EMPTY_PLANE;
-    for (y, words) in out.chunks_exact_mut(2).enumerate() {
-        words.fill(0_u64.wrapping_sub((row >> y) as u64 & 1));
+    let row = [row as u64, (row >> 64) as u64];
+    for (pair, words) in out.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+        *words = pair_of(row, pair);
     }
     out
 }
@@ -240,6 +289,7 @@ fn add_to(sum: &mut Plane, addend: &impl Words, carry: &mut Plane) {
 pub(super) struct Next<'a> {
     pub(super) evaluator: &'a mut Evaluator,
     pub(super) t: usize,
+    pub(super) taken: bool,
     pub(super) out: &'a mut Plane,
 }
 
@@ -247,8 +297,8 @@ impl Kernel for Next<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
-        self.evaluator.next(self.t, self.out);
+    fn run<V: Vector>(self) {
+        self.evaluator.next(self.t, self.taken, self.out);
     }
 }
 
@@ -262,7 +312,7 @@ mod tests {
         let mut plane = EMPTY_PLANE;
         let mut value = 0;
         for t in 0..bits as usize {
-            evaluator.next(t, &mut plane);
+            evaluator.next(t, true, &mut plane);
             value |= ((plane[2 * y + x / 64] >> (x % 64) & 1) as i64) << t;
         }
         value << (64 - bits) >> (64 - bits)
@@ -280,14 +330,8 @@ mod tests {
 
     #[test]
     fn the_trees_deliver_a_quadratic_expression_bit_by_bit() {
-        let q = Quadratic {
-            xx: -70_001,
-            xy: 1 << 33,
-            yy: -65_537,
-            x: 123_456_789,
-            y: -987_654_321,
-            one: -(1 << 40) + 17,
-        };
+        let q =
+            Quadratic { xx: -70_001, xy: 1 << 33, yy: -65_537, x: 123_456_789, y: -987_654_321, one: -(1 << 40) + 17 };
         for (x, y) in [(0, 0), (127, 0), (0, 127), (127, 127), (64, 63), (93, 42)] {
             let unused = 64 - QUADRATIC_BITS;
             let expected = q.at(x, y) << unused >> unused;

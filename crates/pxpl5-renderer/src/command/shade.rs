@@ -38,24 +38,29 @@ pub struct Shade {
 const VECTOR_BITS: u8 = 12;
 const COSINE_BITS: u8 = 10;
 
-/// Fields of the program; 104 bits of scratch.
-struct Fields {
+/// Bits of scratch that the program takes.
+pub(super) const SHADE_BITS: u8 = 104;
+/// Where in the scratch the root is.
+pub(super) const SHADE_ROOT: u8 = 72;
+
+/// Fields of the program.
+pub(crate) struct Fields {
     normal: [Operand; 3],
     colour: [Operand; 3],
     z: Operand,
-    a: Operand,
-    b: Operand,
-    c: Operand,
-    root: Operand,
-    diffuse: Operand,
-    specular: Operand,
+    pub(crate) a: Operand,
+    pub(crate) b: Operand,
+    pub(crate) c: Operand,
+    pub(crate) root: Operand,
+    pub(crate) diffuse: Operand,
+    pub(crate) specular: Operand,
 }
 
 impl Fields {
-    fn of(layout: &Layout) -> Result<Self, Missing> {
+    pub(crate) fn of(layout: &Layout) -> Result<Self, Missing> {
         let normal = |i| layout.normal(i).ok_or(Missing("a normal"));
         let normal = [normal(0)?, normal(1)?, normal(2)?];
-        let scratch = layout.plan().scratch.filter(|all| all.width >= 104);
+        let scratch = layout.plan().scratch.filter(|all| all.width >= SHADE_BITS);
         let scratch = scratch.ok_or(Missing("104 bits of scratch"))?;
         Ok(Self {
             normal,
@@ -64,7 +69,7 @@ impl Fields {
             a: scratch.part(0, 24),
             b: scratch.part(24, 24),
             c: scratch.part(48, 24),
-            root: scratch.part(72, 12),
+            root: scratch.part(SHADE_ROOT, 12),
             diffuse: scratch.part(84, COSINE_BITS),
             specular: scratch.part(94, COSINE_BITS),
         })
@@ -138,10 +143,10 @@ fn length(f: &Fields, out: &mut Vec<Instruction>) {
 
 /// cosine := limit(N . vector / |N|).
 fn cosine(f: &Fields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Instruction>) {
-    let factors = vector.map(|v| i32::from(v << 4 >> 4));
-    out.push(multiply_constant(f.c, f.normal[0], factors[0], VECTOR_BITS));
-    for i in 1..3 {
-        out.push(multiply_constant(f.b, f.normal[i], factors[i], VECTOR_BITS));
+    let [x, y, z] = vector.map(|v| i32::from(v << 4 >> 4));
+    out.push(multiply_constant(f.c, f.normal[0], x, VECTOR_BITS));
+    for (component, factor) in [(f.normal[1], y), (f.normal[2], z)] {
+        out.push(multiply_constant(f.b, component, factor, VECTOR_BITS));
         out.push(arithmetic(ArithmeticOp::Add, f.c, f.c, f.b));
     }
     let positive = f.c.part(0, 23);

@@ -1,6 +1,7 @@
 //! Spheres, exact in silhouette, with their depth from a square root.
 
 use super::draw::{load, read_linear};
+use super::shade::{SHADE_BITS, SHADE_ROOT};
 use super::{CommandKind, Missing, enable};
 use crate::isa::{Expression, ExpressionUse, Instruction, Operand, Test};
 use crate::layout::Layout;
@@ -70,17 +71,17 @@ const FACTOR_BITS: u8 = 10;
 
 /// Temporaries of a sphere's program.
 #[derive(Clone, Copy)]
-struct Scratch {
+pub(crate) struct Scratch {
     radicand: Operand,
-    root: Operand,
+    pub(crate) root: Operand,
     /// In the place of the radicand, which the root has used up.
-    z: Operand,
+    pub(crate) z: Operand,
     /// In the same place; 8 + 10 bits.
     product: Operand,
 }
 
 impl Scratch {
-    fn of(layout: &Layout) -> Result<Self, Missing> {
+    pub(crate) fn of(layout: &Layout) -> Result<Self, Missing> {
         let missing = Missing("30 bits of scratch");
         let (Some(all), Some(bits)) = (layout.plan().scratch, layout.root_bits()) else {
             return Err(missing);
@@ -90,16 +91,18 @@ impl Scratch {
         if low + bits > all.width {
             return Err(missing);
         }
+        // In the place that shading uses for its root, where there is one.
+        let root = if all.width >= SHADE_BITS { SHADE_ROOT } else { low };
         Ok(Self {
             radicand: all.part(0, radicand_bits),
-            root: all.part(low, bits),
+            root: all.part(root, bits),
             z: all.part(0, z_bits),
             product: all.part(0, COLOUR_ROOT_BITS + FACTOR_BITS),
         })
     }
 
     /// Bits that the root lacks.
-    const fn short(&self) -> u8 {
+    pub(crate) const fn short(&self) -> u8 {
         ROOT_BITS - self.root.width
     }
 

@@ -1,16 +1,22 @@
 //! Pixel memory by values: every field of the layout is a column of one 32-bit word a pixel.
 
 use crate::array::{PIXELS, Plane};
+use crate::command::{ShadeFields, SphereScratch};
 use crate::controller::Bits;
-use crate::isa::MEMORY_BITS;
+use crate::isa::{MEMORY_BITS, Operand};
 use crate::layout::Layout;
 
-/// Bits `first .. first + width` of all pixels, one word a pixel.
+/// One word a pixel, aligned to cache lines for the sake of wide vectors.
 #[derive(Clone, Debug)]
-pub(super) struct Column {
-    pub(super) first: usize,
-    pub(super) width: usize,
-    pub(super) values: Box<[u32; PIXELS]>,
+#[repr(align(64))]
+pub(super) struct Values(pub(super) [u32; PIXELS]);
+
+/// Bits `first .. first + width` of all pixels.
+#[derive(Clone, Debug)]
+struct Column {
+    first: usize,
+    width: usize,
+    values: Box<Values>,
 }
 
 /// All 208 bits.
@@ -47,23 +53,19 @@ impl Columns {
         (column.first == first && column.width == width).then_some(index)
     }
 
-    pub(super) fn values(&self, index: usize) -> &[u32; PIXELS] {
-        &self.columns[index].values
-    }
-
-    pub(super) fn values_mut(&mut self, index: usize) -> &mut [u32; PIXELS] {
+    pub(super) fn values_mut(&mut self, index: usize) -> &mut Values {
         &mut self.columns[index].values
     }
 
     /// Several different columns at once.
-    pub(super) fn many_mut<const N: usize>(&mut self, indices: [usize; N]) -> Option<[&mut [u32; PIXELS]; N]> {
+    pub(super) fn many_mut<const N: usize>(&mut self, indices: [usize; N]) -> Option<[&mut Values; N]> {
         let columns = self.columns.get_disjoint_mut(indices).ok()?;
         Some(columns.map(|column| &mut *column.values))
     }
 
     pub(super) fn clear(&mut self) {
         for column in &mut self.columns {
-            column.values.fill(0);
+            column.values.0.fill(0);
         }
     }
 
@@ -71,7 +73,7 @@ impl Columns {
         let column = &self.columns[usize::from(self.column_of[bit])];
         let low = bit - column.first;
         let word = |i: usize| {
-            let pixels = column.values[64 * i..64 * i + 64].iter().enumerate();
+            let pixels = column.values.0[64 * i..64 * i + 64].iter().enumerate();
             pixels.fold(0, |word, (x, value)| word | u64::from(value >> low & 1) << x)
         };
         std::array::from_fn(word)
@@ -80,7 +82,7 @@ impl Columns {
     pub(super) fn set_plane(&mut self, bit: usize, plane: &Plane) {
         let column = &mut self.columns[usize::from(self.column_of[bit])];
         let low = bit - column.first;
-        for (pixel, value) in column.values.iter_mut().enumerate() {
+        for (pixel, value) in column.values.0.iter_mut().enumerate() {
             let new = (plane[pixel / 64] >> (pixel % 64) & 1) as u32;
             *value = *value & !(1 << low) | new << low;
         }
@@ -91,7 +93,7 @@ impl Columns {
         out.fill(0);
         for piece in self.pieces(field) {
             let mask = ones(piece.width);
-            let values = &self.columns[piece.column].values;
+            let values = &self.columns[piece.column].values.0;
             for (out, value) in out.iter_mut().zip(values.iter()) {
                 *out |= (u64::from(*value) >> piece.low & mask) << piece.at;
             }
@@ -106,7 +108,7 @@ impl Columns {
     pub(super) fn scatter(&mut self, field: Bits, values: &[u64], mask: &[u8]) {
         for piece in self.pieces(field) {
             let bits = (ones(piece.width) << piece.low) as u32;
-            let column = self.columns[piece.column].values.iter_mut();
+            let column = self.columns[piece.column].values.0.iter_mut();
             for ((old, new), enable) in column.zip(values).zip(mask) {
                 let taken = if *enable == 0 { 0 } else { bits };
                 let new = ((new >> piece.at) << piece.low) as u32;
@@ -135,9 +137,7 @@ const fn ones(width: usize) -> u64 {
 }
 
 fn column(first: usize, end: usize) -> Column {
-    let values = vec![0; PIXELS].into_boxed_slice();
-    let values = values.try_into().expect("the length is that of the array");
-    Column { first, width: end - first, values }
+    Column { first, width: end - first, values: Box::new(Values([0; PIXELS])) }
 }
 
 /// Where columns begin: at the borders of the layout's fields, and so that none has more than 32 bits.
@@ -152,9 +152,20 @@ fn cuts(layout: &Layout) -> Vec<usize> {
             cuts.push(base(context) + usize::from(normal.address));
         }
     }
+    cuts.extend(temporaries(layout).iter().flat_map(|field| {
+        let first = usize::from(field.address);
+        [first, first + usize::from(field.width)]
+    }));
     cuts.sort_unstable();
     cuts.dedup();
     split_wide(&cuts)
+}
+
+/// Fields that the commands' programs use in the scratch, which is absolute.
+fn temporaries(layout: &Layout) -> Vec<Operand> {
+    let sphere = SphereScratch::of(layout).map(|s| vec![s.z, s.root]);
+    let shade = ShadeFields::of(layout).map(|f| vec![f.a, f.b, f.c, f.root, f.diffuse, f.specular]);
+    [sphere.unwrap_or_default(), shade.unwrap_or_default()].concat()
 }
 
 fn split_wide(cuts: &[usize]) -> Vec<usize> {

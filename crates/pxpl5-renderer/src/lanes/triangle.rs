@@ -1,49 +1,39 @@
-//! Triangles by values: eight pixels at a time, masks instead of branches.
+//! Triangles by values: a vector of pixels at a time, masks instead of branches.
 
 use super::bounds::Bounds;
+use super::columns::Values;
 use crate::array::PIXELS;
-use crate::simd::Kernel;
+use crate::simd::{Kernel, Vector};
 use pxpl5_wire::Linear;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
 
-/// Pixels of one step; 128 is a multiple.
-const STEP: usize = 8;
 const WIDTH: usize = 128;
 
-pub(super) type Vector = [i32; STEP];
-
-/// A column of pixel memory.
-pub(super) type Values = [u32; PIXELS];
-
-/// A linear expression at eight pixels in a row.
+/// A linear expression at some pixels in a row.
 #[derive(Clone, Copy)]
-pub(super) struct Walk {
-    value: Vector,
-    step: i32,
+pub(super) struct Walk<V> {
+    value: V,
+    step: V,
 }
 
-impl Walk {
+impl<V: Vector> Walk<V> {
     #[inline(always)]
     fn start(e: &Linear, x: usize, y: usize) -> Self {
-        let first = e.at(x as i32, y as i32);
-        Self {
-            value: std::array::from_fn(|k| first.wrapping_add(e.a.wrapping_mul(k as i32))),
-            step: e.a.wrapping_mul(STEP as i32),
-        }
+        Self { value: V::ramp(e.at(x as i32, y as i32), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
     }
 
     #[inline(always)]
     fn advance(&mut self) {
-        self.value.iter_mut().for_each(|v| *v = v.wrapping_add(self.step));
+        self.value = self.value.add(self.step);
     }
 }
 
 /// What a command stores in the pixels that pass.
 pub(super) trait Paint {
-    type Row;
-    fn start(&self, x: usize, y: usize) -> Self::Row;
-    /// Stores eight pixels from index `at` where the mask is all ones, and advances.
-    fn store(&mut self, row: &mut Self::Row, at: usize, mask: &Vector);
+    /// Expressions that it walks along.
+    fn components(&self) -> &[Linear; 3];
+    /// Stores pixels from index `at` where the mask is true.
+    fn store<V: Vector>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
 }
 
 /// A triangle over the array's own columns and rows.
@@ -61,50 +51,52 @@ impl<P: Paint> Kernel for DrawTriangle<'_, P> {
     type Output = ();
 
     #[inline(always)]
-    fn run(mut self) {
+    fn run<V: Vector>(mut self) {
         let Some(bounds) = Bounds::of(&self.edges) else { return };
         for y in bounds.area.top..bounds.area.bottom {
             let (left, right) = bounds.row(y);
-            self.row(y, left / STEP * STEP, right);
+            self.row::<V>(y, left / V::LANES * V::LANES, right);
         }
     }
 }
 
 impl<P: Paint> DrawTriangle<'_, P> {
     #[inline(always)]
-    fn row(&mut self, y: usize, left: usize, right: usize) {
-        let mut edges = self.edges.each_ref().map(|e| Walk::start(e, left, y));
-        let mut depth = Walk::start(&self.depth, left, y);
-        let mut paint = self.paint.start(left, y);
-        for x in (left..right).step_by(STEP) {
-            let at = (y * WIDTH + x) % PIXELS;
-            let old: &mut [u32; STEP] = (&mut self.z[at..at + STEP]).try_into().expect("eight");
-            let new = depth.value.map(|d| d as u32 >> self.z_shift);
-            let mask: Vector = std::array::from_fn(|k| {
-                let outside = (edges[0].value[k] | edges[1].value[k] | edges[2].value[k]) >> 31;
-                let nearer = -i32::from(new[k] < old[k]);
-                nearer & !outside
-            });
-            *old = std::array::from_fn(|k| select(mask[k], new[k], old[k]));
-            self.paint.store(&mut paint, at, &mask);
+    fn row<V: Vector>(&mut self, y: usize, left: usize, right: usize) {
+        let [mut first, mut second, mut third] = three::<V>(&self.edges, left, y);
+        let mut depth = Walk::<V>::start(&self.depth, left, y);
+        let mut walks = three::<V>(self.paint.components(), left, y);
+        for x in (left..right).step_by(V::LANES) {
+            let at = y * WIDTH + x;
+            let inside = first.value.or(second.value).or(third.value);
+            let (old, new) = (V::load(&self.z.0[at..]), depth.value.shift_right(self.z_shift.into()));
+            let mask = inside.passes(new, old);
+            new.store(mask, old, &mut self.z.0[at..]);
+            self.paint.store(&walks, at, mask);
             if let Some(enable) = &mut self.enable {
-                enable[at..at + STEP].copy_from_slice(&mask.map(|m| m as u8));
+                V::store_mask(mask, &mut enable[at..]);
             }
-            edges.iter_mut().for_each(Walk::advance);
+            first.advance();
+            second.advance();
+            third.advance();
             depth.advance();
+            walks[0].advance();
+            walks[1].advance();
+            walks[2].advance();
         }
     }
 }
 
+/// Written out, because a closure over an array would be compiled apart, without the vector unit's features.
 #[inline(always)]
-const fn select(mask: i32, new: u32, old: u32) -> u32 {
-    new & mask as u32 | old & !mask as u32
+fn three<V: Vector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
+    [Walk::start(&e[0], x, y), Walk::start(&e[1], x, y), Walk::start(&e[2], x, y)]
 }
 
 #[inline(always)]
-fn blend(column: &mut Values, at: usize, mask: &Vector, new: [u32; STEP]) {
-    let old: &mut [u32; STEP] = (&mut column[at..at + STEP]).try_into().expect("eight");
-    *old = std::array::from_fn(|k| select(mask[k], new[k], old[k]));
+fn blend<V: Vector>(column: &mut Values, at: usize, mask: V::Mask, new: V) {
+    let old = V::load(&column.0[at..]);
+    new.store(mask, old, &mut column.0[at..]);
 }
 
 /// Interpolated colour.
@@ -114,22 +106,18 @@ pub(super) struct Gouraud<'a> {
 }
 
 impl Paint for Gouraud<'_> {
-    type Row = [Walk; 3];
-
     #[inline(always)]
-    fn start(&self, x: usize, y: usize) -> Self::Row {
-        self.components.each_ref().map(|e| Walk::start(e, x, y))
+    fn components(&self) -> &[Linear; 3] {
+        &self.components
     }
 
     #[inline(always)]
-    fn store(&mut self, row: &mut Self::Row, at: usize, mask: &Vector) {
-        let [red, green, blue] = row.each_ref().map(|walk| walk.value);
-        let rgb = std::array::from_fn(|k| {
-            let byte = |v: i32| v as u32 >> COLOUR_FRACTION_BITS & 255;
-            byte(red[k]) << 16 | byte(green[k]) << 8 | byte(blue[k])
-        });
-        blend(self.colour, at, mask, rgb);
-        row.iter_mut().for_each(Walk::advance);
+    fn store<V: Vector>(&mut self, [red, green, blue]: &[Walk<V>; 3], at: usize, mask: V::Mask) {
+        let byte = V::splat(255);
+        let red = red.value.shift_right(COLOUR_FRACTION_BITS).and(byte).shift_left(16);
+        let green = green.value.shift_right(COLOUR_FRACTION_BITS).and(byte).shift_left(8);
+        let blue = blue.value.shift_right(COLOUR_FRACTION_BITS).and(byte);
+        blend(self.colour, at, mask, red.or(green).or(blue));
     }
 }
 
@@ -142,20 +130,17 @@ pub(super) struct Phong<'a> {
 }
 
 impl Paint for Phong<'_> {
-    type Row = [Walk; 3];
-
     #[inline(always)]
-    fn start(&self, x: usize, y: usize) -> Self::Row {
-        self.components.each_ref().map(|e| Walk::start(e, x, y))
+    fn components(&self) -> &[Linear; 3] {
+        &self.components
     }
 
     #[inline(always)]
-    fn store(&mut self, row: &mut Self::Row, at: usize, mask: &Vector) {
-        for (walk, column) in row.iter_mut().zip(&mut self.normal) {
-            let bits = walk.value.map(|v| v as u32 >> NORMAL_FRACTION_BITS & ((1 << NORMAL_BITS) - 1));
-            blend(column, at, mask, bits);
-            walk.advance();
+    fn store<V: Vector>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask) {
+        let twelve = V::splat((1 << NORMAL_BITS) - 1);
+        for (walk, column) in walks.iter().zip(self.normal.iter_mut()) {
+            blend(column, at, mask, walk.value.shift_right(NORMAL_FRACTION_BITS).and(twelve));
         }
-        blend(self.colour, at, mask, [self.constant; STEP]);
+        blend(self.colour, at, mask, V::splat(self.constant as i32));
     }
 }

@@ -15,8 +15,7 @@ pub(super) struct Template {
     /// Index and value of each word that is no operand.
     fixed: Vec<(usize, Word)>,
     words: usize,
-    instructions: u32,
-    clocks: u64,
+    cost: Cost,
 }
 
 impl Template {
@@ -30,12 +29,7 @@ impl Template {
             instruction.encode(&mut words);
             fixed.push((at, words[at]));
         }
-        Some(Self {
-            fixed,
-            words: words.len(),
-            instructions: program.len() as u32,
-            clocks: program.iter().map(|i| u64::from(i.clocks())).sum(),
-        })
+        Some(Self { fixed, words: words.len(), cost: Cost::of(kind, layout)? })
     }
 
     #[inline]
@@ -50,6 +44,22 @@ pub(super) struct Templates {
     clear: Option<Template>,
     triangle: Option<Template>,
     phong_triangle: Option<Template>,
+    large: Vec<(CommandKind, Cost)>,
+}
+
+/// What a command adds to [`Executed`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cost {
+    pub(super) instructions: u32,
+    pub(super) clocks: u64,
+}
+
+impl Cost {
+    fn of(kind: CommandKind, layout: &Layout) -> Option<Self> {
+        let program = Command::blank(kind).program(layout).ok()?;
+        let clocks = program.iter().map(|i| u64::from(i.clocks())).sum();
+        Some(Self { instructions: program.len() as u32, clocks })
+    }
 }
 
 impl Templates {
@@ -58,7 +68,15 @@ impl Templates {
             clear: Template::of(CommandKind::Clear, layout),
             triangle: Template::of(CommandKind::Triangle, layout),
             phong_triangle: Template::of(CommandKind::PhongTriangle, layout),
+            large: [CommandKind::Sphere, CommandKind::PhongSphere, CommandKind::Shade]
+                .into_iter()
+                .filter_map(|kind| Some((kind, Cost::of(kind, layout)?)))
+                .collect(),
         }
+    }
+
+    pub(super) fn cost(&self, kind: CommandKind) -> Option<Cost> {
+        self.large.iter().find(|(k, _)| *k == kind).map(|(_, cost)| *cost)
     }
 
     fn get(&self, kind: CommandKind) -> Option<&Template> {
@@ -90,28 +108,16 @@ impl Lanes {
         if !template.matches(words) {
             return None;
         }
-        let (used, instructions, clocks) = (template.words, template.instructions, template.clocks);
+        let (used, cost) = (template.words, template.cost);
         let keep = !starts_anew(words.get(used));
         match kind {
             CommandKind::Clear => self.clear(words[2], columns, keep),
             CommandKind::Triangle => self.triangle(&read_triangle(words), columns, keep)?,
             _ => self.phong_triangle(&read_phong_triangle(words), columns, keep)?,
         }
-        executed.instructions += instructions;
-        executed.clocks += clocks;
+        executed.instructions += cost.instructions;
+        executed.clocks += cost.clocks;
         Some(used)
-    }
-
-    /// Spheres and shading: long enough for their words to be decoded with care.
-    fn large_command(
-        &mut self,
-        kind: CommandKind,
-        words: &[Word],
-        columns: ContextColumns,
-        executed: &mut Executed,
-    ) -> Option<usize> {
-        let _ = (kind, words, columns, executed);
-        None
     }
 
     fn context_columns(&self) -> Option<ContextColumns> {
@@ -126,9 +132,9 @@ impl Lanes {
     }
 
     fn clear(&mut self, colour: u32, columns: ContextColumns, keep: bool) {
-        self.columns.values_mut(columns.colour).fill(colour & 0xff_ffff);
+        self.columns.values_mut(columns.colour).0.fill(colour & 0xff_ffff);
         let far = u32::MAX >> (32 - self.layout.plan().z.width);
-        self.columns.values_mut(columns.z).fill(far);
+        self.columns.values_mut(columns.z).0.fill(far);
         if keep {
             self.enable.fill(255);
         }
@@ -181,7 +187,7 @@ impl Lanes {
 }
 
 /// The next instruction overwrites Enable before anybody reads it.
-fn starts_anew(next: Option<&Word>) -> bool {
+pub(super) fn starts_anew(next: Option<&Word>) -> bool {
     let enable_all = |word: &Word| matches!(Instruction::decode(&[*word], 0), Ok((Instruction::EnableAll { .. }, 1)));
     next.is_some_and(enable_all)
 }

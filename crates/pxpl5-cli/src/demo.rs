@@ -1,0 +1,128 @@
+//! `pxpl5 demo`, and `pxpl5` alone: both pipelines at work.
+
+use crate::error::CliError;
+use crate::output::OutputFolder;
+use crate::run::{comparison, pictures, simulate};
+use crate::table::{Comparison, table};
+use crate::terminal::print;
+use clap::Args;
+use pxpl5::{ExperimentFile, Outcome, Plan, Report};
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// Show both pipelines at work on built-in scenes.
+#[derive(Args, Debug)]
+#[command(after_help = "Example:
+  pxpl5 demo --out /tmp/demo")]
+pub(crate) struct DemoArgs {
+    /// Where pictures and report.json go.
+    #[arg(long, value_name = "DIR", default_value = OUT)]
+    out: PathBuf,
+    /// Print nothing but errors.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+const OUT: &str = "out";
+
+impl Default for DemoArgs {
+    fn default() -> Self {
+        Self { out: OUT.into(), quiet: false }
+    }
+}
+
+/// Published measurements that take no time to reproduce: TR94's trivial scene, its aircraft, and Slats at its limit.
+const EXPERIMENTS: [(&str, &str); 3] = [
+    (
+        "rendering-control-full-screen-12",
+        r#"
+        pipeline = "rendering-control"
+        scene = "full-screen:12"
+        fields = 360
+        published = { figure = 4, source = "TR94", quantity = "latency_ms.mean", value = 56.5 }
+        "#,
+    ),
+    (
+        "rendering-control-mig",
+        r#"
+        pipeline = "rendering-control"
+        scene = "mig"
+        fields = 360
+        published = { figure = 7, source = "TR94", quantity = "latency_fields.mean", value = 4.61 }
+        "#,
+    ),
+    (
+        "slats-mig-140",
+        r#"
+        pipeline = "slats"
+        scene = "mig"
+        triangles = 140
+        fields = 360
+        published = { figure = 9, source = "TR94, I3D95", quantity = "latency_fields.mean", value = 1.0 }
+        "#,
+    ),
+];
+
+struct Run {
+    name: &'static str,
+    outcome: Outcome,
+    report: Report,
+    comparison: Option<Comparison>,
+}
+
+pub(crate) fn run(args: DemoArgs) -> Result<(), CliError> {
+    let folder = OutputFolder::open(&args.out)?;
+    let runs: Vec<Run> =
+        EXPERIMENTS.iter().map(|(name, text)| one(name, text, args.quiet)).collect::<Result<_, _>>()?;
+    write(folder, &runs)?;
+    if args.quiet {
+        return Ok(());
+    }
+    let columns: Vec<_> = runs.iter().map(|run| (&run.report, run.comparison.as_ref())).collect();
+    print(&format!("{}\n{}", table(&columns), closing(&runs, &args)))
+}
+
+fn one(name: &'static str, text: &str, quiet: bool) -> Result<Run, CliError> {
+    let plan: Plan = ExperimentFile::parse(text, name)?.resolve()?;
+    let outcome = simulate(&plan, None, quiet)?;
+    let report = outcome.report();
+    Ok(Run { name, comparison: comparison(&plan, &outcome, &report), outcome, report })
+}
+
+fn closing(runs: &[Run], args: &DemoArgs) -> String {
+    let seconds: f64 = runs.iter().map(|run| run.report.host_seconds).sum();
+    let mut text = String::new();
+    let mut told = Vec::new();
+    for report in runs.iter().map(|run| &run.report).filter(|report| report.pipeline != "") {
+        if !told.contains(&&report.pipeline) {
+            let _ = writeln!(text, "Latency of {}: {}.", report.pipeline, report.latency_ms.definition);
+            told.push(&report.pipeline);
+        }
+    }
+    let _ = writeln!(text, "Pictures and report.json are in {}. Simulated in {seconds:.2} s.", args.out.display());
+    text
+}
+
+fn write(mut folder: OutputFolder, runs: &[Run]) -> Result<(), CliError> {
+    for run in runs {
+        pictures(&mut folder, &format!("{}-", run.name), &run.outcome, &run.report)?;
+    }
+    let runs: Vec<Value> = runs.iter().map(entry).collect();
+    let all = json!({"schema": "pxpl5-demo/1", "version": env!("CARGO_PKG_VERSION"), "runs": runs});
+    folder.put("report.json", format!("{all:#}\n").as_bytes())?;
+    folder.commit()
+}
+
+fn entry(run: &Run) -> Value {
+    let published = run.comparison.as_ref().map(|c| {
+        json!({
+            "quantity": c.quantity,
+            "published": c.published,
+            "simulated": c.simulated,
+            "error_percent": c.error_percent(),
+            "source": c.source,
+        })
+    });
+    json!({"name": run.name, "report": run.report, "published": published})
+}

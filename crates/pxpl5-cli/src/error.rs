@@ -1,0 +1,71 @@
+//! What ends a command early.
+
+use crate::terminal;
+use pxpl5::{ExperimentError, FileError};
+use std::fmt::Display;
+use std::process::ExitCode;
+
+/// The command line or an experiment file is wrong.
+const USAGE: u8 = 2;
+/// Something failed.
+const FAILURE: u8 = 1;
+
+/// A message and an exit code.
+#[derive(Debug)]
+pub(crate) struct CliError {
+    code: u8,
+    message: String,
+}
+
+impl CliError {
+    pub(crate) fn failure(message: impl Display) -> Self {
+        Self { code: FAILURE, message: message.to_string() }
+    }
+
+    pub(crate) fn usage(message: impl Display) -> Self {
+        Self { code: USAGE, message: message.to_string() }
+    }
+
+    pub(crate) fn report(&self) -> ExitCode {
+        terminal::complain(&format!("pxpl5: {}\n", self.message));
+        ExitCode::from(self.code)
+    }
+}
+
+impl From<FileError> for CliError {
+    fn from(error: FileError) -> Self {
+        match error {
+            FileError::Io { .. } | FileError::Load(_) => Self::failure(error),
+            _ => Self::usage(error),
+        }
+    }
+}
+
+impl From<ExperimentError> for CliError {
+    fn from(error: ExperimentError) -> Self {
+        match &error {
+            ExperimentError::Config(_) | ExperimentError::Fields { .. } => Self::usage(error),
+            ExperimentError::Run { .. } => {
+                Self::failure(format!("{error}; nothing was written. {MEMORY_ADVICE}", MEMORY_ADVICE = advice(&error)))
+            }
+            _ => Self::failure(error),
+        }
+    }
+}
+
+/// What to do about a run that ended early.
+fn advice(error: &ExperimentError) -> &'static str {
+    let text = error.to_string();
+    if text.contains("bytes") {
+        "Give the machine more GPs (--gps), or draw fewer primitives (--triangles)"
+    } else {
+        "The same command with fewer --fields shows the pictures until then"
+    }
+}
+
+/// Help, version, or what is wrong with the command line.
+pub(crate) fn usage(error: &clap::Error) -> ExitCode {
+    // A closed pipe (`| head`) is no fault.
+    let _ = error.print();
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(USAGE))
+}

@@ -1,0 +1,77 @@
+//! `pxpl5 figures`.
+
+use crate::error::CliError;
+use crate::terminal::print;
+use clap::Args;
+use pxpl5::figures::{Bench, Row, markdown, mean_error_percent, run_all};
+use pxpl5::levels::Level;
+use serde_json::json;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Measure every published figure and compare.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 figures
+  pxpl5 figures --json
+  pxpl5 figures --write ACCURACY.md
+  pxpl5 figures --check ACCURACY.md      fails when the file is not what the figures give")]
+pub(crate) struct FiguresArgs {
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+    /// Write the document of all figures to this file.
+    #[arg(long, value_name = "FILE", conflicts_with = "check")]
+    write: Option<PathBuf>,
+    /// Compare the document with this file.
+    #[arg(long, value_name = "FILE")]
+    check: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
+    let rows = run_all(&Bench::new(Level::Transaction)).map_err(CliError::failure)?;
+    if let Some(path) = &args.write {
+        fs::write(path, markdown(&rows)).map_err(|error| refused(path, &error))?;
+    }
+    if let Some(path) = &args.check {
+        check(path, &rows)?;
+    }
+    print(&if args.json { json_text(&rows) } else { text(&rows) })
+}
+
+fn check(path: &Path, rows: &[Row]) -> Result<(), CliError> {
+    let kept = fs::read_to_string(path).map_err(|error| refused(path, &error))?;
+    if kept == markdown(rows) {
+        return Ok(());
+    }
+    let path = path.display();
+    Err(CliError::failure(format!("{path} is stale: run `pxpl5 figures --write {path}`")))
+}
+
+fn refused(path: &Path, error: &std::io::Error) -> CliError {
+    CliError::failure(format!("{}: {error}", path.display()))
+}
+
+fn json_text(rows: &[Row]) -> String {
+    let mean = mean_error_percent(rows);
+    format!("{:#}\n", json!({"schema": "pxpl5-figures/1", "mean_error_percent_of_free_checks": mean, "figures": rows}))
+}
+
+fn text(rows: &[Row]) -> String {
+    let mut text = format!(
+        "{:<4} {:>10} {:>10}  {:<13} {:>8}  {:<22} {:<7} {}\n",
+        "#", "published", "simulated", "unit", "error", "interval", "standing", "what"
+    );
+    for row in rows {
+        let interval = row.interval.map_or(String::new(), |[low, high]| format!("{low:.2} to {high:.2}"));
+        let miss = if row.misses() { "miss: " } else { "" };
+        let _ = writeln!(
+            text,
+            "{:<4} {:>10.2} {:>10.2}  {:<13} {:>+7.1}%  {interval:<22} {:<8} {miss}{}",
+            row.id, row.published, row.simulated, row.unit, row.error_percent, row.standing, row.statement
+        );
+    }
+    let _ = writeln!(text, "\nmean absolute error of the free checks: {:.1} %", mean_error_percent(rows));
+    text
+}

@@ -1,0 +1,165 @@
+//! Result files: all of them appear, whole, or none.
+
+use crate::error::CliError;
+use image::RgbImage;
+use pxpl5::Report;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// A folder that can be written, and the files that are going to be in it.
+#[derive(Debug)]
+pub(crate) struct OutputFolder {
+    path: PathBuf,
+    /// Folders that were made for it, outermost first.
+    made: Vec<PathBuf>,
+    /// Temporary and final names.
+    files: Vec<(PathBuf, PathBuf)>,
+}
+
+impl OutputFolder {
+    /// Makes the folder, if need be, and tries to write into it: before hours are spent on what could not be kept.
+    ///
+    /// # Errors
+    ///
+    /// When it is not a folder, or cannot be made or written.
+    pub(crate) fn open(path: &Path) -> Result<Self, CliError> {
+        let missing = path.ancestors().take_while(|part| !part.as_os_str().is_empty() && !part.exists());
+        let mut made: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
+        made.reverse();
+        fs::create_dir_all(path).map_err(|error| refused(path, &error))?;
+        let mut folder = Self { path: path.to_path_buf(), made, files: Vec::new() };
+        folder.put(".pxpl5-probe", b"")?;
+        folder.discard();
+        Ok(folder)
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a file under a temporary name.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be written.
+    pub(crate) fn put(&mut self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
+        let temporary = self.path.join(format!(".{name}.{}.tmp", std::process::id()));
+        let result = fs::File::create(&temporary).and_then(|mut file| file.write_all(bytes));
+        self.files.push((temporary, self.path.join(name)));
+        result.map_err(|error| refused(&self.path.join(name), &error))
+    }
+
+    /// Gives all files their names.
+    ///
+    /// # Errors
+    ///
+    /// When a file of that name is in the way and cannot be replaced.
+    pub(crate) fn commit(mut self) -> Result<(), CliError> {
+        for (temporary, name) in std::mem::take(&mut self.files) {
+            let renamed = fs::rename(&temporary, &name);
+            if let Err(error) = renamed {
+                let _ = fs::remove_file(&temporary);
+                return Err(refused(&name, &error));
+            }
+        }
+        self.made.clear();
+        Ok(())
+    }
+
+    fn discard(&mut self) {
+        for (temporary, _) in self.files.drain(..) {
+            let _ = fs::remove_file(temporary);
+        }
+    }
+}
+
+/// What was not committed leaves no trace: files are removed, and so are folders made for them, if still empty.
+impl Drop for OutputFolder {
+    fn drop(&mut self) {
+        self.discard();
+        for folder in self.made.iter().rev() {
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
+fn refused(path: &Path, error: &std::io::Error) -> CliError {
+    CliError::failure(format!("{} cannot be written: {error}; choose another folder with --out", path.display()))
+}
+
+/// The origin of a result file, as pairs; together with the experiment they are enough to make it again.
+pub(crate) fn origin(report: &Report) -> Vec<(&'static str, String)> {
+    let overrides: Vec<String> = report.overrides.iter().map(|(path, value)| format!("{path}={value}")).collect();
+    vec![
+        ("machine", report.machine.clone()),
+        ("config_hash", report.config_hash.clone()),
+        ("version", report.version.clone()),
+        ("level", report.level.clone()),
+        ("seed", report.seed.to_string()),
+        ("pipeline", report.pipeline.clone()),
+        ("variant", report.variant.clone()),
+        ("overrides", overrides.join(" ")),
+        ("scene", format!("{}, {} triangles, {} spheres", report.scene, report.triangles, report.spheres)),
+        ("fields", report.fields.to_string()),
+    ]
+}
+
+/// The same as lines of a comment.
+pub(crate) fn origin_lines(report: &Report) -> String {
+    origin(report).iter().map(|(key, value)| format!("# {key}: {value}\n")).collect()
+}
+
+/// A picture as PNG, with its origin as text chunks.
+///
+/// # Errors
+///
+/// When the encoder refuses it.
+pub(crate) fn png(picture: &RgbImage, report: &Report) -> Result<Vec<u8>, CliError> {
+    let mut bytes = Vec::new();
+    let encoded = encode(&mut bytes, picture, report);
+    encoded.map_err(|error| CliError::failure(format!("a picture cannot be encoded: {error}")))?;
+    Ok(bytes)
+}
+
+fn encode(bytes: &mut Vec<u8>, picture: &RgbImage, report: &Report) -> Result<(), png::EncodingError> {
+    let mut encoder = png::Encoder::new(bytes, picture.width(), picture.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    for (key, value) in origin(report) {
+        encoder.add_itxt_chunk(format!("pxpl5 {key}"), value)?;
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(picture.as_raw())?;
+    writer.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(name: &str) -> PathBuf {
+        std::env::temp_dir().join(format!("pxpl5-output-{}-{name}", std::process::id()))
+    }
+
+    #[test]
+    fn what_is_not_committed_leaves_no_trace() {
+        let path = place("dropped").join("inner");
+        let mut folder = OutputFolder::open(&path).expect("the temporary directory can be written");
+        folder.put("a.txt", b"half").expect("written");
+        drop(folder);
+        assert!(!place("dropped").exists());
+    }
+
+    #[test]
+    fn what_is_committed_is_there_alone() {
+        let path = place("kept");
+        let mut folder = OutputFolder::open(&path).expect("the temporary directory can be written");
+        folder.put("a.txt", b"whole").expect("written");
+        folder.commit().expect("renamed");
+        let names: Vec<_> = fs::read_dir(&path).expect("there").map(|e| e.expect("entry").file_name()).collect();
+        assert_eq!(names, ["a.txt"]);
+        assert_eq!(fs::read(path.join("a.txt")).expect("there"), b"whole");
+        fs::remove_dir_all(path).expect("ours");
+    }
+}

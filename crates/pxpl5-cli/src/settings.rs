@@ -1,0 +1,106 @@
+//! Options that say what an experiment is; each stands for a key of an experiment file.
+
+use crate::error::CliError;
+use clap::Args;
+use pxpl5::ExperimentFile;
+use std::path::PathBuf;
+
+/// An experiment file, and options that take precedence over it.
+#[derive(Args, Debug, Default)]
+pub(crate) struct SettingArgs {
+    /// Experiment file (TOML).
+    #[arg(value_name = "FILE")]
+    experiment: Option<PathBuf>,
+    /// The same, as an option.
+    #[arg(long, value_name = "FILE", conflicts_with = "experiment")]
+    file: Option<PathBuf>,
+    /// rendering-control or slats.
+    #[arg(long)]
+    pipeline: Option<String>,
+    /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .pdb.
+    #[arg(long, value_name = "NAME|FILE")]
+    scene: Option<String>,
+    /// Keep the first N primitives of the scene, triangles before spheres.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    triangles: Option<i64>,
+    /// Preset of the machine (see `pxpl5 machines`); default: the one on which the pipeline was published.
+    #[arg(long, value_name = "PRESET")]
+    machine: Option<String>,
+    /// Graphics processors, the master included.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    gps: Option<i64>,
+    /// Renderers.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    renderers: Option<i64>,
+    /// Rendering Control: one picture instead of a stereo pair.
+    #[arg(long)]
+    mono: bool,
+    /// Rendering Control: phong or gouraud.
+    #[arg(long)]
+    shading: Option<String>,
+    /// Slats: copy the whole field before the retrace, or split it: whole or split.
+    #[arg(long)]
+    copy: Option<String>,
+    /// Slats: code of 1994, 1995 or optimised; default: that of the machine.
+    #[arg(long)]
+    code: Option<String>,
+    /// Slats: send a clump to all regions, or to those touched: all or touched.
+    #[arg(long)]
+    binning: Option<String>,
+    /// NTSC fields to simulate (1/60 s each); default 120.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    fields: Option<i64>,
+    /// Which pixels are computed: off, lazy (those looked at) or all; default lazy.
+    #[arg(long)]
+    pixels: Option<String>,
+    /// Seed of the head motion; default 1.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    seed: Option<i64>,
+    /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000; may be repeated.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    sets: Vec<String>,
+}
+
+impl SettingArgs {
+    /// The file with the options applied; `--set` last.
+    ///
+    /// # Errors
+    ///
+    /// For an unusable file or an unknown key.
+    pub(crate) fn gather(self) -> Result<ExperimentFile, CliError> {
+        let mut file = match self.experiment.as_ref().or(self.file.as_ref()) {
+            Some(path) => ExperimentFile::load(path)?,
+            None => ExperimentFile::new(),
+        };
+        let texts = [
+            ("pipeline", "--pipeline", self.pipeline),
+            ("scene", "--scene", self.scene),
+            ("machine.preset", "--machine", self.machine),
+            ("shading", "--shading", self.shading),
+            ("copy", "--copy", self.copy),
+            ("code", "--code", self.code),
+            ("binning", "--binning", self.binning),
+            ("pixels", "--pixels", self.pixels),
+        ];
+        for (key, option, value) in texts {
+            value.map(|value| file.set(key, value, option)).transpose()?;
+        }
+        let numbers = [
+            ("triangles", "--triangles", self.triangles),
+            ("machine.n_gps", "--gps", self.gps),
+            ("machine.n_renderers", "--renderers", self.renderers),
+            ("fields", "--fields", self.fields),
+            ("seed", "--seed", self.seed),
+        ];
+        for (key, option, value) in numbers {
+            value.map(|value| file.set(key, value, option)).transpose()?;
+        }
+        if self.mono {
+            file.set("mono", true, "--mono")?;
+        }
+        for assignment in &self.sets {
+            file.set_text(assignment, "--set")?;
+        }
+        Ok(file)
+    }
+}

@@ -1,0 +1,326 @@
+//! What a user sees: results on standard output, files that are whole, and messages that help.
+
+mod support;
+
+use std::process::Stdio;
+use support::{Folder, command, err, json, names, out};
+
+const SLATS: [&str; 7] = ["run", "--pipeline", "slats", "--scene", "full-screen:10", "--fields", "12"];
+const RC: [&str; 7] = ["run", "--pipeline", "rendering-control", "--scene", "full-screen:12", "--fields", "24"];
+
+fn with<'a>(first: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
+    [first, more].concat()
+}
+
+/// Exit code, and standard error holds all of these.
+fn refused(args: &[&str], code: i32, says: &[&str]) {
+    let folder = Folder::new(&format!(
+        "refused-{:x}",
+        args.join(" ").bytes().fold(7u64, |h, b| h * 31 % 0xFFFF_FFFB + u64::from(b))
+    ));
+    let output = folder.run(args);
+    let text = err(&output);
+    assert_eq!(output.status.code(), Some(code), "{args:?}: {text}");
+    says.iter().for_each(|part| assert!(text.contains(part), "{args:?} should say {part:?}: {text}"));
+    assert!(!text.contains("panicked"), "{text}");
+    assert_eq!(out(&output), "", "{args:?}");
+    assert!(folder.names().is_empty(), "{args:?} left {:?}", folder.names());
+}
+
+#[test]
+fn a_run_prints_one_object_with_units_in_its_names() {
+    let folder = Folder::new("json");
+    let report = json(&folder.run(&with(&SLATS, &["--json", "--seed", "7"])));
+    assert_eq!(report["schema"], "pxpl5-report/1");
+    assert_eq!((&report["pipeline"], &report["machine"]), (&"slats".into(), &"slats".into()));
+    assert_eq!((&report["scene"], &report["triangles"]), (&"full-screen:10".into(), &10.into()));
+    assert_eq!((&report["spheres"], &report["fields"], &report["seed"]), (&0.into(), &12.into(), &7.into()));
+    // TR94, I3D95: Slats has a latency of one field, 1001/60 ms.
+    for (key, one_field) in [("latency_fields", 1.0), ("latency_ms", 1001.0 / 60.0)] {
+        for part in ["mean", "min", "max"] {
+            let value = report[key][part].as_f64().expect("a number");
+            assert!((value / one_field - 1.0).abs() < 1e-6, "{key}.{part} = {value}");
+        }
+        assert!(report[key]["sd"].is_number() && report[key]["definition"].is_string());
+    }
+    assert!(report["updates_hz"].is_number() && report["host_seconds"].is_number());
+    assert_eq!(report["missed_retraces"], 0);
+    assert_eq!(report["trace_hash"].as_str().map(str::len), Some(16));
+}
+
+#[test]
+fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
+    let folder = Folder::new("files");
+    let report = json(&folder.run(&with(&SLATS, &["--json", "--out", "a/b", "--set", "gp.triangle_ns=30000"])));
+    assert_eq!(
+        names(&folder.0.join("a/b")),
+        ["experiment.toml", "left.png", "report.json", "results.csv", "right.png"]
+    );
+    let read = |name: &str| std::fs::read(folder.0.join("a/b").join(name)).expect("written");
+    let hash = report["config_hash"].as_str().expect("a hash");
+    for name in ["experiment.toml", "results.csv"] {
+        let text = String::from_utf8(read(name)).expect("text");
+        let lines: Vec<&str> = text.lines().take(5).collect();
+        let expected = [
+            "# machine: slats",
+            &format!("# config_hash: {hash}"),
+            "# version: 0.1.0",
+            "# level: transaction",
+            "# seed: 1",
+        ];
+        assert_eq!(lines, expected, "{name}");
+    }
+    let saved: serde_json::Value = serde_json::from_slice(&read("report.json")).expect("JSON");
+    let keys: Vec<&str> = saved.as_object().expect("an object").keys().map(String::as_str).take(6).collect();
+    assert_eq!(keys, ["schema", "version", "machine", "config_hash", "level", "seed"]);
+    assert_eq!(saved["overrides"]["gp.triangle_ns"], 30_000);
+    let png = read("left.png");
+    assert!(png.windows(hash.len()).any(|part| part == hash.as_bytes()), "the picture names its configuration");
+    assert!(image::load_from_memory(&png).is_ok(), "the picture can be read");
+}
+
+#[test]
+fn the_written_experiment_runs_to_the_same_trace() {
+    let folder = Folder::new("again");
+    let first = json(&folder.run(&with(&RC, &["--json", "--out", "r", "--gps", "5", "--seed", "3"])));
+    let second = json(&folder.run(&["run", "r/experiment.toml", "--json"]));
+    assert_eq!((&first["trace_hash"], &first["config_hash"]), (&second["trace_hash"], &second["config_hash"]));
+}
+
+#[test]
+fn pixels_threads_and_repetition_leave_the_trace_alone() {
+    let folder = Folder::new("trace");
+    let hash = |more: &[&str]| json(&folder.run(&with(&with(&RC, &["--json"]), more)))["trace_hash"].clone();
+    let expected = hash(&[]);
+    for more in
+        [&["--pixels", "off"][..], &["--pixels", "all", "--threads", "1"], &["--pixels", "all", "--threads", "2"]]
+    {
+        assert_eq!(hash(more), expected, "{more:?}");
+    }
+}
+
+#[test]
+fn a_table_goes_to_standard_output_and_quiet_says_nothing() {
+    let folder = Folder::new("table");
+    let output = folder.run(&SLATS);
+    assert!(output.status.success() && err(&output).is_empty());
+    let text = out(&output);
+    for part in ["pipeline", "slats", "full-screen:10", "10 triangles", "1.00, sd 0.00", "missed retraces"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    assert!(!text.contains('\u{1b}'), "no colour where there is no terminal");
+    let output = folder.run(&with(&SLATS, &["--quiet"]));
+    assert!(output.status.success() && out(&output).is_empty() && err(&output).is_empty());
+}
+
+#[test]
+fn lists_name_what_is_built_in() {
+    let folder = Folder::new("lists");
+    let scenes = json(&folder.run(&["scenes", "--json"]));
+    let known: Vec<_> = scenes["scenes"].as_array().expect("a list").iter().map(|scene| &scene["name"]).collect();
+    assert_eq!(known, ["mig", "molecules", "head", "full-screen:N"]);
+    let machines = json(&folder.run(&["machines", "--json"]));
+    // TR94: 13 GPs and 5 renderers.
+    let small =
+        machines["machines"].as_array().expect("a list").iter().find(|m| m["name"] == "small-hmd").expect("listed");
+    assert_eq!((&small["n_gps"], &small["n_renderers"]), (&13.into(), &5.into()));
+    let slats = json(&folder.run(&["machines", "slats", "--json"]));
+    assert!(
+        slats["parameters"].as_array().expect("a list").iter().any(|p| p["path"] == "ring.word_ns" && p["value"] == 50)
+    );
+}
+
+#[test]
+fn a_flag_of_the_other_pipeline_is_refused() {
+    refused(&with(&SLATS, &["--mono"]), 2, &["--mono", "does not apply to the pipeline slats"]);
+    for (flag, value) in [("--copy", "whole"), ("--code", "1994"), ("--binning", "all")] {
+        refused(&with(&RC, &[flag, value]), 2, &[flag, "does not apply to the pipeline rendering-control"]);
+    }
+    let conflict = with(&SLATS, &["--code", "1995", "--set", "gp.triangle_ns=1000"]);
+    refused(&conflict, 2, &["machine.gp.triangle_ns", "code = 1995", "leave one out"]);
+}
+
+#[test]
+fn unknown_names_are_refused_with_the_nearest() {
+    refused(&with(&SLATS, &["--machine", "slat"]), 2, &["--machine", "`slat`", "`slats`"]);
+    refused(&with(&SLATS, &["--set", "gp.triangel_ns=1"]), 2, &["--set", "`gp.triangle_ns`"]);
+    refused(&with(&SLATS, &["--copy", "splitt"]), 2, &["--copy", "whole, split", "nearest is split"]);
+    refused(&["run", "--pipeline", "slat", "--scene", "mig"], 2, &["rendering-control, slats", "nearest is slats"]);
+    refused(&["run", "--pipeline", "slats", "--scene", "mgi"], 2, &["\"mgi\"", "nearest is \"mig\""]);
+    refused(&["run", "--pipeline", "slats"], 2, &["scene is missing", "pxpl5 scenes"]);
+    refused(&["run", "--scene", "mig"], 2, &["pipeline is missing"]);
+    refused(&["rum"], 2, &["rum", "run"]);
+}
+
+#[test]
+fn impossible_numbers_are_refused() {
+    refused(&with(&SLATS, &["--renderers", "0"]), 2, &["n_renderers must be 1 to 1000, found 0"]);
+    refused(&with(&SLATS, &["--gps", "-1"]), 2, &["--gps", "whole number", "found -1"]);
+    refused(&with(&RC, &["--gps", "1"]), 2, &["n_gps of Rendering Control"]);
+    for fields in ["0", "-3", "10000001", "9223372036854775807"] {
+        let args = ["run", "--pipeline", "slats", "--scene", "mig", "--fields", fields];
+        refused(&args, 2, &["--fields", "from 1 to 10000000", fields]);
+    }
+    refused(&["run", "--pipeline", "slats", "--scene", "mig", "--fields", "1"], 1, &["simulate more fields"]);
+    refused(&with(&SLATS, &["--triangles", "0"]), 2, &["--triangles", "from 1 to"]);
+    refused(&with(&SLATS, &["--triangles", "11"]), 2, &["expected 1 to 10 triangles", "found 11"]);
+    refused(&with(&SLATS, &["--threads", "0"]), 2, &["--threads"]);
+    refused(&["run", "--pipeline", "slats", "--scene", "full-screen:0"], 2, &["from 1 to 1000000"]);
+}
+
+#[test]
+fn a_million_triangles_do_not_fit_and_the_message_says_what_to_do() {
+    let args = ["run", "--pipeline", "slats", "--scene", "full-screen:1000000", "--pixels", "off"];
+    refused(&args, 1, &["GP 0", "bytes", "--gps", "--triangles"]);
+}
+
+/// A PLY file of one triangle with these coordinates for its first vertex and this last index.
+fn ply(first: &str, last_index: &str, faces: usize) -> String {
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+    let face = if faces == 0 { String::new() } else { format!("3 0 1 {last_index}\n") };
+    format!(
+        "{header}element face {faces}\nproperty list uchar int vertex_indices\nend_header\n{first}\n1 0 0\n0 1 0\n{face}"
+    )
+}
+
+#[test]
+fn bad_model_files_are_refused_with_file_and_place() {
+    let whole = ply("0 0 0", "2", 1);
+    let cases = [
+        ("empty.ply", String::new(), "empty file"),
+        ("truncated.ply", whole[..whole.len() - 12].to_owned(), "line"),
+        ("index.ply", ply("0 0 0", "3", 1), "found 3"),
+        ("nan.ply", ply("nan 0 0", "2", 1), "found \"nan 0 0\""),
+        ("infinite.ply", ply("inf 0 0", "2", 1), "found \"inf 0 0\""),
+        ("huge.ply", ply("1e30 0 0", "2", 1), "coordinate"),
+        ("none.ply", ply("0 0 0", "2", 0), "at least one triangle"),
+        ("notes.txt", whole.clone(), ".ply, .obj or .pdb"),
+    ];
+    for (name, contents, says) in cases {
+        let folder = Folder::new(name);
+        let path = folder.file(name, contents);
+        let path = path.to_str().expect("text");
+        refused(&["run", "--pipeline", "slats", "--scene", path, "--out", "out"], 1, &[name, says]);
+    }
+    refused(&["run", "--pipeline", "slats", "--scene", "missing.ply"], 1, &["missing.ply", "readable file"]);
+    let folder = Folder::new("good");
+    let good = folder.file("good.ply", whole);
+    let report = json(&folder.run(&[
+        "run",
+        "--pipeline",
+        "slats",
+        "--scene",
+        good.to_str().expect("text"),
+        "--fields",
+        "12",
+        "--json",
+    ]));
+    assert_eq!(report["triangles"], 1);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_refused_before_anything_is_computed() {
+    let folder = Folder::new("no-folder");
+    let file = folder.file("file", "");
+    let below = file.join("below");
+    // A run of this length would take hours.
+    let args = ["run", "--pipeline", "slats", "--scene", "mig", "--fields", "10000000", "--out"];
+    for path in [file.to_str(), below.to_str(), Some("/proc/pxpl5")] {
+        let path = path.expect("text");
+        refused(&with(&args, &[path]), 1, &[path, "cannot be written", "--out"]);
+    }
+}
+
+#[test]
+fn an_experiment_file_reaches_every_setting_and_its_errors_name_the_line() {
+    let folder = Folder::new("toml");
+    folder.file(
+        "e.toml",
+        "pipeline = \"slats\"\nscene = \"mig\"\ntriangles = 50\nfields = 12\n[machine]\ngp.triangle_ns = 20_000\n",
+    );
+    let report = json(&folder.run(&["run", "e.toml", "--set", "copy=whole", "--fields", "14", "--json"]));
+    assert_eq!((&report["triangles"], &report["fields"]), (&50.into(), &14.into()));
+    assert!(report["variant"].as_str().expect("text").contains("copy: Whole"));
+    assert_eq!(report["overrides"]["gp.triangle_ns"], 20_000);
+    let cases = [
+        ("pipeline = \"slats\"\nsceen = \"mig\"", "line 2", "did you mean `scene`"),
+        ("pipeline = \"slats\"\n[machine]\ngp.triangel_ns = 1", "line 3", "`machine.gp.triangle_ns`"),
+        ("pipeline = \"slats\"\nscene = 3", "line 2", "text in quotes"),
+        ("pipeline = ", "line 1", "not TOML"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nmono = true", "line 3", "does not apply"),
+    ];
+    for (text, line, says) in cases {
+        let path = folder.file("bad.toml", text);
+        refused(&["run", path.to_str().expect("text")], 2, &["bad.toml", line, says]);
+    }
+    refused(&["run", "missing.toml"], 1, &["missing.toml", "readable experiment file"]);
+}
+
+#[test]
+fn what_check_prints_is_a_file_that_says_the_same() {
+    let folder = Folder::new("check");
+    let args = ["--pipeline", "rendering-control", "--scene", "mig", "--mono", "--set", "ring.hop_ns=100"];
+    let once = out(&folder.run(&with(&["check"], &args)));
+    assert!(once.contains("ring.hop_ns = 100  # ns, assumed; the preset has 50"), "{once}");
+    folder.file("once.toml", &once);
+    let twice = out(&folder.run(&["check", "once.toml"]));
+    assert_eq!(once, twice);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_that_goes_away_is_no_fault_and_a_full_disk_is() {
+    for args in [&["machines"][..], &["scenes"], &["--help"], &["completions", "bash"]] {
+        let mut child =
+            command(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the command starts");
+        drop(child.stdout.take());
+        let output = child.wait_with_output().expect("it ends");
+        assert!(output.status.success(), "{args:?}: {}", err(&output));
+        assert_eq!(err(&output), "");
+    }
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has it");
+    let output = command(&["machines"]).stdout(full).output().expect("the command starts");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(err(&output).contains("standard output cannot be written"), "{}", err(&output));
+}
+
+#[test]
+fn help_shows_examples_and_completions_know_the_options() {
+    let folder = Folder::new("help");
+    for args in
+        [&["--help"][..], &["run", "--help"], &["check", "--help"], &["demo", "--help"], &["machines", "--help"]]
+    {
+        let text = out(&folder.run(args));
+        assert!(text.contains("Example"), "{args:?}: {text}");
+    }
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        assert!(out(&folder.run(&["completions", shell])).contains("triangles"), "{shell}");
+    }
+}
+
+#[test]
+fn without_arguments_both_pipelines_run_and_leave_pictures() {
+    let folder = Folder::new("demo");
+    let output = folder.run(&[]);
+    assert!(output.status.success(), "{}", err(&output));
+    let text = out(&output);
+    for part in
+        ["rendering-control", "slats", "full-screen:12", "mig", "417 triangles", "140 triangles", "56.5", "4.61"]
+    {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let report: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.0.join("out/report.json")).expect("written")).expect("JSON");
+    for run in report["runs"].as_array().expect("a list") {
+        assert!(run["report"]["fields"].as_u64().expect("a number") >= 120);
+        for eye in ["left", "right"] {
+            let name = format!("out/{}-{eye}.png", run["name"].as_str().expect("text"));
+            let picture = image::open(folder.0.join(&name)).expect("a picture").to_rgb8();
+            assert_eq!((picture.width(), picture.height()), (640, 480), "{name}");
+            // Backgrounds of the two scenes; twelve triangles cover the screen, an aircraft part of the sky.
+            let (empty, least) = if name.contains("mig") { ([92, 140, 200], 5_000) } else { ([16, 24, 48], 640 * 480) };
+            let drawn = picture.pixels().filter(|pixel| pixel.0 != empty).count();
+            assert!(drawn >= least, "{name}: {drawn} pixels");
+        }
+    }
+}

@@ -1,0 +1,468 @@
+// One Gouraud triangle after another, as a compiler of 1989 would give it: every statement loads its variables from
+// the stack frame, computes with scalar operations and stores the result; the routines for corners, edges and planes
+// are written out at every call. Larger than the 4 KB instruction cache.
+//
+// The arithmetic and its order are those of the native transform and set-up.
+
+// ---- stack frame
+CLIP   = 0        // corner n: x y z w in clip coordinates, single, 16 bytes each
+INV    = 48       // 1 / w, single, 4 bytes each (3, padded to 16)
+SX     = 64       // x in subpixels, integer, of corners 0, 1, 2
+SY     = 76       // y
+SZ     = 88       // depth
+COL    = 100      // colour words of corners 0, 1, 2, clockwise
+DX1    = 112      // corner 0 to 1 and 0 to 2, double
+DY1    = 120
+DX2    = 128
+DY2    = 136
+AREA   = 144      // twice the area, double
+PERPIX = 152      // 16 / twice the area
+TOX    = 160      // corner 0 to the pixel of reference, in pixels
+TOY    = 168
+REFX   = 176      // pixel of reference, double
+REFY   = 184
+TMP    = 192      // temporaries, double
+TMP2   = 200
+TMP3   = 208
+TMP4   = 216
+EDGEA  = 224      // a, b, c of edges 0, 1, 2, integer, 12 bytes each
+V0     = 264      // values of a plane at the corners, double
+V1     = 272
+V2     = 280
+BOX    = 288      // low x, high x, low y, high y
+D1     = 304
+D2     = 312
+SAVE   = 320      // return address
+
+        .macro  edgeword k, n, to
+        ld.l    EDGEA+12*\k+4*\n(r2), \to
+        .endm
+
+// ---- statements
+
+// frame double to = frame double a (op) frame double b
+        .macro  dop op, a, b, to
+        fld.d   \a(r2), f8
+        fld.d   \b(r2), f10
+        \op     f8, f10, f12
+        fst.d   f12, \to(r2)
+        .endm
+
+// frame double = integer in register
+        .macro  todouble r, to
+        xorh    0x8000, \r, r30
+        ixfr    r30, f8
+        orh     0x4330, r0, r30
+        ixfr    r30, f9
+        fld.d   P_BIAS31(r20), f10
+        fsub.dd f8, f10, f12
+        fst.d   f12, \to(r2)
+        .endm
+
+// register = nearest integer, modulo 2^32, of a frame double
+        .macro  nearest from, r
+        fld.d   \from(r2), f8
+        fld.d   P_ROUND(r20), f10
+        fadd.dd f8, f10, f12
+        fxfr    f12, \r
+        .endm
+
+// frame double = frame double rounded to an integer
+        .macro  rounded from, to
+        fld.d   \from(r2), f8
+        fld.d   P_ROUND(r20), f10
+        fadd.dd f8, f10, f12
+        fsub.dd f12, f10, f12
+        fst.d   f12, \to(r2)
+        .endm
+
+// f12 = 1 / f8 to double precision: seed and three Newton steps
+        .macro  reciprocal
+        fld.d   P_TWO(r20), f10
+        frcp.dd f8, f12
+        .rept   3
+        fmul.dd f8, f12, f14
+        fsub.dd f10, f14, f14
+        fmul.dd f12, f14, f12
+        .endr
+        .endm
+
+// ---- one corner
+
+// clip coordinate `to` of corner n: ((c0 x + c1 y) + c2 z) + t with x y z in f16 f17 f18
+        .macro  row n, k
+        fld.l   P_ROWS+16*\k(r20), f8
+        fmul.ss f8, f16, f9
+        fld.l   P_ROWS+16*\k+4(r20), f8
+        fmul.ss f8, f17, f10
+        fadd.ss f9, f10, f9
+        fld.l   P_ROWS+16*\k+8(r20), f8
+        fmul.ss f8, f18, f10
+        fadd.ss f9, f10, f9
+        fld.l   P_ROWS+16*\k+12(r20), f8
+        fadd.ss f9, f8, f9
+        fst.l   f9, CLIP+16*\n+4*\k(r2)
+        .endm
+
+// relative to the eye
+        .macro  relative n, k, to
+        fld.l   16*\n+4*\k(r16), f8
+        fld.l   P_ORIGIN+4*\k(r20), f9
+        fsub.ss f8, f9, \to
+        .endm
+
+// to the clipper unless a <= b
+        .macro  need a, b
+        pfle.ss \a, \b, f0
+        bc      clip
+        .endm
+
+// |coordinate k| <= guard k * w
+        .macro  side n, k
+        fld.l   CLIP+16*\n+12(r2), f8
+        fld.l   P_GUARD+4*\k(r20), f9
+        fmul.ss f9, f8, f9
+        fld.l   CLIP+16*\n+4*\k(r2), f10
+        need    f10, f9
+        fsub.ss f0, f10, f10
+        need    f10, f9
+        .endm
+
+        .macro  inside n
+        side    \n, 0
+        side    \n, 1
+        fld.l   CLIP+16*\n+8(r2), f10
+        fld.l   CLIP+16*\n+12(r2), f8
+        need    f0, f10
+        need    f10, f8
+        fld.l   P_GUARD+8(r20), f9
+        need    f9, f8
+        fld.l   P_GUARD+12(r20), f9
+        need    f8, f9
+        .endm
+
+        .macro  invert n
+        fld.l   CLIP+16*\n+12(r2), f16
+        famov.sd f16, f8
+        reciprocal
+        famov.ds f12, f16
+        fst.l   f16, INV+4*\n(r2)
+        .endm
+
+// screen coordinate k in subpixels
+        .macro  snap n, k, to
+        fld.l   CLIP+16*\n+4*\k(r2), f8
+        fld.l   INV+4*\n(r2), f9
+        fmul.ss f8, f9, f8
+        fld.l   P_SCREEN+4*\k(r20), f9
+        fmul.ss f8, f9, f8
+        fld.l   P_SCREEN+8+4*\k(r20), f9
+        fadd.ss f8, f9, f8
+        fld.l   P_ROUND_S(r20), f9
+        fadd.ss f8, f9, f8
+        fxfr    f8, r30
+        orh     0x4B40, r0, r31             // bits of 1.5 * 2^23
+        subs    r30, r31, r30
+        st.l    r30, \to+4*\n(r2)
+        .endm
+
+// depth: floor(z / w * (far - near) + near + 0.5)
+        .macro  depth n
+        fld.l   CLIP+16*\n+8(r2), f8
+        fld.l   INV+4*\n(r2), f9
+        fmul.ss f8, f9, f8
+        famov.sd f8, f10
+        fld.d   P_DEPTH(r20), f12
+        fmul.dd f10, f12, f10
+        fld.d   P_NEAR(r20), f12
+        fadd.dd f10, f12, f10
+        fld.d   P_HALF(r20), f12
+        fadd.dd f10, f12, f10
+        fld.d   P_TWO52(r20), f12
+        fadd.dd f10, f12, f14               // nearest integer in the low word
+        fsub.dd f14, f12, f12
+        fxfr    f14, r30
+        pfgt.dd f12, f10, f0                // rounded up?
+        bnc     down\@
+        adds    -1, r30, r30
+down\@: st.l    r30, SZ+4*\n(r2)
+        .endm
+
+        .macro  corner n
+        relative \n, 0, f16
+        relative \n, 1, f17
+        relative \n, 2, f18
+        row     \n, 0
+        row     \n, 1
+        row     \n, 2
+        row     \n, 3
+        .endm
+
+        .macro  place n
+        invert  \n
+        snap    \n, 0, SX
+        snap    \n, 1, SY
+        depth   \n
+        ld.l    16*\n+12(r16), r30
+        st.l    r30, COL+4*\n(r2)
+        .endm
+
+        .macro  swapwords at
+        ld.l    \at+4(r2), r30
+        ld.l    \at+8(r2), r31
+        st.l    r31, \at+4(r2)
+        st.l    r30, \at+8(r2)
+        .endm
+
+        .macro  delta at, n, to
+        ld.l    \at+4*\n(r2), r29
+        ld.l    \at(r2), r30
+        subs    r29, r30, r29
+        todouble r29, \to
+        .endm
+
+        .macro  area
+        delta   SX, 1, DX1
+        delta   SY, 1, DY1
+        delta   SX, 2, DX2
+        delta   SY, 2, DY2
+        dop     fmul.dd, DX1, DY2, TMP
+        dop     fmul.dd, DY1, DX2, TMP2
+        dop     fsub.dd, TMP, TMP2, AREA
+        .endm
+
+// ---- one edge, from corner i to corner j, number k: a = -dy, b = dx, c = floor((dx (8 - y) - dy (8 - x) - tie) / 16)
+        .macro  edge k, i, j
+        ld.l    SX+4*\j(r2), r24
+        ld.l    SX+4*\i(r2), r26
+        subs    r24, r26, r24               // dx
+        ld.l    SY+4*\j(r2), r25
+        ld.l    SY+4*\i(r2), r27
+        subs    r25, r27, r25               // dy
+        subs    r0, r25, r30
+        st.l    r30, EDGEA+12*\k(r2)
+        st.l    r24, EDGEA+12*\k+4(r2)
+        subs    8, r26, r26
+        subs    8, r27, r27
+        todouble r24, TMP
+        todouble r27, TMP2
+        dop     fmul.dd, TMP, TMP2, TMP
+        todouble r25, TMP3
+        todouble r26, TMP4
+        dop     fmul.dd, TMP3, TMP4, TMP3
+        dop     fsub.dd, TMP, TMP3, TMP
+        subs    r25, r0, r0                 // a top or a left edge?
+        bc      in\@                      // 0 > dy
+        bte     r0, r25, flat\@
+        br      out\@
+        nop
+flat\@: subs    r24, r0, r0
+        bc      out\@
+        bte     r0, r24, out\@
+in\@:   fld.d P_TIE_IN(r20), f10
+        br      tied\@
+        nop
+out\@:  fld.d   P_TIE_OUT(r20), f10
+tied\@: fld.d   TMP(r2), f8
+        fadd.dd f8, f10, f8
+        fld.d   P_SIXTEENTH(r20), f10
+        fmul.dd f8, f10, f8
+        fst.d   f8, TMP(r2)
+        nearest TMP, r30
+        st.l    r30, EDGEA+12*\k+8(r2)
+        .endm
+
+// ---- bounding box of three frame integers
+        .macro  extent at, to
+        ld.l    \at(r2), r24
+        ld.l    \at(r2), r25
+        ld.l    \at+4(r2), r26
+        subs    r26, r24, r0
+        bnc     a\@
+        mov     r26, r24
+a\@:    subs    r25, r26, r0
+        bnc     b\@
+        mov     r26, r25
+b\@:    ld.l    \at+8(r2), r26
+        subs    r26, r24, r0
+        bnc     c\@
+        mov     r26, r24
+c\@:    subs    r25, r26, r0
+        bnc     d\@
+        mov     r26, r25
+d\@:    st.l    r24, \to(r2)
+        st.l    r25, \to+4(r2)
+        .endm
+
+// pixel of reference along one axis: middle of the box within the picture (last subpixel `most`)
+        .macro  clamped r, most
+        subs    r0, \r, r0
+        bc      low\@                       // r > 0
+        mov     r0, \r
+low\@:  mov     \most, r30
+        subs    r30, \r, r0
+        bnc     high\@
+        mov     r30, \r
+high\@: nop
+        .endm
+
+        .macro  reference box, at, most, to, distance
+        ld.l    \box(r2), r24
+        ld.l    \box+4(r2), r25
+        clamped r24, \most
+        clamped r25, \most
+        adds    r24, r25, r24
+        shra    5, r24, r24
+        todouble r24, \to
+        shl     4, r24, r24
+        adds    8, r24, r24
+        ld.l    \at(r2), r25
+        subs    r24, r25, r24
+        todouble r24, TMP
+        fld.d   TMP(r2), f8
+        fld.d   P_SIXTEENTH(r20), f10
+        fmul.dd f8, f10, f12
+        fst.d   f12, \distance(r2)
+        .endm
+
+// ---- planes
+
+        .macro  depthvalue n, to
+        ld.l    SZ+4*\n(r2), r30
+        ixfr    r30, f8
+        orh     0x4330, r0, r30
+        ixfr    r30, f9
+        fld.d   P_TWO52(r20), f10
+        fsub.dd f8, f10, f12
+        fst.d   f12, \to(r2)
+        .endm
+
+        .macro  colourvalue n, k, to
+        ld.l    COL+4*\n(r2), r29
+        shr     8*\k, r29, r29
+        and     255, r29, r29
+        shl     12, r29, r29
+        adds    2048, r29, r29
+        todouble r29, \to
+        .endm
+
+// coefficients of the plane through V0 V1 V2 to the words at `to` of the command
+        .macro  plane to
+        dop     fsub.dd, V1, V0, D1
+        dop     fsub.dd, V2, V0, D2
+        dop     fmul.dd, D1, DY2, TMP
+        dop     fmul.dd, D2, DY1, TMP2
+        dop     fsub.dd, TMP, TMP2, TMP
+        dop     fmul.dd, TMP, PERPIX, TMP   // slope along x
+        dop     fmul.dd, D2, DX1, TMP2
+        dop     fmul.dd, D1, DX2, TMP3
+        dop     fsub.dd, TMP2, TMP3, TMP2
+        dop     fmul.dd, TMP2, PERPIX, TMP2 // slope along y
+        nearest TMP, r30
+        st.l    r30, \to(r18)
+        nearest TMP2, r30
+        st.l    r30, \to+4(r18)
+        dop     fmul.dd, TMP, TOX, TMP3
+        dop     fadd.dd, V0, TMP3, TMP3
+        dop     fmul.dd, TMP2, TOY, TMP4
+        dop     fadd.dd, TMP3, TMP4, TMP3   // value at the pixel of reference
+        rounded TMP, TMP
+        rounded TMP2, TMP2
+        dop     fmul.dd, TMP, REFX, TMP
+        dop     fmul.dd, TMP2, REFY, TMP2
+        dop     fadd.dd, TMP, TMP2, TMP
+        nearest TMP3, r28
+        nearest TMP, r29
+        subs    r28, r29, r30
+        st.l    r30, \to+8(r18)
+        .endm
+
+        .macro  colourplane k, to
+        colourvalue 0, \k, V0
+        colourvalue 1, \k, V1
+        colourvalue 2, \k, V2
+        plane   \to
+        .endm
+
+        .macro  head n, to
+        ld.l    P_HEADS+4*\n(r20), r30
+        st.l    r30, \to(r18)
+        .endm
+
+        .macro  words k, to
+        ld.l    EDGEA+12*\k(r2), r30
+        st.l    r30, \to(r18)
+        ld.l    EDGEA+12*\k+4(r2), r30
+        st.l    r30, \to+4(r18)
+        ld.l    EDGEA+12*\k+8(r2), r30
+        st.l    r30, \to+8(r18)
+        .endm
+
+// ---- a triangle
+        .align  32
+start:  st.l    r1, SAVE(r2)
+next:   corner  0
+        corner  1
+        corner  2
+        inside  0
+        inside  1
+        inside  2
+        place   0
+        place   1
+        place   2
+        area
+        fld.d   AREA(r2), f8
+        pfeq.dd f8, f0, f0
+        bc      done                        // nothing to draw
+        pfgt.dd f0, f8, f0
+        bnc     oriented
+        swapwords SX                        // make it clockwise
+        swapwords SY
+        swapwords SZ
+        swapwords COL
+        area
+oriented: edge  0, 0, 1
+        edge    1, 1, 2
+        edge    2, 2, 0
+        extent  SX, BOX
+        extent  SY, BOX+8
+        call    bins
+        nop
+        bte     r0, r22, done               // no region
+        head    0, 0
+        head    1, 4
+        words   0, 8
+        head    1, 20
+        words   1, 24
+        head    1, 36
+        words   2, 40
+        head    2, 52
+        head    3, 68
+        head    4, 72
+        head    5, 88
+        head    6, 104
+        reference BOX, SX, 10239, REFX, TOX
+        reference BOX+8, SY, 7679, REFY, TOY
+        fld.d   AREA(r2), f8
+        reciprocal
+        fld.d   P_SIXTEEN(r20), f8
+        fmul.dd f8, f12, f12
+        fst.d   f12, PERPIX(r2)
+        depthvalue 0, V0
+        depthvalue 1, V1
+        depthvalue 2, V2
+        plane   56
+        colourplane 0, 76
+        colourplane 1, 92
+        colourplane 2, 108
+        adds    COMMAND_BYTES, r18, r18
+done:   adds    TRIANGLE_BYTES, r16, r16
+        adds    -1, r17, r17
+        btne    r0, r17, next
+        ld.l    SAVE(r2), r1
+        nop
+        bri     r1
+        nop
+clip:   st.l    r16, 0(r21)                 // not wholly inside the guard band
+        br      done
+        adds    4, r21, r21

@@ -1,0 +1,89 @@
+//! Hard cases: nothing holds worse than docs/numerics.md says, and the file is what the code gives.
+
+mod support;
+
+use std::path::Path;
+use std::sync::OnceLock;
+use support::cases::Case;
+use support::measure::Row;
+use support::report::{self, Measured};
+
+/// All cases, measured once for all tests.
+fn measured() -> &'static Measured {
+    static MEASURED: OnceLock<Measured> = OnceLock::new();
+    MEASURED.get_or_init(Measured::all)
+}
+
+fn rows() -> &'static [(Case, Row)] {
+    &measured().triangles
+}
+
+fn row(name: &str) -> &'static Row {
+    let found = rows().iter().find(|(case, _)| case.name == name);
+    &found.unwrap_or_else(|| panic!("no case named {name}")).1
+}
+
+#[test]
+fn the_file_is_up_to_date() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/numerics.md");
+    let found = std::fs::read_to_string(path).expect("docs/numerics.md exists");
+    let expected = report::text(measured());
+    for (n, (found, expected)) in found.lines().zip(expected.lines()).enumerate() {
+        assert_eq!(found, expected, "line {}; write it again with the example `numerics`", n + 1);
+    }
+    assert_eq!(found.lines().count(), expected.lines().count());
+}
+
+#[test]
+fn tilings_have_no_hole_and_no_pixel_twice() {
+    let tilings = || rows().iter().filter(|(case, _)| case.tiling);
+    assert_eq!(tilings().count(), 3);
+    for (case, row) in tilings() {
+        assert_eq!((row.holes, row.overlaps), (Some(0), Some(0)), "{}", case.name);
+    }
+}
+
+#[test]
+fn corners_on_pixel_centres_and_region_borders_give_every_pixel_right() {
+    for name in ["corners on pixel centres", "corners on region borders"] {
+        assert_eq!(row(name).wrong, 0, "{name}");
+    }
+}
+
+#[test]
+fn models_far_from_the_origin_are_as_good_as_near_ones() {
+    // The grid's own error, and a few pixels for 32-bit vertices.
+    let far = row("10^6 from the origin");
+    assert!(far.wrong <= far.grids[2] + 10, "{} {}", far.wrong, far.grids[2]);
+}
+
+#[test]
+fn planes_add_less_than_a_unit_and_a_half_of_depth_and_a_quarter_of_colour() {
+    for (case, row) in rows().iter().filter(|(_, row)| row.stats.flattened_planes == 0) {
+        // Half a unit is the rounding of the pixel; 282/256 and 282/4096 are the set-up's.
+        assert!(row.depth_plane <= 0.5 + 282.0 / 256.0, "{} {}", case.name, row.depth_plane);
+        assert!(row.colour_plane <= 0.5 + 282.0 / 4096.0, "{} {}", case.name, row.colour_plane);
+    }
+}
+
+#[test]
+fn planes_are_flattened_only_where_a_triangle_is_thinner_than_a_subpixel_and_then_counted() {
+    for (case, row) in rows() {
+        let flattened = if case.name == "half a subpixel thick, near to far" { 20 } else { 0 };
+        assert_eq!(row.stats.flattened_planes, flattened, "{}", case.name);
+    }
+}
+
+#[test]
+fn every_sphere_that_is_drawn_is_exact_to_the_pixel() {
+    for (case, row) in &measured().spheres {
+        assert_eq!(row.wrong, 0, "{}", case.name);
+    }
+}
+
+#[test]
+fn surfaces_three_units_of_depth_apart_never_fight() {
+    for fight in measured().fights.iter().filter(|f| f.name.starts_with("parallel") && f.apart > 3.0) {
+        assert_eq!(fight.wrong, 0, "{}", fight.name);
+    }
+}

@@ -1,0 +1,120 @@
+//! Which pixels a sphere can touch.
+//!
+//! As for triangles, floating point only decides which pixels are looked at, with a margin.
+
+use pxpl5_wire::Quadratic;
+use std::ops::Range;
+
+const SIZE: usize = 128;
+const MARGIN: f64 = 1e-3;
+/// Share of the terms of a discriminant that covers their rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Where a quadratic over the array's own columns and rows can be positive.
+pub(super) struct Ellipse {
+    rows: Range<usize>,
+    /// `None` where rows are not limited.
+    quadratic: Option<Quadratic>,
+}
+
+impl Ellipse {
+    pub(super) fn of(q: &Quadratic) -> Self {
+        if q.xx >= 0 || !stays_in_48_bits(q) {
+            return Self { rows: 0..SIZE, quadratic: None };
+        }
+        let [xx, xy, yy, x, y, one] = [q.xx, q.xy, q.yy, q.x, q.y, q.one].map(|c| c as f64);
+        // A row is cut where the discriminant in x is positive, which is quadratic in y.
+        let rows = positive(xy * xy - 4.0 * xx * yy, 2.0 * xy * x - 4.0 * xx * y, x * x - 4.0 * xx * one);
+        Self { rows, quadratic: Some(*q) }
+    }
+
+    pub(super) fn rows(&self) -> Range<usize> {
+        self.rows.clone()
+    }
+
+    /// Columns of row `row` that can be inside.
+    #[inline(always)]
+    pub(super) fn columns(&self, row: usize) -> Range<usize> {
+        let Some(q) = &self.quadratic else { return 0..SIZE };
+        let (b, c) = along_row(q, row);
+        positive(q.xx as f64, b as f64, c as f64)
+    }
+}
+
+/// Coefficients of x and one in a row; those of x squared are the same in all.
+#[inline(always)]
+pub(super) const fn along_row(q: &Quadratic, row: usize) -> (i64, i64) {
+    let y = row as i64;
+    let x = q.xy.wrapping_mul(y).wrapping_add(q.x);
+    let one = q.yy.wrapping_mul(y).wrapping_add(q.y).wrapping_mul(y).wrapping_add(q.one);
+    (x, one)
+}
+
+fn stays_in_48_bits(q: &Quadratic) -> bool {
+    let [xx, xy, yy, x, y, one] = [q.xx, q.xy, q.yy, q.x, q.y, q.one].map(|c| c.unsigned_abs() as f64);
+    let last = (SIZE - 1) as f64;
+    (xx + xy + yy) * last * last + (x + y) * last + one < (1_u64 << 46) as f64
+}
+
+/// Integers of the array between the zeros of `a t^2 + b t + c`, with a margin; all unless `a < 0`.
+#[inline(always)]
+fn positive(a: f64, b: f64, c: f64) -> Range<usize> {
+    if a >= 0.0 {
+        return 0..SIZE;
+    }
+    let slack = ROUNDING * (b * b + (4.0 * a * c).abs());
+    let discriminant = b * b - 4.0 * a * c + slack;
+    if discriminant < 0.0 {
+        return 0..0;
+    }
+    let (middle, half) = (b / (-2.0 * a), discriminant.sqrt() / (-2.0 * a));
+    let low = (middle - half - MARGIN).ceil().max(0.0) as usize;
+    let high = (middle + half + MARGIN + 1.0).clamp(0.0, SIZE as f64) as usize;
+    low..high.max(low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::conformance::Random;
+
+    fn random_ellipse(random: &mut Random) -> Quadratic {
+        let mut between = |low: i64, high: i64| low + random.below((high - low) as u64) as i64;
+        let (x, y, r) = (between(-300, 300), between(-300, 300), between(1, 400));
+        let scale = 1 << between(1, 20);
+        let (tilt, flat) = (between(-scale, scale), between(scale / 2 + 1, 2 * scale));
+        Quadratic {
+            xx: -scale,
+            xy: tilt,
+            yy: -flat,
+            x: 2 * scale * x - tilt * y,
+            y: 2 * flat * y - tilt * x,
+            one: scale * r * r - scale * x * x - flat * y * y + tilt * x * y,
+        }
+    }
+
+    #[test]
+    fn no_pixel_inside_is_outside_of_the_bounds() {
+        let mut random = Random::new(9);
+        let mut inside = 0;
+        for _ in 0..1000 {
+            let q = random_ellipse(&mut random);
+            let ellipse = Ellipse::of(&q);
+            for (x, y) in (0..128).flat_map(|y| (0..128).map(move |x| (x, y))) {
+                if q.at(x, y) >= 0 {
+                    inside += 1;
+                    assert!(ellipse.rows().contains(&(y as usize)), "{q:?} {x} {y}");
+                    assert!(ellipse.columns(y as usize).contains(&(x as usize)), "{q:?} {x} {y}");
+                }
+            }
+        }
+        assert!(inside > 100_000, "{inside}");
+    }
+
+    #[test]
+    fn a_circle_is_bounded_by_its_square() {
+        let q = Quadratic { xx: -1, xy: 0, yy: -1, x: 40, y: 60, one: 25 - 400 - 900 };
+        let ellipse = Ellipse::of(&q);
+        assert_eq!((ellipse.rows(), ellipse.columns(30)), (25..36, 15..26));
+    }
+}

@@ -1,0 +1,156 @@
+//! Spheres and shading as whole commands: long enough to decode their words with care.
+
+use super::Lanes;
+use super::shade::ShadeAll;
+use super::sphere::{DrawSphere, GouraudSphere, PhongOfSphere};
+use super::whole::{ContextColumns, starts_anew};
+use crate::array::Executed;
+use crate::command::{Command, CommandKind, PhongSphere, Shade, ShadeFields, Sphere, SphereScratch};
+use pxpl5_wire::{Linear, Quadratic, Word};
+
+/// What both kinds of sphere share.
+struct Body {
+    silhouette: Quadratic,
+    root_shift: u8,
+    depth: Linear,
+    depth_shift: u8,
+}
+
+/// Columns and shifts of a sphere in this layout.
+struct SpherePlace {
+    root: usize,
+    temporary: usize,
+    short: u8,
+    root_bits: u8,
+}
+
+impl Lanes {
+    /// Executes a sphere or shading at the start of `words`, if it is one of this layout; returns its words.
+    pub(super) fn large_command(
+        &mut self,
+        kind: CommandKind,
+        words: &[Word],
+        columns: ContextColumns,
+        executed: &mut Executed,
+    ) -> Option<usize> {
+        let (command, used) = Command::decode(words, 0, &self.layout).ok()?;
+        let keep = !starts_anew(words.get(used));
+        match command {
+            Command::Sphere(sphere) => self.sphere(&sphere, columns, keep)?,
+            Command::PhongSphere(sphere) => self.phong_sphere(&sphere, columns, keep)?,
+            Command::Shade(shade) => self.shade(&shade, columns, keep)?,
+            _ => return None,
+        }
+        let cost = self.templates.cost(kind)?;
+        executed.instructions += cost.instructions;
+        executed.clocks += cost.clocks;
+        Some(used)
+    }
+
+    /// `None` where depth and radicand do not have the same bits, so that they leave a mixture.
+    fn sphere_place(&self) -> Option<SpherePlace> {
+        let scratch = SphereScratch::of(&self.layout).ok()?;
+        let root_bits = scratch.root.width;
+        let same = scratch.z.width == 2 * root_bits;
+        let place = SpherePlace {
+            root: self.column(scratch.root)?,
+            temporary: self.column(scratch.z)?,
+            short: scratch.short(),
+            root_bits,
+        };
+        same.then_some(place)
+    }
+
+    fn sphere(&mut self, sphere: &Sphere, columns: ContextColumns, keep: bool) -> Option<()> {
+        let place = self.sphere_place()?;
+        let &Sphere { silhouette, root_shift, depth, depth_shift, .. } = sphere;
+        let body = self.sphere_body(Body { silhouette, root_shift, depth, depth_shift }, &place);
+        let [red, green, blue] = sphere.colour;
+        let local = |e: &Linear| self.controller.localise(e);
+        let components = [local(&red), local(&green), local(&blue)];
+        self.controller.hold(blue);
+        let indices = [columns.z, columns.colour, place.root, place.temporary];
+        let [z, colour, root, temporary] = self.columns.many_mut(indices)?;
+        if keep {
+            self.enable.fill(0);
+        }
+        let factors = sphere.root_factor;
+        self.vectors.run(DrawSphere {
+            silhouette: body.silhouette,
+            radicand_shift: body.root_shift,
+            root_bits: place.root_bits,
+            depth: body.depth,
+            depth_shift: body.depth_shift,
+            z_shift: self.layout.z_shift(),
+            z,
+            root,
+            temporary,
+            paint: GouraudSphere { components, factors, root_bits: place.root_bits, colour },
+            enable: keep.then_some(&mut *self.enable),
+        });
+        Some(())
+    }
+
+    fn phong_sphere(&mut self, sphere: &PhongSphere, columns: ContextColumns, keep: bool) -> Option<()> {
+        let place = self.sphere_place()?;
+        let normal = |i| self.column(self.layout.normal(i)?);
+        let normals = [normal(0)?, normal(1)?, normal(2)?];
+        let &PhongSphere { silhouette, root_shift, depth, depth_shift, .. } = sphere;
+        let body = self.sphere_body(Body { silhouette, root_shift, depth, depth_shift }, &place);
+        let components = [0, 1].map(|i| self.controller.localise(&sphere.normal[i]));
+        self.controller.hold(sphere.normal[1]);
+        let [nx, ny, nz] = normals;
+        let indices = [columns.z, columns.colour, place.root, place.temporary, nx, ny, nz];
+        let [z, colour, root, temporary, nx, ny, nz] = self.columns.many_mut(indices)?;
+        if keep {
+            self.enable.fill(0);
+        }
+        let constant = sphere.colour & 0xff_ffff;
+        let normal = [nx, ny, nz];
+        self.vectors.run(DrawSphere {
+            silhouette: body.silhouette,
+            radicand_shift: body.root_shift,
+            root_bits: place.root_bits,
+            depth: body.depth,
+            depth_shift: body.depth_shift,
+            z_shift: self.layout.z_shift(),
+            z,
+            root,
+            temporary,
+            paint: PhongOfSphere { components, root_bits: place.root_bits, normal, constant, colour },
+            enable: keep.then_some(&mut *self.enable),
+        });
+        Some(())
+    }
+
+    /// Holds the coefficients and moves the sphere to the region, with the shifts of this layout.
+    fn sphere_body(&mut self, body: Body, place: &SpherePlace) -> Body {
+        self.controller.hold_quadratic(body.silhouette);
+        Body {
+            silhouette: self.controller.localise_quadratic(),
+            root_shift: body.root_shift + 2 * place.short,
+            depth: self.controller.localise(&body.depth),
+            depth_shift: body.depth_shift + place.short,
+        }
+    }
+
+    fn shade(&mut self, shade: &Shade, columns: ContextColumns, keep: bool) -> Option<()> {
+        let f = ShadeFields::of(&self.layout).ok()?;
+        let normal = |i| self.column(self.layout.normal(i)?);
+        let mut indices = [columns.z, normal(0)?, normal(1)?, normal(2)?, columns.colour, 0, 0, 0, 0, 0, 0];
+        let temporaries = [f.a, f.b, f.c, f.root, f.diffuse, f.specular];
+        for (index, field) in indices[5..].iter_mut().zip(temporaries) {
+            *index = self.column(field)?;
+        }
+        let [z, nx, ny, nz, results @ ..] = self.columns.many_mut(indices)?;
+        self.vectors.run(ShadeAll {
+            shade: *shade,
+            far: u32::MAX >> (32 - self.layout.plan().z.width),
+            z,
+            normal: [nx, ny, nz],
+            results,
+            enable: keep.then_some(&mut *self.enable),
+        });
+        Some(())
+    }
+}

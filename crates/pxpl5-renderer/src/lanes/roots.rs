@@ -1,0 +1,53 @@
+//! Integer roots and quotients by way of correctly rounded floating point, corrected to the exact integer.
+//!
+//! IEEE 754 rounds square roots and quotients correctly, so they are the same on every host; all operands here are
+//! exact in 24 bits.
+
+/// The integer nearest to a number from 0 to 2^22. A conversion with `as` would check for overflow, lane by lane.
+#[inline(always)]
+fn nearest(v: f32) -> u32 {
+    // Adding 2^23 leaves no fraction bits: the integer stands in the mantissa.
+    (v + 8_388_608.0).to_bits() & 0x7f_ffff
+}
+
+/// Floor of the square root of a number of 24 bits.
+#[inline(always)]
+pub(super) fn square_root_24(v: u32) -> u32 {
+    let root = nearest((v as i32 as f32).sqrt());
+    root - u32::from(root * root > v)
+}
+
+/// Quotient of at most 10 bits, and the remainder: a of 23 bits, b of 12; the quotient by 0 is all ones.
+#[inline(always)]
+pub(super) fn divide_10(a: u32, b: u32) -> (u32, u32) {
+    let ratio = a as i32 as f32 / b.max(1) as i32 as f32;
+    let quotient = nearest(if ratio < 1024.0 { ratio } else { 1024.0 });
+    let quotient = quotient - u32::from(quotient * b > a);
+    let quotient = if b == 0 { 1023 } else { quotient.min(1023) };
+    (quotient, a - quotient * b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_root_of_24_bits_is_the_floor() {
+        for v in 0..1 << 24 {
+            assert_eq!(square_root_24(v), v.isqrt());
+        }
+    }
+
+    #[test]
+    fn quotients_next_to_every_multiple_are_exact() {
+        for b in 0..1_u32 << 12 {
+            for q in (0..1100_u32).step_by(7) {
+                for a in [(q * b).saturating_sub(1), q * b, q * b + 1] {
+                    let expected = a.checked_div(b).unwrap_or(1023).min(1023);
+                    assert_eq!(divide_10(a, b), (expected, a - expected * b), "{a} / {b}");
+                }
+            }
+        }
+        assert_eq!(divide_10((1 << 23) - 1, 1), (1023, (1 << 23) - 1024));
+    }
+}

@@ -1,0 +1,173 @@
+//! Spheres by values, row by row.
+
+use super::columns::Values;
+use super::ellipse::{Ellipse, along_row};
+use super::roots::square_root_24;
+use crate::array::PIXELS;
+use crate::isa::QUADRATIC_BITS;
+use crate::simd::{Kernel, Vector};
+use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
+use pxpl5_wire::{Linear, Quadratic};
+
+const WIDTH: usize = 128;
+
+type Row = [u32; WIDTH];
+
+/// A sphere over the array's own columns and rows.
+pub(super) struct DrawSphere<'a, P> {
+    pub(super) silhouette: Quadratic,
+    pub(super) radicand_shift: u8,
+    pub(super) root_bits: u8,
+    pub(super) depth: Linear,
+    pub(super) depth_shift: u8,
+    pub(super) z_shift: u8,
+    pub(super) z: &'a mut Values,
+    /// Temporaries of the program, which keep what it leaves there.
+    pub(super) root: &'a mut Values,
+    pub(super) temporary: &'a mut Values,
+    pub(super) paint: P,
+    /// Where somebody looks at Enable afterwards; all zero on entry.
+    pub(super) enable: Option<&'a mut [u8; PIXELS]>,
+}
+
+/// What a sphere stores in the pixels that pass.
+pub(super) trait PaintSphere {
+    /// Stores columns `left ..` of row `y` where `pass` is all ones. `temporary` holds the new depths and takes what the
+    /// program leaves in their place.
+    fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], temporary: &mut [u32]);
+}
+
+impl<P: PaintSphere> Kernel for DrawSphere<'_, P> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(mut self) {
+        let ellipse = Ellipse::of(&self.silhouette);
+        for y in ellipse.rows() {
+            let columns = ellipse.columns(y);
+            if !columns.is_empty() {
+                self.row(y, columns.start, columns.len());
+            }
+        }
+    }
+}
+
+impl<P: PaintSphere> DrawSphere<'_, P> {
+    #[inline(always)]
+    fn row(&mut self, y: usize, left: usize, n: usize) {
+        let (mut inside, mut roots): (Row, Row) = ([0; WIDTH], [0; WIDTH]);
+        let (inside, roots) = (&mut inside[..n], &mut roots[..n]);
+        self.roots(y, left, inside, roots);
+        let at = y * WIDTH + left;
+        let (mut new, mut pass): (Row, Row) = ([0; WIDTH], [0; WIDTH]);
+        let (new, pass) = (&mut new[..n], &mut pass[..n]);
+        let first = self.depth.at(left as i32, y as i32);
+        let z = &mut self.z.0[at..at + n];
+        for i in 0..n {
+            let depth = first.wrapping_add(self.depth.a.wrapping_mul(i as i32)) as u32;
+            new[i] = depth.wrapping_sub(roots[i] << self.depth_shift) >> self.z_shift;
+            pass[i] = inside[i] & 0_u32.wrapping_sub(u32::from(new[i] < z[i]));
+            z[i] = select(pass[i], new[i], z[i]);
+        }
+        self.paint.store(left, y, roots, pass, new);
+        blend(&mut self.root.0[at..at + n], roots, inside);
+        blend(&mut self.temporary.0[at..at + n], new, inside);
+        if let Some(enable) = &mut self.enable {
+            for (enable, pass) in enable[at..at + n].iter_mut().zip(pass.iter()) {
+                *enable = *pass as u8;
+            }
+        }
+    }
+
+    /// Where the silhouette is positive, and the root of its useful bits.
+    #[inline(always)]
+    fn roots(&self, y: usize, left: usize, inside: &mut [u32], roots: &mut [u32]) {
+        let (x, one) = along_row(&self.silhouette, y);
+        let mask = (1_u32 << (2 * self.root_bits)) - 1;
+        for (i, (inside, root)) in inside.iter_mut().zip(roots).enumerate() {
+            let at = (left + i) as i64;
+            let q = self.silhouette.xx.wrapping_mul(at).wrapping_add(x).wrapping_mul(at).wrapping_add(one);
+            *inside = !((q << (64 - QUADRATIC_BITS) >> 63) as u32);
+            *root = square_root_24((q >> self.radicand_shift) as u32 & mask);
+        }
+    }
+}
+
+#[inline(always)]
+const fn select(mask: u32, new: u32, old: u32) -> u32 {
+    new & mask | old & !mask
+}
+
+#[inline(always)]
+fn blend(old: &mut [u32], new: &[u32], mask: &[u32]) {
+    for ((old, new), mask) in old.iter_mut().zip(new).zip(mask) {
+        *old = select(*mask, *new, *old);
+    }
+}
+
+/// Colour from a plane and the root.
+pub(super) struct GouraudSphere<'a> {
+    pub(super) components: [Linear; 3],
+    pub(super) factors: [i16; 3],
+    pub(super) root_bits: u8,
+    pub(super) colour: &'a mut Values,
+}
+
+impl PaintSphere for GouraudSphere<'_> {
+    #[inline(always)]
+    fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], temporary: &mut [u32]) {
+        let n = pass.len();
+        let mut rgb: Row = [0; WIDTH];
+        let mut product: Row = [0; WIDTH];
+        for (linear, factor) in self.components.iter().zip(self.factors) {
+            let first = linear.at(left as i32, y as i32);
+            for i in 0..n {
+                let upper = (roots[i] >> (self.root_bits - 8)) as i32;
+                let low = upper * i32::from(factor);
+                let plane = first.wrapping_add(linear.a.wrapping_mul(i as i32)) >> COLOUR_FRACTION_BITS;
+                let sum = (low >> 8).wrapping_add(plane) << 22 >> 22;
+                rgb[i] = rgb[i] << 8 | sum.clamp(0, 255) as u32;
+                product[i] = (sum << 8 | low & 255) as u32 & 0x3_ffff;
+            }
+        }
+        let at = y * WIDTH + left;
+        blend(&mut self.colour.0[at..at + n], &rgb[..n], pass);
+        for i in 0..n {
+            let after = temporary[i] & !0x3_ffff | product[i];
+            temporary[i] = select(pass[i], after, temporary[i]);
+        }
+    }
+}
+
+/// Normals from two planes and the root, and the object's colour.
+pub(super) struct PhongOfSphere<'a> {
+    pub(super) components: [Linear; 2],
+    pub(super) root_bits: u8,
+    pub(super) normal: [&'a mut Values; 3],
+    pub(super) constant: u32,
+    pub(super) colour: &'a mut Values,
+}
+
+impl PaintSphere for PhongOfSphere<'_> {
+    #[inline(always)]
+    fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], _: &mut [u32]) {
+        let at = y * WIDTH + left;
+        let n = pass.len();
+        for (linear, column) in self.components.iter().zip(self.normal.iter_mut()) {
+            let first = linear.at(left as i32, y as i32);
+            let old = &mut column.0[at..at + n];
+            for i in 0..n {
+                let value = first.wrapping_add(linear.a.wrapping_mul(i as i32)) as u32;
+                let bits = value >> NORMAL_FRACTION_BITS & ((1 << NORMAL_BITS) - 1);
+                old[i] = select(pass[i], bits, old[i]);
+            }
+        }
+        let (z, colour) = (&mut self.normal[2].0[at..at + n], &mut self.colour.0[at..at + n]);
+        for i in 0..n {
+            z[i] = select(pass[i], roots[i] >> (self.root_bits - 10), z[i]);
+        }
+        for i in 0..n {
+            colour[i] = select(pass[i], self.constant, colour[i]);
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Vectors of x86-64.
+//!
+//! SAFETY of every block: values of these types are made only in [`super::avx2`] and [`super::avx512`], where the
+//! features are present; loads and stores go through slices whose length has been checked.
+
+use super::Vector;
+use std::arch::x86_64::*;
+
+/// Eight lanes.
+#[derive(Clone, Copy)]
+pub(super) struct Avx2(__m256i);
+
+impl Vector for Avx2 {
+    const LANES: usize = 8;
+    type Mask = __m256i;
+
+    #[inline(always)]
+    fn splat(value: i32) -> Self {
+        Self(unsafe { _mm256_set1_epi32(value) })
+    }
+
+    #[inline(always)]
+    fn ramp(first: i32, step: i32) -> Self {
+        unsafe {
+            let lanes = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+            let steps = _mm256_mullo_epi32(lanes, _mm256_set1_epi32(step));
+            Self(_mm256_add_epi32(_mm256_set1_epi32(first), steps))
+        }
+    }
+
+    #[inline(always)]
+    fn load(from: &[u32]) -> Self {
+        let from: &[u32; 8] = from.first_chunk().expect("a whole vector");
+        Self(unsafe { _mm256_loadu_si256(from.as_ptr().cast()) })
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(unsafe { _mm256_add_epi32(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        Self(unsafe { _mm256_or_si256(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        Self(unsafe { _mm256_and_si256(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn shift_right(self, by: u32) -> Self {
+        Self(unsafe { _mm256_srl_epi32(self.0, _mm_cvtsi32_si128(by as i32)) })
+    }
+
+    #[inline(always)]
+    fn shift_left(self, by: u32) -> Self {
+        Self(unsafe { _mm256_sll_epi32(self.0, _mm_cvtsi32_si128(by as i32)) })
+    }
+
+    #[inline(always)]
+    fn passes(self, new: Self, old: Self) -> __m256i {
+        unsafe {
+            let nearer = _mm256_cmpgt_epi32(old.0, new.0);
+            _mm256_andnot_si256(_mm256_srai_epi32::<31>(self.0), nearer)
+        }
+    }
+
+    #[inline(always)]
+    fn store(self, mask: __m256i, old: Self, to: &mut [u32]) {
+        let to: &mut [u32; 8] = to.first_chunk_mut().expect("a whole vector");
+        unsafe {
+            let blended = _mm256_blendv_epi8(old.0, self.0, mask);
+            _mm256_storeu_si256(to.as_mut_ptr().cast(), blended);
+        }
+    }
+
+    #[inline(always)]
+    fn store_mask(mask: __m256i, to: &mut [u8]) {
+        let bits = unsafe { _mm256_movemask_ps(_mm256_castsi256_ps(mask)) };
+        for (k, to) in to[..8].iter_mut().enumerate() {
+            *to = 0_u8.wrapping_sub((bits >> k & 1) as u8);
+        }
+    }
+}
+
+/// Sixteen lanes.
+#[derive(Clone, Copy)]
+pub(super) struct Avx512(__m512i);
+
+impl Vector for Avx512 {
+    const LANES: usize = 16;
+    type Mask = __mmask16;
+
+    #[inline(always)]
+    fn splat(value: i32) -> Self {
+        Self(unsafe { _mm512_set1_epi32(value) })
+    }
+
+    #[inline(always)]
+    fn ramp(first: i32, step: i32) -> Self {
+        unsafe {
+            let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+            let steps = _mm512_mullo_epi32(lanes, _mm512_set1_epi32(step));
+            Self(_mm512_add_epi32(_mm512_set1_epi32(first), steps))
+        }
+    }
+
+    #[inline(always)]
+    fn load(from: &[u32]) -> Self {
+        let from: &[u32; 16] = from.first_chunk().expect("a whole vector");
+        Self(unsafe { _mm512_loadu_si512(from.as_ptr().cast()) })
+    }
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(unsafe { _mm512_add_epi32(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        Self(unsafe { _mm512_or_si512(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        Self(unsafe { _mm512_and_si512(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn shift_right(self, by: u32) -> Self {
+        Self(unsafe { _mm512_srl_epi32(self.0, _mm_cvtsi32_si128(by as i32)) })
+    }
+
+    #[inline(always)]
+    fn shift_left(self, by: u32) -> Self {
+        Self(unsafe { _mm512_sll_epi32(self.0, _mm_cvtsi32_si128(by as i32)) })
+    }
+
+    #[inline(always)]
+    fn passes(self, new: Self, old: Self) -> __mmask16 {
+        unsafe {
+            let inside = _mm512_cmpge_epi32_mask(self.0, _mm512_setzero_si512());
+            _mm512_mask_cmplt_epi32_mask(inside, new.0, old.0)
+        }
+    }
+
+    #[inline(always)]
+    fn store(self, mask: __mmask16, old: Self, to: &mut [u32]) {
+        let to: &mut [u32; 16] = to.first_chunk_mut().expect("a whole vector");
+        unsafe {
+            let blended = _mm512_mask_blend_epi32(mask, old.0, self.0);
+            _mm512_storeu_si512(to.as_mut_ptr().cast(), blended);
+        }
+    }
+
+    #[inline(always)]
+    fn store_mask(mask: __mmask16, to: &mut [u8]) {
+        let to: &mut [u8; 16] = to.first_chunk_mut().expect("a whole vector");
+        unsafe { _mm_storeu_si128(to.as_mut_ptr().cast(), _mm_movm_epi8(mask)) };
+    }
+}

@@ -1,0 +1,181 @@
+//! Experiments as text: TOML files, single settings `path=value`, and the checked [`Plan`] that they make together.
+//!
+//! ```
+//! use pxpl5::ExperimentFile;
+//!
+//! let text = r#"
+//!     pipeline = "slats"
+//!     scene = "mig"
+//!     triangles = 110
+//!     fields = 20
+//!     [machine]
+//!     preset = "slats"
+//!     gp.triangle_ns = 30_000
+//! "#;
+//! let mut file = ExperimentFile::parse(text, "example.toml")?;
+//! file.set_text("copy=whole", "--set")?;
+//! let plan = file.resolve()?;
+//! assert_eq!(plan.machine.gp.triangle_ns, 30_000);
+//! let outcome = plan.experiment(plan.load_scene()?).run()?;
+//! assert_eq!(outcome.report().triangles, 110);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! All keys: [`KEYS`]. Keys without a value get the defaults of [`Plan`]; keys that nobody knows are errors that name
+//! the nearest valid one.
+
+mod error;
+mod keys;
+mod motion;
+mod plan;
+mod read;
+mod text;
+
+pub use error::FileError;
+pub use keys::{KEYS, Key};
+pub use motion::MotionChoice;
+pub use plan::{Outputs, PIPELINES, Plan, Published, SceneChoice, Variant};
+pub use text::Settings;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use toml::Value;
+use toml::de::DeTable;
+
+/// A value and where it was given.
+#[derive(Clone, Debug)]
+pub(crate) struct Setting {
+    pub(crate) value: Value,
+    pub(crate) place: String,
+    /// The folder to which file names are relative.
+    pub(crate) folder: PathBuf,
+}
+
+/// Settings by path that were read but not yet checked together.
+#[derive(Clone, Debug, Default)]
+pub struct ExperimentFile {
+    pub(crate) settings: BTreeMap<String, Setting>,
+    pub(crate) sweep: Option<Setting>,
+}
+
+impl ExperimentFile {
+    /// No settings.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError::Io`], or as [`Self::parse`].
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, FileError> {
+        let path = path.as_ref();
+        let file = path.display().to_string();
+        let io = |error: std::io::Error| FileError::Io { file: file.clone(), reason: error.to_string() };
+        let text = std::fs::read_to_string(path).map_err(io)?;
+        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        Self::parse_in(&text, &file, &folder)
+    }
+
+    /// Reads text; `name` stands for it in errors.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError::Syntax`] and [`FileError::UnknownKey`] with the line.
+    pub fn parse(text: &str, name: &str) -> Result<Self, FileError> {
+        Self::parse_in(text, name, Path::new(""))
+    }
+
+    fn parse_in(text: &str, name: &str, folder: &Path) -> Result<Self, FileError> {
+        let syntax = |error: toml::de::Error| FileError::Syntax {
+            place: format!("{name}, line {}", line(text, error.span().map_or(0, |span| span.start))),
+            reason: error.message().to_owned(),
+        };
+        let spans = DeTable::parse(text).map_err(syntax)?;
+        let values: toml::Table = toml::from_str(text).map_err(syntax)?;
+        let mut file = Self::new();
+        for (key, value) in values {
+            let at = spans.get_ref().get_key_value(key.as_str());
+            let place = |start: usize| format!("{name}, line {}", line(text, start));
+            let start = at.map_or(0, |(key, _)| key.span().start);
+            if key == "sweep" {
+                file.sweep = Some(Setting { value, place: place(start), folder: folder.to_owned() });
+                continue;
+            }
+            let spans = at.map(|(_, value)| value.get_ref());
+            for (path, value, start) in flat(key, value, spans, start) {
+                file.put(&path, value, place(start), folder)?;
+            }
+        }
+        Ok(file)
+    }
+
+    /// Sets a value; `place` says in errors where it was given, such as `--fields`.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError::UnknownKey`] with the nearest valid path.
+    pub fn set(&mut self, path: &str, value: impl Into<Value>, place: &str) -> Result<(), FileError> {
+        self.put(path, value.into(), place.to_owned(), Path::new(""))
+    }
+
+    /// Sets `path=value`; a value that is not TOML is taken as text.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::set`], and [`FileError::Syntax`] without an equals sign.
+    pub fn set_text(&mut self, assignment: &str, place: &str) -> Result<(), FileError> {
+        let (path, text) = assignment.split_once('=').ok_or_else(|| FileError::Syntax {
+            place: place.to_owned(),
+            reason: format!("expected path=value, found `{assignment}`"),
+        })?;
+        let parsed: Result<toml::Table, _> = toml::from_str(&format!("value = {text}"));
+        let value = parsed.ok().filter(|table| table.len() == 1).and_then(|mut table| table.remove("value"));
+        self.set(path.trim(), value.unwrap_or_else(|| Value::String(text.trim().to_owned())), place)
+    }
+
+    fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), FileError> {
+        let canonical = keys::canonical(path);
+        if keys::find(&canonical).is_none() && !keys::is_machine_parameter(&canonical) {
+            return Err(FileError::UnknownKey { place, found: path.to_owned(), nearest: keys::nearest_key(path) });
+        }
+        self.settings.insert(canonical, Setting { value, place, folder: folder.to_owned() });
+        Ok(())
+    }
+
+    /// Whether the file describes a sweep.
+    #[must_use]
+    pub const fn is_sweep(&self) -> bool {
+        self.sweep.is_some()
+    }
+}
+
+/// The leaves of a value with their paths and places; empty tables are leaves, so that they are not lost.
+fn flat(
+    path: String,
+    value: Value,
+    spans: Option<&toml::de::DeValue<'_>>,
+    start: usize,
+) -> Vec<(String, Value, usize)> {
+    let table = match value {
+        Value::Table(table) if !table.is_empty() => table,
+        leaf => return vec![(path, leaf, start)],
+    };
+    let spans = spans.and_then(toml::de::DeValue::as_table);
+    let entries = table.into_iter().flat_map(|(key, value)| {
+        let at = spans.and_then(|spans| spans.get_key_value(key.as_str()));
+        let start = at.map_or(start, |(key, _)| key.span().start);
+        flat(format!("{path}.{key}"), value, at.map(|(_, value)| value.get_ref()), start)
+    });
+    entries.collect()
+}
+
+/// The line of a byte, from 1.
+fn line(text: &str, at: usize) -> usize {
+    1 + text.as_bytes().iter().take(at).filter(|byte| **byte == b'\n').count()
+}
+
+#[cfg(test)]
+mod tests;

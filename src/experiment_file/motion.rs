@@ -1,0 +1,98 @@
+//! The head motion of an experiment.
+
+use super::read::wrong;
+use super::{ExperimentFile, FileError};
+use glam::Vec3;
+use pxpl5_scene::config::FIT_DISTANCE_RADII;
+use pxpl5_scene::{HeadMotion, Path, Scene, Sway};
+
+/// How the head moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MotionChoice {
+    /// The path, where it is not the scene's own.
+    pub path: Option<PathChoice>,
+    /// Scale of the sway, where it is not the path's own.
+    pub sway: Option<f64>,
+}
+
+/// A path round the scene's centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PathChoice {
+    /// Stands before the scene.
+    Still {
+        /// Metres from the scene's centre; `None` fits the scene into the view.
+        distance: Option<f64>,
+    },
+    /// Looks at the scene and walks to and fro.
+    Look {
+        /// Metres from the scene's centre; `None` fits the scene into the view.
+        distance: Option<f64>,
+    },
+    /// Circles round the scene.
+    Orbit {
+        /// Metres from the scene's centre; `None` fits the scene into the view.
+        distance: Option<f64>,
+        /// Degrees per second.
+        deg_per_s: f64,
+    },
+    /// Stands before the scene and turns.
+    Pan {
+        /// Degrees per second.
+        deg_per_s: f64,
+    },
+}
+
+/// Rate of a turning head, where none is given: the mean of recorded head motion (see `pxpl5_scene::config`).
+const DEG_PER_S: f64 = pxpl5_scene::config::MEAN_HEAD_SPEED_DEG_PER_S;
+
+impl MotionChoice {
+    pub(super) fn read(file: &ExperimentFile) -> Result<Self, FileError> {
+        let distance = file.number("motion.distance")?;
+        let rate = file.number("motion.deg_per_s")?;
+        let deg_per_s = rate.unwrap_or(DEG_PER_S);
+        let paths = [
+            ("scene", None),
+            ("still", Some(PathChoice::Still { distance })),
+            ("look", Some(PathChoice::Look { distance })),
+            ("orbit", Some(PathChoice::Orbit { distance, deg_per_s })),
+            ("pan", Some(PathChoice::Pan { deg_per_s })),
+        ];
+        let path = file.choice("motion.path", &paths)?.flatten();
+        let takes_distance = !matches!(path, None | Some(PathChoice::Pan { .. }));
+        let takes_rate = matches!(path, Some(PathChoice::Orbit { .. } | PathChoice::Pan { .. }));
+        for (key, taken) in [("motion.distance", takes_distance), ("motion.deg_per_s", takes_rate)] {
+            if let (Some(setting), false) = (file.get(key), taken) {
+                return Err(wrong(key, setting, "nothing: this motion.path does not take it"));
+            }
+        }
+        Ok(Self { path, sway: file.number("motion.sway")? })
+    }
+
+    /// The motion round a scene.
+    pub(super) fn motion(&self, scene: &Scene) -> Result<HeadMotion, FileError> {
+        let own = scene.motion();
+        let path = self.path.map_or(*own.path(), |path| path.around(scene));
+        let own_scale = if self.path.is_none() { own.sway().scale } else { 0.0 };
+        let scale = match self.path {
+            Some(PathChoice::Look { .. }) => self.sway.unwrap_or(1.0),
+            _ => self.sway.unwrap_or(own_scale),
+        };
+        Ok(HeadMotion::new(path, Sway { seed: own.sway().seed, scale })?)
+    }
+}
+
+impl PathChoice {
+    fn around(self, scene: &Scene) -> Path {
+        let (target, radius) = scene.bounding_sphere();
+        let fitted = f64::from(radius) * FIT_DISTANCE_RADII;
+        let before = |distance: f64| target + Vec3::Z * distance as f32;
+        match self {
+            Self::Still { distance } => Path::Still { eye: before(distance.unwrap_or(fitted)), target },
+            Self::Look { distance } => Path::Look { target, distance: distance.unwrap_or(fitted) },
+            Self::Orbit { distance, deg_per_s } => {
+                Path::Orbit { target, distance: distance.unwrap_or(fitted), height: 0.0, deg_per_s }
+            }
+            Self::Pan { deg_per_s } => Path::Pan { eye: before(fitted), deg_per_s },
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! A checked experiment.
+
+use super::motion::MotionChoice;
+use super::read::wrong;
+use super::{ExperimentFile, FileError, keys};
+use crate::config::MachineConfig;
+use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
+use crate::measure::Measure;
+use crate::pipelines::{Code, Pipeline, RenderingControl, Slats};
+use pphigs::{Binning, Shading};
+use pxpl5_scene::Scene;
+use slats::Copy;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A pipeline with its variant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variant {
+    /// The pipeline under PPHIGS.
+    RenderingControl(RenderingControl),
+    /// One new image every field.
+    Slats(Slats),
+}
+
+/// The pipelines by name, each as its papers describe it.
+pub const PIPELINES: [(&str, Variant); 2] = [
+    ("rendering-control", Variant::RenderingControl(RenderingControl::stereo())),
+    ("slats", Variant::Slats(Slats::split())),
+];
+
+impl Variant {
+    /// The pipeline.
+    #[must_use]
+    pub fn pipeline(&self) -> Arc<dyn Pipeline> {
+        match *self {
+            Self::RenderingControl(pipeline) => Arc::new(pipeline),
+            Self::Slats(pipeline) => Arc::new(pipeline),
+        }
+    }
+
+    /// Its name.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::RenderingControl(_) => "rendering-control",
+            Self::Slats(_) => "slats",
+        }
+    }
+
+    /// The preset of the machine on which its papers ran it.
+    #[must_use]
+    pub const fn preset(&self) -> &'static str {
+        match self {
+            Self::RenderingControl(_) => "small-hmd",
+            Self::Slats(_) => "slats",
+        }
+    }
+
+    fn read(file: &ExperimentFile) -> Result<Self, FileError> {
+        let missing = FileError::Missing { key: "pipeline", how: "rendering-control or slats" };
+        let variant = file.choice("pipeline", &PIPELINES)?.ok_or(missing)?;
+        variant.refuse_others(file)?;
+        Ok(match variant {
+            Self::RenderingControl(default) => Self::RenderingControl(RenderingControl {
+                mono: file.flag("mono")?.unwrap_or(default.mono),
+                shading: file.choice("shading", &SHADINGS)?.unwrap_or(default.shading),
+            }),
+            Self::Slats(default) => Self::Slats(Slats {
+                copy: file.choice("copy", &COPIES)?.unwrap_or(default.copy),
+                binning: file.choice("binning", &BINNINGS)?.unwrap_or(default.binning),
+                code: file.choice("code", &CODES)?,
+            }),
+        })
+    }
+
+    fn refuse_others(&self, file: &ExperimentFile) -> Result<(), FileError> {
+        for (path, setting) in &file.settings {
+            let applies_to = keys::find(path).and_then(|key| key.applies_to);
+            if let Some(applies_to) = applies_to.filter(|name| *name != self.name()) {
+                let (place, key) = (setting.place.clone(), path.clone());
+                return Err(FileError::NotApplicable { place, key, pipeline: self.name(), applies_to });
+            }
+        }
+        Ok(())
+    }
+}
+
+pub(super) const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
+pub(super) const COPIES: [(&str, Copy); 2] = [("whole", Copy::Whole), ("split", Copy::Split)];
+pub(super) const BINNINGS: [(&str, Binning); 2] = [("all", Binning::All), ("touched", Binning::Touched)];
+pub(super) const CODES: [(&str, Code); 3] =
+    [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
+pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
+
+/// What is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneChoice {
+    /// A built-in scene's name or a model file's path.
+    pub name: String,
+    /// How many primitives are kept; `None` for all.
+    pub triangles: Option<usize>,
+    /// How the head moves.
+    pub motion: MotionChoice,
+}
+
+/// Extensions of model files.
+const MODEL_FILES: [&str; 4] = ["ply", "obj", "pdb", "ent"];
+
+impl SceneChoice {
+    fn read(file: &ExperimentFile) -> Result<Self, FileError> {
+        let how = "a built-in scene (`pxpl5 scenes` lists them) or a model file (.ply, .obj, .pdb)";
+        let name = file.text("scene")?.ok_or(FileError::Missing { key: "scene", how })?;
+        let folder = file.get("scene").map(|setting| setting.folder.clone()).unwrap_or_default();
+        let name = if is_file(name) { beside(&folder, name) } else { name.to_owned() };
+        let triangles = file.integer("triangles", 1..=u64::from(u32::MAX))?.map(|n| n as usize);
+        Ok(Self { name, triangles, motion: MotionChoice::read(file)? })
+    }
+
+    /// Generates it or reads its file.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError`] for an unknown scene, an unusable file, or more primitives to keep than there are.
+    pub fn load(&self) -> Result<Scene, FileError> {
+        let whole =
+            if is_file(&self.name) { pxpl5_scene::load(&self.name)? } else { pxpl5_scene::builtin(&self.name)? };
+        let scene = match self.triangles {
+            Some(n) => whole.truncated(n)?,
+            None => whole,
+        };
+        if self.motion == MotionChoice::default() {
+            return Ok(scene);
+        }
+        let motion = self.motion.motion(&scene)?;
+        Ok(Scene::new(pxpl5_scene::SceneParts { motion, ..scene.into_parts() })?)
+    }
+}
+
+/// Whether a scene's name is a path: it has a model file's extension, or a separator.
+fn is_file(name: &str) -> bool {
+    let extension = Path::new(name).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    name.contains(['/', std::path::MAIN_SEPARATOR]) || extension.is_some_and(|e| MODEL_FILES.contains(&e.as_str()))
+}
+
+fn beside(folder: &Path, name: &str) -> String {
+    let path: PathBuf = folder.join(name);
+    path.display().to_string()
+}
+
+/// What a run writes beside its report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outputs {
+    /// The last pictures, PNG.
+    pub pictures: bool,
+    /// A timeline, SVG.
+    pub timeline: bool,
+    /// The measured quantities, CSV.
+    pub csv: bool,
+}
+
+/// The published figure that an experiment reproduces.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Published {
+    /// Its number, if it has one.
+    pub figure: Option<u64>,
+    /// The paper.
+    pub source: Option<String>,
+    /// Which measured quantity it is about.
+    pub quantity: Measure,
+    /// Its value.
+    pub value: f64,
+}
+
+impl Published {
+    fn read(file: &ExperimentFile) -> Result<Option<Self>, FileError> {
+        let Some(value) = file.number("published.value")? else { return Ok(None) };
+        let missing = FileError::Missing { key: "published.quantity", how: "the quantity that was published" };
+        let name = file.text("published.quantity")?.ok_or(missing)?;
+        let quantity = measure(file, "published.quantity", name)?;
+        let source = file.text("published.source")?.map(str::to_owned);
+        Ok(Some(Self { figure: file.integer("published.figure", 0..=999)?, source, quantity, value }))
+    }
+}
+
+fn measure(file: &ExperimentFile, key: &str, name: &str) -> Result<Measure, FileError> {
+    let wrong = |nearest: &str| match file.get(key) {
+        Some(setting) => wrong(key, setting, &format!("a quantity that is measured (the nearest is {nearest})")),
+        None => FileError::Missing { key: "measure", how: "quantities that are measured" },
+    };
+    Measure::named(name).map_err(wrong)
+}
+
+/// A checked experiment: everything is known, nothing contradicts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// A line for people.
+    pub title: Option<String>,
+    /// The pipeline.
+    pub variant: Variant,
+    /// The machine.
+    pub machine: MachineConfig,
+    /// The scene.
+    pub scene: SceneChoice,
+    /// Fields to simulate; default 120.
+    pub fields: u64,
+    /// Seed of the head motion; default 1.
+    pub seed: u64,
+    /// Which pixels are computed; default those that are looked at.
+    pub pixels: Pixels,
+    /// Quantities for tables and rows.
+    pub measure: Vec<Measure>,
+    /// What is written.
+    pub output: Outputs,
+    /// What it is compared with.
+    pub published: Option<Published>,
+}
+
+/// Seeds that TOML can write.
+const MAX_SEED: u64 = i64::MAX as u64;
+
+impl ExperimentFile {
+    /// Checks all settings together.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError`] names the first setting that is wrong or missing.
+    pub fn resolve(&self) -> Result<Plan, FileError> {
+        let variant = Variant::read(self)?;
+        let names = self.texts("measure")?;
+        let measure = |names: Vec<String>| names.iter().map(|name| measure(self, "measure", name)).collect();
+        self.choice("level", &[("transaction", ())])?;
+        Ok(Plan {
+            title: self.text("title")?.map(str::to_owned),
+            variant,
+            machine: self.machine(&variant)?,
+            scene: SceneChoice::read(self)?,
+            fields: self.integer("fields", FIELDS_RANGE.0..=FIELDS_RANGE.1)?.unwrap_or(120),
+            seed: self.integer("seed", 0..=MAX_SEED)?.unwrap_or(1),
+            pixels: self.choice("pixels", &PIXELS)?.unwrap_or(Pixels::Lazy),
+            measure: names.map_or_else(|| Ok(Measure::usual()), measure)?,
+            output: Outputs {
+                pictures: self.flag("output.pictures")?.unwrap_or(true),
+                timeline: self.flag("output.timeline")?.unwrap_or(true),
+                csv: self.flag("output.csv")?.unwrap_or(true),
+            },
+            published: Published::read(self)?,
+        })
+    }
+
+    fn machine(&self, variant: &Variant) -> Result<MachineConfig, FileError> {
+        let config = |place: &str| {
+            let place = place.to_owned();
+            move |error| FileError::Config { place, error }
+        };
+        let preset = self.text("machine.preset")?.unwrap_or(variant.preset());
+        let place = self.get("machine.preset").map_or("machine", |setting| &setting.place);
+        let mut machine = MachineConfig::preset(preset).map_err(config(place))?;
+        for (path, setting) in &self.settings {
+            let Some(parameter) = path.strip_prefix("machine.").filter(|path| *path != "preset") else { continue };
+            if let (true, Some(code)) = (CODE_SETS.contains(&parameter), self.get("code")) {
+                let (place, other) = (setting.place.clone(), format!("code = {}", super::read::plain(&code.value)));
+                return Err(FileError::Conflict { place, key: path.clone(), other });
+            }
+            let value = self.integer(path, 0..=u64::MAX)?.unwrap_or_default();
+            machine.set(parameter, value).map_err(config(&setting.place))?;
+        }
+        machine.check().map_err(config("machine"))?;
+        Ok(machine)
+    }
+}
+
+/// What [`Slats::code`] decides.
+const CODE_SETS: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
+
+impl Plan {
+    /// Generates or reads the scene.
+    ///
+    /// # Errors
+    ///
+    /// As [`SceneChoice::load`].
+    pub fn load_scene(&self) -> Result<Arc<Scene>, FileError> {
+        Ok(Arc::new(self.scene.load()?))
+    }
+
+    /// The experiment with the scene loaded.
+    #[must_use]
+    pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
+        Experiment::with(self.machine.clone(), self.variant.pipeline(), scene)
+            .fields(self.fields)
+            .pixels(self.pixels)
+            .seed(self.seed)
+    }
+}

@@ -1,0 +1,157 @@
+//! A plan written out in full.
+
+use super::motion::PathChoice;
+use super::plan::{BINNINGS, CODES, COPIES, PIXELS, Plan, SHADINGS, Variant};
+use crate::config::MachineConfig;
+use crate::fingerprint::Fingerprint;
+use std::collections::BTreeMap;
+use std::fmt;
+use toml::Value;
+
+/// Settings by path, as they take effect; shown as the text of an experiment file that says the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Values by path.
+    pub values: BTreeMap<String, Value>,
+    /// Remarks by path: units, and what a preset would have said.
+    remarks: BTreeMap<String, String>,
+}
+
+/// The name of a choice.
+fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> &'static str {
+    choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name)
+}
+
+impl Plan {
+    /// Every setting as it takes effect.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        let mut all = Settings { values: BTreeMap::new(), remarks: BTreeMap::new() };
+        if let Some(title) = &self.title {
+            all.put("title", title.clone());
+        }
+        self.pipeline_settings(&mut all);
+        self.scene_settings(&mut all);
+        all.put("fields", self.fields as i64);
+        all.put("seed", self.seed as i64);
+        all.put("pixels", name(&PIXELS, &self.pixels));
+        all.put("level", "transaction");
+        all.put("measure", self.measure.iter().map(|m| Value::from(m.name())).collect::<Vec<_>>());
+        all.put("output.pictures", self.output.pictures);
+        all.put("output.timeline", self.output.timeline);
+        all.put("output.csv", self.output.csv);
+        self.published_settings(&mut all);
+        all.machine(&self.machine);
+        all
+    }
+
+    /// The settings on which the result depends, but not those on what is looked at, written or compared.
+    #[must_use]
+    pub fn fingerprint(&self) -> Fingerprint {
+        let outside = ["title", "pixels", "measure", "output.", "published."];
+        let settings = self.settings();
+        let inside = settings.values.iter().filter(|(path, _)| !outside.iter().any(|o| path.starts_with(o)));
+        let text: String = inside.map(|(path, value)| format!("{path}={value}\n")).collect();
+        Fingerprint::of(text.as_bytes())
+    }
+
+    fn pipeline_settings(&self, all: &mut Settings) {
+        all.put("pipeline", self.variant.name());
+        match &self.variant {
+            Variant::RenderingControl(pipeline) => {
+                all.put("mono", pipeline.mono);
+                all.put("shading", name(&SHADINGS, &pipeline.shading));
+            }
+            Variant::Slats(pipeline) => {
+                all.put("copy", name(&COPIES, &pipeline.copy));
+                all.put("binning", name(&BINNINGS, &pipeline.binning));
+                if let Some(code) = &pipeline.code {
+                    all.put("code", name(&CODES, code));
+                }
+            }
+        }
+    }
+
+    fn scene_settings(&self, all: &mut Settings) {
+        all.put("scene", self.scene.name.clone());
+        if let Some(triangles) = self.scene.triangles {
+            all.put("triangles", triangles as i64);
+        }
+        let motion = &self.scene.motion;
+        let (path, distance, deg_per_s) = match motion.path {
+            None => ("scene", None, None),
+            Some(PathChoice::Still { distance }) => ("still", distance, None),
+            Some(PathChoice::Look { distance }) => ("look", distance, None),
+            Some(PathChoice::Orbit { distance, deg_per_s }) => ("orbit", distance, Some(deg_per_s)),
+            Some(PathChoice::Pan { deg_per_s }) => ("pan", None, Some(deg_per_s)),
+        };
+        all.put("motion.path", path);
+        let numbers = [("distance", distance), ("deg_per_s", deg_per_s), ("sway", motion.sway)];
+        for (key, value) in numbers {
+            if let Some(value) = value {
+                all.put(&format!("motion.{key}"), value);
+            }
+        }
+    }
+
+    fn published_settings(&self, all: &mut Settings) {
+        let Some(published) = &self.published else { return };
+        if let Some(figure) = published.figure {
+            all.put("published.figure", figure as i64);
+        }
+        if let Some(source) = &published.source {
+            all.put("published.source", source.clone());
+        }
+        all.put("published.quantity", published.quantity.name());
+        all.put("published.value", published.value);
+    }
+}
+
+impl Settings {
+    fn put(&mut self, path: &str, value: impl Into<Value>) {
+        self.values.insert(path.to_owned(), value.into());
+    }
+
+    fn machine(&mut self, machine: &MachineConfig) {
+        self.put("machine.preset", machine.preset.clone());
+        self.put("machine.n_gps", machine.n_gps as i64);
+        self.put("machine.n_renderers", machine.n_renderers as i64);
+        let preset = MachineConfig::preset(&machine.preset).map(|preset| preset.parameters()).unwrap_or_default();
+        for parameter in machine.parameters() {
+            let path = format!("machine.{}", parameter.path);
+            let own = preset.iter().find(|other| other.path == parameter.path).map(|other| other.value);
+            let changed = own.filter(|own| *own != parameter.value);
+            let changed = changed.map_or_else(String::new, |own| format!("; the preset has {own}"));
+            let remark = format!("{}, {}{changed}", parameter.info.unit, parameter.info.standing);
+            self.remarks.insert(path.clone(), remark);
+            self.put(&path, i64::try_from(parameter.value).unwrap_or(i64::MAX));
+        }
+    }
+
+    fn lines(&self, f: &mut fmt::Formatter<'_>, table: Option<&str>) -> fmt::Result {
+        for (path, value) in &self.values {
+            let (of, key) = match path.split_once('.') {
+                Some((of, key)) => (Some(of), key),
+                None => (None, path.as_str()),
+            };
+            if of == table {
+                let remark = self.remarks.get(path).map_or_else(String::new, |remark| format!("  # {remark}"));
+                writeln!(f, "{key} = {value}{remark}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Settings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.lines(f, None)?;
+        for table in ["motion", "machine", "output", "published"] {
+            if self.values.keys().any(|path| path.split_once('.').is_some_and(|(of, _)| of == table)) {
+                writeln!(f, "\n[{table}]")?;
+                self.lines(f, Some(table))?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,266 @@
+//! The experiments behind the figures.
+
+use crate::config::{ConfigError, MachineConfig};
+use crate::display_list::{display_list, views};
+use crate::experiment::{ExperimentError, WARM_UP_PICTURES};
+use crate::levels::{Case, Level, Program, Summary};
+use crate::limit::LimitQuery;
+use crate::pipelines::{RenderingControl, Slats};
+use crate::report::Statistics;
+use pphigs::{Binning, Picture, Shading, Share};
+use pxpl5_geometry::Viewport;
+use pxpl5_renderer::Layout;
+use pxpl5_scene::{Scene, builtin};
+use pxpl5_sim::Time;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// A further number of an experiment.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Detail {
+    /// What it is.
+    pub name: String,
+    /// The number.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+/// What an experiment gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// The figure's own number.
+    pub value: f64,
+    /// Others.
+    pub details: Vec<Detail>,
+}
+
+/// A bench for the figures: a level of modelling, and changes to the machine's parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bench {
+    /// The level.
+    pub level: Level,
+    /// Parameters by path that differ from the presets, on every machine that has them.
+    pub changes: Vec<(String, u64)>,
+    /// Seeds of the head motion of figure 7.
+    pub seeds: u64,
+    /// Frames of each.
+    pub frames: u64,
+}
+
+type Result<T> = std::result::Result<T, ExperimentError>;
+
+/// TRANSFORM and RENDER of figure 6 (milliseconds): a spread of lengths, because the swap waits for a retrace.
+const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
+
+/// Views of figure 8 and time between them.
+const VIEWS: u64 = 40;
+const VIEW_PERIOD_PS: u64 = 500_000_000_000;
+
+impl Bench {
+    /// The presets as they are, with 30 seeds of 300 frames.
+    #[must_use]
+    pub const fn new(level: Level) -> Self {
+        Self { level, changes: Vec::new(), seeds: 30, frames: 300 }
+    }
+
+    /// Measures a figure.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError`]; [`ExperimentError::Scene`] for an unknown figure.
+    pub fn measure(&self, id: &str) -> Result<Measured> {
+        match id {
+            "1" => Ok(self.trivial()?.region_copy_us.into()),
+            "2" => self.trivial().map(|s| (s.first_copy_ms + s.last_copy_ms).into()),
+            "3" => self.copy_alone(),
+            "4" => Ok(spread_ms(self.trivial()?.latency_ms())),
+            "4b" => Ok(self.trivial()?.updates_hz.into()),
+            "5" => self.equal_stages(),
+            "6" => self.long_stages(),
+            "7" => self.mig(),
+            "8" => regions_touched(),
+            "9" => self.slats_latency(),
+            "9b" => Ok(self.slats(100, Slats::split())?.updates_hz.into()),
+            "10" => self.slats(60, Slats::whole()).map(|s| (s.first_copy_ms * 1e3 / s.region_copy_us).into()),
+            "11" => Ok(self.slats(100, Slats::split())?.last_copy_ms.into()),
+            "12" => self.limit("slats", Slats::whole()),
+            "13" => self.limit("slats", Slats::split()),
+            "14" => self.limit("slats-1995", Slats::split()),
+            "15" => self.time_before_copy(),
+            _ => Err(ExperimentError::Scene(format!("there is no figure {id}"))),
+        }
+    }
+
+    /// The machine of a preset with the bench's changes.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError`] for a preset or path that does not exist.
+    pub fn machine(&self, preset: &str) -> std::result::Result<MachineConfig, ConfigError> {
+        let mut machine = MachineConfig::preset(preset)?;
+        self.changes.iter().try_for_each(|(path, value)| machine.set(path, *value))?;
+        Ok(machine)
+    }
+
+    fn run(&self, machine: MachineConfig, program: impl Into<Program>, scene: &str, fields: u64) -> Result<Summary> {
+        let case = Case { machine, program: program.into(), scene: scene_named(scene)?, fields, seed: 1 };
+        self.level.run(&case)
+    }
+
+    fn stereo(&self, machine: MachineConfig) -> Result<Summary> {
+        self.run(machine, RenderingControl::stereo(), "full-screen:12", 80)
+    }
+
+    /// Figures 1, 2, 4: twelve triangles that cover the screen.
+    fn trivial(&self) -> Result<Summary> {
+        self.stereo(self.machine("small-hmd")?)
+    }
+
+    /// Figure 3: everything but COPY is free.
+    fn copy_alone(&self) -> Result<Measured> {
+        let mut machine = self.machine("small-hmd")?;
+        let gp = ["message_ns", "triangle_ns", "bin_entry_ns", "edit_ns", "pass_ns"].map(|name| format!("gp.{name}"));
+        let array = ["triangle", "phong_triangle", "select", "clear", "shade"];
+        let array = array.map(|name| format!("renderer.{name}_clocks"));
+        for path in gp.iter().chain(&array) {
+            machine.set(path, 0)?;
+        }
+        Ok(spread_ms(Statistics::of(self.stereo(machine)?.eye_latencies_ms.into_iter())))
+    }
+
+    /// A triangle that takes `ms` of TRANSFORM on its GP, and twelve of which take `ms` of RENDER.
+    fn stages_of(&self, ms: f64) -> Result<MachineConfig> {
+        let mut machine = self.machine("small-hmd")?;
+        let regions = 20_u64.div_ceil(machine.n_renderers as u64) as f64;
+        let entries_ns = 20 * machine.gp.bin_entry_ns + machine.gp.pass_ns;
+        machine.set("gp.triangle_ns", (ms * 1e6) as u64 - entries_ns)?;
+        let clocks = ms * 1e-3 / regions / 12.0 * machine.renderer.clock_hz as f64;
+        machine.set("renderer.phong_triangle_clocks", clocks as u64)?;
+        Ok(machine)
+    }
+
+    fn equal_stages(&self) -> Result<Measured> {
+        let summary = self.run(self.stages_of(15.6)?, RenderingControl::stereo(), "full-screen:12", 160)?;
+        let latency = summary.latency_ms();
+        let details = vec![detail("mean", latency.mean, "ms"), detail("frames a second", summary.updates_hz, "Hz")];
+        Ok(Measured { value: latency.max, details })
+    }
+
+    fn long_stages(&self) -> Result<Measured> {
+        let mut means = Vec::new();
+        for ms in LONG_STAGES_MS {
+            let machine = self.stages_of(ms as f64)?;
+            let summary = self.run(machine, RenderingControl::stereo(), "full-screen:12", 160)?;
+            means.push(summary.latency_ms().mean);
+        }
+        Ok(spread_ms(Statistics::of(means.into_iter())))
+    }
+
+    fn mig(&self) -> Result<Measured> {
+        let (machine, scene) = (self.machine("small-hmd")?, scene_named("mig")?);
+        let mut latencies = Vec::new();
+        for seed in 1..=self.seeds {
+            let (machine, scene) = (machine.clone(), Arc::clone(&scene));
+            // Two fields a frame at 30 Hz; slower frames are fewer than asked for.
+            let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
+            let program = RenderingControl::stereo().into();
+            let summary = self.level.run(&Case { machine, program, scene, fields, seed })?;
+            latencies
+                .extend(summary.latencies_ms.iter().take(self.frames as usize).map(|ms| ms / crate::levels::FIELD_MS));
+        }
+        let frames = latencies.len() as f64;
+        let all = Statistics::of(latencies.into_iter());
+        let details = vec![
+            detail("standard deviation", all.sd, "fields"),
+            detail("least", all.min, "fields"),
+            detail("greatest", all.max, "fields"),
+            detail("frames", frames, "frames"),
+        ];
+        Ok(Measured { value: all.mean, details })
+    }
+
+    fn slats(&self, triangles: u32, program: Slats) -> Result<Summary> {
+        self.run(self.machine("slats")?, program, &format!("full-screen:{triangles}"), 40)
+    }
+
+    fn slats_latency(&self) -> Result<Measured> {
+        let fields = self.slats(100, Slats::split())?.latency_fields();
+        let details = vec![detail("least", fields.min, "fields"), detail("greatest", fields.max, "fields")];
+        Ok(Measured { value: fields.mean, details })
+    }
+
+    fn limit(&self, preset: &str, program: Slats) -> Result<Measured> {
+        let limit = self.limit_query(preset, program)?.search()?;
+        let triangles = f64::from(limit.triangles);
+        let details = vec![detail("both eyes, 60 fields a second", triangles * 120.0, "triangles/s")];
+        Ok(Measured { value: triangles, details })
+    }
+
+    fn limit_query(&self, preset: &str, program: Slats) -> Result<LimitQuery> {
+        Ok(LimitQuery { level: self.level, ..LimitQuery::no_miss(self.machine(preset)?, program) })
+    }
+
+    fn time_before_copy(&self) -> Result<Measured> {
+        let most = self.limit_query("slats", Slats::split())?.search()?.triangles;
+        let summary = self.slats(most, Slats::split())?;
+        Ok(Measured { value: summary.copy_begins_ms, details: vec![detail("triangles", most.into(), "triangles")] })
+    }
+}
+
+/// Figure 8: bins of one pass over each scene, from the views of its own head motion.
+fn regions_touched() -> Result<Measured> {
+    let mut details = Vec::new();
+    for name in ["mig", "molecules", "head"] {
+        details.push(detail(name, touched(&scene_named(name)?)?, "regions"));
+    }
+    let value = details.iter().map(|d| d.value).sum::<f64>() / details.len() as f64;
+    Ok(Measured { value, details })
+}
+
+/// Bin entries per triangle that touches any region, over both eyes.
+fn touched(scene: &Arc<Scene>) -> Result<f64> {
+    let list = Arc::new(display_list(scene).map_err(ExperimentError::Scene)?);
+    let views = views(scene, 1, 2);
+    let (share, layout) = (Share::new(list, 0, 1), Layout::rendering_control_phong());
+    let picture = Picture {
+        viewport: Viewport::FRAME,
+        shading: Shading::Phong,
+        binning: Binning::Touched,
+        layout,
+        pixels: false,
+    };
+    let (mut entries, mut triangles) = (0u64, 0u64);
+    for number in 0..VIEWS {
+        let view = views(number, Time(number * VIEW_PERIOD_PS)).0;
+        for eye in 0..2 {
+            let pass = share.transform(&view, eye, picture);
+            let regions = (0..picture.viewport.grid().regions() as u16).map(pxpl5_wire::RegionId);
+            entries += regions.map(|region| u64::from(pass.counts(region).triangles)).sum::<u64>();
+            triangles += u64::from(pass.screen_counts().triangles);
+        }
+    }
+    Ok(entries as f64 / triangles.max(1) as f64)
+}
+
+fn scene_named(name: &str) -> Result<Arc<Scene>> {
+    builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()))
+}
+
+fn detail(name: &str, value: f64, unit: &'static str) -> Detail {
+    Detail { name: name.to_owned(), value, unit }
+}
+
+/// The mean with least, greatest and deviation.
+fn spread_ms(statistics: Statistics) -> Measured {
+    let Statistics { mean, sd, min, max } = statistics;
+    let details =
+        vec![detail("standard deviation", sd, "ms"), detail("least", min, "ms"), detail("greatest", max, "ms")];
+    Measured { value: mean, details }
+}
+
+impl From<f64> for Measured {
+    fn from(value: f64) -> Self {
+        Self { value, details: Vec::new() }
+    }
+}

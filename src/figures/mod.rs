@@ -1,0 +1,130 @@
+//! The published figures, measured: what was printed, what the model gives, how far apart they are.
+//!
+//! ```text
+//!   FIGURES (data) --> Bench::measure (one experiment each) --> Row: published, simulated, error, interval, standing
+//! ```
+//!
+//! All rows come from the same machine parameters. Rows 5, 6 and 3 describe machines with other loads or costs than
+//! the presets; their experiments change what the statement itself changes, and nothing else.
+//!
+//! Sources: TR94, I3D95; the loads of the experiments are ours.
+
+mod document;
+mod measure;
+mod table;
+
+pub use document::markdown;
+pub use measure::{Bench, Detail, Measured};
+pub use table::{Basis, FIGURES, Figure};
+
+use serde::Serialize;
+use std::fmt;
+
+/// A figure whose experiment gave no result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FigureError {
+    /// Number of the figure.
+    pub id: String,
+    /// Why.
+    pub reason: String,
+}
+
+impl fmt::Display for FigureError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "figure {}: {}", self.id, self.reason)
+    }
+}
+
+impl std::error::Error for FigureError {}
+
+/// A figure beside what the model gives.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Number of the figure.
+    pub id: &'static str,
+    /// The printed value.
+    pub published: f64,
+    /// The model's.
+    pub simulated: f64,
+    /// Unit of both.
+    pub unit: &'static str,
+    /// (simulated - published) / published, in percent.
+    pub error_percent: f64,
+    /// Least and greatest value when parameters that are not published are varied within their ranges.
+    pub interval: Option<[f64; 2]>,
+    /// `free`, `fitted` or `rule`.
+    pub standing: &'static str,
+    /// Half of the printed range.
+    pub spread: Option<f64>,
+    /// What was fitted, or which rule was chosen; empty for a free check.
+    pub fitted: &'static str,
+    /// Paper and topic.
+    pub source: String,
+    /// The statement.
+    pub statement: &'static str,
+    /// What was run.
+    pub experiment: &'static str,
+    /// What is known of the cause of a miss.
+    pub cause: &'static str,
+    /// Further numbers of the same experiment.
+    pub details: Vec<Detail>,
+}
+
+/// A difference that is called a miss, in percent, where a paper prints no range.
+pub const MISS_PERCENT: f64 = 3.0;
+
+impl Row {
+    /// A figure with what was measured.
+    #[must_use]
+    pub fn new(figure: &Figure, measured: Measured) -> Self {
+        let (standing, fitted) = match figure.basis {
+            Basis::Free => ("free", ""),
+            Basis::Fitted { parameter } => ("fitted", parameter),
+            Basis::Rule { rule } => ("rule", rule),
+        };
+        Self {
+            id: figure.id,
+            published: figure.value,
+            simulated: measured.value,
+            unit: figure.unit,
+            error_percent: 100.0 * (measured.value - figure.value) / figure.value,
+            interval: None,
+            standing,
+            spread: figure.spread,
+            fitted,
+            source: format!("{}, {}", figure.paper, figure.section),
+            statement: figure.statement,
+            experiment: figure.experiment,
+            cause: figure.cause,
+            details: measured.details,
+        }
+    }
+
+    /// Whether the model is outside of the printed range, or, where none is printed, off by more than
+    /// [`MISS_PERCENT`].
+    #[must_use]
+    pub fn misses(&self) -> bool {
+        let allowed = self.spread.unwrap_or(self.published * MISS_PERCENT / 100.0);
+        (self.simulated - self.published).abs() > allowed * (1.0 + 1e-9)
+    }
+}
+
+/// Mean absolute error in percent over the rows that are free checks.
+#[must_use]
+pub fn mean_error_percent(rows: &[Row]) -> f64 {
+    let free: Vec<_> = rows.iter().filter(|row| row.standing == "free").collect();
+    free.iter().map(|row| row.error_percent.abs()).sum::<f64>() / free.len().max(1) as f64
+}
+
+/// Measures all figures, several at a time.
+///
+/// # Errors
+///
+/// The first [`FigureError`].
+pub fn run_all(bench: &Bench) -> Result<Vec<Row>, FigureError> {
+    let measure = |figure: &Figure| match bench.measure(figure.id) {
+        Ok(measured) => Ok(Row::new(figure, measured)),
+        Err(error) => Err(FigureError { id: figure.id.to_owned(), reason: error.to_string() }),
+    };
+    crate::parallel::map(&FIGURES, measure).into_iter().collect()
+}

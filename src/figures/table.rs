@@ -1,0 +1,222 @@
+//! The published figures.
+
+use serde::Serialize;
+
+/// Whether something was chosen so that a figure comes out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Basis {
+    /// Nothing was: an independent check.
+    Free,
+    /// A parameter was fitted to this figure, or derived from it.
+    Fitted {
+        /// Which.
+        parameter: &'static str,
+    },
+    /// A rule of the model was chosen because of this figure.
+    Rule {
+        /// Which.
+        rule: &'static str,
+    },
+}
+
+/// A figure printed in a paper.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Figure {
+    /// Number in the specification, with a letter where a statement holds two numbers.
+    pub id: &'static str,
+    /// Short name of the paper.
+    pub paper: &'static str,
+    /// What part of the paper it belongs to, by topic.
+    pub section: &'static str,
+    /// The statement.
+    pub statement: &'static str,
+    /// The printed value.
+    pub value: f64,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Half of the range that the paper prints or words like "about" and "1 to 2" give; `None` where it gives none.
+    pub spread: Option<f64>,
+    /// The experiment that produces it here.
+    pub experiment: &'static str,
+    /// Fitted or free.
+    pub basis: Basis,
+    /// What is known of the cause where the model misses the figure; empty where it does not.
+    pub cause: &'static str,
+}
+
+const RC: &str = "Rendering Control";
+const SLATS: &str = "Slats";
+const FREE: Basis = Basis::Free;
+
+/// A figure without a miss.
+const fn figure(
+    id: &'static str,
+    (paper, section): (&'static str, &'static str),
+    statement: &'static str,
+    (value, unit, spread): (f64, &'static str, Option<f64>),
+    experiment: &'static str,
+    basis: Basis,
+) -> Figure {
+    Figure { id, paper, section, statement, value, unit, spread, experiment, basis, cause: "" }
+}
+
+impl Figure {
+    const fn because(self, cause: &'static str) -> Self {
+        Self { cause, ..self }
+    }
+}
+
+/// The renderer's hold, which several misses have in common.
+const HOLD: &str = "a renderer keeps a finished region in pixel memory until it is copied, so RENDER and COPY of the \
+                    same renderer cannot overlap; RENDER of an eye takes four region times of 780 us longer than its \
+                    commands";
+
+/// All of them, in the order of the specification.
+pub const FIGURES: [Figure; 17] = [
+    figure(
+        "1",
+        ("TR94", RC),
+        "copy of one region",
+        (780.0, "us", None),
+        "mean over all regions of a stereo frame, per 15,360 pixels of port time",
+        Basis::Fitted { parameter: "ring.overhead_words" },
+    ),
+    figure(
+        "2",
+        ("TR94", RC),
+        "copy of both eyes in stereo",
+        (31.2, "ms", None),
+        "full-screen:12 on small-hmd: COPY left and COPY right of a frame, each from its first word to its last",
+        FREE,
+    ),
+    figure(
+        "3",
+        ("TR94", RC),
+        "stereo, trivial scene, theory: from the start of an eye's TRANSFORM to the end of its COPY",
+        (50.0, "ms", None),
+        "full-screen:12 on small-hmd with software, transform and array that cost nothing, so that COPY is all there is",
+        FREE,
+    )
+    .because(
+        "the theory lets TRANSFORM begin three copies before; here RENDER of the second previous eye, which ends when \
+         its last commands are accepted, holds it back longer, because full input FIFOs accept them late",
+    ),
+    figure(
+        "4",
+        ("TR94", RC),
+        "small HMD machine, 12 triangles that cover the screen: mean from the start of TRANSFORM to the swap",
+        (56.5, "ms", None),
+        "full-screen:12 on small-hmd",
+        Basis::Fitted { parameter: "renderer.fifo_words" },
+    )
+    .because(
+        "two plateaus: the commands of a region (487 words) fit into the FIFO behind a region that waits for its copy, \
+         or they do not. Up to 488 words of FIFO give 54.1 ms, from 490 on 57.8 ms; no depth in the range gives 56.5",
+    ),
+    figure("4b", ("TR94", RC), "the same: frames per second", (30.0, "Hz", None), "full-screen:12 on small-hmd", FREE),
+    figure(
+        "5",
+        ("TR94", RC),
+        "TRANSFORM, RENDER and COPY of equal length at 30 Hz: up to",
+        (4004.0 / 60.0, "ms", None),
+        "full-screen:12 on small-hmd; a triangle takes 15.6 ms on a GP and 325 us on a renderer, so that each stage \
+         needs the 15.6 ms of COPY; longest latency",
+        FREE,
+    )
+    .because(HOLD),
+    figure(
+        "6",
+        ("TR94", RC),
+        "TRANSFORM = RENDER, both longer than COPY: 3 x TRANSFORM + 1 to 2 x COPY",
+        (98.4, "ms", Some(7.8)),
+        "full-screen:12 on small-hmd; TRANSFORM and RENDER of 22 to 28 ms (mean 25 ms), COPY 15.6 ms: 75 + 15.6 to 31.2",
+        FREE,
+    )
+    .because(HOLD),
+    figure(
+        "7",
+        ("TR94", RC),
+        "Mig, 417 triangles, fly-through in an HMD: mean latency (sd 0.589)",
+        (4.61, "fields", Some(0.589)),
+        "mig on small-hmd: 30 seeds of head motion, 300 frames each; mean over all frames",
+        FREE,
+    )
+    .because(
+        "here nearly every frame makes 30 Hz, and the rules then allow 4.13 fields at most; the published mean needs \
+         frames at 20 Hz. The fly-through, the model's exact shape and its edits are not published",
+    ),
+    figure(
+        "8",
+        ("TR94", RC),
+        "regions that a typical triangle touches, an eye",
+        (1.3, "regions", None),
+        "mig, molecules and head over 20 s of their head motions: entries of all bins per triangle on the screen",
+        FREE,
+    )
+    .because("a property of the scenes, which are likenesses: the head's 59,592 triangles are tiny, the mig's are not"),
+    figure(
+        "9",
+        ("TR94, I3D95", SLATS),
+        "rendering latency, constant",
+        (1.0, "fields", None),
+        "full-screen:100 on slats with the COPY optimisation: mean; least and greatest are the same",
+        FREE,
+    ),
+    figure(
+        "9b",
+        ("TR94, I3D95", SLATS),
+        "updates per second",
+        (60.0, "Hz", None),
+        "full-screen:100 on slats with the COPY optimisation",
+        FREE,
+    ),
+    figure(
+        "10",
+        ("TR94", SLATS),
+        "20 field regions to two frame buffers",
+        (11.0, "region times", None),
+        "full-screen:60 on slats without the COPY optimisation: from the first word to the last, in 780 us",
+        Basis::Rule { rule: "a frame-buffer port serves in order of arrival" },
+    ),
+    figure(
+        "11",
+        ("I3D95", SLATS),
+        "half of them",
+        (3.9, "ms", None),
+        "full-screen:100 on slats with the COPY optimisation: the bottom regions, from the first word to the last",
+        Basis::Rule { rule: "odd renderers begin with the right eye" },
+    ),
+    figure(
+        "12",
+        ("TR94", SLATS),
+        "most triangles without the COPY optimisation",
+        (110.0, "triangles", None),
+        "limit of full-screen:N on slats",
+        Basis::Fitted { parameter: "gp.triangle_ns of slats" },
+    ),
+    figure(
+        "13",
+        ("TR94", SLATS),
+        "most triangles with the COPY optimisation",
+        (140.0, "triangles", None),
+        "limit of full-screen:N on slats",
+        FREE,
+    ),
+    figure(
+        "14",
+        ("I3D95", SLATS),
+        "most triangles with the COPY optimisation, code of 1995: about",
+        (100.0, "triangles", None),
+        "limit of full-screen:N on slats-1995",
+        Basis::Fitted { parameter: "gp.triangle_ns of slats-1995" },
+    ),
+    figure(
+        "15",
+        ("I3D95", SLATS),
+        "time before the first copy in a field: about",
+        (12.8, "ms", None),
+        "the largest scene of figure 13: from the retrace to the first word of the first copy",
+        FREE,
+    ),
+];

@@ -1,0 +1,213 @@
+//! Three levels of modelling behind one interface: what is to be run, and what comes out, do not depend on the level.
+//!
+//! | level | graphics processors | ring | renderers |
+//! |---|---|---|---|
+//! | [`Level::Analytic`] | closed form of the stage rules | time of copies and of clumps | a constant per command |
+//! | [`Level::Transaction`] | timing table per primitive | an event per message | timing table per command |
+
+use crate::analytic;
+use crate::config::MachineConfig;
+use crate::experiment::{Experiment, ExperimentError, Outcome, Pixels};
+use crate::pipelines::{Pipeline, RenderingControl, Slats};
+use crate::report::Statistics;
+use pxpl5_scene::Scene;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{Eye, MAX_MESSAGE_WORDS, RegionGrid};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// How literally the machine is modelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Level {
+    /// Closed form of the stage rules; no events.
+    Analytic,
+    /// An event per message and command list.
+    Transaction,
+}
+
+/// A pipeline with its variant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Program {
+    /// Rendering Control.
+    RenderingControl(RenderingControl),
+    /// Slats.
+    Slats(Slats),
+}
+
+impl Program {
+    /// As an experiment takes it.
+    #[must_use]
+    pub fn pipeline(self) -> Arc<dyn Pipeline> {
+        match self {
+            Self::RenderingControl(pipeline) => Arc::new(pipeline),
+            Self::Slats(pipeline) => Arc::new(pipeline),
+        }
+    }
+}
+
+impl From<RenderingControl> for Program {
+    fn from(pipeline: RenderingControl) -> Self {
+        Self::RenderingControl(pipeline)
+    }
+}
+
+impl From<Slats> for Program {
+    fn from(pipeline: Slats) -> Self {
+        Self::Slats(pipeline)
+    }
+}
+
+/// What is to be run.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The machine.
+    pub machine: MachineConfig,
+    /// The pipeline.
+    pub program: Program,
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// Fields to simulate.
+    pub fields: u64,
+    /// Seed of the head motion.
+    pub seed: u64,
+}
+
+/// What came of it, over the pictures after the warm-up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Latency of every picture as its pipeline defines it, milliseconds.
+    pub latencies_ms: Vec<f64>,
+    /// Complete pictures a second.
+    pub updates_hz: f64,
+    /// Missed retraces.
+    pub missed_retraces: u64,
+    /// From the start of an eye's TRANSFORM to the end of its COPY, milliseconds; empty for Slats.
+    pub eye_latencies_ms: Vec<f64>,
+    /// Port time of a region of 15,360 pixels, microseconds.
+    pub region_copy_us: f64,
+    /// COPY of the left eye (Rendering Control), or of the top regions or all (Slats): first to last word.
+    pub first_copy_ms: f64,
+    /// COPY of the right eye, or of the bottom regions; 0 where there is none.
+    pub last_copy_ms: f64,
+    /// From the start of a picture to the first word of its first copy.
+    pub copy_begins_ms: f64,
+}
+
+impl Summary {
+    /// Latency in milliseconds.
+    #[must_use]
+    pub fn latency_ms(&self) -> Statistics {
+        Statistics::of(self.latencies_ms.iter().copied())
+    }
+
+    /// Latency in fields of 1001/60000 s.
+    #[must_use]
+    pub fn latency_fields(&self) -> Statistics {
+        Statistics::of(self.latencies_ms.iter().map(|ms| ms / FIELD_MS))
+    }
+}
+
+/// An NTSC field.
+pub const FIELD_MS: f64 = 1001.0 / 60.0;
+
+impl Level {
+    /// All, from the fastest to the most literal.
+    pub const ALL: [Self; 2] = [Self::Analytic, Self::Transaction];
+
+    /// Runs a case.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError`] as [`Experiment::run`].
+    pub fn run(self, case: &Case) -> Result<Summary, ExperimentError> {
+        match self {
+            Self::Analytic => analytic::run(case),
+            Self::Transaction => Ok(summary(case.program, &case.experiment().run()?)),
+        }
+    }
+}
+
+impl Case {
+    /// The experiment at the transaction level, without pixels.
+    #[must_use]
+    pub fn experiment(&self) -> Experiment {
+        Experiment::with(self.machine.clone(), self.program.pipeline(), Arc::clone(&self.scene))
+            .fields(self.fields)
+            .seed(self.seed)
+            .pixels(Pixels::Off)
+    }
+}
+
+/// First and last word of regions that are copied one after the other: an eye of Rendering Control, a half of Slats.
+struct CopySpan {
+    begin: Time,
+    end: Time,
+}
+
+/// Copies by picture and place in it.
+type Copies = BTreeMap<(u64, u8), CopySpan>;
+
+fn summary(program: Program, outcome: &Outcome) -> Summary {
+    let (report, pictures) = (outcome.report(), outcome.steady_pictures());
+    let message = outcome.machine().ring().timing().occupancy(MAX_MESSAGE_WORDS);
+    let copies = copies(program, outcome, message);
+    let mean = |place: u8| {
+        let spans = pictures.iter().filter_map(|p| copies.get(&(p.picture, place)));
+        Statistics::of(spans.map(|span| (span.end - span.begin).as_ms())).mean
+    };
+    let begins = pictures.iter().filter_map(|p| {
+        let begin = copies.get(&(p.picture, 0))?.begin;
+        Some(begin.since(p.transform_at).as_ms())
+    });
+    Summary {
+        latencies_ms: pictures.iter().map(|p| (p.shown_at - p.transform_at).as_ms()).collect(),
+        updates_hz: report.updates_hz,
+        missed_retraces: report.missed_retraces,
+        eye_latencies_ms: eye_latencies(outcome, message),
+        region_copy_us: region_copy_us(outcome, message),
+        first_copy_ms: mean(0),
+        last_copy_ms: mean(1),
+        copy_begins_ms: Statistics::of(begins).mean,
+    }
+}
+
+fn copies(program: Program, outcome: &Outcome, message: Span) -> Copies {
+    let mut copies = Copies::new();
+    for arrival in &outcome.observation().arrivals {
+        let bottom = u32::from(arrival.target.region.0) >= RegionGrid::FIELD.columns();
+        let place = match program {
+            Program::RenderingControl(_) => arrival.board as u8,
+            Program::Slats(slats) => u8::from(bottom && slats.copy == slats::Copy::Split),
+        };
+        let begin = Time(arrival.first_part_at.0.saturating_sub(message.0));
+        let fresh = CopySpan { begin, end: arrival.last_part_at };
+        let span = copies.entry((arrival.target.picture, place)).or_insert(fresh);
+        span.begin = span.begin.min(begin);
+        span.end = span.end.max(arrival.last_part_at);
+    }
+    copies
+}
+
+fn region_copy_us(outcome: &Outcome, message: Span) -> f64 {
+    let (mut ms, mut pixels) = (0.0, 0u64);
+    for arrival in &outcome.observation().arrivals {
+        let [_, _, width, height] = arrival.target.grid.rectangle(arrival.target.region);
+        ms += (arrival.last_part_at - arrival.first_part_at + message).as_ms();
+        pixels += u64::from(width * height);
+    }
+    ms * 1e3 * 15_360.0 / pixels.max(1) as f64
+}
+
+fn eye_latencies(outcome: &Outcome, message: Span) -> Vec<f64> {
+    use pxpl5_gp::Stage;
+    let stages = outcome.observation().stages(message);
+    let ends: BTreeMap<(u64, Option<Eye>), Time> =
+        stages.iter().filter(|s| s.stage == Stage::Copy).filter_map(|s| Some(((s.picture, s.eye), s.end?))).collect();
+    let first = outcome.steady_pictures().first().map_or(u64::MAX, |p| p.picture);
+    let last = outcome.pictures().last().map_or(0, |p| p.picture);
+    let of_eyes = stages.iter().filter(|s| s.stage == Stage::Transform && s.eye.is_some());
+    let steady = of_eyes.filter(|s| (first..=last).contains(&s.picture));
+    steady.filter_map(|s| Some(ends.get(&(s.picture, s.eye))?.since(s.begin).as_ms())).collect()
+}

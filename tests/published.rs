@@ -1,0 +1,112 @@
+//! The published figures, asserted: free checks within what the papers print or their last digit allows, misses as they
+//! are (FIXME(accuracy)). Causes stand in ACCURACY.md, which must be what these runs give.
+
+use pxpl5::figures::{Bench, Row, markdown, run_all};
+use pxpl5::levels::Level;
+use std::sync::LazyLock;
+
+static ROWS: LazyLock<Vec<Row>> =
+    LazyLock::new(|| run_all(&Bench::new(Level::Transaction)).expect("every experiment runs on its preset"));
+
+fn row(id: &str) -> &'static Row {
+    ROWS.iter().find(|row| row.id == id).expect("listed")
+}
+
+#[track_caller]
+fn within(id: &str, low: f64, high: f64) {
+    let simulated = row(id).simulated;
+    assert!((low..=high).contains(&simulated), "figure {id}: {simulated} is not in {low} to {high}");
+}
+
+#[test]
+fn a_region_is_copied_in_780_us() {
+    within("1", 779.9, 780.1);
+}
+
+#[test]
+fn both_eyes_are_copied_in_31_2_ms() {
+    within("2", 31.15, 31.25);
+}
+
+#[test]
+fn copy_alone_takes_less_than_the_three_fields_of_the_theory() {
+    // FIXME(accuracy): published 50 ms.
+    within("3", 36.0, 37.0);
+    assert!(row("3").misses());
+}
+
+#[test]
+fn a_trivial_stereo_scene_takes_4_percent_less_than_measured() {
+    // FIXME(accuracy): published 56.5 ms.
+    within("4", 54.0, 54.3);
+    within("4b", 29.9, 30.0);
+}
+
+#[test]
+fn equal_stages_do_not_keep_30_hz() {
+    // FIXME(accuracy): published up to 66.7 ms at 30 Hz.
+    within("5", 85.0, 86.5);
+}
+
+#[test]
+fn long_stages_take_more_than_three_transforms_and_two_copies() {
+    // FIXME(accuracy): published 90.6 to 106.2 ms.
+    within("6", 108.0, 114.0);
+}
+
+#[test]
+fn the_mig_is_shown_a_field_sooner_than_measured() {
+    // FIXME(accuracy): published 4.61 fields, sd 0.589.
+    within("7", 3.6, 4.0);
+    assert!(row("7").misses());
+}
+
+#[test]
+fn triangles_touch_fewer_than_1_3_regions_in_the_mean_of_our_scenes() {
+    // FIXME(accuracy): published 1.3; the mig alone gives 1.4, the head 1.02.
+    within("8", 1.1, 1.25);
+}
+
+#[test]
+fn slats_has_a_latency_of_one_field_always() {
+    within("9", 0.999_999, 1.000_001);
+    assert!(row("9").details.iter().all(|d| (d.value - 1.0).abs() < 1e-6), "least and greatest too");
+    within("9b", 59.9, 60.0);
+}
+
+#[test]
+fn twenty_field_regions_take_eleven_region_times_and_ten_take_five() {
+    within("10", 10.99, 11.01);
+    within("11", 3.85, 3.95);
+}
+
+#[test]
+fn the_limits_that_parameters_were_fitted_to_come_out_exactly() {
+    within("12", 110.0, 110.0);
+    within("14", 100.0, 100.0);
+}
+
+#[test]
+fn the_copy_optimisation_raises_the_limit_to_the_published_140_within_two() {
+    within("13", 138.0, 142.0);
+}
+
+#[test]
+fn the_first_copy_of_a_full_field_begins_after_about_12_8_ms() {
+    within("15", 12.6, 13.0);
+}
+
+#[test]
+fn every_row_names_its_source_and_every_miss_its_cause() {
+    for row in ROWS.iter() {
+        assert!(row.source.contains("TR94") || row.source.contains("I3D95"), "{}", row.id);
+        assert!(!row.misses() || !row.cause.is_empty(), "figure {} misses without a cause", row.id);
+    }
+}
+
+#[test]
+fn accuracy_md_is_what_these_runs_give() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/ACCURACY.md");
+    let kept = std::fs::read_to_string(path).expect("ACCURACY.md is part of the project");
+    assert!(kept == markdown(&ROWS), "ACCURACY.md is stale: run `pxpl5 figures --write ACCURACY.md`");
+}
