@@ -64,6 +64,12 @@ impl Head {
         self.predictor.kind != PredictorKind::None
     }
 
+    /// The predictor.
+    #[must_use]
+    pub const fn predictor_kind(&self) -> PredictorKind {
+        self.predictor.kind
+    }
+
     /// The tracker.
     #[must_use]
     pub const fn tracker(&self) -> &TrackerModel {

@@ -221,7 +221,7 @@ fn regions_touched() -> Result<Measured> {
 /// Bin entries per triangle that touches any region, over both eyes.
 fn touched(scene: &Arc<Scene>) -> Result<f64> {
     let list = Arc::new(display_list(scene).map_err(ExperimentError::Scene)?);
-    let views = views(scene, 1, 2);
+    let (views, _) = views(scene, 1, 2);
     let (share, layout) = (Share::new(list, 0, 1), Layout::rendering_control_phong());
     let picture = Picture {
         viewport: Viewport::FRAME,
@@ -232,7 +232,7 @@ fn touched(scene: &Arc<Scene>) -> Result<f64> {
     };
     let (mut entries, mut triangles) = (0u64, 0u64);
     for number in 0..VIEWS {
-        let view = views(number, Time(number * VIEW_PERIOD_PS)).0;
+        let view = views(number, Time(number * VIEW_PERIOD_PS));
         for eye in 0..2 {
             let pass = share.transform(&view, eye, picture);
             let regions = (0..picture.viewport.grid().regions() as u16).map(pxpl5_wire::RegionId);

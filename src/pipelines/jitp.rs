@@ -5,7 +5,7 @@ use crate::config::ConfigError;
 use crate::machine::Machine;
 use crate::observation::{Arrival, LateRegion};
 use image::RgbImage;
-use jitp::{Beam, Config, JitpTiming, Reading, Schedule, Wanted, host, master, slave};
+use jitp::{Beam, Config, JitpTiming, Schedule, Wanted, host, master, slave};
 use pphigs::Share;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{Level, Stage};
@@ -15,7 +15,7 @@ use pxpl5_wire::{CopyTarget, Eye, FieldParity, RegionGrid, RegionId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use jitp::Viewpoint;
+pub use jitp::{Reading, Viewpoint};
 
 /// A picture whose strips are drawn for their own moments, or in their own time (JITP).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

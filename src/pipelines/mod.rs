@@ -7,7 +7,8 @@ mod rendering_control;
 mod slats;
 
 pub use frameless::Frameless;
-pub use jitp::{Jitp, Viewpoint};
+pub(crate) use jitp::region_at;
+pub use jitp::{Jitp, Reading, Viewpoint};
 pub use rendering_control::RenderingControl;
 pub use slats::{Code, Slats};
 
