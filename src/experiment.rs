@@ -426,7 +426,7 @@ impl Outcome {
             pictures: pictures.len(),
             latency_fields: self.latency_fields().defined(experiment.pipeline.latency_definition()),
             latency_ms: self.latency_ms().defined(experiment.pipeline.latency_definition()),
-            updates_hz: updates_hz(pictures) / experiment.pipeline.updates_per_picture(),
+            updates_hz: updates_hz(pictures) / experiment.pipeline.updates_per_picture(&self.machine),
             missed_retraces: experiment.pipeline.missed_retraces(pictures),
             missed_retraces_definition: experiment.pipeline.missed_definition().to_owned(),
             late_regions: late.len(),

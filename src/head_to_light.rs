@@ -352,7 +352,7 @@ impl Budget {
     fn mean(each: &[[f64; 6]]) -> Self {
         let n = each.len().max(1) as f64;
         let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms] =
-            std::array::from_fn(|i| each.iter().map(|stages| stages[i]).sum::<f64>() / n);
+            std::array::from_fn(|i| each.iter().fold(0.0, |sum, stages| sum + stages[i]) / n);
         let total_ms = tracking_ms + waiting_ms + sending_ms + drawing_ms + showing_ms + scanning_ms;
         let pictures = each.len();
         Self { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, pictures }

@@ -66,6 +66,8 @@ pub struct PixelErrors {
     pub centre_px: Percentiles,
     /// In the middle of the picture, degrees.
     pub centre_deg: Percentiles,
+    /// Pixels judged.
+    pub judged: u64,
     /// Pixels whose content should not be before the eye at all.
     pub behind: u64,
     /// Pixels that showed nothing yet.
@@ -150,7 +152,38 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b))
 }
 
+/// Judges single pixels of a run.
+#[derive(Debug)]
+pub struct Registration<'a> {
+    judge: Judge<'a>,
+    shown: Shown<'a>,
+}
+
+impl<'a> Registration<'a> {
+    /// Of a run; `None` when it had no head.
+    #[must_use]
+    pub fn of(outcome: &'a Outcome) -> Option<Self> {
+        let head = outcome.head()?;
+        Some(Self { judge: Judge::new(head), shown: Shown::of(outcome, head) })
+    }
+
+    /// The error of a pixel in a field that scans its line; `None` where nothing is shown yet, or where its content
+    /// should be behind the eye.
+    #[must_use]
+    pub fn at(&self, x: u32, y: u32, field: u64) -> Option<PixelError> {
+        let at = self.shown.outcome.machine().video().when(x, y, field)?;
+        let drawn = self.shown.drawn(x, y, field, at)?;
+        self.judge.error(middle(x, y), &drawn, at)
+    }
+}
+
+/// The middle of a pixel.
+fn middle(x: u32, y: u32) -> DVec2 {
+    DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)
+}
+
 /// Everything that is known of a run's views.
+#[derive(Debug)]
 struct Shown<'a> {
     outcome: &'a Outcome,
     screen: Screen,
@@ -217,8 +250,7 @@ impl Collected {
                 self.errors.empty += 1;
                 continue;
             };
-            let place = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-            let Some(error) = judge.error(place, &drawn, at) else {
+            let Some(error) = judge.error(middle(x, y), &drawn, at) else {
                 self.errors.behind += 1;
                 continue;
             };
@@ -239,6 +271,7 @@ impl Collected {
     fn finish(self) -> PixelErrors {
         let of = |errors: &[PixelError], value: fn(&PixelError) -> f64| Percentiles::of(errors.iter().map(value));
         PixelErrors {
+            judged: self.grid.len() as u64,
             pixels: of(&self.grid, |e| e.pixels),
             degrees: of(&self.grid, |e| e.degrees),
             centre_px: of(&self.centre, |e| e.pixels),

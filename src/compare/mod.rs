@@ -10,7 +10,7 @@ mod rows;
 mod screen;
 
 pub use chart::{LatencyCurve, chart};
-pub use errors::{FieldError, Percentiles, PixelErrors};
+pub use errors::{FieldError, Percentiles, PixelErrors, Registration};
 pub use motion::{MotionError, TRACKERS, motion, predictor, tracker};
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use possible::{Possible, triangles_possible};

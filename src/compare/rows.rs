@@ -7,6 +7,7 @@ use crate::experiment::{Experiment, ExperimentError, Outcome, Pixels};
 use crate::head_to_light::{Budget, Head};
 use crate::parallel;
 use crate::pipelines::{Frameless, Jitp, Pipeline, RenderingControl, Slats};
+use pphigs::Binning;
 use pxpl5_scene::Scene;
 use serde::Serialize;
 use std::sync::Arc;
@@ -65,26 +66,44 @@ pub struct Comparison {
     pub pipelines: Vec<Row>,
 }
 
-/// A pipeline, and what is done with its picture.
-#[derive(Clone)]
-enum Contender {
-    Machine(Arc<dyn Pipeline>),
-    RasterOffset(Arc<dyn Pipeline>),
-    /// The reference, evaluated on the run of a pipeline.
-    Ideal(Arc<dyn Pipeline>),
+/// A row of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// The picture as it is.
+    Plain,
+    /// The raster is shifted as it is scanned.
+    RasterOffset,
+    /// The reference, evaluated at the times of the run.
+    Ideal,
 }
 
+/// A run and the rows that it gives.
+struct Contender {
+    pipeline: Arc<dyn Pipeline>,
+    rows: Vec<(String, Kind)>,
+}
+
+impl Contender {
+    fn plain(pipeline: impl Pipeline + 'static) -> Self {
+        Self { rows: vec![(pipeline.name().to_owned(), Kind::Plain)], pipeline: Arc::new(pipeline) }
+    }
+}
+
+/// Slats twice: as published every clump goes to all regions, which limits the scene to little more than 100
+/// triangles; clumps that go where they are seen leave the raster offset a picture to work on.
 fn contenders() -> Vec<Contender> {
-    let of = |pipeline: Arc<dyn Pipeline>| Contender::Machine(pipeline);
-    let slats: Arc<dyn Pipeline> = Arc::new(Slats::split());
+    let row = |name: &str, kind| (name.to_owned(), kind);
+    let touched = Contender {
+        pipeline: Arc::new(Slats { binning: Binning::Touched, ..Slats::split() }),
+        rows: vec![row("slats-touched", Kind::Plain), row("vdrt", Kind::RasterOffset), row("ideal", Kind::Ideal)],
+    };
     let mut all = vec![
-        of(Arc::new(RenderingControl::stereo())),
-        of(Arc::clone(&slats)),
-        Contender::RasterOffset(Arc::clone(&slats)),
+        Contender::plain(RenderingControl::stereo()),
+        Contender::plain(Slats::split()),
+        touched,
+        Contender::plain(Frameless::new()),
     ];
-    all.extend(Jitp::all().into_iter().map(|jitp| of(Arc::new(jitp))));
-    all.push(of(Arc::new(Frameless::new())));
-    all.push(Contender::Ideal(slats));
+    all.extend(Jitp::all().into_iter().map(Contender::plain));
     all
 }
 
@@ -109,14 +128,12 @@ pub fn compare(
     config.check()?;
     let tracker = head.tracker().config().name.clone();
     let rows = parallel::map(&contenders(), |contender| {
-        let run = |pipeline: &Arc<dyn Pipeline>| {
-            Experiment::with(config.clone(), Arc::clone(pipeline), Arc::clone(scene))
-                .head(Arc::clone(head))
-                .fields(fields)
-                .pixels(Pixels::Off)
-                .run()
-        };
-        contender.row(config, possible, run)
+        let run = Experiment::with(config.clone(), Arc::clone(&contender.pipeline), Arc::clone(scene))
+            .head(Arc::clone(head))
+            .fields(fields)
+            .pixels(Pixels::Off)
+            .run();
+        contender.rows(config, possible, &run)
     });
     Ok(Comparison {
         schema: "pxpl5-comparison/1",
@@ -127,64 +144,51 @@ pub fn compare(
         tracker,
         predictor: format!("{:?}", head.predictor_kind()),
         fields,
-        pipelines: rows,
+        pipelines: rows.into_iter().flatten().collect(),
     })
 }
 
 impl Contender {
-    fn pipeline(&self) -> &Arc<dyn Pipeline> {
-        match self {
-            Self::Machine(pipeline) | Self::RasterOffset(pipeline) | Self::Ideal(pipeline) => pipeline,
-        }
-    }
-
-    fn name(&self) -> String {
-        match self {
-            Self::Machine(pipeline) => pipeline.name().to_owned(),
-            Self::RasterOffset(_) => "vdrt".to_owned(),
-            Self::Ideal(_) => "ideal".to_owned(),
-        }
-    }
-
-    fn row(
-        &self,
-        config: &MachineConfig,
-        possible: bool,
-        run: impl Fn(&Arc<dyn Pipeline>) -> Result<Outcome, ExperimentError>,
-    ) -> Row {
-        let blank = Row { pipeline: self.name(), eyes: self.pipeline().eyes(), ..Row::default() };
-        let row = match run(self.pipeline()) {
-            Ok(outcome) => self.of_outcome(&outcome, blank),
-            Err(error) => Row { failure: Some(error.to_string()), ..blank },
+    fn rows(&self, config: &MachineConfig, possible: bool, run: &Result<Outcome, ExperimentError>) -> Vec<Row> {
+        let limit = possible.then(|| triangles_possible(config, &self.pipeline));
+        let row = |(name, kind): &(String, Kind)| {
+            let limit = limit.as_ref().filter(|_| *kind != Kind::Ideal);
+            let blank = Row {
+                pipeline: name.clone(),
+                eyes: self.pipeline.eyes(),
+                triangles_possible: limit.map(|limit| limit.triangles),
+                triangles_definition: limit.map_or("", |limit| limit.definition).to_owned(),
+                ..Row::default()
+            };
+            match run {
+                Ok(outcome) => of_outcome(*kind, outcome, blank),
+                Err(error) => Row { failure: Some(error.to_string()), ..blank },
+            }
         };
-        if !possible || matches!(self, Self::Ideal(_)) {
-            return row;
-        }
-        let limit = triangles_possible(config, self.pipeline());
-        Row { triangles_possible: Some(limit.triangles), triangles_definition: limit.definition.to_owned(), ..row }
+        self.rows.iter().map(row).collect()
     }
+}
 
-    fn of_outcome(&self, outcome: &Outcome, blank: Row) -> Row {
-        if let Self::Ideal(_) = self {
+fn of_outcome(kind: Kind, outcome: &Outcome, blank: Row) -> Row {
+    let error = match kind {
+        Kind::Plain => PixelErrors::of(outcome),
+        Kind::RasterOffset => PixelErrors::with_raster_offset(outcome),
+        Kind::Ideal => {
             let latency_definition = "none: every pixel's own moment, computed and not timed".to_owned();
             return Row { error: PixelErrors::ideal(outcome), latency_definition, ..blank };
         }
-        let error = match self {
-            Self::RasterOffset(_) => PixelErrors::with_raster_offset(outcome),
-            _ => PixelErrors::of(outcome),
-        };
-        let report = outcome.report();
-        Row {
-            latency_definition: outcome.pipeline().latency_definition().to_owned(),
-            latency_ms: report.latency_ms.statistics.mean,
-            end_to_end: Budget::of(outcome),
-            updates_hz: report.updates_hz,
-            missed_retraces: report.missed_retraces,
-            late_regions: report.late_regions,
-            error,
-            host_seconds: outcome.host_seconds(),
-            ..blank
-        }
+    };
+    let report = outcome.report();
+    Row {
+        latency_definition: outcome.pipeline().latency_definition().to_owned(),
+        latency_ms: report.latency_ms.statistics.mean,
+        end_to_end: Budget::of(outcome),
+        updates_hz: report.updates_hz,
+        missed_retraces: report.missed_retraces,
+        late_regions: report.late_regions,
+        error,
+        host_seconds: outcome.host_seconds(),
+        ..blank
     }
 }
 

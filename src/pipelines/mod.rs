@@ -129,7 +129,7 @@ pub trait Pipeline: Debug + Send + Sync {
     fn missed_definition(&self) -> &'static str;
 
     /// How many entries of [`Pipeline::pictures`] make a whole picture.
-    fn updates_per_picture(&self) -> f64 {
+    fn updates_per_picture(&self, _machine: &Machine) -> f64 {
         1.0
     }
 
