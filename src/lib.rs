@@ -26,6 +26,7 @@
 //! | [`Machine`] | boards plugged together: the only place where they meet |
 //! | [`pipelines`] | what can run on it; a new pipeline implements [`Pipeline`] |
 //! | [`figures`], [`levels`], [`limit`] | published figures, levels of modelling, most triangles per field |
+//! | [`ExperimentFile`], [`sweep`], [`Snapshot`] | experiments as text, at many points, and continued |
 //! | `pxpl5-*` crates | one for each board, and the event kernel |
 //!
 //! Every number of the model has a unit, a standing (published, derived, assumed) and a source:
@@ -40,6 +41,8 @@ mod experiment;
 mod experiment_file;
 pub mod figures;
 mod fingerprint;
+pub mod intervals;
+mod latency;
 pub mod levels;
 pub mod limit;
 mod machine;
@@ -48,6 +51,9 @@ mod observation;
 mod parallel;
 pub mod pipelines;
 mod report;
+pub mod results;
+mod snapshot;
+pub mod sweep;
 pub mod timeline;
 mod workers;
 
@@ -55,9 +61,9 @@ pub use config::{ConfigError, MachineConfig, PRESETS, Parameter, Preset};
 pub use experiment::{Experiment, ExperimentError, FIELDS_RANGE, Outcome, Pixels, WARM_UP_PICTURES};
 pub use experiment_file::{
     ExperimentFile, FileError, KEYS, Key, MotionChoice, Outputs, PIPELINES, Plan, Published, SceneChoice, Settings,
-    Variant,
 };
 pub use fingerprint::Fingerprint;
+pub use latency::{LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition};
 pub use machine::{Machine, Ports, RunError};
 pub use measure::{Measure, QUANTITIES, Quantity};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
@@ -67,3 +73,4 @@ pub use pxpl5_scene as scene;
 pub use pxpl5_wire::Eye;
 pub use report::{DefinedStatistics, Report, Statistics};
 pub use slats::Copy;
+pub use snapshot::{Snapshot, SnapshotError};
