@@ -1,9 +1,10 @@
 //! A plan written out in full.
 
 use super::motion::PathChoice;
-use super::plan::{BINNINGS, CODES, COPIES, PIXELS, Plan, SHADINGS, Variant};
+use super::plan::{BINNINGS, CODES, COPIES, PIXELS, Plan, SHADINGS};
 use crate::config::MachineConfig;
 use crate::fingerprint::Fingerprint;
+use crate::levels::Program;
 use std::collections::BTreeMap;
 use std::fmt;
 use toml::Value;
@@ -56,13 +57,13 @@ impl Plan {
     }
 
     fn pipeline_settings(&self, all: &mut Settings) {
-        all.put("pipeline", self.variant.name());
-        match &self.variant {
-            Variant::RenderingControl(pipeline) => {
+        all.put("pipeline", self.program.name());
+        match &self.program {
+            Program::RenderingControl(pipeline) => {
                 all.put("mono", pipeline.mono);
                 all.put("shading", name(&SHADINGS, &pipeline.shading));
             }
-            Variant::Slats(pipeline) => {
+            Program::Slats(pipeline) => {
                 all.put("copy", name(&COPIES, &pipeline.copy));
                 all.put("binning", name(&BINNINGS, &pipeline.binning));
                 if let Some(code) = &pipeline.code {

@@ -254,7 +254,7 @@ fn regions_touched() -> Result<Measured> {
 /// Bin entries per triangle that touches any region, over both eyes.
 fn touched(scene: &Arc<Scene>) -> Result<f64> {
     let list = Arc::new(display_list(scene).map_err(ExperimentError::Scene)?);
-    let views = views(scene, 1, 2);
+    let (views, _) = views(scene, 1, 2);
     let (share, layout) = (Share::new(list, 0, 1), Layout::rendering_control_phong());
     let picture = Picture {
         viewport: Viewport::FRAME,

@@ -13,10 +13,13 @@ mod figures;
 mod i860;
 mod limit;
 mod machines;
+mod merge;
 mod output;
 mod run;
 mod scenes;
 mod settings;
+mod snapshot;
+mod sweep;
 mod table;
 mod terminal;
 
@@ -44,7 +47,7 @@ Exit codes: 0 all went well, 1 something failed, 2 the command line or an experi
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// Show both pipelines at work on built-in scenes: a table, pictures and report.json.
+    /// Show both pipelines at work on built-in scenes: a table, pictures, timelines and report.json.
     Demo(demo::DemoArgs),
     /// Run one experiment.
     Run(run::RunArgs),
@@ -58,6 +61,14 @@ enum Command {
     Scenes(scenes::ScenesArgs),
     /// List the machines that are built in.
     Machines(machines::MachinesArgs),
+    /// Run an experiment at every point of a space of settings.
+    Sweep(sweep::SweepArgs),
+    /// Join the shards of a sweep.
+    Merge(merge::MergeArgs),
+    /// Measure every published figure and compare.
+    Figures(figures::FiguresArgs),
+    /// Find the most triangles that a pipeline draws in time.
+    Limit(limit::LimitArgs),
     /// Work with programs of the graphics processor's CPU.
     I860(i860::I860Args),
     /// Print a completion script for a shell.
@@ -85,6 +96,10 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Limit(args)) => limit::run(args),
         Some(Command::Scenes(args)) => scenes::run(args),
         Some(Command::Machines(args)) => machines::run(args),
+        Some(Command::Sweep(args)) => sweep::run(args),
+        Some(Command::Merge(args)) => merge::run(args),
+        Some(Command::Figures(args)) => figures::run(args),
+        Some(Command::Limit(args)) => limit::run(args),
         Some(Command::I860(args)) => i860::run(args).map_err(CliError::failure),
         Some(Command::Completions(args)) => completions::run(args),
     }

@@ -1,10 +1,11 @@
 //! `pxpl5 run`.
 
 use crate::error::CliError;
-use crate::output::{OutputFolder, origin_lines, png};
+use crate::output::{OutputFolder, origin_lines, png, timeline};
 use crate::settings::SettingArgs;
+use crate::snapshot::SnapshotArgs;
 use crate::table::{Comparison, table};
-use crate::terminal::{print, progress};
+use crate::terminal::print;
 use clap::Args;
 use pxpl5::{ExperimentFile, Eye, Outcome, Plan, Report};
 use std::fmt::Write;
@@ -16,16 +17,20 @@ use std::path::PathBuf;
   pxpl5 run --pipeline slats --scene mig --triangles 140 --copy whole
   pxpl5 run --pipeline rendering-control --scene head --machine large --fields 300 --out out/head
   pxpl5 run experiments/figure-04.toml --seed 7 --json
-  pxpl5 run --pipeline slats --scene mig --triangles 100 --set gp.triangle_ns=30000")]
+  pxpl5 run --pipeline slats --scene mig --triangles 100 --set gp.triangle_ns=30000
+  pxpl5 run --pipeline slats --scene head --triangles 100 --save-at 60 --save s.json
+  pxpl5 run --restore s.json --fields 600")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     settings: SettingArgs,
     /// Worker threads for --pixels all; default: one a core.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     threads: Option<u64>,
-    /// Write report.json, results.csv, experiment.toml and the last pictures into this folder.
+    /// Write report.json, results.csv, experiment.toml, timeline.svg and the last pictures into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    snapshot: SnapshotArgs,
     /// Print the report as one JSON object.
     #[arg(long)]
     json: bool,
@@ -35,9 +40,9 @@ pub(crate) struct RunArgs {
 }
 
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
-    let plan = plan(args.settings.gather()?)?;
+    let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
-    let outcome = simulate(&plan, args.threads, args.quiet)?;
+    let outcome = args.snapshot.simulate(&plan, args.threads, args.quiet)?;
     let report = outcome.report();
     let written = folder.map(|folder| write(folder, &plan, &outcome, &report)).transpose()?;
     if args.json {
@@ -61,17 +66,6 @@ fn plan(file: ExperimentFile) -> Result<Plan, CliError> {
         return Err(CliError::usage("this file describes a sweep: use `pxpl5 sweep FILE --out DIR`"));
     }
     Ok(file.resolve()?)
-}
-
-pub(crate) fn simulate(plan: &Plan, threads: Option<u64>, quiet: bool) -> Result<Outcome, CliError> {
-    let mut experiment = plan.experiment(plan.load_scene()?);
-    if let Some(threads) = threads {
-        experiment = experiment.threads(threads as usize);
-    }
-    let bar = progress(plan.fields, "fields", quiet);
-    let outcome = experiment.run_with(|field, _| bar.set_position(field));
-    bar.finish_and_clear();
-    Ok(outcome?)
 }
 
 pub(crate) fn json(report: &Report) -> Result<String, CliError> {
@@ -98,6 +92,9 @@ fn write(mut folder: OutputFolder, plan: &Plan, outcome: &Outcome, report: &Repo
     }
     if plan.output.pictures {
         pictures(&mut folder, "", outcome, report)?;
+    }
+    if plan.output.timeline {
+        folder.put("timeline.svg", timeline(outcome, report).as_bytes())?;
     }
     let path = folder.path().to_path_buf();
     folder.commit()?;
