@@ -110,7 +110,7 @@ fn what_is_simulated_lies_in_its_own_interval_and_the_limits_are_within_reach() 
         let [low, high] = row.interval.expect("every figure has one");
         assert!(low <= row.simulated && row.simulated <= high, "figure {}", row.id);
     }
-    assert!(["4", "12", "13", "14", "15"].iter().all(|id| !row(id).is_out_of_reach()));
+    assert!(["12", "13", "14", "15"].iter().all(|id| !row(id).is_out_of_reach()));
 }
 
 #[test]
