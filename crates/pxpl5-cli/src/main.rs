@@ -11,6 +11,7 @@ mod demo;
 mod error;
 mod figures;
 mod i860;
+mod levels;
 mod limit;
 mod machines;
 mod merge;
@@ -65,6 +66,8 @@ enum Command {
     Figures(figures::FiguresArgs),
     /// Find the most triangles that a pipeline draws in time.
     Limit(limit::LimitArgs),
+    /// Compare the levels of modelling: speed against error.
+    Levels(levels::LevelsArgs),
     /// Work with programs of the graphics processor's CPU.
     I860(i860::I860Args),
     /// Print a completion script for a shell.
@@ -94,6 +97,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Merge(args)) => merge::run(args),
         Some(Command::Figures(args)) => figures::run(args),
         Some(Command::Limit(args)) => limit::run(args),
+        Some(Command::Levels(args)) => levels::run(args),
         Some(Command::I860(args)) => i860::run(args).map_err(CliError::failure),
         Some(Command::Completions(args)) => completions::run(args),
     }
