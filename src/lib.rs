@@ -61,7 +61,7 @@ pub use experiment_file::{
 };
 pub use fingerprint::Fingerprint;
 pub use machine::{Machine, Ports, RunError};
-pub use measure::{Measure, QUANTITIES, Quantity};
+pub use measure::{Measure, QUANTITIES, Quantity, Results};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
 pub use pipelines::{Code, Pipeline, RenderingControl, Slats};
 pub use pphigs::Binning;

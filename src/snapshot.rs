@@ -117,7 +117,7 @@ impl Snapshot {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             machine: plan.machine.preset.clone(),
             config_hash: config_hash.to_string(),
-            level: "transaction".to_owned(),
+            level: plan.level_name().to_owned(),
             seed: plan.seed,
             field,
             time_ps: machine.video().retrace(field).0,
@@ -238,9 +238,9 @@ mod tests {
     fn a_run_repeated_from_its_snapshot_is_the_same_at_the_field_and_at_the_end() {
         let (plan, snapshot, end) = saved();
         let snapshot = Snapshot::read(&snapshot.to_text(), "s").expect("as written");
-        let restored = snapshot
-            .experiment("s")
-            .and_then(|file| file.resolve().map_err(|error| SnapshotError::Experiment { file: "s".to_owned(), error: Box::new(error) }));
+        let restored = snapshot.experiment("s").and_then(|file| {
+            file.resolve().map_err(|error| SnapshotError::Experiment { file: "s".to_owned(), error: Box::new(error) })
+        });
         let restored = restored.expect("as written");
         assert_eq!(restored, plan);
         let scene = restored.load_scene().expect("built in");

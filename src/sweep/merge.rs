@@ -62,11 +62,7 @@ fn found(path: &Path) -> Result<Found, SweepError> {
 }
 
 /// Adds rows; gives the points that were there already.
-fn join(
-    joined: &mut Joined,
-    rows: BTreeMap<u64, Row>,
-    name: &str,
-) -> Result<Vec<u64>, SweepError> {
+fn join(joined: &mut Joined, rows: BTreeMap<u64, Row>, name: &str) -> Result<Vec<u64>, SweepError> {
     let mut duplicates = Vec::new();
     for (point, row) in rows {
         match joined.get(&point) {

@@ -98,3 +98,51 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Completions(args)) => completions::run(args),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    /// Lines that begin with the command, joined where they end in a backslash, without comments and shell variables.
+    fn commands(text: &str) -> Vec<Vec<String>> {
+        let joined = text.replace("\\\n", " ");
+        let lines = joined.lines().map(str::trim).filter(|line| line.starts_with("pxpl5"));
+        let words = |line: &str| {
+            let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
+            // Help texts explain after three spaces.
+            let line = line.split("   ").next().unwrap_or_default().replace("$SLURM_ARRAY_TASK_ID", "1");
+            line.split_whitespace().map(str::to_owned).collect()
+        };
+        lines.map(words).collect()
+    }
+
+    fn parses(text: &str) -> usize {
+        let commands = commands(text);
+        for words in &commands {
+            let result = Cli::try_parse_from(words);
+            assert!(result.is_ok(), "{words:?}: {}", result.expect_err("it does not parse"));
+        }
+        commands.len()
+    }
+
+    #[test]
+    fn every_command_of_the_help_texts_is_understood() {
+        let mut command = Cli::command();
+        let mut found = parses(&command.render_long_help().to_string());
+        for sub in command.get_subcommands_mut() {
+            found += parses(&sub.render_long_help().to_string());
+        }
+        assert!(found > 20, "found {found}");
+    }
+
+    #[test]
+    fn every_command_of_the_guide_to_sweeps_and_of_the_experiments_is_understood() {
+        assert!(parses(include_str!("../../../docs/sweeps.md")) > 10);
+    }
+
+    #[test]
+    fn the_definition_of_the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}
