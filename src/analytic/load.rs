@@ -42,7 +42,7 @@ impl Load {
     /// [`ExperimentError::Scene`] for a scene without primitives.
     pub fn of(case: &Case, viewport: Viewport, binning: Binning, times: &[u64]) -> Result<Vec<Self>, ExperimentError> {
         let list = Arc::new(display_list(&case.scene).map_err(ExperimentError::Scene)?);
-        let views = views(&case.scene, case.seed, 2);
+        let (views, _) = views(&case.scene, case.seed, 2);
         let share = Share::new(list, 0, 1);
         let (shading, layout) = (Shading::Phong, Layout::rendering_control_phong());
         let picture = Picture { viewport, shading, binning, layout, pixels: false };
