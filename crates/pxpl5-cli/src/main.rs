@@ -65,10 +65,6 @@ enum Command {
     Sweep(sweep::SweepArgs),
     /// Join the shards of a sweep.
     Merge(merge::MergeArgs),
-    /// Measure every published figure and compare.
-    Figures(figures::FiguresArgs),
-    /// Find the most triangles that a pipeline draws in time.
-    Limit(limit::LimitArgs),
     /// Work with programs of the graphics processor's CPU.
     I860(i860::I860Args),
     /// Print a completion script for a shell.
@@ -98,8 +94,6 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Machines(args)) => machines::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
         Some(Command::Merge(args)) => merge::run(args),
-        Some(Command::Figures(args)) => figures::run(args),
-        Some(Command::Limit(args)) => limit::run(args),
         Some(Command::I860(args)) => i860::run(args).map_err(CliError::failure),
         Some(Command::Completions(args)) => completions::run(args),
     }
