@@ -5,13 +5,13 @@ use crate::display_list::{display_list, views};
 use crate::fingerprint::Fingerprint;
 use crate::head_to_light::{FIELDS_WITH_HEAD, Head, HeadViews, Rehearsal};
 use crate::machine::{Machine, RunError};
-use crate::observation::Observation;
+use crate::observation::{Observation, StageSpan};
 use crate::pipelines::{PictureTimes, Pipeline, ReportTimes, Setup};
 use crate::report::{Report, Statistics};
 use image::RgbImage;
 use pxpl5_scene::Scene;
-use pxpl5_sim::Time;
-use pxpl5_wire::Eye;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{Eye, MAX_MESSAGE_WORDS};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::sync::Arc;
@@ -358,6 +358,17 @@ impl Outcome {
     #[must_use]
     pub const fn observation(&self) -> &Observation {
         self.machine.observation()
+    }
+
+    /// All stages of all pictures, COPY as the frame buffers saw it.
+    #[must_use]
+    pub fn stages(&self) -> Vec<StageSpan> {
+        self.observation().stages(self.machine.ring().timing().occupancy(MAX_MESSAGE_WORDS))
+    }
+
+    /// The software time of a message that a GP receives.
+    pub(crate) const fn receive_span(&self) -> Span {
+        Span::from_ns(self.experiment.config.gp.message_ns)
     }
 
     /// The pipeline that ran.

@@ -52,6 +52,7 @@ mod observation;
 mod parallel;
 pub mod pipelines;
 mod report;
+pub mod timeline;
 mod workers;
 
 pub use config::{ConfigError, MachineConfig, PRESETS, Parameter, Preset};

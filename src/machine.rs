@@ -342,7 +342,7 @@ impl Machine {
             self.queue.schedule(time, phase, Event::Gp(board, event));
         }
         for (order, (time, GpOutput::Send { message, ticket })) in (0..).zip(context.drain_outputs()) {
-            let request = Request { message, ticket, hold: false, order };
+            let request = Request { message, ticket: Some(ticket), hold: false, order };
             self.queue.schedule(time, Phase::Arrive, Event::Ring(RingEvent::Request(request)));
         }
         if let Some(fault) = processor.fault() {

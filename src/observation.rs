@@ -19,6 +19,14 @@ pub struct Arrival {
     pub last_part_at: Time,
 }
 
+impl Arrival {
+    /// When its first word was on the channel; its messages are `message` long.
+    #[must_use]
+    pub const fn begins_at(&self, message: Span) -> Time {
+        Time(self.first_part_at.0.saturating_sub(message.0))
+    }
+}
+
 /// A swap at the retrace that begins a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Swap {
@@ -71,7 +79,7 @@ impl Observation {
         }
         for arrival in &self.arrivals {
             let (eye, picture) = (Eye::BOTH[arrival.board.min(1)], arrival.target.picture);
-            let begin = Time(arrival.first_part_at.0.saturating_sub(message.0));
+            let begin = arrival.begins_at(message);
             let fresh = StageSpan { picture, eye: Some(eye), stage: Stage::Copy, begin, end: None };
             let span = spans.entry((picture, Some(eye), Stage::Copy)).or_insert(fresh);
             span.begin = span.begin.min(begin);

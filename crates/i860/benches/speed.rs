@@ -1,5 +1,7 @@
 //! Host time per simulated instruction, with timing on, code and data in cache.
 
+#![allow(missing_docs, reason = "criterion_group makes an undocumented function")]
+
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use i860::{Config, Cpu, Outcome, Ram, assemble};
 use std::hint::black_box;

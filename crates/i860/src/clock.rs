@@ -27,6 +27,8 @@ const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 #[derive(Clone, Debug)]
 pub(crate) struct Clock {
     pub(crate) on: bool,
+    /// What instructions leave behind that matters under the rules.
+    arms_seen: u16,
     pub(crate) now: u64,
     /// Clock at which the profile was started; every clock since then is a freeze or an issue.
     profile_start: u64,
@@ -60,11 +62,20 @@ pub(crate) struct Clock {
     write_back_end: u64,
 }
 
+fn arms_seen(config: &Config) -> u16 {
+    match (config.timing, config.freezes.logicals_delay_branches) {
+        (false, _) => 0,
+        (true, false) => !arm::LOGICAL,
+        (true, true) => !0,
+    }
+}
+
 impl Clock {
     pub(crate) fn new(config: &Config) -> Clock {
         let cache = |(bytes, line, ways): (u32, u32, u32)| Tags::new(bytes / line, line, ways);
         Clock {
             on: config.timing,
+            arms_seen: arms_seen(config),
             now: 0,
             profile_start: 0,
             rules: config.freezes,
@@ -203,7 +214,9 @@ impl Clock {
     #[inline]
     fn translate(&mut self, address: u32) {
         if let Some(directory) = self.translation
-            && self.rules.applies(Freeze::TlbMiss) && self.tlb.find(address).is_none() {
+            && self.rules.applies(Freeze::TlbMiss)
+            && self.tlb.find(address).is_none()
+        {
             let random = self.chance.next();
             self.tlb.fill(address, random);
             self.charge(Freeze::TlbMiss);
@@ -332,16 +345,24 @@ impl Clock {
     /// Records the hazards that an instruction leaves. Called once it has executed.
     #[inline]
     pub(crate) fn retire(&mut self, d: &Decoded) {
-        if d.arms != 0 && self.on {
-            self.arm(d);
+        match d.arms & self.arms_seen {
+            0 => {}
+            arm::CONDITION => self.set_hazard(hazard::CONDITION, Freeze::ConditionUse),
+            arm::FLOATING_RESULT => self.note_result(&d.instruction),
+            _ => self.arm(d),
         }
+    }
+
+    #[inline]
+    fn note_result(&mut self, i: &Instruction) {
+        self.last_result = if i.has(Flags::RESULT_DOUBLE) { i.dest & 30 } else { i.dest };
+        self.last_result_until = self.now + self.rules.clocks(Freeze::MultiplierFirstSource);
     }
 
     fn arm(&mut self, d: &Decoded) {
         let i = &d.instruction;
         if d.arms & arm::FLOATING_RESULT != 0 {
-            self.last_result = if i.has(Flags::RESULT_DOUBLE) { i.dest & 30 } else { i.dest };
-            self.last_result_until = self.now + self.rules.clocks(Freeze::MultiplierFirstSource);
+            self.note_result(i);
         } else if d.is_floating() && i.op != Op::Fnop {
             self.last_result = NO_RESULT;
         }
@@ -354,10 +375,12 @@ impl Clock {
         self.arm_short(d);
     }
 
+    #[inline]
     fn set_hazard(&mut self, bit: u16, why: Freeze) {
         self.set_hazard_until(bit, self.now + self.rules.clocks(why), why);
     }
 
+    #[inline]
     fn set_hazard_until(&mut self, bit: u16, until: u64, why: Freeze) {
         self.armed |= bit;
         self.hazards[bit.trailing_zeros() as usize] = Wait { until, why };
@@ -555,5 +578,4 @@ impl Clock {
             self.write_back_end = self.bus.write(self.now, address, 4).last;
         }
     }
-
 }

@@ -22,8 +22,12 @@ pub(crate) enum Flow {
 
 impl Cpu {
     /// Executes a core instruction at `pc`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn core<B: Bus>(&mut self, d: &Decoded, pc: u32, bus: &mut B) -> Result<Flow, TrapCause> {
+        if d.instruction.op >= Op::Addu {
+            self.integer(&d.instruction);
+            return Ok(Flow::Next);
+        }
         match d.instruction.op {
             Op::LdB | Op::LdS | Op::LdL => self.load_integer(d, bus)?,
             Op::StB | Op::StS | Op::StL => self.store_integer(d, bus)?,
@@ -31,13 +35,13 @@ impl Cpu {
             Op::Fst => self.store_floating(d, bus)?,
             Op::Pfld => self.load_pipelined(d, bus)?,
             Op::Pst => self.store_pixels(d, bus)?,
-            op if op >= Op::LdC && op <= Op::Intovr => return self.system(&d.instruction, pc),
-            op if op <= Op::Bla => return Ok(self.branch(&d.instruction, pc)),
-            _ => self.integer(&d.instruction),
+            op if op <= Op::Intovr => return self.system(&d.instruction, pc),
+            _ => return Ok(self.branch(&d.instruction, pc)),
         }
         Ok(Flow::Next)
     }
 
+    #[inline(never)]
     fn system(&mut self, i: &Instruction, pc: u32) -> Result<Flow, TrapCause> {
         match i.op {
             Op::LdC => self.state.set_r(i.dest, self.read_control(i.src2)),

@@ -242,8 +242,9 @@ impl Cpu {
     /// been executed (a branch and its slot are not parted, so it can be passed by three).
     pub fn run<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, budget: u64) -> Outcome {
         let end = self.instructions().saturating_add(budget);
+        let stop = stop.map_or(u64::MAX, u64::from);
         loop {
-            if Some(self.state.pc) == stop && self.state.mode == Mode::Single {
+            if u64::from(self.state.pc) == stop && self.state.mode == Mode::Single {
                 return Outcome::Stopped;
             }
             if self.instructions() >= end {

@@ -164,7 +164,9 @@ fn floating_reads(i: &Instruction) -> u64 {
 }
 
 fn sensitive(i: &Instruction) -> u16 {
-    use Op::{Bc, BcT, Bnc, BncT, Calli, Call, Fld, Flush, Fst, Ixfr, LdB, LdC, LdL, LdS, Pfld, Pst, StB, StC, StL, StS};
+    use Op::{
+        Bc, BcT, Bnc, BncT, Call, Calli, Fld, Flush, Fst, Ixfr, LdB, LdC, LdL, LdS, Pfld, Pst, StB, StC, StL, StS,
+    };
     match i.op {
         Op::Fnop => 0,
         _ if i.is_floating() => floating_sensitive(i),

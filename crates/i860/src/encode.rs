@@ -139,8 +139,5 @@ fn floating_code(i: &Instruction) -> u32 {
         _ => 0x5F,
     };
     let bit = |flag: Flags, n: u32| u32::from(i.has(flag)) << n;
-    code | bit(Flags::PIPELINED, 10)
-        | bit(Flags::DUAL, 9)
-        | bit(Flags::SOURCE_DOUBLE, 8)
-        | bit(Flags::RESULT_DOUBLE, 7)
+    code | bit(Flags::PIPELINED, 10) | bit(Flags::DUAL, 9) | bit(Flags::SOURCE_DOUBLE, 8) | bit(Flags::RESULT_DOUBLE, 7)
 }

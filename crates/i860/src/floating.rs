@@ -170,7 +170,7 @@ fn read_through(state: &State, i: &Instruction, first: bool, second: bool) -> Op
 
 impl Cpu {
     /// Executes a floating-point or graphics instruction with its operands already read.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn floating(&mut self, i: &Instruction, from: Operands) {
         match i.op {
             Op::Fnop => {}
@@ -242,7 +242,7 @@ impl Cpu {
         let condition = match i.op {
             Op::Pfgt => x > y,
             Op::Pfeq => x == y,
-            _ => !(x <= y),
+            _ => x.partial_cmp(&y).is_none_or(std::cmp::Ordering::is_gt),
         };
         self.state.set_psr_bit(psr::CC, condition);
         self.adder_result(i, Stage { bits: 0, double });
@@ -283,8 +283,7 @@ impl Cpu {
         let leaving_sum = self.state.adder[2];
         let flush = self.flush_to_zero();
         let for_adder = self.sources(from, leaving_product, leaving_sum, r);
-        let for_multiplier =
-            if s == r { for_adder } else { self.sources(from, leaving_product, leaving_sum, s) };
+        let for_multiplier = if s == r { for_adder } else { self.sources(from, leaving_product, leaving_sum, s) };
         let [m1, m2] = route.multiplier.map(|source| for_multiplier[source as usize]);
         let [a1, a2] = route.adder.map(|source| for_adder[source as usize]);
         let product = operate(Operation::Multiply, m1, m2, s, r, flush);

@@ -190,8 +190,7 @@ pub fn parse(text: &str) -> Result<Vec<Vector>, MalformedLine> {
 }
 
 fn parse_line(line: usize, text: &str) -> Result<Vector, MalformedLine> {
-    let vector: Vector =
-        serde_json::from_str(text).map_err(|e| MalformedLine { line, reason: e.to_string() })?;
+    let vector: Vector = serde_json::from_str(text).map_err(|e| MalformedLine { line, reason: e.to_string() })?;
     let unaligned = [vector.load, vector.entry, vector.stop].iter().any(|address| address % 4 != 0);
     if unaligned {
         let reason = "load, entry and stop must be multiples of 4".to_owned();

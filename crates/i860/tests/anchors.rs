@@ -117,8 +117,10 @@ fn three_reciprocal_square_roots_at_once_take_39_clocks() {
 fn a_loop_of_the_shape_of_the_tree_code_takes_106_clocks_a_turn() {
     let singles = |n: usize| "pfmul.ss f9, f10, f11\n".repeat(n);
     // The entry word is two single instructions, then 11 pairs, the last two with D clear.
-    let pairs = "d.m12apm.ss f9, f10, f11\nadds 1, r6, r6\n".repeat(9) + &"m12apm.ss f9, f10, f11\nadds 1, r6, r6\n".repeat(2);
-    let turn = format!("{}d.fnop\nnop\n{pairs}{}subs r7, r6, r0\n{}bnc.t turn\nnop\n", singles(51), singles(35), singles(4));
+    let pairs =
+        "d.m12apm.ss f9, f10, f11\nadds 1, r6, r6\n".repeat(9) + &"m12apm.ss f9, f10, f11\nadds 1, r6, r6\n".repeat(2);
+    let turn =
+        format!("{}d.fnop\nnop\n{pairs}{}subs r7, r6, r0\n{}bnc.t turn\nnop\n", singles(51), singles(35), singles(4));
     let source = format!("begin: mov 0, r6\nmov 54, r7\nnop\n.align 8\nnop\nturn: {turn}end: nop\nnop");
     let m = measure(&source, &[]);
     assert_eq!(m.cpu.state.r[6], 55, "five turns of eleven pairs");

@@ -58,7 +58,18 @@ fn labels_macros_and_constants_make_a_program() {
     assert_eq!(disassemble(words[1], 0x1004), "br 0x1000");
     assert_eq!(disassemble(words[4], 0x1010), "br 0x100c");
     assert_eq!(words[6], 0xA000_0000, "alignment is filled with nop");
-    assert_eq!((disassemble(words[11], 0), disassemble(words[12], 0)), ("orh 4660, r0, r9".into(), "or 22136, r9, r9".into()));
+    assert_eq!(
+        (disassemble(words[11], 0), disassemble(words[12], 0)),
+        ("orh 4660, r0, r9".into(), "or 22136, r9, r9".into())
+    );
+}
+
+#[test]
+fn a_constant_may_begin_like_a_register() {
+    let program =
+        assemble("t.s", 0, "size = 5\nmov size, r4\nmov sp, r5\nmov ha%0x7fffffffffffffff, r6").expect("correct");
+    let text: Vec<String> = program.words().iter().map(|word| disassemble(*word, 0)).collect();
+    assert_eq!(text[..3], ["orh 0, r0, r4", "or 5, r4, r4", "shl r0, r2, r5"]);
 }
 
 #[test]

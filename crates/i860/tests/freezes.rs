@@ -38,10 +38,37 @@ fn cost_beside(others: FreezeRules, row: Freeze, source: &str) -> u64 {
 fn the_table_holds_the_constants_of_the_list() {
     let constants: Vec<(&str, u32)> = FREEZES.iter().map(|row| (row.number, row.clocks)).collect();
     let expected = [
-        ("1a", 0), ("1b", 2), ("2", 1), ("3", 1), ("4", 1), ("5", 1), ("6", 1), ("7", 2), ("8", 1), ("9", 1),
-        ("10a", 2), ("10b", 3), ("10c", 1), ("10d", 1), ("11", 1), ("12", 5), ("13", 1), ("14", 2), ("15", 1),
-        ("16", 0), ("17", 1), ("18", 1), ("19a", 1), ("19b", 2), ("20", 1), ("21", 2), ("22a", 1), ("22b", 1),
-        ("23", 2), ("24", 1), ("25", 1),
+        ("1a", 0),
+        ("1b", 2),
+        ("2", 1),
+        ("3", 1),
+        ("4", 1),
+        ("5", 1),
+        ("6", 1),
+        ("7", 2),
+        ("8", 1),
+        ("9", 1),
+        ("10a", 2),
+        ("10b", 3),
+        ("10c", 1),
+        ("10d", 1),
+        ("11", 1),
+        ("12", 5),
+        ("13", 1),
+        ("14", 2),
+        ("15", 1),
+        ("16", 0),
+        ("17", 1),
+        ("18", 1),
+        ("19a", 1),
+        ("19b", 2),
+        ("20", 1),
+        ("21", 2),
+        ("22a", 1),
+        ("22b", 1),
+        ("23", 2),
+        ("24", 1),
+        ("25", 1),
     ];
     assert_eq!(constants, expected);
     assert!(FREEZES.iter().enumerate().all(|(n, row)| row.id as usize == n));
@@ -78,7 +105,9 @@ fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
     let others = FreezeRules::none().with(Freeze::InstructionMiss);
     // A load, then a loop of two clocks a turn, then the next line.
     let source = |turns: u32| {
-        format!(".align 32\nmov {turns}, r7\nld.l 0(r4), r5\nl: adds -1, r7, r7\nbtne r0, r7, l\nnop\nnop\nnop\nnop\nnop")
+        format!(
+            ".align 32\nmov {turns}, r7\nld.l 0(r4), r5\nl: adds -1, r7, r7\nbtne r0, r7, l\nnop\nnop\nnop\nnop\nnop"
+        )
     };
     let fill = t.first_miss + 3 * t.next;
     let turns_until_full = (fill - 4).div_ceil(2);
@@ -202,7 +231,9 @@ fn row_10b_a_double_multiply_holds_it_for_three() {
 #[test]
 fn rows_10c_and_10d_add_to_a_wait_but_make_none() {
     let busy = FreezeRules::none().with(Freeze::ScalarBusy);
-    let change = |gap: &str| cost_beside(busy, Freeze::ScalarPrecisionChange, &format!("fadd.ss f8,f9,f10\n{gap}fadd.dd f2,f4,f6"));
+    let change = |gap: &str| {
+        cost_beside(busy, Freeze::ScalarPrecisionChange, &format!("fadd.ss f8,f9,f10\n{gap}fadd.dd f2,f4,f6"))
+    };
     assert_eq!((change(""), change("nop\n"), change("nop\nnop\n")), (1, 1, 0));
     let pipe = |next: &str| cost_beside(busy, Freeze::ScalarThenPipelined, &format!("fadd.ss f8,f9,f10\n{next}"));
     assert_eq!((pipe("pfadd.ss f2,f3,f4"), pipe("pfadd.ss f2,f3,f0"), pipe("fadd.ss f2,f3,f4")), (1, 0, 0));
@@ -349,7 +380,8 @@ fn simultaneous_freezes_cost_the_longest() {
 
 #[test]
 fn both_halves_of_a_pair_wait_together_for_the_longer_freeze() {
-    let halves = |low: &str, high: &str| format!("d.fnop\nnop\nd.fnop\nixfr r5, f8\nd.{low}\n{high}\nfnop\nnop\nfnop\nnop");
+    let halves =
+        |low: &str, high: &str| format!("d.fnop\nnop\nd.fnop\nixfr r5, f8\nd.{low}\n{high}\nfnop\nnop\nfnop\nnop");
     let plain = halves("pfadd.ss f0, f0, f0", "ld.l 0(r4), r6");
     let waiting = halves("pfadd.ss f8, f0, f0", "ld.l 0(r4), r6");
     // Two single instructions, then one clock for each of four pairs; the first pair is dual once the word is over.

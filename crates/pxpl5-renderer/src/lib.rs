@@ -1,4 +1,47 @@
-//! Renderer of Pixel-Planes 5: controller, expression evaluator, 128 x 128 pixel array.
+//! Renderer of Pixel-Planes 5: a 128 x 128 SIMD array of one-bit processors behind an input FIFO on the ring.
+//!
+//! ```text
+//!  ring --> port --> input FIFO --> controller --> expression evaluator (trees) --+
+//!                                   |  select: context base, region's origin      | one bit a clock, every pixel
+//!                                   v                                             v
+//!                                 Enable ----> 16,384 one-bit processors, 208 bits of pixel memory each
+//!                                              |            |
+//!           backing store, 128 blocks of 32 bits <----------+----> colour of a region --> port --> frame buffer
+//! ```
+//!
+//! # Behaviour, in the order of the signal
+//!
+//! 1. Messages bring commands; time follows from the kinds of the commands alone ([`RendererTiming`], [`Renderer`]),
+//!    since the array is SIMD.
+//! 2. A command is a fixed-length program of instructions ([`Command`], [`CommandKind`]); the instructions, their words,
+//!    clocks and effects are those of [`isa`]. Where fields lie in pixel memory is a [`Layout`].
+//! 3. A triangle: enable all; three edges, each disabling where it is negative; Z, disabling where not nearer, stored;
+//!    then colours (Gouraud) or normals (Phong). A sphere: the silhouette is a quadratic, its square root gives depth,
+//!    normal and light. [`Shade`] turns normals into colour once, at the end of the frame.
+//! 4. Pixels are computed apart from time. [`BitSerial`] moves bit planes as the hardware did, and defines every bit;
+//!    [`Lanes`] works on values, only where a command can change something. The suite in [`conformance`] holds both
+//!    to the same 208 bits of all pixels, Enable, clocks and faults.
+//!
+//! # Numbers
+//!
+//! A triangle takes 267 clocks = 6.67 us (published: 150,000 a second, TR94), of which 220 are bits of the wire's
+//! formats; see [`isa::timing`], and [`command`] for the others.
+//!
+//! # Faults
+//!
+//! An illegal word or operand ends its list, without effect, and is counted ([`Fault`], [`PixelArray::faults`]).
+//!
+//! # Not modelled
+//!
+//! - The real instruction set: none survives. Ours is the least that runs the published recipes, and is **assumed**.
+//! - The split of the array into 64 chips, and the fill of the evaluator's pipeline beyond a constant for each
+//!   instruction.
+//! - What a program sees that touches a block of the backing store before its transfer has ended: the array moves the
+//!   block at once, only time passes later.
+//! - Antialiasing, texture, transparency.
+//!
+//! Sources: F89 (array, evaluator, memory, backing store), TR94 (recipe, rates, regions, Slats' four contexts), LK
+//! (bit-serial instructions, Enable).
 
 mod board;
 mod fifo;
@@ -7,7 +50,7 @@ pub mod timing;
 
 mod array;
 mod bit_serial;
-mod command;
+pub mod command;
 pub mod conformance;
 mod controller;
 pub mod isa;
@@ -16,14 +59,14 @@ mod layout;
 mod simd;
 
 pub use array::{EMPTY_PLANE, Executed, Fault, FaultKind, OutputRegion, PIXELS, PixelArray, Plane, execute_all};
-pub use board::{MAX_CONTEXTS, Renderer, RendererEvent, RendererOutput, RendererStats};
-pub use job::ArrayPool;
-pub use timing::RendererTiming;
 pub use bit_serial::BitSerial;
+pub use board::{MAX_CONTEXTS, Renderer, RendererEvent, RendererOutput, RendererStats};
 pub use command::{
     Clear, Command, CommandKind, CopyRegion, LoadBacking, PhongSphere, PhongTriangle, SPECULAR_SQUARINGS, SelectRegion,
     Shade, Sphere, StoreBacking, Triangle, Unsupported,
 };
+pub use job::ArrayPool;
 pub use lanes::Lanes;
 pub use layout::{FieldRange, Layout, LayoutError, Plan};
 pub use simd::Vectors;
+pub use timing::RendererTiming;

@@ -19,9 +19,10 @@ type Located = (u32, usize, Instruction);
 
 /// All broken rules, as source line and reason.
 pub(super) fn faults(program: &[Located]) -> Vec<(usize, String)> {
-    let mut faults: Vec<(usize, String)> = program.iter().filter_map(|(address, line, i)| {
-        alone(*address, i).map(|reason| (*line, reason.to_owned()))
-    }).collect();
+    let mut faults: Vec<(usize, String)> = program
+        .iter()
+        .filter_map(|(address, line, i)| alone(*address, i).map(|reason| (*line, reason.to_owned())))
+        .collect();
     faults.extend(program.windows(2).filter_map(slot));
     faults.extend(pairs(program));
     faults
@@ -34,7 +35,7 @@ fn alone(address: u32, i: &Instruction) -> Option<&'static str> {
         _ => false,
     };
     match () {
-        () if i.is_floating() && i.has(Flags::DUAL) && address % 8 != 0 => {
+        () if i.is_floating() && i.has(Flags::DUAL) && !address.is_multiple_of(8) => {
             Some("a `d.` instruction must lie at a multiple of 8 (put a nop or .align 8 before it)")
         }
         () if multiplier_first && i.dest >= 2 && i.src1 == i.dest => {
@@ -113,7 +114,9 @@ fn pair(low: &Instruction, high: &Instruction) -> Option<(bool, String)> {
     let fault = |second: bool, reason: &str| Some((second, reason.to_owned()));
     let compares = matches!(low.op, Op::Pfgt | Op::Pfle | Op::Pfeq);
     match () {
-        () if !low.is_floating() => fault(false, "dual-instruction mode: expected a floating-point instruction or fnop"),
+        () if !low.is_floating() => {
+            fault(false, "dual-instruction mode: expected a floating-point instruction or fnop")
+        }
         () if high.is_floating() => fault(true, "dual-instruction mode: expected a core instruction"),
         () if writes(low) & writes(high) != 0 => fault(true, "both halves of a pair write the same register"),
         () if compares && high.sets_condition() => fault(true, "both halves of a pair set CC"),

@@ -204,14 +204,16 @@ fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
         ("fmov.ss" | "fmov.dd", [from, to]) => {
             one(format!("{prefix}{pipe}fiadd{}", &name[4..]), format!("{from}, f0, {to}"))
         }
-        ("fmov.sd" | "fmov.ds", [from, to]) => one(format!("{prefix}{pipe}famov{}", &name[4..]), format!("{from}, {to}")),
+        ("fmov.sd" | "fmov.ds", [from, to]) => {
+            one(format!("{prefix}{pipe}famov{}", &name[4..]), format!("{from}, {to}"))
+        }
         _ => None,
     }
 }
 
 /// A register move, or a constant in one word where a plain number allows it, else two.
 fn mov(from: &str, to: &str) -> Instructions {
-    if from.starts_with(['r', 's', 'f']) && !from.contains('%') {
+    if operand::integer_register(from).is_some() {
         return Ok(vec![plain("shl", &format!("r0, {from}, {to}"))?]);
     }
     let low = |base: &str| plain("or", &format!("l%({from}), {base}, {to}"));
@@ -268,7 +270,7 @@ impl Assembler<'_> {
     }
 
     fn instruction(&mut self, word: &str, rest: &str, line: usize) -> Result<(), String> {
-        if self.here % 4 != 0 {
+        if !self.here.is_multiple_of(4) {
             return Err(format!("an instruction at {:#x}, which is not a multiple of 4", self.here));
         }
         let instructions = pseudo(word, rest).unwrap_or_else(|| Ok(vec![plain(word, rest)?]))?;
@@ -372,5 +374,9 @@ impl Assembler<'_> {
 fn fill_gap(bytes: &mut Vec<u8>, from: u32, to: u32) {
     let nop = Instruction { op: Op::Shl, flags: Flags(0), ..Instruction::new(Op::Shl) };
     let nop = encode(&nop).to_le_bytes();
-    bytes.extend((from..to).map(|address| if from % 4 == 0 && to % 4 == 0 { nop[(address % 4) as usize] } else { 0 }));
+    bytes.extend(
+        (from..to).map(
+            |address| if from.is_multiple_of(4) && to.is_multiple_of(4) { nop[(address % 4) as usize] } else { 0 },
+        ),
+    );
 }

@@ -32,7 +32,7 @@ fn register_number(text: &str, file: char) -> Option<u8> {
     digits.parse().ok().filter(|n| *n < 32 && plain && digits.bytes().all(|b| b.is_ascii_digit()))
 }
 
-fn integer_register(text: &str) -> Option<u8> {
+pub(super) fn integer_register(text: &str) -> Option<u8> {
     match text {
         "sp" => Some(2),
         "fp" => Some(3),
@@ -159,7 +159,8 @@ impl Filler<'_> {
         self.i.flags = self.i.flags.with(Flags::IMMEDIATE, true);
         self.i.src1 = 0;
         let logical = self.i.op >= Op::And;
-        self.i.imm = if logical { in_range(evaluate(a, self.symbols)?, 0, 0xFFFF)? } else { signed16(a, self.symbols)? };
+        self.i.imm =
+            if logical { in_range(evaluate(a, self.symbols)?, 0, 0xFFFF)? } else { signed16(a, self.symbols)? };
         Ok(())
     }
 
@@ -237,7 +238,11 @@ impl Filler<'_> {
             (Op::LdL | Op::StL, _) | (_, 4) => 4,
             _ => 8,
         };
-        if self.i.imm % unit == 0 { Ok(()) } else { Err(format!("displacement {} is not a multiple of {unit}", self.i.imm)) }
+        if self.i.imm % unit == 0 {
+            Ok(())
+        } else {
+            Err(format!("displacement {} is not a multiple of {unit}", self.i.imm))
+        }
     }
 }
 

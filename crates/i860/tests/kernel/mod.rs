@@ -115,12 +115,14 @@ pub(crate) fn native(triangles: &[Triangle]) -> (Output, u64) {
             let set_up = screen.gouraud(&viewport, &mut stats);
             let command = pxpl5_renderer::Triangle { edges: set_up.edges, depth: set_up.z, colour: set_up.rgb };
             let mut words = Vec::new();
-            Command::Triangle(command).encode(&Layout::rendering_control_phong(), &mut words).expect("every layout has triangles");
+            Command::Triangle(command)
+                .encode(&Layout::rendering_control_phong(), &mut words)
+                .expect("every layout has triangles");
             output.commands.push(words);
             output.regions.push(screen.outline.regions.iter().map(|r| r.0).collect());
         }
     }
-    (output, stats.flattened_planes.into())
+    (output, stats.flattened_planes)
 }
 
 /// The seven instruction heads of a triangle command, taken from a command of zeros.
@@ -145,8 +147,18 @@ fn parameters() -> Vec<u8> {
     let (near, far) = (pxpl5_geometry::DEPTH_NEAR, pxpl5_geometry::DEPTH_FAR);
     let two52 = (1u64 << 52) as f64;
     let doubles = [
-        2.0, f64::from(far - near), f64::from(near), 0.5, two52, 1.5 * two52, 1.0 / 16.0, 16.0,
-        two52 + f64::from(1u32 << 31), 8.0, -7.5, -8.5,
+        2.0,
+        f64::from(far - near),
+        f64::from(near),
+        0.5,
+        two52,
+        1.5 * two52,
+        1.0 / 16.0,
+        16.0,
+        two52 + f64::from(1u32 << 31),
+        8.0,
+        -7.5,
+        -8.5,
     ];
     let mut bytes: Vec<u8> = singles.iter().flat_map(|x| x.to_le_bytes()).collect();
     bytes.extend(doubles.iter().flat_map(|x| x.to_le_bytes()));

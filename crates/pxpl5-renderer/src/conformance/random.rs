@@ -40,12 +40,14 @@ impl Random {
     /// A list: mostly commands of the layout, some single instructions, some words that mean nothing.
     pub fn list(&mut self, layout: &Layout) -> Vec<Word> {
         let mut words = Vec::new();
-        let commands = 1 + self.below(4);
-        for _ in 0..commands {
+        let mut last = self.command(layout);
+        for _ in 0..1 + self.below(4) {
             match self.below(8) {
                 0 => self.instructions(&mut words),
-                _ => self.command(layout).encode(layout, &mut words).unwrap_or(()),
+                1 | 2 => last = repainted(last),
+                _ => last = self.command(layout),
             }
+            last.encode(layout, &mut words).unwrap_or(());
         }
         if self.below(16) == 0 && !words.is_empty() {
             let at = self.below(words.len() as u64) as usize;
@@ -183,6 +185,23 @@ impl Random {
             y: 2 * scale * y - tilt * x,
             one: scale * (r * r - x * x - y * y) + tilt * x * y,
         }
+    }
+}
+
+/// The same shape in other colours: all depths are equal, so that none is nearer.
+fn repainted(command: Command) -> Command {
+    match command {
+        Command::Triangle(mut t) => {
+            t.colour.rotate_left(1);
+            Command::Triangle(t)
+        }
+        Command::PhongTriangle(t) => Command::PhongTriangle(PhongTriangle { colour: !t.colour, ..t }),
+        Command::Sphere(mut s) => {
+            s.colour.rotate_left(1);
+            Command::Sphere(s)
+        }
+        Command::PhongSphere(s) => Command::PhongSphere(PhongSphere { colour: !s.colour, ..s }),
+        other => other,
     }
 }
 
