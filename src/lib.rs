@@ -44,9 +44,9 @@ mod experiment;
 mod experiment_file;
 pub mod figures;
 mod fingerprint;
+mod head_to_light;
 pub mod intervals;
 mod latency;
-mod head_to_light;
 pub mod levels;
 pub mod limit;
 mod machine;
@@ -67,8 +67,8 @@ pub use experiment_file::{
     ExperimentFile, FileError, KEYS, Key, MotionChoice, Outputs, PIPELINES, Plan, Published, SceneChoice, Settings,
 };
 pub use fingerprint::Fingerprint;
-pub use latency::{LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition};
 pub use head_to_light::{Budget, FIELDS_WITH_HEAD, Head, HeadError, HeadViews, Rehearsal, Sampled};
+pub use latency::{LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition};
 pub use machine::{Machine, Ports, RunError};
 pub use measure::{Measure, QUANTITIES, Quantity, Results};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};

@@ -6,12 +6,12 @@ use pxpl5::compare::{
     motion, triangles_possible,
 };
 use pxpl5::scene::{Scene, builtin};
+use pxpl5::tracking::Pose;
 use pxpl5::tracking::motion::{Motion, Pan, Still, Synthetic};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::rig::PendulumRig;
 use pxpl5::tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, seconds};
 use pxpl5::tracking::tracker::{Fault, TrackerConfig, TrackerModel};
-use pxpl5::tracking::Pose;
 use pxpl5::{
     Budget, Experiment, Frameless, Head, Jitp, MachineConfig, Outcome, Pipeline, Pixels, Reading, RenderingControl,
     Slats, Viewpoint,
@@ -125,13 +125,9 @@ fn slant(edge: &[f64]) -> f64 {
 #[test]
 fn j4_the_plates_slant_as_the_old_well_does() {
     let plates = edge_pictures(&MachineConfig::small_hmd(), PAN).expect("the scene is small");
-    let [conventional, conventional_seen, just_in_time, just_in_time_seen] = [
-        &plates.conventional,
-        &plates.conventional_seen,
-        &plates.just_in_time,
-        &plates.just_in_time_seen,
-    ]
-    .map(|picture| slant(&edge(picture)));
+    let [conventional, conventional_seen, just_in_time, just_in_time_seen] =
+        [&plates.conventional, &plates.conventional_seen, &plates.just_in_time, &plates.just_in_time_seen]
+            .map(|picture| slant(&edge(picture)));
     println!("J4: {conventional:.3} seen {conventional_seen:.3}, {just_in_time:.3} seen {just_in_time_seen:.3}");
     // 239 lines of 4004/63 us at 200 deg/s: 3.038 degrees; the head turns left, so things move right in the view.
     let turn = (PAN * 239.0 * 4004.0 / 63.0 * 1e-6).to_radians();
@@ -232,7 +228,8 @@ fn ninety_milliseconds_are_1_8_times_as_wrong_as_fifty() {
 
 #[test]
 fn errors_of_pipelines_are_as_their_latencies_from_head_to_light() {
-    let tracker = || TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::optical_ceiling() };
+    let tracker =
+        || TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::optical_ceiling() };
     let measure = |pipeline: Arc<dyn Pipeline>| {
         let outcome = Experiment::with(MachineConfig::small_hmd(), pipeline, Arc::new(small()))
             .head(head(Synthetic::recorded_use(3), tracker(), PredictorKind::None))
@@ -288,7 +285,8 @@ fn a_perfect_tracker_and_a_still_head_leave_no_error() {
 
 #[test]
 fn metal_misplaces_objects_even_for_a_still_head() {
-    let tracker = TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::polhemus_3space() };
+    let tracker =
+        TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::polhemus_3space() };
     let at = Pose::at(DVec3::new(0.7, 0.0, 0.7));
     let outcome = run(Slats::split(), head(Still(at), tracker, PredictorKind::None), 90);
     let errors = PixelErrors::of(&outcome);
@@ -351,8 +349,13 @@ fn the_rig_and_the_time_stamps_agree_within_the_bound_for_every_tracker() {
             );
             println!(
                 "{:18} {:28} outside {:6.2} ms, inside {:6.2} ms, difference {:5.2} of {:5.2} ms, {} passes",
-                outcome.pipeline().name(), model.config().name, outside * 1e3, inside * 1e3, difference * 1e3,
-                bound * 1e3, measured.passes.len()
+                outcome.pipeline().name(),
+                model.config().name,
+                outside * 1e3,
+                inside * 1e3,
+                difference * 1e3,
+                bound * 1e3,
+                measured.passes.len()
             );
             assert!(measured.passes.len() >= 15 && difference > 0.0 && difference <= bound);
         }
@@ -364,8 +367,14 @@ fn every_pipeline_goes_on_when_the_tracker_fails() {
     let faults = [
         vec![Fault::Silence { from_ps: 0 }],
         vec![Fault::Silence { from_ps: 300 * PS_PER_MS }],
-        vec![Fault::Dropout { from_ps: 200 * PS_PER_MS, to_ps: 700 * PS_PER_MS }, Fault::RandomDropout { probability: 0.5 }],
-        vec![Fault::NotANumber { probability: 0.5 }, Fault::Jump { probability: 0.5, distance_m: 1e3, angle_deg: 170.0 }],
+        vec![
+            Fault::Dropout { from_ps: 200 * PS_PER_MS, to_ps: 700 * PS_PER_MS },
+            Fault::RandomDropout { probability: 0.5 },
+        ],
+        vec![
+            Fault::NotANumber { probability: 0.5 },
+            Fault::Jump { probability: 0.5, distance_m: 1e3, angle_deg: 170.0 },
+        ],
     ];
     let late = TrackerConfig::optical_ceiling().with_latency_ps(PS_PER_S / 2);
     let trackers = faults

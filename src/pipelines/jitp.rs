@@ -39,18 +39,13 @@ impl Jitp {
     /// All viewpoints, each without and with beam racing.
     #[must_use]
     pub fn all() -> Vec<Self> {
-        let viewpoints = [
-            Viewpoint::Field,
-            Viewpoint::Strip,
-            Viewpoint::Dual(Reading::Screen),
-            Viewpoint::Dual(Reading::View),
-        ];
+        let viewpoints =
+            [Viewpoint::Field, Viewpoint::Strip, Viewpoint::Dual(Reading::Screen), Viewpoint::Dual(Reading::View)];
         viewpoints.iter().flat_map(|v| [false, true].map(|racing| Self::new(*v, racing))).collect()
     }
 
     fn config(self, machine: &Machine, pixels: bool) -> Result<Config, ConfigError> {
-        let schedule =
-            Schedule::Beam { viewpoint: self.viewpoint, racing: self.racing, strip_rows: self.strip_rows };
+        let schedule = Schedule::Beam { viewpoint: self.viewpoint, racing: self.racing, strip_rows: self.strip_rows };
         config(machine, schedule, self.layout(), pixels)
     }
 
