@@ -53,6 +53,10 @@ enum Command {
     Run(run::RunArgs),
     /// Print the effective configuration of an experiment.
     Check(check::CheckArgs),
+    /// Measure every published figure and compare.
+    Figures(figures::FiguresArgs),
+    /// Find the most triangles that a pipeline draws in time.
+    Limit(limit::LimitArgs),
     /// List the built-in scenes.
     Scenes(scenes::ScenesArgs),
     /// List the machines that are built in.
@@ -84,6 +88,8 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Demo(args)) => demo::run(args),
         Some(Command::Run(args)) => run::run(args),
         Some(Command::Check(args)) => check::run(args),
+        Some(Command::Figures(args)) => figures::run(args),
+        Some(Command::Limit(args)) => limit::run(args),
         Some(Command::Scenes(args)) => scenes::run(args),
         Some(Command::Machines(args)) => machines::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
