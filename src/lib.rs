@@ -71,7 +71,7 @@ pub use fingerprint::Fingerprint;
 pub use head_to_light::{Budget, FIELDS_WITH_HEAD, Head, HeadError, HeadViews, Rehearsal, Sampled};
 pub use latency::{LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition};
 pub use machine::{Machine, Ports, RunError};
-pub use measure::{Measure, QUANTITIES, Quantity};
+pub use measure::{Measure, QUANTITIES, Quantity, Results};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
 pub use pipelines::{Code, Frameless, Jitp, Pipeline, Reading, RenderingControl, Slats, Viewpoint};
 pub use pphigs::Binning;
@@ -81,3 +81,8 @@ pub use report::{DefinedStatistics, Report, Statistics};
 pub use slats::Copy;
 pub use snapshot::{Snapshot, SnapshotError};
 pub use tracking;
+
+/// The examples of the README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -5,7 +5,7 @@ use super::read::wrong;
 use super::{ExperimentFile, FileError, keys};
 use crate::config::MachineConfig;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
-use crate::levels::Program;
+use crate::levels::{Level, Program};
 use crate::measure::Measure;
 use crate::pipelines::{Code, RenderingControl, Slats};
 use pphigs::{Binning, Shading};
@@ -74,6 +74,11 @@ pub(super) const BINNINGS: [(&str, Binning); 2] = [("all", Binning::All), ("touc
 pub(super) const CODES: [(&str, Code); 3] =
     [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
+
+/// Name of a level, as in files.
+fn level_name(level: Level) -> String {
+    serde_json::to_value(level).ok().and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default()
+}
 
 /// What is drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -196,6 +201,8 @@ pub struct Plan {
     pub fields: u64,
     /// Seed of the head motion; default 1.
     pub seed: u64,
+    /// Level of modelling; default transaction.
+    pub level: Level,
     /// Which pixels are computed; default those that are looked at.
     pub pixels: Pixels,
     /// Quantities for tables and rows.
@@ -219,7 +226,6 @@ impl ExperimentFile {
         let program = Program::read(self)?;
         let names = self.texts("measure")?;
         let measure = |names: Vec<String>| names.iter().map(|name| measure(self, "measure", name)).collect();
-        self.choice("level", &[("transaction", ())])?;
         Ok(Plan {
             title: self.text("title")?.map(str::to_owned),
             program,
@@ -227,6 +233,7 @@ impl ExperimentFile {
             scene: SceneChoice::read(self)?,
             fields: self.integer("fields", FIELDS_RANGE.0..=FIELDS_RANGE.1)?.unwrap_or(120),
             seed: self.integer("seed", 0..=MAX_SEED)?.unwrap_or(1),
+            level: self.level()?,
             pixels: self.choice("pixels", &PIXELS)?.unwrap_or(Pixels::Lazy),
             measure: names.map_or_else(|| Ok(Measure::usual()), measure)?,
             output: Outputs {
@@ -236,6 +243,12 @@ impl ExperimentFile {
             },
             published: Published::read(self)?,
         })
+    }
+
+    fn level(&self) -> Result<Level, FileError> {
+        let names = Level::ALL.map(|level| (level_name(level), level));
+        let choices: Vec<(&str, Level)> = names.iter().map(|(name, level)| (name.as_str(), *level)).collect();
+        Ok(self.choice("level", &choices)?.unwrap_or(Level::Transaction))
     }
 
     fn machine(&self, program: &Program) -> Result<MachineConfig, FileError> {
@@ -274,6 +287,12 @@ impl Plan {
     /// As [`SceneChoice::load`].
     pub fn load_scene(&self) -> Result<Arc<Scene>, FileError> {
         self.scene.load()
+    }
+
+    /// Name of the level of modelling.
+    #[must_use]
+    pub fn level_name(&self) -> String {
+        level_name(self.level)
     }
 
     /// The experiment with the scene loaded.

@@ -62,7 +62,7 @@ fn what_is_shown_is_a_file_that_means_the_same() {
     let texts = [
         RC.to_owned(),
         format!("{RC}mono = true\nshading = \"gouraud\"\ntriangles = 9\nseed = 5\n[motion]\npath = \"orbit\"\ndistance = 2\nsway = 0.5\n"),
-        "title = \"a \\\"b\\\"\"\npipeline = \"slats\"\nscene = \"mig\"\ncode = 1995\npublished = {figure = 3, source = \"x\", quantity = \"copy_ms\", value = 2}\n".to_owned(),
+        "title = \"a \\\"b\\\"\"\npipeline = \"slats\"\nscene = \"mig\"\ncode = 1995\npublished = {figure = 3, source = \"x\", quantity = \"copies_ms\", value = 2}\n".to_owned(),
     ];
     for text in texts {
         let first = plan(&text);

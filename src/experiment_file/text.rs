@@ -36,7 +36,7 @@ impl Plan {
         all.put("fields", self.fields as i64);
         all.put("seed", self.seed as i64);
         all.put("pixels", name(&PIXELS, &self.pixels));
-        all.put("level", "transaction");
+        all.put("level", self.level_name());
         all.put("measure", self.measure.iter().map(|m| Value::from(m.name())).collect::<Vec<_>>());
         all.put("output.pictures", self.output.pictures);
         all.put("output.timeline", self.output.timeline);

@@ -18,7 +18,7 @@ pub struct Header {
     pub machine: String,
     /// Name of the settings, the space and the quantities.
     pub config_hash: String,
-    /// Level of modelling.
+    /// Level of modelling at that point.
     pub level: String,
     /// Seed at that point.
     pub seed: u64,
@@ -68,7 +68,7 @@ impl Sweep {
             machine: first.machine.preset.clone(),
             config_hash: hash(&version, &first, &settings, &axes).to_string(),
             version,
-            level: "transaction".to_owned(),
+            level: first.level_name(),
             seed: first.seed,
             title: first.title,
             points: self.space.points(),

@@ -2,7 +2,6 @@
 
 use super::Sweep;
 use super::header::json;
-use crate::experiment::Pixels;
 use crate::experiment_file::{FileError, Plan};
 use pxpl5_scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -34,7 +33,7 @@ pub struct Row {
     pub measured: BTreeMap<String, Option<f64>>,
     /// Name of everything on which the trace depends; null for an experiment that could not be made.
     pub config_hash: Option<String>,
-    /// Hash of everything that happened.
+    /// Hash of everything that happened; null at a level without events.
     pub trace_hash: Option<String>,
     /// Why it could not be simulated.
     pub error: Option<String>,
@@ -94,7 +93,7 @@ impl Sweep {
                 status: Status::Done,
                 measured: simulated.measured,
                 config_hash: Some(simulated.config_hash),
-                trace_hash: Some(simulated.trace_hash),
+                trace_hash: simulated.trace_hash,
                 ..empty
             },
             Err(error) => Row { error: Some(error), ..empty },
@@ -104,21 +103,19 @@ impl Sweep {
     fn simulate(&self, point: u64, scenes: &Scenes) -> Result<Simulated, String> {
         let plan = self.plan(point).map_err(|error| error.to_string())?;
         let scene = scenes.of(&plan).map_err(|error| error.to_string())?;
+        let config_hash = plan.case(scene.clone()).experiment().config_hash().to_string();
         // Nobody looks at the pictures of a sweep, and pixels change no time.
-        let experiment = plan.experiment(scene).pixels(Pixels::Off).threads(1);
-        let outcome = experiment.run().map_err(|error| error.to_string())?;
-        let report = outcome.report();
-        // JSON has no infinities.
-        let value = |m: &crate::Measure| m.of(&outcome, &report).filter(|value| value.is_finite());
-        let measured = plan.measure.iter().map(|m| (m.name().to_owned(), value(m))).collect();
-        Ok(Simulated { measured, config_hash: report.config_hash, trace_hash: report.trace_hash })
+        let results = plan.run(scene).map_err(|error| error.to_string())?;
+        let measured = plan.measure.iter().map(|m| (m.name().to_owned(), m.of(&results))).collect();
+        let trace_hash = results.run.map(|(_, report)| report.trace_hash);
+        Ok(Simulated { measured, config_hash, trace_hash })
     }
 }
 
 struct Simulated {
     measured: BTreeMap<String, Option<f64>>,
     config_hash: String,
-    trace_hash: String,
+    trace_hash: Option<String>,
 }
 
 fn panic_text(panic: &(dyn std::any::Any + Send)) -> &str {

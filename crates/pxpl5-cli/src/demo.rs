@@ -7,7 +7,7 @@ use crate::snapshot::SnapshotArgs;
 use crate::table::{Comparison, table};
 use crate::terminal::print;
 use clap::Args;
-use pxpl5::{ExperimentFile, Outcome, Plan, Report};
+use pxpl5::{ExperimentFile, Outcome, Plan, Report, Results};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -86,9 +86,10 @@ pub(crate) fn run(args: DemoArgs) -> Result<(), CliError> {
 
 fn one(name: &'static str, text: &str, quiet: bool) -> Result<Run, CliError> {
     let plan: Plan = ExperimentFile::parse(text, name)?.resolve()?;
-    let outcome = SnapshotArgs::default().simulate(&plan, None, quiet)?;
-    let report = outcome.report();
-    Ok(Run { name, comparison: comparison(&plan, &outcome, &report), outcome, report })
+    let results = Results::new(&plan, SnapshotArgs::default().simulate(&plan, None, quiet)?);
+    let comparison = comparison(&plan, &results);
+    let (outcome, report) = results.run.ok_or_else(|| CliError::failure("a run without events"))?;
+    Ok(Run { name, outcome, report, comparison })
 }
 
 fn closing(runs: &[Run], args: &DemoArgs) -> String {

@@ -52,15 +52,17 @@ fn a_run_prints_one_object_with_units_in_its_names() {
 fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
     let folder = Folder::new("files");
     let report = json(&folder.run(&with(&SLATS, &["--json", "--out", "a/b", "--set", "gp.triangle_ns=30000"])));
+    // With the feature of that name there is a Parquet file too.
+    let names: Vec<String> = names(&folder.0.join("a/b")).into_iter().filter(|n| !n.ends_with(".parquet")).collect();
     assert_eq!(
-        names(&folder.0.join("a/b")),
-        ["experiment.toml", "left.png", "report.json", "results.csv", "right.png", "timeline.svg"]
+        names,
+        ["experiment.toml", "left.png", "pictures.csv", "report.json", "results.csv", "right.png", "timeline.svg"]
     );
     let read = |name: &str| std::fs::read(folder.0.join("a/b").join(name)).expect("written");
     let hash = report["config_hash"].as_str().expect("a hash");
-    for name in ["experiment.toml", "results.csv"] {
+    for name in ["experiment.toml", "results.csv", "pictures.csv"] {
         let text = String::from_utf8(read(name)).expect("text");
-        let lines: Vec<&str> = text.lines().take(5).collect();
+        let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with("# schema")).take(5).collect();
         let expected = [
             "# machine: slats",
             &format!("# config_hash: {hash}"),
@@ -390,4 +392,47 @@ fn a_snapshot_of_a_model_file_that_has_changed_is_refused() {
     let output = folder.run(&["run", "--restore", "s.json"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(err(&output).contains("s.json: the run is not the one that was saved"), "{}", err(&output));
+}
+
+/// The experiment files of the repository: name and text.
+fn experiments() -> Vec<(String, String)> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments");
+    let files = names(&folder).into_iter().filter(|name| name.ends_with(".toml"));
+    files.map(|name| (name.clone(), std::fs::read_to_string(folder.join(&name)).expect("text"))).collect()
+}
+
+#[test]
+fn every_experiment_file_is_valid_and_every_figure_that_a_run_can_show_has_one() {
+    let mut figures = std::collections::BTreeSet::new();
+    for (name, text) in experiments() {
+        let file = pxpl5::ExperimentFile::parse(&text, &name).expect("valid");
+        let plan = match file.is_sweep() {
+            false => file.resolve().expect("an experiment"),
+            true => {
+                let sweep = pxpl5::sweep::Sweep::new(file).expect("a sweep");
+                sweep.plan(sweep.space().points() - 1).expect("an experiment")
+            }
+        };
+        plan.load_scene().expect("a scene");
+        figures.extend(name.strip_prefix("figure-").map(|rest| rest[..2].to_owned()));
+    }
+    // Figure 8 is about scenes, not about a run.
+    let expected = (1..=15).filter(|n| *n != 8).map(|n| format!("{n:02}"));
+    assert_eq!(figures, expected.collect());
+}
+
+#[test]
+fn the_files_of_figures_1_2_9_10_and_11_reproduce_them() {
+    // Figures that follow from rules of the machine: exact but for the first word's way through the ring.
+    let folder = Folder::new("figures");
+    for (name, text) in experiments() {
+        if ["01", "02", "09", "10", "11"].iter().any(|n| name == format!("figure-{n}.toml")) {
+            folder.file(&name, text);
+            let output = folder.run(&["run", &name]);
+            let table = out(&output);
+            let error = table.lines().find(|line| line.trim().starts_with("error")).expect("a comparison");
+            let percent: f64 = error.split_whitespace().nth(1).expect("a number").parse().expect("a number");
+            assert!(percent.abs() <= 0.2, "{name}: {table}");
+        }
+    }
 }
