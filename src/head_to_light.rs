@@ -190,7 +190,10 @@ pub struct HeadViews {
 
 impl fmt::Debug for HeadViews {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("HeadViews").field("head", &self.head).field("reports", &self.reports.len()).finish_non_exhaustive()
+        f.debug_struct("HeadViews")
+            .field("head", &self.head)
+            .field("reports", &self.reports.len())
+            .finish_non_exhaustive()
     }
 }
 
@@ -239,10 +242,7 @@ impl HeadViews {
         let Newest { measured_at, arrived_at } = follower.newest;
         let predicted_for = self.head.predicts().then_some(shown_at);
         sampled.push(Sampled { number, known, measured_at, arrived_at, predicted_for, pose });
-        let of_scene = pxpl5_scene::Pose {
-            position: pose.position.as_vec3(),
-            orientation: pose.orientation.as_quat(),
-        };
+        let of_scene = pxpl5_scene::Pose { position: pose.position.as_vec3(), orientation: pose.orientation.as_quat() };
         view(&self.scene, &self.hmd, self.eyes, number, shown_at, &of_scene)
     }
 

@@ -6,12 +6,12 @@ use pxpl5::compare::{
     motion, triangles_possible,
 };
 use pxpl5::scene::{Scene, builtin};
+use pxpl5::tracking::Pose;
 use pxpl5::tracking::motion::{Motion, Pan, Still, Synthetic};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::rig::PendulumRig;
 use pxpl5::tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, seconds};
 use pxpl5::tracking::tracker::{Fault, TrackerConfig, TrackerModel};
-use pxpl5::tracking::Pose;
 use pxpl5::{
     Budget, Experiment, Frameless, Head, Jitp, MachineConfig, Outcome, Pipeline, Pixels, Reading, RenderingControl,
     Slats, Viewpoint,
@@ -64,9 +64,12 @@ fn j1_one_transform_a_field_is_33_pixels_off_at_its_end() {
     let registration = Registration::of(&outcome).expect("there is a head");
     let last = registration.at(320, 478, FIELD).expect("shown");
     let scan_s = beam_s(&outcome, (0, 0), (320, 478));
-    assert!((last.degrees - PAN * scan_s).abs() < 0.005, "{} {}", last.degrees, PAN * scan_s);
+    // The pixel is below the level: a turn about the vertical moves it by the chord of a smaller circle.
+    let level = FOCAL_PX / f64::hypot(FOCAL_PX, 478.5 - 240.0);
+    let turn_deg = 2.0 * f64::asin((last.degrees / 2.0).to_radians().sin() / level).to_degrees();
+    assert!((turn_deg - PAN * scan_s).abs() < 0.001, "{turn_deg} {}", PAN * scan_s);
     // The paper counts to the next retrace, and 10 pixels a degree.
-    let whole_field_deg = last.degrees / scan_s * seconds(NTSC_FIELD_PS);
+    let whole_field_deg = turn_deg / scan_s * seconds(NTSC_FIELD_PS);
     println!("J1: {whole_field_deg:.3} deg, {:.2} px", whole_field_deg * 10.0);
     assert!((whole_field_deg - 3.3).abs() < 0.05 && (whole_field_deg * 10.0 - 33.0).abs() < 0.5);
 }
@@ -104,10 +107,11 @@ fn j4_a_vertical_edge_slants_by_speed_times_scan_time() {
     }
 }
 
-/// The column of the edge in each row: white pixels from the left.
+/// The column right of the last white pixel of each row.
 fn edge(picture: &image::RgbImage) -> Vec<f64> {
-    let white = |row| (0..picture.width()).filter(|x| picture.get_pixel(*x, row)[0] > 100).count();
-    (0..picture.height()).map(|row| white(row) as f64).collect()
+    let white = |row, x: &u32| picture.get_pixel(*x, row)[0] > 100;
+    let right_of = |row| (0..picture.width()).rev().find(|x| white(row, x)).map_or(0.0, |x| f64::from(x + 1));
+    (0..picture.height()).map(right_of).collect()
 }
 
 /// Pixels between the first and the last row of the straight line through all of them.
@@ -125,13 +129,9 @@ fn slant(edge: &[f64]) -> f64 {
 #[test]
 fn j4_the_plates_slant_as_the_old_well_does() {
     let plates = edge_pictures(&MachineConfig::small_hmd(), PAN).expect("the scene is small");
-    let [conventional, conventional_seen, just_in_time, just_in_time_seen] = [
-        &plates.conventional,
-        &plates.conventional_seen,
-        &plates.just_in_time,
-        &plates.just_in_time_seen,
-    ]
-    .map(|picture| slant(&edge(picture)));
+    let [conventional, conventional_seen, just_in_time, just_in_time_seen] =
+        [&plates.conventional, &plates.conventional_seen, &plates.just_in_time, &plates.just_in_time_seen]
+            .map(|picture| slant(&edge(picture)));
     println!("J4: {conventional:.3} seen {conventional_seen:.3}, {just_in_time:.3} seen {just_in_time_seen:.3}");
     // 239 lines of 4004/63 us at 200 deg/s: 3.038 degrees; the head turns left, so things move right in the view.
     let turn = (PAN * 239.0 * 4004.0 / 63.0 * 1e-6).to_radians();
@@ -232,7 +232,8 @@ fn ninety_milliseconds_are_1_8_times_as_wrong_as_fifty() {
 
 #[test]
 fn errors_of_pipelines_are_as_their_latencies_from_head_to_light() {
-    let tracker = || TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::optical_ceiling() };
+    let tracker =
+        || TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::optical_ceiling() };
     let measure = |pipeline: Arc<dyn Pipeline>| {
         let outcome = Experiment::with(MachineConfig::small_hmd(), pipeline, Arc::new(small()))
             .head(head(Synthetic::recorded_use(3), tracker(), PredictorKind::None))
@@ -288,12 +289,14 @@ fn a_perfect_tracker_and_a_still_head_leave_no_error() {
 
 #[test]
 fn metal_misplaces_objects_even_for_a_still_head() {
-    let tracker = TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::polhemus_3space() };
+    let tracker =
+        TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::polhemus_3space() };
     let at = Pose::at(DVec3::new(0.7, 0.0, 0.7));
     let outcome = run(Slats::split(), head(Still(at), tracker, PredictorKind::None), 90);
     let errors = PixelErrors::of(&outcome);
-    // A bowl of 20 mm at 1 m, seen at 2 m and more: some pixels, always the same.
-    assert!(errors.centre_px.p50 > 0.5 && (errors.centre_px.max - errors.centre_px.p50).abs() < 1e-6, "{errors:?}");
+    // A bowl of 20 mm at 1 m, seen at 2 m and more: some pixels, always the same (but for the two fields' lines).
+    let centre = errors.centre_px;
+    assert!(centre.p50 > 0.5 && (centre.max - centre.p50).abs() < 1e-3, "{centre:?}");
 }
 
 #[test]
@@ -351,8 +354,13 @@ fn the_rig_and_the_time_stamps_agree_within_the_bound_for_every_tracker() {
             );
             println!(
                 "{:18} {:28} outside {:6.2} ms, inside {:6.2} ms, difference {:5.2} of {:5.2} ms, {} passes",
-                outcome.pipeline().name(), model.config().name, outside * 1e3, inside * 1e3, difference * 1e3,
-                bound * 1e3, measured.passes.len()
+                outcome.pipeline().name(),
+                model.config().name,
+                outside * 1e3,
+                inside * 1e3,
+                difference * 1e3,
+                bound * 1e3,
+                measured.passes.len()
             );
             assert!(measured.passes.len() >= 15 && difference > 0.0 && difference <= bound);
         }
@@ -364,8 +372,14 @@ fn every_pipeline_goes_on_when_the_tracker_fails() {
     let faults = [
         vec![Fault::Silence { from_ps: 0 }],
         vec![Fault::Silence { from_ps: 300 * PS_PER_MS }],
-        vec![Fault::Dropout { from_ps: 200 * PS_PER_MS, to_ps: 700 * PS_PER_MS }, Fault::RandomDropout { probability: 0.5 }],
-        vec![Fault::NotANumber { probability: 0.5 }, Fault::Jump { probability: 0.5, distance_m: 1e3, angle_deg: 170.0 }],
+        vec![
+            Fault::Dropout { from_ps: 200 * PS_PER_MS, to_ps: 700 * PS_PER_MS },
+            Fault::RandomDropout { probability: 0.5 },
+        ],
+        vec![
+            Fault::NotANumber { probability: 0.5 },
+            Fault::Jump { probability: 0.5, distance_m: 1e3, angle_deg: 170.0 },
+        ],
     ];
     let late = TrackerConfig::optical_ceiling().with_latency_ps(PS_PER_S / 2);
     let trackers = faults
@@ -375,7 +389,7 @@ fn every_pipeline_goes_on_when_the_tracker_fails() {
     for tracker in trackers {
         let config = MachineConfig::small_hmd();
         let head = Arc::new(head(Synthetic::recorded_use(2), tracker, PredictorKind::Kalman));
-        let all = compare(&config, &Arc::new(small()), &head, 60, false).expect("60 fields");
+        let all = compare(&config, &Arc::new(small()), &head, 45, false).expect("45 fields");
         for row in &all.pipelines {
             assert_eq!(row.failure, None, "{}", row.pipeline);
             let Percentiles { mean, max, .. } = row.error.pixels;

@@ -87,7 +87,12 @@ const GRID: u32 = 5;
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Drawn {
     Pose(Pose),
-    Between { from: Pose, to: Pose, part: f64, on_screen: bool },
+    Between {
+        from: Pose,
+        to: Pose,
+        part: f64,
+        on_screen: bool,
+    },
     /// A picture that is shifted on its way to the screen.
     Shifted(Pose, DVec2),
 }

@@ -76,9 +76,11 @@ pub fn motion(text: &str) -> Result<Arc<dyn Motion + Send + Sync>, MotionError> 
         ("still", "") => Arc::new(Still(Pose::IDENTITY)),
         ("pendulum", "") => Arc::new(Pendulum::rig()),
         ("pan", rate) => {
-            let deg_per_s: f64 = rate.parse().ok().filter(|r: &f64| r.abs() <= FASTEST_PAN).ok_or_else(|| {
-                number(rate, "a pan of -10000 to 10000 degrees per second, such as pan:200")
-            })?;
+            let deg_per_s: f64 = rate
+                .parse()
+                .ok()
+                .filter(|r: &f64| r.abs() <= FASTEST_PAN)
+                .ok_or_else(|| number(rate, "a pan of -10000 to 10000 degrees per second, such as pan:200"))?;
             Arc::new(Pan::at(deg_per_s))
         }
         ("synthetic", seed) => {

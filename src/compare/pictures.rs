@@ -39,11 +39,8 @@ const DISTANCE_M: f32 = 2.0;
 /// begins `yaw_deg` to the left of it.
 #[must_use]
 pub fn edge_scene(yaw_deg: f64) -> Scene {
-    let vertex = |x: f32, y: f32| Vertex {
-        position: Vec3::new(x, y, -DISTANCE_M),
-        normal: Vec3::Z,
-        colour: [255, 255, 255],
-    };
+    let vertex =
+        |x: f32, y: f32| Vertex { position: Vec3::new(x, y, -DISTANCE_M), normal: Vec3::Z, colour: [255, 255, 255] };
     let vertices = vec![vertex(-9.0, -9.0), vertex(0.0, -9.0), vertex(0.0, 9.0), vertex(-9.0, 9.0)];
     let (sin, cos) = yaw_deg.to_radians().sin_cos();
     let target = DVec3::new(-sin, 0.0, -cos).as_vec3();
@@ -82,11 +79,7 @@ pub fn edge_pictures(config: &MachineConfig, deg_per_s: f64) -> Result<EdgePictu
 }
 
 /// A field as scanned and as seen.
-fn draw(
-    config: &MachineConfig,
-    deg_per_s: f64,
-    viewpoint: Viewpoint,
-) -> Result<(RgbImage, RgbImage), ExperimentError> {
+fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<(RgbImage, RgbImage), ExperimentError> {
     let video = Video::new(config.frame_buffer.video).map_err(|e| ExperimentError::Scene(e.to_string()))?;
     let middle = video.when(320, 240 + FieldParity::of_field(FIELD).first_line(), FIELD).unwrap_or_default();
     let scene = edge_scene(-deg_per_s * middle.0 as f64 * 1e-12);
@@ -95,13 +88,12 @@ fn draw(
         .map_err(|e| ExperimentError::Scene(e.to_string()))?;
     let outcome = Experiment::new(config.clone(), Jitp::new(viewpoint, true), scene)
         .head(head)
-        .fields(FIELD + 1)
+        .fields(FIELD + 2)
         .pixels(Pixels::Lazy)
         .run()?;
-    let mut machine_fields = outcome.machine().frame_buffers().iter();
-    let scanned = machine_fields.next().and_then(|board| board.last_seen());
-    let picture = scanned.filter(|field| field.field() == FIELD).map(|field| field.picture());
-    let picture = picture.unwrap_or_else(|| RgbImage::new(video.width(), video.height() / 2));
+    let scanned = outcome.machine().frame_buffers().first().and_then(|board| board.seen(FIELD));
+    let black = || RgbImage::new(video.width(), video.height() / 2);
+    let picture = scanned.map_or_else(black, |field| field.picture());
     let seen = as_seen(&picture, FIELD, &video, &Pan::at(deg_per_s));
     Ok((picture, seen))
 }

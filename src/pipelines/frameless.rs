@@ -7,8 +7,8 @@ use crate::machine::Machine;
 use crate::observation::LateRegion;
 use image::RgbImage;
 use jitp::{BlockOrder, Schedule};
-use pxpl5_framebuffer::Video;
 use pphigs::{Counts, Share};
+use pxpl5_framebuffer::Video;
 use pxpl5_gp::{Level, Stage};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
@@ -44,7 +44,8 @@ impl Frameless {
         }
         let (ports, ring) = (machine.ports(), machine.ring().timing());
         let timing = machine.processor(ports.gps[0], Level::Foreground).timing();
-        let primitives = u64::from(counts.triangles) * timing.triangle_ns + u64::from(counts.spheres) * timing.sphere_ns;
+        let primitives =
+            u64::from(counts.triangles) * timing.triangle_ns + u64::from(counts.spheres) * timing.sphere_ns;
         let slave_ns = timing.pass_ns + primitives + 3 * timing.message_ns;
         let block_ns = ring.occupancy(self.block * self.block).0 / 1_000;
         let slaves = ports.gps.len().saturating_sub(1).max(1) as u64;
@@ -169,7 +170,7 @@ impl Pipeline for Frameless {
     }
 
     fn picture(&self, machine: &Machine, _: Eye) -> Option<RgbImage> {
-        let frame_buffer = machine.frame_buffers().get(0)?;
+        let frame_buffer = machine.frame_buffers().first()?;
         let last = frame_buffer.last_seen()?;
         let before = frame_buffer.seen(last.field().checked_sub(1)?)?;
         Some(last.interlaced_with(&before))

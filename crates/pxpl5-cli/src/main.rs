@@ -6,6 +6,7 @@
 #![allow(unreachable_pub, reason = "every module of this binary is a command that may one day be called from outside")]
 
 mod check;
+mod compare;
 mod completions;
 mod demo;
 mod error;
@@ -48,6 +49,8 @@ enum Command {
     Run(run::RunArgs),
     /// Print the effective configuration of an experiment.
     Check(check::CheckArgs),
+    /// Compare every way to fight latency in pixels: one scene, head motion and tracker for all pipelines.
+    Compare(compare::CompareArgs),
     /// List the built-in scenes.
     Scenes(scenes::ScenesArgs),
     /// List the machines that are built in.
@@ -75,6 +78,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Demo(args)) => demo::run(args),
         Some(Command::Run(args)) => run::run(args),
         Some(Command::Check(args)) => check::run(args),
+        Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Scenes(args)) => scenes::run(args),
         Some(Command::Machines(args)) => machines::run(args),
         Some(Command::I860(args)) => i860::run(args).map_err(CliError::failure),
