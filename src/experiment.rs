@@ -51,6 +51,8 @@ pub enum ExperimentError {
     },
     /// The scene has nothing to draw, or too many moving structures.
     Scene(String),
+    /// Whoever watched the run ended it ([`Experiment::run_stopping`]).
+    Stopped(String),
     /// The run ended early; what was observed until then is kept.
     Run {
         /// Why.
@@ -69,7 +71,7 @@ impl fmt::Display for ExperimentError {
                 f,
                 "only {pictures} pictures were shown in {fields} fields and the first {WARM_UP_PICTURES} are discarded; simulate more fields"
             ),
-            Self::Scene(text) => f.write_str(text),
+            Self::Scene(text) | Self::Stopped(text) => f.write_str(text),
             Self::Run { error, partial } => {
                 write!(f, "{error} ({} pictures had been shown)", partial.pictures().len())
             }
@@ -437,6 +439,7 @@ impl Outcome {
             pictures: pictures.len(),
             latency_fields: self.latency_fields().defined(experiment.pipeline.latency_definition()),
             latency_ms: self.latency_ms().defined(experiment.pipeline.latency_definition()),
+            latency_parts_ms: self.latency_part_statistics(),
             updates_hz: updates_hz(pictures) / experiment.pipeline.updates_per_picture(&self.machine),
             missed_retraces: experiment.pipeline.missed_retraces(pictures),
             missed_retraces_definition: experiment.pipeline.missed_definition().to_owned(),

@@ -27,6 +27,7 @@
 //! | [`pipelines`] | what can run on it; a new pipeline implements [`Pipeline`] |
 //! | [`compare`], [`display`] | every way to fight latency in pixels; what a display does on the way to the eye |
 //! | [`figures`], [`levels`], [`limit`] | published figures, levels of modelling, most triangles per field |
+//! | [`ExperimentFile`], [`sweep`], [`Snapshot`] | experiments as text, at many points, and continued |
 //! | `pxpl5-*` crates | one for each board, and the event kernel |
 //!
 //! Every number of the model has a unit, a standing (published, derived, assumed) and a source:
@@ -44,6 +45,8 @@ mod experiment_file;
 pub mod figures;
 mod fingerprint;
 mod head_to_light;
+pub mod intervals;
+mod latency;
 pub mod levels;
 pub mod limit;
 mod machine;
@@ -52,6 +55,9 @@ mod observation;
 mod parallel;
 pub mod pipelines;
 mod report;
+pub mod results;
+mod snapshot;
+pub mod sweep;
 pub mod timeline;
 mod workers;
 
@@ -59,12 +65,12 @@ pub use config::{ConfigError, MachineConfig, PRESETS, Parameter, Preset};
 pub use experiment::{Experiment, ExperimentError, FIELDS_RANGE, Outcome, Pixels, WARM_UP_PICTURES};
 pub use experiment_file::{
     ExperimentFile, FileError, KEYS, Key, MotionChoice, Outputs, PIPELINES, Plan, Published, SceneChoice, Settings,
-    Variant,
 };
 pub use fingerprint::Fingerprint;
 pub use head_to_light::{Budget, FIELDS_WITH_HEAD, Head, HeadError, HeadViews, Rehearsal, Sampled};
+pub use latency::{LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition};
 pub use machine::{Machine, Ports, RunError};
-pub use measure::{Measure, QUANTITIES, Quantity};
+pub use measure::{Measure, QUANTITIES, Quantity, Results};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
 pub use pipelines::{Code, Frameless, Jitp, Pipeline, Reading, RenderingControl, Slats, Viewpoint};
 pub use pphigs::Binning;
@@ -72,4 +78,10 @@ pub use pxpl5_scene as scene;
 pub use pxpl5_wire::Eye;
 pub use report::{DefinedStatistics, Report, Statistics};
 pub use slats::Copy;
+pub use snapshot::{Snapshot, SnapshotError};
 pub use tracking;
+
+/// The examples of the README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;
