@@ -75,8 +75,14 @@ pub const CEILING: u32 = 1_000_000;
 /// Sizes tried above the answer of the bisection.
 const LOOK_AHEAD: u32 = 60;
 
-/// Fields that show a steady state of a pipeline whose longest latency is four fields.
+/// Fields that show a steady state of Slats, whose latency is one field.
 pub const LIMIT_FIELDS: u64 = 16;
+
+/// Fields that show one of Rendering Control at 10 frames a second.
+pub const STEREO_LIMIT_FIELDS: u64 = 90;
+
+/// Pictures after the warm-up without which nothing can be said of a rate: the goal counts as missed.
+const PICTURES: usize = 4;
 
 impl LimitQuery {
     /// The most triangles without a missed retrace.
@@ -110,6 +116,9 @@ impl LimitQuery {
 
 impl Goal {
     fn is_reached(self, summary: &Summary) -> bool {
+        if summary.latencies_ms.len() < PICTURES {
+            return false;
+        }
         match self {
             Self::NoMissedRetrace => summary.missed_retraces == 0,
             Self::RateHz(least) => summary.updates_hz >= least * NTSC,

@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::terminal::print;
 use clap::{Args, ValueEnum};
 use pxpl5::levels::{Level, Program};
-use pxpl5::limit::{Goal, Growing, LIMIT_FIELDS, Limit, LimitQuery};
+use pxpl5::limit::{Goal, Growing, LIMIT_FIELDS, Limit, LimitQuery, STEREO_LIMIT_FIELDS};
 use pxpl5::{Binning, Code, Copy, MachineConfig, RenderingControl, Slats};
 use serde_json::json;
 
@@ -47,9 +47,9 @@ pub(crate) struct LimitArgs {
     /// Greatest mean latency in fields (Rendering Control).
     #[arg(long, value_name = "FIELDS")]
     latency: Option<f64>,
-    /// Fields that each size is simulated for.
-    #[arg(long, default_value_t = LIMIT_FIELDS)]
-    fields: u64,
+    /// Fields that each size is simulated for; default: 16 for Slats, 90 for Rendering Control.
+    #[arg(long)]
+    fields: Option<u64>,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -114,7 +114,10 @@ impl LimitArgs {
             program,
             growing: self.growing(program),
             goal: self.goal()?,
-            fields: self.fields,
+            fields: self.fields.unwrap_or(match program {
+                Program::Slats(_) => LIMIT_FIELDS,
+                Program::RenderingControl(_) => STEREO_LIMIT_FIELDS,
+            }),
             level: Level::Transaction,
         })
     }
