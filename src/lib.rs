@@ -44,6 +44,7 @@ mod experiment;
 mod experiment_file;
 pub mod figures;
 mod fingerprint;
+pub mod growth;
 mod head_to_light;
 pub mod intervals;
 mod latency;

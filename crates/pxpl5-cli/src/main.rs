@@ -12,6 +12,7 @@ mod demo;
 mod error;
 mod figures;
 mod i860;
+mod levels;
 mod limit;
 mod machines;
 mod merge;
@@ -60,6 +61,8 @@ enum Command {
     Figures(figures::FiguresArgs),
     /// Find the most triangles that a pipeline draws in time.
     Limit(limit::LimitArgs),
+    /// Compare the levels of modelling: speed against error.
+    Levels(levels::LevelsArgs),
     /// List the built-in scenes.
     Scenes(scenes::ScenesArgs),
     /// List the machines that are built in.
@@ -94,6 +97,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Figures(args)) => figures::run(args),
         Some(Command::Limit(args)) => limit::run(args),
+        Some(Command::Levels(args)) => levels::run(args),
         Some(Command::Scenes(args)) => scenes::run(args),
         Some(Command::Machines(args)) => machines::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
