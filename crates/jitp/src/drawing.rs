@@ -82,9 +82,9 @@ impl Drawing {
                 let corners = self.list.corners(number);
                 let mut hand_over =
                     |o: &pxpl5_geometry::Outline| sink(&|window: &Window| o.meets(window.across, window.lines));
-                let on_screen = self.on_screen(i).is_some_and(|(from, to, s)| {
-                    from.outline_between(to, s, &corners, &mut stats, &mut hand_over)
-                });
+                let on_screen = self
+                    .on_screen(i)
+                    .is_some_and(|(from, to, s)| from.outline_between(to, s, &corners, &mut stats, &mut hand_over));
                 if !on_screen {
                     transform.outlines(&corners, &mut stats, hand_over);
                 }
@@ -103,7 +103,8 @@ impl Drawing {
         let mut stats = SetupStats::default();
         for place in &self.placed {
             let Some(transform) = &place.transform else { continue };
-            let seen = place.structure.spheres.clone().filter_map(|i| transform.sphere(&self.list.spheres[i], &mut stats));
+            let seen =
+                place.structure.spheres.clone().filter_map(|i| transform.sphere(&self.list.spheres[i], &mut stats));
             seen.collect::<Vec<_>>().iter().for_each(|sphere| sink(sphere, place));
         }
     }
