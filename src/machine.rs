@@ -13,7 +13,7 @@
 use crate::config::{ConfigError, MachineConfig};
 use crate::observation::{Arrival, Observation, Swap};
 use crate::workers::PixelWorkers;
-use pxpl5_framebuffer::{FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput, Video};
+use pxpl5_framebuffer::{FrameBuffer, FrameBufferEvent, FrameBufferOutput, Video};
 use pxpl5_gp::{Fault, Gp, GpBoard, GpEvent, GpOutput, Level, Program};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
@@ -469,6 +469,3 @@ fn deliver(ports: &Ports, message: Message) -> Event {
     };
     Event::FrameBuffer(board, event)
 }
-
-/// The number of fields that a frame buffer has to remember for the last picture of both parities.
-pub(crate) const FIELDS_KEPT: u64 = FrameBufferConfig::NTSC.fields_kept;

@@ -1,5 +1,6 @@
 //! Results as numbers, with units in the names.
 
+use crate::latency::NamedStatistics;
 use crate::observation::LateRegion;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -92,6 +93,8 @@ pub struct Report {
     pub latency_fields: DefinedStatistics,
     /// Latency in milliseconds.
     pub latency_ms: DefinedStatistics,
+    /// Where the latency goes, in milliseconds: parts that add up to the way from the sample of the pose to light.
+    pub latency_parts_ms: Vec<NamedStatistics>,
     /// Complete pictures per second of simulated time.
     pub updates_hz: f64,
     /// Retraces missed.

@@ -4,7 +4,6 @@ use super::model::{Bar, Row, Scan, Timeline};
 use super::path::{Arrow, Place};
 use super::style::{STAGES, colours, letters, name, pattern};
 use super::writer::{Units, Writer, escape};
-use pxpl5_gp::Stage;
 use pxpl5_sim::{Span, Time};
 use std::fmt::Write;
 
@@ -13,7 +12,7 @@ const WIDTH: i64 = 960;
 const LEFT: i64 = 152;
 const RIGHT: i64 = 14;
 /// Height of what stands above the rows, of a lane, and of the space between rows.
-const HEAD: i64 = 66;
+const HEAD: i64 = 84;
 const LANE: i64 = 34;
 const GAP: i64 = 18;
 /// Height of the row of samples and of what stands below the rows.
@@ -32,9 +31,17 @@ struct Drawing<'a> {
     beam: i64,
 }
 
-pub(super) fn document(timeline: &Timeline, title: &str) -> String {
+/// What stands around a timeline.
+pub(super) struct Words {
+    pub(super) title: String,
+    pub(super) subtitle: String,
+    /// Facts that the drawing can be made again from, one a line.
+    pub(super) origin: String,
+}
+
+pub(super) fn document(timeline: &Timeline, words: &Words) -> String {
     let mut drawing = Drawing::new(timeline);
-    drawing.begin(title);
+    drawing.begin(words);
     let rows: Vec<_> = timeline.rows.iter().zip(drawing.rows.clone()).collect();
     rows.iter().for_each(|(row, top)| drawing.row(row, *top));
     drawing.axis();
@@ -77,16 +84,18 @@ impl<'a> Drawing<'a> {
         Units::whole(LEFT) + Units(place as i64)
     }
 
-    fn begin(&mut self, title: &str) {
+    fn begin(&mut self, Words { title, subtitle, origin }: &Words) {
         let height = self.height();
         self.out.line(format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" role="img" font-family="Helvetica, Arial, 'Liberation Sans', sans-serif" font-size="15">"#
         ));
         self.out.line(format!("<title>{}</title>", escape(title)));
+        self.out.line(format!("<desc>{}</desc>", escape(origin)));
         self.out.line(style());
         self.out.line(patterns());
         self.out.rectangle([Units(0), Units(0), Units::whole(WIDTH), Units::whole(height)], "page", "");
         self.out.text([Units::whole(LEFT), Units::whole(22)], "heading", &escape(title));
+        self.out.text([Units::whole(LEFT), Units::whole(41)], "key", &escape(subtitle));
     }
 
     /// Fields above, milliseconds below, retraces across.
@@ -239,14 +248,22 @@ impl<'a> Drawing<'a> {
 
     fn legend(&mut self) {
         let y = self.beam + LANE + 44;
+        let has = |wanted: &dyn Fn(&Bar) -> bool| self.timeline.rows.iter().flat_map(|row| &row.bars).any(wanted);
+        let stages: Vec<_> = STAGES.iter().filter(|entry| has(&|bar| bar.stage == entry.0)).collect();
+        let (eyes, halves) = (has(&|bar| bar.eye.is_some()), has(&|bar| bar.bottom.is_some()));
         let mut x = LEFT;
-        let shown = |stage: Stage| self.timeline.rows.iter().any(|row| row.bars.iter().any(|bar| bar.stage == stage));
-        for (stage, title) in STAGES.iter().filter(|entry| shown(entry.0)).copied().collect::<Vec<_>>() {
-            x = self.swatch(x, y, &format!("{0} {0}-plain other", name(stage)), title);
+        for (stage, title) in stages {
+            x = self.swatch(x, y, &format!("{0} {0}-plain other", name(*stage)), title);
         }
-        let eyes = self.timeline.rows.iter().flat_map(|row| &row.bars).any(|bar| bar.eye.is_some());
+        x = self.swatch(x, y, "receiving", "port receives");
+        if halves {
+            self.out.text([x, y].map(Units::whole), "key", "t, b: top, bottom half");
+        }
+        self.second_legend(y + 20, eyes);
+    }
+
+    fn second_legend(&mut self, y: i64, eyes: bool) {
         let mut x = LEFT;
-        let y = y + 20;
         if eyes {
             x = self.swatch(x, y, "left-eye other", "left eye");
             x = self.swatch(x, y, "right-eye other", "right eye");
@@ -254,12 +271,12 @@ impl<'a> Drawing<'a> {
         if let Some(picture) = self.timeline.picture {
             x = self.swatch(x, y, "blank chosen", &format!("picture {picture}"));
         }
-        let middle = Units::whole(y - 4);
-        self.out.segment([Units::whole(x), middle, Units::whole(x + 22), middle], "arrow");
-        self.out.text([Units::whole(x + 30), Units::whole(y)], "key", "what it waited for");
-        let x = x + 30 + 138;
-        self.out.segment([Units::whole(x), middle, Units::whole(x + 22), middle], "retrace");
-        self.out.text([Units::whole(x + 30), Units::whole(y)], "key", "retrace");
+        for (class, title) in [("arrow", "what it waited for"), ("retrace", "retrace"), ("beam", "beam")] {
+            let middle = y - 4;
+            self.out.segment([x, middle, x + 22, middle].map(Units::whole), class);
+            self.out.text([x + 30, y].map(Units::whole), "key", title);
+            x += 30 + width(title) + 18;
+        }
     }
 
     fn swatch(&mut self, x: i64, y: i64, class: &str, title: &str) -> i64 {
@@ -285,7 +302,7 @@ fn style() -> String {
     let mut text = String::from("<style>");
     text.push_str(
         ".page{fill:#fff}.row{fill:#f5f5f5}.blank{fill:#fff}.heading{font-size:17px;font-weight:bold}\
-         .mid{text-anchor:middle}.name{text-anchor:end}.label{text-anchor:middle;font-weight:bold;paint-order:stroke;\
+         .key{font-size:14px}.mid{text-anchor:middle}.name{text-anchor:end}.label{text-anchor:middle;font-weight:bold;paint-order:stroke;\
          stroke:#fff;stroke-width:3px;stroke-linejoin:round}.sub{font-size:11px}.retrace{stroke:#666;stroke-width:1;\
          stroke-dasharray:5 3;fill:none}.axis{stroke:#222;fill:none}.other{stroke:#888;stroke-width:.8}\
          .chosen{stroke:#111;stroke-width:2.4}.sample.other{fill:#999}.sample.chosen{fill:#c00000;stroke-width:1}\

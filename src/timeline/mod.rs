@@ -18,13 +18,16 @@
 mod draw;
 mod model;
 mod path;
+mod published;
 mod style;
 mod writer;
 
 pub use model::{Bar, Row, Scan, Timeline};
-pub use path::Arrow;
+pub use path::{Arrow, Place};
+pub use published::{FigureError, PIPELINE_FIGURES, PipelineFigure};
 
 use crate::experiment::Outcome;
+use crate::results::origin_lines;
 
 /// What of a run is drawn, and how.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -47,11 +50,12 @@ pub const MAX_FIELDS: u64 = 16;
 /// Draws a run as an SVG document, 960 units wide; of a run without a picture it shows the first fields.
 #[must_use]
 pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
-    let title = options.title.clone().unwrap_or_else(|| default_title(outcome));
-    draw::document(&Timeline::of(outcome, options), &title)
-}
-
-fn default_title(outcome: &Outcome) -> String {
     let report = outcome.report();
-    format!("{} on {}, {}", report.pipeline, report.machine, report.scene)
+    let subject = format!("{} on {}, {}", report.pipeline, report.machine, report.scene);
+    let words = draw::Words {
+        title: options.title.clone().unwrap_or_else(|| subject.clone()),
+        subtitle: format!("simulated: {subject}, {} triangles, seed {}", report.triangles, report.seed),
+        origin: origin_lines(&report, ""),
+    };
+    draw::document(&Timeline::of(outcome, options), &words)
 }

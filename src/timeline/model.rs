@@ -159,9 +159,10 @@ fn scan(video: &Video, pictures: &[PictureTimes], field: u64) -> Option<Scan> {
 
 fn rows(outcome: &Outcome, stages: &[StageSpan], options: &TimelineOptions) -> Vec<Row> {
     let end = outcome.end();
+    let mono = outcome.machine().frame_buffers().len() == 1;
     let of = |name, wanted: &[Stage]| {
         let chosen = stages.iter().filter(|span| wanted.contains(&span.stage));
-        row(name, chosen.map(|span| bar(span, end)).collect())
+        row(name, chosen.map(|span| bar(span, end, mono)).collect())
     };
     let message = outcome.machine().ring().timing().occupancy(MAX_MESSAGE_WORDS);
     let mut rows = Vec::new();
@@ -170,7 +171,6 @@ fn rows(outcome: &Outcome, stages: &[StageSpan], options: &TimelineOptions) -> V
     }
     rows.push(of("graphics processors", &[Stage::Edit, Stage::Transform]));
     rows.push(of("renderers", &[Stage::Render]));
-    let mono = outcome.machine().frame_buffers().len() == 1;
     for (board, _) in outcome.machine().frame_buffers().iter().enumerate() {
         let name = if mono { "frame buffer" } else { ["left frame buffer", "right frame buffer"][board.min(1)] };
         rows.push(row(name, copies(outcome, board, mono, message)));
@@ -183,9 +183,10 @@ fn row(name: &'static str, mut bars: Vec<Bar>) -> Row {
     Row { name, bars, lanes: 1 }
 }
 
-fn bar(span: &StageSpan, end_of_run: Time) -> Bar {
+fn bar(span: &StageSpan, end_of_run: Time, mono: bool) -> Bar {
     let StageSpan { picture, eye, stage, begin, end } = *span;
     let end = end.unwrap_or(end_of_run).max(begin);
+    let eye = eye.filter(|_| !mono);
     Bar { stage, picture, eye, bottom: None, begin, end, lane: 0, receiving: Vec::new() }
 }
 

@@ -165,6 +165,12 @@ impl Share {
         })
     }
 
+    /// No primitive of the same display list.
+    #[must_use]
+    pub fn nothing(&self) -> Self {
+        Self { triangles: 0..0, spheres: 0..0, ..self.clone() }
+    }
+
     /// Bytes that the primitives take in the GP's memory.
     #[must_use]
     pub fn bytes(&self) -> u64 {

@@ -1,0 +1,17 @@
+//! Re-draws the pipeline figures of the papers from simulation: `cargo run --release --example figures [FOLDER]`, by
+//! default into `docs/figures/`. Each must be what the test `tests/timeline.rs` expects to find there.
+
+use pxpl5::timeline::PIPELINE_FIGURES;
+use std::path::PathBuf;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let default = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/figures"));
+    let folder = std::env::args_os().nth(1).map_or_else(default, PathBuf::from);
+    std::fs::create_dir_all(&folder)?;
+    for figure in PIPELINE_FIGURES {
+        let drawing = figure.draw()?;
+        assert!(drawing.starts_with("<svg ") && drawing.ends_with("</svg>\n"), "{} is no drawing", figure.name);
+        std::fs::write(folder.join(figure.name).with_extension("svg"), drawing)?;
+    }
+    Ok(())
+}

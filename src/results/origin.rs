@@ -1,0 +1,33 @@
+//! What a result file opens with, so that it can be made again.
+
+use crate::report::Report;
+use std::fmt::Write;
+
+/// Preset, configuration hash, version, level, seed, and the experiment, as pairs of key and value.
+#[must_use]
+pub fn origin(report: &Report) -> Vec<(&'static str, String)> {
+    let overrides: Vec<String> = report.overrides.iter().map(|(path, value)| format!("{path}={value}")).collect();
+    vec![
+        ("machine", report.machine.clone()),
+        ("config_hash", report.config_hash.clone()),
+        ("version", report.version.clone()),
+        ("level", report.level.clone()),
+        ("seed", report.seed.to_string()),
+        ("pipeline", report.pipeline.clone()),
+        ("variant", report.variant.clone()),
+        ("overrides", overrides.join(" ")),
+        ("scene", format!("{}, {} triangles, {} spheres", report.scene, report.triangles, report.spheres)),
+        ("fields", report.fields.to_string()),
+    ]
+}
+
+/// The same as text, a line each, with a comment mark such as `# ` before each.
+#[must_use]
+pub fn origin_lines(report: &Report, mark: &str) -> String {
+    origin(report).iter().fold(String::new(), |mut text, (key, value)| {
+        // A line break in a value would end the comment.
+        let value = value.replace(['\n', '\r'], " ");
+        let _ = writeln!(text, "{mark}{key}: {value}");
+        text
+    })
+}

@@ -1,0 +1,58 @@
+//! The table as Parquet.
+
+use super::SCHEMA;
+use super::origin::origin;
+use super::table::{Column, columns, rows};
+use crate::experiment::Outcome;
+use parquet::basic::{Compression, Repetition, Type as PhysicalType};
+use parquet::data_type::Int64Type;
+use parquet::errors::Result;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::Type;
+use std::io::Write;
+use std::sync::Arc;
+
+/// Writes the pictures as Parquet: INT64 columns in one row group, uncompressed.
+///
+/// # Errors
+///
+/// [`parquet::errors::ParquetError`] when the writer fails.
+pub fn parquet(outcome: &Outcome, out: impl Write + Send) -> Result<()> {
+    let columns = columns();
+    let fields = columns.iter().map(field).collect::<Result<_>>()?;
+    let schema = Type::group_type_builder("pictures").with_fields(fields).build()?;
+    let mut writer = SerializedFileWriter::new(out, Arc::new(schema), Arc::new(properties(outcome)))?;
+    let mut group = writer.next_row_group()?;
+    let rows = rows(outcome);
+    for (i, column) in columns.iter().enumerate() {
+        let Some(mut writer) = group.next_column()? else { break };
+        // Times are below 2^63 ps, some 106 days.
+        let values: Vec<i64> = rows.iter().filter_map(|row| row[i]).map(u64::cast_signed).collect();
+        let levels: Vec<i16> = rows.iter().map(|row| row[i].is_some().into()).collect();
+        let levels = column.optional.then_some(&levels[..]);
+        writer.typed::<Int64Type>().write_batch(&values, levels, None)?;
+        writer.close()?;
+    }
+    group.close()?;
+    writer.close()?;
+    Ok(())
+}
+
+fn field(column: &Column) -> Result<Arc<Type>> {
+    let repetition = if column.optional { Repetition::OPTIONAL } else { Repetition::REQUIRED };
+    let builder = Type::primitive_type_builder(&column.name, PhysicalType::INT64).with_repetition(repetition);
+    Ok(Arc::new(builder.build()?))
+}
+
+fn properties(outcome: &Outcome) -> WriterProperties {
+    let entry = |key: &str, value: String| KeyValue::new(format!("pxpl5.{key}"), value);
+    let origin = origin(&outcome.report()).into_iter().map(|(key, value)| entry(key, value));
+    let metadata = [entry("schema", SCHEMA.to_owned())].into_iter().chain(origin).collect();
+    WriterProperties::builder()
+        .set_compression(Compression::UNCOMPRESSED)
+        .set_key_value_metadata(Some(metadata))
+        .set_created_by(format!("pxpl5 {}", env!("CARGO_PKG_VERSION")))
+        .build()
+}
