@@ -67,7 +67,7 @@ pub(crate) fn hmd() -> Hmd {
 
 /// The views of the scene's own head motion with a seed: as sampled, and for the moment when they are seen.
 pub(crate) fn views(scene: &Arc<Scene>, seed: u64, eyes: usize) -> (Views, ViewsWanted) {
-    let motion: HeadMotion = scene.motion().clone().with_seed(seed);
+    let motion: HeadMotion = scene.motion().with_seed(seed);
     let hmd = hmd();
     let at = {
         let scene = Arc::clone(scene);

@@ -80,3 +80,8 @@ pub use report::{DefinedStatistics, Report, Statistics};
 pub use slats::Copy;
 pub use snapshot::{Snapshot, SnapshotError};
 pub use tracking;
+
+/// The examples of the README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadmeExamples;

@@ -117,7 +117,7 @@ impl Snapshot {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             machine: plan.machine.preset.clone(),
             config_hash: config_hash.to_string(),
-            level: plan.level_name().to_owned(),
+            level: plan.level_name(),
             seed: plan.seed,
             field,
             time_ps: machine.video().retrace(field).0,

@@ -20,7 +20,12 @@ impl PixelWorkers {
         let (regions, waiting) = bounded::<Arc<dyn PixelSource>>(WAITING_REGIONS);
         let worker = |_| {
             let waiting = waiting.clone();
-            std::thread::spawn(move || waiting.iter().map(|region| region.pixels()).count() as u64)
+            std::thread::spawn(move || {
+                waiting.iter().fold(0, |regions, region| {
+                    let _ = region.pixels();
+                    regions + 1
+                })
+            })
         };
         Self { regions, threads: (0..threads.max(1)).map(worker).collect() }
     }

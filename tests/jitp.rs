@@ -64,9 +64,12 @@ fn j1_one_transform_a_field_is_33_pixels_off_at_its_end() {
     let registration = Registration::of(&outcome).expect("there is a head");
     let last = registration.at(320, 478, FIELD).expect("shown");
     let scan_s = beam_s(&outcome, (0, 0), (320, 478));
-    assert!((last.degrees - PAN * scan_s).abs() < 0.005, "{} {}", last.degrees, PAN * scan_s);
+    // The pixel is below the level: a turn about the vertical moves it by the chord of a smaller circle.
+    let level = FOCAL_PX / f64::hypot(FOCAL_PX, 478.5 - 240.0);
+    let turn_deg = 2.0 * f64::asin((last.degrees / 2.0).to_radians().sin() / level).to_degrees();
+    assert!((turn_deg - PAN * scan_s).abs() < 0.001, "{turn_deg} {}", PAN * scan_s);
     // The paper counts to the next retrace, and 10 pixels a degree.
-    let whole_field_deg = last.degrees / scan_s * seconds(NTSC_FIELD_PS);
+    let whole_field_deg = turn_deg / scan_s * seconds(NTSC_FIELD_PS);
     println!("J1: {whole_field_deg:.3} deg, {:.2} px", whole_field_deg * 10.0);
     assert!((whole_field_deg - 3.3).abs() < 0.05 && (whole_field_deg * 10.0 - 33.0).abs() < 0.5);
 }
@@ -104,10 +107,11 @@ fn j4_a_vertical_edge_slants_by_speed_times_scan_time() {
     }
 }
 
-/// The column of the edge in each row: white pixels from the left.
+/// The column right of the last white pixel of each row.
 fn edge(picture: &image::RgbImage) -> Vec<f64> {
-    let white = |row| (0..picture.width()).filter(|x| picture.get_pixel(*x, row)[0] > 100).count();
-    (0..picture.height()).map(|row| white(row) as f64).collect()
+    let white = |row, x: &u32| picture.get_pixel(*x, row)[0] > 100;
+    let right_of = |row| (0..picture.width()).rev().find(|x| white(row, x)).map_or(0.0, |x| f64::from(x + 1));
+    (0..picture.height()).map(right_of).collect()
 }
 
 /// Pixels between the first and the last row of the straight line through all of them.
@@ -290,8 +294,9 @@ fn metal_misplaces_objects_even_for_a_still_head() {
     let at = Pose::at(DVec3::new(0.7, 0.0, 0.7));
     let outcome = run(Slats::split(), head(Still(at), tracker, PredictorKind::None), 90);
     let errors = PixelErrors::of(&outcome);
-    // A bowl of 20 mm at 1 m, seen at 2 m and more: some pixels, always the same.
-    assert!(errors.centre_px.p50 > 0.5 && (errors.centre_px.max - errors.centre_px.p50).abs() < 1e-6, "{errors:?}");
+    // A bowl of 20 mm at 1 m, seen at 2 m and more: some pixels, always the same (but for the two fields' lines).
+    let centre = errors.centre_px;
+    assert!(centre.p50 > 0.5 && (centre.max - centre.p50).abs() < 1e-3, "{centre:?}");
 }
 
 #[test]
@@ -384,7 +389,7 @@ fn every_pipeline_goes_on_when_the_tracker_fails() {
     for tracker in trackers {
         let config = MachineConfig::small_hmd();
         let head = Arc::new(head(Synthetic::recorded_use(2), tracker, PredictorKind::Kalman));
-        let all = compare(&config, &Arc::new(small()), &head, 60, false).expect("60 fields");
+        let all = compare(&config, &Arc::new(small()), &head, 45, false).expect("45 fields");
         for row in &all.pipelines {
             assert_eq!(row.failure, None, "{}", row.pipeline);
             let Percentiles { mean, max, .. } = row.error.pixels;

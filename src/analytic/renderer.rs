@@ -13,15 +13,11 @@ pub(super) struct Commands {
     pub(super) words: f64,
     /// Time of one.
     pub(super) each_ns: f64,
-    /// Words behind them.
-    pub(super) tail_words: f64,
-    /// Time of those.
-    pub(super) tail_ns: f64,
 }
 
 impl Commands {
     pub(super) fn total_words(&self) -> f64 {
-        self.head_words + self.count * self.words + self.tail_words
+        self.head_words + self.count * self.words
     }
 }
 
@@ -49,7 +45,7 @@ impl Array {
 
     /// A message whose first word begins at `first_word_ns`: when its last word has entered.
     pub(super) fn take(&mut self, fifo: Fifo, first_word_ns: f64, commands: &Commands) -> f64 {
-        let Commands { head_words, head_ns, count, words, each_ns, tail_words, tail_ns } = *commands;
+        let Commands { head_words, head_ns, count, words, each_ns } = *commands;
         let total = commands.total_words();
         let undisturbed = first_word_ns + total * fifo.word_ns;
         let head_at = first_word_ns + head_words * fifo.word_ns;
@@ -58,7 +54,7 @@ impl Array {
         self.last = (start, count, words, each_ns);
         let slowest = each_ns.max(words * fifo.word_ns);
         let executed = (start + count * each_ns).max(start + (count - 1.0).max(0.0) * slowest + each_ns);
-        self.free_ns = executed.max(accepted - tail_words * 0.0).max(start) + tail_ns;
+        self.free_ns = executed.max(accepted);
         accepted
     }
 

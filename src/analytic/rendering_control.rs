@@ -43,6 +43,7 @@ pub struct StereoModel {
     shade: Cost,
     copy_words: f64,
     fifo_words: f64,
+    store_ns: f64,
     field_ns: f64,
     /// Port time of each region.
     copy_ns: Vec<f64>,
@@ -72,9 +73,10 @@ struct History {
 
 #[derive(Debug, Default)]
 struct Renderers {
-    /// When the master may give each one a region, and when it has executed and copied all.
+    /// When the master may give each one a region, when its array is free, and when its backing store is.
     idle_ns: Vec<f64>,
     free_ns: Vec<f64>,
+    stored_ns: Vec<f64>,
     /// Words sent to each, and of its latest regions: words before it, when its first command started, of which time.
     words: Vec<f64>,
     started: Vec<Vec<(f64, f64, Cost)>>,
@@ -129,6 +131,7 @@ impl StereoModel {
             shade: if phong { cost(CommandKind::Shade) } else { Cost::default() },
             copy_words: f64::from(CommandKind::CopyRegion.words()),
             fifo_words: config.renderer.fifo_words as f64,
+            store_ns: config.renderer.backing_block().as_ms() * 1e6,
             field_ns: video.retrace(1).since(Time::ZERO).as_ms() * 1e6,
             copy_ns: (0..grid.regions() as u16).map(copy).collect(),
         })
@@ -140,6 +143,7 @@ impl StereoModel {
         let mut history = History::default();
         history.rendering.idle_ns = vec![0.0; self.renderers];
         history.rendering.free_ns = vec![0.0; self.renderers];
+        history.rendering.stored_ns = vec![0.0; self.renderers];
         history.rendering.words = vec![0.0; self.renderers];
         history.rendering.started = vec![Vec::new(); self.renderers];
         loads.chunks(self.eyes).enumerate().map(|(frame, eyes)| self.frame(&mut history, frame, eyes)).collect()
@@ -223,9 +227,11 @@ impl StereoModel {
             let waits = token_ns < available_ns;
             let ready_ns = if waits { executed_ns.max(available_ns + self.order_ns()) } else { executed_ns };
             all.idle_ns[r] = if waits { heard_ns.max(available_ns + self.message_ns) } else { heard_ns };
-            let begin_ns = ready_ns.max(all.ports_ns[eye]);
+            // Into the backing store, which holds one region, and from there to the frame buffer.
+            all.free_ns[r] = ready_ns.max(all.stored_ns[r]) + self.store_ns;
+            let begin_ns = all.free_ns[r].max(all.ports_ns[eye]);
             all.ports_ns[eye] = begin_ns + self.copy_ns[region];
-            all.free_ns[r] = all.ports_ns[eye];
+            all.stored_ns[r] = all.ports_ns[eye];
             copy = (copy.0.min(begin_ns), copy.1.max(all.ports_ns[eye]));
         }
         (rendered_ns, copy)

@@ -41,6 +41,7 @@ pub struct SlatsModel {
     bottom_ns: f64,
     renderers: usize,
     gps: usize,
+    source_channels: usize,
     split: bool,
 }
 
@@ -68,7 +69,6 @@ impl SlatsModel {
         slats::Binding::new(config.n_renderers, program.layout().plan().contexts, program.copy)
             .map_err(|error| ConfigError::Board(error.to_string()))?;
         let video = Video::new(config.frame_buffer.video).map_err(|error| ConfigError::Board(error.to_string()))?;
-        let clock_ns = 1e9 / config.renderer.clock_hz as f64;
         let command = |kind: CommandKind| {
             let span = config.renderer.span(kind).map_or(0.0, |span| span.as_ms() * 1e6);
             (f64::from(kind.words()), span)
@@ -78,7 +78,6 @@ impl SlatsModel {
         let line = |y| video.line_start(y, 2).map_or(0.0, |at| at.since(video.retrace(2)).as_ms() * 1e6);
         let messages = (15_360.0_f64 / 1_024.0).ceil();
         let word_ns = config.ring.word_ns as f64;
-        debug_assert!(clock_ns > 0.0);
         Ok(Self {
             fifo: Fifo { depth_words: config.renderer.fifo_words as f64, word_ns },
             overhead_ns: config.ring.overhead_words as f64 * word_ns,
@@ -96,6 +95,7 @@ impl SlatsModel {
             bottom_ns: line(2 * RegionGrid::FIELD.region_height),
             renderers: config.n_renderers.min(MOST_RENDERERS),
             gps: config.n_gps,
+            source_channels: (config.ring.source_channels.min(config.ring.channels) as usize).clamp(1, MOST_CHANNELS),
             split: program.copy == Copy::Split,
         })
     }
@@ -155,53 +155,78 @@ impl SlatsModel {
     fn render(&self, arrays: &mut [Array; MOST_RENDERERS], triangles: f64, entries: f64) -> f64 {
         let share = triangles / self.gps as f64;
         let clumps = (share / CLUMP as f64).ceil().max(1.0) as usize;
+        let mut chain = Chain { released_ns: [0.0; MOST_RENDERERS], accepted_ns: 0.0, draining_ns: 0.0 };
         let mut cpu_ns = self.pass_ns;
-        let mut accepted_ns: f64 = 0.0;
-        let mut channels = [0.0_f64; MOST_RENDERERS];
         for clump in 0..clumps {
             let count = (share - (clump * CLUMP) as f64).min(CLUMP as f64);
-            cpu_ns += 2.0 * count * (self.triangle_ns + self.entry_ns * entries);
-            cpu_ns = cpu_ns.max(accepted_ns) + self.message_ns;
-            accepted_ns = self.chain(arrays, &mut channels, cpu_ns, count * entries / 10.0, clump == 0);
+            // The one clump buffer is written again when all renderers have begun with what was in it.
+            cpu_ns = cpu_ns.max(chain.draining_ns) + 2.0 * count * (self.triangle_ns + self.entry_ns * entries);
+            cpu_ns = cpu_ns.max(chain.accepted_ns) + self.message_ns;
+            self.send(arrays, &mut chain, cpu_ns, count * entries / 10.0, clump == 0);
         }
-        accepted_ns
+        chain.accepted_ns
     }
 
-    /// The messages of one clump of every GP.
-    fn chain(
-        &self,
-        arrays: &mut [Array; MOST_RENDERERS],
-        channels: &mut [f64; MOST_RENDERERS],
-        from_ns: f64,
-        count: f64,
-        first: bool,
-    ) -> f64 {
-        let mut commands = Commands {
-            head_words: self.select.0 + if first { self.clear.0 } else { 0.0 },
-            head_ns: self.select.1 + if first { self.clear.1 } else { 0.0 },
-            count,
-            words: self.command_words,
-            each_ns: self.command_ns,
-            tail_words: 0.0,
-            tail_ns: 0.0,
-        };
-        let mut released_ns = from_ns;
+    /// The messages of one clump of every GP, as many at a time as a port drives channels.
+    fn send(&self, arrays: &mut [Array; MOST_RENDERERS], chain: &mut Chain, from_ns: f64, count: f64, first: bool) {
+        let mut in_flight = [f64::MIN; MOST_CHANNELS];
+        let in_flight = &mut in_flight[..self.source_channels];
+        let mut granted_ns = from_ns;
+        (chain.accepted_ns, chain.draining_ns) = (from_ns, from_ns);
         // Several GPs share the ports of the renderers: their messages follow each other.
         for region in 0..REGIONS {
             let renderer = region % self.renderers;
             let latency_ns = self.hop_ns * (renderer + self.gps) as f64;
             for gp in 0..self.gps {
-                let granted_ns = if gp == 0 { released_ns } else { channels[renderer] }.max(channels[renderer]);
-                commands.head_words = self.select.0 + if first && gp == 0 { self.clear.0 } else { 0.0 };
-                commands.head_ns = self.select.1 + if first && gp == 0 { self.clear.1 } else { 0.0 };
-                let first_word_ns = granted_ns + self.overhead_ns + latency_ns;
-                let accepted_ns = arrays[renderer].take(self.fifo, first_word_ns, &commands);
-                channels[renderer] = accepted_ns - latency_ns;
+                let slot = soonest(in_flight);
+                if gp == 0 {
+                    granted_ns = granted_ns.max(in_flight[slot]);
+                }
+                let begin_ns = granted_ns.max(chain.released_ns[renderer]);
+                if gp == 0 {
+                    granted_ns = begin_ns;
+                }
+                let commands = self.commands(count, first && gp == 0);
+                let accepted_ns = arrays[renderer].take(self.fifo, begin_ns + self.overhead_ns + latency_ns, &commands);
+                chain.released_ns[renderer] = accepted_ns - latency_ns;
+                chain.accepted_ns = chain.accepted_ns.max(accepted_ns);
+                if region < self.renderers {
+                    chain.draining_ns = chain.draining_ns.max(accepted_ns);
+                }
+                if gp == 0 {
+                    in_flight[slot] = chain.released_ns[renderer];
+                }
             }
-            released_ns = channels[renderer];
         }
-        released_ns
     }
+
+    fn commands(&self, count: f64, clearing: bool) -> Commands {
+        let (clear_words, clear_ns) = if clearing { self.clear } else { (0.0, 0.0) };
+        Commands {
+            head_words: self.select.0 + clear_words,
+            head_ns: self.select.1 + clear_ns,
+            count,
+            words: self.command_words,
+            each_ns: self.command_ns,
+        }
+    }
+}
+
+/// Messages of clumps on their way.
+struct Chain {
+    /// When each renderer's port was free again.
+    released_ns: [f64; MOST_RENDERERS],
+    /// When the last message of the last clump was accepted.
+    accepted_ns: f64,
+    /// When every renderer had accepted its first message of that clump.
+    draining_ns: f64,
+}
+
+/// Channels that a ring can have.
+const MOST_CHANNELS: usize = 8;
+
+fn soonest(times: &[f64]) -> usize {
+    (1..times.len()).fold(0, |best, i| if times[i] < times[best] { i } else { best })
 }
 
 /// The analytic level of a Slats case.

@@ -88,13 +88,12 @@ fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<
         .map_err(|e| ExperimentError::Scene(e.to_string()))?;
     let outcome = Experiment::new(config.clone(), Jitp::new(viewpoint, true), scene)
         .head(head)
-        .fields(FIELD + 1)
+        .fields(FIELD + 2)
         .pixels(Pixels::Lazy)
         .run()?;
-    let mut machine_fields = outcome.machine().frame_buffers().iter();
-    let scanned = machine_fields.next().and_then(|board| board.last_seen());
-    let picture = scanned.filter(|field| field.field() == FIELD).map(|field| field.picture());
-    let picture = picture.unwrap_or_else(|| RgbImage::new(video.width(), video.height() / 2));
+    let scanned = outcome.machine().frame_buffers().first().and_then(|board| board.seen(FIELD));
+    let black = || RgbImage::new(video.width(), video.height() / 2);
+    let picture = scanned.map_or_else(black, |field| field.picture());
     let seen = as_seen(&picture, FIELD, &video, &Pan::at(deg_per_s));
     Ok((picture, seen))
 }

@@ -75,7 +75,10 @@ pub(super) const CODES: [(&str, Code); 3] =
     [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
 
-pub(super) const LEVELS: [(&str, Level); 2] = [("analytic", Level::Analytic), ("transaction", Level::Transaction)];
+/// Name of a level, as in files.
+fn level_name(level: Level) -> String {
+    serde_json::to_value(level).ok().and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default()
+}
 
 /// What is drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -230,7 +233,7 @@ impl ExperimentFile {
             scene: SceneChoice::read(self)?,
             fields: self.integer("fields", FIELDS_RANGE.0..=FIELDS_RANGE.1)?.unwrap_or(120),
             seed: self.integer("seed", 0..=MAX_SEED)?.unwrap_or(1),
-            level: self.choice("level", &LEVELS)?.unwrap_or(Level::Transaction),
+            level: self.level()?,
             pixels: self.choice("pixels", &PIXELS)?.unwrap_or(Pixels::Lazy),
             measure: names.map_or_else(|| Ok(Measure::usual()), measure)?,
             output: Outputs {
@@ -240,6 +243,12 @@ impl ExperimentFile {
             },
             published: Published::read(self)?,
         })
+    }
+
+    fn level(&self) -> Result<Level, FileError> {
+        let names = Level::ALL.map(|level| (level_name(level), level));
+        let choices: Vec<(&str, Level)> = names.iter().map(|(name, level)| (name.as_str(), *level)).collect();
+        Ok(self.choice("level", &choices)?.unwrap_or(Level::Transaction))
     }
 
     fn machine(&self, program: &Program) -> Result<MachineConfig, FileError> {
@@ -282,8 +291,8 @@ impl Plan {
 
     /// Name of the level of modelling.
     #[must_use]
-    pub fn level_name(&self) -> &'static str {
-        LEVELS.iter().find(|(_, level)| *level == self.level).map_or("", |(name, _)| name)
+    pub fn level_name(&self) -> String {
+        level_name(self.level)
     }
 
     /// The experiment with the scene loaded.

@@ -170,7 +170,7 @@ impl Pipeline for Frameless {
     }
 
     fn picture(&self, machine: &Machine, _: Eye) -> Option<RgbImage> {
-        let frame_buffer = machine.frame_buffers().get(0)?;
+        let frame_buffer = machine.frame_buffers().first()?;
         let last = frame_buffer.last_seen()?;
         let before = frame_buffer.seen(last.field().checked_sub(1)?)?;
         Some(last.interlaced_with(&before))

@@ -5,7 +5,7 @@ use crate::config::ConfigError;
 use crate::machine::Machine;
 use crate::observation::{Arrival, LateRegion};
 use image::RgbImage;
-use jitp::{Beam, Config, JitpTiming, Schedule, Wanted, host, master, slave};
+use jitp::{Beam, Config, JitpTiming, Schedule, Transforms, Wanted, host, master, slave};
 use pphigs::Share;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{Level, Stage};
@@ -98,9 +98,10 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &Config) {
     for (level, program) in master(&gp, config, counts, view_of) {
         machine.load(config.master, level, program);
     }
+    let transforms = Transforms::default();
     for (index, node) in config.slaves.iter().enumerate() {
         let gp = machine.processor(*node, Level::Foreground);
-        for (level, program) in slave(&gp, config, &setup.list, index) {
+        for (level, program) in slave(&gp, config, &setup.list, &transforms, index) {
             machine.load(*node, level, program);
         }
     }
@@ -215,7 +216,7 @@ impl Pipeline for Jitp {
     }
 
     fn picture(&self, machine: &Machine, _: Eye) -> Option<RgbImage> {
-        let frame_buffer = machine.frame_buffers().get(0)?;
+        let frame_buffer = machine.frame_buffers().first()?;
         let last = frame_buffer.last_seen()?;
         let before = frame_buffer.seen(last.field().checked_sub(1)?)?;
         Some(last.interlaced_with(&before))

@@ -68,7 +68,7 @@ impl Sweep {
             machine: first.machine.preset.clone(),
             config_hash: hash(&version, &first, &settings, &axes).to_string(),
             version,
-            level: first.level_name().to_owned(),
+            level: first.level_name(),
             seed: first.seed,
             title: first.title,
             points: self.space.points(),

@@ -3,13 +3,17 @@
 use crate::config::Reading;
 use glam::Mat4;
 use pphigs::{Counts, DisplayList, EyeView, FrameView, ModelEdit, Placed, gouraud_sphere, place_all};
-use pxpl5_geometry::{Outline, SetupStats, Viewport};
+use pxpl5_geometry::{LitColours, Outline, ScreenSphere, ScreenTriangle, SetupStats, TriangleEnds, Viewport};
 use pxpl5_renderer::{Command, Triangle};
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 /// Subpixels of a pixel, the unit of outlines.
 const SUBPIXELS: i32 = 1 << pxpl5_wire::format::SUBPIXEL_BITS;
+
+/// How far a corner that is interpolated in the view may leave the straight way on the screen, in subpixels: a turn by
+/// 10 degrees in a field, far above the peak of a head, makes 5 pixels.
+const CURVED: i32 = 8 * SUBPIXELS;
 
 /// A rectangle of pixels: first and last pixel across, first and last line of the frame down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,8 +27,8 @@ pub(crate) struct Drawing {
     list: Arc<DisplayList>,
     viewport: Viewport,
     placed: Vec<Placed>,
-    /// The transforms for T0 and T1 and the part of the way between, where places on the screen are interpolated.
-    ends: Option<(Ends, f64)>,
+    /// The places at T0 and T1, the part of the way between, and which of the two readings holds.
+    ends: Option<(Ends, f64, Reading)>,
     /// Made when first asked for; the strips of a conventional picture share them.
     outlines: OnceLock<Vec<Outline>>,
 }
@@ -33,7 +37,7 @@ pub(crate) struct Drawing {
 #[derive(Clone)]
 pub(crate) struct Ends {
     pub(crate) views: Arc<[FrameView]>,
-    placed: Arc<[Vec<Placed>; 2]>,
+    triangles: Arc<[Vec<Option<TriangleEnds>>]>,
 }
 
 impl fmt::Debug for Drawing {
@@ -43,11 +47,30 @@ impl fmt::Debug for Drawing {
 }
 
 impl Ends {
+    /// `views` holds one view, or those of the begin and of the end.
     pub(crate) fn new(list: &DisplayList, views: Vec<FrameView>, viewport: Viewport) -> Self {
-        let place = |view: Option<&FrameView>| view.map_or_else(Vec::new, |v| place_all(list, v, 0, viewport));
-        let placed = Arc::new([place(views.first()), place(views.get(1))]);
-        Self { views: views.into(), placed }
+        let triangles = match &views[..] {
+            [from, to] => triangle_ends(list, from, to, viewport),
+            _ => Vec::new(),
+        };
+        Self { triangles: triangles.into(), views: views.into() }
     }
+}
+
+/// The triangles of each structure in both views.
+fn triangle_ends(
+    list: &DisplayList,
+    from: &FrameView,
+    to: &FrameView,
+    viewport: Viewport,
+) -> Vec<Vec<Option<TriangleEnds>>> {
+    let placed = place_all(list, from, 0, viewport).into_iter().zip(place_all(list, to, 0, viewport));
+    let of_structure = |(from, to): (Placed, Placed)| {
+        let numbers = from.structure.triangles.clone();
+        let ends = |number| from.transform.as_ref()?.ends(to.transform.as_ref()?, &list.corners(number));
+        numbers.map(ends).collect()
+    };
+    placed.map(of_structure).collect()
 }
 
 impl Drawing {
@@ -60,8 +83,7 @@ impl Drawing {
     /// At the part `s` of the way between two views.
     pub(crate) fn between(list: &Arc<DisplayList>, ends: &Ends, s: f64, reading: Reading, viewport: Viewport) -> Self {
         let view = interpolated(&ends.views[0], &ends.views[1], s);
-        let ends = (reading == Reading::Screen).then(|| (ends.clone(), s));
-        Self { ends, ..Self::of(list, &view, viewport) }
+        Self { ends: Some((ends.clone(), s, reading)), ..Self::of(list, &view, viewport) }
     }
 
     /// How many primitives meet each window, and how many meet any.
@@ -69,12 +91,17 @@ impl Drawing {
         let (mut each, mut any) = (vec![Counts::default(); windows.len()], Counts::default());
         let lines = |end: usize| windows.iter().map(move |w| w.lines[end] * SUBPIXELS);
         let span = [lines(0).min().unwrap_or_default(), lines(1).max().unwrap_or_default() + SUBPIXELS];
-        for outline in self.outlines.get_or_init(|| self.make_outlines()) {
+        let mut tally_outline = |outline: &Outline| {
             if outline.y.iter().all(|y| *y < span[0]) || outline.y.iter().all(|y| *y > span[1]) {
-                continue;
+                return;
             }
             let meets = |w: &Window| outline.meets(w.across, w.lines);
             any.triangles += u32::from(tally(windows, &mut each, &meets, |counts| &mut counts.triangles));
+        };
+        if self.ends.is_some() {
+            self.each_outline([span[0] - CURVED, span[1] + CURVED], tally_outline);
+        } else {
+            self.outlines.get_or_init(|| self.make_outlines()).iter().for_each(&mut tally_outline);
         }
         self.spheres(|sphere, _| {
             let meets = |w: &Window| sphere.meets(w.across, w.lines);
@@ -84,35 +111,38 @@ impl Drawing {
     }
 
     fn make_outlines(&self) -> Vec<Outline> {
-        let (mut all, mut stats) = (Vec::new(), SetupStats::default());
-        for (i, place) in self.placed.iter().enumerate() {
-            let Some(transform) = &place.transform else { continue };
-            for number in place.structure.triangles.clone() {
-                let corners = self.list.corners(number);
-                let mut keep = |outline: &Outline| all.push(*outline);
-                let on_screen = self
-                    .on_screen(i)
-                    .is_some_and(|(from, to, s)| from.outline_between(to, s, &corners, &mut stats, &mut keep));
-                if !on_screen {
-                    transform.outlines(&corners, &mut stats, keep);
-                }
-            }
-        }
+        let mut all = Vec::new();
+        self.each_outline([i32::MIN, i32::MAX], |outline| all.push(*outline));
         all
     }
 
-    /// The transforms of a structure at both ends, where places on the screen are interpolated.
-    fn on_screen(&self, structure: usize) -> Option<(&pxpl5_geometry::Transform, &pxpl5_geometry::Transform, f64)> {
-        let (ends, s) = self.ends.as_ref()?;
-        let of = |end: usize| ends.placed[end].get(structure)?.transform.as_ref();
-        Some((of(0)?, of(1)?, *s))
+    /// Calls `sink` for each screen triangle, but for some that cannot be between two distances from the frame's top.
+    fn each_outline(&self, [top, bottom]: [i32; 2], mut sink: impl FnMut(&Outline)) {
+        let mut stats = SetupStats::default();
+        for (i, place) in self.placed.iter().enumerate() {
+            let Some(transform) = &place.transform else { continue };
+            for (k, number) in place.structure.triangles.clone().enumerate() {
+                match self.ends_of(i, k) {
+                    Some((ends, ..)) if ends.y_range()[0] > bottom || ends.y_range()[1] < top => {}
+                    Some((ends, s, Reading::Screen)) => transform.outline_between(ends, s, &mut stats, &mut sink),
+                    _ => transform.outlines(&self.list.corners(number), &mut stats, &mut sink),
+                }
+            }
+        }
     }
 
-    fn spheres(&self, mut sink: impl FnMut(&pxpl5_geometry::ScreenSphere, &Placed)) {
+    /// The ends of a structure's k-th triangle, where it has a place on the screen at both.
+    fn ends_of(&self, structure: usize, k: usize) -> Option<(&TriangleEnds, f64, Reading)> {
+        let (ends, s, reading) = self.ends.as_ref()?;
+        Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *s, *reading))
+    }
+
+    fn spheres(&self, mut sink: impl FnMut(&ScreenSphere, &Placed)) {
         let mut stats = SetupStats::default();
         for place in &self.placed {
             let Some(transform) = &place.transform else { continue };
-            let seen = place.structure.spheres.clone().filter_map(|i| transform.sphere(&self.list.spheres[i], &mut stats));
+            let seen =
+                place.structure.spheres.clone().filter_map(|i| transform.sphere(&self.list.spheres[i], &mut stats));
             seen.collect::<Vec<_>>().iter().for_each(|sphere| sink(sphere, place));
         }
     }
@@ -122,19 +152,19 @@ impl Drawing {
         let mut stats = SetupStats::default();
         for (i, place) in self.placed.iter().enumerate() {
             let Some(transform) = &place.transform else { continue };
-            for number in place.structure.triangles.clone() {
+            for (k, number) in place.structure.triangles.clone().enumerate() {
                 let (triangle, mut setup) = (self.list.triangle(number), SetupStats::default());
-                let mut hand_over = |t: pxpl5_geometry::ScreenTriangle<pxpl5_geometry::LitColours>| {
+                let hand_over = |t: ScreenTriangle<LitColours>| {
                     if t.outline.meets(window.across, window.lines) {
                         let t = t.gouraud(&self.viewport, &mut setup);
                         sink(Command::Triangle(Triangle { edges: t.edges, depth: t.z, colour: t.rgb }));
                     }
                 };
-                let on_screen = self.on_screen(i).is_some_and(|(from, to, s)| {
-                    from.gouraud_between(to, s, &triangle, &place.light, &mut stats, &mut hand_over)
-                });
-                if !on_screen {
-                    transform.gouraud(&triangle, &place.light, &mut stats, hand_over);
+                match self.ends_of(i, k) {
+                    Some((ends, s, Reading::Screen)) => {
+                        transform.gouraud_between(ends, s, &triangle, &place.light, &mut stats, hand_over);
+                    }
+                    _ => transform.gouraud(&triangle, &place.light, &mut stats, hand_over),
                 }
             }
         }

@@ -44,5 +44,5 @@ pub mod timing;
 pub use config::{Beam, BlockOrder, Config, ConfigError, Reading, Schedule, Viewpoint, Wanted};
 pub use host::host;
 pub use master::master;
-pub use slave::slave;
+pub use slave::{Transforms, slave};
 pub use timing::JitpTiming;

@@ -5,9 +5,7 @@ use crate::drawing::{Drawing, Window};
 use pphigs::Counts;
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{Clear, Command, CommandKind, CopyRegion, Layout, SelectRegion};
-use pxpl5_wire::{
-    CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, MAX_MESSAGE_WORDS, RegionId, Word,
-};
+use pxpl5_wire::{CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, MAX_MESSAGE_WORDS, RegionId, Word};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -61,7 +59,8 @@ impl Part {
             (CommandKind::Sphere, self.spheres.len() as u32),
             (CommandKind::CopyRegion, u32::from(self.last)),
         ];
-        let run = |(kind, count): (CommandKind, u32)| CommandRun { opcode: kind.opcode(), words_each: kind.words(), count };
+        let run =
+            |(kind, count): (CommandKind, u32)| CommandRun { opcode: kind.opcode(), words_each: kind.words(), count };
         all.into_iter().filter(|(_, count)| *count > 0).map(run).collect()
     }
 }
@@ -76,7 +75,11 @@ pub(crate) fn messages(
 ) -> Vec<CommandList> {
     let list = |part: Part| {
         let runs = part.runs();
-        let copies = if part.last { vec![CopyOrder { target, context: 0, through_backing: false, acknowledge: None }] } else { Vec::new() };
+        let copies = if part.last {
+            vec![CopyOrder { target, context: 0, through_backing: false, acknowledge: None }]
+        } else {
+            Vec::new()
+        };
         let [left, top, _, _] = config.grid().rectangle(target.region).map(|v| v as u16);
         let origin = SelectRegion { context: 0, left, top };
         let words = PieceWords { drawing: Arc::clone(drawing), layout: config.layout, window, origin, target, part };

@@ -72,7 +72,7 @@ impl Order {
 
     fn from_words(words: &[Word]) -> Option<Self> {
         Some(match words {
-            [FIELD, a, b, count, rest @ ..] => {
+            [FIELD, a, b, count, rest @ ..] if *count > 0 => {
                 let mut rest = rest;
                 let views = (0..*count).map(|_| take_view(&mut rest)).collect::<Option<_>>()?;
                 Self::Field { field: long(*a, *b), views }

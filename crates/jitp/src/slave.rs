@@ -35,12 +35,44 @@ struct Field {
 
 type Shared = Rc<RefCell<State>>;
 
+/// What the slaves have transformed. All hold the same display list and get the same views, so the simulator computes
+/// each field once; every slave still spends its own time on it.
+#[derive(Clone, Default)]
+pub struct Transforms(Rc<RefCell<VecDeque<(u64, Field)>>>);
+
+impl std::fmt::Debug for Transforms {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("Transforms").field(&self.0.borrow().len()).finish()
+    }
+}
+
+impl Transforms {
+    fn of(&self, field: u64, make: impl FnOnce() -> Field) -> Field {
+        let known = &mut *self.0.borrow_mut();
+        if let Some((_, ready)) = known.iter().find(|ready| ready.0 == field) {
+            return ready.clone();
+        }
+        let fresh = make();
+        known.push_back((field, fresh.clone()));
+        if known.len() > FIELDS_KEPT {
+            known.pop_front();
+        }
+        fresh
+    }
+}
+
 /// The programs of slave number `index` for both levels of its board: strips interrupt the transforms of the next
 /// field. Every slave holds the whole display list.
 ///
 /// They fail with [`Fault::Memory`] when it does not fit, and with [`Fault::Protocol`] for a message that no board
 /// sends.
-pub fn slave(gp: &Gp, config: &Config, list: &Arc<DisplayList>, index: usize) -> Vec<(Level, Program)> {
+pub fn slave(
+    gp: &Gp,
+    config: &Config,
+    list: &Arc<DisplayList>,
+    transforms: &Transforms,
+    index: usize,
+) -> Vec<(Level, Program)> {
     let share = Share::new(Arc::clone(list), 0, 1);
     let state = Shared::default();
     let slave = |level| Slave {
@@ -50,6 +82,7 @@ pub fn slave(gp: &Gp, config: &Config, list: &Arc<DisplayList>, index: usize) ->
         counts: share.counts(),
         bytes: share.bytes(),
         state: Rc::clone(&state),
+        transforms: transforms.clone(),
         index,
     };
     let (drawing, preparing) = (slave(Level::Interrupt), slave(Level::Foreground));
@@ -63,6 +96,7 @@ struct Slave {
     counts: Counts,
     bytes: u64,
     state: Shared,
+    transforms: Transforms,
     index: usize,
 }
 
@@ -88,15 +122,19 @@ impl Slave {
             let newest = || self.state.borrow_mut().ordered.drain(..).next_back();
             let (field, views) = self.gp.until("the order of a field", newest).await;
             self.gp.spend(transform_span(&self.gp.timing(), self.counts) * views.len() as u64).await;
-            let viewport = self.config.picture(field).0;
-            let whole = Arc::new(Drawing::of(&self.list, &views[0], viewport));
-            let ends = Ends::new(&self.list, views, viewport);
+            let ready = self.transforms.of(field, || self.transform(field, views));
             let state = &mut *self.state.borrow_mut();
-            state.transformed.push_back((field, Field { ends, whole }));
+            state.transformed.push_back((field, ready));
             if state.transformed.len() > FIELDS_KEPT {
                 state.transformed.pop_front();
             }
         }
+    }
+
+    fn transform(&self, field: u64, views: Vec<FrameView>) -> Field {
+        let viewport = self.config.picture(field).0;
+        let whole = Arc::new(Drawing::of(&self.list, &views[0], viewport));
+        Field { ends: Ends::new(&self.list, views, viewport), whole }
     }
 
     /// Draws a strip, unless its beam has passed.
@@ -110,24 +148,24 @@ impl Slave {
                 self.gp.spend(transform_span(&self.gp.timing(), self.counts)).await;
                 Some(Arc::new(Drawing::of(&self.list, view, viewport)))
             }
-            None => self.from_field(field, strip, viewport).await,
+            None => self.of_field(field, strip, viewport).await,
         };
         let Some(drawing) = drawing.filter(|_| self.gp.now() < deadline) else { return };
         self.send(field, &self.config.strip_regions(strip), &viewport, &drawing).await;
     }
 
     /// The strip as the transforms of its field give it; `None` if they were left out.
-    async fn from_field(&self, field: u64, strip: u32, viewport: Viewport) -> Option<Arc<Drawing>> {
+    async fn of_field(&self, field: u64, strip: u32, viewport: Viewport) -> Option<Arc<Drawing>> {
         let newest = || self.state.borrow().transformed.back().filter(|newest| newest.0 >= field).map(drop);
         self.gp.until("the transforms of the field", newest).await;
         let state = self.state.borrow();
         let (_, ready) = state.transformed.iter().find(|ready| ready.0 == field)?;
         Some(match self.dual() {
-            Some(reading) => {
+            Some(reading) if ready.ends.views.len() == 2 => {
                 let part = self.config.part(field, strip);
                 Arc::new(Drawing::between(&self.list, &ready.ends, part, reading, viewport))
             }
-            None => Arc::clone(&ready.whole),
+            _ => Arc::clone(&ready.whole),
         })
     }
 

@@ -6,6 +6,7 @@
 #![allow(unreachable_pub, reason = "every module of this binary is a command that may one day be called from outside")]
 
 mod check;
+mod compare;
 mod completions;
 mod demo;
 mod error;
@@ -53,6 +54,8 @@ enum Command {
     Run(run::RunArgs),
     /// Print the effective configuration of an experiment.
     Check(check::CheckArgs),
+    /// Compare every way to fight latency in pixels: one scene, head motion and tracker for all pipelines.
+    Compare(compare::CompareArgs),
     /// Measure every published figure and compare.
     Figures(figures::FiguresArgs),
     /// Find the most triangles that a pipeline draws in time.
@@ -88,6 +91,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Demo(args)) => demo::run(args),
         Some(Command::Run(args)) => run::run(args),
         Some(Command::Check(args)) => check::run(args),
+        Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Figures(args)) => figures::run(args),
         Some(Command::Limit(args)) => limit::run(args),
         Some(Command::Scenes(args)) => scenes::run(args),

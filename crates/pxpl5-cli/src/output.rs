@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use image::RgbImage;
+use pxpl5::results::{origin, origin_lines};
 use pxpl5::timeline::TimelineOptions;
 use pxpl5::{Outcome, Report};
 use std::fs;
@@ -89,33 +90,11 @@ fn refused(path: &Path, error: &std::io::Error) -> CliError {
     CliError::failure(format!("{} cannot be written: {error}; choose another folder with --out", path.display()))
 }
 
-/// The origin of a result file, as pairs; together with the experiment they are enough to make it again.
-pub(crate) fn origin(report: &Report) -> Vec<(&'static str, String)> {
-    let overrides: Vec<String> = report.overrides.iter().map(|(path, value)| format!("{path}={value}")).collect();
-    vec![
-        ("machine", report.machine.clone()),
-        ("config_hash", report.config_hash.clone()),
-        ("version", report.version.clone()),
-        ("level", report.level.clone()),
-        ("seed", report.seed.to_string()),
-        ("pipeline", report.pipeline.clone()),
-        ("variant", report.variant.clone()),
-        ("overrides", overrides.join(" ")),
-        ("scene", format!("{}, {} triangles, {} spheres", report.scene, report.triangles, report.spheres)),
-        ("fields", report.fields.to_string()),
-    ]
-}
-
-/// The same as lines of a comment.
-pub(crate) fn origin_lines(report: &Report) -> String {
-    origin(report).iter().map(|(key, value)| format!("# {key}: {value}\n")).collect()
-}
-
 /// A timeline as SVG, with its origin as a comment behind the XML declaration, if it has one.
 pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
     let svg = pxpl5::timeline::svg(outcome, &TimelineOptions::default());
     // Two hyphens would end the comment.
-    let comment = format!("<!--\n{}-->\n", origin_lines(report).replace("--", "- -"));
+    let comment = format!("<!--\n{}-->\n", origin_lines(report, "").replace("--", "- -"));
     let at = if svg.starts_with("<?xml") { svg.find('\n').map_or(0, |end| end + 1) } else { 0 };
     format!("{}{comment}{}", &svg[..at], &svg[at..])
 }

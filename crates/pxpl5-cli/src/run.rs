@@ -1,13 +1,14 @@
 //! `pxpl5 run`.
 
 use crate::error::CliError;
-use crate::output::{OutputFolder, origin_lines, png, timeline};
+use crate::output::{OutputFolder, png, timeline};
 use crate::settings::SettingArgs;
 use crate::snapshot::SnapshotArgs;
 use crate::table::{Comparison, table};
 use crate::terminal::print;
 use clap::Args;
 use pxpl5::levels::Level;
+use pxpl5::results::origin_lines;
 use pxpl5::{ExperimentFile, Eye, Outcome, Plan, Report, Results};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -27,7 +28,7 @@ pub(crate) struct RunArgs {
     /// Worker threads for --pixels all; default: one a core.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     threads: Option<u64>,
-    /// Write report.json, results.csv, experiment.toml, timeline.svg and the last pictures into this folder.
+    /// Write report.json, results.csv, pictures.csv, experiment.toml, timeline.svg and the last pictures into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -97,10 +98,13 @@ pub(crate) fn comparison(plan: &Plan, results: &Results) -> Option<Comparison> {
 fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<PathBuf, CliError> {
     let Some((outcome, report)) = &results.run else { return Err(no_events()) };
     folder.put("report.json", format!("{}\n", json(report)?).as_bytes())?;
-    folder.put("experiment.toml", format!("{}{}", origin_lines(report), plan.settings()).as_bytes())?;
+    folder.put("experiment.toml", format!("{}{}", origin_lines(report, "# "), plan.settings()).as_bytes())?;
     if plan.output.csv {
         folder.put("results.csv", csv(plan, report, results).as_bytes())?;
+        folder.put("pictures.csv", pxpl5::results::csv(outcome).as_bytes())?;
     }
+    #[cfg(feature = "parquet")]
+    folder.put("pictures.parquet", &parquet(outcome)?)?;
     if plan.output.pictures {
         pictures(&mut folder, "", outcome, report)?;
     }
@@ -127,9 +131,16 @@ pub(crate) fn pictures(
     Ok(())
 }
 
+#[cfg(feature = "parquet")]
+fn parquet(outcome: &Outcome) -> Result<Vec<u8>, CliError> {
+    let mut bytes = Vec::new();
+    pxpl5::results::parquet(outcome, &mut bytes).map_err(CliError::failure)?;
+    Ok(bytes)
+}
+
 /// The measured quantities in long form: a line each, with the definition.
 fn csv(plan: &Plan, report: &Report, results: &Results) -> String {
-    let mut text = origin_lines(report) + "quantity,value,definition\n";
+    let mut text = origin_lines(report, "# ") + "quantity,value,definition\n";
     for measure in &plan.measure {
         let value = measure.of(results).map_or_else(String::new, |value| value.to_string());
         let definition = measure.definition().replace('"', "\"\"");

@@ -17,7 +17,7 @@ use std::path::PathBuf;
   pxpl5 sweep experiments/sweep-slats.toml --out out/slats --resume        after an interruption
   pxpl5 sweep experiments/sweep-slats.toml --out out/slats-1 --shard 1/8   one of eight shares; see `pxpl5 merge`")]
 pub(crate) struct SweepArgs {
-    /// Experiment file with a table [sweep].
+    /// Experiment file with a table `sweep`.
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Where rows.jsonl, times.jsonl and results.csv go.

@@ -100,5 +100,5 @@ pub use seen::{SeenColour, SeenNormal, SeenVertex};
 pub use sphere::ScreenSphere;
 pub use sphere_setup::{GouraudSphere, PhongSphere, SphereSetup};
 pub use stats::SetupStats;
-pub use transform::{Culling, MeshScratch, Transform};
+pub use transform::{Culling, MeshScratch, Transform, TriangleEnds};
 pub use view::{MAX_PICTURE, ViewError, ViewTransform, Viewport};

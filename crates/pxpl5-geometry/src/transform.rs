@@ -51,6 +51,32 @@ pub(crate) struct Snapped {
     z: u32,
 }
 
+/// The corners of a triangle on the screen in two views.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TriangleEnds {
+    from: [Snapped; 3],
+    to: [Snapped; 3],
+}
+
+impl TriangleEnds {
+    /// Corners between the views, in whole subpixels.
+    fn at(&self, s: f64) -> [Snapped; 3] {
+        let lerp = |a: f64, b: f64| (a + (b - a) * s + 0.5).floor();
+        std::array::from_fn(|i| Snapped {
+            x: lerp(f64::from(self.from[i].x), f64::from(self.to[i].x)) as i32,
+            y: lerp(f64::from(self.from[i].y), f64::from(self.to[i].y)) as i32,
+            z: lerp(f64::from(self.from[i].z), f64::from(self.to[i].z)) as u32,
+        })
+    }
+
+    /// The least and the greatest distance from the frame's top border that a corner has in either view, in 1/16 px.
+    #[must_use]
+    pub fn y_range(&self) -> [i32; 2] {
+        let all = || self.from.iter().chain(&self.to).map(|corner| corner.y);
+        [all().min().unwrap_or_default(), all().max().unwrap_or_default()]
+    }
+}
+
 /// Memory that [`Transform::bin_mesh`] and its siblings use again from call to call.
 #[derive(Clone, Debug, Default)]
 pub struct MeshScratch {
@@ -223,58 +249,42 @@ impl Transform {
         self.clipped(&corners, stats, |piece, extras| sink(piece.outline, extras));
     }
 
-    /// A triangle whose places on the screen lie the part `s` (0 to 1) of the way from this view to another one of the
-    /// same picture, lit as in this one. False, and nothing, where a corner lies outside of the guard band of either.
+    /// Where the corners of a triangle are in this view and in another one of the same picture; `None` where a corner
+    /// lies outside of the guard band of either.
+    #[must_use]
+    pub fn ends(&self, end: &Self, positions: &[Vec3; 3]) -> Option<TriangleEnds> {
+        let snapped = |view: &Self| {
+            let clip = positions.map(|p| view.to_clip.point(p));
+            clip.iter().all(|c| view.guard.contains(*c)).then(|| clip.map(|c| view.to_screen.snap(c)))
+        };
+        Some(TriangleEnds { from: snapped(self)?, to: snapped(end)? })
+    }
+
+    /// A triangle whose places on the screen lie the part `s` (0 to 1) of the way between two views, lit as in this one.
     pub fn gouraud_between(
         &self,
-        end: &Self,
+        ends: &TriangleEnds,
         s: f64,
         triangle: &Triangle,
         light: &Light,
         stats: &mut SetupStats,
         mut sink: impl FnMut(ScreenTriangle<LitColours>),
-    ) -> bool {
-        let Some(corners) = self.between(end, s, &triangle.positions) else { return false };
+    ) {
         stats.triangles += 1;
-        if let Some(whole) = self.assemble(corners, stats) {
+        if let Some(whole) = self.assemble(ends.at(s), stats) {
             let lighting = Lighting::new(&self.to_eye, light);
             let lit = |i: usize| lighting.colour(triangle.positions[i], triangle.normals[i], triangle.colours[i]);
             let order = if whole.swapped { [0, 2, 1] } else { [0, 1, 2] };
             sink(lit_triangle(whole.outline, order.map(lit)));
         }
-        true
     }
 
     /// The outline alone of [`Self::gouraud_between`].
-    pub fn outline_between(
-        &self,
-        end: &Self,
-        s: f64,
-        positions: &[Vec3; 3],
-        stats: &mut SetupStats,
-        mut sink: impl FnMut(&Outline),
-    ) -> bool {
-        let Some(corners) = self.between(end, s, positions) else { return false };
+    pub fn outline_between(&self, ends: &TriangleEnds, s: f64, stats: &mut SetupStats, mut sink: impl FnMut(&Outline)) {
         stats.triangles += 1;
-        if let Some(whole) = self.assemble(corners, stats) {
+        if let Some(whole) = self.assemble(ends.at(s), stats) {
             sink(&whole.outline);
         }
-        true
-    }
-
-    /// Corners between two views, in whole subpixels.
-    fn between(&self, end: &Self, s: f64, positions: &[Vec3; 3]) -> Option<[Snapped; 3]> {
-        let snapped = |view: &Self| {
-            let clip = positions.map(|p| view.to_clip.point(p));
-            clip.iter().all(|c| view.guard.contains(*c)).then(|| clip.map(|c| view.to_screen.snap(c)))
-        };
-        let (from, to) = (snapped(self)?, snapped(end)?);
-        let lerp = |a: f64, b: f64| (a + (b - a) * s + 0.5).floor();
-        Some(std::array::from_fn(|i| Snapped {
-            x: lerp(f64::from(from[i].x), f64::from(to[i].x)) as i32,
-            y: lerp(f64::from(from[i].y), f64::from(to[i].y)) as i32,
-            z: lerp(f64::from(from[i].z), f64::from(to[i].z)) as u32,
-        }))
     }
 
     /// Transforms all triangles of a mesh as far as their regions, each vertex once. `sink` gets the triangle's number.
