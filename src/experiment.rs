@@ -101,6 +101,7 @@ pub struct Experiment {
     seed: u64,
     threads: usize,
     shuffle: Option<u64>,
+    traffic: bool,
 }
 
 impl Experiment {
@@ -114,7 +115,17 @@ impl Experiment {
     #[must_use]
     pub fn with(config: MachineConfig, pipeline: Arc<dyn Pipeline>, scene: Arc<Scene>) -> Self {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        Self { config, pipeline, scene, fields: 120, pixels: Pixels::Lazy, seed: 1, threads, shuffle: None }
+        Self {
+            config,
+            pipeline,
+            scene,
+            fields: 120,
+            pixels: Pixels::Lazy,
+            seed: 1,
+            threads,
+            shuffle: None,
+            traffic: false,
+        }
     }
 
     /// Number of fields to simulate.
@@ -152,6 +163,13 @@ impl Experiment {
         self
     }
 
+    /// Records messages, busy channels and FIFOs; no time changes.
+    #[must_use]
+    pub const fn record_traffic(mut self, record: bool) -> Self {
+        self.traffic = record;
+        self
+    }
+
     /// Builds the machine, switched on, with the pipeline's programs loaded.
     ///
     /// # Errors
@@ -175,6 +193,9 @@ impl Experiment {
         }
         if self.pixels == Pixels::All {
             machine.compute_all_pixels(self.threads);
+        }
+        if self.traffic {
+            machine.record_traffic();
         }
         machine.switch_on();
         Ok(machine)

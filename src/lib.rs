@@ -47,10 +47,13 @@ mod machine;
 mod measure;
 mod observation;
 mod parallel;
+pub mod pictures;
 pub mod pipelines;
 mod report;
 pub mod results;
 pub mod timeline;
+pub mod trace_export;
+mod traffic;
 mod workers;
 
 pub use config::{ConfigError, MachineConfig, PRESETS, Parameter, Preset};
@@ -70,3 +73,4 @@ pub use pxpl5_scene as scene;
 pub use pxpl5_wire::Eye;
 pub use report::{DefinedStatistics, Report, Statistics};
 pub use slats::Copy;
+pub use traffic::{Traffic, Transfer};

@@ -4,7 +4,6 @@ use super::model::{Bar, Row, Scan, Timeline};
 use super::path::{Arrow, Place};
 use super::style::{STAGES, colours, letters, name, pattern};
 use super::writer::{Units, Writer, escape};
-use pxpl5_gp::Stage;
 use pxpl5_sim::{Span, Time};
 use std::fmt::Write;
 
