@@ -1,9 +1,9 @@
 //! From a scene to what graphics processors hold and hosts send.
 
-use crate::pipelines::Views;
+use crate::pipelines::{Views, ViewsWanted};
 use pphigs::{DisplayList, EyeView, Frame, FrameView, MAX_EDITS, ModelEdit, Structure};
 use pxpl5_geometry::Sphere;
-use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Scene};
+use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Pose, Scene};
 use pxpl5_sim::Time;
 use std::sync::Arc;
 
@@ -43,24 +43,35 @@ pub(crate) fn display_list(scene: &Scene) -> Result<DisplayList, String> {
     })
 }
 
-/// The views of the scene's own head motion with a seed, through the papers' head-mounted display.
-pub(crate) fn views(scene: &Arc<Scene>, seed: u64, eyes: usize) -> Views {
-    let scene = Arc::clone(scene);
+/// The view of a scene at a time from a pose, through the papers' head-mounted display.
+pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: u64, time: Time, pose: &Pose) -> FrameView {
+    let views = if eyes == 1 { vec![hmd.mono(pose)] } else { hmd.stereo(pose).to_vec() };
+    let eye = |v: &pxpl5_scene::View| EyeView {
+        world_to_eye: v.world_to_eye,
+        head_to_eye: v.head_to_eye,
+        projection: v.projection,
+    };
+    let edit = |e: &pxpl5_scene::Edit| ModelEdit { structure: e.structure as u32, model: e.model };
+    FrameView {
+        number,
+        eyes: views.iter().map(eye).collect(),
+        edits: scene.edits_at(time.0).iter().map(edit).collect(),
+    }
+}
+
+/// The papers' head-mounted display.
+pub(crate) fn hmd() -> Hmd {
+    Hmd::new(HmdConfig::unc()).expect("the preset is valid")
+}
+
+/// The views of the scene's own head motion with a seed: as sampled, and for the moment when they are seen.
+pub(crate) fn views(scene: &Arc<Scene>, seed: u64, eyes: usize) -> (Views, ViewsWanted) {
     let motion: HeadMotion = scene.motion().clone().with_seed(seed);
-    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
-    Arc::new(move |number, time: Time| {
-        let pose = motion.pose(time.0);
-        let views = if eyes == 1 { vec![hmd.mono(&pose)] } else { hmd.stereo(&pose).to_vec() };
-        let eye = |v: &pxpl5_scene::View| EyeView {
-            world_to_eye: v.world_to_eye,
-            head_to_eye: v.head_to_eye,
-            projection: v.projection,
-        };
-        let edit = |e: &pxpl5_scene::Edit| ModelEdit { structure: e.structure as u32, model: e.model };
-        FrameView {
-            number,
-            eyes: views.iter().map(eye).collect(),
-            edits: scene.edits_at(time.0).iter().map(edit).collect(),
-        }
-    })
+    let hmd = hmd();
+    let at = {
+        let scene = Arc::clone(scene);
+        move |number, time: Time| view(&scene, &hmd, eyes, number, time, &motion.pose(time.0))
+    };
+    let wanted = at.clone();
+    (Arc::new(at), Arc::new(move |number, _, shown_at| wanted(number, shown_at)))
 }

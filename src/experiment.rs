@@ -3,9 +3,10 @@
 use crate::config::{ConfigError, MachineConfig};
 use crate::display_list::{display_list, views};
 use crate::fingerprint::Fingerprint;
+use crate::head_to_light::{FIELDS_WITH_HEAD, Head, HeadViews, Rehearsal};
 use crate::machine::{Machine, RunError};
 use crate::observation::{Observation, StageSpan};
-use crate::pipelines::{PictureTimes, Pipeline, Setup};
+use crate::pipelines::{PictureTimes, Pipeline, ReportTimes, Setup};
 use crate::report::{Report, Statistics};
 use image::RgbImage;
 use pxpl5_scene::Scene;
@@ -50,6 +51,8 @@ pub enum ExperimentError {
     },
     /// The scene has nothing to draw, or too many moving structures.
     Scene(String),
+    /// Whoever watched the run ended it ([`Experiment::run_stopping`]).
+    Stopped(String),
     /// The run ended early; what was observed until then is kept.
     Run {
         /// Why.
@@ -68,7 +71,7 @@ impl fmt::Display for ExperimentError {
                 f,
                 "only {pictures} pictures were shown in {fields} fields and the first {WARM_UP_PICTURES} are discarded; simulate more fields"
             ),
-            Self::Scene(text) => f.write_str(text),
+            Self::Scene(text) | Self::Stopped(text) => f.write_str(text),
             Self::Run { error, partial } => {
                 write!(f, "{error} ({} pictures had been shown)", partial.pictures().len())
             }
@@ -102,6 +105,7 @@ pub struct Experiment {
     threads: usize,
     shuffle: Option<u64>,
     traffic: bool,
+    head: Option<Arc<Head>>,
 }
 
 impl Experiment {
@@ -125,6 +129,7 @@ impl Experiment {
             threads,
             shuffle: None,
             traffic: false,
+            head: None,
         }
     }
 
@@ -170,23 +175,32 @@ impl Experiment {
         self
     }
 
+    /// A head with its tracker instead of the scene's own motion, which the pipeline follows without any delay.
+    ///
+    /// With prediction the experiment is run twice: the first run tells when each view will be seen.
+    #[must_use]
+    pub fn head(mut self, head: impl Into<Arc<Head>>) -> Self {
+        self.head = Some(head.into());
+        self
+    }
+
     /// Builds the machine, switched on, with the pipeline's programs loaded.
     ///
     /// # Errors
     ///
     /// [`ExperimentError`] for a machine, scene or number of fields that cannot be simulated.
     pub fn build(&self) -> Result<Machine, ExperimentError> {
-        if !(FIELDS_RANGE.0..=FIELDS_RANGE.1).contains(&self.fields) {
-            return Err(ExperimentError::Fields { expected: FIELDS_RANGE, found: self.fields });
+        Ok(self.assemble(None)?.0)
+    }
+
+    fn assemble(&self, rehearsal: Option<Rehearsal>) -> Result<(Machine, Option<Arc<HeadViews>>), ExperimentError> {
+        let expected = if self.head.is_some() { (FIELDS_RANGE.0, FIELDS_WITH_HEAD) } else { FIELDS_RANGE };
+        if !(expected.0..=expected.1).contains(&self.fields) {
+            return Err(ExperimentError::Fields { expected, found: self.fields });
         }
         let config = self.pipeline.adapt(self.config.clone());
         let mut machine = Machine::new(&config, self.pipeline.eyes(), self.pipeline.layout())?;
-        let setup = Setup {
-            list: Arc::new(display_list(&self.scene).map_err(ExperimentError::Scene)?),
-            views: views(&self.scene, self.seed, self.pipeline.eyes()),
-            host: config.host,
-            pixels: self.pixels != Pixels::Off,
-        };
+        let (setup, head) = self.setup(&config, &machine, rehearsal)?;
         self.pipeline.load(&mut machine, &setup)?;
         if let Some(seed) = self.shuffle {
             machine.shuffle_ties(seed);
@@ -198,7 +212,33 @@ impl Experiment {
             machine.record_traffic();
         }
         machine.switch_on();
-        Ok(machine)
+        Ok((machine, head))
+    }
+
+    fn setup(
+        &self,
+        config: &MachineConfig,
+        machine: &Machine,
+        rehearsal: Option<Rehearsal>,
+    ) -> Result<(Setup, Option<Arc<HeadViews>>), ExperimentError> {
+        let (eyes, period) = (self.pipeline.eyes(), config.host.view_period_ns * 1_000);
+        let list = Arc::new(display_list(&self.scene).map_err(ExperimentError::Scene)?);
+        let (views, wanted) = views(&self.scene, self.seed, eyes);
+        let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
+        let setup = Setup { list, views, wanted, reports, host: config.host, pixels: self.pixels != Pixels::Off };
+        let Some(head) = &self.head else { return Ok((setup, None)) };
+        let until = machine.video().retrace(self.fields);
+        let head = Arc::new(HeadViews::new(Arc::clone(head), &self.scene, eyes, until, rehearsal));
+        let (views, wanted, reports) = HeadViews::functions(&head);
+        Ok((Setup { views, wanted, reports, ..setup }, Some(head)))
+    }
+
+    /// When each view is seen, from a run without prediction; `None` where nobody predicts.
+    fn rehearse(&self) -> Result<Option<Rehearsal>, ExperimentError> {
+        let Some(head) = self.head.as_ref().filter(|head| head.predicts()) else { return Ok(None) };
+        let plain = Self { head: Some(Arc::new(head.without_prediction())), pixels: Pixels::Off, ..self.clone() };
+        let outcome = plain.perform(None, &[], |_, _| Ok(()))?;
+        Ok(Some(Rehearsal::of(&outcome)))
     }
 
     /// Runs it.
@@ -232,10 +272,20 @@ impl Experiment {
     pub fn run_stopping(
         &self,
         stops: &[u64],
+        at: impl FnMut(u64, &mut Machine) -> Result<(), ExperimentError>,
+    ) -> Result<Outcome, ExperimentError> {
+        let rehearsal = if self.pipeline.knows_when_seen() { None } else { self.rehearse()? };
+        self.perform(rehearsal, stops, at)
+    }
+
+    fn perform(
+        &self,
+        rehearsal: Option<Rehearsal>,
+        stops: &[u64],
         mut at: impl FnMut(u64, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
         let host_time = Instant::now();
-        let mut machine = self.build()?;
+        let (mut machine, head) = self.assemble(rehearsal)?;
         let mut result = Ok(());
         for field in self.stops(stops) {
             let until = machine.video().retrace(field);
@@ -247,7 +297,7 @@ impl Experiment {
         }
         machine.finish_pixels();
         let host_seconds = host_time.elapsed().as_secs_f64();
-        let outcome = Outcome::new(self.clone(), machine, host_seconds);
+        let outcome = Outcome::new(self.clone(), machine, head, host_seconds);
         match result {
             Err(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
             Ok(()) if outcome.steady_pictures().is_empty() => {
@@ -269,11 +319,12 @@ impl Experiment {
     /// seed.
     #[must_use]
     pub fn config_hash(&self) -> Fingerprint {
-        let Self { config, pipeline, fields, seed, .. } = self;
+        let Self { config, pipeline, fields, seed, head, .. } = self;
         let scene = Fingerprint::of_scene(&self.scene);
         let parameters: Vec<_> = config.parameters().into_iter().map(|p| (p.path, p.value)).collect();
         let boards = (config.n_gps, config.n_renderers);
-        Fingerprint::of(format!("{boards:?} {parameters:?} {pipeline:?} {scene} {fields} {seed}").as_bytes())
+        let head = head.as_ref().map(|head| format!(" {head:?}")).unwrap_or_default();
+        Fingerprint::of(format!("{boards:?} {parameters:?} {pipeline:?} {scene} {fields} {seed}{head}").as_bytes())
     }
 }
 
@@ -285,15 +336,16 @@ const PROGRESS_FIELDS: u64 = 60;
 pub struct Outcome {
     experiment: Experiment,
     machine: Machine,
+    head: Option<Arc<HeadViews>>,
     pictures: Vec<PictureTimes>,
     host_seconds: f64,
 }
 
 impl Outcome {
-    fn new(experiment: Experiment, machine: Machine, host_seconds: f64) -> Self {
+    fn new(experiment: Experiment, machine: Machine, head: Option<Arc<HeadViews>>, host_seconds: f64) -> Self {
         let end = machine.video().retrace(experiment.fields);
         let pictures = experiment.pipeline.pictures(&machine, end);
-        Self { experiment, machine, pictures, host_seconds }
+        Self { experiment, machine, head, pictures, host_seconds }
     }
 
     /// All pictures that were shown.
@@ -312,6 +364,18 @@ impl Outcome {
     #[must_use]
     pub const fn machine(&self) -> &Machine {
         &self.machine
+    }
+
+    /// The views that the head's tracker gave, if there was one.
+    #[must_use]
+    pub fn head(&self) -> Option<&HeadViews> {
+        self.head.as_deref()
+    }
+
+    /// Time that the run took on this host, in seconds.
+    #[must_use]
+    pub const fn host_seconds(&self) -> f64 {
+        self.host_seconds
     }
 
     /// What was observed.
@@ -398,7 +462,7 @@ impl Outcome {
             latency_fields: self.latency_fields().defined(experiment.pipeline.latency_definition()),
             latency_ms: self.latency_ms().defined(experiment.pipeline.latency_definition()),
             latency_parts_ms: self.latency_part_statistics(),
-            updates_hz: updates_hz(pictures),
+            updates_hz: updates_hz(pictures) / experiment.pipeline.updates_per_picture(&self.machine),
             missed_retraces: experiment.pipeline.missed_retraces(pictures),
             missed_retraces_definition: experiment.pipeline.missed_definition().to_owned(),
             late_regions: late.len(),

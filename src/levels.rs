@@ -149,7 +149,7 @@ struct CopySpan {
 /// Copies by picture and place in it.
 type Copies = BTreeMap<(u64, u8), CopySpan>;
 
-fn summary(program: Program, outcome: &Outcome) -> Summary {
+pub(crate) fn summary(program: Program, outcome: &Outcome) -> Summary {
     let (report, pictures) = (outcome.report(), outcome.steady_pictures());
     let message = outcome.machine().ring().timing().occupancy(MAX_MESSAGE_WORDS);
     let copies = copies(program, outcome, message);

@@ -25,7 +25,9 @@
 //! |---|---|
 //! | [`Machine`] | boards plugged together: the only place where they meet |
 //! | [`pipelines`] | what can run on it; a new pipeline implements [`Pipeline`] |
+//! | [`compare`], [`display`] | every way to fight latency in pixels; what a display does on the way to the eye |
 //! | [`figures`], [`levels`], [`limit`] | published figures, levels of modelling, most triangles per field |
+//! | [`ExperimentFile`], [`sweep`], [`Snapshot`] | experiments as text, at many points, and continued |
 //! | `pxpl5-*` crates | one for each board, and the event kernel |
 //!
 //! Every number of the model has a unit, a standing (published, derived, assumed) and a source:
@@ -34,12 +36,16 @@
 //! **Not modelled:** see the data sheet at the head of each board's crate, and ACCURACY.md for what comes out wrong.
 
 pub mod analytic;
+pub mod compare;
 mod config;
+pub mod display;
 mod display_list;
 mod experiment;
 mod experiment_file;
 pub mod figures;
 mod fingerprint;
+mod head_to_light;
+pub mod intervals;
 mod latency;
 pub mod levels;
 pub mod limit;
@@ -51,6 +57,8 @@ pub mod pictures;
 pub mod pipelines;
 mod report;
 pub mod results;
+mod snapshot;
+pub mod sweep;
 pub mod timeline;
 pub mod trace_export;
 mod traffic;
@@ -60,17 +68,19 @@ pub use config::{ConfigError, MachineConfig, PRESETS, Parameter, Preset};
 pub use experiment::{Experiment, ExperimentError, FIELDS_RANGE, Outcome, Pixels, WARM_UP_PICTURES};
 pub use experiment_file::{
     ExperimentFile, FileError, KEYS, Key, MotionChoice, Outputs, PIPELINES, Plan, Published, SceneChoice, Settings,
-    Variant,
 };
 pub use fingerprint::Fingerprint;
+pub use head_to_light::{Budget, FIELDS_WITH_HEAD, Head, HeadError, HeadViews, Rehearsal, Sampled};
 pub use latency::{LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition};
 pub use machine::{Machine, Ports, RunError};
-pub use measure::{Measure, QUANTITIES, Quantity};
+pub use measure::{Measure, QUANTITIES, Quantity, Results};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
-pub use pipelines::{Code, Pipeline, RenderingControl, Slats};
+pub use pipelines::{Code, Frameless, Jitp, Pipeline, Reading, RenderingControl, Slats, Viewpoint};
 pub use pphigs::Binning;
 pub use pxpl5_scene as scene;
 pub use pxpl5_wire::Eye;
 pub use report::{DefinedStatistics, Report, Statistics};
 pub use slats::Copy;
+pub use snapshot::{Snapshot, SnapshotError};
+pub use tracking;
 pub use traffic::{Traffic, Transfer};

@@ -13,7 +13,7 @@
 use crate::config::{ConfigError, MachineConfig};
 use crate::observation::{Arrival, Observation, Swap};
 use crate::workers::PixelWorkers;
-use pxpl5_framebuffer::{FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput, Video};
+use pxpl5_framebuffer::{FrameBuffer, FrameBufferEvent, FrameBufferOutput, Video};
 use pxpl5_gp::{Fault, Gp, GpBoard, GpEvent, GpOutput, Level, Program};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
@@ -361,7 +361,7 @@ impl Machine {
             self.queue.schedule(time, phase, Event::Gp(board, event));
         }
         for (order, (time, GpOutput::Send { message, ticket })) in (0..).zip(context.drain_outputs()) {
-            let request = Request { message, ticket, hold: false, order };
+            let request = Request { message, ticket: Some(ticket), hold: false, order };
             self.queue.schedule(time, Phase::Arrive, Event::Ring(RingEvent::Request(request)));
         }
         if let Some(fault) = processor.fault() {
@@ -492,6 +492,3 @@ fn deliver(ports: &Ports, message: Message) -> Event {
     };
     Event::FrameBuffer(board, event)
 }
-
-/// The number of fields that a frame buffer has to remember for the last picture of both parities.
-pub(crate) const FIELDS_KEPT: u64 = FrameBufferConfig::NTSC.fields_kept;

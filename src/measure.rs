@@ -1,12 +1,15 @@
-//! Quantities of an outcome by name, for tables, CSV and sweep rows.
+//! Quantities of a run by name, for tables, CSV and sweep rows.
 
 use crate::config::nearest;
-use crate::experiment::Outcome;
+use crate::experiment::{ExperimentError, Outcome};
+use crate::experiment_file::Plan;
+use crate::levels::{Case, Level, Summary, summary};
 use crate::observation::StageSpan;
 use crate::report::{Report, Statistics};
 use pxpl5_gp::Stage;
+use pxpl5_scene::Scene;
 use pxpl5_wire::MAX_MESSAGE_WORDS;
-use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A quantity that can be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,53 +35,61 @@ impl Eq for Quantity {}
 
 #[derive(Debug)]
 enum Value {
-    OfReport(fn(&Report) -> f64),
-    OfOutcome(fn(&Outcome) -> Option<f64>),
+    /// At every level of modelling.
+    OfSummary(fn(&Summary) -> f64),
+    /// Where there are events.
+    OfRun(fn(&Outcome, &Report) -> Option<f64>),
 }
 
-const fn of_report(name: &'static str, definition: &'static str, value: fn(&Report) -> f64) -> Quantity {
-    Quantity { name, definition, value: Value::OfReport(value) }
+const fn of_summary(name: &'static str, definition: &'static str, value: fn(&Summary) -> f64) -> Quantity {
+    Quantity { name, definition, value: Value::OfSummary(value) }
 }
 
-const fn of_outcome(name: &'static str, definition: &'static str, value: fn(&Outcome) -> Option<f64>) -> Quantity {
-    Quantity { name, definition, value: Value::OfOutcome(value) }
+const fn of_run(name: &'static str, definition: &'static str, value: fn(&Outcome, &Report) -> Option<f64>) -> Quantity {
+    Quantity { name, definition, value: Value::OfRun(value) }
 }
 
 const LATENCY: &str = "latency as the pipeline defines it (see the report), over all pictures after the warm-up";
 
-/// All quantities.
-pub static QUANTITIES: [Quantity; 19] = [
-    of_report("latency_fields.mean", LATENCY, |r| r.latency_fields.statistics.mean),
-    of_report("latency_fields.sd", LATENCY, |r| r.latency_fields.statistics.sd),
-    of_report("latency_fields.min", LATENCY, |r| r.latency_fields.statistics.min),
-    of_report("latency_fields.max", LATENCY, |r| r.latency_fields.statistics.max),
-    of_report("latency_ms.mean", LATENCY, |r| r.latency_ms.statistics.mean),
-    of_report("latency_ms.sd", LATENCY, |r| r.latency_ms.statistics.sd),
-    of_report("latency_ms.min", LATENCY, |r| r.latency_ms.statistics.min),
-    of_report("latency_ms.max", LATENCY, |r| r.latency_ms.statistics.max),
-    of_report("updates_hz", "complete pictures per second of simulated time", |r| r.updates_hz),
-    of_report("missed_retraces", "retraces missed, as the pipeline defines it", |r| r.missed_retraces as f64),
-    of_report("late_regions", "regions that came after their deadline", |r| r.late_regions as f64),
-    of_report("pictures", "pictures after the warm-up", |r| r.pictures as f64),
-    of_report("events", "events of the simulation", |r| r.events as f64),
-    of_outcome("region_copy_us", "mean time of one region's transfer into a frame buffer", region_copy_us),
-    of_outcome(
-        "copy_ms",
-        "mean time from the begin of a picture's first region transfer to the end of its last, both eyes",
-        |outcome| mean_ms(pictures(outcome).iter().filter_map(|p| span_ms(p, Stage::Copy, Stage::Copy))),
+/// All quantities. Those that need events have no value at the analytic level.
+pub static QUANTITIES: [Quantity; 21] = [
+    of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().mean),
+    of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().sd),
+    of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
+    of_summary("latency_fields.max", LATENCY, |s| s.latency_fields().max),
+    of_summary("latency_ms.mean", LATENCY, |s| s.latency_ms().mean),
+    of_summary("latency_ms.sd", LATENCY, |s| s.latency_ms().sd),
+    of_summary("latency_ms.min", LATENCY, |s| s.latency_ms().min),
+    of_summary("latency_ms.max", LATENCY, |s| s.latency_ms().max),
+    of_summary("updates_hz", "complete pictures per second of simulated time", |s| s.updates_hz),
+    of_summary("missed_retraces", "retraces missed, as the pipeline defines it", |s| s.missed_retraces as f64),
+    of_summary("region_copy_us", "mean port time of a region of 15,360 pixels", |s| s.region_copy_us),
+    of_summary(
+        "first_copy_ms",
+        "first to last word of the COPY of the left eye (Rendering Control), of the top regions or of all (Slats); mean",
+        |s| s.first_copy_ms,
     ),
-    of_outcome(
-        "before_copy_ms",
-        "mean time from the begin of a picture's TRANSFORM to the begin of its first region transfer",
-        |outcome| mean_ms(pictures(outcome).iter().filter_map(|p| before_copy_ms(p))),
+    of_summary(
+        "last_copy_ms",
+        "first to last word of the COPY of the right eye, or of the bottom regions; mean; 0 where there is none",
+        |s| s.last_copy_ms,
     ),
-    of_outcome("transform_ms", "mean time of TRANSFORM, an eye or a picture as the pipeline takes them", |outcome| {
-        stage_ms(outcome, Stage::Transform)
+    of_summary("copies_ms", "first_copy_ms and last_copy_ms together", |s| s.first_copy_ms + s.last_copy_ms),
+    of_summary("copy_begins_ms", "from the start of a picture to the first word of its first copy; mean", |s| {
+        s.copy_begins_ms
     }),
-    of_outcome("render_ms", "mean time of RENDER, an eye or a picture as the pipeline takes them", |outcome| {
-        stage_ms(outcome, Stage::Render)
+    of_summary("eye_ms", "from the start of an eye's TRANSFORM to the end of its COPY; mean; 0 for Slats", |s| {
+        Statistics::of(s.eye_latencies_ms.iter().copied()).mean
     }),
-    of_outcome("eye_ms", "mean time from the begin of an eye's TRANSFORM to the end of its COPY", eye_ms),
+    of_run("late_regions", "regions that came after their deadline", |_, r| Some(r.late_regions as f64)),
+    of_run("pictures", "pictures after the warm-up", |_, r| Some(r.pictures as f64)),
+    of_run("events", "events of the simulation", |_, r| Some(r.events as f64)),
+    of_run("transform_ms", "mean time of TRANSFORM, an eye or a picture as the pipeline takes them", |o, _| {
+        stage_ms(o, Stage::Transform)
+    }),
+    of_run("render_ms", "mean time of RENDER, an eye or a picture as the pipeline takes them", |o, _| {
+        stage_ms(o, Stage::Render)
+    }),
 ];
 
 impl Measure {
@@ -113,62 +124,63 @@ impl Measure {
 
     /// Its value; `None` when the run shows none.
     #[must_use]
-    pub fn of(&self, outcome: &Outcome, report: &Report) -> Option<f64> {
-        match self.0.value {
-            Value::OfReport(value) => Some(value(report)),
-            Value::OfOutcome(value) => value(outcome),
+    pub fn of(&self, results: &Results) -> Option<f64> {
+        let value = match self.0.value {
+            Value::OfSummary(value) => Some(value(&results.summary)),
+            Value::OfRun(value) => results.run.as_ref().and_then(|(outcome, report)| value(outcome, report)),
+        };
+        value.filter(|value| value.is_finite())
+    }
+}
+
+/// What came of a plan.
+#[derive(Debug)]
+pub struct Results {
+    /// At every level of modelling.
+    pub summary: Summary,
+    /// Where there are events.
+    pub run: Option<(Outcome, Report)>,
+}
+
+impl Results {
+    /// Of an outcome.
+    #[must_use]
+    pub fn new(plan: &Plan, outcome: Outcome) -> Self {
+        let report = outcome.report();
+        Self { summary: summary(plan.program, &outcome), run: Some((outcome, report)) }
+    }
+}
+
+impl Plan {
+    /// The same as a case of [`Level::run`].
+    #[must_use]
+    pub fn case(&self, scene: Arc<Scene>) -> Case {
+        let (machine, program) = (self.machine.clone(), self.program);
+        Case { machine, program, scene, fields: self.fields, seed: self.seed }
+    }
+
+    /// Runs it at its level, without pixels.
+    ///
+    /// # Errors
+    ///
+    /// As [`Level::run`].
+    pub fn run(&self, scene: Arc<Scene>) -> Result<Results, ExperimentError> {
+        let case = self.case(scene);
+        match self.level {
+            Level::Transaction => Ok(Results::new(self, case.experiment().threads(1).run()?)),
+            level => Ok(Results { summary: level.run(&case)?, run: None }),
         }
     }
 }
 
-/// The stages of each picture after the warm-up that is whole.
-fn pictures(outcome: &Outcome) -> Vec<Vec<StageSpan>> {
-    let message = outcome.machine().ring().timing().occupancy(MAX_MESSAGE_WORDS);
-    let mut by_picture: BTreeMap<u64, Vec<StageSpan>> = BTreeMap::new();
-    for span in outcome.observation().stages(message) {
-        by_picture.entry(span.picture).or_default().push(span);
-    }
-    let steady = outcome.steady_pictures().iter().filter(|times| times.complete);
-    steady.filter_map(|times| by_picture.remove(&times.picture)).collect()
-}
-
-fn mean_ms(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values = values.peekable();
-    values.peek()?;
-    Some(Statistics::of(values).mean)
-}
-
-/// From the first begin of a stage to the last end of another.
-fn span_ms(spans: &[StageSpan], from: Stage, to: Stage) -> Option<f64> {
-    let begin = spans.iter().filter(|span| span.stage == from).map(|span| span.begin).min()?;
-    let end = spans.iter().filter(|span| span.stage == to).map(|span| span.end).max()??;
-    Some((end - begin).as_ms())
-}
-
-fn before_copy_ms(spans: &[StageSpan]) -> Option<f64> {
-    let first = |stage: Stage| spans.iter().filter(|span| span.stage == stage).map(|span| span.begin).min();
-    Some((first(Stage::Copy)? - first(Stage::Transform)?).as_ms())
-}
-
+/// Mean over the pictures after the warm-up.
 fn stage_ms(outcome: &Outcome, stage: Stage) -> Option<f64> {
-    let spans = pictures(outcome).into_iter().flatten().filter(|span| span.stage == stage);
-    mean_ms(spans.filter_map(|span| Some((span.end? - span.begin).as_ms())))
-}
-
-fn eye_ms(outcome: &Outcome) -> Option<f64> {
-    let eyes = pictures(outcome).into_iter().flat_map(|spans| {
-        let transforms: Vec<_> = spans.iter().filter(|s| s.stage == Stage::Transform).copied().collect();
-        let copies = spans.into_iter().filter(|span| span.stage == Stage::Copy);
-        copies.filter_map(move |copy| {
-            let begin = transforms.iter().filter(|t| t.eye.is_none() || t.eye == copy.eye).map(|t| t.begin).min()?;
-            Some((copy.end? - begin).as_ms())
-        })
-    });
-    mean_ms(eyes)
-}
-
-fn region_copy_us(outcome: &Outcome) -> Option<f64> {
     let message = outcome.machine().ring().timing().occupancy(MAX_MESSAGE_WORDS);
-    let arrivals = outcome.observation().arrivals.iter();
-    mean_ms(arrivals.map(|arrival| (arrival.last_part_at - arrival.first_part_at + message).as_ms() * 1e3))
+    let first = outcome.steady_pictures().first()?.picture;
+    let last = outcome.steady_pictures().last()?.picture;
+    let steady = |span: &StageSpan| span.stage == stage && (first..=last).contains(&span.picture);
+    let spans = outcome.observation().stages(message).into_iter().filter(steady);
+    let mut times = spans.filter_map(|span| Some((span.end? - span.begin).as_ms())).peekable();
+    times.peek()?;
+    Some(Statistics::of(times).mean)
 }

@@ -1,15 +1,15 @@
 //! The published figures, asserted: free checks within what the papers print or their last digit allows, misses as they
 //! are (FIXME(accuracy)). Causes stand in ACCURACY.md, which must be what these runs give.
 
-use pxpl5::figures::{Bench, Row, markdown, run_all};
+use pxpl5::figures::{Bench, Figures, Row, markdown, run_all};
 use pxpl5::levels::Level;
 use std::sync::LazyLock;
 
-static ROWS: LazyLock<Vec<Row>> =
+static FIGURES: LazyLock<Figures> =
     LazyLock::new(|| run_all(&Bench::new(Level::Transaction)).expect("every experiment runs on its preset"));
 
 fn row(id: &str) -> &'static Row {
-    ROWS.iter().find(|row| row.id == id).expect("listed")
+    FIGURES.rows.iter().find(|row| row.id == id).expect("listed")
 }
 
 #[track_caller]
@@ -31,33 +31,32 @@ fn both_eyes_are_copied_in_31_2_ms() {
 #[test]
 fn copy_alone_takes_less_than_the_three_fields_of_the_theory() {
     // FIXME(accuracy): published 50 ms.
-    within("3", 36.0, 37.0);
+    within("3", 39.0, 41.0);
     assert!(row("3").misses());
 }
 
 #[test]
-fn a_trivial_stereo_scene_takes_4_percent_less_than_measured() {
-    // FIXME(accuracy): published 56.5 ms.
-    within("4", 54.0, 54.3);
+fn a_trivial_stereo_scene_takes_3_percent_more_than_measured() {
+    within("4", 56.5, 58.2);
     within("4b", 29.9, 30.0);
 }
 
 #[test]
-fn equal_stages_do_not_keep_30_hz() {
-    // FIXME(accuracy): published up to 66.7 ms at 30 Hz.
-    within("5", 85.0, 86.5);
+fn equal_stages_keep_30_hz_and_stay_below_four_fields() {
+    // FIXME(accuracy): published up to 66.7 ms.
+    within("5", 57.0, 66.74);
+    assert!(row("5").details.iter().any(|d| d.unit == "Hz" && (29.9..30.0).contains(&d.value)));
 }
 
 #[test]
-fn long_stages_take_more_than_three_transforms_and_two_copies() {
-    // FIXME(accuracy): published 90.6 to 106.2 ms.
-    within("6", 108.0, 114.0);
+fn long_stages_take_three_transforms_and_one_to_two_copies() {
+    within("6", 90.6, 106.2);
 }
 
 #[test]
-fn the_mig_is_shown_a_field_sooner_than_measured() {
+fn the_mig_is_shown_most_of_a_field_sooner_than_measured() {
     // FIXME(accuracy): published 4.61 fields, sd 0.589.
-    within("7", 3.6, 4.0);
+    within("7", 3.7, 4.0);
     assert!(row("7").misses());
 }
 
@@ -87,8 +86,9 @@ fn the_limits_that_parameters_were_fitted_to_come_out_exactly() {
 }
 
 #[test]
-fn the_copy_optimisation_raises_the_limit_to_the_published_140_within_two() {
-    within("13", 138.0, 142.0);
+fn the_copy_optimisation_raises_the_limit_by_eight_triangles_too_many() {
+    // FIXME(accuracy): published 140.
+    within("13", 148.0, 148.0);
 }
 
 #[test]
@@ -98,9 +98,28 @@ fn the_first_copy_of_a_full_field_begins_after_about_12_8_ms() {
 
 #[test]
 fn every_row_names_its_source_and_every_miss_its_cause() {
-    for row in ROWS.iter() {
+    for row in &FIGURES.rows {
         assert!(row.source.contains("TR94") || row.source.contains("I3D95"), "{}", row.id);
         assert!(!row.misses() || !row.cause.is_empty(), "figure {} misses without a cause", row.id);
+    }
+}
+
+#[test]
+fn what_is_simulated_lies_in_its_own_interval_and_the_limits_are_within_reach() {
+    for row in &FIGURES.rows {
+        let [low, high] = row.interval.expect("every figure has one");
+        assert!(low <= row.simulated && row.simulated <= high, "figure {}", row.id);
+    }
+    assert!(["12", "13", "14", "15"].iter().all(|id| !row(id).is_out_of_reach()));
+}
+
+#[test]
+fn the_analytic_level_agrees_with_the_transaction_level() {
+    // Closed form against events: within 3 %.
+    let bench = Bench { seeds: 2, frames: 60, ..Bench::new(Level::Analytic) };
+    for row in FIGURES.rows.iter().filter(|row| row.id != "8") {
+        let value = bench.measure(row.id).expect("it runs").value;
+        assert!((value / row.simulated - 1.0).abs() < 0.03, "figure {}: {value} and {}", row.id, row.simulated);
     }
 }
 
@@ -108,5 +127,5 @@ fn every_row_names_its_source_and_every_miss_its_cause() {
 fn accuracy_md_is_what_these_runs_give() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/ACCURACY.md");
     let kept = std::fs::read_to_string(path).expect("ACCURACY.md is part of the project");
-    assert!(kept == markdown(&ROWS), "ACCURACY.md is stale: run `pxpl5 figures --write ACCURACY.md`");
+    assert!(kept == markdown(&FIGURES), "ACCURACY.md is stale: run `pxpl5 figures --write ACCURACY.md`");
 }

@@ -295,8 +295,9 @@ fn recorded_messages_are_those_that_the_boards_counted() {
             assert!(begun <= 1_024, "{begun} words were never accepted");
         }
         let busy: Span = machine.ring().stats().channel_busy.iter().copied().sum();
-        let steps = traffic.busy_channels.windows(2);
-        let counted: u64 = steps.map(|pair| (pair[1].0 - pair[0].0).0 * u64::from(pair[0].1)).sum();
+        let mut steps = traffic.busy_channels.clone();
+        steps.push((outcome.end(), 0));
+        let counted: u64 = steps.windows(2).map(|pair| (pair[1].0 - pair[0].0).0 * u64::from(pair[0].1)).sum();
         // The ring counts messages that have ended, the counter those under way as well.
         let tolerance = 8 * 8_000_000_000;
         assert!(counted >= busy.0 && counted < busy.0 + tolerance, "{counted} and {}", busy.0);

@@ -34,7 +34,7 @@ mod text;
 pub use error::FileError;
 pub use keys::{KEYS, Key};
 pub use motion::MotionChoice;
-pub use plan::{Outputs, PIPELINES, Plan, Published, SceneChoice, Variant};
+pub use plan::{Outputs, PIPELINES, Plan, Published, SceneChoice};
 pub use text::Settings;
 
 use std::collections::BTreeMap;
@@ -136,13 +136,22 @@ impl ExperimentFile {
         self.set(path.trim(), value.unwrap_or_else(|| Value::String(text.trim().to_owned())), place)
     }
 
+    /// Puts a setting under the key that it is kept by.
     fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), FileError> {
-        let canonical = keys::canonical(path);
-        if keys::find(&canonical).is_none() && !keys::is_machine_parameter(&canonical) {
-            return Err(FileError::UnknownKey { place, found: path.to_owned(), nearest: keys::nearest_key(path) });
-        }
+        let canonical = canonical_key(path, &place)?;
         self.settings.insert(canonical, Setting { value, place, folder: folder.to_owned() });
         Ok(())
+    }
+
+    /// The keys that are set, in order.
+    pub fn keys(&self) -> impl Iterator<Item = &str> {
+        self.settings.keys().map(String::as_str)
+    }
+
+    /// Takes over all settings of another file, in place of its own.
+    pub fn overlay(&mut self, other: Self) {
+        self.settings.extend(other.settings);
+        self.sweep = other.sweep.or(self.sweep.take());
     }
 
     /// Whether the file describes a sweep.
@@ -150,6 +159,19 @@ impl ExperimentFile {
     pub const fn is_sweep(&self) -> bool {
         self.sweep.is_some()
     }
+}
+
+/// The key by which a path is kept.
+///
+/// # Errors
+///
+/// [`FileError::UnknownKey`] with the nearest valid path.
+pub(crate) fn canonical_key(path: &str, place: &str) -> Result<String, FileError> {
+    let canonical = keys::canonical(path);
+    if keys::find(&canonical).is_some() || keys::is_machine_parameter(&canonical) {
+        return Ok(canonical);
+    }
+    Err(FileError::UnknownKey { place: place.to_owned(), found: path.to_owned(), nearest: keys::nearest_key(path) })
 }
 
 /// The leaves of a value with their paths and places; empty tables are leaves, so that they are not lost.

@@ -5,40 +5,23 @@ use super::read::wrong;
 use super::{ExperimentFile, FileError, keys};
 use crate::config::MachineConfig;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
+use crate::levels::{Level, Program};
 use crate::measure::Measure;
-use crate::pipelines::{Code, Pipeline, RenderingControl, Slats};
+use crate::pipelines::{Code, RenderingControl, Slats};
 use pphigs::{Binning, Shading};
 use pxpl5_scene::Scene;
 use slats::Copy;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A pipeline with its variant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Variant {
-    /// The pipeline under PPHIGS.
-    RenderingControl(RenderingControl),
-    /// One new image every field.
-    Slats(Slats),
-}
-
 /// The pipelines by name, each as its papers describe it.
-pub const PIPELINES: [(&str, Variant); 2] = [
-    ("rendering-control", Variant::RenderingControl(RenderingControl::stereo())),
-    ("slats", Variant::Slats(Slats::split())),
+pub const PIPELINES: [(&str, Program); 2] = [
+    ("rendering-control", Program::RenderingControl(RenderingControl::stereo())),
+    ("slats", Program::Slats(Slats::split())),
 ];
 
-impl Variant {
-    /// The pipeline.
-    #[must_use]
-    pub fn pipeline(&self) -> Arc<dyn Pipeline> {
-        match *self {
-            Self::RenderingControl(pipeline) => Arc::new(pipeline),
-            Self::Slats(pipeline) => Arc::new(pipeline),
-        }
-    }
-
-    /// Its name.
+impl Program {
+    /// Its pipeline's name.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -58,9 +41,9 @@ impl Variant {
 
     fn read(file: &ExperimentFile) -> Result<Self, FileError> {
         let missing = FileError::Missing { key: "pipeline", how: "rendering-control or slats" };
-        let variant = file.choice("pipeline", &PIPELINES)?.ok_or(missing)?;
-        variant.refuse_others(file)?;
-        Ok(match variant {
+        let program = file.choice("pipeline", &PIPELINES)?.ok_or(missing)?;
+        program.refuse_others(file)?;
+        Ok(match program {
             Self::RenderingControl(default) => Self::RenderingControl(RenderingControl {
                 mono: file.flag("mono")?.unwrap_or(default.mono),
                 shading: file.choice("shading", &SHADINGS)?.unwrap_or(default.shading),
@@ -92,6 +75,8 @@ pub(super) const CODES: [(&str, Code); 3] =
     [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
 
+pub(super) const LEVELS: [(&str, Level); 2] = [("analytic", Level::Analytic), ("transaction", Level::Transaction)];
+
 /// What is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneChoice {
@@ -121,18 +106,26 @@ impl SceneChoice {
     /// # Errors
     ///
     /// [`FileError`] for an unknown scene, an unusable file, or more primitives to keep than there are.
-    pub fn load(&self) -> Result<Scene, FileError> {
-        let whole =
-            if is_file(&self.name) { pxpl5_scene::load(&self.name)? } else { pxpl5_scene::builtin(&self.name)? };
+    pub fn load(&self) -> Result<Arc<Scene>, FileError> {
+        self.prepared(Arc::new(self.load_whole()?))
+    }
+
+    pub(crate) fn load_whole(&self) -> Result<Scene, FileError> {
+        Ok(if is_file(&self.name) { pxpl5_scene::load(&self.name)? } else { pxpl5_scene::builtin(&self.name)? })
+    }
+
+    /// The whole scene cut and moved as chosen.
+    pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, FileError> {
         let scene = match self.triangles {
-            Some(n) => whole.truncated(n)?,
+            Some(n) => Arc::new(whole.truncated(n)?),
             None => whole,
         };
         if self.motion == MotionChoice::default() {
             return Ok(scene);
         }
         let motion = self.motion.motion(&scene)?;
-        Ok(Scene::new(pxpl5_scene::SceneParts { motion, ..scene.into_parts() })?)
+        let parts = Arc::unwrap_or_clone(scene).into_parts();
+        Ok(Arc::new(Scene::new(pxpl5_scene::SceneParts { motion, ..parts })?))
     }
 }
 
@@ -196,7 +189,7 @@ pub struct Plan {
     /// A line for people.
     pub title: Option<String>,
     /// The pipeline.
-    pub variant: Variant,
+    pub program: Program,
     /// The machine.
     pub machine: MachineConfig,
     /// The scene.
@@ -205,6 +198,8 @@ pub struct Plan {
     pub fields: u64,
     /// Seed of the head motion; default 1.
     pub seed: u64,
+    /// Level of modelling; default transaction.
+    pub level: Level,
     /// Which pixels are computed; default those that are looked at.
     pub pixels: Pixels,
     /// Quantities for tables and rows.
@@ -225,17 +220,17 @@ impl ExperimentFile {
     ///
     /// [`FileError`] names the first setting that is wrong or missing.
     pub fn resolve(&self) -> Result<Plan, FileError> {
-        let variant = Variant::read(self)?;
+        let program = Program::read(self)?;
         let names = self.texts("measure")?;
         let measure = |names: Vec<String>| names.iter().map(|name| measure(self, "measure", name)).collect();
-        self.choice("level", &[("transaction", ())])?;
         Ok(Plan {
             title: self.text("title")?.map(str::to_owned),
-            variant,
-            machine: self.machine(&variant)?,
+            program,
+            machine: self.machine(&program)?,
             scene: SceneChoice::read(self)?,
             fields: self.integer("fields", FIELDS_RANGE.0..=FIELDS_RANGE.1)?.unwrap_or(120),
             seed: self.integer("seed", 0..=MAX_SEED)?.unwrap_or(1),
+            level: self.choice("level", &LEVELS)?.unwrap_or(Level::Transaction),
             pixels: self.choice("pixels", &PIXELS)?.unwrap_or(Pixels::Lazy),
             measure: names.map_or_else(|| Ok(Measure::usual()), measure)?,
             output: Outputs {
@@ -247,21 +242,24 @@ impl ExperimentFile {
         })
     }
 
-    fn machine(&self, variant: &Variant) -> Result<MachineConfig, FileError> {
+    fn machine(&self, program: &Program) -> Result<MachineConfig, FileError> {
         let config = |place: &str| {
             let place = place.to_owned();
             move |error| FileError::Config { place, error }
         };
-        let preset = self.text("machine.preset")?.unwrap_or(variant.preset());
+        let preset = self.text("machine.preset")?.unwrap_or(program.preset());
         let place = self.get("machine.preset").map_or("machine", |setting| &setting.place);
-        let mut machine = MachineConfig::preset(preset).map_err(config(place))?;
+        let machine = MachineConfig::preset(preset).map_err(config(place))?;
+        let mut machine = program.pipeline().adapt(machine);
+        let adapted = machine.parameters();
         for (path, setting) in &self.settings {
             let Some(parameter) = path.strip_prefix("machine.").filter(|path| *path != "preset") else { continue };
-            if let (true, Some(code)) = (CODE_SETS.contains(&parameter), self.get("code")) {
+            let value = self.integer(path, 0..=u64::MAX)?.unwrap_or_default();
+            let changed = adapted.iter().any(|own| own.path == parameter && own.value != value);
+            if let (true, true, Some(code)) = (changed, CODE_SETS.contains(&parameter), self.get("code")) {
                 let (place, other) = (setting.place.clone(), format!("code = {}", super::read::plain(&code.value)));
                 return Err(FileError::Conflict { place, key: path.clone(), other });
             }
-            let value = self.integer(path, 0..=u64::MAX)?.unwrap_or_default();
             machine.set(parameter, value).map_err(config(&setting.place))?;
         }
         machine.check().map_err(config("machine"))?;
@@ -279,13 +277,19 @@ impl Plan {
     ///
     /// As [`SceneChoice::load`].
     pub fn load_scene(&self) -> Result<Arc<Scene>, FileError> {
-        Ok(Arc::new(self.scene.load()?))
+        self.scene.load()
+    }
+
+    /// Name of the level of modelling.
+    #[must_use]
+    pub fn level_name(&self) -> &'static str {
+        LEVELS.iter().find(|(_, level)| *level == self.level).map_or("", |(name, _)| name)
     }
 
     /// The experiment with the scene loaded.
     #[must_use]
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
-        Experiment::with(self.machine.clone(), self.variant.pipeline(), scene)
+        Experiment::with(self.machine.clone(), self.program.pipeline(), scene)
             .fields(self.fields)
             .pixels(self.pixels)
             .seed(self.seed)

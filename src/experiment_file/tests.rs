@@ -1,1 +1,107 @@
+use super::*;
+use crate::config::MachineConfig;
+use crate::experiment::Pixels;
 
+fn plan(text: &str) -> Plan {
+    ExperimentFile::parse(text, "test").expect("TOML").resolve().expect("an experiment")
+}
+
+fn refusal(text: &str) -> String {
+    let resolved = ExperimentFile::parse(text, "test").and_then(|file| file.resolve());
+    resolved.expect_err("no experiment").to_string()
+}
+
+const RC: &str = "pipeline = \"rendering-control\"\nscene = \"mig\"\n";
+
+#[test]
+fn what_is_not_given_is_what_the_papers_used() {
+    let rc = plan(RC);
+    assert_eq!(rc.machine, MachineConfig::small_hmd());
+    assert_eq!((rc.fields, rc.seed, rc.pixels), (120, 1, Pixels::Lazy));
+    let slats = plan("pipeline = \"slats\"\nscene = \"mig\"\n");
+    assert_eq!(slats.machine, MachineConfig::slats());
+}
+
+#[test]
+fn every_machine_parameter_is_reached_with_and_without_its_first_part() {
+    for parameter in MachineConfig::small_hmd().parameters() {
+        let mut file = ExperimentFile::parse(RC, "test").expect("TOML");
+        // One more than the preset's: always in range, but for sizes and rates that frame buffers check together.
+        let path = &parameter.path;
+        file.set_text(&format!("{path}={}", parameter.value + 1), "--set").expect("known");
+        file.set_text(&format!("machine.{path}={}", parameter.value), "--set").expect("the same key");
+        assert_eq!(file.resolve().expect("valid").machine, MachineConfig::small_hmd(), "{path}");
+    }
+}
+
+#[test]
+fn errors_name_the_line_and_what_was_expected() {
+    for (text, says) in [
+        ("a.b.c = 1", "test, line 1: there is no key `a.b.c`"),
+        (
+            "\n\n[machine]\nring.wrod_ns = 1",
+            "test, line 4: there is no key `machine.ring.wrod_ns`; did you mean `machine.ring.word_ns`?",
+        ),
+        ("machine = 3", "there is no key `machine`"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nseed = -1", "test, line 3: seed: expected a whole number"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nseed = 1.5", "line 3: seed: expected a whole number"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nlevel = \"cycles\"", "line 3: level: expected one of"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nmeasure = [\"latency_ms.maen\"]", "the nearest is latency_ms.mean"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nmotion.distance = 1", "this motion.path does not take it"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\npublished.value = 1", "published.quantity is missing"),
+        ("x = 1\nx = 2", "test, line 2: not TOML"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nvideo.field_ps = 5", "did you mean `video."),
+    ] {
+        let found = refusal(text);
+        assert!(found.contains(says), "{text:?}: {found}");
+    }
+}
+
+#[test]
+fn what_is_shown_is_a_file_that_means_the_same() {
+    let texts = [
+        RC.to_owned(),
+        format!("{RC}mono = true\nshading = \"gouraud\"\ntriangles = 9\nseed = 5\n[motion]\npath = \"orbit\"\ndistance = 2\nsway = 0.5\n"),
+        "title = \"a \\\"b\\\"\"\npipeline = \"slats\"\nscene = \"mig\"\ncode = 1995\npublished = {figure = 3, source = \"x\", quantity = \"copies_ms\", value = 2}\n".to_owned(),
+    ];
+    for text in texts {
+        let first = plan(&text);
+        let second = plan(&first.settings().to_string());
+        assert_eq!((&first, first.fingerprint()), (&second, second.fingerprint()));
+    }
+}
+
+#[test]
+fn the_fingerprint_is_of_what_changes_the_result() {
+    let base = plan(RC).fingerprint();
+    for same in ["title = \"x\"", "pixels = \"off\"", "output.csv = false", "measure = [\"events\"]"] {
+        assert_eq!(plan(&format!("{RC}{same}")).fingerprint(), base, "{same}");
+    }
+    for other in
+        ["seed = 2", "fields = 121", "mono = true", "triangles = 5", "motion.sway = 2", "machine.ring.hop_ns = 51"]
+    {
+        assert_ne!(plan(&format!("{RC}{other}")).fingerprint(), base, "{other}");
+    }
+}
+
+#[test]
+fn a_motion_is_round_the_scene() {
+    let scene = plan(&format!("{RC}motion.path = \"orbit\"\nmotion.distance = 3")).load_scene().expect("built in");
+    let (centre, _) = scene.bounding_sphere();
+    for time_ps in [0, 1_000_000_000_000, 2_500_000_000_000] {
+        let eye = scene.motion().pose(time_ps).position;
+        assert!(((eye - centre).length() - 3.0).abs() < 1e-3);
+    }
+    assert_ne!(scene.motion().pose(0).position, scene.motion().pose(1_000_000_000_000).position);
+}
+
+#[test]
+fn a_scene_file_is_relative_to_the_experiment_file() {
+    let folder = std::env::temp_dir().join(format!("pxpl5-relative-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("writable");
+    std::fs::write(folder.join("one.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("writable");
+    std::fs::write(folder.join("e.toml"), "pipeline = \"slats\"\nscene = \"one.obj\"\n").expect("writable");
+    let plan = ExperimentFile::load(folder.join("e.toml")).and_then(|file| file.resolve()).expect("valid");
+    assert_eq!(plan.load_scene().expect("beside the file").triangles().len(), 1);
+    let _ = std::fs::remove_dir_all(folder);
+}

@@ -1,9 +1,10 @@
 //! A plan written out in full.
 
 use super::motion::PathChoice;
-use super::plan::{BINNINGS, CODES, COPIES, PIXELS, Plan, SHADINGS, Variant};
+use super::plan::{BINNINGS, CODES, COPIES, PIXELS, Plan, SHADINGS};
 use crate::config::MachineConfig;
 use crate::fingerprint::Fingerprint;
+use crate::levels::Program;
 use std::collections::BTreeMap;
 use std::fmt;
 use toml::Value;
@@ -35,7 +36,7 @@ impl Plan {
         all.put("fields", self.fields as i64);
         all.put("seed", self.seed as i64);
         all.put("pixels", name(&PIXELS, &self.pixels));
-        all.put("level", "transaction");
+        all.put("level", self.level_name());
         all.put("measure", self.measure.iter().map(|m| Value::from(m.name())).collect::<Vec<_>>());
         all.put("output.pictures", self.output.pictures);
         all.put("output.timeline", self.output.timeline);
@@ -56,13 +57,13 @@ impl Plan {
     }
 
     fn pipeline_settings(&self, all: &mut Settings) {
-        all.put("pipeline", self.variant.name());
-        match &self.variant {
-            Variant::RenderingControl(pipeline) => {
+        all.put("pipeline", self.program.name());
+        match &self.program {
+            Program::RenderingControl(pipeline) => {
                 all.put("mono", pipeline.mono);
                 all.put("shading", name(&SHADINGS, &pipeline.shading));
             }
-            Variant::Slats(pipeline) => {
+            Program::Slats(pipeline) => {
                 all.put("copy", name(&COPIES, &pipeline.copy));
                 all.put("binning", name(&BINNINGS, &pipeline.binning));
                 if let Some(code) = &pipeline.code {

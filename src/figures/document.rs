@@ -1,17 +1,43 @@
 //! The figures as a document.
 
-use super::{MISS_PERCENT, Row, mean_error_percent};
+use super::{Figures, MISS_PERCENT, Row, mean_error_percent};
+use crate::intervals::{Interval, SAMPLES};
 use std::fmt::Write as _;
 
 /// ACCURACY.md: every figure, then the misses one by one.
 #[must_use]
-pub fn markdown(rows: &[Row]) -> String {
-    let mut text = String::new();
+pub fn markdown(figures: &Figures) -> String {
+    let (mut text, rows) = (String::new(), &figures.rows);
     head(&mut text, rows);
     rows.iter().for_each(|row| line(&mut text, row));
     misses(&mut text, rows);
+    sensitivity(&mut text, &figures.intervals);
     experiments(&mut text, rows);
     text
+}
+
+/// Parameters listed for each figure.
+const STRONGEST: usize = 4;
+
+fn sensitivity(text: &mut String, intervals: &[Interval]) {
+    let _ = write!(
+        text,
+        "\n## Which parameter moves which figure\n\n\
+         Every derived or assumed parameter moved to the ends of its range, one at a time, and {SAMPLES} machines with\n\
+         all of them drawn from their ranges; both at the analytic level. In brackets the figure at the low and the high\n\
+         end, then the elasticity (relative change of the figure over relative change of the parameter).\n\n\
+         | # | one at a time | joint | 5 % to 95 % | moved by |\n|---|---|---|---|---|\n"
+    );
+    let range = |[low, high]: [f64; 2]| format!("{} to {}", number(low), number(high));
+    for i in intervals {
+        let strongest = i.effects.iter().take(STRONGEST);
+        let effects: Vec<_> = strongest
+            .map(|e| format!("`{}` ({}, {}; {:+.2})", e.path, number(e.ends[0]), number(e.ends[1]), e.elasticity))
+            .collect();
+        let moved = if effects.is_empty() { "nothing".to_owned() } else { effects.join(", ") };
+        let (single, joint, likely) = (range(i.one_at_a_time), range(i.joint), range(i.likely));
+        let _ = writeln!(text, "| {} | {single} | {joint} | {likely} | {moved} |", i.id);
+    }
 }
 
 fn head(text: &mut String, rows: &[Row]) {
@@ -24,7 +50,8 @@ fn head(text: &mut String, rows: &[Row]) {
          Every published figure beside what the model gives, all from the same machine parameters. *Free*: nothing was\n\
          chosen so that the figure comes out. *Fitted*: a parameter was. *Rule*: a rule of the model was. A *miss* is\n\
          outside of the printed range, or off by more than {MISS_PERCENT} % where none is printed. The interval is what\n\
-         the figure does when parameters that are not published move within their allowed ranges.\n\n\
+         the figure does when parameters that are not published move within their allowed ranges; a figure that is *out of\n\
+         reach* of it shows an error of the model's rules, not of a number.\n\n\
          {} figures, {free} of them free checks with a mean absolute error of {:.1} %; {missed} are missed.\n\n\
          | # | figure | published | simulated | error | interval | standing |\n|---|---|---|---|---|---|---|\n",
         rows.len(),
@@ -34,8 +61,8 @@ fn head(text: &mut String, rows: &[Row]) {
 
 fn line(text: &mut String, row: &Row) {
     let interval = row.interval.map_or("-".to_owned(), |[low, high]| {
-        let outside = !(low..=high).contains(&row.published);
-        format!("{} to {}{}", number(low), number(high), if outside { ", **outside**" } else { "" })
+        let outside = if row.is_out_of_reach() { ", **out of reach**" } else { "" };
+        format!("{} to {}{outside}", number(low), number(high))
     });
     let spread = row.spread.map_or(String::new(), |spread| format!(" +- {}", number(spread)));
     let miss = if row.misses() { " **miss**" } else { "" };
@@ -62,7 +89,9 @@ fn misses(text: &mut String, rows: &[Row]) {
     let _ = writeln!(text, "\n## Misses, and what is known of their causes\n");
     for row in rows.iter().filter(|row| row.misses()) {
         let cause = if row.cause.is_empty() { "the cause is not known" } else { row.cause };
-        let _ = writeln!(text, "- **{}**, {:+.1} %: {cause}.", row.id, row.error_percent);
+        let out =
+            if row.is_out_of_reach() { " A modelling error: no allowed parameter values give the figure." } else { "" };
+        let _ = writeln!(text, "- **{}**, {:+.1} %: {cause}.{out}", row.id, row.error_percent);
     }
 }
 

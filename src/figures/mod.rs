@@ -17,6 +17,7 @@ pub use document::markdown;
 pub use measure::{Bench, Detail, Measured};
 pub use table::{Basis, FIGURES, Figure};
 
+use crate::intervals::{Interval, fill, intervals};
 use serde::Serialize;
 use std::fmt;
 
@@ -70,8 +71,20 @@ pub struct Row {
     pub details: Vec<Detail>,
 }
 
+/// All figures, and what the open parameters do to them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figures {
+    /// In the order of [`FIGURES`].
+    pub rows: Vec<Row>,
+    /// Intervals and elasticities.
+    pub intervals: Vec<Interval>,
+}
+
 /// A difference that is called a miss, in percent, where a paper prints no range.
 pub const MISS_PERCENT: f64 = 3.0;
+
+/// Papers print three digits.
+const ROUNDING: f64 = 0.01;
 
 impl Row {
     /// A figure with what was measured.
@@ -100,6 +113,15 @@ impl Row {
         }
     }
 
+    /// Whether no values of the open parameters within their ranges give the figure: an error of the model's rules.
+    #[must_use]
+    pub fn is_out_of_reach(&self) -> bool {
+        let spread = self.spread.unwrap_or(0.0);
+        // An interval of a figure with no range of its own is met by what would be printed for it.
+        let slack = spread.max(self.published.abs() * ROUNDING);
+        self.interval.is_some_and(|[low, high]| self.published + slack < low || self.published - slack > high)
+    }
+
     /// Whether the model is outside of the printed range, or, where none is printed, off by more than
     /// [`MISS_PERCENT`].
     #[must_use]
@@ -116,15 +138,18 @@ pub fn mean_error_percent(rows: &[Row]) -> f64 {
     free.iter().map(|row| row.error_percent.abs()).sum::<f64>() / free.len().max(1) as f64
 }
 
-/// Measures all figures, several at a time.
+/// Measures all figures, several at a time, with their intervals.
 ///
 /// # Errors
 ///
 /// The first [`FigureError`].
-pub fn run_all(bench: &Bench) -> Result<Vec<Row>, FigureError> {
+pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
     let measure = |figure: &Figure| match bench.measure(figure.id) {
         Ok(measured) => Ok(Row::new(figure, measured)),
         Err(error) => Err(FigureError { id: figure.id.to_owned(), reason: error.to_string() }),
     };
-    crate::parallel::map(&FIGURES, measure).into_iter().collect()
+    let mut rows = crate::parallel::map(&FIGURES, measure).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let intervals = intervals();
+    fill(&mut rows, &intervals);
+    Ok(Figures { rows, intervals })
 }

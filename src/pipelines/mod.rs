@@ -1,9 +1,14 @@
 //! Pipelines as experiments see them. A new pipeline is one more file here (or in a user's crate) that implements
 //! [`Pipeline`].
 
+mod frameless;
+mod jitp;
 mod rendering_control;
 mod slats;
 
+pub use frameless::Frameless;
+pub(crate) use jitp::region_at;
+pub use jitp::{Jitp, Reading, Viewpoint};
 pub use rendering_control::RenderingControl;
 pub use slats::{Code, Slats};
 
@@ -12,15 +17,42 @@ use crate::machine::Machine;
 use crate::observation::LateRegion;
 use image::RgbImage;
 use pphigs::{DisplayList, FrameView};
+use pxpl5_framebuffer::Video;
 use pxpl5_gp::HostTiming;
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_wire::Eye;
+use pxpl5_wire::{CopyTarget, Eye, FieldParity};
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
 
 /// The view of a frame or update (by number) whose pose is sampled at a time.
 pub type Views = Arc<dyn Fn(u64, Time) -> FrameView + Send + Sync>;
+
+/// The view that firmware with a clock of its own asks for: number, the instant up to which the host's tracking data have
+/// reached it, and when the view will be seen.
+pub type ViewsWanted = Arc<dyn Fn(u64, Time, Time) -> FrameView + Send + Sync>;
+
+/// When the first report of the tracker after an instant reaches the host; `None` if none will.
+pub type ReportTimes = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;
+
+/// Where a part of the screen comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source {
+    /// A view, by number.
+    View(u64),
+    /// Places between those of two views.
+    Between {
+        /// The view at the begin.
+        from: u64,
+        /// The view at the end.
+        to: u64,
+        /// How much of the way, 0 to 1.
+        part: f64,
+        /// Whether places on the screen are interpolated, or positions in the view.
+        on_screen: bool,
+    },
+}
 
 /// What a pipeline is given to draw.
 #[derive(Clone)]
@@ -29,6 +61,10 @@ pub struct Setup {
     pub list: Arc<DisplayList>,
     /// Transforms and edits.
     pub views: Views,
+    /// The same for firmware that knows when a view will be seen.
+    pub wanted: ViewsWanted,
+    /// When the host has something new.
+    pub reports: ReportTimes,
     /// The host's times.
     pub host: HostTiming,
     /// Whether somebody may want pixels.
@@ -40,6 +76,8 @@ pub struct Setup {
 pub struct PictureTimes {
     /// Its number.
     pub picture: u64,
+    /// Number of the view that it shows, or that its middle shows.
+    pub view: u64,
     /// When its pose was sampled.
     pub sampled_at: Option<Time>,
     /// Start of TRANSFORM.
@@ -89,6 +127,28 @@ pub trait Pipeline: Debug + Send + Sync {
 
     /// What a missed retrace means here, in a sentence.
     fn missed_definition(&self) -> &'static str;
+
+    /// How many entries of [`Pipeline::pictures`] make a whole picture.
+    fn updates_per_picture(&self, _machine: &Machine) -> f64 {
+        1.0
+    }
+
+    /// Whether its firmware itself says when a view will be seen.
+    fn knows_when_seen(&self) -> bool {
+        false
+    }
+
+    /// The view that a part of a picture shows; `views` gives the view of a picture as in [`PictureTimes`].
+    fn source(&self, _machine: &Machine, target: &CopyTarget, views: &BTreeMap<u64, u64>) -> Option<Source> {
+        views.get(&target.picture).copied().map(Source::View)
+    }
+
+    /// When the light of a picture's middle comes.
+    fn light(&self, video: &Video, times: &PictureTimes) -> Time {
+        let field = video.field_at(times.shown_at);
+        let middle = video.height() / 2 + FieldParity::of_field(field).first_line();
+        video.when(video.width() / 2, middle, field).unwrap_or(times.shown_at)
+    }
 
     /// What the eye sees at the end of the run.
     fn picture(&self, machine: &Machine, eye: Eye) -> Option<RgbImage>;

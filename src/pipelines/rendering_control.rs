@@ -133,6 +133,7 @@ fn times(stages: &[StageSpan], frame: u64, shown_at: Time) -> Option<PictureTime
     let of = |stage: Stage| stages.iter().filter(move |s| s.picture == frame && s.stage == stage);
     Some(PictureTimes {
         picture: frame,
+        view: frame,
         sampled_at: of(Stage::Sample).map(|s| s.begin).min(),
         transform_at: of(Stage::Transform).map(|s| s.begin).min()?,
         copied_at: of(Stage::Copy).filter_map(|s| s.end).max(),

@@ -131,6 +131,7 @@ impl Pipeline for Slats {
             let whole = regions == 2 * RegionGrid::FIELD.regions() as usize;
             PictureTimes {
                 picture: mark.picture,
+                view: mark.view.unwrap_or(mark.picture),
                 sampled_at: Some(mark.time),
                 transform_at: mark.time,
                 copied_at: whole.then_some(copied_at),

@@ -65,6 +65,14 @@ fn labels_macros_and_constants_make_a_program() {
 }
 
 #[test]
+fn a_constant_may_begin_like_a_register() {
+    let program =
+        assemble("t.s", 0, "size = 5\nmov size, r4\nmov sp, r5\nmov ha%0x7fffffffffffffff, r6").expect("correct");
+    let text: Vec<String> = program.words().iter().map(|word| disassemble(*word, 0)).collect();
+    assert_eq!(text[..3], ["orh 0, r0, r4", "or 5, r4, r4", "shl r0, r2, r5"]);
+}
+
+#[test]
 fn repetition_writes_its_block_out() {
     let program = assemble("t.s", 0, ".rept 3\nadds 1, r4, r4\n.endr").expect("correct");
     assert_eq!(program.words(), vec![0x9484_0001; 3]);

@@ -3,10 +3,13 @@
 use crate::config::Reading;
 use glam::Mat4;
 use pphigs::{Counts, DisplayList, EyeView, FrameView, ModelEdit, Placed, gouraud_sphere, place_all};
-use pxpl5_geometry::{SetupStats, Viewport};
+use pxpl5_geometry::{Outline, SetupStats, Viewport};
 use pxpl5_renderer::{Command, Triangle};
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+
+/// Subpixels of a pixel, the unit of outlines.
+const SUBPIXELS: i32 = 1 << pxpl5_wire::format::SUBPIXEL_BITS;
 
 /// A rectangle of pixels: first and last pixel across, first and last line of the frame down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +25,8 @@ pub(crate) struct Drawing {
     placed: Vec<Placed>,
     /// The transforms for T0 and T1 and the part of the way between, where places on the screen are interpolated.
     ends: Option<(Ends, f64)>,
+    /// Made when first asked for; the strips of a conventional picture share them.
+    outlines: OnceLock<Vec<Outline>>,
 }
 
 /// What a slave has transformed for the begin and the end of a field, or for one moment.
@@ -49,7 +54,7 @@ impl Drawing {
     /// As one view shows it.
     pub(crate) fn of(list: &Arc<DisplayList>, view: &FrameView, viewport: Viewport) -> Self {
         let placed = place_all(list, view, 0, viewport);
-        Self { list: Arc::clone(list), viewport, placed, ends: None }
+        Self { list: Arc::clone(list), viewport, placed, ends: None, outlines: OnceLock::new() }
     }
 
     /// At the part `s` of the way between two views.
@@ -62,10 +67,15 @@ impl Drawing {
     /// How many primitives meet each window, and how many meet any.
     pub(crate) fn count(&self, windows: &[Window]) -> (Vec<Counts>, Counts) {
         let (mut each, mut any) = (vec![Counts::default(); windows.len()], Counts::default());
-        self.outlines(|meets| {
-            let met = tally(windows, &mut each, &meets, |counts| &mut counts.triangles);
-            any.triangles += u32::from(met);
-        });
+        let lines = |end: usize| windows.iter().map(move |w| w.lines[end] * SUBPIXELS);
+        let span = [lines(0).min().unwrap_or_default(), lines(1).max().unwrap_or_default() + SUBPIXELS];
+        for outline in self.outlines.get_or_init(|| self.make_outlines()) {
+            if outline.y.iter().all(|y| *y < span[0]) || outline.y.iter().all(|y| *y > span[1]) {
+                continue;
+            }
+            let meets = |w: &Window| outline.meets(w.across, w.lines);
+            any.triangles += u32::from(tally(windows, &mut each, &meets, |counts| &mut counts.triangles));
+        }
         self.spheres(|sphere, _| {
             let meets = |w: &Window| sphere.meets(w.across, w.lines);
             any.spheres += u32::from(tally(windows, &mut each, &meets, |counts| &mut counts.spheres));
@@ -73,23 +83,22 @@ impl Drawing {
         (each, any)
     }
 
-    /// Calls `sink` for each screen triangle with the test whether it meets a window.
-    fn outlines(&self, mut sink: impl FnMut(&dyn Fn(&Window) -> bool)) {
-        let mut stats = SetupStats::default();
+    fn make_outlines(&self) -> Vec<Outline> {
+        let (mut all, mut stats) = (Vec::new(), SetupStats::default());
         for (i, place) in self.placed.iter().enumerate() {
             let Some(transform) = &place.transform else { continue };
             for number in place.structure.triangles.clone() {
                 let corners = self.list.corners(number);
-                let mut hand_over =
-                    |o: &pxpl5_geometry::Outline| sink(&|window: &Window| o.meets(window.across, window.lines));
-                let on_screen = self.on_screen(i).is_some_and(|(from, to, s)| {
-                    from.outline_between(to, s, &corners, &mut stats, &mut hand_over)
-                });
+                let mut keep = |outline: &Outline| all.push(*outline);
+                let on_screen = self
+                    .on_screen(i)
+                    .is_some_and(|(from, to, s)| from.outline_between(to, s, &corners, &mut stats, &mut keep));
                 if !on_screen {
-                    transform.outlines(&corners, &mut stats, hand_over);
+                    transform.outlines(&corners, &mut stats, keep);
                 }
             }
         }
+        all
     }
 
     /// The transforms of a structure at both ends, where places on the screen are interpolated.

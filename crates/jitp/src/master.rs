@@ -2,7 +2,6 @@
 
 use crate::config::{Config, Schedule, Viewpoint, Wanted};
 use crate::protocol::Order;
-use crate::timing::JitpTiming;
 use pphigs::{Counts, FrameView};
 use pxpl5_gp::{Account, Fault, Gp, GpTiming, Level, Program, Stage};
 use pxpl5_sim::{Span, Time};
@@ -12,9 +11,6 @@ use std::rc::Rc;
 
 /// Bytes of program, stacks and message buffers on a GP (assumed).
 pub(crate) const PROGRAM_BYTES: u64 = 1 << 20;
-
-/// Orders that a slave holds while roaming: one that it works on and the next.
-const ORDERS_AHEAD: usize = 2;
 
 #[derive(Debug, Default)]
 struct State {
@@ -138,25 +134,45 @@ impl<V: FnMut(Wanted) -> FrameView> Master<V> {
         self.gp.send(slave, words, body).await;
     }
 
-    /// Gives every slave that is done the next blocks.
+    /// Gives every slave that is done the next blocks, with the newest view.
     async fn roam(&mut self, batch: u64) {
-        let slaves = self.config.slaves.len() as u32;
-        self.state.done.borrow_mut().extend((0..ORDERS_AHEAD).flat_map(|_| 0..slaves));
+        let slaves = self.config.slaves.len();
+        self.state.done.borrow_mut().extend(0..slaves as u32);
+        let mut flight = Flight::new(slaves, u64::from(self.config.grid().regions()).div_ceil(batch));
         for update in 0.. {
             let slave = self.gp.until("a slave", || self.state.done.borrow_mut().pop_front()).await;
             self.gp.begin_view(Stage::Sample, update, update);
             self.gp.begin(Stage::Transform, update, None);
-            let view = self.view(update, self.gp.now() + self.transit());
+            let shown_at = self.gp.now() + flight.ordered(slave as usize, self.gp.now());
+            let view = self.view(update, shown_at);
             let (words, body) = Order::Blocks { update, step: update * batch, view }.message();
             if let Some(node) = self.config.slaves.get(slave as usize) {
                 self.gp.send(*node, words, body).await;
             }
         }
     }
+}
 
-    /// From an order to the light of its blocks, as the firmware expects it; orders wait for one another at a slave.
-    fn transit(&self) -> Span {
-        transform_span(&self.gp.timing(), self.counts) * ORDERS_AHEAD as u64 + margin(&self.config.timing)
+/// How long orders have been on their way lately.
+struct Flight {
+    last_order_of: Vec<Option<Time>>,
+    /// Orders of the last pass, oldest first.
+    pass: VecDeque<Time>,
+    orders_of_pass: usize,
+}
+
+impl Flight {
+    fn new(slaves: usize, orders_of_pass: u64) -> Self {
+        Self { last_order_of: vec![None; slaves], pass: VecDeque::new(), orders_of_pass: orders_of_pass as usize }
+    }
+
+    /// From an order to the middle of the time in which its blocks are seen: as long as this slave's last order took,
+    /// and half a pass.
+    fn ordered(&mut self, slave: usize, now: Time) -> Span {
+        self.pass.push_back(now);
+        let oldest = if self.pass.len() > self.orders_of_pass { self.pass.pop_front() } else { None };
+        let drawing = self.last_order_of[slave].replace(now).map_or(Span::ZERO, |at| now.since(at));
+        drawing + oldest.map_or(Span::ZERO, |at| now.since(at)) / 2
     }
 }
 
@@ -165,10 +181,6 @@ pub(crate) fn transform_span(timing: &GpTiming, counts: Counts) -> Span {
     let Counts { triangles, spheres } = counts;
     let primitives = timing.triangle_ns * u64::from(triangles) + timing.sphere_ns * u64::from(spheres);
     Span::from_ns(timing.pass_ns + primitives)
-}
-
-const fn margin(timing: &JitpTiming) -> Span {
-    Span::from_ns(timing.margin_ns)
 }
 
 fn before(time: Time, span: Span) -> Time {

@@ -76,7 +76,7 @@ pub(crate) fn messages(
 ) -> Vec<CommandList> {
     let list = |part: Part| {
         let runs = part.runs();
-        let copies = if part.last { vec![CopyOrder { target, context: 0, acknowledge: None }] } else { Vec::new() };
+        let copies = if part.last { vec![CopyOrder { target, context: 0, through_backing: false, acknowledge: None }] } else { Vec::new() };
         let [left, top, _, _] = config.grid().rectangle(target.region).map(|v| v as u16);
         let origin = SelectRegion { context: 0, left, top };
         let words = PieceWords { drawing: Arc::clone(drawing), layout: config.layout, window, origin, target, part };

@@ -25,7 +25,8 @@ pub enum Shading {
 pub enum Binning {
     /// Those that it touches.
     Touched,
-    /// All; a triangle that is not seen costs as much as any other, and draws nothing (Slats prototype, TR94).
+    /// All; a triangle that is not seen costs as much as any other, and draws nothing (Slats prototype, TR94). Spheres,
+    /// which the prototype did not have, go to the regions that they touch: elsewhere a quadratic leaves its 48 bits.
     All,
 }
 
@@ -160,7 +161,7 @@ impl Pass {
     }
 
     fn put_sphere(&mut self, mask: RegionMask) {
-        for region in self.receivers(mask).iter() {
+        for region in mask.iter() {
             self.counts[usize::from(region.0)].spheres += 1;
             if let Some(bin) = self.bins.get_mut(usize::from(region.0)) {
                 bin[1].push(self.screen_counts.spheres);

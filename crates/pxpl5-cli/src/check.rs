@@ -23,8 +23,9 @@ pub(crate) fn run(args: CheckArgs) -> Result<(), CliError> {
     let version = env!("CARGO_PKG_VERSION");
     let hash = plan.experiment(scene).config_hash();
     print(&format!(
-        "# machine: {}\n# config_hash: {hash}\n# version: {version}\n# level: transaction\n# seed: {}\n{}",
+        "# machine: {}\n# config_hash: {hash}\n# version: {version}\n# level: {}\n# seed: {}\n{}",
         plan.machine.preset,
+        plan.level_name(),
         plan.seed,
         plan.settings()
     ))

@@ -1,12 +1,13 @@
 //! `pxpl5 demo`, and `pxpl5` alone: both pipelines at work.
 
 use crate::error::CliError;
-use crate::output::OutputFolder;
-use crate::run::{comparison, pictures, simulate};
+use crate::output::{OutputFolder, timeline};
+use crate::run::{comparison, pictures};
+use crate::snapshot::SnapshotArgs;
 use crate::table::{Comparison, table};
 use crate::terminal::print;
 use clap::Args;
-use pxpl5::{ExperimentFile, Outcome, Plan, Report};
+use pxpl5::{ExperimentFile, Outcome, Plan, Report, Results};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -85,28 +86,34 @@ pub(crate) fn run(args: DemoArgs) -> Result<(), CliError> {
 
 fn one(name: &'static str, text: &str, quiet: bool) -> Result<Run, CliError> {
     let plan: Plan = ExperimentFile::parse(text, name)?.resolve()?;
-    let outcome = simulate(&plan, None, quiet)?;
-    let report = outcome.report();
-    Ok(Run { name, comparison: comparison(&plan, &outcome, &report), outcome, report })
+    let results = Results::new(&plan, SnapshotArgs::default().simulate(&plan, None, quiet)?);
+    let comparison = comparison(&plan, &results);
+    let (outcome, report) = results.run.ok_or_else(|| CliError::failure("a run without events"))?;
+    Ok(Run { name, outcome, report, comparison })
 }
 
 fn closing(runs: &[Run], args: &DemoArgs) -> String {
     let seconds: f64 = runs.iter().map(|run| run.report.host_seconds).sum();
     let mut text = String::new();
     let mut told = Vec::new();
-    for report in runs.iter().map(|run| &run.report).filter(|report| report.pipeline != "") {
+    for report in runs.iter().map(|run| &run.report) {
         if !told.contains(&&report.pipeline) {
             let _ = writeln!(text, "Latency of {}: {}.", report.pipeline, report.latency_ms.definition);
             told.push(&report.pipeline);
         }
     }
-    let _ = writeln!(text, "Pictures and report.json are in {}. Simulated in {seconds:.2} s.", args.out.display());
+    let _ = writeln!(
+        text,
+        "Pictures, timelines and report.json are in {}. Simulated in {seconds:.2} s.",
+        args.out.display()
+    );
     text
 }
 
 fn write(mut folder: OutputFolder, runs: &[Run]) -> Result<(), CliError> {
     for run in runs {
         pictures(&mut folder, &format!("{}-", run.name), &run.outcome, &run.report)?;
+        folder.put(&format!("{}-timeline.svg", run.name), timeline(&run.outcome, &run.report).as_bytes())?;
     }
     let runs: Vec<Value> = runs.iter().map(entry).collect();
     let all = json!({"schema": "pxpl5-demo/1", "version": env!("CARGO_PKG_VERSION"), "runs": runs});

@@ -1,7 +1,8 @@
 //! What ends a command early.
 
 use crate::terminal;
-use pxpl5::{ExperimentError, FileError};
+use pxpl5::sweep::SweepError;
+use pxpl5::{ExperimentError, FileError, SnapshotError};
 use std::fmt::Display;
 use std::process::ExitCode;
 
@@ -26,6 +27,10 @@ impl CliError {
         Self { code: USAGE, message: message.to_string() }
     }
 
+    pub(crate) fn message(&self) -> &str {
+        &self.message
+    }
+
     pub(crate) fn report(&self) -> ExitCode {
         terminal::complain(&format!("pxpl5: {}\n", self.message));
         ExitCode::from(self.code)
@@ -41,13 +46,27 @@ impl From<FileError> for CliError {
     }
 }
 
+impl From<SnapshotError> for CliError {
+    fn from(error: SnapshotError) -> Self {
+        Self::failure(error)
+    }
+}
+
+impl From<SweepError> for CliError {
+    fn from(error: SweepError) -> Self {
+        match error {
+            SweepError::File(error) => error.into(),
+            SweepError::NotEmpty { .. } | SweepError::Foreign { .. } => Self::usage(error),
+            _ => Self::failure(error),
+        }
+    }
+}
+
 impl From<ExperimentError> for CliError {
     fn from(error: ExperimentError) -> Self {
         match &error {
             ExperimentError::Config(_) | ExperimentError::Fields { .. } => Self::usage(error),
-            ExperimentError::Run { .. } => {
-                Self::failure(format!("{error}; nothing was written. {MEMORY_ADVICE}", MEMORY_ADVICE = advice(&error)))
-            }
+            ExperimentError::Run { .. } => Self::failure(format!("{error}; nothing was written. {}", advice(&error))),
             _ => Self::failure(error),
         }
     }

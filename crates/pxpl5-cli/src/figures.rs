@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::terminal::print;
 use clap::Args;
-use pxpl5::figures::{Bench, Row, markdown, mean_error_percent, run_all};
+use pxpl5::figures::{Bench, Figures, Row, markdown, mean_error_percent, run_all};
 use pxpl5::levels::Level;
 use serde_json::json;
 use std::fmt::Write;
@@ -30,19 +30,19 @@ pub(crate) struct FiguresArgs {
 }
 
 pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
-    let rows = run_all(&Bench::new(Level::Transaction)).map_err(CliError::failure)?;
+    let figures = run_all(&Bench::new(Level::Transaction)).map_err(CliError::failure)?;
     if let Some(path) = &args.write {
-        fs::write(path, markdown(&rows)).map_err(|error| refused(path, &error))?;
+        fs::write(path, markdown(&figures)).map_err(|error| refused(path, &error))?;
     }
     if let Some(path) = &args.check {
-        check(path, &rows)?;
+        check(path, &figures)?;
     }
-    print(&if args.json { json_text(&rows) } else { text(&rows) })
+    print(&if args.json { json_text(&figures) } else { text(&figures.rows) })
 }
 
-fn check(path: &Path, rows: &[Row]) -> Result<(), CliError> {
+fn check(path: &Path, figures: &Figures) -> Result<(), CliError> {
     let kept = fs::read_to_string(path).map_err(|error| refused(path, &error))?;
-    if kept == markdown(rows) {
+    if kept == markdown(figures) {
         return Ok(());
     }
     let path = path.display();
@@ -53,9 +53,14 @@ fn refused(path: &Path, error: &std::io::Error) -> CliError {
     CliError::failure(format!("{}: {error}", path.display()))
 }
 
-fn json_text(rows: &[Row]) -> String {
-    let mean = mean_error_percent(rows);
-    format!("{:#}\n", json!({"schema": "pxpl5-figures/1", "mean_error_percent_of_free_checks": mean, "figures": rows}))
+fn json_text(figures: &Figures) -> String {
+    let object = json!({
+        "schema": "pxpl5-figures/1",
+        "mean_error_percent_of_free_checks": mean_error_percent(&figures.rows),
+        "figures": figures.rows,
+        "intervals": figures.intervals,
+    });
+    format!("{object:#}\n")
 }
 
 fn text(rows: &[Row]) -> String {

@@ -190,6 +190,7 @@ fn execute(program: &Program, options: &RunOptions) -> Result<(String, Result<()
     cpu.watch(Some(AddressProfile::new(program.base, size.div_ceil(4))));
     let outcome = cpu.run(&mut ram, Some(stop), options.budget);
     let mut report = if options.quiet { String::new() } else { cycle_listing(program, &cpu) };
+    report.push_str(&label_listing(program, &cpu));
     let _ = writeln!(report, "{}", cpu.profile());
     let result = match outcome {
         Outcome::Stopped => Ok(()),
@@ -197,6 +198,14 @@ fn execute(program: &Program, options: &RunOptions) -> Result<(String, Result<()
         Outcome::Exhausted => Err(format!("not at {stop:#x} after {} instructions", cpu.instructions())),
     };
     Ok((report, result))
+}
+
+/// Clocks between each label and the next.
+fn label_listing(program: &Program, cpu: &Cpu) -> String {
+    let labels: Vec<(&str, u32)> = program.labels.iter().map(|(name, at)| (name.as_str(), *at)).collect();
+    let by_label = cpu.watched().map(|w| w.by_label(&labels)).unwrap_or_default();
+    let visited = by_label.into_iter().filter(|(_, clocks)| *clocks != 0);
+    visited.map(|(name, clocks)| format!("{clocks:>12}  clocks by label: {name}\n")).collect()
 }
 
 fn cycle_listing(program: &Program, cpu: &Cpu) -> String {

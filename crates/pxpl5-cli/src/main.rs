@@ -9,12 +9,17 @@ mod check;
 mod completions;
 mod demo;
 mod error;
+mod figures;
 mod i860;
+mod limit;
 mod machines;
+mod merge;
 mod output;
 mod run;
 mod scenes;
 mod settings;
+mod snapshot;
+mod sweep;
 mod table;
 mod terminal;
 
@@ -42,7 +47,7 @@ Exit codes: 0 all went well, 1 something failed, 2 the command line or an experi
 
 #[derive(Subcommand, Debug)]
 enum Command {
-    /// Show both pipelines at work on built-in scenes: a table, pictures and report.json.
+    /// Show both pipelines at work on built-in scenes: a table, pictures, timelines and report.json.
     Demo(demo::DemoArgs),
     /// Run one experiment.
     Run(run::RunArgs),
@@ -52,6 +57,10 @@ enum Command {
     Scenes(scenes::ScenesArgs),
     /// List the machines that are built in.
     Machines(machines::MachinesArgs),
+    /// Run an experiment at every point of a space of settings.
+    Sweep(sweep::SweepArgs),
+    /// Join the shards of a sweep.
+    Merge(merge::MergeArgs),
     /// Work with programs of the graphics processor's CPU.
     I860(i860::I860Args),
     /// Print a completion script for a shell.
@@ -77,7 +86,57 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Check(args)) => check::run(args),
         Some(Command::Scenes(args)) => scenes::run(args),
         Some(Command::Machines(args)) => machines::run(args),
+        Some(Command::Sweep(args)) => sweep::run(args),
+        Some(Command::Merge(args)) => merge::run(args),
         Some(Command::I860(args)) => i860::run(args).map_err(CliError::failure),
         Some(Command::Completions(args)) => completions::run(args),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    /// Lines that begin with the command, joined where they end in a backslash, without comments and shell variables.
+    fn commands(text: &str) -> Vec<Vec<String>> {
+        let joined = text.replace("\\\n", " ");
+        let lines = joined.lines().map(str::trim).filter(|line| line.starts_with("pxpl5"));
+        let words = |line: &str| {
+            let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
+            // Help texts explain after three spaces.
+            let line = line.split("   ").next().unwrap_or_default().replace("$SLURM_ARRAY_TASK_ID", "1");
+            line.split_whitespace().map(str::to_owned).collect()
+        };
+        lines.map(words).collect()
+    }
+
+    fn parses(text: &str) -> usize {
+        let commands = commands(text);
+        for words in &commands {
+            let result = Cli::try_parse_from(words);
+            assert!(result.is_ok(), "{words:?}: {}", result.expect_err("it does not parse"));
+        }
+        commands.len()
+    }
+
+    #[test]
+    fn every_command_of_the_help_texts_is_understood() {
+        let mut command = Cli::command();
+        let mut found = parses(&command.render_long_help().to_string());
+        for sub in command.get_subcommands_mut() {
+            found += parses(&sub.render_long_help().to_string());
+        }
+        assert!(found > 20, "found {found}");
+    }
+
+    #[test]
+    fn every_command_of_the_guide_to_sweeps_and_of_the_experiments_is_understood() {
+        assert!(parses(include_str!("../../../docs/sweeps.md")) > 10);
+    }
+
+    #[test]
+    fn the_definition_of_the_command_line_is_consistent() {
+        Cli::command().debug_assert();
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::error::CliError;
 use image::RgbImage;
-use pxpl5::Report;
+use pxpl5::timeline::TimelineOptions;
+use pxpl5::{Outcome, Report};
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -108,6 +109,15 @@ pub(crate) fn origin(report: &Report) -> Vec<(&'static str, String)> {
 /// The same as lines of a comment.
 pub(crate) fn origin_lines(report: &Report) -> String {
     origin(report).iter().map(|(key, value)| format!("# {key}: {value}\n")).collect()
+}
+
+/// A timeline as SVG, with its origin as a comment behind the XML declaration, if it has one.
+pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
+    let svg = pxpl5::timeline::svg(outcome, &TimelineOptions::default());
+    // Two hyphens would end the comment.
+    let comment = format!("<!--\n{}-->\n", origin_lines(report).replace("--", "- -"));
+    let at = if svg.starts_with("<?xml") { svg.find('\n').map_or(0, |end| end + 1) } else { 0 };
+    format!("{}{comment}{}", &svg[..at], &svg[at..])
 }
 
 /// A picture as PNG, with its origin as text chunks.

@@ -1,12 +1,14 @@
 //! `pxpl5 run`.
 
 use crate::error::CliError;
-use crate::output::{OutputFolder, origin_lines, png};
+use crate::output::{OutputFolder, origin_lines, png, timeline};
 use crate::settings::SettingArgs;
+use crate::snapshot::SnapshotArgs;
 use crate::table::{Comparison, table};
-use crate::terminal::{print, progress};
+use crate::terminal::print;
 use clap::Args;
-use pxpl5::{ExperimentFile, Eye, Outcome, Plan, Report};
+use pxpl5::levels::Level;
+use pxpl5::{ExperimentFile, Eye, Outcome, Plan, Report, Results};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -16,16 +18,20 @@ use std::path::PathBuf;
   pxpl5 run --pipeline slats --scene mig --triangles 140 --copy whole
   pxpl5 run --pipeline rendering-control --scene head --machine large --fields 300 --out out/head
   pxpl5 run experiments/figure-04.toml --seed 7 --json
-  pxpl5 run --pipeline slats --scene mig --triangles 100 --set gp.triangle_ns=30000")]
+  pxpl5 run --pipeline slats --scene mig --triangles 100 --set gp.triangle_ns=30000
+  pxpl5 run --pipeline slats --scene head --triangles 100 --save-at 60 --save s.json
+  pxpl5 run --restore s.json --fields 600")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     settings: SettingArgs,
     /// Worker threads for --pixels all; default: one a core.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     threads: Option<u64>,
-    /// Write report.json, results.csv, experiment.toml and the last pictures into this folder.
+    /// Write report.json, results.csv, experiment.toml, timeline.svg and the last pictures into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    snapshot: SnapshotArgs,
     /// Print the report as one JSON object.
     #[arg(long)]
     json: bool,
@@ -35,19 +41,20 @@ pub(crate) struct RunArgs {
 }
 
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
-    let plan = plan(args.settings.gather()?)?;
+    let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
-    let outcome = simulate(&plan, args.threads, args.quiet)?;
-    let report = outcome.report();
-    let written = folder.map(|folder| write(folder, &plan, &outcome, &report)).transpose()?;
+    let outcome = args.snapshot.simulate(&plan, args.threads, args.quiet)?;
+    let results = Results::new(&plan, outcome);
+    let Some((_, report)) = &results.run else { return Err(no_events()) };
+    let written = folder.map(|folder| write(folder, &plan, &results)).transpose()?;
     if args.json {
-        return print(&format!("{}\n", json(&report)?));
+        return print(&format!("{}\n", json(report)?));
     }
     if args.quiet {
         return Ok(());
     }
-    let comparison = comparison(&plan, &outcome, &report);
-    let mut text = table(&[(&report, comparison.as_ref())]);
+    let comparison = comparison(&plan, &results);
+    let mut text = table(&[(report, comparison.as_ref())]);
     let _ = writeln!(text, "\nLatency: {}.", report.latency_ms.definition);
     if let Some(path) = written {
         let _ = writeln!(text, "Written to {}.", path.display());
@@ -60,44 +67,45 @@ fn plan(file: ExperimentFile) -> Result<Plan, CliError> {
     if file.is_sweep() {
         return Err(CliError::usage("this file describes a sweep: use `pxpl5 sweep FILE --out DIR`"));
     }
-    Ok(file.resolve()?)
+    let plan = file.resolve()?;
+    if plan.level != Level::Transaction {
+        return Err(no_events());
+    }
+    Ok(plan)
 }
 
-pub(crate) fn simulate(plan: &Plan, threads: Option<u64>, quiet: bool) -> Result<Outcome, CliError> {
-    let mut experiment = plan.experiment(plan.load_scene()?);
-    if let Some(threads) = threads {
-        experiment = experiment.threads(threads as usize);
-    }
-    let bar = progress(plan.fields, "fields", quiet);
-    let outcome = experiment.run_with(|field, _| bar.set_position(field));
-    bar.finish_and_clear();
-    Ok(outcome?)
+fn no_events() -> CliError {
+    CliError::usage("level: a run needs the level transaction; the analytic level has no events and is for sweeps")
 }
 
 pub(crate) fn json(report: &Report) -> Result<String, CliError> {
     serde_json::to_string_pretty(report).map_err(CliError::failure)
 }
 
-pub(crate) fn comparison(plan: &Plan, outcome: &Outcome, report: &Report) -> Option<Comparison> {
+pub(crate) fn comparison(plan: &Plan, results: &Results) -> Option<Comparison> {
     let published = plan.published.as_ref()?;
     let source = published.source.clone().unwrap_or_default();
     let figure = published.figure.map_or_else(String::new, |figure| format!("figure {figure}, "));
     Some(Comparison {
         quantity: published.quantity.name().to_owned(),
         published: published.value,
-        simulated: published.quantity.of(outcome, report)?,
+        simulated: published.quantity.of(results)?,
         source: format!("{figure}{source}"),
     })
 }
 
-fn write(mut folder: OutputFolder, plan: &Plan, outcome: &Outcome, report: &Report) -> Result<PathBuf, CliError> {
+fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<PathBuf, CliError> {
+    let Some((outcome, report)) = &results.run else { return Err(no_events()) };
     folder.put("report.json", format!("{}\n", json(report)?).as_bytes())?;
     folder.put("experiment.toml", format!("{}{}", origin_lines(report), plan.settings()).as_bytes())?;
     if plan.output.csv {
-        folder.put("results.csv", csv(plan, outcome, report).as_bytes())?;
+        folder.put("results.csv", csv(plan, report, results).as_bytes())?;
     }
     if plan.output.pictures {
         pictures(&mut folder, "", outcome, report)?;
+    }
+    if plan.output.timeline {
+        folder.put("timeline.svg", timeline(outcome, report).as_bytes())?;
     }
     let path = folder.path().to_path_buf();
     folder.commit()?;
@@ -120,10 +128,10 @@ pub(crate) fn pictures(
 }
 
 /// The measured quantities in long form: a line each, with the definition.
-fn csv(plan: &Plan, outcome: &Outcome, report: &Report) -> String {
+fn csv(plan: &Plan, report: &Report, results: &Results) -> String {
     let mut text = origin_lines(report) + "quantity,value,definition\n";
     for measure in &plan.measure {
-        let value = measure.of(outcome, report).map_or_else(String::new, |value| value.to_string());
+        let value = measure.of(results).map_or_else(String::new, |value| value.to_string());
         let definition = measure.definition().replace('"', "\"\"");
         let _ = writeln!(text, "{},{value},\"{definition}\"", measure.name());
     }

@@ -54,7 +54,7 @@ fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
     let report = json(&folder.run(&with(&SLATS, &["--json", "--out", "a/b", "--set", "gp.triangle_ns=30000"])));
     assert_eq!(
         names(&folder.0.join("a/b")),
-        ["experiment.toml", "left.png", "report.json", "results.csv", "right.png"]
+        ["experiment.toml", "left.png", "report.json", "results.csv", "right.png", "timeline.svg"]
     );
     let read = |name: &str| std::fs::read(folder.0.join("a/b").join(name)).expect("written");
     let hash = report["config_hash"].as_str().expect("a hash");
@@ -74,6 +74,8 @@ fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
     let keys: Vec<&str> = saved.as_object().expect("an object").keys().map(String::as_str).take(6).collect();
     assert_eq!(keys, ["schema", "version", "machine", "config_hash", "level", "seed"]);
     assert_eq!(saved["overrides"]["gp.triangle_ns"], 30_000);
+    let svg = String::from_utf8(read("timeline.svg")).expect("text");
+    assert!(svg.find(hash).is_some_and(|at| at < svg.find("<svg").expect("a drawing")), "the origin comes first");
     let png = read("left.png");
     assert!(png.windows(hash.len()).any(|part| part == hash.as_bytes()), "the picture names its configuration");
     assert!(image::load_from_memory(&png).is_ok(), "the picture can be read");
@@ -313,6 +315,8 @@ fn without_arguments_both_pipelines_run_and_leave_pictures() {
         serde_json::from_slice(&std::fs::read(folder.0.join("out/report.json")).expect("written")).expect("JSON");
     for run in report["runs"].as_array().expect("a list") {
         assert!(run["report"]["fields"].as_u64().expect("a number") >= 120);
+        let timeline = format!("out/{}-timeline.svg", run["name"].as_str().expect("text"));
+        assert!(std::fs::read_to_string(folder.0.join(timeline)).expect("written").contains("</svg>"));
         for eye in ["left", "right"] {
             let name = format!("out/{}-{eye}.png", run["name"].as_str().expect("text"));
             let picture = image::open(folder.0.join(&name)).expect("a picture").to_rgb8();
@@ -321,6 +325,112 @@ fn without_arguments_both_pipelines_run_and_leave_pictures() {
             let (empty, least) = if name.contains("mig") { ([92, 140, 200], 5_000) } else { ([16, 24, 48], 640 * 480) };
             let drawn = picture.pixels().filter(|pixel| pixel.0 != empty).count();
             assert!(drawn >= least, "{name}: {drawn} pixels");
+        }
+    }
+}
+
+#[test]
+fn a_run_goes_on_from_a_snapshot_to_the_same_trace() {
+    let folder = Folder::new("snapshot");
+    let whole = json(&folder.run(&with(&RC, &["--json", "--save-at", "9", "--save", "s.json", "--seed", "4"])));
+    for more in [&[][..], &["--pixels", "off"], &["--pixels", "all", "--threads", "2"]] {
+        let args = with(&["run", "--restore", "s.json", "--json"], more);
+        let restored = json(&folder.run(&args));
+        assert_eq!((&restored["trace_hash"], &restored["config_hash"]), (&whole["trace_hash"], &whole["config_hash"]));
+    }
+    let longer = json(&folder.run(&["run", "--restore", "s.json", "--fields", "30", "--json"]));
+    let alone = json(&folder.run(&[
+        "run",
+        "--pipeline",
+        "rendering-control",
+        "--scene",
+        "full-screen:12",
+        "--fields",
+        "30",
+        "--seed",
+        "4",
+        "--json",
+    ]));
+    assert_eq!(longer["trace_hash"], alone["trace_hash"]);
+}
+
+#[test]
+fn an_unusable_snapshot_is_refused_with_the_reason() {
+    let folder = Folder::new("bad-snapshot");
+    json(&folder.run(&with(&RC, &["--json", "--save-at", "9", "--save", "s.json"])));
+    let text = std::fs::read_to_string(folder.0.join("s.json")).expect("saved");
+    for (name, contents, says) in [
+        ("cut.json", text[..text.len() / 2].to_owned(), "not whole JSON"),
+        ("edited.json", text.replace("\"field\": 9", "\"field\": 8"), "damaged: its checksum"),
+        ("newer.json", text.replace("snapshot/1", "snapshot/9"), "found pxpl5-snapshot/9"),
+        ("report.json", "{\"schema\": \"pxpl5-report/1\"}".to_owned(), "found pxpl5-report/1"),
+        ("picture.png", "\u{89}PNG".to_owned(), "no snapshot"),
+    ] {
+        let path = folder.file(name, contents);
+        refused(&["run", "--restore", path.to_str().expect("text")], 1, &[name, says]);
+    }
+    let path = folder.0.join("s.json");
+    let path = path.to_str().expect("text");
+    refused(&["run", "--restore", path, "--seed", "3"], 2, &["seed is in the snapshot"]);
+    refused(&["run", "--restore", path, "--fields", "9"], 2, &["expected at least 10"]);
+    refused(&["run", "--restore", "missing.json"], 1, &["missing.json"]);
+    refused(&with(&RC, &["--save-at", "24", "--save", "s"]), 2, &["from 1 to 23, found 24"]);
+    refused(&with(&RC, &["--save-at", "4"]), 2, &["--save"]);
+}
+
+#[test]
+fn a_snapshot_of_a_model_file_that_has_changed_is_refused() {
+    let folder = Folder::new("changed");
+    folder.file("m.ply", ply("0 0 0", "2", 1));
+    let args =
+        ["run", "--pipeline", "slats", "--scene", "m.ply", "--fields", "12", "--save-at", "6", "--save", "s.json"];
+    assert!(folder.run(&args).status.success());
+    assert!(folder.run(&["run", "--restore", "s.json"]).status.success());
+    folder.file("m.ply", ply("0 0 1", "2", 1));
+    let output = folder.run(&["run", "--restore", "s.json"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(err(&output).contains("s.json: the run is not the one that was saved"), "{}", err(&output));
+}
+
+/// The experiment files of the repository: name and text.
+fn experiments() -> Vec<(String, String)> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments");
+    let files = names(&folder).into_iter().filter(|name| name.ends_with(".toml"));
+    files.map(|name| (name.clone(), std::fs::read_to_string(folder.join(&name)).expect("text"))).collect()
+}
+
+#[test]
+fn every_experiment_file_is_valid_and_every_figure_that_a_run_can_show_has_one() {
+    let mut figures = std::collections::BTreeSet::new();
+    for (name, text) in experiments() {
+        let file = pxpl5::ExperimentFile::parse(&text, &name).expect("valid");
+        let plan = match file.is_sweep() {
+            false => file.resolve().expect("an experiment"),
+            true => {
+                let sweep = pxpl5::sweep::Sweep::new(file).expect("a sweep");
+                sweep.plan(sweep.space().points() - 1).expect("an experiment")
+            }
+        };
+        plan.load_scene().expect("a scene");
+        figures.extend(name.strip_prefix("figure-").map(|rest| rest[..2].to_owned()));
+    }
+    // Figure 8 is about scenes, not about a run.
+    let expected = (1..=15).filter(|n| *n != 8).map(|n| format!("{n:02}"));
+    assert_eq!(figures, expected.collect());
+}
+
+#[test]
+fn the_files_of_figures_1_2_9_10_and_11_reproduce_them() {
+    // Figures that follow from rules of the machine: exact but for the first word's way through the ring.
+    let folder = Folder::new("figures");
+    for (name, text) in experiments() {
+        if ["01", "02", "09", "10", "11"].iter().any(|n| name == format!("figure-{n}.toml")) {
+            folder.file(&name, text);
+            let output = folder.run(&["run", &name]);
+            let table = out(&output);
+            let error = table.lines().find(|line| line.trim().starts_with("error")).expect("a comparison");
+            let percent: f64 = error.split_whitespace().nth(1).expect("a number").parse().expect("a number");
+            assert!(percent.abs() <= 0.2, "{name}: {table}");
         }
     }
 }

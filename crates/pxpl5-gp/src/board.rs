@@ -18,7 +18,7 @@ use std::task::{Context as TaskContext, Poll, Waker};
 pub enum GpEvent {
     /// The last word of a message has arrived (phase `Arrive`).
     Delivered(Message),
-    /// The receiver has accepted a batch (phase `Arrive`).
+    /// A receiver has accepted a message of a batch (phase `Arrive`).
     Accepted(u64),
     /// A field begins (phase `Arrive`).
     Retrace(u64),
@@ -42,10 +42,14 @@ pub enum GpOutput {
     Send {
         /// The message.
         message: Message,
-        /// The batch that its acceptance completes.
-        ticket: Option<u64>,
+        /// Its batch, and its place in it in the lower [`PLACE_BITS`].
+        ticket: u64,
     },
 }
+
+/// Bits of a ticket that give the place of a message in its batch.
+pub const PLACE_BITS: u32 = 20;
+const PLACE_MASK: u64 = (1 << PLACE_BITS) - 1;
 
 struct Task {
     program: Program,
@@ -79,10 +83,13 @@ impl GpBoard {
             cpu: Cpu::default(),
             memory: Memory::new(node, timing.memory_bytes),
             inbox: VecDeque::new(),
-            outgoing: Vec::new(),
+            batches: VecDeque::new(),
+            in_flight: Vec::new(),
+            not_begun: Vec::new(),
             marks: Vec::new(),
             fields: 0,
             status: Vec::new(),
+            draining: 0,
             accepted: 0,
             issued: 0,
             progress: 0,
@@ -109,7 +116,9 @@ impl GpBoard {
         self.shared.borrow_mut().now = context.now();
         match event {
             GpEvent::Delivered(message) => self.latch(message, context),
-            GpEvent::Accepted(ticket) => self.arrive(context, |shared| shared.accepted = shared.accepted.max(ticket)),
+            GpEvent::Accepted(ticket) => {
+                self.arrive(context, |shared| shared.note_accepted(ticket >> PLACE_BITS, ticket & PLACE_MASK))
+            }
             GpEvent::Retrace(field) => self.arrive(context, |shared| shared.fields = field),
             GpEvent::Status { from, value } => self.arrive(context, |shared| shared.set_status(from, value)),
             GpEvent::Poll => self.work(context),
@@ -144,9 +153,11 @@ impl GpBoard {
         }
         self.poll_until_quiet();
         let shared = &mut *self.shared.borrow_mut();
-        for outgoing in shared.outgoing.drain(..) {
-            let output = GpOutput::Send { message: outgoing.message, ticket: outgoing.ticket.map(|t| t.0) };
-            context.output(context.now() + self.cycle, output);
+        if let Some(batch) = shared.next_batch() {
+            for (place, message) in (0..).zip(batch.messages) {
+                let ticket = batch.ticket.0 << PLACE_BITS | place;
+                context.output(context.now() + self.cycle, GpOutput::Send { message, ticket });
+            }
         }
         let end = shared.cpu.next_end().filter(|end| self.announced != Some(end.1));
         if let Some((time, generation)) = end {
@@ -241,6 +252,24 @@ mod tests {
         board
     }
 
+    /// Runs the board; every message is accepted as soon as it has left.
+    fn run(board: &mut GpBoard, bench: &mut TestBench<GpEvent, GpOutput>) {
+        let mut told = 0;
+        loop {
+            bench.run(|event, context| board.handle(event, context));
+            let fresh: Vec<_> =
+                bench.outputs[told..].iter().map(|(time, GpOutput::Send { ticket, .. })| (*time, *ticket)).collect();
+            told = bench.outputs.len();
+            if fresh.is_empty() {
+                return;
+            }
+            let now = bench.queue().now();
+            fresh
+                .iter()
+                .for_each(|(time, ticket)| bench.feed((*time).max(now), Phase::Arrive, GpEvent::Accepted(*ticket)));
+        }
+    }
+
     fn sent(bench: TestBench<GpEvent, GpOutput>) -> Vec<(Time, u16, u32)> {
         let of = |(time, GpOutput::Send { message, .. })| (time, message.destination.0, value(&message.body));
         bench.outputs.into_iter().map(of).collect()
@@ -262,7 +291,7 @@ mod tests {
             for source in [5, 3, 8, 1] {
                 bench.feed(Time(0), Phase::Arrive, GpEvent::Delivered(words(source, 0)));
             }
-            bench.run(|event, context| board.handle(event, context));
+            run(&mut board, &mut bench);
             assert_eq!(sent(bench).iter().map(|s| s.1).collect::<Vec<_>>(), [1, 3, 5, 8]);
         }
     }
@@ -281,7 +310,7 @@ mod tests {
         board.load(Level::Foreground, Box::pin(two_clumps(gp)));
         let mut bench = TestBench::new();
         bench.feed(Time(0), Phase::Work, GpEvent::Poll);
-        bench.feed(Time(9_000_000), Phase::Arrive, GpEvent::Accepted(1));
+        bench.feed(Time(9_000_000), Phase::Arrive, GpEvent::Accepted(1 << PLACE_BITS));
         bench.run(|event, context| board.handle(event, context));
         let first = Time(1_000_000) + CYCLE;
         assert_eq!(sent(bench), [(first, 1, 0), (Time(10_000_000) + CYCLE, 1, 1)]);

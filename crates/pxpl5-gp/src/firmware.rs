@@ -66,11 +66,11 @@ pub struct Received {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ticket(pub(crate) u64);
 
-/// A message for the ring, with the ticket that its acceptance completes.
+/// A chain of messages that the DMA sends at once, after the chain before has been accepted.
 #[derive(Debug)]
-pub(crate) struct Outgoing {
-    pub(crate) message: Message,
-    pub(crate) ticket: Option<Ticket>,
+pub(crate) struct Batch {
+    pub(crate) ticket: Ticket,
+    pub(crate) messages: Vec<Message>,
 }
 
 /// What the board and its programs share.
@@ -82,10 +82,16 @@ pub(crate) struct Shared {
     pub(crate) cpu: Cpu,
     pub(crate) memory: Memory,
     pub(crate) inbox: VecDeque<Received>,
-    pub(crate) outgoing: Vec<Outgoing>,
+    pub(crate) batches: VecDeque<Batch>,
+    /// Receivers of the messages of the batch being sent that have not been accepted, by place in the batch.
+    pub(crate) in_flight: Vec<(u64, NodeId)>,
+    /// Receivers that have not taken any message of that batch.
+    pub(crate) not_begun: Vec<NodeId>,
     pub(crate) marks: Vec<Mark>,
     pub(crate) fields: u64,
     pub(crate) status: Vec<(NodeId, u64)>,
+    /// Last batch of which every receiver has taken a message, and last one of which all were accepted.
+    pub(crate) draining: u64,
     pub(crate) accepted: u64,
     pub(crate) issued: u64,
     /// Counts completed waits, so that the board polls until nothing moves.
@@ -94,6 +100,26 @@ pub(crate) struct Shared {
 }
 
 impl Shared {
+    pub(crate) fn note_accepted(&mut self, batch: u64, place: u64) {
+        let Some(i) = self.in_flight.iter().position(|flight| flight.0 == place) else { return };
+        let (_, receiver) = self.in_flight.swap_remove(i);
+        self.not_begun.retain(|node| *node != receiver);
+        if self.not_begun.is_empty() {
+            self.draining = batch;
+        }
+        if self.in_flight.is_empty() {
+            self.accepted = batch;
+        }
+    }
+
+    /// The next batch, if the DMA is free.
+    pub(crate) fn next_batch(&mut self) -> Option<Batch> {
+        let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
+        self.in_flight = (0..).zip(batch.messages.iter().map(|message| message.destination)).collect();
+        self.not_begun = self.in_flight.iter().map(|flight| flight.1).collect();
+        Some(batch)
+    }
+
     pub(crate) fn set_status(&mut self, from: NodeId, value: u64) {
         match self.status.iter_mut().find(|status| status.0 == from) {
             Some(status) => status.1 = value,
@@ -202,7 +228,8 @@ impl Gp {
         self.send_batch(vec![(destination, words, body)]).await
     }
 
-    /// Sends several messages as one chain of the DMA: one software cost, then all go in the background.
+    /// Sends several messages as one chain of the DMA: one software cost, then all go in the background, at the same
+    /// time where they have different receivers. A chain waits for the one before it.
     pub async fn send_batch(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
         self.spend_message().await;
         self.post(batch)
@@ -212,6 +239,12 @@ impl Gp {
     pub async fn clump_buffer_free(&self) {
         let issued = self.shared.borrow().issued;
         self.accepted(Ticket(issued)).await;
+    }
+
+    /// Waits until every receiver of a batch has accepted a message of it: its clump buffer is being emptied.
+    pub async fn draining(&self, ticket: Ticket) {
+        self.until("all receivers to begin with a clump", || (self.shared.borrow().draining >= ticket.0).then_some(()))
+            .await;
     }
 
     /// Waits until a batch has been accepted by its receivers.
@@ -227,16 +260,13 @@ impl Gp {
 
     fn post(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
         let shared = &mut *self.shared.borrow_mut();
-        shared.issued += 1;
-        let (ticket, messages, source) = (Ticket(shared.issued), batch.len(), shared.node);
-        if messages == 0 {
-            shared.issued -= 1;
+        if batch.is_empty() {
             return Ticket(shared.issued);
         }
-        shared.outgoing.extend(batch.into_iter().enumerate().map(|(i, (destination, words, body))| Outgoing {
-            message: Message { source, destination, words, body },
-            ticket: (i + 1 == messages).then_some(ticket),
-        }));
+        shared.issued += 1;
+        let (ticket, source) = (Ticket(shared.issued), shared.node);
+        let message = |(destination, words, body)| Message { source, destination, words, body };
+        shared.batches.push_back(Batch { ticket, messages: batch.into_iter().map(message).collect() });
         ticket
     }
 

@@ -34,7 +34,7 @@ mod memory;
 mod probe;
 pub mod timing;
 
-pub use board::{GpBoard, GpEvent, GpOutput};
+pub use board::{GpBoard, GpEvent, GpOutput, PLACE_BITS};
 pub use cpu::Level;
 pub use firmware::{Fault, Gp, Program, Received, Ticket};
 pub use memory::{Account, Memory, OutOfMemory};

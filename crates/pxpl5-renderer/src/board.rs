@@ -27,6 +27,8 @@ pub enum RendererEvent {
     },
     /// The controller starts the next copy command.
     CopyBegins,
+    /// The region's colours are in the backing store; its transfer begins.
+    Stored,
     /// The ring has delivered the last pixel of the region being copied (phase `Arrive`).
     Sent,
 }
@@ -73,7 +75,10 @@ pub struct Renderer {
     pool: Arc<ArrayPool>,
     logs: [Log; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
+    /// The transfer to a frame buffer that is going on.
     copying: Option<CopyOrder>,
+    /// A copy through the backing store that waits for the transfer before it.
+    next_copy: Option<PendingCopy>,
     stats: RendererStats,
 }
 
@@ -98,7 +103,7 @@ impl Renderer {
         let fifo = InputFifo::new(timing.fifo_words as u32, word);
         let logs = std::array::from_fn(|_| Log::default());
         let stats = RendererStats::default();
-        Self { node, timing, cycle, fifo, pool, logs, copies: VecDeque::new(), copying: None, stats }
+        Self { node, timing, cycle, fifo, pool, logs, copies: VecDeque::new(), copying: None, next_copy: None, stats }
     }
 
     /// Handles one event.
@@ -106,16 +111,12 @@ impl Renderer {
         match event {
             RendererEvent::Announce { message, first_word_at } => self.announce(message, first_word_at, context),
             RendererEvent::CopyBegins => self.copy(context),
+            RendererEvent::Stored => self.transfer_stored(context),
             RendererEvent::Sent => self.copied(context),
         }
     }
 
-    fn announce(
-        &mut self,
-        message: Message,
-        begins: Time,
-        context: &mut Context<RendererEvent, RendererOutput>,
-    ) {
+    fn announce(&mut self, message: Message, begins: Time, context: &mut Context<RendererEvent, RendererOutput>) {
         self.stats.words += u64::from(message.words);
         let work = match message.body {
             Body::Commands(list) => self.take(list),
@@ -176,18 +177,47 @@ impl Renderer {
     }
 
     fn copy(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
-        let Some(PendingCopy { order, image }) = self.copies.pop_front() else {
+        let Some(copy) = self.copies.pop_front() else {
             // A copy command without an order addresses no frame buffer; it ends at once.
             self.stats.illegal_commands += 1;
             let progress = self.fifo.resume(context.now());
             return self.report(progress, context);
         };
-        self.copying = Some(order);
+        if !copy.order.through_backing {
+            return self.transfer(&copy, context);
+        }
+        let free = self.copying.is_none();
+        self.next_copy = Some(copy);
+        if free {
+            self.store(context);
+        }
+    }
+
+    /// Moves a finished region's colours to the backing store; the controller is free when they are there.
+    fn store(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
+        let stored_at = context.now() + self.timing.backing_block();
+        context.schedule(stored_at, Phase::Work, RendererEvent::Stored);
+        let progress = self.fifo.resume(stored_at);
+        self.report(progress, context);
+    }
+
+    fn transfer_stored(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
+        if let Some(copy) = self.next_copy.take() {
+            self.transfer(&copy, context);
+        }
+    }
+
+    fn transfer(
+        &mut self,
+        PendingCopy { order, image }: &PendingCopy,
+        context: &mut Context<RendererEvent, RendererOutput>,
+    ) {
+        self.copying = Some(*order);
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
         let (pixels, parts) = (width * height, (width * height).div_ceil(MAX_MESSAGE_WORDS));
         for part in 0..parts {
             let words = MAX_MESSAGE_WORDS.min(pixels - part * MAX_MESSAGE_WORDS);
-            let body = Body::Pixels(RegionPixels { target: order.target, image: Arc::clone(&image), part, parts });
+            let body = Body::Pixels(RegionPixels { target: order.target, image: Arc::clone(image), part, parts });
             let message = Message { source: self.node, destination: order.target.frame_buffer, words, body };
             let last = part + 1 == parts;
             let output = RendererOutput::Send { message, ticket: last, hold: !last };
@@ -203,8 +233,12 @@ impl Renderer {
             let message = Message { source: self.node, destination, words: COPY_ACKNOWLEDGEMENT_WORDS, body };
             context.output(context.now() + self.cycle, RendererOutput::Send { message, ticket: false, hold: false });
         }
-        let progress = self.fifo.resume(context.now());
-        self.report(progress, context);
+        if !order.through_backing {
+            let progress = self.fifo.resume(context.now());
+            self.report(progress, context);
+        } else if self.next_copy.is_some() {
+            self.store(context);
+        }
     }
 
     /// What the board has done so far.
@@ -234,7 +268,8 @@ impl Renderer {
     #[must_use]
     pub fn blocked(&self, name: &str) -> Option<Blocked> {
         let order = self.copying.filter(|_| self.fifo.is_blocked())?;
-        let waits_for = format!("frame buffer at node {} to take region {}", order.target.frame_buffer.0, order.target.region.0);
+        let waits_for =
+            format!("frame buffer at node {} to take region {}", order.target.frame_buffer.0, order.target.region.0);
         Some(Blocked { board: name.to_owned(), waits_for })
     }
 }
@@ -248,6 +283,7 @@ fn draws(runs: &[CommandRun]) -> bool {
 /// Whether a list overwrites its whole context, so that nothing sent before can be seen any more.
 fn begins_with_clear(runs: &[CommandRun]) -> bool {
     let kinds = runs.iter().map(|run| CommandKind::from_opcode(run.opcode));
-    kinds.take_while(|kind| matches!(kind, Some(CommandKind::SelectRegion | CommandKind::Clear)))
+    kinds
+        .take_while(|kind| matches!(kind, Some(CommandKind::SelectRegion | CommandKind::Clear)))
         .any(|kind| kind == Some(CommandKind::Clear))
 }

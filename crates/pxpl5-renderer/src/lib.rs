@@ -59,14 +59,14 @@ mod layout;
 mod simd;
 
 pub use array::{EMPTY_PLANE, Executed, Fault, FaultKind, OutputRegion, PIXELS, PixelArray, Plane, execute_all};
-pub use board::{MAX_CONTEXTS, Renderer, RendererEvent, RendererOutput, RendererStats};
-pub use job::ArrayPool;
-pub use timing::RendererTiming;
 pub use bit_serial::BitSerial;
+pub use board::{MAX_CONTEXTS, Renderer, RendererEvent, RendererOutput, RendererStats};
 pub use command::{
     Clear, Command, CommandKind, CopyRegion, LoadBacking, PhongSphere, PhongTriangle, SPECULAR_SQUARINGS, SelectRegion,
     Shade, Sphere, StoreBacking, Triangle, Unsupported,
 };
+pub use job::ArrayPool;
 pub use lanes::Lanes;
 pub use layout::{FieldRange, Layout, LayoutError, Plan};
 pub use simd::Vectors;
+pub use timing::RendererTiming;

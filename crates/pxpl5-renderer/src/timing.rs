@@ -31,6 +31,12 @@ pxpl5_sim::parameter_table! {
 }
 
 impl RendererTiming {
+    /// Time of one 32-bit block of all pixels to or from the backing store.
+    #[must_use]
+    pub fn backing_block(&self) -> Span {
+        Clock::from_hz(self.clock_hz).map_or(Span::ZERO, |clock| clock.span(Cycles(self.backing_block_clocks)))
+    }
+
     /// Execution time of one command; `None` for the copy of a region, which ends when the frame buffer has it.
     #[must_use]
     pub fn span(&self, kind: CommandKind) -> Option<Span> {

@@ -1,7 +1,7 @@
 //! The ring network of Pixel-Planes 5: eight channels that carry point-to-point messages between the boards.
 //!
 //! ```text
-//!   Request --> source port: queue, one message in flight --+
+//!   Request --> source port: queue, several in flight    --+
 //!                                                           |  arbiter: 1 of 8 channels, source and
 //!   Announce <-- destination port: one message at a time <--+  destination free, granted together
 //!   Delivered <--/      ^
@@ -10,9 +10,10 @@
 //!
 //! # Behaviour
 //!
-//! 1. A [`RingEvent::Request`] joins the queue of its source port. One message of a source is in flight at a time.
+//! 1. A [`RingEvent::Request`] joins the queue of its source port. A source sends on as many channels at a time as its
+//!    port drives, to different receivers; its queue is never overtaken.
 //! 2. The message at the head of a queue waits for a free channel and for its destination. All three (channel,
-//!    source, destination) are granted together, in the order in which messages reached the head of their queues,
+//!    source's port, destination) are granted together, in the order in which messages reached the head of their queues,
 //!    at one instant the lowest source first. A message that must wait does not hold up later ones.
 //! 3. A message occupies channel and both ports for 16 + `words` word times; at the instant at which that is over
 //!    the next one is granted. What a board sends and what it receives do not disturb each other.

@@ -7,8 +7,8 @@
 //!    overhead, then the words of the message. A word that its receiver has no room for stays in its slot and is
 //!    offered again in the next tick. When the last word has moved and the receiver has answered, channel and ports
 //!    are free;
-//! 3. the heads of the queues are granted, one after the other by (time as head, source), each if a channel and
-//!    its destination are free and the destination is not reserved for another source.
+//! 3. the heads of the queues of ports that have a send channel left are granted, always the first one in order of
+//!    (time as head, source) whose destination is free and not reserved for another source, while there are channels.
 //!
 //! Hops only shift what a receiver sees: its word slots lie that much later than those of the sender. There is no
 //! shortcut: no end is computed ahead, no event is skipped.
@@ -78,7 +78,8 @@ pub struct SteppedRing<'a, R> {
     receivers: R,
     /// Per source: numbers of messages, the first since when.
     queues: Vec<(VecDeque<usize>, Time)>,
-    sending: Vec<bool>,
+    /// Messages of each source on channels.
+    sending: Vec<u64>,
     receiving: Vec<bool>,
     reserved_for: Vec<Option<NodeId>>,
     channels: Vec<Option<Slots>>,
@@ -118,7 +119,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
             traffic,
             receivers,
             queues: vec![(VecDeque::new(), Time::ZERO); n],
-            sending: vec![false; n],
+            sending: vec![0; n],
             receiving: vec![false; n],
             reserved_for: vec![None; n],
             channels: vec![None; timing.channels as usize],
@@ -165,7 +166,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         for (message, traffic) in self.traffic.iter().enumerate().filter(|(_, t)| t.at == now) {
             let source = usize::from(traffic.source.0);
             let (queue, since) = &mut self.queues[source];
-            if queue.is_empty() && !self.sending[source] {
+            if queue.is_empty() && self.sending[source] < self.timing.source_channels {
                 *since = now;
             }
             queue.push_back(message);
@@ -203,35 +204,43 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
 
     fn release(&mut self, message: usize, now: Time) {
         let Traffic { source, destination, hold, .. } = self.traffic[message];
-        self.sending[usize::from(source.0)] = false;
+        if self.sending[usize::from(source.0)] == self.timing.source_channels {
+            self.queues[usize::from(source.0)].1 = now;
+        }
+        self.sending[usize::from(source.0)] -= 1;
         self.receiving[usize::from(destination.0)] = false;
         self.reserved_for[usize::from(destination.0)] = hold.then_some(source);
-        self.queues[usize::from(source.0)].1 = now;
         if let Some(passage) = &mut self.passages[message] {
             passage.released = now;
         }
     }
 
     fn grant(&mut self, now: Time) {
+        while let Some((message, channel)) = self.first_grantable() {
+            self.start(message, channel, now);
+        }
+    }
+
+    fn first_grantable(&self) -> Option<(usize, usize)> {
+        let channel = self.channels.iter().position(Option::is_none)?;
         let mut heads: Vec<_> = (0..self.queues.len())
-            .filter(|source| !self.sending[*source])
+            .filter(|source| self.sending[*source] < self.timing.source_channels)
             .filter_map(|source| Some((self.queues[source].1, source, *self.queues[source].0.front()?)))
             .collect();
         heads.sort_unstable();
-        for (_, source, message) in heads {
+        let free = |source: usize, message: usize| {
             let destination = usize::from(self.traffic[message].destination.0);
             let reserved = self.reserved_for[destination].is_some_and(|holder| usize::from(holder.0) != source);
-            let free = self.channels.iter().position(Option::is_none);
-            if let Some(channel) = free.filter(|_| !reserved && !self.receiving[destination]) {
-                self.start(message, channel, now);
-            }
-        }
+            !reserved && !self.receiving[destination]
+        };
+        heads.into_iter().find(|(_, source, message)| free(*source, *message)).map(|(_, _, message)| (message, channel))
     }
 
     fn start(&mut self, message: usize, channel: usize, now: Time) {
         let Traffic { source, destination, words, .. } = self.traffic[message];
         self.queues[usize::from(source.0)].0.pop_front();
-        self.sending[usize::from(source.0)] = true;
+        self.sending[usize::from(source.0)] += 1;
+        self.queues[usize::from(source.0)].1 = now;
         self.receiving[usize::from(destination.0)] = true;
         let latency = self.timing.latency(source, destination, self.n_nodes);
         let announced_at = now + self.timing.word() + latency;

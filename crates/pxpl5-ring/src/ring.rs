@@ -27,7 +27,8 @@ pub struct Ring {
 #[derive(Clone, Debug, Default)]
 struct Source {
     queue: VecDeque<Queued>,
-    in_flight: bool,
+    /// Messages on channels, at most `source_channels`.
+    in_flight: u64,
 }
 
 #[derive(Clone, Debug)]
@@ -166,10 +167,10 @@ impl Ring {
         if let Err(error) = self.check(&request.message) {
             return self.refuse(&request, error, context);
         }
-        let (now, id) = (context.now(), request.message.source);
+        let (now, id, most) = (context.now(), request.message.source, self.timing.source_channels);
         let source = &mut self.sources[usize::from(id.0)];
         let new_first = source.insert(Queued { at: now, request }) == 0;
-        if !new_first || source.in_flight {
+        if !new_first || source.in_flight >= most {
             return;
         }
         self.heads.retain(|head| head.source != id);
@@ -198,8 +199,12 @@ impl Ring {
     fn release_ended(&mut self, now: Time) {
         while let Some((channel, flight)) = self.channels.take_ended(now) {
             self.destinations[usize::from(flight.destination.0)].release(&flight);
-            self.sources[usize::from(flight.source.0)].in_flight = false;
-            self.add_head(now, flight.source);
+            let source = &mut self.sources[usize::from(flight.source.0)];
+            source.in_flight -= 1;
+            // Below the limit the next message has been a head all along.
+            if source.in_flight + 1 == self.timing.source_channels {
+                self.add_head(now, flight.source);
+            }
             let busy = now.since(flight.granted);
             self.stats.channel_busy[channel] += busy;
             self.stats.stalled += busy - self.timing.occupancy(flight.words);
@@ -208,7 +213,7 @@ impl Ring {
         }
     }
 
-    /// One pass is enough: a grant makes nothing free.
+    /// One pass is enough: a grant makes nothing free, and the head that it brings forward comes after it in order.
     fn grant_all(&mut self, context: &mut Out) {
         let mut place = 0;
         while self.channels.has_free() && place < self.heads.len() {
@@ -227,8 +232,8 @@ impl Ring {
         let Some(Queued { at, request }) = port.queue.pop_front() else {
             return;
         };
-        port.in_flight = true;
-        let now = context.now();
+        port.in_flight += 1;
+        let (now, more) = (context.now(), port.in_flight < self.timing.source_channels);
         let waited = now.since(at);
         self.stats.waiting += waited;
         self.stats.longest_wait = self.stats.longest_wait.max(waited);
@@ -241,6 +246,9 @@ impl Ring {
             None
         };
         self.destinations[node].channel = Some(self.channels.occupy(flight, end));
+        if more {
+            self.add_head(now, source);
+        }
     }
 
     fn flight(&self, request: &Request, now: Time) -> Flight {

@@ -15,6 +15,8 @@ pxpl5_sim::parameter_table! {
         hop_ns: 50, "ns", Assumed, 0..=200, "one word time: every board latches a word once";
         /// Channels, each carrying one message at a time.
         channels: 8, "channels", Published, 8..=8, "TR94";
+        /// Channels that one board can send on at a time, to different receivers.
+        source_channels: 8, "channels", Assumed, 2..=8, "no source names a limit below the ring's; with 1 a clump of Slats waits behind every full input FIFO in turn, and the published pair of 110 and 140 triangles would ask for code twice as fast as the optimised one";
     }
 }
 
@@ -53,6 +55,7 @@ impl RingTiming {
         check("word_ns", self.word_ns, 1, MAX_VALUE)?;
         check("overhead_words", self.overhead_words, 0, MAX_VALUE)?;
         check("hop_ns", self.hop_ns, 0, MAX_VALUE)?;
+        check("source_channels", self.source_channels, 1, MAX_CHANNELS)?;
         check("channels", self.channels, 1, MAX_CHANNELS)
     }
 }

@@ -221,3 +221,17 @@ fn a_hand_made_scene_is_checked_in_every_part() {
         assert!(matches!(Scene::new(parts), Err(SceneError::Part { .. })));
     }
 }
+
+#[test]
+fn a_truncated_scene_keeps_the_first_primitives_triangles_before_spheres() {
+    let whole = builtin("molecules").expect("built in");
+    let few = whole.truncated(140).expect("it has more");
+    assert_eq!((few.triangles(), few.spheres().len()), (&whole.triangles()[..140], 0));
+    let mixed = whole.truncated(2_620 + 7).expect("it has more");
+    assert_eq!((mixed.triangles().len(), mixed.spheres()), (2_620, &whole.spheres()[..7]));
+    assert_eq!(whole.truncated(2_620 + 1_219).expect("all"), whole);
+    for n in [0, 2_620 + 1_219 + 1] {
+        let error = whole.truncated(n).expect_err("impossible").to_string();
+        assert!(error.contains("1 to 3839") && error.contains(&format!("found {n}")), "{error}");
+    }
+}

@@ -49,6 +49,9 @@ pub struct CopyOrder {
     pub target: CopyTarget,
     /// The region context that holds it.
     pub context: u8,
+    /// Whether the colours go to the backing store first and from there to the frame buffer, beside the commands that
+    /// follow; or straight from pixel memory, so that the commands that follow wait.
+    pub through_backing: bool,
     /// Who is told, by a message of [`COPY_ACKNOWLEDGEMENT_WORDS`], when the last pixel has arrived.
     pub acknowledge: Option<NodeId>,
 }

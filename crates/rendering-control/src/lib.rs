@@ -22,8 +22,9 @@
 //!
 //! **Not modelled:** attribute traversal beyond a cost per edit, loss of messages.
 //!
-//! Assumed: a renderer's finished region stays in its pixel memory until it is copied, so the next region's commands
-//! wait behind the copy in the input FIFO; one software cost covers a chain of messages given to the DMA at once.
+//! Assumed: a finished region goes to the renderer's backing store (51 us) and from there to the frame buffer beside the
+//! next region's commands, one region at a time; a second finished region waits in pixel memory, and commands behind it
+//! in the input FIFO; one software cost covers a chain of messages given to the DMA at once.
 //!
 //! Sources: TR94, I3D95.
 

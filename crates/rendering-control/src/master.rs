@@ -275,5 +275,10 @@ impl Master {
 }
 
 pub(crate) fn copy_order(config: &Config, picture: u64, region: RegionId) -> CopyOrder {
-    CopyOrder { target: config.target(picture, region), context: 0, acknowledge: Some(config.master) }
+    CopyOrder {
+        target: config.target(picture, region),
+        context: 0,
+        through_backing: true,
+        acknowledge: Some(config.master),
+    }
 }

@@ -3,7 +3,7 @@
 use crate::bind::{Binding, BoundRegion};
 use crate::config::{Config, Copy};
 use pphigs::{Around, Counts, FrameView, Pass, Picture, Share, ViewWordsError, copy_message, region_messages};
-use pxpl5_gp::{Account, Fault, Gp, Level, Stage};
+use pxpl5_gp::{Account, Fault, Gp, Level, Stage, Ticket};
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, CopyOrder, Eye, FieldParity, NodeId, Word};
 use std::cell::RefCell;
@@ -168,16 +168,23 @@ impl Processor {
         self.gp.begin(Stage::Transform, field, None);
         self.gp.spend(Span::from_ns(self.gp.timing().pass_ns)).await;
         let picture = self.config.picture(FieldParity::of_field(field));
-        let mut clumps = self.share.clumps(CLUMP).peekable();
-        // Without a primitive the regions must be cleared all the same.
-        let nothing = clumps.peek().is_none().then(|| self.share.clone());
-        for (i, clump) in clumps.chain(nothing).enumerate() {
-            let passes = self.transform(&clump, view, picture).await;
+        let mut clumps: Vec<_> = self.share.clumps(CLUMP).collect();
+        if clumps.is_empty() {
+            // Without a primitive the regions must be cleared all the same.
+            clumps.push(self.share.clone());
+        }
+        let last = clumps.len() - 1;
+        for (i, clump) in clumps.iter().enumerate() {
+            let passes = self.transform(clump, view, picture).await;
             self.gp.clump_buffer_free().await;
             if i == 0 {
                 self.gp.begin(Stage::Render, field, None);
             }
-            self.send(&passes, i == 0 && self.index == 0).await;
+            let sent = self.send(&passes, i == 0 && self.index == 0).await;
+            // There is no second buffer: the next clump is made in this one while it is emptied.
+            if let Some(ticket) = sent.filter(|_| i < last) {
+                self.gp.draining(ticket).await;
+            }
         }
         self.gp.end(Stage::Transform, field, None);
     }
@@ -193,16 +200,14 @@ impl Processor {
     }
 
     /// Sends a clump to all its regions as one chain of messages.
-    async fn send(&self, passes: &[Arc<Pass>; 2], begin: bool) {
+    async fn send(&self, passes: &[Arc<Pass>; 2], begin: bool) -> Option<Ticket> {
         let around = Around { begin, ..Around::default() };
         let lists = self.binding.regions().iter().flat_map(|bound| {
             let lists = region_messages(&passes[bound.eye.index()], bound.region, bound.context, around);
             lists.into_iter().map(|list| self.addressed(bound.renderer, list))
         });
         let batch: Vec<_> = lists.collect();
-        if !batch.is_empty() {
-            self.gp.send_batch(batch).await;
-        }
+        if batch.is_empty() { None } else { Some(self.gp.send_batch(batch).await) }
     }
 
     fn addressed(&self, renderer: usize, list: CommandList) -> (NodeId, u32, Body) {
@@ -221,6 +226,11 @@ impl Processor {
     }
 
     fn order(&self, bound: &BoundRegion, field: u64) -> CopyOrder {
-        CopyOrder { target: self.config.target(bound, field), context: bound.context, acknowledge: None }
+        CopyOrder {
+            target: self.config.target(bound, field),
+            context: bound.context,
+            through_backing: false,
+            acknowledge: None,
+        }
     }
 }

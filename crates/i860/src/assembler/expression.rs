@@ -85,7 +85,7 @@ impl Parser<'_> {
             () if self.take("-") => Ok(self.unary()?.wrapping_neg()),
             () if self.take("+") => self.unary(),
             () if self.take("~") => Ok(!self.unary()?),
-            () if self.take("ha%") => self.unary().map(|v| (v + 0x8000) >> 16 & 0xFFFF),
+            () if self.take("ha%") => self.unary().map(|v| v.wrapping_add(0x8000) >> 16 & 0xFFFF),
             () if self.take("h%") => self.unary().map(|v| v >> 16 & 0xFFFF),
             () if self.take("l%") => self.unary().map(|v| v & 0xFFFF),
             () if self.take("(") => {

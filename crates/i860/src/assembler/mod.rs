@@ -213,7 +213,7 @@ fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
 
 /// A register move, or a constant in one word where a plain number allows it, else two.
 fn mov(from: &str, to: &str) -> Instructions {
-    if from.starts_with(['r', 's', 'f']) && !from.contains('%') {
+    if operand::integer_register(from).is_some() {
         return Ok(vec![plain("shl", &format!("r0, {from}, {to}"))?]);
     }
     let low = |base: &str| plain("or", &format!("l%({from}), {base}, {to}"));

@@ -32,7 +32,7 @@ fn register_number(text: &str, file: char) -> Option<u8> {
     digits.parse().ok().filter(|n| *n < 32 && plain && digits.bytes().all(|b| b.is_ascii_digit()))
 }
 
-fn integer_register(text: &str) -> Option<u8> {
+pub(super) fn integer_register(text: &str) -> Option<u8> {
     match text {
         "sp" => Some(2),
         "fp" => Some(3),

@@ -1,0 +1,54 @@
+//! Host time of the comparison and of just-in-time pixels.
+
+#![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use pxpl5::compare::compare;
+use pxpl5::scene::builtin;
+use pxpl5::tracking::motion::Synthetic;
+use pxpl5::tracking::predict::PredictorKind;
+use pxpl5::tracking::tracker::TrackerConfig;
+use pxpl5::{Experiment, Head, Jitp, MachineConfig, Pixels, Viewpoint};
+use std::sync::Arc;
+
+fn head() -> Arc<Head> {
+    let motion = Arc::new(Synthetic::recorded_use(1));
+    let head = Head::new(motion, TrackerConfig::optical_ceiling(), PredictorKind::Kalman, 1);
+    Arc::new(head.expect("the presets are in range"))
+}
+
+/// 10 s of head motion on the Mig, all pipelines, no pixels: to take less than 5 s.
+fn all_pipelines(criterion: &mut Criterion) {
+    let (scene, head) = (Arc::new(builtin("mig").expect("built in")), head());
+    let mut group = criterion.benchmark_group("compare");
+    group.sample_size(10);
+    group.bench_function("mig, 600 fields", |bencher| {
+        bencher.iter(|| compare(&MachineConfig::small_hmd(), &scene, &head, 600, false).expect("it runs"));
+    });
+    group.finish();
+}
+
+/// One second of single lines before the beam.
+fn scanlines(criterion: &mut Criterion) {
+    let (scene, head) = (Arc::new(builtin("full-screen:4").expect("built in")), head());
+    let mut group = criterion.benchmark_group("jitp");
+    group.sample_size(10);
+    group.bench_function("scanline, 60 fields", |bencher| {
+        bencher.iter(|| {
+            Experiment::with(
+                MachineConfig::small_hmd(),
+                Arc::new(Jitp::new(Viewpoint::Strip, true)),
+                Arc::clone(&scene),
+            )
+            .head(Arc::clone(&head))
+            .fields(60)
+            .pixels(Pixels::Off)
+            .run()
+            .expect("it runs")
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, all_pipelines, scanlines);
+criterion_main!(benches);

@@ -1,0 +1,44 @@
+//! Profiles account for every clock, by cause and by label.
+
+use i860::timing::{Freeze, FreezeRules};
+use i860::{AddressProfile, Config, Cpu, Outcome, Ram, assemble};
+
+fn run(source: &str, freezes: FreezeRules) -> (Cpu, i860::Program) {
+    let program = assemble("p.s", 0x1000, source).unwrap_or_else(|e| panic!("{e}"));
+    let mut ram = Ram::new(0, 0x10000);
+    ram.load(0x1000, &program.bytes).expect("fits");
+    let mut cpu = Cpu::at(Config { freezes, ..Config::cycle() }, 0x1000);
+    cpu.watch(Some(AddressProfile::new(0x1000, program.words().len())));
+    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 1000), Outcome::Stopped);
+    (cpu, program)
+}
+
+/// Three turns of a loop of four clocks (adds, btne and its cost of two when taken), one before, two after.
+const LOOP: &str = "start: mov 3, r5\nloop: adds -1, r5, r5\nbtne r0, r5, loop\nlast: nop\nnop\nend: nop";
+
+#[test]
+fn clocks_by_label_are_those_of_the_code_up_to_the_next_label() {
+    let (cpu, program) = run(LOOP, FreezeRules::none().with(Freeze::CompareBranchTaken));
+    let labels: Vec<(&str, u32)> = program.labels.iter().map(|(name, at)| (name.as_str(), *at)).collect();
+    let by_label = cpu.watched().expect("watched").by_label(&labels);
+    assert_eq!(by_label, [("start", 1), ("loop", 3 * 2 + 2 * 2), ("last", 2), ("end", 0)]);
+    assert_eq!(by_label.iter().map(|(_, clocks)| clocks).sum::<u64>(), cpu.clocks());
+}
+
+#[test]
+fn every_clock_is_an_issue_or_one_cause() {
+    let (cpu, _) = run(LOOP, FreezeRules::all());
+    let profile = cpu.profile();
+    assert_eq!(profile.clocks(), cpu.clocks());
+    assert_eq!((profile.instructions, profile.issue), (1 + 3 * 2 + 2, 1 + 3 * 2 + 2));
+    assert_eq!(profile.frozen_by(Freeze::CompareBranchTaken), 2 * 2);
+    assert!(profile.to_string().contains("row 19b"));
+}
+
+#[test]
+fn a_cleared_profile_starts_from_nothing_while_the_clock_goes_on() {
+    let (mut cpu, _) = run(LOOP, FreezeRules::all());
+    let before = cpu.clocks();
+    cpu.clear_profile();
+    assert_eq!((cpu.profile().clocks(), cpu.clocks()), (0, before));
+}

@@ -1,0 +1,43 @@
+//! `pxpl5 merge`.
+
+use crate::error::CliError;
+use crate::terminal::{complain, print};
+use clap::Args;
+use pxpl5::sweep::{Merged, ROWS_FILE, merge};
+use std::path::PathBuf;
+
+/// Join the shards of a sweep.
+///
+/// The result is the file that the sweep would have written without shards. Missing points are an error; points that
+/// are there twice with equal rows are told and kept once; with different rows they are an error.
+#[derive(Args, Debug)]
+#[command(after_help = "Example:
+  pxpl5 merge out/slats-1 out/slats-2 --out out/slats")]
+pub(crate) struct MergeArgs {
+    /// Folders of shards.
+    #[arg(value_name = "DIR", required = true)]
+    folders: Vec<PathBuf>,
+    /// Where the joined files go.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Join what there is, though points are missing.
+    #[arg(long)]
+    partial: bool,
+    /// Print nothing but errors.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+pub(crate) fn run(args: MergeArgs) -> Result<(), CliError> {
+    let Merged { points, failed, duplicates, missing } = merge(&args.folders, &args.out, args.partial)?;
+    for (points, what) in [(&duplicates, "were there more than once"), (&missing, "are missing")] {
+        if let Some(first) = points.first() {
+            complain(&format!("pxpl5: {} points {what}, the first of them point {first}\n", points.len()));
+        }
+    }
+    if args.quiet {
+        return Ok(());
+    }
+    let path = args.out.join(ROWS_FILE);
+    print(&format!("{} points, {failed} of them failed, are in {}.\n", points - missing.len() as u64, path.display()))
+}

@@ -1,0 +1,125 @@
+//! Running an experiment, with a snapshot saved or restored on the way.
+
+use crate::error::CliError;
+use crate::output::OutputFolder;
+use crate::terminal::progress;
+use clap::Args;
+use pxpl5::{ExperimentError, ExperimentFile, Machine, Outcome, Pixels, Plan, Snapshot};
+use std::path::{Path, PathBuf};
+
+/// A moment to be kept or to go on from.
+#[derive(Args, Debug, Default)]
+pub(crate) struct SnapshotArgs {
+    /// Save a snapshot at the first retrace of this field (see --save), and go on.
+    #[arg(long, value_name = "FIELD", requires = "save")]
+    save_at: Option<u64>,
+    /// Where the snapshot goes.
+    #[arg(long, value_name = "FILE", requires = "save_at")]
+    save: Option<PathBuf>,
+    /// Go on from a snapshot: the run is repeated up to its field, without pixels, compared, and continued.
+    #[arg(long, value_name = "FILE")]
+    restore: Option<PathBuf>,
+}
+
+/// What may be said beside a snapshot: the rest is in it.
+const BESIDE: [&str; 4] = ["fields", "pixels", "measure", "output."];
+
+impl SnapshotArgs {
+    /// The experiment of the snapshot with the settings given beside it, or the experiment given.
+    ///
+    /// # Errors
+    ///
+    /// For an unusable snapshot, or settings that contradict it.
+    pub(crate) fn experiment(&self, given: ExperimentFile) -> Result<ExperimentFile, CliError> {
+        let Some(path) = &self.restore else { return Ok(given) };
+        if let Some(key) = given.keys().find(|key| !BESIDE.iter().any(|allowed| key.starts_with(allowed))) {
+            let message = format!("{key} is in the snapshot; beside --restore only fields, pixels, measure and output");
+            return Err(CliError::usage(message));
+        }
+        let mut file = self.read(path)?.experiment(&path.display().to_string())?;
+        file.overlay(given);
+        Ok(file)
+    }
+
+    fn read(&self, path: &Path) -> Result<Snapshot, CliError> {
+        let name = path.display().to_string();
+        let bytes = std::fs::read(path).map_err(|error| CliError::failure(format!("{name}: {error}")))?;
+        Ok(Snapshot::read(&String::from_utf8_lossy(&bytes), &name)?)
+    }
+
+    /// Runs it.
+    ///
+    /// # Errors
+    ///
+    /// When the run fails, is not the one of the snapshot, or the snapshot cannot be written.
+    pub(crate) fn simulate(&self, plan: &Plan, threads: Option<u64>, quiet: bool) -> Result<Outcome, CliError> {
+        let mut saving = self.saving(plan)?;
+        let scene = plan.load_scene()?;
+        let threads = threads.map_or_else(cores, |threads| threads as usize);
+        let mut experiment = plan.experiment(scene.clone()).threads(threads);
+        let hash = experiment.config_hash();
+        let restored = self.restored(plan)?;
+        if let Some((snapshot, name)) = &restored {
+            snapshot.check_scene(&scene, name)?;
+            // Pixels of what was seen before the snapshot are computed only if somebody looks.
+            experiment = experiment.pixels(if plan.pixels == Pixels::All { Pixels::Lazy } else { plan.pixels });
+        }
+        let stops: Vec<u64> = self.save_at.into_iter().chain(restored.iter().map(|(s, _)| s.field)).collect();
+        let bar = progress(plan.fields, "fields", quiet);
+        let outcome = experiment.run_stopping(&stops, |field, machine| {
+            bar.set_position(field);
+            if let Some((snapshot, name)) = restored.as_ref().filter(|(snapshot, _)| snapshot.field == field) {
+                snapshot.check_machine(machine, name).map_err(|error| ExperimentError::Stopped(error.to_string()))?;
+                continue_pixels(plan, machine, threads);
+            }
+            if let (Some((folder, name)), true) = (&mut saving, Some(field) == self.save_at) {
+                let text = Snapshot::of(plan, hash, &scene, field, machine).to_text();
+                folder
+                    .put(name, text.as_bytes())
+                    .map_err(|error| ExperimentError::Stopped(error.message().to_owned()))?;
+            }
+            Ok(())
+        });
+        bar.finish_and_clear();
+        let outcome = outcome?;
+        saving.map(|(folder, _)| folder.commit()).transpose()?;
+        Ok(outcome)
+    }
+
+    /// The folder and name of the snapshot to be written.
+    fn saving(&self, plan: &Plan) -> Result<Option<(OutputFolder, String)>, CliError> {
+        let (Some(field), Some(path)) = (self.save_at, &self.save) else { return Ok(None) };
+        if !(1..plan.fields).contains(&field) {
+            let last = plan.fields.saturating_sub(1);
+            return Err(CliError::usage(format!("--save-at: expected a field from 1 to {last}, found {field}")));
+        }
+        let name =
+            path.file_name().ok_or_else(|| CliError::usage(format!("--save: {} names no file", path.display())))?;
+        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        Ok(Some((OutputFolder::open(parent)?, name.to_string_lossy().into_owned())))
+    }
+
+    /// The snapshot to go on from, and its name.
+    fn restored(&self, plan: &Plan) -> Result<Option<(Snapshot, String)>, CliError> {
+        let Some(path) = &self.restore else { return Ok(None) };
+        let (snapshot, name) = (self.read(path)?, path.display().to_string());
+        if snapshot.field >= plan.fields {
+            let (first, found) = (snapshot.field + 1, plan.fields);
+            return Err(CliError::usage(format!(
+                "--fields: {name} was saved at field {}: expected at least {first}, found {found}",
+                snapshot.field
+            )));
+        }
+        Ok(Some((snapshot, name)))
+    }
+}
+
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+fn continue_pixels(plan: &Plan, machine: &mut Machine, threads: usize) {
+    if plan.pixels == Pixels::All {
+        machine.compute_all_pixels(threads);
+    }
+}

@@ -1,0 +1,233 @@
+//! Sweeps as a user runs them: killed, continued, cut into shards, joined.
+
+mod support;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+use support::{Folder, command, err, names, out};
+
+/// 64 points of some milliseconds.
+const FILE: &str = "pipeline = \"slats\"\nscene = \"mig\"\nfields = 20\n\
+    [sweep]\nseeds = 2\n[sweep.grid]\ncopy = [\"whole\", \"split\"]\ntriangles = { from = 1, to = 151, step = 10 }\n";
+const POINTS: usize = 2 * 2 * 16;
+
+fn folder(name: &str) -> Folder {
+    let folder = Folder::new(name);
+    folder.file("s.toml", FILE);
+    folder
+}
+
+fn sweep(folder: &Folder, args: &[&str]) -> std::process::Output {
+    folder.run(&[&["sweep", "s.toml", "--quiet"], args].concat())
+}
+
+fn succeeds(output: &std::process::Output) {
+    assert!(output.status.success(), "{}", err(output));
+}
+
+fn read(folder: &Folder, name: &str) -> String {
+    fs::read_to_string(folder.0.join(name)).expect(name)
+}
+
+/// Points of a file of JSON lines after its header; a torn last line does not count.
+fn points(path: &Path) -> Vec<u64> {
+    let text = fs::read_to_string(path).unwrap_or_default();
+    let whole = text.split_inclusive('\n').filter(|line| line.ends_with('\n')).skip(1);
+    whole
+        .map(|line| serde_json::from_str::<serde_json::Value>(line).expect("JSON")["point"].as_u64().expect("a number"))
+        .collect()
+}
+
+#[test]
+fn the_rows_are_the_same_bytes_whatever_threads_and_shards() {
+    let folder = folder("same");
+    succeeds(&sweep(&folder, &["--out", "one", "--threads", "1"]));
+    succeeds(&sweep(&folder, &["--out", "four", "--threads", "4"]));
+    for shard in ["1/3", "2/3", "3/3"] {
+        let out = format!("shard-{}", &shard[..1]);
+        succeeds(&sweep(&folder, &["--out", &out, "--shard", shard]));
+    }
+    succeeds(&folder.run(&["merge", "shard-3", "shard-1", "shard-2", "--out", "joined", "--quiet"]));
+    let expected = read(&folder, "one/rows.jsonl");
+    assert_eq!(expected.lines().count(), 1 + POINTS);
+    for other in ["four", "joined"] {
+        assert!(read(&folder, &format!("{other}/rows.jsonl")) == expected, "{other}");
+        assert!(read(&folder, &format!("{other}/results.csv")) == read(&folder, "one/results.csv"), "{other}");
+        assert_eq!(points(&folder.0.join(other).join("times.jsonl")).len(), POINTS);
+    }
+    let header: serde_json::Value = serde_json::from_str(expected.lines().next().expect("a header")).expect("JSON");
+    let keys: Vec<&str> = header.as_object().expect("an object").keys().map(String::as_str).take(6).collect();
+    assert_eq!(keys, ["schema", "version", "machine", "config_hash", "level", "seed"]);
+}
+
+/// Kills it as `kill -9` does, after a while.
+fn killed_after(mut child: Child, time: Duration) -> bool {
+    std::thread::sleep(time);
+    let running = child.try_wait().expect("it can be asked").is_none();
+    child.kill().expect("it can be killed");
+    child.wait().expect("it ends");
+    running
+}
+
+#[test]
+fn a_sweep_killed_again_and_again_loses_no_finished_point_and_repeats_none() {
+    let folder = folder("kill");
+    let rows = folder.0.join("killed/rows.jsonl");
+    let (mut kills, mut finished) = (0, Vec::new());
+    for attempt in 0u64.. {
+        let mut child = command(&["sweep", "s.toml", "--out", "killed", "--resume", "--quiet"]);
+        let child = child.current_dir(&folder.0).stdout(Stdio::null()).spawn().expect("the command starts");
+        if !killed_after(child, Duration::from_millis(20 + 17 * (attempt % 7))) {
+            break;
+        }
+        kills += 1;
+        let now = points(&rows);
+        let kept = now.get(..finished.len()).unwrap_or_default();
+        assert_eq!(kept, finished, "what was finished stays where it was");
+        assert_eq!(now.iter().collect::<BTreeSet<_>>().len(), now.len(), "no point twice");
+        finished = now;
+        assert!(attempt < 2_000, "it gets on: {} points", finished.len());
+    }
+    assert!(kills > 2, "killed {kills} times");
+    succeeds(&sweep(&folder, &["--out", "killed", "--resume"]));
+    succeeds(&sweep(&folder, &["--out", "whole"]));
+    assert!(read(&folder, "killed/rows.jsonl") == read(&folder, "whole/rows.jsonl"));
+    // Every computation of a finished point leaves a time; a kill between a row and its time may lose one.
+    let times = points(&folder.0.join("killed/times.jsonl"));
+    assert_eq!(times.iter().collect::<BTreeSet<_>>().len(), times.len(), "no point was computed twice");
+    assert!(times.len() + kills >= POINTS);
+}
+
+#[test]
+fn a_torn_last_line_is_repaired_and_a_damaged_one_before_it_is_refused() {
+    let folder = folder("torn");
+    succeeds(&sweep(&folder, &["--out", "a"]));
+    let whole = read(&folder, "a/rows.jsonl");
+    fs::write(folder.0.join("a/rows.jsonl"), &whole[..whole.len() - 40]).expect("ours");
+    succeeds(&sweep(&folder, &["--out", "a", "--resume"]));
+    assert!(read(&folder, "a/rows.jsonl") == whole);
+    fs::write(folder.0.join("a/rows.jsonl"), whole.replacen("\"point\":7,", "\"pint\":7,", 1)).expect("ours");
+    let output = sweep(&folder, &["--out", "a", "--resume"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(err(&output).contains("a/rows.jsonl, line 9: expected a row of a sweep"), "{}", err(&output));
+}
+
+#[test]
+fn results_are_neither_overwritten_nor_mixed_with_those_of_another_sweep() {
+    let folder = folder("mixed");
+    succeeds(&sweep(&folder, &["--out", "a"]));
+    let before = read(&folder, "a/rows.jsonl");
+    let again = sweep(&folder, &["--out", "a"]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(err(&again).contains("--resume"), "{}", err(&again));
+    let other = sweep(&folder, &["--out", "a", "--resume", "--set", "fields=31"]);
+    assert_eq!(other.status.code(), Some(2));
+    assert!(err(&other).contains("results of another sweep: config_hash"), "{}", err(&other));
+    assert!(read(&folder, "a/rows.jsonl") == before);
+}
+
+#[test]
+fn merge_finds_missing_duplicate_and_contradicting_points() {
+    let folder = folder("merge");
+    for shard in ["1/2", "2/2"] {
+        succeeds(&sweep(&folder, &["--out", &shard[..1], "--shard", shard]));
+    }
+    let missing = folder.run(&["merge", "1", "--out", "joined"]);
+    assert_eq!(missing.status.code(), Some(1));
+    assert!(err(&missing).contains("32 of 64 points are missing: 1, 3, 5"), "{}", err(&missing));
+    assert!(!folder.0.join("joined").exists(), "nothing half-written");
+    let partial = folder.run(&["merge", "1", "--out", "part", "--partial"]);
+    succeeds(&partial);
+    assert_eq!(points(&folder.0.join("part/rows.jsonl")).len(), POINTS / 2);
+    let twice = folder.run(&["merge", "1", "2", "1", "--out", "joined"]);
+    succeeds(&twice);
+    assert!(err(&twice).contains("32 points were there more than once, the first of them point 0"), "{}", err(&twice));
+    assert!(out(&twice).contains("64 points, 0 of them failed"), "{}", out(&twice));
+    let rows = read(&folder, "1/rows.jsonl");
+    fs::create_dir(folder.0.join("3")).expect("ours");
+    fs::write(folder.0.join("3/rows.jsonl"), rows.replacen("\"missed_retraces\":0.0", "\"missed_retraces\":9.0", 1))
+        .expect("ours");
+    let contradiction = folder.run(&["merge", "1", "2", "3", "--out", "other"]);
+    assert_eq!(contradiction.status.code(), Some(1));
+    assert!(
+        err(&contradiction).contains("point 0 has different rows in 1/rows.jsonl and 3/rows.jsonl"),
+        "{}",
+        err(&contradiction)
+    );
+    assert!(!folder.0.join("other").exists());
+}
+
+#[test]
+fn a_point_that_fails_is_recorded_told_and_no_reason_to_stop() {
+    let folder = Folder::new("fails");
+    folder.file(
+        "s.toml",
+        "pipeline = \"slats\"\nscene = \"full-screen:4\"\nfields = 10\n[sweep.grid]\nn_renderers = [4, 5]\n",
+    );
+    let output = folder.run(&["sweep", "s.toml", "--out", "o"]);
+    succeeds(&output);
+    assert!(err(&output).contains("1 of 2 points could not be simulated; point 0: "), "{}", err(&output));
+    assert_eq!(names(&folder.0.join("o")), [".lock", "results.csv", "rows.jsonl", "times.jsonl"]);
+    let csv = read(&folder, "o/results.csv");
+    assert!(csv.contains("\n0,failed,4,") && csv.contains("\n1,done,5,"), "{csv}");
+}
+
+#[test]
+fn wrong_use_is_refused() {
+    let folder = folder("wrong");
+    folder.file("run.toml", "pipeline = \"slats\"\nscene = \"mig\"\n");
+    for (args, says) in [
+        (&["sweep", "run.toml", "--out", "o"][..], "sweep is missing"),
+        (&["run", "s.toml"], "describes a sweep"),
+        (&["sweep", "s.toml", "--out", "o", "--shard", "3/2"], "1/8 to 8/8"),
+        (&["sweep", "s.toml", "--out", "o", "--shard", "0/2"], "found `0/2`"),
+        (&["sweep", "s.toml"], "--out"),
+        (&["merge", "--out", "o"], "<DIR>"),
+    ] {
+        let output = folder.run(args);
+        assert_eq!(output.status.code(), Some(2), "{args:?}");
+        assert!(err(&output).contains(says), "{args:?}: {}", err(&output));
+    }
+    let file = folder.file("file", "");
+    let output = sweep(&folder, &["--out", file.to_str().expect("text")]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(err(&output).contains("file"), "{}", err(&output));
+}
+
+/// The script of docs/sweeps.md, as it stands in the repository.
+fn script(folder: &Folder, args: &[&str], task: Option<&str>) -> std::process::Output {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments/sweep-shards.sh");
+    let mut command = Command::new("sh");
+    command.arg(path).args(args).current_dir(&folder.0).env("PXPL5", env!("CARGO_BIN_EXE_pxpl5"));
+    command.env_remove("SLURM_ARRAY_TASK_ID");
+    if let Some(task) = task {
+        command.env("SLURM_ARRAY_TASK_ID", task);
+    }
+    command.output().expect("sh is there")
+}
+
+#[cfg(unix)]
+#[test]
+fn the_script_spreads_a_sweep_over_processes_or_array_tasks_and_joins_it() {
+    let folder = folder("script");
+    succeeds(&sweep(&folder, &["--out", "whole"]));
+    succeeds(&script(&folder, &["s.toml", "all", "3"], None));
+    assert!(read(&folder, "all/rows.jsonl") == read(&folder, "whole/rows.jsonl"));
+    // As Slurm starts an array of two tasks; the last command is what the user types afterwards.
+    for task in ["1", "2"] {
+        succeeds(&script(&folder, &["s.toml", "array", "2"], Some(task)));
+    }
+    succeeds(&folder.run(&["merge", "array/shard-1", "array/shard-2", "--out", "array", "--quiet"]));
+    assert!(read(&folder, "array/rows.jsonl") == read(&folder, "whole/rows.jsonl"));
+}
+
+#[test]
+fn the_published_sweep_has_some_hundred_points() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../experiments/sweep-slats.toml");
+    let sweep = pxpl5::sweep::Sweep::load(path).expect("a sweep");
+    assert!((200..=900).contains(&sweep.space().points()), "{}", sweep.space().points());
+    (0..sweep.space().points()).for_each(|point| drop(sweep.plan(point).expect("an experiment")));
+}

@@ -1,0 +1,70 @@
+//! What a scene asks of the machine, as numbers.
+
+use crate::display_list::{display_list, views};
+use crate::experiment::ExperimentError;
+use crate::levels::Case;
+use pphigs::{Binning, Picture, Shading, Share};
+use pxpl5_geometry::Viewport;
+use pxpl5_renderer::Layout;
+use pxpl5_sim::Time;
+use pxpl5_wire::RegionId;
+use std::sync::Arc;
+
+/// One eye's picture of a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Load {
+    /// Triangles held by all GPs together.
+    pub triangles: f64,
+    /// Spheres held.
+    pub spheres: f64,
+    /// Triangles and spheres in the bin of each region.
+    pub bins: Vec<[f64; 2]>,
+}
+
+impl Load {
+    /// Triangles that every region gets.
+    #[must_use]
+    pub fn full_screen(triangles: u32, regions: usize) -> Self {
+        let triangles = f64::from(triangles);
+        Self { triangles, spheres: 0.0, bins: vec![[triangles, 0.0]; regions] }
+    }
+
+    /// Entries of all bins.
+    #[must_use]
+    pub fn entries(&self) -> f64 {
+        self.bins.iter().map(|[triangles, spheres]| triangles + spheres).sum()
+    }
+
+    /// The scene of a case from `views` views of its own head motion, `period_ps` apart: both eyes of each.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError::Scene`] for a scene without primitives.
+    pub fn of(case: &Case, viewport: Viewport, binning: Binning, times: &[u64]) -> Result<Vec<Self>, ExperimentError> {
+        let list = Arc::new(display_list(&case.scene).map_err(ExperimentError::Scene)?);
+        let (views, _) = views(&case.scene, case.seed, 2);
+        let share = Share::new(list, 0, 1);
+        let (shading, layout) = (Shading::Phong, Layout::rendering_control_phong());
+        let picture = Picture { viewport, shading, binning, layout, pixels: false };
+        let mut loads = Vec::with_capacity(2 * times.len());
+        for (number, time) in (0..).zip(times) {
+            let view = views(number, Time(*time));
+            loads.extend([0, 1].map(|eye| Self::of_pass(&share, &share.transform(&view, eye, picture))));
+        }
+        Ok(loads)
+    }
+
+    fn of_pass(share: &Share, pass: &pphigs::Pass) -> Self {
+        let held = share.counts();
+        let bin = |region| {
+            let counts = pass.counts(RegionId(region));
+            [f64::from(counts.triangles), f64::from(counts.spheres)]
+        };
+        let regions = pass.picture().viewport.grid().regions() as u16;
+        Self {
+            triangles: f64::from(held.triangles),
+            spheres: f64::from(held.spheres),
+            bins: (0..regions).map(bin).collect(),
+        }
+    }
+}

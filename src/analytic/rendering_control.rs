@@ -1,0 +1,336 @@
+//! Rendering Control: frame after frame.
+
+use super::load::Load;
+use crate::config::{ConfigError, MachineConfig};
+use crate::experiment::{ExperimentError, WARM_UP_PICTURES};
+use crate::levels::{Case, Summary};
+use crate::pipelines::{Pipeline, RenderingControl};
+use pphigs::{Binning, Shading};
+use pxpl5_framebuffer::Video;
+use pxpl5_geometry::Viewport;
+use pxpl5_renderer::CommandKind;
+use pxpl5_sim::Time;
+use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionGrid, RegionId};
+
+/// Words of a token, and of the other messages between master and slaves.
+const ORDER_WORDS: f64 = 6.0;
+
+/// Words and nanoseconds of a command.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cost {
+    words: f64,
+    ns: f64,
+}
+
+/// Rendering Control on a machine, reduced to numbers.
+#[derive(Clone, Debug)]
+pub struct StereoModel {
+    eyes: usize,
+    slaves: f64,
+    renderers: usize,
+    message_ns: f64,
+    host_ns: f64,
+    word_ns: f64,
+    overhead_ns: f64,
+    hop_ns: f64,
+    pass_ns: f64,
+    triangle_ns: f64,
+    sphere_ns: f64,
+    entry_ns: f64,
+    clear: Cost,
+    triangle: Cost,
+    sphere: Cost,
+    shade: Cost,
+    copy_words: f64,
+    fifo_words: f64,
+    store_ns: f64,
+    field_ns: f64,
+    /// Port time of each region.
+    copy_ns: Vec<f64>,
+}
+
+/// One frame, in nanoseconds from switching on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StereoTimes {
+    /// TRANSFORM of each eye begins.
+    pub transform_ns: [f64; 2],
+    /// First word of the first copy and last word of the last copy of each eye.
+    pub copy_ns: [(f64, f64); 2],
+    /// The retrace at which the frame is shown.
+    pub shown_ns: f64,
+}
+
+/// How far each stage has come; pictures before the first are done at time 0.
+#[derive(Debug, Default)]
+struct History {
+    transformed: Vec<f64>,
+    rendered: Vec<f64>,
+    copied: Vec<f64>,
+    edited_ns: f64,
+    swapped_ns: f64,
+    rendering: Renderers,
+}
+
+#[derive(Debug, Default)]
+struct Renderers {
+    /// When the master may give each one a region, when its array is free, and when its backing store is.
+    idle_ns: Vec<f64>,
+    free_ns: Vec<f64>,
+    stored_ns: Vec<f64>,
+    /// Words sent to each, and of its latest regions: words before it, when its first command started, of which time.
+    words: Vec<f64>,
+    started: Vec<Vec<(f64, f64, Cost)>>,
+    ports_ns: [f64; 2],
+}
+
+fn back(times: &[f64], picture: usize, by: usize) -> f64 {
+    picture.checked_sub(by).and_then(|i| times.get(i)).copied().unwrap_or(0.0)
+}
+
+impl StereoModel {
+    /// Reduces a machine.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError`] for a machine without slaves.
+    pub fn new(config: &MachineConfig, program: RenderingControl) -> Result<Self, ConfigError> {
+        if config.n_gps < 2 {
+            let what = "n_gps of Rendering Control (a master and slaves)".to_owned();
+            return Err(ConfigError::Value { what, expected: (2, 1_000), found: config.n_gps as u64 });
+        }
+        let video = Video::new(config.frame_buffer.video).map_err(|error| ConfigError::Board(error.to_string()))?;
+        let cost = |kind: CommandKind| Cost {
+            words: f64::from(kind.words()),
+            ns: config.renderer.span(kind).map_or(0.0, |span| span.as_ms() * 1e6),
+        };
+        let phong = program.shading == Shading::Phong;
+        let word_ns = config.ring.word_ns as f64;
+        let overhead_ns = config.ring.overhead_words as f64 * word_ns;
+        let grid = RegionGrid::FRAME;
+        let copy = |region| {
+            let [_, _, width, height] = grid.rectangle(RegionId(region));
+            let pixels = width * height;
+            f64::from(pixels) * word_ns + f64::from(pixels.div_ceil(MAX_MESSAGE_WORDS)) * overhead_ns
+        };
+        Ok(Self {
+            eyes: program.eyes(),
+            slaves: (config.n_gps - 1) as f64,
+            renderers: config.n_renderers,
+            message_ns: config.gp.message_ns as f64,
+            host_ns: config.host.message_ns as f64 * 2.0 + config.host.link_span(100).as_ms() * 1e6,
+            word_ns,
+            overhead_ns,
+            hop_ns: config.ring.hop_ns as f64,
+            pass_ns: config.gp.pass_ns as f64,
+            triangle_ns: config.gp.triangle_ns as f64,
+            sphere_ns: config.gp.sphere_ns as f64,
+            entry_ns: config.gp.bin_entry_ns as f64,
+            clear: cost(CommandKind::Clear),
+            triangle: cost(if phong { CommandKind::PhongTriangle } else { CommandKind::Triangle }),
+            sphere: cost(if phong { CommandKind::PhongSphere } else { CommandKind::Sphere }),
+            shade: if phong { cost(CommandKind::Shade) } else { Cost::default() },
+            copy_words: f64::from(CommandKind::CopyRegion.words()),
+            fifo_words: config.renderer.fifo_words as f64,
+            store_ns: config.renderer.backing_block().as_ms() * 1e6,
+            field_ns: video.retrace(1).since(Time::ZERO).as_ms() * 1e6,
+            copy_ns: (0..grid.regions() as u16).map(copy).collect(),
+        })
+    }
+
+    /// Frames whose eyes have these loads, one after the other.
+    #[must_use]
+    pub fn frames(&self, loads: &[Load]) -> Vec<StereoTimes> {
+        let mut history = History::default();
+        history.rendering.idle_ns = vec![0.0; self.renderers];
+        history.rendering.free_ns = vec![0.0; self.renderers];
+        history.rendering.stored_ns = vec![0.0; self.renderers];
+        history.rendering.words = vec![0.0; self.renderers];
+        history.rendering.started = vec![Vec::new(); self.renderers];
+        loads.chunks(self.eyes).enumerate().map(|(frame, eyes)| self.frame(&mut history, frame, eyes)).collect()
+    }
+
+    /// Time of a short message on the ring.
+    fn transit_ns(&self) -> f64 {
+        self.overhead_ns + ORDER_WORDS * self.word_ns + self.hop_ns * self.slaves / 2.0
+    }
+
+    /// A message from one processor to another, with both software costs.
+    fn order_ns(&self) -> f64 {
+        2.0 * self.message_ns + self.transit_ns()
+    }
+
+    fn frame(&self, history: &mut History, frame: usize, eyes: &[Load]) -> StereoTimes {
+        let mut times = StereoTimes::default();
+        let first = frame * self.eyes;
+        // SEND begins when the host knows of the EDIT before.
+        let sent_ns = history.edited_ns + self.order_ns() + self.host_ns;
+        let ready =
+            [back(&history.transformed, first, 1), back(&history.rendered, first, 2), back(&history.copied, first, 3)];
+        let mut begin_ns = ready.into_iter().fold(sent_ns, f64::max) + self.order_ns();
+        for (eye, load) in eyes.iter().enumerate() {
+            let picture = first + eye;
+            if eye == 0 {
+                history.edited_ns = begin_ns + self.transit_ns() + self.slaves * self.message_ns;
+            } else {
+                let ready = [back(&history.rendered, picture, 2), back(&history.copied, picture, 3), history.edited_ns];
+                begin_ns = begin_ns.max(ready.into_iter().fold(0.0, f64::max) + self.order_ns());
+            }
+            times.transform_ns[eye] = begin_ns;
+            begin_ns += self.transform_ns(load);
+            // The master hears all slaves one after the other.
+            let known_ns = begin_ns + self.message_ns + self.transit_ns() + self.slaves * self.message_ns;
+            history.transformed.push(known_ns);
+            let available_ns = if frame == 0 { 0.0 } else { history.swapped_ns };
+            let start_ns = known_ns.max(back(&history.rendered, picture, 1));
+            let (rendered_ns, copy) = self.render(&mut history.rendering, load, eye, start_ns, available_ns);
+            history.rendered.push(rendered_ns);
+            history.copied.push(copy.1 + self.transit_ns() + self.message_ns);
+            times.copy_ns[eye] = copy;
+        }
+        let requested_ns = history.copied[history.copied.len() - 1] + self.message_ns + self.transit_ns();
+        times.shown_ns = (requested_ns.max(history.swapped_ns + 1.0) / self.field_ns).ceil() * self.field_ns;
+        history.swapped_ns = times.shown_ns;
+        times
+    }
+
+    /// TRANSFORM of the slave with the largest share.
+    fn transform_ns(&self, load: &Load) -> f64 {
+        let most = |all: f64| (all / self.slaves).ceil();
+        let primitives = most(load.triangles) * self.triangle_ns + most(load.spheres) * self.sphere_ns;
+        let all = (load.triangles + load.spheres).max(1.0);
+        let largest = most(load.triangles) + most(load.spheres);
+        self.pass_ns + primitives + self.entry_ns * load.entries() * largest / all
+    }
+
+    /// RENDER and COPY of an eye: when the master knows that the last commands were accepted; first and last word.
+    fn render(
+        &self,
+        all: &mut Renderers,
+        load: &Load,
+        eye: usize,
+        start_ns: f64,
+        available_ns: f64,
+    ) -> (f64, (f64, f64)) {
+        let mut regions: Vec<usize> = (0..load.bins.len()).collect();
+        let weight = |region: &usize| load.bins[*region][0] + load.bins[*region][1];
+        regions.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+        let (mut rendered_ns, mut copy, mut master_ns) = (start_ns, (f64::INFINITY, 0.0_f64), start_ns);
+        for region in regions {
+            let r = earliest(&all.idle_ns);
+            let token_ns = master_ns.max(all.idle_ns[r]).max(start_ns) + self.message_ns;
+            master_ns = token_ns;
+            let walk_ns = self.walk_ns(&load.bins[region]);
+            let arrived_ns = token_ns + self.transit_ns() + walk_ns;
+            let (accepted_ns, executed_ns) = self.execute(all, r, token_ns, arrived_ns, &load.bins[region]);
+            let heard_ns = accepted_ns + self.transit_ns() + self.message_ns;
+            rendered_ns = rendered_ns.max(heard_ns);
+            let waits = token_ns < available_ns;
+            let ready_ns = if waits { executed_ns.max(available_ns + self.order_ns()) } else { executed_ns };
+            all.idle_ns[r] = if waits { heard_ns.max(available_ns + self.message_ns) } else { heard_ns };
+            // Into the backing store, which holds one region, and from there to the frame buffer.
+            all.free_ns[r] = ready_ns.max(all.stored_ns[r]) + self.store_ns;
+            let begin_ns = all.free_ns[r].max(all.ports_ns[eye]);
+            all.ports_ns[eye] = begin_ns + self.copy_ns[region];
+            all.stored_ns[r] = all.ports_ns[eye];
+            copy = (copy.0.min(begin_ns), copy.1.max(all.ports_ns[eye]));
+        }
+        (rendered_ns, copy)
+    }
+
+    /// A token's way through all slaves.
+    fn walk_ns(&self, bin: &[f64; 2]) -> f64 {
+        let senders = (bin[0] + bin[1]).min(self.slaves).max(2.0_f64.min(self.slaves));
+        self.slaves * (2.0 * self.message_ns + self.transit_ns()) + senders * self.message_ns
+    }
+
+    /// When the region's last word was accepted, and when its commands were executed.
+    fn execute(&self, all: &mut Renderers, r: usize, token_ns: f64, arrived_ns: f64, bin: &[f64; 2]) -> (f64, f64) {
+        let [triangles, spheres] = *bin;
+        let drawing_ns = triangles * self.triangle.ns + spheres * self.sphere.ns;
+        let drawing_words = triangles * self.triangle.words + spheres * self.sphere.words;
+        let words = self.clear.words + drawing_words + self.shade.words + self.copy_words;
+        let first_ns = token_ns + self.transit_ns() + 2.0 * self.message_ns;
+        let start_ns = first_ns.max(all.free_ns[r]);
+        let rate = Cost { words: words.max(1.0), ns: self.clear.ns + drawing_ns };
+        all.started[r].push((all.words[r], start_ns, rate));
+        all.words[r] += words;
+        let wire_ns = arrived_ns.max(first_ns + words * self.word_ns);
+        let accepted_ns = wire_ns.max(self.room_ns(all, r));
+        let last_ns = if triangles > 0.0 { self.triangle.ns } else { self.clear.ns };
+        let executed_ns = (start_ns + self.clear.ns + drawing_ns).max(accepted_ns + last_ns) + self.shade.ns;
+        (accepted_ns, executed_ns)
+    }
+
+    /// When there was room for the last word sent: the command that holds the word a FIFO's depth before had started.
+    fn room_ns(&self, all: &mut Renderers, r: usize) -> f64 {
+        let word = all.words[r] - 1.0 - self.fifo_words;
+        let started = &mut all.started[r];
+        while started.len() > 1 && started[1].0 <= word {
+            started.remove(0);
+        }
+        let (before, start_ns, rate) = started[0];
+        if word < before { f64::MIN } else { start_ns + (word - before) / rate.words * rate.ns }
+    }
+}
+
+fn earliest(times: &[f64]) -> usize {
+    (1..times.len()).fold(0, |best, i| if times[i] < times[best] { i } else { best })
+}
+
+/// The loads of both eyes, frame after frame; the views are those of frames that begin every second field.
+///
+/// # Errors
+///
+/// [`ExperimentError::Scene`] for a scene without primitives.
+pub fn stereo_loads(case: &Case) -> Result<Vec<Load>, ExperimentError> {
+    let still = case.scene.structures().iter().all(|s| s.frame == pxpl5_scene::Frame::Head);
+    let frames = (case.fields / 2).max(1);
+    let times: Vec<u64> = if still { vec![0] } else { (0..frames).map(|frame| frame * FRAME_PS).collect() };
+    let mut loads = Load::of(case, Viewport::FRAME, Binning::Touched, &times)?;
+    while (loads.len() as u64) < 2 * frames {
+        loads.extend_from_within(0..2);
+    }
+    Ok(loads)
+}
+
+/// Two fields.
+const FRAME_PS: u64 = 33_366_666_667;
+
+/// The analytic level of a Rendering Control case.
+pub(super) fn run(case: &Case, program: RenderingControl) -> Result<Summary, ExperimentError> {
+    let model = StereoModel::new(&case.machine, program)?;
+    let mut loads = stereo_loads(case)?;
+    if program.mono {
+        loads = loads.into_iter().step_by(2).collect();
+    }
+    Ok(model.summary(&model.frames(&loads), case.fields))
+}
+
+impl StereoModel {
+    /// Frames shown before the end, without the warm-up.
+    #[must_use]
+    pub fn summary(&self, frames: &[StereoTimes], fields: u64) -> Summary {
+        let end_ns = fields as f64 * self.field_ns;
+        let shown: Vec<_> = frames.iter().filter(|frame| frame.shown_ns < end_ns).skip(WARM_UP_PICTURES).collect();
+        let mean = |of: &dyn Fn(&StereoTimes) -> f64| {
+            shown.iter().map(|frame| of(frame)).sum::<f64>() / shown.len().max(1) as f64 * 1e-6
+        };
+        let length = |eye: usize| move |frame: &StereoTimes| frame.copy_ns[eye].1 - frame.copy_ns[eye].0;
+        let eyes = |frame: &&StereoTimes| {
+            (0..self.eyes).map(|eye| (frame.copy_ns[eye].1 - frame.transform_ns[eye]) * 1e-6).collect::<Vec<_>>()
+        };
+        let periods = shown.windows(2).map(|pair| pair[1].shown_ns - pair[0].shown_ns);
+        let missed = periods.clone().map(|ns| (ns / self.field_ns).round() as u64 - self.eyes.min(2) as u64);
+        let all_ns: f64 = periods.clone().sum();
+        Summary {
+            latencies_ms: shown.iter().map(|frame| (frame.shown_ns - frame.transform_ns[0]) * 1e-6).collect(),
+            updates_hz: if all_ns > 0.0 { periods.count() as f64 * 1e9 / all_ns } else { 0.0 },
+            missed_retraces: missed.sum(),
+            eye_latencies_ms: shown.iter().flat_map(eyes).collect(),
+            region_copy_us: self.copy_ns.iter().sum::<f64>() / self.copy_ns.len() as f64 * 1e-3,
+            first_copy_ms: mean(&length(0)),
+            last_copy_ms: if self.eyes > 1 { mean(&length(1)) } else { 0.0 },
+            copy_begins_ms: mean(&|frame| frame.copy_ns[0].0 - frame.transform_ns[0]),
+        }
+    }
+}

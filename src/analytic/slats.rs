@@ -1,0 +1,260 @@
+//! Slats: one field.
+
+use super::copies::{CopyTimes, Queue, copy_all};
+use super::load::Load;
+use super::renderer::{Array, Commands, Fifo};
+use crate::config::{ConfigError, MachineConfig};
+use crate::experiment::{ExperimentError, WARM_UP_PICTURES};
+use crate::levels::{Case, FIELD_MS, Summary};
+use crate::pipelines::{Pipeline, Slats};
+use pphigs::Binning;
+use pxpl5_framebuffer::Video;
+use pxpl5_geometry::Viewport;
+use pxpl5_renderer::CommandKind;
+use pxpl5_sim::Time;
+use pxpl5_wire::{FieldParity, RegionGrid};
+use slats::{CLUMP, Copy};
+
+/// Renderers that are looked at one by one; more than there are field regions never hold one.
+const MOST_RENDERERS: usize = 20;
+
+/// Field regions of both eyes.
+const REGIONS: usize = 20;
+
+/// Slats on a machine, reduced to numbers.
+#[derive(Clone, Debug)]
+pub struct SlatsModel {
+    fifo: Fifo,
+    overhead_ns: f64,
+    hop_ns: f64,
+    message_ns: f64,
+    pass_ns: f64,
+    triangle_ns: f64,
+    entry_ns: f64,
+    command_ns: f64,
+    command_words: f64,
+    select: (f64, f64),
+    clear: (f64, f64),
+    region_ns: f64,
+    field_ns: f64,
+    /// From a retrace to the scan of the first line of the bottom regions.
+    bottom_ns: f64,
+    renderers: usize,
+    gps: usize,
+    source_channels: usize,
+    split: bool,
+}
+
+/// When things happened, in nanoseconds after the retrace at which the field's view was taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldTimes {
+    /// The last clump was accepted.
+    pub rendered_ns: f64,
+    /// Copy of the top regions, or of all.
+    pub top: CopyTimes,
+    /// Copy of the bottom regions of a split copy, after the retrace.
+    pub bottom: Option<CopyTimes>,
+    /// Whether everything came before its deadline.
+    pub in_time: bool,
+}
+
+impl SlatsModel {
+    /// Reduces a machine; the program's code is applied first.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError`] for too few renderers.
+    pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, ConfigError> {
+        let config = program.adapt(config.clone());
+        slats::Binding::new(config.n_renderers, program.layout().plan().contexts, program.copy)
+            .map_err(|error| ConfigError::Board(error.to_string()))?;
+        let video = Video::new(config.frame_buffer.video).map_err(|error| ConfigError::Board(error.to_string()))?;
+        let command = |kind: CommandKind| {
+            let span = config.renderer.span(kind).map_or(0.0, |span| span.as_ms() * 1e6);
+            (f64::from(kind.words()), span)
+        };
+        let (command_words, command_ns) = command(CommandKind::Triangle);
+        let field_ns = video.retrace(1).since(Time::ZERO).as_ms() * 1e6;
+        let line = |y| video.line_start(y, 2).map_or(0.0, |at| at.since(video.retrace(2)).as_ms() * 1e6);
+        let messages = (15_360.0_f64 / 1_024.0).ceil();
+        let word_ns = config.ring.word_ns as f64;
+        Ok(Self {
+            fifo: Fifo { depth_words: config.renderer.fifo_words as f64, word_ns },
+            overhead_ns: config.ring.overhead_words as f64 * word_ns,
+            hop_ns: config.ring.hop_ns as f64,
+            message_ns: config.gp.message_ns as f64,
+            pass_ns: config.gp.pass_ns as f64,
+            triangle_ns: config.gp.triangle_ns as f64,
+            entry_ns: config.gp.bin_entry_ns as f64,
+            command_ns,
+            command_words,
+            select: command(CommandKind::SelectRegion),
+            clear: command(CommandKind::Clear),
+            region_ns: 15_360.0 * word_ns + messages * config.ring.overhead_words as f64 * word_ns,
+            field_ns,
+            bottom_ns: line(2 * RegionGrid::FIELD.region_height),
+            renderers: config.n_renderers.min(MOST_RENDERERS),
+            gps: config.n_gps,
+            source_channels: (config.ring.source_channels.min(config.ring.channels) as usize).clamp(1, MOST_CHANNELS),
+            split: program.copy == Copy::Split,
+        })
+    }
+
+    /// A field in the steady state: renderers begin with the bottom regions of the field before.
+    #[must_use]
+    pub fn field(&self, triangles: f64, entries_per_triangle: f64) -> FieldTimes {
+        let mut arrays = [Array::busy_until(0.0); MOST_RENDERERS];
+        if self.split {
+            let mut queues = self.queues(|region| region >= REGIONS / 2, 0.0);
+            copy_all(&mut queues[..self.renderers], self.region_ns);
+            for (array, queue) in arrays.iter_mut().zip(&queues).take(self.renderers) {
+                *array = Array::busy_until(queue.ready_ns);
+            }
+        }
+        let rendered_ns = self.render(&mut arrays, triangles, entries_per_triangle);
+        let commanded_ns = rendered_ns + self.message_ns;
+        let mut queues = self.queues(|region| !self.split || region < REGIONS / 2, commanded_ns);
+        for (queue, array) in queues.iter_mut().zip(&arrays) {
+            queue.ready_ns = queue.ready_ns.max(array.free_ns);
+        }
+        let top = copy_all(&mut queues[..self.renderers], self.region_ns);
+        let bottom = self.split.then(|| self.bottom(&queues, commanded_ns + self.message_ns));
+        let bottom_in_time = bottom.is_none_or(|times| times.end_ns <= self.field_ns + self.bottom_ns);
+        FieldTimes { rendered_ns, top, bottom, in_time: top.end_ns <= self.field_ns && bottom_in_time }
+    }
+
+    fn bottom(&self, tops: &[Queue; MOST_RENDERERS], prepared_ns: f64) -> CopyTimes {
+        let mut queues = self.queues(|region| region >= REGIONS / 2, self.field_ns.max(prepared_ns));
+        for (queue, top) in queues.iter_mut().zip(tops) {
+            queue.ready_ns = queue.ready_ns.max(top.ready_ns);
+        }
+        copy_all(&mut queues[..self.renderers], self.region_ns)
+    }
+
+    /// Copies of the regions for which `wanted` holds; the commands go out one after the other from `from_ns` on.
+    fn queues(&self, wanted: impl Fn(usize) -> bool, from_ns: f64) -> [Queue; MOST_RENDERERS] {
+        let mut queues: [Queue; MOST_RENDERERS] = std::array::from_fn(|_| Queue::default());
+        let per_half = REGIONS / 4;
+        // Left and right eye by turns; the odd renderers of a split copy begin right.
+        for region in (0..REGIONS).filter(|region| wanted(*region)) {
+            let renderer = region % self.renderers;
+            let right = (region / per_half) % 2 == 1;
+            queues[renderer].push(u8::from(right));
+        }
+        let each_ns = self.overhead_ns + 2.0 * 11.0 * self.fifo.word_ns;
+        for (index, queue) in queues.iter_mut().enumerate().take(self.renderers) {
+            if self.split && index % 2 == 1 {
+                queue.boards[..queue.len].reverse();
+            }
+            queue.ready_ns = from_ns + each_ns * (index + 1) as f64;
+        }
+        queues
+    }
+
+    /// TRANSFORM and RENDER: clumps of all GPs by turns; when the last one was accepted.
+    fn render(&self, arrays: &mut [Array; MOST_RENDERERS], triangles: f64, entries: f64) -> f64 {
+        let share = triangles / self.gps as f64;
+        let clumps = (share / CLUMP as f64).ceil().max(1.0) as usize;
+        let mut chain = Chain { released_ns: [0.0; MOST_RENDERERS], accepted_ns: 0.0, draining_ns: 0.0 };
+        let mut cpu_ns = self.pass_ns;
+        for clump in 0..clumps {
+            let count = (share - (clump * CLUMP) as f64).min(CLUMP as f64);
+            // The one clump buffer is written again when all renderers have begun with what was in it.
+            cpu_ns = cpu_ns.max(chain.draining_ns) + 2.0 * count * (self.triangle_ns + self.entry_ns * entries);
+            cpu_ns = cpu_ns.max(chain.accepted_ns) + self.message_ns;
+            self.send(arrays, &mut chain, cpu_ns, count * entries / 10.0, clump == 0);
+        }
+        chain.accepted_ns
+    }
+
+    /// The messages of one clump of every GP, as many at a time as a port drives channels.
+    fn send(&self, arrays: &mut [Array; MOST_RENDERERS], chain: &mut Chain, from_ns: f64, count: f64, first: bool) {
+        let mut in_flight = [f64::MIN; MOST_CHANNELS];
+        let in_flight = &mut in_flight[..self.source_channels];
+        let mut granted_ns = from_ns;
+        (chain.accepted_ns, chain.draining_ns) = (from_ns, from_ns);
+        // Several GPs share the ports of the renderers: their messages follow each other.
+        for region in 0..REGIONS {
+            let renderer = region % self.renderers;
+            let latency_ns = self.hop_ns * (renderer + self.gps) as f64;
+            for gp in 0..self.gps {
+                let slot = soonest(in_flight);
+                if gp == 0 {
+                    granted_ns = granted_ns.max(in_flight[slot]);
+                }
+                let begin_ns = granted_ns.max(chain.released_ns[renderer]);
+                if gp == 0 {
+                    granted_ns = begin_ns;
+                }
+                let commands = self.commands(count, first && gp == 0);
+                let accepted_ns = arrays[renderer].take(self.fifo, begin_ns + self.overhead_ns + latency_ns, &commands);
+                chain.released_ns[renderer] = accepted_ns - latency_ns;
+                chain.accepted_ns = chain.accepted_ns.max(accepted_ns);
+                if region < self.renderers {
+                    chain.draining_ns = chain.draining_ns.max(accepted_ns);
+                }
+                if gp == 0 {
+                    in_flight[slot] = chain.released_ns[renderer];
+                }
+            }
+        }
+    }
+
+    fn commands(&self, count: f64, clearing: bool) -> Commands {
+        let (clear_words, clear_ns) = if clearing { self.clear } else { (0.0, 0.0) };
+        Commands {
+            head_words: self.select.0 + clear_words,
+            head_ns: self.select.1 + clear_ns,
+            count,
+            words: self.command_words,
+            each_ns: self.command_ns,
+        }
+    }
+}
+
+/// Messages of clumps on their way.
+struct Chain {
+    /// When each renderer's port was free again.
+    released_ns: [f64; MOST_RENDERERS],
+    /// When the last message of the last clump was accepted.
+    accepted_ns: f64,
+    /// When every renderer had accepted its first message of that clump.
+    draining_ns: f64,
+}
+
+/// Channels that a ring can have.
+const MOST_CHANNELS: usize = 8;
+
+fn soonest(times: &[f64]) -> usize {
+    (1..times.len()).fold(0, |best, i| if times[i] < times[best] { i } else { best })
+}
+
+/// The analytic level of a Slats case.
+pub(super) fn run(case: &Case, program: Slats) -> Result<Summary, ExperimentError> {
+    let model = SlatsModel::new(&case.machine, program)?;
+    let triangles = (case.scene.triangles().len() + case.scene.spheres().len()) as f64;
+    let entries = match program.binning {
+        Binning::All => 10.0,
+        Binning::Touched => {
+            let loads = Load::of(case, Viewport::field(FieldParity::of_field(0)), Binning::Touched, &[0])?;
+            let per_eye = loads.iter().map(Load::entries).sum::<f64>() / loads.len() as f64;
+            per_eye / triangles.max(1.0)
+        }
+    };
+    Ok(summary(case.fields, &model, model.field(triangles, entries)))
+}
+
+fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
+    let pictures = fields.saturating_sub(WARM_UP_PICTURES as u64 + 2).max(1);
+    let ms = |span: CopyTimes| (span.end_ns - span.begin_ns) * 1e-6;
+    Summary {
+        latencies_ms: vec![FIELD_MS; pictures as usize],
+        updates_hz: if times.in_time { 1e3 / FIELD_MS } else { 0.0 },
+        missed_retraces: if times.in_time { 0 } else { pictures },
+        eye_latencies_ms: Vec::new(),
+        region_copy_us: model.region_ns * 1e-3,
+        first_copy_ms: ms(times.top),
+        last_copy_ms: times.bottom.map_or(0.0, ms),
+        copy_begins_ms: times.top.begin_ns * 1e-6,
+    }
+}

@@ -1,0 +1,128 @@
+//! A vertical edge under a pan: conventional and just-in-time, as computed and as seen on the raster.
+
+use crate::config::MachineConfig;
+use crate::experiment::{Experiment, ExperimentError, Pixels};
+use crate::head_to_light::Head;
+use crate::pipelines::{Jitp, Viewpoint};
+use glam::{DVec2, DVec3, Vec3};
+use image::{Rgb, RgbImage};
+use pxpl5_framebuffer::Video;
+use pxpl5_scene::{Frame, HeadMotion, Lighting, Path, Scene, SceneParts, Structure, Sway, Vertex};
+use pxpl5_wire::FieldParity;
+use std::sync::Arc;
+use tracking::motion::{Motion, Pan};
+use tracking::predict::PredictorKind;
+use tracking::time::span_s;
+use tracking::tracker::TrackerConfig;
+use tracking::view::HmdView;
+
+/// The four pictures of one field: 640 x 240, one row for each scanned line.
+#[derive(Clone, Debug)]
+pub struct EdgePictures {
+    /// Drawn for one moment: a vertical edge.
+    pub conventional: RgbImage,
+    /// The same as the eye sees it, which turns while the beam runs: it slants.
+    pub conventional_seen: RgbImage,
+    /// Drawn for the moment of each line: it slants.
+    pub just_in_time: RgbImage,
+    /// The same as the eye sees it: vertical.
+    pub just_in_time_seen: RgbImage,
+}
+
+/// The field that is looked at; by then the pipelines are full and the predictor has seen many reports.
+const FIELD: u64 = 40;
+
+/// Distance of the edge, metres.
+const DISTANCE_M: f32 = 2.0;
+
+/// A white wall to the left and nothing to the right of a vertical edge straight ahead (along -z), for a viewer who
+/// begins `yaw_deg` to the left of it.
+#[must_use]
+pub fn edge_scene(yaw_deg: f64) -> Scene {
+    let vertex =
+        |x: f32, y: f32| Vertex { position: Vec3::new(x, y, -DISTANCE_M), normal: Vec3::Z, colour: [255, 255, 255] };
+    let vertices = vec![vertex(-9.0, -9.0), vertex(0.0, -9.0), vertex(0.0, 9.0), vertex(-9.0, 9.0)];
+    let (sin, cos) = yaw_deg.to_radians().sin_cos();
+    let target = DVec3::new(-sin, 0.0, -cos).as_vec3();
+    let motion = HeadMotion::new(Path::Still { eye: Vec3::ZERO, target }, Sway::none());
+    let structure = Structure {
+        name: "wall".to_owned(),
+        vertices: 0..4,
+        triangles: 0..2,
+        spheres: 0..0,
+        frame: Frame::World,
+        hinge: None,
+    };
+    Scene::new(SceneParts {
+        name: "edge".to_owned(),
+        vertices,
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        spheres: Vec::new(),
+        structures: vec![structure],
+        lighting: Lighting { background: [0; 3], ..Lighting::over_the_shoulder() },
+        motion: motion.expect("a still head is in range"),
+    })
+    .expect("a quadrangle is a scene")
+}
+
+/// Draws the edge on a machine under a pan, with a perfect tracker and constant velocity, so that nothing but the
+/// moment that each line is drawn for makes a difference.
+///
+/// # Errors
+///
+/// As [`Experiment::run`].
+pub fn edge_pictures(config: &MachineConfig, deg_per_s: f64) -> Result<EdgePictures, ExperimentError> {
+    let draw = |viewpoint| draw(config, deg_per_s, viewpoint);
+    let ((conventional, conventional_seen), (just_in_time, just_in_time_seen)) =
+        (draw(Viewpoint::Field)?, draw(Viewpoint::Strip)?);
+    Ok(EdgePictures { conventional, conventional_seen, just_in_time, just_in_time_seen })
+}
+
+/// A field as scanned and as seen.
+fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<(RgbImage, RgbImage), ExperimentError> {
+    let video = Video::new(config.frame_buffer.video).map_err(|e| ExperimentError::Scene(e.to_string()))?;
+    let middle = video.when(320, 240 + FieldParity::of_field(FIELD).first_line(), FIELD).unwrap_or_default();
+    let scene = edge_scene(-deg_per_s * middle.0 as f64 * 1e-12);
+    let pan = Arc::new(Pan::at(deg_per_s));
+    let head = Head::new(pan, TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1)
+        .map_err(|e| ExperimentError::Scene(e.to_string()))?;
+    let outcome = Experiment::new(config.clone(), Jitp::new(viewpoint, true), scene)
+        .head(head)
+        .fields(FIELD + 1)
+        .pixels(Pixels::Lazy)
+        .run()?;
+    let mut machine_fields = outcome.machine().frame_buffers().iter();
+    let scanned = machine_fields.next().and_then(|board| board.last_seen());
+    let picture = scanned.filter(|field| field.field() == FIELD).map(|field| field.picture());
+    let picture = picture.unwrap_or_else(|| RgbImage::new(video.width(), video.height() / 2));
+    let seen = as_seen(&picture, FIELD, &video, &Pan::at(deg_per_s));
+    Ok((picture, seen))
+}
+
+/// A scanned field (a row for each of its lines) as an eye sees it that turns with the head: everything at the place
+/// where it stands relative to the head at the moment when the middle of the field lights. Black where nothing is.
+#[must_use]
+pub fn as_seen(picture: &RgbImage, field: u64, video: &Video, motion: &dyn Motion) -> RgbImage {
+    let (view, parity) = (HmdView::ntsc(), FieldParity::of_field(field).first_line());
+    let when = |x: u32, row: u32| video.when(x, 2 * row + parity, field).unwrap_or_default().0;
+    let middle_ps = when(video.width() / 2, video.height() / 4);
+    // A head turns by hundredths of a degree in a line, so the rate of the middle serves the whole field.
+    let rate = motion.angular_velocity(middle_ps);
+    let fixed = motion.pose(middle_ps);
+    let of_head = fixed.orientation.conjugate() * rate;
+    let moved = |x: u32, row: u32| {
+        let place = DVec2::new(f64::from(x) + 0.5, f64::from(2 * row + parity) + 0.5);
+        let flat = (place - view.centre_px()) / view.focal_px();
+        let turn = tracking::rotation::exp(of_head * span_s(middle_ps, when(x, row)));
+        let seen = view.project(turn * DVec3::new(flat.x, -flat.y, -1.0)).unwrap_or(place);
+        seen - place
+    };
+    RgbImage::from_fn(picture.width(), picture.height(), |x, row| {
+        let way = moved(x, row);
+        let from = (f64::from(x) - way.x, f64::from(row) - way.y / 2.0);
+        let (from_x, from_row) = (from.0.round(), from.1.round());
+        let inside = from_x >= 0.0 && from_row >= 0.0;
+        let pixel = inside.then(|| picture.get_pixel_checked(from_x as u32, from_row as u32)).flatten();
+        pixel.copied().unwrap_or(Rgb([0; 3]))
+    })
+}

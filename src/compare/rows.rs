@@ -1,0 +1,207 @@
+//! The comparison itself: one row for each pipeline.
+
+use super::errors::{Percentiles, PixelErrors};
+use super::possible::triangles_possible;
+use crate::config::MachineConfig;
+use crate::experiment::{Experiment, ExperimentError, Outcome, Pixels};
+use crate::head_to_light::{Budget, Head};
+use crate::parallel;
+use crate::pipelines::{Frameless, Jitp, Pipeline, RenderingControl, Slats};
+use pphigs::Binning;
+use pxpl5_scene::Scene;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// One pipeline.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Row {
+    /// Its name.
+    pub pipeline: String,
+    /// Frame buffers that it draws into.
+    pub eyes: usize,
+    /// What its latency is of.
+    pub latency_definition: String,
+    /// Mean latency of the machine alone, milliseconds.
+    pub latency_ms: f64,
+    /// From the head's pose to light.
+    pub end_to_end: Budget,
+    /// Whole new pictures a second.
+    pub updates_hz: f64,
+    /// Retraces missed, as the pipeline defines it.
+    pub missed_retraces: u64,
+    /// Regions that came after their deadline.
+    pub late_regions: usize,
+    /// Registration over a grid of pixels and all fields.
+    pub error: PixelErrors,
+    /// Most full-screen triangles; `None` where it was not asked for or means nothing.
+    pub triangles_possible: Option<u32>,
+    /// What that number means.
+    pub triangles_definition: String,
+    /// Why there are no numbers, if so.
+    pub failure: Option<String>,
+    /// Time that the run took on this host, seconds.
+    pub host_seconds: f64,
+}
+
+/// All pipelines.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// Name and version of this record's layout.
+    pub schema: &'static str,
+    /// Preset of the machine.
+    pub machine: String,
+    /// Graphics processors and renderers.
+    pub boards: [usize; 2],
+    /// Scene.
+    pub scene: String,
+    /// Its triangles.
+    pub triangles: usize,
+    /// Tracker.
+    pub tracker: String,
+    /// Predictor.
+    pub predictor: String,
+    /// Fields simulated.
+    pub fields: u64,
+    /// A row for each.
+    pub pipelines: Vec<Row>,
+}
+
+/// A row of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// The picture as it is.
+    Plain,
+    /// The raster is shifted as it is scanned.
+    RasterOffset,
+    /// The reference, evaluated at the times of the run.
+    Ideal,
+}
+
+/// A run and the rows that it gives.
+struct Contender {
+    pipeline: Arc<dyn Pipeline>,
+    rows: Vec<(String, Kind)>,
+}
+
+impl Contender {
+    fn plain(pipeline: impl Pipeline + 'static) -> Self {
+        Self { rows: vec![(pipeline.name().to_owned(), Kind::Plain)], pipeline: Arc::new(pipeline) }
+    }
+}
+
+/// Slats twice: as published every clump goes to all regions, which limits the scene to little more than 100
+/// triangles; clumps that go where they are seen leave the raster offset a picture to work on.
+fn contenders() -> Vec<Contender> {
+    let row = |name: &str, kind| (name.to_owned(), kind);
+    let touched = Contender {
+        pipeline: Arc::new(Slats { binning: Binning::Touched, ..Slats::split() }),
+        rows: vec![row("slats-touched", Kind::Plain), row("vdrt", Kind::RasterOffset), row("ideal", Kind::Ideal)],
+    };
+    let mut all = vec![
+        Contender::plain(RenderingControl::stereo()),
+        Contender::plain(Slats::split()),
+        touched,
+        Contender::plain(Frameless::new()),
+    ];
+    all.extend(Jitp::all().into_iter().map(Contender::plain));
+    all
+}
+
+/// Runs every pipeline on a machine with a scene and a head; `possible` searches for the most triangles too.
+///
+/// A pipeline that cannot run there has a row with its failure. No pixels are computed.
+///
+/// # Errors
+///
+/// [`ExperimentError::Fields`] when there are too few or too many fields.
+pub fn compare(
+    config: &MachineConfig,
+    scene: &Arc<Scene>,
+    head: &Arc<Head>,
+    fields: u64,
+    possible: bool,
+) -> Result<Comparison, ExperimentError> {
+    let expected = (super::errors::UNJUDGED_FIELDS + 2, crate::head_to_light::FIELDS_WITH_HEAD);
+    if !(expected.0..=expected.1).contains(&fields) {
+        return Err(ExperimentError::Fields { expected, found: fields });
+    }
+    config.check()?;
+    let tracker = head.tracker().config().name.clone();
+    let rows = parallel::map(&contenders(), |contender| {
+        let run = Experiment::with(config.clone(), Arc::clone(&contender.pipeline), Arc::clone(scene))
+            .head(Arc::clone(head))
+            .fields(fields)
+            .pixels(Pixels::Off)
+            .run();
+        contender.rows(config, possible, &run)
+    });
+    Ok(Comparison {
+        schema: "pxpl5-comparison/1",
+        machine: config.preset.clone(),
+        boards: [config.n_gps, config.n_renderers],
+        scene: scene.name().to_owned(),
+        triangles: scene.triangles().len(),
+        tracker,
+        predictor: format!("{:?}", head.predictor_kind()),
+        fields,
+        pipelines: rows.into_iter().flatten().collect(),
+    })
+}
+
+impl Contender {
+    fn rows(&self, config: &MachineConfig, possible: bool, run: &Result<Outcome, ExperimentError>) -> Vec<Row> {
+        let limit = possible.then(|| triangles_possible(config, &self.pipeline));
+        let row = |(name, kind): &(String, Kind)| {
+            let limit = limit.as_ref().filter(|_| *kind != Kind::Ideal);
+            let blank = Row {
+                pipeline: name.clone(),
+                eyes: self.pipeline.eyes(),
+                triangles_possible: limit.map(|limit| limit.triangles),
+                triangles_definition: limit.map_or("", |limit| limit.definition).to_owned(),
+                ..Row::default()
+            };
+            match run {
+                Ok(outcome) => of_outcome(*kind, outcome, blank),
+                Err(error) => Row { failure: Some(error.to_string()), ..blank },
+            }
+        };
+        self.rows.iter().map(row).collect()
+    }
+}
+
+fn of_outcome(kind: Kind, outcome: &Outcome, blank: Row) -> Row {
+    let error = match kind {
+        Kind::Plain => PixelErrors::of(outcome),
+        Kind::RasterOffset => PixelErrors::with_raster_offset(outcome),
+        Kind::Ideal => {
+            let latency_definition = "none: every pixel's own moment, computed and not timed".to_owned();
+            return Row { error: PixelErrors::ideal(outcome), latency_definition, ..blank };
+        }
+    };
+    let report = outcome.report();
+    Row {
+        latency_definition: outcome.pipeline().latency_definition().to_owned(),
+        latency_ms: report.latency_ms.statistics.mean,
+        end_to_end: Budget::of(outcome),
+        updates_hz: report.updates_hz,
+        missed_retraces: report.missed_retraces,
+        late_regions: report.late_regions,
+        error,
+        host_seconds: outcome.host_seconds(),
+        ..blank
+    }
+}
+
+impl Comparison {
+    /// A row by name.
+    #[must_use]
+    pub fn row(&self, pipeline: &str) -> Option<&Row> {
+        self.pipelines.iter().find(|row| row.pipeline == pipeline)
+    }
+
+    /// The errors of a row by name; none for a name that is not there.
+    #[must_use]
+    pub fn pixels(&self, pipeline: &str) -> Percentiles {
+        self.row(pipeline).map_or_else(Percentiles::default, |row| row.error.pixels)
+    }
+}

@@ -1,0 +1,313 @@
+//! Save and restore at a frame boundary.
+//!
+//! A snapshot is a **replay snapshot**: it does not hold the state of the boards, because the programs that run on them
+//! are suspended `async` functions, whose insides cannot be written down. It holds what determines that state - the
+//! experiment, the identity of the scene, the field - and the trace hash and number of events by which the state is
+//! known again. To restore, the run is repeated without computing pixels up to that field, compared, and continued. So
+//! a restored run is the same run to the last bit, which is proved each time, and restoring takes the host as long as
+//! simulating did (thousands of fields a second for small scenes).
+//!
+//! The file is JSON, with a version and a checksum; a damaged or foreign file is refused with the reason.
+
+use crate::experiment_file::{ExperimentFile, FileError, Plan};
+use crate::fingerprint::Fingerprint;
+use crate::machine::Machine;
+use pxpl5_scene::Scene;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use thiserror::Error;
+
+/// What is needed to repeat a run up to a field and to know that it is the same.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Snapshot {
+    /// Name and version of the layout.
+    pub schema: String,
+    /// Version of the program that wrote it.
+    pub version: String,
+    /// Preset of the machine.
+    pub machine: String,
+    /// Name of everything on which the trace of the whole run depends.
+    pub config_hash: String,
+    /// Level of modelling.
+    pub level: String,
+    /// Seed of the head motion.
+    pub seed: u64,
+    /// The field whose first retrace is the moment of the snapshot; nothing of that field has happened.
+    pub field: u64,
+    /// That moment in picoseconds.
+    pub time_ps: u64,
+    /// Hash of everything that happened before.
+    pub trace_hash: String,
+    /// Events before.
+    pub events: u64,
+    /// Fingerprint of the scene's contents.
+    pub scene_hash: String,
+    /// The experiment as the text of an experiment file.
+    pub experiment: String,
+}
+
+/// Why a snapshot cannot be used.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SnapshotError {
+    /// It is something else.
+    #[error("{file}: this is no snapshot: {reason}")]
+    Foreign {
+        /// The file.
+        file: String,
+        /// Why.
+        reason: String,
+    },
+    /// Its layout is of another version.
+    #[error("{file}: expected a snapshot of layout {expected}, found {found}; use the version of pxpl5 that wrote it")]
+    Version {
+        /// The file.
+        file: String,
+        /// The layout that is read.
+        expected: &'static str,
+        /// The layout found.
+        found: String,
+    },
+    /// It was changed after it was written.
+    #[error("{file}: the snapshot is damaged: its checksum should be {expected}, found {found}")]
+    Damaged {
+        /// The file.
+        file: String,
+        /// Of the contents.
+        expected: String,
+        /// In the file.
+        found: String,
+    },
+    /// The experiment in it is not understood.
+    #[error("{file}: {error}")]
+    Experiment {
+        /// The file.
+        file: String,
+        /// Why.
+        error: Box<FileError>,
+    },
+    /// The run is not the one that was saved.
+    #[error(
+        "{file}: the run is not the one that was saved (by version {version}): {what} was {expected}, now it is {found}"
+    )]
+    Differs {
+        /// The file.
+        file: String,
+        /// The version that saved it.
+        version: String,
+        /// What differs.
+        what: &'static str,
+        /// As saved.
+        expected: String,
+        /// As found.
+        found: String,
+    },
+}
+
+impl Snapshot {
+    /// Name and version of the layout.
+    pub const SCHEMA: &'static str = "pxpl5-snapshot/1";
+
+    /// Of a machine that stands at the first retrace of a field.
+    #[must_use]
+    pub fn of(plan: &Plan, config_hash: Fingerprint, scene: &Scene, field: u64, machine: &Machine) -> Self {
+        Self {
+            schema: Self::SCHEMA.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            machine: plan.machine.preset.clone(),
+            config_hash: config_hash.to_string(),
+            level: plan.level_name().to_owned(),
+            seed: plan.seed,
+            field,
+            time_ps: machine.video().retrace(field).0,
+            trace_hash: machine.trace_hash().to_string(),
+            events: machine.events(),
+            scene_hash: Fingerprint::of_scene(scene).to_string(),
+            experiment: plan.settings().to_string(),
+        }
+    }
+
+    /// The text of its file.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        let sealed = Sealed { snapshot: self.clone(), checksum: self.checksum() };
+        let mut text = serde_json::to_string_pretty(&sealed).unwrap_or_default();
+        text.push('\n');
+        text
+    }
+
+    /// Reads the text of a file; `file` stands for it in errors.
+    ///
+    /// # Errors
+    ///
+    /// [`SnapshotError`] for anything that was not written by [`Self::to_text`].
+    pub fn read(text: &str, file: &str) -> Result<Self, SnapshotError> {
+        let foreign = |reason: String| SnapshotError::Foreign { file: file.to_owned(), reason };
+        let value: Value = serde_json::from_str(text).map_err(|error| foreign(format!("not whole JSON: {error}")))?;
+        let found = value.get("schema").and_then(Value::as_str).unwrap_or("none");
+        if !found.starts_with("pxpl5-snapshot/") {
+            return Err(foreign(format!("expected schema {}, found {found}", Self::SCHEMA)));
+        }
+        if found != Self::SCHEMA {
+            let (file, found) = (file.to_owned(), found.to_owned());
+            return Err(SnapshotError::Version { file, expected: Self::SCHEMA, found });
+        }
+        let sealed: Sealed = serde_json::from_value(value).map_err(|error| foreign(error.to_string()))?;
+        let expected = sealed.snapshot.checksum();
+        if sealed.checksum != expected {
+            return Err(SnapshotError::Damaged { file: file.to_owned(), expected, found: sealed.checksum });
+        }
+        Ok(sealed.snapshot)
+    }
+
+    fn checksum(&self) -> String {
+        Fingerprint::of(serde_json::to_string(self).unwrap_or_default().as_bytes()).to_string()
+    }
+
+    /// The experiment that was saved.
+    ///
+    /// # Errors
+    ///
+    /// [`SnapshotError::Experiment`] when this version does not understand it.
+    pub fn experiment(&self, file: &str) -> Result<ExperimentFile, SnapshotError> {
+        let text = format!("{file}: experiment");
+        ExperimentFile::parse(&self.experiment, &text)
+            .map_err(|error| SnapshotError::Experiment { file: file.to_owned(), error: Box::new(error) })
+    }
+
+    /// Compares the scene with the one that was saved.
+    ///
+    /// # Errors
+    ///
+    /// [`SnapshotError::Differs`].
+    pub fn check_scene(&self, scene: &Scene, file: &str) -> Result<(), SnapshotError> {
+        self.same("the scene's fingerprint", &self.scene_hash, Fingerprint::of_scene(scene).to_string(), file)
+    }
+
+    /// Compares a machine, repeated up to the field, with the one that was saved.
+    ///
+    /// # Errors
+    ///
+    /// [`SnapshotError::Differs`].
+    pub fn check_machine(&self, machine: &Machine, file: &str) -> Result<(), SnapshotError> {
+        self.same("the trace hash", &self.trace_hash, machine.trace_hash().to_string(), file)?;
+        self.same("the number of events", &self.events.to_string(), machine.events().to_string(), file)
+    }
+
+    fn same(&self, what: &'static str, expected: &str, found: String, file: &str) -> Result<(), SnapshotError> {
+        if expected == found {
+            return Ok(());
+        }
+        let (file, version, expected) = (file.to_owned(), self.version.clone(), expected.to_owned());
+        Err(SnapshotError::Differs { file, version, what, expected, found })
+    }
+}
+
+/// As it is written.
+#[derive(Serialize, Deserialize)]
+struct Sealed {
+    #[serde(flatten)]
+    snapshot: Snapshot,
+    checksum: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Pixels;
+
+    /// The run, its snapshot at field 9, and its trace hash at the end.
+    fn saved() -> (Plan, Snapshot, String) {
+        let text = "pipeline = \"rendering-control\"\nscene = \"mig\"\ntriangles = 40\nfields = 24\nseed = 5\n";
+        let plan = ExperimentFile::parse(text, "test").and_then(|file| file.resolve()).expect("an experiment");
+        let scene = plan.load_scene().expect("built in");
+        let experiment = plan.experiment(scene.clone()).pixels(Pixels::Off);
+        let mut snapshot = None;
+        let outcome = experiment.run_stopping(&[9], |field, machine| {
+            if field == 9 {
+                snapshot = Some(Snapshot::of(&plan, experiment.config_hash(), &scene, field, machine));
+            }
+            Ok(())
+        });
+        let hash = outcome.expect("it runs").report().trace_hash;
+        (plan, snapshot.expect("field 9 was passed"), hash)
+    }
+
+    #[test]
+    fn a_run_repeated_from_its_snapshot_is_the_same_at_the_field_and_at_the_end() {
+        let (plan, snapshot, end) = saved();
+        let snapshot = Snapshot::read(&snapshot.to_text(), "s").expect("as written");
+        let restored = snapshot.experiment("s").and_then(|file| {
+            file.resolve().map_err(|error| SnapshotError::Experiment { file: "s".to_owned(), error: Box::new(error) })
+        });
+        let restored = restored.expect("as written");
+        assert_eq!(restored, plan);
+        let scene = restored.load_scene().expect("built in");
+        snapshot.check_scene(&scene, "s").expect("the same");
+        let mut compared = false;
+        let outcome = restored.experiment(scene).run_stopping(&[9], |field, machine| {
+            if field == 9 {
+                snapshot.check_machine(machine, "s").expect("the same");
+                compared = true;
+            }
+            Ok(())
+        });
+        assert!(compared);
+        assert_eq!(outcome.expect("it runs").report().trace_hash, end);
+    }
+
+    #[test]
+    fn a_stop_changes_nothing() {
+        let (plan, _, stopped) = saved();
+        let whole = plan.experiment(plan.load_scene().expect("built in")).run().expect("it runs");
+        assert_eq!(whole.report().trace_hash, stopped);
+    }
+
+    #[test]
+    fn a_machine_of_another_run_is_told_apart() {
+        let (plan, snapshot, _) = saved();
+        let other = Plan { seed: 6, ..plan.clone() };
+        let result = other.experiment(plan.load_scene().expect("built in")).run_stopping(&[9], |field, machine| {
+            if field == 9 {
+                let error = snapshot.check_machine(machine, "s").expect_err("another seed").to_string();
+                assert!(error.contains("not the one that was saved"), "{error}");
+            }
+            Ok(())
+        });
+        result.expect("it runs");
+        let cut = plan.load_scene().expect("built in").truncated(39).expect("it has 40");
+        assert!(snapshot.check_scene(&cut, "s").is_err());
+    }
+
+    #[test]
+    fn every_changed_byte_and_every_cut_is_noticed() {
+        let (_, snapshot, _) = saved();
+        let text = snapshot.to_text();
+        for at in 0..text.len() - 2 {
+            assert!(Snapshot::read(&text[..at], "s").is_err(), "cut at {at}");
+            let mut bytes = text.clone().into_bytes();
+            bytes[at] = if bytes[at] == b'7' { b'8' } else { b'7' };
+            let same = String::from_utf8(bytes).ok().and_then(|text| Snapshot::read(&text, "s").ok());
+            assert!(same.is_none_or(|other| other == snapshot), "changed at {at}");
+        }
+    }
+
+    #[test]
+    fn foreign_files_are_refused_with_the_reason() {
+        let (_, snapshot, _) = saved();
+        for (text, says) in [
+            ("", "not whole JSON"),
+            ("{}", "expected schema pxpl5-snapshot/1, found none"),
+            ("{\"schema\": \"pxpl5-report/1\"}", "found pxpl5-report/1"),
+            ("{\"schema\": \"pxpl5-snapshot/1\"}", "missing field"),
+        ] {
+            let error = Snapshot::read(text, "s").expect_err(text).to_string();
+            assert!(error.contains(says), "{text}: {error}");
+        }
+        let newer = snapshot.to_text().replace("snapshot/1", "snapshot/2");
+        assert!(matches!(Snapshot::read(&newer, "s"), Err(SnapshotError::Version { .. })));
+        let edited = snapshot.to_text().replace("\"seed\": 5", "\"seed\": 6");
+        assert!(matches!(Snapshot::read(&edited, "s"), Err(SnapshotError::Damaged { .. })));
+    }
+}

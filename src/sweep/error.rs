@@ -1,0 +1,86 @@
+//! What can go wrong with the files of a sweep.
+
+use crate::experiment_file::FileError;
+use thiserror::Error;
+
+/// Why a sweep did not run or shards could not be joined.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SweepError {
+    /// A file or folder cannot be read or written.
+    #[error("{path}: {doing}: {reason}")]
+    Io {
+        /// The file or folder.
+        path: String,
+        /// What was tried.
+        doing: &'static str,
+        /// What the operating system said.
+        reason: String,
+    },
+    /// Another process is writing into the folder.
+    #[error("{path}: another process is writing here; wait for it, or choose another folder")]
+    Locked {
+        /// The folder.
+        path: String,
+    },
+    /// The folder holds results already.
+    #[error("{path}: there are {rows} finished points here already; continue with --resume, or choose another folder")]
+    NotEmpty {
+        /// The folder.
+        path: String,
+        /// How many.
+        rows: usize,
+    },
+    /// The folder holds results of another sweep.
+    #[error("{path}: these are results of another sweep: {what} was {found}, expected {expected}")]
+    Foreign {
+        /// The file.
+        path: String,
+        /// What differs.
+        what: String,
+        /// What this sweep has.
+        expected: String,
+        /// What the file has.
+        found: String,
+    },
+    /// A line is no row.
+    #[error("{path}, line {line}: expected a row of a sweep, found {found}")]
+    Damaged {
+        /// The file.
+        path: String,
+        /// The line, from 1.
+        line: usize,
+        /// Its beginning, or what is wrong with it.
+        found: String,
+    },
+    /// A point has two different rows.
+    #[error("point {point} has different rows in {first} and {second}")]
+    Contradiction {
+        /// The point.
+        point: u64,
+        /// A file.
+        first: String,
+        /// Another file, or the same.
+        second: String,
+    },
+    /// Points are missing.
+    #[error("{missing} of {points} points are missing: {which}; run the shards that hold them with --resume")]
+    Missing {
+        /// How many.
+        missing: u64,
+        /// Of how many.
+        points: u64,
+        /// Which, as ranges.
+        which: String,
+    },
+    /// The experiment file is wrong.
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+impl SweepError {
+    pub(super) fn io(path: &std::path::Path, doing: &'static str) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.display().to_string();
+        move |error| Self::Io { path, doing, reason: error.to_string() }
+    }
+}

@@ -1,0 +1,96 @@
+//! The first line of a sweep's rows: everything that is needed to make them again.
+
+use super::Sweep;
+use crate::experiment_file::{FileError, Plan};
+use crate::fingerprint::Fingerprint;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// What all rows of a sweep have in common.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// Name and version of the layout of header and rows.
+    pub schema: String,
+    /// Version of the program.
+    pub version: String,
+    /// Preset of the machine at the first point that is an experiment.
+    pub machine: String,
+    /// Name of the settings, the space and the quantities.
+    pub config_hash: String,
+    /// Level of modelling at that point.
+    pub level: String,
+    /// Seed at that point.
+    pub seed: u64,
+    /// A line for people.
+    pub title: Option<String>,
+    /// Number of points.
+    pub points: u64,
+    /// The quantities measured, and their definitions.
+    pub measure: BTreeMap<String, String>,
+    /// The settings that all points share.
+    pub settings: BTreeMap<String, Value>,
+    /// The axes: settings that change together, and the values that they take.
+    pub axes: Vec<AxisRecord>,
+}
+
+/// An axis as it is written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AxisRecord {
+    /// Keys of the experiment file.
+    pub paths: Vec<String>,
+    /// For each step one value per path.
+    pub steps: Vec<Vec<Value>>,
+}
+
+impl Header {
+    /// Name and version of the layout.
+    pub const SCHEMA: &'static str = "pxpl5-sweep/1";
+}
+
+impl Sweep {
+    /// The header of the sweep's rows.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError`] of the first point when no point is an experiment.
+    pub fn header(&self) -> Result<Header, FileError> {
+        let mut points = (0..self.space.points()).map(|point| self.plan(point));
+        let first = points.find_map(Result::ok).map_or_else(|| self.plan(0), Ok)?;
+        let axes: Vec<AxisRecord> = self.space.axes().iter().map(record).collect();
+        let settings: BTreeMap<String, Value> =
+            self.base.settings.iter().map(|(path, setting)| (path.clone(), json(&setting.value))).collect();
+        let measure: BTreeMap<String, String> =
+            first.measure.iter().map(|m| (m.name().to_owned(), m.definition().to_owned())).collect();
+        let version = env!("CARGO_PKG_VERSION").to_owned();
+        Ok(Header {
+            schema: Header::SCHEMA.to_owned(),
+            machine: first.machine.preset.clone(),
+            config_hash: hash(&version, &first, &settings, &axes).to_string(),
+            version,
+            level: first.level_name().to_owned(),
+            seed: first.seed,
+            title: first.title,
+            points: self.space.points(),
+            measure,
+            settings,
+            axes,
+        })
+    }
+}
+
+/// The effective settings of the first point are part of it: a preset may change from version to version.
+fn hash(version: &str, first: &Plan, settings: &BTreeMap<String, Value>, axes: &[AxisRecord]) -> Fingerprint {
+    let axes = serde_json::to_string(axes).unwrap_or_default();
+    let measure: Vec<&str> = first.measure.iter().map(crate::measure::Measure::name).collect();
+    Fingerprint::of(format!("{version} {} {settings:?} {measure:?} {axes}", first.fingerprint()).as_bytes())
+}
+
+fn record(axis: &super::Axis) -> AxisRecord {
+    let steps = axis.steps.iter().map(|step| step.iter().map(json).collect()).collect();
+    AxisRecord { paths: axis.paths.clone(), steps }
+}
+
+pub(super) fn json(value: &toml::Value) -> Value {
+    serde_json::to_value(value).unwrap_or_default()
+}

@@ -1,0 +1,84 @@
+//! Sweeps: one experiment at every point of a space of settings.
+//!
+//! ```text
+//!  FILE.toml --> Sweep --> points 0 .. n --> threads --> rows.jsonl   one line a point, appended when it is finished
+//!                  |          |                      `-> times.jsonl  how long each took on this host
+//!                  `-> Header `-> shard i/n          `-> results.csv  at the end
+//! ```
+//!
+//! # Behaviour
+//!
+//! - A point's row depends on the file and the point alone: not on threads, shards, order or host. What does depend on
+//!   the host is kept apart, in times.jsonl.
+//! - Rows are appended as they come, each with one write. When all are there they are put in order of their points, so
+//!   that the finished file is the same bytes however it came about.
+//! - After a kill at any moment the last line may be torn: [`Store::open`] cuts it off, and that point is computed
+//!   again; no other.
+//! - A point that cannot be simulated has a row that says why; the others go on.
+//! - Two processes never write into one folder: the second is refused.
+//!
+//! # Not modelled
+//!
+//! Random sampling and adaptive refinement of the space; points of one sweep on several hosts other than by shards.
+
+mod error;
+mod header;
+mod merge;
+mod point;
+mod run;
+mod space;
+mod store;
+
+pub use error::SweepError;
+pub use header::Header;
+pub use merge::{Merged, merge};
+pub use point::{Row, Status};
+pub use run::{RunOptions, Shard, run};
+pub use space::{Axis, MAX_POINTS, Space};
+pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};
+
+use crate::experiment_file::{ExperimentFile, FileError};
+use std::path::Path;
+
+/// An experiment file with a space of settings.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    base: ExperimentFile,
+    space: Space,
+}
+
+impl Sweep {
+    /// Reads a file.
+    ///
+    /// # Errors
+    ///
+    /// As [`ExperimentFile::load`] and [`Sweep::new`].
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, FileError> {
+        Self::new(ExperimentFile::load(path)?)
+    }
+
+    /// The sweep that a file describes in its table `sweep`.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError`] when it has none, or one that makes no sense.
+    pub fn new(base: ExperimentFile) -> Result<Self, FileError> {
+        let space = Space::read(&base)?;
+        Ok(Self { base, space })
+    }
+
+    /// The settings that all points share.
+    #[must_use]
+    pub const fn base(&self) -> &ExperimentFile {
+        &self.base
+    }
+
+    /// The points.
+    #[must_use]
+    pub const fn space(&self) -> &Space {
+        &self.space
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,124 @@
+//! One point of a sweep.
+
+use super::Sweep;
+use super::header::json;
+use crate::experiment_file::{FileError, Plan};
+use pxpl5_scene::Scene;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Whether a point could be simulated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// It could.
+    Done,
+    /// It could not; `error` says why.
+    Failed,
+}
+
+/// What came of a point; the same on every host.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Its number.
+    pub point: u64,
+    /// Whether it could be simulated.
+    pub status: Status,
+    /// Its settings.
+    pub parameters: BTreeMap<String, Value>,
+    /// Quantities by name; null where the run shows none.
+    pub measured: BTreeMap<String, Option<f64>>,
+    /// Name of everything on which the trace depends; null for an experiment that could not be made.
+    pub config_hash: Option<String>,
+    /// Hash of everything that happened; null at a level without events.
+    pub trace_hash: Option<String>,
+    /// Why it could not be simulated.
+    pub error: Option<String>,
+}
+
+/// Scenes that were loaded, by name: points mostly share one.
+#[derive(Debug, Default)]
+pub(super) struct Scenes(Mutex<BTreeMap<String, Arc<Scene>>>);
+
+impl Scenes {
+    fn of(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
+        // Loading under the lock: nobody else should load the same.
+        let mut loaded = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let whole = match loaded.get(&plan.scene.name) {
+            Some(whole) => Arc::clone(whole),
+            None => {
+                let whole = Arc::new(plan.scene.load_whole()?);
+                loaded.insert(plan.scene.name.clone(), Arc::clone(&whole));
+                whole
+            }
+        };
+        drop(loaded);
+        plan.scene.prepared(whole)
+    }
+}
+
+impl Sweep {
+    /// The experiment at a point.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError`] when its settings make no experiment.
+    pub fn plan(&self, point: u64) -> Result<Plan, FileError> {
+        let mut file = self.base.clone();
+        for (path, value) in self.space.settings(point) {
+            file.set(&path, value, &format!("point {point}"))?;
+        }
+        file.resolve()
+    }
+
+    /// Simulates a point; what is wrong with it, even a panic, becomes its row.
+    pub(super) fn row(&self, point: u64, scenes: &Scenes) -> Row {
+        let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point, scenes)));
+        let result = result.unwrap_or_else(|panic| Err(format!("a bug of the emulator: {}", panic_text(&*panic))));
+        let parameters = self.space.settings(point).iter().map(|(path, value)| (path.clone(), json(value))).collect();
+        let empty = Row {
+            point,
+            status: Status::Failed,
+            parameters,
+            measured: BTreeMap::new(),
+            config_hash: None,
+            trace_hash: None,
+            error: None,
+        };
+        match result {
+            Ok(simulated) => Row {
+                status: Status::Done,
+                measured: simulated.measured,
+                config_hash: Some(simulated.config_hash),
+                trace_hash: simulated.trace_hash,
+                ..empty
+            },
+            Err(error) => Row { error: Some(error), ..empty },
+        }
+    }
+
+    fn simulate(&self, point: u64, scenes: &Scenes) -> Result<Simulated, String> {
+        let plan = self.plan(point).map_err(|error| error.to_string())?;
+        let scene = scenes.of(&plan).map_err(|error| error.to_string())?;
+        let config_hash = plan.case(scene.clone()).experiment().config_hash().to_string();
+        // Nobody looks at the pictures of a sweep, and pixels change no time.
+        let results = plan.run(scene).map_err(|error| error.to_string())?;
+        let measured = plan.measure.iter().map(|m| (m.name().to_owned(), m.of(&results))).collect();
+        let trace_hash = results.run.map(|(_, report)| report.trace_hash);
+        Ok(Simulated { measured, config_hash, trace_hash })
+    }
+}
+
+struct Simulated {
+    measured: BTreeMap<String, Option<f64>>,
+    config_hash: String,
+    trace_hash: Option<String>,
+}
+
+fn panic_text(panic: &(dyn std::any::Any + Send)) -> &str {
+    let text = panic.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("no reason given")
+}

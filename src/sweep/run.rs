@@ -1,0 +1,87 @@
+//! Simulating the points of a sweep on all cores.
+
+use super::point::{Row, Scenes};
+use super::{Store, Sweep, SweepError};
+use crossbeam_channel::{Sender, bounded};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread;
+use std::time::Instant;
+
+/// A disjoint share of a sweep: the points whose number leaves remainder `index` when divided by `of`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    index: u64,
+    of: u64,
+}
+
+impl Shard {
+    /// All points.
+    pub const ALL: Self = Self { index: 0, of: 1 };
+
+    /// Share `number` of `of`, counted from 1; `None` when there is no such share.
+    #[must_use]
+    pub const fn new(number: u64, of: u64) -> Option<Self> {
+        if number == 0 || number > of { None } else { Some(Self { index: number - 1, of }) }
+    }
+
+    /// Whether a point belongs to it.
+    #[must_use]
+    pub const fn holds(&self, point: u64) -> bool {
+        point % self.of == self.index
+    }
+}
+
+/// How to run a sweep.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RunOptions {
+    /// The share to run.
+    pub shard: Shard,
+    /// Points at a time.
+    pub threads: usize,
+}
+
+/// Rows that may wait to be written; more would only delay what a kill loses.
+const WAITING_ROWS: usize = 64;
+
+/// Simulates the points of a shard that the store does not hold yet; `finished` hears of every row once it is stored.
+///
+/// # Errors
+///
+/// [`SweepError::Io`] when a row cannot be stored; the points in hand are finished first and lost.
+pub fn run(
+    sweep: &Sweep,
+    store: &mut Store,
+    options: RunOptions,
+    mut finished: impl FnMut(&Row),
+) -> Result<(), SweepError> {
+    let missing = |point: &u64| options.shard.holds(*point) && !store.holds(*point);
+    let points: Vec<u64> = (0..sweep.space().points()).filter(missing).collect();
+    let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let scenes = Scenes::default();
+    let (sender, rows) = bounded(WAITING_ROWS);
+    let worker = |sender: Sender<(Row, f64)>| {
+        while !stop.load(Ordering::Relaxed) {
+            let Some(point) = points.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
+            let begin = Instant::now();
+            let row = sweep.row(*point, &scenes);
+            if sender.send((row, begin.elapsed().as_secs_f64())).is_err() {
+                break;
+            }
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..options.threads.clamp(1, points.len().max(1)) {
+            let (sender, worker) = (sender.clone(), &worker);
+            scope.spawn(move || worker(sender));
+        }
+        drop(sender);
+        let result = rows.iter().try_for_each(|(row, seconds)| {
+            store.append(&row, seconds)?;
+            finished(&row);
+            Ok(())
+        });
+        stop.store(true, Ordering::Relaxed);
+        drop(rows);
+        result
+    })
+}

@@ -1,0 +1,147 @@
+use super::*;
+use crate::experiment_file::ExperimentFile;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+const BASE: &str =
+    "pipeline = \"slats\"\nscene = \"full-screen:4\"\nfields = 10\nmeasure = [\"latency_ms.mean\", \"last_copy_ms\"]\n";
+
+fn sweep(space: &str) -> Sweep {
+    Sweep::new(ExperimentFile::parse(&format!("{BASE}{space}"), "test").expect("TOML")).expect("a sweep")
+}
+
+fn refusal(space: &str) -> String {
+    let file = ExperimentFile::parse(&format!("{BASE}{space}"), "test").expect("TOML");
+    Sweep::new(file).expect_err("no sweep").to_string()
+}
+
+fn folder(name: &str) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("pxpl5-sweep-{}-{name}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&path);
+    path
+}
+
+fn all(sweep: &Sweep, store: &mut Store) {
+    run(sweep, store, RunOptions { shard: Shard::ALL, threads: 2 }, |_| {}).expect("it runs");
+}
+
+#[test]
+fn the_points_are_all_combinations_each_once_and_the_last_axis_changes_fastest() {
+    let sweep = sweep(
+        "[sweep]\nseeds = 2\n[sweep.grid]\ncopy = [\"whole\", \"split\"]\ntriangles = {from = 1, to = 4, step = 2}\n",
+    );
+    let points: Vec<String> = (0..sweep.space().points()).map(|p| format!("{:?}", sweep.space().settings(p))).collect();
+    assert_eq!(points.len(), 2 * 2 * 2);
+    assert_eq!(points.iter().collect::<BTreeSet<_>>().len(), 8);
+    let first = sweep.space().settings(0);
+    let second = sweep.space().settings(1);
+    assert_eq!(
+        (first["copy"].as_str(), first["triangles"].as_integer(), first["seed"].as_integer()),
+        (Some("whole"), Some(1), Some(1))
+    );
+    assert_eq!((second["triangles"].as_integer(), second["seed"].as_integer()), (Some(1), Some(2)));
+}
+
+#[test]
+fn settings_taken_together_are_one_axis() {
+    let sweep = sweep("[sweep.together]\nmachine.n_gps = [1, 2]\nmachine.n_renderers = [5, 10]\n");
+    let plans: Vec<_> = (0..2).map(|point| sweep.plan(point).expect("valid").machine).collect();
+    assert_eq!((plans[0].n_gps, plans[0].n_renderers, plans[1].n_gps, plans[1].n_renderers), (1, 5, 2, 10));
+    assert_eq!(sweep.space().points(), 2);
+}
+
+#[test]
+fn a_space_that_makes_no_sense_is_refused() {
+    for (space, says) in [
+        ("", "sweep is missing"),
+        ("[sweep]", "at least one setting"),
+        ("[sweep]\ngird = {seed = [1]}", "did you mean `sweep.grid`"),
+        ("[sweep.grid]\nseeed = [1]", "did you mean `seed`"),
+        ("[sweep.grid]\nseed = []", "a list with values"),
+        ("[sweep.grid]\nseed = {from = 3, to = 1}", "from <= to"),
+        ("[sweep.grid]\nseed = {from = 1, to = 9, stop = 2}", "whole numbers"),
+        ("[sweep.grid]\nseed = {from = 0, to = 9223372036854775807}", "at most 10000000"),
+        ("[sweep]\nseeds = 3\n[sweep.grid]\nseed = [1]", "found two"),
+        ("[sweep.together]\nseed = [1, 2]\ntriangles = [1]", "2 values"),
+        ("[sweep.grid]\nseed = {from = 1, to = 9999}\ntriangles = {from = 1, to = 9999}", "at most 10000000"),
+    ] {
+        let text = refusal(space);
+        assert!(text.contains(says), "{space}: {text}");
+        assert!(space.is_empty() || text.contains("test, line "), "{text}");
+    }
+}
+
+#[test]
+fn shards_are_disjoint_and_hold_everything() {
+    let shards: Vec<Shard> = (1..=7).map(|i| Shard::new(i, 7).expect("one of seven")).collect();
+    assert!((0..1_000).all(|point| shards.iter().filter(|shard| shard.holds(point)).count() == 1));
+    assert_eq!((Shard::new(0, 7), Shard::new(8, 7)), (None, None));
+}
+
+#[test]
+fn a_point_that_fails_is_recorded_and_the_rest_go_on() {
+    // Slats binds 20 regions, four to a renderer: fewer than five renderers cannot hold them.
+    let sweep = sweep("[sweep.grid]\nmachine.n_renderers = [0, 4, 5]\n");
+    let path = folder("fails");
+    let mut store = Store::open(&path, sweep.header().expect("a valid point"), false).expect("writable");
+    all(&sweep, &mut store);
+    let rows: Vec<&Row> = store.rows().values().collect();
+    let statuses: Vec<Status> = rows.iter().map(|row| row.status).collect();
+    assert_eq!(statuses, [Status::Failed, Status::Failed, Status::Done]);
+    assert!(rows[0].error.as_deref().is_some_and(|e| e.contains("n_renderers must be 1 to 1000, found 0")));
+    assert!(rows[1].error.as_deref().is_some_and(|e| e.contains("expected at least 5 renderers")));
+    // I3D95: half of the regions takes 3.9 ms.
+    let half = rows[2].measured["last_copy_ms"].expect("it is copied");
+    assert!((half / 3.9 - 1.0).abs() < 0.02, "{half} ms");
+    let _ = std::fs::remove_dir_all(path);
+}
+
+#[test]
+fn rows_survive_reading_and_writing_bit_by_bit() {
+    let sweep = sweep("[sweep]\nseeds = 3\n");
+    let path = folder("bits");
+    let mut store = Store::open(&path, sweep.header().expect("valid"), false).expect("writable");
+    all(&sweep, &mut store);
+    let rows = store.rows().clone();
+    drop(store);
+    let store = Store::open(&path, sweep.header().expect("valid"), true).expect("ours");
+    assert_eq!(store.rows(), &rows);
+    store.finish().expect("writable");
+    let text = std::fs::read_to_string(path.join(ROWS_FILE)).expect("written");
+    let lines: Vec<String> = rows.values().map(|row| serde_json::to_string(row).expect("JSON")).collect();
+    assert_eq!(text.lines().skip(1).collect::<Vec<_>>(), lines);
+    let _ = std::fs::remove_dir_all(path);
+}
+
+#[test]
+fn a_file_cut_at_any_byte_is_repaired_and_continued_to_the_same_bytes() {
+    let sweep = sweep("[sweep]\nseeds = 2\n");
+    let path = folder("cut");
+    let header = sweep.header().expect("valid");
+    let mut store = Store::open(&path, header.clone(), false).expect("writable");
+    all(&sweep, &mut store);
+    store.finish().expect("writable");
+    let whole = std::fs::read(path.join(ROWS_FILE)).expect("written");
+    let ends: Vec<usize> = whole.iter().enumerate().filter(|(_, b)| **b == b'\n').map(|(at, _)| at + 1).collect();
+    for cut in (0..whole.len()).step_by(37).chain(ends) {
+        std::fs::write(path.join(ROWS_FILE), &whole[..cut]).expect("writable");
+        let mut store = Store::open(&path, header.clone(), true).expect("only the end is torn");
+        all(&sweep, &mut store);
+        store.finish().expect("writable");
+        assert!(std::fs::read(path.join(ROWS_FILE)).expect("written") == whole, "cut at {cut}");
+    }
+    let _ = std::fs::remove_dir_all(path);
+}
+
+#[test]
+fn only_one_process_may_write_into_a_folder() {
+    let sweep = sweep("[sweep]\nseeds = 1\n");
+    let path = folder("lock");
+    let header = sweep.header().expect("valid");
+    let first = Store::open(&path, header.clone(), false).expect("writable");
+    let error = Store::open(&path, header.clone(), true).expect_err("in use");
+    assert!(error.to_string().contains("another process"), "{error}");
+    drop(first);
+    Store::open(&path, header, true).expect("free again");
+    let _ = std::fs::remove_dir_all(path);
+}

@@ -1,0 +1,442 @@
+//! From head to light: what the papers say of just-in-time pixels, latency and registration, on the whole machine.
+
+use glam::DVec3;
+use pxpl5::compare::{
+    LatencyCurve, Percentiles, PixelErrors, Registration, as_seen, compare, edge_pictures, edge_scene, measure_on,
+    motion, triangles_possible,
+};
+use pxpl5::scene::{Scene, builtin};
+use pxpl5::tracking::Pose;
+use pxpl5::tracking::motion::{Motion, Pan, Still, Synthetic};
+use pxpl5::tracking::predict::PredictorKind;
+use pxpl5::tracking::rig::PendulumRig;
+use pxpl5::tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, seconds};
+use pxpl5::tracking::tracker::{Fault, TrackerConfig, TrackerModel};
+use pxpl5::{
+    Budget, Experiment, Frameless, Head, Jitp, MachineConfig, Outcome, Pipeline, Pixels, Reading, RenderingControl,
+    Slats, Viewpoint,
+};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A fast turn of the head (JITP).
+const PAN: f64 = 200.0;
+/// Focal length of 640 pixels over 60 degrees.
+const FOCAL_PX: f64 = 554.256_258_422_040_8;
+/// A field that is well past the start, and even.
+const FIELD: u64 = 40;
+
+fn head(motion: impl Motion + Send + Sync + 'static, tracker: TrackerConfig, kind: PredictorKind) -> Head {
+    Head::new(Arc::new(motion), tracker, kind, 1).expect("the settings are in range")
+}
+
+/// Nothing is wrong with a pose of this head, so that only the moments of drawing and of light differ.
+fn perfect(motion: impl Motion + Send + Sync + 'static) -> Head {
+    head(motion, TrackerConfig::ideal(), PredictorKind::ConstantVelocity)
+}
+
+fn small() -> Scene {
+    edge_scene(0.0)
+}
+
+fn run(pipeline: impl Pipeline + 'static, head: Head, fields: u64) -> Outcome {
+    Experiment::new(MachineConfig::small_hmd(), pipeline, small())
+        .head(head)
+        .fields(fields)
+        .pixels(Pixels::Off)
+        .run()
+        .expect("the scene is small")
+}
+
+fn under_a_pan(viewpoint: Viewpoint, racing: bool) -> Outcome {
+    run(Jitp { strip_rows: 1, ..Jitp::new(viewpoint, racing) }, perfect(Pan::at(PAN)), FIELD + 2)
+}
+
+/// Seconds between the beam's passes over two pixels of a field.
+fn beam_s(outcome: &Outcome, from: (u32, u32), to: (u32, u32)) -> f64 {
+    let when = |(x, y)| outcome.machine().video().when(x, y, FIELD).expect("visible").0 as f64;
+    (when(to) - when(from)) * 1e-12
+}
+
+#[test]
+fn j1_one_transform_a_field_is_33_pixels_off_at_its_end() {
+    let outcome = under_a_pan(Viewpoint::Field, true);
+    let registration = Registration::of(&outcome).expect("there is a head");
+    let last = registration.at(320, 478, FIELD).expect("shown");
+    let scan_s = beam_s(&outcome, (0, 0), (320, 478));
+    assert!((last.degrees - PAN * scan_s).abs() < 0.005, "{} {}", last.degrees, PAN * scan_s);
+    // The paper counts to the next retrace, and 10 pixels a degree.
+    let whole_field_deg = last.degrees / scan_s * seconds(NTSC_FIELD_PS);
+    println!("J1: {whole_field_deg:.3} deg, {:.2} px", whole_field_deg * 10.0);
+    assert!((whole_field_deg - 3.3).abs() < 0.05 && (whole_field_deg * 10.0 - 33.0).abs() < 0.5);
+}
+
+#[test]
+fn j2_one_transform_a_line_is_a_seventh_of_a_pixel_off() {
+    let outcome = under_a_pan(Viewpoint::Strip, true);
+    let registration = Registration::of(&outcome).expect("there is a head");
+    let ends = [0, 639].map(|x| registration.at(x, 240, FIELD).expect("shown").degrees);
+    let active_s = beam_s(&outcome, (0, 240), (639, 240));
+    let line_s = 4004.0 / 63.0 * 1e-6;
+    let line_deg = (ends[0] + ends[1]) / active_s * line_s;
+    println!("J2: {line_deg:.5} deg, {:.4} px", line_deg * 10.0);
+    assert!((line_deg - 0.013).abs() < 5e-4 && (line_deg * 10.0 - 0.13).abs() < 5e-3, "{line_deg}");
+    let worst = PixelErrors::of(&outcome).pixels.max;
+    assert!(worst < 0.1, "each line is drawn for its middle, so half of that remains: {worst}");
+}
+
+#[test]
+fn j3_a_line_takes_63_56_microseconds() {
+    let outcome = under_a_pan(Viewpoint::Strip, true);
+    assert!((beam_s(&outcome, (0, 0), (0, 2)) - 63.5556e-6).abs() < 1e-10);
+}
+
+#[test]
+fn j4_a_vertical_edge_slants_by_speed_times_scan_time() {
+    let outcome = under_a_pan(Viewpoint::Field, true);
+    let registration = Registration::of(&outcome).expect("there is a head");
+    for y in [0, 120, 240, 478] {
+        let error = registration.at(320, y, FIELD).expect("shown").offset_px.x;
+        // The middle of the picture is half a pixel to the left of the pixel's middle.
+        let angle = f64::atan(0.5 / FOCAL_PX) + (PAN * beam_s(&outcome, (0, 0), (320, y))).to_radians();
+        let expected = 0.5 - FOCAL_PX * angle.tan();
+        assert!((error - expected).abs() < 0.01, "line {y}: {error} {expected}");
+    }
+}
+
+/// The column of the edge in each row: white pixels from the left.
+fn edge(picture: &image::RgbImage) -> Vec<f64> {
+    let white = |row| (0..picture.width()).filter(|x| picture.get_pixel(*x, row)[0] > 100).count();
+    (0..picture.height()).map(|row| white(row) as f64).collect()
+}
+
+/// Pixels between the first and the last row of the straight line through all of them.
+fn slant(edge: &[f64]) -> f64 {
+    let n = edge.len() as f64;
+    let (mean_row, mean) = ((n - 1.0) / 2.0, edge.iter().sum::<f64>() / n);
+    let (mut up, mut down) = (0.0, 0.0);
+    for (row, column) in edge.iter().enumerate() {
+        up += (row as f64 - mean_row) * (column - mean);
+        down += (row as f64 - mean_row).powi(2);
+    }
+    up / down * (n - 1.0)
+}
+
+#[test]
+fn j4_the_plates_slant_as_the_old_well_does() {
+    let plates = edge_pictures(&MachineConfig::small_hmd(), PAN).expect("the scene is small");
+    let [conventional, conventional_seen, just_in_time, just_in_time_seen] =
+        [&plates.conventional, &plates.conventional_seen, &plates.just_in_time, &plates.just_in_time_seen]
+            .map(|picture| slant(&edge(picture)));
+    println!("J4: {conventional:.3} seen {conventional_seen:.3}, {just_in_time:.3} seen {just_in_time_seen:.3}");
+    // 239 lines of 4004/63 us at 200 deg/s: 3.038 degrees; the head turns left, so things move right in the view.
+    let turn = (PAN * 239.0 * 4004.0 / 63.0 * 1e-6).to_radians();
+    let expected = FOCAL_PX * 2.0 * (turn / 2.0).tan();
+    assert!(conventional.abs() < 1e-9, "drawn vertical: {conventional}");
+    assert!((just_in_time - expected).abs() < 0.1, "drawn slanted: {just_in_time} {expected}");
+    assert!((conventional_seen + expected).abs() < 0.3, "seen slanted: {conventional_seen} {expected}");
+    assert!(just_in_time_seen.abs() < 0.1, "seen straight: {just_in_time_seen}");
+}
+
+#[test]
+fn a_picture_is_seen_as_it_is_by_a_still_head() {
+    let outcome = under_a_pan(Viewpoint::Strip, true);
+    let picture = image::RgbImage::from_fn(640, 240, |x, y| image::Rgb([x as u8, y as u8, (x / 3) as u8]));
+    let still = Still(Pose::IDENTITY);
+    assert_eq!(as_seen(&picture, FIELD, outcome.machine().video(), &still), picture);
+}
+
+#[test]
+fn j5_scanline_rendering_takes_240_transforms_a_field() {
+    let views = |viewpoint| {
+        let outcome = under_a_pan(viewpoint, true);
+        let of_field = |n: &u64| n / 256 == FIELD;
+        outcome.head().expect("a head").sampled().iter().map(|s| s.number).filter(of_field).count()
+    };
+    // The paper counts about 256 lines; 240 of a field are visible.
+    assert_eq!((views(Viewpoint::Strip), views(Viewpoint::Field), views(Viewpoint::Dual(Reading::View))), (240, 1, 2));
+}
+
+#[test]
+fn places_on_the_screen_are_off_at_the_edge_and_positions_in_the_view_are_not() {
+    let errors = |viewpoint| {
+        let outcome = under_a_pan(viewpoint, true);
+        let registration = Registration::of(&outcome).expect("there is a head");
+        [2, 320, 637].map(|x| registration.at(x, 240, FIELD).expect("shown").offset_px)
+    };
+    let strip = errors(Viewpoint::Strip);
+    let off = |viewpoint| {
+        let dual = errors(viewpoint);
+        std::array::from_fn::<f64, 3, _>(|i| (dual[i] - strip[i]).length())
+    };
+    let (screen, view) = (off(Viewpoint::Dual(Reading::Screen)), off(Viewpoint::Dual(Reading::View)));
+    println!("dual display list, left edge, middle, right edge: screen {screen:?} view {view:?}");
+    // tan is interpolated over the 15.24 ms of the scan: f x turn^2 / 8 x 2 tan 30 / cos^2 30.
+    let turn = (PAN * 239.82 * 4004.0 / 63.0 * 1e-6).to_radians();
+    let expected = FOCAL_PX * turn * turn / 8.0 * 2.0 * 30f64.to_radians().tan() / 0.75;
+    assert!((screen[0] / expected - 1.0).abs() < 0.1 && (screen[2] / expected - 1.0).abs() < 0.1, "{expected}");
+    assert!(screen[1] < 0.01 && view.iter().all(|px| *px < 0.004));
+}
+
+#[test]
+fn all_combinations_of_viewpoint_and_racing_are_in_time_and_racing_saves_a_field() {
+    for pair in Jitp::all().chunks(2) {
+        let [plain, racing] = [pair[0], pair[1]].map(|jitp| run(jitp, perfect(Pan::at(PAN)), 60));
+        for outcome in [&plain, &racing] {
+            let report = outcome.report();
+            assert_eq!((report.missed_retraces, report.late_regions), (0, 0), "{}", report.pipeline);
+            assert!((report.updates_hz - 59.94).abs() < 0.01);
+        }
+        let saved = plain.latency_ms().mean - racing.latency_ms().mean;
+        assert!((saved - 16.683).abs() < 0.05, "{}: {saved}", plain.pipeline().name());
+    }
+}
+
+#[test]
+fn lines_that_come_too_late_are_counted_and_nothing_breaks() {
+    // 417 triangles for each line take a slave 9 ms; it has 12 x 63.6 us.
+    let mig = builtin("mig").expect("built in");
+    let outcome = Experiment::new(MachineConfig::small_hmd(), Jitp::new(Viewpoint::Strip, true), mig).fields(40).run();
+    let report = outcome.expect("it runs").report();
+    assert!(report.missed_retraces > 30, "{}", report.missed_retraces);
+}
+
+#[test]
+fn more_renderers_allow_more_triangles_in_a_line() {
+    let possible = |preset: &str| {
+        let config = MachineConfig::preset(preset).expect("listed");
+        let jitp: Arc<dyn Pipeline> = Arc::new(Jitp::new(Viewpoint::Strip, true));
+        triangles_possible(&config, &jitp).triangles
+    };
+    let (small, large) = (possible("small-hmd"), possible("design-maximum"));
+    println!("triangles per line: small-hmd {small}, design-maximum {large}");
+    // A column of a line has 63.6 us at the renderer, of which the copy takes 7.2: 8 triangles of 6.67 us.
+    assert!((6..=9).contains(&small), "{small}");
+    assert!(large > 2 * small, "{large}");
+}
+
+#[test]
+fn ninety_milliseconds_are_1_8_times_as_wrong_as_fifty() {
+    for seed in 1..=4 {
+        let motion = Synthetic::recorded_use(seed);
+        let mean = |ms| LatencyCurve::of(&motion, ms, 120, 1.0).mean_px();
+        let ratio = mean(90) / mean(50);
+        println!("seed {seed}: {:.2} px and {:.2} px, ratio {ratio:.4}", mean(90), mean(50));
+        assert!((ratio / 1.8 - 1.0).abs() < 0.05, "seed {seed}: {ratio}");
+    }
+}
+
+#[test]
+fn errors_of_pipelines_are_as_their_latencies_from_head_to_light() {
+    let tracker =
+        || TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::optical_ceiling() };
+    let measure = |pipeline: Arc<dyn Pipeline>| {
+        let outcome = Experiment::with(MachineConfig::small_hmd(), pipeline, Arc::new(small()))
+            .head(head(Synthetic::recorded_use(3), tracker(), PredictorKind::None))
+            .fields(900)
+            .pixels(Pixels::Off)
+            .run()
+            .expect("the scene is small");
+        (Budget::of(&outcome).total_ms, PixelErrors::of(&outcome).centre_deg.mean)
+    };
+    let (control, slats) = (measure(Arc::new(RenderingControl::stereo())), measure(Arc::new(Slats::split())));
+    // A frame of Rendering Control is seen for two fields, so on average half a field later than its first light.
+    let latencies = (control.0 + 16.683 / 2.0) / slats.0;
+    println!("{control:?} {slats:?}: latencies {latencies:.3}, errors {:.3}", control.1 / slats.1);
+    assert!((control.1 / slats.1 / latencies - 1.0).abs() < 0.05);
+}
+
+#[test]
+fn stages_from_head_to_light_add_up() {
+    for pipeline in [
+        Arc::new(RenderingControl::mono()) as Arc<dyn Pipeline>,
+        Arc::new(Slats::split()),
+        Arc::new(Jitp::new(Viewpoint::Strip, true)),
+        Arc::new(Frameless::new()),
+    ] {
+        let outcome = Experiment::with(MachineConfig::small_hmd(), Arc::clone(&pipeline), Arc::new(small()))
+            .head(head(Synthetic::recorded_use(1), TrackerConfig::fastrak(), PredictorKind::None))
+            .fields(90)
+            .run()
+            .expect("the scene is small");
+        let budget = Budget::of(&outcome);
+        let measured: BTreeMap<_, _> =
+            outcome.head().expect("a head").sampled().iter().filter_map(|s| Some((s.number, s.measured_at?))).collect();
+        let video = outcome.machine().video();
+        let ages: Vec<f64> = outcome
+            .steady_pictures()
+            .iter()
+            .filter(|times| times.copied_at.is_some())
+            .filter_map(|times| Some(pipeline.light(video, times).since(*measured.get(&times.view)?).as_ms()))
+            .collect();
+        let mean = ages.iter().sum::<f64>() / ages.len() as f64;
+        assert!(ages.len() > 10 && (mean - budget.total_ms).abs() < 1e-6, "{}: {mean}", pipeline.name());
+        // 3.75 ms to the first character, and 47 bytes at 115,200 baud.
+        assert!((budget.tracking_ms - 3.75 - 4.08).abs() < 0.01, "{}", budget.tracking_ms);
+    }
+}
+
+#[test]
+fn a_perfect_tracker_and_a_still_head_leave_no_error() {
+    let outcome = run(Slats::split(), perfect(Still(Pose::at(DVec3::new(0.3, 0.1, 0.2)))), 60);
+    let errors = PixelErrors::of(&outcome);
+    assert!(errors.judged > 500 && errors.pixels.max < 1e-6, "{errors:?}");
+}
+
+#[test]
+fn metal_misplaces_objects_even_for_a_still_head() {
+    let tracker =
+        TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::polhemus_3space() };
+    let at = Pose::at(DVec3::new(0.7, 0.0, 0.7));
+    let outcome = run(Slats::split(), head(Still(at), tracker, PredictorKind::None), 90);
+    let errors = PixelErrors::of(&outcome);
+    // A bowl of 20 mm at 1 m, seen at 2 m and more: some pixels, always the same.
+    assert!(errors.centre_px.p50 > 0.5 && (errors.centre_px.max - errors.centre_px.p50).abs() < 1e-6, "{errors:?}");
+}
+
+#[test]
+fn the_raster_offset_removes_a_pan_in_the_middle_and_leaves_the_edges() {
+    let outcome = run(Slats::split(), head(Pan::at(PAN), TrackerConfig::ideal(), PredictorKind::ConstantVelocity), 90);
+    let (plain, offset) = (PixelErrors::of(&outcome), PixelErrors::with_raster_offset(&outcome));
+    println!("pan, Slats: {:?}\n with offset: {:?}", plain.pixels, offset.pixels);
+    assert!(offset.centre_px.max < 0.05, "{:?}", offset.centre_px);
+    assert!(offset.pixels.max > 1.0, "a flat raster is shifted, not turned");
+    assert!(offset.pixels.mean < plain.pixels.mean);
+}
+
+#[test]
+fn frameless_blocks_come_once_a_pass_and_are_half_a_pass_old() {
+    let frameless = Frameless::new();
+    let outcome = run(frameless, perfect(Pan::at(20.0)), 60);
+    let mut of_block: BTreeMap<u16, Vec<f64>> = BTreeMap::new();
+    for arrival in &outcome.observation().arrivals {
+        of_block.entry(arrival.target.region.0).or_default().push(arrival.last_part_at.0 as f64 * 1e-9);
+    }
+    assert_eq!(of_block.len(), frameless.blocks() as usize);
+    let counts: Vec<usize> = of_block.values().map(Vec::len).collect();
+    let (least, most) = (counts.iter().min().copied().unwrap_or(0), counts.iter().max().copied().unwrap_or(0));
+    assert!(least > 10 && most - least <= 1, "without repetition: {least} to {most}");
+    // At a random moment a block is half of the time between two of its updates old.
+    let gaps: Vec<f64> = of_block.values().flat_map(|times| times.windows(2).map(|w| w[1] - w[0])).collect();
+    let age_ms = gaps.iter().map(|gap| gap * gap / 2.0).sum::<f64>() / gaps.iter().sum::<f64>();
+    let pass_ms = 1e3 / outcome.report().updates_hz;
+    println!("pass {pass_ms:.2} ms, mean age {age_ms:.2} ms");
+    assert!((age_ms / (pass_ms / 2.0) - 1.0).abs() < 0.05, "{age_ms} {pass_ms}");
+}
+
+#[test]
+fn the_rig_and_the_time_stamps_agree_within_the_bound_for_every_tracker() {
+    for (pipeline, fields) in
+        [(Arc::new(RenderingControl::mono()) as Arc<dyn Pipeline>, 900), (Arc::new(Slats::split()), 900)]
+    {
+        let config = MachineConfig::small_hmd();
+        let run = Experiment::with(config, pipeline, Arc::new(small())).fields(fields).pixels(Pixels::Off).run();
+        let outcome = run.expect("the scene is small");
+        for tracker in [
+            TrackerConfig::ideal(),
+            TrackerConfig::fastrak(),
+            TrackerConfig::flock_of_birds(),
+            TrackerConfig::optical_ceiling(),
+            TrackerConfig::polhemus_3space(),
+        ] {
+            let tracker = TrackerConfig { position_noise_m: 0.0, distortion: None, ..tracker };
+            let model = TrackerModel::new(tracker).expect("a preset");
+            let measured = measure_on(&outcome, &PendulumRig::assumed(), &model, 1).expect("low points are seen");
+            let (difference, bound) = (measured.outside_less_inside_s(), seconds(measured.bound_ps()));
+            let (outside, inside) = (
+                measured.tracking.mean_s + measured.rendering.mean_s,
+                measured.inside_tracking.mean_s + measured.inside_rendering.mean_s,
+            );
+            println!(
+                "{:18} {:28} outside {:6.2} ms, inside {:6.2} ms, difference {:5.2} of {:5.2} ms, {} passes",
+                outcome.pipeline().name(),
+                model.config().name,
+                outside * 1e3,
+                inside * 1e3,
+                difference * 1e3,
+                bound * 1e3,
+                measured.passes.len()
+            );
+            assert!(measured.passes.len() >= 15 && difference > 0.0 && difference <= bound);
+        }
+    }
+}
+
+#[test]
+fn every_pipeline_goes_on_when_the_tracker_fails() {
+    let faults = [
+        vec![Fault::Silence { from_ps: 0 }],
+        vec![Fault::Silence { from_ps: 300 * PS_PER_MS }],
+        vec![
+            Fault::Dropout { from_ps: 200 * PS_PER_MS, to_ps: 700 * PS_PER_MS },
+            Fault::RandomDropout { probability: 0.5 },
+        ],
+        vec![
+            Fault::NotANumber { probability: 0.5 },
+            Fault::Jump { probability: 0.5, distance_m: 1e3, angle_deg: 170.0 },
+        ],
+    ];
+    let late = TrackerConfig::optical_ceiling().with_latency_ps(PS_PER_S / 2);
+    let trackers = faults
+        .into_iter()
+        .map(|faults| TrackerConfig { faults, ..TrackerConfig::fastrak() })
+        .chain([late, TrackerConfig::flock_of_birds_on_patched_host()]);
+    for tracker in trackers {
+        let config = MachineConfig::small_hmd();
+        let head = Arc::new(head(Synthetic::recorded_use(2), tracker, PredictorKind::Kalman));
+        let all = compare(&config, &Arc::new(small()), &head, 60, false).expect("60 fields");
+        for row in &all.pipelines {
+            assert_eq!(row.failure, None, "{}", row.pipeline);
+            let Percentiles { mean, max, .. } = row.error.pixels;
+            assert!(mean.is_finite() && max.is_finite() && row.error.judged > 100, "{} {:?}", row.pipeline, row.error);
+        }
+    }
+}
+
+#[test]
+fn the_order_of_simultaneous_events_decides_nothing() {
+    let hash = |pipeline: Arc<dyn Pipeline>, seed: Option<u64>| {
+        let scene = Arc::new(builtin("full-screen:3").expect("built in"));
+        let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene)
+            .head(head(Synthetic::recorded_use(1), TrackerConfig::fastrak(), PredictorKind::Kalman))
+            .fields(12);
+        let experiment = seed.map_or(experiment.clone(), |seed| experiment.shuffle_ties(seed));
+        experiment.run().expect("it runs").machine().trace_hash()
+    };
+    let of = |seed| {
+        let jitp = |viewpoint, racing| Arc::new(Jitp::new(viewpoint, racing)) as Arc<dyn Pipeline>;
+        [
+            hash(jitp(Viewpoint::Strip, true), seed),
+            hash(jitp(Viewpoint::Dual(Reading::Screen), false), seed),
+            hash(Arc::new(Frameless::new()), seed),
+        ]
+    };
+    let plain = of(None);
+    assert!((0..3).all(|seed| of(Some(seed)) == plain));
+}
+
+#[test]
+fn a_comparison_has_a_row_for_every_pipeline_and_just_in_time_comes_nearest_to_the_ideal() {
+    let head = Arc::new(perfect(Pan::at(PAN)));
+    let all = compare(&MachineConfig::small_hmd(), &Arc::new(small()), &head, 90, false).expect("90 fields");
+    let names: Vec<_> = all.pipelines.iter().map(|row| row.pipeline.as_str()).collect();
+    println!("{names:?}");
+    assert_eq!(names.len(), 14);
+    let json = serde_json::to_value(&all).expect("plain data");
+    assert_eq!(json["pipelines"].as_array().map(Vec::len), Some(14));
+    let mean = |name: &str| all.pixels(name).mean;
+    assert!(mean("ideal") < 1e-3 && mean("jitp-scanline-racing") < 0.1 && mean("jitp-dual-view-racing") < 0.1);
+    assert!(mean("jitp-field-racing") > 10.0 && mean("rendering-control") > mean("slats-touched"));
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused_with_what_was_expected() {
+    let message = |text: &str| motion(text).err().map(|e| e.to_string()).unwrap_or_default();
+    assert!(message("pan:fast").contains("such as pan:200") && message("pan:fast").contains("`fast`"));
+    assert!(message("pan:nan").contains("`nan`"));
+    assert!(message("dance").contains("still, pan:DEG_PER_S"));
+    assert!(message("no-such-file.csv").contains("no-such-file.csv cannot be opened"));
+    let head = Arc::new(perfect(Pan::at(PAN)));
+    let error = compare(&MachineConfig::small_hmd(), &Arc::new(small()), &head, 3, false).expect_err("too few");
+    assert!(error.to_string().contains("found 3"), "{error}");
+}

@@ -1,0 +1,155 @@
+//! The latencies and limits of the papers, each with the tolerance that its derivation allows. `tests/published.rs`
+//! asserts the same and more through the table of figures; here each experiment stands by itself.
+
+use pxpl5::pipelines::PictureTimes;
+use pxpl5::{
+    Arrival, Code, Experiment, Eye, MachineConfig, Outcome, Pixels, RenderingControl, Slats, StageSpan, scene,
+};
+use pxpl5_gp::Stage;
+
+/// A region of 15 messages of 1,024 + 16 words of 50 ns (TR94: 780 us).
+const REGION_US: f64 = 780.0;
+
+fn run(experiment: Experiment) -> Outcome {
+    experiment.pixels(Pixels::Off).run().expect("it runs")
+}
+
+fn trivial() -> Outcome {
+    let scene = scene::builtin("full-screen:12").expect("built in");
+    run(Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(60))
+}
+
+fn slats(machine: &str, pipeline: Slats, triangles: usize) -> Outcome {
+    let scene = scene::builtin(&format!("full-screen:{triangles}")).expect("built in");
+    run(Experiment::new(MachineConfig::preset(machine).expect("listed"), pipeline, scene).fields(16))
+}
+
+fn stages(outcome: &Outcome, stage: Stage, picture: u64) -> Vec<StageSpan> {
+    let message = outcome.machine().ring().timing().occupancy(1_024);
+    outcome.observation().stages(message).into_iter().filter(|s| s.stage == stage && s.picture == picture).collect()
+}
+
+/// From the first word of the first region to the last pixel of the last, in microseconds.
+fn copy_us<'a>(arrivals: impl Iterator<Item = &'a Arrival> + Clone) -> f64 {
+    let begin = arrivals.clone().map(|a| a.first_part_at.0).min().expect("regions") - 52_000_000;
+    let end = arrivals.map(|a| a.last_part_at.0).max().expect("regions");
+    (end - begin) as f64 * 1e-6
+}
+
+#[test]
+fn figure_1_a_region_of_15360_pixels_is_copied_in_780_us() {
+    let outcome = slats("slats", Slats::split(), 60);
+    for arrival in &outcome.observation().arrivals {
+        assert!((copy_us([arrival].into_iter()) - REGION_US).abs() < 1e-6, "{arrival:?}");
+    }
+}
+
+#[test]
+fn figure_2_both_eyes_are_copied_in_31_2_ms() {
+    // 2 x 640 x 480 pixels in messages of 1,024: 600 x 52 us = 31.2 ms of port time, one eye after the other. At the
+    // seam and at the begin a renderer may keep a port waiting: 0.2 %.
+    let outcome = trivial();
+    let ms: f64 = stages(&outcome, Stage::Copy, 10).iter().map(|s| (s.end.expect("copied") - s.begin).as_ms()).sum();
+    assert!((ms / 31.2 - 1.0).abs() < 0.002, "{ms} ms");
+}
+
+#[test]
+fn figure_4_a_trivial_stereo_scene_is_3_percent_later_than_measured() {
+    // FIXME(accuracy): published 56.5 ms. The model knows two plateaus, 54.1 and 58.2 ms (a region's commands fit into
+    // the input FIFO behind a waiting region, or they do not); the frame rate is exact.
+    let outcome = trivial();
+    assert!((outcome.latency_ms().mean - 58.2).abs() < 0.3, "{:?}", outcome.latency_ms());
+    assert!((outcome.report().updates_hz - 30_000.0 / 1_001.0).abs() < 1e-3);
+}
+
+#[test]
+fn figure_9_slats_shows_every_field_exactly_one_field_after_its_start() {
+    for pipeline in [Slats::split(), Slats::whole()] {
+        let outcome = slats("slats", pipeline, 100);
+        let one_field = |times: &PictureTimes| {
+            let video = outcome.machine().video();
+            let started = video.field_at(times.transform_at);
+            times.transform_at == video.retrace(started) && times.shown_at == video.retrace(started + 1)
+        };
+        assert!(outcome.steady_pictures().iter().all(one_field));
+        assert!((outcome.report().updates_hz - 60_000.0 / 1_001.0).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn figure_10_twenty_field_regions_take_eleven_region_times() {
+    // Left and right in turn, in order of arrival: at each end one board idles for one region. A renderer needs a
+    // cycle, a word and up to 8 hops to hand over from one board to the other: below 2 us in all.
+    let outcome = slats("slats", Slats::whole(), 60);
+    let us = copy_us(outcome.observation().arrivals.iter().filter(|a| a.target.picture == 6));
+    assert!((11.0 * REGION_US..11.0 * REGION_US + 2.0).contains(&us), "{us} us");
+}
+
+#[test]
+fn figure_11_half_of_them_take_3_9_ms() {
+    let outcome = slats("slats", Slats::split(), 60);
+    for bottom in [false, true] {
+        let half = |a: &&Arrival| a.target.picture == 6 && (a.target.region.0 >= 5) == bottom;
+        let us = copy_us(outcome.observation().arrivals.iter().filter(half));
+        // Below a microsecond for handing over, and up to 8 hops between the ways of the first and the last renderer.
+        assert!((us - 5.0 * REGION_US).abs() < 1.5, "{us} us");
+    }
+}
+
+#[test]
+fn the_top_half_is_copied_before_the_retrace_and_the_bottom_half_after_it() {
+    let outcome = slats("slats", Slats::split(), 100);
+    let retrace = outcome.machine().video().retrace(6);
+    for arrival in outcome.observation().arrivals.iter().filter(|a| a.target.picture == 6) {
+        let top = arrival.target.region.0 < 5;
+        assert_eq!(arrival.last_part_at < retrace, top, "{arrival:?}");
+    }
+}
+
+fn misses(machine: &str, pipeline: Slats, triangles: usize) -> bool {
+    slats(machine, pipeline, triangles).report().missed_retraces > 0
+}
+
+#[test]
+fn figure_12_without_the_copy_optimisation_110_triangles_are_the_most() {
+    // The time of a triangle was fitted to this figure.
+    assert!(!misses("slats", Slats::whole(), 110));
+    assert!(misses("slats", Slats::whole(), 111));
+}
+
+#[test]
+fn figure_13_with_it_the_model_draws_148_triangles_where_140_were_measured() {
+    // FIXME(accuracy): 6 % too many, with nothing fitted to it.
+    assert!(!misses("slats", Slats::split(), 140));
+    assert!(!misses("slats", Slats::split(), 148));
+    assert!(misses("slats", Slats::split(), 149));
+}
+
+#[test]
+fn figure_14_the_code_of_1995_draws_about_100_triangles() {
+    let of_1995 = Slats { code: Some(Code::Of1995), ..Slats::split() };
+    for (machine, pipeline) in [("slats-1995", Slats::split()), ("slats", of_1995)] {
+        assert!(!misses(machine, pipeline, 100));
+        assert!(misses(machine, pipeline, 103));
+    }
+}
+
+#[test]
+fn figure_15_the_first_copy_begins_about_12_8_ms_after_the_retrace() {
+    // 16.683 - 5 x 0.78 = 12.78 ms is the latest possible begin; the fullest field comes within a triangle of it.
+    let outcome = slats("slats", Slats::split(), 148);
+    let top = outcome.observation().arrivals.iter().filter(|a| a.target.picture == 6 && a.target.region.0 < 5);
+    let begin = top.map(|a| a.first_part_at.0).min().expect("regions") - 52_000_000;
+    let ms = (begin - outcome.machine().video().retrace(5).0) as f64 * 1e-9;
+    assert!((ms - 12.8).abs() < 0.1, "{ms} ms");
+}
+
+#[test]
+fn a_field_with_too_many_triangles_names_its_late_regions_and_shows_the_old_ones() {
+    let scene = scene::builtin("full-screen:200").expect("built in");
+    let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(16).run().expect("it runs");
+    let report = outcome.report();
+    assert!(report.missed_retraces > 0 && report.late_regions > 0);
+    assert!(report.first_late_regions.iter().all(|late| late.lateness.0 > 0));
+    assert!(outcome.picture(Eye::Left).is_some());
+}
