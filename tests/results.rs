@@ -4,9 +4,7 @@ use prost::Message;
 use pxpl5::pictures::{Eyes, FRAME_SECONDS, Film, FilmError, seen_at, side_by_side};
 use pxpl5::results::{columns, csv};
 use pxpl5::trace_export::{Events, Trace, chrome, perfetto};
-use pxpl5::{
-    Experiment, Eye, LATENCY_PARTS, MachineConfig, Outcome, Pipeline, Pixels, RenderingControl, Slats, scene,
-};
+use pxpl5::{Experiment, Eye, LATENCY_PARTS, MachineConfig, Outcome, Pipeline, Pixels, RenderingControl, Slats, scene};
 use pxpl5_gp::{Edge, Stage};
 use pxpl5_sim::{Span, Time};
 use serde_json::Value;
@@ -328,7 +326,8 @@ fn chrome_json_has_the_same_slices_to_the_picosecond() {
         Some(whole.parse::<u64>().ok()? * 1_000_000 + decimals.parse::<u64>().ok()?)
     };
     let written = text.lines().filter(|line| line.contains("\"ph\":\"X\""));
-    let written: Vec<(u64, u64)> = written.map(|line| (ps(line, "ts").expect("ts"), ps(line, "dur").expect("dur"))).collect();
+    let written: Vec<(u64, u64)> =
+        written.map(|line| (ps(line, "ts").expect("ts"), ps(line, "dur").expect("dur"))).collect();
     let slices = trace.tracks.iter().filter_map(|t| if let Events::Slices(s) = &t.events { Some(s) } else { None });
     let expected: Vec<(u64, u64)> = slices.flatten().map(|s| (s.begin.0, (s.end - s.begin).0)).collect();
     assert!(expected.len() > 1_000);
@@ -406,4 +405,17 @@ fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
     let earlier = seen_at(video, Time(at.0 - 1), &fields);
     assert_eq!(earlier.get_pixel(320, 201), oldest.get_pixel(320, 100));
     assert_ne!(now, oldest, "the head moves");
+}
+
+#[test]
+fn the_documents_define_every_column() {
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/results.md")).expect("there");
+    for column in columns() {
+        let row = text.lines().find(|line| line.starts_with(&format!("| `{}` |", column.name)));
+        assert!(row.is_some(), "{} is not in docs/results.md", column.name);
+    }
+    for part in LATENCY_PARTS {
+        let row = text.lines().find(|line| line.starts_with(&format!("| `{}_ps` |", part.name))).expect("a row");
+        assert_eq!(row.contains("| yes |"), part.published, "{}", part.name);
+    }
 }

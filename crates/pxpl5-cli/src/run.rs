@@ -100,6 +100,7 @@ fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<Pat
     folder.put("experiment.toml", format!("{}{}", origin_lines(report), plan.settings()).as_bytes())?;
     if plan.output.csv {
         folder.put("results.csv", csv(plan, report, results).as_bytes())?;
+        folder.put("pictures.csv", pxpl5::results::csv(outcome).as_bytes())?;
     }
     if plan.output.pictures {
         pictures(&mut folder, "", outcome, report)?;

@@ -54,7 +54,7 @@ fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
     let report = json(&folder.run(&with(&SLATS, &["--json", "--out", "a/b", "--set", "gp.triangle_ns=30000"])));
     assert_eq!(
         names(&folder.0.join("a/b")),
-        ["experiment.toml", "left.png", "report.json", "results.csv", "right.png", "timeline.svg"]
+        ["experiment.toml", "left.png", "pictures.csv", "report.json", "results.csv", "right.png", "timeline.svg"]
     );
     let read = |name: &str| std::fs::read(folder.0.join("a/b").join(name)).expect("written");
     let hash = report["config_hash"].as_str().expect("a hash");
