@@ -110,7 +110,7 @@ const OF_SCENES: &str = "8";
 /// Intervals of all figures.
 #[must_use]
 pub fn intervals() -> Vec<Interval> {
-    let bench = Bench { seeds: MIG.0, frames: MIG.1, ..Bench::new(Level::Analytic) };
+    let bench = Bench::new(Level::Analytic).with_mig(MIG.0, MIG.1);
     let (variations, nominal) = (variations(), measure(&bench, Vec::new()));
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();
     let at_ends = crate::parallel::map(&ends, |(v, value)| measure(&bench, vec![(v.path.clone(), *value)]));

@@ -116,7 +116,7 @@ fn what_is_simulated_lies_in_its_own_interval_and_the_limits_are_within_reach() 
 #[test]
 fn the_analytic_level_agrees_with_the_transaction_level() {
     // Closed form against events: within 3 %.
-    let bench = Bench { seeds: 2, frames: 60, ..Bench::new(Level::Analytic) };
+    let bench = Bench::new(Level::Analytic).with_mig(2, 60);
     for row in FIGURES.rows.iter().filter(|row| row.id != "8") {
         let value = bench.measure(row.id).expect("it runs").value;
         assert!((value / row.simulated - 1.0).abs() < 0.03, "figure {}: {value} and {}", row.id, row.simulated);

@@ -13,7 +13,7 @@ use pxpl5_geometry::Viewport;
 use pxpl5_renderer::CommandKind;
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, RegionGrid};
-use slats::{CLUMP, Copy};
+use slats::CLUMP;
 
 /// Renderers that are looked at one by one; more than there are field regions never hold one.
 const MOST_RENDERERS: usize = 20;
@@ -65,9 +65,15 @@ impl SlatsModel {
     ///
     /// [`ConfigError`] for too few renderers.
     pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, ConfigError> {
-        let config = program.adapt(config.clone());
-        slats::Binding::new(config.n_renderers, program.layout().plan().contexts, program.copy)
-            .map_err(|error| ConfigError::Board(error.to_string()))?;
+        let contexts = usize::from(program.layout().plan().contexts.max(1));
+        if config.n_renderers < REGIONS.div_ceil(contexts) {
+            let error =
+                slats::ConfigError::TooFewRenderers { found: config.n_renderers, expected: REGIONS.div_ceil(contexts) };
+            return Err(ConfigError::Board(error.to_string()));
+        }
+        if program.code.is_some() {
+            return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
+        }
         let video = Video::new(config.frame_buffer.video).map_err(|error| ConfigError::Board(error.to_string()))?;
         let command = |kind: CommandKind| {
             let span = config.renderer.span(kind).map_or(0.0, |span| span.as_ms() * 1e6);
@@ -96,7 +102,7 @@ impl SlatsModel {
             renderers: config.n_renderers.min(MOST_RENDERERS),
             gps: config.n_gps,
             source_channels: (config.ring.source_channels.min(config.ring.channels) as usize).clamp(1, MOST_CHANNELS),
-            split: program.copy == Copy::Split,
+            split: program.copy.is_split(),
         })
     }
 

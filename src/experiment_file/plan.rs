@@ -69,7 +69,7 @@ impl Program {
 }
 
 pub(super) const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
-pub(super) const COPIES: [(&str, Copy); 2] = [("whole", Copy::Whole), ("split", Copy::Split)];
+pub(super) const COPIES: [(&str, Copy); 3] = [("whole", Copy::Whole), ("split", Copy::Split), ("backup", Copy::Backup)];
 pub(super) const BINNINGS: [(&str, Binning); 2] = [("all", Binning::All), ("touched", Binning::Touched)];
 pub(super) const CODES: [(&str, Code); 3] =
     [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];

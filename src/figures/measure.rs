@@ -73,6 +73,12 @@ impl Bench {
         Self { level, changes: Vec::new(), seeds: 30, frames: 300, mig: MigLoads::default() }
     }
 
+    /// The same with fewer or more seeds and frames of the Mig.
+    #[must_use]
+    pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
+        Self { seeds, frames, mig: MigLoads::default(), ..self }
+    }
+
     /// Measures a figure.
     ///
     /// # Errors

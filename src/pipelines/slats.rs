@@ -59,6 +59,12 @@ impl Slats {
         Self { copy: Copy::Whole, binning: Binning::All, code: None }
     }
 
+    /// Whole copies into the other buffer, so that the last complete field stands in for one that is late.
+    #[must_use]
+    pub const fn backup() -> Self {
+        Self { copy: Copy::Backup, binning: Binning::All, code: None }
+    }
+
     fn config(&self, machine: &Machine, pixels: bool) -> Config {
         let ports = machine.ports();
         Config {
@@ -75,7 +81,7 @@ impl Slats {
 
     fn is_due_before_retrace(&self, arrival: &Arrival) -> bool {
         let top = u32::from(arrival.target.region.0) < RegionGrid::FIELD.columns();
-        self.copy == Copy::Whole || top
+        !self.copy.is_split() || top
     }
 }
 

@@ -29,9 +29,6 @@ pub(crate) struct LimitArgs {
     /// Regions to which Slats sends a triangle.
     #[arg(long, value_enum, default_value = "all")]
     binning: BinningArg,
-    /// Show the last complete field again when a retrace is missed (Slats, beyond the prototype).
-    #[arg(long)]
-    backup: bool,
     /// Graphics processors.
     #[arg(long)]
     gps: Option<u64>,
@@ -68,6 +65,8 @@ enum PipelineArg {
 enum CopyArg {
     Whole,
     Split,
+    /// Whole, and the last complete field is shown again when a retrace is missed (beyond the prototype).
+    Backup,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -127,6 +126,7 @@ impl LimitArgs {
         let copy = match self.copy {
             CopyArg::Whole => Copy::Whole,
             CopyArg::Split => Copy::Split,
+            CopyArg::Backup => Copy::Backup,
         };
         let code = match self.code {
             CodeArg::Of1994 => Code::Of1994,

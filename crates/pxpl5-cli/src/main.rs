@@ -11,11 +11,14 @@ mod completions;
 mod demo;
 mod error;
 mod figures;
+mod film;
 mod i860;
+mod levels;
 mod limit;
 mod machines;
 mod merge;
 mod output;
+mod report;
 mod run;
 mod scenes;
 mod settings;
@@ -23,6 +26,7 @@ mod snapshot;
 mod sweep;
 mod table;
 mod terminal;
+mod trace;
 
 use clap::{Parser, Subcommand};
 use error::CliError;
@@ -60,6 +64,8 @@ enum Command {
     Figures(figures::FiguresArgs),
     /// Find the most triangles that a pipeline draws in time.
     Limit(limit::LimitArgs),
+    /// Compare the levels of modelling: speed against error.
+    Levels(levels::LevelsArgs),
     /// List the built-in scenes.
     Scenes(scenes::ScenesArgs),
     /// List the machines that are built in.
@@ -68,6 +74,12 @@ enum Command {
     Sweep(sweep::SweepArgs),
     /// Join the shards of a sweep.
     Merge(merge::MergeArgs),
+    /// Make one page of a results folder.
+    Report(report::ReportArgs),
+    /// Run one experiment and write a trace of everything that happened.
+    Trace(trace::TraceArgs),
+    /// Write what a viewer sees as an animated PNG.
+    Film(film::FilmArgs),
     /// Work with programs of the graphics processor's CPU.
     I860(i860::I860Args),
     /// Print a completion script for a shell.
@@ -94,10 +106,14 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Figures(args)) => figures::run(args),
         Some(Command::Limit(args)) => limit::run(args),
+        Some(Command::Levels(args)) => levels::run(args),
         Some(Command::Scenes(args)) => scenes::run(args),
         Some(Command::Machines(args)) => machines::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
         Some(Command::Merge(args)) => merge::run(args),
+        Some(Command::Report(args)) => report::run(args),
+        Some(Command::Trace(args)) => trace::run(args),
+        Some(Command::Film(args)) => film::run(args),
         Some(Command::I860(args)) => i860::run(args).map_err(CliError::failure),
         Some(Command::Completions(args)) => completions::run(args),
     }

@@ -64,9 +64,9 @@ impl Binding {
     /// Whole: all halves, beginning left. Split: those of one half (`top`), the odd renderers beginning right.
     #[must_use]
     pub fn copies(&self, renderer: usize, top: bool) -> Vec<BoundRegion> {
-        let mine = |b: &&BoundRegion| b.renderer == renderer && (self.copy == Copy::Whole || b.is_top() == top);
+        let mine = |b: &&BoundRegion| b.renderer == renderer && (!self.copy.is_split() || b.is_top() == top);
         let mut mine: Vec<_> = self.regions.iter().filter(mine).copied().collect();
-        if self.copy == Copy::Split && renderer % 2 == 1 {
+        if self.copy.is_split() && renderer % 2 == 1 {
             mine.sort_by_key(|b| std::cmp::Reverse(b.eye));
         }
         alternate(mine)
@@ -118,9 +118,9 @@ mod tests {
     #[test]
     fn every_region_is_bound_and_copied_once_on_any_number_of_renderers() {
         for renderers in 5..=20 {
-            for copy in [Copy::Whole, Copy::Split] {
+            for copy in [Copy::Whole, Copy::Split, Copy::Backup] {
                 let binding = Binding::new(renderers, 4, copy).expect("enough");
-                let halves = if copy == Copy::Whole { vec![true] } else { vec![true, false] };
+                let halves = if copy.is_split() { vec![true, false] } else { vec![true] };
                 let each = |top: bool| (0..renderers).map(move |renderer| (renderer, top));
                 let mut copied: Vec<_> = halves
                     .into_iter()

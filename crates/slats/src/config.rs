@@ -14,6 +14,17 @@ pub enum Copy {
     Whole,
     /// Top regions before the retrace, bottom regions right after it (the COPY optimisation).
     Split,
+    /// All before the retrace, into the buffer that does not hold the last complete field of these lines; only a
+    /// complete field is shown, otherwise that one again. (Beyond the prototype: named as future work in TR94.)
+    Backup,
+}
+
+impl Copy {
+    /// Whether bottom regions are copied after the retrace.
+    #[must_use]
+    pub const fn is_split(self) -> bool {
+        matches!(self, Self::Split)
+    }
 }
 
 /// The boards and the variant.
@@ -89,12 +100,12 @@ impl Config {
         }
     }
 
-    /// A field is written into the lines that are not being scanned, so one buffer is enough: interlace is the
-    /// double buffer.
-    pub(crate) fn target(&self, bound: &crate::BoundRegion, field: u64) -> CopyTarget {
+    /// A field is written into the lines that are not being scanned, so without a backup buffer 0 is enough: interlace
+    /// is the double buffer.
+    pub(crate) fn target(&self, bound: &crate::BoundRegion, field: u64, buffer: u8) -> CopyTarget {
         CopyTarget {
             frame_buffer: self.frame_buffers[bound.eye.index()],
-            buffer: 0,
+            buffer,
             lines: Lines::Field(FieldParity::of_field(field)),
             grid: RegionGrid::FIELD,
             region: bound.region,

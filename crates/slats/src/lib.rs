@@ -16,7 +16,9 @@
 //!   region contexts in its 208 bits, hence Gouraud shading.
 //! - COPY: whole ([`Copy::Whole`]): all regions before the retrace. Split ([`Copy::Split`]): the top regions before the
 //!   retrace, the bottom ones right after it.
-//! - A field that misses its retrace is shown as far as it has come; the GPs go on with the next whole field.
+//!   Backup ([`Copy::Backup`], beyond the prototype): whole, into the other buffer; a field that is not complete at
+//!   its retrace is not shown, the last complete one of the same lines is shown again.
+//! - Without a backup a field that misses its retrace is shown as far as it has come; the GPs go on with the next whole field.
 //!
 //! Several GPs: each holds every n-th primitive; the first one sends the copy commands when the others have told it
 //! that their last clump was accepted.

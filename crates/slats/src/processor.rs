@@ -5,7 +5,7 @@ use crate::config::{Config, Copy};
 use pphigs::{Around, Counts, FrameView, Pass, Picture, Share, ViewWordsError, copy_message, region_messages};
 use pxpl5_gp::{Account, Fault, Gp, Level, Stage, Ticket};
 use pxpl5_sim::Span;
-use pxpl5_wire::{Body, CommandList, CopyOrder, Eye, FieldParity, NodeId, Word};
+use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyOrder, Eye, FieldParity, NodeId, Word, swap_request};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -29,6 +29,10 @@ struct State {
     newest: Option<FrameView>,
     /// Fields that the leading GP has begun, on the others.
     begun: VecDeque<(u64, FrameView)>,
+    /// Renderers that have said that their last region of a field is copied, since switching on.
+    copied: u64,
+    /// Buffer that holds the last complete field of even and of odd lines.
+    complete: [u8; 2],
     /// How many other GPs have finished each of the fields being drawn: (field, GPs).
     finished: Vec<(u64, usize)>,
 }
@@ -77,6 +81,7 @@ impl State {
     fn note(&mut self, words: &[Word]) -> Result<(), ViewWordsError> {
         let number = |low: Word, high: Word| u64::from(low) | u64::from(high) << 32;
         match words {
+            [COPY_ACKNOWLEDGEMENT, ..] => self.copied += 1,
             [CLUMPS_ACCEPTED, low, high] => self.note_finished(number(*low, *high)),
             [BEGIN, low, high, view @ ..] => self.begun.push_back((number(*low, *high), FrameView::from_words(view)?)),
             view => self.newest = Some(FrameView::from_words(view)?),
@@ -120,7 +125,11 @@ impl Processor {
         loop {
             let field = self.gp.until("a retrace", || Some(self.gp.field()).filter(|now| *now >= begin_at)).await + 1;
             let view = self.gp.until("a view", || self.state.borrow().newest.clone()).await;
-            self.tell_others(field, &view).await;
+            if !self.is_alone() {
+                self.clear(field, &view).await;
+                self.tell_others(field, &view).await;
+            }
+            self.show_backup(field).await;
             self.field(field, &view).await;
             let others = self.config.processors.len() - 1;
             let finished = || (self.state.borrow_mut().finished(field) >= others).then_some(());
@@ -128,16 +137,53 @@ impl Processor {
             self.gp.end(Stage::Render, field, None);
             self.gp.spend_message().await;
             self.gp.send_prepared(self.copies(field, true));
-            if self.config.copy == Copy::Split {
+            self.show_if_complete(field).await;
+            if self.config.copy.is_split() {
                 // The chain for the bottom regions is ready before the retrace and starts with it.
                 self.gp.spend_message().await;
             }
             begin_at = if self.gp.field() < field { field } else { self.gp.field() + 1 };
-            if self.config.copy == Copy::Split {
+            if self.config.copy.is_split() {
                 self.gp.until("a retrace", || (self.gp.field() >= field).then_some(())).await;
                 self.gp.send_prepared(self.copies(field, false));
             }
         }
+    }
+
+    /// Asks for the last complete field of these lines; a later request for the new one takes its place.
+    async fn show_backup(&self, field: u64) {
+        if self.config.copy == Copy::Backup {
+            self.gp.spend_message().await;
+            self.swap(self.state.borrow().complete[(field % 2) as usize]);
+        }
+    }
+
+    /// Waits for the copies, and has the field shown if they were in time.
+    async fn show_if_complete(&self, field: u64) {
+        if self.config.copy != Copy::Backup {
+            return;
+        }
+        let renderers = (0..self.binding.renderers()).filter(|r| !self.binding.copies(*r, true).is_empty()).count();
+        let copied = || (self.state.borrow().copied >= renderers as u64).then_some(());
+        self.gp.until("the copies of a field", copied).await;
+        self.state.borrow_mut().copied = 0;
+        self.gp.spend_message().await;
+        if self.gp.field() < field {
+            let buffer = self.buffer(field);
+            self.state.borrow_mut().complete[(field % 2) as usize] = buffer;
+            self.swap(buffer);
+        }
+    }
+
+    fn swap(&self, buffer: u8) {
+        let message = |node: &NodeId| (*node, 2, Body::Words(swap_request(buffer)));
+        self.gp.send_prepared(self.config.frame_buffers.iter().map(message).collect());
+    }
+
+    /// Where a field is written.
+    fn buffer(&self, field: u64) -> u8 {
+        let complete = self.state.borrow().complete[(field % 2) as usize];
+        if self.config.copy == Copy::Backup { 1 - complete } else { 0 }
     }
 
     /// Draws its share of every field that the leading GP begins.
@@ -152,14 +198,25 @@ impl Processor {
         }
     }
 
+    /// Whether no other GP draws; then the regions are cleared by the first clump.
+    fn is_alone(&self) -> bool {
+        self.config.processors.len() == 1
+    }
+
+    /// Clears all regions by a chain of its own. A chain waits for the one before it, so whoever is told to begin after
+    /// this one cannot send a clump that is cleared away.
+    async fn clear(&self, field: u64, view: &FrameView) {
+        let picture = self.config.picture(FieldParity::of_field(field));
+        let nothing = self.share.nothing();
+        let passes = Eye::BOTH.map(|eye| nothing.transform(view, eye.index(), picture));
+        self.send(&passes, true).await;
+    }
+
     async fn tell_others(&self, field: u64, view: &FrameView) {
         let header = vec![BEGIN, field as Word, (field >> 32) as Word];
         let words: Arc<[Word]> = [header, view.to_words()].concat().into();
         let message = |node: &NodeId| (*node, words.len() as u32, Body::Words(Arc::clone(&words)));
-        let batch: Vec<_> = self.config.processors.iter().skip(1).map(message).collect();
-        if !batch.is_empty() {
-            self.gp.send_batch(batch).await;
-        }
+        self.gp.send_batch(self.config.processors.iter().skip(1).map(message).collect()).await;
     }
 
     /// Draws this GP's share of what is shown from the retrace of `field` on.
@@ -180,7 +237,7 @@ impl Processor {
             if i == 0 {
                 self.gp.begin(Stage::Render, field, None);
             }
-            let sent = self.send(&passes, i == 0 && self.index == 0).await;
+            let sent = self.send(&passes, i == 0 && self.is_alone()).await;
             // There is no second buffer: the next clump is made in this one while it is emptied.
             if let Some(ticket) = sent.filter(|_| i < last) {
                 self.gp.draining(ticket).await;
@@ -218,7 +275,10 @@ impl Processor {
     fn copies(&self, field: u64, top: bool) -> Vec<(NodeId, u32, Body)> {
         let batch = (0..self.binding.renderers()).filter_map(|renderer| {
             let regions = self.binding.copies(renderer, top);
-            let orders: Vec<_> = regions.iter().map(|bound| self.order(bound, field)).collect();
+            let mut orders: Vec<_> = regions.iter().map(|bound| self.order(bound, field)).collect();
+            if let Some(last) = orders.last_mut().filter(|_| self.config.copy == Copy::Backup) {
+                last.acknowledge = Some(self.gp.node());
+            }
             let list = copy_message(self.config.layout, orders, self.config.pixels);
             (!regions.is_empty()).then(|| self.addressed(renderer, list))
         });
@@ -227,7 +287,7 @@ impl Processor {
 
     fn order(&self, bound: &BoundRegion, field: u64) -> CopyOrder {
         CopyOrder {
-            target: self.config.target(bound, field),
+            target: self.config.target(bound, field, self.buffer(field)),
             context: bound.context,
             through_backing: false,
             acknowledge: None,

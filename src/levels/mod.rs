@@ -4,12 +4,26 @@
 //! |---|---|---|---|
 //! | [`Level::Analytic`] | closed form of the stage rules | time of copies and of clumps | a constant per command |
 //! | [`Level::Transaction`] | timing table per primitive | an event per message | timing table per command |
+//! | [`Level::Cycle`] | as the transaction level, with the clocks of the i860 kernel where one exists | as the transaction level | the clocks of every instruction of a command's program |
+//!
+//! The ring needs no third form: its word-by-word reference and the event form give the same picosecond for every
+//! message (a property test of the ring's crate), so the cycle level uses the event form. Of the graphics processor's
+//! code only PPHIGS's triangle has a kernel in i860 assembly (docs/gp-timing.md); lighting, walking the display list and
+//! sending are not in it, and the code of Slats has none: there the table's times stay.
+
+mod chart;
+mod compare;
+
+pub use chart::svg;
+pub use compare::{LevelReport, cases, compare};
 
 use crate::analytic;
 use crate::config::MachineConfig;
 use crate::experiment::{Experiment, ExperimentError, Outcome, Pixels};
 use crate::pipelines::{Pipeline, RenderingControl, Slats};
 use crate::report::Statistics;
+use pxpl5_gp::GpTiming;
+use pxpl5_renderer::{CommandKind, RendererTiming};
 use pxpl5_scene::Scene;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Eye, MAX_MESSAGE_WORDS, RegionGrid};
@@ -25,6 +39,34 @@ pub enum Level {
     Analytic,
     /// An event per message and command list.
     Transaction,
+    /// The same, with clocks that come from instructions instead of the timing table.
+    Cycle,
+}
+
+/// Time of a triangle and eye by the i860 kernel in dual-instruction mode: 960 clocks at 40 MHz (docs/gp-timing.md).
+const KERNEL_TRIANGLE_NS: u64 = 24_000;
+
+/// The machine with every clock that follows from an instruction list; what an experiment has changed stays changed.
+fn literal(machine: &MachineConfig, program: Program) -> MachineConfig {
+    let (mut machine, layout) = (machine.clone(), program.pipeline().layout());
+    let (timing, table) = (&mut machine.renderer, RendererTiming::PAPERS);
+    for (kind, clocks, of_table) in [
+        (CommandKind::SelectRegion, &mut timing.select_clocks, table.select_clocks),
+        (CommandKind::Clear, &mut timing.clear_clocks, table.clear_clocks),
+        (CommandKind::Triangle, &mut timing.triangle_clocks, table.triangle_clocks),
+        (CommandKind::PhongTriangle, &mut timing.phong_triangle_clocks, table.phong_triangle_clocks),
+        (CommandKind::Sphere, &mut timing.sphere_clocks, table.sphere_clocks),
+        (CommandKind::PhongSphere, &mut timing.phong_sphere_clocks, table.phong_sphere_clocks),
+        (CommandKind::Shade, &mut timing.shade_clocks, table.shade_clocks),
+    ] {
+        // A layout without the fields that a command needs never gets that command.
+        let of_program = kind.clocks(&layout).map_or(of_table, u64::from);
+        *clocks = if *clocks == of_table { of_program } else { *clocks };
+    }
+    if machine.gp.triangle_ns == GpTiming::PAPERS.triangle_ns {
+        machine.gp.triangle_ns = KERNEL_TRIANGLE_NS;
+    }
+    machine
 }
 
 /// A pipeline with its variant.
@@ -114,7 +156,7 @@ pub const FIELD_MS: f64 = 1001.0 / 60.0;
 
 impl Level {
     /// All, from the fastest to the most literal.
-    pub const ALL: [Self; 2] = [Self::Analytic, Self::Transaction];
+    pub const ALL: [Self; 3] = [Self::Analytic, Self::Transaction, Self::Cycle];
 
     /// Runs a case.
     ///
@@ -125,6 +167,10 @@ impl Level {
         match self {
             Self::Analytic => analytic::run(case),
             Self::Transaction => Ok(summary(case.program, &case.experiment().run()?)),
+            Self::Cycle => {
+                let case = Case { machine: literal(&case.machine, case.program), ..case.clone() };
+                Ok(summary(case.program, &case.experiment().run()?))
+            }
         }
     }
 }
@@ -179,7 +225,7 @@ fn copies(program: Program, outcome: &Outcome, message: Span) -> Copies {
         let bottom = u32::from(arrival.target.region.0) >= RegionGrid::FIELD.columns();
         let place = match program {
             Program::RenderingControl(_) => arrival.board as u8,
-            Program::Slats(slats) => u8::from(bottom && slats.copy == slats::Copy::Split),
+            Program::Slats(slats) => u8::from(bottom && slats.copy.is_split()),
         };
         let begin = Time(arrival.first_part_at.0.saturating_sub(message.0));
         let fresh = CopySpan { begin, end: arrival.last_part_at };

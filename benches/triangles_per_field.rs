@@ -1,0 +1,49 @@
+//! Limits of Slats by simulation: the prototype, its variants, and experiments beyond it. Prints each limit once and
+//! measures how long the search takes.
+
+#![allow(missing_docs, reason = "criterion_group! makes functions without documentation")]
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use pxpl5::levels::Level;
+use pxpl5::limit::{Growing, LimitQuery};
+use pxpl5::{Binning, MachineConfig, Slats};
+use std::time::Duration;
+
+fn machine(preset: &str, n_gps: usize, n_renderers: usize) -> MachineConfig {
+    let preset = MachineConfig::preset(preset).expect("listed");
+    MachineConfig { n_gps, n_renderers, ..preset }
+}
+
+fn queries() -> Vec<(&'static str, LimitQuery)> {
+    let touched = Slats { binning: Binning::Touched, ..Slats::split() };
+    let typical = |config, slats| LimitQuery { growing: Growing::Typical, ..LimitQuery::no_miss(config, slats) };
+    let all = |config, slats| LimitQuery::no_miss(config, slats);
+    vec![
+        ("prototype, whole copy (published 110)", all(machine("slats", 1, 5), Slats::whole())),
+        ("prototype, split copy (published 140)", all(machine("slats", 1, 5), Slats::split())),
+        ("code of 1995 (published about 100)", all(machine("slats-1995", 1, 5), Slats::split())),
+        ("optimised code", all(machine("slats-optimised", 1, 5), Slats::split())),
+        ("backup field", all(machine("slats", 1, 5), Slats::backup())),
+        ("two GPs", all(machine("slats", 2, 5), Slats::split())),
+        ("ten renderers", all(machine("slats", 1, 10), Slats::split())),
+        ("four GPs, ten renderers", all(machine("slats", 4, 10), Slats::split())),
+        ("typical triangles, all regions", typical(machine("slats", 1, 5), Slats::split())),
+        ("typical triangles, touched regions", typical(machine("slats", 1, 5), touched)),
+        ("the same, four GPs, ten renderers", typical(machine("slats", 4, 10), touched)),
+    ]
+}
+
+fn limits(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("triangles-per-field");
+    group.sample_size(10).warm_up_time(Duration::from_millis(100)).measurement_time(Duration::from_secs(1));
+    for (name, query) in queries() {
+        let limit = query.search().expect("it runs");
+        println!("{name}: {} triangles", limit.triangles);
+        let analytic = LimitQuery { level: Level::Analytic, ..query };
+        group.bench_function(name, |bench| bench.iter(|| analytic.search().expect("it runs")));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, limits);
+criterion_main!(benches);

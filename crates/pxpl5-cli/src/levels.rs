@@ -1,0 +1,72 @@
+//! `pxpl5 levels`.
+
+use crate::error::CliError;
+use crate::terminal::print;
+use clap::Args;
+use pxpl5::growth;
+use pxpl5::levels::{LevelReport, compare, svg};
+use serde_json::json;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Run the same experiments at every level of modelling: speed against error.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 levels
+  pxpl5 levels --json
+  pxpl5 levels --chart docs/levels.svg
+  pxpl5 levels --scaling docs/scaling.md")]
+pub(crate) struct LevelsArgs {
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+    /// Write a chart of speed against error (SVG) to this file.
+    #[arg(long, value_name = "FILE")]
+    chart: Option<PathBuf>,
+    /// Write the tables of growth with triangles and boards to this file instead.
+    #[arg(long, value_name = "FILE")]
+    scaling: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
+    if let Some(path) = &args.scaling {
+        return write(
+            path,
+            &growth::markdown(&growth::by_triangles()?, &growth::by_machine()?, &growth::applications()?),
+        );
+    }
+    let reports = compare()?;
+    if let Some(path) = &args.chart {
+        write(path, &svg(&reports))?;
+    }
+    print(&if args.json { json_text(&reports) } else { text(&reports) })
+}
+
+fn write(path: &Path, text: &str) -> Result<(), CliError> {
+    fs::write(path, text).map_err(|error| CliError::failure(format!("{}: {error}", path.display())))
+}
+
+fn json_text(reports: &[LevelReport]) -> String {
+    format!("{:#}\n", json!({"schema": "pxpl5-levels/1", "levels": reports}))
+}
+
+fn text(reports: &[LevelReport]) -> String {
+    let mut text = format!(
+        "{:<12} {:>10} {:>16} {:>10} {:>22}\n",
+        "level", "fields/s", "configurations/s", "error", "deviation from cycle"
+    );
+    for report in reports {
+        let [mean, worst] = report.deviation_percent;
+        let name = format!("{:?}", report.level).to_lowercase();
+        let _ = writeln!(
+            text,
+            "{name:<12} {:>10.0} {:>16.0} {:>8.1} % {mean:>8.1} %, most {worst:>4.1} %",
+            report.fields_per_host_second, report.configurations_per_host_second, report.mean_error_percent
+        );
+    }
+    text.push_str(
+        "\nfields/s: simulated NTSC fields per second of this host, without pixels; error: mean of the free checks\n",
+    );
+    text
+}

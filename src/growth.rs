@@ -1,0 +1,241 @@
+//! Growth: host time and simulated latency as scenes and machines get larger.
+
+use crate::config::MachineConfig;
+use crate::experiment::{Experiment, ExperimentError, Pixels};
+use crate::limit::Growing;
+use crate::pipelines::RenderingControl;
+use pxpl5_scene::builtin;
+use serde::Serialize;
+use std::fmt::Write as _;
+
+/// One run. All zero behind the boards when no frame was shown.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Point {
+    /// Triangles (and spheres).
+    pub primitives: usize,
+    /// Graphics processors.
+    pub n_gps: usize,
+    /// Renderers.
+    pub n_renderers: usize,
+    /// Stereo frames shown.
+    pub frames: usize,
+    /// Host time of a frame, milliseconds, without pixels.
+    pub host_ms: f64,
+    /// Mean latency in fields.
+    pub latency_fields: f64,
+    /// Frames per second of simulated time.
+    pub updates_hz: f64,
+}
+
+/// Triangles, on 50 GPs and 5 renderers.
+const TRIANGLES: [u32; 7] = [12, 100, 1_000, 10_000, 100_000, 300_000, 1_000_000];
+
+/// GPs and renderers for a scene of 10,000 triangles.
+const MACHINES: [(usize, usize); 9] = [(2, 5), (4, 5), (13, 5), (24, 5), (50, 5), (13, 1), (13, 2), (13, 10), (13, 20)];
+
+/// Memory of a GP here: a million triangles do not fit into the 8 MB of 50 real ones.
+const MEMORY_BYTES: u64 = 1 << 30;
+
+/// Time of a triangle on its GP and, in 1.35 regions, on a renderer: what a run must leave room for.
+const TRIANGLE_NS: (u64, u64) = (24_000, 9_200);
+
+/// Frames that a run must leave room for.
+const FRAMES: u64 = 12;
+
+/// Fields in which [`FRAMES`] stereo frames are shown.
+fn fields(triangles: u64, n_gps: u64, n_renderers: u64) -> u64 {
+    let frame_ns = 2 * triangles * (TRIANGLE_NS.0 / (n_gps - 1) + TRIANGLE_NS.1 / n_renderers);
+    50 + FRAMES * frame_ns / 16_683_333
+}
+
+fn run(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, ExperimentError> {
+    let mut config = MachineConfig { n_gps, n_renderers, ..MachineConfig::preset("large")? };
+    config.gp.memory_bytes = MEMORY_BYTES;
+    let fields = fields(u64::from(triangles), n_gps as u64, n_renderers as u64);
+    let scene = Growing::Typical.scene(triangles);
+    let run = Experiment::new(config, RenderingControl::stereo(), scene).fields(fields).pixels(Pixels::Off).run();
+    let primitives = triangles as usize;
+    let outcome = match run {
+        Err(ExperimentError::TooShort { .. }) => {
+            return Ok(Point { primitives, n_gps, n_renderers, ..Point::default() });
+        }
+        other => other?,
+    };
+    let (report, frames) = (outcome.report(), outcome.pictures().len());
+    Ok(Point {
+        primitives,
+        n_gps,
+        n_renderers,
+        frames,
+        host_ms: report.host_seconds * 1e3 / frames.max(1) as f64,
+        latency_fields: report.latency_fields.statistics.mean,
+        updates_hz: report.updates_hz,
+    })
+}
+
+/// Scenes from 12 to a million triangles on 50 GPs and 5 renderers.
+///
+/// # Errors
+///
+/// The first [`ExperimentError`].
+pub fn by_triangles() -> Result<Vec<Point>, ExperimentError> {
+    TRIANGLES.into_iter().map(|triangles| run(triangles, 50, 5)).collect()
+}
+
+/// 10,000 triangles on machines of 2 to 50 GPs and 1 to 20 renderers.
+///
+/// # Errors
+///
+/// The first [`ExperimentError`].
+pub fn by_machine() -> Result<Vec<Point>, ExperimentError> {
+    MACHINES.into_iter().map(|(n_gps, n_renderers)| run(10_000, n_gps, n_renderers)).collect()
+}
+
+/// An application scene on a preset: which machine the papers used is not known.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Application {
+    /// The scene.
+    pub scene: &'static str,
+    /// The preset.
+    pub machine: &'static str,
+    /// Latency in fields: mean and standard deviation over frames of all seeds.
+    pub latency_fields: [f64; 2],
+    /// Frames per second of simulated time.
+    pub updates_hz: f64,
+    /// Frames.
+    pub frames: usize,
+}
+
+/// Seeds of head motion for the application scenes, and fields of each run.
+const SEEDS: u64 = 3;
+const FIELDS: u64 = 80;
+
+/// `mig`, `molecules` and `head` on `small-hmd`, `medium` and `large`.
+///
+/// # Errors
+///
+/// The first [`ExperimentError`].
+pub fn applications() -> Result<Vec<Application>, ExperimentError> {
+    let mut all = Vec::new();
+    for scene in ["mig", "molecules", "head"] {
+        for machine in ["small-hmd", "medium", "large"] {
+            all.push(application(scene, machine)?);
+        }
+    }
+    Ok(all)
+}
+
+fn application(scene: &'static str, machine: &'static str) -> Result<Application, ExperimentError> {
+    let built = std::sync::Arc::new(builtin(scene).map_err(|error| ExperimentError::Scene(error.to_string()))?);
+    let (mut latencies, mut hz) = (Vec::new(), 0.0);
+    for seed in 1..=SEEDS {
+        let config = MachineConfig::preset(machine)?;
+        let experiment = Experiment::new(config, RenderingControl::stereo(), std::sync::Arc::clone(&built));
+        let outcome = match experiment.fields(FIELDS).seed(seed).pixels(Pixels::Off).run() {
+            Err(ExperimentError::TooShort { .. }) => continue,
+            other => other?,
+        };
+        latencies.extend(outcome.steady_pictures().iter().map(|p| (p.shown_at - p.transform_at).as_ms()));
+        hz += outcome.report().updates_hz / SEEDS as f64;
+    }
+    let frames = latencies.len();
+    let fields = crate::report::Statistics::of(latencies.into_iter().map(|ms| ms / crate::levels::FIELD_MS));
+    Ok(Application { scene, machine, latency_fields: [fields.mean, fields.sd], updates_hz: hz, frames })
+}
+
+/// Slope of a straight line through the logarithms.
+#[must_use]
+pub fn exponent(points: &[(f64, f64)]) -> f64 {
+    let logs: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let n = logs.len() as f64;
+    let (mean_x, mean_y) = (logs.iter().map(|p| p.0).sum::<f64>() / n, logs.iter().map(|p| p.1).sum::<f64>() / n);
+    let products: f64 = logs.iter().map(|p| (p.0 - mean_x) * (p.1 - mean_y)).sum();
+    products / logs.iter().map(|p| (p.0 - mean_x) * (p.0 - mean_x)).sum::<f64>()
+}
+
+/// docs/scaling.md: tables, exponents and a chart.
+#[must_use]
+pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Application]) -> String {
+    let large: Vec<_> = triangles.iter().filter(|p| p.primitives >= 1_000 && p.frames > 0).collect();
+    let host = exponent(&large.iter().map(|p| (p.primitives as f64, p.host_ms)).collect::<Vec<_>>());
+    let latency = exponent(
+        &large
+            .iter()
+            .filter(|p| p.primitives >= 100_000)
+            .map(|p| (p.primitives as f64, p.latency_fields))
+            .collect::<Vec<_>>(),
+    );
+    let mut text = format!(
+        "# Growth\n\nGenerated by `pxpl5 levels --scaling docs/scaling.md`. Rendering Control in stereo, triangles of 18 pixels,\n\
+         no pixels computed, GPs with 1 GB instead of 8 MB; host times are of the machine on which this was made, and noisy.\n\n\
+         ## Triangles, on 50 GPs and 5 renderers\n\n\
+         Host time grows with the power {host:.2} of the triangles from 1,000 on; simulated latency with the power\n\
+         {latency:.2} from 100,000 on (below that COPY is the bottleneck).\n\n"
+    );
+    table(&mut text, triangles);
+    text.push_str("\n```text\n");
+    chart(&mut text, triangles);
+    text.push_str("```\n\n## Machines, 10,000 triangles\n\n");
+    table(&mut text, machines);
+    text.push_str(STUCK);
+    text.push_str(
+        "\n## Application scenes\n\nWhich machine the papers used for their application scenes is not known. 3 seeds of head \
+         motion, 80 fields each;\nthe published Mig is 4.61 fields (sd 0.589).\n\n\
+         | scene | machine | latency, fields | sd | frames/s | frames |\n|---|---|---|---|---|---|\n",
+    );
+    for a in applications {
+        let [mean, sd] = a.latency_fields;
+        let _ = writeln!(
+            text,
+            "| {} | {} | {mean:.2} | {sd:.3} | {:.2} | {} |",
+            a.scene, a.machine, a.updates_hz, a.frames
+        );
+    }
+    text
+}
+
+/// Why some machines show nothing.
+const STUCK: &str = "\nFIXME(accuracy): with about eight renderers or more the ring can fill with messages that wait at full input FIFOs;\n\
+                     then no channel is left for the pixels that those renderers must send first, and nothing moves any more. The real\n\
+                     machine ran with 20 renderers, so its ring must have kept them apart in a way that no source describes.\n";
+
+fn table(text: &mut String, points: &[Point]) {
+    text.push_str(
+        "| triangles | GPs | renderers | host ms a frame | latency, fields | frames/s |\n|---|---|---|---|---|---|\n",
+    );
+    for p in points.iter().filter(|p| p.frames == 0) {
+        let _ = writeln!(text, "| {} | {} | {} | no frame was shown | | |", p.primitives, p.n_gps, p.n_renderers);
+    }
+    for p in points.iter().filter(|p| p.frames > 0) {
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {:.2} | {:.2} | {:.2} |",
+            p.primitives, p.n_gps, p.n_renderers, p.host_ms, p.latency_fields, p.updates_hz
+        );
+    }
+}
+
+/// Host time against triangles, both logarithmic: a row a size, a column a tenth of a decade.
+fn chart(text: &mut String, points: &[Point]) {
+    let least = points.iter().filter(|p| p.frames > 0).map(|p| p.host_ms).fold(f64::INFINITY, f64::min).log10().floor();
+    for p in points.iter().filter(|p| p.frames > 0) {
+        let column = ((p.host_ms.log10() - least) * 10.0).round() as usize;
+        let _ = writeln!(text, "{:>9} |{}* {:.2} ms", p.primitives, " ".repeat(column), p.host_ms);
+    }
+    let _ = writeln!(
+        text,
+        "{:>9} +{} log10(host ms a frame), from {:.0e} ms",
+        "triangles",
+        "-".repeat(50),
+        10_f64.powf(least)
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_exponent_of_a_power_is_found() {
+        let points: Vec<_> = (1..20).map(|i| (f64::from(i), 3.0 * f64::from(i).powf(1.5))).collect();
+        assert!((super::exponent(&points) - 1.5).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,107 @@
+//! Speed against error: the same experiments at every level.
+
+use super::{Case, Level, Program};
+use crate::analytic::SlatsModel;
+use crate::config::MachineConfig;
+use crate::experiment::ExperimentError;
+use crate::figures::{Bench, FIGURES, Row, mean_error_percent};
+use crate::pipelines::{RenderingControl, Slats};
+use pxpl5_scene::builtin;
+use serde::Serialize;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A level's speed and error.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LevelReport {
+    /// The level.
+    pub level: Level,
+    /// Simulated fields per second of this host's time, over the experiments of [`cases`], without pixels.
+    pub fields_per_host_second: f64,
+    /// Machine configurations per second: for the analytic level the field of Slats alone, for the others whole
+    /// experiments of 16 fields.
+    pub configurations_per_host_second: f64,
+    /// Mean absolute error over the figures that are free checks, percent.
+    pub mean_error_percent: f64,
+    /// Mean and greatest absolute deviation of all figures from those of the cycle level, percent.
+    pub deviation_percent: [f64; 2],
+    /// Every figure at this level.
+    pub figures: Vec<(&'static str, f64)>,
+}
+
+/// Seeds and frames of the Mig here: the levels are compared, not the Mig.
+const MIG: (u64, u64) = (2, 60);
+
+/// The experiments whose speed is measured.
+///
+/// # Errors
+///
+/// [`ExperimentError::Scene`] never, as the scenes are built in.
+pub fn cases() -> Result<Vec<Case>, ExperimentError> {
+    let scene = |name: &str| builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()));
+    let (slats, stereo) = (MachineConfig::slats(), MachineConfig::small_hmd());
+    let all: [(MachineConfig, Program, &str, u64); 3] = [
+        (slats, Slats::split().into(), "full-screen:140", 240),
+        (stereo.clone(), RenderingControl::stereo().into(), "full-screen:12", 120),
+        (stereo, RenderingControl::stereo().into(), "mig", 120),
+    ];
+    all.into_iter()
+        .map(|(machine, program, name, fields)| Ok(Case { machine, program, scene: scene(name)?, fields, seed: 1 }))
+        .collect()
+}
+
+/// Compares all levels on this host, now.
+///
+/// # Errors
+///
+/// The first [`ExperimentError`].
+pub fn compare() -> Result<Vec<LevelReport>, ExperimentError> {
+    let rows: Vec<Vec<Row>> = Level::ALL.into_iter().map(rows_of).collect::<Result<_, _>>()?;
+    let cycle = rows.last().cloned().unwrap_or_default();
+    let report = |(level, rows): (Level, &Vec<Row>)| {
+        let deviations = rows.iter().zip(&cycle).map(|(a, b)| 100.0 * (a.simulated / b.simulated - 1.0).abs());
+        let worst = deviations.clone().fold(0.0, f64::max);
+        let (fields_per_host_second, configurations_per_host_second) = speed(level)?;
+        Ok(LevelReport {
+            level,
+            fields_per_host_second,
+            configurations_per_host_second,
+            mean_error_percent: mean_error_percent(rows),
+            deviation_percent: [deviations.sum::<f64>() / rows.len().max(1) as f64, worst],
+            figures: rows.iter().map(|row| (row.id, row.simulated)).collect(),
+        })
+    };
+    Level::ALL.into_iter().zip(&rows).map(report).collect()
+}
+
+fn rows_of(level: Level) -> Result<Vec<Row>, ExperimentError> {
+    let bench = Bench::new(level).with_mig(MIG.0, MIG.1);
+    FIGURES.iter().map(|figure| Ok(Row::new(figure, bench.measure(figure.id)?))).collect()
+}
+
+fn speed(level: Level) -> Result<(f64, f64), ExperimentError> {
+    let (mut fields, mut seconds) = (0, 0.0);
+    for case in cases()? {
+        let host_time = Instant::now();
+        level.run(&case)?;
+        seconds += host_time.elapsed().as_secs_f64();
+        fields += case.fields;
+    }
+    let fields_per_second = fields as f64 / seconds;
+    let configurations = if level == Level::Analytic { analytic_speed()? } else { fields_per_second / 16.0 };
+    Ok((fields_per_second, configurations))
+}
+
+/// Times per triangle that are tried, one configuration each.
+const CONFIGURATIONS: u64 = 20_000;
+
+fn analytic_speed() -> Result<f64, ExperimentError> {
+    let (mut machine, host_time) = (MachineConfig::slats(), Instant::now());
+    let mut in_time = 0;
+    for i in 0..CONFIGURATIONS {
+        machine.gp.triangle_ns = 20_000 + i;
+        in_time += u64::from(SlatsModel::new(&machine, Slats::split())?.field(140.0, 10.0).in_time);
+    }
+    std::hint::black_box(in_time);
+    Ok(CONFIGURATIONS as f64 / host_time.elapsed().as_secs_f64())
+}
