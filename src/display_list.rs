@@ -1,7 +1,7 @@
 //! From a scene to what graphics processors hold and hosts send.
 
 use crate::pipelines::{Views, ViewsWanted};
-use pphigs::{DisplayList, EyeView, Frame, FrameView, MAX_EDITS, ModelEdit, Structure};
+use pphigs::{DisplayList, EyeView, Frame, FrameView, MAX_EDITS, ModelEdit, RecentViews, Structure};
 use pxpl5_geometry::Sphere;
 use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Pose, Scene};
 use pxpl5_sim::Time;
@@ -40,6 +40,7 @@ pub(crate) fn display_list(scene: &Scene) -> Result<DisplayList, String> {
         ambient: light.ambient,
         diffuse: light.diffuse,
         background: light.background,
+        recent: RecentViews::default(),
     })
 }
 

@@ -104,6 +104,7 @@ pub struct Experiment {
     seed: u64,
     threads: usize,
     shuffle: Option<u64>,
+    traffic: bool,
     head: Option<Arc<Head>>,
 }
 
@@ -118,7 +119,18 @@ impl Experiment {
     #[must_use]
     pub fn with(config: MachineConfig, pipeline: Arc<dyn Pipeline>, scene: Arc<Scene>) -> Self {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        Self { config, pipeline, scene, fields: 120, pixels: Pixels::Lazy, seed: 1, threads, shuffle: None, head: None }
+        Self {
+            config,
+            pipeline,
+            scene,
+            fields: 120,
+            pixels: Pixels::Lazy,
+            seed: 1,
+            threads,
+            shuffle: None,
+            traffic: false,
+            head: None,
+        }
     }
 
     /// Number of fields to simulate.
@@ -156,6 +168,13 @@ impl Experiment {
         self
     }
 
+    /// Records messages, busy channels and FIFOs; no time changes.
+    #[must_use]
+    pub const fn record_traffic(mut self, record: bool) -> Self {
+        self.traffic = record;
+        self
+    }
+
     /// A head with its tracker instead of the scene's own motion, which the pipeline follows without any delay.
     ///
     /// With prediction the experiment is run twice: the first run tells when each view will be seen.
@@ -188,6 +207,9 @@ impl Experiment {
         }
         if self.pixels == Pixels::All {
             machine.compute_all_pixels(self.threads);
+        }
+        if self.traffic {
+            machine.record_traffic();
         }
         machine.switch_on();
         Ok((machine, head))

@@ -54,12 +54,15 @@ mod machine;
 mod measure;
 mod observation;
 mod parallel;
+pub mod pictures;
 pub mod pipelines;
 mod report;
 pub mod results;
 mod snapshot;
 pub mod sweep;
 pub mod timeline;
+pub mod trace_export;
+mod traffic;
 mod workers;
 
 pub use config::{ConfigError, MachineConfig, PRESETS, Parameter, Preset};
@@ -81,6 +84,7 @@ pub use report::{DefinedStatistics, Report, Statistics};
 pub use slats::Copy;
 pub use snapshot::{Snapshot, SnapshotError};
 pub use tracking;
+pub use traffic::{Traffic, Transfer};
 
 /// The examples of the README, compiled and run.
 #[cfg(doctest)]

@@ -191,6 +191,12 @@ impl Machine {
         self.workers = Some(PixelWorkers::new(threads));
     }
 
+    /// Records messages, busy channels and FIFOs from now on.
+    pub fn record_traffic(&mut self) {
+        self.observation.traffic = Some(Box::default());
+        self.renderers.iter_mut().for_each(Renderer::watch_fifo);
+    }
+
     /// The ports of the boards.
     #[must_use]
     pub const fn ports(&self) -> &Ports {
@@ -296,7 +302,14 @@ impl Machine {
 
     fn ring_event(&mut self, now: Time, event: RingEvent) {
         let Contexts { ring: context, .. } = &mut self.contexts;
+        let mut traffic = self.observation.traffic.as_deref_mut();
+        if let (Some(traffic), RingEvent::Accept { destination, last_word_at }) = (&mut traffic, &event) {
+            traffic.accept(*destination, *last_word_at);
+        }
         self.ring.handle(event, context.at(now));
+        if let Some(traffic) = &mut traffic {
+            traffic.channels(now, self.ring.busy_channels());
+        }
         for (time, phase, event) in context.drain_events() {
             self.queue.schedule(time, phase, Event::Ring(event));
         }
@@ -307,6 +320,9 @@ impl Machine {
                         time,
                         &[1, u64::from(message.source.0), u64::from(message.destination.0), u64::from(message.words)],
                     );
+                    if let Some(traffic) = &mut traffic {
+                        traffic.announce(&message, first_word_at);
+                    }
                     let board = usize::from(message.destination.0 - self.ports.renderers[0].0);
                     let event = RendererEvent::Announce { message, first_word_at };
                     self.queue.schedule(time, Phase::Arrive, Event::Renderer(board, event));
@@ -316,6 +332,9 @@ impl Machine {
                         time,
                         &[2, u64::from(message.source.0), u64::from(message.destination.0), u64::from(message.words)],
                     );
+                    if let Some(traffic) = &mut traffic {
+                        traffic.deliver(&message, time, self.ring.timing().word());
+                    }
                     let event = deliver(&self.ports, message);
                     self.queue.schedule(time, Phase::Arrive, event);
                 }
@@ -367,6 +386,10 @@ impl Machine {
     fn renderer_event(&mut self, now: Time, board: usize, event: RendererEvent) {
         let Contexts { renderer: context, .. } = &mut self.contexts;
         self.renderers[board].handle(event, context.at(now));
+        if let Some(traffic) = &mut self.observation.traffic {
+            let changes = self.renderers[board].take_fifo_changes();
+            traffic.fifo_changes.extend(changes.into_iter().map(|(time, words)| (board, time, words)));
+        }
         for (time, phase, event) in context.drain_events() {
             self.queue.schedule(time, phase, Event::Renderer(board, event));
         }

@@ -1,5 +1,6 @@
 //! What was observed of a run, and the pictures' histories that follow from it.
 
+use crate::traffic::Traffic;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{Edge, Mark, Stage};
 use pxpl5_sim::{Span, Time};
@@ -45,6 +46,8 @@ pub struct Observation {
     pub arrivals: Vec<Arrival>,
     /// Swaps.
     pub swaps: Vec<Swap>,
+    /// Messages and FIFOs, if they were recorded.
+    pub traffic: Option<Box<Traffic>>,
 }
 
 /// A stage of one picture and eye, from the first board that began it to the last one that ended it.

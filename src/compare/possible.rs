@@ -16,7 +16,7 @@ pub struct Possible {
 }
 
 /// Fields of each trial, a little more than the warm-up of the slowest.
-const FIELDS: u64 = 32;
+const FIELDS: u64 = 24;
 
 /// No more are tried.
 const MOST: u32 = 4_096;
@@ -57,7 +57,7 @@ pub fn triangles_possible(config: &MachineConfig, pipeline: &Arc<dyn Pipeline>) 
 fn whole(outcome: &Outcome) -> bool {
     let pictures = outcome.steady_pictures();
     let end = |times: Option<&crate::pipelines::PictureTimes>| times.map_or(0, |t| t.picture);
-    end(pictures.last()) + 1 - end(pictures.first()) == pictures.len() as u64 && pictures.len() as u64 > FIELDS / 2
+    end(pictures.last()) + 1 - end(pictures.first()) == pictures.len() as u64 && pictures.len() as u64 > FIELDS / 3
 }
 
 /// The greatest number up to [`MOST`] that holds, if it holds for all smaller ones.

@@ -23,6 +23,7 @@ mod style;
 mod writer;
 
 pub use model::{Bar, Row, Scan, Timeline};
+pub(crate) use path::Updates;
 pub use path::{Arrow, Place};
 pub use published::{FigureError, PIPELINE_FIGURES, PipelineFigure};
 

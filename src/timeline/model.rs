@@ -1,6 +1,6 @@
 //! What a timeline shows, before it is drawn.
 
-use super::path::{self, Arrow};
+use super::path::{self, Arrow, Updates};
 use super::{MAX_FIELDS, TimelineOptions};
 use crate::experiment::{Outcome, WARM_UP_PICTURES};
 use crate::observation::{Arrival, StageSpan};
@@ -87,10 +87,10 @@ impl Timeline {
         let chosen = chosen(outcome.pictures(), options.picture);
         let stages = outcome.stages();
         let mut rows = rows(outcome, &stages, options);
-        let update = chosen.and_then(|times| path::update_of(outcome, &stages, times));
+        let update = chosen.and_then(|times| Updates::of(outcome, &stages).shown_by(times));
         let sample = rows.first().and_then(|row| row.bars.iter().find(|bar| Some(bar.picture) == update));
         let sampled_at = sample.filter(|bar| bar.stage == Stage::Send).map(|bar| bar.begin);
-        let (first, last) = fields(video, options, chosen, sampled_at);
+        let (first, last) = fields(outcome, options, chosen, sampled_at);
         let (from, to) = (video.retrace(first), video.retrace(last));
         for row in &mut rows {
             row.bars.retain(|bar| bar.begin < to && bar.end >= from);
@@ -128,13 +128,14 @@ fn chosen(pictures: &[PictureTimes], wanted: Option<u64>) -> Option<&PictureTime
 
 /// The first field and the one after the last.
 fn fields(
-    video: &Video,
+    outcome: &Outcome,
     options: &TimelineOptions,
     chosen: Option<&PictureTimes>,
     sampled_at: Option<Time>,
 ) -> (u64, u64) {
+    let video = outcome.machine().video();
     let begin = chosen.map_or(Time::ZERO, |times| sampled_at.or(times.sampled_at).unwrap_or(times.transform_at));
-    let first = options.first_field.unwrap_or_else(|| video.field_at(begin));
+    let first = options.first_field.unwrap_or_else(|| video.field_at(begin)).min(outcome.fields());
     let shown = chosen.map_or(first + 4, |times| video.field_at(times.shown_at) + 2);
     let count = options.fields.unwrap_or_else(|| shown.saturating_sub(first).max(4));
     (first, first + count.clamp(1, MAX_FIELDS))

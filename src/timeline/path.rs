@@ -38,17 +38,34 @@ pub enum Place {
     Beam,
 }
 
-/// The host's update that a picture shows: its own, or the last that had reached the GP when the picture began.
-pub(crate) fn update_of(outcome: &Outcome, stages: &[StageSpan], times: &PictureTimes) -> Option<u64> {
-    let host = outcome.machine().ports().host;
-    let marks = &outcome.observation().marks;
-    if marks.iter().any(|mark| mark.stage == Stage::Sample && mark.node == host) {
-        return Some(times.picture);
+/// Which of the host's updates a picture shows.
+pub(crate) struct Updates {
+    /// The host samples for each picture, so both have the same number.
+    by_picture: bool,
+    /// When each update had reached the GP, and its number, in order.
+    received: Vec<(Time, u64)>,
+}
+
+impl Updates {
+    pub(crate) fn of(outcome: &Outcome, stages: &[StageSpan]) -> Self {
+        let host = outcome.machine().ports().host;
+        let marks = &outcome.observation().marks;
+        let sends = stages.iter().filter(|span| span.stage == Stage::Send);
+        let mut received: Vec<(Time, u64)> =
+            sends.filter_map(|span| Some((span.end? + outcome.receive_span(), span.picture))).collect();
+        received.sort_unstable();
+        Self { by_picture: marks.iter().any(|mark| mark.stage == Stage::Sample && mark.node == host), received }
     }
-    let taken = times.sampled_at?;
-    let sends = stages.iter().filter(|span| span.stage == Stage::Send);
-    let received = outcome.receive_span();
-    sends.filter(|span| span.end.is_some_and(|end| end + received <= taken)).map(|span| span.picture).max()
+
+    /// The picture's own update, or the last that had reached the GP when the picture began.
+    pub(crate) fn shown_by(&self, times: &PictureTimes) -> Option<u64> {
+        if self.by_picture {
+            return Some(times.picture);
+        }
+        let taken = times.sampled_at?;
+        let after = self.received.partition_point(|received| received.0 <= taken);
+        Some(self.received[after.checked_sub(1)?].1)
+    }
 }
 
 /// The arrows of the chosen picture.

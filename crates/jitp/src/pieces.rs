@@ -69,7 +69,7 @@ impl Part {
 pub(crate) fn messages(
     config: &Config,
     drawing: &Arc<Drawing>,
-    (viewport, window): (&Viewport, Window),
+    window: Window,
     counts: Counts,
     target: CopyTarget,
 ) -> Vec<CommandList> {
@@ -86,7 +86,6 @@ pub(crate) fn messages(
         let content = config.pixels.then(|| Arc::new(words) as Arc<dyn CommandWords>);
         CommandList { runs, context: 0, copies, content }
     };
-    debug_assert!(viewport.grid().width == config.grid().width);
     parts(counts).into_iter().map(list).collect()
 }
 

@@ -202,7 +202,7 @@ impl Slave {
         let batch: Vec<_> = pieces
             .flat_map(|((region, window), counts)| {
                 let target = self.config.target(picture, *region);
-                let lists = messages(&self.config, drawing, (viewport, *window), *counts, target);
+                let lists = messages(&self.config, drawing, *window, *counts, target);
                 lists.into_iter().map(|list| self.addressed(*region, list))
             })
             .collect();

@@ -21,9 +21,11 @@
 mod commands;
 mod list;
 mod pass;
+mod placed;
 mod view;
 
 pub use commands::{Around, copy_message, gouraud_sphere, region_messages};
 pub use list::{Counts, DisplayList, Frame, Share, Structure};
-pub use pass::{Binning, Pass, Picture, Placed, Shading, place_all};
+pub use pass::{Binning, Pass, Picture, Shading};
+pub use placed::{Placed, RecentViews, place_all};
 pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit, ViewWordsError};

@@ -1,6 +1,7 @@
 //! The display list and its division among GPs.
 
 use crate::pass::{Pass, Picture};
+use crate::placed::RecentViews;
 use crate::view::FrameView;
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{Sphere, Triangle};
@@ -50,6 +51,8 @@ pub struct DisplayList {
     pub diffuse: f32,
     /// Red, green, blue where nothing is drawn.
     pub background: [u8; 3],
+    /// What many graphics processors compute alike, kept for the next one; empty at first.
+    pub recent: RecentViews,
 }
 
 /// Numbers of primitives or commands.
@@ -160,6 +163,12 @@ impl Share {
             let spheres = part(&spheres, past(from), past(from + size));
             Self { triangles, spheres, ..share.clone() }
         })
+    }
+
+    /// No primitive of the same display list.
+    #[must_use]
+    pub fn nothing(&self) -> Self {
+        Self { triangles: 0..0, spheres: 0..0, ..self.clone() }
     }
 
     /// Bytes that the primitives take in the GP's memory.

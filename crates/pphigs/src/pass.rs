@@ -1,15 +1,15 @@
 //! One TRANSFORM of a GP's share for one eye.
 
-use crate::list::{Counts, DisplayList, Frame, Share, Structure, UNMOVED};
-use crate::view::{EyeView, FrameView, product};
-use glam::{Mat4, Vec3};
+use crate::list::{Counts, Share};
+use crate::placed::{Corners, Placed, RecentViews, Vertices};
+use crate::view::FrameView;
 use pxpl5_geometry::{
-    Culling, Light, LitColours, Outline, RegionMask, ScreenSphere, ScreenTriangle, SetupStats, SurfaceNormals,
-    Transform, ViewTransform, Viewport,
+    Light, LitColours, Outline, RegionMask, ScreenSphere, ScreenTriangle, SetupStats, SurfaceNormals, Transform,
+    Viewport,
 };
 use pxpl5_renderer::Layout;
 use pxpl5_wire::RegionId;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Where colours are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,29 +45,6 @@ pub struct Picture {
     pub pixels: bool,
 }
 
-/// One structure as an eye sees it.
-#[derive(Debug)]
-pub struct Placed {
-    /// From its coordinates to the picture; `None` where a matrix is not finite, so that it is not drawn.
-    pub transform: Option<Transform>,
-    /// The light in eye coordinates.
-    pub light: Light,
-    /// Its primitives.
-    pub structure: Structure,
-}
-
-/// All structures of a display list as an eye (0, or 0 and 1) of a view sees them.
-///
-/// # Panics
-///
-/// If the view has no eye.
-#[must_use]
-pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<Placed> {
-    let eye = &view.eyes[eye.min(view.eyes.len() - 1)];
-    let structures = list.structures.iter().enumerate();
-    structures.map(|(i, s)| place(list, s, model(view, i), eye, viewport)).collect()
-}
-
 /// Screen triangles in the order in which binning met them.
 #[derive(Debug)]
 pub(crate) enum ScreenTriangles {
@@ -87,7 +64,7 @@ pub(crate) struct Screen {
 #[derive(Debug)]
 pub struct Pass {
     share: Share,
-    placed: Vec<Placed>,
+    placed: Arc<[Placed]>,
     picture: Picture,
     counts: Vec<Counts>,
     /// Sequence numbers of screen triangles and spheres by region; empty without pixels.
@@ -103,7 +80,7 @@ const NOWHERE: Outline = Outline { x: [0; 3], y: [0; 3], z: [0; 3], regions: Reg
 impl Pass {
     pub(crate) fn new(share: Share, view: &FrameView, eye: usize, picture: Picture) -> Self {
         let regions = picture.viewport.grid().regions() as usize;
-        let placed = place_all(&share.list, view, eye, picture.viewport);
+        let placed = RecentViews::place_all(&share.list, view, eye, picture.viewport);
         let bins = if picture.pixels { vec![[Vec::new(), Vec::new()]; regions] } else { Vec::new() };
         let mut pass = Self {
             share,
@@ -120,12 +97,14 @@ impl Pass {
     }
 
     fn binitize(&mut self) {
-        let (mut stats, placed) = (SetupStats::default(), std::mem::take(&mut self.placed));
+        let (mut stats, placed) = (SetupStats::default(), Arc::clone(&self.placed));
         let share = self.share.clone();
         for (place, transform) in placed.iter().filter_map(|p| Some((p, p.transform.as_ref()?))) {
+            let vertices = place.vertices(&share.list, transform);
             for number in share.held_triangles(&place.structure.triangles) {
                 let before = self.screen_counts.triangles;
-                transform.bin(&share.list.corners(number), &mut stats, |mask| self.put_triangle(mask));
+                let corners = vertices.corners(&share.list, number);
+                transform.bin_seen(vertices.seen(&corners), &mut stats, |mask| self.put_triangle(mask));
                 if self.screen_counts.triangles == before && self.picture.binning == Binning::All {
                     self.put_triangle(RegionMask::EMPTY);
                 }
@@ -136,7 +115,6 @@ impl Pass {
                 }
             }
         }
-        self.placed = placed;
         self.stats = stats;
     }
 
@@ -236,29 +214,40 @@ impl Pass {
 
     fn gouraud(&self, stats: &mut SetupStats) -> Vec<ScreenTriangle<LitColours>> {
         let nothing = ScreenTriangle { outline: NOWHERE, surface: LitColours([[0; 3]; 3]) };
-        self.each_triangle(nothing, |transform, place, number, all| {
-            transform.gouraud(&self.share.list.triangle(number), &place.light, stats, |t| all.push(t));
+        let list = &self.share.list;
+        self.each_triangle(nothing, |transform, place, vertices, at, _, all| {
+            let colours = at.copied(vertices.colours(list, transform, &place.light));
+            transform.gouraud_seen(vertices.seen(at), colours, stats, |t| all.push(t));
         })
     }
 
     fn phong(&self, stats: &mut SetupStats) -> Vec<ScreenTriangle<SurfaceNormals>> {
         let nothing =
             ScreenTriangle { outline: NOWHERE, surface: SurfaceNormals { normals: [[0; 3]; 3], colour: [0; 3] } };
-        self.each_triangle(nothing, |transform, _, number, all| {
-            transform.phong(&self.share.list.triangle(number), stats, |t| all.push(t));
+        let list = &self.share.list;
+        self.each_triangle(nothing, |transform, _, vertices, at, number, all| {
+            let normals = at.copied(vertices.normals(list, transform));
+            let colour = list.colours[list.triangles[number][0] as usize];
+            transform.phong_seen(vertices.seen(at), normals, colour, stats, |t| all.push(t));
         })
     }
 
     /// Collects the pieces of all triangles, and `nothing` for one without any where all are sent.
-    fn each_triangle<T>(&self, nothing: T, mut pieces: impl FnMut(&Transform, &Placed, usize, &mut Vec<T>)) -> Vec<T>
+    fn each_triangle<T>(
+        &self,
+        nothing: T,
+        mut pieces: impl FnMut(&Transform, &Placed, &Vertices, &Corners, usize, &mut Vec<T>),
+    ) -> Vec<T>
     where
         T: Copy,
     {
         let mut all = Vec::with_capacity(self.screen_counts.triangles as usize);
         for (place, transform) in self.placed.iter().filter_map(|p| Some((p, p.transform.as_ref()?))) {
+            let vertices = place.vertices(&self.share.list, transform);
             for number in self.share.held_triangles(&place.structure.triangles) {
                 let before = all.len();
-                pieces(transform, place, number, &mut all);
+                let corners = vertices.corners(&self.share.list, number);
+                pieces(transform, place, vertices, &corners, number, &mut all);
                 if all.len() == before && self.picture.binning == Binning::All {
                     all.push(nothing);
                 }
@@ -276,26 +265,4 @@ impl Pass {
         }
         all
     }
-}
-
-fn model(view: &FrameView, structure: usize) -> Mat4 {
-    view.edits.iter().rev().find(|edit| edit.structure as usize == structure).map_or(UNMOVED, |edit| edit.model)
-}
-
-/// A structure whose matrices are not finite is not drawn.
-fn place(list: &DisplayList, structure: &Structure, model: Mat4, eye: &EyeView, viewport: Viewport) -> Placed {
-    let to_eye = match structure.frame {
-        Frame::World => eye.world_to_eye,
-        Frame::Head => eye.head_to_eye,
-    };
-    let view = ViewTransform { model_view: product(&to_eye, &model), projection: eye.projection };
-    let light = Light { direction: turned(&to_eye, list.towards_light), ambient: list.ambient, diffuse: list.diffuse };
-    let transform = Transform::new(&view, viewport, Culling::None).ok();
-    Placed { transform, light, structure: structure.clone() }
-}
-
-/// A direction in eye coordinates; the matrix is a rotation and a translation.
-fn turned(matrix: &Mat4, v: Vec3) -> [f32; 3] {
-    let [x, y, z, _] = matrix.to_cols_array_2d();
-    std::array::from_fn(|i| x[i] * v.x + y[i] * v.y + z[i] * v.z)
 }

@@ -35,9 +35,9 @@ pub(crate) struct CompareArgs {
     /// Seed of the tracker's noise and of the host's polling.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
-    /// Search for the most triangles that each pipeline can draw in time, too.
+    /// Do not search for the most triangles that each pipeline can draw in time.
     #[arg(long)]
-    triangles: bool,
+    no_triangles: bool,
     /// Write comparison.json, error.svg (90 ms against 50 ms) and the pictures of a vertical edge into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -62,7 +62,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let scene = Arc::new(load(&args.scene)?);
     let head = Arc::new(Head::new(moving, tracker, predictor, args.seed).map_err(CliError::usage)?);
     let mut folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
-    let comparison = compare(&config, &scene, &head, args.fields, args.triangles)?;
+    let comparison = compare(&config, &scene, &head, args.fields, !args.no_triangles)?;
     let json = serde_json::to_string_pretty(&comparison).map_err(CliError::failure)? + "\n";
     if let Some(folder) = &mut folder {
         folder.put("comparison.json", json.as_bytes())?;

@@ -113,6 +113,7 @@ fn closing(runs: &[Run], args: &DemoArgs) -> String {
 fn write(mut folder: OutputFolder, runs: &[Run]) -> Result<(), CliError> {
     for run in runs {
         pictures(&mut folder, &format!("{}-", run.name), &run.outcome, &run.report)?;
+        folder.put(&format!("{}-pictures.csv", run.name), pxpl5::results::csv(&run.outcome).as_bytes())?;
         folder.put(&format!("{}-timeline.svg", run.name), timeline(&run.outcome, &run.report).as_bytes())?;
     }
     let runs: Vec<Value> = runs.iter().map(entry).collect();

@@ -11,12 +11,14 @@ mod completions;
 mod demo;
 mod error;
 mod figures;
+mod film;
 mod i860;
 mod levels;
 mod limit;
 mod machines;
 mod merge;
 mod output;
+mod report;
 mod run;
 mod scenes;
 mod settings;
@@ -24,6 +26,7 @@ mod snapshot;
 mod sweep;
 mod table;
 mod terminal;
+mod trace;
 
 use clap::{Parser, Subcommand};
 use error::CliError;
@@ -71,6 +74,12 @@ enum Command {
     Sweep(sweep::SweepArgs),
     /// Join the shards of a sweep.
     Merge(merge::MergeArgs),
+    /// Make one page of a results folder.
+    Report(report::ReportArgs),
+    /// Run one experiment and write a trace of everything that happened.
+    Trace(trace::TraceArgs),
+    /// Write what a viewer sees as an animated PNG.
+    Film(film::FilmArgs),
     /// Work with programs of the graphics processor's CPU.
     I860(i860::I860Args),
     /// Print a completion script for a shell.
@@ -102,6 +111,9 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Machines(args)) => machines::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
         Some(Command::Merge(args)) => merge::run(args),
+        Some(Command::Report(args)) => report::run(args),
+        Some(Command::Trace(args)) => trace::run(args),
+        Some(Command::Film(args)) => film::run(args),
         Some(Command::I860(args)) => i860::run(args).map_err(CliError::failure),
         Some(Command::Completions(args)) => completions::run(args),
     }

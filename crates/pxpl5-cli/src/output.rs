@@ -36,6 +36,19 @@ impl OutputFolder {
         Ok(folder)
     }
 
+    /// The folder of a file, and the file's name in it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::open`], and when the path does not end in a name.
+    pub(crate) fn of_file(path: &Path) -> Result<(Self, String), CliError> {
+        let name = path.file_name().filter(|_| !path.is_dir());
+        let name =
+            name.ok_or_else(|| CliError::usage(format!("{} is no file name; give one with --out", path.display())))?;
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        Ok((Self::open(folder.unwrap_or_else(|| Path::new(".")))?, name.to_string_lossy().into_owned()))
+    }
+
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }

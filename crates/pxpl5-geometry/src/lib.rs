@@ -81,6 +81,7 @@ mod input;
 mod light;
 mod plane;
 mod screen;
+mod seen;
 mod sphere;
 mod sphere_setup;
 mod stats;
@@ -95,6 +96,7 @@ pub use screen::{
     DEPTH_FAR, DEPTH_NEAR, GUARD_PIXELS, GouraudTriangle, LitColours, NORMAL_UNIT, Outline, PhongTriangle,
     ScreenTriangle, SurfaceNormals,
 };
+pub use seen::{SeenColour, SeenNormal, SeenVertex};
 pub use sphere::ScreenSphere;
 pub use sphere_setup::{GouraudSphere, PhongSphere, SphereSetup};
 pub use stats::SetupStats;

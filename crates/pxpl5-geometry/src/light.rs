@@ -61,7 +61,21 @@ impl<'a> Lighting<'a> {
 
 /// Unit normals in eye coordinates, all three turned over if the surface faces away.
 pub(crate) fn facing_normals(to_eye: &FromWorld, positions: &[Vec3; 3], normals: &[Vec3; 3]) -> [[f32; 3]; 3] {
-    let n = normals.map(|n| unit_normal(to_eye, n));
-    let facing = |i: usize| towards_eye(to_eye, positions[i], n[i]);
-    if (facing(0) + facing(1)) + facing(2) < 0.0 { n.map(|n| n.map(|v| -v)) } else { n }
+    let [a, b, c] = [0, 1, 2].map(|i| unit_and_facing(to_eye, positions[i], normals[i]));
+    turned([a.0, b.0, c.0], [a.1, b.1, c.1])
+}
+
+/// A unit normal in eye coordinates, and how far it turns towards the eye.
+#[inline(always)]
+pub(crate) fn unit_and_facing(to_eye: &FromWorld, position: Vec3, normal: Vec3) -> ([f32; 3], f32) {
+    let n = unit_normal(to_eye, normal);
+    (n, towards_eye(to_eye, position, n))
+}
+
+/// The normals of three corners, all turned over if they face away from the eye on the whole.
+#[inline(always)]
+pub(crate) fn turned([a, b, c]: [[f32; 3]; 3], facing: [f32; 3]) -> [[f32; 3]; 3] {
+    let away = (facing[0] + facing[1]) + facing[2] < 0.0;
+    let sign = |[x, y, z]: [f32; 3]| if away { [-x, -y, -z] } else { [x, y, z] };
+    [sign(a), sign(b), sign(c)]
 }

@@ -135,6 +135,7 @@ impl Outline {
     }
 
     /// The picture's pixel, in frame lines, nearest to the middle of the bounding box: planes are most exact there.
+    #[inline(always)]
     fn middle(&self, viewport: &Viewport) -> [i32; 2] {
         let centre = |v: &[i32; 3], size: u32| {
             let [low, high] = extent(v);
@@ -159,11 +160,14 @@ impl<A> ScreenTriangle<A> {
     /// The edge expressions alone, at the picture's pixels.
     #[must_use]
     pub fn edges(&self, viewport: &Viewport) -> [Linear; 3] {
-        self.outline.edges().map(|e| for_rows(e, viewport))
+        let [a, b, c] = self.outline.edges();
+        [for_rows(a, viewport), for_rows(b, viewport), for_rows(c, viewport)]
     }
 
+    #[inline(always)]
     fn depth_plane(&self, planes: &plane::Planes, stats: &mut SetupStats) -> Linear {
-        planes.through(self.outline.z.map(f64::from), stats)
+        let [a, b, c] = self.outline.z;
+        planes.through([f64::from(a), f64::from(b), f64::from(c)], stats)
     }
 }
 
@@ -172,11 +176,12 @@ impl ScreenTriangle<LitColours> {
     #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, stats: &mut SetupStats) -> GouraudTriangle {
         let planes = plane::Planes::of(&self.outline, self.outline.middle(viewport));
-        let colours = &self.surface.0;
-        let rgb = std::array::from_fn(|i| {
-            let corners = colours.map(|c| colour_value(c[i]));
-            for_rows(planes.through(corners, stats), viewport)
-        });
+        let [a, b, c] = &self.surface.0;
+        let mut rgb = [Linear::default(); 3];
+        for (i, plane) in rgb.iter_mut().enumerate() {
+            let corners = [colour_value(a[i]), colour_value(b[i]), colour_value(c[i])];
+            *plane = for_rows(planes.through(corners, stats), viewport);
+        }
         GouraudTriangle { edges: self.edges(viewport), z: for_rows(self.depth_plane(&planes, stats), viewport), rgb }
     }
 }
@@ -186,11 +191,12 @@ impl ScreenTriangle<SurfaceNormals> {
     #[must_use]
     pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongTriangle {
         let planes = plane::Planes::of(&self.outline, self.outline.middle(viewport));
-        let normals = &self.surface.normals;
-        let normal = std::array::from_fn(|i| {
-            let corners = normals.map(|n| normal_value(n[i]));
-            for_rows(planes.through(corners, stats), viewport)
-        });
+        let [a, b, c] = &self.surface.normals;
+        let mut normal = [Linear::default(); 3];
+        for (i, plane) in normal.iter_mut().enumerate() {
+            let corners = [normal_value(a[i]), normal_value(b[i]), normal_value(c[i])];
+            *plane = for_rows(planes.through(corners, stats), viewport);
+        }
         PhongTriangle {
             edges: self.edges(viewport),
             z: for_rows(self.depth_plane(&planes, stats), viewport),

@@ -4,6 +4,7 @@ use crate::bin::Binner;
 use crate::clip::{self, Guard, Vertex};
 use crate::light::Lighting;
 use crate::screen::{self, LitColours, Outline, ScreenTriangle, SurfaceNormals};
+use crate::seen::SeenVertex;
 use crate::sphere::Lens;
 use crate::view::{Columns, FromWorld, ViewError};
 use crate::{Light, Mesh, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
@@ -44,7 +45,7 @@ struct ToScreen {
 
 /// A vertex on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct Snapped {
+pub(crate) struct Snapped {
     x: i32,
     y: i32,
     z: u32,
@@ -76,18 +77,10 @@ impl TriangleEnds {
     }
 }
 
-/// A transformed vertex of a mesh.
-#[derive(Clone, Copy, Debug)]
-struct MeshVertex {
-    clip: [f32; 4],
-    snapped: Snapped,
-    inside: bool,
-}
-
 /// Memory that [`Transform::bin_mesh`] and its siblings use again from call to call.
 #[derive(Clone, Debug, Default)]
 pub struct MeshScratch {
-    vertices: Vec<MeshVertex>,
+    vertices: Vec<SeenVertex>,
     extras: Vec<[f32; 3]>,
 }
 
@@ -304,16 +297,8 @@ impl Transform {
     ) {
         self.transform_vertices(mesh.positions(), scratch);
         for (number, indices) in mesh.triangles().iter().enumerate() {
-            stats.triangles += 1;
-            let corners = indices.map(|i| scratch.vertices[i as usize]);
-            if corners.iter().all(|v| v.inside) {
-                if let Some(whole) = self.assemble(corners.map(|v| v.snapped), stats) {
-                    sink(number, whole.outline.regions);
-                }
-            } else {
-                let corners = corners.map(|v| Vertex { clip: v.clip, extra: [] });
-                self.clipped(&corners, stats, |piece, _| sink(number, piece.outline.regions));
-            }
+            let [a, b, c] = indices.map(|i| &scratch.vertices[i as usize]);
+            self.bin_corners([a, b, c], stats, |mask| sink(number, mask));
         }
     }
 
@@ -333,41 +318,66 @@ impl Transform {
         scratch.extras.extend(lit);
         self.transform_vertices(mesh.positions(), scratch);
         for (number, indices) in mesh.triangles().iter().enumerate() {
-            stats.triangles += 1;
-            self.mesh_triangle(scratch, indices, stats, |outline, colours| {
+            let indices = indices.map(|i| i as usize);
+            let (corners, colours) = (indices.map(|i| &scratch.vertices[i]), indices.map(|i| scratch.extras[i]));
+            self.corners(corners, colours, stats, |outline, colours| {
                 sink(number, lit_triangle(outline, colours));
             });
         }
     }
 
-    fn mesh_triangle(
+    fn transform_vertices(&self, positions: &[Vec3], scratch: &mut MeshScratch) {
+        scratch.vertices.clear();
+        scratch.vertices.extend(positions.iter().map(|p| self.see(*p)));
+    }
+
+    /// Transforms a vertex.
+    #[inline(always)]
+    #[must_use]
+    pub fn see(&self, position: Vec3) -> SeenVertex {
+        let clip = self.to_clip.point(position);
+        let inside = self.guard.contains(clip);
+        let snapped = if inside { self.to_screen.snap(clip) } else { Snapped::default() };
+        SeenVertex { clip, snapped, inside }
+    }
+
+    /// Finds the regions of a triangle between transformed vertices.
+    #[inline(always)]
+    pub(crate) fn bin_corners(
         &self,
-        scratch: &MeshScratch,
-        indices: &[u32; 3],
+        [a, b, c]: [&SeenVertex; 3],
         stats: &mut SetupStats,
-        mut sink: impl FnMut(Outline, [[f32; 3]; 3]),
+        mut sink: impl FnMut(RegionMask),
     ) {
-        let indices = indices.map(|i| i as usize);
-        let corners = indices.map(|i| scratch.vertices[i]);
-        if corners.iter().all(|v| v.inside) {
-            if let Some(whole) = self.assemble(corners.map(|v| v.snapped), stats) {
-                let order = if whole.swapped { [0, 2, 1] } else { [0, 1, 2] };
-                sink(whole.outline, order.map(|i| scratch.extras[indices[i]]));
+        stats.triangles += 1;
+        if a.inside & b.inside & c.inside {
+            if let Some(whole) = self.assemble([a.snapped, b.snapped, c.snapped], stats) {
+                sink(whole.outline.regions);
             }
             return;
         }
-        let corners = indices.map(|i| Vertex { clip: scratch.vertices[i].clip, extra: scratch.extras[i] });
-        self.clipped(&corners, stats, |piece, extras| sink(piece.outline, extras));
+        let corners = [a, b, c].map(|v| Vertex { clip: v.clip, extra: [] });
+        self.clipped(&corners, stats, |piece, _| sink(piece.outline.regions));
     }
 
-    fn transform_vertices(&self, positions: &[Vec3], scratch: &mut MeshScratch) {
-        scratch.vertices.clear();
-        scratch.vertices.extend(positions.iter().map(|p| {
-            let clip = self.to_clip.point(*p);
-            let inside = self.guard.contains(clip);
-            let snapped = if inside { self.to_screen.snap(clip) } else { Snapped::default() };
-            MeshVertex { clip, snapped, inside }
-        }));
+    /// Assembles, or clips, a triangle between transformed vertices with three more numbers each.
+    #[inline(always)]
+    pub(crate) fn corners(
+        &self,
+        [a, b, c]: [&SeenVertex; 3],
+        [p, q, r]: [[f32; 3]; 3],
+        stats: &mut SetupStats,
+        mut sink: impl FnMut(Outline, [[f32; 3]; 3]),
+    ) {
+        stats.triangles += 1;
+        if a.inside & b.inside & c.inside {
+            if let Some(whole) = self.assemble([a.snapped, b.snapped, c.snapped], stats) {
+                sink(whole.outline, if whole.swapped { [p, r, q] } else { [p, q, r] });
+            }
+            return;
+        }
+        let corner = |v: &SeenVertex, extra| Vertex { clip: v.clip, extra };
+        self.clipped(&[corner(a, p), corner(b, q), corner(c, r)], stats, |piece, extras| sink(piece.outline, extras));
     }
 
     /// Corners in clockwise order with the regions touched; `None`, counted, if there is nothing to draw.
@@ -442,12 +452,16 @@ impl Transform {
 }
 
 #[inline(always)]
-fn lit_triangle(outline: Outline, colours: [[f32; 3]; 3]) -> ScreenTriangle<LitColours> {
+pub(crate) fn lit_triangle(outline: Outline, colours: [[f32; 3]; 3]) -> ScreenTriangle<LitColours> {
     ScreenTriangle { outline, surface: LitColours(colours.map(|c| c.map(|v| rounded(v) as u16))) }
 }
 
 #[inline(always)]
-fn normal_triangle(outline: Outline, normals: [[f32; 3]; 3], colour: [u8; 3]) -> ScreenTriangle<SurfaceNormals> {
+pub(crate) fn normal_triangle(
+    outline: Outline,
+    normals: [[f32; 3]; 3],
+    colour: [u8; 3],
+) -> ScreenTriangle<SurfaceNormals> {
     let unit = f32::from(screen::NORMAL_UNIT);
     ScreenTriangle {
         outline,

@@ -253,6 +253,17 @@ impl Renderer {
         self.fifo.busy()
     }
 
+    /// Keeps from now on when words come into the FIFO and leave it.
+    pub fn watch_fifo(&mut self) {
+        self.fifo.watch();
+    }
+
+    /// When words of a whole command had come in (positive) and when a command started and its words left (negative)
+    /// since the last call, in no order. Times may lie ahead: they follow from what is known now.
+    pub fn take_fifo_changes(&mut self) -> Vec<(Time, i64)> {
+        self.fifo.take_changes()
+    }
+
     /// What the board waits for.
     #[must_use]
     pub fn blocked(&self, name: &str) -> Option<Blocked> {

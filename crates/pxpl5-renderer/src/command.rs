@@ -206,29 +206,39 @@ impl Command {
     /// [`Unsupported`] where the layout lacks a field that the program needs.
     pub fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Unsupported> {
         let program = match self {
-            Self::SelectRegion(command) => Ok(command.program(layout)),
-            Self::Clear(command) => Ok(command.program(layout)),
+            Self::SelectRegion(command) => Ok(command.program(layout).to_vec()),
+            Self::Clear(command) => Ok(command.program(layout).to_vec()),
             Self::Triangle(command) => Ok(command.program(layout)),
             Self::PhongTriangle(command) => command.program(layout),
             Self::Sphere(command) => command.program(layout),
             Self::PhongSphere(command) => command.program(layout),
             Self::Shade(command) => command.program(layout),
-            Self::CopyRegion(command) => Ok(command.program(layout)),
+            Self::CopyRegion(command) => Ok(command.program(layout).to_vec()),
             Self::StoreBacking(command) => Ok(vec![command.instruction()]),
             Self::LoadBacking(command) => Ok(vec![command.instruction()]),
             Self::WaitBacking => Ok(vec![Instruction::Wait]),
         };
-        let (kind, layout) = (self.kind(), layout.plan().name);
-        program.map_err(|Missing(missing)| Unsupported { kind, layout, missing })
+        program.map_err(|missing| self.unsupported(missing, layout))
     }
 
-    /// Appends the command's words.
+    fn unsupported(&self, Missing(missing): Missing, layout: &Layout) -> Unsupported {
+        Unsupported { kind: self.kind(), layout: layout.plan().name, missing }
+    }
+
+    /// Appends the command's words: those of its [`Command::program`].
     ///
     /// # Errors
     /// [`Unsupported`] where the layout lacks a field that the program needs.
     pub fn encode(&self, layout: &Layout, out: &mut Vec<Word>) -> Result<(), Unsupported> {
-        for instruction in self.program(layout)? {
-            instruction.encode(out);
+        match self {
+            Self::SelectRegion(command) => encode_all(&command.program(layout), out),
+            Self::Clear(command) => encode_all(&command.program(layout), out),
+            Self::CopyRegion(command) => encode_all(&command.program(layout), out),
+            Self::Triangle(command) => command.encode(layout, out),
+            Self::PhongTriangle(command) => {
+                command.encode(layout, out).map_err(|missing| self.unsupported(missing, layout))?;
+            }
+            _ => encode_all(&self.program(layout)?, out),
         }
         Ok(())
     }
@@ -289,6 +299,10 @@ impl Command {
 
 /// What a layout lacks.
 pub(crate) struct Missing(&'static str);
+
+fn encode_all(program: &[Instruction], out: &mut Vec<Word>) {
+    program.iter().for_each(|instruction| instruction.encode(out));
+}
 
 fn kind_of(first: &Instruction) -> Option<CommandKind> {
     match first {

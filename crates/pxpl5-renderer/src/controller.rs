@@ -59,6 +59,7 @@ impl Controller {
     }
 
     /// Moves the origin of a linear expression to the array's left top pixel.
+    #[inline(always)]
     pub(crate) fn localise(&self, e: &Linear) -> Linear {
         Linear { c: e.at(i32::from(self.left), i32::from(self.top)), ..*e }
     }

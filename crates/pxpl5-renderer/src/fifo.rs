@@ -55,6 +55,8 @@ pub(crate) struct InputFifo {
     /// When the controller is free; `None` while a blocking command runs.
     free_at: Option<Time>,
     busy: Span,
+    /// When somebody watches: times at which words of a whole command came in, and at which they left.
+    changes: Option<Vec<(Time, i64)>>,
 }
 
 impl InputFifo {
@@ -71,6 +73,7 @@ impl InputFifo {
             waiting: VecDeque::new(),
             free_at: Some(Time::ZERO),
             busy: Span::ZERO,
+            changes: None,
         }
     }
 
@@ -93,6 +96,15 @@ impl InputFifo {
         self.busy
     }
 
+    pub(crate) fn watch(&mut self) {
+        self.changes.get_or_insert_default();
+    }
+
+    /// What changed since the last time, in no order.
+    pub(crate) fn take_changes(&mut self) -> Vec<(Time, i64)> {
+        self.changes.as_mut().map(std::mem::take).unwrap_or_default()
+    }
+
     /// Whether the controller stands at a blocking command.
     pub(crate) const fn is_blocked(&self) -> bool {
         self.free_at.is_none()
@@ -112,6 +124,9 @@ impl InputFifo {
             }
             self.words_in += u64::from(words);
             self.last_word_at = complete;
+            if let Some(changes) = &mut self.changes {
+                changes.push((complete, i64::from(words)));
+            }
             self.waiting.push_back(Command { words, span, complete });
             progress.blocks = progress.blocks.or(self.start_waiting());
         }
@@ -149,6 +164,9 @@ impl InputFifo {
             let start = free_at.max(command.complete);
             self.left.push_back((self.words_left, start));
             self.words_left += u64::from(command.words);
+            if let Some(changes) = &mut self.changes {
+                changes.push((start, -i64::from(command.words)));
+            }
             self.free_at = command.span.map(|span| start + span);
             match command.span {
                 Some(span) => self.busy += span,

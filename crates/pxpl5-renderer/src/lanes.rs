@@ -14,12 +14,12 @@ mod whole;
 
 use crate::array::{EMPTY_PLANE, Executed, Fault, FaultKind, PIXELS, PixelArray, Plane};
 use crate::controller::{Bits, Controller};
-use crate::isa::{BACKING_BLOCKS, ENABLE_ALL, Instruction};
+use crate::isa::{BACKING_BLOCKS, Instruction, opcode};
 use crate::layout::Layout;
 use crate::simd::{Present, Vectors};
 use columns::Columns;
 use pxpl5_wire::{REGION_SIZE, Word};
-use whole::Templates;
+use whole::{ContextColumns, Templates};
 
 /// The array by values: one word a pixel and field.
 ///
@@ -32,6 +32,8 @@ pub struct Lanes {
     templates: Templates,
     controller: Controller,
     columns: Columns,
+    /// Of the context that was used last.
+    selected: Option<ContextColumns>,
     /// 255 where the pixel is enabled, else 0.
     enable: Box<[u8; PIXELS]>,
     backing: Vec<Option<Box<[u64]>>>,
@@ -55,6 +57,7 @@ impl Lanes {
             templates: Templates::new(layout),
             controller: Controller::default(),
             columns: Columns::new(layout),
+            selected: None,
             enable: Box::new([0; PIXELS]),
             backing: vec![None; usize::from(BACKING_BLOCKS)],
             operands: [vec![0; PIXELS], vec![0; PIXELS]],
@@ -72,7 +75,7 @@ impl Lanes {
     }
 
     fn step(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> Result<usize, Fault> {
-        if words[position] >> 24 == u32::from(ENABLE_ALL)
+        if words[position] >> 24 == u32::from(opcode::ENABLE_ALL)
             && let Some(used) = self.whole_command(&words[position..], executed)
         {
             return Ok(used);
@@ -89,10 +92,15 @@ impl Lanes {
     }
 
     fn colour(&self, field: Bits, width: u32, height: u32) -> Vec<Word> {
+        let (width, height) = (width.min(REGION_SIZE) as usize, height as usize);
+        if let Some(column) = self.columns.find(field.first, field.width) {
+            let rows = self.columns.values(column).0.chunks(REGION_SIZE as usize).take(height);
+            return rows.flat_map(|row| &row[..width]).copied().collect();
+        }
         let mut values = vec![0; PIXELS];
         self.columns.gather(field, &mut values);
-        let rows = values.chunks(REGION_SIZE as usize).take(height as usize);
-        rows.flat_map(|row| row.iter().take(width as usize).map(|v| *v as Word)).collect()
+        let rows = values.chunks(REGION_SIZE as usize).take(height);
+        rows.flat_map(|row| row[..width].iter().map(|v| *v as Word)).collect()
     }
 }
 

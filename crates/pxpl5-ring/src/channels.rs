@@ -38,6 +38,10 @@ impl Channels {
         self.free != 0
     }
 
+    pub(crate) fn busy(&self) -> u32 {
+        self.flights.len() as u32 - self.free.count_ones()
+    }
+
     pub(crate) fn is_idle(&self) -> bool {
         self.flights.iter().all(Option::is_none)
     }

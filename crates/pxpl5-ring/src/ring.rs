@@ -113,6 +113,12 @@ impl Ring {
         &self.refusals
     }
 
+    /// Channels that are occupied; after each event up to date.
+    #[must_use]
+    pub fn busy_channels(&self) -> u32 {
+        self.channels.busy()
+    }
+
     /// Whether nothing is in flight and nothing waits.
     #[must_use]
     pub fn is_idle(&self) -> bool {

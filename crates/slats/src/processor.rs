@@ -125,7 +125,10 @@ impl Processor {
         loop {
             let field = self.gp.until("a retrace", || Some(self.gp.field()).filter(|now| *now >= begin_at)).await + 1;
             let view = self.gp.until("a view", || self.state.borrow().newest.clone()).await;
-            self.tell_others(field, &view).await;
+            if !self.is_alone() {
+                self.clear(field, &view).await;
+                self.tell_others(field, &view).await;
+            }
             self.show_backup(field).await;
             self.field(field, &view).await;
             let others = self.config.processors.len() - 1;
@@ -195,14 +198,25 @@ impl Processor {
         }
     }
 
+    /// Whether no other GP draws; then the regions are cleared by the first clump.
+    fn is_alone(&self) -> bool {
+        self.config.processors.len() == 1
+    }
+
+    /// Clears all regions by a chain of its own. A chain waits for the one before it, so whoever is told to begin after
+    /// this one cannot send a clump that is cleared away.
+    async fn clear(&self, field: u64, view: &FrameView) {
+        let picture = self.config.picture(FieldParity::of_field(field));
+        let nothing = self.share.nothing();
+        let passes = Eye::BOTH.map(|eye| nothing.transform(view, eye.index(), picture));
+        self.send(&passes, true).await;
+    }
+
     async fn tell_others(&self, field: u64, view: &FrameView) {
         let header = vec![BEGIN, field as Word, (field >> 32) as Word];
         let words: Arc<[Word]> = [header, view.to_words()].concat().into();
         let message = |node: &NodeId| (*node, words.len() as u32, Body::Words(Arc::clone(&words)));
-        let batch: Vec<_> = self.config.processors.iter().skip(1).map(message).collect();
-        if !batch.is_empty() {
-            self.gp.send_batch(batch).await;
-        }
+        self.gp.send_batch(self.config.processors.iter().skip(1).map(message).collect()).await;
     }
 
     /// Draws this GP's share of what is shown from the retrace of `field` on.
@@ -223,7 +237,7 @@ impl Processor {
             if i == 0 {
                 self.gp.begin(Stage::Render, field, None);
             }
-            let sent = self.send(&passes, i == 0 && self.index == 0).await;
+            let sent = self.send(&passes, i == 0 && self.is_alone()).await;
             // There is no second buffer: the next clump is made in this one while it is emptied.
             if let Some(ticket) = sent.filter(|_| i < last) {
                 self.gp.draining(ticket).await;

@@ -17,9 +17,9 @@ pub struct SelectRegion {
 }
 
 impl SelectRegion {
-    pub(super) fn program(&self, layout: &Layout) -> Vec<Instruction> {
+    pub(super) const fn program(&self, layout: &Layout) -> [Instruction; 1] {
         let context_base = layout.context_base(self.context);
-        vec![Instruction::Select { context_base, left: self.left, top: self.top }]
+        [Instruction::Select { context_base, left: self.left, top: self.top }]
     }
 
     pub(super) fn read(program: &[Instruction], layout: &Layout) -> Option<Self> {
@@ -37,13 +37,9 @@ pub struct Clear {
 }
 
 impl Clear {
-    pub(super) fn program(&self, layout: &Layout) -> Vec<Instruction> {
+    pub(super) fn program(&self, layout: &Layout) -> [Instruction; 3] {
         let constant = |destination, value| Instruction::LoadConstant { destination, value };
-        vec![
-            enable(CommandKind::Clear),
-            constant(layout.plan().colour, self.colour),
-            constant(layout.plan().z, u32::MAX),
-        ]
+        [enable(CommandKind::Clear), constant(layout.plan().colour, self.colour), constant(layout.plan().z, u32::MAX)]
     }
 
     pub(super) fn read(program: &[Instruction]) -> Option<Self> {
@@ -62,8 +58,8 @@ pub struct CopyRegion {
 }
 
 impl CopyRegion {
-    pub(super) fn program(&self, layout: &Layout) -> Vec<Instruction> {
-        vec![Instruction::Output { field: layout.plan().colour, target: self.target }]
+    pub(super) const fn program(&self, layout: &Layout) -> [Instruction; 1] {
+        [Instruction::Output { field: layout.plan().colour, target: self.target }]
     }
 
     pub(super) fn read(program: &[Instruction]) -> Option<Self> {

@@ -1,10 +1,10 @@
 //! Triangles.
 
 use super::{CommandKind, Missing, enable};
-use crate::isa::{Expression, ExpressionUse, Instruction, Operand};
+use crate::isa::{Expression, ExpressionUse, Instruction, Operand, evaluate_head, head, opcode};
 use crate::layout::Layout;
-use pxpl5_wire::Linear;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
+use pxpl5_wire::{Linear, Word};
 
 /// A triangle with interpolated colour (Gouraud).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -40,6 +40,16 @@ impl Triangle {
         out
     }
 
+    /// Appends the words of the program without building it: a scene sends a hundred thousand of them a frame.
+    pub(super) fn encode(&self, layout: &Layout, out: &mut Vec<Word>) {
+        let mut words = coverage_words::<TRIANGLE_WORDS>(CommandKind::Triangle, &self.edges, &self.depth, layout);
+        for (i, component) in (0..).zip(&self.colour) {
+            let head = load_head(layout.component(i), COLOUR_FRACTION_BITS as u8);
+            put(&mut words, COMPONENTS_AT + LINEAR_WORDS * usize::from(i), head, component);
+        }
+        out.extend_from_slice(&words);
+    }
+
     pub(super) fn read(program: &[Instruction]) -> Option<Self> {
         let (edges, depth) = read_coverage(program)?;
         let colour = read_three(program.get(6..9)?)?;
@@ -58,6 +68,20 @@ impl PhongTriangle {
         let destination = layout.plan().colour;
         out.push(Instruction::LoadConstant { destination, value: self.colour });
         Ok(out)
+    }
+
+    /// Appends the words of the program without building it.
+    pub(super) fn encode(&self, layout: &Layout, out: &mut Vec<Word>) -> Result<(), Missing> {
+        let mut words = coverage_words::<PHONG_WORDS>(CommandKind::PhongTriangle, &self.edges, &self.depth, layout);
+        for (i, component) in (0..).zip(&self.normal) {
+            let field = layout.normal(i).ok_or(Missing("a normal"))?;
+            let head = load_head(field, NORMAL_FRACTION_BITS as u8);
+            put(&mut words, COMPONENTS_AT + LINEAR_WORDS * usize::from(i), head, component);
+        }
+        words[PHONG_WORDS - 2] = head(opcode::LOAD_CONSTANT, 0, layout.plan().colour.to_bits());
+        words[PHONG_WORDS - 1] = self.colour;
+        out.extend_from_slice(&words);
+        Ok(())
     }
 
     pub(super) fn read(program: &[Instruction]) -> Option<Self> {
@@ -87,6 +111,45 @@ fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<I
         expression: Expression::LinearAgain,
         usage: ExpressionUse::Load { field, shift },
     });
+}
+
+const TRIANGLE_WORDS: usize = CommandKind::Triangle.words() as usize;
+const PHONG_WORDS: usize = CommandKind::PhongTriangle.words() as usize;
+
+/// An evaluation: its head and three coefficients.
+const LINEAR_WORDS: usize = 4;
+
+/// Behind enable all, three edges, the depth, and the depth again without coefficients.
+const COMPONENTS_AT: usize = 1 + 4 * LINEAR_WORDS + 1;
+
+/// The words of [`coverage`] at the start of a command of `N` words.
+#[inline(always)]
+fn coverage_words<const N: usize>(
+    kind: CommandKind,
+    edges: &[Linear; 3],
+    depth: &Linear,
+    layout: &Layout,
+) -> [Word; N] {
+    let (field, shift) = (layout.plan().z, layout.z_shift());
+    let negative = evaluate_head(false, false, &ExpressionUse::DisableNegative);
+    let mut words = [0; N];
+    words[0] = head(opcode::ENABLE_ALL, kind.opcode(), 0);
+    for (i, edge) in edges.iter().enumerate() {
+        put(&mut words, 1 + LINEAR_WORDS * i, negative, edge);
+    }
+    let nearer = evaluate_head(false, false, &ExpressionUse::DisableNotLess { field, shift });
+    put(&mut words, 1 + 3 * LINEAR_WORDS, nearer, depth);
+    words[COMPONENTS_AT - 1] = evaluate_head(false, true, &ExpressionUse::Load { field, shift });
+    words
+}
+
+const fn load_head(field: Operand, shift: u8) -> Word {
+    evaluate_head(false, false, &ExpressionUse::Load { field, shift })
+}
+
+#[inline(always)]
+fn put(words: &mut [Word], at: usize, head: Word, e: &Linear) {
+    words[at..at + LINEAR_WORDS].copy_from_slice(&[head, e.a as Word, e.b as Word, e.c as Word]);
 }
 
 fn read_coverage(program: &[Instruction]) -> Option<([Linear; 3], Linear)> {

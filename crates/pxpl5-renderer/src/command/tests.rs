@@ -103,6 +103,20 @@ proptest! {
     }
 
     #[test]
+    fn the_words_of_a_command_are_those_of_its_program(command in any_command(), before in any::<[u32; 2]>()) {
+        for layout in [phong(), Layout::slats(), Layout::slats_quarters()] {
+            let (mut words, mut expected) = (before.to_vec(), before.to_vec());
+            let program = command.program(&layout);
+            let result = command.encode(&layout, &mut words);
+            prop_assert_eq!(result, program.as_ref().map(|_| ()).map_err(|error| *error));
+            for instruction in program.unwrap_or_default() {
+                instruction.encode(&mut expected);
+            }
+            prop_assert_eq!(words, expected);
+        }
+    }
+
+    #[test]
     fn slats_commands_come_back_with_a_narrow_z(
         command in prop_oneof![triangle(), sphere(), control(), copy()],
     ) {

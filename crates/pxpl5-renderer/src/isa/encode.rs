@@ -31,7 +31,7 @@ pub(crate) mod opcode {
 /// Bit 7 of the modifier: the evaluator repeats the coefficients that it holds.
 pub(super) const AGAIN: u8 = 0x80;
 
-const fn head(opcode: u8, modifier: u8, operand: u32) -> Word {
+pub(crate) const fn head(opcode: u8, modifier: u8, operand: u32) -> Word {
     (opcode as u32) << 24 | (modifier as u32) << 16 | operand
 }
 
@@ -108,27 +108,25 @@ const fn two(opcode: u8, modifier: u8, destination: Operand, source: Operand) ->
     [head(opcode, modifier, destination.to_bits()), source.to_bits() << 16]
 }
 
-fn encode_evaluate(expression: &Expression, usage: &ExpressionUse, out: &mut Vec<Word>) {
-    let family = if expression.is_quadratic() { opcode::QUADRATIC } else { opcode::LINEAR };
-    let again = match expression {
-        Expression::LinearAgain | Expression::QuadraticAgain => AGAIN,
-        _ => 0,
-    };
+/// First word of an evaluation.
+#[inline(always)]
+pub(crate) const fn evaluate_head(quadratic: bool, again: bool, usage: &ExpressionUse) -> Word {
+    let family = if quadratic { opcode::QUADRATIC } else { opcode::LINEAR };
+    let again = if again { AGAIN } else { 0 };
     match *usage {
-        ExpressionUse::DisableNegative => out.push(head(family, again, 0)),
-        ExpressionUse::Load { field, shift } => {
-            out.push(head(family + 1, again | shift, field.to_bits()));
-        }
-        ExpressionUse::Add { field, shift } => {
-            out.push(head(family + 2, again | shift, field.to_bits()));
-        }
-        ExpressionUse::DisableNotLess { field, shift } => {
-            out.push(head(family + 3, again | shift, field.to_bits()));
-        }
-        ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift } => out.extend([
-            head(family + 4, again | shift, field.to_bits()),
-            subtrahend.to_bits() << 16 | u32::from(left_shift),
-        ]),
+        ExpressionUse::DisableNegative => head(family, again, 0),
+        ExpressionUse::Load { field, shift } => head(family + 1, again | shift, field.to_bits()),
+        ExpressionUse::Add { field, shift } => head(family + 2, again | shift, field.to_bits()),
+        ExpressionUse::DisableNotLess { field, shift } => head(family + 3, again | shift, field.to_bits()),
+        ExpressionUse::LoadMinus { field, shift, .. } => head(family + 4, again | shift, field.to_bits()),
+    }
+}
+
+fn encode_evaluate(expression: &Expression, usage: &ExpressionUse, out: &mut Vec<Word>) {
+    let again = matches!(expression, Expression::LinearAgain | Expression::QuadraticAgain);
+    out.push(evaluate_head(expression.is_quadratic(), again, usage));
+    if let ExpressionUse::LoadMinus { subtrahend, left_shift, .. } = usage {
+        out.push(subtrahend.to_bits() << 16 | u32::from(*left_shift));
     }
     encode_coefficients(expression, out);
 }

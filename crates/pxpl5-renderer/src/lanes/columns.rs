@@ -53,6 +53,10 @@ impl Columns {
         (column.first == first && column.width == width).then_some(index)
     }
 
+    pub(super) fn values(&self, index: usize) -> &Values {
+        &self.columns[index].values
+    }
+
     pub(super) fn values_mut(&mut self, index: usize) -> &mut Values {
         &mut self.columns[index].values
     }

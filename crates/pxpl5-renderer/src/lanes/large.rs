@@ -93,8 +93,7 @@ impl Lanes {
 
     fn phong_sphere(&mut self, sphere: &PhongSphere, columns: ContextColumns, keep: bool) -> Option<()> {
         let place = self.sphere_place()?;
-        let normal = |i| self.column(self.layout.normal(i)?);
-        let normals = [normal(0)?, normal(1)?, normal(2)?];
+        let normals = columns.normal?;
         let &PhongSphere { silhouette, root_shift, depth, depth_shift, .. } = sphere;
         let body = self.sphere_body(Body { silhouette, root_shift, depth, depth_shift }, &place);
         let components = [0, 1].map(|i| self.controller.localise(&sphere.normal[i]));
@@ -136,8 +135,8 @@ impl Lanes {
 
     fn shade(&mut self, shade: &Shade, columns: ContextColumns, keep: bool) -> Option<()> {
         let f = ShadeFields::of(&self.layout).ok()?;
-        let normal = |i| self.column(self.layout.normal(i)?);
-        let mut indices = [columns.z, normal(0)?, normal(1)?, normal(2)?, columns.colour, 0, 0, 0, 0, 0, 0];
+        let [nx, ny, nz] = columns.normal?;
+        let mut indices = [columns.z, nx, ny, nz, columns.colour, 0, 0, 0, 0, 0, 0];
         let temporaries = [f.a, f.b, f.c, f.root, f.diffuse, f.specular];
         for (index, field) in indices[5..].iter_mut().zip(temporaries) {
             *index = self.column(field)?;

@@ -5,7 +5,7 @@ use super::triangle::{DrawTriangle, Gouraud, Phong};
 use crate::array::Executed;
 use crate::command::{Command, CommandKind, PhongTriangle, Triangle};
 use crate::controller::Bits;
-use crate::isa::{Instruction, Operand};
+use crate::isa::{Operand, head, opcode};
 use crate::layout::Layout;
 use pxpl5_wire::{Linear, Word};
 
@@ -90,10 +90,12 @@ impl Templates {
 }
 
 /// Columns of the selected context's fields.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct ContextColumns {
+    base: u8,
     pub(super) colour: usize,
     pub(super) z: usize,
+    pub(super) normal: Option<[usize; 3]>,
 }
 
 impl Lanes {
@@ -120,9 +122,24 @@ impl Lanes {
         Some(used)
     }
 
-    fn context_columns(&self) -> Option<ContextColumns> {
+    /// The same for every command until another context is selected.
+    #[inline]
+    fn context_columns(&mut self) -> Option<ContextColumns> {
+        if self.selected.is_none_or(|known| known.base != self.controller.base) {
+            self.selected = self.find_columns();
+        }
+        self.selected
+    }
+
+    fn find_columns(&self) -> Option<ContextColumns> {
         let plan = self.layout.plan();
-        Some(ContextColumns { colour: self.column(plan.colour)?, z: self.column(plan.z)? })
+        let normal = |i| self.column(self.layout.normal(i)?);
+        Some(ContextColumns {
+            base: self.controller.base,
+            colour: self.column(plan.colour)?,
+            z: self.column(plan.z)?,
+            normal: normal(0).zip(normal(1)).zip(normal(2)).map(|((x, y), z)| [x, y, z]),
+        })
     }
 
     /// The column that holds exactly this field.
@@ -144,38 +161,41 @@ impl Lanes {
         self.controller.hold(triangle.colour[2]);
         let controller = self.controller;
         let local = |e: &Linear| controller.localise(e);
+        let [first, second, third] = &triangle.edges;
+        let [red, green, blue] = &triangle.colour;
         let [z, colour] = self.columns.many_mut([columns.z, columns.colour])?;
         if keep {
             self.enable.fill(0);
         }
         self.vectors.run(DrawTriangle {
-            edges: triangle.edges.each_ref().map(local),
+            edges: [local(first), local(second), local(third)],
             depth: local(&triangle.depth),
             z_shift: self.layout.z_shift(),
             z,
-            paint: Gouraud { components: triangle.colour.each_ref().map(local), colour },
+            paint: Gouraud { components: [local(red), local(green), local(blue)], colour },
             enable: keep.then_some(&mut *self.enable),
         });
         Some(())
     }
 
     fn phong_triangle(&mut self, triangle: &PhongTriangle, columns: ContextColumns, keep: bool) -> Option<()> {
-        let normal = |i| self.column(self.layout.normal(i)?);
-        let indices = [columns.z, columns.colour, normal(0)?, normal(1)?, normal(2)?];
+        let [x, y, z] = columns.normal?;
+        let indices = [columns.z, columns.colour, x, y, z];
         self.controller.hold(triangle.normal[2]);
         let controller = self.controller;
         let local = |e: &Linear| controller.localise(e);
+        let [first, second, third] = &triangle.edges;
         let [z, colour, x, y, depth] = self.columns.many_mut(indices)?;
         if keep {
             self.enable.fill(0);
         }
         self.vectors.run(DrawTriangle {
-            edges: triangle.edges.each_ref().map(local),
+            edges: [local(first), local(second), local(third)],
             depth: local(&triangle.depth),
             z_shift: self.layout.z_shift(),
             z,
             paint: Phong {
-                components: triangle.normal.each_ref().map(local),
+                components: [local(&triangle.normal[0]), local(&triangle.normal[1]), local(&triangle.normal[2])],
                 normal: [x, y, depth],
                 constant: triangle.colour & 0xff_ffff,
                 colour,
@@ -186,25 +206,28 @@ impl Lanes {
     }
 }
 
-/// The next instruction overwrites Enable before anybody reads it.
+/// The next instruction overwrites Enable before anybody reads it: it is *enable all*, whatever its label.
 pub(super) fn starts_anew(next: Option<&Word>) -> bool {
-    let enable_all = |word: &Word| matches!(Instruction::decode(&[*word], 0), Ok((Instruction::EnableAll { .. }, 1)));
-    next.is_some_and(enable_all)
+    const LABEL: Word = 0xff << 16;
+    next.is_some_and(|word| word & !LABEL == head(opcode::ENABLE_ALL, 0, 0))
 }
 
+#[inline(always)]
 fn linear(words: &[Word], at: usize) -> Linear {
     Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 }
 }
 
 /// Operands behind the opcodes at 1, 5, 9 (edges), 13 (depth; 17 repeats it), 18, 22 and 26.
+#[inline(always)]
 fn read_triangle(words: &[Word]) -> Triangle {
     Triangle {
-        edges: [2, 6, 10].map(|at| linear(words, at)),
+        edges: [linear(words, 2), linear(words, 6), linear(words, 10)],
         depth: linear(words, 14),
-        colour: [19, 23, 27].map(|at| linear(words, at)),
+        colour: [linear(words, 19), linear(words, 23), linear(words, 27)],
     }
 }
 
+#[inline(always)]
 fn read_phong_triangle(words: &[Word]) -> PhongTriangle {
     let Triangle { edges, depth, colour: normal } = read_triangle(words);
     PhongTriangle { edges, depth, normal, colour: words[31] }

@@ -1,0 +1,71 @@
+//! Host time of whole machines, without pixels and with all of them. Goals: Slats with 140 triangles 3,000 fields/s
+//! without pixels and 600 with all; Rendering Control with the head 10 ms a stereo pair without pixels and 20 with all;
+//! an idle machine 100,000 fields/s.
+
+#![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use pxpl5::{Experiment, Machine, MachineConfig, Outcome, Pipeline, Pixels, RenderingControl, Slats, scene};
+use std::hint::black_box;
+
+const PIXELS: [(&str, Pixels); 2] = [("no pixels", Pixels::Off), ("all pixels", Pixels::All)];
+
+/// One thread simulates and, for pixels, one more computes them.
+fn run(experiment: &Experiment, pixels: Pixels) -> Outcome {
+    experiment.clone().pixels(pixels).threads(1).run().expect("the preset runs")
+}
+
+/// An element is a field.
+fn slats_140(criterion: &mut Criterion) {
+    const FIELDS: u64 = 120;
+    let aircraft = scene::builtin("mig").and_then(|mig| mig.truncated(140)).expect("it has 417 triangles");
+    let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), aircraft).fields(FIELDS);
+    let mut group = criterion.benchmark_group("machine/slats-140");
+    group.throughput(Throughput::Elements(FIELDS));
+    for (name, pixels) in PIXELS {
+        group.bench_function(BenchmarkId::from_parameter(name), |b| b.iter(|| run(&experiment, pixels)));
+    }
+    group.finish();
+}
+
+/// An element is a stereo pair that was shown; those still on their way at the end are extra work.
+fn rendering_control_head(criterion: &mut Criterion) {
+    let head = scene::builtin("head").expect("built in");
+    let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), head).fields(120);
+    let pairs = run(&experiment, Pixels::Off).pictures().len() as u64;
+    let mut group = criterion.benchmark_group("machine/rendering-control-head");
+    group.throughput(Throughput::Elements(pairs));
+    for (name, pixels) in PIXELS {
+        group.bench_function(BenchmarkId::from_parameter(name), |b| b.iter(|| run(&experiment, pixels)));
+    }
+    group.finish();
+}
+
+/// No program is loaded: what the retraces alone cost. An element is a field.
+fn idle(criterion: &mut Criterion) {
+    const FIELDS: u64 = 1_000;
+    let pipeline = RenderingControl::stereo();
+    let mut group = criterion.benchmark_group("machine");
+    group.throughput(Throughput::Elements(FIELDS));
+    group.bench_function("idle", |b| {
+        b.iter(|| {
+            let machine = Machine::new(&MachineConfig::small_hmd(), pipeline.eyes(), pipeline.layout());
+            let mut machine = machine.expect("the preset is valid");
+            machine.switch_on();
+            let end = machine.video().retrace(FIELDS);
+            machine.run_until(end).expect("nothing can fail");
+            black_box(machine.events())
+        });
+    });
+    group.finish();
+}
+
+fn quick() -> Criterion {
+    Criterion::default()
+        .sample_size(10)
+        .warm_up_time(std::time::Duration::from_millis(500))
+        .measurement_time(std::time::Duration::from_secs(3))
+}
+
+criterion_group! { name = machine; config = quick(); targets = slats_140, rendering_control_head, idle }
+criterion_main!(machine);

@@ -1,0 +1,193 @@
+//! The head of 59,592 triangles, one eye, 640 x 480, Gouraud, Z-buffered: the software renderer `euc` beside the pixels
+//! of the emulated machine, without its times. An element is a picture.
+
+#![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use euc::buffer::Buffer2d;
+use euc::rasterizer::{BackfaceCullingDisabled, Triangles};
+use euc::{Interpolate, Pipeline as _, Target as _};
+use glam::{Mat4, Vec3, Vec4};
+use pphigs::{Around, Binning, DisplayList, EyeView, Frame, FrameView, Picture, Shading, Share, Structure};
+use pxpl5::scene::{self, Hmd, HmdConfig, Scene};
+use pxpl5_geometry::Viewport;
+use pxpl5_renderer::{Lanes, Layout, PixelArray};
+use pxpl5_wire::{RegionId, Word};
+use std::sync::Arc;
+
+const WIDTH: usize = 640;
+const HEIGHT: usize = 480;
+
+/// Views in turn, more than the display list remembers, so that nothing is drawn from memory.
+const VIEWS: u64 = 8;
+
+fn views(head: &Scene) -> Vec<EyeView> {
+    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
+    let view = |i| {
+        let view = hmd.mono(&head.motion().pose(i * 100_000_000_000));
+        let (world_to_eye, head_to_eye, projection) = (view.world_to_eye, view.head_to_eye, view.projection);
+        EyeView { world_to_eye, head_to_eye, projection }
+    };
+    (0..VIEWS).map(view).collect()
+}
+
+/// Red, green, blue, 0 to 255.
+#[derive(Clone, Copy)]
+struct Lit(Vec3);
+
+impl Interpolate for Lit {
+    #[inline(always)]
+    fn lerp2(a: Self, b: Self, x: f32, y: f32) -> Self {
+        Self(a.0 * x + b.0 * y)
+    }
+
+    #[inline(always)]
+    fn lerp3(a: Self, b: Self, c: Self, x: f32, y: f32, z: f32) -> Self {
+        Self(a.0 * x + b.0 * y + c.0 * z)
+    }
+}
+
+struct Gouraud<'a> {
+    head: &'a Scene,
+    matrix: Mat4,
+}
+
+impl euc::Pipeline for Gouraud<'_> {
+    type Vertex = u32;
+    type VsOut = Lit;
+    type Pixel = u32;
+
+    #[inline(always)]
+    fn vert(&self, index: &u32) -> ([f32; 4], Lit) {
+        let (vertex, light) = (&self.head.vertices()[*index as usize], self.head.lighting());
+        let intensity = light.ambient + light.diffuse * vertex.normal.dot(light.towards_light).max(0.0);
+        let place: Vec4 = self.matrix * vertex.position.extend(1.0);
+        (place.to_array(), Lit(Vec3::from(vertex.colour.map(f32::from)) * intensity.min(1.0)))
+    }
+
+    #[inline(always)]
+    fn frag(&self, lit: &Lit) -> u32 {
+        let [red, green, blue] = lit.0.to_array().map(|c| c as u32);
+        1 << 24 | red << 16 | green << 8 | blue
+    }
+}
+
+struct Euc {
+    indices: Vec<u32>,
+    colour: Buffer2d<u32>,
+    depth: Buffer2d<f32>,
+}
+
+impl Euc {
+    fn new(head: &Scene) -> Self {
+        let size = [WIDTH, HEIGHT];
+        let indices = head.triangles().as_flattened().to_vec();
+        Self { indices, colour: Buffer2d::new(size, 0), depth: Buffer2d::new(size, 1.0) }
+    }
+
+    fn draw(&mut self, head: &Scene, view: &EyeView) {
+        self.colour.clear(0);
+        self.depth.clear(1.0);
+        let gouraud = Gouraud { head, matrix: view.projection * view.world_to_eye };
+        let depth = Some(&mut self.depth);
+        gouraud.draw::<Triangles<'_, Buffer2d<f32>, BackfaceCullingDisabled>, _>(
+            &self.indices,
+            &mut self.colour,
+            depth,
+        );
+    }
+
+    fn covered(&self) -> usize {
+        self.colour.as_ref().iter().filter(|pixel| **pixel != 0).count()
+    }
+}
+
+/// One GP that holds everything, and one pixel array for all regions in turn.
+struct Ours {
+    share: Share,
+    picture: Picture,
+    array: Lanes,
+    words: Vec<Word>,
+    pixels: Vec<Vec<Word>>,
+}
+
+const BACKGROUND: [u8; 3] = [1, 2, 3];
+
+impl Ours {
+    fn new(head: &Scene) -> Self {
+        let light = head.lighting();
+        let structure = Structure { triangles: 0..head.triangles().len(), spheres: 0..0, frame: Frame::World };
+        let list = DisplayList {
+            positions: head.vertices().iter().map(|v| v.position).collect(),
+            normals: head.vertices().iter().map(|v| v.normal).collect(),
+            colours: head.vertices().iter().map(|v| v.colour).collect(),
+            triangles: head.triangles().to_vec(),
+            structures: vec![structure],
+            towards_light: light.towards_light,
+            ambient: light.ambient,
+            diffuse: light.diffuse,
+            background: BACKGROUND,
+            ..DisplayList::default()
+        };
+        let layout = Layout::rendering_control_phong();
+        let (viewport, shading, binning) = (Viewport::FRAME, Shading::Gouraud, Binning::Touched);
+        Self {
+            share: Share::new(Arc::new(list), 0, 1),
+            picture: Picture { viewport, shading, binning, layout, pixels: true },
+            array: Lanes::new(&layout),
+            words: Vec::new(),
+            pixels: Vec::new(),
+        }
+    }
+
+    fn draw(&mut self, number: u64, view: &EyeView) {
+        let view = FrameView { number, eyes: vec![*view], edits: Vec::new() };
+        let pass = self.share.transform(&view, 0, self.picture);
+        self.pixels.clear();
+        let grid = self.picture.viewport.grid();
+        for region in (0..grid.regions() as u16).map(RegionId) {
+            for list in pphigs::region_messages(&pass, region, 0, Around { begin: true, ..Around::default() }) {
+                self.words.clear();
+                list.content.expect("pixels are wanted").append_words(&mut self.words);
+                self.array.execute(&self.words).expect("legal commands");
+            }
+            let [_, _, width, height] = grid.rectangle(region);
+            self.pixels.push(self.array.read_colour(width, height));
+        }
+    }
+
+    fn covered(&self) -> usize {
+        self.pixels.iter().flatten().filter(|pixel| **pixel != 0x01_02_03).count()
+    }
+}
+
+fn peers(criterion: &mut Criterion) {
+    let head = scene::builtin("head").expect("built in");
+    let (views, mut euc, mut ours) = (views(&head), Euc::new(&head), Ours::new(&head));
+    euc.draw(&head, &views[0]);
+    ours.draw(0, &views[0]);
+    let (theirs, own) = (euc.covered() as f64, ours.covered() as f64);
+    assert!(own > 10_000.0 && (theirs / own - 1.0).abs() < 0.02, "not the same picture: {theirs} and {own} pixels");
+    let mut group = criterion.benchmark_group("peers/head, one eye");
+    group.throughput(Throughput::Elements(1));
+    let mut turn = (0..views.len()).cycle();
+    let mut next = || turn.next().unwrap_or_default();
+    group.bench_function("euc 0.5", |b| b.iter(|| euc.draw(&head, &views[next()])));
+    group.bench_function("ours", |b| {
+        b.iter(|| {
+            let i = next();
+            ours.draw(i as u64, &views[i]);
+        });
+    });
+    group.finish();
+}
+
+fn quick() -> Criterion {
+    Criterion::default()
+        .sample_size(10)
+        .warm_up_time(std::time::Duration::from_millis(500))
+        .measurement_time(std::time::Duration::from_secs(2))
+}
+
+criterion_group! { name = all; config = quick(); targets = peers }
+criterion_main!(all);

@@ -1,0 +1,167 @@
+//! The display list as one eye sees it: structures in place, vertices transformed once for all who share them.
+
+use crate::list::{DisplayList, Frame, Structure, UNMOVED};
+use crate::view::{EyeView, FrameView, ModelEdit, product};
+use glam::{Mat4, Vec3};
+use pxpl5_geometry::{Culling, Light, SeenColour, SeenNormal, SeenVertex, Transform, ViewTransform, Viewport};
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// One structure as an eye sees it.
+#[derive(Debug)]
+pub struct Placed {
+    /// From its coordinates to the picture; `None` where a matrix is not finite, so that it is not drawn.
+    pub transform: Option<Transform>,
+    /// The light in eye coordinates.
+    pub light: Light,
+    /// Its primitives.
+    pub structure: Structure,
+    vertices: OnceLock<Vertices>,
+}
+
+/// The vertices of a structure, from the first that one of its triangles names to the last.
+#[derive(Debug)]
+pub(crate) struct Vertices {
+    first: usize,
+    seen: Vec<SeenVertex>,
+    normals: OnceLock<Vec<SeenNormal>>,
+    colours: OnceLock<Vec<SeenColour>>,
+}
+
+/// All structures of a display list as an eye (0, or 0 and 1) of a view sees them.
+///
+/// # Panics
+///
+/// If the view has no eye.
+#[must_use]
+pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<Placed> {
+    let eye = eye_of(view, eye);
+    let structures = list.structures.iter().enumerate();
+    structures.map(|(i, s)| place(list, s, model(view, i), eye, viewport)).collect()
+}
+
+fn eye_of(view: &FrameView, eye: usize) -> &EyeView {
+    &view.eyes[eye.min(view.eyes.len() - 1)]
+}
+
+impl Placed {
+    /// Its vertices on the screen, transformed when first asked for.
+    pub(crate) fn vertices(&self, list: &DisplayList, transform: &Transform) -> &Vertices {
+        self.vertices.get_or_init(|| {
+            let named = list.triangles[self.structure.triangles.clone()].iter().flatten();
+            let (first, end) = named.fold((u32::MAX, 0), |(low, high), i| (low.min(*i), high.max(*i + 1)));
+            let positions = list.positions.get(first as usize..end as usize).unwrap_or_default();
+            let seen = positions.iter().map(|p| transform.see(*p)).collect();
+            Vertices { first: first as usize, seen, normals: OnceLock::new(), colours: OnceLock::new() }
+        })
+    }
+}
+
+impl Vertices {
+    /// Places of a triangle's corners among the vertices.
+    #[inline(always)]
+    pub(crate) fn corners(&self, list: &DisplayList, triangle: usize) -> Corners {
+        let [a, b, c] = list.triangles[triangle];
+        Corners([a as usize - self.first, b as usize - self.first, c as usize - self.first])
+    }
+
+    #[inline(always)]
+    pub(crate) fn seen(&self, at: &Corners) -> [&SeenVertex; 3] {
+        at.of(&self.seen)
+    }
+
+    /// The normals of all vertices.
+    pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[SeenNormal] {
+        self.normals.get_or_init(|| {
+            let all = self.first..self.first + self.seen.len();
+            let (positions, normals) = (&list.positions[all.clone()], &list.normals[all]);
+            positions.iter().zip(normals).map(|(p, n)| transform.see_normal(*p, *n)).collect()
+        })
+    }
+
+    /// The lit colours of all vertices.
+    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[SeenColour] {
+        self.colours.get_or_init(|| {
+            let all = self.first..self.first + self.seen.len();
+            let colour = |i: usize| transform.see_colour(light, list.positions[i], list.normals[i], list.colours[i]);
+            all.map(colour).collect()
+        })
+    }
+}
+
+/// Where a triangle's corners stand among a structure's vertices.
+pub(crate) struct Corners([usize; 3]);
+
+impl Corners {
+    #[inline(always)]
+    pub(crate) fn of<'a, T>(&self, all: &'a [T]) -> [&'a T; 3] {
+        let [a, b, c] = self.0;
+        [&all[a], &all[b], &all[c]]
+    }
+
+    #[inline(always)]
+    pub(crate) fn copied<T: Copy>(&self, all: &[T]) -> [T; 3] {
+        let [a, b, c] = self.of(all);
+        [*a, *b, *c]
+    }
+}
+
+/// Views of a display list that graphics processors asked for lately. All of them ask for the same ones, and get the
+/// same transformed vertices; only the host's time is saved by it.
+#[derive(Debug, Default)]
+pub struct RecentViews(Mutex<VecDeque<(Asked, Arc<[Placed]>)>>);
+
+/// A clone holds none.
+impl Clone for RecentViews {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+/// Two eyes of two views: a frame being transformed while a slower processor is at the one before.
+const RECENT: usize = 4;
+
+/// All that the place of a structure depends on.
+#[derive(Debug, PartialEq)]
+struct Asked {
+    eye: EyeView,
+    edits: Vec<ModelEdit>,
+    viewport: Viewport,
+}
+
+impl RecentViews {
+    /// As [`place_all`], made once for all who ask.
+    pub(crate) fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Arc<[Placed]> {
+        let asked = Asked { eye: *eye_of(view, eye), edits: view.edits.clone(), viewport };
+        let mut recent = list.recent.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, placed)) = recent.iter().find(|(known, _)| *known == asked) {
+            return Arc::clone(placed);
+        }
+        let placed: Arc<[Placed]> = place_all(list, view, eye, viewport).into();
+        recent.truncate(RECENT - 1);
+        recent.push_front((asked, Arc::clone(&placed)));
+        placed
+    }
+}
+
+fn model(view: &FrameView, structure: usize) -> Mat4 {
+    view.edits.iter().rev().find(|edit| edit.structure as usize == structure).map_or(UNMOVED, |edit| edit.model)
+}
+
+/// A structure whose matrices are not finite is not drawn.
+fn place(list: &DisplayList, structure: &Structure, model: Mat4, eye: &EyeView, viewport: Viewport) -> Placed {
+    let to_eye = match structure.frame {
+        Frame::World => eye.world_to_eye,
+        Frame::Head => eye.head_to_eye,
+    };
+    let view = ViewTransform { model_view: product(&to_eye, &model), projection: eye.projection };
+    let light = Light { direction: turned(&to_eye, list.towards_light), ambient: list.ambient, diffuse: list.diffuse };
+    let transform = Transform::new(&view, viewport, Culling::None).ok();
+    Placed { transform, light, structure: structure.clone(), vertices: OnceLock::new() }
+}
+
+/// A direction in eye coordinates; the matrix is a rotation and a translation.
+fn turned(matrix: &Mat4, v: Vec3) -> [f32; 3] {
+    let [x, y, z, _] = matrix.to_cols_array_2d();
+    std::array::from_fn(|i| x[i] * v.x + y[i] * v.y + z[i] * v.z)
+}

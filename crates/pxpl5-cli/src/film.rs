@@ -1,0 +1,67 @@
+//! `pxpl5 film`.
+
+use crate::error::CliError;
+use crate::output::OutputFolder;
+use crate::settings::SettingArgs;
+use crate::terminal::print;
+use clap::{Args, ValueEnum};
+use pxpl5::pictures::{Eyes, Film};
+use pxpl5::{Eye, Pixels};
+use std::path::PathBuf;
+
+/// Write what a viewer sees as an animated PNG at the true field rate.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 film --pipeline slats --scene mig --triangles 140 --out mig.png
+  pxpl5 film --pipeline rendering-control --scene head --eye both --from 20 --length 60 --out head.png
+
+Browsers play the file.")]
+pub(crate) struct FilmArgs {
+    #[command(flatten)]
+    settings: SettingArgs,
+    /// The file to write (PNG).
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Whose eye.
+    #[arg(long, value_enum, default_value_t = Whose::Left)]
+    eye: Whose,
+    /// The first field of the film.
+    #[arg(long, value_name = "FIELD", default_value_t = 12, value_parser = clap::value_parser!(u64).range(..=10_000_000))]
+    from: u64,
+    /// How many fields it has.
+    #[arg(long, value_name = "FIELDS", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    length: u64,
+    /// Print nothing but errors.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Whose {
+    /// The left eye's.
+    Left,
+    /// The right eye's.
+    Right,
+    /// Side by side, the left eye left.
+    Both,
+}
+
+pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
+    let plan = args.settings.gather()?.resolve()?;
+    let eyes = match args.eye {
+        Whose::Left => Eyes::One(Eye::Left),
+        Whose::Right => Eyes::One(Eye::Right),
+        Whose::Both => Eyes::Both,
+    };
+    let (mut folder, name) = OutputFolder::of_file(&args.out)?;
+    let experiment = plan.experiment(plan.load_scene()?).pixels(Pixels::Lazy).fields(args.from + args.length + 1);
+    let texts = [("config_hash", experiment.config_hash().to_string()), ("settings", plan.settings().to_string())];
+    let mut bytes = Vec::new();
+    Film::new(experiment, args.from, args.length, eyes).write(&texts, &mut bytes).map_err(CliError::failure)?;
+    folder.put(&name, &bytes)?;
+    folder.commit()?;
+    if args.quiet {
+        return Ok(());
+    }
+    print(&format!("{}: {} fields from field {} on.\n", args.out.display(), args.length, args.from))
+}

@@ -1,0 +1,60 @@
+//! `pxpl5 trace`.
+
+use crate::error::CliError;
+use crate::output::OutputFolder;
+use crate::settings::SettingArgs;
+use crate::terminal::{print, progress};
+use clap::{Args, ValueEnum};
+use pxpl5::trace_export::{Trace, chrome, perfetto};
+use std::path::PathBuf;
+
+/// Run one experiment and write what happened as a trace for ui.perfetto.dev.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 trace --pipeline slats --scene mig --triangles 140 --fields 20 --out slats.pftrace
+  pxpl5 trace --pipeline rendering-control --scene mig --fields 30 --format chrome --out mig.json
+
+A trace holds every message; some tens of fields are enough to see a pipeline at work.")]
+pub(crate) struct TraceArgs {
+    #[command(flatten)]
+    settings: SettingArgs,
+    /// The file to write.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Format of the file.
+    #[arg(long, value_enum, default_value_t = Format::Perfetto)]
+    format: Format,
+    /// Print nothing but errors.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    /// Perfetto's, in nanoseconds.
+    Perfetto,
+    /// Chrome's JSON, in exact microseconds.
+    Chrome,
+}
+
+pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
+    let plan = args.settings.gather()?.resolve()?;
+    let (mut folder, name) = OutputFolder::of_file(&args.out)?;
+    let bar = progress(plan.fields, "fields", args.quiet);
+    let experiment = plan.experiment(plan.load_scene()?).record_traffic(true);
+    let outcome = experiment.run_with(|field, _| bar.set_position(field))?;
+    bar.finish_and_clear();
+    let (trace, mut bytes) = (Trace::of(&outcome), Vec::new());
+    let written = match args.format {
+        Format::Perfetto => perfetto(&trace, &mut bytes),
+        Format::Chrome => chrome(&trace, &mut bytes),
+    };
+    written.map_err(CliError::failure)?;
+    folder.put(&name, &bytes)?;
+    folder.commit()?;
+    if args.quiet {
+        return Ok(());
+    }
+    let (path, tracks) = (args.out.display(), trace.tracks.len());
+    print(&format!("{path}: {} fields, {tracks} tracks; open it with ui.perfetto.dev.\n", plan.fields))
+}

@@ -1,0 +1,94 @@
+//! Report pages, traces and films, as a user makes them.
+
+mod support;
+
+use support::{Folder, err, out};
+
+fn results(folder: &Folder) {
+    let run =
+        ["run", "--pipeline", "slats", "--scene", "mig", "--triangles", "60", "--fields", "20", "--out", "results"];
+    let output = folder.run(&run);
+    assert!(output.status.success(), "{}", err(&output));
+}
+
+#[test]
+fn a_report_page_holds_everything_of_its_folder_and_asks_for_nothing_else() {
+    let folder = Folder::new("report-page");
+    results(&folder);
+    let output = folder.run(&["report", "results"]);
+    assert!(output.status.success(), "{}", err(&output));
+    assert!(out(&output).contains("results/report.html"));
+    let page = std::fs::read_to_string(folder.0.join("results/report.html")).expect("written");
+    // A timeline and two pictures; a histogram and the parts of latency.
+    assert_eq!(page.matches("data:image/svg+xml;base64,").count(), 1);
+    assert_eq!(page.matches("data:image/png;base64,").count(), 2);
+    assert_eq!(page.matches("<svg ").count(), 2);
+    for word in ["wait for retrace", "config_hash", "fields and", "name=\"viewport\"", "@media print"] {
+        assert!(page.contains(word), "{word} is missing");
+    }
+    assert!(!page.contains("http://") && !page.contains("https://"), "something from outside");
+}
+
+#[test]
+fn a_report_of_the_demo_has_a_section_for_each_run() {
+    let folder = Folder::new("report-demo");
+    assert!(folder.run(&["demo", "--quiet"]).status.success());
+    assert!(folder.run(&["report", "out", "--quiet", "--write", "page.html"]).status.success());
+    let page = std::fs::read_to_string(folder.0.join("page.html")).expect("written");
+    assert_eq!(page.matches("<h2>").count(), 3);
+    assert_eq!(page.matches("data:image/png;base64,").count(), 6);
+    assert!(page.contains("figure 9, TR94, I3D95"));
+}
+
+#[test]
+fn a_folder_without_a_report_is_refused_with_what_was_expected() {
+    let folder = Folder::new("report-none");
+    for (contents, expected) in [(None, "report.json"), (Some("{\"schema\""), "EOF"), (Some("{}"), "schema missing")] {
+        if let Some(text) = contents {
+            folder.file("report.json", text);
+        }
+        let output = folder.run(&["report", "."]);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(err(&output).contains(expected) && err(&output).contains("run --out"), "{}", err(&output));
+        assert!(!folder.names().contains(&"report.html".to_owned()));
+    }
+}
+
+#[test]
+fn traces_come_in_both_formats() {
+    let folder = Folder::new("trace");
+    let run = ["trace", "--pipeline", "slats", "--scene", "mig", "--triangles", "30", "--fields", "12", "--out"];
+    let output = folder.run(&[&run[..], &["a.pftrace"]].concat());
+    assert!(output.status.success(), "{}", err(&output));
+    let trace = std::fs::read(folder.0.join("a.pftrace")).expect("written");
+    // A trace is packets, field 1 of the outermost message; the first describes the host's track.
+    assert_eq!(trace[0], 0x0a);
+    assert!(trace.windows(4).any(|bytes| bytes == b"host"));
+    let output = folder.run(&[&run[..], &["a.json", "--format", "chrome"]].concat());
+    assert!(output.status.success(), "{}", err(&output));
+    let json = std::fs::read(folder.0.join("a.json")).expect("written");
+    let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
+    assert!(json["traceEvents"].as_array().is_some_and(|events| events.len() > 100));
+}
+
+#[test]
+fn a_film_has_the_fields_that_were_asked_for() {
+    let folder = Folder::new("film");
+    let run = ["film", "--pipeline", "slats", "--scene", "mig", "--triangles", "30", "--length", "3", "--out", "f.png"];
+    let output = folder.run(&run);
+    assert!(output.status.success(), "{}", err(&output));
+    let file = std::fs::File::open(folder.0.join("f.png")).expect("written");
+    let reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("PNG");
+    assert_eq!(reader.info().animation_control().map(|control| control.num_frames), Some(3));
+}
+
+#[test]
+fn nothing_is_written_where_a_file_cannot_be() {
+    let folder = Folder::new("trace-nowhere");
+    folder.file("file", "");
+    let output = folder.run(&["trace", "--pipeline", "slats", "--scene", "mig", "--out", "file/a.pftrace"]);
+    assert_eq!(output.status.code(), Some(1));
+    let output = folder.run(&["film", "--pipeline", "slats", "--scene", "mig", "--out", "/"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(folder.names(), ["file"]);
+}

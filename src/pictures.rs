@@ -1,0 +1,192 @@
+//! Pictures of a run: single fields, both eyes side by side, what a viewer sees at an instant, and films.
+//!
+//! A screen keeps what the beam drew until the beam comes again: half of the lines are a field older than the others,
+//! and below the beam two fields older. [`seen_at`] shows that; phosphor does not fade here.
+//!
+//! | picture | size (NTSC) |
+//! |---|---|
+//! | [`SeenField::picture`] | 640 x 240, the lines of one field |
+//! | [`SeenField::interlaced_with`] | 640 x 480, two fields |
+//! | [`seen_at`] | 640 x 480, as the beam is at an instant |
+//! | [`side_by_side`] | twice as wide: left eye left |
+//! | [`Film`] | animated PNG, a frame each field, at the true rate of 60000/1001 Hz |
+
+use crate::experiment::{Experiment, ExperimentError};
+use crate::machine::Machine;
+use image::{GenericImage, RgbImage};
+use pxpl5_framebuffer::{SeenField, Video};
+use pxpl5_sim::Time;
+use pxpl5_wire::Eye;
+use std::fmt;
+use std::io::Write;
+
+/// Two pictures next to each other, the left eye's left; the height is that of the higher one.
+#[must_use]
+pub fn side_by_side(left: &RgbImage, right: &RgbImage) -> RgbImage {
+    let mut both = RgbImage::new(left.width() + right.width(), left.height().max(right.height()));
+    // Both fit by construction.
+    let _ = both.copy_from(left, 0, 0);
+    let _ = both.copy_from(right, left.width(), 0);
+    both
+}
+
+/// What a viewer sees at `time`, which lies in the field that is scanned last: where the beam has been since its
+/// retrace that field, below the beam the one two fields older, between their lines the one a field older. Fields
+/// that are not given are black.
+#[must_use]
+pub fn seen_at(video: &Video, time: Time, fields: &[SeenField]) -> RgbImage {
+    let now = video.field_at(time);
+    let picture = |age: u64| {
+        let wanted = now.checked_sub(age)?;
+        fields.iter().find(|field| field.field() == wanted).map(SeenField::picture)
+    };
+    let ages = [picture(0), picture(1), picture(2)];
+    let mut screen = RgbImage::new(video.width(), video.height());
+    for (x, y, pixel) in screen.enumerate_pixels_mut() {
+        let age = match video.when(x, y, now) {
+            Some(scanned_at) if scanned_at <= time => 0,
+            Some(_) => 2,
+            None => 1,
+        };
+        if let Some(field) = &ages[age] {
+            *pixel = *field.get_pixel(x, y / 2);
+        }
+    }
+    screen
+}
+
+/// Which eyes a film shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Eyes {
+    /// One.
+    One(Eye),
+    /// Left and right side by side; a mono pipeline has a left eye only.
+    Both,
+}
+
+/// A film: a frame each field, in which the lines of the field before stand between its own.
+#[derive(Clone, Debug)]
+pub struct Film {
+    experiment: Experiment,
+    first_field: u64,
+    fields: u64,
+    eyes: Eyes,
+}
+
+/// Why a film could not be made.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum FilmError {
+    /// The experiment cannot be run.
+    Experiment(ExperimentError),
+    /// The machine stopped.
+    Run(crate::machine::RunError),
+    /// A film of no field, or of more than a PNG can hold.
+    Fields {
+        /// Smallest and largest number.
+        expected: (u64, u64),
+        /// What was asked for.
+        found: u64,
+    },
+    /// The PNG could not be written.
+    Png(png::EncodingError),
+}
+
+impl fmt::Display for FilmError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Experiment(error) => error.fmt(f),
+            Self::Run(error) => error.fmt(f),
+            Self::Fields { expected: (low, high), found } => {
+                write!(f, "a film has {low} to {high} fields, found {found}")
+            }
+            Self::Png(error) => write!(f, "the film cannot be written: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for FilmError {}
+
+impl From<png::EncodingError> for FilmError {
+    fn from(error: png::EncodingError) -> Self {
+        Self::Png(error)
+    }
+}
+
+/// Smallest and largest number of fields in a film: an hour and more.
+pub const FILM_FIELDS: (u64, u64) = (1, 250_000);
+
+/// The time of a frame of a film as a fraction of seconds: an NTSC field.
+pub const FRAME_SECONDS: (u16, u16) = (1_001, 60_000);
+
+impl Film {
+    /// A film of an experiment, from a field on.
+    #[must_use]
+    pub const fn new(experiment: Experiment, first_field: u64, fields: u64, eyes: Eyes) -> Self {
+        Self { experiment, first_field, fields, eyes }
+    }
+
+    /// Runs the experiment and writes the film as animated PNG. `texts` go into the file's text chunks.
+    ///
+    /// # Errors
+    ///
+    /// [`FilmError`]; the file is then not complete.
+    pub fn write(&self, texts: &[(&str, String)], out: impl Write) -> Result<(), FilmError> {
+        if !(FILM_FIELDS.0..=FILM_FIELDS.1).contains(&self.fields) {
+            return Err(FilmError::Fields { expected: FILM_FIELDS, found: self.fields });
+        }
+        let mut machine = self.experiment.build().map_err(FilmError::Experiment)?;
+        let mut encoder = self.encoder(&machine, texts, out)?;
+        for field in self.first_field..self.first_field + self.fields {
+            // A field has been scanned when the next one has begun, all of whose events are taken.
+            let begun = machine.video().retrace(field + 1) + pxpl5_sim::Span(1);
+            machine.run_until(begun).map_err(FilmError::Run)?;
+            encoder.write_image_data(self.frame(&machine, field).as_raw())?;
+        }
+        Ok(encoder.finish()?)
+    }
+
+    fn encoder<W: Write>(
+        &self,
+        machine: &Machine,
+        texts: &[(&str, String)],
+        out: W,
+    ) -> Result<png::Writer<W>, FilmError> {
+        let (width, height) = (machine.video().width(), machine.video().height());
+        let mut encoder = png::Encoder::new(out, width * self.eyes().len() as u32, height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_animated(self.fields as u32, 0)?;
+        encoder.set_frame_delay(FRAME_SECONDS.0, FRAME_SECONDS.1)?;
+        for (key, value) in texts {
+            encoder.add_itxt_chunk(format!("pxpl5 {key}"), value.clone())?;
+        }
+        Ok(encoder.write_header()?)
+    }
+
+    fn eyes(&self) -> &[Eye] {
+        match &self.eyes {
+            Eyes::One(eye) => std::slice::from_ref(eye),
+            Eyes::Both => &Eye::BOTH,
+        }
+    }
+
+    fn frame(&self, machine: &Machine, field: u64) -> RgbImage {
+        let eyes: Vec<RgbImage> = self.eyes().iter().map(|eye| screen(machine, *eye, field)).collect();
+        match &eyes[..] {
+            [left, right] => side_by_side(left, right),
+            _ => eyes.into_iter().next().unwrap_or_default(),
+        }
+    }
+}
+
+/// A field and the one before it; black for an eye without a frame buffer.
+fn screen(machine: &Machine, eye: Eye, field: u64) -> RgbImage {
+    let seen = |n: u64| machine.frame_buffers().get(eye.index())?.seen(n);
+    let before = field.checked_sub(1).and_then(seen);
+    match (seen(field), before) {
+        (Some(now), Some(before)) => now.interlaced_with(&before),
+        (Some(now), None) => now.interlaced_with(&now),
+        (None, _) => RgbImage::new(machine.video().width(), machine.video().height()),
+    }
+}

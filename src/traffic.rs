@@ -1,0 +1,76 @@
+//! What went over the ring and through the renderers' FIFOs, recorded when asked for; it changes no time.
+
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{Message, NodeId};
+use std::collections::BTreeMap;
+
+/// A message on its way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Transfer {
+    /// The sender.
+    pub source: NodeId,
+    /// The receiver.
+    pub destination: NodeId,
+    /// Its length.
+    pub words: u32,
+    /// When its first word reached the receiver.
+    pub begin: Time,
+    /// When the receiver had taken its last word.
+    pub end: Time,
+}
+
+/// Everything that was recorded.
+#[derive(Clone, Debug, Default)]
+pub struct Traffic {
+    /// Messages, in the order in which their receivers had taken them.
+    pub transfers: Vec<Transfer>,
+    /// Occupied channels of the ring, overhead and stalls included, whenever their number changed.
+    pub busy_channels: Vec<(Time, u32)>,
+    /// Renderer, time and change: words of commands that have come in whole, and of commands that start.
+    pub fifo_changes: Vec<(usize, Time, i64)>,
+    /// Messages that a renderer has not accepted yet, by destination.
+    announced: BTreeMap<NodeId, Transfer>,
+}
+
+impl Traffic {
+    /// The words of complete commands that wait in a renderer's FIFO, whenever their number changed.
+    #[must_use]
+    pub fn fifo_words(&self, renderer: usize) -> Vec<(Time, i64)> {
+        let of = self.fifo_changes.iter().filter(|change| change.0 == renderer);
+        let mut changes: BTreeMap<Time, i64> = BTreeMap::new();
+        of.for_each(|(_, time, words)| *changes.entry(*time).or_default() += words);
+        let mut held = 0;
+        let sums = changes.into_iter().filter(|(_, words)| *words != 0).map(|(time, words)| {
+            held += words;
+            (time, held)
+        });
+        sums.collect()
+    }
+
+    pub(crate) fn channels(&mut self, time: Time, busy: u32) {
+        match self.busy_channels.last_mut() {
+            Some(last) if last.1 == busy => {}
+            Some(last) if last.0 == time => last.1 = busy,
+            _ => self.busy_channels.push((time, busy)),
+        }
+    }
+
+    pub(crate) fn announce(&mut self, message: &Message, begin: Time) {
+        self.announced.insert(message.destination, transfer(message, begin, begin));
+    }
+
+    pub(crate) fn accept(&mut self, destination: NodeId, end: Time) {
+        let announced = self.announced.remove(&destination);
+        self.transfers.extend(announced.map(|transfer| Transfer { end, ..transfer }));
+    }
+
+    /// Words reach a receiver that takes them as they come without a gap.
+    pub(crate) fn deliver(&mut self, message: &Message, end: Time, word: Span) {
+        let begin = Time(end.0.saturating_sub((word * u64::from(message.words)).0));
+        self.transfers.push(transfer(message, begin, end));
+    }
+}
+
+fn transfer(message: &Message, begin: Time, end: Time) -> Transfer {
+    Transfer { source: message.source, destination: message.destination, words: message.words, begin, end }
+}

@@ -1,0 +1,177 @@
+//! Golden images: what each pipeline shows of the built-in scenes, to the bit, on every host.
+//!
+//! A piece of each picture lies in `tests/golden/` for people; a fingerprint of all of it stands in
+//! `tests/golden/fingerprints.txt`. On a mismatch `target/images/` gets a triptych: expected, difference, actual.
+//! They change only by `PXPL5_UPDATE_IMAGES=1 cargo test --test images`, and somebody must look at them then.
+
+use image::{Rgb, RgbImage, imageops};
+use pxpl5::{Binning, Experiment, Eye, MachineConfig, Outcome, Pipeline, RenderingControl, Slats, scene};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+const UPDATE: &str = "PXPL5_UPDATE_IMAGES";
+
+/// A scene and the piece of its frames that is kept: left, top, width, height.
+struct Subject {
+    scene: &'static str,
+    piece: [u32; 4],
+    /// Enough for [`pxpl5::WARM_UP_PICTURES`] and one more.
+    fields: u64,
+}
+
+const SUBJECTS: [Subject; 4] = [
+    Subject { scene: "mig", piece: [200, 120, 256, 200], fields: 60 },
+    Subject { scene: "molecules", piece: [180, 130, 240, 180], fields: 60 },
+    Subject { scene: "head", piece: [120, 60, 320, 260], fields: 160 },
+    Subject { scene: "full-screen:12", piece: [288, 208, 64, 64], fields: 60 },
+];
+
+fn golden(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden").join(name)
+}
+
+fn scratch(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("tmp lies in target").join("images");
+    std::fs::create_dir_all(&folder).expect("target can be written");
+    folder.join(name)
+}
+
+/// 64 bits of FNV-1a over size and bytes.
+fn fingerprint(picture: &RgbImage) -> String {
+    let size = [picture.width(), picture.height()].map(u32::to_le_bytes);
+    let bytes = size.as_flattened().iter().chain(picture.as_raw());
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x100_0000_01b3));
+    format!("{hash:016x}")
+}
+
+fn fingerprints() -> BTreeMap<String, String> {
+    let text = std::fs::read_to_string(golden("fingerprints.txt")).unwrap_or_default();
+    text.lines()
+        .filter_map(|line| line.split_once(' '))
+        .map(|(hash, name)| (name.to_owned(), hash.to_owned()))
+        .collect()
+}
+
+/// The kept piece of a frame, or the lines of it that a field has.
+fn piece(picture: &RgbImage, [left, top, width, height]: [u32; 4]) -> RgbImage {
+    let step = 480 / picture.height();
+    let (top, height) = (top / step, height / step);
+    imageops::crop_imm(picture, left, top, width, height).to_image()
+}
+
+/// Expected, difference (white where equal, black where not), actual.
+fn triptych(expected: &RgbImage, actual: &RgbImage) -> RgbImage {
+    let (width, height) = (expected.width().max(actual.width()), expected.height().max(actual.height()));
+    let differs = |x, y| expected.get_pixel_checked(x, y) != actual.get_pixel_checked(x, y);
+    let difference = RgbImage::from_fn(width, height, |x, y| Rgb([if differs(x, y) { 0 } else { 255 }; 3]));
+    let mut out = RgbImage::new(3 * width, height);
+    for (column, panel) in [expected, &difference, actual].into_iter().enumerate() {
+        imageops::replace(&mut out, panel, i64::from(width) * column as i64, 0);
+    }
+    out
+}
+
+/// What is wrong with a picture, if anything.
+fn check(name: &str, picture: &RgbImage, subject: &Subject, known: &BTreeMap<String, String>) -> Option<String> {
+    let actual = piece(picture, subject.piece);
+    let Ok(expected) = image::open(golden(&format!("{name}.png"))) else {
+        return Some(format!("{name}: there is no golden image; {UPDATE}=1 makes one"));
+    };
+    let expected = expected.into_rgb8();
+    if expected != actual {
+        let at = scratch(&format!("{name}.png"));
+        triptych(&expected, &actual).save(&at).expect("target can be written");
+        return Some(format!("{name}: see {} (expected, difference, actual)", at.display()));
+    }
+    if known.get(name) != Some(&fingerprint(picture)) {
+        let at = scratch(&format!("{name}-whole.png"));
+        picture.save(&at).expect("target can be written");
+        let [left, top, width, height] = subject.piece;
+        return Some(format!(
+            "{name}: differs outside of the {width} x {height} pixels at {left}, {top} that are kept; see {}",
+            at.display()
+        ));
+    }
+    None
+}
+
+fn update(name: &str, picture: &RgbImage, subject: &Subject) {
+    std::fs::create_dir_all(golden("")).expect("the project can be written");
+    piece(picture, subject.piece).save(golden(&format!("{name}.png"))).expect("the project can be written");
+    picture.save(scratch(&format!("{name}-whole.png"))).expect("target can be written");
+}
+
+/// The newest picture alone: a frame of Rendering Control, or a field of Slats. Interlaced with the one before, a
+/// moving scene would show two poses.
+fn shown(outcome: &Outcome, eye: Eye) -> RgbImage {
+    let newest = outcome.pictures().last().expect("it has shown some").picture;
+    let frame_buffer = &outcome.machine().frame_buffers()[eye.index()];
+    match outcome.pipeline().name() {
+        "slats" => {
+            let last = frame_buffer.last_seen().expect("a field was scanned");
+            let n = last.field() - (last.field() - newest) % 2;
+            frame_buffer.seen(n).expect("the last fields are remembered").picture()
+        }
+        _ => outcome.picture(eye).expect("pixels are on"),
+    }
+}
+
+/// The pictures of both eyes by name.
+fn pictures(pipeline: Arc<dyn Pipeline>, config: &MachineConfig, subject: &Subject) -> Vec<(String, RgbImage)> {
+    let scene = scene::builtin(subject.scene).expect("built in");
+    let name = format!("{}-{}", pipeline.name(), subject.scene.replace(':', "-"));
+    let outcome = Experiment::with(config.clone(), pipeline, scene.into()).fields(subject.fields).run();
+    let outcome = outcome.unwrap_or_else(|error| panic!("{name}: {error}"));
+    let eye = |eye: Eye| (format!("{name}-{eye:?}").to_lowercase(), shown(&outcome, eye));
+    Eye::BOTH.map(eye).into()
+}
+
+fn compare(pipeline: impl Pipeline + Copy + 'static, config: &MachineConfig) {
+    let known = fingerprints();
+    let mut wrong = String::new();
+    let mut fresh = known.clone();
+    let updating = std::env::var_os(UPDATE).is_some();
+    for subject in &SUBJECTS {
+        for (name, picture) in pictures(Arc::new(pipeline), config, subject) {
+            if updating {
+                update(&name, &picture, subject);
+                fresh.insert(name, fingerprint(&picture));
+            } else if let Some(what) = check(&name, &picture, subject, &known) {
+                let _ = writeln!(wrong, "{what}");
+            }
+        }
+    }
+    if updating {
+        let lines: String = fresh.iter().map(|(name, hash)| format!("{hash} {name}\n")).collect();
+        std::fs::write(golden("fingerprints.txt"), lines).expect("the project can be written");
+    }
+    assert!(wrong.is_empty(), "\n{wrong}");
+}
+
+/// The 140 triangles of the published machine make no molecule. What misses its retrace is shown later, in its place.
+fn many_boards() -> MachineConfig {
+    let published = MachineConfig::preset("slats-optimised").expect("listed");
+    MachineConfig { n_gps: 32, ..published }
+}
+
+#[test]
+fn a_still_scene_looks_the_same_however_many_processors_draw_it() {
+    let subject = &SUBJECTS[3];
+    let draw = |pipeline: Arc<dyn Pipeline>, n_gps| {
+        pictures(pipeline, &MachineConfig { n_gps, ..MachineConfig::small_hmd() }, subject)
+    };
+    let (control, slats) = (Arc::new(RenderingControl::stereo()), Arc::new(Slats::split()));
+    for n_gps in [3, 13] {
+        assert!(draw(control.clone(), n_gps) == draw(control.clone(), 2), "rendering control with {n_gps}");
+        assert!(draw(slats.clone(), n_gps) == draw(slats.clone(), 1), "Slats with {n_gps}");
+    }
+}
+
+/// One test, because an update of two at once would lose half of the fingerprints.
+#[test]
+fn both_pipelines_show_the_golden_images_to_both_eyes() {
+    compare(RenderingControl::stereo(), &MachineConfig::small_hmd());
+    compare(Slats { binning: Binning::Touched, ..Slats::split() }, &many_boards());
+}

@@ -1,0 +1,421 @@
+//! Do results, traces and films say what happened?
+
+use prost::Message;
+use pxpl5::pictures::{Eyes, FRAME_SECONDS, Film, FilmError, seen_at, side_by_side};
+use pxpl5::results::{columns, csv};
+use pxpl5::trace_export::{Events, Trace, chrome, perfetto};
+use pxpl5::{Experiment, Eye, LATENCY_PARTS, MachineConfig, Outcome, Pipeline, Pixels, RenderingControl, Slats, scene};
+use pxpl5_gp::{Edge, Stage};
+use pxpl5_sim::{Span, Time};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+fn experiment(pipeline: impl Pipeline + 'static, scene: &str, fields: u64) -> Experiment {
+    let machine = if pipeline.name() == "slats" { MachineConfig::slats() } else { MachineConfig::small_hmd() };
+    let scene = scene::builtin(scene).expect("built in");
+    Experiment::new(machine, pipeline, scene).fields(fields)
+}
+
+fn run(pipeline: impl Pipeline + 'static, scene: &str, fields: u64) -> Outcome {
+    experiment(pipeline, scene, fields).pixels(Pixels::Off).record_traffic(true).run().expect("runs")
+}
+
+thread_local! {
+    static STEREO: Rc<Outcome> = Rc::new(run(RenderingControl::stereo(), "mig", 60));
+    static MONO: Rc<Outcome> = Rc::new(run(RenderingControl::mono(), "molecules", 60));
+    static SPLIT: Rc<Outcome> = Rc::new(run(Slats::split(), "full-screen:100", 30));
+    /// So many triangles that every field misses its retrace.
+    static LATE: Rc<Outcome> = Rc::new(run(Slats::whole(), "full-screen:160", 30));
+}
+
+fn stereo() -> Rc<Outcome> {
+    STEREO.with(Rc::clone)
+}
+
+fn mono() -> Rc<Outcome> {
+    MONO.with(Rc::clone)
+}
+
+fn split() -> Rc<Outcome> {
+    SPLIT.with(Rc::clone)
+}
+
+fn all() -> [Rc<Outcome>; 4] {
+    [stereo(), mono(), split(), LATE.with(Rc::clone)]
+}
+
+#[test]
+fn the_parts_of_every_latency_add_up_to_the_picosecond() {
+    for outcome in &all() {
+        let parts = outcome.latency_parts();
+        assert_eq!(parts.len(), outcome.steady_pictures().len());
+        for (parts, times) in parts.iter().zip(outcome.steady_pictures()) {
+            assert_eq!(parts.picture, times.picture);
+            assert_eq!(parts.published(), times.shown_at - times.transform_at);
+            assert_eq!(Some(parts.begin), times.sampled_at);
+            let video = outcome.machine().video();
+            let field = video.field_at(times.shown_at);
+            let line = u32::try_from(field % 2).expect("0 or 1");
+            assert_eq!(Some(parts.end()), video.when(0, line, field));
+        }
+    }
+}
+
+#[test]
+fn the_means_of_the_report_add_up_to_its_latency() {
+    for outcome in &all() {
+        let report = outcome.report();
+        let published = report.latency_parts_ms.iter().filter(|part| part.in_published_latency);
+        let sum: f64 = published.map(|part| part.statistics.statistics.mean).sum();
+        let latency = report.latency_ms.statistics.mean;
+        assert!((sum - latency).abs() < 1e-9 * latency, "{sum} instead of {latency}");
+    }
+}
+
+#[test]
+fn a_part_is_the_time_between_the_marks_that_define_it() {
+    let outcome = stereo();
+    let end_of = |stage, eye, picture| {
+        let marks = outcome.observation().marks.iter();
+        let of = marks.filter(|m| (m.stage, m.eye, m.picture, m.edge) == (stage, eye, picture, Edge::End));
+        of.map(|m| m.time).max().expect("marked")
+    };
+    let part = |name| LATENCY_PARTS.iter().position(|part| part.name == name).expect("a part");
+    for (parts, times) in stereo().latency_parts().iter().zip(stereo().steady_pictures()) {
+        let copied_at = times.copied_at.expect("copied");
+        assert_eq!(parts.spans[part("wait_for_retrace")], times.shown_at - copied_at);
+        let rendered_at = end_of(Stage::Render, Some(Eye::Right), times.picture);
+        let rest: Span = parts.spans[part("wait_for_copy")] + parts.spans[part("copy")];
+        assert_eq!(rest, copied_at - rendered_at);
+        let transformed_at = end_of(Stage::Transform, Some(Eye::Left), times.picture);
+        assert_eq!(parts.spans[part("transform")], transformed_at - times.transform_at);
+        let sent_at = end_of(Stage::Send, None, times.picture);
+        assert_eq!(parts.spans[part("send")], sent_at - times.sampled_at.expect("sampled"));
+    }
+}
+
+#[test]
+fn csv_opens_with_its_origin_and_holds_the_latency_of_the_report() {
+    for outcome in &all() {
+        let (text, report) = (csv(outcome), outcome.report());
+        let comments: Vec<&str> = text.lines().take_while(|line| line.starts_with("# ")).collect();
+        for (key, value) in [("machine", &report.machine), ("config_hash", &report.config_hash)] {
+            assert!(comments.contains(&format!("# {key}: {value}").as_str()), "{key} is missing in {comments:?}");
+        }
+        let keys = ["schema", "version", "level", "seed"];
+        assert!(keys.iter().all(|key| comments.iter().any(|line| line.starts_with(&format!("# {key}: ")))));
+        let rows = rows(&text);
+        assert_eq!(rows.len(), outcome.pictures().len());
+        let steady = rows.iter().filter(|row| row["steady"] == Some(1));
+        let latencies: Vec<f64> = steady.map(|row| row["latency_ps"].expect("a number") as f64 * 1e-9).collect();
+        let mean = latencies.iter().sum::<f64>() / latencies.len() as f64;
+        assert!((mean - report.latency_ms.statistics.mean).abs() < 1e-9);
+        let incomplete = rows.iter().filter(|row| row["complete"] == Some(0)).count();
+        assert_eq!(incomplete, outcome.pictures().iter().filter(|times| !times.complete).count());
+    }
+}
+
+/// The table of a CSV file.
+fn rows(text: &str) -> Vec<BTreeMap<String, Option<u64>>> {
+    let mut lines = text.lines().skip_while(|line| line.starts_with('#'));
+    let names: Vec<&str> = lines.next().expect("names").split(',').collect();
+    let expected: Vec<String> = columns().into_iter().map(|column| column.name).collect();
+    assert_eq!(names, expected);
+    let row = |line: &str| {
+        let values: Vec<Option<u64>> = line.split(',').map(|value| value.parse().ok()).collect();
+        assert_eq!(values.len(), names.len());
+        names.iter().map(|name| (*name).to_owned()).zip(values).collect()
+    };
+    lines.map(row).collect()
+}
+
+#[cfg(feature = "parquet")]
+#[test]
+fn parquet_holds_what_csv_holds() {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::Field;
+    let mut bytes = Vec::new();
+    pxpl5::results::parquet(&stereo(), &mut bytes).expect("written");
+    let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).expect("Parquet");
+    let metadata = reader.metadata().file_metadata().key_value_metadata().expect("there").clone();
+    let hash = metadata.iter().find(|entry| entry.key == "pxpl5.config_hash").and_then(|entry| entry.value.clone());
+    assert_eq!(hash, Some(stereo().report().config_hash));
+    let found: Vec<BTreeMap<String, Option<u64>>> = reader
+        .get_row_iter(None)
+        .expect("rows")
+        .map(|row| {
+            let value = |field: &Field| if let Field::Long(v) = field { u64::try_from(*v).ok() } else { None };
+            row.expect("a row").get_column_iter().map(|(name, field)| (name.clone(), value(field))).collect()
+        })
+        .collect();
+    assert_eq!(found, rows(&csv(&stereo())));
+}
+
+/// The messages of the Perfetto format that are read back, from its published descriptions.
+mod proto {
+    #[derive(Clone, prost::Message)]
+    pub(crate) struct Trace {
+        #[prost(message, repeated, tag = "1")]
+        pub(crate) packet: Vec<Packet>,
+    }
+    #[derive(Clone, prost::Message)]
+    pub(crate) struct Packet {
+        #[prost(uint64, optional, tag = "8")]
+        pub(crate) timestamp: Option<u64>,
+        #[prost(uint32, tag = "10")]
+        pub(crate) trusted_packet_sequence_id: u32,
+        #[prost(message, optional, tag = "11")]
+        pub(crate) track_event: Option<TrackEvent>,
+        #[prost(message, optional, tag = "60")]
+        pub(crate) track_descriptor: Option<TrackDescriptor>,
+    }
+    #[derive(Clone, prost::Message)]
+    pub(crate) struct TrackDescriptor {
+        #[prost(uint64, tag = "1")]
+        pub(crate) uuid: u64,
+        #[prost(string, tag = "2")]
+        pub(crate) name: String,
+        #[prost(uint64, optional, tag = "5")]
+        pub(crate) parent_uuid: Option<u64>,
+        #[prost(message, optional, tag = "8")]
+        pub(crate) counter: Option<Counter>,
+    }
+    #[derive(Clone, prost::Message)]
+    pub(crate) struct Counter {
+        #[prost(int32, tag = "3")]
+        pub(crate) unit: i32,
+    }
+    #[derive(Clone, prost::Message)]
+    pub(crate) struct TrackEvent {
+        #[prost(int32, tag = "9")]
+        pub(crate) kind: i32,
+        #[prost(uint64, tag = "11")]
+        pub(crate) track_uuid: u64,
+        #[prost(string, tag = "23")]
+        pub(crate) name: String,
+        #[prost(int64, optional, tag = "30")]
+        pub(crate) counter_value: Option<i64>,
+        #[prost(fixed64, repeated, packed = "false", tag = "47")]
+        pub(crate) flow_ids: Vec<u64>,
+        #[prost(fixed64, repeated, packed = "false", tag = "48")]
+        pub(crate) terminating_flow_ids: Vec<u64>,
+    }
+}
+
+fn parsed(outcome: &Outcome) -> (BTreeMap<u64, proto::TrackDescriptor>, Vec<(u64, proto::TrackEvent)>) {
+    let mut bytes = Vec::new();
+    perfetto(&Trace::of(outcome), &mut bytes).expect("memory can be written");
+    let trace = proto::Trace::decode(&bytes[..]).expect("Protocol Buffers");
+    assert!(trace.packet.iter().all(|packet| packet.trusted_packet_sequence_id == 1));
+    let descriptors = trace.packet.iter().filter_map(|packet| packet.track_descriptor.clone());
+    let events = trace.packet.iter().filter_map(|packet| Some((packet.timestamp?, packet.track_event.clone()?)));
+    (descriptors.map(|descriptor| (descriptor.uuid, descriptor)).collect(), events.collect())
+}
+
+#[test]
+fn a_perfetto_trace_read_back_has_begin_after_end_on_every_track() {
+    for outcome in &all() {
+        let (descriptors, events) = parsed(outcome);
+        assert!(events.windows(2).all(|pair| pair[0].0 <= pair[1].0));
+        let mut open: BTreeMap<u64, i32> = BTreeMap::new();
+        for (_, event) in &events {
+            let parent = descriptors.get(&event.track_uuid).expect("a track that was described");
+            assert!(parent.parent_uuid.is_none_or(|parent| descriptors.contains_key(&parent)));
+            let depth = open.entry(event.track_uuid).or_default();
+            *depth += i32::from(event.kind == 1) - i32::from(event.kind == 2);
+            assert!((0..=1).contains(depth), "{} on {}", event.name, parent.name);
+        }
+        assert!(open.values().all(|depth| *depth == 0));
+    }
+}
+
+#[test]
+fn a_trace_has_an_instant_at_every_retrace() {
+    let (_, events) = parsed(&split());
+    let retraces: Vec<_> = events.iter().filter(|(_, event)| event.name.starts_with("retrace ")).collect();
+    assert_eq!(retraces.len() as u64, split().fields() + 1);
+    for (n, (ns, event)) in retraces.iter().enumerate() {
+        assert_eq!((event.kind, event.name.clone()), (3, format!("retrace {n}")));
+        // 1001/60000 s, rounded down to picoseconds and then to nanoseconds.
+        assert_eq!(*ns, n as u64 * 1_001_000_000_000 / 60_000);
+    }
+}
+
+#[test]
+fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
+    for outcome in &all() {
+        let (_, events) = parsed(outcome);
+        for times in outcome.steady_pictures() {
+            let id = times.picture + 1;
+            let last: Vec<_> = events.iter().filter(|(_, event)| event.terminating_flow_ids == [id]).collect();
+            assert_eq!(last.len(), 1, "picture {}", times.picture);
+            assert_eq!(last[0].0, times.shown_at.0 / 1_000);
+            let steps: Vec<_> = events.iter().filter(|(_, event)| event.flow_ids == [id]).collect();
+            assert!(steps[0].1.name.starts_with("SEND") || outcome.pipeline().name() == "slats");
+            assert!(steps.iter().any(|(_, event)| event.name.starts_with("TRANSFORM")));
+            assert!(steps.iter().any(|(_, event)| event.name.starts_with("RENDER")));
+        }
+    }
+}
+
+#[test]
+fn counters_stay_within_the_machine() {
+    for outcome in &all() {
+        let (descriptors, events) = parsed(outcome);
+        let machine = outcome.machine();
+        let mut highest: BTreeMap<String, i64> = BTreeMap::new();
+        for (_, event) in &events {
+            let Some(value) = event.counter_value else { continue };
+            let name = &descriptors[&event.track_uuid].name;
+            assert!(value >= 0, "{name}");
+            let entry = highest.entry(name.clone()).or_default();
+            *entry = value.max(*entry);
+        }
+        let channels = machine.ring().stats().channel_busy.len() as i64;
+        assert!((1..=channels).contains(&highest["busy channels"]));
+        for renderer in 0..machine.renderers().len() {
+            // 448 words of FIFO (derived from TR94's 56.5 ms).
+            assert!((1..=448).contains(&highest[&format!("FIFO words of renderer {renderer}")]));
+        }
+    }
+}
+
+#[test]
+fn recorded_messages_are_those_that_the_boards_counted() {
+    for outcome in &all() {
+        let machine = outcome.machine();
+        let traffic = outcome.observation().traffic.as_deref().expect("recorded");
+        for (renderer, node) in machine.renderers().iter().zip(&machine.ports().renderers) {
+            let to: u64 = traffic.transfers.iter().filter(|t| t.destination == *node).map(|t| u64::from(t.words)).sum();
+            // One message may have begun to arrive at the end of the run.
+            let begun = renderer.stats().words - to;
+            assert!(begun <= 1_024, "{begun} words were never accepted");
+        }
+        let busy: Span = machine.ring().stats().channel_busy.iter().copied().sum();
+        let mut steps = traffic.busy_channels.clone();
+        steps.push((outcome.end(), 0));
+        let counted: u64 = steps.windows(2).map(|pair| (pair[1].0 - pair[0].0).0 * u64::from(pair[0].1)).sum();
+        // The ring counts messages that have ended, the counter those under way as well.
+        let tolerance = 8 * 8_000_000_000;
+        assert!(counted >= busy.0 && counted < busy.0 + tolerance, "{counted} and {}", busy.0);
+    }
+}
+
+#[test]
+fn recording_changes_nothing() {
+    let quiet = experiment(Slats::split(), "full-screen:100", 30).pixels(Pixels::Off).run().expect("runs");
+    assert_eq!(quiet.machine().trace_hash(), split().machine().trace_hash());
+    let tracks = |outcome: &Outcome| Trace::of(outcome).tracks.iter().map(|t| t.name.clone()).collect::<Vec<_>>();
+    assert!(tracks(&split()).contains(&"messages in".to_owned()));
+    assert!(!tracks(&quiet).contains(&"messages in".to_owned()));
+}
+
+#[test]
+fn chrome_json_has_the_same_slices_to_the_picosecond() {
+    let trace = Trace::of(&mono());
+    let mut bytes = Vec::new();
+    chrome(&trace, &mut bytes).expect("memory can be written");
+    let json: Value = serde_json::from_slice(&bytes).expect("JSON");
+    assert_eq!(json["otherData"]["config_hash"], mono().report().config_hash);
+    // Decimal text, not a rounded number.
+    let text = String::from_utf8(bytes).expect("UTF-8");
+    let ps = |line: &str, key: &str| {
+        let rest = line.split(&format!("\"{key}\":")).nth(1)?;
+        let (whole, decimals) = rest.split(['}', ',']).next()?.split_once('.')?;
+        Some(whole.parse::<u64>().ok()? * 1_000_000 + decimals.parse::<u64>().ok()?)
+    };
+    let written = text.lines().filter(|line| line.contains("\"ph\":\"X\""));
+    let written: Vec<(u64, u64)> =
+        written.map(|line| (ps(line, "ts").expect("ts"), ps(line, "dur").expect("dur"))).collect();
+    let slices = trace.tracks.iter().filter_map(|t| if let Events::Slices(s) = &t.events { Some(s) } else { None });
+    let expected: Vec<(u64, u64)> = slices.flatten().map(|s| (s.begin.0, (s.end - s.begin).0)).collect();
+    assert!(expected.len() > 1_000);
+    assert_eq!(written, expected);
+    let count = |kind: &str| json["traceEvents"].as_array().expect("array").iter().filter(|e| e["ph"] == kind).count();
+    assert_eq!(count("s"), count("f"), "every flow that begins ends");
+}
+
+fn frames(bytes: &[u8]) -> (png::Info<'static>, Vec<Vec<u8>>) {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("PNG");
+    let n = reader.info().animation_control().expect("animated").num_frames;
+    let frames = (0..n).map(|_| {
+        let mut frame = vec![0; reader.output_buffer_size().expect("fits")];
+        reader.next_frame(&mut frame).expect("a frame");
+        assert_eq!(reader.info().frame_control().map(|f| (f.delay_num, f.delay_den)), Some(FRAME_SECONDS));
+        frame
+    });
+    let frames = frames.collect();
+    (reader.info().clone(), frames)
+}
+
+/// A short run that remembers all of its fields.
+fn remembered() -> (Experiment, Outcome) {
+    let mut machine = MachineConfig::slats();
+    machine.frame_buffer.fields_kept = 100;
+    let scene = scene::builtin("mig").and_then(|scene| scene.truncated(100)).expect("built in");
+    let experiment = Experiment::new(machine, Slats::split(), scene).fields(12);
+    let outcome = experiment.run().expect("runs");
+    (experiment, outcome)
+}
+
+#[test]
+fn a_film_shows_every_field_at_the_true_rate() {
+    let (experiment, outcome) = remembered();
+    let mut bytes = Vec::new();
+    Film::new(experiment, 6, 4, Eyes::Both).write(&[("seed", "1".to_owned())], &mut bytes).expect("written");
+    let (info, frames) = frames(&bytes);
+    assert_eq!((info.width, info.height, frames.len()), (1_280, 480, 4));
+    assert!(info.utf8_text.iter().any(|text| text.keyword == "pxpl5 seed"));
+    for (field, frame) in (6..).zip(frames) {
+        let eye = |board: usize| {
+            let seen = |n| outcome.machine().frame_buffers()[board].seen(n).expect("remembered");
+            seen(field).interlaced_with(&seen(field - 1))
+        };
+        assert!(frame == side_by_side(&eye(0), &eye(1)).into_raw(), "field {field}");
+    }
+}
+
+#[test]
+fn a_film_without_a_field_is_refused() {
+    let (experiment, _) = remembered();
+    let film = Film::new(experiment, 0, 0, Eyes::One(Eye::Left));
+    assert!(matches!(film.write(&[], Vec::new()), Err(FilmError::Fields { found: 0, .. })));
+}
+
+#[test]
+fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
+    let (_, outcome) = remembered();
+    let board = &outcome.machine().frame_buffers()[0];
+    let fields: Vec<_> = (7..10).map(|n| board.seen(n).expect("remembered")).collect();
+    let video = outcome.machine().video();
+    let [oldest, before, now] = [0, 1, 2].map(|i| fields[i].picture());
+    // Field 9 scans the odd lines; the beam is at pixel 320 of line 201.
+    let at = video.when(320, 201, 9).expect("scanned");
+    let screen = seen_at(video, at, &fields);
+    let row = |picture: &image::RgbImage, y: u32, x: std::ops::Range<u32>| -> Vec<_> {
+        x.map(|x| *picture.get_pixel(x, y)).collect()
+    };
+    assert_eq!(row(&screen, 199, 0..640), row(&now, 99, 0..640));
+    assert_eq!(row(&screen, 201, 0..321), row(&now, 100, 0..321));
+    assert_eq!(row(&screen, 201, 321..640), row(&oldest, 100, 321..640));
+    assert_eq!(row(&screen, 203, 0..640), row(&oldest, 101, 0..640));
+    assert_eq!(row(&screen, 200, 0..640), row(&before, 100, 0..640));
+    // One picosecond before, the pixel under the beam is the old one.
+    let earlier = seen_at(video, Time(at.0 - 1), &fields);
+    assert_eq!(earlier.get_pixel(320, 201), oldest.get_pixel(320, 100));
+    assert_ne!(now, oldest, "the head moves");
+}
+
+#[test]
+fn the_documents_define_every_column() {
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/results.md")).expect("there");
+    for column in columns() {
+        let row = text.lines().find(|line| line.starts_with(&format!("| `{}` |", column.name)));
+        assert!(row.is_some(), "{} is not in docs/results.md", column.name);
+    }
+    for part in LATENCY_PARTS {
+        let row = text.lines().find(|line| line.starts_with(&format!("| `{}_ps` |", part.name))).expect("a row");
+        assert_eq!(row.contains("| yes |"), part.published, "{}", part.name);
+    }
+}

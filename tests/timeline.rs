@@ -1,0 +1,214 @@
+//! Do timelines show what was simulated?
+
+use proptest::prelude::*;
+use pxpl5::timeline::{Bar, MAX_FIELDS, PIPELINE_FIGURES, Timeline, TimelineOptions, svg};
+use pxpl5::{Experiment, MachineConfig, Outcome, Pixels, RenderingControl, Slats, scene};
+use pxpl5_gp::Stage;
+use pxpl5_sim::{Span, Time};
+use std::rc::Rc;
+
+fn outcome(pipeline: impl pxpl5::Pipeline + 'static, scene: &str, fields: u64) -> Outcome {
+    let machine = if pipeline.name() == "slats" { MachineConfig::slats() } else { MachineConfig::small_hmd() };
+    let scene = scene::builtin(scene).expect("built in");
+    Experiment::new(machine, pipeline, scene).fields(fields).pixels(Pixels::Off).run().expect("runs")
+}
+
+thread_local! {
+    static TRIVIAL: Rc<Outcome> = Rc::new(outcome(RenderingControl::stereo(), "full-screen:12", 40));
+    static SPLIT: Rc<Outcome> = Rc::new(outcome(Slats::split(), "full-screen:100", 20));
+}
+
+fn trivial() -> Rc<Outcome> {
+    TRIVIAL.with(Rc::clone)
+}
+
+fn split() -> Rc<Outcome> {
+    SPLIT.with(Rc::clone)
+}
+
+fn timeline(outcome: &Outcome) -> Timeline {
+    Timeline::of(outcome, &TimelineOptions::default())
+}
+
+fn bars<'a>(timeline: &'a Timeline, row: &str) -> Vec<&'a Bar> {
+    timeline.rows.iter().filter(|r| r.name == row).flat_map(|r| &r.bars).collect()
+}
+
+/// 20 regions of 15 messages of 1,024 words and 16 words of overhead, 50 ns each (spec: 780 us a region).
+const COPY: Span = Span(20 * 15 * (1_024 + 16) * 50_000);
+
+#[test]
+fn a_copy_of_the_trivial_scene_takes_twenty_region_times() {
+    let timeline = timeline(&trivial());
+    for row in ["left frame buffer", "right frame buffer"] {
+        for bar in bars(&timeline, row) {
+            let span = bar.end - bar.begin;
+            // The command of each region reaches its renderer a few microseconds after the region before has gone.
+            assert!(span >= COPY && span < COPY + Span::from_us(100), "{row}: {span}");
+        }
+    }
+}
+
+#[test]
+fn the_dark_strip_is_where_regions_arrive_and_nowhere_else() {
+    let timeline = timeline(&trivial());
+    for bar in bars(&timeline, "left frame buffer") {
+        let received: Span = bar.receiving.iter().map(|(begin, end)| *end - *begin).sum();
+        assert!(received >= COPY, "{received} of {COPY}");
+        assert_eq!(bar.receiving.first().map(|times| times.0), Some(bar.begin));
+        assert_eq!(bar.receiving.last().map(|times| times.1), Some(bar.end));
+    }
+}
+
+#[test]
+fn of_a_split_copy_the_top_ends_before_the_retrace_and_the_bottom_begins_after() {
+    let timeline = timeline(&split());
+    let copies = bars(&timeline, "right frame buffer");
+    assert!(copies.iter().any(|bar| bar.bottom == Some(true)));
+    for bar in copies {
+        let retrace = split().machine().video().retrace(bar.picture);
+        match bar.bottom {
+            Some(true) => assert!(bar.begin >= retrace),
+            Some(false) => assert!(bar.end <= retrace),
+            None => panic!("picture {} is copied in halves", bar.picture),
+        }
+    }
+}
+
+#[test]
+fn the_way_of_the_chosen_picture_leads_forward_from_its_sample_to_light() {
+    for outcome in [&*trivial(), &*split()] {
+        let timeline = timeline(outcome);
+        assert!(timeline.arrows.len() >= 6);
+        assert!(timeline.arrows.iter().all(|arrow| arrow.begin <= arrow.end));
+        let times = outcome.pictures().iter().find(|t| Some(t.picture) == timeline.picture).expect("it was shown");
+        let video = outcome.machine().video();
+        let field = video.field_at(times.shown_at);
+        let light = video.when(0, u32::try_from(field % 2).expect("0 or 1"), field).expect("visible");
+        assert!(timeline.arrows.iter().any(|arrow| arrow.end == light), "no arrow ends at {light}");
+        assert!(timeline.arrows.iter().all(|arrow| arrow.begin >= timeline.arrows[0].begin));
+    }
+}
+
+#[test]
+fn a_slats_picture_shows_a_view_that_had_reached_the_processor() {
+    let timeline = timeline(&split());
+    let send = bars(&timeline, "host").into_iter().find(|bar| timeline.is_chosen(bar)).expect("in the drawing");
+    let work = bars(&timeline, "graphics processors").into_iter().find(|bar| timeline.is_chosen(bar)).expect("there");
+    assert!(send.end < work.begin);
+    let newer = split().stages().into_iter().filter(|s| s.stage == Stage::Send && s.picture == send.picture + 1);
+    assert!(newer.map(|s| s.end.expect("sent")).all(|end| end + Span::from_us(12) > work.begin));
+}
+
+#[test]
+fn every_drawing_is_well_formed_and_the_same_twice() {
+    for outcome in [&*trivial(), &*split()] {
+        let drawing = svg(outcome, &TimelineOptions::default());
+        assert_eq!(drawing, svg(outcome, &TimelineOptions::default()));
+        let document = roxmltree::Document::parse(&drawing).expect("XML");
+        let ids: Vec<_> = document.descendants().filter_map(|node| node.attribute("id")).collect();
+        for used in drawing.split("url(#").skip(1).filter_map(|rest| rest.split(')').next()) {
+            assert!(ids.contains(&used), "{used} is used but not defined");
+        }
+        let text: String = document.descendants().filter_map(|node| node.text()).collect();
+        for fact in ["config_hash", "seed: 1", "level: transaction", "version: "] {
+            assert!(text.contains(fact), "{fact} is missing");
+        }
+    }
+}
+
+#[test]
+fn retraces_stand_where_the_formula_puts_them() {
+    let timeline = timeline(&trivial());
+    let drawing = svg(&trivial(), &TimelineOptions::default());
+    let document = roxmltree::Document::parse(&drawing).expect("XML");
+    let is_line = |node: &roxmltree::Node| node.attribute("class") == Some("retrace") && node.has_tag_name("path");
+    let places = document.descendants().filter(is_line).filter_map(|node| node.attribute("d"));
+    let found: Vec<f64> = places.map(|d| d[1..].split(' ').next().expect("x").parse().expect("a number")).collect();
+    // The axis is 960 - 152 - 14 units long; retrace n is at n x 1001/60000 s.
+    let fields = timeline.retraces.len() - 1;
+    let expected = (0..=fields).map(|n| 152.0 + 794.0 * n as f64 / fields as f64);
+    // The last line is the legend's.
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() < 0.011, "{found} instead of {expected}");
+    }
+    assert_eq!(found.len(), fields + 2);
+}
+
+#[test]
+fn markup_in_names_of_scenes_is_text() {
+    let title = Some("<script>&\"'".to_owned());
+    let drawing = svg(&trivial(), &TimelineOptions { title, ..TimelineOptions::default() });
+    let document = roxmltree::Document::parse(&drawing).expect("XML");
+    assert!(document.descendants().all(|node| !node.has_tag_name("script")));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn whatever_is_asked_for_gives_a_drawing(
+        picture in proptest::option::of(prop_oneof![0u64..60, any::<u64>()]),
+        first_field in proptest::option::of(prop_oneof![0u64..60, any::<u64>()]),
+        fields in proptest::option::of(any::<u64>()),
+        without_host: bool,
+        title in proptest::option::of(any::<String>()),
+    ) {
+        let options = TimelineOptions { picture, first_field, fields, without_host, title };
+        let timeline = Timeline::of(&split(), &options);
+        prop_assert!(timeline.retraces.len() as u64 <= MAX_FIELDS + 1);
+        prop_assert!(roxmltree::Document::parse(&svg(&split(), &options)).is_ok());
+    }
+
+    #[test]
+    fn bars_in_a_lane_do_not_hide_each_other(first in 0u64..30) {
+        let options = TimelineOptions { first_field: Some(first), fields: Some(8), ..TimelineOptions::default() };
+        let timeline = Timeline::of(&trivial(), &options);
+        // What overlaps by less than three units of the drawing's 794 may share a lane.
+        let touching = Span((timeline.to - timeline.from).0 / 264);
+        for row in &timeline.rows {
+            for (i, bar) in row.bars.iter().enumerate() {
+                let others = row.bars[..i].iter().filter(|other| other.lane == bar.lane);
+                let hidden = |other: &Bar| other.end.since(bar.begin.max(other.begin));
+                prop_assert!(others.map(hidden).all(|overlap| overlap <= touching));
+                prop_assert!(bar.lane < row.lanes && bar.begin < timeline.to && bar.end >= timeline.from);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_run_that_showed_nothing_yet_is_drawn_from_its_start() {
+    let scene = scene::builtin("full-screen:12").expect("built in");
+    let run = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(400);
+    let error = run.clone().fields(2).run().expect_err("too short");
+    assert!(error.to_string().contains("simulate more fields"), "{error}");
+    let options = TimelineOptions { picture: Some(u64::MAX), ..TimelineOptions::default() };
+    let timeline = Timeline::of(&trivial(), &options);
+    assert_eq!((timeline.from, timeline.picture, timeline.arrows.len()), (Time::ZERO, None, 0));
+}
+
+#[test]
+fn the_figures_in_the_documents_are_fresh() {
+    for figure in PIPELINE_FIGURES {
+        let path = format!("{}/docs/figures/{}.svg", env!("CARGO_MANIFEST_DIR"), figure.name);
+        let kept = std::fs::read_to_string(&path).unwrap_or_default();
+        let drawn = figure.draw().expect("its experiment runs");
+        assert!(kept == drawn, "{path} is stale: cargo run --release --example figures");
+    }
+}
+
+/// TR94 figures 3, 5 and 6: what each is drawn to show.
+#[test]
+fn the_published_figures_show_what_they_were_drawn_for() {
+    let of = |name: &str| {
+        let figure = PIPELINE_FIGURES.iter().find(|figure| figure.name.contains(name)).expect("there");
+        figure.run().expect("runs")
+    };
+    // Two fields a frame, so the frame buffers are the bottleneck.
+    assert!((of("trivial").report().updates_hz - 30.0).abs() < 0.1);
+    assert!((of("balanced").report().updates_hz - 30.0).abs() < 0.1);
+    for slats in [of("whole"), of("split")] {
+        assert_eq!(slats.report().missed_retraces, 0);
+        assert!((slats.report().latency_fields.statistics.mean - 1.0).abs() < 1e-9);
+    }
+}
