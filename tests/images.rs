@@ -111,7 +111,7 @@ fn shown(outcome: &Outcome, eye: Eye) -> RgbImage {
     match outcome.pipeline().name() {
         "slats" => {
             let last = frame_buffer.last_seen().expect("a field was scanned");
-            let n = last.field() - (last.field() - newest) % 2;
+            let n = last.field() - (last.field() ^ newest) % 2;
             frame_buffer.seen(n).expect("the last fields are remembered").picture()
         }
         _ => outcome.picture(eye).expect("pixels are on"),
