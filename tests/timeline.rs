@@ -37,6 +37,9 @@ fn bars<'a>(timeline: &'a Timeline, row: &str) -> Vec<&'a Bar> {
 /// 20 regions of 15 messages of 1,024 words and 16 words of overhead, 50 ns each (spec: 780 us a region).
 const COPY: Span = Span(20 * 15 * (1_024 + 16) * 50_000);
 
+/// The first region may come from the farthest of five renderers and the last from the nearest: four hops of 50 ns less.
+const WAYS: Span = Span(4 * 50_000);
+
 #[test]
 fn a_copy_of_the_trivial_scene_takes_twenty_region_times() {
     let timeline = timeline(&trivial());
@@ -44,7 +47,7 @@ fn a_copy_of_the_trivial_scene_takes_twenty_region_times() {
         for bar in bars(&timeline, row) {
             let span = bar.end - bar.begin;
             // The command of each region reaches its renderer a few microseconds after the region before has gone.
-            assert!(span >= COPY && span < COPY + Span::from_us(100), "{row}: {span}");
+            assert!(span + WAYS >= COPY && span < COPY + Span::from_us(100), "{row}: {span}");
         }
     }
 }
@@ -54,7 +57,7 @@ fn the_dark_strip_is_where_regions_arrive_and_nowhere_else() {
     let timeline = timeline(&trivial());
     for bar in bars(&timeline, "left frame buffer") {
         let received: Span = bar.receiving.iter().map(|(begin, end)| *end - *begin).sum();
-        assert!(received >= COPY, "{received} of {COPY}");
+        assert!(received + WAYS >= COPY, "{received} of {COPY}");
         assert_eq!(bar.receiving.first().map(|times| times.0), Some(bar.begin));
         assert_eq!(bar.receiving.last().map(|times| times.1), Some(bar.end));
     }
