@@ -6,7 +6,7 @@
 //! - [`Message`]: at most [`MAX_MESSAGE_WORDS`] words from one [`NodeId`] to another;
 //! - [`Body`]: what the words mean: renderer commands, pixels of a region, or words that firmware defines;
 //! - [`Linear`] and [`Quadratic`]: the expressions that a renderer evaluates at every pixel;
-//! - [`format`]: the fixed-point formats of those expressions;
+//! - [`mod@format`]: the fixed-point formats of those expressions;
 //! - [`RegionGrid`]: how a screen is cut into the regions of 128 x 128 renderer pixels.
 //!
 //! Bodies are *lazy*: a message knows its length and the sequence of its command kinds (which is all that time
