@@ -214,6 +214,11 @@ fn corner_fields() -> Vec<Instruction> {
             let (a, b) = (sign(Operand::absolute(64, wa), 0), sign(Operand::absolute(128, wb), 1));
             out.extend(two_operands(destination, a, b));
             out.extend(one_operand(destination, a));
+            // Against the last bit of pixel memory, where the bits that a product loses have no place at all.
+            let last = Operand { address: 208 - w, ..destination };
+            let (low_a, low_b) = (Operand { address: 0, ..a }, Operand { address: 64, ..b });
+            out.extend(two_operands(last, low_a, low_b));
+            out.extend(one_operand(last, low_a));
             let in_place = Operand { address: 0, ..a };
             out.extend(one_operand(destination, in_place));
             let op = ArithmeticOp::Subtract;

@@ -209,8 +209,9 @@ impl BitSerial {
     /// Adds `x << j` where `gate` is set, or subtracts it.
     fn add_product(&mut self, destination: Bits, x: &Source, j: usize, gate: &Plane, negative: bool) {
         let top = j + x.bits.width;
-        let signed = x.bits.signed && j > 0;
-        let extension = if signed { self.memory[destination.first + top - 1] } else { EMPTY_PLANE };
+        // The sign of what the product has so far, if a clock at `top` is left to add to it.
+        let extends = x.bits.signed && j > 0 && top < destination.width;
+        let extension = if extends { self.memory[destination.first + top - 1] } else { EMPTY_PLANE };
         let mut carry = EMPTY_PLANE;
         for i in j..destination.width.min(top + 1) {
             let mut sum = match i {
