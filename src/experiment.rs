@@ -462,6 +462,7 @@ impl Outcome {
             latency_fields: self.latency_fields().defined(experiment.pipeline.latency_definition()),
             latency_ms: self.latency_ms().defined(experiment.pipeline.latency_definition()),
             latency_parts_ms: self.latency_part_statistics(),
+            latency_by_eye_ms: self.latency_by_eye(),
             updates_hz: updates_hz(pictures) / experiment.pipeline.updates_per_picture(&self.machine),
             missed_retraces: experiment.pipeline.missed_retraces(pictures),
             missed_retraces_definition: experiment.pipeline.missed_definition().to_owned(),

@@ -144,6 +144,67 @@ pub struct NamedStatistics {
     pub statistics: DefinedStatistics,
 }
 
+/// Latency of an eye, or of the pair, up to some event.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct EyeStatistics {
+    /// `left`, `right`, or `pair`: from the left eye's TRANSFORM until both eyes have come so far.
+    pub of: &'static str,
+    /// `end_of_copy`, `swap` or `light`.
+    pub until: &'static str,
+    /// The numbers, in milliseconds, and their definition.
+    #[serde(flatten)]
+    pub statistics: DefinedStatistics,
+}
+
+/// Starts of TRANSFORM and ends of COPY of both eyes, the swap and the light of a frame.
+struct Pair {
+    transform_at: [Time; 2],
+    copied_at: [Time; 2],
+    shown_at: Time,
+    light_at: Time,
+}
+
+/// Who, and the eyes that begin and end it.
+const WHOSE: [(&str, usize, usize); 3] = [("left", 0, 0), ("right", 1, 1), ("pair", 0, 1)];
+
+type End = fn(&Pair, usize) -> Time;
+
+/// Name, definition and time of what ends a latency.
+const ENDS: [(&str, &str, End); 3] = [
+    ("end_of_copy", "the end of its COPY", |pair, eye| pair.copied_at[eye]),
+    ("swap", "the retrace at which the frame is swapped in", |pair, _| pair.shown_at),
+    ("light", "the beam at the first visible pixel", |pair, _| pair.light_at),
+];
+
+impl Outcome {
+    /// Latencies of both eyes and of the pair over the pictures after the warm-up; empty where the eyes have no
+    /// TRANSFORM of their own.
+    #[must_use]
+    pub fn latency_by_eye(&self) -> Vec<EyeStatistics> {
+        let stages = by_picture(self.stages());
+        let pairs: Vec<Pair> = self
+            .steady_pictures()
+            .iter()
+            .filter_map(|times| self.pair(times.shown_at, stages.get(&times.picture)?))
+            .collect();
+        let statistics = |(of, first, last): (&'static str, usize, usize), (until, event, end): (_, &str, End)| {
+            let ms = pairs.iter().map(|pair| (end(pair, last) - pair.transform_at[first]).as_ms());
+            let definition = format!("from the start of the {} eye's TRANSFORM to {event}", ["left", "right"][first]);
+            EyeStatistics { of, until, statistics: Statistics::of(ms).defined(&definition) }
+        };
+        let all = WHOSE.into_iter().flat_map(|whose| ENDS.map(|end| statistics(whose, end)));
+        all.filter(|_| !pairs.is_empty()).collect()
+    }
+
+    fn pair(&self, shown_at: Time, stages: &[StageSpan]) -> Option<Pair> {
+        let spans = |stage, eye| stages.iter().filter(move |span| span.stage == stage && span.eye == Some(eye));
+        let transform_at = Eye::BOTH.map(|eye| spans(Stage::Transform, eye).map(|span| span.begin).min());
+        let copied_at = Eye::BOTH.map(|eye| spans(Stage::Copy, eye).filter_map(|span| span.end).max());
+        let ([Some(a), Some(b)], [Some(c), Some(d)]) = (transform_at, copied_at) else { return None };
+        Some(Pair { transform_at: [a, b], copied_at: [c, d], shown_at, light_at: self.light(shown_at) })
+    }
+}
+
 fn by_picture(stages: Vec<StageSpan>) -> BTreeMap<u64, Stages> {
     let mut pictures: BTreeMap<u64, Stages> = BTreeMap::new();
     for span in stages {

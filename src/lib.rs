@@ -72,7 +72,7 @@ pub use experiment_file::{
 };
 pub use fingerprint::Fingerprint;
 pub use head_to_light::{Budget, FIELDS_WITH_HEAD, Head, HeadError, HeadViews, Rehearsal, Sampled};
-pub use latency::{LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition};
+pub use latency::{EyeStatistics, LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition};
 pub use machine::{Machine, Ports, RunError};
 pub use measure::{Measure, QUANTITIES, Quantity, Results};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};

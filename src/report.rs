@@ -1,6 +1,6 @@
 //! Results as numbers, with units in the names.
 
-use crate::latency::NamedStatistics;
+use crate::latency::{EyeStatistics, NamedStatistics};
 use crate::observation::LateRegion;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -95,6 +95,9 @@ pub struct Report {
     pub latency_ms: DefinedStatistics,
     /// Where the latency goes, in milliseconds: parts that add up to the way from the sample of the pose to light.
     pub latency_parts_ms: Vec<NamedStatistics>,
+    /// Latency of each eye and of the pair to the end of COPY, to the swap and to light, in milliseconds; empty where the
+    /// eyes have no TRANSFORM of their own.
+    pub latency_by_eye_ms: Vec<EyeStatistics>,
     /// Complete pictures per second of simulated time.
     pub updates_hz: f64,
     /// Retraces missed.

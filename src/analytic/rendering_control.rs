@@ -44,6 +44,7 @@ pub struct StereoModel {
     copy_words: f64,
     fifo_words: f64,
     store_ns: f64,
+    backing_regions: usize,
     field_ns: f64,
     /// Port time of each region.
     copy_ns: Vec<f64>,
@@ -73,10 +74,11 @@ struct History {
 
 #[derive(Debug, Default)]
 struct Renderers {
-    /// When the master may give each one a region, when its array is free, and when its backing store is.
+    /// When the master may give each one a region, and when its array is free.
     idle_ns: Vec<f64>,
     free_ns: Vec<f64>,
-    stored_ns: Vec<f64>,
+    /// When each one's regions had been copied.
+    sent_ns: Vec<Vec<f64>>,
     /// Words sent to each, and of its latest regions: words before it, when its first command started, of which time.
     words: Vec<f64>,
     started: Vec<Vec<(f64, f64, Cost)>>,
@@ -131,6 +133,7 @@ impl StereoModel {
             shade: if phong { cost(CommandKind::Shade) } else { Cost::default() },
             copy_words: f64::from(CommandKind::CopyRegion.words()),
             fifo_words: config.renderer.fifo_words as f64,
+            backing_regions: config.renderer.backing_regions as usize,
             store_ns: config.renderer.backing_block().as_ms() * 1e6,
             field_ns: video.retrace(1).since(Time::ZERO).as_ms() * 1e6,
             copy_ns: (0..grid.regions() as u16).map(copy).collect(),
@@ -143,7 +146,7 @@ impl StereoModel {
         let mut history = History::default();
         history.rendering.idle_ns = vec![0.0; self.renderers];
         history.rendering.free_ns = vec![0.0; self.renderers];
-        history.rendering.stored_ns = vec![0.0; self.renderers];
+        history.rendering.sent_ns = vec![Vec::new(); self.renderers];
         history.rendering.words = vec![0.0; self.renderers];
         history.rendering.started = vec![Vec::new(); self.renderers];
         loads.chunks(self.eyes).enumerate().map(|(frame, eyes)| self.frame(&mut history, frame, eyes)).collect()
@@ -227,11 +230,13 @@ impl StereoModel {
             let waits = token_ns < available_ns;
             let ready_ns = if waits { executed_ns.max(available_ns + self.order_ns()) } else { executed_ns };
             all.idle_ns[r] = if waits { heard_ns.max(available_ns + self.message_ns) } else { heard_ns };
-            // Into the backing store, which holds one region, and from there to the frame buffer.
-            all.free_ns[r] = ready_ns.max(all.stored_ns[r]) + self.store_ns;
-            let begin_ns = all.free_ns[r].max(all.ports_ns[eye]);
+            // Into the backing store, which holds a few regions, and from there to the frame buffer, one after the other.
+            all.free_ns[r] =
+                ready_ns.max(back(&all.sent_ns[r], all.sent_ns[r].len(), self.backing_regions)) + self.store_ns;
+            let sent_ns = all.sent_ns[r].last().copied().unwrap_or(0.0);
+            let begin_ns = all.free_ns[r].max(sent_ns).max(all.ports_ns[eye]);
             all.ports_ns[eye] = begin_ns + self.copy_ns[region];
-            all.stored_ns[r] = all.ports_ns[eye];
+            all.sent_ns[r].push(all.ports_ns[eye]);
             copy = (copy.0.min(begin_ns), copy.1.max(all.ports_ns[eye]));
         }
         (rendered_ns, copy)

@@ -101,7 +101,9 @@ impl SlatsModel {
             bottom_ns: line(2 * RegionGrid::FIELD.region_height),
             renderers: config.n_renderers.min(MOST_RENDERERS),
             gps: config.n_gps,
-            source_channels: (config.ring.source_channels.min(config.ring.channels) as usize).clamp(1, MOST_CHANNELS),
+            source_channels: (config.ring.source_channels.min(config.ring.fifo_channels).min(config.ring.channels)
+                as usize)
+                .clamp(1, MOST_CHANNELS),
             split: program.copy.is_split(),
         })
     }

@@ -27,7 +27,7 @@ pub enum RendererEvent {
     },
     /// The controller starts the next copy command.
     CopyBegins,
-    /// The region's colours are in the backing store; its transfer begins.
+    /// The region's colours are in the backing store.
     Stored,
     /// The ring has delivered the last pixel of the region being copied (phase `Arrive`).
     Sent,
@@ -77,8 +77,11 @@ pub struct Renderer {
     copies: VecDeque<PendingCopy>,
     /// The transfer to a frame buffer that is going on.
     copying: Option<CopyOrder>,
-    /// A copy through the backing store that waits for the transfer before it.
-    next_copy: Option<PendingCopy>,
+    /// Copies through the backing store whose regions are in pixel memory; the first may be on its way.
+    unstored: VecDeque<PendingCopy>,
+    storing: bool,
+    /// Copies whose regions are in the backing store and wait for the transfer before them.
+    stored: VecDeque<PendingCopy>,
     stats: RendererStats,
 }
 
@@ -103,7 +106,20 @@ impl Renderer {
         let fifo = InputFifo::new(timing.fifo_words as u32, word);
         let logs = std::array::from_fn(|_| Log::default());
         let stats = RendererStats::default();
-        Self { node, timing, cycle, fifo, pool, logs, copies: VecDeque::new(), copying: None, next_copy: None, stats }
+        Self {
+            node,
+            timing,
+            cycle,
+            fifo,
+            pool,
+            logs,
+            copies: VecDeque::new(),
+            copying: None,
+            unstored: VecDeque::new(),
+            storing: false,
+            stored: VecDeque::new(),
+            stats,
+        }
     }
 
     /// Handles one event.
@@ -111,7 +127,7 @@ impl Renderer {
         match event {
             RendererEvent::Announce { message, first_word_at } => self.announce(message, first_word_at, context),
             RendererEvent::CopyBegins => self.copy(context),
-            RendererEvent::Stored => self.transfer_stored(context),
+            RendererEvent::Stored => self.stored(context),
             RendererEvent::Sent => self.copied(context),
         }
     }
@@ -186,23 +202,35 @@ impl Renderer {
         if !copy.order.through_backing {
             return self.transfer(&copy, context);
         }
-        let free = self.copying.is_none();
-        self.next_copy = Some(copy);
-        if free {
-            self.store(context);
-        }
+        self.unstored.push_back(copy);
+        self.store_next(context);
     }
 
-    /// Moves a finished region's colours to the backing store; the controller is free when they are there.
-    fn store(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
+    /// Moves a finished region's colours to the backing store when there is a place for them; the controller is free when
+    /// they are there.
+    fn store_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
+        let held = self.stored.len() + usize::from(self.copying.is_some());
+        if self.storing || self.unstored.is_empty() || held as u64 >= self.timing.backing_regions {
+            return;
+        }
+        self.storing = true;
         let stored_at = context.now() + self.timing.backing_block();
         context.schedule(stored_at, Phase::Work, RendererEvent::Stored);
         let progress = self.fifo.resume(stored_at);
         self.report(progress, context);
     }
 
-    fn transfer_stored(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
-        if let Some(copy) = self.next_copy.take() {
+    fn stored(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
+        self.storing = false;
+        self.stored.extend(self.unstored.pop_front());
+        self.transfer_next(context);
+        self.store_next(context);
+    }
+
+    fn transfer_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
+        if self.copying.is_none()
+            && let Some(copy) = self.stored.pop_front()
+        {
             self.transfer(&copy, context);
         }
     }
@@ -236,9 +264,9 @@ impl Renderer {
         if !order.through_backing {
             let progress = self.fifo.resume(context.now());
             self.report(progress, context);
-        } else if self.next_copy.is_some() {
-            self.store(context);
         }
+        self.transfer_next(context);
+        self.store_next(context);
     }
 
     /// What the board has done so far.

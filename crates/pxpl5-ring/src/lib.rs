@@ -24,7 +24,9 @@
 //!    ([`RingOutput::Delivered`]). The other one is told that the message is coming ([`RingOutput::Announce`]) and
 //!    answers, when it knows, with the time at which the last word enters ([`RingEvent::Accept`]); the difference
 //!    to the earliest such time is a stall, during which channel and ports stay occupied.
-//! 6. Nothing is dropped. A message that no ring could carry (0 or more than 1,024 words, no such port) is refused,
+//! 6. Messages to receivers with a FIFO take [`RingTiming::fifo_channels`] channels at most, so that full FIFOs never keep
+//!    back what their boards must send before they can take more.
+//! 7. Nothing is dropped. A message that no ring could carry (0 or more than 1,024 words, no such port) is refused,
 //!    counted and kept for the report: [`Ring::refusals`].
 //!
 //! # Timing

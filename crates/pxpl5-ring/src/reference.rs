@@ -8,7 +8,8 @@
 //!    offered again in the next tick. When the last word has moved and the receiver has answered, channel and ports
 //!    are free;
 //! 3. the heads of the queues of ports that have a send channel left are granted, always the first one in order of
-//!    (time as head, source) whose destination is free and not reserved for another source, while there are channels.
+//!    (time as head, source) whose destination is free and not reserved for another source, while there are channels;
+//!    those to receivers that may stall take `fifo_channels` at most.
 //!
 //! Hops only shift what a receiver sees: its word slots lie that much later than those of the sender. There is no
 //! shortcut: no end is computed ahead, no event is skipped.
@@ -48,6 +49,9 @@ pub struct Passage {
 
 /// The receivers' side, asked word by word. Times are as the receiver sees them.
 pub trait Receivers {
+    /// Whether the receiver takes every word as it comes.
+    fn is_elastic(&self, destination: NodeId) -> bool;
+
     /// A message has been announced; returns how long after that the receiver gives its answer.
     fn announced(&mut self, destination: NodeId, at: Time) -> Span;
 
@@ -60,6 +64,10 @@ pub trait Receivers {
 pub struct Elastic;
 
 impl Receivers for Elastic {
+    fn is_elastic(&self, _: NodeId) -> bool {
+        true
+    }
+
     fn announced(&mut self, _: NodeId, _: Time) -> Span {
         Span::ZERO
     }
@@ -231,9 +239,15 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         let free = |source: usize, message: usize| {
             let destination = usize::from(self.traffic[message].destination.0);
             let reserved = self.reserved_for[destination].is_some_and(|holder| usize::from(holder.0) != source);
-            !reserved && !self.receiving[destination]
+            !reserved && !self.receiving[destination] && self.has_channel_to(self.traffic[message].destination)
         };
         heads.into_iter().find(|(_, source, message)| free(*source, *message)).map(|(_, _, message)| (message, channel))
+    }
+
+    fn has_channel_to(&self, destination: NodeId) -> bool {
+        let taken = self.channels.iter().flatten().map(|slots| self.traffic[slots.message].destination);
+        let to_fifos = taken.filter(|destination| !self.receivers.is_elastic(*destination)).count();
+        self.receivers.is_elastic(destination) || (to_fifos as u64) < self.timing.fifo_channels
     }
 
     fn start(&mut self, message: usize, channel: usize, now: Time) {

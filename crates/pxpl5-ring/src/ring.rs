@@ -16,6 +16,8 @@ pub struct Ring {
     sources: Vec<Source>,
     destinations: Vec<Destination>,
     channels: Channels,
+    /// Messages on channels to receivers with a FIFO, at most `fifo_channels`.
+    to_fifos: u64,
     /// The first messages of their sources, in the order of grants.
     heads: Vec<Head>,
     /// The instant for which a request has last asked for arbitration.
@@ -70,6 +72,7 @@ impl Ring {
             sources: vec![Source::default(); usize::from(n_nodes)],
             destinations: (0..n_nodes).map(|node| Destination::new(elastic(NodeId(node)))).collect(),
             channels: Channels::new(n_channels),
+            to_fifos: 0,
             heads: Vec::new(),
             arbitration_at: None,
             stats: RingStats { channel_busy: vec![Span::ZERO; n_channels], ..RingStats::default() },
@@ -198,7 +201,9 @@ impl Ring {
 
     fn release_ended(&mut self, now: Time) {
         while let Some((channel, flight)) = self.channels.take_ended(now) {
-            self.destinations[usize::from(flight.destination.0)].release(&flight);
+            let destination = &mut self.destinations[usize::from(flight.destination.0)];
+            destination.release(&flight);
+            self.to_fifos -= u64::from(!destination.elastic);
             let source = &mut self.sources[usize::from(flight.source.0)];
             source.in_flight -= 1;
             // Below the limit the next message has been a head all along.
@@ -218,13 +223,18 @@ impl Ring {
         let mut place = 0;
         while self.channels.has_free() && place < self.heads.len() {
             let Head { source, destination, .. } = self.heads[place];
-            if self.destinations[usize::from(destination.0)].takes_from(source) {
+            if self.destinations[usize::from(destination.0)].takes_from(source) && self.has_channel_to(destination) {
                 self.heads.remove(place);
                 self.grant(source, context);
             } else {
                 place += 1;
             }
         }
+    }
+
+    fn has_channel_to(&self, destination: NodeId) -> bool {
+        let elastic = self.destinations[usize::from(destination.0)].elastic;
+        self.channels.has_free() && (elastic || self.to_fifos < self.timing.fifo_channels)
     }
 
     fn grant(&mut self, source: NodeId, context: &mut Out) {
@@ -242,6 +252,7 @@ impl Ring {
         let end = if self.destinations[node].elastic {
             Some(self.deliver(&flight, request.message, context))
         } else {
+            self.to_fifos += 1;
             self.announce(&flight, request.message, context);
             None
         };
@@ -324,7 +335,7 @@ impl Ring {
         }
         match port.reserved_for {
             Some(holder) if holder != source => WaitReason::DestinationReserved(holder),
-            _ if !self.channels.has_free() => WaitReason::Channel,
+            _ if !self.has_channel_to(destination) => WaitReason::Channel,
             _ => WaitReason::Arbitration,
         }
     }

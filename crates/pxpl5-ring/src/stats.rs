@@ -61,7 +61,7 @@ pub enum WaitReason {
     DestinationBusy(NodeId),
     /// The receiver is reserved for a transfer of this port that has not ended.
     DestinationReserved(NodeId),
-    /// All channels are occupied.
+    /// All channels that the message may take are occupied.
     Channel,
     /// Nothing: it will be granted at this instant.
     Arbitration,

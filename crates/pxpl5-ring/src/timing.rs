@@ -17,6 +17,8 @@ pxpl5_sim::parameter_table! {
         channels: 8, "channels", Published, 8..=8, "TR94";
         /// Channels that one board can send on at a time, to different receivers.
         source_channels: 8, "channels", Assumed, 2..=8, "no source names a limit below the ring's; with 1 a clump of Slats waits behind every full input FIFO in turn, and the published pair of 110 and 140 triangles would ask for code twice as fast as the optimised one";
+        /// Channels that messages to receivers with a FIFO may take together; the others stay for receivers that never stall.
+        fifo_channels: 6, "channels", Assumed, 5..=7, "the machine ran with 20 renderers: if full FIFOs could hold all 8 channels, the renderers' pixels would wait for them for ever; one channel for each of two frame buffers";
     }
 }
 
@@ -56,6 +58,7 @@ impl RingTiming {
         check("overhead_words", self.overhead_words, 0, MAX_VALUE)?;
         check("hop_ns", self.hop_ns, 0, MAX_VALUE)?;
         check("source_channels", self.source_channels, 1, MAX_CHANNELS)?;
+        check("fifo_channels", self.fifo_channels, 1, MAX_CHANNELS)?;
         check("channels", self.channels, 1, MAX_CHANNELS)
     }
 }

@@ -49,25 +49,27 @@ fn receiver(tick: Span) -> impl Strategy<Value = Receiver> {
 
 /// Hops are short against the overhead, so that the words of two messages never overlap at a receiver.
 fn cases() -> impl Strategy<Value = Case> {
-    (2u16..20, (1u64..=8, 1u64..=8), 16u64..20, 0u64..3, prop_oneof![Just(1u64), Just(2), Just(5)]).prop_flat_map(
-        |(n_nodes, (channels, source_channels), overhead_words, hop_ticks, word_ticks)| {
-            let tick = Span::from_ns(10);
-            let timing = RingTiming {
-                word_ns: 10 * word_ticks,
-                overhead_words,
-                hop_ns: 10 * hop_ticks * u64::from(hop_ticks * u64::from(n_nodes) <= 16 * word_ticks),
-                channels,
-                source_channels,
-            };
-            let receivers = prop::collection::vec(receiver(tick), usize::from(n_nodes));
-            (receivers, transfers(n_nodes, tick)).prop_map(move |(receivers, traffic)| Case {
-                timing,
-                tick,
-                receivers,
-                traffic,
-            })
-        },
-    )
+    (2u16..20, (1u64..=8, 1u64..=8, 1u64..=8), 16u64..20, 0u64..3, prop_oneof![Just(1u64), Just(2), Just(5)])
+        .prop_flat_map(
+            |(n_nodes, (channels, source_channels, fifo_channels), overhead_words, hop_ticks, word_ticks)| {
+                let tick = Span::from_ns(10);
+                let timing = RingTiming {
+                    word_ns: 10 * word_ticks,
+                    overhead_words,
+                    hop_ns: 10 * hop_ticks * u64::from(hop_ticks * u64::from(n_nodes) <= 16 * word_ticks),
+                    channels,
+                    source_channels,
+                    fifo_channels,
+                };
+                let receivers = prop::collection::vec(receiver(tick), usize::from(n_nodes));
+                (receivers, transfers(n_nodes, tick)).prop_map(move |(receivers, traffic)| Case {
+                    timing,
+                    tick,
+                    receivers,
+                    traffic,
+                })
+            },
+        )
 }
 
 fn step(case: &Case) -> Vec<Passage> {

@@ -6,7 +6,7 @@ use pxpl5_ring::reference::Traffic;
 use pxpl5_ring::{Ring, RingError, RingEvent, RingOutput, RingTiming, WaitReason};
 use pxpl5_sim::{Phase, Span, TestBench, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId};
-use support::{ELASTIC, message, request, run_fast};
+use support::{ELASTIC, Receiver, message, request, run_fast};
 
 const TIMING: RingTiming = RingTiming::PAPERS;
 /// A port that sends one message at a time, for rules that are easier to see so.
@@ -83,6 +83,25 @@ fn the_ninth_message_waits_until_a_channel_is_free_and_not_a_picosecond_longer()
     let times = accepted(&messages);
     assert_eq!(times[..8], [us(52) + HOP; 8]);
     assert_eq!(times[8], us(104) + HOP);
+}
+
+#[test]
+fn full_fifos_leave_channels_for_what_their_boards_must_send() {
+    // Ports 0 to 7 never take a word before 400 us; a message from port 10 to port 11 comes a microsecond later.
+    let shut = Receiver::Fifo {
+        words: 1,
+        drain: Span::ZERO,
+        opens_after: Span::from_us(400),
+        answers_after: Span::from_us(1),
+    };
+    let receivers: Vec<_> = (0..24).map(|port| if port < 8 { shut } else { Receiver::Elastic }).collect();
+    let mut messages: Vec<_> = (0..8).map(|port| traffic(us(0), 12 + port, port, 10)).collect();
+    messages.push(traffic(us(1), 10, 11, 1_024));
+    let (_, times) = run_fast(TIMING, &receivers, &messages, Some(3));
+    assert_eq!(times.accepted[&8], us(1 + 52) + HOP);
+    // Six wait for their receivers, the other two for a channel.
+    let late = times.accepted.values().filter(|time| **time > us(800)).count();
+    assert_eq!(late, 2);
 }
 
 #[test]

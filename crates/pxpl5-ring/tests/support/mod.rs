@@ -140,6 +140,10 @@ impl Stepped {
 }
 
 impl Receivers for Stepped {
+    fn is_elastic(&self, destination: NodeId) -> bool {
+        matches!(self.fifos[usize::from(destination.0)].0, Receiver::Elastic)
+    }
+
     fn announced(&mut self, destination: NodeId, at: Time) -> Span {
         let (receiver, counters) = &mut self.fifos[usize::from(destination.0)];
         let Receiver::Fifo { opens_after, answers_after, .. } = *receiver else { return Span::ZERO };
