@@ -125,14 +125,15 @@ fn a_part_is_the_time_between_the_marks_that_define_it() {
 
 #[test]
 fn the_latencies_of_the_eyes_lie_between_their_events() {
-    let report = stereo().report();
+    let outcome = stereo();
+    let report = outcome.report();
     let mean = |of: &str, until: &str| {
         let found = report.latency_by_eye_ms.iter().find(|entry| (entry.of, entry.until) == (of, until));
         found.expect("listed").statistics.statistics.mean
     };
     // The frame's latency is that of the pair: from its first TRANSFORM to the swap.
     assert!((mean("pair", "swap") - report.latency_ms.statistics.mean).abs() < 1e-9);
-    let pictures = stereo().steady_pictures().iter();
+    let pictures = outcome.steady_pictures().iter();
     let to_copy: Vec<f64> =
         pictures.map(|times| (times.copied_at.expect("copied") - times.transform_at).as_ms()).collect();
     let expected = to_copy.iter().sum::<f64>() / to_copy.len() as f64;
