@@ -7,10 +7,11 @@ mod kernel;
 
 use i860::timing::{DRAM_RANGES, DramTiming, FREEZES, Freeze};
 use i860::{Config, Profile};
-use kernel::{Bench, Kernel, triangles};
-use pxpl5_geometry::Triangle;
+use kernel::{Bench, frame, triangles};
+use pxpl5_geometry::kernel::{Kernel, Schedule};
+use pxpl5_geometry::{Triangle, Viewport};
 
-const KERNELS: [(Kernel, &str); 2] = [(Kernel::Straight, "straight"), (Kernel::Dual, "dual")];
+const KERNELS: [(Kernel, &str); 2] = [(frame(Schedule::Straight), "straight"), (frame(Schedule::Dual), "dual")];
 /// Clocks in a microsecond (40 MHz, published).
 const CLOCKS_PER_US: f64 = 40.0;
 /// Rows that memory causes; without them every access is a hit.
@@ -34,7 +35,7 @@ fn scene() -> Vec<Triangle> {
 
 /// Profile of one call over the scene, after one to warm the caches.
 fn warm(kernel: Kernel, config: Config) -> Profile {
-    let mut bench = Bench::new(kernel, config, &scene());
+    let mut bench = Bench::new(kernel, Viewport::FRAME, config, &scene());
     bench.run();
     bench.cpu.clear_profile();
     bench.run();
@@ -42,7 +43,7 @@ fn warm(kernel: Kernel, config: Config) -> Profile {
 }
 
 fn cold(kernel: Kernel, config: Config) -> Profile {
-    let mut bench = Bench::new(kernel, config, &scene());
+    let mut bench = Bench::new(kernel, Viewport::FRAME, config, &scene());
     bench.run_cold();
     bench.profile()
 }
@@ -112,8 +113,8 @@ fn comparison() {
          the factor between the kernels is {:.2}. Instruction misses alone are {:.2} of it: without them the straight \
          kernel takes {:.0} clocks.",
         straight / dual,
-        straight / clocks(Kernel::Straight, without(&[Freeze::InstructionMiss])),
-        clocks(Kernel::Straight, without(&[Freeze::InstructionMiss])),
+        straight / clocks(frame(Schedule::Straight), without(&[Freeze::InstructionMiss])),
+        clocks(frame(Schedule::Straight), without(&[Freeze::InstructionMiss])),
     );
 }
 
@@ -196,11 +197,12 @@ fn sizes() {
         let program = kernel::program(kernel);
         row(&[name.to_owned(), program.bytes.len().to_string()]);
     }
-    let program = kernel::program(Kernel::Dual);
+    let program = kernel::program(frame(Schedule::Dual));
     let at = |label: &str| program.symbol(label).expect("label");
     let end = program.base + program.bytes.len() as u32;
-    row(&["dual, first pass".into(), (at("second") - at("batch")).to_string()]);
-    row(&["dual, second pass with bins".into(), (end - at("second")).to_string()]);
+    row(&["dual, corners".into(), (at("lighted") - at("batch")).to_string()]);
+    row(&["dual, light".into(), (at("start") - at("surface")).to_string()]);
+    row(&["dual, commands and bins".into(), (end - at("second")).to_string()]);
 }
 
 const INTRODUCTION: &str = "# Time per triangle on a graphics processor
