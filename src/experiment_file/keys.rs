@@ -39,7 +39,7 @@ pub const KEYS: &[Key] = &[
     key("seed", "seed of the head motion"),
     key("fields", "NTSC fields to simulate"),
     key("pixels", "off, lazy or all"),
-    key("level", "analytic (sweeps only) or transaction"),
+    key("level", "analytic (sweeps only), transaction or cycle"),
     key("machine.preset", "a preset of `pxpl5 machines`"),
     key("measure", "list of the quantities that go into tables and sweep rows"),
     key("output.pictures", "write the last pictures as PNG: true or false"),

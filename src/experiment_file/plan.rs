@@ -75,11 +75,6 @@ pub(super) const CODES: [(&str, Code); 3] =
     [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
 
-/// Name of a level, as in files.
-fn level_name(level: Level) -> String {
-    serde_json::to_value(level).ok().and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default()
-}
-
 /// What is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneChoice {
@@ -246,8 +241,7 @@ impl ExperimentFile {
     }
 
     fn level(&self) -> Result<Level, FileError> {
-        let names = Level::ALL.map(|level| (level_name(level), level));
-        let choices: Vec<(&str, Level)> = names.iter().map(|(name, level)| (name.as_str(), *level)).collect();
+        let choices = Level::ALL.map(|level| (level.name(), level));
         Ok(self.choice("level", &choices)?.unwrap_or(Level::Transaction))
     }
 
@@ -292,7 +286,7 @@ impl Plan {
     /// Name of the level of modelling.
     #[must_use]
     pub fn level_name(&self) -> String {
-        level_name(self.level)
+        self.level.name().to_owned()
     }
 
     /// The experiment with the scene loaded.
@@ -302,5 +296,6 @@ impl Plan {
             .fields(self.fields)
             .pixels(self.pixels)
             .seed(self.seed)
+            .level(self.level)
     }
 }
