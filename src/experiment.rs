@@ -1,14 +1,17 @@
 //! An experiment: a machine, a pipeline, a scene and a head motion; and what came of it.
 
+use crate::compare::PixelErrors;
 use crate::config::{ConfigError, MachineConfig};
+use crate::display::{Display, RasterOffsets};
 use crate::display_list::{display_list, views};
 use crate::fingerprint::Fingerprint;
 use crate::head_to_light::{FIELDS_WITH_HEAD, Head, HeadViews, Rehearsal};
 use crate::levels::{Level, literal};
 use crate::machine::{Machine, RunError};
 use crate::observation::{Observation, StageSpan};
+use crate::pictures;
 use crate::pipelines::{PictureTimes, Pipeline, ReportTimes, Setup};
-use crate::report::{Report, Statistics};
+use crate::report::{HeadReport, Report, Statistics};
 use image::RgbImage;
 use pxpl5_scene::Scene;
 use pxpl5_sim::{Span, Time};
@@ -199,13 +202,18 @@ impl Experiment {
         self
     }
 
-    /// Builds the machine, switched on, with the pipeline's programs loaded.
+    /// The display before the eyes.
+    pub(crate) fn display(&self) -> Display {
+        self.head.as_ref().map(|head| head.shown_on()).unwrap_or_default()
+    }
+
+    /// Builds the machine, switched on, with the pipeline's programs loaded; with prediction, after a rehearsal.
     ///
     /// # Errors
     ///
     /// [`ExperimentError`] for a machine, scene or number of fields that cannot be simulated.
     pub fn build(&self) -> Result<Machine, ExperimentError> {
-        Ok(self.assemble(None)?.0)
+        Ok(self.assemble(self.rehearse()?)?.0)
     }
 
     fn assemble(&self, rehearsal: Option<Rehearsal>) -> Result<(Machine, Option<Arc<HeadViews>>), ExperimentError> {
@@ -256,8 +264,11 @@ impl Experiment {
         Ok((Setup { views, wanted, reports, ..setup }, Some(head)))
     }
 
-    /// When each view is seen, from a run without prediction; `None` where nobody predicts.
+    /// When each view is seen, from a run without prediction; `None` where nobody predicts, or the firmware knows.
     fn rehearse(&self) -> Result<Option<Rehearsal>, ExperimentError> {
+        if self.pipeline.knows_when_seen() {
+            return Ok(None);
+        }
         let Some(head) = self.head.as_ref().filter(|head| head.predicts()) else { return Ok(None) };
         let plain = Self { head: Some(Arc::new(head.without_prediction())), pixels: Pixels::Off, ..self.clone() };
         let outcome = plain.perform(None, &[], |_, _| Ok(()))?;
@@ -297,8 +308,7 @@ impl Experiment {
         stops: &[u64],
         at: impl FnMut(u64, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
-        let rehearsal = if self.pipeline.knows_when_seen() { None } else { self.rehearse()? };
-        self.perform(rehearsal, stops, at)
+        self.perform(self.rehearse()?, stops, at)
     }
 
     fn perform(
@@ -346,7 +356,7 @@ impl Experiment {
         let scene = Fingerprint::of_scene(&self.scene);
         let parameters: Vec<_> = config.parameters().into_iter().map(|p| (p.path, p.value)).collect();
         let boards = (config.n_gps, config.n_renderers);
-        let head = head.as_ref().map(|head| format!(" {head:?}")).unwrap_or_default();
+        let head = head.as_ref().map(|head| format!(" {}", head.fingerprint())).unwrap_or_default();
         // Transaction is left out, so that the names of its experiments stay what they were before there were others.
         let level = if *level == Level::Transaction { String::new() } else { format!(" {level:?}") };
         Fingerprint::of(
@@ -460,7 +470,22 @@ impl Outcome {
         if self.experiment.pixels == Pixels::Off {
             return None;
         }
-        self.experiment.pipeline.picture(&self.machine, eye)
+        match RasterOffsets::of(self) {
+            Some(offsets) => {
+                let field = self.machine.frame_buffers().get(eye.index())?.last_seen()?.field();
+                Some(pictures::screen(&self.machine, eye, field, Some(&offsets)))
+            }
+            None => self.experiment.pipeline.picture(&self.machine, eye),
+        }
+    }
+
+    /// Pixel errors on the display before the eyes; `None` of a run without a head.
+    #[must_use]
+    pub fn pixel_errors(&self) -> Option<PixelErrors> {
+        Some(match self.head()?.head().shown_on() {
+            Display::Plain => PixelErrors::of(self),
+            Display::Vdrt => PixelErrors::with_raster_offset(self),
+        })
     }
 
     /// Everything as numbers.
@@ -494,6 +519,7 @@ impl Outcome {
             missed_retraces_definition: experiment.pipeline.missed_definition().to_owned(),
             late_regions: late.len(),
             first_late_regions: late.into_iter().take(20).collect(),
+            head: self.head.as_ref().and_then(|head| HeadReport::of(self, head.head())),
             trace_hash: self.machine.trace_hash().to_string(),
             events: self.machine.events(),
             host_seconds: self.host_seconds,

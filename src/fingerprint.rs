@@ -1,7 +1,7 @@
 //! A short name for contents: 128-bit FNV-1a (Fowler, Noll, Vo), the same on every host. It finds accidents, not malice.
 
 use pxpl5_scene::{Frame, Scene};
-use std::fmt;
+use std::fmt::{self, Write};
 
 const OFFSET_BASIS: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
 const PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
@@ -51,6 +51,15 @@ impl Fingerprint {
         all
     }
 
+    /// Of a value by what `Debug` shows of it.
+    #[must_use]
+    pub fn of_debug(value: &impl fmt::Debug) -> Self {
+        let mut all = Self::default();
+        // Adding bytes cannot fail.
+        let _ = write!(all, "{value:?}");
+        all
+    }
+
     /// Adds bytes.
     pub fn add(&mut self, bytes: &[u8]) {
         self.0 = bytes.iter().fold(self.0, |hash, byte| (hash ^ u128::from(*byte)).wrapping_mul(PRIME));
@@ -58,6 +67,13 @@ impl Fingerprint {
 
     fn numbers(&mut self, numbers: &[f32]) {
         numbers.iter().for_each(|number| self.add(&number.to_le_bytes()));
+    }
+}
+
+impl Write for Fingerprint {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.add(text.as_bytes());
+        Ok(())
     }
 }
 

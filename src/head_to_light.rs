@@ -1,7 +1,9 @@
 //! From head to light: a moving head, its tracker and a predictor in front of a pipeline, and what became of each pose.
 
+use crate::display::Display;
 use crate::display_list::{hmd, view};
 use crate::experiment::Outcome;
+use crate::fingerprint::Fingerprint;
 use crate::pipelines::{PictureTimes, ReportTimes, Views, ViewsWanted};
 use crate::report::Statistics;
 use glam::{DQuat, DVec3};
@@ -22,13 +24,14 @@ pub const FIELDS_WITH_HEAD: u64 = 250_000;
 /// Why a head cannot be simulated.
 pub type HeadError = ConfigError;
 
-/// A head, its tracker and a predictor.
+/// A head, its tracker, a predictor, and the display before its eyes.
 #[derive(Clone)]
 pub struct Head {
     motion: Arc<dyn Motion + Send + Sync>,
     tracker: TrackerModel,
     predictor: PredictorConfig,
     seed: u64,
+    display: Display,
 }
 
 impl fmt::Debug for Head {
@@ -37,6 +40,7 @@ impl fmt::Debug for Head {
             .field("tracker", self.tracker.config())
             .field("predictor", &self.predictor)
             .field("seed", &self.seed)
+            .field("display", &self.display)
             .finish_non_exhaustive()
     }
 }
@@ -55,7 +59,26 @@ impl Head {
     ) -> Result<Self, HeadError> {
         let predictor = PredictorConfig::for_tracker(predictor, &tracker);
         predictor.build()?;
-        Ok(Self { motion, tracker: TrackerModel::new(tracker)?, predictor, seed })
+        Ok(Self { motion, tracker: TrackerModel::new(tracker)?, predictor, seed, display: Display::Plain })
+    }
+
+    /// Puts a display before its eyes.
+    #[must_use]
+    pub const fn display(mut self, display: Display) -> Self {
+        self.display = display;
+        self
+    }
+
+    /// The display before its eyes.
+    #[must_use]
+    pub const fn shown_on(&self) -> Display {
+        self.display
+    }
+
+    /// Name of everything that it is, the motion included.
+    #[must_use]
+    pub fn fingerprint(&self) -> Fingerprint {
+        Fingerprint::of_debug(&(&self.motion, self))
     }
 
     /// Whether poses are predicted.

@@ -36,7 +36,11 @@ pub const LATENCY_PARTS: [PartDefinition; 12] = [
     part("render", "from there until the renderers have accepted the last command", true),
     part("wait_for_copy", "from there to the begin of the last eye's COPY", true),
     part("copy", "from there to the end of the last COPY, at most to the retrace", true),
-    part("wait_for_retrace", "from there to the retrace from which on the picture is shown", true),
+    part(
+        "wait_for_retrace",
+        "from there to the retrace from which on the picture is shown, or to the beam where there is no swap",
+        true,
+    ),
     part("scan", "from there until the beam is at the first visible pixel", false),
 ];
 

@@ -68,7 +68,8 @@ mod workers;
 pub use config::{ConfigError, MachineConfig, PRESETS, Parameter, Preset};
 pub use experiment::{Experiment, ExperimentError, FIELDS_RANGE, Outcome, Pixels, WARM_UP_PICTURES};
 pub use experiment_file::{
-    ExperimentFile, FileError, KEYS, Key, MotionChoice, Outputs, PIPELINES, Plan, Published, SceneChoice, Settings,
+    ExperimentFile, FileError, HeadChoice, KEYS, Key, MotionChoice, Outputs, PIPELINES, Plan, Published, SceneChoice,
+    Settings,
 };
 pub use fingerprint::Fingerprint;
 pub use head_to_light::{Budget, FIELDS_WITH_HEAD, Head, HeadError, HeadViews, Rehearsal, Sampled};
@@ -80,7 +81,7 @@ pub use pipelines::{Code, Frameless, Jitp, Pipeline, Reading, RenderingControl, 
 pub use pphigs::Binning;
 pub use pxpl5_scene as scene;
 pub use pxpl5_wire::Eye;
-pub use report::{DefinedStatistics, Report, Statistics};
+pub use report::{DefinedStatistics, HeadReport, Report, Statistics};
 pub use slats::Copy;
 pub use snapshot::{Snapshot, SnapshotError};
 pub use tracking;

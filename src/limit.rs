@@ -105,7 +105,14 @@ impl LimitQuery {
 
     fn reached(&self, triangles: u32) -> Result<bool, ExperimentError> {
         let scene = Arc::new(self.growing.scene(triangles));
-        let case = Case { machine: self.config.clone(), program: self.program, scene, fields: self.fields, seed: 1 };
+        let case = Case {
+            machine: self.config.clone(),
+            program: self.program,
+            scene,
+            fields: self.fields,
+            seed: 1,
+            head: None,
+        };
         match self.level.run(&case) {
             Ok(summary) => Ok(self.goal.is_reached(&summary)),
             Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => Ok(false),

@@ -2,7 +2,7 @@
 
 use crate::config::nearest;
 use crate::experiment::{ExperimentError, Outcome};
-use crate::experiment_file::Plan;
+use crate::experiment_file::{HeadChoice, Plan};
 use crate::levels::{Case, Level, Summary, summary};
 use crate::observation::StageSpan;
 use crate::report::{Report, Statistics};
@@ -51,8 +51,10 @@ const fn of_run(name: &'static str, definition: &'static str, value: fn(&Outcome
 
 const LATENCY: &str = "latency as the pipeline defines it (see the report), over all pictures after the warm-up";
 
+const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields; only with a head.motion";
+
 /// All quantities. Those that need events have no value at the analytic level.
-pub static QUANTITIES: [Quantity; 21] = [
+pub static QUANTITIES: [Quantity; 28] = [
     of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().mean),
     of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().sd),
     of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
@@ -81,6 +83,17 @@ pub static QUANTITIES: [Quantity; 21] = [
     of_summary("eye_ms", "from the start of an eye's TRANSFORM to the end of its COPY; mean; 0 for Slats", |s| {
         Statistics::of(s.eye_latencies_ms.iter().copied()).mean
     }),
+    of_run(
+        "to_light_ms",
+        "from the head's pose to the light of the picture's middle; mean; only with a head.motion",
+        |_, r| Some(r.head.as_ref()?.end_to_end.total_ms),
+    ),
+    of_run("error_px.mean", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.mean)),
+    of_run("error_px.p50", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p50)),
+    of_run("error_px.p90", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p90)),
+    of_run("error_px.p99", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p99)),
+    of_run("error_px.max", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.max)),
+    of_run("error_deg.mean", "error_px as an angle", |_, r| Some(r.head.as_ref()?.error.degrees.mean)),
     of_run("late_regions", "regions that came after their deadline", |_, r| Some(r.late_regions as f64)),
     of_run("pictures", "pictures after the warm-up", |_, r| Some(r.pictures as f64)),
     of_run("events", "events of the simulation", |_, r| Some(r.events as f64)),
@@ -156,7 +169,8 @@ impl Plan {
     #[must_use]
     pub fn case(&self, scene: Arc<Scene>) -> Case {
         let (machine, program) = (self.machine.clone(), self.program);
-        Case { machine, program, scene, fields: self.fields, seed: self.seed }
+        let head = self.head.as_ref().map(HeadChoice::head);
+        Case { machine, program, scene, fields: self.fields, seed: self.seed, head }
     }
 
     /// Runs it at its level, without pixels.

@@ -11,7 +11,8 @@
 //! | [`side_by_side`] | twice as wide: left eye left |
 //! | [`Film`] | animated PNG, a frame each field, at the true rate of 60000/1001 Hz |
 
-use crate::experiment::{Experiment, ExperimentError};
+use crate::display::{Display, RasterOffsets};
+use crate::experiment::{Experiment, ExperimentError, Pixels};
 use crate::machine::Machine;
 use image::{GenericImage, RgbImage};
 use pxpl5_framebuffer::{SeenField, Video};
@@ -135,15 +136,26 @@ impl Film {
         if !(FILM_FIELDS.0..=FILM_FIELDS.1).contains(&self.fields) {
             return Err(FilmError::Fields { expected: FILM_FIELDS, found: self.fields });
         }
+        let offsets = self.offsets()?;
         let mut machine = self.experiment.build().map_err(FilmError::Experiment)?;
         let mut encoder = self.encoder(&machine, texts, out)?;
         for field in self.first_field..self.first_field + self.fields {
             // A field has been scanned when the next one has begun, all of whose events are taken.
             let begun = machine.video().retrace(field + 1) + pxpl5_sim::Span(1);
             machine.run_until(begun).map_err(FilmError::Run)?;
-            encoder.write_image_data(self.frame(&machine, field).as_raw())?;
+            encoder.write_image_data(self.frame(&machine, field, offsets.as_ref()).as_raw())?;
         }
         Ok(encoder.finish()?)
+    }
+
+    /// How a display shifts each field, known from a run without pixels.
+    fn offsets(&self) -> Result<Option<RasterOffsets>, FilmError> {
+        if self.experiment.display() == Display::Plain {
+            return Ok(None);
+        }
+        let last = self.first_field + self.fields;
+        let outcome = self.experiment.clone().pixels(Pixels::Off).fields(last + 1).run();
+        Ok(RasterOffsets::of(&outcome.map_err(FilmError::Experiment)?))
     }
 
     fn encoder<W: Write>(
@@ -171,8 +183,8 @@ impl Film {
         }
     }
 
-    fn frame(&self, machine: &Machine, field: u64) -> RgbImage {
-        let eyes: Vec<RgbImage> = self.eyes().iter().map(|eye| screen(machine, *eye, field)).collect();
+    fn frame(&self, machine: &Machine, field: u64, offsets: Option<&RasterOffsets>) -> RgbImage {
+        let eyes: Vec<RgbImage> = self.eyes().iter().map(|eye| screen(machine, *eye, field, offsets)).collect();
         match &eyes[..] {
             [left, right] => side_by_side(left, right),
             _ => eyes.into_iter().next().unwrap_or_default(),
@@ -180,13 +192,29 @@ impl Film {
     }
 }
 
-/// A field and the one before it; black for an eye without a frame buffer.
-fn screen(machine: &Machine, eye: Eye, field: u64) -> RgbImage {
+/// A field and the one before it, each shifted as the display says; black for an eye without a frame buffer.
+pub(crate) fn screen(machine: &Machine, eye: Eye, field: u64, offsets: Option<&RasterOffsets>) -> RgbImage {
     let seen = |n: u64| machine.frame_buffers().get(eye.index())?.seen(n);
     let before = field.checked_sub(1).and_then(seen);
-    match (seen(field), before) {
-        (Some(now), Some(before)) => now.interlaced_with(&before),
-        (Some(now), None) => now.interlaced_with(&now),
-        (None, _) => RgbImage::new(machine.video().width(), machine.video().height()),
+    match (seen(field), before, offsets) {
+        (Some(now), before, Some(offsets)) => {
+            let shifted = |seen: &SeenField| offsets.shifted(seen.picture(), seen.field());
+            interlaced(&now, shifted(&now), before.as_ref().map(shifted))
+        }
+        (Some(now), Some(before), None) => now.interlaced_with(&before),
+        (Some(now), None, None) => now.interlaced_with(&now),
+        (None, ..) => RgbImage::new(machine.video().width(), machine.video().height()),
     }
+}
+
+/// The rows of a field's picture in their places, those of the field before between them.
+fn interlaced(now: &SeenField, picture: RgbImage, before: Option<RgbImage>) -> RgbImage {
+    let mut screen = RgbImage::new(picture.width(), 2 * picture.height());
+    for (x, y, pixel) in screen.enumerate_pixels_mut() {
+        let lines = if y % 2 == now.parity().first_line() { Some(&picture) } else { before.as_ref() };
+        if let Some(lines) = lines {
+            *pixel = *lines.get_pixel(x, y / 2);
+        }
+    }
+    screen
 }

@@ -1,5 +1,9 @@
 //! Results as numbers, with units in the names.
 
+use crate::compare::PixelErrors;
+use crate::display::Display;
+use crate::experiment::Outcome;
+use crate::head_to_light::{Budget, Head};
 use crate::latency::NamedStatistics;
 use crate::observation::LateRegion;
 use serde::{Deserialize, Serialize};
@@ -105,12 +109,42 @@ pub struct Report {
     pub late_regions: usize,
     /// The first of them; lateness in picoseconds.
     pub first_late_regions: Vec<LateRegion>,
+    /// From the head to light; nothing of a run without a tracker.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub head: Option<HeadReport>,
     /// Hash of everything that happened.
     pub trace_hash: String,
     /// Events handled.
     pub events: u64,
     /// Time that the run took on this host.
     pub host_seconds: f64,
+}
+
+/// What a tracker, a predictor and a display make of a pipeline.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HeadReport {
+    /// Tracker.
+    pub tracker: String,
+    /// Predictor.
+    pub predictor: String,
+    /// Display.
+    pub display: Display,
+    /// From the head's pose to light, milliseconds.
+    pub end_to_end: Budget,
+    /// Where pixels are against where they should be.
+    pub error: PixelErrors,
+}
+
+impl HeadReport {
+    pub(crate) fn of(outcome: &Outcome, head: &Head) -> Option<Self> {
+        Some(Self {
+            tracker: head.tracker().config().name.clone(),
+            predictor: format!("{:?}", head.predictor_kind()),
+            display: head.shown_on(),
+            end_to_end: Budget::of(outcome),
+            error: outcome.pixel_errors()?,
+        })
+    }
 }
 
 impl Report {

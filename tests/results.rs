@@ -4,7 +4,10 @@ use prost::Message;
 use pxpl5::pictures::{Eyes, FRAME_SECONDS, Film, FilmError, seen_at, side_by_side};
 use pxpl5::results::{columns, csv};
 use pxpl5::trace_export::{Events, Trace, chrome, perfetto};
-use pxpl5::{Experiment, Eye, LATENCY_PARTS, MachineConfig, Outcome, Pipeline, Pixels, RenderingControl, Slats, scene};
+use pxpl5::{
+    Experiment, Eye, Frameless, Jitp, LATENCY_PARTS, MachineConfig, Outcome, Pipeline, Pixels, RenderingControl, Slats,
+    Viewpoint, scene,
+};
 use pxpl5_gp::{Edge, Stage};
 use pxpl5_sim::{Span, Time};
 use serde_json::Value;
@@ -58,6 +61,31 @@ fn the_parts_of_every_latency_add_up_to_the_picosecond() {
             let field = video.field_at(times.shown_at);
             let line = u32::try_from(field % 2).expect("0 or 1");
             assert_eq!(Some(parts.end()), video.when(0, line, field));
+        }
+    }
+}
+
+/// Pipelines that race the beam instead of swapping.
+fn racing() -> [Outcome; 3] {
+    let jitp = |viewpoint, racing| run(Jitp::new(viewpoint, racing), "full-screen:2", 12);
+    [jitp(Viewpoint::Strip, true), jitp(Viewpoint::Field, false), run(Frameless::new(), "full-screen:2", 6)]
+}
+
+#[test]
+fn where_there_is_no_swap_the_parts_are_those_of_the_part_that_meets_the_beam() {
+    for outcome in racing() {
+        let stages = outcome.stages();
+        for (parts, times) in outcome.latency_parts().iter().zip(outcome.steady_pictures()) {
+            assert_eq!(parts.published(), times.shown_at - times.transform_at);
+            assert_eq!(parts.end(), times.shown_at);
+            let of = |stage| {
+                let span = stages.iter().find(|s| (s.stage, s.picture) == (stage, times.picture)).expect("marked");
+                (span.begin, span.end.expect("ended"))
+            };
+            let (transform, render) = (of(Stage::Transform), of(Stage::Render));
+            assert_eq!(transform.0, times.transform_at);
+            let path = [transform.0, transform.1, render.0, render.1, times.copied_at.expect("copied"), times.shown_at];
+            assert!(path.is_sorted(), "{}: {path:?}", outcome.pipeline().name());
         }
     }
 }

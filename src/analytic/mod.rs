@@ -28,6 +28,7 @@ pub use load::Load;
 pub use rendering_control::{StereoModel, StereoTimes, stereo_loads};
 pub use slats::{FieldTimes, SlatsModel};
 
+use crate::config::ConfigError;
 use crate::experiment::ExperimentError;
 use crate::levels::{Case, Program, Summary};
 
@@ -35,11 +36,17 @@ use crate::levels::{Case, Program, Summary};
 ///
 /// # Errors
 ///
-/// [`ExperimentError::Config`] and [`ExperimentError::Scene`] as the transaction level.
+/// [`ExperimentError::Config`] and [`ExperimentError::Scene`] as the transaction level, and
+/// [`ExperimentError::Config`] for a pipeline of which there is no closed form, or a head with a tracker.
 pub fn run(case: &Case) -> Result<Summary, ExperimentError> {
     case.machine.check()?;
+    let no_form = |what: &str| ConfigError::Board(format!("the analytic level has no closed form of {what}"));
+    if case.head.is_some() {
+        return Err(no_form("a head with a tracker").into());
+    }
     match case.program {
         Program::Slats(program) => slats::run(case, program),
         Program::RenderingControl(program) => rendering_control::run(case, program),
+        Program::Jitp(_) | Program::Frameless(_) => Err(no_form(case.program.family()).into()),
     }
 }

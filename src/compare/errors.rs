@@ -1,7 +1,7 @@
 //! Pixel error: where each pixel's content is seen, against where it should be at the moment when it lights.
 
 use super::screen::Screen;
-use crate::display::Vdrt;
+use crate::display::RasterOffsets;
 use crate::experiment::Outcome;
 use crate::head_to_light::HeadViews;
 use crate::pipelines::Source;
@@ -12,7 +12,7 @@ use pxpl5_wire::FieldParity;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use tracking::Pose;
-use tracking::view::{HmdView, PixelError, RasterOffset, dual_list};
+use tracking::view::{HmdView, PixelError, dual_list};
 
 /// Mean and percentiles of some numbers, all zero for none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -189,7 +189,7 @@ fn middle(x: u32, y: u32) -> DVec2 {
 
 /// Everything that is known of a run's views.
 #[derive(Debug)]
-struct Shown<'a> {
+pub(crate) struct Shown<'a> {
     outcome: &'a Outcome,
     screen: Screen,
     views: BTreeMap<u64, u64>,
@@ -197,7 +197,7 @@ struct Shown<'a> {
 }
 
 impl<'a> Shown<'a> {
-    fn of(outcome: &'a Outcome, head: &HeadViews) -> Self {
+    pub(crate) fn of(outcome: &'a Outcome, head: &HeadViews) -> Self {
         Self {
             outcome,
             screen: Screen::of(outcome.machine()),
@@ -206,7 +206,8 @@ impl<'a> Shown<'a> {
         }
     }
 
-    fn drawn(&self, x: u32, y: u32, field: u64, at: Time) -> Option<Drawn> {
+    /// What a pixel that lights at `at` shows; `None` before anything came.
+    pub(crate) fn drawn(&self, x: u32, y: u32, field: u64, at: Time) -> Option<Drawn> {
         let target = self.screen.shown(x, y, field, at)?;
         let pose = |number: u64| self.poses.get(&number).copied();
         Some(match self.outcome.pipeline().source(self.outcome.machine(), &target, &self.views)? {
@@ -297,16 +298,10 @@ impl PixelErrors {
     #[must_use]
     pub fn with_raster_offset(outcome: &Outcome) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
-        let mut vdrt = Vdrt::new(head, *outcome.machine().video());
-        let mut held: Option<(u64, RasterOffset)> = None;
+        let offsets = RasterOffsets::on(outcome, head);
         Self::collect(outcome, |shown, view, (x, y, field, at)| {
             let Some(Drawn::Pose(pose)) = shown.drawn(x, y, field, at) else { return None };
-            let offset = match held {
-                Some((of, offset)) if of == field => offset,
-                _ => vdrt.offset(field, &pose),
-            };
-            held = Some((field, offset));
-            Some(Drawn::Shifted(pose, offset.shift_px(view, at.0)))
+            Some(Drawn::Shifted(pose, offsets.field(field)?.shift_px(view, at.0)))
         })
     }
 

@@ -10,6 +10,7 @@ mod rows;
 mod screen;
 
 pub use chart::{LatencyCurve, chart};
+pub(crate) use errors::{Drawn, Shown};
 pub use errors::{FieldError, Percentiles, PixelErrors, Registration};
 pub use motion::{MotionError, TRACKERS, motion, predictor, tracker};
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};

@@ -1,5 +1,8 @@
 //! The raster offset of VDRT: the picture is moved, as it is scanned out, by what its pose was wrong.
 
+use super::Display;
+use crate::compare::{Drawn, Shown};
+use crate::experiment::Outcome;
 use crate::head_to_light::{Follower, HeadViews};
 use glam::DVec2;
 use image::{Rgb, RgbImage};
@@ -43,10 +46,47 @@ impl<'a> Vdrt<'a> {
         let rate = rotation::difference(begin.orientation, end.orientation) / seconds;
         RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)
     }
+}
 
-    /// A picture of the scanned lines of a field, shifted to whole pixels; black where nothing comes in.
+/// The offset of every field of a run.
+#[derive(Clone, Debug)]
+pub struct RasterOffsets {
+    video: Video,
+    offsets: Vec<Option<RasterOffset>>,
+}
+
+impl RasterOffsets {
+    /// As a run's head has them; `None` unless it looks at a raster that is shifted.
     #[must_use]
-    pub fn shifted(&self, picture: &RgbImage, field: u64, offset: &RasterOffset) -> RgbImage {
+    pub fn of(outcome: &Outcome) -> Option<Self> {
+        outcome.head().filter(|head| head.head().shown_on() == Display::Vdrt).map(|head| Self::on(outcome, head))
+    }
+
+    /// As they would be on such a raster. A field of which nothing is drawn, or not for one pose, has none.
+    pub(crate) fn on(outcome: &Outcome, head: &HeadViews) -> Self {
+        let (video, shown) = (*outcome.machine().video(), Shown::of(outcome, head));
+        let mut vdrt = Vdrt::new(head, video);
+        let mut offset = |field: u64| {
+            let (x, y) = (video.width() / 2, FieldParity::of_field(field).first_line());
+            match shown.drawn(x, y, field, video.when(x, y, field)?)? {
+                Drawn::Pose(pose) => Some(vdrt.offset(field, &pose)),
+                Drawn::Between { .. } | Drawn::Shifted(..) => None,
+            }
+        };
+        let offsets = (0..outcome.fields()).map(&mut offset).collect();
+        Self { video, offsets }
+    }
+
+    /// Of a field.
+    #[must_use]
+    pub fn field(&self, field: u64) -> Option<&RasterOffset> {
+        self.offsets.get(usize::try_from(field).ok()?)?.as_ref()
+    }
+
+    /// A field's picture (a row for each of its lines), shifted to whole pixels; black where nothing comes in.
+    #[must_use]
+    pub fn shifted(&self, picture: RgbImage, field: u64) -> RgbImage {
+        let Some(offset) = self.field(field) else { return picture };
         let (view, parity) = (HmdView::ntsc(), FieldParity::of_field(field).first_line());
         RgbImage::from_fn(picture.width(), picture.height(), |x, row| {
             let at = self.video.when(x, 2 * row + parity, field).unwrap_or(Time::ZERO);

@@ -66,6 +66,14 @@ pub enum FileError {
         /// How to give it.
         how: &'static str,
     },
+    /// The head, its tracker or its predictor cannot be had.
+    #[error("{place}: {reason}")]
+    Head {
+        /// File and line, or option.
+        place: String,
+        /// What was expected and what was found.
+        reason: String,
+    },
     /// Two settings say different things about the same.
     #[error("{place}: {key} and {other} set the same numbers; leave one out")]
     Conflict {

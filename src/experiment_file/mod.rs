@@ -25,6 +25,7 @@
 //! the nearest valid one.
 
 mod error;
+mod head;
 mod keys;
 mod motion;
 mod plan;
@@ -32,6 +33,7 @@ mod read;
 mod text;
 
 pub use error::FileError;
+pub use head::HeadChoice;
 pub use keys::{KEYS, Key};
 pub use motion::MotionChoice;
 pub use plan::{Outputs, PIPELINES, Plan, Published, SceneChoice};

@@ -1,13 +1,15 @@
 //! A checked experiment.
 
+use super::head::HeadChoice;
 use super::motion::MotionChoice;
 use super::read::wrong;
 use super::{ExperimentFile, FileError, keys};
 use crate::config::MachineConfig;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
+use crate::head_to_light::FIELDS_WITH_HEAD;
 use crate::levels::{Level, Program};
 use crate::measure::Measure;
-use crate::pipelines::{Code, RenderingControl, Slats};
+use crate::pipelines::{Code, Frameless, Jitp, Reading, RenderingControl, Slats, Viewpoint};
 use pphigs::{Binning, Shading};
 use pxpl5_scene::Scene;
 use slats::Copy;
@@ -15,32 +17,63 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The pipelines by name, each as its papers describe it.
-pub const PIPELINES: [(&str, Program); 2] = [
+pub const PIPELINES: [(&str, Program); 11] = [
     ("rendering-control", Program::RenderingControl(RenderingControl::stereo())),
     ("slats", Program::Slats(Slats::split())),
+    ("frameless", Program::Frameless(Frameless::new())),
+    ("jitp-field", jitp(Viewpoint::Field, false)),
+    ("jitp-field-racing", jitp(Viewpoint::Field, true)),
+    ("jitp-scanline", jitp(Viewpoint::Strip, false)),
+    ("jitp-scanline-racing", jitp(Viewpoint::Strip, true)),
+    ("jitp-dual-screen", jitp(Viewpoint::Dual(Reading::Screen), false)),
+    ("jitp-dual-screen-racing", jitp(Viewpoint::Dual(Reading::Screen), true)),
+    ("jitp-dual-view", jitp(Viewpoint::Dual(Reading::View), false)),
+    ("jitp-dual-view-racing", jitp(Viewpoint::Dual(Reading::View), true)),
 ];
 
+const fn jitp(viewpoint: Viewpoint, racing: bool) -> Program {
+    Program::Jitp(Jitp::new(viewpoint, racing))
+}
+
 impl Program {
-    /// Its pipeline's name.
+    /// Its pipeline's name, as in [`PIPELINES`].
     #[must_use]
-    pub const fn name(&self) -> &'static str {
+    pub fn name(&self) -> &'static str {
+        self.pipeline().name()
+    }
+
+    /// The name that it shares with its variants.
+    #[must_use]
+    pub const fn family(&self) -> &'static str {
         match self {
             Self::RenderingControl(_) => "rendering-control",
             Self::Slats(_) => "slats",
+            Self::Jitp(_) => "jitp",
+            Self::Frameless(_) => "frameless",
         }
     }
 
-    /// The preset of the machine on which its papers ran it.
+    /// The preset of the machine on which its papers ran it, or could have.
     #[must_use]
     pub const fn preset(&self) -> &'static str {
         match self {
-            Self::RenderingControl(_) => "small-hmd",
             Self::Slats(_) => "slats",
+            Self::RenderingControl(_) | Self::Jitp(_) | Self::Frameless(_) => "small-hmd",
+        }
+    }
+
+    /// Whether all of a picture is drawn for one pose, so that a raster can be shifted by what that was wrong.
+    #[must_use]
+    pub const fn has_one_pose(&self) -> bool {
+        match self {
+            Self::RenderingControl(_) | Self::Slats(_) => true,
+            Self::Jitp(jitp) => matches!(jitp.viewpoint, Viewpoint::Field),
+            Self::Frameless(_) => false,
         }
     }
 
     fn read(file: &ExperimentFile) -> Result<Self, FileError> {
-        let missing = FileError::Missing { key: "pipeline", how: "rendering-control or slats" };
+        let missing = FileError::Missing { key: "pipeline", how: "a pipeline, such as slats" };
         let program = file.choice("pipeline", &PIPELINES)?.ok_or(missing)?;
         program.refuse_others(file)?;
         Ok(match program {
@@ -53,13 +86,23 @@ impl Program {
                 binning: file.choice("binning", &BINNINGS)?.unwrap_or(default.binning),
                 code: file.choice("code", &CODES)?,
             }),
+            Self::Jitp(default) => {
+                let rows = file.integer("strip_rows", 1..=128)?;
+                Self::Jitp(Jitp { strip_rows: rows.map_or(default.strip_rows, |rows| rows as u32), ..default })
+            }
+            Self::Frameless(default) => Self::Frameless(Frameless {
+                block: file.integer("block", 4..=128)?.map_or(default.block, |pixels| pixels as u32),
+                batch: file.integer("batch", 0..=u64::from(u16::MAX))?.map_or(default.batch, |blocks| blocks as u32),
+                seed: file.integer("order_seed", 0..=MAX_SEED)?.unwrap_or(default.seed),
+            }),
         })
     }
 
+    /// Keys of other pipelines.
     fn refuse_others(&self, file: &ExperimentFile) -> Result<(), FileError> {
         for (path, setting) in &file.settings {
             let applies_to = keys::find(path).and_then(|key| key.applies_to);
-            if let Some(applies_to) = applies_to.filter(|name| *name != self.name()) {
+            if let Some(applies_to) = applies_to.filter(|family| *family != self.family()) {
                 let (place, key) = (setting.place.clone(), path.clone());
                 return Err(FileError::NotApplicable { place, key, pipeline: self.name(), applies_to });
             }
@@ -133,7 +176,7 @@ fn is_file(name: &str) -> bool {
     name.contains(['/', std::path::MAIN_SEPARATOR]) || extension.is_some_and(|e| MODEL_FILES.contains(&e.as_str()))
 }
 
-fn beside(folder: &Path, name: &str) -> String {
+pub(super) fn beside(folder: &Path, name: &str) -> String {
     let path: PathBuf = folder.join(name);
     path.display().to_string()
 }
@@ -198,6 +241,8 @@ pub struct Plan {
     pub seed: u64,
     /// Level of modelling; default transaction.
     pub level: Level,
+    /// The head with its tracker; default the scene's own motion, seen without delay.
+    pub head: Option<HeadChoice>,
     /// Which pixels are computed; default those that are looked at.
     pub pixels: Pixels,
     /// Quantities for tables and rows.
@@ -219,6 +264,9 @@ impl ExperimentFile {
     /// [`FileError`] names the first setting that is wrong or missing.
     pub fn resolve(&self) -> Result<Plan, FileError> {
         let program = Program::read(self)?;
+        let seed = self.integer("seed", 0..=MAX_SEED)?.unwrap_or(1);
+        let head = HeadChoice::read(self, &program, seed)?;
+        let most_fields = if head.is_some() { FIELDS_WITH_HEAD } else { FIELDS_RANGE.1 };
         let names = self.texts("measure")?;
         let measure = |names: Vec<String>| names.iter().map(|name| measure(self, "measure", name)).collect();
         Ok(Plan {
@@ -226,9 +274,10 @@ impl ExperimentFile {
             program,
             machine: self.machine(&program)?,
             scene: SceneChoice::read(self)?,
-            fields: self.integer("fields", FIELDS_RANGE.0..=FIELDS_RANGE.1)?.unwrap_or(120),
-            seed: self.integer("seed", 0..=MAX_SEED)?.unwrap_or(1),
-            level: self.level()?,
+            fields: self.integer("fields", FIELDS_RANGE.0..=most_fields)?.unwrap_or(120),
+            seed,
+            level: self.level(&program, head.is_some())?,
+            head,
             pixels: self.choice("pixels", &PIXELS)?.unwrap_or(Pixels::Lazy),
             measure: names.map_or_else(|| Ok(Measure::usual()), measure)?,
             output: Outputs {
@@ -240,9 +289,14 @@ impl ExperimentFile {
         })
     }
 
-    fn level(&self) -> Result<Level, FileError> {
+    fn level(&self, program: &Program, has_head: bool) -> Result<Level, FileError> {
         let choices = Level::ALL.map(|level| (level.name(), level));
-        Ok(self.choice("level", &choices)?.unwrap_or(Level::Transaction))
+        let level = self.choice("level", &choices)?.unwrap_or(Level::Transaction);
+        let has_form = matches!(program, Program::RenderingControl(_) | Program::Slats(_)) && !has_head;
+        match self.get("level").filter(|_| level == Level::Analytic && !has_form) {
+            Some(setting) => Err(wrong("level", setting, "transaction or cycle for this pipeline or a head.motion")),
+            None => Ok(level),
+        }
     }
 
     fn machine(&self, program: &Program) -> Result<MachineConfig, FileError> {
@@ -292,10 +346,6 @@ impl Plan {
     /// The experiment with the scene loaded.
     #[must_use]
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
-        Experiment::with(self.machine.clone(), self.program.pipeline(), scene)
-            .fields(self.fields)
-            .pixels(self.pixels)
-            .seed(self.seed)
-            .level(self.level)
+        self.case(scene).experiment().pixels(self.pixels).level(self.level)
     }
 }

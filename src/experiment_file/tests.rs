@@ -49,6 +49,30 @@ fn errors_name_the_line_and_what_was_expected() {
         ("pipeline = \"slats\"\nscene = \"mig\"\nmeasure = [\"latency_ms.maen\"]", "the nearest is latency_ms.mean"),
         ("pipeline = \"slats\"\nscene = \"mig\"\nmotion.distance = 1", "this motion.path does not take it"),
         ("pipeline = \"slats\"\nscene = \"mig\"\npublished.value = 1", "published.quantity is missing"),
+        ("pipeline = \"jitp-scanline\"\nscene = \"mig\"\nblock = 8", "does not apply to the pipeline jitp-scanline"),
+        (
+            "pipeline = \"frameless\"\nscene = \"mig\"\nblock = 3",
+            "line 3: block: expected a whole number from 4 to 128",
+        ),
+        ("pipeline = \"frameless\"\nscene = \"mig\"\nlevel = \"analytic\"", "line 3: level: expected transaction"),
+        (
+            "pipeline = \"slats\"\nscene = \"mig\"\nhead.motion = \"still\"\nlevel = \"analytic\"",
+            "line 4: level: expected",
+        ),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nhead.tracker = \"flock\"", "head.motion is missing"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nhead.motion = \"pan\"", "line 3: head.motion: expected a pan of"),
+        (
+            "pipeline = \"slats\"\nscene = \"mig\"\nhead.motion = \"a.csv\"",
+            "line 3: head.motion: a.csv cannot be opened",
+        ),
+        (
+            "pipeline = \"slats\"\nscene = \"mig\"\n[head]\nmotion = \"still\"\ntracker = \"x\"",
+            "line 5: head.tracker: there is no",
+        ),
+        (
+            "pipeline = \"frameless\"\nscene = \"mig\"\n[head]\nmotion = \"still\"\ndisplay = \"vdrt\"",
+            "line 5: head.display = vdrt does not apply to the pipeline frameless",
+        ),
         ("x = 1\nx = 2", "test, line 2: not TOML"),
         ("pipeline = \"slats\"\nscene = \"mig\"\nvideo.field_ps = 5", "did you mean `video."),
     ] {
@@ -64,7 +88,11 @@ fn what_is_shown_is_a_file_that_means_the_same() {
         format!("{RC}mono = true\nshading = \"gouraud\"\ntriangles = 9\nseed = 5\n[motion]\npath = \"orbit\"\ndistance = 2\nsway = 0.5\n"),
         "title = \"a \\\"b\\\"\"\npipeline = \"slats\"\nscene = \"mig\"\ncode = 1995\npublished = {figure = 3, source = \"x\", quantity = \"copies_ms\", value = 2}\n".to_owned(),
     ];
-    for text in texts {
+    let named = PIPELINES.map(|(name, _)| format!("pipeline = \"{name}\"\nscene = \"mig\"\n"));
+    let with_head = "pipeline = \"slats\"\nscene = \"mig\"\n[head]\nmotion = \"pan:-40.5\"\ndisplay = \"vdrt\"\npredict = \"none\"\n";
+    let sized = ["jitp-field\"\nstrip_rows = 16", "frameless\"\nblock = 32\nbatch = 5\norder_seed = 9"]
+        .map(|text| format!("scene = \"mig\"\npipeline = \"{text}"));
+    for text in texts.into_iter().chain(named).chain(sized).chain([with_head.to_owned()]) {
         let first = plan(&text);
         let second = plan(&first.settings().to_string());
         assert_eq!((&first, first.fingerprint()), (&second, second.fingerprint()));
@@ -77,9 +105,15 @@ fn the_fingerprint_is_of_what_changes_the_result() {
     for same in ["title = \"x\"", "pixels = \"off\"", "output.csv = false", "measure = [\"events\"]"] {
         assert_eq!(plan(&format!("{RC}{same}")).fingerprint(), base, "{same}");
     }
-    for other in
-        ["seed = 2", "fields = 121", "mono = true", "triangles = 5", "motion.sway = 2", "machine.ring.hop_ns = 51"]
-    {
+    for other in [
+        "head.motion = \"still\"",
+        "seed = 2",
+        "fields = 121",
+        "mono = true",
+        "triangles = 5",
+        "motion.sway = 2",
+        "machine.ring.hop_ns = 51",
+    ] {
         assert_ne!(plan(&format!("{RC}{other}")).fingerprint(), base, "{other}");
     }
 }
@@ -103,5 +137,31 @@ fn a_scene_file_is_relative_to_the_experiment_file() {
     std::fs::write(folder.join("e.toml"), "pipeline = \"slats\"\nscene = \"one.obj\"\n").expect("writable");
     let plan = ExperimentFile::load(folder.join("e.toml")).and_then(|file| file.resolve()).expect("valid");
     assert_eq!(plan.load_scene().expect("beside the file").triangles().len(), 1);
+    let _ = std::fs::remove_dir_all(folder);
+}
+
+#[test]
+fn every_pipeline_is_called_what_it_calls_itself() {
+    for (name, program) in PIPELINES {
+        assert_eq!((name, name.starts_with(program.family())), (program.pipeline().name(), true));
+    }
+}
+
+#[test]
+fn another_recording_of_the_same_name_is_another_experiment() {
+    let folder = std::env::temp_dir().join(format!("pxpl5-recording-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("writable");
+    let text = format!("{RC}head.motion = \"head.csv\"\n");
+    std::fs::write(folder.join("e.toml"), text).expect("writable");
+    let with = |x: f64| {
+        let rows = format!("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
+        std::fs::write(folder.join("head.csv"), rows).expect("writable");
+        ExperimentFile::load(folder.join("e.toml")).and_then(|file| file.resolve()).expect("beside the file")
+    };
+    let (a, b) = (with(0.1), with(0.2));
+    let hash = |plan: &Plan| plan.experiment(plan.load_scene().expect("built in")).config_hash();
+    assert_eq!(hash(&a), hash(&with(0.1)));
+    assert_ne!(hash(&a), hash(&b));
+    assert_ne!(a, b);
     let _ = std::fs::remove_dir_all(folder);
 }

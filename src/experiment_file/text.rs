@@ -33,6 +33,9 @@ impl Plan {
         }
         self.pipeline_settings(&mut all);
         self.scene_settings(&mut all);
+        if let Some(head) = &self.head {
+            head.settings().into_iter().for_each(|(path, value)| all.put(path, value));
+        }
         all.put("fields", self.fields as i64);
         all.put("seed", self.seed as i64);
         all.put("pixels", name(&PIXELS, &self.pixels));
@@ -69,6 +72,12 @@ impl Plan {
                 if let Some(code) = &pipeline.code {
                     all.put("code", name(&CODES, code));
                 }
+            }
+            Program::Jitp(pipeline) => all.put("strip_rows", i64::from(pipeline.strip_rows)),
+            Program::Frameless(pipeline) => {
+                all.put("block", i64::from(pipeline.block));
+                all.put("batch", i64::from(pipeline.batch));
+                all.put("order_seed", pipeline.seed.cast_signed());
             }
         }
     }
@@ -147,7 +156,7 @@ impl Settings {
 impl fmt::Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.lines(f, None)?;
-        for table in ["motion", "machine", "output", "published"] {
+        for table in ["motion", "head", "machine", "output", "published"] {
             if self.values.keys().any(|path| path.split_once('.').is_some_and(|(of, _)| of == table)) {
                 writeln!(f, "\n[{table}]")?;
                 self.lines(f, Some(table))?;

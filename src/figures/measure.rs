@@ -126,7 +126,7 @@ impl Bench {
     }
 
     fn run(&self, machine: MachineConfig, program: impl Into<Program>, scene: &str, fields: u64) -> Result<Summary> {
-        let case = Case { machine, program: program.into(), scene: scene_named(scene)?, fields, seed: 1 };
+        let case = Case { machine, program: program.into(), scene: scene_named(scene)?, fields, seed: 1, head: None };
         self.level.run(&case)
     }
 
@@ -216,7 +216,7 @@ impl Bench {
     fn mig_case(&self, seed: u64) -> Result<Case> {
         let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
         let (machine, program) = (self.machine("small-hmd")?, RenderingControl::stereo().into());
-        Ok(Case { machine, program, scene: scene_named("mig")?, fields, seed })
+        Ok(Case { machine, program, scene: scene_named("mig")?, fields, seed, head: None })
     }
 
     fn slats(&self, triangles: u32, program: Slats) -> Result<Summary> {

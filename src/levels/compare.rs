@@ -46,7 +46,9 @@ pub fn cases() -> Result<Vec<Case>, ExperimentError> {
         (stereo, RenderingControl::stereo().into(), "mig", 120),
     ];
     all.into_iter()
-        .map(|(machine, program, name, fields)| Ok(Case { machine, program, scene: scene(name)?, fields, seed: 1 }))
+        .map(|(machine, program, name, fields)| {
+            Ok(Case { machine, program, scene: scene(name)?, fields, seed: 1, head: None })
+        })
         .collect()
 }
 

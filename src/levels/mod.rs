@@ -23,7 +23,8 @@ pub use compare::{LevelReport, cases, compare};
 use crate::analytic;
 use crate::config::MachineConfig;
 use crate::experiment::{Experiment, ExperimentError, Outcome, Pixels};
-use crate::pipelines::{Pipeline, RenderingControl, Slats};
+use crate::head_to_light::Head;
+use crate::pipelines::{Frameless, Jitp, Pipeline, RenderingControl, Slats};
 use crate::report::Statistics;
 use pxpl5_renderer::{CommandKind, Layout, RendererTiming};
 use pxpl5_scene::Scene;
@@ -73,6 +74,10 @@ pub enum Program {
     RenderingControl(RenderingControl),
     /// Slats.
     Slats(Slats),
+    /// Just-in-time pixels.
+    Jitp(Jitp),
+    /// Frameless rendering.
+    Frameless(Frameless),
 }
 
 impl Program {
@@ -82,6 +87,8 @@ impl Program {
         match self {
             Self::RenderingControl(pipeline) => Arc::new(pipeline),
             Self::Slats(pipeline) => Arc::new(pipeline),
+            Self::Jitp(pipeline) => Arc::new(pipeline),
+            Self::Frameless(pipeline) => Arc::new(pipeline),
         }
     }
 }
@@ -111,6 +118,8 @@ pub struct Case {
     pub fields: u64,
     /// Seed of the head motion.
     pub seed: u64,
+    /// The head with its tracker, where it is not the scene's own motion that is seen without delay.
+    pub head: Option<Arc<Head>>,
 }
 
 /// What came of it, over the pictures after the warm-up.
@@ -122,11 +131,11 @@ pub struct Summary {
     pub updates_hz: f64,
     /// Missed retraces.
     pub missed_retraces: u64,
-    /// From the start of an eye's TRANSFORM to the end of its COPY, milliseconds; empty for Slats.
+    /// From the start of an eye's TRANSFORM to the end of its COPY, milliseconds; Rendering Control only.
     pub eye_latencies_ms: Vec<f64>,
     /// Port time of a region of 15,360 pixels, microseconds.
     pub region_copy_us: f64,
-    /// COPY of the left eye (Rendering Control), or of the top regions or all (Slats): first to last word.
+    /// COPY of the left eye (Rendering Control), of the top regions or all (Slats), of all (others): first to last word.
     pub first_copy_ms: f64,
     /// COPY of the right eye, or of the bottom regions; 0 where there is none.
     pub last_copy_ms: f64,
@@ -182,10 +191,14 @@ impl Case {
     /// The experiment at the transaction level, without pixels.
     #[must_use]
     pub fn experiment(&self) -> Experiment {
-        Experiment::with(self.machine.clone(), self.program.pipeline(), Arc::clone(&self.scene))
+        let experiment = Experiment::with(self.machine.clone(), self.program.pipeline(), Arc::clone(&self.scene))
             .fields(self.fields)
             .seed(self.seed)
-            .pixels(Pixels::Off)
+            .pixels(Pixels::Off);
+        match &self.head {
+            Some(head) => experiment.head(Arc::clone(head)),
+            None => experiment,
+        }
     }
 }
 
@@ -229,6 +242,7 @@ fn copies(program: Program, outcome: &Outcome, message: Span) -> Copies {
         let place = match program {
             Program::RenderingControl(_) => arrival.board as u8,
             Program::Slats(slats) => u8::from(bottom && slats.copy.is_split()),
+            Program::Jitp(_) | Program::Frameless(_) => 0,
         };
         let begin = Time(arrival.first_part_at.0.saturating_sub(message.0));
         let fresh = CopySpan { begin, end: arrival.last_part_at };

@@ -84,7 +84,7 @@ pub struct PictureTimes {
     pub transform_at: Time,
     /// End of COPY.
     pub copied_at: Option<Time>,
-    /// The retrace from which on it is shown.
+    /// The retrace from which on it is shown, or when the beam meets the part that stands for it.
     pub shown_at: Time,
     /// Whether all of it was there in time.
     pub complete: bool,

@@ -20,13 +20,21 @@ pub struct Column {
 #[must_use]
 pub fn columns() -> Vec<Column> {
     let fixed = [
-        ("picture", "number of the frame (Rendering Control) or field (Slats)", false),
+        (
+            "picture",
+            "number of the frame (Rendering Control), field (Slats, just-in-time pixels) or update (frameless)",
+            false,
+        ),
         ("steady", "1 for pictures after the warm-up, over which the report's statistics are; else 0", false),
         ("complete", "1 if all of the picture was there in time, else 0", false),
         ("sampled_at_ps", "when its pose was sampled", true),
         ("transform_at_ps", "start of TRANSFORM", false),
         ("copied_at_ps", "end of COPY; missing if a region never arrived", true),
-        ("shown_at_ps", "the retrace from which on it is shown", false),
+        (
+            "shown_at_ps",
+            "the retrace from which on it is shown; the scan of its middle (just-in-time pixels) or of its last block (frameless)",
+            false,
+        ),
         ("latency_ps", "shown_at_ps - transform_at_ps", false),
     ];
     let fixed = fixed.map(|(name, definition, optional)| (name.to_owned(), definition.to_owned(), optional));

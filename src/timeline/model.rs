@@ -149,7 +149,7 @@ fn samples(outcome: &Outcome, from: Time, to: Time) -> Vec<(u64, Time)> {
 
 fn scan(video: &Video, pictures: &[PictureTimes], field: u64) -> Option<Scan> {
     let first = u32::try_from(field % 2).ok()?;
-    let shown = pictures.iter().rev().find(|times| times.shown_at <= video.retrace(field));
+    let shown = pictures.iter().rev().find(|times| times.shown_at < video.retrace(field + 1));
     Some(Scan {
         field,
         picture: shown.map(|times| times.picture),
@@ -222,11 +222,11 @@ fn copies(outcome: &Outcome, board: usize, mono: bool, message: Span) -> Vec<Bar
     bars
 }
 
-/// Of a field: whether the region came after the retrace from which on the field is shown.
+/// Of a field in a top and a bottom row of regions: whether the region came after the retrace from which on it is shown.
 fn half(video: &Video, arrival: &Arrival, begin: Time) -> Option<bool> {
     match arrival.target.lines {
-        Lines::Frame => None,
-        Lines::Field(_) => Some(begin >= video.retrace(arrival.target.picture)),
+        Lines::Field(_) if arrival.target.grid.rows() == 2 => Some(begin >= video.retrace(arrival.target.picture)),
+        _ => None,
     }
 }
 

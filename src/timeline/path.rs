@@ -123,15 +123,19 @@ fn is_sequel(first: &Bar, second: &Bar) -> bool {
     }
 }
 
-/// A stage that begins before the other has ended depends on a part of it: the arrow is upright.
+/// A stage that begins before the other has ended depends on a part of it, and one that began before it depends on it
+/// for a part: the arrow is upright.
 fn follow(from: Place, earlier: &Bar, to: Place, bar: &Bar) -> Arrow {
+    if bar.begin < earlier.begin {
+        return Arrow { from, begin: earlier.end, to, end: earlier.end };
+    }
     Arrow { from, begin: earlier.end.min(bar.begin), to, end: bar.begin }
 }
 
-/// When the first pixel of what was copied lights up.
+/// When the first pixel of what was copied lights up; that of the part that stands for it, where it has a beam to meet.
 fn light(video: &Video, chosen: &PictureTimes, bar: &Bar) -> Time {
     let field = video.field_at(chosen.shown_at);
     let top = if bar.bottom == Some(true) { 2 * RegionGrid::FIELD.region_height } else { 0 };
     let line = top + FieldParity::of_field(field).first_line();
-    video.when(0, line, field).unwrap_or(chosen.shown_at)
+    video.when(0, line, field).unwrap_or_default().max(chosen.shown_at)
 }

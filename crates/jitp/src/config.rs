@@ -234,6 +234,11 @@ impl Config {
         self.beam.at(field, self.rows(strip).0, 0)
     }
 
+    /// Whether a strip is the middle one, whose way through the machine stands for that of its field.
+    pub fn is_middle(&self, strip: u32) -> bool {
+        strip == self.grid().rows() / 2
+    }
+
     /// When the middle of a strip is scanned.
     #[must_use]
     pub fn middle(&self, field: u64, strip: u32) -> Time {

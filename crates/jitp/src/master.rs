@@ -123,7 +123,7 @@ impl<V: FnMut(Wanted) -> FrameView> Master<V> {
     async fn order_strip(&mut self, field: u64, strip: u32, viewpoint: Viewpoint) {
         let own = viewpoint == Viewpoint::Strip;
         let number = Config::view_number(field, u64::from(strip));
-        if own && strip == self.config.grid().rows() / 2 {
+        if own && self.config.is_middle(strip) {
             self.gp.begin_view(Stage::Sample, field, number);
             self.gp.begin(Stage::Transform, field, None);
         }

@@ -7,7 +7,7 @@ use crate::pieces::{messages, window};
 use crate::protocol::Order;
 use pphigs::{Counts, DisplayList, FrameView, Share};
 use pxpl5_geometry::Viewport;
-use pxpl5_gp::{Account, Fault, Gp, Level, Program};
+use pxpl5_gp::{Account, Fault, Gp, Level, Program, Stage, Ticket};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Body, NodeId, RegionId};
 use std::cell::RefCell;
@@ -122,6 +122,7 @@ impl Slave {
             let newest = || self.state.borrow_mut().ordered.drain(..).next_back();
             let (field, views) = self.gp.until("the order of a field", newest).await;
             self.gp.spend(transform_span(&self.gp.timing(), self.counts) * views.len() as u64).await;
+            self.gp.end(Stage::Transform, field, None);
             let ready = self.transforms.of(field, || self.transform(field, views));
             let state = &mut *self.state.borrow_mut();
             state.transformed.push_back((field, ready));
@@ -143,15 +144,25 @@ impl Slave {
             return;
         }
         let viewport = self.config.picture(field).0;
+        let stands_for_field = self.config.is_middle(strip);
         let drawing = match &view {
             Some(view) => {
                 self.gp.spend(transform_span(&self.gp.timing(), self.counts)).await;
+                if stands_for_field {
+                    self.gp.end(Stage::Transform, field, None);
+                }
                 Some(Arc::new(Drawing::of(&self.list, view, viewport)))
             }
             None => self.of_field(field, strip, viewport).await,
         };
         let Some(drawing) = drawing.filter(|_| self.gp.now() < deadline) else { return };
-        self.send(field, &self.config.strip_regions(strip), &viewport, &drawing).await;
+        if stands_for_field {
+            self.gp.begin(Stage::Render, field, None);
+        }
+        let sent = self.send(field, &self.config.strip_regions(strip), &viewport, &drawing).await;
+        if stands_for_field {
+            self.gp.end_when_accepted(sent, Stage::Render, field);
+        }
     }
 
     /// The strip as the transforms of its field give it; `None` if they were left out.
@@ -181,15 +192,18 @@ impl Slave {
         let Schedule::Roam { batch, order, .. } = &self.config.schedule else { return };
         let viewport = self.config.picture(update).0;
         self.gp.spend(transform_span(&self.gp.timing(), self.counts)).await;
+        self.gp.end(Stage::Transform, update, None);
         let drawing = Arc::new(Drawing::of(&self.list, view, viewport));
         let regions: Vec<_> = (0..u64::from(*batch)).map(|i| order.at(step + i)).collect();
-        self.send(update, &regions, &viewport, &drawing).await;
+        self.gp.begin(Stage::Render, update, None);
+        let sent = self.send(update, &regions, &viewport, &drawing).await;
+        self.gp.end_when_accepted(sent, Stage::Render, update);
         let (words, body) = Order::Done { slave: self.index as u32 }.message();
         self.gp.send(self.config.master, words, body).await;
     }
 
     /// Bins, and sends all regions as one chain of messages.
-    async fn send(&self, picture: u64, regions: &[RegionId], viewport: &Viewport, drawing: &Arc<Drawing>) {
+    async fn send(&self, picture: u64, regions: &[RegionId], viewport: &Viewport, drawing: &Arc<Drawing>) -> Ticket {
         let windows: Vec<_> = regions.iter().map(|region| window(&self.config, viewport, *region)).collect();
         let (counts, any) = drawing.count(&windows);
         let entries: u64 = counts.iter().map(|c| u64::from(c.total())).sum();
@@ -206,7 +220,7 @@ impl Slave {
                 lists.into_iter().map(|list| self.addressed(*region, list))
             })
             .collect();
-        self.gp.send_batch(batch).await;
+        self.gp.send_batch(batch).await
     }
 
     fn addressed(&self, region: RegionId, list: pxpl5_wire::CommandList) -> (NodeId, u32, Body) {

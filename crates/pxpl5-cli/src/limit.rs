@@ -99,12 +99,8 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
 impl LimitArgs {
     fn query(&self) -> Result<LimitQuery, CliError> {
         let program = self.program();
-        let preset = match (&self.machine, program) {
-            (Some(name), _) => name.as_str(),
-            (None, Program::Slats(_)) => "slats",
-            (None, Program::RenderingControl(_)) => "small-hmd",
-        };
-        let mut config = MachineConfig::preset(preset).map_err(CliError::usage)?;
+        let mut config =
+            MachineConfig::preset(self.machine.as_deref().unwrap_or(program.preset())).map_err(CliError::usage)?;
         for (path, value) in [("n_gps", self.gps), ("n_renderers", self.renderers)] {
             value.map_or(Ok(()), |value| config.set(path, value)).map_err(CliError::usage)?;
         }
@@ -116,7 +112,7 @@ impl LimitArgs {
             goal: self.goal()?,
             fields: self.fields.unwrap_or(match program {
                 Program::Slats(_) => LIMIT_FIELDS,
-                Program::RenderingControl(_) => STEREO_LIMIT_FIELDS,
+                _ => STEREO_LIMIT_FIELDS,
             }),
             level: Level::Transaction,
         })
@@ -146,9 +142,8 @@ impl LimitArgs {
     fn growing(&self, program: Program) -> Growing {
         match (self.scene, program) {
             (Some(SceneArg::FullScreen), _) => Growing::FullScreen,
-            (Some(SceneArg::Typical), _) | (None, Program::RenderingControl(_)) => Growing::Typical,
-            (None, Program::Slats(_)) if self.binning == BinningArg::Touched => Growing::Typical,
-            (None, Program::Slats(_)) => Growing::FullScreen,
+            (None, Program::Slats(slats)) if slats.binning == Binning::All => Growing::FullScreen,
+            (Some(SceneArg::Typical) | None, _) => Growing::Typical,
         }
     }
 

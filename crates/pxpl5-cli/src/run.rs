@@ -9,7 +9,7 @@ use crate::terminal::print;
 use clap::Args;
 use pxpl5::levels::Level;
 use pxpl5::results::origin_lines;
-use pxpl5::{ExperimentFile, Eye, Outcome, Plan, Report, Results};
+use pxpl5::{ExperimentFile, Eye, HeadReport, Outcome, Plan, Report, Results};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -19,6 +19,7 @@ use std::path::PathBuf;
   pxpl5 run --pipeline slats --scene mig --triangles 140 --copy whole
   pxpl5 run --pipeline rendering-control --scene head --machine large --fields 300 --out out/head
   pxpl5 run experiments/figure-04.toml --seed 7 --json
+  pxpl5 run --pipeline jitp-scanline-racing --scene full-screen:4 --head pan:200 --tracker fastrak
   pxpl5 run --pipeline slats --scene mig --triangles 100 --set gp.triangle_ns=30000
   pxpl5 run --pipeline slats --scene mig --triangles 50 --level cycle
   pxpl5 run --pipeline slats --scene head --triangles 100 --save-at 60 --save s.json
@@ -58,6 +59,14 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let comparison = comparison(&plan, &results);
     let mut text = table(&[(report, comparison.as_ref())]);
     let _ = writeln!(text, "\nLatency: {}.", report.latency_ms.definition);
+    if let Some(head) = &report.head {
+        let HeadReport { tracker, predictor, display, end_to_end, error } = head;
+        let _ = writeln!(
+            text,
+            "Head to light: {:.2} ms ({tracker}, prediction {predictor}). Pixel error (display {display}): mean {:.2} px, 99 % {:.2} px, mean {:.3} degrees.",
+            end_to_end.total_ms, error.pixels.mean, error.pixels.p99, error.degrees.mean
+        );
+    }
     if let Some(path) = written {
         let _ = writeln!(text, "Written to {}.", path.display());
     }

@@ -14,7 +14,8 @@ pub(crate) struct SettingArgs {
     /// The same, as an option.
     #[arg(long, value_name = "FILE", conflicts_with = "experiment")]
     file: Option<PathBuf>,
-    /// rendering-control or slats.
+    /// rendering-control, slats, frameless, or jitp-field, jitp-scanline, jitp-dual-screen, jitp-dual-view, each with
+    /// -racing or without.
     #[arg(long)]
     pipeline: Option<String>,
     /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .pdb.
@@ -47,6 +48,18 @@ pub(crate) struct SettingArgs {
     /// Slats: send a clump to all regions, or to those touched: all or touched.
     #[arg(long)]
     binning: Option<String>,
+    /// Motion of a head with a tracker: still, pan:DEG_PER_S, pendulum, synthetic:SEED or a recording FILE.csv.
+    #[arg(long, value_name = "MOTION")]
+    head: Option<String>,
+    /// Its tracker: optical, fastrak, flock, flock-patched, 3space or ideal; default optical.
+    #[arg(long)]
+    tracker: Option<String>,
+    /// Prediction: none, velocity, acceleration or kalman; default kalman.
+    #[arg(long)]
+    predict: Option<String>,
+    /// Display before its eyes: plain, or vdrt (shifts the raster by what the pose was wrong).
+    #[arg(long)]
+    display: Option<String>,
     /// NTSC fields to simulate (1/60 s each); default 120.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     fields: Option<i64>,
@@ -56,7 +69,7 @@ pub(crate) struct SettingArgs {
     /// Which pixels are computed: off, lazy (those looked at) or all; default lazy.
     #[arg(long)]
     pixels: Option<String>,
-    /// Seed of the head motion; default 1.
+    /// Seed of the head motion's sway, or of the tracker's noise; default 1.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seed: Option<i64>,
     /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000; may be repeated.
@@ -83,6 +96,10 @@ impl SettingArgs {
             ("copy", "--copy", self.copy),
             ("code", "--code", self.code),
             ("binning", "--binning", self.binning),
+            ("head.motion", "--head", self.head),
+            ("head.tracker", "--tracker", self.tracker),
+            ("head.predict", "--predict", self.predict),
+            ("head.display", "--display", self.display),
             ("level", "--level", self.level),
             ("pixels", "--pixels", self.pixels),
         ];

@@ -93,6 +93,7 @@ impl GpBoard {
             status: Vec::new(),
             draining: 0,
             accepted: 0,
+            ends: VecDeque::new(),
             issued: 0,
             progress: 0,
             waits: [""; 2],

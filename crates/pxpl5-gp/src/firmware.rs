@@ -100,6 +100,8 @@ pub(crate) struct Shared {
     /// Receivers that have not taken any message of that batch.
     pub(crate) not_begun: Vec<NodeId>,
     pub(crate) marks: Vec<Mark>,
+    /// Ends of stages that come with the acceptance of a batch, in order.
+    pub(crate) ends: VecDeque<(Ticket, Mark)>,
     pub(crate) fields: u64,
     pub(crate) status: Vec<(NodeId, u64)>,
     /// Last batch of which every receiver has taken a message, and last one of which all were accepted.
@@ -121,6 +123,10 @@ impl Shared {
         }
         if self.in_flight.is_empty() {
             self.accepted = batch;
+            while let Some((_, mark)) = self.ends.front().filter(|end| end.0.0 <= batch) {
+                self.marks.push(Mark { time: self.now, ..*mark });
+                self.ends.pop_front();
+            }
         }
     }
 
@@ -299,6 +305,13 @@ impl Gp {
     /// Tells the observer that a stage ends.
     pub fn end(&self, stage: Stage, picture: u64, eye: Option<Eye>) {
         self.mark(stage, picture, eye, Edge::End, self.now());
+    }
+
+    /// Tells the observer that a stage ends when a batch is accepted; the program goes on.
+    pub fn end_when_accepted(&self, ticket: Ticket, stage: Stage, picture: u64) {
+        let shared = &mut *self.shared.borrow_mut();
+        let (time, node) = (shared.now, shared.node);
+        shared.ends.push_back((ticket, Mark { time, node, picture, eye: None, stage, edge: Edge::End, view: None }));
     }
 
     /// Tells the observer of a stage's edge at a time that the program has read off a message.

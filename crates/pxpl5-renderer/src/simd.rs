@@ -111,9 +111,18 @@ pub(crate) trait Vector: Copy {
     fn ramp(first: i32, step: i32) -> Self;
     /// The first lanes of `from`, which has at least as many.
     fn load(from: &[u32]) -> Self;
+    /// As [`Vector::load`] from words of two lanes, the low half first.
+    fn load_words(from: &[u64]) -> Self;
+    /// Overwrites as many words as [`Vector::load_words`] reads.
+    fn store_words(self, to: &mut [u64]);
+    /// All rows hold these 128 bits, four lanes each.
+    fn columns(bits: [u64; 2]) -> Self;
+    /// All bits of row i, lanes 4 i to 4 i + 3, are bit i of `bits`.
+    fn rows(bits: u64) -> Self;
     fn add(self, other: Self) -> Self;
     fn or(self, other: Self) -> Self;
     fn and(self, other: Self) -> Self;
+    fn xor(self, other: Self) -> Self;
     /// Shifts zeros in from the left.
     fn shift_right(self, by: u32) -> Self;
     /// Shifts zeros in from the right.
@@ -163,6 +172,28 @@ impl Vector for Eight {
     }
 
     #[inline(always)]
+    fn load_words(from: &[u64]) -> Self {
+        let from: &[u64; 4] = from.first_chunk().expect("a whole vector");
+        Self(std::array::from_fn(|k| (from[k / 2] >> (32 * (k % 2))) as i32))
+    }
+
+    #[inline(always)]
+    fn store_words(self, to: &mut [u64]) {
+        let to: &mut [u64; 4] = to.first_chunk_mut().expect("a whole vector");
+        *to = std::array::from_fn(|k| self.0[2 * k] as u32 as u64 | (self.0[2 * k + 1] as u64) << 32);
+    }
+
+    #[inline(always)]
+    fn columns(bits: [u64; 2]) -> Self {
+        Self::load_words(&[bits[0], bits[1], bits[0], bits[1]])
+    }
+
+    #[inline(always)]
+    fn rows(bits: u64) -> Self {
+        Self(std::array::from_fn(|k| -((bits >> (k / 4) & 1) as i32)))
+    }
+
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         self.zip(other, i32::wrapping_add)
     }
@@ -175,6 +206,11 @@ impl Vector for Eight {
     #[inline(always)]
     fn and(self, other: Self) -> Self {
         self.zip(other, |a, b| a & b)
+    }
+
+    #[inline(always)]
+    fn xor(self, other: Self) -> Self {
+        self.zip(other, |a, b| a ^ b)
     }
 
     #[inline(always)]

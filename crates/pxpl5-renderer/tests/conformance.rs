@@ -1,7 +1,7 @@
 //! Both pixel arrays agree in every bit. `PXPL5_FUZZ_SECONDS` sets how long the random part runs.
 
 use pxpl5_renderer::conformance::{self, Mismatch, Random};
-use pxpl5_renderer::{BitSerial, Command, CopyRegion, Lanes, Layout, PixelArray, SelectRegion, Vectors};
+use pxpl5_renderer::{BitSerial, Clear, Command, CopyRegion, Lanes, Layout, PixelArray, SelectRegion, Vectors};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, RegionGrid, RegionId};
 use std::time::{Duration, Instant};
 
@@ -59,6 +59,18 @@ fn random_lists_agree() {
             check(conformance::random_round(layout, 1000 + round, definition, subject));
         }
         round += 1;
+    }
+}
+
+#[test]
+fn constants_of_a_command_agree_whatever_they_are() {
+    for layout in layouts() {
+        let (mut a, mut b) = (BitSerial::new(&layout), Lanes::new(&layout));
+        let mut words = Vec::new();
+        Command::Clear(Clear { colour: 0x12_3456 }).encode(&layout, &mut words).unwrap();
+        // The depth that a clear always sets to the far plane, with one bit flipped on the way.
+        words[4] ^= 1 << 13;
+        check(conformance::agree(&mut a, &mut b, &words, &"a clear to a nearer depth"));
     }
 }
 

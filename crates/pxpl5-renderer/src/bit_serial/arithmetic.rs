@@ -14,8 +14,12 @@ pub(super) struct Source {
 }
 
 impl Source {
-    pub(super) fn bit(&self, memory: &[Plane], i: usize) -> Plane {
-        if i < self.bits.width { memory[self.bits.first + i] } else { self.extension }
+    fn bit(&self, memory: &[Plane], i: usize) -> Plane {
+        *self.plane(memory, i)
+    }
+
+    pub(super) fn plane<'a>(&'a self, memory: &'a [Plane], i: usize) -> &'a Plane {
+        if i < self.bits.width { &memory[self.bits.first + i] } else { &self.extension }
     }
 }
 

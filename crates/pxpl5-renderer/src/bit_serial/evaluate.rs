@@ -1,35 +1,48 @@
 //! Instructions with an expression: the evaluator's bits go to Enable or to pixel memory as they come.
 
-use super::evaluator::{Evaluator, Next};
-use super::{BitSerial, planes};
-use crate::array::{EMPTY_PLANE, FaultKind, Plane};
-use crate::controller::{Bits, Local};
-use crate::isa::{Expression, ExpressionUse, LINEAR_BITS, Operand};
-use crate::simd::{Kernel, Present, Vector};
+use super::BitSerial;
+use super::arithmetic::Source;
+use super::evaluator::{Adders, LinearTrees, QuadraticTrees, full_add};
+use crate::array::{FaultKind, Plane};
+use crate::controller::Local;
+use crate::isa::{Expression, ExpressionUse, Operand};
+use crate::simd::{Kernel, Vector};
+use std::ops::Range;
 
-/// The bits of an expression on their way to a field.
-struct Delivery {
-    local: Local,
-    shift: usize,
-    width: usize,
-    vectors: Present,
+/// Where the bits of an expression go.
+trait Sink {
+    /// Takes bit `t` of the expression in the pixels from word `at` of a plane on; `carry` begins with zeros.
+    fn take<V: Vector>(&mut self, at: usize, t: usize, bit: V, carry: &mut V);
+
+    /// Takes the carry behind the last bit.
+    fn end<V: Vector>(&mut self, _at: usize, _carry: V) {}
 }
 
-impl Delivery {
-    /// Hands the bits that reach the field to `f`, bit 0 first; returns the clocks.
-    fn each(&self, mut f: impl FnMut(usize, &mut Plane)) -> u64 {
-        let mut evaluator = Evaluator::new(&self.local);
-        let mut plane = EMPTY_PLANE;
-        let top = self.shift + self.width;
-        let clocks = if self.local.bits() == LINEAR_BITS { top } else { self.local.bits() as usize };
-        for t in 0..clocks {
-            let taken = (self.shift..top).contains(&t);
-            self.vectors.run(Next { evaluator: &mut evaluator, t, taken, out: &mut plane });
-            if taken {
-                f(t - self.shift, &mut plane);
+/// The bits of an expression on their way to all pixels.
+struct Deliver<'a, A, S> {
+    adders: &'a A,
+    /// Clocks whose bits the sink takes.
+    taken: Range<usize>,
+    sink: S,
+}
+
+impl<A: Adders, S: Sink> Kernel for Deliver<'_, A, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(mut self) {
+        // A word is two lanes, a row two words.
+        for at in (0..size_of::<Plane>() / 8).step_by(V::LANES / 2) {
+            let (mut carries, mut carry) = (A::start::<V>(), V::splat(0));
+            for t in 0..self.taken.start {
+                self.adders.bit(t, at / 2, &mut carries);
             }
+            for t in self.taken.clone() {
+                let bit = self.adders.bit(t, at / 2, &mut carries);
+                self.sink.take(at, t, bit, &mut carry);
+            }
+            self.sink.end(at, carry);
         }
-        clocks as u64
     }
 }
 
@@ -37,109 +50,172 @@ impl BitSerial {
     pub(super) fn evaluate(&mut self, expression: &Expression, usage: &ExpressionUse) -> Result<(), FaultKind> {
         let local = self.controller.latch(expression);
         match *usage {
-            ExpressionUse::DisableNegative => self.disable_negative(local),
-            ExpressionUse::Load { field, shift } => self.load(&self.delivery(local, shift, field), field)?,
-            ExpressionUse::Add { field, shift } => self.add_expression(&self.delivery(local, shift, field), field)?,
+            ExpressionUse::DisableNegative => {
+                let sign = local.bits() as usize - 1;
+                self.deliver(&local, sign..sign + 1, |array| Disable { enable: &mut array.enable });
+            }
+            ExpressionUse::Load { field, shift } => {
+                let (taken, first) = self.taken(field, shift)?;
+                self.deliver(&local, taken.clone(), |array| Load {
+                    field: &mut array.memory[first..first + taken.len()],
+                    shift: taken.start,
+                    enable: &array.enable,
+                });
+            }
+            ExpressionUse::Add { field, shift } => {
+                let (taken, first) = self.taken(field, shift)?;
+                self.deliver(&local, taken.clone(), |array| Add {
+                    field: &mut array.memory[first..first + taken.len()],
+                    shift: taken.start,
+                    enable: &array.enable,
+                });
+            }
             ExpressionUse::DisableNotLess { field, shift } => {
-                self.disable_not_less(&self.delivery(local, shift, field), field)?;
+                let (taken, first) = self.taken(field, shift)?;
+                self.deliver(&local, taken.clone(), |array| DisableNotLess {
+                    field: &array.memory[first..first + taken.len()],
+                    shift: taken.start,
+                    enable: &mut array.enable,
+                });
             }
             ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift } => {
-                let subtrahend = self.controller.bits(subtrahend)?;
-                self.load_minus(&self.delivery(local, shift, field), field, subtrahend, left_shift.into())?;
+                let (taken, first) = self.taken(field, shift)?;
+                let source = self.source(self.controller.bits(subtrahend)?);
+                self.deliver(&local, 0..taken.end, |array| LoadMinus {
+                    memory: &mut array.memory,
+                    first,
+                    shift: taken.start,
+                    source: &source,
+                    left_shift: left_shift.into(),
+                    enable: &array.enable,
+                });
             }
         }
         Ok(())
     }
 
-    fn delivery(&self, local: Local, shift: u8, field: Operand) -> Delivery {
-        Delivery { local, shift: shift.into(), width: field.width.into(), vectors: self.vectors }
+    /// Clocks whose bits reach a field, and the field's first bit.
+    fn taken(&self, field: Operand, shift: u8) -> Result<(Range<usize>, usize), FaultKind> {
+        let bits = self.controller.bits(field)?;
+        let shift = usize::from(shift);
+        Ok((shift..shift + bits.width, bits.first))
     }
 
-    fn disable_negative(&mut self, local: Local) {
-        let sign = local.bits() as usize - 1;
-        let delivery = Delivery { local, shift: sign, width: 1, vectors: self.vectors };
-        let enable = &mut self.enable;
-        self.clock += delivery.each(|_, sign| planes::and_not(enable, sign));
-    }
-
-    fn load(&mut self, delivery: &Delivery, field: Operand) -> Result<(), FaultKind> {
-        let first = self.controller.bits(field)?.first;
-        let (memory, enable) = (&mut self.memory[first..], &self.enable);
-        self.clock += delivery.each(|i, new| delivery.vectors.run(Store { old: &mut memory[i], new, enable }));
-        Ok(())
-    }
-
-    fn add_expression(&mut self, delivery: &Delivery, field: Operand) -> Result<(), FaultKind> {
-        let first = self.controller.bits(field)?.first;
-        let (memory, enable) = (&mut self.memory[first..], &self.enable);
-        let mut carry = EMPTY_PLANE;
-        self.clock += delivery.each(|i, bit| {
-            planes::add(bit, &memory[i], &mut carry);
-            planes::store(&mut memory[i], bit, enable);
-        });
-        Ok(())
-    }
-
-    fn disable_not_less(&mut self, delivery: &Delivery, field: Operand) -> Result<(), FaultKind> {
-        let first = self.controller.bits(field)?.first;
-        let memory = &self.memory[first..];
-        let mut less = EMPTY_PLANE;
-        self.clock += delivery.each(|i, a| delivery.vectors.run(Borrow { a, b: &memory[i], borrow: &mut less }));
-        planes::and(&mut self.enable, &less);
-        Ok(())
-    }
-
-    fn load_minus(
-        &mut self,
-        delivery: &Delivery,
-        field: Operand,
-        subtrahend: Bits,
-        left_shift: usize,
-    ) -> Result<(), FaultKind> {
-        let first = self.controller.bits(field)?.first;
-        let source = self.source(subtrahend);
-        let (memory, enable) = (&mut self.memory, &self.enable);
-        let mut borrow = EMPTY_PLANE;
-        let whole = Delivery { shift: 0, width: delivery.shift + delivery.width, ..*delivery };
-        self.clock += whole.each(|t, bit| {
-            let bits = t.checked_sub(left_shift).map(|i| source.bit(memory, i));
-            planes::subtract(bit, &bits.unwrap_or(EMPTY_PLANE), &mut borrow);
-            if let Some(i) = t.checked_sub(delivery.shift) {
-                planes::store(&mut memory[first + i], bit, enable);
+    /// Runs the evaluator: a linear expression until the last bit is taken, a quadratic one always to its end.
+    fn deliver<'a, S: Sink>(&'a mut self, local: &Local, taken: Range<usize>, sink: impl FnOnce(&'a mut Self) -> S) {
+        let vectors = self.vectors;
+        match local {
+            Local::Linear(e) => {
+                self.clock += taken.end as u64;
+                let adders = &LinearTrees::new(e, taken.end, vectors);
+                vectors.run(Deliver { adders, taken, sink: sink(self) });
             }
-        });
-        Ok(())
+            Local::Quadratic(q) => {
+                self.clock += u64::from(local.bits());
+                let adders = &QuadraticTrees::new(q, taken.end, vectors);
+                vectors.run(Deliver { adders, taken, sink: sink(self) });
+            }
+        }
     }
 }
 
-/// One bit into pixel memory.
-struct Store<'a> {
-    old: &'a mut Plane,
-    new: &'a Plane,
+/// Overwrites one bit where enabled.
+#[inline(always)]
+fn store<V: Vector>(plane: &mut Plane, at: usize, new: V, enable: &Plane) {
+    let old = V::load_words(&plane[at..]);
+    let changed = old.xor(new).and(V::load_words(&enable[at..]));
+    old.xor(changed).store_words(&mut plane[at..]);
+}
+
+/// E := 0 where the bit is set.
+struct Disable<'a> {
+    enable: &'a mut Plane,
+}
+
+impl Sink for Disable<'_> {
+    #[inline(always)]
+    fn take<V: Vector>(&mut self, at: usize, _: usize, bit: V, _: &mut V) {
+        let enable = V::load_words(&self.enable[at..]);
+        enable.and(bit).xor(enable).store_words(&mut self.enable[at..]);
+    }
+}
+
+/// field := bits from `shift` on.
+struct Load<'a> {
+    field: &'a mut [Plane],
+    shift: usize,
     enable: &'a Plane,
 }
 
-impl Kernel for Store<'_> {
-    type Output = ();
-
+impl Sink for Load<'_> {
     #[inline(always)]
-    fn run<V: Vector>(self) {
-        planes::store(self.old, self.new, self.enable);
+    fn take<V: Vector>(&mut self, at: usize, t: usize, bit: V, _: &mut V) {
+        store(&mut self.field[t - self.shift], at, bit, self.enable);
     }
 }
 
-/// One bit of a comparison.
-struct Borrow<'a> {
-    a: &'a Plane,
-    b: &'a Plane,
-    borrow: &'a mut Plane,
+/// field := field + bits from `shift` on.
+struct Add<'a> {
+    field: &'a mut [Plane],
+    shift: usize,
+    enable: &'a Plane,
 }
 
-impl Kernel for Borrow<'_> {
-    type Output = ();
+impl Sink for Add<'_> {
+    #[inline(always)]
+    fn take<V: Vector>(&mut self, at: usize, t: usize, bit: V, carry: &mut V) {
+        let plane = &mut self.field[t - self.shift];
+        let sum = full_add(bit, V::load_words(&plane[at..]), carry);
+        store(plane, at, sum, self.enable);
+    }
+}
+
+/// E := 0 unless bits from `shift` on are less than the field.
+struct DisableNotLess<'a> {
+    field: &'a [Plane],
+    shift: usize,
+    enable: &'a mut Plane,
+}
+
+impl Sink for DisableNotLess<'_> {
+    #[inline(always)]
+    fn take<V: Vector>(&mut self, at: usize, t: usize, bit: V, borrow: &mut V) {
+        subtract(bit, V::load_words(&self.field[t - self.shift][at..]), borrow);
+    }
 
     #[inline(always)]
-    fn run<V: Vector>(self) {
-        planes::borrow(self.a, self.b, self.borrow);
+    fn end<V: Vector>(&mut self, at: usize, less: V) {
+        V::load_words(&self.enable[at..]).and(less).store_words(&mut self.enable[at..]);
     }
+}
+
+/// field := bits from `shift` on of the difference from a source.
+struct LoadMinus<'a> {
+    memory: &'a mut [Plane],
+    first: usize,
+    shift: usize,
+    source: &'a Source,
+    left_shift: usize,
+    enable: &'a Plane,
+}
+
+impl Sink for LoadMinus<'_> {
+    #[inline(always)]
+    fn take<V: Vector>(&mut self, at: usize, t: usize, bit: V, borrow: &mut V) {
+        let subtrahend = match t.checked_sub(self.left_shift) {
+            Some(i) => V::load_words(&self.source.plane(self.memory, i)[at..]),
+            None => V::splat(0),
+        };
+        let difference = subtract(bit, subtrahend, borrow);
+        if let Some(i) = t.checked_sub(self.shift) {
+            store(&mut self.memory[self.first + i], at, difference, self.enable);
+        }
+    }
+}
+
+/// One clock of a serial subtracter in each pixel of a vector: a - b = not (not a + b).
+#[inline(always)]
+fn subtract<V: Vector>(a: V, b: V, borrow: &mut V) -> V {
+    let ones = V::splat(-1);
+    full_add(a.xor(ones), b, borrow).xor(ones)
 }

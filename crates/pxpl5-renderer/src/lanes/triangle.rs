@@ -113,10 +113,10 @@ impl Paint for Gouraud<'_> {
 
     #[inline(always)]
     fn store<V: Vector>(&mut self, [red, green, blue]: &[Walk<V>; 3], at: usize, mask: V::Mask) {
-        let byte = V::splat(255);
-        let red = red.value.shift_right(COLOUR_FRACTION_BITS).and(byte).shift_left(16);
-        let green = green.value.shift_right(COLOUR_FRACTION_BITS).and(byte).shift_left(8);
-        let blue = blue.value.shift_right(COLOUR_FRACTION_BITS).and(byte);
+        // Each component goes to its place in one shift.
+        let red = red.value.shift_left(16 - COLOUR_FRACTION_BITS).and(V::splat(0xff_0000));
+        let green = green.value.shift_right(COLOUR_FRACTION_BITS - 8).and(V::splat(0xff00));
+        let blue = blue.value.shift_right(COLOUR_FRACTION_BITS).and(V::splat(0xff));
         blend(self.colour, at, mask, red.or(green).or(blue));
     }
 }

@@ -1,12 +1,14 @@
 //! Recognises whole commands in the word stream.
 
 use super::Lanes;
+use super::columns::Values;
 use super::triangle::{DrawTriangle, Gouraud, Phong};
 use crate::array::Executed;
 use crate::command::{Command, CommandKind, PhongTriangle, Triangle};
 use crate::controller::Bits;
 use crate::isa::{Operand, head, opcode};
 use crate::layout::Layout;
+use crate::simd::{Kernel, Vector};
 use pxpl5_wire::{Linear, Word};
 
 /// What identifies a command whose operands are whole words: its other words.
@@ -113,7 +115,7 @@ impl Lanes {
         let (used, cost) = (template.words, template.cost);
         let keep = !starts_anew(words.get(used));
         match kind {
-            CommandKind::Clear => self.clear(words[2], columns, keep),
+            CommandKind::Clear => self.clear([words[2], words[4]], columns, keep),
             CommandKind::Triangle => self.triangle(&read_triangle(words), columns, keep)?,
             _ => self.phong_triangle(&read_phong_triangle(words), columns, keep)?,
         }
@@ -148,10 +150,12 @@ impl Lanes {
         self.columns.find(first, width)
     }
 
-    fn clear(&mut self, colour: u32, columns: ContextColumns, keep: bool) {
-        self.columns.values_mut(columns.colour).0.fill(colour & 0xff_ffff);
+    /// Both constants are operands: other words than a [`crate::Clear`] has may clear to any depth.
+    fn clear(&mut self, [colour, depth]: [Word; 2], columns: ContextColumns, keep: bool) {
         let far = u32::MAX >> (32 - self.layout.plan().z.width);
-        self.columns.values_mut(columns.z).0.fill(far);
+        for (column, value) in [(columns.colour, colour & 0xff_ffff), (columns.z, depth & far)] {
+            self.vectors.run(Fill { column: self.columns.values_mut(column), value });
+        }
         if keep {
             self.enable.fill(255);
         }
@@ -203,6 +207,21 @@ impl Lanes {
             enable: keep.then_some(&mut *self.enable),
         });
         Some(())
+    }
+}
+
+/// The same value in all pixels.
+struct Fill<'a> {
+    column: &'a mut Values,
+    value: u32,
+}
+
+impl Kernel for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        self.column.0.fill(self.value);
     }
 }
 

@@ -35,6 +35,32 @@ impl Vector for Avx2 {
     }
 
     #[inline(always)]
+    fn load_words(from: &[u64]) -> Self {
+        let from: &[u64; 4] = from.first_chunk().expect("a whole vector");
+        Self(unsafe { _mm256_loadu_si256(from.as_ptr().cast()) })
+    }
+
+    #[inline(always)]
+    fn store_words(self, to: &mut [u64]) {
+        let to: &mut [u64; 4] = to.first_chunk_mut().expect("a whole vector");
+        unsafe { _mm256_storeu_si256(to.as_mut_ptr().cast(), self.0) };
+    }
+
+    #[inline(always)]
+    fn columns([low, high]: [u64; 2]) -> Self {
+        Self(unsafe { _mm256_broadcastsi128_si256(_mm_set_epi64x(high as i64, low as i64)) })
+    }
+
+    #[inline(always)]
+    fn rows(bits: u64) -> Self {
+        unsafe {
+            let lanes = _mm256_setr_epi32(1, 1, 1, 1, 2, 2, 2, 2);
+            let bits = _mm256_and_si256(_mm256_set1_epi32(bits as i32), lanes);
+            Self(_mm256_cmpeq_epi32(bits, lanes))
+        }
+    }
+
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self(unsafe { _mm256_add_epi32(self.0, other.0) })
     }
@@ -47,6 +73,11 @@ impl Vector for Avx2 {
     #[inline(always)]
     fn and(self, other: Self) -> Self {
         Self(unsafe { _mm256_and_si256(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn xor(self, other: Self) -> Self {
+        Self(unsafe { _mm256_xor_si256(self.0, other.0) })
     }
 
     #[inline(always)]
@@ -114,6 +145,31 @@ impl Vector for Avx512 {
     }
 
     #[inline(always)]
+    fn load_words(from: &[u64]) -> Self {
+        let from: &[u64; 8] = from.first_chunk().expect("a whole vector");
+        Self(unsafe { _mm512_loadu_si512(from.as_ptr().cast()) })
+    }
+
+    #[inline(always)]
+    fn store_words(self, to: &mut [u64]) {
+        let to: &mut [u64; 8] = to.first_chunk_mut().expect("a whole vector");
+        unsafe { _mm512_storeu_si512(to.as_mut_ptr().cast(), self.0) };
+    }
+
+    #[inline(always)]
+    fn columns([low, high]: [u64; 2]) -> Self {
+        Self(unsafe { _mm512_broadcast_i32x4(_mm_set_epi64x(high as i64, low as i64)) })
+    }
+
+    #[inline(always)]
+    fn rows(bits: u64) -> Self {
+        unsafe {
+            let lanes = _mm512_setr_epi32(1, 1, 1, 1, 2, 2, 2, 2, 4, 4, 4, 4, 8, 8, 8, 8);
+            Self(_mm512_movm_epi32(_mm512_test_epi32_mask(_mm512_set1_epi32(bits as i32), lanes)))
+        }
+    }
+
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self(unsafe { _mm512_add_epi32(self.0, other.0) })
     }
@@ -126,6 +182,11 @@ impl Vector for Avx512 {
     #[inline(always)]
     fn and(self, other: Self) -> Self {
         Self(unsafe { _mm512_and_si512(self.0, other.0) })
+    }
+
+    #[inline(always)]
+    fn xor(self, other: Self) -> Self {
+        Self(unsafe { _mm512_xor_si512(self.0, other.0) })
     }
 
     #[inline(always)]

@@ -14,6 +14,7 @@ pub use still::Still;
 pub use synthetic::{Band, Synthetic, SyntheticConfig};
 
 use glam::DVec3;
+use std::fmt::Debug;
 
 use crate::pose::Pose;
 use crate::rotation;
@@ -22,8 +23,9 @@ use crate::time::span_s;
 /// Half the step of the default central differences: 50 us, at which a 2 Hz motion is off by 2 parts in 10^8.
 const HALF_STEP_PS: u64 = 50_000_000;
 
-/// A motion of the head (or of a pendulum's bob): a pure function of simulated time.
-pub trait Motion {
+/// A motion of the head (or of a pendulum's bob): a pure function of simulated time. What `Debug` shows tells it from
+/// every other motion.
+pub trait Motion: Debug {
     /// Pose at `t_ps`.
     fn pose(&self, t_ps: u64) -> Pose;
 
@@ -68,6 +70,7 @@ impl<M: Motion + ?Sized> Motion for Box<M> {
 /// Checks the closed forms of velocity and angular velocity against the pose alone.
 #[cfg(test)]
 fn assert_rates_agree_with_poses(motion: &impl Motion, t_ps: u64, tolerance: f64) {
+    #[derive(Debug)]
     struct PosesOnly<'a, M>(&'a M);
     impl<M: Motion> Motion for PosesOnly<'_, M> {
         fn pose(&self, t_ps: u64) -> Pose {

@@ -1,0 +1,105 @@
+//! Experiment files with a head, a tracker and a display: do they give what the comparison gives, and the pictures?
+
+use pxpl5::compare::{compare, edge_scene};
+use pxpl5::display::Display;
+use pxpl5::pictures::{Eyes, Film};
+use pxpl5::tracking::motion::{Motion, Pan};
+use pxpl5::tracking::predict::PredictorKind;
+use pxpl5::tracking::tracker::TrackerConfig;
+use pxpl5::tracking::view::HmdView;
+use pxpl5::{Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Pixels, Plan, Viewpoint};
+use std::sync::Arc;
+
+fn plan(settings: &[(&str, &str)]) -> Plan {
+    let mut file = ExperimentFile::new();
+    for (path, value) in settings {
+        file.set_text(&format!("{path}={value}"), "test").expect("known");
+    }
+    file.resolve().expect("an experiment")
+}
+
+#[test]
+fn an_experiment_file_gives_the_numbers_of_the_comparison() {
+    let shared = [("scene", "full-screen:2"), ("fields", "40"), ("head.motion", "synthetic:3"), ("pixels", "off")];
+    let on = ("machine.preset", "small-hmd");
+    let comparison = {
+        let plan = plan(&[&shared[..], &[on, ("pipeline", "slats")]].concat());
+        let head = plan.head.as_ref().expect("a motion was given").head();
+        let scene = plan.load_scene().expect("built in");
+        compare(&plan.machine, &scene, &head, plan.fields, false).expect("in range")
+    };
+    let rows = [
+        ("rendering-control", "rendering-control", "plain"),
+        ("slats", "slats", "plain"),
+        ("vdrt", "slats", "vdrt"),
+        ("frameless", "frameless", "plain"),
+        ("jitp-field", "jitp-field", "plain"),
+        ("jitp-scanline-racing", "jitp-scanline-racing", "plain"),
+        ("jitp-dual-screen", "jitp-dual-screen", "plain"),
+        ("jitp-dual-view-racing", "jitp-dual-view-racing", "plain"),
+    ];
+    for (name, pipeline, display) in rows {
+        let plan = plan(&[&shared[..], &[on, ("pipeline", pipeline), ("head.display", display)]].concat());
+        let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("the scene is small");
+        let report = outcome.report();
+        let (head, row) = (report.head.expect("a motion was given"), comparison.row(name).expect("a row for each"));
+        assert!(row.error.judged > 0, "{name}");
+        assert_eq!((&head.error, head.end_to_end), (&row.error, row.end_to_end), "{name}");
+        assert_eq!(report.updates_hz, row.updates_hz, "{name}");
+    }
+}
+
+/// A wall's edge straight ahead at time zero, under a pan: a picture for one moment a field, for one eye.
+fn panned(deg_per_s: f64, display: Display, fields: u64) -> Experiment {
+    let head = Head::new(Arc::new(Pan::at(deg_per_s)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
+    let head = head.expect("in range").display(display);
+    Experiment::new(MachineConfig::small_hmd(), Jitp::new(Viewpoint::Field, false), edge_scene(0.0))
+        .head(head)
+        .fields(fields)
+}
+
+/// The column of each line of a field where the wall ends.
+fn edges(picture: &image::RgbImage, field: u64) -> Vec<f64> {
+    let lines = (0..picture.height()).filter(|y| u64::from(y % 2) == field % 2);
+    let is_wall = |x, y| picture.get_pixel(x, y).0[0] > 100;
+    let edge = |y| (1..picture.width()).find(|x| is_wall(x - 1, y) && !is_wall(*x, y)).map_or(-1.0, f64::from);
+    lines.map(edge).collect()
+}
+
+#[test]
+fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
+    const FIELD: u64 = 20;
+    let (pan, view) = (Pan::at(30.0), HmdView::ntsc());
+    let [plain, vdrt] = [Display::Plain, Display::Vdrt].map(|display| {
+        let outcome = panned(30.0, display, FIELD + 2).run().expect("the scene is small");
+        let video = *outcome.machine().video();
+        let picture = outcome.picture(Eye::Left).expect("pixels when looked at");
+        let found = edges(&picture, FIELD).into_iter().enumerate();
+        let errors: Vec<f64> = found
+            .map(|(row, column)| {
+                let at = video.when(column as u32, 2 * row as u32 + (FIELD % 2) as u32, FIELD).expect("visible");
+                let edge = view.project(pan.pose(at.0).view_of(glam::DVec3::NEG_Z * 2.0)).expect("ahead");
+                (column - edge.x).abs()
+            })
+            .collect();
+        errors.iter().copied().fold(0.0, f64::max)
+    });
+    // A place is a whole column: half a pixel of the picture, half a pixel of the shift.
+    assert!(vdrt <= 1.0, "{vdrt}");
+    // The end of the field is 15.3 ms after the moment that it is drawn for, its begin.
+    let expected = 554.256 * (30.0 * 0.0153f64).to_radians().tan();
+    assert!((plain - expected).abs() < 1.0, "{plain} {expected}");
+}
+
+#[test]
+fn a_film_on_a_shifted_raster_shows_the_pictures_of_a_run_on_it() {
+    let mut bytes = Vec::new();
+    Film::new(panned(40.0, Display::Vdrt, 30), 10, 3, Eyes::One(Eye::Left)).write(&[], &mut bytes).expect("in range");
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("PNG");
+    for field in 10..13 {
+        let mut pixels = vec![0; reader.output_buffer_size().expect("fits")];
+        reader.next_frame(&mut pixels).expect("a frame each field");
+        let run = panned(40.0, Display::Vdrt, field + 2).pixels(Pixels::Lazy).run().expect("the scene is small");
+        assert!(run.picture(Eye::Left).expect("pixels").into_raw() == pixels, "field {field}");
+    }
+}
