@@ -209,8 +209,8 @@ mod tests {
 
     #[test]
     fn a_trap_names_the_board_and_the_address() {
-        let wild = program("start: nop\n ld.l 2(r16), r17\n bri r1\n nop");
-        let error = processor().call(&wild, "start", &[(16, 0x2000)], 10).expect_err("unaligned");
+        let wild = program("start: nop\n ld.l 0(r16), r17\n bri r1\n nop");
+        let error = processor().call(&wild, "start", &[(16, 0x2002)], 10).expect_err("unaligned");
         assert_eq!(
             error.to_string(),
             "graphics processor at node 3: trap at 0x00001004: 0x00002002 is not a multiple of 4"
