@@ -157,8 +157,16 @@ mod tests {
     }
 
     #[test]
-    fn every_command_of_the_guide_to_sweeps_and_of_the_experiments_is_understood() {
-        assert!(parses(include_str!("../../../docs/sweeps.md")) > 10);
+    fn every_command_of_the_documents_is_understood() {
+        for (page, least) in [
+            (include_str!("../../../docs/sweeps.md"), 10),
+            (include_str!("../../../docs/guide/head-to-light.md"), 5),
+            (include_str!("../../../docs/guide/figures.md"), 5),
+            (include_str!("../../../README.md"), 7),
+        ] {
+            let found = parses(page);
+            assert!(found > least, "found {found}");
+        }
     }
 
     #[test]
