@@ -6,6 +6,7 @@ use crate::display::{Display, RasterOffsets};
 use crate::display_list::{display_list, views};
 use crate::fingerprint::Fingerprint;
 use crate::head_to_light::{FIELDS_WITH_HEAD, Head, HeadViews, Rehearsal};
+use crate::levels::{Level, literal};
 use crate::machine::{Machine, RunError};
 use crate::observation::{Observation, StageSpan};
 use crate::pictures;
@@ -52,6 +53,8 @@ pub enum ExperimentError {
         /// Pictures that were shown; the first ones are discarded.
         pictures: usize,
     },
+    /// The analytic level has no events that an experiment could observe.
+    Level,
     /// The scene has nothing to draw, or too many moving structures.
     Scene(String),
     /// Whoever watched the run ended it ([`Experiment::run_stopping`]).
@@ -73,6 +76,9 @@ impl fmt::Display for ExperimentError {
             Self::TooShort { fields, pictures } => write!(
                 f,
                 "only {pictures} pictures were shown in {fields} fields and the first {WARM_UP_PICTURES} are discarded; simulate more fields"
+            ),
+            Self::Level => f.write_str(
+                "level: expected transaction or cycle, found analytic, which has no events (it is for sweeps and limits)",
             ),
             Self::Scene(text) | Self::Stopped(text) => f.write_str(text),
             Self::Run { error, partial } => {
@@ -108,6 +114,7 @@ pub struct Experiment {
     threads: usize,
     shuffle: Option<u64>,
     traffic: bool,
+    level: Level,
     head: Option<Arc<Head>>,
 }
 
@@ -132,6 +139,7 @@ impl Experiment {
             threads,
             shuffle: None,
             traffic: false,
+            level: Level::Transaction,
             head: None,
         }
     }
@@ -178,6 +186,13 @@ impl Experiment {
         self
     }
 
+    /// How literally the machine is modelled: [`Level::Transaction`], the default, or [`Level::Cycle`].
+    #[must_use]
+    pub const fn level(mut self, level: Level) -> Self {
+        self.level = level;
+        self
+    }
+
     /// A head with its tracker instead of the scene's own motion, which the pipeline follows without any delay.
     ///
     /// With prediction the experiment is run twice: the first run tells when each view will be seen.
@@ -206,8 +221,16 @@ impl Experiment {
         if !(expected.0..=expected.1).contains(&self.fields) {
             return Err(ExperimentError::Fields { expected, found: self.fields });
         }
-        let config = self.pipeline.adapt(self.config.clone());
-        let mut machine = Machine::new(&config, self.pipeline.eyes(), self.pipeline.layout())?;
+        let (adapted, layout) = (self.pipeline.adapt(self.config.clone()), self.pipeline.layout());
+        let config = match self.level {
+            Level::Analytic => return Err(ExperimentError::Level),
+            Level::Transaction => adapted,
+            Level::Cycle => literal(&adapted, &layout),
+        };
+        let mut machine = Machine::new(&config, self.pipeline.eyes(), layout)?;
+        if self.level == Level::Cycle {
+            machine.run_code();
+        }
         let (setup, head) = self.setup(&config, &machine, rehearsal)?;
         self.pipeline.load(&mut machine, &setup)?;
         if let Some(seed) = self.shuffle {
@@ -325,16 +348,20 @@ impl Experiment {
         asked.iter().copied().filter(|field| *field < self.fields).chain(regular).chain([self.fields]).collect()
     }
 
-    /// Name of everything on which the trace depends: machine, pipeline and variant, contents of the scene, fields and
-    /// seed.
+    /// Name of everything on which the trace depends: machine, pipeline and variant, contents of the scene, fields,
+    /// seed and level.
     #[must_use]
     pub fn config_hash(&self) -> Fingerprint {
-        let Self { config, pipeline, fields, seed, head, .. } = self;
+        let Self { config, pipeline, fields, seed, head, level, .. } = self;
         let scene = Fingerprint::of_scene(&self.scene);
         let parameters: Vec<_> = config.parameters().into_iter().map(|p| (p.path, p.value)).collect();
         let boards = (config.n_gps, config.n_renderers);
         let head = head.as_ref().map(|head| format!(" {}", head.fingerprint())).unwrap_or_default();
-        Fingerprint::of(format!("{boards:?} {parameters:?} {pipeline:?} {scene} {fields} {seed}{head}").as_bytes())
+        // Transaction is left out, so that the names of its experiments stay what they were before there were others.
+        let level = if *level == Level::Transaction { String::new() } else { format!(" {level:?}") };
+        Fingerprint::of(
+            format!("{boards:?} {parameters:?} {pipeline:?} {scene} {fields} {seed}{head}{level}").as_bytes(),
+        )
     }
 }
 
@@ -472,7 +499,7 @@ impl Outcome {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             machine: experiment.config.preset.clone(),
             config_hash: experiment.config_hash().to_string(),
-            level: "transaction".to_owned(),
+            level: experiment.level.name().to_owned(),
             seed: experiment.seed,
             pipeline: experiment.pipeline.name().to_owned(),
             variant: format!("{:?}", experiment.pipeline),

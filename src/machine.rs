@@ -191,6 +191,12 @@ impl Machine {
         self.workers = Some(PixelWorkers::new(threads));
     }
 
+    /// Has the graphics processors tell the time of their work by i860 code, where the timing table stands for code
+    /// that there is; to be called before programs are loaded.
+    pub fn run_code(&mut self) {
+        self.processors.iter_mut().skip(1).for_each(GpBoard::run_code);
+    }
+
     /// Records messages, busy channels and FIFOs from now on.
     pub fn record_traffic(&mut self) {
         self.observation.traffic = Some(Box::default());

@@ -181,8 +181,8 @@ impl Plan {
     pub fn run(&self, scene: Arc<Scene>) -> Result<Results, ExperimentError> {
         let case = self.case(scene);
         match self.level {
-            Level::Transaction => Ok(Results::new(self, case.experiment().threads(1).run()?)),
-            level => Ok(Results { summary: level.run(&case)?, run: None }),
+            Level::Analytic => Ok(Results { summary: self.level.run(&case)?, run: None }),
+            level => Ok(Results::new(self, case.experiment().level(level).threads(1).run()?)),
         }
     }
 }

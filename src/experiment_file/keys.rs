@@ -53,7 +53,7 @@ pub const KEYS: &[Key] = &[
     key("seed", "seed of the head motion's sway, or of the tracker's noise"),
     key("fields", "NTSC fields to simulate"),
     key("pixels", "off, lazy or all"),
-    key("level", "analytic (sweeps of rendering-control and slats only), transaction or cycle (sweeps only)"),
+    key("level", "analytic (sweeps of rendering-control and slats only), transaction or cycle"),
     key("machine.preset", "a preset of `pxpl5 machines`"),
     key("measure", "list of the quantities that go into tables and sweep rows"),
     key("output.pictures", "write the last pictures as PNG: true or false"),

@@ -118,11 +118,6 @@ pub(super) const CODES: [(&str, Code); 3] =
     [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
 
-/// Name of a level, as in files.
-fn level_name(level: Level) -> String {
-    serde_json::to_value(level).ok().and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default()
-}
-
 /// What is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneChoice {
@@ -295,8 +290,7 @@ impl ExperimentFile {
     }
 
     fn level(&self, program: &Program, has_head: bool) -> Result<Level, FileError> {
-        let names = Level::ALL.map(|level| (level_name(level), level));
-        let choices: Vec<(&str, Level)> = names.iter().map(|(name, level)| (name.as_str(), *level)).collect();
+        let choices = Level::ALL.map(|level| (level.name(), level));
         let level = self.choice("level", &choices)?.unwrap_or(Level::Transaction);
         let has_form = matches!(program, Program::RenderingControl(_) | Program::Slats(_)) && !has_head;
         match self.get("level").filter(|_| level == Level::Analytic && !has_form) {
@@ -346,12 +340,12 @@ impl Plan {
     /// Name of the level of modelling.
     #[must_use]
     pub fn level_name(&self) -> String {
-        level_name(self.level)
+        self.level.name().to_owned()
     }
 
     /// The experiment with the scene loaded.
     #[must_use]
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
-        self.case(scene).experiment().pixels(self.pixels)
+        self.case(scene).experiment().pixels(self.pixels).level(self.level)
     }
 }

@@ -4,12 +4,15 @@
 //! |---|---|---|---|
 //! | [`Level::Analytic`] | closed form of the stage rules | time of copies and of clumps | a constant per command |
 //! | [`Level::Transaction`] | timing table per primitive | an event per message | timing table per command |
-//! | [`Level::Cycle`] | as the transaction level, with the clocks of the i860 kernel where one exists | as the transaction level | the clocks of every instruction of a command's program |
+//! | [`Level::Cycle`] | clocks of the i860 code that runs for every triangle, over the board's memory | as the transaction level | the clocks of every instruction of a command's program |
 //!
 //! The ring needs no third form: its word-by-word reference and the event form give the same picosecond for every
-//! message (a property test of the ring's crate), so the cycle level uses the event form. Of the graphics processor's
-//! code only PPHIGS's triangle has a kernel in i860 assembly (docs/gp-timing.md); lighting, walking the display list and
-//! sending are not in it, and the code of Slats has none: there the table's times stay.
+//! message (a property test of the ring's crate), so the cycle level uses the event form.
+//!
+//! Of the graphics processor's code the triangle's way from the display list to commands and bins is i860 code
+//! (docs/gp-timing.md). The clipper, spheres, edits, the beginning of a pass and messages have none: there the table's
+//! times stay. So they do where an experiment has changed the time per triangle. A preset whose code did not fit the
+//! instruction cache runs the compiled kernel, the others the one scheduled by hand.
 
 mod chart;
 mod compare;
@@ -23,8 +26,7 @@ use crate::experiment::{Experiment, ExperimentError, Outcome, Pixels};
 use crate::head_to_light::Head;
 use crate::pipelines::{Frameless, Jitp, Pipeline, RenderingControl, Slats};
 use crate::report::Statistics;
-use pxpl5_gp::GpTiming;
-use pxpl5_renderer::{CommandKind, RendererTiming};
+use pxpl5_renderer::{CommandKind, Layout, RendererTiming};
 use pxpl5_scene::Scene;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Eye, MAX_MESSAGE_WORDS, RegionGrid};
@@ -40,16 +42,14 @@ pub enum Level {
     Analytic,
     /// An event per message and command list.
     Transaction,
-    /// The same, with clocks that come from instructions instead of the timing table.
+    /// The same, with clocks that come from instructions instead of the timing tables.
     Cycle,
 }
 
-/// Time of a triangle and eye by the i860 kernel in dual-instruction mode: 960 clocks at 40 MHz (docs/gp-timing.md).
-const KERNEL_TRIANGLE_NS: u64 = 24_000;
-
-/// The machine with every clock that follows from an instruction list; what an experiment has changed stays changed.
-fn literal(machine: &MachineConfig, program: Program) -> MachineConfig {
-    let (mut machine, layout) = (machine.clone(), program.pipeline().layout());
+/// The machine with every clock of a renderer that follows from an instruction list; what an experiment has changed
+/// stays changed.
+pub(crate) fn literal(machine: &MachineConfig, layout: &Layout) -> MachineConfig {
+    let mut machine = machine.clone();
     let (timing, table) = (&mut machine.renderer, RendererTiming::PAPERS);
     for (kind, clocks, of_table) in [
         (CommandKind::SelectRegion, &mut timing.select_clocks, table.select_clocks),
@@ -61,11 +61,8 @@ fn literal(machine: &MachineConfig, program: Program) -> MachineConfig {
         (CommandKind::Shade, &mut timing.shade_clocks, table.shade_clocks),
     ] {
         // A layout without the fields that a command needs never gets that command.
-        let of_program = kind.clocks(&layout).map_or(of_table, u64::from);
+        let of_program = kind.clocks(layout).map_or(of_table, u64::from);
         *clocks = if *clocks == of_table { of_program } else { *clocks };
-    }
-    if machine.gp.triangle_ns == GpTiming::PAPERS.triangle_ns {
-        machine.gp.triangle_ns = KERNEL_TRIANGLE_NS;
     }
     machine
 }
@@ -175,11 +172,17 @@ impl Level {
     pub fn run(self, case: &Case) -> Result<Summary, ExperimentError> {
         match self {
             Self::Analytic => analytic::run(case),
-            Self::Transaction => Ok(summary(case.program, &case.experiment().run()?)),
-            Self::Cycle => {
-                let case = Case { machine: literal(&case.machine, case.program), ..case.clone() };
-                Ok(summary(case.program, &case.experiment().run()?))
-            }
+            Self::Transaction | Self::Cycle => Ok(summary(case.program, &case.experiment().level(self).run()?)),
+        }
+    }
+
+    /// As experiment files name it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Analytic => "analytic",
+            Self::Transaction => "transaction",
+            Self::Cycle => "cycle",
         }
     }
 }

@@ -13,17 +13,20 @@
 //! - [`FrameView`]: what the host sends for a frame: viewing transforms and edits, as words.
 //! - [`Pass`]: one TRANSFORM: which primitives touch which regions, counted at once; screen triangles and command
 //!   words are made when somebody wants pixels, from the same numbers.
+//! - [`Transforming`]: the same as work of a board, in time by table or by i860 code that makes the same words.
 //!
 //! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
 //!
 //! Sources: TR94 (round-robin dealing, bins that hold pointers to shared commands).
 
+mod code;
 mod commands;
 mod list;
 mod pass;
 mod placed;
 mod view;
 
+pub use code::{Made, Transforming};
 pub use commands::{Around, copy_message, gouraud_sphere, region_messages};
 pub use list::{Counts, DisplayList, Frame, Share, Structure};
 pub use pass::{Binning, Pass, Picture, Shading};

@@ -4,6 +4,7 @@ use crate::pass::{Pass, Picture};
 use crate::placed::RecentViews;
 use crate::view::FrameView;
 use glam::{Mat4, Vec3};
+use pxpl5_geometry::kernel::TRIANGLE_WORDS;
 use pxpl5_geometry::{Sphere, Triangle};
 use std::ops::Range;
 use std::sync::Arc;
@@ -113,8 +114,8 @@ pub struct Share {
 }
 
 impl Share {
-    /// Bytes of a triangle in a GP's memory: three corners of position, normal and colour, and a header (assumed).
-    pub const TRIANGLE_BYTES: u64 = 3 * 28 + 12;
+    /// Bytes of a triangle in a GP's memory: three corners of position, normal and colour, 32 bytes each (assumed).
+    pub const TRIANGLE_BYTES: u64 = 4 * TRIANGLE_WORDS as u64;
 
     /// Bytes of a sphere in a GP's memory: centre, radius, colour, header (assumed).
     pub const SPHERE_BYTES: u64 = 32;
@@ -184,6 +185,16 @@ impl Share {
         Arc::new(Pass::new(self.clone(), view, eye, picture))
     }
 
+    /// Numbers of all triangles that the GP holds, also where this is a clump of them.
+    pub(crate) fn all_triangles(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
+        (self.first..self.list.triangles.len()).step_by(self.step)
+    }
+
+    /// Places of the held triangles of `of` among all that the GP holds.
+    pub(crate) fn held_places(&self, of: &Range<usize>) -> Range<usize> {
+        self.places(&self.triangles, of)
+    }
+
     pub(crate) fn held_triangles(&self, of: &Range<usize>) -> impl Iterator<Item = usize> + use<> {
         self.held(&self.triangles, of)
     }
@@ -194,11 +205,15 @@ impl Share {
 
     /// Numbers of the primitives of `of` that are among the held ones `positions`.
     fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl Iterator<Item = usize> + use<> {
+        let (first, step) = (self.first, self.step);
+        self.places(positions, of).map(move |k| first + k * step)
+    }
+
+    fn places(&self, positions: &Range<usize>, of: &Range<usize>) -> Range<usize> {
         let position = |number: usize| number.saturating_sub(self.first).div_ceil(self.step);
         let from = position(of.start).max(positions.start);
         let to = position(of.end).min(positions.end);
-        let (first, step) = (self.first, self.step);
-        (from..to.max(from)).map(move |k| first + k * step)
+        from..to.max(from)
     }
 }
 

@@ -196,6 +196,14 @@ impl Pass {
         self.placed.first().map(|placed| &placed.light)
     }
 
+    pub(crate) const fn share(&self) -> &Share {
+        &self.share
+    }
+
+    pub(crate) fn placed(&self) -> &[Placed] {
+        &self.placed
+    }
+
     pub(crate) fn bin(&self, region: RegionId) -> &[Vec<u32>; 2] {
         &self.bins[usize::from(region.0)]
     }

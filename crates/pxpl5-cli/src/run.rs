@@ -21,6 +21,7 @@ use std::path::PathBuf;
   pxpl5 run experiments/figure-04.toml --seed 7 --json
   pxpl5 run --pipeline jitp-scanline-racing --scene full-screen:4 --head pan:200 --tracker fastrak
   pxpl5 run --pipeline slats --scene mig --triangles 100 --set gp.triangle_ns=30000
+  pxpl5 run --pipeline slats --scene mig --triangles 50 --level cycle
   pxpl5 run --pipeline slats --scene head --triangles 100 --save-at 60 --save s.json
   pxpl5 run --restore s.json --fields 600")]
 pub(crate) struct RunArgs {
@@ -78,14 +79,14 @@ fn plan(file: ExperimentFile) -> Result<Plan, CliError> {
         return Err(CliError::usage("this file describes a sweep: use `pxpl5 sweep FILE --out DIR`"));
     }
     let plan = file.resolve()?;
-    if plan.level != Level::Transaction {
+    if plan.level == Level::Analytic {
         return Err(no_events());
     }
     Ok(plan)
 }
 
 fn no_events() -> CliError {
-    CliError::usage("level: a run needs the level transaction; the analytic level has no events and is for sweeps")
+    CliError::usage("level: a run needs transaction or cycle; the analytic level has no events and is for sweeps")
 }
 
 pub(crate) fn json(report: &Report) -> Result<String, CliError> {

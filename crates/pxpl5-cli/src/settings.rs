@@ -63,6 +63,9 @@ pub(crate) struct SettingArgs {
     /// NTSC fields to simulate (1/60 s each); default 120.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     fields: Option<i64>,
+    /// Level of modelling: transaction, cycle or (for sweeps) analytic; default transaction.
+    #[arg(long)]
+    level: Option<String>,
     /// Which pixels are computed: off, lazy (those looked at) or all; default lazy.
     #[arg(long)]
     pixels: Option<String>,
@@ -97,6 +100,7 @@ impl SettingArgs {
             ("head.tracker", "--tracker", self.tracker),
             ("head.predict", "--predict", self.predict),
             ("head.display", "--display", self.display),
+            ("level", "--level", self.level),
             ("pixels", "--pixels", self.pixels),
         ];
         for (key, option, value) in texts {

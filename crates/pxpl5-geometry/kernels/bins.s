@@ -1,6 +1,6 @@
-// Puts the command at r18 into the bin of every region that a triangle touches: 128 x 128 pixels, 5 x 4 regions of a
-// frame of 640 x 480. A region is touched when its pixels meet the pixels of the bounding box, and every edge has a
-// point of the region on its inner side.
+// Puts the command at r18 into the bin of every region that a triangle touches: 128 pixels wide, 5 regions across. A
+// region is touched when its pixels meet the pixels of the bounding box, and every edge has a point of the region on
+// its inner side.
 //
 // In: low x, high x, low y, high y at BOX(r2); table of bins r19;
 // macro edgeword k, n, to loads coefficient n (a, b, c) of edge k.
@@ -63,22 +63,24 @@ ba:     adds    -9, r25, r12                // last pixel whose centre is left o
         mov     639, r12
 bb:     adds    7, r26, r13
         shra    4, r13, r13
+        firstrow r13
         subs    r0, r13, r0
         bc      bc1
         mov     r0, r13
 bc1:    adds    -9, r27, r14
         shra    4, r14, r14
-        subs    479, r14, r0
+        lastrow r14
+        subs    LAST_ROW, r14, r0
         bnc     bd
-        mov     479, r14
+        mov     LAST_ROW, r14
 bd:     subs    r12, r11, r0                // empty?
         bc      return
         subs    r14, r13, r0
         bc      return
         shr     7, r11, r11                 // first and last column and row of regions
         shr     7, r12, r12
-        shr     7, r13, r13
-        shr     7, r14, r14
+        regionrow r13
+        regionrow r14
         shl     7, r11, r7
         adds    127, r7, r8
         mov     r1, r15
@@ -108,13 +110,15 @@ bd:     subs    r12, r11, r0                // empty?
 return: bri     r1
         nop
 
-// top and bottom line of row r13
-rowbox: shl     7, r13, r9
-        adds    127, r9, r10
-        subs    479, r10, r0
+// top and bottom line of the row r13 of regions
+rowbox: toprow  r13, r9
+        adds    LAST_OF_REGION, r9, r10
+        subs    LAST_ROW, r10, r0
         bnc     rb
-        mov     479, r10
-rb:     bri     r1
+        mov     LAST_ROW, r10
+rb:     line    r9
+        line    r10
+        bri     r1
         nop
 
 // every region of the box against the three edges

@@ -1,17 +1,21 @@
-// Addresses that both triangle kernels share.
+// Addresses that all triangle kernels share.
 //
 // Registers on entry: r16 first triangle, r17 number of triangles (at least 1), r18 where command words go,
 // r19 table of bins, r20 parameter block, r21 list of triangles left to the clipper, r2 stack.
 // On return: r18 behind the last command, r21 behind the last entry of the list.
 
-// A triangle: three corners of 16 bytes, each x, y, z (single) and colour (0x00BBGGRR).
-TRIANGLE_BYTES = 48
+// A triangle of the display list: three corners of 32 bytes, each position x, y, z (single), colour (0x00RRGGBB),
+// normal x, y, z (single), unused.
+TRIANGLE_BYTES = 96
+COLOUR = 12
+NORMAL = 16
 
 // A bin: the address of its next free word. An entry is the address of a command.
-REGIONS = 20
 
-// A command: enable; three edges; depth compared, depth loaded again; red, green, blue.
-COMMAND_BYTES = 120
+// What the surface routine leaves: component k of corner n is a word, biased so that the double with the high word of
+// 2^52 over it, less P_SURFACE, is the value that a plane goes through.
+SURFACE_CORNER = 64
+SURFACE_WORD   = 8
 
 // Parameter block, singles: rows x, y, z, w of the transform as c0 c1 c2 t, then the rest.
 P_ROWS      = 0
@@ -21,18 +25,31 @@ P_SCREEN    = 96          // scale x, y; centre x, y (subpixels)
 P_TWO_S     = 112         // 2.0
 P_ROUND_S   = 116         // 1.5 * 2^23
 P_FLIP      = 120         // the word 0x97000000: less a biased integer it turns the order round
+P_LINE      = 124         // the integer 0 or 1: line of the frame that is the field's first
 // Doubles.
 P_TWO       = 128         // 2.0
 P_DEPTH     = 136         // far - near in depth units
 P_NEAR      = 144         // near in depth units
 P_HALF      = 152         // 0.5
-P_TWO52     = 160         // 2^52
-P_ROUND     = 168         // 1.5 * 2^52
-P_SIXTEENTH = 176         // 1 / 16
-P_SIXTEEN   = 184         // 16.0
-P_BIAS31    = 192         // 2^52 + 2^31, for signed integers
-P_EIGHT     = 200         // 8.0
-P_TIE_IN    = 208         // -7.5: floor(k / 16) is the integer nearest to (k - 7.5) / 16
-P_TIE_OUT   = 216         // -8.5: the same for an edge that does not own its pixels
-// Words: instruction heads of the command (enable, edge, depth compare, depth again, red, green, blue).
-P_HEADS     = 224
+P_TWO52     = 160         // 2^52, the bias of depths; that of surface words follows
+P_SURFACE   = 168         // 2^52, or 2^52 + 2^31 where they have signs
+P_ROUND     = 176         // 1.5 * 2^52
+P_SIXTEENTH = 184         // 1 / 16
+P_SIXTEEN   = 192         // 16.0
+P_BIAS31    = 200         // 2^52 + 2^31, for signed integers
+P_EIGHT     = 208         // 8.0
+P_TIE_IN    = 216         // -7.5: floor(k / 16) is the integer nearest to (k - 7.5) / 16
+P_TIE_OUT   = 224         // -8.5: the same for an edge that does not own its pixels
+// Words: instruction heads of the command (enable, edge, depth compare, depth again, three components, colour).
+P_HEADS     = 232
+P_THREE_HALVES = 264      // 1.5, double
+// Singles: rows x, y, z from the world to the eye as c0 c1 c2 t.
+P_EYE       = 272
+P_LIGHT     = 320         // towards the light, in eye coordinates; (unused)
+P_AMBIENT   = 336         // part of the colour that is seen in shadow
+P_DIFFUSE   = 340         // part added where the light falls square
+P_ONE       = 344         // 1.0
+P_TWO23     = 348         // 2^23
+P_LEAST     = 352         // least and greatest square of a normal that has a direction
+P_MOST      = 356
+P_UNIT      = 360         // a component of 1.0 in units of the command's normal

@@ -1,8 +1,8 @@
 // One Gouraud triangle after another in dual-instruction mode: a floating-point and a core operation in every clock.
 //
 // Triangles go through in batches of up to 16: a first pass over the batch does the corners and leaves a record of each
-// triangle, a second pass turns the records into commands and bins. The code of each pass fits the 4 KB instruction
-// cache, the records and the rest fit the data cache.
+// triangle, a second one adds its surface (light or normals), a third one turns the records into commands and bins. The
+// code of each pass fits the 4 KB instruction cache, the records and the rest fit the data cache.
 //
 // Every pair is two lines: the floating-point half, then the core half indented further. The comment says where a
 // step begins; the pairs of several steps overlap. Three corners go through the pipes side by side, then three edges,
@@ -12,8 +12,9 @@
 // divisions.
 
 
-// ---- record of a triangle. A corner: x, y (double), x and y as biased integers, (8 free), then depth, red, green,
-// blue as words under the high word of 2^52, so that each reads as a double.
+// ---- record of a triangle. A corner: x, y (double), x and y as biased integers, (8 free), then depth and three words of
+// its surface under the high word of 2^52, so that each reads as a double.
+SOURCE  = 24        // the triangle in the display list
 AREA    = 192       // twice the area, double
 LOW     = 200       // least x, y of the corners, biased by 0x4B400000
 HIGH    = 208       // 0x97000000 less the greatest x, y, biased
@@ -74,19 +75,17 @@ next:   d.fnop
         d.fnop
             fld.q   0(r16), f4            // corners
         d.fnop
-            fld.q   16(r16), f8
+            fld.q   32(r16), f8
         d.fnop
-            fld.q   32(r16), f12
+            fld.q   64(r16), f12
         d.fnop
             fld.q   P_ORIGIN(r20), f16    // eye
-        d.fnop
-            ld.l    12(r16), r5           // colour of a corner
         d.fnop
             fld.l   P_ROWS+48(r20), f2
         d.pfsub.ss  f4, f16, f0           // relative to the eye, x
             fld.l   P_ROWS+52(r20), f3
         d.pfsub.ss  f8, f16, f0
-            and     255, r5, r6
+            nop
         d.pfsub.ss  f12, f16, f0
             nop
         d.pfsub.ss  f5, f17, f20          // relative to the eye, y
@@ -100,7 +99,7 @@ next:   d.fnop
         d.pfsub.ss  f10, f18, f25
             nop
         d.pfsub.ss  f14, f18, f4
-            shl     12, r6, r7
+            nop
         d.pfmul.ss  f2, f20, f0           // row w, product 0
             nop
         d.pfmul.ss  f2, f21, f0
@@ -110,7 +109,7 @@ next:   d.fnop
         d.pfmul.ss  f3, f23, f5           // row w, product 1
             fld.l   P_ROWS+60(r20), f2
         d.pfmul.ss  f3, f25, f6
-            adds    2048, r7, r8
+            nop
         d.pfmul.ss  f3, f4, f7
             nop
         d.pfadd.ss  f0, f0, f3
@@ -128,7 +127,7 @@ next:   d.fnop
         d.pfadd.ss  f7, f6, f0
             nop
         d.pfmul.ss  f5, f20, f12          // row x, product 0
-            st.l    r8, 40(r3)
+            st.l    r16, SOURCE(r3)
         d.pfadd.ss  f24, f12, f24
             fld.l   P_ROWS+4(r20), f15
         d.pfmul.ss  f5, f21, f12
@@ -140,13 +139,13 @@ next:   d.fnop
         d.pfadd.ss  f5, f12, f5
             nop
         d.pfadd.ss  f5, f2, f5            // coordinate w
-            shr     8, r5, r9
+            nop
         d.pfadd.ss  f12, f2, f12
             fld.l   P_ROWS+8(r20), f5
         d.pfadd.ss  f12, f2, f12
             nop
         d.pfmul.ss  f15, f23, f2          // row x, product 1
-            and     255, r9, r10
+            nop
         d.pfmul.ss  f15, f25, f24
             fld.l   P_ROWS+12(r20), f12
         d.pfmul.ss  f15, f4, f6
@@ -156,7 +155,7 @@ next:   d.fnop
         d.pfadd.ss  f2, f7, f15
             nop
         d.pfmul.ss  f5, f13, f2
-            shl     12, r10, r11
+            nop
         d.pfadd.ss  f24, f2, f7
             nop
         d.pfmul.ss  f5, f14, f2
@@ -164,7 +163,7 @@ next:   d.fnop
         d.pfadd.ss  f6, f2, f5
             nop
         d.pfmul.ss  f8, f15, f2
-            adds    2048, r11, r12
+            nop
         d.pfadd.ss  f6, f2, f6
             nop
         d.pfmul.ss  f8, f7, f2
@@ -182,7 +181,7 @@ next:   d.fnop
         d.pfadd.ss  f2, f12, f2
             nop
         d.pfadd.ss  f0, f0, f2
-            st.l    r12, 48(r3)
+            nop
         d.pfadd.ss  f0, f0, f6
             nop
         d.pfadd.ss  f0, f0, f12
@@ -204,7 +203,7 @@ next:   d.fnop
         d.pfsub.ss  f0, f2, f0
             bc      clipped
         d.pfle.ss   f6, f24, f16
-            shr     16, r5, r13
+            nop
         d.pfadd.ss  f0, f0, f0
             fst.l   f12, SCRATCH+8(r2)
         d.pfle.ss   f16, f6, f17
@@ -222,15 +221,15 @@ next:   d.fnop
         d.pfmul.ss  f6, f21, f0
             bc      clipped
         d.pfmul.ss  f6, f22, f12
-            and     255, r13, r14
+            nop
         d.pfmul.ss  f2, f23, f24          // row y, product 1
             fld.l   P_ROWS+24(r20), f6
         d.pfmul.ss  f2, f25, f16
-            shl     12, r14, r15
+            nop
         d.pfmul.ss  f2, f4, f18
             fld.l   P_ROWS+28(r20), f17
         d.pfmul.ss  f6, f3, f2            // row y, product 2
-            adds    2048, r15, r22
+            nop
         d.pfadd.ss  f24, f2, f0
             nop
         d.pfmul.ss  f6, f13, f2
@@ -242,7 +241,7 @@ next:   d.fnop
         d.pfadd.ss  f18, f2, f0
             nop
         d.pfmul.ss  f9, f7, f2
-            st.l    r22, 56(r3)
+            nop
         d.pfadd.ss  f6, f2, f6
             nop
         d.pfmul.ss  f9, f5, f2
@@ -260,13 +259,13 @@ next:   d.fnop
         d.pfadd.ss  f2, f6, f16
             nop
         d.pfle.ss   f2, f12, f2           // |y| within the guard band
-            ld.l    28(r16), r23          // colour of a corner
+            nop
         d.pfadd.ss  f0, f0, f6
             nop
         d.pfadd.ss  f12, f17, f12
             bc      clipped
         d.pfadd.ss  f0, f0, f0
-            and     255, r23, r26
+            nop
         d.pfle.ss   f16, f2, f0
             fst.l   f2, SCRATCH+16(r2)
         d.pfadd.ss  f0, f0, f12
@@ -287,8 +286,6 @@ next:   d.fnop
             fld.l   P_ROWS+32(r20), f16
         d.pfle.ss   f12, f24, f17
             bc      clipped
-        d.fnop
-            shl     12, r26, r27
         d.pfle.ss   f17, f12, f0
             bc      clipped
         d.pfmul.ss  f16, f20, f0          // row z, product 0
@@ -296,15 +293,15 @@ next:   d.fnop
         d.pfmul.ss  f16, f21, f0
             bc      clipped
         d.pfmul.ss  f16, f22, f0
-            adds    2048, r27, r28
+            nop
         d.pfmul.ss  f17, f23, f22         // row z, product 1
             fld.l   P_ROWS+40(r20), f16
         d.pfmul.ss  f17, f25, f23
-            st.l    r28, 104(r3)
+            nop
         d.pfmul.ss  f17, f4, f19
             fld.l   P_ROWS+44(r20), f18
         d.pfmul.ss  f16, f3, f4           // row z, product 2
-            shr     8, r23, r29
+            nop
         d.pfadd.ss  f22, f4, f0
             nop
         d.pfmul.ss  f16, f13, f3
@@ -318,7 +315,7 @@ next:   d.fnop
         d.pfadd.ss  f0, f0, f4
             fld.l   P_TWO_S(r20), f3
         d.pfadd.ss  f0, f0, f13
-            and     255, r29, r30
+            nop
         d.pfadd.ss  f0, f0, f14
             nop
         d.pfmul.ss  f0, f0, f19
@@ -338,7 +335,7 @@ next:   d.fnop
         d.pfadd.ss  f4, f18, f4
             nop
         d.pfadd.ss  f4, f18, f4
-            shl     12, r30, r31
+            nop
         d.frcp.ss   f15, f2               // seeds of 1 / w
             nop
         d.frcp.ss   f7, f6
@@ -350,7 +347,7 @@ next:   d.fnop
         d.pfmul.ss  f7, f6, f0
             nop
         d.pfmul.ss  f5, f12, f0
-            adds    2048, r31, r6
+            nop
         d.pfle.ss   f0, f4, f4            // between near and far
             nop
         d.pfmul.ss  f0, f0, f13
@@ -366,7 +363,7 @@ next:   d.fnop
         d.pfle.ss   f14, f7, f0
             bc      clipped
         d.pfsub.ss  f3, f13, f14
-            st.l    r6, 112(r3)
+            nop
         d.pfle.ss   f0, f4, f0
             bc      clipped
         d.pfmul.ss  f2, f14, f13
@@ -378,7 +375,7 @@ next:   d.fnop
         d.pfmul.ss  f6, f2, f0
             bc      clipped
         d.pfle.ss   f10, f15, f0          // w in range
-            shr     16, r23, r7
+            nop
         d.pfamov.sd f15, f0               // to double
             nop
         d.pfle.ss   f15, f11, f4
@@ -404,13 +401,13 @@ next:   d.fnop
         d.pfmul.ss  f0, f0, f4
             bc      clipped
         d.pfamov.sd f4, f0
-            and     255, r7, r8
+            nop
         d.pfmul.ss  f0, f0, f4
-            shl     12, r8, r9
+            nop
         d.pfamov.sd f4, f0
-            adds    2048, r9, r10
+            nop
         d.pfadd.ss  f0, f0, f4
-            st.l    r10, 120(r3)
+            nop
         d.pfmul.dd  f12, f4, f0           // a Newton step in double
             nop
         d.pfadd.ss  f0, f0, f10
@@ -428,7 +425,7 @@ next:   d.fnop
         d.pfsub.dd  f2, f16, f0
             nop
         d.pfmul.dd  f0, f0, f16
-            ld.l    44(r16), r11          // colour of a corner
+            nop
         d.pfsub.dd  f2, f16, f0
             nop
         d.pfadd.ss  f0, f0, f16
@@ -451,8 +448,6 @@ next:   d.fnop
             fld.l   SCRATCH+16(r2), f19
         d.pfmul.dd  f6, f22, f12
             nop
-        d.fnop
-            and     255, r11, r12
         d.pfmul.dd  f8, f12, f6
             nop
         d.pfsub.dd  f2, f6, f0
@@ -478,7 +473,7 @@ next:   d.fnop
         d.pfmul.dd  f12, f6, f20
             nop
         d.pfamov.ds f20, f0               // 1 / w
-            shl     12, r12, r5
+            nop
         d.pfmul.dd  f0, f0, f6
             nop
         d.pfamov.ds f6, f0
@@ -488,9 +483,9 @@ next:   d.fnop
         d.pfamov.ds f6, f0
             nop
         d.pfadd.ss  f0, f0, f6
-            adds    2048, r5, r13
+            nop
         d.pfmul.ss  f16, f6, f0           // x / w
-            st.l    r13, 168(r3)
+            nop
         d.pfmul.ss  f19, f6, f0           // y / w
             nop
         d.pfmul.ss  f24, f6, f0           // z / w
@@ -518,7 +513,7 @@ next:   d.fnop
         d.pfmul.ss  f9, f19, f18
             nop
         d.pfmul.ss  f2, f19, f9
-            shr     8, r11, r14
+            nop
         d.pfadd.ss  f17, f30, f0
             nop
         d.pfadd.ss  f18, f31, f0
@@ -550,7 +545,7 @@ next:   d.fnop
         d.pfmul.ss  f28, f2, f9
             nop
         d.pfmul.ss  f29, f9, f2
-            and     255, r14, r15
+            nop
         d.pfamov.sd f9, f9
             nop
         d.pfmul.ss  f0, f0, f0
@@ -568,11 +563,11 @@ next:   d.fnop
         d.pfadd.ss  f9, f3, f9
             nop
         d.fzchkl    f6, f12, f22          // bounding box
-            shl     12, r15, r22
+            nop
         d.pfadd.ss  f0, f0, f10
             fst.d   f20, 64(r3)
         d.pfadd.ss  f9, f3, f9
-            adds    2048, r22, r26
+            nop
         d.pfsub.ss  f24, f3, f24
             fst.d   f4, 8(r3)
         d.pfsub.dd  f20, f18, f0          // twice the area
@@ -580,7 +575,7 @@ next:   d.fnop
         d.pfsub.ss  f25, f3, f25
             fst.d   f6, 16(r3)
         d.pfamov.sd f3, f3
-            st.l    r26, 176(r3)
+            nop
         d.fzchkl    f22, f24, f20
             fst.d   f12, 80(r3)
         d.pfsub.dd  f10, f4, f22
@@ -598,11 +593,11 @@ next:   d.fnop
         d.pfamov.sd f8, f0                // depth
             fld.l   P_FLIP(r20), f3
         d.pfamov.sd f16, f4
-            shr     16, r11, r27
+            nop
         d.pfmul.dd  f22, f4, f0
-            and     255, r27, r28
+            nop
         d.fisub.ss  f3, f6, f4
-            shl     12, r28, r29
+            nop
         d.fisub.ss  f3, f7, f5
             nop
         d.fisub.ss  f3, f12, f6
@@ -614,7 +609,7 @@ next:   d.fnop
         d.fisub.ss  f3, f25, f9
             nop
         d.fzchkl    f4, f6, f10
-            adds    2048, r29, r30
+            nop
         d.pfamov.sd f2, f6
             fld.d   P_DEPTH(r20), f4
         d.fzchkl    f10, f8, f12
@@ -626,7 +621,7 @@ next:   d.fnop
         d.pfmul.dd  f4, f6, f12
             fld.d   P_TWO52(r20), f10
         d.pfadd.ss  f0, f0, f6
-            st.l    r30, 184(r3)
+            nop
         d.pfmul.dd  f4, f6, f14
             nop
         d.pfsub.dd  f12, f14, f6
@@ -709,8 +704,15 @@ passed: adds    TRIANGLE_BYTES, r16, r16
         mov     r3, r4
         adds    BATCH, r2, r3
         bte     r3, r4, none
+
+// ---- surfaces: r3 record, r4 end of the records
+lighted: ld.l   SOURCE(r3), r5
+        call    surface
+        adds    40, r3, r6
+        adds    RECORD_BYTES, r3, r3
+        btne    r3, r4, lighted
         br      second
-        nop
+        adds    BATCH, r2, r3
 
 // ---- not wholly inside the guard band: leave dual-instruction mode, then to the list
         .align  8
@@ -722,7 +724,7 @@ clipped: fnop
         br      passed
         adds    4, r21, r21
 
-// ---- second pass: r3 record, r4 end of the records
+// ---- commands: r3 record, r4 end of the records
         .align  32
 second: adds    64, r3, r24                 // corners 1 and 2
         adds    128, r3, r25
@@ -1051,9 +1053,10 @@ oriented: d.fnop
         mov     r25, r15
         adds    56, r18, r22
         adds    76, r18, r23
+        mov     r20, r26                    // the bias of the upper plane: depth, then surface
         .align  8
 
-// ---- two planes at a time
+// ---- two planes at a time: of each corner's doubles at 32 and 40 of r13, r14, r15
 planes: d.fnop
             nop
         d.fnop
@@ -1081,7 +1084,7 @@ planes: d.fnop
         d.pfmul.dd  f6, f18, f0
             fld.d   P_ROUND(r20), f20
         d.pfadd.ss  f0, f0, f22
-            fld.d   P_TWO52(r20), f6
+            fld.d   P_TWO52(r26), f6
         d.pfmul.dd  f8, f22, f24
             nop
         d.pfadd.ss  f0, f0, f26
@@ -1091,7 +1094,7 @@ planes: d.fnop
         d.pfsub.dd  f2, f6, f0
             nop
         d.pfmul.dd  f22, f14, f2
-            nop
+            fld.d   P_SURFACE(r20), f6
         d.pfsub.dd  f24, f2, f0
             nop
         d.pfmul.dd  f26, f14, f2
@@ -1203,11 +1206,15 @@ planes: d.fnop
         adds    16, r15, r15
         adds    36, r22, r22
         adds    32, r23, r23
+        adds    P_SURFACE-P_TWO52, r26, r26
         adds    32, r3, r30
         btne    r13, r30, planes
         call    bins
         nop
         bte     r0, r22, done               // no region: the next command overwrites this one
+        ld.l    SOURCE(r3), r5
+        finish  r5
+        restate
         adds    COMMAND_BYTES, r18, r18
 done:   adds    RECORD_BYTES, r3, r3
         btne    r3, r4, second

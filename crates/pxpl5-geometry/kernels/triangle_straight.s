@@ -10,7 +10,6 @@ INV    = 48       // 1 / w, single, 4 bytes each (3, padded to 16)
 SX     = 64       // x in subpixels, integer, of corners 0, 1, 2
 SY     = 76       // y
 SZ     = 88       // depth
-COL    = 100      // colour words of corners 0, 1, 2, clockwise
 DX1    = 112      // corner 0 to 1 and 0 to 2, double
 DY1    = 120
 DX2    = 128
@@ -33,6 +32,7 @@ BOX    = 288      // low x, high x, low y, high y
 D1     = 304
 D2     = 312
 SAVE   = 320      // return address
+SURF   = 328      // surface words
 
         .macro  edgeword k, n, to
         ld.l    EDGEA+12*\k+4*\n(r2), \to
@@ -106,7 +106,7 @@ SAVE   = 320      // return address
 
 // relative to the eye
         .macro  relative n, k, to
-        fld.l   16*\n+4*\k(r16), f8
+        fld.l   32*\n+4*\k(r16), f8
         fld.l   P_ORIGIN+4*\k(r20), f9
         fsub.ss f8, f9, \to
         .endm
@@ -203,15 +203,21 @@ down\@: st.l    r30, SZ+4*\n(r2)
         snap    \n, 0, SX
         snap    \n, 1, SY
         depth   \n
-        ld.l    16*\n+12(r16), r30
-        st.l    r30, COL+4*\n(r2)
+        .endm
+
+        .macro  exchange at, with
+        ld.l    \at(r2), r30
+        ld.l    \with(r2), r31
+        st.l    r31, \at(r2)
+        st.l    r30, \with(r2)
         .endm
 
         .macro  swapwords at
-        ld.l    \at+4(r2), r30
-        ld.l    \at+8(r2), r31
-        st.l    r31, \at+4(r2)
-        st.l    r30, \at+8(r2)
+        exchange \at+4, \at+8
+        .endm
+
+        .macro  swapsurface k
+        exchange SURF+SURFACE_CORNER+SURFACE_WORD*\k, SURF+2*SURFACE_CORNER+SURFACE_WORD*\k
         .endm
 
         .macro  delta at, n, to
@@ -327,23 +333,14 @@ high\@: nop
 
 // ---- planes
 
-        .macro  depthvalue n, to
-        ld.l    SZ+4*\n(r2), r30
+        .macro  value from, bias, to
+        ld.l    \from(r2), r30
         ixfr    r30, f8
         orh     0x4330, r0, r30
         ixfr    r30, f9
-        fld.d   P_TWO52(r20), f10
+        fld.d   \bias(r20), f10
         fsub.dd f8, f10, f12
         fst.d   f12, \to(r2)
-        .endm
-
-        .macro  colourvalue n, k, to
-        ld.l    COL+4*\n(r2), r29
-        shr     8*\k, r29, r29
-        and     255, r29, r29
-        shl     12, r29, r29
-        adds    2048, r29, r29
-        todouble r29, \to
         .endm
 
 // coefficients of the plane through V0 V1 V2 to the words at `to` of the command
@@ -377,10 +374,17 @@ high\@: nop
         st.l    r30, \to+8(r18)
         .endm
 
-        .macro  colourplane k, to
-        colourvalue 0, \k, V0
-        colourvalue 1, \k, V1
-        colourvalue 2, \k, V2
+        .macro  depthplane to
+        value   SZ, P_TWO52, V0
+        value   SZ+4, P_TWO52, V1
+        value   SZ+8, P_TWO52, V2
+        plane   \to
+        .endm
+
+        .macro  surfaceplane k, to
+        value   SURF+SURFACE_WORD*\k, P_SURFACE, V0
+        value   SURF+SURFACE_CORNER+SURFACE_WORD*\k, P_SURFACE, V1
+        value   SURF+2*SURFACE_CORNER+SURFACE_WORD*\k, P_SURFACE, V2
         plane   \to
         .endm
 
@@ -410,6 +414,9 @@ next:   corner  0
         place   0
         place   1
         place   2
+        mov     r16, r5
+        call    surface
+        adds    SURF, r2, r6
         area
         fld.d   AREA(r2), f8
         pfeq.dd f8, f0, f0
@@ -419,7 +426,9 @@ next:   corner  0
         swapwords SX                        // make it clockwise
         swapwords SY
         swapwords SZ
-        swapwords COL
+        swapsurface 0
+        swapsurface 1
+        swapsurface 2
         area
 oriented: edge  0, 0, 1
         edge    1, 1, 2
@@ -448,13 +457,12 @@ oriented: edge  0, 0, 1
         fld.d   P_SIXTEEN(r20), f8
         fmul.dd f8, f12, f12
         fst.d   f12, PERPIX(r2)
-        depthvalue 0, V0
-        depthvalue 1, V1
-        depthvalue 2, V2
-        plane   56
-        colourplane 0, 76
-        colourplane 1, 92
-        colourplane 2, 108
+        depthplane 56
+        surfaceplane 0, 76
+        surfaceplane 1, 92
+        surfaceplane 2, 108
+        finish  r16
+        restate
         adds    COMMAND_BYTES, r18, r18
 done:   adds    TRIANGLE_BYTES, r16, r16
         adds    -1, r17, r17

@@ -67,7 +67,7 @@
 //!
 //! - Colour interpolated with perspective: planes are linear on the screen, as on the machine.
 //! - Spheres that the near or far plane cuts (not drawn, counted) and shadows or specular light on vertices.
-//! - The time all this takes on an i860: that is the firmware's business.
+//! - The time all this takes on an i860: [`kernel`] holds the same computation as its code, which others run.
 //!
 //! # Sources
 //!
@@ -78,6 +78,7 @@ mod bin;
 mod clip;
 mod conic;
 mod input;
+pub mod kernel;
 mod light;
 mod plane;
 mod screen;

@@ -29,18 +29,18 @@ pub struct Transform {
     pub(crate) to_eye: FromWorld,
     /// `None` where spheres cannot be drawn.
     pub(crate) lens: Option<Lens>,
-    to_clip: FromWorld,
-    to_screen: ToScreen,
-    guard: Guard,
+    pub(crate) to_clip: FromWorld,
+    pub(crate) to_screen: ToScreen,
+    pub(crate) guard: Guard,
     pub(crate) binner: Binner,
     culling: Culling,
 }
 
 /// From normalised device coordinates to subpixels of the frame: `scale * v + centre`.
 #[derive(Clone, Copy, Debug)]
-struct ToScreen {
-    scale: [f32; 2],
-    centre: [f32; 2],
+pub(crate) struct ToScreen {
+    pub(crate) scale: [f32; 2],
+    pub(crate) centre: [f32; 2],
 }
 
 /// A vertex on the screen.

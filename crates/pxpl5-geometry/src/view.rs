@@ -241,6 +241,16 @@ impl FromWorld {
         Self { columns, origin }
     }
 
+    /// Rows x, y, z, w of the matrix for points relative to [`Self::origin`].
+    pub(crate) fn rows(&self) -> [[f32; 4]; 4] {
+        std::array::from_fn(|row| self.columns.map(|column| column[row]))
+    }
+
+    /// The eye in the world.
+    pub(crate) const fn origin(&self) -> Vec3 {
+        self.origin
+    }
+
     /// Transforms a point.
     #[inline(always)]
     pub(crate) fn point(&self, p: Vec3) -> [f32; 4] {

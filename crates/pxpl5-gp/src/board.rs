@@ -4,6 +4,7 @@ use crate::cpu::{Cpu, Level};
 use crate::firmware::{Fault, Gp, Program, Received, Shared};
 use crate::memory::Memory;
 use crate::probe::Mark;
+use crate::processor::Processor;
 use crate::timing::GpTiming;
 use pxpl5_sim::{Blocked, Context, Phase, Span};
 use pxpl5_wire::{Message, NodeId};
@@ -82,6 +83,7 @@ impl GpBoard {
             timing,
             cpu: Cpu::default(),
             memory: Memory::new(node, timing.memory_bytes),
+            processor: None,
             inbox: VecDeque::new(),
             batches: VecDeque::new(),
             in_flight: Vec::new(),
@@ -98,6 +100,15 @@ impl GpBoard {
         };
         let shared = Rc::new(RefCell::new(shared));
         Self { shared, tasks: Vec::new(), announced: None, poll_pending: false, cycle, fault: None }
+    }
+
+    /// Has the time of [`Work`](crate::Work) come from code from now on, where the timing table stands for code
+    /// ([`GpTiming::code_version`]).
+    pub fn run_code(&mut self) {
+        let shared = &mut *self.shared.borrow_mut();
+        let (node, bytes) = (shared.node, shared.timing.memory_bytes);
+        let processor = |version| Box::new(Processor::new(node, bytes, version));
+        shared.processor = shared.timing.code_version().map(processor);
     }
 
     /// A handle for a program at a level.

@@ -3,6 +3,7 @@
 use crate::cpu::{Cpu, Level};
 use crate::memory::{Account, Memory, OutOfMemory};
 use crate::probe::{Edge, Mark, Stage};
+use crate::processor::{Processor, ProcessorFault};
 use crate::timing::GpTiming;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Body, Eye, Message, NodeId, RegionId};
@@ -30,6 +31,8 @@ pub enum Fault {
         /// What arrived.
         found: String,
     },
+    /// Code did not come to its end.
+    Processor(ProcessorFault),
 }
 
 impl fmt::Display for Fault {
@@ -39,6 +42,7 @@ impl fmt::Display for Fault {
             Self::Protocol { node, found } => {
                 write!(f, "node {}: unexpected message {found}", node.0)
             }
+            Self::Processor(fault) => fault.fmt(f),
         }
     }
 }
@@ -48,6 +52,12 @@ impl std::error::Error for Fault {}
 impl From<OutOfMemory> for Fault {
     fn from(error: OutOfMemory) -> Self {
         Self::Memory(error)
+    }
+}
+
+impl From<ProcessorFault> for Fault {
+    fn from(fault: ProcessorFault) -> Self {
+        Self::Processor(fault)
     }
 }
 
@@ -81,6 +91,8 @@ pub(crate) struct Shared {
     pub(crate) timing: GpTiming,
     pub(crate) cpu: Cpu,
     pub(crate) memory: Memory,
+    /// Where the time of work comes from code.
+    pub(crate) processor: Option<Box<Processor>>,
     pub(crate) inbox: VecDeque<Received>,
     pub(crate) batches: VecDeque<Batch>,
     /// Receivers of the messages of the batch being sent that have not been accepted, by place in the batch.

@@ -22,8 +22,11 @@
 //!
 //! The host workstation runs on the same board model with its own timing table.
 //!
-//! **Not modelled here:** caches and instructions (that is the `i860` crate), the bus between CPU and DMA,
-//! the cost of taking an interrupt beyond the message's software cost.
+//! - The time of [`Work`] comes from the timing table, or from i860 code that runs on the board's [`Processor`]
+//!   ([`GpBoard::run_code`]); programs do not know which.
+//!
+//! **Not modelled here:** the bus between CPU and DMA, the cost of taking an interrupt beyond the message's software
+//! cost, and what an interrupt program does to the caches.
 //!
 //! Sources: TR94 (memory, clock, background rendering); the timing table states each number's own.
 
@@ -32,11 +35,15 @@ mod cpu;
 mod firmware;
 mod memory;
 mod probe;
+mod processor;
 pub mod timing;
+mod work;
 
 pub use board::{GpBoard, GpEvent, GpOutput, PLACE_BITS};
 pub use cpu::Level;
 pub use firmware::{Fault, Gp, Program, Received, Ticket};
 pub use memory::{Account, Memory, OutOfMemory};
 pub use probe::{Edge, Mark, Stage};
+pub use processor::{CodeVersion, Processor, ProcessorFault};
 pub use timing::{GpTiming, HostTiming};
+pub use work::Work;

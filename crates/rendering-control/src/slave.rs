@@ -3,7 +3,7 @@
 use crate::config::{BIN_ENTRY_BYTES, Config, PROGRAM_BYTES};
 use crate::master::copy_order;
 use crate::protocol::{Order, Token};
-use pphigs::{Around, FrameView, Pass, Share, region_messages};
+use pphigs::{Around, FrameView, Pass, Share, Transforming, region_messages};
 use pxpl5_gp::{Account, Fault, Gp, Level, Stage};
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, RegionId};
@@ -52,6 +52,7 @@ pub fn slave(
 async fn transform_program(gp: Gp, config: Config, share: Share, state: Shared) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     gp.reserve(Account::DisplayList, share.bytes(), None)?;
+    gp.install(|processor| share.install(processor))?;
     for frame in 0.. {
         let view = edit(&gp, &config, &state, frame).await;
         for eye in 0..config.eyes() {
@@ -85,21 +86,16 @@ async fn transform(
 ) -> Result<(), Fault> {
     let (frame, eye) = (config.frame_of(picture), config.eye_of(picture));
     gp.begin(Stage::Transform, frame, Some(eye));
-    let pass = share.transform(view, eye.index(), config.picture);
-    reserve_bins(gp, &pass, (picture % 2) as u8)?;
-    gp.spend(transform_span(gp, &pass)).await;
+    let (pass, context) = (share.transform(view, eye.index(), config.picture), (picture % 2) as u8);
+    reserve_bins(gp, &pass, context)?;
+    let passes = std::slice::from_ref(&pass);
+    gp.work(&Transforming { passes, context, begins: true }).await?;
     let regions = config.grid().regions() as u16;
     let entries = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
-    state.borrow_mut().bins[(picture % 2) as usize] = Some(pass);
+    state.borrow_mut().bins[usize::from(context)] = Some(pass);
     gp.end(Stage::Transform, frame, Some(eye));
     tell_master(gp, config, &Order::Transformed(picture, entries)).await;
     Ok(())
-}
-
-fn transform_span(gp: &Gp, pass: &Pass) -> Span {
-    let (timing, counts) = (gp.timing(), pass.transformed());
-    let primitives = timing.triangle_ns * u64::from(counts.triangles) + timing.sphere_ns * u64::from(counts.spheres);
-    Span::from_ns(timing.pass_ns + primitives + timing.bin_entry_ns * pass.entries())
 }
 
 /// Accounts for commands and bins; an overflow names the region whose bin was being filled.

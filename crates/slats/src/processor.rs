@@ -2,7 +2,7 @@
 
 use crate::bind::{Binding, BoundRegion};
 use crate::config::{Config, Copy};
-use pphigs::{Around, Counts, FrameView, Pass, Picture, Share, ViewWordsError, copy_message, region_messages};
+use pphigs::{Around, FrameView, Pass, Picture, Share, Transforming, ViewWordsError, copy_message, region_messages};
 use pxpl5_gp::{Account, Fault, Gp, Level, Stage, Ticket};
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyOrder, Eye, FieldParity, NodeId, Word, swap_request};
@@ -115,6 +115,7 @@ impl Processor {
     async fn fields(self) -> Result<(), Fault> {
         self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
         self.gp.reserve(Account::DisplayList, self.share.bytes(), None)?;
+        self.gp.install(|processor| self.share.install(processor))?;
         if self.index == 0 { self.lead().await } else { self.follow().await }
     }
 
@@ -130,7 +131,7 @@ impl Processor {
                 self.tell_others(field, &view).await;
             }
             self.show_backup(field).await;
-            self.field(field, &view).await;
+            self.field(field, &view).await?;
             let others = self.config.processors.len() - 1;
             let finished = || (self.state.borrow_mut().finished(field) >= others).then_some(());
             self.gp.until("the clumps of the other processors", finished).await;
@@ -191,7 +192,7 @@ impl Processor {
         loop {
             let (field, view) =
                 self.gp.until("the leading processor", || self.state.borrow_mut().begun.pop_front()).await;
-            self.field(field, &view).await;
+            self.field(field, &view).await?;
             // Queued behind the clumps, so it arrives when they have been accepted.
             let words = [CLUMPS_ACCEPTED, field as Word, (field >> 32) as Word];
             self.gp.send(self.config.processors[0], 3, Body::Words(words.into())).await;
@@ -220,7 +221,7 @@ impl Processor {
     }
 
     /// Draws this GP's share of what is shown from the retrace of `field` on.
-    async fn field(&self, field: u64, view: &FrameView) {
+    async fn field(&self, field: u64, view: &FrameView) -> Result<(), Fault> {
         self.gp.begin_view(Stage::Sample, field, view.number);
         self.gp.begin(Stage::Transform, field, None);
         self.gp.spend(Span::from_ns(self.gp.timing().pass_ns)).await;
@@ -232,7 +233,7 @@ impl Processor {
         }
         let last = clumps.len() - 1;
         for (i, clump) in clumps.iter().enumerate() {
-            let passes = self.transform(clump, view, picture).await;
+            let passes = self.transform(clump, view, picture).await?;
             self.gp.clump_buffer_free().await;
             if i == 0 {
                 self.gp.begin(Stage::Render, field, None);
@@ -244,16 +245,14 @@ impl Processor {
             }
         }
         self.gp.end(Stage::Transform, field, None);
+        Ok(())
     }
 
     /// One pass over a clump for both eyes.
-    async fn transform(&self, clump: &Share, view: &FrameView, picture: Picture) -> [Arc<Pass>; 2] {
+    async fn transform(&self, clump: &Share, view: &FrameView, picture: Picture) -> Result<[Arc<Pass>; 2], Fault> {
         let passes = Eye::BOTH.map(|eye| clump.transform(view, eye.index(), picture));
-        let (timing, Counts { triangles, spheres }) = (self.gp.timing(), clump.counts());
-        let each = timing.triangle_ns * u64::from(triangles) + timing.sphere_ns * u64::from(spheres);
-        let entries: u64 = passes.iter().map(|pass| pass.entries()).sum();
-        self.gp.spend(Span::from_ns(2 * each + timing.bin_entry_ns * entries)).await;
-        passes
+        self.gp.work(&Transforming { passes: &passes, context: 0, begins: false }).await?;
+        Ok(passes)
     }
 
     /// Sends a clump to all its regions as one chain of messages.

@@ -1,0 +1,243 @@
+//! TRANSFORM as work of a board: by the timing table, or as i860 code over the board's memory.
+//!
+//! ```text
+//!   0          1 MB                            ...                        8 MB
+//!   | code, parameters, | display list | commands, bins, list   ...  | commands, bins, list |
+//!   | table of bins, stack             | for the clipper: context 0  |      context 1       |
+//! ```
+//!
+//! The code is that of [`pxpl5_geometry::kernel`]; each structure of the display list is one call. What has no code
+//! takes the table's time: triangles that are left to the clipper, spheres, their entries in bins, and the beginning of
+//! a pass.
+
+use crate::list::Share;
+use crate::pass::{Binning, Pass, Shading};
+use i860::Program;
+use pxpl5_geometry::kernel::{Heads, Kernel, PARAMETER_WORDS, Schedule, Surface, TRIANGLE_WORDS, display_list_words};
+use pxpl5_geometry::{Light, Transform};
+use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
+use pxpl5_renderer::{Command, PhongTriangle, Triangle};
+use pxpl5_sim::Span;
+use pxpl5_wire::{RegionId, Word};
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+
+/// Where the code begins; below are a processor's vectors.
+const CODE: u32 = 0x1000;
+/// Parameter block, table of bins and stack frame of a kernel.
+const PARAMETERS: u32 = 0x1_0000;
+const BIN_TABLE: u32 = 0x1_0200;
+const STACK: u32 = 0x1_0400;
+/// The display list lies behind the first megabyte, which is the program's.
+const DISPLAY_LIST: u32 = 1 << 20;
+/// Bytes of a triangle in it.
+const TRIANGLE_BYTES: u32 = 4 * TRIANGLE_WORDS as u32;
+/// Bytes of a line of the data cache, to which commands are aligned.
+const LINE: u32 = 32;
+
+/// Instructions after which a kernel is taken to be endless: many times what a triangle needs, and its prologue.
+const BUDGET_OF_TRIANGLE: u64 = 40_000;
+const BUDGET: u64 = 10_000;
+
+/// The TRANSFORM of a share for one eye, or for both one after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct Transforming<'a> {
+    /// What each eye's TRANSFORM gives.
+    pub passes: &'a [Arc<Pass>],
+    /// Bin context of the first one, 0 or 1; the next one has the other.
+    pub context: u8,
+    /// Whether a pass over the display list begins with it.
+    pub begins: bool,
+}
+
+/// What a kernel left in the memory of a board.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Made {
+    /// Time that it took.
+    pub span: Span,
+    /// Addresses of the commands.
+    pub commands: Range<u32>,
+    /// Addresses of the bins' entries, which are addresses of commands; none where there are no bins.
+    pub bins: Vec<Range<u32>>,
+    /// Addresses of the entries of the list of triangles for the clipper, which are addresses of triangles.
+    pub clipped: Range<u32>,
+}
+
+impl Made {
+    /// Entries of all bins.
+    fn entries(&self) -> u64 {
+        self.bins.iter().map(|bin| u64::from(bin.end - bin.start) / 4).sum()
+    }
+
+    /// Triangles left to the clipper.
+    fn left(&self) -> u64 {
+        u64::from(self.clipped.end - self.clipped.start) / 4
+    }
+}
+
+impl Work for Transforming<'_> {
+    fn by_table(&self, timing: &GpTiming) -> Span {
+        let of_passes = self.passes.iter().map(|pass| pass.by_table(timing));
+        self.begin(timing) + of_passes.fold(Span::ZERO, |all, span| all + span)
+    }
+
+    fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
+        let mut span = self.begin(timing);
+        for (context, pass) in (self.context..).zip(self.passes) {
+            span += match pass.run_code(processor, context % 2)? {
+                Some(made) => made.span + pass.rest(timing, &made),
+                None => pass.by_table(timing),
+            };
+        }
+        Ok(span)
+    }
+}
+
+impl Transforming<'_> {
+    const fn begin(&self, timing: &GpTiming) -> Span {
+        Span::from_ns(if self.begins { timing.pass_ns } else { 0 })
+    }
+}
+
+impl Share {
+    /// Puts the whole share, of which this may be a clump, into a board's memory.
+    ///
+    /// # Errors
+    ///
+    /// [`ProcessorFault::Unmapped`] when it does not fit.
+    pub fn install(&self, processor: &mut Processor) -> Result<(), ProcessorFault> {
+        for (place, number) in (0..).zip(self.all_triangles()) {
+            let words = display_list_words(&self.list.triangle(number));
+            processor.write(DISPLAY_LIST + place * TRIANGLE_BYTES, &words)?;
+        }
+        Ok(())
+    }
+}
+
+/// Places of one context's output.
+struct Places {
+    commands: u32,
+    bins: Vec<u32>,
+    clip_list: u32,
+}
+
+impl Pass {
+    fn by_table(&self, timing: &GpTiming) -> Span {
+        let counts = self.transformed();
+        let triangles = timing.triangle_ns * u64::from(counts.triangles);
+        let spheres = timing.sphere_ns * u64::from(counts.spheres);
+        Span::from_ns(triangles + spheres + timing.bin_entry_ns * self.entries())
+    }
+
+    /// The time of what the kernel does not do, by the table.
+    fn rest(&self, timing: &GpTiming, made: &Made) -> Span {
+        let clipped = timing.triangle_ns * made.left();
+        let spheres = timing.sphere_ns * u64::from(self.transformed().spheres);
+        Span::from_ns(clipped + spheres + timing.bin_entry_ns * self.entries_without_code(made))
+    }
+
+    /// Runs the kernel for all triangles on a board that holds the display list, in one of its two bin contexts; `None`
+    /// for a picture that has no kernel.
+    ///
+    /// # Errors
+    ///
+    /// [`ProcessorFault`] when the code does not come to its end, or its data do not fit.
+    pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<Made>, ProcessorFault> {
+        let Some(kernel) = self.kernel(processor.version()) else { return Ok(None) };
+        let (program, heads) = (program(kernel), self.heads());
+        let places = self.places(processor, kernel, context);
+        processor.write(BIN_TABLE, &places.bins)?;
+        let mut span = Span::ZERO;
+        let (mut command, mut clipped) = (places.commands, places.clip_list);
+        for (transform, light, held) in self.calls() {
+            let parameters: [Word; PARAMETER_WORDS] = kernel.parameters(transform, light, &heads);
+            processor.write(PARAMETERS, &parameters)?;
+            let (first, count) = (DISPLAY_LIST + held.start as u32 * TRIANGLE_BYTES, held.len() as u32);
+            let data = [(16, first), (17, count), (18, command), (21, clipped)];
+            let fixed = [(2, STACK), (19, BIN_TABLE), (20, PARAMETERS)];
+            let budget = BUDGET + BUDGET_OF_TRIANGLE * u64::from(count);
+            span += processor.call(&program, "start", &[data.as_slice(), &fixed].concat(), budget)?;
+            (command, clipped) = (processor.register(18), processor.register(21));
+        }
+        let tails = processor.read(BIN_TABLE, places.bins.len())?;
+        let bins = places.bins.iter().zip(tails).map(|(head, tail)| *head..tail).collect();
+        Ok(Some(Made { span, commands: places.commands..command, bins, clipped: places.clip_list..clipped }))
+    }
+
+    fn kernel(&self, version: CodeVersion) -> Option<Kernel> {
+        let schedule = match version {
+            CodeVersion::Compiled => Schedule::Straight,
+            CodeVersion::Scheduled => Schedule::Dual,
+        };
+        let surface = match self.picture().shading {
+            Shading::Gouraud => Surface::Gouraud,
+            Shading::Phong => Surface::Phong,
+        };
+        Kernel::of(schedule, surface, &self.picture().viewport, self.is_binned())
+    }
+
+    fn is_binned(&self) -> bool {
+        self.picture().binning == Binning::Touched
+    }
+
+    /// What is alike in all triangle commands, read off one of zeros.
+    fn heads(&self) -> Heads {
+        let blank = match self.picture().shading {
+            Shading::Gouraud => Command::Triangle(Triangle::default()),
+            Shading::Phong => Command::PhongTriangle(PhongTriangle::default()),
+        };
+        let mut words = Vec::new();
+        let encoded = blank.encode(&self.picture().layout, &mut words);
+        debug_assert!(encoded.is_ok(), "{encoded:?}");
+        [0, 1, 13, 17, 18, 22, 26, 30].map(|at| words.get(at).copied().unwrap_or_default())
+    }
+
+    /// Structures with their triangles, counted in those that the GP holds.
+    fn calls(&self) -> impl Iterator<Item = (&Transform, &Light, Range<usize>)> {
+        self.placed().iter().filter_map(|place| {
+            let held = self.share().held_places(&place.structure.triangles);
+            Some((place.transform.as_ref()?, &place.light, held)).filter(|call| !call.2.is_empty())
+        })
+    }
+
+    /// Context 0 lies behind the display list, context 1 at the end of memory. The command being made needs a place even
+    /// if it is dropped.
+    fn places(&self, processor: &Processor, kernel: Kernel, context: u8) -> Places {
+        let regions = self.picture().viewport.grid().regions() as u16;
+        let entries: Vec<u32> = (0..regions).map(|region| self.counts(RegionId(region)).triangles).collect();
+        let entries = if self.is_binned() { entries } else { vec![0; entries.len()] };
+        let commands = kernel.command_bytes() * (self.transformed().triangles + 1);
+        let list = DISPLAY_LIST + self.share().all_triangles().len() as u32 * TRIANGLE_BYTES;
+        let bytes = commands + 4 * (entries.iter().sum::<u32>() + self.transformed().triangles);
+        let last = processor.memory_bytes().saturating_sub(bytes) / LINE * LINE;
+        let begin = if context == 0 { list.next_multiple_of(LINE) } else { last };
+        let mut clip_list = begin + commands;
+        let bin = |entries: &u32| {
+            clip_list += 4 * entries;
+            clip_list - 4 * entries
+        };
+        let bins = entries.iter().map(bin).collect();
+        Places { commands: begin, bins, clip_list }
+    }
+
+    /// Entries of bins that the kernel did not make.
+    fn entries_without_code(&self, made: &Made) -> u64 {
+        if self.is_binned() {
+            return self.entries().saturating_sub(made.entries());
+        }
+        let regions = self.picture().viewport.grid().regions() as u16;
+        (0..regions).map(|region| u64::from(self.counts(RegionId(region)).spheres)).sum()
+    }
+}
+
+/// A kernel's program, assembled when first asked for.
+fn program(kernel: Kernel) -> Arc<Program> {
+    static PROGRAMS: LazyLock<Mutex<HashMap<Kernel, Arc<Program>>>> = LazyLock::new(Mutex::default);
+    let mut programs = PROGRAMS.lock().unwrap_or_else(PoisonError::into_inner);
+    let assembled = || match i860::assemble("kernel", CODE, &kernel.source()) {
+        Ok(program) => Arc::new(program),
+        Err(errors) => unreachable!("every kernel is assembled by the tests: {errors}"),
+    };
+    Arc::clone(programs.entry(kernel).or_insert_with(assembled))
+}

@@ -1,0 +1,170 @@
+//! TRANSFORM as i860 code on a board: the same words as the native firmware's, and its time.
+
+use glam::{Mat4, Vec3};
+use pphigs::{
+    Around, Binning, DisplayList, EyeView, Frame, FrameView, Made, ModelEdit, Pass, Picture, Shading, Share, Structure,
+    Transforming, region_messages,
+};
+use pxpl5_geometry::{Sphere, Viewport};
+use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
+use pxpl5_renderer::Layout;
+use pxpl5_sim::Span;
+use pxpl5_wire::{FieldParity, NodeId, RegionId, Word};
+use std::sync::Arc;
+
+const MEMORY: u64 = 8 << 20;
+const VERSIONS: [CodeVersion; 2] = [CodeVersion::Compiled, CodeVersion::Scheduled];
+
+/// Numbers in 0 to 1, the same on every host.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 40) as f32 / (1u32 << 24) as f32
+    }
+
+    fn vector(&mut self, size: f32) -> Vec3 {
+        Vec3::new(self.next() - 0.5, self.next() - 0.5, self.next() - 0.5) * (2.0 * size)
+    }
+}
+
+/// Triangles in two structures, one fixed to the head, all in front of the eye.
+fn list(triangles: u32) -> Arc<DisplayList> {
+    let mut numbers = Numbers(7);
+    let mut list = DisplayList { towards_light: Vec3::new(0.48, 0.6, 0.64), ..DisplayList::default() };
+    (list.ambient, list.diffuse) = (0.25, 0.75);
+    for number in 0..triangles {
+        let centre = Vec3::new(0.0, 0.0, -6.0) + numbers.vector(1.5);
+        for _ in 0..3 {
+            list.positions.push(centre + numbers.vector(0.3));
+            list.normals.push(numbers.vector(1.0));
+            list.colours.push([0; 3].map(|_| (numbers.next() * 255.0) as u8));
+        }
+        list.triangles.push([3 * number, 3 * number + 1, 3 * number + 2]);
+    }
+    let (middle, end) = (triangles as usize / 3, triangles as usize);
+    let structure = |triangles, frame| Structure { triangles, spheres: 0..0, frame };
+    list.structures = vec![structure(0..middle, Frame::World), structure(middle..end, Frame::Head)];
+    Arc::new(list)
+}
+
+fn view() -> FrameView {
+    let projection = Mat4::perspective_rh(0.9, 4.0 / 3.0, 0.5, 40.0);
+    let eye = |x: f32| EyeView {
+        world_to_eye: Mat4::from_translation(Vec3::new(x, 0.1, 0.0)) * Mat4::from_rotation_y(0.1),
+        head_to_eye: Mat4::from_translation(Vec3::new(x, 0.0, 0.0)),
+        projection,
+    };
+    let model = Mat4::from_translation(Vec3::new(0.2, 0.0, 0.0)) * Mat4::from_rotation_z(0.5);
+    FrameView { number: 0, eyes: vec![eye(-0.03), eye(0.03)], edits: vec![ModelEdit { structure: 1, model }] }
+}
+
+fn picture(viewport: Viewport, shading: Shading, binning: Binning) -> Picture {
+    Picture { viewport, shading, binning, layout: Layout::rendering_control_phong(), pixels: true }
+}
+
+fn board(version: CodeVersion, share: &Share) -> Processor {
+    let mut processor = Processor::new(NodeId(1), MEMORY, version);
+    share.install(&mut processor).expect("it fits");
+    processor
+}
+
+/// The words of a region's primitives as the native firmware makes them.
+fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
+    let mut words = Vec::new();
+    for list in region_messages(pass, region, 0, Around::default()) {
+        list.content.expect("pixels are wanted").append_words(&mut words);
+    }
+    words
+}
+
+/// The same as the code left them in memory.
+fn of_code(processor: &Processor, made: &Made, region: usize, command_words: usize) -> Vec<Word> {
+    let bin = &made.bins[region];
+    let entries = processor.read(bin.start, (bin.end - bin.start) as usize / 4).expect("in memory");
+    entries.iter().flat_map(|at| processor.read(*at, command_words).expect("in memory")).collect()
+}
+
+#[test]
+fn the_words_in_memory_are_those_of_the_native_firmware() {
+    let (list, view) = (list(300), view());
+    let share = Share::new(Arc::clone(&list), 1, 3);
+    for version in VERSIONS {
+        let mut processor = board(version, &share);
+        for viewport in [Viewport::FRAME, Viewport::field(FieldParity::Even), Viewport::field(FieldParity::Odd)] {
+            for (shading, command_words) in [(Shading::Gouraud, 30), (Shading::Phong, 32)] {
+                for eye in 0..2 {
+                    let pass = share.transform(&view, eye, picture(viewport, shading, Binning::Touched));
+                    assert_eq!(pass.stats().clipped + pass.stats().outside, 0, "all are inside the guard band");
+                    let made = pass.run_code(&mut processor, eye as u8).expect("it returns").expect("it has a kernel");
+                    assert!(made.clipped.is_empty());
+                    for region in 0..viewport.grid().regions() as u16 {
+                        let expected = native(&pass, RegionId(region));
+                        let found = of_code(&processor, &made, usize::from(region), command_words);
+                        // A context of several selects first; this layout has one.
+                        assert!(found == expected, "region {region}, {version:?}, {shading:?}, {viewport:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn without_bins_every_command_is_made_in_order() {
+    let (list, view) = (list(90), view());
+    let share = Share::new(list, 0, 1);
+    let viewport = Viewport::field(FieldParity::Odd);
+    for version in VERSIONS {
+        let mut processor = board(version, &share);
+        for (clump, first) in share.clumps(30).zip([0, 30]) {
+            let pass = clump.transform(&view, 0, picture(viewport, Shading::Gouraud, Binning::All));
+            assert_eq!(pass.stats().screen_triangles, 30, "clump from {first}: all are on the screen");
+            let made = pass.run_code(&mut processor, 0).expect("it returns").expect("it has a kernel");
+            let words = (made.commands.end - made.commands.start) as usize / 4;
+            let found = processor.read(made.commands.start, words).expect("in memory");
+            assert!(found == native(&pass, RegionId(0)), "clump from {first}, {version:?}");
+        }
+    }
+}
+
+#[test]
+fn what_has_no_code_takes_the_time_of_the_table() {
+    let mut list = Arc::unwrap_or_clone(list(30));
+    // One triangle reaches behind the eye, so that it is left to the clipper; and there is a sphere.
+    list.positions[3].z = 5.0;
+    list.spheres = vec![Sphere { centre: Vec3::new(0.0, 0.0, -5.0), radius: 0.1, colour: [9; 3] }];
+    list.structures[0].spheres = 0..1;
+    let share = Share::new(Arc::new(list), 0, 1);
+    let pass = share.transform(&view(), 0, picture(Viewport::FRAME, Shading::Phong, Binning::Touched));
+    let made = pass.run_code(&mut board(CodeVersion::Scheduled, &share), 0).expect("it returns").expect("a kernel");
+    assert_eq!(made.clipped.len(), 4, "one address");
+    let by_kernel: u32 = made.bins.iter().map(|bin| (bin.end - bin.start) / 4).sum();
+    let timing = GpTiming { triangle_ns: 1_000_000, sphere_ns: 50_000, bin_entry_ns: 700, ..GpTiming::PAPERS };
+    let work = Transforming { passes: &[Arc::clone(&pass)], context: 0, begins: true };
+    let span = work.by_code(&timing, &mut board(CodeVersion::Scheduled, &share)).expect("it returns");
+    let entries = pass.entries() - u64::from(by_kernel);
+    assert!(entries > 0, "the clipped triangle and the sphere are in bins");
+    let rest = Span::from_ns(timing.pass_ns + 1_000_000 + 50_000 + 700 * entries);
+    assert_eq!(span, made.span + rest);
+}
+
+#[test]
+fn a_picture_without_a_kernel_takes_the_time_of_the_table() {
+    let share = Share::new(list(30), 0, 1);
+    let grid = pxpl5_wire::RegionGrid { width: 320, height: 240, region_width: 128, region_height: 128 };
+    let viewport = Viewport::new(grid, pxpl5_wire::Lines::Frame).expect("a valid picture");
+    let passes = [share.transform(&view(), 0, picture(viewport, Shading::Phong, Binning::Touched))];
+    let work = Transforming { passes: &passes, context: 0, begins: false };
+    let span = work.by_code(&GpTiming::PAPERS, &mut board(CodeVersion::Compiled, &share)).expect("it returns");
+    assert_eq!(span, work.by_table(&GpTiming::PAPERS));
+}
+
+#[test]
+fn a_display_list_larger_than_the_memory_is_refused() {
+    let share = Share::new(list(300), 0, 1);
+    let mut small = Processor::new(NodeId(4), 1 << 20, CodeVersion::Compiled);
+    let error = share.install(&mut small).expect_err("it begins behind the first megabyte");
+    assert_eq!(error.to_string(), "graphics processor at node 4: no memory for 24 words at 0x00100000");
+}

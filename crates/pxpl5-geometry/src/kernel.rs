@@ -1,0 +1,178 @@
+//! The same computation as code of the graphics processor: i860 assembly, and the memory that it works on.
+//!
+//! A [`Kernel`] takes Gouraud or Phong triangles from the display list to the words of renderer commands and to bins:
+//! transform, guard band, light or normals, snapping, planes, the restatement for a field, regions. Triangles that are
+//! not wholly inside the guard band it leaves to a clipper, which has no kernel; it does not flatten steep planes.
+//!
+//! ```text
+//!   display list (96 bytes a triangle) --+
+//!   parameter block ---------------------+--> kernel --> command words, bins, list for the clipper
+//! ```
+//!
+//! Registers and layouts stand in kernels/parameters.s. The sources are put together as a linker would, one file for
+//! each choice. This crate does not assemble or run them.
+
+use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip};
+use pxpl5_wire::{Lines, RegionGrid, Word};
+
+/// How the code was made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Schedule {
+    /// As a compiler of 1989 would give it: every statement through the stack frame, everything inlined, larger than
+    /// the instruction cache.
+    Straight,
+    /// By hand in dual-instruction mode, in passes over batches that each fit the instruction cache.
+    Dual,
+}
+
+/// What the planes of a triangle are made of besides depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Surface {
+    /// Colours, lit at the corners.
+    Gouraud,
+    /// Normals in eye coordinates.
+    Phong,
+}
+
+/// Code for one kind of triangle and picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Kernel {
+    /// How it was made.
+    pub schedule: Schedule,
+    /// Kind of triangle.
+    pub surface: Surface,
+    /// Whether the picture is a field instead of a frame.
+    pub field: bool,
+    /// Whether it puts commands into bins; else all of them go everywhere.
+    pub binned: bool,
+}
+
+/// Instruction heads of a triangle's command, in the order of the kernel's parameter block: enable, edge, depth
+/// compared, depth loaded again, three components, colour (Phong).
+pub type Heads = [Word; 8];
+
+/// Words of a triangle in the display list.
+pub const TRIANGLE_WORDS: usize = 24;
+
+/// Words of the parameter block.
+pub const PARAMETER_WORDS: usize = 91;
+
+/// The constants of single precision whose bits the kernels know: 1.5 * 2^23 and 2^23.
+const ROUND_SINGLE: f32 = 12_582_912.0;
+const TWO_23: f32 = 8_388_608.0;
+
+/// Less a biased integer, this word turns the order of integers round.
+const FLIP: Word = 0x9700_0000;
+
+impl Kernel {
+    /// The kernel for a picture; `None` where there is none: pictures other than NTSC frames and fields.
+    #[must_use]
+    pub fn of(schedule: Schedule, surface: Surface, viewport: &Viewport, binned: bool) -> Option<Self> {
+        let field = matches!(viewport.lines(), Lines::Field(_));
+        let grid = if field { RegionGrid::FIELD } else { RegionGrid::FRAME };
+        (viewport.grid() == grid).then_some(Self { schedule, surface, field, binned })
+    }
+
+    /// The source in i860 assembly; its entry is the label `start`.
+    #[must_use]
+    pub fn source(&self) -> String {
+        let picture = if self.field { include_str!("../kernels/field.s") } else { include_str!("../kernels/frame.s") };
+        let surface = match self.surface {
+            Surface::Gouraud => include_str!("../kernels/gouraud.s"),
+            Surface::Phong => include_str!("../kernels/phong.s"),
+        };
+        let triangle = match self.schedule {
+            Schedule::Straight => include_str!("../kernels/triangle_straight.s"),
+            Schedule::Dual => include_str!("../kernels/triangle_dual.s"),
+        };
+        let bins = if self.binned { include_str!("../kernels/bins.s") } else { include_str!("../kernels/unbinned.s") };
+        let common = [include_str!("../kernels/parameters.s"), picture, include_str!("../kernels/surface.s")];
+        [common.as_slice(), &[surface, triangle, bins]].concat().join("\n")
+    }
+
+    /// Bytes of a command that it makes.
+    #[must_use]
+    pub const fn command_bytes(&self) -> u32 {
+        match self.surface {
+            Surface::Gouraud => 120,
+            Surface::Phong => 128,
+        }
+    }
+
+    /// The parameter block for a view.
+    #[must_use]
+    pub fn parameters(&self, transform: &Transform, light: &Light, heads: &Heads) -> [Word; PARAMETER_WORDS] {
+        let mut words = Words([0; PARAMETER_WORDS]);
+        let (clip, eye) = (transform.to_clip.rows(), transform.to_eye.rows());
+        let (guard, screen) = (&transform.guard, &transform.to_screen);
+        words.singles(0, clip.as_flattened());
+        words.singles(64, &transform.to_clip.origin().to_array());
+        words.singles(80, &[guard.x, guard.y, clip::MIN_W, MAX_CLIP]);
+        words.singles(96, &[screen.scale, screen.centre].concat());
+        words.singles(112, &[2.0, ROUND_SINGLE]);
+        words.integers(120, &[FLIP, transform.viewport.first_line()]);
+        words.doubles(128, &self.doubles());
+        words.integers(232, heads);
+        words.doubles(264, &[1.5]);
+        words.singles(272, eye[..3].as_flattened());
+        words.singles(320, &light.direction);
+        words.singles(336, &[light.ambient, light.diffuse, 1.0, TWO_23, f32::MIN_POSITIVE, f32::MAX]);
+        words.singles(360, &[f32::from(NORMAL_UNIT)]);
+        words.0
+    }
+
+    fn doubles(&self) -> [f64; 13] {
+        let two_52 = (1u64 << 52) as f64;
+        let two_31 = f64::from(1u32 << 31);
+        let surface = match self.surface {
+            Surface::Gouraud => two_52,
+            Surface::Phong => two_52 + two_31,
+        };
+        [
+            2.0,
+            f64::from(DEPTH_FAR - DEPTH_NEAR),
+            f64::from(DEPTH_NEAR),
+            0.5,
+            two_52,
+            surface,
+            1.5 * two_52,
+            1.0 / 16.0,
+            16.0,
+            two_52 + two_31,
+            8.0,
+            -7.5,
+            -8.5,
+        ]
+    }
+}
+
+/// A parameter block in the making; places in bytes, as in kernels/parameters.s.
+struct Words([Word; PARAMETER_WORDS]);
+
+impl Words {
+    fn integers(&mut self, at: usize, values: &[Word]) {
+        self.0[at / 4..at / 4 + values.len()].copy_from_slice(values);
+    }
+
+    fn singles(&mut self, at: usize, values: &[f32]) {
+        values.iter().enumerate().for_each(|(n, value)| self.0[at / 4 + n] = value.to_bits());
+    }
+
+    fn doubles(&mut self, at: usize, values: &[f64]) {
+        let halves = |value: &f64| [value.to_bits() as Word, (value.to_bits() >> 32) as Word];
+        values.iter().enumerate().for_each(|(n, value)| self.integers(at + 8 * n, &halves(value)));
+    }
+}
+
+/// A triangle as the display list holds it.
+#[must_use]
+pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
+    let mut words = [0; TRIANGLE_WORDS];
+    for (n, corner) in words.chunks_exact_mut(8).enumerate() {
+        let [r, g, b] = triangle.colours[n].map(Word::from);
+        corner[..3].copy_from_slice(&triangle.positions[n].to_array().map(f32::to_bits));
+        corner[3] = r << 16 | g << 8 | b;
+        corner[4..7].copy_from_slice(&triangle.normals[n].to_array().map(f32::to_bits));
+    }
+    words
+}

@@ -1,0 +1,234 @@
+//! The board's i860 with its memory, where programs run and clocks are counted.
+
+use i860::{Cpu, Outcome, Program, Ram, Trap};
+use pxpl5_sim::Span;
+use pxpl5_wire::{NodeId, Word};
+use std::fmt;
+use std::sync::Arc;
+
+/// Which code a board runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CodeVersion {
+    /// As a compiler of 1989 would give it, larger than the instruction cache.
+    Compiled,
+    /// Scheduled by hand in dual-instruction mode, in cache.
+    Scheduled,
+}
+
+/// Why a program on the processor did not come to its end.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ProcessorFault {
+    /// It took a trap.
+    Trap {
+        /// The board.
+        gp: NodeId,
+        /// What, and at which address.
+        trap: Trap,
+    },
+    /// It did not return within its budget.
+    Endless {
+        /// The board.
+        gp: NodeId,
+        /// Where it was.
+        address: u32,
+        /// Instructions that it was given.
+        budget: u64,
+    },
+    /// Data that its memory does not hold were asked for.
+    Unmapped {
+        /// The board.
+        gp: NodeId,
+        /// First address.
+        address: u32,
+        /// Number of words.
+        words: usize,
+    },
+    /// A program without the label at which it is called.
+    NoEntry {
+        /// The board.
+        gp: NodeId,
+        /// The label.
+        label: String,
+    },
+}
+
+impl fmt::Display for ProcessorFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let gp = |gp: &NodeId| format!("graphics processor at node {}", gp.0);
+        match self {
+            Self::Trap { gp: node, trap } => write!(f, "{}: {trap}", gp(node)),
+            Self::Endless { gp: node, address, budget } => {
+                write!(f, "{}: no return within {budget} instructions, at {address:#010x}", gp(node))
+            }
+            Self::Unmapped { gp: node, address, words } => {
+                write!(f, "{}: no memory for {words} words at {address:#010x}", gp(node))
+            }
+            Self::NoEntry { gp: node, label } => write!(f, "{}: the program has no label `{label}`", gp(node)),
+        }
+    }
+}
+
+impl std::error::Error for ProcessorFault {}
+
+/// Where a called program returns to; nothing is there.
+const RETURN: u32 = 0x0800;
+
+/// Register of the return address.
+const LINK: usize = 1;
+
+/// An i860 with the memory of a board.
+///
+/// Its clock stands still between calls; caches, queues and the open row of the memory are as the last call left them.
+/// What is written from outside counts as put there by code before the call: it takes no time and changes no cache.
+pub struct Processor {
+    gp: NodeId,
+    version: CodeVersion,
+    cpu: Cpu,
+    ram: Ram,
+    loaded: Option<Arc<Program>>,
+}
+
+impl fmt::Debug for Processor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Processor").field("version", &self.version).field("cpu", &self.cpu).finish_non_exhaustive()
+    }
+}
+
+impl Processor {
+    /// Time of a clock: 40 MHz (TR94).
+    pub const CLOCK: Span = Span(25_000);
+
+    /// A processor after reset, its memory all zero.
+    #[must_use]
+    pub fn new(gp: NodeId, memory_bytes: u64, version: CodeVersion) -> Self {
+        let ram = Ram::new(0, memory_bytes as usize);
+        Self { gp, version, cpu: Cpu::new(i860::Config::cycle()), ram, loaded: None }
+    }
+
+    /// Which code the board runs.
+    #[must_use]
+    pub const fn version(&self) -> CodeVersion {
+        self.version
+    }
+
+    /// Bytes of memory.
+    #[must_use]
+    pub fn memory_bytes(&self) -> u32 {
+        self.ram.bytes().len() as u32
+    }
+
+    /// Puts words into memory.
+    ///
+    /// # Errors
+    ///
+    /// [`ProcessorFault::Unmapped`] when they do not fit; nothing is written then.
+    pub fn write(&mut self, address: u32, words: &[Word]) -> Result<(), ProcessorFault> {
+        let (gp, count) = (self.gp, words.len());
+        let unmapped = |_| ProcessorFault::Unmapped { gp, address, words: count };
+        self.ram.load_words(address, words).map_err(unmapped)
+    }
+
+    /// Reads words of memory.
+    ///
+    /// # Errors
+    ///
+    /// [`ProcessorFault::Unmapped`] when they are not all there.
+    pub fn read(&self, address: u32, words: usize) -> Result<Vec<Word>, ProcessorFault> {
+        self.ram.words(address, words).map_err(|_| ProcessorFault::Unmapped { gp: self.gp, address, words })
+    }
+
+    /// An integer register.
+    #[must_use]
+    pub const fn register(&self, number: usize) -> Word {
+        self.cpu.state.r[number]
+    }
+
+    /// Calls a program at its label `entry` with some registers set, and gives the time until it returns.
+    ///
+    /// The program is loaded first where another one was called before; that takes no time.
+    ///
+    /// # Errors
+    ///
+    /// [`ProcessorFault`] when it traps, or does not return within `budget` instructions.
+    pub fn call(
+        &mut self,
+        program: &Arc<Program>,
+        entry: &str,
+        registers: &[(usize, Word)],
+        budget: u64,
+    ) -> Result<Span, ProcessorFault> {
+        let gp = self.gp;
+        self.load(program)?;
+        let start = program.symbol(entry).ok_or_else(|| ProcessorFault::NoEntry { gp, label: entry.to_owned() })?;
+        let (begin, state) = (self.cpu.clocks(), &mut self.cpu.state);
+        (state.pc, state.r[LINK]) = (start, RETURN);
+        registers.iter().for_each(|(number, value)| state.r[*number] = *value);
+        match self.cpu.run(&mut self.ram, Some(RETURN), budget) {
+            Outcome::Stopped => Ok(Self::CLOCK * (self.cpu.clocks() - begin)),
+            Outcome::Trapped(trap) => Err(ProcessorFault::Trap { gp, trap }),
+            Outcome::Exhausted => Err(ProcessorFault::Endless { gp, address: self.cpu.state.pc, budget }),
+        }
+    }
+
+    fn load(&mut self, program: &Arc<Program>) -> Result<(), ProcessorFault> {
+        if self.loaded.as_ref().is_some_and(|loaded| Arc::ptr_eq(loaded, program)) {
+            return Ok(());
+        }
+        self.write(program.base, &program.words())?;
+        self.cpu.invalidate_code();
+        self.loaded = Some(Arc::clone(program));
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn processor() -> Processor {
+        Processor::new(NodeId(3), 1 << 16, CodeVersion::Scheduled)
+    }
+
+    fn program(source: &str) -> Arc<Program> {
+        Arc::new(i860::assemble("test", 0x1000, source).expect("it assembles"))
+    }
+
+    #[test]
+    fn a_call_returns_with_its_result_and_takes_its_clocks() {
+        let mut processor = processor();
+        let double = program("start: adds r16, r16, r17\n bri r1\n nop");
+        let cold = processor.call(&double, "start", &[(16, 21)], 10).expect("it returns");
+        assert_eq!(processor.register(17), 42);
+        let warm = processor.call(&double, "start", &[(16, 5)], 10).expect("it returns");
+        assert_eq!(processor.register(17), 10);
+        // Three instructions and the clock of an indirect branch.
+        assert_eq!(warm, Processor::CLOCK * 4);
+        assert!(cold > warm, "the first call fills the instruction cache");
+    }
+
+    #[test]
+    fn a_trap_names_the_board_and_the_address() {
+        let wild = program("start: nop\n ld.l 0(r16), r17\n bri r1\n nop");
+        let error = processor().call(&wild, "start", &[(16, 0x2002)], 10).expect_err("unaligned");
+        assert_eq!(
+            error.to_string(),
+            "graphics processor at node 3: trap at 0x00001004: 0x00002002 is not a multiple of 4"
+        );
+    }
+
+    #[test]
+    fn an_endless_loop_ends_with_its_budget() {
+        let forever = program("start: br start\n nop");
+        let error = processor().call(&forever, "start", &[], 1_000).expect_err("endless");
+        assert!(matches!(error, ProcessorFault::Endless { gp: NodeId(3), budget: 1_000, .. }), "{error}");
+    }
+
+    #[test]
+    fn what_memory_does_not_hold_is_refused() {
+        let mut processor = processor();
+        assert!(processor.write(0xFFFC, &[1]).is_ok());
+        let error = processor.write(0xFFFC, &[1, 2]).expect_err("one word too many");
+        assert_eq!(error.to_string(), "graphics processor at node 3: no memory for 2 words at 0x0000fffc");
+    }
+}

@@ -1,0 +1,112 @@
+//! Work of the CPU, whose time comes from the timing table or from code.
+
+use crate::firmware::{Fault, Gp};
+use crate::processor::{Processor, ProcessorFault};
+use crate::timing::GpTiming;
+use pxpl5_sim::Span;
+
+/// A piece of work in both forms in which a board can tell its time.
+pub trait Work {
+    /// Its time by the timing table.
+    fn by_table(&self, timing: &GpTiming) -> Span;
+
+    /// Its time as code that runs on the board's processor; for parts that have no code, that of the table.
+    ///
+    /// # Errors
+    ///
+    /// [`ProcessorFault`] when the code does not come to its end.
+    fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault>;
+}
+
+impl Gp {
+    /// Does work, and spends its time at this program's level.
+    ///
+    /// # Errors
+    ///
+    /// [`Fault::Processor`] when its code does not come to its end.
+    pub async fn work(&self, work: &impl Work) -> Result<(), Fault> {
+        let span = {
+            let shared = &mut *self.shared.borrow_mut();
+            match &mut shared.processor {
+                Some(processor) => work.by_code(&shared.timing, processor)?,
+                None => work.by_table(&shared.timing),
+            }
+        };
+        self.spend(span).await;
+        Ok(())
+    }
+
+    /// Prepares the memory of a board whose time comes from code; on others there is nothing to do.
+    ///
+    /// # Errors
+    ///
+    /// [`Fault::Processor`] when something does not fit.
+    pub fn install(&self, image: impl FnOnce(&mut Processor) -> Result<(), ProcessorFault>) -> Result<(), Fault> {
+        let shared = &mut *self.shared.borrow_mut();
+        Ok(shared.processor.as_deref_mut().map_or(Ok(()), image)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{GpBoard, GpEvent, Level};
+    use pxpl5_sim::{Phase, TestBench};
+    use pxpl5_wire::NodeId;
+    use std::sync::Arc;
+
+    /// A loop of a number of turns, or a trap.
+    struct Turns(Option<u32>);
+
+    impl Work for Turns {
+        fn by_table(&self, timing: &GpTiming) -> Span {
+            Span::from_ns(timing.triangle_ns)
+        }
+
+        fn by_code(&self, _: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
+            let source = "again: adds -1, r16, r16\n btne r0, r16, again\n bri r1\n nop\nwrong: trap r0, r0, r0";
+            let program = Arc::new(i860::assemble("turns", 0x1000, source).unwrap_or_else(|e| panic!("{e}")));
+            let entry = if self.0.is_some() { "again" } else { "wrong" };
+            processor.call(&program, entry, &[(16, self.0.unwrap_or_default())], 1_000)
+        }
+    }
+
+    fn run(timing: GpTiming, code: bool, turns: Option<u32>) -> GpBoard {
+        let mut board = GpBoard::new(NodeId(5), timing, Span(25_000));
+        if code {
+            board.run_code();
+        }
+        let gp = board.handle_for(Level::Foreground);
+        board.load(Level::Foreground, Box::pin(async move { gp.work(&Turns(turns)).await }));
+        let mut bench: TestBench<GpEvent, crate::GpOutput> = TestBench::new();
+        bench.feed(pxpl5_sim::Time::ZERO, Phase::Work, GpEvent::Poll);
+        bench.run(|event, context| board.handle(event, context));
+        board
+    }
+
+    #[test]
+    fn a_board_without_code_spends_the_time_of_the_table() {
+        let board = run(GpTiming::PAPERS, false, None);
+        assert_eq!((board.busy(), board.fault()), (Span::from_ns(21_700), None));
+    }
+
+    #[test]
+    fn a_board_with_code_spends_its_clocks() {
+        let [ten, twenty] = [10, 20].map(|turns| run(GpTiming::PAPERS, true, Some(turns)).busy());
+        // A turn is two instructions and the two clocks of a taken btne.
+        assert_eq!(twenty.0 - ten.0, 10 * 4 * Processor::CLOCK.0);
+    }
+
+    #[test]
+    fn a_time_that_an_experiment_has_made_up_stands_for_no_code() {
+        let board = run(GpTiming { triangle_ns: 30_000, ..GpTiming::PAPERS }, true, None);
+        assert_eq!(board.busy(), Span::from_ns(30_000));
+    }
+
+    #[test]
+    fn a_trap_stops_the_program_and_names_the_board_and_the_address() {
+        let board = run(GpTiming::PAPERS, true, None);
+        let fault = board.fault().expect("it trapped").to_string();
+        assert_eq!(fault, "graphics processor at node 5: trap at 0x00001010: trap instruction");
+    }
+}

@@ -1,0 +1,79 @@
+//! The cycle level: graphics processors whose time comes from i860 code over the data of every triangle.
+
+use pxpl5::levels::Level;
+use pxpl5::{Experiment, ExperimentError, MachineConfig, Outcome, Pixels, RenderingControl, Slats, scene};
+use pxpl5_gp::Stage;
+
+fn slats(machine: &str) -> Experiment {
+    let full = scene::builtin("full-screen:30").expect("built in");
+    Experiment::new(MachineConfig::preset(machine).expect("listed"), Slats::split(), full)
+        .fields(12)
+        .pixels(Pixels::Off)
+        .level(Level::Cycle)
+}
+
+fn rendering_control() -> Experiment {
+    let mig = scene::builtin("mig").expect("built in");
+    Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig)
+        .fields(24)
+        .pixels(Pixels::Off)
+        .level(Level::Cycle)
+}
+
+fn hash(experiment: &Experiment) -> String {
+    experiment.run().expect("it runs").report().trace_hash
+}
+
+/// Mean time of TRANSFORM of the pictures after the first ones, in microseconds.
+fn transform_us(outcome: &Outcome) -> f64 {
+    let stages = outcome.stages();
+    let spans = stages.iter().filter(|span| span.stage == Stage::Transform && span.picture > 2);
+    let times: Vec<_> = spans.filter_map(|span| Some((span.end? - span.begin).as_ms() * 1e3)).collect();
+    times.iter().sum::<f64>() / times.len() as f64
+}
+
+#[test]
+fn both_pipelines_give_the_same_trace_whatever_the_ties_and_the_pixels() {
+    for experiment in [slats("slats-optimised"), rendering_control()] {
+        let expected = hash(&experiment);
+        assert_eq!(experiment.run().expect("it runs").report().level, "cycle");
+        for seed in 0..5 {
+            assert_eq!(hash(&experiment.clone().shuffle_ties(seed)), expected, "ties in order {seed}");
+        }
+        assert_eq!(hash(&experiment.clone().pixels(Pixels::All).threads(2)), expected, "with all pixels");
+        assert_ne!(hash(&experiment.clone().level(Level::Transaction)), expected, "other times");
+        assert_ne!(experiment.config_hash(), experiment.level(Level::Transaction).config_hash());
+    }
+}
+
+/// I3D95 expected a factor of about 3 of code that fits the instruction cache.
+#[test]
+fn code_that_fits_the_instruction_cache_is_about_three_times_as_fast() {
+    let [compiled, scheduled] =
+        ["slats", "slats-optimised"].map(|preset| transform_us(&slats(preset).run().expect("it runs")));
+    let factor = compiled / scheduled;
+    assert!((2.5..3.5).contains(&factor), "{compiled:.0} us and {scheduled:.0} us: a factor of {factor:.2}");
+}
+
+#[test]
+fn a_time_per_triangle_that_is_set_stays() {
+    let full = || scene::builtin("full-screen:30").expect("built in");
+    let machine = |triangle_ns| {
+        let mut machine = MachineConfig::slats();
+        machine.set("gp.triangle_ns", triangle_ns).expect("known");
+        machine
+    };
+    let us = [20_000, 21_000].map(|triangle_ns| {
+        let experiment = Experiment::new(machine(triangle_ns), Slats::split(), full()).fields(12).level(Level::Cycle);
+        transform_us(&experiment.pixels(Pixels::Off).run().expect("it runs"))
+    });
+    // Thirty triangles, two eyes, one microsecond each.
+    assert!((us[1] - us[0] - 60.0).abs() < 1e-6, "{us:?}");
+}
+
+#[test]
+fn the_analytic_level_is_refused_by_an_experiment() {
+    let error = slats("slats").level(Level::Analytic).run().expect_err("no events");
+    assert!(matches!(error, ExperimentError::Level), "{error}");
+    assert!(error.to_string().starts_with("level: expected transaction or cycle, found analytic"));
+}
