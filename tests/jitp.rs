@@ -214,7 +214,7 @@ fn more_renderers_allow_more_triangles_in_a_line() {
     };
     let (small, large) = (possible("small-hmd"), possible("design-maximum"));
     println!("triangles per line: small-hmd {small}, design-maximum {large}");
-    // A column of a line has 63.6 us at the renderer, of which the copy takes 7.2: 8 triangles of 6.67 us.
+    // A column of a line has 63.6 us at the renderer, of which the copy takes 7.2: 8 triangles of 6.45 us.
     assert!((6..=9).contains(&small), "{small}");
     assert!(large > 2 * small, "{large}");
 }

@@ -17,12 +17,15 @@
 //!
 //! | kind | words | clocks | published or assumed |
 //! |---|---|---|---|
-//! | triangle (Gouraud) | 30 | 267 | 267 (TR94, 150,000 a second) |
-//! | Phong triangle | 32 | 302 | 267; budget 262 to 292. The object's colour costs 29 |
-//! | sphere | 53 | 826 (Slats 764) | assumed "a little dearer than a triangle"; see [`Sphere`] |
-//! | Phong sphere | 38 | 515 | the same |
-//! | shade | 89 | 3,831 = 96 us | assumed 4,000 to 8,000 (100 to 200 us) |
-//! | clear | 5 | 65 | |
+//! | triangle (Gouraud) | 30 | 258 | 267 (TR94, 150,000 a second); budget 256 |
+//! | Phong triangle | 32 | 292 | the same; budget 262 to 292. The object's colour costs 28 |
+//! | sphere | 53 | 810 (Slats 748) | assumed "a little dearer than a triangle"; see [`Sphere`] |
+//! | Phong sphere | 38 | 504 | the same |
+//! | shade | 89 | 3,790 = 95 us | assumed 4,000 to 8,000 (100 to 200 us); see [`Shade`] |
+//! | clear | 5 | 62 (Slats 58) | |
+//! | select region | 2 | 6 | |
+//!
+//! These are the times of the transaction level too ([`crate::RendererTiming`]).
 
 mod copy;
 mod draw;

@@ -24,8 +24,8 @@
 //!
 //! # Numbers
 //!
-//! A triangle takes 267 clocks = 6.67 us (published: 150,000 a second, TR94), of which 220 are bits of the wire's
-//! formats; see [`isa::timing`], and [`command`] for the others.
+//! A triangle takes 258 clocks with interpolated colour, 292 with normals (published: 150,000 a second, TR94, which is
+//! 267), of which 220 and 250 are bits of the wire's formats; see [`isa::timing`], and [`command`] for the others.
 //!
 //! # Faults
 //!

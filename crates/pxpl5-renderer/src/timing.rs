@@ -1,5 +1,5 @@
-//! Every number of the board. Clocks of commands at the transaction level stand here; the instruction level
-//! derives its own from the programs and is compared with these.
+//! Every number of the board. Clocks of commands are those of their programs in the layout of Rendering Control
+//! ([`CommandKind::clocks`]; a test holds the two equal); they stand here so that experiments can change them.
 
 use crate::command::CommandKind;
 use pxpl5_sim::{Clock, Cycles, Span};
@@ -10,19 +10,19 @@ pxpl5_sim::parameter_table! {
         /// Clock of the controller and the array.
         clock_hz: 40_000_000, "Hz", Published, 40000000..=40000000, "F89, TR94";
         /// A triangle, in every region that it is sent to.
-        triangle_clocks: 267, "clocks", Derived, 250..=300, "150,000 triangles/s (TR94)";
+        triangle_clocks: 258, "clocks", Derived, 250..=300, "its program; 150,000 triangles/s (TR94) are 267";
         /// A triangle with normals instead of colours.
-        phong_triangle_clocks: 267, "clocks", Derived, 250..=300, "the published rate is for Phong shading; bit budget 262 to 292";
-        /// A sphere.
-        sphere_clocks: 330, "clocks", Assumed, 250..=900, "a little dearer than a triangle: one quadratic for silhouette and depth";
+        phong_triangle_clocks: 292, "clocks", Derived, 250..=300, "its program; 150,000 triangles/s (TR94) are 267, bit budget 262 to 292";
+        /// A sphere; in the layout of Slats its program takes 748.
+        sphere_clocks: 810, "clocks", Derived, 318..=810, "its program, with an exact root; a paraboloid takes 318";
         /// A sphere with normals.
-        phong_sphere_clocks: 330, "clocks", Assumed, 250..=900, "as a sphere";
+        phong_sphere_clocks: 504, "clocks", Derived, 268..=504, "its program, with an exact root; a paraboloid takes 268";
         /// Choice of a region context and its origin.
-        select_clocks: 8, "clocks", Assumed, 1..=64, "one instruction fetch";
+        select_clocks: 6, "clocks", Derived, 1..=64, "its program: one instruction";
         /// Background colour and farthest depth into all pixels.
-        clear_clocks: 64, "clocks", Assumed, 16..=256, "one clock a bit of colour and depth, and the fetches";
+        clear_clocks: 62, "clocks", Derived, 16..=256, "its program: one clock a bit of colour and depth, and the fetches";
         /// Deferred shading of a region at the end of the frame.
-        shade_clocks: 6_000, "clocks", Assumed, 4000..=8000, "100 to 200 us";
+        shade_clocks: 3_790, "clocks", Derived, 3_790..=8_000, "its program, with one light: 95 us; assumed before: 100 to 200 us";
         /// Transfer of one 32-bit block of all pixels to or from the backing store.
         backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096, "51 us";
         /// Depth of the input FIFO.

@@ -20,6 +20,9 @@ pub const SPECULAR_SQUARINGS: u32 = 5;
 ///
 /// |N| is a bit-serial square root of 12 bits, the quotients are bit-serial divisions, and the power is five squarings
 /// that keep 10 bits. The limits are 0 and all ones. A normal of zero counts as turned to the light.
+///
+/// 3,790 clocks, of which the root takes 206, each quotient 374 and the power 570. The 100 to 200 us that are assumed for
+/// the machine leave room for a second light (a cosine takes 938) or a material in each pixel, which are not modelled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shade {
     /// Unit vector towards the light, 1.0 = 1024, each component in 12 bits two's complement; at most 2.0 long.

@@ -3,7 +3,7 @@
 //! | number | unit | value | standing |
 //! |---|---|---|---|
 //! | [`CLOCK_HZ`] | Hz | 40,000,000 | published (F89, TR94) |
-//! | [`SET_UP_CLOCKS`] | clocks an instruction | 5 | derived, see there |
+//! | [`SET_UP_CLOCKS`] | clocks an instruction | 4 | derived, see there |
 //! | [`CONTROL_CLOCKS`] | clocks | 2 | assumed (1 to 4) |
 //! | [`BACKING_CLOCKS`] | clocks a block | 2,048 = 51.2 us | assumed: 64 chips x 4 bits a clock |
 //!
@@ -18,10 +18,13 @@ pub const CLOCK_HZ: u64 = 40_000_000;
 
 /// Clocks to fetch an instruction and to fill the evaluator's pipeline.
 ///
-/// Derived: a triangle takes 267 clocks (150,000 a second, TR94) in 9 instructions; the wire formats ask for
-/// 3 x 32 (edges) + 32 (compare Z) + 32 (store Z) + 3 x 20 (colour) = 220 bit clocks and the enable for
-/// [`CONTROL_CLOCKS`]; (267 - 220 - 2) / 9 = 5. Range 4 to 8 with other fractions.
-pub const SET_UP_CLOCKS: u32 = 5;
+/// Derived: the only whole number with which both kinds of triangle keep the bit budget of the published recipe, 256 to
+/// 267 clocks (Gouraud) and 262 to 292 (Phong). The formats of the wire ask for 2 (enable) + 3 x 32 (edges) + 32 (compare
+/// Z) + 32 (store Z) + 3 x 20 (colour) = 222 clocks in 9 instructions, or for 2 + 160 + 3 x 22 (normals) + 24 (the
+/// object's colour) = 252 in 10. So 222 + 9 n >= 256 and 252 + 10 n <= 292. The published rate, 150,000 a second = 267
+/// clocks (TR94) without the kind of shading, then lies between the two: 258 and 292. Range 2 (Phong takes 272) to 5
+/// (Gouraud takes 267).
+pub const SET_UP_CLOCKS: u32 = 4;
 
 /// Clocks of an instruction that moves no field. Assumed: the 2 of "enable all" in the bit budget; range 1 to 4.
 pub const CONTROL_CLOCKS: u32 = 2;
