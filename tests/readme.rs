@@ -15,3 +15,43 @@ fn the_readme_shows_every_figure_of_accuracy_md_as_it_stands_there() {
         assert!(readme.contains(row), "the README lacks or has changed:\n{row}");
     }
 }
+
+/// Files that a page links to, without anchors; none from outside.
+fn links(page: &str) -> Vec<&str> {
+    let all = page.split("](").skip(1).filter_map(|rest| rest.split([')', ' ']).next());
+    let local = all.filter(|link| !link.contains("://") && !link.starts_with('#'));
+    local.map(|link| link.split('#').next().unwrap_or(link)).collect()
+}
+
+/// Pages of a folder and of those in it, relative to the repository.
+fn pages(folder: &str) -> Vec<String> {
+    let path = format!("{}/{folder}", env!("CARGO_MANIFEST_DIR"));
+    let entries = std::fs::read_dir(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let names = entries.map(|entry| format!("{folder}/{}", entry.expect("readable").file_name().to_string_lossy()));
+    names
+        .flat_map(|name| if name.contains('.') { vec![name] } else { pages(&name) })
+        .filter(|name| name.ends_with(".md"))
+        .collect()
+}
+
+#[test]
+fn every_link_of_the_documents_leads_to_a_file() {
+    let own = ["README.md", "ARCHITECTURE.md", "ACCURACY.md", "CHANGELOG.md"].map(str::to_owned);
+    for page in pages("docs").into_iter().chain(own) {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(&page);
+        for link in links(&read(&page)) {
+            let file = folder.parent().expect("a file is in a folder").join(link);
+            assert!(file.exists(), "{page} links to {link}, which is not there");
+        }
+    }
+}
+
+#[test]
+fn the_summary_of_the_guide_leaves_no_page_out() {
+    let summary = read("docs/SUMMARY.md");
+    let listed = links(&summary);
+    for page in pages("docs").iter().filter_map(|page| page.strip_prefix("docs/")).filter(|page| *page != "SUMMARY.md")
+    {
+        assert!(listed.contains(&page), "docs/SUMMARY.md lacks {page}");
+    }
+}

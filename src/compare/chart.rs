@@ -72,11 +72,38 @@ fn axes(svg: &mut String, end_s: f64, top_px: f64) {
     let _ = writeln!(
         svg,
         "<path d=\"M{MARGIN} {MARGIN} V{bottom} H{right}\" fill=\"none\" stroke=\"black\"/>\n\
-         <text x=\"{right}\" y=\"{}\" text-anchor=\"end\">time, 0 to {end_s:.1} s</text>\n\
-         <text x=\"{MARGIN}\" y=\"{}\">error in the middle, 0 to {top_px:.0} pixels</text>",
-        bottom + 18.0,
-        MARGIN - 8.0
+         <text x=\"{right}\" y=\"{}\" text-anchor=\"end\">time, s</text>\n\
+         <text x=\"{MARGIN}\" y=\"{}\">error in the middle, pixels</text>",
+        bottom + 32.0,
+        MARGIN - 12.0
     );
+    for value in ticks(end_s) {
+        let x = MARGIN + value / end_s * (right - MARGIN);
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{x:.1} {bottom} v5\" stroke=\"black\"/><text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{value}</text>",
+            bottom + 18.0
+        );
+    }
+    for value in ticks(top_px) {
+        let y = bottom - value / top_px * (bottom - MARGIN);
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{MARGIN} {y:.1} H{right}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{value}</text>",
+            MARGIN - 6.0,
+            y + 4.0
+        );
+    }
+}
+
+/// Round numbers from 0 to a greatest: steps of 1, 2 or 5 times a power of ten, of which there are at most ten.
+fn ticks(greatest: f64) -> Vec<f64> {
+    let power = 10f64.powf((greatest / 10.0).log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| greatest / step <= 10.0);
+    let step = step.unwrap_or(greatest);
+    // Products of whole numbers and a step such as 0.2 have digits that nobody wants to read.
+    let rounded = |value: f64| (value * 1e9).round() / 1e9;
+    (0..=10).map(|i| rounded(f64::from(i) * step)).take_while(|value| *value <= greatest).collect()
 }
 
 fn escaped(text: &str) -> String {
@@ -93,6 +120,14 @@ mod tests {
         let curve = LatencyCurve::of(&Pan::at(40.0), 90, 2, 3.0);
         let expected = 320.0 / 30f64.to_radians().tan() * 3.6f64.to_radians().tan();
         assert!((curve.mean_px() - expected).abs() < 1e-9, "{} {expected}", curve.mean_px());
+    }
+
+    #[test]
+    fn ticks_are_round_and_at_most_eleven() {
+        assert_eq!(ticks(10.0), (0..=10).map(f64::from).collect::<Vec<_>>());
+        assert_eq!(ticks(97.3), (0..=9).map(|i| f64::from(i) * 10.0).collect::<Vec<_>>());
+        assert_eq!(ticks(1.1), [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]);
+        assert_eq!(ticks(0.024), [0.0, 0.005, 0.01, 0.015, 0.02]);
     }
 
     #[test]

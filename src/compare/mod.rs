@@ -16,4 +16,4 @@ pub use motion::{MotionError, TRACKERS, motion, predictor, tracker};
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use possible::{Possible, triangles_possible};
 pub use rig::measure_on;
-pub use rows::{Comparison, Row, compare};
+pub use rows::{Comparison, Row, compare, compare_with};

@@ -11,6 +11,7 @@ use pphigs::Binning;
 use pxpl5_scene::Scene;
 use serde::Serialize;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// One pipeline.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -121,19 +122,38 @@ pub fn compare(
     fields: u64,
     possible: bool,
 ) -> Result<Comparison, ExperimentError> {
+    compare_with(config, scene, head, fields, possible, |_, _| {})
+}
+
+/// The same; `finished` hears how many of all runs are done.
+///
+/// # Errors
+///
+/// As [`compare`].
+pub fn compare_with(
+    config: &MachineConfig,
+    scene: &Arc<Scene>,
+    head: &Arc<Head>,
+    fields: u64,
+    possible: bool,
+    finished: impl Fn(u64, u64) + Sync,
+) -> Result<Comparison, ExperimentError> {
     let expected = (super::errors::UNJUDGED_FIELDS + 2, crate::head_to_light::FIELDS_WITH_HEAD);
     if !(expected.0..=expected.1).contains(&fields) {
         return Err(ExperimentError::Fields { expected, found: fields });
     }
     config.check()?;
     let tracker = head.tracker().config().name.clone();
-    let rows = parallel::map(&contenders(), |contender| {
+    let (contenders, done) = (contenders(), AtomicU64::new(0));
+    let rows = parallel::map(&contenders, |contender| {
         let run = Experiment::with(config.clone(), Arc::clone(&contender.pipeline), Arc::clone(scene))
             .head(Arc::clone(head))
             .fields(fields)
             .pixels(Pixels::Off)
             .run();
-        contender.rows(config, possible, &run)
+        let rows = contender.rows(config, possible, &run);
+        finished(done.fetch_add(1, Ordering::Relaxed) + 1, contenders.len() as u64);
+        rows
     });
     Ok(Comparison {
         schema: "pxpl5-comparison/1",

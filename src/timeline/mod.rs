@@ -28,6 +28,7 @@ pub use path::{Arrow, Place};
 pub use published::{FigureError, PIPELINE_FIGURES, PipelineFigure};
 
 use crate::experiment::Outcome;
+use crate::report::Report;
 use crate::results::origin_lines;
 
 /// What of a run is drawn, and how.
@@ -48,6 +49,12 @@ pub struct TimelineOptions {
 /// More fields than this cannot be told apart at page width.
 pub const MAX_FIELDS: u64 = 16;
 
+fn primitives(report: &Report) -> String {
+    let count = |n: usize, name: &str| format!("{n} {name}{}", if n == 1 { "" } else { "s" });
+    let spheres = (report.spheres > 0).then(|| format!(", {}", count(report.spheres, "sphere")));
+    count(report.triangles, "triangle") + &spheres.unwrap_or_default()
+}
+
 /// Draws a run as an SVG document, 960 units wide; of a run without a picture it shows the first fields.
 #[must_use]
 pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
@@ -55,7 +62,7 @@ pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
     let subject = format!("{} on {}, {}", report.pipeline, report.machine, report.scene);
     let words = draw::Words {
         title: options.title.clone().unwrap_or_else(|| subject.clone()),
-        subtitle: format!("simulated: {subject}, {} triangles, seed {}", report.triangles, report.seed),
+        subtitle: format!("simulated: {subject}, {}, seed {}", primitives(&report), report.seed),
         origin: origin_lines(&report, ""),
     };
     draw::document(&Timeline::of(outcome, options), &words)

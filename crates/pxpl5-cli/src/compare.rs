@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::output::OutputFolder;
 use crate::terminal;
-use pxpl5::compare::{Comparison, LatencyCurve, Row, chart, compare, edge_pictures, motion, predictor, tracker};
+use pxpl5::compare::{Comparison, LatencyCurve, Row, chart, compare_with, edge_pictures, motion, predictor, tracker};
 use pxpl5::{Head, MachineConfig, scene};
 use std::fmt::Write as _;
 use std::io::Cursor;
@@ -12,6 +12,12 @@ use std::sync::Arc;
 
 /// What is compared.
 #[derive(clap::Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 compare --motion pan:200 --scene mig --tracker fastrak
+  pxpl5 compare --motion head.csv --predict none --out out/compare
+  pxpl5 compare --motion synthetic:1 --fields 600 --no-triangles --json
+
+To run one of them alone, with pictures: pxpl5 run --pipeline jitp-scanline-racing --head pan:200.")]
 pub(crate) struct CompareArgs {
     /// How the head moves: still, pan:DEG_PER_S, pendulum, synthetic:SEED, or a recording FILE.csv with the columns
     /// time_s,x,y,z,qw,qx,qy,qz.
@@ -47,6 +53,9 @@ pub(crate) struct CompareArgs {
     /// Print JSON: an object whose `pipelines` lists a row each.
     #[arg(long)]
     json: bool,
+    /// Print nothing but errors (and the object of --json).
+    #[arg(long, short)]
+    quiet: bool,
 }
 
 /// Runs the comparison.
@@ -62,7 +71,13 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let scene = Arc::new(load(&args.scene)?);
     let head = Arc::new(Head::new(moving, tracker, predictor, args.seed).map_err(CliError::usage)?);
     let mut folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
-    let comparison = compare(&config, &scene, &head, args.fields, !args.no_triangles)?;
+    let bar = terminal::progress(0, "pipelines", args.quiet);
+    let finished = |done, of| {
+        bar.set_length(of);
+        bar.set_position(done);
+    };
+    let comparison = compare_with(&config, &scene, &head, args.fields, !args.no_triangles, finished)?;
+    bar.finish_and_clear();
     let json = serde_json::to_string_pretty(&comparison).map_err(CliError::failure)? + "\n";
     if let Some(folder) = &mut folder {
         folder.put("comparison.json", json.as_bytes())?;
@@ -70,7 +85,11 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
         pictures(&config, args.edge_pan, folder)?;
     }
     folder.map(OutputFolder::commit).transpose()?;
-    terminal::print(&if args.json { json } else { table(&comparison, &args) })
+    match (args.json, args.quiet) {
+        (true, _) => terminal::print(&json),
+        (false, true) => Ok(()),
+        (false, false) => terminal::print(&table(&comparison, &args)),
+    }
 }
 
 fn load(name: &str) -> Result<scene::Scene, CliError> {

@@ -79,6 +79,7 @@ fn section(run: &Run) -> String {
     text.push_str(&pictures(run));
     text.push_str("</section><section>\n");
     text.push_str(&latency(run));
+    text.push_str(&head(&report["head"]));
     text.push_str("</section><section>\n");
     text.push_str(&speed(report));
     text.push_str(&configuration(report));
@@ -130,6 +131,32 @@ fn latency(run: &Run) -> String {
     text + "</table></div>\n"
 }
 
+/// From the head to light, of a run with a tracker.
+fn head(head: &Value) -> String {
+    if head.is_null() {
+        return String::new();
+    }
+    let [tracker, predictor, display] = ["tracker", "predictor", "display"].map(|key| escape(&plain(&head[key])));
+    let mut text = format!(
+        "<h3>From the head to light</h3><p>{tracker}, prediction {predictor}, display {display}.</p>\n\
+         <div class=\"wide\"><table><tr><th>stage</th><th>mean, ms</th></tr>\n"
+    );
+    let stages = ["tracking", "waiting", "sending", "drawing", "showing", "scanning", "total"];
+    for stage in stages {
+        let ms = number(&head["end_to_end"][format!("{stage}_ms")]);
+        let _ = writeln!(text, "<tr><td>{stage}</td><td class=\"n\">{ms:.3}</td></tr>");
+    }
+    text.push_str("</table></div>\n<div class=\"wide\"><table><tr><th>error</th><th>mean</th><th>50 %</th><th>90 %</th><th>99 %</th><th>greatest</th></tr>\n");
+    for (key, name) in [("pixels", "pixels"), ("degrees", "degrees")] {
+        let _ = write!(text, "<tr><td>{name}</td>");
+        for value in ["mean", "p50", "p90", "p99", "max"] {
+            let _ = write!(text, "<td class=\"n\">{:.3}</td>", number(&head["error"][key][value]));
+        }
+        text.push_str("</tr>\n");
+    }
+    text + "</table></div>\n"
+}
+
 fn speed(report: &Value) -> String {
     let (fields, seconds, events) =
         (number(&report["fields"]), number(&report["host_seconds"]), number(&report["events"]));
@@ -142,10 +169,12 @@ fn speed(report: &Value) -> String {
     )
 }
 
-/// Everything of the report that is one value.
+/// Everything of the report that is one value; the head has a table of its own.
 fn configuration(report: &Value) -> String {
     let mut text = String::from("<h3>Configuration</h3><div class=\"wide\"><table>\n");
-    for (key, value) in report.as_object().into_iter().flatten().filter(|(_, value)| !value.is_array()) {
+    for (key, value) in
+        report.as_object().into_iter().flatten().filter(|(key, value)| *key != "head" && !value.is_array())
+    {
         let shown = match value {
             Value::Object(all) if all.contains_key("definition") => continue,
             Value::Object(all) => {
@@ -188,6 +217,17 @@ mod tests {
         let page = html(&[Run { name: "<img src=x>".to_owned(), report, ..Run::default() }]);
         assert!(!page.contains("<script>") && !page.contains("<b>") && !page.contains("<img src=x>"));
         assert!(page.contains("&lt;script&gt;"));
+    }
+
+    #[test]
+    fn a_head_has_its_stages_and_its_errors() {
+        let head = json!({"tracker": "T", "predictor": "P", "display": "vdrt", "end_to_end": {"total_ms": 76.5},
+            "error": {"pixels": {"p99": 14.25}, "degrees": {"mean": 0.5}}});
+        let page = html(&[Run { report: json!({"head": head}), ..Run::default() }]);
+        for text in ["T, prediction P, display vdrt", "76.500", "14.250", "0.500"] {
+            assert!(page.contains(text), "{text}");
+        }
+        assert!(!page.contains("<th>head</th>") && !html(&[Run::default()]).contains("From the head to light"));
     }
 
     #[test]
