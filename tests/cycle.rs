@@ -1,12 +1,16 @@
 //! The cycle level: graphics processors whose time comes from i860 code over the data of every triangle.
 
 use pxpl5::levels::Level;
+use pxpl5::limit::Growing;
 use pxpl5::{Experiment, ExperimentError, MachineConfig, Outcome, Pixels, RenderingControl, Slats, scene};
 use pxpl5_gp::Stage;
 
+const CLUMP: u32 = 30;
+
+/// A clump of triangles that are wholly inside the guard band, so that none is left to the clipper.
 fn slats(machine: &str) -> Experiment {
-    let full = scene::builtin("full-screen:30").expect("built in");
-    Experiment::new(MachineConfig::preset(machine).expect("listed"), Slats::split(), full)
+    let small = Growing::Typical.scene(CLUMP);
+    Experiment::new(MachineConfig::preset(machine).expect("listed"), Slats::split(), small)
         .fields(12)
         .pixels(Pixels::Off)
         .level(Level::Cycle)
@@ -46,11 +50,16 @@ fn both_pipelines_give_the_same_trace_whatever_the_ties_and_the_pixels() {
     }
 }
 
-/// I3D95 expected a factor of about 3 of code that fits the instruction cache.
+/// I3D95 expected a factor of about 3 of code that fits the instruction cache. The presets of 1994 and of 1995 have the
+/// same code and other times in the table, so that nothing of these times is the table's.
 #[test]
 fn code_that_fits_the_instruction_cache_is_about_three_times_as_fast() {
-    let [compiled, scheduled] =
-        ["slats", "slats-optimised"].map(|preset| transform_us(&slats(preset).run().expect("it runs")));
+    let of_clump = |preset| {
+        let gp = MachineConfig::slats().gp;
+        transform_us(&slats(preset).run().expect("it runs")) - (gp.pass_ns + gp.message_ns) as f64 * 1e-3
+    };
+    let [compiled, of_1995, scheduled] = ["slats", "slats-1995", "slats-optimised"].map(of_clump);
+    assert!((compiled - of_1995).abs() < 1e-6, "{compiled:.3} us and {of_1995:.3} us for the same code");
     let factor = compiled / scheduled;
     assert!((2.5..3.5).contains(&factor), "{compiled:.0} us and {scheduled:.0} us: a factor of {factor:.2}");
 }

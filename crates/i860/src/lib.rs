@@ -45,7 +45,9 @@
 //! number is a parameter with an allowed range, and a [`Profile`] accounts for every clock. Instruction cache
 //! 4 KB, data cache 8 KB write-back, both 2-way with 32-byte lines and pseudo-random replacement; no allocation on a
 //! write miss; TLB of 64 entries. All rows are *assumed* (recollections of Intel's list); the published anchors are
-//! tests: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, about 48 for a square root.
+//! tests: 2 and 1.5 operations per clock, 39 clocks for three reciprocal roots, about 48 for a square root. The loop of a
+//! period tree code, 117 instructions in 106 clocks, cannot be re-created from its description; the test has a loop of its
+//! shape (pairs, odd entry, taken `bnc.t`), so that anchor checks the rules of issue and not that program.
 //!
 //! # Conformance
 //!

@@ -2,7 +2,7 @@
 
 use super::BitSerial;
 use super::arithmetic::Source;
-use super::evaluator::{Adders, LinearTrees, QuadraticTrees, full_add};
+use super::evaluator::{Evaluator, LinearTrees, QuadraticTrees, full_add};
 use crate::array::{FaultKind, Plane};
 use crate::controller::Local;
 use crate::isa::{Expression, ExpressionUse, Operand};
@@ -19,26 +19,27 @@ trait Sink {
 }
 
 /// The bits of an expression on their way to all pixels.
-struct Deliver<'a, A, S> {
-    adders: &'a A,
+struct Deliver<'a, E: Evaluator, S> {
+    coefficients: &'a E::Coefficients,
     /// Clocks whose bits the sink takes.
     taken: Range<usize>,
     sink: S,
 }
 
-impl<A: Adders, S: Sink> Kernel for Deliver<'_, A, S> {
+impl<E: Evaluator, S: Sink> Kernel for Deliver<'_, E, S> {
     type Output = ();
 
     #[inline(always)]
     fn run<V: Vector>(mut self) {
+        let evaluator = E::run_trees::<V>(self.coefficients, self.taken.end);
         // A word is two lanes, a row two words.
         for at in (0..size_of::<Plane>() / 8).step_by(V::LANES / 2) {
-            let (mut carries, mut carry) = (A::start::<V>(), V::splat(0));
+            let (mut carries, mut carry) = (E::start::<V>(), V::splat(0));
             for t in 0..self.taken.start {
-                self.adders.bit(t, at / 2, &mut carries);
+                evaluator.bit(t, at / 2, &mut carries);
             }
             for t in self.taken.clone() {
-                let bit = self.adders.bit(t, at / 2, &mut carries);
+                let bit = evaluator.bit(t, at / 2, &mut carries);
                 self.sink.take(at, t, bit, &mut carry);
             }
             self.sink.end(at, carry);
@@ -107,13 +108,11 @@ impl BitSerial {
         match local {
             Local::Linear(e) => {
                 self.clock += taken.end as u64;
-                let adders = &LinearTrees::new(e, taken.end, vectors);
-                vectors.run(Deliver { adders, taken, sink: sink(self) });
+                vectors.run(Deliver::<LinearTrees, _> { coefficients: e, taken, sink: sink(self) });
             }
             Local::Quadratic(q) => {
                 self.clock += u64::from(local.bits());
-                let adders = &QuadraticTrees::new(q, taken.end, vectors);
-                vectors.run(Deliver { adders, taken, sink: sink(self) });
+                vectors.run(Deliver::<QuadraticTrees, _> { coefficients: q, taken, sink: sink(self) });
             }
         }
     }

@@ -9,7 +9,7 @@
 //! Nothing flows back from the pixels, so the trees run all their clocks first; then each vector of pixels runs all of
 //! its own, with its carries in registers.
 
-use crate::simd::{Kernel, Present, Vector};
+use crate::simd::Vector;
 use pxpl5_wire::{Linear, Quadratic};
 
 /// Bits of a column's number.
@@ -45,7 +45,7 @@ const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
 type Pair = [u64; 4];
 
 /// Serial adders of two trees that add a coefficient times a number to the stream of each leaf. A leaf is a bit of a
-/// vector; the trees are its first two rows.
+/// vector; the trees are its first two rows, what its other rows hold counts for nothing.
 struct Trees<V, const N: usize> {
     coefficients: [i64; 2],
     leaves: &'static [Leaves; N],
@@ -63,7 +63,7 @@ impl<V: Vector, const N: usize> Trees<V, N> {
     /// Bit `t` of the sums; `t` counts up from 0.
     #[inline(always)]
     fn add(&mut self, mut stream: V, t: usize) -> V {
-        self.late = self.late << 2 | bits(self.coefficients, t);
+        self.late = self.late << 2 | both(self.coefficients, t);
         for (l, (leaves, carry)) in self.leaves.iter().zip(&mut self.carries).enumerate() {
             let addend = V::rows(self.late >> (2 * l)).and(V::columns(*leaves));
             stream = full_add(stream, addend, carry);
@@ -74,7 +74,7 @@ impl<V: Vector, const N: usize> Trees<V, N> {
 
 /// Bit `t` of two numbers.
 #[inline(always)]
-const fn bits([first, second]: [i64; 2], t: usize) -> u64 {
+const fn both([first, second]: [i64; 2], t: usize) -> u64 {
     (first >> t & 1 | (second >> t & 1) << 1) as u64
 }
 
@@ -86,10 +86,15 @@ fn pair<V: Vector>(stream: V) -> Pair {
     [words[0], words[1], words[2], words[3]]
 }
 
-/// What pixels do with the bits that the trees deliver.
-pub(super) trait Adders {
+/// An expression: what the trees deliver, and what pixels do with it.
+pub(super) trait Evaluator {
+    /// Its coefficients.
+    type Coefficients;
     /// What the adders of a vector of pixels hold from clock to clock.
     type Carries<V: Vector>;
+
+    /// Runs the trees for the first `bits` of the expression.
+    fn run_trees<V: Vector>(coefficients: &Self::Coefficients, bits: usize) -> Self;
 
     /// All zeros.
     fn start<V: Vector>() -> Self::Carries<V>;
@@ -124,35 +129,20 @@ pub(super) struct QuadraticCarries<V> {
     sum: V,
 }
 
-impl LinearTrees {
-    /// The first `bits` of the expression.
-    pub(super) fn new(e: &Linear, bits: usize, vectors: Present) -> Self {
-        Self(vectors.run(RunLinear { e, bits }))
-    }
-}
-
-struct RunLinear<'a> {
-    e: &'a Linear,
-    bits: usize,
-}
-
-impl Kernel for RunLinear<'_> {
-    type Output = Vec<Pair>;
+impl Evaluator for LinearTrees {
+    type Coefficients = Linear;
+    type Carries<V: Vector> = V;
 
     #[inline(always)]
-    fn run<V: Vector>(self) -> Vec<Pair> {
-        let constants = [0, self.e.c.into()];
-        let mut trees = Trees::new([self.e.a.into(), self.e.b.into()], &NUMBERS);
-        let mut out = Vec::with_capacity(self.bits);
-        for t in 0..self.bits {
-            out.push(pair(trees.add(V::rows(bits(constants, t)), t)));
+    fn run_trees<V: Vector>(e: &Linear, bits: usize) -> Self {
+        let constants = [0, e.c.into()];
+        let mut trees = Trees::new([e.a.into(), e.b.into()], &NUMBERS);
+        let mut out = Vec::with_capacity(bits);
+        for t in 0..bits {
+            out.push(pair(trees.add(V::rows(both(constants, t)), t)));
         }
-        out
+        Self(out)
     }
-}
-
-impl Adders for LinearTrees {
-    type Carries<V: Vector> = V;
 
     #[inline(always)]
     fn start<V: Vector>() -> V {
@@ -171,41 +161,25 @@ fn columns_and_rows<V: Vector>([low, high, rows @ ..]: &Pair, row: usize, carry:
     full_add(V::columns([*low, *high]), rows_of(rows, row), carry)
 }
 
-impl QuadraticTrees {
-    /// The first `bits` of the expression.
-    pub(super) fn new(q: &Quadratic, bits: usize, vectors: Present) -> Self {
-        Self(vectors.run(RunQuadratic { q, bits }))
-    }
-}
-
-struct RunQuadratic<'a> {
-    q: &'a Quadratic,
-    bits: usize,
-}
-
-impl Kernel for RunQuadratic<'_> {
-    type Output = Vec<QuadraticBits>;
+impl Evaluator for QuadraticTrees {
+    type Coefficients = Quadratic;
+    type Carries<V: Vector> = QuadraticCarries<V>;
 
     #[inline(always)]
-    fn run<V: Vector>(self) -> Vec<QuadraticBits> {
-        let q = self.q;
+    fn run_trees<V: Vector>(q: &Quadratic, bits: usize) -> Self {
         let mut squares = Trees::new([q.xx, q.yy], &SQUARES);
         let mut numbers = Trees::new([q.xy, q.y], &NUMBERS);
         // The second trees belong together; the first of the numbers stands beside them.
         let second = V::rows(0b10);
-        let mut out = Vec::with_capacity(self.bits);
-        for t in 0..self.bits {
-            let numbers = numbers.add(V::rows(bits([q.x, q.one], t)), t);
+        let mut out = Vec::with_capacity(bits);
+        for t in 0..bits {
+            let numbers = numbers.add(V::rows(both([q.x, q.one], t)), t);
             let sums = pair(squares.add(numbers.and(second), t));
             let [low, high, ..] = pair(numbers);
             out.push(QuadraticBits { sums, coefficient: [low, high] });
         }
-        out
+        Self(out)
     }
-}
-
-impl Adders for QuadraticTrees {
-    type Carries<V: Vector> = QuadraticCarries<V>;
 
     #[inline(always)]
     fn start<V: Vector>() -> QuadraticCarries<V> {
@@ -247,21 +221,18 @@ fn rows_of<V: Vector>(rows: &Leaves, first: usize) -> V {
 mod tests {
     use super::*;
     use crate::isa::{LINEAR_BITS, QUADRATIC_BITS};
-    use crate::simd::{Eight, Vectors};
+    use crate::simd::Eight;
 
-    fn value(adders: &impl Adders, bits: usize, x: usize, y: usize) -> i64 {
+    fn value<E: Evaluator>(coefficients: &E::Coefficients, bits: u32, x: usize, y: usize) -> i64 {
+        let evaluator = E::run_trees::<Eight>(coefficients, bits as usize);
+        let mut carries = E::start();
         // Eight 32-bit lanes are two rows.
-        let mut carries = start(adders);
-        let value = (0..bits).fold(0, |value, t| {
+        let value = (0..bits as usize).fold(0, |value, t| {
             let mut words = [0; 4];
-            adders.bit::<Eight>(t, y / 2 * 2, &mut carries).store_words(&mut words);
+            evaluator.bit::<Eight>(t, y / 2 * 2, &mut carries).store_words(&mut words);
             value | ((words[2 * (y % 2) + x / 64] >> (x % 64) & 1) as i64) << t
         });
         value << (64 - bits) >> (64 - bits)
-    }
-
-    fn start<A: Adders>(_: &A) -> A::Carries<Eight> {
-        A::start()
     }
 
     #[test]
@@ -269,13 +240,7 @@ mod tests {
         let e = Linear { a: -123_456, b: 987_654, c: i32::MAX };
         for (x, y) in [(0, 0), (127, 0), (0, 127), (127, 127), (64, 63), (93, 42)] {
             let expected = i64::from(e.at(x, y));
-            let bits = LINEAR_BITS as usize;
-            let found = value(
-                &LinearTrees::new(&e, bits, Present::or_portable(Vectors::Portable)),
-                bits,
-                x as usize,
-                y as usize,
-            );
+            let found = value::<LinearTrees>(&e, LINEAR_BITS, x as usize, y as usize);
             assert_eq!(found, expected, "({x}, {y})");
         }
     }
@@ -287,13 +252,7 @@ mod tests {
         for (x, y) in [(0, 0), (127, 0), (0, 127), (127, 127), (64, 63), (93, 42)] {
             let unused = 64 - QUADRATIC_BITS;
             let expected = q.at(x, y) << unused >> unused;
-            let bits = QUADRATIC_BITS as usize;
-            let found = value(
-                &QuadraticTrees::new(&q, bits, Present::or_portable(Vectors::Portable)),
-                bits,
-                x as usize,
-                y as usize,
-            );
+            let found = value::<QuadraticTrees>(&q, QUADRATIC_BITS, x as usize, y as usize);
             assert_eq!(found, expected, "({x}, {y})");
         }
     }
