@@ -7,6 +7,9 @@
 //! An edge that two triangles share is cut at the same point in both, bit for bit: the point is computed from the
 //! lesser to the greater end in one fixed order of clip coordinates, whichever way the triangle runs. So the cut
 //! opens no gap.
+//!
+//! Cuts are made and kept in double precision until they are on the screen: close to the eye a long edge has small
+//! coordinates that are differences of large ones, and a cut some pixels off would fold the pieces over.
 
 use std::cmp::Ordering;
 
@@ -33,27 +36,42 @@ pub(crate) struct Guard {
     pub(crate) y: f32,
 }
 
+/// A corner of what is left of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Corner<const N: usize> {
+    pub(crate) clip: [f64; 4],
+    pub(crate) extra: [f64; N],
+    /// Whether it is a cut, and not a vertex.
+    pub(crate) cut: bool,
+}
+
+impl<const N: usize> Corner<N> {
+    fn of(vertex: &Vertex<N>) -> Self {
+        Self { clip: vertex.clip.map(f64::from), extra: vertex.extra.map(f64::from), cut: false }
+    }
+}
+
 /// A convex polygon.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Polygon<const N: usize> {
-    corners: [Vertex<N>; MAX_CORNERS],
+    corners: [Corner<N>; MAX_CORNERS],
     len: usize,
 }
 
 impl<const N: usize> Polygon<N> {
     fn empty() -> Self {
-        let nowhere = Vertex { clip: [0.0; 4], extra: [0.0; N] };
+        let nowhere = Corner { clip: [0.0; 4], extra: [0.0; N], cut: false };
         Self { corners: [nowhere; MAX_CORNERS], len: 0 }
     }
 
-    pub(crate) fn corners(&self) -> &[Vertex<N>] {
+    pub(crate) fn corners(&self) -> &[Corner<N>] {
         &self.corners[..self.len]
     }
 
     /// Rounding can make a polygon slightly concave; more corners than a convex one can have are left out.
-    fn push(&mut self, vertex: Vertex<N>) {
+    fn push(&mut self, corner: Corner<N>) {
         if let Some(slot) = self.corners.get_mut(self.len) {
-            *slot = vertex;
+            *slot = corner;
             self.len += 1;
         }
     }
@@ -61,14 +79,15 @@ impl<const N: usize> Polygon<N> {
 
 impl Guard {
     /// Signed distances of a point from the six planes; not negative is inside.
-    fn distance(self, plane: usize, [x, y, z, w]: [f32; 4]) -> f32 {
+    fn distance(self, plane: usize, [x, y, z, w]: [f64; 4]) -> f64 {
+        let [right, top] = [self.x, self.y].map(f64::from);
         match plane {
             0 => z,
             1 => w - z,
-            2 => self.x * w - x,
-            3 => self.x * w + x,
-            4 => self.y * w - y,
-            _ => self.y * w + y,
+            2 => right * w - x,
+            3 => right * w + x,
+            4 => top * w - y,
+            _ => top * w + y,
         }
     }
 
@@ -83,9 +102,9 @@ impl Guard {
     /// What is left of a triangle.
     pub(crate) fn clip<const N: usize>(self, triangle: &[Vertex<N>; 3]) -> Polygon<N> {
         let mut polygon = Polygon::empty();
-        triangle.iter().for_each(|v| polygon.push(*v));
+        triangle.iter().for_each(|v| polygon.push(Corner::of(v)));
         for plane in 0..6 {
-            let outside = |v: &Vertex<N>| self.distance(plane, v.clip) < 0.0;
+            let outside = |v: &Corner<N>| self.distance(plane, v.clip) < 0.0;
             if polygon.corners().iter().any(outside) {
                 polygon = self.cut(plane, &polygon);
             }
@@ -110,23 +129,24 @@ impl Guard {
     }
 
     /// Where an edge crosses a plane, computed from its lesser end.
-    fn crossing<const N: usize>(self, plane: usize, one: &Vertex<N>, other: &Vertex<N>) -> Vertex<N> {
+    fn crossing<const N: usize>(self, plane: usize, one: &Corner<N>, other: &Corner<N>) -> Corner<N> {
         let (from, to) = match order(&one.clip, &other.clip) {
             Ordering::Greater => (other, one),
             _ => (one, other),
         };
         let (near, far) = (self.distance(plane, from.clip), self.distance(plane, to.clip));
         let t = near / (near - far);
-        let between = |a: f32, b: f32| a + (b - a) * t;
-        Vertex {
+        let between = |a: f64, b: f64| a + (b - a) * t;
+        Corner {
             clip: std::array::from_fn(|i| between(from.clip[i], to.clip[i])),
             extra: std::array::from_fn(|i| between(from.extra[i], to.extra[i])),
+            cut: true,
         }
     }
 }
 
 /// A total order of clip coordinates.
-fn order(a: &[f32; 4], b: &[f32; 4]) -> Ordering {
+fn order(a: &[f64; 4], b: &[f64; 4]) -> Ordering {
     a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
 }
 
@@ -162,7 +182,7 @@ mod tests {
         let b = vertex([-2.1, 0.2, 1.7, 3.1], 7.0);
         let c = vertex([5.0, 5.0, 1.0, 3.0], 0.0);
         let d = vertex([-5.0, -5.0, 1.0, 3.0], 0.0);
-        let near = |p: Polygon<1>| -> Vec<Vertex<1>> {
+        let near = |p: Polygon<1>| -> Vec<Corner<1>> {
             p.corners().iter().filter(|v| v.clip[2].abs() < 1e-6).copied().collect()
         };
         let (one, other) = (near(GUARD.clip(&[a, b, c])), near(GUARD.clip(&[b, a, d])));
@@ -176,7 +196,7 @@ mod tests {
             vertex([1.0, 0.0, 1.0, 2.0], 2.0),
             vertex([0.0, 1.0, 1.0, 2.0], 4.0),
         ]);
-        let extras: Vec<f32> = polygon.corners().iter().map(|v| v.extra[0]).collect();
+        let extras: Vec<f64> = polygon.corners().iter().map(|v| v.extra[0]).collect();
         assert_eq!(extras, [1.0, 2.0, 4.0, 2.0]);
     }
 

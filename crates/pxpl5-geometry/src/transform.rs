@@ -1,7 +1,7 @@
 //! Transform: from triangles in the world to triangles on the screen.
 
 use crate::bin::Binner;
-use crate::clip::{self, Guard, Vertex};
+use crate::clip::{self, Corner, Guard, Vertex};
 use crate::light::Lighting;
 use crate::screen::{self, LitColours, Outline, ScreenTriangle, SurfaceNormals};
 use crate::seen::SeenVertex;
@@ -117,14 +117,22 @@ impl ToScreen {
         }
     }
 
-    /// Divides by w and snaps a vertex that clipping made; `None` if it is not inside even so (w near 0).
-    fn snap_checked(&self, clip: [f32; 4]) -> Option<Snapped> {
-        let limit = (screen::GUARD_PIXELS * screen::SUBPIXELS) as f32;
+    /// Divides by w and snaps a corner that clipping left; `None` if it is not inside even so (w near 0). A vertex is
+    /// snapped as everywhere, a cut in double precision.
+    fn snap_corner<const N: usize>(&self, Corner { clip, cut, .. }: &Corner<N>) -> Option<Snapped> {
+        let limit = f64::from(screen::GUARD_PIXELS * screen::SUBPIXELS);
         let inverse = 1.0 / clip[3];
-        let x = (clip[0] * inverse) * self.scale[0] + self.centre[0];
-        let y = (clip[1] * inverse) * self.scale[1] + self.centre[1];
-        let fits = x.abs() <= limit && y.abs() <= limit && clip[3] >= clip::MIN_W;
-        fits.then(|| self.snap(clip))
+        let on_screen = |i: usize| (clip[i] * inverse) * f64::from(self.scale[i]) + f64::from(self.centre[i]);
+        let (x, y) = (on_screen(0), on_screen(1));
+        let fits = x.abs() <= limit && y.abs() <= limit && clip[3] >= f64::from(clip::MIN_W);
+        if !fits {
+            return None;
+        }
+        if !cut {
+            return Some(self.snap(clip.map(|v| v as f32)));
+        }
+        let z = screen::depth_fixed((clip[2] * inverse) as f32);
+        Some(Snapped { x: x.round_ties_even() as i32, y: y.round_ties_even() as i32, z })
     }
 }
 
@@ -434,15 +442,15 @@ impl Transform {
         for pair in rest.windows(2) {
             let piece = [*first, pair[0], pair[1]];
             if let Some(assembled) = self.piece(&piece, stats) {
-                let extras = piece.map(|v| v.extra);
+                let extras = piece.map(|corner| corner.extra.map(|v| v as f32));
                 let order = if assembled.swapped { [0, 2, 1] } else { [0, 1, 2] };
                 sink(assembled, order.map(|i| extras[i]));
             }
         }
     }
 
-    fn piece<const N: usize>(&self, piece: &[Vertex<N>; 3], stats: &mut SetupStats) -> Option<Assembled> {
-        let [p, q, r] = piece.map(|v| self.to_screen.snap_checked(v.clip));
+    fn piece<const N: usize>(&self, piece: &[Corner<N>; 3], stats: &mut SetupStats) -> Option<Assembled> {
+        let [p, q, r] = piece.each_ref().map(|corner| self.to_screen.snap_corner(corner));
         let (Some(p), Some(q), Some(r)) = (p, q, r) else {
             stats.not_finite += 1;
             return None;

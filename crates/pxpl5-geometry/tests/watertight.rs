@@ -95,6 +95,17 @@ proptest! {
 }
 
 #[test]
+fn an_edge_of_10_5_units_that_passes_the_eye_closely_is_cut_where_it_is() {
+    // In single precision a cut was five pixels off; the pieces folded over and drew 85 pixels twice.
+    let projection = Mat4::perspective_rh(1.0, 4.0 / 3.0, 0.25, 1e6);
+    let view = ViewTransform { model_view: Mat4::IDENTITY, projection };
+    let [a, b] = [Vec3::new(0.182_420_76, 0.094_211_22, 2.811_083_8), Vec3::new(2.750_59, -2.228_786_5, -2.321_554_4)];
+    let hub = Vec3::new(0.1, -0.2, -1.855_645_9);
+    let (counts, stats) = draw(&view, &fan(hub, &[a, b, -a, -b].map(|v| hub + v * 1e5)));
+    assert!(counts.iter().all(|&n| n <= 1), "{stats:?}");
+}
+
+#[test]
 fn a_corner_on_a_pixel_centre_belongs_to_exactly_one_of_its_triangles() {
     let hub = at_pixel(100.5, 100.5, 1.0);
     let rim = [[90.5, 100.5], [100.5, 90.5], [110.5, 100.5], [100.5, 110.5]].map(|[x, y]| at_pixel(x, y, 1.0));
