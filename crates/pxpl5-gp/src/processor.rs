@@ -82,8 +82,8 @@ const LINK: usize = 1;
 /// Its clock stands still between calls; caches, queues and the open row of the memory are as the last call left them.
 /// What is written from outside counts as put there by code before the call: it takes no time and changes no cache.
 ///
-/// No call is remembered for the next one: the phase of the memory's refresh and the sequence of the caches' replacement
-/// give every call a state of its own, so that none repeats exactly.
+/// No call is remembered for a later one. The phase of the memory's refresh and the sequence of the caches' replacement
+/// are part of the state that would have to repeat; how often it does has not been measured.
 pub struct Processor {
     gp: NodeId,
     version: CodeVersion,

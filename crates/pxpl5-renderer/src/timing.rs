@@ -26,7 +26,7 @@ pxpl5_sim::parameter_table! {
         /// Transfer of one 32-bit block of all pixels to or from the backing store.
         backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096, "51 us";
         /// Finished regions that a renderer keeps in its backing store until they are copied.
-        backing_regions: 1, "regions", Derived, 1..=4, "from the published 56.5 ms of a trivial scene (TR94); its theory of 50 ms needs 3 or more, and 4,096 bits have room for them";
+        backing_regions: 1, "regions", Derived, 1..=4, "from the published 56.5 ms of a trivial scene (TR94); with 3 or more it would be 65 ms, and 47.6 of the 50 ms of its theory; 4,096 bits have room for them";
         /// Depth of the input FIFO.
         fifo_words: 448, "words", Derived, 400..=512, "from the published 56.5 ms of a trivial scene (TR94)";
     }
