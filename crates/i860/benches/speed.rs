@@ -1,9 +1,16 @@
-//! Host time per simulated instruction, with timing on, code and data in cache.
+//! Host time per simulated instruction: with memoised clocks, with all clocks counted, and without timing. Loops with
+//! code and data in cache, then the triangle kernels.
 
 #![allow(missing_docs, reason = "criterion_group makes an undocumented function")]
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+#[path = "../tests/kernel/mod.rs"]
+mod kernel;
+
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use i860::{Config, Cpu, Outcome, Ram, assemble};
+use kernel::{Bench, frame, triangles};
+use pxpl5_geometry::Viewport;
+use pxpl5_geometry::kernel::Schedule;
 use std::hint::black_box;
 
 const INSTRUCTIONS: u64 = 1_000_000;
@@ -62,11 +69,16 @@ fn prepare(source: &str, config: Config) -> (Cpu, Ram) {
     (Cpu::at(config, 0x1000), ram)
 }
 
+fn modes() -> [(&'static str, Config); 3] {
+    let counted = Config { memoise: false, ..Config::cycle() };
+    [("memoised", Config::cycle()), ("counted", counted), ("functional", Config::functional())]
+}
+
 fn speed(c: &mut Criterion) {
     let mut group = c.benchmark_group("instructions");
     group.throughput(Throughput::Elements(INSTRUCTIONS)).sample_size(20);
     for (name, source) in [("integer", INTEGER), ("floating", FLOATING), ("dual", DUAL)] {
-        for (mode, config) in [("cycle", Config::cycle()), ("functional", Config::functional())] {
+        for (mode, config) in modes() {
             let (mut cpu, mut ram) = prepare(source, config);
             group.bench_function(format!("{name}/{mode}"), |b| {
                 b.iter(|| {
@@ -80,5 +92,26 @@ fn speed(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, speed);
+/// Triangles of about the size of those in the figures.
+fn kernels(c: &mut Criterion) {
+    let mut group = c.benchmark_group("kernels");
+    let input = triangles(500, 0.12, 1);
+    for schedule in [Schedule::Straight, Schedule::Dual] {
+        for (mode, config) in modes() {
+            let prepare = || Bench::new(frame(schedule), Viewport::FRAME, config, &input);
+            let run = |mut bench: Bench| {
+                bench.run();
+                bench
+            };
+            let instructions = run(prepare()).profile().instructions;
+            group.throughput(Throughput::Elements(instructions)).sample_size(20);
+            group.bench_function(format!("{schedule:?}/{mode}"), |b| {
+                b.iter_batched(prepare, run, BatchSize::LargeInput);
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, speed, kernels);
 criterion_main!(benches);

@@ -9,6 +9,8 @@ pub(crate) struct Tags {
     line_shift: u32,
     set_mask: u32,
     ways: u32,
+    /// Fills and clears so far: while it stays, so does what is held.
+    changes: u64,
 }
 
 impl Tags {
@@ -19,7 +21,13 @@ impl Tags {
             line_shift: line_bytes.trailing_zeros(),
             set_mask: entries / ways - 1,
             ways,
+            changes: 0,
         }
+    }
+
+    #[inline]
+    pub(crate) fn changes(&self) -> u64 {
+        self.changes
     }
 
     fn first_way(&self, line: u32) -> usize {
@@ -34,6 +42,7 @@ impl Tags {
         (first..first + self.ways as usize).find(|at| self.tags[*at] == line + 1)
     }
 
+    #[inline]
     pub(crate) fn mark_dirty(&mut self, at: usize) {
         self.dirty[at] = true;
     }
@@ -44,6 +53,7 @@ impl Tags {
         let line = address >> self.line_shift;
         let first = self.first_way(line);
         let empty = (first..first + self.ways as usize).find(|at| self.tags[*at] == 0);
+        self.changes += 1;
         let at = empty.unwrap_or(first + (random % self.ways) as usize);
         let victim = self.dirty[at].then(|| (self.tags[at] - 1) << self.line_shift);
         self.tags[at] = line + 1;
@@ -57,6 +67,7 @@ impl Tags {
     }
 
     pub(crate) fn clear(&mut self) {
+        self.changes += 1;
         self.tags.fill(0);
         self.dirty.fill(false);
     }

@@ -1,51 +1,61 @@
-//! The clock: issue, freezes, caches, queues. Asked before, during and after every instruction; changes no value.
+//! The clock: issue, freezes, caches, queues. Told of every block what it executed; changes no value.
 
+use crate::block::{Block, Unit};
 use crate::bus::Bus;
 use crate::cache::{Chance, Tags};
-use crate::decoded::{Decoded, arm, float_mask, hazard};
+use crate::decoded::{Decoded, hazard};
 use crate::dram::{Dram, Transfer};
-use crate::instruction::{Flags, Instruction, Op};
+use crate::instruction::{Instruction, Op};
+use crate::memo::{Memo, Passage};
 use crate::profile::{AddressProfile, Profile};
+use crate::scoreboard::{NO_WAIT, Scoreboard};
 use crate::timing::{
-    BUS_BYTES, Config, DATA_CACHE, Freeze, FreezeRules, INSTRUCTION_CACHE, PAGE_BYTES, STORE_DEPTH, TLB,
+    BUS_BYTES, Config, DATA_CACHE, FREEZES, Freeze, FreezeRules, INSTRUCTION_CACHE, PAGE_BYTES, STORE_DEPTH, TLB,
 };
 
 /// No line.
 const NO_LINE: u32 = u32::MAX;
-/// Matches no source, not even that of an instruction without one.
-const NO_RESULT: u8 = 0xFE;
 
-/// A wait that a hazard imposes: until when, and why.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Wait {
-    until: u64,
-    why: Freeze,
+/// Addresses of data accesses, in order; at most one for each unit of a block.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Accesses(Vec<u32>);
+
+impl Accesses {
+    pub(crate) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    #[inline]
+    pub(crate) fn push(&mut self, address: u32) {
+        self.0.push(address);
+    }
 }
 
-const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
+/// What became of a block that was executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Course {
+    /// Units executed, not counting the slot.
+    pub(crate) units: usize,
+    /// Whether the slot was executed.
+    pub(crate) slot: bool,
+    /// Whether the branch at the end was taken.
+    pub(crate) taken: bool,
+    /// Whether the last of these units trapped.
+    pub(crate) trapped: bool,
+}
 
 #[derive(Clone, Debug)]
 pub(crate) struct Clock {
     pub(crate) on: bool,
-    /// What instructions leave behind that matters under the rules.
-    arms_seen: u16,
     pub(crate) now: u64,
     /// Clock at which the profile was started; every clock since then is a freeze or an issue.
     profile_start: u64,
     rules: FreezeRules,
     pub(crate) profile: Profile,
     pub(crate) sampler: Option<AddressProfile>,
-    /// Registers (r in the low word, f in the high) whose value may not be there yet.
-    pending: u64,
-    ready: [Wait; 64],
-    armed: u16,
-    hazards: [Wait; hazard::COUNT],
-    /// Result of the last floating-point instruction, for row 9.
-    last_result: u8,
-    last_result_until: u64,
-    scalar_double: bool,
-    graphics_result: u64,
-    stored: u64,
+    board: Scoreboard,
+    /// `None` without memoisation.
+    memo: Option<Memo>,
     line: u32,
     line_words: [u64; 4],
     line_end: u64,
@@ -62,34 +72,18 @@ pub(crate) struct Clock {
     write_back_end: u64,
 }
 
-fn arms_seen(config: &Config) -> u16 {
-    match (config.timing, config.freezes.logicals_delay_branches) {
-        (false, _) => 0,
-        (true, false) => !arm::LOGICAL,
-        (true, true) => !0,
-    }
-}
-
 impl Clock {
     pub(crate) fn new(config: &Config) -> Clock {
         let cache = |(bytes, line, ways): (u32, u32, u32)| Tags::new(bytes / line, line, ways);
         Clock {
             on: config.timing,
-            arms_seen: arms_seen(config),
             now: 0,
             profile_start: 0,
             rules: config.freezes,
             profile: Profile::new(),
             sampler: None,
-            pending: 0,
-            ready: [NO_WAIT; 64],
-            armed: 0,
-            hazards: [NO_WAIT; hazard::COUNT],
-            last_result: NO_RESULT,
-            last_result_until: 0,
-            scalar_double: false,
-            graphics_result: 0,
-            stored: 0,
+            board: Scoreboard::new(config),
+            memo: config.memoise.then(Memo::new),
             line: NO_LINE,
             line_words: [0; 4],
             line_end: 0,
@@ -117,6 +111,10 @@ impl Clock {
         }
     }
 
+    pub(crate) fn repeated_instructions(&self) -> u64 {
+        self.memo.as_ref().map_or(0, |memo| memo.instructions)
+    }
+
     pub(crate) fn clear_profile(&mut self) {
         self.profile = Profile::new();
         self.profile_start = self.now;
@@ -134,9 +132,153 @@ impl Clock {
 
     /// Stands still for the constant part of a row.
     #[inline]
-    pub(crate) fn charge(&mut self, why: Freeze) {
-        if self.on {
-            self.freeze_until(self.now + self.rules.clocks(why), why);
+    fn charge(&mut self, why: Freeze) {
+        self.freeze_until(self.now + self.rules.clocks(why), why);
+    }
+
+    // ---- units
+
+    /// Counts the clocks of what a block has executed.
+    #[inline]
+    pub(crate) fn pass<B: Bus>(&mut self, block: &mut Block, course: Course, accesses: &Accesses, bus: &B) {
+        if !self.on {
+            self.profile.instructions += block.instructions_of(course);
+        } else if let Some(entry) = self.entry(block, accesses) {
+            match block.remembered.find(entry, course) {
+                Some(passage) => self.repeat(passage),
+                None => self.learn(block, entry, course, accesses, bus),
+            }
+        } else {
+            self.count(block, course, accesses, bus);
+        }
+    }
+
+    /// Counts them one unit after the other.
+    fn count<B: Bus>(&mut self, block: &Block, course: Course, accesses: &Accesses, bus: &B) {
+        if let Some(left) = self.memo.as_mut().and_then(Memo::leave) {
+            self.board.restore(left, self.now);
+        }
+        let mut accesses = accesses.0.iter();
+        let mut units = block.executed(course).peekable();
+        while let Some(unit) = units.next() {
+            let trapped = course.trapped && units.peek().is_none();
+            self.profile.instructions += unit.instructions();
+            self.unit(unit, course.taken, trapped, &mut accesses, bus);
+        }
+    }
+
+    /// The number of the scoreboard when nothing else but it decides the clocks of what a block has executed: all its
+    /// instructions and data are in the caches, and nothing of the rest is under way.
+    #[inline]
+    fn entry(&mut self, block: &mut Block, accesses: &Accesses) -> Option<u32> {
+        let memo = self.memo.as_mut()?;
+        let apart = self.now < self.line_end || self.translation.is_some() || self.sampler.is_some();
+        if apart || !block.in_caches_only {
+            return None;
+        }
+        let instructions = &self.instruction_cache;
+        if self.rules.applies(Freeze::InstructionMiss) && !block.is_held(instructions) {
+            return None;
+        }
+        // What is found before the first miss becomes dirty, as it does when counted.
+        let is_held = |(n, address): (usize, &u32)| {
+            let at = self.data_cache.find(*address)?;
+            if block.stores >> n & 1 != 0 {
+                self.data_cache.mark_dirty(at);
+            }
+            Some(())
+        };
+        accesses.0.iter().enumerate().try_for_each(is_held)?;
+        memo.number(&self.board, self.now)
+    }
+
+    #[inline]
+    fn repeat(&mut self, passage: &Passage) {
+        self.now += passage.clocks;
+        self.profile.instructions += passage.instructions;
+        for (why, clocks) in &passage.frozen {
+            self.profile.frozen[*why as usize] += clocks;
+        }
+        self.line = passage.line;
+        if let Some(memo) = &mut self.memo {
+            memo.follow(passage);
+        }
+    }
+
+    #[cold]
+    fn learn<B: Bus>(&mut self, block: &mut Block, entry: u32, course: Course, accesses: &Accesses, bus: &B) {
+        let (now, before) = (self.now, self.profile.clone());
+        self.count(block, course, accesses, bus);
+        let Some(exit) = self.memo.as_mut().and_then(|memo| memo.number(&self.board, self.now)) else { return };
+        let causes = FREEZES.iter().map(|row| (row.id, self.profile.frozen_by(row.id) - before.frozen_by(row.id)));
+        block.remembered.add(Passage {
+            entry,
+            course,
+            exit,
+            clocks: self.now - now,
+            instructions: self.profile.instructions - before.instructions,
+            frozen: causes.filter(|(_, clocks)| *clocks != 0).collect(),
+            line: self.line,
+        });
+    }
+
+    #[inline(always)]
+    fn unit<B: Bus>(
+        &mut self,
+        unit: &Unit,
+        taken: bool,
+        trapped: bool,
+        accesses: &mut std::slice::Iter<'_, u32>,
+        bus: &B,
+    ) {
+        let before = self.now;
+        self.fetch(unit.pc, bus);
+        match &unit.second {
+            None => self.issue(&unit.first),
+            Some(core) => self.issue_pair(&unit.first, core),
+        }
+        if trapped {
+            return;
+        }
+        let core = unit.core();
+        if core.is_told() {
+            match core.is_branch() {
+                true => self.end_of_branch(core.instruction.op, taken),
+                false => self.access(&core.instruction, accesses, bus),
+            }
+        }
+        self.board.retire(&unit.first, self.now);
+        if let Some(core) = &unit.second {
+            self.board.retire(core, self.now);
+        }
+        if let Some(sampler) = &mut self.sampler {
+            sampler.add(unit.pc, self.now - before);
+        }
+    }
+
+    fn end_of_branch(&mut self, op: Op, taken: bool) {
+        match op {
+            Op::Bc | Op::Bnc if taken => self.charge(Freeze::BranchTaken),
+            Op::Bte | Op::Btne if taken => self.charge(Freeze::CompareBranchTaken),
+            Op::BcT | Op::BncT | Op::Bla if !taken => self.charge(Freeze::DelayedBranchNotTaken),
+            Op::Bri | Op::Calli => self.charge(Freeze::IndirectBranch),
+            _ => {}
+        }
+    }
+
+    #[inline]
+    fn access<B: Bus>(&mut self, i: &Instruction, accesses: &mut std::slice::Iter<'_, u32>, bus: &B) {
+        if i.op == Op::StC {
+            return self.charge(Freeze::ControlStore);
+        }
+        let Some(address) = accesses.next().copied() else { return };
+        match i.op {
+            Op::LdB | Op::LdS | Op::LdL => self.load_integer(address, i.dest, bus),
+            Op::Fld => self.load_floating(address, bus),
+            Op::Pfld => self.load_pipelined(address, u32::from(i.size)),
+            Op::Flush => self.flush(address),
+            Op::Fst | Op::Pst => self.store(address, u32::from(i.size)),
+            _ => self.store(address, 4),
         }
     }
 
@@ -144,8 +286,8 @@ impl Clock {
 
     /// Fetches the word or the pair at `pc`.
     #[inline]
-    pub(crate) fn fetch<B: Bus>(&mut self, pc: u32, bus: &B) {
-        if self.on && (pc >> 5 != self.line || self.now < self.line_end) {
+    fn fetch<B: Bus>(&mut self, pc: u32, bus: &B) {
+        if pc >> 5 != self.line || self.now < self.line_end {
             self.fetch_slowly(pc, bus);
         }
     }
@@ -231,13 +373,9 @@ impl Clock {
 
     /// Issues one instruction after its freezes.
     #[inline]
-    pub(crate) fn issue(&mut self, d: &Decoded) {
-        self.profile.instructions += 1;
-        if !self.on {
-            return;
-        }
-        if self.may_wait(d) {
-            let wait = self.wait(d);
+    fn issue(&mut self, d: &Decoded) {
+        if self.board.may_wait(d) {
+            let wait = self.board.wait(d, self.now);
             self.freeze_until(wait.until, wait.why);
         }
         self.now += 1;
@@ -245,15 +383,11 @@ impl Clock {
 
     /// Issues a pair: both halves wait for the longer freeze.
     #[inline]
-    pub(crate) fn issue_pair(&mut self, floating: &Decoded, core: &Decoded) {
-        self.profile.instructions += 2;
-        if !self.on {
-            return;
-        }
+    fn issue_pair(&mut self, floating: &Decoded, core: &Decoded) {
         let mut longest = NO_WAIT;
         for d in [floating, core] {
-            if self.may_wait(d) {
-                let wait = self.wait(d);
+            if self.board.may_wait(d) {
+                let wait = self.board.wait(d, self.now);
                 if wait.until > longest.until {
                     longest = wait;
                 }
@@ -261,184 +395,6 @@ impl Clock {
         }
         self.freeze_until(longest.until, longest.why);
         self.now += 1;
-    }
-
-    #[inline]
-    fn may_wait(&self, d: &Decoded) -> bool {
-        d.reads & self.pending != 0 || d.sensitive & self.armed != 0 || d.multiplier_source == self.last_result
-    }
-
-    /// The longest wait of an instruction; forgets hazards that are over.
-    fn wait(&mut self, d: &Decoded) -> Wait {
-        let mut longest = self.wait_for_registers(d.reads);
-        let mut bits = d.sensitive & self.armed;
-        while bits != 0 {
-            let n = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            let wait = self.wait_for_hazard(n, d);
-            if wait.until > longest.until {
-                longest = wait;
-            }
-        }
-        if d.multiplier_source == self.last_result && self.last_result_until > longest.until {
-            longest = Wait { until: self.last_result_until, why: Freeze::MultiplierFirstSource };
-        }
-        longest
-    }
-
-    fn wait_for_registers(&mut self, reads: u64) -> Wait {
-        let mut longest = NO_WAIT;
-        let mut bits = reads & self.pending;
-        while bits != 0 {
-            let wait = self.ready[bits.trailing_zeros() as usize];
-            if wait.until <= self.now {
-                self.pending &= !(bits & bits.wrapping_neg());
-            } else if wait.until > longest.until {
-                longest = wait;
-            }
-            bits &= bits - 1;
-        }
-        longest
-    }
-
-    fn wait_for_hazard(&mut self, n: usize, d: &Decoded) -> Wait {
-        let wait = self.hazards[n];
-        if wait.until <= self.now {
-            self.armed &= !(1 << n);
-            return NO_WAIT;
-        }
-        match 1u16 << n {
-            hazard::SCALAR => self.behind_scalar(wait, &d.instruction),
-            hazard::GRAPHICS => self.behind_graphics(wait, d),
-            hazard::STORED => self.behind_store(wait, &d.instruction),
-            _ => wait,
-        }
-    }
-
-    fn behind_scalar(&self, mut wait: Wait, i: &Instruction) -> Wait {
-        let floating = i.is_floating() && i.op != Op::Fxfr;
-        if floating && i.has(Flags::SOURCE_DOUBLE) != self.scalar_double {
-            wait.until += self.rules.clocks(Freeze::ScalarPrecisionChange);
-        }
-        let pipelined = i.op == Op::DualOp || i.is_floating() && i.has(Flags::PIPELINED);
-        if pipelined && i.dest >= 2 {
-            wait.until += self.rules.clocks(Freeze::ScalarThenPipelined);
-        }
-        wait
-    }
-
-    fn behind_graphics(&self, wait: Wait, d: &Decoded) -> Wait {
-        let why = if d.instruction.uses_graphics() { Freeze::GraphicsToGraphics } else { Freeze::GraphicsToFloating };
-        if d.reads & self.graphics_result == 0 {
-            return NO_WAIT;
-        }
-        Wait { until: wait.until - 1 + self.rules.clocks(why), why }
-    }
-
-    fn behind_store(&self, wait: Wait, i: &Instruction) -> Wait {
-        let bytes = if i.has(Flags::RESULT_DOUBLE) { 8 } else { 4 };
-        if float_mask(i.dest, bytes) & self.stored == 0 || i.dest < 2 { NO_WAIT } else { wait }
-    }
-
-    // ---- what an instruction leaves behind
-
-    /// Records the hazards that an instruction leaves. Called once it has executed.
-    #[inline]
-    pub(crate) fn retire(&mut self, d: &Decoded) {
-        match d.arms & self.arms_seen {
-            0 => {}
-            arm::CONDITION => self.set_hazard(hazard::CONDITION, Freeze::ConditionUse),
-            arm::FLOATING_RESULT => self.note_result(&d.instruction),
-            _ => self.arm(d),
-        }
-    }
-
-    #[inline]
-    fn note_result(&mut self, i: &Instruction) {
-        self.last_result = if i.has(Flags::RESULT_DOUBLE) { i.dest & 30 } else { i.dest };
-        self.last_result_until = self.now + self.rules.clocks(Freeze::MultiplierFirstSource);
-    }
-
-    fn arm(&mut self, d: &Decoded) {
-        let i = &d.instruction;
-        if d.arms & arm::FLOATING_RESULT != 0 {
-            self.note_result(i);
-        } else if d.is_floating() && i.op != Op::Fnop {
-            self.last_result = NO_RESULT;
-        }
-        if d.arms & (arm::LOAD | arm::LONG_LOAD | arm::SEED) != 0 {
-            self.arm_destination(d);
-        }
-        if d.arms & (arm::SCALAR | arm::SCALAR_DOUBLE_MULTIPLY) != 0 {
-            self.arm_scalar(d);
-        }
-        self.arm_short(d);
-    }
-
-    #[inline]
-    fn set_hazard(&mut self, bit: u16, why: Freeze) {
-        self.set_hazard_until(bit, self.now + self.rules.clocks(why), why);
-    }
-
-    #[inline]
-    fn set_hazard_until(&mut self, bit: u16, until: u64, why: Freeze) {
-        self.armed |= bit;
-        self.hazards[bit.trailing_zeros() as usize] = Wait { until, why };
-    }
-
-    fn set_ready(&mut self, mask: u64, until: u64, why: Freeze) {
-        let mut bits = mask & !(1 | 3 << 32);
-        self.pending |= bits;
-        while bits != 0 {
-            self.ready[bits.trailing_zeros() as usize] = Wait { until, why };
-            bits &= bits - 1;
-        }
-    }
-
-    fn arm_destination(&mut self, d: &Decoded) {
-        let i = &d.instruction;
-        let (mask, why) = match i.op {
-            Op::Call | Op::Calli => (1 << 1, Freeze::LoadUse),
-            Op::LdB | Op::LdS | Op::LdL | Op::LdC | Op::Fxfr => (1 << i.dest, Freeze::LoadUse),
-            Op::Frcp | Op::Frsqr => {
-                let bytes = if i.has(Flags::RESULT_DOUBLE) { 8 } else { 4 };
-                (float_mask(i.dest, bytes), Freeze::SeedUse)
-            }
-            _ => (float_mask(i.dest, i.size.max(4)), Freeze::FloatingLoadUse),
-        };
-        let until = self.now + self.rules.clocks(why);
-        let missed = mask & self.pending != 0 && self.ready[mask.trailing_zeros() as usize].until > until;
-        if !(missed && why == Freeze::LoadUse) {
-            self.set_ready(mask, until, why);
-        }
-    }
-
-    fn arm_scalar(&mut self, d: &Decoded) {
-        let long = d.arms & arm::SCALAR_DOUBLE_MULTIPLY != 0;
-        let why = if long { Freeze::ScalarDoubleMultiplyBusy } else { Freeze::ScalarBusy };
-        self.scalar_double = d.instruction.has(Flags::RESULT_DOUBLE);
-        self.set_hazard(hazard::SCALAR, why);
-    }
-
-    fn arm_short(&mut self, d: &Decoded) {
-        let logical = d.arms & arm::LOGICAL != 0 && self.rules.logicals_delay_branches;
-        if d.arms & arm::CONDITION != 0 || logical {
-            self.set_hazard(hazard::CONDITION, Freeze::ConditionUse);
-        }
-        if d.arms & arm::DOUBLE_MULTIPLY != 0 {
-            self.set_hazard(hazard::DOUBLE_MULTIPLY, Freeze::DoubleMultiply);
-        }
-        if d.arms & arm::GRAPHICS != 0 {
-            self.graphics_result = float_mask(d.instruction.dest, 8) & !(3 << 32);
-            self.set_hazard_until(hazard::GRAPHICS, self.now + 1, Freeze::GraphicsToFloating);
-        }
-        if d.arms & arm::FLUSH != 0 {
-            self.set_hazard(hazard::FLUSH, Freeze::FlushAfterFlush);
-        }
-        if d.arms & arm::STORED != 0 {
-            self.stored = float_mask(d.instruction.dest, d.instruction.size);
-            self.set_hazard(hazard::STORED, Freeze::StoreThenOverwrite);
-        }
     }
 
     // ---- data accesses
@@ -480,36 +436,34 @@ impl Clock {
         (self.miss_first, self.miss_last) = (transfer.first, transfer.last);
         let surcharge = self.rules.clocks(Freeze::TransferDuringMiss);
         if self.rules.applies(Freeze::TransferDuringMiss) {
-            self.set_hazard_until(hazard::TRANSFER_IN_MISS, transfer.first + surcharge, Freeze::TransferDuringMiss);
+            self.board.set_hazard_until(
+                hazard::TRANSFER_IN_MISS,
+                transfer.first + surcharge,
+                Freeze::TransferDuringMiss,
+            );
         }
         let surcharge = self.rules.clocks(Freeze::AccessDuringMiss);
         if self.rules.applies(Freeze::AccessDuringMiss) {
-            self.set_hazard_until(hazard::ACCESS_IN_MISS, transfer.last + surcharge, Freeze::AccessDuringMiss);
+            self.board.set_hazard_until(hazard::ACCESS_IN_MISS, transfer.last + surcharge, Freeze::AccessDuringMiss);
         }
         Some(transfer)
     }
 
     /// An integer load: a miss does not block, its destination becomes ready later.
     #[inline]
-    pub(crate) fn load_integer<B: Bus>(&mut self, address: u32, dest: u8, bus: &B) {
-        if !self.on {
-            return;
-        }
-        self.pending &= !(1 << dest);
+    fn load_integer<B: Bus>(&mut self, address: u32, dest: u8, bus: &B) {
+        self.board.forget(dest);
         if let Some(transfer) = self.start_miss(address, bus) {
             let until = transfer.first + self.rules.clocks(Freeze::LoadMissUse);
             if self.rules.applies(Freeze::LoadMissUse) {
-                self.set_ready(1 << dest, until, Freeze::LoadMissUse);
+                self.board.set_ready(1 << dest, until, Freeze::LoadMissUse);
             }
         }
     }
 
     /// A floating-point load: a miss blocks until the needed word is there.
     #[inline]
-    pub(crate) fn load_floating<B: Bus>(&mut self, address: u32, bus: &B) {
-        if !self.on {
-            return;
-        }
+    fn load_floating<B: Bus>(&mut self, address: u32, bus: &B) {
         if let Some(transfer) = self.start_miss(address, bus)
             && self.rules.applies(Freeze::FloatingLoadMiss)
         {
@@ -520,14 +474,11 @@ impl Clock {
 
     /// A store: into a held line, or through the store pipe to the bus (no allocation on a write miss).
     #[inline]
-    pub(crate) fn store(&mut self, address: u32, size: u32) {
-        if !self.on {
-            return;
-        }
+    fn store(&mut self, address: u32, size: u32) {
         self.translate(address);
         if let Some(at) = self.data_cache.find(address) {
             self.data_cache.mark_dirty(at);
-            self.set_hazard(hazard::STORE_HIT, Freeze::LoadAfterStoreHit);
+            self.board.set_hazard(hazard::STORE_HIT, Freeze::LoadAfterStoreHit, self.now);
             return;
         }
         self.store_through(address, size);
@@ -548,10 +499,7 @@ impl Clock {
     }
 
     /// A pipelined load goes around the cache; its data come three `pfld` later.
-    pub(crate) fn load_pipelined(&mut self, address: u32, size: u32) {
-        if !self.on {
-            return;
-        }
+    fn load_pipelined(&mut self, address: u32, size: u32) {
         self.translate(address);
         let [oldest, second, third] = self.loads;
         if oldest > self.now && self.rules.applies(Freeze::LoadPipeFull) {
@@ -573,8 +521,8 @@ impl Clock {
     }
 
     /// Writes a dirty line back.
-    pub(crate) fn flush(&mut self, address: u32) {
-        if self.on && self.data_cache.clean(address) {
+    fn flush(&mut self, address: u32) {
+        if self.data_cache.clean(address) {
             self.write_back_end = self.bus.write(self.now, address, 4).last;
         }
     }

@@ -5,7 +5,6 @@ use crate::cpu::{Cpu, TrapCause};
 use crate::decoded::Decoded;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::state::{Mode, epsr, psr};
-use crate::timing::Freeze;
 
 /// How control goes on after a unit (an instruction or a pair).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +17,16 @@ pub(crate) enum Flow {
     Delayed(u32),
     /// To what follows the next unit.
     Skip,
+}
+
+#[inline]
+fn immediate(taken: bool, target: u32) -> Flow {
+    if taken { Flow::Jump(target) } else { Flow::Next }
+}
+
+#[inline]
+fn delayed(taken: bool, target: u32) -> Flow {
+    if taken { Flow::Delayed(target) } else { Flow::Skip }
 }
 
 impl Cpu {
@@ -45,10 +54,7 @@ impl Cpu {
     fn system(&mut self, i: &Instruction, pc: u32) -> Result<Flow, TrapCause> {
         match i.op {
             Op::LdC => self.state.set_r(i.dest, self.read_control(i.src2)),
-            Op::StC => {
-                self.write_control(i.src2, self.state.r(i.src1));
-                self.time.charge(Freeze::ControlStore);
-            }
+            Op::StC => self.write_control(i.src2, self.state.r(i.src1)),
             Op::Ixfr => self.state.set_f32(i.dest, self.state.r(i.src1)),
             Op::Flush => self.flush_line(i),
             Op::Trap => return Err(TrapCause::Instruction),
@@ -69,7 +75,6 @@ impl Cpu {
     fn call_indirect(&mut self, i: &Instruction, pc: u32) -> Flow {
         let target = self.state.r(i.src1);
         self.state.set_r(1, self.behind_slot(pc));
-        self.time.charge(Freeze::IndirectBranch);
         Flow::Delayed(target & !3)
     }
 
@@ -84,37 +89,19 @@ impl Cpu {
                 Flow::Delayed(target)
             }
             Op::Bri => self.branch_indirect(i),
-            Op::Bc => self.immediate(condition, target, Freeze::BranchTaken),
-            Op::Bnc => self.immediate(!condition, target, Freeze::BranchTaken),
-            Op::BcT => self.delayed(condition, target),
-            Op::BncT => self.delayed(!condition, target),
+            Op::Bc => immediate(condition, target),
+            Op::Bnc => immediate(!condition, target),
+            Op::BcT => delayed(condition, target),
+            Op::BncT => delayed(!condition, target),
             Op::Bla => self.branch_on_loop(i, target),
             _ => self.compare_and_branch(i, target),
         }
     }
 
-    #[inline]
-    fn immediate(&mut self, taken: bool, target: u32, cost: Freeze) -> Flow {
-        if !taken {
-            return Flow::Next;
-        }
-        self.time.charge(cost);
-        Flow::Jump(target)
-    }
-
-    #[inline]
-    fn delayed(&mut self, taken: bool, target: u32) -> Flow {
-        if taken {
-            return Flow::Delayed(target);
-        }
-        self.time.charge(Freeze::DelayedBranchNotTaken);
-        Flow::Skip
-    }
-
-    fn compare_and_branch(&mut self, i: &Instruction, target: u32) -> Flow {
+    fn compare_and_branch(&self, i: &Instruction, target: u32) -> Flow {
         let first = if i.has(Flags::IMMEDIATE) { u32::from(i.src1) } else { self.state.r(i.src1) };
         let equal = first == self.state.r(i.src2);
-        self.immediate(equal == (i.op == Op::Bte), target, Freeze::CompareBranchTaken)
+        immediate(equal == (i.op == Op::Bte), target)
     }
 
     /// Branches on the old LCC; the new one tells whether the sum of the operands is not negative.
@@ -124,17 +111,12 @@ impl Cpu {
         let sum = i64::from(a as i32) + i64::from(b as i32);
         self.state.set_psr_bit(psr::LCC, sum >= 0);
         self.state.set_r(i.src2, a.wrapping_add(b));
-        if taken {
-            return Flow::Delayed(target);
-        }
-        self.time.charge(Freeze::DelayedBranchNotTaken);
-        Flow::Next
+        if taken { Flow::Delayed(target) } else { Flow::Next }
     }
 
     /// `bri` also returns from a trap: while a trap bit is set it restores U, IM and the pairing mode.
     fn branch_indirect(&mut self, i: &Instruction) -> Flow {
         let target = self.state.r(i.src1);
-        self.time.charge(Freeze::IndirectBranch);
         if self.state.psr & psr::TRAPS != 0 {
             self.return_from_trap();
         }

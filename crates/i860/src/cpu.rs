@@ -1,10 +1,10 @@
 //! The processor: fetch, pairing, delay slots, traps, and the run loop.
 
+use crate::block::{Block, CodeMap, Unit};
 use crate::bus::Bus;
-use crate::clock::Clock;
+use crate::clock::{Accesses, Clock, Course};
 use crate::control::Flow;
-use crate::decode::decode;
-use crate::decoded::{Decoded, EMPTY};
+use crate::decoded::Decoded;
 use crate::floating::read_operands;
 use crate::profile::{AddressProfile, Profile};
 use crate::seed::SeedTable;
@@ -96,8 +96,12 @@ pub enum Outcome {
     Exhausted,
 }
 
-/// Entries of the cache of decoded instructions (a host matter, not the part's instruction cache).
-const DECODED: usize = 1 << 14;
+/// Entries of the table of blocks (a host matter, not the part's instruction cache).
+const BLOCKS: usize = 1 << 14;
+
+fn place(pc: u32) -> usize {
+    (pc >> 2) as usize % BLOCKS
+}
 
 /// An i860 XR.
 pub struct Cpu {
@@ -109,10 +113,14 @@ pub struct Cpu {
     pub(crate) next_mode: Mode,
     /// Set by a return from a trap.
     pub(crate) mode_after_slot: Option<Mode>,
-    in_slot: bool,
-    decoded: Box<[Decoded; DECODED]>,
-    /// Lowest and highest address that was ever decoded.
-    code: (u32, u32),
+    /// Addresses of data that the block in execution has accessed.
+    pub(crate) accesses: Accesses,
+    /// What the block in execution has written to the directory base.
+    pub(crate) directory_base: Option<u32>,
+    /// Whether blocks may differ from the code in memory.
+    pub(crate) code_changed: bool,
+    pub(crate) code: CodeMap,
+    blocks: Box<[Option<Box<Block>>]>,
     config: Config,
 }
 
@@ -120,11 +128,6 @@ impl fmt::Debug for Cpu {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Cpu").field("state", &self.state).field("clocks", &self.clocks()).finish_non_exhaustive()
     }
-}
-
-fn empty_decoded() -> Box<[Decoded; DECODED]> {
-    let entries = vec![Decoded::empty(); DECODED].into_boxed_slice();
-    entries.try_into().unwrap_or_else(|_| unreachable!("the length is that of the array"))
 }
 
 impl Cpu {
@@ -137,9 +140,11 @@ impl Cpu {
             seeds: config.seeds,
             next_mode: Mode::Single,
             mode_after_slot: None,
-            in_slot: false,
-            decoded: empty_decoded(),
-            code: (u32::MAX, 0),
+            accesses: Accesses::default(),
+            directory_base: None,
+            code_changed: false,
+            code: CodeMap::new(),
+            blocks: vec![None; BLOCKS].into_boxed_slice(),
             config,
         }
     }
@@ -156,7 +161,7 @@ impl Cpu {
     pub fn reset(&mut self) {
         self.state = State::reset();
         self.time = Clock::new(&self.config);
-        (self.next_mode, self.mode_after_slot, self.in_slot) = (Mode::Single, None, false);
+        (self.next_mode, self.mode_after_slot) = (Mode::Single, None);
         self.invalidate_code();
     }
 
@@ -170,6 +175,13 @@ impl Cpu {
     #[must_use]
     pub fn instructions(&self) -> u64 {
         self.time.profile.instructions
+    }
+
+    /// Those of all instructions since reset whose clocks were not counted but taken from memory
+    /// ([`Config::memoise`]).
+    #[must_use]
+    pub fn repeated_instructions(&self) -> u64 {
+        self.time.repeated_instructions()
     }
 
     /// Where the clocks went.
@@ -199,58 +211,26 @@ impl Cpu {
         self.time.sampler.as_ref()
     }
 
-    /// Forgets all decoded instructions. Needed after something other than this processor wrote to code; its own
-    /// stores are seen at once (the part would need a flush and dirbase.ITI).
+    /// Forgets all decoded instructions, which are read ahead up to the next branch. Needed after something other than
+    /// this processor wrote to code; its own stores are seen at once (the part would need a flush and dirbase.ITI).
     pub fn invalidate_code(&mut self) {
-        self.decoded.fill(Decoded::empty());
-        self.code = (u32::MAX, 0);
-    }
-
-    #[inline]
-    pub(crate) fn forget_code(&mut self, address: u32, size: u32) {
-        if address.wrapping_add(size) > self.code.0 && address <= self.code.1 {
-            for word in [address & !3, address.wrapping_add(size - 1) & !3] {
-                let entry = &mut self.decoded[(word >> 2) as usize % DECODED];
-                if entry.tag == word {
-                    entry.tag = EMPTY;
-                }
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn locate<B: Bus>(&mut self, pc: u32, bus: &mut B) -> Result<usize, TrapCause> {
-        let at = (pc >> 2) as usize % DECODED;
-        if self.decoded[at].tag != pc {
-            self.decode_at(pc, bus)?;
-        }
-        Ok(at)
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn decode_at<B: Bus>(&mut self, pc: u32, bus: &mut B) -> Result<(), TrapCause> {
-        let word = bus.read(pc, 4).map_err(|_| TrapCause::InstructionAccess)? as u32;
-        let instruction = decode(word).map_err(|e| TrapCause::Illegal { word: e.0 })?;
-        let entry = Decoded::new(instruction, pc);
-        self.decoded[(pc >> 2) as usize % DECODED] = entry;
-        self.code = (self.code.0.min(pc), self.code.1.max(pc | 3));
-        Ok(())
+        self.blocks.fill(None);
+        self.code.clear();
+        self.code_changed = false;
     }
 
     /// Runs until `stop` is reached in single-instruction mode, a trap is taken, or `budget` more instructions have
     /// been executed (a branch and its slot are not parted, so it can be passed by three).
     pub fn run<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, budget: u64) -> Outcome {
         let end = self.instructions().saturating_add(budget);
-        let stop = stop.map_or(u64::MAX, u64::from);
         loop {
-            if u64::from(self.state.pc) == stop && self.state.mode == Mode::Single {
+            if Some(self.state.pc) == stop && self.state.mode == Mode::Single {
                 return Outcome::Stopped;
             }
             if self.instructions() >= end {
                 return Outcome::Exhausted;
             }
-            if let Err(trap) = self.step(bus) {
+            if let Err(trap) = self.advance(bus, stop, end - self.instructions()) {
                 return Outcome::Trapped(trap);
             }
         }
@@ -260,97 +240,108 @@ impl Cpu {
     ///
     /// # Errors
     /// The trap that was taken. The next step executes the first instruction of its handler.
-    #[inline(always)]
     pub fn step<B: Bus>(&mut self, bus: &mut B) -> Result<(), Trap> {
-        match self.unit(bus) {
-            Ok(Flow::Next) => Ok(()),
-            Ok(Flow::Jump(target)) => {
-                self.state.pc = target;
-                Ok(())
-            }
+        self.advance(bus, None, 1)
+    }
+
+    /// Executes the block at pc, or its first unit where the block goes past `stop` or has more than `most` instructions.
+    fn advance<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, most: u64) -> Result<(), Trap> {
+        let (pc, mode) = (self.state.pc, self.state.mode);
+        let mut block = match self.blocks[place(pc)].take() {
+            Some(block) if block.begins(pc, mode) => block,
+            _ => match Block::read(pc, mode, &mut self.code, bus) {
+                Ok(block) => Box::new(block),
+                Err(cause) => return Err(self.take_trap(cause)),
+            },
+        };
+        let whole = block.instructions <= most && stop.is_none_or(|stop| !block.passes(stop));
+        let units = if whole { block.units.len() } else { 1 };
+        let end = self.execute(&mut block, units, bus);
+        if let Some(value) = self.directory_base.take() {
+            self.obey_directory_base(value);
+        }
+        self.blocks[place(pc)] = Some(block);
+        if self.code_changed {
+            self.invalidate_code();
+        }
+        end.map_err(|cause| self.take_trap(cause))
+    }
+
+    /// Executes at most `most` units of a block and the slot of their branch, then counts their clocks.
+    #[inline]
+    fn execute<B: Bus>(&mut self, block: &mut Block, most: usize, bus: &mut B) -> Result<(), TrapCause> {
+        self.accesses.clear();
+        let mut done = 0;
+        let mut flow = Ok(Flow::Next);
+        while done < most && flow == Ok(Flow::Next) && !self.code_changed {
+            flow = self.unit(&block.units[done], bus);
+            done += 1;
+        }
+        let mut course = Course { units: done, slot: false, taken: false, trapped: flow.is_err() };
+        let last = &block.units[done - 1];
+        (self.state.pc, self.state.mode) = (last.next(), last.after);
+        let mut end = Ok(());
+        match flow {
+            Ok(Flow::Next) => {}
+            Ok(Flow::Jump(target)) => (self.state.pc, course.taken) = (target, true),
             Ok(Flow::Skip) => {
-                let skipped = if self.state.mode.is_dual() { 8 } else { 4 };
-                self.state.pc = self.state.pc.wrapping_add(skipped);
+                let skipped = if last.after.is_dual() { 8 } else { 4 };
+                self.state.pc = last.next().wrapping_add(skipped);
+            }
+            Ok(Flow::Delayed(target)) => {
+                course.taken = true;
+                end = self.slot(block, target, &mut course, bus);
+            }
+            Err(cause) => {
+                (self.state.pc, self.state.mode) = (last.pc, last.mode);
+                end = Err(cause);
+            }
+        }
+        self.time.pass(block, course, &self.accesses, bus);
+        end
+    }
+
+    #[inline]
+    fn slot<B: Bus>(&mut self, block: &Block, target: u32, course: &mut Course, bus: &mut B) -> Result<(), TrapCause> {
+        let unit = match &block.slot {
+            Some(Ok(unit)) => unit,
+            Some(Err(cause)) => return Err(*cause),
+            None => unreachable!("a block that ends with a delayed branch has its slot"),
+        };
+        course.slot = true;
+        match self.unit(unit, bus) {
+            Ok(_) => {
+                self.state.pc = target;
+                self.state.mode = self.mode_after_slot.take().unwrap_or(unit.after);
                 Ok(())
             }
-            Ok(Flow::Delayed(target)) => self.slot(target, bus),
-            Err(cause) => Err(self.take_trap(cause)),
+            Err(cause) => {
+                course.trapped = true;
+                Err(cause)
+            }
         }
-    }
-
-    #[inline(never)]
-    fn slot<B: Bus>(&mut self, target: u32, bus: &mut B) -> Result<(), Trap> {
-        self.in_slot = true;
-        let done = self.unit(bus);
-        self.in_slot = false;
-        done.map_err(|cause| self.take_trap(cause))?;
-        self.state.pc = target;
-        if let Some(mode) = self.mode_after_slot.take() {
-            self.state.mode = mode;
-        }
-        Ok(())
     }
 
     #[inline(always)]
-    fn unit<B: Bus>(&mut self, bus: &mut B) -> Result<Flow, TrapCause> {
-        let (pc, before) = (self.state.pc, self.time.now);
-        let flow = if self.state.mode.is_dual() { self.pair(pc, bus)? } else { self.single(pc, bus)? };
-        if let Some(sampler) = &mut self.time.sampler {
-            sampler.add(pc, self.time.now - before);
+    fn unit<B: Bus>(&mut self, unit: &Unit, bus: &mut B) -> Result<Flow, TrapCause> {
+        self.next_mode = unit.after;
+        match &unit.second {
+            Some(core) => self.pair(unit, core, bus),
+            None if unit.first.is_floating() => {
+                let operands = read_operands(&self.state, &unit.first);
+                self.floating(&unit.first.instruction, operands);
+                Ok(Flow::Next)
+            }
+            None => self.core(&unit.first, unit.pc, bus),
         }
-        Ok(flow)
-    }
-
-    #[inline(always)]
-    fn single<B: Bus>(&mut self, pc: u32, bus: &mut B) -> Result<Flow, TrapCause> {
-        let d = self.decoded[self.locate(pc, bus)? % DECODED];
-        if self.in_slot && d.is_branch() {
-            return Err(TrapCause::BranchInSlot);
-        }
-        self.time.fetch(pc, bus);
-        self.time.issue(&d);
-        self.next_mode = match (pc & 4 != 0, self.state.mode) {
-            (true, Mode::Entering) => Mode::DualOnce,
-            (false, _) if d.dual() => Mode::Entering,
-            _ => Mode::Single,
-        };
-        let flow = if d.is_floating() {
-            let operands = read_operands(&self.state, &d);
-            self.floating(&d.instruction, operands);
-            Flow::Next
-        } else {
-            self.core(&d, pc, bus)?
-        };
-        self.time.retire(&d);
-        self.state.mode = self.next_mode;
-        self.state.pc = pc.wrapping_add(4);
-        Ok(flow)
     }
 
     /// A pair: both halves read before either writes, and the core half goes first so that its trap leaves no trace.
     #[inline(always)]
-    fn pair<B: Bus>(&mut self, pc: u32, bus: &mut B) -> Result<Flow, TrapCause> {
-        if pc & 4 != 0 {
-            return Err(TrapCause::PairAlignment);
-        }
-        let low = self.decoded[self.locate(pc, bus)? % DECODED];
-        let high = self.decoded[self.locate(pc.wrapping_add(4), bus)? % DECODED];
-        if !low.is_floating() || high.is_floating() && high.instruction.op != crate::Op::Fnop {
-            return Err(TrapCause::IllegalPair);
-        }
-        if self.in_slot && high.is_branch() {
-            return Err(TrapCause::BranchInSlot);
-        }
-        self.time.fetch(pc, bus);
-        self.time.issue_pair(&low, &high);
-        self.next_mode = self.state.mode.after_pair(low.dual());
-        let operands = read_operands(&self.state, &low);
-        let flow = if high.is_floating() { Flow::Next } else { self.core(&high, pc.wrapping_add(4), bus)? };
-        self.floating(&low.instruction, operands);
-        self.time.retire(&low);
-        self.time.retire(&high);
-        self.state.mode = self.next_mode;
-        self.state.pc = pc.wrapping_add(8);
+    fn pair<B: Bus>(&mut self, unit: &Unit, core: &Decoded, bus: &mut B) -> Result<Flow, TrapCause> {
+        let operands = read_operands(&self.state, &unit.first);
+        let flow = if core.is_floating() { Flow::Next } else { self.core(core, unit.pc.wrapping_add(4), bus)? };
+        self.floating(&unit.first.instruction, operands);
         Ok(flow)
     }
 

@@ -35,11 +35,10 @@ pub(crate) mod arm {
 /// No register.
 pub(crate) const NONE: u8 = 0xFF;
 
-/// A decoded instruction with its timing classes. `tag` is the address that it was decoded from.
+/// A decoded instruction with its timing classes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Decoded {
     pub(crate) reads: u64,
-    pub(crate) tag: u32,
     pub(crate) instruction: Instruction,
     pub(crate) sensitive: u16,
     pub(crate) arms: u16,
@@ -56,17 +55,14 @@ mod mark {
     pub(super) const FIRST_DOUBLE: u8 = 1 << 3;
     pub(super) const SECOND_DOUBLE: u8 = 1 << 4;
     pub(super) const MAY_BYPASS: u8 = 1 << 5;
+    pub(super) const ACCESSES: u8 = 1 << 6;
 }
 
-/// An address that no instruction has.
-pub(crate) const EMPTY: u32 = 1;
-
 impl Decoded {
-    pub(crate) fn new(instruction: Instruction, tag: u32) -> Decoded {
+    pub(crate) fn new(instruction: Instruction) -> Decoded {
         let i = &instruction;
         Decoded {
             reads: reads(i) & !(1 | 3 << 32),
-            tag,
             instruction,
             sensitive: sensitive(i),
             arms: arms(i),
@@ -91,6 +87,13 @@ impl Decoded {
         self.marks & mark::DUAL != 0
     }
 
+    /// Whether it accesses data, or may cost more for how it ends: all that [`Clock`](crate::clock::Clock) must be told
+    /// of its execution.
+    #[inline]
+    pub(crate) fn is_told(&self) -> bool {
+        self.marks & (mark::ACCESSES | mark::BRANCH) != 0
+    }
+
     /// Whether the first and the second source are read as pairs of registers.
     #[inline]
     pub(crate) fn source_widths(&self) -> (bool, bool) {
@@ -101,10 +104,6 @@ impl Decoded {
     #[inline]
     pub(crate) fn may_bypass(&self) -> bool {
         self.marks & mark::MAY_BYPASS != 0
-    }
-
-    pub(crate) fn empty() -> Decoded {
-        Decoded::new(Instruction::new(Op::Fnop), EMPTY)
     }
 }
 
@@ -120,6 +119,7 @@ fn marks(i: &Instruction) -> u8 {
         | on(mark::FIRST_DOUBLE, floating && first)
         | on(mark::SECOND_DOUBLE, floating && second)
         | on(mark::MAY_BYPASS, floating && pipelined && overlaps)
+        | on(mark::ACCESSES, i.op <= Op::Pst || matches!(i.op, Op::Flush | Op::StC))
 }
 
 /// Register mask of `bytes` of floating-point registers from `n`.

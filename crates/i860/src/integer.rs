@@ -115,8 +115,14 @@ impl Cpu {
 
     fn write_directory_base(&mut self, value: u32) {
         self.state.dirbase = value & !dirbase::ITI;
+        self.directory_base = Some(value);
+    }
+
+    /// What a write of the directory base does to caches and translation, once its own time is counted.
+    #[cold]
+    pub(crate) fn obey_directory_base(&mut self, value: u32) {
         if value & dirbase::ITI != 0 {
-            self.invalidate_code();
+            self.code_changed = true;
             self.time.invalidate_instruction_cache();
         }
         let directory = value & dirbase::DTB;

@@ -71,6 +71,7 @@
 
 mod arithmetic;
 mod assembler;
+mod block;
 mod bus;
 mod cache;
 mod clock;
@@ -84,9 +85,11 @@ mod floating;
 mod graphics;
 mod instruction;
 mod integer;
+mod memo;
 mod memory;
 mod mnemonic;
 mod profile;
+mod scoreboard;
 mod seed;
 pub mod state;
 pub mod timing;

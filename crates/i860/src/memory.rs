@@ -33,7 +33,7 @@ impl Cpu {
     #[inline]
     fn write<B: Bus>(&mut self, bus: &mut B, address: u32, size: u32, value: u64) -> Result<(), TrapCause> {
         bus.write(address, size, value).map_err(|_| TrapCause::DataAccess { address })?;
-        self.forget_code(address, size);
+        self.code_changed |= self.code.may_hold(address, size);
         Ok(())
     }
 
@@ -49,7 +49,7 @@ impl Cpu {
         Self::aligned(address, size)?;
         let raw = self.read(bus, address, size)? as u32;
         self.state.set_r(i.dest, ((raw << shift) as i32 >> shift) as u32);
-        self.time.load_integer(address, i.dest, bus);
+        self.accesses.push(address);
         Ok(())
     }
 
@@ -64,7 +64,7 @@ impl Cpu {
         };
         Self::aligned(address, size)?;
         self.write(bus, address, size, u64::from(self.state.r(i.src1)))?;
-        self.time.store(address, size);
+        self.accesses.push(address);
         Ok(())
     }
 
@@ -85,7 +85,7 @@ impl Cpu {
             _ => self.load_quad(i.dest & 28, address, bus)?,
         }
         self.increment(i, address);
-        self.time.load_floating(address, bus);
+        self.accesses.push(address);
         Ok(())
     }
 
@@ -112,7 +112,7 @@ impl Cpu {
             }
         }
         self.increment(i, address);
-        self.time.store(address, size);
+        self.accesses.push(address);
         Ok(())
     }
 
@@ -125,7 +125,7 @@ impl Cpu {
         self.state.set_f(i.dest, leaving);
         self.state.load = [Stage { bits, double: size == 8 }, first, second];
         self.increment(i, address);
-        self.time.load_pipelined(address, size);
+        self.accesses.push(address);
         Ok(())
     }
 
@@ -143,13 +143,13 @@ impl Cpu {
         }
         self.state.set_pixel_mask(mask >> pixels);
         self.increment(i, address);
-        self.time.store(address, 8);
+        self.accesses.push(address);
         Ok(())
     }
 
     pub(crate) fn flush_line(&mut self, i: &Instruction) {
         let address = self.effective_address(i);
         self.increment(i, address);
-        self.time.flush(address);
+        self.accesses.push(address);
     }
 }

@@ -436,6 +436,9 @@ pub struct Config {
     pub seeds: crate::SeedTable,
     /// Start of the pseudo-random sequence of the cache replacement.
     pub replacement_seed: u16,
+    /// Whether the clocks of code that repeats with all it needs in the caches are taken from memory instead of counted
+    /// again. Changes the host's time only.
+    pub memoise: bool,
 }
 
 impl Config {
@@ -448,6 +451,7 @@ impl Config {
             dram: DramTiming::board(),
             seeds: crate::SeedTable::Truncated8,
             replacement_seed: 0xACE1,
+            memoise: true,
         }
     }
 

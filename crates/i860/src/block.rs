@@ -1,0 +1,237 @@
+//! Straight runs of code, decoded once: from an address to the next branch with its slot.
+
+use crate::bus::Bus;
+use crate::cache::Tags;
+use crate::clock::Course;
+use crate::cpu::TrapCause;
+use crate::decode::decode;
+use crate::decoded::Decoded;
+use crate::instruction::Op;
+use crate::memo::Passages;
+use crate::state::Mode;
+
+/// Most units of a block, its slot not counted.
+const LONGEST: usize = 48;
+
+/// What issues at once: an instruction, or a pair.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Unit {
+    pub(crate) pc: u32,
+    /// Mode in which it executes, and that of the unit after it.
+    pub(crate) mode: Mode,
+    pub(crate) after: Mode,
+    /// The instruction, or the floating-point half.
+    pub(crate) first: Decoded,
+    /// The core half of a pair.
+    pub(crate) second: Option<Decoded>,
+}
+
+impl Unit {
+    fn read<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Unit, TrapCause> {
+        if mode.is_dual() { Unit::pair(pc, mode, code, bus) } else { Unit::single(pc, mode, code, bus) }
+    }
+
+    fn single<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Unit, TrapCause> {
+        let first = decode_at(pc, code, bus)?;
+        let after = match (pc & 4 != 0, mode) {
+            (true, Mode::Entering) => Mode::DualOnce,
+            (false, _) if first.dual() => Mode::Entering,
+            _ => Mode::Single,
+        };
+        Ok(Unit { pc, mode, after, first, second: None })
+    }
+
+    fn pair<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Unit, TrapCause> {
+        if pc & 4 != 0 {
+            return Err(TrapCause::PairAlignment);
+        }
+        let first = decode_at(pc, code, bus)?;
+        let second = decode_at(pc.wrapping_add(4), code, bus)?;
+        if !first.is_floating() || second.is_floating() && second.instruction.op != Op::Fnop {
+            return Err(TrapCause::IllegalPair);
+        }
+        Ok(Unit { pc, mode, after: mode.after_pair(first.dual()), first, second: Some(second) })
+    }
+
+    /// The half that may access memory or branch: that of a pair, or the instruction.
+    #[inline]
+    pub(crate) fn core(&self) -> &Decoded {
+        self.second.as_ref().unwrap_or(&self.first)
+    }
+
+    /// Address of what follows.
+    #[inline]
+    pub(crate) fn next(&self) -> u32 {
+        self.pc.wrapping_add(if self.second.is_some() { 8 } else { 4 })
+    }
+
+    pub(crate) fn instructions(&self) -> u64 {
+        1 + u64::from(self.second.is_some())
+    }
+
+    /// Whether a block must end behind it because it changes what code is, or how it is fetched.
+    fn ends_block(&self) -> bool {
+        self.core().instruction.op == Op::StC
+    }
+}
+
+fn decode_at<B: Bus>(pc: u32, code: &mut CodeMap, bus: &mut B) -> Result<Decoded, TrapCause> {
+    code.mark(pc);
+    let word = bus.read(pc, 4).map_err(|_| TrapCause::InstructionAccess)? as u32;
+    let instruction = decode(word).map_err(|e| TrapCause::Illegal { word: e.0 })?;
+    Ok(Decoded::new(instruction))
+}
+
+fn is_store(op: Op) -> bool {
+    matches!(op, Op::StB | Op::StS | Op::StL | Op::Fst | Op::Pst)
+}
+
+/// No state of an instruction cache.
+const NEVER: u64 = u64::MAX;
+
+/// A run of units that ends with a branch, before an instruction that cannot be executed, or at its greatest length.
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
+    pub(crate) units: Vec<Unit>,
+    /// What follows a delayed branch that ends the block.
+    pub(crate) slot: Option<Result<Unit, TrapCause>>,
+    /// Instructions, the slot included.
+    pub(crate) instructions: u64,
+    /// Bytes of the units, without the slot.
+    bytes: u32,
+    /// Which accesses to data are stores, the first one in bit 0.
+    pub(crate) stores: u64,
+    /// Whether there is nothing in it that goes past the caches, whatever they hold.
+    pub(crate) in_caches_only: bool,
+    /// State of the instruction cache in which all of it was held.
+    held_in: u64,
+    pub(crate) remembered: Passages,
+}
+
+impl Block {
+    /// The block that begins at an address in a mode.
+    ///
+    /// # Errors
+    /// Why its first unit cannot be executed.
+    pub(crate) fn read<B: Bus>(pc: u32, mode: Mode, code: &mut CodeMap, bus: &mut B) -> Result<Block, TrapCause> {
+        let mut last = Unit::read(pc, mode, code, bus)?;
+        let mut units = vec![last];
+        while units.len() < LONGEST && !last.core().is_branch() && !last.ends_block() {
+            let Ok(unit) = Unit::read(last.next(), last.after, code, bus) else { break };
+            units.push(unit);
+            last = unit;
+        }
+        let is_delayed = last.core().instruction.is_delayed_branch();
+        let slot = is_delayed.then(|| match Unit::read(last.next(), last.after, code, bus) {
+            Ok(unit) if unit.core().is_branch() => Err(TrapCause::BranchInSlot),
+            read => read,
+        });
+        let (bytes, remembered) = (last.next().wrapping_sub(pc), Passages::default());
+        let mut block =
+            Block { units, slot, instructions: 0, bytes, stores: 0, in_caches_only: true, held_in: NEVER, remembered };
+        block.sum_up();
+        Ok(block)
+    }
+
+    fn sum_up(&mut self) {
+        let units = || self.units.iter().chain(self.slot.iter().flatten());
+        let ops = || units().map(|unit| unit.core().instruction.op);
+        let accesses = ops().filter(|op| *op <= Op::Pst);
+        let stores = (0..).zip(accesses).filter(|(_, op)| is_store(*op)).fold(0, |bits, (n, _)| bits | 1 << n);
+        let instructions = units().map(Unit::instructions).sum();
+        let in_caches_only = !ops().any(|op| matches!(op, Op::Pfld | Op::Flush));
+        (self.stores, self.instructions, self.in_caches_only) = (stores, instructions, in_caches_only);
+    }
+
+    /// The units that a course went through.
+    #[inline]
+    pub(crate) fn executed(&self, course: Course) -> impl Iterator<Item = &Unit> {
+        self.units[..course.units].iter().chain(self.slot.iter().flatten().take(usize::from(course.slot)))
+    }
+
+    /// How many instructions those are.
+    #[inline]
+    pub(crate) fn instructions_of(&self, course: Course) -> u64 {
+        if course.units == self.units.len() && course.slot == self.slot.is_some() {
+            self.instructions
+        } else {
+            self.executed(course).map(Unit::instructions).sum()
+        }
+    }
+
+    /// Whether the instruction cache holds all of it.
+    #[inline]
+    pub(crate) fn is_held(&mut self, cache: &Tags) -> bool {
+        self.held_in == cache.changes() || self.look_up(cache)
+    }
+
+    fn look_up(&mut self, cache: &Tags) -> bool {
+        let units = || self.units.iter().chain(self.slot.iter().flatten());
+        let held = units().all(|unit| cache.find(unit.pc).is_some());
+        if held {
+            self.held_in = cache.changes();
+        }
+        held
+    }
+
+    /// Whether it is that of an address and a mode.
+    #[inline]
+    pub(crate) fn begins(&self, pc: u32, mode: Mode) -> bool {
+        let first = &self.units[0];
+        first.pc == pc && first.mode == mode
+    }
+
+    /// Whether an address lies behind its first unit and before its end; the slot is behind its end.
+    #[inline]
+    pub(crate) fn passes(&self, address: u32) -> bool {
+        let offset = address.wrapping_sub(self.units[0].pc);
+        offset != 0 && offset < self.bytes
+    }
+}
+
+/// Words of code that were decoded, so that a store into them is noticed.
+#[derive(Debug)]
+pub(crate) struct CodeMap {
+    /// Lowest and highest address of them.
+    range: (u32, u32),
+    /// A bit for each word, by its number modulo [`CodeMap::BITS`].
+    words: Box<[u64]>,
+}
+
+impl CodeMap {
+    const BITS: usize = 1 << 14;
+
+    pub(crate) fn new() -> CodeMap {
+        CodeMap { range: (u32::MAX, 0), words: vec![0; CodeMap::BITS / 64].into_boxed_slice() }
+    }
+
+    fn bit(address: u32) -> (usize, u64) {
+        let word = (address >> 2) as usize % CodeMap::BITS;
+        (word / 64, 1 << (word % 64))
+    }
+
+    fn mark(&mut self, pc: u32) {
+        let (at, bit) = CodeMap::bit(pc);
+        self.words[at] |= bit;
+        self.range = (self.range.0.min(pc), self.range.1.max(pc | 3));
+    }
+
+    /// Whether some of `size` bytes may have been decoded.
+    #[inline]
+    pub(crate) fn may_hold(&self, address: u32, size: u32) -> bool {
+        let last = address.wrapping_add(size - 1);
+        last >= self.range.0 && address <= self.range.1 && self.is_marked(address, last)
+    }
+
+    fn is_marked(&self, first: u32, last: u32) -> bool {
+        [first, last].into_iter().any(|address| {
+            let (at, bit) = CodeMap::bit(address);
+            self.words[at] & bit != 0
+        })
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.words.fill(0);
+        self.range = (u32::MAX, 0);
+    }
+}

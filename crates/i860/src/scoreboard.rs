@@ -1,0 +1,300 @@
+//! What instructions leave behind for those after them: registers not ready, units busy. All waits end by themselves.
+
+use crate::decoded::{Decoded, arm, float_mask, hazard};
+use crate::instruction::{Flags, Instruction, Op};
+use crate::timing::{Config, Freeze, FreezeRules};
+
+/// Matches no source, not even that of an instruction without one.
+const NO_RESULT: u8 = 0xFE;
+
+/// A wait that a hazard imposes: until when, and why.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Wait {
+    pub(crate) until: u64,
+    pub(crate) why: Freeze,
+}
+
+pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
+
+/// Places of [`Leftover::waits`]: the registers, then the hazards, then the last result.
+const HAZARDS: u8 = 64;
+const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
+
+/// A scoreboard as seen from a clock: what is over by then is left out.
+///
+/// Two scoreboards with the same leftover impose the same waits on all instructions to come.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct Leftover {
+    /// Place, clocks to go, cause.
+    waits: Vec<(u8, u8, Freeze)>,
+    last_result: u8,
+    scalar_double: bool,
+    graphics_result: u64,
+    stored: u64,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Scoreboard {
+    rules: FreezeRules,
+    /// What instructions leave behind that matters under the rules.
+    arms_seen: u16,
+    /// Registers (r in the low word, f in the high) whose value may not be there yet.
+    pending: u64,
+    ready: [Wait; 64],
+    armed: u16,
+    hazards: [Wait; hazard::COUNT],
+    /// Result of the last floating-point instruction, for row 9.
+    last_result: u8,
+    last_result_until: u64,
+    scalar_double: bool,
+    graphics_result: u64,
+    stored: u64,
+}
+
+impl Scoreboard {
+    pub(crate) fn new(config: &Config) -> Scoreboard {
+        Scoreboard {
+            rules: config.freezes,
+            arms_seen: if config.freezes.logicals_delay_branches { !0 } else { !arm::LOGICAL },
+            pending: 0,
+            ready: [NO_WAIT; 64],
+            armed: 0,
+            hazards: [NO_WAIT; hazard::COUNT],
+            last_result: NO_RESULT,
+            last_result_until: 0,
+            scalar_double: false,
+            graphics_result: 0,
+            stored: 0,
+        }
+    }
+
+    /// What is left at `now`; `None` when something takes more than `most` clocks from then.
+    pub(crate) fn leftover(&self, now: u64, most: u8) -> Option<Leftover> {
+        let registers = (0..HAZARDS).filter(|n| self.pending >> n & 1 != 0).map(|n| (n, self.ready[usize::from(n)]));
+        let armed = (0..).zip(self.hazards).filter(|(n, _)| self.armed >> n & 1 != 0);
+        let hazards = armed.map(|(n, wait)| (HAZARDS + n, wait));
+        let result = Wait { until: self.last_result_until, why: Freeze::MultiplierFirstSource };
+        let mut left = Leftover { last_result: NO_RESULT, ..Leftover::default() };
+        for (place, wait) in registers.chain(hazards).chain([(LAST_RESULT, result)]).filter(|(_, w)| w.until > now) {
+            let clocks = u8::try_from(wait.until - now).ok().filter(|clocks| *clocks <= most)?;
+            left.waits.push((place, clocks, wait.why));
+            match place {
+                LAST_RESULT => left.last_result = self.last_result,
+                _ if place < HAZARDS => {}
+                _ => match 1u16 << (place - HAZARDS) {
+                    hazard::SCALAR => left.scalar_double = self.scalar_double,
+                    hazard::GRAPHICS => left.graphics_result = self.graphics_result,
+                    hazard::STORED => left.stored = self.stored,
+                    _ => {}
+                },
+            }
+        }
+        Some(left)
+    }
+
+    /// Makes this the scoreboard that leaves `left` at `now`.
+    pub(crate) fn restore(&mut self, left: &Leftover, now: u64) {
+        (self.pending, self.armed, self.last_result_until) = (0, 0, 0);
+        (self.last_result, self.scalar_double) = (left.last_result, left.scalar_double);
+        (self.graphics_result, self.stored) = (left.graphics_result, left.stored);
+        for (place, clocks, why) in &left.waits {
+            let wait = Wait { until: now + u64::from(*clocks), why: *why };
+            match *place {
+                LAST_RESULT => self.last_result_until = wait.until,
+                n if n < HAZARDS => {
+                    self.pending |= 1 << n;
+                    self.ready[usize::from(n)] = wait;
+                }
+                n => {
+                    self.armed |= 1 << (n - HAZARDS);
+                    self.hazards[usize::from(n - HAZARDS)] = wait;
+                }
+            }
+        }
+    }
+
+    /// An integer register is about to be loaded: its old value is waited for no longer.
+    #[inline]
+    pub(crate) fn forget(&mut self, dest: u8) {
+        self.pending &= !(1 << dest);
+    }
+
+    /// Whether [`Scoreboard::wait`] must be asked.
+    #[inline]
+    pub(crate) fn may_wait(&self, d: &Decoded) -> bool {
+        d.reads & self.pending != 0 || d.sensitive & self.armed != 0 || d.multiplier_source == self.last_result
+    }
+
+    /// The longest wait of an instruction; forgets hazards that are over.
+    pub(crate) fn wait(&mut self, d: &Decoded, now: u64) -> Wait {
+        let mut longest = self.wait_for_registers(d.reads, now);
+        let mut bits = d.sensitive & self.armed;
+        while bits != 0 {
+            let n = bits.trailing_zeros() as usize;
+            bits &= bits - 1;
+            let wait = self.wait_for_hazard(n, d, now);
+            if wait.until > longest.until {
+                longest = wait;
+            }
+        }
+        if d.multiplier_source == self.last_result && self.last_result_until > longest.until {
+            longest = Wait { until: self.last_result_until, why: Freeze::MultiplierFirstSource };
+        }
+        longest
+    }
+
+    fn wait_for_registers(&mut self, reads: u64, now: u64) -> Wait {
+        let mut longest = NO_WAIT;
+        let mut bits = reads & self.pending;
+        while bits != 0 {
+            let wait = self.ready[bits.trailing_zeros() as usize];
+            if wait.until <= now {
+                self.pending &= !(bits & bits.wrapping_neg());
+            } else if wait.until > longest.until {
+                longest = wait;
+            }
+            bits &= bits - 1;
+        }
+        longest
+    }
+
+    fn wait_for_hazard(&mut self, n: usize, d: &Decoded, now: u64) -> Wait {
+        let wait = self.hazards[n];
+        if wait.until <= now {
+            self.armed &= !(1 << n);
+            return NO_WAIT;
+        }
+        match 1u16 << n {
+            hazard::SCALAR => self.behind_scalar(wait, &d.instruction),
+            hazard::GRAPHICS => self.behind_graphics(wait, d),
+            hazard::STORED => self.behind_store(wait, &d.instruction),
+            _ => wait,
+        }
+    }
+
+    fn behind_scalar(&self, mut wait: Wait, i: &Instruction) -> Wait {
+        let floating = i.is_floating() && i.op != Op::Fxfr;
+        if floating && i.has(Flags::SOURCE_DOUBLE) != self.scalar_double {
+            wait.until += self.rules.clocks(Freeze::ScalarPrecisionChange);
+        }
+        let pipelined = i.op == Op::DualOp || i.is_floating() && i.has(Flags::PIPELINED);
+        if pipelined && i.dest >= 2 {
+            wait.until += self.rules.clocks(Freeze::ScalarThenPipelined);
+        }
+        wait
+    }
+
+    fn behind_graphics(&self, wait: Wait, d: &Decoded) -> Wait {
+        let why = if d.instruction.uses_graphics() { Freeze::GraphicsToGraphics } else { Freeze::GraphicsToFloating };
+        if d.reads & self.graphics_result == 0 {
+            return NO_WAIT;
+        }
+        Wait { until: wait.until - 1 + self.rules.clocks(why), why }
+    }
+
+    fn behind_store(&self, wait: Wait, i: &Instruction) -> Wait {
+        let bytes = if i.has(Flags::RESULT_DOUBLE) { 8 } else { 4 };
+        if float_mask(i.dest, bytes) & self.stored == 0 || i.dest < 2 { NO_WAIT } else { wait }
+    }
+
+    // ---- what an instruction leaves behind
+
+    /// Records the hazards that an instruction leaves. Called once it has executed.
+    #[inline]
+    pub(crate) fn retire(&mut self, d: &Decoded, now: u64) {
+        match d.arms & self.arms_seen {
+            0 => {}
+            arm::CONDITION => self.set_hazard(hazard::CONDITION, Freeze::ConditionUse, now),
+            arm::FLOATING_RESULT => self.note_result(&d.instruction, now),
+            _ => self.arm(d, now),
+        }
+    }
+
+    #[inline]
+    fn note_result(&mut self, i: &Instruction, now: u64) {
+        self.last_result = if i.has(Flags::RESULT_DOUBLE) { i.dest & 30 } else { i.dest };
+        self.last_result_until = now + self.rules.clocks(Freeze::MultiplierFirstSource);
+    }
+
+    fn arm(&mut self, d: &Decoded, now: u64) {
+        let i = &d.instruction;
+        if d.arms & arm::FLOATING_RESULT != 0 {
+            self.note_result(i, now);
+        } else if d.is_floating() && i.op != Op::Fnop {
+            self.last_result = NO_RESULT;
+        }
+        if d.arms & (arm::LOAD | arm::LONG_LOAD | arm::SEED) != 0 {
+            self.arm_destination(d, now);
+        }
+        if d.arms & (arm::SCALAR | arm::SCALAR_DOUBLE_MULTIPLY) != 0 {
+            self.arm_scalar(d, now);
+        }
+        self.arm_short(d, now);
+    }
+
+    #[inline]
+    pub(crate) fn set_hazard(&mut self, bit: u16, why: Freeze, now: u64) {
+        self.set_hazard_until(bit, now + self.rules.clocks(why), why);
+    }
+
+    #[inline]
+    pub(crate) fn set_hazard_until(&mut self, bit: u16, until: u64, why: Freeze) {
+        self.armed |= bit;
+        self.hazards[bit.trailing_zeros() as usize] = Wait { until, why };
+    }
+
+    pub(crate) fn set_ready(&mut self, mask: u64, until: u64, why: Freeze) {
+        let mut bits = mask & !(1 | 3 << 32);
+        self.pending |= bits;
+        while bits != 0 {
+            self.ready[bits.trailing_zeros() as usize] = Wait { until, why };
+            bits &= bits - 1;
+        }
+    }
+
+    fn arm_destination(&mut self, d: &Decoded, now: u64) {
+        let i = &d.instruction;
+        let (mask, why) = match i.op {
+            Op::Call | Op::Calli => (1 << 1, Freeze::LoadUse),
+            Op::LdB | Op::LdS | Op::LdL | Op::LdC | Op::Fxfr => (1 << i.dest, Freeze::LoadUse),
+            Op::Frcp | Op::Frsqr => {
+                let bytes = if i.has(Flags::RESULT_DOUBLE) { 8 } else { 4 };
+                (float_mask(i.dest, bytes), Freeze::SeedUse)
+            }
+            _ => (float_mask(i.dest, i.size.max(4)), Freeze::FloatingLoadUse),
+        };
+        let until = now + self.rules.clocks(why);
+        let missed = mask & self.pending != 0 && self.ready[mask.trailing_zeros() as usize].until > until;
+        if !(missed && why == Freeze::LoadUse) {
+            self.set_ready(mask, until, why);
+        }
+    }
+
+    fn arm_scalar(&mut self, d: &Decoded, now: u64) {
+        let long = d.arms & arm::SCALAR_DOUBLE_MULTIPLY != 0;
+        let why = if long { Freeze::ScalarDoubleMultiplyBusy } else { Freeze::ScalarBusy };
+        self.scalar_double = d.instruction.has(Flags::RESULT_DOUBLE);
+        self.set_hazard(hazard::SCALAR, why, now);
+    }
+
+    fn arm_short(&mut self, d: &Decoded, now: u64) {
+        let logical = d.arms & arm::LOGICAL != 0 && self.rules.logicals_delay_branches;
+        if d.arms & arm::CONDITION != 0 || logical {
+            self.set_hazard(hazard::CONDITION, Freeze::ConditionUse, now);
+        }
+        if d.arms & arm::DOUBLE_MULTIPLY != 0 {
+            self.set_hazard(hazard::DOUBLE_MULTIPLY, Freeze::DoubleMultiply, now);
+        }
+        if d.arms & arm::GRAPHICS != 0 {
+            self.graphics_result = float_mask(d.instruction.dest, 8) & !(3 << 32);
+            self.set_hazard_until(hazard::GRAPHICS, now + 1, Freeze::GraphicsToFloating);
+        }
+        if d.arms & arm::FLUSH != 0 {
+            self.set_hazard(hazard::FLUSH, Freeze::FlushAfterFlush, now);
+        }
+        if d.arms & arm::STORED != 0 {
+            self.stored = float_mask(d.instruction.dest, d.instruction.size);
+            self.set_hazard(hazard::STORED, Freeze::StoreThenOverwrite, now);
+        }
+    }
+}

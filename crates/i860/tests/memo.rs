@@ -1,0 +1,182 @@
+//! Memoising the clocks of code that repeats changes nothing but the host's time.
+
+mod kernel;
+
+use i860::timing::{FREEZES, Freeze, FreezeRules};
+use i860::{AddressProfile, Config, Cpu, Outcome, Ram, assemble, decode};
+use kernel::{Bench, frame, triangles};
+use proptest::prelude::*;
+use pxpl5_geometry::Viewport;
+use pxpl5_geometry::kernel::Schedule;
+
+const CODE: u32 = 0x1000;
+const MEMORY: usize = 0x1_0000;
+
+/// A processor that memoises beside one that counts every clock.
+struct Twins([(Cpu, Ram); 2]);
+
+impl Twins {
+    fn new(config: Config, words: &[u32], registers: &[u32; 32]) -> Twins {
+        Twins([true, false].map(|memoise| {
+            let mut ram = Ram::new(0, MEMORY);
+            ram.load_words(CODE, words).expect("fits");
+            let mut cpu = Cpu::at(Config { memoise, ..config }, CODE);
+            cpu.state.r[1..].copy_from_slice(&registers[1..]);
+            cpu.state.f[2..].copy_from_slice(&registers[2..]);
+            (cpu, ram)
+        }))
+    }
+
+    /// Executes a step, or up to a number of instructions; code that went astray begins again.
+    fn go(&mut self, instructions: u64) -> Result<(), TestCaseError> {
+        let [memoised, counted] = self.0.each_mut().map(|(cpu, ram)| {
+            let outcome = match instructions {
+                0 => format!("{:?}", cpu.step(ram)),
+                budget => format!("{:?}", cpu.run(ram, Some(CODE + 4 * (budget as u32 % 32)), budget)),
+            };
+            if cpu.state.pc as usize >= MEMORY {
+                cpu.state.pc = CODE;
+            }
+            (outcome, cpu.state.clone(), cpu.clocks(), cpu.profile())
+        });
+        prop_assert_eq!(memoised, counted);
+        prop_assert_eq!(self.0[1].0.repeated_instructions(), 0);
+        Ok(())
+    }
+}
+
+fn core_word(opcodes: &'static [u32], low: impl Strategy<Value = u32>) -> impl Strategy<Value = u32> {
+    (prop::sample::select(opcodes), low).prop_map(|(op, low)| op << 26 | low)
+}
+
+/// Instructions of all kinds, many of which work in memory near r4 to r7, or branch to words nearby.
+fn likely_word() -> impl Strategy<Value = u32> {
+    let any = (0u32..64, 0u32..1 << 26).prop_map(|(op, low)| op << 26 | low);
+    let floating = (0u32..2048, 0u32..1 << 15).prop_map(|(low, high)| 0x12 << 26 | (high << 11 & 0x03FF_F800) | low);
+    let integer = core_word(&[0x20, 0x21, 0x24, 0x25, 0x28, 0x29, 0x2C, 0x30, 0x31, 0x34, 0x3C], 0u32..1 << 26);
+    let place = (4u32..8, 0u32..32, 0u32..32, 0u32..32, 0u32..6);
+    let place = place.prop_map(|(base, a, b, n, low)| base << 21 | a << 16 | b << 11 | n << 4 | low);
+    let access = core_word(&[0x01, 0x03, 0x05, 0x07, 0x09, 0x0B, 0x0D], place);
+    let branch = core_word(&[0x1A, 0x1C, 0x1D, 0x1E, 0x1F], (-12i32..12).prop_map(|by| by as u32 & 0x03FF_FFFF));
+    let compare = (prop::sample::select(vec![0x14u32, 0x16, 0x2D]), 0u32..32, 0u32..32, -12i32..12);
+    let compare =
+        compare.prop_map(|(op, a, b, by)| op << 26 | b << 21 | (by as u32 & 0xF800) << 5 | a << 11 | by as u32 & 0x7FF);
+    let word = prop_oneof![1 => any, 6 => floating, 3 => integer, 4 => access, 1 => branch, 1 => compare];
+    word.prop_filter("an instruction", |word| decode(*word).is_ok())
+}
+
+fn registers() -> impl Strategy<Value = [u32; 32]> {
+    let value = prop_oneof![any::<u32>(), 0u32..256, (0u32..512).prop_map(|n| 0x4000 + 16 * n)];
+    let bases = prop::array::uniform4((0u32..0x800).prop_map(|n| 0x4000 + 16 * n));
+    (prop::array::uniform32(value), bases).prop_map(|(mut all, bases)| {
+        all[4..8].copy_from_slice(&bases);
+        all
+    })
+}
+
+/// All rows, each alone, all but each, or any.
+fn rules() -> impl Strategy<Value = FreezeRules> {
+    let rows = |bits: u32| {
+        let on = FREEZES.iter().enumerate().filter(move |(n, _)| bits >> n & 1 != 0);
+        on.fold(FreezeRules::none(), |rules, (_, row)| rules.with(row.id))
+    };
+    let row = 0..FREEZES.len() as u32;
+    prop_oneof![Just(!0u32), row.clone().prop_map(|n| 1 << n), row.prop_map(|n| !(1 << n)), any::<u32>()].prop_map(rows)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_programs_take_the_same_clocks_by_the_same_causes(
+        words in prop::collection::vec(likely_word(), 1..60),
+        registers in registers(),
+        freezes in rules(),
+        runs in prop::collection::vec(prop_oneof![Just(0u64), 1u64..30, 1u64..400], 20..60),
+    ) {
+        let mut twins = Twins::new(Config { freezes, ..Config::cycle() }, &words, &registers);
+        for instructions in runs {
+            twins.go(instructions)?;
+        }
+        let [(_, memoised), (_, counted)] = &twins.0;
+        prop_assert!(memoised == counted, "memory");
+    }
+}
+
+fn kernel_with(config: Config, schedule: Schedule) -> Bench {
+    let mut bench = Bench::new(frame(schedule), Viewport::FRAME, config, &triangles(12, 0.5, 4));
+    bench.run();
+    bench
+}
+
+fn assert_same_kernel(freezes: FreezeRules, schedule: Schedule) {
+    let [memoised, counted] =
+        [true, false].map(|memoise| kernel_with(Config { memoise, freezes, ..Config::cycle() }, schedule));
+    assert_eq!(memoised.profile(), counted.profile(), "{schedule:?}");
+    assert!(memoised.output() == counted.output() && memoised.cpu.state == counted.cpu.state);
+}
+
+#[test]
+fn the_kernels_take_the_same_clocks_whatever_row_is_switched() {
+    for schedule in [Schedule::Straight, Schedule::Dual] {
+        assert_same_kernel(FreezeRules::all(), schedule);
+        for row in &FREEZES {
+            assert_same_kernel(FreezeRules::all().without(row.id), schedule);
+            assert_same_kernel(FreezeRules::none().with(row.id), schedule);
+            assert_same_kernel(FreezeRules::all().with_clocks(row.id, row.clocks + 9), schedule);
+        }
+    }
+}
+
+/// Eight instructions in two lines of the cache.
+const LOOP: &str = "
+        mov     100, r5
+loop:   fld.d   0(r4), f8
+        fadd.ss f8, f9, f10
+        fmul.ss f10, f10, f11
+        st.l    r5, 8(r4)
+        ld.l    8(r4), r6
+        adds    -1, r5, r5
+        xor     r6, r7, r7
+        btne    r0, r5, loop
+end:    nop";
+
+fn run_loop(prepare: impl Fn(&mut Cpu)) -> (Cpu, Ram) {
+    let program = assemble("loop.s", CODE, LOOP).unwrap_or_else(|e| panic!("{e}"));
+    let mut ram = Ram::new(0, MEMORY);
+    ram.load(CODE, &program.bytes).expect("fits");
+    let mut cpu = Cpu::at(Config::cycle(), CODE);
+    cpu.state.r[4] = 0x4000;
+    prepare(&mut cpu);
+    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 10_000), Outcome::Stopped);
+    (cpu, ram)
+}
+
+/// The first turn misses, the second one begins with what that left behind, the third one with what every later one finds;
+/// the last one goes another way.
+#[test]
+fn a_loop_in_cache_is_counted_three_times_and_at_its_end() {
+    let (cpu, _) = run_loop(|_| {});
+    assert!(cpu.repeated_instructions() >= 8 * 96, "{} of 800", cpu.repeated_instructions());
+}
+
+#[test]
+fn a_profile_by_address_accounts_for_the_same_clocks() {
+    let (plain, _) = run_loop(|_| {});
+    let (watched, _) = run_loop(|cpu| cpu.watch(Some(AddressProfile::new(CODE, 16))));
+    assert_eq!(watched.profile(), plain.profile());
+    let by_address: u64 = (0..16).map(|n| watched.watched().expect("watched").at(CODE + 4 * n).0).sum();
+    assert_eq!(by_address, plain.clocks());
+}
+
+#[test]
+fn caches_emptied_between_runs_are_noticed() {
+    let (mut cpu, mut ram) = run_loop(|_| {});
+    let misses = |cpu: &Cpu| (cpu.profile().instruction_misses, cpu.profile().data_misses);
+    let before = misses(&cpu);
+    cpu.empty_caches();
+    cpu.state.pc = CODE;
+    assert_eq!(cpu.run(&mut ram, Some(CODE + 36), 10_000), Outcome::Stopped);
+    assert_eq!(misses(&cpu), (2 * before.0, 2 * before.1));
+    assert!(cpu.profile().frozen_by(Freeze::InstructionMiss) > 0);
+}
