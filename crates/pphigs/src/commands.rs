@@ -3,10 +3,10 @@
 use crate::list::Counts;
 use crate::pass::{Entry, Pass, Shading};
 use crate::placed::Placed;
-use pxpl5_geometry::{self as geometry, GouraudSphere, GouraudTriangle, SetupStats, Transform};
+use pxpl5_geometry::{self as geometry, GouraudSphere, GouraudTriangle, SetupStats, SphereSetup, Transform};
 use pxpl5_renderer::{
     Clear, Command, CommandKind, CopyRegion, Layout, PhongSphere, PhongTriangle, PhongTriangleEncoder, SelectRegion,
-    Shade, Sphere, Triangle, TriangleEncoder,
+    Shade, Sphere, SphereBody, Triangle, TriangleEncoder,
 };
 use pxpl5_wire::{CommandList, CommandRun, CommandWords, CopyOrder, Linear, MAX_MESSAGE_WORDS, RegionId, Word};
 use std::ops::Range;
@@ -312,24 +312,18 @@ fn pick<T>(entry: &Entry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
 #[must_use]
 pub fn gouraud_sphere(s: &GouraudSphere) -> Command {
     Command::Sphere(Sphere {
-        silhouette: s.setup.silhouette,
-        root_shift: s.setup.root_shift,
-        depth: s.setup.depth,
-        depth_shift: s.setup.depth_shift,
+        body: body(&s.setup),
         colour: s.rgb,
         root_factor: s.root_factor.map(|factor| factor.min(511) as i16),
     })
 }
 
+const fn body(s: &SphereSetup) -> SphereBody {
+    SphereBody { silhouette: s.silhouette, root_shift: s.root_shift, depth: s.depth, depth_shift: s.depth_shift }
+}
+
 fn phong_sphere(s: &geometry::PhongSphere) -> Command {
-    Command::PhongSphere(PhongSphere {
-        silhouette: s.setup.silhouette,
-        root_shift: s.setup.root_shift,
-        depth: s.setup.depth,
-        depth_shift: s.setup.depth_shift,
-        normal: s.normal,
-        colour: rgb(s.colour),
-    })
+    Command::PhongSphere(PhongSphere { body: body(&s.setup), normal: s.normal, colour: rgb(s.colour) })
 }
 
 /// A triangle of which nothing is seen: its edges exclude every pixel.

@@ -38,7 +38,7 @@ pub use draw::{PhongTriangle, PhongTriangleEncoder, Triangle, TriangleEncoder};
 pub(crate) use shade::Fields as ShadeFields;
 pub use shade::{SPECULAR_SQUARINGS, Shade};
 pub(crate) use sphere::Scratch as SphereScratch;
-pub use sphere::{PhongSphere, Sphere};
+pub use sphere::{PhongSphere, Sphere, SphereBody};
 
 use crate::isa::{DecodeError, DecodeErrorKind, Instruction};
 use crate::layout::Layout;

@@ -63,7 +63,7 @@ pub use bit_serial::BitSerial;
 pub use board::{MAX_CONTEXTS, Renderer, RendererEvent, RendererOutput, RendererStats};
 pub use command::{
     Clear, Command, CommandKind, CopyRegion, LoadBacking, PhongSphere, PhongTriangle, PhongTriangleEncoder,
-    SPECULAR_SQUARINGS, SelectRegion, Shade, Sphere, StoreBacking, Triangle, TriangleEncoder, Unsupported,
+    SPECULAR_SQUARINGS, SelectRegion, Shade, Sphere, SphereBody, StoreBacking, Triangle, TriangleEncoder, Unsupported,
 };
 pub use job::ArrayPool;
 pub use lanes::Lanes;

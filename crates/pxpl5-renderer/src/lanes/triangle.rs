@@ -109,21 +109,20 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
         [self.local(words, i), self.local(words, j), self.local(words, k)]
     }
 
-    /// One vector a row, from column `x`. Most rows of small triangles show nothing.
+    /// One vector a row, from column `x`.
     #[inline(always)]
     fn narrow<V: Vector>(&mut self, t: &Local, x: usize, rows: Range<usize>) {
         let [mut first, mut second, mut third] = three::<V>(&t.edges, x, rows.start);
-        let mut depth = Walk::<V>::start(&t.depth, x, rows.start).value;
+        let mut depth = Walk::<V>::start(&t.depth, x, rows.start);
         for y in rows {
-            let at = y * WIDTH + x;
-            let mask = self.pass(t, at, first.value.or(second.value).or(third.value), depth);
-            if V::any(mask) {
+            let (at, inside) = (y * WIDTH + x, first.value.or(second.value).or(third.value));
+            if let Some(mask) = self.pass(t, at, inside, depth.value) {
                 self.paint.store(&three::<V>(&t.components, x, y), at, mask);
             }
             first.value = first.value.add(V::splat(t.edges[0].b));
             second.value = second.value.add(V::splat(t.edges[1].b));
             third.value = third.value.add(V::splat(t.edges[2].b));
-            depth = depth.add(V::splat(t.depth.b));
+            depth.value = depth.value.add(V::splat(t.depth.b));
         }
     }
 
@@ -133,9 +132,10 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
         let mut depth = Walk::<V>::start(&t.depth, left, y);
         let mut walks = three::<V>(&t.components, left, y);
         for x in (left..right).step_by(V::LANES) {
-            let at = y * WIDTH + x;
-            let mask = self.pass(t, at, first.value.or(second.value).or(third.value), depth.value);
-            self.paint.store(&walks, at, mask);
+            let (at, inside) = (y * WIDTH + x, first.value.or(second.value).or(third.value));
+            if let Some(mask) = self.pass(t, at, inside, depth.value) {
+                self.paint.store(&walks, at, mask);
+            }
             first.advance();
             second.advance();
             third.advance();
@@ -146,16 +146,20 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
         }
     }
 
-    /// Where no edge is negative and the depth is nearer, which is stored.
+    /// Where no edge is negative and the depth is nearer, which is stored; `None` where that is nowhere, as in most vectors
+    /// of small triangles.
     #[inline(always)]
-    fn pass<V: Vector>(&mut self, t: &Local, at: usize, inside: V, depth: V) -> V::Mask {
+    fn pass<V: Vector>(&mut self, t: &Local, at: usize, inside: V, depth: V) -> Option<V::Mask> {
         let (old, new) = (V::load(&self.z.0[at..]), depth.shift_right(self.z_shift.into()));
         let mask = inside.passes(new, old);
+        if !V::any(mask) {
+            return None;
+        }
         new.store(mask, old, &mut self.z.0[at..]);
         if t.keep {
             V::store_mask(mask, &mut self.enable[at..]);
         }
-        mask
+        Some(mask)
     }
 }
 

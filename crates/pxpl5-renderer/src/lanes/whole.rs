@@ -37,8 +37,8 @@ impl<const N: usize> Template<N> {
     pub(super) fn split<'a>(&self, words: &'a [Word]) -> Option<(&'a [Word; N], &'a [Word])> {
         let (command, behind) = words.split_first_chunk::<N>()?;
         let mut different = 0;
-        for i in 0..N {
-            different |= (command[i] ^ self.words[i]) & self.fixed[i];
+        for ((found, word), fixed) in command.iter().zip(&self.words).zip(&self.fixed) {
+            different |= (found ^ word) & fixed;
         }
         (different == 0).then_some((command, behind))
     }
