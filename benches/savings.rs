@@ -5,6 +5,7 @@
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use pxpl5::levels::Level;
 use pxpl5::{Experiment, MachineConfig, Pixels, RenderingControl, Saving, Slats, scene};
 use std::hint::black_box;
 
@@ -27,7 +28,8 @@ fn savings(criterion: &mut Criterion) {
     for (name, experiment) in experiments() {
         for saving in Saving::ALL {
             let pixels = if saving == Saving::EmptyRegions { Pixels::All } else { Pixels::Off };
-            let with = experiment.clone().pixels(pixels).threads(1);
+            let level = if saving == Saving::RepeatedCode { Level::Cycle } else { Level::Transaction };
+            let with = experiment.clone().pixels(pixels).level(level).threads(1);
             let mut group = criterion.benchmark_group(format!("savings/{name}/{saving}"));
             group.throughput(Throughput::Elements(fields(saving)));
             for (way, experiment) in [("with", with.clone()), ("without", with.without(saving))] {

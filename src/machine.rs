@@ -211,6 +211,7 @@ impl Machine {
             Saving::IdleBoards => self.every_edge = true,
             Saving::Transfers => self.ring.move_every_word(),
             Saving::EmptyRegions => self.renderers.iter_mut().for_each(Renderer::draw_every_region),
+            Saving::RepeatedCode => self.processors.iter_mut().for_each(GpBoard::count_every_clock),
         }
     }
 

@@ -18,11 +18,14 @@ pub enum Saving {
     /// A region without any primitive is drawn once and kept for as long as its commands stay the same. Without it every
     /// one is cleared and shaded.
     EmptyRegions,
+    /// The clocks of code that repeats with all it needs in the caches are taken from memory (cycle level). Without it the
+    /// i860s count every clock.
+    RepeatedCode,
 }
 
 impl Saving {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::IdleBoards, Self::Transfers, Self::EmptyRegions];
+    pub const ALL: [Self; 4] = [Self::IdleBoards, Self::Transfers, Self::EmptyRegions, Self::RepeatedCode];
 
     /// The name by which the command knows it.
     #[must_use]
@@ -31,6 +34,7 @@ impl Saving {
             Self::IdleBoards => "idle-boards",
             Self::Transfers => "transfers",
             Self::EmptyRegions => "empty-regions",
+            Self::RepeatedCode => "repeated-code",
         }
     }
 }

@@ -58,6 +58,13 @@ fn regions_without_primitives_look_as_if_they_had_been_drawn() {
 }
 
 #[test]
+fn code_that_repeats_takes_the_clocks_that_are_counted() {
+    for experiment in experiments() {
+        assert_same(&experiment.level(Level::Cycle).pixels(Pixels::Lazy), Saving::RepeatedCode, 10);
+    }
+}
+
+#[test]
 fn nobody_looking_changes_no_time() {
     for experiment in experiments() {
         let hash = |pixels| after(&experiment.clone().pixels(pixels), 10).trace_hash();
@@ -90,5 +97,5 @@ fn savings_are_known_by_their_names() {
         assert_eq!(saving.name().parse(), Ok(saving));
     }
     let error = "idleness".parse::<Saving>().expect_err("no saving");
-    assert_eq!(error, "expected idle-boards, transfers, empty-regions, found \"idleness\"");
+    assert_eq!(error, "expected idle-boards, transfers, empty-regions, repeated-code, found \"idleness\"");
 }

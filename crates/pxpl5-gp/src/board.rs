@@ -111,6 +111,13 @@ impl GpBoard {
         shared.processor = shared.timing.code_version().map(processor);
     }
 
+    /// Has the processor that runs code memoise nothing; to be called before programs run.
+    pub fn count_every_clock(&mut self) {
+        if let Some(processor) = &mut self.shared.borrow_mut().processor {
+            processor.count_every_clock();
+        }
+    }
+
     /// A handle for a program at a level.
     #[must_use]
     pub fn handle_for(&self, level: Level) -> Gp {

@@ -109,6 +109,11 @@ impl Processor {
         Self { gp, version, cpu: Cpu::new(i860::Config::cycle()), ram, loaded: None }
     }
 
+    /// Resets it to a processor that memoises nothing; every time stays the same.
+    pub fn count_every_clock(&mut self) {
+        self.cpu = Cpu::new(i860::Config { memoise: false, ..i860::Config::cycle() });
+    }
+
     /// Which code the board runs.
     #[must_use]
     pub const fn version(&self) -> CodeVersion {
