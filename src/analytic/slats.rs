@@ -226,8 +226,7 @@ struct Chain {
 const MOST_CHANNELS: usize = 8;
 
 fn soonest(times: &[f64]) -> usize {
-    let first = (0, times.first().copied().unwrap_or(f64::MIN));
-    times.iter().enumerate().fold(first, |best, (i, time)| if *time < best.1 { (i, *time) } else { best }).0
+    (1..times.len()).fold(0, |best, i| if times[i] < times[best] { i } else { best })
 }
 
 /// The analytic level of a Slats case.
