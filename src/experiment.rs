@@ -12,6 +12,7 @@ use crate::observation::{Observation, StageSpan};
 use crate::pictures;
 use crate::pipelines::{PictureTimes, Pipeline, ReportTimes, Setup};
 use crate::report::{HeadReport, Report, Statistics};
+use crate::savings::Saving;
 use image::RgbImage;
 use pxpl5_scene::Scene;
 use pxpl5_sim::{Span, Time};
@@ -114,6 +115,7 @@ pub struct Experiment {
     threads: usize,
     shuffle: Option<u64>,
     traffic: bool,
+    given_up: BTreeSet<Saving>,
     level: Level,
     head: Option<Arc<Head>>,
 }
@@ -139,6 +141,7 @@ impl Experiment {
             threads,
             shuffle: None,
             traffic: false,
+            given_up: BTreeSet::new(),
             level: Level::Transaction,
             head: None,
         }
@@ -183,6 +186,13 @@ impl Experiment {
     #[must_use]
     pub const fn record_traffic(mut self, record: bool) -> Self {
         self.traffic = record;
+        self
+    }
+
+    /// Does without a saving; no time and no pixel changes, but the run is slower.
+    #[must_use]
+    pub fn without(mut self, saving: Saving) -> Self {
+        self.given_up.insert(saving);
         self
     }
 
@@ -236,6 +246,7 @@ impl Experiment {
         if let Some(seed) = self.shuffle {
             machine.shuffle_ties(seed);
         }
+        self.given_up.iter().for_each(|saving| machine.give_up(*saving));
         if self.pixels == Pixels::All {
             machine.compute_all_pixels(self.threads);
         }

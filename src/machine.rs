@@ -12,6 +12,7 @@
 
 use crate::config::{ConfigError, MachineConfig};
 use crate::observation::{Arrival, Observation, Swap};
+use crate::savings::Saving;
 use crate::workers::PixelWorkers;
 use pxpl5_framebuffer::{FrameBuffer, FrameBufferEvent, FrameBufferOutput, Video};
 use pxpl5_gp::{Fault, Gp, GpBoard, GpEvent, GpOutput, Level, Program};
@@ -25,10 +26,14 @@ use std::fmt;
 #[derive(Debug)]
 enum Event {
     Ring(RingEvent),
+    /// What the ring brings to a board.
+    FromRing(RingOutput),
     Gp(usize, GpEvent),
     Renderer(usize, RendererEvent),
     FrameBuffer(usize, FrameBufferEvent),
     Retrace(u64),
+    /// An edge of the boards' clock, where every one of them counts.
+    Edge,
 }
 
 /// Why a run ended early.
@@ -121,6 +126,8 @@ pub struct Machine {
     hash: TraceHash,
     swaps: Vec<u64>,
     workers: Option<PixelWorkers>,
+    /// Whether every edge of the boards' clock is an event.
+    every_edge: bool,
     failure: Option<RunError>,
     /// Events other than retraces, and the retrace up to which there were none.
     work_events: u64,
@@ -175,6 +182,7 @@ impl Machine {
             observation: Observation::default(),
             hash: TraceHash::default(),
             workers: None,
+            every_edge: false,
             failure: None,
             work_events: 0,
             idle_fields: 0,
@@ -197,9 +205,20 @@ impl Machine {
         self.processors.iter_mut().skip(1).for_each(GpBoard::run_code);
     }
 
+    /// Gives up a saving: what it skips is done from now on. To be called before the machine is switched on.
+    pub fn give_up(&mut self, saving: Saving) {
+        match saving {
+            Saving::IdleBoards => self.every_edge = true,
+            Saving::Transfers => self.ring.move_every_word(),
+            Saving::EmptyRegions => self.renderers.iter_mut().for_each(Renderer::draw_every_region),
+            Saving::RepeatedCode => self.processors.iter_mut().for_each(GpBoard::count_every_clock),
+        }
+    }
+
     /// Records messages, busy channels and FIFOs from now on.
     pub fn record_traffic(&mut self) {
         self.observation.traffic = Some(Box::default());
+        self.ring.watch();
         self.renderers.iter_mut().for_each(Renderer::watch_fifo);
     }
 
@@ -240,6 +259,9 @@ impl Machine {
             self.queue.schedule(Time::ZERO, Phase::Work, Event::Gp(board, GpEvent::Poll));
         }
         self.queue.schedule(Time::ZERO, Phase::Arrive, Event::Retrace(0));
+        if self.every_edge {
+            self.queue.schedule(Time::ZERO, Phase::Work, Event::Edge);
+        }
     }
 
     /// Runs up to, and not including, an instant.
@@ -259,14 +281,23 @@ impl Machine {
     }
 
     fn handle(&mut self, now: Time, event: Event) {
-        self.work_events += 1;
+        self.work_events += u64::from(!matches!(event, Event::Edge));
         match event {
             Event::Ring(event) => self.ring_event(now, event),
+            Event::FromRing(output) => self.bring(now, output),
             Event::Gp(board, event) => self.gp_event(now, board, event),
             Event::Renderer(board, event) => self.renderer_event(now, board, event),
             Event::FrameBuffer(board, event) => self.frame_buffer_event(now, board, event),
             Event::Retrace(field) => self.retrace(now, field),
+            Event::Edge => self.edge(now),
         }
+    }
+
+    /// Asks every board that could have something to do, and the next edge.
+    fn edge(&mut self, now: Time) {
+        (0..self.processors.len()).for_each(|board| self.gp_event(now, board, GpEvent::Poll));
+        self.ring_event(now, RingEvent::Arbitrate);
+        self.queue.schedule(now + cycle(), Phase::Work, Event::Edge);
     }
 
     /// The sync generator: all frame buffers in lock-step, and the first graphics processor.
@@ -320,43 +351,58 @@ impl Machine {
             self.queue.schedule(time, phase, Event::Ring(event));
         }
         for (time, output) in context.drain_outputs() {
-            match output {
-                RingOutput::Announce { message, first_word_at, .. } => {
-                    self.hash.record(
-                        time,
-                        &[1, u64::from(message.source.0), u64::from(message.destination.0), u64::from(message.words)],
-                    );
-                    if let Some(traffic) = &mut traffic {
-                        traffic.announce(&message, first_word_at);
-                    }
-                    let board = usize::from(message.destination.0 - self.ports.renderers[0].0);
-                    let event = RendererEvent::Announce { message, first_word_at };
-                    self.queue.schedule(time, Phase::Arrive, Event::Renderer(board, event));
+            self.queue.schedule(time, Phase::Arrive, Event::FromRing(output));
+        }
+    }
+
+    fn bring(&mut self, now: Time, output: RingOutput) {
+        let mut traffic = self.observation.traffic.as_deref_mut();
+        let facts = |kind: u64, message: &Message| {
+            [kind, u64::from(message.source.0), u64::from(message.destination.0), u64::from(message.words)]
+        };
+        match output {
+            RingOutput::Announce { message, first_word_at, .. } => {
+                self.hash.record(now, &facts(1, &message));
+                if let Some(traffic) = &mut traffic {
+                    traffic.announce(&message, first_word_at);
                 }
-                RingOutput::Delivered(message) => {
-                    self.hash.record(
-                        time,
-                        &[2, u64::from(message.source.0), u64::from(message.destination.0), u64::from(message.words)],
-                    );
-                    if let Some(traffic) = &mut traffic {
-                        traffic.deliver(&message, time, self.ring.timing().word());
-                    }
-                    let event = deliver(&self.ports, message);
-                    self.queue.schedule(time, Phase::Arrive, event);
+                let board = usize::from(message.destination.0 - self.ports.renderers[0].0);
+                self.renderer_event(now, board, RendererEvent::Announce { message, first_word_at });
+            }
+            RingOutput::Delivered(message) => {
+                self.hash.record(now, &facts(2, &message));
+                if let Some(traffic) = &mut traffic {
+                    traffic.deliver(&message, now, self.ring.timing().word());
                 }
-                RingOutput::Sent { source, ticket } => {
-                    self.hash.record(time, &[3, u64::from(source.0), ticket]);
-                    let event = match self.ports.renderers.binary_search(&source) {
-                        Ok(board) => Event::Renderer(board, RendererEvent::Sent),
-                        Err(_) => Event::Gp(usize::from(source.0), GpEvent::Accepted(ticket)),
-                    };
-                    self.queue.schedule(time, Phase::Arrive, event);
-                }
-                RingOutput::Refused { error, .. } => {
-                    self.failure = Some(RunError::Ring { time, reason: error.to_string() });
+                self.deliver(now, message);
+            }
+            RingOutput::Sent { source, ticket } => {
+                self.hash.record(now, &[3, u64::from(source.0), ticket]);
+                match self.ports.renderers.binary_search(&source) {
+                    Ok(board) => self.renderer_event(now, board, RendererEvent::Sent),
+                    Err(_) => self.gp_event(now, usize::from(source.0), GpEvent::Accepted(ticket)),
                 }
             }
+            RingOutput::Refused { error, .. } => {
+                self.failure = Some(RunError::Ring { time: now, reason: error.to_string() });
+            }
         }
+    }
+
+    /// The last word of a message is with its receiver.
+    fn deliver(&mut self, now: Time, message: Message) {
+        let Ok(board) = self.ports.frame_buffers.binary_search(&message.destination) else {
+            return self.gp_event(now, usize::from(message.destination.0), GpEvent::Delivered(message));
+        };
+        let event = match message.body {
+            Body::Pixels(pixels) => FrameBufferEvent::Pixels(pixels),
+            // A frame buffer counts a request for a buffer that it does not have.
+            Body::Words(words) => {
+                FrameBufferEvent::SwapRequested { buffer: read_swap_request(&words).unwrap_or(u8::MAX) }
+            }
+            Body::Commands(_) => FrameBufferEvent::SwapRequested { buffer: u8::MAX },
+        };
+        self.frame_buffer_event(now, board, event);
     }
 
     fn gp_event(&mut self, now: Time, board: usize, event: GpEvent) {
@@ -483,18 +529,4 @@ impl Machine {
     pub fn finish_pixels(&mut self) -> u64 {
         self.workers.take().map_or(0, PixelWorkers::finish)
     }
-}
-
-/// The event that the last word of a message is for its receiver.
-fn deliver(ports: &Ports, message: Message) -> Event {
-    let Ok(board) = ports.frame_buffers.binary_search(&message.destination) else {
-        return Event::Gp(usize::from(message.destination.0), GpEvent::Delivered(message));
-    };
-    let event = match message.body {
-        Body::Pixels(pixels) => FrameBufferEvent::Pixels(pixels),
-        // A frame buffer counts a request for a buffer that it does not have.
-        Body::Words(words) => FrameBufferEvent::SwapRequested { buffer: read_swap_request(&words).unwrap_or(u8::MAX) },
-        Body::Commands(_) => FrameBufferEvent::SwapRequested { buffer: u8::MAX },
-    };
-    Event::FrameBuffer(board, event)
 }

@@ -1,6 +1,7 @@
 //! Rendering Control: frame after frame.
 
 use super::load::Load;
+use super::renderer::Cost;
 use crate::config::{ConfigError, MachineConfig};
 use crate::experiment::{ExperimentError, WARM_UP_PICTURES};
 use crate::levels::{Case, Summary};
@@ -14,13 +15,6 @@ use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionGrid, RegionId};
 
 /// Words of a token, and of the other messages between master and slaves.
 const ORDER_WORDS: f64 = 6.0;
-
-/// Words and nanoseconds of a command.
-#[derive(Clone, Copy, Debug, Default)]
-struct Cost {
-    words: f64,
-    ns: f64,
-}
 
 /// Rendering Control on a machine, reduced to numbers.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use super::copies::{CopyTimes, Queue, copy_all};
 use super::load::Load;
-use super::renderer::{Array, Commands, Fifo};
+use super::renderer::{Array, Commands, Cost, Fifo, later};
 use crate::config::{ConfigError, MachineConfig};
 use crate::experiment::{ExperimentError, WARM_UP_PICTURES};
 use crate::levels::{Case, FIELD_MS, Summary};
@@ -31,10 +31,9 @@ pub struct SlatsModel {
     pass_ns: f64,
     triangle_ns: f64,
     entry_ns: f64,
-    command_ns: f64,
-    command_words: f64,
-    select: (f64, f64),
-    clear: (f64, f64),
+    command: Cost,
+    select: Cost,
+    clear: Cost,
     region_ns: f64,
     field_ns: f64,
     /// From a retrace to the scan of the first line of the bottom regions.
@@ -75,11 +74,10 @@ impl SlatsModel {
             return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
         }
         let video = Video::new(config.frame_buffer.video).map_err(|error| ConfigError::Board(error.to_string()))?;
-        let command = |kind: CommandKind| {
-            let span = config.renderer.span(kind).map_or(0.0, |span| span.as_ms() * 1e6);
-            (f64::from(kind.words()), span)
+        let cost = |kind: CommandKind| Cost {
+            words: f64::from(kind.words()),
+            ns: config.renderer.span(kind).map_or(0.0, |span| span.as_ms() * 1e6),
         };
-        let (command_words, command_ns) = command(CommandKind::Triangle);
         let field_ns = video.retrace(1).since(Time::ZERO).as_ms() * 1e6;
         let line = |y| video.line_start(y, 2).map_or(0.0, |at| at.since(video.retrace(2)).as_ms() * 1e6);
         let messages = (15_360.0_f64 / 1_024.0).ceil();
@@ -92,10 +90,9 @@ impl SlatsModel {
             pass_ns: config.gp.pass_ns as f64,
             triangle_ns: config.gp.triangle_ns as f64,
             entry_ns: config.gp.bin_entry_ns as f64,
-            command_ns,
-            command_words,
-            select: command(CommandKind::SelectRegion),
-            clear: command(CommandKind::Clear),
+            command: cost(CommandKind::Triangle),
+            select: cost(CommandKind::SelectRegion),
+            clear: cost(CommandKind::Clear),
             region_ns: 15_360.0 * word_ns + messages * config.ring.overhead_words as f64 * word_ns,
             field_ns,
             bottom_ns: line(2 * RegionGrid::FIELD.region_height),
@@ -144,8 +141,8 @@ impl SlatsModel {
         let mut queues: [Queue; MOST_RENDERERS] = std::array::from_fn(|_| Queue::default());
         let per_half = REGIONS / 4;
         // Left and right eye by turns; the odd renderers of a split copy begin right.
-        for region in (0..REGIONS).filter(|region| wanted(*region)) {
-            let renderer = region % self.renderers;
+        let regions = (0..REGIONS).zip((0..self.renderers).cycle());
+        for (region, renderer) in regions.filter(|(region, _)| wanted(*region)) {
             let right = (region / per_half) % 2 == 1;
             queues[renderer].push(u8::from(right));
         }
@@ -181,25 +178,25 @@ impl SlatsModel {
         let in_flight = &mut in_flight[..self.source_channels];
         let mut granted_ns = from_ns;
         (chain.accepted_ns, chain.draining_ns) = (from_ns, from_ns);
+        let (of_first, of_others) = (self.commands(count, first), self.commands(count, false));
         // Several GPs share the ports of the renderers: their messages follow each other.
-        for region in 0..REGIONS {
-            let renderer = region % self.renderers;
+        for (region, renderer) in (0..REGIONS).zip((0..self.renderers).cycle()) {
             let latency_ns = self.hop_ns * (renderer + self.gps) as f64;
             for gp in 0..self.gps {
                 let slot = soonest(in_flight);
                 if gp == 0 {
-                    granted_ns = granted_ns.max(in_flight[slot]);
+                    granted_ns = later(granted_ns, in_flight[slot]);
                 }
-                let begin_ns = granted_ns.max(chain.released_ns[renderer]);
+                let begin_ns = later(granted_ns, chain.released_ns[renderer]);
                 if gp == 0 {
                     granted_ns = begin_ns;
                 }
-                let commands = self.commands(count, first && gp == 0);
-                let accepted_ns = arrays[renderer].take(self.fifo, begin_ns + self.overhead_ns + latency_ns, &commands);
+                let commands = if gp == 0 { &of_first } else { &of_others };
+                let accepted_ns = arrays[renderer].take(begin_ns + self.overhead_ns + latency_ns, commands);
                 chain.released_ns[renderer] = accepted_ns - latency_ns;
-                chain.accepted_ns = chain.accepted_ns.max(accepted_ns);
+                chain.accepted_ns = later(chain.accepted_ns, accepted_ns);
                 if region < self.renderers {
-                    chain.draining_ns = chain.draining_ns.max(accepted_ns);
+                    chain.draining_ns = later(chain.draining_ns, accepted_ns);
                 }
                 if gp == 0 {
                     in_flight[slot] = chain.released_ns[renderer];
@@ -209,14 +206,9 @@ impl SlatsModel {
     }
 
     fn commands(&self, count: f64, clearing: bool) -> Commands {
-        let (clear_words, clear_ns) = if clearing { self.clear } else { (0.0, 0.0) };
-        Commands {
-            head_words: self.select.0 + clear_words,
-            head_ns: self.select.1 + clear_ns,
-            count,
-            words: self.command_words,
-            each_ns: self.command_ns,
-        }
+        let clear = if clearing { self.clear } else { Cost::default() };
+        let head = Cost { words: self.select.words + clear.words, ns: self.select.ns + clear.ns };
+        Commands::new(self.fifo, head, count, self.command)
     }
 }
 

@@ -9,9 +9,10 @@ use crate::decoded::Decoded;
 use crate::instruction::Op;
 use crate::memo::Passages;
 use crate::state::Mode;
+use crate::timing::INSTRUCTION_CACHE;
 
 /// Most units of a block, its slot not counted.
-const LONGEST: usize = 48;
+const LONGEST: usize = 32;
 
 /// What issues at once: an instruction, or a pair.
 #[derive(Clone, Copy, Debug)]
@@ -105,6 +106,8 @@ pub(crate) struct Block {
     pub(crate) in_caches_only: bool,
     /// State of the instruction cache in which all of it was held.
     held_in: u64,
+    /// State of the instruction cache at the last visit.
+    visited_in: u64,
     pub(crate) remembered: Passages,
 }
 
@@ -127,8 +130,17 @@ impl Block {
             read => read,
         });
         let (bytes, remembered) = (last.next().wrapping_sub(pc), Passages::default());
-        let mut block =
-            Block { units, slot, instructions: 0, bytes, stores: 0, in_caches_only: true, held_in: NEVER, remembered };
+        let mut block = Block {
+            units,
+            slot,
+            instructions: 0,
+            bytes,
+            stores: 0,
+            in_caches_only: true,
+            held_in: NEVER,
+            visited_in: NEVER,
+            remembered,
+        };
         block.sum_up();
         Ok(block)
     }
@@ -159,15 +171,25 @@ impl Block {
         }
     }
 
-    /// Whether the instruction cache holds all of it.
+    /// Whether the instruction cache is known to hold all of it.
+    ///
+    /// It is not looked up before there is something to remember: code that finds another cache at every visit may not
+    /// fit it.
     #[inline]
     pub(crate) fn is_held(&mut self, cache: &Tags) -> bool {
-        self.held_in == cache.changes() || self.look_up(cache)
+        if self.held_in == cache.changes() {
+            return true;
+        }
+        let before = std::mem::replace(&mut self.visited_in, cache.changes());
+        (before == cache.changes() || !self.remembered.is_empty()) && self.look_up(cache)
     }
 
     fn look_up(&mut self, cache: &Tags) -> bool {
-        let units = || self.units.iter().chain(self.slot.iter().flatten());
-        let held = units().all(|unit| cache.find(unit.pc).is_some());
+        let (first, slot) = (self.units[0].pc, self.slot.iter().flatten());
+        let line = INSTRUCTION_CACHE.1;
+        let bytes = first % line + self.bytes + slot.map(|unit| unit.next().wrapping_sub(unit.pc)).sum::<u32>();
+        let mut lines = (0..bytes.div_ceil(line)).map(|n| (first - first % line).wrapping_add(n * line));
+        let held = lines.all(|address| cache.find(address).is_some());
         if held {
             self.held_in = cache.changes();
         }

@@ -159,12 +159,11 @@ impl Clock {
             self.board.restore(left, self.now);
         }
         let mut accesses = accesses.0.iter();
-        let mut units = block.executed(course).peekable();
-        while let Some(unit) = units.next() {
-            let trapped = course.trapped && units.peek().is_none();
+        let last = course.units + usize::from(course.slot) - 1;
+        block.executed(course).enumerate().for_each(|(n, unit)| {
             self.profile.instructions += unit.instructions();
-            self.unit(unit, course.taken, trapped, &mut accesses, bus);
-        }
+            self.unit(unit, course.taken, course.trapped && n == last, &mut accesses, bus);
+        });
     }
 
     /// The number of the scoreboard when nothing else but it decides the clocks of what a block has executed: all its

@@ -8,7 +8,7 @@
 use crate::clock::Course;
 use crate::scoreboard::{Leftover, Scoreboard};
 use crate::timing::Freeze;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 /// Most clocks that a wait may have to go, so that the rest of a miss gets no number.
 const MOST_CLOCKS: u8 = 7;
@@ -20,7 +20,7 @@ const MOST_PASSAGES: usize = 16;
 /// The scoreboards that were met, and which of them is the present one.
 #[derive(Clone, Debug)]
 pub(crate) struct Memo {
-    numbers: HashMap<Leftover, u32>,
+    numbers: BTreeMap<Leftover, u32>,
     leftovers: Vec<Leftover>,
     /// Number of the present scoreboard, where the one written out is out of date.
     present: Option<u32>,
@@ -30,7 +30,7 @@ pub(crate) struct Memo {
 
 impl Memo {
     pub(crate) fn new() -> Memo {
-        Memo { numbers: HashMap::new(), leftovers: Vec::new(), present: None, instructions: 0 }
+        Memo { numbers: BTreeMap::new(), leftovers: Vec::new(), present: None, instructions: 0 }
     }
 
     /// The number of the present scoreboard, if it has or gets one.
@@ -47,7 +47,7 @@ impl Memo {
         if number == MOST_NUMBERS {
             return None;
         }
-        self.leftovers.push(left.clone());
+        self.leftovers.push(left);
         self.numbers.insert(left, number as u32);
         Some(number as u32)
     }
@@ -99,6 +99,11 @@ impl Passages {
             self.latest = self.all.iter().position(is_it)?;
         }
         self.all.get(self.latest)
+    }
+
+    #[inline]
+    pub(crate) fn is_empty(&self) -> bool {
+        self.all.is_empty()
     }
 
     pub(crate) fn add(&mut self, passage: Passage) {

@@ -16,17 +16,27 @@ pub(crate) struct Wait {
 
 pub(crate) const NO_WAIT: Wait = Wait { until: 0, why: Freeze::LoadUse };
 
-/// Places of [`Leftover::waits`]: the registers, then the hazards, then the last result.
+/// Places of [`Left::place`]: the registers, then the hazards, then the last result.
 const HAZARDS: u8 = 64;
 const LAST_RESULT: u8 = HAZARDS + hazard::COUNT as u8;
+
+/// A wait as seen from a clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Left {
+    place: u8,
+    clocks: u8,
+    why: Freeze,
+}
+
+/// Most waits of a [`Leftover`].
+const MOST_WAITS: usize = 8;
 
 /// A scoreboard as seen from a clock: what is over by then is left out.
 ///
 /// Two scoreboards with the same leftover impose the same waits on all instructions to come.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Leftover {
-    /// Place, clocks to go, cause.
-    waits: Vec<(u8, u8, Freeze)>,
+    waits: [Option<Left>; MOST_WAITS],
     last_result: u8,
     scalar_double: bool,
     graphics_result: u64,
@@ -51,6 +61,15 @@ pub(crate) struct Scoreboard {
     stored: u64,
 }
 
+/// The numbers of the bits that are set.
+fn bits(mut set: u64) -> impl Iterator<Item = u8> {
+    std::iter::from_fn(move || {
+        let lowest = (set != 0).then(|| set.trailing_zeros() as u8);
+        set &= set.wrapping_sub(1);
+        lowest
+    })
+}
+
 impl Scoreboard {
     pub(crate) fn new(config: &Config) -> Scoreboard {
         Scoreboard {
@@ -68,26 +87,38 @@ impl Scoreboard {
         }
     }
 
-    /// What is left at `now`; `None` when something takes more than `most` clocks from then.
+    /// What is left at `now`; `None` when there is much, or something takes more than `most` clocks from then.
     pub(crate) fn leftover(&self, now: u64, most: u8) -> Option<Leftover> {
-        let registers = (0..HAZARDS).filter(|n| self.pending >> n & 1 != 0).map(|n| (n, self.ready[usize::from(n)]));
-        let armed = (0..).zip(self.hazards).filter(|(n, _)| self.armed >> n & 1 != 0);
-        let hazards = armed.map(|(n, wait)| (HAZARDS + n, wait));
-        let result = Wait { until: self.last_result_until, why: Freeze::MultiplierFirstSource };
-        let mut left = Leftover { last_result: NO_RESULT, ..Leftover::default() };
-        for (place, wait) in registers.chain(hazards).chain([(LAST_RESULT, result)]).filter(|(_, w)| w.until > now) {
-            let clocks = u8::try_from(wait.until - now).ok().filter(|clocks| *clocks <= most)?;
-            left.waits.push((place, clocks, wait.why));
-            match place {
-                LAST_RESULT => left.last_result = self.last_result,
-                _ if place < HAZARDS => {}
-                _ => match 1u16 << (place - HAZARDS) {
-                    hazard::SCALAR => left.scalar_double = self.scalar_double,
-                    hazard::GRAPHICS => left.graphics_result = self.graphics_result,
-                    hazard::STORED => left.stored = self.stored,
-                    _ => {}
-                },
+        let mut left = Leftover {
+            waits: [None; MOST_WAITS],
+            last_result: NO_RESULT,
+            scalar_double: false,
+            graphics_result: 0,
+            stored: 0,
+        };
+        let mut free = left.waits.iter_mut();
+        let mut add = |place: u8, wait: Wait| -> Option<bool> {
+            if wait.until <= now {
+                return Some(false);
             }
+            let clocks = u8::try_from(wait.until - now).ok().filter(|clocks| *clocks <= most)?;
+            *free.next()? = Some(Left { place, clocks, why: wait.why });
+            Some(true)
+        };
+        for n in bits(self.pending) {
+            add(n, self.ready[usize::from(n)])?;
+        }
+        for n in bits(u64::from(self.armed)) {
+            let is_left = add(HAZARDS + n, self.hazards[usize::from(n)])?;
+            match 1u16 << n {
+                hazard::SCALAR if is_left => left.scalar_double = self.scalar_double,
+                hazard::GRAPHICS if is_left => left.graphics_result = self.graphics_result,
+                hazard::STORED if is_left => left.stored = self.stored,
+                _ => {}
+            }
+        }
+        if add(LAST_RESULT, Wait { until: self.last_result_until, why: Freeze::MultiplierFirstSource })? {
+            left.last_result = self.last_result;
         }
         Some(left)
     }
@@ -97,9 +128,9 @@ impl Scoreboard {
         (self.pending, self.armed, self.last_result_until) = (0, 0, 0);
         (self.last_result, self.scalar_double) = (left.last_result, left.scalar_double);
         (self.graphics_result, self.stored) = (left.graphics_result, left.stored);
-        for (place, clocks, why) in &left.waits {
-            let wait = Wait { until: now + u64::from(*clocks), why: *why };
-            match *place {
+        for Left { place, clocks, why } in left.waits.into_iter().flatten() {
+            let wait = Wait { until: now + u64::from(clocks), why };
+            match place {
                 LAST_RESULT => self.last_result_until = wait.until,
                 n if n < HAZARDS => {
                     self.pending |= 1 << n;

@@ -152,12 +152,13 @@ fn run_loop(prepare: impl Fn(&mut Cpu)) -> (Cpu, Ram) {
     (cpu, ram)
 }
 
-/// The first turn misses, the second one begins with what that left behind, the third one with what every later one finds;
-/// the last one goes another way.
+/// The first turn misses, the second one finds the cache changed, the next ones are learned, each with what the one before
+/// left behind; the last one goes another way. Of a hundred, ten are more than that.
 #[test]
-fn a_loop_in_cache_is_counted_three_times_and_at_its_end() {
+fn a_loop_in_cache_is_counted_only_until_it_is_known() {
     let (cpu, _) = run_loop(|_| {});
-    assert!(cpu.repeated_instructions() >= 8 * 96, "{} of 800", cpu.repeated_instructions());
+    let repeated = cpu.repeated_instructions();
+    assert!((8 * 90..=8 * 100).contains(&repeated), "{repeated} of 800");
 }
 
 #[test]

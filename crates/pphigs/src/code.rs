@@ -33,8 +33,6 @@ const STACK: u32 = 0x1_0400;
 const DISPLAY_LIST: u32 = 1 << 20;
 /// Bytes of a triangle in it.
 const TRIANGLE_BYTES: u32 = 4 * TRIANGLE_WORDS as u32;
-/// Bytes of a line of the data cache, to which commands are aligned.
-const LINE: u32 = 32;
 
 /// Instructions after which a kernel is taken to be endless: many times what a triangle needs, and its prologue.
 const BUDGET_OF_TRIANGLE: u64 = 40_000;
@@ -146,7 +144,7 @@ impl Pass {
     pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<Made>, ProcessorFault> {
         let Some(kernel) = self.kernel(processor.version()) else { return Ok(None) };
         let (program, heads) = (program(kernel), self.heads());
-        let places = self.places(processor, kernel, context);
+        let places = self.places(processor, kernel, context)?;
         processor.write(BIN_TABLE, &places.bins)?;
         let mut span = Span::ZERO;
         let (mut command, mut clipped) = (places.commands, places.clip_list);
@@ -201,24 +199,24 @@ impl Pass {
         })
     }
 
-    /// Context 0 lies behind the display list, context 1 at the end of memory. The command being made needs a place even
-    /// if it is dropped.
-    fn places(&self, processor: &Processor, kernel: Kernel, context: u8) -> Places {
+    /// Context 0 lies behind the display list, context 1 at the end of memory. The kernel needs a place for a command of
+    /// every triangle, seen or not, for the one being made, which may be dropped, and for an entry of its list of those for
+    /// the clipper: more than the accounts of [`pxpl5_gp::Memory`], which know what will be seen.
+    fn places(&self, processor: &mut Processor, kernel: Kernel, context: u8) -> Result<Places, ProcessorFault> {
         let regions = self.picture().viewport.grid().regions() as u16;
         let entries: Vec<u32> = (0..regions).map(|region| self.counts(RegionId(region)).triangles).collect();
         let entries = if self.is_binned() { entries } else { vec![0; entries.len()] };
         let commands = kernel.command_bytes() * (self.transformed().triangles + 1);
         let list = DISPLAY_LIST + self.share().all_triangles().len() as u32 * TRIANGLE_BYTES;
         let bytes = commands + 4 * (entries.iter().sum::<u32>() + self.transformed().triangles);
-        let last = processor.memory_bytes().saturating_sub(bytes) / LINE * LINE;
-        let begin = if context == 0 { list.next_multiple_of(LINE) } else { last };
+        let begin = processor.place_output(context, list, bytes)?;
         let mut clip_list = begin + commands;
         let bin = |entries: &u32| {
             clip_list += 4 * entries;
             clip_list - 4 * entries
         };
         let bins = entries.iter().map(bin).collect();
-        Places { commands: begin, bins, clip_list }
+        Ok(Places { commands: begin, bins, clip_list })
     }
 
     /// Entries of bins that the kernel did not make.

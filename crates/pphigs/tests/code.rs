@@ -168,3 +168,69 @@ fn a_display_list_larger_than_the_memory_is_refused() {
     let error = share.install(&mut small).expect_err("it begins behind the first megabyte");
     assert_eq!(error.to_string(), "graphics processor at node 4: no memory for 24 words at 0x00100000");
 }
+
+/// Bytes that the output of a context takes, from its definition: a command for every triangle and for the one being made, an
+/// entry of four bytes for each in each bin, and one for each in the clipper's list.
+fn output_bytes(pass: &Pass, triangles: u32, command_bytes: u32) -> u32 {
+    let regions = pass.picture().viewport.grid().regions() as u16;
+    let entries: u32 = (0..regions).map(|region| pass.counts(RegionId(region)).triangles).sum();
+    command_bytes * (triangles + 1) + 4 * (entries + triangles)
+}
+
+/// A board whose memory is as large as given, both eyes' passes over 90 triangles, and the bytes of a command.
+fn both_contexts(memory: u64) -> (Processor, [Arc<Pass>; 2]) {
+    let (share, view) = (Share::new(list(90), 0, 1), view());
+    let mut processor = Processor::new(NodeId(2), memory, CodeVersion::Scheduled);
+    share.install(&mut processor).expect("it fits");
+    let picture = picture(Viewport::FRAME, Shading::Gouraud, Binning::Touched);
+    (processor, [0, 1].map(|eye| share.transform(&view, eye, picture)))
+}
+
+#[test]
+fn two_contexts_that_touch_keep_their_words_and_one_byte_less_is_refused() {
+    let (_, passes) = both_contexts(MEMORY);
+    let [lower, upper] = [0, 1].map(|eye| output_bytes(&passes[eye], 90, 120));
+    let behind_list = (1 << 20) + 90 * 96_u32;
+    let border = (behind_list.next_multiple_of(32) + lower).next_multiple_of(32);
+    let fits = u64::from(border + upper);
+
+    let (mut processor, passes) = both_contexts(fits);
+    let made = [0, 1].map(|eye| passes[eye].run_code(&mut processor, eye as u8).expect("it fits").expect("a kernel"));
+    assert_eq!(made[1].commands.start, border, "the upper context begins where the lower one ends");
+    for (pass, made) in passes.iter().zip(&made) {
+        for region in 0..20 {
+            let found = of_code(&processor, made, usize::from(region), 30);
+            assert!(found == native(pass, RegionId(region)), "region {region}");
+        }
+    }
+
+    let (mut processor, passes) = both_contexts(fits - 1);
+    let made = passes[0].run_code(&mut processor, 0).expect("it is alone").expect("a kernel");
+    let error = passes[1].run_code(&mut processor, 1).expect_err("they would meet");
+    assert_eq!(
+        error.to_string(),
+        format!(
+            "graphics processor at node 2: output of bin context 1 needs {upper} bytes, {} are available",
+            upper - 1
+        )
+    );
+    assert!(
+        (0..20).all(|region| of_code(&processor, &made, region, 30) == native(&passes[0], RegionId(region as u16)))
+    );
+    // The other way round it is the lower one that is refused.
+    let (mut processor, passes) = both_contexts(fits - 1);
+    passes[1].run_code(&mut processor, 1).expect("it is alone");
+    let error = passes[0].run_code(&mut processor, 0).expect_err("they would meet");
+    assert!(error.to_string().contains("output of bin context 0 needs"), "{error}");
+}
+
+#[test]
+fn a_context_larger_than_the_memory_is_refused_and_does_not_reach_the_code() {
+    let (_, passes) = both_contexts(MEMORY);
+    let behind_list = u64::from((1 << 20) + 90 * 96_u32);
+    for context in [0, 1] {
+        let (mut processor, _) = both_contexts(behind_list + 64);
+        let error = passes[0].run_code(&mut processor, context).expect_err("64 bytes");
+        assert!(error.to_string().ends_with("64 are available"), "{error}");
+    }
+}

@@ -9,7 +9,7 @@ use crate::terminal::print;
 use clap::Args;
 use pxpl5::levels::Level;
 use pxpl5::results::origin_lines;
-use pxpl5::{ExperimentFile, Eye, HeadReport, Outcome, Plan, Report, Results};
+use pxpl5::{ExperimentFile, Eye, HeadReport, Outcome, Plan, Report, Results, Saving};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -30,6 +30,10 @@ pub(crate) struct RunArgs {
     /// Worker threads for --pixels all; default: one a core.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     threads: Option<u64>,
+    /// Do without a saving, to see what it is worth: idle-boards, transfers, empty-regions or repeated-code; may be
+    /// repeated.
+    #[arg(long, value_name = "SAVING")]
+    without: Vec<Saving>,
     /// Write report.json, results.csv, pictures.csv, experiment.toml, timeline.svg and the last pictures into this folder.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -46,7 +50,7 @@ pub(crate) struct RunArgs {
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
-    let outcome = args.snapshot.simulate(&plan, args.threads, args.quiet)?;
+    let outcome = args.snapshot.simulate(&plan, args.threads, &args.without, args.quiet)?;
     let results = Results::new(&plan, outcome);
     let Some((_, report)) = &results.run else { return Err(no_events()) };
     let written = folder.map(|folder| write(folder, &plan, &results)).transpose()?;

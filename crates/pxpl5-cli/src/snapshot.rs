@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::output::OutputFolder;
 use crate::terminal::progress;
 use clap::Args;
-use pxpl5::{ExperimentError, ExperimentFile, Machine, Outcome, Pixels, Plan, Snapshot};
+use pxpl5::{ExperimentError, ExperimentFile, Machine, Outcome, Pixels, Plan, Saving, Snapshot};
 use std::path::{Path, PathBuf};
 
 /// A moment to be kept or to go on from.
@@ -52,11 +52,18 @@ impl SnapshotArgs {
     /// # Errors
     ///
     /// When the run fails, is not the one of the snapshot, or the snapshot cannot be written.
-    pub(crate) fn simulate(&self, plan: &Plan, threads: Option<u64>, quiet: bool) -> Result<Outcome, CliError> {
+    pub(crate) fn simulate(
+        &self,
+        plan: &Plan,
+        threads: Option<u64>,
+        without: &[Saving],
+        quiet: bool,
+    ) -> Result<Outcome, CliError> {
         let mut saving = self.saving(plan)?;
         let scene = plan.load_scene()?;
         let threads = threads.map_or_else(cores, |threads| threads as usize);
-        let mut experiment = plan.experiment(scene.clone()).threads(threads);
+        let experiment = plan.experiment(scene.clone()).threads(threads);
+        let mut experiment = without.iter().fold(experiment, |experiment, saving| experiment.without(*saving));
         let hash = experiment.config_hash();
         let restored = self.restored(plan)?;
         if let Some((snapshot, name)) = &restored {

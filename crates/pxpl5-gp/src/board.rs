@@ -1,7 +1,7 @@
 //! The board: it polls its programs whenever something has happened to them.
 
 use crate::cpu::{Cpu, Level};
-use crate::firmware::{Fault, Gp, Program, Received, Shared};
+use crate::firmware::{Cause, Fault, Gp, Program, Received, Shared, Wait};
 use crate::memory::Memory;
 use crate::probe::Mark;
 use crate::processor::Processor;
@@ -96,7 +96,7 @@ impl GpBoard {
             ends: VecDeque::new(),
             issued: 0,
             progress: 0,
-            waits: [""; 2],
+            waits: [Wait::NONE; 2],
         };
         let shared = Rc::new(RefCell::new(shared));
         Self { shared, tasks: Vec::new(), announced: None, poll_pending: false, cycle, fault: None }
@@ -109,6 +109,13 @@ impl GpBoard {
         let (node, bytes) = (shared.node, shared.timing.memory_bytes);
         let processor = |version| Box::new(Processor::new(node, bytes, version));
         shared.processor = shared.timing.code_version().map(processor);
+    }
+
+    /// Has the processor that runs code memoise nothing; to be called before programs run.
+    pub fn count_every_clock(&mut self) {
+        if let Some(processor) = &mut self.shared.borrow_mut().processor {
+            processor.count_every_clock();
+        }
     }
 
     /// A handle for a program at a level.
@@ -129,10 +136,17 @@ impl GpBoard {
         match event {
             GpEvent::Delivered(message) => self.latch(message, context),
             GpEvent::Accepted(ticket) => {
-                self.arrive(context, |shared| shared.note_accepted(ticket >> PLACE_BITS, ticket & PLACE_MASK))
+                self.shared.borrow_mut().note_accepted(ticket >> PLACE_BITS, ticket & PLACE_MASK);
+                self.wake(Cause::Acceptance, context);
             }
-            GpEvent::Retrace(field) => self.arrive(context, |shared| shared.fields = field),
-            GpEvent::Status { from, value } => self.arrive(context, |shared| shared.set_status(from, value)),
+            GpEvent::Retrace(field) => {
+                self.shared.borrow_mut().fields = field;
+                self.wake(Cause::Arrival, context);
+            }
+            GpEvent::Status { from, value } => {
+                self.shared.borrow_mut().set_status(from, value);
+                self.wake(Cause::Arrival, context);
+            }
             GpEvent::Poll => self.work(context),
             GpEvent::WorkEnds(generation) if self.announced == Some(generation) => self.work(context),
             GpEvent::WorkEnds(_) => {}
@@ -142,16 +156,18 @@ impl GpBoard {
     /// Messages of one instant are kept in order of their senders, whatever the order of their events.
     fn latch(&mut self, message: Message, context: &mut Context<GpEvent, GpOutput>) {
         let arrived = context.now();
-        self.arrive(context, |shared| {
+        {
+            let inbox = &mut self.shared.borrow_mut().inbox;
             let later = |r: &Received| (r.arrived, r.source) <= (arrived, message.source);
-            let place = shared.inbox.iter().rposition(later).map_or(0, |i| i + 1);
-            shared.inbox.insert(place, Received { arrived, source: message.source, body: message.body });
-        });
+            let place = inbox.iter().rposition(later).map_or(0, |i| i + 1);
+            inbox.insert(place, Received { arrived, source: message.source, body: message.body });
+        }
+        self.wake(Cause::Arrival, context);
     }
 
-    fn arrive(&mut self, context: &mut Context<GpEvent, GpOutput>, latch: impl FnOnce(&mut Shared)) {
-        latch(&mut self.shared.borrow_mut());
-        if !self.poll_pending {
+    /// The programs look at this instant's arrivals together, if one of them waits for such.
+    fn wake(&mut self, cause: Cause, context: &mut Context<GpEvent, GpOutput>) {
+        if !self.poll_pending && self.shared.borrow().is_woken_by(cause) {
             self.poll_pending = true;
             context.schedule(context.now(), Phase::Work, GpEvent::Poll);
         }
@@ -182,12 +198,17 @@ impl GpBoard {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         loop {
             let before = self.shared.borrow().progress;
-            let fault = &mut self.fault;
-            self.tasks.retain_mut(|task| match task.program.as_mut().poll(&mut task_context) {
-                Poll::Pending => true,
-                Poll::Ready(result) => {
-                    *fault = fault.take().or(result.err());
-                    false
+            let (fault, shared) = (&mut self.fault, &self.shared);
+            self.tasks.retain_mut(|task| {
+                if shared.borrow().is_at_work(task.level) {
+                    return true;
+                }
+                match task.program.as_mut().poll(&mut task_context) {
+                    Poll::Pending => true,
+                    Poll::Ready(result) => {
+                        *fault = fault.take().or(result.err());
+                        false
+                    }
                 }
             });
             if self.shared.borrow().progress == before {
@@ -222,8 +243,9 @@ impl GpBoard {
     /// What the board waits for.
     #[must_use]
     pub fn blocked(&self, name: &str) -> Option<Blocked> {
-        let task = self.tasks.iter().rev().find(|task| !self.shared.borrow().waits[task.level as usize].is_empty())?;
-        let waits_for = self.shared.borrow().waits[task.level as usize].to_owned();
+        let waits = self.shared.borrow().waits;
+        let what = |task: &Task| Some(waits[task.level as usize].what).filter(|what| !what.is_empty());
+        let waits_for = self.tasks.iter().rev().find_map(what)?.to_owned();
         Some(Blocked { board: name.to_owned(), waits_for })
     }
 }

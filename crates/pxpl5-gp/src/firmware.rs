@@ -110,10 +110,44 @@ pub(crate) struct Shared {
     pub(crate) issued: u64,
     /// Counts completed waits, so that the board polls until nothing moves.
     pub(crate) progress: u64,
-    pub(crate) waits: [&'static str; 2],
+    pub(crate) waits: [Wait; 2],
+}
+
+/// What a program waits for: its name, and what can end the wait.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wait {
+    pub(crate) what: &'static str,
+    pub(crate) ended_by: Cause,
+}
+
+/// What can end a wait.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Cause {
+    /// The end of work on the board's CPU.
+    Work,
+    /// The acceptance of a message.
+    Acceptance,
+    /// A message, a retrace, a status line, or the board's other program.
+    Arrival,
+}
+
+impl Wait {
+    /// Before a program has run for the first time.
+    pub(crate) const NONE: Self = Self { what: "", ended_by: Cause::Arrival };
 }
 
 impl Shared {
+    /// Whether a program's wait, or the DMA's, could be over after something has happened.
+    pub(crate) fn is_woken_by(&self, cause: Cause) -> bool {
+        let next_chain = cause == Cause::Acceptance && self.in_flight.is_empty() && !self.batches.is_empty();
+        next_chain || self.waits.iter().any(|wait| wait.ended_by == cause)
+    }
+
+    /// Whether a program waits for the end of work that goes on.
+    pub(crate) fn is_at_work(&self, level: Level) -> bool {
+        self.waits[level as usize].ended_by == Cause::Work && !self.cpu.is_done(level)
+    }
+
     pub(crate) fn note_accepted(&mut self, batch: u64, place: u64) {
         let Some(i) = self.in_flight.iter().position(|flight| flight.0 == place) else { return };
         let (_, receiver) = self.in_flight.swap_remove(i);
@@ -191,14 +225,21 @@ impl Gp {
     }
 
     /// Waits until `ready` gives something; `what` names the wait in a report of a deadlock.
-    pub async fn until<T>(&self, what: &'static str, mut ready: impl FnMut() -> Option<T>) -> T {
+    ///
+    /// `ready` is asked again when a message, a retrace or a status line has arrived and when a program of this board has
+    /// come on; for the acceptance of messages there is [`Gp::accepted`].
+    pub async fn until<T>(&self, what: &'static str, ready: impl FnMut() -> Option<T>) -> T {
+        self.wait(Wait { what, ended_by: Cause::Arrival }, ready).await
+    }
+
+    async fn wait<T>(&self, wait: Wait, mut ready: impl FnMut() -> Option<T>) -> T {
         poll_fn(|_| match ready() {
             Some(value) => {
                 self.shared.borrow_mut().progress += 1;
                 Poll::Ready(value)
             }
             None => {
-                self.shared.borrow_mut().waits[self.level as usize] = what;
+                self.shared.borrow_mut().waits[self.level as usize] = wait;
                 Poll::Pending
             }
         })
@@ -214,7 +255,8 @@ impl Gp {
             let shared = &mut *self.shared.borrow_mut();
             shared.cpu.begin(self.level, span, shared.now);
         }
-        self.until("the end of its own work", || self.shared.borrow().cpu.is_done(self.level).then_some(())).await;
+        let wait = Wait { what: "the end of its own work", ended_by: Cause::Work };
+        self.wait(wait, || self.shared.borrow().cpu.is_done(self.level).then_some(())).await;
     }
 
     /// Waits for the next message in order of arrival and pays the software cost of receiving it.
@@ -261,14 +303,14 @@ impl Gp {
 
     /// Waits until every receiver of a batch has accepted a message of it: its clump buffer is being emptied.
     pub async fn draining(&self, ticket: Ticket) {
-        self.until("all receivers to begin with a clump", || (self.shared.borrow().draining >= ticket.0).then_some(()))
-            .await;
+        let wait = Wait { what: "all receivers to begin with a clump", ended_by: Cause::Acceptance };
+        self.wait(wait, || (self.shared.borrow().draining >= ticket.0).then_some(())).await;
     }
 
     /// Waits until a batch has been accepted by its receivers.
     pub async fn accepted(&self, ticket: Ticket) {
-        self.until("a receiver to accept a message", || (self.shared.borrow().accepted >= ticket.0).then_some(()))
-            .await;
+        let wait = Wait { what: "a receiver to accept a message", ended_by: Cause::Acceptance };
+        self.wait(wait, || (self.shared.borrow().accepted >= ticket.0).then_some(())).await;
     }
 
     /// Hands a chain of messages to the DMA whose software cost was paid before by [`Gp::spend_message`].

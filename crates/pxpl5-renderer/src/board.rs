@@ -73,6 +73,7 @@ pub struct Renderer {
     cycle: Span,
     fifo: InputFifo,
     pool: Arc<ArrayPool>,
+    keeps_empty_regions: bool,
     logs: [Log; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
     /// The transfer to a frame buffer that is going on.
@@ -89,6 +90,8 @@ pub struct Renderer {
 #[derive(Clone, Debug, Default)]
 struct Log {
     cleared: bool,
+    /// Whether a primitive was drawn.
+    drawn: bool,
     lists: Vec<Arc<dyn CommandWords>>,
 }
 
@@ -112,6 +115,7 @@ impl Renderer {
             cycle,
             fifo,
             pool,
+            keeps_empty_regions: true,
             logs,
             copies: VecDeque::new(),
             copying: None,
@@ -158,11 +162,12 @@ impl Renderer {
     fn take(&mut self, list: CommandList) -> Vec<Work> {
         let log = &mut self.logs[usize::from(list.context) % MAX_CONTEXTS];
         if begins_with_clear(&list.runs) {
-            *log = Log { cleared: true, lists: Vec::new() };
+            *log = Log { cleared: true, ..Log::default() };
         }
-        if draws(&list.runs) {
+        if changes_pixels(&list.runs) {
             log.lists.extend(list.content.clone());
         }
+        log.drawn |= has_primitives(&list.runs);
         for order in &list.copies {
             let image = self.image(order);
             self.copies.push_back(PendingCopy { order: *order, image });
@@ -184,12 +189,13 @@ impl Renderer {
 
     fn image(&self, order: &CopyOrder) -> Arc<dyn PixelSource> {
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
-        let Log { cleared, lists } = self.logs[usize::from(order.context) % MAX_CONTEXTS].clone();
+        let Log { cleared, drawn, lists } = self.logs[usize::from(order.context) % MAX_CONTEXTS].clone();
         if lists.is_empty() {
             return Arc::new(NoPixels { pixels: width * height });
         }
         let (pool, done) = (Arc::clone(&self.pool), OnceLock::new());
-        Arc::new(PixelJob { pool, lists, cleared, width, height, done })
+        let kept = self.keeps_empty_regions && !drawn;
+        Arc::new(PixelJob { pool, lists, cleared, kept, width, height, done })
     }
 
     fn copy(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
@@ -281,6 +287,11 @@ impl Renderer {
         self.fifo.busy()
     }
 
+    /// Draws regions without primitives anew each time from now on, instead of keeping them.
+    pub const fn draw_every_region(&mut self) {
+        self.keeps_empty_regions = false;
+    }
+
     /// Keeps from now on when words come into the FIFO and leave it.
     pub fn watch_fifo(&mut self) {
         self.fifo.watch();
@@ -303,9 +314,18 @@ impl Renderer {
 }
 
 /// Whether a list changes pixels, and does not only select and copy.
-fn draws(runs: &[CommandRun]) -> bool {
-    let kinds = runs.iter().map(|run| CommandKind::from_opcode(run.opcode));
-    kinds.into_iter().any(|kind| !matches!(kind, Some(CommandKind::SelectRegion | CommandKind::CopyRegion)))
+fn changes_pixels(runs: &[CommandRun]) -> bool {
+    has_other_than(&[CommandKind::SelectRegion, CommandKind::CopyRegion], runs)
+}
+
+/// Whether a list has anything but what is done to a whole region.
+fn has_primitives(runs: &[CommandRun]) -> bool {
+    use CommandKind::{Clear, CopyRegion, SelectRegion, Shade};
+    has_other_than(&[SelectRegion, Clear, Shade, CopyRegion], runs)
+}
+
+fn has_other_than(kinds: &[CommandKind], runs: &[CommandRun]) -> bool {
+    runs.iter().any(|run| CommandKind::from_opcode(run.opcode).is_none_or(|kind| !kinds.contains(&kind)))
 }
 
 /// Whether a list overwrites its whole context, so that nothing sent before can be seen any more.

@@ -2,6 +2,7 @@
 
 use crate::{Lanes, Layout, PixelArray};
 use pxpl5_wire::{CommandWords, PixelSource, Word};
+use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -9,7 +10,20 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 pub struct ArrayPool {
     layout: Layout,
     idle: Mutex<Vec<Lanes>>,
+    /// Regions without primitives, by their size and words.
+    empty_regions: Mutex<HashMap<EmptyRegion, Arc<[Word]>>>,
 }
+
+/// Everything on which the pixels of a region without primitives depend.
+#[derive(Debug, PartialEq, Eq, Hash)]
+struct EmptyRegion {
+    words: Vec<Word>,
+    cleared: bool,
+    size: [u32; 2],
+}
+
+/// Most regions without primitives that are kept: those of three frames of the largest machine.
+const EMPTY_REGIONS: usize = 256;
 
 impl fmt::Debug for ArrayPool {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -21,7 +35,7 @@ impl ArrayPool {
     /// A pool of arrays with this memory layout.
     #[must_use]
     pub fn new(layout: Layout) -> Arc<Self> {
-        Arc::new(Self { layout, idle: Mutex::new(Vec::new()) })
+        Arc::new(Self { layout, idle: Mutex::default(), empty_regions: Mutex::default() })
     }
 
     fn with_array<T>(&self, use_array: impl FnOnce(&mut Lanes) -> T) -> T {
@@ -30,6 +44,21 @@ impl ArrayPool {
         let result = use_array(&mut array);
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(array);
         result
+    }
+
+    /// The pixels of a region without primitives, which are those of the last one alike.
+    fn empty_region(&self, region: EmptyRegion, draw: impl FnOnce() -> Arc<[Word]>) -> Arc<[Word]> {
+        let kept = || self.empty_regions.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(pixels) = kept().get(&region) {
+            return Arc::clone(pixels);
+        }
+        let pixels = draw();
+        let mut regions = kept();
+        if regions.len() >= EMPTY_REGIONS {
+            regions.clear();
+        }
+        regions.insert(region, Arc::clone(&pixels));
+        pixels
     }
 }
 
@@ -40,6 +69,8 @@ pub(crate) struct PixelJob {
     pub(crate) lists: Vec<Arc<dyn CommandWords>>,
     /// Whether the first list overwrites whatever the array held.
     pub(crate) cleared: bool,
+    /// Whether the region has no primitives and may be kept.
+    pub(crate) kept: bool,
     pub(crate) width: u32,
     pub(crate) height: u32,
     pub(crate) done: OnceLock<Arc<[Word]>>,
@@ -47,6 +78,16 @@ pub(crate) struct PixelJob {
 
 impl PixelJob {
     fn compute(&self) -> Arc<[Word]> {
+        if !self.kept {
+            return self.draw();
+        }
+        let mut words = Vec::new();
+        self.lists.iter().for_each(|list| list.append_words(&mut words));
+        let region = EmptyRegion { words, cleared: self.cleared, size: [self.width, self.height] };
+        self.pool.empty_region(region, || self.draw())
+    }
+
+    fn draw(&self) -> Arc<[Word]> {
         let mut words = Vec::new();
         self.pool.with_array(|array| {
             if !self.cleared {

@@ -2,7 +2,7 @@
 
 use crate::{WaitReason, WaitingMessage};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::NodeId;
+use pxpl5_wire::{Message, NodeId};
 
 const UNKNOWN: Time = Time(u64::MAX);
 
@@ -16,6 +16,9 @@ pub(crate) struct Flight {
     pub(crate) hold: bool,
     pub(crate) granted: Time,
     pub(crate) latency: Span,
+    /// Word slots that have not ended, and the message until the receiver is told of it; only where every word is moved.
+    pub(crate) slots_left: u64,
+    pub(crate) message: Option<Message>,
 }
 
 /// All channels; free ones are taken from the lowest number.
@@ -59,12 +62,32 @@ impl Channels {
         self.ends_at[channel] = at;
     }
 
-    /// Takes a message whose time is over, with its channel.
-    pub(crate) fn take_ended(&mut self, now: Time) -> Option<(usize, Flight)> {
-        let channel = self.ends_at.iter().position(|end| *end <= now)?;
-        self.ends_at[channel] = UNKNOWN;
+    /// The earliest end that is known.
+    pub(crate) fn first_end(&self) -> Option<Time> {
+        self.ends_at.iter().copied().min().filter(|end| *end != UNKNOWN)
+    }
+
+    /// The end of the message on a channel, if it is known.
+    pub(crate) fn end(&self, channel: usize) -> Option<Time> {
+        Some(self.ends_at[channel]).filter(|end| *end != UNKNOWN)
+    }
+
+    /// Takes a message whose time is over, with its channel and the end of that time.
+    pub(crate) fn take_ended(&mut self, now: Time) -> Option<(usize, Time, Flight)> {
+        let channel = self.ends_at.iter().position(|end| *end <= now && *end != UNKNOWN)?;
+        let ended = std::mem::replace(&mut self.ends_at[channel], UNKNOWN);
         self.free |= 1 << channel;
-        Some((channel, self.flights[channel].take()?))
+        Some((channel, ended, self.flights[channel].take()?))
+    }
+
+    /// A word slot of a channel has ended: takes the message off for a moment.
+    pub(crate) fn take_slot(&mut self, channel: usize) -> Option<Flight> {
+        let flight = self.flights.get_mut(channel)?.take()?;
+        Some(Flight { slots_left: flight.slots_left.saturating_sub(1), ..flight })
+    }
+
+    pub(crate) fn put_back(&mut self, channel: usize, flight: Flight) {
+        self.flights[channel] = Some(flight);
     }
 
     pub(crate) fn flight(&self, channel: usize) -> Option<&Flight> {

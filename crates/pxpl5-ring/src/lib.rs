@@ -40,9 +40,10 @@
 //! | last word has arrived; the sender is told ([`RingOutput::Sent`]) | `g + (overhead + words) x word + stall + h x hop` |
 //! | channel and ports free | `g + (overhead + words) x word + stall` |
 //!
-//! A message costs two events of the ring's own at most: everything is known at the grant or at the answer. The
-//! module [`reference`](mod@reference) holds the same rules word by word, and a property test holds both to the
-//! same times.
+//! A message costs one event of the ring's own, its grant, where nobody waits for its end, and two at most: everything
+//! is known at the grant or at the answer. [`Ring::move_every_word`] gives up that shortcut in a running machine; the
+//! module [`reference`](mod@reference) holds the same rules word by word and shares no code with the ring. A property test
+//! holds all three to the same times.
 //!
 //! **Not modelled:** routing, check words and the layout of the hardware's queues (their cost is the overhead per
 //! message); the way back of a stall or an acknowledgement along the ring; the hop latency between two messages of

@@ -19,6 +19,11 @@ pub enum RingEvent {
         /// When the last word has entered, including the stall.
         last_word_at: Time,
     },
+    /// The ring's own, where it [moves every word](crate::Ring::move_every_word): a word slot ends. Phase `Arrive`.
+    Slot {
+        /// The channel, from 0.
+        channel: usize,
+    },
     /// The ring's own: release what has ended, then grant what can go. Phase `Work`.
     Arbitrate,
 }

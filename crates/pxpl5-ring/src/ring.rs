@@ -20,8 +20,14 @@ pub struct Ring {
     to_fifos: u64,
     /// The first messages of their sources, in the order of grants.
     heads: Vec<Head>,
-    /// The instant for which a request has last asked for arbitration.
-    arbitration_at: Option<Time>,
+    /// Sources that send on as many channels as they can.
+    at_limit: usize,
+    /// Instants for which arbitration is scheduled.
+    arbitrations: Vec<Time>,
+    /// Whether every end of a message is an event, though nobody waits for it.
+    watched: bool,
+    /// Whether every word is an event.
+    word_by_word: bool,
     stats: RingStats,
     refusals: Refusals,
 }
@@ -74,10 +80,24 @@ impl Ring {
             channels: Channels::new(n_channels),
             to_fifos: 0,
             heads: Vec::new(),
-            arbitration_at: None,
+            at_limit: 0,
+            arbitrations: Vec::new(),
+            watched: false,
+            word_by_word: false,
             stats: RingStats { channel_busy: vec![Span::ZERO; n_channels], ..RingStats::default() },
             refusals: Refusals::default(),
         })
+    }
+
+    /// Has [`Ring::busy_channels`] be right after every event from now on: there is one at every end of a message.
+    pub const fn watch(&mut self) {
+        self.watched = true;
+    }
+
+    /// Moves every word of a message by an event of its own from now on, instead of computing the end of a message at its
+    /// grant. No time changes; receivers with a FIFO answer for whole messages as before.
+    pub const fn move_every_word(&mut self) {
+        self.word_by_word = true;
     }
 
     /// Handles one event.
@@ -85,11 +105,17 @@ impl Ring {
         match event {
             RingEvent::Request(request) => self.request(request, context),
             RingEvent::Accept { destination, last_word_at } => self.accept(destination, last_word_at, context),
-            RingEvent::Arbitrate => {
-                self.release_ended(context.now());
-                self.grant_all(context);
-            }
+            RingEvent::Slot { channel } => self.move_word(channel, context),
+            RingEvent::Arbitrate => self.arbitrate(context),
         }
+    }
+
+    fn arbitrate(&mut self, context: &mut Out) {
+        let now = context.now();
+        self.arbitrations.retain(|at| *at > now);
+        self.settle(now);
+        self.grant_all(context);
+        self.arbitrate_at_next_end(context);
     }
 
     /// The numbers that the ring was built with.
@@ -104,7 +130,7 @@ impl Ring {
         self.sources.len() as u16
     }
 
-    /// Sums over all messages that have ended.
+    /// Sums over all messages that have ended, up to the last grant or [`Ring::settle`].
     #[must_use]
     pub const fn stats(&self) -> &RingStats {
         &self.stats
@@ -116,13 +142,13 @@ impl Ring {
         &self.refusals
     }
 
-    /// Channels that are occupied; after each event up to date.
+    /// Channels that are occupied; up to date after each event of a ring that is [watched](Ring::watch).
     #[must_use]
     pub fn busy_channels(&self) -> u32 {
         self.channels.busy()
     }
 
-    /// Whether nothing is in flight and nothing waits.
+    /// Whether nothing is in flight and nothing waits, as of the last grant or [`Ring::settle`].
     #[must_use]
     pub fn is_idle(&self) -> bool {
         self.heads.is_empty() && self.channels.is_idle()
@@ -178,10 +204,34 @@ impl Ring {
         }
         self.heads.retain(|head| head.source != id);
         self.add_head(now, id);
-        if self.arbitration_at != Some(now) {
-            self.arbitration_at = Some(now);
-            context.schedule(now, Phase::Work, RingEvent::Arbitrate);
+        self.arbitrate_at(now, context);
+    }
+
+    /// Each arbitration asks for the next one, so that an earlier one will do.
+    fn arbitrate_at(&mut self, at: Time, context: &mut Out) {
+        if self.arbitrations.iter().all(|earlier| *earlier > at) {
+            self.arbitrations.push(at);
+            context.schedule(at, Phase::Work, RingEvent::Arbitrate);
         }
+    }
+
+    /// The end of a message matters only if somebody waits for just that one.
+    fn arbitrate_at_next_end(&mut self, context: &mut Out) {
+        let any_end = self.watched || self.at_limit > 0;
+        let awaited = self.heads.iter().filter_map(|head| self.awaited_end(head.destination));
+        let next = if any_end { self.channels.first_end() } else { awaited.min() };
+        if let Some(end) = next {
+            self.arbitrate_at(end.max(context.now()), context);
+        }
+    }
+
+    /// When a message that waits for a destination could be granted at the earliest, if that is known. A destination that
+    /// is reserved waits for a request.
+    fn awaited_end(&self, destination: NodeId) -> Option<Time> {
+        if !self.has_channel_to(destination) {
+            return self.channels.first_end();
+        }
+        self.destinations[usize::from(destination.0)].channel.and_then(|channel| self.channels.end(channel))
     }
 
     fn refuse(&mut self, request: &Request, error: RingError, context: &mut Out) {
@@ -199,8 +249,10 @@ impl Ring {
         self.heads.insert(self.heads.len() - later, head);
     }
 
-    fn release_ended(&mut self, now: Time) {
-        while let Some((channel, flight)) = self.channels.take_ended(now) {
+    /// Frees channels and ports of all messages that have ended by `now`. The ring does it by itself before it grants;
+    /// its sums are up to date afterwards.
+    pub fn settle(&mut self, now: Time) {
+        while let Some((channel, ended, flight)) = self.channels.take_ended(now) {
             let destination = &mut self.destinations[usize::from(flight.destination.0)];
             destination.release(&flight);
             self.to_fifos -= u64::from(!destination.elastic);
@@ -208,9 +260,10 @@ impl Ring {
             source.in_flight -= 1;
             // Below the limit the next message has been a head all along.
             if source.in_flight + 1 == self.timing.source_channels {
-                self.add_head(now, flight.source);
+                self.at_limit -= 1;
+                self.add_head(ended, flight.source);
             }
-            let busy = now.since(flight.granted);
+            let busy = ended.since(flight.granted);
             self.stats.channel_busy[channel] += busy;
             self.stats.stalled += busy - self.timing.occupancy(flight.words);
             self.stats.messages += 1;
@@ -249,16 +302,12 @@ impl Ring {
         self.stats.longest_wait = self.stats.longest_wait.max(waited);
         let flight = self.flight(&request, now);
         let node = usize::from(flight.destination.0);
-        let end = if self.destinations[node].elastic {
-            Some(self.deliver(&flight, request.message, context))
-        } else {
-            self.to_fifos += 1;
-            self.announce(&flight, request.message, context);
-            None
-        };
-        self.destinations[node].channel = Some(self.channels.occupy(flight, end));
+        self.to_fifos += u64::from(!self.destinations[node].elastic);
+        self.destinations[node].channel = Some(self.carry(flight, request.message, context));
         if more {
             self.add_head(now, source);
+        } else {
+            self.at_limit += 1;
         }
     }
 
@@ -272,30 +321,64 @@ impl Ring {
             hold: request.hold,
             granted: now,
             latency: self.timing.latency(source, destination, self.n_nodes()),
+            slots_left: self.timing.overhead_words + u64::from(words),
+            message: None,
         }
     }
 
-    /// All is known at once; returns when channel and ports are free.
-    fn deliver(&self, flight: &Flight, message: Message, context: &mut Out) -> Time {
+    /// Puts a message on a channel, whose number is returned. Its end is known at once where the receiver is elastic,
+    /// else at the answer to the announcement; a ring that moves every word waits for the words.
+    fn carry(&mut self, flight: Flight, message: Message, context: &mut Out) -> usize {
+        if self.word_by_word {
+            let channel = self.channels.occupy(Flight { message: Some(message), ..flight }, None);
+            context.schedule(context.now() + self.word, Phase::Arrive, RingEvent::Slot { channel });
+            return channel;
+        }
+        if !self.is_elastic(flight.destination) {
+            self.announce(&flight, message, context);
+            return self.channels.occupy(flight, None);
+        }
         let end = flight.granted + self.timing.occupancy(flight.words);
+        self.deliver(&flight, message, end, context);
+        self.channels.occupy(flight, Some(end))
+    }
+
+    /// A slot of overhead or of a word is over: after the first one a receiver with a FIFO is told, after the last one
+    /// an elastic receiver has the message.
+    fn move_word(&mut self, channel: usize, context: &mut Out) {
+        let Some(mut flight) = self.channels.take_slot(channel) else { return };
+        if flight.slots_left > 0 {
+            context.schedule(context.now() + self.word, Phase::Arrive, RingEvent::Slot { channel });
+        }
+        let elastic = self.is_elastic(flight.destination);
+        if (flight.slots_left == 0 || !elastic)
+            && let Some(message) = flight.message.take()
+        {
+            if elastic {
+                let now = context.now();
+                self.deliver(&flight, message, now, context);
+                self.channels.ends(channel, now);
+                self.arbitrate_at_next_end(context);
+            } else {
+                self.announce(&flight, message, context);
+            }
+        }
+        self.channels.put_back(channel, flight);
+    }
+
+    fn is_elastic(&self, node: NodeId) -> bool {
+        self.destinations[usize::from(node.0)].elastic
+    }
+
+    fn deliver(&self, flight: &Flight, message: Message, end: Time, context: &mut Out) {
         context.output(end + flight.latency, RingOutput::Delivered(message));
-        self.tell_sender(flight, end + flight.latency, context);
-        context.schedule(end, Phase::Work, RingEvent::Arbitrate);
-        end
+        tell_sender(flight, end + flight.latency, context);
     }
 
     fn announce(&self, flight: &Flight, message: Message, context: &mut Out) {
         let first_word_at = flight.granted + self.timing.occupancy(0) + flight.latency;
         let announce = RingOutput::Announce { message, first_word_at, word: self.word };
         context.output(flight.granted + self.word + flight.latency, announce);
-    }
-
-    fn tell_sender(&self, flight: &Flight, accepted: Time, context: &mut Out) {
-        if let Some(ticket) = flight.ticket {
-            let source = flight.source;
-            let told = accepted.max(context.now() + self.word);
-            context.output(told, RingOutput::Sent { source, ticket });
-        }
     }
 
     fn accept(&mut self, destination: NodeId, last_word_at: Time, context: &mut Out) {
@@ -307,9 +390,9 @@ impl Ring {
         let earliest = flight.granted + self.timing.occupancy(flight.words) + flight.latency;
         let accepted = last_word_at.max(earliest);
         let end = now.max(Time(accepted.0 - flight.latency.0));
-        self.tell_sender(flight, accepted, context);
+        tell_sender(flight, accepted.max(now + self.word), context);
         self.channels.ends(channel, end);
-        context.schedule(end, Phase::Work, RingEvent::Arbitrate);
+        self.arbitrate_at_next_end(context);
         if last_word_at < earliest {
             let error = RingError::AcceptedEarly { destination, expected: earliest, found: last_word_at };
             self.refusals.record(now, error);
@@ -338,6 +421,12 @@ impl Ring {
             _ if !self.has_channel_to(destination) => WaitReason::Channel,
             _ => WaitReason::Arbitration,
         }
+    }
+}
+
+fn tell_sender(flight: &Flight, at: Time, context: &mut Out) {
+    if let Some(ticket) = flight.ticket {
+        context.output(at, RingOutput::Sent { source: flight.source, ticket });
     }
 }
 

@@ -3,11 +3,11 @@
 mod support;
 
 use proptest::prelude::*;
-use pxpl5_ring::RingTiming;
 use pxpl5_ring::reference::{Passage, SteppedRing, Traffic};
+use pxpl5_ring::{Ring, RingTiming};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::NodeId;
-use support::{Receiver, Stepped, run_fast};
+use support::{Receiver, Stepped, Times, run_fast, run_prepared};
 
 #[derive(Clone, Debug)]
 struct Case {
@@ -92,28 +92,36 @@ fn told(case: &Case, message: usize, passage: &Passage) -> Time {
     }
 }
 
+fn compare(case: &Case, passages: &[Passage], ring: &Ring, times: &Times) -> Result<(), TestCaseError> {
+    prop_assert_eq!(ring.refusals().count, 0);
+    prop_assert!(ring.is_idle());
+    prop_assert_eq!(times.accepted.len(), case.traffic.len());
+    for (message, passage) in passages.iter().enumerate() {
+        let number = message as u64;
+        prop_assert_eq!(times.accepted[&number], passage.last_word_at, "message {}", message);
+        prop_assert_eq!(times.sent[&number], told(case, message, passage), "message {}", message);
+    }
+    for (channel, busy) in ring.stats().channel_busy.iter().enumerate() {
+        let on_channel = passages.iter().filter(|passage| passage.channel == channel);
+        let slots: Span = on_channel.map(|passage| passage.released - passage.granted).sum();
+        prop_assert_eq!(*busy, slots, "channel {}", channel);
+    }
+    let waited: Span = passages.iter().zip(&case.traffic).map(|(p, t)| p.granted - t.at).sum();
+    prop_assert_eq!(ring.stats().waiting, waited);
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
     fn closed_form_and_word_by_word_agree_to_the_picosecond(case in cases(), seed in any::<u64>()) {
         let passages = step(&case);
-        let (ring, times) = run_fast(case.timing, &case.receivers, &case.traffic, Some(seed));
-        prop_assert_eq!(ring.refusals().count, 0);
-        prop_assert!(ring.is_idle());
-        prop_assert_eq!(times.accepted.len(), case.traffic.len());
-        for (message, passage) in passages.iter().enumerate() {
-            let number = message as u64;
-            prop_assert_eq!(times.accepted[&number], passage.last_word_at, "message {}", message);
-            prop_assert_eq!(times.sent[&number], told(&case, message, passage), "message {}", message);
+        let ways: [fn(&mut Ring); 3] = [|_| {}, Ring::watch, Ring::move_every_word];
+        for prepare in ways {
+            let (ring, times) = run_prepared(case.timing, &case.receivers, &case.traffic, Some(seed), prepare);
+            compare(&case, &passages, &ring, &times)?;
         }
-        for (channel, busy) in ring.stats().channel_busy.iter().enumerate() {
-            let on_channel = passages.iter().filter(|passage| passage.channel == channel);
-            let slots: Span = on_channel.map(|passage| passage.released - passage.granted).sum();
-            prop_assert_eq!(*busy, slots, "channel {}", channel);
-        }
-        let waited: Span = passages.iter().zip(&case.traffic).map(|(p, t)| p.granted - t.at).sum();
-        prop_assert_eq!(ring.stats().waiting, waited);
     }
 
     #[test]

@@ -30,6 +30,8 @@ const PHASE_SHIFT: u32 = 62;
 #[derive(Debug)]
 pub struct EventQueue<E> {
     heap: BinaryHeap<Reverse<Due>>,
+    /// An event that comes before all of the heap: what is scheduled next often is, and need not go through it.
+    next: Option<Due>,
     events: Vec<Option<E>>,
     free: Vec<u32>,
     now: Time,
@@ -41,7 +43,7 @@ pub struct EventQueue<E> {
 impl<E> Default for EventQueue<E> {
     fn default() -> Self {
         let (heap, events, free) = (BinaryHeap::new(), Vec::new(), Vec::new());
-        Self { heap, events, free, now: Time::ZERO, sequence: 0, shuffle: None, popped: 0 }
+        Self { heap, next: None, events, free, now: Time::ZERO, sequence: 0, shuffle: None, popped: 0 }
     }
 }
 
@@ -68,7 +70,15 @@ impl<E> EventQueue<E> {
         let order = (phase as u64) << PHASE_SHIFT | tie & ((1 << PHASE_SHIFT) - 1);
         self.sequence += 1;
         let slot = self.keep(event);
-        self.heap.push(Reverse(Due { time, order, slot }));
+        let due = Due { time, order, slot };
+        let for_heap = if self.first().is_none_or(|first| due < first) { self.next.replace(due) } else { Some(due) };
+        if let Some(due) = for_heap {
+            self.heap.push(Reverse(due));
+        }
+    }
+
+    fn first(&self) -> Option<Due> {
+        self.next.or_else(|| self.heap.peek().map(|Reverse(due)| *due))
     }
 
     fn keep(&mut self, event: E) -> u32 {
@@ -82,7 +92,7 @@ impl<E> EventQueue<E> {
 
     /// Takes the next event and moves the present to it.
     pub fn next_event(&mut self) -> Option<(Time, Phase, E)> {
-        let Reverse(due) = self.heap.pop()?;
+        let due = self.next.take().or_else(|| self.heap.pop().map(|Reverse(due)| due))?;
         self.now = due.time;
         self.popped += 1;
         self.free.push(due.slot);
@@ -98,7 +108,7 @@ impl<E> EventQueue<E> {
     /// The time of the next event.
     #[must_use]
     pub fn next_time(&self) -> Option<Time> {
-        self.heap.peek().map(|Reverse(due)| due.time)
+        self.first().map(|due| due.time)
     }
 
     /// The present: the time of the event taken last.
@@ -116,13 +126,13 @@ impl<E> EventQueue<E> {
     /// Events waiting.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.heap.len()
+        self.heap.len() + usize::from(self.next.is_some())
     }
 
     /// Whether nothing waits.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.heap.is_empty()
+        self.len() == 0
     }
 }
 

@@ -57,8 +57,20 @@ pub(crate) fn run_fast(
     traffic: &[Traffic],
     shuffle: Option<u64>,
 ) -> (Ring, Times) {
+    run_prepared(timing, receivers, traffic, shuffle, |_| {})
+}
+
+/// The same after `prepare` has told the ring what it may not skip.
+pub(crate) fn run_prepared(
+    timing: RingTiming,
+    receivers: &[Receiver],
+    traffic: &[Traffic],
+    shuffle: Option<u64>,
+    prepare: impl FnOnce(&mut Ring),
+) -> (Ring, Times) {
     let elastic = |node: NodeId| matches!(receivers[usize::from(node.0)], Receiver::Elastic);
-    let ring = Ring::new(timing, receivers.len() as u16, elastic).expect("valid");
+    let mut ring = Ring::new(timing, receivers.len() as u16, elastic).expect("valid");
+    prepare(&mut ring);
     let mut queue = EventQueue::new();
     if let Some(seed) = shuffle {
         queue.shuffle_ties(seed);
@@ -95,6 +107,7 @@ fn run_queue(mut ring: Ring, mut queue: EventQueue<RingEvent>, receivers: &[Rece
             }
         }
     }
+    ring.settle(Time(u64::MAX));
     (ring, times)
 }
 

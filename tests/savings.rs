@@ -1,0 +1,101 @@
+//! What is not computed would not have mattered: without each saving the trace and the pixels seen are the same.
+
+use pxpl5::levels::Level;
+use pxpl5::{Experiment, Eye, Jitp, Machine, MachineConfig, Pixels, RenderingControl, Saving, Slats, Viewpoint, scene};
+use pxpl5_framebuffer::SeenField;
+
+/// Every pipeline with a scene that leaves some regions empty and some not.
+fn experiments() -> [Experiment; 3] {
+    let mig = |triangles| scene::builtin("mig").and_then(|mig| mig.truncated(triangles)).expect("it has 417 triangles");
+    [
+        Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(417)),
+        Experiment::new(MachineConfig::slats(), Slats::split(), mig(60)),
+        Experiment::new(MachineConfig::small_hmd(), Jitp::new(Viewpoint::Strip, true), mig(30)),
+    ]
+}
+
+fn after(experiment: &Experiment, fields: u64) -> Machine {
+    let mut machine = experiment.build().expect("the presets are valid");
+    let end = machine.video().retrace(fields);
+    machine.run_until(end).expect("it runs");
+    machine.finish_pixels();
+    machine
+}
+
+/// The pixels of every field that was seen, eye by eye.
+fn seen(machine: &Machine, fields: u64) -> Vec<SeenField> {
+    let of = |eye: Eye| machine.frame_buffers().get(eye.index());
+    Eye::BOTH.into_iter().filter_map(of).flat_map(|board| (0..fields).filter_map(|field| board.seen(field))).collect()
+}
+
+fn assert_same(experiment: &Experiment, saving: Saving, fields: u64) {
+    let (with, without) = (after(experiment, fields), after(&experiment.clone().without(saving), fields));
+    assert_eq!(without.trace_hash(), with.trace_hash(), "{saving} in {experiment:?}");
+    let (with, without) = (seen(&with, fields), seen(&without, fields));
+    assert_eq!(with.len(), without.len());
+    assert!(with.iter().zip(&without).all(|(a, b)| a.picture() == b.picture()), "{saving} in {experiment:?}");
+}
+
+#[test]
+fn boards_that_sleep_have_nothing_to_do() {
+    for experiment in experiments() {
+        assert_same(&experiment.pixels(Pixels::Lazy), Saving::IdleBoards, 3);
+    }
+}
+
+#[test]
+fn transfers_in_closed_form_end_when_their_words_do() {
+    for experiment in experiments() {
+        assert_same(&experiment.pixels(Pixels::Lazy), Saving::Transfers, 10);
+    }
+}
+
+#[test]
+fn regions_without_primitives_look_as_if_they_had_been_drawn() {
+    for experiment in experiments() {
+        assert_same(&experiment.pixels(Pixels::All), Saving::EmptyRegions, 10);
+    }
+}
+
+#[test]
+fn code_that_repeats_takes_the_clocks_that_are_counted() {
+    for experiment in experiments() {
+        assert_same(&experiment.level(Level::Cycle).pixels(Pixels::Lazy), Saving::RepeatedCode, 10);
+    }
+}
+
+#[test]
+fn nobody_looking_changes_no_time() {
+    for experiment in experiments() {
+        let hash = |pixels| after(&experiment.clone().pixels(pixels), 10).trace_hash();
+        assert_eq!(hash(Pixels::Off), hash(Pixels::All));
+    }
+}
+
+/// All at once, where the graphics processors run code too.
+#[test]
+fn savings_do_not_meet() {
+    let [_, slats, _] = experiments();
+    let slats = slats.level(Level::Cycle).pixels(Pixels::All);
+    let without = Saving::ALL.into_iter().fold(slats.clone(), Experiment::without);
+    assert_eq!(after(&without, 2).trace_hash(), after(&slats, 2).trace_hash());
+}
+
+/// A test of the tests: giving up a saving does do more.
+#[test]
+fn a_saving_that_is_given_up_is_paid_for_in_events() {
+    let [_, slats, _] = experiments();
+    let events = |experiment: &Experiment| after(&experiment.clone().pixels(Pixels::Off), 3).events();
+    let with = events(&slats);
+    assert!(events(&slats.clone().without(Saving::IdleBoards)) > 10 * with);
+    assert!(events(&slats.clone().without(Saving::Transfers)) > 10 * with);
+}
+
+#[test]
+fn savings_are_known_by_their_names() {
+    for saving in Saving::ALL {
+        assert_eq!(saving.name().parse(), Ok(saving));
+    }
+    let error = "idleness".parse::<Saving>().expect_err("no saving");
+    assert_eq!(error, "expected idle-boards, transfers, empty-regions, repeated-code, found \"idleness\"");
+}
