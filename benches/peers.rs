@@ -1,5 +1,5 @@
 //! The head of 59,592 triangles, one eye, 640 x 480, Gouraud, Z-buffered: the software renderer `euc` beside the pixels
-//! of the emulated machine, without its times. An element is a picture.
+//! of the emulated machine, without its times, by both pixel arrays. An element is a picture.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
@@ -11,7 +11,7 @@ use glam::{Mat4, Vec3, Vec4};
 use pphigs::{Around, Binning, DisplayList, EyeView, Frame, FrameView, Picture, Shading, Share, Structure};
 use pxpl5::scene::{self, Hmd, HmdConfig, Scene};
 use pxpl5_geometry::Viewport;
-use pxpl5_renderer::{Lanes, Layout, PixelArray};
+use pxpl5_renderer::{BitSerial, Lanes, Layout, PixelArray};
 use pxpl5_wire::{RegionId, Word};
 use std::sync::Arc;
 
@@ -103,18 +103,18 @@ impl Euc {
 }
 
 /// One GP that holds everything, and one pixel array for all regions in turn.
-struct Ours {
+struct Ours<A> {
     share: Share,
     picture: Picture,
-    array: Lanes,
+    array: A,
     words: Vec<Word>,
     pixels: Vec<Vec<Word>>,
 }
 
 const BACKGROUND: [u8; 3] = [1, 2, 3];
 
-impl Ours {
-    fn new(head: &Scene) -> Self {
+impl<A: PixelArray> Ours<A> {
+    fn new(head: &Scene, array: fn(&Layout) -> A) -> Self {
         let light = head.lighting();
         let structure = Structure { triangles: 0..head.triangles().len(), spheres: 0..0, frame: Frame::World };
         let list = DisplayList {
@@ -134,14 +134,14 @@ impl Ours {
         Self {
             share: Share::new(Arc::new(list), 0, 1),
             picture: Picture { viewport, shading, binning, layout, pixels: true },
-            array: Lanes::new(&layout),
+            array: array(&layout),
             words: Vec::new(),
             pixels: Vec::new(),
         }
     }
 
-    fn draw(&mut self, number: u64, view: &EyeView) {
-        let view = FrameView { number, eyes: vec![*view], edits: Vec::new() };
+    fn draw(&mut self, view: &EyeView) {
+        let view = FrameView { number: 0, eyes: vec![*view], edits: Vec::new() };
         let pass = self.share.transform(&view, 0, self.picture);
         self.pixels.clear();
         let grid = self.picture.viewport.grid();
@@ -163,22 +163,19 @@ impl Ours {
 
 fn peers(criterion: &mut Criterion) {
     let head = scene::builtin("head").expect("built in");
-    let (views, mut euc, mut ours) = (views(&head), Euc::new(&head), Ours::new(&head));
+    let (views, mut euc, mut ours) = (views(&head), Euc::new(&head), Ours::new(&head, Lanes::new));
+    let mut definition = Ours::new(&head, BitSerial::new);
     euc.draw(&head, &views[0]);
-    ours.draw(0, &views[0]);
+    ours.draw(&views[0]);
     let (theirs, own) = (euc.covered() as f64, ours.covered() as f64);
     assert!(own > 10_000.0 && (theirs / own - 1.0).abs() < 0.02, "not the same picture: {theirs} and {own} pixels");
     let mut group = criterion.benchmark_group("peers/head, one eye");
     group.throughput(Throughput::Elements(1));
-    let mut turn = (0..views.len()).cycle();
-    let mut next = || turn.next().unwrap_or_default();
-    group.bench_function("euc 0.5", |b| b.iter(|| euc.draw(&head, &views[next()])));
-    group.bench_function("ours", |b| {
-        b.iter(|| {
-            let i = next();
-            ours.draw(i as u64, &views[i]);
-        });
-    });
+    let mut turn = views.iter().cycle();
+    let mut next = || turn.next().unwrap_or(&views[0]);
+    group.bench_function("euc 0.5", |b| b.iter(|| euc.draw(&head, next())));
+    group.bench_function("ours", |b| b.iter(|| ours.draw(next())));
+    group.bench_function("ours, bit serial", |b| b.iter(|| definition.draw(next())));
     group.finish();
 }
 

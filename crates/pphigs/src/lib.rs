@@ -11,8 +11,8 @@
 //! - [`DisplayList`]: triangles, spheres, and structures with a model matrix each.
 //! - [`Share`]: every n-th primitive, as primitives are dealt to the GPs round-robin (TR94).
 //! - [`FrameView`]: what the host sends for a frame: viewing transforms and edits, as words.
-//! - [`Pass`]: one TRANSFORM: which primitives touch which regions, counted at once; screen triangles and command
-//!   words are made when somebody wants pixels, from the same numbers.
+//! - [`Pass`]: one TRANSFORM: which primitives touch which regions, counted at once; command words are made when somebody
+//!   wants pixels, from the same transformed vertices.
 //! - [`Transforming`]: the same as work of a board, in time by table or by i860 code that makes the same words.
 //!
 //! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
