@@ -190,11 +190,12 @@ impl Outline {
     /// The planes through the corners' depths and three more integers of each, at the picture's pixels.
     #[inline(always)]
     fn planes(&self, [a, b, c]: [[f32; 3]; 3], viewport: &Viewport, stats: &mut SetupStats) -> [Linear; 4] {
-        let corner = |z: u32, [p, q, r]: [f32; 3]| [f64::from(z), f64::from(p), f64::from(q), f64::from(r)];
-        let [za, zb, zc] = self.z;
         let planes = plane::Planes::of(self, self.middle(viewport));
-        let [z, p, q, r] = planes.through([corner(za, a), corner(zb, b), corner(zc, c)], stats);
-        [for_rows(z, viewport), for_rows(p, viewport), for_rows(q, viewport), for_rows(r, viewport)]
+        let mut through = |v: [f64; 3]| for_rows(planes.through(v, stats), viewport);
+        let [za, zb, zc] = self.z;
+        let z = through([f64::from(za), f64::from(zb), f64::from(zc)]);
+        let mut of = |i: usize| through([f64::from(a[i]), f64::from(b[i]), f64::from(c[i])]);
+        [z, of(0), of(1), of(2)]
     }
 
     /// The picture's pixel, in frame lines, nearest to the middle of the bounding box: planes are most exact there.
