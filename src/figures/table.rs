@@ -98,7 +98,10 @@ pub const FIGURES: [Figure; 17] = [
          eye ends later than that: a renderer's backing store holds one region for its copy, a second one waits in pixel \
          memory, and the commands of the next ones are accepted only as far as the input FIFO holds them. With three \
          regions in the backing store it is 47.6 ms, with no limit and a master that never keeps a renderer waiting \
-         50.05 ms; but then figure 4, which was measured, becomes 64.9 and 71.3 ms",
+         50.05 ms; but then figure 4, which was measured, becomes 64.9 and 71.3 ms. That is for the frame, from its left \
+         eye on. If the published means are over the TRANSFORMs of both eyes, three regions give 57.9 ms for figure 4 and \
+         nothing contradicts: 0.4 of the printed deviation of 0.589 fields of figure 7 would then be the difference of \
+         the eyes. The paper does not say which",
     ),
     figure(
         "4",

@@ -1,12 +1,14 @@
 //! Messages of renderer commands: which kinds are in them, and their words on demand.
 
 use crate::list::Counts;
-use crate::pass::{Pass, ScreenTriangles, Shading};
-use pxpl5_geometry::{self as geometry, GouraudSphere, SetupStats};
+use crate::pass::{Entry, Pass, Shading};
+use crate::placed::Placed;
+use pxpl5_geometry::{self as geometry, GouraudSphere, GouraudTriangle, SetupStats, SphereSetup, Transform};
 use pxpl5_renderer::{
-    Clear, Command, CommandKind, CopyRegion, Layout, PhongSphere, PhongTriangle, SelectRegion, Shade, Sphere, Triangle,
+    Clear, Command, CommandKind, CopyRegion, Layout, PhongSphere, PhongTriangle, PhongTriangleEncoder, SelectRegion,
+    Shade, Sphere, SphereBody, Triangle, TriangleEncoder,
 };
-use pxpl5_wire::{CommandList, CommandRun, CommandWords, CopyOrder, MAX_MESSAGE_WORDS, RegionId, Word};
+use pxpl5_wire::{CommandList, CommandRun, CommandWords, CopyOrder, Linear, MAX_MESSAGE_WORDS, RegionId, Word};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -174,7 +176,23 @@ struct RegionWords {
 
 impl CommandWords for RegionWords {
     fn append_words(&self, out: &mut Vec<Word>) {
-        self.each(|command| append(&command, &self.pass.picture().layout, out));
+        let picture = self.pass.picture();
+        if self.part.select {
+            let [left, top, _, _] = picture.viewport.grid().rectangle(self.region);
+            let select = SelectRegion { context: self.context, left: left as u16, top: top as u16 };
+            append(&Command::SelectRegion(select), &picture.layout, out);
+        }
+        if self.part.clear {
+            append(&Command::Clear(Clear { colour: rgb(self.pass.background()) }), &picture.layout, out);
+        }
+        self.triangles(out);
+        self.spheres(out);
+        if self.part.shade {
+            append(&Command::Shade(self.shade()), &picture.layout, out);
+        }
+        if let Some(order) = &self.part.copy {
+            append(&Command::CopyRegion(CopyRegion { target: order.target }), &picture.layout, out);
+        }
     }
 }
 
@@ -185,58 +203,83 @@ fn append(command: &Command, layout: &Layout, out: &mut Vec<Word>) {
 }
 
 impl RegionWords {
-    fn each(&self, mut sink: impl FnMut(Command)) {
-        let picture = self.pass.picture();
-        if self.part.select {
-            let [left, top, _, _] = picture.viewport.grid().rectangle(self.region);
-            sink(Command::SelectRegion(SelectRegion { context: self.context, left: left as u16, top: top as u16 }));
-        }
-        if self.part.clear {
-            sink(Command::Clear(Clear { colour: rgb(self.pass.background()) }));
-        }
-        self.triangles(&mut sink);
-        self.spheres(&mut sink);
-        if self.part.shade {
-            sink(Command::Shade(self.shade()));
-        }
-        if let Some(order) = &self.part.copy {
-            sink(Command::CopyRegion(CopyRegion { target: order.target }));
-        }
-    }
-
-    fn triangles(&self, sink: &mut impl FnMut(Command)) {
-        if self.part.triangles.is_empty() {
-            return;
-        }
-        let (viewport, mut stats) = (&self.pass.picture().viewport, SetupStats::default());
+    fn triangles(&self, out: &mut Vec<Word>) {
         let range = self.part.triangles.start as usize..self.part.triangles.end as usize;
-        let numbers = self.pass.bin(self.region)[0][range].iter().map(|n| *n as usize);
-        match &self.pass.screen().triangles {
-            ScreenTriangles::Gouraud(all) => numbers.for_each(|n| {
-                let t = all[n].gouraud(viewport, &mut stats);
-                sink(Command::Triangle(Triangle { edges: t.edges, depth: t.z, colour: t.rgb }));
-            }),
-            ScreenTriangles::Phong(all) => numbers.for_each(|n| {
-                let t = all[n].phong(viewport, &mut stats);
-                let colour = rgb(t.colour);
-                sink(Command::PhongTriangle(PhongTriangle { edges: t.edges, depth: t.z, normal: t.normal, colour }));
-            }),
+        let mut entries = &self.pass.bin(self.region).triangles[range];
+        for (place, transform) in self.pass.drawn() {
+            let end = place.structure.triangles.end;
+            let (here, rest) = entries.split_at(entries.partition_point(|entry| (entry.triangle as usize) < end));
+            entries = rest;
+            match self.pass.picture().shading {
+                _ if here.is_empty() => {}
+                Shading::Gouraud => self.gouraud(here, place, transform, out),
+                Shading::Phong => self.phong(here, place, transform, out),
+            }
         }
     }
 
-    fn spheres(&self, sink: &mut impl FnMut(Command)) {
-        if self.part.spheres.is_empty() {
-            return;
+    fn gouraud(&self, entries: &[Entry], place: &Placed, transform: &Transform, out: &mut Vec<Word>) {
+        let (list, picture, mut stats) = (self.pass.share().list(), self.pass.picture(), SetupStats::default());
+        let encoder = TriangleEncoder::new(&picture.layout);
+        let command = |t: GouraudTriangle| Triangle { edges: t.edges, depth: t.z, colour: t.rgb };
+        let vertices = place.vertices(list, transform);
+        let colours = vertices.colours(list, transform, &place.light);
+        for entry in entries {
+            let number = entry.triangle as usize;
+            let at = vertices.corners(list, number);
+            if let (Some(_), Some(seen)) = (entry.piece, vertices.seen(&at)) {
+                let whole = transform.gouraud_seen(&seen, at.of(colours), &mut stats);
+                whole.into_iter().for_each(|t| encoder.encode(&command(t), out));
+                continue;
+            }
+            let piece = pick(entry, |sink| transform.gouraud(&list.triangle(number), &place.light, &mut stats, sink));
+            let piece = piece.map(|piece| piece.gouraud(&picture.viewport, &mut stats));
+            encoder.encode(&piece.map_or(NOWHERE, command), out);
         }
-        let (picture, mut stats) = (self.pass.picture(), SetupStats::default());
+    }
+
+    fn phong(&self, entries: &[Entry], place: &Placed, transform: &Transform, out: &mut Vec<Word>) {
+        let (list, picture, mut stats) = (self.pass.share().list(), self.pass.picture(), SetupStats::default());
+        let Ok(encoder) = PhongTriangleEncoder::new(&picture.layout) else { return };
+        let command = |t: geometry::PhongTriangle| PhongTriangle {
+            edges: t.edges,
+            depth: t.z,
+            normal: t.normal,
+            colour: rgb(t.colour),
+        };
+        let vertices = place.vertices(list, transform);
+        let normals = vertices.normals(list, transform);
+        for entry in entries {
+            let number = entry.triangle as usize;
+            let at = vertices.corners(list, number);
+            if let (Some(_), Some(seen)) = (entry.piece, vertices.seen(&at)) {
+                let colour = list.colours[list.triangles[number][0] as usize];
+                let whole = transform.phong_seen(&seen, at.of(normals), colour, &mut stats);
+                whole.into_iter().for_each(|t| encoder.encode(&command(t), out));
+                continue;
+            }
+            let piece = pick(entry, |sink| transform.phong(&list.triangle(number), &mut stats, sink));
+            let piece = piece.map(|piece| piece.phong(&picture.viewport, &mut stats));
+            encoder.encode(&piece.map_or(PHONG_NOWHERE, command), out);
+        }
+    }
+
+    fn spheres(&self, out: &mut Vec<Word>) {
         let range = self.part.spheres.start as usize..self.part.spheres.end as usize;
-        let all = &self.pass.screen().spheres;
-        for n in &self.pass.bin(self.region)[1][range] {
-            let (sphere, light) = &all[*n as usize];
-            sink(match picture.shading {
-                Shading::Gouraud => gouraud_sphere(&sphere.gouraud(&picture.viewport, light, &mut stats)),
-                Shading::Phong => phong_sphere(&sphere.phong(&picture.viewport, &mut stats)),
-            });
+        let mut numbers = &self.pass.bin(self.region).spheres[range];
+        let (picture, list, mut stats) = (self.pass.picture(), self.pass.share().list(), SetupStats::default());
+        for (place, transform) in self.pass.drawn() {
+            let end = place.structure.spheres.end;
+            let (here, rest) = numbers.split_at(numbers.partition_point(|number| (*number as usize) < end));
+            numbers = rest;
+            for number in here {
+                let Some(sphere) = transform.sphere(&list.spheres[*number as usize], &mut stats) else { continue };
+                let command = match picture.shading {
+                    Shading::Gouraud => gouraud_sphere(&sphere.gouraud(&picture.viewport, &place.light, &mut stats)),
+                    Shading::Phong => phong_sphere(&sphere.phong(&picture.viewport, &mut stats)),
+                };
+                append(&command, &picture.layout, out);
+            }
         }
     }
 
@@ -257,29 +300,37 @@ impl RegionWords {
     }
 }
 
+/// The piece of an entry among those that clipping hands to the sink; `None` where nothing is seen.
+#[cold]
+fn pick<T>(entry: &Entry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
+    let mut pieces = Vec::new();
+    clip(&mut |piece| pieces.push(piece));
+    pieces.into_iter().nth(entry.piece?.into())
+}
+
 /// The command of a sphere with Gouraud shading.
 #[must_use]
 pub fn gouraud_sphere(s: &GouraudSphere) -> Command {
     Command::Sphere(Sphere {
-        silhouette: s.setup.silhouette,
-        root_shift: s.setup.root_shift,
-        depth: s.setup.depth,
-        depth_shift: s.setup.depth_shift,
+        body: body(&s.setup),
         colour: s.rgb,
         root_factor: s.root_factor.map(|factor| factor.min(511) as i16),
     })
 }
 
-fn phong_sphere(s: &geometry::PhongSphere) -> Command {
-    Command::PhongSphere(PhongSphere {
-        silhouette: s.setup.silhouette,
-        root_shift: s.setup.root_shift,
-        depth: s.setup.depth,
-        depth_shift: s.setup.depth_shift,
-        normal: s.normal,
-        colour: rgb(s.colour),
-    })
+const fn body(s: &SphereSetup) -> SphereBody {
+    SphereBody { silhouette: s.silhouette, root_shift: s.root_shift, depth: s.depth, depth_shift: s.depth_shift }
 }
+
+fn phong_sphere(s: &geometry::PhongSphere) -> Command {
+    Command::PhongSphere(PhongSphere { body: body(&s.setup), normal: s.normal, colour: rgb(s.colour) })
+}
+
+/// A triangle of which nothing is seen: its edges exclude every pixel.
+const NOWHERE: Triangle =
+    Triangle { edges: [Linear::constant(-1); 3], depth: Linear::constant(0), colour: [Linear::constant(0); 3] };
+const PHONG_NOWHERE: PhongTriangle =
+    PhongTriangle { edges: NOWHERE.edges, depth: NOWHERE.depth, normal: NOWHERE.colour, colour: 0 };
 
 /// White of a highlight, of 255 (assumed: a slightly glossy surface).
 const SPECULAR: u8 = 96;

@@ -1,15 +1,12 @@
 //! One TRANSFORM of a GP's share for one eye.
 
 use crate::list::{Counts, Share};
-use crate::placed::{Corners, Placed, RecentViews, Vertices};
+use crate::placed::{Placed, RecentViews};
 use crate::view::FrameView;
-use pxpl5_geometry::{
-    Light, LitColours, Outline, RegionMask, ScreenSphere, ScreenTriangle, SetupStats, SurfaceNormals, Transform,
-    Viewport,
-};
+use pxpl5_geometry::{Light, RegionMask, SetupStats, Transform, Viewport};
 use pxpl5_renderer::Layout;
 use pxpl5_wire::RegionId;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Where colours are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,43 +42,40 @@ pub struct Picture {
     pub pixels: bool,
 }
 
-/// Screen triangles in the order in which binning met them.
-#[derive(Debug)]
-pub(crate) enum ScreenTriangles {
-    Gouraud(Vec<ScreenTriangle<LitColours>>),
-    Phong(Vec<ScreenTriangle<SurfaceNormals>>),
+/// A screen triangle of a bin: what its commands are made from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Entry {
+    /// Number in the display list.
+    pub(crate) triangle: u32,
+    /// Which of the pieces that it was clipped to, 0 if it was not; `None` where nothing of it is seen.
+    pub(crate) piece: Option<u8>,
 }
 
-/// Screen primitives in the order in which binning met them.
-#[derive(Debug)]
-pub(crate) struct Screen {
-    pub(crate) triangles: ScreenTriangles,
-    /// With the light of their structures.
-    pub(crate) spheres: Vec<(ScreenSphere, Light)>,
+/// What touches one region, by rising numbers in the display list.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Bin {
+    pub(crate) triangles: Vec<Entry>,
+    pub(crate) spheres: Vec<u32>,
 }
 
-/// Bins of one eye: for each region the numbers of the screen primitives that touch it.
+/// Bins of one eye: for each region the screen primitives that touch it.
 #[derive(Debug)]
 pub struct Pass {
     share: Share,
     placed: Arc<[Placed]>,
     picture: Picture,
     counts: Vec<Counts>,
-    /// Sequence numbers of screen triangles and spheres by region; empty without pixels.
-    bins: Vec<[Vec<u32>; 2]>,
+    /// By region; empty without pixels.
+    bins: Vec<Bin>,
     screen_counts: Counts,
     stats: SetupStats,
-    screen: OnceLock<Screen>,
 }
-
-/// Nothing on the screen: a triangle whose edges exclude every pixel.
-const NOWHERE: Outline = Outline { x: [0; 3], y: [0; 3], z: [0; 3], regions: RegionMask::EMPTY };
 
 impl Pass {
     pub(crate) fn new(share: Share, view: &FrameView, eye: usize, picture: Picture) -> Self {
         let regions = picture.viewport.grid().regions() as usize;
         let placed = RecentViews::place_all(&share.list, view, eye, picture.viewport);
-        let bins = if picture.pixels { vec![[Vec::new(), Vec::new()]; regions] } else { Vec::new() };
+        let bins = if picture.pixels { vec![Bin::default(); regions] } else { Vec::new() };
         let mut pass = Self {
             share,
             placed,
@@ -90,32 +84,40 @@ impl Pass {
             bins,
             screen_counts: Counts::default(),
             stats: SetupStats::default(),
-            screen: OnceLock::new(),
         };
         pass.binitize();
         pass
     }
 
     fn binitize(&mut self) {
-        let (mut stats, placed) = (SetupStats::default(), Arc::clone(&self.placed));
-        let share = self.share.clone();
-        for (place, transform) in placed.iter().filter_map(|p| Some((p, p.transform.as_ref()?))) {
-            let vertices = place.vertices(&share.list, transform);
-            for number in share.held_triangles(&place.structure.triangles) {
-                let before = self.screen_counts.triangles;
-                let corners = vertices.corners(&share.list, number);
-                transform.bin_seen(vertices.seen(&corners), &mut stats, |mask| self.put_triangle(mask));
-                if self.screen_counts.triangles == before && self.picture.binning == Binning::All {
-                    self.put_triangle(RegionMask::EMPTY);
-                }
-            }
+        let (mut stats, placed, share) = (SetupStats::default(), Arc::clone(&self.placed), self.share.clone());
+        for (place, transform) in drawn(&placed) {
+            self.bin_triangles(place, transform, &share, &mut stats);
             for number in share.held_spheres(&place.structure.spheres) {
                 if let Some(sphere) = transform.sphere(&share.list.spheres[number], &mut stats) {
-                    self.put_sphere(sphere.regions);
+                    self.put_sphere(sphere.regions, number as u32);
                 }
             }
         }
         self.stats = stats;
+    }
+
+    fn bin_triangles(&mut self, place: &Placed, transform: &Transform, share: &Share, stats: &mut SetupStats) {
+        let vertices = place.vertices(&share.list, transform);
+        for number in share.held_triangles(&place.structure.triangles) {
+            let (triangle, mut pieces) = (number as u32, 0);
+            let put = |mask| {
+                self.put_triangle(mask, Entry { triangle, piece: Some(pieces) });
+                pieces += 1;
+            };
+            match vertices.seen(&vertices.corners(&share.list, number)) {
+                Some(whole) => transform.bin_seen(&whole, stats).into_iter().for_each(put),
+                None => transform.bin(&share.list.corners(number), stats, put),
+            }
+            if pieces == 0 && self.picture.binning == Binning::All {
+                self.put_triangle(RegionMask::EMPTY, Entry { triangle, piece: None });
+            }
+        }
     }
 
     fn receivers(&self, mask: RegionMask) -> RegionMask {
@@ -128,21 +130,22 @@ impl Pass {
         }
     }
 
-    fn put_triangle(&mut self, mask: RegionMask) {
+    #[inline(always)]
+    fn put_triangle(&mut self, mask: RegionMask, entry: Entry) {
         for region in self.receivers(mask).iter() {
             self.counts[usize::from(region.0)].triangles += 1;
             if let Some(bin) = self.bins.get_mut(usize::from(region.0)) {
-                bin[0].push(self.screen_counts.triangles);
+                bin.triangles.push(entry);
             }
         }
         self.screen_counts.triangles += 1;
     }
 
-    fn put_sphere(&mut self, mask: RegionMask) {
+    fn put_sphere(&mut self, mask: RegionMask, number: u32) {
         for region in mask.iter() {
             self.counts[usize::from(region.0)].spheres += 1;
             if let Some(bin) = self.bins.get_mut(usize::from(region.0)) {
-                bin[1].push(self.screen_counts.spheres);
+                bin.spheres.push(number);
             }
         }
         self.screen_counts.spheres += 1;
@@ -204,73 +207,16 @@ impl Pass {
         &self.placed
     }
 
-    pub(crate) fn bin(&self, region: RegionId) -> &[Vec<u32>; 2] {
+    pub(crate) fn bin(&self, region: RegionId) -> &Bin {
         &self.bins[usize::from(region.0)]
     }
 
-    /// The screen primitives, made when first asked for.
-    pub(crate) fn screen(&self) -> &Screen {
-        self.screen.get_or_init(|| {
-            let mut stats = SetupStats::default();
-            let triangles = match self.picture.shading {
-                Shading::Gouraud => ScreenTriangles::Gouraud(self.gouraud(&mut stats)),
-                Shading::Phong => ScreenTriangles::Phong(self.phong(&mut stats)),
-            };
-            Screen { triangles, spheres: self.spheres(&mut stats) }
-        })
+    /// Structures in order, with their transforms.
+    pub(crate) fn drawn(&self) -> impl Iterator<Item = (&Placed, &Transform)> {
+        drawn(&self.placed)
     }
+}
 
-    fn gouraud(&self, stats: &mut SetupStats) -> Vec<ScreenTriangle<LitColours>> {
-        let nothing = ScreenTriangle { outline: NOWHERE, surface: LitColours([[0; 3]; 3]) };
-        let list = &self.share.list;
-        self.each_triangle(nothing, |transform, place, vertices, at, _, all| {
-            let colours = at.copied(vertices.colours(list, transform, &place.light));
-            transform.gouraud_seen(vertices.seen(at), colours, stats, |t| all.push(t));
-        })
-    }
-
-    fn phong(&self, stats: &mut SetupStats) -> Vec<ScreenTriangle<SurfaceNormals>> {
-        let nothing =
-            ScreenTriangle { outline: NOWHERE, surface: SurfaceNormals { normals: [[0; 3]; 3], colour: [0; 3] } };
-        let list = &self.share.list;
-        self.each_triangle(nothing, |transform, _, vertices, at, number, all| {
-            let normals = at.copied(vertices.normals(list, transform));
-            let colour = list.colours[list.triangles[number][0] as usize];
-            transform.phong_seen(vertices.seen(at), normals, colour, stats, |t| all.push(t));
-        })
-    }
-
-    /// Collects the pieces of all triangles, and `nothing` for one without any where all are sent.
-    fn each_triangle<T>(
-        &self,
-        nothing: T,
-        mut pieces: impl FnMut(&Transform, &Placed, &Vertices, &Corners, usize, &mut Vec<T>),
-    ) -> Vec<T>
-    where
-        T: Copy,
-    {
-        let mut all = Vec::with_capacity(self.screen_counts.triangles as usize);
-        for (place, transform) in self.placed.iter().filter_map(|p| Some((p, p.transform.as_ref()?))) {
-            let vertices = place.vertices(&self.share.list, transform);
-            for number in self.share.held_triangles(&place.structure.triangles) {
-                let before = all.len();
-                let corners = vertices.corners(&self.share.list, number);
-                pieces(transform, place, vertices, &corners, number, &mut all);
-                if all.len() == before && self.picture.binning == Binning::All {
-                    all.push(nothing);
-                }
-            }
-        }
-        all
-    }
-
-    fn spheres(&self, stats: &mut SetupStats) -> Vec<(ScreenSphere, Light)> {
-        let mut all = Vec::with_capacity(self.screen_counts.spheres as usize);
-        for (place, transform) in self.placed.iter().filter_map(|p| Some((p, p.transform.as_ref()?))) {
-            let held = self.share.held_spheres(&place.structure.spheres);
-            let seen = held.filter_map(|i| transform.sphere(&self.share.list.spheres[i], stats));
-            all.extend(seen.map(|sphere| (sphere, place.light)));
-        }
-        all
-    }
+fn drawn(placed: &[Placed]) -> impl Iterator<Item = (&Placed, &Transform)> {
+    placed.iter().filter_map(|place| Some((place, place.transform.as_ref()?)))
 }

@@ -3,7 +3,9 @@
 use crate::list::{DisplayList, Frame, Structure, UNMOVED};
 use crate::view::{EyeView, FrameView, ModelEdit, product};
 use glam::{Mat4, Vec3};
-use pxpl5_geometry::{Culling, Light, SeenColour, SeenNormal, SeenVertex, Transform, ViewTransform, Viewport};
+use pxpl5_geometry::{
+    Culling, Light, SeenColour, SeenNormal, SeenTriangle, SeenVertex, Transform, ViewTransform, Viewport,
+};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -65,9 +67,10 @@ impl Vertices {
         Corners([a as usize - self.first, b as usize - self.first, c as usize - self.first])
     }
 
+    /// A triangle's corners on the screen; `None` where it needs clipping.
     #[inline(always)]
-    pub(crate) fn seen(&self, at: &Corners) -> [&SeenVertex; 3] {
-        at.of(&self.seen)
+    pub(crate) fn seen(&self, at: &Corners) -> Option<SeenTriangle> {
+        SeenTriangle::of(at.of(&self.seen))
     }
 
     /// The normals of all vertices.
@@ -97,12 +100,6 @@ impl Corners {
     pub(crate) fn of<'a, T>(&self, all: &'a [T]) -> [&'a T; 3] {
         let [a, b, c] = self.0;
         [&all[a], &all[b], &all[c]]
-    }
-
-    #[inline(always)]
-    pub(crate) fn copied<T: Copy>(&self, all: &[T]) -> [T; 3] {
-        let [a, b, c] = self.of(all);
-        [*a, *b, *c]
     }
 }
 

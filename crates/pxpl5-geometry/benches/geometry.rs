@@ -3,7 +3,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{Mat4, Vec3};
-use pxpl5_geometry::{Culling, Light, Mesh, MeshScratch, SetupStats, Transform, Triangle, ViewTransform, Viewport};
+use pxpl5_geometry::{Culling, Light, SeenTriangle, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 use std::hint::black_box;
 
 /// A sphere of `2 * 186 * 160` = 59,520 triangles, as many as the head of the published measurements.
@@ -38,8 +38,12 @@ impl Ball {
         ball
     }
 
-    fn mesh(&self) -> Mesh<'_> {
-        Mesh::new(&self.positions, &self.positions, &self.colours, &self.triangles).expect("indices are in range")
+    fn each(&self) -> impl Iterator<Item = Triangle> {
+        self.triangles.iter().map(|corners| {
+            let corners = corners.map(|i| i as usize);
+            let positions = corners.map(|i| self.positions[i]);
+            Triangle { positions, normals: positions, colours: corners.map(|i| self.colours[i]) }
+        })
     }
 }
 
@@ -53,8 +57,7 @@ fn view() -> Transform {
 
 fn transform(c: &mut Criterion) {
     let ball = Ball::new();
-    let mesh = ball.mesh();
-    let triangles: Vec<Triangle> = (0..mesh.triangles().len()).filter_map(|n| mesh.triangle(n)).collect();
+    let triangles: Vec<Triangle> = ball.each().collect();
     let view = view();
     let mut group = c.benchmark_group("transform");
     group.throughput(Throughput::Elements(triangles.len() as u64));
@@ -69,12 +72,18 @@ fn transform(c: &mut Criterion) {
             stats
         });
     });
-    group.bench_function("bin/mesh", |b| {
-        let (mut bins, mut scratch) = (Vec::new(), MeshScratch::default());
+    group.bench_function("bin/shared vertices", |b| {
+        let (mut bins, mut vertices) = (Vec::new(), Vec::new());
         b.iter(|| {
             bins.clear();
+            vertices.clear();
+            vertices.extend(black_box(&ball.positions).iter().map(|p| view.see(*p)));
             let mut stats = SetupStats::default();
-            view.bin_mesh(black_box(&mesh), &mut scratch, &mut stats, |_, mask| bins.push(mask));
+            for corners in &ball.triangles {
+                let [a, b, c] = corners.map(|i| i as usize);
+                let seen = SeenTriangle::of([&vertices[a], &vertices[b], &vertices[c]]);
+                bins.extend(seen.and_then(|seen| view.bin_seen(&seen, &mut stats)));
+            }
             stats
         });
     });
@@ -86,16 +95,6 @@ fn transform(c: &mut Criterion) {
             for t in &triangles {
                 view.gouraud(black_box(t), &Light::HEADLIGHT, &mut stats, |t| out.push(t));
             }
-            stats
-        });
-    });
-    group.bench_function("gouraud/mesh", |b| {
-        let (mut out, mut scratch) = (Vec::new(), MeshScratch::default());
-        b.iter(|| {
-            out.clear();
-            let mut stats = SetupStats::default();
-            let light = &Light::HEADLIGHT;
-            view.gouraud_mesh(&mesh, light, &mut scratch, &mut stats, |_, t| out.push(t));
             stats
         });
     });
@@ -117,8 +116,7 @@ fn setup(c: &mut Criterion) {
     let ball = Ball::new();
     let (view, mut stats) = (view(), SetupStats::default());
     let (mut gouraud, mut phong) = (Vec::new(), Vec::new());
-    let mesh = ball.mesh();
-    for t in (0..mesh.triangles().len()).filter_map(|n| mesh.triangle(n)) {
+    for t in ball.each() {
         view.gouraud(&t, &Light::HEADLIGHT, &mut stats, |t| gouraud.push(t));
         view.phong(&t, &mut stats, |t| phong.push(t));
     }
@@ -135,6 +133,29 @@ fn setup(c: &mut Criterion) {
         b.iter(|| {
             for t in &phong {
                 black_box(black_box(t).phong(&Viewport::FRAME, &mut stats));
+            }
+        });
+    });
+    let vertices: Vec<_> = ball.positions.iter().map(|p| view.see(*p)).collect();
+    let colours = ball.positions.iter().zip(&ball.colours);
+    let colours: Vec<_> = colours.map(|(p, c)| view.see_colour(&Light::HEADLIGHT, *p, *p, *c)).collect();
+    let normals: Vec<_> = ball.positions.iter().map(|p| view.see_normal(*p, *p)).collect();
+    let shared = |[a, b, c]: [usize; 3]| SeenTriangle::of([&vertices[a], &vertices[b], &vertices[c]]);
+    group.bench_function("gouraud/shared vertices", |bencher| {
+        bencher.iter(|| {
+            for corners in &ball.triangles {
+                let [a, b, c] = corners.map(|i| i as usize);
+                let surface = [&colours[a], &colours[b], &colours[c]];
+                black_box(shared([a, b, c]).and_then(|t| view.gouraud_seen(&t, surface, &mut stats)));
+            }
+        });
+    });
+    group.bench_function("phong/shared vertices", |bencher| {
+        bencher.iter(|| {
+            for corners in &ball.triangles {
+                let [a, b, c] = corners.map(|i| i as usize);
+                let surface = [&normals[a], &normals[b], &normals[c]];
+                black_box(shared([a, b, c]).and_then(|t| view.phong_seen(&t, surface, [200; 3], &mut stats)));
             }
         });
     });

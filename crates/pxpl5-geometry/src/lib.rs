@@ -1,11 +1,12 @@
 //! What graphics-processor code computes between the display list and the renderer's commands.
 //!
 //! ```text
-//! Triangle, Mesh ---> Transform ---> ScreenTriangle ---> GouraudTriangle, PhongTriangle   (expressions)
-//!                      | bin_mesh         | outline.regions
-//! Sphere -----------> Transform ---> ScreenSphere -----> GouraudSphere, PhongSphere
-//!                      |
-//!                 SetupStats: everything that was dropped, cut or limited
+//! Triangle --> Transform ---> ScreenTriangle ---> GouraudTriangle, PhongTriangle   (expressions)
+//!                   | see          | outline.regions  ^
+//!                   +--> SeenVertex, SeenNormal, ... -+   (shared vertices, each once)
+//! Sphere ----> Transform ---> ScreenSphere -----> GouraudSphere, PhongSphere
+//!                   |
+//!              SetupStats: everything that was dropped, cut or limited
 //! ```
 //!
 //! # Behaviour, in the order of the signal
@@ -20,7 +21,7 @@
 //!    the expressions restated for every second line.
 //! 5. **Drop** triangles without area and, on request, back faces ([`Culling`]).
 //! 6. **Bin**: the exact set of regions touched ([`RegionMask`]), from the edges; one comparison per side for the many
-//!    triangles inside one region. [`Transform::bin`] and [`Transform::bin_mesh`] stop here.
+//!    triangles inside one region. [`Transform::bin`] and [`Transform::bin_seen`] stop here.
 //! 7. **Set up** on demand: edges exact in integers (at least 0 is inside, the tie rule folded in, so that each pixel of
 //!    a shared edge is drawn once), planes of depth, colour or normal, spheres as one quadratic with a root for depth.
 //!
@@ -91,15 +92,15 @@ mod view;
 
 pub use bin::RegionMask;
 pub use clip::MAX_CLIP;
-pub use input::{Light, Mesh, MeshError, Sphere, Triangle};
+pub use input::{Light, Sphere, Triangle};
 pub use plane::MAX_SLOPE;
 pub use screen::{
     DEPTH_FAR, DEPTH_NEAR, GUARD_PIXELS, GouraudTriangle, LitColours, NORMAL_UNIT, Outline, PhongTriangle,
     ScreenTriangle, SurfaceNormals,
 };
-pub use seen::{SeenColour, SeenNormal, SeenVertex};
+pub use seen::{SeenColour, SeenNormal, SeenTriangle, SeenVertex};
 pub use sphere::ScreenSphere;
 pub use sphere_setup::{GouraudSphere, PhongSphere, SphereSetup};
 pub use stats::SetupStats;
-pub use transform::{Culling, MeshScratch, Transform, TriangleEnds};
+pub use transform::{Culling, Transform, TriangleEnds};
 pub use view::{MAX_PICTURE, ViewError, ViewTransform, Viewport};

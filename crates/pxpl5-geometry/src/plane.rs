@@ -58,21 +58,46 @@ impl Planes {
         }
     }
 
-    /// The plane through three integers below 2^32 in absolute value, at the frame's pixels.
+    /// The planes through three corners' integers below 2^32 in absolute value, at the frame's pixels, side by side.
     ///
     /// The cross products are sums of two products below 2^32 * 2^17, hence exact.
     #[inline(always)]
-    pub(crate) fn through(&self, v: [f64; 3], stats: &mut SetupStats) -> Linear {
-        let (d1, d2) = (v[1] - v[0], v[2] - v[0]);
-        let slope_x = (d1 * self.y[1] - d2 * self.y[0]) * self.per_pixel;
-        let slope_y = (d2 * self.x[0] - d1 * self.x[1]) * self.per_pixel;
-        if slope_x.abs() > MAX_SLOPE || slope_y.abs() > MAX_SLOPE {
-            stats.flattened_planes += 1;
-            return Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0));
+    pub(crate) fn through<const N: usize>(&self, v: [[f64; N]; 3], stats: &mut SetupStats) -> [Linear; N] {
+        let (mut slope_x, mut slope_y, mut there) = ([0.0; N], [0.0; N], [0.0; N]);
+        let mut steep = false;
+        for i in 0..N {
+            let (d1, d2) = (v[1][i] - v[0][i], v[2][i] - v[0][i]);
+            slope_x[i] = (d1 * self.y[1] - d2 * self.y[0]) * self.per_pixel;
+            slope_y[i] = (d2 * self.x[0] - d1 * self.x[1]) * self.per_pixel;
+            there[i] = (v[0][i] + slope_x[i] * self.to_reference[0]) + slope_y[i] * self.to_reference[1];
+            steep |= is_steep(slope_x[i], slope_y[i]);
         }
-        let there = (v[0] + slope_x * self.to_reference[0]) + slope_y * self.to_reference[1];
-        let (a, b) = (rounded(slope_x), rounded(slope_y));
-        let back = a.wrapping_mul(self.reference[0]).wrapping_add(b.wrapping_mul(self.reference[1]));
-        Linear { a, b, c: rounded(there).wrapping_sub(back) }
+        let [x, y] = self.reference;
+        let plane = |i: usize| {
+            let (a, b) = (rounded(slope_x[i]), rounded(slope_y[i]));
+            Linear { a, b, c: rounded(there[i]).wrapping_sub(a.wrapping_mul(x).wrapping_add(b.wrapping_mul(y))) }
+        };
+        let planes = std::array::from_fn(plane);
+        if steep { flattened(planes, |i| is_steep(slope_x[i], slope_y[i]), v, stats) } else { planes }
     }
+}
+
+#[inline(always)]
+fn is_steep(slope_x: f64, slope_y: f64) -> bool {
+    (slope_x.abs() > MAX_SLOPE) | (slope_y.abs() > MAX_SLOPE)
+}
+
+/// The steep planes made flat, at the mean of their corners.
+#[cold]
+fn flattened<const N: usize>(
+    mut planes: [Linear; N],
+    steep: impl Fn(usize) -> bool,
+    [a, b, c]: [[f64; N]; 3],
+    stats: &mut SetupStats,
+) -> [Linear; N] {
+    for i in (0..N).filter(|i| steep(*i)) {
+        stats.flattened_planes += 1;
+        planes[i] = Linear::constant(rounded(((a[i] + b[i]) + c[i]) / 3.0));
+    }
+    planes
 }

@@ -26,6 +26,27 @@ pub const DEPTH_FAR: u32 = u32::MAX - 8 * DEPTH_ONE;
 /// One unit of pixel depth in fractions.
 pub(crate) const DEPTH_ONE: u32 = 1 << format::Z_FRACTION_BITS;
 
+/// 1.5 * 2^23: adding it rounds to an integer, to even, for absolute values below 2^22.
+const ROUND: f32 = 12_582_912.0;
+
+/// Nearest integer of a value below 2^22 in absolute value.
+#[inline(always)]
+pub(crate) fn rounded(value: f32) -> i32 {
+    ((value + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
+}
+
+/// A lit colour of 0 to 255 * 256 in whole 1/256 of a unit.
+#[inline(always)]
+pub(crate) fn colour_fixed(colour: f32) -> u16 {
+    rounded(colour) as u16
+}
+
+/// A component of a unit normal in 1/[`NORMAL_UNIT`].
+#[inline(always)]
+pub(crate) fn normal_fixed(component: f32) -> i16 {
+    rounded(component * f32::from(NORMAL_UNIT)) as i16
+}
+
 /// Depth in fixed point; what lies outside [0, 1] is clamped, NaN is near.
 #[inline(always)]
 pub(crate) fn depth_fixed(depth: f32) -> u32 {
@@ -134,6 +155,48 @@ impl Outline {
         Linear { a: -dy, b: dx, c: (k >> format::SUBPIXEL_BITS) as i32 }
     }
 
+    /// The expressions of a triangle with these colours at its corners, in the expressions' units.
+    #[inline(always)]
+    pub(crate) fn gouraud(
+        &self,
+        colours: [[f32; 3]; 3],
+        viewport: &Viewport,
+        stats: &mut SetupStats,
+    ) -> GouraudTriangle {
+        let [z, red, green, blue] = self.planes(colours, viewport, stats);
+        GouraudTriangle { edges: self.picture_edges(viewport), z, rgb: [red, green, blue] }
+    }
+
+    /// The expressions of a triangle with these normals at its corners, in the expressions' units.
+    #[inline(always)]
+    pub(crate) fn phong(
+        &self,
+        normals: [[f32; 3]; 3],
+        colour: [u8; 3],
+        viewport: &Viewport,
+        stats: &mut SetupStats,
+    ) -> PhongTriangle {
+        let [z, nx, ny, nz] = self.planes(normals, viewport, stats);
+        PhongTriangle { edges: self.picture_edges(viewport), z, normal: [nx, ny, nz], colour }
+    }
+
+    /// The edges at the pixels of the picture.
+    #[inline(always)]
+    fn picture_edges(&self, viewport: &Viewport) -> [Linear; 3] {
+        let [a, b, c] = self.edges();
+        [for_rows(a, viewport), for_rows(b, viewport), for_rows(c, viewport)]
+    }
+
+    /// The planes through the corners' depths and three more integers of each, at the picture's pixels.
+    #[inline(always)]
+    fn planes(&self, [a, b, c]: [[f32; 3]; 3], viewport: &Viewport, stats: &mut SetupStats) -> [Linear; 4] {
+        let corner = |z: u32, [p, q, r]: [f32; 3]| [f64::from(z), f64::from(p), f64::from(q), f64::from(r)];
+        let [za, zb, zc] = self.z;
+        let planes = plane::Planes::of(self, self.middle(viewport));
+        let [z, p, q, r] = planes.through([corner(za, a), corner(zb, b), corner(zc, c)], stats);
+        [for_rows(z, viewport), for_rows(p, viewport), for_rows(q, viewport), for_rows(r, viewport)]
+    }
+
     /// The picture's pixel, in frame lines, nearest to the middle of the bounding box: planes are most exact there.
     #[inline(always)]
     fn middle(&self, viewport: &Viewport) -> [i32; 2] {
@@ -160,14 +223,7 @@ impl<A> ScreenTriangle<A> {
     /// The edge expressions alone, at the picture's pixels.
     #[must_use]
     pub fn edges(&self, viewport: &Viewport) -> [Linear; 3] {
-        let [a, b, c] = self.outline.edges();
-        [for_rows(a, viewport), for_rows(b, viewport), for_rows(c, viewport)]
-    }
-
-    #[inline(always)]
-    fn depth_plane(&self, planes: &plane::Planes, stats: &mut SetupStats) -> Linear {
-        let [a, b, c] = self.outline.z;
-        planes.through([f64::from(a), f64::from(b), f64::from(c)], stats)
+        self.outline.picture_edges(viewport)
     }
 }
 
@@ -175,14 +231,9 @@ impl ScreenTriangle<LitColours> {
     /// Computes the expressions for the picture that the triangle was transformed for.
     #[must_use]
     pub fn gouraud(&self, viewport: &Viewport, stats: &mut SetupStats) -> GouraudTriangle {
-        let planes = plane::Planes::of(&self.outline, self.outline.middle(viewport));
         let [a, b, c] = &self.surface.0;
-        let mut rgb = [Linear::default(); 3];
-        for (i, plane) in rgb.iter_mut().enumerate() {
-            let corners = [colour_value(a[i]), colour_value(b[i]), colour_value(c[i])];
-            *plane = for_rows(planes.through(corners, stats), viewport);
-        }
-        GouraudTriangle { edges: self.edges(viewport), z: for_rows(self.depth_plane(&planes, stats), viewport), rgb }
+        let colours = [values(a, colour_value), values(b, colour_value), values(c, colour_value)];
+        self.outline.gouraud(colours, viewport, stats)
     }
 }
 
@@ -190,35 +241,33 @@ impl ScreenTriangle<SurfaceNormals> {
     /// Computes the expressions for the picture that the triangle was transformed for.
     #[must_use]
     pub fn phong(&self, viewport: &Viewport, stats: &mut SetupStats) -> PhongTriangle {
-        let planes = plane::Planes::of(&self.outline, self.outline.middle(viewport));
         let [a, b, c] = &self.surface.normals;
-        let mut normal = [Linear::default(); 3];
-        for (i, plane) in normal.iter_mut().enumerate() {
-            let corners = [normal_value(a[i]), normal_value(b[i]), normal_value(c[i])];
-            *plane = for_rows(planes.through(corners, stats), viewport);
-        }
-        PhongTriangle {
-            edges: self.edges(viewport),
-            z: for_rows(self.depth_plane(&planes, stats), viewport),
-            normal,
-            colour: self.surface.colour,
-        }
+        let normals = [values(a, normal_value), values(b, normal_value), values(c, normal_value)];
+        self.outline.phong(normals, self.surface.colour, viewport, stats)
     }
 }
 
-/// A colour in the expression's units. The half unit rounds when the renderer cuts the fraction off, and keeps
-/// 0 and 255 half a unit away from wrapping, far more than a plane's rounding error.
+/// Written out, because a closure over an array is not always inlined.
 #[inline(always)]
-fn colour_value(colour: u16) -> f64 {
-    const SCALE: u32 = 1 << (format::COLOUR_FRACTION_BITS - 8);
-    const HALF: u32 = 1 << (format::COLOUR_FRACTION_BITS - 1);
-    f64::from(u32::from(colour) * SCALE + HALF)
+fn values<T: Copy>([a, b, c]: &[T; 3], value: impl Fn(T) -> f32) -> [f32; 3] {
+    [value(*a), value(*b), value(*c)]
 }
 
-/// A component of a normal in the expression's units, with half a unit for rounding.
+/// A colour in the expression's units, exact. The half unit rounds when the renderer cuts the fraction off, and keeps
+/// 0 and 255 half a unit away from wrapping, far more than a plane's rounding error.
 #[inline(always)]
-fn normal_value(component: i16) -> f64 {
-    const SCALE: i32 = (1 << (format::NORMAL_ONE_BITS + format::NORMAL_FRACTION_BITS)) / NORMAL_UNIT as i32;
-    const HALF: i32 = 1 << (format::NORMAL_FRACTION_BITS - 1);
-    f64::from(i32::from(component) * SCALE + HALF)
+pub(crate) fn colour_value(colour: u16) -> f32 {
+    const SCALE: u32 = 1 << (format::COLOUR_FRACTION_BITS - 8);
+    const HALF: u32 = 1 << (format::COLOUR_FRACTION_BITS - 1);
+    (u32::from(colour) * SCALE + HALF) as f32
 }
+
+/// A component of a normal in the expression's units, exact, with half a unit for rounding.
+#[inline(always)]
+pub(crate) fn normal_value(component: i16) -> f32 {
+    const SCALE: i32 = (1 << (format::NORMAL_ONE_BITS + format::NORMAL_FRACTION_BITS)) / NORMAL_UNIT as i32;
+    (i32::from(component) * SCALE) as f32 + NORMAL_HALF
+}
+
+/// Half a unit of a normal's component.
+pub(crate) const NORMAL_HALF: f32 = (1 << (format::NORMAL_FRACTION_BITS - 1)) as f32;

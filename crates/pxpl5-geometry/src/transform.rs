@@ -4,10 +4,9 @@ use crate::bin::Binner;
 use crate::clip::{self, Corner, Guard, Vertex};
 use crate::light::Lighting;
 use crate::screen::{self, LitColours, Outline, ScreenTriangle, SurfaceNormals};
-use crate::seen::SeenVertex;
 use crate::sphere::Lens;
 use crate::view::{Columns, FromWorld, ViewError};
-use crate::{Light, Mesh, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
+use crate::{Light, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -77,22 +76,6 @@ impl TriangleEnds {
     }
 }
 
-/// Memory that [`Transform::bin_mesh`] and its siblings use again from call to call.
-#[derive(Clone, Debug, Default)]
-pub struct MeshScratch {
-    vertices: Vec<SeenVertex>,
-    extras: Vec<[f32; 3]>,
-}
-
-/// 1.5 * 2^23: adding it rounds to an integer, to even, for absolute values below 2^22.
-const ROUND: f32 = 12_582_912.0;
-
-/// Nearest integer of a value below 2^22 in absolute value.
-#[inline(always)]
-fn rounded(value: f32) -> i32 {
-    ((value + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
-}
-
 impl ToScreen {
     fn new(viewport: &Viewport) -> Self {
         let half = |size: u32| (size * screen::SUBPIXELS as u32) as f32 * 0.5;
@@ -108,11 +91,11 @@ impl ToScreen {
 
     /// Divides by w and snaps. Only for vertices inside the guard band.
     #[inline(always)]
-    fn snap(&self, [x, y, z, w]: [f32; 4]) -> Snapped {
+    pub(crate) fn snap(&self, [x, y, z, w]: [f32; 4]) -> Snapped {
         let inverse = 1.0 / w;
         Snapped {
-            x: rounded((x * inverse) * self.scale[0] + self.centre[0]),
-            y: rounded((y * inverse) * self.scale[1] + self.centre[1]),
+            x: screen::rounded((x * inverse) * self.scale[0] + self.centre[0]),
+            y: screen::rounded((y * inverse) * self.scale[1] + self.centre[1]),
             z: screen::depth_fixed(z * inverse),
         }
     }
@@ -137,10 +120,33 @@ impl ToScreen {
 }
 
 /// Corners of a screen triangle and where each came from.
-struct Assembled {
-    outline: Outline,
+pub(crate) struct Assembled {
+    pub(crate) outline: Outline,
     /// Whether corners 1 and 2 changed places to run clockwise.
     swapped: bool,
+}
+
+impl Assembled {
+    /// Corners in clockwise order, with no regions yet; `None` without area.
+    #[inline(always)]
+    pub(crate) fn clockwise([p, q, r]: [Snapped; 3]) -> Option<Self> {
+        let mut outline =
+            Outline { x: [p.x, q.x, r.x], y: [p.y, q.y, r.y], z: [p.z, q.z, r.z], regions: RegionMask::EMPTY };
+        let twice_area = outline.twice_area();
+        let swapped = twice_area < 0;
+        if swapped {
+            outline.x.swap(1, 2);
+            outline.y.swap(1, 2);
+            outline.z.swap(1, 2);
+        }
+        (twice_area != 0).then_some(Self { outline, swapped })
+    }
+
+    /// What belongs to the corners, in the order in which they came, in the order of the outline.
+    #[inline(always)]
+    pub(crate) fn order<T>(&self, [p, q, r]: [T; 3]) -> [T; 3] {
+        if self.swapped { [p, r, q] } else { [p, q, r] }
+    }
 }
 
 impl Transform {
@@ -248,8 +254,7 @@ impl Transform {
         if clip.iter().all(|c| self.guard.contains(*c)) {
             let corners = clip.map(|c| self.to_screen.snap(c));
             if let Some(whole) = self.assemble(corners, stats) {
-                let order = if whole.swapped { [0, 2, 1] } else { [0, 1, 2] };
-                sink(whole.outline, order.map(&extra));
+                sink(whole.outline, whole.order([0, 1, 2]).map(&extra));
             }
             return;
         }
@@ -282,8 +287,7 @@ impl Transform {
         if let Some(whole) = self.assemble(ends.at(s), stats) {
             let lighting = Lighting::new(&self.to_eye, light);
             let lit = |i: usize| lighting.colour(triangle.positions[i], triangle.normals[i], triangle.colours[i]);
-            let order = if whole.swapped { [0, 2, 1] } else { [0, 1, 2] };
-            sink(lit_triangle(whole.outline, order.map(lit)));
+            sink(lit_triangle(whole.outline, whole.order([0, 1, 2]).map(lit)));
         }
     }
 
@@ -295,126 +299,24 @@ impl Transform {
         }
     }
 
-    /// Transforms all triangles of a mesh as far as their regions, each vertex once. `sink` gets the triangle's number.
-    pub fn bin_mesh(
-        &self,
-        mesh: &Mesh<'_>,
-        scratch: &mut MeshScratch,
-        stats: &mut SetupStats,
-        mut sink: impl FnMut(usize, RegionMask),
-    ) {
-        self.transform_vertices(mesh.positions(), scratch);
-        for (number, indices) in mesh.triangles().iter().enumerate() {
-            let [a, b, c] = indices.map(|i| &scratch.vertices[i as usize]);
-            self.bin_corners([a, b, c], stats, |mask| sink(number, mask));
-        }
-    }
-
-    /// Transforms and lights all triangles of a mesh, each vertex once. `sink` gets the triangle's number.
-    pub fn gouraud_mesh(
-        &self,
-        mesh: &Mesh<'_>,
-        light: &Light,
-        scratch: &mut MeshScratch,
-        stats: &mut SetupStats,
-        mut sink: impl FnMut(usize, ScreenTriangle<LitColours>),
-    ) {
-        let lighting = Lighting::new(&self.to_eye, light);
-        scratch.extras.clear();
-        let vertices = mesh.positions().iter().zip(mesh.normals()).zip(mesh.colours());
-        let lit = vertices.map(|((p, n), c)| lighting.colour(*p, *n, *c));
-        scratch.extras.extend(lit);
-        self.transform_vertices(mesh.positions(), scratch);
-        for (number, indices) in mesh.triangles().iter().enumerate() {
-            let indices = indices.map(|i| i as usize);
-            let (corners, colours) = (indices.map(|i| &scratch.vertices[i]), indices.map(|i| scratch.extras[i]));
-            self.corners(corners, colours, stats, |outline, colours| {
-                sink(number, lit_triangle(outline, colours));
-            });
-        }
-    }
-
-    fn transform_vertices(&self, positions: &[Vec3], scratch: &mut MeshScratch) {
-        scratch.vertices.clear();
-        scratch.vertices.extend(positions.iter().map(|p| self.see(*p)));
-    }
-
-    /// Transforms a vertex.
-    #[inline(always)]
-    #[must_use]
-    pub fn see(&self, position: Vec3) -> SeenVertex {
-        let clip = self.to_clip.point(position);
-        let inside = self.guard.contains(clip);
-        let snapped = if inside { self.to_screen.snap(clip) } else { Snapped::default() };
-        SeenVertex { clip, snapped, inside }
-    }
-
-    /// Finds the regions of a triangle between transformed vertices.
-    #[inline(always)]
-    pub(crate) fn bin_corners(
-        &self,
-        [a, b, c]: [&SeenVertex; 3],
-        stats: &mut SetupStats,
-        mut sink: impl FnMut(RegionMask),
-    ) {
-        stats.triangles += 1;
-        if a.inside & b.inside & c.inside {
-            if let Some(whole) = self.assemble([a.snapped, b.snapped, c.snapped], stats) {
-                sink(whole.outline.regions);
-            }
-            return;
-        }
-        let corners = [a, b, c].map(|v| Vertex { clip: v.clip, extra: [] });
-        self.clipped(&corners, stats, |piece, _| sink(piece.outline.regions));
-    }
-
-    /// Assembles, or clips, a triangle between transformed vertices with three more numbers each.
-    #[inline(always)]
-    pub(crate) fn corners(
-        &self,
-        [a, b, c]: [&SeenVertex; 3],
-        [p, q, r]: [[f32; 3]; 3],
-        stats: &mut SetupStats,
-        mut sink: impl FnMut(Outline, [[f32; 3]; 3]),
-    ) {
-        stats.triangles += 1;
-        if a.inside & b.inside & c.inside {
-            if let Some(whole) = self.assemble([a.snapped, b.snapped, c.snapped], stats) {
-                sink(whole.outline, if whole.swapped { [p, r, q] } else { [p, q, r] });
-            }
-            return;
-        }
-        let corner = |v: &SeenVertex, extra| Vertex { clip: v.clip, extra };
-        self.clipped(&[corner(a, p), corner(b, q), corner(c, r)], stats, |piece, extras| sink(piece.outline, extras));
-    }
-
     /// Corners in clockwise order with the regions touched; `None`, counted, if there is nothing to draw.
     #[inline(always)]
-    fn assemble(&self, corners: [Snapped; 3], stats: &mut SetupStats) -> Option<Assembled> {
-        let [p, q, r] = corners;
-        let mut outline =
-            Outline { x: [p.x, q.x, r.x], y: [p.y, q.y, r.y], z: [p.z, q.z, r.z], regions: RegionMask::EMPTY };
-        let twice_area = outline.twice_area();
-        if twice_area == 0 {
+    pub(crate) fn assemble(&self, corners: [Snapped; 3], stats: &mut SetupStats) -> Option<Assembled> {
+        let Some(mut whole) = Assembled::clockwise(corners) else {
             stats.degenerate += 1;
             return None;
-        }
-        let swapped = twice_area < 0;
-        if swapped {
-            outline.x.swap(1, 2);
-            outline.y.swap(1, 2);
-            outline.z.swap(1, 2);
-        } else if self.culling == Culling::Back {
+        };
+        if !whole.swapped && self.culling == Culling::Back {
             stats.back_facing += 1;
             return None;
         }
-        outline.regions = self.binner.triangle(&outline);
-        if outline.regions.is_empty() {
+        whole.outline.regions = self.binner.triangle(&whole.outline);
+        if whole.outline.regions.is_empty() {
             stats.untouched += 1;
             return None;
         }
         stats.screen_triangles += 1;
-        Some(Assembled { outline, swapped })
+        Some(whole)
     }
 
     /// Clips a triangle and hands out the fan of what is left.
@@ -443,8 +345,8 @@ impl Transform {
             let piece = [*first, pair[0], pair[1]];
             if let Some(assembled) = self.piece(&piece, stats) {
                 let extras = piece.map(|corner| corner.extra.map(|v| v as f32));
-                let order = if assembled.swapped { [0, 2, 1] } else { [0, 1, 2] };
-                sink(assembled, order.map(|i| extras[i]));
+                let extras = assembled.order(extras);
+                sink(assembled, extras);
             }
         }
     }
@@ -460,19 +362,14 @@ impl Transform {
 }
 
 #[inline(always)]
-pub(crate) fn lit_triangle(outline: Outline, colours: [[f32; 3]; 3]) -> ScreenTriangle<LitColours> {
-    ScreenTriangle { outline, surface: LitColours(colours.map(|c| c.map(|v| rounded(v) as u16))) }
+fn lit_triangle(outline: Outline, colours: [[f32; 3]; 3]) -> ScreenTriangle<LitColours> {
+    ScreenTriangle { outline, surface: LitColours(colours.map(|c| c.map(screen::colour_fixed))) }
 }
 
 #[inline(always)]
-pub(crate) fn normal_triangle(
-    outline: Outline,
-    normals: [[f32; 3]; 3],
-    colour: [u8; 3],
-) -> ScreenTriangle<SurfaceNormals> {
-    let unit = f32::from(screen::NORMAL_UNIT);
+fn normal_triangle(outline: Outline, normals: [[f32; 3]; 3], colour: [u8; 3]) -> ScreenTriangle<SurfaceNormals> {
     ScreenTriangle {
         outline,
-        surface: SurfaceNormals { normals: normals.map(|n| n.map(|v| rounded(v * unit) as i16)), colour },
+        surface: SurfaceNormals { normals: normals.map(|n| n.map(screen::normal_fixed)), colour },
     }
 }

@@ -4,7 +4,7 @@ mod support;
 
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
-    Culling, Light, LitColours, Mesh, MeshScratch, ScreenTriangle, SetupStats, Sphere, Transform, Triangle, ViewError,
+    Culling, Light, LitColours, ScreenTriangle, SeenTriangle, SetupStats, Sphere, Transform, Triangle, ViewError,
     ViewTransform, Viewport,
 };
 use support::random::Random;
@@ -102,39 +102,35 @@ fn phong_normals_are_unit_length_and_face_the_eye() {
     assert_eq!(out[0].surface.colour, [10, 20, 30]);
 }
 
-/// A mesh and the same triangles one by one.
 #[test]
-fn a_mesh_gives_what_its_triangles_give() {
+fn shared_vertices_give_what_their_triangles_give() {
+    let (mut whole, light) = (0, Light { direction: [0.6, 0.0, 0.8], ambient: 0.2, diffuse: 0.7 });
     for case in cases::all().iter().filter(|c| !c.tiling) {
-        let positions: Vec<Vec3> = case.triangles.iter().flat_map(|t| t.positions).collect();
-        let colours: Vec<[u8; 3]> = case.triangles.iter().flat_map(|t| t.colours).collect();
-        let normals = vec![Vec3::new(0.3, 0.4, 0.8); positions.len()];
-        let triangles: Vec<[u32; 3]> =
-            (0..case.triangles.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]).collect();
-        let mesh = Mesh::new(&positions, &normals, &colours, &triangles).expect("indices are in range");
         let transform = Transform::new(&case.view, Viewport::FRAME, Culling::None).expect("a finite view");
-        let (mut stats, mut each) = ([SetupStats::default(); 3], Vec::new());
-        for n in 0..triangles.len() {
-            let t = mesh.triangle(n).expect("it exists");
-            transform.gouraud(&t, &Light::HEADLIGHT, &mut stats[0], |t| each.push((n, t)));
+        for (n, triangle) in case.triangles.iter().enumerate() {
+            let tilted = Vec3::new(0.3, 0.4, if n % 2 == 0 { 0.8 } else { -0.8 });
+            let t = Triangle { normals: [tilted, Vec3::X, Vec3::NEG_Z], ..*triangle };
+            let [a, b, c] = t.positions.map(|p| transform.see(p));
+            let Some(seen) = SeenTriangle::of([&a, &b, &c]) else { continue };
+            let (mut stats, mut lit, mut normals) = ([SetupStats::default(); 2], Vec::new(), Vec::new());
+            transform.gouraud(&t, &light, &mut stats[0], |t| lit.push(t));
+            transform.phong(&t, &mut SetupStats::default(), |t| normals.push(t));
+            let mask = transform.bin_seen(&seen, &mut stats[1]);
+            assert_eq!(mask, lit.first().map(|t| t.outline.regions), "{}", case.name);
+            assert_eq!(stats[0], stats[1], "{}", case.name);
+            let (Some(lit), Some(normals)) = (lit.first(), normals.first()) else { continue };
+            whole += 1;
+            let colour = |i: usize| transform.see_colour(&light, t.positions[i], t.normals[i], t.colours[i]);
+            let normal = |i: usize| transform.see_normal(t.positions[i], t.normals[i]);
+            let (colours, facing) = ([0, 1, 2].map(colour), [0, 1, 2].map(normal));
+            let found = transform.gouraud_seen(&seen, colours.each_ref(), &mut stats[1]);
+            assert_eq!(found, Some(lit.gouraud(&Viewport::FRAME, &mut stats[0])), "{}", case.name);
+            let found = transform.phong_seen(&seen, facing.each_ref(), t.colours[0], &mut stats[1]);
+            assert_eq!(found, Some(normals.phong(&Viewport::FRAME, &mut stats[0])), "{}", case.name);
+            assert_eq!(stats[0], stats[1], "{}", case.name);
         }
-        let (mut all, mut masks, mut scratch) = (Vec::new(), Vec::new(), MeshScratch::default());
-        transform.gouraud_mesh(&mesh, &Light::HEADLIGHT, &mut scratch, &mut stats[1], |n, t| all.push((n, t)));
-        transform.bin_mesh(&mesh, &mut scratch, &mut stats[2], |n, mask| masks.push((n, mask)));
-        assert_eq!(each, all, "{}", case.name);
-        let regions: Vec<_> = each.iter().map(|(n, t)| (*n, t.outline.regions)).collect();
-        assert_eq!(masks, regions, "{}", case.name);
-        assert_eq!((stats[0], stats[0]), (stats[1], stats[2]), "{}", case.name);
     }
-}
-
-#[test]
-fn a_mesh_with_a_wrong_index_or_length_is_refused_with_what_was_found() {
-    let (p, c) = ([Vec3::ZERO; 3], [[0_u8; 3]; 3]);
-    let error = Mesh::new(&p, &p, &c, &[[0, 1, 2], [0, 3, 1]]).unwrap_err().to_string();
-    assert_eq!(error, "mesh: triangle 1 names vertex 3, expected less than 3");
-    let error = Mesh::new(&p, &p[..2], &c, &[]).unwrap_err().to_string();
-    assert!(error.contains("(3), found 2 and 3"), "{error}");
+    assert!(whole > 1_000, "{whole}");
 }
 
 #[test]

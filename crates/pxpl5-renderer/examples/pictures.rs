@@ -5,7 +5,8 @@
 //! ```
 
 use pxpl5_renderer::{
-    Clear, Command, Lanes, Layout, PhongSphere, PhongTriangle, PixelArray, SelectRegion, Shade, Sphere, Triangle,
+    Clear, Command, Lanes, Layout, PhongSphere, PhongTriangle, PixelArray, SelectRegion, Shade, Sphere, SphereBody,
+    Triangle,
 };
 use pxpl5_wire::{Linear, Quadratic};
 use std::error::Error;
@@ -66,7 +67,7 @@ struct Ball {
 }
 
 impl Ball {
-    fn silhouette(&self) -> (Quadratic, u8) {
+    fn body(&self) -> SphereBody {
         let [x, y] = [self.centre[0] + f64::from(LEFT) - 0.5, self.centre[1] + f64::from(TOP) - 0.5];
         // The root of the middle is 4000: 4000^2 = r^2 scale / 2^shift.
         let (shift, r) = (10_u8, self.radius);
@@ -80,7 +81,8 @@ impl Ball {
             y: fixed(2.0 * y),
             one: fixed(r * r - x * x - y * y),
         };
-        (silhouette, shift)
+        let depth = Linear::constant((self.depth * DEPTH) as i32);
+        SphereBody { silhouette, root_shift: shift, depth, depth_shift: 14 }
     }
 
     /// A coordinate of the normal, 1 at the rim, as a plane.
@@ -94,28 +96,20 @@ impl Ball {
     }
 
     fn gouraud(&self, colour: [f64; 3], light: [f64; 3]) -> Command {
-        let (silhouette, root_shift) = self.silhouette();
         let component = |c: f64| {
             let (x, y) = (self.across(0, light[0] * c * 4096.0), self.across(1, light[1] * c * 4096.0));
             Linear { a: x.a, b: y.b, c: x.c.wrapping_add(y.c) }
         };
         Command::Sphere(Sphere {
-            silhouette,
-            root_shift,
-            depth: Linear::constant((self.depth * DEPTH) as i32),
-            depth_shift: 14,
+            body: self.body(),
             colour: colour.map(component),
             root_factor: colour.map(|c| (light[2] * c * 256.0 / 250.0) as i16),
         })
     }
 
     fn phong(&self, colour: u32) -> Command {
-        let (silhouette, root_shift) = self.silhouette();
         Command::PhongSphere(PhongSphere {
-            silhouette,
-            root_shift,
-            depth: Linear::constant((self.depth * DEPTH) as i32),
-            depth_shift: 14,
+            body: self.body(),
             normal: [self.across(0, 1000.0 * 1024.0), self.across(1, 1000.0 * 1024.0)],
             colour,
         })

@@ -33,11 +33,12 @@ mod shade;
 mod sphere;
 
 pub use copy::{Clear, CopyRegion, LoadBacking, SelectRegion, StoreBacking};
-pub use draw::{PhongTriangle, Triangle};
+pub(crate) use draw::{COLOUR_AT, COMPONENTS_AT, DEPTH_AT, EDGES_AT, PHONG_WORDS, TRIANGLE_WORDS};
+pub use draw::{PhongTriangle, PhongTriangleEncoder, Triangle, TriangleEncoder};
 pub(crate) use shade::Fields as ShadeFields;
 pub use shade::{SPECULAR_SQUARINGS, Shade};
 pub(crate) use sphere::Scratch as SphereScratch;
-pub use sphere::{PhongSphere, Sphere};
+pub use sphere::{PhongSphere, Sphere, SphereBody};
 
 use crate::isa::{DecodeError, DecodeErrorKind, Instruction};
 use crate::layout::Layout;
@@ -237,10 +238,6 @@ impl Command {
             Self::SelectRegion(command) => encode_all(&command.program(layout), out),
             Self::Clear(command) => encode_all(&command.program(layout), out),
             Self::CopyRegion(command) => encode_all(&command.program(layout), out),
-            Self::Triangle(command) => command.encode(layout, out),
-            Self::PhongTriangle(command) => {
-                command.encode(layout, out).map_err(|missing| self.unsupported(missing, layout))?;
-            }
             _ => encode_all(&self.program(layout)?, out),
         }
         Ok(())

@@ -58,6 +58,11 @@ impl Controller {
         }
     }
 
+    /// Column and row of the picture that the array begins with.
+    pub(crate) fn origin(&self) -> [i32; 2] {
+        [self.left.into(), self.top.into()]
+    }
+
     /// Moves the origin of a linear expression to the array's left top pixel.
     #[inline(always)]
     pub(crate) fn localise(&self, e: &Linear) -> Linear {

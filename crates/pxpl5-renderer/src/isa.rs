@@ -63,7 +63,7 @@ mod operand;
 pub mod timing;
 
 pub use decode::{DecodeError, DecodeErrorKind};
-pub(crate) use encode::{evaluate_head, head, opcode};
+pub(crate) use encode::{head, opcode};
 pub use operand::Operand;
 
 use pxpl5_wire::{CopyTarget, Linear, Quadratic};

@@ -62,8 +62,8 @@ pub use array::{EMPTY_PLANE, Executed, Fault, FaultKind, OutputRegion, PIXELS, P
 pub use bit_serial::BitSerial;
 pub use board::{MAX_CONTEXTS, Renderer, RendererEvent, RendererOutput, RendererStats};
 pub use command::{
-    Clear, Command, CommandKind, CopyRegion, LoadBacking, PhongSphere, PhongTriangle, SPECULAR_SQUARINGS, SelectRegion,
-    Shade, Sphere, StoreBacking, Triangle, Unsupported,
+    Clear, Command, CommandKind, CopyRegion, LoadBacking, PhongSphere, PhongTriangle, PhongTriangleEncoder,
+    SPECULAR_SQUARINGS, SelectRegion, Shade, Sphere, SphereBody, StoreBacking, Triangle, TriangleEncoder, Unsupported,
 };
 pub use job::ArrayPool;
 pub use lanes::Lanes;

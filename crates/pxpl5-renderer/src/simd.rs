@@ -129,6 +129,8 @@ pub(crate) trait Vector: Copy {
     fn shift_left(self, by: u32) -> Self;
     /// Where self >= 0 and `new` < `old`, signed.
     fn passes(self, new: Self, old: Self) -> Self::Mask;
+    /// Whether the mask is true anywhere.
+    fn any(mask: Self::Mask) -> bool;
     /// Overwrites lanes of `to` where the mask is true; `old` is what they hold.
     fn store(self, mask: Self::Mask, old: Self, to: &mut [u32]);
     /// 255 where the mask is true, else 0.
@@ -227,6 +229,11 @@ impl Vector for Eight {
     fn passes(self, new: Self, old: Self) -> Self {
         let nearer = new.zip(old, |new, old| -i32::from(new < old));
         self.zip(nearer, |edges, nearer| nearer & !(edges >> 31))
+    }
+
+    #[inline(always)]
+    fn any(mask: Self) -> bool {
+        mask.0.iter().fold(0, |any, m| any | m) != 0
     }
 
     #[inline(always)]

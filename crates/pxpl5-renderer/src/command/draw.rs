@@ -1,7 +1,7 @@
 //! Triangles.
 
-use super::{CommandKind, Missing, enable};
-use crate::isa::{Expression, ExpressionUse, Instruction, Operand, evaluate_head, head, opcode};
+use super::{Command, CommandKind, Missing, Unsupported, enable};
+use crate::isa::{Expression, ExpressionUse, Instruction, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
 use pxpl5_wire::{Linear, Word};
@@ -40,16 +40,6 @@ impl Triangle {
         out
     }
 
-    /// Appends the words of the program without building it: a scene sends a hundred thousand of them a frame.
-    pub(super) fn encode(&self, layout: &Layout, out: &mut Vec<Word>) {
-        let mut words = coverage_words::<TRIANGLE_WORDS>(CommandKind::Triangle, &self.edges, &self.depth, layout);
-        for (i, component) in (0..).zip(&self.colour) {
-            let head = load_head(layout.component(i), COLOUR_FRACTION_BITS as u8);
-            put(&mut words, COMPONENTS_AT + LINEAR_WORDS * usize::from(i), head, component);
-        }
-        out.extend_from_slice(&words);
-    }
-
     pub(super) fn read(program: &[Instruction]) -> Option<Self> {
         let (edges, depth) = read_coverage(program)?;
         let colour = read_three(program.get(6..9)?)?;
@@ -68,20 +58,6 @@ impl PhongTriangle {
         let destination = layout.plan().colour;
         out.push(Instruction::LoadConstant { destination, value: self.colour });
         Ok(out)
-    }
-
-    /// Appends the words of the program without building it.
-    pub(super) fn encode(&self, layout: &Layout, out: &mut Vec<Word>) -> Result<(), Missing> {
-        let mut words = coverage_words::<PHONG_WORDS>(CommandKind::PhongTriangle, &self.edges, &self.depth, layout);
-        for (i, component) in (0..).zip(&self.normal) {
-            let field = layout.normal(i).ok_or(Missing("a normal"))?;
-            let head = load_head(field, NORMAL_FRACTION_BITS as u8);
-            put(&mut words, COMPONENTS_AT + LINEAR_WORDS * usize::from(i), head, component);
-        }
-        words[PHONG_WORDS - 2] = head(opcode::LOAD_CONSTANT, 0, layout.plan().colour.to_bits());
-        words[PHONG_WORDS - 1] = self.colour;
-        out.extend_from_slice(&words);
-        Ok(())
     }
 
     pub(super) fn read(program: &[Instruction]) -> Option<Self> {
@@ -113,43 +89,93 @@ fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<I
     });
 }
 
-const TRIANGLE_WORDS: usize = CommandKind::Triangle.words() as usize;
-const PHONG_WORDS: usize = CommandKind::PhongTriangle.words() as usize;
+pub(crate) const TRIANGLE_WORDS: usize = CommandKind::Triangle.words() as usize;
+pub(crate) const PHONG_WORDS: usize = CommandKind::PhongTriangle.words() as usize;
 
-/// An evaluation: its head and three coefficients.
-const LINEAR_WORDS: usize = 4;
+/// Where the coefficients of the edges, of the depth and of the components stand: behind enable all and their heads, the
+/// components also behind the depth again, which has none.
+pub(crate) const EDGES_AT: [usize; 3] = [2, 6, 10];
+pub(crate) const DEPTH_AT: usize = 14;
+pub(crate) const COMPONENTS_AT: [usize; 3] = [19, 23, 27];
+/// Where the colour of a Phong triangle stands.
+pub(crate) const COLOUR_AT: usize = PHONG_WORDS - 1;
 
-/// Behind enable all, three edges, the depth, and the depth again without coefficients.
-const COMPONENTS_AT: usize = 1 + 4 * LINEAR_WORDS + 1;
+/// Makes the words of triangles without their programs: a scene sends a hundred thousand of them a frame.
+///
+/// All triangles of a layout are alike but for their operands, which are put into the words of a blank one.
+#[derive(Clone, Debug)]
+pub struct TriangleEncoder([Word; TRIANGLE_WORDS]);
 
-/// The words of [`coverage`] at the start of a command of `N` words.
+/// As [`TriangleEncoder`] for triangles with normals.
+#[derive(Clone, Debug)]
+pub struct PhongTriangleEncoder([Word; PHONG_WORDS]);
+
+impl TriangleEncoder {
+    /// For the commands of a layout.
+    #[must_use]
+    pub fn new(layout: &Layout) -> Self {
+        Self(blank(&Triangle::default().program(layout)))
+    }
+
+    /// Appends the words of [`Command::program`](super::Command::program).
+    #[inline(always)]
+    pub fn encode(&self, triangle: &Triangle, out: &mut Vec<Word>) {
+        operands(&self.0, &triangle.edges, &triangle.depth, &triangle.colour, out);
+    }
+}
+
+impl PhongTriangleEncoder {
+    /// For the commands of a layout.
+    ///
+    /// # Errors
+    /// [`Unsupported`] where the layout has no normals.
+    pub fn new(layout: &Layout) -> Result<Self, Unsupported> {
+        let blank_one = PhongTriangle::default();
+        let program = blank_one
+            .program(layout)
+            .map_err(|missing| Command::PhongTriangle(blank_one).unsupported(missing, layout))?;
+        Ok(Self(blank(&program)))
+    }
+
+    /// Appends the words of [`Command::program`](super::Command::program).
+    #[inline(always)]
+    pub fn encode(&self, triangle: &PhongTriangle, out: &mut Vec<Word>) {
+        operands(&self.0, &triangle.edges, &triangle.depth, &triangle.normal, out)[COLOUR_AT] = triangle.colour;
+    }
+}
+
+/// The words of a program that has as many.
+fn blank<const N: usize>(program: &[Instruction]) -> [Word; N] {
+    let mut words = Vec::with_capacity(N);
+    program.iter().for_each(|instruction| instruction.encode(&mut words));
+    words.try_into().expect("every program of the kind has the kind's words")
+}
+
+/// Appends the words of a blank triangle with operands.
 #[inline(always)]
-fn coverage_words<const N: usize>(
-    kind: CommandKind,
+fn operands<'a, const N: usize>(
+    blank: &[Word; N],
     edges: &[Linear; 3],
     depth: &Linear,
-    layout: &Layout,
-) -> [Word; N] {
-    let (field, shift) = (layout.plan().z, layout.z_shift());
-    let negative = evaluate_head(false, false, &ExpressionUse::DisableNegative);
-    let mut words = [0; N];
-    words[0] = head(opcode::ENABLE_ALL, kind.opcode(), 0);
-    for (i, edge) in edges.iter().enumerate() {
-        put(&mut words, 1 + LINEAR_WORDS * i, negative, edge);
+    components: &[Linear; 3],
+    out: &'a mut Vec<Word>,
+) -> &'a mut [Word; N] {
+    let at = out.len();
+    out.extend_from_slice(blank);
+    let words = out[at..].first_chunk_mut().expect("as many have been appended");
+    for i in 0..3 {
+        put(words, EDGES_AT[i], &edges[i]);
+        put(words, COMPONENTS_AT[i], &components[i]);
     }
-    let nearer = evaluate_head(false, false, &ExpressionUse::DisableNotLess { field, shift });
-    put(&mut words, 1 + 3 * LINEAR_WORDS, nearer, depth);
-    words[COMPONENTS_AT - 1] = evaluate_head(false, true, &ExpressionUse::Load { field, shift });
+    put(words, DEPTH_AT, depth);
     words
 }
 
-const fn load_head(field: Operand, shift: u8) -> Word {
-    evaluate_head(false, false, &ExpressionUse::Load { field, shift })
-}
-
 #[inline(always)]
-fn put(words: &mut [Word], at: usize, head: Word, e: &Linear) {
-    words[at..at + LINEAR_WORDS].copy_from_slice(&[head, e.a as Word, e.b as Word, e.c as Word]);
+fn put<const N: usize>(words: &mut [Word; N], at: usize, e: &Linear) {
+    words[at] = e.a as Word;
+    words[at + 1] = e.b as Word;
+    words[at + 2] = e.c as Word;
 }
 
 fn read_coverage(program: &[Instruction]) -> Option<([Linear; 3], Linear)> {

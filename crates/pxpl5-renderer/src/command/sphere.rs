@@ -22,6 +22,19 @@ use pxpl5_wire::{Linear, Quadratic};
 /// before the plane `depth`, in units of the depth expression. To keep 11 bits or more of the root, choose
 /// `depth_shift` such that `bulge >> depth_shift` is in 2048 .. 4096. The silhouette must stay within 48 bits on the
 /// whole region. A layout with 10 root bits uses the upper bits of the same operands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SphereBody {
+    /// Inside where it is `>= 0`; 48 bits.
+    pub silhouette: Quadratic,
+    /// Low bits of the silhouette that are left out of the root, 0 to 24.
+    pub root_shift: u8,
+    /// Depth of the plane of the silhouette, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
+    pub depth: Linear,
+    /// Left shift of the root before it is subtracted from the depth, 0 to 20.
+    pub depth_shift: u8,
+}
+
+/// A sphere with interpolated colour.
 ///
 /// Cost beyond a triangle: a quadratic is 12 words and 48 clocks and is needed twice (sign, radicand); the root takes
 /// 202 bit clocks and the depth, which now depends on a stored root, three passes instead of two. A sphere with
@@ -32,14 +45,8 @@ use pxpl5_wire::{Linear, Quadratic};
 /// spheres that meet would meet in the wrong places, so the root is paid for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sphere {
-    /// Inside where it is `>= 0`; 48 bits.
-    pub silhouette: Quadratic,
-    /// Low bits of the silhouette that are left out of the root, 0 to 24.
-    pub root_shift: u8,
-    /// Depth of the plane of the silhouette, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
-    pub depth: Linear,
-    /// Left shift of the root before it is subtracted from the depth, 0 to 20.
-    pub depth_shift: u8,
+    /// Silhouette and depth.
+    pub body: SphereBody,
     /// Linear part of red, green and blue with [`COLOUR_FRACTION_BITS`].
     pub colour: [Linear; 3],
     /// What the root contributes, -512 to 511: component = limit(linear + ((root >> 4) * factor >> 8)), where the sum
@@ -53,14 +60,8 @@ pub struct Sphere {
 /// (shading normalises). Under perspective the normal's x and y are taken as linear.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongSphere {
-    /// See [`Sphere::silhouette`].
-    pub silhouette: Quadratic,
-    /// See [`Sphere::root_shift`].
-    pub root_shift: u8,
-    /// See [`Sphere::depth`].
-    pub depth: Linear,
-    /// See [`Sphere::depth_shift`].
-    pub depth_shift: u8,
+    /// Silhouette and depth.
+    pub body: SphereBody,
     /// x and y of the normal with [`NORMAL_FRACTION_BITS`].
     pub normal: [Linear; 2],
     /// Colour of the object, 0x00RRGGBB.
@@ -115,15 +116,8 @@ impl Scratch {
     }
 }
 
-struct Body {
-    silhouette: Quadratic,
-    root_shift: u8,
-    depth: Linear,
-    depth_shift: u8,
-}
-
 /// Silhouette, root, depth: compare, disable where not nearer, store.
-fn coverage(body: &Body, layout: &Layout, scratch: &Scratch, out: &mut Vec<Instruction>) {
+fn coverage(body: &SphereBody, layout: &Layout, scratch: &Scratch, out: &mut Vec<Instruction>) {
     let evaluate = |expression, usage| Instruction::Evaluate { expression, usage };
     let z = layout.plan().z;
     out.extend([
@@ -147,7 +141,7 @@ fn coverage(body: &Body, layout: &Layout, scratch: &Scratch, out: &mut Vec<Instr
     ]);
 }
 
-fn read_coverage(program: &[Instruction], layout: &Layout) -> Option<Body> {
+fn read_coverage(program: &[Instruction], layout: &Layout) -> Option<SphereBody> {
     let short = Scratch::of(layout).ok()?.short();
     let &[
         _,
@@ -165,14 +159,14 @@ fn read_coverage(program: &[Instruction], layout: &Layout) -> Option<Body> {
     };
     let root_shift = shift.checked_sub(2 * short)?;
     let depth_shift = left_shift.checked_sub(short)?;
-    Some(Body { silhouette, root_shift, depth, depth_shift })
+    Some(SphereBody { silhouette, root_shift, depth, depth_shift })
 }
 
 impl Sphere {
     pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
         let scratch = Scratch::of(layout)?;
         let mut out = vec![enable(CommandKind::Sphere)];
-        coverage(&self.body(), layout, &scratch, &mut out);
+        coverage(&self.body, layout, &scratch, &mut out);
         for (i, (linear, factor)) in (0..).zip(self.colour.into_iter().zip(self.root_factor)) {
             let component = layout.component(i);
             out.extend(shade_component(linear, factor, component, &scratch));
@@ -180,17 +174,8 @@ impl Sphere {
         Ok(out)
     }
 
-    const fn body(&self) -> Body {
-        Body {
-            silhouette: self.silhouette,
-            root_shift: self.root_shift,
-            depth: self.depth,
-            depth_shift: self.depth_shift,
-        }
-    }
-
     pub(super) fn read(program: &[Instruction], layout: &Layout) -> Option<Self> {
-        let Body { silhouette, root_shift, depth, depth_shift } = read_coverage(program, layout)?;
+        let body = read_coverage(program, layout)?;
         let mut colour = [Linear::default(); 3];
         let mut root_factor = [0; 3];
         for (i, part) in program.get(7..16)?.chunks_exact(3).enumerate() {
@@ -198,7 +183,7 @@ impl Sphere {
             root_factor[i] = i16::try_from(factor).ok()?;
             colour[i] = read_linear(&part[1])?;
         }
-        Some(Self { silhouette, root_shift, depth, depth_shift, colour, root_factor })
+        Some(Self { body, colour, root_factor })
     }
 }
 
@@ -225,7 +210,7 @@ impl PhongSphere {
         let scratch = Scratch::of(layout)?;
         let normal = |i| layout.normal(i).ok_or(Missing("a normal"));
         let mut out = vec![enable(CommandKind::PhongSphere)];
-        coverage(&self.body(), layout, &scratch, &mut out);
+        coverage(&self.body, layout, &scratch, &mut out);
         for (i, component) in (0..).zip(self.normal) {
             out.push(load(component, normal(i)?, NORMAL_FRACTION_BITS as u8));
         }
@@ -236,19 +221,10 @@ impl PhongSphere {
         Ok(out)
     }
 
-    const fn body(&self) -> Body {
-        Body {
-            silhouette: self.silhouette,
-            root_shift: self.root_shift,
-            depth: self.depth,
-            depth_shift: self.depth_shift,
-        }
-    }
-
     pub(super) fn read(program: &[Instruction], layout: &Layout) -> Option<Self> {
-        let Body { silhouette, root_shift, depth, depth_shift } = read_coverage(program, layout)?;
+        let body = read_coverage(program, layout)?;
         let normal = [read_linear(program.get(7)?)?, read_linear(program.get(8)?)?];
         let &Instruction::LoadConstant { value: colour, .. } = program.get(10)? else { return None };
-        Some(Self { silhouette, root_shift, depth, depth_shift, normal, colour })
+        Some(Self { body, normal, colour })
     }
 }

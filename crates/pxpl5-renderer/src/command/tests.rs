@@ -28,24 +28,25 @@ fn phong_triangle() -> impl Strategy<Value = Command> {
     })
 }
 
+fn body() -> impl Strategy<Value = SphereBody> {
+    (quadratic(), 0..=24_u8, linear(), 0..=20_u8).prop_map(|(silhouette, root_shift, depth, depth_shift)| SphereBody {
+        silhouette,
+        root_shift,
+        depth,
+        depth_shift,
+    })
+}
+
 fn sphere() -> impl Strategy<Value = Command> {
     let factor = || -512_i16..512;
     let factors = [factor(), factor(), factor()];
-    (quadratic(), 0..=24_u8, linear(), 0..=20_u8, three(), factors).prop_map(
-        |(silhouette, root_shift, depth, depth_shift, colour, root_factor)| {
-            let sphere = Sphere { silhouette, root_shift, depth, depth_shift, colour, root_factor };
-            Command::Sphere(sphere)
-        },
-    )
+    (body(), three(), factors)
+        .prop_map(|(body, colour, root_factor)| Command::Sphere(Sphere { body, colour, root_factor }))
 }
 
 fn phong_sphere() -> impl Strategy<Value = Command> {
-    (quadratic(), 0..=24_u8, linear(), 0..=20_u8, [linear(), linear()], any::<u32>()).prop_map(
-        |(silhouette, root_shift, depth, depth_shift, normal, colour)| {
-            let sphere = PhongSphere { silhouette, root_shift, depth, depth_shift, normal, colour };
-            Command::PhongSphere(sphere)
-        },
-    )
+    (body(), [linear(), linear()], any::<u32>())
+        .prop_map(|(body, normal, colour)| Command::PhongSphere(PhongSphere { body, normal, colour }))
 }
 
 fn shade() -> impl Strategy<Value = Command> {

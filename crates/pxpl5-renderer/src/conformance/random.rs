@@ -1,7 +1,8 @@
 //! Random lists of words, the same for the same number on every host.
 
 use crate::command::{
-    Clear, Command, LoadBacking, PhongSphere, PhongTriangle, SelectRegion, Shade, Sphere, StoreBacking, Triangle,
+    Clear, Command, LoadBacking, PhongSphere, PhongTriangle, SelectRegion, Shade, Sphere, SphereBody, StoreBacking,
+    Triangle,
 };
 use crate::isa::Instruction;
 use crate::layout::Layout;
@@ -111,20 +112,23 @@ impl Random {
     }
 
     fn sphere(&mut self) -> Sphere {
-        let PhongSphere { silhouette, root_shift, depth, depth_shift, .. } = self.phong_sphere();
+        let body = self.sphere_body();
         let colour = [self.plane(20), self.plane(20), self.plane(20)];
         let root_factor = std::array::from_fn(|_| self.between(-512, 512) as i16);
-        Sphere { silhouette, root_shift, depth, depth_shift, colour, root_factor }
+        Sphere { body, colour, root_factor }
     }
 
     fn phong_sphere(&mut self) -> PhongSphere {
-        PhongSphere {
+        let body = self.sphere_body();
+        PhongSphere { body, normal: [self.plane(22), self.plane(22)], colour: self.next() as u32 }
+    }
+
+    fn sphere_body(&mut self) -> SphereBody {
+        SphereBody {
             silhouette: self.silhouette(),
             root_shift: self.below(25) as u8,
             depth: self.plane(32),
             depth_shift: self.below(21) as u8,
-            normal: [self.plane(22), self.plane(22)],
-            colour: self.next() as u32,
         }
     }
 

@@ -110,7 +110,7 @@ const fn two(opcode: u8, modifier: u8, destination: Operand, source: Operand) ->
 
 /// First word of an evaluation.
 #[inline(always)]
-pub(crate) const fn evaluate_head(quadratic: bool, again: bool, usage: &ExpressionUse) -> Word {
+const fn evaluate_head(quadratic: bool, again: bool, usage: &ExpressionUse) -> Word {
     let family = if quadratic { opcode::QUADRATIC } else { opcode::LINEAR };
     let again = if again { AGAIN } else { 0 };
     match *usage {

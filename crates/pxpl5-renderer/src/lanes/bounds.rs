@@ -41,14 +41,13 @@ impl Bounds {
     /// `None` where no pixel is inside.
     #[inline(always)]
     pub(super) fn of(edges: &[Linear; 3]) -> Option<Self> {
-        if !edges.iter().all(stays_in_32_bits) {
-            return Some(Self { area: WHOLE, limits: None });
-        }
-        if edges.iter().any(|e| largest(e) < 0) {
-            return None;
-        }
-        let area = triangle_box(edges)?;
-        let wide = area.right - area.left > 24 && area.bottom - area.top > 2;
+        let lanes = Lanes::of(edges);
+        let area = match lanes.corners() {
+            Some(corners) => corners.area()?,
+            None if lanes.straight() && edges.iter().any(|e| largest(e) < 0) => return None,
+            None => WHOLE,
+        };
+        let wide = area.right - area.left > 24 && area.bottom - area.top > 2 && lanes.straight();
         Some(Self { area, limits: wide.then(|| edges.each_ref().map(Limit::of)) })
     }
 
@@ -79,11 +78,75 @@ impl Limit {
     }
 }
 
-/// No value in the array needs more than 32 bits, so the edge is a straight line.
-#[inline(always)]
-fn stays_in_32_bits(e: &Linear) -> bool {
-    let [a, b, c] = [e.a, e.b, e.c].map(|v| i64::from(v).abs());
-    LAST * (a + b) + c <= i64::from(i32::MAX)
+/// The coefficients of three edges side by side, the third one twice: four lanes are a vector.
+struct Lanes {
+    a: [f64; 4],
+    b: [f64; 4],
+    c: [f64; 4],
+}
+
+/// Corner i, times its determinant, is where edges i and i + 1 are zero; the third one twice.
+struct Corners {
+    determinant: [f64; 4],
+    x: [f64; 4],
+    y: [f64; 4],
+}
+
+/// Pixels by which an edge may be followed from the array's first one: then no coefficient has more than 22 bits, nor the
+/// constant more than 31, and their products are exact in 53.
+const REACH: f64 = 512.0;
+
+impl Lanes {
+    #[inline(always)]
+    fn of([e, f, g]: &[Linear; 3]) -> Self {
+        let four = |p: i32, q: i32, r: i32| [f64::from(p), f64::from(q), f64::from(r), f64::from(r)];
+        Self { a: four(e.a, f.a, g.a), b: four(e.b, f.b, g.b), c: four(e.c, f.c, g.c) }
+    }
+
+    /// No value in the array needs more than 32 bits, so the edges are straight lines.
+    #[inline(always)]
+    fn straight(&self) -> bool {
+        let mut straight = true;
+        for i in 0..4 {
+            straight &= REACH * (self.a[i].abs() + self.b[i].abs()) + self.c[i].abs() <= f64::from(i32::MAX);
+        }
+        straight
+    }
+
+    /// `None` unless straight edges enclose a triangle: normals that turn the same way at all corners leave no way out to
+    /// infinity.
+    #[inline(always)]
+    fn corners(&self) -> Option<Corners> {
+        let next = |[_, q, r, _]: [f64; 4], p: f64| [q, r, p, p];
+        let (p, q, r) = (next(self.a, self.a[0]), next(self.b, self.b[0]), next(self.c, self.c[0]));
+        let mut corners = Corners { determinant: [0.0; 4], x: [0.0; 4], y: [0.0; 4] };
+        let (mut left, mut right) = (true, true);
+        for i in 0..4 {
+            let determinant = self.a[i] * q[i] - p[i] * self.b[i];
+            left &= determinant > 0.0;
+            right &= determinant < 0.0;
+            corners.determinant[i] = determinant;
+            corners.x[i] = self.b[i] * r[i] - q[i] * self.c[i];
+            corners.y[i] = p[i] * self.c[i] - self.a[i] * r[i];
+        }
+        ((left | right) & self.straight()).then_some(corners)
+    }
+}
+
+impl Corners {
+    /// The box of the corners within the array.
+    #[inline(always)]
+    fn area(&self) -> Option<Area> {
+        let (mut x, mut y) = ([0.0; 4], [0.0; 4]);
+        for i in 0..4 {
+            let scale = 1.0 / self.determinant[i];
+            x[i] = self.x[i] * scale;
+            y[i] = self.y[i] * scale;
+        }
+        let (left, right) = range(x)?;
+        let (top, bottom) = range(y)?;
+        Some(Area { left, right, top, bottom })
+    }
 }
 
 /// The largest value in the array.
@@ -93,34 +156,8 @@ fn largest(e: &Linear) -> i64 {
     c + LAST * (a.max(0) + b.max(0))
 }
 
-/// The box of the three corners, if the edges enclose a triangle; else everything.
 #[inline(always)]
-fn triangle_box(edges: &[Linear; 3]) -> Option<Area> {
-    let corners = [corner(&edges[0], &edges[1]), corner(&edges[1], &edges[2]), corner(&edges[2], &edges[0])];
-    let [d0, d1, d2] = corners.map(|(d, _, _)| d);
-    // Normals that turn the same way at all corners leave no way out to infinity.
-    if !((d0 > 0 && d1 > 0 && d2 > 0) || (d0 < 0 && d1 < 0 && d2 < 0)) {
-        return Some(WHOLE);
-    }
-    let [(x0, y0), (x1, y1), (x2, y2)] = corners.map(|(d, x, y)| {
-        let scale = 1.0 / d as f64;
-        (x as f64 * scale, y as f64 * scale)
-    });
-    let (left, right) = range(x0, x1, x2)?;
-    let (top, bottom) = range(y0, y1, y2)?;
-    Some(Area { left, right, top, bottom })
-}
-
-/// Determinant, and x and y times it, of the point where two edges are zero.
-#[inline(always)]
-fn corner(e: &Linear, f: &Linear) -> (i64, i64, i64) {
-    let [a, b, c] = [e.a, e.b, e.c].map(i64::from);
-    let [p, q, r] = [f.a, f.b, f.c].map(i64::from);
-    (a * q - p * b, b * r - q * c, p * c - a * r)
-}
-
-#[inline(always)]
-fn range(a: f64, b: f64, c: f64) -> Option<(usize, usize)> {
+fn range([a, b, c, _]: [f64; 4]) -> Option<(usize, usize)> {
     let low = (a.min(b).min(c) - MARGIN).ceil().max(0.0);
     let high = (a.max(b).max(c) + MARGIN).floor().min(LAST as f64);
     (low <= high).then_some((low as usize, high as usize + 1))

@@ -5,16 +5,8 @@ use super::shade::ShadeAll;
 use super::sphere::{DrawSphere, GouraudSphere, PhongOfSphere};
 use super::whole::{ContextColumns, starts_anew};
 use crate::array::Executed;
-use crate::command::{Command, CommandKind, PhongSphere, Shade, ShadeFields, Sphere, SphereScratch};
-use pxpl5_wire::{Linear, Quadratic, Word};
-
-/// What both kinds of sphere share.
-struct Body {
-    silhouette: Quadratic,
-    root_shift: u8,
-    depth: Linear,
-    depth_shift: u8,
-}
+use crate::command::{Command, CommandKind, PhongSphere, Shade, ShadeFields, Sphere, SphereBody, SphereScratch};
+use pxpl5_wire::{Linear, Word};
 
 /// Columns and shifts of a sphere in this layout.
 struct SpherePlace {
@@ -63,8 +55,7 @@ impl Lanes {
 
     fn sphere(&mut self, sphere: &Sphere, columns: ContextColumns, keep: bool) -> Option<()> {
         let place = self.sphere_place()?;
-        let &Sphere { silhouette, root_shift, depth, depth_shift, .. } = sphere;
-        let body = self.sphere_body(Body { silhouette, root_shift, depth, depth_shift }, &place);
+        let body = self.sphere_body(sphere.body, &place);
         let [red, green, blue] = sphere.colour;
         let local = |e: &Linear| self.controller.localise(e);
         let components = [local(&red), local(&green), local(&blue)];
@@ -76,11 +67,8 @@ impl Lanes {
         }
         let factors = sphere.root_factor;
         self.vectors.run(DrawSphere {
-            silhouette: body.silhouette,
-            radicand_shift: body.root_shift,
+            body,
             root_bits: place.root_bits,
-            depth: body.depth,
-            depth_shift: body.depth_shift,
             z_shift: self.layout.z_shift(),
             z,
             root,
@@ -94,8 +82,7 @@ impl Lanes {
     fn phong_sphere(&mut self, sphere: &PhongSphere, columns: ContextColumns, keep: bool) -> Option<()> {
         let place = self.sphere_place()?;
         let normals = columns.normal?;
-        let &PhongSphere { silhouette, root_shift, depth, depth_shift, .. } = sphere;
-        let body = self.sphere_body(Body { silhouette, root_shift, depth, depth_shift }, &place);
+        let body = self.sphere_body(sphere.body, &place);
         let components = [0, 1].map(|i| self.controller.localise(&sphere.normal[i]));
         self.controller.hold(sphere.normal[1]);
         let [nx, ny, nz] = normals;
@@ -107,11 +94,8 @@ impl Lanes {
         let constant = sphere.colour & 0xff_ffff;
         let normal = [nx, ny, nz];
         self.vectors.run(DrawSphere {
-            silhouette: body.silhouette,
-            radicand_shift: body.root_shift,
+            body,
             root_bits: place.root_bits,
-            depth: body.depth,
-            depth_shift: body.depth_shift,
             z_shift: self.layout.z_shift(),
             z,
             root,
@@ -123,9 +107,9 @@ impl Lanes {
     }
 
     /// Holds the coefficients and moves the sphere to the region, with the shifts of this layout.
-    fn sphere_body(&mut self, body: Body, place: &SpherePlace) -> Body {
+    fn sphere_body(&mut self, body: SphereBody, place: &SpherePlace) -> SphereBody {
         self.controller.hold_quadratic(body.silhouette);
-        Body {
+        SphereBody {
             silhouette: self.controller.localise_quadratic(),
             root_shift: body.root_shift + 2 * place.short,
             depth: self.controller.localise(&body.depth),

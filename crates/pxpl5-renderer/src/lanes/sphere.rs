@@ -4,10 +4,11 @@ use super::columns::Values;
 use super::ellipse::{Ellipse, along_row};
 use super::roots::square_root_24;
 use crate::array::PIXELS;
+use crate::command::SphereBody;
 use crate::isa::QUADRATIC_BITS;
 use crate::simd::{Kernel, Vector};
+use pxpl5_wire::Linear;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
-use pxpl5_wire::{Linear, Quadratic};
 
 const WIDTH: usize = 128;
 
@@ -15,11 +16,9 @@ type Row = [u32; WIDTH];
 
 /// A sphere over the array's own columns and rows.
 pub(super) struct DrawSphere<'a, P> {
-    pub(super) silhouette: Quadratic,
-    pub(super) radicand_shift: u8,
+    /// Its shifts are those for the layout's root.
+    pub(super) body: SphereBody,
     pub(super) root_bits: u8,
-    pub(super) depth: Linear,
-    pub(super) depth_shift: u8,
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
     /// Temporaries of the program, which keep what it leaves there.
@@ -42,7 +41,7 @@ impl<P: PaintSphere> Kernel for DrawSphere<'_, P> {
 
     #[inline(always)]
     fn run<V: Vector>(mut self) {
-        let ellipse = Ellipse::of(&self.silhouette);
+        let ellipse = Ellipse::of(&self.body.silhouette);
         for y in ellipse.rows() {
             let columns = ellipse.columns(y);
             if !columns.is_empty() {
@@ -61,11 +60,11 @@ impl<P: PaintSphere> DrawSphere<'_, P> {
         let at = y * WIDTH + left;
         let (mut new, mut pass): (Row, Row) = ([0; WIDTH], [0; WIDTH]);
         let (new, pass) = (&mut new[..n], &mut pass[..n]);
-        let first = self.depth.at(left as i32, y as i32);
+        let first = self.body.depth.at(left as i32, y as i32);
         let z = &mut self.z.0[at..at + n];
         for i in 0..n {
-            let depth = first.wrapping_add(self.depth.a.wrapping_mul(i as i32)) as u32;
-            new[i] = depth.wrapping_sub(roots[i] << self.depth_shift) >> self.z_shift;
+            let depth = first.wrapping_add(self.body.depth.a.wrapping_mul(i as i32)) as u32;
+            new[i] = depth.wrapping_sub(roots[i] << self.body.depth_shift) >> self.z_shift;
             pass[i] = inside[i] & 0_u32.wrapping_sub(u32::from(new[i] < z[i]));
             z[i] = select(pass[i], new[i], z[i]);
         }
@@ -82,13 +81,13 @@ impl<P: PaintSphere> DrawSphere<'_, P> {
     /// Where the silhouette is positive, and the root of its useful bits.
     #[inline(always)]
     fn roots(&self, y: usize, left: usize, inside: &mut [u32], roots: &mut [u32]) {
-        let (x, one) = along_row(&self.silhouette, y);
+        let (x, one) = along_row(&self.body.silhouette, y);
         let mask = (1_u32 << (2 * self.root_bits)) - 1;
         for (i, (inside, root)) in inside.iter_mut().zip(roots).enumerate() {
             let at = (left + i) as i64;
-            let q = self.silhouette.xx.wrapping_mul(at).wrapping_add(x).wrapping_mul(at).wrapping_add(one);
+            let q = self.body.silhouette.xx.wrapping_mul(at).wrapping_add(x).wrapping_mul(at).wrapping_add(one);
             *inside = !((q << (64 - QUADRATIC_BITS) >> 63) as u32);
-            *root = square_root_24((q >> self.radicand_shift) as u32 & mask);
+            *root = square_root_24((q >> self.body.root_shift) as u32 & mask);
         }
     }
 }

@@ -1,11 +1,14 @@
 //! Triangles by values: a vector of pixels at a time, masks instead of branches.
 
-use super::bounds::Bounds;
+use super::bounds::{Area, Bounds};
 use super::columns::Values;
+use super::whole::{Template, starts_anew};
 use crate::array::PIXELS;
+use crate::command::{COLOUR_AT, COMPONENTS_AT, DEPTH_AT, EDGES_AT, PHONG_WORDS, TRIANGLE_WORDS};
 use crate::simd::{Kernel, Vector};
-use pxpl5_wire::Linear;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
+use pxpl5_wire::{Linear, Word};
+use std::ops::Range;
 
 const WIDTH: usize = 128;
 
@@ -28,53 +31,110 @@ impl<V: Vector> Walk<V> {
     }
 }
 
-/// What a command stores in the pixels that pass.
-pub(super) trait Paint {
-    /// Expressions that it walks along.
-    fn components(&self) -> &[Linear; 3];
+/// What commands of `N` words store in the pixels that pass.
+pub(super) trait Paint<const N: usize> {
+    /// Takes what the command has besides expressions.
+    fn begin(&mut self, words: &[Word; N]);
     /// Stores pixels from index `at` where the mask is true.
     fn store<V: Vector>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
 }
 
-/// A triangle over the array's own columns and rows.
-pub(super) struct DrawTriangle<'a, P> {
-    pub(super) edges: [Linear; 3],
-    pub(super) depth: Linear,
+/// All triangles of one kind at the start of `words`, as many as follow each other. Gives their number.
+pub(super) struct DrawTriangles<'a, const N: usize, P> {
+    pub(super) words: &'a [Word],
+    pub(super) template: &'a Template<N>,
+    /// Column and row of the picture that the array begins with.
+    pub(super) origin: [i32; 2],
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
     pub(super) paint: P,
-    /// Where somebody looks at Enable afterwards; all zero on entry.
-    pub(super) enable: Option<&'a mut [u8; PIXELS]>,
+    pub(super) enable: &'a mut [u8; PIXELS],
 }
 
-impl<P: Paint> Kernel for DrawTriangle<'_, P> {
-    type Output = ();
+/// A triangle over the array's own columns and rows.
+struct Local {
+    edges: [Linear; 3],
+    depth: Linear,
+    components: [Linear; 3],
+    /// Somebody looks at Enable afterwards.
+    keep: bool,
+}
+
+impl<const N: usize, P: Paint<N>> Kernel for DrawTriangles<'_, N, P> {
+    type Output = usize;
 
     #[inline(always)]
-    fn run<V: Vector>(mut self) {
-        let Some(bounds) = Bounds::of(&self.edges) else { return };
-        for y in bounds.area.top..bounds.area.bottom {
-            let (left, right) = bounds.row(y);
-            self.row::<V>(y, left / V::LANES * V::LANES, right);
+    fn run<V: Vector>(mut self) -> usize {
+        let (mut rest, mut drawn) = (self.words, 0);
+        while let Some((command, behind)) = self.template.split(rest) {
+            let keep = !starts_anew(behind.first());
+            if keep {
+                self.enable.fill(0);
+            }
+            self.triangle::<V>(command, keep);
+            (rest, drawn) = (behind, drawn + 1);
         }
+        drawn
     }
 }
 
-impl<P: Paint> DrawTriangle<'_, P> {
+impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
     #[inline(always)]
-    fn row<V: Vector>(&mut self, y: usize, left: usize, right: usize) {
-        let [mut first, mut second, mut third] = three::<V>(&self.edges, left, y);
-        let mut depth = Walk::<V>::start(&self.depth, left, y);
-        let mut walks = three::<V>(self.paint.components(), left, y);
+    fn triangle<V: Vector>(&mut self, words: &[Word; N], keep: bool) {
+        let edges = self.three(words, EDGES_AT);
+        let Some(bounds) = Bounds::of(&edges) else { return };
+        let (depth, components) = (self.local(words, DEPTH_AT), self.three(words, COMPONENTS_AT));
+        let triangle = Local { edges, depth, components, keep };
+        self.paint.begin(words);
+        let Area { left, right, top, bottom } = bounds.area;
+        let first = left / V::LANES * V::LANES;
+        if right <= first + V::LANES {
+            self.narrow::<V>(&triangle, first, top..bottom);
+            return;
+        }
+        for y in top..bottom {
+            let (left, right) = bounds.row(y);
+            self.row::<V>(&triangle, y, left / V::LANES * V::LANES, right);
+        }
+    }
+
+    #[inline(always)]
+    fn local(&self, words: &[Word; N], at: usize) -> Linear {
+        let e = Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 };
+        Linear { c: e.at(self.origin[0], self.origin[1]), ..e }
+    }
+
+    #[inline(always)]
+    fn three(&self, words: &[Word; N], [i, j, k]: [usize; 3]) -> [Linear; 3] {
+        [self.local(words, i), self.local(words, j), self.local(words, k)]
+    }
+
+    /// One vector a row, from column `x`.
+    #[inline(always)]
+    fn narrow<V: Vector>(&mut self, t: &Local, x: usize, rows: Range<usize>) {
+        let [mut first, mut second, mut third] = three::<V>(&t.edges, x, rows.start);
+        let mut depth = Walk::<V>::start(&t.depth, x, rows.start);
+        for y in rows {
+            let (at, inside) = (y * WIDTH + x, first.value.or(second.value).or(third.value));
+            if let Some(mask) = self.pass(t, at, inside, depth.value) {
+                self.paint.store(&three::<V>(&t.components, x, y), at, mask);
+            }
+            first.value = first.value.add(V::splat(t.edges[0].b));
+            second.value = second.value.add(V::splat(t.edges[1].b));
+            third.value = third.value.add(V::splat(t.edges[2].b));
+            depth.value = depth.value.add(V::splat(t.depth.b));
+        }
+    }
+
+    #[inline(always)]
+    fn row<V: Vector>(&mut self, t: &Local, y: usize, left: usize, right: usize) {
+        let [mut first, mut second, mut third] = three::<V>(&t.edges, left, y);
+        let mut depth = Walk::<V>::start(&t.depth, left, y);
+        let mut walks = three::<V>(&t.components, left, y);
         for x in (left..right).step_by(V::LANES) {
-            let at = y * WIDTH + x;
-            let inside = first.value.or(second.value).or(third.value);
-            let (old, new) = (V::load(&self.z.0[at..]), depth.value.shift_right(self.z_shift.into()));
-            let mask = inside.passes(new, old);
-            new.store(mask, old, &mut self.z.0[at..]);
-            self.paint.store(&walks, at, mask);
-            if let Some(enable) = &mut self.enable {
-                V::store_mask(mask, &mut enable[at..]);
+            let (at, inside) = (y * WIDTH + x, first.value.or(second.value).or(third.value));
+            if let Some(mask) = self.pass(t, at, inside, depth.value) {
+                self.paint.store(&walks, at, mask);
             }
             first.advance();
             second.advance();
@@ -84,6 +144,22 @@ impl<P: Paint> DrawTriangle<'_, P> {
             walks[1].advance();
             walks[2].advance();
         }
+    }
+
+    /// Where no edge is negative and the depth is nearer, which is stored; `None` where that is nowhere, as in most vectors
+    /// of small triangles.
+    #[inline(always)]
+    fn pass<V: Vector>(&mut self, t: &Local, at: usize, inside: V, depth: V) -> Option<V::Mask> {
+        let (old, new) = (V::load(&self.z.0[at..]), depth.shift_right(self.z_shift.into()));
+        let mask = inside.passes(new, old);
+        if !V::any(mask) {
+            return None;
+        }
+        new.store(mask, old, &mut self.z.0[at..]);
+        if t.keep {
+            V::store_mask(mask, &mut self.enable[at..]);
+        }
+        Some(mask)
     }
 }
 
@@ -101,15 +177,12 @@ fn blend<V: Vector>(column: &mut Values, at: usize, mask: V::Mask, new: V) {
 
 /// Interpolated colour.
 pub(super) struct Gouraud<'a> {
-    pub(super) components: [Linear; 3],
     pub(super) colour: &'a mut Values,
 }
 
-impl Paint for Gouraud<'_> {
+impl Paint<TRIANGLE_WORDS> for Gouraud<'_> {
     #[inline(always)]
-    fn components(&self) -> &[Linear; 3] {
-        &self.components
-    }
+    fn begin(&mut self, _: &[Word; TRIANGLE_WORDS]) {}
 
     #[inline(always)]
     fn store<V: Vector>(&mut self, [red, green, blue]: &[Walk<V>; 3], at: usize, mask: V::Mask) {
@@ -123,16 +196,15 @@ impl Paint for Gouraud<'_> {
 
 /// Interpolated normals and the object's colour.
 pub(super) struct Phong<'a> {
-    pub(super) components: [Linear; 3],
     pub(super) normal: [&'a mut Values; 3],
     pub(super) constant: u32,
     pub(super) colour: &'a mut Values,
 }
 
-impl Paint for Phong<'_> {
+impl Paint<PHONG_WORDS> for Phong<'_> {
     #[inline(always)]
-    fn components(&self) -> &[Linear; 3] {
-        &self.components
+    fn begin(&mut self, words: &[Word; PHONG_WORDS]) {
+        self.constant = words[COLOUR_AT] & 0xff_ffff;
     }
 
     #[inline(always)]

@@ -2,52 +2,58 @@
 
 use super::Lanes;
 use super::columns::Values;
-use super::triangle::{DrawTriangle, Gouraud, Phong};
+use super::triangle::{DrawTriangles, Gouraud, Phong};
 use crate::array::Executed;
-use crate::command::{Command, CommandKind, PhongTriangle, Triangle};
+use crate::command::{COMPONENTS_AT, Command, CommandKind, PHONG_WORDS, TRIANGLE_WORDS};
 use crate::controller::Bits;
 use crate::isa::{Operand, head, opcode};
 use crate::layout::Layout;
 use crate::simd::{Kernel, Vector};
 use pxpl5_wire::{Linear, Word};
 
-/// What identifies a command whose operands are whole words: its other words.
+/// What identifies a command of `N` words whose operands are whole words: its other words.
 #[derive(Clone, Debug)]
-pub(super) struct Template {
-    /// Index and value of each word that is no operand.
-    fixed: Vec<(usize, Word)>,
-    words: usize,
+pub(super) struct Template<const N: usize> {
+    words: [Word; N],
+    /// All ones where a word is no operand, else zero.
+    fixed: [Word; N],
     cost: Cost,
 }
 
-impl Template {
+impl<const N: usize> Template<N> {
     /// `None` where the layout cannot hold the command.
     fn of(kind: CommandKind, layout: &Layout) -> Option<Self> {
         let program = Command::blank(kind).program(layout).ok()?;
-        let mut fixed = Vec::new();
-        let mut words = Vec::new();
+        let (mut words, mut fixed) = (Vec::new(), [0; N]);
         for instruction in &program {
-            let at = words.len();
+            *fixed.get_mut(words.len())? = Word::MAX;
             instruction.encode(&mut words);
-            fixed.push((at, words[at]));
         }
-        Some(Self { fixed, words: words.len(), cost: Cost::of(kind, layout)? })
+        Some(Self { words: words.try_into().ok()?, fixed, cost: Cost::of(kind, layout)? })
     }
 
-    #[inline]
-    fn matches(&self, words: &[Word]) -> bool {
-        words.len() >= self.words && self.fixed.iter().all(|&(at, word)| words[at] == word)
+    /// The command at the start of `words`, if it is of this kind, and the words behind it.
+    #[inline(always)]
+    pub(super) fn split<'a>(&self, words: &'a [Word]) -> Option<(&'a [Word; N], &'a [Word])> {
+        let (command, behind) = words.split_first_chunk::<N>()?;
+        let mut different = 0;
+        for ((found, word), fixed) in command.iter().zip(&self.words).zip(&self.fixed) {
+            different |= (found ^ word) & fixed;
+        }
+        (different == 0).then_some((command, behind))
     }
 }
 
 /// The commands that are recognised by a template.
 #[derive(Clone, Debug)]
 pub(super) struct Templates {
-    clear: Option<Template>,
-    triangle: Option<Template>,
-    phong_triangle: Option<Template>,
+    clear: Option<Template<CLEAR_WORDS>>,
+    triangle: Option<Template<TRIANGLE_WORDS>>,
+    phong_triangle: Option<Template<PHONG_WORDS>>,
     large: Vec<(CommandKind, Cost)>,
 }
+
+const CLEAR_WORDS: usize = CommandKind::Clear.words() as usize;
 
 /// What a command adds to [`Executed`].
 #[derive(Clone, Copy, Debug)]
@@ -80,15 +86,6 @@ impl Templates {
     pub(super) fn cost(&self, kind: CommandKind) -> Option<Cost> {
         self.large.iter().find(|(k, _)| *k == kind).map(|(_, cost)| *cost)
     }
-
-    fn get(&self, kind: CommandKind) -> Option<&Template> {
-        match kind {
-            CommandKind::Clear => self.clear.as_ref(),
-            CommandKind::Triangle => self.triangle.as_ref(),
-            CommandKind::PhongTriangle => self.phong_triangle.as_ref(),
-            _ => None,
-        }
-    }
 }
 
 /// Columns of the selected context's fields.
@@ -101,27 +98,21 @@ pub(super) struct ContextColumns {
 }
 
 impl Lanes {
-    /// Executes the command at the start of `words`, if it is one of this layout; returns its words.
+    /// Executes the command at the start of `words`, if it is one of this layout, and the triangles of the same kind that
+    /// follow a triangle; returns their words.
     #[inline]
     pub(super) fn whole_command(&mut self, words: &[Word], executed: &mut Executed) -> Option<usize> {
         let kind = CommandKind::from_opcode((words[0] >> 16) as u8)?;
         let columns = self.context_columns()?;
-        let Some(template) = self.templates.get(kind) else {
-            return self.large_command(kind, words, columns, executed);
+        let (cost, commands) = match kind {
+            CommandKind::Clear => self.clear(words, columns)?,
+            CommandKind::Triangle => self.triangles(words, columns)?,
+            CommandKind::PhongTriangle => self.phong_triangles(words, columns)?,
+            _ => return self.large_command(kind, words, columns, executed),
         };
-        if !template.matches(words) {
-            return None;
-        }
-        let (used, cost) = (template.words, template.cost);
-        let keep = !starts_anew(words.get(used));
-        match kind {
-            CommandKind::Clear => self.clear([words[2], words[4]], columns, keep),
-            CommandKind::Triangle => self.triangle(&read_triangle(words), columns, keep)?,
-            _ => self.phong_triangle(&read_phong_triangle(words), columns, keep)?,
-        }
-        executed.instructions += cost.instructions;
-        executed.clocks += cost.clocks;
-        Some(used)
+        executed.instructions += cost.instructions * commands as u32;
+        executed.clocks += cost.clocks * commands as u64;
+        Some(commands * kind.words() as usize)
     }
 
     /// The same for every command until another context is selected.
@@ -151,63 +142,56 @@ impl Lanes {
     }
 
     /// Both constants are operands: other words than a [`crate::Clear`] has may clear to any depth.
-    fn clear(&mut self, [colour, depth]: [Word; 2], columns: ContextColumns, keep: bool) {
+    fn clear(&mut self, words: &[Word], columns: ContextColumns) -> Option<(Cost, usize)> {
+        let template = self.templates.clear.as_ref()?;
+        let (&[_, _, colour, _, depth], behind) = template.split(words)?;
         let far = u32::MAX >> (32 - self.layout.plan().z.width);
         for (column, value) in [(columns.colour, colour & 0xff_ffff), (columns.z, depth & far)] {
             self.vectors.run(Fill { column: self.columns.values_mut(column), value });
         }
-        if keep {
+        if !starts_anew(behind.first()) {
             self.enable.fill(255);
         }
+        Some((template.cost, 1))
     }
 
-    fn triangle(&mut self, triangle: &Triangle, columns: ContextColumns, keep: bool) -> Option<()> {
-        self.controller.hold(triangle.colour[2]);
-        let controller = self.controller;
-        let local = |e: &Linear| controller.localise(e);
-        let [first, second, third] = &triangle.edges;
-        let [red, green, blue] = &triangle.colour;
+    fn triangles(&mut self, words: &[Word], columns: ContextColumns) -> Option<(Cost, usize)> {
+        let template = self.templates.triangle.as_ref()?;
         let [z, colour] = self.columns.many_mut([columns.z, columns.colour])?;
-        if keep {
-            self.enable.fill(0);
-        }
-        self.vectors.run(DrawTriangle {
-            edges: [local(first), local(second), local(third)],
-            depth: local(&triangle.depth),
+        let drawn = self.vectors.run(DrawTriangles {
+            words,
+            template,
+            origin: self.controller.origin(),
             z_shift: self.layout.z_shift(),
             z,
-            paint: Gouraud { components: [local(red), local(green), local(blue)], colour },
-            enable: keep.then_some(&mut *self.enable),
+            paint: Gouraud { colour },
+            enable: &mut self.enable,
         });
-        Some(())
+        self.controller.hold(linear(words, last(drawn, TRIANGLE_WORDS)?));
+        Some((template.cost, drawn))
     }
 
-    fn phong_triangle(&mut self, triangle: &PhongTriangle, columns: ContextColumns, keep: bool) -> Option<()> {
-        let [x, y, z] = columns.normal?;
-        let indices = [columns.z, columns.colour, x, y, z];
-        self.controller.hold(triangle.normal[2]);
-        let controller = self.controller;
-        let local = |e: &Linear| controller.localise(e);
-        let [first, second, third] = &triangle.edges;
-        let [z, colour, x, y, depth] = self.columns.many_mut(indices)?;
-        if keep {
-            self.enable.fill(0);
-        }
-        self.vectors.run(DrawTriangle {
-            edges: [local(first), local(second), local(third)],
-            depth: local(&triangle.depth),
+    fn phong_triangles(&mut self, words: &[Word], columns: ContextColumns) -> Option<(Cost, usize)> {
+        let template = self.templates.phong_triangle.as_ref()?;
+        let [nx, ny, nz] = columns.normal?;
+        let [z, colour, nx, ny, nz] = self.columns.many_mut([columns.z, columns.colour, nx, ny, nz])?;
+        let drawn = self.vectors.run(DrawTriangles {
+            words,
+            template,
+            origin: self.controller.origin(),
             z_shift: self.layout.z_shift(),
             z,
-            paint: Phong {
-                components: [local(&triangle.normal[0]), local(&triangle.normal[1]), local(&triangle.normal[2])],
-                normal: [x, y, depth],
-                constant: triangle.colour & 0xff_ffff,
-                colour,
-            },
-            enable: keep.then_some(&mut *self.enable),
+            paint: Phong { normal: [nx, ny, nz], constant: 0, colour },
+            enable: &mut self.enable,
         });
-        Some(())
+        self.controller.hold(linear(words, last(drawn, PHONG_WORDS)?));
+        Some((template.cost, drawn))
     }
+}
+
+/// Where the last coefficients of the last of some commands stand; `None` if there are none.
+fn last(commands: usize, words: usize) -> Option<usize> {
+    Some(commands.checked_sub(1)? * words + COMPONENTS_AT[2])
 }
 
 /// The same value in all pixels.
@@ -231,23 +215,6 @@ pub(super) fn starts_anew(next: Option<&Word>) -> bool {
     next.is_some_and(|word| word & !LABEL == head(opcode::ENABLE_ALL, 0, 0))
 }
 
-#[inline(always)]
 fn linear(words: &[Word], at: usize) -> Linear {
     Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 }
-}
-
-/// Operands behind the opcodes at 1, 5, 9 (edges), 13 (depth; 17 repeats it), 18, 22 and 26.
-#[inline(always)]
-fn read_triangle(words: &[Word]) -> Triangle {
-    Triangle {
-        edges: [linear(words, 2), linear(words, 6), linear(words, 10)],
-        depth: linear(words, 14),
-        colour: [linear(words, 19), linear(words, 23), linear(words, 27)],
-    }
-}
-
-#[inline(always)]
-fn read_phong_triangle(words: &[Word]) -> PhongTriangle {
-    let Triangle { edges, depth, colour: normal } = read_triangle(words);
-    PhongTriangle { edges, depth, normal, colour: words[31] }
 }

@@ -99,6 +99,11 @@ impl Vector for Avx2 {
     }
 
     #[inline(always)]
+    fn any(mask: __m256i) -> bool {
+        unsafe { _mm256_testz_si256(mask, mask) == 0 }
+    }
+
+    #[inline(always)]
     fn store(self, mask: __m256i, old: Self, to: &mut [u32]) {
         let to: &mut [u32; 8] = to.first_chunk_mut().expect("a whole vector");
         unsafe {
@@ -205,6 +210,11 @@ impl Vector for Avx512 {
             let inside = _mm512_cmpge_epi32_mask(self.0, _mm512_setzero_si512());
             _mm512_mask_cmplt_epi32_mask(inside, new.0, old.0)
         }
+    }
+
+    #[inline(always)]
+    fn any(mask: __mmask16) -> bool {
+        mask != 0
     }
 
     #[inline(always)]
