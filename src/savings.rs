@@ -18,8 +18,8 @@ pub enum Saving {
     /// A region without any primitive is drawn once and kept for as long as its commands stay the same. Without it every
     /// one is cleared and shaded.
     EmptyRegions,
-    /// The clocks of code that repeats with all it needs in the caches are taken from memory (cycle level). Without it the
-    /// i860s count every clock.
+    /// Code that repeats with all it needs in the caches takes the clocks that were counted before (cycle level). Without it
+    /// the i860s count every clock.
     RepeatedCode,
 }
 

@@ -174,8 +174,7 @@ impl SlatsModel {
 
     /// The messages of one clump of every GP, as many at a time as a port drives channels.
     fn send(&self, arrays: &mut [Array; MOST_RENDERERS], chain: &mut Chain, from_ns: f64, count: f64, first: bool) {
-        let mut in_flight = [f64::MIN; MOST_CHANNELS];
-        let in_flight = &mut in_flight[..self.source_channels];
+        let mut channels = Channels::new(self.source_channels);
         let mut granted_ns = from_ns;
         (chain.accepted_ns, chain.draining_ns) = (from_ns, from_ns);
         let (of_first, of_others) = (self.commands(count, first), self.commands(count, false));
@@ -183,9 +182,8 @@ impl SlatsModel {
         for (region, renderer) in (0..REGIONS).zip((0..self.renderers).cycle()) {
             let latency_ns = self.hop_ns * (renderer + self.gps) as f64;
             for gp in 0..self.gps {
-                let slot = soonest(in_flight);
                 if gp == 0 {
-                    granted_ns = later(granted_ns, in_flight[slot]);
+                    granted_ns = later(granted_ns, channels.take_first());
                 }
                 let begin_ns = later(granted_ns, chain.released_ns[renderer]);
                 if gp == 0 {
@@ -199,7 +197,7 @@ impl SlatsModel {
                     chain.draining_ns = later(chain.draining_ns, accepted_ns);
                 }
                 if gp == 0 {
-                    in_flight[slot] = chain.released_ns[renderer];
+                    channels.put(chain.released_ns[renderer]);
                 }
             }
         }
@@ -222,11 +220,35 @@ struct Chain {
     draining_ns: f64,
 }
 
-/// Channels that a ring can have.
+/// Channels that a ring can have; a power of two.
 const MOST_CHANNELS: usize = 8;
 
-fn soonest(times: &[f64]) -> usize {
-    (1..times.len()).fold(0, |best, i| if times[i] < times[best] { i } else { best })
+/// When the channels of a port are free, soonest first, from a place on that goes round.
+struct Channels {
+    free_ns: [f64; MOST_CHANNELS],
+    first: usize,
+    number: usize,
+}
+
+impl Channels {
+    const fn new(number: usize) -> Self {
+        Self { free_ns: [f64::MIN; MOST_CHANNELS], first: 0, number }
+    }
+
+    fn take_first(&mut self) -> f64 {
+        self.first += 1;
+        self.free_ns[(self.first - 1) % MOST_CHANNELS]
+    }
+
+    /// Gives the channel that was taken back. It is nearly always the last one to be free.
+    fn put(&mut self, free_ns: f64) {
+        let mut place = self.first + self.number - 1;
+        while place > self.first && self.free_ns[(place - 1) % MOST_CHANNELS] > free_ns {
+            self.free_ns[place % MOST_CHANNELS] = self.free_ns[(place - 1) % MOST_CHANNELS];
+            place -= 1;
+        }
+        self.free_ns[place % MOST_CHANNELS] = free_ns;
+    }
 }
 
 /// The analytic level of a Slats case.

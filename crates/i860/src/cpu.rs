@@ -177,8 +177,7 @@ impl Cpu {
         self.time.profile.instructions
     }
 
-    /// Those of all instructions since reset whose clocks were not counted but taken from memory
-    /// ([`Config::memoise`]).
+    /// Those of all instructions since reset whose clocks were not counted but reused ([`Config::memoise`]).
     #[must_use]
     pub fn repeated_instructions(&self) -> u64 {
         self.time.repeated_instructions()

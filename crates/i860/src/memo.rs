@@ -1,4 +1,4 @@
-//! Clocks of blocks that repeat, taken from memory instead of counted again.
+//! Clocks of blocks that repeat, reused instead of counted again.
 //!
 //! The idea is that of FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
 //! 1998). A block whose instructions and data are all in the caches leaves bus, queues and the replacement's chance as they
@@ -24,7 +24,7 @@ pub(crate) struct Memo {
     leftovers: Vec<Leftover>,
     /// Number of the present scoreboard, where the one written out is out of date.
     present: Option<u32>,
-    /// Instructions whose clocks were taken from memory.
+    /// Instructions whose clocks were reused.
     pub(crate) instructions: u64,
 }
 

@@ -436,8 +436,8 @@ pub struct Config {
     pub seeds: crate::SeedTable,
     /// Start of the pseudo-random sequence of the cache replacement.
     pub replacement_seed: u16,
-    /// Whether the clocks of code that repeats with all it needs in the caches are taken from memory instead of counted
-    /// again. Changes the host's time only.
+    /// Whether blocks that repeat with all they need in the caches take the clocks that were counted before instead of being
+    /// counted again, as FastSim does (Schnarr and Larus, 1998). Changes the host's time only; on by default, being faster.
     pub memoise: bool,
 }
 
