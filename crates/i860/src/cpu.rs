@@ -277,29 +277,39 @@ impl Cpu {
             done += 1;
         }
         let mut course = Course { units: done, slot: false, taken: false, trapped: flow.is_err() };
-        let last = &block.units[done - 1];
-        (self.state.pc, self.state.mode) = (last.next(), last.after);
-        let mut end = Ok(());
-        match flow {
-            Ok(Flow::Next) => {}
-            Ok(Flow::Jump(target)) => (self.state.pc, course.taken) = (target, true),
-            Ok(Flow::Skip) => {
-                let skipped = if last.after.is_dual() { 8 } else { 4 };
-                self.state.pc = last.next().wrapping_add(skipped);
-            }
-            Ok(Flow::Delayed(target)) => {
-                course.taken = true;
-                end = self.slot(block, target, &mut course, bus);
-            }
+        let end = match flow {
+            Ok(flow) => self.go_on(flow, block, &mut course, bus),
             Err(cause) => {
+                let last = &block.units[done - 1];
                 (self.state.pc, self.state.mode) = (last.pc, last.mode);
-                end = Err(cause);
+                Err(cause)
             }
-        }
+        };
         self.time.pass(block, course, &self.accesses, bus);
         end
     }
 
+    /// Goes to where the last unit of a block leads, by way of the slot if there is one.
+    #[inline]
+    fn go_on<B: Bus>(&mut self, flow: Flow, block: &Block, course: &mut Course, bus: &mut B) -> Result<(), TrapCause> {
+        let last = &block.units[course.units - 1];
+        (self.state.pc, self.state.mode) = (last.next(), last.after);
+        match flow {
+            Flow::Next => {}
+            Flow::Jump(target) => (self.state.pc, course.taken) = (target, true),
+            Flow::Skip => {
+                let skipped = if last.after.is_dual() { 8 } else { 4 };
+                self.state.pc = last.next().wrapping_add(skipped);
+            }
+            Flow::Delayed(target) => {
+                course.taken = true;
+                return self.slot(block, target, course, bus);
+            }
+        }
+        Ok(())
+    }
+
+    /// Executes the slot of a branch that was taken.
     #[inline]
     fn slot<B: Bus>(&mut self, block: &Block, target: u32, course: &mut Course, bus: &mut B) -> Result<(), TrapCause> {
         let unit = match &block.slot {
