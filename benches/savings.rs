@@ -1,6 +1,6 @@
 //! What each saving is worth: the same run with it and without it, in one process. Neither changes what comes out
-//! (`tests/savings.rs`). What nobody looks at is measured by `machine` (no pixels against all), lazily drawn fields by
-//! `machine/looked-at`.
+//! (`tests/savings.rs`). Then what looking costs: no pixels, one field of 60 looked at, all pixels; the goal is that the
+//! second is within 10 % of the first.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
@@ -9,11 +9,12 @@ use pxpl5::levels::Level;
 use pxpl5::{Experiment, MachineConfig, Pixels, RenderingControl, Saving, Slats, scene};
 use std::hint::black_box;
 
-/// The aircraft leaves regions empty under both pipelines.
-fn experiments() -> [(&'static str, Experiment); 2] {
+/// The aircraft leaves regions empty under both pipelines, twelve triangles of it nearly all.
+fn experiments() -> [(&'static str, Experiment); 3] {
     let mig = |triangles| scene::builtin("mig").and_then(|mig| mig.truncated(triangles)).expect("it has 417 triangles");
     [
         ("rendering-control-mig", Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(417))),
+        ("rendering-control-12", Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(12))),
         ("slats-140", Experiment::new(MachineConfig::slats(), Slats::split(), mig(140))),
     ]
 }
@@ -46,6 +47,31 @@ fn savings(criterion: &mut Criterion) {
     }
 }
 
+/// The head of 59,592 triangles in stereo. An element is a field.
+fn looking(criterion: &mut Criterion) {
+    const FIELDS: u64 = 120;
+    let head = scene::builtin("head").expect("built in");
+    let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), head).threads(1);
+    let mut group = criterion.benchmark_group("savings/rendering-control-head");
+    group.throughput(Throughput::Elements(FIELDS));
+    for (name, pixels) in [("none", Pixels::Off), ("one field of 60", Pixels::Lazy), ("all", Pixels::All)] {
+        let experiment = experiment.clone().pixels(pixels);
+        let run = || {
+            let mut machine = experiment.build().expect("the preset is valid");
+            for field in (60..=FIELDS).step_by(60) {
+                let end = machine.video().retrace(field);
+                machine.run_until(end).expect("it runs");
+                if pixels == Pixels::Lazy {
+                    black_box(machine.frame_buffers()[0].last_seen().map(|seen| seen.picture()));
+                }
+            }
+            black_box(machine.finish_pixels())
+        };
+        group.bench_function(BenchmarkId::new("looked at", name), |b| b.iter(run));
+    }
+    group.finish();
+}
+
 fn quick() -> Criterion {
     Criterion::default()
         .sample_size(10)
@@ -53,5 +79,5 @@ fn quick() -> Criterion {
         .measurement_time(std::time::Duration::from_secs(2))
 }
 
-criterion_group! { name = benches; config = quick(); targets = savings }
+criterion_group! { name = benches; config = quick(); targets = savings, looking }
 criterion_main!(benches);
