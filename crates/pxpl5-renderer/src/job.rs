@@ -1,6 +1,6 @@
 //! Pixels of one region, computed when somebody looks.
 
-use crate::{Lanes, Layout, PixelArray};
+use crate::{Command, Lanes, Layout, PixelArray};
 use pxpl5_wire::{CommandWords, PixelSource, Word};
 use std::collections::HashMap;
 use std::fmt;
@@ -17,6 +17,7 @@ pub struct ArrayPool {
 /// Everything on which the pixels of a region without primitives depend.
 #[derive(Debug, PartialEq, Eq, Hash)]
 struct EmptyRegion {
+    /// All commands but those that say where the pixels go.
     words: Vec<Word>,
     cleared: bool,
     size: [u32; 2],
@@ -81,10 +82,23 @@ impl PixelJob {
         if !self.kept {
             return self.draw();
         }
-        let mut words = Vec::new();
-        self.lists.iter().for_each(|list| list.append_words(&mut words));
+        let Some(words) = self.words_without_copies() else { return self.draw() };
         let region = EmptyRegion { words, cleared: self.cleared, size: [self.width, self.height] };
         self.pool.empty_region(region, || self.draw())
+    }
+
+    /// `None` where something is no command.
+    fn words_without_copies(&self) -> Option<Vec<Word>> {
+        let (mut words, mut kept, mut at) = (Vec::new(), Vec::new(), 0);
+        self.lists.iter().for_each(|list| list.append_words(&mut words));
+        while at < words.len() {
+            let (command, length) = Command::decode(&words, at, &self.pool.layout).ok()?;
+            if !matches!(command, Command::CopyRegion(_)) {
+                kept.extend_from_slice(&words[at..at + length]);
+            }
+            at += length;
+        }
+        Some(kept)
     }
 
     fn draw(&self) -> Arc<[Word]> {
@@ -119,5 +133,49 @@ pub(crate) struct NoPixels {
 impl PixelSource for NoPixels {
     fn pixels(&self) -> Arc<[Word]> {
         vec![0; self.pixels as usize].into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Clear, CopyRegion, SelectRegion};
+    use pxpl5_wire::{CopyTarget, Lines, NodeId, RegionGrid, RegionId};
+
+    #[derive(Debug)]
+    struct Given(Vec<Word>);
+
+    impl CommandWords for Given {
+        fn append_words(&self, out: &mut Vec<Word>) {
+            out.extend_from_slice(&self.0);
+        }
+    }
+
+    /// A region cleared with a colour, for a picture.
+    fn cleared(pool: &Arc<ArrayPool>, colour: Word, picture: u64) -> Arc<[Word]> {
+        let target = CopyTarget {
+            frame_buffer: NodeId(9),
+            buffer: (picture % 2) as u8,
+            picture,
+            grid: RegionGrid::FRAME,
+            region: RegionId(3),
+            lines: Lines::Frame,
+        };
+        let select = Command::SelectRegion(SelectRegion { context: 0, left: 384, top: 0 });
+        let commands = [select, Command::Clear(Clear { colour }), Command::CopyRegion(CopyRegion { target })];
+        let mut words = Vec::new();
+        commands.iter().for_each(|command| command.encode(&pool.layout, &mut words).expect("it fits"));
+        let lists: Vec<Arc<dyn CommandWords>> = vec![Arc::new(Given(words))];
+        let (pool, done) = (Arc::clone(pool), OnceLock::new());
+        PixelJob { pool, lists, cleared: true, kept: true, width: 128, height: 120, done }.pixels()
+    }
+
+    #[test]
+    fn an_empty_region_is_drawn_once_whatever_picture_it_is_for_and_again_for_another_colour() {
+        let pool = ArrayPool::new(Layout::rendering_control_phong());
+        let [first, second, other] = [(0x10_20_30, 4), (0x10_20_30, 5), (0x10_20_31, 6)]
+            .map(|(colour, picture)| cleared(&pool, colour, picture));
+        assert!(Arc::ptr_eq(&first, &second));
+        assert!(first.iter().all(|pixel| *pixel == 0x10_20_30) && other.iter().all(|pixel| *pixel == 0x10_20_31));
     }
 }
