@@ -1,5 +1,7 @@
 //! Frame-buffer ports: one region at a time, in order of arrival.
 
+use super::renderer::{later, sooner};
+
 /// Copies that a renderer has to make, by frame buffer, and when it can begin.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Queue {
@@ -32,24 +34,25 @@ pub(super) fn copy_all(queues: &mut [Queue], region_ns: f64) -> CopyTimes {
     while let Some(next) = first_ready(queues) {
         let queue = &mut queues[next];
         let port = &mut ports[usize::from(queue.boards[queue.done])];
-        let begin = port.max(queue.ready_ns);
+        let begin = later(*port, queue.ready_ns);
         *port = begin + region_ns;
         queue.ready_ns = *port;
         queue.done += 1;
-        times.begin_ns = times.begin_ns.min(begin);
-        times.end_ns = times.end_ns.max(*port);
+        // A later copy may begin sooner, on the other port.
+        times.begin_ns = sooner(times.begin_ns, begin);
+        times.end_ns = later(times.end_ns, *port);
     }
     times
 }
 
 fn first_ready(queues: &[Queue]) -> Option<usize> {
-    let mut first: Option<usize> = None;
-    for (i, queue) in queues.iter().enumerate().filter(|(_, queue)| queue.done < queue.len) {
-        if first.is_none_or(|best| queue.ready_ns < queues[best].ready_ns) {
-            first = Some(i);
+    let mut first = (None, f64::INFINITY);
+    for (i, queue) in queues.iter().enumerate() {
+        if queue.done < queue.len && queue.ready_ns < first.1 {
+            first = (Some(i), queue.ready_ns);
         }
     }
-    first
+    first.0
 }
 
 #[cfg(test)]

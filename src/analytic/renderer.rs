@@ -6,6 +6,12 @@ pub(super) fn later(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
+/// The sooner of two times.
+#[inline]
+pub(super) fn sooner(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
 /// Words and time of what is sent.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cost {

@@ -174,31 +174,29 @@ impl SlatsModel {
 
     /// The messages of one clump of every GP, as many at a time as a port drives channels.
     fn send(&self, arrays: &mut [Array; MOST_RENDERERS], chain: &mut Chain, from_ns: f64, count: f64, first: bool) {
-        let mut channels = Channels::new(self.source_channels);
-        let mut granted_ns = from_ns;
-        (chain.accepted_ns, chain.draining_ns) = (from_ns, from_ns);
+        let (mut channels, mut granted_ns) = (Channels::new(self.source_channels), from_ns);
         let (of_first, of_others) = (self.commands(count, first), self.commands(count, false));
-        // Several GPs share the ports of the renderers: their messages follow each other.
-        for (region, renderer) in (0..REGIONS).zip((0..self.renderers).cycle()) {
-            let latency_ns = self.hop_ns * (renderer + self.gps) as f64;
-            for gp in 0..self.gps {
-                if gp == 0 {
-                    granted_ns = later(granted_ns, channels.take_first());
+        chain.accepted_ns = from_ns;
+        // A round is a region of every renderer.
+        for round in (0..REGIONS).step_by(self.renderers) {
+            let renderers = arrays.iter_mut().zip(&mut chain.released_ns).take(self.renderers.min(REGIONS - round));
+            for (renderer, (array, released_ns)) in renderers.enumerate() {
+                let latency_ns = self.hop_ns * (renderer + self.gps) as f64;
+                let mut carry = |begin_ns: f64, commands: &Commands| {
+                    let accepted_ns = array.take(begin_ns + self.overhead_ns + latency_ns, commands);
+                    chain.accepted_ns = later(chain.accepted_ns, accepted_ns);
+                    accepted_ns - latency_ns
+                };
+                granted_ns = later(later(granted_ns, channels.take_first()), *released_ns);
+                *released_ns = carry(granted_ns, &of_first);
+                channels.put(*released_ns);
+                // Several GPs share the ports of the renderers: their messages follow each other.
+                for _ in 1..self.gps {
+                    *released_ns = carry(later(granted_ns, *released_ns), &of_others);
                 }
-                let begin_ns = later(granted_ns, chain.released_ns[renderer]);
-                if gp == 0 {
-                    granted_ns = begin_ns;
-                }
-                let commands = if gp == 0 { &of_first } else { &of_others };
-                let accepted_ns = arrays[renderer].take(begin_ns + self.overhead_ns + latency_ns, commands);
-                chain.released_ns[renderer] = accepted_ns - latency_ns;
-                chain.accepted_ns = later(chain.accepted_ns, accepted_ns);
-                if region < self.renderers {
-                    chain.draining_ns = later(chain.draining_ns, accepted_ns);
-                }
-                if gp == 0 {
-                    channels.put(chain.released_ns[renderer]);
-                }
+            }
+            if round == 0 {
+                chain.draining_ns = chain.accepted_ns;
             }
         }
     }
