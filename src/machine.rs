@@ -355,6 +355,7 @@ impl Machine {
         }
     }
 
+    /// What the ring has brought to a board enters the trace now.
     fn bring(&mut self, now: Time, output: RingOutput) {
         let mut traffic = self.observation.traffic.as_deref_mut();
         let facts = |kind: u64, message: &Message| {

@@ -286,8 +286,7 @@ impl Ring {
     }
 
     fn has_channel_to(&self, destination: NodeId) -> bool {
-        let elastic = self.destinations[usize::from(destination.0)].elastic;
-        self.channels.has_free() && (elastic || self.to_fifos < self.timing.fifo_channels)
+        self.channels.has_free() && (self.is_elastic(destination) || self.to_fifos < self.timing.fifo_channels)
     }
 
     fn grant(&mut self, source: NodeId, context: &mut Out) {
