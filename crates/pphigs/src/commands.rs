@@ -1,9 +1,12 @@
 //! Messages of renderer commands: which kinds are in them, and their words on demand.
 
-use crate::list::Counts;
-use crate::pass::{Entry, Pass, Shading};
-use crate::placed::Placed;
-use pxpl5_geometry::{self as geometry, GouraudSphere, GouraudTriangle, SetupStats, SphereSetup, Transform};
+use crate::list::{Counts, DisplayList};
+use crate::pass::{Entry, Pass, Picture, Shading};
+use crate::placed::{Placed, Vertices};
+use pxpl5_geometry::{
+    self as geometry, GouraudSphere, GouraudTriangle, SeenSurface, SetupStats, SphereSetup, TOGETHER, Together,
+    Transform,
+};
 use pxpl5_renderer::{
     Clear, Command, CommandKind, CopyRegion, Layout, PhongSphere, PhongTriangle, PhongTriangleEncoder, SelectRegion,
     Shade, Sphere, SphereBody, Triangle, TriangleEncoder,
@@ -210,57 +213,79 @@ impl RegionWords {
             let end = place.structure.triangles.end;
             let (here, rest) = entries.split_at(entries.partition_point(|entry| (entry.triangle as usize) < end));
             entries = rest;
-            match self.pass.picture().shading {
+            match self.pass.encoder() {
                 _ if here.is_empty() => {}
-                Shading::Gouraud => self.gouraud(here, place, transform, out),
-                Shading::Phong => self.phong(here, place, transform, out),
+                Some(Encoder::Gouraud(encoder)) => self.gouraud(here, place, transform, encoder, out),
+                Some(Encoder::Phong(encoder)) => self.phong(here, place, transform, encoder, out),
+                None => {}
             }
         }
     }
 
-    fn gouraud(&self, entries: &[Entry], place: &Placed, transform: &Transform, out: &mut Vec<Word>) {
+    fn gouraud(
+        &self,
+        entries: &[Entry],
+        place: &Placed,
+        transform: &Transform,
+        encoder: &TriangleEncoder,
+        out: &mut Vec<Word>,
+    ) {
         let (list, picture, mut stats) = (self.pass.share().list(), self.pass.picture(), SetupStats::default());
-        let encoder = TriangleEncoder::new(&picture.layout);
-        let command = |t: GouraudTriangle| Triangle { edges: t.edges, depth: t.z, colour: t.rgb };
+        let command =
+            |t: Option<GouraudTriangle>| t.map_or(NOWHERE, |t| Triangle { edges: t.edges, depth: t.z, colour: t.rgb });
         let vertices = place.vertices(list, transform);
-        let colours = vertices.colours(list, transform, &place.light);
-        for entry in entries {
-            let number = entry.triangle as usize;
-            let at = vertices.corners(list, number);
-            if let (Some(_), Some(seen)) = (entry.piece, vertices.seen(&at)) {
-                let whole = transform.gouraud_seen(&seen, at.of(colours), &mut stats);
-                whole.into_iter().for_each(|t| encoder.encode(&command(t), out));
-                continue;
+        let surfaces = vertices.colours(list, transform, &place.light);
+        let mut batches = Batches { entries, vertices, list, surfaces, together: Together::default() };
+        while let Some(some) = batches.next() {
+            match some {
+                Batch::Whole(entries, together) => {
+                    let expressions = transform.gouraud_together(together, &mut stats);
+                    (0..entries.len()).for_each(|i| encoder.encode(&command(expressions.get(i)), out));
+                }
+                Batch::Piece(entry) => {
+                    let triangle = list.triangle(entry.triangle as usize);
+                    let piece = pick(entry, |sink| transform.gouraud(&triangle, &place.light, &mut stats, sink));
+                    encoder.encode(&command(piece.map(|piece| piece.gouraud(&picture.viewport, &mut stats))), out);
+                }
             }
-            let piece = pick(entry, |sink| transform.gouraud(&list.triangle(number), &place.light, &mut stats, sink));
-            let piece = piece.map(|piece| piece.gouraud(&picture.viewport, &mut stats));
-            encoder.encode(&piece.map_or(NOWHERE, command), out);
         }
     }
 
-    fn phong(&self, entries: &[Entry], place: &Placed, transform: &Transform, out: &mut Vec<Word>) {
+    fn phong(
+        &self,
+        entries: &[Entry],
+        place: &Placed,
+        transform: &Transform,
+        encoder: &PhongTriangleEncoder,
+        out: &mut Vec<Word>,
+    ) {
         let (list, picture, mut stats) = (self.pass.share().list(), self.pass.picture(), SetupStats::default());
-        let Ok(encoder) = PhongTriangleEncoder::new(&picture.layout) else { return };
-        let command = |t: geometry::PhongTriangle| PhongTriangle {
-            edges: t.edges,
-            depth: t.z,
-            normal: t.normal,
-            colour: rgb(t.colour),
+        let command = |t: Option<geometry::PhongTriangle>| {
+            t.map_or(PHONG_NOWHERE, |t| PhongTriangle {
+                edges: t.edges,
+                depth: t.z,
+                normal: t.normal,
+                colour: rgb(t.colour),
+            })
         };
         let vertices = place.vertices(list, transform);
-        let normals = vertices.normals(list, transform);
-        for entry in entries {
-            let number = entry.triangle as usize;
-            let at = vertices.corners(list, number);
-            if let (Some(_), Some(seen)) = (entry.piece, vertices.seen(&at)) {
-                let colour = list.colours[list.triangles[number][0] as usize];
-                let whole = transform.phong_seen(&seen, at.of(normals), colour, &mut stats);
-                whole.into_iter().for_each(|t| encoder.encode(&command(t), out));
-                continue;
+        let surfaces = vertices.normals(list, transform);
+        let mut batches = Batches { entries, vertices, list, surfaces, together: Together::default() };
+        while let Some(some) = batches.next() {
+            match some {
+                Batch::Whole(entries, together) => {
+                    let expressions = transform.phong_together(together, &mut stats);
+                    for (i, entry) in entries.iter().enumerate() {
+                        let colour = list.colours[list.triangles[entry.triangle as usize][0] as usize];
+                        encoder.encode(&command(expressions.get(i, colour)), out);
+                    }
+                }
+                Batch::Piece(entry) => {
+                    let triangle = list.triangle(entry.triangle as usize);
+                    let piece = pick(entry, |sink| transform.phong(&triangle, &mut stats, sink));
+                    encoder.encode(&command(piece.map(|piece| piece.phong(&picture.viewport, &mut stats))), out);
+                }
             }
-            let piece = pick(entry, |sink| transform.phong(&list.triangle(number), &mut stats, sink));
-            let piece = piece.map(|piece| piece.phong(&picture.viewport, &mut stats));
-            encoder.encode(&piece.map_or(PHONG_NOWHERE, command), out);
         }
     }
 
@@ -296,6 +321,62 @@ impl RegionWords {
             ambient: share(light.ambient),
             diffuse: share(light.diffuse),
             specular: SPECULAR,
+        }
+    }
+}
+
+/// Entries of a bin in order.
+struct Batches<'a> {
+    entries: &'a [Entry],
+    vertices: &'a Vertices,
+    list: &'a DisplayList,
+    /// Of all vertices.
+    surfaces: &'a [SeenSurface],
+    together: Together,
+}
+
+enum Batch<'a> {
+    /// Some that are set up together; those of which nothing is seen are among them.
+    Whole(&'a [Entry], &'a Together),
+    /// A triangle that was clipped.
+    Piece(&'a Entry),
+}
+
+impl Batches<'_> {
+    fn next(&mut self) -> Option<Batch<'_>> {
+        let together = &mut self.together;
+        together.clear();
+        for entry in self.entries.iter().take(TOGETHER) {
+            let at = self.vertices.corners(self.list, entry.triangle as usize);
+            match (entry.piece, self.vertices.seen(&at)) {
+                (None, _) => together.push_nothing(),
+                (Some(_), Some(seen)) => together.push(&seen, at.of(self.surfaces)),
+                (Some(_), None) if together.is_empty() => {
+                    self.entries = &self.entries[1..];
+                    return Some(Batch::Piece(entry));
+                }
+                (Some(_), None) => break,
+            }
+        }
+        let (now, later) = self.entries.split_at(self.together.len());
+        self.entries = later;
+        (!now.is_empty()).then_some(Batch::Whole(now, &self.together))
+    }
+}
+
+/// Makes the words of a picture's triangles.
+#[derive(Debug)]
+pub(crate) enum Encoder {
+    Gouraud(TriangleEncoder),
+    Phong(PhongTriangleEncoder),
+}
+
+impl Encoder {
+    /// `None` where the layout cannot hold what they need, which is refused when the machine is configured.
+    pub(crate) fn of(picture: &Picture) -> Option<Self> {
+        match picture.shading {
+            Shading::Gouraud => Some(Self::Gouraud(TriangleEncoder::new(&picture.layout))),
+            Shading::Phong => PhongTriangleEncoder::new(&picture.layout).ok().map(Self::Phong),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! One TRANSFORM of a GP's share for one eye.
 
+use crate::commands::Encoder;
 use crate::list::{Counts, Share};
 use crate::placed::{Placed, RecentViews};
 use crate::view::FrameView;
@@ -69,6 +70,8 @@ pub struct Pass {
     bins: Vec<Bin>,
     screen_counts: Counts,
     stats: SetupStats,
+    /// `None` without pixels.
+    encoder: Option<Encoder>,
 }
 
 impl Pass {
@@ -84,6 +87,7 @@ impl Pass {
             bins,
             screen_counts: Counts::default(),
             stats: SetupStats::default(),
+            encoder: picture.pixels.then(|| Encoder::of(&picture)).flatten(),
         };
         pass.binitize();
         pass
@@ -205,6 +209,10 @@ impl Pass {
 
     pub(crate) fn placed(&self) -> &[Placed] {
         &self.placed
+    }
+
+    pub(crate) const fn encoder(&self) -> Option<&Encoder> {
+        self.encoder.as_ref()
     }
 
     pub(crate) fn bin(&self, region: RegionId) -> &Bin {

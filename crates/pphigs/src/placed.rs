@@ -3,9 +3,7 @@
 use crate::list::{DisplayList, Frame, Structure, UNMOVED};
 use crate::view::{EyeView, FrameView, ModelEdit, product};
 use glam::{Mat4, Vec3};
-use pxpl5_geometry::{
-    Culling, Light, SeenColour, SeenNormal, SeenTriangle, SeenVertex, Transform, ViewTransform, Viewport,
-};
+use pxpl5_geometry::{Culling, Light, SeenSurface, SeenTriangle, SeenVertex, Transform, ViewTransform, Viewport};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -26,8 +24,8 @@ pub struct Placed {
 pub(crate) struct Vertices {
     first: usize,
     seen: Vec<SeenVertex>,
-    normals: OnceLock<Vec<SeenNormal>>,
-    colours: OnceLock<Vec<SeenColour>>,
+    normals: OnceLock<Vec<SeenSurface>>,
+    colours: OnceLock<Vec<SeenSurface>>,
 }
 
 /// All structures of a display list as an eye (0, or 0 and 1) of a view sees them.
@@ -74,7 +72,7 @@ impl Vertices {
     }
 
     /// The normals of all vertices.
-    pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[SeenNormal] {
+    pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[SeenSurface] {
         self.normals.get_or_init(|| {
             let all = self.first..self.first + self.seen.len();
             let (positions, normals) = (&list.positions[all.clone()], &list.normals[all]);
@@ -83,7 +81,7 @@ impl Vertices {
     }
 
     /// The lit colours of all vertices.
-    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[SeenColour] {
+    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[SeenSurface] {
         self.colours.get_or_init(|| {
             let all = self.first..self.first + self.seen.len();
             let colour = |i: usize| transform.see_colour(light, list.positions[i], list.normals[i], list.colours[i]);

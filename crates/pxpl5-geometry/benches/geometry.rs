@@ -3,7 +3,10 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{Mat4, Vec3};
-use pxpl5_geometry::{Culling, Light, SeenTriangle, SetupStats, Transform, Triangle, ViewTransform, Viewport};
+use pxpl5_geometry::{
+    Culling, Light, SeenSurface, SeenTriangle, SetupStats, TOGETHER, Together, Transform, Triangle, ViewTransform,
+    Viewport,
+};
 use std::hint::black_box;
 
 /// A sphere of `2 * 186 * 160` = 59,520 triangles, as many as the head of the published measurements.
@@ -140,22 +143,30 @@ fn setup(c: &mut Criterion) {
     let colours = ball.positions.iter().zip(&ball.colours);
     let colours: Vec<_> = colours.map(|(p, c)| view.see_colour(&Light::HEADLIGHT, *p, *p, *c)).collect();
     let normals: Vec<_> = ball.positions.iter().map(|p| view.see_normal(*p, *p)).collect();
-    let shared = |[a, b, c]: [usize; 3]| SeenTriangle::of([&vertices[a], &vertices[b], &vertices[c]]);
-    group.bench_function("gouraud/shared vertices", |bencher| {
+    let fill = |together: &mut Together, some: &[[u32; 3]], surfaces: &[SeenSurface]| {
+        together.clear();
+        for corners in some {
+            let [a, b, c] = corners.map(|i| i as usize);
+            let Some(triangle) = SeenTriangle::of([&vertices[a], &vertices[b], &vertices[c]]) else { continue };
+            together.push(&triangle, [&surfaces[a], &surfaces[b], &surfaces[c]]);
+        }
+    };
+    let mut together = Together::default();
+    group.bench_function("gouraud/together", |bencher| {
         bencher.iter(|| {
-            for corners in &ball.triangles {
-                let [a, b, c] = corners.map(|i| i as usize);
-                let surface = [&colours[a], &colours[b], &colours[c]];
-                black_box(shared([a, b, c]).and_then(|t| view.gouraud_seen(&t, surface, &mut stats)));
+            for some in ball.triangles.chunks(TOGETHER) {
+                fill(&mut together, some, &colours);
+                let expressions = view.gouraud_together(&together, &mut stats);
+                (0..some.len()).for_each(|i| _ = black_box(expressions.get(i)));
             }
         });
     });
-    group.bench_function("phong/shared vertices", |bencher| {
+    group.bench_function("phong/together", |bencher| {
         bencher.iter(|| {
-            for corners in &ball.triangles {
-                let [a, b, c] = corners.map(|i| i as usize);
-                let surface = [&normals[a], &normals[b], &normals[c]];
-                black_box(shared([a, b, c]).and_then(|t| view.phong_seen(&t, surface, [200; 3], &mut stats)));
+            for some in ball.triangles.chunks(TOGETHER) {
+                fill(&mut together, some, &normals);
+                let expressions = view.phong_together(&together, &mut stats);
+                (0..some.len()).for_each(|i| _ = black_box(expressions.get(i, [200; 3])));
             }
         });
     });

@@ -87,6 +87,7 @@ mod seen;
 mod sphere;
 mod sphere_setup;
 mod stats;
+mod together;
 mod transform;
 mod view;
 
@@ -98,9 +99,10 @@ pub use screen::{
     DEPTH_FAR, DEPTH_NEAR, GUARD_PIXELS, GouraudTriangle, LitColours, NORMAL_UNIT, Outline, PhongTriangle,
     ScreenTriangle, SurfaceNormals,
 };
-pub use seen::{SeenColour, SeenNormal, SeenTriangle, SeenVertex};
+pub use seen::{SeenSurface, SeenTriangle, SeenVertex};
 pub use sphere::ScreenSphere;
 pub use sphere_setup::{GouraudSphere, PhongSphere, SphereSetup};
 pub use stats::SetupStats;
+pub use together::{GouraudTogether, PhongTogether, TOGETHER, Together};
 pub use transform::{Culling, Transform, TriangleEnds};
 pub use view::{MAX_PICTURE, ViewError, ViewTransform, Viewport};

@@ -26,8 +26,13 @@ const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Nearest integer of a value below 2^51 in absolute value, modulo 2^32.
 #[inline(always)]
-fn rounded(value: f64) -> i32 {
+pub(crate) fn rounded(value: f64) -> i32 {
     (value + ROUND).to_bits() as i32
+}
+
+/// What a plane that is too steep becomes.
+pub(crate) fn flat(v: [f64; 3]) -> Linear {
+    Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }
 
 /// What the planes of one triangle share.
@@ -68,7 +73,7 @@ impl Planes {
         let slope_y = (d2 * self.x[0] - d1 * self.x[1]) * self.per_pixel;
         if slope_x.abs() > MAX_SLOPE || slope_y.abs() > MAX_SLOPE {
             stats.flattened_planes += 1;
-            return Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0));
+            return flat(v);
         }
         let there = (v[0] + slope_x * self.to_reference[0]) + slope_y * self.to_reference[1];
         let (a, b) = (rounded(slope_x), rounded(slope_y));

@@ -45,9 +45,9 @@ pub(crate) struct ToScreen {
 /// A vertex on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Snapped {
-    x: i32,
-    y: i32,
-    z: u32,
+    pub(crate) x: i32,
+    pub(crate) y: i32,
+    pub(crate) z: u32,
 }
 
 /// The corners of a triangle on the screen in two views.

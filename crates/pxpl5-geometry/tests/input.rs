@@ -4,8 +4,8 @@ mod support;
 
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
-    Culling, Light, LitColours, ScreenTriangle, SeenTriangle, SetupStats, Sphere, Transform, Triangle, ViewError,
-    ViewTransform, Viewport,
+    Culling, Light, LitColours, ScreenTriangle, SeenSurface, SeenTriangle, SetupStats, Sphere, TOGETHER, Together,
+    Transform, Triangle, ViewError, ViewTransform, Viewport,
 };
 use support::random::Random;
 use support::spheres::{self, ExactSphere, native};
@@ -123,9 +123,17 @@ fn shared_vertices_give_what_their_triangles_give() {
             let colour = |i: usize| transform.see_colour(&light, t.positions[i], t.normals[i], t.colours[i]);
             let normal = |i: usize| transform.see_normal(t.positions[i], t.normals[i]);
             let (colours, facing) = ([0, 1, 2].map(colour), [0, 1, 2].map(normal));
-            let found = transform.gouraud_seen(&seen, colours.each_ref(), &mut stats[1]);
-            assert_eq!(found, Some(lit.gouraud(&Viewport::FRAME, &mut stats[0])), "{}", case.name);
-            let found = transform.phong_seen(&seen, facing.each_ref(), t.colours[0], &mut stats[1]);
+            let lane = n % TOGETHER;
+            let together = |surface: &[SeenSurface; 3]| {
+                let mut together = Together::default();
+                (0..lane).for_each(|_| together.push_nothing());
+                together.push(&seen, surface.each_ref());
+                together
+            };
+            let found = transform.gouraud_together(&together(&colours), &mut stats[1]);
+            assert_eq!(found.get(lane), Some(lit.gouraud(&Viewport::FRAME, &mut stats[0])), "{}", case.name);
+            assert!((0..lane).all(|empty| found.get(empty).is_none()));
+            let found = transform.phong_together(&together(&facing), &mut stats[1]).get(lane, t.colours[0]);
             assert_eq!(found, Some(normals.phong(&Viewport::FRAME, &mut stats[0])), "{}", case.name);
             assert_eq!(stats[0], stats[1], "{}", case.name);
         }

@@ -158,7 +158,7 @@ fn draw(layout: &Layout, commands: &[Command]) -> Result<Vec<u32>, Box<dyn Error
     }
     let mut array = Lanes::new(layout);
     array.execute(&words)?;
-    Ok(array.read_colour(128, 128))
+    Ok(array.read_colour(128, 128).to_vec())
 }
 
 fn save(path: &Path, pixels: &[u32]) -> Result<(), Box<dyn Error>> {

@@ -3,6 +3,7 @@
 use crate::isa::{DecodeErrorKind, Operand};
 use pxpl5_wire::{CopyTarget, REGION_SIZE, Word};
 use std::fmt;
+use std::sync::Arc;
 
 /// Pixels of the array: 128 x 128 (F89).
 pub const PIXELS: usize = (REGION_SIZE * REGION_SIZE) as usize;
@@ -44,7 +45,7 @@ pub trait PixelArray {
 
     /// The colour of the selected context, 0x00RRGGBB, row by row, of the left top `width` x `height` pixels (at most
     /// 128 x 128).
-    fn read_colour(&self, width: u32, height: u32) -> Vec<Word>;
+    fn read_colour(&self, width: u32, height: u32) -> Arc<[Word]>;
 
     /// Everything to zero: pixel memory, Enable, backing store, selected region, count of faults.
     fn reset(&mut self);
@@ -70,7 +71,7 @@ pub struct OutputRegion {
     /// Where they go.
     pub target: CopyTarget,
     /// One word a pixel, 0x00RRGGBB, row by row of the region's rectangle.
-    pub pixels: Vec<Word>,
+    pub pixels: Arc<[Word]>,
 }
 
 /// An instruction that cannot be executed.

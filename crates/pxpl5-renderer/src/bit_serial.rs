@@ -12,6 +12,7 @@ use crate::isa::{BACKING_BLOCKS, Instruction, MEMORY_BITS, Operand};
 use crate::layout::Layout;
 use crate::simd::{Present, Vectors};
 use pxpl5_wire::Word;
+use std::sync::Arc;
 
 /// 208 bit planes, an Enable plane, and serial adders: what the hardware has, and nothing else.
 ///
@@ -120,7 +121,7 @@ impl BitSerial {
         Ok(())
     }
 
-    fn colour(&self, field: Bits, width: u32, height: u32) -> Vec<Word> {
+    fn colour(&self, field: Bits, width: u32, height: u32) -> Arc<[Word]> {
         let (width, height) = (width.min(128) as usize, height.min(128) as usize);
         let planes = &self.memory[field.first..field.end()];
         let pixel = |x: usize, y: usize| {
@@ -152,9 +153,9 @@ impl PixelArray for BitSerial {
         self.enable = *plane;
     }
 
-    fn read_colour(&self, width: u32, height: u32) -> Vec<Word> {
+    fn read_colour(&self, width: u32, height: u32) -> Arc<[Word]> {
         let colour = self.controller.bits(self.layout.plan().colour);
-        colour.map_or_else(|_| Vec::new(), |field| self.colour(field, width, height))
+        colour.map_or_else(|_| Arc::default(), |field| self.colour(field, width, height))
     }
 
     fn reset(&mut self) {

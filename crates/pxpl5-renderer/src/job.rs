@@ -113,7 +113,7 @@ impl PixelJob {
                 // A fault stops the list, as on the hardware; what was drawn before stays.
                 let _ = array.execute(&words);
             }
-            array.read_colour(self.width, self.height).into()
+            array.read_colour(self.width, self.height)
         })
     }
 }

@@ -3,6 +3,7 @@
 mod bounds;
 mod columns;
 mod ellipse;
+mod enable;
 mod general;
 mod large;
 mod roots;
@@ -12,13 +13,15 @@ mod triangle;
 mod values;
 mod whole;
 
-use crate::array::{EMPTY_PLANE, Executed, Fault, FaultKind, PIXELS, PixelArray, Plane};
+use crate::array::{Executed, Fault, FaultKind, PIXELS, PixelArray, Plane};
 use crate::controller::{Bits, Controller};
 use crate::isa::{BACKING_BLOCKS, Instruction, opcode};
 use crate::layout::Layout;
 use crate::simd::{Present, Vectors};
 use columns::Columns;
+use enable::Enable;
 use pxpl5_wire::{REGION_SIZE, Word};
+use std::sync::Arc;
 use whole::{ContextColumns, Templates};
 
 /// The array by values: one word a pixel and field.
@@ -34,8 +37,7 @@ pub struct Lanes {
     columns: Columns,
     /// Of the context that was used last.
     selected: Option<ContextColumns>,
-    /// 255 where the pixel is enabled, else 0.
-    enable: Box<[u8; PIXELS]>,
+    enable: Enable,
     backing: Vec<Option<Box<[u64]>>>,
     operands: [Vec<u64>; 2],
     faults: u64,
@@ -58,7 +60,7 @@ impl Lanes {
             controller: Controller::default(),
             columns: Columns::new(layout),
             selected: None,
-            enable: Box::new([0; PIXELS]),
+            enable: Enable::new(),
             backing: vec![None; usize::from(BACKING_BLOCKS)],
             operands: [vec![0; PIXELS], vec![0; PIXELS]],
             faults: 0,
@@ -91,17 +93,24 @@ impl Lanes {
         Ok(used)
     }
 
-    fn colour(&self, field: Bits, width: u32, height: u32) -> Vec<Word> {
-        let (width, height) = (width.min(REGION_SIZE) as usize, height as usize);
+    fn colour(&self, field: Bits, width: u32, height: u32) -> Arc<[Word]> {
         if let Some(column) = self.columns.find(field.first, field.width) {
-            let rows = self.columns.values(column).0.chunks(REGION_SIZE as usize).take(height);
-            return rows.flat_map(|row| &row[..width]).copied().collect();
+            return rectangle(&self.columns.values(column).0, width, height);
         }
         let mut values = vec![0; PIXELS];
         self.columns.gather(field, &mut values);
-        let rows = values.chunks(REGION_SIZE as usize).take(height);
-        rows.flat_map(|row| row[..width].iter().map(|v| *v as Word)).collect()
+        rectangle(&values.iter().map(|v| *v as Word).collect::<Vec<_>>(), width, height)
     }
+}
+
+/// The left top `width` x `height` of all pixels.
+fn rectangle(pixels: &[Word], width: u32, height: u32) -> Arc<[Word]> {
+    const WIDTH: usize = REGION_SIZE as usize;
+    let (width, height) = (WIDTH.min(width as usize), WIDTH.min(height as usize));
+    if width == WIDTH {
+        return pixels[..width * height].into();
+    }
+    pixels.chunks(WIDTH).take(height).flat_map(|row| &row[..width]).copied().collect()
 }
 
 impl PixelArray for Lanes {
@@ -118,28 +127,22 @@ impl PixelArray for Lanes {
     }
 
     fn enable(&self) -> Plane {
-        let mut plane = EMPTY_PLANE;
-        for (pixel, enable) in self.enable.iter().enumerate() {
-            plane[pixel / 64] |= u64::from(enable & 1) << (pixel % 64);
-        }
-        plane
+        self.enable.plane()
     }
 
     fn set_enable(&mut self, plane: &Plane) {
-        for (pixel, enable) in self.enable.iter_mut().enumerate() {
-            *enable = if plane[pixel / 64] >> (pixel % 64) & 1 == 1 { 255 } else { 0 };
-        }
+        self.enable.set_plane(plane);
     }
 
-    fn read_colour(&self, width: u32, height: u32) -> Vec<Word> {
+    fn read_colour(&self, width: u32, height: u32) -> Arc<[Word]> {
         let colour = self.controller.bits(self.layout.plan().colour);
-        colour.map_or_else(|_| Vec::new(), |field| self.colour(field, width, height))
+        colour.map_or_else(|_| Arc::default(), |field| self.colour(field, width, height))
     }
 
     fn reset(&mut self) {
         self.controller = Controller::default();
         self.columns.clear();
-        self.enable.fill(0);
+        self.enable.fill(false);
         self.backing.fill(None);
         self.faults = 0;
     }

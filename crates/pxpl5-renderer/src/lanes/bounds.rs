@@ -38,19 +38,6 @@ struct Limit {
 }
 
 impl Bounds {
-    /// `None` where no pixel is inside.
-    #[inline(always)]
-    pub(super) fn of(edges: &[Linear; 3]) -> Option<Self> {
-        let lanes = Lanes::of(edges);
-        let area = match lanes.corners() {
-            Some(corners) => corners.area()?,
-            None if lanes.straight() && edges.iter().any(|e| largest(e) < 0) => return None,
-            None => WHOLE,
-        };
-        let wide = area.right - area.left > 24 && area.bottom - area.top > 2 && lanes.straight();
-        Some(Self { area, limits: wide.then(|| edges.each_ref().map(Limit::of)) })
-    }
-
     /// First and one past the last column of row `y`.
     #[inline(always)]
     pub(super) fn row(&self, y: usize) -> (usize, usize) {
@@ -78,75 +65,141 @@ impl Limit {
     }
 }
 
-/// The coefficients of three edges side by side, the third one twice: four lanes are a vector.
-struct Lanes {
-    a: [f64; 4],
-    b: [f64; 4],
-    c: [f64; 4],
+/// Triangles that are looked at side by side: a vector of the widest unit holds one number of each.
+pub(super) const SIDE_BY_SIDE: usize = 8;
+
+/// A number of each of some triangles.
+type Numbers<T> = [T; SIDE_BY_SIDE];
+
+/// The edges of some triangles over the array's own columns and rows; edge `e` of triangle `i` at `[e][i]`.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Edges {
+    a: [Numbers<i32>; 3],
+    b: [Numbers<i32>; 3],
+    c: [Numbers<i32>; 3],
 }
 
-/// Corner i, times its determinant, is where edges i and i + 1 are zero; the third one twice.
-struct Corners {
-    determinant: [f64; 4],
-    x: [f64; 4],
-    y: [f64; 4],
+impl Edges {
+    /// Sets the edges of triangle `i`.
+    #[inline(always)]
+    pub(super) fn set(&mut self, i: usize, edges: [[i32; 3]; 3]) {
+        for (e, [a, b, c]) in edges.into_iter().enumerate() {
+            (self.a[e][i], self.b[e][i], self.c[e][i]) = (a, b, c);
+        }
+    }
+
+    /// Takes all to an array that begins with this column and row of the picture.
+    #[inline(always)]
+    pub(super) fn localise(&mut self, [left, top]: [i32; 2]) {
+        for e in 0..3 {
+            for i in 0..SIDE_BY_SIDE {
+                let moved = self.a[e][i].wrapping_mul(left).wrapping_add(self.b[e][i].wrapping_mul(top));
+                self.c[e][i] = self.c[e][i].wrapping_add(moved);
+            }
+        }
+    }
+
+    /// The edges of triangle `i`.
+    #[inline(always)]
+    pub(super) const fn get(&self, i: usize) -> [Linear; 3] {
+        [self.edge(0, i), self.edge(1, i), self.edge(2, i)]
+    }
+
+    #[inline(always)]
+    const fn edge(&self, e: usize, i: usize) -> Linear {
+        Linear { a: self.a[e][i], b: self.b[e][i], c: self.c[e][i] }
+    }
+}
+
+/// Boxes of some triangles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Boxes {
+    /// First column and row that the corners leave, 0 to 128; the last ones, -1 to 127.
+    x: [Numbers<i32>; 2],
+    y: [Numbers<i32>; 2],
+    /// The edges enclose a triangle: normals that turn the same way at all corners leave no way out to infinity.
+    closed: Numbers<bool>,
+    /// No value in the array needs more than 32 bits, so the edges are straight lines.
+    straight: Numbers<bool>,
 }
 
 /// Pixels by which an edge may be followed from the array's first one: then no coefficient has more than 22 bits, nor the
 /// constant more than 31, and their products are exact in 53.
 const REACH: f64 = 512.0;
 
-impl Lanes {
+impl Boxes {
     #[inline(always)]
-    fn of([e, f, g]: &[Linear; 3]) -> Self {
-        let four = |p: i32, q: i32, r: i32| [f64::from(p), f64::from(q), f64::from(r), f64::from(r)];
-        Self { a: four(e.a, f.a, g.a), b: four(e.b, f.b, g.b), c: four(e.c, f.c, g.c) }
+    pub(super) fn of(edges: &Edges) -> Self {
+        let (a, b, c) = (three(&edges.a), three(&edges.b), three(&edges.c));
+        let mut straight = [true; SIDE_BY_SIDE];
+        let (mut left, mut right) = ([true; SIDE_BY_SIDE], [true; SIDE_BY_SIDE]);
+        let (mut low, mut high) = ([[f64::INFINITY; SIDE_BY_SIDE]; 2], [[f64::NEG_INFINITY; SIDE_BY_SIDE]; 2]);
+        for e in 0..3 {
+            let f = (e + 1) % 3;
+            for i in 0..SIDE_BY_SIDE {
+                straight[i] &= REACH * (a[e][i].abs() + b[e][i].abs()) + c[e][i].abs() <= f64::from(i32::MAX);
+                // Times this, the corner is where edges e and f are zero.
+                let determinant = a[e][i] * b[f][i] - a[f][i] * b[e][i];
+                left[i] &= determinant > 0.0;
+                right[i] &= determinant < 0.0;
+                let scale = 1.0 / determinant;
+                let x = (b[e][i] * c[f][i] - b[f][i] * c[e][i]) * scale;
+                let y = (a[f][i] * c[e][i] - a[e][i] * c[f][i]) * scale;
+                (low[0][i], high[0][i]) = (low[0][i].min(x), high[0][i].max(x));
+                (low[1][i], high[1][i]) = (low[1][i].min(y), high[1][i].max(y));
+            }
+        }
+        let mut closed = [false; SIDE_BY_SIDE];
+        for i in 0..SIDE_BY_SIDE {
+            closed[i] = (left[i] | right[i]) & straight[i];
+        }
+        Self { x: pixels(&low[0], &high[0]), y: pixels(&low[1], &high[1]), closed, straight }
     }
 
-    /// No value in the array needs more than 32 bits, so the edges are straight lines.
+    /// The bounds of triangle `i`, which has these edges; `None` where no pixel is inside.
     #[inline(always)]
-    fn straight(&self) -> bool {
-        let mut straight = true;
-        for i in 0..4 {
-            straight &= REACH * (self.a[i].abs() + self.b[i].abs()) + self.c[i].abs() <= f64::from(i32::MAX);
-        }
-        straight
+    pub(super) fn bounds(&self, i: usize, edges: &[Linear; 3]) -> Option<Bounds> {
+        let area = if self.closed[i] {
+            self.area(i)?
+        } else if self.straight[i] && edges.iter().any(|e| largest(e) < 0) {
+            return None;
+        } else {
+            WHOLE
+        };
+        let wide = area.right - area.left > 24 && area.bottom - area.top > 2 && self.straight[i];
+        Some(Bounds { area, limits: wide.then(|| edges.each_ref().map(Limit::of)) })
     }
 
-    /// `None` unless straight edges enclose a triangle: normals that turn the same way at all corners leave no way out to
-    /// infinity.
     #[inline(always)]
-    fn corners(&self) -> Option<Corners> {
-        let next = |[_, q, r, _]: [f64; 4], p: f64| [q, r, p, p];
-        let (p, q, r) = (next(self.a, self.a[0]), next(self.b, self.b[0]), next(self.c, self.c[0]));
-        let mut corners = Corners { determinant: [0.0; 4], x: [0.0; 4], y: [0.0; 4] };
-        let (mut left, mut right) = (true, true);
-        for i in 0..4 {
-            let determinant = self.a[i] * q[i] - p[i] * self.b[i];
-            left &= determinant > 0.0;
-            right &= determinant < 0.0;
-            corners.determinant[i] = determinant;
-            corners.x[i] = self.b[i] * r[i] - q[i] * self.c[i];
-            corners.y[i] = p[i] * self.c[i] - self.a[i] * r[i];
-        }
-        ((left | right) & self.straight()).then_some(corners)
+    fn area(&self, i: usize) -> Option<Area> {
+        let ([left, right], [top, bottom]) = (self.x.map(|v| v[i]), self.y.map(|v| v[i]));
+        let end = |last: i32| (last + 1) as usize;
+        let area = Area { left: left as usize, right: end(right), top: top as usize, bottom: end(bottom) };
+        (left <= right && top <= bottom).then_some(area)
     }
 }
 
-impl Corners {
-    /// The box of the corners within the array.
-    #[inline(always)]
-    fn area(&self) -> Option<Area> {
-        let (mut x, mut y) = ([0.0; 4], [0.0; 4]);
-        for i in 0..4 {
-            let scale = 1.0 / self.determinant[i];
-            x[i] = self.x[i] * scale;
-            y[i] = self.y[i] * scale;
+#[inline(always)]
+fn three(v: &[Numbers<i32>; 3]) -> [Numbers<f64>; 3] {
+    let mut out = [[0.0; SIDE_BY_SIDE]; 3];
+    for (out, v) in out.iter_mut().zip(v) {
+        for (out, v) in out.iter_mut().zip(v) {
+            *out = f64::from(*v);
         }
-        let (left, right) = range(x)?;
-        let (top, bottom) = range(y)?;
-        Some(Area { left, right, top, bottom })
     }
+    out
+}
+
+/// First and last pixel of some intervals.
+#[inline(always)]
+fn pixels(low: &Numbers<f64>, high: &Numbers<f64>) -> [Numbers<i32>; 2] {
+    const BEYOND: f64 = (LAST + 1) as f64;
+    let mut out = [[0; SIDE_BY_SIDE]; 2];
+    for i in 0..SIDE_BY_SIDE {
+        out[0][i] = (low[i] - MARGIN).ceil().clamp(0.0, BEYOND) as i32;
+        out[1][i] = (high[i] + MARGIN).floor().clamp(-1.0, LAST as f64) as i32;
+    }
+    out
 }
 
 /// The largest value in the array.
@@ -156,17 +209,17 @@ fn largest(e: &Linear) -> i64 {
     c + LAST * (a.max(0) + b.max(0))
 }
 
-#[inline(always)]
-fn range([a, b, c, _]: [f64; 4]) -> Option<(usize, usize)> {
-    let low = (a.min(b).min(c) - MARGIN).ceil().max(0.0);
-    let high = (a.max(b).max(c) + MARGIN).floor().min(LAST as f64);
-    (low <= high).then_some((low as usize, high as usize + 1))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::conformance::Random;
+
+    /// The bounds of one triangle among others.
+    fn bounds(edges: &[Linear; 3]) -> Option<Bounds> {
+        let mut all = Edges::default();
+        all.set(5, edges.map(|e| [e.a, e.b, e.c]));
+        Boxes::of(&all).bounds(5, edges)
+    }
 
     fn touched(edges: &[Linear; 3]) -> Vec<(usize, usize)> {
         let pixels = (0..128).flat_map(|y| (0..128).map(move |x| (x, y)));
@@ -186,7 +239,7 @@ mod tests {
             let edges = [(); 3].map(|()| random_edge(&mut random));
             let pixels = touched(&edges);
             inside += pixels.len();
-            let Some(bounds) = Bounds::of(&edges) else {
+            let Some(bounds) = bounds(&edges) else {
                 assert_eq!(pixels, []);
                 continue;
             };
@@ -204,7 +257,7 @@ mod tests {
         // (10, 20), (14, 20), (10, 26).
         let edges =
             [Linear { a: 1, b: 0, c: -10 }, Linear { a: 0, b: 1, c: -20 }, Linear { a: -6, b: -4, c: 6 * 14 + 4 * 20 }];
-        let area = Bounds::of(&edges).unwrap().area;
+        let area = bounds(&edges).unwrap().area;
         assert_eq!(area, Area { left: 10, right: 15, top: 20, bottom: 27 });
     }
 }

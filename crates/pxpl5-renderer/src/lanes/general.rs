@@ -34,16 +34,16 @@ impl Lanes {
 
     fn enable_instruction(&mut self, instruction: &Instruction) -> Done {
         match *instruction {
-            Instruction::EnableAll { .. } => self.enable.fill(255),
-            Instruction::EnableNone => self.enable.fill(0),
-            Instruction::EnableInvert => self.enable.iter_mut().for_each(|e| *e = !*e),
+            Instruction::EnableAll { .. } => self.enable.fill(true),
+            Instruction::EnableNone => self.enable.fill(false),
+            Instruction::EnableInvert => self.enable.pixels_mut().iter_mut().for_each(|e| *e = !*e),
             Instruction::EnableLoad(bit) => {
-                self.enable.fill(255);
+                self.enable.fill(true);
                 self.disable_unless(bit, |v| v & 1 == 1)?;
             }
             Instruction::EnableAnd(bit) => self.disable_unless(bit, |v| v & 1 == 1)?,
             Instruction::EnableStore(bit) => {
-                let values: Vec<_> = self.enable.iter().map(|e| u64::from(*e)).collect();
+                let values: Vec<_> = self.enable.pixels().iter().map(|e| u64::from(*e)).collect();
                 self.columns.scatter(self.controller.bits(bit)?, &values, &[255; PIXELS]);
             }
             Instruction::Compare { test, a, b } => self.compare(test, a, b)?,
@@ -95,7 +95,7 @@ impl Lanes {
     /// Stores the first operand buffer under Enable.
     fn store(&mut self, destination: Operand) -> Done {
         let field = self.controller.bits(destination)?;
-        self.columns.scatter(field, &self.operands[0], &self.enable[..]);
+        self.columns.scatter(field, &self.operands[0], self.enable.pixels());
         Ok(())
     }
 
@@ -129,7 +129,7 @@ impl Lanes {
 
     fn disable_unless(&mut self, a: Operand, f: impl Fn(u64) -> bool) -> Done {
         self.gather(0, a)?;
-        for (enable, v) in self.enable.iter_mut().zip(&self.operands[0]) {
+        for (enable, v) in self.enable.pixels_mut().iter_mut().zip(&self.operands[0]) {
             *enable &= if f(*v) { 255 } else { 0 };
         }
         Ok(())
@@ -139,7 +139,7 @@ impl Lanes {
         self.gather(1, b)?;
         self.gather(0, a)?;
         let pairs = self.operands[0].iter().zip(&self.operands[1]);
-        for (enable, (a_value, b_value)) in self.enable.iter_mut().zip(pairs) {
+        for (enable, (a_value, b_value)) in self.enable.pixels_mut().iter_mut().zip(pairs) {
             let holds = values::holds(test, *a_value, *b_value, a.signed);
             *enable &= if holds { 255 } else { 0 };
         }
@@ -150,7 +150,7 @@ impl Lanes {
         match *usage {
             ExpressionUse::DisableNegative => {
                 self.expression(local, 0, |e, _, _| e);
-                for (enable, v) in self.enable.iter_mut().zip(&self.operands[0]) {
+                for (enable, v) in self.enable.pixels_mut().iter_mut().zip(&self.operands[0]) {
                     *enable &= if (*v as i64) < 0 { 0 } else { 255 };
                 }
                 Ok(())
@@ -169,7 +169,7 @@ impl Lanes {
                 self.expression(local, shift, |e, shift, _| e >> shift);
                 let width = usize::from(field.width);
                 let pairs = self.operands[0].iter().zip(&self.operands[1]);
-                for (enable, (new, old)) in self.enable.iter_mut().zip(pairs) {
+                for (enable, (new, old)) in self.enable.pixels_mut().iter_mut().zip(pairs) {
                     *enable &= if values::low(*new, width) < *old { 255 } else { 0 };
                 }
                 Ok(())

@@ -62,9 +62,6 @@ impl Lanes {
         self.controller.hold(blue);
         let indices = [columns.z, columns.colour, place.root, place.temporary];
         let [z, colour, root, temporary] = self.columns.many_mut(indices)?;
-        if keep {
-            self.enable.fill(0);
-        }
         let factors = sphere.root_factor;
         self.vectors.run(DrawSphere {
             body,
@@ -74,7 +71,7 @@ impl Lanes {
             root,
             temporary,
             paint: GouraudSphere { components, factors, root_bits: place.root_bits, colour },
-            enable: keep.then_some(&mut *self.enable),
+            enable: keep.then(|| self.enable.emptied(0..128)),
         });
         Some(())
     }
@@ -88,9 +85,6 @@ impl Lanes {
         let [nx, ny, nz] = normals;
         let indices = [columns.z, columns.colour, place.root, place.temporary, nx, ny, nz];
         let [z, colour, root, temporary, nx, ny, nz] = self.columns.many_mut(indices)?;
-        if keep {
-            self.enable.fill(0);
-        }
         let constant = sphere.colour & 0xff_ffff;
         let normal = [nx, ny, nz];
         self.vectors.run(DrawSphere {
@@ -101,7 +95,7 @@ impl Lanes {
             root,
             temporary,
             paint: PhongOfSphere { components, root_bits: place.root_bits, normal, constant, colour },
-            enable: keep.then_some(&mut *self.enable),
+            enable: keep.then(|| self.enable.emptied(0..128)),
         });
         Some(())
     }
@@ -132,7 +126,7 @@ impl Lanes {
             z,
             normal: [nx, ny, nz],
             results,
-            enable: keep.then_some(&mut *self.enable),
+            enable: keep.then(|| self.enable.pixels_mut()),
         });
         Some(())
     }

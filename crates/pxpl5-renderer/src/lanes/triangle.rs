@@ -1,9 +1,9 @@
 //! Triangles by values: a vector of pixels at a time, masks instead of branches.
 
-use super::bounds::{Area, Bounds};
+use super::bounds::{Area, Boxes, Edges, SIDE_BY_SIDE};
 use super::columns::Values;
+use super::enable::Enable;
 use super::whole::{Template, starts_anew};
-use crate::array::PIXELS;
 use crate::command::{COLOUR_AT, COMPONENTS_AT, DEPTH_AT, EDGES_AT, PHONG_WORDS, TRIANGLE_WORDS};
 use crate::simd::{Kernel, Vector};
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
@@ -48,7 +48,7 @@ pub(super) struct DrawTriangles<'a, const N: usize, P> {
     pub(super) z_shift: u8,
     pub(super) z: &'a mut Values,
     pub(super) paint: P,
-    pub(super) enable: &'a mut [u8; PIXELS],
+    pub(super) enable: &'a mut Enable,
 }
 
 /// A triangle over the array's own columns and rows.
@@ -65,14 +65,18 @@ impl<const N: usize, P: Paint<N>> Kernel for DrawTriangles<'_, N, P> {
 
     #[inline(always)]
     fn run<V: Vector>(mut self) -> usize {
-        let (mut rest, mut drawn) = (self.words, 0);
-        while let Some((command, behind)) = self.template.split(rest) {
-            let keep = !starts_anew(behind.first());
-            if keep {
-                self.enable.fill(0);
+        let (commands, _) = self.words.as_chunks::<N>();
+        let drawn = commands.iter().take_while(|command| self.template.fits(command)).count();
+        // Whoever follows a triangle, but for the last, is one.
+        let read_later = !starts_anew(self.words.get(drawn * N));
+        let mut left = drawn;
+        for some in commands[..drawn].chunks(SIDE_BY_SIDE) {
+            let edges = self.edges(some);
+            let boxes = Boxes::of(&edges);
+            for (i, command) in some.iter().enumerate() {
+                left -= 1;
+                self.triangle::<V>(command, edges.get(i), &boxes, i, read_later && left == 0);
             }
-            self.triangle::<V>(command, keep);
-            (rest, drawn) = (behind, drawn + 1);
         }
         drawn
     }
@@ -80,9 +84,24 @@ impl<const N: usize, P: Paint<N>> Kernel for DrawTriangles<'_, N, P> {
 
 impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
     #[inline(always)]
-    fn triangle<V: Vector>(&mut self, words: &[Word; N], keep: bool) {
-        let edges = self.three(words, EDGES_AT);
-        let Some(bounds) = Bounds::of(&edges) else { return };
+    fn edges(&self, commands: &[[Word; N]]) -> Edges {
+        let mut edges = Edges::default();
+        for (i, words) in commands.iter().enumerate().take(SIDE_BY_SIDE) {
+            let [p, q, r] = EDGES_AT;
+            edges.set(i, [coefficients(words, p), coefficients(words, q), coefficients(words, r)]);
+        }
+        edges.localise(self.origin);
+        edges
+    }
+
+    /// Triangle `i` of those with these boxes; `keep` says that somebody looks at Enable afterwards.
+    #[inline(always)]
+    fn triangle<V: Vector>(&mut self, words: &[Word; N], edges: [Linear; 3], boxes: &Boxes, i: usize, keep: bool) {
+        let bounds = boxes.bounds(i, &edges);
+        if keep {
+            self.enable.emptied(bounds.map_or(0..0, |bounds| bounds.area.top..bounds.area.bottom));
+        }
+        let Some(bounds) = bounds else { return };
         let (depth, components) = (self.local(words, DEPTH_AT), self.three(words, COMPONENTS_AT));
         let triangle = Local { edges, depth, components, keep };
         self.paint.begin(words);
@@ -100,7 +119,8 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
 
     #[inline(always)]
     fn local(&self, words: &[Word; N], at: usize) -> Linear {
-        let e = Linear { a: words[at] as i32, b: words[at + 1] as i32, c: words[at + 2] as i32 };
+        let [a, b, c] = coefficients(words, at);
+        let e = Linear { a, b, c };
         Linear { c: e.at(self.origin[0], self.origin[1]), ..e }
     }
 
@@ -157,10 +177,15 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
         }
         new.store(mask, old, &mut self.z.0[at..]);
         if t.keep {
-            V::store_mask(mask, &mut self.enable[at..]);
+            V::store_mask(mask, &mut self.enable.rows_in_use()[at..]);
         }
         Some(mask)
     }
+}
+
+#[inline(always)]
+fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> [i32; 3] {
+    [words[at] as i32, words[at + 1] as i32, words[at + 2] as i32]
 }
 
 /// Written out, because a closure over an array would be compiled apart, without the vector unit's features.

@@ -35,12 +35,17 @@ impl<const N: usize> Template<N> {
     /// The command at the start of `words`, if it is of this kind, and the words behind it.
     #[inline(always)]
     pub(super) fn split<'a>(&self, words: &'a [Word]) -> Option<(&'a [Word; N], &'a [Word])> {
-        let (command, behind) = words.split_first_chunk::<N>()?;
+        words.split_first_chunk::<N>().filter(|(command, _)| self.fits(command))
+    }
+
+    /// Whether this is such a command.
+    #[inline(always)]
+    pub(super) fn fits(&self, command: &[Word; N]) -> bool {
         let mut different = 0;
         for ((found, word), fixed) in command.iter().zip(&self.words).zip(&self.fixed) {
             different |= (found ^ word) & fixed;
         }
-        (different == 0).then_some((command, behind))
+        different == 0
     }
 }
 
@@ -150,7 +155,7 @@ impl Lanes {
             self.vectors.run(Fill { column: self.columns.values_mut(column), value });
         }
         if !starts_anew(behind.first()) {
-            self.enable.fill(255);
+            self.enable.fill(true);
         }
         Some((template.cost, 1))
     }

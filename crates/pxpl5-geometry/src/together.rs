@@ -1,0 +1,412 @@
+//! Set-up of several triangles together, one in each lane of a vector unit.
+//!
+//! Every lane computes what [`crate::ScreenTriangle`] and [`crate::plane`] compute for one triangle, bit for bit. Integers
+//! that need more than 32 bits (products of two differences of corners, below 2^34) are held as doubles, which are exact.
+
+use crate::plane::{self, MAX_SLOPE};
+use crate::screen::{self, SUBPIXELS};
+use crate::seen::{SeenSurface, SeenTriangle};
+use crate::{GouraudTriangle, PhongTriangle, SetupStats, Transform, Viewport};
+use multiversion::multiversion;
+use pxpl5_wire::{Linear, format};
+
+/// Triangles that are set up together: the doubles in a vector of the widest unit.
+pub const TOGETHER: usize = 8;
+
+type Lanes<T> = [T; TOGETHER];
+
+/// Up to [`TOGETHER`] triangles that need no clipping, with what their surfaces need.
+#[derive(Clone, Debug)]
+pub struct Together {
+    len: usize,
+    /// By corner.
+    x: [Lanes<i32>; 3],
+    y: [Lanes<i32>; 3],
+    z: [Lanes<u32>; 3],
+    facing: [Lanes<f32>; 3],
+    /// By component and corner.
+    surface: [[Lanes<f32>; 3]; 3],
+}
+
+impl Default for Together {
+    fn default() -> Self {
+        let (integers, reals) = ([[0; TOGETHER]; 3], [[0.0; TOGETHER]; 3]);
+        Self { len: 0, x: integers, y: integers, z: [[0; TOGETHER]; 3], facing: reals, surface: [reals; 3] }
+    }
+}
+
+impl Together {
+    /// Triangles so far.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Whether no other finds a place.
+    #[must_use]
+    pub const fn is_full(&self) -> bool {
+        self.len == TOGETHER
+    }
+
+    /// Forgets all.
+    pub const fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Adds a triangle, all corners of which are seen in the same view.
+    ///
+    /// # Panics
+    /// If there are [`TOGETHER`] already.
+    #[inline(always)]
+    pub fn push(&mut self, SeenTriangle(corners): &SeenTriangle, surface: [&SeenSurface; 3]) {
+        let lane = self.len;
+        for corner in 0..3 {
+            let (place, of) = (&corners[corner], surface[corner]);
+            self.x[corner][lane] = place.x;
+            self.y[corner][lane] = place.y;
+            self.z[corner][lane] = place.z;
+            self.facing[corner][lane] = of.facing;
+            for component in 0..3 {
+                self.surface[component][corner][lane] = of.values[component];
+            }
+        }
+        self.len += 1;
+    }
+
+    /// Takes the place of a triangle of which nothing is seen.
+    ///
+    /// # Panics
+    /// If there are [`TOGETHER`] already.
+    pub fn push_nothing(&mut self) {
+        for corner in 0..3 {
+            self.x[corner][self.len] = 0;
+            self.y[corner][self.len] = 0;
+        }
+        self.len += 1;
+    }
+}
+
+/// Linear expressions, one a lane.
+#[derive(Clone, Copy, Debug, Default)]
+struct Linears {
+    a: Lanes<i32>,
+    b: Lanes<i32>,
+    c: Lanes<i32>,
+}
+
+impl Linears {
+    #[inline(always)]
+    const fn get(&self, lane: usize) -> Linear {
+        Linear { a: self.a[lane], b: self.b[lane], c: self.c[lane] }
+    }
+}
+
+/// The expressions of some triangles.
+#[derive(Clone, Debug)]
+struct Expressions {
+    has_area: Lanes<bool>,
+    edges: [Linears; 3],
+    /// Depth, then the components.
+    planes: [Linears; 4],
+    /// How many of the planes are flat.
+    flattened: Lanes<u8>,
+}
+
+/// Edges, depth and components.
+type Parts = ([Linear; 3], Linear, [Linear; 3]);
+
+impl Expressions {
+    /// `None` without area.
+    #[inline(always)]
+    fn get(&self, lane: usize) -> Option<Parts> {
+        let ([e, f, g], [z, p, q, r]) = (&self.edges, &self.planes);
+        let edges = [e.get(lane), f.get(lane), g.get(lane)];
+        self.has_area[lane].then(|| (edges, z.get(lane), [p.get(lane), q.get(lane), r.get(lane)]))
+    }
+}
+
+/// The expressions of some Gouraud triangles.
+#[derive(Clone, Debug)]
+pub struct GouraudTogether(Expressions);
+
+impl GouraudTogether {
+    /// Those of triangle `i`; `None` without area.
+    ///
+    /// # Panics
+    /// If `i` is not below [`TOGETHER`].
+    #[inline(always)]
+    #[must_use]
+    pub fn get(&self, i: usize) -> Option<GouraudTriangle> {
+        let (edges, z, rgb) = self.0.get(i)?;
+        Some(GouraudTriangle { edges, z, rgb })
+    }
+}
+
+/// The expressions of some Phong triangles.
+#[derive(Clone, Debug)]
+pub struct PhongTogether(Expressions);
+
+impl PhongTogether {
+    /// Those of triangle `i` with the colour of its first corner; `None` without area.
+    ///
+    /// # Panics
+    /// If `i` is not below [`TOGETHER`].
+    #[inline(always)]
+    #[must_use]
+    pub fn get(&self, i: usize, colour: [u8; 3]) -> Option<PhongTriangle> {
+        let (edges, z, normal) = self.0.get(i)?;
+        Some(PhongTriangle { edges, z, normal, colour })
+    }
+}
+
+impl Transform {
+    /// As [`Self::gouraud`] and set-up of what it gives, for each triangle. It does not ask whether any region is touched.
+    #[must_use]
+    pub fn gouraud_together(&self, triangles: &Together, stats: &mut SetupStats) -> GouraudTogether {
+        GouraudTogether(self.together(triangles, 0.0, stats))
+    }
+
+    /// As [`Self::phong`] and set-up of what it gives, for each triangle. It does not ask whether any region is touched.
+    #[must_use]
+    pub fn phong_together(&self, triangles: &Together, stats: &mut SetupStats) -> PhongTogether {
+        PhongTogether(self.together(triangles, screen::NORMAL_HALF, stats))
+    }
+
+    fn together(&self, triangles: &Together, half: f32, stats: &mut SetupStats) -> Expressions {
+        let out = set_up(triangles, half, Rows::of(&self.viewport));
+        for i in 0..triangles.len {
+            stats.flattened_planes += if out.has_area[i] { u64::from(out.flattened[i]) } else { 0 };
+        }
+        out
+    }
+}
+
+/// How the rows of a picture lie among the lines of the frame.
+#[derive(Clone, Copy)]
+struct Rows {
+    line_step: i32,
+    first_line: i32,
+    /// Last subpixel of the frame, across and down.
+    last: [i32; 2],
+}
+
+impl Rows {
+    fn of(viewport: &Viewport) -> Self {
+        let last = |size: u32| size as i32 * SUBPIXELS - 1;
+        Self {
+            line_step: viewport.line_step() as i32,
+            first_line: viewport.first_line() as i32,
+            last: [last(viewport.grid().width), last(viewport.frame_lines())],
+        }
+    }
+
+    /// As [`screen::for_rows`].
+    #[inline(always)]
+    fn restate(&self, frame: Linears) -> Linears {
+        let mut all = frame;
+        for i in 0..TOGETHER {
+            all.c[i] = frame.c[i].wrapping_add(frame.b[i].wrapping_mul(self.first_line));
+        }
+        for i in 0..TOGETHER {
+            all.b[i] = frame.b[i].wrapping_mul(self.line_step);
+        }
+        all
+    }
+}
+
+#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn set_up(triangles: &Together, half: f32, rows: Rows) -> Expressions {
+    let (planes, away, mut flattened) = (Planes::of(triangles, rows), away(&triangles.facing), [0; TOGETHER]);
+    let swapped = counterclockwise(&planes.twice_area);
+    let (x, y) = (clockwise(&triangles.x, &swapped), clockwise(&triangles.y, &swapped));
+    let edges = [
+        rows.restate(edge([&x[0], &x[1]], [&y[0], &y[1]])),
+        rows.restate(edge([&x[1], &x[2]], [&y[1], &y[2]])),
+        rows.restate(edge([&x[2], &x[0]], [&y[2], &y[0]])),
+    ];
+    let ([a, b, c], [p, q, r]) = (&triangles.z, &triangles.surface);
+    let planes_through = [
+        rows.restate(planes.through(&[depths(a), depths(b), depths(c)], &mut flattened)),
+        rows.restate(planes.through(&component(p, &away, half), &mut flattened)),
+        rows.restate(planes.through(&component(q, &away, half), &mut flattened)),
+        rows.restate(planes.through(&component(r, &away, half), &mut flattened)),
+    ];
+    let mut has_area = [false; TOGETHER];
+    for (has_area, twice_area) in has_area.iter_mut().zip(&planes.twice_area) {
+        *has_area = *twice_area != 0.0;
+    }
+    Expressions { has_area, edges, planes: planes_through, flattened }
+}
+
+#[inline(always)]
+fn depths(z: &Lanes<u32>) -> Lanes<f64> {
+    let mut out = [0.0; TOGETHER];
+    for i in 0..TOGETHER {
+        out[i] = f64::from(z[i]);
+    }
+    out
+}
+
+/// Which surfaces face away from the eye on the whole, as in [`crate::light::turned`].
+#[inline(always)]
+fn away([p, q, r]: &[Lanes<f32>; 3]) -> Lanes<bool> {
+    let mut away = [false; TOGETHER];
+    for i in 0..TOGETHER {
+        away[i] = (p[i] + q[i]) + r[i] < 0.0;
+    }
+    away
+}
+
+/// A component at the corners, turned over where it faces away, and `half` a unit more.
+#[inline(always)]
+fn component([p, q, r]: &[Lanes<f32>; 3], away: &Lanes<bool>, half: f32) -> [Lanes<f64>; 3] {
+    [values(p, away, half), values(q, away, half), values(r, away, half)]
+}
+
+#[inline(always)]
+fn values(corner: &Lanes<f32>, away: &Lanes<bool>, half: f32) -> Lanes<f64> {
+    let mut out = [0.0; TOGETHER];
+    for i in 0..TOGETHER {
+        let value = if away[i] { -corner[i] } else { corner[i] };
+        out[i] = f64::from(value + half);
+    }
+    out
+}
+
+/// Which triangles run counterclockwise: all bits set there.
+#[inline(always)]
+fn counterclockwise(twice_area: &Lanes<f64>) -> Lanes<i32> {
+    let mut out = [0; TOGETHER];
+    for i in 0..TOGETHER {
+        out[i] = -i32::from(twice_area[i] < 0.0);
+    }
+    out
+}
+
+/// Corners in clockwise order: two change places where told. By masks, since compilers make choices between addresses of
+/// choices between values.
+#[inline(always)]
+fn clockwise([p, q, r]: &[Lanes<i32>; 3], swapped: &Lanes<i32>) -> [Lanes<i32>; 3] {
+    let (mut second, mut third) = ([0; TOGETHER], [0; TOGETHER]);
+    for i in 0..TOGETHER {
+        let change = (q[i] ^ r[i]) & swapped[i];
+        (second[i], third[i]) = (q[i] ^ change, r[i] ^ change);
+    }
+    [*p, second, third]
+}
+
+/// The edge from one corner to the next at the pixels of the frame, as in [`crate::Outline`].
+#[inline(always)]
+fn edge([x, to_x]: [&Lanes<i32>; 2], [y, to_y]: [&Lanes<i32>; 2]) -> Linears {
+    let mut out = Linears::default();
+    for i in 0..TOGETHER {
+        let (dx, dy) = (to_x[i] - x[i], to_y[i] - y[i]);
+        let top_left = (dy < 0) | ((dy == 0) & (dx > 0));
+        let across = f64::from(dx) * f64::from(SUBPIXELS / 2 - y[i]);
+        let down = f64::from(dy) * f64::from(SUBPIXELS / 2 - x[i]);
+        let k = (across - down) - if top_left { 0.0 } else { 1.0 };
+        (out.a[i], out.b[i], out.c[i]) = (-dy, dx, sixteenth(k));
+    }
+    out
+}
+
+/// A whole number below 2^34 divided by 16 and rounded down: from a sixteenth below the middle, the nearest integer.
+#[inline(always)]
+fn sixteenth(k: f64) -> i32 {
+    const _: () = assert!(1 << format::SUBPIXEL_BITS == 16);
+    plane::rounded(k * (1.0 / 16.0) - 15.0 / 32.0)
+}
+
+/// What the planes of each triangle share; see [`plane::Planes`].
+struct Planes {
+    twice_area: Lanes<f64>,
+    x: [Lanes<f64>; 2],
+    y: [Lanes<f64>; 2],
+    per_pixel: Lanes<f64>,
+    to_reference: [Lanes<f64>; 2],
+    reference: [Lanes<i32>; 2],
+}
+
+impl Planes {
+    /// The corners may run either way: a change of direction changes the signs of products and area alike.
+    #[inline(always)]
+    fn of(triangles: &Together, rows: Rows) -> Self {
+        let ([p, q, r], [s, t, u]) = (&triangles.x, &triangles.y);
+        let (x, y) = ([side(p, q), side(p, r)], [side(s, t), side(s, u)]);
+        let (mut twice_area, mut per_pixel) = ([0.0; TOGETHER], [0.0; TOGETHER]);
+        for i in 0..TOGETHER {
+            twice_area[i] = x[0][i] * y[1][i] - y[0][i] * x[1][i];
+            per_pixel[i] = 16.0 / twice_area[i];
+        }
+        let reference = [middle(&triangles.x, rows.last[0]), middle(&triangles.y, rows.last[1])];
+        let to_reference = [pixels(&triangles.x[0], &reference[0]), pixels(&triangles.y[0], &reference[1])];
+        Self { twice_area, x, y, per_pixel, to_reference, reference }
+    }
+
+    /// The planes through three values of each at the frame's pixels; counts the flat ones.
+    #[inline(always)]
+    fn through(&self, [p, q, r]: &[Lanes<f64>; 3], flattened: &mut Lanes<u8>) -> Linears {
+        let (mut out, mut flat) = (Linears::default(), [false; TOGETHER]);
+        for i in 0..TOGETHER {
+            let (d1, d2) = (q[i] - p[i], r[i] - p[i]);
+            let slope_x = (d1 * self.y[1][i] - d2 * self.y[0][i]) * self.per_pixel[i];
+            let slope_y = (d2 * self.x[0][i] - d1 * self.x[1][i]) * self.per_pixel[i];
+            flat[i] = (slope_x.abs() > MAX_SLOPE) | (slope_y.abs() > MAX_SLOPE);
+            let there = (p[i] + slope_x * self.to_reference[0][i]) + slope_y * self.to_reference[1][i];
+            let (a, b) = (plane::rounded(slope_x), plane::rounded(slope_y));
+            let back = a.wrapping_mul(self.reference[0][i]).wrapping_add(b.wrapping_mul(self.reference[1][i]));
+            (out.a[i], out.b[i], out.c[i]) = (a, b, plane::rounded(there).wrapping_sub(back));
+        }
+        if flat.iter().fold(false, |any, flat| any | flat) {
+            flatten([p, q, r], &flat, &mut out, flattened);
+        }
+        out
+    }
+}
+
+#[cold]
+fn flatten(v: [&Lanes<f64>; 3], flat: &Lanes<bool>, out: &mut Linears, flattened: &mut Lanes<u8>) {
+    for i in (0..TOGETHER).filter(|i| flat[*i]) {
+        let Linear { a, b, c } = plane::flat(v.map(|v| v[i]));
+        (out.a[i], out.b[i], out.c[i]) = (a, b, c);
+        flattened[i] += 1;
+    }
+}
+
+/// From one corner to another.
+#[inline(always)]
+fn side(from: &Lanes<i32>, to: &Lanes<i32>) -> Lanes<f64> {
+    let mut out = [0.0; TOGETHER];
+    for i in 0..TOGETHER {
+        out[i] = f64::from(to[i] - from[i]);
+    }
+    out
+}
+
+/// The pixel in the middle of what the picture shows of the corners' range, as in [`crate::Outline`].
+#[inline(always)]
+fn middle([p, q, r]: &[Lanes<i32>; 3], last: i32) -> Lanes<i32> {
+    let mut out = [0; TOGETHER];
+    for i in 0..TOGETHER {
+        let low = p[i].min(q[i]).min(r[i]).clamp(0, last);
+        let high = p[i].max(q[i]).max(r[i]).clamp(0, last);
+        out[i] = (low + high) / (2 * SUBPIXELS);
+    }
+    out
+}
+
+/// From a corner to the centre of a pixel, in pixels.
+#[inline(always)]
+fn pixels(from: &Lanes<i32>, pixel: &Lanes<i32>) -> Lanes<f64> {
+    let mut out = [0.0; TOGETHER];
+    for i in 0..TOGETHER {
+        out[i] = f64::from(SUBPIXELS * pixel[i] + SUBPIXELS / 2 - from[i]) * (1.0 / f64::from(SUBPIXELS));
+    }
+    out
+}
