@@ -4,7 +4,7 @@ use crate::commands::Encoder;
 use crate::list::{Counts, Share};
 use crate::placed::{Placed, RecentViews};
 use crate::view::FrameView;
-use pxpl5_geometry::{Light, RegionMask, SetupStats, Transform, Viewport};
+use pxpl5_geometry::{Light, RegionMask, SetupStats, Touch, Transform, Viewport};
 use pxpl5_renderer::Layout;
 use pxpl5_wire::RegionId;
 use std::sync::Arc;
@@ -107,16 +107,19 @@ impl Pass {
     }
 
     fn bin_triangles(&mut self, place: &Placed, transform: &Transform, share: &Share, stats: &mut SetupStats) {
-        let vertices = place.vertices(&share.list, transform);
+        let (first, touched) = (place.structure.triangles.start, place.touched(&share.list, transform));
         for number in share.held_triangles(&place.structure.triangles) {
             let (triangle, mut pieces) = (number as u32, 0);
             let put = |mask| {
                 self.put_triangle(mask, Entry { triangle, piece: Some(pieces) });
                 pieces += 1;
             };
-            match vertices.seen(&vertices.corners(&share.list, number)) {
-                Some(whole) => transform.bin_seen(&whole, stats).into_iter().for_each(put),
-                None => transform.bin(&share.list.corners(number), stats, put),
+            match touched.get(number - first) {
+                Touch::NeedsClipping => transform.bin(&share.list.corners(number), stats, put),
+                whole => {
+                    stats.triangles += 1;
+                    whole.count(stats).into_iter().for_each(put);
+                }
             }
             if pieces == 0 && self.picture.binning == Binning::All {
                 self.put_triangle(RegionMask::EMPTY, Entry { triangle, piece: None });

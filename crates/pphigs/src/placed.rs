@@ -3,7 +3,9 @@
 use crate::list::{DisplayList, Frame, Structure, UNMOVED};
 use crate::view::{EyeView, FrameView, ModelEdit, product};
 use glam::{Mat4, Vec3};
-use pxpl5_geometry::{Culling, Light, SeenSurface, SeenTriangle, SeenVertex, Transform, ViewTransform, Viewport};
+use pxpl5_geometry::{
+    Culling, Light, SeenSurface, SeenTriangle, SeenVertex, Touched, Transform, ViewTransform, Viewport,
+};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -17,6 +19,7 @@ pub struct Placed {
     /// Its primitives.
     pub structure: Structure,
     vertices: OnceLock<Vertices>,
+    touched: OnceLock<Touched>,
 }
 
 /// The vertices of a structure, from the first that one of its triangles names to the last.
@@ -53,6 +56,15 @@ impl Placed {
             let positions = list.positions.get(first as usize..end as usize).unwrap_or_default();
             let seen = positions.iter().map(|p| transform.see(*p)).collect();
             Vertices { first: first as usize, seen, normals: OnceLock::new(), colours: OnceLock::new() }
+        })
+    }
+
+    /// The regions that its triangles touch, found when first asked for.
+    pub(crate) fn touched(&self, list: &DisplayList, transform: &Transform) -> &Touched {
+        self.touched.get_or_init(|| {
+            let vertices = self.vertices(list, transform);
+            let triangles = self.structure.triangles.clone();
+            transform.touched(triangles.map(|number| vertices.seen(&vertices.corners(list, number))))
         })
     }
 }
@@ -152,7 +164,7 @@ fn place(list: &DisplayList, structure: &Structure, model: Mat4, eye: &EyeView, 
     let view = ViewTransform { model_view: product(&to_eye, &model), projection: eye.projection };
     let light = Light { direction: turned(&to_eye, list.towards_light), ambient: list.ambient, diffuse: list.diffuse };
     let transform = Transform::new(&view, viewport, Culling::None).ok();
-    Placed { transform, light, structure: structure.clone(), vertices: OnceLock::new() }
+    Placed { transform, light, structure: structure.clone(), vertices: OnceLock::new(), touched: OnceLock::new() }
 }
 
 /// A direction in eye coordinates; the matrix is a rotation and a translation.

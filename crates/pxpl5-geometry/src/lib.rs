@@ -21,7 +21,7 @@
 //!    the expressions restated for every second line.
 //! 5. **Drop** triangles without area and, on request, back faces ([`Culling`]).
 //! 6. **Bin**: the exact set of regions touched ([`RegionMask`]), from the edges; one comparison per side for the many
-//!    triangles inside one region. [`Transform::bin`] and [`Transform::bin_seen`] stop here.
+//!    triangles inside one region. [`Transform::bin`] and [`Transform::touched`] stop here.
 //! 7. **Set up** on demand: edges exact in integers (at least 0 is inside, the tie rule folded in, so that each pixel of
 //!    a shared edge is drawn once), planes of depth, colour or normal, spheres as one quadratic with a root for depth.
 //!
@@ -88,6 +88,7 @@ mod sphere;
 mod sphere_setup;
 mod stats;
 mod together;
+mod touched;
 mod transform;
 mod view;
 
@@ -104,5 +105,6 @@ pub use sphere::ScreenSphere;
 pub use sphere_setup::{GouraudSphere, PhongSphere, SphereSetup};
 pub use stats::SetupStats;
 pub use together::{GouraudTogether, PhongTogether, TOGETHER, Together};
+pub use touched::{Touch, Touched};
 pub use transform::{Culling, Transform, TriangleEnds};
 pub use view::{MAX_PICTURE, ViewError, ViewTransform, Viewport};

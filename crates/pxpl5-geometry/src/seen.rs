@@ -1,12 +1,12 @@
 //! Vertices that many triangles share, each transformed once.
 //!
-//! Triangles that need no clipping are binned here and set up [together](crate::Together) from them, exactly as by
+//! Triangles that need no clipping are [binned](Transform::touched) and set up [together](crate::Together) from them, exactly as by
 //! [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`]. The others are left to those.
 
 use crate::light::{self, Lighting};
 use crate::screen;
 use crate::transform::Snapped;
-use crate::{Light, RegionMask, SetupStats, Transform};
+use crate::{Light, Transform};
 use glam::Vec3;
 
 /// A vertex as a view sees it.
@@ -66,12 +66,5 @@ impl Transform {
     pub fn see_colour(&self, light: &Light, position: Vec3, normal: Vec3, colour: [u8; 3]) -> SeenSurface {
         let lit = Lighting::new(&self.to_eye, light).colour(position, normal, colour);
         SeenSurface { values: lit.map(|v| screen::colour_value(screen::colour_fixed(v))), facing: 0.0 }
-    }
-
-    /// As [`Self::bin`]: the regions touched; `None`, counted, if there are none.
-    #[inline(always)]
-    pub fn bin_seen(&self, triangle: &SeenTriangle, stats: &mut SetupStats) -> Option<RegionMask> {
-        stats.triangles += 1;
-        Some(self.assemble(triangle.0, stats)?.outline.regions)
     }
 }

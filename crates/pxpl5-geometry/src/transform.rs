@@ -6,7 +6,7 @@ use crate::light::Lighting;
 use crate::screen::{self, LitColours, Outline, ScreenTriangle, SurfaceNormals};
 use crate::sphere::Lens;
 use crate::view::{Columns, FromWorld, ViewError};
-use crate::{Light, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
+use crate::{Light, RegionMask, SetupStats, Touch, Triangle, ViewTransform, Viewport};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -301,22 +301,28 @@ impl Transform {
 
     /// Corners in clockwise order with the regions touched; `None`, counted, if there is nothing to draw.
     #[inline(always)]
-    pub(crate) fn assemble(&self, corners: [Snapped; 3], stats: &mut SetupStats) -> Option<Assembled> {
-        let Some(mut whole) = Assembled::clockwise(corners) else {
-            stats.degenerate += 1;
-            return None;
-        };
-        if !whole.swapped && self.culling == Culling::Back {
-            stats.back_facing += 1;
-            return None;
-        }
-        whole.outline.regions = self.binner.triangle(&whole.outline);
-        if whole.outline.regions.is_empty() {
-            stats.untouched += 1;
-            return None;
-        }
-        stats.screen_triangles += 1;
+    fn assemble(&self, corners: [Snapped; 3], stats: &mut SetupStats) -> Option<Assembled> {
+        let whole = Assembled::clockwise(corners);
+        let regions = self.touch_whole(whole.as_ref()).count(stats)?;
+        let mut whole = whole?;
+        whole.outline.regions = regions;
         Some(whole)
+    }
+
+    /// What binning finds of a triangle that needs no clipping.
+    #[inline(always)]
+    pub(crate) fn touch(&self, corners: [Snapped; 3]) -> Touch {
+        self.touch_whole(Assembled::clockwise(corners).as_ref())
+    }
+
+    #[inline(always)]
+    fn touch_whole(&self, whole: Option<&Assembled>) -> Touch {
+        let Some(whole) = whole else { return Touch::Degenerate };
+        if !whole.swapped && self.culling == Culling::Back {
+            return Touch::BackFacing;
+        }
+        let regions = self.binner.triangle(&whole.outline);
+        if regions.is_empty() { Touch::Untouched } else { Touch::Regions(regions) }
     }
 
     /// Clips a triangle and hands out the fan of what is left.

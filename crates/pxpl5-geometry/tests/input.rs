@@ -5,7 +5,7 @@ mod support;
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
     Culling, Light, LitColours, ScreenTriangle, SeenSurface, SeenTriangle, SetupStats, Sphere, TOGETHER, Together,
-    Transform, Triangle, ViewError, ViewTransform, Viewport,
+    Touch, Transform, Triangle, ViewError, ViewTransform, Viewport,
 };
 use support::random::Random;
 use support::spheres::{self, ExactSphere, native};
@@ -115,7 +115,10 @@ fn shared_vertices_give_what_their_triangles_give() {
             let (mut stats, mut lit, mut normals) = ([SetupStats::default(); 2], Vec::new(), Vec::new());
             transform.gouraud(&t, &light, &mut stats[0], |t| lit.push(t));
             transform.phong(&t, &mut SetupStats::default(), |t| normals.push(t));
-            let mask = transform.bin_seen(&seen, &mut stats[1]);
+            stats[1].triangles += 1;
+            let touch = transform.touched([None, Some(seen)].into_iter());
+            assert_eq!(touch.get(0), Touch::NeedsClipping);
+            let mask = touch.get(1).count(&mut stats[1]);
             assert_eq!(mask, lit.first().map(|t| t.outline.regions), "{}", case.name);
             assert_eq!(stats[0], stats[1], "{}", case.name);
             let (Some(lit), Some(normals)) = (lit.first(), normals.first()) else { continue };

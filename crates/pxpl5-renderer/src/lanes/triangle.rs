@@ -21,8 +21,8 @@ pub(super) struct Walk<V> {
 
 impl<V: Vector> Walk<V> {
     #[inline(always)]
-    fn start(e: &Linear, x: usize, y: usize) -> Self {
-        Self { value: V::ramp(e.at(x as i32, y as i32), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
+    fn start(e: &Linear, x: i32, y: i32) -> Self {
+        Self { value: V::ramp(e.at(x, y), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
     }
 
     #[inline(always)]
@@ -51,11 +51,11 @@ pub(super) struct DrawTriangles<'a, const N: usize, P> {
     pub(super) enable: &'a mut Enable,
 }
 
-/// A triangle over the array's own columns and rows.
-struct Local {
+/// A triangle being drawn.
+struct Shape<'a, const N: usize> {
+    /// Over the array's own columns and rows.
     edges: [Linear; 3],
-    depth: Linear,
-    components: [Linear; 3],
+    words: &'a [Word; N],
     /// Somebody looks at Enable afterwards.
     keep: bool,
 }
@@ -102,58 +102,61 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
             self.enable.emptied(bounds.map_or(0..0, |bounds| bounds.area.top..bounds.area.bottom));
         }
         let Some(bounds) = bounds else { return };
-        let (depth, components) = (self.local(words, DEPTH_AT), self.three(words, COMPONENTS_AT));
-        let triangle = Local { edges, depth, components, keep };
+        let shape = Shape { edges, words, keep };
         self.paint.begin(words);
         let Area { left, right, top, bottom } = bounds.area;
-        let first = left / V::LANES * V::LANES;
-        if right <= first + V::LANES {
-            self.narrow::<V>(&triangle, first, top..bottom);
+        if let Some(x) = one_vector(left, right, V::LANES) {
+            self.narrow::<V>(&shape, x, top..bottom);
             return;
         }
         for y in top..bottom {
             let (left, right) = bounds.row(y);
-            self.row::<V>(&triangle, y, left / V::LANES * V::LANES, right);
+            self.row::<V>(&shape, y, left / V::LANES * V::LANES, right);
         }
     }
 
+    /// The expression that stands at `at` among the words.
     #[inline(always)]
-    fn local(&self, words: &[Word; N], at: usize) -> Linear {
+    fn walk<V: Vector>(&self, words: &[Word; N], at: usize, x: usize, y: usize) -> Walk<V> {
         let [a, b, c] = coefficients(words, at);
-        let e = Linear { a, b, c };
-        Linear { c: e.at(self.origin[0], self.origin[1]), ..e }
+        let [left, top] = self.origin;
+        Walk::start(&Linear { a, b, c }, left + x as i32, top + y as i32)
     }
 
     #[inline(always)]
-    fn three(&self, words: &[Word; N], [i, j, k]: [usize; 3]) -> [Linear; 3] {
-        [self.local(words, i), self.local(words, j), self.local(words, k)]
+    fn components<V: Vector>(&self, words: &[Word; N], x: usize, y: usize) -> [Walk<V>; 3] {
+        let [i, j, k] = COMPONENTS_AT;
+        [self.walk(words, i, x, y), self.walk(words, j, x, y), self.walk(words, k, x, y)]
     }
 
     /// One vector a row, from column `x`.
     #[inline(always)]
-    fn narrow<V: Vector>(&mut self, t: &Local, x: usize, rows: Range<usize>) {
-        let [mut first, mut second, mut third] = three::<V>(&t.edges, x, rows.start);
-        let mut depth = Walk::<V>::start(&t.depth, x, rows.start);
+    fn narrow<V: Vector>(&mut self, shape: &Shape<N>, x: usize, rows: Range<usize>) {
+        let [mut first, mut second, mut third] = three::<V>(&shape.edges, x, rows.start);
+        let down = [V::splat(shape.edges[0].b), V::splat(shape.edges[1].b), V::splat(shape.edges[2].b)];
+        let mut depth = self.walk::<V>(shape.words, DEPTH_AT, x, rows.start);
+        let deeper = V::splat(shape.words[DEPTH_AT + 1] as i32);
         for y in rows {
             let (at, inside) = (y * WIDTH + x, first.value.or(second.value).or(third.value));
-            if let Some(mask) = self.pass(t, at, inside, depth.value) {
-                self.paint.store(&three::<V>(&t.components, x, y), at, mask);
+            if let Some(mask) = self.pass(shape.keep, at, inside, depth.value) {
+                let walks = self.components::<V>(shape.words, x, y);
+                self.paint.store(&walks, at, mask);
             }
-            first.value = first.value.add(V::splat(t.edges[0].b));
-            second.value = second.value.add(V::splat(t.edges[1].b));
-            third.value = third.value.add(V::splat(t.edges[2].b));
-            depth.value = depth.value.add(V::splat(t.depth.b));
+            first.value = first.value.add(down[0]);
+            second.value = second.value.add(down[1]);
+            third.value = third.value.add(down[2]);
+            depth.value = depth.value.add(deeper);
         }
     }
 
     #[inline(always)]
-    fn row<V: Vector>(&mut self, t: &Local, y: usize, left: usize, right: usize) {
-        let [mut first, mut second, mut third] = three::<V>(&t.edges, left, y);
-        let mut depth = Walk::<V>::start(&t.depth, left, y);
-        let mut walks = three::<V>(&t.components, left, y);
+    fn row<V: Vector>(&mut self, shape: &Shape<N>, y: usize, left: usize, right: usize) {
+        let [mut first, mut second, mut third] = three::<V>(&shape.edges, left, y);
+        let mut depth = self.walk::<V>(shape.words, DEPTH_AT, left, y);
+        let mut walks = self.components::<V>(shape.words, left, y);
         for x in (left..right).step_by(V::LANES) {
             let (at, inside) = (y * WIDTH + x, first.value.or(second.value).or(third.value));
-            if let Some(mask) = self.pass(t, at, inside, depth.value) {
+            if let Some(mask) = self.pass(shape.keep, at, inside, depth.value) {
                 self.paint.store(&walks, at, mask);
             }
             first.advance();
@@ -169,18 +172,27 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
     /// Where no edge is negative and the depth is nearer, which is stored; `None` where that is nowhere, as in most vectors
     /// of small triangles.
     #[inline(always)]
-    fn pass<V: Vector>(&mut self, t: &Local, at: usize, inside: V, depth: V) -> Option<V::Mask> {
+    fn pass<V: Vector>(&mut self, keep: bool, at: usize, inside: V, depth: V) -> Option<V::Mask> {
         let (old, new) = (V::load(&self.z.0[at..]), depth.shift_right(self.z_shift.into()));
         let mask = inside.passes(new, old);
         if !V::any(mask) {
             return None;
         }
         new.store(mask, old, &mut self.z.0[at..]);
-        if t.keep {
+        if keep {
             V::store_mask(mask, &mut self.enable.rows_in_use()[at..]);
         }
         Some(mask)
     }
+}
+
+/// Where one vector that holds all the columns begins: at a multiple of its lanes, if that is possible. `None` where they
+/// are too many.
+#[inline(always)]
+fn one_vector(left: usize, right: usize, lanes: usize) -> Option<usize> {
+    let aligned = left / lanes * lanes;
+    let begin = if right <= aligned + lanes { aligned } else { left.min(WIDTH - lanes) };
+    (right <= begin + lanes).then_some(begin)
 }
 
 #[inline(always)]
@@ -191,6 +203,7 @@ fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> [i32; 3] {
 /// Written out, because a closure over an array would be compiled apart, without the vector unit's features.
 #[inline(always)]
 fn three<V: Vector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
+    let (x, y) = (x as i32, y as i32);
     [Walk::start(&e[0], x, y), Walk::start(&e[1], x, y), Walk::start(&e[2], x, y)]
 }
 
