@@ -129,8 +129,8 @@ pub(crate) trait Vector: Copy {
     fn shift_left(self, by: u32) -> Self;
     /// Where self >= 0 and `new` < `old`, signed.
     fn passes(self, new: Self, old: Self) -> Self::Mask;
-    /// Whether the mask is true anywhere.
-    fn any(mask: Self::Mask) -> bool;
+    /// Whether one of the masks is true anywhere.
+    fn any_of(a: Self::Mask, b: Self::Mask) -> bool;
     /// Overwrites lanes of `to` where the mask is true; `old` is what they hold.
     fn store(self, mask: Self::Mask, old: Self, to: &mut [u32]);
     /// 255 where the mask is true, else 0.
@@ -232,8 +232,8 @@ impl Vector for Eight {
     }
 
     #[inline(always)]
-    fn any(mask: Self) -> bool {
-        mask.0.iter().fold(0, |any, m| any | m) != 0
+    fn any_of(a: Self, b: Self) -> bool {
+        a.or(b).0.iter().fold(0, |any, m| any | m) != 0
     }
 
     #[inline(always)]

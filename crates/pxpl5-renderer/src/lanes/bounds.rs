@@ -172,7 +172,7 @@ impl Boxes {
 
     #[inline(always)]
     fn area(&self, i: usize) -> Option<Area> {
-        let ([left, right], [top, bottom]) = (self.x.map(|v| v[i]), self.y.map(|v| v[i]));
+        let (left, right, top, bottom) = (self.x[0][i], self.x[1][i], self.y[0][i], self.y[1][i]);
         let end = |last: i32| (last + 1) as usize;
         let area = Area { left: left as usize, right: end(right), top: top as usize, bottom: end(bottom) };
         (left <= right && top <= bottom).then_some(area)

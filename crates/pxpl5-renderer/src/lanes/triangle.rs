@@ -25,6 +25,12 @@ impl<V: Vector> Walk<V> {
         Self { value: V::ramp(e.at(x, y), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
     }
 
+    /// Some rows below, in all of which together the expression grows by `b`.
+    #[inline(always)]
+    fn below(&self, b: i32) -> Self {
+        Self { value: self.value.add(V::splat(b)), step: self.step }
+    }
+
     #[inline(always)]
     fn advance(&mut self) {
         self.value = self.value.add(self.step);
@@ -58,6 +64,13 @@ struct Shape<'a, const N: usize> {
     words: &'a [Word; N],
     /// Somebody looks at Enable afterwards.
     keep: bool,
+}
+
+/// The depth test of a vector of pixels.
+struct Tested<V: Vector> {
+    old: V,
+    new: V,
+    mask: V::Mask,
 }
 
 impl<const N: usize, P: Paint<N>> Kernel for DrawTriangles<'_, N, P> {
@@ -129,24 +142,38 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
         [self.walk(words, i, x, y), self.walk(words, j, x, y), self.walk(words, k, x, y)]
     }
 
-    /// One vector a row, from column `x`.
+    /// One vector a row, from column `x`; two rows at a time, since branches that nobody can foretell cost more than a row
+    /// outside of the triangle.
     #[inline(always)]
     fn narrow<V: Vector>(&mut self, shape: &Shape<N>, x: usize, rows: Range<usize>) {
-        let [mut first, mut second, mut third] = three::<V>(&shape.edges, x, rows.start);
-        let down = [V::splat(shape.edges[0].b), V::splat(shape.edges[1].b), V::splat(shape.edges[2].b)];
-        let mut depth = self.walk::<V>(shape.words, DEPTH_AT, x, rows.start);
-        let deeper = V::splat(shape.words[DEPTH_AT + 1] as i32);
-        for y in rows {
-            let (at, inside) = (y * WIDTH + x, first.value.or(second.value).or(third.value));
-            if let Some(mask) = self.pass(shape.keep, at, inside, depth.value) {
+        let pairs = rows.len().div_ceil(2);
+        let top = rows.start.min(WIDTH - 2 * pairs);
+        let [mut first, mut second, mut third] = three::<V>(&shape.edges, x, top);
+        let [p, q, r] = [shape.edges[0].b, shape.edges[1].b, shape.edges[2].b];
+        let mut depth = self.walk::<V>(shape.words, DEPTH_AT, x, top);
+        let deeper = shape.words[DEPTH_AT + 1] as i32;
+        for y in (0..pairs).map(|pair| top + 2 * pair) {
+            let at = [y * WIDTH + x, (y + 1) * WIDTH + x];
+            let lower = [first.below(p), second.below(q), third.below(r), depth.below(deeper)];
+            let upper = self.test(at[0], [first, second, third], depth);
+            let lower = self.test(at[1], [lower[0], lower[1], lower[2]], lower[3]);
+            if V::any_of(upper.mask, lower.mask) {
                 let walks = self.components::<V>(shape.words, x, y);
-                self.paint.store(&walks, at, mask);
+                self.nearer(&upper, at[0], shape.keep);
+                self.paint.store(&walks, at[0], upper.mask);
+                let walks = self.components_below(shape.words, &walks);
+                self.nearer(&lower, at[1], shape.keep);
+                self.paint.store(&walks, at[1], lower.mask);
             }
-            first.value = first.value.add(down[0]);
-            second.value = second.value.add(down[1]);
-            third.value = third.value.add(down[2]);
-            depth.value = depth.value.add(deeper);
+            (first, second, third) = (first.below(2 * p), second.below(2 * q), third.below(2 * r));
+            depth = depth.below(deeper.wrapping_mul(2));
         }
+    }
+
+    #[inline(always)]
+    fn components_below<V: Vector>(&self, words: &[Word; N], [p, q, r]: &[Walk<V>; 3]) -> [Walk<V>; 3] {
+        let [i, j, k] = COMPONENTS_AT.map(|at| words[at + 1] as i32);
+        [p.below(i), q.below(j), r.below(k)]
     }
 
     #[inline(always)]
@@ -155,9 +182,11 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
         let mut depth = self.walk::<V>(shape.words, DEPTH_AT, left, y);
         let mut walks = self.components::<V>(shape.words, left, y);
         for x in (left..right).step_by(V::LANES) {
-            let (at, inside) = (y * WIDTH + x, first.value.or(second.value).or(third.value));
-            if let Some(mask) = self.pass(shape.keep, at, inside, depth.value) {
-                self.paint.store(&walks, at, mask);
+            let at = y * WIDTH + x;
+            let tested = self.test(at, [first, second, third], depth);
+            if V::any_of(tested.mask, tested.mask) {
+                self.nearer(&tested, at, shape.keep);
+                self.paint.store(&walks, at, tested.mask);
             }
             first.advance();
             second.advance();
@@ -169,20 +198,19 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
         }
     }
 
-    /// Where no edge is negative and the depth is nearer, which is stored; `None` where that is nowhere, as in most vectors
-    /// of small triangles.
+    /// Where no edge is negative and the depth is nearer.
     #[inline(always)]
-    fn pass<V: Vector>(&mut self, keep: bool, at: usize, inside: V, depth: V) -> Option<V::Mask> {
-        let (old, new) = (V::load(&self.z.0[at..]), depth.shift_right(self.z_shift.into()));
-        let mask = inside.passes(new, old);
-        if !V::any(mask) {
-            return None;
-        }
-        new.store(mask, old, &mut self.z.0[at..]);
+    fn test<V: Vector>(&self, at: usize, [p, q, r]: [Walk<V>; 3], depth: Walk<V>) -> Tested<V> {
+        let (old, new) = (V::load(&self.z.0[at..]), depth.value.shift_right(self.z_shift.into()));
+        Tested { old, new, mask: p.value.or(q.value).or(r.value).passes(new, old) }
+    }
+
+    #[inline(always)]
+    fn nearer<V: Vector>(&mut self, tested: &Tested<V>, at: usize, keep: bool) {
+        tested.new.store(tested.mask, tested.old, &mut self.z.0[at..]);
         if keep {
-            V::store_mask(mask, &mut self.enable.rows_in_use()[at..]);
+            V::store_mask(tested.mask, &mut self.enable.rows_in_use()[at..]);
         }
-        Some(mask)
     }
 }
 

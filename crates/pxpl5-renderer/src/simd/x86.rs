@@ -99,8 +99,11 @@ impl Vector for Avx2 {
     }
 
     #[inline(always)]
-    fn any(mask: __m256i) -> bool {
-        unsafe { _mm256_testz_si256(mask, mask) == 0 }
+    fn any_of(a: __m256i, b: __m256i) -> bool {
+        unsafe {
+            let either = _mm256_or_si256(a, b);
+            _mm256_testz_si256(either, either) == 0
+        }
     }
 
     #[inline(always)]
@@ -213,8 +216,8 @@ impl Vector for Avx512 {
     }
 
     #[inline(always)]
-    fn any(mask: __mmask16) -> bool {
-        mask != 0
+    fn any_of(a: __mmask16, b: __mmask16) -> bool {
+        a | b != 0
     }
 
     #[inline(always)]
