@@ -1,5 +1,6 @@
 //! The head of 59,592 triangles, one eye, 640 x 480, Gouraud, Z-buffered: the software renderer `euc` beside the pixels
-//! of the emulated machine, without its times, by both pixel arrays. An element is a picture.
+//! of the emulated machine, without its times, by both pixel arrays, of which the bit-serial one works in two ways. An
+//! element is a picture.
 
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
@@ -108,13 +109,13 @@ struct Ours<A> {
     picture: Picture,
     array: A,
     words: Vec<Word>,
-    pixels: Vec<Vec<Word>>,
+    pixels: Vec<Arc<[Word]>>,
 }
 
 const BACKGROUND: [u8; 3] = [1, 2, 3];
 
 impl<A: PixelArray> Ours<A> {
-    fn new(head: &Scene, array: fn(&Layout) -> A) -> Self {
+    fn new(head: &Scene, array: impl Fn(&Layout) -> A) -> Self {
         let light = head.lighting();
         let structure = Structure { triangles: 0..head.triangles().len(), spheres: 0..0, frame: Frame::World };
         let list = DisplayList {
@@ -157,14 +158,15 @@ impl<A: PixelArray> Ours<A> {
     }
 
     fn covered(&self) -> usize {
-        self.pixels.iter().flatten().filter(|pixel| **pixel != 0x01_02_03).count()
+        self.pixels.iter().flat_map(|region| region.iter()).filter(|pixel| **pixel != 0x01_02_03).count()
     }
 }
 
 fn peers(criterion: &mut Criterion) {
     let head = scene::builtin("head").expect("built in");
     let (views, mut euc, mut ours) = (views(&head), Euc::new(&head), Ours::new(&head, Lanes::new));
-    let mut definition = Ours::new(&head, BitSerial::new);
+    let mut skipping = Ours::new(&head, |layout| BitSerial::new(layout).skipping());
+    let mut literal = Ours::new(&head, BitSerial::new);
     euc.draw(&head, &views[0]);
     ours.draw(&views[0]);
     let (theirs, own) = (euc.covered() as f64, ours.covered() as f64);
@@ -175,7 +177,8 @@ fn peers(criterion: &mut Criterion) {
     let mut next = || turn.next().unwrap_or(&views[0]);
     group.bench_function("euc 0.5", |b| b.iter(|| euc.draw(&head, next())));
     group.bench_function("ours", |b| b.iter(|| ours.draw(next())));
-    group.bench_function("ours, bit serial", |b| b.iter(|| definition.draw(next())));
+    group.bench_function("ours, bit serial, skipping", |b| b.iter(|| skipping.draw(next())));
+    group.bench_function("ours, bit serial, literal", |b| b.iter(|| literal.draw(next())));
     group.finish();
 }
 

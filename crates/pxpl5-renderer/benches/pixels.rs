@@ -152,11 +152,23 @@ fn bit_serial(c: &mut Criterion) {
         ("sphere of radius 60", spheres(60), false),
         ("shade covered region", shades(), true),
     ];
+    bit_planes(c, "bit serial", &lists, BitSerial::with_vectors);
+    let small = [("triangle 100 px", triangles(HUNDRED, 110), false), ("sphere of radius 10", spheres(10), false)];
+    let skipping = |layout: &Layout, vectors| BitSerial::with_vectors(layout, vectors).skipping();
+    bit_planes(c, "bit serial, skipping", &[&small[..], &lists].concat(), skipping);
+}
+
+fn bit_planes(
+    c: &mut Criterion,
+    name: &str,
+    lists: &[(&str, Vec<u32>, bool)],
+    array: impl Fn(&Layout, Vectors) -> BitSerial,
+) {
     for vectors in Vectors::available() {
-        let mut group = c.benchmark_group(format!("bit serial/{vectors:?}"));
+        let mut group = c.benchmark_group(format!("{name}/{vectors:?}"));
         group.throughput(Throughput::Elements(COMMANDS));
-        for (name, words, covered) in &lists {
-            let mut array = BitSerial::with_vectors(&Layout::rendering_control_phong(), vectors);
+        for (name, words, covered) in lists {
+            let mut array = array(&Layout::rendering_control_phong(), vectors);
             group.bench_function(BenchmarkId::from_parameter(name), |b| timed(b, &mut array, words, *covered));
         }
         group.finish();

@@ -1,32 +1,43 @@
 //! `BitSerial`: the array as it was built, one bit of one instruction a clock. This is the definition.
+//!
+//! It works in two ways. The literal one moves all planes of all pixels, always. The skipping one, [`runs`] above all,
+//! leaves out what cannot change anything, and is held to the literal one in every bit, clock and fault.
 
 mod arithmetic;
 mod evaluate;
 mod evaluator;
 mod planes;
+mod runs;
+mod tile;
 
-use crate::array::{EMPTY_PLANE, Executed, Fault, FaultKind, OutputRegion, PixelArray, Plane};
+use crate::array::{Executed, Fault, FaultKind, OutputRegion, PixelArray, Plane};
 use crate::controller::{Bits, Controller};
 use crate::isa::timing::{CONTROL_CLOCKS, SET_UP_CLOCKS};
-use crate::isa::{BACKING_BLOCKS, Instruction, MEMORY_BITS, Operand};
+use crate::isa::{BACKING_BLOCKS, Instruction, Operand};
 use crate::layout::Layout;
 use crate::simd::{Present, Vectors};
-use pxpl5_wire::Word;
+use pxpl5_wire::{REGION_SIZE, Word};
+use runs::Run;
 use std::sync::Arc;
+use tile::{EMPTY, FULL, HEIGHT, TILES, Tile, TilePlane, WIDTH};
 
 /// 208 bit planes, an Enable plane, and serial adders: what the hardware has, and nothing else.
 ///
-/// Clocks are counted as the planes move, so that [`crate::isa::timing`] is checked and not assumed here.
+/// Clocks are counted as the planes move, so that [`crate::isa::timing`] is checked and not assumed here. It is the
+/// definition unless it is told to be [`Self::skipping`].
 #[derive(Clone, Debug)]
 pub struct BitSerial {
     layout: Layout,
     vectors: Present,
     controller: Controller,
-    memory: Vec<Plane>,
-    enable: Plane,
-    backing: Vec<Option<Vec<Plane>>>,
+    tiles: Vec<Tile>,
+    /// The planes of a block, tile by tile.
+    backing: Vec<Option<Vec<TilePlane>>>,
     clock: u64,
     faults: u64,
+    skipping: bool,
+    /// Kept for its memory.
+    run: Run,
 }
 
 impl BitSerial {
@@ -43,29 +54,45 @@ impl BitSerial {
             layout: *layout,
             vectors: Present::or_portable(vectors),
             controller: Controller::default(),
-            memory: vec![EMPTY_PLANE; MEMORY_BITS as usize],
-            enable: EMPTY_PLANE,
+            tiles: vec![Tile::EMPTY; TILES],
             backing: vec![None; usize::from(BACKING_BLOCKS)],
             clock: 0,
             faults: 0,
+            skipping: false,
+            run: Run::default(),
         }
+    }
+
+    /// The same array, which leaves out work that cannot change anything: for pictures, where the definition itself
+    /// takes ten times as long.
+    ///
+    /// Pixels that are disabled move no planes, and signs that are known at the corners of a block of pixels need no
+    /// adders. Clocks, faults and every bit remain those of the definition.
+    #[must_use]
+    pub fn skipping(self) -> Self {
+        Self { skipping: true, ..self }
     }
 
     fn run(&mut self, words: &[Word]) -> Result<Executed, Fault> {
         let mut executed = Executed::default();
         let mut position = 0;
         while position < words.len() {
-            let (instruction, used) = Instruction::decode(words, position)
-                .map_err(|error| Fault { position, kind: FaultKind::Illegal(error.kind) })?;
-            self.controller
-                .check(&instruction)
-                .and_then(|()| self.instruction(&instruction, &mut executed))
-                .map_err(|kind| Fault { position, kind })?;
-            executed.instructions += 1;
-            executed.clocks += u64::from(SET_UP_CLOCKS) + std::mem::take(&mut self.clock);
-            position += used;
+            let skipped = if self.skipping { self.execute_run(words, position, &mut executed) } else { 0 };
+            position += if skipped > 0 { skipped } else { self.step(words, position, &mut executed)? };
         }
         Ok(executed)
+    }
+
+    fn step(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> Result<usize, Fault> {
+        let (instruction, used) = Instruction::decode(words, position)
+            .map_err(|error| Fault { position, kind: FaultKind::Illegal(error.kind) })?;
+        self.controller
+            .check(&instruction)
+            .and_then(|()| self.instruction(&instruction, executed))
+            .map_err(|kind| Fault { position, kind })?;
+        executed.instructions += 1;
+        executed.clocks += u64::from(SET_UP_CLOCKS) + std::mem::take(&mut self.clock);
+        Ok(used)
     }
 
     fn instruction(&mut self, instruction: &Instruction, executed: &mut Executed) -> Result<(), FaultKind> {
@@ -75,8 +102,8 @@ impl BitSerial {
             }
             Instruction::StoreBlock { field, block } => {
                 let bits = self.controller.bits(field)?;
-                let planes = self.memory[bits.first..bits.end()].to_vec();
-                self.backing[usize::from(block)] = Some(planes);
+                let planes = self.tiles.iter().flat_map(|tile| &tile.memory[bits.first..bits.end()]);
+                self.backing[usize::from(block)] = Some(planes.copied().collect());
             }
             Instruction::LoadBlock { field, block } => self.load_block(field, block)?,
             Instruction::Wait => {}
@@ -94,41 +121,68 @@ impl BitSerial {
     fn enable_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
         let first = |operand| self.controller.bits(operand).map(|bits| bits.first);
         match *instruction {
-            Instruction::EnableAll { .. } => self.enable = [u64::MAX; 256],
-            Instruction::EnableNone => self.enable = EMPTY_PLANE,
-            Instruction::EnableInvert => self.enable.iter_mut().for_each(|e| *e = !*e),
-            Instruction::EnableLoad(bit) => self.enable = self.memory[first(bit)?],
+            Instruction::EnableAll { .. } => self.each_tile(|tile| tile.enable = FULL),
+            Instruction::EnableNone => self.each_tile(|tile| tile.enable = EMPTY),
+            Instruction::EnableInvert => self.each_tile(|tile| planes::invert(&mut tile.enable)),
+            Instruction::EnableLoad(bit) => {
+                let bit = first(bit)?;
+                self.each_tile(|tile| tile.enable = tile.memory[bit]);
+            }
             Instruction::EnableStore(bit) => {
                 let bit = first(bit)?;
-                self.memory[bit] = self.enable;
+                self.each_tile(|tile| tile.memory[bit] = tile.enable);
             }
             Instruction::EnableAnd(bit) => {
                 let bit = first(bit)?;
-                planes::and(&mut self.enable, &self.memory[bit]);
+                self.each_tile(|tile| planes::and(&mut tile.enable, &tile.memory[bit]));
             }
+            Instruction::Evaluate { expression, usage } => return self.evaluate(&expression, &usage),
             _ => return self.field_instruction(instruction),
         }
         self.clock += u64::from(CONTROL_CLOCKS);
         Ok(())
     }
 
+    fn each_tile(&mut self, f: impl FnMut(&mut Tile)) {
+        self.tiles.iter_mut().for_each(f);
+    }
+
+    fn field_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
+        for tile in self.tiles.iter_mut().filter(|tile| !self.skipping || tile.enabled()) {
+            tile.clock = 0;
+            tile.field_instruction(&self.controller, instruction)?;
+        }
+        // All tiles work in step, so that each of them counts the clocks of all; one that is skipped counts none.
+        self.clock += if self.skipping { instruction.bit_clocks().into() } else { self.tiles[0].clock };
+        Ok(())
+    }
+
     fn load_block(&mut self, field: Operand, block: u8) -> Result<(), FaultKind> {
         let bits = self.controller.bits(field)?;
-        match &self.backing[usize::from(block)] {
-            Some(planes) => self.memory[bits.first..bits.end()].copy_from_slice(planes),
-            None => self.memory[bits.first..bits.end()].fill(EMPTY_PLANE),
+        let mut planes = self.backing[usize::from(block)].iter().flatten();
+        for tile in &mut self.tiles {
+            let field = &mut tile.memory[bits.first..bits.end()];
+            field.fill_with(|| planes.next().copied().unwrap_or(EMPTY));
         }
         Ok(())
     }
 
+    /// A field's values, row by row of the left top pixels.
     fn colour(&self, field: Bits, width: u32, height: u32) -> Arc<[Word]> {
-        let (width, height) = (width.min(128) as usize, height.min(128) as usize);
-        let planes = &self.memory[field.first..field.end()];
-        let pixel = |x: usize, y: usize| {
-            let bits = planes.iter().enumerate();
-            bits.fold(0, |v, (i, p)| v | (p[2 * y + x / 64] >> (x % 64) & 1) << i) as Word
-        };
-        (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| pixel(x, y)).collect()
+        let size = REGION_SIZE as usize;
+        let mut values = vec![0; size * size];
+        for (number, tile) in self.tiles.iter().enumerate() {
+            let [left, top] = tile::origin(number);
+            for y in 0..HEIGHT {
+                let row = &mut values[(top + y) * size + left..][..WIDTH];
+                for (i, plane) in tile.memory[field.first..field.end()].iter().enumerate() {
+                    let bits = (plane[y / 2] >> (WIDTH * (y % 2))) as Word;
+                    row.iter_mut().enumerate().for_each(|(x, value)| *value |= (bits >> x & 1) << i);
+                }
+            }
+        }
+        let rows = values.chunks(size).take(height as usize);
+        rows.flat_map(|row| &row[..size.min(width as usize)]).copied().collect()
     }
 }
 
@@ -138,19 +192,23 @@ impl PixelArray for BitSerial {
     }
 
     fn plane(&self, bit: usize) -> Plane {
-        self.memory[bit]
+        tile::join(self.tiles.iter().map(|tile| &tile.memory[bit]))
     }
 
     fn set_plane(&mut self, bit: usize, plane: &Plane) {
-        self.memory[bit] = *plane;
+        for (number, tile) in self.tiles.iter_mut().enumerate() {
+            tile.memory[bit] = tile::part(plane, number);
+        }
     }
 
     fn enable(&self) -> Plane {
-        self.enable
+        tile::join(self.tiles.iter().map(|tile| &tile.enable))
     }
 
     fn set_enable(&mut self, plane: &Plane) {
-        self.enable = *plane;
+        for (number, tile) in self.tiles.iter_mut().enumerate() {
+            tile.enable = tile::part(plane, number);
+        }
     }
 
     fn read_colour(&self, width: u32, height: u32) -> Arc<[Word]> {
@@ -159,8 +217,8 @@ impl PixelArray for BitSerial {
     }
 
     fn reset(&mut self) {
-        let vectors = self.vectors;
-        *self = Self { vectors, ..Self::new(&self.layout) };
+        let (vectors, skipping) = (self.vectors, self.skipping);
+        *self = Self { vectors, skipping, ..Self::new(&self.layout) };
     }
 
     fn faults(&self) -> u64 {

@@ -19,8 +19,9 @@
 //!    then colours (Gouraud) or normals (Phong). A sphere: the silhouette is a quadratic, its square root gives depth,
 //!    normal and light. [`Shade`] turns normals into colour once, at the end of the frame.
 //! 4. Pixels are computed apart from time. [`BitSerial`] moves bit planes as the hardware did, and defines every bit;
-//!    [`Lanes`] works on values, only where a command can change something. The suite in [`conformance`] holds both
-//!    to the same 208 bits of all pixels, Enable, clocks and faults.
+//!    [`BitSerial::skipping`] leaves out what cannot change anything; [`Lanes`] works on values, only where a command
+//!    can change something. The suite in [`conformance`] holds them to the same 208 bits of all pixels, Enable, clocks
+//!    and faults.
 //!
 //! # Numbers
 //!

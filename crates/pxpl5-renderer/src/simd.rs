@@ -115,10 +115,12 @@ pub(crate) trait Vector: Copy {
     fn load_words(from: &[u64]) -> Self;
     /// Overwrites as many words as [`Vector::load_words`] reads.
     fn store_words(self, to: &mut [u64]);
-    /// All rows hold these 128 bits, four lanes each.
-    fn columns(bits: [u64; 2]) -> Self;
-    /// All bits of row i, lanes 4 i to 4 i + 3, are bit i of `bits`.
-    fn rows(bits: u64) -> Self;
+    /// All bits of lane i are bit i of `bits`.
+    fn spread(bits: u64) -> Self;
+    /// All bits of each lane are its bit `t`.
+    fn bit(self, t: u32) -> Self;
+    /// Bit i is the sign of lane i.
+    fn signs(self) -> u32;
     fn add(self, other: Self) -> Self;
     fn or(self, other: Self) -> Self;
     fn and(self, other: Self) -> Self;
@@ -140,6 +142,21 @@ pub(crate) trait Vector: Copy {
 /// The portable vector.
 #[derive(Clone, Copy)]
 pub(crate) struct Eight([i32; 8]);
+
+/// Four lanes for each number of four bits, whose bits they are: processors without AVX2 have no shift a lane.
+const FOUR_LANES: [[i32; 4]; 16] = {
+    let mut out = [[0; 4]; 16];
+    let mut bits = 0;
+    while bits < 16 {
+        let mut k = 0;
+        while k < 4 {
+            out[bits][k] = -((bits >> k & 1) as i32);
+            k += 1;
+        }
+        bits += 1;
+    }
+    out
+};
 
 impl Eight {
     #[inline(always)]
@@ -186,13 +203,20 @@ impl Vector for Eight {
     }
 
     #[inline(always)]
-    fn columns(bits: [u64; 2]) -> Self {
-        Self::load_words(&[bits[0], bits[1], bits[0], bits[1]])
+    fn spread(bits: u64) -> Self {
+        let four = |from: u32| &FOUR_LANES[(bits >> from) as usize & 15];
+        let ([a, b, c, d], [e, f, g, h]) = (*four(0), *four(4));
+        Self([a, b, c, d, e, f, g, h])
     }
 
     #[inline(always)]
-    fn rows(bits: u64) -> Self {
-        Self(std::array::from_fn(|k| -((bits >> (k / 4) & 1) as i32)))
+    fn bit(self, t: u32) -> Self {
+        self.map(|v| v << (31 - t) >> 31)
+    }
+
+    #[inline(always)]
+    fn signs(self) -> u32 {
+        (0..8).fold(0, |signs, k| signs | (self.0[k] as u32 >> 31) << k)
     }
 
     #[inline(always)]

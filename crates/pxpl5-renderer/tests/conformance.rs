@@ -1,12 +1,16 @@
 //! Both pixel arrays agree in every bit. `PXPL5_FUZZ_SECONDS` sets how long the random part runs.
 
 use pxpl5_renderer::conformance::{self, Mismatch, Random};
+use pxpl5_renderer::isa::{Expression, ExpressionUse, Instruction, Operand};
 use pxpl5_renderer::{BitSerial, Clear, Command, CopyRegion, Lanes, Layout, PixelArray, SelectRegion, Vectors};
-use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, RegionGrid, RegionId};
+use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, RegionGrid, RegionId};
 use std::time::{Duration, Instant};
 
 /// Rounds of each layout without the variable.
 const ROUNDS: u64 = 20;
+
+/// Lists of each vector unit.
+const CORNER_RUNS: u64 = 300;
 
 fn layouts() -> [Layout; 3] {
     [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()]
@@ -46,16 +50,84 @@ fn bit_planes_agree_on_every_vector_unit() {
 }
 
 #[test]
+fn what_is_skipped_changes_nothing_on_any_vector_unit() {
+    for vectors in Vectors::available() {
+        for layout in layouts() {
+            let mut definition = BitSerial::new(&layout);
+            let mut subject = BitSerial::with_vectors(&layout, vectors).skipping();
+            check(conformance::instructions(&mut definition, &mut subject));
+            check(conformance::commands(&layout, &mut definition, &mut subject));
+        }
+    }
+}
+
+/// Instructions with an expression that turns its sign, or wraps, at a corner of a block of pixels or beside it.
+fn corner_run(random: &mut Random) -> Vec<Instruction> {
+    let mut pick = |from: &[i32]| from[random.below(from.len() as u64) as usize];
+    let slopes = [0, 1, -1, 16, -16, 333, -70_001, 1 << 23, -(1 << 24), i32::MAX, i32::MIN];
+    let mut out = Vec::new();
+    for _ in 0..pick(&[1, 3, 12]) {
+        let (a, b) = (pick(&slopes), pick(&slopes));
+        let corner = [0, 15, 16, 31, 32, 63, 64, 95, 112, 127];
+        let beside = Linear { a, b, c: 0 }.at(pick(&corner), pick(&corner));
+        let value = pick(&[-1, 0, 1, i32::MAX, i32::MIN]);
+        let c = value.wrapping_sub(beside);
+        let expression =
+            if pick(&[0, 0, 0, 1]) == 1 { Expression::LinearAgain } else { Expression::Linear(Linear { a, b, c }) };
+        let (field, shift) = (Operand::absolute(24, 20), 12);
+        let usage = match pick(&[0, 0, 0, 1, 2, 3, 4, 5]) {
+            0 => ExpressionUse::DisableNegative,
+            1 => ExpressionUse::Load { field, shift },
+            2 => ExpressionUse::Add { field, shift },
+            3 => ExpressionUse::DisableNotLess { field, shift },
+            4 => {
+                let subtrahend = Operand::absolute(60, 9).signed();
+                ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift: 3 }
+            }
+            _ => {
+                out.push(Instruction::LoadConstant { destination: field.signed(), value: c as u32 });
+                continue;
+            }
+        };
+        out.push(Instruction::Evaluate { expression, usage });
+    }
+    out
+}
+
+#[test]
+fn runs_whose_signs_turn_at_corners_of_blocks_agree_on_every_vector_unit() {
+    let layout = Layout::slats();
+    for vectors in Vectors::available() {
+        let mut definition = BitSerial::new(&layout);
+        let mut subject = BitSerial::with_vectors(&layout, vectors).skipping();
+        let mut random = Random::new(5);
+        conformance::scramble(&mut random, &mut definition, &mut subject);
+        for _ in 0..CORNER_RUNS {
+            let mut run = corner_run(&mut random);
+            let noise = Instruction::EnableLoad(Operand::absolute(random.below(208) as u8, 1));
+            run.insert(0, if random.below(2) == 0 { noise } else { Instruction::EnableAll { label: 0 } });
+            let mut words = Vec::new();
+            run.iter().for_each(|instruction| instruction.encode(&mut words));
+            check(conformance::agree(&mut definition, &mut subject, &words, &run));
+        }
+    }
+}
+
+#[test]
 fn random_lists_agree() {
     let seconds = std::env::var("PXPL5_FUZZ_SECONDS").ok();
     let limit = seconds.map(|text| Duration::from_secs(text.parse().expect("a number of seconds")));
     let start = Instant::now();
     let more = |round: u64| limit.map_or(round < ROUNDS, |limit| start.elapsed() < limit);
     let layouts = layouts();
-    let mut arrays = layouts.map(|layout| (BitSerial::new(&layout), Lanes::new(&layout)));
+    let mut lanes = layouts.map(|layout| (BitSerial::new(&layout), Lanes::new(&layout)));
+    let mut skipping = layouts.map(|layout| (BitSerial::new(&layout), BitSerial::new(&layout).skipping()));
     let mut round = 0;
     while more(round) {
-        for (layout, (definition, subject)) in layouts.iter().zip(&mut arrays) {
+        for (layout, (definition, subject)) in layouts.iter().zip(&mut lanes) {
+            check(conformance::random_round(layout, 1000 + round, definition, subject));
+        }
+        for (layout, (definition, subject)) in layouts.iter().zip(&mut skipping) {
             check(conformance::random_round(layout, 1000 + round, definition, subject));
         }
         round += 1;

@@ -1,24 +1,24 @@
 //! Instructions on fields of pixel memory, bit by bit.
 
-use super::{BitSerial, planes};
-use crate::array::{EMPTY_PLANE, FaultKind, Plane};
-use crate::controller::Bits;
+use super::planes;
+use super::tile::{EMPTY, FULL, Tile, TilePlane};
+use crate::array::FaultKind;
+use crate::controller::{Bits, Controller};
 use crate::isa::{ArithmeticOp, Instruction, Test};
-use planes::FULL_PLANE;
 
 /// An operand that is read least significant bit first and then extended. The sign is latched at the start, since the
 /// result may overwrite it.
 pub(super) struct Source {
     bits: Bits,
-    extension: Plane,
+    extension: TilePlane,
 }
 
 impl Source {
-    fn bit(&self, memory: &[Plane], i: usize) -> Plane {
+    fn bit(&self, memory: &[TilePlane], i: usize) -> TilePlane {
         *self.plane(memory, i)
     }
 
-    pub(super) fn plane<'a>(&'a self, memory: &'a [Plane], i: usize) -> &'a Plane {
+    pub(super) fn plane<'a>(&'a self, memory: &'a [TilePlane], i: usize) -> &'a TilePlane {
         if i < self.bits.width { &memory[self.bits.first + i] } else { &self.extension }
     }
 }
@@ -29,12 +29,14 @@ enum Factor {
     Constant(i32),
 }
 
-impl BitSerial {
-    pub(super) fn field_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
-        let controller = self.controller;
+impl Tile {
+    pub(super) fn field_instruction(
+        &mut self,
+        controller: &Controller,
+        instruction: &Instruction,
+    ) -> Result<(), FaultKind> {
         let bits = |operand| controller.bits(operand);
         match *instruction {
-            Instruction::Evaluate { expression, usage } => self.evaluate(&expression, &usage)?,
             Instruction::ShiftRight { destination, source, by } => {
                 self.shift_right(bits(destination)?, bits(source)?, by.into());
             }
@@ -71,17 +73,17 @@ impl BitSerial {
     }
 
     pub(super) fn source(&self, bits: Bits) -> Source {
-        let extension = if bits.signed { self.memory[bits.end() - 1] } else { EMPTY_PLANE };
+        let extension = if bits.signed { self.memory[bits.end() - 1] } else { EMPTY };
         Source { bits, extension }
     }
 
     /// Stores one bit where enabled.
-    fn store(&mut self, bit: usize, new: &Plane) {
+    fn store(&mut self, bit: usize, new: &TilePlane) {
         planes::store(&mut self.memory[bit], new, &self.enable);
     }
 
     /// field := the bits that `f` gives, least significant first, one a clock.
-    fn each_bit(&mut self, field: Bits, mut f: impl FnMut(&[Plane], usize) -> Plane) {
+    fn each_bit(&mut self, field: Bits, mut f: impl FnMut(&[TilePlane], usize) -> TilePlane) {
         for i in 0..field.width {
             let new = f(&self.memory, i);
             self.store(field.first + i, &new);
@@ -99,7 +101,7 @@ impl BitSerial {
         let source = self.source(source);
         for i in (0..destination.width).rev() {
             let bit = i.checked_sub(by).map(|i| source.bit(&self.memory, i));
-            self.store(destination.first + i, &bit.unwrap_or(EMPTY_PLANE));
+            self.store(destination.first + i, &bit.unwrap_or(EMPTY));
             self.clock += 1;
         }
     }
@@ -108,7 +110,7 @@ impl BitSerial {
         let (w, wa) = (destination.width, source.width);
         let digits = if source.signed { wa - 1 } else { wa };
         let source = self.source(source);
-        let mut over = EMPTY_PLANE;
+        let mut over = EMPTY;
         for i in w..digits {
             planes::or(&mut over, &source.bit(&self.memory, i));
         }
@@ -121,7 +123,7 @@ impl BitSerial {
 
     fn arithmetic(&mut self, op: ArithmeticOp, destination: Bits, a: Bits, b: Bits) {
         let (x, y) = (self.source(a), self.source(b));
-        let mut carry = EMPTY_PLANE;
+        let mut carry = EMPTY;
         let mut logic = |f: fn(u64, u64) -> u64| {
             self.each_bit(destination, |m, i| planes::combine(&x.bit(m, i), &y.bit(m, i), f));
         };
@@ -140,7 +142,7 @@ impl BitSerial {
             ArithmeticOp::Minimum | ArithmeticOp::Maximum => {
                 let mut less = self.less(a, a.width.max(b.width), |memory, i| y.bit(memory, i));
                 if op == ArithmeticOp::Maximum {
-                    less.iter_mut().for_each(|l| *l = !*l);
+                    planes::invert(&mut less);
                 }
                 self.each_bit(destination, |memory, i| {
                     let mut first = x.bit(memory, i);
@@ -153,9 +155,9 @@ impl BitSerial {
     }
 
     /// Where a < b, from the borrow of their difference over `clocks` bits.
-    fn less(&mut self, a: Bits, clocks: usize, b: impl Fn(&[Plane], usize) -> Plane) -> Plane {
+    fn less(&mut self, a: Bits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) -> TilePlane {
         let x = self.source(a);
-        let mut borrow = EMPTY_PLANE;
+        let mut borrow = EMPTY;
         for i in 0..clocks {
             planes::borrow(&x.bit(&self.memory, i), &b(&self.memory, i), &mut borrow);
         }
@@ -169,12 +171,12 @@ impl BitSerial {
         borrow
     }
 
-    fn compare(&mut self, test: Test, a: Bits, clocks: usize, b: impl Fn(&[Plane], usize) -> Plane) {
+    fn compare(&mut self, test: Test, a: Bits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
         let holds = match test {
             Test::Less | Test::NotLess => self.less(a, clocks, b),
             Test::Equal | Test::NotEqual => {
                 let x = self.source(a);
-                let mut differ = EMPTY_PLANE;
+                let mut differ = EMPTY;
                 for i in 0..clocks {
                     let bit = planes::combine(&x.bit(&self.memory, i), &b(&self.memory, i), |a, b| a ^ b);
                     planes::or(&mut differ, &bit);
@@ -196,30 +198,30 @@ impl BitSerial {
         for j in 0..b_width.min(destination.width) {
             let gate = match b {
                 Factor::Field(field) => field.bit(&self.memory, j),
-                Factor::Constant(constant) if constant >> j & 1 == 1 => FULL_PLANE,
-                Factor::Constant(_) => EMPTY_PLANE,
+                Factor::Constant(constant) if constant >> j & 1 == 1 => FULL,
+                Factor::Constant(_) => EMPTY,
             };
             self.add_product(destination, &x, j, &gate, b_signed && j + 1 == b_width);
         }
         let sign_at = a.width + b_width - 1;
         for i in sign_at + 1..destination.width {
             let signed = a.signed || b_signed;
-            let sign = if signed { self.memory[destination.first + sign_at] } else { EMPTY_PLANE };
+            let sign = if signed { self.memory[destination.first + sign_at] } else { EMPTY };
             self.store(destination.first + i, &sign);
             self.clock += 1;
         }
     }
 
     /// Adds `x << j` where `gate` is set, or subtracts it.
-    fn add_product(&mut self, destination: Bits, x: &Source, j: usize, gate: &Plane, negative: bool) {
+    fn add_product(&mut self, destination: Bits, x: &Source, j: usize, gate: &TilePlane, negative: bool) {
         let top = j + x.bits.width;
         // The sign of what the product has so far, if a clock at `top` is left to add to it.
         let extends = x.bits.signed && j > 0 && top < destination.width;
-        let extension = if extends { self.memory[destination.first + top - 1] } else { EMPTY_PLANE };
-        let mut carry = EMPTY_PLANE;
+        let extension = if extends { self.memory[destination.first + top - 1] } else { EMPTY };
+        let mut carry = EMPTY;
         for i in j..destination.width.min(top + 1) {
             let mut sum = match i {
-                _ if j == 0 => EMPTY_PLANE,
+                _ if j == 0 => EMPTY,
                 _ if i == top => extension,
                 _ => self.memory[destination.first + i],
             };
@@ -237,14 +239,14 @@ impl BitSerial {
         for j in (0..destination.width).rev() {
             let rest = Bits { first: a.first + j, width: a.width - j, signed: false };
             let mut digit = self.less(rest, rest.width.max(b.width), |memory, i| divisor.bit(memory, i));
-            digit.iter_mut().for_each(|d| *d = !*d);
+            planes::invert(&mut digit);
             self.store(destination.first + j, &digit);
             self.subtract_gated(rest, &digit, |memory, i| divisor.bit(memory, i));
         }
     }
 
-    fn subtract_gated(&mut self, rest: Bits, gate: &Plane, b: impl Fn(&[Plane], usize) -> Plane) {
-        let mut borrow = EMPTY_PLANE;
+    fn subtract_gated(&mut self, rest: Bits, gate: &TilePlane, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
+        let mut borrow = EMPTY;
         self.each_bit(rest, |memory, i| {
             let mut difference = memory[rest.first + i];
             let gated = planes::combine(&b(memory, i), gate, |bit, gate| bit & gate);
@@ -260,21 +262,21 @@ impl BitSerial {
             let digits = n - 1 - i;
             let width = (digits + 3).min(radicand.width - 2 * i);
             let rest = Bits { first: radicand.first + 2 * i, width, signed: false };
-            let trial = |memory: &[Plane], k: usize| match k {
-                0 => FULL_PLANE,
+            let trial = |memory: &[TilePlane], k: usize| match k {
+                0 => FULL,
                 2.. if k - 2 < digits => memory[destination.first + i + k - 1],
-                _ => EMPTY_PLANE,
+                _ => EMPTY,
             };
             let mut digit = self.less(rest, width, trial);
-            digit.iter_mut().for_each(|d| *d = !*d);
+            planes::invert(&mut digit);
             self.store(destination.first + i, &digit);
             self.subtract_gated(rest, &digit, trial);
         }
     }
 }
 
-fn constant_bit(value: u32, i: usize, signed: bool) -> Plane {
+pub(super) fn constant_bit(value: u32, i: usize, signed: bool) -> TilePlane {
     let at = if i < 32 { i } else { 31 };
     let set = value >> at & 1 == 1 && (i < 32 || signed);
-    if set { FULL_PLANE } else { EMPTY_PLANE }
+    if set { FULL } else { EMPTY }
 }

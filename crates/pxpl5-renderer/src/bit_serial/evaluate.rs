@@ -2,212 +2,236 @@
 
 use super::BitSerial;
 use super::arithmetic::Source;
-use super::evaluator::{Evaluator, LinearTrees, QuadraticTrees, full_add};
-use crate::array::{FaultKind, Plane};
-use crate::controller::Local;
-use crate::isa::{Expression, ExpressionUse, Operand};
+use super::evaluator::{Evaluator, LinearStreams, Place, QuadraticStreams, WholeTrees, full_add};
+use super::tile::{HEIGHT, Tile, TilePlane};
+use crate::array::FaultKind;
+use crate::controller::{Bits, Local};
+use crate::isa::{Expression, ExpressionUse};
 use crate::simd::{Kernel, Vector};
 use std::ops::Range;
 
 /// Where the bits of an expression go.
 trait Sink {
-    /// Takes bit `t` of the expression in the pixels from word `at` of a plane on; `carry` begins with zeros.
-    fn take<V: Vector>(&mut self, at: usize, t: usize, bit: V, carry: &mut V);
+    /// Takes bit `t` of the expression in the pixels of a tile from word `at` of a plane on; `carry` begins with zeros.
+    fn take<V: Vector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V);
 
     /// Takes the carry behind the last bit.
-    fn end<V: Vector>(&mut self, _at: usize, _carry: V) {}
+    fn end<V: Vector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
+}
+
+/// What pixels do with an expression.
+#[derive(Clone, Debug)]
+pub(super) struct Delivery {
+    /// Clocks whose bits they take.
+    pub(super) taken: Range<usize>,
+    pub(super) effect: Effect,
+}
+
+/// Where the bits go; fields by their first bit.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Effect {
+    DisableNegative,
+    Load { first: usize },
+    Add { first: usize },
+    DisableNotLess { first: usize },
+    LoadMinus { first: usize, shift: usize, subtrahend: Bits, left_shift: usize },
+}
+
+impl Delivery {
+    /// Runs all clocks in one vector of pixels.
+    #[inline(always)]
+    pub(super) fn run_pixels<V: Vector, E: Evaluator>(&self, evaluator: &E, tile: &mut Tile, place: Place) {
+        let shift = self.taken.start;
+        match self.effect {
+            Effect::DisableNegative => self.run::<V, E, _>(evaluator, &Disable, tile, place),
+            Effect::Load { first } => self.run::<V, E, _>(evaluator, &Load { first, shift }, tile, place),
+            Effect::Add { first } => self.run::<V, E, _>(evaluator, &Add { first, shift }, tile, place),
+            Effect::DisableNotLess { first } => {
+                self.run::<V, E, _>(evaluator, &DisableNotLess { first, shift }, tile, place);
+            }
+            Effect::LoadMinus { first, shift, subtrahend, left_shift } => {
+                let source = tile.source(subtrahend);
+                self.run::<V, E, _>(evaluator, &LoadMinus { first, shift, source, left_shift }, tile, place);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn run<V: Vector, E: Evaluator, S: Sink>(&self, evaluator: &E, sink: &S, tile: &mut Tile, place: Place) {
+        let at = place.at;
+        let (mut carries, mut carry) = (E::start::<V>(), V::splat(0));
+        for t in 0..self.taken.start {
+            evaluator.bit(t, place, &mut carries);
+        }
+        for t in self.taken.clone() {
+            let bit = evaluator.bit(t, place, &mut carries);
+            sink.take(tile, at, t, bit, &mut carry);
+        }
+        sink.end(tile, at, carry);
+    }
 }
 
 /// The bits of an expression on their way to all pixels.
-struct Deliver<'a, E: Evaluator, S> {
+struct Deliver<'a, E: WholeTrees> {
     coefficients: &'a E::Coefficients,
-    /// Clocks whose bits the sink takes.
-    taken: Range<usize>,
-    sink: S,
+    delivery: &'a Delivery,
+    tiles: &'a mut [Tile],
+    skipping: bool,
 }
 
-impl<E: Evaluator, S: Sink> Kernel for Deliver<'_, E, S> {
+impl<E: WholeTrees> Kernel for Deliver<'_, E> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Vector>(mut self) {
-        let evaluator = E::run_trees::<V>(self.coefficients, self.taken.end);
-        // A word is two lanes, a row two words.
-        for at in (0..size_of::<Plane>() / 8).step_by(V::LANES / 2) {
-            let (mut carries, mut carry) = (E::start::<V>(), V::splat(0));
-            for t in 0..self.taken.start {
-                evaluator.bit(t, at / 2, &mut carries);
+    fn run<V: Vector>(self) {
+        let works = |tile: &Tile| !self.skipping || tile.enabled();
+        if !self.tiles.iter().any(works) {
+            return;
+        }
+        let evaluator = E::run_trees::<V>(self.coefficients, self.delivery.taken.end);
+        for (number, tile) in self.tiles.iter_mut().enumerate().filter(|(_, tile)| works(tile)) {
+            // A lane is a row.
+            for row in (0..HEIGHT).step_by(V::LANES) {
+                self.delivery.run_pixels::<V, E>(&evaluator, tile, Place::in_array(number, row));
             }
-            for t in self.taken.clone() {
-                let bit = evaluator.bit(t, at / 2, &mut carries);
-                self.sink.take(at, t, bit, &mut carry);
-            }
-            self.sink.end(at, carry);
         }
     }
 }
 
 impl BitSerial {
+    /// Runs the evaluator: a linear expression until the last bit is taken, a quadratic one always to its end.
     pub(super) fn evaluate(&mut self, expression: &Expression, usage: &ExpressionUse) -> Result<(), FaultKind> {
+        let delivery = &self.delivery(usage, expression.bits())?;
         let local = self.controller.latch(expression);
-        match *usage {
-            ExpressionUse::DisableNegative => {
-                let sign = local.bits() as usize - 1;
-                self.deliver(&local, sign..sign + 1, |array| Disable { enable: &mut array.enable });
+        let (vectors, skipping, tiles) = (self.vectors, self.skipping, &mut self.tiles[..]);
+        match &local {
+            Local::Linear(coefficients) => {
+                self.clock += delivery.taken.end as u64;
+                vectors.run(Deliver::<LinearStreams> { coefficients, delivery, tiles, skipping });
             }
-            ExpressionUse::Load { field, shift } => {
-                let (taken, first) = self.taken(field, shift)?;
-                self.deliver(&local, taken.clone(), |array| Load {
-                    field: &mut array.memory[first..first + taken.len()],
-                    shift: taken.start,
-                    enable: &array.enable,
-                });
-            }
-            ExpressionUse::Add { field, shift } => {
-                let (taken, first) = self.taken(field, shift)?;
-                self.deliver(&local, taken.clone(), |array| Add {
-                    field: &mut array.memory[first..first + taken.len()],
-                    shift: taken.start,
-                    enable: &array.enable,
-                });
-            }
-            ExpressionUse::DisableNotLess { field, shift } => {
-                let (taken, first) = self.taken(field, shift)?;
-                self.deliver(&local, taken.clone(), |array| DisableNotLess {
-                    field: &array.memory[first..first + taken.len()],
-                    shift: taken.start,
-                    enable: &mut array.enable,
-                });
-            }
-            ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift } => {
-                let (taken, first) = self.taken(field, shift)?;
-                let source = self.source(self.controller.bits(subtrahend)?);
-                self.deliver(&local, 0..taken.end, |array| LoadMinus {
-                    memory: &mut array.memory,
-                    first,
-                    shift: taken.start,
-                    source: &source,
-                    left_shift: left_shift.into(),
-                    enable: &array.enable,
-                });
+            Local::Quadratic(coefficients) => {
+                self.clock += u64::from(local.bits());
+                vectors.run(Deliver::<QuadraticStreams> { coefficients, delivery, tiles, skipping });
             }
         }
         Ok(())
     }
 
-    /// Clocks whose bits reach a field, and the field's first bit.
-    fn taken(&self, field: Operand, shift: u8) -> Result<(Range<usize>, usize), FaultKind> {
-        let bits = self.controller.bits(field)?;
-        let shift = usize::from(shift);
-        Ok((shift..shift + bits.width, bits.first))
-    }
-
-    /// Runs the evaluator: a linear expression until the last bit is taken, a quadratic one always to its end.
-    fn deliver<'a, S: Sink>(&'a mut self, local: &Local, taken: Range<usize>, sink: impl FnOnce(&'a mut Self) -> S) {
-        let vectors = self.vectors;
-        match local {
-            Local::Linear(e) => {
-                self.clock += taken.end as u64;
-                vectors.run(Deliver::<LinearTrees, _> { coefficients: e, taken, sink: sink(self) });
+    /// How an expression of so many bits is used in the selected context.
+    pub(super) fn delivery(&self, usage: &ExpressionUse, bits: u32) -> Result<Delivery, FaultKind> {
+        let taken = |field, shift| -> Result<_, FaultKind> {
+            let field = self.controller.bits(field)?;
+            let shift = usize::from(shift);
+            Ok((shift..shift + field.width, field.first))
+        };
+        let (taken, effect) = match *usage {
+            ExpressionUse::DisableNegative => (bits as usize - 1..bits as usize, Effect::DisableNegative),
+            ExpressionUse::Load { field, shift } => {
+                let (taken, first) = taken(field, shift)?;
+                (taken, Effect::Load { first })
             }
-            Local::Quadratic(q) => {
-                self.clock += u64::from(local.bits());
-                vectors.run(Deliver::<QuadraticTrees, _> { coefficients: q, taken, sink: sink(self) });
+            ExpressionUse::Add { field, shift } => {
+                let (taken, first) = taken(field, shift)?;
+                (taken, Effect::Add { first })
             }
-        }
+            ExpressionUse::DisableNotLess { field, shift } => {
+                let (taken, first) = taken(field, shift)?;
+                (taken, Effect::DisableNotLess { first })
+            }
+            ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift } => {
+                let (taken, first) = taken(field, shift)?;
+                let (subtrahend, left_shift) = (self.controller.bits(subtrahend)?, left_shift.into());
+                (0..taken.end, Effect::LoadMinus { first, shift: taken.start, subtrahend, left_shift })
+            }
+        };
+        Ok(Delivery { taken, effect })
     }
 }
 
 /// Overwrites one bit where enabled.
 #[inline(always)]
-fn store<V: Vector>(plane: &mut Plane, at: usize, new: V, enable: &Plane) {
+fn store<V: Vector>(plane: &mut TilePlane, at: usize, new: V, enable: &TilePlane) {
     let old = V::load_words(&plane[at..]);
     let changed = old.xor(new).and(V::load_words(&enable[at..]));
     old.xor(changed).store_words(&mut plane[at..]);
 }
 
 /// E := 0 where the bit is set.
-struct Disable<'a> {
-    enable: &'a mut Plane,
-}
+struct Disable;
 
-impl Sink for Disable<'_> {
+impl Sink for Disable {
     #[inline(always)]
-    fn take<V: Vector>(&mut self, at: usize, _: usize, bit: V, _: &mut V) {
-        let enable = V::load_words(&self.enable[at..]);
-        enable.and(bit).xor(enable).store_words(&mut self.enable[at..]);
+    fn take<V: Vector>(&self, tile: &mut Tile, at: usize, _: usize, bit: V, _: &mut V) {
+        let enable = V::load_words(&tile.enable[at..]);
+        enable.and(bit).xor(enable).store_words(&mut tile.enable[at..]);
     }
 }
 
 /// field := bits from `shift` on.
-struct Load<'a> {
-    field: &'a mut [Plane],
+struct Load {
+    first: usize,
     shift: usize,
-    enable: &'a Plane,
 }
 
-impl Sink for Load<'_> {
+impl Sink for Load {
     #[inline(always)]
-    fn take<V: Vector>(&mut self, at: usize, t: usize, bit: V, _: &mut V) {
-        store(&mut self.field[t - self.shift], at, bit, self.enable);
+    fn take<V: Vector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, _: &mut V) {
+        store(&mut tile.memory[self.first + t - self.shift], at, bit, &tile.enable);
     }
 }
 
 /// field := field + bits from `shift` on.
-struct Add<'a> {
-    field: &'a mut [Plane],
+struct Add {
+    first: usize,
     shift: usize,
-    enable: &'a Plane,
 }
 
-impl Sink for Add<'_> {
+impl Sink for Add {
     #[inline(always)]
-    fn take<V: Vector>(&mut self, at: usize, t: usize, bit: V, carry: &mut V) {
-        let plane = &mut self.field[t - self.shift];
+    fn take<V: Vector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V) {
+        let plane = &mut tile.memory[self.first + t - self.shift];
         let sum = full_add(bit, V::load_words(&plane[at..]), carry);
-        store(plane, at, sum, self.enable);
+        store(plane, at, sum, &tile.enable);
     }
 }
 
 /// E := 0 unless bits from `shift` on are less than the field.
-struct DisableNotLess<'a> {
-    field: &'a [Plane],
+struct DisableNotLess {
+    first: usize,
     shift: usize,
-    enable: &'a mut Plane,
 }
 
-impl Sink for DisableNotLess<'_> {
+impl Sink for DisableNotLess {
     #[inline(always)]
-    fn take<V: Vector>(&mut self, at: usize, t: usize, bit: V, borrow: &mut V) {
-        subtract(bit, V::load_words(&self.field[t - self.shift][at..]), borrow);
+    fn take<V: Vector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, borrow: &mut V) {
+        let field = &tile.memory[self.first + t - self.shift];
+        subtract(bit, V::load_words(&field[at..]), borrow);
     }
 
     #[inline(always)]
-    fn end<V: Vector>(&mut self, at: usize, less: V) {
-        V::load_words(&self.enable[at..]).and(less).store_words(&mut self.enable[at..]);
+    fn end<V: Vector>(&self, tile: &mut Tile, at: usize, less: V) {
+        V::load_words(&tile.enable[at..]).and(less).store_words(&mut tile.enable[at..]);
     }
 }
 
 /// field := bits from `shift` on of the difference from a source.
-struct LoadMinus<'a> {
-    memory: &'a mut [Plane],
+struct LoadMinus {
     first: usize,
     shift: usize,
-    source: &'a Source,
+    source: Source,
     left_shift: usize,
-    enable: &'a Plane,
 }
 
-impl Sink for LoadMinus<'_> {
+impl Sink for LoadMinus {
     #[inline(always)]
-    fn take<V: Vector>(&mut self, at: usize, t: usize, bit: V, borrow: &mut V) {
+    fn take<V: Vector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, borrow: &mut V) {
         let subtrahend = match t.checked_sub(self.left_shift) {
-            Some(i) => V::load_words(&self.source.plane(self.memory, i)[at..]),
+            Some(i) => V::load_words(&self.source.plane(&tile.memory, i)[at..]),
             None => V::splat(0),
         };
         let difference = subtract(bit, subtrahend, borrow);
         if let Some(i) = t.checked_sub(self.shift) {
-            store(&mut self.memory[self.first + i], at, difference, self.enable);
+            store(&mut tile.memory[self.first + i], at, difference, &tile.enable);
         }
     }
 }

@@ -7,8 +7,10 @@
 //! (assumed; F89 publishes the expression, not the circuit).
 //!
 //! Nothing flows back from the pixels, so the trees run all their clocks first; then each vector of pixels runs all of
-//! its own, with its carries in registers.
+//! its own, with its carries in registers. A lane of the trees is 32 columns or rows, a lane of pixels a row of a tile.
 
+use super::tile::{self, WIDTH};
+use crate::isa::{LINEAR_BITS, QUADRATIC_BITS};
 use crate::simd::Vector;
 use pxpl5_wire::{Linear, Quadratic};
 
@@ -41,83 +43,160 @@ const fn leaves<const N: usize>(power: u32) -> [Leaves; N] {
     out
 }
 
-/// One bit for each leaf of two trees side by side: those of the columns, then those of the rows.
-type Pair = [u64; 4];
+/// What trees side by side deliver in one clock: the lanes of a vector, two a word.
+type Streams = [u64; 8];
 
-/// Serial adders of two trees that add a coefficient times a number to the stream of each leaf. A leaf is a bit of a
-/// vector; the trees are its first two rows, what its other rows hold counts for nothing.
-struct Trees<V, const N: usize> {
-    coefficients: [i64; 2],
-    leaves: &'static [Leaves; N],
-    /// The last bits of both coefficients, two a clock, for the late levels.
-    late: u64,
-    carries: [V; N],
+/// Serial adders of trees side by side that add a coefficient times a number to the stream of each leaf. A leaf is a bit
+/// of a vector.
+pub(super) struct Trees<V, const LEVELS: usize> {
+    /// Low and high half of the coefficient that enters the tree of each lane.
+    coefficients: [V; 2],
+    /// For each level the leaves whose number has its bit.
+    leaves: [V; LEVELS],
+    /// The last bits of the coefficients, for the late levels.
+    late: [V; LEVELS],
+    carries: [V; LEVELS],
 }
 
-impl<V: Vector, const N: usize> Trees<V, N> {
+impl<V: Vector, const LEVELS: usize> Trees<V, LEVELS> {
     #[inline(always)]
-    fn new(coefficients: [i64; 2], leaves: &'static [Leaves; N]) -> Self {
-        Self { coefficients, leaves, late: 0, carries: [V::splat(0); N] }
+    pub(super) fn new(coefficients: [V; 2], leaves: [V; LEVELS]) -> Self {
+        let zeros = [V::splat(0); LEVELS];
+        Self { coefficients, leaves, late: zeros, carries: zeros }
+    }
+
+    /// Two trees of 128 leaves each, in the first eight lanes; what other lanes hold counts for nothing.
+    #[inline(always)]
+    fn of_pair(coefficients: [i64; 2], leaves: &[Leaves; LEVELS]) -> Self {
+        let mut vectors = [V::splat(0); LEVELS];
+        for (vector, [low, high]) in vectors.iter_mut().zip(leaves) {
+            *vector = V::load_words(&[*low, *high, *low, *high, 0, 0, 0, 0]);
+        }
+        Self::new(in_lanes(coefficients), vectors)
     }
 
     /// Bit `t` of the sums; `t` counts up from 0.
     #[inline(always)]
-    fn add(&mut self, mut stream: V, t: usize) -> V {
-        self.late = self.late << 2 | both(self.coefficients, t);
-        for (l, (leaves, carry)) in self.leaves.iter().zip(&mut self.carries).enumerate() {
-            let addend = V::rows(self.late >> (2 * l)).and(V::columns(*leaves));
-            stream = full_add(stream, addend, carry);
+    pub(super) fn add(&mut self, mut stream: V, t: usize) -> V {
+        for l in (1..LEVELS).rev() {
+            self.late[l] = self.late[l - 1];
+        }
+        self.late[0] = bit_of(self.coefficients, t);
+        for l in 0..LEVELS {
+            stream = full_add(stream, self.late[l].and(self.leaves[l]), &mut self.carries[l]);
         }
         stream
     }
 }
 
-/// Bit `t` of two numbers.
+/// Low and high halves of two numbers in the lanes of their trees.
 #[inline(always)]
-const fn both([first, second]: [i64; 2], t: usize) -> u64 {
-    (first >> t & 1 | (second >> t & 1) << 1) as u64
+fn in_lanes<V: Vector>([first, second]: [i64; 2]) -> [V; 2] {
+    let twice = |half: i64| (half as u32 as u64) << 32 | half as u32 as u64;
+    let lanes = |first: u64, second: u64| V::load_words(&[first, first, second, second, 0, 0, 0, 0]);
+    [lanes(twice(first), twice(second)), lanes(twice(first >> 32), twice(second >> 32))]
 }
 
-/// The first two rows of a vector.
+/// Bit `t` of the number whose halves a lane holds.
 #[inline(always)]
-fn pair<V: Vector>(stream: V) -> Pair {
+fn bit_of<V: Vector>([low, high]: [V; 2], t: usize) -> V {
+    if t < 32 { low.bit(t as u32) } else { high.bit(t as u32 - 32) }
+}
+
+/// The lanes of a vector, and zeros behind them.
+#[inline(always)]
+fn streams<V: Vector>(stream: V) -> Streams {
     let mut words = [0; 8];
     stream.store_words(&mut words);
-    [words[0], words[1], words[2], words[3]]
+    words
 }
 
-/// An expression: what the trees deliver, and what pixels do with it.
+/// A vector of pixels in a tile, and which streams meet there.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    /// Word of a tile's plane.
+    pub(super) at: usize,
+    columns: From,
+    rows: From,
+}
+
+/// Where a stream's bits for a vector of pixels begin.
+#[derive(Clone, Copy)]
+struct From {
+    word: usize,
+    bit: usize,
+}
+
+impl Place {
+    /// A tile of the whole array and a row of the tile, for a pair of trees over the array.
+    #[inline(always)]
+    pub(super) const fn in_array(tile: usize, row: usize) -> Self {
+        let [left, top] = tile::origin(tile);
+        let y = top + row;
+        let columns = From { word: left / 64, bit: left % 64 };
+        Self { at: row / 2, columns, rows: From { word: 2 + y / 64, bit: y % 64 } }
+    }
+
+    /// A row of a tile, for a pair of trees over the tile: columns in the low half of a word, rows in the high one.
+    #[inline(always)]
+    pub(super) const fn in_tile(word: usize, row: usize) -> Self {
+        Self { at: row / 2, columns: From { word, bit: 0 }, rows: From { word, bit: WIDTH + row } }
+    }
+
+    /// The bits of the columns, in all rows.
+    #[inline(always)]
+    fn columns<V: Vector>(&self, streams: &Streams) -> V {
+        V::splat(self.columns.of(streams) as i32)
+    }
+
+    /// The bits of the rows, each in all pixels of its row.
+    #[inline(always)]
+    fn rows<V: Vector>(&self, streams: &Streams) -> V {
+        V::spread(self.rows.of(streams))
+    }
+}
+
+impl From {
+    #[inline(always)]
+    const fn of(&self, streams: &Streams) -> u64 {
+        streams[self.word % streams.len()] >> self.bit
+    }
+}
+
+/// What pixels do with the streams of the trees.
 pub(super) trait Evaluator {
-    /// Its coefficients.
-    type Coefficients;
     /// What the adders of a vector of pixels hold from clock to clock.
     type Carries<V: Vector>;
-
-    /// Runs the trees for the first `bits` of the expression.
-    fn run_trees<V: Vector>(coefficients: &Self::Coefficients, bits: usize) -> Self;
 
     /// All zeros.
     fn start<V: Vector>() -> Self::Carries<V>;
 
-    /// Bit `t` of the expression in a vector of pixels whose first row is `row`; `t` counts up from 0.
-    fn bit<V: Vector>(&self, t: usize, row: usize, carries: &mut Self::Carries<V>) -> V;
+    /// Bit `t` of the expression in a vector of pixels; `t` counts up from 0.
+    fn bit<V: Vector>(&self, t: usize, place: Place, carries: &mut Self::Carries<V>) -> V;
 }
 
-/// A linear expression: what each column and row delivers, clock by clock.
-#[derive(Debug)]
-pub(super) struct LinearTrees(Vec<Pair>);
+/// An evaluator whose trees reach over the whole array.
+pub(super) trait WholeTrees: Evaluator {
+    /// The expression's coefficients.
+    type Coefficients;
+
+    /// Runs the trees for the first `bits` of the expression.
+    fn run_trees<V: Vector>(coefficients: &Self::Coefficients, bits: usize) -> Self;
+}
+
+/// A linear expression: what its columns and rows deliver, clock by clock.
+pub(super) struct LinearStreams(pub(super) [Streams; LINEAR_BITS as usize]);
 
 /// A quadratic expression.
-#[derive(Debug)]
-pub(super) struct QuadraticTrees(Vec<QuadraticBits>);
+pub(super) struct QuadraticStreams([QuadraticBits; QUADRATIC_BITS as usize]);
 
 /// What the trees of a quadratic deliver in one clock.
-#[derive(Debug)]
+#[derive(Clone, Copy, Default)]
 struct QuadraticBits {
     /// xx x^2 of each column; one + y y + yy y^2 of each row.
-    sums: Pair,
-    /// x + xy y: each row's coefficient of x.
-    coefficient: Leaves,
+    sums: Streams,
+    /// Where the rows stand in the sums, x + xy y of each: its coefficient of x.
+    coefficients: Streams,
 }
 
 /// Carries of a quadratic in some pixels.
@@ -129,20 +208,23 @@ pub(super) struct QuadraticCarries<V> {
     sum: V,
 }
 
-impl Evaluator for LinearTrees {
+impl WholeTrees for LinearStreams {
     type Coefficients = Linear;
-    type Carries<V: Vector> = V;
 
     #[inline(always)]
     fn run_trees<V: Vector>(e: &Linear, bits: usize) -> Self {
-        let constants = [0, e.c.into()];
-        let mut trees = Trees::new([e.a.into(), e.b.into()], &NUMBERS);
-        let mut out = Vec::with_capacity(bits);
-        for t in 0..bits {
-            out.push(pair(trees.add(V::rows(both(constants, t)), t)));
+        let constants = in_lanes([0, e.c.into()]);
+        let mut trees = Trees::<V, _>::of_pair([e.a.into(), e.b.into()], &NUMBERS);
+        let mut out = [[0; 8]; LINEAR_BITS as usize];
+        for (t, out) in out[..bits].iter_mut().enumerate() {
+            *out = streams(trees.add(bit_of(constants, t), t));
         }
         Self(out)
     }
+}
+
+impl Evaluator for LinearStreams {
+    type Carries<V: Vector> = V;
 
     #[inline(always)]
     fn start<V: Vector>() -> V {
@@ -150,36 +232,34 @@ impl Evaluator for LinearTrees {
     }
 
     #[inline(always)]
-    fn bit<V: Vector>(&self, t: usize, row: usize, carry: &mut V) -> V {
-        columns_and_rows(&self.0[t], row, carry)
+    fn bit<V: Vector>(&self, t: usize, place: Place, carry: &mut V) -> V {
+        full_add(place.columns(&self.0[t]), place.rows(&self.0[t]), carry)
     }
 }
 
-/// The sum of what the columns and the rows deliver.
-#[inline(always)]
-fn columns_and_rows<V: Vector>([low, high, rows @ ..]: &Pair, row: usize, carry: &mut V) -> V {
-    full_add(V::columns([*low, *high]), rows_of(rows, row), carry)
-}
-
-impl Evaluator for QuadraticTrees {
+impl WholeTrees for QuadraticStreams {
     type Coefficients = Quadratic;
-    type Carries<V: Vector> = QuadraticCarries<V>;
 
     #[inline(always)]
     fn run_trees<V: Vector>(q: &Quadratic, bits: usize) -> Self {
-        let mut squares = Trees::new([q.xx, q.yy], &SQUARES);
-        let mut numbers = Trees::new([q.xy, q.y], &NUMBERS);
+        let mut squares = Trees::<V, _>::of_pair([q.xx, q.yy], &SQUARES);
+        let mut numbers = Trees::<V, _>::of_pair([q.xy, q.y], &NUMBERS);
+        let constants = in_lanes([q.x, q.one]);
         // The second trees belong together; the first of the numbers stands beside them.
-        let second = V::rows(0b10);
-        let mut out = Vec::with_capacity(bits);
-        for t in 0..bits {
-            let numbers = numbers.add(V::rows(both([q.x, q.one], t)), t);
-            let sums = pair(squares.add(numbers.and(second), t));
-            let [low, high, ..] = pair(numbers);
-            out.push(QuadraticBits { sums, coefficient: [low, high] });
+        let second = V::spread(0xf0);
+        let mut out = [QuadraticBits::default(); QUADRATIC_BITS as usize];
+        for (t, out) in out[..bits].iter_mut().enumerate() {
+            let numbers = numbers.add(bit_of(constants, t), t);
+            out.sums = streams(squares.add(numbers.and(second), t));
+            let [low, high, ..] = streams(numbers);
+            out.coefficients = [0, 0, low, high, 0, 0, 0, 0];
         }
         Self(out)
     }
+}
+
+impl Evaluator for QuadraticStreams {
+    type Carries<V: Vector> = QuadraticCarries<V>;
 
     #[inline(always)]
     fn start<V: Vector>() -> QuadraticCarries<V> {
@@ -189,15 +269,16 @@ impl Evaluator for QuadraticTrees {
     }
 
     #[inline(always)]
-    fn bit<V: Vector>(&self, t: usize, row: usize, carries: &mut QuadraticCarries<V>) -> V {
-        let QuadraticBits { sums, coefficient } = &self.0[t];
+    fn bit<V: Vector>(&self, t: usize, place: Place, carries: &mut QuadraticCarries<V>) -> V {
+        let QuadraticBits { sums, coefficients } = &self.0[t];
         let [a, b, c, d, e, f, _] = carries.late;
-        carries.late = [rows_of(coefficient, row), a, b, c, d, e, f];
+        carries.late = [place.rows(coefficients), a, b, c, d, e, f];
         let mut product = V::splat(0);
-        for ((late, columns), carry) in carries.late.iter().zip(&NUMBERS).zip(&mut carries.product) {
-            product = full_add(product, late.and(V::columns(*columns)), carry);
+        for ((late, [low, high]), carry) in carries.late.iter().zip(&NUMBERS).zip(&mut carries.product) {
+            let columns = place.columns(&[*low, *high, 0, 0, 0, 0, 0, 0]);
+            product = full_add(product, late.and(columns), carry);
         }
-        let rest = columns_and_rows(sums, row, &mut carries.rows_and_columns);
+        let rest = full_add(place.columns(sums), place.rows(sums), &mut carries.rows_and_columns);
         full_add(rest, product, &mut carries.sum)
     }
 }
@@ -211,26 +292,23 @@ pub(super) fn full_add<V: Vector>(a: V, b: V, carry: &mut V) -> V {
     sum
 }
 
-/// The bits of the rows from `first` on, each in all pixels of its row.
-#[inline(always)]
-fn rows_of<V: Vector>(rows: &Leaves, first: usize) -> V {
-    V::rows(rows[first / 64 % 2] >> (first % 64))
-}
-
 #[cfg(test)]
 mod tests {
+    use super::tile::{ACROSS, HEIGHT};
     use super::*;
-    use crate::isa::{LINEAR_BITS, QUADRATIC_BITS};
     use crate::simd::Eight;
 
-    fn value<E: Evaluator>(coefficients: &E::Coefficients, bits: u32, x: usize, y: usize) -> i64 {
+    fn value<E: WholeTrees>(coefficients: &E::Coefficients, bits: u32, x: usize, y: usize) -> i64 {
         let evaluator = E::run_trees::<Eight>(coefficients, bits as usize);
         let mut carries = E::start();
-        // Eight 32-bit lanes are two rows.
+        let tile = y / HEIGHT * ACROSS + x / WIDTH;
+        let place = Place::in_array(tile, y % HEIGHT / Eight::LANES * Eight::LANES);
+        // A lane is a row, a word two of them.
+        let (lane, column) = (y % Eight::LANES, x % WIDTH);
         let value = (0..bits as usize).fold(0, |value, t| {
-            let mut words = [0; 4];
-            evaluator.bit::<Eight>(t, y / 2 * 2, &mut carries).store_words(&mut words);
-            value | ((words[2 * (y % 2) + x / 64] >> (x % 64) & 1) as i64) << t
+            let mut words = [0; Eight::LANES / 2];
+            evaluator.bit::<Eight>(t, place, &mut carries).store_words(&mut words);
+            value | ((words[lane / 2] >> (WIDTH * (lane % 2) + column) & 1) as i64) << t
         });
         value << (64 - bits) >> (64 - bits)
     }
@@ -240,7 +318,7 @@ mod tests {
         let e = Linear { a: -123_456, b: 987_654, c: i32::MAX };
         for (x, y) in [(0, 0), (127, 0), (0, 127), (127, 127), (64, 63), (93, 42)] {
             let expected = i64::from(e.at(x, y));
-            let found = value::<LinearTrees>(&e, LINEAR_BITS, x as usize, y as usize);
+            let found = value::<LinearStreams>(&e, LINEAR_BITS, x as usize, y as usize);
             assert_eq!(found, expected, "({x}, {y})");
         }
     }
@@ -252,7 +330,7 @@ mod tests {
         for (x, y) in [(0, 0), (127, 0), (0, 127), (127, 127), (64, 63), (93, 42)] {
             let unused = 64 - QUADRATIC_BITS;
             let expected = q.at(x, y) << unused >> unused;
-            let found = value::<QuadraticTrees>(&q, QUADRATIC_BITS, x as usize, y as usize);
+            let found = value::<QuadraticStreams>(&q, QUADRATIC_BITS, x as usize, y as usize);
             assert_eq!(found, expected, "({x}, {y})");
         }
     }

@@ -1,12 +1,18 @@
-//! Operations of all one-bit processors at once, on whole planes.
+//! Operations of the one-bit processors of a tile at once.
 
-use crate::array::{EMPTY_PLANE, Plane};
+use super::tile::{EMPTY, TilePlane};
 
-pub(super) const FULL_PLANE: Plane = [u64::MAX; 256];
+/// a := not a.
+#[inline(always)]
+pub(super) fn invert(a: &mut TilePlane) {
+    for a in a {
+        *a = !*a;
+    }
+}
 
 /// a &= b.
 #[inline(always)]
-pub(super) fn and(a: &mut Plane, b: &Plane) {
+pub(super) fn and(a: &mut TilePlane, b: &TilePlane) {
     for (a, b) in a.iter_mut().zip(b) {
         *a &= b;
     }
@@ -14,7 +20,7 @@ pub(super) fn and(a: &mut Plane, b: &Plane) {
 
 /// a &= not b.
 #[inline(always)]
-pub(super) fn and_not(a: &mut Plane, b: &Plane) {
+pub(super) fn and_not(a: &mut TilePlane, b: &TilePlane) {
     for (a, b) in a.iter_mut().zip(b) {
         *a &= !b;
     }
@@ -22,7 +28,7 @@ pub(super) fn and_not(a: &mut Plane, b: &Plane) {
 
 /// a |= b.
 #[inline(always)]
-pub(super) fn or(a: &mut Plane, b: &Plane) {
+pub(super) fn or(a: &mut TilePlane, b: &TilePlane) {
     for (a, b) in a.iter_mut().zip(b) {
         *a |= b;
     }
@@ -30,7 +36,7 @@ pub(super) fn or(a: &mut Plane, b: &Plane) {
 
 /// old := new where enabled.
 #[inline(always)]
-pub(super) fn store(old: &mut Plane, new: &Plane, enable: &Plane) {
+pub(super) fn store(old: &mut TilePlane, new: &TilePlane, enable: &TilePlane) {
     for ((old, new), enable) in old.iter_mut().zip(new).zip(enable) {
         *old = *old & !enable | new & enable;
     }
@@ -38,7 +44,7 @@ pub(super) fn store(old: &mut Plane, new: &Plane, enable: &Plane) {
 
 /// a := sum bit of a + b + carry; carry := the next carry.
 #[inline(always)]
-pub(super) fn add(a: &mut Plane, b: &Plane, carry: &mut Plane) {
+pub(super) fn add(a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
     for ((a, b), c) in a.iter_mut().zip(b).zip(carry) {
         let half = *a ^ b;
         let next = *a & b | *c & half;
@@ -49,7 +55,7 @@ pub(super) fn add(a: &mut Plane, b: &Plane, carry: &mut Plane) {
 
 /// a := difference bit of a - b - borrow; borrow := the next borrow.
 #[inline(always)]
-pub(super) fn subtract(a: &mut Plane, b: &Plane, borrow: &mut Plane) {
+pub(super) fn subtract(a: &mut TilePlane, b: &TilePlane, borrow: &mut TilePlane) {
     for ((a, b), c) in a.iter_mut().zip(b).zip(borrow) {
         let half = *a ^ b;
         let next = !*a & b | *c & !half;
@@ -60,7 +66,7 @@ pub(super) fn subtract(a: &mut Plane, b: &Plane, borrow: &mut Plane) {
 
 /// borrow := the next borrow of a - b.
 #[inline(always)]
-pub(super) fn borrow(a: &Plane, b: &Plane, borrow: &mut Plane) {
+pub(super) fn borrow(a: &TilePlane, b: &TilePlane, borrow: &mut TilePlane) {
     for ((a, b), c) in a.iter().zip(b).zip(borrow) {
         *c = !a & b | *c & !(a ^ b);
     }
@@ -68,8 +74,8 @@ pub(super) fn borrow(a: &Plane, b: &Plane, borrow: &mut Plane) {
 
 /// A combination of two planes, word by word.
 #[inline(always)]
-pub(super) fn combine(a: &Plane, b: &Plane, f: impl Fn(u64, u64) -> u64) -> Plane {
-    let mut out = EMPTY_PLANE;
+pub(super) fn combine(a: &TilePlane, b: &TilePlane, f: impl Fn(u64, u64) -> u64) -> TilePlane {
+    let mut out = EMPTY;
     for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
         *out = f(*a, *b);
     }

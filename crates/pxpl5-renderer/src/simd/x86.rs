@@ -47,17 +47,25 @@ impl Vector for Avx2 {
     }
 
     #[inline(always)]
-    fn columns([low, high]: [u64; 2]) -> Self {
-        Self(unsafe { _mm256_broadcastsi128_si256(_mm_set_epi64x(high as i64, low as i64)) })
-    }
-
-    #[inline(always)]
-    fn rows(bits: u64) -> Self {
+    fn spread(bits: u64) -> Self {
         unsafe {
-            let lanes = _mm256_setr_epi32(1, 1, 1, 1, 2, 2, 2, 2);
+            let lanes = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
             let bits = _mm256_and_si256(_mm256_set1_epi32(bits as i32), lanes);
             Self(_mm256_cmpeq_epi32(bits, lanes))
         }
+    }
+
+    #[inline(always)]
+    fn bit(self, t: u32) -> Self {
+        unsafe {
+            let signs = _mm256_sll_epi32(self.0, _mm_cvtsi32_si128(31 - t as i32));
+            Self(_mm256_srai_epi32::<31>(signs))
+        }
+    }
+
+    #[inline(always)]
+    fn signs(self) -> u32 {
+        unsafe { _mm256_movemask_ps(_mm256_castsi256_ps(self.0)) as u32 }
     }
 
     #[inline(always)]
@@ -165,16 +173,21 @@ impl Vector for Avx512 {
     }
 
     #[inline(always)]
-    fn columns([low, high]: [u64; 2]) -> Self {
-        Self(unsafe { _mm512_broadcast_i32x4(_mm_set_epi64x(high as i64, low as i64)) })
+    fn spread(bits: u64) -> Self {
+        Self(unsafe { _mm512_movm_epi32(bits as __mmask16) })
     }
 
     #[inline(always)]
-    fn rows(bits: u64) -> Self {
+    fn bit(self, t: u32) -> Self {
         unsafe {
-            let lanes = _mm512_setr_epi32(1, 1, 1, 1, 2, 2, 2, 2, 4, 4, 4, 4, 8, 8, 8, 8);
-            Self(_mm512_movm_epi32(_mm512_test_epi32_mask(_mm512_set1_epi32(bits as i32), lanes)))
+            let signs = _mm512_sll_epi32(self.0, _mm_cvtsi32_si128(31 - t as i32));
+            Self(_mm512_srai_epi32::<31>(signs))
         }
+    }
+
+    #[inline(always)]
+    fn signs(self) -> u32 {
+        unsafe { u32::from(_mm512_movepi32_mask(self.0)) }
     }
 
     #[inline(always)]

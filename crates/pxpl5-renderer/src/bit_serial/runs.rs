@@ -1,0 +1,297 @@
+//! Linear expressions and constants that follow each other in a list, without the work that cannot change anything.
+//!
+//! Nothing flows from pixel to pixel, so a tile may do all instructions of a run before the next tile begins:
+//!
+//! - A tile whose pixels are all disabled does nothing: an expression never enables.
+//! - An expression that is negative at all corners of a tile disables it without adders; one that is negative at none
+//!   disables nothing. Both hold only where the expression does not wrap in the array.
+//! - A tile is a smaller array: its origin is applied to the coefficients as that of a region is, which leaves trees of
+//!   five levels, and the trees of several expressions work side by side in a vector.
+//!
+//! What is left is done as the definition does it, bit by bit.
+
+use super::BitSerial;
+use super::arithmetic::constant_bit;
+use super::evaluate::{Delivery, Effect};
+use super::evaluator::{Evaluator, LinearStreams, Place, Trees};
+use super::tile::{self, ACROSS, EMPTY, HEIGHT, TILES, Tile, WIDTH, any};
+use crate::array::Executed;
+use crate::controller::Local;
+use crate::isa::timing::SET_UP_CLOCKS;
+use crate::isa::{Expression, Instruction, LINEAR_BITS, opcode};
+use crate::simd::{Kernel, Vector};
+use pxpl5_wire::{Linear, Word};
+
+/// Most expressions of a run: as many as have their trees in the widest vector.
+const EXPRESSIONS: usize = 8;
+
+/// Bits of a column's number in its tile.
+const LEVELS: usize = 5;
+/// Columns of a tile, and rows, whose number has bit `l`.
+const NUMBERS: [u32; LEVELS] = [0xaaaa_aaaa, 0xcccc_cccc, 0xf0f0_f0f0, 0xff00_ff00, 0xffff_0000];
+
+/// Instructions that follow each other.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Run {
+    steps: Vec<Step>,
+    /// Over the array's own columns and rows.
+    expressions: Vec<Linear>,
+    /// Words of the list.
+    words: usize,
+}
+
+/// An instruction of a run.
+#[derive(Clone, Debug)]
+struct Step {
+    input: Input,
+    delivery: Delivery,
+}
+
+/// Where bits come from.
+#[derive(Clone, Copy, Debug)]
+enum Input {
+    /// An expression of the run.
+    Expression(usize),
+    Constant(Constant),
+}
+
+impl BitSerial {
+    /// Executes the run that begins at a word; returns how many words it has, 0 where none begins.
+    pub(super) fn execute_run(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> usize {
+        let mut run = std::mem::take(&mut self.run);
+        run.clear();
+        while self.extend(&mut run, words, position) {}
+        if !run.steps.is_empty() {
+            self.vectors.run(RunTiles { run: &run, tiles: &mut self.tiles });
+        }
+        executed.instructions += run.steps.len() as u32;
+        executed.clocks +=
+            run.steps.iter().map(|step| u64::from(SET_UP_CLOCKS) + step.delivery.taken.end as u64).sum::<u64>();
+        let used = run.words;
+        self.run = run;
+        used
+    }
+
+    /// Adds the next instruction, unless it does not belong to the run or is a fault.
+    fn extend(&mut self, run: &mut Run, words: &[Word], position: usize) -> bool {
+        let position = position + run.words;
+        let Some(head) = words.get(position) else { return false };
+        if !matches!((head >> 24) as u8, opcode::LINEAR..opcode::QUADRATIC | opcode::LOAD_CONSTANT) {
+            return false;
+        }
+        let Ok((instruction, used)) = Instruction::decode(words, position) else { return false };
+        let Some(step) = self.step_of(run, &instruction) else { return false };
+        run.steps.push(step);
+        run.words += used;
+        true
+    }
+
+    fn step_of(&mut self, run: &mut Run, instruction: &Instruction) -> Option<Step> {
+        self.controller.check(instruction).ok()?;
+        match *instruction {
+            Instruction::Evaluate { expression, usage } => {
+                let delivery = self.delivery(&usage, LINEAR_BITS).ok()?;
+                if expression != Expression::LinearAgain || run.expressions.is_empty() {
+                    if run.expressions.len() == EXPRESSIONS {
+                        return None;
+                    }
+                    let Local::Linear(local) = self.controller.latch(&expression) else { return None };
+                    run.expressions.push(local);
+                }
+                Some(Step { input: Input::Expression(run.expressions.len() - 1), delivery })
+            }
+            Instruction::LoadConstant { destination, value } => {
+                let field = self.controller.bits(destination).ok()?;
+                let delivery = Delivery { taken: 0..field.width, effect: Effect::Load { first: field.first } };
+                Some(Step { input: Input::Constant(Constant { value, signed: field.signed }), delivery })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A run in all tiles.
+struct RunTiles<'a> {
+    run: &'a Run,
+    tiles: &'a mut [Tile],
+}
+
+impl Kernel for RunTiles<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(self) {
+        let signs = self.run.signs::<V>();
+        let disabled = self.run.disabled_at_once(&signs);
+        for (number, tile) in self.tiles.iter_mut().enumerate() {
+            if disabled >> number & 1 == 1 {
+                tile.enable = EMPTY;
+            } else if tile.enabled() {
+                self.run.in_tile::<V>(&signs, number, tile);
+            }
+        }
+    }
+}
+
+impl Run {
+    fn clear(&mut self) {
+        self.steps.clear();
+        self.expressions.clear();
+        self.words = 0;
+    }
+
+    /// Of the expressions whose sign matters.
+    #[inline(always)]
+    fn signs<V: Vector>(&self) -> [Signs; EXPRESSIONS] {
+        let mut signs = [Signs::default(); EXPRESSIONS];
+        for step in &self.steps {
+            if let (Input::Expression(i), Effect::DisableNegative) = (step.input, step.delivery.effect) {
+                signs[i] = Signs::of::<V>(&self.expressions[i]);
+            }
+        }
+        signs
+    }
+
+    /// Tiles, one a bit, that the run disables before it does anything else.
+    #[inline(always)]
+    fn disabled_at_once(&self, signs: &[Signs; EXPRESSIONS]) -> u32 {
+        let mut disabled = 0;
+        for step in &self.steps {
+            let (Input::Expression(i), Effect::DisableNegative) = (step.input, step.delivery.effect) else { break };
+            disabled |= signs[i].negative;
+        }
+        disabled
+    }
+
+    #[inline(always)]
+    fn in_tile<V: Vector>(&self, signs: &[Signs; EXPRESSIONS], number: usize, tile: &mut Tile) {
+        let mut streams = TileStreams { streams: LinearStreams([[0; EXPRESSIONS]; LINEAR_BITS as usize]), ready: 0 };
+        for step in &self.steps {
+            match step.input {
+                Input::Constant(constant) => step.delivery.in_tile::<V, _>(&constant, 0, tile),
+                Input::Expression(i) => {
+                    if matches!(step.delivery.effect, Effect::DisableNegative) {
+                        if signs[i].negative >> number & 1 == 1 {
+                            tile.enable = EMPTY;
+                            return;
+                        }
+                        if signs[i].positive >> number & 1 == 1 {
+                            continue;
+                        }
+                    }
+                    while streams.ready <= i {
+                        streams.run_trees::<V>(self, number);
+                    }
+                    step.delivery.in_tile::<V, _>(&streams.streams, i, tile);
+                }
+            }
+            if !tile.enabled() {
+                return;
+            }
+        }
+    }
+}
+
+impl Delivery {
+    /// In those vectors of a tile that have enabled pixels; the trees' streams stand in a word.
+    #[inline(always)]
+    fn in_tile<V: Vector, E: Evaluator>(&self, evaluator: &E, word: usize, tile: &mut Tile) {
+        for row in (0..HEIGHT).step_by(V::LANES) {
+            if any(&tile.enable[row / 2..][..V::LANES / 2]) {
+                self.run_pixels::<V, E>(evaluator, tile, Place::in_tile(word, row));
+            }
+        }
+    }
+}
+
+/// Where the sign of an expression is known without serial arithmetic.
+#[derive(Clone, Copy, Debug, Default)]
+struct Signs {
+    /// Tiles, one a bit, in which it is negative everywhere.
+    negative: u32,
+    /// Tiles in which it is negative nowhere.
+    positive: u32,
+}
+
+impl Signs {
+    /// From the values at the corners of each tile; unknown where the expression wraps anywhere in the array.
+    #[inline(always)]
+    fn of<V: Vector>(e: &Linear) -> Self {
+        if wraps(e) {
+            return Self::default();
+        }
+        let mut corners = [0; TILES];
+        for (number, corner) in corners.iter_mut().enumerate() {
+            let [left, top] = tile::origin(number);
+            *corner = e.at(left as i32, top as i32) as u32;
+        }
+        let (across, down) = (e.a * (WIDTH as i32 - 1), e.b * (HEIGHT as i32 - 1));
+        let (largest, smallest) = (V::splat(across.max(0) + down.max(0)), V::splat(across.min(0) + down.min(0)));
+        let mut signs = Self::default();
+        for first in (0..TILES).step_by(V::LANES) {
+            let corner = V::load(&corners[first..]);
+            signs.negative |= corner.add(largest).signs() << first;
+            signs.positive |= (!corner.add(smallest).signs() & lanes::<V>()) << first;
+        }
+        signs
+    }
+}
+
+const fn lanes<V: Vector>() -> u32 {
+    u32::MAX >> (32 - V::LANES)
+}
+
+/// Whether an expression leaves 32 bits anywhere in the array.
+#[inline(always)]
+fn wraps(e: &Linear) -> bool {
+    let last = (ACROSS * WIDTH - 1) as i64;
+    let (c, across, down) = (i64::from(e.c), last * i64::from(e.a), last * i64::from(e.b));
+    let corners = [c, c + across, c + down, c + across + down];
+    corners.iter().any(|corner| i32::try_from(*corner).is_err())
+}
+
+/// What the trees of a tile deliver for the expressions of a run, each in its word.
+struct TileStreams {
+    streams: LinearStreams,
+    /// Expressions whose trees have run.
+    ready: usize,
+}
+
+impl TileStreams {
+    /// Runs the trees of as many expressions as a vector holds.
+    #[inline(always)]
+    fn run_trees<V: Vector>(&mut self, run: &Run, number: usize) {
+        let [left, top] = tile::origin(number);
+        let ready = self.ready + V::LANES / 2;
+        let (mut coefficients, mut constants) = ([0; EXPRESSIONS], [0; EXPRESSIONS]);
+        for (i, e) in run.expressions.iter().skip(self.ready).take(V::LANES / 2).enumerate() {
+            coefficients[i] = u64::from(e.b as u32) << 32 | u64::from(e.a as u32);
+            constants[i] = u64::from(e.at(left as i32, top as i32) as u32) << 32;
+        }
+        let constants = V::load_words(&constants);
+        let mut trees = Trees::new([V::load_words(&coefficients); 2], NUMBERS.map(|numbers| V::splat(numbers as i32)));
+        for (t, words) in self.streams.0.iter_mut().enumerate() {
+            trees.add(constants.bit(t as u32), t).store_words(&mut words[self.ready..]);
+        }
+        self.ready = ready;
+    }
+}
+
+/// A constant, as though an expression were it.
+#[derive(Clone, Copy, Debug)]
+struct Constant {
+    value: u32,
+    signed: bool,
+}
+
+impl Evaluator for Constant {
+    type Carries<V: Vector> = ();
+
+    #[inline(always)]
+    fn start<V: Vector>() {}
+
+    #[inline(always)]
+    fn bit<V: Vector>(&self, t: usize, _: Place, (): &mut ()) -> V {
+        V::load_words(&constant_bit(self.value, t, self.signed))
+    }
+}
