@@ -64,7 +64,7 @@ impl Placed {
         self.touched.get_or_init(|| {
             let vertices = self.vertices(list, transform);
             let triangles = self.structure.triangles.clone();
-            transform.touched(triangles.map(|number| vertices.seen(&vertices.corners(list, number))))
+            transform.touched(&vertices.seen, triangles.map(|number| vertices.corners(list, number).0))
         })
     }
 }

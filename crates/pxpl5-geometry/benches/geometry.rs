@@ -80,10 +80,7 @@ fn transform(c: &mut Criterion) {
         b.iter(|| {
             vertices.clear();
             vertices.extend(black_box(&ball.positions).iter().map(|p| view.see(*p)));
-            view.touched(ball.triangles.iter().map(|corners| {
-                let [a, b, c] = corners.map(|i| i as usize);
-                SeenTriangle::of([&vertices[a], &vertices[b], &vertices[c]])
-            }))
+            view.touched(&vertices, ball.triangles.iter().map(|corners| corners.map(|i| i as usize)))
         });
     });
     group.bench_function("gouraud/triangle", |b| {

@@ -103,11 +103,11 @@ impl Range {
 /// The regions of a picture, ready for look-up by pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Binner {
-    width: i32,
-    height: i32,
+    pub(crate) width: i32,
+    pub(crate) height: i32,
     columns: i32,
-    column_reciprocal: u32,
-    row_reciprocal: u32,
+    pub(crate) column_reciprocal: u32,
+    pub(crate) row_reciprocal: u32,
     region_width: i32,
     region_height: i32,
     line_shift: u32,
@@ -121,7 +121,7 @@ const fn reciprocal(size: u32) -> u32 {
 }
 
 #[inline(always)]
-const fn quotient(n: i32, reciprocal: u32) -> i32 {
+pub(crate) const fn quotient(n: i32, reciprocal: u32) -> i32 {
     ((n as u64 * reciprocal as u64) >> 20) as i32
 }
 
@@ -141,9 +141,13 @@ impl Binner {
         }
     }
 
+    pub(crate) const fn columns_of_regions(&self) -> i32 {
+        self.columns
+    }
+
     /// Picture rows of a range of frame lines.
     #[inline(always)]
-    fn rows_of_lines(&self, lines: Range) -> Range {
+    pub(crate) fn rows_of_lines(&self, lines: Range) -> Range {
         let round_up = (1 << self.line_shift) - 1;
         Range {
             first: (lines.first - self.first_line + round_up) >> self.line_shift,
@@ -184,7 +188,7 @@ impl Binner {
 
     /// Takes the corners alone: were the outline passed on, callers that need no depths would still compute them.
     #[inline(never)]
-    fn test_edges(&self, corners_x: [i32; 3], corners_y: [i32; 3], x: Range, y: Range) -> RegionMask {
+    pub(crate) fn test_edges(&self, corners_x: [i32; 3], corners_y: [i32; 3], x: Range, y: Range) -> RegionMask {
         let outline = Outline { x: corners_x, y: corners_y, z: [0; 3], regions: RegionMask::EMPTY };
         let edges = outline.edges();
         self.cells(x, y, |column, row| {
@@ -208,14 +212,14 @@ impl Binner {
 
     /// First and last pixel of a column of regions.
     #[inline(always)]
-    fn column_box(&self, column: i32) -> (i32, i32) {
+    pub(crate) fn column_box(&self, column: i32) -> (i32, i32) {
         let left = column * self.region_width;
         (left, (left + self.region_width).min(self.width) - 1)
     }
 
     /// First and last frame line of a row of regions.
     #[inline(always)]
-    fn row_box(&self, row: i32) -> (i32, i32) {
+    pub(crate) fn row_box(&self, row: i32) -> (i32, i32) {
         let top = row * self.region_height;
         let bottom = (top + self.region_height).min(self.height) - 1;
         let line = |y: i32| (y << self.line_shift) + self.first_line;

@@ -13,9 +13,9 @@ use glam::Vec3;
 #[derive(Clone, Copy, Debug)]
 pub struct SeenVertex {
     /// Of no meaning outside.
-    snapped: Snapped,
+    pub(crate) snapped: Snapped,
     /// Inside the guard band, so that it needs no clipping.
-    inside: bool,
+    pub(crate) inside: bool,
 }
 
 /// What the surface needs at a vertex: its lit colour, or its normal as an eye sees it.

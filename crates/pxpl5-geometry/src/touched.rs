@@ -1,6 +1,8 @@
 //! The regions that the triangles of a mesh touch, found once for all who hold some of them.
 
-use crate::{RegionMask, SeenTriangle, SetupStats, Transform};
+use crate::bin::{Binner, Range, quotient};
+use crate::{RegionMask, SeenVertex, SetupStats, Transform};
+use multiversion::multiversion;
 use pxpl5_wire::RegionId;
 
 /// What binning finds of a triangle.
@@ -84,13 +86,169 @@ impl Touched {
 }
 
 impl Transform {
-    /// What [`Self::bin`] finds of triangles; `None` stands for one that needs clipping.
+    /// What [`Self::bin`] finds of triangles, given as places of their corners among vertices that this view sees.
+    ///
+    /// # Panics
+    /// If there is no vertex at such a place.
     #[must_use]
-    pub fn touched(&self, triangles: impl Iterator<Item = Option<SeenTriangle>>) -> Touched {
+    pub fn touched(&self, vertices: &[SeenVertex], mut triangles: impl Iterator<Item = [usize; 3]>) -> Touched {
         let mut all = Touched { codes: Vec::with_capacity(triangles.size_hint().0), several: Vec::new() };
-        for triangle in triangles {
-            all.push(triangle.map_or(Touch::NeedsClipping, |triangle| self.touch(triangle.0)));
+        let mut some = Corners::default();
+        while some.take(vertices, &mut triangles) > 0 {
+            let found = find(&some, &self.binner, self.culls_back_faces());
+            for lane in 0..some.len {
+                match found.codes[lane] {
+                    _ if some.outside[lane] => all.codes.push(NEEDS_CLIPPING),
+                    SEVERAL => all.push(self.touch_several(&some, &found, lane)),
+                    known => all.codes.push(known),
+                }
+            }
         }
         all
+    }
+
+    /// A triangle whose box lies in more than one region.
+    fn touch_several(&self, corners: &Corners, found: &Found, lane: usize) -> Touch {
+        let [p, q, r] = if corners.counterclockwise(lane) { [0, 2, 1] } else { [0, 1, 2] };
+        let clockwise = |v: &[Lanes<i32>; 3]| [v[p][lane], v[q][lane], v[r][lane]];
+        let range = |[first, last]: &[Lanes<i32>; 2]| Range { first: first[lane], last: last[lane] };
+        let (x, y) = (clockwise(&corners.x), clockwise(&corners.y));
+        let regions = self.binner.test_edges(x, y, range(&found.x), range(&found.y));
+        if regions.is_empty() { Touch::Untouched } else { Touch::Regions(regions) }
+    }
+}
+
+/// Triangles that are looked at together: a vector of the widest unit holds the areas of as many.
+const TOGETHER: usize = 8;
+
+type Lanes<T> = [T; TOGETHER];
+
+/// Corners of some triangles.
+#[derive(Debug, Default)]
+struct Corners {
+    len: usize,
+    x: [Lanes<i32>; 3],
+    y: [Lanes<i32>; 3],
+    /// Some corner is not inside the guard band.
+    outside: Lanes<bool>,
+}
+
+impl Corners {
+    /// Takes the next triangles; gives their number.
+    #[inline(always)]
+    fn take(&mut self, vertices: &[SeenVertex], triangles: &mut impl Iterator<Item = [usize; 3]>) -> usize {
+        self.len = 0;
+        for at in triangles.take(TOGETHER) {
+            let corners = [&vertices[at[0]], &vertices[at[1]], &vertices[at[2]]];
+            for (corner, vertex) in corners.iter().enumerate() {
+                self.x[corner][self.len] = vertex.snapped.x;
+                self.y[corner][self.len] = vertex.snapped.y;
+            }
+            self.outside[self.len] = !(corners[0].inside & corners[1].inside & corners[2].inside);
+            self.len += 1;
+        }
+        self.len
+    }
+
+    fn counterclockwise(&self, lane: usize) -> bool {
+        let ([a, b, c], [d, e, f]) = (self.x.map(|x| x[lane]), self.y.map(|y| y[lane]));
+        i64::from(b - a) * i64::from(f - d) < i64::from(e - d) * i64::from(c - a)
+    }
+}
+
+/// What is found of some triangles at once.
+struct Found {
+    /// As in [`Touched`]; [`SEVERAL`] alone where the edges decide between several regions.
+    codes: Lanes<u32>,
+    /// First and last column and row of pixels.
+    x: [Lanes<i32>; 2],
+    y: [Lanes<i32>; 2],
+}
+
+#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn find(corners: &Corners, binner: &Binner, culling: bool) -> Found {
+    let (x, y) = (extent(&corners.x), extent(&corners.y));
+    let columns = binner.columns(&x);
+    let rows = binner.rows(&y);
+    let (in_column, in_row) = (binner.in_column(&x, &columns[0]), binner.in_row(&y, &rows[0]));
+    let areas = areas(corners);
+    let mut codes = [0; TOGETHER];
+    for i in 0..TOGETHER {
+        let one = in_column[i] + in_row[i] * binner.columns_of_regions();
+        let code = if (in_column[i] | in_row[i]) < 0 { SEVERAL } else { one as u32 };
+        let empty = (columns[0][i] > columns[1][i]) | (rows[0][i] > rows[1][i]);
+        let code = if empty { UNTOUCHED } else { code };
+        let code = if culling & (areas[i] > 0.0) { BACK_FACING } else { code };
+        codes[i] = if areas[i] == 0.0 { DEGENERATE } else { code };
+    }
+    Found { codes, x: columns, y: rows }
+}
+
+/// Twice the areas, exact: products of two differences of corners need 35 bits.
+#[inline(always)]
+fn areas(Corners { x: [a, b, c], y: [d, e, f], .. }: &Corners) -> Lanes<f64> {
+    let mut out = [0.0; TOGETHER];
+    for i in 0..TOGETHER {
+        let first = f64::from(b[i] - a[i]) * f64::from(f[i] - d[i]);
+        out[i] = first - f64::from(e[i] - d[i]) * f64::from(c[i] - a[i]);
+    }
+    out
+}
+
+/// Smallest and largest of the corners.
+#[inline(always)]
+fn extent([p, q, r]: &[Lanes<i32>; 3]) -> [Lanes<i32>; 2] {
+    let (mut low, mut high) = ([0; TOGETHER], [0; TOGETHER]);
+    for i in 0..TOGETHER {
+        low[i] = p[i].min(q[i]).min(r[i]);
+        high[i] = p[i].max(q[i]).max(r[i]);
+    }
+    [low, high]
+}
+
+/// The rules of [`crate::bin`], on some triangles at once.
+impl Binner {
+    /// First and last column of pixels, as [`Range::of_centres`].
+    #[inline(always)]
+    fn columns(&self, [low, high]: &[Lanes<i32>; 2]) -> [Lanes<i32>; 2] {
+        let (mut first, mut last) = ([0; TOGETHER], [0; TOGETHER]);
+        for i in 0..TOGETHER {
+            let range = Range::of_centres(low[i], high[i]).within(self.width);
+            (first[i], last[i]) = (range.first, range.last);
+        }
+        [first, last]
+    }
+
+    #[inline(always)]
+    fn rows(&self, [low, high]: &[Lanes<i32>; 2]) -> [Lanes<i32>; 2] {
+        let (mut first, mut last) = ([0; TOGETHER], [0; TOGETHER]);
+        for i in 0..TOGETHER {
+            let range = self.rows_of_lines(Range::of_centres(low[i], high[i])).within(self.height);
+            (first[i], last[i]) = (range.first, range.last);
+        }
+        [first, last]
+    }
+
+    /// The column of regions that holds all, whose first column of pixels is given; -1 where none does.
+    #[inline(always)]
+    fn in_column(&self, [low, high]: &[Lanes<i32>; 2], first: &Lanes<i32>) -> Lanes<i32> {
+        let mut out = [0; TOGETHER];
+        for i in 0..TOGETHER {
+            let column = quotient(first[i], self.column_reciprocal);
+            let (left, right) = self.column_box(column);
+            out[i] = if (low[i] >= left * 16 + 8) & (high[i] <= right * 16 + 8) { column } else { -1 };
+        }
+        out
+    }
+
+    #[inline(always)]
+    fn in_row(&self, [low, high]: &[Lanes<i32>; 2], first: &Lanes<i32>) -> Lanes<i32> {
+        let mut out = [0; TOGETHER];
+        for i in 0..TOGETHER {
+            let row = quotient(first[i], self.row_reciprocal);
+            let (top, bottom) = self.row_box(row);
+            out[i] = if (low[i] >= top * 16 + 8) & (high[i] <= bottom * 16 + 8) { row } else { -1 };
+        }
+        out
     }
 }

@@ -303,22 +303,21 @@ impl Transform {
     #[inline(always)]
     fn assemble(&self, corners: [Snapped; 3], stats: &mut SetupStats) -> Option<Assembled> {
         let whole = Assembled::clockwise(corners);
-        let regions = self.touch_whole(whole.as_ref()).count(stats)?;
+        let regions = self.touch(whole.as_ref()).count(stats)?;
         let mut whole = whole?;
         whole.outline.regions = regions;
         Some(whole)
     }
 
-    /// What binning finds of a triangle that needs no clipping.
-    #[inline(always)]
-    pub(crate) fn touch(&self, corners: [Snapped; 3]) -> Touch {
-        self.touch_whole(Assembled::clockwise(corners).as_ref())
+    pub(crate) fn culls_back_faces(&self) -> bool {
+        self.culling == Culling::Back
     }
 
+    /// What binning finds of a triangle with corners inside the guard band; `None` is one without area.
     #[inline(always)]
-    fn touch_whole(&self, whole: Option<&Assembled>) -> Touch {
+    fn touch(&self, whole: Option<&Assembled>) -> Touch {
         let Some(whole) = whole else { return Touch::Degenerate };
-        if !whole.swapped && self.culling == Culling::Back {
+        if !whole.swapped && self.culls_back_faces() {
             return Touch::BackFacing;
         }
         let regions = self.binner.triangle(&whole.outline);

@@ -116,7 +116,8 @@ fn shared_vertices_give_what_their_triangles_give() {
             transform.gouraud(&t, &light, &mut stats[0], |t| lit.push(t));
             transform.phong(&t, &mut SetupStats::default(), |t| normals.push(t));
             stats[1].triangles += 1;
-            let touch = transform.touched([None, Some(seen)].into_iter());
+            let vertices = [a, b, c, transform.see(Vec3::NAN)];
+            let touch = transform.touched(&vertices, [[0, 3, 1], [0, 1, 2]].into_iter());
             assert_eq!(touch.get(0), Touch::NeedsClipping);
             let mask = touch.get(1).count(&mut stats[1]);
             assert_eq!(mask, lit.first().map(|t| t.outline.regions), "{}", case.name);
