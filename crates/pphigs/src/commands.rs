@@ -4,7 +4,7 @@ use crate::list::{Counts, DisplayList};
 use crate::pass::{Entry, Pass, Picture, Shading};
 use crate::placed::{Placed, Vertices};
 use pxpl5_geometry::{
-    self as geometry, GouraudSphere, GouraudTriangle, SeenSurface, SetupStats, SphereSetup, TOGETHER, Together,
+    self as geometry, GouraudSphere, GouraudTriangle, SeenCorner, SetupStats, SphereSetup, TOGETHER, Together,
     Transform,
 };
 use pxpl5_renderer::{
@@ -234,8 +234,8 @@ impl RegionWords {
         let command =
             |t: Option<GouraudTriangle>| t.map_or(NOWHERE, |t| Triangle { edges: t.edges, depth: t.z, colour: t.rgb });
         let vertices = place.vertices(list, transform);
-        let surfaces = vertices.colours(list, transform, &place.light);
-        let mut batches = Batches { entries, vertices, list, surfaces, together: Together::default() };
+        let corners = vertices.with_light(list, transform, &place.light);
+        let mut batches = Batches { entries, vertices, list, corners, together: Together::default() };
         while let Some(some) = batches.next() {
             match some {
                 Batch::Whole(entries, together) => {
@@ -269,16 +269,13 @@ impl RegionWords {
             })
         };
         let vertices = place.vertices(list, transform);
-        let surfaces = vertices.normals(list, transform);
-        let mut batches = Batches { entries, vertices, list, surfaces, together: Together::default() };
+        let corners = vertices.with_normals(list, transform);
+        let mut batches = Batches { entries, vertices, list, corners, together: Together::default() };
         while let Some(some) = batches.next() {
             match some {
                 Batch::Whole(entries, together) => {
                     let expressions = transform.phong_together(together, &mut stats);
-                    for (i, entry) in entries.iter().enumerate() {
-                        let colour = list.colours[list.triangles[entry.triangle as usize][0] as usize];
-                        encoder.encode(&command(expressions.get(i, colour)), out);
-                    }
+                    (0..entries.len()).for_each(|i| encoder.encode(&command(expressions.get(i)), out));
                 }
                 Batch::Piece(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
@@ -330,8 +327,8 @@ struct Batches<'a> {
     entries: &'a [Entry],
     vertices: &'a Vertices,
     list: &'a DisplayList,
-    /// Of all vertices.
-    surfaces: &'a [SeenSurface],
+    /// All vertices.
+    corners: &'a [SeenCorner],
     together: Together,
 }
 
@@ -347,16 +344,19 @@ impl Batches<'_> {
         let together = &mut self.together;
         together.clear();
         for entry in self.entries.iter().take(TOGETHER) {
-            let at = self.vertices.corners(self.list, entry.triangle as usize);
-            match (entry.piece, self.vertices.seen(&at)) {
-                (None, _) => together.push_nothing(),
-                (Some(_), Some(seen)) => together.push(&seen, at.of(self.surfaces)),
-                (Some(_), None) if together.is_empty() => {
-                    self.entries = &self.entries[1..];
-                    return Some(Batch::Piece(entry));
-                }
-                (Some(_), None) => break,
+            if entry.piece.is_none() {
+                together.push_nothing();
+                continue;
             }
+            let [a, b, c] = self.vertices.corners(self.list, entry.triangle as usize);
+            if together.push([&self.corners[a], &self.corners[b], &self.corners[c]]) {
+                continue;
+            }
+            if together.is_empty() {
+                self.entries = &self.entries[1..];
+                return Some(Batch::Piece(entry));
+            }
+            break;
         }
         let (now, later) = self.entries.split_at(self.together.len());
         self.entries = later;

@@ -16,29 +16,23 @@ pub struct SeenVertex {
     pub(crate) snapped: Snapped,
     /// Inside the guard band, so that it needs no clipping.
     pub(crate) inside: bool,
+    /// Where it is known.
+    pub(crate) colour: [u8; 3],
 }
 
-/// What the surface needs at a vertex: its lit colour, or its normal as an eye sees it.
+/// A vertex with what a surface needs there: its lit colour, or its normal as an eye sees it. Of such a size that it lies in
+/// one cache line.
 #[derive(Clone, Copy, Debug)]
-pub struct SeenSurface {
+#[repr(align(32))]
+pub struct SeenCorner {
+    pub(crate) vertex: SeenVertex,
     /// In the expressions' units; normals without the half unit that rounds.
     pub(crate) values: [f32; 3],
     /// How far a normal turns towards the eye; 0 for colours.
     pub(crate) facing: f32,
 }
 
-/// The corners on the screen of a triangle that needs no clipping.
-#[derive(Clone, Copy, Debug)]
-pub struct SeenTriangle(pub(crate) [Snapped; 3]);
-
-impl SeenTriangle {
-    /// `None` where the triangle needs clipping.
-    #[inline(always)]
-    #[must_use]
-    pub const fn of([a, b, c]: [&SeenVertex; 3]) -> Option<Self> {
-        if a.inside & b.inside & c.inside { Some(Self([a.snapped, b.snapped, c.snapped])) } else { None }
-    }
-}
+const _: () = assert!(size_of::<SeenCorner>() == 32);
 
 impl Transform {
     /// Transforms a vertex.
@@ -48,23 +42,31 @@ impl Transform {
         let clip = self.to_clip.point(position);
         let inside = self.guard.contains(clip);
         let snapped = if inside { self.to_screen.snap(clip) } else { Snapped::default() };
-        SeenVertex { snapped, inside }
+        SeenVertex { snapped, inside, colour: [0; 3] }
     }
 
-    /// The normal of a vertex.
+    /// A vertex, seen from here, with its normal and its colour as it is.
     #[inline]
     #[must_use]
-    pub fn see_normal(&self, position: Vec3, normal: Vec3) -> SeenSurface {
+    pub fn with_normal(&self, vertex: SeenVertex, position: Vec3, normal: Vec3, colour: [u8; 3]) -> SeenCorner {
         let (unit, facing) = light::unit_and_facing(&self.to_eye, position, normal);
         let value = |v| screen::normal_value(screen::normal_fixed(v)) - screen::NORMAL_HALF;
-        SeenSurface { values: unit.map(value), facing }
+        SeenCorner { vertex: SeenVertex { colour, ..vertex }, values: unit.map(value), facing }
     }
 
-    /// The lit colour of a vertex.
+    /// A vertex, seen from here, with its lit colour.
     #[inline]
     #[must_use]
-    pub fn see_colour(&self, light: &Light, position: Vec3, normal: Vec3, colour: [u8; 3]) -> SeenSurface {
+    pub fn with_light(
+        &self,
+        vertex: SeenVertex,
+        light: &Light,
+        position: Vec3,
+        normal: Vec3,
+        colour: [u8; 3],
+    ) -> SeenCorner {
         let lit = Lighting::new(&self.to_eye, light).colour(position, normal, colour);
-        SeenSurface { values: lit.map(|v| screen::colour_value(screen::colour_fixed(v))), facing: 0.0 }
+        let values = lit.map(|v| screen::colour_value(screen::colour_fixed(v)));
+        SeenCorner { vertex: SeenVertex { colour, ..vertex }, values, facing: 0.0 }
     }
 }
