@@ -343,13 +343,21 @@ impl Batches<'_> {
     fn next(&mut self) -> Option<Batch<'_>> {
         let together = &mut self.together;
         together.clear();
-        for entry in self.entries.iter().take(TOGETHER) {
+        // All are asked for before the first is waited for: they lie anywhere in memory.
+        let mut at = [[0; 3]; TOGETHER];
+        for (at, entry) in at.iter_mut().zip(self.entries) {
+            *at = self.vertices.corners(self.list, entry.triangle as usize);
+        }
+        let mut inside = [true; TOGETHER];
+        for (inside, [a, b, c]) in inside.iter_mut().zip(&at) {
+            *inside = self.corners[*a].is_inside() & self.corners[*b].is_inside() & self.corners[*c].is_inside();
+        }
+        for ((entry, at), inside) in self.entries.iter().zip(&at).zip(&inside) {
             if entry.piece.is_none() {
                 together.push_nothing();
                 continue;
             }
-            let [a, b, c] = self.vertices.corners(self.list, entry.triangle as usize);
-            if together.push([&self.corners[a], &self.corners[b], &self.corners[c]]) {
+            if *inside && together.push(at.map(|i| &self.corners[i])) {
                 continue;
             }
             if together.is_empty() {

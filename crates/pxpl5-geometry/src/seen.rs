@@ -34,6 +34,15 @@ pub struct SeenCorner {
 
 const _: () = assert!(size_of::<SeenCorner>() == 32);
 
+impl SeenCorner {
+    /// Whether no triangle needs clipping for its sake.
+    #[inline(always)]
+    #[must_use]
+    pub const fn is_inside(&self) -> bool {
+        self.vertex.inside
+    }
+}
+
 impl Transform {
     /// Transforms a vertex.
     #[inline(always)]
