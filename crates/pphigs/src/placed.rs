@@ -52,7 +52,7 @@ impl Placed {
             let named = list.triangles[self.structure.triangles.clone()].iter().flatten();
             let (first, end) = named.fold((u32::MAX, 0), |(low, high), i| (low.min(*i), high.max(*i + 1)));
             let positions = list.positions.get(first as usize..end as usize).unwrap_or_default();
-            let seen = positions.iter().map(|p| transform.see(*p)).collect();
+            let seen = transform.see(positions);
             Vertices { first: first as usize, seen, normals: OnceLock::new(), colours: OnceLock::new() }
         })
     }
@@ -78,11 +78,9 @@ impl Vertices {
     /// All vertices with their normals.
     pub(crate) fn with_normals(&self, list: &DisplayList, transform: &Transform) -> &[SeenCorner] {
         self.normals.get_or_init(|| {
-            let corner = |(i, vertex): (usize, &SeenVertex)| {
-                let DisplayList { positions, normals, colours, .. } = list;
-                transform.with_normal(*vertex, positions[i], normals[i], colours[i])
-            };
-            (self.first..).zip(&self.seen).map(corner).collect()
+            let all = self.first..self.first + self.seen.len();
+            let (positions, normals) = (&list.positions[all.clone()], &list.normals[all.clone()]);
+            transform.with_normals(&self.seen, positions, normals, &list.colours[all])
         })
     }
 

@@ -75,10 +75,8 @@ fn transform(c: &mut Criterion) {
         });
     });
     group.bench_function("bin/shared vertices", |b| {
-        let mut vertices = Vec::new();
         b.iter(|| {
-            vertices.clear();
-            vertices.extend(black_box(&ball.positions).iter().map(|p| view.see(*p)));
+            let vertices = view.see(black_box(&ball.positions));
             view.touched(&vertices, ball.triangles.iter().map(|corners| corners.map(|i| i as usize)))
         });
     });
@@ -131,10 +129,10 @@ fn setup(c: &mut Criterion) {
             }
         });
     });
-    let corners = ball.positions.iter().zip(&ball.colours);
-    let lit = |(p, c): (&Vec3, &[u8; 3])| view.with_light(view.see(*p), &Light::HEADLIGHT, *p, *p, *c);
-    let colours: Vec<_> = corners.clone().map(lit).collect();
-    let normals: Vec<_> = corners.map(|(p, c)| view.with_normal(view.see(*p), *p, *p, *c)).collect();
+    let vertices = view.see(&ball.positions);
+    let corners = vertices.iter().zip(&ball.positions).zip(&ball.colours);
+    let colours: Vec<_> = corners.map(|((v, p), c)| view.with_light(*v, &Light::HEADLIGHT, *p, *p, *c)).collect();
+    let normals = view.with_normals(&vertices, &ball.positions, &ball.positions, &ball.colours);
     let fill = |together: &mut Together, some: &[[u32; 3]], corners: &[SeenCorner]| {
         together.clear();
         for triangle in some {

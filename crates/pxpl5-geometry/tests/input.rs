@@ -110,8 +110,8 @@ fn shared_vertices_give_what_their_triangles_give() {
         for (n, triangle) in case.triangles.iter().enumerate() {
             let tilted = Vec3::new(0.3, 0.4, if n % 2 == 0 { 0.8 } else { -0.8 });
             let t = Triangle { normals: [tilted, Vec3::X, Vec3::NEG_Z], ..*triangle };
-            let [a, b, c] = t.positions.map(|p| transform.see(p));
-            let vertices = [a, b, c, transform.see(Vec3::NAN)];
+            let [a, b, c] = t.positions;
+            let vertices = transform.see(&[a, b, c, Vec3::NAN]);
             let touch = transform.touched(&vertices, [[0, 3, 1], [0, 1, 2]].into_iter());
             assert_eq!(touch.get(0), Touch::NeedsClipping);
             if touch.get(1) == Touch::NeedsClipping {
@@ -129,13 +129,13 @@ fn shared_vertices_give_what_their_triangles_give() {
             let (positions, normals_of, colours_of) = (t.positions, t.normals, t.colours);
             let lit_corner =
                 |i: usize| transform.with_light(vertices[i], &light, positions[i], normals_of[i], colours_of[i]);
-            let corner = |i: usize| transform.with_normal(vertices[i], positions[i], normals_of[i], colours_of[i]);
-            let (colours, facing) = ([0, 1, 2].map(lit_corner), [0, 1, 2].map(corner));
+            let facing = transform.with_normals(&vertices[..3], &positions, &normals_of, &colours_of);
+            let colours = [0, 1, 2].map(lit_corner);
             let lane = n % TOGETHER;
-            let together = |corners: &[SeenCorner; 3]| {
+            let together = |corners: &[SeenCorner]| {
                 let mut together = Together::default();
                 (0..lane).for_each(|_| together.push_nothing());
-                assert!(together.push(corners.each_ref()));
+                assert!(together.push([&corners[0], &corners[1], &corners[2]]));
                 together
             };
             let found = transform.gouraud_together(&together(&colours), &mut stats[1]);
