@@ -9,9 +9,16 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 /// Pixel arrays that are not in use; a thread that computes pixels borrows one.
 pub struct ArrayPool {
     layout: Layout,
-    idle: Mutex<Vec<Lanes>>,
+    idle: Mutex<Vec<Desk>>,
     /// Regions without primitives, by their size and words.
     empty_regions: Mutex<HashMap<EmptyRegion, Arc<[Word]>>>,
+}
+
+/// What a thread needs to compute pixels.
+struct Desk {
+    array: Lanes,
+    /// Room for the words of a list.
+    words: Vec<Word>,
 }
 
 /// Everything on which the pixels of a region without primitives depend.
@@ -39,11 +46,11 @@ impl ArrayPool {
         Arc::new(Self { layout, idle: Mutex::default(), empty_regions: Mutex::default() })
     }
 
-    fn with_array<T>(&self, use_array: impl FnOnce(&mut Lanes) -> T) -> T {
+    fn with_desk<T>(&self, work: impl FnOnce(&mut Desk) -> T) -> T {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut array = idle.unwrap_or_else(|| Lanes::new(&self.layout));
-        let result = use_array(&mut array);
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(array);
+        let mut desk = idle.unwrap_or_else(|| Desk { array: Lanes::new(&self.layout), words: Vec::new() });
+        let result = work(&mut desk);
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(desk);
         result
     }
 
@@ -102,16 +109,15 @@ impl PixelJob {
     }
 
     fn draw(&self) -> Arc<[Word]> {
-        let mut words = Vec::new();
-        self.pool.with_array(|array| {
+        self.pool.with_desk(|Desk { array, words }| {
             if !self.cleared {
                 array.reset();
             }
             for list in &self.lists {
                 words.clear();
-                list.append_words(&mut words);
+                list.append_words(words);
                 // A fault stops the list, as on the hardware; what was drawn before stays.
-                let _ = array.execute(&words);
+                let _ = array.execute(words);
             }
             array.read_colour(self.width, self.height)
         })
