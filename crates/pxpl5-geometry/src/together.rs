@@ -5,7 +5,7 @@
 
 use crate::plane::{self, MAX_SLOPE};
 use crate::screen::{self, SUBPIXELS};
-use crate::seen::{SeenSurface, SeenTriangle};
+use crate::seen::SeenCorner;
 use crate::{GouraudTriangle, PhongTriangle, SetupStats, Transform, Viewport};
 use multiversion::multiversion;
 use pxpl5_wire::{Linear, format};
@@ -26,12 +26,22 @@ pub struct Together {
     facing: [Lanes<f32>; 3],
     /// By component and corner.
     surface: [[Lanes<f32>; 3]; 3],
+    /// Of the first corners.
+    colour: Lanes<[u8; 3]>,
 }
 
 impl Default for Together {
     fn default() -> Self {
         let (integers, reals) = ([[0; TOGETHER]; 3], [[0.0; TOGETHER]; 3]);
-        Self { len: 0, x: integers, y: integers, z: [[0; TOGETHER]; 3], facing: reals, surface: [reals; 3] }
+        Self {
+            len: 0,
+            x: integers,
+            y: integers,
+            z: [[0; TOGETHER]; 3],
+            facing: reals,
+            surface: [reals; 3],
+            colour: [[0; 3]; TOGETHER],
+        }
     }
 }
 
@@ -59,24 +69,31 @@ impl Together {
         self.len = 0;
     }
 
-    /// Adds a triangle, all corners of which are seen in the same view.
+    /// Adds a triangle, the corners of which are seen in the same view. False, and no change, where it needs clipping.
     ///
     /// # Panics
     /// If there are [`TOGETHER`] already.
     #[inline(always)]
-    pub fn push(&mut self, SeenTriangle(corners): &SeenTriangle, surface: [&SeenSurface; 3]) {
+    #[must_use]
+    pub fn push(&mut self, corners: [&SeenCorner; 3]) -> bool {
+        let [p, q, r] = corners;
+        if !(p.vertex.inside & q.vertex.inside & r.vertex.inside) {
+            return false;
+        }
         let lane = self.len;
-        for corner in 0..3 {
-            let (place, of) = (&corners[corner], surface[corner]);
+        self.colour[lane] = p.vertex.colour;
+        for (corner, seen) in corners.into_iter().enumerate() {
+            let place = seen.vertex.snapped;
             self.x[corner][lane] = place.x;
             self.y[corner][lane] = place.y;
             self.z[corner][lane] = place.z;
-            self.facing[corner][lane] = of.facing;
+            self.facing[corner][lane] = seen.facing;
             for component in 0..3 {
-                self.surface[component][corner][lane] = of.values[component];
+                self.surface[component][corner][lane] = seen.values[component];
             }
         }
         self.len += 1;
+        true
     }
 
     /// Takes the place of a triangle of which nothing is seen.
@@ -150,18 +167,21 @@ impl GouraudTogether {
 
 /// The expressions of some Phong triangles.
 #[derive(Clone, Debug)]
-pub struct PhongTogether(Expressions);
+pub struct PhongTogether {
+    expressions: Expressions,
+    colour: Lanes<[u8; 3]>,
+}
 
 impl PhongTogether {
-    /// Those of triangle `i` with the colour of its first corner; `None` without area.
+    /// Those of triangle `i`; `None` without area.
     ///
     /// # Panics
     /// If `i` is not below [`TOGETHER`].
     #[inline(always)]
     #[must_use]
-    pub fn get(&self, i: usize, colour: [u8; 3]) -> Option<PhongTriangle> {
-        let (edges, z, normal) = self.0.get(i)?;
-        Some(PhongTriangle { edges, z, normal, colour })
+    pub fn get(&self, i: usize) -> Option<PhongTriangle> {
+        let (edges, z, normal) = self.expressions.get(i)?;
+        Some(PhongTriangle { edges, z, normal, colour: self.colour[i] })
     }
 }
 
@@ -175,7 +195,8 @@ impl Transform {
     /// As [`Self::phong`] and set-up of what it gives, for each triangle. It does not ask whether any region is touched.
     #[must_use]
     pub fn phong_together(&self, triangles: &Together, stats: &mut SetupStats) -> PhongTogether {
-        PhongTogether(self.together(triangles, screen::NORMAL_HALF, stats))
+        let expressions = self.together(triangles, screen::NORMAL_HALF, stats);
+        PhongTogether { expressions, colour: triangles.colour }
     }
 
     fn together(&self, triangles: &Together, half: f32, stats: &mut SetupStats) -> Expressions {

@@ -112,23 +112,21 @@ impl InputFifo {
 
     fn advance(&mut self) -> Progress {
         let mut progress = Progress { accepted: None, blocks: self.start_waiting() };
-        while let Some(work) = self.in_transit.front_mut() {
-            if work.count == 0 {
-                self.in_transit.pop_front();
-                continue;
-            }
+        while let Some(work) = self.in_transit.pop_front() {
             let (words, span) = (work.words_each, work.span_each);
-            let Some(complete) = self.arrival(words) else { return progress };
-            if let Some(work) = self.in_transit.front_mut() {
-                work.count -= 1;
+            for entered in 0..work.count {
+                let Some(complete) = self.arrival(words) else {
+                    self.in_transit.push_front(Work { count: work.count - entered, ..work });
+                    return progress;
+                };
+                self.words_in += u64::from(words);
+                self.last_word_at = complete;
+                if let Some(changes) = &mut self.changes {
+                    changes.push((complete, i64::from(words)));
+                }
+                let blocks = self.start_or_wait(Command { words, span, complete });
+                progress.blocks = progress.blocks.or(blocks);
             }
-            self.words_in += u64::from(words);
-            self.last_word_at = complete;
-            if let Some(changes) = &mut self.changes {
-                changes.push((complete, i64::from(words)));
-            }
-            self.waiting.push_back(Command { words, span, complete });
-            progress.blocks = progress.blocks.or(self.start_waiting());
         }
         if !self.transit_known {
             self.transit_known = true;
@@ -159,21 +157,40 @@ impl InputFifo {
 
     /// Starts what can start; the time at which a blocking command starts, if one does.
     fn start_waiting(&mut self) -> Option<Time> {
-        while let (Some(free_at), Some(command)) = (self.free_at, self.waiting.front().copied()) {
-            self.waiting.pop_front();
-            let start = free_at.max(command.complete);
-            self.left.push_back((self.words_left, start));
-            self.words_left += u64::from(command.words);
-            if let Some(changes) = &mut self.changes {
-                changes.push((start, -i64::from(command.words)));
-            }
-            self.free_at = command.span.map(|span| start + span);
-            match command.span {
-                Some(span) => self.busy += span,
-                None => return Some(start),
+        while let Some(free_at) = self.free_at {
+            let command = self.waiting.pop_front()?;
+            let blocks = self.start(command, free_at);
+            if blocks.is_some() {
+                return blocks;
             }
         }
         None
+    }
+
+    /// What has arrived last: only behind a blocking command does anything wait.
+    fn start_or_wait(&mut self, command: Command) -> Option<Time> {
+        match self.free_at {
+            Some(free_at) => self.start(command, free_at),
+            None => {
+                self.waiting.push_back(command);
+                None
+            }
+        }
+    }
+
+    /// Starts a command when it is complete and the controller is free; gives the time if it blocks.
+    fn start(&mut self, command: Command, free_at: Time) -> Option<Time> {
+        let start = free_at.max(command.complete);
+        self.left.push_back((self.words_left, start));
+        self.words_left += u64::from(command.words);
+        if let Some(changes) = &mut self.changes {
+            changes.push((start, -i64::from(command.words)));
+        }
+        self.free_at = command.span.map(|span| start + span);
+        if let Some(span) = command.span {
+            self.busy += span;
+        }
+        command.span.is_none().then_some(start)
     }
 }
 
