@@ -24,8 +24,8 @@ impl Source {
 }
 
 /// The second factor of a product.
-enum Factor {
-    Field(Box<Source>),
+enum Factor<'a> {
+    Field(&'a Source),
     Constant(i32),
 }
 
@@ -133,11 +133,10 @@ impl Tile {
             ArithmeticOp::Xor => logic(|a, b| a ^ b),
             ArithmeticOp::Add | ArithmeticOp::Subtract => self.each_bit(destination, |memory, i| {
                 let mut sum = x.bit(memory, i);
-                let step = if op == ArithmeticOp::Add { planes::add } else { planes::subtract };
-                step(&mut sum, &y.bit(memory, i), &mut carry);
+                planes::step(op == ArithmeticOp::Subtract, &mut sum, &y.bit(memory, i), &mut carry);
                 sum
             }),
-            ArithmeticOp::Multiply => self.multiply(destination, a, &Factor::Field(Box::new(y)), b.width, b.signed),
+            ArithmeticOp::Multiply => self.multiply(destination, a, &Factor::Field(&y), b.width, b.signed),
             ArithmeticOp::Divide => self.divide(destination, a, b),
             ArithmeticOp::Minimum | ArithmeticOp::Maximum => {
                 let mut less = self.less(a, a.width.max(b.width), |memory, i| y.bit(memory, i));
@@ -193,7 +192,7 @@ impl Tile {
 
     /// destination := a * b: for each bit of b, a is added to the bits from there on, with one clock for the carry; a
     /// negative last bit subtracts. Bits above the product repeat its sign.
-    fn multiply(&mut self, destination: Bits, a: Bits, b: &Factor, b_width: usize, b_signed: bool) {
+    fn multiply(&mut self, destination: Bits, a: Bits, b: &Factor<'_>, b_width: usize, b_signed: bool) {
         let x = self.source(a);
         for j in 0..b_width.min(destination.width) {
             let gate = match b {
@@ -226,8 +225,7 @@ impl Tile {
                 _ => self.memory[destination.first + i],
             };
             let addend = planes::combine(&x.bit(&self.memory, i - j), gate, |bit, gate| bit & gate);
-            let step = if negative { planes::subtract } else { planes::add };
-            step(&mut sum, &addend, &mut carry);
+            planes::step(negative, &mut sum, &addend, &mut carry);
             self.store(destination.first + i, &sum);
             self.clock += 1;
         }

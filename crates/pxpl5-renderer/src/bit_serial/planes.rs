@@ -64,6 +64,12 @@ pub(super) fn subtract(a: &mut TilePlane, b: &TilePlane, borrow: &mut TilePlane)
     }
 }
 
+/// One clock of an adder, or of a subtracter.
+#[inline(always)]
+pub(super) fn step(subtracts: bool, a: &mut TilePlane, b: &TilePlane, carry: &mut TilePlane) {
+    if subtracts { subtract(a, b, carry) } else { add(a, b, carry) }
+}
+
 /// borrow := the next borrow of a - b.
 #[inline(always)]
 pub(super) fn borrow(a: &TilePlane, b: &TilePlane, borrow: &mut TilePlane) {

@@ -123,11 +123,13 @@ impl Kernel for RunTiles<'_> {
     fn run<V: Vector>(self) {
         let signs = self.run.signs::<V>();
         let disabled = self.run.disabled_at_once(&signs);
+        let mut streams = TileStreams { streams: LinearStreams([[0; EXPRESSIONS]; LINEAR_BITS as usize]), ready: 0 };
         for (number, tile) in self.tiles.iter_mut().enumerate() {
             if disabled >> number & 1 == 1 {
                 tile.enable = EMPTY;
             } else if tile.enabled() {
-                self.run.in_tile::<V>(&signs, number, tile);
+                streams.ready = 0;
+                self.run.in_tile::<V>(&signs, &mut streams, number, tile);
             }
         }
     }
@@ -164,8 +166,13 @@ impl Run {
     }
 
     #[inline(always)]
-    fn in_tile<V: Vector>(&self, signs: &[Signs; EXPRESSIONS], number: usize, tile: &mut Tile) {
-        let mut streams = TileStreams { streams: LinearStreams([[0; EXPRESSIONS]; LINEAR_BITS as usize]), ready: 0 };
+    fn in_tile<V: Vector>(
+        &self,
+        signs: &[Signs; EXPRESSIONS],
+        streams: &mut TileStreams,
+        number: usize,
+        tile: &mut Tile,
+    ) {
         for step in &self.steps {
             match step.input {
                 Input::Constant(constant) => step.delivery.in_tile::<V, _>(&constant, 0, tile),
