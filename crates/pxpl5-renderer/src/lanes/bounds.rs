@@ -196,10 +196,18 @@ fn pixels(low: &Numbers<f64>, high: &Numbers<f64>) -> [Numbers<i32>; 2] {
     const BEYOND: f64 = (LAST + 1) as f64;
     let mut out = [[0; SIDE_BY_SIDE]; 2];
     for i in 0..SIDE_BY_SIDE {
-        out[0][i] = (low[i] - MARGIN).ceil().clamp(0.0, BEYOND) as i32;
-        out[1][i] = (high[i] + MARGIN).floor().clamp(-1.0, LAST as f64) as i32;
+        out[0][i] = small((low[i] - MARGIN).ceil().clamp(0.0, BEYOND));
+        out[1][i] = small((high[i] + MARGIN).floor().clamp(-1.0, LAST as f64));
     }
     out
+}
+
+/// A small whole number, anything for NaN. As a cast would do it, which is none of one instruction in vector units.
+#[inline(always)]
+fn small(value: f64) -> i32 {
+    /// 1.5 * 2^52: with it added, an integer stands in the low bits.
+    const UNIT: f64 = 6_755_399_441_055_744.0;
+    (value + UNIT).to_bits() as i32
 }
 
 /// The largest value in the array.

@@ -84,7 +84,9 @@ impl<const N: usize, P: Paint<N>> Kernel for DrawTriangles<'_, N, P> {
         let read_later = !starts_anew(self.words.get(drawn * N));
         let mut left = drawn;
         for some in commands[..drawn].chunks(SIDE_BY_SIDE) {
-            let edges = self.edges(some);
+            let mut edges = Edges::default();
+            take_edges(some, &mut edges);
+            edges.localise(self.origin);
             let boxes = Boxes::of(&edges);
             for (i, command) in some.iter().enumerate() {
                 left -= 1;
@@ -96,17 +98,6 @@ impl<const N: usize, P: Paint<N>> Kernel for DrawTriangles<'_, N, P> {
 }
 
 impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
-    #[inline(always)]
-    fn edges(&self, commands: &[[Word; N]]) -> Edges {
-        let mut edges = Edges::default();
-        for (i, words) in commands.iter().enumerate().take(SIDE_BY_SIDE) {
-            let [p, q, r] = EDGES_AT;
-            edges.set(i, [coefficients(words, p), coefficients(words, q), coefficients(words, r)]);
-        }
-        edges.localise(self.origin);
-        edges
-    }
-
     /// Triangle `i` of those with these boxes; `keep` says that somebody looks at Enable afterwards.
     #[inline(always)]
     fn triangle<V: Vector>(&mut self, words: &[Word; N], edges: [Linear; 3], boxes: &Boxes, i: usize, keep: bool) {
@@ -211,6 +202,15 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
         if keep {
             V::store_mask(tested.mask, &mut self.enable.rows_in_use()[at..]);
         }
+    }
+}
+
+/// Not inlined: the compiler would put vectors together number by number.
+#[inline(never)]
+fn take_edges<const N: usize>(commands: &[[Word; N]], edges: &mut Edges) {
+    for (i, words) in commands.iter().enumerate().take(SIDE_BY_SIDE) {
+        let [p, q, r] = EDGES_AT;
+        edges.set(i, [coefficients(words, p), coefficients(words, q), coefficients(words, r)]);
     }
 }
 
