@@ -4,7 +4,7 @@ use crate::list::{Counts, DisplayList};
 use crate::pass::{Entry, Pass, Picture, Shading};
 use crate::placed::{Placed, Vertices};
 use pxpl5_geometry::{
-    self as geometry, GouraudSphere, GouraudTriangle, SeenCorner, SetupStats, SphereSetup, TOGETHER, Together,
+    self as geometry, GouraudSphere, GouraudTriangle, SeenSurface, SetupStats, SphereSetup, TOGETHER, Together,
     Transform,
 };
 use pxpl5_renderer::{
@@ -234,8 +234,8 @@ impl RegionWords {
         let command =
             |t: Option<GouraudTriangle>| t.map_or(NOWHERE, |t| Triangle { edges: t.edges, depth: t.z, colour: t.rgb });
         let vertices = place.vertices(list, transform);
-        let corners = vertices.with_light(list, transform, &place.light);
-        let mut batches = Batches { entries, vertices, list, corners, together: Together::default() };
+        let surfaces = vertices.colours(list, transform, &place.light);
+        let mut batches = Batches { entries, vertices, list, surfaces, together: Together::default() };
         while let Some(some) = batches.next() {
             match some {
                 Batch::Whole(entries, together) => {
@@ -269,13 +269,16 @@ impl RegionWords {
             })
         };
         let vertices = place.vertices(list, transform);
-        let corners = vertices.with_normals(list, transform);
-        let mut batches = Batches { entries, vertices, list, corners, together: Together::default() };
+        let surfaces = vertices.normals(list, transform);
+        let mut batches = Batches { entries, vertices, list, surfaces, together: Together::default() };
         while let Some(some) = batches.next() {
             match some {
                 Batch::Whole(entries, together) => {
                     let expressions = transform.phong_together(together, &mut stats);
-                    (0..entries.len()).for_each(|i| encoder.encode(&command(expressions.get(i)), out));
+                    for (i, entry) in entries.iter().enumerate() {
+                        let colour = list.colours[list.triangles[entry.triangle as usize][0] as usize];
+                        encoder.encode(&command(expressions.get(i, colour)), out);
+                    }
                 }
                 Batch::Piece(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
@@ -327,8 +330,8 @@ struct Batches<'a> {
     entries: &'a [Entry],
     vertices: &'a Vertices,
     list: &'a DisplayList,
-    /// All vertices.
-    corners: &'a [SeenCorner],
+    /// Of all vertices.
+    surfaces: &'a [SeenSurface],
     together: Together,
 }
 
@@ -343,28 +346,17 @@ impl Batches<'_> {
     fn next(&mut self) -> Option<Batch<'_>> {
         let together = &mut self.together;
         together.clear();
-        // All are asked for before the first is waited for: they lie anywhere in memory.
-        let mut at = [[0; 3]; TOGETHER];
-        for (at, entry) in at.iter_mut().zip(self.entries) {
-            *at = self.vertices.corners(self.list, entry.triangle as usize);
-        }
-        let mut inside = [true; TOGETHER];
-        for (inside, [a, b, c]) in inside.iter_mut().zip(&at) {
-            *inside = self.corners[*a].is_inside() & self.corners[*b].is_inside() & self.corners[*c].is_inside();
-        }
-        for ((entry, at), inside) in self.entries.iter().zip(&at).zip(&inside) {
-            if entry.piece.is_none() {
-                together.push_nothing();
-                continue;
+        for entry in self.entries.iter().take(TOGETHER) {
+            let at = self.vertices.corners(self.list, entry.triangle as usize);
+            match (entry.piece, self.vertices.seen(&at)) {
+                (None, _) => together.push_nothing(),
+                (Some(_), Some(seen)) => together.push(&seen, at.of(self.surfaces)),
+                (Some(_), None) if together.is_empty() => {
+                    self.entries = &self.entries[1..];
+                    return Some(Batch::Piece(entry));
+                }
+                (Some(_), None) => break,
             }
-            if *inside && together.push(at.map(|i| &self.corners[i])) {
-                continue;
-            }
-            if together.is_empty() {
-                self.entries = &self.entries[1..];
-                return Some(Batch::Piece(entry));
-            }
-            break;
         }
         let (now, later) = self.entries.split_at(self.together.len());
         self.entries = later;

@@ -3,7 +3,9 @@
 use crate::list::{DisplayList, Frame, Structure, UNMOVED};
 use crate::view::{EyeView, FrameView, ModelEdit, product};
 use glam::{Mat4, Vec3};
-use pxpl5_geometry::{Culling, Light, SeenCorner, SeenVertex, Touched, Transform, ViewTransform, Viewport};
+use pxpl5_geometry::{
+    Culling, Light, SeenSurface, SeenTriangle, SeenVertex, Touched, Transform, ViewTransform, Viewport,
+};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -25,8 +27,8 @@ pub struct Placed {
 pub(crate) struct Vertices {
     first: usize,
     seen: Vec<SeenVertex>,
-    normals: OnceLock<Vec<SeenCorner>>,
-    colours: OnceLock<Vec<SeenCorner>>,
+    normals: OnceLock<Vec<SeenSurface>>,
+    colours: OnceLock<Vec<SeenSurface>>,
 }
 
 /// All structures of a display list as an eye (0, or 0 and 1) of a view sees them.
@@ -52,7 +54,7 @@ impl Placed {
             let named = list.triangles[self.structure.triangles.clone()].iter().flatten();
             let (first, end) = named.fold((u32::MAX, 0), |(low, high), i| (low.min(*i), high.max(*i + 1)));
             let positions = list.positions.get(first as usize..end as usize).unwrap_or_default();
-            let seen = transform.see(positions);
+            let seen = positions.iter().map(|p| transform.see(*p)).collect();
             Vertices { first: first as usize, seen, normals: OnceLock::new(), colours: OnceLock::new() }
         })
     }
@@ -62,7 +64,7 @@ impl Placed {
         self.touched.get_or_init(|| {
             let vertices = self.vertices(list, transform);
             let triangles = self.structure.triangles.clone();
-            transform.touched(&vertices.seen, triangles.map(|number| vertices.corners(list, number)))
+            transform.touched(&vertices.seen, triangles.map(|number| vertices.corners(list, number).0))
         })
     }
 }
@@ -70,29 +72,44 @@ impl Placed {
 impl Vertices {
     /// Places of a triangle's corners among the vertices.
     #[inline(always)]
-    pub(crate) fn corners(&self, list: &DisplayList, triangle: usize) -> [usize; 3] {
+    pub(crate) fn corners(&self, list: &DisplayList, triangle: usize) -> Corners {
         let [a, b, c] = list.triangles[triangle];
-        [a as usize - self.first, b as usize - self.first, c as usize - self.first]
+        Corners([a as usize - self.first, b as usize - self.first, c as usize - self.first])
     }
 
-    /// All vertices with their normals.
-    pub(crate) fn with_normals(&self, list: &DisplayList, transform: &Transform) -> &[SeenCorner] {
+    /// A triangle's corners on the screen; `None` where it needs clipping.
+    #[inline(always)]
+    pub(crate) fn seen(&self, at: &Corners) -> Option<SeenTriangle> {
+        SeenTriangle::of(at.of(&self.seen))
+    }
+
+    /// The normals of all vertices.
+    pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[SeenSurface] {
         self.normals.get_or_init(|| {
             let all = self.first..self.first + self.seen.len();
-            let (positions, normals) = (&list.positions[all.clone()], &list.normals[all.clone()]);
-            transform.with_normals(&self.seen, positions, normals, &list.colours[all])
+            let (positions, normals) = (&list.positions[all.clone()], &list.normals[all]);
+            positions.iter().zip(normals).map(|(p, n)| transform.see_normal(*p, *n)).collect()
         })
     }
 
-    /// All vertices with their lit colours.
-    pub(crate) fn with_light(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[SeenCorner] {
+    /// The lit colours of all vertices.
+    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[SeenSurface] {
         self.colours.get_or_init(|| {
-            let corner = |(i, vertex): (usize, &SeenVertex)| {
-                let DisplayList { positions, normals, colours, .. } = list;
-                transform.with_light(*vertex, light, positions[i], normals[i], colours[i])
-            };
-            (self.first..).zip(&self.seen).map(corner).collect()
+            let all = self.first..self.first + self.seen.len();
+            let colour = |i: usize| transform.see_colour(light, list.positions[i], list.normals[i], list.colours[i]);
+            all.map(colour).collect()
         })
+    }
+}
+
+/// Where a triangle's corners stand among a structure's vertices.
+pub(crate) struct Corners([usize; 3]);
+
+impl Corners {
+    #[inline(always)]
+    pub(crate) fn of<'a, T>(&self, all: &'a [T]) -> [&'a T; 3] {
+        let [a, b, c] = self.0;
+        [&all[a], &all[b], &all[c]]
     }
 }
 

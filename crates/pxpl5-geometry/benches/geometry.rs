@@ -4,7 +4,8 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
-    Culling, Light, SeenCorner, SetupStats, TOGETHER, Together, Transform, Triangle, ViewTransform, Viewport,
+    Culling, Light, SeenSurface, SeenTriangle, SetupStats, TOGETHER, Together, Transform, Triangle, ViewTransform,
+    Viewport,
 };
 use std::hint::black_box;
 
@@ -75,8 +76,10 @@ fn transform(c: &mut Criterion) {
         });
     });
     group.bench_function("bin/shared vertices", |b| {
+        let mut vertices = Vec::new();
         b.iter(|| {
-            let vertices = view.see(black_box(&ball.positions));
+            vertices.clear();
+            vertices.extend(black_box(&ball.positions).iter().map(|p| view.see(*p)));
             view.touched(&vertices, ball.triangles.iter().map(|corners| corners.map(|i| i as usize)))
         });
     });
@@ -129,15 +132,16 @@ fn setup(c: &mut Criterion) {
             }
         });
     });
-    let vertices = view.see(&ball.positions);
-    let corners = vertices.iter().zip(&ball.positions).zip(&ball.colours);
-    let colours: Vec<_> = corners.map(|((v, p), c)| view.with_light(*v, &Light::HEADLIGHT, *p, *p, *c)).collect();
-    let normals = view.with_normals(&vertices, &ball.positions, &ball.positions, &ball.colours);
-    let fill = |together: &mut Together, some: &[[u32; 3]], corners: &[SeenCorner]| {
+    let vertices: Vec<_> = ball.positions.iter().map(|p| view.see(*p)).collect();
+    let colours = ball.positions.iter().zip(&ball.colours);
+    let colours: Vec<_> = colours.map(|(p, c)| view.see_colour(&Light::HEADLIGHT, *p, *p, *c)).collect();
+    let normals: Vec<_> = ball.positions.iter().map(|p| view.see_normal(*p, *p)).collect();
+    let fill = |together: &mut Together, some: &[[u32; 3]], surfaces: &[SeenSurface]| {
         together.clear();
-        for triangle in some {
-            let [a, b, c] = triangle.map(|i| i as usize);
-            assert!(together.push([&corners[a], &corners[b], &corners[c]]));
+        for corners in some {
+            let [a, b, c] = corners.map(|i| i as usize);
+            let Some(triangle) = SeenTriangle::of([&vertices[a], &vertices[b], &vertices[c]]) else { continue };
+            together.push(&triangle, [&surfaces[a], &surfaces[b], &surfaces[c]]);
         }
     };
     let mut together = Together::default();
@@ -155,7 +159,7 @@ fn setup(c: &mut Criterion) {
             for some in ball.triangles.chunks(TOGETHER) {
                 fill(&mut together, some, &normals);
                 let expressions = view.phong_together(&together, &mut stats);
-                (0..some.len()).for_each(|i| _ = black_box(expressions.get(i)));
+                (0..some.len()).for_each(|i| _ = black_box(expressions.get(i, [200; 3])));
             }
         });
     });

@@ -100,7 +100,7 @@ pub use screen::{
     DEPTH_FAR, DEPTH_NEAR, GUARD_PIXELS, GouraudTriangle, LitColours, NORMAL_UNIT, Outline, PhongTriangle,
     ScreenTriangle, SurfaceNormals,
 };
-pub use seen::{SeenCorner, SeenVertex};
+pub use seen::{SeenSurface, SeenTriangle, SeenVertex};
 pub use sphere::ScreenSphere;
 pub use sphere_setup::{GouraudSphere, PhongSphere, SphereSetup};
 pub use stats::SetupStats;

@@ -51,17 +51,7 @@ pub(crate) fn normal_fixed(component: f32) -> i16 {
 #[inline(always)]
 pub(crate) fn depth_fixed(depth: f32) -> u32 {
     let scaled = f64::from(depth) * f64::from(DEPTH_FAR - DEPTH_NEAR);
-    whole((scaled + f64::from(DEPTH_NEAR) + 0.5).clamp(f64::from(DEPTH_NEAR), f64::from(DEPTH_FAR)))
-}
-
-/// A value from 0 to below 2^32 rounded down; 0 for NaN. As a cast would do it, of which vector units have none.
-#[inline(always)]
-fn whole(value: f64) -> u32 {
-    /// Adding it rounds to an integer, which then stands in the low bits.
-    const UNIT: f64 = (1_u64 << (f64::MANTISSA_DIGITS - 1)) as f64;
-    let nearest = (value + UNIT) - UNIT;
-    let down = if nearest > value { nearest - 1.0 } else { nearest };
-    (down + UNIT).to_bits() as u32
+    (scaled + f64::from(DEPTH_NEAR) + 0.5).clamp(f64::from(DEPTH_NEAR), f64::from(DEPTH_FAR)) as u32
 }
 
 /// Corners and depths of a triangle on the screen, and the regions it touches.
@@ -282,19 +272,3 @@ pub(crate) fn normal_value(component: i16) -> f32 {
 
 /// Half a unit of a normal's component.
 pub(crate) const NORMAL_HALF: f32 = (1 << (format::NORMAL_FRACTION_BITS - 1)) as f32;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn a_depth_is_rounded_down_as_a_cast_does(bits in 0u64..1 << 43) {
-            for value in [bits as f64 / 2048.0, (bits >> 11) as f64, (bits >> 11) as f64 + 0.5] {
-                prop_assert_eq!(whole(value), value as u32);
-            }
-            prop_assert_eq!(whole(f64::NAN), 0);
-        }
-    }
-}

@@ -5,7 +5,7 @@
 
 use crate::plane::{self, MAX_SLOPE};
 use crate::screen::{self, SUBPIXELS};
-use crate::seen::SeenCorner;
+use crate::seen::{SeenSurface, SeenTriangle};
 use crate::{GouraudTriangle, PhongTriangle, SetupStats, Transform, Viewport};
 use multiversion::multiversion;
 use pxpl5_wire::{Linear, format};
@@ -26,22 +26,12 @@ pub struct Together {
     facing: [Lanes<f32>; 3],
     /// By component and corner.
     surface: [[Lanes<f32>; 3]; 3],
-    /// Of the first corners.
-    colour: Lanes<[u8; 3]>,
 }
 
 impl Default for Together {
     fn default() -> Self {
         let (integers, reals) = ([[0; TOGETHER]; 3], [[0.0; TOGETHER]; 3]);
-        Self {
-            len: 0,
-            x: integers,
-            y: integers,
-            z: [[0; TOGETHER]; 3],
-            facing: reals,
-            surface: [reals; 3],
-            colour: [[0; 3]; TOGETHER],
-        }
+        Self { len: 0, x: integers, y: integers, z: [[0; TOGETHER]; 3], facing: reals, surface: [reals; 3] }
     }
 }
 
@@ -69,31 +59,24 @@ impl Together {
         self.len = 0;
     }
 
-    /// Adds a triangle, the corners of which are seen in the same view. False, and no change, where it needs clipping.
+    /// Adds a triangle, all corners of which are seen in the same view.
     ///
     /// # Panics
     /// If there are [`TOGETHER`] already.
     #[inline(always)]
-    #[must_use]
-    pub fn push(&mut self, corners: [&SeenCorner; 3]) -> bool {
-        let [p, q, r] = corners;
-        if !(p.vertex.inside & q.vertex.inside & r.vertex.inside) {
-            return false;
-        }
+    pub fn push(&mut self, SeenTriangle(corners): &SeenTriangle, surface: [&SeenSurface; 3]) {
         let lane = self.len;
-        self.colour[lane] = p.vertex.colour;
-        for (corner, seen) in corners.into_iter().enumerate() {
-            let place = seen.vertex.snapped;
+        for corner in 0..3 {
+            let (place, of) = (&corners[corner], surface[corner]);
             self.x[corner][lane] = place.x;
             self.y[corner][lane] = place.y;
             self.z[corner][lane] = place.z;
-            self.facing[corner][lane] = seen.facing;
+            self.facing[corner][lane] = of.facing;
             for component in 0..3 {
-                self.surface[component][corner][lane] = seen.values[component];
+                self.surface[component][corner][lane] = of.values[component];
             }
         }
         self.len += 1;
-        true
     }
 
     /// Takes the place of a triangle of which nothing is seen.
@@ -167,21 +150,18 @@ impl GouraudTogether {
 
 /// The expressions of some Phong triangles.
 #[derive(Clone, Debug)]
-pub struct PhongTogether {
-    expressions: Expressions,
-    colour: Lanes<[u8; 3]>,
-}
+pub struct PhongTogether(Expressions);
 
 impl PhongTogether {
-    /// Those of triangle `i`; `None` without area.
+    /// Those of triangle `i` with the colour of its first corner; `None` without area.
     ///
     /// # Panics
     /// If `i` is not below [`TOGETHER`].
     #[inline(always)]
     #[must_use]
-    pub fn get(&self, i: usize) -> Option<PhongTriangle> {
-        let (edges, z, normal) = self.expressions.get(i)?;
-        Some(PhongTriangle { edges, z, normal, colour: self.colour[i] })
+    pub fn get(&self, i: usize, colour: [u8; 3]) -> Option<PhongTriangle> {
+        let (edges, z, normal) = self.0.get(i)?;
+        Some(PhongTriangle { edges, z, normal, colour })
     }
 }
 
@@ -195,8 +175,7 @@ impl Transform {
     /// As [`Self::phong`] and set-up of what it gives, for each triangle. It does not ask whether any region is touched.
     #[must_use]
     pub fn phong_together(&self, triangles: &Together, stats: &mut SetupStats) -> PhongTogether {
-        let expressions = self.together(triangles, screen::NORMAL_HALF, stats);
-        PhongTogether { expressions, colour: triangles.colour }
+        PhongTogether(self.together(triangles, screen::NORMAL_HALF, stats))
     }
 
     fn together(&self, triangles: &Together, half: f32, stats: &mut SetupStats) -> Expressions {

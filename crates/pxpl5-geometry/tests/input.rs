@@ -4,8 +4,8 @@ mod support;
 
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
-    Culling, Light, LitColours, ScreenTriangle, SeenCorner, SetupStats, Sphere, TOGETHER, Together, Touch, Transform,
-    Triangle, ViewError, ViewTransform, Viewport,
+    Culling, Light, LitColours, ScreenTriangle, SeenSurface, SeenTriangle, SetupStats, Sphere, TOGETHER, Together,
+    Touch, Transform, Triangle, ViewError, ViewTransform, Viewport,
 };
 use support::random::Random;
 use support::spheres::{self, ExactSphere, native};
@@ -110,38 +110,34 @@ fn shared_vertices_give_what_their_triangles_give() {
         for (n, triangle) in case.triangles.iter().enumerate() {
             let tilted = Vec3::new(0.3, 0.4, if n % 2 == 0 { 0.8 } else { -0.8 });
             let t = Triangle { normals: [tilted, Vec3::X, Vec3::NEG_Z], ..*triangle };
-            let [a, b, c] = t.positions;
-            let vertices = transform.see(&[a, b, c, Vec3::NAN]);
-            let touch = transform.touched(&vertices, [[0, 3, 1], [0, 1, 2]].into_iter());
-            assert_eq!(touch.get(0), Touch::NeedsClipping);
-            if touch.get(1) == Touch::NeedsClipping {
-                continue;
-            }
+            let [a, b, c] = t.positions.map(|p| transform.see(p));
+            let Some(seen) = SeenTriangle::of([&a, &b, &c]) else { continue };
             let (mut stats, mut lit, mut normals) = ([SetupStats::default(); 2], Vec::new(), Vec::new());
             transform.gouraud(&t, &light, &mut stats[0], |t| lit.push(t));
             transform.phong(&t, &mut SetupStats::default(), |t| normals.push(t));
             stats[1].triangles += 1;
+            let vertices = [a, b, c, transform.see(Vec3::NAN)];
+            let touch = transform.touched(&vertices, [[0, 3, 1], [0, 1, 2]].into_iter());
+            assert_eq!(touch.get(0), Touch::NeedsClipping);
             let mask = touch.get(1).count(&mut stats[1]);
             assert_eq!(mask, lit.first().map(|t| t.outline.regions), "{}", case.name);
             assert_eq!(stats[0], stats[1], "{}", case.name);
             let (Some(lit), Some(normals)) = (lit.first(), normals.first()) else { continue };
             whole += 1;
-            let (positions, normals_of, colours_of) = (t.positions, t.normals, t.colours);
-            let lit_corner =
-                |i: usize| transform.with_light(vertices[i], &light, positions[i], normals_of[i], colours_of[i]);
-            let facing = transform.with_normals(&vertices[..3], &positions, &normals_of, &colours_of);
-            let colours = [0, 1, 2].map(lit_corner);
+            let colour = |i: usize| transform.see_colour(&light, t.positions[i], t.normals[i], t.colours[i]);
+            let normal = |i: usize| transform.see_normal(t.positions[i], t.normals[i]);
+            let (colours, facing) = ([0, 1, 2].map(colour), [0, 1, 2].map(normal));
             let lane = n % TOGETHER;
-            let together = |corners: &[SeenCorner]| {
+            let together = |surface: &[SeenSurface; 3]| {
                 let mut together = Together::default();
                 (0..lane).for_each(|_| together.push_nothing());
-                assert!(together.push([&corners[0], &corners[1], &corners[2]]));
+                together.push(&seen, surface.each_ref());
                 together
             };
             let found = transform.gouraud_together(&together(&colours), &mut stats[1]);
             assert_eq!(found.get(lane), Some(lit.gouraud(&Viewport::FRAME, &mut stats[0])), "{}", case.name);
             assert!((0..lane).all(|empty| found.get(empty).is_none()));
-            let found = transform.phong_together(&together(&facing), &mut stats[1]).get(lane);
+            let found = transform.phong_together(&together(&facing), &mut stats[1]).get(lane, t.colours[0]);
             assert_eq!(found, Some(normals.phong(&Viewport::FRAME, &mut stats[0])), "{}", case.name);
             assert_eq!(stats[0], stats[1], "{}", case.name);
         }
