@@ -108,13 +108,20 @@ impl Pass {
 
     fn bin_triangles(&mut self, place: &Placed, transform: &Transform, share: &Share, stats: &mut SetupStats) {
         let (first, touched) = (place.structure.triangles.start, place.touched(&share.list, transform));
+        let mut in_one_region = 0;
         for number in share.held_triangles(&place.structure.triangles) {
+            let touch = touched.get(number - first);
+            if let (Touch::Region(region), Binning::Touched) = (touch, self.picture.binning) {
+                in_one_region += 1;
+                self.put_in(region, Entry { triangle: number as u32, piece: Some(0) });
+                continue;
+            }
             let (triangle, mut pieces) = (number as u32, 0);
             let put = |mask| {
                 self.put_triangle(mask, Entry { triangle, piece: Some(pieces) });
                 pieces += 1;
             };
-            match touched.get(number - first) {
+            match touch {
                 Touch::NeedsClipping => transform.bin(&share.list.corners(number), stats, put),
                 whole => {
                     stats.triangles += 1;
@@ -125,6 +132,10 @@ impl Pass {
                 self.put_triangle(RegionMask::EMPTY, Entry { triangle, piece: None });
             }
         }
+        // Most triangles by far, counted together.
+        stats.triangles += u64::from(in_one_region);
+        stats.screen_triangles += u64::from(in_one_region);
+        self.screen_counts.triangles += in_one_region;
     }
 
     fn receivers(&self, mask: RegionMask) -> RegionMask {
@@ -137,15 +148,19 @@ impl Pass {
         }
     }
 
-    #[inline(always)]
     fn put_triangle(&mut self, mask: RegionMask, entry: Entry) {
         for region in self.receivers(mask).iter() {
-            self.counts[usize::from(region.0)].triangles += 1;
-            if let Some(bin) = self.bins.get_mut(usize::from(region.0)) {
-                bin.triangles.push(entry);
-            }
+            self.put_in(region, entry);
         }
         self.screen_counts.triangles += 1;
+    }
+
+    #[inline(always)]
+    fn put_in(&mut self, region: RegionId, entry: Entry) {
+        self.counts[usize::from(region.0)].triangles += 1;
+        if let Some(bin) = self.bins.get_mut(usize::from(region.0)) {
+            bin.triangles.push(entry);
+        }
     }
 
     fn put_sphere(&mut self, mask: RegionMask, number: u32) {

@@ -16,11 +16,22 @@ pub enum Touch {
     BackFacing,
     /// No region.
     Untouched,
-    /// These regions.
+    /// One region.
+    Region(RegionId),
+    /// These regions, more than one.
     Regions(RegionMask),
 }
 
 impl Touch {
+    #[inline(always)]
+    pub(crate) const fn of(regions: RegionMask) -> Self {
+        match regions.len() {
+            0 => Self::Untouched,
+            1 => Self::Region(RegionId(regions.bits().trailing_zeros() as u16)),
+            _ => Self::Regions(regions),
+        }
+    }
+
     /// The regions, if there are any; counts the screen triangle, or why it is none.
     #[inline(always)]
     pub const fn count(self, stats: &mut SetupStats) -> Option<RegionMask> {
@@ -29,6 +40,10 @@ impl Touch {
             Self::Degenerate => stats.degenerate += 1,
             Self::BackFacing => stats.back_facing += 1,
             Self::Untouched => stats.untouched += 1,
+            Self::Region(region) => {
+                stats.screen_triangles += 1;
+                return Some(RegionMask::only(region));
+            }
             Self::Regions(regions) => {
                 stats.screen_triangles += 1;
                 return Some(regions);
@@ -65,7 +80,7 @@ impl Touched {
             DEGENERATE => Touch::Degenerate,
             BACK_FACING => Touch::BackFacing,
             UNTOUCHED => Touch::Untouched,
-            one if one < SEVERAL => Touch::Regions(RegionMask::only(RegionId(one as u16))),
+            one if one < SEVERAL => Touch::Region(RegionId(one as u16)),
             several => Touch::Regions(self.several[(several - SEVERAL) as usize]),
         }
     }
@@ -76,7 +91,7 @@ impl Touched {
             Touch::Degenerate => DEGENERATE,
             Touch::BackFacing => BACK_FACING,
             Touch::Untouched => UNTOUCHED,
-            Touch::Regions(regions) if regions.len() == 1 => regions.bits().trailing_zeros(),
+            Touch::Region(region) => region.0.into(),
             Touch::Regions(regions) => {
                 self.several.push(regions);
                 SEVERAL + (self.several.len() - 1) as u32
@@ -114,7 +129,7 @@ impl Transform {
         let range = |[first, last]: &[Lanes<i32>; 2]| Range { first: first[lane], last: last[lane] };
         let (x, y) = (clockwise(&corners.x), clockwise(&corners.y));
         let regions = self.binner.test_edges(x, y, range(&found.x), range(&found.y));
-        if regions.is_empty() { Touch::Untouched } else { Touch::Regions(regions) }
+        Touch::of(regions)
     }
 }
 

@@ -320,8 +320,7 @@ impl Transform {
         if !whole.swapped && self.culls_back_faces() {
             return Touch::BackFacing;
         }
-        let regions = self.binner.triangle(&whole.outline);
-        if regions.is_empty() { Touch::Untouched } else { Touch::Regions(regions) }
+        Touch::of(self.binner.triangle(&whole.outline))
     }
 
     /// Clips a triangle and hands out the fan of what is left.

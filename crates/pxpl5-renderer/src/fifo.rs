@@ -38,6 +38,32 @@ struct Command {
     complete: Time,
 }
 
+/// When commands started, as far as arrivals still need it: with each, the number of the first word that found room then.
+#[derive(Debug, Default)]
+struct Departures {
+    all: Vec<(u64, Time)>,
+    /// Those before are forgotten.
+    first: usize,
+}
+
+impl Departures {
+    fn push(&mut self, made_room_for: u64, left_at: Time) {
+        if self.first > self.all.len() / 2 {
+            self.all.drain(..self.first);
+            self.first = 0;
+        }
+        self.all.push((made_room_for, left_at));
+    }
+
+    /// From the one on that made room for a word, which is not less than the last one asked for.
+    fn from(&mut self, word: u64) -> &[(u64, Time)] {
+        while self.all.get(self.first + 1).is_some_and(|next| next.0 <= word) {
+            self.first += 1;
+        }
+        &self.all[self.first..]
+    }
+}
+
 /// FIFO and controller.
 #[derive(Debug)]
 pub(crate) struct InputFifo {
@@ -48,8 +74,7 @@ pub(crate) struct InputFifo {
     transit_known: bool,
     last_word_at: Time,
     words_in: u64,
-    /// First word and start of each started command, as far as arrivals still need them.
-    left: VecDeque<(u64, Time)>,
+    left: Departures,
     words_left: u64,
     waiting: VecDeque<Command>,
     /// When the controller is free; `None` while a blocking command runs.
@@ -68,7 +93,7 @@ impl InputFifo {
             transit_known: true,
             last_word_at: Time::ZERO,
             words_in: 0,
-            left: VecDeque::new(),
+            left: Departures::default(),
             words_left: 0,
             waiting: VecDeque::new(),
             free_at: Some(Time::ZERO),
@@ -145,12 +170,11 @@ impl InputFifo {
         if last - self.depth >= self.words_left {
             return None;
         }
-        while self.left.get(1).is_some_and(|next| next.0 + self.depth <= first) {
-            self.left.pop_front();
-        }
-        for (start_word, left_at) in self.left.iter().take_while(|left| left.0 + self.depth <= last) {
-            let first_held = (start_word + self.depth).max(first);
-            complete = complete.max(*left_at + self.word * (last - first_held + 1));
+        for (made_room_for, left_at) in self.left.from(first) {
+            if *made_room_for > last {
+                break;
+            }
+            complete = complete.max(*left_at + self.word * (last - (*made_room_for).max(first) + 1));
         }
         Some(complete)
     }
@@ -181,7 +205,7 @@ impl InputFifo {
     /// Starts a command when it is complete and the controller is free; gives the time if it blocks.
     fn start(&mut self, command: Command, free_at: Time) -> Option<Time> {
         let start = free_at.max(command.complete);
-        self.left.push_back((self.words_left, start));
+        self.left.push(self.words_left + self.depth, start);
         self.words_left += u64::from(command.words);
         if let Some(changes) = &mut self.changes {
             changes.push((start, -i64::from(command.words)));
