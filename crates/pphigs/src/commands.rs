@@ -231,8 +231,7 @@ impl RegionWords {
         out: &mut Vec<Word>,
     ) {
         let (list, picture, mut stats) = (self.pass.share().list(), self.pass.picture(), SetupStats::default());
-        let command =
-            |t: Option<GouraudTriangle>| t.map_or(NOWHERE, |t| Triangle { edges: t.edges, depth: t.z, colour: t.rgb });
+        let command = |t: GouraudTriangle| Triangle { edges: t.edges, depth: t.z, colour: t.rgb };
         let vertices = place.vertices(list, transform);
         let surfaces = vertices.colours(list, transform, &place.light);
         let mut batches = Batches { entries, vertices, list, surfaces, together: Together::default() };
@@ -245,7 +244,8 @@ impl RegionWords {
                 Batch::Piece(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.gouraud(&triangle, &place.light, &mut stats, sink));
-                    encoder.encode(&command(piece.map(|piece| piece.gouraud(&picture.viewport, &mut stats))), out);
+                    let piece = piece.map(|piece| piece.gouraud(&picture.viewport, &mut stats));
+                    encoder.encode(&piece.map_or(NOWHERE, command), out);
                 }
             }
         }
@@ -260,13 +260,11 @@ impl RegionWords {
         out: &mut Vec<Word>,
     ) {
         let (list, picture, mut stats) = (self.pass.share().list(), self.pass.picture(), SetupStats::default());
-        let command = |t: Option<geometry::PhongTriangle>| {
-            t.map_or(PHONG_NOWHERE, |t| PhongTriangle {
-                edges: t.edges,
-                depth: t.z,
-                normal: t.normal,
-                colour: rgb(t.colour),
-            })
+        let command = |t: geometry::PhongTriangle| PhongTriangle {
+            edges: t.edges,
+            depth: t.z,
+            normal: t.normal,
+            colour: rgb(t.colour),
         };
         let vertices = place.vertices(list, transform);
         let surfaces = vertices.normals(list, transform);
@@ -283,7 +281,8 @@ impl RegionWords {
                 Batch::Piece(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.phong(&triangle, &mut stats, sink));
-                    encoder.encode(&command(piece.map(|piece| piece.phong(&picture.viewport, &mut stats))), out);
+                    let piece = piece.map(|piece| piece.phong(&picture.viewport, &mut stats));
+                    encoder.encode(&piece.map_or(PHONG_NOWHERE, command), out);
                 }
             }
         }

@@ -2,6 +2,8 @@
 //!
 //! Every lane computes what [`crate::ScreenTriangle`] and [`crate::plane`] compute for one triangle, bit for bit. Integers
 //! that need more than 32 bits (products of two differences of corners, below 2^34) are held as doubles, which are exact.
+//! The loops are plain Rust, compiled once for each vector unit (see [`multiversion`]); there is nothing in which the units
+//! could differ.
 
 use crate::plane::{self, MAX_SLOPE};
 use crate::screen::{self, SUBPIXELS};
@@ -46,12 +48,6 @@ impl Together {
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len == 0
-    }
-
-    /// Whether no other finds a place.
-    #[must_use]
-    pub const fn is_full(&self) -> bool {
-        self.len == TOGETHER
     }
 
     /// Forgets all.
@@ -105,12 +101,22 @@ impl Linears {
     const fn get(&self, lane: usize) -> Linear {
         Linear { a: self.a[lane], b: self.b[lane], c: self.c[lane] }
     }
+
+    /// A constant where `there` is not all ones, but zero.
+    #[inline(always)]
+    fn or(mut self, constant: i32, there: &Lanes<i32>) -> Self {
+        for i in 0..TOGETHER {
+            self.a[i] &= there[i];
+            self.b[i] &= there[i];
+            self.c[i] = self.c[i] & there[i] | constant & !there[i];
+        }
+        self
+    }
 }
 
 /// The expressions of some triangles.
 #[derive(Clone, Debug)]
 struct Expressions {
-    has_area: Lanes<bool>,
     edges: [Linears; 3],
     /// Depth, then the components.
     planes: [Linears; 4],
@@ -122,46 +128,45 @@ struct Expressions {
 type Parts = ([Linear; 3], Linear, [Linear; 3]);
 
 impl Expressions {
-    /// `None` without area.
     #[inline(always)]
-    fn get(&self, lane: usize) -> Option<Parts> {
+    const fn get(&self, lane: usize) -> Parts {
         let ([e, f, g], [z, p, q, r]) = (&self.edges, &self.planes);
         let edges = [e.get(lane), f.get(lane), g.get(lane)];
-        self.has_area[lane].then(|| (edges, z.get(lane), [p.get(lane), q.get(lane), r.get(lane)]))
+        (edges, z.get(lane), [p.get(lane), q.get(lane), r.get(lane)])
     }
 }
 
-/// The expressions of some Gouraud triangles.
+/// The expressions of some Gouraud triangles. The edges of one without area exclude every pixel.
 #[derive(Clone, Debug)]
 pub struct GouraudTogether(Expressions);
 
 impl GouraudTogether {
-    /// Those of triangle `i`; `None` without area.
+    /// Those of triangle `i`.
     ///
     /// # Panics
     /// If `i` is not below [`TOGETHER`].
     #[inline(always)]
     #[must_use]
-    pub fn get(&self, i: usize) -> Option<GouraudTriangle> {
-        let (edges, z, rgb) = self.0.get(i)?;
-        Some(GouraudTriangle { edges, z, rgb })
+    pub const fn get(&self, i: usize) -> GouraudTriangle {
+        let (edges, z, rgb) = self.0.get(i);
+        GouraudTriangle { edges, z, rgb }
     }
 }
 
-/// The expressions of some Phong triangles.
+/// The expressions of some Phong triangles. The edges of one without area exclude every pixel.
 #[derive(Clone, Debug)]
 pub struct PhongTogether(Expressions);
 
 impl PhongTogether {
-    /// Those of triangle `i` with the colour of its first corner; `None` without area.
+    /// Those of triangle `i` with the colour of its first corner.
     ///
     /// # Panics
     /// If `i` is not below [`TOGETHER`].
     #[inline(always)]
     #[must_use]
-    pub fn get(&self, i: usize, colour: [u8; 3]) -> Option<PhongTriangle> {
-        let (edges, z, normal) = self.0.get(i)?;
-        Some(PhongTriangle { edges, z, normal, colour })
+    pub const fn get(&self, i: usize, colour: [u8; 3]) -> PhongTriangle {
+        let (edges, z, normal) = self.0.get(i);
+        PhongTriangle { edges, z, normal, colour }
     }
 }
 
@@ -180,9 +185,7 @@ impl Transform {
 
     fn together(&self, triangles: &Together, half: f32, stats: &mut SetupStats) -> Expressions {
         let out = set_up(triangles, half, Rows::of(&self.viewport));
-        for i in 0..triangles.len {
-            stats.flattened_planes += if out.has_area[i] { u64::from(out.flattened[i]) } else { 0 };
-        }
+        stats.flattened_planes += out.flattened[..triangles.len].iter().map(|n| u64::from(*n)).sum::<u64>();
         out
     }
 }
@@ -223,25 +226,25 @@ impl Rows {
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn set_up(triangles: &Together, half: f32, rows: Rows) -> Expressions {
     let (planes, away, mut flattened) = (Planes::of(triangles, rows), away(&triangles.facing), [0; TOGETHER]);
+    let there = with_area(&planes.twice_area);
     let swapped = counterclockwise(&planes.twice_area);
     let (x, y) = (clockwise(&triangles.x, &swapped), clockwise(&triangles.y, &swapped));
     let edges = [
-        rows.restate(edge([&x[0], &x[1]], [&y[0], &y[1]])),
-        rows.restate(edge([&x[1], &x[2]], [&y[1], &y[2]])),
-        rows.restate(edge([&x[2], &x[0]], [&y[2], &y[0]])),
+        rows.restate(edge([&x[0], &x[1]], [&y[0], &y[1]])).or(-1, &there),
+        rows.restate(edge([&x[1], &x[2]], [&y[1], &y[2]])).or(-1, &there),
+        rows.restate(edge([&x[2], &x[0]], [&y[2], &y[0]])).or(-1, &there),
     ];
     let ([a, b, c], [p, q, r]) = (&triangles.z, &triangles.surface);
     let planes_through = [
-        rows.restate(planes.through(&[depths(a), depths(b), depths(c)], &mut flattened)),
-        rows.restate(planes.through(&component(p, &away, half), &mut flattened)),
-        rows.restate(planes.through(&component(q, &away, half), &mut flattened)),
-        rows.restate(planes.through(&component(r, &away, half), &mut flattened)),
+        rows.restate(planes.through(&[depths(a), depths(b), depths(c)], &mut flattened)).or(0, &there),
+        rows.restate(planes.through(&component(p, &away, half), &mut flattened)).or(0, &there),
+        rows.restate(planes.through(&component(q, &away, half), &mut flattened)).or(0, &there),
+        rows.restate(planes.through(&component(r, &away, half), &mut flattened)).or(0, &there),
     ];
-    let mut has_area = [false; TOGETHER];
-    for (has_area, twice_area) in has_area.iter_mut().zip(&planes.twice_area) {
-        *has_area = *twice_area != 0.0;
+    for i in 0..TOGETHER {
+        flattened[i] &= there[i] as u8;
     }
-    Expressions { has_area, edges, planes: planes_through, flattened }
+    Expressions { edges, planes: planes_through, flattened }
 }
 
 #[inline(always)]
@@ -275,6 +278,16 @@ fn values(corner: &Lanes<f32>, away: &Lanes<bool>, half: f32) -> Lanes<f64> {
     for i in 0..TOGETHER {
         let value = if away[i] { -corner[i] } else { corner[i] };
         out[i] = f64::from(value + half);
+    }
+    out
+}
+
+/// Which triangles have an area: all bits set there.
+#[inline(always)]
+fn with_area(twice_area: &Lanes<f64>) -> Lanes<i32> {
+    let mut out = [0; TOGETHER];
+    for i in 0..TOGETHER {
+        out[i] = -i32::from(twice_area[i] != 0.0);
     }
     out
 }
