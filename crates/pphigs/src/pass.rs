@@ -52,6 +52,9 @@ pub(crate) struct Entry {
     pub(crate) piece: Option<u8>,
 }
 
+/// Room that a bin begins with, once something is in it: small steps would be many in a large scene.
+const FIRST_ENTRIES: usize = 64;
+
 /// What touches one region, by rising numbers in the display list.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bin {
@@ -158,8 +161,11 @@ impl Pass {
     #[inline(always)]
     fn put_in(&mut self, region: RegionId, entry: Entry) {
         self.counts[usize::from(region.0)].triangles += 1;
-        if let Some(bin) = self.bins.get_mut(usize::from(region.0)) {
-            bin.triangles.push(entry);
+        if let Some(Bin { triangles, .. }) = self.bins.get_mut(usize::from(region.0)) {
+            if triangles.len() == triangles.capacity() {
+                triangles.reserve(triangles.len().max(FIRST_ENTRIES));
+            }
+            triangles.push(entry);
         }
     }
 

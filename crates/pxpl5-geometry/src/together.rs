@@ -105,10 +105,10 @@ impl Linears {
     /// A constant where `there` is not all ones, but zero.
     #[inline(always)]
     fn or(mut self, constant: i32, there: &Lanes<i32>) -> Self {
-        for i in 0..TOGETHER {
-            self.a[i] &= there[i];
-            self.b[i] &= there[i];
-            self.c[i] = self.c[i] & there[i] | constant & !there[i];
+        for (i, there) in there.iter().enumerate() {
+            self.a[i] &= there;
+            self.b[i] &= there;
+            self.c[i] = self.c[i] & there | constant & !there;
         }
         self
     }

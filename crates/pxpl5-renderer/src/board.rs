@@ -195,7 +195,7 @@ impl Renderer {
         }
         let (pool, done) = (Arc::clone(&self.pool), OnceLock::new());
         let kept = self.keeps_empty_regions && !drawn;
-        Arc::new(PixelJob { pool, lists, cleared, kept, width, height, done })
+        Arc::new(PixelJob { pool, lists, cleared, kept, target: order.target, done })
     }
 
     fn copy(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {

@@ -1,7 +1,7 @@
 //! Pixels of one region, computed when somebody looks.
 
 use crate::{Command, Lanes, Layout, PixelArray};
-use pxpl5_wire::{CommandWords, PixelSource, Word};
+use pxpl5_wire::{CommandWords, CopyTarget, PixelSource, Word};
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -79,8 +79,8 @@ pub(crate) struct PixelJob {
     pub(crate) cleared: bool,
     /// Whether the region has no primitives and may be kept.
     pub(crate) kept: bool,
-    pub(crate) width: u32,
-    pub(crate) height: u32,
+    /// Where the pixels go.
+    pub(crate) target: CopyTarget,
     pub(crate) done: OnceLock<Arc<[Word]>>,
 }
 
@@ -90,7 +90,7 @@ impl PixelJob {
             return self.draw();
         }
         let Some(words) = self.words_without_copies() else { return self.draw() };
-        let region = EmptyRegion { words, cleared: self.cleared, size: [self.width, self.height] };
+        let region = EmptyRegion { words, cleared: self.cleared, size: self.size() };
         self.pool.empty_region(region, || self.draw())
     }
 
@@ -108,18 +108,27 @@ impl PixelJob {
         Some(kept)
     }
 
+    /// Columns and rows.
+    fn size(&self) -> [u32; 2] {
+        let [_, _, width, height] = self.target.grid.rectangle(self.target.region);
+        [width, height]
+    }
+
     fn draw(&self) -> Arc<[Word]> {
         self.pool.with_desk(|Desk { array, words }| {
             if !self.cleared {
                 array.reset();
             }
+            let mut copied = None;
             for list in &self.lists {
                 words.clear();
                 list.append_words(words);
                 // A fault stops the list, as on the hardware; what was drawn before stays.
-                let _ = array.execute(words);
+                let outputs = array.execute(words).map_or_else(|_| Vec::new(), |executed| executed.outputs);
+                copied = outputs.into_iter().rfind(|output| output.target == self.target);
             }
-            array.read_colour(self.width, self.height)
+            let [width, height] = self.size();
+            copied.map_or_else(|| array.read_colour(width, height), |output| output.pixels)
         })
     }
 }
@@ -146,7 +155,7 @@ impl PixelSource for NoPixels {
 mod tests {
     use super::*;
     use crate::{Clear, CopyRegion, SelectRegion};
-    use pxpl5_wire::{CopyTarget, Lines, NodeId, RegionGrid, RegionId};
+    use pxpl5_wire::{Lines, NodeId, RegionGrid, RegionId};
 
     #[derive(Debug)]
     struct Given(Vec<Word>);
@@ -173,7 +182,7 @@ mod tests {
         commands.iter().for_each(|command| command.encode(&pool.layout, &mut words).expect("it fits"));
         let lists: Vec<Arc<dyn CommandWords>> = vec![Arc::new(Given(words))];
         let (pool, done) = (Arc::clone(pool), OnceLock::new());
-        PixelJob { pool, lists, cleared: true, kept: true, width: 128, height: 120, done }.pixels()
+        PixelJob { pool, lists, cleared: true, kept: true, target, done }.pixels()
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Shading by values, some pixels at a time: the program of [`crate::Shade`], instruction for instruction, since what it leaves in
+//! Shading by values, row by row: the program of [`crate::Shade`], instruction for instruction, since what it leaves in
 //! its temporaries counts as well.
 
 use super::columns::Values;
@@ -7,8 +7,7 @@ use crate::array::PIXELS;
 use crate::command::{SPECULAR_SQUARINGS, Shade};
 use crate::simd::{Kernel, Vector};
 
-/// Pixels that are shaded together, where one of them is covered.
-const WIDTH: usize = 32;
+const WIDTH: usize = 128;
 
 /// Columns in the order colour, a, b, c, root, diffuse, specular.
 const RESULTS: usize = 7;
