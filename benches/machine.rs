@@ -45,7 +45,7 @@ fn slats_110_cycle(criterion: &mut Criterion) {
 /// An element is a stereo pair that was shown; the three still on their way at the end are extra work, so it is a long run.
 fn rendering_control_head(criterion: &mut Criterion) {
     let head = scene::builtin("head").expect("built in");
-    let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), head).fields(480);
+    let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), head).fields(960);
     let pairs = run(&experiment, Pixels::Off).pictures().len() as u64;
     let mut group = criterion.benchmark_group("machine/rendering-control-head");
     group.throughput(Throughput::Elements(pairs));
