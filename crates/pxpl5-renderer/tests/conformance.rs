@@ -2,7 +2,9 @@
 
 use pxpl5_renderer::conformance::{self, Mismatch, Random};
 use pxpl5_renderer::isa::{Expression, ExpressionUse, Instruction, Operand};
-use pxpl5_renderer::{BitSerial, Clear, Command, CopyRegion, Lanes, Layout, PixelArray, SelectRegion, Vectors};
+use pxpl5_renderer::{
+    BitSerial, Clear, Command, CopyRegion, Lanes, Layout, PhongTriangle, PixelArray, SelectRegion, Triangle, Vectors,
+};
 use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, RegionGrid, RegionId};
 use std::time::{Duration, Instant};
 
@@ -58,6 +60,61 @@ fn what_is_skipped_changes_nothing_on_any_vector_unit() {
             check(conformance::instructions(&mut definition, &mut subject));
             check(conformance::commands(&layout, &mut definition, &mut subject));
         }
+    }
+}
+
+/// Triangles of the size that most of a scene have, where the array ends and where vectors begin. Rows and columns that
+/// a fast array adds or leaves out for the sake of its vectors show here.
+#[test]
+fn small_triangles_agree_where_the_array_ends_on_every_vector_unit() {
+    let mut random = Random::new(77);
+    for vectors in Vectors::available() {
+        for layout in [Layout::rendering_control_phong(), Layout::slats()] {
+            let mut definition = BitSerial::new(&layout);
+            let mut subject = Lanes::with_vectors(&layout, vectors);
+            conformance::scramble(&mut random, &mut definition, &mut subject);
+            for _ in 0..60 {
+                let triangles: Vec<_> = (0..20).map(|_| small_triangle(&mut random, &layout)).collect();
+                let mut words = Vec::new();
+                triangles.iter().for_each(|t| t.encode(&layout, &mut words).expect("the layout has what it needs"));
+                check(conformance::agree(&mut definition, &mut subject, &words, &triangles));
+            }
+        }
+    }
+}
+
+/// Its box is up to 20 pixels wide and 9 high and begins near a border or anywhere.
+fn small_triangle(random: &mut Random, layout: &Layout) -> Command {
+    let mut pick = |below: u64| random.below(below) as i32;
+    let (width, height) = (1 + pick(20), 1 + pick(9));
+    let mut place = |size: i32| match pick(4) {
+        0 => -pick(3),
+        1 => 128 - size + pick(3),
+        _ => pick(128),
+    };
+    let (left, top) = (place(width), place(height));
+    let mut corner = |i: i32| match i {
+        0 => [left, top + pick(height as u64 + 1)],
+        1 => [left + width, top + pick(height as u64 + 1)],
+        _ => [left + pick(width as u64 + 1), [top, top + height][pick(2) as usize]],
+    };
+    let [p, q, r] = [0, 1, 2].map(&mut corner);
+    // At least 0 on one side of the line from a to b.
+    let edge = |[ax, ay]: [i32; 2], [bx, by]: [i32; 2]| {
+        let (dx, dy) = (bx - ax, by - ay);
+        Linear { a: -dy, b: dx, c: dy * ax - dx * ay }
+    };
+    let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    let edges = if area < 0 { [edge(p, r), edge(r, q), edge(q, p)] } else { [edge(p, q), edge(q, r), edge(r, p)] };
+    let mut plane = |bits: u32| {
+        let mut part = |bits: u32| (random.next() as i32) >> (32 - bits);
+        Linear { a: part(bits - 8), b: part(bits - 8), c: part(bits) }
+    };
+    let (depth, components) = (plane(31), [plane(22), plane(22), plane(22)]);
+    if layout.normal(0).is_some() {
+        Command::PhongTriangle(PhongTriangle { edges, depth, normal: components, colour: 0x12_3456 })
+    } else {
+        Command::Triangle(Triangle { edges, depth, colour: components })
     }
 }
 
