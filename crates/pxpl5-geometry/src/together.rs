@@ -15,7 +15,8 @@ use pxpl5_wire::{Linear, format};
 /// Triangles that are set up together: the doubles in a vector of the widest unit.
 pub const TOGETHER: usize = 8;
 
-type Lanes<T> = [T; TOGETHER];
+/// One of each triangle.
+pub(crate) type Lanes<T> = [T; TOGETHER];
 
 /// Up to [`TOGETHER`] triangles that need no clipping, with what their surfaces need.
 #[derive(Clone, Debug)]

@@ -1,6 +1,7 @@
 //! The regions that the triangles of a mesh touch, found once for all who hold some of them.
 
 use crate::bin::{Binner, Range, quotient};
+use crate::together::{Lanes, TOGETHER};
 use crate::{RegionMask, SeenVertex, SetupStats, Transform};
 use multiversion::multiversion;
 use pxpl5_wire::RegionId;
@@ -133,11 +134,6 @@ impl Transform {
     }
 }
 
-/// Triangles that are looked at together: a vector of the widest unit holds the areas of as many.
-const TOGETHER: usize = 8;
-
-type Lanes<T> = [T; TOGETHER];
-
 /// Corners of some triangles.
 #[derive(Debug, Default)]
 struct Corners {
@@ -183,9 +179,16 @@ struct Found {
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn find(corners: &Corners, binner: &Binner, culling: bool) -> Found {
     let (x, y) = (extent(&corners.x), extent(&corners.y));
-    let columns = binner.columns(&x);
-    let rows = binner.rows(&y);
-    let (in_column, in_row) = (binner.in_column(&x, &columns[0]), binner.in_row(&y, &rows[0]));
+    let columns = ranges(&x, |range| range.within(binner.width));
+    let rows = ranges(&y, |range| binner.rows_of_lines(range).within(binner.height));
+    let in_column = cells(&x, &columns[0], |pixel| {
+        let column = quotient(pixel, binner.column_reciprocal);
+        (column, binner.column_box(column))
+    });
+    let in_row = cells(&y, &rows[0], |pixel| {
+        let row = quotient(pixel, binner.row_reciprocal);
+        (row, binner.row_box(row))
+    });
     let areas = areas(corners);
     let mut codes = [0; TOGETHER];
     for i in 0..TOGETHER {
@@ -221,49 +224,25 @@ fn extent([p, q, r]: &[Lanes<i32>; 3]) -> [Lanes<i32>; 2] {
     [low, high]
 }
 
-/// The rules of [`crate::bin`], on some triangles at once.
-impl Binner {
-    /// First and last column of pixels, as [`Range::of_centres`].
-    #[inline(always)]
-    fn columns(&self, [low, high]: &[Lanes<i32>; 2]) -> [Lanes<i32>; 2] {
-        let (mut first, mut last) = ([0; TOGETHER], [0; TOGETHER]);
-        for i in 0..TOGETHER {
-            let range = Range::of_centres(low[i], high[i]).within(self.width);
-            (first[i], last[i]) = (range.first, range.last);
-        }
-        [first, last]
+/// First and last pixel between the smallest and the largest of the corners, as far as the picture goes.
+#[inline(always)]
+fn ranges([low, high]: &[Lanes<i32>; 2], within: impl Fn(Range) -> Range) -> [Lanes<i32>; 2] {
+    let (mut first, mut last) = ([0; TOGETHER], [0; TOGETHER]);
+    for i in 0..TOGETHER {
+        let range = within(Range::of_centres(low[i], high[i]));
+        (first[i], last[i]) = (range.first, range.last);
     }
+    [first, last]
+}
 
-    #[inline(always)]
-    fn rows(&self, [low, high]: &[Lanes<i32>; 2]) -> [Lanes<i32>; 2] {
-        let (mut first, mut last) = ([0; TOGETHER], [0; TOGETHER]);
-        for i in 0..TOGETHER {
-            let range = self.rows_of_lines(Range::of_centres(low[i], high[i])).within(self.height);
-            (first[i], last[i]) = (range.first, range.last);
-        }
-        [first, last]
+/// The column or row of regions whose pixel-centre box holds all corners, -1 where none does; `of` gives that of a pixel
+/// and its first and last pixel or line.
+#[inline(always)]
+fn cells([low, high]: &[Lanes<i32>; 2], first: &Lanes<i32>, of: impl Fn(i32) -> (i32, (i32, i32))) -> Lanes<i32> {
+    let mut out = [0; TOGETHER];
+    for i in 0..TOGETHER {
+        let (cell, (begin, end)) = of(first[i]);
+        out[i] = if (low[i] >= begin * 16 + 8) & (high[i] <= end * 16 + 8) { cell } else { -1 };
     }
-
-    /// The column of regions that holds all, whose first column of pixels is given; -1 where none does.
-    #[inline(always)]
-    fn in_column(&self, [low, high]: &[Lanes<i32>; 2], first: &Lanes<i32>) -> Lanes<i32> {
-        let mut out = [0; TOGETHER];
-        for i in 0..TOGETHER {
-            let column = quotient(first[i], self.column_reciprocal);
-            let (left, right) = self.column_box(column);
-            out[i] = if (low[i] >= left * 16 + 8) & (high[i] <= right * 16 + 8) { column } else { -1 };
-        }
-        out
-    }
-
-    #[inline(always)]
-    fn in_row(&self, [low, high]: &[Lanes<i32>; 2], first: &Lanes<i32>) -> Lanes<i32> {
-        let mut out = [0; TOGETHER];
-        for i in 0..TOGETHER {
-            let row = quotient(first[i], self.row_reciprocal);
-            let (top, bottom) = self.row_box(row);
-            out[i] = if (low[i] >= top * 16 + 8) & (high[i] <= bottom * 16 + 8) { row } else { -1 };
-        }
-        out
-    }
+    out
 }
