@@ -113,7 +113,7 @@ fn shared_vertices_give_what_their_triangles_give() {
             for (n, triangle) in case.triangles.iter().enumerate() {
                 let tilted = Vec3::new(0.3, 0.4, if n % 2 == 0 { 0.8 } else { -0.8 });
                 let triangle = Triangle { normals: [tilted, Vec3::X, Vec3::NEG_Z], ..*triangle };
-                whole += u32::from(agrees_with_its_shared_vertices(&transform, &triangle, n % TOGETHER, &case.name));
+                whole += u32::from(agrees_with_its_shared_vertices(&transform, &triangle, n % TOGETHER, case.name));
             }
         }
         assert!(whole > 500, "{whole}");
