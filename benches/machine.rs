@@ -9,11 +9,12 @@ use pxpl5::levels::Level;
 use pxpl5::{Experiment, Machine, MachineConfig, Outcome, Pipeline, Pixels, RenderingControl, Slats, scene};
 use std::hint::black_box;
 
-const PIXELS: [(&str, Pixels); 2] = [("no pixels", Pixels::Off), ("all pixels", Pixels::All)];
+/// With threads that compute pixels beside the one that simulates.
+const PIXELS: [(&str, Pixels, usize); 3] =
+    [("no pixels", Pixels::Off, 0), ("all pixels", Pixels::All, 0), ("all pixels, a second thread", Pixels::All, 1)];
 
-/// One thread simulates and, for pixels, one more computes them.
-fn run(experiment: &Experiment, pixels: Pixels) -> Outcome {
-    experiment.clone().pixels(pixels).threads(1).run().expect("the preset runs")
+fn run(experiment: &Experiment, pixels: Pixels, threads: usize) -> Outcome {
+    experiment.clone().pixels(pixels).threads(threads).run().expect("the preset runs")
 }
 
 /// An element is a field.
@@ -23,8 +24,8 @@ fn slats_140(criterion: &mut Criterion) {
     let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), aircraft).fields(FIELDS);
     let mut group = criterion.benchmark_group("machine/slats-140");
     group.throughput(Throughput::Elements(FIELDS));
-    for (name, pixels) in PIXELS {
-        group.bench_function(BenchmarkId::from_parameter(name), |b| b.iter(|| run(&experiment, pixels)));
+    for (name, pixels, threads) in PIXELS {
+        group.bench_function(BenchmarkId::from_parameter(name), |b| b.iter(|| run(&experiment, pixels, threads)));
     }
     group.finish();
 }
@@ -38,7 +39,7 @@ fn slats_110_cycle(criterion: &mut Criterion) {
     let experiment = Experiment::new(machine, Slats::split(), aircraft).fields(FIELDS).level(Level::Cycle);
     let mut group = criterion.benchmark_group("machine/slats-110");
     group.throughput(Throughput::Elements(FIELDS));
-    group.bench_function("cycle level, no pixels", |b| b.iter(|| run(&experiment, Pixels::Off)));
+    group.bench_function("cycle level, no pixels", |b| b.iter(|| run(&experiment, Pixels::Off, 0)));
     group.finish();
 }
 
@@ -46,11 +47,11 @@ fn slats_110_cycle(criterion: &mut Criterion) {
 fn rendering_control_head(criterion: &mut Criterion) {
     let head = scene::builtin("head").expect("built in");
     let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), head).fields(960);
-    let pairs = run(&experiment, Pixels::Off).pictures().len() as u64;
+    let pairs = run(&experiment, Pixels::Off, 0).pictures().len() as u64;
     let mut group = criterion.benchmark_group("machine/rendering-control-head");
     group.throughput(Throughput::Elements(pairs));
-    for (name, pixels) in PIXELS {
-        group.bench_function(BenchmarkId::from_parameter(name), |b| b.iter(|| run(&experiment, pixels)));
+    for (name, pixels, threads) in PIXELS {
+        group.bench_function(BenchmarkId::from_parameter(name), |b| b.iter(|| run(&experiment, pixels, threads)));
     }
     group.finish();
 }

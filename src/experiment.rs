@@ -168,7 +168,7 @@ impl Experiment {
         self
     }
 
-    /// Worker threads for [`Pixels::All`].
+    /// Worker threads for [`Pixels::All`], one for each core unless said; 0: the thread that simulates computes the pixels.
     #[must_use]
     pub const fn threads(mut self, threads: usize) -> Self {
         self.threads = threads;

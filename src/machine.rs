@@ -194,7 +194,7 @@ impl Machine {
         self.queue.shuffle_ties(seed);
     }
 
-    /// Computes the pixels of every copied region on worker threads.
+    /// Computes the pixels of every copied region on as many worker threads; 0: on the thread that simulates.
     pub fn compute_all_pixels(&mut self, threads: usize) {
         self.workers = Some(PixelWorkers::new(threads));
     }
@@ -451,7 +451,7 @@ impl Machine {
             let event = match output {
                 RendererOutput::Accept { last_word_at } => RingEvent::Accept { destination, last_word_at },
                 RendererOutput::Send { message, ticket, hold } => {
-                    if let (Some(workers), Body::Pixels(pixels)) = (&self.workers, &message.body) {
+                    if let (Some(workers), Body::Pixels(pixels)) = (&mut self.workers, &message.body) {
                         workers.compute(pixels);
                     }
                     RingEvent::Request(Request { message, ticket: ticket.then_some(0), hold, order })

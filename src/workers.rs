@@ -8,11 +8,13 @@ use std::thread::JoinHandle;
 /// Regions that may wait for a worker; more would only hold memory.
 const WAITING_REGIONS: usize = 256;
 
-/// A pool of threads.
+/// A pool of threads, or none: then pixels are computed at once by who asks.
 #[derive(Debug)]
 pub(crate) struct PixelWorkers {
     regions: Sender<Arc<dyn PixelSource>>,
     threads: Vec<JoinHandle<u64>>,
+    /// Regions computed without a thread.
+    computed_here: u64,
 }
 
 impl PixelWorkers {
@@ -27,12 +29,18 @@ impl PixelWorkers {
                 })
             })
         };
-        Self { regions, threads: (0..threads.max(1)).map(worker).collect() }
+        Self { regions, threads: (0..threads).map(worker).collect(), computed_here: 0 }
     }
 
     /// Computes a region whose first part is on its way.
-    pub(crate) fn compute(&self, pixels: &RegionPixels) {
-        if pixels.part == 0 {
+    pub(crate) fn compute(&mut self, pixels: &RegionPixels) {
+        if pixels.part != 0 {
+            return;
+        }
+        if self.threads.is_empty() {
+            let _ = pixels.image.pixels();
+            self.computed_here += 1;
+        } else {
             // The workers live as long as this sender, so there is always a receiver.
             let _ = self.regions.send(Arc::clone(&pixels.image));
         }
@@ -45,6 +53,7 @@ impl PixelWorkers {
     /// When a worker panicked: a bug of ours.
     pub(crate) fn finish(self) -> u64 {
         drop(self.regions);
-        self.threads.into_iter().map(|thread| thread.join().expect("a pixel worker panicked")).sum()
+        let join = |thread: JoinHandle<u64>| thread.join().expect("a pixel worker panicked");
+        self.computed_here + self.threads.into_iter().map(join).sum::<u64>()
     }
 }

@@ -42,7 +42,7 @@ fn pixels_and_threads_change_no_time_and_threads_no_pixel() {
         let off = hash(&experiment.clone().pixels(Pixels::Off));
         let lazy = experiment.clone().pixels(Pixels::Lazy).run().expect("it runs");
         assert_eq!(lazy.report().trace_hash, off);
-        for threads in [1, 2] {
+        for threads in [0, 1, 2] {
             let all = experiment.clone().pixels(Pixels::All).threads(threads).run().expect("it runs");
             assert_eq!(all.report().trace_hash, off);
             for eye in pxpl5::Eye::BOTH {

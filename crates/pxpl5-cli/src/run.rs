@@ -27,8 +27,8 @@ use std::path::PathBuf;
 pub(crate) struct RunArgs {
     #[command(flatten)]
     settings: SettingArgs,
-    /// Worker threads for --pixels all; default: one a core.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
+    /// Worker threads for --pixels all; default: one a core; 0: the thread that simulates computes the pixels.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=1024))]
     threads: Option<u64>,
     /// Do without a saving, to see what it is worth: idle-boards, transfers, empty-regions or repeated-code; may be
     /// repeated.
