@@ -97,7 +97,7 @@ fn pixels_threads_and_repetition_leave_the_trace_alone() {
     let hash = |more: &[&str]| json(&folder.run(&with(&with(&RC, &["--json"]), more)))["trace_hash"].clone();
     let expected = hash(&[]);
     for more in
-        [&["--pixels", "off"][..], &["--pixels", "all", "--threads", "1"], &["--pixels", "all", "--threads", "2"]]
+        [&["--pixels", "off"][..], &["--pixels", "all", "--threads", "0"], &["--pixels", "all", "--threads", "2"]]
     {
         assert_eq!(hash(more), expected, "{more:?}");
     }
@@ -168,7 +168,8 @@ fn impossible_numbers_are_refused() {
     refused(&["run", "--pipeline", "slats", "--scene", "mig", "--fields", "1"], 1, &["simulate more fields"]);
     refused(&with(&SLATS, &["--triangles", "0"]), 2, &["--triangles", "from 1 to"]);
     refused(&with(&SLATS, &["--triangles", "11"]), 2, &["expected 1 to 10 triangles", "found 11"]);
-    refused(&with(&SLATS, &["--threads", "0"]), 2, &["--threads"]);
+    refused(&with(&SLATS, &["--threads", "1025"]), 2, &["--threads", "1025"]);
+    refused(&with(&SLATS, &["--threads", "-1"]), 2, &["--threads"]);
     refused(&["run", "--pipeline", "slats", "--scene", "full-screen:0"], 2, &["from 1 to 1000000"]);
 }
 
