@@ -28,7 +28,7 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     settings: SettingArgs,
     /// Worker threads for --pixels all; default: one a core; 0: the thread that simulates computes the pixels.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=1024))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=1024))]
     threads: Option<u64>,
     /// Do without a saving, to see what it is worth: idle-boards, transfers, empty-regions or repeated-code; may be
     /// repeated.
