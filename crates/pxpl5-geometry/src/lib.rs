@@ -37,7 +37,8 @@
 //! | sphere | silhouette below 2^47 in its regions, root of 12 bits | tests/input.rs |
 //!
 //! docs/numerics.md compares all of this with exact geometry on hard cases. All results are the same on every host:
-//! only additions, multiplications, divisions and square roots, in a fixed order, and no vector types.
+//! only additions, multiplications, divisions and square roots, in a fixed order, and no vector types; loops over several
+//! triangles are compiled for each vector unit and give the same bits.
 //!
 //! # Example
 //!

@@ -1,7 +1,7 @@
 //! Vertices that many triangles share, each transformed once.
 //!
-//! Triangles that need no clipping are [binned](Transform::touched) and set up [together](crate::Together) from them, exactly as by
-//! [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`]. The others are left to those.
+//! Triangles that need no clipping are [binned](Transform::touched) and set up [together](crate::Together) from them,
+//! exactly as by [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`]. The others are left to those.
 
 use crate::light::{self, Lighting};
 use crate::screen;

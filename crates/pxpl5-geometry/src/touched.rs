@@ -9,7 +9,7 @@ use pxpl5_wire::RegionId;
 /// What binning finds of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
-    /// Nothing before it is clipped: see [`Transform::bin`].
+    /// Not known before it is clipped, which [`Transform::bin`] does.
     NeedsClipping,
     /// No area.
     Degenerate,
@@ -129,8 +129,7 @@ impl Transform {
         let clockwise = |v: &[Lanes<i32>; 3]| [v[p][lane], v[q][lane], v[r][lane]];
         let range = |[first, last]: &[Lanes<i32>; 2]| Range { first: first[lane], last: last[lane] };
         let (x, y) = (clockwise(&corners.x), clockwise(&corners.y));
-        let regions = self.binner.test_edges(x, y, range(&found.x), range(&found.y));
-        Touch::of(regions)
+        Touch::of(self.binner.test_edges(x, y, range(&found.x), range(&found.y)))
     }
 }
 

@@ -84,12 +84,8 @@ impl BitSerial {
     }
 
     fn step(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> Result<usize, Fault> {
-        let (instruction, used) = Instruction::decode(words, position)
-            .map_err(|error| Fault { position, kind: FaultKind::Illegal(error.kind) })?;
-        self.controller
-            .check(&instruction)
-            .and_then(|()| self.instruction(&instruction, executed))
-            .map_err(|kind| Fault { position, kind })?;
+        let (instruction, used) = self.controller.fetch(words, position)?;
+        self.instruction(&instruction, executed).map_err(|kind| Fault { position, kind })?;
         executed.instructions += 1;
         executed.clocks += u64::from(SET_UP_CLOCKS) + std::mem::take(&mut self.clock);
         Ok(used)

@@ -1,8 +1,8 @@
 //! The controller in front of the array: selected region, held coefficients, checks of operands.
 
-use crate::array::FaultKind;
+use crate::array::{Fault, FaultKind};
 use crate::isa::{ArithmeticOp, Expression, ExpressionUse, Instruction, MEMORY_BITS, Operand, QUADRATIC_BITS};
-use pxpl5_wire::{Linear, Quadratic};
+use pxpl5_wire::{Linear, Quadratic, Word};
 
 /// A field of pixel memory whose address is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +42,14 @@ pub(crate) enum Local {
 impl Controller {
     pub(crate) fn select(&mut self, base: u8, left: u16, top: u16) {
         (self.base, self.left, self.top) = (base, left, top);
+    }
+
+    /// The instruction at a word, with operands that it allows, and how many words it has.
+    pub(crate) fn fetch(&self, words: &[Word], position: usize) -> Result<(Instruction, usize), Fault> {
+        let (instruction, used) = Instruction::decode(words, position)
+            .map_err(|error| Fault { position, kind: FaultKind::Illegal(error.kind) })?;
+        self.check(&instruction).map_err(|kind| Fault { position, kind })?;
+        Ok((instruction, used))
     }
 
     /// Takes the coefficients over, or repeats those held, and applies the region's origin.

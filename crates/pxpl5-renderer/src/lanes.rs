@@ -13,9 +13,9 @@ mod triangle;
 mod values;
 mod whole;
 
-use crate::array::{Executed, Fault, FaultKind, PIXELS, PixelArray, Plane};
+use crate::array::{Executed, Fault, PIXELS, PixelArray, Plane};
 use crate::controller::{Bits, Controller};
-use crate::isa::{BACKING_BLOCKS, Instruction, opcode};
+use crate::isa::{BACKING_BLOCKS, opcode};
 use crate::layout::Layout;
 use crate::simd::{Present, Vectors};
 use columns::Columns;
@@ -82,12 +82,8 @@ impl Lanes {
         {
             return Ok(used);
         }
-        let (instruction, used) = Instruction::decode(words, position)
-            .map_err(|error| Fault { position, kind: FaultKind::Illegal(error.kind) })?;
-        self.controller
-            .check(&instruction)
-            .and_then(|()| self.instruction(&instruction, executed))
-            .map_err(|kind| Fault { position, kind })?;
+        let (instruction, used) = self.controller.fetch(words, position)?;
+        self.instruction(&instruction, executed).map_err(|kind| Fault { position, kind })?;
         executed.instructions += 1;
         executed.clocks += u64::from(instruction.clocks());
         Ok(used)

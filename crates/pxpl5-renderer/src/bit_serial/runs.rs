@@ -79,7 +79,7 @@ impl BitSerial {
         if !matches!((head >> 24) as u8, opcode::LINEAR..opcode::QUADRATIC | opcode::LOAD_CONSTANT) {
             return false;
         }
-        let Ok((instruction, used)) = Instruction::decode(words, position) else { return false };
+        let Ok((instruction, used)) = self.controller.fetch(words, position) else { return false };
         let Some(step) = self.step_of(run, &instruction) else { return false };
         run.steps.push(step);
         run.words += used;
@@ -87,7 +87,6 @@ impl BitSerial {
     }
 
     fn step_of(&mut self, run: &mut Run, instruction: &Instruction) -> Option<Step> {
-        self.controller.check(instruction).ok()?;
         match *instruction {
             Instruction::Evaluate { expression, usage } => {
                 let delivery = self.delivery(&usage, LINEAR_BITS).ok()?;
