@@ -53,6 +53,7 @@
 mod board;
 mod buffer;
 mod config;
+mod ntsc;
 mod picture;
 mod port;
 mod region;
@@ -64,6 +65,7 @@ mod video;
 pub use board::FrameBuffer;
 pub use config::{ConfigError, FrameBufferConfig};
 pub use image::RgbImage;
+pub use ntsc::{NtscDisplay, seen_at};
 pub use picture::{PictureError, write_png};
 pub use port::{Faults, FrameBufferEvent, FrameBufferFault, FrameBufferOutput};
 pub use seen::{BufferContents, LateRegion, SeenField};

@@ -6,7 +6,7 @@ use crate::probe::{Edge, Mark, Stage};
 use crate::processor::{Processor, ProcessorFault};
 use crate::timing::GpTiming;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Body, Eye, Message, NodeId, RegionId};
+use pxpl5_wire::{Body, Message, NodeId, RegionId, SurfaceId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::fmt;
@@ -340,33 +340,33 @@ impl Gp {
     }
 
     /// Tells the observer that a stage begins.
-    pub fn begin(&self, stage: Stage, picture: u64, eye: Option<Eye>) {
-        self.mark(stage, picture, eye, Edge::Begin, self.now());
+    pub fn begin(&self, stage: Stage, picture: u64, surface: Option<SurfaceId>) {
+        self.mark(stage, picture, surface, Edge::Begin, self.now());
     }
 
     /// Tells the observer that a stage ends.
-    pub fn end(&self, stage: Stage, picture: u64, eye: Option<Eye>) {
-        self.mark(stage, picture, eye, Edge::End, self.now());
+    pub fn end(&self, stage: Stage, picture: u64, surface: Option<SurfaceId>) {
+        self.mark(stage, picture, surface, Edge::End, self.now());
     }
 
     /// Tells the observer that a stage ends when a batch is accepted; the program goes on.
     pub fn end_when_accepted(&self, ticket: Ticket, stage: Stage, picture: u64) {
         let shared = &mut *self.shared.borrow_mut();
         let (time, node) = (shared.now, shared.node);
-        shared.ends.push_back((ticket, Mark { time, node, picture, eye: None, stage, edge: Edge::End, view: None }));
+        shared.ends.push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: Edge::End, view: None }));
     }
 
     /// Tells the observer of a stage's edge at a time that the program has read off a message.
-    pub fn mark(&self, stage: Stage, picture: u64, eye: Option<Eye>, edge: Edge, time: Time) {
+    pub fn mark(&self, stage: Stage, picture: u64, surface: Option<SurfaceId>, edge: Edge, time: Time) {
         let shared = &mut *self.shared.borrow_mut();
         let node = shared.node;
-        shared.marks.push(Mark { time, node, picture, eye, stage, edge, view: None });
+        shared.marks.push(Mark { time, node, picture, surface, stage, edge, view: None });
     }
 
     /// Tells the observer that a stage begins on a picture that shows view number `view`.
     pub fn begin_view(&self, stage: Stage, picture: u64, view: u64) {
         let shared = &mut *self.shared.borrow_mut();
         let (time, node) = (shared.now, shared.node);
-        shared.marks.push(Mark { time, node, picture, eye: None, stage, edge: Edge::Begin, view: Some(view) });
+        shared.marks.push(Mark { time, node, picture, surface: None, stage, edge: Edge::Begin, view: Some(view) });
     }
 }

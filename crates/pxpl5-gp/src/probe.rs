@@ -1,7 +1,7 @@
 //! What firmware tells the observer; it costs nothing and changes nothing.
 
 use pxpl5_sim::Time;
-use pxpl5_wire::{Eye, NodeId};
+use pxpl5_wire::{NodeId, SurfaceId};
 use serde::{Deserialize, Serialize};
 
 /// A stage of a pipeline, in the papers' words.
@@ -43,8 +43,8 @@ pub struct Mark {
     pub node: NodeId,
     /// The picture's number: frame or field, from 0.
     pub picture: u64,
-    /// The eye, for stages that take one eye at a time.
-    pub eye: Option<Eye>,
+    /// The surface that it is drawn for, for stages that take one eye at a time.
+    pub surface: Option<SurfaceId>,
     /// The stage.
     pub stage: Stage,
     /// Begin or end.

@@ -27,7 +27,7 @@ pub use body::{
     CopyTarget, FieldParity, Lines, Message, PixelSource, RegionPixels, SWAP_REQUEST, read_swap_request, swap_request,
 };
 pub use expression::{Linear, Quadratic};
-pub use region::{Eye, RegionGrid, RegionId};
+pub use region::{Eye, RegionGrid, RegionId, SurfaceId};
 
 /// One word of the ring: 32 bits (TR94).
 pub type Word = u32;

@@ -21,6 +21,34 @@ impl Eye {
     pub const fn index(self) -> usize {
         self as usize
     }
+
+    /// `left` or `right`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+}
+
+/// A surface of a machine's displays: something that somebody looks at, counted over all displays in their order. With
+/// one NTSC display it is the eye's number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct SurfaceId(pub u16);
+
+impl SurfaceId {
+    /// The number as an index.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl From<Eye> for SurfaceId {
+    fn from(eye: Eye) -> Self {
+        Self(eye as u16)
+    }
 }
 
 /// A region's number: row by row from the top left.

@@ -2,7 +2,7 @@
 
 use pphigs::{Picture, Share};
 use pxpl5_geometry::Viewport;
-use pxpl5_wire::{CopyTarget, Eye, Lines, NodeId, RegionGrid, RegionId};
+use pxpl5_wire::{CopyTarget, Lines, NodeId, RegionGrid, RegionId, SurfaceId};
 
 /// The boards and the kind of picture.
 #[derive(Clone, Debug)]
@@ -38,8 +38,9 @@ impl Config {
         picture / self.eyes()
     }
 
-    pub(crate) fn eye_of(&self, picture: u64) -> Eye {
-        Eye::BOTH[(picture % self.eyes()) as usize]
+    /// The surface that a picture is drawn for: its eye's.
+    pub(crate) fn eye_of(&self, picture: u64) -> SurfaceId {
+        SurfaceId((picture % self.eyes()) as u16)
     }
 
     pub(crate) fn grid(&self) -> RegionGrid {

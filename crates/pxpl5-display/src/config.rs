@@ -1,0 +1,68 @@
+//! What a display is built of.
+
+use crate::Display;
+use parameters::ParameterTable;
+use pxpl5_wire::NodeId;
+use std::fmt::Debug;
+
+/// The numbers of a display, and how one is built of them.
+pub trait DisplayConfig: Debug + Send + Sync {
+    /// Name of its kind, as in `--display`.
+    fn name(&self) -> &'static str;
+
+    /// What it is and where it was published.
+    fn about(&self) -> &'static str;
+
+    /// Its tables of numbers, each with the first part of their paths, such as `video` in `video.frame_lines`.
+    fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)>;
+
+    /// The same tables, to change numbers in.
+    fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)>;
+
+    /// Ring ports that it has when a pipeline draws so many pictures at a time (1, or 2 for two eyes).
+    fn ports(&self, pictures: usize) -> usize;
+
+    /// Checks that it can be built.
+    ///
+    /// # Errors
+    ///
+    /// [`DisplayError`] names the number, what was expected and what was found.
+    fn check(&self) -> Result<(), DisplayError>;
+
+    /// Builds it at as many ports of the ring as [`DisplayConfig::ports`] said.
+    ///
+    /// # Errors
+    ///
+    /// As [`DisplayConfig::check`].
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError>;
+
+    /// A copy of the numbers.
+    fn boxed(&self) -> Box<dyn DisplayConfig>;
+
+    /// Has it remember so many past periods, where it remembers any; 2 unless said.
+    fn remember(&mut self, _periods: u64) {}
+
+    /// Whether two displays are of one kind and of the same numbers.
+    fn equals(&self, other: &dyn DisplayConfig) -> bool {
+        self.name() == other.name() && values(self.tables()) == values(other.tables())
+    }
+}
+
+impl Clone for Box<dyn DisplayConfig> {
+    fn clone(&self) -> Self {
+        self.boxed()
+    }
+}
+
+/// The values of all tables, in order.
+fn values(tables: Vec<(&'static str, &dyn ParameterTable)>) -> Vec<parameters::Value> {
+    tables.into_iter().flat_map(|(_, table)| table.values()).collect()
+}
+
+/// Why a display cannot be built.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct DisplayError(
+    /// What was expected and what was found, for people.
+    pub String,
+);

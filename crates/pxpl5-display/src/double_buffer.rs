@@ -1,0 +1,89 @@
+//! Two buffers of whole regions: what a display needs that swaps at its ticks.
+
+use image::{Rgb, RgbImage};
+use pxpl5_sim::Time;
+use pxpl5_wire::{Body, RegionId, RegionPixels, Word, read_swap_request};
+use std::collections::BTreeMap;
+
+/// A region as far as its messages have arrived.
+#[derive(Clone, Debug)]
+struct Arriving {
+    pixels: RegionPixels,
+    arrived: u32,
+    first_part_at: Time,
+}
+
+/// Two buffers for one surface, of which one is shown.
+///
+/// **Not modelled:** pixels that arrive while they are lit; whoever needs them keeps the times of all messages, as the
+/// NTSC frame buffer does.
+#[derive(Clone, Debug, Default)]
+pub struct DoubleBuffer {
+    buffers: [BTreeMap<RegionId, Arriving>; 2],
+    shown: u8,
+    requested: Option<u8>,
+}
+
+/// What a message was to a [`DoubleBuffer`].
+#[derive(Clone, Debug)]
+pub enum Received {
+    /// The last message of a region, the first of which arrived at this time.
+    Region(RegionPixels, Time),
+    /// Another message of a region, or a request to swap.
+    Part,
+    /// Nothing that it can use.
+    Fault,
+}
+
+impl DoubleBuffer {
+    /// Takes a message that arrives at `now`.
+    pub fn receive(&mut self, body: Body, now: Time) -> Received {
+        match body {
+            Body::Pixels(pixels) => self.receive_pixels(pixels, now),
+            Body::Words(words) => self.receive_request(&words),
+            Body::Commands(_) => Received::Fault,
+        }
+    }
+
+    fn receive_pixels(&mut self, pixels: RegionPixels, now: Time) -> Received {
+        let Some(buffer) = self.buffers.get_mut(usize::from(pixels.target.buffer)) else { return Received::Fault };
+        let fresh = Arriving { pixels, arrived: 0, first_part_at: now };
+        let region = buffer.entry(fresh.pixels.target.region).or_insert_with(|| fresh.clone());
+        if region.pixels.target != fresh.pixels.target || region.arrived == region.pixels.parts {
+            *region = fresh;
+        }
+        region.arrived += 1;
+        if region.arrived < region.pixels.parts {
+            return Received::Part;
+        }
+        Received::Region(region.pixels.clone(), region.first_part_at)
+    }
+
+    fn receive_request(&mut self, words: &[Word]) -> Received {
+        self.requested = read_swap_request(words).filter(|buffer| usize::from(*buffer) < self.buffers.len());
+        if self.requested.is_some() { Received::Part } else { Received::Fault }
+    }
+
+    /// Shows the buffer that was asked for last since the last tick, if one was; which.
+    pub fn swap(&mut self) -> Option<u8> {
+        let requested = self.requested.take();
+        self.shown = requested.unwrap_or(self.shown);
+        requested
+    }
+
+    /// The buffer that is shown, with every region of which a message has arrived; black elsewhere.
+    #[must_use]
+    pub fn picture(&self, width: u32, height: u32) -> RgbImage {
+        let mut picture = RgbImage::new(width, height);
+        for (id, region) in &self.buffers[usize::from(self.shown)] {
+            let [left, top, region_width, _] = region.pixels.target.grid.rectangle(*id);
+            for (i, word) in (0..).zip(region.pixels.image.pixels().iter()) {
+                let [_, red, green, blue] = word.to_be_bytes();
+                if let Some(pixel) = picture.get_pixel_mut_checked(left + i % region_width, top + i / region_width) {
+                    *pixel = Rgb([red, green, blue]);
+                }
+            }
+        }
+        picture
+    }
+}

@@ -1,0 +1,226 @@
+//! The NTSC display: one frame buffer for each eye, in lock-step.
+
+use crate::{ConfigError, FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput, SeenField, Video};
+use image::RgbImage;
+use parameters::ParameterTable;
+use pxpl5_display::{
+    Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
+};
+use pxpl5_sim::{Context, Time};
+use pxpl5_wire::{Body, Eye, FieldParity, NodeId, read_swap_request};
+use std::any::Any;
+
+/// Frame buffers that share a sync generator: one for a single picture, two for the eyes of a stereo pair.
+///
+/// Its clock ticks at every retrace, so its periods are fields; its surfaces are the eyes.
+#[derive(Debug)]
+pub struct NtscDisplay {
+    video: Video,
+    boards: Vec<FrameBuffer>,
+    nodes: Vec<NodeId>,
+    surfaces: Vec<Surface>,
+    context: Context<FrameBufferEvent, FrameBufferOutput>,
+}
+
+impl NtscDisplay {
+    /// Where the beams are.
+    #[must_use]
+    pub const fn video(&self) -> &Video {
+        &self.video
+    }
+
+    /// The frame buffers: left, right.
+    #[must_use]
+    pub fn boards(&self) -> &[FrameBuffer] {
+        &self.boards
+    }
+
+    /// Gives a board an event and passes on what it puts out.
+    fn board_event(&mut self, board: usize, event: FrameBufferEvent, context: &mut DisplayContext) {
+        self.boards[board].handle(event, self.context.at(context.now()));
+        for (time, output) in self.context.drain_outputs() {
+            context.output(time, passed_on(board, output));
+        }
+    }
+}
+
+/// A board's output as that of the display.
+const fn passed_on(board: usize, output: FrameBufferOutput) -> DisplayOutput {
+    match output {
+        FrameBufferOutput::RegionArrived { target, first_part_at, last_part_at } => {
+            DisplayOutput::RegionArrived { surface: board, target, first_part_at, last_part_at }
+        }
+        FrameBufferOutput::Swapped { buffer, field } => {
+            DisplayOutput::Swapped { surface: board, buffer, tick: field }
+        }
+    }
+}
+
+/// What a message is to a frame buffer, which counts a request for a buffer that it does not have as a fault.
+fn received(body: Body) -> FrameBufferEvent {
+    match body {
+        Body::Pixels(pixels) => FrameBufferEvent::Pixels(pixels),
+        Body::Words(words) => FrameBufferEvent::SwapRequested { buffer: read_swap_request(&words).unwrap_or(u8::MAX) },
+        Body::Commands(_) => FrameBufferEvent::SwapRequested { buffer: u8::MAX },
+    }
+}
+
+impl Display for NtscDisplay {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn nodes(&self) -> &[NodeId] {
+        &self.nodes
+    }
+
+    fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
+    }
+
+    fn tick(&self, n: u64) -> Time {
+        self.video.retrace(n)
+    }
+
+    fn period_at(&self, time: Time) -> u64 {
+        self.video.field_at(time)
+    }
+
+    fn handle(&mut self, event: DisplayEvent, context: &mut DisplayContext) {
+        match event {
+            DisplayEvent::Tick(field) => {
+                for board in 0..self.boards.len() {
+                    self.board_event(board, FrameBufferEvent::Retrace { field }, context);
+                }
+            }
+            DisplayEvent::Delivered { port, body } => self.board_event(port, received(body), context),
+            DisplayEvent::Timer(_) => {}
+        }
+    }
+
+    fn lights(&self, _surface: usize, x: u32, y: u32, period: u64) -> Option<Time> {
+        self.video.when(x, y, period)
+    }
+
+    fn shown(&self, surface: usize) -> Option<RgbImage> {
+        Some(self.boards.get(surface)?.displayed_frame().picture())
+    }
+
+    fn seen(&self, surface: usize, period: u64) -> Option<RgbImage> {
+        let board = self.boards.get(surface)?;
+        let now = board.seen(period)?;
+        let before = period.checked_sub(1).and_then(|field| board.seen(field));
+        Some(now.interlaced_with(before.as_ref().unwrap_or(&now)))
+    }
+
+    fn seen_at(&self, surface: usize, time: Time) -> Option<RgbImage> {
+        let board = self.boards.get(surface)?;
+        let now = self.video.field_at(time);
+        board.seen(now)?;
+        let fields: Vec<SeenField> = (now.saturating_sub(2)..=now).filter_map(|field| board.seen(field)).collect();
+        Some(seen_at(&self.video, time, &fields))
+    }
+
+    fn last_seen(&self) -> Option<u64> {
+        Some(self.boards.first()?.last_seen()?.field())
+    }
+
+    fn rows_lit(&self, period: u64) -> (u32, u32) {
+        (FieldParity::of_field(period).first_line(), 2)
+    }
+
+    fn counters(&self) -> Vec<Counter> {
+        let sum = |count: fn(&FrameBuffer) -> u64| self.boards.iter().map(count).sum();
+        vec![
+            Counter { name: "fields", count: self.boards.first().map_or(0, |board| board.stats().fields) },
+            Counter { name: "messages", count: sum(|board| board.stats().messages) },
+            Counter { name: "regions", count: sum(|board| board.stats().regions) },
+            Counter { name: "swaps", count: sum(|board| board.stats().swaps) },
+        ]
+    }
+
+    fn faults(&self) -> (u64, Option<String>) {
+        let count = self.boards.iter().map(|board| board.faults().count).sum();
+        let first = self.boards.iter().filter_map(|board| board.faults().first.as_ref()).min_by_key(|fault| fault.0);
+        (count, first.map(|(time, fault)| format!("{time}: {fault}")))
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+}
+
+/// What a viewer sees at `time`, which lies in the field that is scanned last: where the beam has been since its
+/// retrace that field, below the beam the one two fields older, between their lines the one a field older. Fields
+/// that are not given are black. A screen keeps what the beam drew until the beam comes again; phosphor does not fade.
+#[must_use]
+pub fn seen_at(video: &Video, time: Time, fields: &[SeenField]) -> RgbImage {
+    let now = video.field_at(time);
+    let ages = [0, 1, 2].map(|age| picture_of(fields, now.checked_sub(age)));
+    let mut screen = RgbImage::new(video.width(), video.height());
+    for (x, y, pixel) in screen.enumerate_pixels_mut() {
+        let age = match video.when(x, y, now) {
+            Some(scanned_at) if scanned_at <= time => 0,
+            Some(_) => 2,
+            None => 1,
+        };
+        if let Some(field) = &ages[age] {
+            *pixel = *field.get_pixel(x, y / 2);
+        }
+    }
+    screen
+}
+
+/// The lines of one of some fields.
+fn picture_of(fields: &[SeenField], wanted: Option<u64>) -> Option<RgbImage> {
+    fields.iter().find(|field| Some(field.field()) == wanted).map(SeenField::picture)
+}
+
+/// Its name on the command line.
+const NAME: &str = "ntsc";
+
+impl DisplayConfig for FrameBufferConfig {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn about(&self) -> &'static str {
+        "NTSC frame buffers of 640 x 480, two fields of 240 lines at 59.94 Hz, one for each eye (TR94)"
+    }
+
+    fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)> {
+        vec![("video", &self.video), ("frame_buffer", &self.port)]
+    }
+
+    fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)> {
+        vec![("video", &mut self.video), ("frame_buffer", &mut self.port)]
+    }
+
+    fn ports(&self, pictures: usize) -> usize {
+        pictures.clamp(1, Eye::BOTH.len())
+    }
+
+    fn check(&self) -> Result<(), DisplayError> {
+        Self::check(self).map_err(refused)
+    }
+
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
+        let video = Video::new(self.video).map_err(refused)?;
+        let boards = nodes.iter().map(|node| FrameBuffer::new(*self, *node)).collect::<Result<Vec<_>, _>>();
+        let surfaces = Surface::of_frame_buffers(nodes.len(), video.width(), video.height());
+        let context = Context::default();
+        Ok(Box::new(NtscDisplay { video, boards: boards.map_err(refused)?, nodes: nodes.to_vec(), surfaces, context }))
+    }
+
+    fn boxed(&self) -> Box<dyn DisplayConfig> {
+        Box::new(*self)
+    }
+
+    fn remember(&mut self, periods: u64) {
+        self.fields_kept = periods;
+    }
+}
+
+fn refused(error: ConfigError) -> DisplayError {
+    DisplayError(error.to_string())
+}

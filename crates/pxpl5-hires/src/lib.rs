@@ -1,0 +1,160 @@
+//! The high-resolution frame buffer of Pixel-Planes 5: 1280 x 1024 at 72 Hz, every line in every scan, double-buffered.
+//!
+//! A board takes the regions of whole frames into the buffer that is not shown and swaps at the next retrace after a
+//! request. It is also the example of how a display is added: this file and a line in the registry are all of it.
+//!
+//! **Not modelled:** blanking (the scan fills its whole period), pixels that arrive while their line is scanned.
+//!
+//! Sources: F89, TR94 (size, rate); the scan without blanking is assumed.
+
+use image::RgbImage;
+use parameters::ParameterTable;
+use pxpl5_display::{
+    Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, DoubleBuffer, Received,
+    Surface,
+};
+use pxpl5_sim::{Clock, Span, Time};
+use pxpl5_wire::NodeId;
+use std::any::Any;
+
+parameters::parameter_table! {
+    /// Size and rate of the scan.
+    pub struct HiResConfig {
+        /// Visible pixels of a line.
+        width: 1280, "pixels", Published, 1280..=1280 in 1..=1408, "F89";
+        /// Visible lines of a frame.
+        height: 1024, "lines", Published, 1024..=1024 in 1..=1408, "F89";
+        /// Scans of the whole frame a second.
+        refresh_hz: 72, "Hz", Published, 72..=72 in 1..=1000, "F89";
+        /// Time of one word at the port.
+        word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
+    }
+}
+
+/// High-resolution frame buffers that share a sync generator, one for each picture that is drawn at a time.
+#[derive(Debug)]
+struct HiRes {
+    config: HiResConfig,
+    frame: Clock,
+    nodes: Vec<NodeId>,
+    surfaces: Vec<Surface>,
+    boards: Vec<DoubleBuffer>,
+    scans: u64,
+    faults: u64,
+}
+
+impl Display for HiRes {
+    fn name(&self) -> &'static str {
+        "hires"
+    }
+
+    fn nodes(&self) -> &[NodeId] {
+        &self.nodes
+    }
+
+    fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
+    }
+
+    fn tick(&self, n: u64) -> Time {
+        self.frame.edge(n)
+    }
+
+    fn period_at(&self, time: Time) -> u64 {
+        let n = self.frame.edge_at_or_after(time);
+        if self.frame.edge(n) == time { n } else { n - 1 }
+    }
+
+    fn handle(&mut self, event: DisplayEvent, context: &mut DisplayContext) {
+        let at = context.now() + Span::from_ns(self.config.word_ns);
+        match event {
+            DisplayEvent::Tick(tick) => {
+                self.scans += 1;
+                let swapped = self.boards.iter_mut().enumerate().filter_map(|(i, board)| Some((i, board.swap()?)));
+                swapped.for_each(|(surface, buffer)| {
+                    context.output(at, DisplayOutput::Swapped { surface, buffer, tick });
+                });
+            }
+            DisplayEvent::Delivered { port, body } => match self.boards[port].receive(body, context.now()) {
+                Received::Region(pixels, first_part_at) => {
+                    let last_part_at = context.now();
+                    let (surface, target) = (port, pixels.target);
+                    context.output(at, DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at });
+                }
+                Received::Part => {}
+                Received::Fault => self.faults += 1,
+            },
+            DisplayEvent::Timer(_) => {}
+        }
+    }
+
+    fn lights(&self, _: usize, x: u32, y: u32, period: u64) -> Option<Time> {
+        let pixel = u64::from(y) * self.config.width + u64::from(x);
+        let visible = u64::from(x) < self.config.width && u64::from(y) < self.config.height;
+        let frame = self.tick(period + 1).since(self.tick(period));
+        let share = u128::from(frame.0) * u128::from(pixel) / u128::from(self.config.width * self.config.height);
+        visible.then(|| self.tick(period) + Span(share as u64))
+    }
+
+    fn shown(&self, surface: usize) -> Option<RgbImage> {
+        Some(self.boards.get(surface)?.picture(self.config.width as u32, self.config.height as u32))
+    }
+
+    fn seen(&self, surface: usize, period: u64) -> Option<RgbImage> {
+        self.shown(surface).filter(|_| self.last_seen() == Some(period))
+    }
+
+    fn last_seen(&self) -> Option<u64> {
+        self.scans.checked_sub(2)
+    }
+
+    fn counters(&self) -> Vec<Counter> {
+        vec![Counter { name: "scans", count: self.scans }]
+    }
+
+    fn faults(&self) -> (u64, Option<String>) {
+        (self.faults, None)
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+}
+
+impl DisplayConfig for HiResConfig {
+    fn name(&self) -> &'static str {
+        "hires"
+    }
+
+    fn about(&self) -> &'static str {
+        "high-resolution frame buffer of 1280 x 1024, progressive, 72 Hz (F89)"
+    }
+
+    fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)> {
+        vec![("hires", self)]
+    }
+
+    fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)> {
+        vec![("hires", self)]
+    }
+
+    fn ports(&self, pictures: usize) -> usize {
+        pictures
+    }
+
+    fn check(&self) -> Result<(), DisplayError> {
+        ParameterTable::check(self).map_err(|error| DisplayError(format!("hires.{error}")))
+    }
+
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
+        DisplayConfig::check(self)?;
+        let frame = Clock::from_hz(self.refresh_hz).ok_or_else(|| DisplayError("hires.refresh_hz".to_owned()))?;
+        let surfaces = Surface::of_frame_buffers(nodes.len(), self.width as u32, self.height as u32);
+        let boards = vec![DoubleBuffer::default(); nodes.len()];
+        Ok(Box::new(HiRes { config: *self, frame, nodes: nodes.to_vec(), surfaces, boards, scans: 0, faults: 0 }))
+    }
+
+    fn boxed(&self) -> Box<dyn DisplayConfig> {
+        Box::new(*self)
+    }
+}

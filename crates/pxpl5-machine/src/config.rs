@@ -1,0 +1,246 @@
+//! What a machine is built of.
+
+use parameters::{ParameterInfo, ParameterTable, nearest};
+use pxpl5_display::{DisplayConfig, DisplayError};
+use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
+use pxpl5_renderer::RendererTiming;
+use pxpl5_ring::RingTiming;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use thiserror::Error;
+
+/// Boards and their numbers.
+///
+/// There is no default: begin with a preset, which states its source.
+#[derive(Clone, Debug)]
+pub struct MachineConfig {
+    /// Name of the preset that it was made from.
+    pub preset: String,
+    /// Graphics processors, the master included.
+    pub n_gps: usize,
+    /// Renderers.
+    pub n_renderers: usize,
+    /// The ring's channels, clock and overhead.
+    pub ring: RingTiming,
+    /// Graphics processors: the times of the code that they run, where a table stands for it.
+    pub gp: GpTiming,
+    /// Which i860 code they run where clocks are counted (cycle level), whatever the table says.
+    pub code: CodeVersion,
+    /// Clocks of the renderers' commands, their FIFO and backing store.
+    pub renderer: RendererTiming,
+    /// The host workstation and its link.
+    pub host: HostTiming,
+    /// The displays. The first is the sync generator, and what pipelines draw for.
+    pub displays: Vec<Box<dyn DisplayConfig>>,
+}
+
+impl PartialEq for MachineConfig {
+    fn eq(&self, other: &Self) -> bool {
+        self.preset == other.preset && self.code == other.code && self.boards() == other.boards()
+            && self.displays.len() == other.displays.len()
+            && self.displays.iter().zip(&other.displays).all(|(own, other)| own.equals(other.as_ref()))
+            && self.parameters() == other.parameters()
+    }
+}
+
+/// A configuration that no machine can have.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum ConfigError {
+    /// No preset has this name.
+    #[error("there is no machine `{found}`; did you mean `{nearest}`? (`pxpl5 machines` lists all)")]
+    UnknownPreset {
+        /// The name asked for.
+        found: String,
+        /// The nearest valid name.
+        nearest: &'static str,
+    },
+    /// A number is out of range.
+    #[error("{what} must be {} to {}, found {found}", expected.0, expected.1)]
+    Value {
+        /// The number's path.
+        what: String,
+        /// Smallest and largest that the model takes.
+        expected: (u64, u64),
+        /// What was asked for.
+        found: u64,
+    },
+    /// No parameter has this path.
+    #[error("there is no parameter `{found}`; did you mean `{nearest}`?")]
+    UnknownParameter {
+        /// The path asked for.
+        found: String,
+        /// The nearest valid path.
+        nearest: String,
+    },
+    /// A board or a pipeline refuses its numbers.
+    #[error("{0}")]
+    Board(String),
+}
+
+impl From<DisplayError> for ConfigError {
+    fn from(error: DisplayError) -> Self {
+        Self::Board(error.to_string())
+    }
+}
+
+/// A parameter of a machine: its path, what is known of it and its value.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Board and field, such as `ring.word_ns`.
+    pub path: String,
+    /// Unit, standing, range and source.
+    #[serde(flatten)]
+    pub info: ParameterInfo,
+    /// The value.
+    pub value: u64,
+}
+
+/// Most boards of a kind: a ring of that many is still far from 16 bits of port numbers.
+const MAX_BOARDS: u64 = 1_000;
+
+impl MachineConfig {
+    fn boards(&self) -> [u64; 2] {
+        [self.n_gps as u64, self.n_renderers as u64]
+    }
+
+    /// All tables of numbers in order of the boards, each with the first part of its paths.
+    fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)> {
+        let mut all: Vec<(&'static str, &dyn ParameterTable)> =
+            vec![("ring", &self.ring), ("gp", &self.gp), ("renderer", &self.renderer)];
+        all.extend(self.displays.iter().flat_map(|display| display.tables()));
+        all.push(("host", &self.host));
+        all
+    }
+
+    fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)> {
+        let mut all: Vec<(&'static str, &mut dyn ParameterTable)> =
+            vec![("ring", &mut self.ring), ("gp", &mut self.gp), ("renderer", &mut self.renderer)];
+        all.extend(self.displays.iter_mut().flat_map(|display| display.tables_mut()));
+        all.push(("host", &mut self.host));
+        all
+    }
+
+    /// All parameters in order of the boards.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<Parameter> {
+        self.tables().into_iter().flat_map(|(board, table)| parameters_of(board, table)).collect()
+    }
+
+    /// Parameters that differ from the preset's, by path.
+    #[must_use]
+    pub fn overrides(&self) -> BTreeMap<String, u64> {
+        let Ok(preset) = Self::preset(&self.preset) else { return BTreeMap::new() };
+        let of_preset: BTreeMap<String, u64> = preset.settings().into_iter().collect();
+        let own = self.settings().into_iter();
+        own.filter(|(path, value)| of_preset.get(path) != Some(value)).collect()
+    }
+
+    /// The numbers of boards and all parameters, by path.
+    #[must_use]
+    pub fn settings(&self) -> Vec<(String, u64)> {
+        let [n_gps, n_renderers] = self.boards();
+        let boards = [("n_gps".to_owned(), n_gps), ("n_renderers".to_owned(), n_renderers)];
+        let parameters = self.parameters().into_iter().map(|parameter| (parameter.path, parameter.value));
+        boards.into_iter().chain(parameters).collect()
+    }
+
+    /// Changes a parameter by its path, such as `ring.word_ns`, `n_gps` or `n_renderers`.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError::UnknownParameter`] with the nearest valid path.
+    pub fn set(&mut self, path: &str, value: u64) -> Result<(), ConfigError> {
+        match path {
+            "n_gps" => self.n_gps = value as usize,
+            "n_renderers" => self.n_renderers = value as usize,
+            _ => return self.set_parameter(path, value).ok_or_else(|| self.unknown(path)),
+        }
+        Ok(())
+    }
+
+    fn set_parameter(&mut self, path: &str, value: u64) -> Option<()> {
+        let (board, name) = path.split_once('.')?;
+        let mut of_board = self.tables_mut().into_iter().filter(|(prefix, _)| *prefix == board);
+        of_board.find_map(|(_, table)| table.set(name, value).ok())
+    }
+
+    fn unknown(&self, path: &str) -> ConfigError {
+        let paths: Vec<String> = self.settings().into_iter().map(|(path, _)| path).collect();
+        let nearest = nearest(path, paths.iter().map(String::as_str)).unwrap_or_default().to_owned();
+        ConfigError::UnknownParameter { found: path.to_owned(), nearest }
+    }
+
+    /// Checks everything that can be checked before a machine is built.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError`] names the first number that is out of range, what was expected and what was found.
+    pub fn check(&self) -> Result<(), ConfigError> {
+        check("n_gps", self.n_gps as u64, 1, MAX_BOARDS)?;
+        check("n_renderers", self.n_renderers as u64, 1, MAX_BOARDS)?;
+        // The longest command, shading, must fit into the input FIFO.
+        check("renderer.fifo_words", self.renderer.fifo_words, 128, 1 << 20)?;
+        check("renderer.clock_hz", self.renderer.clock_hz, 1_000, 1_000_000_000_000)?;
+        check("host.link_bytes_per_s", self.host.link_bytes_per_s, 1_000, 1_000_000_000_000)?;
+        check("host.view_period_ns", self.host.view_period_ns, 1_000, 1_000_000_000_000)?;
+        for parameter in self.parameters().iter().filter(|p| matches!(p.info.unit, "ns" | "clocks")) {
+            check(&parameter.path, parameter.value, 0, 1_000_000_000_000)?;
+        }
+        if self.displays.is_empty() {
+            return Err(ConfigError::Board("a machine needs a display; found none".to_owned()));
+        }
+        self.displays.iter().try_for_each(|display| Ok(display.check()?))
+    }
+}
+
+/// The numbers of a table with their paths.
+fn parameters_of(board: &str, table: &dyn ParameterTable) -> Vec<Parameter> {
+    let parameter = |info: &ParameterInfo| Parameter {
+        path: format!("{board}.{}", info.name),
+        info: *info,
+        value: table.get(info.name).unwrap_or_default(),
+    };
+    table.infos().iter().map(parameter).collect()
+}
+
+fn check(what: &str, found: u64, low: u64, high: u64) -> Result<(), ConfigError> {
+    if (low..=high).contains(&found) {
+        return Ok(());
+    }
+    Err(ConfigError::Value { what: what.to_owned(), expected: (low, high), found })
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_preset_is_a_valid_machine() {
+        for preset in crate::PRESETS {
+            MachineConfig::preset(preset.name).expect("it is listed").check().expect(preset.name);
+        }
+    }
+
+    #[test]
+    fn an_unknown_preset_names_the_nearest() {
+        let error = MachineConfig::preset("smal-hmd").expect_err("misspelt");
+        assert!(error.to_string().contains("did you mean `small-hmd`?"), "{error}");
+    }
+
+    #[test]
+    fn parameters_are_reached_by_path_and_a_wrong_path_names_the_nearest() {
+        let mut config = MachineConfig::small_hmd();
+        config.set("gp.triangle_ns", 30_000).expect("known");
+        config.set("n_gps", 24).expect("known");
+        assert_eq!((config.gp.triangle_ns, config.n_gps), (30_000, 24));
+        let error = config.set("gp.triange_ns", 1).expect_err("misspelt");
+        assert!(error.to_string().contains("`gp.triangle_ns`"), "{error}");
+    }
+
+    #[test]
+    fn no_renderer_is_refused_with_what_was_expected() {
+        let config = MachineConfig { n_renderers: 0, ..MachineConfig::small_hmd() };
+        let error = config.check().expect_err("none");
+        assert_eq!(error.to_string(), "n_renderers must be 1 to 1000, found 0");
+    }
+}

@@ -1,0 +1,27 @@
+//! Pixel-Planes 5 as a whole: which boards there are, and how they are plugged together.
+//!
+//! [`Machine`] is the schematic: the only place where boards meet. [`MachineConfig`] holds every number of it, beginning
+//! with a preset of the papers ([`PRESETS`]). What was observed, and the boards themselves when a run is over, are a
+//! [`Record`].
+//!
+//! A machine owns any number of displays ([`pxpl5_display::Display`]) and knows nothing of what is peculiar to one.
+//!
+//! **Not here:** the computer that the simulation runs on. Clocks, threads and files are handed in ([`PixelWorker`]).
+
+mod config;
+mod machine;
+mod observation;
+mod pixels;
+mod preset;
+mod record;
+mod savings;
+mod traffic;
+
+pub use config::{ConfigError, MachineConfig, Parameter};
+pub use machine::{Machine, Ports, RunError};
+pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
+pub use pixels::{PixelWorker, SameThread};
+pub use preset::{PRESETS, Preset};
+pub use record::Record;
+pub use savings::Saving;
+pub use traffic::{Traffic, Transfer};

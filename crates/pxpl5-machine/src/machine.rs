@@ -1,0 +1,540 @@
+//! The schematic: this file alone plugs boards together.
+//!
+//! ```text
+//!   port   0      1 .. n_gps      then renderers       then the displays' ports
+//!        +------+ +----+ +----+   +--------+           +---------+ +---------+
+//!        | host | | GP | | GP |.. |renderer| ...       | display | | display | ...
+//!        +--+---+ +-+--+ +-+--+   +---+----+           +--+---+--+ +----+----+
+//!   ========+=======+======+==========+===================+===+=========+=====  ring, 8 channels
+//!                   ^                                     |
+//!                   +---- tick and swap status -----------+  (of the first display, to the first GP)
+//! ```
+
+use crate::config::{ConfigError, MachineConfig};
+use crate::observation::{Arrival, Swap};
+use crate::pixels::PixelWorker;
+use crate::record::Record;
+use crate::savings::Saving;
+use pxpl5_display::{DisplayContext, DisplayEvent, DisplayOutput};
+use pxpl5_gp::{Fault, Gp, GpBoard, GpEvent, GpOutput, Level, Mark, Program};
+use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
+use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
+use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time};
+use pxpl5_wire::{Body, Message, NodeId, SurfaceId};
+use thiserror::Error;
+
+/// An event of any board.
+#[derive(Debug)]
+enum Event {
+    Ring(RingEvent),
+    /// What the ring brings to a board.
+    FromRing(RingOutput),
+    Gp(usize, GpEvent),
+    Renderer(usize, RendererEvent),
+    /// What a display scheduled for itself.
+    Display(usize, DisplayEvent),
+    /// The tick of a display's clock.
+    Tick(usize, u64),
+    /// An edge of the boards' clock, where every one of them counts.
+    Edge,
+}
+
+/// Why a run ended early.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// A program stopped: something did not fit, or a message made no sense.
+    #[error("{board} stopped at {time}: {fault}")]
+    Fault {
+        /// The board's name.
+        board: String,
+        /// When it stopped.
+        time: Time,
+        /// What it could not do.
+        fault: Fault,
+    },
+    /// Nothing can happen any more but ticks of the displays.
+    #[error("nothing can happen any more at {time}:{}", waits(blocked))]
+    Deadlock {
+        /// When that was noticed.
+        time: Time,
+        /// Who waits for what.
+        blocked: Vec<Blocked>,
+    },
+    /// The ring could not carry a message.
+    #[error("ring, at {time}: {reason}")]
+    Ring {
+        /// When it was asked to.
+        time: Time,
+        /// What is wrong with the message.
+        reason: String,
+    },
+}
+
+fn waits(blocked: &[Blocked]) -> String {
+    blocked.iter().map(|b| format!(" {} waits for {};", b.board, b.waits_for)).collect()
+}
+
+/// Which port of the ring each board has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Ports {
+    /// The host interface.
+    pub host: NodeId,
+    /// The graphics processors.
+    pub gps: Vec<NodeId>,
+    /// The renderers.
+    pub renderers: Vec<NodeId>,
+    /// The ports of each display, in the machine's order.
+    pub displays: Vec<Vec<NodeId>>,
+}
+
+impl Ports {
+    /// Ports in the order of the schematic, from 0.
+    fn plug(config: &MachineConfig, pictures: usize) -> Self {
+        let mut next = 0;
+        Self {
+            host: take_ports(&mut next, 1)[0],
+            gps: take_ports(&mut next, config.n_gps),
+            renderers: take_ports(&mut next, config.n_renderers),
+            displays: config.displays.iter().map(|display| take_ports(&mut next, display.ports(pictures))).collect(),
+        }
+    }
+
+    /// The ports of the first display: those that pipelines draw for.
+    #[must_use]
+    pub fn display(&self) -> &[NodeId] {
+        self.displays.first().map_or(&[], Vec::as_slice)
+    }
+
+    /// The display that has a port, and which of its ports that is.
+    fn of_display(&self, node: NodeId) -> Option<(usize, usize)> {
+        let has_node = |nodes: &Vec<NodeId>| nodes.binary_search(&node).ok();
+        self.displays.iter().enumerate().find_map(|(display, nodes)| Some((display, has_node(nodes)?)))
+    }
+
+    fn count(&self) -> u16 {
+        let displays: usize = self.displays.iter().map(Vec::len).sum();
+        (1 + self.gps.len() + self.renderers.len() + displays) as u16
+    }
+}
+
+/// The next `count` ports.
+fn take_ports(next: &mut u16, count: usize) -> Vec<NodeId> {
+    let first = *next;
+    *next += count as u16;
+    (first..*next).map(NodeId).collect()
+}
+
+/// A whole machine at work: its boards and what was observed of them ([`Record`]), programs, and what is going to happen.
+#[derive(Debug)]
+pub struct Machine {
+    record: Record,
+    queue: EventQueue<Event>,
+    /// The host, then the graphics processors: all boards that run programs, by their port.
+    processors: Vec<GpBoard>,
+    contexts: Contexts,
+    /// Swaps of each surface so far.
+    swaps: Vec<u64>,
+    pixels: Option<Box<dyn PixelWorker>>,
+    /// Whether every edge of the boards' clock is an event.
+    every_edge: bool,
+    failure: Option<RunError>,
+    /// Events since the last tick of the first display that were no tick, and the ticks up to it without any.
+    work_events: u64,
+    idle_ticks: u64,
+}
+
+#[derive(Debug, Default)]
+struct Contexts {
+    ring: Context<RingEvent, RingOutput>,
+    gp: Context<GpEvent, GpOutput>,
+    renderer: Context<RendererEvent, RendererOutput>,
+    display: DisplayContext,
+}
+
+/// Ticks without any event after which a machine with waiting programs is said to be deadlocked.
+const DEADLOCK_TICKS: u64 = 120;
+
+/// Events that a tick of the first display causes by itself: the signal to the first GP, and the poll of its programs.
+const EVENTS_OF_A_TICK: u64 = 2;
+
+/// What a signal needs to leave a board: one cycle of the boards' 40 MHz.
+fn cycle() -> Span {
+    Clock::from_hz(40_000_000).map_or(Span(25_000), |clock| clock.span(Cycles(1)))
+}
+
+impl Machine {
+    /// Builds the machine with displays for a pipeline that draws so many pictures at a time: 1, or 2 for two eyes.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError`] when a number is out of range.
+    pub fn new(config: &MachineConfig, pictures: usize, layout: Layout) -> Result<Self, ConfigError> {
+        config.check()?;
+        let ports = Ports::plug(config, pictures);
+        let renderers = ports.renderers.clone();
+        let elastic = move |node: NodeId| !renderers.contains(&node);
+        let ring = Ring::new(config.ring, ports.count(), elastic).map_err(|error| ConfigError::Board(error.to_string()))?;
+        let host = GpBoard::new(ports.host, config.host.board(), cycle());
+        let gps = ports.gps.iter().map(|node| GpBoard::new(*node, config.gp, cycle()));
+        let pool = ArrayPool::new(layout);
+        let renderer = |node: &NodeId| Renderer::new(*node, config.renderer, config.ring.word(), cycle(), pool.clone());
+        let displays = config.displays.iter().zip(&ports.displays).map(|(display, nodes)| display.build(nodes));
+        let displays = displays.collect::<Result<Vec<_>, _>>()?;
+        Ok(Self {
+            processors: [host].into_iter().chain(gps).collect(),
+            swaps: vec![0; displays.iter().map(|display| display.surfaces().len()).sum()],
+            record: Record {
+                config: config.clone(),
+                renderers: ports.renderers.iter().map(renderer).collect(),
+                ports,
+                ring,
+                displays,
+                observation: crate::Observation::default(),
+                hash: pxpl5_sim::TraceHash::default(),
+                events: 0,
+            },
+            queue: EventQueue::new(),
+            contexts: Contexts::default(),
+            pixels: None,
+            every_edge: false,
+            failure: None,
+            work_events: 0,
+            idle_ticks: 0,
+        })
+    }
+
+    /// Takes ties of events in an order hashed from a seed, to prove that no result depends on it.
+    pub fn shuffle_ties(&mut self, seed: u64) {
+        self.queue.shuffle_ties(seed);
+    }
+
+    /// Has the pixels of every region that is copied from now on computed by a worker.
+    pub fn compute_all_pixels(&mut self, worker: Box<dyn PixelWorker>) {
+        self.pixels = Some(worker);
+    }
+
+    /// Has the graphics processors tell the time of their work by i860 code, where the timing table stands for code
+    /// that there is; to be called before programs are loaded.
+    pub fn run_code(&mut self) {
+        self.processors.iter_mut().skip(1).for_each(GpBoard::run_code);
+    }
+
+    /// Gives up a saving: what it skips is done from now on. To be called before the machine is switched on.
+    pub fn give_up(&mut self, saving: Saving) {
+        match saving {
+            Saving::IdleBoards => self.every_edge = true,
+            Saving::Transfers => self.record.ring.move_every_word(),
+            Saving::EmptyRegions => self.record.renderers.iter_mut().for_each(Renderer::draw_every_region),
+            Saving::RepeatedCode => self.processors.iter_mut().for_each(GpBoard::count_every_clock),
+        }
+    }
+
+    /// Records messages, busy channels and FIFOs from now on.
+    pub fn record_traffic(&mut self) {
+        self.record.observation.traffic = Some(Box::default());
+        self.record.ring.watch();
+        self.record.renderers.iter_mut().for_each(Renderer::watch_fifo);
+    }
+
+    /// Its boards and everything observed so far.
+    #[must_use]
+    pub const fn record(&self) -> &Record {
+        &self.record
+    }
+
+    /// What is left of it when it is over.
+    #[must_use]
+    pub fn into_record(mut self) -> Record {
+        self.finish_pixels();
+        self.record.events = self.queue.events_taken();
+        self.record
+    }
+
+    /// The ports of the boards.
+    #[must_use]
+    pub const fn ports(&self) -> &Ports {
+        &self.record.ports
+    }
+
+    /// A handle for a program on the board at a port (host or graphics processor).
+    ///
+    /// # Panics
+    ///
+    /// If no processor has this port.
+    #[must_use]
+    pub fn processor(&self, node: NodeId, level: Level) -> Gp {
+        self.processors[usize::from(node.0)].handle_for(level)
+    }
+
+    /// Loads a program onto the board at a port.
+    ///
+    /// # Panics
+    ///
+    /// If no processor has this port.
+    pub fn load(&mut self, node: NodeId, level: Level, program: Program) {
+        self.processors[usize::from(node.0)].load(level, program);
+    }
+
+    /// Switches on: every board's programs begin at time zero, and so does the first period of every display.
+    pub fn switch_on(&mut self) {
+        for board in 0..self.processors.len() {
+            self.queue.schedule(Time::ZERO, Phase::Work, Event::Gp(board, GpEvent::Poll));
+        }
+        for (display, device) in self.record.displays.iter().enumerate() {
+            self.queue.schedule(device.tick(0), Phase::Arrive, Event::Tick(display, 0));
+        }
+        if self.every_edge {
+            self.queue.schedule(Time::ZERO, Phase::Work, Event::Edge);
+        }
+    }
+
+    /// Runs up to, and not including, an instant.
+    ///
+    /// # Errors
+    ///
+    /// [`RunError`]; everything observed before it is kept.
+    pub fn run_until(&mut self, end: Time) -> Result<(), RunError> {
+        while self.queue.next_time().is_some_and(|time| time < end) {
+            let Some((now, _, event)) = self.queue.next_event() else { break };
+            self.handle(now, event);
+            if let Some(failure) = &self.failure {
+                return Err(failure.clone());
+            }
+        }
+        Ok(())
+    }
+
+    fn handle(&mut self, now: Time, event: Event) {
+        self.work_events += u64::from(!matches!(event, Event::Edge | Event::Tick(..) | Event::Display(..)));
+        match event {
+            Event::Ring(event) => self.ring_event(now, event),
+            Event::FromRing(output) => self.bring(now, output),
+            Event::Gp(board, event) => self.gp_event(now, board, event),
+            Event::Renderer(board, event) => self.renderer_event(now, board, event),
+            Event::Display(display, event) => self.display_event(now, display, event),
+            Event::Tick(display, n) => self.tick(now, display, n),
+            Event::Edge => self.edge(now),
+        }
+    }
+
+    /// Asks every board that could have something to do, and the next edge.
+    fn edge(&mut self, now: Time) {
+        (0..self.processors.len()).for_each(|board| self.gp_event(now, board, GpEvent::Poll));
+        self.ring_event(now, RingEvent::Arbitrate);
+        self.queue.schedule(now + cycle(), Phase::Work, Event::Edge);
+    }
+
+    /// A display's clock ticks; that of the first one is the sync generator of the first graphics processor.
+    fn tick(&mut self, now: Time, display: usize, n: u64) {
+        self.display_event(now, display, DisplayEvent::Tick(n));
+        self.queue.schedule(self.record.displays[display].tick(n + 1), Phase::Arrive, Event::Tick(display, n + 1));
+        if display == 0 {
+            self.queue.schedule(now, Phase::Arrive, Event::Gp(1, GpEvent::Retrace(n)));
+            self.watch(now);
+        }
+    }
+
+    /// Notices when nothing has happened for long though programs wait.
+    fn watch(&mut self, now: Time) {
+        self.idle_ticks = if self.work_events <= EVENTS_OF_A_TICK { self.idle_ticks + 1 } else { 0 };
+        self.work_events = 0;
+        if self.idle_ticks < DEADLOCK_TICKS {
+            return;
+        }
+        let blocked = self.blocked();
+        if blocked.iter().any(|b| b.waits_for != "a retrace") {
+            self.failure = Some(RunError::Deadlock { time: now, blocked });
+        }
+    }
+
+    /// Who waits for what.
+    #[must_use]
+    pub fn blocked(&self) -> Vec<Blocked> {
+        let processors = self.processors.iter().enumerate().filter_map(|(i, board)| board.blocked(&self.name(i)));
+        let renderers = self.record.renderers.iter().enumerate();
+        let renderers = renderers.filter_map(|(i, board)| board.blocked(&format!("renderer {i}")));
+        processors.chain(renderers).chain(self.record.ring.blocked()).collect()
+    }
+
+    fn name(&self, processor: usize) -> String {
+        if processor == 0 { "host".to_owned() } else { format!("GP {}", processor - 1) }
+    }
+
+    fn ring_event(&mut self, now: Time, event: RingEvent) {
+        let Self { record: Record { ring, observation, .. }, contexts: Contexts { ring: context, .. }, queue, .. } = self;
+        let mut traffic = observation.traffic.as_deref_mut();
+        if let (Some(traffic), RingEvent::Accept { destination, last_word_at }) = (&mut traffic, &event) {
+            traffic.accept(*destination, *last_word_at);
+        }
+        ring.handle(event, context.at(now));
+        if let Some(traffic) = &mut traffic {
+            traffic.channels(now, ring.busy_channels());
+        }
+        schedule_own(queue, context, Event::Ring);
+        for (time, output) in context.drain_outputs() {
+            queue.schedule(time, Phase::Arrive, Event::FromRing(output));
+        }
+    }
+
+    /// What the ring has brought to a board enters the trace now.
+    fn bring(&mut self, now: Time, output: RingOutput) {
+        let record = &mut self.record;
+        let mut traffic = record.observation.traffic.as_deref_mut();
+        match output {
+            RingOutput::Announce { message, first_word_at, .. } => {
+                record.hash.record(now, &facts(1, &message));
+                if let Some(traffic) = &mut traffic {
+                    traffic.announce(&message, first_word_at);
+                }
+                let board = usize::from(message.destination.0 - record.ports.renderers[0].0);
+                self.renderer_event(now, board, RendererEvent::Announce { message, first_word_at });
+            }
+            RingOutput::Delivered(message) => {
+                record.hash.record(now, &facts(2, &message));
+                if let Some(traffic) = &mut traffic {
+                    traffic.deliver(&message, now, record.ring.timing().word());
+                }
+                self.deliver(now, message);
+            }
+            RingOutput::Sent { source, ticket } => {
+                record.hash.record(now, &[3, u64::from(source.0), ticket]);
+                match record.ports.renderers.binary_search(&source) {
+                    Ok(board) => self.renderer_event(now, board, RendererEvent::Sent),
+                    Err(_) => self.gp_event(now, usize::from(source.0), GpEvent::Accepted(ticket)),
+                }
+            }
+            RingOutput::Refused { error, .. } => {
+                self.failure = Some(RunError::Ring { time: now, reason: error.to_string() });
+            }
+        }
+    }
+
+    /// The last word of a message is with its receiver.
+    fn deliver(&mut self, now: Time, message: Message) {
+        match self.record.ports.of_display(message.destination) {
+            Some((display, port)) => {
+                self.display_event(now, display, DisplayEvent::Delivered { port, body: message.body });
+            }
+            None => self.gp_event(now, usize::from(message.destination.0), GpEvent::Delivered(message)),
+        }
+    }
+
+    fn gp_event(&mut self, now: Time, board: usize, event: GpEvent) {
+        let Self { processors, contexts: Contexts { gp: context, .. }, queue, .. } = self;
+        let processor = &mut processors[board];
+        processor.handle(event, context.at(now));
+        schedule_own(queue, context, |event| Event::Gp(board, event));
+        for (order, (time, GpOutput::Send { message, ticket })) in (0..).zip(context.drain_outputs()) {
+            let request = Request { message, ticket: Some(ticket), hold: false, order };
+            queue.schedule(time, Phase::Arrive, Event::Ring(RingEvent::Request(request)));
+        }
+        let fault = processor.fault().cloned();
+        let marks = processor.take_marks();
+        if let Some(fault) = fault {
+            self.failure = Some(RunError::Fault { board: self.name(board), time: now, fault });
+        }
+        marks.iter().for_each(|mark| self.record.hash.record(mark.time, &facts_of(mark)));
+        self.record.observation.marks.extend(marks);
+    }
+
+    fn renderer_event(&mut self, now: Time, board: usize, event: RendererEvent) {
+        let Self { record, contexts: Contexts { renderer: context, .. }, queue, pixels, .. } = self;
+        record.renderers[board].handle(event, context.at(now));
+        if let Some(traffic) = &mut record.observation.traffic {
+            let changes = record.renderers[board].take_fifo_changes();
+            traffic.fifo_changes.extend(changes.into_iter().map(|(time, words)| (board, time, words)));
+        }
+        schedule_own(queue, context, |event| Event::Renderer(board, event));
+        let destination = record.ports.renderers[board];
+        for (order, (time, output)) in (0..).zip(context.drain_outputs()) {
+            let event = match output {
+                RendererOutput::Accept { last_word_at } => RingEvent::Accept { destination, last_word_at },
+                RendererOutput::Send { message, ticket, hold } => {
+                    compute_pixels(pixels, &message.body);
+                    RingEvent::Request(Request { message, ticket: ticket.then_some(0), hold, order })
+                }
+            };
+            queue.schedule(time, Phase::Arrive, Event::Ring(event));
+        }
+    }
+
+    fn display_event(&mut self, now: Time, display: usize, event: DisplayEvent) {
+        let Self { record, contexts: Contexts { display: context, .. }, queue, swaps, .. } = self;
+        let first_surface = record.first_surface(display);
+        record.displays[display].handle(event, context.at(now));
+        schedule_own(queue, context, |event| Event::Display(display, event));
+        for (time, output) in context.drain_outputs() {
+            match output {
+                DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at } => {
+                    let surface = SurfaceId((first_surface + surface) as u16);
+                    let facts = [5, u64::from(surface.0), u64::from(target.region.0), target.picture];
+                    record.hash.record(last_part_at, &facts);
+                    record.observation.arrivals.push(Arrival { surface, target, first_part_at, last_part_at });
+                }
+                DisplayOutput::Swapped { surface, buffer, tick } => {
+                    let from = record.ports.displays[display][surface];
+                    let surface = SurfaceId((first_surface + surface) as u16);
+                    record.hash.record(time, &[6, u64::from(surface.0), u64::from(buffer), tick]);
+                    record.observation.swaps.push(Swap { surface, tick });
+                    swaps[surface.index()] += 1;
+                    let status = GpEvent::Status { from, value: swaps[surface.index()] };
+                    queue.schedule(time, Phase::Arrive, Event::Gp(1, status));
+                }
+            }
+        }
+    }
+
+    /// The host and the graphics processors, by port.
+    #[must_use]
+    pub fn processors(&self) -> &[GpBoard] {
+        &self.processors
+    }
+
+    /// Events handled.
+    #[must_use]
+    pub const fn events(&self) -> u64 {
+        self.queue.events_taken()
+    }
+
+    /// Waits for the worker that computes pixels; the number of regions that it computed.
+    pub fn finish_pixels(&mut self) -> u64 {
+        self.pixels.take().map_or(0, PixelWorker::finish)
+    }
+}
+
+/// Puts what a board scheduled for itself into the queue.
+fn schedule_own<E, O>(queue: &mut EventQueue<Event>, context: &mut Context<E, O>, event_of: impl Fn(E) -> Event) {
+    for (time, phase, event) in context.drain_events() {
+        queue.schedule(time, phase, event_of(event));
+    }
+}
+
+/// Hands a region over when its first message is on its way.
+fn compute_pixels(worker: &mut Option<Box<dyn PixelWorker>>, body: &Body) {
+    if let (Some(worker), Body::Pixels(pixels)) = (worker, body)
+        && pixels.part == 0
+    {
+        worker.compute(&pixels.image);
+    }
+}
+
+/// What of a message enters the trace, under a number for what happened to it.
+fn facts(kind: u64, message: &Message) -> [u64; 4] {
+    [kind, u64::from(message.source.0), u64::from(message.destination.0), u64::from(message.words)]
+}
+
+/// What of a mark enters the trace.
+fn facts_of(mark: &Mark) -> [u64; 6] {
+    let surface = surface_fact(mark.surface);
+    [4, u64::from(mark.node.0), mark.picture, surface, mark.stage as u64, mark.edge as u64]
+}
+
+/// The surface as traces have it since there were two at most, which 2 stands for: none.
+fn surface_fact(surface: Option<SurfaceId>) -> u64 {
+    match surface {
+        None => 2,
+        Some(SurfaceId(number)) if number < 2 => u64::from(number),
+        Some(SurfaceId(number)) => u64::from(number) + 1,
+    }
+}

@@ -1,0 +1,126 @@
+//! The machines of the papers, by name.
+
+use crate::config::{ConfigError, MachineConfig};
+use parameters::nearest;
+use pxpl5_framebuffer::FrameBufferConfig;
+use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
+use pxpl5_renderer::RendererTiming;
+use pxpl5_ring::RingTiming;
+use serde::Serialize;
+
+/// A preset: name, what it is, where it comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Preset {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// What it is and its source.
+    pub about: &'static str,
+    n_gps: usize,
+    n_renderers: usize,
+    #[serde(skip)]
+    gp: GpTiming,
+    /// The i860 code that its graphics processors run at the cycle level.
+    #[serde(skip)]
+    code: CodeVersion,
+}
+
+/// All presets.
+pub const PRESETS: [Preset; 7] = [
+    Preset {
+        name: "small-hmd",
+        about: "13 GPs (1 master, 12 slaves), 5 renderers: the machine of the Rendering Control measurements (TR94)",
+        n_gps: 13,
+        n_renderers: 5,
+        gp: GpTiming::PAPERS,
+        code: CodeVersion::Scheduled,
+    },
+    Preset {
+        name: "slats",
+        about: "1 GP, 5 renderers, code of 1994 (TR94)",
+        n_gps: 1,
+        n_renderers: 5,
+        gp: GpTiming::SLATS_1994,
+        code: CodeVersion::Compiled,
+    },
+    Preset {
+        name: "slats-1995",
+        about: "1 GP, 5 renderers, code of 1995 (I3D95)",
+        n_gps: 1,
+        n_renderers: 5,
+        gp: GpTiming::SLATS_1995,
+        code: CodeVersion::Compiled,
+    },
+    Preset {
+        name: "slats-optimised",
+        about: "1 GP, 5 renderers, code of 1994 at a third of the time per triangle (I3D95: what fitting the cache gives)",
+        n_gps: 1,
+        n_renderers: 5,
+        gp: GpTiming::SLATS_OPTIMISED,
+        code: CodeVersion::Scheduled,
+    },
+    Preset {
+        name: "medium",
+        about: "24 GPs, 10 renderers: a middle-sized configuration (assumed)",
+        n_gps: 24,
+        n_renderers: 10,
+        gp: GpTiming::PAPERS,
+        code: CodeVersion::Scheduled,
+    },
+    Preset {
+        name: "design-maximum",
+        about: "32 GPs, 16 renderers: the design maximum (F89)",
+        n_gps: 32,
+        n_renderers: 16,
+        gp: GpTiming::PAPERS,
+        code: CodeVersion::Scheduled,
+    },
+    Preset {
+        name: "large",
+        about: "50 GPs, 20 renderers: the largest number of GPs published (I3D95)",
+        n_gps: 50,
+        n_renderers: 20,
+        gp: GpTiming::PAPERS,
+        code: CodeVersion::Scheduled,
+    },
+];
+
+impl MachineConfig {
+    /// The machine of a preset.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError::UnknownPreset`] with the nearest valid name.
+    pub fn preset(name: &str) -> Result<Self, ConfigError> {
+        let preset = PRESETS.iter().find(|preset| preset.name == name).ok_or_else(|| ConfigError::UnknownPreset {
+            found: name.to_owned(),
+            nearest: nearest(name, PRESETS.iter().map(|preset| preset.name)).unwrap_or_default(),
+        })?;
+        Ok(Self::from_preset(preset))
+    }
+
+    fn from_preset(preset: &Preset) -> Self {
+        Self {
+            preset: preset.name.to_owned(),
+            n_gps: preset.n_gps,
+            n_renderers: preset.n_renderers,
+            ring: RingTiming::PAPERS,
+            gp: preset.gp,
+            code: preset.code,
+            renderer: RendererTiming::PAPERS,
+            host: HostTiming::PAPERS,
+            displays: vec![Box::new(FrameBufferConfig::NTSC)],
+        }
+    }
+
+    /// The machine of the Rendering Control measurements: 13 GPs, 5 renderers (TR94).
+    #[must_use]
+    pub fn small_hmd() -> Self {
+        Self::from_preset(&PRESETS[0])
+    }
+
+    /// The machine of the Slats prototype: 1 GP, 5 renderers (TR94).
+    #[must_use]
+    pub fn slats() -> Self {
+        Self::from_preset(&PRESETS[1])
+    }
+}

@@ -1,0 +1,125 @@
+//! What is known of a machine: the state of its boards and everything observed.
+
+use crate::config::MachineConfig;
+use crate::machine::Ports;
+use crate::observation::{Observation, StageSpan};
+use pxpl5_display::{Display, Surface};
+use pxpl5_renderer::Renderer;
+use pxpl5_ring::Ring;
+use pxpl5_sim::{Span, Time, TraceHash};
+use pxpl5_wire::{MAX_MESSAGE_WORDS, SurfaceId};
+
+/// The boards of a machine without the programs that ran on it, and everything observed: plain data, which may be sent to
+/// another thread.
+#[derive(Debug)]
+pub struct Record {
+    pub(crate) config: MachineConfig,
+    pub(crate) ports: Ports,
+    pub(crate) ring: Ring,
+    pub(crate) renderers: Vec<Renderer>,
+    pub(crate) displays: Vec<Box<dyn Display>>,
+    pub(crate) observation: Observation,
+    pub(crate) hash: TraceHash,
+    pub(crate) events: u64,
+}
+
+impl Record {
+    /// The numbers that the machine was built of.
+    #[must_use]
+    pub const fn config(&self) -> &MachineConfig {
+        &self.config
+    }
+
+    /// The ports of the boards.
+    #[must_use]
+    pub const fn ports(&self) -> &Ports {
+        &self.ports
+    }
+
+    /// The ring.
+    #[must_use]
+    pub const fn ring(&self) -> &Ring {
+        &self.ring
+    }
+
+    /// The renderers.
+    #[must_use]
+    pub fn renderers(&self) -> &[Renderer] {
+        &self.renderers
+    }
+
+    /// The displays.
+    #[must_use]
+    pub fn displays(&self) -> &[Box<dyn Display>] {
+        &self.displays
+    }
+
+    /// The first display: what pipelines draw for, and whose clock the length of a run is counted in.
+    ///
+    /// # Panics
+    ///
+    /// Never: a machine without a display is refused.
+    #[must_use]
+    pub fn display(&self) -> &dyn Display {
+        self.displays[0].as_ref()
+    }
+
+    /// The first display of a kind; `None` where the machine has none.
+    #[must_use]
+    pub fn display_of_kind<D: Display + 'static>(&self) -> Option<&D> {
+        self.displays.iter().find_map(|display| display.as_any().downcast_ref())
+    }
+
+    /// The number of a display's first surface.
+    pub(crate) fn first_surface(&self, display: usize) -> usize {
+        self.displays[..display].iter().map(|display| display.surfaces().len()).sum()
+    }
+
+    /// The surfaces of all displays, in the order of their numbers.
+    pub fn surfaces(&self) -> impl Iterator<Item = (SurfaceId, &Surface)> {
+        let all = self.displays.iter().flat_map(|display| display.surfaces());
+        (0..).map(SurfaceId).zip(all)
+    }
+
+    /// A surface by its number.
+    #[must_use]
+    pub fn surface(&self, id: SurfaceId) -> Option<&Surface> {
+        self.surfaces().nth(id.index()).map(|(_, surface)| surface)
+    }
+
+    /// What was observed so far.
+    #[must_use]
+    pub const fn observation(&self) -> &Observation {
+        &self.observation
+    }
+
+    /// All stages of all pictures, COPY as the displays saw it.
+    #[must_use]
+    pub fn stages(&self) -> Vec<StageSpan> {
+        self.observation.stages(self.message_span())
+    }
+
+    /// How long the longest message occupies a channel.
+    #[must_use]
+    pub const fn message_span(&self) -> Span {
+        self.ring.timing().occupancy(MAX_MESSAGE_WORDS)
+    }
+
+    /// The tick that begins a period of the first display.
+    #[must_use]
+    pub fn tick(&self, n: u64) -> Time {
+        self.display().tick(n)
+    }
+
+    /// Hash of everything that happened.
+    #[must_use]
+    pub const fn trace_hash(&self) -> TraceHash {
+        self.hash
+    }
+
+    /// Events handled in the whole run.
+    #[must_use]
+    pub const fn events(&self) -> u64 {
+        self.events
+    }
+}

@@ -1,0 +1,34 @@
+//! What an outcome says: latencies and where they go, errors in pixels, pictures, and all of it as a report.
+//!
+//! | question | answer |
+//! |---|---|
+//! | how long, and which part of the machine takes it | [`latency_parts`], [`latency_by_surface`], [`Budget`] |
+//! | how many pixels wrong | [`PixelErrors`], [`Registration`] |
+//! | what does the viewer see | [`picture`], [`side_by_side`], [`RasterOffsets`] |
+//! | everything as numbers with units | [`Report`], [`Measure`] |
+//!
+//! [`Measured`] gives an [`Outcome`] the most common of them as methods.
+
+mod budget;
+mod errors;
+mod latency;
+mod measured;
+mod pictures;
+mod quantity;
+mod raster;
+mod report;
+mod screen;
+mod summary;
+
+pub use budget::Budget;
+pub use errors::{FieldError, Percentiles, PixelErrors, Registration, UNJUDGED_FIELDS, pixel_errors};
+pub use latency::{
+    LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition, SurfaceStatistics, latency_by_surface, latency_parts,
+};
+pub use measured::Measured;
+pub use pictures::{picture, screen, side_by_side};
+pub use pxpl5_run::Outcome;
+pub use quantity::{Measure, QUANTITIES, Quantity, Results};
+pub use raster::{RasterOffsets, Vdrt};
+pub use report::{HeadReport, Report};
+pub use summary::summary;

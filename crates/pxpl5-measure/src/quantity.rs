@@ -1,0 +1,178 @@
+//! Quantities of a run by name, for tables, CSV and sweep rows.
+
+use crate::summary::summary;
+use crate::Report;
+use parameters::nearest;
+use pxpl5_gp::Stage;
+use pxpl5_machine::StageSpan;
+use pxpl5_run::{Outcome, Statistics, Summary};
+
+/// A quantity that can be measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Measure(&'static Quantity);
+
+/// What a quantity is, and how it is had.
+#[derive(Debug)]
+pub struct Quantity {
+    /// Its name, with the unit.
+    pub name: &'static str,
+    /// Its definition.
+    pub definition: &'static str,
+    value: Value,
+}
+
+impl PartialEq for Quantity {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Quantity {}
+
+#[derive(Debug)]
+enum Value {
+    /// At every level of modelling.
+    OfSummary(fn(&Summary) -> f64),
+    /// Where there are events.
+    OfRun(fn(&Outcome, &Report) -> Option<f64>),
+}
+
+const fn of_summary(name: &'static str, definition: &'static str, value: fn(&Summary) -> f64) -> Quantity {
+    Quantity { name, definition, value: Value::OfSummary(value) }
+}
+
+const fn of_run(name: &'static str, definition: &'static str, value: fn(&Outcome, &Report) -> Option<f64>) -> Quantity {
+    Quantity { name, definition, value: Value::OfRun(value) }
+}
+
+const LATENCY: &str = "latency as the pipeline defines it (see the report), over all pictures after the warm-up";
+
+const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields; only with a head.motion";
+
+/// All quantities. Those that need events have no value at the analytic level.
+pub static QUANTITIES: [Quantity; 28] = [
+    of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().mean),
+    of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().sd),
+    of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
+    of_summary("latency_fields.max", LATENCY, |s| s.latency_fields().max),
+    of_summary("latency_ms.mean", LATENCY, |s| s.latency_ms().mean),
+    of_summary("latency_ms.sd", LATENCY, |s| s.latency_ms().sd),
+    of_summary("latency_ms.min", LATENCY, |s| s.latency_ms().min),
+    of_summary("latency_ms.max", LATENCY, |s| s.latency_ms().max),
+    of_summary("updates_hz", "complete pictures per second of simulated time", |s| s.updates_hz),
+    of_summary("missed_retraces", "retraces missed, as the pipeline defines it", |s| s.missed_retraces as f64),
+    of_summary("region_copy_us", "mean port time of a region of 15,360 pixels", |s| s.region_copy_us),
+    of_summary(
+        "first_copy_ms",
+        "first to last word of the COPY of the left eye (Rendering Control), of the top regions or of all (Slats); mean",
+        |s| s.first_copy_ms,
+    ),
+    of_summary(
+        "last_copy_ms",
+        "first to last word of the COPY of the right eye, or of the bottom regions; mean; 0 where there is none",
+        |s| s.last_copy_ms,
+    ),
+    of_summary("copies_ms", "first_copy_ms and last_copy_ms together", |s| s.first_copy_ms + s.last_copy_ms),
+    of_summary("copy_begins_ms", "from the start of a picture to the first word of its first copy; mean", |s| {
+        s.copy_begins_ms
+    }),
+    of_summary("eye_ms", "from the start of an eye's TRANSFORM to the end of its COPY; mean; 0 for Slats", |s| {
+        Statistics::of(s.eye_latencies_ms.iter().copied()).mean
+    }),
+    of_run(
+        "to_light_ms",
+        "from the head's pose to the light of the picture's middle; mean; only with a head.motion",
+        |_, r| Some(r.head.as_ref()?.end_to_end.total_ms),
+    ),
+    of_run("error_px.mean", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.mean)),
+    of_run("error_px.p50", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p50)),
+    of_run("error_px.p90", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p90)),
+    of_run("error_px.p99", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p99)),
+    of_run("error_px.max", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.max)),
+    of_run("error_deg.mean", "error_px as an angle", |_, r| Some(r.head.as_ref()?.error.degrees.mean)),
+    of_run("late_regions", "regions that came after their deadline", |_, r| Some(r.late_regions as f64)),
+    of_run("pictures", "pictures after the warm-up", |_, r| Some(r.pictures as f64)),
+    of_run("events", "events of the simulation", |_, r| Some(r.events as f64)),
+    of_run("transform_ms", "mean time of TRANSFORM, an eye or a picture as the pipeline takes them", |o, _| {
+        stage_ms(o, Stage::Transform)
+    }),
+    of_run("render_ms", "mean time of RENDER, an eye or a picture as the pipeline takes them", |o, _| {
+        stage_ms(o, Stage::Render)
+    }),
+];
+
+impl Measure {
+    /// The quantity of this name.
+    ///
+    /// # Errors
+    ///
+    /// The nearest valid name.
+    pub fn named(name: &str) -> Result<Self, &'static str> {
+        let found = QUANTITIES.iter().find(|quantity| quantity.name == name).map(Self);
+        found.ok_or_else(|| nearest(name, QUANTITIES.iter().map(|q| q.name)).unwrap_or_default())
+    }
+
+    /// What is measured when nobody says what.
+    #[must_use]
+    pub fn usual() -> Vec<Self> {
+        let names = ["latency_fields.", "latency_ms.", "updates_hz", "missed_retraces"];
+        QUANTITIES.iter().filter(|q| names.iter().any(|name| q.name.starts_with(name))).map(Self).collect()
+    }
+
+    /// Its name, with the unit.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        self.0.name
+    }
+
+    /// Its definition.
+    #[must_use]
+    pub const fn definition(&self) -> &'static str {
+        self.0.definition
+    }
+
+    /// Its value; `None` when the run shows none.
+    #[must_use]
+    pub fn of(&self, results: &Results) -> Option<f64> {
+        let value = match self.0.value {
+            Value::OfSummary(value) => Some(value(&results.summary)),
+            Value::OfRun(value) => results.run.as_ref().and_then(|(outcome, report)| value(outcome, report)),
+        };
+        value.filter(|value| value.is_finite())
+    }
+}
+
+/// What came of an experiment at any level of modelling.
+#[derive(Debug)]
+pub struct Results {
+    /// At every level of modelling.
+    pub summary: Summary,
+    /// Where there are events.
+    pub run: Option<(Outcome, Report)>,
+}
+
+impl Results {
+    /// Of a run with events.
+    #[must_use]
+    pub fn of_run(outcome: Outcome) -> Self {
+        let report = Report::of(&outcome);
+        Self { summary: summary(&outcome), run: Some((outcome, report)) }
+    }
+
+    /// Of a closed form.
+    #[must_use]
+    pub const fn of_closed_form(summary: Summary) -> Self {
+        Self { summary, run: None }
+    }
+}
+
+/// Mean over the pictures after the warm-up.
+fn stage_ms(outcome: &Outcome, stage: Stage) -> Option<f64> {
+    let first = outcome.steady_pictures().first()?.picture;
+    let last = outcome.steady_pictures().last()?.picture;
+    let steady = |span: &StageSpan| span.stage == stage && (first..=last).contains(&span.picture);
+    let spans = outcome.stages().into_iter().filter(steady);
+    let mut times = spans.filter_map(|span| Some((span.end? - span.begin).as_ms())).peekable();
+    times.peek()?;
+    Some(Statistics::of(times).mean)
+}

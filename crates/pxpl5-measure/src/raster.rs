@@ -1,0 +1,120 @@
+//! The raster offset of VDRT: the picture is moved, as it is scanned out, by what its pose was wrong.
+
+use crate::errors::{Drawn, Shown, view_of};
+use glam::DVec2;
+use image::{Rgb, RgbImage};
+use pxpl5_display::Display;
+use pxpl5_run::{Follower, HeadViews, Outcome, Raster};
+use pxpl5_sim::Time;
+use tracking::view::{HmdView, RasterOffset};
+use tracking::{Pose, rotation};
+
+/// A raster that is shifted while it is scanned (Breglia 1981).
+///
+/// At the retrace the newest tracking data are used to predict the head for the field's first line; the picture is
+/// shifted by the yaw and the pitch between the pose that it was drawn for and this one, and during the field by their
+/// predicted rates. Roll and translation remain. A flat raster is shifted, not turned, so the edges keep an error.
+pub struct Vdrt<'a> {
+    head: &'a HeadViews,
+    follower: Follower,
+    display: &'a dyn Display,
+}
+
+impl std::fmt::Debug for Vdrt<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Vdrt").field("head", &self.head).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Vdrt<'a> {
+    /// A display behind a head's tracker.
+    #[must_use]
+    pub fn new(head: &'a HeadViews, display: &'a dyn Display) -> Self {
+        Self { head, follower: head.follower(), display }
+    }
+
+    /// The offset of a field whose picture was drawn for a pose. Fields must be asked for in rising order.
+    pub fn offset(&mut self, field: u64, drawn_for: &Pose) -> RasterOffset {
+        let known = self.display.tick(field);
+        let first = self.display.first_light(0, field).unwrap_or(known);
+        let field_span = self.display.tick(field + 1).since(known);
+        let [begin, end] = [first, first + field_span].map(|at| self.head.follow(&mut self.follower, known, at));
+        let seconds = field_span.as_ms() * 1e-3;
+        let rate = rotation::difference(begin.orientation, end.orientation) / seconds;
+        RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)
+    }
+}
+
+/// The offset of every field of a run.
+#[derive(Clone, Debug)]
+pub struct RasterOffsets<'a> {
+    display: &'a dyn Display,
+    view: HmdView,
+    offsets: Vec<Option<RasterOffset>>,
+}
+
+impl<'a> RasterOffsets<'a> {
+    /// As a run's head has them; `None` unless it looks at a raster that is shifted.
+    #[must_use]
+    pub fn of(outcome: &'a Outcome) -> Option<Self> {
+        let shifted = outcome.head().filter(|head| head.head().raster() == Raster::Vdrt);
+        shifted.map(|head| Self::of_run(outcome, head))
+    }
+
+    /// As they would be on such a raster. A field of which nothing is drawn, or not for one pose, has none.
+    pub(crate) fn of_run(outcome: &'a Outcome, head: &HeadViews) -> Self {
+        let display = outcome.record().display();
+        let shown = Shown::of_run(outcome, head);
+        let mut vdrt = Vdrt::new(head, display);
+        let offsets = (0..outcome.fields()).map(|field| {
+            let pose = pose_of_field(display, &shown, field)?;
+            Some(vdrt.offset(field, &pose))
+        });
+        Self { display, view: view_of(display), offsets: offsets.collect() }
+    }
+
+    /// Of a field.
+    #[must_use]
+    pub fn field(&self, field: u64) -> Option<&RasterOffset> {
+        self.offsets.get(usize::try_from(field).ok()?)?.as_ref()
+    }
+
+    /// A screen, the rows that are lit in a field shifted to whole pixels; black where nothing comes in, and where the
+    /// field has no offset the rows as they are.
+    pub fn shift_rows(&self, screen: &RgbImage, field: u64, shifted: &mut RgbImage) {
+        let offset = self.field(field);
+        let (first_row, row_distance) = self.display.rows_lit(field);
+        for y in (first_row..screen.height()).step_by(row_distance as usize) {
+            for x in 0..screen.width() {
+                let pixel = match offset {
+                    Some(offset) => self.shifted_pixel(screen, offset, field, [x, y]),
+                    None => *screen.get_pixel(x, y),
+                };
+                shifted.put_pixel(x, y, pixel);
+            }
+        }
+    }
+
+    /// The pixel that a shift brings to a place, from a row of the same field.
+    fn shifted_pixel(&self, screen: &RgbImage, offset: &RasterOffset, field: u64, [x, y]: [u32; 2]) -> Rgb<u8> {
+        let (first_row, row_distance) = self.display.rows_lit(field);
+        let at = self.display.lights(0, x, y, field).unwrap_or(Time::ZERO);
+        let shift = offset.shift_px(&self.view, at.0);
+        let row = (y - first_row) / row_distance;
+        let from = DVec2::new(f64::from(x) - shift.x, f64::from(row) - shift.y / f64::from(row_distance)).round();
+        let inside = from.x >= 0.0 && from.y >= 0.0;
+        let place = [from.x as u32, from.y as u32 * row_distance + first_row];
+        let pixel = inside.then(|| screen.get_pixel_checked(place[0], place[1])).flatten();
+        pixel.copied().unwrap_or(Rgb([0; 3]))
+    }
+}
+
+/// The one pose that all of a field was drawn for.
+fn pose_of_field(display: &dyn Display, shown: &Shown<'_>, field: u64) -> Option<Pose> {
+    let x = display.surfaces().first()?.width / 2;
+    let (y, _) = display.rows_lit(field);
+    match shown.drawn(x, y, field, display.lights(0, x, y, field)?)? {
+        Drawn::Pose(pose) => Some(pose),
+        Drawn::Between { .. } | Drawn::Shifted(..) => None,
+    }
+}

@@ -1,0 +1,165 @@
+//! Results as numbers, with units in the names.
+
+use crate::budget::Budget;
+use crate::errors::{PixelErrors, pixel_errors};
+use crate::latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
+use parameters::Value;
+use pxpl5_machine::LateRegion;
+use pxpl5_run::{DefinedStatistics, Head, Outcome, PictureTimes, Raster};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The numbers of one experiment.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Name and version of this record's layout.
+    pub schema: String,
+    /// Version of the program.
+    pub version: String,
+    /// Preset of the machine.
+    pub machine: String,
+    /// Name of everything on which the trace depends ([`pxpl5_run::Experiment::config_hash`]).
+    pub config_hash: String,
+    /// Level of modelling.
+    pub level: String,
+    /// Seed of the head motion.
+    pub seed: u64,
+    /// Pipeline.
+    pub pipeline: String,
+    /// Its keys and their values, as they take effect.
+    pub variant: String,
+    /// The display that it draws for.
+    pub display: String,
+    /// Parameters of the machine that differ from the preset's, by path.
+    pub overrides: BTreeMap<String, Value>,
+    /// Graphics processors.
+    pub n_gps: usize,
+    /// Renderers.
+    pub n_renderers: usize,
+    /// Scene.
+    pub scene: String,
+    /// Triangles in the scene.
+    pub triangles: usize,
+    /// Spheres in the scene.
+    pub spheres: usize,
+    /// Fields simulated.
+    pub fields: u64,
+    /// Pictures that the statistics are over.
+    pub pictures: usize,
+    /// Latency in periods of the display: for NTSC, fields of 1001/60000 s.
+    pub latency_fields: DefinedStatistics,
+    /// Latency in milliseconds.
+    pub latency_ms: DefinedStatistics,
+    /// Where the latency goes, in milliseconds: parts that add up to the way from the sample of the pose to light.
+    pub latency_parts_ms: Vec<NamedStatistics>,
+    /// Latency of each eye and of the pair to the end of COPY, to the swap and to light, in milliseconds; empty where the
+    /// eyes have no TRANSFORM of their own.
+    pub latency_by_eye_ms: Vec<SurfaceStatistics>,
+    /// Complete pictures per second of simulated time.
+    pub updates_hz: f64,
+    /// Retraces missed.
+    pub missed_retraces: u64,
+    /// What that means here.
+    pub missed_retraces_definition: String,
+    /// Regions that came after their deadline.
+    pub late_regions: usize,
+    /// The first of them; lateness in picoseconds.
+    pub first_late_regions: Vec<LateRegion>,
+    /// From the head to light; nothing of a run without a tracker.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub head: Option<HeadReport>,
+    /// Hash of everything that happened.
+    pub trace_hash: String,
+    /// Events handled.
+    pub events: u64,
+    /// Time that the run took on this host; nothing on a host without a clock.
+    pub host_seconds: Option<f64>,
+}
+
+/// What a tracker, a predictor and a display make of a pipeline.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HeadReport {
+    /// Tracker.
+    pub tracker: String,
+    /// Predictor.
+    pub predictor: String,
+    /// How the raster before the eyes shows the picture.
+    pub display: Raster,
+    /// From the head's pose to light, milliseconds.
+    pub end_to_end: Budget,
+    /// Where pixels are against where they should be.
+    pub error: PixelErrors,
+}
+
+impl HeadReport {
+    fn of_head(outcome: &Outcome, head: &Head) -> Option<Self> {
+        Some(Self {
+            tracker: head.tracker().config().name.clone(),
+            predictor: format!("{:?}", head.predictor_kind()),
+            display: head.raster(),
+            end_to_end: Budget::of(outcome),
+            error: pixel_errors(outcome)?,
+        })
+    }
+}
+
+/// How many of the late regions a report lists.
+const LATE_REGIONS_LISTED: usize = 20;
+
+impl Report {
+    /// Name and version of the layout.
+    pub const SCHEMA: &'static str = "pxpl5-report/1";
+
+    /// Everything that an outcome says, as numbers.
+    #[must_use]
+    pub fn of(outcome: &Outcome) -> Self {
+        let experiment = outcome.experiment();
+        let config = experiment.config();
+        let scene = experiment.scene();
+        let pipeline = outcome.pipeline();
+        let record = outcome.record();
+        let pictures = outcome.steady_pictures();
+        let late = pipeline.late_regions(record, outcome.end());
+        Self {
+            schema: Self::SCHEMA.to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            machine: config.preset.clone(),
+            config_hash: experiment.config_hash().to_string(),
+            level: experiment.level_of_modelling().name().to_owned(),
+            seed: experiment.seed_of_motion(),
+            pipeline: pipeline.name().to_owned(),
+            variant: pipeline.settings().iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" "),
+            display: record.display().name().to_owned(),
+            overrides: config.overrides(),
+            n_gps: config.n_gps,
+            n_renderers: config.n_renderers,
+            scene: scene.name().to_owned(),
+            triangles: scene.triangles().len(),
+            spheres: scene.spheres().len(),
+            fields: outcome.fields(),
+            pictures: pictures.len(),
+            latency_fields: outcome.latency_fields().defined(pipeline.latency_definition()),
+            latency_ms: outcome.latency_ms().defined(pipeline.latency_definition()),
+            latency_parts_ms: latency_part_statistics(outcome),
+            latency_by_eye_ms: latency_by_surface(outcome),
+            updates_hz: updates_hz(pictures) / pipeline.updates_per_picture(record),
+            missed_retraces: pipeline.missed_retraces(record, pictures),
+            missed_retraces_definition: pipeline.missed_definition().to_owned(),
+            late_regions: late.len(),
+            first_late_regions: late.into_iter().take(LATE_REGIONS_LISTED).collect(),
+            head: outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())),
+            trace_hash: record.trace_hash().to_string(),
+            events: record.events(),
+            host_seconds: outcome.host_seconds(),
+        }
+    }
+}
+
+/// Complete pictures per second of simulated time.
+fn updates_hz(pictures: &[PictureTimes]) -> f64 {
+    let complete: Vec<_> = pictures.iter().filter(|times| times.complete).collect();
+    match complete[..] {
+        [first, .., last] => (complete.len() - 1) as f64 * 1e3 / (last.shown_at - first.shown_at).as_ms(),
+        _ => 0.0,
+    }
+}

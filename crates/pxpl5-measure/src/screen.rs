@@ -1,0 +1,68 @@
+//! Which region's pixels are on the screen at any instant, from the arrivals of a run.
+
+use pxpl5_machine::Record;
+use pxpl5_run::region_at;
+use pxpl5_sim::Time;
+use pxpl5_wire::{CopyTarget, Lines, RegionGrid, RegionId, SurfaceId};
+
+/// What the first surface of a run shows.
+#[derive(Debug)]
+pub(crate) struct Screen {
+    cuts: Vec<Cut>,
+    /// Ticks from which on the other buffer is shown.
+    swaps: Vec<u64>,
+}
+
+/// All that came for one buffer in one cut, by region, in order of arrival.
+#[derive(Debug)]
+struct Cut {
+    of: CopyTarget,
+    regions: Vec<Vec<(Time, u64)>>,
+}
+
+impl Cut {
+    const fn key(target: &CopyTarget) -> (u8, Lines, RegionGrid) {
+        (target.buffer, target.lines, target.grid)
+    }
+
+    /// The newest picture in a pixel's region that had arrived by `at`.
+    fn newest(&self, x: u32, y: u32, at: Time) -> Option<(Time, CopyTarget)> {
+        let row = match self.of.lines {
+            Lines::Frame => y,
+            Lines::Field(parity) if y % 2 == parity.first_line() => y / 2,
+            Lines::Field(_) => return None,
+        };
+        let region = region_at(&self.of.grid, x, row);
+        let arrived = self.regions.get(usize::from(region.0))?;
+        let (time, picture) = *arrived[..arrived.partition_point(|a| a.0 <= at)].last()?;
+        Some((time, CopyTarget { region, picture, ..self.of }))
+    }
+}
+
+impl Screen {
+    pub(crate) fn of_record(record: &Record) -> Self {
+        let observation = record.observation();
+        let mut cuts: Vec<Cut> = Vec::new();
+        for arrival in observation.arrivals.iter().filter(|arrival| arrival.surface == SurfaceId(0)) {
+            let target = arrival.target;
+            let place = cuts.iter().position(|cut| Cut::key(&cut.of) == Cut::key(&target)).unwrap_or_else(|| {
+                let of = CopyTarget { region: RegionId(0), picture: 0, ..target };
+                cuts.push(Cut { of, regions: vec![Vec::new(); target.grid.regions() as usize] });
+                cuts.len() - 1
+            });
+            if let Some(region) = cuts[place].regions.get_mut(usize::from(target.region.0)) {
+                region.push((arrival.last_part_at, target.picture));
+            }
+        }
+        let swaps = observation.swaps_of(SurfaceId(0)).collect();
+        Self { cuts, swaps }
+    }
+
+    /// What a pixel of a field shows when the beam is there; `None` before anything came.
+    pub(crate) fn shown(&self, x: u32, y: u32, field: u64, at: Time) -> Option<CopyTarget> {
+        // Buffer 0 is shown first, and every swap shows the other one.
+        let buffer = (self.swaps.partition_point(|swap| *swap <= field) % 2) as u8;
+        let newest = self.cuts.iter().filter(|cut| cut.of.buffer == buffer).filter_map(|cut| cut.newest(x, y, at));
+        newest.max_by_key(|newest| newest.0).map(|newest| newest.1)
+    }
+}

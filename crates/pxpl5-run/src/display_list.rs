@@ -1,0 +1,84 @@
+//! From a scene to what graphics processors hold and hosts send.
+
+use crate::pipeline::{Views, ViewsWanted};
+use pphigs::{DisplayList, EyeView, Frame, FrameView, MAX_EDITS, ModelEdit, RecentViews, Structure};
+use pxpl5_display::Surface;
+use pxpl5_geometry::Sphere;
+use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Pose, Scene};
+use pxpl5_sim::Time;
+use std::sync::Arc;
+
+/// The scene's primitives as a display list.
+pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
+    if scene.triangles().is_empty() && scene.spheres().is_empty() {
+        return Err(format!("scene {} has neither triangles nor spheres", scene.name()));
+    }
+    let edits = scene.edits_at(0).len();
+    if edits > MAX_EDITS {
+        return Err(format!(
+            "scene {} moves {edits} structures a frame; the host sends at most {MAX_EDITS}",
+            scene.name()
+        ));
+    }
+    let structure = |s: &pxpl5_scene::Structure| Structure {
+        triangles: s.triangles.clone(),
+        spheres: s.spheres.clone(),
+        frame: match s.frame {
+            pxpl5_scene::Frame::World => Frame::World,
+            pxpl5_scene::Frame::Head => Frame::Head,
+        },
+    };
+    let sphere = |s: &pxpl5_scene::Sphere| Sphere { centre: s.centre, radius: s.radius, colour: s.colour };
+    let light = scene.lighting();
+    Ok(DisplayList {
+        positions: scene.vertices().iter().map(|v| v.position).collect(),
+        normals: scene.vertices().iter().map(|v| v.normal).collect(),
+        colours: scene.vertices().iter().map(|v| v.colour).collect(),
+        triangles: scene.triangles().to_vec(),
+        spheres: scene.spheres().iter().map(sphere).collect(),
+        structures: scene.structures().iter().map(structure).collect(),
+        towards_light: light.towards_light,
+        ambient: light.ambient,
+        diffuse: light.diffuse,
+        background: light.background,
+        recent: RecentViews::default(),
+    })
+}
+
+/// The view of a scene at a time from a pose, through the papers' head-mounted display.
+pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: u64, time: Time, pose: &Pose) -> FrameView {
+    let views = if eyes == 1 { vec![hmd.mono(pose)] } else { hmd.stereo(pose).to_vec() };
+    let eye = |v: &pxpl5_scene::View| EyeView {
+        world_to_eye: v.world_to_eye,
+        head_to_eye: v.head_to_eye,
+        projection: v.projection,
+    };
+    let edit = |e: &pxpl5_scene::Edit| ModelEdit { structure: e.structure as u32, model: e.model };
+    FrameView {
+        number,
+        eyes: views.iter().map(eye).collect(),
+        edits: scene.edits_at(time.0).iter().map(edit).collect(),
+    }
+}
+
+/// The papers' head-mounted display, before a surface of so many pixels.
+///
+/// # Panics
+///
+/// Never: every display has surfaces of 1 to 65,536 pixels each way.
+pub(crate) fn hmd_before(surface: Option<&Surface>) -> Hmd {
+    let unc = HmdConfig::unc();
+    let config = surface.map_or(unc, |surface| HmdConfig { width_px: surface.width, height_px: surface.height, ..unc });
+    Hmd::new(config).expect("a surface has pixels")
+}
+
+/// The views of the scene's own head motion with a seed: as sampled, and for the moment when they are seen.
+pub fn views(scene: &Arc<Scene>, seed: u64, hmd: Hmd, eyes: usize) -> (Views, ViewsWanted) {
+    let motion: HeadMotion = scene.motion().with_seed(seed);
+    let at = {
+        let scene = Arc::clone(scene);
+        move |number, time: Time| view(&scene, &hmd, eyes, number, time, &motion.pose(time.0))
+    };
+    let wanted = at.clone();
+    (Arc::new(at), Arc::new(move |number, _, shown_at| wanted(number, shown_at)))
+}

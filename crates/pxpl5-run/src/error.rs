@@ -1,0 +1,49 @@
+//! Why an experiment gives no result.
+
+use crate::{Outcome, WARM_UP_PICTURES};
+use pxpl5_machine::{ConfigError, RunError};
+use thiserror::Error;
+
+/// Why an experiment gave no result.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ExperimentError {
+    /// The machine or its numbers are impossible, or the pipeline cannot run on it.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// The number of fields is out of range.
+    #[error("fields must be {} to {}, found {found}", expected.0, expected.1)]
+    Fields {
+        /// Smallest and largest number.
+        expected: (u64, u64),
+        /// What was asked for.
+        found: u64,
+    },
+    /// Nothing was shown in the time given.
+    #[error(
+        "only {pictures} pictures were shown in {fields} fields and the first {WARM_UP_PICTURES} are discarded; simulate more fields"
+    )]
+    TooShort {
+        /// Fields simulated.
+        fields: u64,
+        /// Pictures that were shown; the first ones are discarded.
+        pictures: usize,
+    },
+    /// The analytic level has no events that an experiment could observe.
+    #[error("level: expected transaction or cycle, found analytic, which has no events (it is for sweeps and limits)")]
+    Level,
+    /// The scene has nothing to draw, or too many moving structures.
+    #[error("{0}")]
+    Scene(String),
+    /// Whoever watched the run ended it ([`crate::Experiment::run_stopping`]).
+    #[error("{0}")]
+    Stopped(String),
+    /// The run ended early; what was observed until then is kept.
+    #[error("{error} ({} pictures had been shown)", partial.pictures().len())]
+    Run {
+        /// What the machine could not do.
+        error: RunError,
+        /// Everything until then.
+        partial: Box<Outcome>,
+    },
+}

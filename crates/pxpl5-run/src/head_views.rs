@@ -1,0 +1,230 @@
+//! The poses that a pipeline asked for, and what became of each.
+
+use crate::display_list::view;
+use crate::head::Head;
+use crate::outcome::Outcome;
+use crate::pipeline::{ReportTimes, Views, ViewsWanted};
+use crate::statistics::Statistics;
+use glam::{DQuat, DVec3};
+use pphigs::FrameView;
+use pxpl5_scene::{Hmd, Scene};
+use pxpl5_sim::Time;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use tracking::Pose;
+use tracking::predict::Predictor;
+use tracking::tracker::Report;
+
+/// Most fields of a run with a tracker: its reports are held in memory. An hour and more.
+pub const FIELDS_WITH_HEAD: u64 = 250_000;
+
+/// A pose that a pipeline asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampled {
+    /// Number of the view.
+    pub number: u64,
+    /// Reports that had reached the host by then could be used.
+    pub known: Time,
+    /// When the newest report used was true; `None` before the first.
+    pub measured_at: Option<Time>,
+    /// When that report reached the host.
+    pub arrived_at: Option<Time>,
+    /// The moment that the pose was predicted for; `None` where the newest was taken as it is.
+    pub predicted_for: Option<Time>,
+    /// The pose in the scene's coordinates.
+    pub pose: Pose,
+}
+
+/// When views are seen, found by a run without prediction.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rehearsal {
+    seen_at: BTreeMap<u64, Time>,
+    mean_lead_ps: u64,
+}
+
+impl Rehearsal {
+    /// What a run showed.
+    pub(crate) fn of(outcome: &Outcome) -> Self {
+        let record = outcome.record();
+        let pipeline = outcome.pipeline();
+        let Some(head) = outcome.head() else { return Self::default() };
+        let mut seen_at = BTreeMap::new();
+        for times in outcome.pictures() {
+            seen_at.entry(times.view).or_insert_with(|| pipeline.light(record, times));
+        }
+        let leads = head.sampled().into_iter().filter_map(|s| Some(seen_at.get(&s.number)?.since(s.known).as_ms()));
+        let mean_lead_ps = (Statistics::of(leads).mean * 1e9) as u64;
+        Self { seen_at, mean_lead_ps }
+    }
+
+    fn shown_at(&self, number: u64, sampled_at: Time) -> Time {
+        let expected = Time(sampled_at.0 + self.mean_lead_ps);
+        self.seen_at.get(&number).copied().filter(|at| *at >= sampled_at).unwrap_or(expected)
+    }
+}
+
+/// What a pose of the predictor rests on.
+#[derive(Clone, Copy, Debug, Default)]
+struct Newest {
+    measured_at: Option<Time>,
+    arrived_at: Option<Time>,
+}
+
+/// Reports fed to a predictor as time goes on.
+pub struct Follower {
+    reports: Arc<[Report]>,
+    next: usize,
+    predictor: Box<dyn Predictor>,
+    newest: Newest,
+}
+
+impl Follower {
+    fn new(head: &Head, reports: Arc<[Report]>) -> Self {
+        Self { reports, next: 0, predictor: head.build_predictor(), newest: Newest::default() }
+    }
+
+    /// Takes what had arrived by `known`; asked for earlier times it does not forget.
+    pub(crate) fn follow(&mut self, known: Time) {
+        while let Some(report) = self.reports.get(self.next).filter(|report| report.arrives_ps <= known.0) {
+            let accepted = self.predictor.counts().accepted;
+            self.predictor.observe(report);
+            if self.predictor.counts().accepted > accepted {
+                let measured_at = Some(Time(report.measured_ps));
+        let arrived_at = Some(Time(report.arrives_ps));
+                self.newest = Newest { measured_at, arrived_at };
+            }
+            self.next += 1;
+        }
+    }
+
+    /// The pose at a time, in the tracker's coordinates; the start of the motion before the first report.
+    pub(crate) fn predict(&self, at: Time, start: &Pose) -> Pose {
+        if self.newest.measured_at.is_none() { *start } else { self.predictor.predict(at.0) }
+    }
+}
+
+/// The views of a head as its tracker tells of them, with a record of each.
+pub struct HeadViews {
+    head: Arc<Head>,
+    scene: Arc<Scene>,
+    hmd: Hmd,
+    eyes: usize,
+    reports: Arc<[Report]>,
+    rehearsal: Option<Rehearsal>,
+    /// Where the scene wants its viewer at time zero.
+    base: Pose,
+    start: Pose,
+    state: Mutex<(Follower, Vec<Sampled>)>,
+}
+
+impl fmt::Debug for HeadViews {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("HeadViews")
+            .field("head", &self.head)
+            .field("reports", &self.reports.len())
+            .finish_non_exhaustive()
+    }
+}
+
+impl HeadViews {
+    /// Reports until `until`. The motion begins where the scene's own begins and goes on from there.
+    pub(crate) fn new(
+        head: Arc<Head>,
+        scene: &Arc<Scene>,
+        (hmd, eyes): (Hmd, usize),
+        until: Time,
+        rehearsal: Option<Rehearsal>,
+    ) -> Self {
+        let all = head.tracker.reports(head.motion.as_ref(), head.seed);
+        let reports: Arc<[Report]> = all.take_while(|report| report.arrives_ps < until.0).collect();
+        let of_scene = scene.motion().pose(0);
+        let base =
+            Pose { position: of_scene.position.as_dvec3(), orientation: of_scene.orientation.as_dquat().normalize() };
+        let start = head.motion.pose(0);
+        let state = Mutex::new((Follower::new(&head, Arc::clone(&reports)), Vec::new()));
+        Self { head, scene: Arc::clone(scene), hmd, eyes, reports, rehearsal, base, start, state }
+    }
+
+    /// The functions that a pipeline is set up with.
+    pub(crate) fn functions(this: &Arc<Self>) -> (Views, ViewsWanted, ReportTimes) {
+        let [a, b, c] = [(); 3].map(|()| Arc::clone(this));
+        (
+            Arc::new(move |number, time| a.newest(number, time)),
+            Arc::new(move |number, known, shown_at| b.view(number, known, shown_at)),
+            Arc::new(move |after| c.report_after(after)),
+        )
+    }
+
+    fn state(&self) -> MutexGuard<'_, (Follower, Vec<Sampled>)> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn newest(&self, number: u64, time: Time) -> FrameView {
+        let shown_at = self.rehearsal.as_ref().map_or(time, |rehearsal| rehearsal.shown_at(number, time));
+        self.view(number, time, shown_at)
+    }
+
+    fn view(&self, number: u64, known: Time, shown_at: Time) -> FrameView {
+        let (follower, sampled) = &mut *self.state();
+        follower.follow(known);
+        let pose = self.in_scene(&follower.predict(shown_at, &self.start));
+        let Newest { measured_at, arrived_at } = follower.newest;
+        let predicted_for = self.head.predicts().then_some(shown_at);
+        sampled.push(Sampled { number, known, measured_at, arrived_at, predicted_for, pose });
+        let of_scene = pxpl5_scene::Pose { position: pose.position.as_vec3(), orientation: pose.orientation.as_quat() };
+        view(&self.scene, &self.hmd, self.eyes, number, shown_at, &of_scene)
+    }
+
+    fn report_after(&self, after: Time) -> Option<Time> {
+        let next = self.reports.partition_point(|report| report.arrives_ps <= after.0);
+        self.reports.get(next).map(|report| Time(report.arrives_ps))
+    }
+
+    /// A pose of the tracker in the scene: the motion's start is where the scene's own motion starts.
+    fn in_scene(&self, tracked: &Pose) -> Pose {
+        let turn: DQuat = self.base.orientation * self.start.orientation.conjugate();
+        let way: DVec3 = turn * (tracked.position - self.start.position);
+        Pose { position: self.base.position + way, orientation: (turn * tracked.orientation).normalize() }
+    }
+
+    /// Where the head truly is.
+    #[must_use]
+    pub fn truth(&self, time: Time) -> Pose {
+        self.in_scene(&self.head.motion.pose(time.0))
+    }
+
+    /// The head.
+    #[must_use]
+    pub fn head(&self) -> &Head {
+        &self.head
+    }
+
+    /// Distance from the head's start to the middle of the scene, metres; at least 0.1.
+    #[must_use]
+    pub fn distance_m(&self) -> f64 {
+        let (centre, _) = self.scene.bounding_sphere();
+        self.base.position.distance(centre.as_dvec3()).max(0.1)
+    }
+
+    /// Every pose that was asked for, in order of the numbers.
+    #[must_use]
+    pub fn sampled(&self) -> Vec<Sampled> {
+        let mut all = self.state().1.clone();
+        all.sort_by_key(|sampled| sampled.number);
+        all
+    }
+
+    /// A follower of the same reports, to ask for poses in rising order of time.
+    #[must_use]
+    pub fn follower(&self) -> Follower {
+        Follower::new(&self.head, Arc::clone(&self.reports))
+    }
+
+    /// What a follower knows, in the scene: from the reports that had arrived by `known`, for `at`.
+    #[must_use]
+    pub fn follow(&self, follower: &mut Follower, known: Time, at: Time) -> Pose {
+        follower.follow(known);
+        self.in_scene(&follower.predict(at, &self.start))
+    }
+}

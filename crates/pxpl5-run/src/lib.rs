@@ -1,0 +1,47 @@
+//! One experiment on the emulated Pixel-Planes 5: a machine, a pipeline, a scene and a head; and what came of it, as data.
+//!
+//! ```text
+//!   MachineConfig --+
+//!   Pipeline -------+--> Experiment --run--> Outcome: Record of the machine, times of every picture, poses that were used
+//!   Scene ----------+                           |
+//!   Head (tracker) -+                           +--> pxpl5-measure: latencies, errors in pixels, pictures
+//! ```
+//!
+//! Pipelines are entries of a [`Registry`]: whoever offers, reads or compares them iterates over it and names none.
+//!
+//! **Not here:** the computer that it runs on. A clock and threads are handed in by a [`Host`]; scenes come as values.
+
+mod display_list;
+mod displays;
+mod error;
+mod experiment;
+mod fingerprint;
+mod head;
+mod head_views;
+mod host;
+mod level;
+mod outcome;
+mod pipeline;
+mod pipelines;
+mod raster;
+mod registry;
+mod statistics;
+mod summary;
+
+pub use display_list::{display_list, views};
+pub use error::ExperimentError;
+pub use experiment::{Experiment, FIELDS_RANGE, Pixels, WARM_UP_PICTURES};
+pub use fingerprint::Fingerprint;
+pub use head::{Head, HeadError};
+pub use head_views::{FIELDS_WITH_HEAD, Follower, HeadViews, Rehearsal, Sampled};
+pub use host::{BareHost, Host};
+pub use level::Level;
+pub use outcome::Outcome;
+pub use pipeline::{PictureTimes, Pipeline, ReportTimes, Setup, Source, Views, ViewsWanted};
+pub use pipelines::{Code, Frameless, Interpolation, Jitp, RenderingControl, Slats, Viewpoint, region_at};
+pub use raster::Raster;
+pub use registry::{
+    ClosedForm, DisplayEntry, Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings, Registry, TestScene,
+};
+pub use statistics::{DefinedStatistics, Statistics};
+pub use summary::Summary;

@@ -1,0 +1,160 @@
+//! Pipelines as experiments see them.
+
+use crate::registry::KeyValue;
+use image::RgbImage;
+use pphigs::{DisplayList, FrameView};
+use pxpl5_gp::HostTiming;
+use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
+use pxpl5_renderer::Layout;
+use pxpl5_sim::Time;
+use pxpl5_wire::{CopyTarget, SurfaceId};
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// The view of a frame or update (by number) whose pose is sampled at a time.
+pub type Views = Arc<dyn Fn(u64, Time) -> FrameView + Send + Sync>;
+
+/// The view that firmware with a clock of its own asks for: number, the instant up to which the host's tracking data have
+/// reached it, and when the view will be seen.
+pub type ViewsWanted = Arc<dyn Fn(u64, Time, Time) -> FrameView + Send + Sync>;
+
+/// When the first report of the tracker after an instant reaches the host; `None` if none will.
+pub type ReportTimes = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;
+
+/// Where a part of the screen comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source {
+    /// A view, by number.
+    View(u64),
+    /// Places between those of two views.
+    Between {
+        /// The view at the begin.
+        from: u64,
+        /// The view at the end.
+        to: u64,
+        /// How much of the way, 0 to 1.
+        part: f64,
+        /// Whether places on the screen are interpolated, or positions in the view.
+        on_screen: bool,
+    },
+}
+
+/// What a pipeline is given to draw.
+#[derive(Clone)]
+pub struct Setup {
+    /// Primitives.
+    pub list: Arc<DisplayList>,
+    /// Transforms and edits.
+    pub views: Views,
+    /// The same for firmware that knows when a view will be seen.
+    pub wanted: ViewsWanted,
+    /// When the host has something new.
+    pub reports: ReportTimes,
+    /// The host's times.
+    pub host: HostTiming,
+    /// Whether somebody may want pixels.
+    pub pixels: bool,
+}
+
+/// One picture (a frame, or a field) and when it went through the machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PictureTimes {
+    /// Its number.
+    pub picture: u64,
+    /// Number of the view that it shows, or that its middle shows.
+    pub view: u64,
+    /// When its pose was sampled.
+    pub sampled_at: Option<Time>,
+    /// Start of TRANSFORM.
+    pub transform_at: Time,
+    /// End of COPY.
+    pub copied_at: Option<Time>,
+    /// The retrace from which on it is shown, or when the beam meets the part that stands for it.
+    pub shown_at: Time,
+    /// Whether all of it was there in time.
+    pub complete: bool,
+}
+
+/// A program of a whole machine, and what its pictures' times are.
+pub trait Pipeline: Debug + Send + Sync {
+    /// Name on the command line.
+    fn name(&self) -> &'static str;
+
+    /// Its keys and their values, as they take effect: with the name, everything that it is.
+    fn settings(&self) -> Vec<(&'static str, KeyValue)> {
+        Vec::new()
+    }
+
+    /// Pictures that it draws at a time, each for a surface of the first display: 1, or 2 for two eyes.
+    fn eyes(&self) -> usize;
+
+    /// How it divides pixel memory.
+    fn layout(&self) -> Layout;
+
+    /// The machine with what the pipeline's variant changes in it, such as the time of its code.
+    fn adapt(&self, config: MachineConfig) -> MachineConfig {
+        config
+    }
+
+    /// Loads its programs onto the boards.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError`] when the machine is not one on which it can run.
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError>;
+
+    /// The pictures shown before `end`, in order.
+    fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes>;
+
+    /// Regions that missed their deadline before `end`.
+    fn late_regions(&self, _record: &Record, _end: Time) -> Vec<LateRegion> {
+        Vec::new()
+    }
+
+    /// Retraces at which no complete new picture could be shown though there should have been one.
+    fn missed_retraces(&self, record: &Record, pictures: &[PictureTimes]) -> u64;
+
+    /// What latency means here, in a sentence.
+    fn latency_definition(&self) -> &'static str;
+
+    /// What a missed retrace means here, in a sentence.
+    fn missed_definition(&self) -> &'static str;
+
+    /// How many entries of [`Pipeline::pictures`] make a whole picture.
+    fn updates_per_picture(&self, _record: &Record) -> f64 {
+        1.0
+    }
+
+    /// Whether its firmware itself says when a view will be seen.
+    fn knows_when_seen(&self) -> bool {
+        false
+    }
+
+    /// Whether all of a picture is drawn for one pose, so that a raster can be shifted by what that was wrong.
+    fn has_one_pose(&self) -> bool {
+        true
+    }
+
+    /// Which of a picture's copies an arrival belongs to, where they are timed apart: 0, or 1 for the second.
+    fn copy_part(&self, _arrival: &Arrival) -> u8 {
+        0
+    }
+
+    /// The view that a part of a picture shows; `views` gives the view of a picture as in [`PictureTimes`].
+    fn source(&self, _record: &Record, target: &CopyTarget, views: &BTreeMap<u64, u64>) -> Option<Source> {
+        views.get(&target.picture).copied().map(Source::View)
+    }
+
+    /// When the light of a picture's middle comes.
+    fn light(&self, record: &Record, times: &PictureTimes) -> Time {
+        let display = record.display();
+        display.middle_light(0, display.period_at(times.shown_at)).unwrap_or(times.shown_at)
+    }
+
+    /// What stands before a viewer of a surface at the end of the run.
+    fn picture(&self, record: &Record, surface: SurfaceId) -> Option<RgbImage> {
+        let display = record.display();
+        display.seen(surface.index(), display.last_seen()?)
+    }
+}

@@ -1,0 +1,222 @@
+//! Frameless rendering on the emulated machine.
+
+use super::jitp::{config, load};
+use super::ntsc;
+use crate::pipeline::{PictureTimes, Pipeline, Setup};
+use crate::registry::{Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings, TestScene};
+use jitp::{BlockOrder, Schedule};
+use pphigs::{Counts, Share};
+use pxpl5_framebuffer::Video;
+use pxpl5_gp::Stage;
+use pxpl5_machine::{ConfigError, Machine, Record};
+use pxpl5_renderer::Layout;
+use pxpl5_sim::Time;
+use pxpl5_wire::{CopyTarget, RegionGrid, RegionId};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use tracking::view::RandomOrder;
+
+/// Blocks of the frame in a random order without repetition, each order with the newest view, shown at once.
+///
+/// A *pass* is every block once. The papers update single pixels; one alone would cost 17 words on the ring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frameless {
+    /// Width and height of a block, 4 to 128 pixels.
+    pub block: u32,
+    /// Blocks drawn with one view; 0 for as many as keep ring and GPs equally busy.
+    pub batch: u32,
+    /// Seed of the order.
+    pub seed: u64,
+}
+
+impl Frameless {
+    /// Blocks of 16 x 16 pixels: 16 words of overhead on the ring for 256.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { block: 16, batch: 0, seed: 1 }
+    }
+
+    /// While a slave transforms for one batch the others' blocks pass the frame buffer's port.
+    fn batch(&self, record: &Record, counts: Counts) -> u32 {
+        if self.batch > 0 {
+            return self.batch;
+        }
+        let ports = record.ports();
+        let ring = record.ring().timing();
+        let timing = record.config().gp;
+        let primitives =
+            u64::from(counts.triangles) * timing.triangle_ns + u64::from(counts.spheres) * timing.sphere_ns;
+        let slave_ns = timing.pass_ns + primitives + 3 * timing.message_ns;
+        let block_ns = ring.occupancy(self.block * self.block).0 / 1_000;
+        let slaves = ports.gps.len().saturating_sub(1).max(1) as u64;
+        (slave_ns / (slaves * block_ns)).clamp(LEAST_BATCH, MOST_BATCH) as u32
+    }
+
+    /// Blocks of a pass.
+    #[must_use]
+    pub fn blocks(&self) -> u32 {
+        self.grid().regions()
+    }
+
+    fn grid(&self) -> RegionGrid {
+        RegionGrid { region_width: self.block, region_height: self.block, ..RegionGrid::FRAME }
+    }
+
+    fn order(&self) -> Result<BlockOrder, ConfigError> {
+        let order = RandomOrder::new(self.blocks(), self.seed).map_err(|e| ConfigError::Board(e.to_string()))?;
+        Ok(BlockOrder::new(move |step| RegionId(order.pixel(step) as u16)))
+    }
+}
+
+impl Default for Frameless {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Blocks of a batch: fewer would let the master's 24 us for an order be the limit (assumed); more would hold a view
+/// for longer than it is new (assumed).
+const LEAST_BATCH: u64 = 4;
+const MOST_BATCH: u64 = 64;
+
+/// When the beam next reaches a region after an instant.
+fn next_light(video: &Video, target: &CopyTarget, after: Time) -> Time {
+    let now = video.field_at(after);
+    let reached = (now..now + 3).filter_map(|field| video.reaches(target, field)).find(|at| *at >= after);
+    reached.unwrap_or(after)
+}
+
+impl Pipeline for Frameless {
+    fn name(&self) -> &'static str {
+        ENTRY.name
+    }
+
+    fn settings(&self) -> Vec<(&'static str, KeyValue)> {
+        vec![
+            ("block", KeyValue::Whole(self.block.into())),
+            ("batch", KeyValue::Whole(self.batch.into())),
+            ("order_seed", KeyValue::Whole(self.seed)),
+        ]
+    }
+
+    fn eyes(&self) -> usize {
+        1
+    }
+
+    fn layout(&self) -> Layout {
+        Layout::slats()
+    }
+
+    fn knows_when_seen(&self) -> bool {
+        true
+    }
+
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+        if !(4..=128).contains(&self.block) {
+            let what = "block of frameless rendering, pixels".to_owned();
+            return Err(ConfigError::Value { what, expected: (4, 128), found: u64::from(self.block) });
+        }
+        let batch = self.batch(machine.record(), Share::new(Arc::clone(&setup.list), 0, 1).counts());
+        let schedule = Schedule::Roam { block: self.block, batch, order: self.order()? };
+        let config = config(machine.record(), schedule, self.layout(), setup.pixels)?;
+        load(machine, setup, &config);
+        Ok(())
+    }
+
+    /// Updates; the last block of each stands for it.
+    fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
+        let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
+        let observation = record.observation();
+        let video = display.video();
+        let mut last: BTreeMap<u64, (u32, Time, CopyTarget)> = BTreeMap::new();
+        for arrival in &observation.arrivals {
+            let count = last.get(&arrival.target.picture).map_or(0, |entry| entry.0) + 1;
+            last.insert(arrival.target.picture, (count, arrival.last_part_at, arrival.target));
+        }
+        let batch = last.values().map(|entry| entry.0).max().unwrap_or(1);
+        let taken = observation.marks.iter().filter(|mark| mark.stage == Stage::Sample);
+        let times = taken.filter_map(|mark| {
+            let (blocks, copied_at, target) = last.get(&mark.picture)?;
+            Some(PictureTimes {
+                picture: mark.picture,
+                view: mark.view.unwrap_or(mark.picture),
+                sampled_at: Some(mark.time),
+                transform_at: mark.time,
+                copied_at: Some(*copied_at),
+                shown_at: next_light(video, target, *copied_at),
+                complete: *blocks == batch,
+            })
+        });
+        let mut times: Vec<_> = times.filter(|times| times.complete && times.shown_at <= end).collect();
+        times.sort_by_key(|times| times.shown_at);
+        times
+    }
+
+    fn light(&self, _: &Record, times: &PictureTimes) -> Time {
+        times.shown_at
+    }
+
+    fn has_one_pose(&self) -> bool {
+        false
+    }
+
+    fn missed_retraces(&self, _: &Record, _: &[PictureTimes]) -> u64 {
+        0
+    }
+
+    fn latency_definition(&self) -> &'static str {
+        "from the order of a batch of blocks, for which the newest pose is taken, to the first light of its last block"
+    }
+
+    fn missed_definition(&self) -> &'static str {
+        "nothing: there are no frames to miss"
+    }
+
+    /// A pass is a whole picture.
+    fn updates_per_picture(&self, record: &Record) -> f64 {
+        let mut of_update: BTreeMap<u64, u32> = BTreeMap::new();
+        record.observation().arrivals.iter().for_each(|a| *of_update.entry(a.target.picture).or_default() += 1);
+        f64::from(self.blocks()) / f64::from(of_update.into_values().max().unwrap_or(1))
+    }
+}
+
+/// Frameless rendering in the registry.
+pub(super) const ENTRY: PipelineEntry = PipelineEntry {
+    name: "frameless",
+    family: "frameless",
+    about: "blocks in random order, each with the newest view, shown at once (frameless rendering, 1994)",
+    preset: "small-hmd",
+    keys: &[
+        Key {
+            name: "block",
+            about: "width and height of a block: 4 to 128 pixels",
+            values: KeyValues::Whole(4, 128),
+            sets: &[],
+        },
+        Key {
+            name: "batch",
+            about: "blocks drawn with one view; 0 for as many as keep ring and processors equally busy",
+            values: KeyValues::Whole(0, 65_535),
+            sets: &[],
+        },
+        Key {
+            name: "order_seed",
+            about: "seed of the order of the blocks",
+            values: KeyValues::Whole(0, i64::MAX as u64),
+            sets: &[],
+        },
+    ],
+    build,
+    limit: |_| LimitCriterion { goal: Goal::RateHz(30.0), scene: TestScene::FullScreen, fields: 24 },
+    closed_form: None,
+    compared: true,
+};
+
+fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
+    let new = Frameless::new();
+    Arc::new(Frameless {
+        block: settings.whole("block").map_or(new.block, |block| block as u32),
+        batch: settings.whole("batch").map_or(new.batch, |batch| batch as u32),
+        seed: settings.whole("order_seed").unwrap_or(new.seed),
+    })
+}

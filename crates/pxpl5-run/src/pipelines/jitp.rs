@@ -1,0 +1,286 @@
+//! Just-in-time pixels on the emulated machine.
+
+use super::ntsc;
+use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
+use crate::registry::{Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings, TestScene};
+use jitp::{Beam, Config, JitpTiming, Schedule, Transforms, Wanted, host, master, slave};
+use pphigs::Share;
+use pxpl5_framebuffer::Video;
+use pxpl5_gp::{Level, Stage};
+use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, Record};
+use pxpl5_renderer::Layout;
+use pxpl5_sim::Time;
+use pxpl5_wire::{CopyTarget, FieldParity, RegionGrid, RegionId};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+pub use jitp::{Reading as Interpolation, Viewpoint};
+
+/// A picture whose strips are drawn for their own moments, or in their own time (JITP).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Jitp {
+    /// The moments that the picture is computed for.
+    pub viewpoint: Viewpoint,
+    /// Whether strips reach the frame buffer just before the beam, or one field earlier.
+    pub racing: bool,
+    /// Lines of a strip, 1 to 128.
+    pub strip_rows: u32,
+}
+
+impl Jitp {
+    /// Strips of one line; of eight for a conventional picture, which gains nothing by finer ones.
+    #[must_use]
+    pub const fn new(viewpoint: Viewpoint, racing: bool) -> Self {
+        let strip_rows = if matches!(viewpoint, Viewpoint::Field) { 8 } else { 1 };
+        Self { viewpoint, racing, strip_rows }
+    }
+
+    /// All viewpoints, each without and with beam racing.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let viewpoints =
+            [Viewpoint::Field, Viewpoint::Strip, Viewpoint::Dual(Interpolation::Screen), Viewpoint::Dual(Interpolation::View)];
+        viewpoints.iter().flat_map(|v| [false, true].map(|racing| Self::new(*v, racing))).collect()
+    }
+
+    fn config(self, record: &Record, pixels: bool) -> Result<Config, ConfigError> {
+        let schedule = Schedule::Beam { viewpoint: self.viewpoint, racing: self.racing, strip_rows: self.strip_rows };
+        config(record, schedule, self.layout(), pixels)
+    }
+
+    fn is_middle(self, arrival: &Arrival) -> bool {
+        let grid = arrival.target.grid;
+        u32::from(arrival.target.region.0) / grid.columns() == grid.rows() / 2
+    }
+}
+
+/// The boards of a machine as the firmware wants them.
+pub(super) fn config(
+    record: &Record,
+    schedule: Schedule,
+    layout: Layout,
+    pixels: bool,
+) -> Result<Config, ConfigError> {
+    let ports = record.ports();
+    let display = ntsc(record, "this pipeline")?;
+    let config = Config {
+        host: ports.host,
+        master: ports.gps[0],
+        slaves: ports.gps[1..].to_vec(),
+        renderers: ports.renderers.clone(),
+        frame_buffer: ports.display()[0],
+        schedule,
+        beam: beam(*display.video()),
+        layout,
+        pixels,
+        timing: JitpTiming::PAPERS,
+    };
+    config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
+    Ok(config)
+}
+
+fn beam(video: Video) -> Beam {
+    Beam::new(move |field, row, x| {
+        let line = 2 * row + FieldParity::of_field(field).first_line();
+        video.when(x, line, field).unwrap_or_else(|| video.retrace(field))
+    })
+}
+
+/// Loads host, master and slaves.
+pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &Config) {
+    let gp = machine.processor(config.host, Level::Foreground);
+    let reports = Arc::clone(&setup.reports);
+    let program = host(gp, config.clone(), setup.host, move |after| reports(after));
+    machine.load(config.host, Level::Foreground, Box::pin(program));
+    let (gp, views) = (machine.processor(config.master, Level::Foreground), Arc::clone(&setup.wanted));
+    let counts = Share::new(Arc::clone(&setup.list), 0, 1).counts();
+    let view_of = move |wanted: Wanted| views(wanted.number, wanted.known, wanted.shown_at);
+    for (level, program) in master(&gp, config, counts, view_of) {
+        machine.load(config.master, level, program);
+    }
+    let transforms = Transforms::default();
+    for (index, node) in config.slaves.iter().enumerate() {
+        let gp = machine.processor(*node, Level::Foreground);
+        for (level, program) in slave(&gp, config, &setup.list, &transforms, index) {
+            machine.load(*node, level, program);
+        }
+    }
+}
+
+/// When a region's first pixel is scanned in its field.
+fn due(video: &Video, target: &CopyTarget) -> Time {
+    video.reaches(target, target.picture).unwrap_or_else(|| video.retrace(target.picture))
+}
+
+impl Pipeline for Jitp {
+    fn name(&self) -> &'static str {
+        match (self.viewpoint, self.racing) {
+            (Viewpoint::Field, false) => "jitp-field",
+            (Viewpoint::Field, true) => "jitp-field-racing",
+            (Viewpoint::Strip, false) => "jitp-scanline",
+            (Viewpoint::Strip, true) => "jitp-scanline-racing",
+            (Viewpoint::Dual(Interpolation::Screen), false) => "jitp-dual-screen",
+            (Viewpoint::Dual(Interpolation::Screen), true) => "jitp-dual-screen-racing",
+            (Viewpoint::Dual(Interpolation::View), false) => "jitp-dual-view",
+            (Viewpoint::Dual(Interpolation::View), true) => "jitp-dual-view-racing",
+        }
+    }
+
+    fn settings(&self) -> Vec<(&'static str, KeyValue)> {
+        vec![("strip_rows", KeyValue::Whole(self.strip_rows.into()))]
+    }
+
+    fn eyes(&self) -> usize {
+        1
+    }
+
+    fn layout(&self) -> Layout {
+        Layout::slats()
+    }
+
+    fn knows_when_seen(&self) -> bool {
+        true
+    }
+
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+        let config = self.config(machine.record(), setup.pixels)?;
+        load(machine, setup, &config);
+        Ok(())
+    }
+
+    fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
+        let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
+        let observation = record.observation();
+        let video = display.video();
+        let mut in_time: BTreeMap<u64, (u32, Option<Time>)> = BTreeMap::new();
+        for arrival in &observation.arrivals {
+            let entry = in_time.entry(arrival.target.picture).or_default();
+            entry.0 += u32::from(arrival.last_part_at <= due(video, &arrival.target));
+            if self.is_middle(arrival) {
+                entry.1 = entry.1.max(Some(arrival.last_part_at));
+            }
+        }
+        let grid = RegionGrid { region_height: self.strip_rows, ..RegionGrid::FIELD };
+        let middle_line = |field| 2 * (grid.rows() / 2 * self.strip_rows) + FieldParity::of_field(field).first_line();
+        let taken = observation.marks.iter().filter(|mark| mark.stage == Stage::Sample);
+        let times = taken.map(|mark| {
+            let (regions, copied_at) = in_time.get(&mark.picture).copied().unwrap_or_default();
+            let field = mark.picture;
+            PictureTimes {
+                picture: field,
+                view: mark.view.unwrap_or_default(),
+                sampled_at: Some(mark.time),
+                transform_at: mark.time,
+                copied_at,
+                shown_at: video.when(0, middle_line(field), field).unwrap_or_else(|| video.retrace(field)),
+                complete: regions == grid.regions(),
+            }
+        });
+        times.filter(|times| video.retrace(times.picture + 1) <= end).collect()
+    }
+
+    fn late_regions(&self, record: &Record, end: Time) -> Vec<LateRegion> {
+        let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
+        let video = display.video();
+        let arrived = record.observation().arrivals.iter().filter(|arrival| arrival.last_part_at < end);
+        let late = arrived.filter(|arrival| arrival.last_part_at > due(video, &arrival.target));
+        let region = |arrival: &Arrival| LateRegion {
+            field: arrival.target.picture,
+            surface: arrival.surface,
+            region: arrival.target.region.0,
+            lateness: arrival.last_part_at.since(due(video, &arrival.target)),
+        };
+        late.map(region).collect()
+    }
+
+    fn missed_retraces(&self, _: &Record, pictures: &[PictureTimes]) -> u64 {
+        let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return 0 };
+        let complete = pictures.iter().filter(|times| times.complete).count() as u64;
+        last.picture - first.picture + 1 - complete
+    }
+
+    fn latency_definition(&self) -> &'static str {
+        "from the order of the middle strip (or of the field, where one view serves all of it), for which the newest pose is taken, to the scan of that strip"
+    }
+
+    fn missed_definition(&self) -> &'static str {
+        "fields of which a strip came after its beam, or that were left out"
+    }
+
+    fn source(&self, record: &Record, target: &CopyTarget, _: &BTreeMap<u64, u64>) -> Option<Source> {
+        let field = target.picture;
+        let strip = u32::from(target.region.0) / target.grid.columns();
+        let view = |i: u32| Config::view_number(field, u64::from(i));
+        Some(match self.viewpoint {
+            Viewpoint::Field => Source::View(view(0)),
+            Viewpoint::Strip => Source::View(view(strip)),
+            Viewpoint::Dual(reading) => Source::Between {
+                from: view(0),
+                to: view(1),
+                part: self.config(record, false).ok()?.part(field, strip),
+                on_screen: reading == Interpolation::Screen,
+            },
+        })
+    }
+
+    fn has_one_pose(&self) -> bool {
+        self.viewpoint == Viewpoint::Field
+    }
+}
+
+/// The region of a grid that holds a pixel.
+#[must_use]
+pub fn region_at(grid: &RegionGrid, x: u32, row: u32) -> RegionId {
+    RegionId((row / grid.region_height * grid.columns() + x / grid.region_width) as u16)
+}
+
+const KEYS: &[Key] =
+    &[Key { name: "strip_rows", about: "lines of a strip: 1 to 128", values: KeyValues::Whole(1, 128), sets: &[] }];
+
+/// An entry of the registry, the variant of which says how it is built.
+const fn entry(name: &'static str, about: &'static str, build: fn(&PipelineSettings) -> Arc<dyn Pipeline>) -> PipelineEntry {
+    PipelineEntry {
+        name,
+        family: "jitp",
+        about,
+        preset: "small-hmd",
+        keys: KEYS,
+        build,
+        limit: |_| LimitCriterion { goal: Goal::NoMissedRetrace, scene: TestScene::FullScreen, fields: 24 },
+        closed_form: None,
+        compared: true,
+    }
+}
+
+fn build(viewpoint: Viewpoint, racing: bool, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
+    let jitp = Jitp::new(viewpoint, racing);
+    let strip_rows = settings.whole("strip_rows").map_or(jitp.strip_rows, |rows| rows as u32);
+    Arc::new(Jitp { strip_rows, ..jitp })
+}
+
+const SCREEN: Viewpoint = Viewpoint::Dual(Interpolation::Screen);
+const VIEW: Viewpoint = Viewpoint::Dual(Interpolation::View);
+
+/// Just-in-time pixels in the registry.
+pub(super) const ENTRIES: [PipelineEntry; 8] = [
+    entry("jitp-field", "a field drawn for its middle, a field ahead of the beam (JITP)", |settings| {
+        build(Viewpoint::Field, false, settings)
+    }),
+    entry("jitp-field-racing", "a field drawn for its middle, just before the beam (JITP)", |settings| {
+        build(Viewpoint::Field, true, settings)
+    }),
+    entry("jitp-scanline", "every line drawn for its own moment, a field ahead of the beam (JITP)", |settings| {
+        build(Viewpoint::Strip, false, settings)
+    }),
+    entry("jitp-scanline-racing", "every line drawn for its own moment, just before the beam (JITP)", |settings| {
+        build(Viewpoint::Strip, true, settings)
+    }),
+    entry("jitp-dual-screen", "lines between two views of a field, interpolated on the screen (JITP)", |settings| {
+        build(SCREEN, false, settings)
+    }),
+    entry("jitp-dual-screen-racing", "the same, just before the beam (JITP)", |settings| build(SCREEN, true, settings)),
+    entry("jitp-dual-view", "lines between two views of a field, interpolated before the projection (JITP)", |settings| {
+        build(VIEW, false, settings)
+    }),
+    entry("jitp-dual-view-racing", "the same, just before the beam (JITP)", |settings| build(VIEW, true, settings)),
+];

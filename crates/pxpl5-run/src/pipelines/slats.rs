@@ -1,0 +1,275 @@
+//! Slats on the emulated machine.
+
+use super::ntsc;
+use crate::pipeline::{PictureTimes, Pipeline, Setup};
+use crate::registry::{Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings, TestScene};
+use pphigs::{Binning, Share};
+use pxpl5_framebuffer::Video;
+use pxpl5_gp::{CodeVersion, GpTiming, Level, Stage};
+use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
+use pxpl5_renderer::Layout;
+use pxpl5_sim::Time;
+use pxpl5_wire::{CopyTarget, RegionGrid};
+use slats::{Config, Copy as CopySchedule, host, processor};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+/// Which code runs on the GP: only its time differs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Code {
+    /// The prototype of 1994 (TR94).
+    Of1994,
+    /// The code of 1995 (I3D95).
+    Of1995,
+    /// A third of the time of 1994: code that fits the instruction cache (I3D95).
+    Optimised,
+}
+
+impl Code {
+    const fn timing(self) -> GpTiming {
+        match self {
+            Self::Of1994 => GpTiming::SLATS_1994,
+            Self::Of1995 => GpTiming::SLATS_1995,
+            Self::Optimised => GpTiming::SLATS_OPTIMISED,
+        }
+    }
+
+    /// The i860 code that stands for it where clocks are counted.
+    const fn version(self) -> CodeVersion {
+        match self {
+            Self::Of1994 | Self::Of1995 => CodeVersion::Compiled,
+            Self::Optimised => CodeVersion::Scheduled,
+        }
+    }
+}
+
+/// One new image every field (TR94, I3D95).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slats {
+    /// When regions are copied.
+    pub copy: CopySchedule,
+    /// Who gets the commands of a clump.
+    pub binning: Binning,
+    /// The code, where it is not that of the machine's preset.
+    pub code: Option<Code>,
+}
+
+impl Slats {
+    /// The prototype with the COPY optimisation (TR94).
+    #[must_use]
+    pub const fn split() -> Self {
+        Self { copy: CopySchedule::Split, binning: Binning::All, code: None }
+    }
+
+    /// The prototype without the COPY optimisation (TR94).
+    #[must_use]
+    pub const fn whole() -> Self {
+        Self { copy: CopySchedule::Whole, binning: Binning::All, code: None }
+    }
+
+    /// Whole copies into the other buffer, so that the last complete field stands in for one that is late.
+    #[must_use]
+    pub const fn backup() -> Self {
+        Self { copy: CopySchedule::Backup, binning: Binning::All, code: None }
+    }
+
+    fn config(&self, machine: &Machine, pixels: bool) -> Config {
+        let ports = machine.ports();
+        Config {
+            host: ports.host,
+            processors: ports.gps.clone(),
+            renderers: ports.renderers.clone(),
+            frame_buffers: [ports.display()[0], ports.display()[1]],
+            copy: self.copy,
+            binning: self.binning,
+            layout: self.layout(),
+            pixels,
+        }
+    }
+
+    fn is_due_before_retrace(&self, arrival: &Arrival) -> bool {
+        let top = u32::from(arrival.target.region.0) < RegionGrid::FIELD.columns();
+        !self.copy.is_split() || top
+    }
+}
+
+impl Pipeline for Slats {
+    fn name(&self) -> &'static str {
+        ENTRY.name
+    }
+
+    fn settings(&self) -> Vec<(&'static str, KeyValue)> {
+        let mut all = vec![("copy", name(&COPIES, &self.copy)), ("binning", name(&BINNINGS, &self.binning))];
+        all.extend(self.code.map(|code| ("code", name(&CODES, &code))));
+        all
+    }
+
+    fn eyes(&self) -> usize {
+        2
+    }
+
+    fn layout(&self) -> Layout {
+        Layout::slats()
+    }
+
+    /// The code decides the times per primitive, nothing else.
+    fn adapt(&self, config: MachineConfig) -> MachineConfig {
+        let Some(code) = self.code else { return config };
+        let GpTiming { triangle_ns, sphere_ns, bin_entry_ns, .. } = code.timing();
+        let gp = GpTiming { triangle_ns, sphere_ns, bin_entry_ns, ..config.gp };
+        MachineConfig { gp, code: code.version(), ..config }
+    }
+
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+        ntsc(machine.record(), self.name())?;
+        let config = self.config(machine, setup.pixels);
+        let binding = config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
+        let (foreground, views) = (Level::Foreground, setup.views.clone());
+        let gp = machine.processor(config.host, foreground);
+        let program = host(gp, config.clone(), setup.host, move |update, time| views(update, time));
+        machine.load(config.host, foreground, Box::pin(program));
+        for (index, node) in config.processors.iter().enumerate() {
+            let gp = machine.processor(*node, foreground);
+            let share = Share::new(Arc::clone(&setup.list), index, config.processors.len());
+            for (level, program) in processor(&gp, &config, &binding, share, index) {
+                machine.load(*node, level, Box::pin(program));
+            }
+        }
+        Ok(())
+    }
+
+    fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
+        let observation = record.observation();
+        let late: BTreeSet<u64> = self.late_regions(record, end).iter().map(|region| region.field).collect();
+        let mut arrivals: BTreeMap<u64, (usize, Time)> = BTreeMap::new();
+        for arrival in &observation.arrivals {
+            let entry = arrivals.entry(arrival.target.picture).or_default();
+            *entry = (entry.0 + 1, entry.1.max(arrival.last_part_at));
+        }
+        let leader = record.ports().gps[0];
+        let begun = observation.marks.iter().filter(|mark| mark.stage == Stage::Sample && mark.node == leader);
+        let times = begun.map(|mark| {
+            let (regions, copied_at) = arrivals.get(&mark.picture).copied().unwrap_or_default();
+            let whole = regions == 2 * RegionGrid::FIELD.regions() as usize;
+            PictureTimes {
+                picture: mark.picture,
+                view: mark.view.unwrap_or(mark.picture),
+                sampled_at: Some(mark.time),
+                transform_at: mark.time,
+                copied_at: whole.then_some(copied_at),
+                shown_at: record.tick(mark.picture),
+                complete: whole && !late.contains(&mark.picture),
+            }
+        });
+        // A field whose bottom half is still being scanned is judged by the next run.
+        let judged = |times: &PictureTimes| record.tick(times.picture + 1) <= end;
+        times.filter(judged).collect()
+    }
+
+    fn late_regions(&self, record: &Record, end: Time) -> Vec<LateRegion> {
+        let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
+        let arrivals = record.observation().arrivals.iter().filter(|arrival| arrival.last_part_at < end);
+        let late = arrivals.filter_map(|arrival| {
+            let due = deadline(display.video(), &arrival.target, self.is_due_before_retrace(arrival));
+            let region = LateRegion {
+                field: arrival.target.picture,
+                surface: arrival.surface,
+                region: arrival.target.region.0,
+                lateness: arrival.last_part_at.since(due),
+            };
+            (arrival.last_part_at > due).then_some(region)
+        });
+        late.collect()
+    }
+
+    /// Fields of which something was late or missing, and fields that were left out.
+    fn missed_retraces(&self, _: &Record, pictures: &[PictureTimes]) -> u64 {
+        let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return 0 };
+        let complete = pictures.iter().filter(|times| times.complete).count() as u64;
+        last.picture - first.picture + 1 - complete
+    }
+
+    fn latency_definition(&self) -> &'static str {
+        "from the retrace at which the newest view is taken and TRANSFORM starts to the retrace from which on the field is scanned out"
+    }
+
+    fn missed_definition(&self) -> &'static str {
+        "fields of which a region came after its deadline (the retrace; for the bottom regions of a split copy the scan of their first line), or that were left out"
+    }
+
+    /// The halves of a split copy are timed apart.
+    fn copy_part(&self, arrival: &Arrival) -> u8 {
+        let bottom = u32::from(arrival.target.region.0) >= RegionGrid::FIELD.columns();
+        u8::from(bottom && self.copy.is_split())
+    }
+}
+
+/// When a region of a field must be complete.
+fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
+    let retrace = video.retrace(target.picture);
+    if before_retrace { retrace } else { video.reaches(target, target.picture).unwrap_or(retrace) }
+}
+
+const COPIES: [(&str, CopySchedule); 3] =
+    [("whole", CopySchedule::Whole), ("split", CopySchedule::Split), ("backup", CopySchedule::Backup)];
+const BINNINGS: [(&str, Binning); 2] = [("all", Binning::All), ("touched", Binning::Touched)];
+const CODES: [(&str, Code); 3] = [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
+
+/// The name of a choice.
+fn name<T: PartialEq>(choices: &[(&'static str, T)], value: &T) -> KeyValue {
+    KeyValue::Name(choices.iter().find(|(_, choice)| choice == value).map_or("", |(name, _)| name))
+}
+
+/// The choice of a name.
+fn chosen<T: Copy>(choices: &[(&'static str, T)], name: Option<&str>) -> Option<T> {
+    choices.iter().find(|(choice, _)| Some(*choice) == name).map(|(_, value)| *value)
+}
+
+/// Slats in the registry.
+pub(super) const ENTRY: PipelineEntry = PipelineEntry {
+    name: "slats",
+    family: "slats",
+    about: "a new picture every field, all of it between two retraces (TR94, I3D95)",
+    preset: "slats",
+    keys: &[
+        Key {
+            name: "copy",
+            about: "when regions are copied: whole (all before the retrace), split (the bottom ones after it) or backup (whole, \
+                    and the last complete field stands in for a late one; beyond the prototype)",
+            values: KeyValues::Names(&[COPIES[0].0, COPIES[1].0, COPIES[2].0]),
+            sets: &[],
+        },
+        Key {
+            name: "binning",
+            about: "who gets a clump: all regions, or those touched",
+            values: KeyValues::Names(&[BINNINGS[0].0, BINNINGS[1].0]),
+            sets: &[],
+        },
+        Key {
+            name: "code",
+            about: "code of 1994, 1995 or optimised: times per primitive, where not those of the machine",
+            values: KeyValues::Names(&[CODES[0].0, CODES[1].0, CODES[2].0]),
+            sets: &["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"],
+        },
+    ],
+    build,
+    limit,
+    closed_form: None,
+    compared: true,
+};
+
+fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
+    let split = Slats::split();
+    Arc::new(Slats {
+        copy: chosen(&COPIES, settings.name("copy")).unwrap_or(split.copy),
+        binning: chosen(&BINNINGS, settings.name("binning")).unwrap_or(split.binning),
+        code: chosen(&CODES, settings.name("code")),
+    })
+}
+
+/// A clump goes to all regions unless it is said to go where it is seen: then small triangles are the fair load.
+fn limit(settings: &PipelineSettings) -> LimitCriterion {
+    let touched = settings.name("binning") == Some(BINNINGS[1].0);
+    let scene = if touched { TestScene::Typical } else { TestScene::FullScreen };
+    LimitCriterion { goal: Goal::NoMissedRetrace, scene, fields: 16 }
+}

@@ -1,0 +1,252 @@
+//! Which pipelines and displays there are. Whoever offers, reads, compares or limits them iterates over a [`Registry`].
+
+use crate::pipeline::Pipeline;
+use crate::pipelines;
+use crate::{Experiment, ExperimentError, Summary};
+use parameters::nearest;
+use pxpl5_display::DisplayConfig;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
+
+/// The value of a pipeline's key.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum KeyValue {
+    /// True or false.
+    Flag(bool),
+    /// A whole number.
+    Whole(u64),
+    /// One of some names.
+    Name(&'static str),
+}
+
+impl fmt::Display for KeyValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flag(flag) => flag.fmt(f),
+            Self::Whole(number) => number.fmt(f),
+            Self::Name(name) => name.fmt(f),
+        }
+    }
+}
+
+/// The values that a key takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KeyValues {
+    /// True or false.
+    Flag,
+    /// Whole numbers from the first to the second.
+    Whole(u64, u64),
+    /// These names.
+    Names(&'static [&'static str]),
+}
+
+impl fmt::Display for KeyValues {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flag => f.write_str("true or false"),
+            Self::Whole(low, high) => write!(f, "{low} to {high}"),
+            Self::Names([]) => Ok(()),
+            Self::Names([name]) => f.write_str(name),
+            Self::Names([first @ .., last]) => write!(f, "{} or {last}", first.join(", ")),
+        }
+    }
+}
+
+/// A key of a pipeline: in experiment files `name = value`, on the command line `--name value`.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// Its name in experiment files; on the command line `_` is written `-`.
+    pub name: &'static str,
+    /// What it sets, in a line of help.
+    pub about: &'static str,
+    /// What it takes.
+    pub values: KeyValues,
+    /// Machine parameters that it sets too, and that must therefore not be given beside it.
+    pub sets: &'static [&'static str],
+}
+
+/// The keys of a pipeline that somebody has given, checked against its [`Key`]s.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PipelineSettings {
+    values: BTreeMap<&'static str, KeyValue>,
+}
+
+impl PipelineSettings {
+    /// Gives a key a value.
+    pub fn set(&mut self, key: &'static str, value: KeyValue) {
+        self.values.insert(key, value);
+    }
+
+    /// The value of a key that takes true or false; `None` if it was not given.
+    #[must_use]
+    pub fn flag(&self, key: &str) -> Option<bool> {
+        if let Some(KeyValue::Flag(flag)) = self.values.get(key) { Some(*flag) } else { None }
+    }
+
+    /// The value of a key that takes whole numbers; `None` if it was not given.
+    #[must_use]
+    pub fn whole(&self, key: &str) -> Option<u64> {
+        if let Some(KeyValue::Whole(number)) = self.values.get(key) { Some(*number) } else { None }
+    }
+
+    /// The value of a key that takes names; `None` if it was not given.
+    #[must_use]
+    pub fn name(&self, key: &str) -> Option<&'static str> {
+        if let Some(KeyValue::Name(name)) = self.values.get(key) { Some(name) } else { None }
+    }
+}
+
+/// What must hold when a pipeline is said to draw a scene in time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Goal {
+    /// No retrace is missed.
+    NoMissedRetrace,
+    /// At least so many updates per second, counted as the papers count: 30 and 60 stand for NTSC's 29.97 and 59.94.
+    RateHz(f64),
+    /// A mean latency of at most so many fields.
+    LatencyFields(f64),
+}
+
+/// What the scene of a limit is made of as it grows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TestScene {
+    /// Triangles that cover the whole screen.
+    FullScreen,
+    /// Small triangles spread over the screen, of a size that touches 1.3 regions an eye on average (TR94).
+    Typical,
+}
+
+/// How the most triangles that a pipeline draws in time are found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimitCriterion {
+    /// What must hold.
+    pub goal: Goal,
+    /// The triangles.
+    pub scene: TestScene,
+    /// Fields that each size is simulated for: enough to show a steady state.
+    pub fields: u64,
+}
+
+/// The closed form of a pipeline: an experiment without events.
+pub type ClosedForm = fn(&Experiment) -> Result<Summary, ExperimentError>;
+
+/// A pipeline as everybody finds it.
+#[derive(Clone, Copy, Debug)]
+pub struct PipelineEntry {
+    /// Its name in experiment files and on the command line.
+    pub name: &'static str,
+    /// The name that it shares with its variants.
+    pub family: &'static str,
+    /// What it is and where it was published, in a line.
+    pub about: &'static str,
+    /// The preset of the machine on which its papers ran it, or could have.
+    pub preset: &'static str,
+    /// Its own keys.
+    pub keys: &'static [Key],
+    /// Makes it of its keys; those not given have the values of its papers.
+    pub build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
+    /// When it is said to draw a scene in time, with the keys given.
+    pub limit: fn(&PipelineSettings) -> LimitCriterion,
+    /// Its closed form, if it has one.
+    pub closed_form: Option<ClosedForm>,
+    /// Whether `compare` has a row of it.
+    pub compared: bool,
+}
+
+/// A display as everybody finds it.
+#[derive(Clone, Copy, Debug)]
+pub struct DisplayEntry {
+    /// Its name in experiment files and on the command line.
+    pub name: &'static str,
+    /// The numbers of its papers.
+    pub config: fn() -> Box<dyn DisplayConfig>,
+}
+
+/// The pipelines and displays that are known.
+#[derive(Clone, Debug)]
+pub struct Registry {
+    pipelines: Vec<PipelineEntry>,
+    displays: Vec<DisplayEntry>,
+}
+
+impl Registry {
+    /// Those of the papers. Their closed forms are added by the crate that has them.
+    #[must_use]
+    pub fn of_papers() -> Self {
+        Self { pipelines: pipelines::entries(), displays: crate::displays::entries() }
+    }
+
+    /// Adds a pipeline, or puts it in the place of the one of the same name.
+    pub fn add(&mut self, entry: PipelineEntry) {
+        match self.pipelines.iter_mut().find(|known| known.name == entry.name) {
+            Some(known) => *known = entry,
+            None => self.pipelines.push(entry),
+        }
+    }
+
+    /// Adds a display, or puts it in the place of the one of the same name.
+    pub fn add_display(&mut self, entry: DisplayEntry) {
+        match self.displays.iter_mut().find(|known| known.name == entry.name) {
+            Some(known) => *known = entry,
+            None => self.displays.push(entry),
+        }
+    }
+
+    /// Says the closed form of a family.
+    pub fn closed_form(&mut self, family: &str, form: ClosedForm) {
+        let of_family = self.pipelines.iter_mut().filter(|entry| entry.family == family);
+        of_family.for_each(|entry| entry.closed_form = Some(form));
+    }
+
+    /// All pipelines, in the order in which they were added.
+    #[must_use]
+    pub fn pipelines(&self) -> &[PipelineEntry] {
+        &self.pipelines
+    }
+
+    /// All displays, in the order in which they were added.
+    #[must_use]
+    pub fn displays(&self) -> &[DisplayEntry] {
+        &self.displays
+    }
+
+    /// The pipeline of this name.
+    ///
+    /// # Errors
+    ///
+    /// The nearest valid name.
+    pub fn pipeline(&self, name: &str) -> Result<&PipelineEntry, &'static str> {
+        let found = self.pipelines.iter().find(|entry| entry.name == name);
+        found.ok_or_else(|| nearest(name, self.pipelines.iter().map(|entry| entry.name)).unwrap_or_default())
+    }
+
+    /// The display of this name.
+    ///
+    /// # Errors
+    ///
+    /// The nearest valid name.
+    pub fn display(&self, name: &str) -> Result<&DisplayEntry, &'static str> {
+        let found = self.displays.iter().find(|entry| entry.name == name);
+        found.ok_or_else(|| nearest(name, self.displays.iter().map(|entry| entry.name)).unwrap_or_default())
+    }
+
+    /// The keys of all pipelines, each once, with the families that have it.
+    #[must_use]
+    pub fn keys(&self) -> Vec<(Key, Vec<&'static str>)> {
+        let mut all: Vec<(Key, Vec<&'static str>)> = Vec::new();
+        for entry in &self.pipelines {
+            for key in entry.keys {
+                match all.iter_mut().find(|(known, _)| known.name == key.name) {
+                    Some((_, families)) if families.contains(&entry.family) => {}
+                    Some((_, families)) => families.push(entry.family),
+                    None => all.push((*key, vec![entry.family])),
+                }
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,65 @@
+//! Mean and spread of some numbers.
+
+use serde::{Deserialize, Serialize};
+
+/// Mean, sample standard deviation, least and greatest of some numbers. All zero for none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Statistics {
+    /// Sum over number.
+    pub mean: f64,
+    /// Sample standard deviation (n - 1).
+    pub sd: f64,
+    /// The smallest of the numbers.
+    pub min: f64,
+    /// The largest of the numbers.
+    pub max: f64,
+}
+
+impl Statistics {
+    /// Of some numbers.
+    #[must_use]
+    pub fn of(values: impl Iterator<Item = f64>) -> Self {
+        let values: Vec<f64> = values.collect();
+        if values.is_empty() {
+            return Self::default();
+        }
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let squares = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
+        Self {
+            mean,
+            sd: if values.len() > 1 { (squares / (n - 1.0)).sqrt() } else { 0.0 },
+            min: values.iter().copied().fold(f64::INFINITY, f64::min),
+            max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+
+    /// With what they are statistics of.
+    #[must_use]
+    pub fn defined(self, definition: &str) -> DefinedStatistics {
+        DefinedStatistics { statistics: self, definition: definition.to_owned() }
+    }
+}
+
+/// Statistics with their definition beside them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DefinedStatistics {
+    /// The four numbers.
+    #[serde(flatten)]
+    pub statistics: Statistics,
+    /// What they are of, in a sentence.
+    pub definition: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn statistics_of_a_known_sample() {
+        let s = Statistics::of([2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0].into_iter());
+        assert_eq!((s.mean, s.min, s.max), (5.0, 2.0, 9.0));
+        assert!((s.sd - (32.0f64 / 7.0).sqrt()).abs() < 1e-12);
+        assert_eq!(Statistics::of(std::iter::empty()), Statistics::default());
+    }
+}

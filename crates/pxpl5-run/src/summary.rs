@@ -1,0 +1,40 @@
+//! What came of an experiment as a few numbers, whatever the level of modelling.
+
+use crate::statistics::Statistics;
+
+/// What came of an experiment at any level of modelling, over the pictures after the warm-up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Latency of every picture as its pipeline defines it, milliseconds.
+    pub latencies_ms: Vec<f64>,
+    /// A period of the display, milliseconds: an NTSC field.
+    pub field_ms: f64,
+    /// Complete pictures a second.
+    pub updates_hz: f64,
+    /// Missed retraces, as the pipeline defines them.
+    pub missed_retraces: u64,
+    /// From the start of an eye's TRANSFORM to the end of its COPY, milliseconds; empty where eyes have none of their own.
+    pub eye_latencies_ms: Vec<f64>,
+    /// Port time of a region of 15,360 pixels, microseconds.
+    pub region_copy_us: f64,
+    /// First to last word of a picture's first copy (see [`Pipeline::copy_part`](crate::Pipeline::copy_part)), milliseconds.
+    pub first_copy_ms: f64,
+    /// The same of its second copy; 0 where there is none.
+    pub last_copy_ms: f64,
+    /// From the start of a picture to the first word of its first copy, milliseconds.
+    pub copy_begins_ms: f64,
+}
+
+impl Summary {
+    /// Latency in milliseconds.
+    #[must_use]
+    pub fn latency_ms(&self) -> Statistics {
+        Statistics::of(self.latencies_ms.iter().copied())
+    }
+
+    /// Latency in periods of the display: for NTSC, fields of 1001/60000 s.
+    #[must_use]
+    pub fn latency_fields(&self) -> Statistics {
+        Statistics::of(self.latencies_ms.iter().map(|ms| ms / self.field_ms))
+    }
+}
