@@ -1,10 +1,10 @@
 //! What a machine is built of, and the presets of the papers.
 
+use parameters::{ParameterInfo, ParameterTable};
 use pxpl5_framebuffer::FrameBufferConfig;
 use pxpl5_gp::{GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
-use pxpl5_sim::{ParameterError, ParameterInfo, ParameterTable};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -234,7 +234,7 @@ impl MachineConfig {
     ///
     /// [`ConfigError::UnknownParameter`] with the nearest valid path.
     pub fn set(&mut self, path: &str, value: u64) -> Result<(), ConfigError> {
-        let table: &mut dyn SetByName = match path.split_once('.') {
+        let table: &mut dyn ParameterTable = match path.split_once('.') {
             None if path == "n_gps" => return assign(&mut self.n_gps, value),
             None if path == "n_renderers" => return assign(&mut self.n_renderers, value),
             Some(("ring", _)) => &mut self.ring,
@@ -246,7 +246,7 @@ impl MachineConfig {
             _ => return Err(self.unknown(path)),
         };
         let name = path.split_once('.').map_or("", |(_, name)| name);
-        table.set_by_name(name, value).map_err(|_| self.unknown(path))
+        table.set(name, value.into()).map_err(|_| self.unknown(path))
     }
 
     fn unknown(&self, path: &str) -> ConfigError {
@@ -276,22 +276,11 @@ impl MachineConfig {
     }
 }
 
-/// Sets a parameter of any table.
-trait SetByName {
-    fn set_by_name(&mut self, name: &str, value: u64) -> Result<(), ParameterError>;
-}
-
-impl<T: ParameterTable> SetByName for T {
-    fn set_by_name(&mut self, name: &str, value: u64) -> Result<(), ParameterError> {
-        self.set(name, value)
-    }
-}
-
-fn list<T: ParameterTable>(all: &mut Vec<Parameter>, board: &str, table: &T) {
-    all.extend(T::infos().iter().map(|info| Parameter {
-        path: format!("{board}.{}", info.name),
-        info: *info,
-        value: table.get(info.name).unwrap_or_default(),
+fn list(all: &mut Vec<Parameter>, board: &str, table: &dyn ParameterTable) {
+    all.extend(table.entries().into_iter().map(|entry| Parameter {
+        path: format!("{board}.{}", entry.info.name),
+        info: *entry.info,
+        value: entry.value.whole().unwrap_or_default(),
     }));
 }
 
