@@ -55,8 +55,8 @@ impl Clone for Box<dyn DisplayConfig> {
 }
 
 /// The values of all tables, in order.
-fn values(tables: Vec<(&'static str, &dyn ParameterTable)>) -> Vec<parameters::Value> {
-    tables.into_iter().flat_map(|(_, table)| table.values()).collect()
+fn values(tables: Vec<(&'static str, &dyn ParameterTable)>) -> Vec<parameters::Entry> {
+    tables.into_iter().flat_map(|(_, table)| table.entries()).collect()
 }
 
 /// Why a display cannot be built.

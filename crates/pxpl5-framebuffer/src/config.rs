@@ -1,8 +1,7 @@
 //! What a frame buffer is built from.
 
-use crate::timing::check;
 use crate::{PortTiming, VideoTiming};
-use std::fmt;
+use parameters::{ParameterError, ParameterTable, check};
 
 /// Numbers of one frame-buffer board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -24,47 +23,25 @@ impl FrameBufferConfig {
     ///
     /// # Errors
     ///
-    /// [`ConfigError::Value`] names the number, what was expected and what was found.
+    /// [`ConfigError::Number`] names the number, what was expected and what was found.
     pub fn check(&self) -> Result<(), ConfigError> {
         self.video.check()?;
         self.port.check()?;
-        check("fields_kept", self.fields_kept, 1, 1_000)
+        check("fields_kept", self.fields_kept, (1, 1_000))?;
+        Ok(())
     }
 }
 
 /// Why a frame buffer cannot be built.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConfigError {
     /// A number is outside of what the model can take.
-    Value {
-        /// Its name.
-        name: &'static str,
-        /// What it was.
-        found: u64,
-        /// Smallest and largest possible value.
-        expected: (u64, u64),
-    },
+    #[error("frame buffer: {0}")]
+    Number(#[from] ParameterError),
     /// The pixel clock gives no field that fits into the range of a time.
+    #[error(
+        "frame buffer: the period of a field is out of range; expected pixel_ps x frame_lines x line_pixels below 2^64"
+    )]
     Clock,
 }
-
-impl fmt::Display for ConfigError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Value {
-                name,
-                found,
-                expected: (low, high),
-            } => write!(
-                f,
-                "frame buffer: {name} must be {low} to {high}, found {found}"
-            ),
-            Self::Clock => f.write_str(
-                "frame buffer: the period of a field is out of range; expected pixel_ps x frame_lines x line_pixels below 2^64",
-            ),
-        }
-    }
-}
-
-impl std::error::Error for ConfigError {}

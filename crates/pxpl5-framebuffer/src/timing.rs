@@ -1,62 +1,56 @@
 //! Every number of the frame buffer.
 
 use crate::ConfigError;
+use parameters::{MAX, ParameterTable, check};
 use pxpl5_sim::Clock;
 
-pxpl5_sim::parameter_table! {
+parameters::parameter_table! {
     /// NTSC video. All times follow from one pixel clock: a line is 780 of its periods (4004/63 us), a field 262.5
     /// lines (1001/60000 s), both exactly.
     pub struct VideoTiming {
         /// Period of the pixel clock, times `pixel_divisor`.
-        pixel_ps: 11_000_000, "ps", Derived, 11000000..=11000000, "NTSC square pixels: 135/11 MHz = 12.2727 MHz, 640 in 52.15 us";
+        pixel_ps: 11_000_000, "ps", Derived, 11000000..=11000000 in 1..=MAX, "NTSC square pixels: 135/11 MHz = 12.2727 MHz, 640 in 52.15 us";
         /// Divisor of the period of the pixel clock.
-        pixel_divisor: 135, "1", Derived, 135..=135, "NTSC square pixels: 135/11 MHz";
+        pixel_divisor: 135, "1", Derived, 135..=135 in 1..=MAX, "NTSC square pixels: 135/11 MHz";
         /// Pixel periods in a line.
-        line_pixels: 780, "pixels", Derived, 780..=780, "(4004/63 us) x (135/11 MHz)";
+        line_pixels: 780, "pixels", Derived, 780..=780 in 1..=16_384, "(4004/63 us) x (135/11 MHz)";
         /// Lines in a frame of two fields.
-        frame_lines: 525, "lines", Published, 525..=525, "NTSC: 262.5 lines a field";
+        frame_lines: 525, "lines", Published, 525..=525 in 2..=16_384, "NTSC: 262.5 lines a field";
         /// Visible pixels of a line.
-        visible_pixels: 640, "pixels", Published, 640..=640, "TR94";
+        visible_pixels: 640, "pixels", Published, 640..=640 in 1..=16_384, "TR94";
         /// Visible lines of a field.
-        visible_lines: 240, "lines", Published, 240..=240, "TR94: 480 lines in two fields";
+        visible_lines: 240, "lines", Published, 240..=240 in 1..=16_384, "TR94: 480 lines in two fields";
         /// Blanked pixel periods before the visible ones of a line.
-        left_blanking: 140, "pixels", Assumed, 0..=140, "all of the horizontal blanking comes first";
+        left_blanking: 140, "pixels", Assumed, 0..=140 in 0..=16_384, "all of the horizontal blanking comes first";
         /// Blanked whole lines after a retrace. An odd field has the half line that is left over as well, so that its first line is scanned half a line later than that of an even field.
-        top_blanking: 22, "lines", Assumed, 0..=22, "all of the vertical blanking comes first";
+        top_blanking: 22, "lines", Assumed, 0..=22 in 0..=16_384, "all of the vertical blanking comes first";
     }
 }
 
-pxpl5_sim::parameter_table! {
+parameters::parameter_table! {
     /// The port to the ring.
     pub struct PortTiming {
         /// Time of one word: the words of a message arrive at this distance, the last with the message.
-        word_ns: 50, "ns", Published, 50..=50, "TR94, F89: 20 Mwords/s per channel";
+        word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94, F89: 20 Mwords/s per channel";
     }
 }
 
-/// Largest value of any of the counts: products of three stay in range.
-const MAX_COUNT: u64 = 16_384;
-/// Longest time or divisor that is accepted.
-const MAX_PERIOD: u64 = 1_000_000_000_000;
-
 impl VideoTiming {
-    /// Checks that a picture can be scanned with these numbers.
+    /// Checks that a picture can be scanned with these numbers: each within its limits, and visible pixels and lines
+    /// with their blanking within a line and a field.
     ///
     /// # Errors
     ///
-    /// [`ConfigError::Value`] names the number, what was expected and what was found.
+    /// [`ConfigError::Number`] names the number, what was expected and what was found.
     pub fn check(&self) -> Result<(), ConfigError> {
-        check("pixel_divisor", self.pixel_divisor, 1, MAX_PERIOD)?;
-        check("pixel_ps", self.pixel_ps, self.pixel_divisor, MAX_PERIOD)?;
-        check("line_pixels", self.line_pixels, 1, MAX_COUNT)?;
-        check("frame_lines", self.frame_lines, 2, MAX_COUNT)?;
-        check("visible_pixels", self.visible_pixels, 1, self.line_pixels)?;
-        let spare = self.line_pixels - self.visible_pixels;
-        check("left_blanking", self.left_blanking, 0, spare)?;
+        ParameterTable::check(self)?;
+        check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX))?;
+        check("visible_pixels", self.visible_pixels, (1, self.line_pixels))?;
+        check("left_blanking", self.left_blanking, (0, self.line_pixels - self.visible_pixels))?;
         let field_lines = self.frame_lines / 2;
-        check("visible_lines", self.visible_lines, 1, field_lines)?;
-        let spare = field_lines - self.visible_lines;
-        check("top_blanking", self.top_blanking, 0, spare)
+        check("visible_lines", self.visible_lines, (1, field_lines))?;
+        check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines))?;
+        Ok(())
     }
 
     pub(crate) fn pixel_clock(&self) -> Option<Clock> {
@@ -71,17 +65,4 @@ impl VideoTiming {
         let pixels = self.frame_lines * self.line_pixels;
         Clock::new(self.pixel_ps.checked_mul(pixels)?, 2 * self.pixel_divisor)
     }
-}
-
-impl PortTiming {
-    pub(crate) fn check(&self) -> Result<(), ConfigError> {
-        check("word_ns", self.word_ns, 1, 1_000_000)
-    }
-}
-
-pub(crate) fn check(name: &'static str, found: u64, low: u64, high: u64) -> Result<(), ConfigError> {
-    if (low..=high).contains(&found) {
-        return Ok(());
-    }
-    Err(ConfigError::Value { name, found, expected: (low, high) })
 }

@@ -2,9 +2,10 @@
 
 mod support;
 
+use parameters::{ParameterError, ParameterTable, Value};
 use proptest::prelude::*;
 use pxpl5_framebuffer::{ConfigError, Video, VideoTiming};
-use pxpl5_sim::{ParameterTable, Time};
+use pxpl5_sim::Time;
 use pxpl5_wire::FieldParity;
 use support::field_target;
 
@@ -95,10 +96,7 @@ fn a_region_is_reached_at_its_first_pixel_of_the_field() {
 
 #[test]
 fn every_preset_lies_in_its_range() {
-    for info in VideoTiming::infos() {
-        let value = VideoTiming::PAPERS.get(info.name).expect("listed");
-        assert!((info.range.0..=info.range.1).contains(&value), "{}", info.name);
-    }
+    assert_eq!(VideoTiming::PAPERS.out_of_range(), []);
 }
 
 #[test]
@@ -114,9 +112,11 @@ fn numbers_that_cannot_be_scanned_are_refused_by_name() {
         ("top_blanking", 23),
     ] {
         let mut timing = VideoTiming::PAPERS;
+        let value = Value::Whole(value);
         timing.set(name, value).expect("known");
         let error = Video::new(timing).expect_err(name);
-        assert!(matches!(&error, ConfigError::Value { found, .. } if *found == value), "{name}: {error}");
+        let ConfigError::Number(ParameterError::OutOfLimits { found, .. }) = &error else { panic!("{name}: {error}") };
+        assert_eq!(*found, value, "{name}: {error}");
         assert!(!error.to_string().is_empty());
     }
 }
@@ -138,8 +138,8 @@ proptest! {
     fn no_number_makes_it_panic(x in any::<u32>(), y in any::<u32>(), field in any::<u64>(), values in any::<[u64; 8]>()) {
         let _ = ntsc().when(x, y, field);
         let mut timing = VideoTiming::PAPERS;
-        for (info, value) in VideoTiming::infos().iter().zip(values) {
-            timing.set(info.name, value).expect("listed");
+        for (info, value) in VideoTiming::INFOS.iter().zip(values) {
+            timing.set(info.name, Value::Whole(value)).expect("listed");
         }
         if let Ok(video) = Video::new(timing) {
             let _ = video.when(x, y, field);

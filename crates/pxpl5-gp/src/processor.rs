@@ -16,6 +16,17 @@ pub enum CodeVersion {
     Scheduled,
 }
 
+impl CodeVersion {
+    /// As experiment files name it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Compiled => "compiled",
+            Self::Scheduled => "scheduled",
+        }
+    }
+}
+
 /// Why a program on the processor did not come to its end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]

@@ -3,23 +3,23 @@
 use crate::processor::CodeVersion;
 use pxpl5_sim::Span;
 
-pxpl5_sim::parameter_table! {
+parameters::parameter_table! {
     /// Times and sizes of a graphics processor and of the code that it runs.
     pub struct GpTiming {
         /// Memory of a board.
-        memory_bytes: 8_388_608, "bytes", Published, 8388608..=8388608, "TR94: 8 MB";
+        memory_bytes: 8_388_608, "bytes", Published, 8388608..=8388608 in 0..=MAX, "TR94: 8 MB";
         /// CPU time to send a batch of messages or to receive one.
-        message_ns: 12_000, "ns", Assumed, 10000..=25000, "software of a message; the range is what the published latencies allow";
+        message_ns: 12_000, "ns", Assumed, 10000..=25000 in 0..=MAX, "software of a message; the range is what the published latencies allow";
         /// CPU time of one triangle and eye: transform, light, set up, make commands.
-        triangle_ns: 21_700, "ns", Derived, 18000..=32000, "870 clocks at 40 MHz for optimised PPHIGS; 1M/32 GPs gives 32 us as design figure";
+        triangle_ns: 21_700, "ns", Derived, 18000..=32000 in 0..=MAX, "870 clocks at 40 MHz for optimised PPHIGS; 1M/32 GPs gives 32 us as design figure";
         /// CPU time of one entry in a bin.
-        bin_entry_ns: 1_000, "ns", Assumed, 500..=2000, "a pointer store and a count, partly out of cache";
+        bin_entry_ns: 1_000, "ns", Assumed, 500..=2000 in 0..=MAX, "a pointer store and a count, partly out of cache";
         /// CPU time of one sphere and eye.
-        sphere_ns: 21_700, "ns", Assumed, 10000..=32000, "one centre to transform instead of three vertices, but a conic to set up; taken as a triangle";
+        sphere_ns: 21_700, "ns", Assumed, 10000..=32000 in 0..=MAX, "one centre to transform instead of three vertices, but a conic to set up; taken as a triangle";
         /// CPU time to apply one edit to the display list.
-        edit_ns: 10_000, "ns", Assumed, 2000..=50000, "a few hundred instructions of display-list traversal";
+        edit_ns: 10_000, "ns", Assumed, 2000..=50000 in 0..=MAX, "a few hundred instructions of display-list traversal";
         /// CPU time to begin a pass over the display list.
-        pass_ns: 5_000, "ns", Assumed, 1000..=20000, "concatenate matrices, reset bins";
+        pass_ns: 5_000, "ns", Assumed, 1000..=20000 in 0..=MAX, "concatenate matrices, reset bins";
     }
 }
 
@@ -57,15 +57,15 @@ impl GpTiming {
     }
 }
 
-pxpl5_sim::parameter_table! {
+parameters::parameter_table! {
     /// Times of the host workstation and of its link to the ring.
     pub struct HostTiming {
         /// Rate of the link from the host to the ring.
-        link_bytes_per_s: 5_000_000, "bytes/s", Assumed, 4000000..=10000000, "a workstation's parallel interface";
+        link_bytes_per_s: 5_000_000, "bytes/s", Assumed, 4000000..=10000000 in 1_000..=MAX, "a workstation's parallel interface";
         /// CPU time of the host to send or receive a message.
-        message_ns: 20_000, "ns", Assumed, 10000..=100000, "a system call";
+        message_ns: 20_000, "ns", Assumed, 10000..=100000 in 0..=MAX, "a system call";
         /// Time between two views that the host sends unasked (Slats).
-        view_period_ns: 16_683_333, "ns", Assumed, 8333333..=50000000, "a tracker at about the field rate; TR94 gives 20 to 120 Hz";
+        view_period_ns: 16_683_333, "ns", Assumed, 8333333..=50000000 in 1_000..=MAX, "a tracker at about the field rate; TR94 gives 20 to 120 Hz";
     }
 }
 

@@ -12,7 +12,8 @@
 use crate::config::MachineConfig;
 use crate::figures::{Bench, FIGURES, Row};
 use crate::levels::Level;
-use pxpl5_sim::{Standing, mix};
+use parameters::Standing;
+use pxpl5_sim::mix;
 use serde::Serialize;
 
 /// Machines of the joint sample.
@@ -86,8 +87,10 @@ pub fn variations() -> Vec<Variation> {
     let parameters = MachineConfig::small_hmd().parameters();
     let open =
         parameters.into_iter().filter(|p| p.info.standing != Standing::Published && p.info.range.0 < p.info.range.1);
-    let of_machine =
-        open.map(|p| Variation { path: p.path, value: p.value, range: p.info.range, standing: p.info.standing });
+    let of_machine = open.filter_map(|p| {
+        let range = p.info.whole_range()?;
+        Some(Variation { path: p.path, value: p.value, range, standing: p.info.standing })
+    });
     let fitted = FITTED.iter().map(|(path, value, range)| Variation {
         path: (*path).to_owned(),
         value: *value,

@@ -1,6 +1,6 @@
 //! What a machine is built of.
 
-use parameters::{ParameterInfo, ParameterTable, nearest};
+use parameters::{Entry, ParameterError, ParameterInfo, ParameterTable, Value, nearest};
 use pxpl5_display::{DisplayConfig, DisplayError};
 use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
@@ -73,6 +73,14 @@ pub enum ConfigError {
         /// The nearest valid path.
         nearest: String,
     },
+    /// A number is none that its table can take.
+    #[error("{board}.{error}")]
+    Parameter {
+        /// The board whose table it is.
+        board: String,
+        /// What was expected and what was found.
+        error: ParameterError,
+    },
     /// A board or a pipeline refuses its numbers.
     #[error("{0}")]
     Board(String),
@@ -93,7 +101,7 @@ pub struct Parameter {
     #[serde(flatten)]
     pub info: ParameterInfo,
     /// The value.
-    pub value: u64,
+    pub value: Value,
 }
 
 /// Most boards of a kind: a ring of that many is still far from 16 bits of port numbers.
@@ -129,18 +137,18 @@ impl MachineConfig {
 
     /// Parameters that differ from the preset's, by path.
     #[must_use]
-    pub fn overrides(&self) -> BTreeMap<String, u64> {
+    pub fn overrides(&self) -> BTreeMap<String, Value> {
         let Ok(preset) = Self::preset(&self.preset) else { return BTreeMap::new() };
-        let of_preset: BTreeMap<String, u64> = preset.settings().into_iter().collect();
+        let of_preset: BTreeMap<String, Value> = preset.settings().into_iter().collect();
         let own = self.settings().into_iter();
         own.filter(|(path, value)| of_preset.get(path) != Some(value)).collect()
     }
 
     /// The numbers of boards and all parameters, by path.
     #[must_use]
-    pub fn settings(&self) -> Vec<(String, u64)> {
+    pub fn settings(&self) -> Vec<(String, Value)> {
         let [n_gps, n_renderers] = self.boards();
-        let boards = [("n_gps".to_owned(), n_gps), ("n_renderers".to_owned(), n_renderers)];
+        let boards = [("n_gps".to_owned(), n_gps.into()), ("n_renderers".to_owned(), n_renderers.into())];
         let parameters = self.parameters().into_iter().map(|parameter| (parameter.path, parameter.value));
         boards.into_iter().chain(parameters).collect()
     }
@@ -149,20 +157,26 @@ impl MachineConfig {
     ///
     /// # Errors
     ///
-    /// [`ConfigError::UnknownParameter`] with the nearest valid path.
-    pub fn set(&mut self, path: &str, value: u64) -> Result<(), ConfigError> {
+    /// [`ConfigError::UnknownParameter`] with the nearest valid path; [`ConfigError::Parameter`] for a number that is not
+    /// whole where one must be.
+    pub fn set(&mut self, path: &str, value: impl Into<Value>) -> Result<(), ConfigError> {
+        let value = value.into();
         match path {
-            "n_gps" => self.n_gps = value as usize,
-            "n_renderers" => self.n_renderers = value as usize,
-            _ => return self.set_parameter(path, value).ok_or_else(|| self.unknown(path)),
+            "n_gps" => self.n_gps = whole(path, value)?,
+            "n_renderers" => self.n_renderers = whole(path, value)?,
+            _ => return self.set_parameter(path, value),
         }
         Ok(())
     }
 
-    fn set_parameter(&mut self, path: &str, value: u64) -> Option<()> {
-        let (board, name) = path.split_once('.')?;
-        let mut of_board = self.tables_mut().into_iter().filter(|(prefix, _)| *prefix == board);
-        of_board.find_map(|(_, table)| table.set(name, value).ok())
+    fn set_parameter(&mut self, path: &str, value: Value) -> Result<(), ConfigError> {
+        let Some((board, name)) = path.split_once('.') else { return Err(self.unknown(path)) };
+        for (prefix, table) in self.tables_mut() {
+            if prefix == board && table.infos().iter().any(|info| info.name == name) {
+                return table.set(name, value).map_err(|error| refused(board, error));
+            }
+        }
+        Err(self.unknown(path))
     }
 
     fn unknown(&self, path: &str) -> ConfigError {
@@ -179,13 +193,8 @@ impl MachineConfig {
     pub fn check(&self) -> Result<(), ConfigError> {
         check("n_gps", self.n_gps as u64, 1, MAX_BOARDS)?;
         check("n_renderers", self.n_renderers as u64, 1, MAX_BOARDS)?;
-        // The longest command, shading, must fit into the input FIFO.
-        check("renderer.fifo_words", self.renderer.fifo_words, 128, 1 << 20)?;
-        check("renderer.clock_hz", self.renderer.clock_hz, 1_000, 1_000_000_000_000)?;
-        check("host.link_bytes_per_s", self.host.link_bytes_per_s, 1_000, 1_000_000_000_000)?;
-        check("host.view_period_ns", self.host.view_period_ns, 1_000, 1_000_000_000_000)?;
-        for parameter in self.parameters().iter().filter(|p| matches!(p.info.unit, "ns" | "clocks")) {
-            check(&parameter.path, parameter.value, 0, 1_000_000_000_000)?;
+        for (board, table) in self.tables() {
+            table.check().map_err(|error| refused(board, error))?;
         }
         if self.displays.is_empty() {
             return Err(ConfigError::Board("a machine needs a display; found none".to_owned()));
@@ -196,12 +205,18 @@ impl MachineConfig {
 
 /// The numbers of a table with their paths.
 fn parameters_of(board: &str, table: &dyn ParameterTable) -> Vec<Parameter> {
-    let parameter = |info: &ParameterInfo| Parameter {
-        path: format!("{board}.{}", info.name),
-        info: *info,
-        value: table.get(info.name).unwrap_or_default(),
-    };
-    table.infos().iter().map(parameter).collect()
+    let parameter = |Entry { info, value }| Parameter { path: format!("{board}.{}", info.name), info: *info, value };
+    table.entries().into_iter().map(parameter).collect()
+}
+
+/// A number of boards.
+fn whole(path: &str, value: Value) -> Result<usize, ConfigError> {
+    let number = value.whole().and_then(|number| usize::try_from(number).ok());
+    number.ok_or_else(|| ConfigError::Board(format!("{path} must be a whole number, found {value}")))
+}
+
+fn refused(board: &str, error: ParameterError) -> ConfigError {
+    ConfigError::Parameter { board: board.to_owned(), error }
 }
 
 fn check(what: &str, found: u64, low: u64, high: u64) -> Result<(), ConfigError> {

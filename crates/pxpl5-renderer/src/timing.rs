@@ -4,31 +4,31 @@
 use crate::command::CommandKind;
 use pxpl5_sim::{Clock, Cycles, Span};
 
-pxpl5_sim::parameter_table! {
+parameters::parameter_table! {
     /// Times and sizes of a renderer.
     pub struct RendererTiming {
         /// Clock of the controller and the array.
-        clock_hz: 40_000_000, "Hz", Published, 40000000..=40000000, "F89, TR94";
+        clock_hz: 40_000_000, "Hz", Published, 40000000..=40000000 in 1_000..=MAX, "F89, TR94";
         /// A triangle, in every region that it is sent to.
-        triangle_clocks: 258, "clocks", Derived, 250..=300, "its program; 150,000 triangles/s (TR94) are 267";
+        triangle_clocks: 258, "clocks", Derived, 250..=300 in 0..=MAX, "its program; 150,000 triangles/s (TR94) are 267";
         /// A triangle with normals instead of colours.
-        phong_triangle_clocks: 292, "clocks", Derived, 250..=300, "its program; 150,000 triangles/s (TR94) are 267, bit budget 262 to 292";
+        phong_triangle_clocks: 292, "clocks", Derived, 250..=300 in 0..=MAX, "its program; 150,000 triangles/s (TR94) are 267, bit budget 262 to 292";
         /// A sphere; in the layout of Slats its program takes 748.
-        sphere_clocks: 810, "clocks", Derived, 318..=810, "its program, with an exact root; a paraboloid takes 318";
+        sphere_clocks: 810, "clocks", Derived, 318..=810 in 0..=MAX, "its program, with an exact root; a paraboloid takes 318";
         /// A sphere with normals.
-        phong_sphere_clocks: 504, "clocks", Derived, 268..=504, "its program, with an exact root; a paraboloid takes 268";
+        phong_sphere_clocks: 504, "clocks", Derived, 268..=504 in 0..=MAX, "its program, with an exact root; a paraboloid takes 268";
         /// Choice of a region context and its origin.
-        select_clocks: 6, "clocks", Derived, 1..=64, "its program: one instruction";
+        select_clocks: 6, "clocks", Derived, 1..=64 in 0..=MAX, "its program: one instruction";
         /// Background colour and farthest depth into all pixels.
-        clear_clocks: 62, "clocks", Derived, 16..=256, "its program: one clock a bit of colour and depth, and the fetches";
+        clear_clocks: 62, "clocks", Derived, 16..=256 in 0..=MAX, "its program: one clock a bit of colour and depth, and the fetches";
         /// Deferred shading of a region at the end of the frame.
-        shade_clocks: 3_790, "clocks", Derived, 3_790..=8_000, "its program, with one light: 95 us; assumed before: 100 to 200 us";
+        shade_clocks: 3_790, "clocks", Derived, 3_790..=8_000 in 0..=MAX, "its program, with one light: 95 us; assumed before: 100 to 200 us";
         /// Transfer of one 32-bit block of all pixels to or from the backing store.
-        backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096, "51 us";
+        backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096 in 0..=MAX, "51 us";
         /// Finished regions that a renderer keeps in its backing store until they are copied.
-        backing_regions: 1, "regions", Derived, 1..=4, "from the published 56.5 ms of a trivial scene (TR94); with 3 or more it would be 65 ms, and 47.6 of the 50 ms of its theory; 4,096 bits have room for them";
+        backing_regions: 1, "regions", Derived, 1..=4 in 0..=MAX, "from the published 56.5 ms of a trivial scene (TR94); with 3 or more it would be 65 ms, and 47.6 of the 50 ms of its theory; 4,096 bits have room for them";
         /// Depth of the input FIFO.
-        fifo_words: 448, "words", Derived, 400..=512, "from the published 56.5 ms of a trivial scene (TR94)";
+        fifo_words: 448, "words", Derived, 400..=512 in 128..=1_048_576, "from the published 56.5 ms of a trivial scene (TR94)";
     }
 }
 

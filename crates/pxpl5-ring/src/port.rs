@@ -1,5 +1,6 @@
 //! What comes into the ring and what goes out of it.
 
+use parameters::ParameterError;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
 use std::fmt;
@@ -81,14 +82,7 @@ pub enum RingOutput {
 #[non_exhaustive]
 pub enum RingError {
     /// A number of the timing table is outside of what the model can take.
-    Timing {
-        /// The number's name.
-        name: &'static str,
-        /// What it was.
-        found: u64,
-        /// Smallest and largest possible value.
-        expected: (u64, u64),
-    },
+    Timing(ParameterError),
     /// The ring has no port for any board.
     NoNodes,
     /// A message names a port that does not exist.
@@ -144,9 +138,7 @@ pub enum RingError {
 impl fmt::Display for RingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Timing { name, found, expected: (low, high) } => {
-                write!(f, "ring timing: {name} must be {low} to {high}, found {found}")
-            }
+            Self::Timing(error) => write!(f, "ring timing: {error}"),
             Self::NoNodes => f.write_str("a ring needs one port at least, found none"),
             Self::NoSuchNode { node, n_nodes } => {
                 write!(f, "there is no ring port {}: the ring has {n_nodes}, from 0", node.0)
@@ -175,3 +167,9 @@ impl fmt::Display for RingError {
 }
 
 impl std::error::Error for RingError {}
+
+impl From<ParameterError> for RingError {
+    fn from(error: ParameterError) -> Self {
+        Self::Timing(error)
+    }
+}

@@ -15,6 +15,7 @@
 //! shortcut: no end is computed ahead, no event is skipped.
 
 use crate::{RingError, RingTiming};
+use parameters::ParameterTable;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::NodeId;
 use std::collections::VecDeque;

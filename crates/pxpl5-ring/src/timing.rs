@@ -1,31 +1,25 @@
 //! Every number of the ring.
 
-use crate::RingError;
 use pxpl5_sim::Span;
 use pxpl5_wire::NodeId;
 
-pxpl5_sim::parameter_table! {
+parameters::parameter_table! {
     /// Times and sizes of the ring.
     pub struct RingTiming {
         /// Time of one word on a channel.
-        word_ns: 50, "ns", Published, 50..=50, "TR94, F89: 20 Mwords/s per channel";
+        word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94, F89: 20 Mwords/s per channel";
         /// Word times of a message besides its words.
-        overhead_words: 16, "words", Derived, 16..=16, "(780 us a region of TR94 - 15,360 words x 50 ns) / 15 messages = 0.8 us";
+        overhead_words: 16, "words", Derived, 16..=16 in 0..=1_000_000, "(780 us a region of TR94 - 15,360 words x 50 ns) / 15 messages = 0.8 us";
         /// Latency from one board to the next.
-        hop_ns: 50, "ns", Assumed, 0..=200, "one word time: every board latches a word once";
+        hop_ns: 50, "ns", Assumed, 0..=200 in 0..=1_000_000, "one word time: every board latches a word once";
         /// Channels, each carrying one message at a time.
-        channels: 8, "channels", Published, 8..=8, "TR94";
+        channels: 8, "channels", Published, 8..=8 in 1..=64, "TR94";
         /// Channels that one board can send on at a time, to different receivers.
-        source_channels: 8, "channels", Assumed, 2..=8, "no source names a limit below the ring's; with 1 a clump of Slats waits behind every full input FIFO in turn, and the published pair of 110 and 140 triangles would ask for code twice as fast as the optimised one";
+        source_channels: 8, "channels", Assumed, 2..=8 in 1..=64, "no source names a limit below the ring's; with 1 a clump of Slats waits behind every full input FIFO in turn, and the published pair of 110 and 140 triangles would ask for code twice as fast as the optimised one";
         /// Channels that messages to receivers with a FIFO may take together; the others stay for receivers that never stall.
-        fifo_channels: 6, "channels", Assumed, 5..=7, "the machine ran with 20 renderers: if full FIFOs could hold all 8 channels, the renderers' pixels would wait for them for ever; one channel for each of two frame buffers";
+        fifo_channels: 6, "channels", Assumed, 5..=7 in 1..=64, "the machine ran with 20 renderers: if full FIFOs could hold all 8 channels, the renderers' pixels would wait for them for ever; one channel for each of two frame buffers";
     }
 }
-
-/// Most channels that the arbiter's free list holds.
-const MAX_CHANNELS: u64 = 64;
-/// Longest time or count that is accepted: the sums of a message then stay far below the range of a time.
-const MAX_VALUE: u64 = 1_000_000;
 
 impl RingTiming {
     /// Time of one word.
@@ -47,33 +41,12 @@ impl RingTiming {
         let hops = if to > from { to - from } else { to + n - from };
         Span::from_ns(hops * self.hop_ns)
     }
-
-    /// Checks that a ring can be built with these numbers.
-    ///
-    /// # Errors
-    ///
-    /// [`RingError::Timing`] names the number, what was expected and what was found.
-    pub fn check(&self) -> Result<(), RingError> {
-        check("word_ns", self.word_ns, 1, MAX_VALUE)?;
-        check("overhead_words", self.overhead_words, 0, MAX_VALUE)?;
-        check("hop_ns", self.hop_ns, 0, MAX_VALUE)?;
-        check("source_channels", self.source_channels, 1, MAX_CHANNELS)?;
-        check("fifo_channels", self.fifo_channels, 1, MAX_CHANNELS)?;
-        check("channels", self.channels, 1, MAX_CHANNELS)
-    }
-}
-
-fn check(name: &'static str, found: u64, low: u64, high: u64) -> Result<(), RingError> {
-    if (low..=high).contains(&found) {
-        return Ok(());
-    }
-    Err(RingError::Timing { name, found, expected: (low, high) })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pxpl5_sim::ParameterTable;
+    use parameters::{ParameterTable, Value};
 
     #[test]
     fn fifteen_messages_of_maximum_size_occupy_the_published_780_us() {
@@ -91,10 +64,7 @@ mod tests {
 
     #[test]
     fn every_preset_lies_in_its_range_and_passes_the_check() {
-        for info in RingTiming::infos() {
-            let value = RingTiming::PAPERS.get(info.name).expect("listed");
-            assert!((info.range.0..=info.range.1).contains(&value), "{}", info.name);
-        }
+        assert_eq!(RingTiming::PAPERS.out_of_range(), []);
         assert_eq!(RingTiming::PAPERS.check(), Ok(()));
     }
 
@@ -104,7 +74,7 @@ mod tests {
             [("channels", 0), ("channels", 65), ("word_ns", 0), ("hop_ns", u64::MAX), ("overhead_words", u64::MAX)]
         {
             let mut timing = RingTiming::PAPERS;
-            timing.set(name, value).expect("known");
+            timing.set(name, Value::Whole(value)).expect("known");
             let error = timing.check().expect_err(name);
             assert!(error.to_string().contains(name), "{error}");
         }

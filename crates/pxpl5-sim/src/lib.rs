@@ -1,4 +1,4 @@
-//! Discrete-event kernel: exact time, clocks, an ordered event queue, and parameters with a stated origin.
+//! Discrete-event kernel: exact time, clocks, and an ordered event queue.
 //!
 //! It knows nothing of Pixel-Planes. A *device* is plain state with a method that handles one event at a time:
 //!
@@ -30,14 +30,12 @@
 
 mod clock;
 mod context;
-mod parameter;
 mod queue;
 mod time;
 mod trace;
 
 pub use clock::{Clock, Cycles};
 pub use context::{Blocked, Context, TestBench};
-pub use parameter::{ParameterError, ParameterInfo, ParameterTable, Standing};
 pub use queue::{EventQueue, Phase};
 pub use time::{Span, Time};
 pub use trace::{TraceHash, mix};

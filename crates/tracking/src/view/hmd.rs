@@ -54,6 +54,11 @@ impl HmdView {
         self.focal_px
     }
 
+    /// Angle between the left and the right edge of the picture, degrees.
+    pub fn horizontal_deg(&self) -> f64 {
+        self.horizontal_deg
+    }
+
     /// Middle of the picture.
     pub fn centre_px(&self) -> DVec2 {
         DVec2::new(self.width_px, self.height_px) / 2.0

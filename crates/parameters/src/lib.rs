@@ -1,0 +1,46 @@
+//! What is a number? A value with a unit, a standing, a range and a source.
+//!
+//! A [`parameter_table!`] declares numbers once; from the one declaration come
+//!
+//! ```text
+//!                        +--> table.word_ns        code reads a plain public field
+//!  parameter_table! { }--+--> table.get("word_ns") files, sweeps and reports reach it by name
+//!                        +--> Table::INFOS         unit, standing, range, limits, source
+//!                        +--> table.check()        refuses what the model cannot take
+//! ```
+//!
+//! # A line of a table
+//!
+//! ```text
+//! /// Time of one word on a channel.
+//! word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94";
+//! ```
+//!
+//! Value, unit, standing, the *range* that the sources allow, the *limits* within which the model works, source. Where
+//! no limits are given they are the range. Numbers are whole (`u64`, exact) unless the line says `f64`:
+//!
+//! ```text
+//! /// Error of each axis, rms.
+//! position_noise: f64 = 2.5, "mm", Published, 0.0..=5.0, "data sheet";
+//! ```
+//!
+//! # Range and limits
+//!
+//! A value out of its range is an experiment: possible, but no source allows it
+//! ([`ParameterTable::out_of_range`] lists those). A value beyond its limits is an error
+//! ([`ParameterTable::check`]).
+//!
+//! **Not here:** rules between numbers ("at most the length of a line"); the crate that owns the table checks those.
+
+mod error;
+mod info;
+mod macros;
+mod nearest;
+mod table;
+mod value;
+
+pub use error::{ParameterError, check};
+pub use info::{ParameterInfo, Standing};
+pub use nearest::nearest;
+pub use table::{Entry, ParameterTable};
+pub use value::{MAX, Number, Value};

@@ -1,0 +1,117 @@
+//! The macro that declares a table.
+
+/// Declares a struct of numbers, each with its preset value, unit, standing, range, limits and source.
+///
+/// Limits may end at `MAX`, which is [`MAX`](crate::MAX). The calling crate needs `serde`: a table reads and writes itself by field names and refuses unknown ones.
+///
+/// ```
+/// parameters::parameter_table! {
+///     /// A channel and the tracker behind it.
+///     pub struct Channel {
+///         /// Time of one word.
+///         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94";
+///         /// Error of each axis, rms.
+///         position_noise: f64 = 2.5, "mm", Published, 0.0..=5.0, "data sheet";
+///     }
+/// }
+/// use parameters::ParameterTable;
+/// let mut channel = Channel::PAPERS;
+/// channel.set("word_ns", 100.into()).unwrap();
+/// assert_eq!((channel.word_ns, channel.position_noise), (100, 2.5));
+/// assert_eq!(channel.out_of_range()[0].info.name, "word_ns");
+/// assert!(channel.check().is_ok());
+/// ```
+#[macro_export]
+macro_rules! parameter_table {
+    ($(#[$meta:meta])* $vis:vis struct $name:ident {
+        $(
+            $(#[$doc:meta])*
+            $field:ident : $($real:ident =)? $value:literal, $unit:literal, $standing:ident,
+            $low:literal ..= $high:literal $(in $least:literal ..= $most:tt)?, $source:literal;
+        )*
+    }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, ::serde::Serialize, ::serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        $vis struct $name {
+            $(
+                $(#[$doc])*
+                #[doc = concat!(
+                    "\n\nUnit: ", $unit, ". ", stringify!($standing), ", ", stringify!($low), " to ", stringify!($high),
+                    $(" (possible: ", stringify!($least), " to ", stringify!($most), ")",)? ": ", $source, "."
+                )]
+                pub $field: $crate::number!(type $($real)?),
+            )*
+        }
+
+        impl $name {
+            /// The values that the papers give or allow.
+            $vis const PAPERS: Self = Self { $($field: $value,)* };
+
+            /// What is known of each number, in the order of the fields.
+            $vis const INFOS: &'static [$crate::ParameterInfo] = &[$($crate::ParameterInfo {
+                name: stringify!($field),
+                unit: $unit,
+                standing: $crate::Standing::$standing,
+                range: $crate::number!(pair $($real)? : $low, $high),
+                limits: $crate::number!(pair $($real)? : $low, $high $(, $least, $most)?),
+                source: $source,
+            },)*];
+        }
+
+        impl $crate::ParameterTable for $name {
+            fn infos(&self) -> &'static [$crate::ParameterInfo] {
+                Self::INFOS
+            }
+
+            fn get(&self, name: &str) -> ::core::result::Result<$crate::Value, $crate::ParameterError> {
+                match name {
+                    $(stringify!($field) => ::core::result::Result::Ok(self.$field.into()),)*
+                    _ => ::core::result::Result::Err($crate::ParameterError::unknown(name, Self::INFOS)),
+                }
+            }
+
+            fn set(
+                &mut self,
+                name: &str,
+                value: $crate::Value,
+            ) -> ::core::result::Result<(), $crate::ParameterError> {
+                match name {
+                    $(stringify!($field) => $crate::Number::assign(&mut self.$field, stringify!($field), value),)*
+                    _ => ::core::result::Result::Err($crate::ParameterError::unknown(name, Self::INFOS)),
+                }
+            }
+        }
+
+        impl ::core::cmp::PartialEq for $name {
+            fn eq(&self, other: &Self) -> bool {
+                true $(&& $crate::Value::from(self.$field) == $crate::Value::from(other.$field))*
+            }
+        }
+
+        impl ::core::cmp::Eq for $name {}
+
+        impl ::core::hash::Hash for $name {
+            fn hash<H: ::core::hash::Hasher>(&self, state: &mut H) {
+                $(::core::hash::Hash::hash(&$crate::Value::from(self.$field), state);)*
+            }
+        }
+    };
+}
+
+/// Types and values of the fields: whole, unless the line says `f64`.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! number {
+    (type) => { u64 };
+    (type f64) => { f64 };
+    (pair : $low:literal, $high:literal) => { ($crate::Value::Whole($low), $crate::Value::Whole($high)) };
+    (pair f64 : $low:literal, $high:literal) => { ($crate::Value::Real($low), $crate::Value::Real($high)) };
+    // With limits, the pair is theirs.
+    (pair $($real:ident)? : $low:literal, $high:literal, $least:literal, MAX) => {
+        ($crate::Value::Whole($least), $crate::Value::Whole($crate::MAX))
+    };
+    (pair $($real:ident)? : $low:literal, $high:literal, $least:literal, $most:literal) => {
+        $crate::number!(pair $($real)? : $least, $most)
+    };
+}

@@ -1,0 +1,155 @@
+//! What a number's value can be.
+
+use crate::ParameterError;
+use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
+use std::fmt;
+use std::hash::{Hash, Hasher};
+
+/// A value of any table. Files and reports write it as the bare number.
+///
+/// Two values are equal, or in order, only if they are of the same kind. Real ones compare in IEEE's total order, so that
+/// tables are comparable and NaN lies outside every range.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// An exact number: counts, and times in whole units.
+    Whole(u64),
+    /// A measured one, such as an rms error.
+    Real(f64),
+}
+
+impl Value {
+    /// The value as an exact number; `None` if it has a fraction, a sign or more than 64 bits.
+    #[must_use]
+    pub fn whole(self) -> Option<u64> {
+        match self {
+            Self::Whole(n) => Some(n),
+            Self::Real(x) => exactly(x),
+        }
+    }
+
+    /// The value as a real number, rounded to nearest above 2^53.
+    #[must_use]
+    pub fn real(self) -> f64 {
+        match self {
+            Self::Whole(n) => n as f64,
+            Self::Real(x) => x,
+        }
+    }
+}
+
+fn exactly(x: f64) -> Option<u64> {
+    let is_whole = x.fract() == 0.0 && (0.0..2f64.powi(64)).contains(&x);
+    is_whole.then_some(x as u64)
+}
+
+impl PartialEq for Value {
+    fn eq(&self, other: &Self) -> bool {
+        self.partial_cmp(other) == Some(Ordering::Equal)
+    }
+}
+
+impl Eq for Value {}
+
+impl PartialOrd for Value {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        match (self, other) {
+            (Self::Whole(own), Self::Whole(other)) => Some(own.cmp(other)),
+            (Self::Real(own), Self::Real(other)) => Some(own.total_cmp(other)),
+            _ => None,
+        }
+    }
+}
+
+impl Hash for Value {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        match self {
+            Self::Whole(n) => n.hash(state),
+            Self::Real(x) => x.to_bits().hash(state),
+        }
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole(n) => n.fmt(f),
+            Self::Real(x) => x.fmt(f),
+        }
+    }
+}
+
+impl From<u64> for Value {
+    fn from(n: u64) -> Self {
+        Self::Whole(n)
+    }
+}
+
+impl From<f64> for Value {
+    fn from(x: f64) -> Self {
+        Self::Real(x)
+    }
+}
+
+/// The greatest whole number that is of use to a model: 10^12, so that sums and products of a few times, in nanoseconds or
+/// clocks, stay in 64 bits.
+pub const MAX: u64 = 1_000_000_000_000;
+
+/// A type that a field of a table can have.
+pub trait Number: Copy + Into<Value> {
+    /// The value in this type; `None` where a whole number is wanted and it is none.
+    fn from_value(value: Value) -> Option<Self>;
+
+    /// Gives the field of that name a value.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError::NotWhole`] where a whole number is wanted and it is none.
+    fn assign(&mut self, name: &'static str, value: Value) -> Result<(), ParameterError> {
+        *self = Self::from_value(value).ok_or(ParameterError::NotWhole { name, found: value })?;
+        Ok(())
+    }
+}
+
+impl Number for u64 {
+    fn from_value(value: Value) -> Option<Self> {
+        value.whole()
+    }
+}
+
+impl Number for f64 {
+    fn from_value(value: Value) -> Option<Self> {
+        Some(value.real())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Value;
+
+    #[test]
+    fn only_a_real_number_without_fraction_or_sign_is_whole() {
+        assert_eq!(Value::Real(115_200.0).whole(), Some(115_200));
+        for x in [0.5, -1.0, f64::NAN, f64::INFINITY, 2f64.powi(64)] {
+            assert_eq!(Value::Real(x).whole(), None, "{x}");
+        }
+    }
+
+    #[test]
+    fn a_whole_number_keeps_all_its_64_bits() {
+        assert_eq!(Value::Whole(u64::MAX).whole(), Some(u64::MAX));
+    }
+
+    #[test]
+    fn values_of_different_kinds_have_no_order() {
+        assert_eq!(Value::Whole(1).partial_cmp(&Value::Real(1.0)), None);
+    }
+
+    #[test]
+    fn nan_lies_outside_every_range() {
+        let all = Value::Real(f64::NEG_INFINITY)..=Value::Real(f64::INFINITY);
+        assert!(!all.contains(&Value::Real(f64::NAN)));
+        assert!(!all.contains(&Value::Real(-f64::NAN)));
+    }
+}
