@@ -28,25 +28,36 @@ pub use load::Load;
 pub use rendering_control::{StereoModel, StereoTimes, stereo_loads};
 pub use slats::{FieldTimes, SlatsModel};
 
-use crate::config::ConfigError;
-use crate::experiment::ExperimentError;
-use crate::levels::{Case, Program, Summary};
+use pxpl5_framebuffer::{FrameBufferConfig, Video};
+use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_run::{Experiment, ExperimentError, Pipeline, Registry};
+use std::any::Any;
 
-/// Evaluates a case.
-///
-/// # Errors
-///
-/// [`ExperimentError::Config`] and [`ExperimentError::Scene`] as the transaction level, and
-/// [`ExperimentError::Config`] for a pipeline of which there is no closed form, or a head with a tracker.
-pub fn run(case: &Case) -> Result<Summary, ExperimentError> {
-    case.machine.check()?;
-    let no_form = |what: &str| ConfigError::Board(format!("the analytic level has no closed form of {what}"));
-    if case.head.is_some() {
+/// Adds the closed forms to the pipelines that have one.
+pub fn add_closed_forms(registry: &mut Registry) {
+    registry.closed_form("rendering-control", rendering_control::closed_form);
+    registry.closed_form("slats", slats::closed_form);
+}
+
+/// Checks an experiment and gives its pipeline, of which there is a closed form.
+fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, ExperimentError> {
+    experiment.config().check()?;
+    if experiment.tracked_head().is_some() {
         return Err(no_form("a head with a tracker").into());
     }
-    match case.program {
-        Program::Slats(program) => slats::run(case, program),
-        Program::RenderingControl(program) => rendering_control::run(case, program),
-        Program::Jitp(_) | Program::Frameless(_) => Err(no_form(case.program.family()).into()),
-    }
+    let pipeline: &dyn Any = experiment.pipeline().as_ref();
+    let found = pipeline.downcast_ref().copied();
+    found.ok_or_else(|| no_form(experiment.pipeline().name()).into())
+}
+
+fn no_form(what: &str) -> ConfigError {
+    ConfigError::Board(format!("the analytic level has no closed form of {what}"))
+}
+
+/// Retraces and beam of a machine's first display, which the closed forms know only as NTSC.
+fn video_of(config: &MachineConfig) -> Result<Video, ConfigError> {
+    let display: Option<&FrameBufferConfig> =
+        config.displays.first().and_then(|display| (display.as_ref() as &dyn Any).downcast_ref());
+    let display = display.ok_or_else(|| no_form("a display other than ntsc"))?;
+    Video::new(display.video).map_err(|error| ConfigError::Board(error.to_string()))
 }

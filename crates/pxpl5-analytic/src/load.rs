@@ -1,11 +1,10 @@
 //! What a scene asks of the machine, as numbers.
 
-use crate::display_list::{display_list, views};
-use crate::experiment::ExperimentError;
-use crate::levels::Case;
 use pphigs::{Binning, Picture, Shading, Share};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
+use pxpl5_run::{Experiment, ExperimentError, display_list, views};
+use pxpl5_scene::{Hmd, HmdConfig};
 use pxpl5_sim::Time;
 use pxpl5_wire::RegionId;
 use std::sync::Arc;
@@ -35,17 +34,27 @@ impl Load {
         self.bins.iter().map(|[triangles, spheres]| triangles + spheres).sum()
     }
 
-    /// The scene of a case from `views` views of its own head motion, `period_ps` apart: both eyes of each.
+    /// The scene of an experiment from views of its own head motion at some times (ps): both eyes of each.
     ///
     /// # Errors
     ///
     /// [`ExperimentError::Scene`] for a scene without primitives.
-    pub fn of(case: &Case, viewport: Viewport, binning: Binning, times: &[u64]) -> Result<Vec<Self>, ExperimentError> {
-        let list = Arc::new(display_list(&case.scene).map_err(ExperimentError::Scene)?);
-        let (views, _) = views(&case.scene, case.seed, 2);
+    ///
+    /// # Panics
+    ///
+    /// Never: the papers' head-mounted display is in range.
+    pub fn of_views(
+        experiment: &Experiment,
+        viewport: Viewport,
+        binning: Binning,
+        times: &[u64],
+    ) -> Result<Vec<Self>, ExperimentError> {
+        let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);
+        let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
+        let (views, _) = views(experiment.scene(), experiment.seed_of_motion(), hmd, 2);
         let share = Share::new(list, 0, 1);
-        let (shading, layout) = (Shading::Phong, Layout::rendering_control_phong());
-        let picture = Picture { viewport, shading, binning, layout, pixels: false };
+        let layout = Layout::rendering_control_phong();
+        let picture = Picture { viewport, shading: Shading::Phong, binning, layout, pixels: false };
         let mut loads = Vec::with_capacity(2 * times.len());
         for (number, time) in (0..).zip(times) {
             let view = views(number, Time(*time));

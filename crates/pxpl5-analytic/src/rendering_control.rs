@@ -2,14 +2,12 @@
 
 use super::load::Load;
 use super::renderer::Cost;
-use crate::config::{ConfigError, MachineConfig};
-use crate::experiment::{ExperimentError, WARM_UP_PICTURES};
-use crate::levels::{Case, Summary};
-use crate::pipelines::{Pipeline, RenderingControl};
+use crate::{pipeline_of, video_of};
 use pphigs::{Binning, Shading};
-use pxpl5_framebuffer::Video;
 use pxpl5_geometry::Viewport;
+use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
+use pxpl5_run::{Experiment, ExperimentError, Pipeline, RenderingControl, Summary, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionGrid, RegionId};
 
@@ -94,7 +92,7 @@ impl StereoModel {
             let what = "n_gps of Rendering Control (a master and slaves)".to_owned();
             return Err(ConfigError::Value { what, expected: (2, 1_000), found: config.n_gps as u64 });
         }
-        let video = Video::new(config.frame_buffer.video).map_err(|error| ConfigError::Board(error.to_string()))?;
+        let video = video_of(config)?;
         let cost = |kind: CommandKind| Cost {
             words: f64::from(kind.words()),
             ns: config.renderer.span(kind).map_or(0.0, |span| span.as_ms() * 1e6),
@@ -281,11 +279,11 @@ fn earliest(times: &[f64]) -> usize {
 /// # Errors
 ///
 /// [`ExperimentError::Scene`] for a scene without primitives.
-pub fn stereo_loads(case: &Case) -> Result<Vec<Load>, ExperimentError> {
-    let still = case.scene.structures().iter().all(|s| s.frame == pxpl5_scene::Frame::Head);
-    let frames = (case.fields / 2).max(1);
+pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentError> {
+    let still = experiment.scene().structures().iter().all(|s| s.frame == pxpl5_scene::Frame::Head);
+    let frames = (experiment.length() / 2).max(1);
     let times: Vec<u64> = if still { vec![0] } else { (0..frames).map(|frame| frame * FRAME_PS).collect() };
-    let mut loads = Load::of(case, Viewport::FRAME, Binning::Touched, &times)?;
+    let mut loads = Load::of_views(experiment, Viewport::FRAME, Binning::Touched, &times)?;
     while (loads.len() as u64) < 2 * frames {
         loads.extend_from_within(0..2);
     }
@@ -295,14 +293,15 @@ pub fn stereo_loads(case: &Case) -> Result<Vec<Load>, ExperimentError> {
 /// Two fields.
 const FRAME_PS: u64 = 33_366_666_667;
 
-/// The analytic level of a Rendering Control case.
-pub(super) fn run(case: &Case, program: RenderingControl) -> Result<Summary, ExperimentError> {
-    let model = StereoModel::new(&case.machine, program)?;
-    let mut loads = stereo_loads(case)?;
-    if program.mono {
+/// An experiment with Rendering Control at the analytic level.
+pub(super) fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
+    let pipeline: RenderingControl = pipeline_of(experiment)?;
+    let model = StereoModel::new(experiment.config(), pipeline)?;
+    let mut loads = stereo_loads(experiment)?;
+    if pipeline.mono {
         loads = loads.into_iter().step_by(2).collect();
     }
-    Ok(model.summary(&model.frames(&loads), case.fields))
+    Ok(model.summary(&model.frames(&loads), experiment.length()))
 }
 
 impl StereoModel {
@@ -323,6 +322,7 @@ impl StereoModel {
         let all_ns: f64 = periods.clone().sum();
         Summary {
             latencies_ms: shown.iter().map(|frame| (frame.shown_ns - frame.transform_ns[0]) * 1e-6).collect(),
+            field_ms: self.field_ns * 1e-6,
             updates_hz: if all_ns > 0.0 { periods.count() as f64 * 1e9 / all_ns } else { 0.0 },
             missed_retraces: missed.sum(),
             eye_latencies_ms: shown.iter().flat_map(eyes).collect(),

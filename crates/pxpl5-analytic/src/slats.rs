@@ -3,14 +3,12 @@
 use super::copies::{CopyTimes, Queue, copy_all};
 use super::load::Load;
 use super::renderer::{Array, Commands, Cost, Fifo, later};
-use crate::config::{ConfigError, MachineConfig};
-use crate::experiment::{ExperimentError, WARM_UP_PICTURES};
-use crate::levels::{Case, FIELD_MS, Summary};
-use crate::pipelines::{Pipeline, Slats};
+use crate::{pipeline_of, video_of};
 use pphigs::Binning;
-use pxpl5_framebuffer::Video;
 use pxpl5_geometry::Viewport;
+use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
+use pxpl5_run::{Experiment, ExperimentError, Pipeline, Slats, Summary, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, RegionGrid};
 use slats::CLUMP;
@@ -73,7 +71,7 @@ impl SlatsModel {
         if program.code.is_some() {
             return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
         }
-        let video = Video::new(config.frame_buffer.video).map_err(|error| ConfigError::Board(error.to_string()))?;
+        let video = video_of(config)?;
         let cost = |kind: CommandKind| Cost {
             words: f64::from(kind.words()),
             ns: config.renderer.span(kind).map_or(0.0, |span| span.as_ms() * 1e6),
@@ -249,32 +247,40 @@ impl Channels {
     }
 }
 
-/// The analytic level of a Slats case.
-pub(super) fn run(case: &Case, program: Slats) -> Result<Summary, ExperimentError> {
-    let model = SlatsModel::new(&case.machine, program)?;
-    let triangles = (case.scene.triangles().len() + case.scene.spheres().len()) as f64;
-    let entries = match program.binning {
+/// An experiment with Slats at the analytic level.
+pub(super) fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
+    let pipeline: Slats = pipeline_of(experiment)?;
+    let model = SlatsModel::new(experiment.config(), pipeline)?;
+    let scene = experiment.scene();
+    let triangles = (scene.triangles().len() + scene.spheres().len()) as f64;
+    let entries = match pipeline.binning {
         Binning::All => 10.0,
         Binning::Touched => {
-            let loads = Load::of(case, Viewport::field(FieldParity::of_field(0)), Binning::Touched, &[0])?;
+            let viewport = Viewport::field(FieldParity::of_field(0));
+            let loads = Load::of_views(experiment, viewport, Binning::Touched, &[0])?;
             let per_eye = loads.iter().map(Load::entries).sum::<f64>() / loads.len() as f64;
             per_eye / triangles.max(1.0)
         }
     };
-    Ok(summary(case.fields, &model, model.field(triangles, entries)))
+    Ok(summary(experiment.length(), &model, model.field(triangles, entries)))
 }
 
 fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
     let pictures = fields.saturating_sub(WARM_UP_PICTURES as u64 + 2).max(1);
-    let ms = |span: CopyTimes| (span.end_ns - span.begin_ns) * 1e-6;
+    let field_ms = model.field_ns * 1e-6;
     Summary {
-        latencies_ms: vec![FIELD_MS; pictures as usize],
-        updates_hz: if times.in_time { 1e3 / FIELD_MS } else { 0.0 },
+        latencies_ms: vec![field_ms; pictures as usize],
+        field_ms,
+        updates_hz: if times.in_time { 1e3 / field_ms } else { 0.0 },
         missed_retraces: if times.in_time { 0 } else { pictures },
         eye_latencies_ms: Vec::new(),
         region_copy_us: model.region_ns * 1e-3,
-        first_copy_ms: ms(times.top),
-        last_copy_ms: times.bottom.map_or(0.0, ms),
+        first_copy_ms: length_ms(times.top),
+        last_copy_ms: times.bottom.map_or(0.0, length_ms),
         copy_begins_ms: times.top.begin_ns * 1e-6,
     }
+}
+
+fn length_ms(copy: CopyTimes) -> f64 {
+    (copy.end_ns - copy.begin_ns) * 1e-6
 }

@@ -3,10 +3,11 @@
 use crate::Display;
 use parameters::ParameterTable;
 use pxpl5_wire::NodeId;
+use std::any::Any;
 use std::fmt::Debug;
 
 /// The numbers of a display, and how one is built of them.
-pub trait DisplayConfig: Debug + Send + Sync {
+pub trait DisplayConfig: Any + Debug + Send + Sync {
     /// Name of its kind, as in `--display`.
     fn name(&self) -> &'static str;
 

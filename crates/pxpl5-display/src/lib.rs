@@ -16,7 +16,7 @@
 //! stands here.
 //!
 //! **Not here:** what firmware must know of a display to draw for it (fields, beams): a pipeline that is written for one
-//! display finds it with [`Display::as_any`].
+//! display finds it by its type: a display is [`Any`].
 
 mod config;
 mod double_buffer;
@@ -77,7 +77,7 @@ pub enum DisplayOutput {
 pub type DisplayContext = Context<DisplayEvent, DisplayOutput>;
 
 /// Boards that take pixels from the ring and show them.
-pub trait Display: Debug + Send + Sync {
+pub trait Display: Any + Debug + Send + Sync {
     /// Name of its kind, as in `--display`.
     fn name(&self) -> &'static str;
 
@@ -126,9 +126,6 @@ pub trait Display: Debug + Send + Sync {
 
     /// Messages that it could not use, and what was wrong with the first, where it knows.
     fn faults(&self) -> (u64, Option<String>);
-
-    /// The display itself, for pipelines that are written for one kind.
-    fn as_any(&self) -> &dyn Any;
 
     /// When the first pixel of a line lights in a period; that of the next line, where a period skips lines.
     fn line_lights(&self, surface: usize, x: u32, y: u32, period: u64) -> Option<Time> {

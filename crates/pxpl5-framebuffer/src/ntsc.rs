@@ -8,7 +8,6 @@ use pxpl5_display::{
 };
 use pxpl5_sim::{Context, Time};
 use pxpl5_wire::{Body, Eye, FieldParity, NodeId, read_swap_request};
-use std::any::Any;
 
 /// Frame buffers that share a sync generator: one for a single picture, two for the eyes of a stereo pair.
 ///
@@ -143,10 +142,6 @@ impl Display for NtscDisplay {
         let count = self.boards.iter().map(|board| board.faults().count).sum();
         let first = self.boards.iter().filter_map(|board| board.faults().first.as_ref()).min_by_key(|fault| fault.0);
         (count, first.map(|(time, fault)| format!("{time}: {fault}")))
-    }
-
-    fn as_any(&self) -> &dyn Any {
-        self
     }
 }
 

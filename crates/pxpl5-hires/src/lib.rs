@@ -15,7 +15,6 @@ use pxpl5_display::{
 };
 use pxpl5_sim::{Clock, Span, Time};
 use pxpl5_wire::NodeId;
-use std::any::Any;
 
 parameters::parameter_table! {
     /// Size and rate of the scan.
@@ -114,10 +113,6 @@ impl Display for HiRes {
 
     fn faults(&self) -> (u64, Option<String>) {
         (self.faults, None)
-    }
-
-    fn as_any(&self) -> &dyn Any {
-        self
     }
 }
 

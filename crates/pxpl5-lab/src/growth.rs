@@ -1,12 +1,10 @@
 //! Growth: host time and simulated latency as scenes and machines get larger.
 
-use crate::config::MachineConfig;
-use crate::experiment::{Experiment, ExperimentError, Outcome, Pixels};
-use crate::levels::FIELD_MS;
-use crate::limit::Growing;
-use crate::parallel;
-use crate::pipelines::RenderingControl;
-use crate::report::Statistics;
+use crate::limit::test_scene;
+use crate::{Workstation, parallel};
+use pxpl5_machine::MachineConfig;
+use pxpl5_measure::Measured;
+use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, RenderingControl, Statistics, TestScene};
 use pxpl5_scene::builtin;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -68,8 +66,9 @@ fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, E
     let mut config = MachineConfig { n_gps, n_renderers, ..MachineConfig::preset("large")? };
     config.gp.memory_bytes = MEMORY_BYTES;
     let fields = fields(u64::from(triangles), n_gps as u64, n_renderers as u64);
-    let scene = Growing::Typical.scene(triangles);
-    let run = Experiment::new(config, RenderingControl::stereo(), scene).fields(fields).pixels(Pixels::Off).run();
+    let scene = test_scene(TestScene::Typical, triangles);
+    let experiment = Experiment::new(config, RenderingControl::stereo(), scene).fields(fields).pixels(Pixels::Off);
+    let run = experiment.host(Workstation::new()).run();
     let primitives = triangles as usize;
     let outcome = match run {
         Err(ExperimentError::TooShort { .. }) => {
@@ -77,13 +76,14 @@ fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, E
         }
         other => other?,
     };
-    let (report, frames) = (outcome.report(), outcome.pictures().len());
+    let report = outcome.report();
+    let frames = outcome.pictures().len();
     Ok(Point {
         primitives,
         n_gps,
         n_renderers,
         frames,
-        host_ms: report.host_seconds * 1e3 / frames.max(1) as f64,
+        host_ms: report.host_seconds.unwrap_or(f64::NAN) * 1e3 / frames.max(1) as f64,
         latency_fields: report.latency_fields.statistics.mean,
         updates_hz: report.updates_hz,
     })
@@ -167,7 +167,7 @@ fn of_seed(outcome: &Outcome) -> (Vec<f64>, f64) {
     let latencies = outcome
         .steady_pictures()
         .iter()
-        .map(|times| (times.shown_at - times.transform_at).as_ms() / FIELD_MS)
+        .map(|times| (times.shown_at - times.transform_at).as_ms() / outcome.field_ms())
         .collect();
     (latencies, outcome.report().updates_hz)
 }

@@ -9,10 +9,10 @@
 //! within the range that gives the figure exactly. So the interval of a fitted figure says how much it would be off
 //! if nothing were fitted anew.
 
-use crate::config::MachineConfig;
 use crate::figures::{Bench, FIGURES, Row};
-use crate::levels::Level;
 use parameters::Standing;
+use pxpl5_machine::MachineConfig;
+use pxpl5_run::Level;
 use pxpl5_sim::mix;
 use serde::Serialize;
 
@@ -89,7 +89,7 @@ pub fn variations() -> Vec<Variation> {
         parameters.into_iter().filter(|p| p.info.standing != Standing::Published && p.info.range.0 < p.info.range.1);
     let of_machine = open.filter_map(|p| {
         let range = p.info.whole_range()?;
-        Some(Variation { path: p.path, value: p.value, range, standing: p.info.standing })
+        Some(Variation { path: p.path, value: p.value.whole()?, range, standing: p.info.standing })
     });
     let fitted = FITTED.iter().map(|(path, value, range)| Variation {
         path: (*path).to_owned(),

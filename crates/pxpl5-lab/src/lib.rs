@@ -1,0 +1,47 @@
+//! Questions over many experiments. The only crate with files and threads: it runs on a [`Workstation`].
+//!
+//! | question | module |
+//! |---|---|
+//! | what do the published figures come out as, and how sure is that | [`figures`], [`intervals`], [`pipeline_figures`] |
+//! | how do the levels of modelling differ | [`levels`] |
+//! | how many triangles, how fast does cost grow | [`limit`], [`growth`] |
+//! | which way to fight latency wins | [`compare`] |
+//! | the same at many points | [`sweep`] |
+//! | an experiment as text, and continued | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
+//!
+//! [`registry`] lists the pipelines and displays of the papers with their closed forms; an experiment file may be read with
+//! another one.
+
+pub mod compare;
+mod experiment_file;
+pub mod figures;
+pub mod growth;
+mod host;
+pub mod intervals;
+pub mod levels;
+pub mod limit;
+mod parallel;
+pub mod pipeline_figures;
+mod snapshot;
+pub mod sweep;
+
+pub use experiment_file::{
+    ExperimentFile, FileError, FileKey, HeadChoice, MotionChoice, Outputs, PathChoice, Plan, Published, SceneChoice,
+    Settings,
+};
+pub use host::Workstation;
+pub use snapshot::{Snapshot, SnapshotError};
+
+use pxpl5_run::Registry;
+use std::sync::{Arc, LazyLock};
+
+/// The pipelines and displays of the papers, with the closed forms of those that have one.
+#[must_use]
+pub fn registry() -> Arc<Registry> {
+    static OF_PAPERS: LazyLock<Arc<Registry>> = LazyLock::new(|| {
+        let mut registry = Registry::of_papers();
+        pxpl5_analytic::add_closed_forms(&mut registry);
+        Arc::new(registry)
+    });
+    Arc::clone(&OF_PAPERS)
+}

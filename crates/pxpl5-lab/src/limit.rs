@@ -4,51 +4,30 @@
 //! monotone (a clump that is nearly empty costs as many messages as a full one), so after a bisection the next two
 //! clumps' worth of sizes above the answer are tried as well.
 
-use crate::config::MachineConfig;
-use crate::experiment::ExperimentError;
-use crate::levels::{Case, Level, Program, Summary};
+use crate::levels::summarise;
 use glam::Vec3;
+use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_run::{
+    Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry,
+    Summary, TestScene,
+};
 use pxpl5_scene::{
     Frame, HeadMotion, Hmd, HmdConfig, Lighting, Path, Scene, SceneParts, Structure, Sway, Vertex, builtin,
 };
 use serde::Serialize;
 use std::sync::Arc;
 
-/// What must hold at the limit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Goal {
-    /// No retrace is missed.
-    NoMissedRetrace,
-    /// At least so many updates per second, counted as the papers count: 30 and 60 stand for NTSC's 29.97 and 59.94.
-    RateHz(f64),
-    /// A mean latency of at most so many fields.
-    LatencyFields(f64),
-}
-
-/// What the scene is made of as it grows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Growing {
-    /// Triangles that cover the whole screen.
-    FullScreen,
-    /// Small triangles spread over the screen, of a size that touches 1.3 regions an eye on average (TR94).
-    Typical,
-}
-
 /// A question.
 #[derive(Clone, Debug)]
 pub struct LimitQuery {
+    /// Where the pipeline's closed form is found.
+    pub registry: Arc<Registry>,
     /// The machine.
     pub config: MachineConfig,
     /// The pipeline.
-    pub program: Program,
-    /// The triangles.
-    pub growing: Growing,
-    /// What must hold.
-    pub goal: Goal,
-    /// Fields that each size is simulated for.
-    pub fields: u64,
+    pub pipeline: Arc<dyn Pipeline>,
+    /// The triangles, what must hold, and for how many fields each size is simulated.
+    pub criterion: LimitCriterion,
     /// How literally.
     pub level: Level,
 }
@@ -75,22 +54,20 @@ pub const CEILING: u32 = 1_000_000;
 /// Sizes tried above the answer of the bisection.
 const LOOK_AHEAD: u32 = 60;
 
-/// Fields that show a steady state of Slats, whose latency is one field.
-pub const LIMIT_FIELDS: u64 = 16;
-
-/// Fields that show one of Rendering Control at 10 frames a second.
-pub const STEREO_LIMIT_FIELDS: u64 = 90;
-
 /// Pictures after the warm-up without which nothing can be said of a rate: the goal counts as missed.
 const PICTURES: usize = 4;
 
 impl LimitQuery {
-    /// The most triangles without a missed retrace.
-    #[must_use]
-    pub fn no_miss(config: MachineConfig, program: impl Into<Program>) -> Self {
-        let (program, goal) = (program.into(), Goal::NoMissedRetrace);
-        let (fields, level) = (LIMIT_FIELDS, Level::Transaction);
-        Self { config, program, growing: Growing::FullScreen, goal, fields, level }
+    /// The most triangles by the pipeline's own criterion, which its registry entry states.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError::Config`] when the registry of the papers does not know the pipeline.
+    pub fn of_papers(config: MachineConfig, pipeline: impl Pipeline) -> Result<Self, ExperimentError> {
+        let registry = crate::registry();
+        let unknown = |_| ConfigError::Board(format!("no pipeline {} is known", pipeline.name()));
+        let criterion = (registry.pipeline(pipeline.name()).map_err(unknown)?.limit)(&PipelineSettings::default());
+        Ok(Self { registry, config, pipeline: Arc::new(pipeline), criterion, level: Level::Transaction })
     }
 
     /// Searches.
@@ -104,33 +81,27 @@ impl LimitQuery {
     }
 
     fn reached(&self, triangles: u32) -> Result<bool, ExperimentError> {
-        let scene = Arc::new(self.growing.scene(triangles));
-        let case = Case {
-            machine: self.config.clone(),
-            program: self.program,
-            scene,
-            fields: self.fields,
-            seed: 1,
-            head: None,
-        };
-        match self.level.run(&case) {
-            Ok(summary) => Ok(self.goal.is_reached(&summary)),
+        let scene = Arc::new(test_scene(self.criterion.scene, triangles));
+        let experiment = Experiment::with(self.config.clone(), Arc::clone(&self.pipeline), scene)
+            .fields(self.criterion.fields)
+            .pixels(Pixels::Off)
+            .level(self.level);
+        match summarise(&self.registry, &experiment) {
+            Ok(summary) => Ok(is_reached(self.criterion.goal, &summary)),
             Err(ExperimentError::TooShort { .. } | ExperimentError::Run { .. }) => Ok(false),
             Err(error) => Err(error),
         }
     }
 }
 
-impl Goal {
-    fn is_reached(self, summary: &Summary) -> bool {
-        if summary.latencies_ms.len() < PICTURES {
-            return false;
-        }
-        match self {
-            Self::NoMissedRetrace => summary.missed_retraces == 0,
-            Self::RateHz(least) => summary.updates_hz >= least * NTSC,
-            Self::LatencyFields(most) => summary.latency_fields().mean <= most,
-        }
+fn is_reached(goal: Goal, summary: &Summary) -> bool {
+    if summary.latencies_ms.len() < PICTURES {
+        return false;
+    }
+    match goal {
+        Goal::NoMissedRetrace => summary.missed_retraces == 0,
+        Goal::RateHz(least) => summary.updates_hz >= least * NTSC,
+        Goal::LatencyFields(most) => summary.latency_fields().mean <= most,
     }
 }
 
@@ -183,18 +154,16 @@ const TYPICAL_LEG_PX: f64 = 18.0;
 /// Distance of typical triangles from the head, metres (assumed; any within the display's near and far planes).
 const TYPICAL_DEPTH_M: f32 = 1.0;
 
-impl Growing {
-    /// A scene of so many triangles, at least one.
-    ///
-    /// # Panics
-    ///
-    /// Above the scene generator's largest number of triangles.
-    #[must_use]
-    pub fn scene(self, triangles: u32) -> Scene {
-        match self {
-            Self::FullScreen => builtin(&format!("full-screen:{}", triangles.max(1))).expect("in range"),
-            Self::Typical => typical(triangles.max(1)),
-        }
+/// A scene of so many triangles, at least one.
+///
+/// # Panics
+///
+/// Above the scene generator's largest number of triangles.
+#[must_use]
+pub fn test_scene(kind: TestScene, triangles: u32) -> Scene {
+    match kind {
+        TestScene::FullScreen => builtin(&format!("full-screen:{}", triangles.max(1))).expect("in range"),
+        TestScene::Typical => typical(triangles.max(1)),
     }
 }
 

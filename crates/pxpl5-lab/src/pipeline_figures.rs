@@ -1,9 +1,8 @@
 //! The papers' pipeline figures, re-drawn from simulation.
 
-use super::{TimelineOptions, svg};
-use crate::experiment::{ExperimentError, Outcome};
 use crate::experiment_file::{ExperimentFile, FileError};
-use std::fmt;
+use pxpl5_run::{ExperimentError, Outcome};
+use thiserror::Error;
 
 /// A pipeline figure of a paper and the experiment that it is re-drawn from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +16,7 @@ pub struct PipelineFigure {
     /// The experiment, as text of an experiment file.
     pub experiment: &'static str,
     /// The number of fields drawn, where it is not left to the picture.
-    fields: Option<u64>,
+    pub fields: Option<u64>,
 }
 
 /// The figures. Scenes are chosen so that the stages have the published relations; the papers name none. For figure
@@ -69,43 +68,15 @@ pub const PIPELINE_FIGURES: [PipelineFigure; 6] = [
 ];
 
 /// Why a figure could not be drawn.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
-pub enum FigureError {
+pub enum PipelineFigureError {
     /// Its experiment is wrong.
-    File(FileError),
+    #[error(transparent)]
+    File(#[from] FileError),
     /// Its experiment gave no result.
-    Experiment(ExperimentError),
-}
-
-impl fmt::Display for FigureError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::File(error) => error.fmt(f),
-            Self::Experiment(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for FigureError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::File(error) => Some(error),
-            Self::Experiment(error) => Some(error),
-        }
-    }
-}
-
-impl From<FileError> for FigureError {
-    fn from(error: FileError) -> Self {
-        Self::File(error)
-    }
-}
-
-impl From<ExperimentError> for FigureError {
-    fn from(error: ExperimentError) -> Self {
-        Self::Experiment(error)
-    }
+    #[error(transparent)]
+    Experiment(#[from] ExperimentError),
 }
 
 impl PipelineFigure {
@@ -113,19 +84,15 @@ impl PipelineFigure {
     ///
     /// # Errors
     ///
-    /// [`FigureError`].
-    pub fn run(&self) -> Result<Outcome, FigureError> {
+    /// [`PipelineFigureError`].
+    pub fn run(&self) -> Result<Outcome, PipelineFigureError> {
         let plan = ExperimentFile::parse(self.experiment, self.name)?.resolve()?;
         Ok(plan.experiment(plan.load_scene()?).run()?)
     }
 
-    /// Draws it as SVG.
-    ///
-    /// # Errors
-    ///
-    /// [`FigureError`].
-    pub fn draw(&self) -> Result<String, FigureError> {
-        let title = Some(format!("{} ({})", self.shows, self.source));
-        Ok(svg(&self.run()?, &TimelineOptions { title, fields: self.fields, ..TimelineOptions::default() }))
+    /// What stands above the drawing.
+    #[must_use]
+    pub fn title(&self) -> String {
+        format!("{} ({})", self.shows, self.source)
     }
 }

@@ -10,9 +10,10 @@
 //! The file is JSON, with a version and a checksum; a damaged or foreign file is refused with the reason.
 
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
-use crate::fingerprint::Fingerprint;
-use crate::machine::Machine;
+use pxpl5_machine::Machine;
+use pxpl5_run::{Fingerprint, Registry};
 use pxpl5_scene::Scene;
+use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use thiserror::Error;
@@ -120,8 +121,8 @@ impl Snapshot {
             level: plan.level_name(),
             seed: plan.seed,
             field,
-            time_ps: machine.video().retrace(field).0,
-            trace_hash: machine.trace_hash().to_string(),
+            time_ps: machine.record().tick(field).0,
+            trace_hash: machine.record().trace_hash().to_string(),
             events: machine.events(),
             scene_hash: Fingerprint::of_scene(scene).to_string(),
             experiment: plan.settings().to_string(),
@@ -171,8 +172,18 @@ impl Snapshot {
     ///
     /// [`SnapshotError::Experiment`] when this version does not understand it.
     pub fn experiment(&self, file: &str) -> Result<ExperimentFile, SnapshotError> {
+        self.experiment_with(crate::registry(), file)
+    }
+
+    /// The experiment that was saved, with the pipelines and displays of a registry.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::experiment`].
+    pub fn experiment_with(&self, registry: Arc<Registry>, file: &str) -> Result<ExperimentFile, SnapshotError> {
         let text = format!("{file}: experiment");
-        ExperimentFile::parse(&self.experiment, &text)
+        ExperimentFile::with(registry)
+            .and_parse(&self.experiment, &text)
             .map_err(|error| SnapshotError::Experiment { file: file.to_owned(), error: Box::new(error) })
     }
 
@@ -191,7 +202,7 @@ impl Snapshot {
     ///
     /// [`SnapshotError::Differs`].
     pub fn check_machine(&self, machine: &Machine, file: &str) -> Result<(), SnapshotError> {
-        self.same("the trace hash", &self.trace_hash, machine.trace_hash().to_string(), file)?;
+        self.same("the trace hash", &self.trace_hash, machine.record().trace_hash().to_string(), file)?;
         self.same("the number of events", &self.events.to_string(), machine.events().to_string(), file)
     }
 
@@ -215,7 +226,8 @@ struct Sealed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Pixels;
+    use pxpl5_measure::Measured;
+    use pxpl5_run::Pixels;
 
     /// The run, its snapshot at field 9, and its trace hash at the end.
     fn saved() -> (Plan, Snapshot, String) {

@@ -6,7 +6,9 @@ use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
 use serde::Serialize;
+use std::any::Any;
 use std::collections::BTreeMap;
+use std::fmt::Debug;
 use thiserror::Error;
 
 /// Boards and their numbers.
@@ -32,6 +34,26 @@ pub struct MachineConfig {
     pub host: HostTiming,
     /// The displays. The first is the sync generator, and what pipelines draw for.
     pub displays: Vec<Box<dyn DisplayConfig>>,
+    /// Numbers of the firmware that may run on it, which the boards do not know; each table with the first part of its paths.
+    pub firmware: Vec<(&'static str, Box<dyn FirmwareTable>)>,
+}
+
+/// A table of the numbers of some firmware.
+pub trait FirmwareTable: ParameterTable + Any + Debug + Send + Sync {
+    /// A copy of the numbers.
+    fn boxed(&self) -> Box<dyn FirmwareTable>;
+}
+
+impl<T: ParameterTable + Clone + Debug + Send + Sync + 'static> FirmwareTable for T {
+    fn boxed(&self) -> Box<dyn FirmwareTable> {
+        Box::new(self.clone())
+    }
+}
+
+impl Clone for Box<dyn FirmwareTable> {
+    fn clone(&self) -> Self {
+        self.as_ref().boxed()
+    }
 }
 
 impl PartialEq for MachineConfig {
@@ -118,6 +140,7 @@ impl MachineConfig {
             vec![("ring", &self.ring), ("gp", &self.gp), ("renderer", &self.renderer)];
         all.extend(self.displays.iter().flat_map(|display| display.tables()));
         all.push(("host", &self.host));
+        all.extend(self.firmware.iter().map(|(name, table)| (*name, table.as_ref() as &dyn ParameterTable)));
         all
     }
 
@@ -126,7 +149,21 @@ impl MachineConfig {
             vec![("ring", &mut self.ring), ("gp", &mut self.gp), ("renderer", &mut self.renderer)];
         all.extend(self.displays.iter_mut().flat_map(|display| display.tables_mut()));
         all.push(("host", &mut self.host));
+        all.extend(self.firmware.iter_mut().map(|(name, table)| (*name, table.as_mut() as &mut dyn ParameterTable)));
         all
+    }
+
+    /// Adds the numbers of some firmware, unless it has them already.
+    pub fn add_firmware_table(&mut self, name: &'static str, table: Box<dyn FirmwareTable>) {
+        if self.firmware.iter().all(|(known, _)| *known != name) {
+            self.firmware.push((name, table));
+        }
+    }
+
+    /// The numbers of some firmware, by their type.
+    #[must_use]
+    pub fn firmware_table<T: FirmwareTable>(&self) -> Option<&T> {
+        self.firmware.iter().find_map(|(_, table)| (table.as_ref() as &dyn Any).downcast_ref())
     }
 
     /// All parameters in order of the boards.
@@ -141,7 +178,7 @@ impl MachineConfig {
         let Ok(preset) = Self::preset(&self.preset) else { return BTreeMap::new() };
         let of_preset: BTreeMap<String, Value> = preset.settings().into_iter().collect();
         let own = self.settings().into_iter();
-        own.filter(|(path, value)| of_preset.get(path) != Some(value)).collect()
+        own.filter(|(path, value)| of_preset.get(path).is_some_and(|preset| preset != value)).collect()
     }
 
     /// The numbers of boards and all parameters, by path.

@@ -17,7 +17,7 @@ mod record;
 mod savings;
 mod traffic;
 
-pub use config::{ConfigError, MachineConfig, Parameter};
+pub use config::{ConfigError, FirmwareTable, MachineConfig, Parameter};
 pub use machine::{Machine, Ports, RunError};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
 pub use pixels::{PixelWorker, SameThread};

@@ -109,6 +109,7 @@ impl MachineConfig {
             renderer: RendererTiming::PAPERS,
             host: HostTiming::PAPERS,
             displays: vec![Box::new(FrameBufferConfig::NTSC)],
+            firmware: Vec::new(),
         }
     }
 

@@ -8,6 +8,7 @@ use pxpl5_renderer::Renderer;
 use pxpl5_ring::Ring;
 use pxpl5_sim::{Span, Time, TraceHash};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, SurfaceId};
+use std::any::Any;
 
 /// The boards of a machine without the programs that ran on it, and everything observed: plain data, which may be sent to
 /// another thread.
@@ -67,7 +68,7 @@ impl Record {
     /// The first display of a kind; `None` where the machine has none.
     #[must_use]
     pub fn display_of_kind<D: Display + 'static>(&self) -> Option<&D> {
-        self.displays.iter().find_map(|display| display.as_any().downcast_ref())
+        self.displays.iter().find_map(|display| (display.as_ref() as &dyn Any).downcast_ref())
     }
 
     /// The number of a display's first surface.

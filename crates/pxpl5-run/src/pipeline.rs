@@ -8,6 +8,7 @@ use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Re
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, SurfaceId};
+use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -77,7 +78,7 @@ pub struct PictureTimes {
 }
 
 /// A program of a whole machine, and what its pictures' times are.
-pub trait Pipeline: Debug + Send + Sync {
+pub trait Pipeline: Any + Debug + Send + Sync {
     /// Name on the command line.
     fn name(&self) -> &'static str;
 

@@ -5,6 +5,7 @@ use crate::pipelines;
 use crate::{Experiment, ExperimentError, Summary};
 use parameters::nearest;
 use pxpl5_display::DisplayConfig;
+use pxpl5_machine::{FirmwareTable, MachineConfig};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -151,6 +152,8 @@ pub struct PipelineEntry {
     pub build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
     /// When it is said to draw a scene in time, with the keys given.
     pub limit: fn(&PipelineSettings) -> LimitCriterion,
+    /// Tables of its firmware's own numbers, each with the first part of their paths, such as `jitp`.
+    pub tables: &'static [(&'static str, fn() -> Box<dyn FirmwareTable>)],
     /// Its closed form, if it has one.
     pub closed_form: Option<ClosedForm>,
     /// Whether `compare` has a row of it.
@@ -178,6 +181,16 @@ impl Registry {
     #[must_use]
     pub fn of_papers() -> Self {
         Self { pipelines: pipelines::entries(), displays: crate::displays::entries() }
+    }
+
+    /// A machine with the numbers of every pipeline's firmware beside those of its boards.
+    #[must_use]
+    pub fn machine_of(&self, config: MachineConfig) -> MachineConfig {
+        let mut config = config;
+        for entry in &self.pipelines {
+            entry.tables.iter().for_each(|(name, table)| config.add_firmware_table(name, table()));
+        }
+        config
     }
 
     /// Adds a pipeline, or puts it in the place of the one of the same name.

@@ -1,12 +1,10 @@
 //! A vertical edge under a pan: conventional and just-in-time, as computed and as seen on the raster.
 
-use crate::config::MachineConfig;
-use crate::experiment::{Experiment, ExperimentError, Pixels};
-use crate::head_to_light::Head;
-use crate::pipelines::{Jitp, Viewpoint};
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgb, RgbImage};
-use pxpl5_framebuffer::Video;
+use pxpl5_framebuffer::{FrameBufferConfig, NtscDisplay, Video};
+use pxpl5_machine::MachineConfig;
+use pxpl5_run::{Experiment, ExperimentError, Head, Jitp, Pixels, Viewpoint};
 use pxpl5_scene::{Frame, HeadMotion, Lighting, Path, Scene, SceneParts, Structure, Sway, Vertex};
 use pxpl5_wire::FieldParity;
 use std::sync::Arc;
@@ -80,7 +78,7 @@ pub fn edge_pictures(config: &MachineConfig, deg_per_s: f64) -> Result<EdgePictu
 
 /// A field as scanned and as seen.
 fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<(RgbImage, RgbImage), ExperimentError> {
-    let video = Video::new(config.frame_buffer.video).map_err(|e| ExperimentError::Scene(e.to_string()))?;
+    let video = Video::new(FrameBufferConfig::NTSC.video).map_err(|e| ExperimentError::Scene(e.to_string()))?;
     let middle = video.when(320, 240 + FieldParity::of_field(FIELD).first_line(), FIELD).unwrap_or_default();
     let scene = edge_scene(-deg_per_s * middle.0 as f64 * 1e-12);
     let pan = Arc::new(Pan::at(deg_per_s));
@@ -91,7 +89,7 @@ fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<
         .fields(FIELD + 2)
         .pixels(Pixels::Lazy)
         .run()?;
-    let scanned = outcome.machine().frame_buffers().first().and_then(|board| board.seen(FIELD));
+    let scanned = outcome.record().display_of_kind::<NtscDisplay>().and_then(|ntsc| ntsc.boards().first()?.seen(FIELD));
     let black = || RgbImage::new(video.width(), video.height() / 2);
     let picture = scanned.map_or_else(black, |field| field.picture());
     let seen = as_seen(&picture, FIELD, &video, &Pan::at(deg_per_s));

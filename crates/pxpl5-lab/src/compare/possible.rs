@@ -1,8 +1,8 @@
 //! How many triangles a pipeline can draw in time, found by simulation.
 
-use crate::config::MachineConfig;
-use crate::experiment::{Experiment, Outcome, Pixels};
-use crate::pipelines::Pipeline;
+use pxpl5_machine::MachineConfig;
+use pxpl5_measure::Measured;
+use pxpl5_run::{Experiment, Goal, Outcome, PictureTimes, Pipeline, PipelineSettings, Pixels, Registry};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -21,42 +21,56 @@ const FIELDS: u64 = 24;
 /// No more are tried.
 const MOST: u32 = 4_096;
 
-/// Most triangles, each covering the whole screen, that a pipeline draws in time: all regions before their beam, where
-/// it has deadlines; else at the update rate that it has with one triangle (Rendering Control), or a pass in each frame
-/// of 1/30 s (frameless).
+/// Most triangles, each covering the whole screen, that a pipeline draws in time, by the goal of its registry entry: at a
+/// rate, or with no retrace missed. Where pictures have deadlines, that is every region before its beam; else the update
+/// rate that it has with one triangle.
 #[must_use]
-pub fn triangles_possible(config: &MachineConfig, pipeline: &Arc<dyn Pipeline>) -> Possible {
-    let run = |n: u32| {
-        let scene = pxpl5_scene::builtin(&format!("full-screen:{n}")).ok()?;
-        Experiment::with(config.clone(), Arc::clone(pipeline), Arc::new(scene))
-            .fields(FIELDS)
-            .pixels(Pixels::Off)
-            .run()
-            .ok()
-    };
-    let rate = |outcome: &Outcome| outcome.report().updates_hz;
-    match pipeline.name() {
-        "rendering-control" => {
-            let best = run(1).as_ref().map_or(0.0, rate);
-            let holds = |n| run(n).is_some_and(|o| rate(&o) > 0.98 * best);
-            Possible { triangles: greatest(holds), definition: "full-screen triangles at the update rate of one" }
-        }
-        "frameless" => {
-            let holds = |n| run(n).is_some_and(|o| rate(&o) >= 29.97);
-            Possible { triangles: greatest(holds), definition: "full-screen triangles at a pass a frame, 29.97 Hz" }
-        }
-        _ => {
-            let in_time = |o: &Outcome| o.steady_pictures().iter().all(|times| times.complete) && whole(o);
-            let holds = |n| run(n).is_some_and(|o| in_time(&o));
-            Possible { triangles: greatest(holds), definition: "full-screen triangles with every region in time" }
+pub fn triangles_possible(registry: &Registry, config: &MachineConfig, pipeline: &Arc<dyn Pipeline>) -> Possible {
+    let entry = registry.pipeline(pipeline.name()).ok();
+    let goal = entry.map_or(Goal::NoMissedRetrace, |entry| (entry.limit)(&PipelineSettings::default()).goal);
+    let run = |n| run(config, pipeline, n);
+    match goal {
+        Goal::RateHz(hz) => Possible {
+            triangles: greatest(|n| run(n).is_some_and(|outcome| outcome.report().updates_hz >= hz * NTSC)),
+            definition: "full-screen triangles at a pass a frame, 29.97 Hz",
+        },
+        Goal::LatencyFields(most) => Possible {
+            triangles: greatest(|n| run(n).is_some_and(|outcome| outcome.latency_fields().mean <= most)),
+            definition: "full-screen triangles at a mean latency",
+        },
+        Goal::NoMissedRetrace => {
+            let best = run(1).map_or(0.0, |outcome| outcome.report().updates_hz);
+            if run(1).is_some_and(|outcome| is_whole(&outcome)) {
+                let holds = |outcome: &Outcome| are_complete(outcome) && is_whole(outcome);
+                let triangles = greatest(|n| run(n).is_some_and(|outcome| holds(&outcome)));
+                Possible { triangles, definition: "full-screen triangles with every region in time" }
+            } else {
+                let holds = |outcome: &Outcome| outcome.report().updates_hz > 0.98 * best;
+                let triangles = greatest(|n| run(n).is_some_and(|outcome| holds(&outcome)));
+                Possible { triangles, definition: "full-screen triangles at the update rate of one" }
+            }
         }
     }
 }
 
+/// NTSC's rates over the round ones.
+const NTSC: f64 = 0.999;
+
+/// A pipeline with so many triangles; nothing of one that cannot draw them.
+fn run(config: &MachineConfig, pipeline: &Arc<dyn Pipeline>, triangles: u32) -> Option<Outcome> {
+    let scene = pxpl5_scene::builtin(&format!("full-screen:{triangles}")).ok()?;
+    let experiment = Experiment::with(config.clone(), Arc::clone(pipeline), Arc::new(scene));
+    experiment.fields(FIELDS).pixels(Pixels::Off).run().ok()
+}
+
+fn are_complete(outcome: &Outcome) -> bool {
+    outcome.steady_pictures().iter().all(|times| times.complete)
+}
+
 /// Whether no field between the first and the last picture was left out.
-fn whole(outcome: &Outcome) -> bool {
+fn is_whole(outcome: &Outcome) -> bool {
     let pictures = outcome.steady_pictures();
-    let end = |times: Option<&crate::pipelines::PictureTimes>| times.map_or(0, |t| t.picture);
+    let end = |times: Option<&PictureTimes>| times.map_or(0, |t| t.picture);
     end(pictures.last()) + 1 - end(pictures.first()) == pictures.len() as u64 && pictures.len() as u64 > FIELDS / 3
 }
 

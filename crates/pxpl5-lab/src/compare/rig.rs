@@ -1,8 +1,7 @@
 //! The pendulum rig in front of the emulated machine.
 
-use crate::experiment::Outcome;
+use pxpl5_run::Outcome;
 use pxpl5_sim::Time;
-use pxpl5_wire::FieldParity;
 use tracking::rig::{Measurement, PendulumRig, RigError};
 use tracking::time::PS_PER_S;
 use tracking::tracker::TrackerModel;
@@ -32,11 +31,8 @@ pub fn measure_on(
 
 /// When each frame's pose was taken and when its scan began, in order.
 fn frames(outcome: &Outcome) -> Vec<(Time, Time)> {
-    let video = outcome.machine().video();
-    let scan = |shown_at| {
-        let field = video.field_at(shown_at);
-        video.when(0, FieldParity::of_field(field).first_line(), field).unwrap_or(shown_at)
-    };
+    let display = outcome.record().display();
+    let scan = |shown_at| display.first_light(0, display.period_at(shown_at)).unwrap_or(shown_at);
     let frames = outcome.pictures().iter();
     frames.map(|times| (times.sampled_at.unwrap_or(times.transform_at), scan(times.shown_at))).collect()
 }

@@ -1,13 +1,14 @@
 //! The comparison itself: one row for each pipeline.
 
-use super::errors::{Percentiles, PixelErrors};
 use super::possible::triangles_possible;
-use crate::config::MachineConfig;
-use crate::experiment::{Experiment, ExperimentError, Outcome, Pixels};
-use crate::head_to_light::{Budget, Head};
-use crate::parallel;
-use crate::pipelines::{Frameless, Jitp, Pipeline, RenderingControl, Slats};
+use crate::{Workstation, parallel};
 use pphigs::Binning;
+use pxpl5_machine::MachineConfig;
+use pxpl5_measure::{Budget, Measured, Percentiles, PixelErrors, UNJUDGED_FIELDS};
+use pxpl5_run::{
+    Experiment, ExperimentError, FIELDS_WITH_HEAD, Head, Outcome, Pipeline, PipelineEntry, PipelineSettings, Pixels,
+    Registry, Slats,
+};
 use pxpl5_scene::Scene;
 use serde::Serialize;
 use std::sync::Arc;
@@ -85,30 +86,34 @@ struct Contender {
 }
 
 impl Contender {
-    fn plain(pipeline: impl Pipeline + 'static) -> Self {
-        Self { rows: vec![(pipeline.name().to_owned(), Kind::Plain)], pipeline: Arc::new(pipeline) }
+    fn plain(entry: &PipelineEntry) -> Self {
+        let rows = vec![(entry.name.to_owned(), Kind::Plain)];
+        Self { pipeline: (entry.build)(&PipelineSettings::default()), rows }
+    }
+
+    /// As published every clump of Slats goes to all regions, which limits the scene to little more than 100 triangles;
+    /// clumps that go where they are seen leave the raster offset a picture to work on.
+    fn with_raster_offset() -> Self {
+        let touched = Slats { binning: Binning::Touched, ..Slats::split() };
+        let rows = [("slats-touched", Kind::Plain), ("vdrt", Kind::RasterOffset), ("ideal", Kind::Ideal)];
+        let rows = rows.into_iter().map(|(name, kind)| (name.to_owned(), kind)).collect();
+        Self { pipeline: Arc::new(touched), rows }
     }
 }
 
-/// Slats twice: as published every clump goes to all regions, which limits the scene to little more than 100
-/// triangles; clumps that go where they are seen leave the raster offset a picture to work on.
-fn contenders() -> Vec<Contender> {
-    let row = |name: &str, kind| (name.to_owned(), kind);
-    let touched = Contender {
-        pipeline: Arc::new(Slats { binning: Binning::Touched, ..Slats::split() }),
-        rows: vec![row("slats-touched", Kind::Plain), row("vdrt", Kind::RasterOffset), row("ideal", Kind::Ideal)],
-    };
-    let mut all = vec![
-        Contender::plain(RenderingControl::stereo()),
-        Contender::plain(Slats::split()),
-        touched,
-        Contender::plain(Frameless::new()),
-    ];
-    all.extend(Jitp::all().into_iter().map(Contender::plain));
+/// Every pipeline of the registry that is compared, in its order, and the raster offset behind Slats.
+fn contenders(registry: &Registry) -> Vec<Contender> {
+    let mut all = Vec::new();
+    for entry in registry.pipelines().iter().filter(|entry| entry.compared) {
+        all.push(Contender::plain(entry));
+        if entry.name == "slats" {
+            all.push(Contender::with_raster_offset());
+        }
+    }
     all
 }
 
-/// Runs every pipeline on a machine with a scene and a head; `possible` searches for the most triangles too.
+/// Runs every pipeline of the papers on a machine with a scene and a head; `possible` searches for the most triangles too.
 ///
 /// A pipeline that cannot run there has a row with its failure. No pixels are computed.
 ///
@@ -122,15 +127,16 @@ pub fn compare(
     fields: u64,
     possible: bool,
 ) -> Result<Comparison, ExperimentError> {
-    compare_with(config, scene, head, fields, possible, |_, _| {})
+    compare_with(&crate::registry(), config, scene, head, fields, possible, |_, _| {})
 }
 
-/// The same; `finished` hears how many of all runs are done.
+/// The same with every pipeline of a registry; `finished` hears how many of all runs are done.
 ///
 /// # Errors
 ///
 /// As [`compare`].
 pub fn compare_with(
+    registry: &Registry,
     config: &MachineConfig,
     scene: &Arc<Scene>,
     head: &Arc<Head>,
@@ -138,20 +144,22 @@ pub fn compare_with(
     possible: bool,
     finished: impl Fn(u64, u64) + Sync,
 ) -> Result<Comparison, ExperimentError> {
-    let expected = (super::errors::UNJUDGED_FIELDS + 2, crate::head_to_light::FIELDS_WITH_HEAD);
+    let expected = (UNJUDGED_FIELDS + 2, FIELDS_WITH_HEAD);
     if !(expected.0..=expected.1).contains(&fields) {
         return Err(ExperimentError::Fields { expected, found: fields });
     }
     config.check()?;
     let tracker = head.tracker().config().name.clone();
-    let (contenders, done) = (contenders(), AtomicU64::new(0));
+    let contenders = contenders(registry);
+    let done = AtomicU64::new(0);
     let rows = parallel::map(&contenders, |contender| {
         let run = Experiment::with(config.clone(), Arc::clone(&contender.pipeline), Arc::clone(scene))
             .head(Arc::clone(head))
             .fields(fields)
             .pixels(Pixels::Off)
+            .host(Workstation::new())
             .run();
-        let rows = contender.rows(config, possible, &run);
+        let rows = contender.rows(registry, config, possible, &run);
         finished(done.fetch_add(1, Ordering::Relaxed) + 1, contenders.len() as u64);
         rows
     });
@@ -169,8 +177,8 @@ pub fn compare_with(
 }
 
 impl Contender {
-    fn rows(&self, config: &MachineConfig, possible: bool, run: &Result<Outcome, ExperimentError>) -> Vec<Row> {
-        let limit = possible.then(|| triangles_possible(config, &self.pipeline));
+    fn rows(&self, registry: &Registry, config: &MachineConfig, possible: bool, run: &Result<Outcome, ExperimentError>) -> Vec<Row> {
+        let limit = possible.then(|| triangles_possible(registry, config, &self.pipeline));
         let row = |(name, kind): &(String, Kind)| {
             let limit = limit.as_ref().filter(|_| *kind != Kind::Ideal);
             let blank = Row {
@@ -207,7 +215,7 @@ fn of_outcome(kind: Kind, outcome: &Outcome, blank: Row) -> Row {
         missed_retraces: report.missed_retraces,
         late_regions: report.late_regions,
         error,
-        host_seconds: outcome.host_seconds(),
+        host_seconds: outcome.host_seconds().unwrap_or_default(),
         ..blank
     }
 }

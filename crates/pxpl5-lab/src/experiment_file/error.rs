@@ -1,6 +1,6 @@
 //! What can be wrong with an experiment file or a setting.
 
-use crate::config::ConfigError;
+use pxpl5_machine::ConfigError;
 use pxpl5_scene::{LoadError, RangeError, SceneError};
 use thiserror::Error;
 
@@ -56,7 +56,7 @@ pub enum FileError {
         /// The pipeline chosen.
         pipeline: &'static str,
         /// The pipelines that know it.
-        applies_to: &'static str,
+        applies_to: String,
     },
     /// A setting that must be given is missing.
     #[error("{key} is missing: give {how}")]

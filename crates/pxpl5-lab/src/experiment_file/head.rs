@@ -1,11 +1,9 @@
-//! The head in front of the pipeline: how it moves, its tracker and predictor, and the display before its eyes.
+//! The head in front of the pipeline: how it moves, its tracker and predictor, and the raster before its eyes.
 
 use super::plan::beside;
 use super::{ExperimentFile, FileError};
 use crate::compare::{motion, predictor, tracker};
-use crate::display::Display;
-use crate::head_to_light::Head;
-use crate::levels::Program;
+use pxpl5_run::{Head, Pipeline, Raster};
 use std::sync::Arc;
 
 /// A head with its tracker, by the names of its parts.
@@ -29,13 +27,14 @@ const PREDICT: &str = "kalman";
 
 impl HeadChoice {
     /// The head of an experiment; `None` where no `head.` key is set. A recording is read here.
-    pub(super) fn read(file: &ExperimentFile, program: &Program, seed: u64) -> Result<Option<Self>, FileError> {
+    pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline, seed: u64) -> Result<Option<Self>, FileError> {
         let Some(motion_name) = file.text("head.motion")? else { return Self::none(file) };
-        let display = file.choice("head.display", &Display::ALL)?.unwrap_or_default();
-        if let (Display::Vdrt, false, Some(setting)) = (display, program.has_one_pose(), file.get("head.display")) {
-            let (place, key) = (setting.place.clone(), "head.display = vdrt".to_owned());
-            let applies_to = "rendering-control, slats and jitp-field, whose pictures are of one pose";
-            return Err(FileError::NotApplicable { place, key, pipeline: program.name(), applies_to });
+        let raster = file.choice("head.raster", &Raster::ALL)?.unwrap_or_default();
+        if let (Raster::Vdrt, false, Some(setting)) = (raster, pipeline.has_one_pose(), file.get("head.raster")) {
+            let place = setting.place.clone();
+            let key = "head.raster = vdrt".to_owned();
+            let applies_to = "rendering-control, slats and jitp-field, whose pictures are of one pose".to_owned();
+            return Err(FileError::NotApplicable { place, key, pipeline: pipeline.name(), applies_to });
         }
         let motion_name = match file.get("head.motion") {
             Some(setting) if motion_name.to_ascii_lowercase().ends_with(".csv") => beside(&setting.folder, motion_name),
@@ -47,7 +46,7 @@ impl HeadChoice {
         let of_tracker = tracker(&tracker_name).map_err(|error| refused(file, "head.tracker", &error))?;
         let of_predictor = predictor(&predict).map_err(|error| refused(file, "head.predict", &error))?;
         let head = Head::new(moving, of_tracker, of_predictor, seed);
-        let head = Arc::new(head.map_err(|error| refused(file, "head.tracker", &error))?.display(display));
+        let head = Arc::new(head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster));
         Ok(Some(Self { motion: motion_name, tracker: tracker_name, predict, head }))
     }
 
@@ -70,7 +69,7 @@ impl HeadChoice {
             ("head.motion", self.motion.clone()),
             ("head.tracker", self.tracker.clone()),
             ("head.predict", self.predict.clone()),
-            ("head.display", self.head.shown_on().to_string()),
+            ("head.raster", self.head.raster().to_string()),
         ]
     }
 }

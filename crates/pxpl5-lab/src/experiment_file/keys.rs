@@ -1,94 +1,107 @@
 //! The keys of an experiment file.
 
-use crate::config::{MachineConfig, nearest};
+use parameters::nearest;
+use pxpl5_machine::MachineConfig;
+use pxpl5_run::Registry;
 
 /// A key and what it says.
-#[derive(Clone, Copy, Debug)]
-pub struct Key {
+#[derive(Clone, Debug)]
+pub struct FileKey {
     /// Its path.
-    pub path: &'static str,
+    pub path: String,
     /// What it sets and what it takes.
-    pub about: &'static str,
-    /// The pipelines to which it applies, where it is not all.
-    pub applies_to: Option<&'static str>,
+    pub about: String,
+    /// The families of pipelines to which it applies; empty for all.
+    pub applies_to: Vec<&'static str>,
 }
 
-const fn key(path: &'static str, about: &'static str) -> Key {
-    Key { path, about, applies_to: None }
-}
-
-const fn of(pipeline: &'static str, path: &'static str, about: &'static str) -> Key {
-    Key { path, about, applies_to: Some(pipeline) }
-}
-
-/// All keys but the machine's parameters, which are `machine.` and a path of [`MachineConfig::set`].
-pub const KEYS: &[Key] = &[
-    key("title", "a line for people"),
-    key(
-        "pipeline",
-        "rendering-control, slats, frameless, or jitp-field, jitp-scanline, jitp-dual-screen, jitp-dual-view, each with or without -racing",
-    ),
-    of("rendering-control", "mono", "one picture instead of a stereo pair: true or false"),
-    of("rendering-control", "shading", "phong or gouraud"),
-    of("slats", "copy", "whole (all regions before the retrace) or split (bottom regions after it)"),
-    of("slats", "binning", "all (every clump to every region) or touched"),
-    of("slats", "code", "1994, 1995 or optimised: times per primitive, where not those of the machine"),
-    of("jitp", "strip_rows", "lines of a strip: 1 to 128"),
-    of("frameless", "block", "width and height of a block: 4 to 128 pixels"),
-    of("frameless", "batch", "blocks drawn with one view; 0 for as many as keep ring and processors equally busy"),
-    of("frameless", "order_seed", "seed of the order of the blocks"),
-    key("scene", "a built-in scene or a model file (.ply, .obj, .pdb), relative to the experiment file"),
-    key("triangles", "keep the first so many primitives of the scene, triangles before spheres"),
-    key("motion.path", "scene (the scene's own), still, look, pan or orbit"),
-    key("motion.sway", "0 to 10: scale of the head's sway"),
-    key("motion.distance", "metres from the scene's centre: still, look, orbit"),
-    key("motion.deg_per_s", "rate of turn: pan, orbit"),
-    key(
+/// Keys that do not depend on which pipelines and displays there are.
+const COMMON: &[(&str, &str)] = &[
+    ("title", "a line for people"),
+    ("scene", "a built-in scene or a model file (.ply, .obj, .pdb), relative to the experiment file"),
+    ("triangles", "keep the first so many primitives of the scene, triangles before spheres"),
+    ("motion.path", "scene (the scene's own), still, look, pan or orbit"),
+    ("motion.sway", "0 to 10: scale of the head's sway"),
+    ("motion.distance", "metres from the scene's centre: still, look, orbit"),
+    ("motion.deg_per_s", "rate of turn: pan, orbit"),
+    (
         "head.motion",
         "still, pan:DEG_PER_S, pendulum, synthetic:SEED or a recording FILE.csv, seen through a tracker",
     ),
-    key("head.tracker", "optical, fastrak, flock, flock-patched, 3space or ideal"),
-    key("head.predict", "none, velocity, acceleration or kalman"),
-    key("head.display", "plain, or vdrt (the raster is shifted by what the pose was wrong)"),
-    key("seed", "seed of the head motion's sway, or of the tracker's noise"),
-    key("fields", "NTSC fields to simulate"),
-    key("pixels", "off, lazy or all"),
-    key("level", "analytic (sweeps of rendering-control and slats only), transaction or cycle"),
-    key("machine.preset", "a preset of `pxpl5 machines`"),
-    key("measure", "list of the quantities that go into tables and sweep rows"),
-    key("output.pictures", "write the last pictures as PNG: true or false"),
-    key("output.timeline", "write a timeline as SVG: true or false"),
-    key("output.csv", "write the measured quantities as CSV: true or false"),
-    key("published.figure", "number of the published figure that this reproduces"),
-    key("published.source", "paper"),
-    key("published.quantity", "the measured quantity to be compared"),
-    key("published.value", "its published value"),
+    ("head.tracker", "optical, fastrak, flock, flock-patched, 3space or ideal"),
+    ("head.predict", "none, velocity, acceleration or kalman"),
+    ("head.raster", "plain, or vdrt (the raster is shifted by what the pose was wrong)"),
+    ("seed", "seed of the head motion's sway, or of the tracker's noise"),
+    ("fields", "periods of the display to simulate: NTSC fields"),
+    ("pixels", "off, lazy or all"),
+    ("level", "analytic (sweeps of pipelines with a closed form only), transaction or cycle"),
+    ("machine.preset", "a preset of `pxpl5 machines`"),
+    ("machine.code", "i860 code that the processors run at the cycle level: compiled or scheduled"),
+    ("measure", "list of the quantities that go into tables and sweep rows"),
+    ("output.pictures", "write the last pictures as PNG: true or false"),
+    ("output.timeline", "write a timeline as SVG: true or false"),
+    ("output.csv", "write the measured quantities as CSV: true or false"),
+    ("published.figure", "number of the published figure that this reproduces"),
+    ("published.source", "paper"),
+    ("published.quantity", "the measured quantity to be compared"),
+    ("published.value", "its published value"),
 ];
 
-/// The key of this path, or one that stands for a machine parameter.
-pub(super) fn find(path: &str) -> Option<Key> {
-    KEYS.iter().find(|key| key.path == path).copied()
+/// Names that keys had before, and what they are called now.
+const RENAMED: [(&str, &str); 1] = [("head.display", "head.raster")];
+
+/// All keys but the machine's parameters, which are `machine.` and a path of [`MachineConfig::set`].
+#[must_use]
+pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
+    let pipelines: Vec<&str> = registry.pipelines().iter().map(|entry| entry.name).collect();
+    let displays: Vec<&str> = registry.displays().iter().map(|entry| entry.name).collect();
+    let mut all = vec![
+        common("pipeline", &pipelines.join(", ")),
+        common("display", &format!("what the pipeline draws for: {}", displays.join(", "))),
+    ];
+    all.extend(COMMON.iter().map(|(path, about)| common(path, about)));
+    let of_pipelines = registry.keys().into_iter();
+    all.extend(of_pipelines.map(|(key, applies_to)| FileKey {
+        path: key.name.to_owned(),
+        about: key.about.to_owned(),
+        applies_to,
+    }));
+    all
 }
 
-/// A path as it is kept: a parameter of the machine may be written without `machine.`.
-pub(super) fn canonical(path: &str) -> String {
-    let first = path.split('.').next().unwrap_or_default();
-    let own = first == "machine" || KEYS.iter().any(|key| key.path.split('.').next() == Some(first));
-    if own { path.to_owned() } else { format!("machine.{path}") }
+fn common(path: &str, about: &str) -> FileKey {
+    FileKey { path: path.to_owned(), about: about.to_owned(), applies_to: Vec::new() }
 }
 
-/// Whether a machine has such a parameter.
-pub(super) fn is_machine_parameter(path: &str) -> bool {
-    path.strip_prefix("machine.").is_some_and(|path| MachineConfig::small_hmd().set(path, 1).is_ok())
+/// The key by which a path is kept: a parameter of the machine may be written without `machine.`. `None` for none.
+pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
+    let path = RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now);
+    let known = |wanted: &str| keys(registry).iter().any(|key| key.path == wanted);
+    if known(path) || is_machine_parameter(registry, path) {
+        return Some(path.to_owned());
+    }
+    let long = format!("machine.{path}");
+    is_machine_parameter(registry, &long).then_some(long)
+}
+
+/// Whether a machine with some display has such a parameter.
+fn is_machine_parameter(registry: &Registry, path: &str) -> bool {
+    let Some(path) = path.strip_prefix("machine.") else { return false };
+    parameters(registry).iter().any(|known| known == path)
+}
+
+/// The paths of all parameters of a machine that has every display.
+fn parameters(registry: &Registry) -> Vec<String> {
+    let all_displays = registry.displays().iter().map(|entry| (entry.config)()).collect();
+    let machine = MachineConfig { displays: all_displays, ..registry.machine_of(MachineConfig::small_hmd()) };
+    machine.settings().into_iter().map(|(path, _)| path).collect()
 }
 
 /// The valid path with the fewest changes to a wrong one, written as the wrong one was.
-pub(super) fn nearest_key(found: &str) -> String {
-    let own = KEYS.iter().map(|key| key.path.to_owned());
-    let boards = ["n_gps", "n_renderers"].map(str::to_owned).into_iter();
-    let parameters: Vec<String> =
-        boards.chain(MachineConfig::small_hmd().parameters().into_iter().map(|p| p.path)).collect();
+pub(super) fn nearest_key(registry: &Registry, found: &str) -> String {
+    let parameters = parameters(registry);
     let long = parameters.iter().map(|path| format!("machine.{path}"));
+    let own = keys(registry).into_iter().map(|key| key.path);
     let all: Vec<String> = own.chain(long).chain(parameters.iter().cloned()).collect();
     nearest(found, all.iter().map(String::as_str)).unwrap_or_default().to_owned()
 }

@@ -1,7 +1,7 @@
 //! Experiments as text: TOML files, single settings `path=value`, and the checked [`Plan`] that they make together.
 //!
 //! ```
-//! use pxpl5::ExperimentFile;
+//! use pxpl5_lab::ExperimentFile;
 //!
 //! let text = r#"
 //!     pipeline = "slats"
@@ -17,11 +17,11 @@
 //! let plan = file.resolve()?;
 //! assert_eq!(plan.machine.gp.triangle_ns, 30_000);
 //! let outcome = plan.experiment(plan.load_scene()?).run()?;
-//! assert_eq!(outcome.report().triangles, 110);
+//! assert_eq!(outcome.experiment().scene().triangles().len(), 110);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! All keys: [`KEYS`]. Keys without a value get the defaults of [`Plan`]; keys that nobody knows are errors that name
+//! All keys: [`ExperimentFile::keys`]. Keys without a value get the defaults of [`Plan`]; keys that nobody knows are errors that name
 //! the nearest valid one.
 
 mod error;
@@ -34,13 +34,15 @@ mod text;
 
 pub use error::FileError;
 pub use head::HeadChoice;
-pub use keys::{KEYS, Key};
-pub use motion::MotionChoice;
-pub use plan::{Outputs, PIPELINES, Plan, Published, SceneChoice};
+pub use keys::FileKey;
+pub use motion::{MotionChoice, PathChoice};
+pub use plan::{Outputs, Plan, Published, SceneChoice};
 pub use text::Settings;
 
 use std::collections::BTreeMap;
+use pxpl5_run::Registry;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use toml::Value;
 use toml::de::DeTable;
 
@@ -54,17 +56,36 @@ pub(crate) struct Setting {
 }
 
 /// Settings by path that were read but not yet checked together.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct ExperimentFile {
+    registry: Arc<Registry>,
     pub(crate) settings: BTreeMap<String, Setting>,
     pub(crate) sweep: Option<Setting>,
 }
 
 impl ExperimentFile {
-    /// No settings.
+    /// No settings; with the pipelines and displays of the papers.
     #[must_use]
     pub fn new() -> Self {
-        Self::default()
+        Self::with(crate::registry())
+    }
+
+    /// No settings; with the pipelines and displays of a registry.
+    #[must_use]
+    pub fn with(registry: Arc<Registry>) -> Self {
+        Self { registry, settings: BTreeMap::new(), sweep: None }
+    }
+
+    /// The pipelines and displays that it may name.
+    #[must_use]
+    pub const fn registry(&self) -> &Arc<Registry> {
+        &self.registry
+    }
+
+    /// All keys but the machine's parameters, which are `machine.` and a path of `MachineConfig::set`.
+    #[must_use]
+    pub fn keys_of(registry: &Registry) -> Vec<FileKey> {
+        keys::keys(registry)
     }
 
     /// Reads a file.
@@ -73,12 +94,21 @@ impl ExperimentFile {
     ///
     /// [`FileError::Io`], or as [`Self::parse`].
     pub fn load(path: impl AsRef<Path>) -> Result<Self, FileError> {
+        Self::new().and_load(path)
+    }
+
+    /// Reads a file on top of what is set.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::load`].
+    pub fn and_load(self, path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
         let file = path.display().to_string();
         let io = |error: std::io::Error| FileError::Io { file: file.clone(), reason: error.to_string() };
         let text = std::fs::read_to_string(path).map_err(io)?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        Self::parse_in(&text, &file, &folder)
+        self.parse_in(&text, &file, &folder)
     }
 
     /// Reads text; `name` stands for it in errors.
@@ -87,31 +117,39 @@ impl ExperimentFile {
     ///
     /// [`FileError::Syntax`] and [`FileError::UnknownKey`] with the line.
     pub fn parse(text: &str, name: &str) -> Result<Self, FileError> {
-        Self::parse_in(text, name, Path::new(""))
+        Self::new().and_parse(text, name)
     }
 
-    fn parse_in(text: &str, name: &str, folder: &Path) -> Result<Self, FileError> {
+    /// Reads text on top of what is set; `name` stands for it in errors.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::parse`].
+    pub fn and_parse(self, text: &str, name: &str) -> Result<Self, FileError> {
+        self.parse_in(text, name, Path::new(""))
+    }
+
+    fn parse_in(mut self, text: &str, name: &str, folder: &Path) -> Result<Self, FileError> {
         let syntax = |error: toml::de::Error| FileError::Syntax {
             place: format!("{name}, line {}", line(text, error.span().map_or(0, |span| span.start))),
             reason: error.message().to_owned(),
         };
         let spans = DeTable::parse(text).map_err(syntax)?;
         let values: toml::Table = toml::from_str(text).map_err(syntax)?;
-        let mut file = Self::new();
         for (key, value) in values {
             let at = spans.get_ref().get_key_value(key.as_str());
             let place = |start: usize| format!("{name}, line {}", line(text, start));
             let start = at.map_or(0, |(key, _)| key.span().start);
             if key == "sweep" {
-                file.sweep = Some(Setting { value, place: place(start), folder: folder.to_owned() });
+                self.sweep = Some(Setting { value, place: place(start), folder: folder.to_owned() });
                 continue;
             }
             let spans = at.map(|(_, value)| value.get_ref());
             for (path, value, start) in flat(key, value, spans, start) {
-                file.put(&path, value, place(start), folder)?;
+                self.put(&path, value, place(start), folder)?;
             }
         }
-        Ok(file)
+        Ok(self)
     }
 
     /// Sets a value; `place` says in errors where it was given, such as `--fields`.
@@ -140,9 +178,22 @@ impl ExperimentFile {
 
     /// Puts a setting under the key that it is kept by.
     fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), FileError> {
-        let canonical = canonical_key(path, &place)?;
+        let canonical = self.canonical_key(path, &place)?;
         self.settings.insert(canonical, Setting { value, place, folder: folder.to_owned() });
         Ok(())
+    }
+
+    /// The key by which a path is kept.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError::UnknownKey`] with the nearest valid path.
+    pub(crate) fn canonical_key(&self, path: &str, place: &str) -> Result<String, FileError> {
+        keys::canonical(&self.registry, path).ok_or_else(|| FileError::UnknownKey {
+            place: place.to_owned(),
+            found: path.to_owned(),
+            nearest: keys::nearest_key(&self.registry, path),
+        })
     }
 
     /// The keys that are set, in order.
@@ -163,17 +214,10 @@ impl ExperimentFile {
     }
 }
 
-/// The key by which a path is kept.
-///
-/// # Errors
-///
-/// [`FileError::UnknownKey`] with the nearest valid path.
-pub(crate) fn canonical_key(path: &str, place: &str) -> Result<String, FileError> {
-    let canonical = keys::canonical(path);
-    if keys::find(&canonical).is_some() || keys::is_machine_parameter(&canonical) {
-        return Ok(canonical);
+impl Default for ExperimentFile {
+    fn default() -> Self {
+        Self::new()
     }
-    Err(FileError::UnknownKey { place: place.to_owned(), found: path.to_owned(), nearest: keys::nearest_key(path) })
 }
 
 /// The leaves of a value with their paths and places; empty tables are leaves, so that they are not lost.

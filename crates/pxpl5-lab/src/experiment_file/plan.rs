@@ -2,120 +2,22 @@
 
 use super::head::HeadChoice;
 use super::motion::MotionChoice;
-use super::read::wrong;
-use super::{ExperimentFile, FileError, keys};
-use crate::config::MachineConfig;
-use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
-use crate::head_to_light::FIELDS_WITH_HEAD;
-use crate::levels::{Level, Program};
-use crate::measure::Measure;
-use crate::pipelines::{Code, Frameless, Jitp, Reading, RenderingControl, Slats, Viewpoint};
-use pphigs::{Binning, Shading};
+use super::read::{plain, wrong};
+use super::{ExperimentFile, FileError, Setting};
+use crate::Workstation;
+use crate::levels::summarise;
+use parameters::Value as Number;
+use pxpl5_gp::CodeVersion;
+use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_measure::{Measure, Results};
+use pxpl5_run::{
+    Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Key, KeyValue, KeyValues, Level, Pipeline,
+    PipelineEntry, PipelineSettings, Pixels, Registry,
+};
 use pxpl5_scene::Scene;
-use slats::Copy;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The pipelines by name, each as its papers describe it.
-pub const PIPELINES: [(&str, Program); 11] = [
-    ("rendering-control", Program::RenderingControl(RenderingControl::stereo())),
-    ("slats", Program::Slats(Slats::split())),
-    ("frameless", Program::Frameless(Frameless::new())),
-    ("jitp-field", jitp(Viewpoint::Field, false)),
-    ("jitp-field-racing", jitp(Viewpoint::Field, true)),
-    ("jitp-scanline", jitp(Viewpoint::Strip, false)),
-    ("jitp-scanline-racing", jitp(Viewpoint::Strip, true)),
-    ("jitp-dual-screen", jitp(Viewpoint::Dual(Reading::Screen), false)),
-    ("jitp-dual-screen-racing", jitp(Viewpoint::Dual(Reading::Screen), true)),
-    ("jitp-dual-view", jitp(Viewpoint::Dual(Reading::View), false)),
-    ("jitp-dual-view-racing", jitp(Viewpoint::Dual(Reading::View), true)),
-];
-
-const fn jitp(viewpoint: Viewpoint, racing: bool) -> Program {
-    Program::Jitp(Jitp::new(viewpoint, racing))
-}
-
-impl Program {
-    /// Its pipeline's name, as in [`PIPELINES`].
-    #[must_use]
-    pub fn name(&self) -> &'static str {
-        self.pipeline().name()
-    }
-
-    /// The name that it shares with its variants.
-    #[must_use]
-    pub const fn family(&self) -> &'static str {
-        match self {
-            Self::RenderingControl(_) => "rendering-control",
-            Self::Slats(_) => "slats",
-            Self::Jitp(_) => "jitp",
-            Self::Frameless(_) => "frameless",
-        }
-    }
-
-    /// The preset of the machine on which its papers ran it, or could have.
-    #[must_use]
-    pub const fn preset(&self) -> &'static str {
-        match self {
-            Self::Slats(_) => "slats",
-            Self::RenderingControl(_) | Self::Jitp(_) | Self::Frameless(_) => "small-hmd",
-        }
-    }
-
-    /// Whether all of a picture is drawn for one pose, so that a raster can be shifted by what that was wrong.
-    #[must_use]
-    pub const fn has_one_pose(&self) -> bool {
-        match self {
-            Self::RenderingControl(_) | Self::Slats(_) => true,
-            Self::Jitp(jitp) => matches!(jitp.viewpoint, Viewpoint::Field),
-            Self::Frameless(_) => false,
-        }
-    }
-
-    fn read(file: &ExperimentFile) -> Result<Self, FileError> {
-        let missing = FileError::Missing { key: "pipeline", how: "a pipeline, such as slats" };
-        let program = file.choice("pipeline", &PIPELINES)?.ok_or(missing)?;
-        program.refuse_others(file)?;
-        Ok(match program {
-            Self::RenderingControl(default) => Self::RenderingControl(RenderingControl {
-                mono: file.flag("mono")?.unwrap_or(default.mono),
-                shading: file.choice("shading", &SHADINGS)?.unwrap_or(default.shading),
-            }),
-            Self::Slats(default) => Self::Slats(Slats {
-                copy: file.choice("copy", &COPIES)?.unwrap_or(default.copy),
-                binning: file.choice("binning", &BINNINGS)?.unwrap_or(default.binning),
-                code: file.choice("code", &CODES)?,
-            }),
-            Self::Jitp(default) => {
-                let rows = file.integer("strip_rows", 1..=128)?;
-                Self::Jitp(Jitp { strip_rows: rows.map_or(default.strip_rows, |rows| rows as u32), ..default })
-            }
-            Self::Frameless(default) => Self::Frameless(Frameless {
-                block: file.integer("block", 4..=128)?.map_or(default.block, |pixels| pixels as u32),
-                batch: file.integer("batch", 0..=u64::from(u16::MAX))?.map_or(default.batch, |blocks| blocks as u32),
-                seed: file.integer("order_seed", 0..=MAX_SEED)?.unwrap_or(default.seed),
-            }),
-        })
-    }
-
-    /// Keys of other pipelines.
-    fn refuse_others(&self, file: &ExperimentFile) -> Result<(), FileError> {
-        for (path, setting) in &file.settings {
-            let applies_to = keys::find(path).and_then(|key| key.applies_to);
-            if let Some(applies_to) = applies_to.filter(|family| *family != self.family()) {
-                let (place, key) = (setting.place.clone(), path.clone());
-                return Err(FileError::NotApplicable { place, key, pipeline: self.name(), applies_to });
-            }
-        }
-        Ok(())
-    }
-}
-
-pub(super) const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
-pub(super) const COPIES: [(&str, Copy); 3] = [("whole", Copy::Whole), ("split", Copy::Split), ("backup", Copy::Backup)];
-pub(super) const BINNINGS: [(&str, Binning); 2] = [("all", Binning::All), ("touched", Binning::Touched)];
-pub(super) const CODES: [(&str, Code); 3] =
-    [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
 
 /// What is drawn.
@@ -225,12 +127,14 @@ fn measure(file: &ExperimentFile, key: &str, name: &str) -> Result<Measure, File
 }
 
 /// A checked experiment: everything is known, nothing contradicts.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Plan {
     /// A line for people.
     pub title: Option<String>,
+    /// The pipelines and displays that there are.
+    pub registry: Arc<Registry>,
     /// The pipeline.
-    pub program: Program,
+    pub pipeline: Arc<dyn Pipeline>,
     /// The machine.
     pub machine: MachineConfig,
     /// The scene.
@@ -263,20 +167,22 @@ impl ExperimentFile {
     ///
     /// [`FileError`] names the first setting that is wrong or missing.
     pub fn resolve(&self) -> Result<Plan, FileError> {
-        let program = Program::read(self)?;
+        let (entry, given) = self.pipeline()?;
+        let pipeline = (entry.build)(&given);
         let seed = self.integer("seed", 0..=MAX_SEED)?.unwrap_or(1);
-        let head = HeadChoice::read(self, &program, seed)?;
+        let head = HeadChoice::read(self, pipeline.as_ref(), seed)?;
         let most_fields = if head.is_some() { FIELDS_WITH_HEAD } else { FIELDS_RANGE.1 };
         let names = self.texts("measure")?;
         let measure = |names: Vec<String>| names.iter().map(|name| measure(self, "measure", name)).collect();
         Ok(Plan {
             title: self.text("title")?.map(str::to_owned),
-            program,
-            machine: self.machine(&program)?,
+            registry: Arc::clone(self.registry()),
+            machine: self.machine(entry, pipeline.as_ref())?,
             scene: SceneChoice::read(self)?,
             fields: self.integer("fields", FIELDS_RANGE.0..=most_fields)?.unwrap_or(120),
             seed,
-            level: self.level(&program, head.is_some())?,
+            level: self.level(entry, head.is_some())?,
+            pipeline,
             head,
             pixels: self.choice("pixels", &PIXELS)?.unwrap_or(Pixels::Lazy),
             measure: names.map_or_else(|| Ok(Measure::usual()), measure)?,
@@ -289,43 +195,131 @@ impl ExperimentFile {
         })
     }
 
-    fn level(&self, program: &Program, has_head: bool) -> Result<Level, FileError> {
+    /// The pipeline and the keys given for it.
+    fn pipeline(&self) -> Result<(&PipelineEntry, PipelineSettings), FileError> {
+        let names: Vec<(&str, &PipelineEntry)> =
+            self.registry().pipelines().iter().map(|entry| (entry.name, entry)).collect();
+        let missing = FileError::Missing { key: "pipeline", how: "a pipeline, such as slats" };
+        let entry = self.choice("pipeline", &names)?.ok_or(missing)?;
+        self.refuse_keys_of_others(entry)?;
+        let mut given = PipelineSettings::default();
+        for key in entry.keys {
+            if let Some(value) = self.pipeline_key(key)? {
+                given.set(key.name, value);
+            }
+        }
+        Ok((entry, given))
+    }
+
+    fn pipeline_key(&self, key: &Key) -> Result<Option<KeyValue>, FileError> {
+        Ok(match key.values {
+            KeyValues::Flag => self.flag(key.name)?.map(KeyValue::Flag),
+            KeyValues::Whole(low, high) => self.integer(key.name, low..=high)?.map(KeyValue::Whole),
+            KeyValues::Names(names) => {
+                let choices: Vec<(&str, &'static str)> = names.iter().map(|name| (*name, *name)).collect();
+                self.choice(key.name, &choices)?.map(KeyValue::Name)
+            }
+        })
+    }
+
+    /// Keys of other pipelines have no meaning.
+    fn refuse_keys_of_others(&self, entry: &PipelineEntry) -> Result<(), FileError> {
+        for (key, families) in self.registry().keys() {
+            if let Some(setting) = self.get(key.name).filter(|_| !families.contains(&entry.family)) {
+                return Err(FileError::NotApplicable {
+                    place: setting.place.clone(),
+                    key: key.name.to_owned(),
+                    pipeline: entry.name,
+                    applies_to: families.join(", "),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn level(&self, entry: &PipelineEntry, has_head: bool) -> Result<Level, FileError> {
         let choices = Level::ALL.map(|level| (level.name(), level));
         let level = self.choice("level", &choices)?.unwrap_or(Level::Transaction);
-        let has_form = matches!(program, Program::RenderingControl(_) | Program::Slats(_)) && !has_head;
+        let has_form = entry.closed_form.is_some() && !has_head;
         match self.get("level").filter(|_| level == Level::Analytic && !has_form) {
             Some(setting) => Err(wrong("level", setting, "transaction or cycle for this pipeline or a head.motion")),
             None => Ok(level),
         }
     }
 
-    fn machine(&self, program: &Program) -> Result<MachineConfig, FileError> {
-        let config = |place: &str| {
-            let place = place.to_owned();
-            move |error| FileError::Config { place, error }
-        };
-        let preset = self.text("machine.preset")?.unwrap_or(program.preset());
+    fn machine(&self, entry: &PipelineEntry, pipeline: &dyn Pipeline) -> Result<MachineConfig, FileError> {
+        let preset = self.text("machine.preset")?.unwrap_or(entry.preset);
         let place = self.get("machine.preset").map_or("machine", |setting| &setting.place);
-        let machine = MachineConfig::preset(preset).map_err(config(place))?;
-        let mut machine = program.pipeline().adapt(machine);
-        let adapted = machine.parameters();
-        for (path, setting) in &self.settings {
-            let Some(parameter) = path.strip_prefix("machine.").filter(|path| *path != "preset") else { continue };
-            let value = self.integer(path, 0..=u64::MAX)?.unwrap_or_default();
-            let changed = adapted.iter().any(|own| own.path == parameter && own.value != value);
-            if let (true, true, Some(code)) = (changed, CODE_SETS.contains(&parameter), self.get("code")) {
-                let (place, other) = (setting.place.clone(), format!("code = {}", super::read::plain(&code.value)));
-                return Err(FileError::Conflict { place, key: path.clone(), other });
-            }
-            machine.set(parameter, value).map_err(config(&setting.place))?;
+        let machine = MachineConfig::preset(preset).map_err(|error| refused(place, error))?;
+        let mut machine = self.registry().machine_of(machine);
+        if let Some(display) = self.display()? {
+            machine.displays = vec![display];
         }
-        machine.check().map_err(config("machine"))?;
+        let mut machine = pipeline.adapt(machine);
+        if let Some(code) = self.choice("machine.code", &CODES)? {
+            machine.code = code;
+        }
+        let adapted = machine.clone();
+        for (path, setting) in &self.settings {
+            if let Some(parameter) = path.strip_prefix("machine.").filter(|path| !["preset", "code"].contains(path)) {
+                let value = self.machine_number(path, setting)?;
+                self.refuse_twice(entry, &adapted, (path, parameter, setting), value)?;
+                machine.set(parameter, value).map_err(|error| refused(&setting.place, error))?;
+            }
+        }
+        machine.check().map_err(|error| refused("machine", error))?;
         Ok(machine)
+    }
+
+    /// The display, where one is named.
+    fn display(&self) -> Result<Option<Box<dyn pxpl5_display::DisplayConfig>>, FileError> {
+        let displays: Vec<(&str, &pxpl5_run::DisplayEntry)> =
+            self.registry().displays().iter().map(|entry| (entry.name, entry)).collect();
+        Ok(self.choice("display", &displays)?.map(|entry| (entry.config)()))
+    }
+
+    /// A number of the machine: whole, or real where the parameter is.
+    fn machine_number(&self, path: &str, setting: &Setting) -> Result<Number, FileError> {
+        match &setting.value {
+            toml::Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
+            _ => Ok(Number::Whole(self.integer(path, 0..=u64::MAX)?.unwrap_or_default())),
+        }
+    }
+
+    /// A key of the pipeline that sets parameters, and one of these parameters beside it.
+    fn refuse_twice(
+        &self,
+        entry: &PipelineEntry,
+        adapted: &MachineConfig,
+        (path, parameter, setting): (&str, &str, &Setting),
+        value: Number,
+    ) -> Result<(), FileError> {
+        let changed = adapted.parameters().iter().any(|own| own.path == parameter && own.value != value);
+        for key in entry.keys.iter().filter(|key| changed && key.sets.contains(&parameter)) {
+            if let Some(given) = self.get(key.name) {
+                let place = setting.place.clone();
+                let other = format!("{} = {}", key.name, plain(&given.value));
+                return Err(FileError::Conflict { place, key: path.to_owned(), other });
+            }
+        }
+        Ok(())
     }
 }
 
-/// What [`Slats::code`] decides.
-const CODE_SETS: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
+const CODES: [(&str, CodeVersion); 2] = [
+    (CodeVersion::Compiled.name(), CodeVersion::Compiled),
+    (CodeVersion::Scheduled.name(), CodeVersion::Scheduled),
+];
+
+fn refused(place: &str, error: ConfigError) -> FileError {
+    FileError::Config { place: place.to_owned(), error }
+}
+
+impl PartialEq for Plan {
+    fn eq(&self, other: &Self) -> bool {
+        self.settings() == other.settings() && self.machine == other.machine && self.head == other.head
+    }
+}
 
 impl Plan {
     /// Generates or reads the scene.
@@ -343,9 +337,37 @@ impl Plan {
         self.level.name().to_owned()
     }
 
-    /// The experiment with the scene loaded.
+    /// Name of the display that the pipeline draws for.
+    #[must_use]
+    pub fn display(&self) -> &'static str {
+        self.machine.displays.first().map_or("", |display| display.name())
+    }
+
+    /// The experiment with the scene loaded, on this computer.
     #[must_use]
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
-        self.case(scene).experiment().pixels(self.pixels).level(self.level)
+        let experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)
+            .fields(self.fields)
+            .seed(self.seed)
+            .pixels(self.pixels)
+            .level(self.level)
+            .host(Workstation::new());
+        match &self.head {
+            Some(head) => experiment.head(head.head()),
+            None => experiment,
+        }
+    }
+
+    /// Runs it at its level, without pixels.
+    ///
+    /// # Errors
+    ///
+    /// As [`Experiment::run`].
+    pub fn run(&self, scene: Arc<Scene>) -> Result<Results, ExperimentError> {
+        let experiment = self.experiment(scene).pixels(Pixels::Off).host(Workstation::with_threads(1));
+        match self.level {
+            Level::Analytic => Ok(Results::of_closed_form(summarise(&self.registry, &experiment)?)),
+            Level::Transaction | Level::Cycle => Ok(Results::of_run(experiment.run()?)),
+        }
     }
 }

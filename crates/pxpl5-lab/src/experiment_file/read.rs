@@ -1,7 +1,7 @@
 //! Typed reading of settings.
 
 use super::{ExperimentFile, FileError, Setting};
-use crate::config::nearest;
+use parameters::nearest;
 use std::ops::RangeInclusive;
 use toml::Value;
 

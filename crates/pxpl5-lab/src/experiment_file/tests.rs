@@ -1,6 +1,6 @@
 use super::*;
-use crate::config::MachineConfig;
-use crate::experiment::Pixels;
+use pxpl5_machine::MachineConfig;
+use pxpl5_run::Pixels;
 
 fn plan(text: &str) -> Plan {
     ExperimentFile::parse(text, "test").expect("TOML").resolve().expect("an experiment")
@@ -28,7 +28,7 @@ fn every_machine_parameter_is_reached_with_and_without_its_first_part() {
         let mut file = ExperimentFile::parse(RC, "test").expect("TOML");
         // One more than the preset's: always in range, but for sizes and rates that frame buffers check together.
         let path = &parameter.path;
-        file.set_text(&format!("{path}={}", parameter.value + 1), "--set").expect("known");
+        file.set_text(&format!("{path}={}", one_more(parameter.value)), "--set").expect("known");
         file.set_text(&format!("machine.{path}={}", parameter.value), "--set").expect("the same key");
         assert_eq!(file.resolve().expect("valid").machine, MachineConfig::small_hmd(), "{path}");
     }
@@ -88,7 +88,8 @@ fn what_is_shown_is_a_file_that_means_the_same() {
         format!("{RC}mono = true\nshading = \"gouraud\"\ntriangles = 9\nseed = 5\n[motion]\npath = \"orbit\"\ndistance = 2\nsway = 0.5\n"),
         "title = \"a \\\"b\\\"\"\npipeline = \"slats\"\nscene = \"mig\"\ncode = 1995\npublished = {figure = 3, source = \"x\", quantity = \"copies_ms\", value = 2}\n".to_owned(),
     ];
-    let named = PIPELINES.map(|(name, _)| format!("pipeline = \"{name}\"\nscene = \"mig\"\n"));
+    let registry = crate::registry();
+    let named = registry.pipelines().iter().map(|entry| format!("pipeline = \"{}\"\nscene = \"mig\"\n", entry.name));
     let with_head = "pipeline = \"slats\"\nscene = \"mig\"\n[head]\nmotion = \"pan:-40.5\"\ndisplay = \"vdrt\"\npredict = \"none\"\n";
     let sized = ["jitp-field\"\nstrip_rows = 16", "frameless\"\nblock = 32\nbatch = 5\norder_seed = 9"]
         .map(|text| format!("scene = \"mig\"\npipeline = \"{text}"));
@@ -142,9 +143,14 @@ fn a_scene_file_is_relative_to_the_experiment_file() {
 
 #[test]
 fn every_pipeline_is_called_what_it_calls_itself() {
-    for (name, program) in PIPELINES {
-        assert_eq!((name, name.starts_with(program.family())), (program.pipeline().name(), true));
+    for entry in crate::registry().pipelines() {
+        let pipeline = (entry.build)(&pxpl5_run::PipelineSettings::default());
+        assert_eq!((entry.name, entry.name.starts_with(entry.family)), (pipeline.name(), true));
     }
+}
+
+fn one_more(value: parameters::Value) -> u64 {
+    value.whole().expect("the machine's numbers are whole") + 1
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! A plan written out in full.
 
 use super::motion::PathChoice;
-use super::plan::{BINNINGS, CODES, COPIES, PIXELS, Plan, SHADINGS};
-use crate::config::MachineConfig;
-use crate::fingerprint::Fingerprint;
-use crate::levels::Program;
+use super::plan::{PIXELS, Plan};
+use parameters::Value as Number;
+use pxpl5_machine::MachineConfig;
+use pxpl5_run::{Fingerprint, KeyValue};
 use std::collections::BTreeMap;
 use std::fmt;
 use toml::Value;
@@ -60,26 +60,15 @@ impl Plan {
     }
 
     fn pipeline_settings(&self, all: &mut Settings) {
-        all.put("pipeline", self.program.name());
-        match &self.program {
-            Program::RenderingControl(pipeline) => {
-                all.put("mono", pipeline.mono);
-                all.put("shading", name(&SHADINGS, &pipeline.shading));
-            }
-            Program::Slats(pipeline) => {
-                all.put("copy", name(&COPIES, &pipeline.copy));
-                all.put("binning", name(&BINNINGS, &pipeline.binning));
-                if let Some(code) = &pipeline.code {
-                    all.put("code", name(&CODES, code));
-                }
-            }
-            Program::Jitp(pipeline) => all.put("strip_rows", i64::from(pipeline.strip_rows)),
-            Program::Frameless(pipeline) => {
-                all.put("block", i64::from(pipeline.block));
-                all.put("batch", i64::from(pipeline.batch));
-                all.put("order_seed", pipeline.seed.cast_signed());
+        all.put("pipeline", self.pipeline.name());
+        for (key, value) in self.pipeline.settings() {
+            match value {
+                KeyValue::Flag(flag) => all.put(key, flag),
+                KeyValue::Whole(number) => all.put(key, number.cast_signed()),
+                KeyValue::Name(name) => all.put(key, name),
             }
         }
+        all.put("display", self.display());
     }
 
     fn scene_settings(&self, all: &mut Settings) {
@@ -124,6 +113,7 @@ impl Settings {
 
     fn machine(&mut self, machine: &MachineConfig) {
         self.put("machine.preset", machine.preset.clone());
+        self.put("machine.code", machine.code.name());
         self.put("machine.n_gps", machine.n_gps as i64);
         self.put("machine.n_renderers", machine.n_renderers as i64);
         let preset = MachineConfig::preset(&machine.preset).map(|preset| preset.parameters()).unwrap_or_default();
@@ -134,7 +124,7 @@ impl Settings {
             let changed = changed.map_or_else(String::new, |own| format!("; the preset has {own}"));
             let remark = format!("{}, {}{changed}", parameter.info.unit, parameter.info.standing);
             self.remarks.insert(path.clone(), remark);
-            self.put(&path, i64::try_from(parameter.value).unwrap_or(i64::MAX));
+            self.put(&path, toml_number(parameter.value));
         }
     }
 
@@ -150,6 +140,14 @@ impl Settings {
             }
         }
         Ok(())
+    }
+}
+
+/// A parameter as TOML has it.
+fn toml_number(value: Number) -> Value {
+    match value {
+        Number::Whole(number) => Value::from(i64::try_from(number).unwrap_or(i64::MAX)),
+        Number::Real(number) => Value::from(number),
     }
 }
 

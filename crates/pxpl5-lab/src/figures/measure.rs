@@ -1,17 +1,17 @@
 //! The experiments behind the figures.
 
-use crate::analytic::{Load, StereoModel, stereo_loads};
-use crate::config::{ConfigError, MachineConfig};
-use crate::display_list::{display_list, views};
-use crate::experiment::{ExperimentError, WARM_UP_PICTURES};
-use crate::levels::{Case, FIELD_MS, Level, Program, Summary};
+use crate::levels::summarise;
 use crate::limit::LimitQuery;
-use crate::pipelines::{RenderingControl, Slats};
-use crate::report::Statistics;
 use pphigs::{Binning, Picture, Shading, Share};
+use pxpl5_analytic::{Load, StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
+use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::Layout;
-use pxpl5_scene::{Scene, builtin};
+use pxpl5_run::{
+    Experiment, ExperimentError, Level, Pipeline, Pixels, RenderingControl, Slats, Statistics, Summary,
+    WARM_UP_PICTURES, display_list, views,
+};
+use pxpl5_scene::{Hmd, HmdConfig, Scene, builtin};
 use pxpl5_sim::Time;
 use serde::Serialize;
 use std::sync::{Arc, OnceLock};
@@ -125,9 +125,14 @@ impl Bench {
         Ok(machine)
     }
 
-    fn run(&self, machine: MachineConfig, program: impl Into<Program>, scene: &str, fields: u64) -> Result<Summary> {
-        let case = Case { machine, program: program.into(), scene: scene_named(scene)?, fields, seed: 1, head: None };
-        self.level.run(&case)
+    fn run(&self, machine: MachineConfig, pipeline: impl Pipeline, scene: &str, fields: u64) -> Result<Summary> {
+        let experiment = Experiment::new(machine, pipeline, scene_named(scene)?).fields(fields);
+        self.summarise(&experiment)
+    }
+
+    /// An experiment at the bench's level, without pixels.
+    fn summarise(&self, experiment: &Experiment) -> Result<Summary> {
+        summarise(&crate::registry(), &experiment.clone().pixels(Pixels::Off).level(self.level))
     }
 
     fn stereo(&self, machine: MachineConfig) -> Result<Summary> {
@@ -183,7 +188,7 @@ impl Bench {
         let mut latencies = Vec::new();
         for seed in 1..=self.seeds {
             let summary = self.mig_seed(seed)?;
-            latencies.extend(summary.latencies_ms.iter().take(self.frames as usize).map(|ms| ms / FIELD_MS));
+            latencies.extend(summary.latencies_ms.iter().take(self.frames as usize).map(|ms| ms / summary.field_ms));
         }
         let frames = latencies.len() as f64;
         let all = Statistics::of(latencies.into_iter());
@@ -197,30 +202,31 @@ impl Bench {
     }
 
     fn mig_seed(&self, seed: u64) -> Result<Summary> {
-        let case = self.mig_case(seed)?;
+        let experiment = self.mig_experiment(seed)?;
         if self.level != Level::Analytic {
-            return self.level.run(&case);
+            return self.summarise(&experiment);
         }
         let loads = match self.mig.get() {
             Some(loads) => loads,
             None => {
-                let all = (1..=self.seeds).map(|seed| stereo_loads(&self.mig_case(seed)?)).collect::<Result<_>>()?;
+                let loads_of_seed = |seed| stereo_loads(&self.mig_experiment(seed)?);
+                let all = (1..=self.seeds).map(loads_of_seed).collect::<Result<_>>()?;
                 self.mig.get_or_init(|| all)
             }
         };
-        let model = StereoModel::new(&case.machine, RenderingControl::stereo())?;
-        Ok(model.summary(&model.frames(&loads[seed as usize - 1]), case.fields))
+        let model = StereoModel::new(experiment.config(), RenderingControl::stereo())?;
+        Ok(model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()))
     }
 
     /// Two fields a frame at 30 Hz; of slower frames fewer are shown.
-    fn mig_case(&self, seed: u64) -> Result<Case> {
+    fn mig_experiment(&self, seed: u64) -> Result<Experiment> {
         let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
-        let (machine, program) = (self.machine("small-hmd")?, RenderingControl::stereo().into());
-        Ok(Case { machine, program, scene: scene_named("mig")?, fields, seed, head: None })
+        let machine = self.machine("small-hmd")?;
+        Ok(Experiment::new(machine, RenderingControl::stereo(), scene_named("mig")?).fields(fields).seed(seed))
     }
 
-    fn slats(&self, triangles: u32, program: Slats) -> Result<Summary> {
-        self.run(self.machine("slats")?, program, &format!("full-screen:{triangles}"), 40)
+    fn slats(&self, triangles: u32, pipeline: Slats) -> Result<Summary> {
+        self.run(self.machine("slats")?, pipeline, &format!("full-screen:{triangles}"), 40)
     }
 
     fn slats_latency(&self) -> Result<Measured> {
@@ -229,15 +235,15 @@ impl Bench {
         Ok(Measured { value: fields.mean, details })
     }
 
-    fn limit(&self, preset: &str, program: Slats) -> Result<Measured> {
-        let limit = self.limit_query(preset, program)?.search()?;
+    fn limit(&self, preset: &str, pipeline: Slats) -> Result<Measured> {
+        let limit = self.limit_query(preset, pipeline)?.search()?;
         let triangles = f64::from(limit.triangles);
         let details = vec![detail("both eyes, 60 fields a second", triangles * 120.0, "triangles/s")];
         Ok(Measured { value: triangles, details })
     }
 
-    fn limit_query(&self, preset: &str, program: Slats) -> Result<LimitQuery> {
-        Ok(LimitQuery { level: self.level, ..LimitQuery::no_miss(self.machine(preset)?, program) })
+    fn limit_query(&self, preset: &str, pipeline: Slats) -> Result<LimitQuery> {
+        Ok(LimitQuery { level: self.level, ..LimitQuery::of_papers(self.machine(preset)?, pipeline)? })
     }
 
     fn time_before_copy(&self) -> Result<Measured> {
@@ -260,8 +266,10 @@ fn regions_touched() -> Result<Measured> {
 /// Bin entries per triangle that touches any region, over both eyes.
 fn touched(scene: &Arc<Scene>) -> Result<f64> {
     let list = Arc::new(display_list(scene).map_err(ExperimentError::Scene)?);
-    let (views, _) = views(scene, 1, 2);
-    let (share, layout) = (Share::new(list, 0, 1), Layout::rendering_control_phong());
+    let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
+    let (views, _) = views(scene, 1, hmd, 2);
+    let share = Share::new(list, 0, 1);
+    let layout = Layout::rendering_control_phong();
     let picture = Picture {
         viewport: Viewport::FRAME,
         shading: Shading::Phong,
@@ -269,7 +277,8 @@ fn touched(scene: &Arc<Scene>) -> Result<f64> {
         layout,
         pixels: false,
     };
-    let (mut entries, mut triangles) = (0u64, 0u64);
+    let mut entries = 0u64;
+    let mut triangles = 0u64;
     for number in 0..VIEWS {
         let view = views(number, Time(number * VIEW_PERIOD_PS));
         for eye in 0..2 {

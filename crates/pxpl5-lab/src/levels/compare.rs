@@ -1,12 +1,11 @@
 //! Speed against error: the same experiments at every level.
 
-use super::{Case, Level, Program};
-use crate::analytic::SlatsModel;
-use crate::config::MachineConfig;
-use crate::experiment::ExperimentError;
+use super::summarise;
 use crate::figures::{Bench, FIGURES, Row, mean_error_percent};
-use crate::pipelines::{RenderingControl, Slats};
-use pxpl5_scene::builtin;
+use pxpl5_analytic::SlatsModel;
+use pxpl5_machine::MachineConfig;
+use pxpl5_run::{Experiment, ExperimentError, Level, Pixels, RenderingControl, Slats};
+use pxpl5_scene::{Scene, builtin};
 use serde::Serialize;
 use std::sync::Arc;
 use std::time::Instant;
@@ -37,19 +36,19 @@ const MIG: (u64, u64) = (2, 60);
 /// # Errors
 ///
 /// [`ExperimentError::Scene`] never, as the scenes are built in.
-pub fn cases() -> Result<Vec<Case>, ExperimentError> {
-    let scene = |name: &str| builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()));
-    let (slats, stereo) = (MachineConfig::slats(), MachineConfig::small_hmd());
-    let all: [(MachineConfig, Program, &str, u64); 3] = [
-        (slats, Slats::split().into(), "full-screen:140", 240),
-        (stereo.clone(), RenderingControl::stereo().into(), "full-screen:12", 120),
-        (stereo, RenderingControl::stereo().into(), "mig", 120),
+pub fn cases() -> Result<Vec<Experiment>, ExperimentError> {
+    let slats = MachineConfig::slats();
+    let stereo = MachineConfig::small_hmd();
+    let all = [
+        Experiment::new(slats, Slats::split(), scene("full-screen:140")?).fields(240),
+        Experiment::new(stereo.clone(), RenderingControl::stereo(), scene("full-screen:12")?),
+        Experiment::new(stereo, RenderingControl::stereo(), scene("mig")?),
     ];
-    all.into_iter()
-        .map(|(machine, program, name, fields)| {
-            Ok(Case { machine, program, scene: scene(name)?, fields, seed: 1, head: None })
-        })
-        .collect()
+    Ok(all.into_iter().map(|experiment| experiment.pixels(Pixels::Off)).collect())
+}
+
+fn scene(name: &str) -> Result<Arc<Scene>, ExperimentError> {
+    builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()))
 }
 
 /// Compares all levels on this host, now.
@@ -82,12 +81,14 @@ fn rows_of(level: Level) -> Result<Vec<Row>, ExperimentError> {
 }
 
 fn speed(level: Level) -> Result<(f64, f64), ExperimentError> {
-    let (mut fields, mut seconds) = (0, 0.0);
-    for case in cases()? {
+    let mut fields = 0;
+    let mut seconds = 0.0;
+    let registry = crate::registry();
+    for experiment in cases()? {
         let host_time = Instant::now();
-        level.run(&case)?;
+        summarise(&registry, &experiment.clone().level(level))?;
         seconds += host_time.elapsed().as_secs_f64();
-        fields += case.fields;
+        fields += experiment.length();
     }
     let fields_per_second = fields as f64 / seconds;
     let configurations = if level == Level::Analytic { analytic_speed()? } else { fields_per_second / 16.0 };

@@ -2,7 +2,7 @@
 
 use super::Sweep;
 use crate::experiment_file::{FileError, Plan};
-use crate::fingerprint::Fingerprint;
+use pxpl5_run::Fingerprint;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -82,7 +82,7 @@ impl Sweep {
 /// The effective settings of the first point are part of it: a preset may change from version to version.
 fn hash(version: &str, first: &Plan, settings: &BTreeMap<String, Value>, axes: &[AxisRecord]) -> Fingerprint {
     let axes = serde_json::to_string(axes).unwrap_or_default();
-    let measure: Vec<&str> = first.measure.iter().map(crate::measure::Measure::name).collect();
+    let measure: Vec<&str> = first.measure.iter().map(pxpl5_measure::Measure::name).collect();
     Fingerprint::of(format!("{version} {} {settings:?} {measure:?} {axes}", first.fingerprint()).as_bytes())
 }
 

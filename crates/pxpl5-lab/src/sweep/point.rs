@@ -103,7 +103,7 @@ impl Sweep {
     fn simulate(&self, point: u64, scenes: &Scenes) -> Result<Simulated, String> {
         let plan = self.plan(point).map_err(|error| error.to_string())?;
         let scene = scenes.of(&plan).map_err(|error| error.to_string())?;
-        let config_hash = plan.case(scene.clone()).experiment().config_hash().to_string();
+        let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
         // Nobody looks at the pictures of a sweep, and pixels change no time.
         let results = plan.run(scene).map_err(|error| error.to_string())?;
         let measured = plan.measure.iter().map(|m| (m.name().to_owned(), m.of(&results))).collect();

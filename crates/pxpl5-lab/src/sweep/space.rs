@@ -1,6 +1,6 @@
 //! The space of settings: axes of values, and its points by number.
 
-use crate::experiment_file::{ExperimentFile, FileError, Setting, canonical_key};
+use crate::experiment_file::{ExperimentFile, FileError, Setting};
 use std::collections::BTreeMap;
 use toml::{Table, Value};
 
@@ -32,7 +32,7 @@ impl Space {
         let fault = Fault(setting);
         let table = setting.value.as_table().ok_or_else(|| fault.value("sweep", "a table", &setting.value))?;
         if let Some(key) = table.keys().find(|key| !KEYS.contains(&key.as_str())) {
-            let nearest = crate::config::nearest(key, KEYS.into_iter()).unwrap_or_default();
+            let nearest = parameters::nearest(key, KEYS.into_iter()).unwrap_or_default();
             return Err(fault.unknown(&format!("sweep.{key}"), &format!("sweep.{nearest}")));
         }
         let mut axes = Vec::new();
@@ -42,7 +42,7 @@ impl Space {
         }
         axes.extend(fault.together(fault.table(table, "together")?)?);
         axes.extend(fault.seeds(table.get("seeds"))?);
-        fault.check(&axes)?;
+        fault.check(file, &axes)?;
         let points = axes.iter().try_fold(1u64, |all, axis| all.checked_mul(axis.steps.len() as u64));
         let points = points.filter(|points| *points <= MAX_POINTS);
         let points = points.ok_or_else(|| fault.text("sweep", &format!("at most {MAX_POINTS} points"), "more"))?;
@@ -148,13 +148,13 @@ impl Fault<'_> {
     }
 
     /// Every path is a key, and no two axes set the same.
-    fn check(&self, axes: &[Axis]) -> Result<(), FileError> {
+    fn check(&self, file: &ExperimentFile, axes: &[Axis]) -> Result<(), FileError> {
         let mut seen = BTreeMap::new();
         if axes.is_empty() {
             return Err(self.text("sweep", "at least one setting under [sweep.grid]", "none"));
         }
         for path in axes.iter().flat_map(|axis| &axis.paths) {
-            let key = canonical_key(path, &self.0.place)?;
+            let key = file.canonical_key(path, &self.0.place)?;
             if seen.insert(key, path).is_some() {
                 return Err(self.text(path, "to be in one axis of the sweep", "two"));
             }

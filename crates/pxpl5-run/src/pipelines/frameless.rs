@@ -1,6 +1,6 @@
 //! Frameless rendering on the emulated machine.
 
-use super::jitp::{config, load};
+use super::jitp::{TABLES, config, load};
 use super::ntsc;
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings, TestScene};
@@ -208,6 +208,7 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     ],
     build,
     limit: |_| LimitCriterion { goal: Goal::RateHz(30.0), scene: TestScene::FullScreen, fields: 24 },
+    tables: TABLES,
     closed_form: None,
     compared: true,
 };

@@ -7,7 +7,7 @@ use jitp::{Beam, Config, JitpTiming, Schedule, Transforms, Wanted, host, master,
 use pphigs::Share;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{Level, Stage};
-use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, Record};
+use pxpl5_machine::{Arrival, ConfigError, FirmwareTable, LateRegion, Machine, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, FieldParity, RegionGrid, RegionId};
@@ -73,7 +73,7 @@ pub(super) fn config(
         beam: beam(*display.video()),
         layout,
         pixels,
-        timing: JitpTiming::PAPERS,
+        timing: record.config().firmware_table().copied().unwrap_or(JitpTiming::PAPERS),
     };
     config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
     Ok(config)
@@ -234,6 +234,9 @@ pub fn region_at(grid: &RegionGrid, x: u32, row: u32) -> RegionId {
     RegionId((row / grid.region_height * grid.columns() + x / grid.region_width) as u16)
 }
 
+/// The numbers of its firmware.
+pub(super) const TABLES: &[(&str, fn() -> Box<dyn FirmwareTable>)] = &[("jitp", || Box::new(JitpTiming::PAPERS))];
+
 const KEYS: &[Key] =
     &[Key { name: "strip_rows", about: "lines of a strip: 1 to 128", values: KeyValues::Whole(1, 128), sets: &[] }];
 
@@ -247,7 +250,8 @@ const fn entry(name: &'static str, about: &'static str, build: fn(&PipelineSetti
         keys: KEYS,
         build,
         limit: |_| LimitCriterion { goal: Goal::NoMissedRetrace, scene: TestScene::FullScreen, fields: 24 },
-        closed_form: None,
+        tables: TABLES,
+    closed_form: None,
         compared: true,
     }
 }

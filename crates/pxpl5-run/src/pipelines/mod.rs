@@ -13,6 +13,7 @@ pub use slats::{Code, Slats};
 use crate::registry::PipelineEntry;
 use pxpl5_framebuffer::NtscDisplay;
 use pxpl5_machine::{ConfigError, Record};
+use std::any::Any;
 
 pub(crate) fn entries() -> Vec<PipelineEntry> {
     let mut all = vec![rendering_control::ENTRY, slats::ENTRY, frameless::ENTRY];
@@ -22,7 +23,7 @@ pub(crate) fn entries() -> Vec<PipelineEntry> {
 
 /// The display of a pipeline that is written for interlaced fields.
 fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, ConfigError> {
-    record.display().as_any().downcast_ref().ok_or_else(|| {
+    (record.display() as &dyn Any).downcast_ref().ok_or_else(|| {
         let found = record.display().name();
         ConfigError::Board(format!("{pipeline} draws single fields: expected the display ntsc, found {found}"))
     })

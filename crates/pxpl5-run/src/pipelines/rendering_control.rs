@@ -175,6 +175,7 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     ],
     build,
     limit: |_| LimitCriterion { goal: Goal::NoMissedRetrace, scene: TestScene::Typical, fields: 90 },
+    tables: &[],
     closed_form: None,
     compared: true,
 };

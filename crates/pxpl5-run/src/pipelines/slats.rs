@@ -254,6 +254,7 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     ],
     build,
     limit,
+    tables: &[],
     closed_form: None,
     compared: true,
 };

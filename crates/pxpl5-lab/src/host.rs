@@ -1,0 +1,93 @@
+//! The computer that experiments run on: its clock, and threads that compute pixels apart from simulated time.
+
+use crossbeam_channel::{Sender, bounded};
+use pxpl5_machine::{PixelWorker, SameThread};
+use pxpl5_run::Host;
+use pxpl5_wire::PixelSource;
+use std::sync::{Arc, LazyLock};
+use std::thread::JoinHandle;
+use std::time::Instant;
+
+/// This computer: a clock, and worker threads for pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Workstation {
+    threads: usize,
+}
+
+impl Workstation {
+    /// With a worker thread for each core.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::with_threads(std::thread::available_parallelism().map_or(1, usize::from))
+    }
+
+    /// With so many worker threads; 0: the thread that simulates computes the pixels.
+    #[must_use]
+    pub const fn with_threads(threads: usize) -> Self {
+        Self { threads }
+    }
+}
+
+impl Default for Workstation {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The moment from which seconds are counted.
+static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
+
+impl Host for Workstation {
+    fn seconds(&self) -> Option<f64> {
+        Some(BEGIN.elapsed().as_secs_f64())
+    }
+
+    fn pixel_worker(&self) -> Box<dyn PixelWorker> {
+        match self.threads {
+            0 => Box::new(SameThread::default()),
+            threads => Box::new(PixelThreads::start(threads)),
+        }
+    }
+}
+
+/// Regions that may wait for a worker; more would only hold memory.
+const WAITING_REGIONS: usize = 256;
+
+/// A pool of threads that compute pixels.
+#[derive(Debug)]
+struct PixelThreads {
+    regions: Sender<Arc<dyn PixelSource>>,
+    threads: Vec<JoinHandle<u64>>,
+}
+
+impl PixelThreads {
+    fn start(threads: usize) -> Self {
+        let (regions, waiting) = bounded::<Arc<dyn PixelSource>>(WAITING_REGIONS);
+        let start_one = |_| {
+            let waiting = waiting.clone();
+            std::thread::spawn(move || {
+                waiting.iter().fold(0, |regions, region| {
+                    let _ = region.pixels();
+                    regions + 1
+                })
+            })
+        };
+        Self { regions, threads: (0..threads).map(start_one).collect() }
+    }
+}
+
+impl PixelWorker for PixelThreads {
+    fn compute(&mut self, region: &Arc<dyn PixelSource>) {
+        // The workers live as long as this sender, so there is always a receiver.
+        let _ = self.regions.send(Arc::clone(region));
+    }
+
+    /// # Panics
+    ///
+    /// When a worker panicked: a bug of ours.
+    fn finish(self: Box<Self>) -> u64 {
+        let Self { regions, threads } = *self;
+        drop(regions);
+        threads.into_iter().map(|thread| thread.join().expect("a pixel worker panicked")).sum()
+    }
+}
