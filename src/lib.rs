@@ -5,7 +5,7 @@
 //! [`Outcome`]: latencies, pictures, and everything that was observed.
 //!
 //! ```
-//! use pxpl5::{Experiment, MachineConfig, Pixels, RenderingControl, Slats, scene};
+//! use pxpl5::{Experiment, MachineConfig, Measured, Pixels, RenderingControl, Slats, scene};
 //!
 //! // Twelve triangles that each cover the screen, on 13 graphics processors and 5 renderers (TR94).
 //! let trivial = scene::builtin("full-screen:12")?;
@@ -21,73 +21,75 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! | module or crate | what |
+//! This crate only hands on what others define; `use pxpl5::...` is all that a user's crate needs.
+//!
+//! | crate | answers |
 //! |---|---|
-//! | [`Machine`] | boards plugged together: the only place where they meet |
-//! | [`pipelines`] | what can run on it; a new pipeline implements [`Pipeline`] |
-//! | [`compare`], [`display`] | every way to fight latency in pixels; what a display does on the way to the eye |
-//! | [`figures`], [`levels`], [`limit`] | published figures, levels of modelling, most triangles per field |
-//! | [`ExperimentFile`], [`sweep`], [`Snapshot`] | experiments as text, at many points, and continued |
-//! | `pxpl5-*` crates | one for each board, and the event kernel |
+//! | [`machine`], [`display`] | what boards there are and how they are plugged together; what a display is |
+//! | [`run`] | one experiment: [`Experiment`], [`Pipeline`], [`Head`], [`Registry`]; the outcome is data |
+//! | [`measure`] | what an outcome says: [`Report`], latencies, errors in pixels, pictures |
+//! | [`analytic`] | the same without events |
+//! | [`lab`] | questions over many experiments: [`figures`], [`levels`], [`limit`], [`compare`], [`sweep`], experiment files |
+//! | [`views`] | what people look at: timelines, traces, tables, charts, report pages, films |
+//! | [`scene`], [`tracking`] | what is drawn, and who looks at it |
+//! | [`firmware`] | what a pipeline of one's own is written with |
 //!
 //! Every number of the model has a unit, a standing (published, derived, assumed) and a source:
 //! [`MachineConfig::parameters`] lists them.
 //!
 //! **Not modelled:** see the data sheet at the head of each board's crate, and ACCURACY.md for what comes out wrong.
 
-pub mod analytic;
-pub mod compare;
-mod config;
-pub mod display;
-mod display_list;
-mod experiment;
-mod experiment_file;
-pub mod figures;
-mod fingerprint;
-pub mod growth;
-mod head_to_light;
-pub mod intervals;
-mod latency;
-pub mod levels;
-pub mod limit;
-mod machine;
-mod measure;
-mod observation;
-mod parallel;
-pub mod pictures;
-pub mod pipelines;
-mod report;
-pub mod results;
-mod savings;
-mod snapshot;
-pub mod sweep;
-pub mod timeline;
-pub mod trace_export;
-mod traffic;
-mod workers;
-
-pub use config::{ConfigError, MachineConfig, PRESETS, Parameter, Preset};
-pub use experiment::{Experiment, ExperimentError, FIELDS_RANGE, Outcome, Pixels, WARM_UP_PICTURES};
-pub use experiment_file::{
-    ExperimentFile, FileError, HeadChoice, KEYS, Key, MotionChoice, Outputs, PIPELINES, Plan, Published, SceneChoice,
-    Settings,
-};
-pub use fingerprint::Fingerprint;
-pub use head_to_light::{Budget, FIELDS_WITH_HEAD, Head, HeadError, HeadViews, Rehearsal, Sampled};
-pub use latency::{EyeStatistics, LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition};
-pub use machine::{Machine, Ports, RunError};
-pub use measure::{Measure, QUANTITIES, Quantity, Results};
-pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
-pub use pipelines::{Code, Frameless, Jitp, Pipeline, Reading, RenderingControl, Slats, Viewpoint};
-pub use pphigs::Binning;
+pub use pxpl5_analytic as analytic;
+pub use pxpl5_display as display;
+pub use pxpl5_lab as lab;
+pub use pxpl5_machine as machine;
+pub use pxpl5_measure as measure;
+pub use pxpl5_run as run;
 pub use pxpl5_scene as scene;
-pub use pxpl5_wire::Eye;
-pub use report::{DefinedStatistics, HeadReport, Report, Statistics};
-pub use savings::Saving;
-pub use slats::Copy;
-pub use snapshot::{Snapshot, SnapshotError};
+pub use pxpl5_views as views;
 pub use tracking;
-pub use traffic::{Traffic, Transfer};
+
+pub use parameters::{ParameterInfo, ParameterTable, Standing, Value};
+pub use pphigs::Binning;
+pub use pxpl5_framebuffer::{FrameBufferConfig, NtscDisplay};
+pub use pxpl5_hires::HiResConfig;
+pub use pxpl5_lab::{
+    ExperimentFile, FileError, HeadChoice, MotionChoice, Outputs, Plan, Published, SceneChoice, Settings, Snapshot,
+    SnapshotError, Workstation, compare, figures, growth, intervals, levels, limit, pipeline_figures, registry, sweep,
+};
+pub use pxpl5_machine::{
+    Arrival, ConfigError, LateRegion, Machine, MachineConfig, Observation, PRESETS, Parameter, Ports, Preset, Record,
+    RunError, Saving, StageSpan, Swap, Traffic, Transfer,
+};
+pub use pxpl5_measure::{
+    Budget, FieldError, HeadReport, LATENCY_PARTS, LatencyParts, Measure, Measured, NamedStatistics, PartDefinition,
+    Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, Report, Results, SurfaceStatistics,
+    picture, side_by_side,
+};
+pub use pxpl5_run::{
+    BareHost, Code, DefinedStatistics, Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint,
+    Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key, KeyValue, KeyValues, Level,
+    LimitCriterion, Outcome, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry,
+    RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary, TestScene, Viewpoint, WARM_UP_PICTURES,
+};
+pub use pxpl5_sim::{Span, Time, TraceHash};
+pub use pxpl5_views::{film, results, timeline, trace_export};
+pub use pxpl5_wire::{Eye, SurfaceId};
+pub use slats::CopySchedule;
+
+/// What a pipeline of one's own is written with: firmware on graphics processors, display lists, commands for renderers, and
+/// what travels on the ring.
+pub mod firmware {
+    pub use pphigs::{
+        Around, Binning, DisplayList, EyeView, FrameView, Pass, Picture, Shading, Share, region_messages,
+    };
+    pub use pxpl5_geometry::Viewport;
+    pub use pxpl5_gp::{Edge, Fault, Gp, GpTiming, HostTiming, Level, Mark, Program, Received, Stage, Ticket};
+    pub use pxpl5_renderer::{CommandKind, Layout};
+    pub use pxpl5_wire::{
+        Body, CommandList, CopyOrder, CopyTarget, FieldParity, Lines, NodeId, RegionGrid, RegionId, Word, swap_request,
+    };
+}
 
 /// The examples of the README, compiled and run.
 #[cfg(doctest)]

@@ -3,7 +3,9 @@
 use crate::error::CliError;
 use crate::output::OutputFolder;
 use crate::terminal;
-use pxpl5::compare::{Comparison, LatencyCurve, Row, chart, compare_with, edge_pictures, motion, predictor, tracker};
+use crate::options::registry;
+use pxpl5::compare::{Comparison, Row, compare_with, edge_pictures, motion, predictor, tracker};
+use pxpl5::views::charts::{LatencyCurve, chart};
 use pxpl5::{Head, MachineConfig, scene};
 use std::fmt::Write as _;
 use std::io::Cursor;
@@ -76,7 +78,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
         bar.set_length(of);
         bar.set_position(done);
     };
-    let comparison = compare_with(&config, &scene, &head, args.fields, !args.no_triangles, finished)?;
+    let comparison = compare_with(&registry(), &config, &scene, &head, args.fields, !args.no_triangles, finished)?;
     bar.finish_and_clear();
     let json = serde_json::to_string_pretty(&comparison).map_err(CliError::failure)? + "\n";
     if let Some(folder) = &mut folder {

@@ -93,7 +93,7 @@ fn one(name: &'static str, text: &str, quiet: bool) -> Result<Run, CliError> {
 }
 
 fn closing(runs: &[Run], args: &DemoArgs) -> String {
-    let seconds: f64 = runs.iter().map(|run| run.report.host_seconds).sum();
+    let seconds: f64 = runs.iter().filter_map(|run| run.report.host_seconds).sum();
     let mut text = String::new();
     let mut told = Vec::new();
     for report in runs.iter().map(|run| &run.report) {

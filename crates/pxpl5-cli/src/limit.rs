@@ -1,11 +1,11 @@
 //! `pxpl5 limit`.
 
 use crate::error::CliError;
+use crate::options::{PipelineOptions, option_of, registry};
 use crate::terminal::print;
 use clap::{Args, ValueEnum};
-use pxpl5::levels::{Level, Program};
-use pxpl5::limit::{Goal, Growing, LIMIT_FIELDS, Limit, LimitQuery, STEREO_LIMIT_FIELDS};
-use pxpl5::{Binning, Code, Copy, MachineConfig, RenderingControl, Slats};
+use pxpl5::limit::{Limit, LimitQuery};
+use pxpl5::{ExperimentFile, Goal, LimitCriterion, TestScene};
 use serde_json::json;
 
 /// Find the most triangles that a pipeline draws in time.
@@ -13,22 +13,16 @@ use serde_json::json;
 #[command(after_help = "Examples:
   pxpl5 limit --pipeline slats                            140 triangles were published (TR94)
   pxpl5 limit --pipeline slats --copy whole               110 triangles were published
+  pxpl5 limit --pipeline slats --machine slats-1995       100 triangles were published (I3D95)
   pxpl5 limit --pipeline slats --gps 4 --renderers 10 --binning touched
   pxpl5 limit --pipeline rendering-control --rate 30
-  pxpl5 limit --pipeline rendering-control --latency 5    fields")]
+  pxpl5 limit --pipeline rendering-control --latency 5    fields
+  pxpl5 limit --pipeline slats --set gp.triangle_ns=20000
+
+Which triangles and what must hold is the pipeline's own, unless said.")]
 pub(crate) struct LimitArgs {
-    /// The pipeline.
-    #[arg(long, value_enum, default_value = "slats")]
-    pipeline: PipelineArg,
-    /// When Slats copies regions.
-    #[arg(long, value_enum, default_value = "split")]
-    copy: CopyArg,
-    /// Which code of Slats runs.
-    #[arg(long, value_enum, default_value = "1994")]
-    code: CodeArg,
-    /// Regions to which Slats sends a triangle.
-    #[arg(long, value_enum, default_value = "all")]
-    binning: BinningArg,
+    #[command(flatten)]
+    pipeline: PipelineOptions,
     /// Graphics processors.
     #[arg(long)]
     gps: Option<u64>,
@@ -38,56 +32,47 @@ pub(crate) struct LimitArgs {
     /// Preset of the machine; default: the one on which the pipeline was measured.
     #[arg(long, value_name = "PRESET")]
     machine: Option<String>,
-    /// Triangles: full-screen or typical; default: full-screen where every region gets them all, typical otherwise.
+    /// What the pipeline draws for: ntsc or hires.
+    #[arg(long)]
+    display: Option<String>,
+    /// Triangles; default: full-screen where every region gets them all, typical otherwise.
     #[arg(long, value_enum)]
     scene: Option<SceneArg>,
-    /// Least updates per second (Rendering Control).
+    /// Least updates per second.
     #[arg(long, value_name = "HZ", conflicts_with = "latency")]
     rate: Option<f64>,
-    /// Greatest mean latency in fields (Rendering Control).
+    /// Greatest mean latency in fields.
     #[arg(long, value_name = "FIELDS")]
     latency: Option<f64>,
-    /// Fields that each size is simulated for; default: 16 for Slats, 90 for Rendering Control.
+    /// Fields that each size is simulated for; default: enough for a steady state of the pipeline.
     #[arg(long)]
     fields: Option<u64>,
+    /// Level of modelling: analytic, transaction or cycle; default transaction.
+    #[arg(long)]
+    level: Option<String>,
+    /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000; may be repeated.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    sets: Vec<String>,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum PipelineArg {
-    Slats,
-    RenderingControl,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum CopyArg {
-    Whole,
-    Split,
-    /// Whole, and the last complete field is shown again when a retrace is missed (beyond the prototype).
-    Backup,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum CodeArg {
-    #[value(name = "1994")]
-    Of1994,
-    #[value(name = "1995")]
-    Of1995,
-    Optimised,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum BinningArg {
-    All,
-    Touched,
-}
-
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum SceneArg {
+    /// Triangles that cover the whole screen.
     FullScreen,
+    /// Small ones that touch 1.3 regions on average.
     Typical,
+}
+
+impl From<SceneArg> for TestScene {
+    fn from(scene: SceneArg) -> Self {
+        match scene {
+            SceneArg::FullScreen => Self::FullScreen,
+            SceneArg::Typical => Self::Typical,
+        }
+    }
 }
 
 pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
@@ -96,62 +81,59 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
     print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
 }
 
+/// Fewer fields than this show no pictures behind the warm-up of any pipeline.
+const LEAST_FIELDS: u64 = 10;
+
 impl LimitArgs {
     fn query(&self) -> Result<LimitQuery, CliError> {
-        let program = self.program();
-        let mut config =
-            MachineConfig::preset(self.machine.as_deref().unwrap_or(program.preset())).map_err(CliError::usage)?;
-        for (path, value) in [("n_gps", self.gps), ("n_renderers", self.renderers)] {
-            value.map_or(Ok(()), |value| config.set(path, value)).map_err(CliError::usage)?;
+        let plan = self.file()?.resolve()?;
+        let criterion = plan.limit;
+        let fields = self.fields.unwrap_or(criterion.fields);
+        if fields < LEAST_FIELDS {
+            return Err(CliError::usage(format!("--fields: expected at least {LEAST_FIELDS}, found {fields}")));
         }
-        config.check().map_err(CliError::usage)?;
+        let scene = self.scene.map_or(criterion.scene, TestScene::from);
+        let goal = self.goal()?.unwrap_or(criterion.goal);
         Ok(LimitQuery {
-            config,
-            program,
-            growing: self.growing(program),
-            goal: self.goal()?,
-            fields: self.fields.unwrap_or(match program {
-                Program::Slats(_) => LIMIT_FIELDS,
-                _ => STEREO_LIMIT_FIELDS,
-            }),
-            level: Level::Transaction,
+            criterion: LimitCriterion { goal, scene, fields },
+            config: plan.machine,
+            pipeline: plan.pipeline,
+            level: plan.level,
+            registry: plan.registry,
         })
     }
 
-    fn program(&self) -> Program {
-        if self.pipeline == PipelineArg::RenderingControl {
-            return RenderingControl::stereo().into();
+    /// The settings of all sizes, with a scene that stands for each of them.
+    fn file(&self) -> Result<ExperimentFile, CliError> {
+        let mut file = ExperimentFile::with(registry());
+        file.set("pipeline", "slats", "--pipeline")?;
+        file.set("scene", "full-screen:1", "--scene")?;
+        for (key, value) in &self.pipeline.given {
+            file.set_text(&format!("{key}={value}"), &format!("--{}", option_of(key)))?;
         }
-        let copy = match self.copy {
-            CopyArg::Whole => Copy::Whole,
-            CopyArg::Split => Copy::Split,
-            CopyArg::Backup => Copy::Backup,
-        };
-        let code = match self.code {
-            CodeArg::Of1994 => Code::Of1994,
-            CodeArg::Of1995 => Code::Of1995,
-            CodeArg::Optimised => Code::Optimised,
-        };
-        let binning = match self.binning {
-            BinningArg::All => Binning::All,
-            BinningArg::Touched => Binning::Touched,
-        };
-        Slats { copy, binning, code: Some(code) }.into()
+        let texts = [
+            ("machine.preset", "--machine", &self.machine),
+            ("display", "--display", &self.display),
+            ("level", "--level", &self.level),
+        ];
+        for (key, option, value) in texts {
+            value.clone().map(|value| file.set(key, value, option)).transpose()?;
+        }
+        let numbers = [("machine.n_gps", "--gps", self.gps), ("machine.n_renderers", "--renderers", self.renderers)];
+        for (key, option, value) in numbers {
+            value.map(|value| file.set(key, i64::try_from(value).unwrap_or(i64::MAX), option)).transpose()?;
+        }
+        for assignment in &self.sets {
+            file.set_text(assignment, "--set")?;
+        }
+        Ok(file)
     }
 
-    fn growing(&self, program: Program) -> Growing {
-        match (self.scene, program) {
-            (Some(SceneArg::FullScreen), _) => Growing::FullScreen,
-            (None, Program::Slats(slats)) if slats.binning == Binning::All => Growing::FullScreen,
-            (Some(SceneArg::Typical) | None, _) => Growing::Typical,
-        }
-    }
-
-    fn goal(&self) -> Result<Goal, CliError> {
+    fn goal(&self) -> Result<Option<Goal>, CliError> {
         match (self.rate, self.latency) {
-            (None, None) => Ok(Goal::NoMissedRetrace),
-            (Some(hz), _) if hz > 0.0 => Ok(Goal::RateHz(hz)),
-            (_, Some(fields)) if fields > 0.0 => Ok(Goal::LatencyFields(fields)),
+            (None, None) => Ok(None),
+            (Some(hz), _) if hz > 0.0 => Ok(Some(Goal::RateHz(hz))),
+            (_, Some(fields)) if fields > 0.0 => Ok(Some(Goal::LatencyFields(fields))),
             _ => Err(CliError::usage("--rate and --latency must be greater than 0")),
         }
     }
@@ -164,13 +146,15 @@ fn json_text(query: &LimitQuery, limit: Limit) -> String {
         "first_miss": limit.first_miss,
         "monotone": limit.monotone,
         "sizes_tried": limit.tried,
-        "pipeline": query.program.pipeline().name(),
-        "goal": query.goal,
-        "scene": query.growing,
+        "pipeline": query.pipeline.name(),
+        "goal": query.criterion.goal,
+        "scene": query.criterion.scene,
+        "settings": settings(query),
         "machine": query.config.preset,
         "n_gps": query.config.n_gps,
         "n_renderers": query.config.n_renderers,
-        "fields": query.fields,
+        "fields": query.criterion.fields,
+        "level": query.level.name(),
     });
     format!("{object:#}\n")
 }
@@ -179,11 +163,16 @@ fn text(query: &LimitQuery, limit: Limit) -> String {
     let first_miss = limit.first_miss.map_or("none was missed".to_owned(), |n| format!("the first miss is {n}"));
     format!(
         "{} on {} GPs and {} renderers: at most {} triangles ({first_miss}; {} sizes were simulated for {} fields)\n",
-        query.program.pipeline().name(),
+        query.pipeline.name(),
         query.config.n_gps,
         query.config.n_renderers,
         limit.triangles,
         limit.tried,
-        query.fields,
+        query.criterion.fields,
     )
+}
+
+/// The pipeline's keys and their values, as they take effect.
+fn settings(query: &LimitQuery) -> serde_json::Value {
+    query.pipeline.settings().into_iter().map(|(key, value)| (key, value.to_string())).collect()
 }

@@ -1,6 +1,7 @@
 //! `pxpl5 machines`.
 
 use crate::error::CliError;
+use crate::options::registry;
 use crate::terminal::print;
 use clap::Args;
 use pxpl5::{ConfigError, MachineConfig, PRESETS, Parameter};
@@ -24,7 +25,7 @@ pub(crate) struct MachinesArgs {
 pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
     let wrong = |error: ConfigError| CliError::usage(error);
     if let Some(name) = &args.preset {
-        let machine = MachineConfig::preset(name).map_err(wrong)?;
+        let machine = registry().machine_of(MachineConfig::preset(name).map_err(wrong)?);
         return print(&if args.json { one_json(&machine) } else { one_text(&machine) });
     }
     print(&if args.json { all_json() } else { all_text() })

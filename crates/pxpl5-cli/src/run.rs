@@ -7,9 +7,10 @@ use crate::snapshot::SnapshotArgs;
 use crate::table::{Comparison, table};
 use crate::terminal::print;
 use clap::Args;
-use pxpl5::levels::Level;
 use pxpl5::results::origin_lines;
-use pxpl5::{ExperimentFile, Eye, HeadReport, Outcome, Plan, Report, Results, Saving};
+use pxpl5::{
+    ExperimentFile, HeadReport, Level, Measured, Outcome, Plan, Report, Results, Saving, SurfaceId,
+};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -51,7 +52,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
     let outcome = args.snapshot.simulate(&plan, args.threads, &args.without, args.quiet)?;
-    let results = Results::new(&plan, outcome);
+    let results = Results::of_run(outcome);
     let Some((_, report)) = &results.run else { return Err(no_events()) };
     let written = folder.map(|folder| write(folder, &plan, &results)).transpose()?;
     if args.json {
@@ -137,9 +138,11 @@ pub(crate) fn pictures(
     outcome: &Outcome,
     report: &Report,
 ) -> Result<(), CliError> {
-    for (name, eye) in [("left", Eye::Left), ("right", Eye::Right)] {
-        if let Some(picture) = outcome.picture(eye) {
-            folder.put(&format!("{prefix}{name}.png"), &png(&picture, report)?)?;
+    let surfaces: Vec<(SurfaceId, &str)> =
+        outcome.record().surfaces().map(|(id, surface)| (id, surface.label)).collect();
+    for (surface, label) in surfaces {
+        if let Some(picture) = outcome.picture(surface) {
+            folder.put(&format!("{prefix}{label}.png"), &png(&picture, report)?)?;
         }
     }
     Ok(())

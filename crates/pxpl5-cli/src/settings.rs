@@ -1,8 +1,9 @@
 //! Options that say what an experiment is; each stands for a key of an experiment file.
 
 use crate::error::CliError;
+use crate::options::{PipelineOptions, option_of, registry};
 use clap::Args;
-use pxpl5::ExperimentFile;
+use pxpl5::{ExperimentFile, Raster};
 use std::path::PathBuf;
 
 /// An experiment file, and options that take precedence over it.
@@ -14,10 +15,8 @@ pub(crate) struct SettingArgs {
     /// The same, as an option.
     #[arg(long, value_name = "FILE", conflicts_with = "experiment")]
     file: Option<PathBuf>,
-    /// rendering-control, slats, frameless, or jitp-field, jitp-scanline, jitp-dual-screen, jitp-dual-view, each with
-    /// -racing or without.
-    #[arg(long)]
-    pipeline: Option<String>,
+    #[command(flatten)]
+    pipeline: PipelineOptions,
     /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .pdb.
     #[arg(long, value_name = "NAME|FILE")]
     scene: Option<String>,
@@ -33,21 +32,6 @@ pub(crate) struct SettingArgs {
     /// Renderers.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     renderers: Option<i64>,
-    /// Rendering Control: one picture instead of a stereo pair.
-    #[arg(long)]
-    mono: bool,
-    /// Rendering Control: phong or gouraud.
-    #[arg(long)]
-    shading: Option<String>,
-    /// Slats: copy the whole field before the retrace, or split it: whole or split.
-    #[arg(long)]
-    copy: Option<String>,
-    /// Slats: code of 1994, 1995 or optimised; default: that of the machine.
-    #[arg(long)]
-    code: Option<String>,
-    /// Slats: send a clump to all regions, or to those touched: all or touched.
-    #[arg(long)]
-    binning: Option<String>,
     /// Motion of a head with a tracker: still, pan:DEG_PER_S, pendulum, synthetic:SEED or a recording FILE.csv.
     #[arg(long, value_name = "MOTION")]
     head: Option<String>,
@@ -57,10 +41,13 @@ pub(crate) struct SettingArgs {
     /// Prediction: none, velocity, acceleration or kalman; default kalman.
     #[arg(long)]
     predict: Option<String>,
-    /// Display before its eyes: plain, or vdrt (shifts the raster by what the pose was wrong).
+    /// What the pipeline draws for: ntsc or hires; default ntsc. (plain and vdrt are taken for --raster.)
     #[arg(long)]
     display: Option<String>,
-    /// NTSC fields to simulate (1/60 s each); default 120.
+    /// Raster before a tracked head's eyes: plain, or vdrt (shifted by what the pose was wrong); default plain.
+    #[arg(long)]
+    raster: Option<String>,
+    /// Periods of the display to simulate: NTSC fields of 1/60 s; default 120.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     fields: Option<i64>,
     /// Level of modelling: transaction, cycle or (for sweeps) analytic; default transaction.
@@ -84,22 +71,22 @@ impl SettingArgs {
     ///
     /// For an unusable file or an unknown key.
     pub(crate) fn gather(self) -> Result<ExperimentFile, CliError> {
+        let file = ExperimentFile::with(registry());
         let mut file = match self.experiment.as_ref().or(self.file.as_ref()) {
-            Some(path) => ExperimentFile::load(path)?,
-            None => ExperimentFile::new(),
+            Some(path) => file.and_load(path)?,
+            None => file,
         };
+        for (key, value) in &self.pipeline.given {
+            file.set_text(&format!("{key}={value}"), &format!("--{}", option_of(key)))?;
+        }
         let texts = [
-            ("pipeline", "--pipeline", self.pipeline),
             ("scene", "--scene", self.scene),
             ("machine.preset", "--machine", self.machine),
-            ("shading", "--shading", self.shading),
-            ("copy", "--copy", self.copy),
-            ("code", "--code", self.code),
-            ("binning", "--binning", self.binning),
             ("head.motion", "--head", self.head),
             ("head.tracker", "--tracker", self.tracker),
             ("head.predict", "--predict", self.predict),
-            ("head.display", "--display", self.display),
+            (display_key(self.display.as_deref()), "--display", self.display),
+            ("head.raster", "--raster", self.raster),
             ("level", "--level", self.level),
             ("pixels", "--pixels", self.pixels),
         ];
@@ -116,12 +103,14 @@ impl SettingArgs {
         for (key, option, value) in numbers {
             value.map(|value| file.set(key, value, option)).transpose()?;
         }
-        if self.mono {
-            file.set("mono", true, "--mono")?;
-        }
         for assignment in &self.sets {
             file.set_text(assignment, "--set")?;
         }
         Ok(file)
     }
+}
+
+/// A display's name is the machine's; a raster's was given by the same option before there were other displays.
+fn display_key(name: Option<&str>) -> &'static str {
+    if Raster::ALL.iter().any(|(raster, _)| Some(*raster) == name) { "head.raster" } else { "display" }
 }

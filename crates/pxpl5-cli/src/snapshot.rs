@@ -4,7 +4,10 @@ use crate::error::CliError;
 use crate::output::OutputFolder;
 use crate::terminal::progress;
 use clap::Args;
-use pxpl5::{ExperimentError, ExperimentFile, Machine, Outcome, Pixels, Plan, Saving, Snapshot};
+use crate::options::registry;
+use pxpl5::{
+    ExperimentError, ExperimentFile, Host, Machine, Outcome, Pixels, Plan, Saving, Snapshot, Workstation,
+};
 use std::path::{Path, PathBuf};
 
 /// A moment to be kept or to go on from.
@@ -36,7 +39,8 @@ impl SnapshotArgs {
             let message = format!("{key} is in the snapshot; beside --restore only fields, pixels, measure and output");
             return Err(CliError::usage(message));
         }
-        let mut file = self.read(path)?.experiment(&path.display().to_string())?;
+        let name = path.display().to_string();
+        let mut file = self.read(path)?.experiment_with(registry(), &name)?;
         file.overlay(given);
         Ok(file)
     }
@@ -61,8 +65,8 @@ impl SnapshotArgs {
     ) -> Result<Outcome, CliError> {
         let mut saving = self.saving(plan)?;
         let scene = plan.load_scene()?;
-        let threads = threads.map_or_else(cores, |threads| threads as usize);
-        let experiment = plan.experiment(scene.clone()).threads(threads);
+        let host = threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
+        let experiment = plan.experiment(scene.clone()).host(host);
         let mut experiment = without.iter().fold(experiment, |experiment, saving| experiment.without(*saving));
         let hash = experiment.config_hash();
         let restored = self.restored(plan)?;
@@ -77,7 +81,7 @@ impl SnapshotArgs {
             bar.set_position(field);
             if let Some((snapshot, name)) = restored.as_ref().filter(|(snapshot, _)| snapshot.field == field) {
                 snapshot.check_machine(machine, name).map_err(|error| ExperimentError::Stopped(error.to_string()))?;
-                continue_pixels(plan, machine, threads);
+                continue_pixels(plan, machine, host);
             }
             if let (Some((folder, name)), true) = (&mut saving, Some(field) == self.save_at) {
                 let text = Snapshot::of(plan, hash, &scene, field, machine).to_text();
@@ -121,12 +125,8 @@ impl SnapshotArgs {
     }
 }
 
-fn cores() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
-}
-
-fn continue_pixels(plan: &Plan, machine: &mut Machine, threads: usize) {
+fn continue_pixels(plan: &Plan, machine: &mut Machine, host: Workstation) {
     if plan.pixels == Pixels::All {
-        machine.compute_all_pixels(threads);
+        machine.compute_all_pixels(host.pixel_worker());
     }
 }

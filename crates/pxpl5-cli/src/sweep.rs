@@ -1,6 +1,7 @@
 //! `pxpl5 sweep`.
 
 use crate::error::CliError;
+use crate::options::registry;
 use crate::terminal::{complain, print, progress};
 use clap::Args;
 use pxpl5::ExperimentFile;
@@ -47,7 +48,7 @@ fn shard(text: &str) -> Result<Shard, String> {
 }
 
 pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
-    let mut file = ExperimentFile::load(&args.file)?;
+    let mut file = ExperimentFile::with(registry()).and_load(&args.file)?;
     for assignment in &args.sets {
         file.set_text(assignment, "--set")?;
     }

@@ -11,7 +11,7 @@ use pxpl5_gp::CodeVersion;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_measure::{Measure, Results};
 use pxpl5_run::{
-    Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Key, KeyValue, KeyValues, Level, Pipeline,
+    Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Key, KeyValue, KeyValues, Level, LimitCriterion, Pipeline,
     PipelineEntry, PipelineSettings, Pixels, Registry,
 };
 use pxpl5_scene::Scene;
@@ -135,6 +135,8 @@ pub struct Plan {
     pub registry: Arc<Registry>,
     /// The pipeline.
     pub pipeline: Arc<dyn Pipeline>,
+    /// How the most triangles that it draws in time are found.
+    pub limit: LimitCriterion,
     /// The machine.
     pub machine: MachineConfig,
     /// The scene.
@@ -182,6 +184,7 @@ impl ExperimentFile {
             fields: self.integer("fields", FIELDS_RANGE.0..=most_fields)?.unwrap_or(120),
             seed,
             level: self.level(entry, head.is_some())?,
+            limit: (entry.limit)(&given),
             pipeline,
             head,
             pixels: self.choice("pixels", &PIXELS)?.unwrap_or(Pixels::Lazy),

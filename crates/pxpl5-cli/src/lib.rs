@@ -1,0 +1,184 @@
+//! The command `pxpl5`: runs experiments on the emulated Pixel-Planes 5, and prints and writes what came of them.
+//!
+//! A command with pipelines or displays of one's own is a binary that calls [`main`] with another registry:
+//! `docs/guide/own-pipeline.md` has a complete one.
+//!
+//! Exit codes: 0 when all went well, 1 when something failed, 2 when the command line or an experiment file is wrong.
+//! Results go to standard output, everything else to standard error.
+
+mod check;
+mod compare;
+mod completions;
+mod demo;
+mod error;
+mod figures;
+mod film;
+mod i860;
+mod levels;
+mod limit;
+mod machines;
+mod merge;
+mod options;
+mod output;
+mod report;
+mod run;
+mod scenes;
+mod settings;
+mod snapshot;
+mod sweep;
+mod table;
+mod terminal;
+mod trace;
+
+use clap::{Parser, Subcommand};
+use error::CliError;
+use pxpl5::Registry;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+/// Emulator of Pixel-Planes 5 and its low-latency rendering pipelines.
+///
+/// Without a command it does what `pxpl5 demo` does.
+#[derive(Parser, Debug)]
+#[command(name = "pxpl5", version, propagate_version = true, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+const EXAMPLES: &str = "Examples:
+  pxpl5                                                     both pipelines at work, pictures in out/
+  pxpl5 run --pipeline slats --scene mig --triangles 140    one experiment
+  pxpl5 run --pipeline rendering-control --scene bunny.ply --gps 24 --out out/bunny
+  pxpl5 run experiments/figure-04.toml --set seed=7 --json
+
+Exit codes: 0 all went well, 1 something failed, 2 the command line or an experiment file is wrong.";
+
+#[derive(Subcommand, Debug)]
+enum Command {
+    /// Show both pipelines at work on built-in scenes: a table, pictures, timelines and report.json.
+    Demo(demo::DemoArgs),
+    /// Run one experiment.
+    Run(run::RunArgs),
+    /// Print the effective configuration of an experiment.
+    Check(check::CheckArgs),
+    /// Compare every way to fight latency in pixels: one scene, head motion and tracker for all pipelines.
+    Compare(compare::CompareArgs),
+    /// Measure every published figure and compare.
+    Figures(figures::FiguresArgs),
+    /// Find the most triangles that a pipeline draws in time.
+    Limit(limit::LimitArgs),
+    /// Compare the levels of modelling: speed against error.
+    Levels(levels::LevelsArgs),
+    /// List the built-in scenes.
+    Scenes(scenes::ScenesArgs),
+    /// List the machines that are built in.
+    Machines(machines::MachinesArgs),
+    /// Run an experiment at every point of a space of settings.
+    Sweep(sweep::SweepArgs),
+    /// Join the shards of a sweep.
+    Merge(merge::MergeArgs),
+    /// Make one page of a results folder.
+    Report(report::ReportArgs),
+    /// Run one experiment and write a trace of everything that happened.
+    Trace(trace::TraceArgs),
+    /// Write what a viewer sees as an animated PNG.
+    Film(film::FilmArgs),
+    /// Work with programs of the graphics processor's CPU.
+    I860(i860::I860Args),
+    /// Print a completion script for a shell.
+    Completions(completions::CompletionsArgs),
+}
+
+/// Runs the command of this process with some pipelines and displays.
+#[must_use]
+pub fn main(registry: Arc<Registry>) -> ExitCode {
+    options::know(registry);
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return error::usage(&error),
+    };
+    match run(cli.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => error.report(),
+    }
+}
+
+fn run(command: Option<Command>) -> Result<(), CliError> {
+    match command {
+        None => demo::run(demo::DemoArgs::default()),
+        Some(Command::Demo(args)) => demo::run(args),
+        Some(Command::Run(args)) => run::run(args),
+        Some(Command::Check(args)) => check::run(args),
+        Some(Command::Compare(args)) => compare::run(args),
+        Some(Command::Figures(args)) => figures::run(args),
+        Some(Command::Limit(args)) => limit::run(args),
+        Some(Command::Levels(args)) => levels::run(args),
+        Some(Command::Scenes(args)) => scenes::run(args),
+        Some(Command::Machines(args)) => machines::run(args),
+        Some(Command::Sweep(args)) => sweep::run(args),
+        Some(Command::Merge(args)) => merge::run(args),
+        Some(Command::Report(args)) => report::run(args),
+        Some(Command::Trace(args)) => trace::run(args),
+        Some(Command::Film(args)) => film::run(args),
+        Some(Command::I860(args)) => i860::run(args).map_err(CliError::failure),
+        Some(Command::Completions(args)) => completions::run(args),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    /// Lines that begin with the command, joined where they end in a backslash, without comments and shell variables.
+    fn commands(text: &str) -> Vec<Vec<String>> {
+        let joined = text.replace("\\\n", " ");
+        let lines = joined.lines().map(str::trim).filter(|line| line.starts_with("pxpl5"));
+        let words = |line: &str| {
+            let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
+            // Help texts explain after three spaces.
+            let line = line.split("   ").next().unwrap_or_default().replace("$SLURM_ARRAY_TASK_ID", "1");
+            line.split_whitespace().map(str::to_owned).collect()
+        };
+        lines.map(words).collect()
+    }
+
+    fn parses(text: &str) -> usize {
+        let commands = commands(text);
+        for words in &commands {
+            if let Err(error) = Cli::try_parse_from(words) {
+                assert_eq!(error.kind(), clap::error::ErrorKind::DisplayHelp, "{words:?}: {error}");
+            }
+        }
+        commands.len()
+    }
+
+    #[test]
+    fn every_command_of_the_help_texts_is_understood() {
+        let mut command = Cli::command();
+        let mut found = parses(&command.render_long_help().to_string());
+        for sub in command.get_subcommands_mut() {
+            found += parses(&sub.render_long_help().to_string());
+        }
+        assert!(found > 20, "found {found}");
+    }
+
+    #[test]
+    fn every_command_of_the_documents_is_understood() {
+        for (page, least) in [
+            (include_str!("../../../docs/sweeps.md"), 10),
+            (include_str!("../../../docs/guide/head-to-light.md"), 5),
+            (include_str!("../../../docs/guide/figures.md"), 5),
+            (include_str!("../../../README.md"), 7),
+        ] {
+            let found = parses(page);
+            assert!(found > least, "found {found}");
+        }
+    }
+
+    #[test]
+    fn the_definition_of_the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,66 @@
+//! Options that the pipelines of this process bring with them.
+
+use clap::{Arg, ArgMatches, Command};
+use pxpl5::{KeyValues, Registry};
+use std::sync::{Arc, OnceLock};
+
+/// The pipelines and displays of this process, said once by [`crate::main`]: options are made before anything is parsed.
+static KNOWN: OnceLock<Arc<Registry>> = OnceLock::new();
+
+/// Says which pipelines and displays there are.
+pub(crate) fn know(registry: Arc<Registry>) {
+    // A second call could only come from a second `main`; the first one's options stand.
+    let _ = KNOWN.set(registry);
+}
+
+/// The pipelines and displays of this process.
+pub(crate) fn registry() -> Arc<Registry> {
+    Arc::clone(KNOWN.get_or_init(pxpl5::registry))
+}
+
+/// The pipeline and its keys, as given on the command line: option and value.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PipelineOptions {
+    /// Keys of the experiment file with the text given for each.
+    pub(crate) given: Vec<(&'static str, String)>,
+}
+
+/// How a key is written on the command line.
+pub(crate) fn option_of(key: &str) -> String {
+    key.replace('_', "-")
+}
+
+impl clap::Args for PipelineOptions {
+    fn augment_args(command: Command) -> Command {
+        let registry = registry();
+        let names: Vec<&str> = registry.pipelines().iter().map(|entry| entry.name).collect();
+        let pipeline = Arg::new("pipeline").long("pipeline").value_name("PIPELINE").help(names.join(", "));
+        registry.keys().into_iter().fold(command.arg(pipeline), |command, (key, families)| {
+            let help = format!("{}: {}", families.join(", "), key.about);
+            let arg = Arg::new(key.name).long(option_of(key.name)).help(help);
+            command.arg(match key.values {
+                KeyValues::Flag => arg.num_args(0..=1).default_missing_value("true").require_equals(true),
+                KeyValues::Whole(..) => arg.value_name("N").allow_negative_numbers(true),
+                KeyValues::Names(_) => arg.value_name(key.name.to_uppercase()),
+            })
+        })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl clap::FromArgMatches for PipelineOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let keys = registry().keys();
+        let names = ["pipeline"].into_iter().chain(keys.iter().map(|(key, _)| key.name));
+        let given = names.filter_map(|name| Some((name, matches.get_one::<String>(name)?.clone())));
+        Ok(Self { given: given.collect() })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
