@@ -143,20 +143,24 @@ impl Pass {
     /// [`ProcessorFault`] when the code does not come to its end, or its data do not fit.
     pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<Made>, ProcessorFault> {
         let Some(kernel) = self.kernel(processor.version()) else { return Ok(None) };
-        let (program, heads) = (program(kernel), self.heads());
+        let program = program(kernel);
+        let heads = self.heads();
         let places = self.places(processor, kernel, context)?;
         processor.write(BIN_TABLE, &places.bins)?;
         let mut span = Span::ZERO;
-        let (mut command, mut clipped) = (places.commands, places.clip_list);
+        let mut command = places.commands;
+        let mut clipped = places.clip_list;
         for (transform, light, held) in self.calls() {
             let parameters: [Word; PARAMETER_WORDS] = kernel.parameters(transform, light, &heads);
             processor.write(PARAMETERS, &parameters)?;
-            let (first, count) = (DISPLAY_LIST + held.start as u32 * TRIANGLE_BYTES, held.len() as u32);
+            let first = DISPLAY_LIST + held.start as u32 * TRIANGLE_BYTES;
+            let count = held.len() as u32;
             let data = [(16, first), (17, count), (18, command), (21, clipped)];
             let fixed = [(2, STACK), (19, BIN_TABLE), (20, PARAMETERS)];
             let budget = BUDGET + BUDGET_OF_TRIANGLE * u64::from(count);
             span += processor.call(&program, "start", &[data.as_slice(), &fixed].concat(), budget)?;
-            (command, clipped) = (processor.register(18), processor.register(21));
+            command = processor.register(18);
+            clipped = processor.register(21);
         }
         let tails = processor.read(BIN_TABLE, places.bins.len())?;
         let bins = places.bins.iter().zip(tails).map(|(head, tail)| *head..tail).collect();

@@ -121,7 +121,8 @@ impl Packer<'_> {
     }
 
     fn list(&self, part: Part) -> CommandList {
-        let (pass, region) = (Arc::clone(self.pass), self.region);
+        let pass = Arc::clone(self.pass);
+        let region = self.region;
         let runs = part.runs(&pass);
         let copies = part.copy.into_iter().collect();
         let words = RegionWords { pass, region, context: self.context, part };
@@ -230,7 +231,9 @@ impl RegionWords {
         encoder: &TriangleEncoder,
         out: &mut Vec<Word>,
     ) {
-        let (list, picture, mut stats) = (self.pass.share().list(), self.pass.picture(), SetupStats::default());
+        let list = self.pass.share().list();
+        let picture = self.pass.picture();
+        let mut stats = SetupStats::default();
         let command = |t: GouraudTriangle| Triangle { edges: t.edges, depth: t.z, colour: t.rgb };
         let vertices = place.vertices(list, transform);
         let surfaces = vertices.colours(list, transform, &place.light);
@@ -259,7 +262,9 @@ impl RegionWords {
         encoder: &PhongTriangleEncoder,
         out: &mut Vec<Word>,
     ) {
-        let (list, picture, mut stats) = (self.pass.share().list(), self.pass.picture(), SetupStats::default());
+        let list = self.pass.share().list();
+        let picture = self.pass.picture();
+        let mut stats = SetupStats::default();
         let command = |t: geometry::PhongTriangle| PhongTriangle {
             edges: t.edges,
             depth: t.z,
@@ -291,7 +296,9 @@ impl RegionWords {
     fn spheres(&self, out: &mut Vec<Word>) {
         let range = self.part.spheres.start as usize..self.part.spheres.end as usize;
         let mut numbers = &self.pass.bin(self.region).spheres[range];
-        let (picture, list, mut stats) = (self.pass.picture(), self.pass.share().list(), SetupStats::default());
+        let picture = self.pass.picture();
+        let list = self.pass.share().list();
+        let mut stats = SetupStats::default();
         for (place, transform) in self.pass.drawn() {
             let end = place.structure.spheres.end;
             let (here, rest) = numbers.split_at(numbers.partition_point(|number| (*number as usize) < end));

@@ -129,7 +129,8 @@ impl Share {
     pub fn new(list: Arc<DisplayList>, index: usize, of: usize) -> Self {
         assert!(of > 0, "primitives need a graphics processor");
         let held = |all: usize| 0..all.saturating_sub(index).div_ceil(of);
-        let (triangles, spheres) = (held(list.triangles.len()), held(list.spheres.len()));
+        let triangles = held(list.triangles.len());
+        let spheres = held(list.spheres.len());
         Self { list, first: index, step: of, triangles, spheres }
     }
 
@@ -151,7 +152,8 @@ impl Share {
     ///
     /// If `size` is zero.
     pub fn clumps(&self, size: usize) -> impl Iterator<Item = Self> {
-        let (triangles, spheres) = (self.triangles.clone(), self.spheres.clone());
+        let triangles = self.triangles.clone();
+        let spheres = self.spheres.clone();
         let all = triangles.len() + spheres.len();
         let part = move |range: &Range<usize>, from: usize, to: usize| {
             let clamp = |i: usize| (range.start + i).min(range.end);
@@ -205,7 +207,8 @@ impl Share {
 
     /// Numbers of the primitives of `of` that are among the held ones `positions`.
     fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl Iterator<Item = usize> + use<> {
-        let (first, step) = (self.first, self.step);
+        let first = self.first;
+        let step = self.step;
         self.places(positions, of).map(move |k| first + k * step)
     }
 

@@ -97,7 +97,9 @@ impl Pass {
     }
 
     fn binitize(&mut self) {
-        let (mut stats, placed, share) = (SetupStats::default(), Arc::clone(&self.placed), self.share.clone());
+        let mut stats = SetupStats::default();
+        let placed = Arc::clone(&self.placed);
+        let share = self.share.clone();
         for (place, transform) in drawn(&placed) {
             self.bin_triangles(place, transform, &share, &mut stats);
             for number in share.held_spheres(&place.structure.spheres) {
@@ -110,7 +112,8 @@ impl Pass {
     }
 
     fn bin_triangles(&mut self, place: &Placed, transform: &Transform, share: &Share, stats: &mut SetupStats) {
-        let (first, touched) = (place.structure.triangles.start, place.touched(&share.list, transform));
+        let first = place.structure.triangles.start;
+        let touched = place.touched(&share.list, transform);
         let mut in_one_region = 0;
         for number in share.held_triangles(&place.structure.triangles) {
             let touch = touched.get(number - first);
@@ -119,7 +122,8 @@ impl Pass {
                 self.put_in(region, Entry { triangle: number as u32, piece: Some(0) });
                 continue;
             }
-            let (triangle, mut pieces) = (number as u32, 0);
+            let triangle = number as u32;
+            let mut pieces = 0;
             let put = |mask| {
                 self.put_triangle(mask, Entry { triangle, piece: Some(pieces) });
                 pieces += 1;

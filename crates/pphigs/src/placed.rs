@@ -87,7 +87,8 @@ impl Vertices {
     pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[SeenSurface] {
         self.normals.get_or_init(|| {
             let all = self.first..self.first + self.seen.len();
-            let (positions, normals) = (&list.positions[all.clone()], &list.normals[all]);
+            let positions = &list.positions[all.clone()];
+            let normals = &list.normals[all];
             positions.iter().zip(normals).map(|(p, n)| transform.see_normal(*p, *n)).collect()
         })
     }

@@ -83,7 +83,8 @@ impl FrameView {
     /// [`ViewWordsError`] when the length is not what the header says.
     pub fn from_words(words: &[Word]) -> Result<Self, ViewWordsError> {
         let count = |i: usize| words.get(i).map_or(0, |word| *word as usize);
-        let (n_eyes, n_edits) = (count(2), count(3));
+        let n_eyes = count(2);
+        let n_edits = count(3);
         let expected =
             HEADER_WORDS + n_eyes.saturating_mul(EYE_WORDS).saturating_add(n_edits.saturating_mul(EDIT_WORDS));
         if words.len() != expected {
@@ -116,7 +117,8 @@ fn eye(words: &[Word]) -> EyeView {
 
 /// `left * right` formed in double precision and rounded once, the same on every host.
 pub(crate) fn product(left: &Mat4, right: &Mat4) -> Mat4 {
-    let (left, right): (DMat4, DMat4) = (left.as_dmat4(), right.as_dmat4());
+    let left: DMat4 = left.as_dmat4();
+    let right: DMat4 = right.as_dmat4();
     (left * right).as_mat4()
 }
 

@@ -33,7 +33,8 @@ impl Numbers {
 fn list(triangles: u32) -> Arc<DisplayList> {
     let mut numbers = Numbers(7);
     let mut list = DisplayList { towards_light: Vec3::new(0.48, 0.6, 0.64), ..DisplayList::default() };
-    (list.ambient, list.diffuse) = (0.25, 0.75);
+    list.ambient = 0.25;
+    list.diffuse = 0.75;
     for number in 0..triangles {
         let centre = Vec3::new(0.0, 0.0, -6.0) + numbers.vector(1.5);
         for _ in 0..3 {
@@ -43,7 +44,8 @@ fn list(triangles: u32) -> Arc<DisplayList> {
         }
         list.triangles.push([3 * number, 3 * number + 1, 3 * number + 2]);
     }
-    let (middle, end) = (triangles as usize / 3, triangles as usize);
+    let middle = triangles as usize / 3;
+    let end = triangles as usize;
     let structure = |triangles, frame| Structure { triangles, spheres: 0..0, frame };
     list.structures = vec![structure(0..middle, Frame::World), structure(middle..end, Frame::Head)];
     Arc::new(list)
@@ -88,7 +90,8 @@ fn of_code(processor: &Processor, made: &Made, region: usize, command_words: usi
 
 #[test]
 fn the_words_in_memory_are_those_of_the_native_firmware() {
-    let (list, view) = (list(300), view());
+    let list = list(300);
+    let view = view();
     let share = Share::new(Arc::clone(&list), 1, 3);
     for version in VERSIONS {
         let mut processor = board(version, &share);
@@ -113,7 +116,8 @@ fn the_words_in_memory_are_those_of_the_native_firmware() {
 
 #[test]
 fn without_bins_every_command_is_made_in_order() {
-    let (list, view) = (list(90), view());
+    let list = list(90);
+    let view = view();
     let share = Share::new(list, 0, 1);
     let viewport = Viewport::field(FieldParity::Odd);
     for version in VERSIONS {
@@ -179,7 +183,8 @@ fn output_bytes(pass: &Pass, triangles: u32, command_bytes: u32) -> u32 {
 
 /// A board whose memory is as large as given, both eyes' passes over 90 triangles, and the bytes of a command.
 fn both_contexts(memory: u64) -> (Processor, [Arc<Pass>; 2]) {
-    let (share, view) = (Share::new(list(90), 0, 1), view());
+    let share = Share::new(list(90), 0, 1);
+    let view = view();
     let mut processor = Processor::new(NodeId(2), memory, CodeVersion::Scheduled);
     share.install(&mut processor).expect("it fits");
     let picture = picture(Viewport::FRAME, Shading::Gouraud, Binning::Touched);

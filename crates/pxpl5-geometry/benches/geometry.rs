@@ -110,8 +110,10 @@ fn transform(c: &mut Criterion) {
 
 fn setup(c: &mut Criterion) {
     let ball = Ball::new();
-    let (view, mut stats) = (view(), SetupStats::default());
-    let (mut gouraud, mut phong) = (Vec::new(), Vec::new());
+    let view = view();
+    let mut stats = SetupStats::default();
+    let mut gouraud = Vec::new();
+    let mut phong = Vec::new();
     for t in ball.each() {
         view.gouraud(&t, &Light::HEADLIGHT, &mut stats, |t| gouraud.push(t));
         view.phong(&t, &mut stats, |t| phong.push(t));

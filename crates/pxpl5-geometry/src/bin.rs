@@ -157,7 +157,8 @@ impl Binner {
 
     /// The regions that a rectangle of pixels, given in frame lines, meets.
     pub(crate) fn rectangle(&self, x: Range, lines: Range) -> RegionMask {
-        let (x, y) = (x.within(self.width), self.rows_of_lines(lines).within(self.height));
+        let x = x.within(self.width);
+        let y = self.rows_of_lines(lines).within(self.height);
         if x.is_empty() || y.is_empty() {
             return RegionMask::EMPTY;
         }
@@ -192,7 +193,8 @@ impl Binner {
         let outline = Outline { x: corners_x, y: corners_y, z: [0; 3], regions: RegionMask::EMPTY };
         let edges = outline.edges();
         self.cells(x, y, |column, row| {
-            let (across, down) = (self.column_box(column), self.row_box(row));
+            let across = self.column_box(column);
+            let down = self.row_box(row);
             edges.iter().all(|e| greatest(e, across, down) >= 0)
         })
     }
@@ -233,7 +235,8 @@ pub(crate) fn meets(outline: &Outline, [left, right]: [i32; 2], [top, bottom]: [
         let [low, high] = extent(v);
         Range::of_centres(low, high)
     };
-    let (x, y) = (range(&outline.x), range(&outline.y));
+    let x = range(&outline.x);
+    let y = range(&outline.y);
     let apart = x.first > right || x.last < left || y.first > bottom || y.last < top;
     !apart && outline.edges().iter().all(|e| greatest(e, (left, right), (top, bottom)) >= 0)
 }

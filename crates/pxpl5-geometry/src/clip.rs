@@ -134,7 +134,8 @@ impl Guard {
             Ordering::Greater => (other, one),
             _ => (one, other),
         };
-        let (near, far) = (self.distance(plane, from.clip), self.distance(plane, to.clip));
+        let near = self.distance(plane, from.clip);
+        let far = self.distance(plane, to.clip);
         let t = near / (near - far);
         let between = |a: f64, b: f64| a + (b - a) * t;
         Corner {
@@ -185,7 +186,8 @@ mod tests {
         let near = |p: Polygon<1>| -> Vec<Corner<1>> {
             p.corners().iter().filter(|v| v.clip[2].abs() < 1e-6).copied().collect()
         };
-        let (one, other) = (near(GUARD.clip(&[a, b, c])), near(GUARD.clip(&[b, a, d])));
+        let one = near(GUARD.clip(&[a, b, c]));
+        let other = near(GUARD.clip(&[b, a, d]));
         assert!(one.iter().any(|v| other.contains(v)), "{one:?} {other:?}");
     }
 

@@ -60,7 +60,8 @@ impl Conic {
 
     /// The same conic from another origin.
     pub(crate) fn around(&self, origin: [f64; 2]) -> Self {
-        let (dx, dy) = (origin[0] - self.origin[0], origin[1] - self.origin[1]);
+        let dx = origin[0] - self.origin[0];
+        let dy = origin[1] - self.origin[1];
         Self {
             origin,
             constant: self.at(dx, dy),
@@ -110,7 +111,8 @@ impl Conic {
 
     /// Least and greatest x and y of the ellipse in the frame's pixels; `None` if it is none (NaN, overflow).
     pub(crate) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
-        let ([x, y], [half_x, half_y]) = (self.peak(), self.half_size());
+        let [x, y] = self.peak();
+        let [half_x, half_y] = self.half_size();
         let bounds = [[x - half_x, x + half_x], [y - half_y, y + half_y]];
         bounds.iter().flatten().all(|v| v.is_finite()).then_some(bounds)
     }
@@ -145,8 +147,11 @@ impl Conic {
     /// Coefficients as integers around pixel (px, py), then exactly around pixel (0, 0).
     fn rounded(&self, px: i64, py: i64) -> Quadratic {
         let integer = |v: f64| (v + 0.5).floor() as i64;
-        let (xx, xy, yy) = (integer(self.xx), integer(self.xy), integer(self.yy));
-        let (x, y) = (integer(self.x), integer(self.y));
+        let xx = integer(self.xx);
+        let xy = integer(self.xy);
+        let yy = integer(self.yy);
+        let x = integer(self.x);
+        let y = integer(self.y);
         Quadratic {
             xx,
             xy,

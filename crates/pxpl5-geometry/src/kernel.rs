@@ -103,8 +103,10 @@ impl Kernel {
     #[must_use]
     pub fn parameters(&self, transform: &Transform, light: &Light, heads: &Heads) -> [Word; PARAMETER_WORDS] {
         let mut words = Words([0; PARAMETER_WORDS]);
-        let (clip, eye) = (transform.to_clip.rows(), transform.to_eye.rows());
-        let (guard, screen) = (&transform.guard, &transform.to_screen);
+        let clip = transform.to_clip.rows();
+        let eye = transform.to_eye.rows();
+        let guard = &transform.guard;
+        let screen = &transform.to_screen;
         words.singles(0, clip.as_flattened());
         words.singles(64, &transform.to_clip.origin().to_array());
         words.singles(80, &[guard.x, guard.y, clip::MIN_W, MAX_CLIP]);

@@ -56,7 +56,8 @@
 //!     normals: [Vec3::Z; 3],
 //!     colours: [[255, 0, 0]; 3],
 //! };
-//! let (mut stats, mut commands) = (SetupStats::default(), Vec::new());
+//! let mut stats = SetupStats::default();
+//! let mut commands = Vec::new();
 //! transform.gouraud(&triangle, &Light::HEADLIGHT, &mut stats, |t| commands.push(t));
 //! let regions: Vec<u16> = commands[0].outline.regions.iter().map(|r| r.0).collect();
 //! let planes = commands[0].gouraud(transform.viewport(), &mut stats);

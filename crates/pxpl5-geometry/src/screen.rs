@@ -123,7 +123,8 @@ impl Outline {
     /// Twice the area in 1/256 square px; positive unless the corners lie on one line.
     #[inline(always)]
     pub(crate) fn twice_area(&self) -> i64 {
-        let (x, y) = (&self.x, &self.y);
+        let x = &self.x;
+        let y = &self.y;
         i64::from(x[1] - x[0]) * i64::from(y[2] - y[0]) - i64::from(y[1] - y[0]) * i64::from(x[2] - x[0])
     }
 
@@ -147,7 +148,8 @@ impl Outline {
     /// triangle only along a top or a left edge: elsewhere k is less by one.
     #[inline(always)]
     fn edge(&self, from: usize, to: usize) -> Linear {
-        let (dx, dy) = (self.x[to] - self.x[from], self.y[to] - self.y[from]);
+        let dx = self.x[to] - self.x[from];
+        let dy = self.y[to] - self.y[from];
         let top_left = dy < 0 || (dy == 0 && dx > 0);
         let k = i64::from(dx) * i64::from(SUBPIXELS / 2 - self.y[from])
             - i64::from(dy) * i64::from(SUBPIXELS / 2 - self.x[from])

@@ -53,7 +53,8 @@ impl Lens {
         let [slope, constant] = if parallel { [at(2, 2), at(2, 3)] } else { [at(2, 3), -at(2, 2)] };
         let shift = |row: usize| if parallel { -at(row, 3) } else { at(row, 2) };
         let [half_x, half_y] = [width, lines].map(|n| f64::from(n) * 0.5);
-        let (scale_x, scale_y) = (at(0, 0), at(1, 1));
+        let scale_x = at(0, 0);
+        let scale_y = at(1, 1);
         let lens = Self {
             parallel,
             step: [1.0 / (half_x * scale_x), -1.0 / (half_y * scale_y)],
@@ -151,7 +152,8 @@ enum Sight {
 
 impl Lens {
     fn sight(&self, sphere: &EyeSphere) -> Sight {
-        let (front, back) = (-sphere.centre[2] - sphere.radius, -sphere.centre[2] + sphere.radius);
+        let front = -sphere.centre[2] - sphere.radius;
+        let back = -sphere.centre[2] + sphere.radius;
         let before = |t: f64| (!self.parallel && t <= 0.0) || self.depth(t) < 0.0;
         if before(front) {
             return if before(back) { Sight::Outside } else { Sight::AcrossNear };
@@ -177,8 +179,10 @@ impl Lens {
     /// The picture scaled to bulges, and the plane of depth around its centre.
     fn picture(&self, sphere: &EyeSphere) -> (Conic, [f64; 3]) {
         let range = f64::from(DEPTH_FAR - DEPTH_NEAR);
-        let ([cx, cy, cz], r) = (sphere.centre, sphere.radius);
-        let ([gx, gy], rr) = (self.step, r * r);
+        let [cx, cy, cz] = sphere.centre;
+        let r = sphere.radius;
+        let [gx, gy] = self.step;
+        let rr = r * r;
         let base = f64::from(DEPTH_NEAR);
         if self.parallel {
             let k = range * self.slope;
@@ -194,7 +198,8 @@ impl Lens {
             let depth = base + range * self.depth(-cz);
             return (conic.scaled(k * k), [depth, 0.0, 0.0]);
         }
-        let (dx, dy) = (cx / -cz, cy / -cz);
+        let dx = cx / -cz;
+        let dy = cy / -cz;
         let dd = (dx * dx + dy * dy) + 1.0;
         let conic = Conic {
             origin: self.pixel(dx, dy),

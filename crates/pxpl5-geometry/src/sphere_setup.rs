@@ -114,7 +114,8 @@ impl ScreenSphere {
         let half_step = conic::power_of_two(i32::from(conic.depth_shift) - 1);
         let room = (self.front - f64::from(DEPTH_NEAR) * 0.5).max(0.0);
         let plane = Slope { origin: self.conic.origin, value: value - half_step.min(room), slope: [slope_x, slope_y] };
-        let (step, first) = (viewport.line_step(), viewport.first_line());
+        let step = viewport.line_step();
+        let first = viewport.first_line();
         let setup = SphereSetup {
             silhouette: conic::for_rows(conic.quadratic, step.into(), first.into()),
             root_shift: conic.root_shift,
@@ -141,7 +142,8 @@ impl ScreenSphere {
         let [across, up, towards] = self.axes.map(|axis| crate::sphere::dot(axis, direction));
         let middle = self.middle(self.rectangle(viewport));
         let unit = f64::from(1_u32 << format::COLOUR_FRACTION_BITS);
-        let (ambient, diffuse) = (f64::from(light.ambient), f64::from(light.diffuse));
+        let ambient = f64::from(light.ambient);
+        let diffuse = f64::from(light.diffuse);
         let rgb = self.colour.map(|c| {
             let full = f64::from(c) * unit;
             let scale = [across, up].map(|l| full * diffuse * l);

@@ -33,7 +33,8 @@ pub struct Together {
 
 impl Default for Together {
     fn default() -> Self {
-        let (integers, reals) = ([[0; TOGETHER]; 3], [[0.0; TOGETHER]; 3]);
+        let integers = [[0; TOGETHER]; 3];
+        let reals = [[0.0; TOGETHER]; 3];
         Self { len: 0, x: integers, y: integers, z: [[0; TOGETHER]; 3], facing: reals, surface: [reals; 3] }
     }
 }
@@ -64,7 +65,8 @@ impl Together {
     pub fn push(&mut self, SeenTriangle(corners): &SeenTriangle, surface: [&SeenSurface; 3]) {
         let lane = self.len;
         for corner in 0..3 {
-            let (place, of) = (&corners[corner], surface[corner]);
+            let place = &corners[corner];
+            let of = surface[corner];
             self.x[corner][lane] = place.x;
             self.y[corner][lane] = place.y;
             self.z[corner][lane] = place.z;
@@ -131,7 +133,8 @@ type Parts = ([Linear; 3], Linear, [Linear; 3]);
 impl Expressions {
     #[inline(always)]
     const fn get(&self, lane: usize) -> Parts {
-        let ([e, f, g], [z, p, q, r]) = (&self.edges, &self.planes);
+        let [e, f, g] = &self.edges;
+        let [z, p, q, r] = &self.planes;
         let edges = [e.get(lane), f.get(lane), g.get(lane)];
         (edges, z.get(lane), [p.get(lane), q.get(lane), r.get(lane)])
     }
@@ -226,16 +229,20 @@ impl Rows {
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn set_up(triangles: &Together, half: f32, rows: Rows) -> Expressions {
-    let (planes, away, mut flattened) = (Planes::of(triangles, rows), away(&triangles.facing), [0; TOGETHER]);
+    let planes = Planes::of(triangles, rows);
+    let away = away(&triangles.facing);
+    let mut flattened = [0; TOGETHER];
     let there = with_area(&planes.twice_area);
     let swapped = counterclockwise(&planes.twice_area);
-    let (x, y) = (clockwise(&triangles.x, &swapped), clockwise(&triangles.y, &swapped));
+    let x = clockwise(&triangles.x, &swapped);
+    let y = clockwise(&triangles.y, &swapped);
     let edges = [
         rows.restate(edge([&x[0], &x[1]], [&y[0], &y[1]])).or(-1, &there),
         rows.restate(edge([&x[1], &x[2]], [&y[1], &y[2]])).or(-1, &there),
         rows.restate(edge([&x[2], &x[0]], [&y[2], &y[0]])).or(-1, &there),
     ];
-    let ([a, b, c], [p, q, r]) = (&triangles.z, &triangles.surface);
+    let [a, b, c] = &triangles.z;
+    let [p, q, r] = &triangles.surface;
     let planes_through = [
         rows.restate(planes.through(&[depths(a), depths(b), depths(c)], &mut flattened)).or(0, &there),
         rows.restate(planes.through(&component(p, &away, half), &mut flattened)).or(0, &there),
@@ -307,10 +314,12 @@ fn counterclockwise(twice_area: &Lanes<f64>) -> Lanes<i32> {
 /// choices between values.
 #[inline(always)]
 fn clockwise([p, q, r]: &[Lanes<i32>; 3], swapped: &Lanes<i32>) -> [Lanes<i32>; 3] {
-    let (mut second, mut third) = ([0; TOGETHER], [0; TOGETHER]);
+    let mut second = [0; TOGETHER];
+    let mut third = [0; TOGETHER];
     for i in 0..TOGETHER {
         let change = (q[i] ^ r[i]) & swapped[i];
-        (second[i], third[i]) = (q[i] ^ change, r[i] ^ change);
+        second[i] = q[i] ^ change;
+        third[i] = r[i] ^ change;
     }
     [*p, second, third]
 }
@@ -320,12 +329,15 @@ fn clockwise([p, q, r]: &[Lanes<i32>; 3], swapped: &Lanes<i32>) -> [Lanes<i32>; 
 fn edge([x, to_x]: [&Lanes<i32>; 2], [y, to_y]: [&Lanes<i32>; 2]) -> Linears {
     let mut out = Linears::default();
     for i in 0..TOGETHER {
-        let (dx, dy) = (to_x[i] - x[i], to_y[i] - y[i]);
+        let dx = to_x[i] - x[i];
+        let dy = to_y[i] - y[i];
         let top_left = (dy < 0) | ((dy == 0) & (dx > 0));
         let across = f64::from(dx) * f64::from(SUBPIXELS / 2 - y[i]);
         let down = f64::from(dy) * f64::from(SUBPIXELS / 2 - x[i]);
         let k = (across - down) - if top_left { 0.0 } else { 1.0 };
-        (out.a[i], out.b[i], out.c[i]) = (-dy, dx, sixteenth(k));
+        out.a[i] = -dy;
+        out.b[i] = dx;
+        out.c[i] = sixteenth(k);
     }
     out
 }
@@ -351,9 +363,12 @@ impl Planes {
     /// The corners may run either way: a change of direction changes the signs of products and area alike.
     #[inline(always)]
     fn of(triangles: &Together, rows: Rows) -> Self {
-        let ([p, q, r], [s, t, u]) = (&triangles.x, &triangles.y);
-        let (x, y) = ([side(p, q), side(p, r)], [side(s, t), side(s, u)]);
-        let (mut twice_area, mut per_pixel) = ([0.0; TOGETHER], [0.0; TOGETHER]);
+        let [p, q, r] = &triangles.x;
+        let [s, t, u] = &triangles.y;
+        let x = [side(p, q), side(p, r)];
+        let y = [side(s, t), side(s, u)];
+        let mut twice_area = [0.0; TOGETHER];
+        let mut per_pixel = [0.0; TOGETHER];
         for i in 0..TOGETHER {
             twice_area[i] = x[0][i] * y[1][i] - y[0][i] * x[1][i];
             per_pixel[i] = 16.0 / twice_area[i];
@@ -366,16 +381,21 @@ impl Planes {
     /// The planes through three values of each at the frame's pixels; counts the flat ones.
     #[inline(always)]
     fn through(&self, [p, q, r]: &[Lanes<f64>; 3], flattened: &mut Lanes<u8>) -> Linears {
-        let (mut out, mut flat) = (Linears::default(), [false; TOGETHER]);
+        let mut out = Linears::default();
+        let mut flat = [false; TOGETHER];
         for i in 0..TOGETHER {
-            let (d1, d2) = (q[i] - p[i], r[i] - p[i]);
+            let d1 = q[i] - p[i];
+            let d2 = r[i] - p[i];
             let slope_x = (d1 * self.y[1][i] - d2 * self.y[0][i]) * self.per_pixel[i];
             let slope_y = (d2 * self.x[0][i] - d1 * self.x[1][i]) * self.per_pixel[i];
             flat[i] = (slope_x.abs() > MAX_SLOPE) | (slope_y.abs() > MAX_SLOPE);
             let there = (p[i] + slope_x * self.to_reference[0][i]) + slope_y * self.to_reference[1][i];
-            let (a, b) = (plane::rounded(slope_x), plane::rounded(slope_y));
+            let a = plane::rounded(slope_x);
+            let b = plane::rounded(slope_y);
             let back = a.wrapping_mul(self.reference[0][i]).wrapping_add(b.wrapping_mul(self.reference[1][i]));
-            (out.a[i], out.b[i], out.c[i]) = (a, b, plane::rounded(there).wrapping_sub(back));
+            out.a[i] = a;
+            out.b[i] = b;
+            out.c[i] = plane::rounded(there).wrapping_sub(back);
         }
         if flat.iter().fold(false, |any, flat| any | flat) {
             flatten([p, q, r], &flat, &mut out, flattened);
@@ -388,7 +408,9 @@ impl Planes {
 fn flatten(v: [&Lanes<f64>; 3], flat: &Lanes<bool>, out: &mut Linears, flattened: &mut Lanes<u8>) {
     for i in (0..TOGETHER).filter(|i| flat[*i]) {
         let Linear { a, b, c } = plane::flat(v.map(|v| v[i]));
-        (out.a[i], out.b[i], out.c[i]) = (a, b, c);
+        out.a[i] = a;
+        out.b[i] = b;
+        out.c[i] = c;
         flattened[i] += 1;
     }
 }

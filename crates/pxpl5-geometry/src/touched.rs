@@ -128,7 +128,8 @@ impl Transform {
         let [p, q, r] = if corners.counterclockwise(lane) { [0, 2, 1] } else { [0, 1, 2] };
         let clockwise = |v: &[Lanes<i32>; 3]| [v[p][lane], v[q][lane], v[r][lane]];
         let range = |[first, last]: &[Lanes<i32>; 2]| Range { first: first[lane], last: last[lane] };
-        let (x, y) = (clockwise(&corners.x), clockwise(&corners.y));
+        let x = clockwise(&corners.x);
+        let y = clockwise(&corners.y);
         Touch::of(self.binner.test_edges(x, y, range(&found.x), range(&found.y)))
     }
 }
@@ -161,7 +162,8 @@ impl Corners {
     }
 
     fn counterclockwise(&self, lane: usize) -> bool {
-        let ([a, b, c], [d, e, f]) = (self.x.map(|x| x[lane]), self.y.map(|y| y[lane]));
+        let [a, b, c] = self.x.map(|x| x[lane]);
+        let [d, e, f] = self.y.map(|y| y[lane]);
         i64::from(b - a) * i64::from(f - d) < i64::from(e - d) * i64::from(c - a)
     }
 }
@@ -177,7 +179,8 @@ struct Found {
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn find(corners: &Corners, binner: &Binner, culling: bool) -> Found {
-    let (x, y) = (extent(&corners.x), extent(&corners.y));
+    let x = extent(&corners.x);
+    let y = extent(&corners.y);
     let columns = ranges(&x, |range| range.within(binner.width));
     let rows = ranges(&y, |range| binner.rows_of_lines(range).within(binner.height));
     let in_column = cells(&x, &columns[0], |pixel| {
@@ -215,7 +218,8 @@ fn areas(Corners { x: [a, b, c], y: [d, e, f], .. }: &Corners) -> Lanes<f64> {
 /// Smallest and largest of the corners.
 #[inline(always)]
 fn extent([p, q, r]: &[Lanes<i32>; 3]) -> [Lanes<i32>; 2] {
-    let (mut low, mut high) = ([0; TOGETHER], [0; TOGETHER]);
+    let mut low = [0; TOGETHER];
+    let mut high = [0; TOGETHER];
     for i in 0..TOGETHER {
         low[i] = p[i].min(q[i]).min(r[i]);
         high[i] = p[i].max(q[i]).max(r[i]);
@@ -226,10 +230,12 @@ fn extent([p, q, r]: &[Lanes<i32>; 3]) -> [Lanes<i32>; 2] {
 /// First and last pixel between the smallest and the largest of the corners, as far as the picture goes.
 #[inline(always)]
 fn ranges([low, high]: &[Lanes<i32>; 2], within: impl Fn(Range) -> Range) -> [Lanes<i32>; 2] {
-    let (mut first, mut last) = ([0; TOGETHER], [0; TOGETHER]);
+    let mut first = [0; TOGETHER];
+    let mut last = [0; TOGETHER];
     for i in 0..TOGETHER {
         let range = within(Range::of_centres(low[i], high[i]));
-        (first[i], last[i]) = (range.first, range.last);
+        first[i] = range.first;
+        last[i] = range.last;
     }
     [first, last]
 }

@@ -79,7 +79,8 @@ impl TriangleEnds {
 impl ToScreen {
     fn new(viewport: &Viewport) -> Self {
         let half = |size: u32| (size * screen::SUBPIXELS as u32) as f32 * 0.5;
-        let (x, y) = (half(viewport.grid().width), half(viewport.frame_lines()));
+        let x = half(viewport.grid().width);
+        let y = half(viewport.frame_lines());
         Self { scale: [x, -y], centre: [x, y] }
     }
 
@@ -106,7 +107,8 @@ impl ToScreen {
         let limit = f64::from(screen::GUARD_PIXELS * screen::SUBPIXELS);
         let inverse = 1.0 / clip[3];
         let on_screen = |i: usize| (clip[i] * inverse) * f64::from(self.scale[i]) + f64::from(self.centre[i]);
-        let (x, y) = (on_screen(0), on_screen(1));
+        let x = on_screen(0);
+        let y = on_screen(1);
         let fits = x.abs() <= limit && y.abs() <= limit && clip[3] >= f64::from(clip::MIN_W);
         if !fits {
             return None;
@@ -155,7 +157,8 @@ impl Transform {
     /// # Errors
     /// [`ViewError::NotFinite`] if a matrix holds NaN or an infinity.
     pub fn new(view: &ViewTransform, viewport: Viewport, culling: Culling) -> Result<Self, ViewError> {
-        let (model_view, projection) = (Columns::of(&view.model_view), Columns::of(&view.projection));
+        let model_view = Columns::of(&view.model_view);
+        let projection = Columns::of(&view.projection);
         for (matrix, columns) in [("model-view", &model_view), ("projection", &projection)] {
             if !columns.is_finite() {
                 return Err(ViewError::NotFinite { matrix });

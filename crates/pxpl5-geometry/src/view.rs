@@ -111,7 +111,8 @@ impl Viewport {
         if !fits(grid.width, MAX_PICTURE) || !fits(frame_lines, MAX_PICTURE) {
             return Err(ViewError::PictureSize { width: grid.width, frame_lines });
         }
-        let (width, height) = (grid.region_width, grid.region_height);
+        let width = grid.region_width;
+        let height = grid.region_height;
         if !fits(width, pxpl5_wire::REGION_SIZE) || !fits(height, pxpl5_wire::REGION_SIZE) {
             return Err(ViewError::RegionSize { width, height });
         }

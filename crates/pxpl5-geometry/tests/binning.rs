@@ -24,7 +24,8 @@ fn screen(viewport: Viewport, points: [[i32; 2]; 3]) -> (Option<Outline>, SetupS
     let place = |[x, y]: [i32; 2]| at_pixel(x as f32 / 16.0 / sx, y as f32 / 16.0 / sy, 1.0);
     let transform = Transform::new(&pixel_view(1.0, 16_384.0), viewport, Culling::None).expect("a finite view");
     let triangle = Triangle { positions: points.map(place), normals: [Vec3::Z; 3], colours: [[0; 3]; 3] };
-    let (mut found, mut stats) = (Vec::new(), SetupStats::default());
+    let mut found = Vec::new();
+    let mut stats = SetupStats::default();
     transform.gouraud(&triangle, &Light::NONE, &mut stats, |t| found.push(t.outline));
     let mut masks = Vec::new();
     transform.bin(&triangle.positions, &mut SetupStats::default(), |m| masks.push(m));
@@ -39,9 +40,11 @@ fn line(viewport: &Viewport, row: u32) -> i32 {
 }
 
 fn edge(o: &Outline, i: usize, [x, y]: [i64; 2]) -> i64 {
-    let (p, q) = (i, (i + 1) % 3);
+    let p = i;
+    let q = (i + 1) % 3;
     let [px, py, qx, qy] = [o.x[p], o.y[p], o.x[q], o.y[q]].map(i64::from);
-    let (dx, dy) = (qx - px, qy - py);
+    let dx = qx - px;
+    let dy = qy - py;
     let tie = i64::from(!(dy < 0 || (dy == 0 && dx > 0)));
     dx * (y - py) - dy * (x - px) - tie
 }
@@ -127,7 +130,8 @@ proptest! {
             let [x, y] = [0, 1].map(|i| points.map(|p| p[i]));
             let mut all = Outline { x, y, z: [0; 3], regions: RegionMask::EMPTY };
             if edge(&all, 0, [x[2].into(), y[2].into()]) < 0 {
-                (all.x, all.y) = ([x[0], x[2], x[1]], [y[0], y[2], y[1]]);
+                all.x = [x[0], x[2], x[1]];
+                all.y = [y[0], y[2], y[1]];
             }
             for n in 0..20 {
                 prop_assert!(!holds_a_pixel(&viewport, &all, RegionId(n)));

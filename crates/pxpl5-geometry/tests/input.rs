@@ -21,7 +21,8 @@ fn triangle(positions: [Vec3; 3]) -> Triangle {
 }
 
 fn drawn(transform: &Transform, positions: [Vec3; 3]) -> (Vec<ScreenTriangle<LitColours>>, SetupStats) {
-    let (mut out, mut stats) = (Vec::new(), SetupStats::default());
+    let mut out = Vec::new();
+    let mut stats = SetupStats::default();
     transform.gouraud(&triangle(positions), &Light::NONE, &mut stats, |t| out.push(t));
     (out, stats)
 }
@@ -46,7 +47,8 @@ fn nan_infinite_and_huge_coordinates_are_counted_and_never_drawn() {
 fn nan_normals_give_a_colour_and_no_panic() {
     let mut bad = triangle(clockwise());
     bad.normals = [Vec3::NAN, Vec3::ZERO, Vec3::splat(f32::MAX)];
-    let (mut out, mut stats) = (Vec::new(), SetupStats::default());
+    let mut out = Vec::new();
+    let mut stats = SetupStats::default();
     transform(Culling::None).gouraud(&bad, &Light::HEADLIGHT, &mut stats, |t| out.push(t));
     assert_eq!(out[0].surface.0, bad.colours.map(|c| c.map(|v| u16::from(v) * 256)));
 }
@@ -86,7 +88,8 @@ fn a_vertex_that_faces_the_light_has_its_full_colour_and_one_edge_on_the_ambient
     lit.normals = [Vec3::Z, Vec3::NEG_Z * 7.0, Vec3::X];
     lit.colours = [[200; 3]; 3];
     let light = Light { direction: [0.0, 0.0, 1.0], ambient: 0.25, diffuse: 0.5 };
-    let (mut out, mut stats) = (Vec::new(), SetupStats::default());
+    let mut out = Vec::new();
+    let mut stats = SetupStats::default();
     transform(Culling::None).gouraud(&lit, &light, &mut stats, |t| out.push(t));
     // Two-sided: a normal that points away counts like its opposite.
     assert_eq!(out[0].surface.0.map(|c| c[0]), [200 * 192, 200 * 192, 200 * 64]);
@@ -96,7 +99,8 @@ fn a_vertex_that_faces_the_light_has_its_full_colour_and_one_edge_on_the_ambient
 fn phong_normals_are_unit_length_and_face_the_eye() {
     let mut away = triangle(clockwise());
     away.normals = [Vec3::NEG_Z * 3.0, Vec3::new(0.0, -3.0, -4.0), Vec3::NEG_Z];
-    let (mut out, mut stats) = (Vec::new(), SetupStats::default());
+    let mut out = Vec::new();
+    let mut stats = SetupStats::default();
     transform(Culling::None).phong(&away, &mut stats, |t| out.push(t));
     // 0.6 and 0.8 in 1/2^14, rounded.
     assert_eq!(out[0].surface.normals, [[0, 0, 16_384], [0, 9830, 13_107], [0, 0, 16_384]]);
@@ -126,7 +130,9 @@ fn agrees_with_its_shared_vertices(transform: &Transform, t: &Triangle, lane: us
     let light = Light { direction: [0.6, 0.0, 0.8], ambient: 0.2, diffuse: 0.7 };
     let [a, b, c] = t.positions.map(|p| transform.see(p));
     let Some(seen) = SeenTriangle::of([&a, &b, &c]) else { return false };
-    let (mut stats, mut lit, mut normals) = ([SetupStats::default(); 2], Vec::new(), Vec::new());
+    let mut stats = [SetupStats::default(); 2];
+    let mut lit = Vec::new();
+    let mut normals = Vec::new();
     transform.gouraud(t, &light, &mut stats[0], |t| lit.push(t));
     transform.phong(t, &mut SetupStats::default(), |t| normals.push(t));
     stats[1].triangles += 1;
@@ -139,7 +145,8 @@ fn agrees_with_its_shared_vertices(transform: &Transform, t: &Triangle, lane: us
     let (Some(lit), Some(normals)) = (lit.first(), normals.first()) else { return false };
     let colour = |i: usize| transform.see_colour(&light, t.positions[i], t.normals[i], t.colours[i]);
     let normal = |i: usize| transform.see_normal(t.positions[i], t.normals[i]);
-    let (colours, facing) = ([0, 1, 2].map(colour), [0, 1, 2].map(normal));
+    let colours = [0, 1, 2].map(colour);
+    let facing = [0, 1, 2].map(normal);
     let together = |surface: &[SeenSurface; 3]| {
         let mut together = Together::default();
         (0..lane).for_each(|_| together.push_nothing());
@@ -188,7 +195,8 @@ fn a_projection_that_is_neither_perspective_nor_parallel_draws_no_spheres() {
 
 #[test]
 fn silhouettes_are_exact_to_the_pixel_and_regions_miss_none_of_it() {
-    let (mut random, mut pixels) = (Random(77), 0);
+    let mut random = Random(77);
+    let mut pixels = 0;
     for _ in 0..25 {
         let radius = random.between(0.02, 1.0);
         let centre = at_pixel(random.between(0.0, 640.0), random.between(0.0, 480.0), random.between(0.01, 1.0));
@@ -242,11 +250,13 @@ fn a_sphere_of_a_field_is_every_second_line_of_the_frame() {
             let screen = transform.sphere(&sphere, &mut stats).expect("it is in sight");
             screen.gouraud(&viewport, &Light::HEADLIGHT, &mut stats)
         };
-        let (frame, field) = (operands(Viewport::FRAME), operands(Viewport::field(parity)));
+        let frame = operands(Viewport::FRAME);
+        let field = operands(Viewport::field(parity));
         for row in 0..240 {
             let line = 2 * row + parity.first_line() as i32;
             for x in 0..640 {
-                let (a, b) = (native(&field.setup, x, row), native(&frame.setup, x, line));
+                let a = native(&field.setup, x, row);
+                let b = native(&frame.setup, x, line);
                 assert_eq!(a.is_some(), b.is_some(), "{x}, {row}");
                 // Planes may be rounded around another pixel: one unit of depth.
                 assert!(a.unwrap_or(0).abs_diff(b.unwrap_or(0)) <= 1);
@@ -269,7 +279,8 @@ fn a_sphere_under_a_parallel_projection_is_a_circle_with_a_root_for_its_depth() 
     let mut seen = 0;
     for y in 0..480 {
         for x in 0..640 {
-            let (dx, dy) = ((f64::from(x) + 0.5 - 384.0) / 64.0, (f64::from(y) + 0.5 - 272.0) / 64.0);
+            let dx = (f64::from(x) + 0.5 - 384.0) / 64.0;
+            let dy = (f64::from(y) + 0.5 - 272.0) / 64.0;
             let square = 2.25 - dx * dx - dy * dy;
             if square.abs() > 1e-4 {
                 assert_eq!(native(&setup, x, y).is_some(), square > 0.0, "{x}, {y}");

@@ -21,7 +21,8 @@ fn screen(x: [i32; 3], y: [i32; 3], z: [u32; 3], colours: [[u16; 3]; 3]) -> Opti
             - i64::from(o.y[1] - o.y[0]) * i64::from(o.x[2] - o.x[0])
     };
     if area(&outline) < 0 {
-        (outline.x, outline.y) = ([x[0], x[2], x[1]], [y[0], y[2], y[1]]);
+        outline.x = [x[0], x[2], x[1]];
+        outline.y = [y[0], y[2], y[1]];
     }
     let surface = LitColours(colours);
     let screen = ScreenTriangle { outline, surface };
@@ -67,8 +68,10 @@ fn inside(outline: &Outline, x: i32, y: i32) -> bool {
     let centre = [16 * i128::from(x) + 8, 16 * i128::from(y) + 8];
     let corner = |i: usize| [i128::from(outline.x[i % 3]), i128::from(outline.y[i % 3])];
     (0..3).all(|i| {
-        let (from, to) = (corner(i), corner(i + 1));
-        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let from = corner(i);
+        let to = corner(i + 1);
+        let dx = to[0] - from[0];
+        let dy = to[1] - from[1];
         let area = dx * (centre[1] - from[1]) - dy * (centre[0] - from[0]);
         area > 0 || (area == 0 && (dy < 0 || (dy == 0 && dx > 0)))
     })
@@ -104,7 +107,8 @@ proptest! {
         }
         // Ties: the rows and columns of the corners.
         for corner in 0..9 {
-            let (px, py) = (x[corner % 3] >> 4, y[corner / 3] >> 4);
+            let px = x[corner % 3] >> 4;
+            let py = y[corner / 3] >> 4;
             prop_assert_eq!(piece.inside_edges(px, py), inside(&piece.screen.outline, px, py));
         }
     }

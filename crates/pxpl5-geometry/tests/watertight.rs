@@ -11,7 +11,8 @@ use support::{HEIGHT, WIDTH, at_pixel, pixel_view};
 /// How often each pixel is drawn.
 fn draw(view: &ViewTransform, triangles: &[[Vec3; 3]]) -> (Vec<u8>, SetupStats) {
     let transform = Transform::new(view, Viewport::FRAME, Culling::None).expect("a finite view");
-    let (mut counts, mut stats) = (vec![0_u8; (WIDTH * HEIGHT) as usize], SetupStats::default());
+    let mut counts = vec![0_u8; (WIDTH * HEIGHT) as usize];
+    let mut stats = SetupStats::default();
     for positions in triangles {
         let triangle = Triangle { positions: *positions, normals: [Vec3::Z; 3], colours: [[0; 3]; 3] };
         let mut pieces = Vec::new();

@@ -43,13 +43,15 @@ fn many(seed: u64, count: usize, make: impl Fn(&mut Random) -> [Vec3; 3]) -> Vec
 
 /// Somewhere on the screen, at one of a few distances.
 fn anywhere(random: &mut Random) -> Vec3 {
-    let (x, y) = (random.between(0.0, 640.0), random.between(0.0, 480.0));
+    let x = random.between(0.0, 640.0);
+    let y = random.between(0.0, 480.0);
     at_pixel(x, y, random.between(0.5, 8.0))
 }
 
 /// Within `size` px of a place.
 fn around(random: &mut Random, [x, y]: [f32; 2], size: f32) -> Vec3 {
-    let (dx, dy) = (random.between(-size, size), random.between(-size, size));
+    let dx = random.between(-size, size);
+    let dy = random.between(-size, size);
     at_pixel(x + dx, y + dy, random.between(1.0, 1.2))
 }
 
@@ -71,7 +73,8 @@ fn large() -> Case {
 fn slivers(name: &'static str, width: f32) -> Case {
     let make = move |r: &mut Random| {
         let [dx, dy] = r.direction();
-        let (x, y) = (r.between(200.0, 440.0), r.between(160.0, 320.0));
+        let x = r.between(200.0, 440.0);
+        let y = r.between(160.0, 320.0);
         [
             at_pixel(x - 150.0 * dx, y - 150.0 * dy, 1.0),
             at_pixel(x + 150.0 * dx, y + 150.0 * dy, 2.0),
@@ -100,7 +103,8 @@ fn fan() -> Case {
         })
         .collect();
     let triangles = (0..count).map(|n| {
-        let (from, to) = (rim[n], rim[(n + 1) % count]);
+        let from = rim[n];
+        let to = rim[(n + 1) % count];
         coloured(&mut random, [hub, from, to])
     });
     tiling("fan of 48 around one corner", triangles.collect())
@@ -109,12 +113,15 @@ fn fan() -> Case {
 /// A jittered grid, of which neighbours share edges with opposite directions.
 fn grid(name: &'static str, step: f32, jitter: f32) -> Case {
     let mut random = Random(5);
-    let (columns, rows) = (40_usize, 30_usize);
+    let columns = 40_usize;
+    let rows = 30_usize;
     let vertices: Vec<Vec3> = (0..=rows * (columns + 1) + columns)
         .map(|n| {
-            let (column, row) = (n % (columns + 1), n / (columns + 1));
+            let column = n % (columns + 1);
+            let row = n / (columns + 1);
             let mut moved = |v: usize| 8.5 + v as f32 * step + random.between(-jitter, jitter);
-            let (x, y) = (moved(column), moved(row));
+            let x = moved(column);
+            let y = moved(row);
             at_pixel(x, y, 1.0 + (n % 7) as f32 * 0.25)
         })
         .collect();
@@ -134,7 +141,8 @@ fn grid(name: &'static str, step: f32, jitter: f32) -> Case {
 fn region_borders() -> Case {
     let make = |r: &mut Random| {
         std::array::from_fn(|_| {
-            let (x, y) = (r.integer(0, 5) * 128, r.integer(0, 3) * 128);
+            let x = r.integer(0, 5) * 128;
+            let y = r.integer(0, 3) * 128;
             at_pixel(x as f32, y as f32, 1.0)
         })
     };
@@ -143,9 +151,11 @@ fn region_borders() -> Case {
 
 fn pixel_centres() -> Case {
     let make = |r: &mut Random| {
-        let (x, y) = (r.integer(20, 600), r.integer(20, 440));
+        let x = r.integer(20, 600);
+        let y = r.integer(20, 440);
         std::array::from_fn(|_| {
-            let (dx, dy) = (r.integer(0, 12), r.integer(0, 12));
+            let dx = r.integer(0, 12);
+            let dy = r.integer(0, 12);
             at_pixel((x + dx) as f32 + 0.5, (y + dy) as f32 + 0.5, 1.0)
         })
     };
@@ -173,8 +183,10 @@ fn across_everything() -> Case {
 fn off_screen() -> Case {
     let make = |r: &mut Random| {
         let mut far = |centre: f32| centre + r.between(-1.0, 1.0) * 1e6;
-        let (x, y) = (far(320.0), far(240.0));
-        let (u, v) = (far(320.0), far(240.0));
+        let x = far(320.0);
+        let y = far(240.0);
+        let u = far(320.0);
+        let v = far(240.0);
         [at_pixel(x, y, 1.0), at_pixel(u, v, 1.0), anywhere(r)]
     };
     case("10^6 px beyond the screen", many(10, 100, make))
@@ -185,7 +197,8 @@ fn depth_range() -> Case {
         let place = [r.between(50.0, 590.0), r.between(50.0, 430.0)];
         std::array::from_fn(|_| {
             let power = r.integer(-19, 9);
-            let (dx, dy) = (r.between(-40.0, 40.0), r.between(-40.0, 40.0));
+            let dx = r.between(-40.0, 40.0);
+            let dy = r.between(-40.0, 40.0);
             at_pixel(place[0] + dx, place[1] + dy, f32::from_bits(((power + 127) as u32) << 23))
         })
     };
@@ -219,7 +232,8 @@ fn placed(name: &'static str, seed: u64, size: f32, place: Vec3) -> Case {
 
 fn degenerate() -> Case {
     let make = |r: &mut Random| {
-        let (a, b) = (anywhere(r), anywhere(r));
+        let a = anywhere(r);
+        let b = anywhere(r);
         match r.integer(0, 3) {
             0 => [a, a, b],
             1 => [a, b, (a + b) * 0.5],
@@ -233,7 +247,8 @@ fn degenerate() -> Case {
 /// A wall that runs away from the eye and is seen almost edge-on.
 fn edge_on() -> Case {
     let make = |r: &mut Random| {
-        let (x, y) = (r.between(100.0, 540.0), r.between(10.0, 200.0));
+        let x = r.between(100.0, 540.0);
+        let y = r.between(10.0, 200.0);
         [
             at_pixel(x, y, 1.0 / 512.0),
             at_pixel(x + r.between(0.0, 2.0), y + 20.0, 16.0),

@@ -100,7 +100,8 @@ impl Row {
                 own.add(x, y);
                 drawn.add(x, y);
                 let [first, last] = &mut reach[y as usize];
-                (*first, *last) = ((*first).min(x), (*last).max(x));
+                *first = (*first).min(x);
+                *last = (*last).max(x);
                 number += 1;
                 if number % stride == 0 {
                     self.plane_errors(piece, x, y);
@@ -163,7 +164,8 @@ impl Row {
                 let [first, last] = spans[y as usize];
                 (first..=last).contains(&x)
             };
-            let ([left, right], [top, bottom]) = (snapped.columns(), snapped.rows());
+            let [left, right] = snapped.columns();
+            let [top, bottom] = snapped.rows();
             for y in top..=bottom {
                 let [first, last] = spans[y as usize];
                 let range = if first > last { left..=right } else { left.min(first)..=right.max(last) };
@@ -206,6 +208,7 @@ impl Row {
         };
         let holes = pixels().filter(|&(x, y)| drawn.get(x, y) == 0 && interior(x, y)).count();
         let overlaps = pixels().filter(|&(x, y)| drawn.get(x, y) > 1).count();
-        (self.holes, self.overlaps) = (Some(holes as u64), Some(overlaps as u64));
+        self.holes = Some(holes as u64);
+        self.overlaps = Some(overlaps as u64);
     }
 }

@@ -30,7 +30,8 @@ impl Random {
     /// A direction in the plane, of length 1 within rounding.
     pub fn direction(&mut self) -> [f32; 2] {
         loop {
-            let (x, y) = (self.between(-1.0, 1.0), self.between(-1.0, 1.0));
+            let x = self.between(-1.0, 1.0);
+            let y = self.between(-1.0, 1.0);
             let square = x * x + y * y;
             if (0.01..=1.0).contains(&square) {
                 let inverse = 1.0 / square.sqrt();

@@ -155,7 +155,8 @@ fn fights(out: &mut String, fights: &[Fight]) {
     heading(out, "Z fighting: two surfaces", &["case", "apart", "pixels", "wrong", "wrong per million"]);
     for f in fights {
         let part = short(Row::per_million(f.wrong, f.pixels));
-        let (pixels, wrong) = (grouped(f.pixels), grouped(f.wrong));
+        let pixels = grouped(f.pixels);
+        let wrong = grouped(f.wrong);
         let _ = writeln!(out, "| {} | {} | {pixels} | {wrong} | {part} |", f.name, short(f.apart));
     }
 }

@@ -35,7 +35,8 @@ impl Snapped {
 
     /// The area of (from, to, pixel centre), made positive inside, less 1 where ties are outside.
     fn edge(&self, from: usize, to: usize, turn: i128, [x, y]: [i32; 2]) -> i128 {
-        let (dx, dy) = ((self.x[to] - self.x[from]) * turn, (self.y[to] - self.y[from]) * turn);
+        let dx = (self.x[to] - self.x[from]) * turn;
+        let dy = (self.y[to] - self.y[from]) * turn;
         let centre = |pixel: i32| (2 * i128::from(pixel) + 1) << self.bits >> 1;
         let top_left = dy < 0 || (dy == 0 && dx > 0);
         let to_pixel = [centre(x) - self.x[from], centre(y) - self.y[from]];
@@ -43,7 +44,8 @@ impl Snapped {
     }
 
     fn turn(&self) -> i128 {
-        let (x, y) = (&self.x, &self.y);
+        let x = &self.x;
+        let y = &self.y;
         ((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0])).signum()
     }
 

@@ -57,17 +57,21 @@ impl ExactSphere {
         let at = |x: i32, y: i32| {
             let d = [6 * x - 1917, 1916 - 8 * y, -1920].map(BigInt::from);
             let cross = |i: usize, j: usize| &d[i] * &c[j] - &d[j] * &c[i];
-            let (p, q, s) = (cross(1, 2), cross(2, 0), cross(0, 1));
+            let p = cross(1, 2);
+            let q = cross(2, 0);
+            let s = cross(0, 1);
             let dd: BigInt = d.iter().map(|v| v * v).sum();
             &r * &r * dd - (&p * &p + &q * &q + &s * &s)
         };
         // From six values by differences; twice the squares' coefficients are even.
         let one = at(0, 0);
-        let (e, f) = (at(1, 0) - &one, at(0, 1) - &one);
+        let e = at(1, 0) - &one;
+        let f = at(0, 1) - &one;
         let xx: BigInt = (at(2, 0) - &one - &e * 2) / 2;
         let yy: BigInt = (at(0, 2) - &one - &f * 2) / 2;
         let xy: BigInt = at(1, 1) - &one - &e - &f;
-        let (x, y) = (e - &xx, f - &yy);
+        let x = e - &xx;
+        let y = f - &yy;
         Self {
             coefficients: [xx, xy, yy, x, y, one],
             centre: sphere.centre.to_array().map(f64::from),
@@ -114,9 +118,11 @@ pub fn native(setup: &SphereSetup, x: i32, y: i32) -> Option<u32> {
 fn family(name: &'static str, seed: u64, pixels: f32, count: usize, on_centre: bool) -> SphereCase {
     let mut random = Random(seed);
     let spheres = (0..count).map(|_| {
-        let (mut x, mut y) = (random.between(20.0, 620.0), random.between(20.0, 460.0));
+        let mut x = random.between(20.0, 620.0);
+        let mut y = random.between(20.0, 460.0);
         if on_centre {
-            (x, y) = (x.trunc() + 0.5, y.trunc() + 0.5);
+            x = x.trunc() + 0.5;
+            y = y.trunc() + 0.5;
         }
         let scale = 2.0;
         let centre = at_pixel(x, y, scale);
