@@ -4,8 +4,8 @@ use crate::list::{Counts, DisplayList};
 use crate::pass::{Entry, Pass, Picture, Shading};
 use crate::placed::{Placed, Vertices};
 use pxpl5_geometry::{
-    self as geometry, GouraudSphere, GouraudTriangle, SeenSurface, SetupStats, SphereSetup, TOGETHER, Together,
-    Transform,
+    self as geometry, GouraudSphere, GouraudTriangle, LANES, SetupStats, SphereSetup, Transform, TriangleLanes,
+    VertexSurface,
 };
 use pxpl5_renderer::{
     Clear, Command, CommandKind, CopyRegion, Layout, PhongSphere, PhongTriangle, PhongTriangleEncoder, SelectRegion,
@@ -237,11 +237,11 @@ impl RegionWords {
         let command = |t: GouraudTriangle| Triangle { edges: t.edges, depth: t.z, colour: t.rgb };
         let vertices = place.vertices(list, transform);
         let surfaces = vertices.colours(list, transform, &place.light);
-        let mut batches = Batches { entries, vertices, list, surfaces, together: Together::default() };
+        let mut batches = Batches { entries, vertices, list, surfaces, together: TriangleLanes::default() };
         while let Some(some) = batches.next() {
             match some {
                 Batch::Whole(entries, together) => {
-                    let expressions = transform.gouraud_together(together, &mut stats);
+                    let expressions = transform.gouraud_lanes(together, &mut stats);
                     (0..entries.len()).for_each(|i| encoder.encode(&command(expressions.get(i)), out));
                 }
                 Batch::Piece(entry) => {
@@ -273,11 +273,11 @@ impl RegionWords {
         };
         let vertices = place.vertices(list, transform);
         let surfaces = vertices.normals(list, transform);
-        let mut batches = Batches { entries, vertices, list, surfaces, together: Together::default() };
+        let mut batches = Batches { entries, vertices, list, surfaces, together: TriangleLanes::default() };
         while let Some(some) = batches.next() {
             match some {
                 Batch::Whole(entries, together) => {
-                    let expressions = transform.phong_together(together, &mut stats);
+                    let expressions = transform.phong_lanes(together, &mut stats);
                     for (i, entry) in entries.iter().enumerate() {
                         let colour = list.colours[list.triangles[entry.triangle as usize][0] as usize];
                         encoder.encode(&command(expressions.get(i, colour)), out);
@@ -337,13 +337,13 @@ struct Batches<'a> {
     vertices: &'a Vertices,
     list: &'a DisplayList,
     /// Of all vertices.
-    surfaces: &'a [SeenSurface],
-    together: Together,
+    surfaces: &'a [VertexSurface],
+    together: TriangleLanes,
 }
 
 enum Batch<'a> {
     /// Some that are set up together; those of which nothing is seen are among them.
-    Whole(&'a [Entry], &'a Together),
+    Whole(&'a [Entry], &'a TriangleLanes),
     /// A triangle that was clipped.
     Piece(&'a Entry),
 }
@@ -352,7 +352,7 @@ impl Batches<'_> {
     fn next(&mut self) -> Option<Batch<'_>> {
         let together = &mut self.together;
         together.clear();
-        for entry in self.entries.iter().take(TOGETHER) {
+        for entry in self.entries.iter().take(LANES) {
             let at = self.vertices.corners(self.list, entry.triangle as usize);
             match (entry.piece, self.vertices.seen(&at)) {
                 (None, _) => together.push_nothing(),

@@ -4,7 +4,7 @@ use crate::list::{DisplayList, Frame, Structure, UNMOVED};
 use crate::view::{EyeView, FrameView, ModelEdit, product};
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
-    Culling, Light, SeenSurface, SeenTriangle, SeenVertex, Touched, Transform, ViewTransform, Viewport,
+    Culling, Light, ScreenVertex, Touched, Transform, UnclippedTriangle, VertexSurface, ViewTransform, Viewport,
 };
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -26,9 +26,9 @@ pub struct Placed {
 #[derive(Debug)]
 pub(crate) struct Vertices {
     first: usize,
-    seen: Vec<SeenVertex>,
-    normals: OnceLock<Vec<SeenSurface>>,
-    colours: OnceLock<Vec<SeenSurface>>,
+    seen: Vec<ScreenVertex>,
+    normals: OnceLock<Vec<VertexSurface>>,
+    colours: OnceLock<Vec<VertexSurface>>,
 }
 
 /// All structures of a display list as an eye (0, or 0 and 1) of a view sees them.
@@ -54,7 +54,7 @@ impl Placed {
             let named = list.triangles[self.structure.triangles.clone()].iter().flatten();
             let (first, end) = named.fold((u32::MAX, 0), |(low, high), i| (low.min(*i), high.max(*i + 1)));
             let positions = list.positions.get(first as usize..end as usize).unwrap_or_default();
-            let seen = positions.iter().map(|p| transform.see(*p)).collect();
+            let seen = positions.iter().map(|p| transform.screen_vertex(*p)).collect();
             Vertices { first: first as usize, seen, normals: OnceLock::new(), colours: OnceLock::new() }
         })
     }
@@ -79,25 +79,25 @@ impl Vertices {
 
     /// A triangle's corners on the screen; `None` where it needs clipping.
     #[inline(always)]
-    pub(crate) fn seen(&self, at: &Corners) -> Option<SeenTriangle> {
-        SeenTriangle::of(at.of(&self.seen))
+    pub(crate) fn seen(&self, at: &Corners) -> Option<UnclippedTriangle> {
+        UnclippedTriangle::new(at.of(&self.seen))
     }
 
     /// The normals of all vertices.
-    pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[SeenSurface] {
+    pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[VertexSurface] {
         self.normals.get_or_init(|| {
             let all = self.first..self.first + self.seen.len();
             let positions = &list.positions[all.clone()];
             let normals = &list.normals[all];
-            positions.iter().zip(normals).map(|(p, n)| transform.see_normal(*p, *n)).collect()
+            positions.iter().zip(normals).map(|(p, n)| transform.vertex_normal(*p, *n)).collect()
         })
     }
 
     /// The lit colours of all vertices.
-    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[SeenSurface] {
+    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[VertexSurface] {
         self.colours.get_or_init(|| {
             let all = self.first..self.first + self.seen.len();
-            let colour = |i: usize| transform.see_colour(light, list.positions[i], list.normals[i], list.colours[i]);
+            let colour = |i: usize| transform.vertex_colour(light, list.positions[i], list.normals[i], list.colours[i]);
             all.map(colour).collect()
         })
     }

@@ -20,10 +20,10 @@ use serde::{Deserialize, Serialize};
 pub struct RegionMask(u128);
 
 impl RegionMask {
-    /// Most regions in a picture.
+    /// Most regions that a picture can have: region numbers 0 to 127.
     pub const CAPACITY: u32 = u128::BITS;
 
-    /// No region.
+    /// The set that holds no region.
     pub const EMPTY: Self = Self(0);
 
     /// One region; empty if its number is [`Self::CAPACITY`] or more.
@@ -41,7 +41,7 @@ impl RegionMask {
         self.0 == 0
     }
 
-    /// Number of regions.
+    /// Number of regions in the set.
     #[must_use]
     pub const fn len(self) -> u32 {
         self.0.count_ones()
@@ -53,7 +53,7 @@ impl RegionMask {
         Self::only(region).0 & self.0 != 0
     }
 
-    /// Regions in either set.
+    /// The regions that are in this set or in the other.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
@@ -224,21 +224,28 @@ impl Binner {
     pub(crate) fn row_box(&self, row: i32) -> (i32, i32) {
         let top = row * self.region_height;
         let bottom = (top + self.region_height).min(self.height) - 1;
-        let line = |y: i32| (y << self.line_shift) + self.first_line;
-        (line(top), line(bottom))
+        (self.line_of_row(top), self.line_of_row(bottom))
+    }
+
+    /// The line of the frame that a row of the picture's pixels is.
+    #[inline(always)]
+    const fn line_of_row(&self, row: i32) -> i32 {
+        (row << self.line_shift) + self.first_line
     }
 }
 
 /// Whether a triangle meets a rectangle of pixels, given as first and last pixel and first and last frame line.
 pub(crate) fn meets(outline: &Outline, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) -> bool {
-    let range = |v: &[i32; 3]| {
-        let [low, high] = extent(v);
-        Range::of_centres(low, high)
-    };
-    let x = range(&outline.x);
-    let y = range(&outline.y);
+    let x = pixels_between(&outline.x);
+    let y = pixels_between(&outline.y);
     let apart = x.first > right || x.last < left || y.first > bottom || y.last < top;
     !apart && outline.edges().iter().all(|e| greatest(e, (left, right), (top, bottom)) >= 0)
+}
+
+/// Pixels whose centres lie between the least and the greatest of three corners, given in subpixels.
+fn pixels_between(corners: &[i32; 3]) -> Range {
+    let [low, high] = extent(corners);
+    Range::of_centres(low, high)
 }
 
 /// Largest value of an edge expression over a box of pixels. No overflow: see [`crate::GUARD_PIXELS`].

@@ -37,9 +37,9 @@ pub enum Surface {
 /// Code for one kind of triangle and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
-    /// How it was made.
+    /// How the code was made: by a compiler or by hand.
     pub schedule: Schedule,
-    /// Kind of triangle.
+    /// Kind of triangle that it sets up.
     pub surface: Surface,
     /// Whether the picture is a field instead of a frame.
     pub field: bool,
@@ -161,9 +161,13 @@ impl Words {
     }
 
     fn doubles(&mut self, at: usize, values: &[f64]) {
-        let halves = |value: &f64| [value.to_bits() as Word, (value.to_bits() >> 32) as Word];
-        values.iter().enumerate().for_each(|(n, value)| self.integers(at + 8 * n, &halves(value)));
+        values.iter().enumerate().for_each(|(n, value)| self.integers(at + 8 * n, &halves(*value)));
     }
+}
+
+/// A double as the i860 holds it in memory: the low half first.
+const fn halves(value: f64) -> [Word; 2] {
+    [value.to_bits() as Word, (value.to_bits() >> 32) as Word]
 }
 
 /// A triangle as the display list holds it.

@@ -35,6 +35,12 @@ pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }
 
+/// From a corner, in subpixels, to the centre of a pixel, in pixels.
+#[inline(always)]
+fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
+    f64::from(16 * pixel + 8 - corner) * (1.0 / 16.0)
+}
+
 /// What the planes of one triangle share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
@@ -51,15 +57,14 @@ pub(crate) struct Planes {
 impl Planes {
     /// For the corners of `outline`, most exact at the frame's pixel `reference`.
     #[inline(always)]
-    pub(crate) fn of(outline: &Outline, reference: [i32; 2]) -> Self {
+    pub(crate) fn for_outline(outline: &Outline, reference: [i32; 2]) -> Self {
         let x = &outline.x;
         let y = &outline.y;
-        let pixels = |from: i32, pixel: i32| f64::from(16 * pixel + 8 - from) * (1.0 / 16.0);
         Self {
             x: [f64::from(x[1] - x[0]), f64::from(x[2] - x[0])],
             y: [f64::from(y[1] - y[0]), f64::from(y[2] - y[0])],
             per_pixel: 16.0 / outline.twice_area() as f64,
-            to_reference: [pixels(x[0], reference[0]), pixels(y[0], reference[1])],
+            to_reference: [pixels_to_centre(x[0], reference[0]), pixels_to_centre(y[0], reference[1])],
             reference,
         }
     }

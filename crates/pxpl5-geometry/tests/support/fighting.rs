@@ -22,9 +22,8 @@ fn view() -> ViewTransform {
 
 /// A triangle over most of the screen, its corners at three distances times `scale`.
 fn surface(scale: [f32; 3]) -> Triangle {
-    let corner = |x: f32, y: f32, s: f32| -> Vec3 { at_pixel(x, y, s) };
     Triangle {
-        positions: [corner(10.3, 20.1, scale[0]), corner(630.7, 90.4, scale[1]), corner(200.9, 470.2, scale[2])],
+        positions: [at_pixel(10.3, 20.1, scale[0]), at_pixel(630.7, 90.4, scale[1]), at_pixel(200.9, 470.2, scale[2])],
         normals: [Vec3::Z; 3],
         colours: [[128; 3]; 3],
     }

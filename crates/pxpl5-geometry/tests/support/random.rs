@@ -17,6 +17,11 @@ impl Random {
         low + (high - low) * ((self.bits() >> 40) as f32 / 16_777_216.0)
     }
 
+    /// From `-spread` to `spread`.
+    pub fn within(&mut self, spread: f32) -> f32 {
+        self.between(-spread, spread)
+    }
+
     /// An integer from `low` to `high`, both included.
     pub fn integer(&mut self, low: i32, high: i32) -> i32 {
         low + (self.bits() % (high - low + 1) as u64) as i32

@@ -1,4 +1,4 @@
-//! docs/numerics.md as text.
+//! The text of docs/numerics.md, made from measurements of all cases.
 
 use super::cases::{self, Case};
 use super::fighting::{self, Fight};
@@ -118,7 +118,7 @@ impl Measured {
     }
 }
 
-/// The whole file.
+/// The whole of docs/numerics.md.
 pub fn text(measured: &Measured) -> String {
     let rows = &measured.triangles;
     let mut out = HEAD.to_string();
