@@ -25,9 +25,11 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 /// Where the code begins; below are a processor's vectors.
 const CODE: u32 = 0x1000;
-/// Parameter block, table of bins and stack frame of a kernel.
+/// A kernel's parameter block.
 const PARAMETERS: u32 = 0x1_0000;
+/// Where a kernel finds the end of each bin, and leaves it.
 const BIN_TABLE: u32 = 0x1_0200;
+/// A kernel's stack frame.
 const STACK: u32 = 0x1_0400;
 /// The display list lies behind the first megabyte, which is the program's.
 const DISPLAY_LIST: u32 = 1 << 20;
@@ -51,10 +53,10 @@ pub struct Transforming<'a> {
 
 /// What a kernel left in the memory of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Made {
-    /// Time that it took.
+pub struct KernelOutput {
+    /// Simulated time that the kernel took.
     pub span: Span,
-    /// Addresses of the commands.
+    /// Addresses of the commands, one after the other.
     pub commands: Range<u32>,
     /// Addresses of the bins' entries, which are addresses of commands; none where there are no bins.
     pub bins: Vec<Range<u32>>,
@@ -62,14 +64,14 @@ pub struct Made {
     pub clipped: Range<u32>,
 }
 
-impl Made {
-    /// Entries of all bins.
+impl KernelOutput {
+    /// Entries of all bins together.
     fn entries(&self) -> u64 {
         self.bins.iter().map(|bin| u64::from(bin.end - bin.start) / 4).sum()
     }
 
-    /// Triangles left to the clipper.
-    fn left(&self) -> u64 {
+    /// Number of triangles left to the clipper.
+    fn left_to_clipper(&self) -> u64 {
         u64::from(self.clipped.end - self.clipped.start) / 4
     }
 }
@@ -84,7 +86,7 @@ impl Work for Transforming<'_> {
         let mut span = self.begin(timing);
         for (context, pass) in (self.context..).zip(self.passes) {
             span += match pass.run_code(processor, context % 2)? {
-                Some(made) => made.span + pass.rest(timing, &made),
+                Some(output) => output.span + pass.rest(timing, &output),
                 None => pass.by_table(timing),
             };
         }
@@ -129,10 +131,10 @@ impl Pass {
     }
 
     /// The time of what the kernel does not do, by the table.
-    fn rest(&self, timing: &GpTiming, made: &Made) -> Span {
-        let clipped = timing.triangle_ns * made.left();
+    fn rest(&self, timing: &GpTiming, output: &KernelOutput) -> Span {
+        let clipped = timing.triangle_ns * output.left_to_clipper();
         let spheres = timing.sphere_ns * u64::from(self.transformed().spheres);
-        Span::from_ns(clipped + spheres + timing.bin_entry_ns * self.entries_without_code(made))
+        Span::from_ns(clipped + spheres + timing.bin_entry_ns * self.entries_without_code(output))
     }
 
     /// Runs the kernel for all triangles on a board that holds the display list, in one of its two bin contexts; `None`
@@ -141,7 +143,7 @@ impl Pass {
     /// # Errors
     ///
     /// [`ProcessorFault`] when the code does not come to its end, or its data do not fit.
-    pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<Made>, ProcessorFault> {
+    pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<KernelOutput>, ProcessorFault> {
         let Some(kernel) = self.kernel(processor.version()) else { return Ok(None) };
         let program = program(kernel);
         let heads = self.heads();
@@ -164,7 +166,7 @@ impl Pass {
         }
         let tails = processor.read(BIN_TABLE, places.bins.len())?;
         let bins = places.bins.iter().zip(tails).map(|(head, tail)| *head..tail).collect();
-        Ok(Some(Made { span, commands: places.commands..command, bins, clipped: places.clip_list..clipped }))
+        Ok(Some(KernelOutput { span, commands: places.commands..command, bins, clipped: places.clip_list..clipped }))
     }
 
     fn kernel(&self, version: CodeVersion) -> Option<Kernel> {
@@ -215,18 +217,18 @@ impl Pass {
         let bytes = commands + 4 * (entries.iter().sum::<u32>() + self.transformed().triangles);
         let begin = processor.place_output(context, list, bytes)?;
         let mut clip_list = begin + commands;
-        let bin = |entries: &u32| {
+        let mut bins = Vec::with_capacity(entries.len());
+        for entries in entries {
+            bins.push(clip_list);
             clip_list += 4 * entries;
-            clip_list - 4 * entries
-        };
-        let bins = entries.iter().map(bin).collect();
+        }
         Ok(Places { commands: begin, bins, clip_list })
     }
 
     /// Entries of bins that the kernel did not make.
-    fn entries_without_code(&self, made: &Made) -> u64 {
+    fn entries_without_code(&self, output: &KernelOutput) -> u64 {
         if self.is_binned() {
-            return self.entries().saturating_sub(made.entries());
+            return self.entries().saturating_sub(output.entries());
         }
         let regions = self.picture().viewport.grid().regions() as u16;
         (0..regions).map(|region| u64::from(self.counts(RegionId(region)).spheres)).sum()
@@ -237,9 +239,12 @@ impl Pass {
 fn program(kernel: Kernel) -> Arc<Program> {
     static PROGRAMS: LazyLock<Mutex<HashMap<Kernel, Arc<Program>>>> = LazyLock::new(Mutex::default);
     let mut programs = PROGRAMS.lock().unwrap_or_else(PoisonError::into_inner);
-    let assembled = || match i860::assemble("kernel", CODE, &kernel.source()) {
-        Ok(program) => Arc::new(program),
+    Arc::clone(programs.entry(kernel).or_insert_with(|| Arc::new(assembled(kernel))))
+}
+
+fn assembled(kernel: Kernel) -> Program {
+    match i860::assemble("kernel", CODE, &kernel.source()) {
+        Ok(program) => program,
         Err(errors) => unreachable!("every kernel is assembled by the tests: {errors}"),
-    };
-    Arc::clone(programs.entry(kernel).or_insert_with(assembled))
+    }
 }

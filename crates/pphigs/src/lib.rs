@@ -26,8 +26,8 @@ mod pass;
 mod placed;
 mod view;
 
-pub use code::{Made, Transforming};
-pub use commands::{Around, copy_message, gouraud_sphere, region_messages};
+pub use code::{KernelOutput, Transforming};
+pub use commands::{RegionEnvelope, copy_message, gouraud_sphere, region_messages};
 pub use list::{Counts, DisplayList, Frame, Share, Structure};
 pub use pass::{Binning, Pass, Picture, Shading};
 pub use placed::{Placed, RecentViews, place_all};

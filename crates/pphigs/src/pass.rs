@@ -31,11 +31,11 @@ pub enum Binning {
 /// What to make of a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture {
-    /// Lines and regions.
+    /// Lines of the frame that it holds, and how it is cut into regions.
     pub viewport: Viewport,
-    /// Where colours are computed.
+    /// Whether colours are computed at corners or at pixels.
     pub shading: Shading,
-    /// Who gets the commands.
+    /// Which regions get a primitive's commands.
     pub binning: Binning,
     /// Division of pixel memory that the commands are encoded for.
     pub layout: Layout,
@@ -73,7 +73,7 @@ pub struct Pass {
     bins: Vec<Bin>,
     screen_counts: Counts,
     stats: SetupStats,
-    /// `None` without pixels.
+    /// Makes the words of triangles; `None` where nobody wants pixels.
     encoder: Option<Encoder>,
 }
 
@@ -90,7 +90,7 @@ impl Pass {
             bins,
             screen_counts: Counts::default(),
             stats: SetupStats::default(),
-            encoder: picture.pixels.then(|| Encoder::of(&picture)).flatten(),
+            encoder: picture.pixels.then(|| Encoder::for_picture(&picture)).flatten(),
         };
         pass.binitize();
         pass
@@ -124,15 +124,17 @@ impl Pass {
             }
             let triangle = number as u32;
             let mut pieces = 0;
-            let put = |mask| {
-                self.put_triangle(mask, Entry { triangle, piece: Some(pieces) });
-                pieces += 1;
-            };
             match touch {
-                Touch::NeedsClipping => transform.bin(&share.list.corners(number), stats, put),
+                Touch::NeedsClipping => {
+                    transform.bin(&share.list.corners(number), stats, |mask| {
+                        self.put_piece(mask, triangle, &mut pieces);
+                    });
+                }
                 whole => {
                     stats.triangles += 1;
-                    whole.count(stats).into_iter().for_each(put);
+                    if let Some(mask) = whole.count(stats) {
+                        self.put_piece(mask, triangle, &mut pieces);
+                    }
                 }
             }
             if pieces == 0 && self.picture.binning == Binning::All {
@@ -153,6 +155,12 @@ impl Pass {
                 all.fold(RegionMask::EMPTY, RegionMask::union)
             }
         }
+    }
+
+    /// Puts the next piece of a triangle into bins, and counts it.
+    fn put_piece(&mut self, mask: RegionMask, triangle: u32, pieces: &mut u8) {
+        self.put_triangle(mask, Entry { triangle, piece: Some(*pieces) });
+        *pieces += 1;
     }
 
     fn put_triangle(&mut self, mask: RegionMask, entry: Entry) {
@@ -183,7 +191,7 @@ impl Pass {
         self.screen_counts.spheres += 1;
     }
 
-    /// Entries of a region's bin.
+    /// Numbers of entries in a region's bin.
     #[must_use]
     pub fn counts(&self, region: RegionId) -> Counts {
         self.counts[usize::from(region.0)]
@@ -195,13 +203,13 @@ impl Pass {
         self.screen_counts
     }
 
-    /// Entries of all bins.
+    /// Entries of all bins together.
     #[must_use]
     pub fn entries(&self) -> u64 {
         self.counts.iter().map(|counts| u64::from(counts.total())).sum()
     }
 
-    /// Primitives transformed.
+    /// Numbers of primitives transformed, seen or not.
     #[must_use]
     pub fn transformed(&self) -> Counts {
         self.share.counts()
@@ -213,13 +221,13 @@ impl Pass {
         self.stats
     }
 
-    /// What is made of the view.
+    /// The picture that is made of the view.
     #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.picture
     }
 
-    /// Background colour.
+    /// Red, green and blue where nothing is drawn, 0 to 255 each.
     #[must_use]
     pub fn background(&self) -> [u8; 3] {
         self.share.list.background

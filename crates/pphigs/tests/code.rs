@@ -2,8 +2,8 @@
 
 use glam::{Mat4, Vec3};
 use pphigs::{
-    Around, Binning, DisplayList, EyeView, Frame, FrameView, Made, ModelEdit, Pass, Picture, Shading, Share, Structure,
-    Transforming, region_messages,
+    Binning, DisplayList, EyeView, Frame, FrameView, KernelOutput, ModelEdit, Pass, Picture, RegionEnvelope, Shading,
+    Share, Structure, Transforming, region_messages,
 };
 use pxpl5_geometry::{Sphere, Viewport};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
@@ -46,18 +46,23 @@ fn list(triangles: u32) -> Arc<DisplayList> {
     }
     let middle = triangles as usize / 3;
     let end = triangles as usize;
-    let structure = |triangles, frame| Structure { triangles, spheres: 0..0, frame };
-    list.structures = vec![structure(0..middle, Frame::World), structure(middle..end, Frame::Head)];
+    list.structures = vec![
+        Structure { triangles: 0..middle, spheres: 0..0, frame: Frame::World },
+        Structure { triangles: middle..end, spheres: 0..0, frame: Frame::Head },
+    ];
     Arc::new(list)
 }
 
-fn view() -> FrameView {
-    let projection = Mat4::perspective_rh(0.9, 4.0 / 3.0, 0.5, 40.0);
-    let eye = |x: f32| EyeView {
+/// An eye beside the middle of the head.
+fn eye(x: f32) -> EyeView {
+    EyeView {
         world_to_eye: Mat4::from_translation(Vec3::new(x, 0.1, 0.0)) * Mat4::from_rotation_y(0.1),
         head_to_eye: Mat4::from_translation(Vec3::new(x, 0.0, 0.0)),
-        projection,
-    };
+        projection: Mat4::perspective_rh(0.9, 4.0 / 3.0, 0.5, 40.0),
+    }
+}
+
+fn view() -> FrameView {
     let model = Mat4::from_translation(Vec3::new(0.2, 0.0, 0.0)) * Mat4::from_rotation_z(0.5);
     FrameView { number: 0, eyes: vec![eye(-0.03), eye(0.03)], edits: vec![ModelEdit { structure: 1, model }] }
 }
@@ -75,15 +80,15 @@ fn board(version: CodeVersion, share: &Share) -> Processor {
 /// The words of a region's primitives as the native firmware makes them.
 fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
     let mut words = Vec::new();
-    for list in region_messages(pass, region, 0, Around::default()) {
+    for list in region_messages(pass, region, 0, RegionEnvelope::default()) {
         list.content.expect("pixels are wanted").append_words(&mut words);
     }
     words
 }
 
 /// The same as the code left them in memory.
-fn of_code(processor: &Processor, made: &Made, region: usize, command_words: usize) -> Vec<Word> {
-    let bin = &made.bins[region];
+fn of_code(processor: &Processor, output: &KernelOutput, region: usize, command_words: usize) -> Vec<Word> {
+    let bin = &output.bins[region];
     let entries = processor.read(bin.start, (bin.end - bin.start) as usize / 4).expect("in memory");
     entries.iter().flat_map(|at| processor.read(*at, command_words).expect("in memory")).collect()
 }
