@@ -10,6 +10,7 @@
 //! takes the table's time: triangles that are left to the clipper, spheres, their entries in bins, and the beginning of
 //! a pass.
 
+use crate::cost::TransformCost;
 use crate::list::Share;
 use crate::pass::{Binning, Pass, Shading};
 use i860::Program;
@@ -78,16 +79,16 @@ impl KernelOutput {
 
 impl Work for Transforming<'_> {
     fn by_table(&self, timing: &GpTiming) -> Span {
-        let of_passes = self.passes.iter().map(|pass| pass.by_table(timing));
-        self.begin(timing) + of_passes.fold(Span::ZERO, |all, span| all + span)
+        let of_passes = self.passes.iter().map(|pass| pass.cost().span(timing));
+        of_passes.fold(self.begin(timing), |all, span| all + span)
     }
 
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let mut span = self.begin(timing);
         for (context, pass) in (self.context..).zip(self.passes) {
             span += match pass.run_code(processor, context % 2)? {
-                Some(output) => output.span + pass.rest(timing, &output),
-                None => pass.by_table(timing),
+                Some(output) => output.span + pass.cost_without_code(&output).span(timing),
+                None => pass.cost().span(timing),
             };
         }
         Ok(span)
@@ -96,7 +97,7 @@ impl Work for Transforming<'_> {
 
 impl Transforming<'_> {
     const fn begin(&self, timing: &GpTiming) -> Span {
-        Span::from_ns(if self.begins { timing.pass_ns } else { 0 })
+        if self.begins { TransformCost::PASS.span(timing) } else { Span::ZERO }
     }
 }
 
@@ -123,18 +124,19 @@ struct Places {
 }
 
 impl Pass {
-    fn by_table(&self, timing: &GpTiming) -> Span {
-        let counts = self.transformed();
-        let triangles = timing.triangle_ns * u64::from(counts.triangles);
-        let spheres = timing.sphere_ns * u64::from(counts.spheres);
-        Span::from_ns(triangles + spheres + timing.bin_entry_ns * self.entries())
+    /// What it takes by the table, but for the beginning of a pass over the display list.
+    #[must_use]
+    pub fn cost(&self) -> TransformCost {
+        TransformCost { entries: self.entries(), ..TransformCost::primitives(self.transformed()) }
     }
 
-    /// The time of what the kernel does not do, by the table.
-    fn rest(&self, timing: &GpTiming, output: &KernelOutput) -> Span {
-        let clipped = timing.triangle_ns * output.left_to_clipper();
-        let spheres = timing.sphere_ns * u64::from(self.transformed().spheres);
-        Span::from_ns(clipped + spheres + timing.bin_entry_ns * self.entries_without_code(output))
+    /// What the kernel does not do, so that it takes the table's time.
+    fn cost_without_code(&self, output: &KernelOutput) -> TransformCost {
+        TransformCost {
+            triangles: output.left_to_clipper(),
+            entries: self.entries_without_code(output),
+            ..TransformCost::primitives(self.transformed())
+        }
     }
 
     /// Runs the kernel for all triangles on a board that holds the display list, in one of its two bin contexts; `None`
