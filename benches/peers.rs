@@ -9,7 +9,7 @@ use euc::buffer::Buffer2d;
 use euc::rasterizer::{BackfaceCullingDisabled, Triangles};
 use euc::{Interpolate, Pipeline as _, Target as _};
 use glam::{Mat4, Vec3, Vec4};
-use pphigs::{Around, Binning, DisplayList, EyeView, Frame, FrameView, Picture, Shading, Share, Structure};
+use pphigs::{Binning, DisplayList, EyeView, Frame, FrameView, Picture, RegionEnvelope, Shading, Share, Structure};
 use pxpl5::scene::{self, Hmd, HmdConfig, Scene};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{BitSerial, Lanes, Layout, PixelArray};
@@ -147,7 +147,8 @@ impl<A: PixelArray> Ours<A> {
         self.pixels.clear();
         let grid = self.picture.viewport.grid();
         for region in (0..grid.regions() as u16).map(RegionId) {
-            for list in pphigs::region_messages(&pass, region, 0, Around { begin: true, ..Around::default() }) {
+            let envelope = RegionEnvelope { begin: true, ..RegionEnvelope::default() };
+            for list in pphigs::region_messages(&pass, region, 0, envelope) {
                 self.words.clear();
                 list.content.expect("pixels are wanted").append_words(&mut self.words);
                 self.array.execute(&self.words).expect("legal commands");

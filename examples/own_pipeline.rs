@@ -2,7 +2,7 @@
 //!
 //! `docs/guide/own-pipeline.md` explains it. It ends in assertions; `cargo run --release --example own_pipeline`.
 
-use pphigs::{Around, Binning, DisplayList, FrameView, Picture, Shading, Share, region_messages};
+use pphigs::{Binning, DisplayList, FrameView, Picture, RegionEnvelope, Shading, Share, region_messages};
 use pxpl5::pipelines::{PictureTimes, Setup};
 use pxpl5::{ConfigError, Experiment, Eye, LateRegion, Machine, MachineConfig, Pipeline, Pixels, Ports, scene};
 use pxpl5_geometry::Viewport;
@@ -47,9 +47,9 @@ async fn firmware(
         for region in (0..grid.regions() as u16).map(RegionId) {
             let target = CopyTarget { frame_buffer, buffer, lines: Lines::Frame, grid, region, picture: frame };
             let copy = CopyOrder { target, context: 0, through_backing: true, acknowledge: Some(gp.node()) };
-            let around = Around { begin: true, shade: true, copy: Some(copy) };
+            let envelope = RegionEnvelope { begin: true, shade: true, copy: Some(copy) };
             let renderer = ports.renderers[usize::from(region.0) % ports.renderers.len()];
-            for message in region_messages(&pass, region, 0, around) {
+            for message in region_messages(&pass, region, 0, envelope) {
                 gp.clump_buffer_free().await;
                 gp.send(renderer, message.words(), Body::Commands(message)).await;
             }

@@ -2,8 +2,8 @@
 
 use crate::config::{Config, Schedule, Viewpoint, Wanted};
 use crate::protocol::Order;
-use pphigs::{Counts, FrameView};
-use pxpl5_gp::{Account, Fault, Gp, GpTiming, Level, Program, Stage};
+use pphigs::{Counts, FrameView, TransformCost};
+use pxpl5_gp::{Account, Fault, Gp, Level, Program, Stage};
 use pxpl5_sim::{Span, Time};
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -96,7 +96,7 @@ impl<V: FnMut(Wanted) -> FrameView> Master<V> {
     /// When slaves must begin to transform for a field: half again as early as that takes, since they draw meanwhile.
     fn preparation_at(&self, field: u64, viewpoint: Viewpoint, ahead: Span) -> Time {
         let views = if viewpoint == Viewpoint::Field { 1 } else { 2 };
-        let span = transform_span(&self.gp.timing(), self.counts) * views;
+        let span = TransformCost::pass_over(self.counts).span(&self.gp.timing()) * views;
         before(self.config.deadline(field, 0), ahead + span + span / 2)
     }
 
@@ -115,7 +115,7 @@ impl<V: FnMut(Wanted) -> FrameView> Master<V> {
             Viewpoint::Field => vec![self.view(number(0), begin)],
             _ => vec![self.view(number(0), begin), self.view(number(1), end)],
         };
-        self.gp.spend(Span::from_ns(self.gp.timing().pass_ns)).await;
+        self.gp.spend(TransformCost::PASS.span(&self.gp.timing())).await;
         let (words, body) = Order::Field { field, views }.message();
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
@@ -174,13 +174,6 @@ impl Flight {
         let drawing = self.last_order_of[slave].replace(now).map_or(Span::ZERO, |at| now.since(at));
         drawing + oldest.map_or(Span::ZERO, |at| now.since(at)) / 2
     }
-}
-
-/// CPU time of one TRANSFORM of everything.
-pub(crate) fn transform_span(timing: &GpTiming, counts: Counts) -> Span {
-    let Counts { triangles, spheres } = counts;
-    let primitives = timing.triangle_ns * u64::from(triangles) + timing.sphere_ns * u64::from(spheres);
-    Span::from_ns(timing.pass_ns + primitives)
 }
 
 fn before(time: Time, span: Span) -> Time {

@@ -2,10 +2,10 @@
 
 use crate::config::{Config, Schedule, Viewpoint};
 use crate::drawing::{Drawing, Ends};
-use crate::master::{PROGRAM_BYTES, transform_span};
+use crate::master::PROGRAM_BYTES;
 use crate::pieces::{messages, window};
 use crate::protocol::Order;
-use pphigs::{Counts, DisplayList, FrameView, Share};
+use pphigs::{Counts, DisplayList, FrameView, Share, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Account, Fault, Gp, Level, Program, Stage, Ticket};
 use pxpl5_sim::{Span, Time};
@@ -121,7 +121,7 @@ impl Slave {
         loop {
             let newest = || self.state.borrow_mut().ordered.drain(..).next_back();
             let (field, views) = self.gp.until("the order of a field", newest).await;
-            self.gp.spend(transform_span(&self.gp.timing(), self.counts) * views.len() as u64).await;
+            self.gp.spend(TransformCost::pass_over(self.counts).span(&self.gp.timing()) * views.len() as u64).await;
             self.gp.end(Stage::Transform, field, None);
             let ready = self.transforms.of(field, || self.transform(field, views));
             let state = &mut *self.state.borrow_mut();
@@ -147,7 +147,7 @@ impl Slave {
         let stands_for_field = self.config.is_middle(strip);
         let drawing = match &view {
             Some(view) => {
-                self.gp.spend(transform_span(&self.gp.timing(), self.counts)).await;
+                self.gp.spend(TransformCost::pass_over(self.counts).span(&self.gp.timing())).await;
                 if stands_for_field {
                     self.gp.end(Stage::Transform, field, None);
                 }
@@ -191,7 +191,7 @@ impl Slave {
     async fn blocks(&self, update: u64, step: u64, view: &FrameView) {
         let Schedule::Roam { batch, order, .. } = &self.config.schedule else { return };
         let viewport = self.config.picture(update).0;
-        self.gp.spend(transform_span(&self.gp.timing(), self.counts)).await;
+        self.gp.spend(TransformCost::pass_over(self.counts).span(&self.gp.timing())).await;
         self.gp.end(Stage::Transform, update, None);
         let drawing = Arc::new(Drawing::of(&self.list, view, viewport));
         let regions: Vec<_> = (0..u64::from(*batch)).map(|i| order.at(step + i)).collect();
@@ -209,8 +209,8 @@ impl Slave {
         let entries: u64 = counts.iter().map(|c| u64::from(c.total())).sum();
         let interpolated = if self.dual().is_some() { u64::from(any.total()) } else { 0 };
         let timing = self.gp.timing();
-        let ns = timing.bin_entry_ns * entries + self.config.timing.interpolate_ns * interpolated;
-        self.gp.spend(Span::from_ns(ns)).await;
+        let binning = TransformCost { entries, ..TransformCost::default() }.span(&timing);
+        self.gp.spend(binning + Span::from_ns(self.config.timing.interpolate_ns * interpolated)).await;
         self.gp.clump_buffer_free().await;
         let pieces = regions.iter().zip(&windows).zip(&counts);
         let batch: Vec<_> = pieces

@@ -10,6 +10,7 @@
 //! takes the table's time: triangles that are left to the clipper, spheres, their entries in bins, and the beginning of
 //! a pass.
 
+use crate::cost::TransformCost;
 use crate::list::Share;
 use crate::pass::{Binning, Pass, Shading};
 use i860::Program;
@@ -25,9 +26,11 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 /// Where the code begins; below are a processor's vectors.
 const CODE: u32 = 0x1000;
-/// Parameter block, table of bins and stack frame of a kernel.
+/// A kernel's parameter block.
 const PARAMETERS: u32 = 0x1_0000;
+/// Where a kernel finds the end of each bin, and leaves it.
 const BIN_TABLE: u32 = 0x1_0200;
+/// A kernel's stack frame.
 const STACK: u32 = 0x1_0400;
 /// The display list lies behind the first megabyte, which is the program's.
 const DISPLAY_LIST: u32 = 1 << 20;
@@ -51,10 +54,10 @@ pub struct Transforming<'a> {
 
 /// What a kernel left in the memory of a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Made {
-    /// Time that it took.
+pub struct KernelOutput {
+    /// Simulated time that the kernel took.
     pub span: Span,
-    /// Addresses of the commands.
+    /// Addresses of the commands, one after the other.
     pub commands: Range<u32>,
     /// Addresses of the bins' entries, which are addresses of commands; none where there are no bins.
     pub bins: Vec<Range<u32>>,
@@ -62,30 +65,30 @@ pub struct Made {
     pub clipped: Range<u32>,
 }
 
-impl Made {
-    /// Entries of all bins.
+impl KernelOutput {
+    /// Entries of all bins together.
     fn entries(&self) -> u64 {
         self.bins.iter().map(|bin| u64::from(bin.end - bin.start) / 4).sum()
     }
 
-    /// Triangles left to the clipper.
-    fn left(&self) -> u64 {
+    /// Number of triangles left to the clipper.
+    fn left_to_clipper(&self) -> u64 {
         u64::from(self.clipped.end - self.clipped.start) / 4
     }
 }
 
 impl Work for Transforming<'_> {
     fn by_table(&self, timing: &GpTiming) -> Span {
-        let of_passes = self.passes.iter().map(|pass| pass.by_table(timing));
-        self.begin(timing) + of_passes.fold(Span::ZERO, |all, span| all + span)
+        let of_passes = self.passes.iter().map(|pass| pass.cost().span(timing));
+        of_passes.fold(self.begin(timing), |all, span| all + span)
     }
 
     fn by_code(&self, timing: &GpTiming, processor: &mut Processor) -> Result<Span, ProcessorFault> {
         let mut span = self.begin(timing);
         for (context, pass) in (self.context..).zip(self.passes) {
             span += match pass.run_code(processor, context % 2)? {
-                Some(made) => made.span + pass.rest(timing, &made),
-                None => pass.by_table(timing),
+                Some(output) => output.span + pass.cost_without_code(&output).span(timing),
+                None => pass.cost().span(timing),
             };
         }
         Ok(span)
@@ -94,7 +97,7 @@ impl Work for Transforming<'_> {
 
 impl Transforming<'_> {
     const fn begin(&self, timing: &GpTiming) -> Span {
-        Span::from_ns(if self.begins { timing.pass_ns } else { 0 })
+        if self.begins { TransformCost::PASS.span(timing) } else { Span::ZERO }
     }
 }
 
@@ -121,18 +124,19 @@ struct Places {
 }
 
 impl Pass {
-    fn by_table(&self, timing: &GpTiming) -> Span {
-        let counts = self.transformed();
-        let triangles = timing.triangle_ns * u64::from(counts.triangles);
-        let spheres = timing.sphere_ns * u64::from(counts.spheres);
-        Span::from_ns(triangles + spheres + timing.bin_entry_ns * self.entries())
+    /// What it takes by the table, but for the beginning of a pass over the display list.
+    #[must_use]
+    pub fn cost(&self) -> TransformCost {
+        TransformCost { entries: self.entries(), ..TransformCost::primitives(self.transformed()) }
     }
 
-    /// The time of what the kernel does not do, by the table.
-    fn rest(&self, timing: &GpTiming, made: &Made) -> Span {
-        let clipped = timing.triangle_ns * made.left();
-        let spheres = timing.sphere_ns * u64::from(self.transformed().spheres);
-        Span::from_ns(clipped + spheres + timing.bin_entry_ns * self.entries_without_code(made))
+    /// What the kernel does not do, so that it takes the table's time.
+    fn cost_without_code(&self, output: &KernelOutput) -> TransformCost {
+        TransformCost {
+            triangles: output.left_to_clipper(),
+            entries: self.entries_without_code(output),
+            ..TransformCost::primitives(self.transformed())
+        }
     }
 
     /// Runs the kernel for all triangles on a board that holds the display list, in one of its two bin contexts; `None`
@@ -141,26 +145,30 @@ impl Pass {
     /// # Errors
     ///
     /// [`ProcessorFault`] when the code does not come to its end, or its data do not fit.
-    pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<Made>, ProcessorFault> {
+    pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<KernelOutput>, ProcessorFault> {
         let Some(kernel) = self.kernel(processor.version()) else { return Ok(None) };
-        let (program, heads) = (program(kernel), self.heads());
+        let program = program(kernel);
+        let heads = self.heads();
         let places = self.places(processor, kernel, context)?;
         processor.write(BIN_TABLE, &places.bins)?;
         let mut span = Span::ZERO;
-        let (mut command, mut clipped) = (places.commands, places.clip_list);
+        let mut command = places.commands;
+        let mut clipped = places.clip_list;
         for (transform, light, held) in self.calls() {
             let parameters: [Word; PARAMETER_WORDS] = kernel.parameters(transform, light, &heads);
             processor.write(PARAMETERS, &parameters)?;
-            let (first, count) = (DISPLAY_LIST + held.start as u32 * TRIANGLE_BYTES, held.len() as u32);
+            let first = DISPLAY_LIST + held.start as u32 * TRIANGLE_BYTES;
+            let count = held.len() as u32;
             let data = [(16, first), (17, count), (18, command), (21, clipped)];
             let fixed = [(2, STACK), (19, BIN_TABLE), (20, PARAMETERS)];
             let budget = BUDGET + BUDGET_OF_TRIANGLE * u64::from(count);
             span += processor.call(&program, "start", &[data.as_slice(), &fixed].concat(), budget)?;
-            (command, clipped) = (processor.register(18), processor.register(21));
+            command = processor.register(18);
+            clipped = processor.register(21);
         }
         let tails = processor.read(BIN_TABLE, places.bins.len())?;
         let bins = places.bins.iter().zip(tails).map(|(head, tail)| *head..tail).collect();
-        Ok(Some(Made { span, commands: places.commands..command, bins, clipped: places.clip_list..clipped }))
+        Ok(Some(KernelOutput { span, commands: places.commands..command, bins, clipped: places.clip_list..clipped }))
     }
 
     fn kernel(&self, version: CodeVersion) -> Option<Kernel> {
@@ -211,18 +219,18 @@ impl Pass {
         let bytes = commands + 4 * (entries.iter().sum::<u32>() + self.transformed().triangles);
         let begin = processor.place_output(context, list, bytes)?;
         let mut clip_list = begin + commands;
-        let bin = |entries: &u32| {
+        let mut bins = Vec::with_capacity(entries.len());
+        for entries in entries {
+            bins.push(clip_list);
             clip_list += 4 * entries;
-            clip_list - 4 * entries
-        };
-        let bins = entries.iter().map(bin).collect();
+        }
         Ok(Places { commands: begin, bins, clip_list })
     }
 
     /// Entries of bins that the kernel did not make.
-    fn entries_without_code(&self, made: &Made) -> u64 {
+    fn entries_without_code(&self, output: &KernelOutput) -> u64 {
         if self.is_binned() {
-            return self.entries().saturating_sub(made.entries());
+            return self.entries().saturating_sub(output.entries());
         }
         let regions = self.picture().viewport.grid().regions() as u16;
         (0..regions).map(|region| u64::from(self.counts(RegionId(region)).spheres)).sum()
@@ -233,9 +241,12 @@ impl Pass {
 fn program(kernel: Kernel) -> Arc<Program> {
     static PROGRAMS: LazyLock<Mutex<HashMap<Kernel, Arc<Program>>>> = LazyLock::new(Mutex::default);
     let mut programs = PROGRAMS.lock().unwrap_or_else(PoisonError::into_inner);
-    let assembled = || match i860::assemble("kernel", CODE, &kernel.source()) {
-        Ok(program) => Arc::new(program),
+    Arc::clone(programs.entry(kernel).or_insert_with(|| Arc::new(assembled(kernel))))
+}
+
+fn assembled(kernel: Kernel) -> Program {
+    match i860::assemble("kernel", CODE, &kernel.source()) {
+        Ok(program) => program,
         Err(errors) => unreachable!("every kernel is assembled by the tests: {errors}"),
-    };
-    Arc::clone(programs.entry(kernel).or_insert_with(assembled))
+    }
 }

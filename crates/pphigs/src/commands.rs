@@ -4,8 +4,8 @@ use crate::list::{Counts, DisplayList};
 use crate::pass::{Entry, Pass, Picture, Shading};
 use crate::placed::{Placed, Vertices};
 use pxpl5_geometry::{
-    self as geometry, GouraudSphere, GouraudTriangle, SeenSurface, SetupStats, SphereSetup, TOGETHER, Together,
-    Transform,
+    self as geometry, GouraudSphere, GouraudTriangle, LANES, SetupStats, SphereSetup, Transform, TriangleLanes,
+    VertexSurface,
 };
 use pxpl5_renderer::{
     Clear, Command, CommandKind, CopyRegion, Layout, PhongSphere, PhongTriangle, PhongTriangleEncoder, SelectRegion,
@@ -15,26 +15,26 @@ use pxpl5_wire::{CommandList, CommandRun, CommandWords, CopyOrder, Linear, MAX_M
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What is sent around a bin's primitives.
+/// The commands that enclose a region's primitives: what is sent to its renderer before and after them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Around {
+pub struct RegionEnvelope {
     /// Select the region's context and clear it first.
     pub begin: bool,
     /// Shade all pixels afterwards, where the picture is shaded at the pixels.
     pub shade: bool,
-    /// Copy the region afterwards.
+    /// Copy the region to the frame buffer at last.
     pub copy: Option<CopyOrder>,
 }
 
-/// The messages that hold a region's bin and what is sent around it, as few as their length allows.
+/// The messages that hold a region's bin in its envelope, as few as their length allows.
 #[must_use]
-pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, around: Around) -> Vec<CommandList> {
+pub fn region_messages(pass: &Arc<Pass>, region: RegionId, context: u8, envelope: RegionEnvelope) -> Vec<CommandList> {
     let counts = pass.counts(region);
-    let mut packer = Packer { pass, region, context, part: Part::default(), words: 0, lists: Vec::new() };
-    packer.select(around.begin);
+    let mut packer = Packer { pass, region, context, part: RegionPart::default(), words: 0, lists: Vec::new() };
+    packer.select(envelope.begin);
     packer.primitives(pass.triangle_kind(), counts.triangles, |part| &mut part.triangles);
     packer.primitives(pass.sphere_kind(), counts.spheres, |part| &mut part.spheres);
-    packer.end(around);
+    packer.end(envelope);
     packer.lists
 }
 
@@ -54,7 +54,7 @@ const fn run(kind: CommandKind, count: u32) -> CommandRun {
 
 /// What one message holds of a region.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct Part {
+struct RegionPart {
     select: bool,
     clear: bool,
     triangles: Range<u32>,
@@ -68,7 +68,7 @@ struct Packer<'a> {
     pass: &'a Arc<Pass>,
     region: RegionId,
     context: u8,
-    part: Part,
+    part: RegionPart,
     words: u32,
     lists: Vec<CommandList>,
 }
@@ -82,7 +82,7 @@ impl Packer<'_> {
         self.words += CommandKind::Clear.words() * u32::from(clear);
     }
 
-    fn primitives(&mut self, kind: CommandKind, count: u32, range: impl Fn(&mut Part) -> &mut Range<u32>) {
+    fn primitives(&mut self, kind: CommandKind, count: u32, range: impl Fn(&mut RegionPart) -> &mut Range<u32>) {
         let mut sent = 0;
         while sent < count {
             let fits = (MAX_MESSAGE_WORDS - self.words) / kind.words();
@@ -97,15 +97,15 @@ impl Packer<'_> {
         }
     }
 
-    fn end(&mut self, around: Around) {
-        let shade = around.shade && self.pass.picture().shading == Shading::Phong;
+    fn end(&mut self, envelope: RegionEnvelope) {
+        let shade = envelope.shade && self.pass.picture().shading == Shading::Phong;
         let words = CommandKind::Shade.words() * u32::from(shade)
-            + CommandKind::CopyRegion.words() * u32::from(around.copy.is_some());
+            + CommandKind::CopyRegion.words() * u32::from(envelope.copy.is_some());
         if self.words + words > MAX_MESSAGE_WORDS {
             self.finish();
         }
         self.part.shade = shade;
-        self.part.copy = around.copy;
+        self.part.copy = envelope.copy;
         self.words += words;
         self.finish();
     }
@@ -120,8 +120,9 @@ impl Packer<'_> {
         self.select(false);
     }
 
-    fn list(&self, part: Part) -> CommandList {
-        let (pass, region) = (Arc::clone(self.pass), self.region);
+    fn list(&self, part: RegionPart) -> CommandList {
+        let pass = Arc::clone(self.pass);
+        let region = self.region;
         let runs = part.runs(&pass);
         let copies = part.copy.into_iter().collect();
         let words = RegionWords { pass, region, context: self.context, part };
@@ -130,7 +131,7 @@ impl Packer<'_> {
     }
 }
 
-impl Part {
+impl RegionPart {
     fn runs(&self, pass: &Pass) -> Vec<CommandRun> {
         let all = [
             (CommandKind::SelectRegion, u32::from(self.select)),
@@ -163,9 +164,12 @@ impl Pass {
     #[must_use]
     pub fn command_bytes(&self) -> u64 {
         let Counts { triangles, spheres } = self.screen_counts();
-        let bytes = |kind: CommandKind, n: u32| 4 * u64::from(kind.words()) * u64::from(n);
         bytes(self.triangle_kind(), triangles) + bytes(self.sphere_kind(), spheres)
     }
+}
+
+fn bytes(kind: CommandKind, count: u32) -> u64 {
+    4 * u64::from(kind.words()) * u64::from(count)
 }
 
 /// Makes the words of one message.
@@ -174,7 +178,7 @@ struct RegionWords {
     pass: Arc<Pass>,
     region: RegionId,
     context: u8,
-    part: Part,
+    part: RegionPart,
 }
 
 impl CommandWords for RegionWords {
@@ -230,22 +234,23 @@ impl RegionWords {
         encoder: &TriangleEncoder,
         out: &mut Vec<Word>,
     ) {
-        let (list, picture, mut stats) = (self.pass.share().list(), self.pass.picture(), SetupStats::default());
-        let command = |t: GouraudTriangle| Triangle { edges: t.edges, depth: t.z, colour: t.rgb };
+        let list = self.pass.share().list();
+        let picture = self.pass.picture();
+        let mut stats = SetupStats::default();
         let vertices = place.vertices(list, transform);
         let surfaces = vertices.colours(list, transform, &place.light);
-        let mut batches = Batches { entries, vertices, list, surfaces, together: Together::default() };
+        let mut batches = Batches { entries, vertices, list, surfaces, lanes: TriangleLanes::default() };
         while let Some(some) = batches.next() {
             match some {
-                Batch::Whole(entries, together) => {
-                    let expressions = transform.gouraud_together(together, &mut stats);
-                    (0..entries.len()).for_each(|i| encoder.encode(&command(expressions.get(i)), out));
+                Batch::Unclipped(entries, lanes) => {
+                    let expressions = transform.gouraud_lanes(lanes, &mut stats);
+                    (0..entries.len()).for_each(|i| encoder.encode(&gouraud_triangle(expressions.get(i)), out));
                 }
-                Batch::Piece(entry) => {
+                Batch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.gouraud(&triangle, &place.light, &mut stats, sink));
                     let piece = piece.map(|piece| piece.gouraud(&picture.viewport, &mut stats));
-                    encoder.encode(&piece.map_or(NOWHERE, command), out);
+                    encoder.encode(&piece.map_or(NOWHERE, gouraud_triangle), out);
                 }
             }
         }
@@ -259,30 +264,26 @@ impl RegionWords {
         encoder: &PhongTriangleEncoder,
         out: &mut Vec<Word>,
     ) {
-        let (list, picture, mut stats) = (self.pass.share().list(), self.pass.picture(), SetupStats::default());
-        let command = |t: geometry::PhongTriangle| PhongTriangle {
-            edges: t.edges,
-            depth: t.z,
-            normal: t.normal,
-            colour: rgb(t.colour),
-        };
+        let list = self.pass.share().list();
+        let picture = self.pass.picture();
+        let mut stats = SetupStats::default();
         let vertices = place.vertices(list, transform);
         let surfaces = vertices.normals(list, transform);
-        let mut batches = Batches { entries, vertices, list, surfaces, together: Together::default() };
+        let mut batches = Batches { entries, vertices, list, surfaces, lanes: TriangleLanes::default() };
         while let Some(some) = batches.next() {
             match some {
-                Batch::Whole(entries, together) => {
-                    let expressions = transform.phong_together(together, &mut stats);
+                Batch::Unclipped(entries, lanes) => {
+                    let expressions = transform.phong_lanes(lanes, &mut stats);
                     for (i, entry) in entries.iter().enumerate() {
                         let colour = list.colours[list.triangles[entry.triangle as usize][0] as usize];
-                        encoder.encode(&command(expressions.get(i, colour)), out);
+                        encoder.encode(&phong_triangle(expressions.get(i, colour)), out);
                     }
                 }
-                Batch::Piece(entry) => {
+                Batch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.phong(&triangle, &mut stats, sink));
                     let piece = piece.map(|piece| piece.phong(&picture.viewport, &mut stats));
-                    encoder.encode(&piece.map_or(PHONG_NOWHERE, command), out);
+                    encoder.encode(&piece.map_or(PHONG_NOWHERE, phong_triangle), out);
                 }
             }
         }
@@ -291,7 +292,9 @@ impl RegionWords {
     fn spheres(&self, out: &mut Vec<Word>) {
         let range = self.part.spheres.start as usize..self.part.spheres.end as usize;
         let mut numbers = &self.pass.bin(self.region).spheres[range];
-        let (picture, list, mut stats) = (self.pass.picture(), self.pass.share().list(), SetupStats::default());
+        let picture = self.pass.picture();
+        let list = self.pass.share().list();
+        let mut stats = SetupStats::default();
         for (place, transform) in self.pass.drawn() {
             let end = place.structure.spheres.end;
             let (here, rest) = numbers.split_at(numbers.partition_point(|number| (*number as usize) < end));
@@ -312,13 +315,11 @@ impl RegionWords {
         let Some(light) = self.pass.light() else { return Shade::default() };
         let towards = light.direction;
         let half = unit([towards[0], towards[1], towards[2] + 1.0]);
-        let fixed = |v: [f32; 3]| v.map(|c| (c * 1024.0) as i16);
-        let share = |part: f32| (part * 256.0).clamp(0.0, 255.0) as u8;
         Shade {
-            light: fixed(towards),
-            half: fixed(half),
-            ambient: share(light.ambient),
-            diffuse: share(light.diffuse),
+            light: fixed_direction(towards),
+            half: fixed_direction(half),
+            ambient: fixed_part(light.ambient),
+            diffuse: fixed_part(light.diffuse),
             specular: SPECULAR,
         }
     }
@@ -329,37 +330,37 @@ struct Batches<'a> {
     entries: &'a [Entry],
     vertices: &'a Vertices,
     list: &'a DisplayList,
-    /// Of all vertices.
-    surfaces: &'a [SeenSurface],
-    together: Together,
+    /// Colours or normals of all vertices.
+    surfaces: &'a [VertexSurface],
+    lanes: TriangleLanes,
 }
 
 enum Batch<'a> {
     /// Some that are set up together; those of which nothing is seen are among them.
-    Whole(&'a [Entry], &'a Together),
-    /// A triangle that was clipped.
-    Piece(&'a Entry),
+    Unclipped(&'a [Entry], &'a TriangleLanes),
+    /// A piece of a triangle that was clipped.
+    Clipped(&'a Entry),
 }
 
 impl Batches<'_> {
     fn next(&mut self) -> Option<Batch<'_>> {
-        let together = &mut self.together;
-        together.clear();
-        for entry in self.entries.iter().take(TOGETHER) {
+        let lanes = &mut self.lanes;
+        lanes.clear();
+        for entry in self.entries.iter().take(LANES) {
             let at = self.vertices.corners(self.list, entry.triangle as usize);
-            match (entry.piece, self.vertices.seen(&at)) {
-                (None, _) => together.push_nothing(),
-                (Some(_), Some(seen)) => together.push(&seen, at.of(self.surfaces)),
-                (Some(_), None) if together.is_empty() => {
+            match (entry.piece, self.vertices.unclipped(&at)) {
+                (None, _) => lanes.push_nothing(),
+                (Some(_), Some(triangle)) => lanes.push(&triangle, at.among(self.surfaces)),
+                (Some(_), None) if lanes.is_empty() => {
                     self.entries = &self.entries[1..];
-                    return Some(Batch::Piece(entry));
+                    return Some(Batch::Clipped(entry));
                 }
                 (Some(_), None) => break,
             }
         }
-        let (now, later) = self.entries.split_at(self.together.len());
+        let (now, later) = self.entries.split_at(self.lanes.len());
         self.entries = later;
-        (!now.is_empty()).then_some(Batch::Whole(now, &self.together))
+        (!now.is_empty()).then_some(Batch::Unclipped(now, &self.lanes))
     }
 }
 
@@ -372,7 +373,7 @@ pub(crate) enum Encoder {
 
 impl Encoder {
     /// `None` where the layout cannot hold what they need, which is refused when the machine is configured.
-    pub(crate) fn of(picture: &Picture) -> Option<Self> {
+    pub(crate) fn for_picture(picture: &Picture) -> Option<Self> {
         match picture.shading {
             Shading::Gouraud => Some(Self::Gouraud(TriangleEncoder::new(&picture.layout))),
             Shading::Phong => PhongTriangleEncoder::new(&picture.layout).ok().map(Self::Phong),
@@ -386,6 +387,14 @@ fn pick<T>(entry: &Entry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
     let mut pieces = Vec::new();
     clip(&mut |piece| pieces.push(piece));
     pieces.into_iter().nth(entry.piece?.into())
+}
+
+fn gouraud_triangle(t: GouraudTriangle) -> Triangle {
+    Triangle { edges: t.edges, depth: t.z, colour: t.rgb }
+}
+
+fn phong_triangle(t: geometry::PhongTriangle) -> PhongTriangle {
+    PhongTriangle { edges: t.edges, depth: t.z, normal: t.normal, colour: rgb(t.colour) }
 }
 
 /// The command of a sphere with Gouraud shading.
@@ -411,6 +420,16 @@ const NOWHERE: Triangle =
     Triangle { edges: [Linear::constant(-1); 3], depth: Linear::constant(0), colour: [Linear::constant(0); 3] };
 const PHONG_NOWHERE: PhongTriangle =
     PhongTriangle { edges: NOWHERE.edges, depth: NOWHERE.depth, normal: NOWHERE.colour, colour: 0 };
+
+/// A unit vector in 1/1024.
+fn fixed_direction(v: [f32; 3]) -> [i16; 3] {
+    v.map(|c| (c * 1024.0) as i16)
+}
+
+/// A part of 0 to 1 in 1/256.
+fn fixed_part(part: f32) -> u8 {
+    (part * 256.0).clamp(0.0, 255.0) as u8
+}
 
 /// White of a highlight, of 255 (assumed: a slightly glossy surface).
 const SPECULAR: u8 = 96;

@@ -13,6 +13,7 @@
 //! - [`FrameView`]: what the host sends for a frame: viewing transforms and edits, as words.
 //! - [`Pass`]: one TRANSFORM: which primitives touch which regions, counted at once; command words are made when somebody
 //!   wants pixels, from the same transformed vertices.
+//! - [`TransformCost`]: what a TRANSFORM does, counted, and its time by table.
 //! - [`Transforming`]: the same as work of a board, in time by table or by i860 code that makes the same words.
 //!
 //! **Not modelled:** traversal of nested structures, picking, text, and PPHIGS's other primitives.
@@ -21,13 +22,15 @@
 
 mod code;
 mod commands;
+mod cost;
 mod list;
 mod pass;
 mod placed;
 mod view;
 
-pub use code::{Made, Transforming};
-pub use commands::{Around, copy_message, gouraud_sphere, region_messages};
+pub use code::{KernelOutput, Transforming};
+pub use commands::{RegionEnvelope, copy_message, gouraud_sphere, region_messages};
+pub use cost::TransformCost;
 pub use list::{Counts, DisplayList, Frame, Share, Structure};
 pub use pass::{Binning, Pass, Picture, Shading};
 pub use placed::{Placed, RecentViews, place_all};

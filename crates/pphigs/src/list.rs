@@ -12,37 +12,37 @@ use std::sync::Arc;
 /// What the coordinates of a structure are fixed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Frame {
-    /// The room.
+    /// The room in which the viewer stands.
     World,
-    /// The viewer's head.
+    /// The viewer's head, with which it moves.
     Head,
 }
 
 /// A run of primitives with one model matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Structure {
-    /// Its triangles.
+    /// Numbers of its triangles in the display list.
     pub triangles: Range<usize>,
-    /// Its spheres.
+    /// Numbers of its spheres in the display list.
     pub spheres: Range<usize>,
-    /// What it is fixed to.
+    /// Whether it stands in the room or moves with the head.
     pub frame: Frame,
 }
 
 /// Everything to be drawn, in structures that divide it in order.
 #[derive(Clone, Debug, Default)]
 pub struct DisplayList {
-    /// Corner positions.
+    /// Positions of the corners in their structure's coordinates.
     pub positions: Vec<Vec3>,
-    /// Corner normals, as many.
+    /// Normals at the corners, as many as positions.
     pub normals: Vec<Vec3>,
-    /// Corner colours, as many.
+    /// Red, green and blue at the corners, as many as positions.
     pub colours: Vec<[u8; 3]>,
-    /// Indices of corners.
+    /// Each triangle's corners, by their places among the positions.
     pub triangles: Vec<[u32; 3]>,
-    /// Spheres.
+    /// Spheres in their structure's coordinates.
     pub spheres: Vec<Sphere>,
-    /// In order.
+    /// The structures, whose triangles and spheres follow one another.
     pub structures: Vec<Structure>,
     /// Towards the light, unit length, in each structure's frame.
     pub towards_light: Vec3,
@@ -59,14 +59,14 @@ pub struct DisplayList {
 /// Numbers of primitives or commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Triangles.
+    /// Number of triangles, or of triangle commands.
     pub triangles: u32,
-    /// Spheres.
+    /// Number of spheres, or of sphere commands.
     pub spheres: u32,
 }
 
 impl Counts {
-    /// Both together.
+    /// Triangles and spheres together.
     #[must_use]
     pub const fn total(self) -> u32 {
         self.triangles + self.spheres
@@ -128,8 +128,8 @@ impl Share {
     #[must_use]
     pub fn new(list: Arc<DisplayList>, index: usize, of: usize) -> Self {
         assert!(of > 0, "primitives need a graphics processor");
-        let held = |all: usize| 0..all.saturating_sub(index).div_ceil(of);
-        let (triangles, spheres) = (held(list.triangles.len()), held(list.spheres.len()));
+        let triangles = 0..dealt(list.triangles.len(), index, of);
+        let spheres = 0..dealt(list.spheres.len(), index, of);
         Self { list, first: index, step: of, triangles, spheres }
     }
 
@@ -139,7 +139,7 @@ impl Share {
         &self.list
     }
 
-    /// Primitives held.
+    /// Numbers of primitives that the GP holds of it.
     #[must_use]
     pub fn counts(&self) -> Counts {
         Counts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
@@ -151,17 +151,13 @@ impl Share {
     ///
     /// If `size` is zero.
     pub fn clumps(&self, size: usize) -> impl Iterator<Item = Self> {
-        let (triangles, spheres) = (self.triangles.clone(), self.spheres.clone());
-        let all = triangles.len() + spheres.len();
-        let part = move |range: &Range<usize>, from: usize, to: usize| {
-            let clamp = |i: usize| (range.start + i).min(range.end);
-            clamp(from)..clamp(to)
-        };
         let share = self.clone();
+        let n_triangles = self.triangles.len();
+        let all = n_triangles + self.spheres.len();
         (0..all).step_by(size).map(move |from| {
-            let past = |i: usize| i.saturating_sub(triangles.len());
-            let triangles = part(&triangles, from, from + size);
-            let spheres = part(&spheres, past(from), past(from + size));
+            let to = from + size;
+            let triangles = part(&share.triangles, from, to);
+            let spheres = part(&share.spheres, from.saturating_sub(n_triangles), to.saturating_sub(n_triangles));
             Self { triangles, spheres, ..share.clone() }
         })
     }
@@ -205,16 +201,26 @@ impl Share {
 
     /// Numbers of the primitives of `of` that are among the held ones `positions`.
     fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl Iterator<Item = usize> + use<> {
-        let (first, step) = (self.first, self.step);
+        let first = self.first;
+        let step = self.step;
         self.places(positions, of).map(move |k| first + k * step)
     }
 
     fn places(&self, positions: &Range<usize>, of: &Range<usize>) -> Range<usize> {
-        let position = |number: usize| number.saturating_sub(self.first).div_ceil(self.step);
-        let from = position(of.start).max(positions.start);
-        let to = position(of.end).min(positions.end);
+        let from = dealt(of.start, self.first, self.step).max(positions.start);
+        let to = dealt(of.end, self.first, self.step).min(positions.end);
         from..to.max(from)
     }
+}
+
+/// How many of the first `all` primitives GP `index` of `gps` holds, dealt round-robin.
+fn dealt(all: usize, index: usize, gps: usize) -> usize {
+    all.saturating_sub(index).div_ceil(gps)
+}
+
+/// The elements of a range from its `from`-th to before its `to`-th, as far as there are any.
+fn part(range: &Range<usize>, from: usize, to: usize) -> Range<usize> {
+    (range.start + from).min(range.end)..(range.start + to).min(range.end)
 }
 
 /// The model matrix of a structure that was never edited.

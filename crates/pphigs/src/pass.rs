@@ -31,11 +31,11 @@ pub enum Binning {
 /// What to make of a view.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture {
-    /// Lines and regions.
+    /// Lines of the frame that it holds, and how it is cut into regions.
     pub viewport: Viewport,
-    /// Where colours are computed.
+    /// Whether colours are computed at corners or at pixels.
     pub shading: Shading,
-    /// Who gets the commands.
+    /// Which regions get a primitive's commands.
     pub binning: Binning,
     /// Division of pixel memory that the commands are encoded for.
     pub layout: Layout,
@@ -73,7 +73,7 @@ pub struct Pass {
     bins: Vec<Bin>,
     screen_counts: Counts,
     stats: SetupStats,
-    /// `None` without pixels.
+    /// Makes the words of triangles; `None` where nobody wants pixels.
     encoder: Option<Encoder>,
 }
 
@@ -90,14 +90,16 @@ impl Pass {
             bins,
             screen_counts: Counts::default(),
             stats: SetupStats::default(),
-            encoder: picture.pixels.then(|| Encoder::of(&picture)).flatten(),
+            encoder: picture.pixels.then(|| Encoder::for_picture(&picture)).flatten(),
         };
         pass.binitize();
         pass
     }
 
     fn binitize(&mut self) {
-        let (mut stats, placed, share) = (SetupStats::default(), Arc::clone(&self.placed), self.share.clone());
+        let mut stats = SetupStats::default();
+        let placed = Arc::clone(&self.placed);
+        let share = self.share.clone();
         for (place, transform) in drawn(&placed) {
             self.bin_triangles(place, transform, &share, &mut stats);
             for number in share.held_spheres(&place.structure.spheres) {
@@ -110,7 +112,8 @@ impl Pass {
     }
 
     fn bin_triangles(&mut self, place: &Placed, transform: &Transform, share: &Share, stats: &mut SetupStats) {
-        let (first, touched) = (place.structure.triangles.start, place.touched(&share.list, transform));
+        let first = place.structure.triangles.start;
+        let touched = place.touched(&share.list, transform);
         let mut in_one_region = 0;
         for number in share.held_triangles(&place.structure.triangles) {
             let touch = touched.get(number - first);
@@ -119,16 +122,19 @@ impl Pass {
                 self.put_in(region, Entry { triangle: number as u32, piece: Some(0) });
                 continue;
             }
-            let (triangle, mut pieces) = (number as u32, 0);
-            let put = |mask| {
-                self.put_triangle(mask, Entry { triangle, piece: Some(pieces) });
-                pieces += 1;
-            };
+            let triangle = number as u32;
+            let mut pieces = 0;
             match touch {
-                Touch::NeedsClipping => transform.bin(&share.list.corners(number), stats, put),
+                Touch::NeedsClipping => {
+                    transform.bin(&share.list.corners(number), stats, |mask| {
+                        self.put_piece(mask, triangle, &mut pieces);
+                    });
+                }
                 whole => {
                     stats.triangles += 1;
-                    whole.count(stats).into_iter().for_each(put);
+                    if let Some(mask) = whole.count(stats) {
+                        self.put_piece(mask, triangle, &mut pieces);
+                    }
                 }
             }
             if pieces == 0 && self.picture.binning == Binning::All {
@@ -149,6 +155,12 @@ impl Pass {
                 all.fold(RegionMask::EMPTY, RegionMask::union)
             }
         }
+    }
+
+    /// Puts the next piece of a triangle into bins, and counts it.
+    fn put_piece(&mut self, mask: RegionMask, triangle: u32, pieces: &mut u8) {
+        self.put_triangle(mask, Entry { triangle, piece: Some(*pieces) });
+        *pieces += 1;
     }
 
     fn put_triangle(&mut self, mask: RegionMask, entry: Entry) {
@@ -179,7 +191,7 @@ impl Pass {
         self.screen_counts.spheres += 1;
     }
 
-    /// Entries of a region's bin.
+    /// Numbers of entries in a region's bin.
     #[must_use]
     pub fn counts(&self, region: RegionId) -> Counts {
         self.counts[usize::from(region.0)]
@@ -191,13 +203,13 @@ impl Pass {
         self.screen_counts
     }
 
-    /// Entries of all bins.
+    /// Entries of all bins together.
     #[must_use]
     pub fn entries(&self) -> u64 {
         self.counts.iter().map(|counts| u64::from(counts.total())).sum()
     }
 
-    /// Primitives transformed.
+    /// Numbers of primitives transformed, seen or not.
     #[must_use]
     pub fn transformed(&self) -> Counts {
         self.share.counts()
@@ -209,13 +221,13 @@ impl Pass {
         self.stats
     }
 
-    /// What is made of the view.
+    /// The picture that is made of the view.
     #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.picture
     }
 
-    /// Background colour.
+    /// Red, green and blue where nothing is drawn, 0 to 255 each.
     #[must_use]
     pub fn background(&self) -> [u8; 3] {
         self.share.list.background

@@ -4,7 +4,7 @@ use crate::list::{DisplayList, Frame, Structure, UNMOVED};
 use crate::view::{EyeView, FrameView, ModelEdit, product};
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
-    Culling, Light, SeenSurface, SeenTriangle, SeenVertex, Touched, Transform, ViewTransform, Viewport,
+    Culling, Light, ScreenVertex, Touched, Transform, UnclippedTriangle, VertexSurface, ViewTransform, Viewport,
 };
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -16,7 +16,7 @@ pub struct Placed {
     pub transform: Option<Transform>,
     /// The light in eye coordinates.
     pub light: Light,
-    /// Its primitives.
+    /// Which primitives belong to it, and what it is fixed to.
     pub structure: Structure,
     vertices: OnceLock<Vertices>,
     touched: OnceLock<Touched>,
@@ -26,9 +26,9 @@ pub struct Placed {
 #[derive(Debug)]
 pub(crate) struct Vertices {
     first: usize,
-    seen: Vec<SeenVertex>,
-    normals: OnceLock<Vec<SeenSurface>>,
-    colours: OnceLock<Vec<SeenSurface>>,
+    on_screen: Vec<ScreenVertex>,
+    normals: OnceLock<Vec<VertexSurface>>,
+    colours: OnceLock<Vec<VertexSurface>>,
 }
 
 /// All structures of a display list as an eye (0, or 0 and 1) of a view sees them.
@@ -54,8 +54,8 @@ impl Placed {
             let named = list.triangles[self.structure.triangles.clone()].iter().flatten();
             let (first, end) = named.fold((u32::MAX, 0), |(low, high), i| (low.min(*i), high.max(*i + 1)));
             let positions = list.positions.get(first as usize..end as usize).unwrap_or_default();
-            let seen = positions.iter().map(|p| transform.see(*p)).collect();
-            Vertices { first: first as usize, seen, normals: OnceLock::new(), colours: OnceLock::new() }
+            let on_screen = positions.iter().map(|p| transform.screen_vertex(*p)).collect();
+            Vertices { first: first as usize, on_screen, normals: OnceLock::new(), colours: OnceLock::new() }
         })
     }
 
@@ -64,7 +64,7 @@ impl Placed {
         self.touched.get_or_init(|| {
             let vertices = self.vertices(list, transform);
             let triangles = self.structure.triangles.clone();
-            transform.touched(&vertices.seen, triangles.map(|number| vertices.corners(list, number).0))
+            transform.touched(&vertices.on_screen, triangles.map(|number| vertices.corners(list, number).0))
         })
     }
 }
@@ -79,25 +79,25 @@ impl Vertices {
 
     /// A triangle's corners on the screen; `None` where it needs clipping.
     #[inline(always)]
-    pub(crate) fn seen(&self, at: &Corners) -> Option<SeenTriangle> {
-        SeenTriangle::of(at.of(&self.seen))
+    pub(crate) fn unclipped(&self, at: &Corners) -> Option<UnclippedTriangle> {
+        UnclippedTriangle::new(at.among(&self.on_screen))
     }
 
     /// The normals of all vertices.
-    pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[SeenSurface] {
+    pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[VertexSurface] {
         self.normals.get_or_init(|| {
-            let all = self.first..self.first + self.seen.len();
-            let (positions, normals) = (&list.positions[all.clone()], &list.normals[all]);
-            positions.iter().zip(normals).map(|(p, n)| transform.see_normal(*p, *n)).collect()
+            let all = self.first..self.first + self.on_screen.len();
+            let positions = &list.positions[all.clone()];
+            let normals = &list.normals[all];
+            positions.iter().zip(normals).map(|(p, n)| transform.vertex_normal(*p, *n)).collect()
         })
     }
 
     /// The lit colours of all vertices.
-    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[SeenSurface] {
+    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[VertexSurface] {
         self.colours.get_or_init(|| {
-            let all = self.first..self.first + self.seen.len();
-            let colour = |i: usize| transform.see_colour(light, list.positions[i], list.normals[i], list.colours[i]);
-            all.map(colour).collect()
+            let all = self.first..self.first + self.on_screen.len();
+            all.map(|i| transform.vertex_colour(light, list.positions[i], list.normals[i], list.colours[i])).collect()
         })
     }
 }
@@ -106,8 +106,9 @@ impl Vertices {
 pub(crate) struct Corners([usize; 3]);
 
 impl Corners {
+    /// What belongs to the three corners, among that of all vertices.
     #[inline(always)]
-    pub(crate) fn of<'a, T>(&self, all: &'a [T]) -> [&'a T; 3] {
+    pub(crate) fn among<'a, T>(&self, all: &'a [T]) -> [&'a T; 3] {
         let [a, b, c] = self.0;
         [&all[a], &all[b], &all[c]]
     }
@@ -116,7 +117,7 @@ impl Corners {
 /// Views of a display list that graphics processors asked for lately. All of them ask for the same ones, and get the
 /// same transformed vertices; only the host's time is saved by it.
 #[derive(Debug, Default)]
-pub struct RecentViews(Mutex<VecDeque<(Asked, Arc<[Placed]>)>>);
+pub struct RecentViews(Mutex<VecDeque<(ViewKey, Arc<[Placed]>)>>);
 
 /// A clone holds none.
 impl Clone for RecentViews {
@@ -130,7 +131,7 @@ const RECENT: usize = 4;
 
 /// All that the place of a structure depends on.
 #[derive(Debug, PartialEq)]
-struct Asked {
+struct ViewKey {
     eye: EyeView,
     edits: Vec<ModelEdit>,
     viewport: Viewport,
@@ -139,14 +140,14 @@ struct Asked {
 impl RecentViews {
     /// As [`place_all`], made once for all who ask.
     pub(crate) fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Arc<[Placed]> {
-        let asked = Asked { eye: *eye_of(view, eye), edits: view.edits.clone(), viewport };
+        let key = ViewKey { eye: *eye_of(view, eye), edits: view.edits.clone(), viewport };
         let mut recent = list.recent.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, placed)) = recent.iter().find(|(known, _)| *known == asked) {
+        if let Some((_, placed)) = recent.iter().find(|(known, _)| *known == key) {
             return Arc::clone(placed);
         }
         let placed: Arc<[Placed]> = place_all(list, view, eye, viewport).into();
         recent.truncate(RECENT - 1);
-        recent.push_front((asked, Arc::clone(&placed)));
+        recent.push_front((key, Arc::clone(&placed)));
         placed
     }
 }

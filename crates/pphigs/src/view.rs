@@ -2,7 +2,6 @@
 
 use glam::{DMat4, Mat4};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
-use std::fmt;
 
 /// The matrices of one eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +17,7 @@ pub struct EyeView {
 /// A structure's new model matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelEdit {
-    /// The structure's number.
+    /// The structure's place in the display list.
     pub structure: u32,
     /// From its own to its frame's coordinates.
     pub model: Mat4,
@@ -43,21 +42,14 @@ const HEADER_WORDS: usize = 4;
 pub const MAX_EDITS: usize = (MAX_MESSAGE_WORDS as usize - 8 - HEADER_WORDS - 2 * EYE_WORDS) / EDIT_WORDS;
 
 /// Words that are not a frame's view.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a view of {expected} words was expected, {found} were found")]
 pub struct ViewWordsError {
-    /// Words expected from the header.
+    /// Number of words that the header asks for, itself included.
     pub expected: usize,
-    /// Words found.
+    /// Number of words that there are.
     pub found: usize,
 }
-
-impl fmt::Display for ViewWordsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a view of {} words was expected, {} were found", self.expected, self.found)
-    }
-}
-
-impl std::error::Error for ViewWordsError {}
 
 impl FrameView {
     /// The words: number (two), eyes, edits; then the matrices column by column.
@@ -82,8 +74,8 @@ impl FrameView {
     ///
     /// [`ViewWordsError`] when the length is not what the header says.
     pub fn from_words(words: &[Word]) -> Result<Self, ViewWordsError> {
-        let count = |i: usize| words.get(i).map_or(0, |word| *word as usize);
-        let (n_eyes, n_edits) = (count(2), count(3));
+        let n_eyes = header_word(words, 2);
+        let n_edits = header_word(words, 3);
         let expected =
             HEADER_WORDS + n_eyes.saturating_mul(EYE_WORDS).saturating_add(n_edits.saturating_mul(EDIT_WORDS));
         if words.len() != expected {
@@ -101,6 +93,11 @@ impl FrameView {
     }
 }
 
+/// A word of the header; 0 where there is none.
+fn header_word(words: &[Word], place: usize) -> usize {
+    words.get(place).map_or(0, |word| *word as usize)
+}
+
 fn push_matrix(words: &mut Vec<Word>, matrix: &Mat4) {
     words.extend(matrix.to_cols_array().map(f32::to_bits));
 }
@@ -116,7 +113,8 @@ fn eye(words: &[Word]) -> EyeView {
 
 /// `left * right` formed in double precision and rounded once, the same on every host.
 pub(crate) fn product(left: &Mat4, right: &Mat4) -> Mat4 {
-    let (left, right): (DMat4, DMat4) = (left.as_dmat4(), right.as_dmat4());
+    let left: DMat4 = left.as_dmat4();
+    let right: DMat4 = right.as_dmat4();
     (left * right).as_mat4()
 }
 
@@ -126,11 +124,17 @@ mod tests {
 
     #[test]
     fn a_view_survives_its_words_bit_for_bit() {
-        let m = |k: f32| Mat4::from_cols_array(&std::array::from_fn(|i| k + i as f32 / 3.0));
-        let eye = |k| EyeView { world_to_eye: m(k), head_to_eye: m(k + 0.1), projection: m(-k) };
-        let edits = vec![ModelEdit { structure: 3, model: m(9.0) }];
-        let view = FrameView { number: 1 << 40, eyes: vec![eye(1.0), eye(2.0)], edits };
+        let edits = vec![ModelEdit { structure: 3, model: some_matrix(9.0) }];
+        let view = FrameView { number: 1 << 40, eyes: vec![some_eye(1.0), some_eye(2.0)], edits };
         assert_eq!(FrameView::from_words(&view.to_words()), Ok(view));
+    }
+
+    fn some_eye(k: f32) -> EyeView {
+        EyeView { world_to_eye: some_matrix(k), head_to_eye: some_matrix(k + 0.1), projection: some_matrix(-k) }
+    }
+
+    fn some_matrix(k: f32) -> Mat4 {
+        Mat4::from_cols_array(&std::array::from_fn(|i| k + i as f32 / 3.0))
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use glam::{Mat4, Vec3};
 use pphigs::{
-    Around, Binning, DisplayList, EyeView, Frame, FrameView, Made, ModelEdit, Pass, Picture, Shading, Share, Structure,
-    Transforming, region_messages,
+    Binning, DisplayList, EyeView, Frame, FrameView, KernelOutput, ModelEdit, Pass, Picture, RegionEnvelope, Shading,
+    Share, Structure, Transforming, region_messages,
 };
 use pxpl5_geometry::{Sphere, Viewport};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
@@ -33,7 +33,8 @@ impl Numbers {
 fn list(triangles: u32) -> Arc<DisplayList> {
     let mut numbers = Numbers(7);
     let mut list = DisplayList { towards_light: Vec3::new(0.48, 0.6, 0.64), ..DisplayList::default() };
-    (list.ambient, list.diffuse) = (0.25, 0.75);
+    list.ambient = 0.25;
+    list.diffuse = 0.75;
     for number in 0..triangles {
         let centre = Vec3::new(0.0, 0.0, -6.0) + numbers.vector(1.5);
         for _ in 0..3 {
@@ -43,19 +44,25 @@ fn list(triangles: u32) -> Arc<DisplayList> {
         }
         list.triangles.push([3 * number, 3 * number + 1, 3 * number + 2]);
     }
-    let (middle, end) = (triangles as usize / 3, triangles as usize);
-    let structure = |triangles, frame| Structure { triangles, spheres: 0..0, frame };
-    list.structures = vec![structure(0..middle, Frame::World), structure(middle..end, Frame::Head)];
+    let middle = triangles as usize / 3;
+    let end = triangles as usize;
+    list.structures = vec![
+        Structure { triangles: 0..middle, spheres: 0..0, frame: Frame::World },
+        Structure { triangles: middle..end, spheres: 0..0, frame: Frame::Head },
+    ];
     Arc::new(list)
 }
 
-fn view() -> FrameView {
-    let projection = Mat4::perspective_rh(0.9, 4.0 / 3.0, 0.5, 40.0);
-    let eye = |x: f32| EyeView {
+/// An eye beside the middle of the head.
+fn eye(x: f32) -> EyeView {
+    EyeView {
         world_to_eye: Mat4::from_translation(Vec3::new(x, 0.1, 0.0)) * Mat4::from_rotation_y(0.1),
         head_to_eye: Mat4::from_translation(Vec3::new(x, 0.0, 0.0)),
-        projection,
-    };
+        projection: Mat4::perspective_rh(0.9, 4.0 / 3.0, 0.5, 40.0),
+    }
+}
+
+fn view() -> FrameView {
     let model = Mat4::from_translation(Vec3::new(0.2, 0.0, 0.0)) * Mat4::from_rotation_z(0.5);
     FrameView { number: 0, eyes: vec![eye(-0.03), eye(0.03)], edits: vec![ModelEdit { structure: 1, model }] }
 }
@@ -73,22 +80,23 @@ fn board(version: CodeVersion, share: &Share) -> Processor {
 /// The words of a region's primitives as the native firmware makes them.
 fn native(pass: &Arc<Pass>, region: RegionId) -> Vec<Word> {
     let mut words = Vec::new();
-    for list in region_messages(pass, region, 0, Around::default()) {
+    for list in region_messages(pass, region, 0, RegionEnvelope::default()) {
         list.content.expect("pixels are wanted").append_words(&mut words);
     }
     words
 }
 
 /// The same as the code left them in memory.
-fn of_code(processor: &Processor, made: &Made, region: usize, command_words: usize) -> Vec<Word> {
-    let bin = &made.bins[region];
+fn of_code(processor: &Processor, output: &KernelOutput, region: usize, command_words: usize) -> Vec<Word> {
+    let bin = &output.bins[region];
     let entries = processor.read(bin.start, (bin.end - bin.start) as usize / 4).expect("in memory");
     entries.iter().flat_map(|at| processor.read(*at, command_words).expect("in memory")).collect()
 }
 
 #[test]
 fn the_words_in_memory_are_those_of_the_native_firmware() {
-    let (list, view) = (list(300), view());
+    let list = list(300);
+    let view = view();
     let share = Share::new(Arc::clone(&list), 1, 3);
     for version in VERSIONS {
         let mut processor = board(version, &share);
@@ -113,7 +121,8 @@ fn the_words_in_memory_are_those_of_the_native_firmware() {
 
 #[test]
 fn without_bins_every_command_is_made_in_order() {
-    let (list, view) = (list(90), view());
+    let list = list(90);
+    let view = view();
     let share = Share::new(list, 0, 1);
     let viewport = Viewport::field(FieldParity::Odd);
     for version in VERSIONS {
@@ -179,7 +188,8 @@ fn output_bytes(pass: &Pass, triangles: u32, command_bytes: u32) -> u32 {
 
 /// A board whose memory is as large as given, both eyes' passes over 90 triangles, and the bytes of a command.
 fn both_contexts(memory: u64) -> (Processor, [Arc<Pass>; 2]) {
-    let (share, view) = (Share::new(list(90), 0, 1), view());
+    let share = Share::new(list(90), 0, 1);
+    let view = view();
     let mut processor = Processor::new(NodeId(2), memory, CodeVersion::Scheduled);
     share.install(&mut processor).expect("it fits");
     let picture = picture(Viewport::FRAME, Shading::Gouraud, Binning::Touched);

@@ -4,8 +4,8 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
-    Culling, Light, SeenSurface, SeenTriangle, SetupStats, TOGETHER, Together, Transform, Triangle, ViewTransform,
-    Viewport,
+    Culling, LANES, Light, ScreenVertex, SetupStats, Transform, Triangle, TriangleLanes, UnclippedTriangle,
+    VertexSurface, ViewTransform, Viewport,
 };
 use std::hint::black_box;
 
@@ -22,23 +22,27 @@ impl Ball {
 
     fn new() -> Self {
         let mut ball = Self { positions: Vec::new(), colours: Vec::new(), triangles: Vec::new() };
-        let turn = |n: u32, of: u32| std::f32::consts::TAU * n as f32 / of as f32;
         for row in 0..=Self::ROWS {
-            let polar = turn(row, 2 * Self::ROWS);
+            let polar = part_of_turn(row, 2 * Self::ROWS);
             for column in 0..Self::COLUMNS {
-                let around = turn(column, Self::COLUMNS);
+                let around = part_of_turn(column, Self::COLUMNS);
                 ball.positions.push(Vec3::new(polar.sin() * around.cos(), polar.cos(), polar.sin() * around.sin()));
                 ball.colours.push([200, (row % 256) as u8, (column % 256) as u8]);
             }
         }
         for row in 0..Self::ROWS {
             for column in 0..Self::COLUMNS {
-                let at = |r: u32, c: u32| (row + r) * Self::COLUMNS + (column + c) % Self::COLUMNS;
-                ball.triangles.push([at(0, 0), at(1, 0), at(1, 1)]);
-                ball.triangles.push([at(0, 0), at(1, 1), at(0, 1)]);
+                let here = Self::vertex(row, column);
+                let diagonal = Self::vertex(row + 1, column + 1);
+                ball.triangles.push([here, Self::vertex(row + 1, column), diagonal]);
+                ball.triangles.push([here, diagonal, Self::vertex(row, column + 1)]);
             }
         }
         ball
+    }
+
+    fn vertex(row: u32, column: u32) -> u32 {
+        row * Self::COLUMNS + column % Self::COLUMNS
     }
 
     fn each(&self) -> impl Iterator<Item = Triangle> {
@@ -48,6 +52,11 @@ impl Ball {
             Triangle { positions, normals: positions, colours: corners.map(|i| self.colours[i]) }
         })
     }
+}
+
+/// The angle of `n` of so many steps around, in radians.
+fn part_of_turn(n: u32, steps: u32) -> f32 {
+    std::f32::consts::TAU * n as f32 / steps as f32
 }
 
 fn view() -> Transform {
@@ -79,7 +88,7 @@ fn transform(c: &mut Criterion) {
         let mut vertices = Vec::new();
         b.iter(|| {
             vertices.clear();
-            vertices.extend(black_box(&ball.positions).iter().map(|p| view.see(*p)));
+            vertices.extend(black_box(&ball.positions).iter().map(|p| view.screen_vertex(*p)));
             view.touched(&vertices, ball.triangles.iter().map(|corners| corners.map(|i| i as usize)))
         });
     });
@@ -108,10 +117,22 @@ fn transform(c: &mut Criterion) {
     group.finish();
 }
 
+/// Puts triangles that need no clipping into lanes.
+fn fill(lanes: &mut TriangleLanes, some: &[[u32; 3]], vertices: &[ScreenVertex], surfaces: &[VertexSurface]) {
+    lanes.clear();
+    for corners in some {
+        let [a, b, c] = corners.map(|i| i as usize);
+        let Some(triangle) = UnclippedTriangle::new([&vertices[a], &vertices[b], &vertices[c]]) else { continue };
+        lanes.push(&triangle, [&surfaces[a], &surfaces[b], &surfaces[c]]);
+    }
+}
+
 fn setup(c: &mut Criterion) {
     let ball = Ball::new();
-    let (view, mut stats) = (view(), SetupStats::default());
-    let (mut gouraud, mut phong) = (Vec::new(), Vec::new());
+    let view = view();
+    let mut stats = SetupStats::default();
+    let mut gouraud = Vec::new();
+    let mut phong = Vec::new();
     for t in ball.each() {
         view.gouraud(&t, &Light::HEADLIGHT, &mut stats, |t| gouraud.push(t));
         view.phong(&t, &mut stats, |t| phong.push(t));
@@ -132,33 +153,25 @@ fn setup(c: &mut Criterion) {
             }
         });
     });
-    let vertices: Vec<_> = ball.positions.iter().map(|p| view.see(*p)).collect();
+    let vertices: Vec<_> = ball.positions.iter().map(|p| view.screen_vertex(*p)).collect();
     let colours = ball.positions.iter().zip(&ball.colours);
-    let colours: Vec<_> = colours.map(|(p, c)| view.see_colour(&Light::HEADLIGHT, *p, *p, *c)).collect();
-    let normals: Vec<_> = ball.positions.iter().map(|p| view.see_normal(*p, *p)).collect();
-    let fill = |together: &mut Together, some: &[[u32; 3]], surfaces: &[SeenSurface]| {
-        together.clear();
-        for corners in some {
-            let [a, b, c] = corners.map(|i| i as usize);
-            let Some(triangle) = SeenTriangle::of([&vertices[a], &vertices[b], &vertices[c]]) else { continue };
-            together.push(&triangle, [&surfaces[a], &surfaces[b], &surfaces[c]]);
-        }
-    };
-    let mut together = Together::default();
+    let colours: Vec<_> = colours.map(|(p, c)| view.vertex_colour(&Light::HEADLIGHT, *p, *p, *c)).collect();
+    let normals: Vec<_> = ball.positions.iter().map(|p| view.vertex_normal(*p, *p)).collect();
+    let mut lanes = TriangleLanes::default();
     group.bench_function("gouraud/together", |bencher| {
         bencher.iter(|| {
-            for some in ball.triangles.chunks(TOGETHER) {
-                fill(&mut together, some, &colours);
-                let expressions = view.gouraud_together(&together, &mut stats);
+            for some in ball.triangles.chunks(LANES) {
+                fill(&mut lanes, some, &vertices, &colours);
+                let expressions = view.gouraud_lanes(&lanes, &mut stats);
                 (0..some.len()).for_each(|i| _ = black_box(expressions.get(i)));
             }
         });
     });
     group.bench_function("phong/together", |bencher| {
         bencher.iter(|| {
-            for some in ball.triangles.chunks(TOGETHER) {
-                fill(&mut together, some, &normals);
-                let expressions = view.phong_together(&together, &mut stats);
+            for some in ball.triangles.chunks(LANES) {
+                fill(&mut lanes, some, &vertices, &normals);
+                let expressions = view.phong_lanes(&lanes, &mut stats);
                 (0..some.len()).for_each(|i| _ = black_box(expressions.get(i, [200; 3])));
             }
         });

@@ -20,10 +20,10 @@ use serde::{Deserialize, Serialize};
 pub struct RegionMask(u128);
 
 impl RegionMask {
-    /// Most regions in a picture.
+    /// Most regions that a picture can have: region numbers 0 to 127.
     pub const CAPACITY: u32 = u128::BITS;
 
-    /// No region.
+    /// The set that holds no region.
     pub const EMPTY: Self = Self(0);
 
     /// One region; empty if its number is [`Self::CAPACITY`] or more.
@@ -41,7 +41,7 @@ impl RegionMask {
         self.0 == 0
     }
 
-    /// Number of regions.
+    /// Number of regions in the set.
     #[must_use]
     pub const fn len(self) -> u32 {
         self.0.count_ones()
@@ -53,7 +53,7 @@ impl RegionMask {
         Self::only(region).0 & self.0 != 0
     }
 
-    /// Regions in either set.
+    /// The regions that are in this set or in the other.
     #[must_use]
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
@@ -157,7 +157,8 @@ impl Binner {
 
     /// The regions that a rectangle of pixels, given in frame lines, meets.
     pub(crate) fn rectangle(&self, x: Range, lines: Range) -> RegionMask {
-        let (x, y) = (x.within(self.width), self.rows_of_lines(lines).within(self.height));
+        let x = x.within(self.width);
+        let y = self.rows_of_lines(lines).within(self.height);
         if x.is_empty() || y.is_empty() {
             return RegionMask::EMPTY;
         }
@@ -192,7 +193,8 @@ impl Binner {
         let outline = Outline { x: corners_x, y: corners_y, z: [0; 3], regions: RegionMask::EMPTY };
         let edges = outline.edges();
         self.cells(x, y, |column, row| {
-            let (across, down) = (self.column_box(column), self.row_box(row));
+            let across = self.column_box(column);
+            let down = self.row_box(row);
             edges.iter().all(|e| greatest(e, across, down) >= 0)
         })
     }
@@ -222,20 +224,28 @@ impl Binner {
     pub(crate) fn row_box(&self, row: i32) -> (i32, i32) {
         let top = row * self.region_height;
         let bottom = (top + self.region_height).min(self.height) - 1;
-        let line = |y: i32| (y << self.line_shift) + self.first_line;
-        (line(top), line(bottom))
+        (self.line_of_row(top), self.line_of_row(bottom))
+    }
+
+    /// The line of the frame that a row of the picture's pixels is.
+    #[inline(always)]
+    const fn line_of_row(&self, row: i32) -> i32 {
+        (row << self.line_shift) + self.first_line
     }
 }
 
 /// Whether a triangle meets a rectangle of pixels, given as first and last pixel and first and last frame line.
 pub(crate) fn meets(outline: &Outline, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) -> bool {
-    let range = |v: &[i32; 3]| {
-        let [low, high] = extent(v);
-        Range::of_centres(low, high)
-    };
-    let (x, y) = (range(&outline.x), range(&outline.y));
+    let x = pixels_between(&outline.x);
+    let y = pixels_between(&outline.y);
     let apart = x.first > right || x.last < left || y.first > bottom || y.last < top;
     !apart && outline.edges().iter().all(|e| greatest(e, (left, right), (top, bottom)) >= 0)
+}
+
+/// Pixels whose centres lie between the least and the greatest of three corners, given in subpixels.
+fn pixels_between(corners: &[i32; 3]) -> Range {
+    let [low, high] = extent(corners);
+    Range::of_centres(low, high)
 }
 
 /// Largest value of an edge expression over a box of pixels. No overflow: see [`crate::GUARD_PIXELS`].

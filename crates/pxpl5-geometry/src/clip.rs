@@ -46,12 +46,13 @@ pub(crate) struct Corner<const N: usize> {
 }
 
 impl<const N: usize> Corner<N> {
-    fn of(vertex: &Vertex<N>) -> Self {
+    /// The corner where a vertex of the triangle is, not a cut.
+    fn at_vertex(vertex: &Vertex<N>) -> Self {
         Self { clip: vertex.clip.map(f64::from), extra: vertex.extra.map(f64::from), cut: false }
     }
 }
 
-/// A convex polygon.
+/// What planes leave of a triangle: a convex polygon of at most nine corners.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Polygon<const N: usize> {
     corners: [Corner<N>; MAX_CORNERS],
@@ -94,18 +95,17 @@ impl Guard {
     /// Whether a vertex needs no clipping; false for NaN and for coordinates beyond [`MAX_CLIP`].
     #[inline(always)]
     pub(crate) fn contains(self, [x, y, z, w]: [f32; 4]) -> bool {
-        let side = |v: f32, limit: f32| v.abs() <= limit * w;
+        let across = (x.abs() <= self.x * w) & (y.abs() <= self.y * w);
         let depth = (z >= 0.0) & (z <= w);
-        side(x, self.x) & side(y, self.y) & depth & (MIN_W..=MAX_CLIP).contains(&w)
+        across & depth & (MIN_W..=MAX_CLIP).contains(&w)
     }
 
     /// What is left of a triangle.
     pub(crate) fn clip<const N: usize>(self, triangle: &[Vertex<N>; 3]) -> Polygon<N> {
         let mut polygon = Polygon::empty();
-        triangle.iter().for_each(|v| polygon.push(Corner::of(v)));
+        triangle.iter().for_each(|v| polygon.push(Corner::at_vertex(v)));
         for plane in 0..6 {
-            let outside = |v: &Corner<N>| self.distance(plane, v.clip) < 0.0;
-            if polygon.corners().iter().any(outside) {
+            if polygon.corners().iter().any(|corner| self.distance(plane, corner.clip) < 0.0) {
                 polygon = self.cut(plane, &polygon);
             }
         }
@@ -134,15 +134,20 @@ impl Guard {
             Ordering::Greater => (other, one),
             _ => (one, other),
         };
-        let (near, far) = (self.distance(plane, from.clip), self.distance(plane, to.clip));
+        let near = self.distance(plane, from.clip);
+        let far = self.distance(plane, to.clip);
         let t = near / (near - far);
-        let between = |a: f64, b: f64| a + (b - a) * t;
         Corner {
-            clip: std::array::from_fn(|i| between(from.clip[i], to.clip[i])),
-            extra: std::array::from_fn(|i| between(from.extra[i], to.extra[i])),
+            clip: std::array::from_fn(|i| interpolate(from.clip[i], to.clip[i], t)),
+            extra: std::array::from_fn(|i| interpolate(from.extra[i], to.extra[i], t)),
             cut: true,
         }
     }
+}
+
+/// The number that lies the part `t` of the way from one to the other.
+fn interpolate(from: f64, to: f64, t: f64) -> f64 {
+    from + (to - from) * t
 }
 
 /// A total order of clip coordinates.
@@ -152,13 +157,15 @@ fn order(a: &[f64; 4], b: &[f64; 4]) -> Ordering {
 
 /// Whether all corners lie beyond one side of the picture, before the near plane or behind the far plane.
 pub(crate) fn all_outside(corners: &[[f32; 4]; 3]) -> bool {
-    let all = |f: fn(&[f32; 4]) -> bool| corners.iter().all(f);
-    all(|[x, _, _, w]| x > w)
-        || all(|[x, _, _, w]| -x > *w)
-        || all(|[_, y, _, w]| y > w)
-        || all(|[_, y, _, w]| -y > *w)
-        || all(|[_, _, z, _]| *z < 0.0)
-        || all(|[_, _, z, w]| z > w)
+    let beyond_a_side: [fn(&[f32; 4]) -> bool; 6] = [
+        |[x, _, _, w]| x > w,
+        |[x, _, _, w]| -x > *w,
+        |[_, y, _, w]| y > w,
+        |[_, y, _, w]| -y > *w,
+        |[_, _, z, _]| *z < 0.0,
+        |[_, _, z, w]| z > w,
+    ];
+    beyond_a_side.iter().any(|beyond| corners.iter().all(beyond))
 }
 
 /// Whether every coordinate is a number of at most [`MAX_CLIP`].
@@ -176,16 +183,18 @@ mod tests {
         Vertex { clip, extra: [extra] }
     }
 
+    fn corners_on_the_near_plane(polygon: &Polygon<1>) -> Vec<Corner<1>> {
+        polygon.corners().iter().filter(|corner| corner.clip[2].abs() < 1e-6).copied().collect()
+    }
+
     #[test]
     fn a_shared_edge_is_cut_at_the_same_point_from_both_sides() {
         let a = vertex([0.3, -0.7, -1.3, 0.9], 1.0);
         let b = vertex([-2.1, 0.2, 1.7, 3.1], 7.0);
         let c = vertex([5.0, 5.0, 1.0, 3.0], 0.0);
         let d = vertex([-5.0, -5.0, 1.0, 3.0], 0.0);
-        let near = |p: Polygon<1>| -> Vec<Corner<1>> {
-            p.corners().iter().filter(|v| v.clip[2].abs() < 1e-6).copied().collect()
-        };
-        let (one, other) = (near(GUARD.clip(&[a, b, c])), near(GUARD.clip(&[b, a, d])));
+        let one = corners_on_the_near_plane(&GUARD.clip(&[a, b, c]));
+        let other = corners_on_the_near_plane(&GUARD.clip(&[b, a, d]));
         assert!(one.iter().any(|v| other.contains(v)), "{one:?} {other:?}");
     }
 

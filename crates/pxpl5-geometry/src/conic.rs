@@ -5,13 +5,13 @@ use pxpl5_wire::Quadratic;
 /// Bits of a silhouette's value within its regions: one less than the renderer evaluates, sign included.
 const VALUE_BITS: i32 = 46;
 
-/// Most bits of a root.
+/// Most bits of a root as the renderer computes it.
 pub(crate) const ROOT_BITS: i32 = 12;
 
 /// Most low bits of a silhouette that a root can leave out.
 const MAX_ROOT_SHIFT: i32 = 24;
 
-/// Largest left shift of a root.
+/// Largest left shift of a root before it is subtracted from a depth.
 const MAX_DEPTH_SHIFT: i32 = 20;
 
 /// `constant + x dx + y dy + xx dx^2 + xy dx dy + yy dy^2`, (dx, dy) in pixels from `origin`.
@@ -45,6 +45,11 @@ fn exponent_above(value: f64) -> i32 {
     ((value.to_bits() >> 52) & 0x7ff) as i32 - 1022
 }
 
+/// The nearest integer, ties up; values beyond 64 bits are limited.
+pub(crate) fn nearest_integer(value: f64) -> i64 {
+    (value + 0.5).floor() as i64
+}
+
 impl Conic {
     pub(crate) fn scaled(self, factor: f64) -> Self {
         Self {
@@ -60,7 +65,8 @@ impl Conic {
 
     /// The same conic from another origin.
     pub(crate) fn around(&self, origin: [f64; 2]) -> Self {
-        let (dx, dy) = (origin[0] - self.origin[0], origin[1] - self.origin[1]);
+        let dx = origin[0] - self.origin[0];
+        let dy = origin[1] - self.origin[1];
         Self {
             origin,
             constant: self.at(dx, dy),
@@ -96,7 +102,7 @@ impl Conic {
         [self.origin[0] + dx, self.origin[1] + dy]
     }
 
-    /// The greatest value.
+    /// The greatest value of an ellipse that is positive inside.
     pub(crate) fn peak_value(&self) -> f64 {
         let [dx, dy] = self.to_peak();
         self.constant + (self.x * dx + self.y * dy) * 0.5
@@ -110,7 +116,8 @@ impl Conic {
 
     /// Least and greatest x and y of the ellipse in the frame's pixels; `None` if it is none (NaN, overflow).
     pub(crate) fn bounds(&self) -> Option<[[f64; 2]; 2]> {
-        let ([x, y], [half_x, half_y]) = (self.peak(), self.half_size());
+        let [x, y] = self.peak();
+        let [half_x, half_y] = self.half_size();
         let bounds = [[x - half_x, x + half_x], [y - half_y, y + half_y]];
         bounds.iter().flatten().all(|v| v.is_finite()).then_some(bounds)
     }
@@ -137,16 +144,22 @@ impl Conic {
 
     /// Greatest absolute value at the corners of a rectangle; with the peak this bounds a concave conic.
     fn greatest_on(&self, [across, down]: [[i32; 2]; 2]) -> f64 {
-        let corner = |x: i32, y: i32| self.at(f64::from(x) - self.origin[0], f64::from(y) - self.origin[1]).abs();
-        let pairs = across.into_iter().flat_map(|x| down.map(|y| corner(x, y)));
-        pairs.fold(0.0, f64::max)
+        let values = across.into_iter().flat_map(|x| down.map(|y| self.at_pixel(x, y).abs()));
+        values.fold(0.0, f64::max)
+    }
+
+    /// The value at a pixel of the frame.
+    fn at_pixel(&self, x: i32, y: i32) -> f64 {
+        self.at(f64::from(x) - self.origin[0], f64::from(y) - self.origin[1])
     }
 
     /// Coefficients as integers around pixel (px, py), then exactly around pixel (0, 0).
     fn rounded(&self, px: i64, py: i64) -> Quadratic {
-        let integer = |v: f64| (v + 0.5).floor() as i64;
-        let (xx, xy, yy) = (integer(self.xx), integer(self.xy), integer(self.yy));
-        let (x, y) = (integer(self.x), integer(self.y));
+        let xx = nearest_integer(self.xx);
+        let xy = nearest_integer(self.xy);
+        let yy = nearest_integer(self.yy);
+        let x = nearest_integer(self.x);
+        let y = nearest_integer(self.y);
         Quadratic {
             xx,
             xy,
@@ -155,7 +168,7 @@ impl Conic {
             y: y.wrapping_sub(yy.wrapping_mul(2 * py)).wrapping_sub(xy.wrapping_mul(px)),
             one: Quadratic { xx, xy, yy, x: x.wrapping_neg(), y: y.wrapping_neg(), one: 0 }
                 .at(px as i32, py as i32)
-                .wrapping_add(integer(self.constant)),
+                .wrapping_add(nearest_integer(self.constant)),
         }
     }
 }

@@ -6,22 +6,22 @@ use serde::{Deserialize, Serialize};
 /// A triangle in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle {
-    /// Corners; either winding.
+    /// Corners in world coordinates, in either winding.
     pub positions: [Vec3; 3],
     /// Normals at the corners, of any length (zero counts as facing the eye).
     pub normals: [Vec3; 3],
-    /// Red, green and blue at the corners.
+    /// Red, green and blue at the corners, 0 to 255 each.
     pub colours: [[u8; 3]; 3],
 }
 
 /// A sphere in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
-    /// Centre.
+    /// Centre in world coordinates.
     pub centre: Vec3,
-    /// Radius, not negative.
+    /// Radius in units of the world, not negative.
     pub radius: f32,
-    /// Red, green and blue.
+    /// Red, green and blue, 0 to 255 each.
     pub colour: [u8; 3],
 }
 

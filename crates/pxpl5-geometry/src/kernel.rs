@@ -37,9 +37,9 @@ pub enum Surface {
 /// Code for one kind of triangle and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
-    /// How it was made.
+    /// How the code was made: by a compiler or by hand.
     pub schedule: Schedule,
-    /// Kind of triangle.
+    /// Kind of triangle that it sets up.
     pub surface: Surface,
     /// Whether the picture is a field instead of a frame.
     pub field: bool,
@@ -103,8 +103,10 @@ impl Kernel {
     #[must_use]
     pub fn parameters(&self, transform: &Transform, light: &Light, heads: &Heads) -> [Word; PARAMETER_WORDS] {
         let mut words = Words([0; PARAMETER_WORDS]);
-        let (clip, eye) = (transform.to_clip.rows(), transform.to_eye.rows());
-        let (guard, screen) = (&transform.guard, &transform.to_screen);
+        let clip = transform.to_clip.rows();
+        let eye = transform.to_eye.rows();
+        let guard = &transform.guard;
+        let screen = &transform.to_screen;
         words.singles(0, clip.as_flattened());
         words.singles(64, &transform.to_clip.origin().to_array());
         words.singles(80, &[guard.x, guard.y, clip::MIN_W, MAX_CLIP]);
@@ -159,9 +161,13 @@ impl Words {
     }
 
     fn doubles(&mut self, at: usize, values: &[f64]) {
-        let halves = |value: &f64| [value.to_bits() as Word, (value.to_bits() >> 32) as Word];
-        values.iter().enumerate().for_each(|(n, value)| self.integers(at + 8 * n, &halves(value)));
+        values.iter().enumerate().for_each(|(n, value)| self.integers(at + 8 * n, &halves(*value)));
     }
+}
+
+/// A double as the i860 holds it in memory: the low half first.
+const fn halves(value: f64) -> [Word; 2] {
+    [value.to_bits() as Word, (value.to_bits() >> 32) as Word]
 }
 
 /// A triangle as the display list holds it.

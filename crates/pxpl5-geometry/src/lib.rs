@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! Triangle --> Transform ---> ScreenTriangle ---> GouraudTriangle, PhongTriangle   (expressions)
-//!                   | see          | outline.regions  ^
-//!                   +--> SeenVertex, SeenNormal, ... -+   (shared vertices, each once)
+//!                   |              | outline.regions  ^
+//!                   +--> ScreenVertex --> TriangleLanes -+   (shared vertices once, several triangles together)
 //! Sphere ----> Transform ---> ScreenSphere -----> GouraudSphere, PhongSphere
 //!                   |
 //!              SetupStats: everything that was dropped, cut or limited
@@ -56,7 +56,8 @@
 //!     normals: [Vec3::Z; 3],
 //!     colours: [[255, 0, 0]; 3],
 //! };
-//! let (mut stats, mut commands) = (SetupStats::default(), Vec::new());
+//! let mut stats = SetupStats::default();
+//! let mut commands = Vec::new();
 //! transform.gouraud(&triangle, &Light::HEADLIGHT, &mut stats, |t| commands.push(t));
 //! let regions: Vec<u16> = commands[0].outline.regions.iter().map(|r| r.0).collect();
 //! let planes = commands[0].gouraud(transform.viewport(), &mut stats);
@@ -81,31 +82,31 @@ mod clip;
 mod conic;
 mod input;
 pub mod kernel;
+mod lanes;
 mod light;
 mod plane;
 mod screen;
-mod seen;
 mod sphere;
 mod sphere_setup;
 mod stats;
-mod together;
 mod touched;
 mod transform;
+mod vertex;
 mod view;
 
 pub use bin::RegionMask;
 pub use clip::MAX_CLIP;
 pub use input::{Light, Sphere, Triangle};
+pub use lanes::{GouraudLanes, LANES, PhongLanes, TriangleLanes};
 pub use plane::MAX_SLOPE;
 pub use screen::{
     DEPTH_FAR, DEPTH_NEAR, GUARD_PIXELS, GouraudTriangle, LitColours, NORMAL_UNIT, Outline, PhongTriangle,
     ScreenTriangle, SurfaceNormals,
 };
-pub use seen::{SeenSurface, SeenTriangle, SeenVertex};
 pub use sphere::ScreenSphere;
 pub use sphere_setup::{GouraudSphere, PhongSphere, SphereSetup};
 pub use stats::SetupStats;
-pub use together::{GouraudTogether, PhongTogether, TOGETHER, Together};
 pub use touched::{Touch, Touched};
 pub use transform::{Culling, Transform, TriangleEnds};
+pub use vertex::{ScreenVertex, UnclippedTriangle, VertexSurface};
 pub use view::{MAX_PICTURE, ViewError, ViewTransform, Viewport};

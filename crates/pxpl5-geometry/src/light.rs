@@ -1,7 +1,7 @@
 //! Lighting of vertices, and normals for deferred shading.
 
-use crate::Light;
 use crate::view::FromWorld;
+use crate::{Light, Triangle};
 use glam::Vec3;
 
 /// A light seen from one eye.
@@ -51,6 +51,12 @@ impl<'a> Lighting<'a> {
         colour.map(|c| f32::from(c) * 256.0 * intensity)
     }
 
+    /// [`Self::colour`] at a corner of a triangle.
+    #[inline(always)]
+    pub(crate) fn corner_colour(&self, triangle: &Triangle, corner: usize) -> [f32; 3] {
+        self.colour(triangle.positions[corner], triangle.normals[corner], triangle.colours[corner])
+    }
+
     /// Part of the colour seen, 0 to 1; 0 for NaN.
     #[inline(always)]
     fn intensity(&self, cosine: f32) -> f32 {
@@ -76,6 +82,10 @@ pub(crate) fn unit_and_facing(to_eye: &FromWorld, position: Vec3, normal: Vec3) 
 #[inline(always)]
 pub(crate) fn turned([a, b, c]: [[f32; 3]; 3], facing: [f32; 3]) -> [[f32; 3]; 3] {
     let away = (facing[0] + facing[1]) + facing[2] < 0.0;
-    let sign = |[x, y, z]: [f32; 3]| if away { [-x, -y, -z] } else { [x, y, z] };
-    [sign(a), sign(b), sign(c)]
+    [turned_over_if(away, a), turned_over_if(away, b), turned_over_if(away, c)]
+}
+
+#[inline(always)]
+fn turned_over_if(away: bool, [x, y, z]: [f32; 3]) -> [f32; 3] {
+    if away { [-x, -y, -z] } else { [x, y, z] }
 }

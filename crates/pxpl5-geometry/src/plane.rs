@@ -35,6 +35,12 @@ pub(crate) fn flat(v: [f64; 3]) -> Linear {
     Linear::constant(rounded(((v[0] + v[1]) + v[2]) / 3.0))
 }
 
+/// From a corner, in subpixels, to the centre of a pixel, in pixels.
+#[inline(always)]
+fn pixels_to_centre(corner: i32, pixel: i32) -> f64 {
+    f64::from(16 * pixel + 8 - corner) * (1.0 / 16.0)
+}
+
 /// What the planes of one triangle share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Planes {
@@ -51,14 +57,14 @@ pub(crate) struct Planes {
 impl Planes {
     /// For the corners of `outline`, most exact at the frame's pixel `reference`.
     #[inline(always)]
-    pub(crate) fn of(outline: &Outline, reference: [i32; 2]) -> Self {
-        let (x, y) = (&outline.x, &outline.y);
-        let pixels = |from: i32, pixel: i32| f64::from(16 * pixel + 8 - from) * (1.0 / 16.0);
+    pub(crate) fn for_outline(outline: &Outline, reference: [i32; 2]) -> Self {
+        let x = &outline.x;
+        let y = &outline.y;
         Self {
             x: [f64::from(x[1] - x[0]), f64::from(x[2] - x[0])],
             y: [f64::from(y[1] - y[0]), f64::from(y[2] - y[0])],
             per_pixel: 16.0 / outline.twice_area() as f64,
-            to_reference: [pixels(x[0], reference[0]), pixels(y[0], reference[1])],
+            to_reference: [pixels_to_centre(x[0], reference[0]), pixels_to_centre(y[0], reference[1])],
             reference,
         }
     }
@@ -68,7 +74,8 @@ impl Planes {
     /// The cross products are sums of two products below 2^32 * 2^17, hence exact.
     #[inline(always)]
     pub(crate) fn through(&self, v: [f64; 3], stats: &mut SetupStats) -> Linear {
-        let (d1, d2) = (v[1] - v[0], v[2] - v[0]);
+        let d1 = v[1] - v[0];
+        let d2 = v[2] - v[0];
         let slope_x = (d1 * self.y[1] - d2 * self.y[0]) * self.per_pixel;
         let slope_y = (d2 * self.x[0] - d1 * self.x[1]) * self.per_pixel;
         if slope_x.abs() > MAX_SLOPE || slope_y.abs() > MAX_SLOPE {
@@ -76,7 +83,8 @@ impl Planes {
             return flat(v);
         }
         let there = (v[0] + slope_x * self.to_reference[0]) + slope_y * self.to_reference[1];
-        let (a, b) = (rounded(slope_x), rounded(slope_y));
+        let a = rounded(slope_x);
+        let b = rounded(slope_y);
         let back = a.wrapping_mul(self.reference[0]).wrapping_add(b.wrapping_mul(self.reference[1]));
         Linear { a, b, c: rounded(there).wrapping_sub(back) }
     }

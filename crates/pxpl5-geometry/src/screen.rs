@@ -11,7 +11,7 @@ use pxpl5_wire::{Linear, format};
 /// sum leaves 32 bits.
 pub const GUARD_PIXELS: i32 = 4096;
 
-/// Subpixels of a pixel.
+/// Subpixels along one side of a pixel.
 pub(crate) const SUBPIXELS: i32 = 1 << format::SUBPIXEL_BITS;
 
 /// Depth of the near plane in pixel depth with [`format::Z_FRACTION_BITS`] fraction bits: 8 units of pixel depth.
@@ -65,16 +65,16 @@ pub struct Outline {
     pub y: [i32; 3],
     /// Depths, from [`DEPTH_NEAR`] to [`DEPTH_FAR`].
     pub z: [u32; 3],
-    /// Regions touched.
+    /// The regions that the triangle touches, to which its commands go.
     pub regions: RegionMask,
 }
 
 /// A triangle on the screen with what its surface needs, `A` for each corner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScreenTriangle<A> {
-    /// Where it is.
+    /// Corners, depths and the regions touched.
     pub outline: Outline,
-    /// What it looks like.
+    /// Colours or normals of the corners, in the outline's order.
     pub surface: A,
 }
 
@@ -115,7 +115,7 @@ pub struct PhongTriangle {
     /// x, y, z of the normal in eye coordinates with [`format::NORMAL_FRACTION_BITS`] fraction bits below
     /// [`format::NORMAL_ONE_BITS`].
     pub normal: [Linear; 3],
-    /// Red, green and blue.
+    /// Red, green and blue of the whole triangle, 0 to 255 each.
     pub colour: [u8; 3],
 }
 
@@ -123,7 +123,8 @@ impl Outline {
     /// Twice the area in 1/256 square px; positive unless the corners lie on one line.
     #[inline(always)]
     pub(crate) fn twice_area(&self) -> i64 {
-        let (x, y) = (&self.x, &self.y);
+        let x = &self.x;
+        let y = &self.y;
         i64::from(x[1] - x[0]) * i64::from(y[2] - y[0]) - i64::from(y[1] - y[0]) * i64::from(x[2] - x[0])
     }
 
@@ -147,7 +148,8 @@ impl Outline {
     /// triangle only along a top or a left edge: elsewhere k is less by one.
     #[inline(always)]
     fn edge(&self, from: usize, to: usize) -> Linear {
-        let (dx, dy) = (self.x[to] - self.x[from], self.y[to] - self.y[from]);
+        let dx = self.x[to] - self.x[from];
+        let dy = self.y[to] - self.y[from];
         let top_left = dy < 0 || (dy == 0 && dx > 0);
         let k = i64::from(dx) * i64::from(SUBPIXELS / 2 - self.y[from])
             - i64::from(dy) * i64::from(SUBPIXELS / 2 - self.x[from])
@@ -189,25 +191,37 @@ impl Outline {
 
     /// The planes through the corners' depths and three more integers of each, at the picture's pixels.
     #[inline(always)]
-    fn planes(&self, [a, b, c]: [[f32; 3]; 3], viewport: &Viewport, stats: &mut SetupStats) -> [Linear; 4] {
-        let planes = plane::Planes::of(self, self.middle(viewport));
-        let mut through = |v: [f64; 3]| for_rows(planes.through(v, stats), viewport);
+    fn planes(&self, corners: [[f32; 3]; 3], viewport: &Viewport, stats: &mut SetupStats) -> [Linear; 4] {
+        let planes = plane::Planes::for_outline(self, self.middle(viewport));
         let [za, zb, zc] = self.z;
-        let z = through([f64::from(za), f64::from(zb), f64::from(zc)]);
-        let mut of = |i: usize| through([f64::from(a[i]), f64::from(b[i]), f64::from(c[i])]);
-        [z, of(0), of(1), of(2)]
+        let depths = [f64::from(za), f64::from(zb), f64::from(zc)];
+        [
+            for_rows(planes.through(depths, stats), viewport),
+            for_rows(planes.through(component(&corners, 0), stats), viewport),
+            for_rows(planes.through(component(&corners, 1), stats), viewport),
+            for_rows(planes.through(component(&corners, 2), stats), viewport),
+        ]
     }
 
     /// The picture's pixel, in frame lines, nearest to the middle of the bounding box: planes are most exact there.
     #[inline(always)]
     fn middle(&self, viewport: &Viewport) -> [i32; 2] {
-        let centre = |v: &[i32; 3], size: u32| {
-            let [low, high] = extent(v);
-            let last = size as i32 * SUBPIXELS - 1;
-            (low.clamp(0, last) + high.clamp(0, last)) / (2 * SUBPIXELS)
-        };
-        [centre(&self.x, viewport.grid().width), centre(&self.y, viewport.frame_lines())]
+        [middle_pixel(&self.x, viewport.grid().width), middle_pixel(&self.y, viewport.frame_lines())]
     }
+}
+
+/// One of the three numbers that each corner has.
+#[inline(always)]
+fn component([a, b, c]: &[[f32; 3]; 3], number: usize) -> [f64; 3] {
+    [f64::from(a[number]), f64::from(b[number]), f64::from(c[number])]
+}
+
+/// The pixel in the middle of what a picture of `size` pixels shows between the outermost corners, along one axis.
+#[inline(always)]
+fn middle_pixel(corners: &[i32; 3], size: u32) -> i32 {
+    let [low, high] = extent(corners);
+    let last = size as i32 * SUBPIXELS - 1;
+    (low.clamp(0, last) + high.clamp(0, last)) / (2 * SUBPIXELS)
 }
 
 /// An expression over the frame's pixels, restated for the rows of the picture: exactly the same values.

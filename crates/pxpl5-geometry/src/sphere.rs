@@ -18,7 +18,7 @@ use crate::bin::Range;
 use crate::conic::Conic;
 use crate::screen::{DEPTH_FAR, DEPTH_NEAR};
 use crate::transform::Transform;
-use crate::view::{Columns, FromWorld};
+use crate::view::{Columns, FromWorld, dot};
 use crate::{RegionMask, SetupStats, Sphere};
 
 /// Largest eye coordinate and radius of a sphere; the squares of larger ones could overflow.
@@ -39,25 +39,27 @@ pub(crate) struct Lens {
 
 impl Lens {
     /// `None` unless the matrix is a perspective or parallel projection along -Z, possibly off centre.
-    pub(crate) fn of(projection: &Columns, width: u32, lines: u32) -> Option<Self> {
-        let at = |row: usize, column: usize| f64::from(projection.0[column][row]);
-        let zero = |cells: &[(usize, usize)]| cells.iter().all(|&(r, c)| at(r, c) == 0.0);
-        if !zero(&[(0, 1), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1)]) {
+    pub(crate) fn from_projection(projection: &Columns, width: u32, lines: u32) -> Option<Self> {
+        if !projection.is_zero_at(&[(0, 1), (1, 0), (2, 0), (2, 1), (3, 0), (3, 1)]) {
             return None;
         }
-        let parallel = match (at(3, 2), at(3, 3)) {
-            (-1.0, 0.0) if zero(&[(0, 3), (1, 3)]) => false,
-            (0.0, 1.0) if zero(&[(0, 2), (1, 2)]) => true,
+        let parallel = match (projection.cell(3, 2), projection.cell(3, 3)) {
+            (-1.0, 0.0) if projection.is_zero_at(&[(0, 3), (1, 3)]) => false,
+            (0.0, 1.0) if projection.is_zero_at(&[(0, 2), (1, 2)]) => true,
             _ => return None,
         };
-        let [slope, constant] = if parallel { [at(2, 2), at(2, 3)] } else { [at(2, 3), -at(2, 2)] };
-        let shift = |row: usize| if parallel { -at(row, 3) } else { at(row, 2) };
+        let [shift_x, shift_y, slope, constant] = if parallel {
+            [-projection.cell(0, 3), -projection.cell(1, 3), projection.cell(2, 2), projection.cell(2, 3)]
+        } else {
+            [projection.cell(0, 2), projection.cell(1, 2), projection.cell(2, 3), -projection.cell(2, 2)]
+        };
         let [half_x, half_y] = [width, lines].map(|n| f64::from(n) * 0.5);
-        let (scale_x, scale_y) = (at(0, 0), at(1, 1));
+        let scale_x = projection.cell(0, 0);
+        let scale_y = projection.cell(1, 1);
         let lens = Self {
             parallel,
             step: [1.0 / (half_x * scale_x), -1.0 / (half_y * scale_y)],
-            corner: [(0.5 / half_x - 1.0 + shift(0)) / scale_x, (1.0 - 0.5 / half_y + shift(1)) / scale_y],
+            corner: [(0.5 / half_x - 1.0 + shift_x) / scale_x, (1.0 - 0.5 / half_y + shift_y) / scale_y],
             constant,
             slope,
         };
@@ -76,7 +78,7 @@ impl Lens {
 pub struct ScreenSphere {
     /// Regions that the bounding box of its picture meets: all that it touches, and perhaps corners beside it.
     pub regions: RegionMask,
-    /// Red, green and blue.
+    /// Red, green and blue, 0 to 255 each.
     pub colour: [u8; 3],
     /// The picture, with `Q = bulge^2`: how far, in units of the depth expression, the surface stands before its
     /// plane of depth.
@@ -94,16 +96,12 @@ impl ScreenSphere {
     /// frame down.
     #[must_use]
     pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
-        let overlap = |bounds: [f64; 2], [first, last]: [i32; 2]| {
-            let range = pixels(bounds);
-            range.first <= last && range.last >= first
-        };
-        self.conic.bounds().is_some_and(|[x, y]| overlap(x, across) && overlap(y, lines))
+        self.conic.bounds().is_some_and(|[x, y]| overlaps(pixels(x), across) && overlaps(pixels(y), lines))
     }
 }
 
-pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
+fn overlaps(range: Range, [first, last]: [i32; 2]) -> bool {
+    range.first <= last && range.last >= first
 }
 
 fn unit(v: [f64; 3]) -> [f64; 3] {
@@ -129,8 +127,8 @@ impl EyeSphere {
     fn new(to_eye: &FromWorld, sphere: &Sphere) -> Option<Self> {
         let [x, y, z, _] = to_eye.point(sphere.centre).map(f64::from);
         let radius = f64::from(sphere.radius) * to_eye.scale();
-        let fits = |v: f64| v.abs() <= MAX_COORDINATE;
-        (radius >= 0.0 && [x, y, z, radius].into_iter().all(fits)).then_some(Self { centre: [x, y, z], radius })
+        let fits = [x, y, z, radius].into_iter().all(|v| v.abs() <= MAX_COORDINATE);
+        (radius >= 0.0 && fits).then_some(Self { centre: [x, y, z], radius })
     }
 
     /// Greatest distance t on the silhouette under perspective: the farthest point of the circle of tangents.
@@ -151,10 +149,10 @@ enum Sight {
 
 impl Lens {
     fn sight(&self, sphere: &EyeSphere) -> Sight {
-        let (front, back) = (-sphere.centre[2] - sphere.radius, -sphere.centre[2] + sphere.radius);
-        let before = |t: f64| (!self.parallel && t <= 0.0) || self.depth(t) < 0.0;
-        if before(front) {
-            return if before(back) { Sight::Outside } else { Sight::AcrossNear };
+        let front = -sphere.centre[2] - sphere.radius;
+        let back = -sphere.centre[2] + sphere.radius;
+        if self.is_before_near(front) {
+            return if self.is_before_near(back) { Sight::Outside } else { Sight::AcrossNear };
         }
         if self.depth(front) > 1.0 {
             return Sight::Outside;
@@ -165,6 +163,12 @@ impl Lens {
         Sight::Visible
     }
 
+    /// Whether distance t along -Z lies before the near plane, or behind the eye.
+    fn is_before_near(&self, t: f64) -> bool {
+        (!self.parallel && t <= 0.0) || self.depth(t) < 0.0
+    }
+
+    /// Distance along -Z of the silhouette's deepest point.
     fn deepest(&self, sphere: &EyeSphere) -> f64 {
         if self.parallel { -sphere.centre[2] } else { sphere.farthest_tangent() }
     }
@@ -177,8 +181,10 @@ impl Lens {
     /// The picture scaled to bulges, and the plane of depth around its centre.
     fn picture(&self, sphere: &EyeSphere) -> (Conic, [f64; 3]) {
         let range = f64::from(DEPTH_FAR - DEPTH_NEAR);
-        let ([cx, cy, cz], r) = (sphere.centre, sphere.radius);
-        let ([gx, gy], rr) = (self.step, r * r);
+        let [cx, cy, cz] = sphere.centre;
+        let r = sphere.radius;
+        let [gx, gy] = self.step;
+        let rr = r * r;
         let base = f64::from(DEPTH_NEAR);
         if self.parallel {
             let k = range * self.slope;
@@ -194,7 +200,8 @@ impl Lens {
             let depth = base + range * self.depth(-cz);
             return (conic.scaled(k * k), [depth, 0.0, 0.0]);
         }
-        let (dx, dy) = (cx / -cz, cy / -cz);
+        let dx = cx / -cz;
+        let dy = cy / -cz;
         let dd = (dx * dx + dy * dy) + 1.0;
         let conic = Conic {
             origin: self.pixel(dx, dy),
@@ -270,6 +277,10 @@ const SLACK: f64 = 1.0 / 64.0;
 
 /// The pixels whose centres lie in an interval of pixel coordinates (0 is the centre of pixel 0).
 fn pixels([low, high]: [f64; 2]) -> Range {
-    let limit = |v: f64| v.clamp(-4096.0, 4096.0);
-    Range { first: limit((low - SLACK).ceil()) as i32, last: limit((high + SLACK).floor()) as i32 }
+    Range { first: near_screen((low - SLACK).ceil()) as i32, last: near_screen((high + SLACK).floor()) as i32 }
+}
+
+/// A pixel coordinate limited to what fits in 32 bits in every later step.
+fn near_screen(pixel: f64) -> f64 {
+    pixel.clamp(-4096.0, 4096.0)
 }

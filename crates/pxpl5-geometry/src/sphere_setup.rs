@@ -29,7 +29,7 @@ pub struct SphereSetup {
 /// A sphere with interpolated colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GouraudSphere {
-    /// Silhouette and depth.
+    /// Which pixels it covers, and how deep it is there.
     pub setup: SphereSetup,
     /// Linear part of red, green and blue with [`format::COLOUR_FRACTION_BITS`].
     pub rgb: [Linear; 3],
@@ -40,11 +40,11 @@ pub struct GouraudSphere {
 /// A sphere for deferred shading. The z of its normal is `root >> 2`; x and y have the same scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PhongSphere {
-    /// Silhouette and depth.
+    /// Which pixels it covers, and how deep it is there.
     pub setup: SphereSetup,
     /// x and y of the normal in eye coordinates with [`format::NORMAL_FRACTION_BITS`].
     pub normal: [Linear; 2],
-    /// Red, green and blue.
+    /// Red, green and blue of the whole sphere, 0 to 255 each.
     pub colour: [u8; 3],
 }
 
@@ -60,21 +60,30 @@ impl Slope {
     /// limited, the plane counted as flattened.
     fn fixed(&self, pixel: [i32; 2], stats: &mut SetupStats) -> Linear {
         const LIMIT: f64 = 2_147_483_648.0;
-        let integer = |v: f64| (v + 0.5).floor() as i64 as i32;
         if self.slope.iter().any(|s| s.abs() >= LIMIT) {
             stats.flattened_planes += 1;
-            return Linear::constant(integer(self.value));
+            return Linear::constant(modulo_2_32(self.value));
         }
-        let offset = |i: usize| f64::from(pixel[i]) - self.origin[i];
-        let there = (self.value + self.slope[0] * offset(0)) + self.slope[1] * offset(1);
-        let [a, b] = self.slope.map(integer);
+        let offset: [f64; 2] = std::array::from_fn(|i| f64::from(pixel[i]) - self.origin[i]);
+        let there = (self.value + self.slope[0] * offset[0]) + self.slope[1] * offset[1];
+        let [a, b] = self.slope.map(modulo_2_32);
         let back = a.wrapping_mul(pixel[0]).wrapping_add(b.wrapping_mul(pixel[1]));
-        Linear { a, b, c: integer(there).wrapping_sub(back) }
+        Linear { a, b, c: modulo_2_32(there).wrapping_sub(back) }
     }
+}
+
+/// The nearest integer's low 32 bits.
+fn modulo_2_32(value: f64) -> i32 {
+    conic::nearest_integer(value) as i32
 }
 
 fn rows(linear: Linear, viewport: &Viewport) -> Linear {
     crate::screen::for_rows(linear, viewport)
+}
+
+/// The line of the frame that a row of the picture is.
+fn frame_line(viewport: &Viewport, row: u32) -> i32 {
+    (row * viewport.line_step() + viewport.first_line()) as i32
 }
 
 impl ScreenSphere {
@@ -85,9 +94,11 @@ impl ScreenSphere {
         let bounds = corners.fold([[u32::MAX, 0], [u32::MAX, 0]], |[x, y], [left, top, ..]| {
             [[x[0].min(left), x[1].max(left)], [y[0].min(top), y[1].max(top)]]
         });
-        let line = |row: u32| (row * viewport.line_step() + viewport.first_line()) as i32;
         let [[left, right], [top, bottom]] = bounds;
-        [[left as i32, (right + REGION_SIZE - 1) as i32], [line(top), line(bottom + REGION_SIZE - 1)]]
+        [
+            [left as i32, (right + REGION_SIZE - 1) as i32],
+            [frame_line(viewport, top), frame_line(viewport, bottom + REGION_SIZE - 1)],
+        ]
     }
 
     /// Where planes are rounded: the visible part's middle.
@@ -114,7 +125,8 @@ impl ScreenSphere {
         let half_step = conic::power_of_two(i32::from(conic.depth_shift) - 1);
         let room = (self.front - f64::from(DEPTH_NEAR) * 0.5).max(0.0);
         let plane = Slope { origin: self.conic.origin, value: value - half_step.min(room), slope: [slope_x, slope_y] };
-        let (step, first) = (viewport.line_step(), viewport.first_line());
+        let step = viewport.line_step();
+        let first = viewport.first_line();
         let setup = SphereSetup {
             silhouette: conic::for_rows(conic.quadratic, step.into(), first.into()),
             root_shift: conic.root_shift,
@@ -138,10 +150,11 @@ impl ScreenSphere {
     pub fn gouraud(&self, viewport: &Viewport, light: &Light, stats: &mut SetupStats) -> GouraudSphere {
         let (setup, conic) = self.common(viewport, stats);
         let direction = light.direction.map(f64::from);
-        let [across, up, towards] = self.axes.map(|axis| crate::sphere::dot(axis, direction));
+        let [across, up, towards] = self.axes.map(|axis| crate::view::dot(axis, direction));
         let middle = self.middle(self.rectangle(viewport));
         let unit = f64::from(1_u32 << format::COLOUR_FRACTION_BITS);
-        let (ambient, diffuse) = (f64::from(light.ambient), f64::from(light.diffuse));
+        let ambient = f64::from(light.ambient);
+        let diffuse = f64::from(light.diffuse);
         let rgb = self.colour.map(|c| {
             let full = f64::from(c) * unit;
             let scale = [across, up].map(|l| full * diffuse * l);

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Counts of everything that did not go straight through. All start at zero; callers add them up over GPs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SetupStats {
-    /// Triangles handed in.
+    /// Triangles handed in, seen or not.
     pub triangles: u64,
     /// Screen triangles handed out (clipping can give several, or none, per triangle).
     pub screen_triangles: u64,
@@ -24,9 +24,9 @@ pub struct SetupStats {
     pub untouched: u64,
     /// Depth, colour or normal planes that were steeper than [`crate::MAX_SLOPE`] and were made flat.
     pub flattened_planes: u64,
-    /// Spheres handed in.
+    /// Spheres handed in, seen or not.
     pub spheres: u64,
-    /// Spheres handed out.
+    /// Spheres handed out: those on the screen.
     pub screen_spheres: u64,
     /// Spheres dropped because the near plane cuts them or the eye is inside.
     pub spheres_across_near: u64,

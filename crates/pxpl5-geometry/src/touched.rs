@@ -1,8 +1,8 @@
 //! The regions that the triangles of a mesh touch, found once for all who hold some of them.
 
 use crate::bin::{Binner, Range, quotient};
-use crate::together::{Lanes, TOGETHER};
-use crate::{RegionMask, SeenVertex, SetupStats, Transform};
+use crate::lanes::{LANES, Lanes};
+use crate::{RegionMask, ScreenVertex, SetupStats, Transform};
 use multiversion::multiversion;
 use pxpl5_wire::RegionId;
 
@@ -11,13 +11,13 @@ use pxpl5_wire::RegionId;
 pub enum Touch {
     /// Not known before it is clipped, which [`Transform::bin`] does.
     NeedsClipping,
-    /// No area.
+    /// It has no area after snapping.
     Degenerate,
     /// It faces away, and such are culled.
     BackFacing,
-    /// No region.
+    /// It touches no region: off the screen, or between pixel centres.
     Untouched,
-    /// One region.
+    /// It touches this region alone.
     Region(RegionId),
     /// These regions, more than one.
     Regions(RegionMask),
@@ -25,7 +25,7 @@ pub enum Touch {
 
 impl Touch {
     #[inline(always)]
-    pub(crate) const fn of(regions: RegionMask) -> Self {
+    pub(crate) const fn from_mask(regions: RegionMask) -> Self {
         match regions.len() {
             0 => Self::Untouched,
             1 => Self::Region(RegionId(regions.bits().trailing_zeros() as u16)),
@@ -72,7 +72,7 @@ impl Touched {
     /// What was found of triangle `i`.
     ///
     /// # Panics
-    /// If there are not as many.
+    /// If there are not as many triangles.
     #[inline(always)]
     #[must_use]
     pub fn get(&self, i: usize) -> Touch {
@@ -107,11 +107,11 @@ impl Transform {
     /// # Panics
     /// If there is no vertex at such a place.
     #[must_use]
-    pub fn touched(&self, vertices: &[SeenVertex], mut triangles: impl Iterator<Item = [usize; 3]>) -> Touched {
+    pub fn touched(&self, vertices: &[ScreenVertex], mut triangles: impl Iterator<Item = [usize; 3]>) -> Touched {
         let mut all = Touched { codes: Vec::with_capacity(triangles.size_hint().0), several: Vec::new() };
-        let mut some = Corners::default();
+        let mut some = CornerLanes::default();
         while some.take(vertices, &mut triangles) > 0 {
-            let found = find(&some, &self.binner, self.culls_back_faces());
+            let found = touch_lanes(&some, &self.binner, self.culls_back_faces());
             for lane in 0..some.len {
                 match found.codes[lane] {
                     _ if some.outside[lane] => all.codes.push(NEEDS_CLIPPING),
@@ -124,18 +124,19 @@ impl Transform {
     }
 
     /// A triangle whose box lies in more than one region.
-    fn touch_several(&self, corners: &Corners, found: &Found, lane: usize) -> Touch {
-        let [p, q, r] = if corners.counterclockwise(lane) { [0, 2, 1] } else { [0, 1, 2] };
-        let clockwise = |v: &[Lanes<i32>; 3]| [v[p][lane], v[q][lane], v[r][lane]];
-        let range = |[first, last]: &[Lanes<i32>; 2]| Range { first: first[lane], last: last[lane] };
-        let (x, y) = (clockwise(&corners.x), clockwise(&corners.y));
-        Touch::of(self.binner.test_edges(x, y, range(&found.x), range(&found.y)))
+    fn touch_several(&self, corners: &CornerLanes, found: &LaneTouches, lane: usize) -> Touch {
+        let [x, y] = corners.clockwise(lane);
+        Touch::from_mask(self.binner.test_edges(x, y, range_in(lane, &found.x), range_in(lane, &found.y)))
     }
 }
 
-/// Corners of some triangles.
+fn range_in(lane: usize, [first, last]: &[Lanes<i32>; 2]) -> Range {
+    Range { first: first[lane], last: last[lane] }
+}
+
+/// CornerLanes of some triangles.
 #[derive(Debug, Default)]
-struct Corners {
+struct CornerLanes {
     len: usize,
     x: [Lanes<i32>; 3],
     y: [Lanes<i32>; 3],
@@ -143,12 +144,12 @@ struct Corners {
     outside: Lanes<bool>,
 }
 
-impl Corners {
+impl CornerLanes {
     /// Takes the next triangles; gives their number.
     #[inline(always)]
-    fn take(&mut self, vertices: &[SeenVertex], triangles: &mut impl Iterator<Item = [usize; 3]>) -> usize {
+    fn take(&mut self, vertices: &[ScreenVertex], triangles: &mut impl Iterator<Item = [usize; 3]>) -> usize {
         self.len = 0;
-        for at in triangles.take(TOGETHER) {
+        for at in triangles.take(LANES) {
             let corners = [&vertices[at[0]], &vertices[at[1]], &vertices[at[2]]];
             for (corner, vertex) in corners.iter().enumerate() {
                 self.x[corner][self.len] = vertex.snapped.x;
@@ -160,14 +161,17 @@ impl Corners {
         self.len
     }
 
-    fn counterclockwise(&self, lane: usize) -> bool {
-        let ([a, b, c], [d, e, f]) = (self.x.map(|x| x[lane]), self.y.map(|y| y[lane]));
-        i64::from(b - a) * i64::from(f - d) < i64::from(e - d) * i64::from(c - a)
+    /// x and y of a triangle's corners in clockwise order.
+    fn clockwise(&self, lane: usize) -> [[i32; 3]; 2] {
+        let [a, b, c] = self.x.map(|x| x[lane]);
+        let [d, e, f] = self.y.map(|y| y[lane]);
+        let counterclockwise = i64::from(b - a) * i64::from(f - d) < i64::from(e - d) * i64::from(c - a);
+        if counterclockwise { [[a, c, b], [d, f, e]] } else { [[a, b, c], [d, e, f]] }
     }
 }
 
 /// What is found of some triangles at once.
-struct Found {
+struct LaneTouches {
     /// As in [`Touched`]; [`SEVERAL`] alone where the edges decide between several regions.
     codes: Lanes<u32>,
     /// First and last column and row of pixels.
@@ -176,8 +180,9 @@ struct Found {
 }
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn find(corners: &Corners, binner: &Binner, culling: bool) -> Found {
-    let (x, y) = (extent(&corners.x), extent(&corners.y));
+fn touch_lanes(corners: &CornerLanes, binner: &Binner, culling: bool) -> LaneTouches {
+    let x = extent(&corners.x);
+    let y = extent(&corners.y);
     let columns = ranges(&x, |range| range.within(binner.width));
     let rows = ranges(&y, |range| binner.rows_of_lines(range).within(binner.height));
     let in_column = cells(&x, &columns[0], |pixel| {
@@ -189,8 +194,8 @@ fn find(corners: &Corners, binner: &Binner, culling: bool) -> Found {
         (row, binner.row_box(row))
     });
     let areas = areas(corners);
-    let mut codes = [0; TOGETHER];
-    for i in 0..TOGETHER {
+    let mut codes = [0; LANES];
+    for i in 0..LANES {
         let one = in_column[i] + in_row[i] * binner.columns_of_regions();
         let code = if (in_column[i] | in_row[i]) < 0 { SEVERAL } else { one as u32 };
         let empty = (columns[0][i] > columns[1][i]) | (rows[0][i] > rows[1][i]);
@@ -198,14 +203,14 @@ fn find(corners: &Corners, binner: &Binner, culling: bool) -> Found {
         let code = if culling & (areas[i] > 0.0) { BACK_FACING } else { code };
         codes[i] = if areas[i] == 0.0 { DEGENERATE } else { code };
     }
-    Found { codes, x: columns, y: rows }
+    LaneTouches { codes, x: columns, y: rows }
 }
 
 /// Twice the areas, exact: products of two differences of corners need 35 bits.
 #[inline(always)]
-fn areas(Corners { x: [a, b, c], y: [d, e, f], .. }: &Corners) -> Lanes<f64> {
-    let mut out = [0.0; TOGETHER];
-    for i in 0..TOGETHER {
+fn areas(CornerLanes { x: [a, b, c], y: [d, e, f], .. }: &CornerLanes) -> Lanes<f64> {
+    let mut out = [0.0; LANES];
+    for i in 0..LANES {
         let first = f64::from(b[i] - a[i]) * f64::from(f[i] - d[i]);
         out[i] = first - f64::from(e[i] - d[i]) * f64::from(c[i] - a[i]);
     }
@@ -215,8 +220,9 @@ fn areas(Corners { x: [a, b, c], y: [d, e, f], .. }: &Corners) -> Lanes<f64> {
 /// Smallest and largest of the corners.
 #[inline(always)]
 fn extent([p, q, r]: &[Lanes<i32>; 3]) -> [Lanes<i32>; 2] {
-    let (mut low, mut high) = ([0; TOGETHER], [0; TOGETHER]);
-    for i in 0..TOGETHER {
+    let mut low = [0; LANES];
+    let mut high = [0; LANES];
+    for i in 0..LANES {
         low[i] = p[i].min(q[i]).min(r[i]);
         high[i] = p[i].max(q[i]).max(r[i]);
     }
@@ -226,10 +232,12 @@ fn extent([p, q, r]: &[Lanes<i32>; 3]) -> [Lanes<i32>; 2] {
 /// First and last pixel between the smallest and the largest of the corners, as far as the picture goes.
 #[inline(always)]
 fn ranges([low, high]: &[Lanes<i32>; 2], within: impl Fn(Range) -> Range) -> [Lanes<i32>; 2] {
-    let (mut first, mut last) = ([0; TOGETHER], [0; TOGETHER]);
-    for i in 0..TOGETHER {
+    let mut first = [0; LANES];
+    let mut last = [0; LANES];
+    for i in 0..LANES {
         let range = within(Range::of_centres(low[i], high[i]));
-        (first[i], last[i]) = (range.first, range.last);
+        first[i] = range.first;
+        last[i] = range.last;
     }
     [first, last]
 }
@@ -238,8 +246,8 @@ fn ranges([low, high]: &[Lanes<i32>; 2], within: impl Fn(Range) -> Range) -> [La
 /// and its first and last pixel or line.
 #[inline(always)]
 fn cells([low, high]: &[Lanes<i32>; 2], first: &Lanes<i32>, of: impl Fn(i32) -> (i32, (i32, i32))) -> Lanes<i32> {
-    let mut out = [0; TOGETHER];
-    for i in 0..TOGETHER {
+    let mut out = [0; LANES];
+    for i in 0..LANES {
         let (cell, (begin, end)) = of(first[i]);
         out[i] = if (low[i] >= begin * 16 + 8) & (high[i] <= end * 16 + 8) { cell } else { -1 };
     }

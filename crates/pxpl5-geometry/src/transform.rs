@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Culling {
-    /// None.
+    /// All are drawn, whichever way they face.
     #[default]
     None,
     /// Those whose corners run clockwise on the screen.
@@ -42,7 +42,7 @@ pub(crate) struct ToScreen {
     pub(crate) centre: [f32; 2],
 }
 
-/// A vertex on the screen.
+/// A vertex on the screen: x and y in 1/16 px of the frame, z in units of the depth expression.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Snapped {
     pub(crate) x: i32,
@@ -60,26 +60,35 @@ pub struct TriangleEnds {
 impl TriangleEnds {
     /// Corners between the views, in whole subpixels.
     fn at(&self, s: f64) -> [Snapped; 3] {
-        let lerp = |a: f64, b: f64| (a + (b - a) * s + 0.5).floor();
         std::array::from_fn(|i| Snapped {
-            x: lerp(f64::from(self.from[i].x), f64::from(self.to[i].x)) as i32,
-            y: lerp(f64::from(self.from[i].y), f64::from(self.to[i].y)) as i32,
-            z: lerp(f64::from(self.from[i].z), f64::from(self.to[i].z)) as u32,
+            x: whole_between(self.from[i].x.into(), self.to[i].x.into(), s) as i32,
+            y: whole_between(self.from[i].y.into(), self.to[i].y.into(), s) as i32,
+            z: whole_between(self.from[i].z.into(), self.to[i].z.into(), s) as u32,
         })
     }
 
     /// The least and the greatest distance from the frame's top border that a corner has in either view, in 1/16 px.
     #[must_use]
     pub fn y_range(&self) -> [i32; 2] {
-        let all = || self.from.iter().chain(&self.to).map(|corner| corner.y);
-        [all().min().unwrap_or_default(), all().max().unwrap_or_default()]
+        let ys = self.from.iter().chain(&self.to).map(|corner| corner.y);
+        [ys.clone().min().unwrap_or_default(), ys.max().unwrap_or_default()]
     }
+}
+
+/// The whole number nearest to where the part `s` of the way from one number to another is.
+fn whole_between(from: f64, to: f64, s: f64) -> f64 {
+    (from + (to - from) * s + 0.5).floor()
+}
+
+/// Half of so many pixels, in subpixels.
+fn half_in_subpixels(pixels: u32) -> f32 {
+    (pixels * screen::SUBPIXELS as u32) as f32 * 0.5
 }
 
 impl ToScreen {
     fn new(viewport: &Viewport) -> Self {
-        let half = |size: u32| (size * screen::SUBPIXELS as u32) as f32 * 0.5;
-        let (x, y) = (half(viewport.grid().width), half(viewport.frame_lines()));
+        let x = half_in_subpixels(viewport.grid().width);
+        let y = half_in_subpixels(viewport.frame_lines());
         Self { scale: [x, -y], centre: [x, y] }
     }
 
@@ -105,8 +114,8 @@ impl ToScreen {
     fn snap_corner<const N: usize>(&self, Corner { clip, cut, .. }: &Corner<N>) -> Option<Snapped> {
         let limit = f64::from(screen::GUARD_PIXELS * screen::SUBPIXELS);
         let inverse = 1.0 / clip[3];
-        let on_screen = |i: usize| (clip[i] * inverse) * f64::from(self.scale[i]) + f64::from(self.centre[i]);
-        let (x, y) = (on_screen(0), on_screen(1));
+        let x = (clip[0] * inverse) * f64::from(self.scale[0]) + f64::from(self.centre[0]);
+        let y = (clip[1] * inverse) * f64::from(self.scale[1]) + f64::from(self.centre[1]);
         let fits = x.abs() <= limit && y.abs() <= limit && clip[3] >= f64::from(clip::MIN_W);
         if !fits {
             return None;
@@ -150,12 +159,13 @@ impl Assembled {
 }
 
 impl Transform {
-    /// Prepares a view.
+    /// Prepares a view of the world on a picture.
     ///
     /// # Errors
     /// [`ViewError::NotFinite`] if a matrix holds NaN or an infinity.
     pub fn new(view: &ViewTransform, viewport: Viewport, culling: Culling) -> Result<Self, ViewError> {
-        let (model_view, projection) = (Columns::of(&view.model_view), Columns::of(&view.projection));
+        let model_view = Columns::from_matrix(&view.model_view);
+        let projection = Columns::from_matrix(&view.projection);
         for (matrix, columns) in [("model-view", &model_view), ("projection", &projection)] {
             if !columns.is_finite() {
                 return Err(ViewError::NotFinite { matrix });
@@ -166,7 +176,7 @@ impl Transform {
             viewport,
             to_clip: FromWorld::to_clip(&projection, &model_view),
             to_eye: FromWorld::to_eye(&model_view),
-            lens: Lens::of(&projection, viewport.grid().width, viewport.frame_lines()),
+            lens: Lens::from_projection(&projection, viewport.grid().width, viewport.frame_lines()),
             guard: to_screen.guard(),
             to_screen,
             binner: Binner::new(&viewport),
@@ -174,7 +184,7 @@ impl Transform {
         })
     }
 
-    /// The picture.
+    /// The picture that the view is prepared for.
     #[must_use]
     pub const fn viewport(&self) -> &Viewport {
         &self.viewport
@@ -214,10 +224,14 @@ impl Transform {
         mut sink: impl FnMut(ScreenTriangle<LitColours>),
     ) {
         let lighting = Lighting::new(&self.to_eye, light);
-        let lit = |i: usize| lighting.colour(triangle.positions[i], triangle.normals[i], triangle.colours[i]);
-        self.triangle(&triangle.positions, lit, stats, |outline, colours| {
-            sink(lit_triangle(outline, colours));
-        });
+        self.triangle(
+            &triangle.positions,
+            |i| lighting.corner_colour(triangle, i),
+            stats,
+            |outline, colours| {
+                sink(lit_triangle(outline, colours));
+            },
+        );
     }
 
     /// Transforms one triangle with its normals: calls `sink` for each screen triangle that touches a region.
@@ -266,11 +280,13 @@ impl Transform {
     /// lies outside of the guard band of either.
     #[must_use]
     pub fn ends(&self, end: &Self, positions: &[Vec3; 3]) -> Option<TriangleEnds> {
-        let snapped = |view: &Self| {
-            let clip = positions.map(|p| view.to_clip.point(p));
-            clip.iter().all(|c| view.guard.contains(*c)).then(|| clip.map(|c| view.to_screen.snap(c)))
-        };
-        Some(TriangleEnds { from: snapped(self)?, to: snapped(end)? })
+        Some(TriangleEnds { from: self.snap_unclipped(positions)?, to: end.snap_unclipped(positions)? })
+    }
+
+    /// The corners of a triangle on the screen; `None` where one lies outside of the guard band.
+    fn snap_unclipped(&self, positions: &[Vec3; 3]) -> Option<[Snapped; 3]> {
+        let clip = positions.map(|p| self.to_clip.point(p));
+        clip.iter().all(|c| self.guard.contains(*c)).then(|| clip.map(|c| self.to_screen.snap(c)))
     }
 
     /// A triangle whose places on the screen lie the part `s` (0 to 1) of the way between two views, lit as in this one.
@@ -286,8 +302,8 @@ impl Transform {
         stats.triangles += 1;
         if let Some(whole) = self.assemble(ends.at(s), stats) {
             let lighting = Lighting::new(&self.to_eye, light);
-            let lit = |i: usize| lighting.colour(triangle.positions[i], triangle.normals[i], triangle.colours[i]);
-            sink(lit_triangle(whole.outline, whole.order([0, 1, 2]).map(lit)));
+            let colours = whole.order([0, 1, 2]).map(|i| lighting.corner_colour(triangle, i));
+            sink(lit_triangle(whole.outline, colours));
         }
     }
 
@@ -320,7 +336,7 @@ impl Transform {
         if !whole.swapped && self.culls_back_faces() {
             return Touch::BackFacing;
         }
-        Touch::of(self.binner.triangle(&whole.outline))
+        Touch::from_mask(self.binner.triangle(&whole.outline))
     }
 
     /// Clips a triangle and hands out the fan of what is left.
@@ -357,11 +373,13 @@ impl Transform {
 
     fn piece<const N: usize>(&self, piece: &[Corner<N>; 3], stats: &mut SetupStats) -> Option<Assembled> {
         let [p, q, r] = piece.each_ref().map(|corner| self.to_screen.snap_corner(corner));
-        let (Some(p), Some(q), Some(r)) = (p, q, r) else {
-            stats.not_finite += 1;
-            return None;
-        };
-        self.assemble([p, q, r], stats)
+        match [p, q, r] {
+            [Some(p), Some(q), Some(r)] => self.assemble([p, q, r], stats),
+            _ => {
+                stats.not_finite += 1;
+                None
+            }
+        }
     }
 }
 

@@ -1,9 +1,9 @@
 //! From world to clip coordinates: the eye's matrices and the picture that they fill.
 
+use crate::RegionMask;
 use glam::{Mat4, Vec3};
-use pxpl5_wire::{Lines, RegionGrid};
+use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid};
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// Largest width, and height in frame lines, of a picture in pixels.
 ///
@@ -36,10 +36,13 @@ struct PictureFields {
 }
 
 /// Why a picture or a view is refused.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ViewError {
     /// The picture is empty or larger than [`MAX_PICTURE`].
+    #[error(
+        "picture: expected 1 to {MAX_PICTURE} pixels by 1 to {MAX_PICTURE} frame lines, found {width} x {frame_lines}"
+    )]
     PictureSize {
         /// Width found, in pixels.
         width: u32,
@@ -47,48 +50,26 @@ pub enum ViewError {
         frame_lines: u32,
     },
     /// A region is empty or larger than the renderer's array.
+    #[error("region: expected 1 to {REGION_SIZE} pixels by 1 to {REGION_SIZE} lines, found {width} x {height}")]
     RegionSize {
         /// Width found, in pixels.
         width: u32,
         /// Height found, in lines.
         height: u32,
     },
-    /// More regions than a [`crate::RegionMask`] holds.
+    /// More regions than a [`RegionMask`] holds.
+    #[error("picture: expected at most {} regions, found {found}", RegionMask::CAPACITY)]
     Regions {
-        /// Number found.
+        /// Number of regions found.
         found: u32,
     },
     /// A matrix holds NaN or an infinity.
+    #[error("{matrix} matrix: expected finite numbers, found NaN or infinity")]
     NotFinite {
-        /// `"model-view"` or `"projection"`.
+        /// Which of the view's matrices it is: `"model-view"` or `"projection"`.
         matrix: &'static str,
     },
 }
-
-impl fmt::Display for ViewError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::PictureSize { width, frame_lines } => write!(
-                f,
-                "picture: expected 1 to {MAX_PICTURE} pixels by 1 to {MAX_PICTURE} frame lines, \
-                 found {width} x {frame_lines}"
-            ),
-            Self::RegionSize { width, height } => write!(
-                f,
-                "region: expected 1 to {0} pixels by 1 to {0} lines, found {width} x {height}",
-                pxpl5_wire::REGION_SIZE
-            ),
-            Self::Regions { found } => {
-                write!(f, "picture: expected at most {} regions, found {found}", crate::RegionMask::CAPACITY)
-            }
-            Self::NotFinite { matrix } => {
-                write!(f, "{matrix} matrix: expected finite numbers, found NaN or infinity")
-            }
-        }
-    }
-}
-
-impl std::error::Error for ViewError {}
 
 impl Viewport {
     /// A whole NTSC frame: 640 x 480 in 20 regions (TR94).
@@ -100,28 +81,28 @@ impl Viewport {
         Self { grid: RegionGrid::FIELD, lines: Lines::Field(parity) }
     }
 
-    /// Any other picture.
+    /// A picture of any size, cut in any way.
     ///
     /// # Errors
     /// [`ViewError`] if a size is zero or too large, or there are more regions than a mask holds.
     pub fn new(grid: RegionGrid, lines: Lines) -> Result<Self, ViewError> {
         let step = Self { grid, lines }.line_step();
         let frame_lines = grid.height.saturating_mul(step);
-        let fits = |n: u32, most: u32| (1..=most).contains(&n);
-        if !fits(grid.width, MAX_PICTURE) || !fits(frame_lines, MAX_PICTURE) {
+        if !is_one_to(MAX_PICTURE, grid.width) || !is_one_to(MAX_PICTURE, frame_lines) {
             return Err(ViewError::PictureSize { width: grid.width, frame_lines });
         }
-        let (width, height) = (grid.region_width, grid.region_height);
-        if !fits(width, pxpl5_wire::REGION_SIZE) || !fits(height, pxpl5_wire::REGION_SIZE) {
+        let width = grid.region_width;
+        let height = grid.region_height;
+        if !is_one_to(REGION_SIZE, width) || !is_one_to(REGION_SIZE, height) {
             return Err(ViewError::RegionSize { width, height });
         }
-        if grid.regions() > crate::RegionMask::CAPACITY {
+        if grid.regions() > RegionMask::CAPACITY {
             return Err(ViewError::Regions { found: grid.regions() });
         }
         Ok(Self { grid, lines })
     }
 
-    /// How the picture is cut.
+    /// How the picture is cut into regions.
     #[must_use]
     pub const fn grid(&self) -> RegionGrid {
         self.grid
@@ -158,6 +139,10 @@ impl Viewport {
     }
 }
 
+fn is_one_to(most: u32, size: u32) -> bool {
+    (1..=most).contains(&size)
+}
+
 impl TryFrom<PictureFields> for Viewport {
     type Error = ViewError;
 
@@ -179,8 +164,18 @@ impl From<Viewport> for PictureFields {
 pub(crate) struct Columns(pub(crate) [[f32; 4]; 4]);
 
 impl Columns {
-    pub(crate) fn of(matrix: &Mat4) -> Self {
+    pub(crate) fn from_matrix(matrix: &Mat4) -> Self {
         Self(matrix.to_cols_array_2d())
+    }
+
+    /// The number in a row and a column.
+    pub(crate) fn cell(&self, row: usize, column: usize) -> f64 {
+        f64::from(self.0[column][row])
+    }
+
+    /// Whether the matrix is zero in all of these cells, given as row and column.
+    pub(crate) fn is_zero_at(&self, cells: &[(usize, usize)]) -> bool {
+        cells.iter().all(|&(row, column)| self.cell(row, column) == 0.0)
     }
 
     pub(crate) fn is_finite(&self) -> bool {
@@ -190,18 +185,14 @@ impl Columns {
     /// `self * v`, formed in 64 bits.
     fn times(&self, v: [f64; 4]) -> [f64; 4] {
         std::array::from_fn(|row| {
-            let term = |k: usize| f64::from(self.0[k][row]) * v[k];
-            ((term(0) + term(1)) + term(2)) + term(3)
+            let terms: [f64; 4] = std::array::from_fn(|column| self.cell(row, column) * v[column]);
+            ((terms[0] + terms[1]) + terms[2]) + terms[3]
         })
     }
 
     /// The point that an affine matrix takes to the origin; the origin itself if there is none.
     fn origin(&self) -> Vec3 {
         let [x, y, z, t] = self.0.map(|c| [c[0], c[1], c[2]].map(f64::from));
-        let cross = |a: [f64; 3], b: [f64; 3]| {
-            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-        };
-        let dot = |a: [f64; 3], b: [f64; 3]| (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
         let determinant = dot(x, cross(y, z));
         let solved = [cross(y, z), cross(z, x), cross(x, y)].map(|row| (-dot(row, t) / determinant) as f32);
         let origin = Vec3::from_array(solved);
@@ -221,23 +212,18 @@ pub(crate) struct FromWorld {
 }
 
 impl FromWorld {
-    /// World to eye coordinates.
+    /// From world to eye coordinates.
     pub(crate) fn to_eye(model_view: &Columns) -> Self {
-        let identity = Columns(Mat4::IDENTITY.to_cols_array_2d());
+        let identity = Columns::from_matrix(&Mat4::IDENTITY);
         Self::to_clip(&identity, model_view)
     }
 
-    /// World to clip coordinates.
+    /// From world to clip coordinates.
     pub(crate) fn to_clip(projection: &Columns, model_view: &Columns) -> Self {
         let origin = model_view.origin();
-        let product = |v: [f64; 4]| projection.times(model_view.times(v)).map(|v| v as f32);
         let [x, y, z] = origin.to_array().map(f64::from);
-        let columns = [
-            product([1.0, 0.0, 0.0, 0.0]),
-            product([0.0, 1.0, 0.0, 0.0]),
-            product([0.0, 0.0, 1.0, 0.0]),
-            product([x, y, z, 1.0]),
-        ];
+        let axes_and_eye = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [x, y, z, 1.0]];
+        let columns = axes_and_eye.map(|v| projection.times(model_view.times(v)).map(|v| v as f32));
         Self { columns, origin }
     }
 
@@ -251,7 +237,7 @@ impl FromWorld {
         self.origin
     }
 
-    /// Transforms a point.
+    /// A point of the world, with its fourth coordinate.
     #[inline(always)]
     pub(crate) fn point(&self, p: Vec3) -> [f32; 4] {
         let [x, y, z] = [p.x - self.origin.x, p.y - self.origin.y, p.z - self.origin.z];
@@ -268,12 +254,20 @@ impl FromWorld {
 
     /// The greatest factor by which an axis is stretched.
     pub(crate) fn scale(&self) -> f64 {
-        let square = |column: &[f32; 4]| {
-            let [x, y, z] = [column[0], column[1], column[2]].map(f64::from);
-            (x * x + y * y) + z * z
-        };
-        self.columns[..3].iter().map(square).fold(0.0, f64::max).sqrt()
+        let squares = self.columns[..3].iter().map(|&[x, y, z, _]| {
+            let axis = [x, y, z].map(f64::from);
+            dot(axis, axis)
+        });
+        squares.fold(0.0, f64::max).sqrt()
     }
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
 #[cfg(test)]
@@ -282,13 +276,16 @@ mod tests {
 
     #[test]
     fn absurd_pictures_are_refused_with_what_was_found() {
-        let grid = |width, height, region_width| RegionGrid { width, height, region_width, region_height: 128 };
-        let refuse = |g| Viewport::new(g, Lines::Frame).unwrap_err().to_string();
-        assert!(refuse(grid(0, 480, 128)).contains("found 0 x 480"));
-        assert!(refuse(grid(640, u32::MAX, 128)).contains("4294967295"));
-        assert!(refuse(grid(640, 480, 0)).contains("found 0 x 128"));
-        assert!(refuse(grid(640, 480, 129)).contains("found 129 x 128"));
-        assert!(refuse(grid(2048, 480, 8)).contains("found 1024"));
+        assert!(refusal(0, 480, 128).contains("found 0 x 480"));
+        assert!(refusal(640, u32::MAX, 128).contains("4294967295"));
+        assert!(refusal(640, 480, 0).contains("found 0 x 128"));
+        assert!(refusal(640, 480, 129).contains("found 129 x 128"));
+        assert!(refusal(2048, 480, 8).contains("found 1024"));
+    }
+
+    fn refusal(width: u32, height: u32, region_width: u32) -> String {
+        let grid = RegionGrid { width, height, region_width, region_height: 128 };
+        Viewport::new(grid, Lines::Frame).unwrap_err().to_string()
     }
 
     #[test]

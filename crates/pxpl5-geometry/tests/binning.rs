@@ -21,10 +21,11 @@ fn viewports() -> [Viewport; 4] {
 fn screen(viewport: Viewport, points: [[i32; 2]; 3]) -> (Option<Outline>, SetupStats) {
     // Places in 1/16 px of a frame of 640 x 480; scaled for smaller pictures.
     let [sx, sy] = [viewport.grid().width as f32 / 640.0, viewport.frame_lines() as f32 / 480.0];
-    let place = |[x, y]: [i32; 2]| at_pixel(x as f32 / 16.0 / sx, y as f32 / 16.0 / sy, 1.0);
+    let positions = points.map(|[x, y]| at_pixel(x as f32 / 16.0 / sx, y as f32 / 16.0 / sy, 1.0));
     let transform = Transform::new(&pixel_view(1.0, 16_384.0), viewport, Culling::None).expect("a finite view");
-    let triangle = Triangle { positions: points.map(place), normals: [Vec3::Z; 3], colours: [[0; 3]; 3] };
-    let (mut found, mut stats) = (Vec::new(), SetupStats::default());
+    let triangle = Triangle { positions, normals: [Vec3::Z; 3], colours: [[0; 3]; 3] };
+    let mut found = Vec::new();
+    let mut stats = SetupStats::default();
     transform.gouraud(&triangle, &Light::NONE, &mut stats, |t| found.push(t.outline));
     let mut masks = Vec::new();
     transform.bin(&triangle.positions, &mut SetupStats::default(), |m| masks.push(m));
@@ -33,15 +34,17 @@ fn screen(viewport: Viewport, points: [[i32; 2]; 3]) -> (Option<Outline>, SetupS
     (found.first().copied(), stats)
 }
 
-/// Frame line of a row.
+/// The line of the frame that a row of the picture is.
 fn line(viewport: &Viewport, row: u32) -> i32 {
     (row * viewport.line_step() + viewport.first_line()) as i32
 }
 
 fn edge(o: &Outline, i: usize, [x, y]: [i64; 2]) -> i64 {
-    let (p, q) = (i, (i + 1) % 3);
+    let p = i;
+    let q = (i + 1) % 3;
     let [px, py, qx, qy] = [o.x[p], o.y[p], o.x[q], o.y[q]].map(i64::from);
-    let (dx, dy) = (qx - px, qy - py);
+    let dx = qx - px;
+    let dy = qy - py;
     let tie = i64::from(!(dy < 0 || (dy == 0 && dx > 0)));
     dx * (y - py) - dy * (x - px) - tie
 }
@@ -66,16 +69,25 @@ fn meets(viewport: &Viewport, o: &Outline, region: RegionId) -> bool {
     let y = [top, top + height - 1].map(|v| 16 * i64::from(line(viewport, v)) + 8);
     let corners = [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]];
     let points: [[i64; 2]; 3] = std::array::from_fn(|i| [o.x[i].into(), o.y[i].into()]);
-    let in_box = |[px, py]: [i64; 2]| (x[0]..=x[1]).contains(&px) && (y[0]..=y[1]).contains(&py);
-    let area = |a: [i64; 2], b: [i64; 2], c: [i64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    let in_triangle = |c: [i64; 2]| (0..3).all(|i| area(points[i], points[(i + 1) % 3], c) >= 0);
-    let cross = |a, b, c, d| {
-        let signs = |p, q, r, s| area(p, q, r).signum() * area(p, q, s).signum();
-        signs(a, b, c, d) <= 0 && signs(c, d, a, b) <= 0
-    };
-    points.iter().any(|&p| in_box(p))
-        || corners.iter().any(|&c| in_triangle(c))
-        || (0..3).any(|i| (0..4).any(|k| cross(points[i], points[(i + 1) % 3], corners[k], corners[(k + 1) % 4])))
+    let sides = [0, 1, 2].map(|i| [points[i], points[(i + 1) % 3]]);
+    points.iter().any(|[px, py]| (x[0]..=x[1]).contains(px) && (y[0]..=y[1]).contains(py))
+        || corners.iter().any(|&corner| sides.iter().all(|&[from, to]| twice_area(from, to, corner) >= 0))
+        || sides.iter().any(|side| (0..4).any(|k| cross(*side, [corners[k], corners[(k + 1) % 4]])))
+}
+
+/// Whether two lines cross or touch.
+fn cross(one: [[i64; 2]; 2], other: [[i64; 2]; 2]) -> bool {
+    !on_one_side(one, other) && !on_one_side(other, one)
+}
+
+/// Whether both ends lie strictly on the same side of the line through two points.
+fn on_one_side([from, to]: [[i64; 2]; 2], ends: [[i64; 2]; 2]) -> bool {
+    let [first, last] = ends.map(|end| twice_area(from, to, end).signum());
+    first * last > 0
+}
+
+fn twice_area(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
 fn point() -> impl Strategy<Value = [i32; 2]> {
@@ -86,10 +98,8 @@ fn point() -> impl Strategy<Value = [i32; 2]> {
 }
 
 fn triangle() -> impl Strategy<Value = [[i32; 2]; 3]> {
-    let shrunk = ([point(), point(), point()], 1..200_i32).prop_map(|([a, b, c], s)| {
-        let near = |p: [i32; 2]| [a[0] + (p[0] - a[0]) / s, a[1] + (p[1] - a[1]) / s];
-        [a, near(b), near(c)]
-    });
+    let shrunk = ([point(), point(), point()], 1..200_i32)
+        .prop_map(|([a, b, c], s)| [a, b, c].map(|p| [a[0] + (p[0] - a[0]) / s, a[1] + (p[1] - a[1]) / s]));
     prop_oneof![shrunk, [point(), point(), point()]]
 }
 
@@ -127,7 +137,8 @@ proptest! {
             let [x, y] = [0, 1].map(|i| points.map(|p| p[i]));
             let mut all = Outline { x, y, z: [0; 3], regions: RegionMask::EMPTY };
             if edge(&all, 0, [x[2].into(), y[2].into()]) < 0 {
-                (all.x, all.y) = ([x[0], x[2], x[1]], [y[0], y[2], y[1]]);
+                all.x = [x[0], x[2], x[1]];
+                all.y = [y[0], y[2], y[1]];
             }
             for n in 0..20 {
                 prop_assert!(!holds_a_pixel(&viewport, &all, RegionId(n)));

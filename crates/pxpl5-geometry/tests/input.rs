@@ -4,8 +4,8 @@ mod support;
 
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
-    Culling, Light, LitColours, ScreenTriangle, SeenSurface, SeenTriangle, SetupStats, Sphere, TOGETHER, Together,
-    Touch, Transform, Triangle, ViewError, ViewTransform, Viewport,
+    Culling, GouraudSphere, LANES, Light, LitColours, ScreenTriangle, SetupStats, Sphere, Touch, Transform, Triangle,
+    TriangleLanes, UnclippedTriangle, VertexSurface, ViewError, ViewTransform, Viewport,
 };
 use pxpl5_wire::{FieldParity, Linear};
 use support::random::Random;
@@ -21,7 +21,8 @@ fn triangle(positions: [Vec3; 3]) -> Triangle {
 }
 
 fn drawn(transform: &Transform, positions: [Vec3; 3]) -> (Vec<ScreenTriangle<LitColours>>, SetupStats) {
-    let (mut out, mut stats) = (Vec::new(), SetupStats::default());
+    let mut out = Vec::new();
+    let mut stats = SetupStats::default();
     transform.gouraud(&triangle(positions), &Light::NONE, &mut stats, |t| out.push(t));
     (out, stats)
 }
@@ -46,7 +47,8 @@ fn nan_infinite_and_huge_coordinates_are_counted_and_never_drawn() {
 fn nan_normals_give_a_colour_and_no_panic() {
     let mut bad = triangle(clockwise());
     bad.normals = [Vec3::NAN, Vec3::ZERO, Vec3::splat(f32::MAX)];
-    let (mut out, mut stats) = (Vec::new(), SetupStats::default());
+    let mut out = Vec::new();
+    let mut stats = SetupStats::default();
     transform(Culling::None).gouraud(&bad, &Light::HEADLIGHT, &mut stats, |t| out.push(t));
     assert_eq!(out[0].surface.0, bad.colours.map(|c| c.map(|v| u16::from(v) * 256)));
 }
@@ -86,7 +88,8 @@ fn a_vertex_that_faces_the_light_has_its_full_colour_and_one_edge_on_the_ambient
     lit.normals = [Vec3::Z, Vec3::NEG_Z * 7.0, Vec3::X];
     lit.colours = [[200; 3]; 3];
     let light = Light { direction: [0.0, 0.0, 1.0], ambient: 0.25, diffuse: 0.5 };
-    let (mut out, mut stats) = (Vec::new(), SetupStats::default());
+    let mut out = Vec::new();
+    let mut stats = SetupStats::default();
     transform(Culling::None).gouraud(&lit, &light, &mut stats, |t| out.push(t));
     // Two-sided: a normal that points away counts like its opposite.
     assert_eq!(out[0].surface.0.map(|c| c[0]), [200 * 192, 200 * 192, 200 * 64]);
@@ -96,7 +99,8 @@ fn a_vertex_that_faces_the_light_has_its_full_colour_and_one_edge_on_the_ambient
 fn phong_normals_are_unit_length_and_face_the_eye() {
     let mut away = triangle(clockwise());
     away.normals = [Vec3::NEG_Z * 3.0, Vec3::new(0.0, -3.0, -4.0), Vec3::NEG_Z];
-    let (mut out, mut stats) = (Vec::new(), SetupStats::default());
+    let mut out = Vec::new();
+    let mut stats = SetupStats::default();
     transform(Culling::None).phong(&away, &mut stats, |t| out.push(t));
     // 0.6 and 0.8 in 1/2^14, rounded.
     assert_eq!(out[0].surface.normals, [[0, 0, 16_384], [0, 9830, 13_107], [0, 0, 16_384]]);
@@ -113,7 +117,7 @@ fn shared_vertices_give_what_their_triangles_give() {
             for (n, triangle) in case.triangles.iter().enumerate() {
                 let tilted = Vec3::new(0.3, 0.4, if n % 2 == 0 { 0.8 } else { -0.8 });
                 let triangle = Triangle { normals: [tilted, Vec3::X, Vec3::NEG_Z], ..*triangle };
-                whole += u32::from(agrees_with_its_shared_vertices(&transform, &triangle, n % TOGETHER, case.name));
+                whole += u32::from(agrees_with_its_shared_vertices(&transform, &triangle, n % LANES, case.name));
             }
         }
         assert!(whole > 500, "{whole}");
@@ -124,46 +128,43 @@ fn shared_vertices_give_what_their_triangles_give() {
 /// of it is seen, or it is clipped.
 fn agrees_with_its_shared_vertices(transform: &Transform, t: &Triangle, lane: usize, name: &str) -> bool {
     let light = Light { direction: [0.6, 0.0, 0.8], ambient: 0.2, diffuse: 0.7 };
-    let [a, b, c] = t.positions.map(|p| transform.see(p));
-    let Some(seen) = SeenTriangle::of([&a, &b, &c]) else { return false };
-    let (mut stats, mut lit, mut normals) = ([SetupStats::default(); 2], Vec::new(), Vec::new());
+    let [a, b, c] = t.positions.map(|p| transform.screen_vertex(p));
+    let Some(unclipped) = UnclippedTriangle::new([&a, &b, &c]) else { return false };
+    let mut stats = [SetupStats::default(); 2];
+    let mut lit = Vec::new();
+    let mut normals = Vec::new();
     transform.gouraud(t, &light, &mut stats[0], |t| lit.push(t));
     transform.phong(t, &mut SetupStats::default(), |t| normals.push(t));
     stats[1].triangles += 1;
-    let vertices = [a, b, c, transform.see(Vec3::NAN)];
+    let vertices = [a, b, c, transform.screen_vertex(Vec3::NAN)];
     let touch = transform.touched(&vertices, (0..=lane).map(|i| if i == lane { [0, 1, 2] } else { [0, 3, 1] }));
     assert!((0..lane).all(|i| touch.get(i) == Touch::NeedsClipping));
     let mask = touch.get(lane).count(&mut stats[1]);
     assert_eq!(mask, lit.first().map(|t| t.outline.regions), "{name}");
     assert_eq!(stats[0], stats[1], "{name}");
-    let (Some(lit), Some(normals)) = (lit.first(), normals.first()) else { return false };
-    let colour = |i: usize| transform.see_colour(&light, t.positions[i], t.normals[i], t.colours[i]);
-    let normal = |i: usize| transform.see_normal(t.positions[i], t.normals[i]);
-    let (colours, facing) = ([0, 1, 2].map(colour), [0, 1, 2].map(normal));
-    let together = |surface: &[SeenSurface; 3]| {
-        let mut together = Together::default();
-        (0..lane).for_each(|_| together.push_nothing());
-        together.push(&seen, surface.each_ref());
-        together
-    };
-    let found = transform.gouraud_together(&together(&colours), &mut stats[1]);
+    let Some(lit) = lit.first() else { return false };
+    let Some(normals) = normals.first() else { return false };
+    let colours = [0, 1, 2].map(|i| transform.vertex_colour(&light, t.positions[i], t.normals[i], t.colours[i]));
+    let facing = [0, 1, 2].map(|i| transform.vertex_normal(t.positions[i], t.normals[i]));
+    let found = transform.gouraud_lanes(&in_lane(lane, &unclipped, &colours), &mut stats[1]);
     assert_eq!(found.get(lane), lit.gouraud(transform.viewport(), &mut stats[0]), "{name}");
     assert!((0..lane).all(|empty| found.get(empty).edges == [Linear::constant(-1); 3]));
-    let found = transform.phong_together(&together(&facing), &mut stats[1]).get(lane, t.colours[0]);
+    let found = transform.phong_lanes(&in_lane(lane, &unclipped, &facing), &mut stats[1]).get(lane, t.colours[0]);
     assert_eq!(found, normals.phong(transform.viewport(), &mut stats[0]), "{name}");
     assert_eq!(stats[0], stats[1], "{name}");
     true
 }
 
+/// A triangle in a lane behind others of which nothing is seen.
+fn in_lane(lane: usize, triangle: &UnclippedTriangle, surface: &[VertexSurface; 3]) -> TriangleLanes {
+    let mut lanes = TriangleLanes::default();
+    (0..lane).for_each(|_| lanes.push_nothing());
+    lanes.push(triangle, surface.each_ref());
+    lanes
+}
+
 #[test]
 fn spheres_behind_around_or_cut_are_counted_each_under_its_own_name() {
-    let one = |z: f32, radius: f32| {
-        let mut stats = SetupStats::default();
-        let sphere = Sphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [1; 3] };
-        let found = spheres::transform().sphere(&sphere, &mut stats);
-        assert_eq!(found.is_some(), stats.screen_spheres == 1);
-        stats
-    };
     assert_eq!(one(50.0, 10.0).spheres_outside, 1);
     assert_eq!(one(0.0, 10.0).spheres_across_near, 1);
     assert_eq!(one(-5.0, 4.5).spheres_across_near, 1);
@@ -173,6 +174,15 @@ fn spheres_behind_around_or_cut_are_counted_each_under_its_own_name() {
     assert_eq!(one(-5.0, -1.0).spheres_not_finite, 1);
     assert_eq!(one(-5.0, f32::INFINITY).spheres_not_finite, 1);
     assert_eq!(one(-5.0, 3.9).screen_spheres, 1);
+}
+
+/// Counts of one sphere with its centre on the eye's axis.
+fn one(z: f32, radius: f32) -> SetupStats {
+    let mut stats = SetupStats::default();
+    let sphere = Sphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [1; 3] };
+    let found = spheres::transform().sphere(&sphere, &mut stats);
+    assert_eq!(found.is_some(), stats.screen_spheres == 1);
+    stats
 }
 
 #[test]
@@ -188,7 +198,8 @@ fn a_projection_that_is_neither_perspective_nor_parallel_draws_no_spheres() {
 
 #[test]
 fn silhouettes_are_exact_to_the_pixel_and_regions_miss_none_of_it() {
-    let (mut random, mut pixels) = (Random(77), 0);
+    let mut random = Random(77);
+    let mut pixels = 0;
     for _ in 0..25 {
         let radius = random.between(0.02, 1.0);
         let centre = at_pixel(random.between(0.0, 640.0), random.between(0.0, 480.0), random.between(0.01, 1.0));
@@ -234,19 +245,19 @@ fn depths_of_spheres_that_touch_the_near_or_the_far_plane_never_wrap() {
 #[test]
 fn a_sphere_of_a_field_is_every_second_line_of_the_frame() {
     let sphere = Sphere { centre: Vec3::new(20.0, 30.0, -200.0), radius: 60.0, colour: [200, 100, 50] };
-    let view = pixel_view(1.0, 16_384.0);
-    for parity in [pxpl5_wire::FieldParity::Even, pxpl5_wire::FieldParity::Odd] {
-        let operands = |viewport: Viewport| {
+    for parity in [FieldParity::Even, FieldParity::Odd] {
+        let [frame, field] = [Viewport::FRAME, Viewport::field(parity)].map(|viewport| {
+            let view = pixel_view(1.0, 16_384.0);
             let transform = Transform::new(&view, viewport, Culling::None).expect("a finite view");
             let mut stats = SetupStats::default();
             let screen = transform.sphere(&sphere, &mut stats).expect("it is in sight");
             screen.gouraud(&viewport, &Light::HEADLIGHT, &mut stats)
-        };
-        let (frame, field) = (operands(Viewport::FRAME), operands(Viewport::field(parity)));
+        });
         for row in 0..240 {
             let line = 2 * row + parity.first_line() as i32;
             for x in 0..640 {
-                let (a, b) = (native(&field.setup, x, row), native(&frame.setup, x, line));
+                let a = native(&field.setup, x, row);
+                let b = native(&frame.setup, x, line);
                 assert_eq!(a.is_some(), b.is_some(), "{x}, {row}");
                 // Planes may be rounded around another pixel: one unit of depth.
                 assert!(a.unwrap_or(0).abs_diff(b.unwrap_or(0)) <= 1);
@@ -269,7 +280,8 @@ fn a_sphere_under_a_parallel_projection_is_a_circle_with_a_root_for_its_depth() 
     let mut seen = 0;
     for y in 0..480 {
         for x in 0..640 {
-            let (dx, dy) = ((f64::from(x) + 0.5 - 384.0) / 64.0, (f64::from(y) + 0.5 - 272.0) / 64.0);
+            let dx = (f64::from(x) + 0.5 - 384.0) / 64.0;
+            let dy = (f64::from(y) + 0.5 - 272.0) / 64.0;
             let square = 2.25 - dx * dx - dy * dy;
             if square.abs() > 1e-4 {
                 assert_eq!(native(&setup, x, y).is_some(), square > 0.0, "{x}, {y}");
@@ -292,12 +304,16 @@ fn a_gouraud_sphere_is_full_in_the_middle_and_ambient_at_its_rim_under_a_headlig
     let mut stats = SetupStats::default();
     let screen = spheres::transform().sphere(&sphere, &mut stats).expect("in sight");
     let sphere = screen.gouraud(&Viewport::FRAME, &Light::HEADLIGHT, &mut stats);
-    let red = |x: i32, y: i32| {
-        let value = sphere.setup.silhouette.at(x, y).max(0) >> sphere.setup.root_shift;
-        let root = (value as u64 & 0xff_ffff).isqrt() as i32;
-        (sphere.rgb[0].at(x, y) >> 12) + (((root >> 4) * i32::from(sphere.root_factor[0])) >> 8)
-    };
-    assert!((198..=200).contains(&red(320, 240)), "{}", red(320, 240));
+    let middle = red(&sphere, 320, 240);
+    assert!((198..=200).contains(&middle), "{middle}");
     // 600 at 1920 is 105 px in radius; the rim has the ambient quarter.
-    assert!((50..=70).contains(&red(320 + 104, 240)), "{}", red(424, 240));
+    let rim = red(&sphere, 320 + 104, 240);
+    assert!((50..=70).contains(&rim), "{rim}");
+}
+
+/// The red that the renderer stores, as the operands' documentation says.
+fn red(sphere: &GouraudSphere, x: i32, y: i32) -> i32 {
+    let value = sphere.setup.silhouette.at(x, y).max(0) >> sphere.setup.root_shift;
+    let root = (value as u64 & 0xff_ffff).isqrt() as i32;
+    (sphere.rgb[0].at(x, y) >> 12) + (((root >> 4) * i32::from(sphere.root_factor[0])) >> 8)
 }

@@ -4,8 +4,8 @@ mod support;
 
 use proptest::prelude::*;
 use pxpl5_geometry::{
-    DEPTH_FAR, DEPTH_NEAR, LitColours, NORMAL_UNIT, Outline, RegionMask, ScreenTriangle, SetupStats, SurfaceNormals,
-    Viewport,
+    DEPTH_FAR, DEPTH_NEAR, GouraudTriangle, LitColours, NORMAL_UNIT, Outline, RegionMask, ScreenTriangle, SetupStats,
+    SurfaceNormals, Viewport,
 };
 use pxpl5_wire::{FieldParity, Linear, format};
 use support::native::Piece;
@@ -16,16 +16,14 @@ const GUARD: i32 = pxpl5_geometry::GUARD_PIXELS * 16;
 fn screen(x: [i32; 3], y: [i32; 3], z: [u32; 3], colours: [[u16; 3]; 3]) -> Option<Piece> {
     let regions = (0..20).map(|n| RegionMask::only(pxpl5_wire::RegionId(n)));
     let mut outline = Outline { x, y, z, regions: regions.fold(RegionMask::EMPTY, RegionMask::union) };
-    let area = |o: &Outline| {
-        i64::from(o.x[1] - o.x[0]) * i64::from(o.y[2] - o.y[0])
-            - i64::from(o.y[1] - o.y[0]) * i64::from(o.x[2] - o.x[0])
-    };
-    if area(&outline) < 0 {
-        (outline.x, outline.y) = ([x[0], x[2], x[1]], [y[0], y[2], y[1]]);
+    let twice_area = i64::from(x[1] - x[0]) * i64::from(y[2] - y[0]) - i64::from(y[1] - y[0]) * i64::from(x[2] - x[0]);
+    if twice_area < 0 {
+        outline.x = [x[0], x[2], x[1]];
+        outline.y = [y[0], y[2], y[1]];
     }
     let surface = LitColours(colours);
     let screen = ScreenTriangle { outline, surface };
-    (area(&outline) != 0).then(|| Piece::new(screen, &mut SetupStats::default()))
+    (twice_area != 0).then(|| Piece::new(screen, &mut SetupStats::default()))
 }
 
 /// Coordinates near the screen, in the whole guard band, and on pixel centres.
@@ -39,36 +37,55 @@ fn coordinate(size: i32) -> impl Strategy<Value = i32> {
 }
 
 fn corners() -> impl Strategy<Value = ([i32; 3], [i32; 3])> {
-    let triple = |size| [coordinate(size), coordinate(size), coordinate(size)];
-    let centre = |size: i32| (0..size).prop_map(|p| p * 16 + 8);
-    let flat = ([centre(640), centre(640), centre(640)], centre(480), coordinate(480))
+    let flat = ([pixel_centre(640), pixel_centre(640), pixel_centre(640)], pixel_centre(480), coordinate(480))
         .prop_map(|(x, y, other)| (x, [y, other, y]));
-    let near = (triple(640), triple(480), 1..40_i32).prop_map(|(x, y, s)| {
-        // Small and thin triangles around the first corner.
-        let pull = |v: [i32; 3]| [v[0], v[0] + (v[1] - v[0]) / s, v[0] + (v[2] - v[0]) / s];
-        (pull(x), pull(y))
-    });
-    prop_oneof![2 => (triple(640), triple(480)), 2 => near, 1 => flat]
+    // Small and thin triangles around the first corner.
+    let near = (coordinates(640), coordinates(480), 1..40_i32).prop_map(|(x, y, s)| (pulled(x, s), pulled(y, s)));
+    prop_oneof![2 => (coordinates(640), coordinates(480)), 2 => near, 1 => flat]
+}
+
+fn coordinates(size: i32) -> [impl Strategy<Value = i32>; 3] {
+    [coordinate(size), coordinate(size), coordinate(size)]
+}
+
+fn pixel_centre(size: i32) -> impl Strategy<Value = i32> {
+    (0..size).prop_map(|p| p * 16 + 8)
+}
+
+/// Draws the second and the third number `s` times nearer to the first.
+fn pulled(v: [i32; 3], s: i32) -> [i32; 3] {
+    v.map(|c| v[0] + (c - v[0]) / s)
 }
 
 fn depths() -> impl Strategy<Value = [u32; 3]> {
-    let depth = || prop_oneof![Just(DEPTH_NEAR), Just(DEPTH_FAR), DEPTH_NEAR..=DEPTH_FAR];
     [depth(), depth(), depth()]
 }
 
+fn depth() -> impl Strategy<Value = u32> {
+    prop_oneof![Just(DEPTH_NEAR), Just(DEPTH_FAR), DEPTH_NEAR..=DEPTH_FAR]
+}
+
 fn colours() -> impl Strategy<Value = [[u16; 3]; 3]> {
-    let part = || prop_oneof![Just(0_u16), Just(255 * 256), 0..=255_u16 * 256];
-    let corner = || [part(), part(), part()];
-    [corner(), corner(), corner()]
+    [colour(), colour(), colour()]
+}
+
+fn colour() -> [impl Strategy<Value = u16>; 3] {
+    [component(), component(), component()]
+}
+
+fn component() -> impl Strategy<Value = u16> {
+    prop_oneof![Just(0_u16), Just(255 * 256), 0..=255_u16 * 256]
 }
 
 /// The tie rule and the edge in 1/256 square px, as their definitions say, in 128 bits.
 fn inside(outline: &Outline, x: i32, y: i32) -> bool {
     let centre = [16 * i128::from(x) + 8, 16 * i128::from(y) + 8];
-    let corner = |i: usize| [i128::from(outline.x[i % 3]), i128::from(outline.y[i % 3])];
+    let corners = [0, 1, 2].map(|i| [i128::from(outline.x[i]), i128::from(outline.y[i])]);
     (0..3).all(|i| {
-        let (from, to) = (corner(i), corner(i + 1));
-        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let from = corners[i];
+        let to = corners[(i + 1) % 3];
+        let dx = to[0] - from[0];
+        let dy = to[1] - from[1];
         let area = dx * (centre[1] - from[1]) - dy * (centre[0] - from[0]);
         area > 0 || (area == 0 && (dy < 0 || (dy == 0 && dx > 0)))
     })
@@ -78,13 +95,21 @@ fn inside(outline: &Outline, x: i32, y: i32) -> bool {
 /// pixel more each way for the middle's own rounding.
 fn allowed_error(piece: &Piece, x: i32, y: i32) -> i128 {
     let outline = &piece.screen.outline;
-    let away = |v: &[i32; 3], size: i32, pixel: i32| {
-        let clamped = v.map(|c| c.clamp(0, size * 16 - 1));
-        let ends = clamped.iter().min().zip(clamped.iter().max());
-        let middle = ends.map_or(0, |(low, high)| (low + high) / 32);
-        (middle - pixel).abs()
-    };
-    i128::from((away(&outline.x, 640, x) + away(&outline.y, 480, y)) / 2 + 2)
+    let from_middle = (visible_middle(&outline.x, 640) - x).abs() + (visible_middle(&outline.y, 480) - y).abs();
+    i128::from(from_middle / 2 + 2)
+}
+
+/// The pixel in the middle of the visible bounding box, along one axis of a picture.
+fn visible_middle(corners: &[i32; 3], size: i32) -> i32 {
+    let clamped = corners.map(|c| c.clamp(0, size * 16 - 1));
+    let ends = clamped.iter().min().zip(clamped.iter().max());
+    ends.map_or(0, |(low, high)| (low + high) / 32)
+}
+
+fn edges_and_colours(triangle: &GouraudTriangle) -> [Linear; 6] {
+    let [e0, e1, e2] = triangle.edges;
+    let [r, g, b] = triangle.rgb;
+    [e0, e1, e2, r, g, b]
 }
 
 fn value(e: &Linear, x: i32, y: i32) -> i128 {
@@ -104,7 +129,8 @@ proptest! {
         }
         // Ties: the rows and columns of the corners.
         for corner in 0..9 {
-            let (px, py) = (x[corner % 3] >> 4, y[corner / 3] >> 4);
+            let px = x[corner % 3] >> 4;
+            let py = y[corner / 3] >> 4;
             prop_assert_eq!(piece.inside_edges(px, py), inside(&piece.screen.outline, px, py));
         }
     }
@@ -200,14 +226,9 @@ proptest! {
         for parity in [FieldParity::Even, FieldParity::Odd] {
             let viewport = Viewport::field(parity);
             let field = piece.screen.gouraud(&viewport, &mut SetupStats::default());
-            let all = |g: &pxpl5_geometry::GouraudTriangle| {
-                let [e0, e1, e2] = g.edges;
-                let [r, g, b] = [g.rgb[0], g.rgb[1], g.rgb[2]];
-                [e0, e1, e2, r, g, b]
-            };
             for (px, row) in [(0, 0), (639, 0), (17, 101), (0, 239), (639, 239)] {
                 let line = 2 * row + parity.first_line() as i32;
-                for (f, w) in all(&field).iter().zip(all(&piece.planes)) {
+                for (f, w) in edges_and_colours(&field).iter().zip(edges_and_colours(&piece.planes)) {
                     prop_assert_eq!(f.at(px, row), w.at(px, line));
                 }
                 prop_assert_eq!(field.z.at(px, row), piece.planes.z.at(px, line));

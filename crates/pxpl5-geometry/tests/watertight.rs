@@ -11,7 +11,8 @@ use support::{HEIGHT, WIDTH, at_pixel, pixel_view};
 /// How often each pixel is drawn.
 fn draw(view: &ViewTransform, triangles: &[[Vec3; 3]]) -> (Vec<u8>, SetupStats) {
     let transform = Transform::new(view, Viewport::FRAME, Culling::None).expect("a finite view");
-    let (mut counts, mut stats) = (vec![0_u8; (WIDTH * HEIGHT) as usize], SetupStats::default());
+    let mut counts = vec![0_u8; (WIDTH * HEIGHT) as usize];
+    let mut stats = SetupStats::default();
     for positions in triangles {
         let triangle = Triangle { positions: *positions, normals: [Vec3::Z; 3], colours: [[0; 3]; 3] };
         let mut pieces = Vec::new();
@@ -29,11 +30,11 @@ fn count(counts: &[u8], x: i32, y: i32) -> u8 {
 
 /// A fan of `rim` around `hub`, every second triangle turned over.
 fn fan(hub: Vec3, rim: &[Vec3]) -> Vec<[Vec3; 3]> {
-    let next = |n: usize| rim[(n + 1) % rim.len()];
-    let turned = |n: usize| {
-        if n.is_multiple_of(2) { [hub, rim[n], next(n)] } else { [next(n), rim[n], hub] }
-    };
-    (0..rim.len()).map(turned).collect()
+    let sectors = (0..rim.len()).map(|n| {
+        let next = rim[(n + 1) % rim.len()];
+        if n.is_multiple_of(2) { [hub, rim[n], next] } else { [next, rim[n], hub] }
+    });
+    sectors.collect()
 }
 
 fn on_screen() -> impl Strategy<Value = [i32; 2]> {
@@ -59,8 +60,8 @@ proptest! {
             places.sort_unstable();
             places.dedup();
             for place in places {
-                let part = |i: usize| from[i] as f32 + (to[i] - from[i]) as f32 * place as f32 / 64.0;
-                rim.push(at_pixel(part(0), part(1), 1.0 + place as f32 / 32.0));
+                let [x, y] = [0, 1].map(|i| from[i] as f32 + (to[i] - from[i]) as f32 * place as f32 / 64.0);
+                rim.push(at_pixel(x, y, 1.0 + place as f32 / 32.0));
             }
         }
         let (counts, stats) = draw(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
@@ -83,12 +84,11 @@ proptest! {
         let (counts, stats) = draw(&view, &fan(hub, &spokes));
         prop_assert!(counts.iter().all(|&n| n <= 1), "a pixel twice: {stats:?}");
         // Holes: a pixel that is not covered between neighbours that are, away from the parallelogram's rim.
-        let inside = |x: i32, y: i32| count(&counts, x, y) == 1;
         for y in 2..HEIGHT - 2 {
             for x in 2..WIDTH - 2 {
                 let ring = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
-                let surrounded = ring.iter().all(|&(dx, dy)| inside(x + dx, y + dy));
-                prop_assert!(inside(x, y) || !surrounded, "hole at {x}, {y}: {stats:?}");
+                let surrounded = ring.iter().all(|&(dx, dy)| count(&counts, x + dx, y + dy) == 1);
+                prop_assert!(count(&counts, x, y) == 1 || !surrounded, "hole at {x}, {y}: {stats:?}");
             }
         }
     }
@@ -137,8 +137,8 @@ fn a_triangle_that_passes_the_eye_covers_what_is_before_the_near_plane() {
 #[test]
 fn triangles_a_million_pixels_beyond_the_screen_still_meet_along_one_line() {
     // Without the guard band these edges would need 40 bits. Every second triangle is turned over.
-    let far = |x: f32, y: f32| at_pixel(320.0 + x * 1e6, 240.0 + y * 1e6, 1.0);
-    let rim = [far(-1.0, -0.9), far(1.0, -1.1), far(0.8, 1.0), far(-0.7, 1.0)];
+    let rim = [[-1.0, -0.9], [1.0, -1.1], [0.8, 1.0], [-0.7, 1.0]];
+    let rim = rim.map(|[x, y]| at_pixel(320.0 + x * 1e6, 240.0 + y * 1e6, 1.0));
     let hub = at_pixel(300.25, 200.75, 1.0);
     let (counts, stats) = draw(&pixel_view(1.0, 16_384.0), &fan(hub, &rim));
     assert_eq!(stats.clipped, 4);

@@ -3,7 +3,7 @@
 use crate::config::{BIN_ENTRY_BYTES, Config, PROGRAM_BYTES};
 use crate::master::copy_order;
 use crate::protocol::{Order, Token};
-use pphigs::{Around, FrameView, Pass, Share, Transforming, region_messages};
+use pphigs::{FrameView, Pass, RegionEnvelope, Share, Transforming, region_messages};
 use pxpl5_gp::{Account, Fault, Gp, Level, Stage};
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, RegionId};
@@ -149,12 +149,12 @@ async fn walk(gp: &Gp, config: &Config, index: usize, state: &Shared, token: Tok
 /// The first slave begins the region, the last one ends it.
 fn messages(config: &Config, pass: &Arc<Pass>, token: Token) -> Vec<CommandList> {
     let last = token.slaves_left == 1;
-    let around = Around {
+    let envelope = RegionEnvelope {
         begin: usize::from(token.slaves_left) == config.slaves.len(),
         shade: last,
         copy: (last && token.copy).then(|| copy_order(config, token.picture, token.region)),
     };
-    region_messages(pass, token.region, 0, around)
+    region_messages(pass, token.region, 0, envelope)
 }
 
 async fn tell_master(gp: &Gp, config: &Config, order: &Order) {

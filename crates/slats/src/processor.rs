@@ -2,9 +2,11 @@
 
 use crate::bind::{Binding, BoundRegion};
 use crate::config::{Config, Copy};
-use pphigs::{Around, FrameView, Pass, Picture, Share, Transforming, ViewWordsError, copy_message, region_messages};
+use pphigs::{
+    FrameView, Pass, Picture, RegionEnvelope, Share, TransformCost, Transforming, ViewWordsError, copy_message,
+    region_messages,
+};
 use pxpl5_gp::{Account, Fault, Gp, Level, Stage, Ticket};
-use pxpl5_sim::Span;
 use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyOrder, Eye, FieldParity, NodeId, Word, swap_request};
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -224,7 +226,7 @@ impl Processor {
     async fn field(&self, field: u64, view: &FrameView) -> Result<(), Fault> {
         self.gp.begin_view(Stage::Sample, field, view.number);
         self.gp.begin(Stage::Transform, field, None);
-        self.gp.spend(Span::from_ns(self.gp.timing().pass_ns)).await;
+        self.gp.spend(TransformCost::PASS.span(&self.gp.timing())).await;
         let picture = self.config.picture(FieldParity::of_field(field));
         let mut clumps: Vec<_> = self.share.clumps(CLUMP).collect();
         if clumps.is_empty() {
@@ -257,9 +259,9 @@ impl Processor {
 
     /// Sends a clump to all its regions as one chain of messages.
     async fn send(&self, passes: &[Arc<Pass>; 2], begin: bool) -> Option<Ticket> {
-        let around = Around { begin, ..Around::default() };
+        let envelope = RegionEnvelope { begin, ..RegionEnvelope::default() };
         let lists = self.binding.regions().iter().flat_map(|bound| {
-            let lists = region_messages(&passes[bound.eye.index()], bound.region, bound.context, around);
+            let lists = region_messages(&passes[bound.eye.index()], bound.region, bound.context, envelope);
             lists.into_iter().map(|list| self.addressed(bound.renderer, list))
         });
         let batch: Vec<_> = lists.collect();

@@ -43,13 +43,15 @@ fn many(seed: u64, count: usize, make: impl Fn(&mut Random) -> [Vec3; 3]) -> Vec
 
 /// Somewhere on the screen, at one of a few distances.
 fn anywhere(random: &mut Random) -> Vec3 {
-    let (x, y) = (random.between(0.0, 640.0), random.between(0.0, 480.0));
+    let x = random.between(0.0, 640.0);
+    let y = random.between(0.0, 480.0);
     at_pixel(x, y, random.between(0.5, 8.0))
 }
 
 /// Within `size` px of a place.
 fn around(random: &mut Random, [x, y]: [f32; 2], size: f32) -> Vec3 {
-    let (dx, dy) = (random.between(-size, size), random.between(-size, size));
+    let dx = random.within(size);
+    let dy = random.within(size);
     at_pixel(x + dx, y + dy, random.between(1.0, 1.2))
 }
 
@@ -69,16 +71,17 @@ fn large() -> Case {
 
 /// 300 px long and `width` px wide, in any direction.
 fn slivers(name: &'static str, width: f32) -> Case {
-    let make = move |r: &mut Random| {
+    let triangles = many(3, 100, |r| {
         let [dx, dy] = r.direction();
-        let (x, y) = (r.between(200.0, 440.0), r.between(160.0, 320.0));
+        let x = r.between(200.0, 440.0);
+        let y = r.between(160.0, 320.0);
         [
             at_pixel(x - 150.0 * dx, y - 150.0 * dy, 1.0),
             at_pixel(x + 150.0 * dx, y + 150.0 * dy, 2.0),
             at_pixel(x - dy * width, y + dx * width, 1.5),
         ]
-    };
-    case(name, many(3, 100, make))
+    });
+    case(name, triangles)
 }
 
 /// Triangles around one corner, as a closed fan.
@@ -100,7 +103,8 @@ fn fan() -> Case {
         })
         .collect();
     let triangles = (0..count).map(|n| {
-        let (from, to) = (rim[n], rim[(n + 1) % count]);
+        let from = rim[n];
+        let to = rim[(n + 1) % count];
         coloured(&mut random, [hub, from, to])
     });
     tiling("fan of 48 around one corner", triangles.collect())
@@ -109,20 +113,23 @@ fn fan() -> Case {
 /// A jittered grid, of which neighbours share edges with opposite directions.
 fn grid(name: &'static str, step: f32, jitter: f32) -> Case {
     let mut random = Random(5);
-    let (columns, rows) = (40_usize, 30_usize);
+    let columns = 40_usize;
+    let rows = 30_usize;
     let vertices: Vec<Vec3> = (0..=rows * (columns + 1) + columns)
         .map(|n| {
-            let (column, row) = (n % (columns + 1), n / (columns + 1));
-            let mut moved = |v: usize| 8.5 + v as f32 * step + random.between(-jitter, jitter);
-            let (x, y) = (moved(column), moved(row));
+            let column = n % (columns + 1);
+            let row = n / (columns + 1);
+            let x = 8.5 + column as f32 * step + random.within(jitter);
+            let y = 8.5 + row as f32 * step + random.within(jitter);
             at_pixel(x, y, 1.0 + (n % 7) as f32 * 0.25)
         })
         .collect();
     let mut triangles = Vec::new();
     for row in 0..rows {
         for column in 0..columns {
-            let at = |r: usize, c: usize| vertices[(row + r) * (columns + 1) + column + c];
-            let corners = [at(0, 0), at(0, 1), at(1, 0), at(1, 1)];
+            let first = row * (columns + 1) + column;
+            let below = first + columns + 1;
+            let corners = [first, first + 1, below, below + 1].map(|n| vertices[n]);
             for [a, b, c] in [[0, 1, 2], [3, 2, 1]] {
                 triangles.push(coloured(&mut random, [corners[a], corners[b], corners[c]]));
             }
@@ -132,64 +139,67 @@ fn grid(name: &'static str, step: f32, jitter: f32) -> Case {
 }
 
 fn region_borders() -> Case {
-    let make = |r: &mut Random| {
+    let triangles = many(6, 60, |r| {
         std::array::from_fn(|_| {
-            let (x, y) = (r.integer(0, 5) * 128, r.integer(0, 3) * 128);
+            let x = r.integer(0, 5) * 128;
+            let y = r.integer(0, 3) * 128;
             at_pixel(x as f32, y as f32, 1.0)
         })
-    };
-    case("corners on region borders", many(6, 60, make))
+    });
+    case("corners on region borders", triangles)
 }
 
 fn pixel_centres() -> Case {
-    let make = |r: &mut Random| {
-        let (x, y) = (r.integer(20, 600), r.integer(20, 440));
+    let triangles = many(7, 200, |r| {
+        let x = r.integer(20, 600);
+        let y = r.integer(20, 440);
         std::array::from_fn(|_| {
-            let (dx, dy) = (r.integer(0, 12), r.integer(0, 12));
+            let dx = r.integer(0, 12);
+            let dy = r.integer(0, 12);
             at_pixel((x + dx) as f32 + 0.5, (y + dy) as f32 + 0.5, 1.0)
         })
-    };
-    case("corners on pixel centres", many(7, 200, make))
+    });
+    case("corners on pixel centres", triangles)
 }
 
 fn across_near() -> Case {
-    let make = |r: &mut Random| {
-        let behind = Vec3::new(r.between(-2.0, 2.0), r.between(-2.0, 2.0), r.between(-0.9, 3.0));
+    let triangles = many(8, 40, |r| {
+        let behind = Vec3::new(r.within(2.0), r.within(2.0), r.between(-0.9, 3.0));
         [anywhere(r), anywhere(r), behind]
-    };
-    case("across the near plane and the eye", many(8, 40, make))
+    });
+    case("across the near plane and the eye", triangles)
 }
 
 fn across_everything() -> Case {
-    let make = |r: &mut Random| {
-        std::array::from_fn(|_| {
-            let mut far = || r.between(-1.0, 1.0) * 1e6;
-            Vec3::new(far(), far(), far())
-        })
-    };
-    case("across eye and screen by 10^6", many(9, 100, make))
+    let triangles = many(9, 100, |r| {
+        std::array::from_fn(|_| Vec3::new(r.within(1.0) * 1e6, r.within(1.0) * 1e6, r.within(1.0) * 1e6))
+    });
+    case("across eye and screen by 10^6", triangles)
 }
 
 fn off_screen() -> Case {
-    let make = |r: &mut Random| {
-        let mut far = |centre: f32| centre + r.between(-1.0, 1.0) * 1e6;
-        let (x, y) = (far(320.0), far(240.0));
-        let (u, v) = (far(320.0), far(240.0));
-        [at_pixel(x, y, 1.0), at_pixel(u, v, 1.0), anywhere(r)]
-    };
-    case("10^6 px beyond the screen", many(10, 100, make))
+    let triangles = many(10, 100, |r| [far_off_screen(r), far_off_screen(r), anywhere(r)]);
+    case("10^6 px beyond the screen", triangles)
+}
+
+/// Within 10^6 px of the screen's middle.
+fn far_off_screen(random: &mut Random) -> Vec3 {
+    let x = 320.0 + random.within(1.0) * 1e6;
+    let y = 240.0 + random.within(1.0) * 1e6;
+    at_pixel(x, y, 1.0)
 }
 
 fn depth_range() -> Case {
-    let make = |r: &mut Random| {
+    let triangles = many(11, 60, |r| {
         let place = [r.between(50.0, 590.0), r.between(50.0, 430.0)];
         std::array::from_fn(|_| {
             let power = r.integer(-19, 9);
-            let (dx, dy) = (r.between(-40.0, 40.0), r.between(-40.0, 40.0));
+            let dx = r.within(40.0);
+            let dy = r.within(40.0);
             at_pixel(place[0] + dx, place[1] + dy, f32::from_bits(((power + 127) as u32) << 23))
         })
-    };
-    Case { view: pixel_view(1e-3, 1e6), ..case("depth from 10^-3 to 10^6", many(11, 60, make)) }
+    });
+    Case { view: pixel_view(1e-3, 1e6), ..case("depth from 10^-3 to 10^6", triangles) }
 }
 
 /// A view like a user's, with a rotation, of a model of a given size somewhere.
@@ -197,10 +207,9 @@ fn placed(name: &'static str, seed: u64, size: f32, place: Vec3) -> Case {
     let random = &mut Random(seed);
     let triangles = (0..100)
         .map(|_| {
-            let mut part = |spread: f32| random.between(-spread, spread);
-            let centre = Vec3::new(part(1.0), part(0.8), part(0.5));
+            let centre = Vec3::new(random.within(1.0), random.within(0.8), random.within(0.5));
             let corners = std::array::from_fn(|_| {
-                let offset = Vec3::new(part(0.06), part(0.06), part(0.06));
+                let offset = Vec3::new(random.within(0.06), random.within(0.06), random.within(0.06));
                 place + (centre + offset) * size
             });
             coloured(random, corners)
@@ -218,29 +227,31 @@ fn placed(name: &'static str, seed: u64, size: f32, place: Vec3) -> Case {
 }
 
 fn degenerate() -> Case {
-    let make = |r: &mut Random| {
-        let (a, b) = (anywhere(r), anywhere(r));
+    let triangles = many(12, 60, |r| {
+        let a = anywhere(r);
+        let b = anywhere(r);
         match r.integer(0, 3) {
             0 => [a, a, b],
             1 => [a, b, (a + b) * 0.5],
             2 => [a, a, a],
             _ => [a, a * 2.0, b],
         }
-    };
-    case("degenerate and zero area", many(12, 60, make))
+    });
+    case("degenerate and zero area", triangles)
 }
 
 /// A wall that runs away from the eye and is seen almost edge-on.
 fn edge_on() -> Case {
-    let make = |r: &mut Random| {
-        let (x, y) = (r.between(100.0, 540.0), r.between(10.0, 200.0));
+    let triangles = many(13, 60, |r| {
+        let x = r.between(100.0, 540.0);
+        let y = r.between(10.0, 200.0);
         [
             at_pixel(x, y, 1.0 / 512.0),
             at_pixel(x + r.between(0.0, 2.0), y + 20.0, 16.0),
             at_pixel(x, y + 250.0, 1.0 / 512.0),
         ]
-    };
-    case("walls seen edge-on, near to far", many(13, 60, make))
+    });
+    case("walls seen edge-on, near to far", triangles)
 }
 
 /// 4,000 px long, half a subpixel thick, from far to near across that: slopes beyond any format.
@@ -249,15 +260,15 @@ fn overflowing() -> Case {
     let triangles = (0..20)
         .map(|n| {
             let y = 20.0 * n as f32 + 10.0;
-            let at = |x: f32, line: f32, scale: f32| at_pixel(x, y + line / 16.0, scale);
-            let corners = [at(-1500.0, 7.0, 16.0), at(2500.0, 9.0, 16.0), at(1500.0, 9.0, 1.0 / 512.0)];
+            let corners = [[-1500.0, 7.0, 16.0], [2500.0, 9.0, 16.0], [1500.0, 9.0, 1.0 / 512.0]]
+                .map(|[x, subpixel, scale]| at_pixel(x, y + subpixel / 16.0, scale));
             coloured(&mut random, corners)
         })
         .collect();
     Case { view: pixel_view(1.875, FAR), ..case("half a subpixel thick, near to far", triangles) }
 }
 
-/// All families.
+/// All families of triangles: ordinary ones, then the hard ones.
 pub fn all() -> Vec<Case> {
     vec![
         ordinary(),

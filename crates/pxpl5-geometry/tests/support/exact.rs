@@ -26,8 +26,12 @@ impl Form {
 
     /// The sum of `weights[i] * forms[i]`.
     fn sum(forms: &[Self; 3], weights: &[BigInt; 3]) -> Self {
-        let sum = |part: fn(&Self) -> &BigInt| forms.iter().zip(weights).map(|(f, w)| part(f) * w).sum();
-        Self { a: sum(|f| &f.a), b: sum(|f| &f.b), c: sum(|f| &f.c) }
+        let [f, g, h] = forms;
+        Self {
+            a: weighted([&f.a, &g.a, &h.a], weights),
+            b: weighted([&f.b, &g.b, &h.b], weights),
+            c: weighted([&f.c, &g.c, &h.c], weights),
+        }
     }
 
     fn negated(self) -> Self {
@@ -37,15 +41,14 @@ impl Form {
     /// Narrows a range of x to where the form at row y is at least `least`.
     fn narrow(&self, y: i32, least: i32, range: &mut [i32; 2]) {
         let needed: BigInt = BigInt::from(least) - &self.b * y - &self.c;
-        let clamped = |v: BigInt| v.to_i32().unwrap_or(if v.is_negative() { -1 } else { WIDTH });
         if self.a.is_zero() {
             if needed.is_positive() {
                 *range = [0, -1];
             }
         } else if self.a.is_positive() {
-            range[0] = range[0].max(clamped(needed.div_ceil(&self.a)));
+            range[0] = range[0].max(pixel(&needed.div_ceil(&self.a)));
         } else {
-            range[1] = range[1].min(clamped(needed.div_floor(&self.a)));
+            range[1] = range[1].min(pixel(&needed.div_floor(&self.a)));
         }
     }
 
@@ -54,6 +57,15 @@ impl Form {
         let top_left = self.a.is_positive() || (self.a.is_zero() && self.b.is_positive());
         i32::from(!top_left)
     }
+}
+
+fn weighted(values: [&BigInt; 3], weights: &[BigInt; 3]) -> BigInt {
+    values.iter().zip(weights).map(|(value, weight)| *value * weight).sum()
+}
+
+/// A pixel's number; a number too large for one is beyond that side of the frame.
+fn pixel(number: &BigInt) -> i32 {
+    number.to_i32().unwrap_or(if number.is_negative() { -1 } else { WIDTH })
 }
 
 /// A ratio as a floating-point number, right to some 40 bits below 1.
@@ -108,11 +120,10 @@ impl ExactTriangle {
             let [x, y, _, w] = &corners[i];
             [(w + x) * WIDTH, (w - y) * HEIGHT, w * 2]
         });
-        let edge = |j: usize, k: usize| {
-            let [x, y, w] = cross(&screen[j], &screen[k]);
+        let mut edges = [[1, 2], [2, 0], [0, 1]].map(|[from, to]| {
+            let [x, y, w] = cross(&screen[from], &screen[to]);
             Form { a: &x * 2, b: &y * 2, c: x + y + w * 2 }
-        };
-        let mut edges = [edge(1, 2), edge(2, 0), edge(0, 1)];
+        });
         let mut scale = dot(&screen[0], &cross(&screen[1], &screen[2]));
         if scale.is_zero() {
             return None;
@@ -164,9 +175,8 @@ fn reduced(corners: [[BigInt; 4]; 3]) -> [[BigInt; 4]; 3] {
     corners.map(|c| c.map(|v| v >> shift))
 }
 
-fn cross(a: &[BigInt; 3], b: &[BigInt; 3]) -> [BigInt; 3] {
-    let minor = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
-    [minor(1, 2), minor(2, 0), minor(0, 1)]
+pub fn cross(a: &[BigInt; 3], b: &[BigInt; 3]) -> [BigInt; 3] {
+    [[1, 2], [2, 0], [0, 1]].map(|[i, j]| &a[i] * &b[j] - &a[j] * &b[i])
 }
 
 fn dot(a: &[BigInt; 3], b: &[BigInt; 3]) -> BigInt {

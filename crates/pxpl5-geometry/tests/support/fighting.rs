@@ -22,9 +22,8 @@ fn view() -> ViewTransform {
 
 /// A triangle over most of the screen, its corners at three distances times `scale`.
 fn surface(scale: [f32; 3]) -> Triangle {
-    let corner = |x: f32, y: f32, s: f32| -> Vec3 { at_pixel(x, y, s) };
     Triangle {
-        positions: [corner(10.3, 20.1, scale[0]), corner(630.7, 90.4, scale[1]), corner(200.9, 470.2, scale[2])],
+        positions: [at_pixel(10.3, 20.1, scale[0]), at_pixel(630.7, 90.4, scale[1]), at_pixel(200.9, 470.2, scale[2])],
         normals: [Vec3::Z; 3],
         colours: [[128; 3]; 3],
     }
@@ -34,12 +33,14 @@ fn fight(name: String, first: [f32; 3], second: [f32; 3]) -> Fight {
     let transform = Transform::new(&view(), Viewport::FRAME, Culling::None).expect("a finite view");
     let pair = [surface(first), surface(second)];
     let pieces = pair.map(|t| {
-        let (mut stats, mut found) = (SetupStats::default(), Vec::new());
+        let mut stats = SetupStats::default();
+        let mut found = Vec::new();
         transform.gouraud(&t, &Light::NONE, &mut stats, |s| found.push(s));
         Piece::new(found[0], &mut stats)
     });
     let exact = pair.map(|t| ExactTriangle::new(&view(), &t).expect("it has an area"));
-    let (mut apart, mut wrong) = (Vec::new(), 0);
+    let mut apart = Vec::new();
+    let mut wrong = 0;
     for y in 0..HEIGHT {
         let spans = [exact[0].span(y), exact[1].span(y)];
         let range = spans[0][0].max(spans[1][0])..=spans[0][1].min(spans[1][1]);

@@ -6,6 +6,7 @@ use super::native::Piece;
 use super::snapped::Snapped;
 use super::{HEIGHT, WIDTH};
 use pxpl5_geometry::{Culling, DEPTH_FAR, DEPTH_NEAR, Light, SetupStats, Transform, Viewport};
+use std::ops::RangeInclusive;
 
 /// Finer and coarser grids that the formats are tried with.
 pub const SUBPIXEL_BITS: [u32; 6] = [0, 2, 4, 6, 8, 12];
@@ -62,13 +63,23 @@ impl Counts {
     fn get(&self, x: i32, y: i32) -> u8 {
         self.0[(y * WIDTH + x) as usize]
     }
+
+    /// Whether the pixel and all its neighbours are covered.
+    fn is_interior(&self, x: i32, y: i32) -> bool {
+        neighbours(y, HEIGHT).all(|y| neighbours(x, WIDTH).all(|x| self.get(x, y) > 0))
+    }
+}
+
+/// The pixel and those beside it along one axis.
+fn neighbours(pixel: i32, size: i32) -> RangeInclusive<i32> {
+    (pixel - 1).max(0)..=(pixel + 1).min(size - 1)
 }
 
 fn pixels() -> impl Iterator<Item = (i32, i32)> {
     (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y)))
 }
 
-/// Measures a case.
+/// Draws a case by the pipeline and by the exact oracle, and counts where they differ.
 pub fn measure(case: &Case) -> Row {
     let transform = Transform::new(&case.view, Viewport::FRAME, Culling::None).expect("finite views");
     let mut row = Row { triangles: case.triangles.len(), ..Row::default() };
@@ -100,7 +111,8 @@ impl Row {
                 own.add(x, y);
                 drawn.add(x, y);
                 let [first, last] = &mut reach[y as usize];
-                (*first, *last) = ((*first).min(x), (*last).max(x));
+                *first = (*first).min(x);
+                *last = (*last).max(x);
                 number += 1;
                 if number % stride == 0 {
                     self.plane_errors(piece, x, y);
@@ -127,15 +139,11 @@ impl Row {
 
     /// The planes against exact planes through the same snapped corners.
     fn plane_errors(&mut self, piece: &Piece, x: i32, y: i32) {
-        let off = |found: f64, corners: [i128; 3], unit: f64| {
-            let (sum, area) = piece.exact_plane(corners, x, y);
-            (found - sum as f64 / area as f64 / unit).abs()
-        };
-        let depth = off(f64::from(piece.depth(x, y)) + 0.5, piece.depth_corners(), 256.0);
-        self.depth_plane = self.depth_plane.max(depth);
+        let depth = piece.plane_value(piece.depth_corners(), x, y) / 256.0;
+        self.depth_plane = self.depth_plane.max((f64::from(piece.depth(x, y)) + 0.5 - depth).abs());
         for i in 0..3 {
-            let colour = off(f64::from(piece.colour(i, x, y)), piece.colour_corners(i), 256.0);
-            self.colour_plane = self.colour_plane.max(colour);
+            let colour = piece.plane_value(piece.colour_corners(i), x, y) / 256.0;
+            self.colour_plane = self.colour_plane.max((f64::from(piece.colour(i, x, y)) - colour).abs());
         }
     }
 
@@ -159,53 +167,47 @@ impl Row {
     fn grids(&mut self, exact: &ExactTriangle, spans: &[[i32; 2]]) {
         for (i, bits) in SUBPIXEL_BITS.into_iter().enumerate() {
             let Some(snapped) = Snapped::new(exact, bits) else { return };
-            let inside = |x: i32, y: i32| {
-                let [first, last] = spans[y as usize];
-                (first..=last).contains(&x)
-            };
-            let ([left, right], [top, bottom]) = (snapped.columns(), snapped.rows());
+            let [left, right] = snapped.columns();
+            let [top, bottom] = snapped.rows();
             for y in top..=bottom {
                 let [first, last] = spans[y as usize];
                 let range = if first > last { left..=right } else { left.min(first)..=right.max(last) };
-                self.grids[i] += range.filter(|&x| snapped.covers([x, y]) != inside(x, y)).count() as u64;
+                self.grids[i] += range.filter(|x| snapped.covers([*x, y]) != (first..=last).contains(x)).count() as u64;
             }
         }
-        let covered = |[first, last]: &[i32; 2]| (last - first + 1).max(0) as u64;
-        self.grid_exact += spans.iter().map(covered).sum::<u64>();
+        self.grid_exact += spans.iter().map(|[first, last]| (last - first + 1).max(0) as u64).sum::<u64>();
     }
 
     fn bits(&mut self, piece: &Piece) {
-        let edges = piece.screen.edges(&Viewport::FRAME);
-        let signed = |v: i128| 129 - v.unsigned_abs().leading_zeros();
-        let mut keep = |i: usize, v: i128| self.bits[i] = self.bits[i].max(signed(v));
-        for e in edges {
-            keep(0, e.a.into());
-            keep(0, e.b.into());
-            keep(1, e.c.into());
+        for e in piece.screen.edges(&Viewport::FRAME) {
+            self.keep_bits(0, e.a.into());
+            self.keep_bits(0, e.b.into());
+            self.keep_bits(1, e.c.into());
         }
-        let mut slopes = |i: usize, corners: [i128; 3]| {
-            let value = |x, y| {
-                let (sum, area) = piece.exact_plane(corners, x, y);
-                (sum, area.max(1))
-            };
-            let (origin, area) = value(0, 0);
-            keep(i, (value(1, 0).0 - origin) / area);
-            keep(i, (value(0, 1).0 - origin) / area);
-        };
-        slopes(2, piece.depth_corners());
+        self.slope_bits(2, piece, piece.depth_corners());
         for component in 0..3 {
             // Corners have 8 fraction bits, the expression 12.
-            slopes(3, piece.colour_corners(component).map(|c| c * 16));
+            self.slope_bits(3, piece, piece.colour_corners(component).map(|c| c * 16));
         }
     }
 
+    /// Bits of the slopes of the plane through three values at the corners.
+    fn slope_bits(&mut self, place: usize, piece: &Piece, corners: [i128; 3]) {
+        let (origin, area) = piece.exact_plane(corners, 0, 0);
+        for (x, y) in [(1, 0), (0, 1)] {
+            self.keep_bits(place, (piece.exact_plane(corners, x, y).0 - origin) / area.max(1));
+        }
+    }
+
+    /// Keeps the greater of the bits found so far and those of `value`, with sign.
+    fn keep_bits(&mut self, place: usize, value: i128) {
+        self.bits[place] = self.bits[place].max(129 - value.unsigned_abs().leading_zeros());
+    }
+
     fn tiling(&mut self, drawn: &Counts, wanted: &Counts) {
-        let interior = |x: i32, y: i32| {
-            let near = |v: i32, size: i32| (v - 1).max(0)..=(v + 1).min(size - 1);
-            near(y, HEIGHT).all(|y| near(x, WIDTH).all(|x| wanted.get(x, y) > 0))
-        };
-        let holes = pixels().filter(|&(x, y)| drawn.get(x, y) == 0 && interior(x, y)).count();
+        let holes = pixels().filter(|&(x, y)| drawn.get(x, y) == 0 && wanted.is_interior(x, y)).count();
         let overlaps = pixels().filter(|&(x, y)| drawn.get(x, y) > 1).count();
-        (self.holes, self.overlaps) = (Some(holes as u64), Some(overlaps as u64));
+        self.holes = Some(holes as u64);
+        self.overlaps = Some(overlaps as u64);
     }
 }

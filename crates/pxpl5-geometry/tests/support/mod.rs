@@ -16,9 +16,9 @@ pub mod spheres;
 use glam::{Mat4, Vec3, Vec4};
 use pxpl5_geometry::ViewTransform;
 
-/// Width and height of the frame in pixels.
+/// Width of the frame in pixels.
 pub const WIDTH: i32 = 640;
-/// See [`WIDTH`].
+/// Height of the frame in pixels.
 pub const HEIGHT: i32 = 480;
 
 /// A view whose screen coordinates are exact: the point that [`at_pixel`] gives is at that pixel without rounding.

@@ -3,6 +3,7 @@
 use super::{HEIGHT, WIDTH};
 use pxpl5_geometry::{GouraudTriangle, LitColours, RegionMask, ScreenTriangle, SetupStats, Viewport};
 use pxpl5_wire::{RegionGrid, RegionId, format};
+use std::ops::Range;
 
 /// Number of the region of a frame's pixel.
 pub fn region_of(x: i32, y: i32) -> RegionId {
@@ -36,13 +37,8 @@ impl Piece {
     /// Calls `draw` for each covered pixel of a touched region, by brute force over the bounding box.
     pub fn pixels(&self, mut draw: impl FnMut(i32, i32)) {
         let outline = &self.screen.outline;
-        let range = |v: &[i32; 3], size: i32| {
-            let first = v.iter().min().map_or(0, |v| v >> 4);
-            let last = v.iter().max().map_or(0, |v| (v >> 4) + 1);
-            first.max(0)..last.min(size)
-        };
-        for y in range(&outline.y, HEIGHT) {
-            for x in range(&outline.x, WIDTH) {
+        for y in pixels_between(&outline.y, HEIGHT) {
+            for x in pixels_between(&outline.x, WIDTH) {
                 if self.inside_edges(x, y) && self.regions().contains(region_of(x, y)) {
                     draw(x, y);
                 }
@@ -68,17 +64,20 @@ impl Piece {
         (self.planes.rgb[component].at(x, y) >> format::COLOUR_FRACTION_BITS) as u8
     }
 
-    /// The value at a pixel of the plane through three values at the snapped corners, exactly.
+    /// The value at a pixel of the plane through three values at the snapped corners, exactly: numerator, denominator.
     pub fn exact_plane(&self, corners: [i128; 3], x: i32, y: i32) -> (i128, i128) {
         let outline = &self.screen.outline;
-        let point = |i: usize| [i128::from(outline.x[i]), i128::from(outline.y[i])];
         let pixel = [16 * i128::from(x) + 8, 16 * i128::from(y) + 8];
-        let area =
-            |a: [i128; 2], b: [i128; 2], c: [i128; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        let [p, q, r] = [point(0), point(1), point(2)];
-        let weights = [area(q, r, pixel), area(r, p, pixel), area(p, q, pixel)];
+        let [p, q, r] = [0, 1, 2].map(|i| [i128::from(outline.x[i]), i128::from(outline.y[i])]);
+        let weights = [twice_area(q, r, pixel), twice_area(r, p, pixel), twice_area(p, q, pixel)];
         let sum = weights.iter().zip(corners).map(|(w, v)| w * v).sum();
-        (sum, area(p, q, r))
+        (sum, twice_area(p, q, r))
+    }
+
+    /// The same as a floating-point number.
+    pub fn plane_value(&self, corners: [i128; 3], x: i32, y: i32) -> f64 {
+        let (sum, area) = self.exact_plane(corners, x, y);
+        sum as f64 / area as f64
     }
 
     pub fn depth_corners(&self) -> [i128; 3] {
@@ -88,4 +87,15 @@ impl Piece {
     pub fn colour_corners(&self, component: usize) -> [i128; 3] {
         self.screen.surface.0.map(|c| i128::from(c[component]))
     }
+}
+
+/// The pixels of a picture that a box around three corners, given in subpixels, can hold along one axis.
+fn pixels_between(corners: &[i32; 3], size: i32) -> Range<i32> {
+    let first = corners.iter().min().map_or(0, |v| v >> 4);
+    let last = corners.iter().max().map_or(0, |v| (v >> 4) + 1);
+    first.max(0)..last.min(size)
+}
+
+fn twice_area(a: [i128; 2], b: [i128; 2], c: [i128; 2]) -> i128 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }

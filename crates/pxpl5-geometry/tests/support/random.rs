@@ -17,6 +17,11 @@ impl Random {
         low + (high - low) * ((self.bits() >> 40) as f32 / 16_777_216.0)
     }
 
+    /// From `-spread` to `spread`.
+    pub fn within(&mut self, spread: f32) -> f32 {
+        self.between(-spread, spread)
+    }
+
     /// An integer from `low` to `high`, both included.
     pub fn integer(&mut self, low: i32, high: i32) -> i32 {
         low + (self.bits() % (high - low + 1) as u64) as i32
@@ -30,7 +35,8 @@ impl Random {
     /// A direction in the plane, of length 1 within rounding.
     pub fn direction(&mut self) -> [f32; 2] {
         loop {
-            let (x, y) = (self.between(-1.0, 1.0), self.between(-1.0, 1.0));
+            let x = self.between(-1.0, 1.0);
+            let y = self.between(-1.0, 1.0);
             let square = x * x + y * y;
             if (0.01..=1.0).contains(&square) {
                 let inverse = 1.0 / square.sqrt();

@@ -1,4 +1,4 @@
-//! docs/numerics.md as text.
+//! The text of docs/numerics.md, made from measurements of all cases.
 
 use super::cases::{self, Case};
 use super::fighting::{self, Fight};
@@ -118,7 +118,7 @@ impl Measured {
     }
 }
 
-/// The whole file.
+/// The whole of docs/numerics.md.
 pub fn text(measured: &Measured) -> String {
     let rows = &measured.triangles;
     let mut out = HEAD.to_string();
@@ -155,7 +155,8 @@ fn fights(out: &mut String, fights: &[Fight]) {
     heading(out, "Z fighting: two surfaces", &["case", "apart", "pixels", "wrong", "wrong per million"]);
     for f in fights {
         let part = short(Row::per_million(f.wrong, f.pixels));
-        let (pixels, wrong) = (grouped(f.pixels), grouped(f.wrong));
+        let pixels = grouped(f.pixels);
+        let wrong = grouped(f.wrong);
         let _ = writeln!(out, "| {} | {} | {pixels} | {wrong} | {part} |", f.name, short(f.apart));
     }
 }

@@ -14,36 +14,39 @@ pub struct Snapped {
     bits: u32,
 }
 
+/// The nearest place on the grid, ties up, of half a numerator over w; `None` where it is far away.
+fn snap(numerator: BigInt, w: &BigInt, bits: u32) -> Option<i128> {
+    // floor(n / 2w + 1/2) on the finer grid.
+    let twice: BigInt = (numerator << bits) + w;
+    twice.div_floor(&(w * 2)).to_i128().filter(|v| v.abs() < 1 << 50)
+}
+
 impl Snapped {
     /// `None` if a corner lies behind the near plane, or so far away that products would overflow.
     pub fn new(triangle: &ExactTriangle, bits: u32) -> Option<Self> {
         if !triangle.whole {
             return None;
         }
-        let place = |numerator: BigInt, w: &BigInt| -> Option<i128> {
-            // Nearest, ties up: floor(n / 2w + 1/2) on the finer grid.
-            let twice: BigInt = (numerator << bits) + w;
-            twice.div_floor(&(w * 2)).to_i128().filter(|v| v.abs() < 1 << 50)
-        };
         let mut corners = Self { x: [0; 3], y: [0; 3], bits };
         for (i, [x, y, _, w]) in triangle.corners.iter().enumerate() {
-            corners.x[i] = place((w + x) * WIDTH, w)?;
-            corners.y[i] = place((w - y) * HEIGHT, w)?;
+            corners.x[i] = snap((w + x) * WIDTH, w, bits)?;
+            corners.y[i] = snap((w - y) * HEIGHT, w, bits)?;
         }
         Some(corners)
     }
 
     /// The area of (from, to, pixel centre), made positive inside, less 1 where ties are outside.
     fn edge(&self, from: usize, to: usize, turn: i128, [x, y]: [i32; 2]) -> i128 {
-        let (dx, dy) = ((self.x[to] - self.x[from]) * turn, (self.y[to] - self.y[from]) * turn);
-        let centre = |pixel: i32| (2 * i128::from(pixel) + 1) << self.bits >> 1;
+        let dx = (self.x[to] - self.x[from]) * turn;
+        let dy = (self.y[to] - self.y[from]) * turn;
+        let [centre_x, centre_y] = [x, y].map(|pixel| (2 * i128::from(pixel) + 1) << self.bits >> 1);
         let top_left = dy < 0 || (dy == 0 && dx > 0);
-        let to_pixel = [centre(x) - self.x[from], centre(y) - self.y[from]];
-        dx * to_pixel[1] - dy * to_pixel[0] - i128::from(!top_left)
+        dx * (centre_y - self.y[from]) - dy * (centre_x - self.x[from]) - i128::from(!top_left)
     }
 
     fn turn(&self) -> i128 {
-        let (x, y) = (&self.x, &self.y);
+        let x = &self.x;
+        let y = &self.y;
         ((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0])).signum()
     }
 
@@ -55,13 +58,18 @@ impl Snapped {
 
     /// First and last row that can be covered.
     pub fn rows(&self) -> [i32; 2] {
-        let row = |v: i128| (v >> self.bits).clamp(0, i128::from(HEIGHT - 1)) as i32;
-        [row(*self.y.iter().min().unwrap_or(&0) - (1 << self.bits)), row(*self.y.iter().max().unwrap_or(&0))]
+        self.pixels_between(&self.y, HEIGHT)
     }
 
     /// First and last column that can be covered.
     pub fn columns(&self) -> [i32; 2] {
-        let column = |v: i128| (v >> self.bits).clamp(0, i128::from(WIDTH - 1)) as i32;
-        [column(*self.x.iter().min().unwrap_or(&0) - (1 << self.bits)), column(*self.x.iter().max().unwrap_or(&0))]
+        self.pixels_between(&self.x, WIDTH)
+    }
+
+    /// First and last pixel that the corners' box can hold along one axis of a picture.
+    fn pixels_between(&self, corners: &[i128; 3], size: i32) -> [i32; 2] {
+        let low = *corners.iter().min().unwrap_or(&0) - (1 << self.bits);
+        let high = *corners.iter().max().unwrap_or(&0);
+        [low, high].map(|v| (v >> self.bits).clamp(0, i128::from(size - 1)) as i32)
     }
 }

@@ -1,6 +1,6 @@
 //! Spheres against exact integers.
 
-use super::exact::fixed;
+use super::exact::{cross, fixed};
 use super::native::region_of;
 use super::random::Random;
 use super::{HEIGHT, WIDTH, at_pixel, pixel_view};
@@ -53,21 +53,16 @@ impl ExactSphere {
     pub fn new(sphere: &Sphere) -> Self {
         let c = sphere.centre.to_array().map(fixed);
         let r = fixed(sphere.radius);
-        // d = (6x - 1917, 1916 - 8y, -1920): the ray of the pixel's centre, times 1920.
-        let at = |x: i32, y: i32| {
-            let d = [6 * x - 1917, 1916 - 8 * y, -1920].map(BigInt::from);
-            let cross = |i: usize, j: usize| &d[i] * &c[j] - &d[j] * &c[i];
-            let (p, q, s) = (cross(1, 2), cross(2, 0), cross(0, 1));
-            let dd: BigInt = d.iter().map(|v| v * v).sum();
-            &r * &r * dd - (&p * &p + &q * &q + &s * &s)
-        };
+        let values = [[0, 0], [1, 0], [0, 1], [2, 0], [0, 2], [1, 1]];
+        let [one, right, down, right_2, down_2, diagonal] = values.map(|[x, y]| bulge(&c, &r, x, y));
         // From six values by differences; twice the squares' coefficients are even.
-        let one = at(0, 0);
-        let (e, f) = (at(1, 0) - &one, at(0, 1) - &one);
-        let xx: BigInt = (at(2, 0) - &one - &e * 2) / 2;
-        let yy: BigInt = (at(0, 2) - &one - &f * 2) / 2;
-        let xy: BigInt = at(1, 1) - &one - &e - &f;
-        let (x, y) = (e - &xx, f - &yy);
+        let e = right - &one;
+        let f = down - &one;
+        let xx: BigInt = (right_2 - &one - &e * 2) / 2;
+        let yy: BigInt = (down_2 - &one - &f * 2) / 2;
+        let xy: BigInt = diagonal - &one - &e - &f;
+        let x = e - &xx;
+        let y = f - &yy;
         Self {
             coefficients: [xx, xy, yy, x, y, one],
             centre: sphere.centre.to_array().map(f64::from),
@@ -86,12 +81,28 @@ impl ExactSphere {
 
     /// Depth in units of pixel depth, where the pixel is covered.
     pub fn depth(&self, x: i32, y: i32) -> f64 {
-        let d = [6 * x - 1917, 1916 - 8 * y, -1920].map(|v| f64::from(v) / 1920.0);
-        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let d = ray(x, y).map(|v| f64::from(v) / 1920.0);
         let q = self.value(x, y).to_f64().unwrap_or(f64::MAX) / (1920.0 * 1920.0) * 2_f64.powi(-298);
         let inverse = (dot(d, self.centre) + q.sqrt()) / (dot(self.centre, self.centre) - self.radius * self.radius);
         pixel_depth(inverse)
     }
+}
+
+/// The direction of the ray through a pixel's centre, times 1920.
+fn ray(x: i32, y: i32) -> [i32; 3] {
+    [6 * x - 1917, 1916 - 8 * y, -1920]
+}
+
+/// `r^2 d.d - |d x c|^2` for the ray d of a pixel, and a sphere's centre c and radius r.
+fn bulge(c: &[BigInt; 3], r: &BigInt, x: i32, y: i32) -> BigInt {
+    let d = ray(x, y).map(BigInt::from);
+    let dd: BigInt = d.iter().map(|v| v * v).sum();
+    let squares: BigInt = cross(&d, c).iter().map(|v| v * v).sum();
+    r * r * dd - squares
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Pixel depth at inverse distance `u`.
@@ -114,9 +125,11 @@ pub fn native(setup: &SphereSetup, x: i32, y: i32) -> Option<u32> {
 fn family(name: &'static str, seed: u64, pixels: f32, count: usize, on_centre: bool) -> SphereCase {
     let mut random = Random(seed);
     let spheres = (0..count).map(|_| {
-        let (mut x, mut y) = (random.between(20.0, 620.0), random.between(20.0, 460.0));
+        let mut x = random.between(20.0, 620.0);
+        let mut y = random.between(20.0, 460.0);
         if on_centre {
-            (x, y) = (x.trunc() + 0.5, y.trunc() + 0.5);
+            x = x.trunc() + 0.5;
+            y = y.trunc() + 0.5;
         }
         let scale = 2.0;
         let centre = at_pixel(x, y, scale);
@@ -136,24 +149,28 @@ fn beside_the_eye() -> SphereCase {
     SphereCase { name: "beside the eye, long ellipses", spheres: spheres.collect() }
 }
 
+/// A sphere with its centre on the eye's axis.
+fn on_axis(z: f32, radius: f32) -> Sphere {
+    Sphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [255; 3] }
+}
+
 fn not_drawn() -> SphereCase {
-    let sphere = |z: f32, radius: f32| Sphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [255; 3] };
     SphereCase {
         name: "behind the eye, around it, across near and far",
         spheres: vec![
-            sphere(50.0, 10.0),
-            sphere(0.0, 10.0),
-            sphere(-5.0, 4.5),
-            sphere(-16_390.0, 100.0),
-            sphere(-20_000.0, 100.0),
-            sphere(f32::NAN, 1.0),
-            sphere(-5.0, -1.0),
-            sphere(-5.0, f32::INFINITY),
+            on_axis(50.0, 10.0),
+            on_axis(0.0, 10.0),
+            on_axis(-5.0, 4.5),
+            on_axis(-16_390.0, 100.0),
+            on_axis(-20_000.0, 100.0),
+            on_axis(f32::NAN, 1.0),
+            on_axis(-5.0, -1.0),
+            on_axis(-5.0, f32::INFINITY),
         ],
     }
 }
 
-/// All families.
+/// All families of spheres, by growing size; then those that are hard or not drawn.
 pub fn all() -> Vec<SphereCase> {
     vec![
         family("1/1000 px, on pixel centres", 20, 0.001, 100, true),
@@ -168,7 +185,7 @@ pub fn all() -> Vec<SphereCase> {
     ]
 }
 
-/// Measures a family.
+/// Holds each sphere of a family against exact integers, pixel by pixel.
 pub fn measure(case: &SphereCase) -> SphereRow {
     let transform = transform();
     let mut row = SphereRow { spheres: case.spheres.len(), ..SphereRow::default() };

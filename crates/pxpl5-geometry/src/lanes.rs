@@ -7,39 +7,40 @@
 
 use crate::plane::{self, MAX_SLOPE};
 use crate::screen::{self, SUBPIXELS};
-use crate::seen::{SeenSurface, SeenTriangle};
+use crate::vertex::{UnclippedTriangle, VertexSurface};
 use crate::{GouraudTriangle, PhongTriangle, SetupStats, Transform, Viewport};
 use multiversion::multiversion;
 use pxpl5_wire::{Linear, format};
 
 /// Triangles that are set up together: the doubles in a vector of the widest unit.
-pub const TOGETHER: usize = 8;
+pub const LANES: usize = 8;
 
 /// One of each triangle.
-pub(crate) type Lanes<T> = [T; TOGETHER];
+pub(crate) type Lanes<T> = [T; LANES];
 
-/// Up to [`TOGETHER`] triangles that need no clipping, with what their surfaces need.
+/// Up to [`LANES`] triangles that need no clipping, with what their surfaces need.
 #[derive(Clone, Debug)]
-pub struct Together {
+pub struct TriangleLanes {
     len: usize,
-    /// By corner.
+    /// First by corner, then by triangle; x and y in 1/16 px.
     x: [Lanes<i32>; 3],
     y: [Lanes<i32>; 3],
     z: [Lanes<u32>; 3],
     facing: [Lanes<f32>; 3],
-    /// By component and corner.
+    /// First by component of colour or normal, then by corner, then by triangle.
     surface: [[Lanes<f32>; 3]; 3],
 }
 
-impl Default for Together {
+impl Default for TriangleLanes {
     fn default() -> Self {
-        let (integers, reals) = ([[0; TOGETHER]; 3], [[0.0; TOGETHER]; 3]);
-        Self { len: 0, x: integers, y: integers, z: [[0; TOGETHER]; 3], facing: reals, surface: [reals; 3] }
+        let integers = [[0; LANES]; 3];
+        let reals = [[0.0; LANES]; 3];
+        Self { len: 0, x: integers, y: integers, z: [[0; LANES]; 3], facing: reals, surface: [reals; 3] }
     }
 }
 
-impl Together {
-    /// Triangles so far.
+impl TriangleLanes {
+    /// Triangles held, at most [`LANES`].
     #[must_use]
     pub const fn len(&self) -> usize {
         self.len
@@ -51,7 +52,7 @@ impl Together {
         self.len == 0
     }
 
-    /// Forgets all.
+    /// Takes all triangles out.
     pub const fn clear(&mut self) {
         self.len = 0;
     }
@@ -59,18 +60,19 @@ impl Together {
     /// Adds a triangle, all corners of which are seen in the same view.
     ///
     /// # Panics
-    /// If there are [`TOGETHER`] already.
+    /// If there are [`LANES`] already.
     #[inline(always)]
-    pub fn push(&mut self, SeenTriangle(corners): &SeenTriangle, surface: [&SeenSurface; 3]) {
+    pub fn push(&mut self, UnclippedTriangle(corners): &UnclippedTriangle, surface: [&VertexSurface; 3]) {
         let lane = self.len;
         for corner in 0..3 {
-            let (place, of) = (&corners[corner], surface[corner]);
-            self.x[corner][lane] = place.x;
-            self.y[corner][lane] = place.y;
-            self.z[corner][lane] = place.z;
-            self.facing[corner][lane] = of.facing;
+            let snapped = &corners[corner];
+            let vertex = surface[corner];
+            self.x[corner][lane] = snapped.x;
+            self.y[corner][lane] = snapped.y;
+            self.z[corner][lane] = snapped.z;
+            self.facing[corner][lane] = vertex.facing;
             for component in 0..3 {
-                self.surface[component][corner][lane] = of.values[component];
+                self.surface[component][corner][lane] = vertex.values[component];
             }
         }
         self.len += 1;
@@ -79,7 +81,7 @@ impl Together {
     /// Takes the place of a triangle of which nothing is seen.
     ///
     /// # Panics
-    /// If there are [`TOGETHER`] already.
+    /// If there are [`LANES`] already.
     pub fn push_nothing(&mut self) {
         for corner in 0..3 {
             self.x[corner][self.len] = 0;
@@ -105,7 +107,7 @@ impl Linears {
 
     /// A constant where `there` is not all ones, but zero.
     #[inline(always)]
-    fn or(mut self, constant: i32, there: &Lanes<i32>) -> Self {
+    fn or_constant(mut self, constant: i32, there: &Lanes<i32>) -> Self {
         for (i, there) in there.iter().enumerate() {
             self.a[i] &= there;
             self.b[i] &= there;
@@ -125,13 +127,14 @@ struct Expressions {
     flattened: Lanes<u8>,
 }
 
-/// Edges, depth and components.
-type Parts = ([Linear; 3], Linear, [Linear; 3]);
+/// The expressions of one triangle: its edges, its depth, and the components of its colour or normal.
+type OneTriangle = ([Linear; 3], Linear, [Linear; 3]);
 
 impl Expressions {
     #[inline(always)]
-    const fn get(&self, lane: usize) -> Parts {
-        let ([e, f, g], [z, p, q, r]) = (&self.edges, &self.planes);
+    const fn get(&self, lane: usize) -> OneTriangle {
+        let [e, f, g] = &self.edges;
+        let [z, p, q, r] = &self.planes;
         let edges = [e.get(lane), f.get(lane), g.get(lane)];
         (edges, z.get(lane), [p.get(lane), q.get(lane), r.get(lane)])
     }
@@ -139,13 +142,13 @@ impl Expressions {
 
 /// The expressions of some Gouraud triangles. The edges of one without area exclude every pixel.
 #[derive(Clone, Debug)]
-pub struct GouraudTogether(Expressions);
+pub struct GouraudLanes(Expressions);
 
-impl GouraudTogether {
-    /// Those of triangle `i`.
+impl GouraudLanes {
+    /// The expressions of triangle `i`, in the order in which they were pushed.
     ///
     /// # Panics
-    /// If `i` is not below [`TOGETHER`].
+    /// If `i` is not below [`LANES`].
     #[inline(always)]
     #[must_use]
     pub const fn get(&self, i: usize) -> GouraudTriangle {
@@ -156,13 +159,13 @@ impl GouraudTogether {
 
 /// The expressions of some Phong triangles. The edges of one without area exclude every pixel.
 #[derive(Clone, Debug)]
-pub struct PhongTogether(Expressions);
+pub struct PhongLanes(Expressions);
 
-impl PhongTogether {
+impl PhongLanes {
     /// Those of triangle `i` with the colour of its first corner.
     ///
     /// # Panics
-    /// If `i` is not below [`TOGETHER`].
+    /// If `i` is not below [`LANES`].
     #[inline(always)]
     #[must_use]
     pub const fn get(&self, i: usize, colour: [u8; 3]) -> PhongTriangle {
@@ -174,21 +177,25 @@ impl PhongTogether {
 impl Transform {
     /// As [`Self::gouraud`] and set-up of what it gives, for each triangle. It does not ask whether any region is touched.
     #[must_use]
-    pub fn gouraud_together(&self, triangles: &Together, stats: &mut SetupStats) -> GouraudTogether {
-        GouraudTogether(self.together(triangles, 0.0, stats))
+    pub fn gouraud_lanes(&self, triangles: &TriangleLanes, stats: &mut SetupStats) -> GouraudLanes {
+        GouraudLanes(self.set_up_lanes(triangles, 0.0, stats))
     }
 
     /// As [`Self::phong`] and set-up of what it gives, for each triangle. It does not ask whether any region is touched.
     #[must_use]
-    pub fn phong_together(&self, triangles: &Together, stats: &mut SetupStats) -> PhongTogether {
-        PhongTogether(self.together(triangles, screen::NORMAL_HALF, stats))
+    pub fn phong_lanes(&self, triangles: &TriangleLanes, stats: &mut SetupStats) -> PhongLanes {
+        PhongLanes(self.set_up_lanes(triangles, screen::NORMAL_HALF, stats))
     }
 
-    fn together(&self, triangles: &Together, half: f32, stats: &mut SetupStats) -> Expressions {
-        let out = set_up(triangles, half, Rows::of(&self.viewport));
+    fn set_up_lanes(&self, triangles: &TriangleLanes, half: f32, stats: &mut SetupStats) -> Expressions {
+        let out = set_up(triangles, half, Rows::of_picture(&self.viewport));
         stats.flattened_planes += out.flattened[..triangles.len].iter().map(|n| u64::from(*n)).sum::<u64>();
         out
     }
+}
+
+const fn last_subpixel(pixels: u32) -> i32 {
+    pixels as i32 * SUBPIXELS - 1
 }
 
 /// How the rows of a picture lie among the lines of the frame.
@@ -201,23 +208,22 @@ struct Rows {
 }
 
 impl Rows {
-    fn of(viewport: &Viewport) -> Self {
-        let last = |size: u32| size as i32 * SUBPIXELS - 1;
+    fn of_picture(viewport: &Viewport) -> Self {
         Self {
             line_step: viewport.line_step() as i32,
             first_line: viewport.first_line() as i32,
-            last: [last(viewport.grid().width), last(viewport.frame_lines())],
+            last: [last_subpixel(viewport.grid().width), last_subpixel(viewport.frame_lines())],
         }
     }
 
-    /// As [`screen::for_rows`].
+    /// The same values at the rows of the picture, as [`screen::for_rows`] gives them.
     #[inline(always)]
     fn restate(&self, frame: Linears) -> Linears {
         let mut all = frame;
-        for i in 0..TOGETHER {
+        for i in 0..LANES {
             all.c[i] = frame.c[i].wrapping_add(frame.b[i].wrapping_mul(self.first_line));
         }
-        for i in 0..TOGETHER {
+        for i in 0..LANES {
             all.b[i] = frame.b[i].wrapping_mul(self.line_step);
         }
         all
@@ -225,24 +231,28 @@ impl Rows {
 }
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn set_up(triangles: &Together, half: f32, rows: Rows) -> Expressions {
-    let (planes, away, mut flattened) = (Planes::of(triangles, rows), away(&triangles.facing), [0; TOGETHER]);
+fn set_up(triangles: &TriangleLanes, half: f32, rows: Rows) -> Expressions {
+    let planes = Planes::through_corners(triangles, rows);
+    let away = away(&triangles.facing);
+    let mut flattened = [0; LANES];
     let there = with_area(&planes.twice_area);
     let swapped = counterclockwise(&planes.twice_area);
-    let (x, y) = (clockwise(&triangles.x, &swapped), clockwise(&triangles.y, &swapped));
+    let x = clockwise(&triangles.x, &swapped);
+    let y = clockwise(&triangles.y, &swapped);
     let edges = [
-        rows.restate(edge([&x[0], &x[1]], [&y[0], &y[1]])).or(-1, &there),
-        rows.restate(edge([&x[1], &x[2]], [&y[1], &y[2]])).or(-1, &there),
-        rows.restate(edge([&x[2], &x[0]], [&y[2], &y[0]])).or(-1, &there),
+        rows.restate(edge([&x[0], &x[1]], [&y[0], &y[1]])).or_constant(-1, &there),
+        rows.restate(edge([&x[1], &x[2]], [&y[1], &y[2]])).or_constant(-1, &there),
+        rows.restate(edge([&x[2], &x[0]], [&y[2], &y[0]])).or_constant(-1, &there),
     ];
-    let ([a, b, c], [p, q, r]) = (&triangles.z, &triangles.surface);
+    let [a, b, c] = &triangles.z;
+    let [p, q, r] = &triangles.surface;
     let planes_through = [
-        rows.restate(planes.through(&[depths(a), depths(b), depths(c)], &mut flattened)).or(0, &there),
-        rows.restate(planes.through(&component(p, &away, half), &mut flattened)).or(0, &there),
-        rows.restate(planes.through(&component(q, &away, half), &mut flattened)).or(0, &there),
-        rows.restate(planes.through(&component(r, &away, half), &mut flattened)).or(0, &there),
+        rows.restate(planes.through(&[depths(a), depths(b), depths(c)], &mut flattened)).or_constant(0, &there),
+        rows.restate(planes.through(&component(p, &away, half), &mut flattened)).or_constant(0, &there),
+        rows.restate(planes.through(&component(q, &away, half), &mut flattened)).or_constant(0, &there),
+        rows.restate(planes.through(&component(r, &away, half), &mut flattened)).or_constant(0, &there),
     ];
-    for i in 0..TOGETHER {
+    for i in 0..LANES {
         flattened[i] &= there[i] as u8;
     }
     Expressions { edges, planes: planes_through, flattened }
@@ -250,8 +260,8 @@ fn set_up(triangles: &Together, half: f32, rows: Rows) -> Expressions {
 
 #[inline(always)]
 fn depths(z: &Lanes<u32>) -> Lanes<f64> {
-    let mut out = [0.0; TOGETHER];
-    for i in 0..TOGETHER {
+    let mut out = [0.0; LANES];
+    for i in 0..LANES {
         out[i] = f64::from(z[i]);
     }
     out
@@ -260,8 +270,8 @@ fn depths(z: &Lanes<u32>) -> Lanes<f64> {
 /// Which surfaces face away from the eye on the whole, as in [`crate::light::turned`].
 #[inline(always)]
 fn away([p, q, r]: &[Lanes<f32>; 3]) -> Lanes<bool> {
-    let mut away = [false; TOGETHER];
-    for i in 0..TOGETHER {
+    let mut away = [false; LANES];
+    for i in 0..LANES {
         away[i] = (p[i] + q[i]) + r[i] < 0.0;
     }
     away
@@ -275,8 +285,8 @@ fn component([p, q, r]: &[Lanes<f32>; 3], away: &Lanes<bool>, half: f32) -> [Lan
 
 #[inline(always)]
 fn values(corner: &Lanes<f32>, away: &Lanes<bool>, half: f32) -> Lanes<f64> {
-    let mut out = [0.0; TOGETHER];
-    for i in 0..TOGETHER {
+    let mut out = [0.0; LANES];
+    for i in 0..LANES {
         let value = if away[i] { -corner[i] } else { corner[i] };
         out[i] = f64::from(value + half);
     }
@@ -286,8 +296,8 @@ fn values(corner: &Lanes<f32>, away: &Lanes<bool>, half: f32) -> Lanes<f64> {
 /// Which triangles have an area: all bits set there.
 #[inline(always)]
 fn with_area(twice_area: &Lanes<f64>) -> Lanes<i32> {
-    let mut out = [0; TOGETHER];
-    for i in 0..TOGETHER {
+    let mut out = [0; LANES];
+    for i in 0..LANES {
         out[i] = -i32::from(twice_area[i] != 0.0);
     }
     out
@@ -296,8 +306,8 @@ fn with_area(twice_area: &Lanes<f64>) -> Lanes<i32> {
 /// Which triangles run counterclockwise: all bits set there.
 #[inline(always)]
 fn counterclockwise(twice_area: &Lanes<f64>) -> Lanes<i32> {
-    let mut out = [0; TOGETHER];
-    for i in 0..TOGETHER {
+    let mut out = [0; LANES];
+    for i in 0..LANES {
         out[i] = -i32::from(twice_area[i] < 0.0);
     }
     out
@@ -307,10 +317,12 @@ fn counterclockwise(twice_area: &Lanes<f64>) -> Lanes<i32> {
 /// choices between values.
 #[inline(always)]
 fn clockwise([p, q, r]: &[Lanes<i32>; 3], swapped: &Lanes<i32>) -> [Lanes<i32>; 3] {
-    let (mut second, mut third) = ([0; TOGETHER], [0; TOGETHER]);
-    for i in 0..TOGETHER {
+    let mut second = [0; LANES];
+    let mut third = [0; LANES];
+    for i in 0..LANES {
         let change = (q[i] ^ r[i]) & swapped[i];
-        (second[i], third[i]) = (q[i] ^ change, r[i] ^ change);
+        second[i] = q[i] ^ change;
+        third[i] = r[i] ^ change;
     }
     [*p, second, third]
 }
@@ -319,13 +331,16 @@ fn clockwise([p, q, r]: &[Lanes<i32>; 3], swapped: &Lanes<i32>) -> [Lanes<i32>; 
 #[inline(always)]
 fn edge([x, to_x]: [&Lanes<i32>; 2], [y, to_y]: [&Lanes<i32>; 2]) -> Linears {
     let mut out = Linears::default();
-    for i in 0..TOGETHER {
-        let (dx, dy) = (to_x[i] - x[i], to_y[i] - y[i]);
+    for i in 0..LANES {
+        let dx = to_x[i] - x[i];
+        let dy = to_y[i] - y[i];
         let top_left = (dy < 0) | ((dy == 0) & (dx > 0));
         let across = f64::from(dx) * f64::from(SUBPIXELS / 2 - y[i]);
         let down = f64::from(dy) * f64::from(SUBPIXELS / 2 - x[i]);
         let k = (across - down) - if top_left { 0.0 } else { 1.0 };
-        (out.a[i], out.b[i], out.c[i]) = (-dy, dx, sixteenth(k));
+        out.a[i] = -dy;
+        out.b[i] = dx;
+        out.c[i] = sixteenth(k);
     }
     out
 }
@@ -350,11 +365,14 @@ struct Planes {
 impl Planes {
     /// The corners may run either way: a change of direction changes the signs of products and area alike.
     #[inline(always)]
-    fn of(triangles: &Together, rows: Rows) -> Self {
-        let ([p, q, r], [s, t, u]) = (&triangles.x, &triangles.y);
-        let (x, y) = ([side(p, q), side(p, r)], [side(s, t), side(s, u)]);
-        let (mut twice_area, mut per_pixel) = ([0.0; TOGETHER], [0.0; TOGETHER]);
-        for i in 0..TOGETHER {
+    fn through_corners(triangles: &TriangleLanes, rows: Rows) -> Self {
+        let [p, q, r] = &triangles.x;
+        let [s, t, u] = &triangles.y;
+        let x = [side(p, q), side(p, r)];
+        let y = [side(s, t), side(s, u)];
+        let mut twice_area = [0.0; LANES];
+        let mut per_pixel = [0.0; LANES];
+        for i in 0..LANES {
             twice_area[i] = x[0][i] * y[1][i] - y[0][i] * x[1][i];
             per_pixel[i] = 16.0 / twice_area[i];
         }
@@ -366,16 +384,21 @@ impl Planes {
     /// The planes through three values of each at the frame's pixels; counts the flat ones.
     #[inline(always)]
     fn through(&self, [p, q, r]: &[Lanes<f64>; 3], flattened: &mut Lanes<u8>) -> Linears {
-        let (mut out, mut flat) = (Linears::default(), [false; TOGETHER]);
-        for i in 0..TOGETHER {
-            let (d1, d2) = (q[i] - p[i], r[i] - p[i]);
+        let mut out = Linears::default();
+        let mut flat = [false; LANES];
+        for i in 0..LANES {
+            let d1 = q[i] - p[i];
+            let d2 = r[i] - p[i];
             let slope_x = (d1 * self.y[1][i] - d2 * self.y[0][i]) * self.per_pixel[i];
             let slope_y = (d2 * self.x[0][i] - d1 * self.x[1][i]) * self.per_pixel[i];
             flat[i] = (slope_x.abs() > MAX_SLOPE) | (slope_y.abs() > MAX_SLOPE);
             let there = (p[i] + slope_x * self.to_reference[0][i]) + slope_y * self.to_reference[1][i];
-            let (a, b) = (plane::rounded(slope_x), plane::rounded(slope_y));
+            let a = plane::rounded(slope_x);
+            let b = plane::rounded(slope_y);
             let back = a.wrapping_mul(self.reference[0][i]).wrapping_add(b.wrapping_mul(self.reference[1][i]));
-            (out.a[i], out.b[i], out.c[i]) = (a, b, plane::rounded(there).wrapping_sub(back));
+            out.a[i] = a;
+            out.b[i] = b;
+            out.c[i] = plane::rounded(there).wrapping_sub(back);
         }
         if flat.iter().fold(false, |any, flat| any | flat) {
             flatten([p, q, r], &flat, &mut out, flattened);
@@ -386,9 +409,11 @@ impl Planes {
 
 #[cold]
 fn flatten(v: [&Lanes<f64>; 3], flat: &Lanes<bool>, out: &mut Linears, flattened: &mut Lanes<u8>) {
-    for i in (0..TOGETHER).filter(|i| flat[*i]) {
+    for i in (0..LANES).filter(|i| flat[*i]) {
         let Linear { a, b, c } = plane::flat(v.map(|v| v[i]));
-        (out.a[i], out.b[i], out.c[i]) = (a, b, c);
+        out.a[i] = a;
+        out.b[i] = b;
+        out.c[i] = c;
         flattened[i] += 1;
     }
 }
@@ -396,8 +421,8 @@ fn flatten(v: [&Lanes<f64>; 3], flat: &Lanes<bool>, out: &mut Linears, flattened
 /// From one corner to another.
 #[inline(always)]
 fn side(from: &Lanes<i32>, to: &Lanes<i32>) -> Lanes<f64> {
-    let mut out = [0.0; TOGETHER];
-    for i in 0..TOGETHER {
+    let mut out = [0.0; LANES];
+    for i in 0..LANES {
         out[i] = f64::from(to[i] - from[i]);
     }
     out
@@ -406,8 +431,8 @@ fn side(from: &Lanes<i32>, to: &Lanes<i32>) -> Lanes<f64> {
 /// The pixel in the middle of what the picture shows of the corners' range, as in [`crate::Outline`].
 #[inline(always)]
 fn middle([p, q, r]: &[Lanes<i32>; 3], last: i32) -> Lanes<i32> {
-    let mut out = [0; TOGETHER];
-    for i in 0..TOGETHER {
+    let mut out = [0; LANES];
+    for i in 0..LANES {
         let low = p[i].min(q[i]).min(r[i]).clamp(0, last);
         let high = p[i].max(q[i]).max(r[i]).clamp(0, last);
         out[i] = (low + high) / (2 * SUBPIXELS);
@@ -418,8 +443,8 @@ fn middle([p, q, r]: &[Lanes<i32>; 3], last: i32) -> Lanes<i32> {
 /// From a corner to the centre of a pixel, in pixels.
 #[inline(always)]
 fn pixels(from: &Lanes<i32>, pixel: &Lanes<i32>) -> Lanes<f64> {
-    let mut out = [0.0; TOGETHER];
-    for i in 0..TOGETHER {
+    let mut out = [0.0; LANES];
+    for i in 0..LANES {
         out[i] = f64::from(SUBPIXELS * pixel[i] + SUBPIXELS / 2 - from[i]) * (1.0 / f64::from(SUBPIXELS));
     }
     out

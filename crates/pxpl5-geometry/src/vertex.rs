@@ -1,6 +1,6 @@
 //! Vertices that many triangles share, each transformed once.
 //!
-//! Triangles that need no clipping are [binned](Transform::touched) and set up [together](crate::Together) from them,
+//! Triangles that need no clipping are [binned](Transform::touched) and set up [together](crate::TriangleLanes) from them,
 //! exactly as by [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`]. The others are left to those.
 
 use crate::light::{self, Lighting};
@@ -9,9 +9,9 @@ use crate::transform::Snapped;
 use crate::{Light, Transform};
 use glam::Vec3;
 
-/// A vertex as a view sees it.
+/// A vertex on the screen, as a view shows it to all triangles that share it.
 #[derive(Clone, Copy, Debug)]
-pub struct SeenVertex {
+pub struct ScreenVertex {
     /// Of no meaning outside.
     pub(crate) snapped: Snapped,
     /// Inside the guard band, so that it needs no clipping.
@@ -20,7 +20,7 @@ pub struct SeenVertex {
 
 /// What the surface needs at a vertex: its lit colour, or its normal as an eye sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct SeenSurface {
+pub struct VertexSurface {
     /// In the expressions' units; normals without the half unit that rounds.
     pub(crate) values: [f32; 3],
     /// How far a normal turns towards the eye; 0 for colours.
@@ -29,42 +29,47 @@ pub struct SeenSurface {
 
 /// The corners on the screen of a triangle that needs no clipping.
 #[derive(Clone, Copy, Debug)]
-pub struct SeenTriangle(pub(crate) [Snapped; 3]);
+pub struct UnclippedTriangle(pub(crate) [Snapped; 3]);
 
-impl SeenTriangle {
+impl UnclippedTriangle {
     /// `None` where the triangle needs clipping.
     #[inline(always)]
     #[must_use]
-    pub const fn of([a, b, c]: [&SeenVertex; 3]) -> Option<Self> {
+    pub const fn new([a, b, c]: [&ScreenVertex; 3]) -> Option<Self> {
         if a.inside & b.inside & c.inside { Some(Self([a.snapped, b.snapped, c.snapped])) } else { None }
     }
 }
 
+/// A component of a unit normal on the grid of [`screen::normal_fixed`], in the expressions' units.
+#[inline(always)]
+fn snapped_component(component: f32) -> f32 {
+    screen::normal_value(screen::normal_fixed(component)) - screen::NORMAL_HALF
+}
+
 impl Transform {
-    /// Transforms a vertex.
+    /// Transforms a vertex, given by its position in the world, to the screen.
     #[inline(always)]
     #[must_use]
-    pub fn see(&self, position: Vec3) -> SeenVertex {
+    pub fn screen_vertex(&self, position: Vec3) -> ScreenVertex {
         let clip = self.to_clip.point(position);
         let inside = self.guard.contains(clip);
         let snapped = if inside { self.to_screen.snap(clip) } else { Snapped::default() };
-        SeenVertex { snapped, inside }
+        ScreenVertex { snapped, inside }
     }
 
-    /// The normal of a vertex.
+    /// The normal of a vertex in eye coordinates, for Phong shading.
     #[inline]
     #[must_use]
-    pub fn see_normal(&self, position: Vec3, normal: Vec3) -> SeenSurface {
+    pub fn vertex_normal(&self, position: Vec3, normal: Vec3) -> VertexSurface {
         let (unit, facing) = light::unit_and_facing(&self.to_eye, position, normal);
-        let value = |v| screen::normal_value(screen::normal_fixed(v)) - screen::NORMAL_HALF;
-        SeenSurface { values: unit.map(value), facing }
+        VertexSurface { values: unit.map(snapped_component), facing }
     }
 
-    /// The lit colour of a vertex.
+    /// The lit colour of a vertex, for Gouraud shading.
     #[inline]
     #[must_use]
-    pub fn see_colour(&self, light: &Light, position: Vec3, normal: Vec3, colour: [u8; 3]) -> SeenSurface {
+    pub fn vertex_colour(&self, light: &Light, position: Vec3, normal: Vec3, colour: [u8; 3]) -> VertexSurface {
         let lit = Lighting::new(&self.to_eye, light).colour(position, normal, colour);
-        SeenSurface { values: lit.map(|v| screen::colour_value(screen::colour_fixed(v))), facing: 0.0 }
+        VertexSurface { values: lit.map(|v| screen::colour_value(screen::colour_fixed(v))), facing: 0.0 }
     }
 }
