@@ -19,7 +19,8 @@ const COMMANDS: u64 = 64;
 
 /// The edge from p to q in pixels, inside on its left.
 fn edge(p: [i32; 2], q: [i32; 2]) -> Linear {
-    let (dx, dy) = (16 * (q[0] - p[0]), 16 * (q[1] - p[1]));
+    let dx = 16 * (q[0] - p[0]);
+    let dy = 16 * (q[1] - p[1]);
     Linear { a: -dy, b: dx, c: dy * p[0] - dx * p[1] }
 }
 

@@ -20,17 +20,21 @@ type Vertex = [f64; 2];
 
 /// The edge from p to q, positive on its left, in sixteenths of a pixel, at pixel centres.
 fn edge(p: Vertex, q: Vertex) -> Linear {
-    let (a, b) = (-(q[1] - p[1]) * 16.0, (q[0] - p[0]) * 16.0);
+    let a = -(q[1] - p[1]) * 16.0;
+    let b = (q[0] - p[0]) * 16.0;
     let c = -a * (p[0] - 0.5) - b * (p[1] - 0.5);
     Linear { a: a.round() as i32, b: b.round() as i32, c: c.floor() as i32 }
 }
 
 /// The plane with these values at the vertices.
 fn plane(v: [Vertex; 3], values: [f64; 3], scale: f64) -> Linear {
-    let ([x1, y1], [x2, y2]) = ([v[1][0] - v[0][0], v[1][1] - v[0][1]], [v[2][0] - v[0][0], v[2][1] - v[0][1]]);
-    let (d1, d2) = (values[1] - values[0], values[2] - values[0]);
+    let [x1, y1] = [v[1][0] - v[0][0], v[1][1] - v[0][1]];
+    let [x2, y2] = [v[2][0] - v[0][0], v[2][1] - v[0][1]];
+    let d1 = values[1] - values[0];
+    let d2 = values[2] - values[0];
     let det = x1 * y2 - x2 * y1;
-    let (a, b) = ((d1 * y2 - d2 * y1) / det, (d2 * x1 - d1 * x2) / det);
+    let a = (d1 * y2 - d2 * y1) / det;
+    let b = (d2 * x1 - d1 * x2) / det;
     let c = values[0] + a * (0.5 - v[0][0]) + b * (0.5 - v[0][1]);
     let fixed = |v: f64| (v * scale).round() as i32;
     Linear { a: fixed(a), b: fixed(b), c: fixed(c) }
@@ -70,7 +74,8 @@ impl Ball {
     fn body(&self) -> SphereBody {
         let [x, y] = [self.centre[0] + f64::from(LEFT) - 0.5, self.centre[1] + f64::from(TOP) - 0.5];
         // The root of the middle is 4000: 4000^2 = r^2 scale / 2^shift.
-        let (shift, r) = (10_u8, self.radius);
+        let shift = 10_u8;
+        let r = self.radius;
         let scale = 4000.0_f64.powi(2) * 1024.0 / (r * r);
         let fixed = |v: f64| (v * scale).round() as i64;
         let silhouette = Quadratic {
@@ -97,7 +102,8 @@ impl Ball {
 
     fn gouraud(&self, colour: [f64; 3], light: [f64; 3]) -> Command {
         let component = |c: f64| {
-            let (x, y) = (self.across(0, light[0] * c * 4096.0), self.across(1, light[1] * c * 4096.0));
+            let x = self.across(0, light[0] * c * 4096.0);
+            let y = self.across(1, light[1] * c * 4096.0);
             Linear { a: x.a, b: y.b, c: x.c.wrapping_add(y.c) }
         };
         Command::Sphere(Sphere {

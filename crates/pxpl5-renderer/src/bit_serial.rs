@@ -213,7 +213,8 @@ impl PixelArray for BitSerial {
     }
 
     fn reset(&mut self) {
-        let (vectors, skipping) = (self.vectors, self.skipping);
+        let vectors = self.vectors;
+        let skipping = self.skipping;
         *self = Self { vectors, skipping, ..Self::new(&self.layout) };
     }
 

@@ -193,9 +193,14 @@ impl Renderer {
         if lists.is_empty() {
             return Arc::new(NoPixels { pixels: width * height });
         }
-        let (pool, done) = (Arc::clone(&self.pool), OnceLock::new());
-        let kept = self.keeps_empty_regions && !drawn;
-        Arc::new(PixelJob { pool, lists, cleared, kept, target: order.target, done })
+        Arc::new(PixelJob {
+            pool: Arc::clone(&self.pool),
+            lists,
+            cleared,
+            kept: self.keeps_empty_regions && !drawn,
+            target: order.target,
+            done: OnceLock::new(),
+        })
     }
 
     fn copy(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
@@ -248,7 +253,8 @@ impl Renderer {
     ) {
         self.copying = Some(*order);
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
-        let (pixels, parts) = (width * height, (width * height).div_ceil(MAX_MESSAGE_WORDS));
+        let pixels = width * height;
+        let parts = pixels.div_ceil(MAX_MESSAGE_WORDS);
         for part in 0..parts {
             let words = MAX_MESSAGE_WORDS.min(pixels - part * MAX_MESSAGE_WORDS);
             let body = Body::Pixels(RegionPixels { target: order.target, image: Arc::clone(image), part, parts });

@@ -40,7 +40,8 @@ pub fn agree(
     words: &[Word],
     after: &dyn fmt::Debug,
 ) -> Result<(), Mismatch> {
-    let (expected, found) = (definition.execute(words), subject.execute(words));
+    let expected = definition.execute(words);
+    let found = subject.execute(words);
     let mismatch = |difference| Err(Mismatch { after: format!("{after:?}"), difference });
     if expected != found {
         return mismatch(format!("expected {expected:?}, found {found:?}"));
@@ -64,7 +65,8 @@ fn difference(what: &str, expected: &Plane, found: &Plane) -> Option<String> {
     let x = (expected[i] ^ found[i]).trailing_zeros() as usize;
     let bit = expected[i] >> x & 1;
     let pixels: u32 = expected.iter().zip(found).map(|(a, b)| (a ^ b).count_ones()).sum();
-    let (x, y) = (64 * (i % 2) + x, i / 2);
+    let x = 64 * (i % 2) + x;
+    let y = i / 2;
     Some(format!("{what} of pixel ({x}, {y}) is not {bit}; {pixels} pixels differ"))
 }
 
@@ -173,7 +175,8 @@ const EXTREMES: [i32; 6] = [0, 1, -1, i32::MAX, i32::MIN, 0x5555_5555];
 fn corner_expressions() -> Vec<Instruction> {
     let mut out = Vec::new();
     for (i, a) in EXTREMES.into_iter().enumerate() {
-        let (b, c) = (EXTREMES[(i + 1) % 6], EXTREMES[(i + 3) % 6]);
+        let b = EXTREMES[(i + 1) % 6];
+        let c = EXTREMES[(i + 3) % 6];
         let linear = Expression::Linear(Linear { a, b, c });
         let wide = |v: i32| i64::from(v) << 17 | 1;
         let quadratic = Quadratic { xx: wide(a), xy: wide(c), yy: wide(b), x: wide(c), y: wide(a), one: wide(b) };
@@ -211,12 +214,14 @@ fn corner_fields() -> Vec<Instruction> {
         for signs in 0..4 {
             let sign = |field: Operand, bit| if signs >> bit & 1 == 1 { field.signed() } else { field };
             let destination = Operand::absolute(0, w);
-            let (a, b) = (sign(Operand::absolute(64, wa), 0), sign(Operand::absolute(128, wb), 1));
+            let a = sign(Operand::absolute(64, wa), 0);
+            let b = sign(Operand::absolute(128, wb), 1);
             out.extend(two_operands(destination, a, b));
             out.extend(one_operand(destination, a));
             // Against the last bit of pixel memory, where the bits that a product loses have no place at all.
             let last = Operand { address: 208 - w, ..destination };
-            let (low_a, low_b) = (Operand { address: 0, ..a }, Operand { address: 64, ..b });
+            let low_a = Operand { address: 0, ..a };
+            let low_b = Operand { address: 64, ..b };
             out.extend(two_operands(last, low_a, low_b));
             out.extend(one_operand(last, low_a));
             let in_place = Operand { address: 0, ..a };
@@ -226,7 +231,8 @@ fn corner_fields() -> Vec<Instruction> {
         }
     }
     for n in [1, 2, 5, 12, 31, 32] {
-        let (destination, radicand) = (Operand::absolute(0, n), Operand::absolute(64, 2 * n));
+        let destination = Operand::absolute(0, n);
+        let radicand = Operand::absolute(64, 2 * n);
         out.push(Instruction::SquareRoot { destination, radicand });
     }
     out

@@ -41,7 +41,9 @@ pub(crate) enum Local {
 
 impl Controller {
     pub(crate) fn select(&mut self, base: u8, left: u16, top: u16) {
-        (self.base, self.left, self.top) = (base, left, top);
+        self.base = base;
+        self.left = left;
+        self.top = top;
     }
 
     /// The instruction at a word, with operands that it allows, and how many words it has.
@@ -90,7 +92,8 @@ impl Controller {
     /// Moves the origin of the held quadratic expression to the array's left top pixel.
     pub(crate) fn localise_quadratic(&self) -> Quadratic {
         let q = self.quadratic;
-        let (x, y) = (i64::from(self.left), i64::from(self.top));
+        let x = i64::from(self.left);
+        let y = i64::from(self.top);
         let twice = |c: i64, p: i64| c.wrapping_mul(2 * p);
         Quadratic {
             x: q.x.wrapping_add(twice(q.xx, x)).wrapping_add(q.xy.wrapping_mul(y)),
@@ -163,12 +166,14 @@ impl Controller {
     }
 
     fn apart(&self, destination: Operand, operand: Operand) -> Result<(), FaultKind> {
-        let (d, o) = (self.bits(destination)?, self.bits(operand)?);
+        let d = self.bits(destination)?;
+        let o = self.bits(operand)?;
         if d.overlaps(&o) { Err(overlap(&d, &o)) } else { Ok(()) }
     }
 
     fn aligned(&self, destination: Operand, operand: Operand) -> Result<(), FaultKind> {
-        let (d, o) = (self.bits(destination)?, self.bits(operand)?);
+        let d = self.bits(destination)?;
+        let o = self.bits(operand)?;
         if d.overlaps(&o) && d.first != o.first { Err(overlap(&d, &o)) } else { Ok(()) }
     }
 }

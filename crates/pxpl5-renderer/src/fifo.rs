@@ -138,7 +138,8 @@ impl InputFifo {
     fn advance(&mut self) -> Progress {
         let mut progress = Progress { accepted: None, blocks: self.start_waiting() };
         while let Some(work) = self.in_transit.pop_front() {
-            let (words, span) = (work.words_each, work.span_each);
+            let words = work.words_each;
+            let span = work.span_each;
             for entered in 0..work.count {
                 let Some(complete) = self.arrival(words) else {
                     self.in_transit.push_front(Work { count: work.count - entered, ..work });
@@ -162,7 +163,8 @@ impl InputFifo {
 
     /// When the next `words` words have all entered; `None` while that depends on a blocking command.
     fn arrival(&mut self, words: u32) -> Option<Time> {
-        let (first, last) = (self.words_in, self.words_in + u64::from(words) - 1);
+        let first = self.words_in;
+        let last = self.words_in + u64::from(words) - 1;
         let mut complete = self.last_word_at + self.word * u64::from(words);
         if last < self.depth {
             return Some(complete);
@@ -283,7 +285,8 @@ mod tests {
 
         #[test]
         fn runs_are_the_same_as_single_commands(count in 1u32..60, words in 1u32..40, ns in 0u64..9_000) {
-            let (mut runs, mut singles) = (InputFifo::new(448, WORD), InputFifo::new(448, WORD));
+            let mut runs = InputFifo::new(448, WORD);
+            let mut singles = InputFifo::new(448, WORD);
             let run = Work { words_each: words, count, span_each: Some(Span::from_ns(ns)) };
             let single = Work { count: 1, ..run };
             let a = runs.message(Time(7), [run]);

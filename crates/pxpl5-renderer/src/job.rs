@@ -96,8 +96,10 @@ impl PixelJob {
 
     /// `None` where something is no command.
     fn words_without_copies(&self) -> Option<Vec<Word>> {
-        let (mut words, mut kept, mut at) = (Vec::new(), Vec::new(), 0);
+        let mut words = Vec::new();
         self.lists.iter().for_each(|list| list.append_words(&mut words));
+        let mut kept = Vec::new();
+        let mut at = 0;
         while at < words.len() {
             let (command, length) = Command::decode(&words, at, &self.pool.layout).ok()?;
             if !matches!(command, Command::CopyRegion(_)) {
@@ -181,8 +183,7 @@ mod tests {
         let mut words = Vec::new();
         commands.iter().for_each(|command| command.encode(&pool.layout, &mut words).expect("it fits"));
         let lists: Vec<Arc<dyn CommandWords>> = vec![Arc::new(Given(words))];
-        let (pool, done) = (Arc::clone(pool), OnceLock::new());
-        PixelJob { pool, lists, cleared: true, kept: true, target, done }.pixels()
+        PixelJob { pool: Arc::clone(pool), lists, cleared: true, kept: true, target, done: OnceLock::new() }.pixels()
     }
 
     #[test]

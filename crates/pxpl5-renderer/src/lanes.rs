@@ -102,7 +102,8 @@ impl Lanes {
 /// The left top `width` x `height` of all pixels.
 fn rectangle(pixels: &[Word], width: u32, height: u32) -> Arc<[Word]> {
     const WIDTH: usize = REGION_SIZE as usize;
-    let (width, height) = (WIDTH.min(width as usize), WIDTH.min(height as usize));
+    let width = WIDTH.min(width as usize);
+    let height = WIDTH.min(height as usize);
     if width == WIDTH {
         return pixels[..width * height].into();
     }
@@ -177,7 +178,8 @@ mod tests {
 
     #[test]
     fn a_command_for_another_layout_still_runs_instruction_by_instruction() {
-        let (ours, theirs) = (Layout::rendering_control_phong(), Layout::slats());
+        let ours = Layout::rendering_control_phong();
+        let theirs = Layout::slats();
         let mut lanes = Lanes::new(&ours);
         let mut words = Vec::new();
         Command::blank(CommandKind::Sphere).encode(&theirs, &mut words).unwrap();

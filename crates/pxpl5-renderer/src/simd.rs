@@ -205,7 +205,8 @@ impl Vector for Eight {
     #[inline(always)]
     fn spread(bits: u64) -> Self {
         let four = |from: u32| &FOUR_LANES[(bits >> from) as usize & 15];
-        let ([a, b, c, d], [e, f, g, h]) = (*four(0), *four(4));
+        let [a, b, c, d] = *four(0);
+        let [e, f, g, h] = *four(4);
         Self([a, b, c, d, e, f, g, h])
     }
 

@@ -86,13 +86,15 @@ fn small_triangles_agree_where_the_array_ends_on_every_vector_unit() {
 /// Its box is up to 20 pixels wide and 9 high and begins near a border or anywhere.
 fn small_triangle(random: &mut Random, layout: &Layout) -> Command {
     let mut pick = |below: u64| random.below(below) as i32;
-    let (width, height) = (1 + pick(20), 1 + pick(9));
+    let width = 1 + pick(20);
+    let height = 1 + pick(9);
     let mut place = |size: i32| match pick(4) {
         0 => -pick(3),
         1 => 128 - size + pick(3),
         _ => pick(128),
     };
-    let (left, top) = (place(width), place(height));
+    let left = place(width);
+    let top = place(height);
     let mut corner = |i: i32| match i {
         0 => [left, top + pick(height as u64 + 1)],
         1 => [left + width, top + pick(height as u64 + 1)],
@@ -101,7 +103,8 @@ fn small_triangle(random: &mut Random, layout: &Layout) -> Command {
     let [p, q, r] = [0, 1, 2].map(&mut corner);
     // At least 0 on one side of the line from a to b.
     let edge = |[ax, ay]: [i32; 2], [bx, by]: [i32; 2]| {
-        let (dx, dy) = (bx - ax, by - ay);
+        let dx = bx - ax;
+        let dy = by - ay;
         Linear { a: -dy, b: dx, c: dy * ax - dx * ay }
     };
     let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
@@ -110,7 +113,8 @@ fn small_triangle(random: &mut Random, layout: &Layout) -> Command {
         let mut part = |bits: u32| (random.next() as i32) >> (32 - bits);
         Linear { a: part(bits - 8), b: part(bits - 8), c: part(bits) }
     };
-    let (depth, components) = (plane(31), [plane(22), plane(22), plane(22)]);
+    let depth = plane(31);
+    let components = [plane(22), plane(22), plane(22)];
     if layout.normal(0).is_some() {
         Command::PhongTriangle(PhongTriangle { edges, depth, normal: components, colour: 0x12_3456 })
     } else {
@@ -124,14 +128,16 @@ fn corner_run(random: &mut Random) -> Vec<Instruction> {
     let slopes = [0, 1, -1, 16, -16, 333, -70_001, 1 << 23, -(1 << 24), i32::MAX, i32::MIN];
     let mut out = Vec::new();
     for _ in 0..pick(&[1, 3, 12]) {
-        let (a, b) = (pick(&slopes), pick(&slopes));
+        let a = pick(&slopes);
+        let b = pick(&slopes);
         let corner = [0, 15, 16, 31, 32, 63, 64, 95, 112, 127];
         let beside = Linear { a, b, c: 0 }.at(pick(&corner), pick(&corner));
         let value = pick(&[-1, 0, 1, i32::MAX, i32::MIN]);
         let c = value.wrapping_sub(beside);
         let expression =
             if pick(&[0, 0, 0, 1]) == 1 { Expression::LinearAgain } else { Expression::Linear(Linear { a, b, c }) };
-        let (field, shift) = (Operand::absolute(24, 20), 12);
+        let field = Operand::absolute(24, 20);
+        let shift = 12;
         let usage = match pick(&[0, 0, 0, 1, 2, 3, 4, 5]) {
             0 => ExpressionUse::DisableNegative,
             1 => ExpressionUse::Load { field, shift },
@@ -194,7 +200,8 @@ fn random_lists_agree() {
 #[test]
 fn constants_of_a_command_agree_whatever_they_are() {
     for layout in layouts() {
-        let (mut a, mut b) = (BitSerial::new(&layout), Lanes::new(&layout));
+        let mut a = BitSerial::new(&layout);
+        let mut b = Lanes::new(&layout);
         let mut words = Vec::new();
         Command::Clear(Clear { colour: 0x12_3456 }).encode(&layout, &mut words).unwrap();
         // The depth that a clear always sets to the far plane, with one bit flipped on the way.
@@ -206,7 +213,8 @@ fn constants_of_a_command_agree_whatever_they_are() {
 #[test]
 fn both_arrays_send_the_same_pixels_of_a_context_to_a_frame_buffer() {
     let layout = Layout::slats();
-    let (mut a, mut b) = (BitSerial::new(&layout), Lanes::new(&layout));
+    let mut a = BitSerial::new(&layout);
+    let mut b = Lanes::new(&layout);
     conformance::scramble(&mut Random::new(3), &mut a, &mut b);
     let target = CopyTarget {
         frame_buffer: NodeId(9),
@@ -232,7 +240,8 @@ fn both_arrays_send_the_same_pixels_of_a_context_to_a_frame_buffer() {
 #[test]
 fn a_single_wrong_bit_is_found() {
     let layout = Layout::slats();
-    let (mut a, mut b) = (BitSerial::new(&layout), BitSerial::new(&layout));
+    let mut a = BitSerial::new(&layout);
+    let mut b = BitSerial::new(&layout);
     let mut plane = b.plane(207);
     plane[3] |= 1 << 5;
     b.set_plane(207, &plane);

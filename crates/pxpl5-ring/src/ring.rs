@@ -196,7 +196,9 @@ impl Ring {
         if let Err(error) = self.check(&request.message) {
             return self.refuse(&request, error, context);
         }
-        let (now, id, most) = (context.now(), request.message.source, self.timing.source_channels);
+        let now = context.now();
+        let id = request.message.source;
+        let most = self.timing.source_channels;
         let source = &mut self.sources[usize::from(id.0)];
         let new_first = source.insert(Queued { at: now, request }) == 0;
         if !new_first || source.in_flight >= most {
@@ -295,7 +297,8 @@ impl Ring {
             return;
         };
         port.in_flight += 1;
-        let (now, more) = (context.now(), port.in_flight < self.timing.source_channels);
+        let now = context.now();
+        let more = port.in_flight < self.timing.source_channels;
         let waited = now.since(at);
         self.stats.waiting += waited;
         self.stats.longest_wait = self.stats.longest_wait.max(waited);

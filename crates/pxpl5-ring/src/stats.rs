@@ -71,7 +71,8 @@ impl WaitingMessage {
     /// A line for a deadlock report; `name` gives the boards' names.
     #[must_use]
     pub fn blocked(&self, name: impl Fn(NodeId) -> String) -> Blocked {
-        let (to, words) = (name(self.destination), self.words);
+        let to = name(self.destination);
+        let words = self.words;
         let what = match self.reason {
             WaitReason::Acceptance => format!("{to} to accept {words} words sent"),
             WaitReason::DestinationBusy(by) => format!("{to}, busy with {}, to take {words} words", name(by)),

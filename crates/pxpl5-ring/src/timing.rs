@@ -43,8 +43,9 @@ impl RingTiming {
     /// Latency from one port to another of a ring of `n_nodes`; to itself a message goes once round.
     #[must_use]
     pub fn latency(&self, source: NodeId, destination: NodeId, n_nodes: u16) -> Span {
-        let (from, to, n) = (u64::from(source.0), u64::from(destination.0), u64::from(n_nodes));
-        let hops = if to > from { to - from } else { to + n - from };
+        let from = u64::from(source.0);
+        let to = u64::from(destination.0);
+        let hops = if to > from { to - from } else { to + u64::from(n_nodes) - from };
         Span::from_ns(hops * self.hop_ns)
     }
 

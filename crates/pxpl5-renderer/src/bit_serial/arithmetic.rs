@@ -51,7 +51,8 @@ impl Tile {
                 self.arithmetic(op, bits(destination)?, bits(a)?, bits(b)?);
             }
             Instruction::Compare { test, a, b } => {
-                let (a, b) = (bits(a)?, bits(b)?);
+                let a = bits(a)?;
+                let b = bits(b)?;
                 let source = self.source(b);
                 self.compare(test, a, a.width.max(b.width), |memory, i| source.bit(memory, i));
             }
@@ -107,7 +108,8 @@ impl Tile {
     }
 
     fn saturate(&mut self, destination: Bits, source: Bits) {
-        let (w, wa) = (destination.width, source.width);
+        let w = destination.width;
+        let wa = source.width;
         let digits = if source.signed { wa - 1 } else { wa };
         let source = self.source(source);
         let mut over = EMPTY;
@@ -122,7 +124,8 @@ impl Tile {
     }
 
     fn arithmetic(&mut self, op: ArithmeticOp, destination: Bits, a: Bits, b: Bits) {
-        let (x, y) = (self.source(a), self.source(b));
+        let x = self.source(a);
+        let y = self.source(b);
         let mut carry = EMPTY;
         let mut logic = |f: fn(u64, u64) -> u64| {
             self.each_bit(destination, |m, i| planes::combine(&x.bit(m, i), &y.bit(m, i), f));

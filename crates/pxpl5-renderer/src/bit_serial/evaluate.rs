@@ -59,7 +59,8 @@ impl Delivery {
     #[inline(always)]
     fn run<V: Vector, E: Evaluator, S: Sink>(&self, evaluator: &E, sink: &S, tile: &mut Tile, place: Place) {
         let at = place.at;
-        let (mut carries, mut carry) = (E::start::<V>(), V::splat(0));
+        let mut carries = E::start::<V>();
+        let mut carry = V::splat(0);
         for t in 0..self.taken.start {
             evaluator.bit(t, place, &mut carries);
         }
@@ -103,7 +104,9 @@ impl BitSerial {
     pub(super) fn evaluate(&mut self, expression: &Expression, usage: &ExpressionUse) -> Result<(), FaultKind> {
         let delivery = &self.delivery(usage, expression.bits())?;
         let local = self.controller.latch(expression);
-        let (vectors, skipping, tiles) = (self.vectors, self.skipping, &mut self.tiles[..]);
+        let vectors = self.vectors;
+        let skipping = self.skipping;
+        let tiles = &mut self.tiles[..];
         match &local {
             Local::Linear(coefficients) => {
                 self.clock += delivery.taken.end as u64;
@@ -140,7 +143,8 @@ impl BitSerial {
             }
             ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift } => {
                 let (taken, first) = taken(field, shift)?;
-                let (subtrahend, left_shift) = (self.controller.bits(subtrahend)?, left_shift.into());
+                let subtrahend = self.controller.bits(subtrahend)?;
+                let left_shift = left_shift.into();
                 (0..taken.end, Effect::LoadMinus { first, shift: taken.start, subtrahend, left_shift })
             }
         };

@@ -304,7 +304,8 @@ mod tests {
         let tile = y / HEIGHT * ACROSS + x / WIDTH;
         let place = Place::in_array(tile, y % HEIGHT / Eight::LANES * Eight::LANES);
         // A lane is a row, a word two of them.
-        let (lane, column) = (y % Eight::LANES, x % WIDTH);
+        let lane = y % Eight::LANES;
+        let column = x % WIDTH;
         let value = (0..bits as usize).fold(0, |value, t| {
             let mut words = [0; Eight::LANES / 2];
             evaluator.bit::<Eight>(t, place, &mut carries).store_words(&mut words);

@@ -55,6 +55,17 @@ enum Input {
     Constant(Constant),
 }
 
+impl Step {
+    /// The expression of the run whose sign disables, where that is what the instruction does.
+    #[inline(always)]
+    const fn disables_by_sign_of(&self) -> Option<usize> {
+        match (self.input, self.delivery.effect) {
+            (Input::Expression(i), Effect::DisableNegative) => Some(i),
+            _ => None,
+        }
+    }
+}
+
 impl BitSerial {
     /// Executes the run that begins at a word; returns how many words it has, 0 where none begins.
     pub(super) fn execute_run(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> usize {
@@ -146,7 +157,7 @@ impl Run {
     fn signs<V: Vector>(&self) -> [Signs; EXPRESSIONS] {
         let mut signs = [Signs::default(); EXPRESSIONS];
         for step in &self.steps {
-            if let (Input::Expression(i), Effect::DisableNegative) = (step.input, step.delivery.effect) {
+            if let Some(i) = step.disables_by_sign_of() {
                 signs[i] = Signs::of::<V>(&self.expressions[i]);
             }
         }
@@ -158,7 +169,7 @@ impl Run {
     fn disabled_at_once(&self, signs: &[Signs; EXPRESSIONS]) -> u32 {
         let mut disabled = 0;
         for step in &self.steps {
-            let (Input::Expression(i), Effect::DisableNegative) = (step.input, step.delivery.effect) else { break };
+            let Some(i) = step.disables_by_sign_of() else { break };
             disabled |= signs[i].negative;
         }
         disabled
@@ -231,8 +242,10 @@ impl Signs {
             let [left, top] = tile::origin(number);
             *corner = e.at(left as i32, top as i32) as u32;
         }
-        let (across, down) = (e.a * (WIDTH as i32 - 1), e.b * (HEIGHT as i32 - 1));
-        let (largest, smallest) = (V::splat(across.max(0) + down.max(0)), V::splat(across.min(0) + down.min(0)));
+        let across = e.a * (WIDTH as i32 - 1);
+        let down = e.b * (HEIGHT as i32 - 1);
+        let largest = V::splat(across.max(0) + down.max(0));
+        let smallest = V::splat(across.min(0) + down.min(0));
         let mut signs = Self::default();
         for first in (0..TILES).step_by(V::LANES) {
             let corner = V::load(&corners[first..]);
@@ -251,7 +264,9 @@ const fn lanes<V: Vector>() -> u32 {
 #[inline(always)]
 fn wraps(e: &Linear) -> bool {
     let last = (ACROSS * WIDTH - 1) as i64;
-    let (c, across, down) = (i64::from(e.c), last * i64::from(e.a), last * i64::from(e.b));
+    let c = i64::from(e.c);
+    let across = last * i64::from(e.a);
+    let down = last * i64::from(e.b);
     let corners = [c, c + across, c + down, c + across + down];
     corners.iter().any(|corner| i32::try_from(*corner).is_err())
 }
@@ -269,7 +284,8 @@ impl TileStreams {
     fn run_trees<V: Vector>(&mut self, run: &Run, number: usize) {
         let [left, top] = tile::origin(number);
         let ready = self.ready + V::LANES / 2;
-        let (mut coefficients, mut constants) = ([0; EXPRESSIONS], [0; EXPRESSIONS]);
+        let mut coefficients = [0; EXPRESSIONS];
+        let mut constants = [0; EXPRESSIONS];
         for (i, e) in run.expressions.iter().skip(self.ready).take(V::LANES / 2).enumerate() {
             coefficients[i] = u64::from(e.b as u32) << 32 | u64::from(e.a as u32);
             constants[i] = u64::from(e.at(left as i32, top as i32) as u32) << 32;

@@ -78,7 +78,8 @@ fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<I
         expression: Expression::Linear(edge),
         usage: ExpressionUse::DisableNegative,
     }));
-    let (field, shift) = (layout.plan().z, layout.z_shift());
+    let field = layout.plan().z;
+    let shift = layout.z_shift();
     out.push(Instruction::Evaluate {
         expression: Expression::Linear(depth),
         usage: ExpressionUse::DisableNotLess { field, shift },

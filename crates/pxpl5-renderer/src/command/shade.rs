@@ -113,7 +113,8 @@ impl Shade {
     pub(super) fn read(program: &[Instruction]) -> Option<Self> {
         let light = read_vector(program, 8)?;
         let half = read_vector(program, 15)?;
-        let (diffuse, ambient) = (read_factor(program, 27)?, program.get(28)?);
+        let diffuse = read_factor(program, 27)?;
+        let ambient = program.get(28)?;
         let &Instruction::LoadConstant { value, .. } = ambient else { return None };
         Some(Self {
             light,
@@ -170,7 +171,8 @@ fn power(f: &Fields, out: &mut Vec<Instruction>) -> Operand {
 
 /// component := limit((component * light >> 8) + highlight).
 fn combine(f: &Fields, component: Operand) -> [Instruction; 3] {
-    let (product, sum) = (f.a.part(0, 16), f.b.part(0, 9));
+    let product = f.a.part(0, 16);
+    let sum = f.b.part(0, 9);
     [
         arithmetic(ArithmeticOp::Multiply, product, component, f.diffuse.part(0, 8)),
         arithmetic(ArithmeticOp::Add, sum, product.part(8, 8), f.c.part(10, 8)),

@@ -87,14 +87,14 @@ pub(crate) struct Scratch {
 
 impl Scratch {
     pub(crate) fn of(layout: &Layout) -> Result<Self, Missing> {
-        let missing = Missing("30 bits of scratch");
-        let (Some(all), Some(bits)) = (layout.plan().scratch, layout.root_bits()) else {
-            return Err(missing);
-        };
-        let (z_bits, radicand_bits) = (layout.plan().z.width, 2 * bits);
+        const MISSING: Missing = Missing("30 bits of scratch");
+        let all = layout.plan().scratch.ok_or(MISSING)?;
+        let bits = layout.root_bits().ok_or(MISSING)?;
+        let z_bits = layout.plan().z.width;
+        let radicand_bits = 2 * bits;
         let low = z_bits.max(radicand_bits);
         if low + bits > all.width {
-            return Err(missing);
+            return Err(MISSING);
         }
         // In the place that shading uses for its root, where there is one.
         let root = if all.width >= SHADE_BITS { SHADE_ROOT } else { low };

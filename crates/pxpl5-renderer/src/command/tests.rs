@@ -109,7 +109,8 @@ proptest! {
     #[test]
     fn the_words_of_a_command_are_those_of_its_program(command in any_command(), before in any::<[u32; 2]>()) {
         for layout in [phong(), Layout::slats(), Layout::slats_quarters()] {
-            let (mut words, mut expected) = (before.to_vec(), before.to_vec());
+            let mut words = before.to_vec();
+            let mut expected = before.to_vec();
             let program = command.program(&layout);
             let result = command.encode(&layout, &mut words);
             prop_assert_eq!(result, program.as_ref().map(|_| ()).map_err(|error| *error));
@@ -157,7 +158,8 @@ proptest! {
 fn the_published_rate_lies_between_the_two_kinds_of_triangle_and_both_keep_the_bit_budget() {
     // 150,000 triangles a second at 40 MHz (TR94).
     let published = 40_000_000_u32.div_ceil(150_000);
-    let (gouraud, phong) = (clocks(CommandKind::Triangle), clocks(CommandKind::PhongTriangle));
+    let gouraud = clocks(CommandKind::Triangle);
+    let phong = clocks(CommandKind::PhongTriangle);
     assert!(gouraud <= published && published <= phong);
     // Enable, edges, Z compared and stored, colours, fetches; with normals 6 more, or 36 with the object's colour.
     let budget = 2 + 3 * 24 + 28 + 28 + 3 * 18 + 9 * 8;

@@ -92,7 +92,8 @@ impl Random {
     }
 
     fn backing(&mut self) -> Command {
-        let (block, address) = (self.below(3) as u8, self.below(177) as u8);
+        let block = self.below(3) as u8;
+        let address = self.below(177) as u8;
         match self.below(3) {
             0 => Command::WaitBacking,
             1 => Command::StoreBacking(StoreBacking { block, address }),
@@ -134,7 +135,8 @@ impl Random {
 
     fn shade(&mut self) -> Shade {
         let mut vector = || std::array::from_fn(|_| self.between(-1500, 1500) as i16);
-        let (light, half) = (vector(), vector());
+        let light = vector();
+        let half = vector();
         let [ambient, diffuse, specular, ..] = self.next().to_le_bytes();
         Shade { light, half, ambient, diffuse, specular }
     }
@@ -146,7 +148,8 @@ impl Random {
         }
         let size = [16, 64, 256, 2_000, 20_000, 200_000][self.below(6) as usize];
         let mut centre = || self.between(-16 * 32, 16 * 672);
-        let (x, y) = (centre(), centre());
+        let x = centre();
+        let y = centre();
         let mut vertex = || [x + self.between(-size, size), y + self.between(-size, size)];
         let v = [vertex(), vertex(), vertex()];
         let flip = self.below(2) == 0;
@@ -178,7 +181,9 @@ impl Random {
             return Quadratic { xx: any(), xy: any(), yy: any(), x: any(), y: any(), one: any() };
         }
         let radius = [2, 10, 60, 500][self.below(4) as usize];
-        let (x, y, r) = (self.between(-20, 660), self.between(-20, 500), self.between(1, radius));
+        let x = self.between(-20, 660);
+        let y = self.between(-20, 500);
+        let r = self.between(1, radius);
         let scale = 1 << self.below(20);
         let tilt = self.between(-scale / 2, scale / 2 + 1);
         Quadratic {
@@ -211,7 +216,8 @@ fn repainted(command: Command) -> Command {
 
 /// The edge from p to q, in sixteenths of a pixel, inside on its left; cut to 32 bits.
 fn edge((p, q): ([i64; 2], [i64; 2])) -> Linear {
-    let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+    let dx = q[0] - p[0];
+    let dy = q[1] - p[1];
     let c = dy * p[0] - dx * p[1];
     Linear { a: -dy as i32, b: dx as i32, c: c.div_euclid(16) as i32 }
 }

@@ -203,7 +203,8 @@ fn control(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
         opcode::ENABLE_AND => (Instruction::EnableAnd(bit()?), 1),
         opcode::SELECT => {
             let [origin] = head.tail()?;
-            let (left, top) = (origin as u16, (origin >> 16) as u16);
+            let left = origin as u16;
+            let top = (origin >> 16) as u16;
             (Instruction::Select { context_base: head.modifier, left, top }, 2)
         }
         other => {
@@ -244,7 +245,8 @@ fn expression_use(head: &Head<'_>, code: u8) -> Result<(ExpressionUse, usize), K
         _ => {
             let [word] = head.tail()?;
             reserved(word & 0xffc0)?;
-            let (field, subtrahend) = (head.field()?, checked(word >> 16)?);
+            let field = head.field()?;
+            let subtrahend = checked(word >> 16)?;
             let left_shift = (word & 63) as u8;
             (ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift }, 2)
         }
@@ -275,7 +277,9 @@ fn quadratic_of(words: [Word; 12]) -> Quadratic {
 }
 
 fn one_source(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
-    let (destination, source, by) = (head.field()?, head.source()?, head.modifier);
+    let destination = head.field()?;
+    let source = head.source()?;
+    let by = head.modifier;
     let instruction = match head.opcode {
         opcode::SHIFT_RIGHT => Instruction::ShiftRight { destination, source, by },
         opcode::SHIFT_LEFT => Instruction::ShiftLeft { destination, source, by },
@@ -296,7 +300,8 @@ fn one_source(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
 
 fn arithmetic(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
     head.no_modifier()?;
-    let (destination, (a, b)) = (head.field()?, head.pair()?);
+    let destination = head.field()?;
+    let (a, b) = head.pair()?;
     let op = ArithmeticOp::ALL[usize::from(head.opcode - opcode::ARITHMETIC)];
     match op {
         ArithmeticOp::Divide => {
@@ -325,7 +330,8 @@ fn constant(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
         let source = head.source()?;
         let [_, factor] = head.tail()?;
         reserved(u32::from(head.modifier & 0xe0))?;
-        let (factor, factor_bits) = (factor as i32, head.modifier + 1);
+        let factor = factor as i32;
+        let factor_bits = head.modifier + 1;
         return Ok((Instruction::MultiplyConstant { destination, source, factor, factor_bits }, 3));
     }
     head.no_modifier()?;
@@ -342,7 +348,8 @@ fn backing(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
         reserved(u32::from(head.modifier) | head.operand)?;
         return Ok((Instruction::Wait, 1));
     }
-    let (field, block) = (width(head.field()?, 32)?, head.modifier);
+    let field = width(head.field()?, 32)?;
+    let block = head.modifier;
     if block >= BACKING_BLOCKS {
         return Err(Kind::UnknownBlock(block));
     }

@@ -42,7 +42,8 @@ impl Bounds {
     #[inline(always)]
     pub(super) fn row(&self, y: usize) -> (usize, usize) {
         let Some(limits) = &self.limits else { return (self.area.left, self.area.right) };
-        let (mut left, mut right) = (self.area.left as f64, self.area.right as f64 - 1.0);
+        let mut left = self.area.left as f64;
+        let mut right = self.area.right as f64 - 1.0;
         for limit in limits {
             let x = (limit.b * y as i64 + limit.c) as f64 * limit.scale;
             if limit.from_left {
@@ -58,7 +59,9 @@ impl Bounds {
 impl Limit {
     #[inline(always)]
     fn of(e: &Linear) -> Self {
-        let (a, b, c) = (i64::from(e.a), i64::from(e.b), i64::from(e.c));
+        let a = i64::from(e.a);
+        let b = i64::from(e.b);
+        let c = i64::from(e.c);
         // A horizontal edge limits no row; the box has taken it into account.
         let scale = if a == 0 { 0.0 } else { -1.0 / a as f64 };
         Self { b, c, scale, from_left: a >= 0 }
@@ -84,7 +87,9 @@ impl Edges {
     #[inline(always)]
     pub(super) fn set(&mut self, i: usize, edges: [[i32; 3]; 3]) {
         for (e, [a, b, c]) in edges.into_iter().enumerate() {
-            (self.a[e][i], self.b[e][i], self.c[e][i]) = (a, b, c);
+            self.a[e][i] = a;
+            self.b[e][i] = b;
+            self.c[e][i] = c;
         }
     }
 
@@ -130,10 +135,14 @@ const REACH: f64 = 512.0;
 impl Boxes {
     #[inline(always)]
     pub(super) fn of(edges: &Edges) -> Self {
-        let (a, b, c) = (three(&edges.a), three(&edges.b), three(&edges.c));
+        let a = three(&edges.a);
+        let b = three(&edges.b);
+        let c = three(&edges.c);
         let mut straight = [true; SIDE_BY_SIDE];
-        let (mut left, mut right) = ([true; SIDE_BY_SIDE], [true; SIDE_BY_SIDE]);
-        let (mut low, mut high) = ([[f64::INFINITY; SIDE_BY_SIDE]; 2], [[f64::NEG_INFINITY; SIDE_BY_SIDE]; 2]);
+        let mut left = [true; SIDE_BY_SIDE];
+        let mut right = [true; SIDE_BY_SIDE];
+        let mut low = [[f64::INFINITY; SIDE_BY_SIDE]; 2];
+        let mut high = [[f64::NEG_INFINITY; SIDE_BY_SIDE]; 2];
         for e in 0..3 {
             let f = (e + 1) % 3;
             for i in 0..SIDE_BY_SIDE {
@@ -145,8 +154,10 @@ impl Boxes {
                 let scale = 1.0 / determinant;
                 let x = (b[e][i] * c[f][i] - b[f][i] * c[e][i]) * scale;
                 let y = (a[f][i] * c[e][i] - a[e][i] * c[f][i]) * scale;
-                (low[0][i], high[0][i]) = (low[0][i].min(x), high[0][i].max(x));
-                (low[1][i], high[1][i]) = (low[1][i].min(y), high[1][i].max(y));
+                low[0][i] = low[0][i].min(x);
+                high[0][i] = high[0][i].max(x);
+                low[1][i] = low[1][i].min(y);
+                high[1][i] = high[1][i].max(y);
             }
         }
         let mut closed = [false; SIDE_BY_SIDE];
@@ -172,7 +183,10 @@ impl Boxes {
 
     #[inline(always)]
     fn area(&self, i: usize) -> Option<Area> {
-        let (left, right, top, bottom) = (self.x[0][i], self.x[1][i], self.y[0][i], self.y[1][i]);
+        let left = self.x[0][i];
+        let right = self.x[1][i];
+        let top = self.y[0][i];
+        let bottom = self.y[1][i];
         let end = |last: i32| (last + 1) as usize;
         let area = Area { left: left as usize, right: end(right), top: top as usize, bottom: end(bottom) };
         (left <= right && top <= bottom).then_some(area)

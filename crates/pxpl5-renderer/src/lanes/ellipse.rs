@@ -67,7 +67,8 @@ fn positive(a: f64, b: f64, c: f64) -> Range<usize> {
     if discriminant < 0.0 {
         return 0..0;
     }
-    let (middle, half) = (b / (-2.0 * a), discriminant.sqrt() / (-2.0 * a));
+    let middle = b / (-2.0 * a);
+    let half = discriminant.sqrt() / (-2.0 * a);
     let low = (middle - half - MARGIN).ceil().max(0.0) as usize;
     let high = (middle + half + MARGIN + 1.0).clamp(0.0, SIZE as f64) as usize;
     low..high.max(low)
@@ -80,9 +81,12 @@ mod tests {
 
     fn random_ellipse(random: &mut Random) -> Quadratic {
         let mut between = |low: i64, high: i64| low + random.below((high - low) as u64) as i64;
-        let (x, y, r) = (between(-300, 300), between(-300, 300), between(1, 400));
+        let x = between(-300, 300);
+        let y = between(-300, 300);
+        let r = between(1, 400);
         let scale = 1 << between(1, 20);
-        let (tilt, flat) = (between(-scale, scale), between(scale / 2 + 1, 2 * scale));
+        let tilt = between(-scale, scale);
+        let flat = between(scale / 2 + 1, 2 * scale);
         Quadratic {
             xx: -scale,
             xy: tilt,

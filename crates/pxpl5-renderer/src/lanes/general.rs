@@ -186,7 +186,8 @@ impl Lanes {
     fn expression(&mut self, local: &Local, shift: u8, f: impl Fn(u64, u8, u64) -> u64) {
         let [first, second] = &mut self.operands;
         for (pixel, (out, old)) in first.iter_mut().zip(second.iter()).enumerate() {
-            let (x, y) = (pixel as u32 % REGION_SIZE, pixel as u32 / REGION_SIZE);
+            let x = pixel as u32 % REGION_SIZE;
+            let y = pixel as u32 / REGION_SIZE;
             *out = f(local.at(x as i32, y as i32) as u64, shift, *old);
         }
     }

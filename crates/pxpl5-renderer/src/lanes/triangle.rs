@@ -156,7 +156,9 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
                 self.nearer(&lower, at[1], shape.keep);
                 self.paint.store(&walks, at[1], lower.mask);
             }
-            (first, second, third) = (first.below(2 * p), second.below(2 * q), third.below(2 * r));
+            first = first.below(2 * p);
+            second = second.below(2 * q);
+            third = third.below(2 * r);
             depth = depth.below(deeper.wrapping_mul(2));
         }
     }
@@ -192,7 +194,8 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
     /// Where no edge is negative and the depth is nearer.
     #[inline(always)]
     fn test<V: Vector>(&self, at: usize, [p, q, r]: [Walk<V>; 3], depth: Walk<V>) -> Tested<V> {
-        let (old, new) = (V::load(&self.z.0[at..]), depth.value.shift_right(self.z_shift.into()));
+        let old = V::load(&self.z.0[at..]);
+        let new = depth.value.shift_right(self.z_shift.into());
         Tested { old, new, mask: p.value.or(q.value).or(r.value).passes(new, old) }
     }
 
@@ -231,7 +234,8 @@ fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> [i32; 3] {
 /// Written out, because a closure over an array would be compiled apart, without the vector unit's features.
 #[inline(always)]
 fn three<V: Vector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
-    let (x, y) = (x as i32, y as i32);
+    let x = x as i32;
+    let y = y as i32;
     [Walk::start(&e[0], x, y), Walk::start(&e[1], x, y), Walk::start(&e[2], x, y)]
 }
 

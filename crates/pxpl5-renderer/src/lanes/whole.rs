@@ -24,7 +24,8 @@ impl<const N: usize> Template<N> {
     /// `None` where the layout cannot hold the command.
     fn of(kind: CommandKind, layout: &Layout) -> Option<Self> {
         let program = Command::blank(kind).program(layout).ok()?;
-        let (mut words, mut fixed) = (Vec::new(), [0; N]);
+        let mut words = Vec::new();
+        let mut fixed = [0; N];
         for instruction in &program {
             *fixed.get_mut(words.len())? = Word::MAX;
             instruction.encode(&mut words);

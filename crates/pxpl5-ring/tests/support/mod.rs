@@ -84,7 +84,8 @@ pub(crate) fn run_prepared(
 
 fn run_queue(mut ring: Ring, mut queue: EventQueue<RingEvent>, receivers: &[Receiver]) -> (Ring, Times) {
     let mut fifos = vec![VecDeque::new(); receivers.len()];
-    let (mut context, mut times) = (Context::default(), Times::default());
+    let mut context = Context::default();
+    let mut times = Times::default();
     while let Some((now, _, event)) = queue.next_event() {
         ring.handle(event, context.at(now));
         for (time, phase, event) in context.drain_events() {
