@@ -36,8 +36,7 @@ fn plane(v: [Vertex; 3], values: [f64; 3], scale: f64) -> Linear {
     let a = (d1 * y2 - d2 * y1) / det;
     let b = (d2 * x1 - d1 * x2) / det;
     let c = values[0] + a * (0.5 - v[0][0]) + b * (0.5 - v[0][1]);
-    let fixed = |v: f64| (v * scale).round() as i32;
-    Linear { a: fixed(a), b: fixed(b), c: fixed(c) }
+    Linear { a: (a * scale).round() as i32, b: (b * scale).round() as i32, c: (c * scale).round() as i32 }
 }
 
 fn place(v: [Vertex; 3]) -> [Vertex; 3] {
@@ -77,14 +76,13 @@ impl Ball {
         let shift = 10_u8;
         let r = self.radius;
         let scale = 4000.0_f64.powi(2) * 1024.0 / (r * r);
-        let fixed = |v: f64| (v * scale).round() as i64;
         let silhouette = Quadratic {
-            xx: fixed(-1.0),
+            xx: -scale.round() as i64,
             xy: 0,
-            yy: fixed(-1.0),
-            x: fixed(2.0 * x),
-            y: fixed(2.0 * y),
-            one: fixed(r * r - x * x - y * y),
+            yy: -scale.round() as i64,
+            x: (2.0 * x * scale).round() as i64,
+            y: (2.0 * y * scale).round() as i64,
+            one: ((r * r - x * x - y * y) * scale).round() as i64,
         };
         let depth = Linear::constant((self.depth * DEPTH) as i32);
         SphereBody { silhouette, root_shift: shift, depth, depth_shift: 14 }
@@ -100,15 +98,17 @@ impl Ball {
         Linear { a, b, c: c.round() as i32 }
     }
 
+    /// The linear part of a colour component `c` (0 to 255) under a light.
+    fn component(&self, c: f64, light: [f64; 3]) -> Linear {
+        let x = self.across(0, light[0] * c * 4096.0);
+        let y = self.across(1, light[1] * c * 4096.0);
+        Linear { a: x.a, b: y.b, c: x.c.wrapping_add(y.c) }
+    }
+
     fn gouraud(&self, colour: [f64; 3], light: [f64; 3]) -> Command {
-        let component = |c: f64| {
-            let x = self.across(0, light[0] * c * 4096.0);
-            let y = self.across(1, light[1] * c * 4096.0);
-            Linear { a: x.a, b: y.b, c: x.c.wrapping_add(y.c) }
-        };
         Command::Sphere(Sphere {
             body: self.body(),
-            colour: colour.map(component),
+            colour: colour.map(|c| self.component(c, light)),
             root_factor: colour.map(|c| (light[2] * c * 256.0 / 250.0) as i16),
         })
     }
@@ -122,8 +122,11 @@ impl Ball {
     }
 }
 
+const fn ball(x: f64, y: f64, radius: f64, depth: f64) -> Ball {
+    Ball { centre: [x, y], radius, depth }
+}
+
 fn gouraud_picture() -> Vec<Command> {
-    let ball = |x, y, radius, depth| Ball { centre: [x, y], radius, depth };
     let light = [-0.5, -0.5, 0.7];
     // Not quite 0 or 255: a component that rounds to the outside of a plane's range wraps.
     let corners = [[2.0, 2.0, 250.0], [250.0, 2.0, 2.0], [2.0, 250.0, 2.0]];
@@ -138,7 +141,6 @@ fn gouraud_picture() -> Vec<Command> {
 }
 
 fn phong_picture() -> Vec<Command> {
-    let ball = |x, y, radius, depth| Ball { centre: [x, y], radius, depth };
     let normals = [[-0.7, -0.5, 0.5], [0.7, -0.3, 0.6], [0.0, 0.8, 0.6]];
     vec![
         phong_triangle([[4.0, 6.0], [124.0, 20.0], [40.0, 124.0]], [0.5, 0.6, 0.5], normals, 0x30_90_ff),

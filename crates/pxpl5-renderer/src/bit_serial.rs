@@ -115,21 +115,20 @@ impl BitSerial {
     }
 
     fn enable_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
-        let first = |operand| self.controller.bits(operand).map(|bits| bits.first);
         match *instruction {
             Instruction::EnableAll { .. } => self.each_tile(|tile| tile.enable = FULL),
             Instruction::EnableNone => self.each_tile(|tile| tile.enable = EMPTY),
             Instruction::EnableInvert => self.each_tile(|tile| planes::invert(&mut tile.enable)),
             Instruction::EnableLoad(bit) => {
-                let bit = first(bit)?;
+                let bit = self.controller.bits(bit)?.first;
                 self.each_tile(|tile| tile.enable = tile.memory[bit]);
             }
             Instruction::EnableStore(bit) => {
-                let bit = first(bit)?;
+                let bit = self.controller.bits(bit)?.first;
                 self.each_tile(|tile| tile.memory[bit] = tile.enable);
             }
             Instruction::EnableAnd(bit) => {
-                let bit = first(bit)?;
+                let bit = self.controller.bits(bit)?.first;
                 self.each_tile(|tile| planes::and(&mut tile.enable, &tile.memory[bit]));
             }
             Instruction::Evaluate { expression, usage } => return self.evaluate(&expression, &usage),
@@ -144,7 +143,7 @@ impl BitSerial {
     }
 
     fn field_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
-        for tile in self.tiles.iter_mut().filter(|tile| !self.skipping || tile.enabled()) {
+        for tile in self.tiles.iter_mut().filter(|tile| tile.has_work(self.skipping)) {
             tile.clock = 0;
             tile.field_instruction(&self.controller, instruction)?;
         }

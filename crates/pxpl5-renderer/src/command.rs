@@ -40,7 +40,7 @@ pub use shade::{SPECULAR_SQUARINGS, Shade};
 pub(crate) use sphere::Scratch as SphereScratch;
 pub use sphere::{PhongSphere, Sphere, SphereBody};
 
-use crate::isa::{DecodeError, DecodeErrorKind, Instruction};
+use crate::isa::{DecodeError, DecodeErrorKind, Instruction, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 use std::fmt;
@@ -249,16 +249,15 @@ impl Command {
     /// [`DecodeError`] where the words are no instructions, or not the program of a command in this layout.
     pub fn decode(words: &[Word], position: usize, layout: &Layout) -> Result<(Self, usize), DecodeError> {
         let (first, _) = Instruction::decode(words, position)?;
-        let word = words[position];
-        let not = |label| DecodeError { position, word, kind: DecodeErrorKind::NotTheCommand(label) };
-        let kind = kind_of(&first).ok_or(not((word >> 16) as u8))?;
+        let kind = kind_of(&first).ok_or_else(|| not_the_command(words, position, (words[position] >> 16) as u8))?;
         let length = kind.words() as usize;
         let end = words.len().min(position + length);
         let program = decode_range(&words[..end], position)?;
-        let command = Self::from_program(kind, &program, layout).ok_or(not(kind.opcode()))?;
+        let command = Self::from_program(kind, &program, layout)
+            .ok_or_else(|| not_the_command(words, position, kind.opcode()))?;
         match command.program(layout) {
             Ok(expected) if expected == program => Ok((command, length)),
-            _ => Err(not(kind.opcode())),
+            _ => Err(not_the_command(words, position, kind.opcode())),
         }
     }
 
@@ -297,6 +296,11 @@ impl Command {
     }
 }
 
+/// The words at `position` are instructions, but not the command that `label` names.
+fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
+    DecodeError { position, word: words[position], kind: DecodeErrorKind::NotTheCommand(label) }
+}
+
 /// What a layout lacks.
 pub(crate) struct Missing(&'static str);
 
@@ -325,6 +329,11 @@ fn decode_range(words: &[Word], from: usize) -> Result<Vec<Instruction>, DecodeE
         position += used;
     }
     Ok(out)
+}
+
+/// Component 0 (x), 1 (y) or 2 (z) of the layout's normal.
+fn normal(layout: &Layout, component: u8) -> Result<Operand, Missing> {
+    layout.normal(component).ok_or(Missing("a normal"))
 }
 
 const fn enable(kind: CommandKind) -> Instruction {

@@ -42,14 +42,17 @@ pub fn agree(
 ) -> Result<(), Mismatch> {
     let expected = definition.execute(words);
     let found = subject.execute(words);
-    let mismatch = |difference| Err(Mismatch { after: format!("{after:?}"), difference });
-    if expected != found {
-        return mismatch(format!("expected {expected:?}, found {found:?}"));
+    let difference = if expected != found {
+        Some(format!("expected {expected:?}, found {found:?}"))
+    } else if definition.faults() != subject.faults() {
+        Some("the counts of faults differ".to_owned())
+    } else {
+        first_difference(definition, subject)
+    };
+    match difference {
+        Some(difference) => Err(Mismatch { after: format!("{after:?}"), difference }),
+        None => Ok(()),
     }
-    if definition.faults() != subject.faults() {
-        return mismatch("the counts of faults differ".to_owned());
-    }
-    first_difference(definition, subject).map_or(Ok(()), mismatch)
 }
 
 fn first_difference(definition: &impl PixelArray, subject: &impl PixelArray) -> Option<String> {
@@ -178,15 +181,25 @@ fn corner_expressions() -> Vec<Instruction> {
         let b = EXTREMES[(i + 1) % 6];
         let c = EXTREMES[(i + 3) % 6];
         let linear = Expression::Linear(Linear { a, b, c });
-        let wide = |v: i32| i64::from(v) << 17 | 1;
-        let quadratic = Quadratic { xx: wide(a), xy: wide(c), yy: wide(b), x: wide(c), y: wide(a), one: wide(b) };
-        let quadratic = Expression::Quadratic(quadratic);
+        let quadratic = Expression::Quadratic(Quadratic {
+            xx: beyond_48_bits(a),
+            xy: beyond_48_bits(c),
+            yy: beyond_48_bits(b),
+            x: beyond_48_bits(c),
+            y: beyond_48_bits(a),
+            one: beyond_48_bits(b),
+        });
         for (expression, again) in [(linear, Expression::LinearAgain), (quadratic, Expression::QuadraticAgain)] {
             out.extend(uses(expression));
             out.extend(uses(again));
         }
     }
     out
+}
+
+/// A coefficient whose upper bits do not fit a quadratic's 48, and whose lowest bit counts.
+const fn beyond_48_bits(v: i32) -> i64 {
+    (v as i64) << 17 | 1
 }
 
 fn uses(expression: Expression) -> Vec<Instruction> {
@@ -211,11 +224,10 @@ const WIDTHS: [[u8; 3]; 7] = [[8, 8, 8], [5, 12, 9], [20, 7, 11], [1, 1, 1], [64
 fn corner_fields() -> Vec<Instruction> {
     let mut out = Vec::new();
     for [w, wa, wb] in WIDTHS {
-        for signs in 0..4 {
-            let sign = |field: Operand, bit| if signs >> bit & 1 == 1 { field.signed() } else { field };
+        for [a_signed, b_signed] in [[false, false], [true, false], [false, true], [true, true]] {
             let destination = Operand::absolute(0, w);
-            let a = sign(Operand::absolute(64, wa), 0);
-            let b = sign(Operand::absolute(128, wb), 1);
+            let a = Operand { signed: a_signed, ..Operand::absolute(64, wa) };
+            let b = Operand { signed: b_signed, ..Operand::absolute(128, wb) };
             out.extend(two_operands(destination, a, b));
             out.extend(one_operand(destination, a));
             // Against the last bit of pixel memory, where the bits that a product loses have no place at all.
@@ -239,10 +251,9 @@ fn corner_fields() -> Vec<Instruction> {
 }
 
 fn two_operands(destination: Operand, a: Operand, b: Operand) -> Vec<Instruction> {
-    let arithmetic = |op| Instruction::Arithmetic { op, destination, a, b };
-    let compare = |test| Instruction::Compare { test, a, b };
-    let ops = ArithmeticOp::ALL.into_iter().map(arithmetic);
-    ops.chain(Test::ALL.into_iter().map(compare)).collect()
+    let mut out = ArithmeticOp::ALL.map(|op| Instruction::Arithmetic { op, destination, a, b }).to_vec();
+    out.extend(Test::ALL.map(|test| Instruction::Compare { test, a, b }));
+    out
 }
 
 fn one_operand(destination: Operand, source: Operand) -> Vec<Instruction> {

@@ -94,10 +94,9 @@ impl Controller {
         let q = self.quadratic;
         let x = i64::from(self.left);
         let y = i64::from(self.top);
-        let twice = |c: i64, p: i64| c.wrapping_mul(2 * p);
         Quadratic {
-            x: q.x.wrapping_add(twice(q.xx, x)).wrapping_add(q.xy.wrapping_mul(y)),
-            y: q.y.wrapping_add(twice(q.yy, y)).wrapping_add(q.xy.wrapping_mul(x)),
+            x: q.x.wrapping_add(q.xx.wrapping_mul(2 * x)).wrapping_add(q.xy.wrapping_mul(y)),
+            y: q.y.wrapping_add(q.yy.wrapping_mul(2 * y)).wrapping_add(q.xy.wrapping_mul(x)),
             one: q.at(i32::from(self.left), i32::from(self.top)),
             ..q
         }

@@ -257,12 +257,10 @@ mod tests {
     }
 
     fn work(commands: &[(u32, u64)]) -> Vec<Work> {
-        let of = |(words_each, ns): &(u32, u64)| Work {
-            words_each: *words_each,
-            count: 1,
-            span_each: Some(Span::from_ns(*ns)),
-        };
-        commands.iter().map(of).collect()
+        commands
+            .iter()
+            .map(|(words_each, ns)| Work { words_each: *words_each, count: 1, span_each: Some(Span::from_ns(*ns)) })
+            .collect()
     }
 
     proptest! {

@@ -4,7 +4,7 @@ use crate::{Command, Lanes, Layout, PixelArray};
 use pxpl5_wire::{CommandWords, CopyTarget, PixelSource, Word};
 use std::collections::HashMap;
 use std::fmt;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// Pixel arrays that are not in use; a thread that computes pixels borrows one.
 pub struct ArrayPool {
@@ -56,17 +56,20 @@ impl ArrayPool {
 
     /// The pixels of a region without primitives, which are those of the last one alike.
     fn empty_region(&self, region: EmptyRegion, draw: impl FnOnce() -> Arc<[Word]>) -> Arc<[Word]> {
-        let kept = || self.empty_regions.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(pixels) = kept().get(&region) {
+        if let Some(pixels) = self.kept_empty_regions().get(&region) {
             return Arc::clone(pixels);
         }
         let pixels = draw();
-        let mut regions = kept();
+        let mut regions = self.kept_empty_regions();
         if regions.len() >= EMPTY_REGIONS {
             regions.clear();
         }
         regions.insert(region, Arc::clone(&pixels));
         pixels
+    }
+
+    fn kept_empty_regions(&self) -> MutexGuard<'_, HashMap<EmptyRegion, Arc<[Word]>>> {
+        self.empty_regions.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

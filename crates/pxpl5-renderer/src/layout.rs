@@ -3,6 +3,7 @@
 use crate::isa::{MEMORY_BITS, Operand};
 use pxpl5_wire::format::{COLOUR_BITS, NORMAL_BITS, Z_BITS, Z_FRACTION_BITS};
 use std::fmt::{self, Write as _};
+use std::ops::RangeInclusive;
 
 /// A division of pixel memory that nobody has checked yet.
 ///
@@ -202,17 +203,22 @@ impl FieldRange {
 }
 
 fn check_widths(plan: &Plan) -> Result<(), LayoutError> {
-    let wrong = |field, expected, found| Err(LayoutError::Width { field, expected, found });
-    if plan.colour.width != 24 {
-        return wrong("colour", "24", plan.colour.width);
+    check_width("colour", "24", 24..=24, plan.colour)?;
+    check_width("z", "8 to 24", 8..=24, plan.z)?;
+    plan.normal.map_or(Ok(()), |normal| check_width("normal", "36", 36..=36, normal))
+}
+
+/// `expected` says in words what `allowed` does.
+fn check_width(
+    field: &'static str,
+    expected: &'static str,
+    allowed: RangeInclusive<u8>,
+    found: Operand,
+) -> Result<(), LayoutError> {
+    if allowed.contains(&found.width) {
+        return Ok(());
     }
-    if !(8..=24).contains(&plan.z.width) {
-        return wrong("z", "8 to 24", plan.z.width);
-    }
-    match plan.normal {
-        Some(normal) if normal.width != 36 => wrong("normal", "36", normal.width),
-        _ => Ok(()),
-    }
+    Err(LayoutError::Width { field, expected, found: found.width })
 }
 
 fn ranges(plan: &Plan) -> Vec<FieldRange> {
@@ -237,20 +243,22 @@ fn ranges(plan: &Plan) -> Vec<FieldRange> {
 
 /// For each range what is wrong with it, if anything.
 fn conflicts(plan: &Plan, ranges: &[FieldRange]) -> Vec<Option<String>> {
-    let conflict = |(i, range): (usize, &FieldRange)| {
-        if range.end() > MEMORY_BITS {
-            return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));
-        }
-        let before = ranges[..i].iter().find(|other| overlap(range, other));
-        before.map(|other| format!("overlaps {}", other.name))
-    };
-    let mut out: Vec<_> = ranges.iter().enumerate().map(conflict).collect();
+    let mut out: Vec<_> = (0..ranges.len()).map(|i| conflict(&ranges[i], &ranges[..i])).collect();
     let whole = u32::from(plan.contexts) * u32::from(plan.context_bits);
     if (plan.contexts == 0 || whole > MEMORY_BITS) && !out.is_empty() {
         let i = out.len() - 1;
         out[i].get_or_insert(format!("{} contexts take {whole} bits", plan.contexts));
     }
     out
+}
+
+/// What is wrong with a range behind those `before` it, if anything.
+fn conflict(range: &FieldRange, before: &[FieldRange]) -> Option<String> {
+    if range.end() > MEMORY_BITS {
+        return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));
+    }
+    let other = before.iter().find(|other| overlap(range, other))?;
+    Some(format!("overlaps {}", other.name))
 }
 
 const fn overlap(a: &FieldRange, b: &FieldRange) -> bool {

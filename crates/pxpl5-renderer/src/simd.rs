@@ -204,9 +204,8 @@ impl Vector for Eight {
 
     #[inline(always)]
     fn spread(bits: u64) -> Self {
-        let four = |from: u32| &FOUR_LANES[(bits >> from) as usize & 15];
-        let [a, b, c, d] = *four(0);
-        let [e, f, g, h] = *four(4);
+        let [a, b, c, d] = FOUR_LANES[bits as usize & 15];
+        let [e, f, g, h] = FOUR_LANES[(bits >> 4) as usize & 15];
         Self([a, b, c, d, e, f, g, h])
     }
 

@@ -236,12 +236,14 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
             .filter_map(|source| Some((self.queues[source].1, source, *self.queues[source].0.front()?)))
             .collect();
         heads.sort_unstable();
-        let free = |source: usize, message: usize| {
-            let destination = usize::from(self.traffic[message].destination.0);
-            let reserved = self.reserved_for[destination].is_some_and(|holder| usize::from(holder.0) != source);
-            !reserved && !self.receiving[destination] && self.has_channel_to(self.traffic[message].destination)
-        };
-        heads.into_iter().find(|(_, source, message)| free(*source, *message)).map(|(_, _, message)| (message, channel))
+        let mut messages = heads.into_iter().map(|(_, _, message)| message);
+        messages.find(|message| self.can_be_granted(*message)).map(|message| (message, channel))
+    }
+
+    fn can_be_granted(&self, message: usize) -> bool {
+        let Traffic { source, destination, .. } = self.traffic[message];
+        let reserved = self.reserved_for[usize::from(destination.0)].is_some_and(|holder| holder != source);
+        !reserved && !self.receiving[usize::from(destination.0)] && self.has_channel_to(destination)
     }
 
     fn has_channel_to(&self, destination: NodeId) -> bool {

@@ -181,8 +181,7 @@ impl Ring {
     /// The same as lines for a deadlock report; boards are named by their port.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
-        let name = |node: NodeId| format!("ring port {}", node.0);
-        self.waiting().iter().map(|message| message.blocked(name)).collect()
+        self.waiting().iter().map(|message| message.blocked(port_name)).collect()
     }
 
     fn check_node(&self, node: NodeId) -> Result<(), RingError> {
@@ -426,18 +425,27 @@ impl Ring {
     }
 }
 
+fn port_name(node: NodeId) -> String {
+    format!("ring port {}", node.0)
+}
+
 fn tell_sender(flight: &Flight, at: Time, context: &mut Out) {
     if let Some(ticket) = flight.ticket {
         context.output(at, RingOutput::Sent { source: flight.source, ticket });
     }
 }
 
+impl Queued {
+    /// What a port's queue is sorted by.
+    const fn order(&self) -> (Time, u32) {
+        (self.at, self.request.order)
+    }
+}
+
 impl Source {
     /// Queues a message; returns its place.
     fn insert(&mut self, queued: Queued) -> usize {
-        let key = |q: &Queued| (q.at, q.request.order);
-        let new = key(&queued);
-        let later = self.queue.iter().rev().take_while(|q| key(q) > new).count();
+        let later = self.queue.iter().rev().take_while(|other| other.order() > queued.order()).count();
         let place = self.queue.len() - later;
         self.queue.insert(place, queued);
         place

@@ -82,12 +82,15 @@ mod tests {
         assert_eq!(message * 15, Span::from_us(780));
     }
 
+    fn latency_in_a_ring_of_ten(source: u16, destination: u16) -> Span {
+        RingTiming::PAPERS.latency(NodeId(source), NodeId(destination), 10)
+    }
+
     #[test]
     fn latency_counts_hops_in_the_direction_of_travel() {
-        let latency = |a, b| RingTiming::PAPERS.latency(NodeId(a), NodeId(b), 10);
-        assert_eq!(latency(2, 5), Span::from_ns(150));
-        assert_eq!(latency(5, 2), Span::from_ns(350));
-        assert_eq!(latency(3, 3), Span::from_ns(500));
+        assert_eq!(latency_in_a_ring_of_ten(2, 5), Span::from_ns(150));
+        assert_eq!(latency_in_a_ring_of_ten(5, 2), Span::from_ns(350));
+        assert_eq!(latency_in_a_ring_of_ten(3, 3), Span::from_ns(500));
     }
 
     #[test]

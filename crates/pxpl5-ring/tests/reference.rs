@@ -30,14 +30,9 @@ fn transfers(n_nodes: u16, tick: Span) -> impl Strategy<Value = Vec<Traffic>> {
 
 fn parts(transfer: &(u64, u16, u16, u32, usize), tick: Span) -> Vec<Traffic> {
     let (at, source, destination, words, n) = *transfer;
-    let part = |i| Traffic {
-        at: Time::ZERO + tick * at,
-        source: NodeId(source),
-        destination: NodeId(destination),
-        words,
-        hold: i + 1 < n,
-    };
-    (0..n).map(part).collect()
+    let source = NodeId(source);
+    let destination = NodeId(destination);
+    (0..n).map(|i| Traffic { at: Time::ZERO + tick * at, source, destination, words, hold: i + 1 < n }).collect()
 }
 
 fn receiver(tick: Span) -> impl Strategy<Value = Receiver> {

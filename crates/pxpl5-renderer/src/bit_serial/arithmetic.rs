@@ -35,38 +35,45 @@ impl Tile {
         controller: &Controller,
         instruction: &Instruction,
     ) -> Result<(), FaultKind> {
-        let bits = |operand| controller.bits(operand);
         match *instruction {
             Instruction::ShiftRight { destination, source, by } => {
-                self.shift_right(bits(destination)?, bits(source)?, by.into());
+                self.shift_right(controller.bits(destination)?, controller.bits(source)?, by.into());
             }
             Instruction::ShiftLeft { destination, source, by } => {
-                self.shift_left(bits(destination)?, bits(source)?, by.into());
+                self.shift_left(controller.bits(destination)?, controller.bits(source)?, by.into());
             }
-            Instruction::Saturate { destination, source } => self.saturate(bits(destination)?, bits(source)?),
+            Instruction::Saturate { destination, source } => {
+                self.saturate(controller.bits(destination)?, controller.bits(source)?)
+            }
             Instruction::SquareRoot { destination, radicand } => {
-                self.square_root(bits(destination)?, bits(radicand)?);
+                self.square_root(controller.bits(destination)?, controller.bits(radicand)?);
             }
             Instruction::Arithmetic { op, destination, a, b } => {
-                self.arithmetic(op, bits(destination)?, bits(a)?, bits(b)?);
+                self.arithmetic(op, controller.bits(destination)?, controller.bits(a)?, controller.bits(b)?);
             }
             Instruction::Compare { test, a, b } => {
-                let a = bits(a)?;
-                let b = bits(b)?;
+                let a = controller.bits(a)?;
+                let b = controller.bits(b)?;
                 let source = self.source(b);
                 self.compare(test, a, a.width.max(b.width), |memory, i| source.bit(memory, i));
             }
             Instruction::CompareConstant { test, a, value } => {
-                let a = bits(a)?;
+                let a = controller.bits(a)?;
                 self.compare(test, a, a.width, |_, i| constant_bit(value, i, a.signed));
             }
             Instruction::LoadConstant { destination, value } => {
-                let field = bits(destination)?;
+                let field = controller.bits(destination)?;
                 self.each_bit(field, |_, i| constant_bit(value, i, field.signed));
             }
             Instruction::MultiplyConstant { destination, source, factor, factor_bits } => {
                 let factor = Factor::Constant(factor);
-                self.multiply(bits(destination)?, bits(source)?, &factor, factor_bits.into(), true);
+                self.multiply(
+                    controller.bits(destination)?,
+                    controller.bits(source)?,
+                    &factor,
+                    factor_bits.into(),
+                    true,
+                );
             }
             _ => {}
         }
@@ -127,13 +134,10 @@ impl Tile {
         let x = self.source(a);
         let y = self.source(b);
         let mut carry = EMPTY;
-        let mut logic = |f: fn(u64, u64) -> u64| {
-            self.each_bit(destination, |m, i| planes::combine(&x.bit(m, i), &y.bit(m, i), f));
-        };
         match op {
-            ArithmeticOp::And => logic(|a, b| a & b),
-            ArithmeticOp::Or => logic(|a, b| a | b),
-            ArithmeticOp::Xor => logic(|a, b| a ^ b),
+            ArithmeticOp::And => self.combine_bits(destination, &x, &y, |a, b| a & b),
+            ArithmeticOp::Or => self.combine_bits(destination, &x, &y, |a, b| a | b),
+            ArithmeticOp::Xor => self.combine_bits(destination, &x, &y, |a, b| a ^ b),
             ArithmeticOp::Add | ArithmeticOp::Subtract => self.each_bit(destination, |memory, i| {
                 let mut sum = x.bit(memory, i);
                 planes::step(op == ArithmeticOp::Subtract, &mut sum, &y.bit(memory, i), &mut carry);
@@ -154,6 +158,11 @@ impl Tile {
                 });
             }
         }
+    }
+
+    /// field := f(a, b), bit by bit.
+    fn combine_bits(&mut self, field: Bits, a: &Source, b: &Source, f: fn(u64, u64) -> u64) {
+        self.each_bit(field, |memory, i| planes::combine(&a.bit(memory, i), &b.bit(memory, i), f));
     }
 
     /// Where a < b, from the borrow of their difference over `clocks` bits.
@@ -263,16 +272,21 @@ impl Tile {
             let digits = n - 1 - i;
             let width = (digits + 3).min(radicand.width - 2 * i);
             let rest = Bits { first: radicand.first + 2 * i, width, signed: false };
-            let trial = |memory: &[TilePlane], k: usize| match k {
-                0 => FULL,
-                2.. if k - 2 < digits => memory[destination.first + i + k - 1],
-                _ => EMPTY,
-            };
-            let mut digit = self.less(rest, width, trial);
+            let root = Bits { first: destination.first + i + 1, width: digits, signed: false };
+            let mut digit = self.less(rest, width, |memory, k| trial_bit(root, memory, k));
             planes::invert(&mut digit);
             self.store(destination.first + i, &digit);
-            self.subtract_gated(rest, &digit, trial);
+            self.subtract_gated(rest, &digit, |memory, k| trial_bit(root, memory, k));
         }
+    }
+}
+
+/// Bit `k` of the digits of a root so far, then 01.
+fn trial_bit(root: Bits, memory: &[TilePlane], k: usize) -> TilePlane {
+    match k {
+        0 => FULL,
+        2.. if k - 2 < root.width => memory[root.first + k - 2],
+        _ => EMPTY,
     }
 }
 

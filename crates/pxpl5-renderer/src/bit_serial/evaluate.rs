@@ -6,7 +6,7 @@ use super::evaluator::{Evaluator, LinearStreams, Place, QuadraticStreams, WholeT
 use super::tile::{HEIGHT, Tile, TilePlane};
 use crate::array::FaultKind;
 use crate::controller::{Bits, Local};
-use crate::isa::{Expression, ExpressionUse};
+use crate::isa::{Expression, ExpressionUse, Operand};
 use crate::simd::{Kernel, Vector};
 use std::ops::Range;
 
@@ -85,12 +85,11 @@ impl<E: WholeTrees> Kernel for Deliver<'_, E> {
 
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let works = |tile: &Tile| !self.skipping || tile.enabled();
-        if !self.tiles.iter().any(works) {
+        if !self.tiles.iter().any(|tile| tile.has_work(self.skipping)) {
             return;
         }
         let evaluator = E::run_trees::<V>(self.coefficients, self.delivery.taken.end);
-        for (number, tile) in self.tiles.iter_mut().enumerate().filter(|(_, tile)| works(tile)) {
+        for (number, tile) in self.tiles.iter_mut().enumerate().filter(|(_, tile)| tile.has_work(self.skipping)) {
             // A lane is a row.
             for row in (0..HEIGHT).step_by(V::LANES) {
                 self.delivery.run_pixels::<V, E>(&evaluator, tile, Place::in_array(number, row));
@@ -122,33 +121,35 @@ impl BitSerial {
 
     /// How an expression of so many bits is used in the selected context.
     pub(super) fn delivery(&self, usage: &ExpressionUse, bits: u32) -> Result<Delivery, FaultKind> {
-        let taken = |field, shift| -> Result<_, FaultKind> {
-            let field = self.controller.bits(field)?;
-            let shift = usize::from(shift);
-            Ok((shift..shift + field.width, field.first))
-        };
         let (taken, effect) = match *usage {
             ExpressionUse::DisableNegative => (bits as usize - 1..bits as usize, Effect::DisableNegative),
             ExpressionUse::Load { field, shift } => {
-                let (taken, first) = taken(field, shift)?;
+                let (taken, first) = self.taken_by(field, shift)?;
                 (taken, Effect::Load { first })
             }
             ExpressionUse::Add { field, shift } => {
-                let (taken, first) = taken(field, shift)?;
+                let (taken, first) = self.taken_by(field, shift)?;
                 (taken, Effect::Add { first })
             }
             ExpressionUse::DisableNotLess { field, shift } => {
-                let (taken, first) = taken(field, shift)?;
+                let (taken, first) = self.taken_by(field, shift)?;
                 (taken, Effect::DisableNotLess { first })
             }
             ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift } => {
-                let (taken, first) = taken(field, shift)?;
+                let (taken, first) = self.taken_by(field, shift)?;
                 let subtrahend = self.controller.bits(subtrahend)?;
                 let left_shift = left_shift.into();
                 (0..taken.end, Effect::LoadMinus { first, shift: taken.start, subtrahend, left_shift })
             }
         };
         Ok(Delivery { taken, effect })
+    }
+
+    /// Clocks whose bits a field takes where the first `shift` are left out, and the field's first bit.
+    fn taken_by(&self, field: Operand, shift: u8) -> Result<(Range<usize>, usize), FaultKind> {
+        let field = self.controller.bits(field)?;
+        let shift = usize::from(shift);
+        Ok((shift..shift + field.width, field.first))
     }
 }
 

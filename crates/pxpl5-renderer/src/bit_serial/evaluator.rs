@@ -92,9 +92,14 @@ impl<V: Vector, const LEVELS: usize> Trees<V, LEVELS> {
 /// Low and high halves of two numbers in the lanes of their trees.
 #[inline(always)]
 fn in_lanes<V: Vector>([first, second]: [i64; 2]) -> [V; 2] {
-    let twice = |half: i64| (half as u32 as u64) << 32 | half as u32 as u64;
-    let lanes = |first: u64, second: u64| V::load_words(&[first, first, second, second, 0, 0, 0, 0]);
-    [lanes(twice(first), twice(second)), lanes(twice(first >> 32), twice(second >> 32))]
+    [low_halves_in_lanes([first, second]), low_halves_in_lanes([first >> 32, second >> 32])]
+}
+
+/// The low halves of two numbers, each in the four lanes of its tree.
+#[inline(always)]
+fn low_halves_in_lanes<V: Vector>(numbers: [i64; 2]) -> V {
+    let [first, second] = numbers.map(|number| (number as u32 as u64) << 32 | number as u32 as u64);
+    V::load_words(&[first, first, second, second, 0, 0, 0, 0])
 }
 
 /// Bit `t` of the number whose halves a lane holds.

@@ -38,8 +38,11 @@ pub struct Clear {
 
 impl Clear {
     pub(super) fn program(&self, layout: &Layout) -> [Instruction; 3] {
-        let constant = |destination, value| Instruction::LoadConstant { destination, value };
-        [enable(CommandKind::Clear), constant(layout.plan().colour, self.colour), constant(layout.plan().z, u32::MAX)]
+        [
+            enable(CommandKind::Clear),
+            Instruction::LoadConstant { destination: layout.plan().colour, value: self.colour },
+            Instruction::LoadConstant { destination: layout.plan().z, value: u32::MAX },
+        ]
     }
 
     pub(super) fn read(program: &[Instruction]) -> Option<Self> {

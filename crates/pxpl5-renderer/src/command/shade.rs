@@ -1,6 +1,6 @@
 //! Deferred shading at the end of the frame.
 
-use super::{CommandKind, Missing, enable};
+use super::{CommandKind, Missing, enable, normal};
 use crate::isa::{ArithmeticOp, Instruction, Operand, Test};
 use crate::layout::Layout;
 
@@ -61,8 +61,7 @@ pub(crate) struct Fields {
 
 impl Fields {
     pub(crate) fn of(layout: &Layout) -> Result<Self, Missing> {
-        let normal = |i| layout.normal(i).ok_or(Missing("a normal"));
-        let normal = [normal(0)?, normal(1)?, normal(2)?];
+        let normal = [normal(layout, 0)?, normal(layout, 1)?, normal(layout, 2)?];
         let scratch = layout.plan().scratch.filter(|all| all.width >= SHADE_BITS);
         let scratch = scratch.ok_or(Missing("104 bits of scratch"))?;
         Ok(Self {
@@ -188,6 +187,8 @@ fn read_factor(program: &[Instruction], index: usize) -> Option<i32> {
 }
 
 fn read_vector(program: &[Instruction], first: usize) -> Option<[i16; 3]> {
-    let component = |i| i16::try_from(read_factor(program, first + i)?).ok();
-    Some([component(0)?, component(1)?, component(3)?])
+    // The first sum comes between the products of y and z.
+    let indices = [first, first + 1, first + 3];
+    let [x, y, z] = indices.map(|index| read_factor(program, index).and_then(|factor| i16::try_from(factor).ok()));
+    Some([x?, y?, z?])
 }

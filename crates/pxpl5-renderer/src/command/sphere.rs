@@ -1,8 +1,8 @@
 //! Spheres, exact in silhouette, with their depth from a square root.
 
-use super::draw::{load, read_linear};
+use super::draw::{evaluate, load, read_linear};
 use super::shade::{SHADE_BITS, SHADE_ROOT};
-use super::{CommandKind, Missing, enable};
+use super::{CommandKind, Missing, enable, normal};
 use crate::isa::{Expression, ExpressionUse, Instruction, Operand, Test};
 use crate::layout::Layout;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
@@ -118,7 +118,6 @@ impl Scratch {
 
 /// Silhouette, root, depth: compare, disable where not nearer, store.
 fn coverage(body: &SphereBody, layout: &Layout, scratch: &Scratch, out: &mut Vec<Instruction>) {
-    let evaluate = |expression, usage| Instruction::Evaluate { expression, usage };
     let z = layout.plan().z;
     out.extend([
         evaluate(Expression::Quadratic(body.silhouette), ExpressionUse::DisableNegative),
@@ -197,10 +196,7 @@ fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &Sc
             factor: i32::from(factor << 6 >> 6),
             factor_bits: FACTOR_BITS,
         },
-        Instruction::Evaluate {
-            expression: Expression::Linear(linear),
-            usage: ExpressionUse::Add { field: sum, shift: COLOUR_FRACTION_BITS as u8 },
-        },
+        evaluate(Expression::Linear(linear), ExpressionUse::Add { field: sum, shift: COLOUR_FRACTION_BITS as u8 }),
         Instruction::Saturate { destination: component, source: sum },
     ]
 }
@@ -208,14 +204,13 @@ fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &Sc
 impl PhongSphere {
     pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
         let scratch = Scratch::of(layout)?;
-        let normal = |i| layout.normal(i).ok_or(Missing("a normal"));
         let mut out = vec![enable(CommandKind::PhongSphere)];
         coverage(&self.body, layout, &scratch, &mut out);
         for (i, component) in (0..).zip(self.normal) {
-            out.push(load(component, normal(i)?, NORMAL_FRACTION_BITS as u8));
+            out.push(load(component, normal(layout, i)?, NORMAL_FRACTION_BITS as u8));
         }
         out.extend([
-            Instruction::ShiftRight { destination: normal(2)?, source: scratch.upper_root(10), by: 0 },
+            Instruction::ShiftRight { destination: normal(layout, 2)?, source: scratch.upper_root(10), by: 0 },
             Instruction::LoadConstant { destination: layout.plan().colour, value: self.colour },
         ]);
         Ok(out)

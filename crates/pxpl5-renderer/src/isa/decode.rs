@@ -132,6 +132,11 @@ impl Head<'_> {
         checked(self.operand)
     }
 
+    /// The field that the first word names, which must have one bit.
+    fn bit(&self) -> Result<Operand, Kind> {
+        width(self.field()?, 1)
+    }
+
     /// The field in the upper half of the second word; the lower half must be zero.
     fn source(&self) -> Result<Operand, Kind> {
         let [word] = self.tail()?;
@@ -195,12 +200,11 @@ fn control(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
     } else {
         head.no_modifier()?;
     }
-    let bit = || head.field().and_then(|field| width(field, 1));
     Ok(match head.opcode {
         opcode::ENABLE_ALL => (Instruction::EnableAll { label: head.modifier }, 1),
-        opcode::ENABLE_LOAD => (Instruction::EnableLoad(bit()?), 1),
-        opcode::ENABLE_STORE => (Instruction::EnableStore(bit()?), 1),
-        opcode::ENABLE_AND => (Instruction::EnableAnd(bit()?), 1),
+        opcode::ENABLE_LOAD => (Instruction::EnableLoad(head.bit()?), 1),
+        opcode::ENABLE_STORE => (Instruction::EnableStore(head.bit()?), 1),
+        opcode::ENABLE_AND => (Instruction::EnableAnd(head.bit()?), 1),
         opcode::SELECT => {
             let [origin] = head.tail()?;
             let left = origin as u16;
@@ -220,12 +224,12 @@ fn evaluate(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
     let use_code = head.opcode & 15;
     let (usage, used) = expression_use(head, use_code)?;
     let rest = Head { tail: head.tail.get(used - 1..).unwrap_or(&[]), ..*head };
-    let lost = |_| Kind::Truncated { expected: used + if quadratic { 12 } else { 3 }, found: head.tail.len() + 1 };
+    let truncated = Kind::Truncated { expected: used + if quadratic { 12 } else { 3 }, found: head.tail.len() + 1 };
     let (expression, more) = match (quadratic, head.modifier & AGAIN != 0) {
         (false, true) => (Expression::LinearAgain, 0),
         (true, true) => (Expression::QuadraticAgain, 0),
-        (false, false) => (Expression::Linear(linear(rest.tail().map_err(lost)?)), 3),
-        (true, false) => (Expression::Quadratic(quadratic_of(rest.tail().map_err(lost)?)), 12),
+        (false, false) => (Expression::Linear(linear(rest.tail().map_err(|_| truncated)?)), 3),
+        (true, false) => (Expression::Quadratic(quadratic_of(rest.tail().map_err(|_| truncated)?)), 12),
     };
     check_use(&usage, expression.bits())?;
     Ok((Instruction::Evaluate { expression, usage }, used + more))
@@ -272,8 +276,19 @@ fn linear(words: [Word; 3]) -> Linear {
 }
 
 fn quadratic_of(words: [Word; 12]) -> Quadratic {
-    let long = |i: usize| (u64::from(words[2 * i + 1]) << 32 | u64::from(words[2 * i])) as i64;
-    Quadratic { xx: long(0), xy: long(1), yy: long(2), x: long(3), y: long(4), one: long(5) }
+    Quadratic {
+        xx: long_coefficient(&words, 0),
+        xy: long_coefficient(&words, 1),
+        yy: long_coefficient(&words, 2),
+        x: long_coefficient(&words, 3),
+        y: long_coefficient(&words, 4),
+        one: long_coefficient(&words, 5),
+    }
+}
+
+/// Coefficient `i` of 64 bits, whose low word comes first.
+fn long_coefficient(words: &[Word; 12], i: usize) -> i64 {
+    (u64::from(words[2 * i + 1]) << 32 | u64::from(words[2 * i])) as i64
 }
 
 fn one_source(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {

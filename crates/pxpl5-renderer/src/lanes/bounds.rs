@@ -187,8 +187,8 @@ impl Boxes {
         let right = self.x[1][i];
         let top = self.y[0][i];
         let bottom = self.y[1][i];
-        let end = |last: i32| (last + 1) as usize;
-        let area = Area { left: left as usize, right: end(right), top: top as usize, bottom: end(bottom) };
+        let area =
+            Area { left: left as usize, right: (right + 1) as usize, top: top as usize, bottom: (bottom + 1) as usize };
         (left <= right && top <= bottom).then_some(area)
     }
 }
@@ -249,8 +249,7 @@ mod tests {
     }
 
     fn random_edge(random: &mut Random) -> Linear {
-        let mut part = |bits: u32| (random.next() as i32) >> (32 - bits);
-        Linear { a: part(12), b: part(12), c: part(20) }
+        Linear { a: random.signed(12), b: random.signed(12), c: random.signed(20) }
     }
 
     #[test]

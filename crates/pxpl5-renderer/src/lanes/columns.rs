@@ -76,11 +76,7 @@ impl Columns {
     pub(super) fn plane(&self, bit: usize) -> Plane {
         let column = &self.columns[usize::from(self.column_of[bit])];
         let low = bit - column.first;
-        let word = |i: usize| {
-            let pixels = column.values.0[64 * i..64 * i + 64].iter().enumerate();
-            pixels.fold(0, |word, (x, value)| word | u64::from(value >> low & 1) << x)
-        };
-        std::array::from_fn(word)
+        std::array::from_fn(|i| plane_word(&column.values.0[64 * i..64 * i + 64], low))
     }
 
     pub(super) fn set_plane(&mut self, bit: usize, plane: &Plane) {
@@ -136,6 +132,11 @@ impl Columns {
     }
 }
 
+/// Bit `low` of 64 pixels, the first of them lowest.
+fn plane_word(pixels: &[u32], low: usize) -> u64 {
+    pixels.iter().enumerate().fold(0, |word, (x, value)| word | u64::from(value >> low & 1) << x)
+}
+
 const fn ones(width: usize) -> u64 {
     u64::MAX >> (64 - width)
 }
@@ -150,10 +151,10 @@ fn cuts(layout: &Layout) -> Vec<usize> {
     for range in layout.ranges() {
         cuts.extend([range.first as usize, (range.first + range.width) as usize]);
     }
-    let base = |context| usize::from(layout.context_base(context));
     for context in 0..layout.plan().contexts {
+        let base = usize::from(layout.context_base(context));
         for normal in (0..3).filter_map(|i| layout.normal(i)) {
-            cuts.push(base(context) + usize::from(normal.address));
+            cuts.push(base + usize::from(normal.address));
         }
     }
     cuts.extend(temporaries(layout).iter().flat_map(|field| {

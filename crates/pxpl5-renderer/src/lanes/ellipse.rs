@@ -80,13 +80,12 @@ mod tests {
     use crate::conformance::Random;
 
     fn random_ellipse(random: &mut Random) -> Quadratic {
-        let mut between = |low: i64, high: i64| low + random.below((high - low) as u64) as i64;
-        let x = between(-300, 300);
-        let y = between(-300, 300);
-        let r = between(1, 400);
-        let scale = 1 << between(1, 20);
-        let tilt = between(-scale, scale);
-        let flat = between(scale / 2 + 1, 2 * scale);
+        let x = random.between(-300, 300);
+        let y = random.between(-300, 300);
+        let r = random.between(1, 400);
+        let scale = 1 << random.between(1, 20);
+        let tilt = random.between(-scale, scale);
+        let flat = random.between(scale / 2 + 1, 2 * scale);
         Quadratic {
             xx: -scale,
             xy: tilt,

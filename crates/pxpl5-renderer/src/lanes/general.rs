@@ -200,8 +200,8 @@ impl Lanes {
 
     fn load_block(&mut self, field: Operand, block: u8) -> Done {
         let bits: Bits = self.controller.bits(field)?;
-        let zeros = || vec![0; PIXELS].into_boxed_slice();
-        let values = self.backing[usize::from(block)].get_or_insert_with(zeros);
+        let block = &mut self.backing[usize::from(block)];
+        let values = block.get_or_insert_with(|| vec![0; PIXELS].into_boxed_slice());
         self.columns.scatter(bits, values, &[255; PIXELS]);
         Ok(())
     }

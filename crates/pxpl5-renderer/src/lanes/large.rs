@@ -6,7 +6,7 @@ use super::sphere::{DrawSphere, GouraudSphere, PhongOfSphere};
 use super::whole::{ContextColumns, starts_anew};
 use crate::array::Executed;
 use crate::command::{Command, CommandKind, PhongSphere, Shade, ShadeFields, Sphere, SphereBody, SphereScratch};
-use pxpl5_wire::{Linear, Word};
+use pxpl5_wire::Word;
 
 /// Columns and shifts of a sphere in this layout.
 struct SpherePlace {
@@ -56,10 +56,8 @@ impl Lanes {
     fn sphere(&mut self, sphere: &Sphere, columns: ContextColumns, keep: bool) -> Option<()> {
         let place = self.sphere_place()?;
         let body = self.sphere_body(sphere.body, &place);
-        let [red, green, blue] = sphere.colour;
-        let local = |e: &Linear| self.controller.localise(e);
-        let components = [local(&red), local(&green), local(&blue)];
-        self.controller.hold(blue);
+        let components = [0, 1, 2].map(|i| self.controller.localise(&sphere.colour[i]));
+        self.controller.hold(sphere.colour[2]);
         let indices = [columns.z, columns.colour, place.root, place.temporary];
         let [z, colour, root, temporary] = self.columns.many_mut(indices)?;
         let factors = sphere.root_factor;

@@ -132,13 +132,20 @@ impl Lanes {
 
     fn find_columns(&self) -> Option<ContextColumns> {
         let plan = self.layout.plan();
-        let normal = |i| self.column(self.layout.normal(i)?);
         Some(ContextColumns {
             base: self.controller.base,
             colour: self.column(plan.colour)?,
             z: self.column(plan.z)?,
-            normal: normal(0).zip(normal(1)).zip(normal(2)).map(|((x, y), z)| [x, y, z]),
+            normal: self.normal_columns(),
         })
+    }
+
+    /// Columns of x, y and z of the selected context's normal; `None` where the layout has no normals.
+    fn normal_columns(&self) -> Option<[usize; 3]> {
+        let x = self.column(self.layout.normal(0)?)?;
+        let y = self.column(self.layout.normal(1)?)?;
+        let z = self.column(self.layout.normal(2)?)?;
+        Some([x, y, z])
     }
 
     /// The column that holds exactly this field.

@@ -23,6 +23,12 @@ pub(crate) enum Receiver {
     },
 }
 
+impl Receiver {
+    const fn is_elastic(&self) -> bool {
+        matches!(self, Self::Elastic)
+    }
+}
+
 pub(crate) const ELASTIC: [Receiver; 64] = [Receiver::Elastic; 64];
 
 /// When each message's last word had entered, and when its sender was told, by number in the traffic.
@@ -68,8 +74,8 @@ pub(crate) fn run_prepared(
     shuffle: Option<u64>,
     prepare: impl FnOnce(&mut Ring),
 ) -> (Ring, Times) {
-    let elastic = |node: NodeId| matches!(receivers[usize::from(node.0)], Receiver::Elastic);
-    let mut ring = Ring::new(timing, receivers.len() as u16, elastic).expect("valid");
+    let mut ring =
+        Ring::new(timing, receivers.len() as u16, |node| receivers[usize::from(node.0)].is_elastic()).expect("valid");
     prepare(&mut ring);
     let mut queue = EventQueue::new();
     if let Some(seed) = shuffle {
@@ -155,7 +161,7 @@ impl Stepped {
 
 impl Receivers for Stepped {
     fn is_elastic(&self, destination: NodeId) -> bool {
-        matches!(self.fifos[usize::from(destination.0)].0, Receiver::Elastic)
+        self.fifos[usize::from(destination.0)].0.is_elastic()
     }
 
     fn announced(&mut self, destination: NodeId, at: Time) -> Span {
