@@ -16,10 +16,10 @@ use std::path::Path;
 const LEFT: i32 = 256;
 const TOP: i32 = 128;
 
-type Vertex = [f64; 2];
+type ScreenPoint = [f64; 2];
 
 /// The edge from p to q, positive on its left, in sixteenths of a pixel, at pixel centres.
-fn edge(p: Vertex, q: Vertex) -> Linear {
+fn edge(p: ScreenPoint, q: ScreenPoint) -> Linear {
     let a = -(q[1] - p[1]) * 16.0;
     let b = (q[0] - p[0]) * 16.0;
     let c = -a * (p[0] - 0.5) - b * (p[1] - 0.5);
@@ -27,7 +27,7 @@ fn edge(p: Vertex, q: Vertex) -> Linear {
 }
 
 /// The plane with these values at the vertices.
-fn plane(v: [Vertex; 3], values: [f64; 3], scale: f64) -> Linear {
+fn plane(v: [ScreenPoint; 3], values: [f64; 3], scale: f64) -> Linear {
     let [x1, y1] = [v[1][0] - v[0][0], v[1][1] - v[0][1]];
     let [x2, y2] = [v[2][0] - v[0][0], v[2][1] - v[0][1]];
     let d1 = values[1] - values[0];
@@ -39,37 +39,37 @@ fn plane(v: [Vertex; 3], values: [f64; 3], scale: f64) -> Linear {
     Linear { a: (a * scale).round() as i32, b: (b * scale).round() as i32, c: (c * scale).round() as i32 }
 }
 
-fn place(v: [Vertex; 3]) -> [Vertex; 3] {
+fn place(v: [ScreenPoint; 3]) -> [ScreenPoint; 3] {
     v.map(|[x, y]| [x + f64::from(LEFT), y + f64::from(TOP)])
 }
 
-fn edges(v: [Vertex; 3]) -> [Linear; 3] {
+fn edges(v: [ScreenPoint; 3]) -> [Linear; 3] {
     [edge(v[0], v[1]), edge(v[1], v[2]), edge(v[2], v[0])]
 }
 
 /// Depths of 0 to 1 in 24 + 8 bits.
 const DEPTH: f64 = 2_147_483_647.0;
 
-fn triangle(v: [Vertex; 3], depth: [f64; 3], colours: [[f64; 3]; 3]) -> Command {
+fn triangle(v: [ScreenPoint; 3], depth: [f64; 3], colours: [[f64; 3]; 3]) -> Command {
     let v = place(v);
     let colour = [0, 1, 2].map(|i| plane(v, colours.map(|c| c[i]), 4096.0));
     Command::Triangle(Triangle { edges: edges(v), depth: plane(v, depth, DEPTH), colour })
 }
 
-fn phong_triangle(v: [Vertex; 3], depth: [f64; 3], normals: [[f64; 3]; 3], colour: u32) -> Command {
+fn phong_triangle(v: [ScreenPoint; 3], depth: [f64; 3], normals: [[f64; 3]; 3], colour: u32) -> Command {
     let v = place(v);
     let normal = [0, 1, 2].map(|i| plane(v, normals.map(|n| n[i] * 1000.0), 1024.0));
     Command::PhongTriangle(PhongTriangle { edges: edges(v), depth: plane(v, depth, DEPTH), normal, colour })
 }
 
 /// A sphere without perspective: silhouette and root in 2^-`fraction` of a square pixel, r < 64 pixels.
-struct Ball {
-    centre: Vertex,
+struct FlatSphere {
+    centre: ScreenPoint,
     radius: f64,
     depth: f64,
 }
 
-impl Ball {
+impl FlatSphere {
     fn body(&self) -> SphereBody {
         let [x, y] = [self.centre[0] + f64::from(LEFT) - 0.5, self.centre[1] + f64::from(TOP) - 0.5];
         // The root of the middle is 4000: 4000^2 = r^2 scale / 2^shift.
@@ -122,8 +122,8 @@ impl Ball {
     }
 }
 
-const fn ball(x: f64, y: f64, radius: f64, depth: f64) -> Ball {
-    Ball { centre: [x, y], radius, depth }
+const fn ball(x: f64, y: f64, radius: f64, depth: f64) -> FlatSphere {
+    FlatSphere { centre: [x, y], radius, depth }
 }
 
 fn gouraud_picture() -> Vec<Command> {

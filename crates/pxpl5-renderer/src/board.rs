@@ -1,7 +1,7 @@
 //! The board: input FIFO and controller on one side, the port to the frame buffers on the other.
 
 use crate::command::CommandKind;
-use crate::fifo::{InputFifo, Progress, Work};
+use crate::fifo::{EqualCommands, InputFifo, Progress};
 use crate::job::{ArrayPool, NoPixels, PixelJob};
 use crate::timing::RendererTiming;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
@@ -74,7 +74,7 @@ pub struct Renderer {
     fifo: InputFifo,
     pool: Arc<ArrayPool>,
     keeps_empty_regions: bool,
-    logs: [Log; MAX_CONTEXTS],
+    logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
     /// The transfer to a frame buffer that is going on.
     copying: Option<CopyOrder>,
@@ -88,7 +88,7 @@ pub struct Renderer {
 
 /// What was sent to a region context, as far as it can still be seen.
 #[derive(Clone, Debug, Default)]
-struct Log {
+struct ContextLog {
     cleared: bool,
     /// Whether a primitive was drawn.
     drawn: bool,
@@ -107,7 +107,7 @@ impl Renderer {
     #[must_use]
     pub fn new(node: NodeId, timing: RendererTiming, word: Span, cycle: Span, pool: Arc<ArrayPool>) -> Self {
         let fifo = InputFifo::new(timing.fifo_words as u32, word);
-        let logs = std::array::from_fn(|_| Log::default());
+        let logs = std::array::from_fn(|_| ContextLog::default());
         let stats = RendererStats::default();
         Self {
             node,
@@ -143,7 +143,7 @@ impl Renderer {
             // Words of no known command still occupy the FIFO and are thrown away.
             Body::Pixels(_) | Body::Words(_) => {
                 self.stats.illegal_commands += 1;
-                vec![Work { words_each: message.words, count: 1, span_each: Some(Span::ZERO) }]
+                vec![EqualCommands { words_each: message.words, count: 1, span_each: Some(Span::ZERO) }]
             }
         };
         let progress = self.fifo.message(begins, work);
@@ -159,10 +159,10 @@ impl Renderer {
         }
     }
 
-    fn take(&mut self, list: CommandList) -> Vec<Work> {
+    fn take(&mut self, list: CommandList) -> Vec<EqualCommands> {
         let log = &mut self.logs[usize::from(list.context) % MAX_CONTEXTS];
         if begins_with_clear(&list.runs) {
-            *log = Log { cleared: true, ..Log::default() };
+            *log = ContextLog { cleared: true, ..ContextLog::default() };
         }
         if changes_pixels(&list.runs) {
             log.lists.extend(list.content.clone());
@@ -175,7 +175,7 @@ impl Renderer {
         list.runs.iter().map(|run| self.work(run)).collect()
     }
 
-    fn work(&mut self, run: &CommandRun) -> Work {
+    fn work(&mut self, run: &CommandRun) -> EqualCommands {
         self.stats.commands += u64::from(run.count);
         let span_each = match CommandKind::from_opcode(run.opcode) {
             Some(kind) => self.timing.span(kind),
@@ -184,12 +184,12 @@ impl Renderer {
                 Some(Span::ZERO)
             }
         };
-        Work { words_each: run.words_each, count: run.count, span_each }
+        EqualCommands { words_each: run.words_each, count: run.count, span_each }
     }
 
     fn image(&self, order: &CopyOrder) -> Arc<dyn PixelSource> {
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
-        let Log { cleared, drawn, lists } = self.logs[usize::from(order.context) % MAX_CONTEXTS].clone();
+        let ContextLog { cleared, drawn, lists } = self.logs[usize::from(order.context) % MAX_CONTEXTS].clone();
         if lists.is_empty() {
             return Arc::new(NoPixels { pixels: width * height });
         }

@@ -35,9 +35,9 @@ mod sphere;
 pub use copy::{Clear, CopyRegion, LoadBacking, SelectRegion, StoreBacking};
 pub(crate) use draw::{COLOUR_AT, COMPONENTS_AT, DEPTH_AT, EDGES_AT, PHONG_WORDS, TRIANGLE_WORDS};
 pub use draw::{PhongTriangle, PhongTriangleEncoder, Triangle, TriangleEncoder};
-pub(crate) use shade::Fields as ShadeFields;
+pub(crate) use shade::ShadeFields;
 pub use shade::{SPECULAR_SQUARINGS, Shade};
-pub(crate) use sphere::Scratch as SphereScratch;
+pub(crate) use sphere::SphereScratch;
 pub use sphere::{PhongSphere, Sphere, SphereBody};
 
 use crate::isa::{DecodeError, DecodeErrorKind, Instruction, Operand};
@@ -225,7 +225,7 @@ impl Command {
         program.map_err(|missing| self.unsupported(missing, layout))
     }
 
-    fn unsupported(&self, Missing(missing): Missing, layout: &Layout) -> Unsupported {
+    fn unsupported(&self, MissingField(missing): MissingField, layout: &Layout) -> Unsupported {
         Unsupported { kind: self.kind(), layout: layout.plan().name, missing }
     }
 
@@ -302,7 +302,7 @@ fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
 }
 
 /// What a layout lacks.
-pub(crate) struct Missing(&'static str);
+pub(crate) struct MissingField(&'static str);
 
 fn encode_all(program: &[Instruction], out: &mut Vec<Word>) {
     program.iter().for_each(|instruction| instruction.encode(out));
@@ -332,8 +332,8 @@ fn decode_range(words: &[Word], from: usize) -> Result<Vec<Instruction>, DecodeE
 }
 
 /// Component 0 (x), 1 (y) or 2 (z) of the layout's normal.
-fn normal(layout: &Layout, component: u8) -> Result<Operand, Missing> {
-    layout.normal(component).ok_or(Missing("a normal"))
+fn normal(layout: &Layout, component: u8) -> Result<Operand, MissingField> {
+    layout.normal(component).ok_or(MissingField("a normal"))
 }
 
 const fn enable(kind: CommandKind) -> Instruction {

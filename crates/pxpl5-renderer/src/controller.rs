@@ -6,13 +6,13 @@ use pxpl5_wire::{Linear, Quadratic, Word};
 
 /// A field of pixel memory whose address is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Bits {
+pub(crate) struct FieldBits {
     pub(crate) first: usize,
     pub(crate) width: usize,
     pub(crate) signed: bool,
 }
 
-impl Bits {
+impl FieldBits {
     pub(crate) const fn end(&self) -> usize {
         self.first + self.width
     }
@@ -34,7 +34,7 @@ pub(crate) struct Controller {
 
 /// An expression over the array's own columns and rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Local {
+pub(crate) enum LocalExpression {
     Linear(Linear),
     Quadratic(Quadratic),
 }
@@ -55,16 +55,16 @@ impl Controller {
     }
 
     /// Takes the coefficients over, or repeats those held, and applies the region's origin.
-    pub(crate) fn latch(&mut self, expression: &Expression) -> Local {
+    pub(crate) fn latch(&mut self, expression: &Expression) -> LocalExpression {
         match expression {
             Expression::Linear(linear) => self.linear = *linear,
             Expression::Quadratic(quadratic) => self.quadratic = *quadratic,
             Expression::LinearAgain | Expression::QuadraticAgain => {}
         }
         if expression.is_quadratic() {
-            Local::Quadratic(self.localise_quadratic())
+            LocalExpression::Quadratic(self.localise_quadratic())
         } else {
-            Local::Linear(self.localise(&self.linear))
+            LocalExpression::Linear(self.localise(&self.linear))
         }
     }
 
@@ -103,9 +103,9 @@ impl Controller {
     }
 
     /// The bits that an operand names in the selected context.
-    pub(crate) fn bits(&self, operand: Operand) -> Result<Bits, FaultKind> {
+    pub(crate) fn bits(&self, operand: Operand) -> Result<FieldBits, FaultKind> {
         let base = if operand.relative { self.base } else { 0 };
-        let bits = Bits {
+        let bits = FieldBits {
             first: usize::from(base) + usize::from(operand.address),
             width: usize::from(operand.width),
             signed: operand.signed,
@@ -177,11 +177,11 @@ impl Controller {
     }
 }
 
-const fn overlap(destination: &Bits, operand: &Bits) -> FaultKind {
+const fn overlap(destination: &FieldBits, operand: &FieldBits) -> FaultKind {
     FaultKind::Overlap { destination: destination.first as u8, operand: operand.first as u8 }
 }
 
-impl Local {
+impl LocalExpression {
     /// The value at a column and row, sign-extended from the bits in which it is evaluated.
     pub(crate) fn at(&self, x: i32, y: i32) -> i64 {
         match self {

@@ -9,13 +9,13 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 /// Pixel arrays that are not in use; a thread that computes pixels borrows one.
 pub struct ArrayPool {
     layout: Layout,
-    idle: Mutex<Vec<Desk>>,
+    idle: Mutex<Vec<ArrayAndWords>>,
     /// Regions without primitives, by their size and words.
     empty_regions: Mutex<HashMap<EmptyRegion, Arc<[Word]>>>,
 }
 
 /// What a thread needs to compute pixels.
-struct Desk {
+struct ArrayAndWords {
     array: Lanes,
     /// Room for the words of a list.
     words: Vec<Word>,
@@ -46,11 +46,11 @@ impl ArrayPool {
         Arc::new(Self { layout, idle: Mutex::default(), empty_regions: Mutex::default() })
     }
 
-    fn with_desk<T>(&self, work: impl FnOnce(&mut Desk) -> T) -> T {
+    fn with_idle_array<T>(&self, work: impl FnOnce(&mut ArrayAndWords) -> T) -> T {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut desk = idle.unwrap_or_else(|| Desk { array: Lanes::new(&self.layout), words: Vec::new() });
-        let result = work(&mut desk);
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(desk);
+        let mut borrowed = idle.unwrap_or_else(|| ArrayAndWords { array: Lanes::new(&self.layout), words: Vec::new() });
+        let result = work(&mut borrowed);
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(borrowed);
         result
     }
 
@@ -120,7 +120,7 @@ impl PixelJob {
     }
 
     fn draw(&self) -> Arc<[Word]> {
-        self.pool.with_desk(|Desk { array, words }| {
+        self.pool.with_idle_array(|ArrayAndWords { array, words }| {
             if !self.cleared {
                 array.reset();
             }
@@ -163,9 +163,9 @@ mod tests {
     use pxpl5_wire::{Lines, NodeId, RegionGrid, RegionId};
 
     #[derive(Debug)]
-    struct Given(Vec<Word>);
+    struct GivenWords(Vec<Word>);
 
-    impl CommandWords for Given {
+    impl CommandWords for GivenWords {
         fn append_words(&self, out: &mut Vec<Word>) {
             out.extend_from_slice(&self.0);
         }
@@ -185,7 +185,7 @@ mod tests {
         let commands = [select, Command::Clear(Clear { colour }), Command::CopyRegion(CopyRegion { target })];
         let mut words = Vec::new();
         commands.iter().for_each(|command| command.encode(&pool.layout, &mut words).expect("it fits"));
-        let lists: Vec<Arc<dyn CommandWords>> = vec![Arc::new(Given(words))];
+        let lists: Vec<Arc<dyn CommandWords>> = vec![Arc::new(GivenWords(words))];
         PixelJob { pool: Arc::clone(pool), lists, cleared: true, kept: true, target, done: OnceLock::new() }.pixels()
     }
 

@@ -14,11 +14,11 @@ mod values;
 mod whole;
 
 use crate::array::{Executed, Fault, PIXELS, PixelArray, Plane};
-use crate::controller::{Bits, Controller};
+use crate::controller::{Controller, FieldBits};
 use crate::isa::{BACKING_BLOCKS, opcode};
 use crate::layout::Layout;
-use crate::simd::{Present, Vectors};
-use columns::Columns;
+use crate::simd::{PresentVectors, Vectors};
+use columns::PixelColumns;
 use enable::Enable;
 use pxpl5_wire::{REGION_SIZE, Word};
 use std::sync::Arc;
@@ -31,10 +31,10 @@ use whole::{ContextColumns, Templates};
 #[derive(Clone, Debug)]
 pub struct Lanes {
     layout: Layout,
-    vectors: Present,
+    vectors: PresentVectors,
     templates: Templates,
     controller: Controller,
-    columns: Columns,
+    columns: PixelColumns,
     /// Of the context that was used last.
     selected: Option<ContextColumns>,
     enable: Enable,
@@ -55,10 +55,10 @@ impl Lanes {
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
             layout: *layout,
-            vectors: Present::or_portable(vectors),
+            vectors: PresentVectors::or_portable(vectors),
             templates: Templates::new(layout),
             controller: Controller::default(),
-            columns: Columns::new(layout),
+            columns: PixelColumns::new(layout),
             selected: None,
             enable: Enable::new(),
             backing: vec![None; usize::from(BACKING_BLOCKS)],
@@ -89,7 +89,7 @@ impl Lanes {
         Ok(used)
     }
 
-    fn colour(&self, field: Bits, width: u32, height: u32) -> Arc<[Word]> {
+    fn colour(&self, field: FieldBits, width: u32, height: u32) -> Arc<[Word]> {
         if let Some(column) = self.columns.find(field.first, field.width) {
             return rectangle(&self.columns.values(column).0, width, height);
         }

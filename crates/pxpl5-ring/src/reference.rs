@@ -21,7 +21,7 @@ use std::collections::VecDeque;
 
 /// A message to be sent. Those of one instant and source keep the order in which they are listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Traffic {
+pub struct PlannedMessage {
     /// When the board hands it to its port.
     pub at: Time,
     /// The sender.
@@ -36,7 +36,7 @@ pub struct Traffic {
 
 /// What became of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Passage {
+pub struct CarriedMessage {
     /// The channel, from 0.
     pub channel: usize,
     /// When channel and ports were granted.
@@ -82,7 +82,7 @@ impl Receivers for Elastic {
 pub struct SteppedRing<'a, R> {
     timing: RingTiming,
     n_nodes: u16,
-    traffic: &'a [Traffic],
+    traffic: &'a [PlannedMessage],
     receivers: R,
     /// Per source: numbers of messages, the first since when.
     queues: Vec<(VecDeque<usize>, Time)>,
@@ -90,13 +90,13 @@ pub struct SteppedRing<'a, R> {
     sending: Vec<u64>,
     receiving: Vec<bool>,
     reserved_for: Vec<Option<NodeId>>,
-    channels: Vec<Option<Slots>>,
-    passages: Vec<Option<Passage>>,
+    channels: Vec<Option<ChannelSlots>>,
+    carried: Vec<Option<CarriedMessage>>,
 }
 
 /// A message on a channel.
 #[derive(Clone, Copy, Debug)]
-struct Slots {
+struct ChannelSlots {
     message: usize,
     overhead_left: u64,
     words_left: u32,
@@ -111,7 +111,12 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     /// # Errors
     ///
     /// [`RingError::Timing`], [`RingError::NoNodes`] and [`RingError::NoSuchNode`].
-    pub fn new(timing: RingTiming, n_nodes: u16, traffic: &'a [Traffic], receivers: R) -> Result<Self, RingError> {
+    pub fn new(
+        timing: RingTiming,
+        n_nodes: u16,
+        traffic: &'a [PlannedMessage],
+        receivers: R,
+    ) -> Result<Self, RingError> {
         timing.check()?;
         if n_nodes == 0 {
             return Err(RingError::NoNodes);
@@ -131,7 +136,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
             receiving: vec![false; n],
             reserved_for: vec![None; n],
             channels: vec![None; timing.channels as usize],
-            passages: vec![None; traffic.len()],
+            carried: vec![None; traffic.len()],
         })
     }
 
@@ -141,10 +146,10 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     ///
     /// [`RingError::OffTick`] when a time of the timing table or of the traffic is no multiple of `tick`,
     /// [`RingError::Unfinished`] when something has not been delivered at `until`.
-    pub fn run(mut self, tick: Span, until: Time) -> Result<Vec<Passage>, RingError> {
+    pub fn run(mut self, tick: Span, until: Time) -> Result<Vec<CarriedMessage>, RingError> {
         self.check_tick(tick)?;
         let mut now = Time::ZERO;
-        while self.passages.iter().any(Option::is_none) || self.channels.iter().any(Option::is_some) {
+        while self.carried.iter().any(Option::is_none) || self.channels.iter().any(Option::is_some) {
             if now > until {
                 return Err(self.unfinished(until));
             }
@@ -153,7 +158,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
             self.grant(now);
             now += tick;
         }
-        Ok(self.passages.into_iter().flatten().collect())
+        Ok(self.carried.into_iter().flatten().collect())
     }
 
     fn check_tick(&self, tick: Span) -> Result<(), RingError> {
@@ -166,8 +171,8 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     fn unfinished(&self, until: Time) -> RingError {
-        let delivered = self.passages.iter().flatten().count();
-        RingError::Unfinished { delivered, of: self.passages.len(), until }
+        let delivered = self.carried.iter().flatten().count();
+        RingError::Unfinished { delivered, of: self.carried.len(), until }
     }
 
     fn join(&mut self, now: Time) {
@@ -195,7 +200,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         }
     }
 
-    fn move_word(&mut self, slots: &mut Slots, now: Time) {
+    fn move_word(&mut self, slots: &mut ChannelSlots, now: Time) {
         let destination = self.traffic[slots.message].destination;
         let seen_at = now + slots.latency;
         if slots.overhead_left > 0 {
@@ -204,22 +209,22 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         } else if slots.words_left > 0 && self.receivers.takes_word(destination, seen_at) {
             slots.words_left -= 1;
             slots.slot_began = now;
-            if let Some(passage) = &mut self.passages[slots.message] {
-                passage.last_word_at = seen_at;
+            if let Some(message_carried) = &mut self.carried[slots.message] {
+                message_carried.last_word_at = seen_at;
             }
         }
     }
 
     fn release(&mut self, message: usize, now: Time) {
-        let Traffic { source, destination, hold, .. } = self.traffic[message];
+        let PlannedMessage { source, destination, hold, .. } = self.traffic[message];
         if self.sending[usize::from(source.0)] == self.timing.source_channels {
             self.queues[usize::from(source.0)].1 = now;
         }
         self.sending[usize::from(source.0)] -= 1;
         self.receiving[usize::from(destination.0)] = false;
         self.reserved_for[usize::from(destination.0)] = hold.then_some(source);
-        if let Some(passage) = &mut self.passages[message] {
-            passage.released = now;
+        if let Some(message_carried) = &mut self.carried[message] {
+            message_carried.released = now;
         }
     }
 
@@ -241,7 +246,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     fn can_be_granted(&self, message: usize) -> bool {
-        let Traffic { source, destination, .. } = self.traffic[message];
+        let PlannedMessage { source, destination, .. } = self.traffic[message];
         let reserved = self.reserved_for[usize::from(destination.0)].is_some_and(|holder| holder != source);
         !reserved && !self.receiving[usize::from(destination.0)] && self.has_channel_to(destination)
     }
@@ -253,14 +258,14 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     fn start(&mut self, message: usize, channel: usize, now: Time) {
-        let Traffic { source, destination, words, .. } = self.traffic[message];
+        let PlannedMessage { source, destination, words, .. } = self.traffic[message];
         self.queues[usize::from(source.0)].0.pop_front();
         self.sending[usize::from(source.0)] += 1;
         self.queues[usize::from(source.0)].1 = now;
         self.receiving[usize::from(destination.0)] = true;
         let latency = self.timing.latency(source, destination, self.n_nodes);
         let announced_at = now + self.timing.word() + latency;
-        self.channels[channel] = Some(Slots {
+        self.channels[channel] = Some(ChannelSlots {
             message,
             overhead_left: self.timing.overhead_words,
             words_left: words,
@@ -268,6 +273,6 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
             latency,
             answered_at: announced_at + self.receivers.announced(destination, announced_at),
         });
-        self.passages[message] = Some(Passage { channel, granted: now, last_word_at: now, released: now });
+        self.carried[message] = Some(CarriedMessage { channel, granted: now, last_word_at: now, released: now });
     }
 }

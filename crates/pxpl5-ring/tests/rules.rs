@@ -2,7 +2,7 @@
 
 mod support;
 
-use pxpl5_ring::reference::Traffic;
+use pxpl5_ring::reference::PlannedMessage;
 use pxpl5_ring::{Ring, RingError, RingEvent, RingOutput, RingTiming, WaitReason};
 use pxpl5_sim::{Phase, Span, TestBench, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId};
@@ -19,17 +19,17 @@ fn us(us: u64) -> Time {
     Time::ZERO + Span::from_us(us)
 }
 
-fn traffic(at: Time, source: u16, destination: u16, words: u32) -> Traffic {
-    Traffic { at, source: NodeId(source), destination: NodeId(destination), words, hold: false }
+fn traffic(at: Time, source: u16, destination: u16, words: u32) -> PlannedMessage {
+    PlannedMessage { at, source: NodeId(source), destination: NodeId(destination), words, hold: false }
 }
 
 /// A region of 15,360 pixels: fifteen messages, held together.
-fn region(at: Time, source: u16, destination: u16) -> impl Iterator<Item = Traffic> {
+fn region(at: Time, source: u16, destination: u16) -> impl Iterator<Item = PlannedMessage> {
     let part = traffic(at, source, destination, MAX_MESSAGE_WORDS);
-    (0..15).map(move |i| Traffic { hold: i < 14, ..part })
+    (0..15).map(move |i| PlannedMessage { hold: i < 14, ..part })
 }
 
-fn accepted(traffic: &[Traffic]) -> Vec<Time> {
+fn accepted(traffic: &[PlannedMessage]) -> Vec<Time> {
     let (_, times) = run_fast(TIMING, &ELASTIC[..20], traffic, Some(7));
     times.accepted.into_values().collect()
 }
@@ -170,7 +170,7 @@ fn messages_of_one_instant_and_source_go_in_their_order() {
 
 #[test]
 fn a_held_destination_waits_for_its_source_and_a_released_one_goes_to_the_first_come() {
-    let hold = Traffic { hold: true, ..traffic(us(0), 0, 2, 1_024) };
+    let hold = PlannedMessage { hold: true, ..traffic(us(0), 0, 2, 1_024) };
     let end_of_transfer = traffic(us(100), 0, 2, 1_024);
     let other = traffic(us(1), 1, 2, 1_024);
     let times = accepted(&[hold, end_of_transfer, other]);

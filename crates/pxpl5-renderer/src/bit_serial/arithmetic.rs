@@ -3,17 +3,17 @@
 use super::planes;
 use super::tile::{EMPTY, FULL, Tile, TilePlane};
 use crate::array::FaultKind;
-use crate::controller::{Bits, Controller};
+use crate::controller::{Controller, FieldBits};
 use crate::isa::{ArithmeticOp, Instruction, Test};
 
 /// An operand that is read least significant bit first and then extended. The sign is latched at the start, since the
 /// result may overwrite it.
-pub(super) struct Source {
-    bits: Bits,
+pub(super) struct SerialOperand {
+    bits: FieldBits,
     extension: TilePlane,
 }
 
-impl Source {
+impl SerialOperand {
     fn bit(&self, memory: &[TilePlane], i: usize) -> TilePlane {
         *self.plane(memory, i)
     }
@@ -25,7 +25,7 @@ impl Source {
 
 /// The second factor of a product.
 enum Factor<'a> {
-    Field(&'a Source),
+    Field(&'a SerialOperand),
     Constant(i32),
 }
 
@@ -80,9 +80,9 @@ impl Tile {
         Ok(())
     }
 
-    pub(super) fn source(&self, bits: Bits) -> Source {
+    pub(super) fn source(&self, bits: FieldBits) -> SerialOperand {
         let extension = if bits.signed { self.memory[bits.end() - 1] } else { EMPTY };
-        Source { bits, extension }
+        SerialOperand { bits, extension }
     }
 
     /// Stores one bit where enabled.
@@ -91,7 +91,7 @@ impl Tile {
     }
 
     /// field := the bits that `f` gives, least significant first, one a clock.
-    fn each_bit(&mut self, field: Bits, mut f: impl FnMut(&[TilePlane], usize) -> TilePlane) {
+    fn each_bit(&mut self, field: FieldBits, mut f: impl FnMut(&[TilePlane], usize) -> TilePlane) {
         for i in 0..field.width {
             let new = f(&self.memory, i);
             self.store(field.first + i, &new);
@@ -99,13 +99,13 @@ impl Tile {
         }
     }
 
-    fn shift_right(&mut self, destination: Bits, source: Bits, by: usize) {
+    fn shift_right(&mut self, destination: FieldBits, source: FieldBits, by: usize) {
         let source = self.source(source);
         self.each_bit(destination, |memory, i| source.bit(memory, i + by));
     }
 
     /// Most significant bit first, so that a field can be shifted in its place.
-    fn shift_left(&mut self, destination: Bits, source: Bits, by: usize) {
+    fn shift_left(&mut self, destination: FieldBits, source: FieldBits, by: usize) {
         let source = self.source(source);
         for i in (0..destination.width).rev() {
             let bit = i.checked_sub(by).map(|i| source.bit(&self.memory, i));
@@ -114,7 +114,7 @@ impl Tile {
         }
     }
 
-    fn saturate(&mut self, destination: Bits, source: Bits) {
+    fn saturate(&mut self, destination: FieldBits, source: FieldBits) {
         let w = destination.width;
         let wa = source.width;
         let digits = if source.signed { wa - 1 } else { wa };
@@ -130,7 +130,7 @@ impl Tile {
         });
     }
 
-    fn arithmetic(&mut self, op: ArithmeticOp, destination: Bits, a: Bits, b: Bits) {
+    fn arithmetic(&mut self, op: ArithmeticOp, destination: FieldBits, a: FieldBits, b: FieldBits) {
         let x = self.source(a);
         let y = self.source(b);
         let mut carry = EMPTY;
@@ -161,12 +161,12 @@ impl Tile {
     }
 
     /// field := f(a, b), bit by bit.
-    fn combine_bits(&mut self, field: Bits, a: &Source, b: &Source, f: fn(u64, u64) -> u64) {
+    fn combine_bits(&mut self, field: FieldBits, a: &SerialOperand, b: &SerialOperand, f: fn(u64, u64) -> u64) {
         self.each_bit(field, |memory, i| planes::combine(&a.bit(memory, i), &b.bit(memory, i), f));
     }
 
     /// Where a < b, from the borrow of their difference over `clocks` bits.
-    fn less(&mut self, a: Bits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) -> TilePlane {
+    fn less(&mut self, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) -> TilePlane {
         let x = self.source(a);
         let mut borrow = EMPTY;
         for i in 0..clocks {
@@ -182,7 +182,7 @@ impl Tile {
         borrow
     }
 
-    fn compare(&mut self, test: Test, a: Bits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
+    fn compare(&mut self, test: Test, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
         let holds = match test {
             Test::Less | Test::NotLess => self.less(a, clocks, b),
             Test::Equal | Test::NotEqual => {
@@ -204,7 +204,7 @@ impl Tile {
 
     /// destination := a * b: for each bit of b, a is added to the bits from there on, with one clock for the carry; a
     /// negative last bit subtracts. Bits above the product repeat its sign.
-    fn multiply(&mut self, destination: Bits, a: Bits, b: &Factor<'_>, b_width: usize, b_signed: bool) {
+    fn multiply(&mut self, destination: FieldBits, a: FieldBits, b: &Factor<'_>, b_width: usize, b_signed: bool) {
         let x = self.source(a);
         for j in 0..b_width.min(destination.width) {
             let gate = match b {
@@ -224,7 +224,7 @@ impl Tile {
     }
 
     /// Adds `x << j` where `gate` is set, or subtracts it.
-    fn add_product(&mut self, destination: Bits, x: &Source, j: usize, gate: &TilePlane, negative: bool) {
+    fn add_product(&mut self, destination: FieldBits, x: &SerialOperand, j: usize, gate: &TilePlane, negative: bool) {
         let top = j + x.bits.width;
         // The sign of what the product has so far, if a clock at `top` is left to add to it.
         let extends = x.bits.signed && j > 0 && top < destination.width;
@@ -244,10 +244,10 @@ impl Tile {
     }
 
     /// For each digit from the top: compare the rest with the divisor, then subtract it where it is not larger.
-    fn divide(&mut self, destination: Bits, a: Bits, b: Bits) {
+    fn divide(&mut self, destination: FieldBits, a: FieldBits, b: FieldBits) {
         let divisor = self.source(b);
         for j in (0..destination.width).rev() {
-            let rest = Bits { first: a.first + j, width: a.width - j, signed: false };
+            let rest = FieldBits { first: a.first + j, width: a.width - j, signed: false };
             let mut digit = self.less(rest, rest.width.max(b.width), |memory, i| divisor.bit(memory, i));
             planes::invert(&mut digit);
             self.store(destination.first + j, &digit);
@@ -255,7 +255,7 @@ impl Tile {
         }
     }
 
-    fn subtract_gated(&mut self, rest: Bits, gate: &TilePlane, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
+    fn subtract_gated(&mut self, rest: FieldBits, gate: &TilePlane, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
         let mut borrow = EMPTY;
         self.each_bit(rest, |memory, i| {
             let mut difference = memory[rest.first + i];
@@ -266,13 +266,13 @@ impl Tile {
     }
 
     /// For each digit from the top: the trial is the root so far, then 01, over the bits that the rest can occupy.
-    fn square_root(&mut self, destination: Bits, radicand: Bits) {
+    fn square_root(&mut self, destination: FieldBits, radicand: FieldBits) {
         let n = destination.width;
         for i in (0..n).rev() {
             let digits = n - 1 - i;
             let width = (digits + 3).min(radicand.width - 2 * i);
-            let rest = Bits { first: radicand.first + 2 * i, width, signed: false };
-            let root = Bits { first: destination.first + i + 1, width: digits, signed: false };
+            let rest = FieldBits { first: radicand.first + 2 * i, width, signed: false };
+            let root = FieldBits { first: destination.first + i + 1, width: digits, signed: false };
             let mut digit = self.less(rest, width, |memory, k| trial_bit(root, memory, k));
             planes::invert(&mut digit);
             self.store(destination.first + i, &digit);
@@ -282,7 +282,7 @@ impl Tile {
 }
 
 /// Bit `k` of the digits of a root so far, then 01.
-fn trial_bit(root: Bits, memory: &[TilePlane], k: usize) -> TilePlane {
+fn trial_bit(root: FieldBits, memory: &[TilePlane], k: usize) -> TilePlane {
     match k {
         0 => FULL,
         2.. if k - 2 < root.width => memory[root.first + k - 2],

@@ -1,6 +1,6 @@
 //! Triangles.
 
-use super::{Command, CommandKind, Missing, Unsupported, enable, normal};
+use super::{Command, CommandKind, MissingField, Unsupported, enable, normal};
 use crate::isa::{Expression, ExpressionUse, Instruction, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
@@ -48,7 +48,7 @@ impl Triangle {
 }
 
 impl PhongTriangle {
-    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, MissingField> {
         let mut out = vec![enable(CommandKind::PhongTriangle)];
         coverage(&self.edges, self.depth, layout, &mut out);
         for (i, component) in (0..).zip(self.normal) {

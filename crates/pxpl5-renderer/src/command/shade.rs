@@ -1,6 +1,6 @@
 //! Deferred shading at the end of the frame.
 
-use super::{CommandKind, Missing, enable, normal};
+use super::{CommandKind, MissingField, enable, normal};
 use crate::isa::{ArithmeticOp, Instruction, Operand, Test};
 use crate::layout::Layout;
 
@@ -47,7 +47,7 @@ pub(super) const SHADE_BITS: u8 = 104;
 pub(super) const SHADE_ROOT: u8 = 72;
 
 /// Fields of the program.
-pub(crate) struct Fields {
+pub(crate) struct ShadeFields {
     normal: [Operand; 3],
     colour: [Operand; 3],
     z: Operand,
@@ -59,11 +59,11 @@ pub(crate) struct Fields {
     pub(crate) specular: Operand,
 }
 
-impl Fields {
-    pub(crate) fn of(layout: &Layout) -> Result<Self, Missing> {
+impl ShadeFields {
+    pub(crate) fn in_layout(layout: &Layout) -> Result<Self, MissingField> {
         let normal = [normal(layout, 0)?, normal(layout, 1)?, normal(layout, 2)?];
         let scratch = layout.plan().scratch.filter(|all| all.width >= SHADE_BITS);
-        let scratch = scratch.ok_or(Missing("104 bits of scratch"))?;
+        let scratch = scratch.ok_or(MissingField("104 bits of scratch"))?;
         Ok(Self {
             normal,
             colour: [0, 1, 2].map(|i| layout.component(i)),
@@ -79,8 +79,8 @@ impl Fields {
 }
 
 impl Shade {
-    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
-        let f = Fields::of(layout)?;
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, MissingField> {
+        let f = ShadeFields::in_layout(layout)?;
         let mut out = vec![
             enable(CommandKind::Shade),
             Instruction::CompareConstant { test: Test::NotEqual, a: f.z, value: u32::MAX },
@@ -97,7 +97,7 @@ impl Shade {
     }
 
     /// b's low 8 bits := light on the object's colour; c's bits 10 .. 18 := highlight.
-    fn intensities(&self, f: &Fields, highlight: Operand, out: &mut Vec<Instruction>) {
+    fn intensities(&self, f: &ShadeFields, highlight: Operand, out: &mut Vec<Instruction>) {
         let sum = f.b.part(0, 19);
         let ambient = u32::from(self.ambient) << COSINE_BITS;
         out.extend([
@@ -134,7 +134,7 @@ const fn multiply_constant(destination: Operand, source: Operand, factor: i32, f
 }
 
 /// root := |N|.
-fn length(f: &Fields, out: &mut Vec<Instruction>) {
+fn length(f: &ShadeFields, out: &mut Vec<Instruction>) {
     let [x, y, z] = f.normal;
     out.push(arithmetic(ArithmeticOp::Multiply, f.a, x, x));
     for component in [y, z] {
@@ -145,7 +145,7 @@ fn length(f: &Fields, out: &mut Vec<Instruction>) {
 }
 
 /// cosine := limit(N . vector / |N|).
-fn cosine(f: &Fields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Instruction>) {
+fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Instruction>) {
     let [x, y, z] = vector.map(|v| i32::from(v << 4 >> 4));
     out.push(multiply_constant(f.c, f.normal[0], x, VECTOR_BITS));
     for (component, factor) in [(f.normal[1], y), (f.normal[2], z)] {
@@ -158,7 +158,7 @@ fn cosine(f: &Fields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Instructi
 }
 
 /// Squares the cosine of the highlight, to and fro between a and b; returns where the power is.
-fn power(f: &Fields, out: &mut Vec<Instruction>) -> Operand {
+fn power(f: &ShadeFields, out: &mut Vec<Instruction>) -> Operand {
     let mut base = f.specular;
     for i in 0..SPECULAR_SQUARINGS {
         let square = if i % 2 == 0 { f.a } else { f.b }.part(0, 2 * COSINE_BITS);
@@ -169,7 +169,7 @@ fn power(f: &Fields, out: &mut Vec<Instruction>) -> Operand {
 }
 
 /// component := limit((component * light >> 8) + highlight).
-fn combine(f: &Fields, component: Operand) -> [Instruction; 3] {
+fn combine(f: &ShadeFields, component: Operand) -> [Instruction; 3] {
     let product = f.a.part(0, 16);
     let sum = f.b.part(0, 9);
     [

@@ -2,7 +2,7 @@
 
 use super::draw::{evaluate, load, read_linear};
 use super::shade::{SHADE_BITS, SHADE_ROOT};
-use super::{CommandKind, Missing, enable, normal};
+use super::{CommandKind, MissingField, enable, normal};
 use crate::isa::{Expression, ExpressionUse, Instruction, Operand, Test};
 use crate::layout::Layout;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
@@ -76,7 +76,7 @@ const FACTOR_BITS: u8 = 10;
 
 /// Temporaries of a sphere's program.
 #[derive(Clone, Copy)]
-pub(crate) struct Scratch {
+pub(crate) struct SphereScratch {
     radicand: Operand,
     pub(crate) root: Operand,
     /// In the place of the radicand, which the root has used up.
@@ -85,9 +85,9 @@ pub(crate) struct Scratch {
     product: Operand,
 }
 
-impl Scratch {
-    pub(crate) fn of(layout: &Layout) -> Result<Self, Missing> {
-        const MISSING: Missing = Missing("30 bits of scratch");
+impl SphereScratch {
+    pub(crate) fn in_layout(layout: &Layout) -> Result<Self, MissingField> {
+        const MISSING: MissingField = MissingField("30 bits of scratch");
         let all = layout.plan().scratch.ok_or(MISSING)?;
         let bits = layout.root_bits().ok_or(MISSING)?;
         let z_bits = layout.plan().z.width;
@@ -117,7 +117,7 @@ impl Scratch {
 }
 
 /// Silhouette, root, depth: compare, disable where not nearer, store.
-fn coverage(body: &SphereBody, layout: &Layout, scratch: &Scratch, out: &mut Vec<Instruction>) {
+fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<Instruction>) {
     let z = layout.plan().z;
     out.extend([
         evaluate(Expression::Quadratic(body.silhouette), ExpressionUse::DisableNegative),
@@ -141,7 +141,7 @@ fn coverage(body: &SphereBody, layout: &Layout, scratch: &Scratch, out: &mut Vec
 }
 
 fn read_coverage(program: &[Instruction], layout: &Layout) -> Option<SphereBody> {
-    let short = Scratch::of(layout).ok()?.short();
+    let short = SphereScratch::in_layout(layout).ok()?.short();
     let &[
         _,
         Instruction::Evaluate { expression: Expression::Quadratic(silhouette), .. },
@@ -162,8 +162,8 @@ fn read_coverage(program: &[Instruction], layout: &Layout) -> Option<SphereBody>
 }
 
 impl Sphere {
-    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
-        let scratch = Scratch::of(layout)?;
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, MissingField> {
+        let scratch = SphereScratch::in_layout(layout)?;
         let mut out = vec![enable(CommandKind::Sphere)];
         coverage(&self.body, layout, &scratch, &mut out);
         for (i, (linear, factor)) in (0..).zip(self.colour.into_iter().zip(self.root_factor)) {
@@ -187,7 +187,7 @@ impl Sphere {
 }
 
 /// component := limit(linear + (upper root * factor >> 8)), in the upper 10 bits of the product.
-fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &Scratch) -> [Instruction; 3] {
+fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &SphereScratch) -> [Instruction; 3] {
     let sum = scratch.product.part(8, 10).signed();
     [
         Instruction::MultiplyConstant {
@@ -202,8 +202,8 @@ fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &Sc
 }
 
 impl PhongSphere {
-    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
-        let scratch = Scratch::of(layout)?;
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, MissingField> {
+        let scratch = SphereScratch::in_layout(layout)?;
         let mut out = vec![enable(CommandKind::PhongSphere)];
         coverage(&self.body, layout, &scratch, &mut out);
         for (i, component) in (0..).zip(self.normal) {

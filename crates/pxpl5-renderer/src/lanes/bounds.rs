@@ -25,12 +25,12 @@ const WHOLE: Area = Area { left: 0, right: 128, top: 0, bottom: 128 };
 pub(super) struct Bounds {
     pub(super) area: Area,
     /// Edges that limit a row from the left (`a > 0`) or from the right.
-    limits: Option<[Limit; 3]>,
+    limits: Option<[RowLimit; 3]>,
 }
 
 /// x >= or <= (b y + c) * scale.
 #[derive(Clone, Copy, Debug)]
-struct Limit {
+struct RowLimit {
     b: i64,
     c: i64,
     scale: f64,
@@ -56,9 +56,9 @@ impl Bounds {
     }
 }
 
-impl Limit {
+impl RowLimit {
     #[inline(always)]
-    fn of(e: &Linear) -> Self {
+    fn from_edge(e: &Linear) -> Self {
         let a = i64::from(e.a);
         let b = i64::from(e.b);
         let c = i64::from(e.c);
@@ -72,14 +72,14 @@ impl Limit {
 pub(super) const SIDE_BY_SIDE: usize = 8;
 
 /// A number of each of some triangles.
-type Numbers<T> = [T; SIDE_BY_SIDE];
+type PerTriangle<T> = [T; SIDE_BY_SIDE];
 
 /// The edges of some triangles over the array's own columns and rows; edge `e` of triangle `i` at `[e][i]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Edges {
-    a: [Numbers<i32>; 3],
-    b: [Numbers<i32>; 3],
-    c: [Numbers<i32>; 3],
+    a: [PerTriangle<i32>; 3],
+    b: [PerTriangle<i32>; 3],
+    c: [PerTriangle<i32>; 3],
 }
 
 impl Edges {
@@ -120,12 +120,12 @@ impl Edges {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boxes {
     /// First column and row that the corners leave, 0 to 128; the last ones, -1 to 127.
-    x: [Numbers<i32>; 2],
-    y: [Numbers<i32>; 2],
+    x: [PerTriangle<i32>; 2],
+    y: [PerTriangle<i32>; 2],
     /// The edges enclose a triangle: normals that turn the same way at all corners leave no way out to infinity.
-    closed: Numbers<bool>,
+    closed: PerTriangle<bool>,
     /// No value in the array needs more than 32 bits, so the edges are straight lines.
-    straight: Numbers<bool>,
+    straight: PerTriangle<bool>,
 }
 
 /// Pixels by which an edge may be followed from the array's first one: then no coefficient has more than 22 bits, nor the
@@ -134,7 +134,7 @@ const REACH: f64 = 512.0;
 
 impl Boxes {
     #[inline(always)]
-    pub(super) fn of(edges: &Edges) -> Self {
+    pub(super) fn enclosing(edges: &Edges) -> Self {
         let a = three(&edges.a);
         let b = three(&edges.b);
         let c = three(&edges.c);
@@ -178,7 +178,7 @@ impl Boxes {
             WHOLE
         };
         let wide = area.right - area.left > 24 && area.bottom - area.top > 2 && self.straight[i];
-        Some(Bounds { area, limits: wide.then(|| edges.each_ref().map(Limit::of)) })
+        Some(Bounds { area, limits: wide.then(|| edges.each_ref().map(RowLimit::from_edge)) })
     }
 
     #[inline(always)]
@@ -194,7 +194,7 @@ impl Boxes {
 }
 
 #[inline(always)]
-fn three(v: &[Numbers<i32>; 3]) -> [Numbers<f64>; 3] {
+fn three(v: &[PerTriangle<i32>; 3]) -> [PerTriangle<f64>; 3] {
     let mut out = [[0.0; SIDE_BY_SIDE]; 3];
     for (out, v) in out.iter_mut().zip(v) {
         for (out, v) in out.iter_mut().zip(v) {
@@ -206,7 +206,7 @@ fn three(v: &[Numbers<i32>; 3]) -> [Numbers<f64>; 3] {
 
 /// First and last pixel of some intervals.
 #[inline(always)]
-fn pixels(low: &Numbers<f64>, high: &Numbers<f64>) -> [Numbers<i32>; 2] {
+fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>; 2] {
     const BEYOND: f64 = (LAST + 1) as f64;
     let mut out = [[0; SIDE_BY_SIDE]; 2];
     for i in 0..SIDE_BY_SIDE {
@@ -240,7 +240,7 @@ mod tests {
     fn bounds(edges: &[Linear; 3]) -> Option<Bounds> {
         let mut all = Edges::default();
         all.set(5, edges.map(|e| [e.a, e.b, e.c]));
-        Boxes::of(&all).bounds(5, edges)
+        Boxes::enclosing(&all).bounds(5, edges)
     }
 
     fn touched(edges: &[Linear; 3]) -> Vec<(usize, usize)> {

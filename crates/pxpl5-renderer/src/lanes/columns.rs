@@ -2,7 +2,7 @@
 
 use crate::array::{PIXELS, Plane};
 use crate::command::{ShadeFields, SphereScratch};
-use crate::controller::Bits;
+use crate::controller::FieldBits;
 use crate::isa::{MEMORY_BITS, Operand};
 use crate::layout::Layout;
 
@@ -13,7 +13,7 @@ pub(super) struct Values(pub(super) [u32; PIXELS]);
 
 /// Bits `first .. first + width` of all pixels.
 #[derive(Clone, Debug)]
-struct Column {
+struct FieldColumn {
     first: usize,
     width: usize,
     values: Box<Values>,
@@ -21,22 +21,22 @@ struct Column {
 
 /// All 208 bits.
 #[derive(Clone, Debug)]
-pub(super) struct Columns {
-    columns: Vec<Column>,
+pub(super) struct PixelColumns {
+    columns: Vec<FieldColumn>,
     /// For each bit the column that holds it.
     column_of: [u8; MEMORY_BITS as usize],
 }
 
 /// Where a piece of a field lies: bits `low ..` of a column are bits `at ..` of the field.
 #[derive(Clone, Copy, Debug)]
-struct Piece {
+struct FieldPiece {
     column: usize,
     low: usize,
     at: usize,
     width: usize,
 }
 
-impl Columns {
+impl PixelColumns {
     pub(super) fn new(layout: &Layout) -> Self {
         let columns: Vec<_> = cuts(layout).windows(2).map(|cut| column(cut[0], cut[1])).collect();
         let mut column_of = [0; MEMORY_BITS as usize];
@@ -89,7 +89,7 @@ impl Columns {
     }
 
     /// The field of all pixels, extended to 64 bits by its signedness.
-    pub(super) fn gather(&self, field: Bits, out: &mut [u64]) {
+    pub(super) fn gather(&self, field: FieldBits, out: &mut [u64]) {
         out.fill(0);
         for piece in self.pieces(field) {
             let mask = ones(piece.width);
@@ -105,7 +105,7 @@ impl Columns {
     }
 
     /// Stores the low bits of `values` where `mask` has all bits set; elsewhere the mask is zero.
-    pub(super) fn scatter(&mut self, field: Bits, values: &[u64], mask: &[u8]) {
+    pub(super) fn scatter(&mut self, field: FieldBits, values: &[u64], mask: &[u8]) {
         for piece in self.pieces(field) {
             let bits = (ones(piece.width) << piece.low) as u32;
             let column = self.columns[piece.column].values.0.iter_mut();
@@ -117,7 +117,7 @@ impl Columns {
         }
     }
 
-    fn pieces(&self, field: Bits) -> Vec<Piece> {
+    fn pieces(&self, field: FieldBits) -> Vec<FieldPiece> {
         let mut out = Vec::new();
         let mut bit = field.first;
         while bit < field.end() {
@@ -125,7 +125,7 @@ impl Columns {
             let column = &self.columns[index];
             let low = bit - column.first;
             let width = (column.width - low).min(field.end() - bit);
-            out.push(Piece { column: index, low, at: bit - field.first, width });
+            out.push(FieldPiece { column: index, low, at: bit - field.first, width });
             bit += width;
         }
         out
@@ -141,8 +141,8 @@ const fn ones(width: usize) -> u64 {
     u64::MAX >> (64 - width)
 }
 
-fn column(first: usize, end: usize) -> Column {
-    Column { first, width: end - first, values: Box::new(Values([0; PIXELS])) }
+fn column(first: usize, end: usize) -> FieldColumn {
+    FieldColumn { first, width: end - first, values: Box::new(Values([0; PIXELS])) }
 }
 
 /// Where columns begin: at the borders of the layout's fields, and so that none has more than 32 bits.
@@ -168,8 +168,8 @@ fn cuts(layout: &Layout) -> Vec<usize> {
 
 /// Fields that the commands' programs use in the scratch, which is absolute.
 fn temporaries(layout: &Layout) -> Vec<Operand> {
-    let sphere = SphereScratch::of(layout).map(|s| vec![s.z, s.root]);
-    let shade = ShadeFields::of(layout).map(|f| vec![f.a, f.b, f.c, f.root, f.diffuse, f.specular]);
+    let sphere = SphereScratch::in_layout(layout).map(|s| vec![s.z, s.root]);
+    let shade = ShadeFields::in_layout(layout).map(|f| vec![f.a, f.b, f.c, f.root, f.diffuse, f.specular]);
     [sphere.unwrap_or_default(), shade.unwrap_or_default()].concat()
 }
 
@@ -190,7 +190,7 @@ mod tests {
     fn columns_cover_every_bit_once_in_every_layout() {
         let layouts = [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()];
         for layout in layouts {
-            let columns = Columns::new(&layout).columns;
+            let columns = PixelColumns::new(&layout).columns;
             let mut next = 0;
             for column in &columns {
                 assert_eq!(column.first, next);
@@ -203,8 +203,8 @@ mod tests {
 
     #[test]
     fn a_field_across_columns_comes_back() {
-        let mut columns = Columns::new(&Layout::slats());
-        let field = Bits { first: 20, width: 30, signed: true };
+        let mut columns = PixelColumns::new(&Layout::slats());
+        let field = FieldBits { first: 20, width: 30, signed: true };
         let values: Vec<u64> = (0..PIXELS as u64).map(|i| i.wrapping_mul(0x9e37_79b9_7f4a_7c15)).collect();
         columns.scatter(field, &values, &[255; PIXELS]);
         let mut back = vec![0; PIXELS];

@@ -18,7 +18,7 @@ pub(super) struct Ellipse {
 }
 
 impl Ellipse {
-    pub(super) fn of(q: &Quadratic) -> Self {
+    pub(super) fn where_positive(q: &Quadratic) -> Self {
         if q.xx >= 0 || !stays_in_48_bits(q) {
             return Self { rows: 0..SIZE, quadratic: None };
         }
@@ -102,7 +102,7 @@ mod tests {
         let mut inside = 0;
         for _ in 0..1000 {
             let q = random_ellipse(&mut random);
-            let ellipse = Ellipse::of(&q);
+            let ellipse = Ellipse::where_positive(&q);
             for (x, y) in (0..128).flat_map(|y| (0..128).map(move |x| (x, y))) {
                 if q.at(x, y) >= 0 {
                     inside += 1;
@@ -117,7 +117,7 @@ mod tests {
     #[test]
     fn a_circle_is_bounded_by_its_square() {
         let q = Quadratic { xx: -1, xy: 0, yy: -1, x: 40, y: 60, one: 25 - 400 - 900 };
-        let ellipse = Ellipse::of(&q);
+        let ellipse = Ellipse::where_positive(&q);
         assert_eq!((ellipse.rows(), ellipse.columns(30)), (25..36, 15..26));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Lanes;
 use super::shade::ShadeAll;
-use super::sphere::{DrawSphere, GouraudSphere, PhongOfSphere};
+use super::sphere::{DrawSphere, PaintGouraudSphere, PaintPhongSphere};
 use super::whole::{ContextColumns, starts_anew};
 use crate::array::Executed;
 use crate::command::{Command, CommandKind, PhongSphere, Shade, ShadeFields, Sphere, SphereBody, SphereScratch};
@@ -41,7 +41,7 @@ impl Lanes {
 
     /// `None` where depth and radicand do not have the same bits, so that they leave a mixture.
     fn sphere_place(&self) -> Option<SpherePlace> {
-        let scratch = SphereScratch::of(&self.layout).ok()?;
+        let scratch = SphereScratch::in_layout(&self.layout).ok()?;
         let root_bits = scratch.root.width;
         let same = scratch.z.width == 2 * root_bits;
         let place = SpherePlace {
@@ -68,7 +68,7 @@ impl Lanes {
             z,
             root,
             temporary,
-            paint: GouraudSphere { components, factors, root_bits: place.root_bits, colour },
+            paint: PaintGouraudSphere { components, factors, root_bits: place.root_bits, colour },
             enable: keep.then(|| self.enable.emptied(0..128)),
         });
         Some(())
@@ -92,7 +92,7 @@ impl Lanes {
             z,
             root,
             temporary,
-            paint: PhongOfSphere { components, root_bits: place.root_bits, normal, constant, colour },
+            paint: PaintPhongSphere { components, root_bits: place.root_bits, normal, constant, colour },
             enable: keep.then(|| self.enable.emptied(0..128)),
         });
         Some(())
@@ -110,7 +110,7 @@ impl Lanes {
     }
 
     fn shade(&mut self, shade: &Shade, columns: ContextColumns, keep: bool) -> Option<()> {
-        let f = ShadeFields::of(&self.layout).ok()?;
+        let f = ShadeFields::in_layout(&self.layout).ok()?;
         let [nx, ny, nz] = columns.normal?;
         let mut indices = [columns.z, nx, ny, nz, columns.colour, 0, 0, 0, 0, 0, 0];
         let temporaries = [f.a, f.b, f.c, f.root, f.diffuse, f.specular];

@@ -6,7 +6,7 @@ use super::roots::square_root_24;
 use crate::array::PIXELS;
 use crate::command::SphereBody;
 use crate::isa::QUADRATIC_BITS;
-use crate::simd::{Kernel, Vector};
+use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::Linear;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
 
@@ -34,12 +34,12 @@ pub(super) trait PaintSphere {
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], temporary: &mut [u32]);
 }
 
-impl<P: PaintSphere> Kernel for DrawSphere<'_, P> {
+impl<P: PaintSphere> VectorKernel for DrawSphere<'_, P> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Vector>(mut self) {
-        let ellipse = Ellipse::of(&self.body.silhouette);
+    fn run<V: SimdVector>(mut self) {
+        let ellipse = Ellipse::where_positive(&self.body.silhouette);
         for y in ellipse.rows() {
             let columns = ellipse.columns(y);
             if !columns.is_empty() {
@@ -103,14 +103,14 @@ fn blend(old: &mut [u32], new: &[u32], mask: &[u32]) {
 }
 
 /// Colour from a plane and the root.
-pub(super) struct GouraudSphere<'a> {
+pub(super) struct PaintGouraudSphere<'a> {
     pub(super) components: [Linear; 3],
     pub(super) factors: [i16; 3],
     pub(super) root_bits: u8,
     pub(super) colour: &'a mut Values,
 }
 
-impl PaintSphere for GouraudSphere<'_> {
+impl PaintSphere for PaintGouraudSphere<'_> {
     #[inline(always)]
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], temporary: &mut [u32]) {
         let n = pass.len();
@@ -137,7 +137,7 @@ impl PaintSphere for GouraudSphere<'_> {
 }
 
 /// Normals from two planes and the root, and the object's colour.
-pub(super) struct PhongOfSphere<'a> {
+pub(super) struct PaintPhongSphere<'a> {
     pub(super) components: [Linear; 2],
     pub(super) root_bits: u8,
     pub(super) normal: [&'a mut Values; 3],
@@ -145,7 +145,7 @@ pub(super) struct PhongOfSphere<'a> {
     pub(super) colour: &'a mut Values,
 }
 
-impl PaintSphere for PhongOfSphere<'_> {
+impl PaintSphere for PaintPhongSphere<'_> {
     #[inline(always)]
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], _: &mut [u32]) {
         let at = y * WIDTH + left;

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test binary uses a part")]
 
-use pxpl5_ring::reference::{Receivers, Traffic};
+use pxpl5_ring::reference::{PlannedMessage, Receivers};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput, RingTiming};
 use pxpl5_sim::{Context, EventQueue, Phase, Span, Time};
 use pxpl5_wire::{Body, Message, NodeId};
@@ -60,7 +60,7 @@ fn number(message: &Message) -> u64 {
 pub(crate) fn run_fast(
     timing: RingTiming,
     receivers: &[Receiver],
-    traffic: &[Traffic],
+    traffic: &[PlannedMessage],
     shuffle: Option<u64>,
 ) -> (Ring, Times) {
     run_prepared(timing, receivers, traffic, shuffle, |_| {})
@@ -70,7 +70,7 @@ pub(crate) fn run_fast(
 pub(crate) fn run_prepared(
     timing: RingTiming,
     receivers: &[Receiver],
-    traffic: &[Traffic],
+    traffic: &[PlannedMessage],
     shuffle: Option<u64>,
     prepare: impl FnOnce(&mut Ring),
 ) -> (Ring, Times) {
@@ -105,7 +105,7 @@ fn run_queue(mut ring: Ring, mut queue: EventQueue<RingEvent>, receivers: &[Rece
                 RingOutput::Announce { message, first_word_at, word } => {
                     let node = usize::from(message.destination.0);
                     let Receiver::Fifo { opens_after, answers_after, .. } = receivers[node] else { unreachable!() };
-                    let slots = Slots { begins: first_word_at, opens: time + opens_after, word, n: message.words };
+                    let slots = WordSlots { begins: first_word_at, opens: time + opens_after, word, n: message.words };
                     let last_word_at = last_word(receivers[node], &mut fifos[node], slots);
                     times.accepted.insert(number(&message), last_word_at);
                     let accept = RingEvent::Accept { destination: message.destination, last_word_at };
@@ -118,7 +118,7 @@ fn run_queue(mut ring: Ring, mut queue: EventQueue<RingEvent>, receivers: &[Rece
     (ring, times)
 }
 
-struct Slots {
+struct WordSlots {
     begins: Time,
     opens: Time,
     word: Span,
@@ -127,7 +127,7 @@ struct Slots {
 
 /// Entry of the last word by recurrence: a word enters one slot after the one before it, when there is room, when
 /// the receiver is open; `departures` holds when each of the last words leaves the FIFO.
-fn last_word(receiver: Receiver, departures: &mut VecDeque<Time>, slots: Slots) -> Time {
+fn last_word(receiver: Receiver, departures: &mut VecDeque<Time>, slots: WordSlots) -> Time {
     let Receiver::Fifo { words, drain, .. } = receiver else { unreachable!() };
     let mut entered = slots.begins;
     for _ in 0..slots.n {
