@@ -43,7 +43,6 @@ pub use sphere::{PhongSphere, Sphere, SphereBody};
 use crate::isa::{DecodeError, DecodeErrorKind, Instruction, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
-use std::fmt;
 
 /// What a command does; the value is its opcode in [`pxpl5_wire::CommandRun`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -140,7 +139,8 @@ impl CommandKind {
 }
 
 /// A layout lacks a field that a command needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{kind:?} needs {missing}, which layout {layout} lacks")]
 pub struct Unsupported {
     /// The command.
     pub kind: CommandKind,
@@ -149,14 +149,6 @@ pub struct Unsupported {
     /// What is missing.
     pub missing: &'static str,
 }
-
-impl fmt::Display for Unsupported {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?} needs {}, which layout {} lacks", self.kind, self.missing, self.layout)
-    }
-}
-
-impl std::error::Error for Unsupported {}
 
 /// A command with its operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

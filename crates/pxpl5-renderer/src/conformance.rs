@@ -14,21 +14,14 @@ use pxpl5_wire::{Linear, Quadratic, Word};
 use std::fmt;
 
 /// Two arrays differ.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("after {after}: {difference}")]
 pub struct Mismatch {
     /// What was executed.
     pub after: String,
     /// What differs, with the first pixel.
     pub difference: String,
 }
-
-impl fmt::Display for Mismatch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "after {}: {}", self.after, self.difference)
-    }
-}
-
-impl std::error::Error for Mismatch {}
 
 /// Executes a list on both arrays and compares results, Enable and all 208 bits of all pixels.
 ///

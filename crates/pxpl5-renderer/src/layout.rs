@@ -2,7 +2,7 @@
 
 use crate::isa::{MEMORY_BITS, Operand};
 use pxpl5_wire::format::{COLOUR_BITS, NORMAL_BITS, Z_BITS, Z_FRACTION_BITS};
-use std::fmt::{self, Write as _};
+use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
 /// A division of pixel memory that nobody has checked yet.
@@ -32,10 +32,11 @@ pub struct Plan {
 pub struct Layout(Plan);
 
 /// Why a plan does not fit.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LayoutError {
     /// Fields lie outside of pixel memory or over each other; the text draws them.
+    #[error("layout {name} does not fit {} bits:\n{drawing}", MEMORY_BITS)]
     DoesNotFit {
         /// The plan's name.
         name: &'static str,
@@ -43,6 +44,7 @@ pub enum LayoutError {
         drawing: String,
     },
     /// A field has a width that the commands cannot use.
+    #[error("{field} has {found} bits, expected {expected}")]
     Width {
         /// The field.
         field: &'static str,
@@ -52,21 +54,6 @@ pub enum LayoutError {
         found: u8,
     },
 }
-
-impl fmt::Display for LayoutError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::DoesNotFit { name, drawing } => {
-                write!(f, "layout {name} does not fit {MEMORY_BITS} bits:\n{drawing}")
-            }
-            Self::Width { field, expected, found } => {
-                write!(f, "{field} has {found} bits, expected {expected}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for LayoutError {}
 
 /// Rendering Control with Phong shading: one region, 24 colour + 24 Z + 36 normal, and 124 bits of scratch.
 const RENDERING_CONTROL_PHONG: Plan = Plan {

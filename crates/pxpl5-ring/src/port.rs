@@ -2,7 +2,6 @@
 
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
-use std::fmt;
 
 /// What happens to the ring.
 #[derive(Clone, Debug)]
@@ -77,10 +76,11 @@ pub enum RingOutput {
 }
 
 /// Why a ring cannot be built or a message not be carried.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RingError {
     /// A number of the timing table is outside of what the model can take.
+    #[error("ring timing: {name} must be {} to {}, found {found}", .expected.0, .expected.1)]
     Timing {
         /// The number's name.
         name: &'static str,
@@ -90,8 +90,10 @@ pub enum RingError {
         expected: (u64, u64),
     },
     /// The ring has no port for any board.
+    #[error("a ring needs one port at least, found none")]
     NoNodes,
     /// A message names a port that does not exist.
+    #[error("there is no ring port {}: the ring has {n_nodes}, from 0", .node.0)]
     NoSuchNode {
         /// The port.
         node: NodeId,
@@ -99,20 +101,23 @@ pub enum RingError {
         n_nodes: u16,
     },
     /// A message is empty or longer than a message can be.
+    #[error("message from ring port {} to {}: expected 1 to {max} words, found {words}", .r#source.0, .destination.0, max = MAX_MESSAGE_WORDS)]
     Length {
         /// The sender.
-        source: NodeId,
+        r#source: NodeId, // Raw, since `thiserror` takes a plain `source` for another error.
         /// The receiver.
         destination: NodeId,
         /// Its length in words.
         words: u32,
     },
     /// A receiver answered though nothing had been announced to it, or answered twice.
+    #[error("ring port {} accepted a message that was not announced to it", .destination.0)]
     NothingAnnounced {
         /// The receiver.
         destination: NodeId,
     },
     /// A receiver named a time before the last word can have arrived.
+    #[error("ring port {} accepted the last word at {found}, but it cannot enter before {expected}", .destination.0)]
     AcceptedEarly {
         /// The receiver.
         destination: NodeId,
@@ -122,6 +127,7 @@ pub enum RingError {
         found: Time,
     },
     /// A reference run was given a time that is no multiple of its tick.
+    #[error("{what} of {found_ps} ps is no multiple of the tick of {tick}")]
     OffTick {
         /// What it is the time of.
         what: &'static str,
@@ -131,6 +137,7 @@ pub enum RingError {
         tick: Span,
     },
     /// A reference run had not delivered everything when its time was over.
+    #[error("only {delivered} of {of} messages had been delivered at {until}")]
     Unfinished {
         /// Messages delivered.
         delivered: usize,
@@ -140,38 +147,3 @@ pub enum RingError {
         until: Time,
     },
 }
-
-impl fmt::Display for RingError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Timing { name, found, expected: (low, high) } => {
-                write!(f, "ring timing: {name} must be {low} to {high}, found {found}")
-            }
-            Self::NoNodes => f.write_str("a ring needs one port at least, found none"),
-            Self::NoSuchNode { node, n_nodes } => {
-                write!(f, "there is no ring port {}: the ring has {n_nodes}, from 0", node.0)
-            }
-            Self::Length { source, destination, words } => write!(
-                f,
-                "message from ring port {} to {}: expected 1 to {MAX_MESSAGE_WORDS} words, found {words}",
-                source.0, destination.0
-            ),
-            Self::NothingAnnounced { destination } => {
-                write!(f, "ring port {} accepted a message that was not announced to it", destination.0)
-            }
-            Self::AcceptedEarly { destination, expected, found } => write!(
-                f,
-                "ring port {} accepted the last word at {found}, but it cannot enter before {expected}",
-                destination.0
-            ),
-            Self::OffTick { what, found_ps, tick } => {
-                write!(f, "{what} of {found_ps} ps is no multiple of the tick of {tick}")
-            }
-            Self::Unfinished { delivered, of, until } => {
-                write!(f, "only {delivered} of {of} messages had been delivered at {until}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for RingError {}

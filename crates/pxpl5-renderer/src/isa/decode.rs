@@ -3,10 +3,10 @@
 use super::encode::{AGAIN, opcode};
 use super::{ArithmeticOp, BACKING_BLOCKS, Expression, ExpressionUse, Instruction, MEMORY_BITS, Operand, Test};
 use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, Quadratic, RegionGrid, RegionId, Word};
-use std::fmt;
 
 /// A word that is no instruction, and where it stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("word {position} ({word:#010x}): {kind}")]
 pub struct DecodeError {
     /// Index of the instruction's first word in the list.
     pub position: usize,
@@ -17,12 +17,14 @@ pub struct DecodeError {
 }
 
 /// What is wrong with an instruction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeErrorKind {
     /// No instruction has this opcode.
+    #[error("no instruction has this opcode")]
     UnknownOpcode,
     /// The list ends inside the instruction.
+    #[error("the instruction needs {expected} words, the list has {found} left")]
     Truncated {
         /// Words that the instruction needs.
         expected: usize,
@@ -30,10 +32,13 @@ pub enum DecodeErrorKind {
         found: usize,
     },
     /// Bits that must be zero are set.
+    #[error("bits are set that must be zero")]
     ReservedBits,
     /// A field reaches beyond pixel memory.
+    #[error("{} bits at address {} reach beyond the {} bits of pixel memory", .0.width, .0.address, MEMORY_BITS)]
     FieldOutOfRange(Operand),
     /// A field has a width that this instruction cannot use.
+    #[error("the field at address {} has {} bits, expected {expected}", .field.address, .field.width)]
     Width {
         /// The field.
         field: Operand,
@@ -41,50 +46,18 @@ pub enum DecodeErrorKind {
         expected: u32,
     },
     /// Operands are signed where they must not be, or differ in signedness.
+    #[error("signedness of the operands does not fit")]
     Signedness,
     /// No backing-store block has this number.
+    #[error("backing store block {0}, expected less than {max}", max = BACKING_BLOCKS)]
     UnknownBlock(u8),
     /// An output's frame, lines or region make no sense.
+    #[error("the copy's target is no region of a frame")]
     BadTarget,
     /// The words are instructions, but not those of the command that their label names.
+    #[error("labelled as command {0}, but not its program in this layout")]
     NotTheCommand(u8),
 }
-
-impl fmt::Display for DecodeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "word {} ({:#010x}): {}", self.position, self.word, self.kind)
-    }
-}
-
-impl fmt::Display for DecodeErrorKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::UnknownOpcode => write!(f, "no instruction has this opcode"),
-            Self::Truncated { expected, found } => {
-                write!(f, "the instruction needs {expected} words, the list has {found} left")
-            }
-            Self::ReservedBits => write!(f, "bits are set that must be zero"),
-            Self::FieldOutOfRange(field) => write!(
-                f,
-                "{} bits at address {} reach beyond the {MEMORY_BITS} bits of pixel memory",
-                field.width, field.address
-            ),
-            Self::Width { field, expected } => {
-                write!(f, "the field at address {} has {} bits, expected {expected}", field.address, field.width)
-            }
-            Self::Signedness => write!(f, "signedness of the operands does not fit"),
-            Self::UnknownBlock(block) => {
-                write!(f, "backing store block {block}, expected less than {BACKING_BLOCKS}")
-            }
-            Self::BadTarget => write!(f, "the copy's target is no region of a frame"),
-            Self::NotTheCommand(label) => {
-                write!(f, "labelled as command {label}, but not its program in this layout")
-            }
-        }
-    }
-}
-
-impl std::error::Error for DecodeError {}
 
 impl Instruction {
     /// Reads the instruction at `position`.
