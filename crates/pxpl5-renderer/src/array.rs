@@ -56,7 +56,7 @@ pub trait PixelArray {
 /// What a list of instructions did besides changing pixels.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Executed {
-    /// Instructions.
+    /// Instructions that were executed.
     pub instructions: u32,
     /// Clocks in which the array was busy.
     pub clocks: u64,
@@ -67,7 +67,7 @@ pub struct Executed {
 /// The pixels of an output instruction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputRegion {
-    /// Where they go.
+    /// Frame buffer, region and picture that the pixels are for.
     pub target: CopyTarget,
     /// One word a pixel, 0x00RRGGBB, row by row of the region's rectangle.
     pub pixels: Arc<[Word]>,
@@ -79,7 +79,7 @@ pub struct OutputRegion {
 pub struct Fault {
     /// Index of the instruction's first word in the list.
     pub position: usize,
-    /// What is wrong.
+    /// Why it cannot be executed.
     pub kind: FaultKind,
 }
 
@@ -93,9 +93,9 @@ pub enum FaultKind {
     /// A relative field ends beyond pixel memory in the selected context.
     #[error("{} bits at {base} + {} reach beyond pixel memory", .operand.width, .operand.address)]
     FieldOutOfRange {
-        /// The field.
+        /// The field as the instruction names it: address from the base, width in bits.
         operand: Operand,
-        /// Base of the context.
+        /// Bit of pixel memory that the selected context begins with.
         base: u8,
     },
     /// An operand overlaps the destination in a way that the instruction does not allow.

@@ -20,7 +20,7 @@ pub const MAX_CONTEXTS: usize = 8;
 pub enum RendererEvent {
     /// A message begins to arrive (phase `Arrive`).
     Announce {
-        /// The message.
+        /// Commands for the FIFO, or words that mean nothing here.
         message: Message,
         /// Its first word is on the channel from here on.
         first_word_at: Time,
@@ -38,12 +38,12 @@ pub enum RendererEvent {
 pub enum RendererOutput {
     /// The last word of the announced message enters the FIFO at this time.
     Accept {
-        /// The time.
+        /// When the word is in the FIFO: a word time for each word, and the time for which there was no room.
         last_word_at: Time,
     },
     /// A message for the ring.
     Send {
-        /// The message.
+        /// Pixels of a region, or the acknowledgement of a copy.
         message: Message,
         /// Whether [`RendererEvent::Sent`] shall come back.
         ticket: bool,
@@ -55,17 +55,18 @@ pub enum RendererOutput {
 /// What the board has done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct RendererStats {
-    /// Commands received.
+    /// Commands in all lists that were received, copies and unknown ones included.
     pub commands: u64,
-    /// Words received.
+    /// Words that were received, without the overhead of their messages on the ring.
     pub words: u64,
-    /// Regions copied.
+    /// Regions whose last pixel a frame buffer has received.
     pub regions_copied: u64,
     /// Commands with an operation code that no command has; they are skipped.
     pub illegal_commands: u64,
 }
 
-/// One renderer.
+/// One renderer board: its FIFO and controller in time, the pixels of its regions as jobs that are computed when somebody
+/// looks.
 #[derive(Debug)]
 pub struct Renderer {
     node: NodeId,
@@ -126,7 +127,7 @@ impl Renderer {
         }
     }
 
-    /// Handles one event.
+    /// Handles one event at `context.now()`; what follows from it is scheduled or put out through `context`.
     pub fn handle(&mut self, event: RendererEvent, context: &mut Context<RendererEvent, RendererOutput>) {
         match event {
             RendererEvent::Announce { message, first_word_at } => self.announce(message, first_word_at, context),

@@ -48,25 +48,25 @@ use pxpl5_wire::Word;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum CommandKind {
-    /// [`SelectRegion`].
+    /// Selects context and region: [`SelectRegion`].
     SelectRegion = 1,
-    /// [`Clear`].
+    /// Clears colour and Z: [`Clear`].
     Clear = 2,
-    /// [`Triangle`].
+    /// Triangle with interpolated colour: [`Triangle`].
     Triangle = 3,
-    /// [`PhongTriangle`].
+    /// Triangle with normals: [`PhongTriangle`].
     PhongTriangle = 4,
-    /// [`Sphere`].
+    /// Sphere with interpolated colour: [`Sphere`].
     Sphere = 5,
-    /// [`PhongSphere`].
+    /// Sphere with normals: [`PhongSphere`].
     PhongSphere = 6,
-    /// [`Shade`].
+    /// Deferred shading of all pixels: [`Shade`].
     Shade = 7,
-    /// [`CopyRegion`].
+    /// Copies the region to a frame buffer: [`CopyRegion`].
     CopyRegion = 8,
-    /// [`StoreBacking`].
+    /// Stores 32 bits in the backing store: [`StoreBacking`].
     StoreBacking = 9,
-    /// [`LoadBacking`].
+    /// Loads 32 bits from the backing store: [`LoadBacking`].
     LoadBacking = 10,
     /// Waits until the backing store is idle.
     WaitBacking = 11,
@@ -142,11 +142,11 @@ impl CommandKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{kind:?} needs {missing}, which layout {layout} lacks")]
 pub struct Unsupported {
-    /// The command.
+    /// The command that was to be encoded.
     pub kind: CommandKind,
-    /// The layout's name.
+    /// [`Plan::name`](crate::Plan::name) of the layout.
     pub layout: &'static str,
-    /// What is missing.
+    /// The field, or the bits of scratch, that the layout would need.
     pub missing: &'static str,
 }
 
@@ -157,7 +157,7 @@ pub enum Command {
     SelectRegion(SelectRegion),
     /// Clears colour and Z.
     Clear(Clear),
-    /// Gouraud triangle.
+    /// Triangle with interpolated colour (Gouraud).
     Triangle(Triangle),
     /// Triangle whose pixels are shaded at the end of the frame.
     PhongTriangle(PhongTriangle),
@@ -178,7 +178,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// The command's kind.
+    /// Which kind the command is, without its operands.
     #[must_use]
     pub const fn kind(&self) -> CommandKind {
         match self {

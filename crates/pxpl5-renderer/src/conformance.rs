@@ -13,11 +13,11 @@ use crate::layout::Layout;
 use pxpl5_wire::{Linear, Quadratic, Word};
 use std::fmt;
 
-/// Two arrays differ.
+/// Where two arrays that have executed the same list differ.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("after {after}: {difference}")]
 pub struct Mismatch {
-    /// What was executed.
+    /// The list that was executed last, as its caller describes it.
     pub after: String,
     /// What differs, with the first pixel.
     pub difference: String,

@@ -22,7 +22,7 @@ pub(crate) struct EqualCommands {
     pub(crate) span_each: Option<Span>,
 }
 
-/// What became known.
+/// What an arrival, or the end of a copy, made known about times to come.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Progress {
     /// The last word of the message in transit enters at this time.
@@ -64,7 +64,7 @@ impl Departures {
     }
 }
 
-/// FIFO and controller.
+/// The FIFO and the controller behind it; depths in words, times of the simulation.
 #[derive(Debug)]
 pub(crate) struct InputFifo {
     depth: u64,

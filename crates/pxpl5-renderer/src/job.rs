@@ -113,7 +113,7 @@ impl PixelJob {
         Some(kept)
     }
 
-    /// Columns and rows.
+    /// Columns and rows of the region, which may be less than the array's.
     fn size(&self) -> [u32; 2] {
         let [_, _, width, height] = self.target.grid.rectangle(self.target.region);
         [width, height]

@@ -11,13 +11,13 @@ use std::ops::RangeInclusive;
 /// and shared by all contexts, which is right because a command leaves nothing there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// For messages.
+    /// Name that error messages give the layout.
     pub name: &'static str,
     /// Regions that share the array.
     pub contexts: u8,
-    /// Bits of each.
+    /// Bits of pixel memory that each context takes.
     pub context_bits: u8,
-    /// 24 bits, 0xRRGGBB.
+    /// Colour, 24 bits, 0xRRGGBB.
     pub colour: Operand,
     /// Depth; nearer is smaller.
     pub z: Operand,
@@ -38,7 +38,7 @@ pub enum LayoutError {
     /// Fields lie outside of pixel memory or over each other; the text draws them.
     #[error("layout {name} does not fit {} bits:\n{drawing}", MEMORY_BITS)]
     DoesNotFit {
-        /// The plan's name.
+        /// [`Plan::name`] of the plan.
         name: &'static str,
         /// One line a field.
         drawing: String,
@@ -46,7 +46,7 @@ pub enum LayoutError {
     /// A field has a width that the commands cannot use.
     #[error("{field} has {found} bits, expected {expected}")]
     Width {
-        /// The field.
+        /// Name of the field in [`Plan`].
         field: &'static str,
         /// Bits that are allowed.
         expected: &'static str,
@@ -124,7 +124,7 @@ impl Layout {
         Err(LayoutError::DoesNotFit { name: plan.name, drawing: draw(&ranges, &bad) })
     }
 
-    /// The plan.
+    /// The fields of the layout, as they were checked.
     #[must_use]
     pub const fn plan(&self) -> &Plan {
         &self.0
@@ -175,11 +175,11 @@ impl Layout {
 /// A named range of pixel memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldRange {
-    /// Context and field.
+    /// Number of the context and name of the field, or *scratch*.
     pub name: String,
-    /// First bit.
+    /// Address of the first bit in pixel memory, 0 to 207.
     pub first: u32,
-    /// Bits.
+    /// Length in bits of pixel memory.
     pub width: u32,
 }
 

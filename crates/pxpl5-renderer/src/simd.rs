@@ -14,9 +14,9 @@ mod x86;
 pub enum Vectors {
     /// What every processor of the target has.
     Portable,
-    /// x86-64 with AVX2.
+    /// x86-64 with AVX2: 8 numbers of 32 bits at a time.
     Avx2,
-    /// x86-64 with AVX-512 (F, BW, DQ and VL).
+    /// x86-64 with AVX-512 (F, BW, DQ and VL): 16 numbers of 32 bits at a time.
     Avx512,
 }
 
@@ -139,7 +139,7 @@ pub(crate) trait SimdVector: Copy {
     fn store_mask(mask: Self::Mask, to: &mut [u8]);
 }
 
-/// The portable vector.
+/// Eight numbers in an array, for processors without a unit that is known here.
 #[derive(Clone, Copy)]
 pub(crate) struct PortableVector([i32; 8]);
 

@@ -24,17 +24,17 @@ use std::collections::VecDeque;
 pub struct PlannedMessage {
     /// When the board hands it to its port.
     pub at: Time,
-    /// The sender.
+    /// Port of the sender.
     pub source: NodeId,
-    /// The receiver.
+    /// Port of the receiver.
     pub destination: NodeId,
-    /// Length in words.
+    /// Length in words, without the overhead, 1 to 1,024.
     pub words: u32,
     /// Whether the destination stays reserved afterwards.
     pub hold: bool,
 }
 
-/// What became of a message.
+/// When a message was carried, and on which channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CarriedMessage {
     /// The channel, from 0.
@@ -77,7 +77,7 @@ impl Receivers for Elastic {
     }
 }
 
-/// A ring that is stepped.
+/// A ring whose time advances tick by tick, and the messages that it is to carry.
 #[derive(Debug)]
 pub struct SteppedRing<'a, R> {
     timing: RingTiming,

@@ -100,7 +100,7 @@ impl Ring {
         self.word_by_word = true;
     }
 
-    /// Handles one event.
+    /// Handles one event at `context.now()`; what follows from it is scheduled or put out through `context`.
     pub fn handle(&mut self, event: RingEvent, context: &mut RingContext) {
         match event {
             RingEvent::Request(request) => self.request(request, context),
@@ -124,7 +124,7 @@ impl Ring {
         &self.timing
     }
 
-    /// Number of ports.
+    /// Ports of the ring, numbered from 0.
     #[must_use]
     pub fn n_nodes(&self) -> u16 {
         self.sources.len() as u16

@@ -173,7 +173,7 @@ pub(super) trait Evaluator {
     /// What the adders of a vector of pixels hold from clock to clock.
     type Carries<V: SimdVector>;
 
-    /// All zeros.
+    /// Carries before the first bit: all zeros.
     fn start<V: SimdVector>() -> Self::Carries<V>;
 
     /// Bit `t` of the expression in a vector of pixels; `t` counts up from 0.
@@ -182,7 +182,7 @@ pub(super) trait Evaluator {
 
 /// An evaluator whose trees reach over the whole array.
 pub(super) trait WholeTrees: Evaluator {
-    /// The expression's coefficients.
+    /// What the trees multiply by the numbers of columns and rows: linear or quadratic coefficients.
     type Coefficients;
 
     /// Runs the trees for the first `bits` of the expression.
@@ -192,7 +192,7 @@ pub(super) trait WholeTrees: Evaluator {
 /// A linear expression: what its columns and rows deliver, clock by clock.
 pub(super) struct LinearStreams(pub(super) [Streams; LINEAR_BITS as usize]);
 
-/// A quadratic expression.
+/// A quadratic expression: what its trees deliver, clock by clock.
 pub(super) struct QuadraticStreams([QuadraticBits; QUADRATIC_BITS as usize]);
 
 /// What the trees of a quadratic deliver in one clock.

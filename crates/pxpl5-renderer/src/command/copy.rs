@@ -32,7 +32,7 @@ impl SelectRegion {
 /// Sets colour to the background and Z to the far plane, in the whole array.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Clear {
-    /// Background, 0x00RRGGBB.
+    /// Colour of the background, 0x00RRGGBB.
     pub colour: u32,
 }
 
@@ -56,7 +56,7 @@ impl Clear {
 /// Copies the region's colour to a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CopyRegion {
-    /// Where to.
+    /// Frame buffer and buffer, region of which grid, lines and picture.
     pub target: CopyTarget,
 }
 

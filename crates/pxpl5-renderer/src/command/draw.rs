@@ -11,7 +11,7 @@ use pxpl5_wire::{Linear, Word};
 pub struct Triangle {
     /// Inside where all are `>= 0`.
     pub edges: [Linear; 3],
-    /// Depth with [`pxpl5_wire::format::Z_FRACTION_BITS`].
+    /// Depth at a pixel, nearer is smaller, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
     pub depth: Linear,
     /// Red, green, blue with [`COLOUR_FRACTION_BITS`].
     pub colour: [Linear; 3],
@@ -22,7 +22,7 @@ pub struct Triangle {
 pub struct PhongTriangle {
     /// Inside where all are `>= 0`.
     pub edges: [Linear; 3],
-    /// Depth with [`pxpl5_wire::format::Z_FRACTION_BITS`].
+    /// Depth at a pixel, nearer is smaller, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
     pub depth: Linear,
     /// x, y and z of the normal with [`NORMAL_FRACTION_BITS`]; any length up to the format's.
     pub normal: [Linear; 3],

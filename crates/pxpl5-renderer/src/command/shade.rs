@@ -133,7 +133,7 @@ const fn multiply_constant(destination: Operand, source: Operand, factor: i32, f
     Instruction::MultiplyConstant { destination, source, factor, factor_bits }
 }
 
-/// root := |N|.
+/// root := |N|, from the sum of the squares of the normal in a; leaves the remainder there.
 fn length(f: &ShadeFields, out: &mut Vec<Instruction>) {
     let [x, y, z] = f.normal;
     out.push(arithmetic(ArithmeticOp::Multiply, f.a, x, x));

@@ -45,7 +45,7 @@ pub struct SphereBody {
 /// spheres that meet would meet in the wrong places, so the root is paid for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sphere {
-    /// Silhouette and depth.
+    /// Which pixels are inside, and how near they are.
     pub body: SphereBody,
     /// Linear part of red, green and blue with [`COLOUR_FRACTION_BITS`].
     pub colour: [Linear; 3],
@@ -60,7 +60,7 @@ pub struct Sphere {
 /// (shading normalises). Under perspective the normal's x and y are taken as linear.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongSphere {
-    /// Silhouette and depth.
+    /// Which pixels are inside, and how near they are.
     pub body: SphereBody,
     /// x and y of the normal with [`NORMAL_FRACTION_BITS`].
     pub normal: [Linear; 2],

@@ -12,7 +12,7 @@ pub struct DecodeError {
     pub position: usize,
     /// The instruction's first word.
     pub word: Word,
-    /// What is wrong.
+    /// Why the words are no instruction.
     pub kind: DecodeErrorKind,
 }
 
@@ -40,7 +40,7 @@ pub enum DecodeErrorKind {
     /// A field has a width that this instruction cannot use.
     #[error("the field at address {} has {} bits, expected {expected}", .field.address, .field.width)]
     Width {
-        /// The field.
+        /// The field as the instruction names it.
         field: Operand,
         /// Bits that it must have (at most, for shifts).
         expected: u32,

@@ -19,7 +19,7 @@ struct FieldColumn {
     values: Box<Values>,
 }
 
-/// All 208 bits.
+/// All 208 bits of pixel memory, cut into columns where the fields of a layout begin.
 #[derive(Clone, Debug)]
 pub(super) struct PixelColumns {
     columns: Vec<FieldColumn>,

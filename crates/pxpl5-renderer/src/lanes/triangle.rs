@@ -245,7 +245,7 @@ fn blend<V: SimdVector>(column: &mut Values, at: usize, mask: V::Mask, new: V) {
     new.store(mask, old, &mut column.0[at..]);
 }
 
-/// Interpolated colour.
+/// Stores interpolated colour, as 0x00RRGGBB.
 pub(super) struct PaintGouraud<'a> {
     pub(super) colour: &'a mut Values,
 }

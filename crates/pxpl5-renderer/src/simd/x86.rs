@@ -6,7 +6,7 @@
 use super::SimdVector;
 use std::arch::x86_64::*;
 
-/// Eight lanes.
+/// The eight lanes of a vector of AVX2.
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(__m256i);
 
@@ -132,7 +132,7 @@ impl SimdVector for Avx2 {
     }
 }
 
-/// Sixteen lanes.
+/// The sixteen lanes of a vector of AVX-512.
 #[derive(Clone, Copy)]
 pub(super) struct Avx512(__m512i);
 
