@@ -11,6 +11,7 @@ use pxpl5_renderer::{
     BitSerial, Clear, Command, Lanes, Layout, PhongSphere, PhongTriangle, PixelArray, Shade, Sphere, SphereBody,
     Triangle, Vectors,
 };
+use pxpl5_wire::format::COLOUR_FRACTION_BITS;
 use pxpl5_wire::{Linear, Quadratic};
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -19,17 +20,22 @@ const COMMANDS: u64 = 64;
 
 /// The edge from p to q in pixels, inside on its left.
 fn edge(p: [i32; 2], q: [i32; 2]) -> Linear {
-    let (dx, dy) = (16 * (q[0] - p[0]), 16 * (q[1] - p[1]));
+    let dx = 16 * (q[0] - p[0]);
+    let dy = 16 * (q[1] - p[1]);
     Linear { a: -dy, b: dx, c: dy * p[0] - dx * p[1] }
+}
+
+/// A colour component that changes slowly over the region, from `level` (0 to 255) at its left top pixel.
+const fn component(level: i32) -> Linear {
+    Linear { a: 311, b: -277, c: level << COLOUR_FRACTION_BITS }
 }
 
 /// Triangle `i` of some, nearer one by one.
 fn triangle(v: [[i32; 2]; 3], i: i32) -> Triangle {
-    let plane = |c: i32| Linear { a: 311, b: -277, c };
     Triangle {
         edges: [edge(v[0], v[1]), edge(v[1], v[2]), edge(v[2], v[0])],
         depth: Linear { a: -1000, b: 3000, c: (1 << 30) - i * 1000 },
-        colour: [plane(200 << 12), plane(100 << 12), plane(50 << 12)],
+        colour: [component(200), component(100), component(50)],
     }
 }
 
@@ -154,8 +160,11 @@ fn bit_serial(c: &mut Criterion) {
     ];
     bit_planes(c, "bit serial", &lists, BitSerial::with_vectors);
     let small = [("triangle 100 px", triangles(HUNDRED, 110), false), ("sphere of radius 10", spheres(10), false)];
-    let skipping = |layout: &Layout, vectors| BitSerial::with_vectors(layout, vectors).skipping();
-    bit_planes(c, "bit serial, skipping", &[&small[..], &lists].concat(), skipping);
+    bit_planes(c, "bit serial, skipping", &[&small[..], &lists].concat(), skipping_array);
+}
+
+fn skipping_array(layout: &Layout, vectors: Vectors) -> BitSerial {
+    BitSerial::with_vectors(layout, vectors).skipping()
 }
 
 fn bit_planes(

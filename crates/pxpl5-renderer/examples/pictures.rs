@@ -16,70 +16,73 @@ use std::path::Path;
 const LEFT: i32 = 256;
 const TOP: i32 = 128;
 
-type Vertex = [f64; 2];
+type ScreenPoint = [f64; 2];
 
 /// The edge from p to q, positive on its left, in sixteenths of a pixel, at pixel centres.
-fn edge(p: Vertex, q: Vertex) -> Linear {
-    let (a, b) = (-(q[1] - p[1]) * 16.0, (q[0] - p[0]) * 16.0);
+fn edge(p: ScreenPoint, q: ScreenPoint) -> Linear {
+    let a = -(q[1] - p[1]) * 16.0;
+    let b = (q[0] - p[0]) * 16.0;
     let c = -a * (p[0] - 0.5) - b * (p[1] - 0.5);
     Linear { a: a.round() as i32, b: b.round() as i32, c: c.floor() as i32 }
 }
 
 /// The plane with these values at the vertices.
-fn plane(v: [Vertex; 3], values: [f64; 3], scale: f64) -> Linear {
-    let ([x1, y1], [x2, y2]) = ([v[1][0] - v[0][0], v[1][1] - v[0][1]], [v[2][0] - v[0][0], v[2][1] - v[0][1]]);
-    let (d1, d2) = (values[1] - values[0], values[2] - values[0]);
+fn plane(v: [ScreenPoint; 3], values: [f64; 3], scale: f64) -> Linear {
+    let [x1, y1] = [v[1][0] - v[0][0], v[1][1] - v[0][1]];
+    let [x2, y2] = [v[2][0] - v[0][0], v[2][1] - v[0][1]];
+    let d1 = values[1] - values[0];
+    let d2 = values[2] - values[0];
     let det = x1 * y2 - x2 * y1;
-    let (a, b) = ((d1 * y2 - d2 * y1) / det, (d2 * x1 - d1 * x2) / det);
+    let a = (d1 * y2 - d2 * y1) / det;
+    let b = (d2 * x1 - d1 * x2) / det;
     let c = values[0] + a * (0.5 - v[0][0]) + b * (0.5 - v[0][1]);
-    let fixed = |v: f64| (v * scale).round() as i32;
-    Linear { a: fixed(a), b: fixed(b), c: fixed(c) }
+    Linear { a: (a * scale).round() as i32, b: (b * scale).round() as i32, c: (c * scale).round() as i32 }
 }
 
-fn place(v: [Vertex; 3]) -> [Vertex; 3] {
+fn place(v: [ScreenPoint; 3]) -> [ScreenPoint; 3] {
     v.map(|[x, y]| [x + f64::from(LEFT), y + f64::from(TOP)])
 }
 
-fn edges(v: [Vertex; 3]) -> [Linear; 3] {
+fn edges(v: [ScreenPoint; 3]) -> [Linear; 3] {
     [edge(v[0], v[1]), edge(v[1], v[2]), edge(v[2], v[0])]
 }
 
 /// Depths of 0 to 1 in 24 + 8 bits.
 const DEPTH: f64 = 2_147_483_647.0;
 
-fn triangle(v: [Vertex; 3], depth: [f64; 3], colours: [[f64; 3]; 3]) -> Command {
+fn triangle(v: [ScreenPoint; 3], depth: [f64; 3], colours: [[f64; 3]; 3]) -> Command {
     let v = place(v);
     let colour = [0, 1, 2].map(|i| plane(v, colours.map(|c| c[i]), 4096.0));
     Command::Triangle(Triangle { edges: edges(v), depth: plane(v, depth, DEPTH), colour })
 }
 
-fn phong_triangle(v: [Vertex; 3], depth: [f64; 3], normals: [[f64; 3]; 3], colour: u32) -> Command {
+fn phong_triangle(v: [ScreenPoint; 3], depth: [f64; 3], normals: [[f64; 3]; 3], colour: u32) -> Command {
     let v = place(v);
     let normal = [0, 1, 2].map(|i| plane(v, normals.map(|n| n[i] * 1000.0), 1024.0));
     Command::PhongTriangle(PhongTriangle { edges: edges(v), depth: plane(v, depth, DEPTH), normal, colour })
 }
 
 /// A sphere without perspective: silhouette and root in 2^-`fraction` of a square pixel, r < 64 pixels.
-struct Ball {
-    centre: Vertex,
+struct FlatSphere {
+    centre: ScreenPoint,
     radius: f64,
     depth: f64,
 }
 
-impl Ball {
+impl FlatSphere {
     fn body(&self) -> SphereBody {
         let [x, y] = [self.centre[0] + f64::from(LEFT) - 0.5, self.centre[1] + f64::from(TOP) - 0.5];
         // The root of the middle is 4000: 4000^2 = r^2 scale / 2^shift.
-        let (shift, r) = (10_u8, self.radius);
+        let shift = 10_u8;
+        let r = self.radius;
         let scale = 4000.0_f64.powi(2) * 1024.0 / (r * r);
-        let fixed = |v: f64| (v * scale).round() as i64;
         let silhouette = Quadratic {
-            xx: fixed(-1.0),
+            xx: -scale.round() as i64,
             xy: 0,
-            yy: fixed(-1.0),
-            x: fixed(2.0 * x),
-            y: fixed(2.0 * y),
-            one: fixed(r * r - x * x - y * y),
+            yy: -scale.round() as i64,
+            x: (2.0 * x * scale).round() as i64,
+            y: (2.0 * y * scale).round() as i64,
+            one: ((r * r - x * x - y * y) * scale).round() as i64,
         };
         let depth = Linear::constant((self.depth * DEPTH) as i32);
         SphereBody { silhouette, root_shift: shift, depth, depth_shift: 14 }
@@ -95,14 +98,17 @@ impl Ball {
         Linear { a, b, c: c.round() as i32 }
     }
 
+    /// The linear part of a colour component `c` (0 to 255) under a light.
+    fn component(&self, c: f64, light: [f64; 3]) -> Linear {
+        let x = self.across(0, light[0] * c * 4096.0);
+        let y = self.across(1, light[1] * c * 4096.0);
+        Linear { a: x.a, b: y.b, c: x.c.wrapping_add(y.c) }
+    }
+
     fn gouraud(&self, colour: [f64; 3], light: [f64; 3]) -> Command {
-        let component = |c: f64| {
-            let (x, y) = (self.across(0, light[0] * c * 4096.0), self.across(1, light[1] * c * 4096.0));
-            Linear { a: x.a, b: y.b, c: x.c.wrapping_add(y.c) }
-        };
         Command::Sphere(Sphere {
             body: self.body(),
-            colour: colour.map(component),
+            colour: colour.map(|c| self.component(c, light)),
             root_factor: colour.map(|c| (light[2] * c * 256.0 / 250.0) as i16),
         })
     }
@@ -116,8 +122,11 @@ impl Ball {
     }
 }
 
+const fn ball(x: f64, y: f64, radius: f64, depth: f64) -> FlatSphere {
+    FlatSphere { centre: [x, y], radius, depth }
+}
+
 fn gouraud_picture() -> Vec<Command> {
-    let ball = |x, y, radius, depth| Ball { centre: [x, y], radius, depth };
     let light = [-0.5, -0.5, 0.7];
     // Not quite 0 or 255: a component that rounds to the outside of a plane's range wraps.
     let corners = [[2.0, 2.0, 250.0], [250.0, 2.0, 2.0], [2.0, 250.0, 2.0]];
@@ -132,7 +141,6 @@ fn gouraud_picture() -> Vec<Command> {
 }
 
 fn phong_picture() -> Vec<Command> {
-    let ball = |x, y, radius, depth| Ball { centre: [x, y], radius, depth };
     let normals = [[-0.7, -0.5, 0.5], [0.7, -0.3, 0.6], [0.0, 0.8, 0.6]];
     vec![
         phong_triangle([[4.0, 6.0], [124.0, 20.0], [40.0, 124.0]], [0.5, 0.6, 0.5], normals, 0x30_90_ff),

@@ -2,7 +2,6 @@
 
 use crate::isa::{DecodeErrorKind, Operand};
 use pxpl5_wire::{CopyTarget, REGION_SIZE, Word};
-use std::fmt;
 use std::sync::Arc;
 
 /// Pixels of the array: 128 x 128 (F89).
@@ -57,7 +56,7 @@ pub trait PixelArray {
 /// What a list of instructions did besides changing pixels.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Executed {
-    /// Instructions.
+    /// Instructions that were executed.
     pub instructions: u32,
     /// Clocks in which the array was busy.
     pub clocks: u64,
@@ -68,35 +67,39 @@ pub struct Executed {
 /// The pixels of an output instruction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputRegion {
-    /// Where they go.
+    /// Frame buffer, region and picture that the pixels are for.
     pub target: CopyTarget,
     /// One word a pixel, 0x00RRGGBB, row by row of the region's rectangle.
     pub pixels: Arc<[Word]>,
 }
 
 /// An instruction that cannot be executed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("word {position}: {kind}")]
 pub struct Fault {
     /// Index of the instruction's first word in the list.
     pub position: usize,
-    /// What is wrong.
+    /// Why it cannot be executed.
     pub kind: FaultKind,
 }
 
 /// Why an instruction cannot be executed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FaultKind {
     /// The words are no instruction.
+    #[error("{0}")]
     Illegal(DecodeErrorKind),
     /// A relative field ends beyond pixel memory in the selected context.
+    #[error("{} bits at {base} + {} reach beyond pixel memory", .operand.width, .operand.address)]
     FieldOutOfRange {
-        /// The field.
+        /// The field as the instruction names it: address from the base, width in bits.
         operand: Operand,
-        /// Base of the context.
+        /// Bit of pixel memory that the selected context begins with.
         base: u8,
     },
     /// An operand overlaps the destination in a way that the instruction does not allow.
+    #[error("the operand at bit {operand} overlaps the destination at bit {destination}")]
     Overlap {
         /// First bit of the destination.
         destination: u8,
@@ -104,28 +107,6 @@ pub enum FaultKind {
         operand: u8,
     },
 }
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.kind {
-            FaultKind::Illegal(kind) => {
-                write!(f, "word {}: {kind}", self.position)
-            }
-            FaultKind::FieldOutOfRange { operand, base } => write!(
-                f,
-                "word {}: {} bits at {base} + {} reach beyond pixel memory",
-                self.position, operand.width, operand.address
-            ),
-            FaultKind::Overlap { destination, operand } => write!(
-                f,
-                "word {}: the operand at bit {operand} overlaps the destination at bit {destination}",
-                self.position
-            ),
-        }
-    }
-}
-
-impl std::error::Error for Fault {}
 
 /// Runs the lists of a region one after the other and returns what they sent to frame buffers.
 ///

@@ -11,13 +11,13 @@ mod runs;
 mod tile;
 
 use crate::array::{Executed, Fault, FaultKind, OutputRegion, PixelArray, Plane};
-use crate::controller::{Bits, Controller};
+use crate::controller::{Controller, FieldBits};
 use crate::isa::timing::{CONTROL_CLOCKS, SET_UP_CLOCKS};
 use crate::isa::{BACKING_BLOCKS, Instruction, Operand};
 use crate::layout::Layout;
-use crate::simd::{Present, Vectors};
+use crate::simd::{PresentVectors, Vectors};
 use pxpl5_wire::{REGION_SIZE, Word};
-use runs::Run;
+use runs::InstructionRun;
 use std::sync::Arc;
 use tile::{EMPTY, FULL, HEIGHT, TILES, Tile, TilePlane, WIDTH};
 
@@ -28,7 +28,7 @@ use tile::{EMPTY, FULL, HEIGHT, TILES, Tile, TilePlane, WIDTH};
 #[derive(Clone, Debug)]
 pub struct BitSerial {
     layout: Layout,
-    vectors: Present,
+    vectors: PresentVectors,
     controller: Controller,
     tiles: Vec<Tile>,
     /// The planes of a block, tile by tile.
@@ -37,7 +37,7 @@ pub struct BitSerial {
     faults: u64,
     skipping: bool,
     /// Kept for its memory.
-    run: Run,
+    run: InstructionRun,
 }
 
 impl BitSerial {
@@ -52,14 +52,14 @@ impl BitSerial {
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
             layout: *layout,
-            vectors: Present::or_portable(vectors),
+            vectors: PresentVectors::or_portable(vectors),
             controller: Controller::default(),
             tiles: vec![Tile::EMPTY; TILES],
             backing: vec![None; usize::from(BACKING_BLOCKS)],
             clock: 0,
             faults: 0,
             skipping: false,
-            run: Run::default(),
+            run: InstructionRun::default(),
         }
     }
 
@@ -115,21 +115,20 @@ impl BitSerial {
     }
 
     fn enable_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
-        let first = |operand| self.controller.bits(operand).map(|bits| bits.first);
         match *instruction {
             Instruction::EnableAll { .. } => self.each_tile(|tile| tile.enable = FULL),
             Instruction::EnableNone => self.each_tile(|tile| tile.enable = EMPTY),
             Instruction::EnableInvert => self.each_tile(|tile| planes::invert(&mut tile.enable)),
             Instruction::EnableLoad(bit) => {
-                let bit = first(bit)?;
+                let bit = self.controller.bits(bit)?.first;
                 self.each_tile(|tile| tile.enable = tile.memory[bit]);
             }
             Instruction::EnableStore(bit) => {
-                let bit = first(bit)?;
+                let bit = self.controller.bits(bit)?.first;
                 self.each_tile(|tile| tile.memory[bit] = tile.enable);
             }
             Instruction::EnableAnd(bit) => {
-                let bit = first(bit)?;
+                let bit = self.controller.bits(bit)?.first;
                 self.each_tile(|tile| planes::and(&mut tile.enable, &tile.memory[bit]));
             }
             Instruction::Evaluate { expression, usage } => return self.evaluate(&expression, &usage),
@@ -144,7 +143,7 @@ impl BitSerial {
     }
 
     fn field_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
-        for tile in self.tiles.iter_mut().filter(|tile| !self.skipping || tile.enabled()) {
+        for tile in self.tiles.iter_mut().filter(|tile| tile.has_work(self.skipping)) {
             tile.clock = 0;
             tile.field_instruction(&self.controller, instruction)?;
         }
@@ -164,7 +163,7 @@ impl BitSerial {
     }
 
     /// A field's values, row by row of the left top pixels.
-    fn colour(&self, field: Bits, width: u32, height: u32) -> Arc<[Word]> {
+    fn colour(&self, field: FieldBits, width: u32, height: u32) -> Arc<[Word]> {
         let size = REGION_SIZE as usize;
         let mut values = vec![0; size * size];
         for (number, tile) in self.tiles.iter().enumerate() {
@@ -213,7 +212,8 @@ impl PixelArray for BitSerial {
     }
 
     fn reset(&mut self) {
-        let (vectors, skipping) = (self.vectors, self.skipping);
+        let vectors = self.vectors;
+        let skipping = self.skipping;
         *self = Self { vectors, skipping, ..Self::new(&self.layout) };
     }
 

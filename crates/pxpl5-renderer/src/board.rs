@@ -1,7 +1,7 @@
 //! The board: input FIFO and controller on one side, the port to the frame buffers on the other.
 
 use crate::command::CommandKind;
-use crate::fifo::{InputFifo, Progress, Work};
+use crate::fifo::{EqualCommands, InputFifo, Progress};
 use crate::job::{ArrayPool, NoPixels, PixelJob};
 use crate::timing::RendererTiming;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
@@ -20,7 +20,7 @@ pub const MAX_CONTEXTS: usize = 8;
 pub enum RendererEvent {
     /// A message begins to arrive (phase `Arrive`).
     Announce {
-        /// The message.
+        /// Commands for the FIFO, or words that mean nothing here.
         message: Message,
         /// Its first word is on the channel from here on.
         first_word_at: Time,
@@ -38,12 +38,12 @@ pub enum RendererEvent {
 pub enum RendererOutput {
     /// The last word of the announced message enters the FIFO at this time.
     Accept {
-        /// The time.
+        /// When the word is in the FIFO: a word time for each word, and the time for which there was no room.
         last_word_at: Time,
     },
     /// A message for the ring.
     Send {
-        /// The message.
+        /// Pixels of a region, or the acknowledgement of a copy.
         message: Message,
         /// Whether [`RendererEvent::Sent`] shall come back.
         ticket: bool,
@@ -55,17 +55,18 @@ pub enum RendererOutput {
 /// What the board has done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct RendererStats {
-    /// Commands received.
+    /// Commands in all lists that were received, copies and unknown ones included.
     pub commands: u64,
-    /// Words received.
+    /// Words that were received, without the overhead of their messages on the ring.
     pub words: u64,
-    /// Regions copied.
+    /// Regions whose last pixel a frame buffer has received.
     pub regions_copied: u64,
     /// Commands with an operation code that no command has; they are skipped.
     pub illegal_commands: u64,
 }
 
-/// One renderer.
+/// One renderer board: its FIFO and controller in time, the pixels of its regions as jobs that are computed when somebody
+/// looks.
 #[derive(Debug)]
 pub struct Renderer {
     node: NodeId,
@@ -74,7 +75,7 @@ pub struct Renderer {
     fifo: InputFifo,
     pool: Arc<ArrayPool>,
     keeps_empty_regions: bool,
-    logs: [Log; MAX_CONTEXTS],
+    logs: [ContextLog; MAX_CONTEXTS],
     copies: VecDeque<PendingCopy>,
     /// The transfer to a frame buffer that is going on.
     copying: Option<CopyOrder>,
@@ -88,7 +89,7 @@ pub struct Renderer {
 
 /// What was sent to a region context, as far as it can still be seen.
 #[derive(Clone, Debug, Default)]
-struct Log {
+struct ContextLog {
     cleared: bool,
     /// Whether a primitive was drawn.
     drawn: bool,
@@ -107,7 +108,7 @@ impl Renderer {
     #[must_use]
     pub fn new(node: NodeId, timing: RendererTiming, word: Span, cycle: Span, pool: Arc<ArrayPool>) -> Self {
         let fifo = InputFifo::new(timing.fifo_words as u32, word);
-        let logs = std::array::from_fn(|_| Log::default());
+        let logs = std::array::from_fn(|_| ContextLog::default());
         let stats = RendererStats::default();
         Self {
             node,
@@ -126,7 +127,7 @@ impl Renderer {
         }
     }
 
-    /// Handles one event.
+    /// Handles one event at `context.now()`; what follows from it is scheduled or put out through `context`.
     pub fn handle(&mut self, event: RendererEvent, context: &mut Context<RendererEvent, RendererOutput>) {
         match event {
             RendererEvent::Announce { message, first_word_at } => self.announce(message, first_word_at, context),
@@ -143,7 +144,7 @@ impl Renderer {
             // Words of no known command still occupy the FIFO and are thrown away.
             Body::Pixels(_) | Body::Words(_) => {
                 self.stats.illegal_commands += 1;
-                vec![Work { words_each: message.words, count: 1, span_each: Some(Span::ZERO) }]
+                vec![EqualCommands { words_each: message.words, count: 1, span_each: Some(Span::ZERO) }]
             }
         };
         let progress = self.fifo.message(begins, work);
@@ -159,10 +160,10 @@ impl Renderer {
         }
     }
 
-    fn take(&mut self, list: CommandList) -> Vec<Work> {
+    fn take(&mut self, list: CommandList) -> Vec<EqualCommands> {
         let log = &mut self.logs[usize::from(list.context) % MAX_CONTEXTS];
         if begins_with_clear(&list.runs) {
-            *log = Log { cleared: true, ..Log::default() };
+            *log = ContextLog { cleared: true, ..ContextLog::default() };
         }
         if changes_pixels(&list.runs) {
             log.lists.extend(list.content.clone());
@@ -175,7 +176,7 @@ impl Renderer {
         list.runs.iter().map(|run| self.work(run)).collect()
     }
 
-    fn work(&mut self, run: &CommandRun) -> Work {
+    fn work(&mut self, run: &CommandRun) -> EqualCommands {
         self.stats.commands += u64::from(run.count);
         let span_each = match CommandKind::from_opcode(run.opcode) {
             Some(kind) => self.timing.span(kind),
@@ -184,18 +185,23 @@ impl Renderer {
                 Some(Span::ZERO)
             }
         };
-        Work { words_each: run.words_each, count: run.count, span_each }
+        EqualCommands { words_each: run.words_each, count: run.count, span_each }
     }
 
     fn image(&self, order: &CopyOrder) -> Arc<dyn PixelSource> {
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
-        let Log { cleared, drawn, lists } = self.logs[usize::from(order.context) % MAX_CONTEXTS].clone();
+        let ContextLog { cleared, drawn, lists } = self.logs[usize::from(order.context) % MAX_CONTEXTS].clone();
         if lists.is_empty() {
             return Arc::new(NoPixels { pixels: width * height });
         }
-        let (pool, done) = (Arc::clone(&self.pool), OnceLock::new());
-        let kept = self.keeps_empty_regions && !drawn;
-        Arc::new(PixelJob { pool, lists, cleared, kept, target: order.target, done })
+        Arc::new(PixelJob {
+            pool: Arc::clone(&self.pool),
+            lists,
+            cleared,
+            kept: self.keeps_empty_regions && !drawn,
+            target: order.target,
+            done: OnceLock::new(),
+        })
     }
 
     fn copy(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
@@ -248,7 +254,8 @@ impl Renderer {
     ) {
         self.copying = Some(*order);
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
-        let (pixels, parts) = (width * height, (width * height).div_ceil(MAX_MESSAGE_WORDS));
+        let pixels = width * height;
+        let parts = pixels.div_ceil(MAX_MESSAGE_WORDS);
         for part in 0..parts {
             let words = MAX_MESSAGE_WORDS.min(pixels - part * MAX_MESSAGE_WORDS);
             let body = Body::Pixels(RegionPixels { target: order.target, image: Arc::clone(image), part, parts });

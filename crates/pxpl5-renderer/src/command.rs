@@ -35,39 +35,38 @@ mod sphere;
 pub use copy::{Clear, CopyRegion, LoadBacking, SelectRegion, StoreBacking};
 pub(crate) use draw::{COLOUR_AT, COMPONENTS_AT, DEPTH_AT, EDGES_AT, PHONG_WORDS, TRIANGLE_WORDS};
 pub use draw::{PhongTriangle, PhongTriangleEncoder, Triangle, TriangleEncoder};
-pub(crate) use shade::Fields as ShadeFields;
+pub(crate) use shade::ShadeFields;
 pub use shade::{SPECULAR_SQUARINGS, Shade};
-pub(crate) use sphere::Scratch as SphereScratch;
+pub(crate) use sphere::SphereScratch;
 pub use sphere::{PhongSphere, Sphere, SphereBody};
 
-use crate::isa::{DecodeError, DecodeErrorKind, Instruction};
+use crate::isa::{DecodeError, DecodeErrorKind, Instruction, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
-use std::fmt;
 
 /// What a command does; the value is its opcode in [`pxpl5_wire::CommandRun`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum CommandKind {
-    /// [`SelectRegion`].
+    /// Selects context and region: [`SelectRegion`].
     SelectRegion = 1,
-    /// [`Clear`].
+    /// Clears colour and Z: [`Clear`].
     Clear = 2,
-    /// [`Triangle`].
+    /// Triangle with interpolated colour: [`Triangle`].
     Triangle = 3,
-    /// [`PhongTriangle`].
+    /// Triangle with normals: [`PhongTriangle`].
     PhongTriangle = 4,
-    /// [`Sphere`].
+    /// Sphere with interpolated colour: [`Sphere`].
     Sphere = 5,
-    /// [`PhongSphere`].
+    /// Sphere with normals: [`PhongSphere`].
     PhongSphere = 6,
-    /// [`Shade`].
+    /// Deferred shading of all pixels: [`Shade`].
     Shade = 7,
-    /// [`CopyRegion`].
+    /// Copies the region to a frame buffer: [`CopyRegion`].
     CopyRegion = 8,
-    /// [`StoreBacking`].
+    /// Stores 32 bits in the backing store: [`StoreBacking`].
     StoreBacking = 9,
-    /// [`LoadBacking`].
+    /// Loads 32 bits from the backing store: [`LoadBacking`].
     LoadBacking = 10,
     /// Waits until the backing store is idle.
     WaitBacking = 11,
@@ -140,23 +139,16 @@ impl CommandKind {
 }
 
 /// A layout lacks a field that a command needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{kind:?} needs {missing}, which layout {layout} lacks")]
 pub struct Unsupported {
-    /// The command.
+    /// The command that was to be encoded.
     pub kind: CommandKind,
-    /// The layout's name.
+    /// [`Plan::name`](crate::Plan::name) of the layout.
     pub layout: &'static str,
-    /// What is missing.
+    /// The field, or the bits of scratch, that the layout would need.
     pub missing: &'static str,
 }
-
-impl fmt::Display for Unsupported {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?} needs {}, which layout {} lacks", self.kind, self.missing, self.layout)
-    }
-}
-
-impl std::error::Error for Unsupported {}
 
 /// A command with its operands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -165,7 +157,7 @@ pub enum Command {
     SelectRegion(SelectRegion),
     /// Clears colour and Z.
     Clear(Clear),
-    /// Gouraud triangle.
+    /// Triangle with interpolated colour (Gouraud).
     Triangle(Triangle),
     /// Triangle whose pixels are shaded at the end of the frame.
     PhongTriangle(PhongTriangle),
@@ -186,7 +178,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// The command's kind.
+    /// Which kind the command is, without its operands.
     #[must_use]
     pub const fn kind(&self) -> CommandKind {
         match self {
@@ -225,7 +217,7 @@ impl Command {
         program.map_err(|missing| self.unsupported(missing, layout))
     }
 
-    fn unsupported(&self, Missing(missing): Missing, layout: &Layout) -> Unsupported {
+    fn unsupported(&self, MissingField(missing): MissingField, layout: &Layout) -> Unsupported {
         Unsupported { kind: self.kind(), layout: layout.plan().name, missing }
     }
 
@@ -249,16 +241,15 @@ impl Command {
     /// [`DecodeError`] where the words are no instructions, or not the program of a command in this layout.
     pub fn decode(words: &[Word], position: usize, layout: &Layout) -> Result<(Self, usize), DecodeError> {
         let (first, _) = Instruction::decode(words, position)?;
-        let word = words[position];
-        let not = |label| DecodeError { position, word, kind: DecodeErrorKind::NotTheCommand(label) };
-        let kind = kind_of(&first).ok_or(not((word >> 16) as u8))?;
+        let kind = kind_of(&first).ok_or_else(|| not_the_command(words, position, (words[position] >> 16) as u8))?;
         let length = kind.words() as usize;
         let end = words.len().min(position + length);
         let program = decode_range(&words[..end], position)?;
-        let command = Self::from_program(kind, &program, layout).ok_or(not(kind.opcode()))?;
+        let command = Self::from_program(kind, &program, layout)
+            .ok_or_else(|| not_the_command(words, position, kind.opcode()))?;
         match command.program(layout) {
             Ok(expected) if expected == program => Ok((command, length)),
-            _ => Err(not(kind.opcode())),
+            _ => Err(not_the_command(words, position, kind.opcode())),
         }
     }
 
@@ -297,8 +288,13 @@ impl Command {
     }
 }
 
+/// The words at `position` are instructions, but not the command that `label` names.
+fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
+    DecodeError { position, word: words[position], kind: DecodeErrorKind::NotTheCommand(label) }
+}
+
 /// What a layout lacks.
-pub(crate) struct Missing(&'static str);
+pub(crate) struct MissingField(&'static str);
 
 fn encode_all(program: &[Instruction], out: &mut Vec<Word>) {
     program.iter().for_each(|instruction| instruction.encode(out));
@@ -325,6 +321,11 @@ fn decode_range(words: &[Word], from: usize) -> Result<Vec<Instruction>, DecodeE
         position += used;
     }
     Ok(out)
+}
+
+/// Component 0 (x), 1 (y) or 2 (z) of the layout's normal.
+fn normal(layout: &Layout, component: u8) -> Result<Operand, MissingField> {
+    layout.normal(component).ok_or(MissingField("a normal"))
 }
 
 const fn enable(kind: CommandKind) -> Instruction {

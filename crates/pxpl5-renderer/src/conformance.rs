@@ -13,22 +13,15 @@ use crate::layout::Layout;
 use pxpl5_wire::{Linear, Quadratic, Word};
 use std::fmt;
 
-/// Two arrays differ.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Where two arrays that have executed the same list differ.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("after {after}: {difference}")]
 pub struct Mismatch {
-    /// What was executed.
+    /// The list that was executed last, as its caller describes it.
     pub after: String,
     /// What differs, with the first pixel.
     pub difference: String,
 }
-
-impl fmt::Display for Mismatch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "after {}: {}", self.after, self.difference)
-    }
-}
-
-impl std::error::Error for Mismatch {}
 
 /// Executes a list on both arrays and compares results, Enable and all 208 bits of all pixels.
 ///
@@ -40,15 +33,19 @@ pub fn agree(
     words: &[Word],
     after: &dyn fmt::Debug,
 ) -> Result<(), Mismatch> {
-    let (expected, found) = (definition.execute(words), subject.execute(words));
-    let mismatch = |difference| Err(Mismatch { after: format!("{after:?}"), difference });
-    if expected != found {
-        return mismatch(format!("expected {expected:?}, found {found:?}"));
+    let expected = definition.execute(words);
+    let found = subject.execute(words);
+    let difference = if expected != found {
+        Some(format!("expected {expected:?}, found {found:?}"))
+    } else if definition.faults() != subject.faults() {
+        Some("the counts of faults differ".to_owned())
+    } else {
+        first_difference(definition, subject)
+    };
+    match difference {
+        Some(difference) => Err(Mismatch { after: format!("{after:?}"), difference }),
+        None => Ok(()),
     }
-    if definition.faults() != subject.faults() {
-        return mismatch("the counts of faults differ".to_owned());
-    }
-    first_difference(definition, subject).map_or(Ok(()), mismatch)
 }
 
 fn first_difference(definition: &impl PixelArray, subject: &impl PixelArray) -> Option<String> {
@@ -64,7 +61,8 @@ fn difference(what: &str, expected: &Plane, found: &Plane) -> Option<String> {
     let x = (expected[i] ^ found[i]).trailing_zeros() as usize;
     let bit = expected[i] >> x & 1;
     let pixels: u32 = expected.iter().zip(found).map(|(a, b)| (a ^ b).count_ones()).sum();
-    let (x, y) = (64 * (i % 2) + x, i / 2);
+    let x = 64 * (i % 2) + x;
+    let y = i / 2;
     Some(format!("{what} of pixel ({x}, {y}) is not {bit}; {pixels} pixels differ"))
 }
 
@@ -173,17 +171,28 @@ const EXTREMES: [i32; 6] = [0, 1, -1, i32::MAX, i32::MIN, 0x5555_5555];
 fn corner_expressions() -> Vec<Instruction> {
     let mut out = Vec::new();
     for (i, a) in EXTREMES.into_iter().enumerate() {
-        let (b, c) = (EXTREMES[(i + 1) % 6], EXTREMES[(i + 3) % 6]);
+        let b = EXTREMES[(i + 1) % 6];
+        let c = EXTREMES[(i + 3) % 6];
         let linear = Expression::Linear(Linear { a, b, c });
-        let wide = |v: i32| i64::from(v) << 17 | 1;
-        let quadratic = Quadratic { xx: wide(a), xy: wide(c), yy: wide(b), x: wide(c), y: wide(a), one: wide(b) };
-        let quadratic = Expression::Quadratic(quadratic);
+        let quadratic = Expression::Quadratic(Quadratic {
+            xx: beyond_48_bits(a),
+            xy: beyond_48_bits(c),
+            yy: beyond_48_bits(b),
+            x: beyond_48_bits(c),
+            y: beyond_48_bits(a),
+            one: beyond_48_bits(b),
+        });
         for (expression, again) in [(linear, Expression::LinearAgain), (quadratic, Expression::QuadraticAgain)] {
             out.extend(uses(expression));
             out.extend(uses(again));
         }
     }
     out
+}
+
+/// A coefficient whose upper bits do not fit a quadratic's 48, and whose lowest bit counts.
+const fn beyond_48_bits(v: i32) -> i64 {
+    (v as i64) << 17 | 1
 }
 
 fn uses(expression: Expression) -> Vec<Instruction> {
@@ -208,15 +217,16 @@ const WIDTHS: [[u8; 3]; 7] = [[8, 8, 8], [5, 12, 9], [20, 7, 11], [1, 1, 1], [64
 fn corner_fields() -> Vec<Instruction> {
     let mut out = Vec::new();
     for [w, wa, wb] in WIDTHS {
-        for signs in 0..4 {
-            let sign = |field: Operand, bit| if signs >> bit & 1 == 1 { field.signed() } else { field };
+        for [a_signed, b_signed] in [[false, false], [true, false], [false, true], [true, true]] {
             let destination = Operand::absolute(0, w);
-            let (a, b) = (sign(Operand::absolute(64, wa), 0), sign(Operand::absolute(128, wb), 1));
+            let a = Operand { signed: a_signed, ..Operand::absolute(64, wa) };
+            let b = Operand { signed: b_signed, ..Operand::absolute(128, wb) };
             out.extend(two_operands(destination, a, b));
             out.extend(one_operand(destination, a));
             // Against the last bit of pixel memory, where the bits that a product loses have no place at all.
             let last = Operand { address: 208 - w, ..destination };
-            let (low_a, low_b) = (Operand { address: 0, ..a }, Operand { address: 64, ..b });
+            let low_a = Operand { address: 0, ..a };
+            let low_b = Operand { address: 64, ..b };
             out.extend(two_operands(last, low_a, low_b));
             out.extend(one_operand(last, low_a));
             let in_place = Operand { address: 0, ..a };
@@ -226,17 +236,17 @@ fn corner_fields() -> Vec<Instruction> {
         }
     }
     for n in [1, 2, 5, 12, 31, 32] {
-        let (destination, radicand) = (Operand::absolute(0, n), Operand::absolute(64, 2 * n));
+        let destination = Operand::absolute(0, n);
+        let radicand = Operand::absolute(64, 2 * n);
         out.push(Instruction::SquareRoot { destination, radicand });
     }
     out
 }
 
 fn two_operands(destination: Operand, a: Operand, b: Operand) -> Vec<Instruction> {
-    let arithmetic = |op| Instruction::Arithmetic { op, destination, a, b };
-    let compare = |test| Instruction::Compare { test, a, b };
-    let ops = ArithmeticOp::ALL.into_iter().map(arithmetic);
-    ops.chain(Test::ALL.into_iter().map(compare)).collect()
+    let mut out = ArithmeticOp::ALL.map(|op| Instruction::Arithmetic { op, destination, a, b }).to_vec();
+    out.extend(Test::ALL.map(|test| Instruction::Compare { test, a, b }));
+    out
 }
 
 fn one_operand(destination: Operand, source: Operand) -> Vec<Instruction> {

@@ -6,13 +6,13 @@ use pxpl5_wire::{Linear, Quadratic, Word};
 
 /// A field of pixel memory whose address is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Bits {
+pub(crate) struct FieldBits {
     pub(crate) first: usize,
     pub(crate) width: usize,
     pub(crate) signed: bool,
 }
 
-impl Bits {
+impl FieldBits {
     pub(crate) const fn end(&self) -> usize {
         self.first + self.width
     }
@@ -34,14 +34,16 @@ pub(crate) struct Controller {
 
 /// An expression over the array's own columns and rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Local {
+pub(crate) enum LocalExpression {
     Linear(Linear),
     Quadratic(Quadratic),
 }
 
 impl Controller {
     pub(crate) fn select(&mut self, base: u8, left: u16, top: u16) {
-        (self.base, self.left, self.top) = (base, left, top);
+        self.base = base;
+        self.left = left;
+        self.top = top;
     }
 
     /// The instruction at a word, with operands that it allows, and how many words it has.
@@ -53,16 +55,16 @@ impl Controller {
     }
 
     /// Takes the coefficients over, or repeats those held, and applies the region's origin.
-    pub(crate) fn latch(&mut self, expression: &Expression) -> Local {
+    pub(crate) fn latch(&mut self, expression: &Expression) -> LocalExpression {
         match expression {
             Expression::Linear(linear) => self.linear = *linear,
             Expression::Quadratic(quadratic) => self.quadratic = *quadratic,
             Expression::LinearAgain | Expression::QuadraticAgain => {}
         }
         if expression.is_quadratic() {
-            Local::Quadratic(self.localise_quadratic())
+            LocalExpression::Quadratic(self.localise_quadratic())
         } else {
-            Local::Linear(self.localise(&self.linear))
+            LocalExpression::Linear(self.localise(&self.linear))
         }
     }
 
@@ -90,20 +92,20 @@ impl Controller {
     /// Moves the origin of the held quadratic expression to the array's left top pixel.
     pub(crate) fn localise_quadratic(&self) -> Quadratic {
         let q = self.quadratic;
-        let (x, y) = (i64::from(self.left), i64::from(self.top));
-        let twice = |c: i64, p: i64| c.wrapping_mul(2 * p);
+        let x = i64::from(self.left);
+        let y = i64::from(self.top);
         Quadratic {
-            x: q.x.wrapping_add(twice(q.xx, x)).wrapping_add(q.xy.wrapping_mul(y)),
-            y: q.y.wrapping_add(twice(q.yy, y)).wrapping_add(q.xy.wrapping_mul(x)),
+            x: q.x.wrapping_add(q.xx.wrapping_mul(2 * x)).wrapping_add(q.xy.wrapping_mul(y)),
+            y: q.y.wrapping_add(q.yy.wrapping_mul(2 * y)).wrapping_add(q.xy.wrapping_mul(x)),
             one: q.at(i32::from(self.left), i32::from(self.top)),
             ..q
         }
     }
 
     /// The bits that an operand names in the selected context.
-    pub(crate) fn bits(&self, operand: Operand) -> Result<Bits, FaultKind> {
+    pub(crate) fn bits(&self, operand: Operand) -> Result<FieldBits, FaultKind> {
         let base = if operand.relative { self.base } else { 0 };
-        let bits = Bits {
+        let bits = FieldBits {
             first: usize::from(base) + usize::from(operand.address),
             width: usize::from(operand.width),
             signed: operand.signed,
@@ -163,21 +165,23 @@ impl Controller {
     }
 
     fn apart(&self, destination: Operand, operand: Operand) -> Result<(), FaultKind> {
-        let (d, o) = (self.bits(destination)?, self.bits(operand)?);
+        let d = self.bits(destination)?;
+        let o = self.bits(operand)?;
         if d.overlaps(&o) { Err(overlap(&d, &o)) } else { Ok(()) }
     }
 
     fn aligned(&self, destination: Operand, operand: Operand) -> Result<(), FaultKind> {
-        let (d, o) = (self.bits(destination)?, self.bits(operand)?);
+        let d = self.bits(destination)?;
+        let o = self.bits(operand)?;
         if d.overlaps(&o) && d.first != o.first { Err(overlap(&d, &o)) } else { Ok(()) }
     }
 }
 
-const fn overlap(destination: &Bits, operand: &Bits) -> FaultKind {
+const fn overlap(destination: &FieldBits, operand: &FieldBits) -> FaultKind {
     FaultKind::Overlap { destination: destination.first as u8, operand: operand.first as u8 }
 }
 
-impl Local {
+impl LocalExpression {
     /// The value at a column and row, sign-extended from the bits in which it is evaluated.
     pub(crate) fn at(&self, x: i32, y: i32) -> i64 {
         match self {

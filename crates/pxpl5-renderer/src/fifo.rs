@@ -15,14 +15,14 @@ use std::collections::VecDeque;
 
 /// Some equal commands in a row, as the FIFO sees them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Work {
+pub(crate) struct EqualCommands {
     pub(crate) words_each: u32,
     pub(crate) count: u32,
     /// Execution time of one; `None` for a blocking command.
     pub(crate) span_each: Option<Span>,
 }
 
-/// What became known.
+/// What an arrival, or the end of a copy, made known about times to come.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Progress {
     /// The last word of the message in transit enters at this time.
@@ -32,7 +32,7 @@ pub(crate) struct Progress {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Command {
+struct HeldCommand {
     words: u32,
     span: Option<Span>,
     complete: Time,
@@ -64,19 +64,19 @@ impl Departures {
     }
 }
 
-/// FIFO and controller.
+/// The FIFO and the controller behind it; depths in words, times of the simulation.
 #[derive(Debug)]
 pub(crate) struct InputFifo {
     depth: u64,
     word: Span,
     /// Words of the message in transit that have no arrival yet.
-    in_transit: VecDeque<Work>,
+    in_transit: VecDeque<EqualCommands>,
     transit_known: bool,
     last_word_at: Time,
     words_in: u64,
     left: Departures,
     words_left: u64,
-    waiting: VecDeque<Command>,
+    waiting: VecDeque<HeldCommand>,
     /// When the controller is free; `None` while a blocking command runs.
     free_at: Option<Time>,
     busy: Span,
@@ -103,7 +103,7 @@ impl InputFifo {
     }
 
     /// A message begins to arrive: its first word is on the channel from `begins` on.
-    pub(crate) fn message(&mut self, begins: Time, work: impl IntoIterator<Item = Work>) -> Progress {
+    pub(crate) fn message(&mut self, begins: Time, work: impl IntoIterator<Item = EqualCommands>) -> Progress {
         self.last_word_at = self.last_word_at.max(begins);
         self.in_transit.extend(work);
         self.transit_known = false;
@@ -138,10 +138,11 @@ impl InputFifo {
     fn advance(&mut self) -> Progress {
         let mut progress = Progress { accepted: None, blocks: self.start_waiting() };
         while let Some(work) = self.in_transit.pop_front() {
-            let (words, span) = (work.words_each, work.span_each);
+            let words = work.words_each;
+            let span = work.span_each;
             for entered in 0..work.count {
                 let Some(complete) = self.arrival(words) else {
-                    self.in_transit.push_front(Work { count: work.count - entered, ..work });
+                    self.in_transit.push_front(EqualCommands { count: work.count - entered, ..work });
                     return progress;
                 };
                 self.words_in += u64::from(words);
@@ -149,7 +150,7 @@ impl InputFifo {
                 if let Some(changes) = &mut self.changes {
                     changes.push((complete, i64::from(words)));
                 }
-                let blocks = self.start_or_wait(Command { words, span, complete });
+                let blocks = self.start_or_wait(HeldCommand { words, span, complete });
                 progress.blocks = progress.blocks.or(blocks);
             }
         }
@@ -162,7 +163,8 @@ impl InputFifo {
 
     /// When the next `words` words have all entered; `None` while that depends on a blocking command.
     fn arrival(&mut self, words: u32) -> Option<Time> {
-        let (first, last) = (self.words_in, self.words_in + u64::from(words) - 1);
+        let first = self.words_in;
+        let last = self.words_in + u64::from(words) - 1;
         let mut complete = self.last_word_at + self.word * u64::from(words);
         if last < self.depth {
             return Some(complete);
@@ -192,7 +194,7 @@ impl InputFifo {
     }
 
     /// What has arrived last: only behind a blocking command does anything wait.
-    fn start_or_wait(&mut self, command: Command) -> Option<Time> {
+    fn start_or_wait(&mut self, command: HeldCommand) -> Option<Time> {
         match self.free_at {
             Some(free_at) => self.start(command, free_at),
             None => {
@@ -203,7 +205,7 @@ impl InputFifo {
     }
 
     /// Starts a command when it is complete and the controller is free; gives the time if it blocks.
-    fn start(&mut self, command: Command, free_at: Time) -> Option<Time> {
+    fn start(&mut self, command: HeldCommand, free_at: Time) -> Option<Time> {
         let start = free_at.max(command.complete);
         self.left.push(self.words_left + self.depth, start);
         self.words_left += u64::from(command.words);
@@ -226,14 +228,14 @@ mod tests {
     const WORD: Span = Span(50_000);
 
     /// The rules, one word at a time.
-    struct Literal {
+    struct LiteralFifo {
         depth: usize,
         held: VecDeque<Time>,
         last_word_at: Time,
         free_at: Time,
     }
 
-    impl Literal {
+    impl LiteralFifo {
         fn message(&mut self, begins: Time, commands: &[(u32, u64)]) -> (Time, Vec<Time>) {
             self.last_word_at = self.last_word_at.max(begins);
             let mut starts = Vec::new();
@@ -254,13 +256,15 @@ mod tests {
         }
     }
 
-    fn work(commands: &[(u32, u64)]) -> Vec<Work> {
-        let of = |(words_each, ns): &(u32, u64)| Work {
-            words_each: *words_each,
-            count: 1,
-            span_each: Some(Span::from_ns(*ns)),
-        };
-        commands.iter().map(of).collect()
+    fn work(commands: &[(u32, u64)]) -> Vec<EqualCommands> {
+        commands
+            .iter()
+            .map(|(words_each, ns)| EqualCommands {
+                words_each: *words_each,
+                count: 1,
+                span_each: Some(Span::from_ns(*ns)),
+            })
+            .collect()
     }
 
     proptest! {
@@ -271,7 +275,7 @@ mod tests {
                 (0u64..40_000, proptest::collection::vec((1u32..40, 0u64..9_000), 1..30)), 1..12)
         ) {
             let mut fifo = InputFifo::new(depth, WORD);
-            let mut literal = Literal { depth: depth as usize, held: VecDeque::new(), last_word_at: Time::ZERO, free_at: Time::ZERO };
+            let mut literal = LiteralFifo { depth: depth as usize, held: VecDeque::new(), last_word_at: Time::ZERO, free_at: Time::ZERO };
             let mut begins = Time::ZERO;
             for (gap_ns, commands) in messages {
                 begins = begins.max(literal.last_word_at) + Span::from_ns(gap_ns);
@@ -283,9 +287,10 @@ mod tests {
 
         #[test]
         fn runs_are_the_same_as_single_commands(count in 1u32..60, words in 1u32..40, ns in 0u64..9_000) {
-            let (mut runs, mut singles) = (InputFifo::new(448, WORD), InputFifo::new(448, WORD));
-            let run = Work { words_each: words, count, span_each: Some(Span::from_ns(ns)) };
-            let single = Work { count: 1, ..run };
+            let mut runs = InputFifo::new(448, WORD);
+            let mut singles = InputFifo::new(448, WORD);
+            let run = EqualCommands { words_each: words, count, span_each: Some(Span::from_ns(ns)) };
+            let single = EqualCommands { count: 1, ..run };
             let a = runs.message(Time(7), [run]);
             let b = singles.message(Time(7), vec![single; count as usize]);
             prop_assert_eq!(a, b);
@@ -295,12 +300,12 @@ mod tests {
     #[test]
     fn behind_a_copy_words_enter_until_the_fifo_is_full_and_no_further() {
         let mut fifo = InputFifo::new(100, WORD);
-        let copy = Work { words_each: 10, count: 1, span_each: None };
-        let triangle = Work { words_each: 30, count: 1, span_each: Some(Span::from_ns(6_675)) };
+        let copy = EqualCommands { words_each: 10, count: 1, span_each: None };
+        let triangle = EqualCommands { words_each: 30, count: 1, span_each: Some(Span::from_ns(6_675)) };
         let first = fifo.message(Time::ZERO, [copy]);
         assert_eq!(first, Progress { accepted: Some(Time(500_000)), blocks: Some(Time(500_000)) });
         // The copy's words left when it started, so three triangles (90 words) enter.
-        let second = fifo.message(Time(500_000), [Work { count: 3, ..triangle }]);
+        let second = fifo.message(Time(500_000), [EqualCommands { count: 3, ..triangle }]);
         assert_eq!(second.accepted, Some(Time(500_000 + 90 * 50_000)));
         // Twenty words of the next have no room before the copy has ended.
         assert_eq!(fifo.message(Time(5_000_000), [triangle]).accepted, None);
@@ -314,7 +319,7 @@ mod tests {
         // waits for the command that holds word k - 448, so the last word (869) waits for the start of command
         // floor((869 - 448) / 29) = 14 at 1.45 + 14 x 6.675 us; it is word 15 of those that wait for it (421 - 406).
         let mut fifo = InputFifo::new(448, WORD);
-        let clump = Work { words_each: 29, count: 30, span_each: Some(Span::from_ns(6_675)) };
+        let clump = EqualCommands { words_each: 29, count: 30, span_each: Some(Span::from_ns(6_675)) };
         let accepted = fifo.message(Time::ZERO, [clump]).accepted;
         assert_eq!(accepted, Some(Time(1_450_000 + 14 * 6_675_000 + 16 * 50_000)));
     }

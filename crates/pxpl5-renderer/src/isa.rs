@@ -117,14 +117,14 @@ pub enum ExpressionUse {
     DisableNegative,
     /// Store bits `shift ..` of the expression.
     Load {
-        /// Where to.
+        /// Field that takes the bits.
         field: Operand,
         /// Low bits left out.
         shift: u8,
     },
     /// Add bits `shift ..` of the expression.
     Add {
-        /// Where to.
+        /// Field that takes the bits.
         field: Operand,
         /// Low bits left out.
         shift: u8,
@@ -138,11 +138,11 @@ pub enum ExpressionUse {
     },
     /// Store bits `shift ..` of the expression minus `subtrahend << left_shift`.
     LoadMinus {
-        /// Where to.
+        /// Field that takes the bits.
         field: Operand,
         /// Low bits left out.
         shift: u8,
-        /// What is subtracted.
+        /// Field that is subtracted, extended by its signedness.
         subtrahend: Operand,
         /// By how much the subtrahend is shifted to the left first.
         left_shift: u8,
@@ -152,56 +152,56 @@ pub enum ExpressionUse {
 /// Operations on two fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArithmeticOp {
-    /// a + b.
+    /// a + b, modulo 2^w.
     Add,
-    /// a - b.
+    /// a - b, modulo 2^w.
     Subtract,
-    /// a * b.
+    /// a * b, modulo 2^w; no operand may overlap the result.
     Multiply,
     /// a / b; the remainder stays in a.
     Divide,
-    /// Bitwise and.
+    /// a and b, bit by bit.
     And,
-    /// Bitwise or.
+    /// a or b, bit by bit.
     Or,
-    /// Bitwise exclusive or.
+    /// a exclusive or b, bit by bit.
     Xor,
-    /// The smaller.
+    /// The smaller of a and b, which are both signed or both unsigned.
     Minimum,
-    /// The larger.
+    /// The larger of a and b, which are both signed or both unsigned.
     Maximum,
 }
 
 /// Comparisons that disable a pixel where they do not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Test {
-    /// a < b.
+    /// Holds where a < b.
     Less,
-    /// a >= b.
+    /// Holds where a >= b.
     NotLess,
-    /// a = b.
+    /// Holds where a = b.
     Equal,
-    /// a != b.
+    /// Holds where a and b differ.
     NotEqual,
 }
 
 /// One instruction of the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instruction {
-    /// E := 1.
+    /// E := 1: enables every pixel.
     EnableAll {
         /// Without effect; commands put their kind here.
         label: u8,
     },
-    /// E := 0.
+    /// E := 0: disables every pixel.
     EnableNone,
-    /// E := not E.
+    /// E := not E, in every pixel.
     EnableInvert,
-    /// E := bit.
+    /// E := bit of pixel memory, a field of one bit.
     EnableLoad(Operand),
     /// bit := E in every pixel.
     EnableStore(Operand),
-    /// E := E and bit.
+    /// E := E and bit of pixel memory, a field of one bit.
     EnableAnd(Operand),
     /// Selects the context and the region that the following instructions work on.
     Select {
@@ -214,84 +214,84 @@ pub enum Instruction {
     },
     /// Evaluates an expression in all pixels.
     Evaluate {
-        /// Which expression.
+        /// Coefficients, or those that the evaluator holds.
         expression: Expression,
-        /// What for.
+        /// What each pixel does with the bits as they come.
         usage: ExpressionUse,
     },
     /// destination := source >> by (a copy for 0).
     ShiftRight {
-        /// Where to.
+        /// Field that takes the result.
         destination: Operand,
-        /// Where from.
+        /// Field that is read, extended by its signedness.
         source: Operand,
-        /// Bits.
+        /// Bits by which the source is shifted, 0 to 63.
         by: u8,
     },
     /// destination := source << by.
     ShiftLeft {
-        /// Where to.
+        /// Field that takes the result.
         destination: Operand,
-        /// Where from.
+        /// Field that is read, extended by its signedness.
         source: Operand,
-        /// Bits.
+        /// Bits by which the source is shifted, 0 to 63.
         by: u8,
     },
     /// destination := source limited to what fits unsigned.
     Saturate {
-        /// Where to.
+        /// Field that takes the result.
         destination: Operand,
-        /// Where from.
+        /// Field that is read, extended by its signedness.
         source: Operand,
     },
     /// destination := floor of the square root; radicand := remainder.
     SquareRoot {
-        /// Root.
+        /// Field of the root, 1 to 32 bits.
         destination: Operand,
         /// Twice as wide as the root.
         radicand: Operand,
     },
     /// destination := a op b.
     Arithmetic {
-        /// Operation.
+        /// What is done with a and b.
         op: ArithmeticOp,
-        /// Where to.
+        /// Field that takes the result.
         destination: Operand,
-        /// First operand.
+        /// First operand, extended by its signedness.
         a: Operand,
-        /// Second operand.
+        /// Second operand, extended by its signedness.
         b: Operand,
     },
     /// Disable unless the test holds between two fields.
     Compare {
-        /// Test.
+        /// What must hold for a pixel to stay enabled.
         test: Test,
-        /// First operand.
+        /// First operand, extended by its signedness.
         a: Operand,
-        /// Second operand.
+        /// Second operand, extended by its signedness.
         b: Operand,
     },
     /// Disable unless the test holds between a field and a constant (of the field's width and signedness).
     CompareConstant {
-        /// Test.
+        /// What must hold for a pixel to stay enabled.
         test: Test,
-        /// Field.
+        /// Field that is compared.
         a: Operand,
         /// Constant; low bits are used; wider fields extend it by the field's signedness.
         value: u32,
     },
     /// destination := value, extended by zeros (by the sign for a signed destination).
     LoadConstant {
-        /// Where to.
+        /// Field that takes the result.
         destination: Operand,
-        /// Constant.
+        /// Constant that every enabled pixel gets.
         value: u32,
     },
     /// destination := source * factor.
     MultiplyConstant {
-        /// Where to.
+        /// Field that takes the result.
         destination: Operand,
-        /// Field.
+        /// Field that is multiplied, extended by its signedness.
         source: Operand,
         /// Constant, of which the low `factor_bits` count, two's complement.
         factor: i32,
@@ -302,14 +302,14 @@ pub enum Instruction {
     StoreBlock {
         /// 32 bits of pixel memory.
         field: Operand,
-        /// Block number.
+        /// Block of the backing store, 0 to 127.
         block: u8,
     },
     /// 32 bits := backing store block, every pixel, in the background.
     LoadBlock {
         /// 32 bits of pixel memory.
         field: Operand,
-        /// Block number.
+        /// Block of the backing store, 0 to 127.
         block: u8,
     },
     /// Waits until the backing store is idle.
@@ -318,7 +318,7 @@ pub enum Instruction {
     Output {
         /// 24 bits of colour.
         field: Operand,
-        /// Where to.
+        /// Frame buffer, region and lines that the pixels are for.
         target: CopyTarget,
     },
 }

@@ -4,18 +4,18 @@ use crate::{Command, Lanes, Layout, PixelArray};
 use pxpl5_wire::{CommandWords, CopyTarget, PixelSource, Word};
 use std::collections::HashMap;
 use std::fmt;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// Pixel arrays that are not in use; a thread that computes pixels borrows one.
 pub struct ArrayPool {
     layout: Layout,
-    idle: Mutex<Vec<Desk>>,
+    idle: Mutex<Vec<ArrayAndWords>>,
     /// Regions without primitives, by their size and words.
     empty_regions: Mutex<HashMap<EmptyRegion, Arc<[Word]>>>,
 }
 
 /// What a thread needs to compute pixels.
-struct Desk {
+struct ArrayAndWords {
     array: Lanes,
     /// Room for the words of a list.
     words: Vec<Word>,
@@ -46,27 +46,30 @@ impl ArrayPool {
         Arc::new(Self { layout, idle: Mutex::default(), empty_regions: Mutex::default() })
     }
 
-    fn with_desk<T>(&self, work: impl FnOnce(&mut Desk) -> T) -> T {
+    fn with_idle_array<T>(&self, work: impl FnOnce(&mut ArrayAndWords) -> T) -> T {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        let mut desk = idle.unwrap_or_else(|| Desk { array: Lanes::new(&self.layout), words: Vec::new() });
-        let result = work(&mut desk);
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(desk);
+        let mut borrowed = idle.unwrap_or_else(|| ArrayAndWords { array: Lanes::new(&self.layout), words: Vec::new() });
+        let result = work(&mut borrowed);
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(borrowed);
         result
     }
 
     /// The pixels of a region without primitives, which are those of the last one alike.
     fn empty_region(&self, region: EmptyRegion, draw: impl FnOnce() -> Arc<[Word]>) -> Arc<[Word]> {
-        let kept = || self.empty_regions.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(pixels) = kept().get(&region) {
+        if let Some(pixels) = self.kept_empty_regions().get(&region) {
             return Arc::clone(pixels);
         }
         let pixels = draw();
-        let mut regions = kept();
+        let mut regions = self.kept_empty_regions();
         if regions.len() >= EMPTY_REGIONS {
             regions.clear();
         }
         regions.insert(region, Arc::clone(&pixels));
         pixels
+    }
+
+    fn kept_empty_regions(&self) -> MutexGuard<'_, HashMap<EmptyRegion, Arc<[Word]>>> {
+        self.empty_regions.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -96,8 +99,10 @@ impl PixelJob {
 
     /// `None` where something is no command.
     fn words_without_copies(&self) -> Option<Vec<Word>> {
-        let (mut words, mut kept, mut at) = (Vec::new(), Vec::new(), 0);
+        let mut words = Vec::new();
         self.lists.iter().for_each(|list| list.append_words(&mut words));
+        let mut kept = Vec::new();
+        let mut at = 0;
         while at < words.len() {
             let (command, length) = Command::decode(&words, at, &self.pool.layout).ok()?;
             if !matches!(command, Command::CopyRegion(_)) {
@@ -108,14 +113,14 @@ impl PixelJob {
         Some(kept)
     }
 
-    /// Columns and rows.
+    /// Columns and rows of the region, which may be less than the array's.
     fn size(&self) -> [u32; 2] {
         let [_, _, width, height] = self.target.grid.rectangle(self.target.region);
         [width, height]
     }
 
     fn draw(&self) -> Arc<[Word]> {
-        self.pool.with_desk(|Desk { array, words }| {
+        self.pool.with_idle_array(|ArrayAndWords { array, words }| {
             if !self.cleared {
                 array.reset();
             }
@@ -158,9 +163,9 @@ mod tests {
     use pxpl5_wire::{Lines, NodeId, RegionGrid, RegionId};
 
     #[derive(Debug)]
-    struct Given(Vec<Word>);
+    struct GivenWords(Vec<Word>);
 
-    impl CommandWords for Given {
+    impl CommandWords for GivenWords {
         fn append_words(&self, out: &mut Vec<Word>) {
             out.extend_from_slice(&self.0);
         }
@@ -180,9 +185,8 @@ mod tests {
         let commands = [select, Command::Clear(Clear { colour }), Command::CopyRegion(CopyRegion { target })];
         let mut words = Vec::new();
         commands.iter().for_each(|command| command.encode(&pool.layout, &mut words).expect("it fits"));
-        let lists: Vec<Arc<dyn CommandWords>> = vec![Arc::new(Given(words))];
-        let (pool, done) = (Arc::clone(pool), OnceLock::new());
-        PixelJob { pool, lists, cleared: true, kept: true, target, done }.pixels()
+        let lists: Vec<Arc<dyn CommandWords>> = vec![Arc::new(GivenWords(words))];
+        PixelJob { pool: Arc::clone(pool), lists, cleared: true, kept: true, target, done: OnceLock::new() }.pixels()
     }
 
     #[test]

@@ -14,11 +14,11 @@ mod values;
 mod whole;
 
 use crate::array::{Executed, Fault, PIXELS, PixelArray, Plane};
-use crate::controller::{Bits, Controller};
+use crate::controller::{Controller, FieldBits};
 use crate::isa::{BACKING_BLOCKS, opcode};
 use crate::layout::Layout;
-use crate::simd::{Present, Vectors};
-use columns::Columns;
+use crate::simd::{PresentVectors, Vectors};
+use columns::PixelColumns;
 use enable::Enable;
 use pxpl5_wire::{REGION_SIZE, Word};
 use std::sync::Arc;
@@ -31,10 +31,10 @@ use whole::{ContextColumns, Templates};
 #[derive(Clone, Debug)]
 pub struct Lanes {
     layout: Layout,
-    vectors: Present,
+    vectors: PresentVectors,
     templates: Templates,
     controller: Controller,
-    columns: Columns,
+    columns: PixelColumns,
     /// Of the context that was used last.
     selected: Option<ContextColumns>,
     enable: Enable,
@@ -55,10 +55,10 @@ impl Lanes {
     pub fn with_vectors(layout: &Layout, vectors: Vectors) -> Self {
         Self {
             layout: *layout,
-            vectors: Present::or_portable(vectors),
+            vectors: PresentVectors::or_portable(vectors),
             templates: Templates::new(layout),
             controller: Controller::default(),
-            columns: Columns::new(layout),
+            columns: PixelColumns::new(layout),
             selected: None,
             enable: Enable::new(),
             backing: vec![None; usize::from(BACKING_BLOCKS)],
@@ -89,7 +89,7 @@ impl Lanes {
         Ok(used)
     }
 
-    fn colour(&self, field: Bits, width: u32, height: u32) -> Arc<[Word]> {
+    fn colour(&self, field: FieldBits, width: u32, height: u32) -> Arc<[Word]> {
         if let Some(column) = self.columns.find(field.first, field.width) {
             return rectangle(&self.columns.values(column).0, width, height);
         }
@@ -102,7 +102,8 @@ impl Lanes {
 /// The left top `width` x `height` of all pixels.
 fn rectangle(pixels: &[Word], width: u32, height: u32) -> Arc<[Word]> {
     const WIDTH: usize = REGION_SIZE as usize;
-    let (width, height) = (WIDTH.min(width as usize), WIDTH.min(height as usize));
+    let width = WIDTH.min(width as usize);
+    let height = WIDTH.min(height as usize);
     if width == WIDTH {
         return pixels[..width * height].into();
     }
@@ -177,7 +178,8 @@ mod tests {
 
     #[test]
     fn a_command_for_another_layout_still_runs_instruction_by_instruction() {
-        let (ours, theirs) = (Layout::rendering_control_phong(), Layout::slats());
+        let ours = Layout::rendering_control_phong();
+        let theirs = Layout::slats();
         let mut lanes = Lanes::new(&ours);
         let mut words = Vec::new();
         Command::blank(CommandKind::Sphere).encode(&theirs, &mut words).unwrap();

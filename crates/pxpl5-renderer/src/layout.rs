@@ -2,7 +2,8 @@
 
 use crate::isa::{MEMORY_BITS, Operand};
 use pxpl5_wire::format::{COLOUR_BITS, NORMAL_BITS, Z_BITS, Z_FRACTION_BITS};
-use std::fmt::{self, Write as _};
+use std::fmt::Write as _;
+use std::ops::RangeInclusive;
 
 /// A division of pixel memory that nobody has checked yet.
 ///
@@ -10,13 +11,13 @@ use std::fmt::{self, Write as _};
 /// and shared by all contexts, which is right because a command leaves nothing there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
-    /// For messages.
+    /// Name that error messages give the layout.
     pub name: &'static str,
     /// Regions that share the array.
     pub contexts: u8,
-    /// Bits of each.
+    /// Bits of pixel memory that each context takes.
     pub context_bits: u8,
-    /// 24 bits, 0xRRGGBB.
+    /// Colour, 24 bits, 0xRRGGBB.
     pub colour: Operand,
     /// Depth; nearer is smaller.
     pub z: Operand,
@@ -31,19 +32,21 @@ pub struct Plan {
 pub struct Layout(Plan);
 
 /// Why a plan does not fit.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LayoutError {
     /// Fields lie outside of pixel memory or over each other; the text draws them.
+    #[error("layout {name} does not fit {} bits:\n{drawing}", MEMORY_BITS)]
     DoesNotFit {
-        /// The plan's name.
+        /// [`Plan::name`] of the plan.
         name: &'static str,
         /// One line a field.
         drawing: String,
     },
     /// A field has a width that the commands cannot use.
+    #[error("{field} has {found} bits, expected {expected}")]
     Width {
-        /// The field.
+        /// Name of the field in [`Plan`].
         field: &'static str,
         /// Bits that are allowed.
         expected: &'static str,
@@ -51,21 +54,6 @@ pub enum LayoutError {
         found: u8,
     },
 }
-
-impl fmt::Display for LayoutError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::DoesNotFit { name, drawing } => {
-                write!(f, "layout {name} does not fit {MEMORY_BITS} bits:\n{drawing}")
-            }
-            Self::Width { field, expected, found } => {
-                write!(f, "{field} has {found} bits, expected {expected}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for LayoutError {}
 
 /// Rendering Control with Phong shading: one region, 24 colour + 24 Z + 36 normal, and 124 bits of scratch.
 const RENDERING_CONTROL_PHONG: Plan = Plan {
@@ -136,7 +124,7 @@ impl Layout {
         Err(LayoutError::DoesNotFit { name: plan.name, drawing: draw(&ranges, &bad) })
     }
 
-    /// The plan.
+    /// The fields of the layout, as they were checked.
     #[must_use]
     pub const fn plan(&self) -> &Plan {
         &self.0
@@ -187,11 +175,11 @@ impl Layout {
 /// A named range of pixel memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FieldRange {
-    /// Context and field.
+    /// Number of the context and name of the field, or *scratch*.
     pub name: String,
-    /// First bit.
+    /// Address of the first bit in pixel memory, 0 to 207.
     pub first: u32,
-    /// Bits.
+    /// Length in bits of pixel memory.
     pub width: u32,
 }
 
@@ -202,17 +190,22 @@ impl FieldRange {
 }
 
 fn check_widths(plan: &Plan) -> Result<(), LayoutError> {
-    let wrong = |field, expected, found| Err(LayoutError::Width { field, expected, found });
-    if plan.colour.width != 24 {
-        return wrong("colour", "24", plan.colour.width);
+    check_width("colour", "24", 24..=24, plan.colour)?;
+    check_width("z", "8 to 24", 8..=24, plan.z)?;
+    plan.normal.map_or(Ok(()), |normal| check_width("normal", "36", 36..=36, normal))
+}
+
+/// `expected` says in words what `allowed` does.
+fn check_width(
+    field: &'static str,
+    expected: &'static str,
+    allowed: RangeInclusive<u8>,
+    found: Operand,
+) -> Result<(), LayoutError> {
+    if allowed.contains(&found.width) {
+        return Ok(());
     }
-    if !(8..=24).contains(&plan.z.width) {
-        return wrong("z", "8 to 24", plan.z.width);
-    }
-    match plan.normal {
-        Some(normal) if normal.width != 36 => wrong("normal", "36", normal.width),
-        _ => Ok(()),
-    }
+    Err(LayoutError::Width { field, expected, found: found.width })
 }
 
 fn ranges(plan: &Plan) -> Vec<FieldRange> {
@@ -237,20 +230,22 @@ fn ranges(plan: &Plan) -> Vec<FieldRange> {
 
 /// For each range what is wrong with it, if anything.
 fn conflicts(plan: &Plan, ranges: &[FieldRange]) -> Vec<Option<String>> {
-    let conflict = |(i, range): (usize, &FieldRange)| {
-        if range.end() > MEMORY_BITS {
-            return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));
-        }
-        let before = ranges[..i].iter().find(|other| overlap(range, other));
-        before.map(|other| format!("overlaps {}", other.name))
-    };
-    let mut out: Vec<_> = ranges.iter().enumerate().map(conflict).collect();
+    let mut out: Vec<_> = (0..ranges.len()).map(|i| conflict(&ranges[i], &ranges[..i])).collect();
     let whole = u32::from(plan.contexts) * u32::from(plan.context_bits);
     if (plan.contexts == 0 || whole > MEMORY_BITS) && !out.is_empty() {
         let i = out.len() - 1;
         out[i].get_or_insert(format!("{} contexts take {whole} bits", plan.contexts));
     }
     out
+}
+
+/// What is wrong with a range behind those `before` it, if anything.
+fn conflict(range: &FieldRange, before: &[FieldRange]) -> Option<String> {
+    if range.end() > MEMORY_BITS {
+        return Some(format!("ends beyond bit {}", MEMORY_BITS - 1));
+    }
+    let other = before.iter().find(|other| overlap(range, other))?;
+    Some(format!("overlaps {}", other.name))
 }
 
 const fn overlap(a: &FieldRange, b: &FieldRange) -> bool {

@@ -14,9 +14,9 @@ mod x86;
 pub enum Vectors {
     /// What every processor of the target has.
     Portable,
-    /// x86-64 with AVX2.
+    /// x86-64 with AVX2: 8 numbers of 32 bits at a time.
     Avx2,
-    /// x86-64 with AVX-512 (F, BW, DQ and VL).
+    /// x86-64 with AVX-512 (F, BW, DQ and VL): 16 numbers of 32 bits at a time.
     Avx512,
 }
 
@@ -58,9 +58,9 @@ impl Vectors {
 
 /// A vector unit that is known to be present.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Present(Vectors);
+pub(crate) struct PresentVectors(Vectors);
 
-impl Present {
+impl PresentVectors {
     /// `wanted`, or what every processor has where it is absent.
     pub(crate) fn or_portable(wanted: Vectors) -> Self {
         Self(if wanted.present() { wanted } else { Vectors::Portable })
@@ -68,39 +68,39 @@ impl Present {
 
     /// Runs the kernel compiled for this unit.
     #[inline]
-    pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
+    pub(crate) fn run<K: VectorKernel>(self, kernel: K) -> K::Output {
         match self.0 {
-            // SAFETY: a `Present` is made only where the processor says that it has these features.
+            // SAFETY: a `PresentVectors` is made only where the processor says that it has these features.
             #[cfg(target_arch = "x86_64")]
             Vectors::Avx512 => unsafe { avx512(kernel) },
             // SAFETY: as above.
             #[cfg(target_arch = "x86_64")]
             Vectors::Avx2 => unsafe { avx2(kernel) },
-            _ => kernel.run::<Eight>(),
+            _ => kernel.run::<PortableVector>(),
         }
     }
 }
 
 /// A loop worth vectorising. `run` must be `#[inline(always)]`, or it is compiled without the unit's features.
-pub(crate) trait Kernel {
+pub(crate) trait VectorKernel {
     type Output;
-    fn run<V: Vector>(self) -> Self::Output;
+    fn run<V: SimdVector>(self) -> Self::Output;
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi2")]
-fn avx2<K: Kernel>(kernel: K) -> K::Output {
+fn avx2<K: VectorKernel>(kernel: K) -> K::Output {
     kernel.run::<x86::Avx2>()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,bmi2,avx512f,avx512bw,avx512dq,avx512vl")]
-fn avx512<K: Kernel>(kernel: K) -> K::Output {
+fn avx512<K: VectorKernel>(kernel: K) -> K::Output {
     kernel.run::<x86::Avx512>()
 }
 
 /// 32-bit integers side by side. Compilers find them in plain loops, but not in short ones.
-pub(crate) trait Vector: Copy {
+pub(crate) trait SimdVector: Copy {
     /// Integers in a vector; 128 is a multiple.
     const LANES: usize;
     /// One truth a lane.
@@ -111,9 +111,9 @@ pub(crate) trait Vector: Copy {
     fn ramp(first: i32, step: i32) -> Self;
     /// The first lanes of `from`, which has at least as many.
     fn load(from: &[u32]) -> Self;
-    /// As [`Vector::load`] from words of two lanes, the low half first.
+    /// As [`SimdVector::load`] from words of two lanes, the low half first.
     fn load_words(from: &[u64]) -> Self;
-    /// Overwrites as many words as [`Vector::load_words`] reads.
+    /// Overwrites as many words as [`SimdVector::load_words`] reads.
     fn store_words(self, to: &mut [u64]);
     /// All bits of lane i are bit i of `bits`.
     fn spread(bits: u64) -> Self;
@@ -139,9 +139,9 @@ pub(crate) trait Vector: Copy {
     fn store_mask(mask: Self::Mask, to: &mut [u8]);
 }
 
-/// The portable vector.
+/// Eight numbers in an array, for processors without a unit that is known here.
 #[derive(Clone, Copy)]
-pub(crate) struct Eight([i32; 8]);
+pub(crate) struct PortableVector([i32; 8]);
 
 /// Four lanes for each number of four bits, whose bits they are: processors without AVX2 have no shift a lane.
 const FOUR_LANES: [[i32; 4]; 16] = {
@@ -158,7 +158,7 @@ const FOUR_LANES: [[i32; 4]; 16] = {
     out
 };
 
-impl Eight {
+impl PortableVector {
     #[inline(always)]
     fn map(self, f: impl Fn(i32) -> i32) -> Self {
         Self(self.0.map(f))
@@ -170,7 +170,7 @@ impl Eight {
     }
 }
 
-impl Vector for Eight {
+impl SimdVector for PortableVector {
     const LANES: usize = 8;
     type Mask = Self;
 
@@ -204,8 +204,8 @@ impl Vector for Eight {
 
     #[inline(always)]
     fn spread(bits: u64) -> Self {
-        let four = |from: u32| &FOUR_LANES[(bits >> from) as usize & 15];
-        let ([a, b, c, d], [e, f, g, h]) = (*four(0), *four(4));
+        let [a, b, c, d] = FOUR_LANES[bits as usize & 15];
+        let [e, f, g, h] = FOUR_LANES[(bits >> 4) as usize & 15];
         Self([a, b, c, d, e, f, g, h])
     }
 

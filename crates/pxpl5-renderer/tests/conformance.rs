@@ -85,32 +85,17 @@ fn small_triangles_agree_where_the_array_ends_on_every_vector_unit() {
 
 /// Its box is up to 20 pixels wide and 9 high and begins near a border or anywhere.
 fn small_triangle(random: &mut Random, layout: &Layout) -> Command {
-    let mut pick = |below: u64| random.below(below) as i32;
-    let (width, height) = (1 + pick(20), 1 + pick(9));
-    let mut place = |size: i32| match pick(4) {
-        0 => -pick(3),
-        1 => 128 - size + pick(3),
-        _ => pick(128),
-    };
-    let (left, top) = (place(width), place(height));
-    let mut corner = |i: i32| match i {
-        0 => [left, top + pick(height as u64 + 1)],
-        1 => [left + width, top + pick(height as u64 + 1)],
-        _ => [left + pick(width as u64 + 1), [top, top + height][pick(2) as usize]],
-    };
-    let [p, q, r] = [0, 1, 2].map(&mut corner);
-    // At least 0 on one side of the line from a to b.
-    let edge = |[ax, ay]: [i32; 2], [bx, by]: [i32; 2]| {
-        let (dx, dy) = (bx - ax, by - ay);
-        Linear { a: -dy, b: dx, c: dy * ax - dx * ay }
-    };
+    let width = 1 + below(random, 20);
+    let height = 1 + below(random, 9);
+    let left = small_box_begins(random, width);
+    let top = small_box_begins(random, height);
+    let p = [left, top + below(random, height + 1)];
+    let q = [left + width, top + below(random, height + 1)];
+    let r = [left + below(random, width + 1), [top, top + height][below(random, 2) as usize]];
     let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     let edges = if area < 0 { [edge(p, r), edge(r, q), edge(q, p)] } else { [edge(p, q), edge(q, r), edge(r, p)] };
-    let mut plane = |bits: u32| {
-        let mut part = |bits: u32| (random.next() as i32) >> (32 - bits);
-        Linear { a: part(bits - 8), b: part(bits - 8), c: part(bits) }
-    };
-    let (depth, components) = (plane(31), [plane(22), plane(22), plane(22)]);
+    let depth = plane(random, 31);
+    let components = [plane(random, 22), plane(random, 22), plane(random, 22)];
     if layout.normal(0).is_some() {
         Command::PhongTriangle(PhongTriangle { edges, depth, normal: components, colour: 0x12_3456 })
     } else {
@@ -118,21 +103,55 @@ fn small_triangle(random: &mut Random, layout: &Layout) -> Command {
     }
 }
 
+/// A number from 0 to `n` - 1.
+fn below(random: &mut Random, n: i32) -> i32 {
+    random.below(n as u64) as i32
+}
+
+/// First column (or row) of a box of `size` of them: across the first border, across the last one, or anywhere.
+fn small_box_begins(random: &mut Random, size: i32) -> i32 {
+    match below(random, 4) {
+        0 => -below(random, 3),
+        1 => 128 - size + below(random, 3),
+        _ => below(random, 128),
+    }
+}
+
+/// At least 0 on one side of the line from a to b.
+fn edge([ax, ay]: [i32; 2], [bx, by]: [i32; 2]) -> Linear {
+    let dx = bx - ax;
+    let dy = by - ay;
+    Linear { a: -dy, b: dx, c: dy * ax - dx * ay }
+}
+
+/// A plane whose values use about `bits` bits over the array.
+fn plane(random: &mut Random, bits: u32) -> Linear {
+    Linear { a: random.signed(bits - 8), b: random.signed(bits - 8), c: random.signed(bits) }
+}
+
+fn pick(random: &mut Random, from: &[i32]) -> i32 {
+    from[random.below(from.len() as u64) as usize]
+}
+
 /// Instructions with an expression that turns its sign, or wraps, at a corner of a block of pixels or beside it.
 fn corner_run(random: &mut Random) -> Vec<Instruction> {
-    let mut pick = |from: &[i32]| from[random.below(from.len() as u64) as usize];
     let slopes = [0, 1, -1, 16, -16, 333, -70_001, 1 << 23, -(1 << 24), i32::MAX, i32::MIN];
     let mut out = Vec::new();
-    for _ in 0..pick(&[1, 3, 12]) {
-        let (a, b) = (pick(&slopes), pick(&slopes));
+    for _ in 0..pick(random, &[1, 3, 12]) {
+        let a = pick(random, &slopes);
+        let b = pick(random, &slopes);
         let corner = [0, 15, 16, 31, 32, 63, 64, 95, 112, 127];
-        let beside = Linear { a, b, c: 0 }.at(pick(&corner), pick(&corner));
-        let value = pick(&[-1, 0, 1, i32::MAX, i32::MIN]);
+        let beside = Linear { a, b, c: 0 }.at(pick(random, &corner), pick(random, &corner));
+        let value = pick(random, &[-1, 0, 1, i32::MAX, i32::MIN]);
         let c = value.wrapping_sub(beside);
-        let expression =
-            if pick(&[0, 0, 0, 1]) == 1 { Expression::LinearAgain } else { Expression::Linear(Linear { a, b, c }) };
-        let (field, shift) = (Operand::absolute(24, 20), 12);
-        let usage = match pick(&[0, 0, 0, 1, 2, 3, 4, 5]) {
+        let expression = if pick(random, &[0, 0, 0, 1]) == 1 {
+            Expression::LinearAgain
+        } else {
+            Expression::Linear(Linear { a, b, c })
+        };
+        let field = Operand::absolute(24, 20);
+        let shift = 12;
+        let usage = match pick(random, &[0, 0, 0, 1, 2, 3, 4, 5]) {
             0 => ExpressionUse::DisableNegative,
             1 => ExpressionUse::Load { field, shift },
             2 => ExpressionUse::Add { field, shift },
@@ -175,12 +194,11 @@ fn random_lists_agree() {
     let seconds = std::env::var("PXPL5_FUZZ_SECONDS").ok();
     let limit = seconds.map(|text| Duration::from_secs(text.parse().expect("a number of seconds")));
     let start = Instant::now();
-    let more = |round: u64| limit.map_or(round < ROUNDS, |limit| start.elapsed() < limit);
     let layouts = layouts();
     let mut lanes = layouts.map(|layout| (BitSerial::new(&layout), Lanes::new(&layout)));
     let mut skipping = layouts.map(|layout| (BitSerial::new(&layout), BitSerial::new(&layout).skipping()));
     let mut round = 0;
-    while more(round) {
+    while limit.map_or(round < ROUNDS, |limit| start.elapsed() < limit) {
         for (layout, (definition, subject)) in layouts.iter().zip(&mut lanes) {
             check(conformance::random_round(layout, 1000 + round, definition, subject));
         }
@@ -194,7 +212,8 @@ fn random_lists_agree() {
 #[test]
 fn constants_of_a_command_agree_whatever_they_are() {
     for layout in layouts() {
-        let (mut a, mut b) = (BitSerial::new(&layout), Lanes::new(&layout));
+        let mut a = BitSerial::new(&layout);
+        let mut b = Lanes::new(&layout);
         let mut words = Vec::new();
         Command::Clear(Clear { colour: 0x12_3456 }).encode(&layout, &mut words).unwrap();
         // The depth that a clear always sets to the far plane, with one bit flipped on the way.
@@ -206,7 +225,8 @@ fn constants_of_a_command_agree_whatever_they_are() {
 #[test]
 fn both_arrays_send_the_same_pixels_of_a_context_to_a_frame_buffer() {
     let layout = Layout::slats();
-    let (mut a, mut b) = (BitSerial::new(&layout), Lanes::new(&layout));
+    let mut a = BitSerial::new(&layout);
+    let mut b = Lanes::new(&layout);
     conformance::scramble(&mut Random::new(3), &mut a, &mut b);
     let target = CopyTarget {
         frame_buffer: NodeId(9),
@@ -232,7 +252,8 @@ fn both_arrays_send_the_same_pixels_of_a_context_to_a_frame_buffer() {
 #[test]
 fn a_single_wrong_bit_is_found() {
     let layout = Layout::slats();
-    let (mut a, mut b) = (BitSerial::new(&layout), BitSerial::new(&layout));
+    let mut a = BitSerial::new(&layout);
+    let mut b = BitSerial::new(&layout);
     let mut plane = b.plane(207);
     plane[3] |= 1 << 5;
     b.set_plane(207, &plane);

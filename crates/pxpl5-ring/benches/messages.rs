@@ -12,14 +12,24 @@ use std::sync::Arc;
 const MESSAGES: u64 = 20_000;
 
 fn request(number: u64, n_nodes: u16, words: &Arc<[u32]>) -> Request {
-    let node = |n: u64| NodeId((n % u64::from(n_nodes)) as u16);
+    let n_nodes = u64::from(n_nodes);
     let message = Message {
-        source: node(number),
-        destination: node(number * 7 + 3),
+        source: NodeId((number % n_nodes) as u16),
+        destination: NodeId(((number * 7 + 3) % n_nodes) as u16),
         words: 1 + (number * 37 % 1_024) as u32,
         body: Body::Words(Arc::clone(words)),
     };
     Request { message, ticket: Some(number), hold: false, order: 0 }
+}
+
+/// A ring of 21 ports, and a request at each of them.
+fn busy_ring(elastic: bool, words: &Arc<[u32]>) -> (Ring, EventQueue<RingEvent>) {
+    let ring = Ring::new(RingTiming::PAPERS, 21, |_| elastic).expect("valid");
+    let mut queue = EventQueue::new();
+    for number in 0..21 {
+        queue.schedule(Time(0), Phase::Arrive, RingEvent::Request(request(number, 21, words)));
+    }
+    (ring, queue)
 }
 
 /// Every `Sent` makes its port send the next message, so that the queues stay as long as they are.
@@ -58,16 +68,13 @@ fn messages(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("messages");
     group.throughput(Throughput::Elements(MESSAGES));
     for (name, elastic) in [("elastic", true), ("answered", false)] {
-        let set_up = || {
-            let ring = Ring::new(RingTiming::PAPERS, 21, |_| elastic).expect("valid");
-            let mut queue = EventQueue::new();
-            for number in 0..21 {
-                queue.schedule(Time(0), Phase::Arrive, RingEvent::Request(request(number, 21, &words)));
-            }
-            (ring, queue)
-        };
-        let body = |(ring, queue)| run(ring, queue, &words);
-        group.bench_function(name, |bencher| bencher.iter_batched(set_up, body, BatchSize::LargeInput));
+        group.bench_function(name, |bencher| {
+            bencher.iter_batched(
+                || busy_ring(elastic, &words),
+                |(ring, queue)| run(ring, queue, &words),
+                BatchSize::LargeInput,
+            );
+        });
     }
     group.finish();
 }

@@ -8,7 +8,7 @@ const UNKNOWN: Time = Time(u64::MAX);
 
 /// A message that occupies a channel.
 #[derive(Clone, Debug)]
-pub(crate) struct Flight {
+pub(crate) struct MessageInFlight {
     pub(crate) source: NodeId,
     pub(crate) destination: NodeId,
     pub(crate) words: u32,
@@ -23,15 +23,15 @@ pub(crate) struct Flight {
 
 /// All channels; free ones are taken from the lowest number.
 #[derive(Clone, Debug)]
-pub(crate) struct Channels {
-    flights: Vec<Option<Flight>>,
+pub(crate) struct RingChannels {
+    flights: Vec<Option<MessageInFlight>>,
     /// When each channel is free again; unknown on a free one and until the receiver has answered.
     ends_at: Vec<Time>,
     /// One bit a channel.
     free: u64,
 }
 
-impl Channels {
+impl RingChannels {
     /// 1 to 64 free channels.
     pub(crate) fn new(n: usize) -> Self {
         Self { flights: vec![None; n], ends_at: vec![UNKNOWN; n], free: u64::MAX >> (64 - n) }
@@ -50,7 +50,7 @@ impl Channels {
     }
 
     /// Puts a message on the lowest free channel, which must exist; its end may be known already.
-    pub(crate) fn occupy(&mut self, flight: Flight, ends_at: Option<Time>) -> usize {
+    pub(crate) fn occupy(&mut self, flight: MessageInFlight, ends_at: Option<Time>) -> usize {
         let channel = self.free.trailing_zeros() as usize;
         self.free &= !(1 << channel);
         self.flights[channel] = Some(flight);
@@ -73,7 +73,7 @@ impl Channels {
     }
 
     /// Takes a message whose time is over, with its channel and the end of that time.
-    pub(crate) fn take_ended(&mut self, now: Time) -> Option<(usize, Time, Flight)> {
+    pub(crate) fn take_ended(&mut self, now: Time) -> Option<(usize, Time, MessageInFlight)> {
         let channel = self.ends_at.iter().position(|end| *end <= now && *end != UNKNOWN)?;
         let ended = std::mem::replace(&mut self.ends_at[channel], UNKNOWN);
         self.free |= 1 << channel;
@@ -81,30 +81,30 @@ impl Channels {
     }
 
     /// A word slot of a channel has ended: takes the message off for a moment.
-    pub(crate) fn take_slot(&mut self, channel: usize) -> Option<Flight> {
+    pub(crate) fn take_slot(&mut self, channel: usize) -> Option<MessageInFlight> {
         let flight = self.flights.get_mut(channel)?.take()?;
-        Some(Flight { slots_left: flight.slots_left.saturating_sub(1), ..flight })
+        Some(MessageInFlight { slots_left: flight.slots_left.saturating_sub(1), ..flight })
     }
 
-    pub(crate) fn put_back(&mut self, channel: usize, flight: Flight) {
+    pub(crate) fn put_back(&mut self, channel: usize, flight: MessageInFlight) {
         self.flights[channel] = Some(flight);
     }
 
-    pub(crate) fn flight(&self, channel: usize) -> Option<&Flight> {
+    pub(crate) fn flight(&self, channel: usize) -> Option<&MessageInFlight> {
         self.flights[channel].as_ref()
     }
 
     /// The message on a channel if nobody has said when it ends.
-    pub(crate) fn unanswered(&self, channel: usize) -> Option<&Flight> {
+    pub(crate) fn unanswered(&self, channel: usize) -> Option<&MessageInFlight> {
         self.flight(channel).filter(|_| self.ends_at[channel] == UNKNOWN)
     }
 
     pub(crate) fn all_unanswered(&self) -> impl Iterator<Item = WaitingMessage> + '_ {
-        (0..self.flights.len()).filter_map(|channel| self.unanswered(channel)).map(Flight::waiting)
+        (0..self.flights.len()).filter_map(|channel| self.unanswered(channel)).map(MessageInFlight::waiting)
     }
 }
 
-impl Flight {
+impl MessageInFlight {
     const fn waiting(&self) -> WaitingMessage {
         WaitingMessage {
             source: self.source,

@@ -3,7 +3,6 @@
 use parameters::ParameterError;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
-use std::fmt;
 
 /// What happens to the ring.
 #[derive(Clone, Debug)]
@@ -15,7 +14,7 @@ pub enum RingEvent {
     /// Earlier than `first_word_at + words x word` is impossible: it is counted as a fault and the earliest time
     /// is taken. When it is said too late for the sender to be free in time, the sender is free at once.
     Accept {
-        /// The receiver.
+        /// Port of the receiver.
         destination: NodeId,
         /// When the last word has entered, including the stall.
         last_word_at: Time,
@@ -32,7 +31,7 @@ pub enum RingEvent {
 /// A message and how it is to be sent.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// The message.
+    /// What is sent, with source, destination and length in words.
     pub message: Message,
     /// Given back in [`RingOutput::Sent`] or [`RingOutput::Refused`]; without one the sender is told nothing.
     pub ticket: Option<u64>,
@@ -50,7 +49,7 @@ pub struct Request {
 pub enum RingOutput {
     /// To `message.destination`, which is not elastic: a message is coming; answer with [`RingEvent::Accept`].
     Announce {
-        /// The message.
+        /// The message that is coming.
         message: Message,
         /// When the first word begins to arrive; it can have entered one `word` later.
         first_word_at: Time,
@@ -61,54 +60,60 @@ pub enum RingOutput {
     Delivered(Message),
     /// To the sender of a message with a ticket: the last word has been accepted.
     Sent {
-        /// The sender.
+        /// Port of the sender.
         source: NodeId,
-        /// Its ticket.
+        /// [`Request::ticket`] of the message.
         ticket: u64,
     },
     /// To the sender of a message with a ticket: the message could not be carried.
     Refused {
         /// The sender as it named itself.
         source: NodeId,
-        /// Its ticket.
+        /// [`Request::ticket`] of the message.
         ticket: u64,
-        /// Why.
+        /// Why the ring could not carry it.
         error: RingError,
     },
 }
 
 /// Why a ring cannot be built or a message not be carried.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RingError {
     /// A number of the timing table is outside of what the model can take.
+    #[error("ring timing: {0}")]
     Timing(ParameterError),
     /// The ring has no port for any board.
+    #[error("a ring needs one port at least, found none")]
     NoNodes,
     /// A message names a port that does not exist.
+    #[error("there is no ring port {}: the ring has {n_nodes}, from 0", .node.0)]
     NoSuchNode {
-        /// The port.
+        /// The port that was named.
         node: NodeId,
-        /// Number of ports.
+        /// How many ports the ring has, numbered from 0.
         n_nodes: u16,
     },
     /// A message is empty or longer than a message can be.
+    #[error("message from ring port {} to {}: expected 1 to {max} words, found {words}", .r#source.0, .destination.0, max = MAX_MESSAGE_WORDS)]
     Length {
-        /// The sender.
-        source: NodeId,
-        /// The receiver.
+        /// Port of the sender.
+        r#source: NodeId, // Raw, since `thiserror` takes a plain `source` for another error.
+        /// Port of the receiver.
         destination: NodeId,
-        /// Its length in words.
+        /// Length in words, without the overhead.
         words: u32,
     },
     /// A receiver answered though nothing had been announced to it, or answered twice.
+    #[error("ring port {} accepted a message that was not announced to it", .destination.0)]
     NothingAnnounced {
-        /// The receiver.
+        /// Port of the receiver.
         destination: NodeId,
     },
     /// A receiver named a time before the last word can have arrived.
+    #[error("ring port {} accepted the last word at {found}, but it cannot enter before {expected}", .destination.0)]
     AcceptedEarly {
-        /// The receiver.
+        /// Port of the receiver.
         destination: NodeId,
         /// The earliest possible time.
         expected: Time,
@@ -116,60 +121,23 @@ pub enum RingError {
         found: Time,
     },
     /// A reference run was given a time that is no multiple of its tick.
+    #[error("{what} of {found_ps} ps is no multiple of the tick of {tick}")]
     OffTick {
         /// What it is the time of.
         what: &'static str,
         /// The time in picoseconds.
         found_ps: u64,
-        /// The tick.
+        /// Step of the reference run.
         tick: Span,
     },
     /// A reference run had not delivered everything when its time was over.
+    #[error("only {delivered} of {of} messages had been delivered at {until}")]
     Unfinished {
-        /// Messages delivered.
+        /// Messages whose last word had been accepted.
         delivered: usize,
-        /// Messages in all.
+        /// Messages that were to be sent.
         of: usize,
         /// When it was over.
         until: Time,
     },
-}
-
-impl fmt::Display for RingError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Timing(error) => write!(f, "ring timing: {error}"),
-            Self::NoNodes => f.write_str("a ring needs one port at least, found none"),
-            Self::NoSuchNode { node, n_nodes } => {
-                write!(f, "there is no ring port {}: the ring has {n_nodes}, from 0", node.0)
-            }
-            Self::Length { source, destination, words } => write!(
-                f,
-                "message from ring port {} to {}: expected 1 to {MAX_MESSAGE_WORDS} words, found {words}",
-                source.0, destination.0
-            ),
-            Self::NothingAnnounced { destination } => {
-                write!(f, "ring port {} accepted a message that was not announced to it", destination.0)
-            }
-            Self::AcceptedEarly { destination, expected, found } => write!(
-                f,
-                "ring port {} accepted the last word at {found}, but it cannot enter before {expected}",
-                destination.0
-            ),
-            Self::OffTick { what, found_ps, tick } => {
-                write!(f, "{what} of {found_ps} ps is no multiple of the tick of {tick}")
-            }
-            Self::Unfinished { delivered, of, until } => {
-                write!(f, "only {delivered} of {of} messages had been delivered at {until}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for RingError {}
-
-impl From<ParameterError> for RingError {
-    fn from(error: ParameterError) -> Self {
-        Self::Timing(error)
-    }
 }

@@ -22,22 +22,22 @@ use std::collections::VecDeque;
 
 /// A message to be sent. Those of one instant and source keep the order in which they are listed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Traffic {
+pub struct PlannedMessage {
     /// When the board hands it to its port.
     pub at: Time,
-    /// The sender.
+    /// Port of the sender.
     pub source: NodeId,
-    /// The receiver.
+    /// Port of the receiver.
     pub destination: NodeId,
-    /// Length in words.
+    /// Length in words, without the overhead, 1 to 1,024.
     pub words: u32,
     /// Whether the destination stays reserved afterwards.
     pub hold: bool,
 }
 
-/// What became of a message.
+/// When a message was carried, and on which channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Passage {
+pub struct CarriedMessage {
     /// The channel, from 0.
     pub channel: usize,
     /// When channel and ports were granted.
@@ -78,12 +78,12 @@ impl Receivers for Elastic {
     }
 }
 
-/// A ring that is stepped.
+/// A ring whose time advances tick by tick, and the messages that it is to carry.
 #[derive(Debug)]
 pub struct SteppedRing<'a, R> {
     timing: RingTiming,
     n_nodes: u16,
-    traffic: &'a [Traffic],
+    traffic: &'a [PlannedMessage],
     receivers: R,
     /// Per source: numbers of messages, the first since when.
     queues: Vec<(VecDeque<usize>, Time)>,
@@ -91,13 +91,13 @@ pub struct SteppedRing<'a, R> {
     sending: Vec<u64>,
     receiving: Vec<bool>,
     reserved_for: Vec<Option<NodeId>>,
-    channels: Vec<Option<Slots>>,
-    passages: Vec<Option<Passage>>,
+    channels: Vec<Option<ChannelSlots>>,
+    carried: Vec<Option<CarriedMessage>>,
 }
 
 /// A message on a channel.
 #[derive(Clone, Copy, Debug)]
-struct Slots {
+struct ChannelSlots {
     message: usize,
     overhead_left: u64,
     words_left: u32,
@@ -112,7 +112,12 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     /// # Errors
     ///
     /// [`RingError::Timing`], [`RingError::NoNodes`] and [`RingError::NoSuchNode`].
-    pub fn new(timing: RingTiming, n_nodes: u16, traffic: &'a [Traffic], receivers: R) -> Result<Self, RingError> {
+    pub fn new(
+        timing: RingTiming,
+        n_nodes: u16,
+        traffic: &'a [PlannedMessage],
+        receivers: R,
+    ) -> Result<Self, RingError> {
         timing.check()?;
         if n_nodes == 0 {
             return Err(RingError::NoNodes);
@@ -132,7 +137,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
             receiving: vec![false; n],
             reserved_for: vec![None; n],
             channels: vec![None; timing.channels as usize],
-            passages: vec![None; traffic.len()],
+            carried: vec![None; traffic.len()],
         })
     }
 
@@ -142,10 +147,10 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     ///
     /// [`RingError::OffTick`] when a time of the timing table or of the traffic is no multiple of `tick`,
     /// [`RingError::Unfinished`] when something has not been delivered at `until`.
-    pub fn run(mut self, tick: Span, until: Time) -> Result<Vec<Passage>, RingError> {
+    pub fn run(mut self, tick: Span, until: Time) -> Result<Vec<CarriedMessage>, RingError> {
         self.check_tick(tick)?;
         let mut now = Time::ZERO;
-        while self.passages.iter().any(Option::is_none) || self.channels.iter().any(Option::is_some) {
+        while self.carried.iter().any(Option::is_none) || self.channels.iter().any(Option::is_some) {
             if now > until {
                 return Err(self.unfinished(until));
             }
@@ -154,7 +159,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
             self.grant(now);
             now += tick;
         }
-        Ok(self.passages.into_iter().flatten().collect())
+        Ok(self.carried.into_iter().flatten().collect())
     }
 
     fn check_tick(&self, tick: Span) -> Result<(), RingError> {
@@ -167,8 +172,8 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     fn unfinished(&self, until: Time) -> RingError {
-        let delivered = self.passages.iter().flatten().count();
-        RingError::Unfinished { delivered, of: self.passages.len(), until }
+        let delivered = self.carried.iter().flatten().count();
+        RingError::Unfinished { delivered, of: self.carried.len(), until }
     }
 
     fn join(&mut self, now: Time) {
@@ -196,7 +201,7 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         }
     }
 
-    fn move_word(&mut self, slots: &mut Slots, now: Time) {
+    fn move_word(&mut self, slots: &mut ChannelSlots, now: Time) {
         let destination = self.traffic[slots.message].destination;
         let seen_at = now + slots.latency;
         if slots.overhead_left > 0 {
@@ -205,22 +210,22 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
         } else if slots.words_left > 0 && self.receivers.takes_word(destination, seen_at) {
             slots.words_left -= 1;
             slots.slot_began = now;
-            if let Some(passage) = &mut self.passages[slots.message] {
-                passage.last_word_at = seen_at;
+            if let Some(message_carried) = &mut self.carried[slots.message] {
+                message_carried.last_word_at = seen_at;
             }
         }
     }
 
     fn release(&mut self, message: usize, now: Time) {
-        let Traffic { source, destination, hold, .. } = self.traffic[message];
+        let PlannedMessage { source, destination, hold, .. } = self.traffic[message];
         if self.sending[usize::from(source.0)] == self.timing.source_channels {
             self.queues[usize::from(source.0)].1 = now;
         }
         self.sending[usize::from(source.0)] -= 1;
         self.receiving[usize::from(destination.0)] = false;
         self.reserved_for[usize::from(destination.0)] = hold.then_some(source);
-        if let Some(passage) = &mut self.passages[message] {
-            passage.released = now;
+        if let Some(message_carried) = &mut self.carried[message] {
+            message_carried.released = now;
         }
     }
 
@@ -237,12 +242,14 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
             .filter_map(|source| Some((self.queues[source].1, source, *self.queues[source].0.front()?)))
             .collect();
         heads.sort_unstable();
-        let free = |source: usize, message: usize| {
-            let destination = usize::from(self.traffic[message].destination.0);
-            let reserved = self.reserved_for[destination].is_some_and(|holder| usize::from(holder.0) != source);
-            !reserved && !self.receiving[destination] && self.has_channel_to(self.traffic[message].destination)
-        };
-        heads.into_iter().find(|(_, source, message)| free(*source, *message)).map(|(_, _, message)| (message, channel))
+        let mut messages = heads.into_iter().map(|(_, _, message)| message);
+        messages.find(|message| self.can_be_granted(*message)).map(|message| (message, channel))
+    }
+
+    fn can_be_granted(&self, message: usize) -> bool {
+        let PlannedMessage { source, destination, .. } = self.traffic[message];
+        let reserved = self.reserved_for[usize::from(destination.0)].is_some_and(|holder| holder != source);
+        !reserved && !self.receiving[usize::from(destination.0)] && self.has_channel_to(destination)
     }
 
     fn has_channel_to(&self, destination: NodeId) -> bool {
@@ -252,14 +259,14 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
     }
 
     fn start(&mut self, message: usize, channel: usize, now: Time) {
-        let Traffic { source, destination, words, .. } = self.traffic[message];
+        let PlannedMessage { source, destination, words, .. } = self.traffic[message];
         self.queues[usize::from(source.0)].0.pop_front();
         self.sending[usize::from(source.0)] += 1;
         self.queues[usize::from(source.0)].1 = now;
         self.receiving[usize::from(destination.0)] = true;
         let latency = self.timing.latency(source, destination, self.n_nodes);
         let announced_at = now + self.timing.word() + latency;
-        self.channels[channel] = Some(Slots {
+        self.channels[channel] = Some(ChannelSlots {
             message,
             overhead_left: self.timing.overhead_words,
             words_left: words,
@@ -267,6 +274,6 @@ impl<'a, R: Receivers> SteppedRing<'a, R> {
             latency,
             answered_at: announced_at + self.receivers.announced(destination, announced_at),
         });
-        self.passages[message] = Some(Passage { channel, granted: now, last_word_at: now, released: now });
+        self.carried[message] = Some(CarriedMessage { channel, granted: now, last_word_at: now, released: now });
     }
 }

@@ -1,26 +1,26 @@
 //! Ports and arbiter.
 
-use crate::channels::{Channels, Flight};
+use crate::channels::{MessageInFlight, RingChannels};
 use crate::{Refusals, Request, RingError, RingEvent, RingOutput, RingStats, RingTiming, WaitReason, WaitingMessage};
 use parameters::ParameterTable;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, Message, NodeId};
 use std::collections::VecDeque;
 
-type Out = Context<RingEvent, RingOutput>;
+type RingContext = Context<RingEvent, RingOutput>;
 
 /// The ring: state of its ports, channels and arbiter.
 #[derive(Clone, Debug)]
 pub struct Ring {
     timing: RingTiming,
     word: Span,
-    sources: Vec<Source>,
-    destinations: Vec<Destination>,
-    channels: Channels,
+    sources: Vec<SourcePort>,
+    destinations: Vec<DestinationPort>,
+    channels: RingChannels,
     /// Messages on channels to receivers with a FIFO, at most `fifo_channels`.
     to_fifos: u64,
     /// The first messages of their sources, in the order of grants.
-    heads: Vec<Head>,
+    heads: Vec<QueueHead>,
     /// Sources that send on as many channels as they can.
     at_limit: usize,
     /// Instants for which arbitration is scheduled.
@@ -34,20 +34,20 @@ pub struct Ring {
 }
 
 #[derive(Clone, Debug, Default)]
-struct Source {
-    queue: VecDeque<Queued>,
+struct SourcePort {
+    queue: VecDeque<QueuedRequest>,
     /// Messages on channels, at most `source_channels`.
     in_flight: u64,
 }
 
 #[derive(Clone, Debug)]
-struct Queued {
+struct QueuedRequest {
     at: Time,
     request: Request,
 }
 
 #[derive(Clone, Debug)]
-struct Destination {
+struct DestinationPort {
     elastic: bool,
     channel: Option<usize>,
     reserved_for: Option<NodeId>,
@@ -55,7 +55,7 @@ struct Destination {
 
 /// A message that is first at its source and waits. The order of grants is that of the first two fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Head {
+struct QueueHead {
     since: Time,
     source: NodeId,
     destination: NodeId,
@@ -76,9 +76,9 @@ impl Ring {
         Ok(Self {
             timing,
             word: timing.word(),
-            sources: vec![Source::default(); usize::from(n_nodes)],
-            destinations: (0..n_nodes).map(|node| Destination::new(elastic(NodeId(node)))).collect(),
-            channels: Channels::new(n_channels),
+            sources: vec![SourcePort::default(); usize::from(n_nodes)],
+            destinations: (0..n_nodes).map(|node| DestinationPort::new(elastic(NodeId(node)))).collect(),
+            channels: RingChannels::new(n_channels),
             to_fifos: 0,
             heads: Vec::new(),
             at_limit: 0,
@@ -101,8 +101,8 @@ impl Ring {
         self.word_by_word = true;
     }
 
-    /// Handles one event.
-    pub fn handle(&mut self, event: RingEvent, context: &mut Out) {
+    /// Handles one event at `context.now()`; what follows from it is scheduled or put out through `context`.
+    pub fn handle(&mut self, event: RingEvent, context: &mut RingContext) {
         match event {
             RingEvent::Request(request) => self.request(request, context),
             RingEvent::Accept { destination, last_word_at } => self.accept(destination, last_word_at, context),
@@ -111,7 +111,7 @@ impl Ring {
         }
     }
 
-    fn arbitrate(&mut self, context: &mut Out) {
+    fn arbitrate(&mut self, context: &mut RingContext) {
         let now = context.now();
         self.arbitrations.retain(|at| *at > now);
         self.settle(now);
@@ -125,7 +125,7 @@ impl Ring {
         &self.timing
     }
 
-    /// Number of ports.
+    /// Ports of the ring, numbered from 0.
     #[must_use]
     pub fn n_nodes(&self) -> u16 {
         self.sources.len() as u16
@@ -182,8 +182,7 @@ impl Ring {
     /// The same as lines for a deadlock report; boards are named by their port.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
-        let name = |node: NodeId| format!("ring port {}", node.0);
-        self.waiting().iter().map(|message| message.blocked(name)).collect()
+        self.waiting().iter().map(|message| message.blocked(port_name)).collect()
     }
 
     fn check_node(&self, node: NodeId) -> Result<(), RingError> {
@@ -193,13 +192,15 @@ impl Ring {
         Err(RingError::NoSuchNode { node, n_nodes: self.n_nodes() })
     }
 
-    fn request(&mut self, request: Request, context: &mut Out) {
+    fn request(&mut self, request: Request, context: &mut RingContext) {
         if let Err(error) = self.check(&request.message) {
             return self.refuse(&request, error, context);
         }
-        let (now, id, most) = (context.now(), request.message.source, self.timing.source_channels);
+        let now = context.now();
+        let id = request.message.source;
+        let most = self.timing.source_channels;
         let source = &mut self.sources[usize::from(id.0)];
-        let new_first = source.insert(Queued { at: now, request }) == 0;
+        let new_first = source.insert(QueuedRequest { at: now, request }) == 0;
         if !new_first || source.in_flight >= most {
             return;
         }
@@ -209,7 +210,7 @@ impl Ring {
     }
 
     /// Each arbitration asks for the next one, so that an earlier one will do.
-    fn arbitrate_at(&mut self, at: Time, context: &mut Out) {
+    fn arbitrate_at(&mut self, at: Time, context: &mut RingContext) {
         if self.arbitrations.iter().all(|earlier| *earlier > at) {
             self.arbitrations.push(at);
             context.schedule(at, Phase::Work, RingEvent::Arbitrate);
@@ -217,7 +218,7 @@ impl Ring {
     }
 
     /// The end of a message matters only if somebody waits for just that one.
-    fn arbitrate_at_next_end(&mut self, context: &mut Out) {
+    fn arbitrate_at_next_end(&mut self, context: &mut RingContext) {
         let any_end = self.watched || self.at_limit > 0;
         let awaited = self.heads.iter().filter_map(|head| self.awaited_end(head.destination));
         let next = if any_end { self.channels.first_end() } else { awaited.min() };
@@ -235,7 +236,7 @@ impl Ring {
         self.destinations[usize::from(destination.0)].channel.and_then(|channel| self.channels.end(channel))
     }
 
-    fn refuse(&mut self, request: &Request, error: RingError, context: &mut Out) {
+    fn refuse(&mut self, request: &Request, error: RingError, context: &mut RingContext) {
         if let Some(ticket) = request.ticket {
             let refused = RingOutput::Refused { source: request.message.source, ticket, error: error.clone() };
             context.output(context.now() + self.word, refused);
@@ -245,7 +246,7 @@ impl Ring {
 
     fn add_head(&mut self, since: Time, source: NodeId) {
         let Some(first) = self.sources[usize::from(source.0)].queue.front() else { return };
-        let head = Head { since, source, destination: first.request.message.destination };
+        let head = QueueHead { since, source, destination: first.request.message.destination };
         let later = self.heads.iter().rev().take_while(|&&h| h > head).count();
         self.heads.insert(self.heads.len() - later, head);
     }
@@ -273,10 +274,10 @@ impl Ring {
     }
 
     /// One pass is enough: a grant makes nothing free, and the head that it brings forward comes after it in order.
-    fn grant_all(&mut self, context: &mut Out) {
+    fn grant_all(&mut self, context: &mut RingContext) {
         let mut place = 0;
         while self.channels.has_free() && place < self.heads.len() {
-            let Head { source, destination, .. } = self.heads[place];
+            let QueueHead { source, destination, .. } = self.heads[place];
             if self.destinations[usize::from(destination.0)].takes_from(source) && self.has_channel_to(destination) {
                 self.heads.remove(place);
                 self.grant(source, context);
@@ -290,13 +291,14 @@ impl Ring {
         self.channels.has_free() && (self.is_elastic(destination) || self.to_fifos < self.timing.fifo_channels)
     }
 
-    fn grant(&mut self, source: NodeId, context: &mut Out) {
+    fn grant(&mut self, source: NodeId, context: &mut RingContext) {
         let port = &mut self.sources[usize::from(source.0)];
-        let Some(Queued { at, request }) = port.queue.pop_front() else {
+        let Some(QueuedRequest { at, request }) = port.queue.pop_front() else {
             return;
         };
         port.in_flight += 1;
-        let (now, more) = (context.now(), port.in_flight < self.timing.source_channels);
+        let now = context.now();
+        let more = port.in_flight < self.timing.source_channels;
         let waited = now.since(at);
         self.stats.waiting += waited;
         self.stats.longest_wait = self.stats.longest_wait.max(waited);
@@ -311,9 +313,9 @@ impl Ring {
         }
     }
 
-    fn flight(&self, request: &Request, now: Time) -> Flight {
+    fn flight(&self, request: &Request, now: Time) -> MessageInFlight {
         let Message { source, destination, words, .. } = request.message;
-        Flight {
+        MessageInFlight {
             source,
             destination,
             words,
@@ -328,9 +330,9 @@ impl Ring {
 
     /// Puts a message on a channel, whose number is returned. Its end is known at once where the receiver is elastic,
     /// else at the answer to the announcement; a ring that moves every word waits for the words.
-    fn carry(&mut self, flight: Flight, message: Message, context: &mut Out) -> usize {
+    fn carry(&mut self, flight: MessageInFlight, message: Message, context: &mut RingContext) -> usize {
         if self.word_by_word {
-            let channel = self.channels.occupy(Flight { message: Some(message), ..flight }, None);
+            let channel = self.channels.occupy(MessageInFlight { message: Some(message), ..flight }, None);
             context.schedule(context.now() + self.word, Phase::Arrive, RingEvent::Slot { channel });
             return channel;
         }
@@ -345,7 +347,7 @@ impl Ring {
 
     /// A slot of overhead or of a word is over: after the first one a receiver with a FIFO is told, after the last one
     /// an elastic receiver has the message.
-    fn move_word(&mut self, channel: usize, context: &mut Out) {
+    fn move_word(&mut self, channel: usize, context: &mut RingContext) {
         let Some(mut flight) = self.channels.take_slot(channel) else { return };
         if flight.slots_left > 0 {
             context.schedule(context.now() + self.word, Phase::Arrive, RingEvent::Slot { channel });
@@ -370,18 +372,18 @@ impl Ring {
         self.destinations[usize::from(node.0)].elastic
     }
 
-    fn deliver(&self, flight: &Flight, message: Message, end: Time, context: &mut Out) {
+    fn deliver(&self, flight: &MessageInFlight, message: Message, end: Time, context: &mut RingContext) {
         context.output(end + flight.latency, RingOutput::Delivered(message));
         tell_sender(flight, end + flight.latency, context);
     }
 
-    fn announce(&self, flight: &Flight, message: Message, context: &mut Out) {
+    fn announce(&self, flight: &MessageInFlight, message: Message, context: &mut RingContext) {
         let first_word_at = flight.granted + self.timing.occupancy(0) + flight.latency;
         let announce = RingOutput::Announce { message, first_word_at, word: self.word };
         context.output(flight.granted + self.word + flight.latency, announce);
     }
 
-    fn accept(&mut self, destination: NodeId, last_word_at: Time, context: &mut Out) {
+    fn accept(&mut self, destination: NodeId, last_word_at: Time, context: &mut RingContext) {
         let now = context.now();
         let Some((channel, flight)) = self.unanswered(destination) else {
             let error = RingError::NothingAnnounced { destination };
@@ -400,12 +402,12 @@ impl Ring {
     }
 
     /// The message announced to a receiver that has not answered, with its channel.
-    fn unanswered(&self, destination: NodeId) -> Option<(usize, &Flight)> {
+    fn unanswered(&self, destination: NodeId) -> Option<(usize, &MessageInFlight)> {
         let channel = self.destinations.get(usize::from(destination.0))?.channel?;
         Some((channel, self.channels.unanswered(channel)?))
     }
 
-    fn waiting_head(&self, Head { since, source, destination }: Head) -> Option<WaitingMessage> {
+    fn waiting_head(&self, QueueHead { since, source, destination }: QueueHead) -> Option<WaitingMessage> {
         let words = self.sources[usize::from(source.0)].queue.front()?.request.message.words;
         let reason = self.wait_reason(source, destination);
         Some(WaitingMessage { source, destination, words, since, reason })
@@ -424,25 +426,34 @@ impl Ring {
     }
 }
 
-fn tell_sender(flight: &Flight, at: Time, context: &mut Out) {
+fn port_name(node: NodeId) -> String {
+    format!("ring port {}", node.0)
+}
+
+fn tell_sender(flight: &MessageInFlight, at: Time, context: &mut RingContext) {
     if let Some(ticket) = flight.ticket {
         context.output(at, RingOutput::Sent { source: flight.source, ticket });
     }
 }
 
-impl Source {
+impl QueuedRequest {
+    /// What a port's queue is sorted by.
+    const fn order(&self) -> (Time, u32) {
+        (self.at, self.request.order)
+    }
+}
+
+impl SourcePort {
     /// Queues a message; returns its place.
-    fn insert(&mut self, queued: Queued) -> usize {
-        let key = |q: &Queued| (q.at, q.request.order);
-        let new = key(&queued);
-        let later = self.queue.iter().rev().take_while(|q| key(q) > new).count();
+    fn insert(&mut self, queued: QueuedRequest) -> usize {
+        let later = self.queue.iter().rev().take_while(|other| other.order() > queued.order()).count();
         let place = self.queue.len() - later;
         self.queue.insert(place, queued);
         place
     }
 }
 
-impl Destination {
+impl DestinationPort {
     const fn new(elastic: bool) -> Self {
         Self { elastic, channel: None, reserved_for: None }
     }
@@ -451,7 +462,7 @@ impl Destination {
         self.channel.is_none() && self.reserved_for.is_none_or(|holder| holder == source)
     }
 
-    fn release(&mut self, flight: &Flight) {
+    fn release(&mut self, flight: &MessageInFlight) {
         self.channel = None;
         self.reserved_for = flight.hold.then_some(flight.source);
     }

@@ -9,9 +9,9 @@ use pxpl5_wire::NodeId;
 pub struct RingStats {
     /// Time for which each channel was occupied, overhead and stalls included.
     pub channel_busy: Vec<Span>,
-    /// Messages.
+    /// Messages whose channel has become free.
     pub messages: u64,
-    /// Words, without overhead.
+    /// Words of these messages, without the overhead.
     pub words: u64,
     /// Time from the request to the grant, summed.
     pub waiting: Span,
@@ -24,7 +24,7 @@ pub struct RingStats {
 /// Messages and answers that were refused.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Refusals {
-    /// How many.
+    /// Messages and answers that were refused since the ring was made.
     pub count: u64,
     /// The first, with its time.
     pub first: Option<(Time, RingError)>,
@@ -40,15 +40,15 @@ impl Refusals {
 /// A message that has not been sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WaitingMessage {
-    /// The sender.
+    /// Port of the sender.
     pub source: NodeId,
-    /// The receiver.
+    /// Port of the receiver.
     pub destination: NodeId,
-    /// Length in words.
+    /// Length in words, without the overhead.
     pub words: u32,
     /// Since when it has been at the head of its queue, or in flight.
     pub since: Time,
-    /// What for.
+    /// What has to happen before the message goes on.
     pub reason: WaitReason,
 }
 
@@ -71,7 +71,8 @@ impl WaitingMessage {
     /// A line for a deadlock report; `name` gives the boards' names.
     #[must_use]
     pub fn blocked(&self, name: impl Fn(NodeId) -> String) -> Blocked {
-        let (to, words) = (name(self.destination), self.words);
+        let to = name(self.destination);
+        let words = self.words;
         let what = match self.reason {
             WaitReason::Acceptance => format!("{to} to accept {words} words sent"),
             WaitReason::DestinationBusy(by) => format!("{to}, busy with {}, to take {words} words", name(by)),

@@ -37,8 +37,9 @@ impl RingTiming {
     /// Latency from one port to another of a ring of `n_nodes`; to itself a message goes once round.
     #[must_use]
     pub fn latency(&self, source: NodeId, destination: NodeId, n_nodes: u16) -> Span {
-        let (from, to, n) = (u64::from(source.0), u64::from(destination.0), u64::from(n_nodes));
-        let hops = if to > from { to - from } else { to + n - from };
+        let from = u64::from(source.0);
+        let to = u64::from(destination.0);
+        let hops = if to > from { to - from } else { to + u64::from(n_nodes) - from };
         Span::from_ns(hops * self.hop_ns)
     }
 }
@@ -54,12 +55,15 @@ mod tests {
         assert_eq!(message * 15, Span::from_us(780));
     }
 
+    fn latency_in_a_ring_of_ten(source: u16, destination: u16) -> Span {
+        RingTiming::PAPERS.latency(NodeId(source), NodeId(destination), 10)
+    }
+
     #[test]
     fn latency_counts_hops_in_the_direction_of_travel() {
-        let latency = |a, b| RingTiming::PAPERS.latency(NodeId(a), NodeId(b), 10);
-        assert_eq!(latency(2, 5), Span::from_ns(150));
-        assert_eq!(latency(5, 2), Span::from_ns(350));
-        assert_eq!(latency(3, 3), Span::from_ns(500));
+        assert_eq!(latency_in_a_ring_of_ten(2, 5), Span::from_ns(150));
+        assert_eq!(latency_in_a_ring_of_ten(5, 2), Span::from_ns(350));
+        assert_eq!(latency_in_a_ring_of_ten(3, 3), Span::from_ns(500));
     }
 
     #[test]

@@ -3,22 +3,22 @@
 mod support;
 
 use proptest::prelude::*;
-use pxpl5_ring::reference::{Passage, SteppedRing, Traffic};
+use pxpl5_ring::reference::{CarriedMessage, PlannedMessage, SteppedRing};
 use pxpl5_ring::{Ring, RingTiming};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::NodeId;
 use support::{Receiver, Stepped, Times, run_fast, run_prepared};
 
 #[derive(Clone, Debug)]
-struct Case {
+struct RingCase {
     timing: RingTiming,
     tick: Span,
     receivers: Vec<Receiver>,
-    traffic: Vec<Traffic>,
+    traffic: Vec<PlannedMessage>,
 }
 
 /// Each transfer is up to four messages to one destination, all but the last with `hold`.
-fn transfers(n_nodes: u16, tick: Span) -> impl Strategy<Value = Vec<Traffic>> {
+fn transfers(n_nodes: u16, tick: Span) -> impl Strategy<Value = Vec<PlannedMessage>> {
     let words = prop_oneof![8 => 1u32..40, 2 => 40u32..200, 1 => Just(1_024u32)];
     let transfer = (0u64..600, 0..n_nodes, 0..n_nodes, words, 1usize..5);
     prop::collection::vec(transfer, 1..30).prop_map(move |transfers| {
@@ -28,16 +28,11 @@ fn transfers(n_nodes: u16, tick: Span) -> impl Strategy<Value = Vec<Traffic>> {
     })
 }
 
-fn parts(transfer: &(u64, u16, u16, u32, usize), tick: Span) -> Vec<Traffic> {
+fn parts(transfer: &(u64, u16, u16, u32, usize), tick: Span) -> Vec<PlannedMessage> {
     let (at, source, destination, words, n) = *transfer;
-    let part = |i| Traffic {
-        at: Time::ZERO + tick * at,
-        source: NodeId(source),
-        destination: NodeId(destination),
-        words,
-        hold: i + 1 < n,
-    };
-    (0..n).map(part).collect()
+    let source = NodeId(source);
+    let destination = NodeId(destination);
+    (0..n).map(|i| PlannedMessage { at: Time::ZERO + tick * at, source, destination, words, hold: i + 1 < n }).collect()
 }
 
 fn receiver(tick: Span) -> impl Strategy<Value = Receiver> {
@@ -48,7 +43,7 @@ fn receiver(tick: Span) -> impl Strategy<Value = Receiver> {
 }
 
 /// Hops are short against the overhead, so that the words of two messages never overlap at a receiver.
-fn cases() -> impl Strategy<Value = Case> {
+fn cases() -> impl Strategy<Value = RingCase> {
     (2u16..20, (1u64..=8, 1u64..=8, 1u64..=8), 16u64..20, 0u64..3, prop_oneof![Just(1u64), Just(2), Just(5)])
         .prop_flat_map(
             |(n_nodes, (channels, source_channels, fifo_channels), overhead_words, hop_ticks, word_ticks)| {
@@ -62,7 +57,7 @@ fn cases() -> impl Strategy<Value = Case> {
                     fifo_channels,
                 };
                 let receivers = prop::collection::vec(receiver(tick), usize::from(n_nodes));
-                (receivers, transfers(n_nodes, tick)).prop_map(move |(receivers, traffic)| Case {
+                (receivers, transfers(n_nodes, tick)).prop_map(move |(receivers, traffic)| RingCase {
                     timing,
                     tick,
                     receivers,
@@ -72,7 +67,7 @@ fn cases() -> impl Strategy<Value = Case> {
         )
 }
 
-fn step(case: &Case) -> Vec<Passage> {
+fn step(case: &RingCase) -> Vec<CarriedMessage> {
     let receivers = Stepped::new(&case.receivers);
     let n_nodes = case.receivers.len() as u16;
     let ring = SteppedRing::new(case.timing, n_nodes, &case.traffic, receivers).expect("valid");
@@ -80,33 +75,34 @@ fn step(case: &Case) -> Vec<Passage> {
 }
 
 /// When the sender is told: with the last word, but one word time after the receiver's answer at least.
-fn told(case: &Case, message: usize, passage: &Passage) -> Time {
+fn told(case: &RingCase, message: usize, message_carried: &CarriedMessage) -> Time {
     let t = case.traffic[message];
     match case.receivers[usize::from(t.destination.0)] {
-        Receiver::Elastic => passage.last_word_at,
+        Receiver::Elastic => message_carried.last_word_at,
         Receiver::Fifo { answers_after, .. } => {
             let latency = case.timing.latency(t.source, t.destination, case.receivers.len() as u16);
-            let answered = passage.granted + case.timing.word() + latency + answers_after;
-            passage.last_word_at.max(answered + case.timing.word())
+            let answered = message_carried.granted + case.timing.word() + latency + answers_after;
+            message_carried.last_word_at.max(answered + case.timing.word())
         }
     }
 }
 
-fn compare(case: &Case, passages: &[Passage], ring: &Ring, times: &Times) -> Result<(), TestCaseError> {
+fn compare(case: &RingCase, carried: &[CarriedMessage], ring: &Ring, times: &Times) -> Result<(), TestCaseError> {
     prop_assert_eq!(ring.refusals().count, 0);
     prop_assert!(ring.is_idle());
     prop_assert_eq!(times.accepted.len(), case.traffic.len());
-    for (message, passage) in passages.iter().enumerate() {
+    for (message, message_carried) in carried.iter().enumerate() {
         let number = message as u64;
-        prop_assert_eq!(times.accepted[&number], passage.last_word_at, "message {}", message);
-        prop_assert_eq!(times.sent[&number], told(case, message, passage), "message {}", message);
+        prop_assert_eq!(times.accepted[&number], message_carried.last_word_at, "message {}", message);
+        prop_assert_eq!(times.sent[&number], told(case, message, message_carried), "message {}", message);
     }
     for (channel, busy) in ring.stats().channel_busy.iter().enumerate() {
-        let on_channel = passages.iter().filter(|passage| passage.channel == channel);
-        let slots: Span = on_channel.map(|passage| passage.released - passage.granted).sum();
+        let on_channel = carried.iter().filter(|message_carried| message_carried.channel == channel);
+        let slots: Span = on_channel.map(|message_carried| message_carried.released - message_carried.granted).sum();
         prop_assert_eq!(*busy, slots, "channel {}", channel);
     }
-    let waited: Span = passages.iter().zip(&case.traffic).map(|(p, t)| p.granted - t.at).sum();
+    let waited: Span =
+        carried.iter().zip(&case.traffic).map(|(message_carried, planned)| message_carried.granted - planned.at).sum();
     prop_assert_eq!(ring.stats().waiting, waited);
     Ok(())
 }
@@ -116,11 +112,11 @@ proptest! {
 
     #[test]
     fn closed_form_and_word_by_word_agree_to_the_picosecond(case in cases(), seed in any::<u64>()) {
-        let passages = step(&case);
+        let carried = step(&case);
         let ways: [fn(&mut Ring); 3] = [|_| {}, Ring::watch, Ring::move_every_word];
         for prepare in ways {
             let (ring, times) = run_prepared(case.timing, &case.receivers, &case.traffic, Some(seed), prepare);
-            compare(&case, &passages, &ring, &times)?;
+            compare(&case, &carried, &ring, &times)?;
         }
     }
 
@@ -140,10 +136,10 @@ fn both_agree_when_twenty_messages_want_eight_channels_at_once() {
     let tick = Span::from_ns(50);
     let traffic: Vec<_> = (0..20).flat_map(|node| parts(&(3, node, (node + 1) % 20, 1_024, 3), tick)).collect();
     let timing = RingTiming { hop_ns: 0, ..RingTiming::PAPERS };
-    let case = Case { timing, tick, receivers: vec![Receiver::Elastic; 20], traffic };
+    let case = RingCase { timing, tick, receivers: vec![Receiver::Elastic; 20], traffic };
     let (ring, times) = run_fast(case.timing, &case.receivers, &case.traffic, None);
-    let passages = step(&case);
-    assert!(passages.iter().zip(0u64..).all(|(passage, i)| times.accepted[&i] == passage.last_word_at));
+    let carried = step(&case);
+    assert!(carried.iter().zip(0u64..).all(|(message_carried, i)| times.accepted[&i] == message_carried.last_word_at));
     // 60 messages of 52 us on 8 channels: seven rounds full, four messages in the eighth.
     let last = times.accepted.values().max().expect("some");
     assert_eq!(*last, Time::ZERO + tick * 3 + Span::from_us(8 * 52));

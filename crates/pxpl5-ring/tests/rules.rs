@@ -2,10 +2,11 @@
 
 mod support;
 
-use pxpl5_ring::reference::Traffic;
-use pxpl5_ring::{Ring, RingError, RingEvent, RingOutput, RingTiming, WaitReason};
-use pxpl5_sim::{Phase, Span, TestBench, Time};
+use pxpl5_ring::reference::PlannedMessage;
+use pxpl5_ring::{Request, Ring, RingError, RingEvent, RingOutput, RingTiming, WaitReason};
+use pxpl5_sim::{Context, Phase, Span, TestBench, Time};
 use pxpl5_wire::{MAX_MESSAGE_WORDS, NodeId};
+use std::collections::BTreeMap;
 use support::{ELASTIC, Receiver, message, request, run_fast};
 
 const TIMING: RingTiming = RingTiming::PAPERS;
@@ -19,17 +20,17 @@ fn us(us: u64) -> Time {
     Time::ZERO + Span::from_us(us)
 }
 
-fn traffic(at: Time, source: u16, destination: u16, words: u32) -> Traffic {
-    Traffic { at, source: NodeId(source), destination: NodeId(destination), words, hold: false }
+fn traffic(at: Time, source: u16, destination: u16, words: u32) -> PlannedMessage {
+    PlannedMessage { at, source: NodeId(source), destination: NodeId(destination), words, hold: false }
 }
 
 /// A region of 15,360 pixels: fifteen messages, held together.
-fn region(at: Time, source: u16, destination: u16) -> impl Iterator<Item = Traffic> {
+fn region(at: Time, source: u16, destination: u16) -> impl Iterator<Item = PlannedMessage> {
     let part = traffic(at, source, destination, MAX_MESSAGE_WORDS);
-    (0..15).map(move |i| Traffic { hold: i < 14, ..part })
+    (0..15).map(move |i| PlannedMessage { hold: i < 14, ..part })
 }
 
-fn accepted(traffic: &[Traffic]) -> Vec<Time> {
+fn accepted(traffic: &[PlannedMessage]) -> Vec<Time> {
     let (_, times) = run_fast(TIMING, &ELASTIC[..20], traffic, Some(7));
     times.accepted.into_values().collect()
 }
@@ -170,11 +171,19 @@ fn messages_of_one_instant_and_source_go_in_their_order() {
 
 #[test]
 fn a_held_destination_waits_for_its_source_and_a_released_one_goes_to_the_first_come() {
-    let hold = Traffic { hold: true, ..traffic(us(0), 0, 2, 1_024) };
+    let hold = PlannedMessage { hold: true, ..traffic(us(0), 0, 2, 1_024) };
     let end_of_transfer = traffic(us(100), 0, 2, 1_024);
     let other = traffic(us(1), 1, 2, 1_024);
     let times = accepted(&[hold, end_of_transfer, other]);
     assert_eq!(times, [us(52) + HOP * 2, us(152) + HOP * 2, us(204) + HOP]);
+}
+
+/// When a sender is told, if that is what the output does.
+fn sent_at(output: &(Time, RingOutput)) -> Option<Time> {
+    match output {
+        (time, RingOutput::Sent { .. }) => Some(*time),
+        _ => None,
+    }
 }
 
 #[test]
@@ -197,10 +206,9 @@ fn a_receiver_with_a_fifo_is_told_before_the_first_word_and_its_answer_ends_the_
     let accept = RingEvent::Accept { destination: NodeId(9), last_word_at };
     bench.feed(us(2), Phase::Arrive, accept);
     bench.run(|event, context| ring.handle(event, context));
-    let sent = |n: usize| matches!(bench.outputs[n], (_, RingOutput::Sent { .. })).then_some(bench.outputs[n].0);
-    assert_eq!(sent(1), Some(last_word_at));
+    assert_eq!(sent_at(&bench.outputs[1]), Some(last_word_at));
     let released = us(0) + word * 116 + stall;
-    assert_eq!(sent(3), Some(released + word * 116 + HOP));
+    assert_eq!(sent_at(&bench.outputs[3]), Some(released + word * 116 + HOP));
     assert_eq!(ring.stats().stalled, stall);
 }
 
@@ -283,4 +291,77 @@ fn a_ring_that_cannot_be_built_says_why() {
     let no_channels = RingTiming { channels: 0, ..TIMING };
     let error = Ring::new(no_channels, 3, |_| true).expect_err("no channels");
     assert_eq!(error.to_string(), "ring timing: channels must be 1 to 64, found 0");
+}
+
+/// A ring of ten ports of which 8 and 9 are not elastic and share one channel.
+fn ring_with_two_fifos() -> Ring {
+    let timing = RingTiming { fifo_channels: 1, ..TIMING };
+    Ring::new(timing, 10, |node| node.0 < 8).expect("valid")
+}
+
+fn reasons(ring: &Ring) -> Vec<(u16, WaitReason)> {
+    ring.waiting().iter().map(|message| (message.source.0, message.reason)).collect()
+}
+
+fn announced_to(outputs: &[(Time, RingOutput)], port: u16) -> Vec<Time> {
+    let to_port = outputs.iter().filter(
+        |(_, output)| matches!(output, RingOutput::Announce { message, .. } if message.destination == NodeId(port)),
+    );
+    to_port.map(|(time, _)| *time).collect()
+}
+
+#[test]
+fn a_message_to_a_fifo_waits_for_a_channel_until_another_to_a_fifo_has_ended() {
+    let mut bench = bench();
+    let mut ring = ring_with_two_fifos();
+    for (number, source, destination) in [(1, 0, 9), (2, 1, 8), (3, 2, 3)] {
+        bench.feed(us(0), Phase::Arrive, RingEvent::Request(request(number, source, destination, 100)));
+    }
+    bench.run(|event, context| ring.handle(event, context));
+    // The end of the third, which is elastic, gives no room to the second.
+    assert_eq!(ring.stats().messages, 1);
+    assert_eq!(reasons(&ring), [(0, WaitReason::Acceptance), (1, WaitReason::Channel)]);
+
+    let accept = RingEvent::Accept { destination: NodeId(9), last_word_at: us(100) };
+    bench.feed(us(100), Phase::Arrive, accept);
+    bench.run(|event, context| ring.handle(event, context));
+    assert_eq!(announced_to(&bench.outputs, 8), [us(100) + TIMING.word() + HOP * 7]);
+}
+
+#[test]
+fn a_source_waits_for_a_channel_and_not_for_its_own_reservation() {
+    let mut bench = bench();
+    let mut ring = ring_with_two_fifos();
+    let held = Request { hold: true, ..request(1, 0, 9, 10) };
+    bench.feed(us(0), Phase::Arrive, RingEvent::Request(held));
+    bench.feed(us(1), Phase::Arrive, RingEvent::Request(request(2, 1, 8, 10)));
+    bench.feed(us(2), Phase::Arrive, RingEvent::Request(request(3, 0, 9, 10)));
+    let accept = RingEvent::Accept { destination: NodeId(9), last_word_at: us(5) };
+    bench.feed(us(5), Phase::Arrive, accept);
+    bench.run(|event, context| ring.handle(event, context));
+    assert_eq!(reasons(&ring), [(0, WaitReason::Channel), (1, WaitReason::Acceptance)]);
+}
+
+#[test]
+fn a_message_that_nothing_stands_in_the_way_of_waits_for_arbitration() {
+    let mut ring = ring_with_two_fifos();
+    let mut context = Context::default();
+    ring.handle(RingEvent::Request(request(1, 0, 1, 10)), context.at(us(3)));
+    assert_eq!(reasons(&ring), [(0, WaitReason::Arbitration)]);
+}
+
+#[test]
+fn a_watched_ring_knows_after_every_event_how_many_channels_are_busy() {
+    let mut bench = bench();
+    let mut ring = Ring::new(TIMING, 10, |_| true).expect("valid");
+    ring.watch();
+    bench.feed(us(0), Phase::Arrive, RingEvent::Request(request(1, 0, 1, 1_024)));
+    bench.feed(us(10), Phase::Arrive, RingEvent::Request(request(2, 2, 3, 1_024)));
+    let mut busy = BTreeMap::new();
+    bench.run(|event, context| {
+        ring.handle(event, context);
+        busy.insert(context.now(), ring.busy_channels());
+    });
+    let expected = [(us(0), 1), (us(10), 2), (us(52), 1), (us(62), 0)];
+    assert_eq!(busy.into_iter().collect::<Vec<_>>(), expected);
 }

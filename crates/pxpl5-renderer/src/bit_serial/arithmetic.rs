@@ -3,17 +3,17 @@
 use super::planes;
 use super::tile::{EMPTY, FULL, Tile, TilePlane};
 use crate::array::FaultKind;
-use crate::controller::{Bits, Controller};
+use crate::controller::{Controller, FieldBits};
 use crate::isa::{ArithmeticOp, Instruction, Test};
 
 /// An operand that is read least significant bit first and then extended. The sign is latched at the start, since the
 /// result may overwrite it.
-pub(super) struct Source {
-    bits: Bits,
+pub(super) struct SerialOperand {
+    bits: FieldBits,
     extension: TilePlane,
 }
 
-impl Source {
+impl SerialOperand {
     fn bit(&self, memory: &[TilePlane], i: usize) -> TilePlane {
         *self.plane(memory, i)
     }
@@ -25,7 +25,7 @@ impl Source {
 
 /// The second factor of a product.
 enum Factor<'a> {
-    Field(&'a Source),
+    Field(&'a SerialOperand),
     Constant(i32),
 }
 
@@ -35,46 +35,54 @@ impl Tile {
         controller: &Controller,
         instruction: &Instruction,
     ) -> Result<(), FaultKind> {
-        let bits = |operand| controller.bits(operand);
         match *instruction {
             Instruction::ShiftRight { destination, source, by } => {
-                self.shift_right(bits(destination)?, bits(source)?, by.into());
+                self.shift_right(controller.bits(destination)?, controller.bits(source)?, by.into());
             }
             Instruction::ShiftLeft { destination, source, by } => {
-                self.shift_left(bits(destination)?, bits(source)?, by.into());
+                self.shift_left(controller.bits(destination)?, controller.bits(source)?, by.into());
             }
-            Instruction::Saturate { destination, source } => self.saturate(bits(destination)?, bits(source)?),
+            Instruction::Saturate { destination, source } => {
+                self.saturate(controller.bits(destination)?, controller.bits(source)?)
+            }
             Instruction::SquareRoot { destination, radicand } => {
-                self.square_root(bits(destination)?, bits(radicand)?);
+                self.square_root(controller.bits(destination)?, controller.bits(radicand)?);
             }
             Instruction::Arithmetic { op, destination, a, b } => {
-                self.arithmetic(op, bits(destination)?, bits(a)?, bits(b)?);
+                self.arithmetic(op, controller.bits(destination)?, controller.bits(a)?, controller.bits(b)?);
             }
             Instruction::Compare { test, a, b } => {
-                let (a, b) = (bits(a)?, bits(b)?);
+                let a = controller.bits(a)?;
+                let b = controller.bits(b)?;
                 let source = self.source(b);
                 self.compare(test, a, a.width.max(b.width), |memory, i| source.bit(memory, i));
             }
             Instruction::CompareConstant { test, a, value } => {
-                let a = bits(a)?;
+                let a = controller.bits(a)?;
                 self.compare(test, a, a.width, |_, i| constant_bit(value, i, a.signed));
             }
             Instruction::LoadConstant { destination, value } => {
-                let field = bits(destination)?;
+                let field = controller.bits(destination)?;
                 self.each_bit(field, |_, i| constant_bit(value, i, field.signed));
             }
             Instruction::MultiplyConstant { destination, source, factor, factor_bits } => {
                 let factor = Factor::Constant(factor);
-                self.multiply(bits(destination)?, bits(source)?, &factor, factor_bits.into(), true);
+                self.multiply(
+                    controller.bits(destination)?,
+                    controller.bits(source)?,
+                    &factor,
+                    factor_bits.into(),
+                    true,
+                );
             }
             _ => {}
         }
         Ok(())
     }
 
-    pub(super) fn source(&self, bits: Bits) -> Source {
+    pub(super) fn source(&self, bits: FieldBits) -> SerialOperand {
         let extension = if bits.signed { self.memory[bits.end() - 1] } else { EMPTY };
-        Source { bits, extension }
+        SerialOperand { bits, extension }
     }
 
     /// Stores one bit where enabled.
@@ -83,7 +91,7 @@ impl Tile {
     }
 
     /// field := the bits that `f` gives, least significant first, one a clock.
-    fn each_bit(&mut self, field: Bits, mut f: impl FnMut(&[TilePlane], usize) -> TilePlane) {
+    fn each_bit(&mut self, field: FieldBits, mut f: impl FnMut(&[TilePlane], usize) -> TilePlane) {
         for i in 0..field.width {
             let new = f(&self.memory, i);
             self.store(field.first + i, &new);
@@ -91,13 +99,13 @@ impl Tile {
         }
     }
 
-    fn shift_right(&mut self, destination: Bits, source: Bits, by: usize) {
+    fn shift_right(&mut self, destination: FieldBits, source: FieldBits, by: usize) {
         let source = self.source(source);
         self.each_bit(destination, |memory, i| source.bit(memory, i + by));
     }
 
     /// Most significant bit first, so that a field can be shifted in its place.
-    fn shift_left(&mut self, destination: Bits, source: Bits, by: usize) {
+    fn shift_left(&mut self, destination: FieldBits, source: FieldBits, by: usize) {
         let source = self.source(source);
         for i in (0..destination.width).rev() {
             let bit = i.checked_sub(by).map(|i| source.bit(&self.memory, i));
@@ -106,8 +114,9 @@ impl Tile {
         }
     }
 
-    fn saturate(&mut self, destination: Bits, source: Bits) {
-        let (w, wa) = (destination.width, source.width);
+    fn saturate(&mut self, destination: FieldBits, source: FieldBits) {
+        let w = destination.width;
+        let wa = source.width;
         let digits = if source.signed { wa - 1 } else { wa };
         let source = self.source(source);
         let mut over = EMPTY;
@@ -121,16 +130,14 @@ impl Tile {
         });
     }
 
-    fn arithmetic(&mut self, op: ArithmeticOp, destination: Bits, a: Bits, b: Bits) {
-        let (x, y) = (self.source(a), self.source(b));
+    fn arithmetic(&mut self, op: ArithmeticOp, destination: FieldBits, a: FieldBits, b: FieldBits) {
+        let x = self.source(a);
+        let y = self.source(b);
         let mut carry = EMPTY;
-        let mut logic = |f: fn(u64, u64) -> u64| {
-            self.each_bit(destination, |m, i| planes::combine(&x.bit(m, i), &y.bit(m, i), f));
-        };
         match op {
-            ArithmeticOp::And => logic(|a, b| a & b),
-            ArithmeticOp::Or => logic(|a, b| a | b),
-            ArithmeticOp::Xor => logic(|a, b| a ^ b),
+            ArithmeticOp::And => self.combine_bits(destination, &x, &y, |a, b| a & b),
+            ArithmeticOp::Or => self.combine_bits(destination, &x, &y, |a, b| a | b),
+            ArithmeticOp::Xor => self.combine_bits(destination, &x, &y, |a, b| a ^ b),
             ArithmeticOp::Add | ArithmeticOp::Subtract => self.each_bit(destination, |memory, i| {
                 let mut sum = x.bit(memory, i);
                 planes::step(op == ArithmeticOp::Subtract, &mut sum, &y.bit(memory, i), &mut carry);
@@ -153,8 +160,13 @@ impl Tile {
         }
     }
 
+    /// field := f(a, b), bit by bit.
+    fn combine_bits(&mut self, field: FieldBits, a: &SerialOperand, b: &SerialOperand, f: fn(u64, u64) -> u64) {
+        self.each_bit(field, |memory, i| planes::combine(&a.bit(memory, i), &b.bit(memory, i), f));
+    }
+
     /// Where a < b, from the borrow of their difference over `clocks` bits.
-    fn less(&mut self, a: Bits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) -> TilePlane {
+    fn less(&mut self, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) -> TilePlane {
         let x = self.source(a);
         let mut borrow = EMPTY;
         for i in 0..clocks {
@@ -170,7 +182,7 @@ impl Tile {
         borrow
     }
 
-    fn compare(&mut self, test: Test, a: Bits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
+    fn compare(&mut self, test: Test, a: FieldBits, clocks: usize, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
         let holds = match test {
             Test::Less | Test::NotLess => self.less(a, clocks, b),
             Test::Equal | Test::NotEqual => {
@@ -192,7 +204,7 @@ impl Tile {
 
     /// destination := a * b: for each bit of b, a is added to the bits from there on, with one clock for the carry; a
     /// negative last bit subtracts. Bits above the product repeat its sign.
-    fn multiply(&mut self, destination: Bits, a: Bits, b: &Factor<'_>, b_width: usize, b_signed: bool) {
+    fn multiply(&mut self, destination: FieldBits, a: FieldBits, b: &Factor<'_>, b_width: usize, b_signed: bool) {
         let x = self.source(a);
         for j in 0..b_width.min(destination.width) {
             let gate = match b {
@@ -212,7 +224,7 @@ impl Tile {
     }
 
     /// Adds `x << j` where `gate` is set, or subtracts it.
-    fn add_product(&mut self, destination: Bits, x: &Source, j: usize, gate: &TilePlane, negative: bool) {
+    fn add_product(&mut self, destination: FieldBits, x: &SerialOperand, j: usize, gate: &TilePlane, negative: bool) {
         let top = j + x.bits.width;
         // The sign of what the product has so far, if a clock at `top` is left to add to it.
         let extends = x.bits.signed && j > 0 && top < destination.width;
@@ -232,10 +244,10 @@ impl Tile {
     }
 
     /// For each digit from the top: compare the rest with the divisor, then subtract it where it is not larger.
-    fn divide(&mut self, destination: Bits, a: Bits, b: Bits) {
+    fn divide(&mut self, destination: FieldBits, a: FieldBits, b: FieldBits) {
         let divisor = self.source(b);
         for j in (0..destination.width).rev() {
-            let rest = Bits { first: a.first + j, width: a.width - j, signed: false };
+            let rest = FieldBits { first: a.first + j, width: a.width - j, signed: false };
             let mut digit = self.less(rest, rest.width.max(b.width), |memory, i| divisor.bit(memory, i));
             planes::invert(&mut digit);
             self.store(destination.first + j, &digit);
@@ -243,7 +255,7 @@ impl Tile {
         }
     }
 
-    fn subtract_gated(&mut self, rest: Bits, gate: &TilePlane, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
+    fn subtract_gated(&mut self, rest: FieldBits, gate: &TilePlane, b: impl Fn(&[TilePlane], usize) -> TilePlane) {
         let mut borrow = EMPTY;
         self.each_bit(rest, |memory, i| {
             let mut difference = memory[rest.first + i];
@@ -254,22 +266,27 @@ impl Tile {
     }
 
     /// For each digit from the top: the trial is the root so far, then 01, over the bits that the rest can occupy.
-    fn square_root(&mut self, destination: Bits, radicand: Bits) {
+    fn square_root(&mut self, destination: FieldBits, radicand: FieldBits) {
         let n = destination.width;
         for i in (0..n).rev() {
             let digits = n - 1 - i;
             let width = (digits + 3).min(radicand.width - 2 * i);
-            let rest = Bits { first: radicand.first + 2 * i, width, signed: false };
-            let trial = |memory: &[TilePlane], k: usize| match k {
-                0 => FULL,
-                2.. if k - 2 < digits => memory[destination.first + i + k - 1],
-                _ => EMPTY,
-            };
-            let mut digit = self.less(rest, width, trial);
+            let rest = FieldBits { first: radicand.first + 2 * i, width, signed: false };
+            let root = FieldBits { first: destination.first + i + 1, width: digits, signed: false };
+            let mut digit = self.less(rest, width, |memory, k| trial_bit(root, memory, k));
             planes::invert(&mut digit);
             self.store(destination.first + i, &digit);
-            self.subtract_gated(rest, &digit, trial);
+            self.subtract_gated(rest, &digit, |memory, k| trial_bit(root, memory, k));
         }
+    }
+}
+
+/// Bit `k` of the digits of a root so far, then 01.
+fn trial_bit(root: FieldBits, memory: &[TilePlane], k: usize) -> TilePlane {
+    match k {
+        0 => FULL,
+        2.. if k - 2 < root.width => memory[root.first + k - 2],
+        _ => EMPTY,
     }
 }
 

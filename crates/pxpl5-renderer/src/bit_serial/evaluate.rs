@@ -1,22 +1,22 @@
 //! Instructions with an expression: the evaluator's bits go to Enable or to pixel memory as they come.
 
 use super::BitSerial;
-use super::arithmetic::Source;
-use super::evaluator::{Evaluator, LinearStreams, Place, QuadraticStreams, WholeTrees, full_add};
+use super::arithmetic::SerialOperand;
+use super::evaluator::{Evaluator, LinearStreams, QuadraticStreams, VectorPlace, WholeTrees, full_add};
 use super::tile::{HEIGHT, Tile, TilePlane};
 use crate::array::FaultKind;
-use crate::controller::{Bits, Local};
-use crate::isa::{Expression, ExpressionUse};
-use crate::simd::{Kernel, Vector};
+use crate::controller::{FieldBits, LocalExpression};
+use crate::isa::{Expression, ExpressionUse, Operand};
+use crate::simd::{SimdVector, VectorKernel};
 use std::ops::Range;
 
 /// Where the bits of an expression go.
-trait Sink {
+trait BitSink {
     /// Takes bit `t` of the expression in the pixels of a tile from word `at` of a plane on; `carry` begins with zeros.
-    fn take<V: Vector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V);
+    fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V);
 
     /// Takes the carry behind the last bit.
-    fn end<V: Vector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
+    fn end<V: SimdVector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
 }
 
 /// What pixels do with an expression.
@@ -24,42 +24,51 @@ trait Sink {
 pub(super) struct Delivery {
     /// Clocks whose bits they take.
     pub(super) taken: Range<usize>,
-    pub(super) effect: Effect,
+    pub(super) effect: ExpressionEffect,
 }
 
 /// Where the bits go; fields by their first bit.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Effect {
+pub(super) enum ExpressionEffect {
     DisableNegative,
     Load { first: usize },
     Add { first: usize },
     DisableNotLess { first: usize },
-    LoadMinus { first: usize, shift: usize, subtrahend: Bits, left_shift: usize },
+    LoadMinus { first: usize, shift: usize, subtrahend: FieldBits, left_shift: usize },
 }
 
 impl Delivery {
     /// Runs all clocks in one vector of pixels.
     #[inline(always)]
-    pub(super) fn run_pixels<V: Vector, E: Evaluator>(&self, evaluator: &E, tile: &mut Tile, place: Place) {
+    pub(super) fn run_pixels<V: SimdVector, E: Evaluator>(&self, evaluator: &E, tile: &mut Tile, place: VectorPlace) {
         let shift = self.taken.start;
         match self.effect {
-            Effect::DisableNegative => self.run::<V, E, _>(evaluator, &Disable, tile, place),
-            Effect::Load { first } => self.run::<V, E, _>(evaluator, &Load { first, shift }, tile, place),
-            Effect::Add { first } => self.run::<V, E, _>(evaluator, &Add { first, shift }, tile, place),
-            Effect::DisableNotLess { first } => {
-                self.run::<V, E, _>(evaluator, &DisableNotLess { first, shift }, tile, place);
+            ExpressionEffect::DisableNegative => self.run::<V, E, _>(evaluator, &ClearEnable, tile, place),
+            ExpressionEffect::Load { first } => {
+                self.run::<V, E, _>(evaluator, &StoreBits { first, shift }, tile, place)
             }
-            Effect::LoadMinus { first, shift, subtrahend, left_shift } => {
+            ExpressionEffect::Add { first } => self.run::<V, E, _>(evaluator, &AddBits { first, shift }, tile, place),
+            ExpressionEffect::DisableNotLess { first } => {
+                self.run::<V, E, _>(evaluator, &CompareBits { first, shift }, tile, place);
+            }
+            ExpressionEffect::LoadMinus { first, shift, subtrahend, left_shift } => {
                 let source = tile.source(subtrahend);
-                self.run::<V, E, _>(evaluator, &LoadMinus { first, shift, source, left_shift }, tile, place);
+                self.run::<V, E, _>(evaluator, &StoreDifference { first, shift, source, left_shift }, tile, place);
             }
         }
     }
 
     #[inline(always)]
-    fn run<V: Vector, E: Evaluator, S: Sink>(&self, evaluator: &E, sink: &S, tile: &mut Tile, place: Place) {
+    fn run<V: SimdVector, E: Evaluator, S: BitSink>(
+        &self,
+        evaluator: &E,
+        sink: &S,
+        tile: &mut Tile,
+        place: VectorPlace,
+    ) {
         let at = place.at;
-        let (mut carries, mut carry) = (E::start::<V>(), V::splat(0));
+        let mut carries = E::start::<V>();
+        let mut carry = V::splat(0);
         for t in 0..self.taken.start {
             evaluator.bit(t, place, &mut carries);
         }
@@ -72,27 +81,26 @@ impl Delivery {
 }
 
 /// The bits of an expression on their way to all pixels.
-struct Deliver<'a, E: WholeTrees> {
+struct DeliverToTiles<'a, E: WholeTrees> {
     coefficients: &'a E::Coefficients,
     delivery: &'a Delivery,
     tiles: &'a mut [Tile],
     skipping: bool,
 }
 
-impl<E: WholeTrees> Kernel for Deliver<'_, E> {
+impl<E: WholeTrees> VectorKernel for DeliverToTiles<'_, E> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Vector>(self) {
-        let works = |tile: &Tile| !self.skipping || tile.enabled();
-        if !self.tiles.iter().any(works) {
+    fn run<V: SimdVector>(self) {
+        if !self.tiles.iter().any(|tile| tile.has_work(self.skipping)) {
             return;
         }
         let evaluator = E::run_trees::<V>(self.coefficients, self.delivery.taken.end);
-        for (number, tile) in self.tiles.iter_mut().enumerate().filter(|(_, tile)| works(tile)) {
+        for (number, tile) in self.tiles.iter_mut().enumerate().filter(|(_, tile)| tile.has_work(self.skipping)) {
             // A lane is a row.
             for row in (0..HEIGHT).step_by(V::LANES) {
-                self.delivery.run_pixels::<V, E>(&evaluator, tile, Place::in_array(number, row));
+                self.delivery.run_pixels::<V, E>(&evaluator, tile, VectorPlace::in_array(number, row));
             }
         }
     }
@@ -103,15 +111,17 @@ impl BitSerial {
     pub(super) fn evaluate(&mut self, expression: &Expression, usage: &ExpressionUse) -> Result<(), FaultKind> {
         let delivery = &self.delivery(usage, expression.bits())?;
         let local = self.controller.latch(expression);
-        let (vectors, skipping, tiles) = (self.vectors, self.skipping, &mut self.tiles[..]);
+        let vectors = self.vectors;
+        let skipping = self.skipping;
+        let tiles = &mut self.tiles[..];
         match &local {
-            Local::Linear(coefficients) => {
+            LocalExpression::Linear(coefficients) => {
                 self.clock += delivery.taken.end as u64;
-                vectors.run(Deliver::<LinearStreams> { coefficients, delivery, tiles, skipping });
+                vectors.run(DeliverToTiles::<LinearStreams> { coefficients, delivery, tiles, skipping });
             }
-            Local::Quadratic(coefficients) => {
+            LocalExpression::Quadratic(coefficients) => {
                 self.clock += u64::from(local.bits());
-                vectors.run(Deliver::<QuadraticStreams> { coefficients, delivery, tiles, skipping });
+                vectors.run(DeliverToTiles::<QuadraticStreams> { coefficients, delivery, tiles, skipping });
             }
         }
         Ok(())
@@ -119,76 +129,79 @@ impl BitSerial {
 
     /// How an expression of so many bits is used in the selected context.
     pub(super) fn delivery(&self, usage: &ExpressionUse, bits: u32) -> Result<Delivery, FaultKind> {
-        let taken = |field, shift| -> Result<_, FaultKind> {
-            let field = self.controller.bits(field)?;
-            let shift = usize::from(shift);
-            Ok((shift..shift + field.width, field.first))
-        };
         let (taken, effect) = match *usage {
-            ExpressionUse::DisableNegative => (bits as usize - 1..bits as usize, Effect::DisableNegative),
+            ExpressionUse::DisableNegative => (bits as usize - 1..bits as usize, ExpressionEffect::DisableNegative),
             ExpressionUse::Load { field, shift } => {
-                let (taken, first) = taken(field, shift)?;
-                (taken, Effect::Load { first })
+                let (taken, first) = self.taken_by(field, shift)?;
+                (taken, ExpressionEffect::Load { first })
             }
             ExpressionUse::Add { field, shift } => {
-                let (taken, first) = taken(field, shift)?;
-                (taken, Effect::Add { first })
+                let (taken, first) = self.taken_by(field, shift)?;
+                (taken, ExpressionEffect::Add { first })
             }
             ExpressionUse::DisableNotLess { field, shift } => {
-                let (taken, first) = taken(field, shift)?;
-                (taken, Effect::DisableNotLess { first })
+                let (taken, first) = self.taken_by(field, shift)?;
+                (taken, ExpressionEffect::DisableNotLess { first })
             }
             ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift } => {
-                let (taken, first) = taken(field, shift)?;
-                let (subtrahend, left_shift) = (self.controller.bits(subtrahend)?, left_shift.into());
-                (0..taken.end, Effect::LoadMinus { first, shift: taken.start, subtrahend, left_shift })
+                let (taken, first) = self.taken_by(field, shift)?;
+                let subtrahend = self.controller.bits(subtrahend)?;
+                let left_shift = left_shift.into();
+                (0..taken.end, ExpressionEffect::LoadMinus { first, shift: taken.start, subtrahend, left_shift })
             }
         };
         Ok(Delivery { taken, effect })
+    }
+
+    /// Clocks whose bits a field takes where the first `shift` are left out, and the field's first bit.
+    fn taken_by(&self, field: Operand, shift: u8) -> Result<(Range<usize>, usize), FaultKind> {
+        let field = self.controller.bits(field)?;
+        let shift = usize::from(shift);
+        Ok((shift..shift + field.width, field.first))
     }
 }
 
 /// Overwrites one bit where enabled.
 #[inline(always)]
-fn store<V: Vector>(plane: &mut TilePlane, at: usize, new: V, enable: &TilePlane) {
+fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TilePlane) {
     let old = V::load_words(&plane[at..]);
     let changed = old.xor(new).and(V::load_words(&enable[at..]));
     old.xor(changed).store_words(&mut plane[at..]);
 }
 
 /// E := 0 where the bit is set.
-struct Disable;
+struct ClearEnable;
 
-impl Sink for Disable {
+impl BitSink for ClearEnable {
     #[inline(always)]
-    fn take<V: Vector>(&self, tile: &mut Tile, at: usize, _: usize, bit: V, _: &mut V) {
+    fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, _: usize, bit: V, _: &mut V) {
         let enable = V::load_words(&tile.enable[at..]);
         enable.and(bit).xor(enable).store_words(&mut tile.enable[at..]);
     }
 }
 
 /// field := bits from `shift` on.
-struct Load {
+struct StoreBits {
     first: usize,
     shift: usize,
 }
 
-impl Sink for Load {
+impl BitSink for StoreBits {
     #[inline(always)]
-    fn take<V: Vector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, _: &mut V) {
+    fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, _: &mut V) {
         store(&mut tile.memory[self.first + t - self.shift], at, bit, &tile.enable);
     }
 }
 
 /// field := field + bits from `shift` on.
-struct Add {
+struct AddBits {
     first: usize,
     shift: usize,
 }
 
-impl Sink for Add {
+impl BitSink for AddBits {
     #[inline(always)]
-    fn take<V: Vector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V) {
+    fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V) {
         let plane = &mut tile.memory[self.first + t - self.shift];
         let sum = full_add(bit, V::load_words(&plane[at..]), carry);
         store(plane, at, sum, &tile.enable);
@@ -196,35 +209,35 @@ impl Sink for Add {
 }
 
 /// E := 0 unless bits from `shift` on are less than the field.
-struct DisableNotLess {
+struct CompareBits {
     first: usize,
     shift: usize,
 }
 
-impl Sink for DisableNotLess {
+impl BitSink for CompareBits {
     #[inline(always)]
-    fn take<V: Vector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, borrow: &mut V) {
+    fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, borrow: &mut V) {
         let field = &tile.memory[self.first + t - self.shift];
         subtract(bit, V::load_words(&field[at..]), borrow);
     }
 
     #[inline(always)]
-    fn end<V: Vector>(&self, tile: &mut Tile, at: usize, less: V) {
+    fn end<V: SimdVector>(&self, tile: &mut Tile, at: usize, less: V) {
         V::load_words(&tile.enable[at..]).and(less).store_words(&mut tile.enable[at..]);
     }
 }
 
 /// field := bits from `shift` on of the difference from a source.
-struct LoadMinus {
+struct StoreDifference {
     first: usize,
     shift: usize,
-    source: Source,
+    source: SerialOperand,
     left_shift: usize,
 }
 
-impl Sink for LoadMinus {
+impl BitSink for StoreDifference {
     #[inline(always)]
-    fn take<V: Vector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, borrow: &mut V) {
+    fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, borrow: &mut V) {
         let subtrahend = match t.checked_sub(self.left_shift) {
             Some(i) => V::load_words(&self.source.plane(&tile.memory, i)[at..]),
             None => V::splat(0),
@@ -238,7 +251,7 @@ impl Sink for LoadMinus {
 
 /// One clock of a serial subtracter in each pixel of a vector: a - b = not (not a + b).
 #[inline(always)]
-fn subtract<V: Vector>(a: V, b: V, borrow: &mut V) -> V {
+fn subtract<V: SimdVector>(a: V, b: V, borrow: &mut V) -> V {
     let ones = V::splat(-1);
     full_add(a.xor(ones), b, borrow).xor(ones)
 }

@@ -11,7 +11,7 @@
 
 use super::tile::{self, WIDTH};
 use crate::isa::{LINEAR_BITS, QUADRATIC_BITS};
-use crate::simd::Vector;
+use crate::simd::SimdVector;
 use pxpl5_wire::{Linear, Quadratic};
 
 /// Bits of a column's number.
@@ -58,7 +58,7 @@ pub(super) struct Trees<V, const LEVELS: usize> {
     carries: [V; LEVELS],
 }
 
-impl<V: Vector, const LEVELS: usize> Trees<V, LEVELS> {
+impl<V: SimdVector, const LEVELS: usize> Trees<V, LEVELS> {
     #[inline(always)]
     pub(super) fn new(coefficients: [V; 2], leaves: [V; LEVELS]) -> Self {
         let zeros = [V::splat(0); LEVELS];
@@ -91,21 +91,26 @@ impl<V: Vector, const LEVELS: usize> Trees<V, LEVELS> {
 
 /// Low and high halves of two numbers in the lanes of their trees.
 #[inline(always)]
-fn in_lanes<V: Vector>([first, second]: [i64; 2]) -> [V; 2] {
-    let twice = |half: i64| (half as u32 as u64) << 32 | half as u32 as u64;
-    let lanes = |first: u64, second: u64| V::load_words(&[first, first, second, second, 0, 0, 0, 0]);
-    [lanes(twice(first), twice(second)), lanes(twice(first >> 32), twice(second >> 32))]
+fn in_lanes<V: SimdVector>([first, second]: [i64; 2]) -> [V; 2] {
+    [low_halves_in_lanes([first, second]), low_halves_in_lanes([first >> 32, second >> 32])]
+}
+
+/// The low halves of two numbers, each in the four lanes of its tree.
+#[inline(always)]
+fn low_halves_in_lanes<V: SimdVector>(numbers: [i64; 2]) -> V {
+    let [first, second] = numbers.map(|number| (number as u32 as u64) << 32 | number as u32 as u64);
+    V::load_words(&[first, first, second, second, 0, 0, 0, 0])
 }
 
 /// Bit `t` of the number whose halves a lane holds.
 #[inline(always)]
-fn bit_of<V: Vector>([low, high]: [V; 2], t: usize) -> V {
+fn bit_of<V: SimdVector>([low, high]: [V; 2], t: usize) -> V {
     if t < 32 { low.bit(t as u32) } else { high.bit(t as u32 - 32) }
 }
 
 /// The lanes of a vector, and zeros behind them.
 #[inline(always)]
-fn streams<V: Vector>(stream: V) -> Streams {
+fn streams<V: SimdVector>(stream: V) -> Streams {
     let mut words = [0; 8];
     stream.store_words(&mut words);
     words
@@ -113,52 +118,52 @@ fn streams<V: Vector>(stream: V) -> Streams {
 
 /// A vector of pixels in a tile, and which streams meet there.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct VectorPlace {
     /// Word of a tile's plane.
     pub(super) at: usize,
-    columns: From,
-    rows: From,
+    columns: StreamStart,
+    rows: StreamStart,
 }
 
 /// Where a stream's bits for a vector of pixels begin.
 #[derive(Clone, Copy)]
-struct From {
+struct StreamStart {
     word: usize,
     bit: usize,
 }
 
-impl Place {
+impl VectorPlace {
     /// A tile of the whole array and a row of the tile, for a pair of trees over the array.
     #[inline(always)]
     pub(super) const fn in_array(tile: usize, row: usize) -> Self {
         let [left, top] = tile::origin(tile);
         let y = top + row;
-        let columns = From { word: left / 64, bit: left % 64 };
-        Self { at: row / 2, columns, rows: From { word: 2 + y / 64, bit: y % 64 } }
+        let columns = StreamStart { word: left / 64, bit: left % 64 };
+        Self { at: row / 2, columns, rows: StreamStart { word: 2 + y / 64, bit: y % 64 } }
     }
 
     /// A row of a tile, for a pair of trees over the tile: columns in the low half of a word, rows in the high one.
     #[inline(always)]
     pub(super) const fn in_tile(word: usize, row: usize) -> Self {
-        Self { at: row / 2, columns: From { word, bit: 0 }, rows: From { word, bit: WIDTH + row } }
+        Self { at: row / 2, columns: StreamStart { word, bit: 0 }, rows: StreamStart { word, bit: WIDTH + row } }
     }
 
     /// The bits of the columns, in all rows.
     #[inline(always)]
-    fn columns<V: Vector>(&self, streams: &Streams) -> V {
-        V::splat(self.columns.of(streams) as i32)
+    fn columns<V: SimdVector>(&self, streams: &Streams) -> V {
+        V::splat(self.columns.bits_in(streams) as i32)
     }
 
     /// The bits of the rows, each in all pixels of its row.
     #[inline(always)]
-    fn rows<V: Vector>(&self, streams: &Streams) -> V {
-        V::spread(self.rows.of(streams))
+    fn rows<V: SimdVector>(&self, streams: &Streams) -> V {
+        V::spread(self.rows.bits_in(streams))
     }
 }
 
-impl From {
+impl StreamStart {
     #[inline(always)]
-    const fn of(&self, streams: &Streams) -> u64 {
+    const fn bits_in(&self, streams: &Streams) -> u64 {
         streams[self.word % streams.len()] >> self.bit
     }
 }
@@ -166,28 +171,28 @@ impl From {
 /// What pixels do with the streams of the trees.
 pub(super) trait Evaluator {
     /// What the adders of a vector of pixels hold from clock to clock.
-    type Carries<V: Vector>;
+    type Carries<V: SimdVector>;
 
-    /// All zeros.
-    fn start<V: Vector>() -> Self::Carries<V>;
+    /// Carries before the first bit: all zeros.
+    fn start<V: SimdVector>() -> Self::Carries<V>;
 
     /// Bit `t` of the expression in a vector of pixels; `t` counts up from 0.
-    fn bit<V: Vector>(&self, t: usize, place: Place, carries: &mut Self::Carries<V>) -> V;
+    fn bit<V: SimdVector>(&self, t: usize, place: VectorPlace, carries: &mut Self::Carries<V>) -> V;
 }
 
 /// An evaluator whose trees reach over the whole array.
 pub(super) trait WholeTrees: Evaluator {
-    /// The expression's coefficients.
+    /// What the trees multiply by the numbers of columns and rows: linear or quadratic coefficients.
     type Coefficients;
 
     /// Runs the trees for the first `bits` of the expression.
-    fn run_trees<V: Vector>(coefficients: &Self::Coefficients, bits: usize) -> Self;
+    fn run_trees<V: SimdVector>(coefficients: &Self::Coefficients, bits: usize) -> Self;
 }
 
 /// A linear expression: what its columns and rows deliver, clock by clock.
 pub(super) struct LinearStreams(pub(super) [Streams; LINEAR_BITS as usize]);
 
-/// A quadratic expression.
+/// A quadratic expression: what its trees deliver, clock by clock.
 pub(super) struct QuadraticStreams([QuadraticBits; QUADRATIC_BITS as usize]);
 
 /// What the trees of a quadratic deliver in one clock.
@@ -212,7 +217,7 @@ impl WholeTrees for LinearStreams {
     type Coefficients = Linear;
 
     #[inline(always)]
-    fn run_trees<V: Vector>(e: &Linear, bits: usize) -> Self {
+    fn run_trees<V: SimdVector>(e: &Linear, bits: usize) -> Self {
         let constants = in_lanes([0, e.c.into()]);
         let mut trees = Trees::<V, _>::of_pair([e.a.into(), e.b.into()], &NUMBERS);
         let mut out = [[0; 8]; LINEAR_BITS as usize];
@@ -224,15 +229,15 @@ impl WholeTrees for LinearStreams {
 }
 
 impl Evaluator for LinearStreams {
-    type Carries<V: Vector> = V;
+    type Carries<V: SimdVector> = V;
 
     #[inline(always)]
-    fn start<V: Vector>() -> V {
+    fn start<V: SimdVector>() -> V {
         V::splat(0)
     }
 
     #[inline(always)]
-    fn bit<V: Vector>(&self, t: usize, place: Place, carry: &mut V) -> V {
+    fn bit<V: SimdVector>(&self, t: usize, place: VectorPlace, carry: &mut V) -> V {
         full_add(place.columns(&self.0[t]), place.rows(&self.0[t]), carry)
     }
 }
@@ -241,7 +246,7 @@ impl WholeTrees for QuadraticStreams {
     type Coefficients = Quadratic;
 
     #[inline(always)]
-    fn run_trees<V: Vector>(q: &Quadratic, bits: usize) -> Self {
+    fn run_trees<V: SimdVector>(q: &Quadratic, bits: usize) -> Self {
         let mut squares = Trees::<V, _>::of_pair([q.xx, q.yy], &SQUARES);
         let mut numbers = Trees::<V, _>::of_pair([q.xy, q.y], &NUMBERS);
         let constants = in_lanes([q.x, q.one]);
@@ -259,17 +264,17 @@ impl WholeTrees for QuadraticStreams {
 }
 
 impl Evaluator for QuadraticStreams {
-    type Carries<V: Vector> = QuadraticCarries<V>;
+    type Carries<V: SimdVector> = QuadraticCarries<V>;
 
     #[inline(always)]
-    fn start<V: Vector>() -> QuadraticCarries<V> {
+    fn start<V: SimdVector>() -> QuadraticCarries<V> {
         let zero = V::splat(0);
         let zeros = [zero; NUMBER_BITS];
         QuadraticCarries { late: zeros, product: zeros, rows_and_columns: zero, sum: zero }
     }
 
     #[inline(always)]
-    fn bit<V: Vector>(&self, t: usize, place: Place, carries: &mut QuadraticCarries<V>) -> V {
+    fn bit<V: SimdVector>(&self, t: usize, place: VectorPlace, carries: &mut QuadraticCarries<V>) -> V {
         let QuadraticBits { sums, coefficients } = &self.0[t];
         let [a, b, c, d, e, f, _] = carries.late;
         carries.late = [place.rows(coefficients), a, b, c, d, e, f];
@@ -285,7 +290,7 @@ impl Evaluator for QuadraticStreams {
 
 /// One clock of a serial adder in each pixel of a vector.
 #[inline(always)]
-pub(super) fn full_add<V: Vector>(a: V, b: V, carry: &mut V) -> V {
+pub(super) fn full_add<V: SimdVector>(a: V, b: V, carry: &mut V) -> V {
     let half = a.xor(b);
     let sum = half.xor(*carry);
     *carry = a.and(b).or(carry.and(half));
@@ -296,18 +301,19 @@ pub(super) fn full_add<V: Vector>(a: V, b: V, carry: &mut V) -> V {
 mod tests {
     use super::tile::{ACROSS, HEIGHT};
     use super::*;
-    use crate::simd::Eight;
+    use crate::simd::PortableVector;
 
     fn value<E: WholeTrees>(coefficients: &E::Coefficients, bits: u32, x: usize, y: usize) -> i64 {
-        let evaluator = E::run_trees::<Eight>(coefficients, bits as usize);
+        let evaluator = E::run_trees::<PortableVector>(coefficients, bits as usize);
         let mut carries = E::start();
         let tile = y / HEIGHT * ACROSS + x / WIDTH;
-        let place = Place::in_array(tile, y % HEIGHT / Eight::LANES * Eight::LANES);
+        let place = VectorPlace::in_array(tile, y % HEIGHT / PortableVector::LANES * PortableVector::LANES);
         // A lane is a row, a word two of them.
-        let (lane, column) = (y % Eight::LANES, x % WIDTH);
+        let lane = y % PortableVector::LANES;
+        let column = x % WIDTH;
         let value = (0..bits as usize).fold(0, |value, t| {
-            let mut words = [0; Eight::LANES / 2];
-            evaluator.bit::<Eight>(t, place, &mut carries).store_words(&mut words);
+            let mut words = [0; PortableVector::LANES / 2];
+            evaluator.bit::<PortableVector>(t, place, &mut carries).store_words(&mut words);
             value | ((words[lane / 2] >> (WIDTH * (lane % 2) + column) & 1) as i64) << t
         });
         value << (64 - bits) >> (64 - bits)

@@ -2,7 +2,7 @@
 
 use super::tile::{EMPTY, TilePlane};
 
-/// a := not a.
+/// a := not a, in all pixels of the tile.
 #[inline(always)]
 pub(super) fn invert(a: &mut TilePlane) {
     for a in a {
@@ -10,7 +10,7 @@ pub(super) fn invert(a: &mut TilePlane) {
     }
 }
 
-/// a &= b.
+/// a := a and b, in all pixels of the tile.
 #[inline(always)]
 pub(super) fn and(a: &mut TilePlane, b: &TilePlane) {
     for (a, b) in a.iter_mut().zip(b) {
@@ -18,7 +18,7 @@ pub(super) fn and(a: &mut TilePlane, b: &TilePlane) {
     }
 }
 
-/// a &= not b.
+/// a := a and not b, in all pixels of the tile.
 #[inline(always)]
 pub(super) fn and_not(a: &mut TilePlane, b: &TilePlane) {
     for (a, b) in a.iter_mut().zip(b) {
@@ -26,7 +26,7 @@ pub(super) fn and_not(a: &mut TilePlane, b: &TilePlane) {
     }
 }
 
-/// a |= b.
+/// a := a or b, in all pixels of the tile.
 #[inline(always)]
 pub(super) fn or(a: &mut TilePlane, b: &TilePlane) {
     for (a, b) in a.iter_mut().zip(b) {

@@ -12,14 +12,14 @@
 
 use super::BitSerial;
 use super::arithmetic::constant_bit;
-use super::evaluate::{Delivery, Effect};
-use super::evaluator::{Evaluator, LinearStreams, Place, Trees};
+use super::evaluate::{Delivery, ExpressionEffect};
+use super::evaluator::{Evaluator, LinearStreams, Trees, VectorPlace};
 use super::tile::{self, ACROSS, EMPTY, HEIGHT, TILES, Tile, WIDTH, any};
 use crate::array::Executed;
-use crate::controller::Local;
+use crate::controller::LocalExpression;
 use crate::isa::timing::SET_UP_CLOCKS;
 use crate::isa::{Expression, Instruction, LINEAR_BITS, opcode};
-use crate::simd::{Kernel, Vector};
+use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::{Linear, Word};
 
 /// Most expressions of a run: as many as have their trees in the widest vector.
@@ -32,8 +32,8 @@ const NUMBERS: [u32; LEVELS] = [0xaaaa_aaaa, 0xcccc_cccc, 0xf0f0_f0f0, 0xff00_ff
 
 /// Instructions that follow each other.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Run {
-    steps: Vec<Step>,
+pub(super) struct InstructionRun {
+    steps: Vec<RunStep>,
     /// Over the array's own columns and rows.
     expressions: Vec<Linear>,
     /// Words of the list.
@@ -42,17 +42,28 @@ pub(super) struct Run {
 
 /// An instruction of a run.
 #[derive(Clone, Debug)]
-struct Step {
-    input: Input,
+struct RunStep {
+    input: BitOrigin,
     delivery: Delivery,
 }
 
 /// Where bits come from.
 #[derive(Clone, Copy, Debug)]
-enum Input {
+enum BitOrigin {
     /// An expression of the run.
     Expression(usize),
-    Constant(Constant),
+    Constant(ConstantBits),
+}
+
+impl RunStep {
+    /// The expression of the run whose sign disables, where that is what the instruction does.
+    #[inline(always)]
+    const fn disables_by_sign_of(&self) -> Option<usize> {
+        match (self.input, self.delivery.effect) {
+            (BitOrigin::Expression(i), ExpressionEffect::DisableNegative) => Some(i),
+            _ => None,
+        }
+    }
 }
 
 impl BitSerial {
@@ -73,7 +84,7 @@ impl BitSerial {
     }
 
     /// Adds the next instruction, unless it does not belong to the run or is a fault.
-    fn extend(&mut self, run: &mut Run, words: &[Word], position: usize) -> bool {
+    fn extend(&mut self, run: &mut InstructionRun, words: &[Word], position: usize) -> bool {
         let position = position + run.words;
         let Some(head) = words.get(position) else { return false };
         if !matches!((head >> 24) as u8, opcode::LINEAR..opcode::QUADRATIC | opcode::LOAD_CONSTANT) {
@@ -86,7 +97,7 @@ impl BitSerial {
         true
     }
 
-    fn step_of(&mut self, run: &mut Run, instruction: &Instruction) -> Option<Step> {
+    fn step_of(&mut self, run: &mut InstructionRun, instruction: &Instruction) -> Option<RunStep> {
         match *instruction {
             Instruction::Evaluate { expression, usage } => {
                 let delivery = self.delivery(&usage, LINEAR_BITS).ok()?;
@@ -94,15 +105,16 @@ impl BitSerial {
                     if run.expressions.len() == EXPRESSIONS {
                         return None;
                     }
-                    let Local::Linear(local) = self.controller.latch(&expression) else { return None };
+                    let LocalExpression::Linear(local) = self.controller.latch(&expression) else { return None };
                     run.expressions.push(local);
                 }
-                Some(Step { input: Input::Expression(run.expressions.len() - 1), delivery })
+                Some(RunStep { input: BitOrigin::Expression(run.expressions.len() - 1), delivery })
             }
             Instruction::LoadConstant { destination, value } => {
                 let field = self.controller.bits(destination).ok()?;
-                let delivery = Delivery { taken: 0..field.width, effect: Effect::Load { first: field.first } };
-                Some(Step { input: Input::Constant(Constant { value, signed: field.signed }), delivery })
+                let delivery =
+                    Delivery { taken: 0..field.width, effect: ExpressionEffect::Load { first: field.first } };
+                Some(RunStep { input: BitOrigin::Constant(ConstantBits { value, signed: field.signed }), delivery })
             }
             _ => None,
         }
@@ -111,15 +123,15 @@ impl BitSerial {
 
 /// A run in all tiles.
 struct RunTiles<'a> {
-    run: &'a Run,
+    run: &'a InstructionRun,
     tiles: &'a mut [Tile],
 }
 
-impl Kernel for RunTiles<'_> {
+impl VectorKernel for RunTiles<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Vector>(self) {
+    fn run<V: SimdVector>(self) {
         let signs = self.run.signs::<V>();
         let disabled = self.run.disabled_at_once(&signs);
         let mut streams = TileStreams { streams: LinearStreams([[0; EXPRESSIONS]; LINEAR_BITS as usize]), ready: 0 };
@@ -134,7 +146,7 @@ impl Kernel for RunTiles<'_> {
     }
 }
 
-impl Run {
+impl InstructionRun {
     fn clear(&mut self) {
         self.steps.clear();
         self.expressions.clear();
@@ -143,11 +155,11 @@ impl Run {
 
     /// Of the expressions whose sign matters.
     #[inline(always)]
-    fn signs<V: Vector>(&self) -> [Signs; EXPRESSIONS] {
+    fn signs<V: SimdVector>(&self) -> [Signs; EXPRESSIONS] {
         let mut signs = [Signs::default(); EXPRESSIONS];
         for step in &self.steps {
-            if let (Input::Expression(i), Effect::DisableNegative) = (step.input, step.delivery.effect) {
-                signs[i] = Signs::of::<V>(&self.expressions[i]);
+            if let Some(i) = step.disables_by_sign_of() {
+                signs[i] = Signs::from_corners::<V>(&self.expressions[i]);
             }
         }
         signs
@@ -158,14 +170,14 @@ impl Run {
     fn disabled_at_once(&self, signs: &[Signs; EXPRESSIONS]) -> u32 {
         let mut disabled = 0;
         for step in &self.steps {
-            let (Input::Expression(i), Effect::DisableNegative) = (step.input, step.delivery.effect) else { break };
+            let Some(i) = step.disables_by_sign_of() else { break };
             disabled |= signs[i].negative;
         }
         disabled
     }
 
     #[inline(always)]
-    fn in_tile<V: Vector>(
+    fn in_tile<V: SimdVector>(
         &self,
         signs: &[Signs; EXPRESSIONS],
         streams: &mut TileStreams,
@@ -174,9 +186,9 @@ impl Run {
     ) {
         for step in &self.steps {
             match step.input {
-                Input::Constant(constant) => step.delivery.in_tile::<V, _>(&constant, 0, tile),
-                Input::Expression(i) => {
-                    if matches!(step.delivery.effect, Effect::DisableNegative) {
+                BitOrigin::Constant(constant) => step.delivery.in_tile::<V, _>(&constant, 0, tile),
+                BitOrigin::Expression(i) => {
+                    if matches!(step.delivery.effect, ExpressionEffect::DisableNegative) {
                         if signs[i].negative >> number & 1 == 1 {
                             tile.enable = EMPTY;
                             return;
@@ -201,10 +213,10 @@ impl Run {
 impl Delivery {
     /// In those vectors of a tile that have enabled pixels; the trees' streams stand in a word.
     #[inline(always)]
-    fn in_tile<V: Vector, E: Evaluator>(&self, evaluator: &E, word: usize, tile: &mut Tile) {
+    fn in_tile<V: SimdVector, E: Evaluator>(&self, evaluator: &E, word: usize, tile: &mut Tile) {
         for row in (0..HEIGHT).step_by(V::LANES) {
             if any(&tile.enable[row / 2..][..V::LANES / 2]) {
-                self.run_pixels::<V, E>(evaluator, tile, Place::in_tile(word, row));
+                self.run_pixels::<V, E>(evaluator, tile, VectorPlace::in_tile(word, row));
             }
         }
     }
@@ -222,7 +234,7 @@ struct Signs {
 impl Signs {
     /// From the values at the corners of each tile; unknown where the expression wraps anywhere in the array.
     #[inline(always)]
-    fn of<V: Vector>(e: &Linear) -> Self {
+    fn from_corners<V: SimdVector>(e: &Linear) -> Self {
         if wraps(e) {
             return Self::default();
         }
@@ -231,8 +243,10 @@ impl Signs {
             let [left, top] = tile::origin(number);
             *corner = e.at(left as i32, top as i32) as u32;
         }
-        let (across, down) = (e.a * (WIDTH as i32 - 1), e.b * (HEIGHT as i32 - 1));
-        let (largest, smallest) = (V::splat(across.max(0) + down.max(0)), V::splat(across.min(0) + down.min(0)));
+        let across = e.a * (WIDTH as i32 - 1);
+        let down = e.b * (HEIGHT as i32 - 1);
+        let largest = V::splat(across.max(0) + down.max(0));
+        let smallest = V::splat(across.min(0) + down.min(0));
         let mut signs = Self::default();
         for first in (0..TILES).step_by(V::LANES) {
             let corner = V::load(&corners[first..]);
@@ -243,7 +257,7 @@ impl Signs {
     }
 }
 
-const fn lanes<V: Vector>() -> u32 {
+const fn lanes<V: SimdVector>() -> u32 {
     u32::MAX >> (32 - V::LANES)
 }
 
@@ -251,7 +265,9 @@ const fn lanes<V: Vector>() -> u32 {
 #[inline(always)]
 fn wraps(e: &Linear) -> bool {
     let last = (ACROSS * WIDTH - 1) as i64;
-    let (c, across, down) = (i64::from(e.c), last * i64::from(e.a), last * i64::from(e.b));
+    let c = i64::from(e.c);
+    let across = last * i64::from(e.a);
+    let down = last * i64::from(e.b);
     let corners = [c, c + across, c + down, c + across + down];
     corners.iter().any(|corner| i32::try_from(*corner).is_err())
 }
@@ -266,10 +282,11 @@ struct TileStreams {
 impl TileStreams {
     /// Runs the trees of as many expressions as a vector holds.
     #[inline(always)]
-    fn run_trees<V: Vector>(&mut self, run: &Run, number: usize) {
+    fn run_trees<V: SimdVector>(&mut self, run: &InstructionRun, number: usize) {
         let [left, top] = tile::origin(number);
         let ready = self.ready + V::LANES / 2;
-        let (mut coefficients, mut constants) = ([0; EXPRESSIONS], [0; EXPRESSIONS]);
+        let mut coefficients = [0; EXPRESSIONS];
+        let mut constants = [0; EXPRESSIONS];
         for (i, e) in run.expressions.iter().skip(self.ready).take(V::LANES / 2).enumerate() {
             coefficients[i] = u64::from(e.b as u32) << 32 | u64::from(e.a as u32);
             constants[i] = u64::from(e.at(left as i32, top as i32) as u32) << 32;
@@ -285,19 +302,19 @@ impl TileStreams {
 
 /// A constant, as though an expression were it.
 #[derive(Clone, Copy, Debug)]
-struct Constant {
+struct ConstantBits {
     value: u32,
     signed: bool,
 }
 
-impl Evaluator for Constant {
-    type Carries<V: Vector> = ();
+impl Evaluator for ConstantBits {
+    type Carries<V: SimdVector> = ();
 
     #[inline(always)]
-    fn start<V: Vector>() {}
+    fn start<V: SimdVector>() {}
 
     #[inline(always)]
-    fn bit<V: Vector>(&self, t: usize, _: Place, (): &mut ()) -> V {
+    fn bit<V: SimdVector>(&self, t: usize, _: VectorPlace, (): &mut ()) -> V {
         V::load_words(&constant_bit(self.value, t, self.signed))
     }
 }

@@ -38,6 +38,13 @@ impl Tile {
     pub(super) fn enabled(&self) -> bool {
         any(&self.enable)
     }
+
+    /// Whether an instruction that changes only enabled pixels has to be carried out here: always in the literal way, and
+    /// where pixels are enabled in the one that is `skipping`.
+    #[inline(always)]
+    pub(super) fn has_work(&self, skipping: bool) -> bool {
+        !skipping || self.enabled()
+    }
 }
 
 /// Whether a bit is set anywhere.

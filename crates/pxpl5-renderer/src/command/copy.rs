@@ -32,14 +32,17 @@ impl SelectRegion {
 /// Sets colour to the background and Z to the far plane, in the whole array.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Clear {
-    /// Background, 0x00RRGGBB.
+    /// Colour of the background, 0x00RRGGBB.
     pub colour: u32,
 }
 
 impl Clear {
     pub(super) fn program(&self, layout: &Layout) -> [Instruction; 3] {
-        let constant = |destination, value| Instruction::LoadConstant { destination, value };
-        [enable(CommandKind::Clear), constant(layout.plan().colour, self.colour), constant(layout.plan().z, u32::MAX)]
+        [
+            enable(CommandKind::Clear),
+            Instruction::LoadConstant { destination: layout.plan().colour, value: self.colour },
+            Instruction::LoadConstant { destination: layout.plan().z, value: u32::MAX },
+        ]
     }
 
     pub(super) fn read(program: &[Instruction]) -> Option<Self> {
@@ -53,7 +56,7 @@ impl Clear {
 /// Copies the region's colour to a frame buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CopyRegion {
-    /// Where to.
+    /// Frame buffer and buffer, region of which grid, lines and picture.
     pub target: CopyTarget,
 }
 

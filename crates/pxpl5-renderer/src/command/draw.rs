@@ -1,6 +1,6 @@
 //! Triangles.
 
-use super::{Command, CommandKind, Missing, Unsupported, enable};
+use super::{Command, CommandKind, MissingField, Unsupported, enable, normal};
 use crate::isa::{Expression, ExpressionUse, Instruction, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
@@ -11,7 +11,7 @@ use pxpl5_wire::{Linear, Word};
 pub struct Triangle {
     /// Inside where all are `>= 0`.
     pub edges: [Linear; 3],
-    /// Depth with [`pxpl5_wire::format::Z_FRACTION_BITS`].
+    /// Depth at a pixel, nearer is smaller, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
     pub depth: Linear,
     /// Red, green, blue with [`COLOUR_FRACTION_BITS`].
     pub colour: [Linear; 3],
@@ -22,7 +22,7 @@ pub struct Triangle {
 pub struct PhongTriangle {
     /// Inside where all are `>= 0`.
     pub edges: [Linear; 3],
-    /// Depth with [`pxpl5_wire::format::Z_FRACTION_BITS`].
+    /// Depth at a pixel, nearer is smaller, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
     pub depth: Linear,
     /// x, y and z of the normal with [`NORMAL_FRACTION_BITS`]; any length up to the format's.
     pub normal: [Linear; 3],
@@ -48,12 +48,11 @@ impl Triangle {
 }
 
 impl PhongTriangle {
-    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, MissingField> {
         let mut out = vec![enable(CommandKind::PhongTriangle)];
         coverage(&self.edges, self.depth, layout, &mut out);
         for (i, component) in (0..).zip(self.normal) {
-            let field = layout.normal(i).ok_or(Missing("a normal"))?;
-            out.push(load(component, field, NORMAL_FRACTION_BITS as u8));
+            out.push(load(component, normal(layout, i)?, NORMAL_FRACTION_BITS as u8));
         }
         let destination = layout.plan().colour;
         out.push(Instruction::LoadConstant { destination, value: self.colour });
@@ -69,24 +68,20 @@ impl PhongTriangle {
 }
 
 pub(super) const fn load(expression: Linear, field: Operand, shift: u8) -> Instruction {
-    Instruction::Evaluate { expression: Expression::Linear(expression), usage: ExpressionUse::Load { field, shift } }
+    evaluate(Expression::Linear(expression), ExpressionUse::Load { field, shift })
+}
+
+pub(super) const fn evaluate(expression: Expression, usage: ExpressionUse) -> Instruction {
+    Instruction::Evaluate { expression, usage }
 }
 
 /// Three edges, then Z: compare, disable where not nearer, store.
 fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<Instruction>) {
-    out.extend(edges.map(|edge| Instruction::Evaluate {
-        expression: Expression::Linear(edge),
-        usage: ExpressionUse::DisableNegative,
-    }));
-    let (field, shift) = (layout.plan().z, layout.z_shift());
-    out.push(Instruction::Evaluate {
-        expression: Expression::Linear(depth),
-        usage: ExpressionUse::DisableNotLess { field, shift },
-    });
-    out.push(Instruction::Evaluate {
-        expression: Expression::LinearAgain,
-        usage: ExpressionUse::Load { field, shift },
-    });
+    out.extend(edges.map(|edge| evaluate(Expression::Linear(edge), ExpressionUse::DisableNegative)));
+    let field = layout.plan().z;
+    let shift = layout.z_shift();
+    out.push(evaluate(Expression::Linear(depth), ExpressionUse::DisableNotLess { field, shift }));
+    out.push(evaluate(Expression::LinearAgain, ExpressionUse::Load { field, shift }));
 }
 
 pub(crate) const TRIANGLE_WORDS: usize = CommandKind::Triangle.words() as usize;

@@ -1,6 +1,6 @@
 //! Deferred shading at the end of the frame.
 
-use super::{CommandKind, Missing, enable};
+use super::{CommandKind, MissingField, enable, normal};
 use crate::isa::{ArithmeticOp, Instruction, Operand, Test};
 use crate::layout::Layout;
 
@@ -47,7 +47,7 @@ pub(super) const SHADE_BITS: u8 = 104;
 pub(super) const SHADE_ROOT: u8 = 72;
 
 /// Fields of the program.
-pub(crate) struct Fields {
+pub(crate) struct ShadeFields {
     normal: [Operand; 3],
     colour: [Operand; 3],
     z: Operand,
@@ -59,12 +59,11 @@ pub(crate) struct Fields {
     pub(crate) specular: Operand,
 }
 
-impl Fields {
-    pub(crate) fn of(layout: &Layout) -> Result<Self, Missing> {
-        let normal = |i| layout.normal(i).ok_or(Missing("a normal"));
-        let normal = [normal(0)?, normal(1)?, normal(2)?];
+impl ShadeFields {
+    pub(crate) fn in_layout(layout: &Layout) -> Result<Self, MissingField> {
+        let normal = [normal(layout, 0)?, normal(layout, 1)?, normal(layout, 2)?];
         let scratch = layout.plan().scratch.filter(|all| all.width >= SHADE_BITS);
-        let scratch = scratch.ok_or(Missing("104 bits of scratch"))?;
+        let scratch = scratch.ok_or(MissingField("104 bits of scratch"))?;
         Ok(Self {
             normal,
             colour: [0, 1, 2].map(|i| layout.component(i)),
@@ -80,8 +79,8 @@ impl Fields {
 }
 
 impl Shade {
-    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
-        let f = Fields::of(layout)?;
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, MissingField> {
+        let f = ShadeFields::in_layout(layout)?;
         let mut out = vec![
             enable(CommandKind::Shade),
             Instruction::CompareConstant { test: Test::NotEqual, a: f.z, value: u32::MAX },
@@ -98,7 +97,7 @@ impl Shade {
     }
 
     /// b's low 8 bits := light on the object's colour; c's bits 10 .. 18 := highlight.
-    fn intensities(&self, f: &Fields, highlight: Operand, out: &mut Vec<Instruction>) {
+    fn intensities(&self, f: &ShadeFields, highlight: Operand, out: &mut Vec<Instruction>) {
         let sum = f.b.part(0, 19);
         let ambient = u32::from(self.ambient) << COSINE_BITS;
         out.extend([
@@ -113,7 +112,8 @@ impl Shade {
     pub(super) fn read(program: &[Instruction]) -> Option<Self> {
         let light = read_vector(program, 8)?;
         let half = read_vector(program, 15)?;
-        let (diffuse, ambient) = (read_factor(program, 27)?, program.get(28)?);
+        let diffuse = read_factor(program, 27)?;
+        let ambient = program.get(28)?;
         let &Instruction::LoadConstant { value, .. } = ambient else { return None };
         Some(Self {
             light,
@@ -133,8 +133,8 @@ const fn multiply_constant(destination: Operand, source: Operand, factor: i32, f
     Instruction::MultiplyConstant { destination, source, factor, factor_bits }
 }
 
-/// root := |N|.
-fn length(f: &Fields, out: &mut Vec<Instruction>) {
+/// root := |N|, from the sum of the squares of the normal in a; leaves the remainder there.
+fn length(f: &ShadeFields, out: &mut Vec<Instruction>) {
     let [x, y, z] = f.normal;
     out.push(arithmetic(ArithmeticOp::Multiply, f.a, x, x));
     for component in [y, z] {
@@ -145,7 +145,7 @@ fn length(f: &Fields, out: &mut Vec<Instruction>) {
 }
 
 /// cosine := limit(N . vector / |N|).
-fn cosine(f: &Fields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Instruction>) {
+fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Instruction>) {
     let [x, y, z] = vector.map(|v| i32::from(v << 4 >> 4));
     out.push(multiply_constant(f.c, f.normal[0], x, VECTOR_BITS));
     for (component, factor) in [(f.normal[1], y), (f.normal[2], z)] {
@@ -158,7 +158,7 @@ fn cosine(f: &Fields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Instructi
 }
 
 /// Squares the cosine of the highlight, to and fro between a and b; returns where the power is.
-fn power(f: &Fields, out: &mut Vec<Instruction>) -> Operand {
+fn power(f: &ShadeFields, out: &mut Vec<Instruction>) -> Operand {
     let mut base = f.specular;
     for i in 0..SPECULAR_SQUARINGS {
         let square = if i % 2 == 0 { f.a } else { f.b }.part(0, 2 * COSINE_BITS);
@@ -169,8 +169,9 @@ fn power(f: &Fields, out: &mut Vec<Instruction>) -> Operand {
 }
 
 /// component := limit((component * light >> 8) + highlight).
-fn combine(f: &Fields, component: Operand) -> [Instruction; 3] {
-    let (product, sum) = (f.a.part(0, 16), f.b.part(0, 9));
+fn combine(f: &ShadeFields, component: Operand) -> [Instruction; 3] {
+    let product = f.a.part(0, 16);
+    let sum = f.b.part(0, 9);
     [
         arithmetic(ArithmeticOp::Multiply, product, component, f.diffuse.part(0, 8)),
         arithmetic(ArithmeticOp::Add, sum, product.part(8, 8), f.c.part(10, 8)),
@@ -186,6 +187,8 @@ fn read_factor(program: &[Instruction], index: usize) -> Option<i32> {
 }
 
 fn read_vector(program: &[Instruction], first: usize) -> Option<[i16; 3]> {
-    let component = |i| i16::try_from(read_factor(program, first + i)?).ok();
-    Some([component(0)?, component(1)?, component(3)?])
+    // The first sum comes between the products of y and z.
+    let indices = [first, first + 1, first + 3];
+    let [x, y, z] = indices.map(|index| read_factor(program, index).and_then(|factor| i16::try_from(factor).ok()));
+    Some([x?, y?, z?])
 }

@@ -1,8 +1,8 @@
 //! Spheres, exact in silhouette, with their depth from a square root.
 
-use super::draw::{load, read_linear};
+use super::draw::{evaluate, load, read_linear};
 use super::shade::{SHADE_BITS, SHADE_ROOT};
-use super::{CommandKind, Missing, enable};
+use super::{CommandKind, MissingField, enable, normal};
 use crate::isa::{Expression, ExpressionUse, Instruction, Operand, Test};
 use crate::layout::Layout;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
@@ -45,7 +45,7 @@ pub struct SphereBody {
 /// spheres that meet would meet in the wrong places, so the root is paid for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sphere {
-    /// Silhouette and depth.
+    /// Which pixels are inside, and how near they are.
     pub body: SphereBody,
     /// Linear part of red, green and blue with [`COLOUR_FRACTION_BITS`].
     pub colour: [Linear; 3],
@@ -60,7 +60,7 @@ pub struct Sphere {
 /// (shading normalises). Under perspective the normal's x and y are taken as linear.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PhongSphere {
-    /// Silhouette and depth.
+    /// Which pixels are inside, and how near they are.
     pub body: SphereBody,
     /// x and y of the normal with [`NORMAL_FRACTION_BITS`].
     pub normal: [Linear; 2],
@@ -76,7 +76,7 @@ const FACTOR_BITS: u8 = 10;
 
 /// Temporaries of a sphere's program.
 #[derive(Clone, Copy)]
-pub(crate) struct Scratch {
+pub(crate) struct SphereScratch {
     radicand: Operand,
     pub(crate) root: Operand,
     /// In the place of the radicand, which the root has used up.
@@ -85,16 +85,16 @@ pub(crate) struct Scratch {
     product: Operand,
 }
 
-impl Scratch {
-    pub(crate) fn of(layout: &Layout) -> Result<Self, Missing> {
-        let missing = Missing("30 bits of scratch");
-        let (Some(all), Some(bits)) = (layout.plan().scratch, layout.root_bits()) else {
-            return Err(missing);
-        };
-        let (z_bits, radicand_bits) = (layout.plan().z.width, 2 * bits);
+impl SphereScratch {
+    pub(crate) fn in_layout(layout: &Layout) -> Result<Self, MissingField> {
+        const MISSING: MissingField = MissingField("30 bits of scratch");
+        let all = layout.plan().scratch.ok_or(MISSING)?;
+        let bits = layout.root_bits().ok_or(MISSING)?;
+        let z_bits = layout.plan().z.width;
+        let radicand_bits = 2 * bits;
         let low = z_bits.max(radicand_bits);
         if low + bits > all.width {
-            return Err(missing);
+            return Err(MISSING);
         }
         // In the place that shading uses for its root, where there is one.
         let root = if all.width >= SHADE_BITS { SHADE_ROOT } else { low };
@@ -117,8 +117,7 @@ impl Scratch {
 }
 
 /// Silhouette, root, depth: compare, disable where not nearer, store.
-fn coverage(body: &SphereBody, layout: &Layout, scratch: &Scratch, out: &mut Vec<Instruction>) {
-    let evaluate = |expression, usage| Instruction::Evaluate { expression, usage };
+fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<Instruction>) {
     let z = layout.plan().z;
     out.extend([
         evaluate(Expression::Quadratic(body.silhouette), ExpressionUse::DisableNegative),
@@ -142,7 +141,7 @@ fn coverage(body: &SphereBody, layout: &Layout, scratch: &Scratch, out: &mut Vec
 }
 
 fn read_coverage(program: &[Instruction], layout: &Layout) -> Option<SphereBody> {
-    let short = Scratch::of(layout).ok()?.short();
+    let short = SphereScratch::in_layout(layout).ok()?.short();
     let &[
         _,
         Instruction::Evaluate { expression: Expression::Quadratic(silhouette), .. },
@@ -163,8 +162,8 @@ fn read_coverage(program: &[Instruction], layout: &Layout) -> Option<SphereBody>
 }
 
 impl Sphere {
-    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
-        let scratch = Scratch::of(layout)?;
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, MissingField> {
+        let scratch = SphereScratch::in_layout(layout)?;
         let mut out = vec![enable(CommandKind::Sphere)];
         coverage(&self.body, layout, &scratch, &mut out);
         for (i, (linear, factor)) in (0..).zip(self.colour.into_iter().zip(self.root_factor)) {
@@ -188,7 +187,7 @@ impl Sphere {
 }
 
 /// component := limit(linear + (upper root * factor >> 8)), in the upper 10 bits of the product.
-fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &Scratch) -> [Instruction; 3] {
+fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &SphereScratch) -> [Instruction; 3] {
     let sum = scratch.product.part(8, 10).signed();
     [
         Instruction::MultiplyConstant {
@@ -197,25 +196,21 @@ fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &Sc
             factor: i32::from(factor << 6 >> 6),
             factor_bits: FACTOR_BITS,
         },
-        Instruction::Evaluate {
-            expression: Expression::Linear(linear),
-            usage: ExpressionUse::Add { field: sum, shift: COLOUR_FRACTION_BITS as u8 },
-        },
+        evaluate(Expression::Linear(linear), ExpressionUse::Add { field: sum, shift: COLOUR_FRACTION_BITS as u8 }),
         Instruction::Saturate { destination: component, source: sum },
     ]
 }
 
 impl PhongSphere {
-    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Missing> {
-        let scratch = Scratch::of(layout)?;
-        let normal = |i| layout.normal(i).ok_or(Missing("a normal"));
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, MissingField> {
+        let scratch = SphereScratch::in_layout(layout)?;
         let mut out = vec![enable(CommandKind::PhongSphere)];
         coverage(&self.body, layout, &scratch, &mut out);
         for (i, component) in (0..).zip(self.normal) {
-            out.push(load(component, normal(i)?, NORMAL_FRACTION_BITS as u8));
+            out.push(load(component, normal(layout, i)?, NORMAL_FRACTION_BITS as u8));
         }
         out.extend([
-            Instruction::ShiftRight { destination: normal(2)?, source: scratch.upper_root(10), by: 0 },
+            Instruction::ShiftRight { destination: normal(layout, 2)?, source: scratch.upper_root(10), by: 0 },
             Instruction::LoadConstant { destination: layout.plan().colour, value: self.colour },
         ]);
         Ok(out)

@@ -38,9 +38,7 @@ fn body() -> impl Strategy<Value = SphereBody> {
 }
 
 fn sphere() -> impl Strategy<Value = Command> {
-    let factor = || -512_i16..512;
-    let factors = [factor(), factor(), factor()];
-    (body(), three(), factors)
+    (body(), three(), [-512_i16..512, -512_i16..512, -512_i16..512])
         .prop_map(|(body, colour, root_factor)| Command::Sphere(Sphere { body, colour, root_factor }))
 }
 
@@ -49,8 +47,11 @@ fn phong_sphere() -> impl Strategy<Value = Command> {
         .prop_map(|(body, normal, colour)| Command::PhongSphere(PhongSphere { body, normal, colour }))
 }
 
+fn vector() -> impl Strategy<Value = [i16; 3]> {
+    [-2048_i16..2048, -2048_i16..2048, -2048_i16..2048]
+}
+
 fn shade() -> impl Strategy<Value = Command> {
-    let vector = || [-2048_i16..2048, -2048_i16..2048, -2048_i16..2048];
     (vector(), vector(), any::<[u8; 3]>()).prop_map(|(light, half, [ambient, diffuse, specular])| {
         Command::Shade(Shade { light, half, ambient, diffuse, specular })
     })
@@ -109,7 +110,8 @@ proptest! {
     #[test]
     fn the_words_of_a_command_are_those_of_its_program(command in any_command(), before in any::<[u32; 2]>()) {
         for layout in [phong(), Layout::slats(), Layout::slats_quarters()] {
-            let (mut words, mut expected) = (before.to_vec(), before.to_vec());
+            let mut words = before.to_vec();
+            let mut expected = before.to_vec();
             let program = command.program(&layout);
             let result = command.encode(&layout, &mut words);
             prop_assert_eq!(result, program.as_ref().map(|_| ()).map_err(|error| *error));
@@ -157,7 +159,8 @@ proptest! {
 fn the_published_rate_lies_between_the_two_kinds_of_triangle_and_both_keep_the_bit_budget() {
     // 150,000 triangles a second at 40 MHz (TR94).
     let published = 40_000_000_u32.div_ceil(150_000);
-    let (gouraud, phong) = (clocks(CommandKind::Triangle), clocks(CommandKind::PhongTriangle));
+    let gouraud = clocks(CommandKind::Triangle);
+    let phong = clocks(CommandKind::PhongTriangle);
     assert!(gouraud <= published && published <= phong);
     // Enable, edges, Z compared and stored, colours, fetches; with normals 6 more, or 36 with the object's colour.
     let budget = 2 + 3 * 24 + 28 + 28 + 3 * 18 + 9 * 8;
@@ -208,33 +211,39 @@ fn a_phong_triangle_pays_for_its_normals_and_the_objects_colour() {
     assert_eq!(expected, 292);
 }
 
+/// Clocks of a sphere until its depth is stored: enable; sign; radicand; root; depth; compare; store.
+const fn sphere_coverage_clocks(root: u32, z: u32) -> u32 {
+    2 + 48 + 48 + root + 32 + 2 * z + 7 * SET_UP_CLOCKS
+}
+
 #[test]
 fn a_sphere_pays_for_two_quadratics_a_root_and_three_products() {
-    // Enable; sign; radicand; root; depth; compare; store.
-    let coverage = |root: u32, z: u32| 2 + 48 + 48 + root + 32 + 2 * z + 7 * SET_UP_CLOCKS;
     // Product of 8 by 10 bits; 12 + 10 bits of the linear part; limit.
     let component = 10 * 9 + 22 + 10 + 3 * SET_UP_CLOCKS;
-    assert_eq!(clocks(CommandKind::Sphere), coverage(202, 24) + 3 * component);
+    assert_eq!(clocks(CommandKind::Sphere), sphere_coverage_clocks(202, 24) + 3 * component);
     assert_eq!(clocks(CommandKind::Sphere), 810);
     let slats = CommandKind::Sphere.clocks(&Layout::slats()).unwrap();
-    assert_eq!(slats, coverage(148, 20) + 3 * component);
+    assert_eq!(slats, sphere_coverage_clocks(148, 20) + 3 * component);
     assert_eq!(slats, 748);
     let normals = 2 * 22 + 12 + 24 + 4 * SET_UP_CLOCKS;
-    assert_eq!(clocks(CommandKind::PhongSphere), coverage(202, 24) + normals);
+    assert_eq!(clocks(CommandKind::PhongSphere), sphere_coverage_clocks(202, 24) + normals);
     assert_eq!(clocks(CommandKind::PhongSphere), 504);
+}
+
+fn quadratic_clocks(usage: ExpressionUse) -> u32 {
+    Instruction::Evaluate { expression: Expression::QuadraticAgain, usage }.clocks()
 }
 
 #[test]
 fn a_paraboloid_is_a_little_dearer_than_a_triangle() {
     // What `Sphere` says of it: sign, compare and store of a quadratic, then three colours, or normals and a colour.
     let field = phong().plan().z;
-    let quadratic = |usage| Instruction::Evaluate { expression: Expression::QuadraticAgain, usage }.clocks();
     let load = ExpressionUse::Load { field, shift: 0 };
-    let depth = quadratic(ExpressionUse::DisableNegative)
-        + quadratic(ExpressionUse::DisableNotLess { field, shift: 0 })
-        + quadratic(load);
+    let depth = quadratic_clocks(ExpressionUse::DisableNegative)
+        + quadratic_clocks(ExpressionUse::DisableNotLess { field, shift: 0 })
+        + quadratic_clocks(load);
     let coverage = enable(CommandKind::Sphere).clocks() + depth;
-    assert_eq!(coverage + 3 * quadratic(load), 318);
+    assert_eq!(coverage + 3 * quadratic_clocks(load), 318);
     let constant = Instruction::LoadConstant { destination: phong().plan().colour, value: 0 }.clocks();
     assert_eq!(coverage + 3 * (22 + SET_UP_CLOCKS) + constant, 268);
 }

@@ -33,8 +33,13 @@ impl Random {
         self.next() % n
     }
 
+    /// A two's complement number of `bits` bits, 1 to 32.
+    pub const fn signed(&mut self, bits: u32) -> i32 {
+        (self.next() as i32) >> (32 - bits)
+    }
+
     /// A number from `low` to `high` - 1.
-    fn between(&mut self, low: i64, high: i64) -> i64 {
+    pub(crate) const fn between(&mut self, low: i64, high: i64) -> i64 {
         low + self.below((high - low) as u64) as i64
     }
 
@@ -92,7 +97,8 @@ impl Random {
     }
 
     fn backing(&mut self) -> Command {
-        let (block, address) = (self.below(3) as u8, self.below(177) as u8);
+        let block = self.below(3) as u8;
+        let address = self.below(177) as u8;
         match self.below(3) {
             0 => Command::WaitBacking,
             1 => Command::StoreBacking(StoreBacking { block, address }),
@@ -133,10 +139,15 @@ impl Random {
     }
 
     fn shade(&mut self) -> Shade {
-        let mut vector = || std::array::from_fn(|_| self.between(-1500, 1500) as i16);
-        let (light, half) = (vector(), vector());
+        let light = self.vector();
+        let half = self.vector();
         let [ambient, diffuse, specular, ..] = self.next().to_le_bytes();
         Shade { light, half, ambient, diffuse, specular }
+    }
+
+    /// About a unit vector, in the format of [`Shade::light`].
+    fn vector(&mut self) -> [i16; 3] {
+        std::array::from_fn(|_| self.between(-1500, 1500) as i16)
     }
 
     /// Edges of a triangle around a random pixel, of all sizes; sometimes degenerate, sometimes wild.
@@ -145,40 +156,38 @@ impl Random {
             return std::array::from_fn(|_| self.wild());
         }
         let size = [16, 64, 256, 2_000, 20_000, 200_000][self.below(6) as usize];
-        let mut centre = || self.between(-16 * 32, 16 * 672);
-        let (x, y) = (centre(), centre());
-        let mut vertex = || [x + self.between(-size, size), y + self.between(-size, size)];
-        let v = [vertex(), vertex(), vertex()];
+        let x = self.between(-16 * 32, 16 * 672);
+        let y = self.between(-16 * 32, 16 * 672);
+        let [p, q, r] = std::array::from_fn(|_| [x + self.between(-size, size), y + self.between(-size, size)]);
         let flip = self.below(2) == 0;
-        let pair = |i: usize| if flip { (v[(i + 1) % 3], v[i]) } else { (v[i], v[(i + 1) % 3]) };
-        std::array::from_fn(|i| edge(pair(i)))
+        if flip { [edge(q, p), edge(r, q), edge(p, r)] } else { [edge(p, q), edge(q, r), edge(r, p)] }
     }
 
     fn wild(&mut self) -> Linear {
         match self.below(4) {
             0 => Linear::constant(self.next() as i32),
             _ => {
-                let shift = self.below(32);
-                let mut coefficient = || (self.next() as i32) >> shift;
-                Linear { a: coefficient(), b: coefficient(), c: coefficient() }
+                let bits = 32 - self.below(32) as u32;
+                Linear { a: self.signed(bits), b: self.signed(bits), c: self.signed(bits) }
             }
         }
     }
 
     /// A plane whose values use about `bits` bits over a screen.
     fn plane(&mut self, bits: u32) -> Linear {
-        let mut part = |bits: u32| (self.next() as i32) >> (32 - bits.min(32));
-        Linear { a: part(bits - 9), b: part(bits - 9), c: part(bits) }
+        Linear { a: self.signed(bits - 9), b: self.signed(bits - 9), c: self.signed(bits) }
     }
 
     /// An ellipse around a random pixel, or anything.
     fn silhouette(&mut self) -> Quadratic {
         if self.below(8) == 0 {
-            let mut any = || (self.next() as i64) >> 20;
-            return Quadratic { xx: any(), xy: any(), yy: any(), x: any(), y: any(), one: any() };
+            let [xx, xy, yy, x, y, one] = std::array::from_fn(|_| (self.next() as i64) >> 20);
+            return Quadratic { xx, xy, yy, x, y, one };
         }
         let radius = [2, 10, 60, 500][self.below(4) as usize];
-        let (x, y, r) = (self.between(-20, 660), self.between(-20, 500), self.between(1, radius));
+        let x = self.between(-20, 660);
+        let y = self.between(-20, 500);
+        let r = self.between(1, radius);
         let scale = 1 << self.below(20);
         let tilt = self.between(-scale / 2, scale / 2 + 1);
         Quadratic {
@@ -210,8 +219,9 @@ fn repainted(command: Command) -> Command {
 }
 
 /// The edge from p to q, in sixteenths of a pixel, inside on its left; cut to 32 bits.
-fn edge((p, q): ([i64; 2], [i64; 2])) -> Linear {
-    let (dx, dy) = (q[0] - p[0], q[1] - p[1]);
+fn edge(p: [i64; 2], q: [i64; 2]) -> Linear {
+    let dx = q[0] - p[0];
+    let dy = q[1] - p[1];
     let c = dy * p[0] - dx * p[1];
     Linear { a: -dy as i32, b: dx as i32, c: c.div_euclid(16) as i32 }
 }

@@ -3,26 +3,28 @@
 use super::encode::{AGAIN, opcode};
 use super::{ArithmeticOp, BACKING_BLOCKS, Expression, ExpressionUse, Instruction, MEMORY_BITS, Operand, Test};
 use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, Quadratic, RegionGrid, RegionId, Word};
-use std::fmt;
 
 /// A word that is no instruction, and where it stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("word {position} ({word:#010x}): {kind}")]
 pub struct DecodeError {
     /// Index of the instruction's first word in the list.
     pub position: usize,
     /// The instruction's first word.
     pub word: Word,
-    /// What is wrong.
+    /// Why the words are no instruction.
     pub kind: DecodeErrorKind,
 }
 
 /// What is wrong with an instruction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeErrorKind {
     /// No instruction has this opcode.
+    #[error("no instruction has this opcode")]
     UnknownOpcode,
     /// The list ends inside the instruction.
+    #[error("the instruction needs {expected} words, the list has {found} left")]
     Truncated {
         /// Words that the instruction needs.
         expected: usize,
@@ -30,63 +32,32 @@ pub enum DecodeErrorKind {
         found: usize,
     },
     /// Bits that must be zero are set.
+    #[error("bits are set that must be zero")]
     ReservedBits,
     /// A field reaches beyond pixel memory.
+    #[error("{} bits at address {} reach beyond the {} bits of pixel memory", .0.width, .0.address, MEMORY_BITS)]
     FieldOutOfRange(Operand),
     /// A field has a width that this instruction cannot use.
+    #[error("the field at address {} has {} bits, expected {expected}", .field.address, .field.width)]
     Width {
-        /// The field.
+        /// The field as the instruction names it.
         field: Operand,
         /// Bits that it must have (at most, for shifts).
         expected: u32,
     },
     /// Operands are signed where they must not be, or differ in signedness.
+    #[error("signedness of the operands does not fit")]
     Signedness,
     /// No backing-store block has this number.
+    #[error("backing store block {0}, expected less than {max}", max = BACKING_BLOCKS)]
     UnknownBlock(u8),
     /// An output's frame, lines or region make no sense.
+    #[error("the copy's target is no region of a frame")]
     BadTarget,
     /// The words are instructions, but not those of the command that their label names.
+    #[error("labelled as command {0}, but not its program in this layout")]
     NotTheCommand(u8),
 }
-
-impl fmt::Display for DecodeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "word {} ({:#010x}): {}", self.position, self.word, self.kind)
-    }
-}
-
-impl fmt::Display for DecodeErrorKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::UnknownOpcode => write!(f, "no instruction has this opcode"),
-            Self::Truncated { expected, found } => {
-                write!(f, "the instruction needs {expected} words, the list has {found} left")
-            }
-            Self::ReservedBits => write!(f, "bits are set that must be zero"),
-            Self::FieldOutOfRange(field) => write!(
-                f,
-                "{} bits at address {} reach beyond the {MEMORY_BITS} bits of pixel memory",
-                field.width, field.address
-            ),
-            Self::Width { field, expected } => {
-                write!(f, "the field at address {} has {} bits, expected {expected}", field.address, field.width)
-            }
-            Self::Signedness => write!(f, "signedness of the operands does not fit"),
-            Self::UnknownBlock(block) => {
-                write!(f, "backing store block {block}, expected less than {BACKING_BLOCKS}")
-            }
-            Self::BadTarget => write!(f, "the copy's target is no region of a frame"),
-            Self::NotTheCommand(label) => {
-                write!(f, "labelled as command {label}, but not its program in this layout")
-            }
-        }
-    }
-}
-
-impl std::error::Error for DecodeError {}
-
-type Kind = DecodeErrorKind;
 
 impl Instruction {
     /// Reads the instruction at `position`.
@@ -116,142 +87,157 @@ impl Instruction {
 }
 
 /// The parts of an instruction's first word, and the words behind it.
-struct Head<'a> {
+struct EncodedInstruction<'a> {
     opcode: u8,
     modifier: u8,
     operand: u32,
     tail: &'a [Word],
 }
 
-impl Head<'_> {
-    fn tail<const N: usize>(&self) -> Result<[Word; N], Kind> {
-        self.tail.first_chunk().copied().ok_or(Kind::Truncated { expected: N + 1, found: self.tail.len() + 1 })
+impl EncodedInstruction<'_> {
+    fn tail<const N: usize>(&self) -> Result<[Word; N], DecodeErrorKind> {
+        self.tail
+            .first_chunk()
+            .copied()
+            .ok_or(DecodeErrorKind::Truncated { expected: N + 1, found: self.tail.len() + 1 })
     }
 
-    fn field(&self) -> Result<Operand, Kind> {
-        checked(self.operand)
+    fn field(&self) -> Result<Operand, DecodeErrorKind> {
+        checked_field(self.operand)
+    }
+
+    /// The field that the first word names, which must have one bit.
+    fn bit(&self) -> Result<Operand, DecodeErrorKind> {
+        width(self.field()?, 1)
     }
 
     /// The field in the upper half of the second word; the lower half must be zero.
-    fn source(&self) -> Result<Operand, Kind> {
+    fn source(&self) -> Result<Operand, DecodeErrorKind> {
         let [word] = self.tail()?;
-        reserved(word & 0xffff)?;
-        checked(word >> 16)
+        must_be_zero(word & 0xffff)?;
+        checked_field(word >> 16)
     }
 
-    fn pair(&self) -> Result<(Operand, Operand), Kind> {
+    fn pair(&self) -> Result<(Operand, Operand), DecodeErrorKind> {
         let [word] = self.tail()?;
-        Ok((checked(word >> 16)?, checked(word & 0xffff)?))
+        Ok((checked_field(word >> 16)?, checked_field(word & 0xffff)?))
     }
 
-    fn no_modifier(&self) -> Result<(), Kind> {
-        reserved(u32::from(self.modifier))
+    fn no_modifier(&self) -> Result<(), DecodeErrorKind> {
+        must_be_zero(u32::from(self.modifier))
     }
 }
 
-fn reserved(bits: u32) -> Result<(), Kind> {
-    if bits == 0 { Ok(()) } else { Err(Kind::ReservedBits) }
+fn must_be_zero(bits: u32) -> Result<(), DecodeErrorKind> {
+    if bits == 0 { Ok(()) } else { Err(DecodeErrorKind::ReservedBits) }
 }
 
-fn checked(bits: u32) -> Result<Operand, Kind> {
+fn checked_field(bits: u32) -> Result<Operand, DecodeErrorKind> {
     let field = Operand::from_bits(bits);
     let end = u32::from(field.address) + u32::from(field.width);
-    if end <= MEMORY_BITS { Ok(field) } else { Err(Kind::FieldOutOfRange(field)) }
+    if end <= MEMORY_BITS { Ok(field) } else { Err(DecodeErrorKind::FieldOutOfRange(field)) }
 }
 
-fn width(field: Operand, expected: u32) -> Result<Operand, Kind> {
-    if u32::from(field.width) == expected { Ok(field) } else { Err(Kind::Width { field, expected }) }
+fn width(field: Operand, expected: u32) -> Result<Operand, DecodeErrorKind> {
+    if u32::from(field.width) == expected { Ok(field) } else { Err(DecodeErrorKind::Width { field, expected }) }
 }
 
-fn unsigned(fields: &[Operand]) -> Result<(), Kind> {
-    if fields.iter().any(|field| field.signed) { Err(Kind::Signedness) } else { Ok(()) }
+fn unsigned(fields: &[Operand]) -> Result<(), DecodeErrorKind> {
+    if fields.iter().any(|field| field.signed) { Err(DecodeErrorKind::Signedness) } else { Ok(()) }
 }
 
-fn alike(a: Operand, b: Operand) -> Result<(), Kind> {
-    if a.signed == b.signed { Ok(()) } else { Err(Kind::Signedness) }
+fn alike(a: Operand, b: Operand) -> Result<(), DecodeErrorKind> {
+    if a.signed == b.signed { Ok(()) } else { Err(DecodeErrorKind::Signedness) }
 }
 
-fn decode(words: &[Word]) -> Result<(Instruction, usize), Kind> {
+fn decode(words: &[Word]) -> Result<(Instruction, usize), DecodeErrorKind> {
     let Some((&first, tail)) = words.split_first() else {
-        return Err(Kind::Truncated { expected: 1, found: 0 });
+        return Err(DecodeErrorKind::Truncated { expected: 1, found: 0 });
     };
-    let head = Head { opcode: (first >> 24) as u8, modifier: (first >> 16) as u8, operand: first & 0xffff, tail };
-    match head.opcode {
-        opcode::ENABLE_ALL..=opcode::SELECT => control(&head),
-        opcode::LINEAR..=0x14 | opcode::QUADRATIC..=0x24 => evaluate(&head),
-        opcode::SHIFT_RIGHT..=opcode::SQUARE_ROOT => one_source(&head),
-        opcode::ARITHMETIC..=0x3c => arithmetic(&head),
-        opcode::COMPARE..=0x43 => compare(&head),
-        opcode::COMPARE_CONSTANT..=0x4b | opcode::LOAD_CONSTANT | opcode::MULTIPLY_CONSTANT => constant(&head),
-        opcode::STORE_BLOCK | opcode::LOAD_BLOCK | opcode::WAIT => backing(&head),
-        opcode::OUTPUT => output(&head),
-        _ => Err(Kind::UnknownOpcode),
+    let encoded = EncodedInstruction {
+        opcode: (first >> 24) as u8,
+        modifier: (first >> 16) as u8,
+        operand: first & 0xffff,
+        tail,
+    };
+    match encoded.opcode {
+        opcode::ENABLE_ALL..=opcode::SELECT => control(&encoded),
+        opcode::LINEAR..=0x14 | opcode::QUADRATIC..=0x24 => evaluate(&encoded),
+        opcode::SHIFT_RIGHT..=opcode::SQUARE_ROOT => one_source(&encoded),
+        opcode::ARITHMETIC..=0x3c => arithmetic(&encoded),
+        opcode::COMPARE..=0x43 => compare(&encoded),
+        opcode::COMPARE_CONSTANT..=0x4b | opcode::LOAD_CONSTANT | opcode::MULTIPLY_CONSTANT => constant(&encoded),
+        opcode::STORE_BLOCK | opcode::LOAD_BLOCK | opcode::WAIT => backing(&encoded),
+        opcode::OUTPUT => output(&encoded),
+        _ => Err(DecodeErrorKind::UnknownOpcode),
     }
 }
 
-fn control(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
-    if matches!(head.opcode, opcode::ENABLE_ALL | opcode::SELECT) {
-        reserved(head.operand)?;
+fn control(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+    if matches!(encoded.opcode, opcode::ENABLE_ALL | opcode::SELECT) {
+        must_be_zero(encoded.operand)?;
     } else {
-        head.no_modifier()?;
+        encoded.no_modifier()?;
     }
-    let bit = || head.field().and_then(|field| width(field, 1));
-    Ok(match head.opcode {
-        opcode::ENABLE_ALL => (Instruction::EnableAll { label: head.modifier }, 1),
-        opcode::ENABLE_LOAD => (Instruction::EnableLoad(bit()?), 1),
-        opcode::ENABLE_STORE => (Instruction::EnableStore(bit()?), 1),
-        opcode::ENABLE_AND => (Instruction::EnableAnd(bit()?), 1),
+    Ok(match encoded.opcode {
+        opcode::ENABLE_ALL => (Instruction::EnableAll { label: encoded.modifier }, 1),
+        opcode::ENABLE_LOAD => (Instruction::EnableLoad(encoded.bit()?), 1),
+        opcode::ENABLE_STORE => (Instruction::EnableStore(encoded.bit()?), 1),
+        opcode::ENABLE_AND => (Instruction::EnableAnd(encoded.bit()?), 1),
         opcode::SELECT => {
-            let [origin] = head.tail()?;
-            let (left, top) = (origin as u16, (origin >> 16) as u16);
-            (Instruction::Select { context_base: head.modifier, left, top }, 2)
+            let [origin] = encoded.tail()?;
+            let left = origin as u16;
+            let top = (origin >> 16) as u16;
+            (Instruction::Select { context_base: encoded.modifier, left, top }, 2)
         }
         other => {
-            reserved(head.operand)?;
+            must_be_zero(encoded.operand)?;
             let all = other == opcode::ENABLE_NONE;
             (if all { Instruction::EnableNone } else { Instruction::EnableInvert }, 1)
         }
     })
 }
 
-fn evaluate(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
-    let quadratic = head.opcode >= opcode::QUADRATIC;
-    let use_code = head.opcode & 15;
-    let (usage, used) = expression_use(head, use_code)?;
-    let rest = Head { tail: head.tail.get(used - 1..).unwrap_or(&[]), ..*head };
-    let lost = |_| Kind::Truncated { expected: used + if quadratic { 12 } else { 3 }, found: head.tail.len() + 1 };
-    let (expression, more) = match (quadratic, head.modifier & AGAIN != 0) {
+fn evaluate(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+    let quadratic = encoded.opcode >= opcode::QUADRATIC;
+    let use_code = encoded.opcode & 15;
+    let (usage, used) = expression_use(encoded, use_code)?;
+    let rest = EncodedInstruction { tail: encoded.tail.get(used - 1..).unwrap_or(&[]), ..*encoded };
+    let truncated =
+        DecodeErrorKind::Truncated { expected: used + if quadratic { 12 } else { 3 }, found: encoded.tail.len() + 1 };
+    let (expression, more) = match (quadratic, encoded.modifier & AGAIN != 0) {
         (false, true) => (Expression::LinearAgain, 0),
         (true, true) => (Expression::QuadraticAgain, 0),
-        (false, false) => (Expression::Linear(linear(rest.tail().map_err(lost)?)), 3),
-        (true, false) => (Expression::Quadratic(quadratic_of(rest.tail().map_err(lost)?)), 12),
+        (false, false) => (Expression::Linear(linear(rest.tail().map_err(|_| truncated)?)), 3),
+        (true, false) => (Expression::Quadratic(quadratic_of(rest.tail().map_err(|_| truncated)?)), 12),
     };
     check_use(&usage, expression.bits())?;
     Ok((Instruction::Evaluate { expression, usage }, used + more))
 }
 
-fn expression_use(head: &Head<'_>, code: u8) -> Result<(ExpressionUse, usize), Kind> {
-    reserved(u32::from(head.modifier & 0x40))?;
-    let shift = head.modifier & 63;
+fn expression_use(encoded: &EncodedInstruction<'_>, code: u8) -> Result<(ExpressionUse, usize), DecodeErrorKind> {
+    must_be_zero(u32::from(encoded.modifier & 0x40))?;
+    let shift = encoded.modifier & 63;
     Ok(match code {
         0 => {
-            reserved(head.operand | u32::from(shift))?;
+            must_be_zero(encoded.operand | u32::from(shift))?;
             (ExpressionUse::DisableNegative, 1)
         }
-        1 => (ExpressionUse::Load { field: head.field()?, shift }, 1),
-        2 => (ExpressionUse::Add { field: head.field()?, shift }, 1),
-        3 => (ExpressionUse::DisableNotLess { field: head.field()?, shift }, 1),
+        1 => (ExpressionUse::Load { field: encoded.field()?, shift }, 1),
+        2 => (ExpressionUse::Add { field: encoded.field()?, shift }, 1),
+        3 => (ExpressionUse::DisableNotLess { field: encoded.field()?, shift }, 1),
         _ => {
-            let [word] = head.tail()?;
-            reserved(word & 0xffc0)?;
-            let (field, subtrahend) = (head.field()?, checked(word >> 16)?);
+            let [word] = encoded.tail()?;
+            must_be_zero(word & 0xffc0)?;
+            let field = encoded.field()?;
+            let subtrahend = checked_field(word >> 16)?;
             let left_shift = (word & 63) as u8;
             (ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift }, 2)
         }
     })
 }
 
-fn check_use(usage: &ExpressionUse, bits: u32) -> Result<(), Kind> {
+fn check_use(usage: &ExpressionUse, bits: u32) -> Result<(), DecodeErrorKind> {
     match *usage {
         ExpressionUse::DisableNegative => Ok(()),
         ExpressionUse::Load { field, shift }
@@ -259,7 +245,7 @@ fn check_use(usage: &ExpressionUse, bits: u32) -> Result<(), Kind> {
         | ExpressionUse::DisableNotLess { field, shift }
         | ExpressionUse::LoadMinus { field, shift, .. } => {
             let room = bits.saturating_sub(u32::from(shift));
-            if u32::from(field.width) <= room { Ok(()) } else { Err(Kind::Width { field, expected: room }) }
+            if u32::from(field.width) <= room { Ok(()) } else { Err(DecodeErrorKind::Width { field, expected: room }) }
         }
     }
 }
@@ -270,39 +256,53 @@ fn linear(words: [Word; 3]) -> Linear {
 }
 
 fn quadratic_of(words: [Word; 12]) -> Quadratic {
-    let long = |i: usize| (u64::from(words[2 * i + 1]) << 32 | u64::from(words[2 * i])) as i64;
-    Quadratic { xx: long(0), xy: long(1), yy: long(2), x: long(3), y: long(4), one: long(5) }
+    Quadratic {
+        xx: long_coefficient(&words, 0),
+        xy: long_coefficient(&words, 1),
+        yy: long_coefficient(&words, 2),
+        x: long_coefficient(&words, 3),
+        y: long_coefficient(&words, 4),
+        one: long_coefficient(&words, 5),
+    }
 }
 
-fn one_source(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
-    let (destination, source, by) = (head.field()?, head.source()?, head.modifier);
-    let instruction = match head.opcode {
+/// Coefficient `i` of 64 bits, whose low word comes first.
+fn long_coefficient(words: &[Word; 12], i: usize) -> i64 {
+    (u64::from(words[2 * i + 1]) << 32 | u64::from(words[2 * i])) as i64
+}
+
+fn one_source(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+    let destination = encoded.field()?;
+    let source = encoded.source()?;
+    let by = encoded.modifier;
+    let instruction = match encoded.opcode {
         opcode::SHIFT_RIGHT => Instruction::ShiftRight { destination, source, by },
         opcode::SHIFT_LEFT => Instruction::ShiftLeft { destination, source, by },
         opcode::SATURATE => {
-            head.no_modifier()?;
+            encoded.no_modifier()?;
             Instruction::Saturate { destination, source }
         }
         _ => {
-            head.no_modifier()?;
+            encoded.no_modifier()?;
             unsigned(&[source])?;
             width(source, 2 * u32::from(destination.width))?;
             Instruction::SquareRoot { destination, radicand: source }
         }
     };
-    reserved(u32::from(by & 0xc0))?;
+    must_be_zero(u32::from(by & 0xc0))?;
     Ok((instruction, 2))
 }
 
-fn arithmetic(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
-    head.no_modifier()?;
-    let (destination, (a, b)) = (head.field()?, head.pair()?);
-    let op = ArithmeticOp::ALL[usize::from(head.opcode - opcode::ARITHMETIC)];
+fn arithmetic(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+    encoded.no_modifier()?;
+    let destination = encoded.field()?;
+    let (a, b) = encoded.pair()?;
+    let op = ArithmeticOp::ALL[usize::from(encoded.opcode - opcode::ARITHMETIC)];
     match op {
         ArithmeticOp::Divide => {
             unsigned(&[a, b])?;
             if destination.width > a.width {
-                return Err(Kind::Width { field: destination, expected: u32::from(a.width) });
+                return Err(DecodeErrorKind::Width { field: destination, expected: u32::from(a.width) });
             }
         }
         ArithmeticOp::Minimum | ArithmeticOp::Maximum => alike(a, b)?,
@@ -311,62 +311,64 @@ fn arithmetic(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
     Ok((Instruction::Arithmetic { op, destination, a, b }, 2))
 }
 
-fn compare(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
-    reserved(u32::from(head.modifier) | head.operand)?;
-    let (a, b) = head.pair()?;
+fn compare(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+    must_be_zero(u32::from(encoded.modifier) | encoded.operand)?;
+    let (a, b) = encoded.pair()?;
     alike(a, b)?;
-    let test = Test::ALL[usize::from(head.opcode - opcode::COMPARE)];
+    let test = Test::ALL[usize::from(encoded.opcode - opcode::COMPARE)];
     Ok((Instruction::Compare { test, a, b }, 2))
 }
 
-fn constant(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
-    let destination = head.field()?;
-    if head.opcode == opcode::MULTIPLY_CONSTANT {
-        let source = head.source()?;
-        let [_, factor] = head.tail()?;
-        reserved(u32::from(head.modifier & 0xe0))?;
-        let (factor, factor_bits) = (factor as i32, head.modifier + 1);
+fn constant(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+    let destination = encoded.field()?;
+    if encoded.opcode == opcode::MULTIPLY_CONSTANT {
+        let source = encoded.source()?;
+        let [_, factor] = encoded.tail()?;
+        must_be_zero(u32::from(encoded.modifier & 0xe0))?;
+        let factor = factor as i32;
+        let factor_bits = encoded.modifier + 1;
         return Ok((Instruction::MultiplyConstant { destination, source, factor, factor_bits }, 3));
     }
-    head.no_modifier()?;
-    let [value] = head.tail()?;
-    if head.opcode == opcode::LOAD_CONSTANT {
+    encoded.no_modifier()?;
+    let [value] = encoded.tail()?;
+    if encoded.opcode == opcode::LOAD_CONSTANT {
         return Ok((Instruction::LoadConstant { destination, value }, 2));
     }
-    let test = Test::ALL[usize::from(head.opcode - opcode::COMPARE_CONSTANT)];
+    let test = Test::ALL[usize::from(encoded.opcode - opcode::COMPARE_CONSTANT)];
     Ok((Instruction::CompareConstant { test, a: destination, value }, 2))
 }
 
-fn backing(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
-    if head.opcode == opcode::WAIT {
-        reserved(u32::from(head.modifier) | head.operand)?;
+fn backing(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+    if encoded.opcode == opcode::WAIT {
+        must_be_zero(u32::from(encoded.modifier) | encoded.operand)?;
         return Ok((Instruction::Wait, 1));
     }
-    let (field, block) = (width(head.field()?, 32)?, head.modifier);
+    let field = width(encoded.field()?, 32)?;
+    let block = encoded.modifier;
     if block >= BACKING_BLOCKS {
-        return Err(Kind::UnknownBlock(block));
+        return Err(DecodeErrorKind::UnknownBlock(block));
     }
-    Ok(if head.opcode == opcode::STORE_BLOCK {
+    Ok(if encoded.opcode == opcode::STORE_BLOCK {
         (Instruction::StoreBlock { field, block }, 1)
     } else {
         (Instruction::LoadBlock { field, block }, 1)
     })
 }
 
-fn output(head: &Head<'_>) -> Result<(Instruction, usize), Kind> {
-    head.no_modifier()?;
-    let field = width(head.field()?, 24)?;
-    let target = target(head.tail()?)?;
+fn output(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+    encoded.no_modifier()?;
+    let field = width(encoded.field()?, 24)?;
+    let target = target(encoded.tail()?)?;
     Ok((Instruction::Output { field, target }, 9))
 }
 
-fn target(words: [Word; 8]) -> Result<CopyTarget, Kind> {
+fn target(words: [Word; 8]) -> Result<CopyTarget, DecodeErrorKind> {
     let [place, how, width, height, region_width, region_height, low, high] = words;
     let lines = match how >> 8 {
         0 => Lines::Frame,
         1 => Lines::Field(FieldParity::Even),
         2 => Lines::Field(FieldParity::Odd),
-        _ => return Err(Kind::BadTarget),
+        _ => return Err(DecodeErrorKind::BadTarget),
     };
     let target = CopyTarget {
         frame_buffer: NodeId((place >> 16) as u16),
@@ -376,7 +378,7 @@ fn target(words: [Word; 8]) -> Result<CopyTarget, Kind> {
         region: RegionId(place as u16),
         picture: u64::from(high) << 32 | u64::from(low),
     };
-    if sensible(&target) { Ok(target) } else { Err(Kind::BadTarget) }
+    if sensible(&target) { Ok(target) } else { Err(DecodeErrorKind::BadTarget) }
 }
 
 /// The region exists, and fits the array and the 16-bit coordinates.

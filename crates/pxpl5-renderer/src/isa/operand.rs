@@ -9,7 +9,7 @@ pub struct Operand {
     pub width: u8,
     /// The address counts from the selected context's base.
     pub relative: bool,
-    /// Two's complement.
+    /// Whether it is read as two's complement, and extended by its sign.
     pub signed: bool,
 }
 

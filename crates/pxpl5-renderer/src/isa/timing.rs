@@ -74,7 +74,7 @@ impl Instruction {
         }
     }
 
-    /// Clocks without [`SET_UP_CLOCKS`].
+    /// Clocks in which bits move: all but the [`SET_UP_CLOCKS`] of its fetch.
     #[must_use]
     pub fn bit_clocks(&self) -> u32 {
         match *self {

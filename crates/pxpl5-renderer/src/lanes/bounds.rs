@@ -25,12 +25,12 @@ const WHOLE: Area = Area { left: 0, right: 128, top: 0, bottom: 128 };
 pub(super) struct Bounds {
     pub(super) area: Area,
     /// Edges that limit a row from the left (`a > 0`) or from the right.
-    limits: Option<[Limit; 3]>,
+    limits: Option<[RowLimit; 3]>,
 }
 
 /// x >= or <= (b y + c) * scale.
 #[derive(Clone, Copy, Debug)]
-struct Limit {
+struct RowLimit {
     b: i64,
     c: i64,
     scale: f64,
@@ -42,7 +42,8 @@ impl Bounds {
     #[inline(always)]
     pub(super) fn row(&self, y: usize) -> (usize, usize) {
         let Some(limits) = &self.limits else { return (self.area.left, self.area.right) };
-        let (mut left, mut right) = (self.area.left as f64, self.area.right as f64 - 1.0);
+        let mut left = self.area.left as f64;
+        let mut right = self.area.right as f64 - 1.0;
         for limit in limits {
             let x = (limit.b * y as i64 + limit.c) as f64 * limit.scale;
             if limit.from_left {
@@ -55,10 +56,12 @@ impl Bounds {
     }
 }
 
-impl Limit {
+impl RowLimit {
     #[inline(always)]
-    fn of(e: &Linear) -> Self {
-        let (a, b, c) = (i64::from(e.a), i64::from(e.b), i64::from(e.c));
+    fn from_edge(e: &Linear) -> Self {
+        let a = i64::from(e.a);
+        let b = i64::from(e.b);
+        let c = i64::from(e.c);
         // A horizontal edge limits no row; the box has taken it into account.
         let scale = if a == 0 { 0.0 } else { -1.0 / a as f64 };
         Self { b, c, scale, from_left: a >= 0 }
@@ -69,14 +72,14 @@ impl Limit {
 pub(super) const SIDE_BY_SIDE: usize = 8;
 
 /// A number of each of some triangles.
-type Numbers<T> = [T; SIDE_BY_SIDE];
+type PerTriangle<T> = [T; SIDE_BY_SIDE];
 
 /// The edges of some triangles over the array's own columns and rows; edge `e` of triangle `i` at `[e][i]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Edges {
-    a: [Numbers<i32>; 3],
-    b: [Numbers<i32>; 3],
-    c: [Numbers<i32>; 3],
+    a: [PerTriangle<i32>; 3],
+    b: [PerTriangle<i32>; 3],
+    c: [PerTriangle<i32>; 3],
 }
 
 impl Edges {
@@ -84,7 +87,9 @@ impl Edges {
     #[inline(always)]
     pub(super) fn set(&mut self, i: usize, edges: [[i32; 3]; 3]) {
         for (e, [a, b, c]) in edges.into_iter().enumerate() {
-            (self.a[e][i], self.b[e][i], self.c[e][i]) = (a, b, c);
+            self.a[e][i] = a;
+            self.b[e][i] = b;
+            self.c[e][i] = c;
         }
     }
 
@@ -115,12 +120,12 @@ impl Edges {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Boxes {
     /// First column and row that the corners leave, 0 to 128; the last ones, -1 to 127.
-    x: [Numbers<i32>; 2],
-    y: [Numbers<i32>; 2],
+    x: [PerTriangle<i32>; 2],
+    y: [PerTriangle<i32>; 2],
     /// The edges enclose a triangle: normals that turn the same way at all corners leave no way out to infinity.
-    closed: Numbers<bool>,
+    closed: PerTriangle<bool>,
     /// No value in the array needs more than 32 bits, so the edges are straight lines.
-    straight: Numbers<bool>,
+    straight: PerTriangle<bool>,
 }
 
 /// Pixels by which an edge may be followed from the array's first one: then no coefficient has more than 22 bits, nor the
@@ -129,11 +134,15 @@ const REACH: f64 = 512.0;
 
 impl Boxes {
     #[inline(always)]
-    pub(super) fn of(edges: &Edges) -> Self {
-        let (a, b, c) = (three(&edges.a), three(&edges.b), three(&edges.c));
+    pub(super) fn enclosing(edges: &Edges) -> Self {
+        let a = three(&edges.a);
+        let b = three(&edges.b);
+        let c = three(&edges.c);
         let mut straight = [true; SIDE_BY_SIDE];
-        let (mut left, mut right) = ([true; SIDE_BY_SIDE], [true; SIDE_BY_SIDE]);
-        let (mut low, mut high) = ([[f64::INFINITY; SIDE_BY_SIDE]; 2], [[f64::NEG_INFINITY; SIDE_BY_SIDE]; 2]);
+        let mut left = [true; SIDE_BY_SIDE];
+        let mut right = [true; SIDE_BY_SIDE];
+        let mut low = [[f64::INFINITY; SIDE_BY_SIDE]; 2];
+        let mut high = [[f64::NEG_INFINITY; SIDE_BY_SIDE]; 2];
         for e in 0..3 {
             let f = (e + 1) % 3;
             for i in 0..SIDE_BY_SIDE {
@@ -145,8 +154,10 @@ impl Boxes {
                 let scale = 1.0 / determinant;
                 let x = (b[e][i] * c[f][i] - b[f][i] * c[e][i]) * scale;
                 let y = (a[f][i] * c[e][i] - a[e][i] * c[f][i]) * scale;
-                (low[0][i], high[0][i]) = (low[0][i].min(x), high[0][i].max(x));
-                (low[1][i], high[1][i]) = (low[1][i].min(y), high[1][i].max(y));
+                low[0][i] = low[0][i].min(x);
+                high[0][i] = high[0][i].max(x);
+                low[1][i] = low[1][i].min(y);
+                high[1][i] = high[1][i].max(y);
             }
         }
         let mut closed = [false; SIDE_BY_SIDE];
@@ -167,20 +178,23 @@ impl Boxes {
             WHOLE
         };
         let wide = area.right - area.left > 24 && area.bottom - area.top > 2 && self.straight[i];
-        Some(Bounds { area, limits: wide.then(|| edges.each_ref().map(Limit::of)) })
+        Some(Bounds { area, limits: wide.then(|| edges.each_ref().map(RowLimit::from_edge)) })
     }
 
     #[inline(always)]
     fn area(&self, i: usize) -> Option<Area> {
-        let (left, right, top, bottom) = (self.x[0][i], self.x[1][i], self.y[0][i], self.y[1][i]);
-        let end = |last: i32| (last + 1) as usize;
-        let area = Area { left: left as usize, right: end(right), top: top as usize, bottom: end(bottom) };
+        let left = self.x[0][i];
+        let right = self.x[1][i];
+        let top = self.y[0][i];
+        let bottom = self.y[1][i];
+        let area =
+            Area { left: left as usize, right: (right + 1) as usize, top: top as usize, bottom: (bottom + 1) as usize };
         (left <= right && top <= bottom).then_some(area)
     }
 }
 
 #[inline(always)]
-fn three(v: &[Numbers<i32>; 3]) -> [Numbers<f64>; 3] {
+fn three(v: &[PerTriangle<i32>; 3]) -> [PerTriangle<f64>; 3] {
     let mut out = [[0.0; SIDE_BY_SIDE]; 3];
     for (out, v) in out.iter_mut().zip(v) {
         for (out, v) in out.iter_mut().zip(v) {
@@ -192,7 +206,7 @@ fn three(v: &[Numbers<i32>; 3]) -> [Numbers<f64>; 3] {
 
 /// First and last pixel of some intervals.
 #[inline(always)]
-fn pixels(low: &Numbers<f64>, high: &Numbers<f64>) -> [Numbers<i32>; 2] {
+fn pixels(low: &PerTriangle<f64>, high: &PerTriangle<f64>) -> [PerTriangle<i32>; 2] {
     const BEYOND: f64 = (LAST + 1) as f64;
     let mut out = [[0; SIDE_BY_SIDE]; 2];
     for i in 0..SIDE_BY_SIDE {
@@ -226,7 +240,7 @@ mod tests {
     fn bounds(edges: &[Linear; 3]) -> Option<Bounds> {
         let mut all = Edges::default();
         all.set(5, edges.map(|e| [e.a, e.b, e.c]));
-        Boxes::of(&all).bounds(5, edges)
+        Boxes::enclosing(&all).bounds(5, edges)
     }
 
     fn touched(edges: &[Linear; 3]) -> Vec<(usize, usize)> {
@@ -235,8 +249,7 @@ mod tests {
     }
 
     fn random_edge(random: &mut Random) -> Linear {
-        let mut part = |bits: u32| (random.next() as i32) >> (32 - bits);
-        Linear { a: part(12), b: part(12), c: part(20) }
+        Linear { a: random.signed(12), b: random.signed(12), c: random.signed(20) }
     }
 
     #[test]

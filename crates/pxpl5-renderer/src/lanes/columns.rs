@@ -2,7 +2,7 @@
 
 use crate::array::{PIXELS, Plane};
 use crate::command::{ShadeFields, SphereScratch};
-use crate::controller::Bits;
+use crate::controller::FieldBits;
 use crate::isa::{MEMORY_BITS, Operand};
 use crate::layout::Layout;
 
@@ -13,30 +13,30 @@ pub(super) struct Values(pub(super) [u32; PIXELS]);
 
 /// Bits `first .. first + width` of all pixels.
 #[derive(Clone, Debug)]
-struct Column {
+struct FieldColumn {
     first: usize,
     width: usize,
     values: Box<Values>,
 }
 
-/// All 208 bits.
+/// All 208 bits of pixel memory, cut into columns where the fields of a layout begin.
 #[derive(Clone, Debug)]
-pub(super) struct Columns {
-    columns: Vec<Column>,
+pub(super) struct PixelColumns {
+    columns: Vec<FieldColumn>,
     /// For each bit the column that holds it.
     column_of: [u8; MEMORY_BITS as usize],
 }
 
 /// Where a piece of a field lies: bits `low ..` of a column are bits `at ..` of the field.
 #[derive(Clone, Copy, Debug)]
-struct Piece {
+struct FieldPiece {
     column: usize,
     low: usize,
     at: usize,
     width: usize,
 }
 
-impl Columns {
+impl PixelColumns {
     pub(super) fn new(layout: &Layout) -> Self {
         let columns: Vec<_> = cuts(layout).windows(2).map(|cut| column(cut[0], cut[1])).collect();
         let mut column_of = [0; MEMORY_BITS as usize];
@@ -76,11 +76,7 @@ impl Columns {
     pub(super) fn plane(&self, bit: usize) -> Plane {
         let column = &self.columns[usize::from(self.column_of[bit])];
         let low = bit - column.first;
-        let word = |i: usize| {
-            let pixels = column.values.0[64 * i..64 * i + 64].iter().enumerate();
-            pixels.fold(0, |word, (x, value)| word | u64::from(value >> low & 1) << x)
-        };
-        std::array::from_fn(word)
+        std::array::from_fn(|i| plane_word(&column.values.0[64 * i..64 * i + 64], low))
     }
 
     pub(super) fn set_plane(&mut self, bit: usize, plane: &Plane) {
@@ -93,7 +89,7 @@ impl Columns {
     }
 
     /// The field of all pixels, extended to 64 bits by its signedness.
-    pub(super) fn gather(&self, field: Bits, out: &mut [u64]) {
+    pub(super) fn gather(&self, field: FieldBits, out: &mut [u64]) {
         out.fill(0);
         for piece in self.pieces(field) {
             let mask = ones(piece.width);
@@ -109,7 +105,7 @@ impl Columns {
     }
 
     /// Stores the low bits of `values` where `mask` has all bits set; elsewhere the mask is zero.
-    pub(super) fn scatter(&mut self, field: Bits, values: &[u64], mask: &[u8]) {
+    pub(super) fn scatter(&mut self, field: FieldBits, values: &[u64], mask: &[u8]) {
         for piece in self.pieces(field) {
             let bits = (ones(piece.width) << piece.low) as u32;
             let column = self.columns[piece.column].values.0.iter_mut();
@@ -121,7 +117,7 @@ impl Columns {
         }
     }
 
-    fn pieces(&self, field: Bits) -> Vec<Piece> {
+    fn pieces(&self, field: FieldBits) -> Vec<FieldPiece> {
         let mut out = Vec::new();
         let mut bit = field.first;
         while bit < field.end() {
@@ -129,19 +125,24 @@ impl Columns {
             let column = &self.columns[index];
             let low = bit - column.first;
             let width = (column.width - low).min(field.end() - bit);
-            out.push(Piece { column: index, low, at: bit - field.first, width });
+            out.push(FieldPiece { column: index, low, at: bit - field.first, width });
             bit += width;
         }
         out
     }
 }
 
+/// Bit `low` of 64 pixels, the first of them lowest.
+fn plane_word(pixels: &[u32], low: usize) -> u64 {
+    pixels.iter().enumerate().fold(0, |word, (x, value)| word | u64::from(value >> low & 1) << x)
+}
+
 const fn ones(width: usize) -> u64 {
     u64::MAX >> (64 - width)
 }
 
-fn column(first: usize, end: usize) -> Column {
-    Column { first, width: end - first, values: Box::new(Values([0; PIXELS])) }
+fn column(first: usize, end: usize) -> FieldColumn {
+    FieldColumn { first, width: end - first, values: Box::new(Values([0; PIXELS])) }
 }
 
 /// Where columns begin: at the borders of the layout's fields, and so that none has more than 32 bits.
@@ -150,10 +151,10 @@ fn cuts(layout: &Layout) -> Vec<usize> {
     for range in layout.ranges() {
         cuts.extend([range.first as usize, (range.first + range.width) as usize]);
     }
-    let base = |context| usize::from(layout.context_base(context));
     for context in 0..layout.plan().contexts {
+        let base = usize::from(layout.context_base(context));
         for normal in (0..3).filter_map(|i| layout.normal(i)) {
-            cuts.push(base(context) + usize::from(normal.address));
+            cuts.push(base + usize::from(normal.address));
         }
     }
     cuts.extend(temporaries(layout).iter().flat_map(|field| {
@@ -167,8 +168,8 @@ fn cuts(layout: &Layout) -> Vec<usize> {
 
 /// Fields that the commands' programs use in the scratch, which is absolute.
 fn temporaries(layout: &Layout) -> Vec<Operand> {
-    let sphere = SphereScratch::of(layout).map(|s| vec![s.z, s.root]);
-    let shade = ShadeFields::of(layout).map(|f| vec![f.a, f.b, f.c, f.root, f.diffuse, f.specular]);
+    let sphere = SphereScratch::in_layout(layout).map(|s| vec![s.z, s.root]);
+    let shade = ShadeFields::in_layout(layout).map(|f| vec![f.a, f.b, f.c, f.root, f.diffuse, f.specular]);
     [sphere.unwrap_or_default(), shade.unwrap_or_default()].concat()
 }
 
@@ -189,7 +190,7 @@ mod tests {
     fn columns_cover_every_bit_once_in_every_layout() {
         let layouts = [Layout::rendering_control_phong(), Layout::slats(), Layout::slats_quarters()];
         for layout in layouts {
-            let columns = Columns::new(&layout).columns;
+            let columns = PixelColumns::new(&layout).columns;
             let mut next = 0;
             for column in &columns {
                 assert_eq!(column.first, next);
@@ -202,8 +203,8 @@ mod tests {
 
     #[test]
     fn a_field_across_columns_comes_back() {
-        let mut columns = Columns::new(&Layout::slats());
-        let field = Bits { first: 20, width: 30, signed: true };
+        let mut columns = PixelColumns::new(&Layout::slats());
+        let field = FieldBits { first: 20, width: 30, signed: true };
         let values: Vec<u64> = (0..PIXELS as u64).map(|i| i.wrapping_mul(0x9e37_79b9_7f4a_7c15)).collect();
         columns.scatter(field, &values, &[255; PIXELS]);
         let mut back = vec![0; PIXELS];

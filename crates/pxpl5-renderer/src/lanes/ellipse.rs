@@ -18,7 +18,7 @@ pub(super) struct Ellipse {
 }
 
 impl Ellipse {
-    pub(super) fn of(q: &Quadratic) -> Self {
+    pub(super) fn where_positive(q: &Quadratic) -> Self {
         if q.xx >= 0 || !stays_in_48_bits(q) {
             return Self { rows: 0..SIZE, quadratic: None };
         }
@@ -67,7 +67,8 @@ fn positive(a: f64, b: f64, c: f64) -> Range<usize> {
     if discriminant < 0.0 {
         return 0..0;
     }
-    let (middle, half) = (b / (-2.0 * a), discriminant.sqrt() / (-2.0 * a));
+    let middle = b / (-2.0 * a);
+    let half = discriminant.sqrt() / (-2.0 * a);
     let low = (middle - half - MARGIN).ceil().max(0.0) as usize;
     let high = (middle + half + MARGIN + 1.0).clamp(0.0, SIZE as f64) as usize;
     low..high.max(low)
@@ -79,10 +80,12 @@ mod tests {
     use crate::conformance::Random;
 
     fn random_ellipse(random: &mut Random) -> Quadratic {
-        let mut between = |low: i64, high: i64| low + random.below((high - low) as u64) as i64;
-        let (x, y, r) = (between(-300, 300), between(-300, 300), between(1, 400));
-        let scale = 1 << between(1, 20);
-        let (tilt, flat) = (between(-scale, scale), between(scale / 2 + 1, 2 * scale));
+        let x = random.between(-300, 300);
+        let y = random.between(-300, 300);
+        let r = random.between(1, 400);
+        let scale = 1 << random.between(1, 20);
+        let tilt = random.between(-scale, scale);
+        let flat = random.between(scale / 2 + 1, 2 * scale);
         Quadratic {
             xx: -scale,
             xy: tilt,
@@ -99,7 +102,7 @@ mod tests {
         let mut inside = 0;
         for _ in 0..1000 {
             let q = random_ellipse(&mut random);
-            let ellipse = Ellipse::of(&q);
+            let ellipse = Ellipse::where_positive(&q);
             for (x, y) in (0..128).flat_map(|y| (0..128).map(move |x| (x, y))) {
                 if q.at(x, y) >= 0 {
                     inside += 1;
@@ -114,7 +117,7 @@ mod tests {
     #[test]
     fn a_circle_is_bounded_by_its_square() {
         let q = Quadratic { xx: -1, xy: 0, yy: -1, x: 40, y: 60, one: 25 - 400 - 900 };
-        let ellipse = Ellipse::of(&q);
+        let ellipse = Ellipse::where_positive(&q);
         assert_eq!((ellipse.rows(), ellipse.columns(30)), (25..36, 15..26));
     }
 }

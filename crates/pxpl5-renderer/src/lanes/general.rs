@@ -2,15 +2,13 @@
 
 use super::{Lanes, values};
 use crate::array::{Executed, FaultKind, OutputRegion, PIXELS};
-use crate::controller::{Bits, Local};
+use crate::controller::LocalExpression;
 use crate::isa::{ArithmeticOp, ExpressionUse, Instruction, Operand, Test};
 use pxpl5_wire::REGION_SIZE;
 
-type Done = Result<(), FaultKind>;
-
 impl Lanes {
     /// Executes an instruction whose operands have been checked.
-    pub(super) fn instruction(&mut self, instruction: &Instruction, executed: &mut Executed) -> Done {
+    pub(super) fn instruction(&mut self, instruction: &Instruction, executed: &mut Executed) -> Result<(), FaultKind> {
         match *instruction {
             Instruction::Select { context_base, left, top } => {
                 self.controller.select(context_base, left, top);
@@ -32,7 +30,7 @@ impl Lanes {
         Ok(())
     }
 
-    fn enable_instruction(&mut self, instruction: &Instruction) -> Done {
+    fn enable_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
         match *instruction {
             Instruction::EnableAll { .. } => self.enable.fill(true),
             Instruction::EnableNone => self.enable.fill(false),
@@ -56,7 +54,7 @@ impl Lanes {
         Ok(())
     }
 
-    fn field_instruction(&mut self, instruction: &Instruction) -> Done {
+    fn field_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
         match *instruction {
             Instruction::ShiftRight { destination, source, by } => {
                 self.map(destination, source, |v| values::shift_right(v, by, source.signed))
@@ -87,25 +85,25 @@ impl Lanes {
         }
     }
 
-    fn gather(&mut self, which: usize, operand: Operand) -> Done {
+    fn gather(&mut self, which: usize, operand: Operand) -> Result<(), FaultKind> {
         self.columns.gather(self.controller.bits(operand)?, &mut self.operands[which]);
         Ok(())
     }
 
     /// Stores the first operand buffer under Enable.
-    fn store(&mut self, destination: Operand) -> Done {
+    fn store(&mut self, destination: Operand) -> Result<(), FaultKind> {
         let field = self.controller.bits(destination)?;
         self.columns.scatter(field, &self.operands[0], self.enable.pixels());
         Ok(())
     }
 
-    fn map(&mut self, destination: Operand, source: Operand, f: impl Fn(u64) -> u64) -> Done {
+    fn map(&mut self, destination: Operand, source: Operand, f: impl Fn(u64) -> u64) -> Result<(), FaultKind> {
         self.gather(0, source)?;
         self.operands[0].iter_mut().for_each(|v| *v = f(*v));
         self.store(destination)
     }
 
-    fn arithmetic(&mut self, op: ArithmeticOp, destination: Operand, a: Operand, b: Operand) -> Done {
+    fn arithmetic(&mut self, op: ArithmeticOp, destination: Operand, a: Operand, b: Operand) -> Result<(), FaultKind> {
         self.gather(0, a)?;
         self.gather(1, b)?;
         let [first, second] = &mut self.operands;
@@ -116,7 +114,12 @@ impl Lanes {
     }
 
     /// destination := the first result, source := the second, of the source and the second buffer.
-    fn two_results(&mut self, destination: Operand, source: Operand, f: impl Fn(u64, u64) -> (u64, u64)) -> Done {
+    fn two_results(
+        &mut self,
+        destination: Operand,
+        source: Operand,
+        f: impl Fn(u64, u64) -> (u64, u64),
+    ) -> Result<(), FaultKind> {
         self.gather(0, source)?;
         let [first, second] = &mut self.operands;
         for (a, b) in first.iter_mut().zip(second.iter_mut()) {
@@ -127,7 +130,7 @@ impl Lanes {
         self.store(source)
     }
 
-    fn disable_unless(&mut self, a: Operand, f: impl Fn(u64) -> bool) -> Done {
+    fn disable_unless(&mut self, a: Operand, f: impl Fn(u64) -> bool) -> Result<(), FaultKind> {
         self.gather(0, a)?;
         for (enable, v) in self.enable.pixels_mut().iter_mut().zip(&self.operands[0]) {
             *enable &= if f(*v) { 255 } else { 0 };
@@ -135,7 +138,7 @@ impl Lanes {
         Ok(())
     }
 
-    fn compare(&mut self, test: Test, a: Operand, b: Operand) -> Done {
+    fn compare(&mut self, test: Test, a: Operand, b: Operand) -> Result<(), FaultKind> {
         self.gather(1, b)?;
         self.gather(0, a)?;
         let pairs = self.operands[0].iter().zip(&self.operands[1]);
@@ -146,7 +149,7 @@ impl Lanes {
         Ok(())
     }
 
-    fn evaluate(&mut self, local: &Local, usage: &ExpressionUse) -> Done {
+    fn evaluate(&mut self, local: &LocalExpression, usage: &ExpressionUse) -> Result<(), FaultKind> {
         match *usage {
             ExpressionUse::DisableNegative => {
                 self.expression(local, 0, |e, _, _| e);
@@ -183,24 +186,25 @@ impl Lanes {
     }
 
     /// First buffer := f(expression, shift, second buffer).
-    fn expression(&mut self, local: &Local, shift: u8, f: impl Fn(u64, u8, u64) -> u64) {
+    fn expression(&mut self, local: &LocalExpression, shift: u8, f: impl Fn(u64, u8, u64) -> u64) {
         let [first, second] = &mut self.operands;
         for (pixel, (out, old)) in first.iter_mut().zip(second.iter()).enumerate() {
-            let (x, y) = (pixel as u32 % REGION_SIZE, pixel as u32 / REGION_SIZE);
+            let x = pixel as u32 % REGION_SIZE;
+            let y = pixel as u32 / REGION_SIZE;
             *out = f(local.at(x as i32, y as i32) as u64, shift, *old);
         }
     }
 
-    fn store_block(&mut self, field: Operand, block: u8) -> Done {
+    fn store_block(&mut self, field: Operand, block: u8) -> Result<(), FaultKind> {
         self.gather(0, field)?;
         self.backing[usize::from(block)] = Some(self.operands[0].clone().into_boxed_slice());
         Ok(())
     }
 
-    fn load_block(&mut self, field: Operand, block: u8) -> Done {
-        let bits: Bits = self.controller.bits(field)?;
-        let zeros = || vec![0; PIXELS].into_boxed_slice();
-        let values = self.backing[usize::from(block)].get_or_insert_with(zeros);
+    fn load_block(&mut self, field: Operand, block: u8) -> Result<(), FaultKind> {
+        let bits = self.controller.bits(field)?;
+        let block = &mut self.backing[usize::from(block)];
+        let values = block.get_or_insert_with(|| vec![0; PIXELS].into_boxed_slice());
         self.columns.scatter(bits, values, &[255; PIXELS]);
         Ok(())
     }

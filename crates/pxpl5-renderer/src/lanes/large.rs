@@ -2,11 +2,11 @@
 
 use super::Lanes;
 use super::shade::ShadeAll;
-use super::sphere::{DrawSphere, GouraudSphere, PhongOfSphere};
+use super::sphere::{DrawSphere, PaintGouraudSphere, PaintPhongSphere};
 use super::whole::{ContextColumns, starts_anew};
 use crate::array::Executed;
 use crate::command::{Command, CommandKind, PhongSphere, Shade, ShadeFields, Sphere, SphereBody, SphereScratch};
-use pxpl5_wire::{Linear, Word};
+use pxpl5_wire::Word;
 
 /// Columns and shifts of a sphere in this layout.
 struct SpherePlace {
@@ -41,7 +41,7 @@ impl Lanes {
 
     /// `None` where depth and radicand do not have the same bits, so that they leave a mixture.
     fn sphere_place(&self) -> Option<SpherePlace> {
-        let scratch = SphereScratch::of(&self.layout).ok()?;
+        let scratch = SphereScratch::in_layout(&self.layout).ok()?;
         let root_bits = scratch.root.width;
         let same = scratch.z.width == 2 * root_bits;
         let place = SpherePlace {
@@ -56,10 +56,8 @@ impl Lanes {
     fn sphere(&mut self, sphere: &Sphere, columns: ContextColumns, keep: bool) -> Option<()> {
         let place = self.sphere_place()?;
         let body = self.sphere_body(sphere.body, &place);
-        let [red, green, blue] = sphere.colour;
-        let local = |e: &Linear| self.controller.localise(e);
-        let components = [local(&red), local(&green), local(&blue)];
-        self.controller.hold(blue);
+        let components = [0, 1, 2].map(|i| self.controller.localise(&sphere.colour[i]));
+        self.controller.hold(sphere.colour[2]);
         let indices = [columns.z, columns.colour, place.root, place.temporary];
         let [z, colour, root, temporary] = self.columns.many_mut(indices)?;
         let factors = sphere.root_factor;
@@ -70,7 +68,7 @@ impl Lanes {
             z,
             root,
             temporary,
-            paint: GouraudSphere { components, factors, root_bits: place.root_bits, colour },
+            paint: PaintGouraudSphere { components, factors, root_bits: place.root_bits, colour },
             enable: keep.then(|| self.enable.emptied(0..128)),
         });
         Some(())
@@ -94,7 +92,7 @@ impl Lanes {
             z,
             root,
             temporary,
-            paint: PhongOfSphere { components, root_bits: place.root_bits, normal, constant, colour },
+            paint: PaintPhongSphere { components, root_bits: place.root_bits, normal, constant, colour },
             enable: keep.then(|| self.enable.emptied(0..128)),
         });
         Some(())
@@ -112,7 +110,7 @@ impl Lanes {
     }
 
     fn shade(&mut self, shade: &Shade, columns: ContextColumns, keep: bool) -> Option<()> {
-        let f = ShadeFields::of(&self.layout).ok()?;
+        let f = ShadeFields::in_layout(&self.layout).ok()?;
         let [nx, ny, nz] = columns.normal?;
         let mut indices = [columns.z, nx, ny, nz, columns.colour, 0, 0, 0, 0, 0, 0];
         let temporaries = [f.a, f.b, f.c, f.root, f.diffuse, f.specular];

@@ -5,7 +5,7 @@ use super::columns::Values;
 use super::roots::{divide_10, square_root_24};
 use crate::array::PIXELS;
 use crate::command::{SPECULAR_SQUARINGS, Shade};
-use crate::simd::{Kernel, Vector};
+use crate::simd::{SimdVector, VectorKernel};
 
 const WIDTH: usize = 128;
 
@@ -23,11 +23,11 @@ pub(super) struct ShadeAll<'a> {
     pub(super) enable: Option<&'a mut [u8; PIXELS]>,
 }
 
-impl Kernel for ShadeAll<'_> {
+impl VectorKernel for ShadeAll<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Vector>(mut self) {
+    fn run<V: SimdVector>(mut self) {
         for at in (0..PIXELS).step_by(WIDTH) {
             let mut covered = [0; WIDTH];
             for (covered, z) in covered.iter_mut().zip(&self.z.0[at..at + WIDTH]) {

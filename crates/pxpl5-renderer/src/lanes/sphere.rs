@@ -6,13 +6,11 @@ use super::roots::square_root_24;
 use crate::array::PIXELS;
 use crate::command::SphereBody;
 use crate::isa::QUADRATIC_BITS;
-use crate::simd::{Kernel, Vector};
+use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::Linear;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
 
 const WIDTH: usize = 128;
-
-type Row = [u32; WIDTH];
 
 /// A sphere over the array's own columns and rows.
 pub(super) struct DrawSphere<'a, P> {
@@ -36,12 +34,12 @@ pub(super) trait PaintSphere {
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], temporary: &mut [u32]);
 }
 
-impl<P: PaintSphere> Kernel for DrawSphere<'_, P> {
+impl<P: PaintSphere> VectorKernel for DrawSphere<'_, P> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Vector>(mut self) {
-        let ellipse = Ellipse::of(&self.body.silhouette);
+    fn run<V: SimdVector>(mut self) {
+        let ellipse = Ellipse::where_positive(&self.body.silhouette);
         for y in ellipse.rows() {
             let columns = ellipse.columns(y);
             if !columns.is_empty() {
@@ -54,12 +52,12 @@ impl<P: PaintSphere> Kernel for DrawSphere<'_, P> {
 impl<P: PaintSphere> DrawSphere<'_, P> {
     #[inline(always)]
     fn row(&mut self, y: usize, left: usize, n: usize) {
-        let (mut inside, mut roots): (Row, Row) = ([0; WIDTH], [0; WIDTH]);
-        let (inside, roots) = (&mut inside[..n], &mut roots[..n]);
+        let inside = &mut [0; WIDTH][..n];
+        let roots = &mut [0; WIDTH][..n];
         self.roots(y, left, inside, roots);
         let at = y * WIDTH + left;
-        let (mut new, mut pass): (Row, Row) = ([0; WIDTH], [0; WIDTH]);
-        let (new, pass) = (&mut new[..n], &mut pass[..n]);
+        let new = &mut [0; WIDTH][..n];
+        let pass = &mut [0; WIDTH][..n];
         let first = self.body.depth.at(left as i32, y as i32);
         let z = &mut self.z.0[at..at + n];
         for i in 0..n {
@@ -105,19 +103,19 @@ fn blend(old: &mut [u32], new: &[u32], mask: &[u32]) {
 }
 
 /// Colour from a plane and the root.
-pub(super) struct GouraudSphere<'a> {
+pub(super) struct PaintGouraudSphere<'a> {
     pub(super) components: [Linear; 3],
     pub(super) factors: [i16; 3],
     pub(super) root_bits: u8,
     pub(super) colour: &'a mut Values,
 }
 
-impl PaintSphere for GouraudSphere<'_> {
+impl PaintSphere for PaintGouraudSphere<'_> {
     #[inline(always)]
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], temporary: &mut [u32]) {
         let n = pass.len();
-        let mut rgb: Row = [0; WIDTH];
-        let mut product: Row = [0; WIDTH];
+        let mut rgb = [0_u32; WIDTH];
+        let mut product = [0; WIDTH];
         for (linear, factor) in self.components.iter().zip(self.factors) {
             let first = linear.at(left as i32, y as i32);
             for i in 0..n {
@@ -139,7 +137,7 @@ impl PaintSphere for GouraudSphere<'_> {
 }
 
 /// Normals from two planes and the root, and the object's colour.
-pub(super) struct PhongOfSphere<'a> {
+pub(super) struct PaintPhongSphere<'a> {
     pub(super) components: [Linear; 2],
     pub(super) root_bits: u8,
     pub(super) normal: [&'a mut Values; 3],
@@ -147,7 +145,7 @@ pub(super) struct PhongOfSphere<'a> {
     pub(super) colour: &'a mut Values,
 }
 
-impl PaintSphere for PhongOfSphere<'_> {
+impl PaintSphere for PaintPhongSphere<'_> {
     #[inline(always)]
     fn store(&mut self, left: usize, y: usize, roots: &[u32], pass: &[u32], _: &mut [u32]) {
         let at = y * WIDTH + left;
@@ -161,7 +159,8 @@ impl PaintSphere for PhongOfSphere<'_> {
                 old[i] = select(pass[i], bits, old[i]);
             }
         }
-        let (z, colour) = (&mut self.normal[2].0[at..at + n], &mut self.colour.0[at..at + n]);
+        let z = &mut self.normal[2].0[at..at + n];
+        let colour = &mut self.colour.0[at..at + n];
         for i in 0..n {
             z[i] = select(pass[i], roots[i] >> (self.root_bits - 10), z[i]);
         }

@@ -5,7 +5,7 @@ use super::columns::Values;
 use super::enable::Enable;
 use super::whole::{Template, starts_anew};
 use crate::command::{COLOUR_AT, COMPONENTS_AT, DEPTH_AT, EDGES_AT, PHONG_WORDS, TRIANGLE_WORDS};
-use crate::simd::{Kernel, Vector};
+use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};
 use pxpl5_wire::{Linear, Word};
 use std::ops::Range;
@@ -19,7 +19,7 @@ pub(super) struct Walk<V> {
     step: V,
 }
 
-impl<V: Vector> Walk<V> {
+impl<V: SimdVector> Walk<V> {
     #[inline(always)]
     fn start(e: &Linear, x: i32, y: i32) -> Self {
         Self { value: V::ramp(e.at(x, y), e.a), step: V::splat(e.a.wrapping_mul(V::LANES as i32)) }
@@ -38,11 +38,11 @@ impl<V: Vector> Walk<V> {
 }
 
 /// What commands of `N` words store in the pixels that pass.
-pub(super) trait Paint<const N: usize> {
+pub(super) trait PaintTriangle<const N: usize> {
     /// Takes what the command has besides expressions.
     fn begin(&mut self, words: &[Word; N]);
     /// Stores pixels from index `at` where the mask is true.
-    fn store<V: Vector>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
+    fn store<V: SimdVector>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask);
 }
 
 /// All triangles of one kind at the start of `words`, as many as follow each other. Gives their number.
@@ -58,7 +58,7 @@ pub(super) struct DrawTriangles<'a, const N: usize, P> {
 }
 
 /// A triangle being drawn.
-struct Shape<'a, const N: usize> {
+struct CurrentTriangle<'a, const N: usize> {
     /// Over the array's own columns and rows.
     edges: [Linear; 3],
     words: &'a [Word; N],
@@ -67,17 +67,17 @@ struct Shape<'a, const N: usize> {
 }
 
 /// The depth test of a vector of pixels.
-struct Tested<V: Vector> {
+struct Tested<V: SimdVector> {
     old: V,
     new: V,
     mask: V::Mask,
 }
 
-impl<const N: usize, P: Paint<N>> Kernel for DrawTriangles<'_, N, P> {
+impl<const N: usize, P: PaintTriangle<N>> VectorKernel for DrawTriangles<'_, N, P> {
     type Output = usize;
 
     #[inline(always)]
-    fn run<V: Vector>(mut self) -> usize {
+    fn run<V: SimdVector>(mut self) -> usize {
         let (commands, _) = self.words.as_chunks::<N>();
         let drawn = commands.iter().take_while(|command| self.template.fits(command)).count();
         // Whoever follows a triangle, but for the last, is one.
@@ -87,7 +87,7 @@ impl<const N: usize, P: Paint<N>> Kernel for DrawTriangles<'_, N, P> {
             let mut edges = Edges::default();
             take_edges(some, &mut edges);
             edges.localise(self.origin);
-            let boxes = Boxes::of(&edges);
+            let boxes = Boxes::enclosing(&edges);
             for (i, command) in some.iter().enumerate() {
                 left -= 1;
                 self.triangle::<V>(command, edges.get(i), &boxes, i, read_later && left == 0);
@@ -97,38 +97,38 @@ impl<const N: usize, P: Paint<N>> Kernel for DrawTriangles<'_, N, P> {
     }
 }
 
-impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
+impl<const N: usize, P: PaintTriangle<N>> DrawTriangles<'_, N, P> {
     /// Triangle `i` of those with these boxes; `keep` says that somebody looks at Enable afterwards.
     #[inline(always)]
-    fn triangle<V: Vector>(&mut self, words: &[Word; N], edges: [Linear; 3], boxes: &Boxes, i: usize, keep: bool) {
+    fn triangle<V: SimdVector>(&mut self, words: &[Word; N], edges: [Linear; 3], boxes: &Boxes, i: usize, keep: bool) {
         let bounds = boxes.bounds(i, &edges);
         if keep {
             self.enable.emptied(bounds.map_or(0..0, |bounds| bounds.area.top..bounds.area.bottom));
         }
         let Some(bounds) = bounds else { return };
-        let shape = Shape { edges, words, keep };
+        let triangle = CurrentTriangle { edges, words, keep };
         self.paint.begin(words);
         let Area { left, right, top, bottom } = bounds.area;
         if let Some(x) = one_vector(left, right, V::LANES) {
-            self.narrow::<V>(&shape, x, top..bottom);
+            self.narrow::<V>(&triangle, x, top..bottom);
             return;
         }
         for y in top..bottom {
             let (left, right) = bounds.row(y);
-            self.row::<V>(&shape, y, left / V::LANES * V::LANES, right);
+            self.row::<V>(&triangle, y, left / V::LANES * V::LANES, right);
         }
     }
 
     /// The expression that stands at `at` among the words.
     #[inline(always)]
-    fn walk<V: Vector>(&self, words: &[Word; N], at: usize, x: usize, y: usize) -> Walk<V> {
+    fn walk<V: SimdVector>(&self, words: &[Word; N], at: usize, x: usize, y: usize) -> Walk<V> {
         let [a, b, c] = coefficients(words, at);
         let [left, top] = self.origin;
         Walk::start(&Linear { a, b, c }, left + x as i32, top + y as i32)
     }
 
     #[inline(always)]
-    fn components<V: Vector>(&self, words: &[Word; N], x: usize, y: usize) -> [Walk<V>; 3] {
+    fn components<V: SimdVector>(&self, words: &[Word; N], x: usize, y: usize) -> [Walk<V>; 3] {
         let [i, j, k] = COMPONENTS_AT;
         [self.walk(words, i, x, y), self.walk(words, j, x, y), self.walk(words, k, x, y)]
     }
@@ -136,47 +136,49 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
     /// One vector a row, from column `x`; two rows at a time, since branches that nobody can foretell cost more than a row
     /// outside of the triangle.
     #[inline(always)]
-    fn narrow<V: Vector>(&mut self, shape: &Shape<N>, x: usize, rows: Range<usize>) {
+    fn narrow<V: SimdVector>(&mut self, triangle: &CurrentTriangle<N>, x: usize, rows: Range<usize>) {
         let pairs = rows.len().div_ceil(2);
         let top = rows.start.min(WIDTH - 2 * pairs);
-        let [mut first, mut second, mut third] = three::<V>(&shape.edges, x, top);
-        let [p, q, r] = [shape.edges[0].b, shape.edges[1].b, shape.edges[2].b];
-        let mut depth = self.walk::<V>(shape.words, DEPTH_AT, x, top);
-        let deeper = shape.words[DEPTH_AT + 1] as i32;
+        let [mut first, mut second, mut third] = three::<V>(&triangle.edges, x, top);
+        let [p, q, r] = [triangle.edges[0].b, triangle.edges[1].b, triangle.edges[2].b];
+        let mut depth = self.walk::<V>(triangle.words, DEPTH_AT, x, top);
+        let deeper = triangle.words[DEPTH_AT + 1] as i32;
         for y in (0..pairs).map(|pair| top + 2 * pair) {
             let at = [y * WIDTH + x, (y + 1) * WIDTH + x];
             let lower = [first.below(p), second.below(q), third.below(r), depth.below(deeper)];
             let upper = self.test(at[0], [first, second, third], depth);
             let lower = self.test(at[1], [lower[0], lower[1], lower[2]], lower[3]);
             if V::any_of(upper.mask, lower.mask) {
-                let walks = self.components::<V>(shape.words, x, y);
-                self.nearer(&upper, at[0], shape.keep);
+                let walks = self.components::<V>(triangle.words, x, y);
+                self.nearer(&upper, at[0], triangle.keep);
                 self.paint.store(&walks, at[0], upper.mask);
-                let walks = self.components_below(shape.words, &walks);
-                self.nearer(&lower, at[1], shape.keep);
+                let walks = self.components_below(triangle.words, &walks);
+                self.nearer(&lower, at[1], triangle.keep);
                 self.paint.store(&walks, at[1], lower.mask);
             }
-            (first, second, third) = (first.below(2 * p), second.below(2 * q), third.below(2 * r));
+            first = first.below(2 * p);
+            second = second.below(2 * q);
+            third = third.below(2 * r);
             depth = depth.below(deeper.wrapping_mul(2));
         }
     }
 
     #[inline(always)]
-    fn components_below<V: Vector>(&self, words: &[Word; N], [p, q, r]: &[Walk<V>; 3]) -> [Walk<V>; 3] {
+    fn components_below<V: SimdVector>(&self, words: &[Word; N], [p, q, r]: &[Walk<V>; 3]) -> [Walk<V>; 3] {
         let [i, j, k] = COMPONENTS_AT.map(|at| words[at + 1] as i32);
         [p.below(i), q.below(j), r.below(k)]
     }
 
     #[inline(always)]
-    fn row<V: Vector>(&mut self, shape: &Shape<N>, y: usize, left: usize, right: usize) {
-        let [mut first, mut second, mut third] = three::<V>(&shape.edges, left, y);
-        let mut depth = self.walk::<V>(shape.words, DEPTH_AT, left, y);
-        let mut walks = self.components::<V>(shape.words, left, y);
+    fn row<V: SimdVector>(&mut self, triangle: &CurrentTriangle<N>, y: usize, left: usize, right: usize) {
+        let [mut first, mut second, mut third] = three::<V>(&triangle.edges, left, y);
+        let mut depth = self.walk::<V>(triangle.words, DEPTH_AT, left, y);
+        let mut walks = self.components::<V>(triangle.words, left, y);
         for x in (left..right).step_by(V::LANES) {
             let at = y * WIDTH + x;
             let tested = self.test(at, [first, second, third], depth);
             if V::any_of(tested.mask, tested.mask) {
-                self.nearer(&tested, at, shape.keep);
+                self.nearer(&tested, at, triangle.keep);
                 self.paint.store(&walks, at, tested.mask);
             }
             first.advance();
@@ -191,13 +193,14 @@ impl<const N: usize, P: Paint<N>> DrawTriangles<'_, N, P> {
 
     /// Where no edge is negative and the depth is nearer.
     #[inline(always)]
-    fn test<V: Vector>(&self, at: usize, [p, q, r]: [Walk<V>; 3], depth: Walk<V>) -> Tested<V> {
-        let (old, new) = (V::load(&self.z.0[at..]), depth.value.shift_right(self.z_shift.into()));
+    fn test<V: SimdVector>(&self, at: usize, [p, q, r]: [Walk<V>; 3], depth: Walk<V>) -> Tested<V> {
+        let old = V::load(&self.z.0[at..]);
+        let new = depth.value.shift_right(self.z_shift.into());
         Tested { old, new, mask: p.value.or(q.value).or(r.value).passes(new, old) }
     }
 
     #[inline(always)]
-    fn nearer<V: Vector>(&mut self, tested: &Tested<V>, at: usize, keep: bool) {
+    fn nearer<V: SimdVector>(&mut self, tested: &Tested<V>, at: usize, keep: bool) {
         tested.new.store(tested.mask, tested.old, &mut self.z.0[at..]);
         if keep {
             V::store_mask(tested.mask, &mut self.enable.rows_in_use()[at..]);
@@ -230,28 +233,29 @@ fn coefficients<const N: usize>(words: &[Word; N], at: usize) -> [i32; 3] {
 
 /// Written out, because a closure over an array would be compiled apart, without the vector unit's features.
 #[inline(always)]
-fn three<V: Vector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
-    let (x, y) = (x as i32, y as i32);
+fn three<V: SimdVector>(e: &[Linear; 3], x: usize, y: usize) -> [Walk<V>; 3] {
+    let x = x as i32;
+    let y = y as i32;
     [Walk::start(&e[0], x, y), Walk::start(&e[1], x, y), Walk::start(&e[2], x, y)]
 }
 
 #[inline(always)]
-fn blend<V: Vector>(column: &mut Values, at: usize, mask: V::Mask, new: V) {
+fn blend<V: SimdVector>(column: &mut Values, at: usize, mask: V::Mask, new: V) {
     let old = V::load(&column.0[at..]);
     new.store(mask, old, &mut column.0[at..]);
 }
 
-/// Interpolated colour.
-pub(super) struct Gouraud<'a> {
+/// Stores interpolated colour, as 0x00RRGGBB.
+pub(super) struct PaintGouraud<'a> {
     pub(super) colour: &'a mut Values,
 }
 
-impl Paint<TRIANGLE_WORDS> for Gouraud<'_> {
+impl PaintTriangle<TRIANGLE_WORDS> for PaintGouraud<'_> {
     #[inline(always)]
     fn begin(&mut self, _: &[Word; TRIANGLE_WORDS]) {}
 
     #[inline(always)]
-    fn store<V: Vector>(&mut self, [red, green, blue]: &[Walk<V>; 3], at: usize, mask: V::Mask) {
+    fn store<V: SimdVector>(&mut self, [red, green, blue]: &[Walk<V>; 3], at: usize, mask: V::Mask) {
         // Each component goes to its place in one shift.
         let red = red.value.shift_left(16 - COLOUR_FRACTION_BITS).and(V::splat(0xff_0000));
         let green = green.value.shift_right(COLOUR_FRACTION_BITS - 8).and(V::splat(0xff00));
@@ -261,20 +265,20 @@ impl Paint<TRIANGLE_WORDS> for Gouraud<'_> {
 }
 
 /// Interpolated normals and the object's colour.
-pub(super) struct Phong<'a> {
+pub(super) struct PaintPhong<'a> {
     pub(super) normal: [&'a mut Values; 3],
     pub(super) constant: u32,
     pub(super) colour: &'a mut Values,
 }
 
-impl Paint<PHONG_WORDS> for Phong<'_> {
+impl PaintTriangle<PHONG_WORDS> for PaintPhong<'_> {
     #[inline(always)]
     fn begin(&mut self, words: &[Word; PHONG_WORDS]) {
         self.constant = words[COLOUR_AT] & 0xff_ffff;
     }
 
     #[inline(always)]
-    fn store<V: Vector>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask) {
+    fn store<V: SimdVector>(&mut self, walks: &[Walk<V>; 3], at: usize, mask: V::Mask) {
         let twelve = V::splat((1 << NORMAL_BITS) - 1);
         for (walk, column) in walks.iter().zip(self.normal.iter_mut()) {
             blend(column, at, mask, walk.value.shift_right(NORMAL_FRACTION_BITS).and(twelve));

@@ -24,7 +24,7 @@ pub(super) fn arithmetic(op: ArithmeticOp, a: u64, b: u64, signed: bool) -> u64 
     }
 }
 
-/// a < b.
+/// Whether a < b, as two's complement numbers or as unsigned ones.
 pub(super) const fn less(a: u64, b: u64, signed: bool) -> bool {
     if signed { (a as i64) < b as i64 } else { a < b }
 }

@@ -2,13 +2,13 @@
 
 use super::Lanes;
 use super::columns::Values;
-use super::triangle::{DrawTriangles, Gouraud, Phong};
+use super::triangle::{DrawTriangles, PaintGouraud, PaintPhong};
 use crate::array::Executed;
 use crate::command::{COMPONENTS_AT, Command, CommandKind, PHONG_WORDS, TRIANGLE_WORDS};
-use crate::controller::Bits;
+use crate::controller::FieldBits;
 use crate::isa::{Operand, head, opcode};
 use crate::layout::Layout;
-use crate::simd::{Kernel, Vector};
+use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::{Linear, Word};
 
 /// What identifies a command of `N` words whose operands are whole words: its other words.
@@ -17,19 +17,20 @@ pub(super) struct Template<const N: usize> {
     words: [Word; N],
     /// All ones where a word is no operand, else zero.
     fixed: [Word; N],
-    cost: Cost,
+    cost: CommandCost,
 }
 
 impl<const N: usize> Template<N> {
     /// `None` where the layout cannot hold the command.
-    fn of(kind: CommandKind, layout: &Layout) -> Option<Self> {
+    fn for_command(kind: CommandKind, layout: &Layout) -> Option<Self> {
         let program = Command::blank(kind).program(layout).ok()?;
-        let (mut words, mut fixed) = (Vec::new(), [0; N]);
+        let mut words = Vec::new();
+        let mut fixed = [0; N];
         for instruction in &program {
             *fixed.get_mut(words.len())? = Word::MAX;
             instruction.encode(&mut words);
         }
-        Some(Self { words: words.try_into().ok()?, fixed, cost: Cost::of(kind, layout)? })
+        Some(Self { words: words.try_into().ok()?, fixed, cost: CommandCost::for_command(kind, layout)? })
     }
 
     /// The command at the start of `words`, if it is of this kind, and the words behind it.
@@ -55,20 +56,20 @@ pub(super) struct Templates {
     clear: Option<Template<CLEAR_WORDS>>,
     triangle: Option<Template<TRIANGLE_WORDS>>,
     phong_triangle: Option<Template<PHONG_WORDS>>,
-    large: Vec<(CommandKind, Cost)>,
+    large: Vec<(CommandKind, CommandCost)>,
 }
 
 const CLEAR_WORDS: usize = CommandKind::Clear.words() as usize;
 
 /// What a command adds to [`Executed`].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cost {
+pub(super) struct CommandCost {
     pub(super) instructions: u32,
     pub(super) clocks: u64,
 }
 
-impl Cost {
-    fn of(kind: CommandKind, layout: &Layout) -> Option<Self> {
+impl CommandCost {
+    fn for_command(kind: CommandKind, layout: &Layout) -> Option<Self> {
         let program = Command::blank(kind).program(layout).ok()?;
         let clocks = program.iter().map(|i| u64::from(i.clocks())).sum();
         Some(Self { instructions: program.len() as u32, clocks })
@@ -78,17 +79,17 @@ impl Cost {
 impl Templates {
     pub(super) fn new(layout: &Layout) -> Self {
         Self {
-            clear: Template::of(CommandKind::Clear, layout),
-            triangle: Template::of(CommandKind::Triangle, layout),
-            phong_triangle: Template::of(CommandKind::PhongTriangle, layout),
+            clear: Template::for_command(CommandKind::Clear, layout),
+            triangle: Template::for_command(CommandKind::Triangle, layout),
+            phong_triangle: Template::for_command(CommandKind::PhongTriangle, layout),
             large: [CommandKind::Sphere, CommandKind::PhongSphere, CommandKind::Shade]
                 .into_iter()
-                .filter_map(|kind| Some((kind, Cost::of(kind, layout)?)))
+                .filter_map(|kind| Some((kind, CommandCost::for_command(kind, layout)?)))
                 .collect(),
         }
     }
 
-    pub(super) fn cost(&self, kind: CommandKind) -> Option<Cost> {
+    pub(super) fn cost(&self, kind: CommandKind) -> Option<CommandCost> {
         self.large.iter().find(|(k, _)| *k == kind).map(|(_, cost)| *cost)
     }
 }
@@ -131,23 +132,30 @@ impl Lanes {
 
     fn find_columns(&self) -> Option<ContextColumns> {
         let plan = self.layout.plan();
-        let normal = |i| self.column(self.layout.normal(i)?);
         Some(ContextColumns {
             base: self.controller.base,
             colour: self.column(plan.colour)?,
             z: self.column(plan.z)?,
-            normal: normal(0).zip(normal(1)).zip(normal(2)).map(|((x, y), z)| [x, y, z]),
+            normal: self.normal_columns(),
         })
+    }
+
+    /// Columns of x, y and z of the selected context's normal; `None` where the layout has no normals.
+    fn normal_columns(&self) -> Option<[usize; 3]> {
+        let x = self.column(self.layout.normal(0)?)?;
+        let y = self.column(self.layout.normal(1)?)?;
+        let z = self.column(self.layout.normal(2)?)?;
+        Some([x, y, z])
     }
 
     /// The column that holds exactly this field.
     pub(super) fn column(&self, operand: Operand) -> Option<usize> {
-        let Bits { first, width, .. } = self.controller.bits(operand).ok()?;
+        let FieldBits { first, width, .. } = self.controller.bits(operand).ok()?;
         self.columns.find(first, width)
     }
 
     /// Both constants are operands: other words than a [`crate::Clear`] has may clear to any depth.
-    fn clear(&mut self, words: &[Word], columns: ContextColumns) -> Option<(Cost, usize)> {
+    fn clear(&mut self, words: &[Word], columns: ContextColumns) -> Option<(CommandCost, usize)> {
         let template = self.templates.clear.as_ref()?;
         let (&[_, _, colour, _, depth], behind) = template.split(words)?;
         let far = u32::MAX >> (32 - self.layout.plan().z.width);
@@ -160,7 +168,7 @@ impl Lanes {
         Some((template.cost, 1))
     }
 
-    fn triangles(&mut self, words: &[Word], columns: ContextColumns) -> Option<(Cost, usize)> {
+    fn triangles(&mut self, words: &[Word], columns: ContextColumns) -> Option<(CommandCost, usize)> {
         let template = self.templates.triangle.as_ref()?;
         let [z, colour] = self.columns.many_mut([columns.z, columns.colour])?;
         let drawn = self.vectors.run(DrawTriangles {
@@ -169,14 +177,14 @@ impl Lanes {
             origin: self.controller.origin(),
             z_shift: self.layout.z_shift(),
             z,
-            paint: Gouraud { colour },
+            paint: PaintGouraud { colour },
             enable: &mut self.enable,
         });
         self.controller.hold(linear(words, last(drawn, TRIANGLE_WORDS)?));
         Some((template.cost, drawn))
     }
 
-    fn phong_triangles(&mut self, words: &[Word], columns: ContextColumns) -> Option<(Cost, usize)> {
+    fn phong_triangles(&mut self, words: &[Word], columns: ContextColumns) -> Option<(CommandCost, usize)> {
         let template = self.templates.phong_triangle.as_ref()?;
         let [nx, ny, nz] = columns.normal?;
         let [z, colour, nx, ny, nz] = self.columns.many_mut([columns.z, columns.colour, nx, ny, nz])?;
@@ -186,7 +194,7 @@ impl Lanes {
             origin: self.controller.origin(),
             z_shift: self.layout.z_shift(),
             z,
-            paint: Phong { normal: [nx, ny, nz], constant: 0, colour },
+            paint: PaintPhong { normal: [nx, ny, nz], constant: 0, colour },
             enable: &mut self.enable,
         });
         self.controller.hold(linear(words, last(drawn, PHONG_WORDS)?));
@@ -205,11 +213,11 @@ struct Fill<'a> {
     value: u32,
 }
 
-impl Kernel for Fill<'_> {
+impl VectorKernel for Fill<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Vector>(self) {
+    fn run<V: SimdVector>(self) {
         self.column.0.fill(self.value);
     }
 }

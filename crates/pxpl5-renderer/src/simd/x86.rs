@@ -3,14 +3,14 @@
 //! SAFETY of every block: values of these types are made only in [`super::avx2`] and [`super::avx512`], where the
 //! features are present; loads and stores go through slices whose length has been checked.
 
-use super::Vector;
+use super::SimdVector;
 use std::arch::x86_64::*;
 
-/// Eight lanes.
+/// The eight lanes of a vector of AVX2.
 #[derive(Clone, Copy)]
 pub(super) struct Avx2(__m256i);
 
-impl Vector for Avx2 {
+impl SimdVector for Avx2 {
     const LANES: usize = 8;
     type Mask = __m256i;
 
@@ -132,11 +132,11 @@ impl Vector for Avx2 {
     }
 }
 
-/// Sixteen lanes.
+/// The sixteen lanes of a vector of AVX-512.
 #[derive(Clone, Copy)]
 pub(super) struct Avx512(__m512i);
 
-impl Vector for Avx512 {
+impl SimdVector for Avx512 {
     const LANES: usize = 16;
     type Mask = __mmask16;
 

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test binary uses a part")]
 
-use pxpl5_ring::reference::{Receivers, Traffic};
+use pxpl5_ring::reference::{PlannedMessage, Receivers};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput, RingTiming};
 use pxpl5_sim::{Context, EventQueue, Phase, Span, Time};
 use pxpl5_wire::{Body, Message, NodeId};
@@ -21,6 +21,12 @@ pub(crate) enum Receiver {
         /// Time from the announcement to the answer, one tick at least.
         answers_after: Span,
     },
+}
+
+impl Receiver {
+    const fn is_elastic(&self) -> bool {
+        matches!(self, Self::Elastic)
+    }
 }
 
 pub(crate) const ELASTIC: [Receiver; 64] = [Receiver::Elastic; 64];
@@ -54,7 +60,7 @@ fn number(message: &Message) -> u64 {
 pub(crate) fn run_fast(
     timing: RingTiming,
     receivers: &[Receiver],
-    traffic: &[Traffic],
+    traffic: &[PlannedMessage],
     shuffle: Option<u64>,
 ) -> (Ring, Times) {
     run_prepared(timing, receivers, traffic, shuffle, |_| {})
@@ -64,12 +70,12 @@ pub(crate) fn run_fast(
 pub(crate) fn run_prepared(
     timing: RingTiming,
     receivers: &[Receiver],
-    traffic: &[Traffic],
+    traffic: &[PlannedMessage],
     shuffle: Option<u64>,
     prepare: impl FnOnce(&mut Ring),
 ) -> (Ring, Times) {
-    let elastic = |node: NodeId| matches!(receivers[usize::from(node.0)], Receiver::Elastic);
-    let mut ring = Ring::new(timing, receivers.len() as u16, elastic).expect("valid");
+    let mut ring =
+        Ring::new(timing, receivers.len() as u16, |node| receivers[usize::from(node.0)].is_elastic()).expect("valid");
     prepare(&mut ring);
     let mut queue = EventQueue::new();
     if let Some(seed) = shuffle {
@@ -84,7 +90,8 @@ pub(crate) fn run_prepared(
 
 fn run_queue(mut ring: Ring, mut queue: EventQueue<RingEvent>, receivers: &[Receiver]) -> (Ring, Times) {
     let mut fifos = vec![VecDeque::new(); receivers.len()];
-    let (mut context, mut times) = (Context::default(), Times::default());
+    let mut context = Context::default();
+    let mut times = Times::default();
     while let Some((now, _, event)) = queue.next_event() {
         ring.handle(event, context.at(now));
         for (time, phase, event) in context.drain_events() {
@@ -98,7 +105,7 @@ fn run_queue(mut ring: Ring, mut queue: EventQueue<RingEvent>, receivers: &[Rece
                 RingOutput::Announce { message, first_word_at, word } => {
                     let node = usize::from(message.destination.0);
                     let Receiver::Fifo { opens_after, answers_after, .. } = receivers[node] else { unreachable!() };
-                    let slots = Slots { begins: first_word_at, opens: time + opens_after, word, n: message.words };
+                    let slots = WordSlots { begins: first_word_at, opens: time + opens_after, word, n: message.words };
                     let last_word_at = last_word(receivers[node], &mut fifos[node], slots);
                     times.accepted.insert(number(&message), last_word_at);
                     let accept = RingEvent::Accept { destination: message.destination, last_word_at };
@@ -111,7 +118,7 @@ fn run_queue(mut ring: Ring, mut queue: EventQueue<RingEvent>, receivers: &[Rece
     (ring, times)
 }
 
-struct Slots {
+struct WordSlots {
     begins: Time,
     opens: Time,
     word: Span,
@@ -120,7 +127,7 @@ struct Slots {
 
 /// Entry of the last word by recurrence: a word enters one slot after the one before it, when there is room, when
 /// the receiver is open; `departures` holds when each of the last words leaves the FIFO.
-fn last_word(receiver: Receiver, departures: &mut VecDeque<Time>, slots: Slots) -> Time {
+fn last_word(receiver: Receiver, departures: &mut VecDeque<Time>, slots: WordSlots) -> Time {
     let Receiver::Fifo { words, drain, .. } = receiver else { unreachable!() };
     let mut entered = slots.begins;
     for _ in 0..slots.n {
@@ -154,7 +161,7 @@ impl Stepped {
 
 impl Receivers for Stepped {
     fn is_elastic(&self, destination: NodeId) -> bool {
-        matches!(self.fifos[usize::from(destination.0)].0, Receiver::Elastic)
+        self.fifos[usize::from(destination.0)].0.is_elastic()
     }
 
     fn announced(&mut self, destination: NodeId, at: Time) -> Span {
