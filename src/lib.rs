@@ -84,7 +84,7 @@ pub use pxpl5_scene as scene;
 pub use pxpl5_wire::Eye;
 pub use report::{DefinedStatistics, HeadReport, Report, Statistics};
 pub use savings::Saving;
-pub use slats::Copy;
+pub use slats::CopySchedule;
 pub use snapshot::{Snapshot, SnapshotError};
 pub use tracking;
 pub use traffic::{Traffic, Transfer};

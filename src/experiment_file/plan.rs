@@ -12,7 +12,7 @@ use crate::measure::Measure;
 use crate::pipelines::{Code, Frameless, Jitp, Reading, RenderingControl, Slats, Viewpoint};
 use pphigs::{Binning, Shading};
 use pxpl5_scene::Scene;
-use slats::Copy;
+use slats::CopySchedule;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -112,7 +112,8 @@ impl Program {
 }
 
 pub(super) const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
-pub(super) const COPIES: [(&str, Copy); 3] = [("whole", Copy::Whole), ("split", Copy::Split), ("backup", Copy::Backup)];
+pub(super) const COPIES: [(&str, CopySchedule); 3] =
+    [("whole", CopySchedule::Whole), ("split", CopySchedule::Split), ("backup", CopySchedule::Backup)];
 pub(super) const BINNINGS: [(&str, Binning); 2] = [("all", Binning::All), ("touched", Binning::Touched)];
 pub(super) const CODES: [(&str, Code); 3] =
     [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];

@@ -10,7 +10,7 @@ use pxpl5_gp::{GpTiming, Level, Stage};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{Eye, RegionGrid};
-use slats::{Config, Copy, host, processor};
+use slats::{CopySchedule, SlatsConfig, host, processor};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ impl Code {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slats {
     /// When regions are copied.
-    pub copy: Copy,
+    pub copy: CopySchedule,
     /// Who gets the commands of a clump.
     pub binning: Binning,
     /// The code, where it is not that of the machine's preset.
@@ -50,24 +50,24 @@ impl Slats {
     /// The prototype with the COPY optimisation (TR94).
     #[must_use]
     pub const fn split() -> Self {
-        Self { copy: Copy::Split, binning: Binning::All, code: None }
+        Self { copy: CopySchedule::Split, binning: Binning::All, code: None }
     }
 
     /// The prototype without the COPY optimisation (TR94).
     #[must_use]
     pub const fn whole() -> Self {
-        Self { copy: Copy::Whole, binning: Binning::All, code: None }
+        Self { copy: CopySchedule::Whole, binning: Binning::All, code: None }
     }
 
     /// Whole copies into the other buffer, so that the last complete field stands in for one that is late.
     #[must_use]
     pub const fn backup() -> Self {
-        Self { copy: Copy::Backup, binning: Binning::All, code: None }
+        Self { copy: CopySchedule::Backup, binning: Binning::All, code: None }
     }
 
-    fn config(&self, machine: &Machine, pixels: bool) -> Config {
+    fn config(&self, machine: &Machine, pixels: bool) -> SlatsConfig {
         let ports = machine.ports();
-        Config {
+        SlatsConfig {
             host: ports.host,
             processors: ports.gps.clone(),
             renderers: ports.renderers.clone(),

@@ -5,7 +5,7 @@ use crate::terminal::print;
 use clap::{Args, ValueEnum};
 use pxpl5::levels::{Level, Program};
 use pxpl5::limit::{Goal, Growing, LIMIT_FIELDS, Limit, LimitQuery, STEREO_LIMIT_FIELDS};
-use pxpl5::{Binning, Code, Copy, MachineConfig, RenderingControl, Slats};
+use pxpl5::{Binning, Code, CopySchedule, MachineConfig, RenderingControl, Slats};
 use serde_json::json;
 
 /// Find the most triangles that a pipeline draws in time.
@@ -123,9 +123,9 @@ impl LimitArgs {
             return RenderingControl::stereo().into();
         }
         let copy = match self.copy {
-            CopyArg::Whole => Copy::Whole,
-            CopyArg::Split => Copy::Split,
-            CopyArg::Backup => Copy::Backup,
+            CopyArg::Whole => CopySchedule::Whole,
+            CopyArg::Split => CopySchedule::Split,
+            CopyArg::Backup => CopySchedule::Backup,
         };
         let code = match self.code {
             CodeArg::Of1994 => Code::Of1994,
