@@ -11,7 +11,7 @@ use pxpl5_gp::{Level, Stage};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::Eye;
-use rendering_control::{Config, host, master, slave};
+use rendering_control::{RenderingControlConfig, host, master, slave};
 
 /// The pipeline under PPHIGS (TR94).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,7 +35,7 @@ impl RenderingControl {
         Self { mono: true, shading: Shading::Phong }
     }
 
-    fn config(self, machine: &Machine, pixels: bool) -> Result<Config, ConfigError> {
+    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig, ConfigError> {
         let ports = machine.ports();
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
         if slaves.is_empty() {
@@ -44,7 +44,7 @@ impl RenderingControl {
         let viewport = Viewport::FRAME;
         let picture =
             Picture { viewport, shading: self.shading, binning: Binning::Touched, layout: self.layout(), pixels };
-        Ok(Config {
+        Ok(RenderingControlConfig {
             host: ports.host,
             master: *master,
             slaves: slaves.to_vec(),
