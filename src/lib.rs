@@ -78,7 +78,7 @@ pub use latency::{EyeStatistics, LATENCY_PARTS, LatencyParts, NamedStatistics, P
 pub use machine::{Machine, Ports, RunError};
 pub use measure::{Measure, QUANTITIES, Quantity, Results};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
-pub use pipelines::{Code, Frameless, Jitp, Pipeline, Reading, RenderingControl, Slats, Viewpoint};
+pub use pipelines::{Code, Frameless, Interpolation, Jitp, Pipeline, RenderingControl, Slats, Viewpoint};
 pub use pphigs::Binning;
 pub use pxpl5_scene as scene;
 pub use pxpl5_wire::Eye;

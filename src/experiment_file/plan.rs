@@ -9,7 +9,7 @@ use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
 use crate::head_to_light::FIELDS_WITH_HEAD;
 use crate::levels::{Level, Program};
 use crate::measure::Measure;
-use crate::pipelines::{Code, Frameless, Jitp, Reading, RenderingControl, Slats, Viewpoint};
+use crate::pipelines::{Code, Frameless, Interpolation, Jitp, RenderingControl, Slats, Viewpoint};
 use pphigs::{Binning, Shading};
 use pxpl5_scene::Scene;
 use slats::CopySchedule;
@@ -25,10 +25,10 @@ pub const PIPELINES: [(&str, Program); 11] = [
     ("jitp-field-racing", jitp(Viewpoint::Field, true)),
     ("jitp-scanline", jitp(Viewpoint::Strip, false)),
     ("jitp-scanline-racing", jitp(Viewpoint::Strip, true)),
-    ("jitp-dual-screen", jitp(Viewpoint::Dual(Reading::Screen), false)),
-    ("jitp-dual-screen-racing", jitp(Viewpoint::Dual(Reading::Screen), true)),
-    ("jitp-dual-view", jitp(Viewpoint::Dual(Reading::View), false)),
-    ("jitp-dual-view-racing", jitp(Viewpoint::Dual(Reading::View), true)),
+    ("jitp-dual-screen", jitp(Viewpoint::Dual(Interpolation::Screen), false)),
+    ("jitp-dual-screen-racing", jitp(Viewpoint::Dual(Interpolation::Screen), true)),
+    ("jitp-dual-view", jitp(Viewpoint::Dual(Interpolation::View), false)),
+    ("jitp-dual-view-racing", jitp(Viewpoint::Dual(Interpolation::View), true)),
 ];
 
 const fn jitp(viewpoint: Viewpoint, racing: bool) -> Program {

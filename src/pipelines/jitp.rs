@@ -5,7 +5,7 @@ use crate::config::ConfigError;
 use crate::machine::Machine;
 use crate::observation::{Arrival, LateRegion};
 use image::RgbImage;
-use jitp::{Beam, Config, JitpTiming, Schedule, Transforms, Wanted, host, master, slave};
+use jitp::{Beam, JitpConfig, JitpTiming, Schedule, Transforms, Wanted, host, master, slave};
 use pphigs::Share;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{Level, Stage};
@@ -15,7 +15,7 @@ use pxpl5_wire::{CopyTarget, Eye, FieldParity, RegionGrid, RegionId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use jitp::{Reading, Viewpoint};
+pub use jitp::{Interpolation, Viewpoint};
 
 /// A picture whose strips are drawn for their own moments, or in their own time (JITP).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,12 +39,16 @@ impl Jitp {
     /// All viewpoints, each without and with beam racing.
     #[must_use]
     pub fn all() -> Vec<Self> {
-        let viewpoints =
-            [Viewpoint::Field, Viewpoint::Strip, Viewpoint::Dual(Reading::Screen), Viewpoint::Dual(Reading::View)];
+        let viewpoints = [
+            Viewpoint::Field,
+            Viewpoint::Strip,
+            Viewpoint::Dual(Interpolation::Screen),
+            Viewpoint::Dual(Interpolation::View),
+        ];
         viewpoints.iter().flat_map(|v| [false, true].map(|racing| Self::new(*v, racing))).collect()
     }
 
-    fn config(self, machine: &Machine, pixels: bool) -> Result<Config, ConfigError> {
+    fn config(self, machine: &Machine, pixels: bool) -> Result<JitpConfig, ConfigError> {
         let schedule = Schedule::Beam { viewpoint: self.viewpoint, racing: self.racing, strip_rows: self.strip_rows };
         config(machine, schedule, self.layout(), pixels)
     }
@@ -61,9 +65,9 @@ pub(super) fn config(
     schedule: Schedule,
     layout: Layout,
     pixels: bool,
-) -> Result<Config, ConfigError> {
+) -> Result<JitpConfig, ConfigError> {
     let ports = machine.ports();
-    let config = Config {
+    let config = JitpConfig {
         host: ports.host,
         master: ports.gps[0],
         slaves: ports.gps[1..].to_vec(),
@@ -87,7 +91,7 @@ fn beam(video: Video) -> Beam {
 }
 
 /// Loads host, master and slaves.
-pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &Config) {
+pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let gp = machine.processor(config.host, Level::Foreground);
     let reports = Arc::clone(&setup.reports);
     let program = host(gp, config.clone(), setup.host, move |after| reports(after));
@@ -119,10 +123,10 @@ impl Pipeline for Jitp {
             (Viewpoint::Field, true) => "jitp-field-racing",
             (Viewpoint::Strip, false) => "jitp-scanline",
             (Viewpoint::Strip, true) => "jitp-scanline-racing",
-            (Viewpoint::Dual(Reading::Screen), false) => "jitp-dual-screen",
-            (Viewpoint::Dual(Reading::Screen), true) => "jitp-dual-screen-racing",
-            (Viewpoint::Dual(Reading::View), false) => "jitp-dual-view",
-            (Viewpoint::Dual(Reading::View), true) => "jitp-dual-view-racing",
+            (Viewpoint::Dual(Interpolation::Screen), false) => "jitp-dual-screen",
+            (Viewpoint::Dual(Interpolation::Screen), true) => "jitp-dual-screen-racing",
+            (Viewpoint::Dual(Interpolation::View), false) => "jitp-dual-view",
+            (Viewpoint::Dual(Interpolation::View), true) => "jitp-dual-view-racing",
         }
     }
 
@@ -202,7 +206,7 @@ impl Pipeline for Jitp {
 
     fn source(&self, machine: &Machine, target: &CopyTarget, _: &BTreeMap<u64, u64>) -> Option<Source> {
         let (field, strip) = (target.picture, u32::from(target.region.0) / target.grid.columns());
-        let view = |i: u32| Config::view_number(field, u64::from(i));
+        let view = |i: u32| JitpConfig::view_number(field, u64::from(i));
         Some(match self.viewpoint {
             Viewpoint::Field => Source::View(view(0)),
             Viewpoint::Strip => Source::View(view(strip)),
@@ -210,7 +214,7 @@ impl Pipeline for Jitp {
                 from: view(0),
                 to: view(1),
                 part: self.config(machine, false).ok()?.part(field, strip),
-                on_screen: reading == Reading::Screen,
+                on_screen: reading == Interpolation::Screen,
             },
         })
     }

@@ -8,7 +8,7 @@ mod slats;
 
 pub use frameless::Frameless;
 pub(crate) use jitp::region_at;
-pub use jitp::{Jitp, Reading, Viewpoint};
+pub use jitp::{Interpolation, Jitp, Viewpoint};
 pub use rendering_control::RenderingControl;
 pub use slats::{Code, Slats};
 
