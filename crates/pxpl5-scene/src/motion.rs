@@ -193,7 +193,8 @@ impl Path {
 
 /// Two and a half approaches a lap, each from another side and height.
 fn fly(laps: f64, nearest: f64, farthest: f64) -> DVec3 {
-    let (middle, half) = ((farthest + nearest) / 2.0, (farthest - nearest) / 2.0);
+    let middle = (farthest + nearest) / 2.0;
+    let half = (farthest - nearest) / 2.0;
     let distance = middle + half * trig::cos_turns(2.5 * laps);
     let elevation_deg = 12.0 + 28.0 * trig::sin_turns(1.5 * laps);
     direction(360.0 * laps, elevation_deg) * distance

@@ -176,9 +176,11 @@ impl Scene {
     ///
     /// [`SceneError::Kept`] when `n` is zero or more than there are.
     pub fn truncated(&self, n: usize) -> Result<Self, SceneError> {
-        let (triangles, spheres) = (self.triangles().len(), self.spheres().len());
+        let triangles = self.triangles().len();
+        let spheres = self.spheres().len();
         if n == 0 || n > triangles + spheres {
-            let (scene, expected) = (self.name().to_owned(), triangles + spheres);
+            let scene = self.name().to_owned();
+            let expected = triangles + spheres;
             return Err(SceneError::Kept { scene, expected, found: n });
         }
         let mut parts = self.parts.clone();

@@ -107,7 +107,8 @@ impl Hmd {
     /// [`RangeError`] names the first number out of its range.
     pub fn new(config: HmdConfig) -> Result<Self, RangeError> {
         let c = &config;
-        let (separation, fov) = (c.eye_separation_m, c.horizontal_fov_deg);
+        let separation = c.eye_separation_m;
+        let fov = c.horizontal_fov_deg;
         require((0.0..=1.0).contains(&separation), "eye_separation_m", "0 to 1", separation)?;
         require((1.0..=170.0).contains(&fov), "horizontal_fov_deg", "1 to 170", fov)?;
         for (what, px) in [("width_px", c.width_px), ("height_px", c.height_px)] {
@@ -177,7 +178,8 @@ fn half_width(config: &HmdConfig) -> f64 {
 fn projection(config: &HmdConfig) -> Mat4 {
     let half_width = half_width(config);
     let half_height = half_width * f64::from(config.height_px) / f64::from(config.width_px);
-    let (near, far) = (config.near_m, config.far_m);
+    let near = config.near_m;
+    let far = config.far_m;
     DMat4::from_cols(
         DVec4::new(1.0 / half_width, 0.0, 0.0, 0.0),
         DVec4::new(0.0, 1.0 / half_height, 0.0, 0.0),

@@ -76,7 +76,8 @@ fn apply(file: &mut Vec<u8>, damage: Damage) {
         }
         Damage::Cut(i) => file.truncate(i.index(length)),
         Damage::Repeat(i, j) => {
-            let (i, j) = (i.index(length), j.index(length));
+            let i = i.index(length);
+            let j = j.index(length);
             file.extend_from_within(i.min(j)..i.max(j));
         }
     }

@@ -135,7 +135,8 @@ fn normals_doubles_fractional_colours_and_foreign_elements_of_ply_are_understood
 
 /// A scene as an ASCII PLY file, with all the digits of its numbers.
 fn written(scene: &Scene) -> String {
-    let (vertices, triangles) = (scene.vertices(), scene.triangles());
+    let vertices = scene.vertices();
+    let triangles = scene.triangles();
     let mut text = format!("ply\nformat ascii 1.0\nelement vertex {}\n", vertices.len());
     for name in ["x", "y", "z", "nx", "ny", "nz"] {
         text += &format!("property float {name}\n");

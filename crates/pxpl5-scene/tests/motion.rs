@@ -22,7 +22,8 @@ fn angle_deg(a: &Pose, b: &Pose) -> f64 {
 fn speeds(motion: &HeadMotion, seconds: u64) -> Vec<f64> {
     let samples = 0..seconds * 10;
     let speed = |i: u64| {
-        let (a, b) = (motion.pose(i * SECOND / 10), motion.pose(i * SECOND / 10 + STEP));
+        let a = motion.pose(i * SECOND / 10);
+        let b = motion.pose(i * SECOND / 10 + STEP);
         angle_deg(&a, &b) / 0.01
     };
     samples.map(speed).collect()
@@ -54,7 +55,8 @@ fn the_mean_translation_is_about_that_of_recorded_heads() {
     // Published: 0.37 m/s in the mean; within a quarter of it.
     let motion = swaying(1);
     let moved = (0..6_000).map(|i| {
-        let (a, b) = (motion.pose(i * SECOND / 10), motion.pose(i * SECOND / 10 + STEP));
+        let a = motion.pose(i * SECOND / 10);
+        let b = motion.pose(i * SECOND / 10 + STEP);
         f64::from(a.position.distance(b.position)) / 0.01
     });
     let mean = moved.sum::<f64>() / 6_000.0;
@@ -78,7 +80,8 @@ fn practically_all_energy_of_yaw_lies_below_2_hz_and_95_percent_below_0_14_hz() 
     let yaw: Vec<f64> = yaw.collect();
     let mean = yaw.iter().sum::<f64>() / count as f64;
     let energy = |bin: usize| {
-        let (mut re, mut im) = (0.0, 0.0);
+        let mut re = 0.0;
+        let mut im = 0.0;
         for (i, y) in yaw.iter().enumerate() {
             let turn = std::f64::consts::TAU / count as f64;
             let window = 1.0 - (turn * i as f64).cos();

@@ -152,7 +152,8 @@ fn the_ailerons_of_mig_deflect_oppositely() {
         range.map(|i| posed.vertices()[i].position.y).sum()
     };
     // A quarter and three quarters of their 4 s: full deflection one way and the other.
-    let (early, late) = (1_000_000_000_000, 3_000_000_000_000);
+    let early = 1_000_000_000_000;
+    let late = 3_000_000_000_000;
     assert!(heights(1, early) > heights(1, 0) && heights(2, early) < heights(2, 0));
     // The right one is the mirror image of the left one half a swing later.
     assert!((heights(1, early) - heights(2, late)).abs() < 1e-5);

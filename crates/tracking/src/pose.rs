@@ -69,7 +69,8 @@ mod tests {
 
     #[test]
     fn interpolation_meets_both_ends() {
-        let (a, b) = (Pose::IDENTITY, Pose { position: DVec3::X, orientation: rotation::about_x(1.0) });
+        let a = Pose::IDENTITY;
+        let b = Pose { position: DVec3::X, orientation: rotation::about_x(1.0) };
         assert!(a.interpolate(&b, 0.0).angle_deg(&a) < 1e-12 && a.interpolate(&b, 1.0).angle_deg(&b) < 1e-12);
         assert_eq!(a.interpolate(&b, 0.5).position, DVec3::X * 0.5);
     }

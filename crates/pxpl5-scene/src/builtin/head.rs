@@ -67,7 +67,8 @@ fn push_parallel(mesh: &mut Mesh, down: f64) {
     }
     let mirrored = DVec3::new(-1.0, 1.0, 1.0);
     for meridian in (first + 1..first + HALF).rev() {
-        let (position, normal) = (mesh.positions[meridian], mesh.normals[meridian]);
+        let position = mesh.positions[meridian];
+        let normal = mesh.normals[meridian];
         mesh.push(position * mirrored, normal * mirrored, mesh.colours[meridian]);
     }
 }
@@ -104,7 +105,8 @@ impl Ray {
         let mix = |a: f64, b: f64| a + (b - a) * t;
         let (sin_e, cos_e) = trig::sin_cos_deg(mix(pair[0].2, pair[1].2));
         let turns = round + 0.075 * trig::sin_turns(round);
-        let (sin, cos) = (trig::sin_turns(turns), trig::cos_turns(turns));
+        let sin = trig::sin_turns(turns);
+        let cos = trig::cos_turns(turns);
         let height = mix(pair[0].1, pair[1].1);
         Self {
             origin: DVec3::new(0.0, height, -1.0 + 0.13 * height.min(0.0)),
@@ -115,7 +117,8 @@ impl Ray {
     /// The outermost point of the surface on the ray: steps inwards until inside, then halves the last step.
     fn hit(&self) -> DVec3 {
         let point = |t: f64| self.origin + self.direction * t;
-        let (mut outside, mut inside) = (24.0, 24.0);
+        let mut outside = 24.0;
+        let mut inside = 24.0;
         while inside > 0.0 {
             let d = distance(point(inside));
             if d < 0.0 {
@@ -152,7 +155,8 @@ fn colour(point: DVec3) -> Colour {
     layers.into_iter().fold(SKIN, |under, (over, outside, edge)| {
         let share = (0.5 - outside / edge / 2.0).clamp(0.0, 1.0);
         [0, 1, 2].map(|k| {
-            let (under, over) = (f64::from(under[k]), f64::from(over[k]));
+            let under = f64::from(under[k]);
+            let over = f64::from(over[k]);
             (under + (over - under) * share + 0.5) as u8
         })
     })

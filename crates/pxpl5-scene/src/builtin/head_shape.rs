@@ -119,7 +119,8 @@ fn ellipsoid(p: DVec3, centre: DVec3, radii: DVec3) -> f64 {
 
 /// Balls of radius `from` to `to` along a segment.
 fn capsule(p: DVec3, a: DVec3, b: DVec3, from: f64, to: f64) -> f64 {
-    let (ap, ab) = (p - a, b - a);
+    let ap = p - a;
+    let ab = b - a;
     let t = (ap.dot(ab) / ab.length_squared()).clamp(0.0, 1.0);
     (ap - ab * t).length() - (from + (to - from) * t)
 }

@@ -81,7 +81,8 @@ fn fly_through() -> HeadMotion {
 fn ring(z: f64, y: f64, width: f64, height: f64) -> Vec<DVec3> {
     let point = |i: usize| {
         let turns = (i as f64 + 0.5) / SIDES as f64;
-        let (x, up) = (trig::cos_turns(turns), trig::sin_turns(turns));
+        let x = trig::cos_turns(turns);
+        let up = trig::sin_turns(turns);
         DVec3::new(x * width, y + up * height, z)
     };
     (0..SIDES).map(point).collect()
@@ -144,7 +145,8 @@ impl Cut {
 
     /// The same with a blunt trailing edge.
     fn blunt(&self) -> Vec<DVec3> {
-        let (middle, edge) = (self.thickest(), self.thickness * 0.3);
+        let middle = self.thickest();
+        let edge = self.thickness * 0.3;
         vec![self.leading, middle + self.thickness, self.trailing + edge, self.trailing - edge, middle - self.thickness]
     }
 }
@@ -239,7 +241,8 @@ fn canopy(solid: &mut Solid) {
         (0..5).map(point).collect()
     };
     let arches = [(1.0, 0.62, 0.42, 0.62), (2.1, 0.58, 0.48, 0.74), (3.0, 0.56, 0.44, 0.62)].map(arch);
-    let (back, front) = (DVec3::new(0.0, 0.88, -0.6), DVec3::new(0.0, 0.62, 3.9));
+    let back = DVec3::new(0.0, 0.88, -0.6);
+    let front = DVec3::new(0.0, 0.62, 3.9);
     let mut part = Mesh::default();
     for &point in arches.iter().flatten() {
         part.push(point, DVec3::ZERO, GLASS);

@@ -66,7 +66,9 @@ fn backbone(atoms: &[Atom], shift: DVec3) -> Vec<Residue> {
         let named = atoms.iter().filter(|a| a.name == name);
         named.map(|a| a.position + shift).collect()
     };
-    let (alphas, carbons, oxygens) = (of("CA"), of("C"), of("O"));
+    let alphas = of("CA");
+    let carbons = of("C");
+    let oxygens = of("O");
     let mut across = DVec3::X;
     let residue = |(i, &alpha): (usize, &DVec3)| {
         let mut direction = (oxygens[i] - carbons[i]).normalize_or(across);
@@ -116,7 +118,8 @@ fn section(chain: &[Residue], place: f64) -> [DVec3; 4] {
     let across = spline([0, 1, 2, 3].map(|k| near(k).across), t);
     let across = (across - forward * across.dot(forward)).normalize_or(DVec3::X);
     let width = near(1).width + (near(2).width - near(1).width) * t;
-    let (wide, thick) = (across * width, forward.cross(across) * 0.3);
+    let wide = across * width;
+    let thick = forward.cross(across) * 0.3;
     [wide + thick, thick - wide, -wide - thick, wide - thick].map(|corner| centre + corner)
 }
 

@@ -9,7 +9,7 @@ const LENGTH_TOLERANCE: f64 = 1e-3;
 /// What became of the reports.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Used.
+    /// Given to the filters.
     pub accepted: u64,
     /// Rejected: NaN, infinite, or not a unit quaternion.
     pub malformed: u64,

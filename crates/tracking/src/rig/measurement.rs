@@ -20,13 +20,13 @@ pub struct Pass {
 /// A latency over all passes, seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Latency {
-    /// Mean.
+    /// Mean over the passes, seconds.
     pub mean_s: f64,
-    /// Standard deviation.
+    /// Standard deviation over the passes (divided by their number), seconds.
     pub deviation_s: f64,
-    /// Least.
+    /// That of the fastest pass, seconds.
     pub least_s: f64,
-    /// Greatest.
+    /// That of the slowest pass, seconds.
     pub greatest_s: f64,
 }
 

@@ -1,7 +1,7 @@
 /// A step on a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// When.
+    /// Instant of the step, ps of simulated time.
     pub t_ps: u64,
     /// Level from then on.
     pub high: bool,
