@@ -41,7 +41,7 @@ fn motions(scene: &Scene, angles: &[f64]) -> Result<Vec<(HeadMotion, u64)>, Box<
     }
     let (target, radius) = scene.bounding_sphere();
     let distance = f64::from(radius) * 2.2;
-    let side = |pair: &[f64]| {
+    let motions = angles.chunks_exact(2).map(|pair| {
         let azimuth = pair[0].to_radians();
         let elevation = pair[1].to_radians();
         let arm = Vec3::new(
@@ -51,8 +51,8 @@ fn motions(scene: &Scene, angles: &[f64]) -> Result<Vec<(HeadMotion, u64)>, Box<
         );
         let eye = target + arm;
         HeadMotion::new(Path::Still { eye, target }, Sway::none()).map(|m| (m, 0))
-    };
-    Ok(angles.chunks_exact(2).map(side).collect::<Result<_, _>>()?)
+    });
+    Ok(motions.collect::<Result<_, _>>()?)
 }
 
 struct Canvas {
@@ -118,11 +118,9 @@ impl Canvas {
         for y in low.y.max(0.0) as i32..=(high.y.min(HEIGHT as f32 - 1.0)) as i32 {
             for x in low.x.max(0.0) as i32..=(high.x.min(WIDTH as f32 - 1.0)) as i32 {
                 let at = glam::Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-                let part =
-                    |i: usize, j: usize| (p[j].truncate() - p[i].truncate()).perp_dot(at - p[i].truncate()) / area;
-                let a = part(1, 2);
-                let b = part(2, 0);
-                let c = part(0, 1);
+                // Barycentric coordinates: areas over the sides that lie opposite to the corners.
+                let [a, b, c] = [(1, 2), (2, 0), (0, 1)]
+                    .map(|(i, j)| (p[j].truncate() - p[i].truncate()).perp_dot(at - p[i].truncate()) / area);
                 if a >= 0.0 && b >= 0.0 && c >= 0.0 {
                     let distance = 1.0 / (p[0].z * a + p[1].z * b + p[2].z * c);
                     self.plot(x, y, distance, colours[0] * a + colours[1] * b + colours[2] * c);
