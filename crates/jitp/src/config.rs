@@ -45,7 +45,7 @@ pub enum Schedule {
     Roam {
         /// Width and height of a block, 4 to 128 pixels.
         block: u32,
-        /// Blocks of one order.
+        /// Number of blocks that the master gives a slave in one order.
         batch: u32,
         /// Which block comes at a step.
         order: BlockOrder,
@@ -61,7 +61,7 @@ pub struct Beam(Arc<dyn Fn(u64, u32, u32) -> Time + Send + Sync>);
 pub struct BlockOrder(Arc<dyn Fn(u64) -> RegionId + Send + Sync>);
 
 impl Beam {
-    /// The beam of some video.
+    /// A beam that is at (field, row of the field, pixel) when `when` says.
     pub fn new(when: impl Fn(u64, u32, u32) -> Time + Send + Sync + 'static) -> Self {
         Self(Arc::new(when))
     }
@@ -74,7 +74,7 @@ impl Beam {
 }
 
 impl BlockOrder {
-    /// An order of the blocks.
+    /// An order in which `block` says what comes at a step, from 0.
     pub fn new(block: impl Fn(u64) -> RegionId + Send + Sync + 'static) -> Self {
         Self(Arc::new(block))
     }
@@ -107,7 +107,7 @@ pub struct Wanted {
     pub shown_at: Time,
 }
 
-/// The boards and the variant.
+/// The boards that take part, and the variant that they run.
 #[derive(Clone, Debug)]
 pub struct JitpConfig {
     /// Node of the host interface, which passes the tracker's reports on.
@@ -120,15 +120,15 @@ pub struct JitpConfig {
     pub renderers: Vec<NodeId>,
     /// Node of the frame buffer: the one of a mono display.
     pub frame_buffer: NodeId,
-    /// What is drawn when.
+    /// The order in which regions are drawn, and for which moments.
     pub schedule: Schedule,
-    /// Where the beam is.
+    /// When the beam is where.
     pub beam: Beam,
-    /// Division of pixel memory.
+    /// How the bits of pixel memory are divided among contexts.
     pub layout: Layout,
-    /// Whether somebody may want pixels.
+    /// Whether somebody may want pixels: without it no command words are made, and all times stay the same.
     pub pixels: bool,
-    /// Times of this firmware.
+    /// Times of this firmware beside those of the processor.
     pub timing: JitpTiming,
 }
 
@@ -144,7 +144,7 @@ pub enum JitpConfigError {
     Size {
         /// Smallest and largest number of lines.
         expected: (u32, u32),
-        /// What was asked for.
+        /// The number of lines asked for.
         found: u32,
     },
 }
@@ -176,7 +176,7 @@ impl JitpConfig {
         field * VIEWS_PER_FIELD + strip
     }
 
-    /// How the picture is cut.
+    /// How a field (strips) or a frame (blocks) is cut into regions.
     #[must_use]
     pub fn grid(&self) -> RegionGrid {
         match self.schedule {

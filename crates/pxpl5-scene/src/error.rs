@@ -108,9 +108,9 @@ pub enum LoadError {
         at: Place,
         /// What is indexed: "vertices" or "normals".
         what: &'static str,
-        /// How many there are.
+        /// How many of them the file has up to that place.
         expected: usize,
-        /// The index as written.
+        /// The index as the file has it.
         found: i64,
     },
     /// A coordinate is not a number, infinite, or beyond [`crate::config::MAX_COORDINATE`].
@@ -142,7 +142,7 @@ pub enum SceneError {
     /// No built-in scene has this name.
     #[error("scene {found:?}: expected one of {valid}; the nearest is {nearest:?}")]
     UnknownScene {
-        /// The name asked for.
+        /// The name asked for, cut to 40 characters.
         found: String,
         /// The valid name with the fewest edits to it.
         nearest: String,

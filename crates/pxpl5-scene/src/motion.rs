@@ -18,45 +18,45 @@ const LIMIT: f64 = 1e9;
 pub enum Path {
     /// Stands at `eye` and looks at `target`.
     Still {
-        /// Place of the head.
+        /// Place of the head in the world, metres.
         eye: Vec3,
-        /// What it looks at.
+        /// The point that it looks at, metres, world coordinates.
         target: Vec3,
     },
     /// Stands at `eye`, looks along -z at time 0 and turns left (about +y) at a steady rate.
     Pan {
-        /// Place of the head.
+        /// Place of the head in the world, metres.
         eye: Vec3,
-        /// Rate of turn; negative turns right.
+        /// Rate of turn, degrees per second; negative turns right.
         deg_per_s: f64,
     },
     /// Circles round `target` in a level plane and looks at it; at time 0 it is on the +z side.
     Orbit {
-        /// What it looks at.
+        /// The point that it looks at, metres, world coordinates.
         target: Vec3,
-        /// Radius of the circle.
+        /// Radius of the circle, metres.
         distance: f64,
-        /// Height above the target.
+        /// Height of the circle above the target, metres.
         height: f64,
-        /// Rate of the circle; positive goes towards +x first.
+        /// Rate of the circle, degrees per second; positive goes towards +x first.
         deg_per_s: f64,
     },
     /// Looks at `target` from the +z side and leans and walks to and fro around it as [`Sway`] says.
     Look {
-        /// What it looks at.
+        /// The point that it looks at, metres, world coordinates.
         target: Vec3,
-        /// Mean distance from it.
+        /// Mean distance from the target, metres.
         distance: f64,
     },
     /// Flies round `target` and looks at it, near and far by turns: five approaches in two laps.
     FlyThrough {
-        /// What it looks at.
+        /// The point that it looks at, metres, world coordinates.
         target: Vec3,
-        /// Least distance from it.
+        /// Least distance from the target, metres.
         nearest: f64,
-        /// Greatest distance from it.
+        /// Greatest distance from the target, metres.
         farthest: f64,
-        /// Time of a lap, seconds.
+        /// Time of one lap round the target, seconds.
         lap_s: f64,
     },
 }

@@ -8,12 +8,12 @@ use crate::edit::{Edit, Hinge};
 use crate::error::SceneError;
 use crate::motion::HeadMotion;
 
-/// A corner of triangles.
+/// A corner that triangles share: place, normal and colour in one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
     /// Place in the coordinates of its structure, metres.
     pub position: Vec3,
-    /// Outward, of unit length.
+    /// Direction outwards from the surface, of unit length.
     pub normal: Vec3,
     /// Diffuse red, green, blue, 8 bits each.
     pub colour: [u8; 3],

@@ -44,7 +44,7 @@ impl View {
     }
 }
 
-/// Numbers of a head-mounted display.
+/// Numbers of a head-mounted display, in metres, degrees and pixels; checked by [`Hmd::new`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HmdConfig {

@@ -4,7 +4,7 @@ use pphigs::{Picture, Share};
 use pxpl5_geometry::Viewport;
 use pxpl5_wire::{CopyTarget, Eye, Lines, NodeId, RegionGrid, RegionId};
 
-/// The boards and the kind of picture.
+/// The boards that take part, and the kind of picture that they make.
 #[derive(Clone, Debug)]
 pub struct RenderingControlConfig {
     /// Node of the host interface, which sends views and edits.

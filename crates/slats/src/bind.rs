@@ -24,7 +24,7 @@ impl BoundRegion {
     }
 }
 
-/// All regions of both eyes.
+/// All regions of both eyes, each bound to a renderer for the whole run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Binding {
     regions: Vec<BoundRegion>,

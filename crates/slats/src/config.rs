@@ -7,10 +7,10 @@ use pxpl5_renderer::Layout;
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, RegionGrid};
 use thiserror::Error;
 
-/// When regions are copied.
+/// When the regions of a field are copied to the frame buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CopySchedule {
-    /// All before the retrace.
+    /// All regions before the retrace.
     Whole,
     /// Top regions before the retrace, bottom regions right after it (the COPY optimisation).
     Split,
@@ -27,7 +27,7 @@ impl CopySchedule {
     }
 }
 
-/// The boards and the variant.
+/// The boards that take part, and the variant of Slats that they run.
 #[derive(Clone, Debug)]
 pub struct SlatsConfig {
     /// Node of the host interface, which sends the viewing transforms.
@@ -38,13 +38,13 @@ pub struct SlatsConfig {
     pub renderers: Vec<NodeId>,
     /// Nodes of the left and the right eye's frame buffer.
     pub frame_buffers: [NodeId; 2],
-    /// When regions are copied.
+    /// When the regions of a field are copied.
     pub copy: CopySchedule,
     /// Who gets the commands of a clump.
     pub binning: Binning,
-    /// Division of pixel memory.
+    /// How the bits of pixel memory are divided among contexts.
     pub layout: Layout,
-    /// Whether somebody may want pixels.
+    /// Whether somebody may want pixels: without it no command words are made, and all times stay the same.
     pub pixels: bool,
 }
 

@@ -56,7 +56,7 @@ impl Pose {
         rotation::angle_deg(self.orientation, other.orientation)
     }
 
-    /// Whether every number is finite.
+    /// Whether all seven numbers are finite: neither NaN nor infinite.
     pub fn is_finite(&self) -> bool {
         self.position.is_finite() && self.orientation.is_finite()
     }

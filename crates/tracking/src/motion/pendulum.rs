@@ -39,7 +39,7 @@ impl Pendulum {
         Self::new(PENDULUM_ARM.value, PENDULUM_AMPLITUDE.value).expect("the table's values are in range")
     }
 
-    /// Exact period in seconds.
+    /// Exact period of the swing, seconds.
     pub fn period_s(&self) -> f64 {
         self.period_s
     }

@@ -115,7 +115,7 @@ pub enum LoadError {
         line: u64,
         /// Name of the column, as in the header.
         column: &'static str,
-        /// Text of the field.
+        /// Text of the field, as it was read.
         found: String,
     },
     /// A time stamp is negative or beyond 10^7 s.

@@ -33,7 +33,7 @@ impl PredictorKind {
     pub const ALL: [Self; 4] = [Self::None, Self::ConstantVelocity, Self::ConstantAcceleration, Self::Kalman];
 }
 
-/// Settings of a predictor.
+/// Settings of a predictor: the filter, and what it believes about the noise of reports and motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PredictorConfig {
