@@ -81,7 +81,7 @@ pub use slats::CopySchedule;
 /// what travels on the ring.
 pub mod firmware {
     pub use pphigs::{
-        Around, Binning, DisplayList, EyeView, FrameView, Pass, Picture, Shading, Share, region_messages,
+        Binning, DisplayList, EyeView, FrameView, Pass, Picture, RegionEnvelope, Shading, Share, region_messages,
     };
     pub use pxpl5_geometry::Viewport;
     pub use pxpl5_gp::{Edge, Fault, Gp, GpTiming, HostTiming, Level, Mark, Program, Received, Stage, Ticket};

@@ -13,8 +13,8 @@ use pxpl5::tracking::rig::PendulumRig;
 use pxpl5::tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, seconds};
 use pxpl5::tracking::tracker::{Fault, TrackerConfig, TrackerModel};
 use pxpl5::{
-    Budget, Experiment, Frameless, Head, Jitp, MachineConfig, Outcome, Pipeline, Pixels, Reading, RenderingControl,
-    Slats, Viewpoint,
+    Budget, Experiment, Frameless, Head, Interpolation, Jitp, MachineConfig, Outcome, Pipeline, Pixels,
+    RenderingControl, Slats, Viewpoint,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -158,7 +158,10 @@ fn j5_scanline_rendering_takes_240_transforms_a_field() {
         outcome.head().expect("a head").sampled().iter().map(|s| s.number).filter(of_field).count()
     };
     // The paper counts about 256 lines; 240 of a field are visible.
-    assert_eq!((views(Viewpoint::Strip), views(Viewpoint::Field), views(Viewpoint::Dual(Reading::View))), (240, 1, 2));
+    assert_eq!(
+        (views(Viewpoint::Strip), views(Viewpoint::Field), views(Viewpoint::Dual(Interpolation::View))),
+        (240, 1, 2)
+    );
 }
 
 #[test]
@@ -173,7 +176,7 @@ fn places_on_the_screen_are_off_at_the_edge_and_positions_in_the_view_are_not() 
         let dual = errors(viewpoint);
         std::array::from_fn::<f64, 3, _>(|i| (dual[i] - strip[i]).length())
     };
-    let (screen, view) = (off(Viewpoint::Dual(Reading::Screen)), off(Viewpoint::Dual(Reading::View)));
+    let (screen, view) = (off(Viewpoint::Dual(Interpolation::Screen)), off(Viewpoint::Dual(Interpolation::View)));
     println!("dual display list, left edge, middle, right edge: screen {screen:?} view {view:?}");
     // tan is interpolated over the 15.24 ms of the scan: f x turn^2 / 8 x 2 tan 30 / cos^2 30.
     let turn = (PAN * 239.82 * 4004.0 / 63.0 * 1e-6).to_radians();
@@ -412,7 +415,7 @@ fn the_order_of_simultaneous_events_decides_nothing() {
         let jitp = |viewpoint, racing| Arc::new(Jitp::new(viewpoint, racing)) as Arc<dyn Pipeline>;
         [
             hash(jitp(Viewpoint::Strip, true), seed),
-            hash(jitp(Viewpoint::Dual(Reading::Screen), false), seed),
+            hash(jitp(Viewpoint::Dual(Interpolation::Screen), false), seed),
             hash(Arc::new(Frameless::new()), seed),
         ]
     };

@@ -7,13 +7,14 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, RegionGrid, RegionId};
 use std::fmt;
 use std::sync::Arc;
+use thiserror::Error;
 
-/// How the places of a vertex at the begin and at the end of a field are interpolated.
+/// Between what the vertices of a dual display list are interpolated, from the begin to the end of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Reading {
-    /// Places on the screen.
+pub enum Interpolation {
+    /// Between the vertex's two places on the screen, after the divide by depth.
     Screen,
-    /// Positions in the view, before the divide.
+    /// Between the vertex's two positions in the view, before the divide by depth.
     View,
 }
 
@@ -25,7 +26,7 @@ pub enum Viewpoint {
     /// One for each strip: when its middle is scanned.
     Strip,
     /// Between the first and the last pixel of the field.
-    Dual(Reading),
+    Dual(Interpolation),
 }
 
 /// The order in which regions are drawn.
@@ -44,7 +45,7 @@ pub enum Schedule {
     Roam {
         /// Width and height of a block, 4 to 128 pixels.
         block: u32,
-        /// Blocks of one order.
+        /// Number of blocks that the master gives a slave in one order.
         batch: u32,
         /// Which block comes at a step.
         order: BlockOrder,
@@ -60,7 +61,7 @@ pub struct Beam(Arc<dyn Fn(u64, u32, u32) -> Time + Send + Sync>);
 pub struct BlockOrder(Arc<dyn Fn(u64) -> RegionId + Send + Sync>);
 
 impl Beam {
-    /// The beam of some video.
+    /// A beam that is at (field, row of the field, pixel) when `when` says.
     pub fn new(when: impl Fn(u64, u32, u32) -> Time + Send + Sync + 'static) -> Self {
         Self(Arc::new(when))
     }
@@ -73,7 +74,7 @@ impl Beam {
 }
 
 impl BlockOrder {
-    /// An order of the blocks.
+    /// An order in which `block` says what comes at a step, from 0.
     pub fn new(block: impl Fn(u64) -> RegionId + Send + Sync + 'static) -> Self {
         Self(Arc::new(block))
     }
@@ -98,7 +99,7 @@ impl fmt::Debug for BlockOrder {
 /// What the master asks of the tracking data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
-    /// Number that the view gets: see [`Config::view_number`].
+    /// Number that the view gets: see [`JitpConfig::view_number`].
     pub number: u64,
     /// Reports that the host had by then have reached the master.
     pub known: Time,
@@ -106,78 +107,67 @@ pub struct Wanted {
     pub shown_at: Time,
 }
 
-/// The boards and the variant.
+/// The boards that take part, and the variant that they run.
 #[derive(Clone, Debug)]
-pub struct Config {
-    /// The host interface.
+pub struct JitpConfig {
+    /// Node of the host interface, which passes the tracker's reports on.
     pub host: NodeId,
-    /// The master GP.
+    /// Node of the GP that follows the beam and orders strips or blocks.
     pub master: NodeId,
-    /// The slave GPs, at least one.
+    /// Nodes of the slave GPs, at least one.
     pub slaves: Vec<NodeId>,
-    /// The renderers, at least one.
+    /// Nodes of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// The frame buffer.
+    /// Node of the frame buffer: the one of a mono display.
     pub frame_buffer: NodeId,
-    /// What is drawn when.
+    /// The order in which regions are drawn, and for which moments.
     pub schedule: Schedule,
-    /// Where the beam is.
+    /// When the beam is where.
     pub beam: Beam,
-    /// Division of pixel memory.
+    /// How the bits of pixel memory are divided among contexts.
     pub layout: Layout,
-    /// Whether somebody may want pixels.
+    /// Whether somebody may want pixels: without it no command words are made, and all times stay the same.
     pub pixels: bool,
-    /// Times of this firmware.
+    /// Times of this firmware beside those of the processor.
     pub timing: JitpTiming,
 }
 
 /// A machine or variant that cannot run.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
-pub enum ConfigError {
+pub enum JitpConfigError {
     /// There is no slave.
+    #[error("just-in-time pixels need a master and at least one slave GP, found no slave")]
     NoSlave,
     /// A strip or block has no possible size.
+    #[error("strips or blocks must have {} to {} lines, found {found}", expected.0, expected.1)]
     Size {
-        /// Smallest and largest.
+        /// Smallest and largest number of lines.
         expected: (u32, u32),
-        /// What was asked for.
+        /// The number of lines asked for.
         found: u32,
     },
 }
 
-impl fmt::Display for ConfigError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoSlave => f.write_str("just-in-time pixels need a master and at least one slave GP, found no slave"),
-            Self::Size { expected: (low, high), found } => {
-                write!(f, "strips or blocks must have {low} to {high} lines, found {found}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for ConfigError {}
-
 /// View numbers of a field: one for each strip, at most 240.
 const VIEWS_PER_FIELD: u64 = 256;
 
-impl Config {
+impl JitpConfig {
     /// Checks the numbers.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] says what was expected and what was found.
-    pub fn check(&self) -> Result<(), ConfigError> {
+    /// [`JitpConfigError`] says what was expected and what was found.
+    pub fn check(&self) -> Result<(), JitpConfigError> {
         if self.slaves.is_empty() {
-            return Err(ConfigError::NoSlave);
+            return Err(JitpConfigError::NoSlave);
         }
         let (found, expected) = match self.schedule {
             Schedule::Beam { strip_rows, .. } => (strip_rows, (1, 128)),
             Schedule::Roam { block, .. } => (block, (4, 128)),
         };
         let fits = (expected.0..=expected.1).contains(&found);
-        if fits { Ok(()) } else { Err(ConfigError::Size { expected, found }) }
+        if fits { Ok(()) } else { Err(JitpConfigError::Size { expected, found }) }
     }
 
     /// The number of the view of a strip, of the whole field (strip 0), or of the begin (0) and the end (1) of a field.
@@ -186,7 +176,7 @@ impl Config {
         field * VIEWS_PER_FIELD + strip
     }
 
-    /// How the picture is cut.
+    /// How a field (strips) or a frame (blocks) is cut into regions.
     #[must_use]
     pub fn grid(&self) -> RegionGrid {
         match self.schedule {
@@ -214,8 +204,8 @@ impl Config {
     }
 
     pub(crate) fn target(&self, picture: u64, region: RegionId) -> CopyTarget {
-        let (frame_buffer, grid, lines) = (self.frame_buffer, self.grid(), self.picture(picture).1);
-        CopyTarget { frame_buffer, buffer: 0, lines, grid, region, picture }
+        let (_, lines) = self.picture(picture);
+        CopyTarget { frame_buffer: self.frame_buffer, buffer: 0, lines, grid: self.grid(), region, picture }
     }
 
     pub(crate) fn renderer_of(&self, region: RegionId) -> NodeId {

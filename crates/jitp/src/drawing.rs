@@ -1,6 +1,6 @@
 //! A display list as it is seen at one moment, or between two.
 
-use crate::config::Reading;
+use crate::config::Interpolation;
 use glam::Mat4;
 use pphigs::{Counts, DisplayList, EyeView, FrameView, ModelEdit, Placed, gouraud_sphere, place_all};
 use pxpl5_geometry::{LitColours, Outline, ScreenSphere, ScreenTriangle, SetupStats, TriangleEnds, Viewport};
@@ -27,8 +27,8 @@ pub(crate) struct Drawing {
     list: Arc<DisplayList>,
     viewport: Viewport,
     placed: Vec<Placed>,
-    /// The places at T0 and T1, the part of the way between, and which of the two readings holds.
-    ends: Option<(Ends, f64, Reading)>,
+    /// The places at T0 and T1, the part of the way between, and between what is interpolated.
+    ends: Option<(Ends, f64, Interpolation)>,
     /// Made when first asked for; the strips of a conventional picture share them.
     outlines: OnceLock<Vec<Outline>>,
 }
@@ -65,49 +65,46 @@ fn triangle_ends(
     viewport: Viewport,
 ) -> Vec<Vec<Option<TriangleEnds>>> {
     let placed = place_all(list, from, 0, viewport).into_iter().zip(place_all(list, to, 0, viewport));
-    let of_structure = |(from, to): (Placed, Placed)| {
-        let numbers = from.structure.triangles.clone();
-        let ends = |number| from.transform.as_ref()?.ends(to.transform.as_ref()?, &list.corners(number));
-        numbers.map(ends).collect()
-    };
-    placed.map(of_structure).collect()
+    placed.map(|(from, to)| structure_ends(list, &from, &to)).collect()
+}
+
+/// The triangles of one structure in both views; `None` where one has no place on the screen in either.
+fn structure_ends(list: &DisplayList, from: &Placed, to: &Placed) -> Vec<Option<TriangleEnds>> {
+    let numbers = from.structure.triangles.clone();
+    numbers.map(|number| from.transform.as_ref()?.ends(to.transform.as_ref()?, &list.corners(number))).collect()
 }
 
 impl Drawing {
     /// As one view shows it.
-    pub(crate) fn of(list: &Arc<DisplayList>, view: &FrameView, viewport: Viewport) -> Self {
+    pub(crate) fn from_view(list: &Arc<DisplayList>, view: &FrameView, viewport: Viewport) -> Self {
         let placed = place_all(list, view, 0, viewport);
         Self { list: Arc::clone(list), viewport, placed, ends: None, outlines: OnceLock::new() }
     }
 
     /// At the part `s` of the way between two views.
-    pub(crate) fn between(list: &Arc<DisplayList>, ends: &Ends, s: f64, reading: Reading, viewport: Viewport) -> Self {
+    pub(crate) fn between(
+        list: &Arc<DisplayList>,
+        ends: &Ends,
+        s: f64,
+        interpolation: Interpolation,
+        viewport: Viewport,
+    ) -> Self {
         let view = interpolated(&ends.views[0], &ends.views[1], s);
-        Self { ends: Some((ends.clone(), s, reading)), ..Self::of(list, &view, viewport) }
+        Self { ends: Some((ends.clone(), s, interpolation)), ..Self::from_view(list, &view, viewport) }
     }
 
     /// How many primitives meet each window, and how many meet any.
     pub(crate) fn count(&self, windows: &[Window]) -> (Vec<Counts>, Counts) {
-        let (mut each, mut any) = (vec![Counts::default(); windows.len()], Counts::default());
-        let lines = |end: usize| windows.iter().map(move |w| w.lines[end] * SUBPIXELS);
-        let span = [lines(0).min().unwrap_or_default(), lines(1).max().unwrap_or_default() + SUBPIXELS];
-        let mut tally_outline = |outline: &Outline| {
-            if outline.y.iter().all(|y| *y < span[0]) || outline.y.iter().all(|y| *y > span[1]) {
-                return;
-            }
-            let meets = |w: &Window| outline.meets(w.across, w.lines);
-            any.triangles += u32::from(tally(windows, &mut each, &meets, |counts| &mut counts.triangles));
-        };
+        let mut tallies = Tallies::new(windows);
         if self.ends.is_some() {
-            self.each_outline([span[0] - CURVED, span[1] + CURVED], tally_outline);
+            let [top, bottom] = tallies.span;
+            self.each_outline([top - CURVED, bottom + CURVED], |outline| tallies.add_outline(outline));
         } else {
-            self.outlines.get_or_init(|| self.make_outlines()).iter().for_each(&mut tally_outline);
+            let outlines = self.outlines.get_or_init(|| self.make_outlines());
+            outlines.iter().for_each(|outline| tallies.add_outline(outline));
         }
-        self.spheres(|sphere, _| {
-            let meets = |w: &Window| sphere.meets(w.across, w.lines);
-            any.spheres += u32::from(tally(windows, &mut each, &meets, |counts| &mut counts.spheres));
-        });
-        (each, any)
+        self.spheres(|sphere, _| tallies.add_sphere(sphere));
+        (tallies.each, tallies.any)
     }
 
     fn make_outlines(&self) -> Vec<Outline> {
@@ -124,7 +121,7 @@ impl Drawing {
             for (k, number) in place.structure.triangles.clone().enumerate() {
                 match self.ends_of(i, k) {
                     Some((ends, ..)) if ends.y_range()[0] > bottom || ends.y_range()[1] < top => {}
-                    Some((ends, s, Reading::Screen)) => transform.outline_between(ends, s, &mut stats, &mut sink),
+                    Some((ends, s, Interpolation::Screen)) => transform.outline_between(ends, s, &mut stats, &mut sink),
                     _ => transform.outlines(&self.list.corners(number), &mut stats, &mut sink),
                 }
             }
@@ -132,9 +129,9 @@ impl Drawing {
     }
 
     /// The ends of a structure's k-th triangle, where it has a place on the screen at both.
-    fn ends_of(&self, structure: usize, k: usize) -> Option<(&TriangleEnds, f64, Reading)> {
-        let (ends, s, reading) = self.ends.as_ref()?;
-        Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *s, *reading))
+    fn ends_of(&self, structure: usize, k: usize) -> Option<(&TriangleEnds, f64, Interpolation)> {
+        let (ends, s, interpolation) = self.ends.as_ref()?;
+        Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *s, *interpolation))
     }
 
     fn spheres(&self, mut sink: impl FnMut(&ScreenSphere, &Placed)) {
@@ -153,18 +150,16 @@ impl Drawing {
         for (i, place) in self.placed.iter().enumerate() {
             let Some(transform) = &place.transform else { continue };
             for (k, number) in place.structure.triangles.clone().enumerate() {
-                let (triangle, mut setup) = (self.list.triangle(number), SetupStats::default());
-                let hand_over = |t: ScreenTriangle<LitColours>| {
-                    if t.outline.meets(window.across, window.lines) {
-                        let t = t.gouraud(&self.viewport, &mut setup);
-                        sink(Command::Triangle(Triangle { edges: t.edges, depth: t.z, colour: t.rgb }));
-                    }
-                };
+                let triangle = self.list.triangle(number);
                 match self.ends_of(i, k) {
-                    Some((ends, s, Reading::Screen)) => {
-                        transform.gouraud_between(ends, s, &triangle, &place.light, &mut stats, hand_over);
+                    Some((ends, s, Interpolation::Screen)) => {
+                        transform.gouraud_between(ends, s, &triangle, &place.light, &mut stats, |t| {
+                            sink_if_met(t, window, &self.viewport, &mut sink);
+                        });
                     }
-                    _ => transform.gouraud(&triangle, &place.light, &mut stats, hand_over),
+                    _ => transform.gouraud(&triangle, &place.light, &mut stats, |t| {
+                        sink_if_met(t, window, &self.viewport, &mut sink);
+                    }),
                 }
             }
         }
@@ -184,35 +179,79 @@ impl Drawing {
     }
 }
 
-fn tally(
-    windows: &[Window],
-    each: &mut [Counts],
-    meets: &dyn Fn(&Window) -> bool,
-    field: impl Fn(&mut Counts) -> &mut u32,
-) -> bool {
-    let mut any = false;
-    for (window, counts) in windows.iter().zip(each) {
-        if meets(window) {
-            *field(counts) += 1;
-            any = true;
-        }
+/// Calls `sink` with the command of a triangle, if that meets the window.
+fn sink_if_met(
+    triangle: ScreenTriangle<LitColours>,
+    window: &Window,
+    viewport: &Viewport,
+    sink: &mut impl FnMut(Command),
+) {
+    if triangle.outline.meets(window.across, window.lines) {
+        let shaded = triangle.gouraud(viewport, &mut SetupStats::default());
+        sink(Command::Triangle(Triangle { edges: shaded.edges, depth: shaded.z, colour: shaded.rgb }));
     }
-    any
+}
+
+/// Counts the primitives that meet windows.
+struct Tallies<'a> {
+    windows: &'a [Window],
+    /// From the top of the highest window to the bottom of the lowest, subpixels of the frame.
+    span: [i32; 2],
+    each: Vec<Counts>,
+    any: Counts,
+}
+
+impl<'a> Tallies<'a> {
+    fn new(windows: &'a [Window]) -> Self {
+        let top = windows.iter().map(|w| w.lines[0] * SUBPIXELS).min().unwrap_or_default();
+        let bottom = windows.iter().map(|w| w.lines[1] * SUBPIXELS).max().unwrap_or_default() + SUBPIXELS;
+        Self { windows, span: [top, bottom], each: vec![Counts::default(); windows.len()], any: Counts::default() }
+    }
+
+    fn add_outline(&mut self, outline: &Outline) {
+        let [top, bottom] = self.span;
+        if outline.y.iter().all(|y| *y < top) || outline.y.iter().all(|y| *y > bottom) {
+            return;
+        }
+        let mut met = false;
+        for (window, counts) in self.windows.iter().zip(&mut self.each) {
+            if outline.meets(window.across, window.lines) {
+                counts.triangles += 1;
+                met = true;
+            }
+        }
+        self.any.triangles += u32::from(met);
+    }
+
+    fn add_sphere(&mut self, sphere: &ScreenSphere) {
+        let mut met = false;
+        for (window, counts) in self.windows.iter().zip(&mut self.each) {
+            if sphere.meets(window.across, window.lines) {
+                counts.spheres += 1;
+                met = true;
+            }
+        }
+        self.any.spheres += u32::from(met);
+    }
 }
 
 /// Positions in the view lie on straight lines between two views where the matrices do:
 /// (M0 p) (1 - s) + (M1 p) s = (M0 (1 - s) + M1 s) p.
 fn interpolated(from: &FrameView, to: &FrameView, s: f64) -> FrameView {
-    let mix = |a: &Mat4, b: &Mat4| ((a.as_dmat4() * (1.0 - s)) + (b.as_dmat4() * s)).as_mat4();
-    let eye = |(a, b): (&EyeView, &EyeView)| EyeView {
-        world_to_eye: mix(&a.world_to_eye, &b.world_to_eye),
-        head_to_eye: mix(&a.head_to_eye, &b.head_to_eye),
+    let eyes = from.eyes.iter().zip(&to.eyes).map(|(a, b)| EyeView {
+        world_to_eye: matrix_between(&a.world_to_eye, &b.world_to_eye, s),
+        head_to_eye: matrix_between(&a.head_to_eye, &b.head_to_eye, s),
         projection: a.projection,
-    };
-    let edit = |(a, b): (&ModelEdit, &ModelEdit)| ModelEdit { structure: a.structure, model: mix(&a.model, &b.model) };
-    FrameView {
-        number: from.number,
-        eyes: from.eyes.iter().zip(&to.eyes).map(eye).collect(),
-        edits: from.edits.iter().zip(&to.edits).map(edit).collect(),
-    }
+    });
+    let edits = from
+        .edits
+        .iter()
+        .zip(&to.edits)
+        .map(|(a, b)| ModelEdit { structure: a.structure, model: matrix_between(&a.model, &b.model, s) });
+    FrameView { number: from.number, eyes: eyes.collect(), edits: edits.collect() }
+}
+
+/// The matrix at the part `s` of the way, each element on its straight line.
+fn matrix_between(from: &Mat4, to: &Mat4, s: f64) -> Mat4 {
+    ((from.as_dmat4() * (1.0 - s)) + (to.as_dmat4() * s)).as_mat4()
 }

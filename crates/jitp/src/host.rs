@@ -1,6 +1,6 @@
 //! The host: passes on what the tracker delivers.
 
-use crate::config::Config;
+use crate::config::JitpConfig;
 use crate::protocol::Order;
 use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
@@ -15,7 +15,7 @@ use pxpl5_sim::Time;
 /// None of its own; the type is that of a program.
 pub async fn host(
     gp: Gp,
-    config: Config,
+    config: JitpConfig,
     timing: HostTiming,
     mut next_report: impl FnMut(Time) -> Option<Time>,
 ) -> Result<(), Fault> {

@@ -17,7 +17,7 @@
 //!   one is scanned, or each line just before the beam.
 //! - Which moment a strip is drawn for is the [`Viewpoint`]: one for the whole field (a conventional picture), one for
 //!   each strip, or the *dual display list*: every vertex is transformed for the begin T0 and the end T1 of the field
-//!   and interpolated, on the screen or in the view before the divide ([`Reading`]).
+//!   and interpolated, on the screen or in the view before the divide ([`Interpolation`]).
 //! - *Racing the beam* is independent of that: a strip is ordered just in time for the beam, or else one field
 //!   earlier, so that the whole field is there before its retrace.
 //! - A strip whose beam has passed when a slave could begin it is left out; the lines of the field before stay.
@@ -41,7 +41,7 @@ mod protocol;
 mod slave;
 pub mod timing;
 
-pub use config::{Beam, BlockOrder, Config, ConfigError, Reading, Schedule, Viewpoint, Wanted};
+pub use config::{Beam, BlockOrder, Interpolation, JitpConfig, JitpConfigError, Schedule, Viewpoint, Wanted};
 pub use host::host;
 pub use master::master;
 pub use slave::{Transforms, slave};

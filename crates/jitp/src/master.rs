@@ -1,6 +1,6 @@
 //! The master GP: it follows the beam, keeps the newest tracking data and orders strips or blocks.
 
-use crate::config::{Config, Schedule, Viewpoint, Wanted};
+use crate::config::{JitpConfig, Schedule, Viewpoint, Wanted};
 use crate::protocol::Order;
 use pphigs::{Counts, FrameView, TransformCost};
 use pxpl5_gp::{Account, Fault, Gp, Level, Program, Stage};
@@ -24,7 +24,7 @@ struct State {
 /// They fail with [`Fault::Protocol`] for a message that no board sends.
 pub fn master(
     gp: &Gp,
-    config: &Config,
+    config: &JitpConfig,
     counts: Counts,
     view_of: impl FnMut(Wanted) -> FrameView + 'static,
 ) -> Vec<(Level, Program)> {
@@ -48,7 +48,7 @@ async fn listen(gp: Gp, state: Rc<State>) -> Result<(), Fault> {
 
 struct Master<V> {
     gp: Gp,
-    config: Config,
+    config: JitpConfig,
     counts: Counts,
     view_of: V,
     state: Rc<State>,
@@ -108,12 +108,12 @@ impl<V: FnMut(Wanted) -> FrameView> Master<V> {
 
     async fn order_field(&mut self, field: u64, viewpoint: Viewpoint) {
         let (begin, end) = self.config.ends(field);
-        let number = |i| Config::view_number(field, i);
-        self.gp.begin_view(Stage::Sample, field, number(0));
+        let at_begin = JitpConfig::view_number(field, 0);
+        self.gp.begin_view(Stage::Sample, field, at_begin);
         self.gp.begin(Stage::Transform, field, None);
         let views = match viewpoint {
-            Viewpoint::Field => vec![self.view(number(0), begin)],
-            _ => vec![self.view(number(0), begin), self.view(number(1), end)],
+            Viewpoint::Field => vec![self.view(at_begin, begin)],
+            _ => vec![self.view(at_begin, begin), self.view(JitpConfig::view_number(field, 1), end)],
         };
         self.gp.spend(TransformCost::PASS.span(&self.gp.timing())).await;
         let (words, body) = Order::Field { field, views }.message();
@@ -122,7 +122,7 @@ impl<V: FnMut(Wanted) -> FrameView> Master<V> {
 
     async fn order_strip(&mut self, field: u64, strip: u32, viewpoint: Viewpoint) {
         let own = viewpoint == Viewpoint::Strip;
-        let number = Config::view_number(field, u64::from(strip));
+        let number = JitpConfig::view_number(field, u64::from(strip));
         if own && self.config.is_middle(strip) {
             self.gp.begin_view(Stage::Sample, field, number);
             self.gp.begin(Stage::Transform, field, None);

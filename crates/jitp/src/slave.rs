@@ -1,6 +1,6 @@
 //! A slave GP: it draws the strips or blocks that the master orders.
 
-use crate::config::{Config, Schedule, Viewpoint};
+use crate::config::{JitpConfig, Schedule, Viewpoint};
 use crate::drawing::{Drawing, Ends};
 use crate::master::PROGRAM_BYTES;
 use crate::pieces::{messages, window};
@@ -20,7 +20,7 @@ const FIELDS_KEPT: usize = 3;
 
 #[derive(Default)]
 struct State {
-    /// Fields to transform.
+    /// Numbers and views of the fields that the master wants transformed, oldest first.
     ordered: VecDeque<(u64, Vec<FrameView>)>,
     /// Fields transformed, in order.
     transformed: VecDeque<(u64, Field)>,
@@ -47,7 +47,8 @@ impl std::fmt::Debug for Transforms {
 }
 
 impl Transforms {
-    fn of(&self, field: u64, make: impl FnOnce() -> Field) -> Field {
+    /// The field as another slave has made it, or else as `make` does.
+    fn known_or_made(&self, field: u64, make: impl FnOnce() -> Field) -> Field {
         let known = &mut *self.0.borrow_mut();
         if let Some((_, ready)) = known.iter().find(|ready| ready.0 == field) {
             return ready.clone();
@@ -68,14 +69,14 @@ impl Transforms {
 /// sends.
 pub fn slave(
     gp: &Gp,
-    config: &Config,
+    config: &JitpConfig,
     list: &Arc<DisplayList>,
     transforms: &Transforms,
     index: usize,
 ) -> Vec<(Level, Program)> {
     let share = Share::new(Arc::clone(list), 0, 1);
     let state = Shared::default();
-    let slave = |level| Slave {
+    let [drawing, preparing] = [Level::Interrupt, Level::Foreground].map(|level| Slave {
         gp: gp.at_level(level),
         config: config.clone(),
         list: Arc::clone(list),
@@ -84,14 +85,13 @@ pub fn slave(
         state: Rc::clone(&state),
         transforms: transforms.clone(),
         index,
-    };
-    let (drawing, preparing) = (slave(Level::Interrupt), slave(Level::Foreground));
+    });
     vec![(Level::Interrupt, Box::pin(drawing.draw())), (Level::Foreground, Box::pin(preparing.prepare()))]
 }
 
 struct Slave {
     gp: Gp,
-    config: Config,
+    config: JitpConfig,
     list: Arc<DisplayList>,
     counts: Counts,
     bytes: u64,
@@ -119,11 +119,10 @@ impl Slave {
     /// Transforms everything for the newest field ordered.
     async fn prepare(self) -> Result<(), Fault> {
         loop {
-            let newest = || self.state.borrow_mut().ordered.drain(..).next_back();
-            let (field, views) = self.gp.until("the order of a field", newest).await;
+            let (field, views) = self.gp.until("the order of a field", || self.take_newest_order()).await;
             self.gp.spend(TransformCost::pass_over(self.counts).span(&self.gp.timing()) * views.len() as u64).await;
             self.gp.end(Stage::Transform, field, None);
-            let ready = self.transforms.of(field, || self.transform(field, views));
+            let ready = self.transforms.known_or_made(field, || self.transform(field, views));
             let state = &mut *self.state.borrow_mut();
             state.transformed.push_back((field, ready));
             if state.transformed.len() > FIELDS_KEPT {
@@ -132,9 +131,14 @@ impl Slave {
         }
     }
 
+    /// The newest field ordered; older ones are left out.
+    fn take_newest_order(&self) -> Option<(u64, Vec<FrameView>)> {
+        self.state.borrow_mut().ordered.drain(..).next_back()
+    }
+
     fn transform(&self, field: u64, views: Vec<FrameView>) -> Field {
         let viewport = self.config.picture(field).0;
-        let whole = Arc::new(Drawing::of(&self.list, &views[0], viewport));
+        let whole = Arc::new(Drawing::from_view(&self.list, &views[0], viewport));
         Field { ends: Ends::new(&self.list, views, viewport), whole }
     }
 
@@ -151,9 +155,9 @@ impl Slave {
                 if stands_for_field {
                     self.gp.end(Stage::Transform, field, None);
                 }
-                Some(Arc::new(Drawing::of(&self.list, view, viewport)))
+                Some(Arc::new(Drawing::from_view(&self.list, view, viewport)))
             }
-            None => self.of_field(field, strip, viewport).await,
+            None => self.drawing_of_field(field, strip, viewport).await,
         };
         let Some(drawing) = drawing.filter(|_| self.gp.now() < deadline) else { return };
         if stands_for_field {
@@ -165,24 +169,28 @@ impl Slave {
         }
     }
 
+    /// Whether a field or a later one is transformed.
+    fn has_transformed(&self, field: u64) -> bool {
+        self.state.borrow().transformed.back().is_some_and(|newest| newest.0 >= field)
+    }
+
     /// The strip as the transforms of its field give it; `None` if they were left out.
-    async fn of_field(&self, field: u64, strip: u32, viewport: Viewport) -> Option<Arc<Drawing>> {
-        let newest = || self.state.borrow().transformed.back().filter(|newest| newest.0 >= field).map(drop);
-        self.gp.until("the transforms of the field", newest).await;
+    async fn drawing_of_field(&self, field: u64, strip: u32, viewport: Viewport) -> Option<Arc<Drawing>> {
+        self.gp.until("the transforms of the field", || self.has_transformed(field).then_some(())).await;
         let state = self.state.borrow();
         let (_, ready) = state.transformed.iter().find(|ready| ready.0 == field)?;
         Some(match self.dual() {
-            Some(reading) if ready.ends.views.len() == 2 => {
+            Some(interpolation) if ready.ends.views.len() == 2 => {
                 let part = self.config.part(field, strip);
-                Arc::new(Drawing::between(&self.list, &ready.ends, part, reading, viewport))
+                Arc::new(Drawing::between(&self.list, &ready.ends, part, interpolation, viewport))
             }
             _ => Arc::clone(&ready.whole),
         })
     }
 
-    fn dual(&self) -> Option<crate::config::Reading> {
+    fn dual(&self) -> Option<crate::config::Interpolation> {
         match self.config.schedule {
-            Schedule::Beam { viewpoint: Viewpoint::Dual(reading), .. } => Some(reading),
+            Schedule::Beam { viewpoint: Viewpoint::Dual(interpolation), .. } => Some(interpolation),
             _ => None,
         }
     }
@@ -193,7 +201,7 @@ impl Slave {
         let viewport = self.config.picture(update).0;
         self.gp.spend(TransformCost::pass_over(self.counts).span(&self.gp.timing())).await;
         self.gp.end(Stage::Transform, update, None);
-        let drawing = Arc::new(Drawing::of(&self.list, view, viewport));
+        let drawing = Arc::new(Drawing::from_view(&self.list, view, viewport));
         let regions: Vec<_> = (0..u64::from(*batch)).map(|i| order.at(step + i)).collect();
         self.gp.begin(Stage::Render, update, None);
         let sent = self.send(update, &regions, &viewport, &drawing).await;

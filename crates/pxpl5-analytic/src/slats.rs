@@ -64,8 +64,10 @@ impl SlatsModel {
     pub fn new(config: &MachineConfig, program: Slats) -> Result<Self, ConfigError> {
         let contexts = usize::from(program.layout().plan().contexts.max(1));
         if config.n_renderers < REGIONS.div_ceil(contexts) {
-            let error =
-                slats::ConfigError::TooFewRenderers { found: config.n_renderers, expected: REGIONS.div_ceil(contexts) };
+            let error = slats::SlatsConfigError::TooFewRenderers {
+                found: config.n_renderers,
+                expected: REGIONS.div_ceil(contexts),
+            };
             return Err(ConfigError::Board(error.to_string()));
         }
         if program.code.is_some() {

@@ -82,7 +82,7 @@ pub enum RingOutput {
 pub enum RingError {
     /// A number of the timing table is outside of what the model can take.
     #[error("ring timing: {0}")]
-    Timing(ParameterError),
+    Timing(#[from] ParameterError),
     /// The ring has no port for any board.
     #[error("a ring needs one port at least, found none")]
     NoNodes,

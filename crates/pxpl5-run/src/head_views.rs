@@ -139,8 +139,7 @@ impl HeadViews {
         let all = head.tracker.reports(head.motion.as_ref(), head.seed);
         let reports: Arc<[Report]> = all.take_while(|report| report.arrives_ps < until.0).collect();
         let of_scene = scene.motion().pose(0);
-        let base =
-            Pose { position: of_scene.position.as_dvec3(), orientation: of_scene.orientation.as_dquat().normalize() };
+        let base = Pose { orientation: of_scene.orientation.normalize(), ..of_scene };
         let start = head.motion.pose(0);
         let state = Mutex::new((Follower::new(&head, Arc::clone(&reports)), Vec::new()));
         Self { head, scene: Arc::clone(scene), hmd, eyes, reports, rehearsal, base, start, state }
@@ -172,8 +171,7 @@ impl HeadViews {
         let Newest { measured_at, arrived_at } = follower.newest;
         let predicted_for = self.head.predicts().then_some(shown_at);
         sampled.push(Sampled { number, known, measured_at, arrived_at, predicted_for, pose });
-        let of_scene = pxpl5_scene::Pose { position: pose.position.as_vec3(), orientation: pose.orientation.as_quat() };
-        view(&self.scene, &self.hmd, self.eyes, number, shown_at, &of_scene)
+        view(&self.scene, &self.hmd, self.eyes, number, shown_at, &pose.in_single_precision())
     }
 
     fn report_after(&self, after: Time) -> Option<Time> {

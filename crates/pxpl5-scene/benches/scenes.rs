@@ -27,8 +27,8 @@ fn strip() -> String {
         text += &format!("v {i} {} 0.5\n", i % 7);
     }
     for i in 0..20_000 {
-        let corner = |k: u32| (i + k) % 20_000 + 1;
-        text += &format!("f {} {} {} {}\n", corner(0), corner(1), corner(2), corner(3));
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| (i + k) % 20_000 + 1);
+        text += &format!("f {a} {b} {c} {d}\n");
     }
     text
 }

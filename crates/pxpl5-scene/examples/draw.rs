@@ -26,7 +26,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (i, (motion, time_ps)) in motions.iter().enumerate() {
         let view = hmd.mono(&motion.pose(*time_ps));
         let picture = draw(&scene.posed(&scene.edits_at(*time_ps)), &view);
-        let (x, y) = (i as u32 % columns * WIDTH, i as u32 / columns * HEIGHT);
+        let x = i as u32 % columns * WIDTH;
+        let y = i as u32 / columns * HEIGHT;
         image::imageops::replace(&mut sheet, &picture, x.into(), y.into());
     }
     sheet.save(out)?;
@@ -40,8 +41,9 @@ fn motions(scene: &Scene, angles: &[f64]) -> Result<Vec<(HeadMotion, u64)>, Box<
     }
     let (target, radius) = scene.bounding_sphere();
     let distance = f64::from(radius) * 2.2;
-    let side = |pair: &[f64]| {
-        let (azimuth, elevation) = (pair[0].to_radians(), pair[1].to_radians());
+    let motions = angles.chunks_exact(2).map(|pair| {
+        let azimuth = pair[0].to_radians();
+        let elevation = pair[1].to_radians();
         let arm = Vec3::new(
             (azimuth.sin() * elevation.cos() * distance) as f32,
             (elevation.sin() * distance) as f32,
@@ -49,8 +51,8 @@ fn motions(scene: &Scene, angles: &[f64]) -> Result<Vec<(HeadMotion, u64)>, Box<
         );
         let eye = target + arm;
         HeadMotion::new(Path::Still { eye, target }, Sway::none()).map(|m| (m, 0))
-    };
-    Ok(angles.chunks_exact(2).map(side).collect::<Result<_, _>>()?)
+    });
+    Ok(motions.collect::<Result<_, _>>()?)
 }
 
 struct Canvas {
@@ -116,9 +118,9 @@ impl Canvas {
         for y in low.y.max(0.0) as i32..=(high.y.min(HEIGHT as f32 - 1.0)) as i32 {
             for x in low.x.max(0.0) as i32..=(high.x.min(WIDTH as f32 - 1.0)) as i32 {
                 let at = glam::Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
-                let part =
-                    |i: usize, j: usize| (p[j].truncate() - p[i].truncate()).perp_dot(at - p[i].truncate()) / area;
-                let (a, b, c) = (part(1, 2), part(2, 0), part(0, 1));
+                // Barycentric coordinates: areas over the sides that lie opposite to the corners.
+                let [a, b, c] = [(1, 2), (2, 0), (0, 1)]
+                    .map(|(i, j)| (p[j].truncate() - p[i].truncate()).perp_dot(at - p[i].truncate()) / area);
                 if a >= 0.0 && b >= 0.0 && c >= 0.0 {
                     let distance = 1.0 / (p[0].z * a + p[1].z * b + p[2].z * c);
                     self.plot(x, y, distance, colours[0] * a + colours[1] * b + colours[2] * c);
@@ -138,7 +140,8 @@ impl Canvas {
         let back = view.world_to_eye.inverse();
         for y in (middle.y - radius).max(0.0) as i32..=(middle.y + radius).min(HEIGHT as f32 - 1.0) as i32 {
             for x in (middle.x - radius).max(0.0) as i32..=(middle.x + radius).min(WIDTH as f32 - 1.0) as i32 {
-                let (u, v) = ((x as f32 + 0.5 - middle.x) / radius, (middle.y - y as f32 - 0.5) / radius);
+                let u = (x as f32 + 0.5 - middle.x) / radius;
+                let v = (middle.y - y as f32 - 0.5) / radius;
                 let w = 1.0 - u * u - v * v;
                 if w >= 0.0 {
                     let normal = back.transform_vector3(Vec3::new(u, v, w.sqrt()));

@@ -7,7 +7,7 @@ use crate::trig;
 /// Sets the model matrix of one structure. A host sends few of these per frame (published TR94).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edit {
-    /// Index into [`crate::Scene::structures`].
+    /// Which structure: an index into [`crate::Scene::structures`].
     pub structure: usize,
     /// From the structure's coordinates to its frame's; replaces the previous one. Identity before the first edit.
     pub model: Mat4,
@@ -22,7 +22,7 @@ pub struct Hinge {
     pub point: Vec3,
     /// Direction of the axis; need not be of unit length, but not zero.
     pub axis: Vec3,
-    /// Largest deflection, degrees.
+    /// Largest deflection to either side, degrees.
     pub amplitude_deg: f64,
     /// Time of one swing, picoseconds of simulated time; not zero.
     pub period_ps: u64,
@@ -57,8 +57,8 @@ impl Hinge {
 fn rotation_about(axis: DVec3, angle_deg: f64) -> DMat3 {
     let axis = axis.normalize_or(DVec3::Y);
     let (sin, cos) = trig::sin_cos_deg(angle_deg);
-    let turn = |v: DVec3| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
-    DMat3::from_cols(turn(DVec3::X), turn(DVec3::Y), turn(DVec3::Z))
+    let [x, y, z] = DVec3::AXES.map(|v| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos)));
+    DMat3::from_cols(x, y, z)
 }
 
 #[cfg(test)]

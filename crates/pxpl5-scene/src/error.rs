@@ -30,7 +30,7 @@ pub enum LoadError {
     /// The operating system refused: the file is missing, unreadable, or the disk failed.
     #[error("{file}: expected a readable file, found: {source}")]
     Io {
-        /// Path as given.
+        /// Path of the file, as it was given.
         file: String,
         /// What the operating system said.
         source: io::Error,
@@ -38,15 +38,15 @@ pub enum LoadError {
     /// The path leads to a directory, a device or a pipe.
     #[error("{file}: expected a regular file, found {found}")]
     NotAFile {
-        /// Path as given.
+        /// Path of the file, as it was given.
         file: String,
-        /// What it is.
+        /// What the path leads to: "a directory", or "a device or a pipe".
         found: &'static str,
     },
     /// The extension is none that an importer reads.
     #[error("{file}: expected an extension .ply, .obj or .pdb, found {found:?}")]
     UnknownFormat {
-        /// Path as given.
+        /// Path of the file, as it was given.
         file: String,
         /// The extension, empty if there is none.
         found: String,
@@ -54,7 +54,7 @@ pub enum LoadError {
     /// The file is larger than [`crate::config::MAX_FILE_BYTES`].
     #[error("{file}: expected at most {expected} bytes, found more")]
     TooLarge {
-        /// Name of the file.
+        /// Name of the file, as it was given.
         file: String,
         /// The limit in bytes.
         expected: u64,
@@ -62,15 +62,15 @@ pub enum LoadError {
     /// The file has no bytes, or nothing but white space.
     #[error("{file}: expected a model, found an empty file")]
     Empty {
-        /// Name of the file.
+        /// Name of the file, as it was given.
         file: String,
     },
     /// A byte that is not UTF-8 in a file, or part of a file, that must be text.
     #[error("{file}: {at}: expected UTF-8 text, found byte {found:#04x}")]
     NotText {
-        /// Name of the file.
+        /// Name of the file, as it was given.
         file: String,
-        /// Where.
+        /// Where in the file the fault was found.
         at: Place,
         /// The first byte that does not belong.
         found: u8,
@@ -78,59 +78,59 @@ pub enum LoadError {
     /// The file breaks the rules of its format.
     #[error("{file}: {at}: expected {expected}, found {found}")]
     Syntax {
-        /// Name of the file.
+        /// Name of the file, as it was given.
         file: String,
-        /// Where.
+        /// Where in the file the fault was found.
         at: Place,
         /// What the format asks for.
         expected: String,
-        /// What stands there.
+        /// What stands there, quoted and cut to 40 characters.
         found: String,
     },
     /// The file ends before everything that it announces; also how an absurd count in a header shows.
     #[error("{file}: {at}: expected {expected}, found {found}")]
     Truncated {
-        /// Name of the file.
+        /// Name of the file, as it was given.
         file: String,
-        /// Where.
+        /// Where in the file the fault was found.
         at: Place,
-        /// What was announced.
+        /// What the file announced, for example a number of rows.
         expected: String,
-        /// What there is.
+        /// What is left of the file instead.
         found: String,
     },
     /// A corner refers to a vertex or a normal that does not exist.
     #[error("{file}: {at}: expected an index of one of {expected} {what}, found {found}")]
     Index {
-        /// Name of the file.
+        /// Name of the file, as it was given.
         file: String,
-        /// Where.
+        /// Where in the file the fault was found.
         at: Place,
         /// What is indexed: "vertices" or "normals".
         what: &'static str,
-        /// How many there are.
+        /// How many of them the file has up to that place.
         expected: usize,
-        /// The index as written.
+        /// The index as the file has it.
         found: i64,
     },
     /// A coordinate is not a number, infinite, or beyond [`crate::config::MAX_COORDINATE`].
     #[error("{file}: {at}: expected a coordinate between -{expected:e} and {expected:e}, found {found}")]
     Coordinate {
-        /// Name of the file.
+        /// Name of the file, as it was given.
         file: String,
-        /// Where.
+        /// Where in the file the fault was found.
         at: Place,
         /// The limit, in units of the file.
         expected: f64,
-        /// The coordinate.
+        /// The coordinate as read, in units of the file.
         found: f64,
     },
     /// The file is well formed but holds nothing to draw.
     #[error("{file}: expected at least one {expected}, found none")]
     NothingToDraw {
-        /// Name of the file.
+        /// Name of the file, as it was given.
         file: String,
-        /// "triangle" or "atom".
+        /// What one would have been enough: "triangle" or "atom".
         expected: &'static str,
     },
 }
@@ -142,17 +142,17 @@ pub enum SceneError {
     /// No built-in scene has this name.
     #[error("scene {found:?}: expected one of {valid}; the nearest is {nearest:?}")]
     UnknownScene {
-        /// The name asked for.
+        /// The name asked for, cut to 40 characters.
         found: String,
         /// The valid name with the fewest edits to it.
         nearest: String,
-        /// All valid names.
+        /// All valid names, with commas between.
         valid: String,
     },
     /// The N of `full-screen:N` is no number or out of range.
     #[error("scene full-screen:N: expected N from 1 to {expected}, found {found:?}")]
     TriangleCount {
-        /// Largest N.
+        /// The largest N allowed.
         expected: u32,
         /// What stands after the colon.
         found: String,
@@ -174,11 +174,11 @@ pub enum SceneError {
         scene: String,
         /// "vertex", "triangle", "sphere" or "structure".
         what: &'static str,
-        /// Which one.
+        /// Which of them, counted from 0.
         index: usize,
-        /// The rule.
+        /// The rule that it breaks.
         expected: String,
-        /// What was given.
+        /// What the scene holds instead.
         found: String,
     },
 }
@@ -189,9 +189,9 @@ pub enum SceneError {
 pub struct RangeError {
     /// Name of the number, with its unit.
     pub what: &'static str,
-    /// The allowed range.
+    /// The allowed range, in words.
     pub expected: &'static str,
-    /// The number given.
+    /// The number that was given, in the unit of its name.
     pub found: f64,
 }
 

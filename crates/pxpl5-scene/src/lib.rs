@@ -12,7 +12,9 @@
 //! - A [`Scene`] is a display list: indexed triangles with a normal and a colour for each vertex, spheres, and
 //!   *structures*, named runs of both with one model matrix each. An [`Edit`] replaces a model matrix;
 //!   [`Scene::edits_at`] gives the scripted edits of a frame.
-//! - [`load`] reads PLY, OBJ and PDB files and fits the model into the default view. No file makes it panic.
+//! - [`from_bytes`] reads PLY, OBJ and PDB models and fits them into the default view. No bytes make it panic. `load`
+//!   does so with a file of the host; without the feature `files` the crate asks no operating system for anything, and
+//!   builds for a browser.
 //! - [`builtin`] generates the scenes of the published measurements, or likenesses of them:
 //!
 //! | name | triangles | spheres | standing of the counts |
@@ -27,7 +29,7 @@
 //! # Conventions
 //!
 //! Metres, degrees, picoseconds. World, head and eye coordinates are right-handed with +y up; a head and an eye look
-//! along their -z. Triangles are anticlockwise seen from outside. Clip depth z/w runs from 0 at the near plane to 1 at
+//! along their -z. A head's place is the point between its eyes. Triangles are anticlockwise seen from outside. Clip depth z/w runs from 0 at the near plane to 1 at
 //! the far plane, growing with distance. Matrices act on column vectors: `projection * world_to_eye * model * point`.
 //!
 //! # Determinism
@@ -61,8 +63,11 @@ mod view;
 pub use builtin::{builtin, names};
 pub use edit::{Edit, Hinge};
 pub use error::{LoadError, Place, RangeError, SceneError};
-pub use import::{Format, from_bytes, from_reader, load};
+#[cfg(feature = "files")]
+pub use import::load;
+pub use import::{Format, from_bytes, from_reader};
 pub use motion::{HeadMotion, Path};
 pub use scene::{Frame, Lighting, Scene, SceneParts, Sphere, Structure, Vertex};
 pub use sway::Sway;
-pub use view::{Eye, Hmd, HmdConfig, Pose, View};
+pub use tracking::Pose;
+pub use view::{Eye, Hmd, HmdConfig, View};

@@ -2,12 +2,12 @@
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use serde::{Deserialize, Serialize};
+use tracking::Pose;
 
 use crate::config::FIT_DISTANCE_RADII;
 use crate::error::{RangeError, require};
 use crate::sway::{self, Sway, Swing};
 use crate::trig;
-use crate::view::Pose;
 
 /// Largest coordinate, distance or rate in a motion. Assumed: any run fits, and no product overflows.
 const LIMIT: f64 = 1e9;
@@ -18,45 +18,45 @@ const LIMIT: f64 = 1e9;
 pub enum Path {
     /// Stands at `eye` and looks at `target`.
     Still {
-        /// Place of the head.
+        /// Place of the head in the world, metres.
         eye: Vec3,
-        /// What it looks at.
+        /// The point that it looks at, metres, world coordinates.
         target: Vec3,
     },
     /// Stands at `eye`, looks along -z at time 0 and turns left (about +y) at a steady rate.
     Pan {
-        /// Place of the head.
+        /// Place of the head in the world, metres.
         eye: Vec3,
-        /// Rate of turn; negative turns right.
+        /// Rate of turn, degrees per second; negative turns right.
         deg_per_s: f64,
     },
     /// Circles round `target` in a level plane and looks at it; at time 0 it is on the +z side.
     Orbit {
-        /// What it looks at.
+        /// The point that it looks at, metres, world coordinates.
         target: Vec3,
-        /// Radius of the circle.
+        /// Radius of the circle, metres.
         distance: f64,
-        /// Height above the target.
+        /// Height of the circle above the target, metres.
         height: f64,
-        /// Rate of the circle; positive goes towards +x first.
+        /// Rate of the circle, degrees per second; positive goes towards +x first.
         deg_per_s: f64,
     },
     /// Looks at `target` from the +z side and leans and walks to and fro around it as [`Sway`] says.
     Look {
-        /// What it looks at.
+        /// The point that it looks at, metres, world coordinates.
         target: Vec3,
-        /// Mean distance from it.
+        /// Mean distance from the target, metres.
         distance: f64,
     },
     /// Flies round `target` and looks at it, near and far by turns: five approaches in two laps.
     FlyThrough {
-        /// What it looks at.
+        /// The point that it looks at, metres, world coordinates.
         target: Vec3,
-        /// Least distance from it.
+        /// Least distance from the target, metres.
         nearest: f64,
-        /// Greatest distance from it.
+        /// Greatest distance from the target, metres.
         farthest: f64,
-        /// Time of a lap, seconds.
+        /// Time of one lap round the target, seconds.
         lap_s: f64,
     },
 }
@@ -113,13 +113,13 @@ impl HeadMotion {
         Self { path, sway: Sway { seed: 1, scale: 1.0 } }
     }
 
-    /// The path.
+    /// What the head does without sway.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The sway.
+    /// The movement upon the path.
     #[must_use]
     pub fn sway(&self) -> &Sway {
         &self.sway
@@ -134,38 +134,46 @@ impl HeadMotion {
 
     /// The pose at simulated time `time_ps`, picoseconds.
     ///
-    /// Computed in double precision with software trigonometry. The time is held to 2 ns after 200 days.
+    /// Computed in double precision with software trigonometry, then rounded to single precision as all coordinates of
+    /// a scene are. The time is held to 2 ns after 200 days.
     #[must_use]
     pub fn pose(&self, time_ps: u64) -> Pose {
         let seconds = time_ps as f64 * 1e-12;
-        let swing = self.sway.at(seconds);
+        let swing = self.sway.swing_at(seconds);
         let (eye, gaze) = self.path.eye_and_gaze(seconds, &swing);
-        Pose { position: eye.as_vec3(), orientation: (gaze * swing.gaze()).normalize().as_quat() }
+        let exact = Pose { position: eye, orientation: (gaze * swing.gaze()).normalize() };
+        exact.in_single_precision()
     }
 }
 
 impl Path {
     fn check(&self) -> Result<(), RangeError> {
-        let point = |what, v: Vec3| {
-            let reach = f64::from(v.abs().max_element());
-            let reach = if v.is_nan() { f64::NAN } else { reach };
-            require(reach <= LIMIT, what, "coordinates of at most 1e9", reach)
-        };
-        let length = |what, v: f64| require((1e-9..=LIMIT).contains(&v), what, "1e-9 to 1e9", v);
-        let rate = |what, v: f64| require(v.abs() <= LIMIT, what, "-1e9 to 1e9", v);
         match *self {
-            Path::Still { eye, target } => point("eye", eye).and(point("target", target)),
-            Path::Pan { eye, deg_per_s } => point("eye", eye).and(rate("deg_per_s", deg_per_s)),
-            Path::Orbit { target, distance, height, deg_per_s } => point("target", target)
-                .and(length("distance", distance))
-                .and(rate("height", height))
-                .and(rate("deg_per_s", deg_per_s)),
-            Path::Look { target, distance } => point("target", target).and(length("distance", distance)),
-            Path::FlyThrough { target, nearest, farthest, lap_s } => point("target", target)
-                .and(length("nearest", nearest))
-                .and(require(farthest >= nearest, "farthest", "at least nearest", farthest))
-                .and(length("farthest", farthest))
-                .and(length("lap_s", lap_s)),
+            Path::Still { eye, target } => {
+                check_point("eye", eye)?;
+                check_point("target", target)
+            }
+            Path::Pan { eye, deg_per_s } => {
+                check_point("eye", eye)?;
+                check_either_sign("deg_per_s", deg_per_s)
+            }
+            Path::Orbit { target, distance, height, deg_per_s } => {
+                check_point("target", target)?;
+                check_length("distance", distance)?;
+                check_either_sign("height", height)?;
+                check_either_sign("deg_per_s", deg_per_s)
+            }
+            Path::Look { target, distance } => {
+                check_point("target", target)?;
+                check_length("distance", distance)
+            }
+            Path::FlyThrough { target, nearest, farthest, lap_s } => {
+                check_point("target", target)?;
+                check_length("nearest", nearest)?;
+                require(farthest >= nearest, "farthest", "at least nearest", farthest)?;
+                check_length("farthest", farthest)?;
+                check_length("lap_s", lap_s)
+            }
         }
     }
 
@@ -173,7 +181,7 @@ impl Path {
     fn eye_and_gaze(&self, seconds: f64, swing: &Swing) -> (DVec3, DQuat) {
         match *self {
             Path::Still { eye, target } => facing(eye.as_dvec3(), target.as_dvec3()),
-            Path::Pan { eye, deg_per_s } => (eye.as_dvec3(), sway::turn(DVec3::Y, deg_per_s * seconds)),
+            Path::Pan { eye, deg_per_s } => (eye.as_dvec3(), sway::turn_about(DVec3::Y, deg_per_s * seconds)),
             Path::Orbit { target, distance, height, deg_per_s } => {
                 let arm = direction(deg_per_s * seconds, 0.0) * distance + DVec3::Y * height;
                 facing(target.as_dvec3() + arm, target.as_dvec3())
@@ -184,16 +192,33 @@ impl Path {
                 facing(target + arm * swing.distance_factor, target)
             }
             Path::FlyThrough { target, nearest, farthest, lap_s } => {
-                let arm = fly(seconds / lap_s, nearest, farthest);
+                let arm = fly_through_arm(seconds / lap_s, nearest, farthest);
                 facing(target.as_dvec3() + arm, target.as_dvec3())
             }
         }
     }
 }
 
-/// Two and a half approaches a lap, each from another side and height.
-fn fly(laps: f64, nearest: f64, farthest: f64) -> DVec3 {
-    let (middle, half) = ((farthest + nearest) / 2.0, (farthest - nearest) / 2.0);
+fn check_point(what: &'static str, point: Vec3) -> Result<(), RangeError> {
+    // The largest element of a vector passes over what is not a number.
+    let reach = if point.is_nan() { f64::NAN } else { f64::from(point.abs().max_element()) };
+    require(reach <= LIMIT, what, "coordinates of at most 1e9", reach)
+}
+
+/// For distances and times.
+fn check_length(what: &'static str, length: f64) -> Result<(), RangeError> {
+    require((1e-9..=LIMIT).contains(&length), what, "1e-9 to 1e9", length)
+}
+
+/// For heights and rates.
+fn check_either_sign(what: &'static str, number: f64) -> Result<(), RangeError> {
+    require(number.abs() <= LIMIT, what, "-1e9 to 1e9", number)
+}
+
+/// From the target to the head after `laps`: two and a half approaches a lap, each from another side and height.
+fn fly_through_arm(laps: f64, nearest: f64, farthest: f64) -> DVec3 {
+    let middle = (farthest + nearest) / 2.0;
+    let half = (farthest - nearest) / 2.0;
     let distance = middle + half * trig::cos_turns(2.5 * laps);
     let elevation_deg = 12.0 + 28.0 * trig::sin_turns(1.5 * laps);
     direction(360.0 * laps, elevation_deg) * distance

@@ -8,23 +8,23 @@ use crate::edit::{Edit, Hinge};
 use crate::error::SceneError;
 use crate::motion::HeadMotion;
 
-/// A corner of triangles.
+/// A corner that triangles share: place, normal and colour in one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
-    /// Metres.
+    /// Place in the coordinates of its structure, metres.
     pub position: Vec3,
-    /// Outward, of unit length.
+    /// Direction outwards from the surface, of unit length.
     pub normal: Vec3,
     /// Diffuse red, green, blue, 8 bits each.
     pub colour: [u8; 3],
 }
 
-/// A sphere primitive.
+/// A sphere, which the renderers draw as one primitive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sphere {
-    /// Metres.
+    /// Place of its centre in the coordinates of its structure, metres.
     pub centre: Vec3,
-    /// Metres, above zero.
+    /// Its radius, metres, above zero.
     pub radius: f32,
     /// Diffuse red, green, blue, 8 bits each.
     pub colour: [u8; 3],
@@ -42,13 +42,13 @@ pub enum Frame {
 /// A named run of primitives with one model matrix.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
-    /// Name, for people.
+    /// Its name, for people: no code asks for it.
     pub name: String,
-    /// Its vertices; only its own triangles use them.
+    /// Its vertices, indices into [`Scene::vertices`]; only its own triangles use them.
     pub vertices: Range<usize>,
-    /// Its triangles.
+    /// Its triangles, indices into [`Scene::triangles`].
     pub triangles: Range<usize>,
-    /// Its spheres.
+    /// Its spheres, indices into [`Scene::spheres`].
     pub spheres: Range<usize>,
     /// What its coordinates are fixed to.
     pub frame: Frame,
@@ -85,17 +85,17 @@ impl Lighting {
 /// What a scene is made of, before it is checked by [`Scene::new`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneParts {
-    /// Name, for reports.
+    /// Name of the scene, as reports show it.
     pub name: String,
-    /// Corners.
+    /// The corners that triangles share.
     pub vertices: Vec<Vertex>,
     /// Indices of three vertices, anticlockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Spheres.
+    /// The spheres, in the order of drawing, after the triangles.
     pub spheres: Vec<Sphere>,
     /// In order, they divide all vertices, triangles and spheres among them. Empty stands for one structure of all.
     pub structures: Vec<Structure>,
-    /// The light.
+    /// The one light, and the colour of the background.
     pub lighting: Lighting,
     /// How a head moves that looks at this scene.
     pub motion: HeadMotion,
@@ -115,19 +115,19 @@ impl Scene {
     /// [`SceneError::Part`] names the first part that breaks a rule.
     pub fn new(mut parts: SceneParts) -> Result<Self, SceneError> {
         if parts.structures.is_empty() {
-            parts.structures.push(whole(&parts));
+            parts.structures.push(structure_of_all(&parts));
         }
         parts.check()?;
         Ok(Self { parts })
     }
 
-    /// Name, for reports.
+    /// Name of the scene, as reports show it.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.parts.name
     }
 
-    /// All vertices.
+    /// The vertices of all structures, one structure after the other.
     #[must_use]
     pub fn vertices(&self) -> &[Vertex] {
         &self.parts.vertices
@@ -139,7 +139,7 @@ impl Scene {
         &self.parts.triangles
     }
 
-    /// All spheres.
+    /// The spheres of all structures, one structure after the other.
     #[must_use]
     pub fn spheres(&self) -> &[Sphere] {
         &self.parts.spheres
@@ -151,7 +151,7 @@ impl Scene {
         &self.parts.structures
     }
 
-    /// The light.
+    /// The one light, and the colour of the background.
     #[must_use]
     pub fn lighting(&self) -> &Lighting {
         &self.parts.lighting
@@ -176,13 +176,15 @@ impl Scene {
     ///
     /// [`SceneError::Kept`] when `n` is zero or more than there are.
     pub fn truncated(&self, n: usize) -> Result<Self, SceneError> {
-        let (triangles, spheres) = (self.triangles().len(), self.spheres().len());
+        let triangles = self.triangles().len();
+        let spheres = self.spheres().len();
         if n == 0 || n > triangles + spheres {
-            let (scene, expected) = (self.name().to_owned(), triangles + spheres);
+            let scene = self.name().to_owned();
+            let expected = triangles + spheres;
             return Err(SceneError::Kept { scene, expected, found: n });
         }
         let mut parts = self.parts.clone();
-        parts.keep(n.min(triangles), n.saturating_sub(triangles));
+        parts.truncate(n.min(triangles), n.saturating_sub(triangles));
         Self::new(parts)
     }
 
@@ -234,8 +236,8 @@ pub(crate) fn bounding_sphere(balls: impl Iterator<Item = (DVec3, f64)> + Clone)
         return (DVec3::ZERO, 0.0);
     }
     let middle = (low + high) / 2.0;
-    let reach = |(centre, radius): (DVec3, f64)| length(centre - middle) + radius;
-    (middle, balls.map(reach).fold(0.0, f64::max))
+    let reaches = balls.map(|(centre, radius)| length(centre - middle) + radius);
+    (middle, reaches.fold(0.0, f64::max))
 }
 
 /// Length of a vector whose square may leave the range of f64.
@@ -244,7 +246,12 @@ fn length(v: DVec3) -> f64 {
     if largest > 0.0 { (v / largest).length() * largest } else { 0.0 }
 }
 
-fn whole(parts: &SceneParts) -> Structure {
+/// What lies below `end` of a range.
+fn part_below(range: &Range<usize>, end: usize) -> Range<usize> {
+    range.start.min(end)..range.end.min(end)
+}
+
+fn structure_of_all(parts: &SceneParts) -> Structure {
     Structure {
         name: parts.name.clone(),
         vertices: 0..parts.vertices.len(),
@@ -256,11 +263,10 @@ fn whole(parts: &SceneParts) -> Structure {
 }
 
 impl SceneParts {
-    fn keep(&mut self, triangles: usize, spheres: usize) {
+    fn truncate(&mut self, triangles: usize, spheres: usize) {
         for structure in &mut self.structures {
-            let clamp = |range: &Range<usize>, end: usize| range.start.min(end)..range.end.min(end);
-            structure.triangles = clamp(&structure.triangles, triangles);
-            structure.spheres = clamp(&structure.spheres, spheres);
+            structure.triangles = part_below(&structure.triangles, triangles);
+            structure.spheres = part_below(&structure.spheres, spheres);
         }
         while self.structures.last().is_some_and(|s| s.triangles.is_empty() && s.spheres.is_empty()) {
             self.structures.pop();

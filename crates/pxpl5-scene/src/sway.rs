@@ -2,6 +2,7 @@
 
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
+use tracking::random;
 
 use crate::trig;
 
@@ -18,7 +19,7 @@ use crate::trig;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sway {
-    /// Draws the phases.
+    /// Draws the phases of the sines; any number.
     pub seed: u64,
     /// Multiplies all amplitudes: 0 is none, 1 as published.
     pub scale: f64,
@@ -55,52 +56,59 @@ pub(crate) struct Swing {
 }
 
 impl Sway {
-    /// No sway.
+    /// A head that keeps exactly to its path: amplitudes of 0.
     #[must_use]
     pub fn none() -> Self {
         Self { seed: 0, scale: 0.0 }
     }
 
-    pub(crate) fn at(&self, seconds: f64) -> Swing {
-        let mut phases = Phases(self.seed);
-        let mut sum = |sines: &[Sine]| -> f64 {
-            let sine = |&(hz, amplitude): &Sine| amplitude * trig::sin_turns(hz * seconds + phases.next_turns());
-            self.scale * sines.iter().map(sine).sum::<f64>()
-        };
+    pub(crate) fn swing_at(&self, seconds: f64) -> Swing {
+        let mut sums = SumsOfSines { sway: self, seconds, phases_drawn: 0 };
         Swing {
-            azimuth_deg: sum(&AZIMUTH),
+            azimuth_deg: sums.next(&AZIMUTH),
             // Held short of the pole, where upright has no meaning, whatever the scale.
-            elevation_deg: (10.0 + sum(&ELEVATION)).clamp(-80.0, 80.0),
-            distance_factor: (1.0 + sum(&DISTANCE)).max(0.1),
-            yaw_deg: sum(&GAZE_YAW),
-            pitch_deg: sum(&GAZE_PITCH),
-            roll_deg: sum(&GAZE_ROLL),
+            elevation_deg: (10.0 + sums.next(&ELEVATION)).clamp(-80.0, 80.0),
+            distance_factor: (1.0 + sums.next(&DISTANCE)).max(0.1),
+            yaw_deg: sums.next(&GAZE_YAW),
+            pitch_deg: sums.next(&GAZE_PITCH),
+            roll_deg: sums.next(&GAZE_ROLL),
         }
+    }
+}
+
+/// Adds up sines, each with the next phase of the seed.
+struct SumsOfSines<'a> {
+    sway: &'a Sway,
+    seconds: f64,
+    phases_drawn: u64,
+}
+
+impl SumsOfSines<'_> {
+    fn next(&mut self, sines: &[Sine]) -> f64 {
+        let values = sines.iter().map(|&(hz, amplitude)| {
+            let turns = hz * self.seconds + self.next_phase_turns();
+            amplitude * trig::sin_turns(turns)
+        });
+        let sum: f64 = values.sum();
+        self.sway.scale * sum
+    }
+
+    fn next_phase_turns(&mut self) -> f64 {
+        let phase = random::unit(random::bits(self.sway.seed, self.phases_drawn));
+        self.phases_drawn += 1;
+        phase
     }
 }
 
 impl Swing {
     /// How far the gaze is off the path's.
     pub(crate) fn gaze(&self) -> DQuat {
-        turn(DVec3::Y, self.yaw_deg) * turn(DVec3::X, self.pitch_deg) * turn(DVec3::Z, self.roll_deg)
+        turn_about(DVec3::Y, self.yaw_deg) * turn_about(DVec3::X, self.pitch_deg) * turn_about(DVec3::Z, self.roll_deg)
     }
 }
 
 /// Rotation by `angle_deg` about the unit vector `axis`.
-pub(crate) fn turn(axis: DVec3, angle_deg: f64) -> DQuat {
+pub(crate) fn turn_about(axis: DVec3, angle_deg: f64) -> DQuat {
     let (sin, cos) = trig::sin_cos_deg(angle_deg / 2.0);
     DQuat::from_xyzw(axis.x * sin, axis.y * sin, axis.z * sin, cos)
-}
-
-/// SplitMix64 (Steele, Lea and Flood, 2014): a well-mixed number per step from any seed.
-struct Phases(u64);
-
-impl Phases {
-    fn next_turns(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
 }

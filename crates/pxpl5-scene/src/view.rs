@@ -1,27 +1,19 @@
 //! The head-mounted display: from a head's pose to the matrices of its two eyes.
 
-use glam::{DMat4, DQuat, DVec3, DVec4, Mat4, Quat, Vec3};
+use glam::{DMat4, DQuat, DVec3, DVec4, Mat4};
 use serde::{Deserialize, Serialize};
+use tracking::Pose;
 
 use crate::error::{RangeError, require};
 use crate::scene::Frame;
 use crate::trig;
 
-/// Where a head is and which way it looks: right-handed, +y up, looking along its own -z, +x to its right.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Pose {
-    /// The point between the eyes, world coordinates, metres.
-    pub position: Vec3,
-    /// From head to world coordinates; of unit length.
-    pub orientation: Quat,
-}
-
 /// An eye. Left comes first everywhere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Eye {
-    /// The left eye.
+    /// The left eye, half the eye separation left of the head's place.
     Left,
-    /// The right eye.
+    /// The right eye, half the eye separation right of the head's place.
     Right,
     /// The point between the eyes, for a single picture.
     Centre,
@@ -30,7 +22,7 @@ pub enum Eye {
 /// The transforms of one eye's picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// Which eye.
+    /// The eye that sees the picture.
     pub eye: Eye,
     /// From world to eye coordinates: right-handed, +y up, looking along -z. Rigid.
     pub world_to_eye: Mat4,
@@ -52,7 +44,7 @@ impl View {
     }
 }
 
-/// Numbers of a head-mounted display.
+/// Numbers of a head-mounted display, in metres, degrees and pixels; checked by [`Hmd::new`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HmdConfig {
@@ -107,7 +99,8 @@ impl Hmd {
     /// [`RangeError`] names the first number out of its range.
     pub fn new(config: HmdConfig) -> Result<Self, RangeError> {
         let c = &config;
-        let (separation, fov) = (c.eye_separation_m, c.horizontal_fov_deg);
+        let separation = c.eye_separation_m;
+        let fov = c.horizontal_fov_deg;
         require((0.0..=1.0).contains(&separation), "eye_separation_m", "0 to 1", separation)?;
         require((1.0..=170.0).contains(&fov), "horizontal_fov_deg", "1 to 170", fov)?;
         for (what, px) in [("width_px", c.width_px), ("height_px", c.height_px)] {
@@ -120,7 +113,7 @@ impl Hmd {
         Ok(Self { config, projection })
     }
 
-    /// The numbers.
+    /// The numbers, all within their ranges.
     #[must_use]
     pub fn config(&self) -> &HmdConfig {
         &self.config
@@ -177,7 +170,8 @@ fn half_width(config: &HmdConfig) -> f64 {
 fn projection(config: &HmdConfig) -> Mat4 {
     let half_width = half_width(config);
     let half_height = half_width * f64::from(config.height_px) / f64::from(config.width_px);
-    let (near, far) = (config.near_m, config.far_m);
+    let near = config.near_m;
+    let far = config.far_m;
     DMat4::from_cols(
         DVec4::new(1.0 / half_width, 0.0, 0.0, 0.0),
         DVec4::new(0.0, 1.0 / half_height, 0.0, 0.0),
@@ -189,9 +183,9 @@ fn projection(config: &HmdConfig) -> Mat4 {
 
 /// Inverse of the head's pose, in double precision. An orientation of length zero counts as none.
 fn world_to_head(head: &Pose) -> DMat4 {
-    let q = head.orientation.as_dquat();
+    let q = head.orientation;
     let length = q.length();
     let q = if length > 0.0 { q / length } else { DQuat::IDENTITY };
     let back = q.conjugate();
-    DMat4::from_rotation_translation(back, -(back * head.position.as_dvec3()))
+    DMat4::from_rotation_translation(back, -(back * head.position))
 }

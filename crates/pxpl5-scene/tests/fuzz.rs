@@ -20,7 +20,7 @@ fn ply(encoding: &str) -> Vec<u8> {
         file.extend(b"0 0 0 0 0 1 9\n1 0 0 0 0 1 9\n0 1 0 0 0 1 9\n3 0 1 2\n4 0 1 2 0\n");
         return file;
     }
-    let word = |bits: u32| if encoding.contains("big") { bits.to_be_bytes() } else { bits.to_le_bytes() };
+    let word = if encoding.contains("big") { u32::to_be_bytes } else { u32::to_le_bytes };
     for vertex in [[0.0_f32, 0.0, 0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0, 0.0, 1.0]] {
         vertex.iter().for_each(|x| file.extend(word(x.to_bits())));
         file.push(9);
@@ -76,7 +76,8 @@ fn apply(file: &mut Vec<u8>, damage: Damage) {
         }
         Damage::Cut(i) => file.truncate(i.index(length)),
         Damage::Repeat(i, j) => {
-            let (i, j) = (i.index(length), j.index(length));
+            let i = i.index(length);
+            let j = j.index(length);
             file.extend_from_within(i.min(j)..i.max(j));
         }
     }

@@ -2,7 +2,9 @@
 
 use glam::Vec3;
 use pxpl5_scene::config::{DEFAULT_COLOUR, FIT_RADIUS_M};
-use pxpl5_scene::{Format, LoadError, Place, Scene, from_bytes, load};
+#[cfg(feature = "files")]
+use pxpl5_scene::load;
+use pxpl5_scene::{Format, LoadError, Place, Scene, from_bytes};
 
 fn read(format: Format, text: impl AsRef<[u8]>) -> Result<Scene, LoadError> {
     from_bytes(text.as_ref(), format, "test")
@@ -135,7 +137,8 @@ fn normals_doubles_fractional_colours_and_foreign_elements_of_ply_are_understood
 
 /// A scene as an ASCII PLY file, with all the digits of its numbers.
 fn written(scene: &Scene) -> String {
-    let (vertices, triangles) = (scene.vertices(), scene.triangles());
+    let vertices = scene.vertices();
+    let triangles = scene.triangles();
     let mut text = format!("ply\nformat ascii 1.0\nelement vertex {}\n", vertices.len());
     for name in ["x", "y", "z", "nx", "ny", "nz"] {
         text += &format!("property float {name}\n");
@@ -145,7 +148,9 @@ fn written(scene: &Scene) -> String {
     }
     text += &format!("element face {}\nproperty list uchar int vertex_indices\nend_header\n", triangles.len());
     for v in vertices {
-        let ([x, y, z], [a, b, c], [red, green, blue]) = (v.position.to_array(), v.normal.to_array(), v.colour);
+        let [x, y, z] = v.position.to_array();
+        let [a, b, c] = v.normal.to_array();
+        let [red, green, blue] = v.colour;
         text += &format!("{x} {y} {z} {a} {b} {c} {red} {green} {blue}\n");
     }
     triangles.iter().for_each(|[a, b, c]| text += &format!("3 {a} {b} {c}\n"));
@@ -202,17 +207,21 @@ fn an_empty_file_is_refused_in_every_format() {
     }
 }
 
-#[test]
-fn a_file_with_nothing_to_draw_says_what_is_missing() {
-    let nothing = |format, text: &str| match read(format, text) {
+/// Of which primitive the error says that there is none.
+fn missing_primitive(format: Format, text: &str) -> &'static str {
+    match read(format, text) {
         Err(LoadError::NothingToDraw { expected, .. }) => expected,
         other => panic!("{other:?}"),
-    };
-    assert_eq!(nothing(Format::Obj, "v 0 0 0\n"), "triangle");
+    }
+}
+
+#[test]
+fn a_file_with_nothing_to_draw_says_what_is_missing() {
+    assert_eq!(missing_primitive(Format::Obj, "v 0 0 0\n"), "triangle");
     let header =
         "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-    assert_eq!(nothing(Format::Ply, header), "triangle");
-    assert_eq!(nothing(Format::Pdb, "HEADER\n"), "atom");
+    assert_eq!(missing_primitive(Format::Ply, header), "triangle");
+    assert_eq!(missing_primitive(Format::Pdb, "HEADER\n"), "atom");
 }
 
 #[test]
@@ -307,9 +316,12 @@ fn an_absurd_count_of_corners_is_refused_at_once() {
     assert!(matches!(answer, Err(LoadError::Truncated { .. })), "{answer:?}");
 }
 
+fn message(format: Format, text: &str) -> String {
+    read(format, text).expect_err(text).to_string()
+}
+
 #[test]
 fn what_breaks_a_format_is_named_with_line_expectation_and_finding() {
-    let message = |format, text: &str| read(format, text).expect_err(text).to_string();
     assert_eq!(message(Format::Obj, "v 1 two 3\n"), "test: line 1: expected a number for y, found \"two\"");
     assert_eq!(message(Format::Obj, "v 1 2\n"), "test: line 1: expected a number for z, found \"\"");
     assert_eq!(message(Format::Obj, "v 1 2 3\nf 1 x 1\n"), "test: line 2: expected an index of vertices, found \"x\"");
@@ -353,6 +365,7 @@ fn text_that_is_not_utf8_is_refused_with_its_place() {
     assert!(matches!(read(Format::Ply, rows), Err(LoadError::NotText { found: 0xff, .. })));
 }
 
+#[cfg(feature = "files")]
 #[test]
 fn paths_that_lead_to_no_model_are_refused() {
     let folder = std::env::temp_dir().join(format!("pxpl5-scene-{}", std::process::id()));

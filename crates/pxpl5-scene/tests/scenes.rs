@@ -98,11 +98,11 @@ fn the_head_is_turned_outwards_and_its_normals_follow_its_triangles() {
 #[test]
 fn the_head_is_symmetric_and_taller_than_wide() {
     let head = scene("head");
-    let extent = |axis: Vec3| {
+    let [width, height] = [Vec3::X, Vec3::Y].map(|axis| {
         let along = head.vertices().iter().map(|v| v.position.dot(axis));
         along.clone().fold(f32::MIN, f32::max) - along.fold(f32::MAX, f32::min)
-    };
-    assert!(extent(Vec3::Y) > 1.5 * extent(Vec3::X));
+    });
+    assert!(height > 1.5 * width);
     let sum: f64 = head.vertices().iter().map(|v| f64::from(v.position.x)).sum();
     assert!((sum / head.vertices().len() as f64).abs() < 1e-4);
 }
@@ -143,27 +143,33 @@ fn mig_moves_its_five_control_surfaces_and_nothing_else() {
     assert!(still.count() < 12, "only points on a hinge's axis may stay");
 }
 
+/// Over the vertices of a structure at a time, metres.
+fn sum_of_heights(scene: &Scene, structure: usize, time_ps: u64) -> f32 {
+    let posed = scene.posed(&scene.edits_at(time_ps));
+    let range = scene.structures()[structure].vertices.clone();
+    range.map(|i| posed.vertices()[i].position.y).sum()
+}
+
 #[test]
 fn the_ailerons_of_mig_deflect_oppositely() {
     let mig = scene("mig");
-    let heights = |structure: usize, time_ps: u64| -> f32 {
-        let posed = mig.posed(&mig.edits_at(time_ps));
-        let range = mig.structures()[structure].vertices.clone();
-        range.map(|i| posed.vertices()[i].position.y).sum()
-    };
     // A quarter and three quarters of their 4 s: full deflection one way and the other.
-    let (early, late) = (1_000_000_000_000, 3_000_000_000_000);
-    assert!(heights(1, early) > heights(1, 0) && heights(2, early) < heights(2, 0));
+    let early = 1_000_000_000_000;
+    let late = 3_000_000_000_000;
+    assert!(
+        sum_of_heights(&mig, 1, early) > sum_of_heights(&mig, 1, 0)
+            && sum_of_heights(&mig, 2, early) < sum_of_heights(&mig, 2, 0)
+    );
     // The right one is the mirror image of the left one half a swing later.
-    assert!((heights(1, early) - heights(2, late)).abs() < 1e-5);
-    assert!((heights(1, late) - heights(2, early)).abs() < 1e-5);
+    assert!((sum_of_heights(&mig, 1, early) - sum_of_heights(&mig, 2, late)).abs() < 1e-5);
+    assert!((sum_of_heights(&mig, 1, late) - sum_of_heights(&mig, 2, early)).abs() < 1e-5);
 }
 
 #[test]
 fn full_screen_triangles_cover_every_corner_of_both_screens_however_the_head_turns() {
     let scene = scene("full-screen:12");
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is in range");
-    let pose = Pose { position: Vec3::new(3.0, -2.0, 9.0), orientation: glam::Quat::from_xyzw(0.5, 0.5, -0.5, 0.5) };
+    let pose = Pose { position: DVec3::new(3.0, -2.0, 9.0), orientation: glam::DQuat::from_xyzw(0.5, 0.5, -0.5, 0.5) };
     assert!(scene.structures().iter().all(|s| s.frame == Frame::Head));
     for view in hmd.stereo(&pose) {
         let to_clip = view.projection * view.to_eye(Frame::Head);
@@ -191,9 +197,10 @@ fn full_screen_triangles_lie_at_different_depths() {
 fn the_first_atoms_of_molecules_are_those_of_myoglobin() {
     // 783 carbons, 216 nitrogens, 215 oxygens, 2 sulphurs in the entry; and a water molecule.
     let molecules = scene("molecules");
-    let of = |colour: [u8; 3]| molecules.spheres().iter().filter(|s| s.colour == colour).count();
-    assert_eq!([of([144, 144, 144]), of([48, 80, 248]), of([255, 216, 48])], [783, 216, 2]);
-    assert_eq!([of([240, 24, 24]), of([255, 255, 255])], [216, 2]);
+    let colours = [[144, 144, 144], [48, 80, 248], [255, 216, 48], [240, 24, 24], [255, 255, 255]];
+    let counts = colours.map(|colour| molecules.spheres().iter().filter(|s| s.colour == colour).count());
+    // Carbon, nitrogen, sulphur, oxygen, hydrogen.
+    assert_eq!(counts, [783, 216, 2, 216, 2]);
 }
 
 #[test]

@@ -4,18 +4,18 @@ use pphigs::{Picture, Share};
 use pxpl5_geometry::Viewport;
 use pxpl5_wire::{CopyTarget, Lines, NodeId, RegionGrid, RegionId, SurfaceId};
 
-/// The boards and the kind of picture.
+/// The boards that take part, and the kind of picture that they make.
 #[derive(Clone, Debug)]
-pub struct Config {
-    /// The host interface.
+pub struct RenderingControlConfig {
+    /// Node of the host interface, which sends views and edits.
     pub host: NodeId,
-    /// The master GP.
+    /// Node of the GP that begins every stage.
     pub master: NodeId,
-    /// The slave GPs, at least one.
+    /// Nodes of the slave GPs, at least one.
     pub slaves: Vec<NodeId>,
-    /// The renderers, at least one.
+    /// Nodes of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// One frame buffer for mono, or left and right.
+    /// Node of the one frame buffer of a mono picture, or of the left and the right eye's.
     pub frame_buffers: Vec<NodeId>,
     /// What is drawn of each eye.
     pub picture: Picture,
@@ -27,7 +27,7 @@ pub(crate) const PROGRAM_BYTES: u64 = 1 << 20;
 /// Bytes of a pointer in a bin.
 pub(crate) const BIN_ENTRY_BYTES: u64 = 4;
 
-impl Config {
+impl RenderingControlConfig {
     /// Eyes of a frame: 1 or 2.
     #[must_use]
     pub fn eyes(&self) -> u64 {

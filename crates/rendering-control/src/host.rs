@@ -1,6 +1,6 @@
 //! The host: SEND.
 
-use crate::config::Config;
+use crate::config::RenderingControlConfig;
 use crate::protocol::Order;
 use pphigs::FrameView;
 use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
@@ -16,7 +16,7 @@ use pxpl5_sim::Time;
 /// [`Fault::Protocol`] when something else than the master's answer arrives.
 pub async fn host(
     gp: Gp,
-    config: Config,
+    config: RenderingControlConfig,
     timing: HostTiming,
     mut view_of: impl FnMut(u64, Time) -> FrameView,
 ) -> Result<(), Fault> {

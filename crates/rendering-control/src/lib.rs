@@ -35,7 +35,7 @@ mod protocol;
 pub mod rules;
 mod slave;
 
-pub use config::Config;
+pub use config::RenderingControlConfig;
 pub use host::host;
 pub use master::master;
 pub use slave::slave;

@@ -1,6 +1,6 @@
 //! The master GP: it synchronises host, slaves, renderers and frame buffers.
 
-use crate::config::{Config, PROGRAM_BYTES};
+use crate::config::{PROGRAM_BYTES, RenderingControlConfig};
 use crate::protocol::{Order, Token};
 use crate::rules::Completed;
 use pphigs::copy_message;
@@ -37,7 +37,7 @@ struct Reports {
 
 struct Master {
     gp: Gp,
-    config: Config,
+    config: RenderingControlConfig,
     completed: Completed,
     edits_begun: u64,
     transforms_allowed: u64,
@@ -59,7 +59,7 @@ struct Master {
 /// # Errors
 ///
 /// [`Fault::Protocol`] for a message that no board sends, [`Fault::Memory`] if the program does not fit.
-pub async fn master(gp: Gp, config: Config) -> Result<(), Fault> {
+pub async fn master(gp: Gp, config: RenderingControlConfig) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     let mut master = Master::new(gp, config);
     loop {
@@ -72,7 +72,7 @@ pub async fn master(gp: Gp, config: Config) -> Result<(), Fault> {
 }
 
 impl Master {
-    fn new(gp: Gp, config: Config) -> Self {
+    fn new(gp: Gp, config: RenderingControlConfig) -> Self {
         Self {
             completed: Completed::none(config.eyes()),
             edits_begun: 0,
@@ -92,11 +92,15 @@ impl Master {
 
     /// Waits for a message or for a frame buffer to swap.
     async fn wait(&self) -> Option<Received> {
-        let happened = || match self.gp.take_message() {
+        self.gp.until("a message or a swap", || self.message_or_swap()).await
+    }
+
+    /// `Some(Some(message))`, or `Some(None)` when frame buffers have swapped since the last look.
+    fn message_or_swap(&self) -> Option<Option<Received>> {
+        match self.gp.take_message() {
             Some(received) => Some(Some(received)),
             None => (self.swaps_shown() > self.completed.swapped).then_some(None),
-        };
-        self.gp.until("a message or a swap", happened).await
+        }
     }
 
     fn swaps_shown(&self) -> u64 {
@@ -175,8 +179,13 @@ impl Master {
         self.renderers[renderer] = Renderer::Receiving;
         let slave = self.config.slaves[self.next_slave];
         self.next_slave = (self.next_slave + 1) % self.config.slaves.len();
-        let (slaves_left, copy) = (self.config.slaves.len() as u16, self.completed.frame_buffer_available(picture));
-        let token = Token { picture, region, renderer: renderer as u16, slaves_left, copy };
+        let token = Token {
+            picture,
+            region,
+            renderer: renderer as u16,
+            slaves_left: self.config.slaves.len() as u16,
+            copy: self.completed.frame_buffer_available(picture),
+        };
         let (words, body) = Order::Token(token).message();
         self.gp.send(slave, words, body).await;
     }
@@ -203,10 +212,10 @@ impl Master {
     }
 
     async fn swap(&mut self) {
-        let buffer = Config::buffer_of(self.swaps_requested);
+        let buffer = RenderingControlConfig::buffer_of(self.swaps_requested);
         self.swaps_requested += 1;
-        let body = || Body::Words(swap_request(buffer));
-        self.gp.send_batch(self.config.frame_buffers.iter().map(|node| (*node, 2, body())).collect()).await;
+        let requests = self.config.frame_buffers.iter().map(|node| (*node, 2, Body::Words(swap_request(buffer))));
+        self.gp.send_batch(requests.collect()).await;
     }
 
     async fn note(&mut self, received: &Received) -> Result<(), Fault> {
@@ -274,7 +283,7 @@ impl Master {
     }
 }
 
-pub(crate) fn copy_order(config: &Config, picture: u64, region: RegionId) -> CopyOrder {
+pub(crate) fn copy_order(config: &RenderingControlConfig, picture: u64, region: RegionId) -> CopyOrder {
     CopyOrder {
         target: config.target(picture, region),
         context: 0,

@@ -27,7 +27,7 @@ pub(crate) struct Token {
     pub(crate) copy: bool,
 }
 
-/// Everything that is said.
+/// Everything that host, master, slaves and renderers tell each other.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Order {
     /// Host to all: view and edits of a frame.
@@ -58,7 +58,6 @@ impl Order {
     }
 
     fn words(&self) -> Vec<Word> {
-        let numbered = |tag: Word, n: u64| vec![tag, n as Word, (n >> 32) as Word];
         match self {
             Self::Send(view) => [vec![SEND], view.to_words()].concat(),
             Self::Edit(frame) => numbered(EDIT, *frame),
@@ -74,25 +73,40 @@ impl Order {
 
     /// Reads a received message.
     pub(crate) fn read(received: &Received, at: NodeId) -> Result<Self, Fault> {
-        let unknown = |found: String| Fault::Protocol { node: at, found };
         let Body::Words(words) = &received.body else {
-            return Err(unknown("of commands or pixels at a processor".to_owned()));
+            return Err(Fault::Protocol { node: at, found: "of commands or pixels at a processor".to_owned() });
         };
-        let number = || words.get(1).zip(words.get(2)).map(|(low, high)| u64::from(*low) | u64::from(*high) << 32);
-        let order = match words.first() {
+        Self::from_words(words)
+            .ok_or_else(|| Fault::Protocol { node: at, found: format!("{words:x?} from node {}", received.source.0) })
+    }
+
+    /// `None` for words that are no order.
+    fn from_words(words: &[Word]) -> Option<Self> {
+        match words.first() {
             Some(&SEND) => FrameView::from_words(&words[1..]).ok().map(Self::Send),
-            Some(&EDIT) => number().map(Self::Edit),
-            Some(&EDITED) => number().map(Self::Edited),
-            Some(&EDITS_DONE) => number().map(Self::EditsDone),
-            Some(&TRANSFORM) => number().map(Self::Transform),
-            Some(&TRANSFORMED) => number().map(|n| Self::Transformed(n, words[3..].to_vec())),
+            Some(&EDIT) => number_of(words).map(Self::Edit),
+            Some(&EDITED) => number_of(words).map(Self::Edited),
+            Some(&EDITS_DONE) => number_of(words).map(Self::EditsDone),
+            Some(&TRANSFORM) => number_of(words).map(Self::Transform),
+            Some(&TRANSFORMED) => number_of(words).map(|n| Self::Transformed(n, words[3..].to_vec())),
             Some(&TOKEN) => Token::read(words).map(Self::Token),
             Some(&ACCEPTED) => Token::read(words).map(Self::Accepted),
             Some(&COPY_ACKNOWLEDGEMENT) => words.get(3).map(|node| Self::Copied { frame_buffer: NodeId(*node as u16) }),
             _ => None,
-        };
-        order.ok_or_else(|| unknown(format!("{words:x?} from node {}", received.source.0)))
+        }
     }
+}
+
+/// A message of a tag and the number of a frame or picture.
+fn numbered(tag: Word, number: u64) -> Vec<Word> {
+    vec![tag, number as Word, (number >> 32) as Word]
+}
+
+/// The number of a [`numbered`] message.
+fn number_of(words: &[Word]) -> Option<u64> {
+    let low = *words.get(1)?;
+    let high = *words.get(2)?;
+    Some(u64::from(low) | u64::from(high) << 32)
 }
 
 impl Token {

@@ -20,7 +20,7 @@ pub struct Completed {
 }
 
 impl Completed {
-    /// Nothing done yet.
+    /// The state at switching on: no frame or picture has passed any stage.
     #[must_use]
     pub const fn none(eyes: u64) -> Self {
         Self { eyes, sent: 0, edited: 0, transformed: 0, rendered: 0, copied: 0, swapped: 0 }

@@ -1,6 +1,6 @@
 //! A slave GP: EDIT and TRANSFORM in the foreground, tokens in the background.
 
-use crate::config::{BIN_ENTRY_BYTES, Config, PROGRAM_BYTES};
+use crate::config::{BIN_ENTRY_BYTES, PROGRAM_BYTES, RenderingControlConfig};
 use crate::master::copy_order;
 use crate::protocol::{Order, Token};
 use pphigs::{FrameView, Pass, RegionEnvelope, Share, Transforming, region_messages};
@@ -31,25 +31,27 @@ type Shared = Rc<RefCell<State>>;
 /// a message that no board sends.
 pub fn slave(
     gp: &Gp,
-    config: &Config,
+    config: &RenderingControlConfig,
     share: Share,
     index: usize,
 ) -> [(Level, impl Future<Output = Result<(), Fault>> + use<>); 2] {
     let state = Shared::default();
-    let program = |level| {
-        let (gp, config, share, state) = (gp.at_level(level), config.clone(), share.clone(), Rc::clone(&state));
-        let future = async move {
+    [Level::Interrupt, Level::Foreground].map(|level| {
+        let gp = gp.at_level(level);
+        let config = config.clone();
+        let share = share.clone();
+        let state = Rc::clone(&state);
+        let program = async move {
             match level {
                 Level::Foreground => transform_program(gp, config, share, state).await,
                 Level::Interrupt => token_program(gp, config, index, state).await,
             }
         };
-        (level, future)
-    };
-    [program(Level::Interrupt), program(Level::Foreground)]
+        (level, program)
+    })
 }
 
-async fn transform_program(gp: Gp, config: Config, share: Share, state: Shared) -> Result<(), Fault> {
+async fn transform_program(gp: Gp, config: RenderingControlConfig, share: Share, state: Shared) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     gp.reserve(Account::DisplayList, share.bytes(), None)?;
     gp.install(|processor| share.install(processor))?;
@@ -65,7 +67,7 @@ async fn transform_program(gp: Gp, config: Config, share: Share, state: Shared) 
 }
 
 /// EDIT: applies the edits of a frame and tells the master.
-async fn edit(gp: &Gp, config: &Config, state: &Shared, frame: u64) -> FrameView {
+async fn edit(gp: &Gp, config: &RenderingControlConfig, state: &Shared, frame: u64) -> FrameView {
     gp.until("leave to EDIT", || (state.borrow().edits_allowed > frame).then_some(())).await;
     let view = gp.until("SEND of the frame", || state.borrow_mut().views.pop_front()).await;
     gp.begin(Stage::Edit, frame, None);
@@ -78,15 +80,17 @@ async fn edit(gp: &Gp, config: &Config, state: &Shared, frame: u64) -> FrameView
 /// TRANSFORM: makes commands of all held primitives and puts them into bins.
 async fn transform(
     gp: &Gp,
-    config: &Config,
+    config: &RenderingControlConfig,
     share: &Share,
     state: &Shared,
     view: &FrameView,
     picture: u64,
 ) -> Result<(), Fault> {
-    let (frame, eye) = (config.frame_of(picture), config.eye_of(picture));
+    let frame = config.frame_of(picture);
+    let eye = config.eye_of(picture);
     gp.begin(Stage::Transform, frame, Some(eye));
-    let (pass, context) = (share.transform(view, eye.index(), config.picture), (picture % 2) as u8);
+    let pass = share.transform(view, eye.index(), config.picture);
+    let context = (picture % 2) as u8;
     reserve_bins(gp, &pass, context)?;
     let passes = std::slice::from_ref(&pass);
     gp.work(&Transforming { passes, context, begins: true }).await?;
@@ -109,8 +113,8 @@ fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Handles whatever arrives.
-async fn token_program(gp: Gp, config: Config, index: usize, state: Shared) -> Result<(), Fault> {
+/// Keeps the views and the leave that arrive, and walks with every token.
+async fn token_program(gp: Gp, config: RenderingControlConfig, index: usize, state: Shared) -> Result<(), Fault> {
     loop {
         let received = gp.receive().await;
         match Order::read(&received, gp.node())? {
@@ -128,7 +132,7 @@ async fn token_program(gp: Gp, config: Config, index: usize, state: Shared) -> R
 }
 
 /// Sends this slave's bin of the token's region, then passes the token on.
-async fn walk(gp: &Gp, config: &Config, index: usize, state: &Shared, token: Token) {
+async fn walk(gp: &Gp, config: &RenderingControlConfig, index: usize, state: &Shared, token: Token) {
     let pass = state.borrow().bins[(token.picture % 2) as usize].clone();
     let renderer = config.renderers[usize::from(token.renderer)];
     for list in pass.iter().flat_map(|pass| messages(config, pass, token)) {
@@ -147,7 +151,7 @@ async fn walk(gp: &Gp, config: &Config, index: usize, state: &Shared, token: Tok
 }
 
 /// The first slave begins the region, the last one ends it.
-fn messages(config: &Config, pass: &Arc<Pass>, token: Token) -> Vec<CommandList> {
+fn messages(config: &RenderingControlConfig, pass: &Arc<Pass>, token: Token) -> Vec<CommandList> {
     let last = token.slaves_left == 1;
     let envelope = RegionEnvelope {
         begin: usize::from(token.slaves_left) == config.slaves.len(),
@@ -157,7 +161,7 @@ fn messages(config: &Config, pass: &Arc<Pass>, token: Token) -> Vec<CommandList>
     region_messages(pass, token.region, 0, envelope)
 }
 
-async fn tell_master(gp: &Gp, config: &Config, order: &Order) {
+async fn tell_master(gp: &Gp, config: &RenderingControlConfig, order: &Order) {
     let (words, body) = order.message();
     gp.send(config.master, words, body).await;
 }

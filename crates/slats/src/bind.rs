@@ -1,18 +1,18 @@
 //! Which renderer keeps which region, in which context, and in which order regions are copied.
 
-use crate::config::{ConfigError, Copy};
+use crate::config::{CopySchedule, SlatsConfigError};
 use pxpl5_wire::{Eye, RegionGrid, RegionId};
 
-/// A region's place.
+/// A region of one eye's field, and the renderer and context that keep it for the whole run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BoundRegion {
-    /// Which eye's.
+    /// The eye in whose picture the region lies.
     pub eye: Eye,
-    /// Which region of the field.
+    /// Number of the region in [`RegionGrid::FIELD`].
     pub region: RegionId,
-    /// Index of the renderer.
+    /// Index of the renderer in [`crate::SlatsConfig::renderers`].
     pub renderer: usize,
-    /// Context of its pixel memory.
+    /// Context of its pixel memory that holds the region.
     pub context: u8,
 }
 
@@ -24,12 +24,12 @@ impl BoundRegion {
     }
 }
 
-/// All regions of both eyes.
+/// All regions of both eyes, each bound to a renderer for the whole run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Binding {
     regions: Vec<BoundRegion>,
     renderers: usize,
-    copy: Copy,
+    copy: CopySchedule,
 }
 
 impl Binding {
@@ -38,19 +38,23 @@ impl Binding {
     ///
     /// # Errors
     ///
-    /// [`ConfigError::TooFewRenderers`] when a renderer would need more than `contexts` contexts.
-    pub fn new(renderers: usize, contexts: u8, copy: Copy) -> Result<Self, ConfigError> {
+    /// [`SlatsConfigError::TooFewRenderers`] when a renderer would need more than `contexts` contexts.
+    pub fn new(renderers: usize, contexts: u8, copy: CopySchedule) -> Result<Self, SlatsConfigError> {
         let columns = RegionGrid::FIELD.columns() as u16;
         let kinds = [(0, Eye::Left), (0, Eye::Right), (1, Eye::Left), (1, Eye::Right)];
         let all = kinds.iter().flat_map(|(row, eye)| (0..columns).map(move |c| (*eye, RegionId(row * columns + c))));
         let total = kinds.len() * usize::from(columns);
         let expected = total.div_ceil(usize::from(contexts.max(1)));
         if renderers < expected {
-            return Err(ConfigError::TooFewRenderers { found: renderers, expected });
+            return Err(SlatsConfigError::TooFewRenderers { found: renderers, expected });
         }
-        let bind =
-            |(i, (eye, region))| BoundRegion { eye, region, renderer: i % renderers, context: (i / renderers) as u8 };
-        Ok(Self { regions: all.enumerate().map(bind).collect(), renderers, copy })
+        let regions = all.enumerate().map(|(i, (eye, region))| BoundRegion {
+            eye,
+            region,
+            renderer: i % renderers,
+            context: (i / renderers) as u8,
+        });
+        Ok(Self { regions: regions.collect(), renderers, copy })
     }
 
     /// All regions in the order in which clumps are sent.
@@ -64,15 +68,15 @@ impl Binding {
     /// Whole: all halves, beginning left. Split: those of one half (`top`), the odd renderers beginning right.
     #[must_use]
     pub fn copies(&self, renderer: usize, top: bool) -> Vec<BoundRegion> {
-        let mine = |b: &&BoundRegion| b.renderer == renderer && (!self.copy.is_split() || b.is_top() == top);
-        let mut mine: Vec<_> = self.regions.iter().filter(mine).copied().collect();
+        let of_renderer = self.regions.iter().filter(|b| b.renderer == renderer);
+        let mut mine: Vec<_> = of_renderer.filter(|b| !self.copy.is_split() || b.is_top() == top).copied().collect();
         if self.copy.is_split() && renderer % 2 == 1 {
             mine.sort_by_key(|b| std::cmp::Reverse(b.eye));
         }
         alternate(mine)
     }
 
-    /// Number of renderers.
+    /// Number of renderers that the regions are dealt to.
     #[must_use]
     pub const fn renderers(&self) -> usize {
         self.renderers
@@ -99,7 +103,7 @@ mod tests {
 
     #[test]
     fn five_renderers_keep_four_regions_each_top_and_bottom_of_both_eyes() {
-        let binding = Binding::new(5, 4, Copy::Whole).expect("five are enough");
+        let binding = Binding::new(5, 4, CopySchedule::Whole).expect("five are enough");
         for renderer in 0..5 {
             let copies = binding.copies(renderer, true);
             let kinds: Vec<_> = copies.iter().map(|b| (b.eye, b.is_top())).collect();
@@ -109,7 +113,7 @@ mod tests {
 
     #[test]
     fn a_split_copy_begins_on_both_frame_buffers() {
-        let binding = Binding::new(5, 4, Copy::Split).expect("five are enough");
+        let binding = Binding::new(5, 4, CopySchedule::Split).expect("five are enough");
         let first: Vec<_> = (0..5).map(|renderer| binding.copies(renderer, false)[0].eye).collect();
         assert_eq!(first, [Eye::Left, Eye::Right, Eye::Left, Eye::Right, Eye::Left]);
         assert!((0..5).all(|renderer| binding.copies(renderer, false).iter().all(|b| !b.is_top())));
@@ -118,13 +122,12 @@ mod tests {
     #[test]
     fn every_region_is_bound_and_copied_once_on_any_number_of_renderers() {
         for renderers in 5..=20 {
-            for copy in [Copy::Whole, Copy::Split, Copy::Backup] {
+            for copy in [CopySchedule::Whole, CopySchedule::Split, CopySchedule::Backup] {
                 let binding = Binding::new(renderers, 4, copy).expect("enough");
                 let halves = if copy.is_split() { vec![true, false] } else { vec![true] };
-                let each = |top: bool| (0..renderers).map(move |renderer| (renderer, top));
                 let mut copied: Vec<_> = halves
                     .into_iter()
-                    .flat_map(each)
+                    .flat_map(|top| (0..renderers).map(move |renderer| (renderer, top)))
                     .flat_map(|(r, top)| binding.copies(r, top))
                     .map(|b| (b.eye, b.region))
                     .collect();
@@ -138,7 +141,7 @@ mod tests {
 
     #[test]
     fn four_renderers_are_too_few() {
-        let error = Binding::new(4, 4, Copy::Whole).expect_err("16 contexts for 20 regions");
+        let error = Binding::new(4, 4, CopySchedule::Whole).expect_err("16 contexts for 20 regions");
         assert!(error.to_string().contains("at least 5 renderers"));
     }
 }

@@ -5,12 +5,12 @@ use pphigs::{Binning, Picture, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, RegionGrid};
-use std::fmt;
+use thiserror::Error;
 
-/// When regions are copied.
+/// When the regions of a field are copied to the frame buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Copy {
-    /// All before the retrace.
+pub enum CopySchedule {
+    /// All regions before the retrace.
     Whole,
     /// Top regions before the retrace, bottom regions right after it (the COPY optimisation).
     Split,
@@ -19,7 +19,7 @@ pub enum Copy {
     Backup,
 }
 
-impl Copy {
+impl CopySchedule {
     /// Whether bottom regions are copied after the retrace.
     #[must_use]
     pub const fn is_split(self) -> bool {
@@ -27,65 +27,55 @@ impl Copy {
     }
 }
 
-/// The boards and the variant.
+/// The boards that take part, and the variant of Slats that they run.
 #[derive(Clone, Debug)]
-pub struct Config {
-    /// The host interface.
+pub struct SlatsConfig {
+    /// Node of the host interface, which sends the viewing transforms.
     pub host: NodeId,
-    /// The GPs; the first one leads.
+    /// Nodes of the GPs; the first one leads.
     pub processors: Vec<NodeId>,
-    /// The renderers.
+    /// Nodes of the renderers, by the index that [`crate::BoundRegion`] uses.
     pub renderers: Vec<NodeId>,
-    /// Left and right frame buffer.
+    /// Nodes of the left and the right eye's frame buffer.
     pub frame_buffers: [NodeId; 2],
-    /// When regions are copied.
-    pub copy: Copy,
+    /// When the regions of a field are copied.
+    pub copy: CopySchedule,
     /// Who gets the commands of a clump.
     pub binning: Binning,
-    /// Division of pixel memory.
+    /// How the bits of pixel memory are divided among contexts.
     pub layout: Layout,
-    /// Whether somebody may want pixels.
+    /// Whether somebody may want pixels: without it no command words are made, and all times stay the same.
     pub pixels: bool,
 }
 
 /// A machine on which Slats cannot run.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
-pub enum ConfigError {
+pub enum SlatsConfigError {
     /// There are more regions than contexts.
+    #[error(
+        "Slats binds 20 field regions statically: expected at least {expected} renderers of four contexts, found {found}"
+    )]
     TooFewRenderers {
-        /// Renderers found.
+        /// How many renderers the machine has.
         found: usize,
-        /// Renderers needed.
+        /// The fewest whose contexts hold the 20 regions of both eyes.
         expected: usize,
     },
     /// There is no graphics processor.
+    #[error("Slats needs at least one graphics processor, found none")]
     NoProcessor,
 }
 
-impl fmt::Display for ConfigError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooFewRenderers { found, expected } => write!(
-                f,
-                "Slats binds 20 field regions statically: expected at least {expected} renderers of four contexts, found {found}"
-            ),
-            Self::NoProcessor => f.write_str("Slats needs at least one graphics processor, found none"),
-        }
-    }
-}
-
-impl std::error::Error for ConfigError {}
-
-impl Config {
+impl SlatsConfig {
     /// Checks the numbers of boards.
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] when regions do not fit or no processor is there.
-    pub fn check(&self) -> Result<Binding, ConfigError> {
+    /// [`SlatsConfigError`] when regions do not fit or no processor is there.
+    pub fn check(&self) -> Result<Binding, SlatsConfigError> {
         if self.processors.is_empty() {
-            return Err(ConfigError::NoProcessor);
+            return Err(SlatsConfigError::NoProcessor);
         }
         Binding::new(self.renderers.len(), self.layout.plan().contexts, self.copy)
     }

@@ -1,6 +1,6 @@
 //! The host: SEND whenever the tracker has something new.
 
-use crate::config::Config;
+use crate::config::SlatsConfig;
 use pphigs::FrameView;
 use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::{Span, Time};
@@ -15,7 +15,7 @@ use pxpl5_wire::Body;
 /// None of its own; the type is that of a program.
 pub async fn host(
     gp: Gp,
-    config: Config,
+    config: SlatsConfig,
     timing: HostTiming,
     mut view_of: impl FnMut(u64, Time) -> FrameView,
 ) -> Result<(), Fault> {
@@ -23,9 +23,9 @@ pub async fn host(
         let started = gp.now();
         gp.begin(Stage::Send, update, None);
         let words = view_of(update, started).to_words();
-        gp.spend(timing.link_span(words.len() as u32)).await;
-        let (n, body) = (words.len() as u32, Body::Words(words.into()));
-        let sent = gp.send(config.processors[0], n, body).await;
+        let length_words = words.len() as u32;
+        gp.spend(timing.link_span(length_words)).await;
+        let sent = gp.send(config.processors[0], length_words, Body::Words(words.into())).await;
         gp.accepted(sent).await;
         gp.end(Stage::Send, update, None);
         let next = started + Span::from_ns(timing.view_period_ns);

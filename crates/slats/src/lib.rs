@@ -14,9 +14,9 @@
 //!   ([`pphigs::Binning::All`], the prototype) or to those that it touches. There is one clump buffer.
 //! - RENDER: regions are bound to renderers; only the lines of the coming field are drawn. A renderer keeps up to four
 //!   region contexts in its 208 bits, hence Gouraud shading.
-//! - COPY: whole ([`Copy::Whole`]): all regions before the retrace. Split ([`Copy::Split`]): the top regions before the
+//! - COPY: whole ([`CopySchedule::Whole`]): all regions before the retrace. Split ([`CopySchedule::Split`]): the top regions before the
 //!   retrace, the bottom ones right after it.
-//!   Backup ([`Copy::Backup`], beyond the prototype): whole, into the other buffer; a field that is not complete at
+//!   Backup ([`CopySchedule::Backup`], beyond the prototype): whole, into the other buffer; a field that is not complete at
 //!   its retrace is not shown, the last complete one of the same lines is shown again.
 //! - Without a backup a field that misses its retrace is shown as far as it has come; the GPs go on with the next whole field.
 //!
@@ -37,6 +37,6 @@ mod host;
 mod processor;
 
 pub use bind::{Binding, BoundRegion};
-pub use config::{Config, ConfigError, Copy};
+pub use config::{CopySchedule, SlatsConfig, SlatsConfigError};
 pub use host::host;
 pub use processor::{CLUMP, processor};

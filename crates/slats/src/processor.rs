@@ -1,7 +1,7 @@
 //! A graphics processor under Slats.
 
 use crate::bind::{Binding, BoundRegion};
-use crate::config::{Config, Copy};
+use crate::config::{CopySchedule, SlatsConfig};
 use pphigs::{
     FrameView, Pass, Picture, RegionEnvelope, Share, TransformCost, Transforming, ViewWordsError, copy_message,
     region_messages,
@@ -47,24 +47,26 @@ type Shared = Rc<RefCell<State>>;
 /// that no board sends.
 pub fn processor(
     gp: &Gp,
-    config: &Config,
+    config: &SlatsConfig,
     binding: &Binding,
     share: Share,
     index: usize,
 ) -> [(Level, impl Future<Output = Result<(), Fault>> + use<>); 2] {
     let state = Shared::default();
-    let program = |level| {
-        let (gp, config, binding) = (gp.at_level(level), config.clone(), binding.clone());
-        let (share, state) = (share.clone(), Rc::clone(&state));
-        let future = async move {
+    [Level::Interrupt, Level::Foreground].map(|level| {
+        let gp = gp.at_level(level);
+        let config = config.clone();
+        let binding = binding.clone();
+        let share = share.clone();
+        let state = Rc::clone(&state);
+        let program = async move {
             match level {
                 Level::Foreground => Processor { gp, config, binding, share, state, index }.fields().await,
                 Level::Interrupt => listen(gp, state).await,
             }
         };
-        (level, future)
-    };
-    [program(Level::Interrupt), program(Level::Foreground)]
+        (level, program)
+    })
 }
 
 /// Keeps the newest view and counts finished GPs.
@@ -79,13 +81,24 @@ async fn listen(gp: Gp, state: Shared) -> Result<(), Fault> {
     }
 }
 
+/// The 64-bit number whose low and high words these are.
+fn from_halves(low: Word, high: Word) -> u64 {
+    u64::from(low) | u64::from(high) << 32
+}
+
+/// The low and the high word of a 64-bit number.
+fn halves(number: u64) -> [Word; 2] {
+    [number as Word, (number >> 32) as Word]
+}
+
 impl State {
     fn note(&mut self, words: &[Word]) -> Result<(), ViewWordsError> {
-        let number = |low: Word, high: Word| u64::from(low) | u64::from(high) << 32;
         match words {
             [COPY_ACKNOWLEDGEMENT, ..] => self.copied += 1,
-            [CLUMPS_ACCEPTED, low, high] => self.note_finished(number(*low, *high)),
-            [BEGIN, low, high, view @ ..] => self.begun.push_back((number(*low, *high), FrameView::from_words(view)?)),
+            [CLUMPS_ACCEPTED, low, high] => self.note_finished(from_halves(*low, *high)),
+            [BEGIN, low, high, view @ ..] => {
+                self.begun.push_back((from_halves(*low, *high), FrameView::from_words(view)?));
+            }
             view => self.newest = Some(FrameView::from_words(view)?),
         }
         Ok(())
@@ -106,7 +119,7 @@ impl State {
 
 struct Processor {
     gp: Gp,
-    config: Config,
+    config: SlatsConfig,
     binding: Binding,
     share: Share,
     state: Shared,
@@ -135,8 +148,11 @@ impl Processor {
             self.show_backup(field).await;
             self.field(field, &view).await?;
             let others = self.config.processors.len() - 1;
-            let finished = || (self.state.borrow_mut().finished(field) >= others).then_some(());
-            self.gp.until("the clumps of the other processors", finished).await;
+            self.gp
+                .until("the clumps of the other processors", || {
+                    (self.state.borrow_mut().finished(field) >= others).then_some(())
+                })
+                .await;
             self.gp.end(Stage::Render, field, None);
             self.gp.spend_message().await;
             self.gp.send_prepared(self.copies(field, true));
@@ -155,7 +171,7 @@ impl Processor {
 
     /// Asks for the last complete field of these lines; a later request for the new one takes its place.
     async fn show_backup(&self, field: u64) {
-        if self.config.copy == Copy::Backup {
+        if self.config.copy == CopySchedule::Backup {
             self.gp.spend_message().await;
             self.swap(self.state.borrow().complete[(field % 2) as usize]);
         }
@@ -163,12 +179,11 @@ impl Processor {
 
     /// Waits for the copies, and has the field shown if they were in time.
     async fn show_if_complete(&self, field: u64) {
-        if self.config.copy != Copy::Backup {
+        if self.config.copy != CopySchedule::Backup {
             return;
         }
         let renderers = (0..self.binding.renderers()).filter(|r| !self.binding.copies(*r, true).is_empty()).count();
-        let copied = || (self.state.borrow().copied >= renderers as u64).then_some(());
-        self.gp.until("the copies of a field", copied).await;
+        self.gp.until("the copies of a field", || (self.state.borrow().copied >= renderers as u64).then_some(())).await;
         self.state.borrow_mut().copied = 0;
         self.gp.spend_message().await;
         if self.gp.field() < field {
@@ -179,14 +194,14 @@ impl Processor {
     }
 
     fn swap(&self, buffer: u8) {
-        let message = |node: &NodeId| (*node, 2, Body::Words(swap_request(buffer)));
-        self.gp.send_prepared(self.config.frame_buffers.iter().map(message).collect());
+        let requests = self.config.frame_buffers.iter().map(|node| (*node, 2, Body::Words(swap_request(buffer))));
+        self.gp.send_prepared(requests.collect());
     }
 
     /// Where a field is written.
     fn buffer(&self, field: u64) -> u8 {
         let complete = self.state.borrow().complete[(field % 2) as usize];
-        if self.config.copy == Copy::Backup { 1 - complete } else { 0 }
+        if self.config.copy == CopySchedule::Backup { 1 - complete } else { 0 }
     }
 
     /// Draws its share of every field that the leading GP begins.
@@ -196,7 +211,8 @@ impl Processor {
                 self.gp.until("the leading processor", || self.state.borrow_mut().begun.pop_front()).await;
             self.field(field, &view).await?;
             // Queued behind the clumps, so it arrives when they have been accepted.
-            let words = [CLUMPS_ACCEPTED, field as Word, (field >> 32) as Word];
+            let [low, high] = halves(field);
+            let words = [CLUMPS_ACCEPTED, low, high];
             self.gp.send(self.config.processors[0], 3, Body::Words(words.into())).await;
         }
     }
@@ -216,10 +232,11 @@ impl Processor {
     }
 
     async fn tell_others(&self, field: u64, view: &FrameView) {
-        let header = vec![BEGIN, field as Word, (field >> 32) as Word];
-        let words: Arc<[Word]> = [header, view.to_words()].concat().into();
-        let message = |node: &NodeId| (*node, words.len() as u32, Body::Words(Arc::clone(&words)));
-        self.gp.send_batch(self.config.processors.iter().skip(1).map(message).collect()).await;
+        let [low, high] = halves(field);
+        let words: Arc<[Word]> = [vec![BEGIN, low, high], view.to_words()].concat().into();
+        let others = self.config.processors.iter().skip(1);
+        let messages = others.map(|node| (*node, words.len() as u32, Body::Words(Arc::clone(&words))));
+        self.gp.send_batch(messages.collect()).await;
     }
 
     /// Draws this GP's share of what is shown from the retrace of `field` on.
@@ -277,7 +294,7 @@ impl Processor {
         let batch = (0..self.binding.renderers()).filter_map(|renderer| {
             let regions = self.binding.copies(renderer, top);
             let mut orders: Vec<_> = regions.iter().map(|bound| self.order(bound, field)).collect();
-            if let Some(last) = orders.last_mut().filter(|_| self.config.copy == Copy::Backup) {
+            if let Some(last) = orders.last_mut().filter(|_| self.config.copy == CopySchedule::Backup) {
                 last.acknowledge = Some(self.gp.node());
             }
             let list = copy_message(self.config.layout, orders, self.config.pixels);

@@ -19,20 +19,24 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let model = TrackerModel::new(tracker.clone())?;
             let span = (PS_PER_S, 600 * PS_PER_S);
             let errors = prediction_errors(&Synthetic::recorded_use(1), &model, &config, 2, &horizons, span)?;
-            let degrees: Vec<String> = errors.iter().map(|e| format!("{:.2}", e.mean_deg)).collect();
-            let millimetres: Vec<String> = errors.iter().map(|e| format!("{:.1}", e.mean_m * 1e3)).collect();
-            let growth = |e: fn(&tracking::predict::PredictionError) -> f64| {
-                format!("x{:.2} x{:.2}", e(&errors[3]) / e(&errors[1]), e(&errors[4]) / e(&errors[1]))
-            };
+            let degrees: Vec<f64> = errors.iter().map(|e| e.mean_deg).collect();
+            let millimetres: Vec<f64> = errors.iter().map(|e| e.mean_m * 1e3).collect();
+            let degrees_shown: Vec<String> = degrees.iter().map(|e| format!("{e:.2}")).collect();
+            let millimetres_shown: Vec<String> = millimetres.iter().map(|e| format!("{e:.1}")).collect();
             println!(
                 "{} {kind:?}: {} deg {}; {} mm {}",
                 tracker.name,
-                degrees.join(" "),
-                growth(|e| e.mean_deg),
-                millimetres.join(" "),
-                growth(|e| e.mean_m)
+                degrees_shown.join(" "),
+                growth(&degrees),
+                millimetres_shown.join(" "),
+                growth(&millimetres)
             );
         }
     }
     Ok(())
+}
+
+/// How many times larger the errors 100 and 200 ms ahead are than the one 50 ms ahead.
+fn growth(errors: &[f64]) -> String {
+    format!("x{:.2} x{:.2}", errors[3] / errors[1], errors[4] / errors[1])
 }

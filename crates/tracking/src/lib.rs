@@ -65,7 +65,7 @@ mod error;
 pub mod motion;
 mod pose;
 pub mod predict;
-mod random;
+pub mod random;
 pub mod rig;
 pub mod rotation;
 pub mod time;

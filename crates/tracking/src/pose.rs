@@ -8,7 +8,7 @@ use crate::rotation;
 /// Position in metres and orientation (head to world). Right-handed, y up; the head looks along its own -z.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// Place of the eye in the world, metres.
+    /// Place of the head in the world, metres: the point between the eyes, or the one eye where there is one picture.
     pub position: DVec3,
     /// Unit quaternion that turns head axes into world axes.
     pub orientation: DQuat,
@@ -26,6 +26,11 @@ impl Pose {
     /// A pose at the origin with this orientation.
     pub fn facing(orientation: DQuat) -> Self {
         Self { orientation, ..Self::IDENTITY }
+    }
+
+    /// The same with every number rounded to single precision, which is what a scene's coordinates have.
+    pub fn in_single_precision(&self) -> Self {
+        Self { position: self.position.as_vec3().as_dvec3(), orientation: self.orientation.as_quat().as_dquat() }
     }
 
     /// A world point in head axes (metres, -z ahead).
@@ -51,7 +56,7 @@ impl Pose {
         rotation::angle_deg(self.orientation, other.orientation)
     }
 
-    /// Whether every number is finite.
+    /// Whether all seven numbers are finite: neither NaN nor infinite.
     pub fn is_finite(&self) -> bool {
         self.position.is_finite() && self.orientation.is_finite()
     }
@@ -69,7 +74,8 @@ mod tests {
 
     #[test]
     fn interpolation_meets_both_ends() {
-        let (a, b) = (Pose::IDENTITY, Pose { position: DVec3::X, orientation: rotation::about_x(1.0) });
+        let a = Pose::IDENTITY;
+        let b = Pose { position: DVec3::X, orientation: rotation::about_x(1.0) };
         assert!(a.interpolate(&b, 0.0).angle_deg(&a) < 1e-12 && a.interpolate(&b, 1.0).angle_deg(&b) < 1e-12);
         assert_eq!(a.interpolate(&b, 0.5).position, DVec3::X * 0.5);
     }

@@ -1,18 +1,16 @@
 //! Seeded random numbers as pure functions of (seed, index): reports and knots can be drawn in any order, on any host.
+//!
+//! The generator is SplitMix64 (Steele, Lea and Flood 2014), whose step is the kernel's [`pxpl5_sim::mix`].
 
-/// Odd constant nearest to 2^64 / golden ratio, the increment of SplitMix64 (Steele, Lea and Flood 2014).
-const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+use pxpl5_sim::mix;
 
-/// Finaliser of SplitMix64: a bijection in which each input bit flips half of the output bits.
-fn finalise(mut x: u64) -> u64 {
-    x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    x ^ (x >> 31)
-}
+/// How far the states of neighbouring elements are apart: the increment of SplitMix64, 2^64 / golden ratio, made odd.
+const INCREMENT: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// 64 random bits for (seed, index): element `index` of the SplitMix64 sequence that starts at `seed`.
-pub(crate) fn bits(seed: u64, index: u64) -> u64 {
-    finalise(seed.wrapping_add(index.wrapping_add(1).wrapping_mul(GOLDEN)))
+/// 64 random bits for (seed, index): element `index`, from 0, of the SplitMix64 sequence that starts at `seed`.
+#[must_use]
+pub fn bits(seed: u64, index: u64) -> u64 {
+    mix(seed.wrapping_add(index.wrapping_mul(INCREMENT)))
 }
 
 /// Seed of an independent stream. Two rounds, so that streams of neighbouring seeds do not overlap.
@@ -20,8 +18,9 @@ pub(crate) fn stream(seed: u64, name: u64) -> u64 {
     bits(bits(seed, name), seed)
 }
 
-/// Uniform in [0, 1), 53 bits.
-pub(crate) fn unit(bits: u64) -> f64 {
+/// A number uniform in [0, 1), made of the upper 53 bits.
+#[must_use]
+pub fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1u64 << 53) as f64
 }
 

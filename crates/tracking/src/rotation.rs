@@ -139,7 +139,8 @@ mod tests {
 
     #[test]
     fn slerp_takes_the_shorter_way_through_the_double_cover() {
-        let (a, b) = (about_y(0.2), -about_y(0.6));
+        let a = about_y(0.2);
+        let b = -about_y(0.6);
         assert!(angle_deg(slerp(a, b, 0.5), about_y(0.4)) < 1e-12);
     }
 

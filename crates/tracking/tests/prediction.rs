@@ -139,8 +139,8 @@ fn reports_that_cannot_be_true_are_rejected_and_counted() {
 fn a_jump_that_lasts_is_believed_after_five_reports() {
     for kind in PredictorKind::ALL {
         let mut predictor = build(kind, &TrackerConfig::fastrak());
-        let place = |i: u64| if i < 10 { DVec3::ZERO } else { DVec3::X };
-        (0..15).for_each(|i| predictor.observe(&report(i * 8 * PS_PER_MS, Pose::at(place(i)))));
+        (0..10).for_each(|i| predictor.observe(&report(i * 8 * PS_PER_MS, Pose::at(DVec3::ZERO))));
+        (10..15).for_each(|i| predictor.observe(&report(i * 8 * PS_PER_MS, Pose::at(DVec3::X))));
         assert!(predictor.predict(120 * PS_PER_MS).position.x < 1e-9, "{kind:?} not yet");
         predictor.observe(&report(120 * PS_PER_MS, Pose::at(DVec3::X)));
         assert_eq!(predictor.predict(120 * PS_PER_MS).position, DVec3::X, "{kind:?} now");
@@ -204,8 +204,9 @@ fn tiny_steps_are_survived() {
 fn the_last_five_minutes_of_an_hour_are_predicted_as_well_as_the_first() {
     // Five-minute means of four traces scatter by 3 %.
     for kind in [PredictorKind::ConstantAcceleration, PredictorKind::Kalman] {
-        let mean = |span| (0..4).map(|s| errors(kind, TrackerConfig::fastrak(), s, span)[1].mean_deg).sum::<f64>();
-        let (first, last) = (mean((1, 300)), mean((3300, 3600)));
+        let [first, last] = [(1, 300), (3300, 3600)].map(|span_s| {
+            (0..4).map(|seed| errors(kind, TrackerConfig::fastrak(), seed, span_s)[1].mean_deg).sum::<f64>()
+        });
         assert!((last / first - 1.0).abs() < 0.12, "{kind:?}: {first} {last}");
     }
 }
@@ -216,7 +217,8 @@ fn each_prediction_is_for_the_very_instant_it_is_asked_for() {
     let mut predictor = build(PredictorKind::ConstantVelocity, &TrackerConfig::ideal());
     (0..20).for_each(|i| predictor.observe(&report(i * PS_PER_MS, pan.pose(i * PS_PER_MS))));
     // One scanline, 63.5556 us, is 0.0127 degrees of a 200 deg/s pan.
-    let (a, b) = (predictor.predict(50 * PS_PER_MS), predictor.predict(50 * PS_PER_MS + 63_555_556));
+    let a = predictor.predict(50 * PS_PER_MS);
+    let b = predictor.predict(50 * PS_PER_MS + 63_555_556);
     assert!((a.angle_deg(&b) - 200.0 * 63.555_556e-6).abs() < 1e-9);
 }
 

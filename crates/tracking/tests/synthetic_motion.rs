@@ -97,7 +97,8 @@ fn one_seed_gives_one_motion_and_two_seeds_two() {
 fn the_angular_velocity_is_the_derivative_of_the_orientation() {
     let motion = Synthetic::recorded_use(8);
     for t in at_120_hz(20).skip(1) {
-        let (before, after) = (motion.pose(t - 50_000_000), motion.pose(t + 50_000_000));
+        let before = motion.pose(t - 50_000_000);
+        let after = motion.pose(t + 50_000_000);
         let turn = tracking::rotation::difference(before.orientation, after.orientation) / 1e-4;
         assert!((turn - motion.angular_velocity(t)).length() < 1e-5);
         let walk = (after.position - before.position) / 1e-4;

@@ -119,9 +119,9 @@ fn noise_has_the_configured_deviation_on_each_axis() {
 
 #[test]
 fn noise_belongs_to_the_seed() {
-    let run = |seed| reports(TrackerConfig::fastrak(), &HEAD, seed, 10);
-    assert_eq!(run(1), run(1));
-    assert_ne!(run(1)[0].pose, run(2)[0].pose);
+    let [first, again, other] = [1, 1, 2].map(|seed| reports(TrackerConfig::fastrak(), &HEAD, seed, 10));
+    assert_eq!(first, again);
+    assert_ne!(first[0].pose, other[0].pose);
 }
 
 #[test]
@@ -154,7 +154,8 @@ fn a_still_head_near_metal_is_misplaced_by_3space() {
 
 #[test]
 fn a_dropout_leaves_no_report_between_its_ends() {
-    let (from_ps, to_ps) = (PS_PER_S, PS_PER_S + 300 * PS_PER_MS);
+    let from_ps = PS_PER_S;
+    let to_ps = PS_PER_S + 300 * PS_PER_MS;
     let config = TrackerConfig { faults: vec![Fault::Dropout { from_ps, to_ps }], ..TrackerConfig::ideal() };
     let all = reports(config, &HEAD, 0, 1500);
     assert!(all.iter().all(|r| !(from_ps..to_ps).contains(&r.measured_ps)));
@@ -167,21 +168,27 @@ fn a_dropout_for_all_time_ends_the_reports() {
     assert_eq!(reports(TrackerConfig { faults, ..TrackerConfig::fastrak() }, &HEAD, 0, 1), []);
 }
 
+fn ideal_but_for(fault: Fault) -> TrackerConfig {
+    TrackerConfig { faults: vec![fault], ..TrackerConfig::ideal() }
+}
+
+/// Within five standard errors of 0.002 each.
+fn is_a_tenth_of_20_000(found: usize) -> bool {
+    (found as f64 / 20_000.0 - 0.1).abs() < 0.011
+}
+
 #[test]
 fn random_faults_strike_as_often_as_told() {
-    // 20,000 draws at 0.1: standard error 0.002.
-    let near = |found: usize| (found as f64 / 20_000.0 - 0.1).abs() < 0.011;
-    let with = |fault| TrackerConfig { faults: vec![fault], ..TrackerConfig::ideal() };
-    let lost = reports(with(Fault::RandomDropout { probability: 0.1 }), &HEAD, 1, 18_000);
+    let lost = reports(ideal_but_for(Fault::RandomDropout { probability: 0.1 }), &HEAD, 1, 18_000);
     assert!((lost.last().unwrap().solution as f64 - 20_000.0).abs() < 250.0);
-    let nan = reports(with(Fault::NotANumber { probability: 0.1 }), &HEAD, 1, 20_000);
-    assert!(near(nan.iter().filter(|r| !r.pose.is_finite()).count()));
+    let nan = reports(ideal_but_for(Fault::NotANumber { probability: 0.1 }), &HEAD, 1, 20_000);
+    assert!(is_a_tenth_of_20_000(nan.iter().filter(|r| !r.pose.is_finite()).count()));
     let jump = Fault::Jump { probability: 0.1, distance_m: 0.5, angle_deg: 40.0 };
-    let jumped = reports(with(jump), &HEAD, 1, 20_000);
-    let off = |r: &&Report| {
-        (r.pose.distance_m(&HEAD.0) - 0.5).abs() < 1e-9 && (r.pose.angle_deg(&HEAD.0) - 40.0).abs() < 1e-9
-    };
-    assert!(near(jumped.iter().filter(off).count()));
+    let jumped = reports(ideal_but_for(jump), &HEAD, 1, 20_000);
+    let off = jumped
+        .iter()
+        .filter(|r| (r.pose.distance_m(&HEAD.0) - 0.5).abs() < 1e-9 && (r.pose.angle_deg(&HEAD.0) - 40.0).abs() < 1e-9);
+    assert!(is_a_tenth_of_20_000(off.count()));
 }
 
 #[test]
@@ -196,7 +203,8 @@ fn a_silent_tracker_says_nothing_from_that_instant() {
 fn the_patched_host_dies_of_the_flock_and_of_no_other() {
     let all = reports(TrackerConfig::flock_of_birds_on_patched_host(), &HEAD, 0, 5000);
     assert!(all.len() < 5000);
-    let (first, last) = (all[0].arrives_ps, all[all.len() - 1].arrives_ps);
+    let first = all[0].arrives_ps;
+    let last = all[all.len() - 1].arrives_ps;
     assert!(last < first + PS_PER_S && last >= first + PS_PER_S - 10 * PS_PER_MS);
     assert_eq!(reports(TrackerConfig::flock_of_birds(), &HEAD, 0, 5000).len(), 5000);
     assert_eq!(reports(TrackerConfig::fastrak(), &HEAD, 0, 5000).len(), 5000);

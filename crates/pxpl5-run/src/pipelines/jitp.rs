@@ -3,7 +3,7 @@
 use super::ntsc;
 use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings, TestScene};
-use jitp::{Beam, Config, JitpTiming, Schedule, Transforms, Wanted, host, master, slave};
+use jitp::{Beam, JitpConfig, JitpTiming, Schedule, Transforms, Wanted, host, master, slave};
 use pphigs::Share;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{Level, Stage};
@@ -14,7 +14,7 @@ use pxpl5_wire::{CopyTarget, FieldParity, RegionGrid, RegionId};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use jitp::{Reading as Interpolation, Viewpoint};
+pub use jitp::{Interpolation, Viewpoint};
 
 /// A picture whose strips are drawn for their own moments, or in their own time (JITP).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ impl Jitp {
         viewpoints.iter().flat_map(|v| [false, true].map(|racing| Self::new(*v, racing))).collect()
     }
 
-    fn config(self, record: &Record, pixels: bool) -> Result<Config, ConfigError> {
+    fn config(self, record: &Record, pixels: bool) -> Result<JitpConfig, ConfigError> {
         let schedule = Schedule::Beam { viewpoint: self.viewpoint, racing: self.racing, strip_rows: self.strip_rows };
         config(record, schedule, self.layout(), pixels)
     }
@@ -60,10 +60,10 @@ pub(super) fn config(
     schedule: Schedule,
     layout: Layout,
     pixels: bool,
-) -> Result<Config, ConfigError> {
+) -> Result<JitpConfig, ConfigError> {
     let ports = record.ports();
     let display = ntsc(record, "this pipeline")?;
-    let config = Config {
+    let config = JitpConfig {
         host: ports.host,
         master: ports.gps[0],
         slaves: ports.gps[1..].to_vec(),
@@ -87,7 +87,7 @@ fn beam(video: Video) -> Beam {
 }
 
 /// Loads host, master and slaves.
-pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &Config) {
+pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let gp = machine.processor(config.host, Level::Foreground);
     let reports = Arc::clone(&setup.reports);
     let program = host(gp, config.clone(), setup.host, move |after| reports(after));
@@ -210,7 +210,7 @@ impl Pipeline for Jitp {
     fn source(&self, record: &Record, target: &CopyTarget, _: &BTreeMap<u64, u64>) -> Option<Source> {
         let field = target.picture;
         let strip = u32::from(target.region.0) / target.grid.columns();
-        let view = |i: u32| Config::view_number(field, u64::from(i));
+        let view = |i: u32| JitpConfig::view_number(field, u64::from(i));
         Some(match self.viewpoint {
             Viewpoint::Field => Source::View(view(0)),
             Viewpoint::Strip => Source::View(view(strip)),

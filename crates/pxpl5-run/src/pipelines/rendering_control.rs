@@ -10,7 +10,7 @@ use pxpl5_machine::{Arrival, ConfigError, Machine, Record, StageSpan};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{Lines, SurfaceId};
-use rendering_control::{Config, host, master, slave};
+use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::sync::Arc;
 
 /// The pipeline under PPHIGS (TR94).
@@ -35,7 +35,7 @@ impl RenderingControl {
         Self { mono: true, shading: Shading::Phong }
     }
 
-    fn config(self, machine: &Machine, pixels: bool) -> Result<Config, ConfigError> {
+    fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig, ConfigError> {
         let ports = machine.ports();
         let [master, slaves @ ..] = &ports.gps[..] else { return Err(too_few_gps(0)) };
         if slaves.is_empty() {
@@ -47,7 +47,7 @@ impl RenderingControl {
         let viewport = Viewport::new(grid, Lines::Frame).map_err(|error| ConfigError::Board(error.to_string()))?;
         let picture =
             Picture { viewport, shading: self.shading, binning: Binning::Touched, layout: self.layout(), pixels };
-        Ok(Config {
+        Ok(RenderingControlConfig {
             host: ports.host,
             master: *master,
             slaves: slaves.to_vec(),

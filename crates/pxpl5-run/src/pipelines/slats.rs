@@ -10,7 +10,7 @@ use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Re
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, RegionGrid};
-use slats::{Config, Copy as CopySchedule, host, processor};
+use slats::{CopySchedule, SlatsConfig, host, processor};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -73,9 +73,9 @@ impl Slats {
         Self { copy: CopySchedule::Backup, binning: Binning::All, code: None }
     }
 
-    fn config(&self, machine: &Machine, pixels: bool) -> Config {
+    fn config(&self, machine: &Machine, pixels: bool) -> SlatsConfig {
         let ports = machine.ports();
-        Config {
+        SlatsConfig {
             host: ports.host,
             processors: ports.gps.clone(),
             renderers: ports.renderers.clone(),

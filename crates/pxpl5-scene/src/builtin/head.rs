@@ -42,20 +42,24 @@ pub(super) fn scene() -> Scene {
 /// A pole, the parallels from crown to neck, a pole.
 fn grid() -> Mesh {
     let mut mesh = Mesh::default();
-    let crown = push(&mut mesh, Ray::new(0.0, 0.0));
+    let crown = push_hit(&mut mesh, Ray::new(0.0, 0.0));
     for parallel in 0..PARALLELS {
         push_parallel(&mut mesh, (parallel as f64 + 1.0) / (PARALLELS as f64 + 1.0));
     }
-    let base = push(&mut mesh, Ray::new(1.0, 0.0));
-    let index = |parallel: usize, meridian: usize| (1 + parallel * MERIDIANS + meridian % MERIDIANS) as u32;
+    let base = push_hit(&mut mesh, Ray::new(1.0, 0.0));
     for m in 0..MERIDIANS {
-        mesh.fan(&[crown, index(0, m), index(0, m + 1)]);
+        mesh.fan(&[crown, grid_index(0, m), grid_index(0, m + 1)]);
         for p in 0..PARALLELS - 1 {
-            mesh.fan(&[index(p, m), index(p + 1, m), index(p + 1, m + 1), index(p, m + 1)]);
+            mesh.fan(&[grid_index(p, m), grid_index(p + 1, m), grid_index(p + 1, m + 1), grid_index(p, m + 1)]);
         }
-        mesh.fan(&[base, index(PARALLELS - 1, m + 1), index(PARALLELS - 1, m)]);
+        mesh.fan(&[base, grid_index(PARALLELS - 1, m + 1), grid_index(PARALLELS - 1, m)]);
     }
     mesh
+}
+
+/// The vertex where a parallel meets a meridian; before all of them comes the crown.
+fn grid_index(parallel: usize, meridian: usize) -> u32 {
+    (1 + parallel * MERIDIANS + meridian % MERIDIANS) as u32
 }
 
 /// One half of a parallel from the back to the face, and its mirror image.
@@ -63,16 +67,18 @@ fn push_parallel(mesh: &mut Mesh, down: f64) {
     const HALF: usize = MERIDIANS / 2;
     let first = mesh.positions.len();
     for meridian in 0..=HALF {
-        push(mesh, Ray::new(down, meridian as f64 / MERIDIANS as f64));
+        push_hit(mesh, Ray::new(down, meridian as f64 / MERIDIANS as f64));
     }
     let mirrored = DVec3::new(-1.0, 1.0, 1.0);
     for meridian in (first + 1..first + HALF).rev() {
-        let (position, normal) = (mesh.positions[meridian], mesh.normals[meridian]);
+        let position = mesh.positions[meridian];
+        let normal = mesh.normals[meridian];
         mesh.push(position * mirrored, normal * mirrored, mesh.colours[meridian]);
     }
 }
 
-fn push(mesh: &mut Mesh, ray: Ray) -> u32 {
+/// Adds the vertex where a ray meets the surface.
+fn push_hit(mesh: &mut Mesh, ray: Ray) -> u32 {
     let point = ray.hit();
     mesh.push(point, normal(point), colour(point))
 }
@@ -101,11 +107,11 @@ impl Ray {
         let above = SPINE.windows(2).find(|pair| down <= pair[1].0);
         let pair = above.unwrap_or(&SPINE[6..]);
         let t = (down - pair[0].0) / (pair[1].0 - pair[0].0);
-        let mix = |a: f64, b: f64| a + (b - a) * t;
-        let (sin_e, cos_e) = trig::sin_cos_deg(mix(pair[0].2, pair[1].2));
+        let (sin_e, cos_e) = trig::sin_cos_deg(between(pair[0].2, pair[1].2, t));
         let turns = round + 0.075 * trig::sin_turns(round);
-        let (sin, cos) = (trig::sin_turns(turns), trig::cos_turns(turns));
-        let height = mix(pair[0].1, pair[1].1);
+        let sin = trig::sin_turns(turns);
+        let cos = trig::cos_turns(turns);
+        let height = between(pair[0].1, pair[1].1, t);
         Self {
             origin: DVec3::new(0.0, height, -1.0 + 0.13 * height.min(0.0)),
             direction: DVec3::new(-sin * cos_e, -sin_e, -cos * cos_e),
@@ -114,10 +120,10 @@ impl Ray {
 
     /// The outermost point of the surface on the ray: steps inwards until inside, then halves the last step.
     fn hit(&self) -> DVec3 {
-        let point = |t: f64| self.origin + self.direction * t;
-        let (mut outside, mut inside) = (24.0, 24.0);
+        let mut outside = 24.0;
+        let mut inside = 24.0;
         while inside > 0.0 {
-            let d = distance(point(inside));
+            let d = distance(self.point(inside));
             if d < 0.0 {
                 break;
             }
@@ -127,14 +133,23 @@ impl Ray {
         // The last step is a few millimetres at most: to a tenth of a micrometre.
         for _ in 0..16 {
             let middle = (inside + outside) / 2.0;
-            if distance(point(middle)) < 0.0 {
+            if distance(self.point(middle)) < 0.0 {
                 inside = middle;
             } else {
                 outside = middle;
             }
         }
-        point((inside + outside) / 2.0)
+        self.point((inside + outside) / 2.0)
     }
+
+    fn point(&self, distance: f64) -> DVec3 {
+        self.origin + self.direction * distance
+    }
+}
+
+/// On the straight line from `a` to `b`, which are at 0 and 1.
+fn between(a: f64, b: f64, t: f64) -> f64 {
+    a + (b - a) * t
 }
 
 /// Paint in layers with soft edges: the grid is too coarse for hard ones.
@@ -152,7 +167,8 @@ fn colour(point: DVec3) -> Colour {
     layers.into_iter().fold(SKIN, |under, (over, outside, edge)| {
         let share = (0.5 - outside / edge / 2.0).clamp(0.0, 1.0);
         [0, 1, 2].map(|k| {
-            let (under, over) = (f64::from(under[k]), f64::from(over[k]));
+            let under = f64::from(under[k]);
+            let over = f64::from(over[k]);
             (under + (over - under) * share + 0.5) as u8
         })
     })

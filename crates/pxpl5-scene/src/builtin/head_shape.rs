@@ -5,17 +5,17 @@
 
 use glam::DVec3;
 
-const fn at(x: f64, y: f64, z: f64) -> DVec3 {
+const fn xyz(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
 /// Centre of the left eyeball, and its radius.
-pub(super) const EYE: DVec3 = at(3.15, 0.75, 6.6);
+pub(super) const EYE: DVec3 = xyz(3.15, 0.75, 6.6);
 pub(super) const EYE_RADIUS: f64 = 1.3;
 
 /// Signed distance, exact near the surface to about a tenth; symmetric in x.
 pub(super) fn distance(point: DVec3) -> f64 {
-    let p = at(point.x.abs(), point.y, point.z);
+    let p = xyz(point.x.abs(), point.y, point.z);
     let mut d = skull(p);
     d = join(d, neck(p), 2.2);
     d = join(d, nose(p), 0.7);
@@ -24,37 +24,37 @@ pub(super) fn distance(point: DVec3) -> f64 {
 }
 
 fn skull(p: DVec3) -> f64 {
-    let cranium = ellipsoid(p, at(0.0, 3.2, -1.4), at(7.35, 8.3, 9.2));
-    let face = ellipsoid(p, at(0.0, -3.2, 2.3), at(5.7, 7.4, 6.0));
-    let jaw = capsule(p, at(4.9, -5.6, 0.2), at(1.4, -9.4, 5.6), 1.5, 1.35);
-    let chin = ellipsoid(p, at(0.0, -9.5, 6.3), at(1.9, 1.35, 1.5));
-    let forehead = ellipsoid(p, at(0.0, 4.6, 2.2), at(6.1, 5.6, 5.9));
+    let cranium = ellipsoid(p, xyz(0.0, 3.2, -1.4), xyz(7.35, 8.3, 9.2));
+    let face = ellipsoid(p, xyz(0.0, -3.2, 2.3), xyz(5.7, 7.4, 6.0));
+    let jaw = capsule(p, xyz(4.9, -5.6, 0.2), xyz(1.4, -9.4, 5.6), 1.5, 1.35);
+    let chin = ellipsoid(p, xyz(0.0, -9.5, 6.3), xyz(1.9, 1.35, 1.5));
+    let forehead = ellipsoid(p, xyz(0.0, 4.6, 2.2), xyz(6.1, 5.6, 5.9));
     let d = join(cranium, face, 2.5);
     let d = join(d, forehead, 1.5);
     join(join(d, jaw, 2.0), chin, 1.6)
 }
 
 fn neck(p: DVec3) -> f64 {
-    let column = capsule(p, at(0.0, -4.0, -2.4), at(0.0, -17.0, -3.6), 4.9, 5.5);
-    let shoulders = capsule(p, at(0.0, -18.2, -3.8), at(6.0, -19.6, -4.4), 4.6, 3.4);
-    let throat = ellipsoid(p, at(0.0, -12.4, 1.7), at(1.0, 1.5, 0.9));
+    let column = capsule(p, xyz(0.0, -4.0, -2.4), xyz(0.0, -17.0, -3.6), 4.9, 5.5);
+    let shoulders = capsule(p, xyz(0.0, -18.2, -3.8), xyz(6.0, -19.6, -4.4), 4.6, 3.4);
+    let throat = ellipsoid(p, xyz(0.0, -12.4, 1.7), xyz(1.0, 1.5, 0.9));
     let d = join(join(column, shoulders, 3.0), throat, 1.5);
     // Cut level below, with a soft edge.
     meet(d, -18.0 - p.y, 1.2)
 }
 
 fn nose(p: DVec3) -> f64 {
-    let bridge = capsule(p, at(0.0, 1.6, 7.8), at(0.0, -2.3, 9.9), 0.75, 0.95);
-    let tip = ellipsoid(p, at(0.0, -2.55, 10.1), at(0.95, 0.8, 0.85));
-    let wing = ellipsoid(p, at(1.25, -2.85, 8.7), at(0.75, 0.7, 1.05));
+    let bridge = capsule(p, xyz(0.0, 1.6, 7.8), xyz(0.0, -2.3, 9.9), 0.75, 0.95);
+    let tip = ellipsoid(p, xyz(0.0, -2.55, 10.1), xyz(0.95, 0.8, 0.85));
+    let wing = ellipsoid(p, xyz(1.25, -2.85, 8.7), xyz(0.75, 0.7, 1.05));
     join(join(bridge, tip, 0.5), wing, 0.9)
 }
 
 /// Brows, sockets, eyes, cheekbones, mouth: cut into and laid upon what is there.
 fn face(d: f64, p: DVec3) -> f64 {
-    let brow = capsule(p, at(1.3, 2.2, 7.7), at(5.0, 2.3, 5.9), 0.75, 0.5);
-    let cheekbone = ellipsoid(p, at(4.0, -2.4, 4.9), at(1.9, 1.4, 1.9));
-    let socket = ellipsoid(p, at(3.2, 0.7, 8.6), at(1.95, 1.25, 1.9));
+    let brow = capsule(p, xyz(1.3, 2.2, 7.7), xyz(5.0, 2.3, 5.9), 0.75, 0.5);
+    let cheekbone = ellipsoid(p, xyz(4.0, -2.4, 4.9), xyz(1.9, 1.4, 1.9));
+    let socket = ellipsoid(p, xyz(3.2, 0.7, 8.6), xyz(1.95, 1.25, 1.9));
     let mut d = join(join(d, brow, 1.0), cheekbone, 2.4);
     d = carve(d, socket, 0.9);
     d = join(d, eyelids(p), 0.6);
@@ -65,16 +65,16 @@ fn face(d: f64, p: DVec3) -> f64 {
 /// A shell round the eyeball with a slit.
 fn eyelids(p: DVec3) -> f64 {
     let shell = (p - EYE).length() - (EYE_RADIUS + 0.2);
-    let slit = ellipsoid(p, at(3.2, 0.65, 8.4), at(1.5, 0.5, 1.9));
+    let slit = ellipsoid(p, xyz(3.2, 0.65, 8.4), xyz(1.5, 0.5, 1.9));
     carve(shell, slit, 0.12)
 }
 
 fn mouth(d: f64, p: DVec3) -> f64 {
-    let muzzle = ellipsoid(p, at(0.0, -5.6, 6.2), at(2.6, 2.3, 2.2));
-    let upper = capsule(p, at(0.35, -5.25, 8.35), at(2.0, -5.75, 7.45), 0.42, 0.2);
-    let lower = capsule(p, at(0.0, -6.35, 8.25), at(1.7, -6.0, 7.55), 0.5, 0.22);
-    let parting = capsule(p, at(0.0, -5.82, 8.9), at(2.3, -5.85, 7.6), 0.14, 0.1);
-    let fold = capsule(p, at(0.0, -7.5, 8.9), at(1.3, -7.4, 8.5), 0.6, 0.4);
+    let muzzle = ellipsoid(p, xyz(0.0, -5.6, 6.2), xyz(2.6, 2.3, 2.2));
+    let upper = capsule(p, xyz(0.35, -5.25, 8.35), xyz(2.0, -5.75, 7.45), 0.42, 0.2);
+    let lower = capsule(p, xyz(0.0, -6.35, 8.25), xyz(1.7, -6.0, 7.55), 0.5, 0.22);
+    let parting = capsule(p, xyz(0.0, -5.82, 8.9), xyz(2.3, -5.85, 7.6), 0.14, 0.1);
+    let fold = capsule(p, xyz(0.0, -7.5, 8.9), xyz(1.3, -7.4, 8.5), 0.6, 0.4);
     let d = join(d, muzzle, 1.4);
     let d = carve(d, fold, 0.9);
     let d = join(join(d, upper, 0.3), lower, 0.35);
@@ -83,12 +83,12 @@ fn mouth(d: f64, p: DVec3) -> f64 {
 
 /// A bowl whose front edge lies on the skull and whose rear edge stands off it.
 fn ears(d: f64, p: DVec3) -> f64 {
-    let q = p - at(7.35, -0.2, -1.3);
+    let q = p - xyz(7.35, -0.2, -1.3);
     // Leaning back: the top is further behind than the lobe; and turned outwards to the rear.
-    let q = at(q.x + 0.45 * q.z, q.y + 0.22 * q.z, q.z + 0.22 * q.y);
-    let flap = ellipsoid(q, at(0.2, 0.0, 0.0), at(0.75, 3.1, 1.75));
-    let bowl = ellipsoid(q, at(1.05, 0.35, 0.25), at(0.75, 2.1, 1.0));
-    let lobe = ellipsoid(q, at(0.25, -2.6, 0.5), at(0.6, 0.9, 0.8));
+    let q = xyz(q.x + 0.45 * q.z, q.y + 0.22 * q.z, q.z + 0.22 * q.y);
+    let flap = ellipsoid(q, xyz(0.2, 0.0, 0.0), xyz(0.75, 3.1, 1.75));
+    let bowl = ellipsoid(q, xyz(1.05, 0.35, 0.25), xyz(0.75, 2.1, 1.0));
+    let lobe = ellipsoid(q, xyz(0.25, -2.6, 0.5), xyz(0.6, 0.9, 0.8));
     let ear = join(carve(flap, bowl, 0.35), lobe, 0.5);
     join(d, ear, 0.45)
 }
@@ -119,7 +119,8 @@ fn ellipsoid(p: DVec3, centre: DVec3, radii: DVec3) -> f64 {
 
 /// Balls of radius `from` to `to` along a segment.
 fn capsule(p: DVec3, a: DVec3, b: DVec3, from: f64, to: f64) -> f64 {
-    let (ap, ab) = (p - a, b - a);
+    let ap = p - a;
+    let ab = b - a;
     let t = (ap.dot(ab) / ab.length_squared()).clamp(0.0, 1.0);
     (ap - ab * t).length() - (from + (to - from) * t)
 }
@@ -127,6 +128,6 @@ fn capsule(p: DVec3, a: DVec3, b: DVec3, from: f64, to: f64) -> f64 {
 /// Outward unit normal: central differences of the distance.
 pub(super) fn normal(p: DVec3) -> DVec3 {
     const STEP: f64 = 0.02;
-    let slope = |axis: DVec3| distance(p + axis * STEP) - distance(p - axis * STEP);
-    at(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z)).normalize_or(DVec3::Y)
+    let differences = DVec3::AXES.map(|axis| distance(p + axis * STEP) - distance(p - axis * STEP));
+    DVec3::from_array(differences).normalize_or(DVec3::Y)
 }

@@ -51,12 +51,12 @@ pub(super) fn scene() -> Scene {
 fn finish(mut solid: Solid) -> Scene {
     let balls = solid.mesh.positions.iter().map(|&p| (p, 0.0));
     let (centre, radius) = bounding_sphere(balls);
-    let place = |p: DVec3| (p - centre) * (RADIUS_M / radius);
+    let scale = RADIUS_M / radius;
     for position in &mut solid.mesh.positions {
-        *position = place(*position);
+        *position = (*position - centre) * scale;
     }
     for hinge in solid.structures.iter_mut().filter_map(|s| s.hinge.as_mut()) {
-        hinge.point = place(hinge.point.as_dvec3()).as_vec3();
+        hinge.point = ((hinge.point.as_dvec3() - centre) * scale).as_vec3();
     }
     let parts = SceneParts {
         name: "mig".to_owned(),
@@ -79,12 +79,13 @@ fn fly_through() -> HeadMotion {
 
 /// A closed section across the length: an ellipse at height `y` and station `z`, anticlockwise seen from the nose.
 fn ring(z: f64, y: f64, width: f64, height: f64) -> Vec<DVec3> {
-    let point = |i: usize| {
+    let points = (0..SIDES).map(|i| {
         let turns = (i as f64 + 0.5) / SIDES as f64;
-        let (x, up) = (trig::cos_turns(turns), trig::sin_turns(turns));
+        let x = trig::cos_turns(turns);
+        let up = trig::sin_turns(turns);
         DVec3::new(x * width, y + up * height, z)
-    };
-    (0..SIDES).map(point).collect()
+    });
+    points.collect()
 }
 
 fn fuselage(solid: &mut Solid) {
@@ -144,8 +145,15 @@ impl Cut {
 
     /// The same with a blunt trailing edge.
     fn blunt(&self) -> Vec<DVec3> {
-        let (middle, edge) = (self.thickest(), self.thickness * 0.3);
+        let middle = self.thickest();
+        let edge = self.thickness * 0.3;
         vec![self.leading, middle + self.thickness, self.trailing + edge, self.trailing - edge, middle - self.thickness]
+    }
+
+    /// A wedge of this chord that begins on the blunt trailing edge.
+    fn wedge_behind(&self, chord: f64) -> Vec<DVec3> {
+        let edge = self.thickness * 0.3;
+        vec![self.trailing + edge, self.trailing - DVec3::Z * chord, self.trailing - edge]
     }
 }
 
@@ -180,11 +188,7 @@ fn wing(solid: &mut Solid, side: f64) {
 
 /// A wedge behind a blunt edge that runs from `root` to `tip`; hinged on that edge.
 fn flap(solid: &mut Solid, cuts: [&Cut; 2], chords: [f64; 2], turned: bool) -> (DVec3, DVec3) {
-    let section = |cut: &Cut, chord: f64| {
-        let edge = cut.thickness * 0.3;
-        vec![cut.trailing + edge, cut.trailing - DVec3::Z * chord, cut.trailing - edge]
-    };
-    let mut sections = [section(cuts[0], chords[0]), section(cuts[1], chords[1])];
+    let mut sections = [cuts[0].wedge_behind(chords[0]), cuts[1].wedge_behind(chords[1])];
     if turned {
         sections = sections.map(reversed);
     }
@@ -229,17 +233,19 @@ fn ventral_fin(solid: &mut Solid) {
     surface(solid, vec![root.diamond(), tip.diamond()], false, BELLY, BELLY);
 }
 
+/// Five points of half an ellipse that stands on height `base` at station `z`.
+fn arch(z: f64, base: f64, width: f64, height: f64) -> [DVec3; 5] {
+    [0.0, 1.0, 2.0, 3.0, 4.0].map(|eighths| {
+        let turns = eighths / 8.0;
+        DVec3::new(trig::cos_turns(turns) * width, base + trig::sin_turns(turns) * height, z)
+    })
+}
+
 /// A bubble of three arches between two points: 4 + 8 + 8 + 4 triangles.
 fn canopy(solid: &mut Solid) {
-    let arch = |(z, base, width, height): (f64, f64, f64, f64)| -> Vec<DVec3> {
-        let point = |i: usize| {
-            let turns = i as f64 / 8.0;
-            DVec3::new(trig::cos_turns(turns) * width, base + trig::sin_turns(turns) * height, z)
-        };
-        (0..5).map(point).collect()
-    };
-    let arches = [(1.0, 0.62, 0.42, 0.62), (2.1, 0.58, 0.48, 0.74), (3.0, 0.56, 0.44, 0.62)].map(arch);
-    let (back, front) = (DVec3::new(0.0, 0.88, -0.6), DVec3::new(0.0, 0.62, 3.9));
+    let arches = [arch(1.0, 0.62, 0.42, 0.62), arch(2.1, 0.58, 0.48, 0.74), arch(3.0, 0.56, 0.44, 0.62)];
+    let back = DVec3::new(0.0, 0.88, -0.6);
+    let front = DVec3::new(0.0, 0.62, 3.9);
     let mut part = Mesh::default();
     for &point in arches.iter().flatten() {
         part.push(point, DVec3::ZERO, GLASS);
@@ -255,8 +261,8 @@ fn canopy(solid: &mut Solid) {
 }
 
 fn boom(solid: &mut Solid) {
-    let at = |x: f64, y: f64| DVec3::new(0.3 + x, 0.42 + y, 5.0);
-    solid.cone(&[at(0.06, -0.04), at(0.0, 0.07), at(-0.06, -0.04)], DVec3::new(0.3, 0.42, 6.7), STEEL);
+    let section = [(0.06, -0.04), (0.0, 0.07), (-0.06, -0.04)].map(|(x, y)| DVec3::new(0.3 + x, 0.42 + y, 5.0));
+    solid.cone(&section, DVec3::new(0.3, 0.42, 6.7), STEEL);
 }
 
 fn hinge(point: DVec3, axis: DVec3, amplitude_deg: f64, period_s: u64, phase_turns: f64) -> Hinge {

@@ -44,12 +44,8 @@ fn sphere(centre: DVec3, radius: f64, colour: Colour) -> Sphere {
 fn water() -> [Sphere; 3] {
     let oxygen = DVec3::new(0.0, -20.0, 6.0);
     // 0.957 times sine and cosine of 52.25 degrees.
-    let hydrogen = |side: f64| oxygen + DVec3::new(side * 0.7567, -0.5859, 0.0);
-    [
-        sphere(oxygen, 1.52, [240, 24, 24]),
-        sphere(hydrogen(1.0), 1.20, [255, 255, 255]),
-        sphere(hydrogen(-1.0), 1.20, [255, 255, 255]),
-    ]
+    let [right, left] = [1.0, -1.0].map(|side| oxygen + DVec3::new(side * 0.7567, -0.5859, 0.0));
+    [sphere(oxygen, 1.52, [240, 24, 24]), sphere(right, 1.20, [255, 255, 255]), sphere(left, 1.20, [255, 255, 255])]
 }
 
 /// One residue of the chain.
@@ -62,22 +58,27 @@ struct Residue {
 }
 
 fn backbone(atoms: &[Atom], shift: DVec3) -> Vec<Residue> {
-    let of = |name: &str| -> Vec<DVec3> {
-        let named = atoms.iter().filter(|a| a.name == name);
-        named.map(|a| a.position + shift).collect()
-    };
-    let (alphas, carbons, oxygens) = (of("CA"), of("C"), of("O"));
+    let alphas = positions(atoms, "CA", shift);
+    let carbons = positions(atoms, "C", shift);
+    let oxygens = positions(atoms, "O", shift);
     let mut across = DVec3::X;
-    let residue = |(i, &alpha): (usize, &DVec3)| {
+    let mut residues = Vec::with_capacity(alphas.len());
+    for (i, &alpha) in alphas.iter().enumerate() {
         let mut direction = (oxygens[i] - carbons[i]).normalize_or(across);
         if direction.dot(across) < 0.0 {
             direction = -direction;
         }
         across = direction;
         let width = if in_helix(&alphas, i) { 1.5 } else { 0.45 };
-        Residue { alpha, across, width }
-    };
-    alphas.iter().enumerate().map(residue).collect()
+        residues.push(Residue { alpha, across, width });
+    }
+    residues
+}
+
+/// Places of all atoms of this name, one of each residue, Ångström.
+fn positions(atoms: &[Atom], name: &str, shift: DVec3) -> Vec<DVec3> {
+    let named = atoms.iter().filter(|a| a.name == name);
+    named.map(|a| a.position + shift).collect()
 }
 
 fn in_helix(alphas: &[DVec3], i: usize) -> bool {
@@ -88,15 +89,13 @@ fn in_helix(alphas: &[DVec3], i: usize) -> bool {
 
 /// A band of rectangular section along the chain, blue at its beginning, red at its end.
 fn ribbon(solid: &mut Solid, chain: &[Residue]) {
-    let place = |i: usize| i as f64 / (SECTIONS - 1) as f64;
-    let sections: Vec<[DVec3; 4]> = (0..SECTIONS).map(|i| section(chain, place(i))).collect();
+    let sections: Vec<Vec<DVec3>> = (0..SECTIONS).map(|i| section(chain, part_of_chain(i)).to_vec()).collect();
     let first = solid.mesh.positions.len();
-    let sections: Vec<Vec<DVec3>> = sections.iter().map(|s| s.to_vec()).collect();
     solid.plates(&sections, [0; 3]);
     // Each of the four plates has two vertices a section.
     for vertex in first..solid.mesh.positions.len() {
         let along = (vertex - first) / 2 % SECTIONS;
-        solid.mesh.colours[vertex] = rainbow(place(along));
+        solid.mesh.colours[vertex] = rainbow(part_of_chain(along));
     }
     let mut start = sections[0].clone();
     start.reverse();
@@ -104,19 +103,26 @@ fn ribbon(solid: &mut Solid, chain: &[Residue]) {
     solid.face(&sections[SECTIONS - 1], rainbow(1.0));
 }
 
+/// Where a cross-section lies, from 0 at the chain's beginning to 1 at its end.
+fn part_of_chain(section: usize) -> f64 {
+    section as f64 / (SECTIONS - 1) as f64
+}
+
 /// The four corners at a place from 0 to 1 along the chain, anticlockwise seen from its end.
 fn section(chain: &[Residue], place: f64) -> [DVec3; 4] {
     let along = place * (chain.len() - 1) as f64;
     let i = (along as usize).min(chain.len() - 2);
     let t = along - i as f64;
-    let near = |k: usize| &chain[(i + k).saturating_sub(1).min(chain.len() - 1)];
-    let alphas = [0, 1, 2, 3].map(|k| near(k).alpha);
+    // One residue before the place, and the three that follow, held within the chain.
+    let near = [0, 1, 2, 3].map(|k| &chain[(i + k).saturating_sub(1).min(chain.len() - 1)]);
+    let alphas = near.map(|residue| residue.alpha);
     let centre = spline(alphas, t);
     let forward = (spline(alphas, t + 0.01) - spline(alphas, t - 0.01)).normalize_or(DVec3::Z);
-    let across = spline([0, 1, 2, 3].map(|k| near(k).across), t);
+    let across = spline(near.map(|residue| residue.across), t);
     let across = (across - forward * across.dot(forward)).normalize_or(DVec3::X);
-    let width = near(1).width + (near(2).width - near(1).width) * t;
-    let (wide, thick) = (across * width, forward.cross(across) * 0.3);
+    let width = near[1].width + (near[2].width - near[1].width) * t;
+    let wide = across * width;
+    let thick = forward.cross(across) * 0.3;
     [wide + thick, thick - wide, -wide - thick, wide - thick].map(|corner| centre + corner)
 }
 

@@ -45,7 +45,8 @@ impl Solid {
         for ring in 0..sections.len() as u32 - 1 {
             for side in 0..sides {
                 let next = (side + 1) % sides;
-                let (low, high) = (ring * sides, (ring + 1) * sides);
+                let low = ring * sides;
+                let high = (ring + 1) * sides;
                 part.fan(&[low + side, low + next, high + next, high + side]);
             }
         }

@@ -80,12 +80,12 @@ impl Mesh {
         for &corner in self.triangles.iter().flatten() {
             used[corner as usize] = true;
         }
-        let before = |count: &mut u32, &used: &bool| {
-            let index = *count;
-            *count += u32::from(used);
-            Some(index)
-        };
-        let moved: Vec<u32> = used.iter().scan(0, before).collect();
+        let mut moved = Vec::with_capacity(used.len());
+        let mut kept = 0;
+        for &is_used in &used {
+            moved.push(kept);
+            kept += u32::from(is_used);
+        }
         for corner in self.triangles.iter_mut().flatten() {
             *corner = moved[*corner as usize];
         }
@@ -110,7 +110,7 @@ impl Mesh {
         Ok(fitted_scene(source.name, self, Vec::new()))
     }
 
-    /// Single-precision vertices.
+    /// The vertices of a scene, rounded to single precision.
     pub(crate) fn vertices(&self) -> Vec<Vertex> {
         let positions = self.positions.iter().zip(&self.normals).zip(&self.colours);
         positions

@@ -1,15 +1,18 @@
 //! Readers of model files: PLY, OBJ, PDB.
 
+#[cfg(feature = "files")]
+mod files;
 mod mesh;
 mod obj;
 mod pdb;
 mod ply;
 mod source;
 
-use std::fs::{self, File};
 use std::io::Read;
 use std::path::Path;
 
+#[cfg(feature = "files")]
+pub use files::load;
 pub(crate) use mesh::{Mesh, Normals};
 pub(crate) use pdb::{Atom, read_atoms};
 pub(crate) use source::Source;
@@ -31,11 +34,17 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format of a file name, by its extension in any case.
+    /// The format of a file name, by its extension in any case; `None` for one that no reader knows. Looks at the name
+    /// only.
     #[must_use]
-    pub fn of(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-        match extension.as_str() {
+    pub fn of_path(path: &Path) -> Option<Self> {
+        Self::of_extension(path.extension()?.to_str()?)
+    }
+
+    /// The format that an extension without its dot stands for, in any case; `None` for one that no reader knows.
+    #[must_use]
+    pub fn of_extension(extension: &str) -> Option<Self> {
+        match extension.to_ascii_lowercase().as_str() {
             "ply" => Some(Format::Ply),
             "obj" => Some(Format::Obj),
             "pdb" | "ent" => Some(Format::Pdb),
@@ -44,7 +53,21 @@ impl Format {
     }
 }
 
-/// Loads a model file, of the format that its extension says.
+/// Reads a model to the end of `reader`; `name` stands for it in errors and as the name of the scene.
+///
+/// What becomes of the model: see [`from_bytes`].
+///
+/// # Errors
+///
+/// [`LoadError::Io`] if the reader fails, and all those of [`from_bytes`].
+pub fn from_reader(reader: impl Read, format: Format, name: &str) -> Result<Scene, LoadError> {
+    let mut bytes = Vec::new();
+    let mut limited = reader.take(MAX_FILE_BYTES + 1);
+    limited.read_to_end(&mut bytes).map_err(|source| LoadError::Io { file: name.to_owned(), source })?;
+    from_bytes(&bytes, format, name)
+}
+
+/// Reads a model from memory; `name` stands for it in errors and as the name of the scene.
 ///
 /// Polygons are cut into fans; missing normals become the mean of the adjacent triangles, weighted by area. The model
 /// is moved so that the centre of its box is the origin, and scaled so that its farthest point is
@@ -53,51 +76,7 @@ impl Format {
 ///
 /// # Errors
 ///
-/// [`LoadError`] says what is wrong, and where. No file makes it panic or take more than a few times its size.
-pub fn load(path: impl AsRef<Path>) -> Result<Scene, LoadError> {
-    let path = path.as_ref();
-    let file = path.display().to_string();
-    let Some(format) = Format::of(path) else {
-        return Err(not_a_model(path, file));
-    };
-    let io = |source| LoadError::Io { file: file.clone(), source };
-    let kind = fs::metadata(path).map_err(io)?.file_type();
-    if !kind.is_file() {
-        let found = if kind.is_dir() { "a directory" } else { "a device or a pipe" };
-        return Err(LoadError::NotAFile { file, found });
-    }
-    let opened = File::open(path).map_err(io)?;
-    from_reader(opened, format, &file)
-}
-
-/// The most telling fault of a path without a known extension.
-fn not_a_model(path: &Path, file: String) -> LoadError {
-    match fs::metadata(path) {
-        Ok(data) if data.is_dir() => LoadError::NotAFile { file, found: "a directory" },
-        Err(source) => LoadError::Io { file, source },
-        Ok(_) => {
-            LoadError::UnknownFormat { file, found: path.extension().unwrap_or_default().to_string_lossy().into() }
-        }
-    }
-}
-
-/// Reads a model to the end of `reader`; `name` stands for it in errors and as the name of the scene. See [`load`].
-///
-/// # Errors
-///
-/// As [`load`].
-pub fn from_reader(reader: impl Read, format: Format, name: &str) -> Result<Scene, LoadError> {
-    let mut bytes = Vec::new();
-    let mut limited = reader.take(MAX_FILE_BYTES + 1);
-    limited.read_to_end(&mut bytes).map_err(|source| LoadError::Io { file: name.to_owned(), source })?;
-    from_bytes(&bytes, format, name)
-}
-
-/// Reads a model from memory; `name` stands for it in errors and as the name of the scene. See [`load`].
-///
-/// # Errors
-///
-/// As [`load`].
+/// [`LoadError`] says what is wrong, and where. No bytes make it panic or take more than a few times their size.
 pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, LoadError> {
     let source = Source { name, bytes };
     if bytes.len() as u64 > MAX_FILE_BYTES {

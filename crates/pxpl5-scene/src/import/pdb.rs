@@ -12,7 +12,7 @@ use crate::scene::{Scene, Sphere};
 pub(crate) struct Atom {
     /// Such as "CA": the name within its residue.
     pub(crate) name: String,
-    /// Ångström.
+    /// Place in the coordinates of the file, Ångström.
     pub(crate) position: DVec3,
     pub(crate) element: Element,
 }

@@ -26,18 +26,20 @@ const HALF_STEP_PS: u64 = 50_000_000;
 /// A motion of the head (or of a pendulum's bob): a pure function of simulated time. What `Debug` shows tells it from
 /// every other motion.
 pub trait Motion: Debug {
-    /// Pose at `t_ps`.
+    /// Pose of the head in the world at `t_ps`, ps of simulated time.
     fn pose(&self, t_ps: u64) -> Pose;
 
     /// Velocity in m/s, world frame. By default a central difference.
     fn velocity(&self, t_ps: u64) -> DVec3 {
-        let (before, after) = (t_ps.saturating_sub(HALF_STEP_PS), t_ps.saturating_add(HALF_STEP_PS));
+        let before = t_ps.saturating_sub(HALF_STEP_PS);
+        let after = t_ps.saturating_add(HALF_STEP_PS);
         (self.pose(after).position - self.pose(before).position) / span_s(before, after)
     }
 
     /// Angular velocity in rad/s, world frame. By default a central difference.
     fn angular_velocity(&self, t_ps: u64) -> DVec3 {
-        let (before, after) = (t_ps.saturating_sub(HALF_STEP_PS), t_ps.saturating_add(HALF_STEP_PS));
+        let before = t_ps.saturating_sub(HALF_STEP_PS);
+        let after = t_ps.saturating_add(HALF_STEP_PS);
         let turn = rotation::difference(self.pose(before).orientation, self.pose(after).orientation);
         turn / span_s(before, after)
     }
@@ -79,6 +81,7 @@ fn assert_rates_agree_with_poses(motion: &impl Motion, t_ps: u64, tolerance: f64
     }
     let differences = PosesOnly(motion);
     assert!((motion.velocity(t_ps) - differences.velocity(t_ps)).length() < tolerance);
-    let (closed, difference) = (motion.angular_velocity(t_ps), differences.angular_velocity(t_ps));
+    let closed = motion.angular_velocity(t_ps);
+    let difference = differences.angular_velocity(t_ps);
     assert!((closed - difference).length() < tolerance, "{closed} {difference} at {t_ps}");
 }

@@ -8,7 +8,7 @@ use crate::time::seconds;
 /// A head that turns about the vertical at constant speed, from `start` at time 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pan {
-    /// Pose at time 0.
+    /// Pose of the head at time 0.
     pub start: Pose,
     /// Yaw rate, positive to the left. 200 is a fast turn, 370 the peak (LIST83).
     pub deg_per_s: f64,

@@ -18,8 +18,8 @@ use crate::time::{nearest_ps, seconds};
 pub struct Pendulum {
     arm_m: f64,
     modulus: f64,
-    /// sqrt(g / arm), rad/s.
-    natural: f64,
+    /// sqrt(g / arm): the angular frequency of a small swing.
+    natural_rad_per_s: f64,
     period_s: f64,
 }
 
@@ -29,9 +29,9 @@ impl Pendulum {
         ConfigError::check("pendulum arm", arm_m, 1e-3, 1e3)?;
         ConfigError::check("pendulum amplitude", amplitude_deg, 1e-3, 179.0)?;
         let modulus = libm::sin(amplitude_deg.to_radians() / 2.0);
-        let natural = (GRAVITY.value / arm_m).sqrt();
-        let period_s = 4.0 * quarter_period(modulus) / natural;
-        Ok(Self { arm_m, modulus, natural, period_s })
+        let natural_rad_per_s = (GRAVITY.value / arm_m).sqrt();
+        let period_s = 4.0 * quarter_period(modulus) / natural_rad_per_s;
+        Ok(Self { arm_m, modulus, natural_rad_per_s, period_s })
     }
 
     /// The measuring pendulum: arm 0.5 m, amplitude 20 degrees, both assumed.
@@ -39,19 +39,19 @@ impl Pendulum {
         Self::new(PENDULUM_ARM.value, PENDULUM_AMPLITUDE.value).expect("the table's values are in range")
     }
 
-    /// Exact period in seconds.
+    /// Exact period of the swing, seconds.
     pub fn period_s(&self) -> f64 {
         self.period_s
     }
 
     /// Period of an infinitely small swing, 2 pi sqrt(arm / g), in seconds.
     pub fn small_angle_period_s(&self) -> f64 {
-        TAU / self.natural
+        TAU / self.natural_rad_per_s
     }
 
     /// Speed of the bob at the low point, m/s: 2 k sqrt(g arm), from the conservation of energy.
     pub fn low_point_speed(&self) -> f64 {
-        2.0 * self.modulus * self.natural * self.arm_m
+        2.0 * self.modulus * self.natural_rad_per_s * self.arm_m
     }
 
     /// Instant of low point `n` (0 is the first): (2 n + 1) quarter periods.
@@ -61,11 +61,11 @@ impl Pendulum {
 
     /// Angle from the vertical (rad, positive towards +x) and its rate (rad/s).
     pub fn angle(&self, t_ps: u64) -> (f64, f64) {
-        let u = self.natural * libm::fmod(seconds(t_ps), self.period_s);
+        let u = self.natural_rad_per_s * libm::fmod(seconds(t_ps), self.period_s);
         let (sn, cn, dn) = jacobi(u, self.modulus);
         let sine = (self.modulus * cn / dn).clamp(-1.0, 1.0);
         let complement = (1.0 - self.modulus * self.modulus).sqrt();
-        let rate = -2.0 * self.modulus * complement * self.natural * sn / dn;
+        let rate = -2.0 * self.modulus * complement * self.natural_rad_per_s * sn / dn;
         (2.0 * libm::asin(sine), rate)
     }
 }
@@ -96,10 +96,13 @@ fn quarter_period(modulus: f64) -> f64 {
 
 /// Limit of the arithmetic-geometric mean of 1 and k', and the ratios c_n / a_n of its levels.
 fn mean_ladder(modulus: f64) -> (f64, [f64; LEVELS]) {
-    let (mut a, mut b) = (1.0, (1.0 - modulus * modulus).sqrt());
+    let mut a = 1.0;
+    let mut b = (1.0 - modulus * modulus).sqrt();
     let ratios = core::array::from_fn(|_| {
         let c = (a - b) / 2.0;
-        (a, b) = ((a + b) / 2.0, (a * b).sqrt());
+        let arithmetic = (a + b) / 2.0;
+        b = (a * b).sqrt();
+        a = arithmetic;
         c / a
     });
     (a, ratios)
@@ -119,23 +122,26 @@ mod tests {
     use super::super::assert_rates_agree_with_poses;
     use super::*;
     use crate::time::PS_PER_S;
+    use glam::DVec2;
 
     /// Runge-Kutta of order 4 on angle'' = -(g / arm) sin(angle): an independent model.
     fn integrate(arm: f64, amplitude_deg: f64, until_s: f64) -> f64 {
         let steps = 20_000;
         let h = until_s / steps as f64;
-        let slope = |(angle, rate): (f64, f64)| (rate, -GRAVITY.value / arm * angle.sin());
-        let ahead = |s: (f64, f64), k: (f64, f64), h: f64| (s.0 + h * k.0, s.1 + h * k.1);
-        (0..steps)
-            .fold((amplitude_deg.to_radians(), 0.0), |s, _| {
-                let k1 = slope(s);
-                let k2 = slope(ahead(s, k1, h / 2.0));
-                let k3 = slope(ahead(s, k2, h / 2.0));
-                let k4 = slope(ahead(s, k3, h));
-                let mean = |a: f64, b: f64, c: f64, d: f64| (a + 2.0 * b + 2.0 * c + d) / 6.0;
-                ahead(s, (mean(k1.0, k2.0, k3.0, k4.0), mean(k1.1, k2.1, k3.1, k4.1)), h)
-            })
-            .0
+        let mut state = DVec2::new(amplitude_deg.to_radians(), 0.0);
+        for _ in 0..steps {
+            let k1 = slope(arm, state);
+            let k2 = slope(arm, state + k1 * (h / 2.0));
+            let k3 = slope(arm, state + k2 * (h / 2.0));
+            let k4 = slope(arm, state + k3 * h);
+            state += (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0 * h;
+        }
+        state.x
+    }
+
+    /// Derivative of (angle, rate) of a pendulum with this arm.
+    fn slope(arm: f64, state: DVec2) -> DVec2 {
+        DVec2::new(state.y, -GRAVITY.value / arm * state.x.sin())
     }
 
     #[test]

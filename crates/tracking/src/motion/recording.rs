@@ -1,7 +1,7 @@
-use core::fmt;
 use std::io::Read;
 
 use glam::{DQuat, DVec3};
+use thiserror::Error;
 
 use super::Motion;
 use crate::pose::Pose;
@@ -38,9 +38,9 @@ impl Recording {
         let mut samples: Vec<Sample> = Vec::new();
         for record in records {
             let record = record.map_err(unreadable)?;
-            let sample = parse(&record)?;
+            let sample = parse_sample(&record)?;
             if let Some(&(previous_ps, _)) = samples.last().filter(|(t_ps, _)| *t_ps >= sample.0) {
-                return Err(LoadError::NotRising { line: line(&record), previous_ps, found_ps: sample.0 });
+                return Err(LoadError::NotRising { line: line_number(&record), previous_ps, found_ps: sample.0 });
             }
             samples.push(sample);
         }
@@ -82,47 +82,54 @@ impl Motion for Recording {
 }
 
 /// Why a recording cannot be replayed. Lines count from 1, the header's.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// No samples.
+    /// The recording holds no samples.
+    #[error("expected at least one sample, found none")]
     Empty,
     /// The text cannot be read: input/output failed, or it is not UTF-8.
+    #[error("cannot read the recording: {why}")]
     Unreadable {
         /// What the reader said, with its place.
         why: String,
     },
     /// The first line does not name the columns.
+    #[error("line 1: expected {}, found {found}", COLUMNS.join(","))]
     Header {
-        /// What it says.
+        /// The first line, as it was read.
         found: String,
     },
     /// A line has not 8 fields.
+    #[error("line {line}: expected 8 fields, found {found}")]
     Fields {
-        /// Line number.
+        /// Number of the line, from 1.
         line: u64,
-        /// How many it has.
+        /// How many fields it has.
         found: usize,
     },
     /// A field is not a finite number.
+    #[error("line {line}, {column}: expected a finite number, found {found:?}")]
     NotANumber {
-        /// Line number.
+        /// Number of the line, from 1.
         line: u64,
-        /// Name of the column.
+        /// Name of the column, as in the header.
         column: &'static str,
-        /// Text of the field.
+        /// Text of the field, as it was read.
         found: String,
     },
     /// A time stamp is negative or beyond 10^7 s.
+    #[error("line {line}, time_s: expected 0 to {LATEST_S}, found {found_s}")]
     TimeOutOfRange {
-        /// Line number.
+        /// Number of the line, from 1.
         line: u64,
-        /// Time stamp, s.
+        /// Time stamp of this line, s.
         found_s: f64,
     },
     /// Time stamps do not rise.
+    #[error("line {line}, time_s: expected more than {previous_ps} ps, found {found_ps} ps")]
     NotRising {
-        /// Line number.
+        /// Number of the line, from 1.
         line: u64,
         /// Time stamp of the line before, ps.
         previous_ps: u64,
@@ -130,44 +137,20 @@ pub enum LoadError {
         found_ps: u64,
     },
     /// The length of a quaternion is not 1.
+    #[error("line {line}: expected a quaternion of length 1, found {found}")]
     NotUnit {
-        /// Line number.
+        /// Number of the line, from 1.
         line: u64,
-        /// Length found.
+        /// Length of its quaternion.
         found: f64,
     },
 }
-
-impl fmt::Display for LoadError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty => write!(f, "expected at least one sample, found none"),
-            Self::Unreadable { why } => write!(f, "cannot read the recording: {why}"),
-            Self::Header { found } => write!(f, "line 1: expected {}, found {found}", COLUMNS.join(",")),
-            Self::Fields { line, found } => write!(f, "line {line}: expected 8 fields, found {found}"),
-            Self::NotANumber { line, column, found } => {
-                write!(f, "line {line}, {column}: expected a finite number, found {found:?}")
-            }
-            Self::TimeOutOfRange { line, found_s } => {
-                write!(f, "line {line}, time_s: expected 0 to {LATEST_S}, found {found_s}")
-            }
-            Self::NotRising { line, previous_ps, found_ps } => {
-                write!(f, "line {line}, time_s: expected more than {previous_ps} ps, found {found_ps} ps")
-            }
-            Self::NotUnit { line, found } => {
-                write!(f, "line {line}: expected a quaternion of length 1, found {found}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for LoadError {}
 
 fn unreadable(error: csv::Error) -> LoadError {
     LoadError::Unreadable { why: error.to_string() }
 }
 
-fn line(record: &csv::StringRecord) -> u64 {
+fn line_number(record: &csv::StringRecord) -> u64 {
     record.position().map_or(0, csv::Position::line)
 }
 
@@ -178,31 +161,31 @@ fn check_header(header: &csv::StringRecord) -> Result<(), LoadError> {
     Err(LoadError::Header { found: header.iter().collect::<Vec<_>>().join(",") })
 }
 
-fn parse(record: &csv::StringRecord) -> Result<Sample, LoadError> {
+fn parse_sample(record: &csv::StringRecord) -> Result<Sample, LoadError> {
     if record.len() != COLUMNS.len() {
-        return Err(LoadError::Fields { line: line(record), found: record.len() });
+        return Err(LoadError::Fields { line: line_number(record), found: record.len() });
     }
     let mut fields = [0.0; COLUMNS.len()];
     for (i, field) in fields.iter_mut().enumerate() {
-        *field = number(record, i)?;
+        *field = parse_number(record, i)?;
     }
     let [time, x, y, z, qw, qx, qy, qz] = fields;
     if !(0.0..=LATEST_S).contains(&time) {
-        return Err(LoadError::TimeOutOfRange { line: line(record), found_s: time });
+        return Err(LoadError::TimeOutOfRange { line: line_number(record), found_s: time });
     }
-    let orientation = unit(DQuat::from_xyzw(qx, qy, qz, qw), line(record))?;
+    let orientation = unit_quaternion(DQuat::from_xyzw(qx, qy, qz, qw), line_number(record))?;
     Ok((nearest_ps(time), Pose { position: DVec3::new(x, y, z), orientation }))
 }
 
-fn number(record: &csv::StringRecord, i: usize) -> Result<f64, LoadError> {
+fn parse_number(record: &csv::StringRecord, i: usize) -> Result<f64, LoadError> {
     record[i].parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| LoadError::NotANumber {
-        line: line(record),
+        line: line_number(record),
         column: COLUMNS[i],
         found: record[i].to_owned(),
     })
 }
 
-fn unit(q: DQuat, line: u64) -> Result<DQuat, LoadError> {
+fn unit_quaternion(q: DQuat, line: u64) -> Result<DQuat, LoadError> {
     let found = q.length();
     if (found - 1.0).abs() <= LENGTH_TOLERANCE { Ok(q.normalize()) } else { Err(LoadError::NotUnit { line, found }) }
 }

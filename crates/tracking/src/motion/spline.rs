@@ -21,7 +21,9 @@ pub(super) struct Activity {
 
 impl Activity {
     fn mean_square(self) -> f64 {
-        let (calm, lively, power) = (self.calm, 1.0 - self.calm, f64::from(self.power));
+        let calm = self.calm;
+        let lively = 1.0 - self.calm;
+        let power = f64::from(self.power);
         calm * calm + 2.0 * calm * lively / (power + 1.0) + lively * lively / (2.0 * power + 1.0)
     }
 
@@ -53,7 +55,8 @@ impl Spline {
         let knot = t_ps / self.spacing_ps;
         let u = (t_ps % self.spacing_ps) as f64 / self.spacing_ps as f64;
         let (weights, slopes) = basis(u);
-        let (mut value, mut rate) = (DVec3::ZERO, DVec3::ZERO);
+        let mut value = DVec3::ZERO;
+        let mut rate = DVec3::ZERO;
         for i in 0..6 {
             let coefficient = self.coefficient(knot + i as u64);
             value += coefficient * weights[i];
@@ -72,7 +75,8 @@ impl Spline {
 /// The six quintic B-splines that overlap a knot interval, and their derivatives, at fraction `u` of it.
 fn basis(u: f64) -> ([f64; 6], [f64; 6]) {
     let v = 1.0 - u;
-    let (u2, v2) = (u * u, v * v);
+    let u2 = u * u;
+    let v2 = v * v;
     let weights = [
         v2 * v2 * v,
         26.0 + u * (-50.0 + u * (20.0 + u * (20.0 + u * (-20.0 + 5.0 * u)))),
@@ -111,7 +115,8 @@ mod tests {
     fn value_and_slope_are_continuous_across_a_knot() {
         let spline = Spline::new(1_000_000, DVec3::ONE, EVEN, 1, 1);
         for knot in 1..50 {
-            let (before, after) = (spline.at(knot * 1_000_000 - 1), spline.at(knot * 1_000_000));
+            let before = spline.at(knot * 1_000_000 - 1);
+            let after = spline.at(knot * 1_000_000);
             assert!((before.0 - after.0).length() < 1e-5);
             assert!((before.1 - after.1).length() * seconds(1_000_000) < 1e-5);
         }

@@ -24,7 +24,7 @@ pub struct Band {
     pub power: u32,
 }
 
-/// Settings of [`Synthetic`].
+/// Settings of [`Synthetic`]: one band for each kind of movement, and the place about which the head walks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SyntheticConfig {
@@ -32,9 +32,9 @@ pub struct SyntheticConfig {
     pub turn: Band,
     /// Glances: nearly all of the angular speed.
     pub glance: Band,
-    /// Translation about `centre_m`.
+    /// Translation of the head about `centre_m`.
     pub walk: Band,
-    /// Mean position, metres.
+    /// Mean position of the head in the world, metres.
     pub centre_m: [f64; 3],
 }
 
@@ -83,7 +83,8 @@ impl Synthetic {
 
     /// Yaw (without wrap), pitch and roll in radians, and their rates in rad/s.
     pub fn yaw_pitch_roll(&self, t_ps: u64) -> (DVec3, DVec3) {
-        let (turn, glance) = (self.turn.at(t_ps), self.glance.at(t_ps));
+        let turn = self.turn.at(t_ps);
+        let glance = self.glance.at(t_ps);
         (turn.0 + glance.0, turn.1 + glance.1)
     }
 }

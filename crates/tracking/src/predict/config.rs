@@ -5,7 +5,7 @@ use super::Predictor;
 use super::extrapolation::{Extrapolation, Order};
 use super::orientation_kalman::OrientationKalman;
 use super::position_kalman::{Belief, PositionKalman};
-use super::predicting::Predicting;
+use super::predicting::GatedFilters;
 use crate::config as table;
 use crate::config::Parameter;
 use crate::error::ConfigError;
@@ -15,7 +15,7 @@ use crate::tracker::TrackerConfig;
 const LEAST_NOISE_M: f64 = 1e-6;
 const LEAST_NOISE_DEG: f64 = 1e-4;
 
-/// Which filter.
+/// A way to predict: the filter that turns reports into a pose at another instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PredictorKind {
     /// The last report, as it is.
@@ -29,15 +29,15 @@ pub enum PredictorKind {
 }
 
 impl PredictorKind {
-    /// All of them.
+    /// All kinds, the simplest first.
     pub const ALL: [Self; 4] = [Self::None, Self::ConstantVelocity, Self::ConstantAcceleration, Self::Kalman];
 }
 
-/// Settings of a predictor.
+/// Settings of a predictor: the filter, and what it believes about the noise of reports and motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PredictorConfig {
-    /// Which filter.
+    /// The filter that is built from these settings.
     pub kind: PredictorKind,
     /// Reports between the points of a difference, 1 to 16. Kalman filters do not use it.
     pub baseline_reports: u32,
@@ -82,14 +82,14 @@ impl PredictorConfig {
         ConfigError::check("baseline, reports", f64::from(self.baseline_reports), 1.0, 16.0)?;
         ConfigError::check("position noise, m", self.position_noise_m, LEAST_NOISE_M, 10.0)?;
         ConfigError::check("orientation noise, deg", self.orientation_noise_deg, LEAST_NOISE_DEG, 90.0)?;
-        within("position jerk", self.position_jerk, &table::JERK_POSITION)?;
-        within("orientation jerk", self.orientation_jerk, &table::JERK_ORIENTATION)?;
-        within("horizon, ms", crate::time::seconds(self.horizon_ps) * 1e3, &table::HORIZON)
+        check_in_range("position jerk", self.position_jerk, &table::JERK_POSITION)?;
+        check_in_range("orientation jerk", self.orientation_jerk, &table::JERK_ORIENTATION)?;
+        check_in_range("horizon, ms", crate::time::seconds(self.horizon_ps) * 1e3, &table::HORIZON)
     }
 
     fn extrapolation(&self, order: Order) -> Box<dyn Predictor> {
         let baseline = self.baseline_reports as usize;
-        Box::new(Predicting::new(
+        Box::new(GatedFilters::new(
             Extrapolation::new(order, baseline, DVec3::ZERO),
             Extrapolation::new(order, baseline, DQuat::IDENTITY),
             crate::time::seconds(self.horizon_ps),
@@ -107,7 +107,7 @@ impl PredictorConfig {
             jerk: self.orientation_jerk.powi(2),
             start: (table::START_TURN.value.powi(2), table::START_TURN_ACCELERATION.value.powi(2)),
         };
-        Box::new(Predicting::new(
+        Box::new(GatedFilters::new(
             PositionKalman::new(position),
             OrientationKalman::new(orientation),
             crate::time::seconds(self.horizon_ps),
@@ -115,6 +115,6 @@ impl PredictorConfig {
     }
 }
 
-fn within(what: &'static str, found: f64, parameter: &Parameter) -> Result<(), ConfigError> {
+fn check_in_range(what: &'static str, found: f64, parameter: &Parameter) -> Result<(), ConfigError> {
     ConfigError::check(what, found, parameter.range.0, parameter.range.1)
 }

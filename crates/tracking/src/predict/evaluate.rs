@@ -7,21 +7,22 @@ use crate::tracker::TrackerModel;
 /// How far predictions were from the truth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PredictionError {
-    /// Number of predictions.
+    /// Number of predictions that the other figures are over.
     pub n: u64,
-    /// Mean distance, m.
+    /// Mean distance between predicted and true position, m.
     pub mean_m: f64,
-    /// Greatest distance, m.
+    /// Greatest distance between predicted and true position, m.
     pub max_m: f64,
-    /// Mean angle, degrees.
+    /// Mean angle between predicted and true orientation, degrees.
     pub mean_deg: f64,
-    /// Greatest angle, degrees.
+    /// Greatest angle between predicted and true orientation, degrees.
     pub max_deg: f64,
 }
 
 impl PredictionError {
     fn add(&mut self, predicted: &Pose, truth: &Pose) {
-        let (metres, degrees) = (predicted.distance_m(truth), predicted.angle_deg(truth));
+        let metres = predicted.distance_m(truth);
+        let degrees = predicted.angle_deg(truth);
         self.n += 1;
         self.mean_m += (metres - self.mean_m) / self.n as f64;
         self.mean_deg += (degrees - self.mean_deg) / self.n as f64;

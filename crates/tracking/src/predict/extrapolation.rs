@@ -8,11 +8,11 @@ use crate::time::span_s;
 /// Highest derivative that an extrapolation uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
-    /// The last value: no prediction.
+    /// None: the last value is the prediction.
     Zeroth,
-    /// Constant velocity.
+    /// The first: the velocity stays.
     First,
-    /// Constant acceleration.
+    /// The second: the acceleration stays.
     Second,
 }
 
@@ -91,9 +91,24 @@ mod tests {
         filter
     }
 
+    fn line(t: f64) -> DVec3 {
+        DVec3::new(1.0 - 2.0 * t, 0.3 * t, 5.0)
+    }
+
+    fn parabola(t: f64) -> DVec3 {
+        DVec3::new(1.0 - 2.0 * t + 4.0 * t * t, 3.0 * t * t, 0.1)
+    }
+
+    fn pan(t: f64) -> DQuat {
+        rotation::about_y(3.0 + 6.0 * t)
+    }
+
+    fn faster_and_faster(t: f64) -> DQuat {
+        rotation::about_x(0.5 * t + 9.0 * t * t)
+    }
+
     #[test]
     fn first_order_is_exact_for_constant_velocity() {
-        let line = |t: f64| DVec3::new(1.0 - 2.0 * t, 0.3 * t, 5.0);
         for baseline in [1, 2, 3] {
             let filter = fed(Order::First, baseline, line);
             assert!((filter.extrapolate(0.2) - line(0.233)).length() < 1e-14);
@@ -102,7 +117,6 @@ mod tests {
 
     #[test]
     fn second_order_is_exact_for_constant_acceleration() {
-        let parabola = |t: f64| DVec3::new(1.0 - 2.0 * t + 4.0 * t * t, 3.0 * t * t, 0.1);
         for baseline in [1, 2, 3] {
             let filter = fed(Order::Second, baseline, parabola);
             assert!((filter.extrapolate(0.2) - parabola(0.233)).length() < 1e-12);
@@ -111,7 +125,6 @@ mod tests {
 
     #[test]
     fn both_orders_are_exact_for_a_pan_through_180_degrees() {
-        let pan = |t: f64| rotation::about_y(3.0 + 6.0 * t);
         for order in [Order::First, Order::Second] {
             assert!(rotation::angle_deg(fed(order, 2, pan).extrapolate(0.1), pan(0.133)) < 1e-10);
         }
@@ -119,8 +132,8 @@ mod tests {
 
     #[test]
     fn second_order_is_exact_for_a_turn_that_speeds_up_about_one_axis() {
-        let turn = |t: f64| rotation::about_x(0.5 * t + 9.0 * t * t);
-        assert!(rotation::angle_deg(fed(Order::Second, 2, turn).extrapolate(0.1), turn(0.133)) < 1e-10);
+        let filter = fed(Order::Second, 2, faster_and_faster);
+        assert!(rotation::angle_deg(filter.extrapolate(0.1), faster_and_faster(0.133)) < 1e-10);
     }
 
     #[test]
@@ -136,7 +149,8 @@ mod tests {
     fn sinusoids_are_predicted_with_the_gains_of_the_derivatives() {
         // Reports 0.1 ms apart: differences come within w x 0.1 ms = 0.1 % of derivatives. 2 Hz, 100 ms.
         use crate::predict::gain::{constant_acceleration, constant_velocity};
-        let (w, p) = (core::f64::consts::TAU * 2.0, 0.1);
+        let w = core::f64::consts::TAU * 2.0;
+        let p = 0.1;
         for (order, gain) in [(Order::First, constant_velocity(w * p)), (Order::Second, constant_acceleration(w * p))] {
             let mut filter = Extrapolation::new(order, 1, DVec3::ZERO);
             for i in 0..5000u64 {

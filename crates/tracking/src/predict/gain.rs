@@ -3,22 +3,22 @@
 //! Predicting x = e^(j w t) by p seconds with exact derivatives multiplies it by a gain G(w p); perfect prediction would
 //! multiply it by e^(j w p). The arguments below are w p in radians: 2 pi x frequency x prediction time.
 
-/// A complex gain.
+/// The complex number by which a prediction multiplies a sinusoid e^(j w t); without unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gain {
-    /// Real part.
+    /// Real part: what stays in phase with the motion.
     pub re: f64,
-    /// Imaginary part.
+    /// Imaginary part: what leads the motion by a quarter of its period.
     pub im: f64,
 }
 
 impl Gain {
-    /// Magnitude.
+    /// How many times larger the predicted amplitude is than the true one.
     pub fn magnitude(self) -> f64 {
         libm::hypot(self.re, self.im)
     }
 
-    /// Phase in radians.
+    /// By how much the prediction leads the motion, radians, -pi to pi.
     pub fn phase(self) -> f64 {
         libm::atan2(self.im, self.re)
     }
@@ -30,7 +30,7 @@ pub fn perfect(wp: f64) -> Gain {
     Gain { re, im }
 }
 
-/// No prediction: 1.
+/// No prediction: 1 for every w p, since the last report is shown as it is.
 pub fn none(_wp: f64) -> Gain {
     Gain { re: 1.0, im: 0.0 }
 }
@@ -48,7 +48,8 @@ pub fn constant_acceleration(wp: f64) -> Gain {
 /// Error relative to the motion's amplitude, |e^(j w p) - G|: 2 sin(w p / 2) without prediction, about (w p)^2 / 2 and
 /// (w p)^3 / 6 with the first and the second order.
 pub fn relative_error(gain: fn(f64) -> Gain, wp: f64) -> f64 {
-    let (wanted, got) = (perfect(wp), gain(wp));
+    let wanted = perfect(wp);
+    let got = gain(wp);
     Gain { re: wanted.re - got.re, im: wanted.im - got.im }.magnitude()
 }
 
@@ -100,7 +101,8 @@ mod tests {
 
     #[test]
     fn the_gain_is_what_x_plus_vp_plus_ap2_over_2_does_to_a_sinusoid() {
-        let (w, p) = (TAU * 1.3, 0.07);
+        let w = TAU * 1.3;
+        let p = 0.07;
         let gain = constant_acceleration(w * p);
         for i in 0..50 {
             let (sin, cos) = (w * f64::from(i) * 0.013).sin_cos();

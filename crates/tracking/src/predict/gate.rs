@@ -6,10 +6,10 @@ use crate::tracker::Report;
 /// How far the squared length of a reported quaternion may be from 1.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 
-/// What became of the reports.
+/// What became of the reports that a predictor was given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Used.
+    /// Believed, and given to the filters.
     pub accepted: u64,
     /// Rejected: NaN, infinite, or not a unit quaternion.
     pub malformed: u64,

@@ -94,25 +94,24 @@ impl Covariance {
         let to_rate = r * self.angle_rate + a * self.rate + b * self.rate_acceleration.transpose();
         let to_acceleration = r * self.angle_acceleration + a * self.rate_acceleration + b * self.acceleration;
         let q = white_jerk(dt) * jerk;
-        let noise = |entry: f64| DMat3::from_diagonal(DVec3::splat(entry));
         self.angle = symmetric(to_angle * r.transpose() + to_rate * a.transpose() + to_acceleration * b.transpose())
-            + noise(q.x_axis.x);
-        self.angle_rate = to_rate + to_acceleration * dt + noise(q.x_axis.y);
-        self.angle_acceleration = to_acceleration + noise(q.x_axis.z);
+            + isotropic(q.x_axis.x);
+        self.angle_rate = to_rate + to_acceleration * dt + isotropic(q.x_axis.y);
+        self.angle_acceleration = to_acceleration + isotropic(q.x_axis.z);
         let cross_rate = self.rate_acceleration;
-        self.rate_acceleration += self.acceleration * dt + noise(q.y_axis.z);
-        self.rate += (cross_rate + cross_rate.transpose()) * dt + self.acceleration * (dt * dt) + noise(q.y_axis.y);
-        self.acceleration += noise(q.z_axis.z);
+        self.rate_acceleration += self.acceleration * dt + isotropic(q.y_axis.z);
+        self.rate += (cross_rate + cross_rate.transpose()) * dt + self.acceleration * (dt * dt) + isotropic(q.y_axis.y);
+        self.acceleration += isotropic(q.z_axis.z);
     }
 
     /// S^-1 times a surprise; S = P + r 1.
     fn weigh(&self, surprise: DVec3, measurement: f64) -> DVec3 {
-        (self.angle + DMat3::from_diagonal(DVec3::splat(measurement))).inverse() * surprise
+        (self.angle + isotropic(measurement)).inverse() * surprise
     }
 
     /// P - P H^T S^-1 H P. In the rows of the angle 1 - P S^-1 is written as r S^-1, which cannot lose its sign.
     fn correct(&mut self, measurement: f64) {
-        let inverse = symmetric((self.angle + DMat3::from_diagonal(DVec3::splat(measurement))).inverse());
+        let inverse = symmetric((self.angle + isotropic(measurement)).inverse());
         let rate_gain = self.angle_rate.transpose() * inverse;
         let acceleration_gain = self.angle_acceleration.transpose() * inverse;
         self.rate = symmetric(self.rate - rate_gain * self.angle_rate);
@@ -139,6 +138,11 @@ impl Channel<DQuat> for OrientationKalman {
     fn extrapolate(&self, dt_s: f64) -> DQuat {
         (rotation::exp(self.turn(dt_s)) * self.orientation).normalize()
     }
+}
+
+/// The covariance of three independent axes of this variance.
+fn isotropic(variance: f64) -> DMat3 {
+    DMat3::from_diagonal(DVec3::splat(variance))
 }
 
 /// The matrix of a cross product with `v` on the left.

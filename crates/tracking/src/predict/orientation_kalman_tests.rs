@@ -26,8 +26,11 @@ fn dense(c: &Covariance) -> Matrix9 {
 
 fn turning() -> OrientationKalman {
     let mut filter = OrientationKalman::new(BELIEF);
-    let motion = |t: f64| rotation::from_yaw_pitch_roll(3.0 * t, 0.4 * (5.0 * t).sin(), t * t);
-    (1..=60u64).for_each(|i| filter.update(i * PS_PER_S / 120, motion(i as f64 / 120.0)));
+    for i in 1..=60u64 {
+        let t = i as f64 / 120.0;
+        let orientation = rotation::from_yaw_pitch_roll(3.0 * t, 0.4 * (5.0 * t).sin(), t * t);
+        filter.update(i * PS_PER_S / 120, orientation);
+    }
     filter
 }
 
@@ -122,7 +125,9 @@ proptest! {
         jerk in 0.0..6.0f64,
     ) {
         let belief = Belief { measurement: 10f64.powf(noise), jerk: 10f64.powf(jerk), start: (4.0, 400.0) };
-        let (mut filter, mut t_ps, mut q) = (OrientationKalman::new(belief), 0, DQuat::IDENTITY);
+        let mut filter = OrientationKalman::new(belief);
+        let mut t_ps = 0;
+        let mut q = DQuat::IDENTITY;
         for (step, yaw, roll) in steps {
             t_ps += nearest_ps(10f64.powf(step));
             q = rotation::from_yaw_pitch_roll(yaw, 0.0, roll) * q;
@@ -132,10 +137,14 @@ proptest! {
     }
 }
 
+/// A pan of 3.5 rad/s, `t` in seconds.
+fn pan(t: f64) -> DQuat {
+    rotation::about_y(3.5 * t)
+}
+
 #[test]
 fn a_pan_through_180_degrees_is_followed_for_turns() {
     let mut filter = OrientationKalman::new(Belief { measurement: 1e-10, ..BELIEF });
-    let pan = |t: f64| rotation::about_y(3.5 * t);
     for i in 1..=1200u64 {
         // Alternate signs: the double cover must not matter.
         let q = pan(i as f64 / 120.0);

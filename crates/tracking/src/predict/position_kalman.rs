@@ -17,7 +17,8 @@ pub(super) struct Belief {
 /// Growth over `dt` of the covariance of value, velocity and acceleration under white jerk of density 1:
 /// the integral of (s^2/2, s, 1)(s^2/2, s, 1)^T over s.
 pub(super) fn white_jerk(dt: f64) -> DMat3 {
-    let (d2, d3) = (dt * dt, dt * dt * dt);
+    let d2 = dt * dt;
+    let d3 = dt * dt * dt;
     DMat3::from_cols(
         DVec3::new(d2 * d3 / 20.0, d2 * d2 / 8.0, d3 / 6.0),
         DVec3::new(d2 * d2 / 8.0, d3 / 3.0, d2 / 2.0),
@@ -70,7 +71,9 @@ impl PositionKalman {
 impl Channel<DVec3> for PositionKalman {
     fn restart(&mut self, t_ps: u64, position: DVec3) {
         self.t_ps = t_ps;
-        (self.position, self.velocity, self.acceleration) = (position, DVec3::ZERO, DVec3::ZERO);
+        self.position = position;
+        self.velocity = DVec3::ZERO;
+        self.acceleration = DVec3::ZERO;
         let (speed, acceleration) = self.belief.start;
         self.covariance = DMat3::from_diagonal(DVec3::new(self.belief.measurement, speed, acceleration));
     }
@@ -86,7 +89,7 @@ impl Channel<DVec3> for PositionKalman {
     }
 }
 
-/// The symmetric part.
+/// The symmetric part of a covariance: takes away what rounding has made unsymmetric.
 pub(super) fn symmetric(m: DMat3) -> DMat3 {
     (m + m.transpose()) * 0.5
 }
@@ -113,7 +116,8 @@ mod tests {
             jerk in -4.0..6.0f64,
         ) {
             let belief = Belief { measurement: 10f64.powf(noise), jerk: 10f64.powf(jerk), start: (1.0, 25.0) };
-            let (mut filter, mut t_ps) = (PositionKalman::new(belief), 0);
+            let mut filter = PositionKalman::new(belief);
+            let mut t_ps = 0;
             for step in steps {
                 t_ps += nearest_ps(10f64.powf(step));
                 filter.update(t_ps, DVec3::X);
@@ -139,7 +143,8 @@ mod tests {
 
     #[test]
     fn the_growth_under_white_jerk_is_the_integral_of_its_impulse_responses() {
-        let (dt, n) = (0.3, 3000);
+        let dt = 0.3;
+        let n = 3000;
         let sum = (0..n).fold(DMat3::ZERO, |sum, i| {
             let s = (f64::from(i) + 0.5) / f64::from(n) * dt;
             let r = DVec3::new(s * s / 2.0, s, 1.0);
@@ -148,9 +153,12 @@ mod tests {
         assert!((sum - white_jerk(dt)).to_cols_array().iter().all(|e| e.abs() < 1e-8));
     }
 
+    fn parabola(t: f64) -> DVec3 {
+        DVec3::new(0.5 * t, -t * t, 1.0)
+    }
+
     #[test]
     fn without_noise_a_parabola_is_followed_to_its_end() {
-        let parabola = |t: f64| DVec3::new(0.5 * t, -t * t, 1.0);
         let mut filter = PositionKalman::new(Belief { measurement: 1e-12, ..BELIEF });
         for i in 0..240u64 {
             filter.update(i * PS_PER_S / 120 + 1, parabola(i as f64 / 120.0));

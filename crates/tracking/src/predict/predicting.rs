@@ -9,7 +9,7 @@ use crate::tracker::Report;
 
 /// A gate in front of two filters, one for position and one for orientation, each with its own time stamps.
 #[derive(Clone, Debug)]
-pub(super) struct Predicting<P, O> {
+pub(super) struct GatedFilters<P, O> {
     gate: Gate,
     position: P,
     orientation: O,
@@ -18,7 +18,7 @@ pub(super) struct Predicting<P, O> {
     horizon_s: f64,
 }
 
-impl<P, O> Predicting<P, O> {
+impl<P, O> GatedFilters<P, O> {
     pub(super) fn new(position: P, orientation: O, horizon_s: f64) -> Self {
         Self { gate: Gate::default(), position, orientation, newest_ps: None, horizon_s }
     }
@@ -30,7 +30,7 @@ impl<P, O> Predicting<P, O> {
     }
 }
 
-impl<P: Channel<DVec3>, O: Channel<DQuat>> Predictor for Predicting<P, O> {
+impl<P: Channel<DVec3>, O: Channel<DQuat>> Predictor for GatedFilters<P, O> {
     fn observe(&mut self, report: &Report) {
         let stamps = (report.position_measured_ps, report.measured_ps);
         let orientation = report.pose.orientation.normalize();

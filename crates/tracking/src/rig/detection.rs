@@ -40,7 +40,8 @@ impl Detector {
         if !report.pose.is_finite() {
             return false;
         }
-        let (x, height) = (report.pose.position.x, report.pose.position.y);
+        let x = report.pose.position.x;
+        let height = report.pose.position.y;
         let positive = match self.how {
             Detection::Crossing => x > 0.0,
             Detection::VelocitySign => self.last.is_some_and(|(_, last)| height > last),

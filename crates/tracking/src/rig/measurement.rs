@@ -5,28 +5,28 @@ use crate::tracker::TrackerModel;
 /// One pass through the low point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pass {
-    /// When the bob was lowest.
+    /// When the bob was lowest, ps.
     pub low_point_ps: u64,
-    /// When the position that showed it was true: what the host's time stamp says.
+    /// When the position that showed it was true, ps: what the host's time stamp says.
     pub measured_ps: u64,
-    /// When the host saw it, switched the D/A line and started a frame.
+    /// When the host saw it, switched the D/A line and started a frame, ps.
     pub dac_ps: u64,
-    /// When the scan of that frame began: the inside end of the measurement.
+    /// When the scan of that frame began, ps: the inside end of the measurement.
     pub scan_ps: u64,
-    /// When the photodiode on the screen saw it.
+    /// When the photodiode on the screen saw it, ps.
     pub light_ps: u64,
 }
 
 /// A latency over all passes, seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Latency {
-    /// Mean.
+    /// Mean over the passes, seconds.
     pub mean_s: f64,
-    /// Standard deviation.
+    /// Standard deviation over the passes (divided by their number), seconds.
     pub deviation_s: f64,
-    /// Least.
+    /// That of the fastest pass, seconds.
     pub least_s: f64,
-    /// Greatest.
+    /// That of the slowest pass, seconds.
     pub greatest_s: f64,
 }
 
@@ -54,7 +54,7 @@ pub struct Measurement {
     pub dac: Trace,
     /// Photodiode on the screen: dark and light frames.
     pub screen: Trace,
-    /// The events behind the traces.
+    /// The events behind the traces, one for each low point, in order.
     pub passes: Vec<Pass>,
     /// From outside: low point to D/A line.
     pub tracking: Latency,

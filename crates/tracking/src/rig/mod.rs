@@ -13,7 +13,7 @@ pub use detection::Detection;
 pub use measurement::{Latency, Measurement, Pass};
 pub use oscilloscope::{Edge, Trace};
 
-use core::fmt;
+use thiserror::Error;
 
 use crate::config::{LED_BEAM, PHOTODIODE_LINE};
 use crate::motion::Pendulum;
@@ -40,39 +40,26 @@ pub struct PendulumRig {
 }
 
 /// Why a measurement failed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum RigError {
     /// The tracker fell silent, or never showed a low point.
+    #[error("expected {expected} low points, the host saw {found}")]
     TooFewPasses {
-        /// Low points asked for.
+        /// How many low points were asked for.
         expected: usize,
-        /// Low points seen.
+        /// How many low points the host saw.
         found: usize,
     },
     /// The pipeline put light on the screen before the frame was started.
+    #[error("expected light after the frame's start at {started_ps} ps, found {found_ps} ps")]
     LightBeforeStart {
-        /// When the frame was started.
+        /// When the frame was started, ps.
         started_ps: u64,
-        /// When its light came.
+        /// When its light came, ps.
         found_ps: u64,
     },
 }
-
-impl fmt::Display for RigError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooFewPasses { expected, found } => {
-                write!(f, "expected {expected} low points, the host saw {found}")
-            }
-            Self::LightBeforeStart { started_ps, found_ps } => {
-                write!(f, "expected light after the frame's start at {started_ps} ps, found {found_ps} ps")
-            }
-        }
-    }
-}
-
-impl std::error::Error for RigError {}
 
 impl PendulumRig {
     /// Arm 0.5 m, 20 degrees, low point by crossing the vertical, photodiode in the middle of the screen: all assumed.

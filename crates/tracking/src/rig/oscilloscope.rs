@@ -1,16 +1,16 @@
-/// A step on a channel.
+/// A step of a channel from low to high or from high to low.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// When.
+    /// Instant of the step, ps of simulated time.
     pub t_ps: u64,
-    /// Level from then on.
+    /// The level from that instant on: true is high.
     pub high: bool,
 }
 
 /// One channel of the oscilloscope, low before its first edge.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Trace {
-    /// What the probe touches.
+    /// What the probe of this channel touches.
     pub name: &'static str,
     edges: Vec<Edge>,
 }

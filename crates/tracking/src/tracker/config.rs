@@ -12,7 +12,7 @@ use crate::config::Parameter;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrackerConfig {
-    /// Name for reports.
+    /// Name of the tracker, shown in reports of a run.
     pub name: String,
     /// Solutions a second over all receivers, 1 to 10,000.
     pub rate_hz: u32,
@@ -32,14 +32,14 @@ pub struct TrackerConfig {
     pub filter_gain: f64,
     /// The cable; `None` when the latency above includes it.
     pub serial: Option<SerialLine>,
-    /// The host's port.
+    /// How the host's kernel looks at the port that the cable ends in.
     pub host: HostLine,
     /// From the first report to the crash of a host that interrupts per character; `None` never crashes. TR94 tells
     /// of the Flock that it does.
     pub crashes_patched_host_after_ps: Option<u64>,
-    /// Metal near a magnetic tracker.
+    /// What metal near a magnetic tracker does; `None` for none.
     pub distortion: Option<MagneticDistortion>,
-    /// Faults to inject.
+    /// Faults to inject, in order of precedence; empty for a healthy tracker.
     pub faults: Vec<Fault>,
 }
 

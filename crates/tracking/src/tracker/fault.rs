@@ -11,33 +11,33 @@ const MOST_LIKELY: f64 = 0.99;
 pub enum Fault {
     /// The tracker falls silent for good: nothing reaches the host at or after this instant.
     Silence {
-        /// First silent instant.
+        /// The first instant at which nothing arrives, ps.
         from_ps: u64,
     },
     /// No solutions are measured in [from, to).
     Dropout {
-        /// First instant without.
+        /// The first instant without solutions, ps.
         from_ps: u64,
-        /// First instant with solutions again.
+        /// The first instant with solutions again, ps.
         to_ps: u64,
     },
     /// Each solution is lost with this probability.
     RandomDropout {
-        /// 0 to 0.99.
+        /// Chance that one solution is lost, 0 to 0.99.
         probability: f64,
     },
     /// Each report is made of NaN with this probability.
     NotANumber {
-        /// 0 to 0.99.
+        /// Chance that one report is NaN, 0 to 0.99.
         probability: f64,
     },
     /// Each report is, with this probability, moved and turned in a random direction.
     Jump {
-        /// 0 to 0.99.
+        /// Chance that one report jumps, 0 to 0.99.
         probability: f64,
-        /// How far, m.
+        /// How far the position is moved, m, 0 to 1e6.
         distance_m: f64,
-        /// How much, degrees.
+        /// How far the orientation is turned, degrees, 0 to 180.
         angle_deg: f64,
     },
 }
@@ -50,16 +50,16 @@ impl Fault {
                 Err(ConfigError::Contradiction { what: "a dropout ends before it begins" })
             }
             Self::Dropout { .. } => Ok(()),
-            Self::RandomDropout { probability } | Self::NotANumber { probability } => likely(probability),
+            Self::RandomDropout { probability } | Self::NotANumber { probability } => check_probability(probability),
             Self::Jump { probability, distance_m, angle_deg } => {
                 ConfigError::check("distance of a jump", distance_m, 0.0, 1e6)?;
                 ConfigError::check("angle of a jump", angle_deg, 0.0, 180.0)?;
-                likely(probability)
+                check_probability(probability)
             }
         }
     }
 }
 
-fn likely(probability: f64) -> Result<(), ConfigError> {
+fn check_probability(probability: f64) -> Result<(), ConfigError> {
     ConfigError::check("probability of a fault", probability, 0.0, MOST_LIKELY)
 }

@@ -29,7 +29,7 @@ impl TrackerModel {
         Ok(Self { config })
     }
 
-    /// The settings.
+    /// The settings, all within their ranges.
     pub fn config(&self) -> &TrackerConfig {
         &self.config
     }

@@ -6,16 +6,16 @@ use crate::pose::Pose;
 use crate::random::{below, bits, normal_pair, stream, unit};
 use crate::rotation;
 
-/// What the host gets.
+/// What the host gets of one solution of the tracker: a pose with its times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
     /// Number of the solution; a step of more than one tells of dropped solutions.
     pub solution: u64,
-    /// When the orientation was true.
+    /// When the orientation was true, ps.
     pub measured_ps: u64,
-    /// When the position was true: as `measured_ps`, except that the Flock's is older.
+    /// When the position was true, ps: as `measured_ps`, except that the Flock's is older.
     pub position_measured_ps: u64,
-    /// When the host sees it.
+    /// When the host sees the report, ps.
     pub arrives_ps: u64,
     /// The pose, wrong as trackers are.
     pub pose: Pose,
@@ -123,17 +123,16 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
 
     /// What the cable makes of the pose.
     fn corrupt(&self, report: &mut Report) {
-        let struck = |i, probability| self.strikes(i, report.solution, probability);
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
-                Fault::NotANumber { probability } if struck(i, probability) => {
+                Fault::NotANumber { probability } if self.strikes(i, report.solution, probability) => {
                     report.pose = Pose { position: DVec3::NAN, orientation: DQuat::NAN };
                     return;
                 }
-                Fault::Jump { probability, distance_m, angle_deg } if struck(i, probability) => {
+                Fault::Jump { probability, distance_m, angle_deg } if self.strikes(i, report.solution, probability) => {
                     let draws = stream(stream(self.faults, i as u64), report.solution);
-                    report.pose.position += direction(draws, 0) * distance_m;
-                    let turn = rotation::exp(direction(draws, 2) * angle_deg.to_radians());
+                    report.pose.position += random_direction(draws, 0) * distance_m;
+                    let turn = rotation::exp(random_direction(draws, 2) * angle_deg.to_radians());
                     report.pose.orientation = turn * report.pose.orientation;
                     return;
                 }
@@ -154,8 +153,8 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
         Some(config.host.seen_ps(complete_ps, self.poll_phase_ps))
     }
 
-    /// The first arrival on a patched host starts the way to its crash.
-    fn light_the_fuse(&mut self, arrives_ps: u64) {
+    /// The first arrival on a patched host decides when it crashes.
+    fn schedule_crash(&mut self, arrives_ps: u64) {
         if let Some(after_ps) = self.model.config().crashes_patched_host_after_ps.filter(|_| self.crashes) {
             self.silent_from_ps = self.silent_from_ps.min(arrives_ps.saturating_add(after_ps));
             self.crashes = false;
@@ -182,7 +181,7 @@ impl<M: Motion + ?Sized> Iterator for Reports<'_, M> {
             let Some(arrives_ps) = self.send(output_ps) else { continue };
             report.arrives_ps = arrives_ps;
             self.corrupt(&mut report);
-            self.light_the_fuse(arrives_ps);
+            self.schedule_crash(arrives_ps);
             if arrives_ps >= self.silent_from_ps {
                 return None;
             }
@@ -192,7 +191,8 @@ impl<M: Motion + ?Sized> Iterator for Reports<'_, M> {
 }
 
 /// A random unit vector, from draws `first` and `first + 1`.
-fn direction(seed: u64, first: u64) -> DVec3 {
-    let ((x, y), (z, _)) = (normal_pair(seed, first), normal_pair(seed, first + 1));
+fn random_direction(seed: u64, first: u64) -> DVec3 {
+    let (x, y) = normal_pair(seed, first);
+    let (z, _) = normal_pair(seed, first + 1);
     DVec3::new(x, y, z).normalize_or(DVec3::Y)
 }

@@ -9,7 +9,7 @@ use crate::time::PS_PER_S;
 pub struct SerialLine {
     /// Bytes of one receiver's record, 1 to 1000.
     pub record_bytes: u32,
-    /// Line rate, 300 to 1,000,000.
+    /// Line rate, bits per second, 300 to 1,000,000.
     pub baud: u32,
 }
 
@@ -34,10 +34,10 @@ pub enum HostLine {
     /// The kernel looks at every multiple of the period, from a phase that the seed picks: a record waits 0 to one
     /// period, uniformly over seeds.
     Polled {
-        /// Time between looks, above 0.
+        /// Time between two looks, ps, above 0.
         period_ps: u64,
     },
-    /// The patched kernel: no wait.
+    /// The patched kernel, which interrupts for each character: a record does not wait.
     InterruptPerCharacter,
 }
 

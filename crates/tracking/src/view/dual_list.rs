@@ -1,5 +1,5 @@
 //! The dual display list of just-in-time pixels: every vertex is transformed for the start T0 and for the end T1 of a
-//! field, and in between P(t) = P1 s + P0 (1 - s), s = (t - T0) / (T1 - T0). Two readings of P are published: places on
+//! field, and in between P(t) = P1 s + P0 (1 - s), s = (t - T0) / (T1 - T0). Two meanings of P are published: places on
 //! the screen, and positions in the view before the divide.
 
 use glam::{DVec2, DVec3};
@@ -36,12 +36,16 @@ mod tests {
     }
 
     fn error(interpolate: Interpolate, span_ps: u64, half_width: f64, step: u64, tenth_deg: i32) -> Option<f64> {
-        let (view, pan) = (HmdView::new(600, 480, 60.0).unwrap(), Pan::at(200.0));
+        let view = HmdView::new(600, 480, 60.0).unwrap();
         let point = rotation::about_y(f64::from(tenth_deg) / 573.0) * DVec3::NEG_Z * 4.0;
-        let seen = |t_ps| pan.pose(t_ps).view_of(point);
-        let truth = view.project(seen(span_ps * step / 40))?;
-        let guess = interpolate(&view, seen(0), seen(span_ps), step as f64 / 40.0)?;
+        let truth = view.project(seen_in_pan(point, span_ps * step / 40))?;
+        let guess = interpolate(&view, seen_in_pan(point, 0), seen_in_pan(point, span_ps), step as f64 / 40.0)?;
         ((truth.x - 300.0).abs() <= half_width).then(|| guess.distance(truth))
+    }
+
+    /// The point in the axes of a head that pans at 200 deg/s, m.
+    fn seen_in_pan(point: DVec3, t_ps: u64) -> DVec3 {
+        Pan::at(200.0).pose(t_ps).view_of(point)
     }
 
     #[test]
@@ -74,7 +78,8 @@ mod tests {
     #[test]
     fn both_meet_the_ends_of_the_field() {
         let view = HmdView::ntsc();
-        let (start, end) = (DVec3::new(0.3, 0.2, -2.0), DVec3::new(0.1, 0.3, -3.0));
+        let start = DVec3::new(0.3, 0.2, -2.0);
+        let end = DVec3::new(0.1, 0.3, -3.0);
         for interpolate in [screen_space, view_space] {
             assert_eq!(interpolate(&view, start, end, 0.0), view.project(start));
             assert!(interpolate(&view, start, end, 1.0).unwrap().distance(view.project(end).unwrap()) < 1e-12);

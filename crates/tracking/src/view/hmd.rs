@@ -1,6 +1,6 @@
 use glam::{DVec2, DVec3};
 
-use crate::config::{VIEW_ANGLE, VIEW_HEIGHT, VIEW_WIDTH};
+use crate::config::{Parameter, VIEW_ANGLE, VIEW_HEIGHT, VIEW_WIDTH};
 use crate::error::ConfigError;
 use crate::pose::Pose;
 use crate::time::seconds;
@@ -23,7 +23,7 @@ pub struct HmdView {
 pub struct PixelError {
     /// Shown place minus true place, px, x to the right and y down.
     pub offset_px: DVec2,
-    /// Its length.
+    /// Length of the offset, px.
     pub pixels: f64,
     /// The angle between the two directions, seen from the eye.
     pub degrees: f64,
@@ -32,13 +32,11 @@ pub struct PixelError {
 impl HmdView {
     /// A view of this size (1 to 16,384 px each) and horizontal angle (1 to 170 degrees).
     pub fn new(width_px: u32, height_px: u32, horizontal_deg: f64) -> Result<Self, ConfigError> {
-        let check = |parameter: crate::config::Parameter, found| {
-            ConfigError::check(parameter.name, found, parameter.range.0, parameter.range.1)
-        };
-        let (width_px, height_px) = (f64::from(width_px), f64::from(height_px));
-        check(VIEW_WIDTH, width_px)?;
-        check(VIEW_HEIGHT, height_px)?;
-        check(VIEW_ANGLE, horizontal_deg)?;
+        let width_px = f64::from(width_px);
+        let height_px = f64::from(height_px);
+        check_in_range(&VIEW_WIDTH, width_px)?;
+        check_in_range(&VIEW_HEIGHT, height_px)?;
+        check_in_range(&VIEW_ANGLE, horizontal_deg)?;
         let focal_px = width_px / 2.0 / libm::tan(horizontal_deg.to_radians() / 2.0);
         Ok(Self { width_px, height_px, horizontal_deg, focal_px })
     }
@@ -59,7 +57,7 @@ impl HmdView {
         self.horizontal_deg
     }
 
-    /// Middle of the picture.
+    /// The middle of the picture, px from its upper left corner.
     pub fn centre_px(&self) -> DVec2 {
         DVec2::new(self.width_px, self.height_px) / 2.0
     }
@@ -84,7 +82,8 @@ impl HmdView {
     /// Error of a world point that was drawn for one pose and is seen from another; `None` if either has it behind
     /// the eye.
     pub fn pixel_error(&self, world: DVec3, drawn_for: &Pose, seen_from: &Pose) -> Option<PixelError> {
-        let (drawn, seen) = (drawn_for.view_of(world), seen_from.view_of(world));
+        let drawn = drawn_for.view_of(world);
+        let seen = seen_from.view_of(world);
         let offset_px = self.project(drawn)? - self.project(seen)?;
         let degrees = angle_between(drawn, seen).to_degrees();
         Some(PixelError { offset_px, pixels: offset_px.length(), degrees })
@@ -96,6 +95,10 @@ impl HmdView {
         let point = begun.position + begun.orientation * (DVec3::NEG_Z * distance_m);
         self.pixel_error(point, begun, shown)
     }
+}
+
+fn check_in_range(parameter: &Parameter, found: f64) -> Result<(), ConfigError> {
+    ConfigError::check(parameter.name, found, parameter.range.0, parameter.range.1)
 }
 
 /// Angle in degrees that a steady turn covers in a span.
@@ -169,9 +172,9 @@ mod tests {
     fn latencies_of_90_and_50_ms_err_as_1_8_to_1() {
         // At 40 deg/s, the mean of recorded use; the tangent adds 0.1 %.
         let pan = Pan::at(40.0);
-        let error =
-            |ms: u64| HmdView::ntsc().centre_error(&pan.pose(0), &pan.pose(ms * PS_PER_MS), 5.0).unwrap().pixels;
-        assert!((error(90) / error(50) - 1.8).abs() < 0.004);
+        let [at_90, at_50] = [90, 50]
+            .map(|ms| HmdView::ntsc().centre_error(&pan.pose(0), &pan.pose(ms * PS_PER_MS), 5.0).unwrap().pixels);
+        assert!((at_90 / at_50 - 1.8).abs() < 0.004);
     }
 
     #[test]

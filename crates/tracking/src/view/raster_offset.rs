@@ -18,11 +18,11 @@ pub struct RasterOffset {
     pub yaw: f64,
     /// Radians, positive moves the picture up.
     pub pitch: f64,
-    /// Radians per second.
+    /// How fast the yaw grows, rad/s.
     pub yaw_rate: f64,
-    /// Radians per second.
+    /// How fast the pitch grows, rad/s.
     pub pitch_rate: f64,
-    /// When yaw and pitch hold.
+    /// The instant at which yaw and pitch hold, ps.
     pub at_ps: u64,
 }
 
@@ -78,7 +78,8 @@ mod tests {
     fn points(distance: f64) -> impl Iterator<Item = DVec3> {
         (-3..=3).flat_map(move |i| {
             (-2..=2).map(move |j| {
-                let (yaw, pitch) = (f64::from(i) * 0.16, f64::from(j) * 0.18);
+                let yaw = f64::from(i) * 0.16;
+                let pitch = f64::from(j) * 0.18;
                 rotation::from_yaw_pitch_roll(yaw, pitch, 0.0) * DVec3::NEG_Z * distance
             })
         })
@@ -118,17 +119,19 @@ mod tests {
 
     #[test]
     fn translation_remains_for_near_points_and_vanishes_with_distance() {
-        let (predicted, actual) = (Pose::IDENTITY, Pose::at(DVec3::X * 0.01));
+        let predicted = Pose::IDENTITY;
+        let actual = Pose::at(DVec3::X * 0.01);
         let offset = RasterOffset::between(&predicted, &actual, 0);
-        let ahead = |m: f64| offset.residual_deg(DVec3::NEG_Z * m, &predicted, &actual, 0);
-        assert!((ahead(1.0) - 0.01f64.atan().to_degrees()).abs() < 1e-9);
-        assert!(ahead(FAR) < 1e-8);
+        let [near, far] = [1.0, FAR].map(|m| offset.residual_deg(DVec3::NEG_Z * m, &predicted, &actual, 0));
+        assert!((near - 0.01f64.atan().to_degrees()).abs() < 1e-9);
+        assert!(far < 1e-8);
     }
 
     #[test]
     fn the_rate_signal_keeps_a_pan_exact_to_the_last_line() {
         let pan = Pan::at(200.0);
-        let (predicted, start) = (pan.pose(1_000_000_000), pan.pose(0));
+        let predicted = pan.pose(1_000_000_000);
+        let start = pan.pose(0);
         let held = RasterOffset::between(&predicted, &start, 0);
         let steered = held.with_rates(&start, pan.angular_velocity(0));
         for line in [0, 1, 120, 239] {
@@ -145,18 +148,20 @@ mod tests {
     fn a_flat_raster_is_right_in_the_middle_and_wrong_at_the_edge() {
         let view = HmdView::ntsc();
         let pan = Pan::at(200.0);
-        let (predicted, actual) = (pan.pose(0), pan.pose(NTSC_FIELD_PS));
+        let predicted = pan.pose(0);
+        let actual = pan.pose(NTSC_FIELD_PS);
         let shift = RasterOffset::between(&predicted, &actual, 0).shift_px(&view, 0);
-        let error = |yaw: f64| {
+        let edge = 30f64.to_radians();
+        let [error_middle, error_edge] = [0.0, edge].map(|yaw| {
             let point = predicted.orientation * rotation::about_y(yaw) * DVec3::NEG_Z * FAR;
             let drawn = view.project(predicted.view_of(point)).unwrap();
             (drawn + shift - view.project(actual.view_of(point)).unwrap()).length()
-        };
-        assert!(error(0.0) < 1e-9);
+        });
+        assert!(error_middle < 1e-9);
         // f (tan(30 deg) - tan(30 deg - turn)) less f tan(turn): 9.1 px.
-        let (f, turn) = (view.focal_px(), 200f64.to_radians() * NTSC_FIELD_PS as f64 / 1e12);
-        let edge = 30f64.to_radians();
+        let f = view.focal_px();
+        let turn = 200f64.to_radians() * NTSC_FIELD_PS as f64 / 1e12;
         let expected = f * (edge.tan() - (edge - turn).tan() - turn.tan());
-        assert!((error(edge) - expected).abs() < 1e-6, "{} {expected}", error(edge));
+        assert!((error_edge - expected).abs() < 1e-6, "{error_edge} {expected}");
     }
 }

@@ -1,0 +1,43 @@
+//! Models from the host's files: the only place in this crate that asks an operating system for something.
+
+use std::fs::{self, File};
+use std::path::Path;
+
+use super::{Format, from_reader};
+use crate::error::LoadError;
+use crate::scene::Scene;
+
+/// Loads a model file, of the format that its extension says.
+///
+/// What becomes of the model: see [`from_bytes`].
+///
+/// # Errors
+///
+/// [`LoadError::Io`], [`LoadError::NotAFile`] and [`LoadError::UnknownFormat`] for a path that leads to no model, and
+/// all those of [`from_bytes`].
+pub fn load(path: impl AsRef<Path>) -> Result<Scene, LoadError> {
+    let path = path.as_ref();
+    let file = path.display().to_string();
+    let Some(format) = Format::of_path(path) else {
+        return Err(not_a_model(path, file));
+    };
+    let metadata = fs::metadata(path).map_err(|source| LoadError::Io { file: file.clone(), source })?;
+    let kind = metadata.file_type();
+    if !kind.is_file() {
+        let found = if kind.is_dir() { "a directory" } else { "a device or a pipe" };
+        return Err(LoadError::NotAFile { file, found });
+    }
+    let opened = File::open(path).map_err(|source| LoadError::Io { file: file.clone(), source })?;
+    from_reader(opened, format, &file)
+}
+
+/// The most telling fault of a path without a known extension.
+fn not_a_model(path: &Path, file: String) -> LoadError {
+    match fs::metadata(path) {
+        Ok(data) if data.is_dir() => LoadError::NotAFile { file, found: "a directory" },
+        Err(source) => LoadError::Io { file, source },
+        Ok(_) => {
+            LoadError::UnknownFormat { file, found: path.extension().unwrap_or_default().to_string_lossy().into() }
+        }
+    }
+}
