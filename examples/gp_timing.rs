@@ -3,12 +3,13 @@
 //!
 //! Prints docs/gp-timing.md: `cargo run --release --example gp_timing > docs/gp-timing.md`.
 
-#[path = "../crates/i860/tests/kernel/mod.rs"]
+#[path = "../crates/pphigs/tests/kernel/mod.rs"]
 mod kernel;
 
-use i860::timing::{DRAM_RANGES, DramTiming, FREEZES, Freeze};
+use i860::timing::{DramTiming, FREEZES, Freeze};
 use i860::{Config, Profile};
 use kernel::{Bench, frame, triangles};
+use parameters::{ParameterTable, Value};
 use pxpl5::levels::Level;
 use pxpl5::limit::{Growing, LimitQuery};
 use pxpl5::{Experiment, MachineConfig, Pixels, Slats};
@@ -177,18 +178,19 @@ fn dram_sensitivity() {
     println!("Change of clocks per triangle at both ends of each parameter's allowed range.\n");
     head(&["parameter", "default", "range", "straight, least", "straight, most", "dual, least", "dual, most"]);
     let base = both(|k| clocks(k, Config::cycle()));
-    for (n, range) in DRAM_RANGES.iter().enumerate() {
-        let at = |kernel: usize, value: u32| {
-            let mut values = DramTiming::board().values();
-            values[n] = value;
-            let config = Config { dram: DramTiming::from_values(values), ..Config::cycle() };
+    for entry in DramTiming::PAPERS.entries() {
+        let name = entry.info.name;
+        let at = |kernel: usize, value: Value| {
+            let mut dram = DramTiming::PAPERS;
+            dram.set(name, value).expect("it is in the table");
+            let config = Config { dram, ..Config::cycle() };
             format!("{:+.1}", clocks(KERNELS[kernel].0, config) - base[kernel])
         };
-        let most = if range.name == "dma_interval" { 8 } else { range.most };
-        let text = format!("{} to {}", range.least, range.most);
-        let cells = [at(0, range.least), at(0, most), at(1, range.least), at(1, most)];
+        let (low, high) = entry.info.range;
+        let most = if name == "dma_interval" { Value::Whole(8) } else { high };
+        let cells = [at(0, low), at(0, most), at(1, low), at(1, most)];
         let [a, b, c, d] = cells;
-        row(&[range.name.to_owned(), range.default.to_string(), text, a, b, c, d]);
+        row(&[name.to_owned(), entry.value.to_string(), format!("{low} to {high}"), a, b, c, d]);
     }
     println!(
         "\n`dma_interval` is shown at 8 clocks (half of one ring channel) under \"most\"; 0 means no other bus master."
@@ -280,7 +282,7 @@ orientation, three edge expressions, planes of depth and of three components, th
 *Straight* is what a compiler of 1989 would give, every statement through the stack frame and everything inlined. *Dual*
 is scheduled for dual-instruction mode, a batch of 16 triangles in three passes that each fit the 4 KB instruction
 cache. The light is the same routine in both: pipelined, three corners side by side, one instruction at a time. All give
-the words of the native code bit for bit (crates/i860/tests/kernels.rs, crates/pphigs/tests/code.rs).
+the words of the native code bit for bit (crates/pphigs/tests/kernels.rs and code.rs).
 
 Not in the kernels: edits, the clipper (triangles not wholly inside the guard band go to a list), spheres, sending
 messages. So a figure of the whole program is expected to be larger than these.

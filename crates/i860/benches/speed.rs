@@ -1,16 +1,10 @@
 //! Host time per simulated instruction: with memoised clocks, with all clocks counted, and without timing. Loops with
-//! code and data in cache, then the triangle kernels.
+//! code and data in cache; the triangle kernels, which miss, are in crates/pphigs/benches.
 
 #![allow(missing_docs, reason = "criterion_group makes an undocumented function")]
 
-#[path = "../tests/kernel/mod.rs"]
-mod kernel;
-
-use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use i860::{Config, Cpu, Outcome, Ram, assemble};
-use kernel::{Bench, frame, triangles};
-use pxpl5_geometry::Viewport;
-use pxpl5_geometry::kernel::Schedule;
 use std::hint::black_box;
 
 const INSTRUCTIONS: u64 = 1_000_000;
@@ -92,26 +86,5 @@ fn speed(c: &mut Criterion) {
     group.finish();
 }
 
-/// Triangles of about the size of those in the figures.
-fn kernels(c: &mut Criterion) {
-    let mut group = c.benchmark_group("kernels");
-    let input = triangles(500, 0.12, 1);
-    for schedule in [Schedule::Straight, Schedule::Dual] {
-        for (mode, config) in modes() {
-            let prepare = || Bench::new(frame(schedule), Viewport::FRAME, config, &input);
-            let run = |mut bench: Bench| {
-                bench.run();
-                bench
-            };
-            let instructions = run(prepare()).profile().instructions;
-            group.throughput(Throughput::Elements(instructions)).sample_size(20);
-            group.bench_function(format!("{schedule:?}/{mode}"), |b| {
-                b.iter_batched(prepare, run, BatchSize::LargeInput);
-            });
-        }
-    }
-    group.finish();
-}
-
-criterion_group!(benches, speed, kernels);
+criterion_group!(benches, speed);
 criterion_main!(benches);

@@ -2,14 +2,14 @@
 
 use crate::bus::Bus;
 use crate::cache::Tags;
-use crate::clock::Course;
+use crate::clock::Execution;
 use crate::cpu::TrapCause;
 use crate::decode::decode;
 use crate::decoded::Decoded;
 use crate::instruction::Op;
-use crate::memo::Passages;
+use crate::memo::BlockMemory;
 use crate::state::Mode;
-use crate::timing::INSTRUCTION_CACHE;
+use crate::timing::ChipSizes;
 
 /// Most units of a block, its slot not counted.
 const LONGEST: usize = 32;
@@ -108,7 +108,7 @@ pub(crate) struct Block {
     held_in: u64,
     /// State of the instruction cache at the last visit.
     visited_in: u64,
-    pub(crate) remembered: Passages,
+    pub(crate) remembered: BlockMemory,
 }
 
 impl Block {
@@ -129,17 +129,16 @@ impl Block {
             Ok(unit) if unit.core().is_branch() => Err(TrapCause::BranchInSlot),
             read => read,
         });
-        let (bytes, remembered) = (last.next().wrapping_sub(pc), Passages::default());
         let mut block = Block {
             units,
             slot,
             instructions: 0,
-            bytes,
+            bytes: last.next().wrapping_sub(pc),
             stores: 0,
             in_caches_only: true,
             held_in: NEVER,
             visited_in: NEVER,
-            remembered,
+            remembered: BlockMemory::default(),
         };
         block.sum_up();
         Ok(block)
@@ -155,19 +154,19 @@ impl Block {
         (self.stores, self.instructions, self.in_caches_only) = (stores, instructions, in_caches_only);
     }
 
-    /// The units that a course went through.
+    /// The units that were executed.
     #[inline]
-    pub(crate) fn executed(&self, course: Course) -> impl Iterator<Item = &Unit> {
-        self.units[..course.units].iter().chain(self.slot.iter().flatten().take(usize::from(course.slot)))
+    pub(crate) fn executed(&self, execution: Execution) -> impl Iterator<Item = &Unit> {
+        self.units[..execution.units].iter().chain(self.slot.iter().flatten().take(usize::from(execution.slot)))
     }
 
     /// How many instructions those are.
     #[inline]
-    pub(crate) fn instructions_of(&self, course: Course) -> u64 {
-        if course.units == self.units.len() && course.slot == self.slot.is_some() {
+    pub(crate) fn instructions_of(&self, execution: Execution) -> u64 {
+        if execution.units == self.units.len() && execution.slot == self.slot.is_some() {
             self.instructions
         } else {
-            self.executed(course).map(Unit::instructions).sum()
+            self.executed(execution).map(Unit::instructions).sum()
         }
     }
 
@@ -186,7 +185,7 @@ impl Block {
 
     fn look_up(&mut self, cache: &Tags) -> bool {
         let (first, slot) = (self.units[0].pc, self.slot.iter().flatten());
-        let line = INSTRUCTION_CACHE.1;
+        let line = ChipSizes::PAPERS.line_bytes as u32;
         let bytes = first % line + self.bytes + slot.map(|unit| unit.next().wrapping_sub(unit.pc)).sum::<u32>();
         let mut lines = (0..bytes.div_ceil(line)).map(|n| (first - first % line).wrapping_add(n * line));
         let held = lines.all(|address| cache.find(address).is_some());

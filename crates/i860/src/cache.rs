@@ -1,5 +1,7 @@
 //! Tag arrays of the caches and the TLB. Contents live in memory: only hits, misses and write-backs matter here.
 
+use crate::timing::ChipSizes;
+
 /// A set-associative tag array with pseudo-random replacement.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Tags {
@@ -23,6 +25,12 @@ impl Tags {
             ways,
             changes: 0,
         }
+    }
+
+    /// Those of a cache of this many bytes.
+    pub(crate) fn of_cache(bytes: u64) -> Tags {
+        let ChipSizes { line_bytes, cache_ways, .. } = ChipSizes::PAPERS;
+        Tags::new((bytes / line_bytes) as u32, line_bytes as u32, cache_ways as u32)
     }
 
     #[inline]

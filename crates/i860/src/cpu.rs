@@ -2,7 +2,7 @@
 
 use crate::block::{Block, CodeMap, Unit};
 use crate::bus::Bus;
-use crate::clock::{Accesses, Clock, Course};
+use crate::clock::{Accesses, Clock, Execution};
 use crate::control::Flow;
 use crate::decoded::Decoded;
 use crate::floating::read_operands;
@@ -168,13 +168,13 @@ impl Cpu {
     /// Clocks since reset (0 without timing).
     #[must_use]
     pub fn clocks(&self) -> u64 {
-        self.time.now
+        self.time.now()
     }
 
     /// Instructions since reset or the last [`Cpu::clear_profile`].
     #[must_use]
     pub fn instructions(&self) -> u64 {
-        self.time.profile.instructions
+        self.time.instructions()
     }
 
     /// Those of all instructions since reset whose clocks were not counted but reused ([`Config::memoise`]).
@@ -276,34 +276,40 @@ impl Cpu {
             flow = self.unit(&block.units[done], bus);
             done += 1;
         }
-        let mut course = Course { units: done, slot: false, taken: false, trapped: flow.is_err() };
+        let mut execution = Execution { units: done, slot: false, taken: false, trapped: flow.is_err() };
         let end = match flow {
-            Ok(flow) => self.go_on(flow, block, &mut course, bus),
+            Ok(flow) => self.go_on(flow, block, &mut execution, bus),
             Err(cause) => {
                 let last = &block.units[done - 1];
                 (self.state.pc, self.state.mode) = (last.pc, last.mode);
                 Err(cause)
             }
         };
-        self.time.pass(block, course, &self.accesses, bus);
+        self.time.pass(block, execution, &self.accesses, bus);
         end
     }
 
     /// Goes to where the last unit of a block leads, by way of the slot if there is one.
     #[inline]
-    fn go_on<B: Bus>(&mut self, flow: Flow, block: &Block, course: &mut Course, bus: &mut B) -> Result<(), TrapCause> {
-        let last = &block.units[course.units - 1];
+    fn go_on<B: Bus>(
+        &mut self,
+        flow: Flow,
+        block: &Block,
+        execution: &mut Execution,
+        bus: &mut B,
+    ) -> Result<(), TrapCause> {
+        let last = &block.units[execution.units - 1];
         (self.state.pc, self.state.mode) = (last.next(), last.after);
         match flow {
             Flow::Next => {}
-            Flow::Jump(target) => (self.state.pc, course.taken) = (target, true),
+            Flow::Jump(target) => (self.state.pc, execution.taken) = (target, true),
             Flow::Skip => {
                 let skipped = if last.after.is_dual() { 8 } else { 4 };
                 self.state.pc = last.next().wrapping_add(skipped);
             }
             Flow::Delayed(target) => {
-                course.taken = true;
-                return self.slot(block, target, course, bus);
+                execution.taken = true;
+                return self.slot(block, target, execution, bus);
             }
         }
         Ok(())
@@ -311,13 +317,19 @@ impl Cpu {
 
     /// Executes the slot of a branch that was taken.
     #[inline]
-    fn slot<B: Bus>(&mut self, block: &Block, target: u32, course: &mut Course, bus: &mut B) -> Result<(), TrapCause> {
+    fn slot<B: Bus>(
+        &mut self,
+        block: &Block,
+        target: u32,
+        execution: &mut Execution,
+        bus: &mut B,
+    ) -> Result<(), TrapCause> {
         let unit = match &block.slot {
             Some(Ok(unit)) => unit,
             Some(Err(cause)) => return Err(*cause),
             None => unreachable!("a block that ends with a delayed branch has its slot"),
         };
-        course.slot = true;
+        execution.slot = true;
         match self.unit(unit, bus) {
             Ok(_) => {
                 self.state.pc = target;
@@ -325,7 +337,7 @@ impl Cpu {
                 Ok(())
             }
             Err(cause) => {
-                course.trapped = true;
+                execution.trapped = true;
                 Err(cause)
             }
         }

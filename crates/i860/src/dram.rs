@@ -1,6 +1,9 @@
 //! The external bus and the page-mode memory behind it, in closed form: a request gives the clocks of its data.
 
-use crate::timing::{BUS_BYTES, BUS_DEPTH, DramTiming};
+use crate::timing::{ChipSizes, DramTiming};
+
+const BUS_BYTES: u64 = ChipSizes::PAPERS.bus_bytes;
+const BUS_DEPTH: usize = ChipSizes::PAPERS.bus_depth as usize;
 
 /// When the data of a request pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,8 +37,8 @@ impl Dram {
             timing,
             free: 0,
             open_page: CLOSED,
-            next_refresh: u64::from(timing.refresh_interval),
-            next_dma: u64::from(timing.dma_interval),
+            next_refresh: timing.refresh_interval,
+            next_dma: timing.dma_interval,
             outstanding: [0; BUS_DEPTH],
             transfers: 0,
             page_misses: 0,
@@ -62,17 +65,17 @@ impl Dram {
             if interval == 0 || clocks == 0 || *due > now {
                 continue;
             }
-            let missed = (now - *due) / u64::from(interval);
-            let latest = *due + missed * u64::from(interval);
-            self.free = self.free.max(latest) + u64::from(clocks);
-            *due = latest + u64::from(interval);
+            let missed = (now - *due) / interval;
+            let latest = *due + missed * interval;
+            self.free = self.free.max(latest) + clocks;
+            *due = latest + interval;
             self.open_page = CLOSED;
         }
     }
 
     fn begin(&mut self, now: u64, address: u32) -> (u64, bool) {
         self.steal(now);
-        let page = u64::from(address / self.timing.page_bytes.max(BUS_BYTES));
+        let page = u64::from(address) / self.timing.page_bytes.max(BUS_BYTES);
         let hit = page == self.open_page;
         self.open_page = page;
         self.transfers += 1;
@@ -81,8 +84,9 @@ impl Dram {
     }
 
     fn finish(&mut self, transfer: Transfer) -> Transfer {
-        let [_, second, third] = self.outstanding;
-        self.outstanding = [second, third, transfer.last.max(third)];
+        let latest = self.outstanding[BUS_DEPTH - 1];
+        self.outstanding.rotate_left(1);
+        self.outstanding[BUS_DEPTH - 1] = transfer.last.max(latest);
         transfer
     }
 
@@ -92,10 +96,10 @@ impl Dram {
     pub(crate) fn read(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         let (start, hit) = self.begin(now, address);
         let t = self.timing;
-        let first = start + u64::from(if hit { t.first_hit } else { t.first_miss });
-        let last = first + u64::from(beats - 1) * u64::from(t.next);
-        let opening = if hit { 0 } else { u64::from(t.first_miss.saturating_sub(t.first_hit)) };
-        self.free = start + opening + u64::from(beats) * u64::from(t.next);
+        let first = start + if hit { t.first_hit } else { t.first_miss };
+        let last = first + u64::from(beats - 1) * t.next;
+        let opening = if hit { 0 } else { t.first_miss.saturating_sub(t.first_hit) };
+        self.free = start + opening + u64::from(beats) * t.next;
         self.finish(Transfer { first, last })
     }
 
@@ -103,8 +107,8 @@ impl Dram {
     pub(crate) fn write(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
         let (start, hit) = self.begin(now, address);
         let t = self.timing;
-        let first = start + u64::from(if hit { t.write_hit } else { t.write_miss });
-        let last = first + u64::from(beats - 1) * u64::from(t.write_hit);
+        let first = start + if hit { t.write_hit } else { t.write_miss };
+        let last = first + u64::from(beats - 1) * t.write_hit;
         self.free = last;
         self.finish(Transfer { first, last })
     }
@@ -116,7 +120,7 @@ mod tests {
     use crate::timing::DramTiming;
 
     fn quiet() -> DramTiming {
-        DramTiming { refresh_interval: 0, ..DramTiming::board() }
+        DramTiming { refresh_interval: 0, ..DramTiming::PAPERS }
     }
 
     #[test]
@@ -124,10 +128,9 @@ mod tests {
         let t = quiet();
         let mut dram = Dram::new(t);
         let opening = dram.read(0, 0, 4);
-        let last = u64::from(t.first_miss + 3 * t.next);
-        assert_eq!(opening, Transfer { first: u64::from(t.first_miss), last });
+        assert_eq!(opening, Transfer { first: t.first_miss, last: t.first_miss + 3 * t.next });
         let open = dram.read(1000, 32, 4);
-        assert_eq!(open.last - 1000, u64::from(t.first_hit + 3 * t.next));
+        assert_eq!(open.last - 1000, t.first_hit + 3 * t.next);
     }
 
     #[test]
@@ -136,7 +139,7 @@ mod tests {
         let mut dram = Dram::new(t);
         let first = dram.read(0, 0, 1);
         let second = dram.read(1, 8, 1);
-        assert_eq!(second.first - first.last, u64::from(t.next));
+        assert_eq!(second.first - first.last, t.next);
     }
 
     #[test]
@@ -144,17 +147,17 @@ mod tests {
         let t = quiet();
         let mut dram = Dram::new(t);
         dram.read(0, 0, 1);
-        assert_eq!(dram.read(1000, t.page_bytes, 1).first - 1000, u64::from(t.first_miss));
+        assert_eq!(dram.read(1000, t.page_bytes as u32, 1).first - 1000, t.first_miss);
         assert_eq!(dram.page_misses, 2);
     }
 
     #[test]
     fn a_refresh_due_holds_a_request_and_one_due_a_clock_later_does_not() {
-        let t = DramTiming { refresh_interval: 100, refresh_clocks: 7, ..DramTiming::board() };
+        let t = DramTiming { refresh_interval: 100, refresh_clocks: 7, ..DramTiming::PAPERS };
         let mut due = Dram::new(t);
-        assert_eq!(due.read(100, 0, 1).first, 100 + 7 + u64::from(t.first_miss));
+        assert_eq!(due.read(100, 0, 1).first, 100 + 7 + t.first_miss);
         let mut early = Dram::new(t);
-        assert_eq!(early.read(99, 0, 1).first, 99 + u64::from(t.first_miss));
+        assert_eq!(early.read(99, 0, 1).first, 99 + t.first_miss);
     }
 
     #[test]

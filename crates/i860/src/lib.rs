@@ -56,7 +56,8 @@
 //! each block afterwards. Where a block finds all its instructions and data in the caches, bus, queues and replacement are
 //! left alone, so that its clocks follow from the waits left by earlier instructions and from how it ended: they are
 //! remembered, as FastSim does (Schnarr and Larus, ASPLOS 1998). The rest is counted unit by unit. Both give the same
-//! state, clocks and profile after every run (tests/memo.rs: random programs, and the kernels with every row switched);
+//! state, clocks and profile after every run (tests/memo.rs: random programs; crates/pphigs/tests/memo.rs: the triangle
+//! kernels with every row switched);
 //! [`Config::memoise`] chooses. It takes over all of a loop in cache, 61 % of the instructions of the triangle kernel
 //! scheduled for the cache (its data come and go), and 0.2 % of the one larger than the cache. Measured in one process,
 //! that makes the first kernel 1.4 times as fast, and leaves the second one as it was. Clocks by address ([`Cpu::watch`]) and translation on are always counted.
@@ -87,16 +88,21 @@ mod block;
 mod bus;
 mod cache;
 mod clock;
+mod common;
 mod control;
 mod cpu;
+mod data_cache;
 mod decode;
 mod decoded;
 mod dram;
 mod encode;
+mod fetch;
 mod floating;
+mod freeze;
 mod graphics;
 mod instruction;
 mod integer;
+mod load_pipe;
 mod memo;
 mod memory;
 mod mnemonic;
@@ -104,7 +110,9 @@ mod profile;
 mod scoreboard;
 mod seed;
 pub mod state;
+mod store_pipe;
 pub mod timing;
+mod translation;
 #[cfg(feature = "vectors")]
 pub mod vectors;
 

@@ -2,10 +2,10 @@
 //!
 //! The idea is that of FastSim (Schnarr and Larus, *Fast Out-Of-Order Processor Simulation Using Memoization*, ASPLOS
 //! 1998). A block whose instructions and data are all in the caches leaves bus, queues and the replacement's chance as they
-//! are, so that its clocks follow from what the scoreboard holds at its beginning and from its course. The scoreboard is
+//! are, so that its clocks follow from what the scoreboard holds at its beginning and from how it was executed. The scoreboard is
 //! known by a number while blocks repeat, and is written out again when one has to be counted.
 
-use crate::clock::Course;
+use crate::clock::Execution;
 use crate::scoreboard::{Leftover, Scoreboard};
 use crate::timing::Freeze;
 use std::collections::BTreeMap;
@@ -14,8 +14,8 @@ use std::collections::BTreeMap;
 const MOST_CLOCKS: u8 = 7;
 /// Most scoreboards with a number; the rest is counted.
 const MOST_NUMBERS: usize = 1 << 12;
-/// Most passages of a block; the oldest one leaves.
-const MOST_PASSAGES: usize = 16;
+/// Most executions that a block remembers; the oldest one leaves.
+const MOST_REMEMBERED: usize = 16;
 
 /// The scoreboards that were met, and which of them is the present one.
 #[derive(Clone, Debug)]
@@ -52,11 +52,11 @@ impl Memo {
         Some(number as u32)
     }
 
-    /// From now on the scoreboard is that at the end of a passage.
+    /// From now on the scoreboard is that at the end of a remembered execution.
     #[inline]
-    pub(crate) fn follow(&mut self, passage: &Passage) {
-        self.present = Some(passage.exit);
-        self.instructions += passage.instructions;
+    pub(crate) fn follow(&mut self, remembered: &RememberedClocks) {
+        self.present = Some(remembered.exit);
+        self.instructions += remembered.instructions;
     }
 
     /// From now on the scoreboard is the one written out, which must first be brought up to date by this.
@@ -66,12 +66,12 @@ impl Memo {
     }
 }
 
-/// How a block once passed.
+/// What an execution of a block once took.
 #[derive(Clone, Debug)]
-pub(crate) struct Passage {
+pub(crate) struct RememberedClocks {
     /// Number of the scoreboard before it.
     pub(crate) entry: u32,
-    pub(crate) course: Course,
+    pub(crate) execution: Execution,
     /// Number of the scoreboard after it.
     pub(crate) exit: u32,
     pub(crate) clocks: u64,
@@ -82,19 +82,19 @@ pub(crate) struct Passage {
     pub(crate) line: u32,
 }
 
-/// Passages of a block.
+/// What a block remembers.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Passages {
-    all: Vec<Passage>,
+pub(crate) struct BlockMemory {
+    all: Vec<RememberedClocks>,
     /// Where the last one was found.
     latest: usize,
     oldest: usize,
 }
 
-impl Passages {
+impl BlockMemory {
     #[inline]
-    pub(crate) fn find(&mut self, entry: u32, course: Course) -> Option<&Passage> {
-        let is_it = |p: &Passage| p.entry == entry && p.course == course;
+    pub(crate) fn find(&mut self, entry: u32, execution: Execution) -> Option<&RememberedClocks> {
+        let is_it = |p: &RememberedClocks| p.entry == entry && p.execution == execution;
         if !self.all.get(self.latest).is_some_and(is_it) {
             self.latest = self.all.iter().position(is_it)?;
         }
@@ -106,11 +106,11 @@ impl Passages {
         self.all.is_empty()
     }
 
-    pub(crate) fn add(&mut self, passage: Passage) {
-        if self.all.len() < MOST_PASSAGES {
-            return self.all.push(passage);
+    pub(crate) fn add(&mut self, remembered: RememberedClocks) {
+        if self.all.len() < MOST_REMEMBERED {
+            return self.all.push(remembered);
         }
-        self.all[self.oldest] = passage;
-        self.oldest = (self.oldest + 1) % MOST_PASSAGES;
+        self.all[self.oldest] = remembered;
+        self.oldest = (self.oldest + 1) % MOST_REMEMBERED;
     }
 }

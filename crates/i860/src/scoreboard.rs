@@ -1,8 +1,9 @@
 //! What instructions leave behind for those after them: registers not ready, units busy. All waits end by themselves.
 
 use crate::decoded::{Decoded, arm, float_mask, hazard};
+use crate::freeze::Costs;
 use crate::instruction::{Flags, Instruction, Op};
-use crate::timing::{Config, Freeze, FreezeRules};
+use crate::timing::{Config, Freeze};
 
 /// Matches no source, not even that of an instruction without one.
 const NO_RESULT: u8 = 0xFE;
@@ -45,7 +46,7 @@ pub(crate) struct Leftover {
 
 #[derive(Clone, Debug)]
 pub(crate) struct Scoreboard {
-    rules: FreezeRules,
+    costs: Costs,
     /// What instructions leave behind that matters under the rules.
     arms_seen: u16,
     /// Registers (r in the low word, f in the high) whose value may not be there yet.
@@ -73,7 +74,7 @@ fn bits(mut set: u64) -> impl Iterator<Item = u8> {
 impl Scoreboard {
     pub(crate) fn new(config: &Config) -> Scoreboard {
         Scoreboard {
-            rules: config.freezes,
+            costs: Costs::new(&config.freezes),
             arms_seen: if config.freezes.logicals_delay_branches { !0 } else { !arm::LOGICAL },
             pending: 0,
             ready: [NO_WAIT; 64],
@@ -206,11 +207,11 @@ impl Scoreboard {
     fn behind_scalar(&self, mut wait: Wait, i: &Instruction) -> Wait {
         let floating = i.is_floating() && i.op != Op::Fxfr;
         if floating && i.has(Flags::SOURCE_DOUBLE) != self.scalar_double {
-            wait.until += self.rules.clocks(Freeze::ScalarPrecisionChange);
+            wait.until += self.costs.clocks(Freeze::ScalarPrecisionChange);
         }
         let pipelined = i.op == Op::DualOp || i.is_floating() && i.has(Flags::PIPELINED);
         if pipelined && i.dest >= 2 {
-            wait.until += self.rules.clocks(Freeze::ScalarThenPipelined);
+            wait.until += self.costs.clocks(Freeze::ScalarThenPipelined);
         }
         wait
     }
@@ -220,7 +221,7 @@ impl Scoreboard {
         if d.reads & self.graphics_result == 0 {
             return NO_WAIT;
         }
-        Wait { until: wait.until - 1 + self.rules.clocks(why), why }
+        Wait { until: wait.until - 1 + self.costs.clocks(why), why }
     }
 
     fn behind_store(&self, wait: Wait, i: &Instruction) -> Wait {
@@ -244,7 +245,7 @@ impl Scoreboard {
     #[inline]
     fn note_result(&mut self, i: &Instruction, now: u64) {
         self.last_result = if i.has(Flags::RESULT_DOUBLE) { i.dest & 30 } else { i.dest };
-        self.last_result_until = now + self.rules.clocks(Freeze::MultiplierFirstSource);
+        self.last_result_until = now + self.costs.clocks(Freeze::MultiplierFirstSource);
     }
 
     fn arm(&mut self, d: &Decoded, now: u64) {
@@ -265,7 +266,7 @@ impl Scoreboard {
 
     #[inline]
     pub(crate) fn set_hazard(&mut self, bit: u16, why: Freeze, now: u64) {
-        self.set_hazard_until(bit, now + self.rules.clocks(why), why);
+        self.set_hazard_until(bit, now + self.costs.clocks(why), why);
     }
 
     #[inline]
@@ -294,7 +295,7 @@ impl Scoreboard {
             }
             _ => (float_mask(i.dest, i.size.max(4)), Freeze::FloatingLoadUse),
         };
-        let until = now + self.rules.clocks(why);
+        let until = now + self.costs.clocks(why);
         let missed = mask & self.pending != 0 && self.ready[mask.trailing_zeros() as usize].until > until;
         if !(missed && why == Freeze::LoadUse) {
             self.set_ready(mask, until, why);
@@ -309,7 +310,7 @@ impl Scoreboard {
     }
 
     fn arm_short(&mut self, d: &Decoded, now: u64) {
-        let logical = d.arms & arm::LOGICAL != 0 && self.rules.logicals_delay_branches;
+        let logical = d.arms & arm::LOGICAL != 0 && self.costs.logicals_delay_branches;
         if d.arms & arm::CONDITION != 0 || logical {
             self.set_hazard(hazard::CONDITION, Freeze::ConditionUse, now);
         }

@@ -1,13 +1,9 @@
-//! Memoising the clocks of code that repeats changes nothing but the host's time.
-
-mod kernel;
+//! Memoising the clocks of code that repeats changes nothing but the host's time. The same of the triangle kernels:
+//! crates/pphigs/tests/memo.rs.
 
 use i860::timing::{FREEZES, Freeze, FreezeRules};
 use i860::{AddressProfile, Config, Cpu, Outcome, Ram, assemble, decode};
-use kernel::{Bench, frame, triangles};
 use proptest::prelude::*;
-use pxpl5_geometry::Viewport;
-use pxpl5_geometry::kernel::Schedule;
 
 const CODE: u32 = 0x1000;
 const MEMORY: usize = 0x1_0000;
@@ -76,12 +72,15 @@ fn registers() -> impl Strategy<Value = [u32; 32]> {
 
 /// All rows, each alone, all but each, or any.
 fn rules() -> impl Strategy<Value = FreezeRules> {
-    let rows = |bits: u32| {
-        let on = FREEZES.iter().enumerate().filter(move |(n, _)| bits >> n & 1 != 0);
-        on.fold(FreezeRules::none(), |rules, (_, row)| rules.with(row.id))
-    };
     let row = 0..FREEZES.len() as u32;
-    prop_oneof![Just(!0u32), row.clone().prop_map(|n| 1 << n), row.prop_map(|n| !(1 << n)), any::<u32>()].prop_map(rows)
+    prop_oneof![Just(!0u32), row.clone().prop_map(|n| 1 << n), row.prop_map(|n| !(1 << n)), any::<u32>()]
+        .prop_map(rules_of)
+}
+
+/// The rows whose bits are set.
+fn rules_of(bits: u32) -> FreezeRules {
+    let on = FREEZES.iter().enumerate().filter(|(n, _)| bits >> n & 1 != 0);
+    on.fold(FreezeRules::none(), |rules, (_, row)| rules.with(row.id))
 }
 
 proptest! {
@@ -100,31 +99,6 @@ proptest! {
         }
         let [(_, memoised), (_, counted)] = &twins.0;
         prop_assert!(memoised == counted, "memory");
-    }
-}
-
-fn kernel_with(config: Config, schedule: Schedule) -> Bench {
-    let mut bench = Bench::new(frame(schedule), Viewport::FRAME, config, &triangles(12, 0.5, 4));
-    bench.run();
-    bench
-}
-
-fn assert_same_kernel(freezes: FreezeRules, schedule: Schedule) {
-    let [memoised, counted] =
-        [true, false].map(|memoise| kernel_with(Config { memoise, freezes, ..Config::cycle() }, schedule));
-    assert_eq!(memoised.profile(), counted.profile(), "{schedule:?}");
-    assert!(memoised.output() == counted.output() && memoised.cpu.state == counted.cpu.state);
-}
-
-#[test]
-fn the_kernels_take_the_same_clocks_whatever_row_is_switched() {
-    for schedule in [Schedule::Straight, Schedule::Dual] {
-        assert_same_kernel(FreezeRules::all(), schedule);
-        for row in &FREEZES {
-            assert_same_kernel(FreezeRules::all().without(row.id), schedule);
-            assert_same_kernel(FreezeRules::none().with(row.id), schedule);
-            assert_same_kernel(FreezeRules::all().with_clocks(row.id, row.clocks + 9), schedule);
-        }
     }
 }
 

@@ -103,7 +103,7 @@ impl std::error::Error for ProcessorFault {}
 const RETURN: u32 = 0x0800;
 
 /// Bytes of a line of the data cache, to which the output of a bin context is aligned.
-const LINE: u32 = i860::timing::DATA_CACHE.1;
+const LINE: u32 = i860::timing::ChipSizes::PAPERS.line_bytes as u32;
 
 /// Register of the return address.
 const LINK: usize = 1;

@@ -1,0 +1,77 @@
+//! What all parts of the clock share: the present clock and where those before it went, the bus, and chance.
+
+use crate::cache::Chance;
+use crate::dram::{Dram, Transfer};
+use crate::freeze::Costs;
+use crate::profile::Profile;
+use crate::timing::{Config, Freeze};
+
+#[derive(Clone, Debug)]
+pub(crate) struct Common {
+    /// The present clock since reset.
+    pub(crate) now: u64,
+    /// Clock at which the profile was started; every clock since then is a freeze or an issue.
+    profile_start: u64,
+    /// Counts of everything but the clocks of issue, which are what the freezes leave.
+    pub(crate) profile: Profile,
+    pub(crate) costs: Costs,
+    pub(crate) bus: Dram,
+    /// Chooses the line that leaves a full set.
+    pub(crate) chance: Chance,
+    /// Clock at which the latest fill of a data line ends; instruction misses before it wait longer.
+    pub(crate) data_fill_end: u64,
+}
+
+impl Common {
+    pub(crate) fn new(config: &Config) -> Common {
+        Common {
+            now: 0,
+            profile_start: 0,
+            profile: Profile::new(),
+            costs: Costs::new(&config.freezes),
+            bus: Dram::new(config.dram),
+            chance: Chance::new(config.replacement_seed),
+            data_fill_end: 0,
+        }
+    }
+
+    pub(crate) fn profile(&self) -> Profile {
+        let frozen: u64 = self.profile.frozen.iter().sum();
+        Profile {
+            issue: self.now - self.profile_start - frozen,
+            bus_requests: self.bus.transfers,
+            page_misses: self.bus.page_misses,
+            ..self.profile.clone()
+        }
+    }
+
+    pub(crate) fn clear_profile(&mut self) {
+        self.profile = Profile::new();
+        self.profile_start = self.now;
+        self.bus.transfers = 0;
+        self.bus.page_misses = 0;
+    }
+
+    /// Stands still until a clock.
+    #[inline]
+    pub(crate) fn freeze_until(&mut self, until: u64, why: Freeze) {
+        if until > self.now {
+            self.profile.frozen[why as usize] += until - self.now;
+            self.now = until;
+        }
+    }
+
+    /// Stands still for the constant part of a row.
+    #[inline]
+    pub(crate) fn charge(&mut self, why: Freeze) {
+        self.freeze_until(self.now + self.costs.clocks(why), why);
+    }
+
+    /// Reads `beats` transfers of 8 bytes for the data side, once the address pipe has room.
+    pub(crate) fn read_data(&mut self, address: u32, beats: u32) -> Transfer {
+        if self.costs.applies(Freeze::AddressPipeFull) {
+            self.freeze_until(self.bus.accepts_at(), Freeze::AddressPipeFull);
+        }
+        self.bus.read(self.now, address, beats)
+    }
+}

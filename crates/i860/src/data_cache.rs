@@ -1,0 +1,90 @@
+//! The data cache: which lines are held and which are dirty; fills, and write-backs of what must leave.
+
+use crate::bus::Bus;
+use crate::cache::Tags;
+use crate::common::Common;
+use crate::dram::Transfer;
+use crate::store_pipe::StorePipe;
+use crate::timing::ChipSizes;
+
+/// Transfers of a line.
+const BEATS: u32 = (ChipSizes::PAPERS.line_bytes / ChipSizes::PAPERS.bus_bytes) as u32;
+
+#[derive(Clone, Debug)]
+pub(crate) struct DataCache(Tags);
+
+impl DataCache {
+    pub(crate) fn new() -> DataCache {
+        DataCache(Tags::of_cache(ChipSizes::PAPERS.data_cache_bytes))
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    #[inline]
+    pub(crate) fn holds(&self, address: u32) -> bool {
+        self.0.find(address).is_some()
+    }
+
+    /// Whether all data of a block are held. Those found before the first that is not become dirty where they are stored
+    /// to (a bit of `stores` each), as they do when they are counted.
+    #[inline]
+    pub(crate) fn holds_all(&mut self, addresses: &[u32], stores: u64) -> bool {
+        for (n, address) in addresses.iter().enumerate() {
+            let Some(at) = self.0.find(*address) else { return false };
+            if stores >> n & 1 != 0 {
+                self.0.mark_dirty(at);
+            }
+        }
+        true
+    }
+
+    /// Stores into a line if it is held, and tells whether it is.
+    #[inline]
+    pub(crate) fn store(&mut self, address: u32) -> bool {
+        let held = self.0.find(address);
+        if let Some(at) = held {
+            self.0.mark_dirty(at);
+        }
+        held.is_some()
+    }
+
+    /// Brings in what a load needs; `None` if it is there.
+    #[inline]
+    pub(crate) fn load<B: Bus>(
+        &mut self,
+        address: u32,
+        stores: &mut StorePipe,
+        common: &mut Common,
+        bus: &B,
+    ) -> Option<Transfer> {
+        if self.holds(address) {
+            return None;
+        }
+        let transfer = match bus.is_cacheable(address) {
+            true => self.fill_line(address, stores, common),
+            false => common.read_data(address, 1),
+        };
+        common.data_fill_end = transfer.last;
+        Some(transfer)
+    }
+
+    /// Brings a line in, the needed word first; a dirty line that leaves is written after it.
+    fn fill_line(&mut self, address: u32, stores: &mut StorePipe, common: &mut Common) -> Transfer {
+        common.profile.data_misses += 1;
+        let transfer = common.read_data(address, BEATS);
+        let random = common.chance.next();
+        if let Some(victim) = self.0.fill(address, random) {
+            stores.write_back(transfer.last, victim, common);
+        }
+        transfer
+    }
+
+    /// Writes a line back if it is dirty.
+    pub(crate) fn flush(&mut self, address: u32, stores: &mut StorePipe, common: &mut Common) {
+        if self.0.clean(address) {
+            stores.write_back(common.now, address, common);
+        }
+    }
+}

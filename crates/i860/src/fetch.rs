@@ -1,0 +1,112 @@
+//! Instruction fetch: the line that is being fetched from, and the instruction cache behind it.
+
+use crate::block::Block;
+use crate::bus::Bus;
+use crate::cache::Tags;
+use crate::common::Common;
+use crate::timing::{ChipSizes, Freeze};
+use crate::translation::Translation;
+
+/// No line.
+const NO_LINE: u32 = u32::MAX;
+const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
+/// Transfers of a line.
+const BEATS: u32 = LINE_BYTES / ChipSizes::PAPERS.bus_bytes as u32;
+
+#[derive(Clone, Debug)]
+pub(crate) struct Fetch {
+    cache: Tags,
+    /// Number of the line of the last fetch.
+    line: u32,
+    /// Clocks at which its transfers arrive, by place in the line.
+    arrivals: [u64; BEATS as usize],
+    /// Clock at which all of it is there.
+    line_end: u64,
+}
+
+impl Fetch {
+    pub(crate) fn new() -> Fetch {
+        let cache = Tags::of_cache(ChipSizes::PAPERS.instruction_cache_bytes);
+        Fetch { cache, line: NO_LINE, arrivals: [0; BEATS as usize], line_end: 0 }
+    }
+
+    /// Number of the line of the last fetch, for what continues there.
+    #[inline]
+    pub(crate) fn line(&self) -> u32 {
+        self.line
+    }
+
+    /// The last fetch was from this line, which is held.
+    #[inline]
+    pub(crate) fn continue_in(&mut self, line: u32) {
+        self.line = line;
+    }
+
+    /// Whether a line is still coming in.
+    #[inline]
+    pub(crate) fn is_filling(&self, now: u64) -> bool {
+        now < self.line_end
+    }
+
+    /// Whether all of a block is known to be in the cache.
+    #[inline]
+    pub(crate) fn holds(&self, block: &mut Block) -> bool {
+        block.is_held(&self.cache)
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.cache.clear();
+        self.line = NO_LINE;
+    }
+
+    /// Fetches the word or the pair at `pc`.
+    #[inline]
+    pub(crate) fn fetch<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
+        if pc / LINE_BYTES != self.line || self.is_filling(common.now) {
+            self.fetch_slowly(pc, translation, common, bus);
+        }
+    }
+
+    fn fetch_slowly<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
+        if !common.costs.applies(Freeze::InstructionMiss) {
+            return;
+        }
+        if pc / LINE_BYTES == self.line {
+            let arrival = self.arrivals[(pc / 8 % BEATS) as usize];
+            return common.freeze_until(arrival, Freeze::InstructionMiss);
+        }
+        common.freeze_until(self.line_end, Freeze::InstructionMiss);
+        translation.translate(pc, common);
+        self.line = pc / LINE_BYTES;
+        if self.cache.find(pc).is_none() {
+            self.miss(pc, common, bus);
+        }
+    }
+
+    fn miss<B: Bus>(&mut self, pc: u32, common: &mut Common, bus: &B) {
+        common.profile.instruction_misses += 1;
+        let is_behind_data = common.now < common.data_fill_end;
+        if bus.is_cacheable(pc) {
+            self.fill_line(pc, common);
+        } else {
+            let word = common.bus.read(common.now, pc, 1);
+            self.line = NO_LINE;
+            common.freeze_until(word.first, Freeze::InstructionMiss);
+        }
+        if is_behind_data {
+            common.charge(Freeze::InstructionMissBehindData);
+        }
+    }
+
+    fn fill_line(&mut self, pc: u32, common: &mut Common) {
+        let random = common.chance.next();
+        self.cache.fill(pc, random);
+        let line = common.bus.read(common.now, pc, BEATS);
+        let step = (line.last - line.first) / u64::from(BEATS - 1);
+        for beat in 0..BEATS {
+            self.arrivals[((pc / 8 + beat) % BEATS) as usize] = line.first + u64::from(beat) * step;
+        }
+        self.line_end = line.last;
+        common.freeze_until(line.first, Freeze::InstructionMiss);
+    }
+}

@@ -1,0 +1,157 @@
+//! Freezes: when the processor stands still. The rules, row by row; their clocks stand in [`FreezeClocks`].
+
+use crate::timing::FreezeClocks;
+use parameters::{ParameterInfo, ParameterTable};
+
+/// One row of the freeze table.
+#[derive(Clone, Copy, Debug)]
+pub struct FreezeRow {
+    /// The row's name in this program.
+    pub id: Freeze,
+    /// Number in Intel's list as recollected, with a letter where one number has several costs.
+    pub number: &'static str,
+    /// When it applies.
+    pub condition: &'static str,
+    /// What is added to the constant part, or how it shrinks.
+    pub variable: &'static str,
+    /// What is known of the constant part, which is the field of this name of [`FreezeClocks`].
+    pub clocks: &'static ParameterInfo,
+}
+
+/// Makes the enum and the table of one list: name, number, condition, variable part.
+macro_rules! freezes {
+    ($($id:ident $number:literal $condition:literal $variable:literal;)*) => {
+        /// A reason for which the processor stands still. The order is that of [`FREEZES`].
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[repr(u8)]
+        #[non_exhaustive]
+        pub enum Freeze {
+            $(#[doc = concat!("Row ", $number, ": ", $condition, ".")] $id,)*
+        }
+
+        /// Number of rows of [`FREEZES`].
+        pub const N_FREEZES: usize = [$($number),*].len();
+
+        /// The freeze rules. Simultaneous freezes cost the longest; cache misses add.
+        ///
+        /// "Since" counts clocks, so an instruction in between that itself froze shortens the wait by its whole time.
+        pub const FREEZES: [FreezeRow; N_FREEZES] = [$(FreezeRow {
+            id: Freeze::$id,
+            number: $number,
+            condition: $condition,
+            variable: $variable,
+            clocks: &FreezeClocks::INFOS[Freeze::$id as usize],
+        },)*];
+    };
+}
+
+freezes! {
+    InstructionMiss "1a" "instruction-cache miss" "+ clocks from the request to the needed 8 bytes; later words of the line as they arrive; leaving the line waits for all of it";
+    InstructionMissBehindData "1b" "instruction-cache miss while a data-cache fill runs" "";
+    LoadMissUse "2" "use of an integer-load destination that missed" "+ read clocks - clocks since the load";
+    FloatingLoadMiss "3" "fld miss" "+ clocks from the request to the needed 8 bytes";
+    TransferDuringMiss "4" "call, calli, ixfr, fxfr, ld.c, st.c while a data-cache fill runs" "+ clocks to the needed 8 bytes";
+    AccessDuringMiss "5" "load, store or pfld while a data-cache fill runs" "+ clocks to the end of the line";
+    LoadUse "6" "destination of ld, ld.c, call, calli, fxfr used by the next instruction" "- clocks since";
+    FloatingLoadUse "7" "destination of fld, pfld, ixfr used within two instructions" "- clocks since";
+    ConditionUse "8" "bc, bnc, bc.t, bnc.t right after addu, adds, subu, subs or a compare" "";
+    MultiplierFirstSource "9" "multiplier operation whose first source is the result of the operation before" "";
+    ScalarBusy "10a" "floating-point operation or fst while a scalar fadd, fsub, fix, ftrunc, famov, fmlow, fmul.ss or fmul.sd is in flight" "- clocks since";
+    ScalarDoubleMultiplyBusy "10b" "the same behind a scalar fmul.dd" "- clocks since";
+    ScalarPrecisionChange "10c" "added to 10a or 10b when the precision changes" "";
+    ScalarThenPipelined "10d" "added to 10a or 10b when the new operation is pipelined and has a destination" "";
+    DoubleMultiply "11" "multiplier operation right after a double-precision multiply" "";
+    TlbMiss "12" "TLB miss (translation on)" "+ two reads of the page tables";
+    LoadPipeFull "13" "pfld with three outstanding" "+ clocks until the first returns";
+    PipelinedLoadHit "14" "pfld that hits the data cache" "+ clocks to finish all bus cycles";
+    StorePipeFull "15" "store miss with three stores waiting, or with a write-back pending" "+ clocks to the end of the next write";
+    AddressPipeFull "16" "bus request with three outstanding" "+ clocks until the first ends";
+    LoadAfterStoreHit "17" "ld or fld right after a store that hit" "";
+    DelayedBranchNotTaken "18" "bc.t, bnc.t or bla not taken" "";
+    BranchTaken "19a" "bc or bnc taken" "";
+    CompareBranchTaken "19b" "bte or btne taken" "";
+    IndirectBranch "20" "bri, calli" "";
+    ControlStore "21" "st.c" "";
+    GraphicsToFloating "22a" "graphics result used by the next adder or multiplier operation" "";
+    GraphicsToGraphics "22b" "graphics result used by the next graphics operation (not fmov.dd)" "";
+    FlushAfterFlush "23" "flush after flush" "- clocks since";
+    StoreThenOverwrite "24" "fst or pst, then a pipelined operation that overwrites the stored register" "";
+    SeedUse "25" "result of frcp or frsqr used by the next instruction" "";
+}
+
+/// Which rows apply, and their constant parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FreezeRules {
+    enabled: u32,
+    /// The constant parts, whether their rows apply or not.
+    pub clocks: FreezeClocks,
+    /// Whether row 8 covers and, andnot, or and xor (open question; default no).
+    pub logicals_delay_branches: bool,
+}
+
+impl FreezeRules {
+    /// All rows of [`FREEZES`].
+    #[must_use]
+    pub fn all() -> FreezeRules {
+        let enabled = (1 << N_FREEZES) - 1;
+        FreezeRules { enabled, clocks: FreezeClocks::PAPERS, logicals_delay_branches: false }
+    }
+
+    /// No row: one clock per instruction or pair.
+    #[must_use]
+    pub fn none() -> FreezeRules {
+        FreezeRules { enabled: 0, ..FreezeRules::all() }
+    }
+
+    /// The same rules with one row switched off.
+    #[must_use]
+    pub fn without(mut self, id: Freeze) -> FreezeRules {
+        self.enabled &= !(1 << id as u32);
+        self
+    }
+
+    /// The same rules with one row switched on.
+    #[must_use]
+    pub fn with(mut self, id: Freeze) -> FreezeRules {
+        self.enabled |= 1 << id as u32;
+        self
+    }
+
+    /// Whether a row applies.
+    #[must_use]
+    pub fn applies(&self, id: Freeze) -> bool {
+        self.enabled & 1 << id as u32 != 0
+    }
+}
+
+/// The rules as the clock asks for them, many times for every instruction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Costs {
+    enabled: u32,
+    /// By row; 0 for one that does not apply.
+    clocks: [u64; N_FREEZES],
+    pub(crate) logicals_delay_branches: bool,
+}
+
+impl Costs {
+    pub(crate) fn new(rules: &FreezeRules) -> Costs {
+        let mut clocks = [0; N_FREEZES];
+        for (row, entry) in FREEZES.iter().zip(rules.clocks.entries()) {
+            if rules.applies(row.id) {
+                clocks[row.id as usize] = entry.value.whole().unwrap_or_default();
+            }
+        }
+        Costs { enabled: rules.enabled, clocks, logicals_delay_branches: rules.logicals_delay_branches }
+    }
+
+    #[inline]
+    pub(crate) fn applies(&self, id: Freeze) -> bool {
+        self.enabled & 1 << id as u32 != 0
+    }
+
+    /// Constant part of a row, 0 when it is off.
+    #[inline]
+    pub(crate) fn clocks(&self, id: Freeze) -> u64 {
+        self.clocks[id as usize]
+    }
+}

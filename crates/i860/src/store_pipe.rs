@@ -1,0 +1,41 @@
+//! The store pipe: stores on their way to the bus, and lines that are written back.
+
+use crate::common::Common;
+use crate::timing::{ChipSizes, Freeze};
+
+const DEPTH: usize = ChipSizes::PAPERS.store_depth as usize;
+const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
+/// Transfers of a line.
+const LINE_BEATS: u32 = ChipSizes::PAPERS.line_bytes as u32 / BUS_BYTES;
+
+#[derive(Clone, Debug, Default)]
+pub(crate) struct StorePipe {
+    /// Clocks at which the latest stores have left, the oldest first.
+    ends: [u64; DEPTH],
+    write_back_end: u64,
+}
+
+impl StorePipe {
+    /// Sends a store to the bus, once the oldest one and any write-back have left.
+    pub(crate) fn store(&mut self, address: u32, size: u32, common: &mut Common) {
+        if common.costs.applies(Freeze::StorePipeFull) {
+            self.wait_for_room(common);
+        }
+        let end = common.bus.write(common.now, address, size.div_ceil(BUS_BYTES)).last;
+        self.ends.rotate_left(1);
+        self.ends[DEPTH - 1] = end;
+    }
+
+    fn wait_for_room(&self, common: &mut Common) {
+        let blocked = self.ends[0].max(self.write_back_end);
+        if blocked > common.now {
+            let surcharge = common.costs.clocks(Freeze::StorePipeFull);
+            common.freeze_until(blocked + surcharge, Freeze::StorePipeFull);
+        }
+    }
+
+    /// Writes a line back from a clock on.
+    pub(crate) fn write_back(&mut self, from: u64, address: u32, common: &mut Common) {
+        self.write_back_end = common.bus.write(from, address, LINE_BEATS).last;
+    }
+}

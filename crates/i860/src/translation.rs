@@ -1,0 +1,57 @@
+//! Address translation: the TLB. Addresses stay what they are; only misses are charged.
+
+use crate::cache::Tags;
+use crate::common::Common;
+use crate::timing::{ChipSizes, Freeze};
+
+const PAGE_BYTES: u32 = ChipSizes::PAPERS.page_bytes as u32;
+
+#[derive(Clone, Debug)]
+pub(crate) struct Translation {
+    /// Address of the page directory while translation is on.
+    directory: Option<u32>,
+    tlb: Tags,
+}
+
+impl Translation {
+    pub(crate) fn new() -> Translation {
+        let ChipSizes { tlb_entries, tlb_ways, .. } = ChipSizes::PAPERS;
+        Translation { directory: None, tlb: Tags::new(tlb_entries as u32, PAGE_BYTES, tlb_ways as u32) }
+    }
+
+    #[inline]
+    pub(crate) fn is_on(&self) -> bool {
+        self.directory.is_some()
+    }
+
+    /// Page tables at this address from now on, or none.
+    pub(crate) fn set_directory(&mut self, directory: Option<u32>) {
+        self.directory = directory;
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.tlb.clear();
+    }
+
+    /// Charges a TLB miss: the constant part, a read of the directory, a read of a page table (the tables are
+    /// taken to lie behind the directory).
+    #[inline]
+    pub(crate) fn translate(&mut self, address: u32, common: &mut Common) {
+        if let Some(directory) = self.directory
+            && common.costs.applies(Freeze::TlbMiss)
+            && self.tlb.find(address).is_none()
+        {
+            self.miss(address, directory, common);
+        }
+    }
+
+    fn miss(&mut self, address: u32, directory: u32, common: &mut Common) {
+        let random = common.chance.next();
+        self.tlb.fill(address, random);
+        common.charge(Freeze::TlbMiss);
+        let table = directory.wrapping_add((1 + (address >> 22)) * PAGE_BYTES);
+        let first = common.bus.read(common.now, directory + (address >> 20 & 0xFFC), 1).first;
+        let second = common.bus.read(first, table.wrapping_add(address >> 10 & 0xFFC), 1).first;
+        common.freeze_until(second, Freeze::TlbMiss);
+    }
+}

@@ -1,0 +1,43 @@
+//! Memoising the clocks of the triangle kernels changes nothing but the host's time. The same of random programs:
+//! crates/i860/tests/memo.rs.
+
+mod kernel;
+
+use i860::Config;
+use i860::timing::{FREEZES, FreezeRow, FreezeRules};
+use kernel::{Bench, frame, triangles};
+use parameters::ParameterTable;
+use pxpl5_geometry::Viewport;
+use pxpl5_geometry::kernel::Schedule;
+
+fn kernel_with(config: Config, schedule: Schedule) -> Bench {
+    let mut bench = Bench::new(frame(schedule), Viewport::FRAME, config, &triangles(12, 0.5, 4));
+    bench.run();
+    bench
+}
+
+fn assert_same_kernel(freezes: FreezeRules, schedule: Schedule) {
+    let [memoised, counted] =
+        [true, false].map(|memoise| kernel_with(Config { memoise, freezes, ..Config::cycle() }, schedule));
+    assert_eq!(memoised.profile(), counted.profile(), "{schedule:?}");
+    assert!(memoised.output() == counted.output() && memoised.cpu.state == counted.cpu.state);
+}
+
+/// All rows, one of them with so many clocks that it is felt wherever it applies.
+fn slower(row: &FreezeRow) -> FreezeRules {
+    let mut rules = FreezeRules::all();
+    rules.clocks.set(row.clocks.name, 10.into()).expect("the table has all rows");
+    rules
+}
+
+#[test]
+fn the_kernels_take_the_same_clocks_whatever_row_is_switched() {
+    for schedule in [Schedule::Straight, Schedule::Dual] {
+        assert_same_kernel(FreezeRules::all(), schedule);
+        for row in &FREEZES {
+            assert_same_kernel(FreezeRules::all().without(row.id), schedule);
+            assert_same_kernel(FreezeRules::none().with(row.id), schedule);
+            assert_same_kernel(slower(row), schedule);
+        }
+    }
+}
