@@ -5,8 +5,9 @@
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use pxpl5::levels::Level;
-use pxpl5::{Experiment, Machine, MachineConfig, Outcome, Pipeline, Pixels, RenderingControl, Slats, scene};
+use pxpl5::{
+    Experiment, Level, Machine, MachineConfig, Outcome, Pipeline, Pixels, RenderingControl, Slats, Workstation, scene,
+};
 use std::hint::black_box;
 
 /// With threads that compute pixels beside the one that simulates.
@@ -14,7 +15,7 @@ const PIXELS: [(&str, Pixels, usize); 3] =
     [("no pixels", Pixels::Off, 0), ("all pixels", Pixels::All, 0), ("all pixels, a second thread", Pixels::All, 1)];
 
 fn run(experiment: &Experiment, pixels: Pixels, threads: usize) -> Outcome {
-    experiment.clone().pixels(pixels).threads(threads).run().expect("the preset runs")
+    experiment.clone().pixels(pixels).host(Workstation::with_threads(threads)).run().expect("the preset runs")
 }
 
 /// An element is a field.
@@ -67,7 +68,7 @@ fn idle(criterion: &mut Criterion) {
             let machine = Machine::new(&MachineConfig::small_hmd(), pipeline.eyes(), pipeline.layout());
             let mut machine = machine.expect("the preset is valid");
             machine.switch_on();
-            let end = machine.video().retrace(FIELDS);
+            let end = machine.record().tick(FIELDS);
             machine.run_until(end).expect("nothing can fail");
             black_box(machine.events())
         });

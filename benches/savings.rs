@@ -5,8 +5,9 @@
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use pxpl5::levels::Level;
-use pxpl5::{Experiment, MachineConfig, Pixels, RenderingControl, Saving, Slats, scene};
+use pxpl5::{
+    Experiment, Level, MachineConfig, NtscDisplay, Pixels, RenderingControl, Saving, Slats, Workstation, scene,
+};
 use std::hint::black_box;
 
 /// The aircraft leaves regions empty under both pipelines, twelve triangles of it nearly all.
@@ -30,13 +31,13 @@ fn savings(criterion: &mut Criterion) {
         for saving in Saving::ALL {
             let pixels = if saving == Saving::EmptyRegions { Pixels::All } else { Pixels::Off };
             let level = if saving == Saving::RepeatedCode { Level::Cycle } else { Level::Transaction };
-            let with = experiment.clone().pixels(pixels).level(level).threads(1);
+            let with = experiment.clone().pixels(pixels).level(level).host(Workstation::with_threads(1));
             let mut group = criterion.benchmark_group(format!("savings/{name}/{saving}"));
             group.throughput(Throughput::Elements(fields(saving)));
             for (way, experiment) in [("with", with.clone()), ("without", with.without(saving))] {
                 let run = || {
                     let mut machine = experiment.build().expect("the presets are valid");
-                    let end = machine.video().retrace(fields(saving));
+                    let end = machine.record().tick(fields(saving));
                     machine.run_until(end).expect("it runs");
                     black_box(machine.finish_pixels())
                 };
@@ -51,7 +52,8 @@ fn savings(criterion: &mut Criterion) {
 fn looking(criterion: &mut Criterion) {
     const FIELDS: u64 = 120;
     let head = scene::builtin("head").expect("built in");
-    let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), head).threads(1);
+    let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), head)
+        .host(Workstation::with_threads(1));
     let mut group = criterion.benchmark_group("savings/rendering-control-head");
     group.throughput(Throughput::Elements(FIELDS));
     let looks = [
@@ -65,10 +67,11 @@ fn looking(criterion: &mut Criterion) {
         let run = || {
             let mut machine = experiment.build().expect("the preset is valid");
             for field in (60..=FIELDS).step_by(60) {
-                let end = machine.video().retrace(field);
+                let end = machine.record().tick(field);
                 machine.run_until(end).expect("it runs");
                 for _ in 0..looks {
-                    black_box(machine.frame_buffers()[0].last_seen().map(|seen| seen.picture()));
+                    let display = machine.record().display_of_kind::<NtscDisplay>().expect("the papers' machine");
+                    black_box(display.boards()[0].last_seen().map(|seen| seen.picture()));
                 }
             }
             black_box(machine.finish_pixels())

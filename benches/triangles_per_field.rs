@@ -4,9 +4,8 @@
 #![allow(missing_docs, reason = "criterion_group! makes functions without documentation")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use pxpl5::levels::Level;
-use pxpl5::limit::{Growing, LimitQuery};
-use pxpl5::{Binning, MachineConfig, Slats};
+use pxpl5::limit::LimitQuery;
+use pxpl5::{Binning, Level, MachineConfig, Slats, TestScene};
 use std::time::Duration;
 
 fn machine(preset: &str, n_gps: usize, n_renderers: usize) -> MachineConfig {
@@ -14,10 +13,20 @@ fn machine(preset: &str, n_gps: usize, n_renderers: usize) -> MachineConfig {
     MachineConfig { n_gps, n_renderers, ..preset }
 }
 
+/// Triangles that cover the screen.
+fn all(config: MachineConfig, slats: Slats) -> LimitQuery {
+    LimitQuery::of_papers(config, slats).expect("Slats is known")
+}
+
+/// Small triangles.
+fn typical(config: MachineConfig, slats: Slats) -> LimitQuery {
+    let mut query = all(config, slats);
+    query.criterion.scene = TestScene::Typical;
+    query
+}
+
 fn queries() -> Vec<(&'static str, LimitQuery)> {
     let touched = Slats { binning: Binning::Touched, ..Slats::split() };
-    let typical = |config, slats| LimitQuery { growing: Growing::Typical, ..LimitQuery::no_miss(config, slats) };
-    let all = |config, slats| LimitQuery::no_miss(config, slats);
     vec![
         ("prototype, whole copy (published 110)", all(machine("slats", 1, 5), Slats::whole())),
         ("prototype, split copy (published 140)", all(machine("slats", 1, 5), Slats::split())),

@@ -1,7 +1,8 @@
 //! Re-draws the pipeline figures of the papers from simulation: `cargo run --release --example figures [FOLDER]`, by
 //! default into `docs/figures/`. Each must be what the test `tests/timeline.rs` expects to find there.
 
-use pxpl5::timeline::PIPELINE_FIGURES;
+use pxpl5::pipeline_figures::PIPELINE_FIGURES;
+use pxpl5::timeline::{TimelineOptions, svg};
 use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -9,7 +10,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args_os().nth(1).map_or_else(default, PathBuf::from);
     std::fs::create_dir_all(&folder)?;
     for figure in PIPELINE_FIGURES {
-        let drawing = figure.draw()?;
+        let options =
+            TimelineOptions { title: Some(figure.title()), fields: figure.fields, ..TimelineOptions::default() };
+        let drawing = svg(&figure.run()?, &options);
         assert!(drawing.starts_with("<svg ") && drawing.ends_with("</svg>\n"), "{} is no drawing", figure.name);
         std::fs::write(folder.join(figure.name).with_extension("svg"), drawing)?;
     }

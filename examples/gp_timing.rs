@@ -10,9 +10,8 @@ use i860::timing::{DramTiming, FREEZES, Freeze};
 use i860::{Config, Profile};
 use kernel::{Bench, frame, triangles};
 use parameters::{ParameterTable, Value};
-use pxpl5::levels::Level;
-use pxpl5::limit::{Growing, LimitQuery};
-use pxpl5::{Experiment, MachineConfig, Pixels, Slats};
+use pxpl5::limit::{LimitQuery, test_scene};
+use pxpl5::{Experiment, Level, MachineConfig, Pixels, Slats, TestScene};
 use pxpl5_geometry::kernel::{Kernel, Schedule};
 use pxpl5_geometry::{Triangle, Viewport};
 use pxpl5_gp::Stage;
@@ -199,7 +198,7 @@ fn dram_sensitivity() {
 
 /// Time of TRANSFORM of a field of Slats in microseconds.
 fn transform_us(preset: &str, level: Level, triangles: u32) -> Result<f64, Box<dyn std::error::Error>> {
-    let small = Growing::Typical.scene(triangles);
+    let small = test_scene(TestScene::Typical, triangles);
     let experiment = Experiment::new(MachineConfig::preset(preset)?, Slats::split(), small).fields(12).level(level);
     let stages = experiment.pixels(Pixels::Off).run()?.stages();
     let steady = stages.iter().filter(|span| span.stage == Stage::Transform && span.picture > 4);
@@ -238,12 +237,13 @@ fn board() -> Result<(), Box<dyn std::error::Error>> {
         ("optimised code, with it", "slats-optimised", Slats::split(), "dual", "-"),
     ] {
         let machine = MachineConfig::preset(preset)?;
-        let limit = |level, growing| {
-            let limit = LimitQuery { level, growing, ..LimitQuery::no_miss(machine.clone(), slats) }.search();
-            limit.map(|limit| limit.triangles.to_string())
+        let limit = |level, scene| {
+            let mut query = LimitQuery { level, ..LimitQuery::of_papers(machine.clone(), slats)? };
+            query.criterion.scene = scene;
+            query.search().map(|limit| limit.triangles.to_string())
         };
-        let table = limit(Level::Transaction, Growing::FullScreen)?;
-        let cycle = [Growing::Typical, Growing::FullScreen].map(|growing| limit(Level::Cycle, growing));
+        let table = limit(Level::Transaction, TestScene::FullScreen)?;
+        let cycle = [TestScene::Typical, TestScene::FullScreen].map(|scene| limit(Level::Cycle, scene));
         let [small, full] = cycle;
         row(&[name.into(), kernel.into(), table, small?, full?, published.into()]);
     }

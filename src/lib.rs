@@ -68,8 +68,8 @@ pub use pxpl5_measure::{
 };
 pub use pxpl5_run::{
     BareHost, Code, DefinedStatistics, Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint,
-    Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key, KeyValue, KeyValues, Level,
-    LimitCriterion, Outcome, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry,
+    Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key, KeyValue, KeyValues, LimitCriterion,
+    Outcome, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Priority, Raster, Registry,
     RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary, TestScene, Viewpoint, WARM_UP_PICTURES,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};
@@ -84,7 +84,7 @@ pub mod firmware {
         Binning, DisplayList, EyeView, FrameView, Pass, Picture, RegionEnvelope, Shading, Share, region_messages,
     };
     pub use pxpl5_geometry::Viewport;
-    pub use pxpl5_gp::{Edge, Fault, Gp, GpTiming, HostTiming, Level, Mark, Program, Received, Stage, Ticket};
+    pub use pxpl5_gp::{Edge, Fault, Firmware, Gp, GpTiming, HostTiming, Mark, Priority, Received, Stage, Ticket};
     pub use pxpl5_renderer::{CommandKind, Layout};
     pub use pxpl5_wire::{
         Body, CommandList, CopyOrder, CopyTarget, FieldParity, Lines, NodeId, RegionGrid, RegionId, Word, swap_request,

@@ -1,10 +1,12 @@
 //! What goes beyond the measured prototypes: Slats with a backup field, several graphics processors and more renderers, as
 //! the papers name as future work; Rendering Control on the larger machines.
 
-use pxpl5::levels::Program;
-use pxpl5::limit::{Growing, LimitQuery};
+mod support;
+
+use pxpl5::limit::LimitQuery;
 use pxpl5::scene::builtin;
-use pxpl5::{Binning, Experiment, MachineConfig, Outcome, Pixels, RenderingControl, Slats};
+use pxpl5::{Binning, Experiment, MachineConfig, Measured, Outcome, Pixels, RenderingControl, Slats, TestScene};
+use support::boards;
 
 fn run(slats: Slats, scene: &str) -> Outcome {
     let scene = builtin(scene).expect("built in");
@@ -12,9 +14,10 @@ fn run(slats: Slats, scene: &str) -> Outcome {
     experiment.run().expect("it runs")
 }
 
-fn limit(gps: usize, renderers: usize, slats: Slats, growing: Growing) -> u32 {
+fn limit(gps: usize, renderers: usize, slats: Slats, scene: TestScene) -> u32 {
     let config = MachineConfig { n_gps: gps, n_renderers: renderers, ..MachineConfig::slats() };
-    let query = LimitQuery { growing, ..LimitQuery::no_miss(config, Program::from(slats)) };
+    let mut query = LimitQuery::of_papers(config, slats).expect("Slats is known");
+    query.criterion.scene = scene;
     query.search().expect("it runs").triangles
 }
 
@@ -32,21 +35,21 @@ fn an_incomplete_field_is_never_shown_with_a_backup() {
     let outcome = run(Slats::backup(), "full-screen:200");
     assert!(outcome.report().missed_retraces > 0);
     // Nothing was ever complete, so the first buffer stays on the screen and all regions went to the other one.
-    assert!(outcome.machine().frame_buffers().iter().all(|board| board.displayed() == 0));
+    assert!(boards(&outcome).iter().all(|board| board.displayed() == 0));
     assert!(outcome.observation().arrivals.iter().all(|arrival| arrival.target.buffer == 1));
 }
 
 #[test]
 fn a_backup_costs_a_few_triangles_of_the_limit_of_a_whole_copy() {
     let (whole, backup) =
-        (limit(1, 5, Slats::whole(), Growing::FullScreen), limit(1, 5, Slats::backup(), Growing::FullScreen));
+        (limit(1, 5, Slats::whole(), TestScene::FullScreen), limit(1, 5, Slats::backup(), TestScene::FullScreen));
     assert!(backup <= whole && whole - backup <= 10, "{whole} and {backup}");
 }
 
 #[test]
 fn typical_triangles_sent_only_where_they_touch_raise_the_limit() {
     let touched = Slats { binning: Binning::Touched, ..Slats::split() };
-    let (all, touched) = (limit(1, 5, Slats::split(), Growing::Typical), limit(1, 5, touched, Growing::Typical));
+    let (all, touched) = (limit(1, 5, Slats::split(), TestScene::Typical), limit(1, 5, touched, TestScene::Typical));
     assert!(touched > all, "{touched} and {all}");
 }
 

@@ -1,15 +1,17 @@
 //! The cycle level: graphics processors whose time comes from i860 code over the data of every triangle.
 
-use pxpl5::levels::Level;
-use pxpl5::limit::Growing;
-use pxpl5::{Experiment, ExperimentError, MachineConfig, Outcome, Pixels, RenderingControl, Slats, scene};
+use pxpl5::limit::test_scene;
+use pxpl5::{
+    Experiment, ExperimentError, Level, MachineConfig, Measured, Outcome, Pixels, RenderingControl, Slats, TestScene,
+    Workstation, scene,
+};
 use pxpl5_gp::Stage;
 
 const CLUMP: u32 = 30;
 
 /// A clump of triangles that are wholly inside the guard band, so that none is left to the clipper.
 fn slats(machine: &str) -> Experiment {
-    let small = Growing::Typical.scene(CLUMP);
+    let small = test_scene(TestScene::Typical, CLUMP);
     Experiment::new(MachineConfig::preset(machine).expect("listed"), Slats::split(), small)
         .fields(12)
         .pixels(Pixels::Off)
@@ -44,7 +46,11 @@ fn both_pipelines_give_the_same_trace_whatever_the_ties_and_the_pixels() {
         for seed in 0..5 {
             assert_eq!(hash(&experiment.clone().shuffle_ties(seed)), expected, "ties in order {seed}");
         }
-        assert_eq!(hash(&experiment.clone().pixels(Pixels::All).threads(2)), expected, "with all pixels");
+        assert_eq!(
+            hash(&experiment.clone().pixels(Pixels::All).host(Workstation::with_threads(2))),
+            expected,
+            "with all pixels"
+        );
         assert_ne!(hash(&experiment.clone().level(Level::Transaction)), expected, "other times");
         assert_ne!(experiment.config_hash(), experiment.level(Level::Transaction).config_hash());
     }

@@ -1,6 +1,6 @@
 //! Same input, same trace: whatever the ties, the threads and the pixels.
 
-use pxpl5::{Experiment, MachineConfig, Pixels, RenderingControl, Slats, scene};
+use pxpl5::{Experiment, MachineConfig, Measured, Pixels, RenderingControl, Slats, Workstation, scene};
 
 fn pipelines() -> [Experiment; 3] {
     let mig = || scene::builtin("mig").expect("built in");
@@ -43,7 +43,8 @@ fn pixels_and_threads_change_no_time_and_threads_no_pixel() {
         let lazy = experiment.clone().pixels(Pixels::Lazy).run().expect("it runs");
         assert_eq!(lazy.report().trace_hash, off);
         for threads in [0, 1, 2] {
-            let all = experiment.clone().pixels(Pixels::All).threads(threads).run().expect("it runs");
+            let all =
+                experiment.clone().pixels(Pixels::All).host(Workstation::with_threads(threads)).run().expect("it runs");
             assert_eq!(all.report().trace_hash, off);
             for eye in pxpl5::Eye::BOTH {
                 assert!(all.picture(eye) == lazy.picture(eye), "{eye:?} with {threads} threads");

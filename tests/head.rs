@@ -1,13 +1,12 @@
 //! Experiment files with a head, a tracker and a display: do they give what the comparison gives, and the pictures?
 
 use pxpl5::compare::{compare, edge_scene};
-use pxpl5::display::Display;
-use pxpl5::pictures::{Eyes, Film};
+use pxpl5::film::{Film, FilmOf};
 use pxpl5::tracking::motion::{Motion, Pan};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
 use pxpl5::tracking::view::HmdView;
-use pxpl5::{Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Pixels, Plan, Viewpoint};
+use pxpl5::{Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Measured, Pixels, Plan, Raster, Viewpoint};
 use std::sync::Arc;
 
 fn plan(settings: &[(&str, &str)]) -> Plan {
@@ -50,9 +49,9 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
 }
 
 /// A wall's edge straight ahead at time zero, under a pan: a picture for one moment a field, for one eye.
-fn panned(deg_per_s: f64, display: Display, fields: u64) -> Experiment {
+fn panned(deg_per_s: f64, raster: Raster, fields: u64) -> Experiment {
     let head = Head::new(Arc::new(Pan::at(deg_per_s)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
-    let head = head.expect("in range").display(display);
+    let head = head.expect("in range").before(raster);
     Experiment::new(MachineConfig::small_hmd(), Jitp::new(Viewpoint::Field, false), edge_scene(0.0))
         .head(head)
         .fields(fields)
@@ -70,9 +69,9 @@ fn edges(picture: &image::RgbImage, field: u64) -> Vec<f64> {
 fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
     const FIELD: u64 = 20;
     let (pan, view) = (Pan::at(30.0), HmdView::ntsc());
-    let [plain, vdrt] = [Display::Plain, Display::Vdrt].map(|display| {
-        let outcome = panned(30.0, display, FIELD + 2).run().expect("the scene is small");
-        let video = *outcome.machine().video();
+    let [plain, vdrt] = [Raster::Plain, Raster::Vdrt].map(|raster| {
+        let outcome = panned(30.0, raster, FIELD + 2).run().expect("the scene is small");
+        let video = *video(&outcome);
         let picture = outcome.picture(Eye::Left).expect("pixels when looked at");
         let found = edges(&picture, FIELD).into_iter().enumerate();
         let errors: Vec<f64> = found
@@ -94,12 +93,14 @@ fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
 #[test]
 fn a_film_on_a_shifted_raster_shows_the_pictures_of_a_run_on_it() {
     let mut bytes = Vec::new();
-    Film::new(panned(40.0, Display::Vdrt, 30), 10, 3, Eyes::One(Eye::Left)).write(&[], &mut bytes).expect("in range");
+    Film::new(panned(40.0, Raster::Vdrt, 30), 10, 3, FilmOf::One(Eye::Left.into()))
+        .write(&[], &mut bytes)
+        .expect("in range");
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("PNG");
     for field in 10..13 {
         let mut pixels = vec![0; reader.output_buffer_size().expect("fits")];
         reader.next_frame(&mut pixels).expect("a frame each field");
-        let run = panned(40.0, Display::Vdrt, field + 2).pixels(Pixels::Lazy).run().expect("the scene is small");
+        let run = panned(40.0, Raster::Vdrt, field + 2).pixels(Pixels::Lazy).run().expect("the scene is small");
         assert!(run.picture(Eye::Left).expect("pixels").into_raw() == pixels, "field {field}");
     }
 }

@@ -5,11 +5,14 @@
 //! They change only by `PXPL5_UPDATE_IMAGES=1 cargo test --test images`, and somebody must look at them then.
 
 use image::{Rgb, RgbImage, imageops};
-use pxpl5::{Binning, Experiment, Eye, MachineConfig, Outcome, Pipeline, RenderingControl, Slats, scene};
+mod support;
+
+use pxpl5::{Binning, Experiment, Eye, MachineConfig, Measured, Outcome, Pipeline, RenderingControl, Slats, scene};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use support::boards;
 
 const UPDATE: &str = "PXPL5_UPDATE_IMAGES";
 
@@ -108,7 +111,7 @@ fn update(name: &str, picture: &RgbImage, subject: &Subject) {
 /// moving scene would show two poses.
 fn shown(outcome: &Outcome, eye: Eye) -> RgbImage {
     let newest = outcome.pictures().last().expect("it has shown some").picture;
-    let frame_buffer = &outcome.machine().frame_buffers()[eye.index()];
+    let frame_buffer = &boards(&outcome)[eye.index()];
     match outcome.pipeline().name() {
         "slats" => {
             let last = frame_buffer.last_seen().expect("a field was scanned");

@@ -1,10 +1,9 @@
 //! From head to light: what the papers say of just-in-time pixels, latency and registration, on the whole machine.
 
 use glam::DVec3;
-use pxpl5::compare::{
-    LatencyCurve, Percentiles, PixelErrors, Registration, as_seen, compare, edge_pictures, edge_scene, measure_on,
-    motion, triangles_possible,
-};
+mod support;
+
+use pxpl5::compare::{as_seen, compare, edge_pictures, edge_scene, measure_on, motion, triangles_possible};
 use pxpl5::scene::{Scene, builtin};
 use pxpl5::tracking::Pose;
 use pxpl5::tracking::motion::{Motion, Pan, Still, Synthetic};
@@ -12,12 +11,14 @@ use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::rig::PendulumRig;
 use pxpl5::tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, seconds};
 use pxpl5::tracking::tracker::{Fault, TrackerConfig, TrackerModel};
+use pxpl5::views::charts::LatencyCurve;
 use pxpl5::{
-    Budget, Experiment, Frameless, Head, Interpolation, Jitp, MachineConfig, Outcome, Pipeline, Pixels,
-    RenderingControl, Slats, Viewpoint,
+    Budget, Experiment, Frameless, Head, Interpolation, Jitp, MachineConfig, Measured, Outcome, Percentiles, Pipeline,
+    PixelErrors, Pixels, Registration, RenderingControl, Slats, Viewpoint,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use support::{boards, video};
 
 /// A fast turn of the head (JITP).
 const PAN: f64 = 200.0;
@@ -54,7 +55,7 @@ fn under_a_pan(viewpoint: Viewpoint, racing: bool) -> Outcome {
 
 /// Seconds between the beam's passes over two pixels of a field.
 fn beam_s(outcome: &Outcome, from: (u32, u32), to: (u32, u32)) -> f64 {
-    let when = |(x, y)| outcome.machine().video().when(x, y, FIELD).expect("visible").0 as f64;
+    let when = |(x, y)| video(&outcome).when(x, y, FIELD).expect("visible").0 as f64;
     (when(to) - when(from)) * 1e-12
 }
 
@@ -147,7 +148,7 @@ fn a_picture_is_seen_as_it_is_by_a_still_head() {
     let outcome = under_a_pan(Viewpoint::Strip, true);
     let picture = image::RgbImage::from_fn(640, 240, |x, y| image::Rgb([x as u8, y as u8, (x / 3) as u8]));
     let still = Still(Pose::IDENTITY);
-    assert_eq!(as_seen(&picture, FIELD, outcome.machine().video(), &still), picture);
+    assert_eq!(as_seen(&picture, FIELD, video(&outcome), &still), picture);
 }
 
 #[test]
@@ -269,7 +270,7 @@ fn stages_from_head_to_light_add_up() {
         let budget = Budget::of(&outcome);
         let measured: BTreeMap<_, _> =
             outcome.head().expect("a head").sampled().iter().filter_map(|s| Some((s.number, s.measured_at?))).collect();
-        let video = outcome.machine().video();
+        let video = video(&outcome);
         let ages: Vec<f64> = outcome
             .steady_pictures()
             .iter()
@@ -409,7 +410,7 @@ fn the_order_of_simultaneous_events_decides_nothing() {
             .head(head(Synthetic::recorded_use(1), TrackerConfig::fastrak(), PredictorKind::Kalman))
             .fields(12);
         let experiment = seed.map_or(experiment.clone(), |seed| experiment.shuffle_ties(seed));
-        experiment.run().expect("it runs").machine().trace_hash()
+        experiment.run().expect("it runs").record().trace_hash()
     };
     let of = |seed| {
         let jitp = |viewpoint, racing| Arc::new(Jitp::new(viewpoint, racing)) as Arc<dyn Pipeline>;

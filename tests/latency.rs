@@ -1,11 +1,14 @@
 //! The latencies and limits of the papers, each with the tolerance that its derivation allows. `tests/published.rs`
 //! asserts the same and more through the table of figures; here each experiment stands by itself.
 
-use pxpl5::pipelines::PictureTimes;
+mod support;
+
 use pxpl5::{
-    Arrival, Code, Experiment, Eye, MachineConfig, Outcome, Pixels, RenderingControl, Slats, StageSpan, scene,
+    Arrival, Code, Experiment, Eye, MachineConfig, Measured, Outcome, PictureTimes, Pixels, RenderingControl, Slats,
+    StageSpan, scene,
 };
 use pxpl5_gp::Stage;
+use support::{boards, video};
 
 /// A region of 15 messages of 1,024 + 16 words of 50 ns (TR94: 780 us).
 const REGION_US: f64 = 780.0;
@@ -25,7 +28,7 @@ fn slats(machine: &str, pipeline: Slats, triangles: usize) -> Outcome {
 }
 
 fn stages(outcome: &Outcome, stage: Stage, picture: u64) -> Vec<StageSpan> {
-    let message = outcome.machine().ring().timing().occupancy(1_024);
+    let message = outcome.record().ring().timing().occupancy(1_024);
     outcome.observation().stages(message).into_iter().filter(|s| s.stage == stage && s.picture == picture).collect()
 }
 
@@ -67,7 +70,7 @@ fn figure_9_slats_shows_every_field_exactly_one_field_after_its_start() {
     for pipeline in [Slats::split(), Slats::whole()] {
         let outcome = slats("slats", pipeline, 100);
         let one_field = |times: &PictureTimes| {
-            let video = outcome.machine().video();
+            let video = video(&outcome);
             let started = video.field_at(times.transform_at);
             times.transform_at == video.retrace(started) && times.shown_at == video.retrace(started + 1)
         };
@@ -99,7 +102,7 @@ fn figure_11_half_of_them_take_3_9_ms() {
 #[test]
 fn the_top_half_is_copied_before_the_retrace_and_the_bottom_half_after_it() {
     let outcome = slats("slats", Slats::split(), 100);
-    let retrace = outcome.machine().video().retrace(6);
+    let retrace = video(&outcome).retrace(6);
     for arrival in outcome.observation().arrivals.iter().filter(|a| a.target.picture == 6) {
         let top = arrival.target.region.0 < 5;
         assert_eq!(arrival.last_part_at < retrace, top, "{arrival:?}");
@@ -140,7 +143,7 @@ fn figure_15_the_first_copy_begins_about_12_8_ms_after_the_retrace() {
     let outcome = slats("slats", Slats::split(), 148);
     let top = outcome.observation().arrivals.iter().filter(|a| a.target.picture == 6 && a.target.region.0 < 5);
     let begin = top.map(|a| a.first_part_at.0).min().expect("regions") - 52_000_000;
-    let ms = (begin - outcome.machine().video().retrace(5).0) as f64 * 1e-9;
+    let ms = (begin - video(&outcome).retrace(5).0) as f64 * 1e-9;
     assert!((ms - 12.8).abs() < 0.1, "{ms} ms");
 }
 

@@ -1,8 +1,8 @@
 //! The published figures, asserted: free checks within what the papers print or their last digit allows, misses as they
 //! are (FIXME(accuracy)). Causes stand in ACCURACY.md, which must be what these runs give.
 
+use pxpl5::Level;
 use pxpl5::figures::{Bench, Figures, Row, markdown, run_all};
-use pxpl5::levels::Level;
 use std::sync::LazyLock;
 
 static FIGURES: LazyLock<Figures> =

@@ -1,18 +1,22 @@
 //! Do results, traces and films say what happened?
 
 use prost::Message;
-use pxpl5::pictures::{Eyes, FRAME_SECONDS, Film, FilmError, seen_at, side_by_side};
+mod support;
+
+use pxpl5::film::{Film, FilmError, FilmOf, frame_seconds};
 use pxpl5::results::{columns, csv};
 use pxpl5::trace_export::{Events, Trace, chrome, perfetto};
 use pxpl5::{
-    Experiment, Eye, Frameless, Jitp, LATENCY_PARTS, MachineConfig, Outcome, Pipeline, Pixels, RenderingControl, Slats,
-    Viewpoint, scene,
+    Experiment, Eye, Frameless, Jitp, LATENCY_PARTS, MachineConfig, Measured, Outcome, Pipeline, Pixels,
+    RenderingControl, Slats, Viewpoint, scene, side_by_side,
 };
+use pxpl5_framebuffer::seen_at;
 use pxpl5_gp::{Edge, Stage};
 use pxpl5_sim::{Span, Time};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::rc::Rc;
+use support::{boards, video};
 
 fn experiment(pipeline: impl Pipeline + 'static, scene: &str, fields: u64) -> Experiment {
     let machine = if pipeline.name() == "slats" { MachineConfig::slats() } else { MachineConfig::small_hmd() };
@@ -57,7 +61,7 @@ fn the_parts_of_every_latency_add_up_to_the_picosecond() {
             assert_eq!(parts.picture, times.picture);
             assert_eq!(parts.published(), times.shown_at - times.transform_at);
             assert_eq!(Some(parts.begin), times.sampled_at);
-            let video = outcome.machine().video();
+            let video = video(&outcome);
             let field = video.field_at(times.shown_at);
             let line = u32::try_from(field % 2).expect("0 or 1");
             assert_eq!(Some(parts.end()), video.when(0, line, field));
@@ -312,7 +316,7 @@ fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
 fn counters_stay_within_the_machine() {
     for outcome in &all() {
         let (descriptors, events) = parsed(outcome);
-        let machine = outcome.machine();
+        let machine = outcome.record();
         let mut highest: BTreeMap<String, i64> = BTreeMap::new();
         for (_, event) in &events {
             let Some(value) = event.counter_value else { continue };
@@ -333,7 +337,7 @@ fn counters_stay_within_the_machine() {
 #[test]
 fn recorded_messages_are_those_that_the_boards_counted() {
     for outcome in &all() {
-        let machine = outcome.machine();
+        let machine = outcome.record();
         let traffic = outcome.observation().traffic.as_deref().expect("recorded");
         for (renderer, node) in machine.renderers().iter().zip(&machine.ports().renderers) {
             let to: u64 = traffic.transfers.iter().filter(|t| t.destination == *node).map(|t| u64::from(t.words)).sum();
@@ -354,7 +358,7 @@ fn recorded_messages_are_those_that_the_boards_counted() {
 #[test]
 fn recording_changes_nothing() {
     let quiet = experiment(Slats::split(), "full-screen:100", 30).pixels(Pixels::Off).run().expect("runs");
-    assert_eq!(quiet.machine().trace_hash(), split().machine().trace_hash());
+    assert_eq!(quiet.record().trace_hash(), split().record().trace_hash());
     let tracks = |outcome: &Outcome| Trace::of(outcome).tracks.iter().map(|t| t.name.clone()).collect::<Vec<_>>();
     assert!(tracks(&split()).contains(&"messages in".to_owned()));
     assert!(!tracks(&quiet).contains(&"messages in".to_owned()));
@@ -401,7 +405,7 @@ fn frames(bytes: &[u8]) -> (png::Info<'static>, Vec<Vec<u8>>) {
 /// A short run that remembers all of its fields.
 fn remembered() -> (Experiment, Outcome) {
     let mut machine = MachineConfig::slats();
-    machine.frame_buffer.fields_kept = 100;
+    machine.displays[0].remember(100);
     let scene = scene::builtin("mig").and_then(|scene| scene.truncated(100)).expect("built in");
     let experiment = Experiment::new(machine, Slats::split(), scene).fields(12);
     let outcome = experiment.run().expect("runs");
@@ -418,7 +422,7 @@ fn a_film_shows_every_field_at_the_true_rate() {
     assert!(info.utf8_text.iter().any(|text| text.keyword == "pxpl5 seed"));
     for (field, frame) in (6..).zip(frames) {
         let eye = |board: usize| {
-            let seen = |n| outcome.machine().frame_buffers()[board].seen(n).expect("remembered");
+            let seen = |n| boards(&outcome)[board].seen(n).expect("remembered");
             seen(field).interlaced_with(&seen(field - 1))
         };
         assert!(frame == side_by_side(&eye(0), &eye(1)).into_raw(), "field {field}");
@@ -435,9 +439,9 @@ fn a_film_without_a_field_is_refused() {
 #[test]
 fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
     let (_, outcome) = remembered();
-    let board = &outcome.machine().frame_buffers()[0];
+    let board = &boards(&outcome)[0];
     let fields: Vec<_> = (7..10).map(|n| board.seen(n).expect("remembered")).collect();
-    let video = outcome.machine().video();
+    let video = video(&outcome);
     let [oldest, before, now] = [0, 1, 2].map(|i| fields[i].picture());
     // Field 9 scans the odd lines; the beam is at pixel 320 of line 201.
     let at = video.when(320, 201, 9).expect("scanned");

@@ -1,9 +1,13 @@
 //! What is not computed would not have mattered: without each saving the trace and the pixels seen are the same.
 
-use pxpl5::levels::Level;
-use pxpl5::{Experiment, Eye, Jitp, Machine, MachineConfig, Pixels, RenderingControl, Saving, Slats, Viewpoint, scene};
+mod support;
+
+use pxpl5::{
+    Experiment, Eye, Jitp, Level, Machine, MachineConfig, Pixels, RenderingControl, Saving, Slats, Viewpoint, scene,
+};
 use pxpl5_framebuffer::SeenField;
 use std::collections::BTreeSet;
+use support::ntsc;
 
 /// Three pipelines, each with a scene that leaves some regions empty and some not.
 fn experiments() -> [Experiment; 3] {
@@ -17,7 +21,7 @@ fn experiments() -> [Experiment; 3] {
 
 fn after(experiment: &Experiment, fields: u64) -> Machine {
     let mut machine = experiment.build().expect("the presets are valid");
-    let end = machine.video().retrace(fields);
+    let end = machine.record().tick(fields);
     machine.run_until(end).expect("it runs");
     machine.finish_pixels();
     machine
@@ -25,13 +29,13 @@ fn after(experiment: &Experiment, fields: u64) -> Machine {
 
 /// The pixels of every field that was seen, eye by eye.
 fn seen(machine: &Machine, fields: u64) -> Vec<SeenField> {
-    let of = |eye: Eye| machine.frame_buffers().get(eye.index());
+    let of = |eye: Eye| ntsc(machine.record()).boards().get(eye.index());
     Eye::BOTH.into_iter().filter_map(of).flat_map(|board| (0..fields).filter_map(|field| board.seen(field))).collect()
 }
 
 fn assert_same(experiment: &Experiment, saving: Saving, fields: u64) {
     let (with, without) = (after(experiment, fields), after(&experiment.clone().without(saving), fields));
-    assert_eq!(without.trace_hash(), with.trace_hash(), "{saving} in {experiment:?}");
+    assert_eq!(without.record().trace_hash(), with.record().trace_hash(), "{saving} in {experiment:?}");
     let pictures = |machine| seen(machine, fields).iter().map(SeenField::picture).collect::<Vec<_>>();
     let (with, without) = (pictures(&with), pictures(&without));
     assert!(with == without, "{saving} in {experiment:?}");
@@ -71,7 +75,7 @@ fn code_that_repeats_takes_the_clocks_that_are_counted() {
 #[test]
 fn nobody_looking_changes_no_time() {
     for experiment in experiments() {
-        let hash = |pixels| after(&experiment.clone().pixels(pixels), 10).trace_hash();
+        let hash = |pixels| after(&experiment.clone().pixels(pixels), 10).record().trace_hash();
         assert_eq!(hash(Pixels::Off), hash(Pixels::All));
     }
 }
@@ -82,7 +86,7 @@ fn savings_do_not_meet() {
     let [_, slats, _] = experiments();
     let slats = slats.level(Level::Cycle).pixels(Pixels::All);
     let without = Saving::ALL.into_iter().fold(slats.clone(), Experiment::without);
-    assert_eq!(after(&without, 2).trace_hash(), after(&slats, 2).trace_hash());
+    assert_eq!(after(&without, 2).record().trace_hash(), after(&slats, 2).record().trace_hash());
 }
 
 /// A test of the tests: giving up a saving does do more.

@@ -1,11 +1,15 @@
 //! Do timelines show what was simulated?
 
 use proptest::prelude::*;
-use pxpl5::timeline::{Bar, MAX_FIELDS, PIPELINE_FIGURES, Timeline, TimelineOptions, svg};
-use pxpl5::{Experiment, MachineConfig, Outcome, Pixels, RenderingControl, Slats, scene};
+mod support;
+
+use pxpl5::pipeline_figures::PIPELINE_FIGURES;
+use pxpl5::timeline::{Bar, MAX_FIELDS, Timeline, TimelineOptions, svg};
+use pxpl5::{Experiment, MachineConfig, Measured, Outcome, Pixels, RenderingControl, Slats, scene};
 use pxpl5_gp::Stage;
 use pxpl5_sim::{Span, Time};
 use std::rc::Rc;
+use support::{boards, video};
 
 fn outcome(pipeline: impl pxpl5::Pipeline + 'static, scene: &str, fields: u64) -> Outcome {
     let machine = if pipeline.name() == "slats" { MachineConfig::slats() } else { MachineConfig::small_hmd() };
@@ -69,7 +73,7 @@ fn of_a_split_copy_the_top_ends_before_the_retrace_and_the_bottom_begins_after()
     let copies = bars(&timeline, "right frame buffer");
     assert!(copies.iter().any(|bar| bar.bottom == Some(true)));
     for bar in copies {
-        let retrace = split().machine().video().retrace(bar.picture);
+        let retrace = video(split()).retrace(bar.picture);
         match bar.bottom {
             Some(true) => assert!(bar.begin >= retrace),
             Some(false) => assert!(bar.end <= retrace),
@@ -85,7 +89,7 @@ fn the_way_of_the_chosen_picture_leads_forward_from_its_sample_to_light() {
         assert!(timeline.arrows.len() >= 6);
         assert!(timeline.arrows.iter().all(|arrow| arrow.begin <= arrow.end));
         let times = outcome.pictures().iter().find(|t| Some(t.picture) == timeline.picture).expect("it was shown");
-        let video = outcome.machine().video();
+        let video = video(&outcome);
         let field = video.field_at(times.shown_at);
         let light = video.when(0, u32::try_from(field % 2).expect("0 or 1"), field).expect("visible");
         assert!(timeline.arrows.iter().any(|arrow| arrow.end == light), "no arrow ends at {light}");

@@ -3,7 +3,7 @@
 use crate::config::{JitpConfig, Schedule, Viewpoint, Wanted};
 use crate::protocol::Order;
 use pphigs::{Counts, FrameView, TransformCost};
-use pxpl5_gp::{Account, Fault, Gp, Level, Program, Stage};
+use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage};
 use pxpl5_sim::{Span, Time};
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -27,12 +27,12 @@ pub fn master(
     config: &JitpConfig,
     counts: Counts,
     view_of: impl FnMut(Wanted) -> FrameView + 'static,
-) -> Vec<(Level, Program)> {
+) -> Vec<(Priority, Firmware)> {
     let state = Rc::new(State::default());
-    let listening = listen(gp.at_level(Level::Interrupt), Rc::clone(&state));
-    let foreground = gp.at_level(Level::Foreground);
+    let listening = listen(gp.at_level(Priority::Interrupt), Rc::clone(&state));
+    let foreground = gp.at_level(Priority::Foreground);
     let master = Master { gp: foreground, config: config.clone(), counts, view_of, state };
-    vec![(Level::Interrupt, Box::pin(listening)), (Level::Foreground, Box::pin(master.run()))]
+    vec![(Priority::Interrupt, Box::pin(listening)), (Priority::Foreground, Box::pin(master.run()))]
 }
 
 async fn listen(gp: Gp, state: Rc<State>) -> Result<(), Fault> {
@@ -56,7 +56,7 @@ struct Master<V> {
 
 impl<V: FnMut(Wanted) -> FrameView> Master<V> {
     async fn run(mut self) -> Result<(), Fault> {
-        self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
+        self.gp.reserve(Account::Firmware, PROGRAM_BYTES, None)?;
         match self.config.schedule {
             Schedule::Beam { viewpoint, racing, .. } => self.follow_the_beam(viewpoint, racing).await,
             Schedule::Roam { batch, .. } => self.roam(u64::from(batch)).await,

@@ -7,7 +7,7 @@ use crate::pieces::{messages, window};
 use crate::protocol::Order;
 use pphigs::{Counts, DisplayList, FrameView, Share, TransformCost};
 use pxpl5_geometry::Viewport;
-use pxpl5_gp::{Account, Fault, Gp, Level, Program, Stage, Ticket};
+use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage, Ticket};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Body, NodeId, RegionId};
 use std::cell::RefCell;
@@ -73,10 +73,10 @@ pub fn slave(
     list: &Arc<DisplayList>,
     transforms: &Transforms,
     index: usize,
-) -> Vec<(Level, Program)> {
+) -> Vec<(Priority, Firmware)> {
     let share = Share::new(Arc::clone(list), 0, 1);
     let state = Shared::default();
-    let [drawing, preparing] = [Level::Interrupt, Level::Foreground].map(|level| Slave {
+    let [drawing, preparing] = [Priority::Interrupt, Priority::Foreground].map(|level| Slave {
         gp: gp.at_level(level),
         config: config.clone(),
         list: Arc::clone(list),
@@ -86,7 +86,7 @@ pub fn slave(
         transforms: transforms.clone(),
         index,
     });
-    vec![(Level::Interrupt, Box::pin(drawing.draw())), (Level::Foreground, Box::pin(preparing.prepare()))]
+    vec![(Priority::Interrupt, Box::pin(drawing.draw())), (Priority::Foreground, Box::pin(preparing.prepare()))]
 }
 
 struct Slave {
@@ -103,7 +103,7 @@ struct Slave {
 impl Slave {
     /// Takes orders and draws.
     async fn draw(self) -> Result<(), Fault> {
-        self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
+        self.gp.reserve(Account::Firmware, PROGRAM_BYTES, None)?;
         self.gp.reserve(Account::DisplayList, self.bytes, None)?;
         loop {
             let received = self.gp.receive().await;

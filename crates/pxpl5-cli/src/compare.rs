@@ -1,9 +1,9 @@
 //! `pxpl5 compare`: every way to fight latency side by side.
 
 use crate::error::CliError;
+use crate::options::registry;
 use crate::output::OutputFolder;
 use crate::terminal;
-use crate::options::registry;
 use pxpl5::compare::{Comparison, Row, compare_with, edge_pictures, motion, predictor, tracker};
 use pxpl5::views::charts::{LatencyCurve, chart};
 use pxpl5::{Head, MachineConfig, scene};

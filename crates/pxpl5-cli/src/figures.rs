@@ -3,8 +3,8 @@
 use crate::error::CliError;
 use crate::terminal::print;
 use clap::Args;
-use pxpl5::figures::{Bench, Figures, Row, markdown, mean_error_percent, run_all};
 use pxpl5::Level;
+use pxpl5::figures::{Bench, Figures, Row, markdown, mean_error_percent, run_all};
 use serde_json::json;
 use std::fmt::Write;
 use std::fs;

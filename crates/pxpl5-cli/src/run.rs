@@ -8,9 +8,7 @@ use crate::table::{Comparison, table};
 use crate::terminal::print;
 use clap::Args;
 use pxpl5::results::origin_lines;
-use pxpl5::{
-    ExperimentFile, HeadReport, Level, Measured, Outcome, Plan, Report, Results, Saving, SurfaceId,
-};
+use pxpl5::{ExperimentFile, HeadReport, Level, Measured, Outcome, Plan, Report, Results, Saving, SurfaceId};
 use std::fmt::Write;
 use std::path::PathBuf;
 

@@ -1,13 +1,11 @@
 //! Running an experiment, with a snapshot saved or restored on the way.
 
 use crate::error::CliError;
+use crate::options::registry;
 use crate::output::OutputFolder;
 use crate::terminal::progress;
 use clap::Args;
-use crate::options::registry;
-use pxpl5::{
-    ExperimentError, ExperimentFile, Host, Machine, Outcome, Pixels, Plan, Saving, Snapshot, Workstation,
-};
+use pxpl5::{ExperimentError, ExperimentFile, Host, Machine, Outcome, Pixels, Plan, Saving, Snapshot, Workstation};
 use std::path::{Path, PathBuf};
 
 /// A moment to be kept or to go on from.

@@ -49,9 +49,7 @@ const fn passed_on(board: usize, output: FrameBufferOutput) -> DisplayOutput {
         FrameBufferOutput::RegionArrived { target, first_part_at, last_part_at } => {
             DisplayOutput::RegionArrived { surface: board, target, first_part_at, last_part_at }
         }
-        FrameBufferOutput::Swapped { buffer, field } => {
-            DisplayOutput::Swapped { surface: board, buffer, tick: field }
-        }
+        FrameBufferOutput::Swapped { buffer, field } => DisplayOutput::Swapped { surface: board, buffer, tick: field },
     }
 }
 

@@ -1,7 +1,7 @@
 //! The board: it polls its programs whenever something has happened to them.
 
-use crate::cpu::{Cpu, Level};
-use crate::firmware::{Cause, Fault, Gp, Program, Received, Shared, Wait};
+use crate::cpu::{Cpu, Priority};
+use crate::firmware::{Cause, Fault, Firmware, Gp, Received, Shared, Wait};
 use crate::memory::Memory;
 use crate::probe::Mark;
 use crate::processor::Processor;
@@ -53,8 +53,8 @@ pub const PLACE_BITS: u32 = 20;
 const PLACE_MASK: u64 = (1 << PLACE_BITS) - 1;
 
 struct Task {
-    program: Program,
-    level: Level,
+    program: Firmware,
+    level: Priority,
 }
 
 /// One board with its programs.
@@ -120,12 +120,12 @@ impl GpBoard {
 
     /// A handle for a program at a level.
     #[must_use]
-    pub fn handle_for(&self, level: Level) -> Gp {
+    pub fn handle_for(&self, level: Priority) -> Gp {
         Gp { shared: Rc::clone(&self.shared), level }
     }
 
     /// Loads a program; one a level.
-    pub fn load(&mut self, level: Level, program: Program) {
+    pub fn load(&mut self, level: Priority, program: Firmware) {
         self.tasks.push(Task { program, level });
         self.tasks.sort_by_key(|task| task.level);
     }
@@ -281,8 +281,8 @@ mod tests {
     fn board() -> GpBoard {
         let timing = GpTiming { message_ns: 1_000, ..GpTiming::PAPERS };
         let mut board = GpBoard::new(NodeId(9), timing, CYCLE);
-        let gp = board.handle_for(Level::Foreground);
-        board.load(Level::Foreground, Box::pin(echo(gp)));
+        let gp = board.handle_for(Priority::Foreground);
+        board.load(Priority::Foreground, Box::pin(echo(gp)));
         board
     }
 
@@ -340,8 +340,8 @@ mod tests {
             Ok(())
         }
         let mut board = GpBoard::new(NodeId(9), GpTiming { message_ns: 1_000, ..GpTiming::PAPERS }, CYCLE);
-        let gp = board.handle_for(Level::Foreground);
-        board.load(Level::Foreground, Box::pin(two_clumps(gp)));
+        let gp = board.handle_for(Priority::Foreground);
+        board.load(Priority::Foreground, Box::pin(two_clumps(gp)));
         let mut bench = TestBench::new();
         bench.feed(Time(0), Phase::Work, GpEvent::Poll);
         bench.feed(Time(9_000_000), Phase::Arrive, GpEvent::Accepted(1 << PLACE_BITS));

@@ -4,14 +4,14 @@ use pxpl5_sim::{Span, Time};
 
 /// Which program may interrupt which.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Level {
+pub enum Priority {
     /// Runs at once; the foreground stands still meanwhile.
     Interrupt,
     /// Runs while no interrupt program spends time.
     Foreground,
 }
 
-impl Level {
+impl Priority {
     pub(crate) const ALL: [Self; 2] = [Self::Interrupt, Self::Foreground];
 }
 
@@ -19,14 +19,14 @@ impl Level {
 #[derive(Debug, Default)]
 pub(crate) struct Cpu {
     remaining: [Option<Span>; 2],
-    running: Option<(Level, Time)>,
+    running: Option<(Priority, Time)>,
     generation: u64,
     busy: Span,
 }
 
 impl Cpu {
-    /// Level `level` begins to spend `span`.
-    pub(crate) fn begin(&mut self, level: Level, span: Span, now: Time) {
+    /// Priority `level` begins to spend `span`.
+    pub(crate) fn begin(&mut self, level: Priority, span: Span, now: Time) {
         self.settle(now);
         self.remaining[level as usize] = Some(span);
         self.dispatch(now);
@@ -46,7 +46,7 @@ impl Cpu {
     }
 
     fn dispatch(&mut self, now: Time) {
-        let first = Level::ALL.into_iter().find(|level| self.remaining[*level as usize].is_some());
+        let first = Priority::ALL.into_iter().find(|level| self.remaining[*level as usize].is_some());
         if self.running.map(|(level, _)| level) != first {
             self.generation += 1;
         }
@@ -54,7 +54,7 @@ impl Cpu {
     }
 
     /// Whether `level` has spent all it asked for.
-    pub(crate) fn is_done(&self, level: Level) -> bool {
+    pub(crate) fn is_done(&self, level: Priority) -> bool {
         self.remaining[level as usize].is_none()
     }
 
@@ -77,24 +77,24 @@ mod tests {
     #[test]
     fn an_interrupt_delays_the_foreground_by_exactly_its_own_time() {
         let mut cpu = Cpu::default();
-        cpu.begin(Level::Foreground, Span(100), Time(0));
-        cpu.begin(Level::Interrupt, Span(30), Time(40));
+        cpu.begin(Priority::Foreground, Span(100), Time(0));
+        cpu.begin(Priority::Interrupt, Span(30), Time(40));
         assert_eq!(cpu.next_end().map(|end| end.0), Some(Time(70)));
         cpu.settle(Time(70));
-        assert!(cpu.is_done(Level::Interrupt) && !cpu.is_done(Level::Foreground));
+        assert!(cpu.is_done(Priority::Interrupt) && !cpu.is_done(Priority::Foreground));
         assert_eq!(cpu.next_end().map(|end| end.0), Some(Time(130)));
         cpu.settle(Time(129));
-        assert!(!cpu.is_done(Level::Foreground));
+        assert!(!cpu.is_done(Priority::Foreground));
         cpu.settle(Time(130));
-        assert!(cpu.is_done(Level::Foreground));
+        assert!(cpu.is_done(Priority::Foreground));
         assert_eq!(cpu.busy(), Span(130));
     }
 
     #[test]
     fn an_interrupt_at_the_very_end_of_the_foreground_does_not_delay_it() {
         let mut cpu = Cpu::default();
-        cpu.begin(Level::Foreground, Span(100), Time(0));
-        cpu.begin(Level::Interrupt, Span(30), Time(100));
-        assert!(cpu.is_done(Level::Foreground));
+        cpu.begin(Priority::Foreground, Span(100), Time(0));
+        cpu.begin(Priority::Interrupt, Span(30), Time(100));
+        assert!(cpu.is_done(Priority::Foreground));
     }
 }

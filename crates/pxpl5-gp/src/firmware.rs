@@ -1,6 +1,6 @@
 //! The interface between a program and its board.
 
-use crate::cpu::{Cpu, Level};
+use crate::cpu::{Cpu, Priority};
 use crate::memory::{Account, Memory, OutOfMemory};
 use crate::probe::{Edge, Mark, Stage};
 use crate::processor::{Processor, ProcessorFault};
@@ -16,7 +16,7 @@ use std::rc::Rc;
 use std::task::Poll;
 
 /// A program on a board; it ends only with a fault.
-pub type Program = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
+pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
 
 /// A fault of the simulated machine that stops a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -144,7 +144,7 @@ impl Shared {
     }
 
     /// Whether a program waits for the end of work that goes on.
-    pub(crate) fn is_at_work(&self, level: Level) -> bool {
+    pub(crate) fn is_at_work(&self, level: Priority) -> bool {
         self.waits[level as usize].ended_by == Cause::Work && !self.cpu.is_done(level)
     }
 
@@ -184,13 +184,13 @@ impl Shared {
 #[derive(Clone, Debug)]
 pub struct Gp {
     pub(crate) shared: Rc<RefCell<Shared>>,
-    pub(crate) level: Level,
+    pub(crate) level: Priority,
 }
 
 impl Gp {
     /// The same board at another level.
     #[must_use]
-    pub fn at_level(&self, level: Level) -> Self {
+    pub fn at_level(&self, level: Priority) -> Self {
         Self { shared: Rc::clone(&self.shared), level }
     }
 
@@ -353,7 +353,9 @@ impl Gp {
     pub fn end_when_accepted(&self, ticket: Ticket, stage: Stage, picture: u64) {
         let shared = &mut *self.shared.borrow_mut();
         let (time, node) = (shared.now, shared.node);
-        shared.ends.push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: Edge::End, view: None }));
+        shared
+            .ends
+            .push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: Edge::End, view: None }));
     }
 
     /// Tells the observer of a stage's edge at a time that the program has read off a message.

@@ -14,7 +14,7 @@
 //! - A message that has arrived waits in the inbox, in order of arrival.
 //! - *Firmware* is straight-line `async fn` code that holds a [`Gp`]. Every `.await` is a visible cost
 //!   ([`Gp::spend`]) or wait ([`Gp::receive`], [`Gp::retrace`], [`Gp::until`]).
-//! - The CPU has two levels: an [`Level::Interrupt`] program stops the [`Level::Foreground`] program while it
+//! - The CPU has two levels: an [`Priority::Interrupt`] program stops the [`Priority::Foreground`] program while it
 //!   spends time. There is one program a level.
 //! - [`Gp::send`] costs the CPU a fixed software time and hands the messages to the DMA, which sends in the
 //!   background. There is one clump buffer, so a second batch waits until the first was accepted.
@@ -40,8 +40,8 @@ pub mod timing;
 mod work;
 
 pub use board::{GpBoard, GpEvent, GpOutput, PLACE_BITS};
-pub use cpu::Level;
-pub use firmware::{Fault, Gp, Program, Received, Ticket};
+pub use cpu::Priority;
+pub use firmware::{Fault, Firmware, Gp, Received, Ticket};
 pub use memory::{Account, Memory, OutOfMemory};
 pub use probe::{Edge, Mark, Stage};
 pub use processor::{CodeVersion, Processor, ProcessorFault};

@@ -50,7 +50,7 @@ impl Gp {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{GpBoard, GpEvent, Level};
+    use crate::{GpBoard, GpEvent, Priority};
     use pxpl5_sim::{Phase, TestBench};
     use pxpl5_wire::NodeId;
     use std::sync::Arc;
@@ -76,8 +76,8 @@ mod tests {
         if code {
             board.run_code();
         }
-        let gp = board.handle_for(Level::Foreground);
-        board.load(Level::Foreground, Box::pin(async move { gp.work(&Turns(turns)).await }));
+        let gp = board.handle_for(Priority::Foreground);
+        board.load(Priority::Foreground, Box::pin(async move { gp.work(&Turns(turns)).await }));
         let mut bench: TestBench<GpEvent, crate::GpOutput> = TestBench::new();
         bench.feed(pxpl5_sim::Time::ZERO, Phase::Work, GpEvent::Poll);
         bench.run(|event, context| board.handle(event, context));

@@ -8,8 +8,8 @@ use crate::levels::summarise;
 use glam::Vec3;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_run::{
-    Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry,
-    Summary, TestScene,
+    Experiment, ExperimentError, Goal, Level, LimitCriterion, Pipeline, PipelineSettings, Pixels, Registry, Summary,
+    TestScene,
 };
 use pxpl5_scene::{
     Frame, HeadMotion, Hmd, HmdConfig, Lighting, Path, Scene, SceneParts, Structure, Sway, Vertex, builtin,

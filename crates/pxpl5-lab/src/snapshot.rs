@@ -13,9 +13,9 @@ use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_machine::Machine;
 use pxpl5_run::{Fingerprint, Registry};
 use pxpl5_scene::Scene;
-use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// What is needed to repeat a run up to a field and to know that it is the same.

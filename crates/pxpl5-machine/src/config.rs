@@ -58,7 +58,9 @@ impl Clone for Box<dyn FirmwareTable> {
 
 impl PartialEq for MachineConfig {
     fn eq(&self, other: &Self) -> bool {
-        self.preset == other.preset && self.code == other.code && self.boards() == other.boards()
+        self.preset == other.preset
+            && self.code == other.code
+            && self.boards() == other.boards()
             && self.displays.len() == other.displays.len()
             && self.displays.iter().zip(&other.displays).all(|(own, other)| own.equals(other.as_ref()))
             && self.parameters() == other.parameters()

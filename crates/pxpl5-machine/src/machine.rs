@@ -16,7 +16,7 @@ use crate::pixels::PixelWorker;
 use crate::record::Record;
 use crate::savings::Saving;
 use pxpl5_display::{DisplayContext, DisplayEvent, DisplayOutput};
-use pxpl5_gp::{Fault, Gp, GpBoard, GpEvent, GpOutput, Level, Mark, Program};
+use pxpl5_gp::{Fault, Firmware, Gp, GpBoard, GpEvent, GpOutput, Mark, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
 use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time};
@@ -174,7 +174,8 @@ impl Machine {
         let ports = Ports::plug(config, pictures);
         let renderers = ports.renderers.clone();
         let elastic = move |node: NodeId| !renderers.contains(&node);
-        let ring = Ring::new(config.ring, ports.count(), elastic).map_err(|error| ConfigError::Board(error.to_string()))?;
+        let ring =
+            Ring::new(config.ring, ports.count(), elastic).map_err(|error| ConfigError::Board(error.to_string()))?;
         let host = GpBoard::new(ports.host, config.host.board(), cycle());
         let gps = ports.gps.iter().map(|node| GpBoard::new(*node, config.gp, cycle()));
         let pool = ArrayPool::new(layout);
@@ -263,7 +264,7 @@ impl Machine {
     ///
     /// If no processor has this port.
     #[must_use]
-    pub fn processor(&self, node: NodeId, level: Level) -> Gp {
+    pub fn processor(&self, node: NodeId, level: Priority) -> Gp {
         self.processors[usize::from(node.0)].handle_for(level)
     }
 
@@ -272,7 +273,7 @@ impl Machine {
     /// # Panics
     ///
     /// If no processor has this port.
-    pub fn load(&mut self, node: NodeId, level: Level, program: Program) {
+    pub fn load(&mut self, node: NodeId, level: Priority, program: Firmware) {
         self.processors[usize::from(node.0)].load(level, program);
     }
 
@@ -362,7 +363,8 @@ impl Machine {
     }
 
     fn ring_event(&mut self, now: Time, event: RingEvent) {
-        let Self { record: Record { ring, observation, .. }, contexts: Contexts { ring: context, .. }, queue, .. } = self;
+        let Self { record: Record { ring, observation, .. }, contexts: Contexts { ring: context, .. }, queue, .. } =
+            self;
         let mut traffic = observation.traffic.as_deref_mut();
         if let (Some(traffic), RingEvent::Accept { destination, last_word_at }) = (&mut traffic, &event) {
             traffic.accept(*destination, *last_word_at);

@@ -231,8 +231,7 @@ fn by_picture(stages: Vec<StageSpan>) -> BTreeMap<u64, Stages> {
 
 /// The spans of a stage: those of one surface, and those of all.
 fn spans_of(stages: &[StageSpan], stage: Stage, surface: Option<SurfaceId>) -> impl Iterator<Item = &StageSpan> {
-    let concerned =
-        move |span: &StageSpan| span.surface.is_none() || surface.is_none() || span.surface == surface;
+    let concerned = move |span: &StageSpan| span.surface.is_none() || surface.is_none() || span.surface == surface;
     stages.iter().filter(move |span| span.stage == stage && concerned(span))
 }
 

@@ -1,9 +1,9 @@
 //! An outcome's measurements as methods of it.
 
+use crate::Report;
 use crate::errors::{PixelErrors, pixel_errors};
 use crate::latency::{LatencyParts, SurfaceStatistics, latency_by_surface, latency_parts};
 use crate::pictures::picture;
-use crate::Report;
 use image::RgbImage;
 use pxpl5_run::Outcome;
 use pxpl5_wire::SurfaceId;

@@ -1,7 +1,7 @@
 //! Quantities of a run by name, for tables, CSV and sweep rows.
 
-use crate::summary::summary;
 use crate::Report;
+use crate::summary::summary;
 use parameters::nearest;
 use pxpl5_gp::Stage;
 use pxpl5_machine::StageSpan;

@@ -128,7 +128,12 @@ impl Report {
             level: experiment.level_of_modelling().name().to_owned(),
             seed: experiment.seed_of_motion(),
             pipeline: pipeline.name().to_owned(),
-            variant: pipeline.settings().iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" "),
+            variant: pipeline
+                .settings()
+                .iter()
+                .map(|(key, value)| format!("{key}={value}"))
+                .collect::<Vec<_>>()
+                .join(" "),
             display: record.display().name().to_owned(),
             overrides: config.overrides(),
             n_gps: config.n_gps,

@@ -69,8 +69,11 @@ fn region_copy_us(outcome: &Outcome, message: Span) -> f64 {
 
 fn eye_latencies(outcome: &Outcome) -> Vec<f64> {
     let stages = outcome.stages();
-    let ends: BTreeMap<(u64, Option<SurfaceId>), Time> =
-        stages.iter().filter(|s| s.stage == Stage::Copy).filter_map(|s| Some(((s.picture, s.surface), s.end?))).collect();
+    let ends: BTreeMap<(u64, Option<SurfaceId>), Time> = stages
+        .iter()
+        .filter(|s| s.stage == Stage::Copy)
+        .filter_map(|s| Some(((s.picture, s.surface), s.end?)))
+        .collect();
     let first = outcome.steady_pictures().first().map_or(u64::MAX, |p| p.picture);
     let last = outcome.pictures().last().map_or(0, |p| p.picture);
     let of_eyes = stages.iter().filter(|s| s.stage == Stage::Transform && s.surface.is_some());

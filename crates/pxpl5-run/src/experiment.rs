@@ -363,4 +363,3 @@ impl Experiment {
 
 /// Fields between two reports of progress.
 const PROGRESS_FIELDS: u64 = 60;
-

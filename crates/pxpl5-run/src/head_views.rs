@@ -91,7 +91,7 @@ impl Follower {
             self.predictor.observe(report);
             if self.predictor.counts().accepted > accepted {
                 let measured_at = Some(Time(report.measured_ps));
-        let arrived_at = Some(Time(report.arrives_ps));
+                let arrived_at = Some(Time(report.arrives_ps));
                 self.newest = Newest { measured_at, arrived_at };
             }
             self.next += 1;

@@ -41,7 +41,8 @@ pub use pipeline::{PictureTimes, Pipeline, ReportTimes, Setup, Source, Views, Vi
 pub use pipelines::{Code, Frameless, Interpolation, Jitp, RenderingControl, Slats, Viewpoint, region_at};
 pub use raster::Raster;
 pub use registry::{
-    ClosedForm, DisplayEntry, Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings, Registry, TestScene,
+    ClosedForm, DisplayEntry, Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings,
+    Registry, TestScene,
 };
 pub use statistics::{DefinedStatistics, Statistics};
 pub use summary::Summary;

@@ -4,7 +4,7 @@ use crate::config::{BIN_ENTRY_BYTES, PROGRAM_BYTES, RenderingControlConfig};
 use crate::master::copy_order;
 use crate::protocol::{Order, Token};
 use pphigs::{FrameView, Pass, RegionEnvelope, Share, Transforming, region_messages};
-use pxpl5_gp::{Account, Fault, Gp, Level, Stage};
+use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, RegionId};
 use std::cell::RefCell;
@@ -34,17 +34,17 @@ pub fn slave(
     config: &RenderingControlConfig,
     share: Share,
     index: usize,
-) -> [(Level, impl Future<Output = Result<(), Fault>> + use<>); 2] {
+) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
     let state = Shared::default();
-    [Level::Interrupt, Level::Foreground].map(|level| {
+    [Priority::Interrupt, Priority::Foreground].map(|level| {
         let gp = gp.at_level(level);
         let config = config.clone();
         let share = share.clone();
         let state = Rc::clone(&state);
         let program = async move {
             match level {
-                Level::Foreground => transform_program(gp, config, share, state).await,
-                Level::Interrupt => token_program(gp, config, index, state).await,
+                Priority::Foreground => transform_program(gp, config, share, state).await,
+                Priority::Interrupt => token_program(gp, config, index, state).await,
             }
         };
         (level, program)

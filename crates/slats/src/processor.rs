@@ -6,7 +6,7 @@ use pphigs::{
     FrameView, Pass, Picture, RegionEnvelope, Share, TransformCost, Transforming, ViewWordsError, copy_message,
     region_messages,
 };
-use pxpl5_gp::{Account, Fault, Gp, Level, Stage, Ticket};
+use pxpl5_gp::{Account, Fault, Gp, Priority, Stage, Ticket};
 use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyOrder, Eye, FieldParity, NodeId, Word, swap_request};
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -51,9 +51,9 @@ pub fn processor(
     binding: &Binding,
     share: Share,
     index: usize,
-) -> [(Level, impl Future<Output = Result<(), Fault>> + use<>); 2] {
+) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
     let state = Shared::default();
-    [Level::Interrupt, Level::Foreground].map(|level| {
+    [Priority::Interrupt, Priority::Foreground].map(|level| {
         let gp = gp.at_level(level);
         let config = config.clone();
         let binding = binding.clone();
@@ -61,8 +61,8 @@ pub fn processor(
         let state = Rc::clone(&state);
         let program = async move {
             match level {
-                Level::Foreground => Processor { gp, config, binding, share, state, index }.fields().await,
-                Level::Interrupt => listen(gp, state).await,
+                Priority::Foreground => Processor { gp, config, binding, share, state, index }.fields().await,
+                Priority::Interrupt => listen(gp, state).await,
             }
         };
         (level, program)

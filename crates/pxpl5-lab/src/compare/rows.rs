@@ -177,7 +177,13 @@ pub fn compare_with(
 }
 
 impl Contender {
-    fn rows(&self, registry: &Registry, config: &MachineConfig, possible: bool, run: &Result<Outcome, ExperimentError>) -> Vec<Row> {
+    fn rows(
+        &self,
+        registry: &Registry,
+        config: &MachineConfig,
+        possible: bool,
+        run: &Result<Outcome, ExperimentError>,
+    ) -> Vec<Row> {
         let limit = possible.then(|| triangles_possible(registry, config, &self.pipeline));
         let row = |(name, kind): &(String, Kind)| {
             let limit = limit.as_ref().filter(|_| *kind != Kind::Ideal);

@@ -24,10 +24,7 @@ const COMMON: &[(&str, &str)] = &[
     ("motion.sway", "0 to 10: scale of the head's sway"),
     ("motion.distance", "metres from the scene's centre: still, look, orbit"),
     ("motion.deg_per_s", "rate of turn: pan, orbit"),
-    (
-        "head.motion",
-        "still, pan:DEG_PER_S, pendulum, synthetic:SEED or a recording FILE.csv, seen through a tracker",
-    ),
+    ("head.motion", "still, pan:DEG_PER_S, pendulum, synthetic:SEED or a recording FILE.csv, seen through a tracker"),
     ("head.tracker", "optical, fastrak, flock, flock-patched, 3space or ideal"),
     ("head.predict", "none, velocity, acceleration or kalman"),
     ("head.raster", "plain, or vdrt (the raster is shifted by what the pose was wrong)"),

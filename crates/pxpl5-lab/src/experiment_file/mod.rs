@@ -39,8 +39,8 @@ pub use motion::{MotionChoice, PathChoice};
 pub use plan::{Outputs, Plan, Published, SceneChoice};
 pub use text::Settings;
 
-use std::collections::BTreeMap;
 use pxpl5_run::Registry;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toml::Value;

@@ -11,8 +11,8 @@ use pxpl5_gp::CodeVersion;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_measure::{Measure, Results};
 use pxpl5_run::{
-    Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Key, KeyValue, KeyValues, Level, LimitCriterion, Pipeline,
-    PipelineEntry, PipelineSettings, Pixels, Registry,
+    Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Key, KeyValue, KeyValues, Level, LimitCriterion,
+    Pipeline, PipelineEntry, PipelineSettings, Pixels, Registry,
 };
 use pxpl5_scene::Scene;
 use std::path::{Path, PathBuf};
@@ -309,10 +309,8 @@ impl ExperimentFile {
     }
 }
 
-const CODES: [(&str, CodeVersion); 2] = [
-    (CodeVersion::Compiled.name(), CodeVersion::Compiled),
-    (CodeVersion::Scheduled.name(), CodeVersion::Scheduled),
-];
+const CODES: [(&str, CodeVersion); 2] =
+    [(CodeVersion::Compiled.name(), CodeVersion::Compiled), (CodeVersion::Scheduled.name(), CodeVersion::Scheduled)];
 
 fn refused(place: &str, error: ConfigError) -> FileError {
     FileError::Config { place: place.to_owned(), error }

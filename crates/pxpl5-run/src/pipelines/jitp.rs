@@ -6,7 +6,7 @@ use crate::registry::{Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEn
 use jitp::{Beam, JitpConfig, JitpTiming, Schedule, Transforms, Wanted, host, master, slave};
 use pphigs::Share;
 use pxpl5_framebuffer::Video;
-use pxpl5_gp::{Level, Stage};
+use pxpl5_gp::{Priority, Stage};
 use pxpl5_machine::{Arrival, ConfigError, FirmwareTable, LateRegion, Machine, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
@@ -38,8 +38,12 @@ impl Jitp {
     /// All viewpoints, each without and with beam racing.
     #[must_use]
     pub fn all() -> Vec<Self> {
-        let viewpoints =
-            [Viewpoint::Field, Viewpoint::Strip, Viewpoint::Dual(Interpolation::Screen), Viewpoint::Dual(Interpolation::View)];
+        let viewpoints = [
+            Viewpoint::Field,
+            Viewpoint::Strip,
+            Viewpoint::Dual(Interpolation::Screen),
+            Viewpoint::Dual(Interpolation::View),
+        ];
         viewpoints.iter().flat_map(|v| [false, true].map(|racing| Self::new(*v, racing))).collect()
     }
 
@@ -88,11 +92,11 @@ fn beam(video: Video) -> Beam {
 
 /// Loads host, master and slaves.
 pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
-    let gp = machine.processor(config.host, Level::Foreground);
+    let gp = machine.processor(config.host, Priority::Foreground);
     let reports = Arc::clone(&setup.reports);
     let program = host(gp, config.clone(), setup.host, move |after| reports(after));
-    machine.load(config.host, Level::Foreground, Box::pin(program));
-    let (gp, views) = (machine.processor(config.master, Level::Foreground), Arc::clone(&setup.wanted));
+    machine.load(config.host, Priority::Foreground, Box::pin(program));
+    let (gp, views) = (machine.processor(config.master, Priority::Foreground), Arc::clone(&setup.wanted));
     let counts = Share::new(Arc::clone(&setup.list), 0, 1).counts();
     let view_of = move |wanted: Wanted| views(wanted.number, wanted.known, wanted.shown_at);
     for (level, program) in master(&gp, config, counts, view_of) {
@@ -100,7 +104,7 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     }
     let transforms = Transforms::default();
     for (index, node) in config.slaves.iter().enumerate() {
-        let gp = machine.processor(*node, Level::Foreground);
+        let gp = machine.processor(*node, Priority::Foreground);
         for (level, program) in slave(&gp, config, &setup.list, &transforms, index) {
             machine.load(*node, level, program);
         }
@@ -241,7 +245,11 @@ const KEYS: &[Key] =
     &[Key { name: "strip_rows", about: "lines of a strip: 1 to 128", values: KeyValues::Whole(1, 128), sets: &[] }];
 
 /// An entry of the registry, the variant of which says how it is built.
-const fn entry(name: &'static str, about: &'static str, build: fn(&PipelineSettings) -> Arc<dyn Pipeline>) -> PipelineEntry {
+const fn entry(
+    name: &'static str,
+    about: &'static str,
+    build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
+) -> PipelineEntry {
     PipelineEntry {
         name,
         family: "jitp",
@@ -251,7 +259,7 @@ const fn entry(name: &'static str, about: &'static str, build: fn(&PipelineSetti
         build,
         limit: |_| LimitCriterion { goal: Goal::NoMissedRetrace, scene: TestScene::FullScreen, fields: 24 },
         tables: TABLES,
-    closed_form: None,
+        closed_form: None,
         compared: true,
     }
 }
@@ -283,8 +291,10 @@ pub(super) const ENTRIES: [PipelineEntry; 8] = [
         build(SCREEN, false, settings)
     }),
     entry("jitp-dual-screen-racing", "the same, just before the beam (JITP)", |settings| build(SCREEN, true, settings)),
-    entry("jitp-dual-view", "lines between two views of a field, interpolated before the projection (JITP)", |settings| {
-        build(VIEW, false, settings)
-    }),
+    entry(
+        "jitp-dual-view",
+        "lines between two views of a field, interpolated before the projection (JITP)",
+        |settings| build(VIEW, false, settings),
+    ),
     entry("jitp-dual-view-racing", "the same, just before the beam (JITP)", |settings| build(VIEW, true, settings)),
 ];

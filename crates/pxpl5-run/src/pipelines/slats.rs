@@ -5,7 +5,7 @@ use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings, TestScene};
 use pphigs::{Binning, Share};
 use pxpl5_framebuffer::Video;
-use pxpl5_gp::{CodeVersion, GpTiming, Level, Stage};
+use pxpl5_gp::{CodeVersion, GpTiming, Priority, Stage};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
@@ -124,7 +124,7 @@ impl Pipeline for Slats {
         ntsc(machine.record(), self.name())?;
         let config = self.config(machine, setup.pixels);
         let binding = config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
-        let (foreground, views) = (Level::Foreground, setup.views.clone());
+        let (foreground, views) = (Priority::Foreground, setup.views.clone());
         let gp = machine.processor(config.host, foreground);
         let program = host(gp, config.clone(), setup.host, move |update, time| views(update, time));
         machine.load(config.host, foreground, Box::pin(program));

@@ -1,0 +1,177 @@
+//! A pipeline of one's own, complete: one graphics processor draws mono frames, each shown as soon as it is finished; and
+//! the command `pxpl5` that knows it.
+//!
+//! `docs/guide/own-pipeline.md` explains it. `cargo run --release -p pxpl5-cli --example own_pipeline -- run --pipeline
+//! one-at-a-time --scene mig`.
+
+use pxpl5::firmware::{
+    Binning, Body, CopyOrder, CopyTarget, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture, Priority,
+    RegionEnvelope, RegionId, Shading, Share, Stage, Viewport, region_messages, swap_request,
+};
+use pxpl5::{
+    ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureTimes, Pipeline, PipelineEntry,
+    PipelineSettings, Ports, Record, Registry, Setup, Span, TestScene, Time,
+};
+use std::process::ExitCode;
+use std::sync::Arc;
+
+// ANCHOR: pipeline
+/// One processor, one frame at a time: the simplest thing that can work.
+#[derive(Debug)]
+struct OneAtATime {
+    shading: Shading,
+}
+
+impl OneAtATime {
+    const fn picture(&self) -> Picture {
+        Picture {
+            viewport: Viewport::FRAME,
+            shading: self.shading,
+            binning: Binning::Touched,
+            layout: Layout::rendering_control_phong(),
+            pixels: true,
+        }
+    }
+}
+// ANCHOR_END: pipeline
+
+// ANCHOR: firmware
+/// The firmware. Every `.await` costs simulated time or waits.
+async fn firmware(
+    gp: Gp,
+    ports: Ports,
+    list: Arc<DisplayList>,
+    picture: Picture,
+    mut view: impl FnMut(u64, Time) -> FrameView,
+) -> Result<(), Fault> {
+    let share = Share::new(list, 0, 1);
+    let frame_buffer = ports.display()[0];
+    for frame in 0.. {
+        // TRANSFORM: what is computed is real, its time comes from the timing table.
+        gp.begin(Stage::Sample, frame, None);
+        gp.begin(Stage::Transform, frame, None);
+        let pass = share.transform(&view(frame, gp.now()), 0, picture);
+        let counts = share.counts();
+        gp.spend(Span::from_ns(gp.timing().triangle_ns) * u64::from(counts.triangles)).await;
+        gp.spend(Span::from_ns(gp.timing().bin_entry_ns) * pass.entries()).await;
+        gp.end(Stage::Transform, frame, None);
+
+        // RENDER and COPY: every region goes to one renderer, which copies it when it is drawn and tells us.
+        let grid = picture.viewport.grid();
+        let buffer = ((frame + 1) % 2) as u8;
+        for region in (0..grid.regions() as u16).map(RegionId) {
+            let target = CopyTarget { frame_buffer, buffer, lines: Lines::Frame, grid, region, picture: frame };
+            let copy = CopyOrder { target, context: 0, through_backing: true, acknowledge: Some(gp.node()) };
+            let envelope = RegionEnvelope { begin: true, shade: true, copy: Some(copy) };
+            let renderer = ports.renderers[usize::from(region.0) % ports.renderers.len()];
+            for message in region_messages(&pass, region, 0, envelope) {
+                gp.clump_buffer_free().await;
+                gp.send(renderer, message.words(), Body::Commands(message)).await;
+            }
+        }
+        for _ in 0..grid.regions() {
+            gp.receive().await;
+        }
+
+        // Swap at the next retrace, and wait for it.
+        let request = gp.send(frame_buffer, 2, Body::Words(swap_request(buffer))).await;
+        gp.accepted(request).await;
+        gp.until("the swap", || (gp.status(frame_buffer) > frame).then_some(())).await;
+    }
+    Ok(())
+}
+// ANCHOR_END: firmware
+
+// ANCHOR: implementation
+impl Pipeline for OneAtATime {
+    fn name(&self) -> &'static str {
+        ONE_AT_A_TIME.name
+    }
+
+    fn settings(&self) -> Vec<(&'static str, KeyValue)> {
+        let shading = if self.shading == Shading::Phong { "phong" } else { "gouraud" };
+        vec![("shading", KeyValue::Name(shading))]
+    }
+
+    fn eyes(&self) -> usize {
+        1
+    }
+
+    fn layout(&self) -> Layout {
+        self.picture().layout
+    }
+
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+        let ports = machine.ports().clone();
+        let views = Arc::clone(&setup.views);
+        let node = ports.gps[0];
+        let gp = machine.processor(node, Priority::Foreground);
+        let view = move |frame, time| views(frame, time);
+        let program = firmware(gp, ports, Arc::clone(&setup.list), self.picture(), view);
+        machine.load(node, Priority::Foreground, Box::pin(program));
+        Ok(())
+    }
+
+    fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
+        let shown = record.observation().swap_ticks(1);
+        let begun = record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample);
+        let times = begun.zip(shown).map(|(mark, tick)| PictureTimes {
+            picture: mark.picture,
+            view: mark.picture,
+            sampled_at: Some(mark.time),
+            transform_at: mark.time,
+            copied_at: None,
+            shown_at: record.tick(tick),
+            complete: true,
+        });
+        times.filter(|times| times.shown_at < end).collect()
+    }
+
+    fn missed_retraces(&self, _: &Record, _: &[PictureTimes]) -> u64 {
+        0
+    }
+
+    fn latency_definition(&self) -> &'static str {
+        "from the start of TRANSFORM to the retrace at which the frame is swapped in"
+    }
+
+    fn missed_definition(&self) -> &'static str {
+        "frames are shown whenever they are finished, so none is missed"
+    }
+}
+// ANCHOR_END: implementation
+
+// ANCHOR: entry
+const ONE_AT_A_TIME: PipelineEntry = PipelineEntry {
+    name: "one-at-a-time",
+    family: "one-at-a-time",
+    about: "one processor, one frame at a time",
+    preset: "small-hmd",
+    keys: &[Key {
+        name: "shading",
+        about: "phong or gouraud",
+        values: KeyValues::Names(&["phong", "gouraud"]),
+        sets: &[],
+    }],
+    build: |settings| {
+        let gouraud = settings.name("shading") == Some("gouraud");
+        Arc::new(OneAtATime { shading: if gouraud { Shading::Gouraud } else { Shading::Phong } })
+    },
+    limit: |_: &PipelineSettings| LimitCriterion {
+        goal: Goal::LatencyFields(2.5),
+        scene: TestScene::Typical,
+        fields: 40,
+    },
+    tables: &[],
+    closed_form: None,
+    compared: true,
+};
+// ANCHOR_END: entry
+
+// ANCHOR: main
+fn main() -> ExitCode {
+    let mut registry: Registry = (*pxpl5::registry()).clone();
+    registry.add(ONE_AT_A_TIME);
+    pxpl5_cli::main(Arc::new(registry))
+}
+// ANCHOR_END: main
