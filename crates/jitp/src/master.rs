@@ -29,8 +29,8 @@ pub fn master(
     view_of: impl FnMut(Wanted) -> FrameView + 'static,
 ) -> Vec<(Priority, Firmware)> {
     let state = Rc::new(State::default());
-    let listening = listen(gp.at_level(Priority::Interrupt), Rc::clone(&state));
-    let foreground = gp.at_level(Priority::Foreground);
+    let listening = listen(gp.at_priority(Priority::Interrupt), Rc::clone(&state));
+    let foreground = gp.at_priority(Priority::Foreground);
     let master = Master { gp: foreground, config: config.clone(), counts, view_of, state };
     vec![(Priority::Interrupt, Box::pin(listening)), (Priority::Foreground, Box::pin(master.run()))]
 }
@@ -56,7 +56,7 @@ struct Master<V> {
 
 impl<V: FnMut(Wanted) -> FrameView> Master<V> {
     async fn run(mut self) -> Result<(), Fault> {
-        self.gp.reserve(Account::Firmware, PROGRAM_BYTES, None)?;
+        self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
         match self.config.schedule {
             Schedule::Beam { viewpoint, racing, .. } => self.follow_the_beam(viewpoint, racing).await,
             Schedule::Roam { batch, .. } => self.roam(u64::from(batch)).await,

@@ -77,7 +77,7 @@ pub fn slave(
     let share = Share::new(Arc::clone(list), 0, 1);
     let state = Shared::default();
     let [drawing, preparing] = [Priority::Interrupt, Priority::Foreground].map(|level| Slave {
-        gp: gp.at_level(level),
+        gp: gp.at_priority(level),
         config: config.clone(),
         list: Arc::clone(list),
         counts: share.counts(),
@@ -103,7 +103,7 @@ struct Slave {
 impl Slave {
     /// Takes orders and draws.
     async fn draw(self) -> Result<(), Fault> {
-        self.gp.reserve(Account::Firmware, PROGRAM_BYTES, None)?;
+        self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
         self.gp.reserve(Account::DisplayList, self.bytes, None)?;
         loop {
             let received = self.gp.receive().await;

@@ -54,7 +54,7 @@ const PLACE_MASK: u64 = (1 << PLACE_BITS) - 1;
 
 struct Task {
     program: Firmware,
-    level: Priority,
+    priority: Priority,
 }
 
 /// One board with its programs.
@@ -118,16 +118,16 @@ impl GpBoard {
         }
     }
 
-    /// A handle for a program at a level.
+    /// A handle for a program at a priority.
     #[must_use]
-    pub fn handle_for(&self, level: Priority) -> Gp {
-        Gp { shared: Rc::clone(&self.shared), level }
+    pub fn handle_for(&self, priority: Priority) -> Gp {
+        Gp { shared: Rc::clone(&self.shared), priority }
     }
 
-    /// Loads a program; one a level.
-    pub fn load(&mut self, level: Priority, program: Firmware) {
-        self.tasks.push(Task { program, level });
-        self.tasks.sort_by_key(|task| task.level);
+    /// Loads a program; one a priority.
+    pub fn load(&mut self, priority: Priority, program: Firmware) {
+        self.tasks.push(Task { program, priority });
+        self.tasks.sort_by_key(|task| task.priority);
     }
 
     /// Handles one event.
@@ -200,7 +200,7 @@ impl GpBoard {
             let before = self.shared.borrow().progress;
             let (fault, shared) = (&mut self.fault, &self.shared);
             self.tasks.retain_mut(|task| {
-                if shared.borrow().is_at_work(task.level) {
+                if shared.borrow().is_at_work(task.priority) {
                     return true;
                 }
                 match task.program.as_mut().poll(&mut task_context) {
@@ -244,7 +244,7 @@ impl GpBoard {
     #[must_use]
     pub fn blocked(&self, name: &str) -> Option<Blocked> {
         let waits = self.shared.borrow().waits;
-        let what = |task: &Task| Some(waits[task.level as usize].what).filter(|what| !what.is_empty());
+        let what = |task: &Task| Some(waits[task.priority as usize].what).filter(|what| !what.is_empty());
         let waits_for = self.tasks.iter().rev().find_map(what)?.to_owned();
         Some(Blocked { board: name.to_owned(), waits_for })
     }

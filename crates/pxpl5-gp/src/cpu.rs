@@ -1,4 +1,4 @@
-//! The processor's time, shared by two levels of programs.
+//! The processor's time, shared by two priorities of programs.
 
 use pxpl5_sim::{Span, Time};
 
@@ -15,7 +15,7 @@ impl Priority {
     pub(crate) const ALL: [Self; 2] = [Self::Interrupt, Self::Foreground];
 }
 
-/// Time that each level still has to spend, and who is running.
+/// Time that each priority still has to spend, and who is running.
 #[derive(Debug, Default)]
 pub(crate) struct Cpu {
     remaining: [Option<Span>; 2],
@@ -25,43 +25,43 @@ pub(crate) struct Cpu {
 }
 
 impl Cpu {
-    /// Priority `level` begins to spend `span`.
-    pub(crate) fn begin(&mut self, level: Priority, span: Span, now: Time) {
+    /// Priority `priority` begins to spend `span`.
+    pub(crate) fn begin(&mut self, priority: Priority, span: Span, now: Time) {
         self.settle(now);
-        self.remaining[level as usize] = Some(span);
+        self.remaining[priority as usize] = Some(span);
         self.dispatch(now);
     }
 
     /// Brings the accounts up to `now`; work that ends exactly now is finished, whoever asks first.
     pub(crate) fn settle(&mut self, now: Time) {
-        let Some((level, since)) = self.running else {
+        let Some((priority, since)) = self.running else {
             return;
         };
         let elapsed = now - since;
         self.busy += elapsed;
-        let left = self.remaining[level as usize].map_or(Span::ZERO, |left| left - elapsed);
-        self.remaining[level as usize] = (left > Span::ZERO).then_some(left);
-        self.running = (left > Span::ZERO).then_some((level, now));
+        let left = self.remaining[priority as usize].map_or(Span::ZERO, |left| left - elapsed);
+        self.remaining[priority as usize] = (left > Span::ZERO).then_some(left);
+        self.running = (left > Span::ZERO).then_some((priority, now));
         self.dispatch(now);
     }
 
     fn dispatch(&mut self, now: Time) {
-        let first = Priority::ALL.into_iter().find(|level| self.remaining[*level as usize].is_some());
-        if self.running.map(|(level, _)| level) != first {
+        let first = Priority::ALL.into_iter().find(|priority| self.remaining[*priority as usize].is_some());
+        if self.running.map(|(priority, _)| priority) != first {
             self.generation += 1;
         }
-        self.running = first.map(|level| (level, now));
+        self.running = first.map(|priority| (priority, now));
     }
 
-    /// Whether `level` has spent all it asked for.
-    pub(crate) fn is_done(&self, level: Priority) -> bool {
-        self.remaining[level as usize].is_none()
+    /// Whether `priority` has spent all it asked for.
+    pub(crate) fn is_done(&self, priority: Priority) -> bool {
+        self.remaining[priority as usize].is_none()
     }
 
     /// When the running work ends, and the generation of that answer.
     pub(crate) fn next_end(&self) -> Option<(Time, u64)> {
-        let (level, since) = self.running?;
-        Some((since + self.remaining[level as usize]?, self.generation))
+        let (priority, since) = self.running?;
+        Some((since + self.remaining[priority as usize]?, self.generation))
     }
 
     /// Time spent so far.

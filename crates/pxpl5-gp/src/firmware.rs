@@ -144,8 +144,8 @@ impl Shared {
     }
 
     /// Whether a program waits for the end of work that goes on.
-    pub(crate) fn is_at_work(&self, level: Priority) -> bool {
-        self.waits[level as usize].ended_by == Cause::Work && !self.cpu.is_done(level)
+    pub(crate) fn is_at_work(&self, priority: Priority) -> bool {
+        self.waits[priority as usize].ended_by == Cause::Work && !self.cpu.is_done(priority)
     }
 
     pub(crate) fn note_accepted(&mut self, batch: u64, place: u64) {
@@ -180,18 +180,18 @@ impl Shared {
     }
 }
 
-/// A program's handle to its board and to its level of the CPU.
+/// A program's handle to its board and to its priority of the CPU.
 #[derive(Clone, Debug)]
 pub struct Gp {
     pub(crate) shared: Rc<RefCell<Shared>>,
-    pub(crate) level: Priority,
+    pub(crate) priority: Priority,
 }
 
 impl Gp {
-    /// The same board at another level.
+    /// The same board at another priority.
     #[must_use]
-    pub fn at_level(&self, level: Priority) -> Self {
-        Self { shared: Rc::clone(&self.shared), level }
+    pub fn at_priority(&self, priority: Priority) -> Self {
+        Self { shared: Rc::clone(&self.shared), priority }
     }
 
     /// This board's port.
@@ -239,24 +239,24 @@ impl Gp {
                 Poll::Ready(value)
             }
             None => {
-                self.shared.borrow_mut().waits[self.level as usize] = wait;
+                self.shared.borrow_mut().waits[self.priority as usize] = wait;
                 Poll::Pending
             }
         })
         .await
     }
 
-    /// Spends CPU time at this program's level.
+    /// Spends CPU time at this program's priority.
     pub async fn spend(&self, span: Span) {
         if span == Span::ZERO {
             return;
         }
         {
             let shared = &mut *self.shared.borrow_mut();
-            shared.cpu.begin(self.level, span, shared.now);
+            shared.cpu.begin(self.priority, span, shared.now);
         }
         let wait = Wait { what: "the end of its own work", ended_by: Cause::Work };
-        self.wait(wait, || self.shared.borrow().cpu.is_done(self.level).then_some(())).await;
+        self.wait(wait, || self.shared.borrow().cpu.is_done(self.priority).then_some(())).await;
     }
 
     /// Waits for the next message in order of arrival and pays the software cost of receiving it.

@@ -19,7 +19,7 @@ pub trait Work {
 }
 
 impl Gp {
-    /// Does work, and spends its time at this program's level.
+    /// Does work, and spends its time at this program's priority.
     ///
     /// # Errors
     ///

@@ -37,7 +37,7 @@ pub fn slave(
 ) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
     let state = Shared::default();
     [Priority::Interrupt, Priority::Foreground].map(|level| {
-        let gp = gp.at_level(level);
+        let gp = gp.at_priority(level);
         let config = config.clone();
         let share = share.clone();
         let state = Rc::clone(&state);

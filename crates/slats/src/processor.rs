@@ -54,7 +54,7 @@ pub fn processor(
 ) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
     let state = Shared::default();
     [Priority::Interrupt, Priority::Foreground].map(|level| {
-        let gp = gp.at_level(level);
+        let gp = gp.at_priority(level);
         let config = config.clone();
         let binding = binding.clone();
         let share = share.clone();
