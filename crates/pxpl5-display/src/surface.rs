@@ -36,6 +36,13 @@ impl Surface {
     pub fn letter(&self) -> char {
         self.label.chars().next().unwrap_or(' ').to_ascii_uppercase()
     }
+
+    /// What it is called where a legend has no room for its title: `left eye`, and else its label.
+    #[must_use]
+    pub fn legend(&self) -> String {
+        let is_eye = Eye::BOTH.into_iter().any(|eye| eye.name() == self.label);
+        if is_eye { format!("{} eye", self.label) } else { self.label.to_owned() }
+    }
 }
 
 /// Something that a display has counted.

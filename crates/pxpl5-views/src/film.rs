@@ -1,138 +1,253 @@
 //! Films: what a viewer sees, period by period, as animated PNG.
 
-/// Which eyes a film shows.
+use crate::picture::encoder;
+use image::RgbImage;
+use pxpl5_display::{Display, Surface};
+use pxpl5_machine::{Machine, RunError};
+use pxpl5_measure::{RasterOffsets, screen, side_by_side};
+use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, Raster};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::SurfaceId;
+use std::io::Write;
+use thiserror::Error;
+
+/// Which surfaces of the first display a film shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Eyes {
-    /// One.
-    One(Eye),
-    /// Left and right side by side; a mono pipeline has a left eye only.
-    Both,
+pub enum FilmOf {
+    /// A single one, such as an eye's.
+    One(SurfaceId),
+    /// All, side by side, the first one left.
+    All,
 }
 
-/// A film: a frame each field, in which the lines of the field before stand between its own.
+/// A film of an experiment: a frame for each period of the display, as a viewer sees it at the period's end. Of an NTSC
+/// display the lines of the field before stand between those of its own.
 #[derive(Clone, Debug)]
 pub struct Film {
     experiment: Experiment,
-    first_field: u64,
-    fields: u64,
-    eyes: Eyes,
+    first_period: u64,
+    periods: u64,
+    of: FilmOf,
 }
 
 /// Why a film could not be made.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum FilmError {
     /// The experiment cannot be run.
-    Experiment(ExperimentError),
+    #[error(transparent)]
+    Experiment(#[from] ExperimentError),
     /// The machine stopped.
-    Run(crate::machine::RunError),
-    /// A film of no field, or of more than a PNG can hold.
-    Fields {
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// A film of no period, or of more than a PNG can hold.
+    #[error("a film has {} to {} fields, found {found}", expected.0, expected.1)]
+    Periods {
         /// Smallest and largest number.
         expected: (u64, u64),
         /// What was asked for.
         found: u64,
     },
+    /// The display has no such surface.
+    #[error("a film of surface {}: the display has {there}, counted from 0", found.0)]
+    Surface {
+        /// How many there are.
+        there: usize,
+        /// What was asked for.
+        found: SurfaceId,
+    },
     /// The PNG could not be written.
-    Png(png::EncodingError),
+    #[error("the film cannot be written: {0}")]
+    Png(#[from] png::EncodingError),
 }
 
-impl fmt::Display for FilmError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Experiment(error) => error.fmt(f),
-            Self::Run(error) => error.fmt(f),
-            Self::Fields { expected: (low, high), found } => {
-                write!(f, "a film has {low} to {high} fields, found {found}")
-            }
-            Self::Png(error) => write!(f, "the film cannot be written: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for FilmError {}
-
-impl From<png::EncodingError> for FilmError {
-    fn from(error: png::EncodingError) -> Self {
-        Self::Png(error)
-    }
-}
-
-/// Smallest and largest number of fields in a film: an hour and more.
-pub const FILM_FIELDS: (u64, u64) = (1, 250_000);
-
-/// The time of a frame of a film as a fraction of seconds: an NTSC field.
-pub const FRAME_SECONDS: (u16, u16) = (1_001, 60_000);
+/// Smallest and largest number of periods in a film: an hour of NTSC and more.
+pub const FILM_PERIODS: (u64, u64) = (1, 250_000);
 
 impl Film {
-    /// A film of an experiment, from a field on.
+    /// A film of an experiment, from a period of the display on.
     #[must_use]
-    pub const fn new(experiment: Experiment, first_field: u64, fields: u64, eyes: Eyes) -> Self {
-        Self { experiment, first_field, fields, eyes }
+    pub const fn new(experiment: Experiment, first_period: u64, periods: u64, of: FilmOf) -> Self {
+        Self { experiment, first_period, periods, of }
     }
 
-    /// Runs the experiment and writes the film as animated PNG. `texts` go into the file's text chunks.
+    /// Runs the experiment and writes the film as animated PNG. `texts` go into the file's text chunks, as those of
+    /// [`png_bytes`](crate::png_bytes).
     ///
     /// # Errors
     ///
     /// [`FilmError`]; the file is then not complete.
     pub fn write(&self, texts: &[(&str, String)], out: impl Write) -> Result<(), FilmError> {
-        if !(FILM_FIELDS.0..=FILM_FIELDS.1).contains(&self.fields) {
-            return Err(FilmError::Fields { expected: FILM_FIELDS, found: self.fields });
+        if !(FILM_PERIODS.0..=FILM_PERIODS.1).contains(&self.periods) {
+            return Err(FilmError::Periods { expected: FILM_PERIODS, found: self.periods });
         }
-        let offsets = self.offsets()?;
-        let mut machine = self.experiment.build().map_err(FilmError::Experiment)?;
-        let mut encoder = self.encoder(&machine, texts, out)?;
-        for field in self.first_field..self.first_field + self.fields {
-            // A field has been scanned when the next one has begun, all of whose events are taken.
-            let begun = machine.video().retrace(field + 1) + pxpl5_sim::Span(1);
-            machine.run_until(begun).map_err(FilmError::Run)?;
-            encoder.write_image_data(self.frame(&machine, field, offsets.as_ref()).as_raw())?;
+        let plain = self.without_pixels()?;
+        let offsets = plain.as_ref().and_then(RasterOffsets::of);
+        let mut machine = self.experiment.build()?;
+        let surfaces = self.surfaces(machine.record().display())?;
+        let mut encoder = encoder(out, size(machine.record().display(), &surfaces), texts)?;
+        let delay = frame_seconds(machine.record().display());
+        encoder.set_animated(self.periods as u32, 0)?;
+        encoder.set_frame_delay(delay.0, delay.1)?;
+        let mut writer = encoder.write_header()?;
+        for period in self.first_period..self.first_period + self.periods {
+            // A period is over when the next one has begun, all of whose events are taken.
+            let begun = machine.record().tick(period + 1) + Span(1);
+            machine.run_until(begun)?;
+            writer.write_image_data(frame(&machine, &surfaces, period, offsets.as_ref()).as_raw())?;
         }
-        Ok(encoder.finish()?)
+        Ok(writer.finish()?)
     }
 
-    /// How a display shifts each field, known from a run without pixels.
-    fn offsets(&self) -> Result<Option<RasterOffsets>, FilmError> {
-        if self.experiment.display() == Display::Plain {
+    /// A run of the same length without pixels, from which it is known how the raster shifts each period; `None` where it
+    /// shifts nothing.
+    fn without_pixels(&self) -> Result<Option<Outcome>, FilmError> {
+        if self.experiment.raster() == Raster::Plain {
             return Ok(None);
         }
-        let last = self.first_field + self.fields;
-        let outcome = self.experiment.clone().pixels(Pixels::Off).fields(last + 1).run();
-        Ok(RasterOffsets::of(&outcome.map_err(FilmError::Experiment)?))
+        let last = self.first_period + self.periods;
+        Ok(Some(self.experiment.clone().pixels(Pixels::Off).fields(last + 1).run()?))
     }
 
-    fn encoder<W: Write>(
-        &self,
-        machine: &Machine,
-        texts: &[(&str, String)],
-        out: W,
-    ) -> Result<png::Writer<W>, FilmError> {
-        let (width, height) = (machine.video().width(), machine.video().height());
-        let mut encoder = png::Encoder::new(out, width * self.eyes().len() as u32, height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_animated(self.fields as u32, 0)?;
-        encoder.set_frame_delay(FRAME_SECONDS.0, FRAME_SECONDS.1)?;
-        for (key, value) in texts {
-            encoder.add_itxt_chunk(format!("pxpl5 {key}"), value.clone())?;
-        }
-        Ok(encoder.write_header()?)
-    }
-
-    fn eyes(&self) -> &[Eye] {
-        match &self.eyes {
-            Eyes::One(eye) => std::slice::from_ref(eye),
-            Eyes::Both => &Eye::BOTH,
-        }
-    }
-
-    fn frame(&self, machine: &Machine, field: u64, offsets: Option<&RasterOffsets>) -> RgbImage {
-        let eyes: Vec<RgbImage> = self.eyes().iter().map(|eye| screen(machine, *eye, field, offsets)).collect();
-        match &eyes[..] {
-            [left, right] => side_by_side(left, right),
-            _ => eyes.into_iter().next().unwrap_or_default(),
+    fn surfaces(&self, display: &dyn Display) -> Result<Vec<SurfaceId>, FilmError> {
+        let there = display.surfaces().len();
+        match self.of {
+            FilmOf::One(found) if found.index() >= there => Err(FilmError::Surface { there, found }),
+            FilmOf::One(surface) => Ok(vec![surface]),
+            FilmOf::All => Ok((0..there as u16).map(SurfaceId).collect()),
         }
     }
 }
 
+/// Width and height of some surfaces of a display side by side.
+fn size(display: &dyn Display, surfaces: &[SurfaceId]) -> (u32, u32) {
+    let shown: Vec<&Surface> = surfaces.iter().filter_map(|id| display.surfaces().get(id.index())).collect();
+    let width = shown.iter().map(|surface| surface.width).sum();
+    let height = shown.iter().map(|surface| surface.height).max();
+    (width, height.unwrap_or_default())
+}
+
+fn frame(machine: &Machine, surfaces: &[SurfaceId], period: u64, offsets: Option<&RasterOffsets<'_>>) -> RgbImage {
+    let screens = surfaces.iter().map(|surface| screen(machine.record(), *surface, period, offsets));
+    screens.reduce(|left, right| side_by_side(&left, &right)).unwrap_or_default()
+}
+
+/// The time of a frame of a film as a fraction of seconds, as animated PNG has it: of all fractions of two numbers of 16
+/// bits the one that is nearest to a period of the display.
+#[must_use]
+pub fn frame_seconds(display: &dyn Display) -> (u16, u16) {
+    // Ticks are whole picoseconds; over so many periods what is lost does not count.
+    const PERIODS: u64 = 60_000;
+    let span = display.tick(PERIODS).since(Time::ZERO);
+    let nearest = nearest_fraction(Fraction { over: span.0.into(), under: u128::from(PERIODS) * PS_PER_S });
+    (nearest.over as u16, nearest.under as u16)
+}
+
+const PS_PER_S: u128 = 1_000_000_000_000;
+
+/// Greatest number above and below the line.
+const LIMIT: u128 = u16::MAX as u128;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Fraction {
+    over: u128,
+    under: u128,
+}
+
+impl Fraction {
+    /// The distance from another, times both denominators.
+    const fn distance(self, other: Self) -> u128 {
+        (self.over * other.under).abs_diff(other.over * self.under)
+    }
+
+    /// The next fraction of a chain: so many times this one, and the one before it.
+    const fn followed(self, times: u128, before: Self) -> Self {
+        Self { over: times * self.over + before.over, under: times * self.under + before.under }
+    }
+
+    /// How many times this one fits into a fraction within the limit that has the one before it in it too.
+    fn fits(self, before: Self) -> u128 {
+        let above = (LIMIT - before.over).checked_div(self.over).unwrap_or(u128::MAX);
+        above.min((LIMIT - before.under).checked_div(self.under).unwrap_or(u128::MAX))
+    }
+}
+
+/// The nearest fraction within the limit, from the chain of continued fractions: the last that is within it, or the one
+/// between it and the next.
+fn nearest_fraction(exact: Fraction) -> Fraction {
+    let mut before = Fraction { over: 0, under: 1 };
+    let mut last = Fraction { over: 1, under: 0 };
+    let mut rest = exact;
+    while rest.under > 0 {
+        let times = rest.over / rest.under;
+        let fits = last.fits(before);
+        if times > fits {
+            let between = last.followed(fits, before);
+            let last_is_nearer = exact.distance(last) * between.under <= exact.distance(between) * last.under;
+            return if last_is_nearer && last.under > 0 { last } else { between };
+        }
+        let next = last.followed(times, before);
+        before = last;
+        last = next;
+        rest = Fraction { over: rest.under, under: rest.over % rest.under };
+    }
+    last
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_display::DisplayConfig;
+    use pxpl5_framebuffer::{FrameBufferConfig, VideoTiming};
+    use pxpl5_hires::HiResConfig;
+    use pxpl5_wire::NodeId;
+
+    fn seconds(config: &dyn DisplayConfig) -> (u16, u16) {
+        frame_seconds(config.build(&[NodeId(1)]).expect("can be built").as_ref())
+    }
+
+    #[test]
+    fn a_frame_takes_an_ntsc_field() {
+        assert_eq!(seconds(&FrameBufferConfig::NTSC), (1_001, 60_000));
+    }
+
+    /// A line is 4004/63 us and a field half of the frame's lines: with 625, 625 x 4004 / (2 x 63 x 10^6) s = 143/7200 s.
+    #[test]
+    fn a_frame_of_625_lines_takes_longer_in_the_same_proportion() {
+        let video = VideoTiming { frame_lines: 625, ..FrameBufferConfig::NTSC.video };
+        assert_eq!(seconds(&FrameBufferConfig { video, ..FrameBufferConfig::NTSC }), (143, 7_200));
+    }
+
+    #[test]
+    fn a_frame_of_the_high_resolution_display_takes_the_72nd_part_of_a_second() {
+        assert_eq!(seconds(&HiResConfig::PAPERS), (1, 72));
+    }
+
+    #[test]
+    fn a_fraction_that_fits_is_found_exactly() {
+        for (over, under) in [(1, 1), (65_535, 65_534), (1, 65_535), (65_535, 1), (355, 113), (2, 3)] {
+            let exact = Fraction { over, under };
+            assert_eq!(nearest_fraction(Fraction { over: over * 1_000, under: under * 1_000 }), exact);
+        }
+    }
+
+    #[test]
+    fn of_fractions_that_do_not_fit_no_neighbour_is_nearer() {
+        for (over, under) in [(100_003, 100_019), (1, 1_000_003), (141_421_356, 100_000_000), (1_000_003, 70_001)] {
+            let exact = Fraction { over, under };
+            let found = nearest_fraction(exact);
+            assert!(found.over <= LIMIT && (1..=LIMIT).contains(&found.under), "{found:?}");
+            for other_under in (1..=LIMIT).step_by(7) {
+                let other = Fraction { over: (over * other_under / under).min(LIMIT), under: other_under };
+                for other in [other, Fraction { over: (other.over + 1).min(LIMIT), ..other }] {
+                    assert!(exact.distance(found) * other.under <= exact.distance(other) * found.under, "{other:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_takes_longer_than_can_be_said_takes_as_long_as_can_be_said() {
+        assert_eq!(nearest_fraction(Fraction { over: 100_000, under: 1 }), Fraction { over: 65_535, under: 1 });
+    }
+}

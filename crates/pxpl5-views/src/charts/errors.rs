@@ -1,6 +1,7 @@
-//! Error against time for two latencies, as a curve and as SVG.
+//! Error against time for some latencies, as a curve and as SVG.
 
-use std::fmt::Write as _;
+use crate::markup::Element;
+use crate::svg::{self, Tenths, anchored, line};
 use tracking::motion::Motion;
 use tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S};
 use tracking::view::HmdView;
@@ -8,7 +9,7 @@ use tracking::view::HmdView;
 /// The error in the middle of the picture that a latency alone makes of a motion, field by field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LatencyCurve {
-    /// Latency, milliseconds.
+    /// The latency, milliseconds.
     pub latency_ms: u64,
     /// Time in seconds and error in pixels.
     pub points: Vec<(f64, f64)>,
@@ -18,13 +19,14 @@ impl LatencyCurve {
     /// What is drawn at t for the pose of t - latency, over `seconds`; the point is `distance_m` ahead.
     #[must_use]
     pub fn of(motion: &dyn Motion, latency_ms: u64, seconds: u64, distance_m: f64) -> Self {
-        let (view, latency_ps) = (HmdView::ntsc(), latency_ms * PS_PER_MS);
+        let view = HmdView::ntsc();
+        let latency_ps = latency_ms * PS_PER_MS;
         let times = (0..).map(|n| latency_ps + n * NTSC_FIELD_PS).take_while(|t| *t < seconds * PS_PER_S);
-        let point = |t: u64| {
+        let points = times.filter_map(|t| {
             let error = view.centre_error(&motion.pose(t - latency_ps), &motion.pose(t), distance_m)?;
             Some((t as f64 / PS_PER_S as f64, error.pixels))
-        };
-        Self { latency_ms, points: times.filter_map(point).collect() }
+        });
+        Self { latency_ms, points: points.collect() }
     }
 
     /// Mean error in pixels.
@@ -37,77 +39,100 @@ impl LatencyCurve {
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 360.0;
 const MARGIN: f64 = 48.0;
+/// Where the axes end: the lower edge and the right edge of the chart.
+const FLOOR: f64 = HEIGHT - MARGIN;
+const RIGHT: f64 = WIDTH - MARGIN;
 const COLOURS: [&str; 4] = ["#c0392b", "#2471a3", "#1e8449", "#7d3c98"];
 
-/// Curves of error against time, with their means in the legend.
+/// An SVG: curves of error against time, with their means in the legend.
 #[must_use]
-pub fn chart(title: &str, curves: &[LatencyCurve]) -> String {
-    let all = || curves.iter().flat_map(|curve| &curve.points);
-    let end_s = all().map(|p| p.0).fold(1e-9, f64::max);
-    let top_px = all().map(|p| p.1).fold(1e-9, f64::max);
-    let place = |(t, px): &(f64, f64)| {
-        let x = MARGIN + t / end_s * (WIDTH - 2.0 * MARGIN);
-        (x, HEIGHT - MARGIN - px / top_px * (HEIGHT - 2.0 * MARGIN))
-    };
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{HEIGHT}\" font-family=\"sans-serif\" font-size=\"12\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n\
-         <text x=\"{MARGIN}\" y=\"20\" font-size=\"14\">{}</text>\n",
-        escaped(title)
-    );
-    axes(&mut svg, end_s, top_px);
+pub fn error_chart(title: &str, curves: &[LatencyCurve]) -> String {
+    let scale = Scale::of(curves);
+    let svg = svg::document().with("width", WIDTH).with("height", HEIGHT);
+    let mut svg = svg.with("font-family", "sans-serif").with("font-size", 12);
+    svg.end_line();
+    svg.add_line(&Element::new("rect").with("width", "100%").with("height", "100%").with("fill", "white"));
+    svg.add_line(&Element::new("text").with("x", MARGIN).with("y", 20).with("font-size", 14).text(title));
+    axes(&mut svg);
+    scale.times(&mut svg);
+    scale.errors(&mut svg);
     for (i, curve) in curves.iter().enumerate() {
         let colour = COLOURS[i % COLOURS.len()];
-        let points: Vec<String> = curve.points.iter().map(place).map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
-        let _ = writeln!(svg, "<polyline fill=\"none\" stroke=\"{colour}\" points=\"{}\"/>", points.join(" "));
-        let (x, y) = (WIDTH - 210.0, 20.0 + 16.0 * i as f64);
-        let legend = format!("{} ms: mean {:.1} px", curve.latency_ms, curve.mean_px());
-        let _ = writeln!(svg, "<text x=\"{x}\" y=\"{y}\" fill=\"{colour}\">{legend}</text>");
+        svg.add_line(&scale.curve(curve, colour));
+        let legend = Element::new("text").with("x", WIDTH - 210.0).with("y", 20 + 16 * i).with("fill", colour);
+        svg.add_line(&legend.text(format_args!("{} ms: mean {:.1} px", curve.latency_ms, curve.mean_px())));
     }
-    svg + "</svg>\n"
+    svg::finished(&svg)
 }
 
-fn axes(svg: &mut String, end_s: f64, top_px: f64) {
-    let (bottom, right) = (HEIGHT - MARGIN, WIDTH - MARGIN);
-    let _ = writeln!(
-        svg,
-        "<path d=\"M{MARGIN} {MARGIN} V{bottom} H{right}\" fill=\"none\" stroke=\"black\"/>\n\
-         <text x=\"{right}\" y=\"{}\" text-anchor=\"end\">time, s</text>\n\
-         <text x=\"{MARGIN}\" y=\"{}\">error in the middle, pixels</text>",
-        bottom + 32.0,
-        MARGIN - 12.0
-    );
-    for value in ticks(end_s) {
-        let x = MARGIN + value / end_s * (right - MARGIN);
-        let _ = writeln!(
-            svg,
-            "<path d=\"M{x:.1} {bottom} v5\" stroke=\"black\"/><text x=\"{x:.1}\" y=\"{}\" text-anchor=\"middle\">{value}</text>",
-            bottom + 18.0
-        );
+/// The range of both axes.
+struct Scale {
+    end_s: f64,
+    top_px: f64,
+}
+
+impl Scale {
+    fn of(curves: &[LatencyCurve]) -> Self {
+        let mut scale = Self { end_s: 1e-9, top_px: 1e-9 };
+        for (time_s, error_px) in curves.iter().flat_map(|curve| &curve.points) {
+            scale.end_s = scale.end_s.max(*time_s);
+            scale.top_px = scale.top_px.max(*error_px);
+        }
+        scale
     }
-    for value in ticks(top_px) {
-        let y = bottom - value / top_px * (bottom - MARGIN);
-        let _ = writeln!(
-            svg,
-            "<path d=\"M{MARGIN} {y:.1} H{right}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{value}</text>",
-            MARGIN - 6.0,
-            y + 4.0
-        );
+
+    fn x(&self, time_s: f64) -> f64 {
+        MARGIN + time_s / self.end_s * (RIGHT - MARGIN)
     }
+
+    fn y(&self, error_px: f64) -> f64 {
+        FLOOR - error_px / self.top_px * (FLOOR - MARGIN)
+    }
+
+    fn curve(&self, curve: &LatencyCurve, colour: &str) -> Element {
+        let points = curve.points.iter();
+        let points: Vec<String> =
+            points.map(|(time_s, px)| format!("{},{}", Tenths(self.x(*time_s)), Tenths(self.y(*px)))).collect();
+        Element::new("polyline").with("fill", "none").with("stroke", colour).with("points", points.join(" "))
+    }
+
+    fn times(&self, svg: &mut Element) {
+        for value in ticks(self.end_s) {
+            let x = Tenths(self.x(value));
+            svg.add(&line(format_args!("M{x} {FLOOR} v5"), "black"));
+            svg.add_line(&anchored(x, FLOOR + 18.0, "middle").text(value));
+        }
+    }
+
+    fn errors(&self, svg: &mut Element) {
+        for value in ticks(self.top_px) {
+            let y = self.y(value);
+            svg.add(&line(format_args!("M{MARGIN} {} H{RIGHT}", Tenths(y)), "#ddd"));
+            svg.add_line(&anchored(MARGIN - 6.0, Tenths(y + 4.0), "end").text(value));
+        }
+    }
+}
+
+fn axes(svg: &mut Element) {
+    let course = format!("M{MARGIN} {MARGIN} V{FLOOR} H{RIGHT}");
+    svg.add_line(&Element::new("path").with("d", course).with("fill", "none").with("stroke", "black"));
+    svg.add_line(&anchored(RIGHT, FLOOR + 32.0, "end").text("time, s"));
+    let name = Element::new("text").with("x", MARGIN).with("y", MARGIN - 12.0);
+    svg.add_line(&name.text("error in the middle, pixels"));
 }
 
 /// Round numbers from 0 to a greatest: steps of 1, 2 or 5 times a power of ten, of which there are at most ten.
 fn ticks(greatest: f64) -> Vec<f64> {
     let power = 10f64.powf((greatest / 10.0).log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * power).into_iter().find(|step| greatest / step <= 10.0);
-    let step = step.unwrap_or(greatest);
-    // Products of whole numbers and a step such as 0.2 have digits that nobody wants to read.
-    let rounded = |value: f64| (value * 1e9).round() / 1e9;
-    (0..=10).map(|i| rounded(f64::from(i) * step)).take_while(|value| *value <= greatest).collect()
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|times| times * power);
+    let step = steps.into_iter().find(|step| greatest / step <= 10.0).unwrap_or(greatest);
+    let values = (0..=10).map(|i| readable(f64::from(i) * step));
+    values.take_while(|value| *value <= greatest).collect()
 }
 
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+/// Products of whole numbers and a step such as 0.2 have digits that nobody wants to read.
+fn readable(value: f64) -> f64 {
+    (value * 1e9).round() / 1e9
 }
 
 #[cfg(test)]
@@ -133,8 +158,9 @@ mod tests {
     #[test]
     fn a_chart_names_its_curves_and_survives_odd_titles() {
         let curves = [90, 50].map(|ms| LatencyCurve::of(&Pan::at(40.0), ms, 2, 3.0));
-        let svg = chart("a < b & c", &curves);
+        let svg = error_chart("a < b & c", &curves);
         assert!(svg.contains("90 ms: mean") && svg.contains("50 ms: mean") && svg.contains("a &lt; b &amp; c"));
         assert_eq!(svg.matches("<polyline").count(), 2);
+        assert!(roxmltree::Document::parse(&svg).is_ok());
     }
 }

@@ -3,18 +3,20 @@
 //! Both open with what the file can be made again from ([`origin`]): CSV with lines of comment that begin with `#`,
 //! Parquet with the file's key-value metadata (keys `pxpl5.machine` and so on). All times are whole picoseconds of
 //! simulated time, so nothing is rounded. [`columns`] is the schema; its name and version stand in [`SCHEMA`].
+//!
+//! [`csv_table`] is the writer of every CSV file; [`quantities_csv`] is the table of what an experiment measured.
 
-mod csv;
+mod csv_file;
 mod origin;
 #[cfg(feature = "parquet")]
 mod parquet;
-mod table;
+mod pictures;
+mod tables;
 
-pub use csv::csv;
+pub use csv_file::csv_table;
+pub(crate) use origin::count_of;
 pub use origin::{origin, origin_lines};
 #[cfg(feature = "parquet")]
 pub use parquet::parquet;
-pub use table::{Column, columns};
-
-/// Name and version of the tables' schema; a column that is added at the end does not change it.
-pub const SCHEMA: &str = "pxpl5-pictures/1";
+pub use pictures::{Column, SCHEMA, columns};
+pub use tables::{csv, quantities_csv};

@@ -1,6 +1,6 @@
 //! What a result file opens with, so that it can be made again.
 
-use crate::report::Report;
+use pxpl5_measure::Report;
 use std::fmt::Write;
 
 /// Preset, configuration hash, version, level, seed, and the experiment, as pairs of key and value.
@@ -15,6 +15,7 @@ pub fn origin(report: &Report) -> Vec<(&'static str, String)> {
         ("seed", report.seed.to_string()),
         ("pipeline", report.pipeline.clone()),
         ("variant", report.variant.clone()),
+        ("display", report.display.clone()),
         ("overrides", overrides.join(" ")),
         ("scene", format!("{}, {} triangles, {} spheres", report.scene, report.triangles, report.spheres)),
         ("fields", report.fields.to_string()),
@@ -24,10 +25,16 @@ pub fn origin(report: &Report) -> Vec<(&'static str, String)> {
 /// The same as text, a line each, with a comment mark such as `# ` before each.
 #[must_use]
 pub fn origin_lines(report: &Report, mark: &str) -> String {
-    origin(report).iter().fold(String::new(), |mut text, (key, value)| {
+    let mut text = String::new();
+    for (key, value) in origin(report) {
         // A line break in a value would end the comment.
         let value = value.replace(['\n', '\r'], " ");
         let _ = writeln!(text, "{mark}{key}: {value}");
-        text
-    })
+    }
+    text
+}
+
+/// A number of things with their name in the right form: `1 triangle`, `2 triangles`.
+pub(crate) fn count_of(count: usize, name: &str) -> String {
+    format!("{count} {name}{}", if count == 1 { "" } else { "s" })
 }

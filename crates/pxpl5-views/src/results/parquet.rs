@@ -1,9 +1,7 @@
 //! The table as Parquet.
 
-use super::SCHEMA;
 use super::origin::origin;
-use super::table::{Column, columns, rows};
-use crate::experiment::Outcome;
+use super::pictures::{Column, SCHEMA, columns, rows};
 use parquet::basic::{Compression, Repetition, Type as PhysicalType};
 use parquet::data_type::Int64Type;
 use parquet::errors::Result;
@@ -11,6 +9,8 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
+use pxpl5_measure::Report;
+use pxpl5_run::Outcome;
 use std::io::Write;
 use std::sync::Arc;
 
@@ -47,12 +47,15 @@ fn field(column: &Column) -> Result<Arc<Type>> {
 }
 
 fn properties(outcome: &Outcome) -> WriterProperties {
-    let entry = |key: &str, value: String| KeyValue::new(format!("pxpl5.{key}"), value);
-    let origin = origin(&outcome.report()).into_iter().map(|(key, value)| entry(key, value));
-    let metadata = [entry("schema", SCHEMA.to_owned())].into_iter().chain(origin).collect();
+    let mut metadata = vec![entry("schema", SCHEMA.to_owned())];
+    metadata.extend(origin(&Report::of(outcome)).into_iter().map(|(key, value)| entry(key, value)));
     WriterProperties::builder()
         .set_compression(Compression::UNCOMPRESSED)
         .set_key_value_metadata(Some(metadata))
         .set_created_by(format!("pxpl5 {}", env!("CARGO_PKG_VERSION")))
         .build()
+}
+
+fn entry(key: &str, value: String) -> KeyValue {
+    KeyValue::new(format!("pxpl5.{key}"), value)
 }

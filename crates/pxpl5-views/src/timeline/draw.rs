@@ -1,11 +1,11 @@
 //! The drawing.
 
-use super::model::{Bar, Row, Scan, Timeline};
-use super::path::{Arrow, Place};
-use super::style::{STAGES, colours, letters, name, pattern};
-use super::writer::{Units, Writer, escape};
+use super::legend::legend;
+use super::model::{Arrow, Bar, Place, Row, Scan, Timeline};
+use super::style::{class_of, definitions, letters, pattern, style};
+use crate::markup::Element;
+use crate::svg::{self, Units, caption, hint, rectangle, segment};
 use pxpl5_sim::{Span, Time};
-use std::fmt::Write;
 
 /// Width of the document, and of what stands left and right of the time axis.
 const WIDTH: i64 = 960;
@@ -21,10 +21,13 @@ const FOOT: i64 = 84;
 /// Height of the strip that shows when a port receives.
 const STRIP: i64 = 6;
 
+/// Periods that are numbered without the word `field`, for want of room.
+const CROWDED: usize = 10;
+
 /// A timeline and where its parts stand.
 struct Drawing<'a> {
     timeline: &'a Timeline,
-    out: Writer,
+    out: Element,
     /// Top of the tracker, of each row, and of the beam.
     tracker: i64,
     rows: Vec<i64>,
@@ -42,73 +45,75 @@ pub(super) struct Words {
 pub(super) fn document(timeline: &Timeline, words: &Words) -> String {
     let mut drawing = Drawing::new(timeline);
     drawing.begin(words);
-    let rows: Vec<_> = timeline.rows.iter().zip(drawing.rows.clone()).collect();
-    rows.iter().for_each(|(row, top)| drawing.row(row, *top));
+    drawing.for_each_row(Drawing::row);
     drawing.axis();
-    rows.iter().for_each(|(row, top)| drawing.bars(row, *top));
+    drawing.for_each_row(Drawing::bars);
     drawing.samples();
     drawing.scans();
     timeline.arrows.iter().for_each(|arrow| drawing.arrow(arrow));
     // Labels come last: their outline keeps them legible on arrows.
-    rows.iter().for_each(|(row, top)| drawing.labels(row, *top));
-    drawing.legend();
-    drawing.out.line("</svg>");
-    drawing.out.0
+    drawing.for_each_row(Drawing::labels);
+    legend(&mut drawing.out, timeline, [LEFT, drawing.beam + LANE + 44]);
+    svg::finished(&drawing.out)
 }
 
 impl<'a> Drawing<'a> {
     fn new(timeline: &'a Timeline) -> Self {
-        let mut top = HEAD;
-        let tracker = top;
+        let tracker = HEAD;
+        let mut top = tracker;
         if timeline.samples.is_some() {
             top += TRACKER + GAP;
         }
         let mut rows = Vec::new();
         for row in &timeline.rows {
             rows.push(top);
-            top += LANE * row.lanes as i64 + GAP;
+            top += height_of(row) + GAP;
         }
-        Self { timeline, out: Writer::default(), tracker, rows, beam: top }
+        Self { timeline, out: outermost(top + LANE + FOOT), tracker, rows, beam: top }
     }
 
-    fn height(&self) -> i64 {
-        self.beam + LANE + FOOT
+    fn for_each_row(&mut self, draw: impl Fn(&mut Self, &Row, i64)) {
+        let timeline = self.timeline;
+        for (i, row) in timeline.rows.iter().enumerate() {
+            draw(self, row, self.rows[i]);
+        }
     }
 
     /// Where a time stands, clipped to the time axis.
     fn x(&self, time: Time) -> Units {
         let Timeline { from, to, .. } = self.timeline;
-        let (at, all) = (time.since(*from).0, (*to - *from).0);
+        let all = (*to - *from).0;
+        let at = time.since(*from).0.min(all);
         let width = u128::from((WIDTH - LEFT - RIGHT) as u64) * 100;
-        let place = width * u128::from(at.min(all)) / u128::from(all.max(1));
+        let place = width * u128::from(at) / u128::from(all.max(1));
         Units::whole(LEFT) + Units(place as i64)
     }
 
     fn begin(&mut self, Words { title, subtitle, origin }: &Words) {
-        let height = self.height();
-        self.out.line(format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" width="{WIDTH}" height="{height}" role="img" font-family="Helvetica, Arial, 'Liberation Sans', sans-serif" font-size="15">"#
-        ));
-        self.out.line(format!("<title>{}</title>", escape(title)));
-        self.out.line(format!("<desc>{}</desc>", escape(origin)));
-        self.out.line(style());
-        self.out.line(patterns());
-        self.out.rectangle([Units(0), Units(0), Units::whole(WIDTH), Units::whole(height)], "page", "");
-        self.out.text([Units::whole(LEFT), Units::whole(22)], "heading", &escape(title));
-        self.out.text([Units::whole(LEFT), Units::whole(41)], "key", &escape(subtitle));
+        self.out.end_line();
+        self.out.add_line(&Element::new("title").text(title));
+        self.out.add_line(&Element::new("desc").text(origin));
+        self.out.add_line(&style());
+        self.out.add_line(&definitions());
+        let page = [0, 0, WIDTH, self.beam + LANE + FOOT].map(Units::whole);
+        self.out.add_line(&rectangle("page", page));
+        self.out.add_line(&caption("heading", [LEFT, 22].map(Units::whole)).text(title));
+        self.out.add_line(&caption("key", [LEFT, 41].map(Units::whole)).text(subtitle));
     }
 
     /// Fields above, milliseconds below, retraces across.
     fn axis(&mut self) {
-        let (top, bottom) = (Units::whole(HEAD - 14), Units::whole(self.beam + LANE + 6));
+        let top = Units::whole(HEAD - 14);
+        let bottom = Units::whole(self.beam + LANE + 6);
         for (_, time) in &self.timeline.retraces {
             let x = self.x(*time);
-            self.out.segment([x, top, x, bottom], "retrace");
+            self.out.add_line(&segment("retrace", [x, top, x, bottom]));
         }
+        let word = if self.timeline.retraces.len() < CROWDED { "field " } else { "" };
         for pair in self.timeline.retraces.windows(2) {
-            let x = Units(self.x(pair[0].1).0.midpoint(self.x(pair[1].1).0));
-            let label = if self.timeline.retraces.len() > 9 { "" } else { "field " };
-            self.out.text([x, Units::whole(HEAD - 20)], "mid", &format!("{label}{}", pair[0].0));
+            let middle = Units(self.x(pair[0].1).0.midpoint(self.x(pair[1].1).0));
+            let number = caption("mid", [middle, Units::whole(HEAD - 20)]);
+            self.out.add_line(&number.text(format_args!("{word}{}", pair[0].0)));
         }
         self.milliseconds(bottom);
     }
@@ -117,26 +122,25 @@ impl<'a> Drawing<'a> {
         let all = (self.timeline.to - self.timeline.from).0;
         let step: u64 = if all > 140_000_000_000 { 20 } else { 10 };
         let ticks = all / (step * 1_000_000_000);
-        self.out.segment([self.x(self.timeline.from), y, self.x(self.timeline.to), y], "axis");
+        self.out.add_line(&segment("axis", [self.x(self.timeline.from), y, self.x(self.timeline.to), y]));
         for tick in 0..=ticks {
             let ms = tick * step;
             let x = self.x(self.timeline.from + Span(ms * 1_000_000_000));
-            self.out.segment([x, y, x, y + Units::whole(5)], "axis");
+            self.out.add_line(&segment("axis", [x, y, x, y + Units::whole(5)]));
             let label = if tick == 0 { "0 ms".to_owned() } else { ms.to_string() };
-            self.out.text([x, y + Units::whole(20)], "mid", &label);
+            self.out.add_line(&caption("mid", [x, y + Units::whole(20)]).text(label));
         }
     }
 
     fn name(&mut self, text: &str, top: i64, height: i64) {
-        let y = Units::whole(top + height / 2 + 5);
-        self.out.text([Units::whole(LEFT - 12), y], "name", &escape(text));
+        let place = [LEFT - 12, top + height / 2 + 5].map(Units::whole);
+        self.out.add_line(&caption("name", place).text(text));
     }
 
     fn row(&mut self, row: &Row, top: i64) {
-        let height = LANE * row.lanes as i64;
+        let height = height_of(row);
         self.name(row.name, top, height);
-        let (left, width) = (Units::whole(LEFT), Units::whole(WIDTH - LEFT - RIGHT));
-        self.out.rectangle([left, Units::whole(top), width, Units::whole(height)], "row", "");
+        self.out.add_line(&rectangle("row", [LEFT, top, WIDTH - LEFT - RIGHT, height].map(Units::whole)));
     }
 
     fn bars(&mut self, row: &Row, top: i64) {
@@ -148,53 +152,58 @@ impl<'a> Drawing<'a> {
         }
     }
 
+    fn bar(&mut self, bar: &Bar, y: Units) {
+        let x = self.x(bar.begin);
+        // An instant is drawn as a line.
+        let width = (self.x(bar.end) - x).max(Units(120));
+        let stage = class_of(bar.stage);
+        let emphasis = emphasis(self.timeline.is_chosen(bar));
+        let class = format!("{stage} {stage}-{} {emphasis}", pattern(bar.surface));
+        let about = hint(about(bar, self.timeline));
+        self.out.add_line(&rectangle(&class, [x, y, width, Units::whole(LANE)]).child(&about));
+        for (begin, end) in &bar.receiving {
+            let x = self.x(*begin);
+            let strip = [x, y + Units::whole(LANE - STRIP), self.x(*end) - x, Units::whole(STRIP)];
+            self.out.add_line(&rectangle("receiving", strip));
+        }
+    }
+
     fn labels(&mut self, row: &Row, top: i64) {
         for bar in &row.bars {
             self.label(bar, Units::whole(top + LANE * bar.lane as i64));
         }
     }
 
-    fn bar(&mut self, bar: &Bar, y: Units) {
-        let (x, end) = (self.x(bar.begin), self.x(bar.end));
-        // An instant is drawn as a line.
-        let width = (end - x).max(Units(120));
-        let chosen = if self.timeline.is_chosen(bar) { "chosen" } else { "other" };
-        let stage = name(bar.stage);
-        let class = format!("{stage} {stage}-{} {chosen}", pattern(bar.eye));
-        self.out.rectangle([x, y, width, Units::whole(LANE)], &class, &about(bar));
-        for (begin, end) in &bar.receiving {
-            let (x, end) = (self.x(*begin), self.x(*end));
-            let strip = [x, y + Units::whole(LANE - STRIP), end - x, Units::whole(STRIP)];
-            self.out.rectangle(strip, "receiving", "");
-        }
-    }
-
     /// Letters and number where there is room, letters alone in less, nothing in still less.
     fn label(&mut self, bar: &Bar, y: Units) {
-        let (x, end) = (self.x(bar.begin), self.x(bar.end));
-        let (letters, number) = (letters(bar), bar.picture.to_string());
+        let begin = self.x(bar.begin).0;
+        let end = self.x(bar.end).0;
+        let letters = letters(bar, &self.timeline.surfaces);
+        let number = bar.picture.to_string();
         let short = 10 * letters.len() as i64 + 4;
         let long = short + 8 * number.len() as i64;
-        let room = (end - x).0 / 100;
+        let room = (end - begin) / 100;
         if room < short {
             return;
         }
-        let mut text = letters;
-        if room >= long {
-            let _ = write!(text, r#"<tspan class="sub" dy="3">{number}</tspan>"#);
-        }
         let strip = if bar.receiving.is_empty() { 0 } else { STRIP / 2 };
-        let place = [Units(x.0.midpoint(end.0)), y + Units::whole(LANE / 2 + 5 - strip)];
-        self.out.text(place, &format!("label {}-text", name(bar.stage)), &text);
+        let place = [Units(begin.midpoint(end)), y + Units::whole(LANE / 2 + 5 - strip)];
+        let mut label = caption(&format!("label {}-text", class_of(bar.stage)), place).text(letters);
+        if room >= long {
+            label.add(&Element::new("tspan").with("class", "sub").with("dy", 3).text(number));
+        }
+        self.out.add_line(&label);
     }
 
     fn samples(&mut self) {
         let Some(samples) = &self.timeline.samples else { return };
         self.name("tracker", self.tracker, TRACKER);
         for (update, time) in samples {
-            let chosen = if Some(*update) == self.timeline.update { "chosen" } else { "other" };
-            let (x, y) = (self.x(*time), Units::whole(self.tracker));
-            self.out.line(format!(r#"<path class="sample {chosen}" d="M{x} {y}l5 7l-5 7l-5 -7z"/>"#));
+            let class = format!("sample {}", emphasis(Some(*update) == self.timeline.update));
+            let x = self.x(*time);
+            let y = Units::whole(self.tracker);
+            let course = format!("M{x} {y}l5 7l-5 7l-5 -7z");
+            self.out.add_line(&Element::new("path").with("class", class).with("d", course));
         }
     }
 
@@ -207,31 +216,31 @@ impl<'a> Drawing<'a> {
 
     /// The beam's way down, and what it shows.
     fn scan(&mut self, scan: &Scan) {
-        let (x, end) = (self.x(scan.begin), self.x(scan.end));
-        let (y, low) = (Units::whole(self.beam), Units::whole(self.beam + LANE));
-        let chosen = if scan.picture.is_some() && scan.picture == self.timeline.picture { "chosen" } else { "other" };
-        self.out.rectangle([x, y, end - x, Units::whole(LANE)], &format!("scan {chosen}"), "");
-        self.out.segment([x, y, end, low], "beam");
+        let x = self.x(scan.begin);
+        let end = self.x(scan.end);
+        let y = Units::whole(self.beam);
+        let chosen = scan.picture.is_some() && scan.picture == self.timeline.picture;
+        let class = format!("scan {}", emphasis(chosen));
+        self.out.add_line(&rectangle(&class, [x, y, end - x, Units::whole(LANE)]));
+        self.out.add_line(&segment("beam", [x, y, end, y + Units::whole(LANE)]));
         if let Some(picture) = scan.picture {
             let place = [Units(x.0.midpoint(end.0)), y + Units::whole(LANE / 2 + 5)];
-            self.out.text(place, "label", &picture.to_string());
+            self.out.add_line(&caption("label", place).text(picture));
         }
     }
 
     fn arrow(&mut self, arrow: &Arrow) {
-        let from = [self.x(arrow.begin), self.low(arrow.from)];
-        let to = [self.x(arrow.end), self.high(arrow.to)];
         if arrow.from == arrow.to && arrow.begin == arrow.end {
             return;
         }
-        let (from, to) = if to[1] > from[1] { (from, to) } else { self.sideways(arrow) };
-        self.out.segment([from[0], from[1], to[0], to[1]], "arrow");
-    }
-
-    /// Within a row, or upwards between its lanes: at half height.
-    fn sideways(&self, arrow: &Arrow) -> ([Units; 2], [Units; 2]) {
-        let middle = |place| self.high(place) + Units::whole(LANE / 2);
-        ([self.x(arrow.begin), middle(arrow.from)], [self.x(arrow.end), middle(arrow.to)])
+        let mut from = self.low(arrow.from);
+        let mut to = self.high(arrow.to);
+        if to <= from {
+            // Within a row, or upwards between its lanes: at half height.
+            from = self.high(arrow.from) + Units::whole(LANE / 2);
+            to = self.high(arrow.to) + Units::whole(LANE / 2);
+        }
+        self.out.add_line(&segment("arrow", [self.x(arrow.begin), from, self.x(arrow.end), to]));
     }
 
     fn high(&self, place: Place) -> Units {
@@ -245,96 +254,32 @@ impl<'a> Drawing<'a> {
     fn low(&self, place: Place) -> Units {
         self.high(place) + Units::whole(if place == Place::Tracker { TRACKER } else { LANE })
     }
-
-    fn legend(&mut self) {
-        let y = self.beam + LANE + 44;
-        let has = |wanted: &dyn Fn(&Bar) -> bool| self.timeline.rows.iter().flat_map(|row| &row.bars).any(wanted);
-        let stages: Vec<_> = STAGES.iter().filter(|entry| has(&|bar| bar.stage == entry.0)).collect();
-        let (eyes, halves) = (has(&|bar| bar.eye.is_some()), has(&|bar| bar.bottom.is_some()));
-        let mut x = LEFT;
-        for (stage, title) in stages {
-            x = self.swatch(x, y, &format!("{0} {0}-plain other", name(*stage)), title);
-        }
-        x = self.swatch(x, y, "receiving", "port receives");
-        if halves {
-            self.out.text([x, y].map(Units::whole), "key", "t, b: top, bottom half");
-        }
-        self.second_legend(y + 20, eyes);
-    }
-
-    fn second_legend(&mut self, y: i64, eyes: bool) {
-        let mut x = LEFT;
-        if eyes {
-            x = self.swatch(x, y, "left-eye other", "left eye");
-            x = self.swatch(x, y, "right-eye other", "right eye");
-        }
-        if let Some(picture) = self.timeline.picture {
-            x = self.swatch(x, y, "blank chosen", &format!("picture {picture}"));
-        }
-        for (class, title) in [("arrow", "what it waited for"), ("retrace", "retrace"), ("beam", "beam")] {
-            let middle = y - 4;
-            self.out.segment([x, middle, x + 22, middle].map(Units::whole), class);
-            self.out.text([x + 30, y].map(Units::whole), "key", title);
-            x += 30 + width(title) + 18;
-        }
-    }
-
-    fn swatch(&mut self, x: i64, y: i64, class: &str, title: &str) -> i64 {
-        self.out.rectangle([x, y - 12, 22, 15].map(Units::whole), class, "");
-        self.out.text([Units::whole(x + 30), Units::whole(y)], "key", &escape(title));
-        x + 30 + width(title) + 18
-    }
 }
 
-/// About the width of a text: capitals are wider.
-fn width(text: &str) -> i64 {
-    text.chars().map(|c| if c.is_uppercase() { 11 } else { 8 }).sum()
+fn outermost(height: i64) -> Element {
+    let svg = svg::document().with("viewBox", format_args!("0 0 {WIDTH} {height}"));
+    let svg = svg.with("width", WIDTH).with("height", height).with("role", "img");
+    svg.with("font-family", "Helvetica, Arial, 'Liberation Sans', sans-serif").with("font-size", 15)
+}
+
+const fn height_of(row: &Row) -> i64 {
+    LANE * row.lanes as i64
+}
+
+const fn emphasis(chosen: bool) -> &'static str {
+    if chosen { "chosen" } else { "other" }
 }
 
 /// What a viewer shows when the pointer rests on a bar.
-fn about(bar: &Bar) -> String {
-    let ms = |time: Time| format!("{}.{:03}", time.0 / 1_000_000_000, time.0 / 1_000_000 % 1_000);
-    let span = ms(Time::ZERO + (bar.end - bar.begin));
-    format!("{} of {}: {} to {} ms ({span} ms)", letters(bar), bar.picture, ms(bar.begin), ms(bar.end))
+fn about(bar: &Bar, timeline: &Timeline) -> String {
+    let letters = letters(bar, &timeline.surfaces);
+    let begin = milliseconds(bar.begin);
+    let end = milliseconds(bar.end);
+    let span = milliseconds(Time::ZERO + (bar.end - bar.begin));
+    format!("{letters} of {}: {begin} to {end} ms ({span} ms)", bar.picture)
 }
 
-fn style() -> String {
-    let mut text = String::from("<style>");
-    text.push_str(
-        ".page{fill:#fff}.row{fill:#f5f5f5}.blank{fill:#fff}.heading{font-size:17px;font-weight:bold}\
-         .key{font-size:14px}.mid{text-anchor:middle}.name{text-anchor:end}.label{text-anchor:middle;font-weight:bold;paint-order:stroke;\
-         stroke:#fff;stroke-width:3px;stroke-linejoin:round}.sub{font-size:11px}.retrace{stroke:#666;stroke-width:1;\
-         stroke-dasharray:5 3;fill:none}.axis{stroke:#222;fill:none}.other{stroke:#888;stroke-width:.8}\
-         .chosen{stroke:#111;stroke-width:2.4}.sample.other{fill:#999}.sample.chosen{fill:#c00000;stroke-width:1}\
-         .scan.other{fill:#fff}.scan.chosen{fill:#fff3b0}.beam{stroke:#666;stroke-width:1;fill:none}\
-         .receiving{fill:#1b6b2f}.arrow{stroke:#c00000;stroke-width:2;fill:none;marker-end:url(#head)}\
-         .left-eye{fill:#ddd}.right-eye{fill:url(#eye-right)}",
-    );
-    for (stage, _) in STAGES {
-        let (name, colours) = (name(stage), colours(stage));
-        let _ = write!(
-            text,
-            ".{name}-plain{{fill:{}}}.{name}-right{{fill:url(#{name}-hatch)}}.{name}-text{{fill:{}}}",
-            colours.light, colours.dark
-        );
-    }
-    text + "</style>"
-}
-
-fn patterns() -> String {
-    let mut text = String::from(
-        r##"<defs><marker id="head" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="9" markerHeight="9" markerUnits="userSpaceOnUse" orient="auto"><path d="M0 0L10 5L0 10z" fill="#c00000"/></marker>"##,
-    );
-    text.push_str(&hatch("eye-right", "#ddd", "#777"));
-    for (stage, _) in STAGES {
-        let colours = colours(stage);
-        text.push_str(&hatch(&format!("{}-hatch", name(stage)), colours.light, colours.dark));
-    }
-    text + "</defs>"
-}
-
-fn hatch(id: &str, light: &str, dark: &str) -> String {
-    format!(
-        r#"<pattern id="{id}" width="7" height="7" patternUnits="userSpaceOnUse" patternTransform="rotate(45)"><path fill="{light}" d="M0 0h7v7h-7z"/><path fill="{dark}" fill-opacity=".55" d="M0 0h1.6v7h-1.6z"/></pattern>"#
-    )
+/// A time in milliseconds, with three decimals.
+fn milliseconds(time: Time) -> String {
+    format!("{}.{:03}", time.0 / 1_000_000_000, time.0 / 1_000_000 % 1_000)
 }

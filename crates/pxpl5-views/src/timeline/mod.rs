@@ -10,60 +10,45 @@
 //! | host | SEND |
 //! | graphics processors | EDIT and TRANSFORM, from the first board that begins to the last one that ends |
 //! | renderers | RENDER: commands to the renderers, until the last is accepted |
-//! | frame buffer, left and right | COPY, from the first word of the first region to the last pixel of the last; the strip below is dark where the port receives |
-//! | beam | what is scanned out, from the first visible line to the last, and how far down the beam is |
+//! | each surface of the displays (frame buffer, left and right) | COPY, from the first word of the first region to the last pixel of the last; the strip below is dark where the port receives |
+//! | beam | what the first display shows, from its first light of a period to its last, and how far down the beam is |
 //!
 //! Where bars of one row overlap in time, the row has lanes.
 
+mod arrows;
+mod collect;
 mod draw;
+mod legend;
 mod model;
-mod path;
-mod published;
+mod options;
+mod rows;
 mod style;
-mod writer;
 
-pub use model::{Bar, Row, Scan, Timeline};
-pub(crate) use path::Updates;
-pub use path::{Arrow, Place};
-pub use published::{FigureError, PIPELINE_FIGURES, PipelineFigure};
+pub use model::{Arrow, Bar, Place, Row, Scan, Timeline};
+pub use options::{MAX_FIELDS, TimelineOptions};
 
-use crate::experiment::Outcome;
-use crate::report::Report;
-use crate::results::origin_lines;
+use crate::results::{count_of, origin_lines};
+use draw::Words;
+use pxpl5_measure::Report;
+use pxpl5_run::Outcome;
 
-/// What of a run is drawn, and how.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct TimelineOptions {
-    /// The picture whose dependencies are drawn; else the first after the warm-up.
-    pub picture: Option<u64>,
-    /// The first field drawn; else the one in which that picture's pose is sampled.
-    pub first_field: Option<u64>,
-    /// The number of fields drawn, at most [`MAX_FIELDS`]; else until a field after the picture is shown.
-    pub fields: Option<u64>,
-    /// What stands above the drawing.
-    pub title: Option<String>,
-    /// The host's row is left out, and so is the tracker's.
-    pub without_host: bool,
-}
-
-/// More fields than this cannot be told apart at page width.
-pub const MAX_FIELDS: u64 = 16;
-
-fn primitives(report: &Report) -> String {
-    let count = |n: usize, name: &str| format!("{n} {name}{}", if n == 1 { "" } else { "s" });
-    let spheres = (report.spheres > 0).then(|| format!(", {}", count(report.spheres, "sphere")));
-    count(report.triangles, "triangle") + &spheres.unwrap_or_default()
-}
-
-/// Draws a run as an SVG document, 960 units wide; of a run without a picture it shows the first fields.
+/// Draws a run as an SVG document, 960 units wide; of a run without a picture it shows the first periods.
 #[must_use]
 pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
-    let report = outcome.report();
+    let report = Report::of(outcome);
     let subject = format!("{} on {}, {}", report.pipeline, report.machine, report.scene);
-    let words = draw::Words {
+    let words = Words {
         title: options.title.clone().unwrap_or_else(|| subject.clone()),
         subtitle: format!("simulated: {subject}, {}, seed {}", primitives(&report), report.seed),
         origin: origin_lines(&report, ""),
     };
     draw::document(&Timeline::of(outcome, options), &words)
+}
+
+fn primitives(report: &Report) -> String {
+    let triangles = count_of(report.triangles, "triangle");
+    match report.spheres {
+        0 => triangles,
+        spheres => format!("{triangles}, {}", count_of(spheres, "sphere")),
+    }
 }

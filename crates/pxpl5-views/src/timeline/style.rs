@@ -1,13 +1,16 @@
 //! Colours, patterns and labels.
 
 use super::model::Bar;
+use crate::markup::Element;
+use pxpl5_display::Surface;
 use pxpl5_gp::Stage;
-use pxpl5_wire::Eye;
+use pxpl5_wire::SurfaceId;
+use std::fmt::Write;
 
 /// A stage's colours: light, and dark enough for text and hatching on white.
-pub(super) struct Colours {
-    pub(super) light: &'static str,
-    pub(super) dark: &'static str,
+struct Colours {
+    light: &'static str,
+    dark: &'static str,
 }
 
 /// All stages that have bars, with their names.
@@ -20,7 +23,7 @@ pub(super) const STAGES: [(Stage, &str); 5] = [
 ];
 
 /// Hues that stay apart for the common kinds of colour blindness and, by lightness, in grey.
-pub(super) const fn colours(stage: Stage) -> Colours {
+const fn colours(stage: Stage) -> Colours {
     match stage {
         Stage::Send => Colours { light: "#d9d9d9", dark: "#4d4d4d" },
         Stage::Edit => Colours { light: "#f2d0e4", dark: "#8e2a6b" },
@@ -30,7 +33,8 @@ pub(super) const fn colours(stage: Stage) -> Colours {
     }
 }
 
-pub(super) const fn name(stage: Stage) -> &'static str {
+/// The name of a stage in classes of the style sheet.
+pub(super) const fn class_of(stage: Stage) -> &'static str {
     match stage {
         Stage::Send => "send",
         Stage::Edit => "edit",
@@ -42,16 +46,20 @@ pub(super) const fn name(stage: Stage) -> &'static str {
     }
 }
 
-/// The pattern's suffix: right eyes are hatched.
-pub(super) const fn pattern(eye: Option<Eye>) -> &'static str {
-    match eye {
-        Some(Eye::Right) => "right",
-        Some(Eye::Left) | None => "plain",
+/// Suffixes of classes: what is for the first surface, or for all, is plain; the rest is hatched.
+const PLAIN: &str = "plain";
+const HATCHED: &str = "right";
+
+/// The pattern of what is done for a surface, as a suffix of a class.
+pub(super) const fn pattern(surface: Option<SurfaceId>) -> &'static str {
+    match surface {
+        Some(SurfaceId(0)) | None => PLAIN,
+        Some(_) => HATCHED,
     }
 }
 
 /// Letters as in the papers: E, TL, TR, RL, RR, CL, CR; a `t` or `b` for a half that is copied apart.
-pub(super) fn letters(bar: &Bar) -> String {
+pub(super) fn letters(bar: &Bar, surfaces: &[Surface]) -> String {
     let stage = match bar.stage {
         Stage::Send => "S",
         Stage::Edit => "E",
@@ -60,15 +68,56 @@ pub(super) fn letters(bar: &Bar) -> String {
         Stage::Copy => "C",
         Stage::Sample | Stage::Swap => "",
     };
-    let eye = match bar.eye {
-        Some(Eye::Left) => "L",
-        Some(Eye::Right) => "R",
-        None => "",
-    };
-    let half = match bar.bottom {
-        Some(false) => "t",
-        Some(true) => "b",
-        None => "",
-    };
-    format!("{stage}{eye}{half}")
+    let surface = bar.surface.and_then(|id| surfaces.get(id.index())).map(Surface::letter);
+    let half = bar.bottom.map(|bottom| if bottom { 'b' } else { 't' });
+    stage.chars().chain(surface).chain(half).collect()
+}
+
+/// The style sheet.
+pub(super) fn style() -> Element {
+    let mut text = String::from(
+        ".page{fill:#fff}.row{fill:#f5f5f5}.blank{fill:#fff}.heading{font-size:17px;font-weight:bold}\
+         .key{font-size:14px}.mid{text-anchor:middle}.name{text-anchor:end}.label{text-anchor:middle;font-weight:bold;paint-order:stroke;\
+         stroke:#fff;stroke-width:3px;stroke-linejoin:round}.sub{font-size:11px}.retrace{stroke:#666;stroke-width:1;\
+         stroke-dasharray:5 3;fill:none}.axis{stroke:#222;fill:none}.other{stroke:#888;stroke-width:.8}\
+         .chosen{stroke:#111;stroke-width:2.4}.sample.other{fill:#999}.sample.chosen{fill:#c00000;stroke-width:1}\
+         .scan.other{fill:#fff}.scan.chosen{fill:#fff3b0}.beam{stroke:#666;stroke-width:1;fill:none}\
+         .receiving{fill:#1b6b2f}.arrow{stroke:#c00000;stroke-width:2;fill:none;marker-end:url(#head)}\
+         .left-eye{fill:#ddd}.right-eye{fill:url(#eye-right)}",
+    );
+    for (stage, _) in STAGES {
+        let name = class_of(stage);
+        let Colours { light, dark } = colours(stage);
+        let _ = write!(
+            text,
+            ".{name}-{PLAIN}{{fill:{light}}}.{name}-{HATCHED}{{fill:url(#{name}-hatch)}}.{name}-text{{fill:{dark}}}"
+        );
+    }
+    Element::new("style").text(text)
+}
+
+/// The classes of the swatches that explain plain and hatched.
+pub(super) const PLAIN_SURFACE: &str = "left-eye";
+pub(super) const HATCHED_SURFACE: &str = "right-eye";
+
+/// What the style sheet refers to: the arrows' heads and the hatchings.
+pub(super) fn definitions() -> Element {
+    let hatches = STAGES.map(|(stage, _)| hatch(&format!("{}-hatch", class_of(stage)), &colours(stage)));
+    let grey = hatch("eye-right", &Colours { light: "#ddd", dark: "#777" });
+    Element::new("defs").child(&arrow_head()).child(&grey).children(hatches)
+}
+
+fn arrow_head() -> Element {
+    let marker = Element::new("marker").with("id", "head").with("viewBox", "0 0 10 10");
+    let marker = marker.with("refX", 9).with("refY", 5).with("markerWidth", 9).with("markerHeight", 9);
+    let marker = marker.with("markerUnits", "userSpaceOnUse").with("orient", "auto");
+    marker.child(&Element::new("path").with("d", "M0 0L10 5L0 10z").with("fill", "#c00000"))
+}
+
+fn hatch(id: &str, Colours { light, dark }: &Colours) -> Element {
+    let ground = Element::new("path").with("fill", light).with("d", "M0 0h7v7h-7z");
+    let stripe = Element::new("path").with("fill", dark).with("fill-opacity", ".55").with("d", "M0 0h1.6v7h-1.6z");
+    let pattern = Element::new("pattern").with("id", id).with("width", 7).with("height", 7);
+    let pattern = pattern.with("patternUnits", "userSpaceOnUse").with("patternTransform", "rotate(45)");
+    pattern.child(&ground).child(&stripe)
 }

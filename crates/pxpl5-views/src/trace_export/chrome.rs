@@ -1,6 +1,6 @@
 //! Chrome's trace event format (JSON).
 
-use super::{Events, Slice, Step, Trace, Track};
+use super::model::{Events, Slice, Step, Trace, Track};
 use pxpl5_sim::Time;
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
@@ -51,12 +51,13 @@ fn events(number: usize, track: &Track) -> Vec<String> {
             instants.iter().map(|(time, name)| event(&place, "i", *time, name, r#","s":"p""#)).collect()
         }
         Events::Counter(values) => {
-            let counter = |(time, value): &(Time, i64)| {
-                event(&place, "C", *time, &track.name, &format!(r#","args":{{"value":{value}}}"#))
-            };
-            values.iter().map(counter).collect()
+            values.iter().map(|(time, value)| counter_event(&place, *time, &track.name, *value)).collect()
         }
     }
+}
+
+fn counter_event(place: &str, time: Time, name: &str, value: i64) -> String {
+    event(place, "C", time, name, &format!(r#","args":{{"value":{value}}}"#))
 }
 
 fn slice_events(place: &str, slice: &Slice) -> Vec<String> {

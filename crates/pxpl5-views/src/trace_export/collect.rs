@@ -1,31 +1,39 @@
 //! Tracks from what was observed.
 
 use super::flows::connect;
-use super::{Events, Slice, Trace, Track};
-use crate::experiment::Outcome;
-use crate::pipelines::PictureTimes;
+use super::groups::{Group, groups, named};
+use super::model::{Events, Slice, Trace, Track};
+use super::slices::{apart, message_slice, region_slice, stage_name, stage_slice};
 use crate::results::origin;
-use crate::traffic::{Traffic, Transfer};
-use pxpl5_gp::{Edge, Stage};
+use pxpl5_display::Display;
+use pxpl5_gp::{Edge, Mark, Stage};
+use pxpl5_machine::{Record, Traffic};
+use pxpl5_measure::Report;
+use pxpl5_run::{Outcome, PictureTimes};
 use pxpl5_sim::Time;
-use pxpl5_wire::{Eye, MAX_MESSAGE_WORDS, NodeId};
+use pxpl5_wire::{NodeId, SurfaceId};
 use std::collections::BTreeMap;
 
 impl Trace {
     /// Collects the tracks of a run.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
-        let mut trace = Self { origin: origin(&outcome.report()), groups: Vec::new(), tracks: Vec::new() };
+        let mut trace = Self { origin: origin(&Report::of(outcome)), groups: Vec::new(), tracks: Vec::new() };
         let traffic = outcome.observation().traffic.as_deref();
-        for (node, name) in boards(outcome) {
-            let group = trace.group(name);
-            trace.stages(outcome, group, node);
-            trace.messages(outcome, traffic, group, node);
-            trace.fifo(outcome, traffic, group, node);
-            trace.regions(outcome, group, node);
+        let groups = groups(outcome.record());
+        for group in &groups {
+            let index = trace.group(group.name.clone());
+            if let Some(node) = group.node {
+                trace.port(outcome, &groups, index, node);
+            }
+            if let Some(surface) = group.surface {
+                trace.regions(outcome, index, surface);
+            }
         }
-        trace.ring(traffic);
-        trace.video(outcome);
+        if let Some(traffic) = traffic {
+            trace.ring(traffic);
+        }
+        trace.videos(outcome);
         connect(&mut trace, outcome);
         trace.tracks.retain(|track| !track.is_empty());
         trace
@@ -40,150 +48,117 @@ impl Trace {
         self.tracks.push(Track { group, name: name.to_owned(), events });
     }
 
+    /// What a board does, and what comes and goes at its port.
+    fn port(&mut self, outcome: &Outcome, groups: &[Group], group: usize, node: NodeId) {
+        self.stages(outcome, group, node);
+        let Some(traffic) = outcome.observation().traffic.as_deref() else { return };
+        self.messages(traffic, groups, group, node);
+        self.fifo(outcome.record(), traffic, group, node);
+    }
+
     /// The stages that a board marked; one without an end is left out.
     fn stages(&mut self, outcome: &Outcome, group: usize, node: NodeId) {
-        let mut begun: BTreeMap<(Stage, u64, Option<Eye>), Time> = BTreeMap::new();
+        let mut begun: BTreeMap<(Stage, u64, Option<SurfaceId>), Time> = BTreeMap::new();
         let mut slices: BTreeMap<Stage, Vec<Slice>> = BTreeMap::new();
         for mark in outcome.observation().marks.iter().filter(|mark| mark.node == node) {
-            let key = (mark.stage, mark.picture, mark.eye);
+            let key = (mark.stage, mark.picture, mark.surface);
             match mark.edge {
                 Edge::Begin => drop(begun.insert(key, mark.time)),
                 Edge::End => {
-                    let slice = begun.remove(&key).map(|begin| stage_slice(key, begin, mark.time));
+                    let slice = begun.remove(&key).map(|begin| ended(outcome.record(), mark, begin));
                     slices.entry(mark.stage).or_default().extend(slice);
                 }
             }
         }
         for (stage, slices) in slices {
-            self.track(group, stage_name(stage), Events::Slices(apart(slices)));
+            self.track(group, stage_name(stage), Events::Slices(apart(slices.into_iter())));
         }
     }
 
-    fn messages(&mut self, outcome: &Outcome, traffic: Option<&Traffic>, group: usize, node: NodeId) {
-        let Some(traffic) = traffic else { return };
-        let names: BTreeMap<NodeId, String> = boards(outcome).into_iter().collect();
-        let name = |node| names.get(&node).cloned().unwrap_or_default();
+    fn messages(&mut self, traffic: &Traffic, groups: &[Group], group: usize, node: NodeId) {
         let into = traffic.transfers.iter().filter(|transfer| transfer.destination == node);
-        let slices = into.map(|t| message_slice(t, format!("{} words from {}", t.words, name(t.source))));
-        self.track(group, "messages in", Events::Slices(apart(slices.collect())));
+        let slices = into.map(|t| message_slice(t, &format!("from {}", name_of(groups, t.source))));
+        self.track(group, "messages in", Events::Slices(apart(slices)));
         let out = traffic.transfers.iter().filter(|transfer| transfer.source == node);
-        let slices = out.map(|t| message_slice(t, format!("{} words to {}", t.words, name(t.destination))));
-        self.track(group, "messages out", Events::Slices(apart(slices.collect())));
+        let slices = out.map(|t| message_slice(t, &format!("to {}", name_of(groups, t.destination))));
+        self.track(group, "messages out", Events::Slices(apart(slices)));
     }
 
-    fn fifo(&mut self, outcome: &Outcome, traffic: Option<&Traffic>, group: usize, node: NodeId) {
-        let renderer = outcome.machine().ports().renderers.binary_search(&node);
-        if let (Some(traffic), Ok(renderer)) = (traffic, renderer) {
-            self.track(
-                group,
-                &format!("FIFO words of renderer {renderer}"),
-                Events::Counter(traffic.fifo_words(renderer)),
-            );
+    fn fifo(&mut self, record: &Record, traffic: &Traffic, group: usize, node: NodeId) {
+        if let Ok(renderer) = record.ports().renderers.binary_search(&node) {
+            let name = format!("FIFO words of renderer {renderer}");
+            self.track(group, &name, Events::Counter(traffic.fifo_words(renderer)));
         }
     }
 
-    fn regions(&mut self, outcome: &Outcome, group: usize, node: NodeId) {
-        let Ok(board) = outcome.machine().ports().frame_buffers.binary_search(&node) else { return };
-        let message = outcome.machine().ring().timing().occupancy(MAX_MESSAGE_WORDS);
-        let arrivals = outcome.observation().arrivals.iter().filter(|arrival| arrival.board == board);
-        let slices = arrivals.map(|arrival| Slice {
-            name: format!("COPY region {}", arrival.target.region.0),
-            begin: arrival.begins_at(message),
-            end: arrival.last_part_at,
-            picture: Some(arrival.target.picture),
-            flow: None,
-        });
-        self.track(group, "COPY", Events::Slices(apart(slices.collect())));
-        let video = outcome.machine().video();
-        let swaps = outcome.observation().swaps.iter().filter(|swap| swap.board == board);
-        let swaps = swaps.map(|swap| (video.retrace(swap.field), "swap".to_owned()));
+    /// What arrives for a surface, and its swaps.
+    fn regions(&mut self, outcome: &Outcome, group: usize, surface: SurfaceId) {
+        let record = outcome.record();
+        let message = record.message_span();
+        let arrivals = outcome.observation().arrivals.iter().filter(|arrival| arrival.surface == surface);
+        let slices = arrivals.map(|arrival| region_slice(arrival, message));
+        self.track(group, "COPY", Events::Slices(apart(slices)));
+        let Some(display) = display_of(record, surface) else { return };
+        let swaps = outcome.observation().swaps_of(surface).map(|tick| (display.tick(tick), "swap".to_owned()));
         self.track(group, "swaps", Events::Instants(swaps.collect()));
     }
 
-    fn ring(&mut self, traffic: Option<&Traffic>) {
-        let Some(traffic) = traffic else { return };
+    fn ring(&mut self, traffic: &Traffic) {
         let group = self.group("ring".to_owned());
         let values = traffic.busy_channels.iter().map(|(time, busy)| (*time, i64::from(*busy)));
         self.track(group, "busy channels", Events::Counter(values.collect()));
     }
 
-    fn video(&mut self, outcome: &Outcome) {
-        let (video, fields) = (outcome.machine().video(), outcome.fields());
-        let group = self.group("video".to_owned());
-        let retraces = (0..=fields).map(|field| (video.retrace(field), format!("retrace {field}")));
+    /// What the displays show; pictures are drawn for the first.
+    fn videos(&mut self, outcome: &Outcome) {
+        let record = outcome.record();
+        for (i, display) in record.displays().iter().enumerate() {
+            let pictures = if i == 0 { outcome.pictures() } else { &[] };
+            let group = self.group(named(record, "video", display.as_ref()));
+            self.video(group, display.as_ref(), pictures, display.period_at(outcome.end()));
+        }
+    }
+
+    fn video(&mut self, group: usize, display: &dyn Display, pictures: &[PictureTimes], periods: u64) {
+        let retraces = (0..=periods).map(|n| (display.tick(n), format!("retrace {n}")));
         self.track(group, "retraces", Events::Instants(retraces.collect()));
-        let slices = (0..fields).map(|field| {
-            let begin = video.retrace(field);
-            let shown = shown(outcome.pictures(), begin);
-            let name = shown.map_or_else(|| format!("field {field}"), |p| format!("field {field}: picture {p}"));
-            Slice { name, begin, end: video.retrace(field + 1), picture: shown, flow: None }
-        });
+        let slices = (0..periods).map(|period| period_slice(display, pictures, period));
         self.track(group, "displayed", Events::Slices(slices.collect()));
     }
 }
 
-impl Track {
-    fn is_empty(&self) -> bool {
-        match &self.events {
-            Events::Slices(slices) => slices.is_empty(),
-            Events::Instants(instants) => instants.is_empty(),
-            Events::Counter(values) => values.is_empty(),
-        }
-    }
+/// A stage that has come to its end.
+fn ended(record: &Record, mark: &Mark, begin: Time) -> Slice {
+    let surface = mark.surface.and_then(|id| record.surface(id));
+    stage_slice(mark.stage, mark.picture, surface.map(|surface| surface.label), [begin, mark.time])
 }
 
-/// The picture that is shown in the field that begins at a retrace.
+/// The name of the board at a port.
+fn name_of(groups: &[Group], node: NodeId) -> &str {
+    groups.iter().find(|group| group.node == Some(node)).map_or("", |group| &group.name)
+}
+
+/// The display that has a surface.
+fn display_of(record: &Record, surface: SurfaceId) -> Option<&dyn Display> {
+    let mut first = 0;
+    for display in record.displays() {
+        first += display.surfaces().len();
+        if surface.index() < first {
+            return Some(display.as_ref());
+        }
+    }
+    None
+}
+
+fn period_slice(display: &dyn Display, pictures: &[PictureTimes], period: u64) -> Slice {
+    let begin = display.tick(period);
+    let picture = shown(pictures, begin);
+    let shown = picture.map_or_else(String::new, |picture| format!(": picture {picture}"));
+    Slice { name: format!("field {period}{shown}"), begin, end: display.tick(period + 1), picture, flow: None }
+}
+
+/// The picture that is shown in the period that begins at a retrace.
 fn shown(pictures: &[PictureTimes], retrace: Time) -> Option<u64> {
     let after = pictures.partition_point(|times| times.shown_at <= retrace);
     after.checked_sub(1).map(|last| pictures[last].picture)
-}
-
-fn boards(outcome: &Outcome) -> Vec<(NodeId, String)> {
-    let ports = outcome.machine().ports();
-    let numbered = |nodes: &[NodeId], name: &str| -> Vec<(NodeId, String)> {
-        nodes.iter().enumerate().map(|(i, node)| (*node, format!("{name} {i}"))).collect()
-    };
-    let mut all = vec![(ports.host, "host".to_owned())];
-    all.extend(numbered(&ports.gps, "GP"));
-    all.extend(numbered(&ports.renderers, "renderer"));
-    let sides = if ports.frame_buffers.len() == 1 { ["", ""] } else { ["left ", "right "] };
-    all.extend(ports.frame_buffers.iter().zip(sides).map(|(node, side)| (*node, format!("{side}frame buffer"))));
-    all
-}
-
-pub(super) const fn stage_name(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Sample => "SAMPLE",
-        Stage::Send => "SEND",
-        Stage::Edit => "EDIT",
-        Stage::Transform => "TRANSFORM",
-        Stage::Render => "RENDER",
-        Stage::Copy => "COPY",
-        Stage::Swap => "SWAP",
-    }
-}
-
-fn stage_slice((stage, picture, eye): (Stage, u64, Option<Eye>), begin: Time, end: Time) -> Slice {
-    let eye = match eye {
-        Some(Eye::Left) => " left",
-        Some(Eye::Right) => " right",
-        None => "",
-    };
-    let name = format!("{} {picture}{eye}", stage_name(stage));
-    Slice { name, begin, end, picture: Some(picture), flow: None }
-}
-
-fn message_slice(transfer: &Transfer, name: String) -> Slice {
-    Slice { name, begin: transfer.begin, end: transfer.end, picture: None, flow: None }
-}
-
-/// In order of time, each from the end of the one before at the earliest.
-fn apart(mut slices: Vec<Slice>) -> Vec<Slice> {
-    slices.sort_by_key(|slice| (slice.end, slice.begin));
-    let mut free_at = Time::ZERO;
-    for slice in &mut slices {
-        slice.begin = slice.begin.max(free_at).min(slice.end);
-        free_at = slice.end;
-    }
-    slices
 }

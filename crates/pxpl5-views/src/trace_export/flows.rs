@@ -1,80 +1,86 @@
-//! The way of each picture from SEND to the first field that shows it.
+//! The way of each picture from SEND to the first period that shows it.
 
-use super::collect::stage_name;
-use super::{Events, Flow, Slice, Step, Trace};
-use crate::experiment::Outcome;
-use crate::timeline::Updates;
+use super::model::{Events, Flow, Slice, Step, Trace};
+use super::slices::stage_name;
+use crate::updates::Updates;
 use pxpl5_gp::Stage;
+use pxpl5_run::Outcome;
 use pxpl5_sim::Time;
 use std::collections::BTreeMap;
 
-/// A slice by track and place.
-type Place = (usize, usize);
+/// A slice: when it begins, the track and its place in it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Stop {
+    begin: Time,
+    track: usize,
+    place: usize,
+}
 
 /// Gives slices their places in the flows of the pictures that were shown.
 pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
     let updates = Updates::of(outcome, &outcome.stages());
     let sends = firsts(trace, &[Stage::Send]);
     let stages = firsts(trace, &[Stage::Transform, Stage::Render, Stage::Copy]);
-    let fields = shown(trace);
+    let shown = first_shown(trace);
     for times in outcome.pictures() {
         let sent = updates.shown_by(times).and_then(|update| sends.get(&update));
         let worked = stages.get(&times.picture);
-        let steps = sent.into_iter().chain(worked).flatten().copied();
-        let mut way: Vec<(Time, Place)> = steps.filter(|(begin, _)| *begin <= times.shown_at).collect();
-        way.extend(fields.get(&times.picture));
+        let stops = sent.into_iter().chain(worked).flatten().copied();
+        let mut way: Vec<Stop> = stops.filter(|stop| stop.begin <= times.shown_at).collect();
+        way.extend(shown.get(&times.picture));
         way.sort_unstable();
         mark(trace, times.picture + 1, &way);
     }
 }
 
-/// By picture: the first slices of the stages, one for each name, so that each eye has its own.
-fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<u64, Vec<(Time, Place)>> {
-    let mut all: BTreeMap<(u64, String), (Time, Place)> = BTreeMap::new();
-    for (track, name, place, slice) in slices(trace) {
-        let (Some(picture), true) = (slice.picture, stages.iter().any(|stage| stage_name(*stage) == name)) else {
-            continue;
-        };
-        // Regions have names of their own: the first of each frame buffer counts.
-        let key = if name == "COPY" { format!("COPY {track}") } else { slice.name.clone() };
-        let entry = all.entry((picture, key)).or_insert((slice.begin, (track, place)));
-        *entry = (*entry).min((slice.begin, (track, place)));
+/// By picture: the first slices of the stages, one for each name, so that each surface has its own.
+fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<u64, Vec<Stop>> {
+    let mut all: BTreeMap<(u64, String), Stop> = BTreeMap::new();
+    let names: Vec<&str> = stages.iter().map(|stage| stage_name(*stage)).collect();
+    for (stop, track, slice) in stops(trace).filter(|(_, track, _)| names.contains(track)) {
+        let Some(picture) = slice.picture else { continue };
+        // Regions have names of their own: the first of each surface counts.
+        let name = if track == "COPY" { format!("COPY {}", stop.track) } else { slice.name.clone() };
+        let first = all.entry((picture, name)).or_insert(stop);
+        *first = stop.min(*first);
     }
-    let mut pictures: BTreeMap<u64, Vec<(Time, Place)>> = BTreeMap::new();
+    let mut pictures: BTreeMap<u64, Vec<Stop>> = BTreeMap::new();
     for ((picture, _), first) in all {
         pictures.entry(picture).or_default().push(first);
     }
     pictures
 }
 
-fn slices(trace: &Trace) -> impl Iterator<Item = (usize, &str, usize, &Slice)> {
-    trace.tracks.iter().enumerate().flat_map(|(number, track)| {
-        let slices = if let Events::Slices(slices) = &track.events { &slices[..] } else { &[] };
-        slices.iter().enumerate().map(move |(place, slice)| (number, track.name.as_str(), place, slice))
+/// All slices, each with its place and the name of its track.
+fn stops(trace: &Trace) -> impl Iterator<Item = (Stop, &str, &Slice)> {
+    trace.tracks.iter().enumerate().flat_map(|(track, it)| {
+        let slices = if let Events::Slices(slices) = &it.events { &slices[..] } else { &[] };
+        let stops = slices.iter().enumerate();
+        stops.map(move |(place, slice)| (Stop { begin: slice.begin, track, place }, it.name.as_str(), slice))
     })
 }
 
-/// The first field that shows each picture.
-fn shown(trace: &Trace) -> BTreeMap<u64, (Time, Place)> {
-    let mut fields = BTreeMap::new();
-    for (track, _, place, slice) in slices(trace).filter(|(_, name, ..)| *name == "displayed") {
+/// The first period that shows each picture.
+fn first_shown(trace: &Trace) -> BTreeMap<u64, Stop> {
+    let mut periods = BTreeMap::new();
+    for (stop, _, slice) in stops(trace).filter(|(_, track, _)| *track == "displayed") {
         if let Some(picture) = slice.picture {
-            fields.entry(picture).or_insert((slice.begin, (track, place)));
+            periods.entry(picture).or_insert(stop);
         }
     }
-    fields
+    periods
 }
 
-fn mark(trace: &mut Trace, id: u64, way: &[(Time, Place)]) {
-    for (i, (_, (track, place))) in way.iter().enumerate() {
+fn mark(trace: &mut Trace, id: u64, way: &[Stop]) {
+    for (i, stop) in way.iter().enumerate() {
         let step = match i {
             0 => Step::First,
             _ if i + 1 == way.len() => Step::Last,
             _ => Step::Middle,
         };
-        if let Events::Slices(slices) = &mut trace.tracks[*track].events {
+        if let Events::Slices(slices) = &mut trace.tracks[stop.track].events {
             // An update that two pictures show begins the flow of the first.
-            slices[*place].flow.get_or_insert(Flow { id, step });
+            slices[stop.place].flow.get_or_insert(Flow { id, step });
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The Perfetto trace format.
 
+use super::model::{Events, Slice, Step, Trace, Track};
 use super::protobuf::Message;
-use super::{Events, Slice, Step, Trace, Track};
 use pxpl5_sim::Time;
 use std::io::{self, Write};
 
@@ -52,8 +52,9 @@ pub fn perfetto(trace: &Trace, mut out: impl Write) -> io::Result<()> {
     for packet in descriptors(trace) {
         write(&mut out, packet)?;
     }
+    let tracks = trace.tracks.iter().enumerate();
     let mut events: Vec<(u64, Message)> =
-        trace.tracks.iter().enumerate().flat_map(|(i, track)| events(trace, i, track)).collect();
+        tracks.flat_map(|(i, track)| events(track_uuid(trace, i), &track.events)).collect();
     events.push((0, origin(trace)));
     // The sort is stable: on a track, an end stays before a begin of the same time.
     events.sort_by_key(|event| event.0);
@@ -83,45 +84,67 @@ fn track_uuid(trace: &Trace, track: usize) -> u64 {
 }
 
 fn descriptors(trace: &Trace) -> Vec<Message> {
-    let groups = trace.groups.iter().enumerate().map(|(i, name)| {
-        let group = Message::default().number(DESCRIPTOR_UUID, group_uuid(i)).text(DESCRIPTOR_NAME, name);
-        group.number(DESCRIPTOR_CHILD_ORDERING, ORDERING_EXPLICIT).number(DESCRIPTOR_RANK, i as u64)
-    });
-    let tracks = trace.tracks.iter().enumerate().map(|(i, track)| {
-        let descriptor = Message::default()
-            .number(DESCRIPTOR_UUID, track_uuid(trace, i))
-            .text(DESCRIPTOR_NAME, &track.name)
-            .number(DESCRIPTOR_PARENT, group_uuid(track.group))
-            .number(DESCRIPTOR_RANK, i as u64);
-        let Events::Counter(_) = track.events else { return descriptor };
-        descriptor.message(DESCRIPTOR_COUNTER, &Message::default().number(COUNTER_UNIT, UNIT_COUNT))
-    });
-    let packet = |(i, descriptor)| {
-        let packet = Message::default().message(PACKET_TRACK_DESCRIPTOR, &descriptor);
-        if i == 0 { packet.number(PACKET_SEQUENCE_FLAGS, INCREMENTAL_STATE_CLEARED) } else { packet }
-    };
-    groups.chain(tracks).enumerate().map(packet).collect()
+    let groups = trace.groups.iter().enumerate().map(|(i, name)| group_descriptor(i, name));
+    let tracks = trace.tracks.iter().enumerate().map(|(i, track)| track_descriptor(trace, i, track));
+    let mut packets: Vec<Message> = groups
+        .chain(tracks)
+        .map(|descriptor| Message::default().message(PACKET_TRACK_DESCRIPTOR, &descriptor))
+        .collect();
+    if let Some(first) = packets.first_mut() {
+        *first = std::mem::take(first).number(PACKET_SEQUENCE_FLAGS, INCREMENTAL_STATE_CLEARED);
+    }
+    packets
 }
 
-fn events(trace: &Trace, number: usize, track: &Track) -> Vec<(u64, Message)> {
-    let event = |kind| Message::default().number(EVENT_TYPE, kind).number(EVENT_TRACK, track_uuid(trace, number));
-    match &track.events {
-        Events::Slices(slices) => slices
-            .iter()
-            .flat_map(|slice| [(ns(slice.begin), begin(event(SLICE_BEGIN), slice)), (ns(slice.end), event(SLICE_END))])
-            .collect(),
-        Events::Instants(instants) => {
-            instants.iter().map(|(time, name)| (ns(*time), event(INSTANT).text(EVENT_NAME, name))).collect()
+fn group_descriptor(group: usize, name: &str) -> Message {
+    Message::default()
+        .number(DESCRIPTOR_UUID, group_uuid(group))
+        .text(DESCRIPTOR_NAME, name)
+        .number(DESCRIPTOR_CHILD_ORDERING, ORDERING_EXPLICIT)
+        .number(DESCRIPTOR_RANK, group as u64)
+}
+
+fn track_descriptor(trace: &Trace, number: usize, track: &Track) -> Message {
+    let descriptor = Message::default()
+        .number(DESCRIPTOR_UUID, track_uuid(trace, number))
+        .text(DESCRIPTOR_NAME, &track.name)
+        .number(DESCRIPTOR_PARENT, group_uuid(track.group))
+        .number(DESCRIPTOR_RANK, number as u64);
+    match track.events {
+        Events::Counter(_) => {
+            descriptor.message(DESCRIPTOR_COUNTER, &Message::default().number(COUNTER_UNIT, UNIT_COUNT))
         }
-        Events::Counter(values) => {
-            let value = |value: i64| event(COUNTER).number(EVENT_COUNTER_VALUE, value.cast_unsigned());
-            values.iter().map(|(time, v)| (ns(*time), value(*v))).collect()
-        }
+        Events::Slices(_) | Events::Instants(_) => descriptor,
     }
 }
 
-fn begin(event: Message, slice: &Slice) -> Message {
-    let mut event = event.text(EVENT_NAME, &slice.name);
+/// An event of a kind on the track with a number.
+fn event(kind: u64, track: u64) -> Message {
+    Message::default().number(EVENT_TYPE, kind).number(EVENT_TRACK, track)
+}
+
+/// The events of a track, each with its time.
+fn events(track: u64, events: &Events) -> Vec<(u64, Message)> {
+    match events {
+        Events::Slices(slices) => slices.iter().flat_map(|slice| ends(track, slice)).collect(),
+        Events::Instants(instants) => {
+            instants.iter().map(|(time, name)| (ns(*time), event(INSTANT, track).text(EVENT_NAME, name))).collect()
+        }
+        Events::Counter(values) => values.iter().map(|(time, value)| (ns(*time), counted(track, *value))).collect(),
+    }
+}
+
+fn counted(track: u64, value: i64) -> Message {
+    event(COUNTER, track).number(EVENT_COUNTER_VALUE, value.cast_unsigned())
+}
+
+/// Begin and end of a slice.
+fn ends(track: u64, slice: &Slice) -> [(u64, Message); 2] {
+    [(ns(slice.begin), begin(track, slice)), (ns(slice.end), event(SLICE_END, track))]
+}
+
+fn begin(track: u64, slice: &Slice) -> Message {
+    let mut event = event(SLICE_BEGIN, track).text(EVENT_NAME, &slice.name);
     if let Some(flow) = slice.flow {
         let field = if flow.step == Step::Last { EVENT_LAST_FLOW } else { EVENT_FLOW };
         event = event.fixed64(field, flow.id);
@@ -133,7 +156,7 @@ fn begin(event: Message, slice: &Slice) -> Message {
 
 /// An instant at time zero that carries what the trace can be made again from; on the last group's own track.
 fn origin(trace: &Trace) -> Message {
-    let event = Message::default().number(EVENT_TYPE, INSTANT).number(EVENT_TRACK, group_uuid(trace.groups.len() - 1));
+    let event = event(INSTANT, group_uuid(trace.groups.len() - 1));
     trace.origin.iter().fold(event.text(EVENT_NAME, "origin"), |event, (key, value)| {
         event.message(EVENT_ANNOTATION, &Message::default().text(ANNOTATION_NAME, key).text(ANNOTATION_TEXT, value))
     })

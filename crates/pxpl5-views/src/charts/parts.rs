@@ -1,0 +1,112 @@
+//! Where latency goes.
+
+use crate::markup::Element;
+use crate::svg::{Tenths, anchored, hint};
+
+/// Width and height of the chart in its own units, and what stands left and right of the bar.
+const WIDTH: f64 = 640.0;
+const HEIGHT: f64 = 76.0;
+const MARGIN: f64 = 4.0;
+
+/// A part of the latency of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeanPart {
+    /// Name, as in [`LATENCY_PARTS`](pxpl5_measure::LATENCY_PARTS).
+    pub name: String,
+    /// Mean over all pictures, milliseconds.
+    pub mean_ms: f64,
+    /// Whether it belongs to the latency that the papers state.
+    pub published: bool,
+}
+
+/// Colours of the parts of latency, waiting in grey.
+pub(crate) fn colour_of_part(name: &str) -> &'static str {
+    match name {
+        "send" => "#7f7f7f",
+        "edit" => "#8e2a6b",
+        "transform" | "last_transform" => "#4a90d0",
+        "render" => "#e8973a",
+        "copy" => "#3d9a52",
+        "scan" => "#c9b400",
+        _ => "#d8d8d8",
+    }
+}
+
+/// The mean parts of latency as one bar, as SVG to stand in a page; what the papers count is framed. Nothing when they do
+/// not add up to a time.
+#[must_use]
+pub fn part_bar(parts: &[MeanPart]) -> String {
+    part_bar_element(parts).map_or_else(String::new, |svg| svg.to_string())
+}
+
+pub(crate) fn part_bar_element(parts: &[MeanPart]) -> Option<Element> {
+    let all_ms: f64 = parts.iter().map(|part| part.mean_ms).sum();
+    if !(all_ms.is_finite() && all_ms > 0.0) {
+        return None;
+    }
+    let scale = (WIDTH - 2.0 * MARGIN) / all_ms;
+    let mut svg = Element::new("svg").with("class", "chart").with("viewBox", format_args!("0 0 {WIDTH} {HEIGHT}"));
+    svg = svg.with("role", "img").child(&hint("Parts of latency"));
+    let mut frame = Frame { from: f64::MAX, to: 0.0 };
+    let mut x = MARGIN;
+    for part in parts {
+        let width = scale * part.mean_ms;
+        svg.add(&piece(part, x, width));
+        if part.published {
+            frame.include(x, x + width);
+        }
+        x += width;
+    }
+    svg.add(&frame.drawn());
+    svg.add(&Element::new("text").with("x", MARGIN).with("y", 68).text(0));
+    Some(svg.child(&anchored(Tenths(x), 68, "end").text(format_args!("{all_ms:.1} ms"))))
+}
+
+fn piece(part: &MeanPart, x: f64, width: f64) -> Element {
+    let piece = Element::new("rect").with("x", Tenths(x)).with("y", 14).with("width", Tenths(width));
+    let piece = piece.with("height", 34).with("fill", colour_of_part(&part.name));
+    piece.child(&hint(format_args!("{}: {:.3} ms", part.name, part.mean_ms)))
+}
+
+/// What lies between the left edge of the first published part and the right edge of the last.
+struct Frame {
+    from: f64,
+    to: f64,
+}
+
+impl Frame {
+    fn include(&mut self, from: f64, to: f64) {
+        self.from = self.from.min(from);
+        self.to = self.to.max(to);
+    }
+
+    /// Of no width where nothing is published.
+    fn drawn(&self) -> Element {
+        let width = (self.to - self.from).max(0.0);
+        let frame = Element::new("rect").with("x", Tenths(self.from.min(WIDTH))).with("y", 11);
+        let frame = frame.with("width", Tenths(width)).with("height", 40).with("fill", "none");
+        frame.with("stroke", "#111").with("stroke-width", 2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(name: &str, mean_ms: f64, published: bool) -> MeanPart {
+        MeanPart { name: name.to_owned(), mean_ms, published }
+    }
+
+    #[test]
+    fn no_parts_give_no_chart() {
+        assert_eq!(part_bar(&[]), "");
+        assert_eq!(part_bar(&[part("send", f64::NAN, false)]), "");
+    }
+
+    #[test]
+    fn the_frame_lies_around_what_is_published() {
+        let svg = part_bar(&[part("send", 1.0, false), part("copy", 2.0, true), part("scan", 1.0, false)]);
+        // 632 units for 4 ms, from 4 on.
+        assert!(svg.contains(r#"<rect x="162.0" y="11" width="316.0""#), "{svg}");
+    }
+}

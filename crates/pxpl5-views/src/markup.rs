@@ -1,0 +1,138 @@
+//! Elements, attributes and text of SVG and HTML: the only writer of markup, and the only escaper.
+
+use std::fmt::{self, Display, Write};
+
+/// An element: its name, its attributes, and what stands in it.
+#[derive(Clone, Debug)]
+pub(crate) struct Element {
+    name: &'static str,
+    attributes: String,
+    /// `None` for one that is closed where it is opened.
+    content: Option<String>,
+}
+
+impl Element {
+    pub(crate) const fn new(name: &'static str) -> Self {
+        Self { name, attributes: String::new(), content: None }
+    }
+
+    /// With one more attribute.
+    pub(crate) fn with(mut self, attribute: &str, value: impl Display) -> Self {
+        // Adding text to a string cannot fail.
+        let _ = write!(self.attributes, " {attribute}=\"{}\"", escape(&value.to_string()));
+        self
+    }
+
+    /// With text behind what stands in it already; with empty text it is still closed by a tag of its own.
+    pub(crate) fn text(mut self, text: impl Display) -> Self {
+        self.content().push_str(&escape(&text.to_string()));
+        self
+    }
+
+    /// With one more element in it.
+    pub(crate) fn child(mut self, child: &Self) -> Self {
+        self.add(child);
+        self
+    }
+
+    /// With more elements in it.
+    pub(crate) fn children(mut self, children: impl IntoIterator<Item = Self>) -> Self {
+        children.into_iter().for_each(|child| self.add(&child));
+        self
+    }
+
+    /// Puts one more element into it.
+    pub(crate) fn add(&mut self, child: &Self) {
+        let _ = write!(self.content(), "{child}");
+    }
+
+    /// The same, and a line feed behind it.
+    pub(crate) fn add_line(&mut self, child: &Self) {
+        self.add(child);
+        self.end_line();
+    }
+
+    /// Puts a line feed into it.
+    pub(crate) fn end_line(&mut self) {
+        self.content().push('\n');
+    }
+
+    fn content(&mut self) -> &mut String {
+        self.content.get_or_insert_default()
+    }
+}
+
+impl Display for Element {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, attributes, content } = self;
+        match content {
+            Some(content) => write!(f, "<{name}{attributes}>{content}</{name}>"),
+            None => write!(f, "<{name}{attributes}/>"),
+        }
+    }
+}
+
+/// Text as content or as the value of an attribute. What no XML document may hold is left out.
+fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars().filter(|c| is_allowed(*c)) {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+const fn is_allowed(c: char) -> bool {
+    matches!(c, '\n' | '\t') || !(c.is_ascii_control() || matches!(c, '\u{80}'..='\u{9f}' | '\u{fffe}' | '\u{ffff}'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn markup_in_a_title_is_text() {
+        assert_eq!(escape("a<b>&\"c\"\u{7}"), "a&lt;b&gt;&amp;&quot;c&quot;");
+    }
+
+    #[test]
+    fn lines_stay_lines_and_what_xml_forbids_is_left_out() {
+        assert_eq!(escape("one\r\n\ttwo\u{0}\u{85}\u{ffff}"), "one\n\ttwo");
+    }
+
+    #[test]
+    fn attributes_stand_in_the_order_in_which_they_are_given() {
+        let element = Element::new("rect").with("y", 2).with("x", 1);
+        assert_eq!(element.to_string(), r#"<rect y="2" x="1"/>"#);
+    }
+
+    #[test]
+    fn an_attribute_cannot_be_left_by_a_quote() {
+        let element = Element::new("a").with("b", r#"" onload="x"#);
+        assert_eq!(element.to_string(), r#"<a b="&quot; onload=&quot;x"/>"#);
+    }
+
+    #[test]
+    fn elements_in_an_element_are_not_escaped_again_but_their_text_is() {
+        let inner = Element::new("title").text("a & b");
+        assert_eq!(Element::new("g").child(&inner).to_string(), "<g><title>a &amp; b</title></g>");
+    }
+
+    #[test]
+    fn empty_text_keeps_the_closing_tag() {
+        assert_eq!(Element::new("td").text("").to_string(), "<td></td>");
+    }
+
+    #[test]
+    fn a_line_feed_stands_where_it_was_put() {
+        let mut element = Element::new("svg");
+        element.end_line();
+        element.add_line(&Element::new("rect"));
+        assert_eq!(element.to_string(), "<svg>\n<rect/>\n</svg>");
+    }
+}

@@ -1,0 +1,38 @@
+//! What a page needs of `pictures.csv`.
+
+use csv::{ReaderBuilder, StringRecord};
+
+/// The column `latency_ps` of the rows of `pictures.csv` that are `steady`, in milliseconds; nothing of a file that has
+/// no such columns.
+#[must_use]
+pub fn latencies_ms(pictures_csv: &str) -> Vec<f64> {
+    let mut reader = ReaderBuilder::new().comment(Some(b'#')).flexible(true).from_reader(pictures_csv.as_bytes());
+    let Ok(names) = reader.headers().cloned() else { return Vec::new() };
+    let Some(latency) = place_of(&names, "latency_ps") else { return Vec::new() };
+    let Some(steady) = place_of(&names, "steady") else { return Vec::new() };
+    let rows = reader.records().filter_map(Result::ok);
+    let steady_rows = rows.filter(|row| row.get(steady) == Some("1"));
+    steady_rows.filter_map(|row| milliseconds(row.get(latency)?)).collect()
+}
+
+fn place_of(names: &StringRecord, wanted: &str) -> Option<usize> {
+    names.iter().position(|name| name == wanted)
+}
+
+/// A time in whole picoseconds as milliseconds.
+fn milliseconds(text: &str) -> Option<f64> {
+    let ps: u64 = text.parse().ok()?;
+    Some(ps as f64 * 1e-9)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_pictures_after_the_warm_up_are_read() {
+        let csv = "# a comment\npicture,steady,latency_ps\n0,0,1\n1,1,2000000000\n2,1,\n3,1,3000000000\n";
+        assert_eq!(latencies_ms(csv), [2.0, 3.0]);
+        assert!(latencies_ms("nothing").is_empty() && latencies_ms("").is_empty());
+    }
+}

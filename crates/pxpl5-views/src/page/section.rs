@@ -1,0 +1,50 @@
+//! Everything of one experiment.
+
+use super::configuration::{configuration, speed};
+use super::latency::{head_to_light, latency};
+use super::values::{heading, wide};
+use super::{PagePicture, PageRun};
+use crate::markup::Element;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
+/// What should stay together when it is printed: pictures, latencies, the rest.
+pub(super) fn sections(run: &PageRun) -> [Element; 3] {
+    [seen(run), timed(run), told(run)]
+}
+
+fn seen(run: &PageRun) -> Element {
+    let mut section = Element::new("section").child(&Element::new("h2").text(&run.name));
+    section.end_line();
+    if let Some(svg) = &run.timeline {
+        section.add_line(&wide(&image("image/svg+xml", svg, "Timeline of the stages")));
+    }
+    if run.pictures.is_empty() {
+        let nothing = Element::new("p").with("class", "dim").text("No pictures in this folder.");
+        return section.child(&nothing);
+    }
+    let figures = run.pictures.iter().map(figure);
+    let pair = Element::new("div").with("class", "pair").children(figures);
+    section.child(&heading("Last displayed pictures")).child(&pair)
+}
+
+fn timed(run: &PageRun) -> Element {
+    let section = Element::new("section").children(latency(&run.report, &run.latencies_ms));
+    section.children(head_to_light(&run.report["head"]))
+}
+
+fn told(run: &PageRun) -> Element {
+    Element::new("section").children(speed(&run.report)).children(configuration(&run.report))
+}
+
+fn figure(picture: &PagePicture) -> Element {
+    let about = format!("What the {} sees at the end", picture.label);
+    let caption = Element::new("figcaption").text(&picture.label);
+    Element::new("figure").child(&image("image/png", &picture.png, &about)).child(&caption)
+}
+
+/// A picture that is part of the page.
+fn image(kind: &str, bytes: &[u8], about: &str) -> Element {
+    let source = format!("data:{kind};base64,{}", STANDARD.encode(bytes));
+    Element::new("img").with("src", source).with("alt", about)
+}

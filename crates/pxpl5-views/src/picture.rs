@@ -1,0 +1,69 @@
+//! Pictures as PNG: the only place where one is encoded.
+
+use image::RgbImage;
+use std::io::Write;
+use thiserror::Error;
+
+/// Why a picture could not be encoded: it has no pixels, or a text has a key that PNG does not allow.
+#[derive(Debug, Error)]
+#[error("a picture cannot be encoded: {0}")]
+pub struct PngError(
+    /// What the encoder says.
+    #[from]
+    png::EncodingError,
+);
+
+/// A picture as PNG, with texts that can be read by any viewer of metadata, such as those of
+/// [`origin`](crate::results::origin): each becomes an iTXt chunk with the keyword `pxpl5 KEY`.
+///
+/// # Errors
+///
+/// [`PngError`] when the encoder refuses it.
+pub fn png_bytes(picture: &RgbImage, texts: &[(&str, String)]) -> Result<Vec<u8>, PngError> {
+    let mut bytes = Vec::new();
+    let mut writer = encoder(&mut bytes, picture.dimensions(), texts)?.write_header()?;
+    writer.write_image_data(picture.as_raw())?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+/// An encoder of pictures of eight bits a colour, that will write some texts.
+pub(crate) fn encoder<W: Write>(
+    out: W,
+    (width, height): (u32, u32),
+    texts: &[(&str, String)],
+) -> Result<png::Encoder<'static, W>, png::EncodingError> {
+    let mut encoder = png::Encoder::new(out, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    for (key, value) in texts {
+        encoder.add_itxt_chunk(format!("pxpl5 {key}"), value.clone())?;
+    }
+    Ok(encoder)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::Rgb;
+    use std::io::Cursor;
+
+    #[test]
+    fn pixels_and_texts_come_back() {
+        let picture = RgbImage::from_fn(3, 2, |x, y| Rgb([x as u8, y as u8, 7]));
+        let bytes = png_bytes(&picture, &[("scene", "M\u{fc}nster".to_owned())]).expect("it has pixels");
+        let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().expect("PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("fits")];
+        reader.next_frame(&mut pixels).expect("a picture");
+        assert_eq!(&pixels, picture.as_raw());
+        let text = &reader.info().utf8_text[0];
+        assert_eq!(text.keyword, "pxpl5 scene");
+        assert_eq!(text.get_text().expect("UTF-8"), "M\u{fc}nster");
+    }
+
+    #[test]
+    fn a_picture_without_pixels_is_refused() {
+        let error = png_bytes(&RgbImage::new(0, 0), &[]).expect_err("no pixels");
+        assert!(error.to_string().starts_with("a picture cannot be encoded: "), "{error}");
+    }
+}

@@ -1,0 +1,48 @@
+//! CSV: the only writer.
+
+use csv::WriterBuilder;
+
+/// A table as CSV: lines of comment as they are, a line of names, a line for each row. Lines end with a line feed, and a
+/// value with a comma, a quote or a line break in it stands in quotes.
+///
+/// `comments` is empty, or lines that begin with `#` and end with a line feed, such as
+/// [`origin_lines`](super::origin_lines) gives.
+///
+/// ```
+/// let rows = [["updates_hz", "59.94"], ["a, b", ""]];
+/// let text = pxpl5_views::results::csv_table("# seed: 1\n", ["quantity", "value"], rows);
+/// assert_eq!(text, "# seed: 1\nquantity,value\nupdates_hz,59.94\n\"a, b\",\n");
+/// ```
+#[must_use]
+pub fn csv_table<Row>(
+    comments: &str,
+    columns: impl IntoIterator<Item: AsRef<[u8]>>,
+    rows: impl IntoIterator<Item = Row>,
+) -> String
+where
+    Row: IntoIterator<Item: AsRef<[u8]>>,
+{
+    let mut writer = WriterBuilder::new().flexible(true).from_writer(comments.as_bytes().to_vec());
+    // Memory can be written, and rows of any length are taken.
+    let _ = writer.write_record(columns);
+    for row in rows {
+        let _ = writer.write_record(row);
+    }
+    String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quotes_are_doubled_and_stand_in_quotes() {
+        let text = csv_table("", ["a"], [["say \"no\""], ["two\nlines"]]);
+        assert_eq!(text, "a\n\"say \"\"no\"\"\"\n\"two\nlines\"\n");
+    }
+
+    #[test]
+    fn a_table_without_rows_has_its_names() {
+        assert_eq!(csv_table("# c\n", ["a", "b"], [] as [[&str; 2]; 0]), "# c\na,b\n");
+    }
+}

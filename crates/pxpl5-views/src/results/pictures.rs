@@ -1,0 +1,77 @@
+//! The table of pictures.
+
+use pxpl5_measure::{LATENCY_PARTS, LatencyParts, latency_parts};
+use pxpl5_run::{Outcome, PictureTimes, WARM_UP_PICTURES};
+use std::collections::BTreeMap;
+
+/// Name and version of the table's schema; a column that is added at the end does not change it.
+pub const SCHEMA: &str = "pxpl5-pictures/1";
+
+/// A column of the table: whole numbers, some of which can be missing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Its name, with the unit.
+    pub name: String,
+    /// What its numbers are, in a sentence.
+    pub definition: String,
+    /// Whether a value can be missing (an empty field in CSV).
+    pub optional: bool,
+}
+
+impl Column {
+    fn always(name: &str, definition: &str) -> Self {
+        Self { name: name.to_owned(), definition: definition.to_owned(), optional: false }
+    }
+
+    fn optional(name: &str, definition: &str) -> Self {
+        Self { optional: true, ..Self::always(name, definition) }
+    }
+}
+
+/// The columns, in order: those of [`PictureTimes`], then the parts of [`LATENCY_PARTS`].
+#[must_use]
+pub fn columns() -> Vec<Column> {
+    let mut columns = vec![
+        Column::always(
+            "picture",
+            "number of the frame (Rendering Control), field (Slats, just-in-time pixels) or update (frameless)",
+        ),
+        Column::always("steady", "1 for pictures after the warm-up, over which the report's statistics are; else 0"),
+        Column::always("complete", "1 if all of the picture was there in time, else 0"),
+        Column::optional("sampled_at_ps", "when its pose was sampled"),
+        Column::always("transform_at_ps", "start of TRANSFORM"),
+        Column::optional("copied_at_ps", "end of COPY; missing if a region never arrived"),
+        Column::always(
+            "shown_at_ps",
+            "the retrace from which on it is shown; the scan of its middle (just-in-time pixels) or of its last block (frameless)",
+        ),
+        Column::always("latency_ps", "shown_at_ps - transform_at_ps"),
+    ];
+    columns.extend(LATENCY_PARTS.iter().map(|part| {
+        Column::optional(&format!("{}_ps", part.name), &format!("{}; missing during the warm-up", part.definition))
+    }));
+    columns
+}
+
+/// The rows: a value for each of [`columns`].
+pub(super) fn rows(outcome: &Outcome) -> Vec<Vec<Option<u64>>> {
+    let parts: BTreeMap<u64, LatencyParts> =
+        latency_parts(outcome).into_iter().map(|parts| (parts.picture, parts)).collect();
+    let pictures = outcome.pictures().iter().enumerate();
+    pictures.map(|(i, times)| row(times, i >= WARM_UP_PICTURES, parts.get(&times.picture))).collect()
+}
+
+fn row(times: &PictureTimes, steady: bool, parts: Option<&LatencyParts>) -> Vec<Option<u64>> {
+    let mut row = vec![
+        Some(times.picture),
+        Some(steady.into()),
+        Some(times.complete.into()),
+        times.sampled_at.map(|time| time.0),
+        Some(times.transform_at.0),
+        times.copied_at.map(|time| time.0),
+        Some(times.shown_at.0),
+        Some(times.shown_at.since(times.transform_at).0),
+    ];
+    row.extend((0..LATENCY_PARTS.len()).map(|i| parts.map(|parts| parts.spans[i].0)));
+    row
+}

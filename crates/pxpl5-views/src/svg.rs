@@ -1,0 +1,116 @@
+//! Shapes of SVG, and the two ways in which numbers stand in them.
+
+use crate::markup::Element;
+use std::fmt::{self, Display};
+
+/// Hundredths of a unit: numbers of two decimals from integers, so that a drawing has the same bytes everywhere.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Units(pub(crate) i64);
+
+impl Units {
+    pub(crate) const fn whole(units: i64) -> Self {
+        Self(units * 100)
+    }
+}
+
+impl std::ops::Add for Units {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl std::ops::Sub for Units {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0)
+    }
+}
+
+impl Display for Units {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sign = if self.0 < 0 { "-" } else { "" };
+        let hundredths = self.0.unsigned_abs();
+        write!(f, "{sign}{}.{:02}", hundredths / 100, hundredths % 100)
+    }
+}
+
+/// A number with one decimal.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub(crate) struct Tenths(pub(crate) f64);
+
+impl Display for Tenths {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.1}", self.0)
+    }
+}
+
+/// The outermost element of a document of its own.
+pub(crate) fn document() -> Element {
+    Element::new("svg").with("xmlns", "http://www.w3.org/2000/svg")
+}
+
+/// A document as text: it ends with a line feed.
+pub(crate) fn finished(document: &Element) -> String {
+    format!("{document}\n")
+}
+
+/// A rectangle of a class: left, top, width, height.
+pub(crate) fn rectangle(class: &str, [x, y, width, height]: [Units; 4]) -> Element {
+    Element::new("rect").with("class", class).with("x", x).with("y", y).with("width", width).with("height", height)
+}
+
+/// A straight line of a class, from one point to another.
+pub(crate) fn segment(class: &str, [x1, y1, x2, y2]: [Units; 4]) -> Element {
+    Element::new("path").with("class", class).with("d", format_args!("M{x1} {y1}L{x2} {y2}"))
+}
+
+/// The place of a text of a class, to which the text is added.
+pub(crate) fn caption(class: &str, [x, y]: [Units; 2]) -> Element {
+    Element::new("text").with("class", class).with("x", x).with("y", y)
+}
+
+/// A line of a chart: the course as in the attribute `d`, and its colour.
+pub(crate) fn line(course: impl Display, colour: &str) -> Element {
+    Element::new("path").with("d", course).with("stroke", colour)
+}
+
+/// A text of a chart at a point; `anchor` says which part of it stands there: `middle`, `end`.
+pub(crate) fn anchored(x: impl Display, y: impl Display, anchor: &str) -> Element {
+    Element::new("text").with("x", x).with("y", y).with("text-anchor", anchor)
+}
+
+/// What a viewer shows when the pointer rests on an element.
+pub(crate) fn hint(text: impl Display) -> Element {
+    Element::new("title").text(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_print_with_two_decimals_on_both_sides_of_zero() {
+        let printed = [0, 5, -5, 1_234].map(|hundredths| Units(hundredths).to_string());
+        assert_eq!(printed, ["0.00", "0.05", "-0.05", "12.34"]);
+    }
+
+    #[test]
+    fn a_shape_opens_with_its_class() {
+        let places = [1, 2, 3, 4].map(Units::whole);
+        let expected = r#"<rect class="row" x="1.00" y="2.00" width="3.00" height="4.00"/>"#;
+        assert_eq!(rectangle("row", places).to_string(), expected);
+        assert_eq!(segment("axis", places).to_string(), r#"<path class="axis" d="M1.00 2.00L3.00 4.00"/>"#);
+    }
+
+    #[test]
+    fn a_text_of_a_chart_is_escaped() {
+        let text = anchored(Tenths(0.25), 7, "end").text("a < b");
+        assert_eq!(text.to_string(), r#"<text x="0.2" y="7" text-anchor="end">a &lt; b</text>"#);
+    }
+
+    #[test]
+    fn a_document_is_a_line_of_text_at_least() {
+        assert_eq!(finished(&document()), "<svg xmlns=\"http://www.w3.org/2000/svg\"/>\n");
+    }
+}

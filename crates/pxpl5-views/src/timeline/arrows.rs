@@ -1,0 +1,102 @@
+//! From the tracker's sample to light: what one picture had to wait for.
+
+use super::model::{Arrow, Bar, Place, Timeline};
+use pxpl5_display::Display;
+use pxpl5_gp::Stage;
+use pxpl5_run::PictureTimes;
+use pxpl5_sim::Time;
+use pxpl5_wire::SurfaceId;
+
+/// The arrows of the chosen picture.
+pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<&PictureTimes>) -> Vec<Arrow> {
+    let Some(chosen) = chosen else { return Vec::new() };
+    let bars = located(timeline);
+    let mut arrows = Vec::new();
+    arrows.extend(from_tracker(timeline, &bars));
+    for to in &bars {
+        arrows.extend(cause(&bars, to.bar).map(|from| follow(from, *to)));
+    }
+    for copy in bars.iter().filter(|located| located.bar.stage == Stage::Copy) {
+        let end = light(display, chosen, copy.bar);
+        arrows.push(Arrow { from: copy.place, begin: copy.bar.end.min(end), to: Place::Beam, end });
+    }
+    arrows.retain(|arrow| arrow.begin >= timeline.from && arrow.end <= timeline.to);
+    arrows
+}
+
+/// A bar and where it stands.
+#[derive(Clone, Copy)]
+struct Located<'a> {
+    place: Place,
+    bar: &'a Bar,
+}
+
+/// The bars of the chosen picture.
+fn located(timeline: &Timeline) -> Vec<Located<'_>> {
+    let mut located = Vec::new();
+    for (row, bars) in timeline.rows.iter().map(|row| &row.bars).enumerate() {
+        let chosen = bars.iter().filter(|bar| timeline.is_chosen(bar));
+        located.extend(chosen.map(|bar| Located { place: Place::Lane { row, lane: bar.lane }, bar }));
+    }
+    located
+}
+
+fn from_tracker(timeline: &Timeline, bars: &[Located<'_>]) -> Option<Arrow> {
+    timeline.samples.as_ref()?;
+    let send = bars.iter().find(|located| located.bar.stage == Stage::Send)?;
+    Some(Arrow { from: Place::Tracker, begin: send.bar.begin, to: send.place, end: send.bar.begin })
+}
+
+/// The bar of the stage before, of the same surface where that stage has surfaces; but a second surface's TRANSFORM
+/// follows the first one's, and a bottom half the top half.
+fn cause<'a>(bars: &[Located<'a>], bar: &Bar) -> Option<Located<'a>> {
+    let sibling = bars.iter().find(|other| other.bar.stage == bar.stage && is_sequel(other.bar, bar)).copied();
+    if sibling.is_some() {
+        return sibling;
+    }
+    let before: &[Stage] = match bar.stage {
+        Stage::Edit => &[Stage::Send],
+        Stage::Transform => &[Stage::Edit, Stage::Send],
+        Stage::Render => &[Stage::Transform],
+        Stage::Copy => &[Stage::Render],
+        Stage::Sample | Stage::Send | Stage::Swap => &[],
+    };
+    before.iter().find_map(|stage| of_stage(bars, *stage, bar.surface))
+}
+
+/// The first bar of a stage that concerns a surface.
+fn of_stage<'a>(bars: &[Located<'a>], stage: Stage, surface: Option<SurfaceId>) -> Option<Located<'a>> {
+    let mut of_stage = bars.iter().filter(|located| located.bar.stage == stage);
+    of_stage.find(|located| concerns(located.bar.surface, surface)).copied()
+}
+
+/// Whether what is done for one surface, or for all, has to do with what is done for another, or for all.
+fn concerns(one: Option<SurfaceId>, other: Option<SurfaceId>) -> bool {
+    one.is_none() || other.is_none() || one == other
+}
+
+fn is_sequel(first: &Bar, second: &Bar) -> bool {
+    match second.stage {
+        Stage::Transform => first.surface < second.surface && first.surface.is_some(),
+        Stage::Copy => first.surface == second.surface && first.bottom == Some(false) && second.bottom == Some(true),
+        _ => false,
+    }
+}
+
+/// A stage that begins before the other has ended depends on a part of it, and one that began before it depends on it
+/// for a part: the arrow is upright.
+fn follow(earlier: Located<'_>, later: Located<'_>) -> Arrow {
+    let from = earlier.place;
+    let to = later.place;
+    if later.bar.begin < earlier.bar.begin {
+        return Arrow { from, begin: earlier.bar.end, to, end: earlier.bar.end };
+    }
+    Arrow { from, begin: earlier.bar.end.min(later.bar.begin), to, end: later.bar.begin }
+}
+
+/// When the first pixel of what was copied lights up; that of the part that stands for it, where it has a beam to meet.
+fn light(display: &dyn Display, chosen: &PictureTimes, bar: &Bar) -> Time {
+    let period = display.period_at(chosen.shown_at);
+    let surface = bar.surface.map_or(0, SurfaceId::index);
+    display.line_lights(surface, 0, bar.first_line, period).unwrap_or_default().max(chosen.shown_at)
+}

@@ -1,0 +1,97 @@
+//! A timeline from what was observed.
+
+use super::arrows::arrows;
+use super::model::{Row, Scan, Timeline};
+use super::options::{MAX_FIELDS, TimelineOptions};
+use super::rows::{rows, set_lanes};
+use crate::updates::Updates;
+use pxpl5_display::Display;
+use pxpl5_gp::{Edge, Stage};
+use pxpl5_run::{Outcome, PictureTimes, WARM_UP_PICTURES};
+use pxpl5_sim::Time;
+use std::ops::Range;
+
+/// Bars that overlap by less than this part of the drawing are drawn in one lane.
+const TOUCHING: u64 = 300;
+
+/// Periods that are drawn at least, where nobody says how many.
+const LEAST_FIELDS: u64 = 4;
+
+impl Timeline {
+    /// The part of a run that the options ask for.
+    #[must_use]
+    pub fn of(outcome: &Outcome, options: &TimelineOptions) -> Self {
+        let record = outcome.record();
+        let display = record.display();
+        let chosen = chosen(outcome.pictures(), options.picture);
+        let stages = outcome.stages();
+        let mut rows = rows(outcome, &stages, options);
+        let update = chosen.and_then(|times| Updates::of(outcome, &stages).shown_by(times));
+        let periods = periods(outcome, options, chosen, sent_at(&rows, update));
+        let from = display.tick(periods.start);
+        let to = display.tick(periods.end);
+        for row in &mut rows {
+            row.bars.retain(|bar| bar.begin < to && bar.end >= from);
+            set_lanes(row, (to - from) / TOUCHING);
+        }
+        let mut timeline = Self {
+            from,
+            to,
+            retraces: (periods.start..=periods.end).map(|period| (period, display.tick(period))).collect(),
+            samples: (!options.without_host).then(|| samples(outcome, from..to)),
+            scans: periods.filter_map(|period| scan(display, outcome.pictures(), period)).collect(),
+            surfaces: record.surfaces().map(|(_, surface)| surface.clone()).collect(),
+            rows,
+            picture: chosen.map(|times| times.picture),
+            update,
+            arrows: Vec::new(),
+        };
+        timeline.arrows = arrows(&timeline, display, chosen);
+        timeline
+    }
+}
+
+fn chosen(pictures: &[PictureTimes], wanted: Option<u64>) -> Option<&PictureTimes> {
+    match wanted {
+        Some(picture) => pictures.iter().find(|times| times.picture == picture),
+        None => pictures.get(WARM_UP_PICTURES).or(pictures.last()),
+    }
+}
+
+/// When the host began to send an update; `None` when its row is left out.
+fn sent_at(rows: &[Row], update: Option<u64>) -> Option<Time> {
+    let bar = rows.first()?.bars.iter().find(|bar| Some(bar.picture) == update)?;
+    (bar.stage == Stage::Send).then_some(bar.begin)
+}
+
+/// The periods of the first display that are drawn.
+fn periods(
+    outcome: &Outcome,
+    options: &TimelineOptions,
+    chosen: Option<&PictureTimes>,
+    sent_at: Option<Time>,
+) -> Range<u64> {
+    let display = outcome.record().display();
+    let begin = chosen.map_or(Time::ZERO, |times| sent_at.or(times.sampled_at).unwrap_or(times.transform_at));
+    let first = options.first_field.unwrap_or_else(|| display.period_at(begin)).min(outcome.fields());
+    let last = chosen.map_or(first + LEAST_FIELDS, |times| display.period_at(times.shown_at) + 2);
+    let count = options.fields.unwrap_or_else(|| last.saturating_sub(first).max(LEAST_FIELDS));
+    first..first + count.clamp(1, MAX_FIELDS)
+}
+
+fn samples(outcome: &Outcome, within: Range<Time>) -> Vec<(u64, Time)> {
+    let marks = outcome.observation().marks.iter();
+    let begun = marks.filter(|mark| mark.stage == Stage::Send && mark.edge == Edge::Begin);
+    begun.filter(|mark| within.contains(&mark.time)).map(|mark| (mark.picture, mark.time)).collect()
+}
+
+fn scan(display: &dyn Display, pictures: &[PictureTimes], period: u64) -> Option<Scan> {
+    let next = display.tick(period + 1);
+    let shown = pictures.iter().rev().find(|times| times.shown_at < next);
+    Some(Scan {
+        period,
+        picture: shown.map(|times| times.picture),
+        begin: display.first_light(0, period)?,
+        end: display.last_light(0, period)?,
+    })
+}

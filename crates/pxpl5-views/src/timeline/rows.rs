@@ -1,0 +1,135 @@
+//! Rows of a timeline: what each board, or kind of boards, worked at.
+
+use super::model::{Bar, Row};
+use super::options::TimelineOptions;
+use pxpl5_gp::Stage;
+use pxpl5_machine::{Arrival, Record, StageSpan};
+use pxpl5_run::Outcome;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::SurfaceId;
+use std::collections::BTreeMap;
+
+/// All rows of a run, from the host to the last surface.
+pub(super) fn rows(outcome: &Outcome, stages: &[StageSpan], options: &TimelineOptions) -> Vec<Row> {
+    let mut rows = Vec::new();
+    if !options.without_host {
+        rows.push(stage_row("host", outcome, stages, &[Stage::Send]));
+    }
+    rows.push(stage_row("graphics processors", outcome, stages, &[Stage::Edit, Stage::Transform]));
+    rows.push(stage_row("renderers", outcome, stages, &[Stage::Render]));
+    rows.extend(outcome.record().surfaces().map(|(id, surface)| row(surface.title, copies(outcome, id))));
+    rows
+}
+
+fn row(name: &'static str, mut bars: Vec<Bar>) -> Row {
+    bars.sort_by_key(|bar| (bar.begin, bar.picture, bar.surface));
+    Row { name, bars, lanes: 1 }
+}
+
+fn stage_row(name: &'static str, outcome: &Outcome, stages: &[StageSpan], wanted: &[Stage]) -> Row {
+    let spans = stages.iter().filter(|span| wanted.contains(&span.stage));
+    row(name, spans.map(|span| stage_bar(outcome, span)).collect())
+}
+
+fn stage_bar(outcome: &Outcome, span: &StageSpan) -> Bar {
+    Bar {
+        stage: span.stage,
+        picture: span.picture,
+        surface: span.surface.filter(|_| has_many_surfaces(outcome.record())),
+        bottom: None,
+        first_line: 0,
+        begin: span.begin,
+        end: span.end.unwrap_or(outcome.end()).max(span.begin),
+        lane: 0,
+        receiving: Vec::new(),
+    }
+}
+
+/// Whether there are surfaces to be told apart.
+fn has_many_surfaces(record: &Record) -> bool {
+    record.surfaces().nth(1).is_some()
+}
+
+/// Copies of one surface by picture and part of it.
+type Parts = BTreeMap<(u64, u8), Bar>;
+
+/// COPY of each picture to a surface; two bars where the surface received two parts of it one after the other.
+fn copies(outcome: &Outcome, surface: SurfaceId) -> Vec<Bar> {
+    let message = outcome.record().message_span();
+    let mut parts = Parts::new();
+    for arrival in outcome.observation().arrivals.iter().filter(|arrival| arrival.surface == surface) {
+        let begin = arrival.begins_at(message);
+        let key = (arrival.target.picture, outcome.pipeline().copy_part(arrival));
+        let bar = parts.entry(key).or_insert_with(|| copy_bar(outcome.record(), arrival, begin));
+        bar.begin = bar.begin.min(begin);
+        bar.end = bar.end.max(arrival.last_part_at);
+        bar.first_line = bar.first_line.min(first_line(outcome.record(), arrival));
+        bar.receiving.push((begin, arrival.last_part_at));
+    }
+    name_halves(&mut parts);
+    parts.values_mut().for_each(|bar| join(&mut bar.receiving));
+    parts.into_values().collect()
+}
+
+fn copy_bar(record: &Record, arrival: &Arrival, begin: Time) -> Bar {
+    Bar {
+        stage: Stage::Copy,
+        picture: arrival.target.picture,
+        surface: has_many_surfaces(record).then_some(arrival.surface),
+        bottom: None,
+        first_line: u32::MAX,
+        begin,
+        end: arrival.last_part_at,
+        lane: 0,
+        receiving: Vec::new(),
+    }
+}
+
+/// The first line of its surface that a region fills; its picture may have fewer lines than the surface.
+fn first_line(record: &Record, arrival: &Arrival) -> u32 {
+    let grid = &arrival.target.grid;
+    let [_, top, _, _] = grid.rectangle(arrival.target.region);
+    let height = record.surface(arrival.surface).map_or(grid.height, |surface| surface.height);
+    top * height / grid.height.max(1)
+}
+
+/// Says which bars are halves: those of pictures of which the surface received both.
+fn name_halves(parts: &mut Parts) {
+    let bottoms: Vec<u64> = parts.keys().filter(|(_, part)| *part == 1).map(|(picture, _)| *picture).collect();
+    let apart: Vec<u64> = bottoms.into_iter().filter(|picture| parts.contains_key(&(*picture, 0))).collect();
+    for ((picture, part), bar) in parts {
+        bar.bottom = apart.contains(picture).then_some(*part == 1);
+        if bar.bottom != Some(true) {
+            bar.first_line = 0;
+        }
+    }
+}
+
+/// Transfers that follow each other within this time are drawn as one: it is less than a tenth of a unit.
+const JOINED: Span = Span(20_000_000);
+
+fn join(times: &mut Vec<(Time, Time)>) {
+    times.sort_unstable();
+    let mut joined: Vec<(Time, Time)> = Vec::new();
+    for (begin, end) in times.drain(..) {
+        match joined.last_mut() {
+            Some(last) if begin <= last.1 + JOINED => last.1 = last.1.max(end),
+            _ => joined.push((begin, end)),
+        }
+    }
+    *times = joined;
+}
+
+/// Gives each bar of a row the first lane that is free.
+pub(super) fn set_lanes(row: &mut Row, touching: Span) {
+    let mut free_at: Vec<Time> = Vec::new();
+    for bar in &mut row.bars {
+        let free = free_at.iter().position(|time| time.since(bar.begin) <= touching);
+        bar.lane = free.unwrap_or(free_at.len());
+        if free.is_none() {
+            free_at.push(bar.end);
+        }
+        free_at[bar.lane] = free_at[bar.lane].max(bar.end);
+    }
+    row.lanes = free_at.len().max(1);
+}

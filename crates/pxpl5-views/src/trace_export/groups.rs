@@ -1,0 +1,57 @@
+//! Groups of tracks: what a trace has a heading for.
+
+use pxpl5_display::{Display, Surface};
+use pxpl5_machine::Record;
+use pxpl5_wire::{NodeId, SurfaceId};
+
+/// Something with a heading of its own: a board at a port of the ring, a surface of a display, or both in one, such as a
+/// frame buffer.
+pub(super) struct Group {
+    pub(super) name: String,
+    pub(super) node: Option<NodeId>,
+    pub(super) surface: Option<SurfaceId>,
+}
+
+impl Group {
+    const fn of_port(name: String, node: NodeId) -> Self {
+        Self { name, node: Some(node), surface: None }
+    }
+}
+
+/// All boards and surfaces of a machine, in the order of the schematic.
+pub(super) fn groups(record: &Record) -> Vec<Group> {
+    let ports = record.ports();
+    let mut groups = vec![Group::of_port("host".to_owned(), ports.host)];
+    groups.extend(numbered("GP", &ports.gps));
+    groups.extend(numbered("renderer", &ports.renderers));
+    let mut surfaces = record.surfaces();
+    for display in record.displays() {
+        let own: Vec<(SurfaceId, &Surface)> = surfaces.by_ref().take(display.surfaces().len()).collect();
+        groups.extend(of_display(record, display.as_ref(), &own));
+    }
+    groups
+}
+
+fn numbered(name: &str, nodes: &[NodeId]) -> impl Iterator<Item = Group> {
+    nodes.iter().enumerate().map(move |(i, node)| Group::of_port(format!("{name} {i}"), *node))
+}
+
+/// A surface with a port of its own is one board with it.
+fn of_display(record: &Record, display: &dyn Display, surfaces: &[(SurfaceId, &Surface)]) -> Vec<Group> {
+    let nodes = display.nodes();
+    let paired = nodes.len() == surfaces.len();
+    let mut groups = Vec::new();
+    if !paired {
+        groups.extend(numbered(&format!("{} port", display.name()), nodes));
+    }
+    for (i, (id, surface)) in surfaces.iter().enumerate() {
+        let node = if paired { nodes.get(i).copied() } else { None };
+        groups.push(Group { name: named(record, surface.title, display), node, surface: Some(*id) });
+    }
+    groups
+}
+
+/// A name that belongs to a display; it says to which, where there are several.
+pub(super) fn named(record: &Record, name: &str, display: &dyn Display) -> String {
+    if record.displays().len() == 1 { name.to_owned() } else { format!("{name}, {}", display.name()) }
+}

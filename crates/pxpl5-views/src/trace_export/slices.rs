@@ -1,0 +1,55 @@
+//! Slices of stages, messages and regions.
+
+use super::model::Slice;
+use pxpl5_gp::Stage;
+use pxpl5_machine::{Arrival, Transfer};
+use pxpl5_sim::{Span, Time};
+
+/// The name of a stage, in the papers' words.
+pub(super) const fn stage_name(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Sample => "SAMPLE",
+        Stage::Send => "SEND",
+        Stage::Edit => "EDIT",
+        Stage::Transform => "TRANSFORM",
+        Stage::Render => "RENDER",
+        Stage::Copy => "COPY",
+        Stage::Swap => "SWAP",
+    }
+}
+
+/// A stage of a picture, of one surface with this label or of all.
+pub(super) fn stage_slice(stage: Stage, picture: u64, label: Option<&str>, [begin, end]: [Time; 2]) -> Slice {
+    let surface = label.map_or_else(String::new, |label| format!(" {label}"));
+    let name = format!("{} {picture}{surface}", stage_name(stage));
+    Slice { name, begin, end, picture: Some(picture), flow: None }
+}
+
+/// A message; `toward` says from or to whom.
+pub(super) fn message_slice(transfer: &Transfer, toward: &str) -> Slice {
+    let name = format!("{} words {toward}", transfer.words);
+    Slice { name, begin: transfer.begin, end: transfer.end, picture: None, flow: None }
+}
+
+/// A region on its way to a surface; its messages are `message` long.
+pub(super) fn region_slice(arrival: &Arrival, message: Span) -> Slice {
+    Slice {
+        name: format!("COPY region {}", arrival.target.region.0),
+        begin: arrival.begins_at(message),
+        end: arrival.last_part_at,
+        picture: Some(arrival.target.picture),
+        flow: None,
+    }
+}
+
+/// Slices in order of time, each from the end of the one before at the earliest.
+pub(super) fn apart(slices: impl Iterator<Item = Slice>) -> Vec<Slice> {
+    let mut slices: Vec<Slice> = slices.collect();
+    slices.sort_by_key(|slice| (slice.end, slice.begin));
+    let mut free_at = Time::ZERO;
+    for slice in &mut slices {
+        slice.begin = slice.begin.max(free_at).min(slice.end);
+        free_at = slice.end;
+    }
+    slices
+}
