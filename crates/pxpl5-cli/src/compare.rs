@@ -5,7 +5,7 @@ use crate::options::registry;
 use crate::output::OutputFolder;
 use crate::terminal;
 use pxpl5::compare::{Comparison, Row, compare_with, edge_pictures, motion, predictor, tracker};
-use pxpl5::views::charts::{LatencyCurve, chart};
+use pxpl5::views::charts::{LatencyCurve, error_chart};
 use pxpl5::{Head, MachineConfig, scene};
 use std::fmt::Write as _;
 use std::io::Cursor;
@@ -83,7 +83,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let json = serde_json::to_string_pretty(&comparison).map_err(CliError::failure)? + "\n";
     if let Some(folder) = &mut folder {
         folder.put("comparison.json", json.as_bytes())?;
-        folder.put("error.svg", error_chart(&args, &head).as_bytes())?;
+        folder.put("error.svg", nominal_chart(&args, &head).as_bytes())?;
         pictures(&config, args.edge_pan, folder)?;
     }
     folder.map(OutputFolder::commit).transpose()?;
@@ -103,10 +103,10 @@ fn load(name: &str) -> Result<scene::Scene, CliError> {
 const CHART_S: u64 = 30;
 
 /// As in I3D95: the error in the middle of the picture against time, for its two latencies.
-fn error_chart(args: &CompareArgs, head: &Head) -> String {
+fn nominal_chart(args: &CompareArgs, head: &Head) -> String {
     let seconds = (args.fields / 60).clamp(2, CHART_S);
     let curves = [90, 50].map(|ms| LatencyCurve::of(head.motion(), ms, seconds, 1.0));
-    chart(&format!("{}: 90 ms (Rendering Control) and 50 ms (Slats), no prediction", args.motion), &curves)
+    error_chart(&format!("{}: 90 ms (Rendering Control) and 50 ms (Slats), no prediction", args.motion), &curves)
 }
 
 fn pictures(config: &MachineConfig, deg_per_s: f64, folder: &mut OutputFolder) -> Result<(), CliError> {

@@ -5,7 +5,7 @@ use crate::output::OutputFolder;
 use crate::settings::SettingArgs;
 use crate::terminal::print;
 use clap::{Args, ValueEnum};
-use pxpl5::pictures::{Eyes, Film};
+use pxpl5::film::{Film, FilmOf};
 use pxpl5::{Eye, Pixels};
 use std::path::PathBuf;
 
@@ -49,9 +49,9 @@ enum Whose {
 pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
     let plan = args.settings.gather()?.resolve()?;
     let eyes = match args.eye {
-        Whose::Left => Eyes::One(Eye::Left),
-        Whose::Right => Eyes::One(Eye::Right),
-        Whose::Both => Eyes::Both,
+        Whose::Left => FilmOf::One(Eye::Left.into()),
+        Whose::Right => FilmOf::One(Eye::Right.into()),
+        Whose::Both => FilmOf::All,
     };
     let (mut folder, name) = OutputFolder::of_file(&args.out)?;
     let experiment = plan.experiment(plan.load_scene()?).pixels(Pixels::Lazy).fields(args.from + args.length + 1);

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// Work with programs of the graphics processor's CPU.
 #[derive(Args, Debug)]
-pub struct I860Args {
+pub(crate) struct I860Args {
     #[command(subcommand)]
     command: Command,
 }
@@ -84,7 +84,7 @@ fn address(text: &str) -> Result<u32, String> {
 ///
 /// # Errors
 /// What to tell the user before a non-zero exit.
-pub fn run(args: I860Args) -> Result<(), String> {
+pub(crate) fn run(args: I860Args) -> Result<(), String> {
     match args.command {
         Command::Asm { file, base, output } => asm(&file, base, output.as_deref()),
         Command::Disasm { file, base } => {

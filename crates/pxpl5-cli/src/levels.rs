@@ -5,7 +5,7 @@ use crate::terminal::print;
 use clap::Args;
 use pxpl5::growth;
 use pxpl5::levels::{LevelReport, compare};
-use pxpl5::views::charts;
+use pxpl5::views::charts::{SpeedAndError, level_chart};
 use serde_json::json;
 use std::fmt::Write;
 use std::fs;
@@ -39,9 +39,18 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     }
     let reports = compare()?;
     if let Some(path) = &args.chart {
-        write(path, &svg(&reports))?;
+        let levels: Vec<SpeedAndError> = reports.iter().map(speed_and_error).collect();
+        write(path, &level_chart(&levels))?;
     }
     print(&if args.json { json_text(&reports) } else { text(&reports) })
+}
+
+fn speed_and_error(report: &LevelReport) -> SpeedAndError {
+    SpeedAndError {
+        name: report.level.name().to_owned(),
+        fields_per_host_second: report.fields_per_host_second,
+        mean_error_percent: report.mean_error_percent,
+    }
 }
 
 fn write(path: &Path, text: &str) -> Result<(), CliError> {

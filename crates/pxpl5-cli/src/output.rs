@@ -4,6 +4,7 @@ use crate::error::CliError;
 use image::RgbImage;
 use pxpl5::results::{origin, origin_lines};
 use pxpl5::timeline::TimelineOptions;
+use pxpl5::views::png_bytes;
 use pxpl5::{Outcome, Report};
 use std::fs;
 use std::io::Write;
@@ -118,22 +119,7 @@ pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
 ///
 /// When the encoder refuses it.
 pub(crate) fn png(picture: &RgbImage, report: &Report) -> Result<Vec<u8>, CliError> {
-    let mut bytes = Vec::new();
-    let encoded = encode(&mut bytes, picture, report);
-    encoded.map_err(|error| CliError::failure(format!("a picture cannot be encoded: {error}")))?;
-    Ok(bytes)
-}
-
-fn encode(bytes: &mut Vec<u8>, picture: &RgbImage, report: &Report) -> Result<(), png::EncodingError> {
-    let mut encoder = png::Encoder::new(bytes, picture.width(), picture.height());
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    for (key, value) in origin(report) {
-        encoder.add_itxt_chunk(format!("pxpl5 {key}"), value)?;
-    }
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(picture.as_raw())?;
-    writer.finish()
+    png_bytes(picture, &origin(report)).map_err(|error| CliError::failure(format!("a picture cannot be encoded: {error}")))
 }
 
 #[cfg(test)]

@@ -1,13 +1,12 @@
 //! `pxpl5 report`: a results folder as one page.
 
-mod chart;
 mod load;
-mod page;
 
 use crate::error::CliError;
 use crate::output::OutputFolder;
 use crate::terminal::print;
 use clap::Args;
+use pxpl5::views::page;
 use std::path::PathBuf;
 
 /// Make one self-contained HTML page of a results folder.

@@ -7,7 +7,7 @@ use crate::snapshot::SnapshotArgs;
 use crate::table::{Comparison, table};
 use crate::terminal::print;
 use clap::Args;
-use pxpl5::results::origin_lines;
+use pxpl5::results::{origin_lines, quantities_csv};
 use pxpl5::{ExperimentFile, HeadReport, Level, Measured, Outcome, Plan, Report, Results, Saving, SurfaceId};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -113,7 +113,7 @@ fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<Pat
     folder.put("report.json", format!("{}\n", json(report)?).as_bytes())?;
     folder.put("experiment.toml", format!("{}{}", origin_lines(report, "# "), plan.settings()).as_bytes())?;
     if plan.output.csv {
-        folder.put("results.csv", csv(plan, report, results).as_bytes())?;
+        folder.put("results.csv", quantities_csv(report, &plan.measure, results).as_bytes())?;
         folder.put("pictures.csv", pxpl5::results::csv(outcome).as_bytes())?;
     }
     #[cfg(feature = "parquet")]
@@ -151,15 +151,4 @@ fn parquet(outcome: &Outcome) -> Result<Vec<u8>, CliError> {
     let mut bytes = Vec::new();
     pxpl5::results::parquet(outcome, &mut bytes).map_err(CliError::failure)?;
     Ok(bytes)
-}
-
-/// The measured quantities in long form: a line each, with the definition.
-fn csv(plan: &Plan, report: &Report, results: &Results) -> String {
-    let mut text = origin_lines(report, "# ") + "quantity,value,definition\n";
-    for measure in &plan.measure {
-        let value = measure.of(results).map_or_else(String::new, |value| value.to_string());
-        let definition = measure.definition().replace('"', "\"\"");
-        let _ = writeln!(text, "{},{value},\"{definition}\"", measure.name());
-    }
-    text
 }
