@@ -1,5 +1,7 @@
 //! Experiment files with a head, a tracker and a display: do they give what the comparison gives, and the pictures?
 
+mod support;
+
 use pxpl5::compare::{compare, edge_scene};
 use pxpl5::film::{Film, FilmOf};
 use pxpl5::tracking::motion::{Motion, Pan};
@@ -8,6 +10,7 @@ use pxpl5::tracking::tracker::TrackerConfig;
 use pxpl5::tracking::view::HmdView;
 use pxpl5::{Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Measured, Pixels, Plan, Raster, Viewpoint};
 use std::sync::Arc;
+use support::video;
 
 fn plan(settings: &[(&str, &str)]) -> Plan {
     let mut file = ExperimentFile::new();

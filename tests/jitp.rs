@@ -18,7 +18,7 @@ use pxpl5::{
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use support::{boards, video};
+use support::video;
 
 /// A fast turn of the head (JITP).
 const PAN: f64 = 200.0;
@@ -214,7 +214,7 @@ fn more_renderers_allow_more_triangles_in_a_line() {
     let possible = |preset: &str| {
         let config = MachineConfig::preset(preset).expect("listed");
         let jitp: Arc<dyn Pipeline> = Arc::new(Jitp::new(Viewpoint::Strip, true));
-        triangles_possible(&config, &jitp).triangles
+        triangles_possible(&pxpl5::registry(), &config, &jitp).triangles
     };
     let (small, large) = (possible("small-hmd"), possible("design-maximum"));
     println!("triangles per line: small-hmd {small}, design-maximum {large}");
@@ -270,12 +270,11 @@ fn stages_from_head_to_light_add_up() {
         let budget = Budget::of(&outcome);
         let measured: BTreeMap<_, _> =
             outcome.head().expect("a head").sampled().iter().filter_map(|s| Some((s.number, s.measured_at?))).collect();
-        let video = video(&outcome);
         let ages: Vec<f64> = outcome
             .steady_pictures()
             .iter()
             .filter(|times| times.copied_at.is_some())
-            .filter_map(|times| Some(pipeline.light(video, times).since(*measured.get(&times.view)?).as_ms()))
+            .filter_map(|times| Some(pipeline.light(outcome.record(), times).since(*measured.get(&times.view)?).as_ms()))
             .collect();
         let mean = ages.iter().sum::<f64>() / ages.len() as f64;
         assert!(ages.len() > 10 && (mean - budget.total_ms).abs() < 1e-6, "{}: {mean}", pipeline.name());

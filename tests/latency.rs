@@ -8,7 +8,7 @@ use pxpl5::{
     StageSpan, scene,
 };
 use pxpl5_gp::Stage;
-use support::{boards, video};
+use support::video;
 
 /// A region of 15 messages of 1,024 + 16 words of 50 ns (TR94: 780 us).
 const REGION_US: f64 = 780.0;

@@ -3,7 +3,7 @@
 use prost::Message;
 mod support;
 
-use pxpl5::film::{Film, FilmError, FilmOf, frame_seconds};
+use pxpl5::film::{Film, FilmError, FilmOf};
 use pxpl5::results::{columns, csv};
 use pxpl5::trace_export::{Events, Trace, chrome, perfetto};
 use pxpl5::{
@@ -110,17 +110,17 @@ fn a_part_is_the_time_between_the_marks_that_define_it() {
     let outcome = stereo();
     let end_of = |stage, eye, picture| {
         let marks = outcome.observation().marks.iter();
-        let of = marks.filter(|m| (m.stage, m.eye, m.picture, m.edge) == (stage, eye, picture, Edge::End));
+        let of = marks.filter(|m| (m.stage, m.surface, m.picture, m.edge) == (stage, eye, picture, Edge::End));
         of.map(|m| m.time).max().expect("marked")
     };
     let part = |name| LATENCY_PARTS.iter().position(|part| part.name == name).expect("a part");
     for (parts, times) in stereo().latency_parts().iter().zip(stereo().steady_pictures()) {
         let copied_at = times.copied_at.expect("copied");
         assert_eq!(parts.spans[part("wait_for_retrace")], times.shown_at - copied_at);
-        let rendered_at = end_of(Stage::Render, Some(Eye::Right), times.picture);
+        let rendered_at = end_of(Stage::Render, Some(Eye::Right.into()), times.picture);
         let rest: Span = parts.spans[part("wait_for_copy")] + parts.spans[part("copy")];
         assert_eq!(rest, copied_at - rendered_at);
-        let transformed_at = end_of(Stage::Transform, Some(Eye::Left), times.picture);
+        let transformed_at = end_of(Stage::Transform, Some(Eye::Left.into()), times.picture);
         assert_eq!(parts.spans[part("transform")], transformed_at - times.transform_at);
         let sent_at = end_of(Stage::Send, None, times.picture);
         assert_eq!(parts.spans[part("send")], sent_at - times.sampled_at.expect("sampled"));
@@ -132,7 +132,7 @@ fn the_latencies_of_the_eyes_lie_between_their_events() {
     let outcome = stereo();
     let report = outcome.report();
     let mean = |of: &str, until: &str| {
-        let found = report.latency_by_eye_ms.iter().find(|entry| (entry.of, entry.until) == (of, until));
+        let found = report.latency_by_eye_ms.iter().find(|entry| (entry.of.as_str(), entry.until) == (of, until));
         found.expect("listed").statistics.statistics.mean
     };
     // The frame's latency is that of the pair: from its first TRANSFORM to the swap.
@@ -395,7 +395,7 @@ fn frames(bytes: &[u8]) -> (png::Info<'static>, Vec<Vec<u8>>) {
     let frames = (0..n).map(|_| {
         let mut frame = vec![0; reader.output_buffer_size().expect("fits")];
         reader.next_frame(&mut frame).expect("a frame");
-        assert_eq!(reader.info().frame_control().map(|f| (f.delay_num, f.delay_den)), Some(FRAME_SECONDS));
+        assert_eq!(reader.info().frame_control().map(|f| (f.delay_num, f.delay_den)), Some((1_001, 60_000)));
         frame
     });
     let frames = frames.collect();
@@ -416,7 +416,7 @@ fn remembered() -> (Experiment, Outcome) {
 fn a_film_shows_every_field_at_the_true_rate() {
     let (experiment, outcome) = remembered();
     let mut bytes = Vec::new();
-    Film::new(experiment, 6, 4, Eyes::Both).write(&[("seed", "1".to_owned())], &mut bytes).expect("written");
+    Film::new(experiment, 6, 4, FilmOf::All).write(&[("seed", "1".to_owned())], &mut bytes).expect("written");
     let (info, frames) = frames(&bytes);
     assert_eq!((info.width, info.height, frames.len()), (1_280, 480, 4));
     assert!(info.utf8_text.iter().any(|text| text.keyword == "pxpl5 seed"));
@@ -432,8 +432,8 @@ fn a_film_shows_every_field_at_the_true_rate() {
 #[test]
 fn a_film_without_a_field_is_refused() {
     let (experiment, _) = remembered();
-    let film = Film::new(experiment, 0, 0, Eyes::One(Eye::Left));
-    assert!(matches!(film.write(&[], Vec::new()), Err(FilmError::Fields { found: 0, .. })));
+    let film = Film::new(experiment, 0, 0, FilmOf::One(Eye::Left.into()));
+    assert!(matches!(film.write(&[], Vec::new()), Err(FilmError::Periods { found: 0, .. })));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use pxpl5::{Experiment, MachineConfig, Measured, Outcome, Pixels, RenderingContr
 use pxpl5_gp::Stage;
 use pxpl5_sim::{Span, Time};
 use std::rc::Rc;
-use support::{boards, video};
+use support::video;
 
 fn outcome(pipeline: impl pxpl5::Pipeline + 'static, scene: &str, fields: u64) -> Outcome {
     let machine = if pipeline.name() == "slats" { MachineConfig::slats() } else { MachineConfig::small_hmd() };
@@ -73,7 +73,7 @@ fn of_a_split_copy_the_top_ends_before_the_retrace_and_the_bottom_begins_after()
     let copies = bars(&timeline, "right frame buffer");
     assert!(copies.iter().any(|bar| bar.bottom == Some(true)));
     for bar in copies {
-        let retrace = video(split()).retrace(bar.picture);
+        let retrace = video(&split()).retrace(bar.picture);
         match bar.bottom {
             Some(true) => assert!(bar.begin >= retrace),
             Some(false) => assert!(bar.end <= retrace),
@@ -199,7 +199,9 @@ fn the_figures_in_the_documents_are_fresh() {
     for figure in PIPELINE_FIGURES {
         let path = format!("{}/docs/figures/{}.svg", env!("CARGO_MANIFEST_DIR"), figure.name);
         let kept = std::fs::read_to_string(&path).unwrap_or_default();
-        let drawn = figure.draw().expect("its experiment runs");
+        let options =
+            TimelineOptions { title: Some(figure.title()), fields: figure.fields, ..TimelineOptions::default() };
+        let drawn = svg(&figure.run().expect("its experiment runs"), &options);
         assert!(kept == drawn, "{path} is stale: cargo run --release --example figures");
     }
 }

@@ -186,7 +186,7 @@ mod tests {
         for (path, value, _) in FITTED {
             let (preset, path) = path.split_once(':').expect("names a preset");
             let parameters = MachineConfig::preset(preset).expect("exists").parameters();
-            assert_eq!(parameters.iter().find(|p| p.path == path).map(|p| p.value), Some(value), "{preset}");
+            assert_eq!(parameters.iter().find(|p| p.path == path).map(|p| p.value), Some(value.into()), "{preset}");
         }
     }
 

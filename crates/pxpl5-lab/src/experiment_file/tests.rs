@@ -125,7 +125,7 @@ fn a_motion_is_round_the_scene() {
     let (centre, _) = scene.bounding_sphere();
     for time_ps in [0, 1_000_000_000_000, 2_500_000_000_000] {
         let eye = scene.motion().pose(time_ps).position;
-        assert!(((eye - centre).length() - 3.0).abs() < 1e-3);
+        assert!(((eye - centre.as_dvec3()).length() - 3.0).abs() < 1e-3);
     }
     assert_ne!(scene.motion().pose(0).position, scene.motion().pose(1_000_000_000_000).position);
 }
