@@ -68,8 +68,8 @@ pub use pxpl5_measure::{
 };
 pub use pxpl5_run::{
     BareHost, Code, DefinedStatistics, Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint,
-    Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key, KeyValue, KeyValues, LimitCriterion,
-    Outcome, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Level, Raster, Registry,
+    Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key, KeyValue, KeyValues, Level,
+    LimitCriterion, Outcome, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry,
     RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary, TestScene, Viewpoint, WARM_UP_PICTURES,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};

@@ -274,7 +274,9 @@ fn stages_from_head_to_light_add_up() {
             .steady_pictures()
             .iter()
             .filter(|times| times.copied_at.is_some())
-            .filter_map(|times| Some(pipeline.light(outcome.record(), times).since(*measured.get(&times.view)?).as_ms()))
+            .filter_map(|times| {
+                Some(pipeline.light(outcome.record(), times).since(*measured.get(&times.view)?).as_ms())
+            })
             .collect();
         let mean = ages.iter().sum::<f64>() / ages.len() as f64;
         assert!(ages.len() > 10 && (mean - budget.total_ms).abs() < 1e-6, "{}: {mean}", pipeline.name());

@@ -119,7 +119,8 @@ pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
 ///
 /// When the encoder refuses it.
 pub(crate) fn png(picture: &RgbImage, report: &Report) -> Result<Vec<u8>, CliError> {
-    png_bytes(picture, &origin(report)).map_err(|error| CliError::failure(format!("a picture cannot be encoded: {error}")))
+    png_bytes(picture, &origin(report))
+        .map_err(|error| CliError::failure(format!("a picture cannot be encoded: {error}")))
 }
 
 #[cfg(test)]

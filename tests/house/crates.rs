@@ -1,0 +1,71 @@
+//! The crates of the workspace, as cargo and their sources tell of them.
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A crate of ours.
+pub(crate) struct Crate {
+    /// Its name.
+    pub(crate) name: String,
+    /// What its manifest says of it.
+    pub(crate) about: String,
+    /// The crates of ours that it is built of, without those of its tests.
+    pub(crate) dependencies: Vec<String>,
+    /// Its sources.
+    pub(crate) files: Vec<SourceFile>,
+}
+
+/// A source file.
+pub(crate) struct SourceFile {
+    /// Its path below `src`, with `/`.
+    pub(crate) path: String,
+    /// What is in it.
+    pub(crate) text: String,
+}
+
+/// All crates, by name.
+pub(crate) fn workspace() -> Vec<Crate> {
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--no-deps", "--offline", "--format-version", "1"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let metadata: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let packages = metadata["packages"].as_array().expect("a list");
+    let names: Vec<&str> = packages.iter().filter_map(|package| package["name"].as_str()).collect();
+    let mut all: Vec<Crate> = packages.iter().map(|package| read(package, &names)).collect();
+    all.sort_by(|a, b| a.name.cmp(&b.name));
+    all
+}
+
+fn read(package: &Value, names: &[&str]) -> Crate {
+    let text = |key: &str| package[key].as_str().unwrap_or_default().to_owned();
+    let dependencies = package["dependencies"].as_array().expect("a list").iter();
+    let mut below: Vec<String> = dependencies
+        .filter(|dependency| dependency["kind"].is_null())
+        .filter_map(|dependency| dependency["name"].as_str())
+        .filter(|name| names.contains(name))
+        .map(str::to_owned)
+        .collect();
+    below.sort();
+    below.dedup();
+    let src = Path::new(&text("manifest_path")).with_file_name("src");
+    let mut files = Vec::new();
+    collect(&src, &src, &mut files);
+    files.sort_by(|a, b| a.path.cmp(&b.path));
+    Crate { name: text("name"), about: text("description"), dependencies: below, files }
+}
+
+fn collect(src: &Path, folder: &Path, files: &mut Vec<SourceFile>) {
+    for entry in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("readable")) {
+        let path: PathBuf = entry.path();
+        if path.is_dir() {
+            collect(src, &path, files);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            let below = path.strip_prefix(src).expect("below src").to_string_lossy().replace('\\', "/");
+            files.push(SourceFile { path: below, text: std::fs::read_to_string(&path).expect("text") });
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! The rules of the house, and the part of ARCHITECTURE.md that is made from its crates.
+//!
+//! `PXPL5_UPDATE_HOUSE=1 cargo test --test house` writes that part anew.
+
+mod crates;
+mod document;
+mod modules;
+mod source;
+
+use crates::{Crate, workspace};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The floors of the house: a crate may depend on crates of the floors listed with it, and on those of its own floor only
+/// where that is said.
+const FLOORS: [(&str, &[&str], &[&str]); 11] = [
+    ("ground", &["parameters", "pxpl5-sim", "pxpl5-wire", "i860", "pxpl5-display"], &["ground"]),
+    ("boards", &["pxpl5-ring", "pxpl5-gp", "pxpl5-renderer", "pxpl5-framebuffer", "pxpl5-hires"], &["ground"]),
+    ("world", &["tracking", "pxpl5-scene"], &["ground", "world"]),
+    ("geometry", &["pxpl5-geometry", "pphigs"], &["ground", "boards", "geometry"]),
+    ("firmware", &["rendering-control", "slats", "jitp"], &["ground", "boards", "geometry"]),
+    ("machine", &["pxpl5-machine"], &["ground", "boards"]),
+    ("run", &["pxpl5-run"], &["ground", "boards", "geometry", "firmware", "world", "machine"]),
+    (
+        "measure",
+        &["pxpl5-measure", "pxpl5-analytic"],
+        &["ground", "boards", "geometry", "firmware", "world", "machine", "run"],
+    ),
+    ("lab", &["pxpl5-lab"], &["ground", "boards", "geometry", "firmware", "world", "machine", "run", "measure"]),
+    ("views", &["pxpl5-views"], &["ground", "boards", "world", "machine", "run", "measure"]),
+    (
+        "front",
+        &["pxpl5", "pxpl5-cli"],
+        &["ground", "boards", "geometry", "firmware", "world", "machine", "run", "measure", "lab", "views", "front"],
+    ),
+];
+
+fn floor_of(name: &str) -> Option<&'static str> {
+    FLOORS.iter().find(|(_, crates, _)| crates.contains(&name)).map(|(floor, ..)| *floor)
+}
+
+#[test]
+fn every_crate_has_its_floor_and_depends_only_on_those_below() {
+    for member in workspace() {
+        let floor = floor_of(&member.name).unwrap_or_else(|| panic!("{} is on no floor", member.name));
+        let (_, _, allowed) = FLOORS.iter().find(|(name, ..)| *name == floor).expect("listed");
+        for below in &member.dependencies {
+            let other = floor_of(below).expect("a member");
+            assert!(allowed.contains(&other), "{} ({floor}) depends on {below} ({other})", member.name);
+        }
+    }
+}
+
+#[test]
+fn no_crate_depends_on_itself_through_others() {
+    let members = workspace();
+    let below: BTreeMap<&str, Vec<&str>> = members
+        .iter()
+        .map(|member| (member.name.as_str(), member.dependencies.iter().map(String::as_str).collect()))
+        .collect();
+    assert_eq!(modules::circles(&below), Vec::<Vec<&str>>::new());
+}
+
+#[test]
+fn no_module_imports_itself_through_others() {
+    let mut found = Vec::new();
+    for member in workspace() {
+        let graph = modules::imports(&member);
+        let arrows = graph.iter().map(|(from, to)| (from.as_str(), to.iter().map(String::as_str).collect())).collect();
+        for circle in modules::circles(&arrows) {
+            let inside: BTreeSet<&str> = circle.iter().copied().collect();
+            let ties = circle.iter().flat_map(|from| {
+                let to = graph[*from].iter().filter(|to| inside.contains(to.as_str()));
+                to.map(move |to| format!("\n    {from} -> {to}"))
+            });
+            found.push(format!("{}: {circle:?}{}", member.name, ties.collect::<String>()));
+        }
+    }
+    assert!(found.is_empty(), "{} circles:\n{}", found.len(), found.join("\n"));
+}
+
+#[test]
+fn the_facade_only_hands_on() {
+    let facade = workspace().into_iter().find(|member| member.name == "pxpl5").expect("the root");
+    let lines: usize = facade.files.iter().map(|file| file.text.lines().count()).sum();
+    assert!(lines < 300, "{lines} lines");
+    for line in facade.files.iter().flat_map(|file| file.text.lines()) {
+        assert!(!line.trim_start().starts_with("pub fn") && !line.contains("impl "), "{line}");
+    }
+}
+
+/// What a browser cannot run: clocks, threads, files and the environment of the host.
+const OF_THE_HOST: [&str; 7] =
+    ["std::time", "Instant::now", "SystemTime", "std::thread", "std::fs", "std::env::", "std::process"];
+
+#[test]
+fn one_experiment_needs_no_clock_thread_or_file_of_the_host() {
+    let members = workspace();
+    for name in closure(&members, "pxpl5-run") {
+        let member = members.iter().find(|member| member.name == name).expect("a member");
+        for file in &member.files {
+            let product = source::without_host_feature(&source::product(&file.text));
+            for word in OF_THE_HOST {
+                assert!(!product.contains(word), "{} of {name} uses {word}", file.path);
+            }
+        }
+    }
+}
+
+/// A crate and all of ours that it is built of.
+fn closure(members: &[Crate], name: &str) -> BTreeSet<String> {
+    let mut all = BTreeSet::from([name.to_owned()]);
+    loop {
+        let more: Vec<String> = members
+            .iter()
+            .filter(|member| all.contains(&member.name))
+            .flat_map(|member| member.dependencies.clone())
+            .filter(|below| !all.contains(below))
+            .collect();
+        if more.is_empty() {
+            return all;
+        }
+        all.extend(more);
+    }
+}
+
+#[test]
+fn eyes_fields_and_beams_are_known_to_ntsc_and_its_pipelines_only() {
+    let general = ["pxpl5-display", "pxpl5-machine", "pxpl5-measure", "pxpl5-views"];
+    for member in workspace().iter().filter(|member| general.contains(&member.name.as_str())) {
+        for file in member.files.iter().filter(|file| !KNOWS_EYES.contains(&file.path.as_str())) {
+            let code = source::code(&source::product(&file.text));
+            for word in ["Video", "FieldParity", "Eye::"] {
+                assert!(!source::has_word(&code, word), "{} of {} names {word}", file.path, member.name);
+            }
+        }
+    }
+}
+
+/// The labels of the frame buffers of two eyes.
+const KNOWS_EYES: [&str; 1] = ["surface.rs"];
+
+#[test]
+fn the_second_display_is_at_most_150_lines() {
+    let hires = workspace().into_iter().find(|member| member.name == "pxpl5-hires").expect("a member");
+    let lines: usize = hires.files.iter().map(|file| file.text.lines().count()).sum();
+    assert!(lines <= 150, "{lines} lines");
+}
+
+#[test]
+fn no_file_has_more_than_600_lines_and_only_the_command_prints() {
+    for member in workspace() {
+        for file in &member.files {
+            let lines = file.text.lines().count();
+            assert!(lines <= 600, "{} of {}: {lines} lines", file.path, member.name);
+            let code = source::code(&source::product(&file.text));
+            let prints = ["println!", "eprintln!", "dbg!"].iter().any(|word| code.contains(word));
+            assert!(!prints || member.name == "pxpl5-cli", "{} of {} prints", file.path, member.name);
+        }
+    }
+}
+
+#[test]
+fn architecture_describes_the_crates_as_they_are() {
+    document::check(&workspace());
+}
