@@ -1,6 +1,5 @@
 //! What ends a command early.
 
-use crate::terminal;
 use pxpl5::sweep::SweepError;
 use pxpl5::{ExperimentError, FileError, SnapshotError};
 use std::fmt::Display;
@@ -31,8 +30,8 @@ impl CliError {
         &self.message
     }
 
-    pub(crate) fn report(&self) -> ExitCode {
-        terminal::complain(&format!("pxpl5: {}\n", self.message));
+    /// The exit code that stands for it.
+    pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.code)
     }
 }

@@ -100,7 +100,10 @@ pub fn main(registry: Arc<Registry>) -> ExitCode {
     };
     match run(cli.command) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => error.report(),
+        Err(error) => {
+            terminal::complain(&format!("pxpl5: {}\n", error.message()));
+            error.exit_code()
+        }
     }
 }
 

@@ -12,15 +12,17 @@ mod config;
 mod machine;
 mod observation;
 mod pixels;
+mod ports;
 mod preset;
 mod record;
 mod savings;
 mod traffic;
 
 pub use config::{ConfigError, FirmwareTable, MachineConfig, Parameter};
-pub use machine::{Machine, Ports, RunError};
+pub use machine::{Machine, RunError};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
 pub use pixels::{PixelWorker, SameThread};
+pub use ports::Ports;
 pub use preset::{PRESETS, Preset};
 pub use record::Record;
 pub use savings::Saving;

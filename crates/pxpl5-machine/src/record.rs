@@ -1,8 +1,8 @@
 //! What is known of a machine: the state of its boards and everything observed.
 
 use crate::config::MachineConfig;
-use crate::machine::Ports;
 use crate::observation::{Observation, StageSpan};
+use crate::ports::Ports;
 use pxpl5_display::{Display, Surface};
 use pxpl5_renderer::Renderer;
 use pxpl5_ring::Ring;

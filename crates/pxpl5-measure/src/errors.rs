@@ -1,43 +1,14 @@
 //! Pixel error: where each pixel's content is seen, against where it should be at the moment when it lights.
 
+use crate::percentiles::Percentiles;
 use crate::raster::RasterOffsets;
-use crate::screen::Screen;
-use glam::{DVec2, DVec3};
-use pxpl5_display::{Display, Surface};
-use pxpl5_run::{HeadViews, Outcome, Raster, Source};
+use crate::registration::{Judge, middle};
+use crate::shown::{Drawn, Shown};
+use pxpl5_display::Display;
+use pxpl5_run::{Outcome, Raster};
 use pxpl5_sim::Time;
 use serde::Serialize;
-use std::collections::BTreeMap;
-use tracking::Pose;
-use tracking::view::{HmdView, PixelError, dual_list};
-
-/// Mean and percentiles of some numbers, all zero for none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Percentiles {
-    /// Mean.
-    pub mean: f64,
-    /// Median.
-    pub p50: f64,
-    /// 90 of 100 are at most this.
-    pub p90: f64,
-    /// 99 of 100 are at most this.
-    pub p99: f64,
-    /// Greatest.
-    pub max: f64,
-}
-
-impl Percentiles {
-    /// Of some numbers, none of them NaN. A percentile is the smallest number that so many do not exceed.
-    #[must_use]
-    pub fn of(values: impl Iterator<Item = f64>) -> Self {
-        let mut values: Vec<f64> = values.collect();
-        values.sort_by(f64::total_cmp);
-        let Some(max) = values.last().copied() else { return Self::default() };
-        let at = |percent: usize| values[(values.len() * percent).div_ceil(100).max(1) - 1];
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        Self { mean, p50: at(50), p90: at(90), p99: at(99), max }
-    }
-}
+use tracking::view::{HmdView, PixelError};
 
 /// The error of one field.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -79,150 +50,6 @@ pub const UNJUDGED_FIELDS: u64 = 15;
 
 /// Columns and rows of the grid; odd, so that the middle is one of its pixels.
 const GRID: u32 = 5;
-
-/// What a pixel was drawn for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Drawn {
-    Pose(Pose),
-    Between {
-        from: Pose,
-        to: Pose,
-        part: f64,
-        on_screen: bool,
-    },
-    /// A picture that is shifted on its way to the screen.
-    Shifted(Pose, DVec2),
-}
-
-/// Projects and compares.
-#[derive(Debug)]
-pub(crate) struct Judge<'a> {
-    view: HmdView,
-    head: &'a HeadViews,
-    distance_m: f64,
-}
-
-impl<'a> Judge<'a> {
-    pub(crate) fn new(outcome: &Outcome, head: &'a HeadViews) -> Self {
-        let view = view_of(outcome.record().display());
-        Self { view, head, distance_m: head.distance_m() }
-    }
-
-    /// The point in head axes that a place of the picture shows.
-    fn point(&self, place: DVec2) -> DVec3 {
-        let from_centre = (place - self.view.centre_px()) / self.view.focal_px();
-        DVec3::new(from_centre.x, -from_centre.y, -1.0) * self.distance_m
-    }
-
-    fn world(&self, pose: &Pose, place: DVec2) -> DVec3 {
-        pose.position + pose.orientation * self.point(place)
-    }
-
-    /// The world point that stands at a place of what was drawn.
-    fn content(&self, drawn: &Drawn, place: DVec2) -> DVec3 {
-        match *drawn {
-            Drawn::Pose(pose) => self.world(&pose, place),
-            Drawn::Shifted(pose, shift) => self.world(&pose, place - shift),
-            Drawn::Between { from, to, part, on_screen } => {
-                let between = from.interpolate(&to, part);
-                let drawn_at = |world: DVec3| {
-                    let (a, b) = (from.view_of(world), to.view_of(world));
-                    let interpolate = if on_screen { dual_list::screen_space } else { dual_list::view_space };
-                    interpolate(&self.view, a, b, part)
-                };
-                let mut guess = place;
-                // Each step leaves the square of a per cent or two.
-                for _ in 0..4 {
-                    guess += drawn_at(self.world(&between, guess)).map_or(DVec2::ZERO, |at| place - at);
-                }
-                self.world(&between, guess)
-            }
-        }
-    }
-
-    /// The error of a place of the picture that lights at `at`; `None` if its content should be behind the eye.
-    pub(crate) fn error(&self, place: DVec2, drawn: &Drawn, at: Time) -> Option<PixelError> {
-        let seen = self.head.truth(at).view_of(self.content(drawn, place));
-        let shown = self.point(place);
-        let offset_px = place - self.view.project(seen)?;
-        let degrees = angle_between(shown, seen).to_degrees();
-        Some(PixelError { offset_px, pixels: offset_px.length(), degrees })
-    }
-}
-
-/// Angle between two vectors, exact for small ones too.
-fn angle_between(a: DVec3, b: DVec3) -> f64 {
-    a.cross(b).length().atan2(a.dot(b))
-}
-
-/// Judges single pixels of a run.
-#[derive(Debug)]
-pub struct Registration<'a> {
-    judge: Judge<'a>,
-    shown: Shown<'a>,
-}
-
-impl<'a> Registration<'a> {
-    /// Of a run; `None` when it had no head.
-    #[must_use]
-    pub fn of(outcome: &'a Outcome) -> Option<Self> {
-        let head = outcome.head()?;
-        Some(Self { judge: Judge::new(outcome, head), shown: Shown::of_run(outcome, head) })
-    }
-
-    /// The error of a pixel in a field that scans its line; `None` where nothing is shown yet, or where its content
-    /// should be behind the eye.
-    #[must_use]
-    pub fn at(&self, x: u32, y: u32, field: u64) -> Option<PixelError> {
-        let at = self.shown.outcome.record().display().lights(0, x, y, field)?;
-        let drawn = self.shown.drawn(x, y, field, at)?;
-        self.judge.error(middle(x, y), &drawn, at)
-    }
-}
-
-/// The middle of a pixel.
-fn middle(x: u32, y: u32) -> DVec2 {
-    DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5)
-}
-
-/// Everything that is known of a run's views.
-#[derive(Debug)]
-pub(crate) struct Shown<'a> {
-    outcome: &'a Outcome,
-    screen: Screen,
-    views: BTreeMap<u64, u64>,
-    poses: BTreeMap<u64, Pose>,
-}
-
-impl<'a> Shown<'a> {
-    pub(crate) fn of_run(outcome: &'a Outcome, head: &HeadViews) -> Self {
-        Self {
-            outcome,
-            screen: Screen::of_record(outcome.record()),
-            views: outcome.pictures().iter().map(|times| (times.picture, times.view)).collect(),
-            poses: head.sampled().into_iter().map(|sampled| (sampled.number, sampled.pose)).collect(),
-        }
-    }
-
-    /// What a pixel that lights at `at` shows; `None` before anything came.
-    pub(crate) fn drawn(&self, x: u32, y: u32, field: u64, at: Time) -> Option<Drawn> {
-        let target = self.screen.shown(x, y, field, at)?;
-        let pose = |number: u64| self.poses.get(&number).copied();
-        Some(match self.outcome.pipeline().source(self.outcome.record(), &target, &self.views)? {
-            Source::View(number) => Drawn::Pose(pose(number)?),
-            Source::Between { from, to, part, on_screen } => {
-                Drawn::Between { from: pose(from)?, to: pose(to)?, part, on_screen }
-            }
-        })
-    }
-}
-
-/// The picture of the head-mounted display on the first surface of a display.
-pub(crate) fn view_of(display: &dyn Display) -> HmdView {
-    let ntsc = HmdView::ntsc();
-    let sized = |surface: &Surface| HmdView::new(surface.width, surface.height, ntsc.horizontal_deg());
-    display.surfaces().first().and_then(|surface| sized(surface).ok()).unwrap_or(ntsc)
-}
 
 /// The pixels of a period at which it is judged, in the order of the beam, and when each lights.
 fn grid(display: &dyn Display, period: u64) -> Vec<(u32, u32, Time)> {
@@ -344,16 +171,4 @@ pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
         Raster::Plain => PixelErrors::of(outcome),
         Raster::Vdrt => PixelErrors::with_raster_offset(outcome),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn percentiles_of_one_to_a_hundred() {
-        let p = Percentiles::of((1..=100).rev().map(f64::from));
-        assert_eq!((p.mean, p.p50, p.p90, p.p99, p.max), (50.5, 50.0, 90.0, 99.0, 100.0));
-        assert_eq!(Percentiles::of(std::iter::empty()), Percentiles::default());
-    }
 }

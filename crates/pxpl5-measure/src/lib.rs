@@ -13,22 +13,27 @@ mod budget;
 mod errors;
 mod latency;
 mod measured;
+mod percentiles;
 mod pictures;
 mod quantity;
 mod raster;
+mod registration;
 mod report;
 mod screen;
+mod shown;
 mod summary;
 
 pub use budget::Budget;
-pub use errors::{FieldError, Percentiles, PixelErrors, Registration, UNJUDGED_FIELDS, pixel_errors};
+pub use errors::{FieldError, PixelErrors, UNJUDGED_FIELDS, pixel_errors};
 pub use latency::{
     LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition, SurfaceStatistics, latency_by_surface, latency_parts,
 };
 pub use measured::Measured;
+pub use percentiles::Percentiles;
 pub use pictures::{picture, screen, side_by_side};
 pub use pxpl5_run::Outcome;
 pub use quantity::{Measure, QUANTITIES, Quantity, Results};
 pub use raster::{RasterOffsets, Vdrt};
+pub use registration::Registration;
 pub use report::{HeadReport, Report};
 pub use summary::summary;

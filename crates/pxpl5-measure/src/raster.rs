@@ -1,6 +1,6 @@
 //! The raster offset of VDRT: the picture is moved, as it is scanned out, by what its pose was wrong.
 
-use crate::errors::{Drawn, Shown, view_of};
+use crate::shown::{Drawn, Shown, view_of};
 use glam::DVec2;
 use image::{Rgb, RgbImage};
 use pxpl5_display::Display;

@@ -1,6 +1,6 @@
 //! From a scene to what graphics processors hold and hosts send.
 
-use crate::pipeline::{Views, ViewsWanted};
+use crate::views::{Views, ViewsWanted};
 use pphigs::{DisplayList, EyeView, Frame, FrameView, MAX_EDITS, ModelEdit, RecentViews, Structure};
 use pxpl5_display::Surface;
 use pxpl5_geometry::Sphere;

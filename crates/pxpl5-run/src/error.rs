@@ -1,6 +1,7 @@
 //! Why an experiment gives no result.
 
-use crate::{Outcome, WARM_UP_PICTURES};
+use crate::experiment::WARM_UP_PICTURES;
+use crate::outcome::Outcome;
 use pxpl5_machine::{ConfigError, RunError};
 use thiserror::Error;
 

@@ -2,14 +2,12 @@
 
 use crate::display_list::view;
 use crate::head::Head;
-use crate::outcome::Outcome;
-use crate::pipeline::{ReportTimes, Views, ViewsWanted};
-use crate::statistics::Statistics;
+use crate::rehearsal::Rehearsal;
+use crate::views::{ReportTimes, Views, ViewsWanted};
 use glam::{DQuat, DVec3};
 use pphigs::FrameView;
 use pxpl5_scene::{Hmd, Scene};
 use pxpl5_sim::Time;
-use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tracking::Pose;
@@ -34,34 +32,6 @@ pub struct Sampled {
     pub predicted_for: Option<Time>,
     /// The pose in the scene's coordinates.
     pub pose: Pose,
-}
-
-/// When views are seen, found by a run without prediction.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Rehearsal {
-    seen_at: BTreeMap<u64, Time>,
-    mean_lead_ps: u64,
-}
-
-impl Rehearsal {
-    /// What a run showed.
-    pub(crate) fn of(outcome: &Outcome) -> Self {
-        let record = outcome.record();
-        let pipeline = outcome.pipeline();
-        let Some(head) = outcome.head() else { return Self::default() };
-        let mut seen_at = BTreeMap::new();
-        for times in outcome.pictures() {
-            seen_at.entry(times.view).or_insert_with(|| pipeline.light(record, times));
-        }
-        let leads = head.sampled().into_iter().filter_map(|s| Some(seen_at.get(&s.number)?.since(s.known).as_ms()));
-        let mean_lead_ps = (Statistics::of(leads).mean * 1e9) as u64;
-        Self { seen_at, mean_lead_ps }
-    }
-
-    fn shown_at(&self, number: u64, sampled_at: Time) -> Time {
-        let expected = Time(sampled_at.0 + self.mean_lead_ps);
-        self.seen_at.get(&number).copied().filter(|at| *at >= sampled_at).unwrap_or(expected)
-    }
 }
 
 /// What a pose of the predictor rests on.

@@ -19,30 +19,35 @@ mod fingerprint;
 mod head;
 mod head_views;
 mod host;
+mod keys;
 mod level;
 mod outcome;
+mod papers;
 mod pipeline;
 mod pipelines;
 mod raster;
 mod registry;
+mod rehearsal;
+mod running;
 mod statistics;
 mod summary;
+mod views;
 
 pub use display_list::{display_list, views};
 pub use error::ExperimentError;
 pub use experiment::{Experiment, FIELDS_RANGE, Pixels, WARM_UP_PICTURES};
 pub use fingerprint::Fingerprint;
 pub use head::{Head, HeadError};
-pub use head_views::{FIELDS_WITH_HEAD, Follower, HeadViews, Rehearsal, Sampled};
+pub use head_views::{FIELDS_WITH_HEAD, Follower, HeadViews, Sampled};
 pub use host::{BareHost, Host};
+pub use keys::{Key, KeyValue, KeyValues, PipelineSettings};
 pub use level::Level;
 pub use outcome::Outcome;
-pub use pipeline::{PictureTimes, Pipeline, ReportTimes, Setup, Source, Views, ViewsWanted};
+pub use pipeline::{PictureTimes, Pipeline, Setup, Source};
 pub use pipelines::{Code, Frameless, Interpolation, Jitp, RenderingControl, Slats, Viewpoint, region_at};
 pub use raster::Raster;
-pub use registry::{
-    ClosedForm, DisplayEntry, Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings,
-    Registry, TestScene,
-};
+pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};
+pub use rehearsal::Rehearsal;
 pub use statistics::{DefinedStatistics, Statistics};
 pub use summary::Summary;
+pub use views::{ReportTimes, Views, ViewsWanted};

@@ -1,9 +1,9 @@
 //! What came of an experiment, as data.
 
+use crate::experiment::{Experiment, WARM_UP_PICTURES};
 use crate::head_views::HeadViews;
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::statistics::Statistics;
-use crate::{Experiment, WARM_UP_PICTURES};
 use pxpl5_machine::{Observation, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use std::sync::Arc;

@@ -1,8 +1,9 @@
 //! Pipelines as experiments see them.
 
-use crate::registry::KeyValue;
+use crate::keys::KeyValue;
+use crate::views::{ReportTimes, Views, ViewsWanted};
 use image::RgbImage;
-use pphigs::{DisplayList, FrameView};
+use pphigs::DisplayList;
 use pxpl5_gp::HostTiming;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
@@ -12,16 +13,6 @@ use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::sync::Arc;
-
-/// The view of a frame or update (by number) whose pose is sampled at a time.
-pub type Views = Arc<dyn Fn(u64, Time) -> FrameView + Send + Sync>;
-
-/// The view that firmware with a clock of its own asks for: number, the instant up to which the host's tracking data have
-/// reached it, and when the view will be seen.
-pub type ViewsWanted = Arc<dyn Fn(u64, Time, Time) -> FrameView + Send + Sync>;
-
-/// When the first report of the tracker after an instant reaches the host; `None` if none will.
-pub type ReportTimes = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;
 
 /// Where a part of the screen comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]

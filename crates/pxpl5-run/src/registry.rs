@@ -1,103 +1,15 @@
 //! Which pipelines and displays there are. Whoever offers, reads, compares or limits them iterates over a [`Registry`].
 
+use crate::error::ExperimentError;
+use crate::experiment::Experiment;
+use crate::keys::{Key, PipelineSettings};
 use crate::pipeline::Pipeline;
-use crate::pipelines;
-use crate::{Experiment, ExperimentError, Summary};
+use crate::summary::Summary;
 use parameters::nearest;
 use pxpl5_display::DisplayConfig;
 use pxpl5_machine::{FirmwareTable, MachineConfig};
 use serde::Serialize;
-use std::collections::BTreeMap;
-use std::fmt;
 use std::sync::Arc;
-
-/// The value of a pipeline's key.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum KeyValue {
-    /// True or false.
-    Flag(bool),
-    /// A whole number.
-    Whole(u64),
-    /// One of some names.
-    Name(&'static str),
-}
-
-impl fmt::Display for KeyValue {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Flag(flag) => flag.fmt(f),
-            Self::Whole(number) => number.fmt(f),
-            Self::Name(name) => name.fmt(f),
-        }
-    }
-}
-
-/// The values that a key takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum KeyValues {
-    /// True or false.
-    Flag,
-    /// Whole numbers from the first to the second.
-    Whole(u64, u64),
-    /// These names.
-    Names(&'static [&'static str]),
-}
-
-impl fmt::Display for KeyValues {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Flag => f.write_str("true or false"),
-            Self::Whole(low, high) => write!(f, "{low} to {high}"),
-            Self::Names([]) => Ok(()),
-            Self::Names([name]) => f.write_str(name),
-            Self::Names([first @ .., last]) => write!(f, "{} or {last}", first.join(", ")),
-        }
-    }
-}
-
-/// A key of a pipeline: in experiment files `name = value`, on the command line `--name value`.
-#[derive(Clone, Copy, Debug)]
-pub struct Key {
-    /// Its name in experiment files; on the command line `_` is written `-`.
-    pub name: &'static str,
-    /// What it sets, in a line of help.
-    pub about: &'static str,
-    /// What it takes.
-    pub values: KeyValues,
-    /// Machine parameters that it sets too, and that must therefore not be given beside it.
-    pub sets: &'static [&'static str],
-}
-
-/// The keys of a pipeline that somebody has given, checked against its [`Key`]s.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct PipelineSettings {
-    values: BTreeMap<&'static str, KeyValue>,
-}
-
-impl PipelineSettings {
-    /// Gives a key a value.
-    pub fn set(&mut self, key: &'static str, value: KeyValue) {
-        self.values.insert(key, value);
-    }
-
-    /// The value of a key that takes true or false; `None` if it was not given.
-    #[must_use]
-    pub fn flag(&self, key: &str) -> Option<bool> {
-        if let Some(KeyValue::Flag(flag)) = self.values.get(key) { Some(*flag) } else { None }
-    }
-
-    /// The value of a key that takes whole numbers; `None` if it was not given.
-    #[must_use]
-    pub fn whole(&self, key: &str) -> Option<u64> {
-        if let Some(KeyValue::Whole(number)) = self.values.get(key) { Some(*number) } else { None }
-    }
-
-    /// The value of a key that takes names; `None` if it was not given.
-    #[must_use]
-    pub fn name(&self, key: &str) -> Option<&'static str> {
-        if let Some(KeyValue::Name(name)) = self.values.get(key) { Some(name) } else { None }
-    }
-}
 
 /// What must hold when a pipeline is said to draw a scene in time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -177,10 +89,10 @@ pub struct Registry {
 }
 
 impl Registry {
-    /// Those of the papers. Their closed forms are added by the crate that has them.
+    /// With these; more may be added.
     #[must_use]
-    pub fn of_papers() -> Self {
-        Self { pipelines: pipelines::entries(), displays: crate::displays::entries() }
+    pub const fn with(pipelines: Vec<PipelineEntry>, displays: Vec<DisplayEntry>) -> Self {
+        Self { pipelines, displays }
     }
 
     /// A machine with the numbers of every pipeline's firmware beside those of its boards.

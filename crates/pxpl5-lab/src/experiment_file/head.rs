@@ -1,6 +1,6 @@
 //! The head in front of the pipeline: how it moves, its tracker and predictor, and the raster before its eyes.
 
-use super::plan::beside;
+use super::read::beside;
 use super::{ExperimentFile, FileError};
 use crate::compare::{motion, predictor, tracker};
 use pxpl5_run::{Head, Pipeline, Raster};

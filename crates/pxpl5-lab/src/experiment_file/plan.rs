@@ -2,7 +2,7 @@
 
 use super::head::HeadChoice;
 use super::motion::MotionChoice;
-use super::read::{plain, wrong};
+use super::read::{beside, plain, wrong};
 use super::{ExperimentFile, FileError, Setting};
 use crate::Workstation;
 use crate::levels::summarise;
@@ -15,7 +15,7 @@ use pxpl5_run::{
     Pipeline, PipelineEntry, PipelineSettings, Pixels, Registry,
 };
 use pxpl5_scene::Scene;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
@@ -76,11 +76,6 @@ impl SceneChoice {
 fn is_file(name: &str) -> bool {
     let extension = Path::new(name).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     name.contains(['/', std::path::MAIN_SEPARATOR]) || extension.is_some_and(|e| MODEL_FILES.contains(&e.as_str()))
-}
-
-pub(super) fn beside(folder: &Path, name: &str) -> String {
-    let path: PathBuf = folder.join(name);
-    path.display().to_string()
 }
 
 /// What a run writes beside its report.

@@ -3,6 +3,7 @@
 use super::{ExperimentFile, FileError, Setting};
 use parameters::nearest;
 use std::ops::RangeInclusive;
+use std::path::Path;
 use toml::Value;
 
 impl ExperimentFile {
@@ -72,4 +73,9 @@ pub(crate) fn plain(value: &Value) -> String {
 pub(super) fn wrong(key: &str, setting: &Setting, expected: &str) -> FileError {
     let found: String = setting.value.to_string().chars().take(60).collect();
     FileError::Value { place: setting.place.clone(), key: key.to_owned(), expected: expected.to_owned(), found }
+}
+
+/// A file beside others in a folder.
+pub(super) fn beside(folder: &Path, name: &str) -> String {
+    folder.join(name).display().to_string()
 }

@@ -2,8 +2,9 @@
 
 use super::jitp::{TABLES, config, load};
 use super::ntsc;
+use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
-use crate::registry::{Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings, TestScene};
+use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{BlockOrder, Schedule};
 use pphigs::{Counts, Share};
 use pxpl5_framebuffer::Video;

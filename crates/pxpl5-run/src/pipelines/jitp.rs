@@ -1,8 +1,9 @@
 //! Just-in-time pixels on the emulated machine.
 
 use super::ntsc;
+use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
-use crate::registry::{Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings, TestScene};
+use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{Beam, JitpConfig, JitpTiming, Schedule, Transforms, Wanted, host, master, slave};
 use pphigs::Share;
 use pxpl5_framebuffer::Video;

@@ -1,7 +1,8 @@
 //! Rendering Control on the emulated machine.
 
+use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
-use crate::registry::{Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings, TestScene};
+use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use image::RgbImage;
 use pphigs::{Binning, Picture, Shading};
 use pxpl5_geometry::Viewport;

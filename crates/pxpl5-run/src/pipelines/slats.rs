@@ -1,8 +1,9 @@
 //! Slats on the emulated machine.
 
 use super::ntsc;
+use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
-use crate::registry::{Goal, Key, KeyValue, KeyValues, LimitCriterion, PipelineEntry, PipelineSettings, TestScene};
+use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use pphigs::{Binning, Share};
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{CodeVersion, GpTiming, Priority, Stage};

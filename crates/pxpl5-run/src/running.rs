@@ -1,0 +1,179 @@
+//! Running an experiment.
+
+use crate::display_list::{display_list, hmd_before, views};
+use crate::error::ExperimentError;
+use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
+use crate::head_views::{FIELDS_WITH_HEAD, HeadViews};
+use crate::level::{Level, with_clocks_of_instructions};
+use crate::outcome::Outcome;
+use crate::pipeline::Setup;
+use crate::rehearsal::Rehearsal;
+use crate::statistics::Statistics;
+use crate::views::ReportTimes;
+use pxpl5_machine::{Machine, MachineConfig};
+use pxpl5_sim::Time;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+impl Experiment {
+    /// Builds the machine, switched on, with the pipeline's programs loaded; with prediction, after a rehearsal.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError`] for a machine, scene or number of fields that cannot be simulated.
+    pub fn build(&self) -> Result<Machine, ExperimentError> {
+        Ok(self.assemble(self.rehearse()?)?.0)
+    }
+
+    fn assemble(&self, rehearsal: Option<Rehearsal>) -> Result<(Machine, Option<Arc<HeadViews>>), ExperimentError> {
+        let expected = if self.head.is_some() { (FIELDS_RANGE.0, FIELDS_WITH_HEAD) } else { FIELDS_RANGE };
+        if !(expected.0..=expected.1).contains(&self.fields) {
+            return Err(ExperimentError::Fields { expected, found: self.fields });
+        }
+        let adapted = self.pipeline.adapt(self.config.clone());
+        let layout = self.pipeline.layout();
+        let config = match self.level {
+            Level::Analytic => return Err(ExperimentError::Level),
+            Level::Transaction => adapted,
+            Level::Cycle => with_clocks_of_instructions(&adapted, &layout),
+        };
+        let mut machine = Machine::new(&config, self.pipeline.eyes(), layout)?;
+        if self.level == Level::Cycle {
+            machine.run_code();
+        }
+        let (setup, head) = self.setup(&config, &machine, rehearsal)?;
+        self.pipeline.load(&mut machine, &setup)?;
+        if let Some(seed) = self.shuffle {
+            machine.shuffle_ties(seed);
+        }
+        self.given_up.iter().for_each(|saving| machine.give_up(*saving));
+        if self.pixels == Pixels::All {
+            machine.compute_all_pixels(self.host.pixel_worker());
+        }
+        if self.traffic {
+            machine.record_traffic();
+        }
+        machine.switch_on();
+        Ok((machine, head))
+    }
+
+    fn setup(
+        &self,
+        config: &MachineConfig,
+        machine: &Machine,
+        rehearsal: Option<Rehearsal>,
+    ) -> Result<(Setup, Option<Arc<HeadViews>>), ExperimentError> {
+        let surface = machine.record().display().surfaces().first().cloned();
+        let hmd = hmd_before(surface.as_ref());
+        let eyes = self.pipeline.eyes();
+        let period = config.host.view_period_ns * 1_000;
+        let list = Arc::new(display_list(&self.scene).map_err(ExperimentError::Scene)?);
+        let (views, wanted) = views(&self.scene, self.seed, hmd, eyes);
+        let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
+        let setup = Setup { list, views, wanted, reports, host: config.host, pixels: self.pixels != Pixels::Off };
+        let Some(head) = &self.head else { return Ok((setup, None)) };
+        let until = machine.record().tick(self.fields);
+        let head = Arc::new(HeadViews::new(Arc::clone(head), &self.scene, (hmd, eyes), until, rehearsal));
+        let (views, wanted, reports) = HeadViews::functions(&head);
+        Ok((Setup { views, wanted, reports, ..setup }, Some(head)))
+    }
+
+    /// When each view is seen, from a run without prediction; `None` where nobody predicts, or the firmware knows.
+    fn rehearse(&self) -> Result<Option<Rehearsal>, ExperimentError> {
+        if self.pipeline.knows_when_seen() {
+            return Ok(None);
+        }
+        let Some(head) = self.head.as_ref().filter(|head| head.predicts()) else { return Ok(None) };
+        let plain = Self { head: Some(Arc::new(head.without_prediction())), pixels: Pixels::Off, ..self.clone() };
+        let outcome = plain.perform(None, &[], |_, _| Ok(()))?;
+        Ok(Some(rehearsal_of(&outcome)))
+    }
+
+    /// Runs it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Experiment::build`]; [`ExperimentError::Run`] with everything observed so far when the run ends early;
+    /// [`ExperimentError::TooShort`] when nothing was shown.
+    pub fn run(&self) -> Result<Outcome, ExperimentError> {
+        self.run_with(|_, _| {})
+    }
+
+    /// Runs it and reports progress: fields simulated, of all.
+    ///
+    /// # Errors
+    ///
+    /// As [`Experiment::run`].
+    pub fn run_with(&self, mut progress: impl FnMut(u64, u64)) -> Result<Outcome, ExperimentError> {
+        self.run_stopping(&[], |field, _| {
+            progress(field, self.fields);
+            Ok(())
+        })
+    }
+
+    /// Runs it and stops at the retrace that begins each of some fields, and now and then between: `at` sees the field
+    /// and the machine, before anything of that field has happened, and may end the run.
+    ///
+    /// # Errors
+    ///
+    /// As [`Experiment::run`], and what `at` says.
+    pub fn run_stopping(
+        &self,
+        stops: &[u64],
+        at: impl FnMut(u64, &mut Machine) -> Result<(), ExperimentError>,
+    ) -> Result<Outcome, ExperimentError> {
+        self.perform(self.rehearse()?, stops, at)
+    }
+
+    fn perform(
+        &self,
+        rehearsal: Option<Rehearsal>,
+        stops: &[u64],
+        mut at: impl FnMut(u64, &mut Machine) -> Result<(), ExperimentError>,
+    ) -> Result<Outcome, ExperimentError> {
+        let begun_s = self.host.seconds();
+        let (mut machine, head) = self.assemble(rehearsal)?;
+        let mut result = Ok(());
+        for field in self.stops(stops) {
+            let until = machine.record().tick(field);
+            result = machine.run_until(until);
+            if result.is_err() {
+                break;
+            }
+            at(field, &mut machine)?;
+        }
+        machine.finish_pixels();
+        let host_seconds = begun_s.zip(self.host.seconds()).map(|(begin, end)| end - begin);
+        let outcome = Outcome::new(self.clone(), machine.into_record(), head, host_seconds);
+        match result {
+            Err(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
+            Ok(()) if outcome.steady_pictures().is_empty() => {
+                Err(ExperimentError::TooShort { fields: self.fields, pictures: outcome.pictures().len() })
+            }
+            Ok(()) => Ok(outcome),
+        }
+    }
+
+    /// Fields at which to stop: those asked for, every so many for the progress, the last.
+    fn stops(&self, asked: &[u64]) -> BTreeSet<u64> {
+        let regular = (PROGRESS_FIELDS..self.fields).step_by(PROGRESS_FIELDS as usize);
+        asked.iter().copied().filter(|field| *field < self.fields).chain(regular).chain([self.fields]).collect()
+    }
+}
+
+/// Fields between two reports of progress.
+const PROGRESS_FIELDS: u64 = 60;
+
+/// When the views of a run were seen.
+fn rehearsal_of(outcome: &Outcome) -> Rehearsal {
+    let Some(head) = outcome.head() else { return Rehearsal::default() };
+    let record = outcome.record();
+    let pipeline = outcome.pipeline();
+    let mut seen_at = BTreeMap::new();
+    for times in outcome.pictures() {
+        seen_at.entry(times.view).or_insert_with(|| pipeline.light(record, times));
+    }
+    let leads = head.sampled().into_iter().filter_map(|s| Some(seen_at.get(&s.number)?.since(s.known).as_ms()));
+    let mean_lead_ps = (Statistics::of(leads).mean * 1e9) as u64;
+    Rehearsal { seen_at, mean_lead_ps }
+}

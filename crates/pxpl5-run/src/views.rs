@@ -1,0 +1,15 @@
+//! The functions that a pipeline asks for views.
+
+use pphigs::FrameView;
+use pxpl5_sim::Time;
+use std::sync::Arc;
+
+/// The view of a frame or update (by number) whose pose is sampled at a time.
+pub type Views = Arc<dyn Fn(u64, Time) -> FrameView + Send + Sync>;
+
+/// The view that firmware with a clock of its own asks for: number, the instant up to which the host's tracking data have
+/// reached it, and when the view will be seen.
+pub type ViewsWanted = Arc<dyn Fn(u64, Time, Time) -> FrameView + Send + Sync>;
+
+/// When the first report of the tracker after an instant reaches the host; `None` if none will.
+pub type ReportTimes = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;
