@@ -1,4 +1,5 @@
 //! Models from the host's files: the only place in this crate that asks an operating system for something.
+#![cfg(feature = "files")]
 
 use std::fs::{self, File};
 use std::path::Path;
