@@ -2,7 +2,7 @@
 
 use parameters::{ParameterInfo, ParameterTable};
 use pxpl5_framebuffer::FrameBufferConfig;
-use pxpl5_gp::{GpTiming, HostTiming};
+use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
 use serde::{Deserialize, Serialize};
@@ -23,8 +23,10 @@ pub struct MachineConfig {
     pub n_renderers: usize,
     /// The ring.
     pub ring: RingTiming,
-    /// Graphics processors and the code that they run.
+    /// Graphics processors and the times of the code that they run.
     pub gp: GpTiming,
+    /// The i860 code that tells those times at the level of cycles; `None` has the table tell them there too.
+    pub code: Option<CodeVersion>,
     /// Renderers.
     pub renderer: RendererTiming,
     /// Frame buffers and video.
@@ -44,6 +46,8 @@ pub struct Preset {
     n_renderers: usize,
     #[serde(skip)]
     gp: GpTiming,
+    #[serde(skip)]
+    code: CodeVersion,
 }
 
 /// All presets.
@@ -54,6 +58,7 @@ pub const PRESETS: [Preset; 7] = [
         n_gps: 13,
         n_renderers: 5,
         gp: GpTiming::PAPERS,
+        code: CodeVersion::Scheduled,
     },
     Preset {
         name: "slats",
@@ -61,6 +66,7 @@ pub const PRESETS: [Preset; 7] = [
         n_gps: 1,
         n_renderers: 5,
         gp: GpTiming::SLATS_1994,
+        code: CodeVersion::Compiled,
     },
     Preset {
         name: "slats-1995",
@@ -68,6 +74,7 @@ pub const PRESETS: [Preset; 7] = [
         n_gps: 1,
         n_renderers: 5,
         gp: GpTiming::SLATS_1995,
+        code: CodeVersion::Compiled,
     },
     Preset {
         name: "slats-optimised",
@@ -75,6 +82,7 @@ pub const PRESETS: [Preset; 7] = [
         n_gps: 1,
         n_renderers: 5,
         gp: GpTiming::SLATS_OPTIMISED,
+        code: CodeVersion::Scheduled,
     },
     Preset {
         name: "medium",
@@ -82,6 +90,7 @@ pub const PRESETS: [Preset; 7] = [
         n_gps: 24,
         n_renderers: 10,
         gp: GpTiming::PAPERS,
+        code: CodeVersion::Scheduled,
     },
     Preset {
         name: "design-maximum",
@@ -89,6 +98,7 @@ pub const PRESETS: [Preset; 7] = [
         n_gps: 32,
         n_renderers: 16,
         gp: GpTiming::PAPERS,
+        code: CodeVersion::Scheduled,
     },
     Preset {
         name: "large",
@@ -96,6 +106,7 @@ pub const PRESETS: [Preset; 7] = [
         n_gps: 50,
         n_renderers: 20,
         gp: GpTiming::PAPERS,
+        code: CodeVersion::Scheduled,
     },
 ];
 
@@ -185,6 +196,7 @@ impl MachineConfig {
             n_renderers: preset.n_renderers,
             ring: RingTiming::PAPERS,
             gp: preset.gp,
+            code: Some(preset.code),
             renderer: RendererTiming::PAPERS,
             frame_buffer: FrameBufferConfig::NTSC,
             host: HostTiming::PAPERS,

@@ -238,8 +238,8 @@ impl Experiment {
             Level::Cycle => literal(&adapted, &layout),
         };
         let mut machine = Machine::new(&config, self.pipeline.eyes(), layout)?;
-        if self.level == Level::Cycle {
-            machine.run_code();
+        if let (Level::Cycle, Some(version)) = (self.level, config.code) {
+            machine.run_code(version);
         }
         let (setup, head) = self.setup(&config, &machine, rehearsal)?;
         self.pipeline.load(&mut machine, &setup)?;
@@ -370,8 +370,12 @@ impl Experiment {
         let head = head.as_ref().map(|head| format!(" {}", head.fingerprint())).unwrap_or_default();
         // Transaction is left out, so that the names of its experiments stay what they were before there were others.
         let level = if *level == Level::Transaction { String::new() } else { format!(" {level:?}") };
+        // So is code, where none runs or it is the preset's.
+        let of_preset = MachineConfig::preset(&config.preset).is_ok_and(|preset| preset.code == config.code);
+        let plays_no_part = self.level != Level::Cycle || of_preset;
+        let code = if plays_no_part { String::new() } else { format!(" {:?}", config.code) };
         Fingerprint::of(
-            format!("{boards:?} {parameters:?} {pipeline:?} {scene} {fields} {seed}{head}{level}").as_bytes(),
+            format!("{boards:?} {parameters:?} {pipeline:?} {scene} {fields} {seed}{head}{level}{code}").as_bytes(),
         )
     }
 }

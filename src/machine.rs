@@ -15,7 +15,7 @@ use crate::observation::{Arrival, Observation, Swap};
 use crate::savings::Saving;
 use crate::workers::PixelWorkers;
 use pxpl5_framebuffer::{FrameBuffer, FrameBufferEvent, FrameBufferOutput, Video};
-use pxpl5_gp::{Fault, Gp, GpBoard, GpEvent, GpOutput, Level, Program};
+use pxpl5_gp::{CodeVersion, Fault, Gp, GpBoard, GpEvent, GpOutput, Level, Program};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
 use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time, TraceHash};
@@ -199,10 +199,9 @@ impl Machine {
         self.workers = Some(PixelWorkers::new(threads));
     }
 
-    /// Has the graphics processors tell the time of their work by i860 code, where the timing table stands for code
-    /// that there is; to be called before programs are loaded.
-    pub fn run_code(&mut self) {
-        self.processors.iter_mut().skip(1).for_each(GpBoard::run_code);
+    /// Has the graphics processors tell the time of their work by i860 code; to be called before programs are loaded.
+    pub fn run_code(&mut self, version: CodeVersion) {
+        self.processors.iter_mut().skip(1).for_each(|gp| gp.run_code(version));
     }
 
     /// Gives up a saving: what it skips is done from now on. To be called before the machine is switched on.

@@ -6,7 +6,7 @@ use crate::machine::Machine;
 use crate::observation::{Arrival, LateRegion, deadline};
 use image::RgbImage;
 use pphigs::{Binning, Share};
-use pxpl5_gp::{GpTiming, Level, Stage};
+use pxpl5_gp::{CodeVersion, GpTiming, Level, Stage};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{Eye, RegionGrid};
@@ -31,6 +31,13 @@ impl Code {
             Self::Of1994 => GpTiming::SLATS_1994,
             Self::Of1995 => GpTiming::SLATS_1995,
             Self::Optimised => GpTiming::SLATS_OPTIMISED,
+        }
+    }
+
+    const fn version(self) -> CodeVersion {
+        match self {
+            Self::Of1994 | Self::Of1995 => CodeVersion::Compiled,
+            Self::Optimised => CodeVersion::Scheduled,
         }
     }
 }
@@ -98,11 +105,12 @@ impl Pipeline for Slats {
         Layout::slats()
     }
 
-    /// The code decides the times per primitive, nothing else.
+    /// The code decides the times per primitive, by the table and by what runs, and nothing else.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let Some(code) = self.code else { return config };
         let GpTiming { triangle_ns, sphere_ns, bin_entry_ns, .. } = code.timing();
-        MachineConfig { gp: GpTiming { triangle_ns, sphere_ns, bin_entry_ns, ..config.gp }, ..config }
+        let gp = GpTiming { triangle_ns, sphere_ns, bin_entry_ns, ..config.gp };
+        MachineConfig { gp, code: Some(code.version()), ..config }
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {

@@ -4,7 +4,7 @@ use crate::cpu::{Cpu, Level};
 use crate::firmware::{Cause, Fault, Gp, Program, Received, Shared, Wait};
 use crate::memory::Memory;
 use crate::probe::Mark;
-use crate::processor::Processor;
+use crate::processor::{CodeVersion, Processor};
 use crate::timing::GpTiming;
 use pxpl5_sim::{Blocked, Context, Phase, Span};
 use pxpl5_wire::{Message, NodeId};
@@ -102,13 +102,10 @@ impl GpBoard {
         Self { shared, tasks: Vec::new(), announced: None, poll_pending: false, cycle, fault: None }
     }
 
-    /// Has the time of [`Work`](crate::Work) come from code from now on, where the timing table stands for code
-    /// ([`GpTiming::code_version`]).
-    pub fn run_code(&mut self) {
+    /// Has the time of [`Work`](crate::Work) come from this code from now on, whatever the timing table says.
+    pub fn run_code(&mut self, version: CodeVersion) {
         let shared = &mut *self.shared.borrow_mut();
-        let (node, bytes) = (shared.node, shared.timing.memory_bytes);
-        let processor = |version| Box::new(Processor::new(node, bytes, version));
-        shared.processor = shared.timing.code_version().map(processor);
+        shared.processor = Some(Box::new(Processor::new(shared.node, shared.timing.memory_bytes, version)));
     }
 
     /// Has the processor that runs code memoise nothing; to be called before programs run.

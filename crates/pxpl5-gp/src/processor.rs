@@ -3,16 +3,20 @@
 use i860::{Cpu, Outcome, Program, Ram, Trap};
 use pxpl5_sim::Span;
 use pxpl5_wire::{NodeId, Word};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Which code a board runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// Which code a board runs, where the time of its work comes from code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum CodeVersion {
-    /// As a compiler of 1989 would give it, larger than the instruction cache.
+    /// As a compiler of 1989 would give it, larger than the instruction cache: the Slats of 1994 and 1995, whose code did
+    /// not fit it (I3D95).
     Compiled,
-    /// Scheduled by hand in dual-instruction mode, in cache.
+    /// Scheduled by hand in dual-instruction mode, in cache: optimised PPHIGS (TR94), and what Slats would have been with
+    /// code that fits, faster by a factor of about 3 (I3D95).
     Scheduled,
 }
 
