@@ -6,7 +6,7 @@ use pphigs::{Around, Binning, DisplayList, FrameView, Picture, Shading, Share, r
 use pxpl5::pipelines::{PictureTimes, Setup};
 use pxpl5::{ConfigError, Experiment, Eye, LateRegion, Machine, MachineConfig, Pipeline, Pixels, Ports, scene};
 use pxpl5_geometry::Viewport;
-use pxpl5_gp::{Fault, Gp, Level, Stage};
+use pxpl5_gp::{Fault, Gp, Priority, Stage};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Body, CopyOrder, CopyTarget, Lines, RegionId, swap_request};
@@ -81,10 +81,10 @@ impl Pipeline for OneAtATime {
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
         let (ports, views) = (machine.ports().clone(), setup.views.clone());
-        let gp = machine.processor(ports.gps[0], Level::Foreground);
+        let gp = machine.processor(ports.gps[0], Priority::Foreground);
         let node = ports.gps[0];
         let program = firmware(gp, ports, Arc::clone(&setup.list), move |frame, time| views(frame, time));
-        machine.load(node, Level::Foreground, Box::pin(program));
+        machine.load(node, Priority::Foreground, Box::pin(program));
         Ok(())
     }
 

@@ -15,7 +15,7 @@ use crate::observation::{Arrival, Observation, Swap};
 use crate::savings::Saving;
 use crate::workers::PixelWorkers;
 use pxpl5_framebuffer::{FrameBuffer, FrameBufferEvent, FrameBufferOutput, Video};
-use pxpl5_gp::{CodeVersion, Fault, Gp, GpBoard, GpEvent, GpOutput, Level, Program};
+use pxpl5_gp::{CodeVersion, Fault, Firmware, Gp, GpBoard, GpEvent, GpOutput, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
 use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time, TraceHash};
@@ -239,8 +239,8 @@ impl Machine {
     ///
     /// If no processor has this port.
     #[must_use]
-    pub fn processor(&self, node: NodeId, level: Level) -> Gp {
-        self.processors[usize::from(node.0)].handle_for(level)
+    pub fn processor(&self, node: NodeId, priority: Priority) -> Gp {
+        self.processors[usize::from(node.0)].handle_for(priority)
     }
 
     /// Loads a program onto the board at a port.
@@ -248,8 +248,8 @@ impl Machine {
     /// # Panics
     ///
     /// If no processor has this port.
-    pub fn load(&mut self, node: NodeId, level: Level, program: Program) {
-        self.processors[usize::from(node.0)].load(level, program);
+    pub fn load(&mut self, node: NodeId, priority: Priority, firmware: Firmware) {
+        self.processors[usize::from(node.0)].load(priority, firmware);
     }
 
     /// Switches on: every board's programs begin at time zero, and so does field 0.

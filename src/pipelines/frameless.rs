@@ -9,7 +9,7 @@ use image::RgbImage;
 use jitp::{BlockOrder, Schedule};
 use pphigs::{Counts, Share};
 use pxpl5_framebuffer::Video;
-use pxpl5_gp::{Level, Stage};
+use pxpl5_gp::{Priority, Stage};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Eye, RegionGrid, RegionId};
@@ -43,7 +43,7 @@ impl Frameless {
             return self.batch;
         }
         let (ports, ring) = (machine.ports(), machine.ring().timing());
-        let timing = machine.processor(ports.gps[0], Level::Foreground).timing();
+        let timing = machine.processor(ports.gps[0], Priority::Foreground).timing();
         let primitives =
             u64::from(counts.triangles) * timing.triangle_ns + u64::from(counts.spheres) * timing.sphere_ns;
         let slave_ns = timing.pass_ns + primitives + 3 * timing.message_ns;

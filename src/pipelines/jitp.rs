@@ -8,7 +8,7 @@ use image::RgbImage;
 use jitp::{Beam, Config, JitpTiming, Schedule, Transforms, Wanted, host, master, slave};
 use pphigs::Share;
 use pxpl5_framebuffer::Video;
-use pxpl5_gp::{Level, Stage};
+use pxpl5_gp::{Priority, Stage};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, Eye, FieldParity, RegionGrid, RegionId};
@@ -88,11 +88,11 @@ fn beam(video: Video) -> Beam {
 
 /// Loads host, master and slaves.
 pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &Config) {
-    let gp = machine.processor(config.host, Level::Foreground);
+    let gp = machine.processor(config.host, Priority::Foreground);
     let reports = Arc::clone(&setup.reports);
     let program = host(gp, config.clone(), setup.host, move |after| reports(after));
-    machine.load(config.host, Level::Foreground, Box::pin(program));
-    let (gp, views) = (machine.processor(config.master, Level::Foreground), Arc::clone(&setup.wanted));
+    machine.load(config.host, Priority::Foreground, Box::pin(program));
+    let (gp, views) = (machine.processor(config.master, Priority::Foreground), Arc::clone(&setup.wanted));
     let counts = Share::new(Arc::clone(&setup.list), 0, 1).counts();
     let view_of = move |wanted: Wanted| views(wanted.number, wanted.known, wanted.shown_at);
     for (level, program) in master(&gp, config, counts, view_of) {
@@ -100,7 +100,7 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &Config) {
     }
     let transforms = Transforms::default();
     for (index, node) in config.slaves.iter().enumerate() {
-        let gp = machine.processor(*node, Level::Foreground);
+        let gp = machine.processor(*node, Priority::Foreground);
         for (level, program) in slave(&gp, config, &setup.list, &transforms, index) {
             machine.load(*node, level, program);
         }

@@ -7,7 +7,7 @@ use crate::observation::{LateRegion, StageSpan};
 use image::RgbImage;
 use pphigs::{Binning, Picture, Shading};
 use pxpl5_geometry::Viewport;
-use pxpl5_gp::{Level, Stage};
+use pxpl5_gp::{Priority, Stage};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::Eye;
@@ -78,7 +78,7 @@ impl Pipeline for RenderingControl {
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
         let config = self.config(machine, setup.pixels)?;
-        let (foreground, views) = (Level::Foreground, setup.views.clone());
+        let (foreground, views) = (Priority::Foreground, setup.views.clone());
         let gp = machine.processor(config.host, foreground);
         let program = host(gp, config.clone(), setup.host, move |frame, time| views(frame, time));
         machine.load(config.host, foreground, Box::pin(program));

@@ -6,7 +6,7 @@ use crate::machine::Machine;
 use crate::observation::{Arrival, LateRegion, deadline};
 use image::RgbImage;
 use pphigs::{Binning, Share};
-use pxpl5_gp::{CodeVersion, GpTiming, Level, Stage};
+use pxpl5_gp::{CodeVersion, GpTiming, Priority, Stage};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{Eye, RegionGrid};
@@ -116,7 +116,7 @@ impl Pipeline for Slats {
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
         let config = self.config(machine, setup.pixels);
         let binding = config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
-        let (foreground, views) = (Level::Foreground, setup.views.clone());
+        let (foreground, views) = (Priority::Foreground, setup.views.clone());
         let gp = machine.processor(config.host, foreground);
         let program = host(gp, config.clone(), setup.host, move |update, time| views(update, time));
         machine.load(config.host, foreground, Box::pin(program));

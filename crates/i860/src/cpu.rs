@@ -13,32 +13,41 @@ use crate::timing::Config;
 use std::fmt;
 
 /// Why the processor trapped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrapCause {
     /// A word that is no XR instruction.
+    #[error("{word:08x} is not an i860 XR instruction")]
     Illegal {
         /// The word.
         word: u32,
     },
     /// A pair whose halves are not one floating-point and one core instruction, in this order.
+    #[error("a pair must be one floating-point and one core instruction")]
     IllegalPair,
     /// A branch in a delay slot (undefined on the part).
+    #[error("branch in a delay slot")]
     BranchInSlot,
     /// A jump in dual-instruction mode to an address that is not a multiple of 8 (undefined on the part).
+    #[error("dual-instruction mode needs a multiple of 8")]
     PairAlignment,
     /// The instruction `trap`.
+    #[error("trap instruction")]
     Instruction,
     /// `intovr` with OF set.
+    #[error("intovr with OF set")]
     Overflow,
     /// Nothing answers the instruction fetch.
+    #[error("no memory to fetch an instruction from")]
     InstructionAccess,
     /// Nothing answers a load or store.
+    #[error("no memory at {address:#010x}")]
     DataAccess {
         /// Its address.
         address: u32,
     },
     /// An address that is not a multiple of the access size.
+    #[error("{address:#010x} is not a multiple of {size}")]
     Unaligned {
         /// The address.
         address: u32,
@@ -46,29 +55,14 @@ pub enum TrapCause {
         size: u32,
     },
     /// The interrupt pin, while psr.IM is set.
+    #[error("interrupt")]
     Interrupt,
-}
-
-impl fmt::Display for TrapCause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            TrapCause::Illegal { word } => write!(f, "{word:08x} is not an i860 XR instruction"),
-            TrapCause::IllegalPair => write!(f, "a pair must be one floating-point and one core instruction"),
-            TrapCause::BranchInSlot => write!(f, "branch in a delay slot"),
-            TrapCause::PairAlignment => write!(f, "dual-instruction mode needs a multiple of 8"),
-            TrapCause::Instruction => write!(f, "trap instruction"),
-            TrapCause::Overflow => write!(f, "intovr with OF set"),
-            TrapCause::InstructionAccess => write!(f, "no memory to fetch an instruction from"),
-            TrapCause::DataAccess { address } => write!(f, "no memory at {address:#010x}"),
-            TrapCause::Unaligned { address, size } => write!(f, "{address:#010x} is not a multiple of {size}"),
-            TrapCause::Interrupt => write!(f, "interrupt"),
-        }
-    }
 }
 
 /// A trap that was taken. The state is that of the part at the first instruction of its handler: fir holds `pc`,
 /// psr the trap bit, PU, PIM, DIM and DS, and the next pc is [`TRAP_VECTOR`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("trap at {pc:#010x}: {cause}")]
 pub struct Trap {
     /// Why.
     pub cause: TrapCause,
@@ -76,14 +70,6 @@ pub struct Trap {
     /// effect on r1, LCC and its counter, as on the part.
     pub pc: u32,
 }
-
-impl fmt::Display for Trap {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "trap at {:#010x}: {}", self.pc, self.cause)
-    }
-}
-
-impl std::error::Error for Trap {}
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,22 +2,14 @@
 
 use crate::encode::register_mask;
 use crate::instruction::{Flags, Instruction, Op};
-use std::fmt;
 
 /// A word that is no instruction of the XR part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0:08x} is not an i860 XR instruction")]
 pub struct IllegalWord(
     /// The word.
     pub u32,
 );
-
-impl fmt::Display for IllegalWord {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:08x} is not an i860 XR instruction", self.0)
-    }
-}
-
-impl std::error::Error for IllegalWord {}
 
 /// `fnop`, the shrd of three r0; bit 9 is its D bit.
 pub(crate) const FNOP: u32 = 0xB000_0000;

@@ -164,21 +164,14 @@ impl fmt::Display for Failure {
 }
 
 /// A line that is no vector.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
+#[error("line {line}: not a vector: {reason}")]
 pub struct MalformedLine {
     /// From 1.
     pub line: usize,
     /// What is wrong with it.
     pub reason: String,
 }
-
-impl fmt::Display for MalformedLine {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "line {}: not a vector: {}", self.line, self.reason)
-    }
-}
-
-impl std::error::Error for MalformedLine {}
 
 /// Reads vectors from JSON lines; empty lines are passed over.
 ///

@@ -3,7 +3,7 @@
 use crate::config::{Config, Schedule, Viewpoint, Wanted};
 use crate::protocol::Order;
 use pphigs::{Counts, FrameView};
-use pxpl5_gp::{Account, Fault, Gp, GpTiming, Level, Program, Stage};
+use pxpl5_gp::{Account, Fault, Firmware, Gp, GpTiming, Priority, Stage};
 use pxpl5_sim::{Span, Time};
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
@@ -27,12 +27,12 @@ pub fn master(
     config: &Config,
     counts: Counts,
     view_of: impl FnMut(Wanted) -> FrameView + 'static,
-) -> Vec<(Level, Program)> {
+) -> Vec<(Priority, Firmware)> {
     let state = Rc::new(State::default());
-    let listening = listen(gp.at_level(Level::Interrupt), Rc::clone(&state));
-    let foreground = gp.at_level(Level::Foreground);
+    let listening = listen(gp.at_priority(Priority::Interrupt), Rc::clone(&state));
+    let foreground = gp.at_priority(Priority::Foreground);
     let master = Master { gp: foreground, config: config.clone(), counts, view_of, state };
-    vec![(Level::Interrupt, Box::pin(listening)), (Level::Foreground, Box::pin(master.run()))]
+    vec![(Priority::Interrupt, Box::pin(listening)), (Priority::Foreground, Box::pin(master.run()))]
 }
 
 async fn listen(gp: Gp, state: Rc<State>) -> Result<(), Fault> {

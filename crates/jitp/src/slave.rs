@@ -7,7 +7,7 @@ use crate::pieces::{messages, window};
 use crate::protocol::Order;
 use pphigs::{Counts, DisplayList, FrameView, Share};
 use pxpl5_geometry::Viewport;
-use pxpl5_gp::{Account, Fault, Gp, Level, Program, Stage, Ticket};
+use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage, Ticket};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Body, NodeId, RegionId};
 use std::cell::RefCell;
@@ -72,11 +72,11 @@ pub fn slave(
     list: &Arc<DisplayList>,
     transforms: &Transforms,
     index: usize,
-) -> Vec<(Level, Program)> {
+) -> Vec<(Priority, Firmware)> {
     let share = Share::new(Arc::clone(list), 0, 1);
     let state = Shared::default();
     let slave = |level| Slave {
-        gp: gp.at_level(level),
+        gp: gp.at_priority(level),
         config: config.clone(),
         list: Arc::clone(list),
         counts: share.counts(),
@@ -85,8 +85,8 @@ pub fn slave(
         transforms: transforms.clone(),
         index,
     };
-    let (drawing, preparing) = (slave(Level::Interrupt), slave(Level::Foreground));
-    vec![(Level::Interrupt, Box::pin(drawing.draw())), (Level::Foreground, Box::pin(preparing.prepare()))]
+    let (drawing, preparing) = (slave(Priority::Interrupt), slave(Priority::Foreground));
+    vec![(Priority::Interrupt, Box::pin(drawing.draw())), (Priority::Foreground, Box::pin(preparing.prepare()))]
 }
 
 struct Slave {

@@ -1,67 +1,67 @@
-//! The processor's time, shared by two levels of programs.
+//! The processor's time, shared by the programs of two priorities.
 
 use pxpl5_sim::{Span, Time};
 
 /// Which program may interrupt which.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Level {
+pub enum Priority {
     /// Runs at once; the foreground stands still meanwhile.
     Interrupt,
     /// Runs while no interrupt program spends time.
     Foreground,
 }
 
-impl Level {
+impl Priority {
     pub(crate) const ALL: [Self; 2] = [Self::Interrupt, Self::Foreground];
 }
 
-/// Time that each level still has to spend, and who is running.
+/// Time that the program of each priority still has to spend, and who is running.
 #[derive(Debug, Default)]
 pub(crate) struct Cpu {
     remaining: [Option<Span>; 2],
-    running: Option<(Level, Time)>,
+    running: Option<(Priority, Time)>,
     generation: u64,
     busy: Span,
 }
 
 impl Cpu {
-    /// Level `level` begins to spend `span`.
-    pub(crate) fn begin(&mut self, level: Level, span: Span, now: Time) {
+    /// The program of a priority begins to spend `span`.
+    pub(crate) fn begin(&mut self, priority: Priority, span: Span, now: Time) {
         self.settle(now);
-        self.remaining[level as usize] = Some(span);
+        self.remaining[priority as usize] = Some(span);
         self.dispatch(now);
     }
 
     /// Brings the accounts up to `now`; work that ends exactly now is finished, whoever asks first.
     pub(crate) fn settle(&mut self, now: Time) {
-        let Some((level, since)) = self.running else {
+        let Some((priority, since)) = self.running else {
             return;
         };
         let elapsed = now - since;
         self.busy += elapsed;
-        let left = self.remaining[level as usize].map_or(Span::ZERO, |left| left - elapsed);
-        self.remaining[level as usize] = (left > Span::ZERO).then_some(left);
-        self.running = (left > Span::ZERO).then_some((level, now));
+        let left = self.remaining[priority as usize].map_or(Span::ZERO, |left| left - elapsed);
+        self.remaining[priority as usize] = (left > Span::ZERO).then_some(left);
+        self.running = (left > Span::ZERO).then_some((priority, now));
         self.dispatch(now);
     }
 
     fn dispatch(&mut self, now: Time) {
-        let first = Level::ALL.into_iter().find(|level| self.remaining[*level as usize].is_some());
-        if self.running.map(|(level, _)| level) != first {
+        let first = Priority::ALL.into_iter().find(|priority| self.remaining[*priority as usize].is_some());
+        if self.running.map(|(priority, _)| priority) != first {
             self.generation += 1;
         }
-        self.running = first.map(|level| (level, now));
+        self.running = first.map(|priority| (priority, now));
     }
 
-    /// Whether `level` has spent all it asked for.
-    pub(crate) fn is_done(&self, level: Level) -> bool {
-        self.remaining[level as usize].is_none()
+    /// Whether the program of a priority has spent all it asked for.
+    pub(crate) fn is_done(&self, priority: Priority) -> bool {
+        self.remaining[priority as usize].is_none()
     }
 
     /// When the running work ends, and the generation of that answer.
     pub(crate) fn next_end(&self) -> Option<(Time, u64)> {
-        let (level, since) = self.running?;
-        Some((since + self.remaining[level as usize]?, self.generation))
+        let (priority, since) = self.running?;
+        Some((since + self.remaining[priority as usize]?, self.generation))
     }
 
     /// Time spent so far.
@@ -77,24 +77,24 @@ mod tests {
     #[test]
     fn an_interrupt_delays_the_foreground_by_exactly_its_own_time() {
         let mut cpu = Cpu::default();
-        cpu.begin(Level::Foreground, Span(100), Time(0));
-        cpu.begin(Level::Interrupt, Span(30), Time(40));
+        cpu.begin(Priority::Foreground, Span(100), Time(0));
+        cpu.begin(Priority::Interrupt, Span(30), Time(40));
         assert_eq!(cpu.next_end().map(|end| end.0), Some(Time(70)));
         cpu.settle(Time(70));
-        assert!(cpu.is_done(Level::Interrupt) && !cpu.is_done(Level::Foreground));
+        assert!(cpu.is_done(Priority::Interrupt) && !cpu.is_done(Priority::Foreground));
         assert_eq!(cpu.next_end().map(|end| end.0), Some(Time(130)));
         cpu.settle(Time(129));
-        assert!(!cpu.is_done(Level::Foreground));
+        assert!(!cpu.is_done(Priority::Foreground));
         cpu.settle(Time(130));
-        assert!(cpu.is_done(Level::Foreground));
+        assert!(cpu.is_done(Priority::Foreground));
         assert_eq!(cpu.busy(), Span(130));
     }
 
     #[test]
     fn an_interrupt_at_the_very_end_of_the_foreground_does_not_delay_it() {
         let mut cpu = Cpu::default();
-        cpu.begin(Level::Foreground, Span(100), Time(0));
-        cpu.begin(Level::Interrupt, Span(30), Time(100));
-        assert!(cpu.is_done(Level::Foreground));
+        cpu.begin(Priority::Foreground, Span(100), Time(0));
+        cpu.begin(Priority::Interrupt, Span(30), Time(100));
+        assert!(cpu.is_done(Priority::Foreground));
     }
 }

@@ -19,7 +19,7 @@ pub trait Work {
 }
 
 impl Gp {
-    /// Does work, and spends its time at this program's level.
+    /// Does work, and spends its time at this program's priority.
     ///
     /// # Errors
     ///
@@ -50,7 +50,7 @@ impl Gp {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{CodeVersion, GpBoard, GpEvent, Level};
+    use crate::{CodeVersion, GpBoard, GpEvent, Priority};
     use pxpl5_sim::{Phase, TestBench};
     use pxpl5_wire::NodeId;
     use std::sync::Arc;
@@ -78,8 +78,8 @@ mod tests {
         if let Some(version) = code {
             board.run_code(version);
         }
-        let gp = board.handle_for(Level::Foreground);
-        board.load(Level::Foreground, Box::pin(async move { gp.work(&Turns(turns)).await }));
+        let gp = board.handle_for(Priority::Foreground);
+        board.load(Priority::Foreground, Box::pin(async move { gp.work(&Turns(turns)).await }));
         let mut bench: TestBench<GpEvent, crate::GpOutput> = TestBench::new();
         bench.feed(pxpl5_sim::Time::ZERO, Phase::Work, GpEvent::Poll);
         bench.run(|event, context| board.handle(event, context));

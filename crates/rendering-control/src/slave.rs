@@ -4,7 +4,7 @@ use crate::config::{BIN_ENTRY_BYTES, Config, PROGRAM_BYTES};
 use crate::master::copy_order;
 use crate::protocol::{Order, Token};
 use pphigs::{Around, FrameView, Pass, Share, Transforming, region_messages};
-use pxpl5_gp::{Account, Fault, Gp, Level, Stage};
+use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, RegionId};
 use std::cell::RefCell;
@@ -34,19 +34,19 @@ pub fn slave(
     config: &Config,
     share: Share,
     index: usize,
-) -> [(Level, impl Future<Output = Result<(), Fault>> + use<>); 2] {
+) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
     let state = Shared::default();
     let program = |level| {
-        let (gp, config, share, state) = (gp.at_level(level), config.clone(), share.clone(), Rc::clone(&state));
+        let (gp, config, share, state) = (gp.at_priority(level), config.clone(), share.clone(), Rc::clone(&state));
         let future = async move {
             match level {
-                Level::Foreground => transform_program(gp, config, share, state).await,
-                Level::Interrupt => token_program(gp, config, index, state).await,
+                Priority::Foreground => transform_program(gp, config, share, state).await,
+                Priority::Interrupt => token_program(gp, config, index, state).await,
             }
         };
         (level, future)
     };
-    [program(Level::Interrupt), program(Level::Foreground)]
+    [program(Priority::Interrupt), program(Priority::Foreground)]
 }
 
 async fn transform_program(gp: Gp, config: Config, share: Share, state: Shared) -> Result<(), Fault> {

@@ -3,7 +3,7 @@
 use crate::bind::{Binding, BoundRegion};
 use crate::config::{Config, Copy};
 use pphigs::{Around, FrameView, Pass, Picture, Share, Transforming, ViewWordsError, copy_message, region_messages};
-use pxpl5_gp::{Account, Fault, Gp, Level, Stage, Ticket};
+use pxpl5_gp::{Account, Fault, Gp, Priority, Stage, Ticket};
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyOrder, Eye, FieldParity, NodeId, Word, swap_request};
 use std::cell::RefCell;
@@ -49,20 +49,20 @@ pub fn processor(
     binding: &Binding,
     share: Share,
     index: usize,
-) -> [(Level, impl Future<Output = Result<(), Fault>> + use<>); 2] {
+) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
     let state = Shared::default();
     let program = |level| {
-        let (gp, config, binding) = (gp.at_level(level), config.clone(), binding.clone());
+        let (gp, config, binding) = (gp.at_priority(level), config.clone(), binding.clone());
         let (share, state) = (share.clone(), Rc::clone(&state));
         let future = async move {
             match level {
-                Level::Foreground => Processor { gp, config, binding, share, state, index }.fields().await,
-                Level::Interrupt => listen(gp, state).await,
+                Priority::Foreground => Processor { gp, config, binding, share, state, index }.fields().await,
+                Priority::Interrupt => listen(gp, state).await,
             }
         };
         (level, future)
     };
-    [program(Level::Interrupt), program(Level::Foreground)]
+    [program(Priority::Interrupt), program(Priority::Foreground)]
 }
 
 /// Keeps the newest view and counts finished GPs.

@@ -25,10 +25,10 @@ use expression::{Symbols, evaluate};
 use operand::Filler;
 use source::Line;
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// A fault in the source.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}:{line}: {reason}")]
 pub struct AssemblyError {
     /// File name as given.
     pub file: String,
@@ -38,29 +38,17 @@ pub struct AssemblyError {
     pub reason: String,
 }
 
-impl fmt::Display for AssemblyError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}: {}", self.file, self.line, self.reason)
-    }
-}
-
-impl std::error::Error for AssemblyError {}
-
 /// All faults of a source, in the order of its lines.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}", lines(.0))]
 pub struct AssemblyErrors(
     /// At least one.
     pub Vec<AssemblyError>,
 );
 
-impl fmt::Display for AssemblyErrors {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let lines: Vec<String> = self.0.iter().map(AssemblyError::to_string).collect();
-        f.write_str(&lines.join("\n"))
-    }
+fn lines(errors: &[AssemblyError]) -> String {
+    errors.iter().map(AssemblyError::to_string).collect::<Vec<_>>().join("\n")
 }
-
-impl std::error::Error for AssemblyErrors {}
 
 /// An assembled program.
 #[derive(Clone, Debug, PartialEq, Eq)]
