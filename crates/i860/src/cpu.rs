@@ -19,7 +19,7 @@ pub enum TrapCause {
     /// A word that is no XR instruction.
     #[error("{word:08x} is not an i860 XR instruction")]
     Illegal {
-        /// The word.
+        /// The word that was fetched.
         word: u32,
     },
     /// A pair whose halves are not one floating-point and one core instruction, in this order.
@@ -31,7 +31,7 @@ pub enum TrapCause {
     /// A jump in dual-instruction mode to an address that is not a multiple of 8 (undefined on the part).
     #[error("dual-instruction mode needs a multiple of 8")]
     PairAlignment,
-    /// The instruction `trap`.
+    /// The instruction `trap` was executed.
     #[error("trap instruction")]
     Instruction,
     /// `intovr` with OF set.
@@ -43,13 +43,13 @@ pub enum TrapCause {
     /// Nothing answers a load or store.
     #[error("no memory at {address:#010x}")]
     DataAccess {
-        /// Its address.
+        /// The physical address that was asked for.
         address: u32,
     },
     /// An address that is not a multiple of the access size.
     #[error("{address:#010x} is not a multiple of {size}")]
     Unaligned {
-        /// The address.
+        /// The address that was asked for.
         address: u32,
         /// The size in bytes.
         size: u32,
@@ -64,7 +64,7 @@ pub enum TrapCause {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("trap at {pc:#010x}: {cause}")]
 pub struct Trap {
-    /// Why.
+    /// What went wrong, or was asked for.
     pub cause: TrapCause,
     /// Address of the instruction or pair, which had no effect. In a delay slot the branch before it had its
     /// effect on r1, LCC and its counter, as on the part.
@@ -89,7 +89,7 @@ fn place(pc: u32) -> usize {
     (pc >> 2) as usize % BLOCKS
 }
 
-/// An i860 XR.
+/// An i860 XR with its caches and clock; memory is passed in with every run.
 pub struct Cpu {
     /// What a program can see.
     pub state: State,
@@ -147,7 +147,8 @@ impl Cpu {
     pub fn reset(&mut self) {
         self.state = State::reset();
         self.time = Clock::new(&self.config);
-        (self.next_mode, self.mode_after_slot) = (Mode::Single, None);
+        self.next_mode = Mode::Single;
+        self.mode_after_slot = None;
         self.invalidate_code();
     }
 
@@ -231,7 +232,8 @@ impl Cpu {
 
     /// Executes the block at pc, or its first unit where the block goes past `stop` or has more than `most` instructions.
     fn advance<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, most: u64) -> Result<(), Trap> {
-        let (pc, mode) = (self.state.pc, self.state.mode);
+        let pc = self.state.pc;
+        let mode = self.state.mode;
         let mut block = match self.blocks[place(pc)].take() {
             Some(block) if block.begins(pc, mode) => block,
             _ => match Block::read(pc, mode, &mut self.code, bus) {
@@ -267,7 +269,8 @@ impl Cpu {
             Ok(flow) => self.go_on(flow, block, &mut execution, bus),
             Err(cause) => {
                 let last = &block.units[done - 1];
-                (self.state.pc, self.state.mode) = (last.pc, last.mode);
+                self.state.pc = last.pc;
+                self.state.mode = last.mode;
                 Err(cause)
             }
         };
@@ -285,10 +288,14 @@ impl Cpu {
         bus: &mut B,
     ) -> Result<(), TrapCause> {
         let last = &block.units[execution.units - 1];
-        (self.state.pc, self.state.mode) = (last.next(), last.after);
+        self.state.pc = last.next();
+        self.state.mode = last.after;
         match flow {
             Flow::Next => {}
-            Flow::Jump(target) => (self.state.pc, execution.taken) = (target, true),
+            Flow::Jump(target) => {
+                self.state.pc = target;
+                execution.taken = true;
+            }
             Flow::Skip => {
                 let skipped = if last.after.is_dual() { 8 } else { 4 };
                 self.state.pc = last.next().wrapping_add(skipped);

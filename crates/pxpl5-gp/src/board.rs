@@ -127,7 +127,7 @@ impl GpBoard {
         self.tasks.sort_by_key(|task| task.priority);
     }
 
-    /// Handles one event.
+    /// Handles one event at its instant.
     pub fn handle(&mut self, event: GpEvent, context: &mut Context<GpEvent, GpOutput>) {
         self.shared.borrow_mut().now = context.now();
         match event {
