@@ -64,3 +64,23 @@ impl HostTiming {
         GpTiming { message_ns: self.message_ns, ..GpTiming::PAPERS }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parameters::ParameterTable;
+
+    #[test]
+    fn every_number_lies_in_its_range() {
+        assert_eq!(GpTiming::PAPERS.out_of_range(), []);
+        assert_eq!(HostTiming::PAPERS.out_of_range(), []);
+    }
+
+    /// The fits are what the papers' limits ask for, whatever the range of PPHIGS.
+    #[test]
+    fn every_preset_is_within_the_limits() {
+        for preset in [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED] {
+            assert_eq!(preset.check(), Ok(()));
+        }
+    }
+}
