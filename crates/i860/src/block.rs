@@ -145,13 +145,19 @@ impl Block {
     }
 
     fn sum_up(&mut self) {
-        let units = || self.units.iter().chain(self.slot.iter().flatten());
-        let ops = || units().map(|unit| unit.core().instruction.op);
-        let accesses = ops().filter(|op| *op <= Op::Pst);
-        let stores = (0..).zip(accesses).filter(|(_, op)| is_store(*op)).fold(0, |bits, (n, _)| bits | 1 << n);
-        let instructions = units().map(Unit::instructions).sum();
-        let in_caches_only = !ops().any(|op| matches!(op, Op::Pfld | Op::Flush));
-        (self.stores, self.instructions, self.in_caches_only) = (stores, instructions, in_caches_only);
+        let accesses = self.ops().filter(|op| *op <= Op::Pst);
+        self.stores = (0..).zip(accesses).filter(|(_, op)| is_store(*op)).fold(0, |bits, (n, _)| bits | 1 << n);
+        self.instructions = self.units_and_slot().map(Unit::instructions).sum();
+        let leaves_caches = self.ops().any(|op| matches!(op, Op::Pfld | Op::Flush));
+        self.in_caches_only = !leaves_caches;
+    }
+
+    fn units_and_slot(&self) -> impl Iterator<Item = &Unit> {
+        self.units.iter().chain(self.slot.iter().flatten())
+    }
+
+    fn ops(&self) -> impl Iterator<Item = Op> {
+        self.units_and_slot().map(|unit| unit.core().instruction.op)
     }
 
     /// The units that were executed.
@@ -184,7 +190,8 @@ impl Block {
     }
 
     fn look_up(&mut self, cache: &Tags) -> bool {
-        let (first, slot) = (self.units[0].pc, self.slot.iter().flatten());
+        let first = self.units[0].pc;
+        let slot = self.slot.iter().flatten();
         let line = ChipSizes::PAPERS.line_bytes as u32;
         let bytes = first % line + self.bytes + slot.map(|unit| unit.next().wrapping_sub(unit.pc)).sum::<u32>();
         let mut lines = (0..bytes.div_ceil(line)).map(|n| (first - first % line).wrapping_add(n * line));

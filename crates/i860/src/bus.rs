@@ -3,7 +3,8 @@
 use std::fmt;
 
 /// An access that no memory or device answers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no memory and no device answers")]
 pub struct Unmapped;
 
 /// Memory and devices as the processor sees them: little-endian, physical byte addresses.

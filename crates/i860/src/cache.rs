@@ -104,7 +104,9 @@ mod tests {
     #[test]
     fn two_ways_hold_two_lines_of_a_set_and_a_third_drives_one_out() {
         let mut tags = Tags::new(256, 32, 2);
-        let (a, b, c) = (0x1000, 0x2000, 0x3000);
+        let a = 0x1000;
+        let b = 0x2000;
+        let c = 0x3000;
         assert_eq!((tags.fill(a, 0), tags.fill(b, 0)), (None, None));
         assert!(tags.find(a + 31).is_some() && tags.find(b).is_some() && tags.find(a + 32).is_none());
         tags.fill(c, 0);

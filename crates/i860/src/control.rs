@@ -106,7 +106,8 @@ impl Cpu {
 
     /// Branches on the old LCC; the new one tells whether the sum of the operands is not negative.
     fn branch_on_loop(&mut self, i: &Instruction, target: u32) -> Flow {
-        let (a, b) = (self.state.r(i.src1), self.state.r(i.src2));
+        let a = self.state.r(i.src1);
+        let b = self.state.r(i.src2);
         let taken = self.state.psr & psr::LCC != 0;
         let sum = i64::from(a as i32) + i64::from(b as i32);
         self.state.set_psr_bit(psr::LCC, sum >= 0);

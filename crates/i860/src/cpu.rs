@@ -13,77 +13,63 @@ use crate::timing::Config;
 use std::fmt;
 
 /// Why the processor trapped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrapCause {
     /// A word that is no XR instruction.
+    #[error("{word:08x} is not an i860 XR instruction")]
     Illegal {
-        /// The word.
+        /// The word that was fetched.
         word: u32,
     },
     /// A pair whose halves are not one floating-point and one core instruction, in this order.
+    #[error("a pair must be one floating-point and one core instruction")]
     IllegalPair,
     /// A branch in a delay slot (undefined on the part).
+    #[error("branch in a delay slot")]
     BranchInSlot,
     /// A jump in dual-instruction mode to an address that is not a multiple of 8 (undefined on the part).
+    #[error("dual-instruction mode needs a multiple of 8")]
     PairAlignment,
-    /// The instruction `trap`.
+    /// The instruction `trap` was executed.
+    #[error("trap instruction")]
     Instruction,
     /// `intovr` with OF set.
+    #[error("intovr with OF set")]
     Overflow,
     /// Nothing answers the instruction fetch.
+    #[error("no memory to fetch an instruction from")]
     InstructionAccess,
     /// Nothing answers a load or store.
+    #[error("no memory at {address:#010x}")]
     DataAccess {
-        /// Its address.
+        /// The physical address that was asked for.
         address: u32,
     },
     /// An address that is not a multiple of the access size.
+    #[error("{address:#010x} is not a multiple of {size}")]
     Unaligned {
-        /// The address.
+        /// The address that was asked for.
         address: u32,
         /// The size in bytes.
         size: u32,
     },
     /// The interrupt pin, while psr.IM is set.
+    #[error("interrupt")]
     Interrupt,
-}
-
-impl fmt::Display for TrapCause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            TrapCause::Illegal { word } => write!(f, "{word:08x} is not an i860 XR instruction"),
-            TrapCause::IllegalPair => write!(f, "a pair must be one floating-point and one core instruction"),
-            TrapCause::BranchInSlot => write!(f, "branch in a delay slot"),
-            TrapCause::PairAlignment => write!(f, "dual-instruction mode needs a multiple of 8"),
-            TrapCause::Instruction => write!(f, "trap instruction"),
-            TrapCause::Overflow => write!(f, "intovr with OF set"),
-            TrapCause::InstructionAccess => write!(f, "no memory to fetch an instruction from"),
-            TrapCause::DataAccess { address } => write!(f, "no memory at {address:#010x}"),
-            TrapCause::Unaligned { address, size } => write!(f, "{address:#010x} is not a multiple of {size}"),
-            TrapCause::Interrupt => write!(f, "interrupt"),
-        }
-    }
 }
 
 /// A trap that was taken. The state is that of the part at the first instruction of its handler: fir holds `pc`,
 /// psr the trap bit, PU, PIM, DIM and DS, and the next pc is [`TRAP_VECTOR`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("trap at {pc:#010x}: {cause}")]
 pub struct Trap {
-    /// Why.
+    /// What went wrong, or was asked for.
     pub cause: TrapCause,
     /// Address of the instruction or pair, which had no effect. In a delay slot the branch before it had its
     /// effect on r1, LCC and its counter, as on the part.
     pub pc: u32,
 }
-
-impl fmt::Display for Trap {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "trap at {:#010x}: {}", self.pc, self.cause)
-    }
-}
-
-impl std::error::Error for Trap {}
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,7 +89,7 @@ fn place(pc: u32) -> usize {
     (pc >> 2) as usize % BLOCKS
 }
 
-/// An i860 XR.
+/// An i860 XR with its caches and clock; memory is passed in with every run.
 pub struct Cpu {
     /// What a program can see.
     pub state: State,
@@ -161,7 +147,8 @@ impl Cpu {
     pub fn reset(&mut self) {
         self.state = State::reset();
         self.time = Clock::new(&self.config);
-        (self.next_mode, self.mode_after_slot) = (Mode::Single, None);
+        self.next_mode = Mode::Single;
+        self.mode_after_slot = None;
         self.invalidate_code();
     }
 
@@ -245,7 +232,8 @@ impl Cpu {
 
     /// Executes the block at pc, or its first unit where the block goes past `stop` or has more than `most` instructions.
     fn advance<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, most: u64) -> Result<(), Trap> {
-        let (pc, mode) = (self.state.pc, self.state.mode);
+        let pc = self.state.pc;
+        let mode = self.state.mode;
         let mut block = match self.blocks[place(pc)].take() {
             Some(block) if block.begins(pc, mode) => block,
             _ => match Block::read(pc, mode, &mut self.code, bus) {
@@ -281,7 +269,8 @@ impl Cpu {
             Ok(flow) => self.go_on(flow, block, &mut execution, bus),
             Err(cause) => {
                 let last = &block.units[done - 1];
-                (self.state.pc, self.state.mode) = (last.pc, last.mode);
+                self.state.pc = last.pc;
+                self.state.mode = last.mode;
                 Err(cause)
             }
         };
@@ -299,10 +288,14 @@ impl Cpu {
         bus: &mut B,
     ) -> Result<(), TrapCause> {
         let last = &block.units[execution.units - 1];
-        (self.state.pc, self.state.mode) = (last.next(), last.after);
+        self.state.pc = last.next();
+        self.state.mode = last.after;
         match flow {
             Flow::Next => {}
-            Flow::Jump(target) => (self.state.pc, execution.taken) = (target, true),
+            Flow::Jump(target) => {
+                self.state.pc = target;
+                execution.taken = true;
+            }
             Flow::Skip => {
                 let skipped = if last.after.is_dual() { 8 } else { 4 };
                 self.state.pc = last.next().wrapping_add(skipped);

@@ -2,22 +2,14 @@
 
 use crate::encode::register_mask;
 use crate::instruction::{Flags, Instruction, Op};
-use std::fmt;
 
 /// A word that is no instruction of the XR part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0:08x} is not an i860 XR instruction")]
 pub struct IllegalWord(
-    /// The word.
+    /// The word that was to be decoded.
     pub u32,
 );
-
-impl fmt::Display for IllegalWord {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:08x} is not an i860 XR instruction", self.0)
-    }
-}
-
-impl std::error::Error for IllegalWord {}
 
 /// `fnop`, the shrd of three r0; bit 9 is its D bit.
 pub(crate) const FNOP: u32 = 0xB000_0000;
@@ -43,7 +35,9 @@ fn split16(word: u32) -> i32 {
 /// [`IllegalWord`] for a reserved operation, an XP-only one, or a precision that the operation does not have.
 pub fn decode(word: u32) -> Result<Instruction, IllegalWord> {
     let mut i = Instruction::new(Op::Fnop);
-    (i.dest, i.src1, i.src2) = (field(word, 16), field(word, 11), field(word, 21));
+    i.dest = field(word, 16);
+    i.src1 = field(word, 11);
+    i.src2 = field(word, 21);
     if word & !D_BIT == FNOP {
         i.flags = Flags(0).with(Flags::DUAL, word & D_BIT != 0);
         return Ok(i);
@@ -178,12 +172,17 @@ fn integer(word: u32, op: u32, mut i: Instruction) -> Option<Instruction> {
     Some(i)
 }
 
+fn bit(word: u32, n: u32) -> bool {
+    word >> n & 1 != 0
+}
+
 fn floating(word: u32, mut i: Instruction) -> Option<Instruction> {
-    let bit = |n: u32| word >> n & 1 != 0;
-    let (pipelined, source, result) = (bit(10), bit(8), bit(7));
+    let pipelined = bit(word, 10);
+    let source = bit(word, 8);
+    let result = bit(word, 7);
     i.flags = Flags(0)
         .with(Flags::PIPELINED, pipelined)
-        .with(Flags::DUAL, bit(9))
+        .with(Flags::DUAL, bit(word, 9))
         .with(Flags::SOURCE_DOUBLE, source)
         .with(Flags::RESULT_DOUBLE, result);
     i.op = floating_op(word & 0x7F, result)?;

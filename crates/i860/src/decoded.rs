@@ -107,8 +107,11 @@ impl Decoded {
     }
 }
 
+fn on(bit: u8, condition: bool) -> u8 {
+    if condition { bit } else { 0 }
+}
+
 fn marks(i: &Instruction) -> u8 {
-    let on = |bit: u8, condition: bool| if condition { bit } else { 0 };
     let floating = i.is_floating();
     let (first, second) = crate::floating::source_widths(i);
     let pipelined = i.op == Op::DualOp || i.has(Flags::PIPELINED);
@@ -137,7 +140,8 @@ fn reads(i: &Instruction) -> u64 {
     if i.is_floating() {
         return floating_reads(i);
     }
-    let (a, b) = (1u64 << i.src1, 1u64 << i.src2);
+    let a = 1u64 << i.src1;
+    let b = 1u64 << i.src2;
     let first = if i.has(Flags::IMMEDIATE) { 0 } else { a };
     match i.op {
         Op::StB | Op::StS | Op::StL | Op::Bla => a | b,
@@ -149,16 +153,21 @@ fn reads(i: &Instruction) -> u64 {
     }
 }
 
+fn bytes_of(double: bool) -> u8 {
+    if double { 8 } else { 4 }
+}
+
 fn floating_reads(i: &Instruction) -> u64 {
-    let wide = |double: bool| if double { 8 } else { 4 };
-    let (s, r) = (i.has(Flags::SOURCE_DOUBLE), i.has(Flags::RESULT_DOUBLE));
-    let (a, b) = (float_mask(i.src1, wide(s)), float_mask(i.src2, wide(s)));
+    let s = i.has(Flags::SOURCE_DOUBLE);
+    let r = i.has(Flags::RESULT_DOUBLE);
+    let a = float_mask(i.src1, bytes_of(s));
+    let b = float_mask(i.src2, bytes_of(s));
     match i.op {
         Op::Fnop => 0,
         Op::Frcp | Op::Frsqr => b,
         Op::Fix | Op::Ftrunc | Op::Famov | Op::Form => a,
         Op::Fxfr => float_mask(i.src1, 4),
-        Op::DualOp => float_mask(i.src1, wide(s || r)) | float_mask(i.src2, wide(s || r)),
+        Op::DualOp => float_mask(i.src1, bytes_of(s || r)) | float_mask(i.src2, bytes_of(s || r)),
         _ => a | b,
     }
 }

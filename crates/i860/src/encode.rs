@@ -30,7 +30,7 @@ pub(crate) fn register_mask(i: &Instruction, immediate: bool) -> u32 {
     const DEST: u32 = 31 << 16;
     const SRC1: u32 = 31 << 11;
     let first = if immediate { 0 } else { SRC1 };
-    match Syntax::of(i.op) {
+    match Syntax::from_op(i.op) {
         Syntax::Bare | Syntax::Branch => 0,
         Syntax::Store | Syntax::CompareBranch | Syntax::LoopBranch | Syntax::StoreControl => SRC2 | SRC1,
         Syntax::LoadControl | Syntax::Second => SRC2 | DEST,
@@ -138,6 +138,6 @@ fn floating_code(i: &Instruction) -> u32 {
         Op::Form => 0x5A,
         _ => 0x5F,
     };
-    let bit = |flag: Flags, n: u32| u32::from(i.has(flag)) << n;
-    code | bit(Flags::PIPELINED, 10) | bit(Flags::DUAL, 9) | bit(Flags::SOURCE_DOUBLE, 8) | bit(Flags::RESULT_DOUBLE, 7)
+    let bits = [(Flags::PIPELINED, 10), (Flags::DUAL, 9), (Flags::SOURCE_DOUBLE, 8), (Flags::RESULT_DOUBLE, 7)];
+    bits.into_iter().fold(code, |code, (flag, bit)| code | u32::from(i.has(flag)) << bit)
 }

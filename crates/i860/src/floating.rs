@@ -123,7 +123,8 @@ fn read_bypassed(state: &State, n: u8, double: bool, dest: u8, leaving: Stage) -
 
 /// Whether the first and the second source are read as pairs of registers.
 pub(crate) fn source_widths(i: &Instruction) -> (bool, bool) {
-    let (s, r) = (i.has(Flags::SOURCE_DOUBLE), i.has(Flags::RESULT_DOUBLE));
+    let s = i.has(Flags::SOURCE_DOUBLE);
+    let r = i.has(Flags::RESULT_DOUBLE);
     match i.op {
         Op::Fxfr => (false, false),
         Op::DualOp => {
@@ -194,7 +195,8 @@ impl Cpu {
 
     #[inline]
     fn multiply(&mut self, i: &Instruction, Operands { a, b }: Operands) {
-        let (s, r) = (i.has(Flags::SOURCE_DOUBLE), i.has(Flags::RESULT_DOUBLE));
+        let s = i.has(Flags::SOURCE_DOUBLE);
+        let r = i.has(Flags::RESULT_DOUBLE);
         let product = operate(Operation::Multiply, a, b, s, r, self.flush_to_zero());
         if i.has(Flags::PIPELINED) {
             self.state.set_f(i.dest, last_product(&self.state, s));
@@ -229,7 +231,8 @@ impl Cpu {
 
     #[inline]
     fn add(&mut self, i: &Instruction, operation: Operation, Operands { a, b }: Operands) {
-        let (s, r) = (i.has(Flags::SOURCE_DOUBLE), i.has(Flags::RESULT_DOUBLE));
+        let s = i.has(Flags::SOURCE_DOUBLE);
+        let r = i.has(Flags::RESULT_DOUBLE);
         let sum = operate(operation, a, b, s, r, self.flush_to_zero());
         self.adder_result(i, sum);
     }
@@ -237,8 +240,8 @@ impl Cpu {
     /// Compares set CC and send an undefined value into the pipe; this model sends zero.
     fn compare(&mut self, i: &Instruction, Operands { a, b }: Operands) {
         let double = i.has(Flags::SOURCE_DOUBLE);
-        let wide = |bits: u64| f64::from_bits(if double { bits } else { widen(bits as u32) });
-        let (x, y) = (wide(a), wide(b));
+        let x = number(a, double);
+        let y = number(b, double);
         let condition = match i.op {
             Op::Pfgt => x > y,
             Op::Pfeq => x == y,
@@ -249,7 +252,8 @@ impl Cpu {
     }
 
     fn seed(&mut self, i: &Instruction, x: u64) {
-        let (s, r) = (i.has(Flags::SOURCE_DOUBLE), i.has(Flags::RESULT_DOUBLE));
+        let s = i.has(Flags::SOURCE_DOUBLE);
+        let r = i.has(Flags::RESULT_DOUBLE);
         let x = if s { x } else { widen(x as u32) };
         let y = match i.op {
             Op::Frcp => self.seeds.reciprocal(x),
@@ -269,14 +273,16 @@ impl Cpu {
     }
 
     fn adder_move(&mut self, i: &Instruction, x: u64) {
-        let (s, r) = (i.has(Flags::SOURCE_DOUBLE), i.has(Flags::RESULT_DOUBLE));
+        let s = i.has(Flags::SOURCE_DOUBLE);
+        let r = i.has(Flags::RESULT_DOUBLE);
         let bits = convert(Stage { bits: x, double: s }, r, self.flush_to_zero());
         self.adder_result(i, Stage { bits, double: r });
     }
 
     /// pfam, pfsm, pfmam, pfmsm. K and T are read before they are reloaded.
     fn dual_operation(&mut self, i: &Instruction, from: Operands) {
-        let (s, r) = (i.has(Flags::SOURCE_DOUBLE), i.has(Flags::RESULT_DOUBLE));
+        let s = i.has(Flags::SOURCE_DOUBLE);
+        let r = i.has(Flags::RESULT_DOUBLE);
         let pipelined = i.has(Flags::PIPELINED);
         let route = &(if pipelined { &ROUTES } else { &MULTIPLIER_ROUTES })[(i.imm & 15) as usize];
         let leaving_product = last_product(&self.state, s);
@@ -303,15 +309,26 @@ impl Cpu {
     /// The values of all [`Source`]s in the precision of one unit, in the order of the enumeration.
     #[inline(always)]
     fn sources(&self, from: Operands, product: Stage, sum: Stage, double: bool) -> [u64; 7] {
-        let read = |stage: Stage| match stage.double == double {
+        let product = self.in_precision(product, double);
+        let sum = self.in_precision(sum, double);
+        [self.state.kr, self.state.ki, self.state.t, from.a, from.b, product, sum]
+    }
+
+    #[inline(always)]
+    fn in_precision(&self, stage: Stage, double: bool) -> u64 {
+        match stage.double == double {
             true => stage.bits,
             false => convert(stage, double, self.flush_to_zero()),
-        };
-        [self.state.kr, self.state.ki, self.state.t, from.a, from.b, read(product), read(sum)]
+        }
     }
 
     fn load_constant(&mut self, imaginary: bool, value: u64) {
         let register = if imaginary { &mut self.state.ki } else { &mut self.state.kr };
         *register = value;
     }
+}
+
+/// The number that bits of a precision stand for.
+fn number(bits: u64, double: bool) -> f64 {
+    f64::from_bits(if double { bits } else { widen(bits as u32) })
 }

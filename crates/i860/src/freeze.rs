@@ -10,7 +10,7 @@ pub struct FreezeRow {
     pub id: Freeze,
     /// Number in Intel's list as recollected, with a letter where one number has several costs.
     pub number: &'static str,
-    /// When it applies.
+    /// What must happen for the row to apply.
     pub condition: &'static str,
     /// What is added to the constant part, or how it shrinks.
     pub variable: &'static str,

@@ -14,7 +14,8 @@ fn z_check(a: u64, b: u64, width: u32) -> (u64, u32) {
     let field = (1u64 << width) - 1;
     let mut result = (0, 0);
     for index in 0..64 / width {
-        let (x, y) = (a >> (index * width) & field, b >> (index * width) & field);
+        let x = a >> (index * width) & field;
+        let y = b >> (index * width) & field;
         result.0 |= x.min(y) << (index * width);
         result.1 |= u32::from(y <= x) << index;
     }

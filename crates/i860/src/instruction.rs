@@ -8,13 +8,13 @@ pub enum Op {
     LdB,
     /// Load 16 bits, sign extended.
     LdS,
-    /// Load 32 bits.
+    /// `ld.l`: load 32 bits.
     LdL,
-    /// Store byte.
+    /// `st.b`: store the low 8 bits.
     StB,
-    /// Store 16 bits.
+    /// `st.s`: store the low 16 bits.
     StS,
-    /// Store 32 bits.
+    /// `st.l`: store 32 bits.
     StL,
     /// Load one, two or four floating-point registers.
     Fld,
@@ -32,7 +32,7 @@ pub enum Op {
     Ixfr,
     /// Write back a data-cache line.
     Flush,
-    /// Instruction trap.
+    /// `trap`: take the instruction trap.
     Trap,
     /// Begin an interlocked sequence.
     Lock,
@@ -48,11 +48,11 @@ pub enum Op {
     Bte,
     /// Branch if not equal, no delay slot.
     Btne,
-    /// Branch, delayed.
+    /// `br`: branch after the slot.
     Br,
     /// Call, delayed; r1 receives the return address.
     Call,
-    /// Branch if CC.
+    /// `bc`: branch if CC is set, without a slot.
     Bc,
     /// Branch if CC, delayed; skips the slot when not taken.
     BcT,
@@ -62,23 +62,23 @@ pub enum Op {
     BncT,
     /// Branch on LCC and add, delayed.
     Bla,
-    /// Add unsigned.
+    /// `addu`: add; OF and CC are the carry.
     Addu,
-    /// Subtract unsigned.
+    /// `subu`: src1 - src2; CC says src2 <= src1.
     Subu,
-    /// Add signed.
+    /// `adds`: add; CC says src2 < -src1.
     Adds,
-    /// Subtract signed.
+    /// `subs`: src1 - src2; CC says src2 > src1.
     Subs,
-    /// Shift left.
+    /// `shl`: shift left; r0 by r0 is `nop`.
     Shl,
     /// Shift right logical; loads psr.SC.
     Shr,
     /// Double shift right by psr.SC.
     Shrd,
-    /// Shift right arithmetic.
+    /// `shra`: shift right, the sign kept.
     Shra,
-    /// Bitwise and.
+    /// `and`: bitwise and; CC says that nothing is left.
     And,
     /// And with the immediate in the high half.
     Andh,
@@ -86,29 +86,29 @@ pub enum Op {
     Andnot,
     /// The same with the immediate in the high half.
     Andnoth,
-    /// Bitwise or.
+    /// `or`: bitwise or; CC says that the result is 0.
     Or,
     /// Or with the immediate in the high half.
     Orh,
-    /// Bitwise exclusive or.
+    /// `xor`: bitwise exclusive or; CC says that the result is 0.
     Xor,
     /// Exclusive or with the immediate in the high half.
     Xorh,
     /// No operation of the floating-point half of a pair.
     Fnop,
-    /// Multiply.
+    /// `fmul`, `pfmul`: floating-point multiply.
     Fmul,
     /// Low bits of the product of two significands.
     Fmlow,
-    /// Reciprocal seed.
+    /// `frcp`: first approximation of a reciprocal.
     Frcp,
-    /// Reciprocal square-root seed.
+    /// `frsqr`: first approximation of a reciprocal root.
     Frsqr,
-    /// Add.
+    /// `fadd`, `pfadd`: floating-point add.
     Fadd,
-    /// Subtract.
+    /// `fsub`, `pfsub`: floating-point subtract.
     Fsub,
-    /// To integer, rounded.
+    /// `fix`: to an integer, rounded as fsr.RM says.
     Fix,
     /// Adder move, converts precision.
     Famov,
@@ -130,11 +130,11 @@ pub enum Op {
     Faddp,
     /// Add with Z merge.
     Faddz,
-    /// 32-bit Z check.
+    /// `fzchkl`: compare two 32-bit depths, keep the smaller.
     Fzchkl,
-    /// Or with MERGE.
+    /// `form`: or with MERGE, which becomes 0.
     Form,
-    /// 16-bit Z check.
+    /// `fzchks`: compare four 16-bit depths, keep the smaller.
     Fzchks,
     /// Dual operation (pfam, pfsm, pfmam, pfmsm); the immediate holds bit 4 = subtract, bits 3:0 = DPC.
     DualOp,
@@ -151,11 +151,11 @@ impl Flags {
     pub const AUTOINCREMENT: Flags = Flags(2);
     /// Pipelined form (for a dual operation: pfam/pfsm rather than pfmam/pfmsm).
     pub const PIPELINED: Flags = Flags(4);
-    /// Dual-instruction bit.
+    /// The D bit, which begins and keeps up dual-instruction mode.
     pub const DUAL: Flags = Flags(8);
-    /// Double-precision source.
+    /// The S bit: sources are double-precision.
     pub const SOURCE_DOUBLE: Flags = Flags(16);
-    /// Double-precision result.
+    /// The R bit: the result is double-precision.
     pub const RESULT_DOUBLE: Flags = Flags(32);
 
     /// Whether all bits of `other` are set.
@@ -179,9 +179,9 @@ impl Flags {
 /// and pst (0 for the rest).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Instruction {
-    /// Operation.
+    /// Which operation, in all its forms.
     pub op: Op,
-    /// Destination register.
+    /// Number of the destination register, r or f.
     pub dest: u8,
     /// First source register (control register for ld.c and st.c is `src2`).
     pub src1: u8,
@@ -189,7 +189,7 @@ pub struct Instruction {
     pub src2: u8,
     /// Operand size in bytes of floating-point loads and stores.
     pub size: u8,
-    /// Modifier bits.
+    /// Precision, pipe and addressing bits.
     pub flags: Flags,
     /// Immediate, displacement in bytes, or branch offset in words.
     pub imm: i32,

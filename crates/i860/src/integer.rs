@@ -13,7 +13,8 @@ impl Cpu {
     /// Arithmetic, logic and shifts.
     #[inline]
     pub(crate) fn integer(&mut self, i: &Instruction) {
-        let (a, b) = (self.first_source(i), self.state.r(i.src2));
+        let a = self.first_source(i);
+        let b = self.state.r(i.src2);
         let result = match i.op {
             Op::Addu => self.add_unsigned(a, b),
             Op::Subu => self.subtract_unsigned(a, b),
@@ -101,11 +102,10 @@ impl Cpu {
     /// Writes a control register; in user mode only the user's bits of psr, OF, and fsr change.
     pub(crate) fn write_control(&mut self, register: u8, value: u32) {
         let user = self.state.psr & psr::U != 0;
-        let merge = |old: u32, mask: u32| old & !mask | value & mask;
         match register {
-            1 => self.state.psr = merge(self.state.psr, if user { psr::USER } else { !0 }),
+            1 => self.state.psr = merge(self.state.psr, value, if user { psr::USER } else { !0 }),
             4 => self.state.fsr = value,
-            5 => self.state.epsr = merge(self.state.epsr, if user { epsr::OF } else { epsr::WRITABLE }),
+            5 => self.state.epsr = merge(self.state.epsr, value, if user { epsr::OF } else { epsr::WRITABLE }),
             _ if user => {}
             0 => self.state.fir = value,
             2 => self.write_directory_base(value),
@@ -135,4 +135,9 @@ impl Cpu {
         self.state.epsr = self.state.epsr & !epsr::IL | il;
         self.state.dirbase = self.state.dirbase & !dirbase::BL | bl;
     }
+}
+
+/// `old` with the bits of the mask as they are in `new`.
+fn merge(old: u32, new: u32, mask: u32) -> u32 {
+    old & !mask | new & mask
 }

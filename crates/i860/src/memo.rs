@@ -82,6 +82,13 @@ pub(crate) struct RememberedClocks {
     pub(crate) line: u32,
 }
 
+impl RememberedClocks {
+    #[inline]
+    fn is_of(&self, entry: u32, execution: Execution) -> bool {
+        self.entry == entry && self.execution == execution
+    }
+}
+
 /// What a block remembers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BlockMemory {
@@ -94,9 +101,8 @@ pub(crate) struct BlockMemory {
 impl BlockMemory {
     #[inline]
     pub(crate) fn find(&mut self, entry: u32, execution: Execution) -> Option<&RememberedClocks> {
-        let is_it = |p: &RememberedClocks| p.entry == entry && p.execution == execution;
-        if !self.all.get(self.latest).is_some_and(is_it) {
-            self.latest = self.all.iter().position(is_it)?;
+        if !self.all.get(self.latest).is_some_and(|known| known.is_of(entry, execution)) {
+            self.latest = self.all.iter().position(|known| known.is_of(entry, execution))?;
         }
         self.all.get(self.latest)
     }

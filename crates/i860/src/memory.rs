@@ -71,7 +71,8 @@ impl Cpu {
     #[inline]
     pub(crate) fn load_floating<B: Bus>(&mut self, d: &Decoded, bus: &mut B) -> Result<(), TrapCause> {
         let i = &d.instruction;
-        let (address, size) = (self.effective_address(i), u32::from(i.size));
+        let address = self.effective_address(i);
+        let size = u32::from(i.size);
         Self::aligned(address, size)?;
         match size {
             4 => {
@@ -100,7 +101,8 @@ impl Cpu {
     #[inline]
     pub(crate) fn store_floating<B: Bus>(&mut self, d: &Decoded, bus: &mut B) -> Result<(), TrapCause> {
         let i = &d.instruction;
-        let (address, size) = (self.effective_address(i), u32::from(i.size));
+        let address = self.effective_address(i);
+        let size = u32::from(i.size);
         Self::aligned(address, size)?;
         match size {
             4 => self.write(bus, address, 4, u64::from(self.state.f32_bits(i.dest)))?,
@@ -118,7 +120,8 @@ impl Cpu {
 
     pub(crate) fn load_pipelined<B: Bus>(&mut self, d: &Decoded, bus: &mut B) -> Result<(), TrapCause> {
         let i = &d.instruction;
-        let (address, size) = (self.effective_address(i), u32::from(i.size));
+        let address = self.effective_address(i);
+        let size = u32::from(i.size);
         Self::aligned(address, size)?;
         let bits = self.read(bus, address, size)?;
         let [first, second, leaving] = self.state.load;
@@ -136,7 +139,8 @@ impl Cpu {
         Self::aligned(address, 8)?;
         self.read(bus, address, 8)?;
         let size = 1 << self.state.pixel_size();
-        let (pixels, mask) = (8 / size, self.state.pixel_mask());
+        let pixels = 8 / size;
+        let mask = self.state.pixel_mask();
         let value = self.state.f64_bits(i.dest);
         for n in (0..pixels).filter(|n| mask >> n & 1 != 0) {
             self.write(bus, address + n * size, size, value >> (8 * n * size))?;

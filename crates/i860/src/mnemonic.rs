@@ -50,7 +50,7 @@ pub(crate) enum Syntax {
 }
 
 impl Syntax {
-    pub(crate) fn of(op: Op) -> Syntax {
+    pub(crate) fn from_op(op: Op) -> Syntax {
         use Op::{Bc, BcT, Bnc, BncT, Br, Bri, Bte, Btne, Call, Calli, LdB, LdC, LdL, LdS, Pfld, StB, StC, StL, StS};
         match op {
             Op::Lock | Op::Unlock | Op::Intovr | Op::Fnop => Syntax::Bare,
@@ -178,7 +178,8 @@ fn path_name(i: &Instruction) -> String {
 }
 
 fn suffix(i: &Instruction) -> &'static str {
-    let (s, r) = (i.has(Flags::SOURCE_DOUBLE), i.has(Flags::RESULT_DOUBLE));
+    let s = i.has(Flags::SOURCE_DOUBLE);
+    let r = i.has(Flags::RESULT_DOUBLE);
     match i.op {
         Op::Fld | Op::Fst | Op::Pfld | Op::Pst => match i.size {
             4 => ".l",
@@ -278,24 +279,29 @@ fn address(i: &Instruction) -> String {
     }
 }
 
+fn control_register(n: u8) -> &'static str {
+    CONTROL_REGISTERS.get(usize::from(n)).copied().unwrap_or("?")
+}
+
 fn operands(i: &Instruction, pc: u32) -> String {
-    let (a, b, d) = (i.src1, i.src2, i.dest);
+    let a = i.src1;
+    let b = i.src2;
+    let d = i.dest;
     let target = pc.wrapping_add(4).wrapping_add((i.imm as u32) << 2);
-    let control = |n: u8| CONTROL_REGISTERS.get(usize::from(n)).copied().unwrap_or("?");
     let first = match i.has(Flags::IMMEDIATE) {
         true if i.op == Op::Bte || i.op == Op::Btne => a.to_string(),
         true => i.imm.to_string(),
         false => format!("r{a}"),
     };
-    match Syntax::of(i.op) {
+    match Syntax::from_op(i.op) {
         Syntax::Bare => String::new(),
         Syntax::Integer => format!("{first}, r{b}, r{d}"),
         Syntax::Load => format!("{}, r{d}", address(i)),
         Syntax::Store => format!("r{a}, {}", address(i)),
         Syntax::FloatingLoad => format!("{}, f{d}", address(i)),
         Syntax::FloatingStore => format!("f{d}, {}", address(i)),
-        Syntax::LoadControl => format!("{}, r{d}", control(b)),
-        Syntax::StoreControl => format!("r{a}, {}", control(b)),
+        Syntax::LoadControl => format!("{}, r{d}", control_register(b)),
+        Syntax::StoreControl => format!("r{a}, {}", control_register(b)),
         Syntax::ToFloating => format!("r{a}, f{d}"),
         Syntax::ToInteger => format!("f{a}, r{d}"),
         Syntax::Flush => address(i),
@@ -318,8 +324,8 @@ mod tests {
     fn the_mnemonics_of_the_xr_part_are_all_there() {
         let names: Vec<&str> = templates().keys().map(String::as_str).collect();
         // 4 families of dual operations, 16 + 16 + 15 + 15 data paths in the three precisions .ss .sd .dd.
-        let is_path = |n: &&&str| n.starts_with(['r', 'i', 'm']) && !["ixfr", "intovr"].contains(n);
-        assert_eq!(names.iter().filter(is_path).count(), 62 * 3);
+        let paths = names.iter().filter(|n| n.starts_with(['r', 'i', 'm']) && !["ixfr", "intovr"].contains(n));
+        assert_eq!(paths.count(), 62 * 3);
         for name in ["ld.c", "pst.d", "fst.q", "pfmul.dd", "famov.ds", "pfle.dd", "m12apm.ss", "mim1s2.dd", "bla"] {
             assert!(names.contains(&name), "{name}");
         }

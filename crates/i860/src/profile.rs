@@ -16,7 +16,7 @@ pub struct Profile {
     pub bus_requests: u64,
     /// Requests that had to open a row of the memory.
     pub page_misses: u64,
-    /// Instruction-cache misses.
+    /// Fetches that the instruction cache did not hold.
     pub instruction_misses: u64,
     /// Data-cache misses of loads.
     pub data_misses: u64,
@@ -94,8 +94,11 @@ impl AddressProfile {
     #[must_use]
     pub fn by_label<'a>(&self, labels: &[(&'a str, u32)]) -> Vec<(&'a str, u64)> {
         let end = self.base.wrapping_add(4 * self.rows.len() as u32);
-        let span = |n: usize| labels[n].1..labels.get(n + 1).map_or(end, |next| next.1);
-        let sum = |n: usize| span(n).step_by(4).map(|pc| self.at(pc).0).sum();
-        labels.iter().enumerate().map(|(n, (name, _))| (*name, sum(n))).collect()
+        let ends = labels.iter().skip(1).map(|next| next.1).chain([end]);
+        labels.iter().zip(ends).map(|((name, begin), end)| (*name, self.clocks_between(*begin, end))).collect()
+    }
+
+    fn clocks_between(&self, begin: u32, end: u32) -> u64 {
+        (begin..end).step_by(4).map(|pc| self.at(pc).0).sum()
     }
 }

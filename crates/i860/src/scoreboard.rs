@@ -126,9 +126,13 @@ impl Scoreboard {
 
     /// Makes this the scoreboard that leaves `left` at `now`.
     pub(crate) fn restore(&mut self, left: &Leftover, now: u64) {
-        (self.pending, self.armed, self.last_result_until) = (0, 0, 0);
-        (self.last_result, self.scalar_double) = (left.last_result, left.scalar_double);
-        (self.graphics_result, self.stored) = (left.graphics_result, left.stored);
+        self.pending = 0;
+        self.armed = 0;
+        self.last_result_until = 0;
+        self.last_result = left.last_result;
+        self.scalar_double = left.scalar_double;
+        self.graphics_result = left.graphics_result;
+        self.stored = left.stored;
         for Left { place, clocks, why } in left.waits.into_iter().flatten() {
             let wait = Wait { until: now + u64::from(clocks), why };
             match place {

@@ -100,16 +100,16 @@ mod tests {
     use super::SeedTable;
 
     fn worst(table: SeedTable, root: bool) -> f64 {
-        let error = |n: u32| {
-            let x = 1.0 + 3.0 * f64::from(n) / 50_000.0;
-            let (got, want) = if root {
-                (table.reciprocal_root(x.to_bits()), 1.0 / x.sqrt())
-            } else {
-                (table.reciprocal(x.to_bits()), 1.0 / x)
-            };
-            (f64::from_bits(got) / want - 1.0).abs()
+        let octaves = (0..50_000).map(|n| 1.0 + 3.0 * f64::from(n) / 50_000.0);
+        octaves.map(|x| error(table, root, x)).fold(0.0, f64::max)
+    }
+
+    fn error(table: SeedTable, root: bool, x: f64) -> f64 {
+        let (got, want) = match root {
+            true => (table.reciprocal_root(x.to_bits()), 1.0 / x.sqrt()),
+            false => (table.reciprocal(x.to_bits()), 1.0 / x),
         };
-        (0..50_000).map(error).fold(0.0, f64::max)
+        (f64::from_bits(got) / want - 1.0).abs()
     }
 
     #[test]

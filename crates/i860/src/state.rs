@@ -6,7 +6,7 @@ pub mod psr {
     pub const BR: u32 = 1 << 0;
     /// Break on data write.
     pub const BW: u32 = 1 << 1;
-    /// Condition code.
+    /// CC, the condition code that compares, sums and logicals set.
     pub const CC: u32 = 1 << 2;
     /// Loop condition code, tested by `bla`.
     pub const LCC: u32 = 1 << 3;
@@ -14,19 +14,19 @@ pub mod psr {
     pub const IM: u32 = 1 << 4;
     /// IM before the trap.
     pub const PIM: u32 = 1 << 5;
-    /// User mode.
+    /// U, set in user mode.
     pub const U: u32 = 1 << 6;
     /// U before the trap.
     pub const PU: u32 = 1 << 7;
-    /// Instruction trap.
+    /// IT, set by an instruction trap.
     pub const IT: u32 = 1 << 8;
-    /// Interrupt.
+    /// IN, set by an interrupt.
     pub const IN: u32 = 1 << 9;
-    /// Instruction access trap.
+    /// IAT, set by an instruction access trap.
     pub const IAT: u32 = 1 << 10;
-    /// Data access trap.
+    /// DAT, set by a data access trap.
     pub const DAT: u32 = 1 << 11;
-    /// Floating-point trap.
+    /// FT, set by a floating-point trap.
     pub const FT: u32 = 1 << 12;
     /// Delayed switch: the trap came while the mode was about to change.
     pub const DS: u32 = 1 << 13;
@@ -54,9 +54,9 @@ pub mod psr {
 
 /// Bits of the extended processor status register.
 pub mod epsr {
-    /// Interlock.
+    /// IL, set between `lock` and `unlock`.
     pub const IL: u32 = 1 << 13;
-    /// Integer overflow.
+    /// OF, set by integer overflow and tested by `intovr`.
     pub const OF: u32 = 1 << 24;
     /// What software can write: WP, PBM, BE, OF. BE is stored but has no effect in this model.
     pub const WRITABLE: u32 = 1 << 14 | 1 << 22 | 1 << 23 | OF;
@@ -74,13 +74,13 @@ pub mod fsr {
 
 /// Bits of the directory-base register.
 pub mod dirbase {
-    /// Address translation enable.
+    /// ATE, which turns address translation on.
     pub const ATE: u32 = 1;
-    /// Bus lock.
+    /// BL, which locks the bus.
     pub const BL: u32 = 1 << 4;
     /// Invalidate the TLB and the instruction cache.
     pub const ITI: u32 = 1 << 5;
-    /// Directory table base.
+    /// DTB, address of the page directory.
     pub const DTB: u32 = 0xFFFF_F000;
 }
 
@@ -133,23 +133,23 @@ pub struct State {
     pub r: [u32; 32],
     /// Floating-point registers; `f[0]` and `f[1]` stay 0.
     pub f: [u32; 32],
-    /// Processor status.
+    /// psr, processor status: the bits of [`psr`].
     pub psr: u32,
-    /// Extended processor status.
+    /// epsr, extended processor status: the bits of [`epsr`].
     pub epsr: u32,
-    /// Floating-point status.
+    /// fsr, floating-point status: the bits of [`fsr`].
     pub fsr: u32,
-    /// Directory base.
+    /// dirbase, directory base and cache control: the bits of [`dirbase`].
     pub dirbase: u32,
-    /// Data breakpoint.
+    /// db, data breakpoint; kept, never compared.
     pub db: u32,
-    /// Fault instruction address.
+    /// fir, address of the instruction that trapped.
     pub fir: u32,
     /// Constant register KR of the dual operations.
     pub kr: u64,
-    /// Constant register KI.
+    /// KI, the second constant of dual operations.
     pub ki: u64,
-    /// Transfer register T.
+    /// T, which holds a product for a later addition.
     pub t: u64,
     /// The graphics unit's MERGE.
     pub merge: u64,
@@ -157,11 +157,11 @@ pub struct State {
     pub adder: [Stage; 3],
     /// Multiplier pipe; double-precision operations use the first two stages.
     pub multiplier: [Stage; 3],
-    /// Load pipe.
+    /// Load pipe of three stages.
     pub load: [Stage; 3],
-    /// Graphics pipe.
+    /// Graphics pipe, of one stage.
     pub graphics: Stage,
-    /// Pairing mode.
+    /// Whether instructions issue singly or in pairs.
     pub mode: Mode,
 }
 
@@ -225,7 +225,8 @@ impl State {
     #[inline]
     pub(crate) fn set_f32(&mut self, n: u8, value: u32) {
         self.f[usize::from(n & 31)] = value;
-        (self.f[0], self.f[1]) = (0, 0);
+        self.f[0] = 0;
+        self.f[1] = 0;
     }
 
     #[inline]
@@ -233,7 +234,8 @@ impl State {
         let low = usize::from(n & 30);
         self.f[low] = value as u32;
         self.f[low + 1] = (value >> 32) as u32;
-        (self.f[0], self.f[1]) = (0, 0);
+        self.f[0] = 0;
+        self.f[1] = 0;
     }
 
     #[inline]

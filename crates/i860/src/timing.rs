@@ -60,7 +60,7 @@ parameters::parameter_table! {
         compare_branch_taken: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
         /// Row 20: bri, calli.
         indirect_branch: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
-        /// Row 21: st.c.
+        /// Row 21: st.c, whatever it stores to.
         control_store: 2, "clocks", Assumed, 1..=3 in 0..=1_000_000, "Intel's list, recollected";
         /// Row 22a: graphics result used by the next adder or multiplier operation.
         graphics_to_floating: 1, "clocks", Assumed, 0..=2 in 0..=1_000_000, "Intel's list, recollected";
@@ -105,9 +105,9 @@ parameters::parameter_table! {
 parameters::parameter_table! {
     /// Sizes of what is on the chip. They are those of the part and cannot be set.
     pub struct ChipSizes {
-        /// Instruction cache.
+        /// Size of the instruction cache.
         instruction_cache_bytes: 4096, "bytes", Published, 4096..=4096, "Intel's manual";
-        /// Data cache.
+        /// Size of the data cache.
         data_cache_bytes: 8192, "bytes", Published, 8192..=8192, "Intel's manual";
         /// Line of either cache.
         line_bytes: 32, "bytes", Published, 32..=32, "Intel's manual";
@@ -123,7 +123,7 @@ parameters::parameter_table! {
         bus_bytes: 8, "bytes", Published, 8..=8, "Intel's manual";
         /// Bus requests that may be outstanding.
         bus_depth: 3, "requests", Assumed, 1..=3, "the address pipe of the external bus";
-        /// Stores that wait.
+        /// Stores that wait at most.
         store_depth: 3, "stores", Assumed, 2..=3, "two inside and one on the bus";
         /// Pipelined loads that may be outstanding.
         load_depth: 3, "loads", Published, 3..=3, "Intel's manual: the load pipe has three stages";
@@ -135,9 +135,9 @@ parameters::parameter_table! {
 pub struct Config {
     /// Whether clocks are counted at all; without, only instructions are.
     pub timing: bool,
-    /// Freeze rules.
+    /// Which freeze rules apply, and what they cost.
     pub freezes: FreezeRules,
-    /// Memory.
+    /// Times of the memory behind the bus.
     pub dram: DramTiming,
     /// Table of frcp and frsqr.
     pub seeds: crate::SeedTable,
@@ -168,9 +168,22 @@ impl Config {
         [("freezes", &self.freezes.clocks), ("dram", &self.dram), ("chip", &ChipSizes::PAPERS)]
     }
 
-    /// Functional model only.
+    /// The same results without clocks.
     #[must_use]
     pub fn functional() -> Config {
         Config { timing: false, ..Config::cycle() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_lies_in_its_range() {
+        for (name, table) in Config::cycle().tables() {
+            assert_eq!(table.out_of_range(), [], "{name}");
+            assert_eq!(table.check(), Ok(()), "{name}");
+        }
     }
 }

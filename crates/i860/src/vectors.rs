@@ -14,25 +14,25 @@ use std::fmt;
 /// A run longer than this fails (vectors stay below 1,000).
 pub const BUDGET: u64 = 10_000;
 
-/// One vector.
+/// One vector: a program, the state before it and the state expected after it.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 pub struct Vector {
-    /// Name.
+    /// Its name, unique in its file.
     pub id: String,
     /// Group of the collection.
     #[serde(default)]
     pub group: String,
-    /// What it tries.
+    /// What it tries, in words.
     #[serde(default)]
     pub what: String,
     /// Address of the first word of `code`.
     pub load: u32,
-    /// Instruction words.
+    /// Instruction words from `load` on.
     #[serde(deserialize_with = "hex_list")]
     pub code: Vec<u32>,
-    /// First pc.
+    /// Address of the first instruction.
     pub entry: u32,
-    /// Last pc.
+    /// Address at which the run ends.
     pub stop: u32,
     /// Words placed before the run.
     #[serde(default, deserialize_with = "hex_pairs")]
@@ -50,7 +50,7 @@ pub struct Expectation {
     /// Floating-point registers, bit patterns.
     #[serde(deserialize_with = "registers")]
     pub f: [u32; 32],
-    /// Words of memory.
+    /// Words of memory after the run, by address.
     #[serde(default, deserialize_with = "hex_pairs")]
     pub mem: Vec<(u32, u32)>,
 }
@@ -73,8 +73,7 @@ fn hex_pairs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(u32, u32)>, D::E
 fn registers<'de, D: Deserializer<'de>>(from: D) -> Result<[u32; 32], D::Error> {
     let list = hex_list(from)?;
     let found = list.len();
-    let wrong = |_| serde::de::Error::custom(format_args!("expected 32 registers, found {found}"));
-    list.try_into().map_err(wrong)
+    list.try_into().map_err(|_| serde::de::Error::custom(format_args!("expected 32 registers, found {found}")))
 }
 
 /// Memory that exists everywhere and is zero until written.
@@ -139,11 +138,11 @@ impl fmt::Display for Difference {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Failure {
-    /// The program trapped.
+    /// The program trapped where it should have ended.
     Trapped(Trap),
     /// The program did not reach its stop address.
     Exhausted {
-        /// Where it was.
+        /// Address of the instruction that it had come to.
         pc: u32,
     },
     /// Registers or memory differ.
@@ -164,21 +163,14 @@ impl fmt::Display for Failure {
 }
 
 /// A line that is no vector.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
+#[error("line {line}: not a vector: {reason}")]
 pub struct MalformedLine {
-    /// From 1.
+    /// Number of the line, from 1.
     pub line: usize,
     /// What is wrong with it.
     pub reason: String,
 }
-
-impl fmt::Display for MalformedLine {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "line {}: not a vector: {}", self.line, self.reason)
-    }
-}
-
-impl std::error::Error for MalformedLine {}
 
 /// Reads vectors from JSON lines; empty lines are passed over.
 ///
@@ -236,9 +228,8 @@ impl Vector {
     }
 
     fn compare(&self, cpu: &Cpu, memory: &Sparse) -> Result<(), Failure> {
-        let register = |file: &str, n: usize| format!("{file}{n}");
-        let r = (0..32).map(|n| (register("r", n), self.expect.r[n], cpu.state.r[n]));
-        let f = (0..32).map(|n| (register("f", n), self.expect.f[n], cpu.state.f[n]));
+        let r = (0..32).map(|n| (format!("r{n}"), self.expect.r[n], cpu.state.r[n]));
+        let f = (0..32).map(|n| (format!("f{n}"), self.expect.f[n], cpu.state.f[n]));
         let words = self.expect.mem.iter();
         let mem = words.map(|(a, word)| (format!("memory {a:#010x}"), *word, memory.word(*a)));
         let differences: Vec<Difference> = (r.chain(f).chain(mem))
@@ -266,7 +257,7 @@ impl Summary {
     }
 }
 
-/// Runs all vectors.
+/// Runs all vectors on one processor, each from its own state.
 #[must_use]
 pub fn run(vectors: &[Vector], config: Config) -> Summary {
     let mut cpu = Cpu::new(config);

@@ -20,7 +20,8 @@ fn measure(source: &str, floats: &[f32]) -> Measured {
     let bits: Vec<u32> = floats.iter().map(|x| x.to_bits()).collect();
     ram.load_words(DATA, &bits).expect("fits");
     let mut cpu = Cpu::new(Config::cycle());
-    let (begin, end) = (program.symbol("begin").expect("begin"), program.symbol("end").expect("end"));
+    let begin = program.symbol("begin").expect("begin");
+    let end = program.symbol("end").expect("end");
     let mut start = (0, 0);
     for _ in 0..3 {
         cpu.state.pc = CODE;

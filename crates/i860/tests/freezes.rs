@@ -450,7 +450,8 @@ fn row_25_a_seed_is_late_by_one() {
 #[test]
 fn simultaneous_freezes_cost_the_longest() {
     let source = "fadd.ss f8, f9, f10\nfld.l 0(r4), f2\nfadd.ss f2, f10, f11";
-    let (scalar, load) = (Freeze::ScalarBusy, Freeze::FloatingLoadUse);
+    let scalar = Freeze::ScalarBusy;
+    let load = Freeze::FloatingLoadUse;
     assert_eq!((cost(scalar, source), cost(load, source)), (1, 2));
     let both = FreezeRules::none().with(scalar).with(load);
     assert_eq!(clocks_with(both, source) - clocks_with(FreezeRules::none(), source), 2);

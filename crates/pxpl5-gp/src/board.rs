@@ -4,7 +4,7 @@ use crate::cpu::{Cpu, Priority};
 use crate::firmware::{Cause, Fault, Firmware, Gp, Received, Shared, Wait};
 use crate::memory::Memory;
 use crate::probe::Mark;
-use crate::processor::Processor;
+use crate::processor::{CodeVersion, Processor};
 use crate::timing::GpTiming;
 use pxpl5_sim::{Blocked, Context, Phase, Span};
 use pxpl5_wire::{Message, NodeId};
@@ -25,9 +25,9 @@ pub enum GpEvent {
     Retrace(u64),
     /// A status line of another board changes (phase `Arrive`).
     Status {
-        /// The board.
+        /// The port of that board.
         from: NodeId,
-        /// The new value.
+        /// What the line says from now on.
         value: u64,
     },
     /// The programs look at what has arrived.
@@ -36,12 +36,12 @@ pub enum GpEvent {
     WorkEnds(u64),
 }
 
-/// What leaves the board.
+/// What leaves the board for others.
 #[derive(Debug)]
 pub enum GpOutput {
     /// A message for the ring; `ticket` comes back when it was accepted.
     Send {
-        /// The message.
+        /// What is sent, with its destination.
         message: Message,
         /// Its batch, and its place in it in the lower [`PLACE_BITS`].
         ticket: u64,
@@ -53,7 +53,7 @@ pub const PLACE_BITS: u32 = 20;
 const PLACE_MASK: u64 = (1 << PLACE_BITS) - 1;
 
 struct Task {
-    program: Firmware,
+    firmware: Firmware,
     priority: Priority,
 }
 
@@ -102,13 +102,10 @@ impl GpBoard {
         Self { shared, tasks: Vec::new(), announced: None, poll_pending: false, cycle, fault: None }
     }
 
-    /// Has the time of [`Work`](crate::Work) come from code from now on, where the timing table stands for code
-    /// ([`GpTiming::code_version`]).
-    pub fn run_code(&mut self) {
+    /// Has the time of [`Work`](crate::Work) come from this code from now on, whatever the timing table says.
+    pub fn run_code(&mut self, version: CodeVersion) {
         let shared = &mut *self.shared.borrow_mut();
-        let (node, bytes) = (shared.node, shared.timing.memory_bytes);
-        let processor = |version| Box::new(Processor::new(node, bytes, version));
-        shared.processor = shared.timing.code_version().map(processor);
+        shared.processor = Some(Box::new(Processor::new(shared.node, shared.timing.memory_bytes, version)));
     }
 
     /// Has the processor that runs code memoise nothing; to be called before programs run.
@@ -118,19 +115,19 @@ impl GpBoard {
         }
     }
 
-    /// A handle for a program at a priority.
+    /// A handle to the board for a program of a priority.
     #[must_use]
     pub fn handle_for(&self, priority: Priority) -> Gp {
         Gp { shared: Rc::clone(&self.shared), priority }
     }
 
-    /// Loads a program; one a priority.
-    pub fn load(&mut self, priority: Priority, program: Firmware) {
-        self.tasks.push(Task { program, priority });
+    /// Loads a program; there is one for each priority.
+    pub fn load(&mut self, priority: Priority, firmware: Firmware) {
+        self.tasks.push(Task { firmware, priority });
         self.tasks.sort_by_key(|task| task.priority);
     }
 
-    /// Handles one event.
+    /// Handles one event at its instant.
     pub fn handle(&mut self, event: GpEvent, context: &mut Context<GpEvent, GpOutput>) {
         self.shared.borrow_mut().now = context.now();
         match event {
@@ -158,8 +155,8 @@ impl GpBoard {
         let arrived = context.now();
         {
             let inbox = &mut self.shared.borrow_mut().inbox;
-            let later = |r: &Received| (r.arrived, r.source) <= (arrived, message.source);
-            let place = inbox.iter().rposition(later).map_or(0, |i| i + 1);
+            let before = inbox.iter().rposition(|other| (other.arrived, other.source) <= (arrived, message.source));
+            let place = before.map_or(0, |i| i + 1);
             inbox.insert(place, Received { arrived, source: message.source, body: message.body });
         }
         self.wake(Cause::Arrival, context);
@@ -198,12 +195,13 @@ impl GpBoard {
         let mut task_context = TaskContext::from_waker(Waker::noop());
         loop {
             let before = self.shared.borrow().progress;
-            let (fault, shared) = (&mut self.fault, &self.shared);
+            let fault = &mut self.fault;
+            let shared = &self.shared;
             self.tasks.retain_mut(|task| {
                 if shared.borrow().is_at_work(task.priority) {
                     return true;
                 }
-                match task.program.as_mut().poll(&mut task_context) {
+                match task.firmware.as_mut().poll(&mut task_context) {
                     Poll::Pending => true,
                     Poll::Ready(result) => {
                         *fault = fault.take().or(result.err());
@@ -244,8 +242,8 @@ impl GpBoard {
     #[must_use]
     pub fn blocked(&self, name: &str) -> Option<Blocked> {
         let waits = self.shared.borrow().waits;
-        let what = |task: &Task| Some(waits[task.priority as usize].what).filter(|what| !what.is_empty());
-        let waits_for = self.tasks.iter().rev().find_map(what)?.to_owned();
+        let whats = self.tasks.iter().rev().map(|task| waits[task.priority as usize].what);
+        let waits_for = whats.into_iter().find(|what| !what.is_empty())?.to_owned();
         Some(Blocked { board: name.to_owned(), waits_for })
     }
 }
@@ -305,13 +303,16 @@ mod tests {
     }
 
     fn sent(bench: TestBench<GpEvent, GpOutput>) -> Vec<(Time, u16, u32)> {
-        let of = |(time, GpOutput::Send { message, .. })| (time, message.destination.0, value(&message.body));
-        bench.outputs.into_iter().map(of).collect()
+        let sends = bench.outputs.into_iter();
+        sends
+            .map(|(time, GpOutput::Send { message, .. })| (time, message.destination.0, value(&message.body)))
+            .collect()
     }
 
     #[test]
     fn an_echo_leaves_after_both_software_costs_the_work_and_one_cycle() {
-        let (mut board, mut bench) = (board(), TestBench::new());
+        let mut board = board();
+        let mut bench = TestBench::new();
         bench.feed(Time(500_000), Phase::Arrive, GpEvent::Delivered(words(2, 7)));
         bench.run(|event, context| board.handle(event, context));
         assert_eq!(sent(bench), [(Time(500_000 + 2_100_000) + CYCLE, 2, 7)]);
@@ -320,7 +321,8 @@ mod tests {
     #[test]
     fn simultaneous_messages_are_taken_in_the_order_of_their_senders_whatever_the_tie() {
         for seed in 0..20 {
-            let (mut board, mut bench) = (board(), TestBench::new());
+            let mut board = board();
+            let mut bench = TestBench::new();
             bench.queue().shuffle_ties(seed);
             for source in [5, 3, 8, 1] {
                 bench.feed(Time(0), Phase::Arrive, GpEvent::Delivered(words(source, 0)));
@@ -352,7 +354,8 @@ mod tests {
 
     #[test]
     fn a_blocked_board_names_what_it_waits_for() {
-        let (mut board, mut bench) = (board(), TestBench::new());
+        let mut board = board();
+        let mut bench = TestBench::new();
         bench.feed(Time(0), Phase::Work, GpEvent::Poll);
         bench.run(|event, context| board.handle(event, context));
         let blocked = board.blocked("GP 9").expect("it waits");

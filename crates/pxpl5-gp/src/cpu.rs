@@ -1,4 +1,4 @@
-//! The processor's time, shared by two priorities of programs.
+//! The processor's time, shared by the programs of two priorities.
 
 use pxpl5_sim::{Span, Time};
 
@@ -15,7 +15,7 @@ impl Priority {
     pub(crate) const ALL: [Self; 2] = [Self::Interrupt, Self::Foreground];
 }
 
-/// Time that each priority still has to spend, and who is running.
+/// Time that the program of each priority still has to spend, and who is running.
 #[derive(Debug, Default)]
 pub(crate) struct Cpu {
     remaining: [Option<Span>; 2],
@@ -25,7 +25,7 @@ pub(crate) struct Cpu {
 }
 
 impl Cpu {
-    /// Priority `priority` begins to spend `span`.
+    /// The program of a priority begins to spend `span`.
     pub(crate) fn begin(&mut self, priority: Priority, span: Span, now: Time) {
         self.settle(now);
         self.remaining[priority as usize] = Some(span);
@@ -53,7 +53,7 @@ impl Cpu {
         self.running = first.map(|priority| (priority, now));
     }
 
-    /// Whether `priority` has spent all it asked for.
+    /// Whether the program of a priority has spent all it asked for.
     pub(crate) fn is_done(&self, priority: Priority) -> bool {
         self.remaining[priority as usize].is_none()
     }

@@ -9,66 +9,42 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Body, Message, NodeId, RegionId, SurfaceId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
-use std::fmt;
 use std::future::{Future, poll_fn};
 use std::pin::Pin;
 use std::rc::Rc;
 use std::task::Poll;
 
-/// A program on a board; it ends only with a fault.
+/// A program loaded onto a board; it ends only with a fault.
 pub type Firmware = Pin<Box<dyn Future<Output = Result<(), Fault>>>>;
 
 /// A fault of the simulated machine that stops a program.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Fault {
     /// Something did not fit into the board's memory.
-    Memory(OutOfMemory),
+    #[error(transparent)]
+    Memory(#[from] OutOfMemory),
     /// A message that the program does not understand.
+    #[error("node {}: unexpected message {found}", node.0)]
     Protocol {
-        /// The board.
+        /// The port of the board.
         node: NodeId,
-        /// What arrived.
+        /// What arrived, in words.
         found: String,
     },
     /// Code did not come to its end.
-    Processor(ProcessorFault),
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Memory(error) => error.fmt(f),
-            Self::Protocol { node, found } => {
-                write!(f, "node {}: unexpected message {found}", node.0)
-            }
-            Self::Processor(fault) => fault.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for Fault {}
-
-impl From<OutOfMemory> for Fault {
-    fn from(error: OutOfMemory) -> Self {
-        Self::Memory(error)
-    }
-}
-
-impl From<ProcessorFault> for Fault {
-    fn from(fault: ProcessorFault) -> Self {
-        Self::Processor(fault)
-    }
+    #[error(transparent)]
+    Processor(#[from] ProcessorFault),
 }
 
 /// A message and when its last word arrived.
 #[derive(Clone, Debug)]
 pub struct Received {
-    /// Arrival of the last word.
+    /// When its last word had arrived.
     pub arrived: Time,
-    /// The sender.
+    /// The port of the sender.
     pub source: NodeId,
-    /// What it carried.
+    /// What it carried: words, or what makes them when asked.
     pub body: Body,
 }
 
@@ -180,7 +156,7 @@ impl Shared {
     }
 }
 
-/// A program's handle to its board and to its priority of the CPU.
+/// A program's handle to its board, which knows at which priority the program runs.
 #[derive(Clone, Debug)]
 pub struct Gp {
     pub(crate) shared: Rc<RefCell<Shared>>,
@@ -188,19 +164,19 @@ pub struct Gp {
 }
 
 impl Gp {
-    /// The same board at another priority.
+    /// The same board for a program of another priority.
     #[must_use]
     pub fn at_priority(&self, priority: Priority) -> Self {
         Self { shared: Rc::clone(&self.shared), priority }
     }
 
-    /// This board's port.
+    /// The ring port of this board.
     #[must_use]
     pub fn node(&self) -> NodeId {
         self.shared.borrow().node
     }
 
-    /// The present.
+    /// The present instant of simulated time.
     #[must_use]
     pub fn now(&self) -> Time {
         self.shared.borrow().now
@@ -272,7 +248,7 @@ impl Gp {
         self.shared.borrow_mut().inbox.pop_front()
     }
 
-    /// The software cost of one message.
+    /// Pays the software cost of one message (`message_ns`).
     pub async fn spend_message(&self) {
         self.spend(Span::from_ns(self.timing().message_ns)).await;
     }
@@ -324,9 +300,10 @@ impl Gp {
             return Ticket(shared.issued);
         }
         shared.issued += 1;
-        let (ticket, source) = (Ticket(shared.issued), shared.node);
-        let message = |(destination, words, body)| Message { source, destination, words, body };
-        shared.batches.push_back(Batch { ticket, messages: batch.into_iter().map(message).collect() });
+        let ticket = Ticket(shared.issued);
+        let source = shared.node;
+        let messages = batch.into_iter().map(|(destination, words, body)| Message { source, destination, words, body });
+        shared.batches.push_back(Batch { ticket, messages: messages.collect() });
         ticket
     }
 
@@ -352,10 +329,9 @@ impl Gp {
     /// Tells the observer that a stage ends when a batch is accepted; the program goes on.
     pub fn end_when_accepted(&self, ticket: Ticket, stage: Stage, picture: u64) {
         let shared = &mut *self.shared.borrow_mut();
-        let (time, node) = (shared.now, shared.node);
-        shared
-            .ends
-            .push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: Edge::End, view: None }));
+        let time = shared.now;
+        let node = shared.node;
+        shared.ends.push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: Edge::End, view: None }));
     }
 
     /// Tells the observer of a stage's edge at a time that the program has read off a message.
@@ -368,7 +344,8 @@ impl Gp {
     /// Tells the observer that a stage begins on a picture that shows view number `view`.
     pub fn begin_view(&self, stage: Stage, picture: u64, view: u64) {
         let shared = &mut *self.shared.borrow_mut();
-        let (time, node) = (shared.now, shared.node);
+        let time = shared.now;
+        let node = shared.node;
         shared.marks.push(Mark { time, node, picture, surface: None, stage, edge: Edge::Begin, view: Some(view) });
     }
 }

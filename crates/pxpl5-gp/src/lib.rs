@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!                 +-----------------------------------------------+
-//!   ring in  ---->| inbox -> firmware (async fn, two priorities)      |
+//!   ring in  ---->| inbox -> firmware (async fn, two priorities)  |
 //!   retrace  ---->|            | spend      | send                |
 //!                 |           CPU        clump buffer -> DMA -----|---> ring out
 //!                 |            \------- memory, 8 MB -------------|
@@ -14,8 +14,8 @@
 //! - A message that has arrived waits in the inbox, in order of arrival.
 //! - *Firmware* is straight-line `async fn` code that holds a [`Gp`]. Every `.await` is a visible cost
 //!   ([`Gp::spend`]) or wait ([`Gp::receive`], [`Gp::retrace`], [`Gp::until`]).
-//! - The CPU has two priorities: an [`Priority::Interrupt`] program stops the [`Priority::Foreground`] program while it
-//!   spends time. There is one program a priority.
+//! - Programs have two priorities: that of [`Priority::Interrupt`] stops that of [`Priority::Foreground`] while it
+//!   spends time. There is one program for each.
 //! - [`Gp::send`] costs the CPU a fixed software time and hands the messages to the DMA, which sends in the
 //!   background. There is one clump buffer, so a second batch waits until the first was accepted.
 //! - [`Memory`] accounts for 8 MB; what does not fit is a [`Fault`] that names the board and the region.

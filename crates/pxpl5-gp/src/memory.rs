@@ -42,9 +42,14 @@ impl fmt::Display for Account {
 }
 
 /// A request that did not fit.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, thiserror::Error)]
+#[error(
+    "graphics processor at node {}: {account} {}needs {needed_bytes} bytes, {available_bytes} are available",
+    gp.0,
+    named(*region)
+)]
 pub struct OutOfMemory {
-    /// The board.
+    /// The port of the board.
     pub gp: NodeId,
     /// What the memory was for.
     pub account: Account,
@@ -56,17 +61,9 @@ pub struct OutOfMemory {
     pub available_bytes: u64,
 }
 
-impl fmt::Display for OutOfMemory {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "graphics processor at node {}: {} ", self.gp.0, self.account)?;
-        if let Some(region) = self.region {
-            write!(f, "(region {}) ", region.0)?;
-        }
-        write!(f, "needs {} bytes, {} are available", self.needed_bytes, self.available_bytes)
-    }
+fn named(region: Option<RegionId>) -> String {
+    region.map_or_else(String::new, |region| format!("(region {}) ", region.0))
 }
-
-impl std::error::Error for OutOfMemory {}
 
 /// Bytes in use, by account.
 #[derive(Clone, Debug)]
@@ -100,13 +97,13 @@ impl Memory {
         Ok(())
     }
 
-    /// Bytes in use.
+    /// Bytes in use by all accounts.
     #[must_use]
     pub fn used(&self) -> u64 {
         self.used.iter().sum()
     }
 
-    /// Most bytes ever in use.
+    /// Most bytes that were ever in use at once.
     #[must_use]
     pub const fn peak(&self) -> u64 {
         self.peak

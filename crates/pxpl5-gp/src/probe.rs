@@ -28,18 +28,18 @@ pub enum Stage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Edge {
-    /// The stage begins.
+    /// The stage begins: its program turns to it.
     Begin,
-    /// The stage ends.
+    /// The stage ends: its last work or message is done.
     End,
 }
 
 /// One fact about the pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Mark {
-    /// When.
+    /// When it happened, in simulated time.
     pub time: Time,
-    /// On which board.
+    /// The port of the board on which it happened.
     pub node: NodeId,
     /// The picture's number: frame or field, from 0.
     pub picture: u64,
@@ -47,7 +47,7 @@ pub struct Mark {
     pub surface: Option<SurfaceId>,
     /// The stage.
     pub stage: Stage,
-    /// Begin or end.
+    /// Whether the stage began or ended.
     pub edge: Edge,
     /// Number of the view that the picture shows, where the program knows it and it is not the picture's number.
     pub view: Option<u64>,

@@ -3,16 +3,20 @@
 use i860::{Cpu, Outcome, Program, Ram, Trap};
 use pxpl5_sim::Span;
 use pxpl5_wire::{NodeId, Word};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Which code a board runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// Which code a board runs, where the time of its work comes from code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum CodeVersion {
-    /// As a compiler of 1989 would give it, larger than the instruction cache.
+    /// As a compiler of 1989 would give it, larger than the instruction cache: the Slats of 1994 and 1995, whose code did
+    /// not fit it (I3D95).
     Compiled,
-    /// Scheduled by hand in dual-instruction mode, in cache.
+    /// Scheduled by hand in dual-instruction mode, in cache: optimised PPHIGS (TR94), and what Slats would have been with
+    /// code that fits, faster by a factor of about 3 (I3D95).
     Scheduled,
 }
 
@@ -28,37 +32,41 @@ impl CodeVersion {
 }
 
 /// Why a program on the processor did not come to its end.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ProcessorFault {
     /// It took a trap.
+    #[error("graphics processor at node {}: {trap}", gp.0)]
     Trap {
-        /// The board.
+        /// The port of the board.
         gp: NodeId,
         /// What, and at which address.
         trap: Trap,
     },
     /// It did not return within its budget.
+    #[error("graphics processor at node {}: no return within {budget} instructions, at {address:#010x}", gp.0)]
     Endless {
-        /// The board.
+        /// The port of the board.
         gp: NodeId,
-        /// Where it was.
+        /// Where it was when they were used up.
         address: u32,
         /// Instructions that it was given.
         budget: u64,
     },
     /// Data that its memory does not hold were asked for.
+    #[error("graphics processor at node {}: no memory for {words} words at {address:#010x}", gp.0)]
     Unmapped {
-        /// The board.
+        /// The port of the board.
         gp: NodeId,
-        /// First address.
+        /// Address of the first word.
         address: u32,
-        /// Number of words.
+        /// How many words were asked for.
         words: usize,
     },
     /// Two bin contexts would meet in memory.
+    #[error("graphics processor at node {}: output of bin context {context} needs {needed_bytes} bytes, {available_bytes} are available", gp.0)]
     NoRoom {
-        /// The board.
+        /// The port of the board.
         gp: NodeId,
         /// The bin context that asked for a place.
         context: u8,
@@ -68,36 +76,14 @@ pub enum ProcessorFault {
         available_bytes: u32,
     },
     /// A program without the label at which it is called.
+    #[error("graphics processor at node {}: the program has no label `{label}`", gp.0)]
     NoEntry {
-        /// The board.
+        /// The port of the board.
         gp: NodeId,
-        /// The label.
+        /// The label that it lacks.
         label: String,
     },
 }
-
-impl fmt::Display for ProcessorFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let gp = |gp: &NodeId| format!("graphics processor at node {}", gp.0);
-        match self {
-            Self::Trap { gp: node, trap } => write!(f, "{}: {trap}", gp(node)),
-            Self::Endless { gp: node, address, budget } => {
-                write!(f, "{}: no return within {budget} instructions, at {address:#010x}", gp(node))
-            }
-            Self::Unmapped { gp: node, address, words } => {
-                write!(f, "{}: no memory for {words} words at {address:#010x}", gp(node))
-            }
-            Self::NoRoom { gp: node, context, needed_bytes, available_bytes } => write!(
-                f,
-                "{}: output of bin context {context} needs {needed_bytes} bytes, {available_bytes} are available",
-                gp(node)
-            ),
-            Self::NoEntry { gp: node, label } => write!(f, "{}: the program has no label `{label}`", gp(node)),
-        }
-    }
-}
-
-impl std::error::Error for ProcessorFault {}
 
 /// Where a called program returns to; nothing is there.
 const RETURN: u32 = 0x0800;
@@ -150,36 +136,38 @@ impl Processor {
         self.cpu = Cpu::new(i860::Config { memoise: false, ..i860::Config::cycle() });
     }
 
-    /// Which code the board runs.
+    /// Which version of the code the board runs.
     #[must_use]
     pub const fn version(&self) -> CodeVersion {
         self.version
     }
 
-    /// Bytes of memory.
+    /// Size of the memory in bytes.
     #[must_use]
     pub fn memory_bytes(&self) -> u32 {
         self.ram.bytes().len() as u32
     }
 
-    /// Puts words into memory.
+    /// Puts words into memory, beside all caches.
     ///
     /// # Errors
     ///
     /// [`ProcessorFault::Unmapped`] when they do not fit; nothing is written then.
     pub fn write(&mut self, address: u32, words: &[Word]) -> Result<(), ProcessorFault> {
-        let (gp, count) = (self.gp, words.len());
-        let unmapped = |_| ProcessorFault::Unmapped { gp, address, words: count };
-        self.ram.load_words(address, words).map_err(unmapped)
+        self.ram.load_words(address, words).map_err(|_| self.unmapped(address, words.len()))
     }
 
-    /// Reads words of memory.
+    /// Reads words of memory as code has left them.
     ///
     /// # Errors
     ///
     /// [`ProcessorFault::Unmapped`] when they are not all there.
     pub fn read(&self, address: u32, words: usize) -> Result<Vec<Word>, ProcessorFault> {
-        self.ram.words(address, words).map_err(|_| ProcessorFault::Unmapped { gp: self.gp, address, words })
+        self.ram.words(address, words).map_err(|_| self.unmapped(address, words))
+    }
+
+    fn unmapped(&self, address: u32, words: usize) -> ProcessorFault {
+        ProcessorFault::Unmapped { gp: self.gp, address, words }
     }
 
     /// Takes a place for the output of a bin context, 0 or 1, instead of the one that it had, and gives its address.
@@ -204,7 +192,7 @@ impl Processor {
         Ok(begin)
     }
 
-    /// An integer register.
+    /// What an integer register holds, 0 to 31.
     #[must_use]
     pub const fn register(&self, number: usize) -> Word {
         self.cpu.state.r[number]
@@ -227,9 +215,13 @@ impl Processor {
         let gp = self.gp;
         self.load(program)?;
         let start = program.symbol(entry).ok_or_else(|| ProcessorFault::NoEntry { gp, label: entry.to_owned() })?;
-        let (begin, state) = (self.cpu.clocks(), &mut self.cpu.state);
-        (state.pc, state.r[LINK]) = (start, RETURN);
-        registers.iter().for_each(|(number, value)| state.r[*number] = *value);
+        let begin = self.cpu.clocks();
+        let state = &mut self.cpu.state;
+        state.pc = start;
+        state.r[LINK] = RETURN;
+        for (number, value) in registers {
+            state.r[*number] = *value;
+        }
         match self.cpu.run(&mut self.ram, Some(RETURN), budget) {
             Outcome::Stopped => Ok(Self::CLOCK * (self.cpu.clocks() - begin)),
             Outcome::Trapped(trap) => Err(ProcessorFault::Trap { gp, trap }),

@@ -1,6 +1,5 @@
 //! Every number of the board, and of the host that runs on the same model.
 
-use crate::processor::CodeVersion;
 use pxpl5_sim::Span;
 
 parameters::parameter_table! {
@@ -38,23 +37,6 @@ impl GpTiming {
         sphere_ns: Self::SLATS_1994.sphere_ns / 3,
         ..Self::SLATS_1994
     };
-
-    /// Which code a time per triangle stands for; `None` for one that an experiment has made up.
-    ///
-    /// The code of Slats did not fit the instruction cache, and code that does was expected to be faster by a factor of
-    /// about 3 (I3D95); PPHIGS was optimised (TR94).
-    #[must_use]
-    pub const fn code_version(&self) -> Option<CodeVersion> {
-        const PAPERS: u64 = GpTiming::PAPERS.triangle_ns;
-        const OPTIMISED: u64 = GpTiming::SLATS_OPTIMISED.triangle_ns;
-        const OF_1994: u64 = GpTiming::SLATS_1994.triangle_ns;
-        const OF_1995: u64 = GpTiming::SLATS_1995.triangle_ns;
-        match self.triangle_ns {
-            PAPERS | OPTIMISED => Some(CodeVersion::Scheduled),
-            OF_1994 | OF_1995 => Some(CodeVersion::Compiled),
-            _ => None,
-        }
-    }
 }
 
 parameters::parameter_table! {
@@ -80,5 +62,25 @@ impl HostTiming {
     #[must_use]
     pub const fn board(&self) -> GpTiming {
         GpTiming { message_ns: self.message_ns, ..GpTiming::PAPERS }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use parameters::ParameterTable;
+
+    #[test]
+    fn every_number_lies_in_its_range() {
+        assert_eq!(GpTiming::PAPERS.out_of_range(), []);
+        assert_eq!(HostTiming::PAPERS.out_of_range(), []);
+    }
+
+    /// The fits are what the papers' limits ask for, whatever the range of PPHIGS.
+    #[test]
+    fn every_preset_is_within_the_limits() {
+        for preset in [GpTiming::SLATS_1994, GpTiming::SLATS_1995, GpTiming::SLATS_OPTIMISED] {
+            assert_eq!(preset.check(), Ok(()));
+        }
     }
 }

@@ -50,10 +50,12 @@ impl Gp {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{GpBoard, GpEvent, Priority};
+    use crate::{CodeVersion, GpBoard, GpEvent, Priority};
     use pxpl5_sim::{Phase, TestBench};
     use pxpl5_wire::NodeId;
     use std::sync::Arc;
+
+    const SCHEDULED: Option<CodeVersion> = Some(CodeVersion::Scheduled);
 
     /// A loop of a number of turns, or a trap.
     struct Turns(Option<u32>);
@@ -71,10 +73,10 @@ mod tests {
         }
     }
 
-    fn run(timing: GpTiming, code: bool, turns: Option<u32>) -> GpBoard {
+    fn run(timing: GpTiming, code: Option<CodeVersion>, turns: Option<u32>) -> GpBoard {
         let mut board = GpBoard::new(NodeId(5), timing, Span(25_000));
-        if code {
-            board.run_code();
+        if let Some(version) = code {
+            board.run_code(version);
         }
         let gp = board.handle_for(Priority::Foreground);
         board.load(Priority::Foreground, Box::pin(async move { gp.work(&Turns(turns)).await }));
@@ -86,26 +88,34 @@ mod tests {
 
     #[test]
     fn a_board_without_code_spends_the_time_of_the_table() {
-        let board = run(GpTiming::PAPERS, false, None);
+        let board = run(GpTiming::PAPERS, None, None);
         assert_eq!((board.busy(), board.fault()), (Span::from_ns(21_700), None));
     }
 
     #[test]
     fn a_board_with_code_spends_its_clocks() {
-        let [ten, twenty] = [10, 20].map(|turns| run(GpTiming::PAPERS, true, Some(turns)).busy());
+        let [ten, twenty] = [10, 20].map(|turns| run(GpTiming::PAPERS, SCHEDULED, Some(turns)).busy());
         // A turn is two instructions and the two clocks of a taken btne.
         assert_eq!(twenty.0 - ten.0, 10 * 4 * Processor::CLOCK.0);
     }
 
+    /// One nanosecond in the table once decided whether the code ran.
     #[test]
-    fn a_time_that_an_experiment_has_made_up_stands_for_no_code() {
-        let board = run(GpTiming { triangle_ns: 30_000, ..GpTiming::PAPERS }, true, None);
+    fn a_changed_time_per_triangle_still_runs_the_code() {
+        let table = run(GpTiming::PAPERS, SCHEDULED, Some(10)).busy();
+        let changed = GpTiming { triangle_ns: GpTiming::PAPERS.triangle_ns + 1, ..GpTiming::PAPERS };
+        assert_eq!(run(changed, SCHEDULED, Some(10)).busy(), table);
+    }
+
+    #[test]
+    fn without_code_a_changed_time_per_triangle_is_spent() {
+        let board = run(GpTiming { triangle_ns: 30_000, ..GpTiming::PAPERS }, None, None);
         assert_eq!(board.busy(), Span::from_ns(30_000));
     }
 
     #[test]
     fn a_trap_stops_the_program_and_names_the_board_and_the_address() {
-        let board = run(GpTiming::PAPERS, true, None);
+        let board = run(GpTiming::PAPERS, SCHEDULED, None);
         let fault = board.fault().expect("it trapped").to_string();
         assert_eq!(fault, "graphics processor at node 5: trap at 0x00001010: trap instruction");
     }

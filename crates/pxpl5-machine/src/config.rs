@@ -26,8 +26,8 @@ pub struct MachineConfig {
     pub ring: RingTiming,
     /// Graphics processors: the times of the code that they run, where a table stands for it.
     pub gp: GpTiming,
-    /// Which i860 code they run where clocks are counted (cycle level), whatever the table says.
-    pub code: CodeVersion,
+    /// Which i860 code they run where clocks are counted (cycle level), whatever the table says; `None` for the table.
+    pub code: Option<CodeVersion>,
     /// Clocks of the renderers' commands, their FIFO and backing store.
     pub renderer: RendererTiming,
     /// The host workstation and its link.
@@ -134,6 +134,15 @@ const MAX_BOARDS: u64 = 1_000;
 impl MachineConfig {
     fn boards(&self) -> [u64; 2] {
         [self.n_gps as u64, self.n_renderers as u64]
+    }
+
+    /// The name of the code that its processors run: `compiled`, `scheduled`, or `none`.
+    #[must_use]
+    pub const fn code_name(&self) -> &'static str {
+        match self.code {
+            Some(code) => code.name(),
+            None => "none",
+        }
     }
 
     /// All tables of numbers in order of the boards, each with the first part of its paths.

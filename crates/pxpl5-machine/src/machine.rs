@@ -166,10 +166,12 @@ impl Machine {
         self.pixels = Some(worker);
     }
 
-    /// Has the graphics processors tell the time of their work by i860 code, where the timing table stands for code
-    /// that there is; to be called before programs are loaded.
+    /// Has the graphics processors tell the time of their work by the i860 code of the machine's configuration, if it names
+    /// any; to be called before programs are loaded.
     pub fn run_code(&mut self) {
-        self.processors.iter_mut().skip(1).for_each(GpBoard::run_code);
+        if let Some(version) = self.record.config.code {
+            self.processors.iter_mut().skip(1).for_each(|board| board.run_code(version));
+        }
     }
 
     /// Gives up a saving: what it skips is done from now on. To be called before the machine is switched on.

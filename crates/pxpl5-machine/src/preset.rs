@@ -105,7 +105,7 @@ impl MachineConfig {
             n_renderers: preset.n_renderers,
             ring: RingTiming::PAPERS,
             gp: preset.gp,
-            code: preset.code,
+            code: Some(preset.code),
             renderer: RendererTiming::PAPERS,
             host: HostTiming::PAPERS,
             displays: vec![Box::new(FrameBufferConfig::NTSC)],

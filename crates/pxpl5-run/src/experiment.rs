@@ -148,7 +148,7 @@ impl Experiment {
     #[must_use]
     pub fn config_hash(&self) -> Fingerprint {
         let mut hash = Fingerprint::default();
-        hash.setting("code", self.config.code.name());
+        hash.setting("code", self.config.code_name());
         self.config.displays.iter().for_each(|display| hash.setting("display", display.name()));
         self.config.settings().iter().for_each(|(path, value)| hash.setting(path, value));
         hash.setting("pipeline", self.pipeline.name());

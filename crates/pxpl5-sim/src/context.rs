@@ -26,7 +26,7 @@ impl<E, O> Context<E, O> {
         self
     }
 
-    /// The present.
+    /// The instant of the event that is being handled.
     #[must_use]
     pub const fn now(&self) -> Time {
         self.now
@@ -47,7 +47,7 @@ impl<E, O> Context<E, O> {
         self.outputs.push((time, output));
     }
 
-    /// Takes everything scheduled.
+    /// Takes the events that were scheduled since the last call.
     pub fn drain_events(&mut self) -> std::vec::Drain<'_, (Time, Phase, E)> {
         self.own.drain(..)
     }
@@ -61,7 +61,7 @@ impl<E, O> Context<E, O> {
 /// A board that cannot go on, for the report of a deadlock.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Blocked {
-    /// The board's name.
+    /// The board's name in reports, such as "GP 3".
     pub board: String,
     /// What it waits for, and from whom.
     pub waits_for: String,

@@ -7,7 +7,7 @@ use std::collections::BinaryHeap;
 /// The three steps of one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Phase {
-    /// Inputs latch.
+    /// Inputs latch what has arrived.
     Arrive,
     /// Boards act on what was latched.
     Work,
@@ -42,8 +42,16 @@ pub struct EventQueue<E> {
 
 impl<E> Default for EventQueue<E> {
     fn default() -> Self {
-        let (heap, events, free) = (BinaryHeap::new(), Vec::new(), Vec::new());
-        Self { heap, next: None, events, free, now: Time::ZERO, sequence: 0, shuffle: None, popped: 0 }
+        Self {
+            heap: BinaryHeap::new(),
+            next: None,
+            events: Vec::new(),
+            free: Vec::new(),
+            now: Time::ZERO,
+            sequence: 0,
+            shuffle: None,
+            popped: 0,
+        }
     }
 }
 
@@ -123,13 +131,13 @@ impl<E> EventQueue<E> {
         self.popped
     }
 
-    /// Events waiting.
+    /// Number of events that wait.
     #[must_use]
     pub fn len(&self) -> usize {
         self.heap.len() + usize::from(self.next.is_some())
     }
 
-    /// Whether nothing waits.
+    /// Whether no event waits.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -145,6 +153,13 @@ mod tests {
         std::iter::from_fn(|| queue.next_event()).map(|(_, _, event)| event).collect()
     }
 
+    fn order_of_ties(seed: u64) -> Vec<u32> {
+        let mut queue = EventQueue::new();
+        queue.shuffle_ties(seed);
+        (0..100).for_each(|i| queue.schedule(Time(7), Phase::Work, i));
+        drain(&mut queue)
+    }
+
     #[test]
     fn ties_come_in_order_of_scheduling() {
         let mut queue = EventQueue::new();
@@ -154,15 +169,9 @@ mod tests {
 
     #[test]
     fn shuffled_ties_come_in_another_order_that_the_seed_decides() {
-        let order = |seed| {
-            let mut queue = EventQueue::new();
-            queue.shuffle_ties(seed);
-            (0..100).for_each(|i| queue.schedule(Time(7), Phase::Work, i));
-            drain(&mut queue)
-        };
-        assert_eq!(order(1), order(1));
-        assert_ne!(order(1), order(2));
-        assert_ne!(order(1), (0..100).collect::<Vec<_>>());
+        assert_eq!(order_of_ties(1), order_of_ties(1));
+        assert_ne!(order_of_ties(1), order_of_ties(2));
+        assert_ne!(order_of_ties(1), (0..100).collect::<Vec<_>>());
     }
 
     #[test]

@@ -24,7 +24,7 @@ impl Time {
 }
 
 impl Span {
-    /// No time.
+    /// No time at all.
     pub const ZERO: Self = Self(0);
 
     /// A span of whole nanoseconds.
@@ -39,7 +39,7 @@ impl Span {
         Self(us * 1_000_000)
     }
 
-    /// Milliseconds, for reports.
+    /// The span in milliseconds, for reports only.
     #[must_use]
     pub fn as_ms(self) -> f64 {
         self.0 as f64 * 1e-9

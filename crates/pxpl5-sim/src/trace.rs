@@ -21,7 +21,7 @@ pub const fn mix(value: u64) -> u64 {
 pub struct TraceHash(pub u64);
 
 impl TraceHash {
-    /// Adds one record.
+    /// Adds one record: what happened when.
     pub fn record(&mut self, time: Time, facts: &[u64]) {
         let hash = facts.iter().fold(mix(time.0), |hash, fact| mix(hash ^ mix(*fact)));
         self.0 = self.0.wrapping_add(hash);

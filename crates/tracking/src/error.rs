@@ -1,12 +1,17 @@
 //! What a user can get wrong in a configuration.
 
-use core::fmt;
+use parameters::ParameterError;
+use thiserror::Error;
 
 /// A setting that no machine could have.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ConfigError {
-    /// A number is not finite or out of range.
+    /// A number of the tables is not finite or out of range.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// A number that stands in no table is not finite or out of range.
+    #[error("{what}: expected {low} to {high}, found {found}")]
     OutOfRange {
         /// Which setting.
         what: &'static str,
@@ -18,6 +23,7 @@ pub enum ConfigError {
         high: f64,
     },
     /// Two settings contradict each other.
+    #[error("settings contradict each other: {what}")]
     Contradiction {
         /// Which settings, and how they contradict.
         what: &'static str,
@@ -33,19 +39,6 @@ impl ConfigError {
         Err(Self::OutOfRange { what, found, low, high })
     }
 }
-
-impl fmt::Display for ConfigError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OutOfRange { what, found, low, high } => {
-                write!(f, "{what}: expected {low} to {high}, found {found}")
-            }
-            Self::Contradiction { what } => write!(f, "settings contradict each other: {what}"),
-        }
-    }
-}
-
-impl std::error::Error for ConfigError {}
 
 #[cfg(test)]
 mod tests {

@@ -26,7 +26,7 @@
 //! Metres, degrees in settings, radians in vectors. Axes are right-handed, y up; a head looks along its own -z. A
 //! quaternion turns head axes into world axes. The same seed gives the same numbers on every host: all transcendental
 //! functions come from `libm`, and random numbers are functions of (seed, index). Every number that describes hardware
-//! or people is in [`config::TABLE`], with unit, source, standing and range.
+//! or people is in the tables of [`config`], with unit, source, standing and range.
 //!
 //! ```
 //! use tracking::motion::Synthetic;

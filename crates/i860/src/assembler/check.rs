@@ -61,21 +61,29 @@ fn slot(two: &[Located]) -> Option<(usize, String)> {
 
 /// Registers written: r in the low word, f in the high.
 fn writes(i: &Instruction) -> u64 {
-    let floating = |bytes: u8| float_mask(i.dest, bytes) & !(3 << 32);
-    let integer = |n: u8| 1u64 << n & !1;
-    let base = if i.has(Flags::AUTOINCREMENT) { integer(i.src2) } else { 0 };
+    let base = if i.has(Flags::AUTOINCREMENT) { integer_mask(i.src2) } else { 0 };
     match i.op {
-        Op::Fxfr => integer(i.dest),
-        _ if i.is_floating() => floating(if i.has(Flags::RESULT_DOUBLE) { 8 } else { 4 }),
-        Op::Fld | Op::Pfld => floating(i.size) | base,
+        Op::Fxfr => integer_mask(i.dest),
+        _ if i.is_floating() => writable_float_mask(i.dest, if i.has(Flags::RESULT_DOUBLE) { 8 } else { 4 }),
+        Op::Fld | Op::Pfld => writable_float_mask(i.dest, i.size) | base,
         Op::Fst | Op::Pst | Op::Flush => base,
-        Op::Ixfr => floating(4),
-        Op::Call | Op::Calli => integer(1),
-        Op::Bla => integer(i.src2),
+        Op::Ixfr => writable_float_mask(i.dest, 4),
+        Op::Call | Op::Calli => integer_mask(1),
+        Op::Bla => integer_mask(i.src2),
         Op::StB | Op::StS | Op::StL | Op::StC => 0,
         _ if i.is_branch() => 0,
-        _ => integer(i.dest),
+        _ => integer_mask(i.dest),
     }
+}
+
+/// f0 and f1 are not written.
+fn writable_float_mask(dest: u8, bytes: u8) -> u64 {
+    float_mask(dest, bytes) & !(3 << 32)
+}
+
+/// r0 is not written.
+fn integer_mask(n: u8) -> u64 {
+    1 << n & !1
 }
 
 /// Follows the mode through the program and checks every pair.
@@ -109,9 +117,12 @@ fn pairs(program: &[Located]) -> Vec<(usize, String)> {
     faults
 }
 
+fn fault(second: bool, reason: &str) -> Option<(bool, String)> {
+    Some((second, reason.to_owned()))
+}
+
 /// The broken rule of a pair, and whether to blame the second half.
 fn pair(low: &Instruction, high: &Instruction) -> Option<(bool, String)> {
-    let fault = |second: bool, reason: &str| Some((second, reason.to_owned()));
     let compares = matches!(low.op, Op::Pfgt | Op::Pfle | Op::Pfeq);
     match () {
         () if !low.is_floating() => {

@@ -32,20 +32,30 @@ const LEVELS: [&[&str]; 5] = [&["|"], &["^"], &["&"], &["<<", ">>"], &["+", "-"]
 const PRODUCTS: &[&str] = &["*", "/", "%"];
 
 fn apply(operator: &str, a: i64, b: i64) -> Result<i64, String> {
-    let shift = || u32::try_from(b).ok().filter(|n| *n < 64).ok_or_else(|| format!("shift by {b}"));
-    let divisor = || if b == 0 { Err("division by zero".to_owned()) } else { Ok(b) };
     Ok(match operator {
         "|" => a | b,
         "^" => a ^ b,
         "&" => a & b,
-        "<<" => a << shift()?,
-        ">>" => a >> shift()?,
+        "<<" => a << shift(b)?,
+        ">>" => a >> shift(b)?,
         "+" => a.wrapping_add(b),
         "-" => a.wrapping_sub(b),
         "*" => a.wrapping_mul(b),
-        "/" => a.wrapping_div(divisor()?),
-        _ => a.wrapping_rem(divisor()?),
+        "/" => a.wrapping_div(divisor(b)?),
+        _ => a.wrapping_rem(divisor(b)?),
     })
+}
+
+fn shift(by: i64) -> Result<u32, String> {
+    u32::try_from(by).ok().filter(|n| *n < 64).ok_or_else(|| format!("shift by {by}"))
+}
+
+fn divisor(by: i64) -> Result<i64, String> {
+    if by == 0 { Err("division by zero".to_owned()) } else { Ok(by) }
+}
+
+fn is_part_of_name(c: char) -> bool {
+    c.is_ascii_alphanumeric() || "_.$@".contains(c)
 }
 
 impl Parser<'_> {
@@ -97,8 +107,7 @@ impl Parser<'_> {
     }
 
     fn atom(&mut self) -> Result<i64, String> {
-        let is_part = |c: char| c.is_ascii_alphanumeric() || "_.$@".contains(c);
-        let end = self.text.find(|c| !is_part(c)).unwrap_or(self.text.len());
+        let end = self.text.find(|c| !is_part_of_name(c)).unwrap_or(self.text.len());
         let (word, rest) = self.text.split_at(end);
         self.text = rest;
         match word.bytes().next() {

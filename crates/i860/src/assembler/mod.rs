@@ -25,10 +25,10 @@ use expression::{Symbols, evaluate};
 use operand::Filler;
 use source::Line;
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// A fault in the source.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{file}:{line}: {reason}")]
 pub struct AssemblyError {
     /// File name as given.
     pub file: String,
@@ -38,38 +38,26 @@ pub struct AssemblyError {
     pub reason: String,
 }
 
-impl fmt::Display for AssemblyError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:{}: {}", self.file, self.line, self.reason)
-    }
-}
-
-impl std::error::Error for AssemblyError {}
-
 /// All faults of a source, in the order of its lines.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}", lines(.0))]
 pub struct AssemblyErrors(
-    /// At least one.
+    /// In the order of their lines; there is at least one.
     pub Vec<AssemblyError>,
 );
 
-impl fmt::Display for AssemblyErrors {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let lines: Vec<String> = self.0.iter().map(AssemblyError::to_string).collect();
-        f.write_str(&lines.join("\n"))
-    }
+fn lines(errors: &[AssemblyError]) -> String {
+    errors.iter().map(AssemblyError::to_string).collect::<Vec<_>>().join("\n")
 }
 
-impl std::error::Error for AssemblyErrors {}
-
-/// An assembled program.
+/// An assembled program with its labels, ready to be put into memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Program {
     /// Address of the first byte.
     pub base: u32,
-    /// Contents from `base`.
+    /// Its contents from `base` on, gaps included.
     pub bytes: Vec<u8>,
-    /// Labels and constants.
+    /// Labels (their addresses) and constants by name.
     pub symbols: BTreeMap<String, u32>,
     /// Labels only, by address.
     pub labels: Vec<(String, u32)>,
@@ -81,8 +69,7 @@ impl Program {
     /// The contents as words (the last one filled up with zeros).
     #[must_use]
     pub fn words(&self) -> Vec<u32> {
-        let word = |b: &[u8]| (0..4).map(|n| u32::from(b.get(n).copied().unwrap_or(0)) << (8 * n)).sum();
-        self.bytes.chunks(4).map(word).collect()
+        self.bytes.chunks(4).map(word_of).collect()
     }
 
     /// Value of a label or constant.
@@ -90,6 +77,11 @@ impl Program {
     pub fn symbol(&self, name: &str) -> Option<u32> {
         self.symbols.get(name).copied()
     }
+}
+
+/// A little-endian word of up to four bytes, the missing ones zero.
+fn word_of(bytes: &[u8]) -> u32 {
+    bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte))
 }
 
 /// What a line puts into memory.
@@ -173,7 +165,7 @@ pub fn assemble(file: &str, base: u32, source: &str) -> Result<Program, Assembly
 /// What is wrong with the text.
 pub fn instruction_word(text: &str, pc: u32) -> Result<u32, String> {
     let (word, rest) = split_word(text.trim());
-    let instructions = pseudo(word, rest).unwrap_or_else(|| Ok(vec![plain(word, rest)?]))?;
+    let instructions = pseudo(word, rest).unwrap_or_else(|| one(word, rest))?;
     let [(i, operands)] = instructions.as_slice() else {
         return Err(format!("`{text}` takes more than one word"));
     };
@@ -192,20 +184,23 @@ fn plain(word: &str, operands: &str) -> Result<(Instruction, String), String> {
 
 type Instructions = Result<Vec<(Instruction, String)>, String>;
 
+fn one(word: &str, operands: &str) -> Instructions {
+    Ok(vec![plain(word, operands)?])
+}
+
 /// Operations that stand for others.
 fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
     let (prefix, name) = word.strip_prefix("d.").map_or(("", word), |rest| ("d.", rest));
     let (pipe, name) = name.strip_prefix('p').filter(|n| n.starts_with("fmov")).map_or(("", name), |n| ("p", n));
     let parts = operand::split(operands);
-    let one = |name: String, operands: String| Some(plain(&name, &operands).map(|i| vec![i]));
     match (name, parts.as_slice()) {
-        ("nop", []) if prefix.is_empty() => one("shl".to_owned(), "r0, r0, r0".to_owned()),
+        ("nop", []) if prefix.is_empty() => Some(one("shl", "r0, r0, r0")),
         ("mov", [from, to]) if prefix.is_empty() => Some(mov(from, to)),
         ("fmov.ss" | "fmov.dd", [from, to]) => {
-            one(format!("{prefix}{pipe}fiadd{}", &name[4..]), format!("{from}, f0, {to}"))
+            Some(one(&format!("{prefix}{pipe}fiadd{}", &name[4..]), &format!("{from}, f0, {to}")))
         }
         ("fmov.sd" | "fmov.ds", [from, to]) => {
-            one(format!("{prefix}{pipe}famov{}", &name[4..]), format!("{from}, {to}"))
+            Some(one(&format!("{prefix}{pipe}famov{}", &name[4..]), &format!("{from}, {to}")))
         }
         _ => None,
     }
@@ -214,15 +209,18 @@ fn pseudo(word: &str, operands: &str) -> Option<Instructions> {
 /// A register move, or a constant in one word where a plain number allows it, else two.
 fn mov(from: &str, to: &str) -> Instructions {
     if operand::integer_register(from).is_some() {
-        return Ok(vec![plain("shl", &format!("r0, {from}, {to}"))?]);
+        return one("shl", &format!("r0, {from}, {to}"));
     }
-    let low = |base: &str| plain("or", &format!("l%({from}), {base}, {to}"));
     match evaluate(from, &Symbols::new()) {
         Ok(value) if !(-0x8000_0000..=0xFFFF_FFFF).contains(&value) => Err(format!("{value} does not fit 32 bits")),
-        Ok(value) if (0..0x1_0000).contains(&value) => Ok(vec![low("r0")?]),
-        Ok(value) if (-0x8000..0).contains(&value) => Ok(vec![plain("adds", &format!("{value}, r0, {to}"))?]),
-        Ok(value) if value & 0xFFFF == 0 => Ok(vec![plain("orh", &format!("h%({from}), r0, {to}"))?]),
-        _ => Ok(vec![plain("orh", &format!("h%({from}), r0, {to}"))?, low(to)?]),
+        Ok(value) if (0..0x1_0000).contains(&value) => one("or", &format!("l%({from}), r0, {to}")),
+        Ok(value) if (-0x8000..0).contains(&value) => one("adds", &format!("{value}, r0, {to}")),
+        Ok(value) if value & 0xFFFF == 0 => one("orh", &format!("h%({from}), r0, {to}")),
+        _ => {
+            let high = plain("orh", &format!("h%({from}), r0, {to}"))?;
+            let low = plain("or", &format!("l%({from}), {to}, {to}"))?;
+            Ok(vec![high, low])
+        }
     }
 }
 
@@ -273,7 +271,7 @@ impl Assembler<'_> {
         if !self.here.is_multiple_of(4) {
             return Err(format!("an instruction at {:#x}, which is not a multiple of 4", self.here));
         }
-        let instructions = pseudo(word, rest).unwrap_or_else(|| Ok(vec![plain(word, rest)?]))?;
+        let instructions = pseudo(word, rest).unwrap_or_else(|| one(word, rest))?;
         for (template, operands) in instructions {
             self.push(line, Item::Instruction { template, operands }, 4)?;
         }
@@ -281,8 +279,8 @@ impl Assembler<'_> {
     }
 
     fn directive(&mut self, word: &str, rest: &str, line: usize) -> Result<(), String> {
-        let values = || operand::split(rest).into_iter().map(str::to_owned).collect::<Vec<_>>();
-        let count = values().len() as u32;
+        let values: Vec<String> = operand::split(rest).into_iter().map(str::to_owned).collect();
+        let count = values.len() as u32;
         match word {
             ".text" | ".data" | ".globl" | ".file" => Ok(()),
             ".equ" | ".set" => {
@@ -290,11 +288,11 @@ impl Assembler<'_> {
                 let value = evaluate(value, &self.symbols)?;
                 self.define(name.trim(), value)
             }
-            ".long" | ".word" => self.push(line, Item::Integers { size: 4, values: values() }, 4 * count),
-            ".short" => self.push(line, Item::Integers { size: 2, values: values() }, 2 * count),
-            ".byte" => self.push(line, Item::Integers { size: 1, values: values() }, count),
-            ".float" => self.push(line, Item::Floats { double: false, values: values() }, 4 * count),
-            ".double" => self.push(line, Item::Floats { double: true, values: values() }, 8 * count),
+            ".long" | ".word" => self.push(line, Item::Integers { size: 4, values }, 4 * count),
+            ".short" => self.push(line, Item::Integers { size: 2, values }, 2 * count),
+            ".byte" => self.push(line, Item::Integers { size: 1, values }, count),
+            ".float" => self.push(line, Item::Floats { double: false, values }, 4 * count),
+            ".double" => self.push(line, Item::Floats { double: true, values }, 8 * count),
             ".org" | ".align" | ".space" => self.gap(word, rest, line),
             _ => Err(format!("`{word}` is not a directive")),
         }
@@ -314,7 +312,8 @@ impl Assembler<'_> {
     }
 
     fn finish(mut self) -> Result<Program, AssemblyErrors> {
-        let (mut bytes, mut instructions) = (Vec::new(), Vec::new());
+        let mut bytes = Vec::new();
+        let mut instructions = Vec::new();
         for placed in std::mem::take(&mut self.placed) {
             match self.emit(&placed) {
                 Ok((data, decoded)) => {

@@ -7,7 +7,8 @@ use crate::mnemonic::{CONTROL_REGISTERS, Syntax};
 /// Splits at commas outside parentheses.
 pub(super) fn split(text: &str) -> Vec<&str> {
     let mut parts = Vec::new();
-    let (mut depth, mut start) = (0i32, 0);
+    let mut depth = 0i32;
+    let mut start = 0;
     for (at, c) in text.char_indices() {
         match c {
             '(' => depth += 1,
@@ -82,7 +83,7 @@ pub(super) struct Filler<'a> {
 impl Filler<'_> {
     /// Fills the fields from the operands.
     pub(super) fn fill(mut self, operands: &[&str]) -> Result<Instruction, String> {
-        match (Syntax::of(self.i.op), operands) {
+        match (Syntax::from_op(self.i.op), operands) {
             (Syntax::Bare | Syntax::Trap, []) => {}
             (Syntax::Integer, [a, b, d]) => self.integer(a, b, d)?,
             (Syntax::Load, [from, d]) => {
@@ -97,27 +98,44 @@ impl Filler<'_> {
                 self.i.dest = need_floating(d, self.i.size)?;
                 self.address(address)?;
             }
-            (Syntax::LoadControl, [c, d]) => (self.i.src2, self.i.dest) = (need_control(c)?, need_integer(d)?),
-            (Syntax::StoreControl, [a, c]) => (self.i.src1, self.i.src2) = (need_integer(a)?, need_control(c)?),
-            (Syntax::ToFloating, [a, d]) => (self.i.src1, self.i.dest) = (need_integer(a)?, need_floating(d, 4)?),
-            (Syntax::ToInteger, [a, d]) => (self.i.src1, self.i.dest) = (need_floating(a, 4)?, need_integer(d)?),
+            (Syntax::LoadControl, [c, d]) => {
+                self.i.src2 = need_control(c)?;
+                self.i.dest = need_integer(d)?;
+            }
+            (Syntax::StoreControl, [a, c]) => {
+                self.i.src1 = need_integer(a)?;
+                self.i.src2 = need_control(c)?;
+            }
+            (Syntax::ToFloating, [a, d]) => {
+                self.i.src1 = need_integer(a)?;
+                self.i.dest = need_floating(d, 4)?;
+            }
+            (Syntax::ToInteger, [a, d]) => {
+                self.i.src1 = need_floating(a, 4)?;
+                self.i.dest = need_integer(d)?;
+            }
             (Syntax::Flush, [address]) => self.displacement_only(address)?,
             (Syntax::Trap, [a, b, d]) => {
-                (self.i.src1, self.i.src2, self.i.dest) = (need_integer(a)?, need_integer(b)?, need_integer(d)?);
+                self.i.src1 = need_integer(a)?;
+                self.i.src2 = need_integer(b)?;
+                self.i.dest = need_integer(d)?;
             }
             (Syntax::Register, [a]) => self.i.src1 = need_integer(a.trim_matches(['[', ']']))?,
             (Syntax::Branch, [target]) => self.i.imm = self.offset(target, 26)?,
             (Syntax::CompareBranch, [a, b, target]) => self.compare_branch(a, b, target)?,
             (Syntax::LoopBranch, [a, b, target]) => {
-                (self.i.src1, self.i.src2) = (need_integer(a)?, need_integer(b)?);
+                self.i.src1 = need_integer(a)?;
+                self.i.src2 = need_integer(b)?;
                 self.i.imm = self.offset(target, 16)?;
             }
             (Syntax::Three, [a, b, d]) => self.three(a, b, d)?,
             (Syntax::First, [a, d]) => {
-                (self.i.src1, self.i.dest) = (need_floating(a, self.source())?, need_floating(d, self.result())?);
+                self.i.src1 = need_floating(a, self.source())?;
+                self.i.dest = need_floating(d, self.result())?;
             }
             (Syntax::Second, [b, d]) => {
-                (self.i.src2, self.i.dest) = (need_floating(b, self.source())?, need_floating(d, self.result())?);
+                self.i.src2 = need_floating(b, self.source())?;
+                self.i.dest = need_floating(d, self.result())?;
             }
             (syntax, found) => return Err(wrong_count(syntax, found.len())),
         }
@@ -144,7 +162,8 @@ impl Filler<'_> {
     }
 
     fn integer(&mut self, a: &str, b: &str, d: &str) -> Result<(), String> {
-        (self.i.src2, self.i.dest) = (need_integer(b)?, need_integer(d)?);
+        self.i.src2 = need_integer(b)?;
+        self.i.dest = need_integer(d)?;
         let high = matches!(self.i.op, Op::Andh | Op::Andnoth | Op::Orh | Op::Xorh);
         if let Some(n) = integer_register(a) {
             if high {
@@ -183,7 +202,8 @@ impl Filler<'_> {
         if distance % 4 != 0 {
             return Err(format!("branch target {address:#x} is not a multiple of 4"));
         }
-        let (words, most) = (distance / 4, 1 << (bits - 1));
+        let words = distance / 4;
+        let most = 1 << (bits - 1);
         if (-most..most).contains(&words) {
             return Ok(words);
         }
@@ -217,13 +237,13 @@ impl Filler<'_> {
 
     fn index(&mut self, text: &str) -> Result<(), String> {
         if let Some(n) = integer_register(text) {
-            if self.i.op == Op::Pst || Syntax::of(self.i.op) == Syntax::Store || self.i.op == Op::Flush {
+            if self.i.op == Op::Pst || Syntax::from_op(self.i.op) == Syntax::Store || self.i.op == Op::Flush {
                 return Err(format!("`{text}`: this operation takes a displacement only"));
             }
             self.i.src1 = n;
             return Ok(());
         }
-        let store = Syntax::of(self.i.op) == Syntax::Store;
+        let store = Syntax::from_op(self.i.op) == Syntax::Store;
         self.i.src1 = if store { self.i.src1 } else { 0 };
         self.i.flags = self.i.flags.with(Flags::IMMEDIATE, true);
         self.i.imm = if text.is_empty() { 0 } else { signed16(text, self.symbols)? };

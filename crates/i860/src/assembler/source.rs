@@ -36,8 +36,8 @@ fn without_comment(text: &str) -> &str {
 
 /// Expands macros and repetitions.
 pub(super) fn expand(file: &str, source: &str) -> Result<Vec<Line>, AssemblyError> {
-    let plain = |(n, text): (usize, &str)| Line { number: n + 1, text: without_comment(text).to_owned() };
-    let lines: Vec<Line> = source.lines().enumerate().map(plain).filter(|line| !line.text.is_empty()).collect();
+    let plain = (1..).zip(source.lines().map(without_comment)).filter(|(_, text)| !text.is_empty());
+    let lines: Vec<Line> = plain.map(|(number, text)| Line { number, text: text.to_owned() }).collect();
     let mut expander = Expander { file, macros: BTreeMap::new(), lines: Vec::new(), calls: 0 };
     expander.block(&lines, 0)?;
     Ok(expander.lines)
@@ -130,7 +130,8 @@ impl Expander<'_> {
             return Err(self.error(line, format!("macro {name} calls itself, or macros nest deeper than {MOST_DEPTH}")));
         }
         if arguments.len() != called.parameters.len() {
-            let (expected, found) = (called.parameters.len(), arguments.len());
+            let expected = called.parameters.len();
+            let found = arguments.len();
             return Err(self.error(line, format!("macro {name}: expected {expected} arguments, found {found}")));
         }
         self.calls += 1;

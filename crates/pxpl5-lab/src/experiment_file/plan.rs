@@ -304,8 +304,11 @@ impl ExperimentFile {
     }
 }
 
-const CODES: [(&str, CodeVersion); 2] =
-    [(CodeVersion::Compiled.name(), CodeVersion::Compiled), (CodeVersion::Scheduled.name(), CodeVersion::Scheduled)];
+const CODES: [(&str, Option<CodeVersion>); 3] = [
+    ("none", None),
+    (CodeVersion::Compiled.name(), Some(CodeVersion::Compiled)),
+    (CodeVersion::Scheduled.name(), Some(CodeVersion::Scheduled)),
+];
 
 fn refused(place: &str, error: ConfigError) -> FileError {
     FileError::Config { place: place.to_owned(), error }

@@ -113,7 +113,7 @@ impl Settings {
 
     fn machine(&mut self, machine: &MachineConfig) {
         self.put("machine.preset", machine.preset.clone());
-        self.put("machine.code", machine.code.name());
+        self.put("machine.code", machine.code_name());
         self.put("machine.n_gps", machine.n_gps as i64);
         self.put("machine.n_renderers", machine.n_renderers as i64);
         let preset = MachineConfig::preset(&machine.preset).map(|preset| preset.parameters()).unwrap_or_default();

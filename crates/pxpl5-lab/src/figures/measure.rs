@@ -148,6 +148,7 @@ impl Bench {
     fn copy_alone(&self) -> Result<Measured> {
         let mut machine = self.machine("small-hmd")?;
         let gp = ["message_ns", "triangle_ns", "bin_entry_ns", "edit_ns", "pass_ns"].map(|name| format!("gp.{name}"));
+        machine.code = None;
         let array = ["triangle", "phong_triangle", "select", "clear", "shade"];
         let array = array.map(|name| format!("renderer.{name}_clocks"));
         for path in gp.iter().chain(&array) {
@@ -162,6 +163,7 @@ impl Bench {
         let regions = 20_u64.div_ceil(machine.n_renderers as u64) as f64;
         let entries_ns = 20 * machine.gp.bin_entry_ns + machine.gp.pass_ns;
         machine.set("gp.triangle_ns", (ms * 1e6) as u64 - entries_ns)?;
+        machine.code = None;
         let clocks = ms * 1e-3 / regions / 12.0 * machine.renderer.clock_hz as f64;
         machine.set("renderer.phong_triangle_clocks", clocks as u64)?;
         Ok(machine)

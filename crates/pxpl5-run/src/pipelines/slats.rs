@@ -118,7 +118,7 @@ impl Pipeline for Slats {
         let Some(code) = self.code else { return config };
         let GpTiming { triangle_ns, sphere_ns, bin_entry_ns, .. } = code.timing();
         let gp = GpTiming { triangle_ns, sphere_ns, bin_entry_ns, ..config.gp };
-        MachineConfig { gp, code: code.version(), ..config }
+        MachineConfig { gp, code: Some(code.version()), ..config }
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {

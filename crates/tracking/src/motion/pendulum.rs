@@ -1,9 +1,10 @@
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::DVec3;
+use parameters::ParameterTable;
 
 use super::Motion;
-use crate::config::{GRAVITY, PENDULUM_AMPLITUDE, PENDULUM_ARM};
+use crate::config as table;
 use crate::error::ConfigError;
 use crate::pose::Pose;
 use crate::rotation;
@@ -26,17 +27,17 @@ pub struct Pendulum {
 impl Pendulum {
     /// A pendulum with an arm in metres (above 0) and an amplitude in degrees (above 0, below 180).
     pub fn new(arm_m: f64, amplitude_deg: f64) -> Result<Self, ConfigError> {
-        ConfigError::check("pendulum arm", arm_m, 1e-3, 1e3)?;
-        ConfigError::check("pendulum amplitude", amplitude_deg, 1e-3, 179.0)?;
+        table::Rig { pendulum_arm: arm_m, pendulum_amplitude: amplitude_deg, ..table::Rig::PAPERS }.check()?;
         let modulus = libm::sin(amplitude_deg.to_radians() / 2.0);
-        let natural_rad_per_s = (GRAVITY.value / arm_m).sqrt();
+        let natural_rad_per_s = (table::Rig::PAPERS.gravity / arm_m).sqrt();
         let period_s = 4.0 * quarter_period(modulus) / natural_rad_per_s;
         Ok(Self { arm_m, modulus, natural_rad_per_s, period_s })
     }
 
     /// The measuring pendulum: arm 0.5 m, amplitude 20 degrees, both assumed.
     pub fn rig() -> Self {
-        Self::new(PENDULUM_ARM.value, PENDULUM_AMPLITUDE.value).expect("the table's values are in range")
+        Self::new(table::Rig::PAPERS.pendulum_arm, table::Rig::PAPERS.pendulum_amplitude)
+            .expect("the table's values are in range")
     }
 
     /// Exact period of the swing, seconds.
@@ -141,7 +142,7 @@ mod tests {
 
     /// Derivative of (angle, rate) of a pendulum with this arm.
     fn slope(arm: f64, state: DVec2) -> DVec2 {
-        DVec2::new(state.y, -GRAVITY.value / arm * state.x.sin())
+        DVec2::new(state.y, -table::Rig::PAPERS.gravity / arm * state.x.sin())
     }
 
     #[test]

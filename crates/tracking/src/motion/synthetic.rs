@@ -39,7 +39,7 @@ pub struct SyntheticConfig {
 }
 
 impl SyntheticConfig {
-    /// Fitted to recorded headset traces: see [`crate::config::TRACE_MEAN`] and its neighbours. The deviations are
+    /// Fitted to recorded headset traces: see [`crate::config::Head`]. The deviations are
     /// assumed; the statistics that they give are published, and tested.
     pub fn recorded_use() -> Self {
         Self {

@@ -1,4 +1,5 @@
 use glam::{DQuat, DVec3};
+use parameters::ParameterTable;
 use serde::{Deserialize, Serialize};
 
 use super::Predictor;
@@ -7,7 +8,6 @@ use super::orientation_kalman::OrientationKalman;
 use super::position_kalman::{Belief, PositionKalman};
 use super::predicting::GatedFilters;
 use crate::config as table;
-use crate::config::Parameter;
 use crate::error::ConfigError;
 use crate::tracker::TrackerConfig;
 
@@ -58,12 +58,12 @@ impl PredictorConfig {
     pub fn for_tracker(kind: PredictorKind, tracker: &TrackerConfig) -> Self {
         Self {
             kind,
-            baseline_reports: table::BASELINE.value as u32,
+            baseline_reports: table::Filter::PAPERS.baseline as u32,
             position_noise_m: tracker.position_noise_m.max(LEAST_NOISE_M),
             orientation_noise_deg: tracker.orientation_noise_deg.max(LEAST_NOISE_DEG),
-            position_jerk: table::JERK_POSITION.value,
-            orientation_jerk: table::JERK_ORIENTATION.value,
-            horizon_ps: table::HORIZON.ms_to_ps(),
+            position_jerk: table::Filter::PAPERS.position_jerk,
+            orientation_jerk: table::Filter::PAPERS.orientation_jerk,
+            horizon_ps: table::ms_to_ps(table::Filter::PAPERS.horizon),
         }
     }
 
@@ -79,12 +79,21 @@ impl PredictorConfig {
     }
 
     fn check(&self) -> Result<(), ConfigError> {
-        ConfigError::check("baseline, reports", f64::from(self.baseline_reports), 1.0, 16.0)?;
         ConfigError::check("position noise, m", self.position_noise_m, LEAST_NOISE_M, 10.0)?;
         ConfigError::check("orientation noise, deg", self.orientation_noise_deg, LEAST_NOISE_DEG, 90.0)?;
-        check_in_range("position jerk", self.position_jerk, &table::JERK_POSITION)?;
-        check_in_range("orientation jerk", self.orientation_jerk, &table::JERK_ORIENTATION)?;
-        check_in_range("horizon, ms", crate::time::seconds(self.horizon_ps) * 1e3, &table::HORIZON)
+        self.filter().check()?;
+        Ok(())
+    }
+
+    /// The numbers of the table, as they are set here.
+    fn filter(&self) -> table::Filter {
+        table::Filter {
+            position_jerk: self.position_jerk,
+            orientation_jerk: self.orientation_jerk,
+            baseline: self.baseline_reports.into(),
+            horizon: crate::time::seconds(self.horizon_ps) * 1e3,
+            ..table::Filter::PAPERS
+        }
     }
 
     fn extrapolation(&self, order: Order) -> Box<dyn Predictor> {
@@ -100,12 +109,12 @@ impl PredictorConfig {
         let position = Belief {
             measurement: self.position_noise_m.powi(2),
             jerk: self.position_jerk.powi(2),
-            start: (table::START_SPEED.value.powi(2), table::START_ACCELERATION.value.powi(2)),
+            start: (table::Filter::PAPERS.start_speed.powi(2), table::Filter::PAPERS.start_acceleration.powi(2)),
         };
         let orientation = Belief {
             measurement: self.orientation_noise_deg.to_radians().powi(2),
             jerk: self.orientation_jerk.powi(2),
-            start: (table::START_TURN.value.powi(2), table::START_TURN_ACCELERATION.value.powi(2)),
+            start: (table::Filter::PAPERS.start_turn.powi(2), table::Filter::PAPERS.start_turn_acceleration.powi(2)),
         };
         Box::new(GatedFilters::new(
             PositionKalman::new(position),
@@ -113,8 +122,4 @@ impl PredictorConfig {
             crate::time::seconds(self.horizon_ps),
         ))
     }
-}
-
-fn check_in_range(what: &'static str, found: f64, parameter: &Parameter) -> Result<(), ConfigError> {
-    ConfigError::check(what, found, parameter.range.0, parameter.range.1)
 }

@@ -57,11 +57,11 @@ impl Gate {
         let Some(last) = self.last else { return Verdict::Restart };
         let dt_s = span_s(last.measured_ps, report.measured_ps)
             .min(span_s(last.position_measured_ps, report.position_measured_ps));
-        if dt_s < table::GATE_INTERVAL.value / 1e3 {
+        if dt_s < table::Gate::PAPERS.interval / 1e3 {
             self.counts.untimely += 1;
             return Verdict::Reject;
         }
-        if dt_s > table::GATE_GAP.value / 1e3 {
+        if dt_s > table::Gate::PAPERS.gap / 1e3 {
             return Verdict::Restart;
         }
         if is_possible(&last.pose, &report.pose, dt_s) { Verdict::Update } else { self.jump() }
@@ -69,7 +69,7 @@ impl Gate {
 
     fn jump(&mut self) -> Verdict {
         self.jumps_in_a_row += 1;
-        if self.jumps_in_a_row > table::GATE_PATIENCE.value as u64 {
+        if self.jumps_in_a_row > table::Gate::PAPERS.patience {
             return Verdict::Restart;
         }
         self.counts.jumps += 1;
@@ -82,6 +82,6 @@ fn is_well_formed(pose: &Pose) -> bool {
 }
 
 fn is_possible(from: &Pose, to: &Pose, dt_s: f64) -> bool {
-    from.distance_m(to) <= table::GATE_DISTANCE.value / 1e3 + table::GATE_SPEED.value * dt_s
-        && from.angle_deg(to) <= table::GATE_ANGLE.value + table::GATE_TURN.value * dt_s
+    from.distance_m(to) <= table::Gate::PAPERS.distance / 1e3 + table::Gate::PAPERS.speed * dt_s
+        && from.angle_deg(to) <= table::Gate::PAPERS.angle + table::Gate::PAPERS.turn * dt_s
 }

@@ -15,7 +15,7 @@ pub use oscilloscope::{Edge, Trace};
 
 use thiserror::Error;
 
-use crate::config::{LED_BEAM, PHOTODIODE_LINE};
+use crate::config as table;
 use crate::motion::Pendulum;
 use crate::time::{PS_PER_S, ntsc_lines_ps};
 use crate::tracker::TrackerModel;
@@ -67,8 +67,8 @@ impl PendulumRig {
         Self {
             pendulum: Pendulum::rig(),
             detection: Detection::Crossing,
-            beam_m: LED_BEAM.value / 1e3,
-            photodiode_line: PHOTODIODE_LINE.value as u32,
+            beam_m: table::Rig::PAPERS.led_beam / 1e3,
+            photodiode_line: table::Rig::PAPERS.photodiode_line as u32,
         }
     }
 

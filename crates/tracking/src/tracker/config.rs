@@ -3,7 +3,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{Fault, HostLine, MagneticDistortion, SerialLine};
 use crate::config as table;
-use crate::config::Parameter;
 
 /// Settings of a tracker, its cable and the host's port. Presets take every number from [`crate::config`].
 ///
@@ -46,30 +45,30 @@ pub struct TrackerConfig {
 impl TrackerConfig {
     /// Polhemus Fastrak, one receiver, filter off, 115,200 baud, patched kernel.
     pub fn fastrak() -> Self {
-        let latency_ps = table::FASTRAK_LATENCY.ms_to_ps();
+        let latency_ps = table::ms_to_ps(table::Fastrak::PAPERS.latency);
         Self {
-            sync_to_output_ps: table::FASTRAK_SYNC_TO_OUTPUT.ms_to_ps(),
+            sync_to_output_ps: table::ms_to_ps(table::Fastrak::PAPERS.sync_to_output),
             position_latency_ps: latency_ps,
             orientation_latency_ps: latency_ps,
             serial: Some(SerialLine::fastrak()),
             ..Self::ideal()
-                .named("Polhemus Fastrak", table::FASTRAK_RATE)
-                .with_noise(table::FASTRAK_POSITION_NOISE, table::FASTRAK_ORIENTATION_NOISE)
+                .named("Polhemus Fastrak", table::Fastrak::PAPERS.rate)
+                .with_noise(table::Fastrak::PAPERS.position_noise, table::Fastrak::PAPERS.orientation_noise)
         }
     }
 
     /// Ascension Flock of Birds, filters off, on the unpatched kernel: the patched one crashes with it.
     pub fn flock_of_birds() -> Self {
-        let position_latency_ps = table::FLOCK_POSITION_LATENCY.ms_to_ps();
+        let position_latency_ps = table::ms_to_ps(table::Flock::PAPERS.position_latency);
         Self {
             sync_to_output_ps: position_latency_ps,
             position_latency_ps,
-            orientation_latency_ps: table::FLOCK_ORIENTATION_LATENCY.ms_to_ps(),
+            orientation_latency_ps: table::ms_to_ps(table::Flock::PAPERS.orientation_latency),
             host: HostLine::unix(),
-            crashes_patched_host_after_ps: Some(table::FLOCK_CRASH.ms_to_ps()),
+            crashes_patched_host_after_ps: Some(table::ms_to_ps(table::Flock::PAPERS.crash)),
             ..Self::ideal()
-                .named("Ascension Flock of Birds", table::FLOCK_RATE)
-                .with_noise(table::FLOCK_POSITION_NOISE, table::FLOCK_ORIENTATION_NOISE)
+                .named("Ascension Flock of Birds", table::Flock::PAPERS.rate)
+                .with_noise(table::Flock::PAPERS.position_noise, table::Flock::PAPERS.orientation_noise)
         }
     }
 
@@ -81,9 +80,9 @@ impl TrackerConfig {
     /// UNC optical ceiling tracker: 33 ms in all.
     pub fn optical_ceiling() -> Self {
         Self::ideal()
-            .named("UNC optical ceiling tracker", table::OPTICAL_RATE)
-            .with_noise(table::OPTICAL_POSITION_NOISE, table::OPTICAL_ORIENTATION_NOISE)
-            .with_latency_ps(table::OPTICAL_LATENCY.ms_to_ps())
+            .named("UNC optical ceiling tracker", table::Optical::PAPERS.rate)
+            .with_noise(table::Optical::PAPERS.position_noise, table::Optical::PAPERS.orientation_noise)
+            .with_latency_ps(table::ms_to_ps(table::Optical::PAPERS.latency))
     }
 
     /// Polhemus 3Space above a steel floor, transmitter at the origin, unpatched kernel.
@@ -92,9 +91,9 @@ impl TrackerConfig {
             host: HostLine::unix(),
             distortion: Some(MagneticDistortion::floor_below(DVec3::ZERO)),
             ..Self::ideal()
-                .named("Polhemus 3Space", table::SPACE_RATE)
-                .with_noise(table::SPACE_POSITION_NOISE, table::SPACE_ORIENTATION_NOISE)
-                .with_latency_ps(table::SPACE_LATENCY.ms_to_ps())
+                .named("Polhemus 3Space", table::Space::PAPERS.rate)
+                .with_noise(table::Space::PAPERS.position_noise, table::Space::PAPERS.orientation_noise)
+                .with_latency_ps(table::ms_to_ps(table::Space::PAPERS.latency))
         }
     }
 
@@ -102,7 +101,7 @@ impl TrackerConfig {
     pub fn ideal() -> Self {
         Self {
             name: "ideal".to_owned(),
-            rate_hz: table::IDEAL_RATE.value as u32,
+            rate_hz: table::Ideal::PAPERS.rate as u32,
             receivers: 1,
             sync_to_output_ps: 0,
             position_latency_ps: 0,
@@ -128,11 +127,11 @@ impl TrackerConfig {
         }
     }
 
-    fn named(self, name: &str, rate: Parameter) -> Self {
-        Self { name: name.to_owned(), rate_hz: rate.value as u32, ..self }
+    fn named(self, name: &str, rate_hz: u64) -> Self {
+        Self { name: name.to_owned(), rate_hz: rate_hz as u32, ..self }
     }
 
-    fn with_noise(self, position_mm: Parameter, orientation_deg: Parameter) -> Self {
-        Self { position_noise_m: position_mm.value / 1e3, orientation_noise_deg: orientation_deg.value, ..self }
+    fn with_noise(self, position_mm: f64, orientation_deg: f64) -> Self {
+        Self { position_noise_m: position_mm / 1e3, orientation_noise_deg: orientation_deg, ..self }
     }
 }

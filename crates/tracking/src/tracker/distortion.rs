@@ -1,7 +1,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::config::{SPACE_BOWL, SPACE_BOWL_REACH};
+use crate::config as table;
 use crate::error::ConfigError;
 use crate::pose::Pose;
 use crate::rotation;
@@ -30,8 +30,8 @@ impl MagneticDistortion {
         Self {
             transmitter_m,
             towards_metal: DVec3::NEG_Y,
-            depth_per_m2: SPACE_BOWL.value / 1e3,
-            reach_m: SPACE_BOWL_REACH.value,
+            depth_per_m2: table::Space::PAPERS.bowl / 1e3,
+            reach_m: table::Space::PAPERS.bowl_reach,
         }
     }
 

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::config::{FASTRAK_BAUD, FASTRAK_RECORD, HOST_POLL, SERIAL_BITS};
+use crate::config as table;
 use crate::time::PS_PER_S;
 
 /// The cable from tracker to host. One record travels at a time.
@@ -16,12 +16,12 @@ pub struct SerialLine {
 impl SerialLine {
     /// A 47-byte Fastrak record at 115,200 baud: 4.08 ms.
     pub fn fastrak() -> Self {
-        Self { record_bytes: FASTRAK_RECORD.value as u32, baud: FASTRAK_BAUD.value as u32 }
+        Self { record_bytes: table::Fastrak::PAPERS.record as u32, baud: table::Fastrak::PAPERS.baud as u32 }
     }
 
     /// Time of `records` records on the line: bytes x 10 bits / baud.
     pub fn transfer_ps(&self, records: u32) -> u64 {
-        let bits = u128::from(self.record_bytes) * SERIAL_BITS.value as u128 * u128::from(records);
+        let bits = u128::from(self.record_bytes) * u128::from(table::Host::PAPERS.byte_bits) * u128::from(records);
         let ps = bits.saturating_mul(u128::from(PS_PER_S)) / u128::from(self.baud.max(1));
         u64::try_from(ps).unwrap_or(u64::MAX)
     }
@@ -44,7 +44,7 @@ pub enum HostLine {
 impl HostLine {
     /// The unpatched kernel, which looks every 30 ms (TR94).
     pub fn unix() -> Self {
-        Self::Polled { period_ps: HOST_POLL.ms_to_ps() }
+        Self::Polled { period_ps: table::ms_to_ps(table::Host::PAPERS.poll) }
     }
 
     /// When a record that is complete at `t_ps` is seen. `phase_ps` is the instant of the first look.

@@ -1,6 +1,7 @@
 use glam::{DVec2, DVec3};
+use parameters::ParameterTable;
 
-use crate::config::{Parameter, VIEW_ANGLE, VIEW_HEIGHT, VIEW_WIDTH};
+use crate::config as table;
 use crate::error::ConfigError;
 use crate::pose::Pose;
 use crate::time::seconds;
@@ -32,19 +33,21 @@ pub struct PixelError {
 impl HmdView {
     /// A view of this size (1 to 16,384 px each) and horizontal angle (1 to 170 degrees).
     pub fn new(width_px: u32, height_px: u32, horizontal_deg: f64) -> Result<Self, ConfigError> {
+        table::View { width: width_px.into(), height: height_px.into(), horizontal_angle: horizontal_deg }.check()?;
         let width_px = f64::from(width_px);
         let height_px = f64::from(height_px);
-        check_in_range(&VIEW_WIDTH, width_px)?;
-        check_in_range(&VIEW_HEIGHT, height_px)?;
-        check_in_range(&VIEW_ANGLE, horizontal_deg)?;
         let focal_px = width_px / 2.0 / libm::tan(horizontal_deg.to_radians() / 2.0);
         Ok(Self { width_px, height_px, horizontal_deg, focal_px })
     }
 
     /// 640 x 480 pixels, 60 degrees.
     pub fn ntsc() -> Self {
-        Self::new(VIEW_WIDTH.value as u32, VIEW_HEIGHT.value as u32, VIEW_ANGLE.value)
-            .expect("the table's values are in range")
+        Self::new(
+            table::View::PAPERS.width as u32,
+            table::View::PAPERS.height as u32,
+            table::View::PAPERS.horizontal_angle,
+        )
+        .expect("the table's values are in range")
     }
 
     /// Distance of the eye from the picture, in pixels.
@@ -97,10 +100,6 @@ impl HmdView {
     }
 }
 
-fn check_in_range(parameter: &Parameter, found: f64) -> Result<(), ConfigError> {
-    ConfigError::check(parameter.name, found, parameter.range.0, parameter.range.1)
-}
-
 /// Angle in degrees that a steady turn covers in a span.
 pub fn drift_deg(deg_per_s: f64, span_ps: u64) -> f64 {
     deg_per_s * seconds(span_ps)
@@ -114,7 +113,7 @@ pub(super) fn angle_between(a: DVec3, b: DVec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::{NTSC_FIELD, NTSC_LINE};
+    use crate::config as table;
     use crate::motion::{Motion, Pan};
     use crate::rotation;
     use crate::time::{NTSC_FIELD_PS, PS_PER_MS, ntsc_lines_ps};
@@ -146,7 +145,7 @@ mod tests {
         let degrees = drift_deg(200.0, NTSC_FIELD_PS);
         assert!((degrees - 3.3).abs() < 0.05);
         assert!((degrees * view.mean_px_per_deg() - 33.0).abs() < 0.5);
-        assert!((NTSC_FIELD.value * 1e9 - NTSC_FIELD_PS as f64).abs() < 1.0);
+        assert!((table::Ntsc::PAPERS.field * 1e9 - NTSC_FIELD_PS as f64).abs() < 1.0);
     }
 
     #[test]
@@ -155,7 +154,7 @@ mod tests {
         let degrees = drift_deg(200.0, ntsc_lines_ps(1));
         assert!((degrees - 0.013).abs() < 5e-4);
         assert!((degrees * view.mean_px_per_deg() - 0.13).abs() < 5e-3);
-        assert!((NTSC_LINE.value * 1e6 - ntsc_lines_ps(1) as f64).abs() < 1.0);
+        assert!((table::Ntsc::PAPERS.line * 1e6 - ntsc_lines_ps(1) as f64).abs() < 1.0);
     }
 
     #[test]
