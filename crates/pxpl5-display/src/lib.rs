@@ -140,8 +140,12 @@ pub trait Display: Any + Debug + Send + Sync {
     /// When the last visible pixel of a surface lights in a period.
     fn last_light(&self, surface: usize, period: u64) -> Option<Time> {
         let size = self.surfaces().get(surface)?;
-        self.line_lights(surface, size.width - 1, size.height.saturating_sub(2), period)
-            .max(self.lights(surface, size.width - 1, size.height - 1, period))
+        self.line_lights(surface, size.width - 1, size.height.saturating_sub(2), period).max(self.lights(
+            surface,
+            size.width - 1,
+            size.height - 1,
+            period,
+        ))
     }
 
     /// When the middle of a surface lights in a period.

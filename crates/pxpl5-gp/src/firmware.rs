@@ -331,7 +331,9 @@ impl Gp {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;
         let node = shared.node;
-        shared.ends.push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: Edge::End, view: None }));
+        shared
+            .ends
+            .push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: Edge::End, view: None }));
     }
 
     /// Tells the observer of a stage's edge at a time that the program has read off a message.

@@ -33,7 +33,10 @@ const COMMON: &[(&str, &str)] = &[
     ("pixels", "off, lazy or all"),
     ("level", "analytic (sweeps of pipelines with a closed form only), transaction or cycle"),
     ("machine.preset", "a preset of `pxpl5 machines`"),
-    ("machine.code", "i860 code that the processors run at the cycle level: compiled, scheduled, or none (the table's times)"),
+    (
+        "machine.code",
+        "i860 code that the processors run at the cycle level: compiled, scheduled, or none (the table's times)",
+    ),
     ("measure", "list of the quantities that go into tables and sweep rows"),
     ("output.pictures", "write the last pictures as PNG: true or false"),
     ("output.timeline", "write a timeline as SVG: true or false"),
