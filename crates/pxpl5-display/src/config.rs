@@ -20,15 +20,21 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
     /// The same tables, to change numbers in.
     fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)>;
 
-    /// Ring ports that it has when a pipeline draws so many pictures at a time (1, or 2 for two eyes).
-    fn ports(&self, pictures: usize) -> usize;
+    /// Ring ports that it has when a pipeline draws so many pictures at a time (1, or 2 for two eyes): one for
+    /// each, unless said.
+    fn ports(&self, pictures: usize) -> usize {
+        pictures
+    }
 
-    /// Checks that it can be built.
+    /// Checks that it can be built: every number against the limits of its table, unless there are more rules.
     ///
     /// # Errors
     ///
     /// [`DisplayError`] names the number, what was expected and what was found.
-    fn check(&self) -> Result<(), DisplayError>;
+    fn check(&self) -> Result<(), DisplayError> {
+        let mut tables = self.tables().into_iter();
+        tables.try_for_each(|(name, table)| table.check().map_err(|error| DisplayError(format!("{name}.{error}"))))
+    }
 
     /// Builds it at as many ports of the ring as [`DisplayConfig::ports`] said.
     ///

@@ -21,7 +21,8 @@ struct Arriving {
 pub struct DoubleBuffer {
     buffers: [BTreeMap<RegionId, Arriving>; 2],
     shown: u8,
-    requested: Option<u8>,
+    /// The last request, and when it arrived.
+    requested: Option<(Time, u8)>,
 }
 
 /// What a message was to a [`DoubleBuffer`].
@@ -40,7 +41,7 @@ impl DoubleBuffer {
     pub fn receive(&mut self, body: Body, now: Time) -> Received {
         match body {
             Body::Pixels(pixels) => self.receive_pixels(pixels, now),
-            Body::Words(words) => self.receive_request(&words),
+            Body::Words(words) => self.receive_request(&words, now),
             Body::Commands(_) => Received::Fault,
         }
     }
@@ -59,16 +60,18 @@ impl DoubleBuffer {
         Received::Region(region.pixels.clone(), region.first_part_at)
     }
 
-    fn receive_request(&mut self, words: &[Word]) -> Received {
-        self.requested = read_swap_request(words).filter(|buffer| usize::from(*buffer) < self.buffers.len());
-        if self.requested.is_some() { Received::Part } else { Received::Fault }
+    fn receive_request(&mut self, words: &[Word], now: Time) -> Received {
+        let asked_for = read_swap_request(words).filter(|buffer| usize::from(*buffer) < self.buffers.len());
+        let Some(buffer) = asked_for else { return Received::Fault };
+        self.requested = Some((now, buffer));
+        Received::Part
     }
 
-    /// Shows the buffer that was asked for last since the last tick, if one was; which.
-    pub fn swap(&mut self) -> Option<u8> {
-        let requested = self.requested.take();
-        self.shown = requested.unwrap_or(self.shown);
-        requested
+    /// Shows the buffer that was asked for before (not at) this instant, if one was; which.
+    pub fn swap(&mut self, now: Time) -> Option<u8> {
+        let (_, buffer) = self.requested.take_if(|(asked_at, _)| *asked_at < now)?;
+        self.shown = buffer;
+        Some(buffer)
     }
 
     /// The buffer that is shown, with every region of which a message has arrived; black elsewhere.
@@ -85,5 +88,26 @@ impl DoubleBuffer {
             }
         }
         picture
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_wire::swap_request;
+
+    #[test]
+    fn a_request_takes_effect_at_a_tick_after_it_and_not_at_its_own_instant() {
+        let mut buffers = DoubleBuffer::default();
+        buffers.receive(Body::Words(swap_request(1)), Time(100));
+        assert_eq!(buffers.swap(Time(100)), None);
+        assert_eq!(buffers.swap(Time(101)), Some(1));
+        assert_eq!(buffers.swap(Time(102)), None, "once");
+    }
+
+    #[test]
+    fn a_third_buffer_is_a_fault() {
+        let mut buffers = DoubleBuffer::default();
+        assert!(matches!(buffers.receive(Body::Words(swap_request(2)), Time(1)), Received::Fault));
     }
 }

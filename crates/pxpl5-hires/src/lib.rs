@@ -1,11 +1,9 @@
 //! The high-resolution frame buffer of Pixel-Planes 5: 1280 x 1024 at 72 Hz, every line in every scan, double-buffered.
 //!
-//! A board takes the regions of whole frames into the buffer that is not shown and swaps at the next retrace after a
-//! request. It is also the example of how a display is added: this file and a line in the registry are all of it.
+//! A board takes regions into the buffer that is not shown and swaps at the next retrace after a request. It is also the
+//! example of how a display is added: this file and a line in the registry are all of it. **Not modelled:** blanking (the scan fills its whole period), pixels that arrive while their line is scanned.
 //!
-//! **Not modelled:** blanking (the scan fills its whole period), pixels that arrive while their line is scanned.
-//!
-//! Sources: F89, TR94 (size, rate); the scan without blanking is assumed.
+//! Sources: F89 (size), TR94 (words); the rate and the scan without blanking are assumed.
 
 use image::RgbImage;
 use parameters::ParameterTable;
@@ -24,7 +22,7 @@ parameters::parameter_table! {
         /// Visible lines of a frame.
         height: 1024, "lines", Published, 1024..=1024 in 1..=1408, "F89";
         /// Scans of the whole frame a second.
-        refresh_hz: 72, "Hz", Published, 72..=72 in 1..=1000, "F89";
+        refresh_hz: 72, "Hz", Assumed, 60..=76 in 1..=1000, "monitors of that size in those years";
         /// Time of one word at the port.
         word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
     }
@@ -69,16 +67,17 @@ impl Display for HiRes {
         match event {
             DisplayEvent::Tick(tick) => {
                 self.scans += 1;
-                let swapped = self.boards.iter_mut().enumerate().filter_map(|(i, board)| Some((i, board.swap()?)));
-                swapped.for_each(|(surface, buffer)| {
-                    context.output(at, DisplayOutput::Swapped { surface, buffer, tick });
-                });
+                for (surface, board) in self.boards.iter_mut().enumerate() {
+                    let swapped = board.swap(context.now());
+                    swapped.map(|buffer| context.output(at, DisplayOutput::Swapped { surface, buffer, tick }));
+                }
             }
             DisplayEvent::Delivered { port, body } => match self.boards[port].receive(body, context.now()) {
                 Received::Region(pixels, first_part_at) => {
+                    let target = pixels.target;
                     let last_part_at = context.now();
-                    let (surface, target) = (port, pixels.target);
-                    context.output(at, DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at });
+                    let region = DisplayOutput::RegionArrived { surface: port, target, first_part_at, last_part_at };
+                    context.output(at, region);
                 }
                 Received::Part => {}
                 Received::Fault => self.faults += 1,
@@ -131,14 +130,6 @@ impl DisplayConfig for HiResConfig {
 
     fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)> {
         vec![("hires", self)]
-    }
-
-    fn ports(&self, pictures: usize) -> usize {
-        pictures
-    }
-
-    fn check(&self) -> Result<(), DisplayError> {
-        ParameterTable::check(self).map_err(|error| DisplayError(format!("hires.{error}")))
     }
 
     fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
