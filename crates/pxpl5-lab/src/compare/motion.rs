@@ -1,9 +1,10 @@
 //! Head motions, trackers and predictors by name.
 
 use std::fs::File;
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
-use std::{fmt, io};
+use thiserror::Error;
 use tracking::Pose;
 use tracking::motion::{LoadError, Motion, Pan, Pendulum, Recording, Still, Synthetic};
 use tracking::predict::PredictorKind;
@@ -13,10 +14,11 @@ use tracking::tracker::TrackerConfig;
 const FASTEST_PAN: f64 = 10_000.0;
 
 /// Why a motion, tracker or predictor cannot be had.
-#[derive(Debug)]
+#[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MotionError {
     /// The name is none of those known.
+    #[error("there is no {what} `{found}`; expected {expected}")]
     Unknown {
         /// What was to be named.
         what: &'static str,
@@ -26,6 +28,7 @@ pub enum MotionError {
         expected: &'static str,
     },
     /// A number after the colon is none, or out of range.
+    #[error("expected {expected}, found `{found}`")]
     Number {
         /// The text.
         found: String,
@@ -33,6 +36,7 @@ pub enum MotionError {
         expected: &'static str,
     },
     /// A recording cannot be opened.
+    #[error("{path} cannot be opened: {error}")]
     Open {
         /// The file.
         path: String,
@@ -40,6 +44,7 @@ pub enum MotionError {
         error: io::Error,
     },
     /// A recording cannot be replayed.
+    #[error("{path}: {error}")]
     Load {
         /// The file.
         path: String,
@@ -47,21 +52,6 @@ pub enum MotionError {
         error: LoadError,
     },
 }
-
-impl fmt::Display for MotionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown { what, found, expected } => {
-                write!(f, "there is no {what} `{found}`; expected {expected}")
-            }
-            Self::Number { found, expected } => write!(f, "expected {expected}, found `{found}`"),
-            Self::Open { path, error } => write!(f, "{path} cannot be opened: {error}"),
-            Self::Load { path, error } => write!(f, "{path}: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for MotionError {}
 
 const MOTIONS: &str = "still, pan:DEG_PER_S, pendulum, synthetic:SEED or a file FILE.csv";
 

@@ -240,9 +240,10 @@ fn table(header: &Header, rows: &BTreeMap<u64, Row>) -> String {
         ("level", header.level.clone()),
         ("seed", header.seed.to_string()),
     ];
-    let mut text: String = origin.iter().map(|(key, value)| format!("# {key}: {value}\n")).collect();
+    let comments: String = origin.iter().map(|(key, value)| format!("# {key}: {value}\n")).collect();
+    let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(comments.into_bytes());
     let columns = ["point", "status"].into_iter().chain(parameters.iter().chain(&measured).map(|name| name.as_str()));
-    text += &csv_line(columns.chain(["trace_hash", "error"]).map(str::to_owned));
+    put_line(&mut writer, columns.chain(["trace_hash", "error"]).map(str::to_owned));
     for row in rows.values() {
         let status = if row.status == super::Status::Done { "done" } else { "failed" };
         let settings = parameters.iter().map(|path| row.parameters.get(*path).map_or_else(String::new, plain));
@@ -250,19 +251,17 @@ fn table(header: &Header, rows: &BTreeMap<u64, Row>) -> String {
             |name: &&String| row.measured.get(*name).copied().flatten().map_or_else(String::new, |v| v.to_string());
         let cells = [row.point.to_string(), status.to_owned()].into_iter().chain(settings);
         let last = [row.trace_hash.clone().unwrap_or_default(), row.error.clone().unwrap_or_default()];
-        text += &csv_line(cells.chain(measured.iter().map(value)).chain(last));
+        put_line(&mut writer, cells.chain(measured.iter().map(value)).chain(last));
     }
-    text
+    let bytes = writer.into_inner().unwrap_or_default();
+    String::from_utf8(bytes).unwrap_or_default()
 }
 
 fn plain(value: &serde_json::Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// A line by RFC 4180, but for its end, which is a line feed.
-fn csv_line(cells: impl Iterator<Item = String>) -> String {
-    let quoted = |cell: String| {
-        if cell.contains([',', '"', '\n']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell }
-    };
-    format!("{}\n", cells.map(quoted).collect::<Vec<_>>().join(","))
+/// Puts a line; memory can always be written.
+fn put_line(writer: &mut csv::Writer<Vec<u8>>, cells: impl Iterator<Item = String>) {
+    let _ = writer.write_record(cells);
 }

@@ -6,7 +6,7 @@ use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{BlockOrder, Schedule};
-use pphigs::{Counts, Share};
+use pphigs::{Counts, Share, TransformCost};
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{ConfigError, Machine, Record};
@@ -45,9 +45,7 @@ impl Frameless {
         let ports = record.ports();
         let ring = record.ring().timing();
         let timing = record.config().gp;
-        let primitives =
-            u64::from(counts.triangles) * timing.triangle_ns + u64::from(counts.spheres) * timing.sphere_ns;
-        let slave_ns = timing.pass_ns + primitives + 3 * timing.message_ns;
+        let slave_ns = TransformCost::pass_over(counts).ns(&timing) + 3 * timing.message_ns;
         let block_ns = ring.occupancy(self.block * self.block).0 / 1_000;
         let slaves = ports.gps.len().saturating_sub(1).max(1) as u64;
         (slave_ns / (slaves * block_ns)).clamp(LEAST_BATCH, MOST_BATCH) as u32
