@@ -1,6 +1,6 @@
 //! Every number of the frame buffer.
 
-use crate::ConfigError;
+use crate::error::ConfigError;
 use parameters::{MAX, ParameterTable, check};
 use pxpl5_sim::Clock;
 

@@ -2,11 +2,12 @@
 //!
 //! Every lane computes what [`crate::ScreenTriangle`] and [`crate::plane`] compute for one triangle, bit for bit. Integers
 //! that need more than 32 bits (products of two differences of corners, below 2^34) are held as doubles, which are exact.
-//! The loops are plain Rust, compiled once for each vector unit (see [`multiversion`]); there is nothing in which the units
+//! The loops are plain Rust, compiled once for each vector unit (see [`mod@multiversion`]); there is nothing in which the units
 //! could differ.
 
+use crate::outline::SUBPIXELS;
 use crate::plane::{self, MAX_SLOPE};
-use crate::screen::{self, SUBPIXELS};
+use crate::screen;
 use crate::vertex::{UnclippedTriangle, VertexSurface};
 use crate::{GouraudTriangle, PhongTriangle, SetupStats, Transform, Viewport};
 use multiversion::multiversion;

@@ -2,11 +2,13 @@
 
 use crate::bin::Binner;
 use crate::clip::{self, Corner, Guard, Vertex};
+use crate::lens::Lens;
 use crate::light::Lighting;
-use crate::screen::{self, LitColours, Outline, ScreenTriangle, SurfaceNormals};
-use crate::sphere::Lens;
+use crate::outline::{Outline, SUBPIXELS};
+use crate::screen::{self, LitColours, ScreenTriangle, SurfaceNormals};
+use crate::touch::Touch;
 use crate::view::{Columns, FromWorld, ViewError};
-use crate::{Light, RegionMask, SetupStats, Touch, Triangle, ViewTransform, Viewport};
+use crate::{Light, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -82,7 +84,7 @@ fn whole_between(from: f64, to: f64, s: f64) -> f64 {
 
 /// Half of so many pixels, in subpixels.
 fn half_in_subpixels(pixels: u32) -> f32 {
-    (pixels * screen::SUBPIXELS as u32) as f32 * 0.5
+    (pixels * SUBPIXELS as u32) as f32 * 0.5
 }
 
 impl ToScreen {
@@ -94,7 +96,7 @@ impl ToScreen {
 
     /// The guard band lies one pixel inside [`screen::GUARD_PIXELS`], so that rounding cannot reach beyond.
     fn guard(&self) -> Guard {
-        let limit = ((screen::GUARD_PIXELS - 1) * screen::SUBPIXELS) as f32;
+        let limit = ((screen::GUARD_PIXELS - 1) * SUBPIXELS) as f32;
         Guard { x: (limit - self.centre[0]) / self.centre[0], y: (limit - self.centre[1]) / self.centre[1] }
     }
 
@@ -112,7 +114,7 @@ impl ToScreen {
     /// Divides by w and snaps a corner that clipping left; `None` if it is not inside even so (w near 0). A vertex is
     /// snapped as everywhere, a cut in double precision.
     fn snap_corner<const N: usize>(&self, Corner { clip, cut, .. }: &Corner<N>) -> Option<Snapped> {
-        let limit = f64::from(screen::GUARD_PIXELS * screen::SUBPIXELS);
+        let limit = f64::from(screen::GUARD_PIXELS * SUBPIXELS);
         let inverse = 1.0 / clip[3];
         let x = (clip[0] * inverse) * f64::from(self.scale[0]) + f64::from(self.centre[0]);
         let y = (clip[1] * inverse) * f64::from(self.scale[1]) + f64::from(self.centre[1]);

@@ -1,7 +1,8 @@
 //! A graphics processor under Slats.
 
 use crate::bind::{Binding, BoundRegion};
-use crate::config::{CopySchedule, SlatsConfig};
+use crate::config::SlatsConfig;
+use crate::schedule::CopySchedule;
 use pphigs::{
     FrameView, Pass, Picture, RegionEnvelope, Share, TransformCost, Transforming, ViewWordsError, copy_message,
     region_messages,
