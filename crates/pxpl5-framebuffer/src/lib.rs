@@ -53,6 +53,7 @@
 mod board;
 mod buffer;
 mod config;
+mod error;
 mod ntsc;
 mod picture;
 mod port;
@@ -63,7 +64,8 @@ mod timing;
 mod video;
 
 pub use board::FrameBuffer;
-pub use config::{ConfigError, FrameBufferConfig};
+pub use config::FrameBufferConfig;
+pub use error::ConfigError;
 pub use image::RgbImage;
 pub use ntsc::{NtscDisplay, seen_at};
 pub use picture::{PictureError, write_png};
