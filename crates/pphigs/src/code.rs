@@ -12,7 +12,8 @@
 
 use crate::cost::TransformCost;
 use crate::list::Share;
-use crate::pass::{Binning, Pass, Shading};
+use crate::pass::Pass;
+use crate::picture::{Binning, Shading};
 use i860::Program;
 use pxpl5_geometry::kernel::{Heads, Kernel, PARAMETER_WORDS, Schedule, Surface, TRIANGLE_WORDS, display_list_words};
 use pxpl5_geometry::{Light, Transform};

@@ -1,7 +1,10 @@
 //! Messages of renderer commands: which kinds are in them, and their words on demand.
 
-use crate::list::{Counts, DisplayList};
-use crate::pass::{Entry, Pass, Picture, Shading};
+use crate::counts::Counts;
+use crate::encoder::Encoder;
+use crate::list::DisplayList;
+use crate::pass::{Entry, Pass};
+use crate::picture::Shading;
 use crate::placed::{Placed, Vertices};
 use pxpl5_geometry::{
     self as geometry, GouraudSphere, GouraudTriangle, LANES, SetupStats, SphereSetup, Transform, TriangleLanes,
@@ -361,23 +364,6 @@ impl Batches<'_> {
         let (now, later) = self.entries.split_at(self.lanes.len());
         self.entries = later;
         (!now.is_empty()).then_some(Batch::Unclipped(now, &self.lanes))
-    }
-}
-
-/// Makes the words of a picture's triangles.
-#[derive(Debug)]
-pub(crate) enum Encoder {
-    Gouraud(TriangleEncoder),
-    Phong(PhongTriangleEncoder),
-}
-
-impl Encoder {
-    /// `None` where the layout cannot hold what they need, which is refused when the machine is configured.
-    pub(crate) fn for_picture(picture: &Picture) -> Option<Self> {
-        match picture.shading {
-            Shading::Gouraud => Some(Self::Gouraud(TriangleEncoder::new(&picture.layout))),
-            Shading::Phong => PhongTriangleEncoder::new(&picture.layout).ok().map(Self::Phong),
-        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The time of a TRANSFORM by the table of graphics-processor code, derived in this one place.
 
-use crate::list::Counts;
+use crate::counts::Counts;
 use pxpl5_gp::GpTiming;
 use pxpl5_sim::Span;
 

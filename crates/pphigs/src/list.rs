@@ -1,33 +1,13 @@
 //! The display list and its division among GPs.
 
-use crate::pass::{Pass, Picture};
+use crate::counts::Counts;
 use crate::placed::RecentViews;
-use crate::view::FrameView;
-use glam::{Mat4, Vec3};
+use crate::structure::Structure;
+use glam::Vec3;
 use pxpl5_geometry::kernel::TRIANGLE_WORDS;
 use pxpl5_geometry::{Sphere, Triangle};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// What the coordinates of a structure are fixed to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Frame {
-    /// The room in which the viewer stands.
-    World,
-    /// The viewer's head, with which it moves.
-    Head,
-}
-
-/// A run of primitives with one model matrix.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Structure {
-    /// Numbers of its triangles in the display list.
-    pub triangles: Range<usize>,
-    /// Numbers of its spheres in the display list.
-    pub spheres: Range<usize>,
-    /// Whether it stands in the room or moves with the head.
-    pub frame: Frame,
-}
 
 /// Everything to be drawn, in structures that divide it in order.
 #[derive(Clone, Debug, Default)]
@@ -54,23 +34,6 @@ pub struct DisplayList {
     pub background: [u8; 3],
     /// What many graphics processors compute alike, kept for the next one; empty at first.
     pub recent: RecentViews,
-}
-
-/// Numbers of primitives or commands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Number of triangles, or of triangle commands.
-    pub triangles: u32,
-    /// Number of spheres, or of sphere commands.
-    pub spheres: u32,
-}
-
-impl Counts {
-    /// Triangles and spheres together.
-    #[must_use]
-    pub const fn total(self) -> u32 {
-        self.triangles + self.spheres
-    }
 }
 
 impl DisplayList {
@@ -175,12 +138,6 @@ impl Share {
         u64::from(triangles) * Self::TRIANGLE_BYTES + u64::from(spheres) * Self::SPHERE_BYTES
     }
 
-    /// One TRANSFORM of all held primitives for one eye.
-    #[must_use]
-    pub fn transform(&self, view: &FrameView, eye: usize, picture: Picture) -> Arc<Pass> {
-        Arc::new(Pass::new(self.clone(), view, eye, picture))
-    }
-
     /// Numbers of all triangles that the GP holds, also where this is a clump of them.
     pub(crate) fn all_triangles(&self) -> impl ExactSizeIterator<Item = usize> + use<> {
         (self.first..self.list.triangles.len()).step_by(self.step)
@@ -222,9 +179,6 @@ fn dealt(all: usize, index: usize, gps: usize) -> usize {
 fn part(range: &Range<usize>, from: usize, to: usize) -> Range<usize> {
     (range.start + from).min(range.end)..(range.start + to).min(range.end)
 }
-
-/// The model matrix of a structure that was never edited.
-pub(crate) const UNMOVED: Mat4 = Mat4::IDENTITY;
 
 #[cfg(test)]
 mod tests {

@@ -1,47 +1,15 @@
 //! One TRANSFORM of a GP's share for one eye.
 
-use crate::commands::Encoder;
-use crate::list::{Counts, Share};
-use crate::placed::{Placed, RecentViews};
+use crate::counts::Counts;
+use crate::encoder::Encoder;
+use crate::list::Share;
+use crate::picture::{Binning, Picture};
+use crate::placed::Placed;
+use crate::placing::place_once;
 use crate::view::FrameView;
-use pxpl5_geometry::{Light, RegionMask, SetupStats, Touch, Transform, Viewport};
-use pxpl5_renderer::Layout;
+use pxpl5_geometry::{Light, RegionMask, SetupStats, Touch, Transform};
 use pxpl5_wire::RegionId;
 use std::sync::Arc;
-
-/// Where colours are computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shading {
-    /// At the corners, by the GP; interpolated by the renderers.
-    Gouraud,
-    /// At the pixels, by the renderers, once at the end of the frame.
-    Phong,
-}
-
-/// Which regions a primitive's commands are sent to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Binning {
-    /// Those that it touches.
-    Touched,
-    /// All; a triangle that is not seen costs as much as any other, and draws nothing (Slats prototype, TR94). Spheres,
-    /// which the prototype did not have, go to the regions that they touch: elsewhere a quadratic leaves its 48 bits.
-    All,
-}
-
-/// What to make of a view.
-#[derive(Clone, Copy, Debug)]
-pub struct Picture {
-    /// Lines of the frame that it holds, and how it is cut into regions.
-    pub viewport: Viewport,
-    /// Whether colours are computed at corners or at pixels.
-    pub shading: Shading,
-    /// Which regions get a primitive's commands.
-    pub binning: Binning,
-    /// Division of pixel memory that the commands are encoded for.
-    pub layout: Layout,
-    /// Whether somebody may want the command words.
-    pub pixels: bool,
-}
 
 /// A screen triangle of a bin: what its commands are made from.
 #[derive(Clone, Copy, Debug)]
@@ -77,10 +45,18 @@ pub struct Pass {
     encoder: Option<Encoder>,
 }
 
+impl Share {
+    /// One TRANSFORM of all held primitives for one eye.
+    #[must_use]
+    pub fn transform(&self, view: &FrameView, eye: usize, picture: Picture) -> Arc<Pass> {
+        Arc::new(Pass::new(self.clone(), view, eye, picture))
+    }
+}
+
 impl Pass {
-    pub(crate) fn new(share: Share, view: &FrameView, eye: usize, picture: Picture) -> Self {
+    fn new(share: Share, view: &FrameView, eye: usize, picture: Picture) -> Self {
         let regions = picture.viewport.grid().regions() as usize;
-        let placed = RecentViews::place_all(&share.list, view, eye, picture.viewport);
+        let placed = place_once(&share.list, view, eye, picture.viewport);
         let bins = if picture.pixels { vec![Bin::default(); regions] } else { Vec::new() };
         let mut pass = Self {
             share,
