@@ -4,6 +4,8 @@
 //! leaves out what cannot change anything, and is held to the literal one in every bit, clock and fault.
 
 mod arithmetic;
+mod collect;
+mod delivery;
 mod evaluate;
 mod evaluator;
 mod planes;

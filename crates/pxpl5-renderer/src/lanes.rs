@@ -9,6 +9,7 @@ mod large;
 mod roots;
 mod shade;
 mod sphere;
+mod template;
 mod triangle;
 mod values;
 mod whole;
@@ -18,11 +19,11 @@ use crate::controller::{Controller, FieldBits};
 use crate::isa::{BACKING_BLOCKS, opcode};
 use crate::layout::Layout;
 use crate::simd::{PresentVectors, Vectors};
-use columns::PixelColumns;
+use columns::{ContextColumns, PixelColumns};
 use enable::Enable;
 use pxpl5_wire::{REGION_SIZE, Word};
 use std::sync::Arc;
-use whole::{ContextColumns, Templates};
+use template::Templates;
 
 /// The array by values: one word a pixel and field.
 ///

@@ -1,9 +1,10 @@
 //! Spheres and shading as whole commands: long enough to decode their words with care.
 
 use super::Lanes;
+use super::columns::ContextColumns;
 use super::shade::ShadeAll;
 use super::sphere::{DrawSphere, PaintGouraudSphere, PaintPhongSphere};
-use super::whole::{ContextColumns, starts_anew};
+use super::template::starts_anew;
 use crate::array::Executed;
 use crate::command::{Command, CommandKind, PhongSphere, Shade, ShadeFields, Sphere, SphereBody, SphereScratch};
 use pxpl5_wire::Word;
