@@ -4,7 +4,7 @@ use crate::config::Interpolation;
 use glam::Mat4;
 use pphigs::{Counts, DisplayList, EyeView, FrameView, ModelEdit, Placed, gouraud_sphere, place_all};
 use pxpl5_geometry::{LitColours, Outline, ScreenSphere, ScreenTriangle, SetupStats, TriangleEnds, Viewport};
-use pxpl5_renderer::{Command, Triangle};
+use pxpl5_renderer::{Command, TriangleCommand};
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
@@ -188,7 +188,7 @@ fn sink_if_met(
 ) {
     if triangle.outline.meets(window.across, window.lines) {
         let shaded = triangle.gouraud(viewport, &mut SetupStats::default());
-        sink(Command::Triangle(Triangle { edges: shaded.edges, depth: shaded.z, colour: shaded.rgb }));
+        sink(Command::Triangle(TriangleCommand { edges: shaded.edges, depth: shaded.z, colour: shaded.rgb }));
     }
 }
 

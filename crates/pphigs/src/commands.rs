@@ -7,12 +7,12 @@ use crate::pass::{Entry, Pass};
 use crate::picture::Shading;
 use crate::placed::{Placed, Vertices};
 use pxpl5_geometry::{
-    self as geometry, GouraudSphere, GouraudTriangle, LANES, SetupStats, SphereSetup, Transform, TriangleLanes,
-    VertexSurface,
+    GouraudSphere, GouraudTriangle, LANES, PhongSphere, PhongTriangle, SetupStats, SphereSetup, Transform,
+    TriangleLanes, VertexSurface,
 };
 use pxpl5_renderer::{
-    Clear, Command, CommandKind, CopyRegion, Layout, PhongSphere, PhongTriangle, PhongTriangleEncoder, SelectRegion,
-    Shade, Sphere, SphereBody, Triangle, TriangleEncoder,
+    Clear, Command, CommandKind, CopyRegion, Layout, PhongSphereCommand, PhongTriangleCommand, PhongTriangleEncoder,
+    SelectRegion, Shade, SphereBody, SphereCommand, TriangleCommand, TriangleEncoder,
 };
 use pxpl5_wire::{CommandList, CommandRun, CommandWords, CopyOrder, Linear, MAX_MESSAGE_WORDS, RegionId, Word};
 use std::ops::Range;
@@ -375,18 +375,18 @@ fn pick<T>(entry: &Entry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
     pieces.into_iter().nth(entry.piece?.into())
 }
 
-fn gouraud_triangle(t: GouraudTriangle) -> Triangle {
-    Triangle { edges: t.edges, depth: t.z, colour: t.rgb }
+fn gouraud_triangle(t: GouraudTriangle) -> TriangleCommand {
+    TriangleCommand { edges: t.edges, depth: t.z, colour: t.rgb }
 }
 
-fn phong_triangle(t: geometry::PhongTriangle) -> PhongTriangle {
-    PhongTriangle { edges: t.edges, depth: t.z, normal: t.normal, colour: rgb(t.colour) }
+fn phong_triangle(t: PhongTriangle) -> PhongTriangleCommand {
+    PhongTriangleCommand { edges: t.edges, depth: t.z, normal: t.normal, colour: rgb(t.colour) }
 }
 
 /// The command of a sphere with Gouraud shading.
 #[must_use]
 pub fn gouraud_sphere(s: &GouraudSphere) -> Command {
-    Command::Sphere(Sphere {
+    Command::Sphere(SphereCommand {
         body: body(&s.setup),
         colour: s.rgb,
         root_factor: s.root_factor.map(|factor| factor.min(511) as i16),
@@ -397,15 +397,15 @@ const fn body(s: &SphereSetup) -> SphereBody {
     SphereBody { silhouette: s.silhouette, root_shift: s.root_shift, depth: s.depth, depth_shift: s.depth_shift }
 }
 
-fn phong_sphere(s: &geometry::PhongSphere) -> Command {
-    Command::PhongSphere(PhongSphere { body: body(&s.setup), normal: s.normal, colour: rgb(s.colour) })
+fn phong_sphere(s: &PhongSphere) -> Command {
+    Command::PhongSphere(PhongSphereCommand { body: body(&s.setup), normal: s.normal, colour: rgb(s.colour) })
 }
 
 /// A triangle of which nothing is seen: its edges exclude every pixel.
-const NOWHERE: Triangle =
-    Triangle { edges: [Linear::constant(-1); 3], depth: Linear::constant(0), colour: [Linear::constant(0); 3] };
-const PHONG_NOWHERE: PhongTriangle =
-    PhongTriangle { edges: NOWHERE.edges, depth: NOWHERE.depth, normal: NOWHERE.colour, colour: 0 };
+const NOWHERE: TriangleCommand =
+    TriangleCommand { edges: [Linear::constant(-1); 3], depth: Linear::constant(0), colour: [Linear::constant(0); 3] };
+const PHONG_NOWHERE: PhongTriangleCommand =
+    PhongTriangleCommand { edges: NOWHERE.edges, depth: NOWHERE.depth, normal: NOWHERE.colour, colour: 0 };
 
 /// A unit vector in 1/1024.
 fn fixed_direction(v: [f32; 3]) -> [i16; 3] {

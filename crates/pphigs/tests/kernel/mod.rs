@@ -97,13 +97,14 @@ pub(crate) fn native(surface: Surface, viewport: Viewport, triangles: &[Triangle
         match surface {
             Surface::Gouraud => transform.gouraud(triangle, &light, &mut stats, |screen| {
                 let t = screen.gouraud(&viewport, &mut SetupStats::default());
-                let command = pxpl5_renderer::Triangle { edges: t.edges, depth: t.z, colour: t.rgb };
+                let command = pxpl5_renderer::TriangleCommand { edges: t.edges, depth: t.z, colour: t.rgb };
                 found.push((Command::Triangle(command), screen.outline));
             }),
             Surface::Phong => transform.phong(triangle, &mut stats, |screen| {
                 let t = screen.phong(&viewport, &mut SetupStats::default());
                 let colour = t.colour.iter().fold(0, |word, byte| word << 8 | u32::from(*byte));
-                let command = pxpl5_renderer::PhongTriangle { edges: t.edges, depth: t.z, normal: t.normal, colour };
+                let command =
+                    pxpl5_renderer::PhongTriangleCommand { edges: t.edges, depth: t.z, normal: t.normal, colour };
                 found.push((Command::PhongTriangle(command), screen.outline));
             }),
         }
@@ -128,8 +129,8 @@ fn words(command: &Command) -> Vec<u32> {
 /// The instruction heads of a triangle command, taken from a command of zeros.
 fn heads(surface: Surface) -> Heads {
     let blank = match surface {
-        Surface::Gouraud => words(&Command::Triangle(pxpl5_renderer::Triangle::default())),
-        Surface::Phong => words(&Command::PhongTriangle(pxpl5_renderer::PhongTriangle::default())),
+        Surface::Gouraud => words(&Command::Triangle(pxpl5_renderer::TriangleCommand::default())),
+        Surface::Phong => words(&Command::PhongTriangle(pxpl5_renderer::PhongTriangleCommand::default())),
     };
     [0, 1, 13, 17, 18, 22, 26, 30].map(|at| blank.get(at).copied().unwrap_or_default())
 }

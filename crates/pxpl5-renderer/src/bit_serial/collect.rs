@@ -6,7 +6,7 @@ use super::runs::{BitOrigin, ConstantBits, EXPRESSIONS, InstructionRun, RunStep,
 use crate::array::Executed;
 use crate::controller::LocalExpression;
 use crate::isa::timing::SET_UP_CLOCKS;
-use crate::isa::{Expression, Instruction, LINEAR_BITS, opcode};
+use crate::isa::{ArrayInstruction, Expression, LINEAR_BITS, opcode};
 use pxpl5_wire::Word;
 
 impl BitSerial {
@@ -40,9 +40,9 @@ impl BitSerial {
         true
     }
 
-    fn step_of(&mut self, run: &mut InstructionRun, instruction: &Instruction) -> Option<RunStep> {
+    fn step_of(&mut self, run: &mut InstructionRun, instruction: &ArrayInstruction) -> Option<RunStep> {
         match *instruction {
-            Instruction::Evaluate { expression, usage } => {
+            ArrayInstruction::Evaluate { expression, usage } => {
                 let delivery = self.delivery(&usage, LINEAR_BITS).ok()?;
                 if expression != Expression::LinearAgain || run.expressions.is_empty() {
                     if run.expressions.len() == EXPRESSIONS {
@@ -53,7 +53,7 @@ impl BitSerial {
                 }
                 Some(RunStep { input: BitOrigin::Expression(run.expressions.len() - 1), delivery })
             }
-            Instruction::LoadConstant { destination, value } => {
+            ArrayInstruction::LoadConstant { destination, value } => {
                 let field = self.controller.bits(destination).ok()?;
                 let delivery =
                     Delivery { taken: 0..field.width, effect: ExpressionEffect::Load { first: field.first } };
