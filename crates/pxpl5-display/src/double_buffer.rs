@@ -26,7 +26,7 @@ pub struct DoubleBuffer {
 
 /// What a message was to a [`DoubleBuffer`].
 #[derive(Clone, Debug)]
-pub enum Received {
+pub enum BufferReceipt {
     /// The last message of a region, the first of which arrived at this time.
     Region(RegionPixels, Time),
     /// Another message of a region, or a request to swap.
@@ -37,16 +37,16 @@ pub enum Received {
 
 impl DoubleBuffer {
     /// Takes a message that arrives at `now`.
-    pub fn receive(&mut self, body: Body, now: Time) -> Received {
+    pub fn receive(&mut self, body: Body, now: Time) -> BufferReceipt {
         match body {
             Body::Pixels(pixels) => self.receive_pixels(pixels, now),
             Body::Words(words) => self.receive_request(&words),
-            Body::Commands(_) => Received::Fault,
+            Body::Commands(_) => BufferReceipt::Fault,
         }
     }
 
-    fn receive_pixels(&mut self, pixels: RegionPixels, now: Time) -> Received {
-        let Some(buffer) = self.buffers.get_mut(usize::from(pixels.target.buffer)) else { return Received::Fault };
+    fn receive_pixels(&mut self, pixels: RegionPixels, now: Time) -> BufferReceipt {
+        let Some(buffer) = self.buffers.get_mut(usize::from(pixels.target.buffer)) else { return BufferReceipt::Fault };
         let fresh = Arriving { pixels, arrived: 0, first_part_at: now };
         let region = buffer.entry(fresh.pixels.target.region).or_insert_with(|| fresh.clone());
         if region.pixels.target != fresh.pixels.target || region.arrived == region.pixels.parts {
@@ -54,14 +54,14 @@ impl DoubleBuffer {
         }
         region.arrived += 1;
         if region.arrived < region.pixels.parts {
-            return Received::Part;
+            return BufferReceipt::Part;
         }
-        Received::Region(region.pixels.clone(), region.first_part_at)
+        BufferReceipt::Region(region.pixels.clone(), region.first_part_at)
     }
 
-    fn receive_request(&mut self, words: &[Word]) -> Received {
+    fn receive_request(&mut self, words: &[Word]) -> BufferReceipt {
         self.requested = read_swap_request(words).filter(|buffer| usize::from(*buffer) < self.buffers.len());
-        if self.requested.is_some() { Received::Part } else { Received::Fault }
+        if self.requested.is_some() { BufferReceipt::Part } else { BufferReceipt::Fault }
     }
 
     /// Shows the buffer that was asked for last since the last tick, if one was; which.

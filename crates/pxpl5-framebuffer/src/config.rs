@@ -1,6 +1,6 @@
 //! What a frame buffer is built from.
 
-use crate::error::ConfigError;
+use crate::error::FrameBufferConfigError;
 use crate::timing::{PortTiming, VideoTiming};
 use parameters::{ParameterTable, check};
 
@@ -24,8 +24,8 @@ impl FrameBufferConfig {
     ///
     /// # Errors
     ///
-    /// [`ConfigError::Number`] names the number, what was expected and what was found.
-    pub fn check(&self) -> Result<(), ConfigError> {
+    /// [`FrameBufferConfigError::Number`] names the number, what was expected and what was found.
+    pub fn check(&self) -> Result<(), FrameBufferConfigError> {
         self.video.check()?;
         self.port.check()?;
         check("fields_kept", self.fields_kept, (1, 1_000))?;

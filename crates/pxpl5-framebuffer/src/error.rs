@@ -5,7 +5,7 @@ use parameters::ParameterError;
 /// Why a frame buffer cannot be built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum ConfigError {
+pub enum FrameBufferConfigError {
     /// A number is outside of what the model can take.
     #[error("frame buffer: {0}")]
     Number(#[from] ParameterError),

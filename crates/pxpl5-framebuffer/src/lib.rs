@@ -65,12 +65,12 @@ mod video;
 
 pub use board::FrameBuffer;
 pub use config::FrameBufferConfig;
-pub use error::ConfigError;
+pub use error::FrameBufferConfigError;
 pub use image::RgbImage;
 pub use ntsc::{NtscDisplay, seen_at};
 pub use picture::{PictureError, write_png};
 pub use port::{Faults, FrameBufferEvent, FrameBufferFault, FrameBufferOutput};
-pub use seen::{BufferContents, LateRegion, SeenField};
+pub use seen::{BufferContents, SeenField, SeenLateRegion};
 pub use stats::FrameBufferStats;
 pub use timing::{PortTiming, VideoTiming};
 pub use video::Video;
