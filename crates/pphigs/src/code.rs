@@ -15,7 +15,9 @@ use crate::list::Share;
 use crate::pass::Pass;
 use crate::picture::{Binning, Shading};
 use i860::Program;
-use pxpl5_geometry::kernel::{Heads, Kernel, PARAMETER_WORDS, Schedule, Surface, TRIANGLE_WORDS, display_list_words};
+use pxpl5_geometry::kernel::{
+    Heads, Kernel, KernelSurface, PARAMETER_WORDS, Schedule, TRIANGLE_WORDS, display_list_words,
+};
 use pxpl5_geometry::{Light, Transform};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::{Command, PhongTriangleCommand, TriangleCommand};
@@ -178,10 +180,10 @@ impl Pass {
             CodeVersion::Scheduled => Schedule::Dual,
         };
         let surface = match self.picture().shading {
-            Shading::Gouraud => Surface::Gouraud,
-            Shading::Phong => Surface::Phong,
+            Shading::Gouraud => KernelSurface::Gouraud,
+            Shading::Phong => KernelSurface::Phong,
         };
-        Kernel::of(schedule, surface, &self.picture().viewport, self.is_binned())
+        Kernel::for_picture(schedule, surface, &self.picture().viewport, self.is_binned())
     }
 
     fn is_binned(&self) -> bool {

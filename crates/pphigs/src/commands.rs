@@ -1,11 +1,11 @@
 //! Messages of renderer commands: which kinds are in them, and their words on demand.
 
-use crate::counts::Counts;
+use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;
 use crate::list::DisplayList;
-use crate::pass::{Entry, Pass};
+use crate::pass::{BinEntry, Pass};
 use crate::picture::Shading;
-use crate::placed::{Placed, Vertices};
+use crate::placed::{PlacedStructure, Vertices};
 use pxpl5_geometry::{
     GouraudSphere, GouraudTriangle, LANES, PhongSphere, PhongTriangle, SetupStats, SphereSetup, Transform,
     TriangleLanes, VertexSurface,
@@ -47,7 +47,7 @@ pub fn copy_message(layout: Layout, copies: Vec<CopyOrder>, pixels: bool) -> Com
     let runs =
         copies.iter().flat_map(|_| [run(CommandKind::SelectRegion, 1), run(CommandKind::CopyRegion, 1)]).collect();
     let context = copies.first().map_or(0, |order| order.context);
-    let content = pixels.then(|| Arc::new(Copies { layout, copies: copies.clone() }) as Arc<dyn CommandWords>);
+    let content = pixels.then(|| Arc::new(CopyWords { layout, copies: copies.clone() }) as Arc<dyn CommandWords>);
     CommandList { runs, context, copies, content }
 }
 
@@ -166,7 +166,7 @@ impl Pass {
     /// Bytes of the renderer commands of all screen primitives, each held once (TR94: bins point to them).
     #[must_use]
     pub fn command_bytes(&self) -> u64 {
-        let Counts { triangles, spheres } = self.screen_counts();
+        let PrimitiveCounts { triangles, spheres } = self.screen_counts();
         bytes(self.triangle_kind(), triangles) + bytes(self.sphere_kind(), spheres)
     }
 }
@@ -231,8 +231,8 @@ impl RegionWords {
 
     fn gouraud(
         &self,
-        entries: &[Entry],
-        place: &Placed,
+        entries: &[BinEntry],
+        place: &PlacedStructure,
         transform: &Transform,
         encoder: &TriangleEncoder,
         out: &mut Vec<Word>,
@@ -242,14 +242,14 @@ impl RegionWords {
         let mut stats = SetupStats::default();
         let vertices = place.vertices(list, transform);
         let surfaces = vertices.colours(list, transform, &place.light);
-        let mut batches = Batches { entries, vertices, list, surfaces, lanes: TriangleLanes::default() };
+        let mut batches = SetupBatches { entries, vertices, list, surfaces, lanes: TriangleLanes::default() };
         while let Some(some) = batches.next() {
             match some {
-                Batch::Unclipped(entries, lanes) => {
+                SetupBatch::Unclipped(entries, lanes) => {
                     let expressions = transform.gouraud_lanes(lanes, &mut stats);
                     (0..entries.len()).for_each(|i| encoder.encode(&gouraud_triangle(expressions.get(i)), out));
                 }
-                Batch::Clipped(entry) => {
+                SetupBatch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.gouraud(&triangle, &place.light, &mut stats, sink));
                     let piece = piece.map(|piece| piece.gouraud(&picture.viewport, &mut stats));
@@ -261,8 +261,8 @@ impl RegionWords {
 
     fn phong(
         &self,
-        entries: &[Entry],
-        place: &Placed,
+        entries: &[BinEntry],
+        place: &PlacedStructure,
         transform: &Transform,
         encoder: &PhongTriangleEncoder,
         out: &mut Vec<Word>,
@@ -272,17 +272,17 @@ impl RegionWords {
         let mut stats = SetupStats::default();
         let vertices = place.vertices(list, transform);
         let surfaces = vertices.normals(list, transform);
-        let mut batches = Batches { entries, vertices, list, surfaces, lanes: TriangleLanes::default() };
+        let mut batches = SetupBatches { entries, vertices, list, surfaces, lanes: TriangleLanes::default() };
         while let Some(some) = batches.next() {
             match some {
-                Batch::Unclipped(entries, lanes) => {
+                SetupBatch::Unclipped(entries, lanes) => {
                     let expressions = transform.phong_lanes(lanes, &mut stats);
                     for (i, entry) in entries.iter().enumerate() {
                         let colour = list.colours[list.triangles[entry.triangle as usize][0] as usize];
                         encoder.encode(&phong_triangle(expressions.get(i, colour)), out);
                     }
                 }
-                Batch::Clipped(entry) => {
+                SetupBatch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.phong(&triangle, &mut stats, sink));
                     let piece = piece.map(|piece| piece.phong(&picture.viewport, &mut stats));
@@ -329,8 +329,8 @@ impl RegionWords {
 }
 
 /// Entries of a bin in order.
-struct Batches<'a> {
-    entries: &'a [Entry],
+struct SetupBatches<'a> {
+    entries: &'a [BinEntry],
     vertices: &'a Vertices,
     list: &'a DisplayList,
     /// Colours or normals of all vertices.
@@ -338,15 +338,15 @@ struct Batches<'a> {
     lanes: TriangleLanes,
 }
 
-enum Batch<'a> {
+enum SetupBatch<'a> {
     /// Some that are set up together; those of which nothing is seen are among them.
-    Unclipped(&'a [Entry], &'a TriangleLanes),
+    Unclipped(&'a [BinEntry], &'a TriangleLanes),
     /// A piece of a triangle that was clipped.
-    Clipped(&'a Entry),
+    Clipped(&'a BinEntry),
 }
 
-impl Batches<'_> {
-    fn next(&mut self) -> Option<Batch<'_>> {
+impl SetupBatches<'_> {
+    fn next(&mut self) -> Option<SetupBatch<'_>> {
         let lanes = &mut self.lanes;
         lanes.clear();
         for entry in self.entries.iter().take(LANES) {
@@ -356,20 +356,20 @@ impl Batches<'_> {
                 (Some(_), Some(triangle)) => lanes.push(&triangle, at.among(self.surfaces)),
                 (Some(_), None) if lanes.is_empty() => {
                     self.entries = &self.entries[1..];
-                    return Some(Batch::Clipped(entry));
+                    return Some(SetupBatch::Clipped(entry));
                 }
                 (Some(_), None) => break,
             }
         }
         let (now, later) = self.entries.split_at(self.lanes.len());
         self.entries = later;
-        (!now.is_empty()).then_some(Batch::Unclipped(now, &self.lanes))
+        (!now.is_empty()).then_some(SetupBatch::Unclipped(now, &self.lanes))
     }
 }
 
 /// The piece of an entry among those that clipping hands to the sink; `None` where nothing is seen.
 #[cold]
-fn pick<T>(entry: &Entry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
+fn pick<T>(entry: &BinEntry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
     let mut pieces = Vec::new();
     clip(&mut |piece| pieces.push(piece));
     pieces.into_iter().nth(entry.piece?.into())
@@ -431,12 +431,12 @@ fn rgb([r, g, b]: [u8; 3]) -> u32 {
 
 /// Words of a message that only copies.
 #[derive(Debug)]
-struct Copies {
+struct CopyWords {
     layout: Layout,
     copies: Vec<CopyOrder>,
 }
 
-impl CommandWords for Copies {
+impl CommandWords for CopyWords {
     fn append_words(&self, out: &mut Vec<Word>) {
         for order in &self.copies {
             let [left, top, _, _] = order.target.grid.rectangle(order.target.region);

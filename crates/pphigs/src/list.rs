@@ -1,8 +1,8 @@
 //! The display list and its division among GPs.
 
-use crate::counts::Counts;
+use crate::counts::PrimitiveCounts;
 use crate::placed::RecentViews;
-use crate::structure::Structure;
+use crate::structure::DisplayStructure;
 use glam::Vec3;
 use pxpl5_geometry::kernel::TRIANGLE_WORDS;
 use pxpl5_geometry::{Sphere, Triangle};
@@ -23,7 +23,7 @@ pub struct DisplayList {
     /// Spheres in their structure's coordinates.
     pub spheres: Vec<Sphere>,
     /// The structures, whose triangles and spheres follow one another.
-    pub structures: Vec<Structure>,
+    pub structures: Vec<DisplayStructure>,
     /// Towards the light, unit length, in each structure's frame.
     pub towards_light: Vec3,
     /// Part of the colour that is seen in shadow, 0 to 1.
@@ -104,8 +104,8 @@ impl Share {
 
     /// Numbers of primitives that the GP holds of it.
     #[must_use]
-    pub fn counts(&self) -> Counts {
-        Counts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
+    pub fn counts(&self) -> PrimitiveCounts {
+        PrimitiveCounts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
     }
 
     /// The share cut into pieces of at most `size` primitives, triangles first.
@@ -134,7 +134,7 @@ impl Share {
     /// Bytes that the primitives take in the GP's memory.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        let Counts { triangles, spheres } = self.counts();
+        let PrimitiveCounts { triangles, spheres } = self.counts();
         u64::from(triangles) * Self::TRIANGLE_BYTES + u64::from(spheres) * Self::SPHERE_BYTES
     }
 

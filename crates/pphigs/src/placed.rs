@@ -1,6 +1,6 @@
 //! Structures in place, as one eye sees them, and those that were placed lately.
 
-use crate::structure::Structure;
+use crate::structure::DisplayStructure;
 use crate::view::{EyeView, ModelEdit};
 use pxpl5_geometry::{Light, ScreenVertex, Touched, Transform, VertexSurface, Viewport};
 use std::collections::VecDeque;
@@ -8,13 +8,13 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// One structure as an eye sees it.
 #[derive(Debug)]
-pub struct Placed {
+pub struct PlacedStructure {
     /// From its coordinates to the picture; `None` where a matrix is not finite, so that it is not drawn.
     pub transform: Option<Transform>,
     /// The light in eye coordinates.
     pub light: Light,
     /// Which primitives belong to it, and what it is fixed to.
-    pub structure: Structure,
+    pub structure: DisplayStructure,
     pub(crate) vertices: OnceLock<Vertices>,
     pub(crate) touched: OnceLock<Touched>,
 }
@@ -43,7 +43,7 @@ impl Corners {
 /// Views of a display list that graphics processors asked for lately. All of them ask for the same ones, and get the
 /// same transformed vertices; only the host's time is saved by it.
 #[derive(Debug, Default)]
-pub struct RecentViews(Mutex<VecDeque<(ViewKey, Arc<[Placed]>)>>);
+pub struct RecentViews(Mutex<VecDeque<(ViewKey, Arc<[PlacedStructure]>)>>);
 
 /// A clone holds none.
 impl Clone for RecentViews {
@@ -65,12 +65,16 @@ pub(crate) struct ViewKey {
 
 impl RecentViews {
     /// The structures of a view, placed by `place` unless somebody asked for the same view lately.
-    pub(crate) fn find_or_place(&self, key: ViewKey, place: impl FnOnce() -> Vec<Placed>) -> Arc<[Placed]> {
+    pub(crate) fn find_or_place(
+        &self,
+        key: ViewKey,
+        place: impl FnOnce() -> Vec<PlacedStructure>,
+    ) -> Arc<[PlacedStructure]> {
         let mut recent = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, placed)) = recent.iter().find(|(known, _)| *known == key) {
             return Arc::clone(placed);
         }
-        let placed: Arc<[Placed]> = place().into();
+        let placed: Arc<[PlacedStructure]> = place().into();
         recent.truncate(RECENT - 1);
         recent.push_front((key, Arc::clone(&placed)));
         placed

@@ -1,8 +1,8 @@
 //! The display list as one eye sees it: structures in place, vertices transformed once for all who share them.
 
 use crate::list::DisplayList;
-use crate::placed::{Corners, Placed, Vertices, ViewKey};
-use crate::structure::{Frame, Structure};
+use crate::placed::{Corners, PlacedStructure, Vertices, ViewKey};
+use crate::structure::{DisplayStructure, ModelFrame};
 use crate::view::{EyeView, FrameView, product};
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{Culling, Light, Touched, Transform, UnclippedTriangle, VertexSurface, ViewTransform, Viewport};
@@ -17,14 +17,19 @@ const UNMOVED: Mat4 = Mat4::IDENTITY;
 ///
 /// If the view has no eye.
 #[must_use]
-pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<Placed> {
+pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<PlacedStructure> {
     let eye = eye_of(view, eye);
     let structures = list.structures.iter().enumerate();
     structures.map(|(i, s)| place(list, s, model(view, i), eye, viewport)).collect()
 }
 
 /// As [`place_all`], made once for all who ask.
-pub(crate) fn place_once(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Arc<[Placed]> {
+pub(crate) fn place_once(
+    list: &DisplayList,
+    view: &FrameView,
+    eye: usize,
+    viewport: Viewport,
+) -> Arc<[PlacedStructure]> {
     let key = ViewKey { eye: *eye_of(view, eye), edits: view.edits.clone(), viewport };
     list.recent.find_or_place(key, || place_all(list, view, eye, viewport))
 }
@@ -38,15 +43,27 @@ fn model(view: &FrameView, structure: usize) -> Mat4 {
 }
 
 /// A structure whose matrices are not finite is not drawn.
-fn place(list: &DisplayList, structure: &Structure, model: Mat4, eye: &EyeView, viewport: Viewport) -> Placed {
+fn place(
+    list: &DisplayList,
+    structure: &DisplayStructure,
+    model: Mat4,
+    eye: &EyeView,
+    viewport: Viewport,
+) -> PlacedStructure {
     let to_eye = match structure.frame {
-        Frame::World => eye.world_to_eye,
-        Frame::Head => eye.head_to_eye,
+        ModelFrame::World => eye.world_to_eye,
+        ModelFrame::Head => eye.head_to_eye,
     };
     let view = ViewTransform { model_view: product(&to_eye, &model), projection: eye.projection };
     let light = Light { direction: turned(&to_eye, list.towards_light), ambient: list.ambient, diffuse: list.diffuse };
     let transform = Transform::new(&view, viewport, Culling::None).ok();
-    Placed { transform, light, structure: structure.clone(), vertices: OnceLock::new(), touched: OnceLock::new() }
+    PlacedStructure {
+        transform,
+        light,
+        structure: structure.clone(),
+        vertices: OnceLock::new(),
+        touched: OnceLock::new(),
+    }
 }
 
 /// A direction in eye coordinates; the matrix is a rotation and a translation.
@@ -55,7 +72,7 @@ fn turned(matrix: &Mat4, v: Vec3) -> [f32; 3] {
     std::array::from_fn(|i| x[i] * v.x + y[i] * v.y + z[i] * v.z)
 }
 
-impl Placed {
+impl PlacedStructure {
     /// Its vertices on the screen, transformed when first asked for.
     pub(crate) fn vertices(&self, list: &DisplayList, transform: &Transform) -> &Vertices {
         self.vertices.get_or_init(|| {

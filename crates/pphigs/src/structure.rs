@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// What the coordinates of a structure are fixed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Frame {
+pub enum ModelFrame {
     /// The room in which the viewer stands.
     World,
     /// The viewer's head, with which it moves.
@@ -13,11 +13,11 @@ pub enum Frame {
 
 /// A run of primitives with one model matrix.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Structure {
+pub struct DisplayStructure {
     /// Numbers of its triangles in the display list.
     pub triangles: Range<usize>,
     /// Numbers of its spheres in the display list.
     pub spheres: Range<usize>,
     /// Whether it stands in the room or moves with the head.
-    pub frame: Frame,
+    pub frame: ModelFrame,
 }

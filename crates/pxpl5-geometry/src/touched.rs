@@ -1,7 +1,7 @@
 //! The regions that the triangles of a mesh touch, found once for all who hold some of them.
 
 use crate::bin::{Binner, Range, quotient};
-use crate::lanes::{LANES, Lanes};
+use crate::lanes::{LANES, PerTriangle};
 use crate::touch::Touch;
 use crate::{RegionMask, ScreenVertex, Transform};
 use multiversion::multiversion;
@@ -83,18 +83,18 @@ impl Transform {
     }
 }
 
-fn range_in(lane: usize, [first, last]: &[Lanes<i32>; 2]) -> Range {
+fn range_in(lane: usize, [first, last]: &[PerTriangle<i32>; 2]) -> Range {
     Range { first: first[lane], last: last[lane] }
 }
 
-/// CornerLanes of some triangles.
+/// Corners of some triangles.
 #[derive(Debug, Default)]
 struct CornerLanes {
     len: usize,
-    x: [Lanes<i32>; 3],
-    y: [Lanes<i32>; 3],
+    x: [PerTriangle<i32>; 3],
+    y: [PerTriangle<i32>; 3],
     /// Some corner is not inside the guard band.
-    outside: Lanes<bool>,
+    outside: PerTriangle<bool>,
 }
 
 impl CornerLanes {
@@ -126,10 +126,10 @@ impl CornerLanes {
 /// What is found of some triangles at once.
 struct LaneTouches {
     /// As in [`Touched`]; [`SEVERAL`] alone where the edges decide between several regions.
-    codes: Lanes<u32>,
+    codes: PerTriangle<u32>,
     /// First and last column and row of pixels.
-    x: [Lanes<i32>; 2],
-    y: [Lanes<i32>; 2],
+    x: [PerTriangle<i32>; 2],
+    y: [PerTriangle<i32>; 2],
 }
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
@@ -161,7 +161,7 @@ fn touch_lanes(corners: &CornerLanes, binner: &Binner, culling: bool) -> LaneTou
 
 /// Twice the areas, exact: products of two differences of corners need 35 bits.
 #[inline(always)]
-fn areas(CornerLanes { x: [a, b, c], y: [d, e, f], .. }: &CornerLanes) -> Lanes<f64> {
+fn areas(CornerLanes { x: [a, b, c], y: [d, e, f], .. }: &CornerLanes) -> PerTriangle<f64> {
     let mut out = [0.0; LANES];
     for i in 0..LANES {
         let first = f64::from(b[i] - a[i]) * f64::from(f[i] - d[i]);
@@ -172,7 +172,7 @@ fn areas(CornerLanes { x: [a, b, c], y: [d, e, f], .. }: &CornerLanes) -> Lanes<
 
 /// Smallest and largest of the corners.
 #[inline(always)]
-fn extent([p, q, r]: &[Lanes<i32>; 3]) -> [Lanes<i32>; 2] {
+fn extent([p, q, r]: &[PerTriangle<i32>; 3]) -> [PerTriangle<i32>; 2] {
     let mut low = [0; LANES];
     let mut high = [0; LANES];
     for i in 0..LANES {
@@ -184,7 +184,7 @@ fn extent([p, q, r]: &[Lanes<i32>; 3]) -> [Lanes<i32>; 2] {
 
 /// First and last pixel between the smallest and the largest of the corners, as far as the picture goes.
 #[inline(always)]
-fn ranges([low, high]: &[Lanes<i32>; 2], within: impl Fn(Range) -> Range) -> [Lanes<i32>; 2] {
+fn ranges([low, high]: &[PerTriangle<i32>; 2], within: impl Fn(Range) -> Range) -> [PerTriangle<i32>; 2] {
     let mut first = [0; LANES];
     let mut last = [0; LANES];
     for i in 0..LANES {
@@ -198,7 +198,11 @@ fn ranges([low, high]: &[Lanes<i32>; 2], within: impl Fn(Range) -> Range) -> [La
 /// The column or row of regions whose pixel-centre box holds all corners, -1 where none does; `of` gives that of a pixel
 /// and its first and last pixel or line.
 #[inline(always)]
-fn cells([low, high]: &[Lanes<i32>; 2], first: &Lanes<i32>, of: impl Fn(i32) -> (i32, (i32, i32))) -> Lanes<i32> {
+fn cells(
+    [low, high]: &[PerTriangle<i32>; 2],
+    first: &PerTriangle<i32>,
+    of: impl Fn(i32) -> (i32, (i32, i32)),
+) -> PerTriangle<i32> {
     let mut out = [0; LANES];
     for i in 0..LANES {
         let (cell, (begin, end)) = of(first[i]);

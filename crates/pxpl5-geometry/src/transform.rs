@@ -1,9 +1,9 @@
 //! Transform: from triangles in the world to triangles on the screen.
 
 use crate::bin::Binner;
-use crate::clip::{self, Corner, Guard, Vertex};
+use crate::clip::{self, ClipVertex, Corner, Guard};
 use crate::lens::Lens;
-use crate::light::Lighting;
+use crate::light::EyeLighting;
 use crate::outline::{Outline, SUBPIXELS};
 use crate::screen::{self, LitColours, ScreenTriangle, SurfaceNormals};
 use crate::touch::Touch;
@@ -206,7 +206,7 @@ impl Transform {
             }
             return;
         }
-        let corners = clip.map(|clip| Vertex { clip, extra: [] });
+        let corners = clip.map(|clip| ClipVertex { clip, extra: [] });
         self.clipped(&corners, stats, |piece, _| sink(piece.outline.regions));
     }
 
@@ -225,7 +225,7 @@ impl Transform {
         stats: &mut SetupStats,
         mut sink: impl FnMut(ScreenTriangle<LitColours>),
     ) {
-        let lighting = Lighting::new(&self.to_eye, light);
+        let lighting = EyeLighting::new(&self.to_eye, light);
         self.triangle(
             &triangle.positions,
             |i| lighting.corner_colour(triangle, i),
@@ -274,7 +274,7 @@ impl Transform {
             }
             return;
         }
-        let corners = std::array::from_fn(|i| Vertex { clip: clip[i], extra: extra(i) });
+        let corners = std::array::from_fn(|i| ClipVertex { clip: clip[i], extra: extra(i) });
         self.clipped(&corners, stats, |piece, extras| sink(piece.outline, extras));
     }
 
@@ -303,7 +303,7 @@ impl Transform {
     ) {
         stats.triangles += 1;
         if let Some(whole) = self.assemble(ends.at(s), stats) {
-            let lighting = Lighting::new(&self.to_eye, light);
+            let lighting = EyeLighting::new(&self.to_eye, light);
             let colours = whole.order([0, 1, 2]).map(|i| lighting.corner_colour(triangle, i));
             sink(lit_triangle(whole.outline, colours));
         }
@@ -345,7 +345,7 @@ impl Transform {
     #[inline(never)]
     fn clipped<const N: usize>(
         &self,
-        corners: &[Vertex<N>; 3],
+        corners: &[ClipVertex<N>; 3],
         stats: &mut SetupStats,
         mut sink: impl FnMut(Assembled, [[f32; N]; 3]),
     ) {
