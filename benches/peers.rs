@@ -9,7 +9,9 @@ use euc::buffer::Buffer2d;
 use euc::rasterizer::{BackfaceCullingDisabled, Triangles};
 use euc::{Interpolate, Pipeline as _, Target as _};
 use glam::{Mat4, Vec3, Vec4};
-use pphigs::{Binning, DisplayList, EyeView, Frame, FrameView, Picture, RegionEnvelope, Shading, Share, Structure};
+use pphigs::{
+    Binning, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionEnvelope, Shading, Share,
+};
 use pxpl5::scene::{self, Hmd, HmdConfig, Scene};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{BitSerial, Lanes, Layout, PixelArray};
@@ -117,7 +119,8 @@ const BACKGROUND: [u8; 3] = [1, 2, 3];
 impl<A: PixelArray> Ours<A> {
     fn new(head: &Scene, array: impl Fn(&Layout) -> A) -> Self {
         let light = head.lighting();
-        let structure = Structure { triangles: 0..head.triangles().len(), spheres: 0..0, frame: Frame::World };
+        let structure =
+            DisplayStructure { triangles: 0..head.triangles().len(), spheres: 0..0, frame: ModelFrame::World };
         let list = DisplayList {
             positions: head.vertices().iter().map(|v| v.position).collect(),
             normals: head.vertices().iter().map(|v| v.normal).collect(),

@@ -31,7 +31,7 @@ pub enum Viewpoint {
 
 /// The order in which regions are drawn.
 #[derive(Clone, Debug)]
-pub enum Schedule {
+pub enum DrawingSchedule {
     /// Strips of a field from top to bottom.
     Beam {
         /// The moments that the picture is computed for.
@@ -121,7 +121,7 @@ pub struct JitpConfig {
     /// Node of the frame buffer: the one of a mono display.
     pub frame_buffer: NodeId,
     /// The order in which regions are drawn, and for which moments.
-    pub schedule: Schedule,
+    pub schedule: DrawingSchedule,
     /// When the beam is where.
     pub beam: Beam,
     /// How the bits of pixel memory are divided among contexts.
@@ -163,8 +163,8 @@ impl JitpConfig {
             return Err(JitpConfigError::NoSlave);
         }
         let (found, expected) = match self.schedule {
-            Schedule::Beam { strip_rows, .. } => (strip_rows, (1, 128)),
-            Schedule::Roam { block, .. } => (block, (4, 128)),
+            DrawingSchedule::Beam { strip_rows, .. } => (strip_rows, (1, 128)),
+            DrawingSchedule::Roam { block, .. } => (block, (4, 128)),
         };
         let fits = (expected.0..=expected.1).contains(&found);
         if fits { Ok(()) } else { Err(JitpConfigError::Size { expected, found }) }
@@ -180,8 +180,8 @@ impl JitpConfig {
     #[must_use]
     pub fn grid(&self) -> RegionGrid {
         match self.schedule {
-            Schedule::Beam { strip_rows, .. } => RegionGrid { region_height: strip_rows, ..RegionGrid::FIELD },
-            Schedule::Roam { block, .. } => {
+            DrawingSchedule::Beam { strip_rows, .. } => RegionGrid { region_height: strip_rows, ..RegionGrid::FIELD },
+            DrawingSchedule::Roam { block, .. } => {
                 RegionGrid { region_width: block, region_height: block, ..RegionGrid::FRAME }
             }
         }
@@ -195,11 +195,11 @@ impl JitpConfig {
 
     pub(crate) fn picture(&self, number: u64) -> (Viewport, Lines) {
         match self.schedule {
-            Schedule::Beam { .. } => {
+            DrawingSchedule::Beam { .. } => {
                 let parity = FieldParity::of_field(number);
                 (Viewport::field(parity), Lines::Field(parity))
             }
-            Schedule::Roam { .. } => (Viewport::FRAME, Lines::Frame),
+            DrawingSchedule::Roam { .. } => (Viewport::FRAME, Lines::Frame),
         }
     }
 

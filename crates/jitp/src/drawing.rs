@@ -2,9 +2,9 @@
 
 use crate::config::Interpolation;
 use glam::Mat4;
-use pphigs::{Counts, DisplayList, EyeView, FrameView, ModelEdit, Placed, gouraud_sphere, place_all};
+use pphigs::{DisplayList, EyeView, FrameView, ModelEdit, PlacedStructure, PrimitiveCounts, gouraud_sphere, place_all};
 use pxpl5_geometry::{LitColours, Outline, ScreenSphere, ScreenTriangle, SetupStats, TriangleEnds, Viewport};
-use pxpl5_renderer::{Command, Triangle};
+use pxpl5_renderer::{Command, TriangleCommand};
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
@@ -23,10 +23,10 @@ pub(crate) struct Window {
 }
 
 /// Everything that a strip or a batch of blocks is drawn from.
-pub(crate) struct Drawing {
+pub(crate) struct DrawnList {
     list: Arc<DisplayList>,
     viewport: Viewport,
-    placed: Vec<Placed>,
+    placed: Vec<PlacedStructure>,
     /// The places at T0 and T1, the part of the way between, and between what is interpolated.
     ends: Option<(Ends, f64, Interpolation)>,
     /// Made when first asked for; the strips of a conventional picture share them.
@@ -40,9 +40,9 @@ pub(crate) struct Ends {
     triangles: Arc<[Vec<Option<TriangleEnds>>]>,
 }
 
-impl fmt::Debug for Drawing {
+impl fmt::Debug for DrawnList {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Drawing").field("viewport", &self.viewport).finish_non_exhaustive()
+        f.debug_struct("DrawnList").field("viewport", &self.viewport).finish_non_exhaustive()
     }
 }
 
@@ -69,12 +69,12 @@ fn triangle_ends(
 }
 
 /// The triangles of one structure in both views; `None` where one has no place on the screen in either.
-fn structure_ends(list: &DisplayList, from: &Placed, to: &Placed) -> Vec<Option<TriangleEnds>> {
+fn structure_ends(list: &DisplayList, from: &PlacedStructure, to: &PlacedStructure) -> Vec<Option<TriangleEnds>> {
     let numbers = from.structure.triangles.clone();
     numbers.map(|number| from.transform.as_ref()?.ends(to.transform.as_ref()?, &list.corners(number))).collect()
 }
 
-impl Drawing {
+impl DrawnList {
     /// As one view shows it.
     pub(crate) fn from_view(list: &Arc<DisplayList>, view: &FrameView, viewport: Viewport) -> Self {
         let placed = place_all(list, view, 0, viewport);
@@ -94,7 +94,7 @@ impl Drawing {
     }
 
     /// How many primitives meet each window, and how many meet any.
-    pub(crate) fn count(&self, windows: &[Window]) -> (Vec<Counts>, Counts) {
+    pub(crate) fn count(&self, windows: &[Window]) -> (Vec<PrimitiveCounts>, PrimitiveCounts) {
         let mut tallies = Tallies::new(windows);
         if self.ends.is_some() {
             let [top, bottom] = tallies.span;
@@ -134,7 +134,7 @@ impl Drawing {
         Some((ends.triangles.get(structure)?.get(k)?.as_ref()?, *s, *interpolation))
     }
 
-    fn spheres(&self, mut sink: impl FnMut(&ScreenSphere, &Placed)) {
+    fn spheres(&self, mut sink: impl FnMut(&ScreenSphere, &PlacedStructure)) {
         let mut stats = SetupStats::default();
         for place in &self.placed {
             let Some(transform) = &place.transform else { continue };
@@ -188,7 +188,7 @@ fn sink_if_met(
 ) {
     if triangle.outline.meets(window.across, window.lines) {
         let shaded = triangle.gouraud(viewport, &mut SetupStats::default());
-        sink(Command::Triangle(Triangle { edges: shaded.edges, depth: shaded.z, colour: shaded.rgb }));
+        sink(Command::Triangle(TriangleCommand { edges: shaded.edges, depth: shaded.z, colour: shaded.rgb }));
     }
 }
 
@@ -197,15 +197,20 @@ struct Tallies<'a> {
     windows: &'a [Window],
     /// From the top of the highest window to the bottom of the lowest, subpixels of the frame.
     span: [i32; 2],
-    each: Vec<Counts>,
-    any: Counts,
+    each: Vec<PrimitiveCounts>,
+    any: PrimitiveCounts,
 }
 
 impl<'a> Tallies<'a> {
     fn new(windows: &'a [Window]) -> Self {
         let top = windows.iter().map(|w| w.lines[0] * SUBPIXELS).min().unwrap_or_default();
         let bottom = windows.iter().map(|w| w.lines[1] * SUBPIXELS).max().unwrap_or_default() + SUBPIXELS;
-        Self { windows, span: [top, bottom], each: vec![Counts::default(); windows.len()], any: Counts::default() }
+        Self {
+            windows,
+            span: [top, bottom],
+            each: vec![PrimitiveCounts::default(); windows.len()],
+            any: PrimitiveCounts::default(),
+        }
     }
 
     fn add_outline(&mut self, outline: &Outline) {

@@ -1,7 +1,7 @@
 //! The host: passes on what the tracker delivers.
 
 use crate::config::JitpConfig;
-use crate::protocol::Order;
+use crate::protocol::DrawingOrder;
 use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
 
@@ -25,7 +25,7 @@ pub async fn host(
         gp.spend(arrives_at.since(gp.now())).await;
         known = gp.now().max(arrives_at);
         gp.begin(Stage::Send, report, None);
-        let (words, body) = Order::Report { known }.message();
+        let (words, body) = DrawingOrder::Report { known }.message();
         gp.spend(timing.link_span(words)).await;
         let sent = gp.send(config.master, words, body).await;
         gp.accepted(sent).await;

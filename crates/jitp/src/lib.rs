@@ -12,7 +12,7 @@
 //! - One GP is the [`master`](fn@master): it synchronises with the beam, keeps the newest tracking data and orders the
 //!   strips. Slave k of n computes strips k, k + n, k + 2n, ...; so it has n strip times for each. Every slave holds
 //!   the whole display list.
-//! - A *strip* is one line of a field or a few ([`Schedule::Beam`]); its regions are 128 pixels wide and go through
+//! - A *strip* is one line of a field or a few ([`DrawingSchedule::Beam`]); its regions are 128 pixels wide and go through
 //!   the renderers in turn to the frame buffer, which needs no second buffer: one field is written while the other
 //!   one is scanned, or each line just before the beam.
 //! - Which moment a strip is drawn for is the [`Viewpoint`]: one for the whole field (a conventional picture), one for
@@ -21,7 +21,7 @@
 //! - *Racing the beam* is independent of that: a strip is ordered just in time for the beam, or else one field
 //!   earlier, so that the whole field is there before its retrace.
 //! - A strip whose beam has passed when a slave could begin it is left out; the lines of the field before stay.
-//! - *Frameless* ([`Schedule::Roam`]): blocks in a random order, each order with the newest view, shown at once.
+//! - *Frameless* ([`DrawingSchedule::Roam`]): blocks in a random order, each order with the newest view, shown at once.
 //!
 //! The reference that evaluates the view at each pixel's own moment is mathematics, not firmware.
 //!
@@ -41,7 +41,7 @@ mod protocol;
 mod slave;
 pub mod timing;
 
-pub use config::{Beam, BlockOrder, Interpolation, JitpConfig, JitpConfigError, Schedule, Viewpoint, Wanted};
+pub use config::{Beam, BlockOrder, DrawingSchedule, Interpolation, JitpConfig, JitpConfigError, Viewpoint, Wanted};
 pub use host::host;
 pub use master::master;
 pub use slave::{Transforms, slave};

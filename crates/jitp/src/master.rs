@@ -1,8 +1,8 @@
 //! The master GP: it follows the beam, keeps the newest tracking data and orders strips or blocks.
 
-use crate::config::{JitpConfig, Schedule, Viewpoint, Wanted};
-use crate::protocol::Order;
-use pphigs::{Counts, FrameView, TransformCost};
+use crate::config::{DrawingSchedule, JitpConfig, Viewpoint, Wanted};
+use crate::protocol::DrawingOrder;
+use pphigs::{FrameView, PrimitiveCounts, TransformCost};
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage};
 use pxpl5_sim::{Span, Time};
 use std::cell::{Cell, RefCell};
@@ -13,7 +13,7 @@ use std::rc::Rc;
 pub(crate) const PROGRAM_BYTES: u64 = 1 << 20;
 
 #[derive(Debug, Default)]
-struct State {
+struct MasterState {
     known: Cell<Time>,
     done: RefCell<VecDeque<u32>>,
 }
@@ -25,41 +25,41 @@ struct State {
 pub fn master(
     gp: &Gp,
     config: &JitpConfig,
-    counts: Counts,
+    counts: PrimitiveCounts,
     view_of: impl FnMut(Wanted) -> FrameView + 'static,
 ) -> Vec<(Priority, Firmware)> {
-    let state = Rc::new(State::default());
+    let state = Rc::new(MasterState::default());
     let listening = listen(gp.at_priority(Priority::Interrupt), Rc::clone(&state));
     let foreground = gp.at_priority(Priority::Foreground);
-    let master = Master { gp: foreground, config: config.clone(), counts, view_of, state };
+    let master = DrawingMaster { gp: foreground, config: config.clone(), counts, view_of, state };
     vec![(Priority::Interrupt, Box::pin(listening)), (Priority::Foreground, Box::pin(master.run()))]
 }
 
-async fn listen(gp: Gp, state: Rc<State>) -> Result<(), Fault> {
+async fn listen(gp: Gp, state: Rc<MasterState>) -> Result<(), Fault> {
     loop {
         let received = gp.receive().await;
-        match Order::read(&received, gp.node())? {
-            Order::Report { known } => state.known.set(known),
-            Order::Done { slave } => state.done.borrow_mut().push_back(slave),
+        match DrawingOrder::read(&received, gp.node())? {
+            DrawingOrder::Report { known } => state.known.set(known),
+            DrawingOrder::Done { slave } => state.done.borrow_mut().push_back(slave),
             other => return Err(Fault::Protocol { node: gp.node(), found: format!("at the master: {other:?}") }),
         }
     }
 }
 
-struct Master<V> {
+struct DrawingMaster<V> {
     gp: Gp,
     config: JitpConfig,
-    counts: Counts,
+    counts: PrimitiveCounts,
     view_of: V,
-    state: Rc<State>,
+    state: Rc<MasterState>,
 }
 
-impl<V: FnMut(Wanted) -> FrameView> Master<V> {
+impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     async fn run(mut self) -> Result<(), Fault> {
         self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
         match self.config.schedule {
-            Schedule::Beam { viewpoint, racing, .. } => self.follow_the_beam(viewpoint, racing).await,
-            Schedule::Roam { batch, .. } => self.roam(u64::from(batch)).await,
+            DrawingSchedule::Beam { viewpoint, racing, .. } => self.follow_the_beam(viewpoint, racing).await,
+            DrawingSchedule::Roam { batch, .. } => self.roam(u64::from(batch)).await,
         }
         Ok(())
     }
@@ -116,7 +116,7 @@ impl<V: FnMut(Wanted) -> FrameView> Master<V> {
             _ => vec![self.view(at_begin, begin), self.view(JitpConfig::view_number(field, 1), end)],
         };
         self.gp.spend(TransformCost::PASS.span(&self.gp.timing())).await;
-        let (words, body) = Order::Field { field, views }.message();
+        let (words, body) = DrawingOrder::Field { field, views }.message();
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
@@ -130,7 +130,7 @@ impl<V: FnMut(Wanted) -> FrameView> Master<V> {
         let view = if own { Some(self.view(number, self.config.middle(field, strip))) } else { None };
         let deadline = self.config.deadline(field, strip);
         let slave = self.config.slaves[strip as usize % self.config.slaves.len()];
-        let (words, body) = Order::Strip { field, strip, deadline, view }.message();
+        let (words, body) = DrawingOrder::Strip { field, strip, deadline, view }.message();
         self.gp.send(slave, words, body).await;
     }
 
@@ -145,7 +145,7 @@ impl<V: FnMut(Wanted) -> FrameView> Master<V> {
             self.gp.begin(Stage::Transform, update, None);
             let shown_at = self.gp.now() + flight.ordered(slave as usize, self.gp.now());
             let view = self.view(update, shown_at);
-            let (words, body) = Order::Blocks { update, step: update * batch, view }.message();
+            let (words, body) = DrawingOrder::Blocks { update, step: update * batch, view }.message();
             if let Some(node) = self.config.slaves.get(slave as usize) {
                 self.gp.send(*node, words, body).await;
             }

@@ -1,8 +1,8 @@
 //! Regions of a strip or of a batch of blocks: their windows and their commands.
 
 use crate::config::JitpConfig;
-use crate::drawing::{Drawing, Window};
-use pphigs::Counts;
+use crate::drawing::{DrawnList, Window};
+use pphigs::PrimitiveCounts;
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{Clear, Command, CommandKind, CopyRegion, Layout, SelectRegion};
 use pxpl5_wire::{CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, MAX_MESSAGE_WORDS, RegionId, Word};
@@ -36,7 +36,7 @@ const OPENING: u32 = CommandKind::SelectRegion.words() + CommandKind::Clear.word
 const CLOSING: u32 = CommandKind::CopyRegion.words();
 
 /// Triangles, then spheres, in as few messages as their length allows.
-fn parts(counts: Counts) -> Vec<Part> {
+fn parts(counts: PrimitiveCounts) -> Vec<Part> {
     let mut parts = Vec::new();
     let mut triangle = 0;
     let mut sphere = 0;
@@ -79,9 +79,9 @@ impl Part {
 /// The messages that draw a region and copy it to the frame buffer.
 pub(crate) fn messages(
     config: &JitpConfig,
-    drawing: &Arc<Drawing>,
+    drawing: &Arc<DrawnList>,
     window: Window,
-    counts: Counts,
+    counts: PrimitiveCounts,
     target: CopyTarget,
 ) -> Vec<CommandList> {
     let [left, top, _, _] = config.grid().rectangle(target.region).map(|v| v as u16);
@@ -103,7 +103,7 @@ pub(crate) fn messages(
 /// Makes the words of one message.
 #[derive(Debug)]
 struct PieceWords {
-    drawing: Arc<Drawing>,
+    drawing: Arc<DrawnList>,
     layout: Layout,
     window: Window,
     origin: SelectRegion,
@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn messages_hold_every_primitive_once_and_none_is_too_long() {
         for (triangles, spheres) in [(0, 0), (1, 0), (33, 0), (34, 0), (500, 77), (0, 40)] {
-            let parts = parts(Counts { triangles, spheres });
+            let parts = parts(PrimitiveCounts { triangles, spheres });
             assert_eq!(parts.iter().map(|p| p.triangles.len()).sum::<usize>(), triangles as usize);
             assert_eq!(parts.iter().map(|p| p.spheres.len()).sum::<usize>(), spheres as usize);
             assert!(parts[0].first && parts[1..].iter().all(|p| !p.first));

@@ -16,7 +16,7 @@ pub(crate) const REPORT_WORDS: u32 = 20;
 
 /// What boards tell each other.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Order {
+pub(crate) enum DrawingOrder {
     /// Transform everything for the views of a field.
     Field { field: u64, views: Vec<FrameView> },
     /// Draw a strip, with a view of its own or for the field's.
@@ -29,7 +29,7 @@ pub(crate) enum Order {
     Done { slave: u32 },
 }
 
-impl Order {
+impl DrawingOrder {
     /// The words and their number.
     pub(crate) fn message(&self) -> (u32, Body) {
         let mut words = Vec::new();
@@ -133,26 +133,26 @@ mod tests {
     fn every_order_survives_its_words() {
         let big = (1 << 40) + 3;
         for order in [
-            Order::Field { field: big, views: vec![view(1), view(2)] },
-            Order::Strip { field: big, strip: 239, deadline: Time(big), view: None },
-            Order::Strip { field: 1, strip: 0, deadline: Time(2), view: Some(view(big)) },
-            Order::Blocks { update: big, step: big + 1, view: view(3) },
-            Order::Report { known: Time(big) },
-            Order::Done { slave: 11 },
+            DrawingOrder::Field { field: big, views: vec![view(1), view(2)] },
+            DrawingOrder::Strip { field: big, strip: 239, deadline: Time(big), view: None },
+            DrawingOrder::Strip { field: 1, strip: 0, deadline: Time(2), view: Some(view(big)) },
+            DrawingOrder::Blocks { update: big, step: big + 1, view: view(3) },
+            DrawingOrder::Report { known: Time(big) },
+            DrawingOrder::Done { slave: 11 },
         ] {
             let (words, body) = order.message();
             let received = Received { arrived: Time(0), source: NodeId(1), body };
-            assert_eq!(Order::read(&received, NodeId(0)), Ok(order.clone()));
+            assert_eq!(DrawingOrder::read(&received, NodeId(0)), Ok(order.clone()));
             assert!(words <= pxpl5_wire::MAX_MESSAGE_WORDS);
         }
     }
 
     #[test]
     fn words_cut_short_are_a_fault_and_no_panic() {
-        let (_, body) = Order::Field { field: 1, views: vec![view(1)] }.message();
+        let (_, body) = DrawingOrder::Field { field: 1, views: vec![view(1)] }.message();
         let Body::Words(words) = body else { panic!("orders are words") };
         for length in 0..words.len() {
-            assert_eq!(Order::from_words(&words[..length]), None, "{length}");
+            assert_eq!(DrawingOrder::from_words(&words[..length]), None, "{length}");
         }
     }
 }

@@ -1,11 +1,11 @@
 //! A slave GP: it draws the strips or blocks that the master orders.
 
-use crate::config::{JitpConfig, Schedule, Viewpoint};
-use crate::drawing::{Drawing, Ends};
+use crate::config::{DrawingSchedule, JitpConfig, Viewpoint};
+use crate::drawing::{DrawnList, Ends};
 use crate::master::PROGRAM_BYTES;
 use crate::pieces::{messages, window};
-use crate::protocol::Order;
-use pphigs::{Counts, DisplayList, FrameView, Share, TransformCost};
+use crate::protocol::DrawingOrder;
+use pphigs::{DisplayList, FrameView, PrimitiveCounts, Share, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage, Ticket};
 use pxpl5_sim::{Span, Time};
@@ -19,7 +19,7 @@ use std::sync::Arc;
 const FIELDS_KEPT: usize = 3;
 
 #[derive(Default)]
-struct State {
+struct SlaveFields {
     /// Numbers and views of the fields that the master wants transformed, oldest first.
     ordered: VecDeque<(u64, Vec<FrameView>)>,
     /// Fields transformed, in order.
@@ -30,10 +30,10 @@ struct State {
 #[derive(Clone)]
 struct Field {
     ends: Ends,
-    whole: Arc<Drawing>,
+    whole: Arc<DrawnList>,
 }
 
-type Shared = Rc<RefCell<State>>;
+type SharedFields = Rc<RefCell<SlaveFields>>;
 
 /// What the slaves have transformed. All hold the same display list and get the same views, so the simulator computes
 /// each field once; every slave still spends its own time on it.
@@ -75,7 +75,7 @@ pub fn slave(
     index: usize,
 ) -> Vec<(Priority, Firmware)> {
     let share = Share::new(Arc::clone(list), 0, 1);
-    let state = Shared::default();
+    let state = SharedFields::default();
     let [drawing, preparing] = [Priority::Interrupt, Priority::Foreground].map(|level| Slave {
         gp: gp.at_priority(level),
         config: config.clone(),
@@ -93,9 +93,9 @@ struct Slave {
     gp: Gp,
     config: JitpConfig,
     list: Arc<DisplayList>,
-    counts: Counts,
+    counts: PrimitiveCounts,
     bytes: u64,
-    state: Shared,
+    state: SharedFields,
     transforms: Transforms,
     index: usize,
 }
@@ -107,10 +107,10 @@ impl Slave {
         self.gp.reserve(Account::DisplayList, self.bytes, None)?;
         loop {
             let received = self.gp.receive().await;
-            match Order::read(&received, self.gp.node())? {
-                Order::Field { field, views } => self.state.borrow_mut().ordered.push_back((field, views)),
-                Order::Strip { field, strip, deadline, view } => self.strip(field, strip, deadline, view).await,
-                Order::Blocks { update, step, view } => self.blocks(update, step, &view).await,
+            match DrawingOrder::read(&received, self.gp.node())? {
+                DrawingOrder::Field { field, views } => self.state.borrow_mut().ordered.push_back((field, views)),
+                DrawingOrder::Strip { field, strip, deadline, view } => self.strip(field, strip, deadline, view).await,
+                DrawingOrder::Blocks { update, step, view } => self.blocks(update, step, &view).await,
                 other => return Err(Fault::Protocol { node: self.gp.node(), found: format!("at a slave: {other:?}") }),
             }
         }
@@ -138,7 +138,7 @@ impl Slave {
 
     fn transform(&self, field: u64, views: Vec<FrameView>) -> Field {
         let viewport = self.config.picture(field).0;
-        let whole = Arc::new(Drawing::from_view(&self.list, &views[0], viewport));
+        let whole = Arc::new(DrawnList::from_view(&self.list, &views[0], viewport));
         Field { ends: Ends::new(&self.list, views, viewport), whole }
     }
 
@@ -155,7 +155,7 @@ impl Slave {
                 if stands_for_field {
                     self.gp.end(Stage::Transform, field, None);
                 }
-                Some(Arc::new(Drawing::from_view(&self.list, view, viewport)))
+                Some(Arc::new(DrawnList::from_view(&self.list, view, viewport)))
             }
             None => self.drawing_of_field(field, strip, viewport).await,
         };
@@ -175,14 +175,14 @@ impl Slave {
     }
 
     /// The strip as the transforms of its field give it; `None` if they were left out.
-    async fn drawing_of_field(&self, field: u64, strip: u32, viewport: Viewport) -> Option<Arc<Drawing>> {
+    async fn drawing_of_field(&self, field: u64, strip: u32, viewport: Viewport) -> Option<Arc<DrawnList>> {
         self.gp.until("the transforms of the field", || self.has_transformed(field).then_some(())).await;
         let state = self.state.borrow();
         let (_, ready) = state.transformed.iter().find(|ready| ready.0 == field)?;
         Some(match self.dual() {
             Some(interpolation) if ready.ends.views.len() == 2 => {
                 let part = self.config.part(field, strip);
-                Arc::new(Drawing::between(&self.list, &ready.ends, part, interpolation, viewport))
+                Arc::new(DrawnList::between(&self.list, &ready.ends, part, interpolation, viewport))
             }
             _ => Arc::clone(&ready.whole),
         })
@@ -190,28 +190,28 @@ impl Slave {
 
     fn dual(&self) -> Option<crate::config::Interpolation> {
         match self.config.schedule {
-            Schedule::Beam { viewpoint: Viewpoint::Dual(interpolation), .. } => Some(interpolation),
+            DrawingSchedule::Beam { viewpoint: Viewpoint::Dual(interpolation), .. } => Some(interpolation),
             _ => None,
         }
     }
 
     /// Draws the next blocks of the random order and asks for more.
     async fn blocks(&self, update: u64, step: u64, view: &FrameView) {
-        let Schedule::Roam { batch, order, .. } = &self.config.schedule else { return };
+        let DrawingSchedule::Roam { batch, order, .. } = &self.config.schedule else { return };
         let viewport = self.config.picture(update).0;
         self.gp.spend(TransformCost::pass_over(self.counts).span(&self.gp.timing())).await;
         self.gp.end(Stage::Transform, update, None);
-        let drawing = Arc::new(Drawing::from_view(&self.list, view, viewport));
+        let drawing = Arc::new(DrawnList::from_view(&self.list, view, viewport));
         let regions: Vec<_> = (0..u64::from(*batch)).map(|i| order.at(step + i)).collect();
         self.gp.begin(Stage::Render, update, None);
         let sent = self.send(update, &regions, &viewport, &drawing).await;
         self.gp.end_when_accepted(sent, Stage::Render, update);
-        let (words, body) = Order::Done { slave: self.index as u32 }.message();
+        let (words, body) = DrawingOrder::Done { slave: self.index as u32 }.message();
         self.gp.send(self.config.master, words, body).await;
     }
 
     /// Bins, and sends all regions as one chain of messages.
-    async fn send(&self, picture: u64, regions: &[RegionId], viewport: &Viewport, drawing: &Arc<Drawing>) -> Ticket {
+    async fn send(&self, picture: u64, regions: &[RegionId], viewport: &Viewport, drawing: &Arc<DrawnList>) -> Ticket {
         let windows: Vec<_> = regions.iter().map(|region| window(&self.config, viewport, *region)).collect();
         let (counts, any) = drawing.count(&windows);
         let entries: u64 = counts.iter().map(|c| u64::from(c.total())).sum();

@@ -1,6 +1,6 @@
 //! What can go wrong when a number is read, set or checked.
 
-use crate::{Number, ParameterInfo, Value};
+use crate::{ParameterInfo, Value};
 use thiserror::Error;
 
 /// A parameter that could not be read or set, or that the model cannot take.
@@ -33,20 +33,6 @@ pub enum ParameterError {
         /// The value that the field has.
         found: Value,
     },
-}
-
-/// Checks a number that stands in no table, or whose limits follow from others, as a table checks its own.
-///
-/// # Errors
-///
-/// [`ParameterError::OutOfLimits`] if it is beyond the limits, which are the smallest and the largest value allowed.
-pub fn check<N: Number>(name: &'static str, found: N, limits: (N, N)) -> Result<(), ParameterError> {
-    let limits = (limits.0.into(), limits.1.into());
-    let found = found.into();
-    if (limits.0..=limits.1).contains(&found) {
-        return Ok(());
-    }
-    Err(ParameterError::OutOfLimits { name, limits, found })
 }
 
 impl ParameterError {

@@ -36,11 +36,13 @@ mod error;
 mod info;
 mod macros;
 mod nearest;
+mod number;
 mod table;
 mod value;
 
-pub use error::{ParameterError, check};
+pub use error::ParameterError;
 pub use info::{ParameterInfo, Standing};
 pub use nearest::nearest;
+pub use number::{Number, check};
 pub use table::{Entry, ParameterTable};
-pub use value::{MAX, Number, Value};
+pub use value::{MAX, Value};

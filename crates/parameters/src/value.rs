@@ -1,6 +1,5 @@
 //! What a number's value can be.
 
-use crate::ParameterError;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 use std::fmt;
@@ -95,34 +94,6 @@ impl From<f64> for Value {
 /// The greatest whole number that is of use to a model: 10^12, so that sums and products of a few times, in nanoseconds or
 /// clocks, stay in 64 bits.
 pub const MAX: u64 = 1_000_000_000_000;
-
-/// A type that a field of a table can have.
-pub trait Number: Copy + Into<Value> {
-    /// The value in this type; `None` where a whole number is wanted and it is none.
-    fn from_value(value: Value) -> Option<Self>;
-
-    /// Gives the field of that name a value.
-    ///
-    /// # Errors
-    ///
-    /// [`ParameterError::NotWhole`] where a whole number is wanted and it is none.
-    fn assign(&mut self, name: &'static str, value: Value) -> Result<(), ParameterError> {
-        *self = Self::from_value(value).ok_or(ParameterError::NotWhole { name, found: value })?;
-        Ok(())
-    }
-}
-
-impl Number for u64 {
-    fn from_value(value: Value) -> Option<Self> {
-        value.whole()
-    }
-}
-
-impl Number for f64 {
-    fn from_value(value: Value) -> Option<Self> {
-        Some(value.real())
-    }
-}
 
 #[cfg(test)]
 mod tests {

@@ -12,12 +12,15 @@
 
 use crate::cost::TransformCost;
 use crate::list::Share;
-use crate::pass::{Binning, Pass, Shading};
+use crate::pass::Pass;
+use crate::picture::{Binning, Shading};
 use i860::Program;
-use pxpl5_geometry::kernel::{Heads, Kernel, PARAMETER_WORDS, Schedule, Surface, TRIANGLE_WORDS, display_list_words};
+use pxpl5_geometry::kernel::{
+    Heads, Kernel, KernelSurface, PARAMETER_WORDS, Schedule, TRIANGLE_WORDS, display_list_words,
+};
 use pxpl5_geometry::{Light, Transform};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
-use pxpl5_renderer::{Command, PhongTriangle, Triangle};
+use pxpl5_renderer::{Command, PhongTriangleCommand, TriangleCommand};
 use pxpl5_sim::Span;
 use pxpl5_wire::{RegionId, Word};
 use std::collections::HashMap;
@@ -177,10 +180,10 @@ impl Pass {
             CodeVersion::Scheduled => Schedule::Dual,
         };
         let surface = match self.picture().shading {
-            Shading::Gouraud => Surface::Gouraud,
-            Shading::Phong => Surface::Phong,
+            Shading::Gouraud => KernelSurface::Gouraud,
+            Shading::Phong => KernelSurface::Phong,
         };
-        Kernel::of(schedule, surface, &self.picture().viewport, self.is_binned())
+        Kernel::for_picture(schedule, surface, &self.picture().viewport, self.is_binned())
     }
 
     fn is_binned(&self) -> bool {
@@ -190,8 +193,8 @@ impl Pass {
     /// What is alike in all triangle commands, read off one of zeros.
     fn heads(&self) -> Heads {
         let blank = match self.picture().shading {
-            Shading::Gouraud => Command::Triangle(Triangle::default()),
-            Shading::Phong => Command::PhongTriangle(PhongTriangle::default()),
+            Shading::Gouraud => Command::Triangle(TriangleCommand::default()),
+            Shading::Phong => Command::PhongTriangle(PhongTriangleCommand::default()),
         };
         let mut words = Vec::new();
         let encoded = blank.encode(&self.picture().layout, &mut words);

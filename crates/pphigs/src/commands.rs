@@ -1,15 +1,18 @@
 //! Messages of renderer commands: which kinds are in them, and their words on demand.
 
-use crate::list::{Counts, DisplayList};
-use crate::pass::{Entry, Pass, Picture, Shading};
-use crate::placed::{Placed, Vertices};
+use crate::counts::PrimitiveCounts;
+use crate::encoder::Encoder;
+use crate::list::DisplayList;
+use crate::pass::{BinEntry, Pass};
+use crate::picture::Shading;
+use crate::placed::{PlacedStructure, Vertices};
 use pxpl5_geometry::{
-    self as geometry, GouraudSphere, GouraudTriangle, LANES, SetupStats, SphereSetup, Transform, TriangleLanes,
-    VertexSurface,
+    GouraudSphere, GouraudTriangle, LANES, PhongSphere, PhongTriangle, SetupStats, SphereSetup, Transform,
+    TriangleLanes, VertexSurface,
 };
 use pxpl5_renderer::{
-    Clear, Command, CommandKind, CopyRegion, Layout, PhongSphere, PhongTriangle, PhongTriangleEncoder, SelectRegion,
-    Shade, Sphere, SphereBody, Triangle, TriangleEncoder,
+    Clear, Command, CommandKind, CopyRegion, Layout, PhongSphereCommand, PhongTriangleCommand, PhongTriangleEncoder,
+    SelectRegion, Shade, SphereBody, SphereCommand, TriangleCommand, TriangleEncoder,
 };
 use pxpl5_wire::{CommandList, CommandRun, CommandWords, CopyOrder, Linear, MAX_MESSAGE_WORDS, RegionId, Word};
 use std::ops::Range;
@@ -44,7 +47,7 @@ pub fn copy_message(layout: Layout, copies: Vec<CopyOrder>, pixels: bool) -> Com
     let runs =
         copies.iter().flat_map(|_| [run(CommandKind::SelectRegion, 1), run(CommandKind::CopyRegion, 1)]).collect();
     let context = copies.first().map_or(0, |order| order.context);
-    let content = pixels.then(|| Arc::new(Copies { layout, copies: copies.clone() }) as Arc<dyn CommandWords>);
+    let content = pixels.then(|| Arc::new(CopyWords { layout, copies: copies.clone() }) as Arc<dyn CommandWords>);
     CommandList { runs, context, copies, content }
 }
 
@@ -163,7 +166,7 @@ impl Pass {
     /// Bytes of the renderer commands of all screen primitives, each held once (TR94: bins point to them).
     #[must_use]
     pub fn command_bytes(&self) -> u64 {
-        let Counts { triangles, spheres } = self.screen_counts();
+        let PrimitiveCounts { triangles, spheres } = self.screen_counts();
         bytes(self.triangle_kind(), triangles) + bytes(self.sphere_kind(), spheres)
     }
 }
@@ -228,8 +231,8 @@ impl RegionWords {
 
     fn gouraud(
         &self,
-        entries: &[Entry],
-        place: &Placed,
+        entries: &[BinEntry],
+        place: &PlacedStructure,
         transform: &Transform,
         encoder: &TriangleEncoder,
         out: &mut Vec<Word>,
@@ -239,14 +242,14 @@ impl RegionWords {
         let mut stats = SetupStats::default();
         let vertices = place.vertices(list, transform);
         let surfaces = vertices.colours(list, transform, &place.light);
-        let mut batches = Batches { entries, vertices, list, surfaces, lanes: TriangleLanes::default() };
+        let mut batches = SetupBatches { entries, vertices, list, surfaces, lanes: TriangleLanes::default() };
         while let Some(some) = batches.next() {
             match some {
-                Batch::Unclipped(entries, lanes) => {
+                SetupBatch::Unclipped(entries, lanes) => {
                     let expressions = transform.gouraud_lanes(lanes, &mut stats);
                     (0..entries.len()).for_each(|i| encoder.encode(&gouraud_triangle(expressions.get(i)), out));
                 }
-                Batch::Clipped(entry) => {
+                SetupBatch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.gouraud(&triangle, &place.light, &mut stats, sink));
                     let piece = piece.map(|piece| piece.gouraud(&picture.viewport, &mut stats));
@@ -258,8 +261,8 @@ impl RegionWords {
 
     fn phong(
         &self,
-        entries: &[Entry],
-        place: &Placed,
+        entries: &[BinEntry],
+        place: &PlacedStructure,
         transform: &Transform,
         encoder: &PhongTriangleEncoder,
         out: &mut Vec<Word>,
@@ -269,17 +272,17 @@ impl RegionWords {
         let mut stats = SetupStats::default();
         let vertices = place.vertices(list, transform);
         let surfaces = vertices.normals(list, transform);
-        let mut batches = Batches { entries, vertices, list, surfaces, lanes: TriangleLanes::default() };
+        let mut batches = SetupBatches { entries, vertices, list, surfaces, lanes: TriangleLanes::default() };
         while let Some(some) = batches.next() {
             match some {
-                Batch::Unclipped(entries, lanes) => {
+                SetupBatch::Unclipped(entries, lanes) => {
                     let expressions = transform.phong_lanes(lanes, &mut stats);
                     for (i, entry) in entries.iter().enumerate() {
                         let colour = list.colours[list.triangles[entry.triangle as usize][0] as usize];
                         encoder.encode(&phong_triangle(expressions.get(i, colour)), out);
                     }
                 }
-                Batch::Clipped(entry) => {
+                SetupBatch::Clipped(entry) => {
                     let triangle = list.triangle(entry.triangle as usize);
                     let piece = pick(entry, |sink| transform.phong(&triangle, &mut stats, sink));
                     let piece = piece.map(|piece| piece.phong(&picture.viewport, &mut stats));
@@ -326,8 +329,8 @@ impl RegionWords {
 }
 
 /// Entries of a bin in order.
-struct Batches<'a> {
-    entries: &'a [Entry],
+struct SetupBatches<'a> {
+    entries: &'a [BinEntry],
     vertices: &'a Vertices,
     list: &'a DisplayList,
     /// Colours or normals of all vertices.
@@ -335,15 +338,15 @@ struct Batches<'a> {
     lanes: TriangleLanes,
 }
 
-enum Batch<'a> {
+enum SetupBatch<'a> {
     /// Some that are set up together; those of which nothing is seen are among them.
-    Unclipped(&'a [Entry], &'a TriangleLanes),
+    Unclipped(&'a [BinEntry], &'a TriangleLanes),
     /// A piece of a triangle that was clipped.
-    Clipped(&'a Entry),
+    Clipped(&'a BinEntry),
 }
 
-impl Batches<'_> {
-    fn next(&mut self) -> Option<Batch<'_>> {
+impl SetupBatches<'_> {
+    fn next(&mut self) -> Option<SetupBatch<'_>> {
         let lanes = &mut self.lanes;
         lanes.clear();
         for entry in self.entries.iter().take(LANES) {
@@ -353,54 +356,37 @@ impl Batches<'_> {
                 (Some(_), Some(triangle)) => lanes.push(&triangle, at.among(self.surfaces)),
                 (Some(_), None) if lanes.is_empty() => {
                     self.entries = &self.entries[1..];
-                    return Some(Batch::Clipped(entry));
+                    return Some(SetupBatch::Clipped(entry));
                 }
                 (Some(_), None) => break,
             }
         }
         let (now, later) = self.entries.split_at(self.lanes.len());
         self.entries = later;
-        (!now.is_empty()).then_some(Batch::Unclipped(now, &self.lanes))
-    }
-}
-
-/// Makes the words of a picture's triangles.
-#[derive(Debug)]
-pub(crate) enum Encoder {
-    Gouraud(TriangleEncoder),
-    Phong(PhongTriangleEncoder),
-}
-
-impl Encoder {
-    /// `None` where the layout cannot hold what they need, which is refused when the machine is configured.
-    pub(crate) fn for_picture(picture: &Picture) -> Option<Self> {
-        match picture.shading {
-            Shading::Gouraud => Some(Self::Gouraud(TriangleEncoder::new(&picture.layout))),
-            Shading::Phong => PhongTriangleEncoder::new(&picture.layout).ok().map(Self::Phong),
-        }
+        (!now.is_empty()).then_some(SetupBatch::Unclipped(now, &self.lanes))
     }
 }
 
 /// The piece of an entry among those that clipping hands to the sink; `None` where nothing is seen.
 #[cold]
-fn pick<T>(entry: &Entry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
+fn pick<T>(entry: &BinEntry, clip: impl FnOnce(&mut dyn FnMut(T))) -> Option<T> {
     let mut pieces = Vec::new();
     clip(&mut |piece| pieces.push(piece));
     pieces.into_iter().nth(entry.piece?.into())
 }
 
-fn gouraud_triangle(t: GouraudTriangle) -> Triangle {
-    Triangle { edges: t.edges, depth: t.z, colour: t.rgb }
+fn gouraud_triangle(t: GouraudTriangle) -> TriangleCommand {
+    TriangleCommand { edges: t.edges, depth: t.z, colour: t.rgb }
 }
 
-fn phong_triangle(t: geometry::PhongTriangle) -> PhongTriangle {
-    PhongTriangle { edges: t.edges, depth: t.z, normal: t.normal, colour: rgb(t.colour) }
+fn phong_triangle(t: PhongTriangle) -> PhongTriangleCommand {
+    PhongTriangleCommand { edges: t.edges, depth: t.z, normal: t.normal, colour: rgb(t.colour) }
 }
 
 /// The command of a sphere with Gouraud shading.
 #[must_use]
 pub fn gouraud_sphere(s: &GouraudSphere) -> Command {
-    Command::Sphere(Sphere {
+    Command::Sphere(SphereCommand {
         body: body(&s.setup),
         colour: s.rgb,
         root_factor: s.root_factor.map(|factor| factor.min(511) as i16),
@@ -411,15 +397,15 @@ const fn body(s: &SphereSetup) -> SphereBody {
     SphereBody { silhouette: s.silhouette, root_shift: s.root_shift, depth: s.depth, depth_shift: s.depth_shift }
 }
 
-fn phong_sphere(s: &geometry::PhongSphere) -> Command {
-    Command::PhongSphere(PhongSphere { body: body(&s.setup), normal: s.normal, colour: rgb(s.colour) })
+fn phong_sphere(s: &PhongSphere) -> Command {
+    Command::PhongSphere(PhongSphereCommand { body: body(&s.setup), normal: s.normal, colour: rgb(s.colour) })
 }
 
 /// A triangle of which nothing is seen: its edges exclude every pixel.
-const NOWHERE: Triangle =
-    Triangle { edges: [Linear::constant(-1); 3], depth: Linear::constant(0), colour: [Linear::constant(0); 3] };
-const PHONG_NOWHERE: PhongTriangle =
-    PhongTriangle { edges: NOWHERE.edges, depth: NOWHERE.depth, normal: NOWHERE.colour, colour: 0 };
+const NOWHERE: TriangleCommand =
+    TriangleCommand { edges: [Linear::constant(-1); 3], depth: Linear::constant(0), colour: [Linear::constant(0); 3] };
+const PHONG_NOWHERE: PhongTriangleCommand =
+    PhongTriangleCommand { edges: NOWHERE.edges, depth: NOWHERE.depth, normal: NOWHERE.colour, colour: 0 };
 
 /// A unit vector in 1/1024.
 fn fixed_direction(v: [f32; 3]) -> [i16; 3] {
@@ -445,12 +431,12 @@ fn rgb([r, g, b]: [u8; 3]) -> u32 {
 
 /// Words of a message that only copies.
 #[derive(Debug)]
-struct Copies {
+struct CopyWords {
     layout: Layout,
     copies: Vec<CopyOrder>,
 }
 
-impl CommandWords for Copies {
+impl CommandWords for CopyWords {
     fn append_words(&self, out: &mut Vec<Word>) {
         for order in &self.copies {
             let [left, top, _, _] = order.target.grid.rectangle(order.target.region);

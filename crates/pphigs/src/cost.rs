@@ -1,6 +1,6 @@
 //! The time of a TRANSFORM by the table of graphics-processor code, derived in this one place.
 
-use crate::list::Counts;
+use crate::counts::PrimitiveCounts;
 use pxpl5_gp::GpTiming;
 use pxpl5_sim::Span;
 
@@ -25,13 +25,13 @@ impl TransformCost {
 
     /// Primitives transformed, without the beginning of their pass and without entries in bins.
     #[must_use]
-    pub const fn primitives(counts: Counts) -> Self {
+    pub const fn primitives(counts: PrimitiveCounts) -> Self {
         Self { passes: 0, triangles: counts.triangles as u64, spheres: counts.spheres as u64, entries: 0 }
     }
 
     /// A whole pass over so many primitives, without entries in bins.
     #[must_use]
-    pub const fn pass_over(counts: Counts) -> Self {
+    pub const fn pass_over(counts: PrimitiveCounts) -> Self {
         Self { passes: 1, ..Self::primitives(counts) }
     }
 
@@ -69,7 +69,8 @@ mod tests {
 
     #[test]
     fn a_transform_takes_the_time_of_its_pass_its_primitives_and_its_entries() {
-        let cost = TransformCost { entries: 9, ..TransformCost::pass_over(Counts { triangles: 11, spheres: 13 }) };
+        let cost =
+            TransformCost { entries: 9, ..TransformCost::pass_over(PrimitiveCounts { triangles: 11, spheres: 13 }) };
         assert_eq!(cost.span(&TIMING), Span::from_ns(5_000 + 11 * 300 + 13 * 70 + 9 * 2));
         assert_eq!(TransformCost::PASS.ns(&TIMING), 5_000);
     }

@@ -23,15 +23,24 @@
 mod code;
 mod commands;
 mod cost;
+mod counts;
+mod encoder;
 mod list;
 mod pass;
+mod picture;
 mod placed;
+mod placing;
+mod structure;
 mod view;
 
 pub use code::{KernelOutput, Transforming};
 pub use commands::{RegionEnvelope, copy_message, gouraud_sphere, region_messages};
 pub use cost::TransformCost;
-pub use list::{Counts, DisplayList, Frame, Share, Structure};
-pub use pass::{Binning, Pass, Picture, Shading};
-pub use placed::{Placed, RecentViews, place_all};
+pub use counts::PrimitiveCounts;
+pub use list::{DisplayList, Share};
+pub use pass::Pass;
+pub use picture::{Binning, Picture, Shading};
+pub use placed::{PlacedStructure, RecentViews};
+pub use placing::place_all;
+pub use structure::{DisplayStructure, ModelFrame};
 pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit, ViewWordsError};

@@ -1,33 +1,13 @@
 //! The display list and its division among GPs.
 
-use crate::pass::{Pass, Picture};
+use crate::counts::PrimitiveCounts;
 use crate::placed::RecentViews;
-use crate::view::FrameView;
-use glam::{Mat4, Vec3};
+use crate::structure::DisplayStructure;
+use glam::Vec3;
 use pxpl5_geometry::kernel::TRIANGLE_WORDS;
 use pxpl5_geometry::{Sphere, Triangle};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// What the coordinates of a structure are fixed to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Frame {
-    /// The room in which the viewer stands.
-    World,
-    /// The viewer's head, with which it moves.
-    Head,
-}
-
-/// A run of primitives with one model matrix.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Structure {
-    /// Numbers of its triangles in the display list.
-    pub triangles: Range<usize>,
-    /// Numbers of its spheres in the display list.
-    pub spheres: Range<usize>,
-    /// Whether it stands in the room or moves with the head.
-    pub frame: Frame,
-}
 
 /// Everything to be drawn, in structures that divide it in order.
 #[derive(Clone, Debug, Default)]
@@ -43,7 +23,7 @@ pub struct DisplayList {
     /// Spheres in their structure's coordinates.
     pub spheres: Vec<Sphere>,
     /// The structures, whose triangles and spheres follow one another.
-    pub structures: Vec<Structure>,
+    pub structures: Vec<DisplayStructure>,
     /// Towards the light, unit length, in each structure's frame.
     pub towards_light: Vec3,
     /// Part of the colour that is seen in shadow, 0 to 1.
@@ -54,23 +34,6 @@ pub struct DisplayList {
     pub background: [u8; 3],
     /// What many graphics processors compute alike, kept for the next one; empty at first.
     pub recent: RecentViews,
-}
-
-/// Numbers of primitives or commands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Number of triangles, or of triangle commands.
-    pub triangles: u32,
-    /// Number of spheres, or of sphere commands.
-    pub spheres: u32,
-}
-
-impl Counts {
-    /// Triangles and spheres together.
-    #[must_use]
-    pub const fn total(self) -> u32 {
-        self.triangles + self.spheres
-    }
 }
 
 impl DisplayList {
@@ -141,8 +104,8 @@ impl Share {
 
     /// Numbers of primitives that the GP holds of it.
     #[must_use]
-    pub fn counts(&self) -> Counts {
-        Counts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
+    pub fn counts(&self) -> PrimitiveCounts {
+        PrimitiveCounts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
     }
 
     /// The share cut into pieces of at most `size` primitives, triangles first.
@@ -171,14 +134,8 @@ impl Share {
     /// Bytes that the primitives take in the GP's memory.
     #[must_use]
     pub fn bytes(&self) -> u64 {
-        let Counts { triangles, spheres } = self.counts();
+        let PrimitiveCounts { triangles, spheres } = self.counts();
         u64::from(triangles) * Self::TRIANGLE_BYTES + u64::from(spheres) * Self::SPHERE_BYTES
-    }
-
-    /// One TRANSFORM of all held primitives for one eye.
-    #[must_use]
-    pub fn transform(&self, view: &FrameView, eye: usize, picture: Picture) -> Arc<Pass> {
-        Arc::new(Pass::new(self.clone(), view, eye, picture))
     }
 
     /// Numbers of all triangles that the GP holds, also where this is a clump of them.
@@ -222,9 +179,6 @@ fn dealt(all: usize, index: usize, gps: usize) -> usize {
 fn part(range: &Range<usize>, from: usize, to: usize) -> Range<usize> {
     (range.start + from).min(range.end)..(range.start + to).min(range.end)
 }
-
-/// The model matrix of a structure that was never edited.
-pub(crate) const UNMOVED: Mat4 = Mat4::IDENTITY;
 
 #[cfg(test)]
 mod tests {

@@ -1,51 +1,19 @@
 //! One TRANSFORM of a GP's share for one eye.
 
-use crate::commands::Encoder;
-use crate::list::{Counts, Share};
-use crate::placed::{Placed, RecentViews};
+use crate::counts::PrimitiveCounts;
+use crate::encoder::Encoder;
+use crate::list::Share;
+use crate::picture::{Binning, Picture};
+use crate::placed::PlacedStructure;
+use crate::placing::place_once;
 use crate::view::FrameView;
-use pxpl5_geometry::{Light, RegionMask, SetupStats, Touch, Transform, Viewport};
-use pxpl5_renderer::Layout;
+use pxpl5_geometry::{Light, RegionMask, SetupStats, Touch, Transform};
 use pxpl5_wire::RegionId;
 use std::sync::Arc;
 
-/// Where colours are computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shading {
-    /// At the corners, by the GP; interpolated by the renderers.
-    Gouraud,
-    /// At the pixels, by the renderers, once at the end of the frame.
-    Phong,
-}
-
-/// Which regions a primitive's commands are sent to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Binning {
-    /// Those that it touches.
-    Touched,
-    /// All; a triangle that is not seen costs as much as any other, and draws nothing (Slats prototype, TR94). Spheres,
-    /// which the prototype did not have, go to the regions that they touch: elsewhere a quadratic leaves its 48 bits.
-    All,
-}
-
-/// What to make of a view.
-#[derive(Clone, Copy, Debug)]
-pub struct Picture {
-    /// Lines of the frame that it holds, and how it is cut into regions.
-    pub viewport: Viewport,
-    /// Whether colours are computed at corners or at pixels.
-    pub shading: Shading,
-    /// Which regions get a primitive's commands.
-    pub binning: Binning,
-    /// Division of pixel memory that the commands are encoded for.
-    pub layout: Layout,
-    /// Whether somebody may want the command words.
-    pub pixels: bool,
-}
-
 /// A screen triangle of a bin: what its commands are made from.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Entry {
+pub(crate) struct BinEntry {
     /// Number in the display list.
     pub(crate) triangle: u32,
     /// Which of the pieces that it was clipped to, 0 if it was not; `None` where nothing of it is seen.
@@ -58,7 +26,7 @@ const FIRST_ENTRIES: usize = 64;
 /// What touches one region, by rising numbers in the display list.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bin {
-    pub(crate) triangles: Vec<Entry>,
+    pub(crate) triangles: Vec<BinEntry>,
     pub(crate) spheres: Vec<u32>,
 }
 
@@ -66,29 +34,37 @@ pub(crate) struct Bin {
 #[derive(Debug)]
 pub struct Pass {
     share: Share,
-    placed: Arc<[Placed]>,
+    placed: Arc<[PlacedStructure]>,
     picture: Picture,
-    counts: Vec<Counts>,
+    counts: Vec<PrimitiveCounts>,
     /// By region; empty without pixels.
     bins: Vec<Bin>,
-    screen_counts: Counts,
+    screen_counts: PrimitiveCounts,
     stats: SetupStats,
     /// Makes the words of triangles; `None` where nobody wants pixels.
     encoder: Option<Encoder>,
 }
 
+impl Share {
+    /// One TRANSFORM of all held primitives for one eye.
+    #[must_use]
+    pub fn transform(&self, view: &FrameView, eye: usize, picture: Picture) -> Arc<Pass> {
+        Arc::new(Pass::new(self.clone(), view, eye, picture))
+    }
+}
+
 impl Pass {
-    pub(crate) fn new(share: Share, view: &FrameView, eye: usize, picture: Picture) -> Self {
+    fn new(share: Share, view: &FrameView, eye: usize, picture: Picture) -> Self {
         let regions = picture.viewport.grid().regions() as usize;
-        let placed = RecentViews::place_all(&share.list, view, eye, picture.viewport);
+        let placed = place_once(&share.list, view, eye, picture.viewport);
         let bins = if picture.pixels { vec![Bin::default(); regions] } else { Vec::new() };
         let mut pass = Self {
             share,
             placed,
             picture,
-            counts: vec![Counts::default(); regions],
+            counts: vec![PrimitiveCounts::default(); regions],
             bins,
-            screen_counts: Counts::default(),
+            screen_counts: PrimitiveCounts::default(),
             stats: SetupStats::default(),
             encoder: picture.pixels.then(|| Encoder::for_picture(&picture)).flatten(),
         };
@@ -111,7 +87,7 @@ impl Pass {
         self.stats = stats;
     }
 
-    fn bin_triangles(&mut self, place: &Placed, transform: &Transform, share: &Share, stats: &mut SetupStats) {
+    fn bin_triangles(&mut self, place: &PlacedStructure, transform: &Transform, share: &Share, stats: &mut SetupStats) {
         let first = place.structure.triangles.start;
         let touched = place.touched(&share.list, transform);
         let mut in_one_region = 0;
@@ -119,7 +95,7 @@ impl Pass {
             let touch = touched.get(number - first);
             if let (Touch::Region(region), Binning::Touched) = (touch, self.picture.binning) {
                 in_one_region += 1;
-                self.put_in(region, Entry { triangle: number as u32, piece: Some(0) });
+                self.put_in(region, BinEntry { triangle: number as u32, piece: Some(0) });
                 continue;
             }
             let triangle = number as u32;
@@ -138,7 +114,7 @@ impl Pass {
                 }
             }
             if pieces == 0 && self.picture.binning == Binning::All {
-                self.put_triangle(RegionMask::EMPTY, Entry { triangle, piece: None });
+                self.put_triangle(RegionMask::EMPTY, BinEntry { triangle, piece: None });
             }
         }
         // Most triangles by far, counted together.
@@ -159,11 +135,11 @@ impl Pass {
 
     /// Puts the next piece of a triangle into bins, and counts it.
     fn put_piece(&mut self, mask: RegionMask, triangle: u32, pieces: &mut u8) {
-        self.put_triangle(mask, Entry { triangle, piece: Some(*pieces) });
+        self.put_triangle(mask, BinEntry { triangle, piece: Some(*pieces) });
         *pieces += 1;
     }
 
-    fn put_triangle(&mut self, mask: RegionMask, entry: Entry) {
+    fn put_triangle(&mut self, mask: RegionMask, entry: BinEntry) {
         for region in self.receivers(mask).iter() {
             self.put_in(region, entry);
         }
@@ -171,7 +147,7 @@ impl Pass {
     }
 
     #[inline(always)]
-    fn put_in(&mut self, region: RegionId, entry: Entry) {
+    fn put_in(&mut self, region: RegionId, entry: BinEntry) {
         self.counts[usize::from(region.0)].triangles += 1;
         if let Some(Bin { triangles, .. }) = self.bins.get_mut(usize::from(region.0)) {
             if triangles.len() == triangles.capacity() {
@@ -193,13 +169,13 @@ impl Pass {
 
     /// Numbers of entries in a region's bin.
     #[must_use]
-    pub fn counts(&self, region: RegionId) -> Counts {
+    pub fn counts(&self, region: RegionId) -> PrimitiveCounts {
         self.counts[usize::from(region.0)]
     }
 
     /// Primitives on the screen, each counted once.
     #[must_use]
-    pub const fn screen_counts(&self) -> Counts {
+    pub const fn screen_counts(&self) -> PrimitiveCounts {
         self.screen_counts
     }
 
@@ -211,7 +187,7 @@ impl Pass {
 
     /// Numbers of primitives transformed, seen or not.
     #[must_use]
-    pub fn transformed(&self) -> Counts {
+    pub fn transformed(&self) -> PrimitiveCounts {
         self.share.counts()
     }
 
@@ -243,7 +219,7 @@ impl Pass {
         &self.share
     }
 
-    pub(crate) fn placed(&self) -> &[Placed] {
+    pub(crate) fn placed(&self) -> &[PlacedStructure] {
         &self.placed
     }
 
@@ -256,11 +232,11 @@ impl Pass {
     }
 
     /// Structures in order, with their transforms.
-    pub(crate) fn drawn(&self) -> impl Iterator<Item = (&Placed, &Transform)> {
+    pub(crate) fn drawn(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform)> {
         drawn(&self.placed)
     }
 }
 
-fn drawn(placed: &[Placed]) -> impl Iterator<Item = (&Placed, &Transform)> {
+fn drawn(placed: &[PlacedStructure]) -> impl Iterator<Item = (&PlacedStructure, &Transform)> {
     placed.iter().filter_map(|place| Some((place, place.transform.as_ref()?)))
 }

@@ -1,109 +1,35 @@
-//! The display list as one eye sees it: structures in place, vertices transformed once for all who share them.
+//! Structures in place, as one eye sees them, and those that were placed lately.
 
-use crate::list::{DisplayList, Frame, Structure, UNMOVED};
-use crate::view::{EyeView, FrameView, ModelEdit, product};
-use glam::{Mat4, Vec3};
-use pxpl5_geometry::{
-    Culling, Light, ScreenVertex, Touched, Transform, UnclippedTriangle, VertexSurface, ViewTransform, Viewport,
-};
+use crate::structure::DisplayStructure;
+use crate::view::{EyeView, ModelEdit};
+use pxpl5_geometry::{Light, ScreenVertex, Touched, Transform, VertexSurface, Viewport};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// One structure as an eye sees it.
 #[derive(Debug)]
-pub struct Placed {
+pub struct PlacedStructure {
     /// From its coordinates to the picture; `None` where a matrix is not finite, so that it is not drawn.
     pub transform: Option<Transform>,
     /// The light in eye coordinates.
     pub light: Light,
     /// Which primitives belong to it, and what it is fixed to.
-    pub structure: Structure,
-    vertices: OnceLock<Vertices>,
-    touched: OnceLock<Touched>,
+    pub structure: DisplayStructure,
+    pub(crate) vertices: OnceLock<Vertices>,
+    pub(crate) touched: OnceLock<Touched>,
 }
 
 /// The vertices of a structure, from the first that one of its triangles names to the last.
 #[derive(Debug)]
 pub(crate) struct Vertices {
-    first: usize,
-    on_screen: Vec<ScreenVertex>,
-    normals: OnceLock<Vec<VertexSurface>>,
-    colours: OnceLock<Vec<VertexSurface>>,
-}
-
-/// All structures of a display list as an eye (0, or 0 and 1) of a view sees them.
-///
-/// # Panics
-///
-/// If the view has no eye.
-#[must_use]
-pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<Placed> {
-    let eye = eye_of(view, eye);
-    let structures = list.structures.iter().enumerate();
-    structures.map(|(i, s)| place(list, s, model(view, i), eye, viewport)).collect()
-}
-
-fn eye_of(view: &FrameView, eye: usize) -> &EyeView {
-    &view.eyes[eye.min(view.eyes.len() - 1)]
-}
-
-impl Placed {
-    /// Its vertices on the screen, transformed when first asked for.
-    pub(crate) fn vertices(&self, list: &DisplayList, transform: &Transform) -> &Vertices {
-        self.vertices.get_or_init(|| {
-            let named = list.triangles[self.structure.triangles.clone()].iter().flatten();
-            let (first, end) = named.fold((u32::MAX, 0), |(low, high), i| (low.min(*i), high.max(*i + 1)));
-            let positions = list.positions.get(first as usize..end as usize).unwrap_or_default();
-            let on_screen = positions.iter().map(|p| transform.screen_vertex(*p)).collect();
-            Vertices { first: first as usize, on_screen, normals: OnceLock::new(), colours: OnceLock::new() }
-        })
-    }
-
-    /// The regions that its triangles touch, found when first asked for.
-    pub(crate) fn touched(&self, list: &DisplayList, transform: &Transform) -> &Touched {
-        self.touched.get_or_init(|| {
-            let vertices = self.vertices(list, transform);
-            let triangles = self.structure.triangles.clone();
-            transform.touched(&vertices.on_screen, triangles.map(|number| vertices.corners(list, number).0))
-        })
-    }
-}
-
-impl Vertices {
-    /// Places of a triangle's corners among the vertices.
-    #[inline(always)]
-    pub(crate) fn corners(&self, list: &DisplayList, triangle: usize) -> Corners {
-        let [a, b, c] = list.triangles[triangle];
-        Corners([a as usize - self.first, b as usize - self.first, c as usize - self.first])
-    }
-
-    /// A triangle's corners on the screen; `None` where it needs clipping.
-    #[inline(always)]
-    pub(crate) fn unclipped(&self, at: &Corners) -> Option<UnclippedTriangle> {
-        UnclippedTriangle::new(at.among(&self.on_screen))
-    }
-
-    /// The normals of all vertices.
-    pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[VertexSurface] {
-        self.normals.get_or_init(|| {
-            let all = self.first..self.first + self.on_screen.len();
-            let positions = &list.positions[all.clone()];
-            let normals = &list.normals[all];
-            positions.iter().zip(normals).map(|(p, n)| transform.vertex_normal(*p, *n)).collect()
-        })
-    }
-
-    /// The lit colours of all vertices.
-    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[VertexSurface] {
-        self.colours.get_or_init(|| {
-            let all = self.first..self.first + self.on_screen.len();
-            all.map(|i| transform.vertex_colour(light, list.positions[i], list.normals[i], list.colours[i])).collect()
-        })
-    }
+    pub(crate) first: usize,
+    pub(crate) on_screen: Vec<ScreenVertex>,
+    pub(crate) normals: OnceLock<Vec<VertexSurface>>,
+    pub(crate) colours: OnceLock<Vec<VertexSurface>>,
 }
 
 /// Where a triangle's corners stand among a structure's vertices.
-pub(crate) struct Corners([usize; 3]);
+pub(crate) struct Corners(pub(crate) [usize; 3]);
 
 impl Corners {
     /// What belongs to the three corners, among that of all vertices.
@@ -117,7 +43,7 @@ impl Corners {
 /// Views of a display list that graphics processors asked for lately. All of them ask for the same ones, and get the
 /// same transformed vertices; only the host's time is saved by it.
 #[derive(Debug, Default)]
-pub struct RecentViews(Mutex<VecDeque<(ViewKey, Arc<[Placed]>)>>);
+pub struct RecentViews(Mutex<VecDeque<(ViewKey, Arc<[PlacedStructure]>)>>);
 
 /// A clone holds none.
 impl Clone for RecentViews {
@@ -131,45 +57,26 @@ const RECENT: usize = 4;
 
 /// All that the place of a structure depends on.
 #[derive(Debug, PartialEq)]
-struct ViewKey {
-    eye: EyeView,
-    edits: Vec<ModelEdit>,
-    viewport: Viewport,
+pub(crate) struct ViewKey {
+    pub(crate) eye: EyeView,
+    pub(crate) edits: Vec<ModelEdit>,
+    pub(crate) viewport: Viewport,
 }
 
 impl RecentViews {
-    /// As [`place_all`], made once for all who ask.
-    pub(crate) fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Arc<[Placed]> {
-        let key = ViewKey { eye: *eye_of(view, eye), edits: view.edits.clone(), viewport };
-        let mut recent = list.recent.0.lock().unwrap_or_else(PoisonError::into_inner);
+    /// The structures of a view, placed by `place` unless somebody asked for the same view lately.
+    pub(crate) fn find_or_place(
+        &self,
+        key: ViewKey,
+        place: impl FnOnce() -> Vec<PlacedStructure>,
+    ) -> Arc<[PlacedStructure]> {
+        let mut recent = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, placed)) = recent.iter().find(|(known, _)| *known == key) {
             return Arc::clone(placed);
         }
-        let placed: Arc<[Placed]> = place_all(list, view, eye, viewport).into();
+        let placed: Arc<[PlacedStructure]> = place().into();
         recent.truncate(RECENT - 1);
         recent.push_front((key, Arc::clone(&placed)));
         placed
     }
-}
-
-fn model(view: &FrameView, structure: usize) -> Mat4 {
-    view.edits.iter().rev().find(|edit| edit.structure as usize == structure).map_or(UNMOVED, |edit| edit.model)
-}
-
-/// A structure whose matrices are not finite is not drawn.
-fn place(list: &DisplayList, structure: &Structure, model: Mat4, eye: &EyeView, viewport: Viewport) -> Placed {
-    let to_eye = match structure.frame {
-        Frame::World => eye.world_to_eye,
-        Frame::Head => eye.head_to_eye,
-    };
-    let view = ViewTransform { model_view: product(&to_eye, &model), projection: eye.projection };
-    let light = Light { direction: turned(&to_eye, list.towards_light), ambient: list.ambient, diffuse: list.diffuse };
-    let transform = Transform::new(&view, viewport, Culling::None).ok();
-    Placed { transform, light, structure: structure.clone(), vertices: OnceLock::new(), touched: OnceLock::new() }
-}
-
-/// A direction in eye coordinates; the matrix is a rotation and a translation.
-fn turned(matrix: &Mat4, v: Vec3) -> [f32; 3] {
-    let [x, y, z, _] = matrix.to_cols_array_2d();
-    std::array::from_fn(|i| x[i] * v.x + y[i] * v.y + z[i] * v.z)
 }

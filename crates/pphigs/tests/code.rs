@@ -2,8 +2,8 @@
 
 use glam::{Mat4, Vec3};
 use pphigs::{
-    Binning, DisplayList, EyeView, Frame, FrameView, KernelOutput, ModelEdit, Pass, Picture, RegionEnvelope, Shading,
-    Share, Structure, Transforming, region_messages,
+    Binning, DisplayList, DisplayStructure, EyeView, FrameView, KernelOutput, ModelEdit, ModelFrame, Pass, Picture,
+    RegionEnvelope, Shading, Share, Transforming, region_messages,
 };
 use pxpl5_geometry::{Sphere, Viewport};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
@@ -47,8 +47,8 @@ fn list(triangles: u32) -> Arc<DisplayList> {
     let middle = triangles as usize / 3;
     let end = triangles as usize;
     list.structures = vec![
-        Structure { triangles: 0..middle, spheres: 0..0, frame: Frame::World },
-        Structure { triangles: middle..end, spheres: 0..0, frame: Frame::Head },
+        DisplayStructure { triangles: 0..middle, spheres: 0..0, frame: ModelFrame::World },
+        DisplayStructure { triangles: middle..end, spheres: 0..0, frame: ModelFrame::Head },
     ];
     Arc::new(list)
 }

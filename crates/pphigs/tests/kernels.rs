@@ -4,7 +4,7 @@ mod kernel;
 
 use i860::Config;
 use kernel::{Bench, frame, native, triangles};
-use pxpl5_geometry::kernel::{Kernel, Schedule, Surface};
+use pxpl5_geometry::kernel::{Kernel, KernelSurface, Schedule};
 use pxpl5_geometry::{Triangle, Viewport};
 use pxpl5_wire::FieldParity;
 
@@ -16,11 +16,11 @@ fn mixture() -> Vec<Triangle> {
     all
 }
 
-fn assert_same_words(schedule: Schedule, surface: Surface, viewport: Viewport) {
+fn assert_same_words(schedule: Schedule, surface: KernelSurface, viewport: Viewport) {
     let input = mixture();
     let (expected, flattened) = native(surface, viewport, &input);
     assert_eq!(flattened, 0, "the kernels do not flatten planes");
-    let kernel = Kernel::of(schedule, surface, &viewport, true).expect("frames and fields have kernels");
+    let kernel = Kernel::for_picture(schedule, surface, &viewport, true).expect("frames and fields have kernels");
     let mut bench = Bench::new(kernel, viewport, Config::functional(), &input);
     bench.run();
     let found = bench.output();
@@ -38,21 +38,21 @@ const PICTURES: [Viewport; 3] =
 
 #[test]
 fn the_straight_kernel_gives_the_native_words_and_bins() {
-    for surface in [Surface::Gouraud, Surface::Phong] {
+    for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
         PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Straight, surface, picture));
     }
 }
 
 #[test]
 fn the_dual_kernel_gives_the_native_words_and_bins() {
-    for surface in [Surface::Gouraud, Surface::Phong] {
+    for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
         PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Dual, surface, picture));
     }
 }
 
 #[test]
 fn each_pass_of_the_dual_kernel_fits_the_instruction_cache() {
-    for (surface, field) in [(Surface::Gouraud, false), (Surface::Phong, true)] {
+    for (surface, field) in [(KernelSurface::Gouraud, false), (KernelSurface::Phong, true)] {
         let program = kernel::program(Kernel { surface, field, ..frame(Schedule::Dual) });
         let at = |label: &str| program.symbol(label).expect("label");
         let end = program.base + program.bytes.len() as u32;

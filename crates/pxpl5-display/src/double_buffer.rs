@@ -27,7 +27,7 @@ pub struct DoubleBuffer {
 
 /// What a message was to a [`DoubleBuffer`].
 #[derive(Clone, Debug)]
-pub enum Received {
+pub enum BufferReceipt {
     /// The last message of a region, the first of which arrived at this time.
     Region(RegionPixels, Time),
     /// Another message of a region, or a request to swap.
@@ -38,16 +38,16 @@ pub enum Received {
 
 impl DoubleBuffer {
     /// Takes a message that arrives at `now`.
-    pub fn receive(&mut self, body: Body, now: Time) -> Received {
+    pub fn receive(&mut self, body: Body, now: Time) -> BufferReceipt {
         match body {
             Body::Pixels(pixels) => self.receive_pixels(pixels, now),
             Body::Words(words) => self.receive_request(&words, now),
-            Body::Commands(_) => Received::Fault,
+            Body::Commands(_) => BufferReceipt::Fault,
         }
     }
 
-    fn receive_pixels(&mut self, pixels: RegionPixels, now: Time) -> Received {
-        let Some(buffer) = self.buffers.get_mut(usize::from(pixels.target.buffer)) else { return Received::Fault };
+    fn receive_pixels(&mut self, pixels: RegionPixels, now: Time) -> BufferReceipt {
+        let Some(buffer) = self.buffers.get_mut(usize::from(pixels.target.buffer)) else { return BufferReceipt::Fault };
         let fresh = Arriving { pixels, arrived: 0, first_part_at: now };
         let region = buffer.entry(fresh.pixels.target.region).or_insert_with(|| fresh.clone());
         if region.pixels.target != fresh.pixels.target || region.arrived == region.pixels.parts {
@@ -55,16 +55,16 @@ impl DoubleBuffer {
         }
         region.arrived += 1;
         if region.arrived < region.pixels.parts {
-            return Received::Part;
+            return BufferReceipt::Part;
         }
-        Received::Region(region.pixels.clone(), region.first_part_at)
+        BufferReceipt::Region(region.pixels.clone(), region.first_part_at)
     }
 
-    fn receive_request(&mut self, words: &[Word], now: Time) -> Received {
+    fn receive_request(&mut self, words: &[Word], now: Time) -> BufferReceipt {
         let asked_for = read_swap_request(words).filter(|buffer| usize::from(*buffer) < self.buffers.len());
-        let Some(buffer) = asked_for else { return Received::Fault };
+        let Some(buffer) = asked_for else { return BufferReceipt::Fault };
         self.requested = Some((now, buffer));
-        Received::Part
+        BufferReceipt::Part
     }
 
     /// Shows the buffer that was asked for before (not at) this instant, if one was; which.
@@ -108,6 +108,6 @@ mod tests {
     #[test]
     fn a_third_buffer_is_a_fault() {
         let mut buffers = DoubleBuffer::default();
-        assert!(matches!(buffers.receive(Body::Words(swap_request(2)), Time(1)), Received::Fault));
+        assert!(matches!(buffers.receive(Body::Words(swap_request(2)), Time(1)), BufferReceipt::Fault));
     }
 }

@@ -23,7 +23,7 @@ mod double_buffer;
 mod surface;
 
 pub use config::{DisplayConfig, DisplayError};
-pub use double_buffer::{DoubleBuffer, Received};
+pub use double_buffer::{BufferReceipt, DoubleBuffer};
 pub use surface::{Counter, Surface};
 
 use image::RgbImage;

@@ -4,8 +4,8 @@ use crate::buffer::{Buffer, Regions};
 use crate::region::RegionWrite;
 use crate::seen::{BufferContents, SeenField};
 use crate::{
-    ConfigError, Faults, FrameBufferConfig, FrameBufferEvent, FrameBufferFault, FrameBufferOutput, FrameBufferStats,
-    Video,
+    Faults, FrameBufferConfig, FrameBufferConfigError, FrameBufferEvent, FrameBufferFault, FrameBufferOutput,
+    FrameBufferStats, Video,
 };
 use pxpl5_sim::{Context, Span, Time};
 use pxpl5_wire::{NodeId, RegionPixels};
@@ -36,8 +36,8 @@ impl FrameBuffer {
     ///
     /// # Errors
     ///
-    /// [`ConfigError`] names the number that is out of range.
-    pub fn new(config: FrameBufferConfig, node: NodeId) -> Result<Self, ConfigError> {
+    /// [`FrameBufferConfigError`] names the number that is out of range.
+    pub fn new(config: FrameBufferConfig, node: NodeId) -> Result<Self, FrameBufferConfigError> {
         config.check()?;
         Ok(Self {
             node,
@@ -204,16 +204,20 @@ impl FrameBuffer {
 
 /// The place of the region that a message belongs to, a new one if it is the first.
 fn arriving(buffer: &mut Buffer, pixels: &RegionPixels, video: &Video) -> Result<usize, FrameBufferFault> {
-    let part = |parts| FrameBufferFault::Part { target: pixels.target, found: pixels.part, parts };
     let Some(place) = buffer.arriving(&pixels.target) else {
         let region = RegionWrite::new(pixels, video)?;
         if !region.lacks(pixels.part) {
-            return Err(part(pixels.parts));
+            return Err(unexpected_part(pixels));
         }
         return Ok(buffer.add(region));
     };
     if buffer.region(place).lacks(pixels.part) {
         return Ok(place);
     }
-    Err(part(pixels.parts))
+    Err(unexpected_part(pixels))
+}
+
+/// A message that has come before, or of a number that its region does not have.
+const fn unexpected_part(pixels: &RegionPixels) -> FrameBufferFault {
+    FrameBufferFault::Part { target: pixels.target, found: pixels.part, parts: pixels.parts }
 }

@@ -37,8 +37,7 @@ impl Buffer {
 
     /// The region of this target that is arriving.
     pub(crate) fn arriving(&mut self, target: &CopyTarget) -> Option<usize> {
-        let is_its = |place: &&usize| self.held[**place].region.target == *target;
-        self.arriving.iter().rev().find(is_its).copied()
+        self.arriving.iter().rev().copied().find(|place| self.held[*place].region.target == *target)
     }
 
     pub(crate) fn add(&mut self, region: RegionWrite) -> usize {
@@ -83,13 +82,11 @@ impl Buffer {
     /// Everything written, oldest first.
     pub(crate) fn share(&mut self) -> Regions {
         let held = &self.held;
-        let collect = || held.iter().map(|h| Arc::clone(&h.region)).collect();
-        Arc::clone(self.shared.get_or_insert_with(collect))
+        Arc::clone(self.shared.get_or_insert_with(|| regions_of(held)))
     }
 
     pub(crate) fn regions(&self) -> Regions {
-        let collect = || self.held.iter().map(|h| Arc::clone(&h.region)).collect();
-        self.shared.clone().unwrap_or_else(collect)
+        self.shared.clone().unwrap_or_else(|| regions_of(&self.held))
     }
 
     /// Forgets what cannot be seen any more.
@@ -123,6 +120,10 @@ impl Buffer {
         self.shared = None;
         self.index();
     }
+}
+
+fn regions_of(held: &[Held]) -> Regions {
+    held.iter().map(|held| Arc::clone(&held.region)).collect()
 }
 
 /// What two regions that fill the same pixels have in common.

@@ -1,7 +1,8 @@
 //! What a frame buffer is built from.
 
-use crate::{PortTiming, VideoTiming};
-use parameters::{ParameterError, ParameterTable, check};
+use crate::error::FrameBufferConfigError;
+use crate::timing::{PortTiming, VideoTiming};
+use parameters::{ParameterTable, check};
 
 /// Numbers of one frame-buffer board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -23,25 +24,11 @@ impl FrameBufferConfig {
     ///
     /// # Errors
     ///
-    /// [`ConfigError::Number`] names the number, what was expected and what was found.
-    pub fn check(&self) -> Result<(), ConfigError> {
+    /// [`FrameBufferConfigError::Number`] names the number, what was expected and what was found.
+    pub fn check(&self) -> Result<(), FrameBufferConfigError> {
         self.video.check()?;
         self.port.check()?;
         check("fields_kept", self.fields_kept, (1, 1_000))?;
         Ok(())
     }
-}
-
-/// Why a frame buffer cannot be built.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ConfigError {
-    /// A number is outside of what the model can take.
-    #[error("frame buffer: {0}")]
-    Number(#[from] ParameterError),
-    /// The pixel clock gives no field that fits into the range of a time.
-    #[error(
-        "frame buffer: the period of a field is out of range; expected pixel_ps x frame_lines x line_pixels below 2^64"
-    )]
-    Clock,
 }

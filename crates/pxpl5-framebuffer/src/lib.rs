@@ -53,6 +53,7 @@
 mod board;
 mod buffer;
 mod config;
+mod error;
 mod ntsc;
 mod picture;
 mod port;
@@ -63,12 +64,13 @@ mod timing;
 mod video;
 
 pub use board::FrameBuffer;
-pub use config::{ConfigError, FrameBufferConfig};
+pub use config::FrameBufferConfig;
+pub use error::FrameBufferConfigError;
 pub use image::RgbImage;
 pub use ntsc::{NtscDisplay, seen_at};
 pub use picture::{PictureError, write_png};
 pub use port::{Faults, FrameBufferEvent, FrameBufferFault, FrameBufferOutput};
-pub use seen::{BufferContents, LateRegion, SeenField};
+pub use seen::{BufferContents, SeenField, SeenLateRegion};
 pub use stats::FrameBufferStats;
 pub use timing::{PortTiming, VideoTiming};
 pub use video::Video;

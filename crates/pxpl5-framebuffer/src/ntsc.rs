@@ -1,6 +1,8 @@
 //! The NTSC display: one frame buffer for each eye, in lock-step.
 
-use crate::{ConfigError, FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput, SeenField, Video};
+use crate::{
+    FrameBuffer, FrameBufferConfig, FrameBufferConfigError, FrameBufferEvent, FrameBufferOutput, SeenField, Video,
+};
 use image::RgbImage;
 use parameters::ParameterTable;
 use pxpl5_display::{
@@ -40,6 +42,11 @@ impl NtscDisplay {
         for (time, output) in self.context.drain_outputs() {
             context.output(time, passed_on(board, output));
         }
+    }
+
+    /// A counter of all boards together.
+    fn sum(&self, count: fn(&FrameBuffer) -> u64) -> u64 {
+        self.boards.iter().map(count).sum()
     }
 }
 
@@ -127,12 +134,11 @@ impl Display for NtscDisplay {
     }
 
     fn counters(&self) -> Vec<Counter> {
-        let sum = |count: fn(&FrameBuffer) -> u64| self.boards.iter().map(count).sum();
         vec![
             Counter { name: "fields", count: self.boards.first().map_or(0, |board| board.stats().fields) },
-            Counter { name: "messages", count: sum(|board| board.stats().messages) },
-            Counter { name: "regions", count: sum(|board| board.stats().regions) },
-            Counter { name: "swaps", count: sum(|board| board.stats().swaps) },
+            Counter { name: "messages", count: self.sum(|board| board.stats().messages) },
+            Counter { name: "regions", count: self.sum(|board| board.stats().regions) },
+            Counter { name: "swaps", count: self.sum(|board| board.stats().swaps) },
         ]
     }
 
@@ -214,6 +220,6 @@ impl DisplayConfig for FrameBufferConfig {
     }
 }
 
-fn refused(error: ConfigError) -> DisplayError {
+fn refused(error: FrameBufferConfigError) -> DisplayError {
     DisplayError(error.to_string())
 }

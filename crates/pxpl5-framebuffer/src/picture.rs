@@ -19,7 +19,7 @@ pub(crate) struct Canvas {
 }
 
 /// Some pixels of one row.
-pub(crate) struct Row<'a>(&'a mut [Word]);
+pub(crate) struct CanvasRow<'a>(&'a mut [Word]);
 
 impl Canvas {
     pub(crate) fn new(width: u32, height: u32) -> Self {
@@ -28,9 +28,9 @@ impl Canvas {
     }
 
     /// `length` pixels of which the first stands at [x, y]; they must lie in the canvas.
-    pub(crate) fn row(&mut self, [x, y]: [u32; 2], length: u32) -> Row<'_> {
+    pub(crate) fn row(&mut self, [x, y]: [u32; 2], length: u32) -> CanvasRow<'_> {
         let begin = (y * self.width + x) as usize;
-        Row(&mut self.words[begin..begin + length as usize])
+        CanvasRow(&mut self.words[begin..begin + length as usize])
     }
 
     pub(crate) fn into_image(self) -> RgbImage {
@@ -44,7 +44,7 @@ impl Canvas {
     }
 }
 
-impl Row<'_> {
+impl CanvasRow<'_> {
     /// Puts those pixels of a segment that are chosen; the image is computed only when one of them is missing.
     pub(crate) fn put(self, image: &impl Deref<Target = Arc<[Word]>>, segment: &Segment, chosen: impl Fn(u32) -> bool) {
         if self.0.iter().all(|word| word & PUT != 0) {

@@ -53,11 +53,11 @@ impl RegionWrite {
     /// A region of which nothing has arrived.
     pub(crate) fn new(pixels: &RegionPixels, video: &Video) -> Result<Self, FrameBufferFault> {
         let target = pixels.target;
-        let outside = || FrameBufferFault::Region { target, frame: [video.width(), video.height()] };
-        let rectangle = rectangle(video, &target).ok_or_else(outside)?;
+        let outside = FrameBufferFault::Region { target, frame: [video.width(), video.height()] };
+        let Some(rectangle) = rectangle(video, &target) else { return Err(outside) };
         let [_, _, width, height] = rectangle;
         if width > REGION_SIZE || height > REGION_SIZE {
-            return Err(outside());
+            return Err(outside);
         }
         let expected = (width * height).div_ceil(MAX_MESSAGE_WORDS);
         if pixels.parts != expected {
@@ -108,7 +108,8 @@ impl RegionWrite {
     /// As `segments`, with those that never arrived.
     pub(crate) fn row(&self, row: u32, word: Span) -> impl Iterator<Item = Segment> + '_ {
         let [_, _, width, _] = self.rectangle;
-        let (begin, end) = (row * width, (row + 1) * width);
+        let begin = row * width;
+        let end = begin + width;
         let parts = begin / MAX_MESSAGE_WORDS..=(end - 1) / MAX_MESSAGE_WORDS;
         parts.map(move |part| {
             let first = begin.max(part * MAX_MESSAGE_WORDS);

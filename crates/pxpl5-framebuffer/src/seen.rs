@@ -23,7 +23,7 @@ pub struct SeenField {
 /// A region of which pixels were scanned before they had arrived, so that older ones are seen in their place. For
 /// which field it was meant the board cannot know: compare `target.picture`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LateRegion {
+pub struct SeenLateRegion {
     /// The region.
     pub target: CopyTarget,
     /// When its last message arrived; `None` when that was not before the end of the field.
@@ -79,7 +79,7 @@ impl SeenField {
 
     /// Regions that came too late for this field, in order of their arrival.
     #[must_use]
-    pub fn late_regions(&self) -> Vec<LateRegion> {
+    pub fn late_regions(&self) -> Vec<SeenLateRegion> {
         let during = self.regions.iter().filter(|region| self.may_be_late(region));
         during.filter_map(|region| self.late(region)).collect()
     }
@@ -118,8 +118,8 @@ impl SeenField {
         Some(arrived.min(self.ends_at).since(scanned_at))
     }
 
-    fn late(&self, region: &RegionWrite) -> Option<LateRegion> {
-        let mut late = LateRegion {
+    fn late(&self, region: &RegionWrite) -> Option<SeenLateRegion> {
+        let mut late = SeenLateRegion {
             target: region.target,
             arrived_at: region.last_at().filter(|last| *last < self.ends_at),
             first_line: 0,
@@ -138,7 +138,7 @@ impl SeenField {
     }
 }
 
-impl LateRegion {
+impl SeenLateRegion {
     fn add(&mut self, y: u32, lateness: Span) {
         if self.lines == 0 {
             self.first_line = y;

@@ -1,6 +1,6 @@
 //! Every number of the frame buffer.
 
-use crate::ConfigError;
+use crate::error::FrameBufferConfigError;
 use parameters::{MAX, ParameterTable, check};
 use pxpl5_sim::Clock;
 
@@ -41,8 +41,8 @@ impl VideoTiming {
     ///
     /// # Errors
     ///
-    /// [`ConfigError::Number`] names the number, what was expected and what was found.
-    pub fn check(&self) -> Result<(), ConfigError> {
+    /// [`FrameBufferConfigError::Number`] names the number, what was expected and what was found.
+    pub fn check(&self) -> Result<(), FrameBufferConfigError> {
         ParameterTable::check(self)?;
         check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX))?;
         check("visible_pixels", self.visible_pixels, (1, self.line_pixels))?;

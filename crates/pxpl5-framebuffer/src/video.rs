@@ -1,6 +1,6 @@
 //! Where the beam is, exactly.
 
-use crate::{ConfigError, VideoTiming};
+use crate::{FrameBufferConfigError, VideoTiming};
 use pxpl5_sim::{Clock, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, RegionGrid};
 
@@ -21,14 +21,14 @@ impl Video {
     ///
     /// # Errors
     ///
-    /// As [`VideoTiming::check`], and [`ConfigError::Clock`].
-    pub fn new(timing: VideoTiming) -> Result<Self, ConfigError> {
+    /// As [`VideoTiming::check`], and [`FrameBufferConfigError::Clock`].
+    pub fn new(timing: VideoTiming) -> Result<Self, FrameBufferConfigError> {
         timing.check()?;
         Ok(Self {
             timing,
-            pixel: timing.pixel_clock().ok_or(ConfigError::Clock)?,
-            line: timing.line_clock().ok_or(ConfigError::Clock)?,
-            field: timing.field_clock().ok_or(ConfigError::Clock)?,
+            pixel: timing.pixel_clock().ok_or(FrameBufferConfigError::Clock)?,
+            line: timing.line_clock().ok_or(FrameBufferConfigError::Clock)?,
+            field: timing.field_clock().ok_or(FrameBufferConfigError::Clock)?,
         })
     }
 

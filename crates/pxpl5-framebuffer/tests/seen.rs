@@ -3,7 +3,7 @@
 mod support;
 
 use proptest::prelude::*;
-use pxpl5_framebuffer::{FrameBufferEvent, LateRegion, SeenField};
+use pxpl5_framebuffer::{FrameBufferEvent, SeenField, SeenLateRegion};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, RegionGrid};
 use std::sync::Arc;
@@ -106,7 +106,7 @@ fn model_picture(copies: &[Copied]) -> Vec<u32> {
     words
 }
 
-fn model_late(copy: &Copied) -> Option<LateRegion> {
+fn model_late(copy: &Copied) -> Option<SeenLateRegion> {
     let mut lines = Vec::new();
     let mut lateness = 0;
     copy.each_pixel(|x, y, i| {
@@ -120,7 +120,7 @@ fn model_late(copy: &Copied) -> Option<LateRegion> {
     lines.dedup();
     let last_at = copy.first_at + copy.gap * u64::from(n_parts(&copy.target) - 1);
     // Of a region whose first message is still under way at the end the board knows nothing.
-    (copy.first_at < ENDS && !lines.is_empty()).then(|| LateRegion {
+    (copy.first_at < ENDS && !lines.is_empty()).then(|| SeenLateRegion {
         target: copy.target,
         arrived_at: (last_at < ENDS).then_some(Time(last_at)),
         first_line: lines[0],

@@ -4,7 +4,7 @@ mod support;
 
 use parameters::{ParameterError, ParameterTable, Value};
 use proptest::prelude::*;
-use pxpl5_framebuffer::{ConfigError, Video, VideoTiming};
+use pxpl5_framebuffer::{FrameBufferConfigError, Video, VideoTiming};
 use pxpl5_sim::Time;
 use pxpl5_wire::FieldParity;
 use support::field_target;
@@ -115,7 +115,9 @@ fn numbers_that_cannot_be_scanned_are_refused_by_name() {
         let value = Value::Whole(value);
         timing.set(name, value).expect("known");
         let error = Video::new(timing).expect_err(name);
-        let ConfigError::Number(ParameterError::OutOfLimits { found, .. }) = &error else { panic!("{name}: {error}") };
+        let FrameBufferConfigError::Number(ParameterError::OutOfLimits { found, .. }) = &error else {
+            panic!("{name}: {error}")
+        };
         assert_eq!(*found, value, "{name}: {error}");
         assert!(!error.to_string().is_empty());
     }

@@ -11,70 +11,10 @@
 //! touched. The reverse does not hold: a triangle that passes between the pixel centres of a region touches it without
 //! a pixel, unless it passes between two columns or two rows.
 
-use crate::{Outline, Viewport};
-use pxpl5_wire::{Linear, RegionId};
-use serde::{Deserialize, Serialize};
-
-/// A set of regions of one picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub struct RegionMask(u128);
-
-impl RegionMask {
-    /// Most regions that a picture can have: region numbers 0 to 127.
-    pub const CAPACITY: u32 = u128::BITS;
-
-    /// The set that holds no region.
-    pub const EMPTY: Self = Self(0);
-
-    /// One region; empty if its number is [`Self::CAPACITY`] or more.
-    #[must_use]
-    pub const fn only(region: RegionId) -> Self {
-        if region.0 as u32 >= Self::CAPACITY {
-            return Self::EMPTY;
-        }
-        Self(1 << region.0)
-    }
-
-    /// Whether the set is empty.
-    #[must_use]
-    pub const fn is_empty(self) -> bool {
-        self.0 == 0
-    }
-
-    /// Number of regions in the set.
-    #[must_use]
-    pub const fn len(self) -> u32 {
-        self.0.count_ones()
-    }
-
-    /// Whether `region` is in the set.
-    #[must_use]
-    pub const fn contains(self, region: RegionId) -> bool {
-        Self::only(region).0 & self.0 != 0
-    }
-
-    /// The regions that are in this set or in the other.
-    #[must_use]
-    pub const fn union(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// The set as bits: bit n is region n.
-    #[must_use]
-    pub const fn bits(self) -> u128 {
-        self.0
-    }
-
-    /// The regions by rising number.
-    pub fn iter(self) -> impl Iterator<Item = RegionId> {
-        let mut rest = self.0;
-        std::iter::from_fn(move || {
-            let region = rest.trailing_zeros();
-            rest &= rest.wrapping_sub(1);
-            (region < Self::CAPACITY).then_some(RegionId(region as u16))
-        })
-    }
-}
+use crate::outline::{Outline, extent};
+use crate::regions::RegionMask;
+use crate::view::Viewport;
+use pxpl5_wire::Linear;
 
 /// First and last pixel of an interval along one axis; empty if `first > last`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -182,7 +122,7 @@ impl Binner {
         let inside =
             low_x >= left * 16 + 8 && high_x <= right * 16 + 8 && low_y >= top * 16 + 8 && high_y <= bottom * 16 + 8;
         if inside {
-            return RegionMask(1 << (row * self.columns + column));
+            return RegionMask::with_bits(1 << (row * self.columns + column));
         }
         self.test_edges(outline.x, outline.y, x, y)
     }
@@ -209,7 +149,7 @@ impl Binner {
                 mask |= u128::from(test(column, row)) << (row * self.columns + column);
             }
         }
-        RegionMask(mask)
+        RegionMask::with_bits(mask)
     }
 
     /// First and last pixel of a column of regions.
@@ -234,12 +174,18 @@ impl Binner {
     }
 }
 
-/// Whether a triangle meets a rectangle of pixels, given as first and last pixel and first and last frame line.
-pub(crate) fn meets(outline: &Outline, [left, right]: [i32; 2], [top, bottom]: [i32; 2]) -> bool {
-    let x = pixels_between(&outline.x);
-    let y = pixels_between(&outline.y);
-    let apart = x.first > right || x.last < left || y.first > bottom || y.last < top;
-    !apart && outline.edges().iter().all(|e| greatest(e, (left, right), (top, bottom)) >= 0)
+impl Outline {
+    /// Whether the triangle meets the box around the centres of a rectangle's pixels: first and last pixel across,
+    /// first and last line of the frame down. The rule is that of the regions.
+    #[must_use]
+    pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
+        let x = pixels_between(&self.x);
+        let y = pixels_between(&self.y);
+        let [left, right] = across;
+        let [top, bottom] = lines;
+        let apart = x.first > right || x.last < left || y.first > bottom || y.last < top;
+        !apart && self.edges().iter().all(|e| greatest(e, (left, right), (top, bottom)) >= 0)
+    }
 }
 
 /// Pixels whose centres lie between the least and the greatest of three corners, given in subpixels.
@@ -255,12 +201,6 @@ fn greatest(edge: &Linear, (left, right): (i32, i32), (top, bottom): (i32, i32))
     edge.at(x, y)
 }
 
-/// Smallest and largest of three.
-#[inline(always)]
-pub(crate) fn extent(v: &[i32; 3]) -> [i32; 2] {
-    [v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -272,14 +212,5 @@ mod tests {
                 assert_eq!(quotient(n as i32, reciprocal(size)), (n / size) as i32, "{n} / {size}");
             }
         }
-    }
-
-    #[test]
-    fn a_mask_iterates_its_regions_by_rising_number() {
-        let mask = [0, 5, 127].into_iter().fold(RegionMask::EMPTY, |m, r| m.union(RegionMask::only(RegionId(r))));
-        let found: Vec<u16> = mask.iter().map(|r| r.0).collect();
-        assert_eq!((mask.len(), found), (3, vec![0, 5, 127]));
-        assert!(RegionMask::only(RegionId(128)).is_empty());
-        assert!(!mask.contains(RegionId(128)));
     }
 }

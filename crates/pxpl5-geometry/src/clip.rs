@@ -24,7 +24,7 @@ const MAX_CORNERS: usize = 9;
 
 /// A vertex in clip coordinates with `N` numbers that vary linearly.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Vertex<const N: usize> {
+pub(crate) struct ClipVertex<const N: usize> {
     pub(crate) clip: [f32; 4],
     pub(crate) extra: [f32; N],
 }
@@ -47,7 +47,7 @@ pub(crate) struct Corner<const N: usize> {
 
 impl<const N: usize> Corner<N> {
     /// The corner where a vertex of the triangle is, not a cut.
-    fn at_vertex(vertex: &Vertex<N>) -> Self {
+    fn at_vertex(vertex: &ClipVertex<N>) -> Self {
         Self { clip: vertex.clip.map(f64::from), extra: vertex.extra.map(f64::from), cut: false }
     }
 }
@@ -101,7 +101,7 @@ impl Guard {
     }
 
     /// What is left of a triangle.
-    pub(crate) fn clip<const N: usize>(self, triangle: &[Vertex<N>; 3]) -> Polygon<N> {
+    pub(crate) fn clip<const N: usize>(self, triangle: &[ClipVertex<N>; 3]) -> Polygon<N> {
         let mut polygon = Polygon::empty();
         triangle.iter().for_each(|v| polygon.push(Corner::at_vertex(v)));
         for plane in 0..6 {
@@ -179,8 +179,8 @@ mod tests {
 
     const GUARD: Guard = Guard { x: 10.0, y: 10.0 };
 
-    fn vertex(clip: [f32; 4], extra: f32) -> Vertex<1> {
-        Vertex { clip, extra: [extra] }
+    fn vertex(clip: [f32; 4], extra: f32) -> ClipVertex<1> {
+        ClipVertex { clip, extra: [extra] }
     }
 
     fn corners_on_the_near_plane(polygon: &Polygon<1>) -> Vec<Corner<1>> {

@@ -27,7 +27,7 @@ pub enum Schedule {
 
 /// What the planes of a triangle are made of besides depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Surface {
+pub enum KernelSurface {
     /// Colours, lit at the corners.
     Gouraud,
     /// Normals in eye coordinates.
@@ -40,7 +40,7 @@ pub struct Kernel {
     /// How the code was made: by a compiler or by hand.
     pub schedule: Schedule,
     /// Kind of triangle that it sets up.
-    pub surface: Surface,
+    pub surface: KernelSurface,
     /// Whether the picture is a field instead of a frame.
     pub field: bool,
     /// Whether it puts commands into bins; else all of them go everywhere.
@@ -67,7 +67,7 @@ const FLIP: Word = 0x9700_0000;
 impl Kernel {
     /// The kernel for a picture; `None` where there is none: pictures other than NTSC frames and fields.
     #[must_use]
-    pub fn of(schedule: Schedule, surface: Surface, viewport: &Viewport, binned: bool) -> Option<Self> {
+    pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
         let field = matches!(viewport.lines(), Lines::Field(_));
         let grid = if field { RegionGrid::FIELD } else { RegionGrid::FRAME };
         (viewport.grid() == grid).then_some(Self { schedule, surface, field, binned })
@@ -78,8 +78,8 @@ impl Kernel {
     pub fn source(&self) -> String {
         let picture = if self.field { include_str!("../kernels/field.s") } else { include_str!("../kernels/frame.s") };
         let surface = match self.surface {
-            Surface::Gouraud => include_str!("../kernels/gouraud.s"),
-            Surface::Phong => include_str!("../kernels/phong.s"),
+            KernelSurface::Gouraud => include_str!("../kernels/gouraud.s"),
+            KernelSurface::Phong => include_str!("../kernels/phong.s"),
         };
         let triangle = match self.schedule {
             Schedule::Straight => include_str!("../kernels/triangle_straight.s"),
@@ -94,15 +94,15 @@ impl Kernel {
     #[must_use]
     pub const fn command_bytes(&self) -> u32 {
         match self.surface {
-            Surface::Gouraud => 120,
-            Surface::Phong => 128,
+            KernelSurface::Gouraud => 120,
+            KernelSurface::Phong => 128,
         }
     }
 
     /// The parameter block for a view.
     #[must_use]
     pub fn parameters(&self, transform: &Transform, light: &Light, heads: &Heads) -> [Word; PARAMETER_WORDS] {
-        let mut words = Words([0; PARAMETER_WORDS]);
+        let mut words = ParameterWords([0; PARAMETER_WORDS]);
         let clip = transform.to_clip.rows();
         let eye = transform.to_eye.rows();
         let guard = &transform.guard;
@@ -127,8 +127,8 @@ impl Kernel {
         let two_52 = (1u64 << 52) as f64;
         let two_31 = f64::from(1u32 << 31);
         let surface = match self.surface {
-            Surface::Gouraud => two_52,
-            Surface::Phong => two_52 + two_31,
+            KernelSurface::Gouraud => two_52,
+            KernelSurface::Phong => two_52 + two_31,
         };
         [
             2.0,
@@ -149,9 +149,9 @@ impl Kernel {
 }
 
 /// A parameter block in the making; places in bytes, as in kernels/parameters.s.
-struct Words([Word; PARAMETER_WORDS]);
+struct ParameterWords([Word; PARAMETER_WORDS]);
 
-impl Words {
+impl ParameterWords {
     fn integers(&mut self, at: usize, values: &[Word]) {
         self.0[at / 4..at / 4 + values.len()].copy_from_slice(values);
     }

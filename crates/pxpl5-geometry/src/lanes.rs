@@ -2,11 +2,12 @@
 //!
 //! Every lane computes what [`crate::ScreenTriangle`] and [`crate::plane`] compute for one triangle, bit for bit. Integers
 //! that need more than 32 bits (products of two differences of corners, below 2^34) are held as doubles, which are exact.
-//! The loops are plain Rust, compiled once for each vector unit (see [`multiversion`]); there is nothing in which the units
+//! The loops are plain Rust, compiled once for each vector unit (see [`mod@multiversion`]); there is nothing in which the units
 //! could differ.
 
+use crate::outline::SUBPIXELS;
 use crate::plane::{self, MAX_SLOPE};
-use crate::screen::{self, SUBPIXELS};
+use crate::screen;
 use crate::vertex::{UnclippedTriangle, VertexSurface};
 use crate::{GouraudTriangle, PhongTriangle, SetupStats, Transform, Viewport};
 use multiversion::multiversion;
@@ -16,19 +17,19 @@ use pxpl5_wire::{Linear, format};
 pub const LANES: usize = 8;
 
 /// One of each triangle.
-pub(crate) type Lanes<T> = [T; LANES];
+pub(crate) type PerTriangle<T> = [T; LANES];
 
 /// Up to [`LANES`] triangles that need no clipping, with what their surfaces need.
 #[derive(Clone, Debug)]
 pub struct TriangleLanes {
     len: usize,
     /// First by corner, then by triangle; x and y in 1/16 px.
-    x: [Lanes<i32>; 3],
-    y: [Lanes<i32>; 3],
-    z: [Lanes<u32>; 3],
-    facing: [Lanes<f32>; 3],
+    x: [PerTriangle<i32>; 3],
+    y: [PerTriangle<i32>; 3],
+    z: [PerTriangle<u32>; 3],
+    facing: [PerTriangle<f32>; 3],
     /// First by component of colour or normal, then by corner, then by triangle.
-    surface: [[Lanes<f32>; 3]; 3],
+    surface: [[PerTriangle<f32>; 3]; 3],
 }
 
 impl Default for TriangleLanes {
@@ -94,9 +95,9 @@ impl TriangleLanes {
 /// Linear expressions, one a lane.
 #[derive(Clone, Copy, Debug, Default)]
 struct Linears {
-    a: Lanes<i32>,
-    b: Lanes<i32>,
-    c: Lanes<i32>,
+    a: PerTriangle<i32>,
+    b: PerTriangle<i32>,
+    c: PerTriangle<i32>,
 }
 
 impl Linears {
@@ -107,7 +108,7 @@ impl Linears {
 
     /// A constant where `there` is not all ones, but zero.
     #[inline(always)]
-    fn or_constant(mut self, constant: i32, there: &Lanes<i32>) -> Self {
+    fn or_constant(mut self, constant: i32, there: &PerTriangle<i32>) -> Self {
         for (i, there) in there.iter().enumerate() {
             self.a[i] &= there;
             self.b[i] &= there;
@@ -124,7 +125,7 @@ struct Expressions {
     /// Depth, then the components.
     planes: [Linears; 4],
     /// How many of the planes are flat.
-    flattened: Lanes<u8>,
+    flattened: PerTriangle<u8>,
 }
 
 /// The expressions of one triangle: its edges, its depth, and the components of its colour or normal.
@@ -188,7 +189,7 @@ impl Transform {
     }
 
     fn set_up_lanes(&self, triangles: &TriangleLanes, half: f32, stats: &mut SetupStats) -> Expressions {
-        let out = set_up(triangles, half, Rows::of_picture(&self.viewport));
+        let out = set_up(triangles, half, PictureRows::of_picture(&self.viewport));
         stats.flattened_planes += out.flattened[..triangles.len].iter().map(|n| u64::from(*n)).sum::<u64>();
         out
     }
@@ -200,14 +201,14 @@ const fn last_subpixel(pixels: u32) -> i32 {
 
 /// How the rows of a picture lie among the lines of the frame.
 #[derive(Clone, Copy)]
-struct Rows {
+struct PictureRows {
     line_step: i32,
     first_line: i32,
     /// Last subpixel of the frame, across and down.
     last: [i32; 2],
 }
 
-impl Rows {
+impl PictureRows {
     fn of_picture(viewport: &Viewport) -> Self {
         Self {
             line_step: viewport.line_step() as i32,
@@ -231,8 +232,8 @@ impl Rows {
 }
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn set_up(triangles: &TriangleLanes, half: f32, rows: Rows) -> Expressions {
-    let planes = Planes::through_corners(triangles, rows);
+fn set_up(triangles: &TriangleLanes, half: f32, rows: PictureRows) -> Expressions {
+    let planes = LanePlanes::through_corners(triangles, rows);
     let away = away(&triangles.facing);
     let mut flattened = [0; LANES];
     let there = with_area(&planes.twice_area);
@@ -259,7 +260,7 @@ fn set_up(triangles: &TriangleLanes, half: f32, rows: Rows) -> Expressions {
 }
 
 #[inline(always)]
-fn depths(z: &Lanes<u32>) -> Lanes<f64> {
+fn depths(z: &PerTriangle<u32>) -> PerTriangle<f64> {
     let mut out = [0.0; LANES];
     for i in 0..LANES {
         out[i] = f64::from(z[i]);
@@ -269,7 +270,7 @@ fn depths(z: &Lanes<u32>) -> Lanes<f64> {
 
 /// Which surfaces face away from the eye on the whole, as in [`crate::light::turned`].
 #[inline(always)]
-fn away([p, q, r]: &[Lanes<f32>; 3]) -> Lanes<bool> {
+fn away([p, q, r]: &[PerTriangle<f32>; 3]) -> PerTriangle<bool> {
     let mut away = [false; LANES];
     for i in 0..LANES {
         away[i] = (p[i] + q[i]) + r[i] < 0.0;
@@ -279,12 +280,12 @@ fn away([p, q, r]: &[Lanes<f32>; 3]) -> Lanes<bool> {
 
 /// A component at the corners, turned over where it faces away, and `half` a unit more.
 #[inline(always)]
-fn component([p, q, r]: &[Lanes<f32>; 3], away: &Lanes<bool>, half: f32) -> [Lanes<f64>; 3] {
+fn component([p, q, r]: &[PerTriangle<f32>; 3], away: &PerTriangle<bool>, half: f32) -> [PerTriangle<f64>; 3] {
     [values(p, away, half), values(q, away, half), values(r, away, half)]
 }
 
 #[inline(always)]
-fn values(corner: &Lanes<f32>, away: &Lanes<bool>, half: f32) -> Lanes<f64> {
+fn values(corner: &PerTriangle<f32>, away: &PerTriangle<bool>, half: f32) -> PerTriangle<f64> {
     let mut out = [0.0; LANES];
     for i in 0..LANES {
         let value = if away[i] { -corner[i] } else { corner[i] };
@@ -295,7 +296,7 @@ fn values(corner: &Lanes<f32>, away: &Lanes<bool>, half: f32) -> Lanes<f64> {
 
 /// Which triangles have an area: all bits set there.
 #[inline(always)]
-fn with_area(twice_area: &Lanes<f64>) -> Lanes<i32> {
+fn with_area(twice_area: &PerTriangle<f64>) -> PerTriangle<i32> {
     let mut out = [0; LANES];
     for i in 0..LANES {
         out[i] = -i32::from(twice_area[i] != 0.0);
@@ -305,7 +306,7 @@ fn with_area(twice_area: &Lanes<f64>) -> Lanes<i32> {
 
 /// Which triangles run counterclockwise: all bits set there.
 #[inline(always)]
-fn counterclockwise(twice_area: &Lanes<f64>) -> Lanes<i32> {
+fn counterclockwise(twice_area: &PerTriangle<f64>) -> PerTriangle<i32> {
     let mut out = [0; LANES];
     for i in 0..LANES {
         out[i] = -i32::from(twice_area[i] < 0.0);
@@ -316,7 +317,7 @@ fn counterclockwise(twice_area: &Lanes<f64>) -> Lanes<i32> {
 /// Corners in clockwise order: two change places where told. By masks, since compilers make choices between addresses of
 /// choices between values.
 #[inline(always)]
-fn clockwise([p, q, r]: &[Lanes<i32>; 3], swapped: &Lanes<i32>) -> [Lanes<i32>; 3] {
+fn clockwise([p, q, r]: &[PerTriangle<i32>; 3], swapped: &PerTriangle<i32>) -> [PerTriangle<i32>; 3] {
     let mut second = [0; LANES];
     let mut third = [0; LANES];
     for i in 0..LANES {
@@ -329,7 +330,7 @@ fn clockwise([p, q, r]: &[Lanes<i32>; 3], swapped: &Lanes<i32>) -> [Lanes<i32>; 
 
 /// The edge from one corner to the next at the pixels of the frame, as in [`crate::Outline`].
 #[inline(always)]
-fn edge([x, to_x]: [&Lanes<i32>; 2], [y, to_y]: [&Lanes<i32>; 2]) -> Linears {
+fn edge([x, to_x]: [&PerTriangle<i32>; 2], [y, to_y]: [&PerTriangle<i32>; 2]) -> Linears {
     let mut out = Linears::default();
     for i in 0..LANES {
         let dx = to_x[i] - x[i];
@@ -353,19 +354,19 @@ fn sixteenth(k: f64) -> i32 {
 }
 
 /// What the planes of each triangle share; see [`plane::Planes`].
-struct Planes {
-    twice_area: Lanes<f64>,
-    x: [Lanes<f64>; 2],
-    y: [Lanes<f64>; 2],
-    per_pixel: Lanes<f64>,
-    to_reference: [Lanes<f64>; 2],
-    reference: [Lanes<i32>; 2],
+struct LanePlanes {
+    twice_area: PerTriangle<f64>,
+    x: [PerTriangle<f64>; 2],
+    y: [PerTriangle<f64>; 2],
+    per_pixel: PerTriangle<f64>,
+    to_reference: [PerTriangle<f64>; 2],
+    reference: [PerTriangle<i32>; 2],
 }
 
-impl Planes {
+impl LanePlanes {
     /// The corners may run either way: a change of direction changes the signs of products and area alike.
     #[inline(always)]
-    fn through_corners(triangles: &TriangleLanes, rows: Rows) -> Self {
+    fn through_corners(triangles: &TriangleLanes, rows: PictureRows) -> Self {
         let [p, q, r] = &triangles.x;
         let [s, t, u] = &triangles.y;
         let x = [side(p, q), side(p, r)];
@@ -383,7 +384,7 @@ impl Planes {
 
     /// The planes through three values of each at the frame's pixels; counts the flat ones.
     #[inline(always)]
-    fn through(&self, [p, q, r]: &[Lanes<f64>; 3], flattened: &mut Lanes<u8>) -> Linears {
+    fn through(&self, [p, q, r]: &[PerTriangle<f64>; 3], flattened: &mut PerTriangle<u8>) -> Linears {
         let mut out = Linears::default();
         let mut flat = [false; LANES];
         for i in 0..LANES {
@@ -408,7 +409,7 @@ impl Planes {
 }
 
 #[cold]
-fn flatten(v: [&Lanes<f64>; 3], flat: &Lanes<bool>, out: &mut Linears, flattened: &mut Lanes<u8>) {
+fn flatten(v: [&PerTriangle<f64>; 3], flat: &PerTriangle<bool>, out: &mut Linears, flattened: &mut PerTriangle<u8>) {
     for i in (0..LANES).filter(|i| flat[*i]) {
         let Linear { a, b, c } = plane::flat(v.map(|v| v[i]));
         out.a[i] = a;
@@ -420,7 +421,7 @@ fn flatten(v: [&Lanes<f64>; 3], flat: &Lanes<bool>, out: &mut Linears, flattened
 
 /// From one corner to another.
 #[inline(always)]
-fn side(from: &Lanes<i32>, to: &Lanes<i32>) -> Lanes<f64> {
+fn side(from: &PerTriangle<i32>, to: &PerTriangle<i32>) -> PerTriangle<f64> {
     let mut out = [0.0; LANES];
     for i in 0..LANES {
         out[i] = f64::from(to[i] - from[i]);
@@ -430,7 +431,7 @@ fn side(from: &Lanes<i32>, to: &Lanes<i32>) -> Lanes<f64> {
 
 /// The pixel in the middle of what the picture shows of the corners' range, as in [`crate::Outline`].
 #[inline(always)]
-fn middle([p, q, r]: &[Lanes<i32>; 3], last: i32) -> Lanes<i32> {
+fn middle([p, q, r]: &[PerTriangle<i32>; 3], last: i32) -> PerTriangle<i32> {
     let mut out = [0; LANES];
     for i in 0..LANES {
         let low = p[i].min(q[i]).min(r[i]).clamp(0, last);
@@ -442,7 +443,7 @@ fn middle([p, q, r]: &[Lanes<i32>; 3], last: i32) -> Lanes<i32> {
 
 /// From a corner to the centre of a pixel, in pixels.
 #[inline(always)]
-fn pixels(from: &Lanes<i32>, pixel: &Lanes<i32>) -> Lanes<f64> {
+fn pixels(from: &PerTriangle<i32>, pixel: &PerTriangle<i32>) -> PerTriangle<f64> {
     let mut out = [0.0; LANES];
     for i in 0..LANES {
         out[i] = f64::from(SUBPIXELS * pixel[i] + SUBPIXELS / 2 - from[i]) * (1.0 / f64::from(SUBPIXELS));

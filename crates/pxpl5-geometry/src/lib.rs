@@ -83,30 +83,36 @@ mod conic;
 mod input;
 pub mod kernel;
 mod lanes;
+mod lens;
 mod light;
+mod outline;
 mod plane;
+mod regions;
 mod screen;
 mod sphere;
 mod sphere_setup;
 mod stats;
+mod touch;
 mod touched;
 mod transform;
 mod vertex;
 mod view;
 
-pub use bin::RegionMask;
 pub use clip::MAX_CLIP;
 pub use input::{Light, Sphere, Triangle};
 pub use lanes::{GouraudLanes, LANES, PhongLanes, TriangleLanes};
+pub use outline::Outline;
 pub use plane::MAX_SLOPE;
+pub use regions::RegionMask;
 pub use screen::{
-    DEPTH_FAR, DEPTH_NEAR, GUARD_PIXELS, GouraudTriangle, LitColours, NORMAL_UNIT, Outline, PhongTriangle,
-    ScreenTriangle, SurfaceNormals,
+    DEPTH_FAR, DEPTH_NEAR, GUARD_PIXELS, GouraudTriangle, LitColours, NORMAL_UNIT, PhongTriangle, ScreenTriangle,
+    SurfaceNormals,
 };
 pub use sphere::ScreenSphere;
 pub use sphere_setup::{GouraudSphere, PhongSphere, SphereSetup};
 pub use stats::SetupStats;
-pub use touched::{Touch, Touched};
+pub use touch::Touch;
+pub use touched::Touched;
 pub use transform::{Culling, Transform, TriangleEnds};
 pub use vertex::{ScreenVertex, UnclippedTriangle, VertexSurface};
 pub use view::{MAX_PICTURE, ViewError, ViewTransform, Viewport};

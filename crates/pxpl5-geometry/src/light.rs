@@ -5,7 +5,7 @@ use crate::{Light, Triangle};
 use glam::Vec3;
 
 /// A light seen from one eye.
-pub(crate) struct Lighting<'a> {
+pub(crate) struct EyeLighting<'a> {
     to_eye: &'a FromWorld,
     light: &'a Light,
 }
@@ -35,7 +35,7 @@ fn towards_eye(to_eye: &FromWorld, position: Vec3, normal: [f32; 3]) -> f32 {
     -dot([x, y, z], normal)
 }
 
-impl<'a> Lighting<'a> {
+impl<'a> EyeLighting<'a> {
     pub(crate) fn new(to_eye: &'a FromWorld, light: &'a Light) -> Self {
         Self { to_eye, light }
     }

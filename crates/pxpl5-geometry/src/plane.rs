@@ -10,7 +10,8 @@
 //! within a pixel. Expressions are evaluated modulo 2^32 at integer pixels, so coefficients modulo 2^32 give the
 //! right value wherever the true value fits in 32 bits, which it does at every covered pixel.
 
-use crate::{Outline, SetupStats};
+use crate::outline::Outline;
+use crate::stats::SetupStats;
 use pxpl5_wire::Linear;
 
 /// Steepest plane in units of the expression's last bit per pixel: the whole range of 32 bits in one subpixel.

@@ -1,7 +1,9 @@
 //! Screen triangles: what is kept between transform and set-up.
 
-use crate::bin::extent;
-use crate::{RegionMask, SetupStats, Viewport, plane};
+use crate::outline::{Outline, SUBPIXELS, extent};
+use crate::plane::Planes;
+use crate::stats::SetupStats;
+use crate::view::Viewport;
 use pxpl5_wire::{Linear, format};
 
 /// Vertices of a screen triangle lie at most this many pixels from pixel (0, 0), along x and along y.
@@ -10,9 +12,6 @@ use pxpl5_wire::{Linear, format};
 /// 1/256 px, so an edge expression (in 1/16 of that) is at most 2^30 at any pixel inside the square, and no
 /// sum leaves 32 bits.
 pub const GUARD_PIXELS: i32 = 4096;
-
-/// Subpixels along one side of a pixel.
-pub(crate) const SUBPIXELS: i32 = 1 << format::SUBPIXEL_BITS;
 
 /// Depth of the near plane in pixel depth with [`format::Z_FRACTION_BITS`] fraction bits: 8 units of pixel depth.
 ///
@@ -52,21 +51,6 @@ pub(crate) fn normal_fixed(component: f32) -> i16 {
 pub(crate) fn depth_fixed(depth: f32) -> u32 {
     let scaled = f64::from(depth) * f64::from(DEPTH_FAR - DEPTH_NEAR);
     (scaled + f64::from(DEPTH_NEAR) + 0.5).clamp(f64::from(DEPTH_NEAR), f64::from(DEPTH_FAR)) as u32
-}
-
-/// Corners and depths of a triangle on the screen, and the regions it touches.
-///
-/// The corners run clockwise as seen on the screen (y grows downwards), whatever the input's winding.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Outline {
-    /// Distance from the picture's left border in 1/16 px.
-    pub x: [i32; 3],
-    /// Distance from the frame's top border in 1/16 px, also for a field.
-    pub y: [i32; 3],
-    /// Depths, from [`DEPTH_NEAR`] to [`DEPTH_FAR`].
-    pub z: [u32; 3],
-    /// The regions that the triangle touches, to which its commands go.
-    pub regions: RegionMask,
 }
 
 /// A triangle on the screen with what its surface needs, `A` for each corner.
@@ -120,43 +104,6 @@ pub struct PhongTriangle {
 }
 
 impl Outline {
-    /// Twice the area in 1/256 square px; positive unless the corners lie on one line.
-    #[inline(always)]
-    pub(crate) fn twice_area(&self) -> i64 {
-        let x = &self.x;
-        let y = &self.y;
-        i64::from(x[1] - x[0]) * i64::from(y[2] - y[0]) - i64::from(y[1] - y[0]) * i64::from(x[2] - x[0])
-    }
-
-    /// Whether the triangle meets the box around the centres of a rectangle's pixels: first and last pixel across,
-    /// first and last line of the frame down. The rule is that of the regions.
-    #[must_use]
-    pub fn meets(&self, across: [i32; 2], lines: [i32; 2]) -> bool {
-        crate::bin::meets(self, across, lines)
-    }
-
-    /// The edges from corner 0 to 1, 1 to 2 and 2 to 0 at the pixels of the *frame*.
-    #[inline(always)]
-    pub(crate) fn edges(&self) -> [Linear; 3] {
-        [self.edge(0, 1), self.edge(1, 2), self.edge(2, 0)]
-    }
-
-    /// Twice the area of (from, to, pixel centre), in 1/16 square px, rounded down.
-    ///
-    /// The area in 1/256 square px is `16 (dx y - dy x) + k` at pixel (x, y). It is at least 0 exactly where
-    /// `dx y - dy x + floor(k / 16)` is, so nothing is lost. A pixel centre on the line itself belongs to the
-    /// triangle only along a top or a left edge: elsewhere k is less by one.
-    #[inline(always)]
-    fn edge(&self, from: usize, to: usize) -> Linear {
-        let dx = self.x[to] - self.x[from];
-        let dy = self.y[to] - self.y[from];
-        let top_left = dy < 0 || (dy == 0 && dx > 0);
-        let k = i64::from(dx) * i64::from(SUBPIXELS / 2 - self.y[from])
-            - i64::from(dy) * i64::from(SUBPIXELS / 2 - self.x[from])
-            - i64::from(!top_left);
-        Linear { a: -dy, b: dx, c: (k >> format::SUBPIXEL_BITS) as i32 }
-    }
-
     /// The expressions of a triangle with these colours at its corners, in the expressions' units.
     #[inline(always)]
     pub(crate) fn gouraud(
@@ -192,7 +139,7 @@ impl Outline {
     /// The planes through the corners' depths and three more integers of each, at the picture's pixels.
     #[inline(always)]
     fn planes(&self, corners: [[f32; 3]; 3], viewport: &Viewport, stats: &mut SetupStats) -> [Linear; 4] {
-        let planes = plane::Planes::for_outline(self, self.middle(viewport));
+        let planes = Planes::for_outline(self, self.middle(viewport));
         let [za, zb, zc] = self.z;
         let depths = [f64::from(za), f64::from(zb), f64::from(zc)];
         [

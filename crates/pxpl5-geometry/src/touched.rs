@@ -1,58 +1,11 @@
 //! The regions that the triangles of a mesh touch, found once for all who hold some of them.
 
 use crate::bin::{Binner, Range, quotient};
-use crate::lanes::{LANES, Lanes};
-use crate::{RegionMask, ScreenVertex, SetupStats, Transform};
+use crate::lanes::{LANES, PerTriangle};
+use crate::touch::Touch;
+use crate::{RegionMask, ScreenVertex, Transform};
 use multiversion::multiversion;
 use pxpl5_wire::RegionId;
-
-/// What binning finds of a triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Touch {
-    /// Not known before it is clipped, which [`Transform::bin`] does.
-    NeedsClipping,
-    /// It has no area after snapping.
-    Degenerate,
-    /// It faces away, and such are culled.
-    BackFacing,
-    /// It touches no region: off the screen, or between pixel centres.
-    Untouched,
-    /// It touches this region alone.
-    Region(RegionId),
-    /// These regions, more than one.
-    Regions(RegionMask),
-}
-
-impl Touch {
-    #[inline(always)]
-    pub(crate) const fn from_mask(regions: RegionMask) -> Self {
-        match regions.len() {
-            0 => Self::Untouched,
-            1 => Self::Region(RegionId(regions.bits().trailing_zeros() as u16)),
-            _ => Self::Regions(regions),
-        }
-    }
-
-    /// The regions, if there are any; counts the screen triangle, or why it is none.
-    #[inline(always)]
-    pub const fn count(self, stats: &mut SetupStats) -> Option<RegionMask> {
-        match self {
-            Self::NeedsClipping => {}
-            Self::Degenerate => stats.degenerate += 1,
-            Self::BackFacing => stats.back_facing += 1,
-            Self::Untouched => stats.untouched += 1,
-            Self::Region(region) => {
-                stats.screen_triangles += 1;
-                return Some(RegionMask::only(region));
-            }
-            Self::Regions(regions) => {
-                stats.screen_triangles += 1;
-                return Some(regions);
-            }
-        }
-        None
-    }
-}
 
 /// What binning finds of the triangles of a mesh, four bytes each.
 #[derive(Clone, Debug, Default)]
@@ -130,18 +83,18 @@ impl Transform {
     }
 }
 
-fn range_in(lane: usize, [first, last]: &[Lanes<i32>; 2]) -> Range {
+fn range_in(lane: usize, [first, last]: &[PerTriangle<i32>; 2]) -> Range {
     Range { first: first[lane], last: last[lane] }
 }
 
-/// CornerLanes of some triangles.
+/// Corners of some triangles.
 #[derive(Debug, Default)]
 struct CornerLanes {
     len: usize,
-    x: [Lanes<i32>; 3],
-    y: [Lanes<i32>; 3],
+    x: [PerTriangle<i32>; 3],
+    y: [PerTriangle<i32>; 3],
     /// Some corner is not inside the guard band.
-    outside: Lanes<bool>,
+    outside: PerTriangle<bool>,
 }
 
 impl CornerLanes {
@@ -173,10 +126,10 @@ impl CornerLanes {
 /// What is found of some triangles at once.
 struct LaneTouches {
     /// As in [`Touched`]; [`SEVERAL`] alone where the edges decide between several regions.
-    codes: Lanes<u32>,
+    codes: PerTriangle<u32>,
     /// First and last column and row of pixels.
-    x: [Lanes<i32>; 2],
-    y: [Lanes<i32>; 2],
+    x: [PerTriangle<i32>; 2],
+    y: [PerTriangle<i32>; 2],
 }
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
@@ -208,7 +161,7 @@ fn touch_lanes(corners: &CornerLanes, binner: &Binner, culling: bool) -> LaneTou
 
 /// Twice the areas, exact: products of two differences of corners need 35 bits.
 #[inline(always)]
-fn areas(CornerLanes { x: [a, b, c], y: [d, e, f], .. }: &CornerLanes) -> Lanes<f64> {
+fn areas(CornerLanes { x: [a, b, c], y: [d, e, f], .. }: &CornerLanes) -> PerTriangle<f64> {
     let mut out = [0.0; LANES];
     for i in 0..LANES {
         let first = f64::from(b[i] - a[i]) * f64::from(f[i] - d[i]);
@@ -219,7 +172,7 @@ fn areas(CornerLanes { x: [a, b, c], y: [d, e, f], .. }: &CornerLanes) -> Lanes<
 
 /// Smallest and largest of the corners.
 #[inline(always)]
-fn extent([p, q, r]: &[Lanes<i32>; 3]) -> [Lanes<i32>; 2] {
+fn extent([p, q, r]: &[PerTriangle<i32>; 3]) -> [PerTriangle<i32>; 2] {
     let mut low = [0; LANES];
     let mut high = [0; LANES];
     for i in 0..LANES {
@@ -231,7 +184,7 @@ fn extent([p, q, r]: &[Lanes<i32>; 3]) -> [Lanes<i32>; 2] {
 
 /// First and last pixel between the smallest and the largest of the corners, as far as the picture goes.
 #[inline(always)]
-fn ranges([low, high]: &[Lanes<i32>; 2], within: impl Fn(Range) -> Range) -> [Lanes<i32>; 2] {
+fn ranges([low, high]: &[PerTriangle<i32>; 2], within: impl Fn(Range) -> Range) -> [PerTriangle<i32>; 2] {
     let mut first = [0; LANES];
     let mut last = [0; LANES];
     for i in 0..LANES {
@@ -245,7 +198,11 @@ fn ranges([low, high]: &[Lanes<i32>; 2], within: impl Fn(Range) -> Range) -> [La
 /// The column or row of regions whose pixel-centre box holds all corners, -1 where none does; `of` gives that of a pixel
 /// and its first and last pixel or line.
 #[inline(always)]
-fn cells([low, high]: &[Lanes<i32>; 2], first: &Lanes<i32>, of: impl Fn(i32) -> (i32, (i32, i32))) -> Lanes<i32> {
+fn cells(
+    [low, high]: &[PerTriangle<i32>; 2],
+    first: &PerTriangle<i32>,
+    of: impl Fn(i32) -> (i32, (i32, i32)),
+) -> PerTriangle<i32> {
     let mut out = [0; LANES];
     for i in 0..LANES {
         let (cell, (begin, end)) = of(first[i]);

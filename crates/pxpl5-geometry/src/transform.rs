@@ -1,12 +1,14 @@
 //! Transform: from triangles in the world to triangles on the screen.
 
 use crate::bin::Binner;
-use crate::clip::{self, Corner, Guard, Vertex};
-use crate::light::Lighting;
-use crate::screen::{self, LitColours, Outline, ScreenTriangle, SurfaceNormals};
-use crate::sphere::Lens;
+use crate::clip::{self, ClipVertex, Corner, Guard};
+use crate::lens::Lens;
+use crate::light::EyeLighting;
+use crate::outline::{Outline, SUBPIXELS};
+use crate::screen::{self, LitColours, ScreenTriangle, SurfaceNormals};
+use crate::touch::Touch;
 use crate::view::{Columns, FromWorld, ViewError};
-use crate::{Light, RegionMask, SetupStats, Touch, Triangle, ViewTransform, Viewport};
+use crate::{Light, RegionMask, SetupStats, Triangle, ViewTransform, Viewport};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -82,7 +84,7 @@ fn whole_between(from: f64, to: f64, s: f64) -> f64 {
 
 /// Half of so many pixels, in subpixels.
 fn half_in_subpixels(pixels: u32) -> f32 {
-    (pixels * screen::SUBPIXELS as u32) as f32 * 0.5
+    (pixels * SUBPIXELS as u32) as f32 * 0.5
 }
 
 impl ToScreen {
@@ -94,7 +96,7 @@ impl ToScreen {
 
     /// The guard band lies one pixel inside [`screen::GUARD_PIXELS`], so that rounding cannot reach beyond.
     fn guard(&self) -> Guard {
-        let limit = ((screen::GUARD_PIXELS - 1) * screen::SUBPIXELS) as f32;
+        let limit = ((screen::GUARD_PIXELS - 1) * SUBPIXELS) as f32;
         Guard { x: (limit - self.centre[0]) / self.centre[0], y: (limit - self.centre[1]) / self.centre[1] }
     }
 
@@ -112,7 +114,7 @@ impl ToScreen {
     /// Divides by w and snaps a corner that clipping left; `None` if it is not inside even so (w near 0). A vertex is
     /// snapped as everywhere, a cut in double precision.
     fn snap_corner<const N: usize>(&self, Corner { clip, cut, .. }: &Corner<N>) -> Option<Snapped> {
-        let limit = f64::from(screen::GUARD_PIXELS * screen::SUBPIXELS);
+        let limit = f64::from(screen::GUARD_PIXELS * SUBPIXELS);
         let inverse = 1.0 / clip[3];
         let x = (clip[0] * inverse) * f64::from(self.scale[0]) + f64::from(self.centre[0]);
         let y = (clip[1] * inverse) * f64::from(self.scale[1]) + f64::from(self.centre[1]);
@@ -204,7 +206,7 @@ impl Transform {
             }
             return;
         }
-        let corners = clip.map(|clip| Vertex { clip, extra: [] });
+        let corners = clip.map(|clip| ClipVertex { clip, extra: [] });
         self.clipped(&corners, stats, |piece, _| sink(piece.outline.regions));
     }
 
@@ -223,7 +225,7 @@ impl Transform {
         stats: &mut SetupStats,
         mut sink: impl FnMut(ScreenTriangle<LitColours>),
     ) {
-        let lighting = Lighting::new(&self.to_eye, light);
+        let lighting = EyeLighting::new(&self.to_eye, light);
         self.triangle(
             &triangle.positions,
             |i| lighting.corner_colour(triangle, i),
@@ -272,7 +274,7 @@ impl Transform {
             }
             return;
         }
-        let corners = std::array::from_fn(|i| Vertex { clip: clip[i], extra: extra(i) });
+        let corners = std::array::from_fn(|i| ClipVertex { clip: clip[i], extra: extra(i) });
         self.clipped(&corners, stats, |piece, extras| sink(piece.outline, extras));
     }
 
@@ -301,7 +303,7 @@ impl Transform {
     ) {
         stats.triangles += 1;
         if let Some(whole) = self.assemble(ends.at(s), stats) {
-            let lighting = Lighting::new(&self.to_eye, light);
+            let lighting = EyeLighting::new(&self.to_eye, light);
             let colours = whole.order([0, 1, 2]).map(|i| lighting.corner_colour(triangle, i));
             sink(lit_triangle(whole.outline, colours));
         }
@@ -343,7 +345,7 @@ impl Transform {
     #[inline(never)]
     fn clipped<const N: usize>(
         &self,
-        corners: &[Vertex<N>; 3],
+        corners: &[ClipVertex<N>; 3],
         stats: &mut SetupStats,
         mut sink: impl FnMut(Assembled, [[f32; N]; 3]),
     ) {

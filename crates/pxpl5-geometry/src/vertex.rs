@@ -3,7 +3,7 @@
 //! Triangles that need no clipping are [binned](Transform::touched) and set up [together](crate::TriangleLanes) from them,
 //! exactly as by [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`]. The others are left to those.
 
-use crate::light::{self, Lighting};
+use crate::light::{self, EyeLighting};
 use crate::screen;
 use crate::transform::Snapped;
 use crate::{Light, Transform};
@@ -69,7 +69,7 @@ impl Transform {
     #[inline]
     #[must_use]
     pub fn vertex_colour(&self, light: &Light, position: Vec3, normal: Vec3, colour: [u8; 3]) -> VertexSurface {
-        let lit = Lighting::new(&self.to_eye, light).colour(position, normal, colour);
+        let lit = EyeLighting::new(&self.to_eye, light).colour(position, normal, colour);
         VertexSurface { values: lit.map(|v| screen::colour_value(screen::colour_fixed(v))), facing: 0.0 }
     }
 }

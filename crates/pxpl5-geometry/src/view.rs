@@ -1,6 +1,6 @@
 //! From world to clip coordinates: the eye's matrices and the picture that they fill.
 
-use crate::RegionMask;
+use crate::regions::RegionMask;
 use glam::{Mat4, Vec3};
 use pxpl5_wire::{Lines, REGION_SIZE, RegionGrid};
 use serde::{Deserialize, Serialize};

@@ -8,8 +8,8 @@
 use image::RgbImage;
 use parameters::ParameterTable;
 use pxpl5_display::{
-    Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, DoubleBuffer, Received,
-    Surface,
+    BufferReceipt, Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput,
+    DoubleBuffer, Surface,
 };
 use pxpl5_sim::{Clock, Span, Time};
 use pxpl5_wire::NodeId;
@@ -73,14 +73,14 @@ impl Display for HiRes {
                 }
             }
             DisplayEvent::Delivered { port, body } => match self.boards[port].receive(body, context.now()) {
-                Received::Region(pixels, first_part_at) => {
+                BufferReceipt::Region(pixels, first_part_at) => {
                     let target = pixels.target;
                     let last_part_at = context.now();
                     let region = DisplayOutput::RegionArrived { surface: port, target, first_part_at, last_part_at };
                     context.output(at, region);
                 }
-                Received::Part => {}
-                Received::Fault => self.faults += 1,
+                BufferReceipt::Part => {}
+                BufferReceipt::Fault => self.faults += 1,
             },
             DisplayEvent::Timer(_) => {}
         }

@@ -8,8 +8,8 @@
 
 use criterion::{Bencher, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5_renderer::{
-    BitSerial, Clear, Command, Lanes, Layout, PhongSphere, PhongTriangle, PixelArray, Shade, Sphere, SphereBody,
-    Triangle, Vectors,
+    BitSerial, Clear, Command, Lanes, Layout, PhongSphereCommand, PhongTriangleCommand, PixelArray, Shade, SphereBody,
+    SphereCommand, TriangleCommand, Vectors,
 };
 use pxpl5_wire::format::COLOUR_FRACTION_BITS;
 use pxpl5_wire::{Linear, Quadratic};
@@ -31,16 +31,16 @@ const fn component(level: i32) -> Linear {
 }
 
 /// Triangle `i` of some, nearer one by one.
-fn triangle(v: [[i32; 2]; 3], i: i32) -> Triangle {
-    Triangle {
+fn triangle(v: [[i32; 2]; 3], i: i32) -> TriangleCommand {
+    TriangleCommand {
         edges: [edge(v[0], v[1]), edge(v[1], v[2]), edge(v[2], v[0])],
         depth: Linear { a: -1000, b: 3000, c: (1 << 30) - i * 1000 },
         colour: [component(200), component(100), component(50)],
     }
 }
 
-fn phong(t: Triangle) -> PhongTriangle {
-    PhongTriangle { edges: t.edges, depth: t.depth, normal: t.colour, colour: 0x80_c0_f0 }
+fn phong(t: TriangleCommand) -> PhongTriangleCommand {
+    PhongTriangleCommand { edges: t.edges, depth: t.depth, normal: t.colour, colour: 0x80_c0_f0 }
 }
 
 /// The same shape at different places of the region.
@@ -87,7 +87,7 @@ fn silhouette(r: i64) -> Quadratic {
 
 fn spheres(r: i64) -> Vec<u32> {
     list((0..COMMANDS as i32).map(|i| {
-        Command::Sphere(Sphere {
+        Command::Sphere(SphereCommand {
             body: body(r, i),
             colour: [Linear { a: 900, b: 500, c: 30 << 12 }; 3],
             root_factor: [200; 3],
@@ -97,7 +97,7 @@ fn spheres(r: i64) -> Vec<u32> {
 
 fn phong_spheres(r: i64) -> Vec<u32> {
     list((0..COMMANDS as i32).map(|i| {
-        Command::PhongSphere(PhongSphere {
+        Command::PhongSphere(PhongSphereCommand {
             body: body(r, i),
             normal: [Linear { a: 16 << 10, b: 0, c: -(1 << 20) }, Linear { a: 0, b: 16 << 10, c: -(1 << 20) }],
             colour: 0x80_c0_f0,

@@ -5,8 +5,8 @@
 //! ```
 
 use pxpl5_renderer::{
-    Clear, Command, Lanes, Layout, PhongSphere, PhongTriangle, PixelArray, SelectRegion, Shade, Sphere, SphereBody,
-    Triangle,
+    Clear, Command, Lanes, Layout, PhongSphereCommand, PhongTriangleCommand, PixelArray, SelectRegion, Shade,
+    SphereBody, SphereCommand, TriangleCommand,
 };
 use pxpl5_wire::{Linear, Quadratic};
 use std::error::Error;
@@ -53,13 +53,13 @@ const DEPTH: f64 = 2_147_483_647.0;
 fn triangle(v: [ScreenPoint; 3], depth: [f64; 3], colours: [[f64; 3]; 3]) -> Command {
     let v = place(v);
     let colour = [0, 1, 2].map(|i| plane(v, colours.map(|c| c[i]), 4096.0));
-    Command::Triangle(Triangle { edges: edges(v), depth: plane(v, depth, DEPTH), colour })
+    Command::Triangle(TriangleCommand { edges: edges(v), depth: plane(v, depth, DEPTH), colour })
 }
 
 fn phong_triangle(v: [ScreenPoint; 3], depth: [f64; 3], normals: [[f64; 3]; 3], colour: u32) -> Command {
     let v = place(v);
     let normal = [0, 1, 2].map(|i| plane(v, normals.map(|n| n[i] * 1000.0), 1024.0));
-    Command::PhongTriangle(PhongTriangle { edges: edges(v), depth: plane(v, depth, DEPTH), normal, colour })
+    Command::PhongTriangle(PhongTriangleCommand { edges: edges(v), depth: plane(v, depth, DEPTH), normal, colour })
 }
 
 /// A sphere without perspective: silhouette and root in 2^-`fraction` of a square pixel, r < 64 pixels.
@@ -106,7 +106,7 @@ impl FlatSphere {
     }
 
     fn gouraud(&self, colour: [f64; 3], light: [f64; 3]) -> Command {
-        Command::Sphere(Sphere {
+        Command::Sphere(SphereCommand {
             body: self.body(),
             colour: colour.map(|c| self.component(c, light)),
             root_factor: colour.map(|c| (light[2] * c * 256.0 / 250.0) as i16),
@@ -114,7 +114,7 @@ impl FlatSphere {
     }
 
     fn phong(&self, colour: u32) -> Command {
-        Command::PhongSphere(PhongSphere {
+        Command::PhongSphere(PhongSphereCommand {
             body: self.body(),
             normal: [self.across(0, 1000.0 * 1024.0), self.across(1, 1000.0 * 1024.0)],
             colour,

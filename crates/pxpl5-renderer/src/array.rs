@@ -20,9 +20,9 @@ pub trait PixelArray {
     /// Runs a list of instructions.
     ///
     /// # Errors
-    /// [`Fault`] at the first illegal word or operand. What stands before it has been executed; it and the rest of the
+    /// [`ArrayFault`] at the first illegal word or operand. What stands before it has been executed; it and the rest of the
     /// list have not. Faults are counted.
-    fn execute(&mut self, words: &[Word]) -> Result<Executed, Fault>;
+    fn execute(&mut self, words: &[Word]) -> Result<Executed, ArrayFault>;
 
     /// Bit `bit` (0 to 207) of all pixels.
     ///
@@ -76,7 +76,7 @@ pub struct OutputRegion {
 /// An instruction that cannot be executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("word {position}: {kind}")]
-pub struct Fault {
+pub struct ArrayFault {
     /// Index of the instruction's first word in the list.
     pub position: usize,
     /// Why it cannot be executed.
@@ -115,7 +115,7 @@ pub enum FaultKind {
 pub fn execute_all<'a>(
     array: &mut impl PixelArray,
     lists: impl IntoIterator<Item = &'a [Word]>,
-) -> Result<Vec<OutputRegion>, (usize, Fault)> {
+) -> Result<Vec<OutputRegion>, (usize, ArrayFault)> {
     let mut outputs = Vec::new();
     for (i, words) in lists.into_iter().enumerate() {
         outputs.extend(array.execute(words).map_err(|fault| (i, fault))?.outputs);

@@ -4,16 +4,18 @@
 //! leaves out what cannot change anything, and is held to the literal one in every bit, clock and fault.
 
 mod arithmetic;
+mod collect;
+mod delivery;
 mod evaluate;
 mod evaluator;
 mod planes;
 mod runs;
 mod tile;
 
-use crate::array::{Executed, Fault, FaultKind, OutputRegion, PixelArray, Plane};
+use crate::array::{ArrayFault, Executed, FaultKind, OutputRegion, PixelArray, Plane};
 use crate::controller::{Controller, FieldBits};
 use crate::isa::timing::{CONTROL_CLOCKS, SET_UP_CLOCKS};
-use crate::isa::{BACKING_BLOCKS, Instruction, Operand};
+use crate::isa::{ArrayInstruction, BACKING_BLOCKS, Operand};
 use crate::layout::Layout;
 use crate::simd::{PresentVectors, Vectors};
 use pxpl5_wire::{REGION_SIZE, Word};
@@ -73,7 +75,7 @@ impl BitSerial {
         Self { skipping: true, ..self }
     }
 
-    fn run(&mut self, words: &[Word]) -> Result<Executed, Fault> {
+    fn run(&mut self, words: &[Word]) -> Result<Executed, ArrayFault> {
         let mut executed = Executed::default();
         let mut position = 0;
         while position < words.len() {
@@ -83,27 +85,27 @@ impl BitSerial {
         Ok(executed)
     }
 
-    fn step(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> Result<usize, Fault> {
+    fn step(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> Result<usize, ArrayFault> {
         let (instruction, used) = self.controller.fetch(words, position)?;
-        self.instruction(&instruction, executed).map_err(|kind| Fault { position, kind })?;
+        self.instruction(&instruction, executed).map_err(|kind| ArrayFault { position, kind })?;
         executed.instructions += 1;
         executed.clocks += u64::from(SET_UP_CLOCKS) + std::mem::take(&mut self.clock);
         Ok(used)
     }
 
-    fn instruction(&mut self, instruction: &Instruction, executed: &mut Executed) -> Result<(), FaultKind> {
+    fn instruction(&mut self, instruction: &ArrayInstruction, executed: &mut Executed) -> Result<(), FaultKind> {
         match *instruction {
-            Instruction::Select { context_base, left, top } => {
+            ArrayInstruction::Select { context_base, left, top } => {
                 self.controller.select(context_base, left, top);
             }
-            Instruction::StoreBlock { field, block } => {
+            ArrayInstruction::StoreBlock { field, block } => {
                 let bits = self.controller.bits(field)?;
                 let planes = self.tiles.iter().flat_map(|tile| &tile.memory[bits.first..bits.end()]);
                 self.backing[usize::from(block)] = Some(planes.copied().collect());
             }
-            Instruction::LoadBlock { field, block } => self.load_block(field, block)?,
-            Instruction::Wait => {}
-            Instruction::Output { field, target } => {
+            ArrayInstruction::LoadBlock { field, block } => self.load_block(field, block)?,
+            ArrayInstruction::Wait => {}
+            ArrayInstruction::Output { field, target } => {
                 let [_, _, width, height] = target.grid.rectangle(target.region);
                 let pixels = self.colour(self.controller.bits(field)?, width, height);
                 executed.outputs.push(OutputRegion { target, pixels });
@@ -114,24 +116,24 @@ impl BitSerial {
         Ok(())
     }
 
-    fn enable_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
+    fn enable_instruction(&mut self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
         match *instruction {
-            Instruction::EnableAll { .. } => self.each_tile(|tile| tile.enable = FULL),
-            Instruction::EnableNone => self.each_tile(|tile| tile.enable = EMPTY),
-            Instruction::EnableInvert => self.each_tile(|tile| planes::invert(&mut tile.enable)),
-            Instruction::EnableLoad(bit) => {
+            ArrayInstruction::EnableAll { .. } => self.each_tile(|tile| tile.enable = FULL),
+            ArrayInstruction::EnableNone => self.each_tile(|tile| tile.enable = EMPTY),
+            ArrayInstruction::EnableInvert => self.each_tile(|tile| planes::invert(&mut tile.enable)),
+            ArrayInstruction::EnableLoad(bit) => {
                 let bit = self.controller.bits(bit)?.first;
                 self.each_tile(|tile| tile.enable = tile.memory[bit]);
             }
-            Instruction::EnableStore(bit) => {
+            ArrayInstruction::EnableStore(bit) => {
                 let bit = self.controller.bits(bit)?.first;
                 self.each_tile(|tile| tile.memory[bit] = tile.enable);
             }
-            Instruction::EnableAnd(bit) => {
+            ArrayInstruction::EnableAnd(bit) => {
                 let bit = self.controller.bits(bit)?.first;
                 self.each_tile(|tile| planes::and(&mut tile.enable, &tile.memory[bit]));
             }
-            Instruction::Evaluate { expression, usage } => return self.evaluate(&expression, &usage),
+            ArrayInstruction::Evaluate { expression, usage } => return self.evaluate(&expression, &usage),
             _ => return self.field_instruction(instruction),
         }
         self.clock += u64::from(CONTROL_CLOCKS);
@@ -142,7 +144,7 @@ impl BitSerial {
         self.tiles.iter_mut().for_each(f);
     }
 
-    fn field_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
+    fn field_instruction(&mut self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
         for tile in self.tiles.iter_mut().filter(|tile| tile.has_work(self.skipping)) {
             tile.clock = 0;
             tile.field_instruction(&self.controller, instruction)?;
@@ -182,7 +184,7 @@ impl BitSerial {
 }
 
 impl PixelArray for BitSerial {
-    fn execute(&mut self, words: &[Word]) -> Result<Executed, Fault> {
+    fn execute(&mut self, words: &[Word]) -> Result<Executed, ArrayFault> {
         self.run(words).inspect_err(|_| self.faults += 1)
     }
 

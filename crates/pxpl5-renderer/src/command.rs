@@ -19,7 +19,7 @@
 //! |---|---|---|---|
 //! | triangle (Gouraud) | 30 | 258 | 267 (TR94, 150,000 a second); budget 256 |
 //! | Phong triangle | 32 | 292 | the same; budget 262 to 292. The object's colour costs 28 |
-//! | sphere | 53 | 810 (Slats 748) | assumed "a little dearer than a triangle"; see [`Sphere`] |
+//! | sphere | 53 | 810 (Slats 748) | assumed "a little dearer than a triangle"; see [`SphereCommand`] |
 //! | Phong sphere | 38 | 504 | the same |
 //! | shade | 89 | 3,790 = 95 us | assumed 4,000 to 8,000 (100 to 200 us); see [`Shade`] |
 //! | clear | 5 | 62 (Slats 58) | |
@@ -34,13 +34,13 @@ mod sphere;
 
 pub use copy::{Clear, CopyRegion, LoadBacking, SelectRegion, StoreBacking};
 pub(crate) use draw::{COLOUR_AT, COMPONENTS_AT, DEPTH_AT, EDGES_AT, PHONG_WORDS, TRIANGLE_WORDS};
-pub use draw::{PhongTriangle, PhongTriangleEncoder, Triangle, TriangleEncoder};
+pub use draw::{PhongTriangleCommand, PhongTriangleEncoder, TriangleCommand, TriangleEncoder};
 pub(crate) use shade::ShadeFields;
 pub use shade::{SPECULAR_SQUARINGS, Shade};
 pub(crate) use sphere::SphereScratch;
-pub use sphere::{PhongSphere, Sphere, SphereBody};
+pub use sphere::{PhongSphereCommand, SphereBody, SphereCommand};
 
-use crate::isa::{DecodeError, DecodeErrorKind, Instruction, Operand};
+use crate::isa::{ArrayInstruction, DecodeError, DecodeErrorKind, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::Word;
 
@@ -52,13 +52,13 @@ pub enum CommandKind {
     SelectRegion = 1,
     /// Clears colour and Z: [`Clear`].
     Clear = 2,
-    /// Triangle with interpolated colour: [`Triangle`].
+    /// Triangle with interpolated colour: [`TriangleCommand`].
     Triangle = 3,
-    /// Triangle with normals: [`PhongTriangle`].
+    /// Triangle with normals: [`PhongTriangleCommand`].
     PhongTriangle = 4,
-    /// Sphere with interpolated colour: [`Sphere`].
+    /// Sphere with interpolated colour: [`SphereCommand`].
     Sphere = 5,
-    /// Sphere with normals: [`PhongSphere`].
+    /// Sphere with normals: [`PhongSphereCommand`].
     PhongSphere = 6,
     /// Deferred shading of all pixels: [`Shade`].
     Shade = 7,
@@ -125,7 +125,7 @@ impl CommandKind {
     /// [`Unsupported`] where the layout lacks a field that the program needs.
     pub fn clocks(self, layout: &Layout) -> Result<u32, Unsupported> {
         let program = Command::blank(self).program(layout)?;
-        Ok(program.iter().map(Instruction::clocks).sum())
+        Ok(program.iter().map(ArrayInstruction::clocks).sum())
     }
 
     /// Clocks in which the backing store is busy afterwards, beside the array.
@@ -144,7 +144,7 @@ impl CommandKind {
 pub struct Unsupported {
     /// The command that was to be encoded.
     pub kind: CommandKind,
-    /// [`Plan::name`](crate::Plan::name) of the layout.
+    /// [`ContextPlan::name`](crate::Plan::name) of the layout.
     pub layout: &'static str,
     /// The field, or the bits of scratch, that the layout would need.
     pub missing: &'static str,
@@ -158,13 +158,13 @@ pub enum Command {
     /// Clears colour and Z.
     Clear(Clear),
     /// Triangle with interpolated colour (Gouraud).
-    Triangle(Triangle),
+    Triangle(TriangleCommand),
     /// Triangle whose pixels are shaded at the end of the frame.
-    PhongTriangle(PhongTriangle),
+    PhongTriangle(PhongTriangleCommand),
     /// Sphere with interpolated colour.
-    Sphere(Sphere),
+    Sphere(SphereCommand),
     /// Sphere whose pixels are shaded at the end of the frame.
-    PhongSphere(PhongSphere),
+    PhongSphere(PhongSphereCommand),
     /// Deferred shading of all pixels.
     Shade(Shade),
     /// Copies the region to a frame buffer.
@@ -200,7 +200,7 @@ impl Command {
     ///
     /// # Errors
     /// [`Unsupported`] where the layout lacks a field that the program needs.
-    pub fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, Unsupported> {
+    pub fn program(&self, layout: &Layout) -> Result<Vec<ArrayInstruction>, Unsupported> {
         let program = match self {
             Self::SelectRegion(command) => Ok(command.program(layout).to_vec()),
             Self::Clear(command) => Ok(command.program(layout).to_vec()),
@@ -212,7 +212,7 @@ impl Command {
             Self::CopyRegion(command) => Ok(command.program(layout).to_vec()),
             Self::StoreBacking(command) => Ok(vec![command.instruction()]),
             Self::LoadBacking(command) => Ok(vec![command.instruction()]),
-            Self::WaitBacking => Ok(vec![Instruction::Wait]),
+            Self::WaitBacking => Ok(vec![ArrayInstruction::Wait]),
         };
         program.map_err(|missing| self.unsupported(missing, layout))
     }
@@ -240,7 +240,7 @@ impl Command {
     /// # Errors
     /// [`DecodeError`] where the words are no instructions, or not the program of a command in this layout.
     pub fn decode(words: &[Word], position: usize, layout: &Layout) -> Result<(Self, usize), DecodeError> {
-        let (first, _) = Instruction::decode(words, position)?;
+        let (first, _) = ArrayInstruction::decode(words, position)?;
         let kind = kind_of(&first).ok_or_else(|| not_the_command(words, position, (words[position] >> 16) as u8))?;
         let length = kind.words() as usize;
         let end = words.len().min(position + length);
@@ -258,10 +258,10 @@ impl Command {
         match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::default()),
             CommandKind::Clear => Self::Clear(Clear::default()),
-            CommandKind::Triangle => Self::Triangle(Triangle::default()),
-            CommandKind::PhongTriangle => Self::PhongTriangle(PhongTriangle::default()),
-            CommandKind::Sphere => Self::Sphere(Sphere::default()),
-            CommandKind::PhongSphere => Self::PhongSphere(PhongSphere::default()),
+            CommandKind::Triangle => Self::Triangle(TriangleCommand::default()),
+            CommandKind::PhongTriangle => Self::PhongTriangle(PhongTriangleCommand::default()),
+            CommandKind::Sphere => Self::Sphere(SphereCommand::default()),
+            CommandKind::PhongSphere => Self::PhongSphere(PhongSphereCommand::default()),
             CommandKind::Shade => Self::Shade(Shade::default()),
             CommandKind::CopyRegion => Self::CopyRegion(CopyRegion::blank()),
             CommandKind::StoreBacking => Self::StoreBacking(StoreBacking::default()),
@@ -271,14 +271,14 @@ impl Command {
     }
 
     /// Picks the operands out of a program that may be another; the caller compares.
-    fn from_program(kind: CommandKind, program: &[Instruction], layout: &Layout) -> Option<Self> {
+    fn from_program(kind: CommandKind, program: &[ArrayInstruction], layout: &Layout) -> Option<Self> {
         Some(match kind {
             CommandKind::SelectRegion => Self::SelectRegion(SelectRegion::read(program, layout)?),
             CommandKind::Clear => Self::Clear(Clear::read(program)?),
-            CommandKind::Triangle => Self::Triangle(Triangle::read(program)?),
-            CommandKind::PhongTriangle => Self::PhongTriangle(PhongTriangle::read(program)?),
-            CommandKind::Sphere => Self::Sphere(Sphere::read(program, layout)?),
-            CommandKind::PhongSphere => Self::PhongSphere(PhongSphere::read(program, layout)?),
+            CommandKind::Triangle => Self::Triangle(TriangleCommand::read(program)?),
+            CommandKind::PhongTriangle => Self::PhongTriangle(PhongTriangleCommand::read(program)?),
+            CommandKind::Sphere => Self::Sphere(SphereCommand::read(program, layout)?),
+            CommandKind::PhongSphere => Self::PhongSphere(PhongSphereCommand::read(program, layout)?),
             CommandKind::Shade => Self::Shade(Shade::read(program)?),
             CommandKind::CopyRegion => Self::CopyRegion(CopyRegion::read(program)?),
             CommandKind::StoreBacking => Self::StoreBacking(StoreBacking::read(program)?),
@@ -296,27 +296,27 @@ fn not_the_command(words: &[Word], position: usize, label: u8) -> DecodeError {
 /// What a layout lacks.
 pub(crate) struct MissingField(&'static str);
 
-fn encode_all(program: &[Instruction], out: &mut Vec<Word>) {
+fn encode_all(program: &[ArrayInstruction], out: &mut Vec<Word>) {
     program.iter().for_each(|instruction| instruction.encode(out));
 }
 
-fn kind_of(first: &Instruction) -> Option<CommandKind> {
+fn kind_of(first: &ArrayInstruction) -> Option<CommandKind> {
     match first {
-        Instruction::EnableAll { label } => CommandKind::from_opcode(*label),
-        Instruction::Select { .. } => Some(CommandKind::SelectRegion),
-        Instruction::Output { .. } => Some(CommandKind::CopyRegion),
-        Instruction::StoreBlock { .. } => Some(CommandKind::StoreBacking),
-        Instruction::LoadBlock { .. } => Some(CommandKind::LoadBacking),
-        Instruction::Wait => Some(CommandKind::WaitBacking),
+        ArrayInstruction::EnableAll { label } => CommandKind::from_opcode(*label),
+        ArrayInstruction::Select { .. } => Some(CommandKind::SelectRegion),
+        ArrayInstruction::Output { .. } => Some(CommandKind::CopyRegion),
+        ArrayInstruction::StoreBlock { .. } => Some(CommandKind::StoreBacking),
+        ArrayInstruction::LoadBlock { .. } => Some(CommandKind::LoadBacking),
+        ArrayInstruction::Wait => Some(CommandKind::WaitBacking),
         _ => None,
     }
 }
 
-fn decode_range(words: &[Word], from: usize) -> Result<Vec<Instruction>, DecodeError> {
+fn decode_range(words: &[Word], from: usize) -> Result<Vec<ArrayInstruction>, DecodeError> {
     let mut out = Vec::with_capacity(16);
     let mut position = from;
     while position < words.len() {
-        let (instruction, used) = Instruction::decode(words, position)?;
+        let (instruction, used) = ArrayInstruction::decode(words, position)?;
         out.push(instruction);
         position += used;
     }
@@ -328,8 +328,8 @@ fn normal(layout: &Layout, component: u8) -> Result<Operand, MissingField> {
     layout.normal(component).ok_or(MissingField("a normal"))
 }
 
-const fn enable(kind: CommandKind) -> Instruction {
-    Instruction::EnableAll { label: kind.opcode() }
+const fn enable(kind: CommandKind) -> ArrayInstruction {
+    ArrayInstruction::EnableAll { label: kind.opcode() }
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ mod random;
 pub use random::Random;
 
 use crate::array::{EMPTY_PLANE, PixelArray, Plane};
-use crate::isa::{ArithmeticOp, Expression, ExpressionUse, Instruction, MEMORY_BITS, Operand, Test};
+use crate::isa::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, MEMORY_BITS, Operand, Test};
 use crate::layout::Layout;
 use pxpl5_wire::{Linear, Quadratic, Word};
 use std::fmt;
@@ -102,8 +102,8 @@ pub fn instructions(definition: &mut impl PixelArray, subject: &mut impl PixelAr
     scramble(&mut random, definition, subject);
     for instruction in corner_instructions() {
         let mut words = Vec::new();
-        Instruction::EnableAll { label: 0 }.encode(&mut words);
-        Instruction::EnableLoad(Operand::absolute(207, 1)).encode(&mut words);
+        ArrayInstruction::EnableAll { label: 0 }.encode(&mut words);
+        ArrayInstruction::EnableLoad(Operand::absolute(207, 1)).encode(&mut words);
         instruction.encode(&mut words);
         agree(definition, subject, &words, &instruction)?;
     }
@@ -144,31 +144,31 @@ pub fn random_round(
     Ok(())
 }
 
-fn corner_instructions() -> Vec<Instruction> {
+fn corner_instructions() -> Vec<ArrayInstruction> {
     let mut out = vec![
-        Instruction::EnableInvert,
-        Instruction::EnableNone,
-        Instruction::EnableLoad(Operand::absolute(0, 1)),
-        Instruction::EnableStore(Operand::absolute(207, 1)),
-        Instruction::EnableAnd(Operand::absolute(3, 1)),
-        Instruction::Select { context_base: 52, left: u16::MAX, top: 384 },
-        Instruction::Wait,
+        ArrayInstruction::EnableInvert,
+        ArrayInstruction::EnableNone,
+        ArrayInstruction::EnableLoad(Operand::absolute(0, 1)),
+        ArrayInstruction::EnableStore(Operand::absolute(207, 1)),
+        ArrayInstruction::EnableAnd(Operand::absolute(3, 1)),
+        ArrayInstruction::Select { context_base: 52, left: u16::MAX, top: 384 },
+        ArrayInstruction::Wait,
     ];
     out.extend(corner_expressions());
     out.extend(corner_fields());
     out.extend(corner_constants());
     for block in [0, 127] {
         let field = Operand::absolute(176, 32);
-        out.push(Instruction::StoreBlock { field, block });
-        out.push(Instruction::LoadBlock { field: Operand::absolute(7, 32), block });
-        out.push(Instruction::LoadBlock { field, block: block / 2 });
+        out.push(ArrayInstruction::StoreBlock { field, block });
+        out.push(ArrayInstruction::LoadBlock { field: Operand::absolute(7, 32), block });
+        out.push(ArrayInstruction::LoadBlock { field, block: block / 2 });
     }
     out
 }
 
 const EXTREMES: [i32; 6] = [0, 1, -1, i32::MAX, i32::MIN, 0x5555_5555];
 
-fn corner_expressions() -> Vec<Instruction> {
+fn corner_expressions() -> Vec<ArrayInstruction> {
     let mut out = Vec::new();
     for (i, a) in EXTREMES.into_iter().enumerate() {
         let b = EXTREMES[(i + 1) % 6];
@@ -195,7 +195,7 @@ const fn beyond_48_bits(v: i32) -> i64 {
     (v as i64) << 17 | 1
 }
 
-fn uses(expression: Expression) -> Vec<Instruction> {
+fn uses(expression: Expression) -> Vec<ArrayInstruction> {
     let mut usages = vec![ExpressionUse::DisableNegative];
     for (width, shift) in [(1, 31), (32, 0), (24, 8), (8, 12)] {
         let field = Operand::absolute(40, width);
@@ -208,13 +208,13 @@ fn uses(expression: Expression) -> Vec<Instruction> {
             ExpressionUse::LoadMinus { field, shift, subtrahend: subtrahend.signed(), left_shift: 63 },
         ]);
     }
-    usages.into_iter().map(|usage| Instruction::Evaluate { expression, usage }).collect()
+    usages.into_iter().map(|usage| ArrayInstruction::Evaluate { expression, usage }).collect()
 }
 
 /// Widths of destination and operands: equal, narrower, wider, one bit, the most.
 const WIDTHS: [[u8; 3]; 7] = [[8, 8, 8], [5, 12, 9], [20, 7, 11], [1, 1, 1], [64, 64, 64], [64, 3, 33], [2, 40, 1]];
 
-fn corner_fields() -> Vec<Instruction> {
+fn corner_fields() -> Vec<ArrayInstruction> {
     let mut out = Vec::new();
     for [w, wa, wb] in WIDTHS {
         for [a_signed, b_signed] in [[false, false], [true, false], [false, true], [true, true]] {
@@ -232,42 +232,42 @@ fn corner_fields() -> Vec<Instruction> {
             let in_place = Operand { address: 0, ..a };
             out.extend(one_operand(destination, in_place));
             let op = ArithmeticOp::Subtract;
-            out.push(Instruction::Arithmetic { op, destination, a: in_place, b });
+            out.push(ArrayInstruction::Arithmetic { op, destination, a: in_place, b });
         }
     }
     for n in [1, 2, 5, 12, 31, 32] {
         let destination = Operand::absolute(0, n);
         let radicand = Operand::absolute(64, 2 * n);
-        out.push(Instruction::SquareRoot { destination, radicand });
+        out.push(ArrayInstruction::SquareRoot { destination, radicand });
     }
     out
 }
 
-fn two_operands(destination: Operand, a: Operand, b: Operand) -> Vec<Instruction> {
-    let mut out = ArithmeticOp::ALL.map(|op| Instruction::Arithmetic { op, destination, a, b }).to_vec();
-    out.extend(Test::ALL.map(|test| Instruction::Compare { test, a, b }));
+fn two_operands(destination: Operand, a: Operand, b: Operand) -> Vec<ArrayInstruction> {
+    let mut out = ArithmeticOp::ALL.map(|op| ArrayInstruction::Arithmetic { op, destination, a, b }).to_vec();
+    out.extend(Test::ALL.map(|test| ArrayInstruction::Compare { test, a, b }));
     out
 }
 
-fn one_operand(destination: Operand, source: Operand) -> Vec<Instruction> {
-    let mut out = vec![Instruction::Saturate { destination, source }];
+fn one_operand(destination: Operand, source: Operand) -> Vec<ArrayInstruction> {
+    let mut out = vec![ArrayInstruction::Saturate { destination, source }];
     for by in [0, 1, 7, 63] {
-        out.push(Instruction::ShiftRight { destination, source, by });
-        out.push(Instruction::ShiftLeft { destination, source, by });
+        out.push(ArrayInstruction::ShiftRight { destination, source, by });
+        out.push(ArrayInstruction::ShiftLeft { destination, source, by });
     }
     for (factor, factor_bits) in [(0, 1), (-1, 1), (5, 4), (-128, 8), (i32::MIN, 32)] {
-        out.push(Instruction::MultiplyConstant { destination, source, factor, factor_bits });
+        out.push(ArrayInstruction::MultiplyConstant { destination, source, factor, factor_bits });
     }
     out
 }
 
-fn corner_constants() -> Vec<Instruction> {
+fn corner_constants() -> Vec<ArrayInstruction> {
     let mut out = Vec::new();
     for width in [1, 8, 31, 32, 33, 64] {
         for field in [Operand::absolute(70, width), Operand::absolute(70, width).signed()] {
             for value in EXTREMES.map(|v| v as u32) {
-                out.push(Instruction::LoadConstant { destination: field, value });
-                out.extend(Test::ALL.map(|test| Instruction::CompareConstant { test, a: field, value }));
+                out.push(ArrayInstruction::LoadConstant { destination: field, value });
+                out.extend(Test::ALL.map(|test| ArrayInstruction::CompareConstant { test, a: field, value }));
             }
         }
     }
@@ -285,7 +285,7 @@ mod tests {
         for instruction in corner_instructions() {
             let mut words = Vec::new();
             instruction.encode(&mut words);
-            if Instruction::decode(&words, 0).is_ok() {
+            if ArrayInstruction::decode(&words, 0).is_ok() {
                 legal.insert(words[0] >> 24);
             }
         }

@@ -1,7 +1,7 @@
 //! The controller in front of the array: selected region, held coefficients, checks of operands.
 
-use crate::array::{Fault, FaultKind};
-use crate::isa::{ArithmeticOp, Expression, ExpressionUse, Instruction, MEMORY_BITS, Operand, QUADRATIC_BITS};
+use crate::array::{ArrayFault, FaultKind};
+use crate::isa::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, MEMORY_BITS, Operand, QUADRATIC_BITS};
 use pxpl5_wire::{Linear, Quadratic, Word};
 
 /// A field of pixel memory whose address is known.
@@ -47,10 +47,10 @@ impl Controller {
     }
 
     /// The instruction at a word, with operands that it allows, and how many words it has.
-    pub(crate) fn fetch(&self, words: &[Word], position: usize) -> Result<(Instruction, usize), Fault> {
-        let (instruction, used) = Instruction::decode(words, position)
-            .map_err(|error| Fault { position, kind: FaultKind::Illegal(error.kind) })?;
-        self.check(&instruction).map_err(|kind| Fault { position, kind })?;
+    pub(crate) fn fetch(&self, words: &[Word], position: usize) -> Result<(ArrayInstruction, usize), ArrayFault> {
+        let (instruction, used) = ArrayInstruction::decode(words, position)
+            .map_err(|error| ArrayFault { position, kind: FaultKind::Illegal(error.kind) })?;
+        self.check(&instruction).map_err(|kind| ArrayFault { position, kind })?;
         Ok((instruction, used))
     }
 
@@ -118,24 +118,24 @@ impl Controller {
     }
 
     /// Checks all operands of an instruction in the selected context.
-    pub(crate) fn check(&self, instruction: &Instruction) -> Result<(), FaultKind> {
+    pub(crate) fn check(&self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
         match *instruction {
-            Instruction::EnableLoad(bit) | Instruction::EnableStore(bit) | Instruction::EnableAnd(bit) => {
-                self.bits(bit).map(drop)
-            }
-            Instruction::Evaluate { usage, .. } => self.check_use(&usage),
-            Instruction::ShiftRight { destination, source, .. }
-            | Instruction::ShiftLeft { destination, source, .. }
-            | Instruction::Saturate { destination, source } => self.aligned(destination, source),
-            Instruction::SquareRoot { destination, radicand: source }
-            | Instruction::MultiplyConstant { destination, source, .. } => self.apart(destination, source),
-            Instruction::Arithmetic { op, destination, a, b } => self.check_arithmetic(op, destination, a, b),
-            Instruction::Compare { a, b, .. } => self.bits(a).and(self.bits(b)).map(drop),
-            Instruction::CompareConstant { a, .. } => self.bits(a).map(drop),
-            Instruction::LoadConstant { destination: field, .. }
-            | Instruction::StoreBlock { field, .. }
-            | Instruction::LoadBlock { field, .. }
-            | Instruction::Output { field, .. } => self.bits(field).map(drop),
+            ArrayInstruction::EnableLoad(bit)
+            | ArrayInstruction::EnableStore(bit)
+            | ArrayInstruction::EnableAnd(bit) => self.bits(bit).map(drop),
+            ArrayInstruction::Evaluate { usage, .. } => self.check_use(&usage),
+            ArrayInstruction::ShiftRight { destination, source, .. }
+            | ArrayInstruction::ShiftLeft { destination, source, .. }
+            | ArrayInstruction::Saturate { destination, source } => self.aligned(destination, source),
+            ArrayInstruction::SquareRoot { destination, radicand: source }
+            | ArrayInstruction::MultiplyConstant { destination, source, .. } => self.apart(destination, source),
+            ArrayInstruction::Arithmetic { op, destination, a, b } => self.check_arithmetic(op, destination, a, b),
+            ArrayInstruction::Compare { a, b, .. } => self.bits(a).and(self.bits(b)).map(drop),
+            ArrayInstruction::CompareConstant { a, .. } => self.bits(a).map(drop),
+            ArrayInstruction::LoadConstant { destination: field, .. }
+            | ArrayInstruction::StoreBlock { field, .. }
+            | ArrayInstruction::LoadBlock { field, .. }
+            | ArrayInstruction::Output { field, .. } => self.bits(field).map(drop),
             _ => Ok(()),
         }
     }

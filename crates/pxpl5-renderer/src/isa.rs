@@ -187,7 +187,7 @@ pub enum Test {
 
 /// One instruction of the controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Instruction {
+pub enum ArrayInstruction {
     /// E := 1: enables every pixel.
     EnableAll {
         /// Without effect; commands put their kind here.

@@ -9,20 +9,21 @@ mod large;
 mod roots;
 mod shade;
 mod sphere;
+mod template;
 mod triangle;
 mod values;
 mod whole;
 
-use crate::array::{Executed, Fault, PIXELS, PixelArray, Plane};
+use crate::array::{ArrayFault, Executed, PIXELS, PixelArray, Plane};
 use crate::controller::{Controller, FieldBits};
 use crate::isa::{BACKING_BLOCKS, opcode};
 use crate::layout::Layout;
 use crate::simd::{PresentVectors, Vectors};
-use columns::PixelColumns;
+use columns::{ContextColumns, PixelColumns};
 use enable::Enable;
 use pxpl5_wire::{REGION_SIZE, Word};
 use std::sync::Arc;
-use whole::{ContextColumns, Templates};
+use template::Templates;
 
 /// The array by values: one word a pixel and field.
 ///
@@ -67,7 +68,7 @@ impl Lanes {
         }
     }
 
-    fn run(&mut self, words: &[Word]) -> Result<Executed, Fault> {
+    fn run(&mut self, words: &[Word]) -> Result<Executed, ArrayFault> {
         let mut executed = Executed::default();
         let mut position = 0;
         while position < words.len() {
@@ -76,14 +77,14 @@ impl Lanes {
         Ok(executed)
     }
 
-    fn step(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> Result<usize, Fault> {
+    fn step(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> Result<usize, ArrayFault> {
         if words[position] >> 24 == u32::from(opcode::ENABLE_ALL)
             && let Some(used) = self.whole_command(&words[position..], executed)
         {
             return Ok(used);
         }
         let (instruction, used) = self.controller.fetch(words, position)?;
-        self.instruction(&instruction, executed).map_err(|kind| Fault { position, kind })?;
+        self.instruction(&instruction, executed).map_err(|kind| ArrayFault { position, kind })?;
         executed.instructions += 1;
         executed.clocks += u64::from(instruction.clocks());
         Ok(used)
@@ -111,7 +112,7 @@ fn rectangle(pixels: &[Word], width: u32, height: u32) -> Arc<[Word]> {
 }
 
 impl PixelArray for Lanes {
-    fn execute(&mut self, words: &[Word]) -> Result<Executed, Fault> {
+    fn execute(&mut self, words: &[Word]) -> Result<Executed, ArrayFault> {
         self.run(words).inspect_err(|_| self.faults += 1)
     }
 

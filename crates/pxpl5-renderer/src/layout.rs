@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 /// Fields of a context are relative to its base; context `i` begins at bit `i * context_bits`. Scratch is absolute
 /// and shared by all contexts, which is right because a command leaves nothing there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Plan {
+pub struct ContextPlan {
     /// Name that error messages give the layout.
     pub name: &'static str,
     /// Regions that share the array.
@@ -29,7 +29,7 @@ pub struct Plan {
 
 /// A division of pixel memory that fits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Layout(Plan);
+pub struct Layout(ContextPlan);
 
 /// Why a plan does not fit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -38,7 +38,7 @@ pub enum LayoutError {
     /// Fields lie outside of pixel memory or over each other; the text draws them.
     #[error("layout {name} does not fit {} bits:\n{drawing}", MEMORY_BITS)]
     DoesNotFit {
-        /// [`Plan::name`] of the plan.
+        /// [`ContextPlan::name`] of the plan.
         name: &'static str,
         /// One line a field.
         drawing: String,
@@ -46,7 +46,7 @@ pub enum LayoutError {
     /// A field has a width that the commands cannot use.
     #[error("{field} has {found} bits, expected {expected}")]
     Width {
-        /// Name of the field in [`Plan`].
+        /// Name of the field in [`ContextPlan`].
         field: &'static str,
         /// Bits that are allowed.
         expected: &'static str,
@@ -56,7 +56,7 @@ pub enum LayoutError {
 }
 
 /// Rendering Control with Phong shading: one region, 24 colour + 24 Z + 36 normal, and 124 bits of scratch.
-const RENDERING_CONTROL_PHONG: Plan = Plan {
+const RENDERING_CONTROL_PHONG: ContextPlan = ContextPlan {
     name: "rendering control, Phong",
     contexts: 1,
     context_bits: 84,
@@ -67,7 +67,7 @@ const RENDERING_CONTROL_PHONG: Plan = Plan {
 };
 
 /// Slats: four regions of 24 colour + 20 Z, and 32 bits of scratch that they share.
-const SLATS: Plan = Plan {
+const SLATS: ContextPlan = ContextPlan {
     name: "Slats",
     contexts: 4,
     context_bits: 44,
@@ -78,7 +78,7 @@ const SLATS: Plan = Plan {
 };
 
 /// Slats with its memory in equal parts: four regions of 24 colour + 24 Z + 4 flags, and no scratch.
-const SLATS_QUARTERS: Plan = Plan {
+const SLATS_QUARTERS: ContextPlan = ContextPlan {
     name: "Slats in quarters",
     contexts: 4,
     context_bits: 52,
@@ -114,7 +114,7 @@ impl Layout {
     ///
     /// # Errors
     /// [`LayoutError::DoesNotFit`] draws the bit ranges; [`LayoutError::Width`] names a field of a wrong width.
-    pub fn new(plan: Plan) -> Result<Self, LayoutError> {
+    pub fn new(plan: ContextPlan) -> Result<Self, LayoutError> {
         check_widths(&plan)?;
         let ranges = ranges(&plan);
         let bad = conflicts(&plan, &ranges);
@@ -126,7 +126,7 @@ impl Layout {
 
     /// The fields of the layout, as they were checked.
     #[must_use]
-    pub const fn plan(&self) -> &Plan {
+    pub const fn plan(&self) -> &ContextPlan {
         &self.0
     }
 
@@ -189,7 +189,7 @@ impl FieldRange {
     }
 }
 
-fn check_widths(plan: &Plan) -> Result<(), LayoutError> {
+fn check_widths(plan: &ContextPlan) -> Result<(), LayoutError> {
     check_width("colour", "24", 24..=24, plan.colour)?;
     check_width("z", "8 to 24", 8..=24, plan.z)?;
     plan.normal.map_or(Ok(()), |normal| check_width("normal", "36", 36..=36, normal))
@@ -208,7 +208,7 @@ fn check_width(
     Err(LayoutError::Width { field, expected, found: found.width })
 }
 
-fn ranges(plan: &Plan) -> Vec<FieldRange> {
+fn ranges(plan: &ContextPlan) -> Vec<FieldRange> {
     let mut out = Vec::new();
     let fields = [("colour", Some(plan.colour)), ("z", Some(plan.z)), ("normal", plan.normal)];
     for context in 0..u32::from(plan.contexts) {
@@ -229,7 +229,7 @@ fn ranges(plan: &Plan) -> Vec<FieldRange> {
 }
 
 /// For each range what is wrong with it, if anything.
-fn conflicts(plan: &Plan, ranges: &[FieldRange]) -> Vec<Option<String>> {
+fn conflicts(plan: &ContextPlan, ranges: &[FieldRange]) -> Vec<Option<String>> {
     let mut out: Vec<_> = (0..ranges.len()).map(|i| conflict(&ranges[i], &ranges[..i])).collect();
     let whole = u32::from(plan.contexts) * u32::from(plan.context_bits);
     if (plan.contexts == 0 || whole > MEMORY_BITS) && !out.is_empty() {
@@ -294,7 +294,7 @@ mod tests {
 
     #[test]
     fn a_plan_that_does_not_fit_is_drawn_with_its_bit_ranges() {
-        let plan = Plan { scratch: Some(Operand::absolute(172, 32)), ..SLATS };
+        let plan = ContextPlan { scratch: Some(Operand::absolute(172, 32)), ..SLATS };
         let text = Layout::new(plan).unwrap_err().to_string();
         assert!(text.contains("172-203"), "{text}");
         assert!(text.contains("scratch  <- overlaps context 3 z"), "{text}");
@@ -303,14 +303,14 @@ mod tests {
     #[test]
     fn phong_in_four_contexts_does_not_fit() {
         let normal = Some(Operand::context(48, 36));
-        let plan = Plan { normal, context_bits: 84, ..SLATS_QUARTERS };
+        let plan = ContextPlan { normal, context_bits: 84, ..SLATS_QUARTERS };
         let text = Layout::new(plan).unwrap_err().to_string();
         assert!(text.contains("ends beyond bit 207"), "{text}");
     }
 
     #[test]
     fn a_wrong_width_is_named() {
-        let plan = Plan { z: Operand::context(24, 28), ..SLATS };
+        let plan = ContextPlan { z: Operand::context(24, 28), ..SLATS };
         let expected = LayoutError::Width { field: "z", expected: "8 to 24", found: 28 };
         assert_eq!(Layout::new(plan), Err(expected));
     }

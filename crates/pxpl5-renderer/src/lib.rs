@@ -30,7 +30,7 @@
 //!
 //! # Faults
 //!
-//! An illegal word or operand ends its list, without effect, and is counted ([`Fault`], [`PixelArray::faults`]).
+//! An illegal word or operand ends its list, without effect, and is counted ([`ArrayFault`], [`PixelArray::faults`]).
 //!
 //! # Not modelled
 //!
@@ -59,15 +59,16 @@ mod lanes;
 mod layout;
 mod simd;
 
-pub use array::{EMPTY_PLANE, Executed, Fault, FaultKind, OutputRegion, PIXELS, PixelArray, Plane, execute_all};
+pub use array::{ArrayFault, EMPTY_PLANE, Executed, FaultKind, OutputRegion, PIXELS, PixelArray, Plane, execute_all};
 pub use bit_serial::BitSerial;
 pub use board::{MAX_CONTEXTS, Renderer, RendererEvent, RendererOutput, RendererStats};
 pub use command::{
-    Clear, Command, CommandKind, CopyRegion, LoadBacking, PhongSphere, PhongTriangle, PhongTriangleEncoder,
-    SPECULAR_SQUARINGS, SelectRegion, Shade, Sphere, SphereBody, StoreBacking, Triangle, TriangleEncoder, Unsupported,
+    Clear, Command, CommandKind, CopyRegion, LoadBacking, PhongSphereCommand, PhongTriangleCommand,
+    PhongTriangleEncoder, SPECULAR_SQUARINGS, SelectRegion, Shade, SphereBody, SphereCommand, StoreBacking,
+    TriangleCommand, TriangleEncoder, Unsupported,
 };
 pub use job::ArrayPool;
 pub use lanes::Lanes;
-pub use layout::{FieldRange, Layout, LayoutError, Plan};
+pub use layout::{ContextPlan, FieldRange, Layout, LayoutError};
 pub use simd::Vectors;
 pub use timing::RendererTiming;

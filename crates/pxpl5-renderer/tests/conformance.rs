@@ -1,9 +1,10 @@
 //! Both pixel arrays agree in every bit. `PXPL5_FUZZ_SECONDS` sets how long the random part runs.
 
 use pxpl5_renderer::conformance::{self, Mismatch, Random};
-use pxpl5_renderer::isa::{Expression, ExpressionUse, Instruction, Operand};
+use pxpl5_renderer::isa::{ArrayInstruction, Expression, ExpressionUse, Operand};
 use pxpl5_renderer::{
-    BitSerial, Clear, Command, CopyRegion, Lanes, Layout, PhongTriangle, PixelArray, SelectRegion, Triangle, Vectors,
+    BitSerial, Clear, Command, CopyRegion, Lanes, Layout, PhongTriangleCommand, PixelArray, SelectRegion,
+    TriangleCommand, Vectors,
 };
 use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, RegionGrid, RegionId};
 use std::time::{Duration, Instant};
@@ -97,9 +98,9 @@ fn small_triangle(random: &mut Random, layout: &Layout) -> Command {
     let depth = plane(random, 31);
     let components = [plane(random, 22), plane(random, 22), plane(random, 22)];
     if layout.normal(0).is_some() {
-        Command::PhongTriangle(PhongTriangle { edges, depth, normal: components, colour: 0x12_3456 })
+        Command::PhongTriangle(PhongTriangleCommand { edges, depth, normal: components, colour: 0x12_3456 })
     } else {
-        Command::Triangle(Triangle { edges, depth, colour: components })
+        Command::Triangle(TriangleCommand { edges, depth, colour: components })
     }
 }
 
@@ -134,7 +135,7 @@ fn pick(random: &mut Random, from: &[i32]) -> i32 {
 }
 
 /// Instructions with an expression that turns its sign, or wraps, at a corner of a block of pixels or beside it.
-fn corner_run(random: &mut Random) -> Vec<Instruction> {
+fn corner_run(random: &mut Random) -> Vec<ArrayInstruction> {
     let slopes = [0, 1, -1, 16, -16, 333, -70_001, 1 << 23, -(1 << 24), i32::MAX, i32::MIN];
     let mut out = Vec::new();
     for _ in 0..pick(random, &[1, 3, 12]) {
@@ -161,11 +162,11 @@ fn corner_run(random: &mut Random) -> Vec<Instruction> {
                 ExpressionUse::LoadMinus { field, shift, subtrahend, left_shift: 3 }
             }
             _ => {
-                out.push(Instruction::LoadConstant { destination: field.signed(), value: c as u32 });
+                out.push(ArrayInstruction::LoadConstant { destination: field.signed(), value: c as u32 });
                 continue;
             }
         };
-        out.push(Instruction::Evaluate { expression, usage });
+        out.push(ArrayInstruction::Evaluate { expression, usage });
     }
     out
 }
@@ -180,8 +181,8 @@ fn runs_whose_signs_turn_at_corners_of_blocks_agree_on_every_vector_unit() {
         conformance::scramble(&mut random, &mut definition, &mut subject);
         for _ in 0..CORNER_RUNS {
             let mut run = corner_run(&mut random);
-            let noise = Instruction::EnableLoad(Operand::absolute(random.below(208) as u8, 1));
-            run.insert(0, if random.below(2) == 0 { noise } else { Instruction::EnableAll { label: 0 } });
+            let noise = ArrayInstruction::EnableLoad(Operand::absolute(random.below(208) as u8, 1));
+            run.insert(0, if random.below(2) == 0 { noise } else { ArrayInstruction::EnableAll { label: 0 } });
             let mut words = Vec::new();
             run.iter().for_each(|instruction| instruction.encode(&mut words));
             check(conformance::agree(&mut definition, &mut subject, &words, &run));

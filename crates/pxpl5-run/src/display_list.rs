@@ -1,7 +1,7 @@
 //! From a scene to what graphics processors hold and hosts send.
 
 use crate::views::{Views, ViewsWanted};
-use pphigs::{DisplayList, EyeView, Frame, FrameView, MAX_EDITS, ModelEdit, RecentViews, Structure};
+use pphigs::{DisplayList, DisplayStructure, EyeView, FrameView, MAX_EDITS, ModelEdit, ModelFrame, RecentViews};
 use pxpl5_display::Surface;
 use pxpl5_geometry::Sphere;
 use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Pose, Scene};
@@ -20,12 +20,12 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
             scene.name()
         ));
     }
-    let structure = |s: &pxpl5_scene::Structure| Structure {
+    let structure = |s: &pxpl5_scene::Structure| DisplayStructure {
         triangles: s.triangles.clone(),
         spheres: s.spheres.clone(),
         frame: match s.frame {
-            pxpl5_scene::Frame::World => Frame::World,
-            pxpl5_scene::Frame::Head => Frame::Head,
+            pxpl5_scene::Frame::World => ModelFrame::World,
+            pxpl5_scene::Frame::Head => ModelFrame::Head,
         },
     };
     let sphere = |s: &pxpl5_scene::Sphere| Sphere { centre: s.centre, radius: s.radius, colour: s.colour };

@@ -98,7 +98,8 @@ impl RegionGrid {
     pub const fn rectangle(&self, region: RegionId) -> [u32; 4] {
         let column = region.0 as u32 % self.columns();
         let row = region.0 as u32 / self.columns();
-        let (left, top) = (column * self.region_width, row * self.region_height);
+        let left = column * self.region_width;
+        let top = row * self.region_height;
         [left, top, min(self.region_width, self.width - left), min(self.region_height, self.height - top)]
     }
 }

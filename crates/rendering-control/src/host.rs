@@ -1,7 +1,7 @@
 //! The host: SEND.
 
 use crate::config::RenderingControlConfig;
-use crate::protocol::Order;
+use crate::protocol::StageOrder;
 use pphigs::FrameView;
 use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
@@ -23,7 +23,7 @@ pub async fn host(
     for frame in 0.. {
         gp.begin(Stage::Sample, frame, None);
         gp.begin(Stage::Send, frame, None);
-        let (words, body) = Order::Send(view_of(frame, gp.now())).message();
+        let (words, body) = StageOrder::Send(view_of(frame, gp.now())).message();
         gp.spend(timing.link_span(words)).await;
         let receivers = config.slaves.iter().chain([&config.master]);
         let batch = receivers.map(|node| (*node, words, body.clone())).collect();
@@ -31,7 +31,7 @@ pub async fn host(
         gp.accepted(sent).await;
         gp.end(Stage::Send, frame, None);
         let received = gp.receive().await;
-        if Order::read(&received, gp.node())? != Order::EditsDone(frame) {
+        if StageOrder::read(&received, gp.node())? != StageOrder::EditsDone(frame) {
             return Err(Fault::Protocol { node: gp.node(), found: format!("while frame {frame} is being edited") });
         }
     }

@@ -1,7 +1,7 @@
 //! The master GP: it synchronises host, slaves, renderers and frame buffers.
 
 use crate::config::{PROGRAM_BYTES, RenderingControlConfig};
-use crate::protocol::{Order, Token};
+use crate::protocol::{StageOrder, Token};
 use crate::rules::Completed;
 use pphigs::copy_message;
 use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 
 /// What a renderer is doing, as far as the master knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Renderer {
+enum RendererUse {
     Idle,
     /// A token for it is with the slaves.
     Receiving,
@@ -30,25 +30,25 @@ struct Rendering {
 
 /// What slaves have reported of a frame or picture that not all have finished.
 #[derive(Debug, Default)]
-struct Reports {
+struct SlaveReports {
     slaves: usize,
     entries: Vec<u64>,
 }
 
-struct Master {
+struct RegionMaster {
     gp: Gp,
     config: RenderingControlConfig,
     completed: Completed,
     edits_begun: u64,
     transforms_allowed: u64,
     swaps_requested: u64,
-    edited: Reports,
+    edited: SlaveReports,
     /// Of pictures `completed.transformed`, and the one after it.
-    transformed: VecDeque<Reports>,
+    transformed: VecDeque<SlaveReports>,
     /// Weights of the regions of transformed pictures that are not rendered yet.
     weights: VecDeque<Vec<u64>>,
     rendering: Option<Rendering>,
-    renderers: Vec<Renderer>,
+    renderers: Vec<RendererUse>,
     /// Regions that have arrived in each frame buffer.
     copied_regions: Vec<u64>,
     next_slave: usize,
@@ -61,7 +61,7 @@ struct Master {
 /// [`Fault::Protocol`] for a message that no board sends, [`Fault::Memory`] if the program does not fit.
 pub async fn master(gp: Gp, config: RenderingControlConfig) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
-    let mut master = Master::new(gp, config);
+    let mut master = RegionMaster::new(gp, config);
     loop {
         while master.begin_one().await {}
         if let Some(received) = master.wait().await {
@@ -71,18 +71,18 @@ pub async fn master(gp: Gp, config: RenderingControlConfig) -> Result<(), Fault>
     }
 }
 
-impl Master {
+impl RegionMaster {
     fn new(gp: Gp, config: RenderingControlConfig) -> Self {
         Self {
             completed: Completed::none(config.eyes()),
             edits_begun: 0,
             transforms_allowed: 0,
             swaps_requested: 0,
-            edited: Reports::default(),
+            edited: SlaveReports::default(),
             transformed: VecDeque::new(),
             weights: VecDeque::new(),
             rendering: None,
-            renderers: vec![Renderer::Idle; config.renderers.len()],
+            renderers: vec![RendererUse::Idle; config.renderers.len()],
             copied_regions: vec![0; config.frame_buffers.len()],
             next_slave: 0,
             gp,
@@ -131,7 +131,7 @@ impl Master {
         let frame = self.edits_begun;
         self.edits_begun += 1;
         self.transforms_allowed = frame * self.config.eyes() + 1;
-        self.tell_slaves(&Order::Edit(frame)).await;
+        self.tell_slaves(&StageOrder::Edit(frame)).await;
     }
 
     fn a_later_eye_may_begin(&self) -> bool {
@@ -142,10 +142,10 @@ impl Master {
     async fn allow_transform(&mut self) {
         let picture = self.transforms_allowed;
         self.transforms_allowed += 1;
-        self.tell_slaves(&Order::Transform(picture)).await;
+        self.tell_slaves(&StageOrder::Transform(picture)).await;
     }
 
-    async fn tell_slaves(&self, order: &Order) {
+    async fn tell_slaves(&self, order: &StageOrder) {
         let (words, body) = order.message();
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
@@ -166,7 +166,7 @@ impl Master {
 
     fn region_that_may_begin(&self) -> Option<(usize, RegionId)> {
         let region = *self.rendering.as_ref()?.unassigned.front()?;
-        let renderer = self.renderers.iter().position(|state| *state == Renderer::Idle)?;
+        let renderer = self.renderers.iter().position(|state| *state == RendererUse::Idle)?;
         Some((renderer, region))
     }
 
@@ -176,7 +176,7 @@ impl Master {
         rendering.unassigned.pop_front();
         rendering.tokens_out += 1;
         let picture = rendering.picture;
-        self.renderers[renderer] = Renderer::Receiving;
+        self.renderers[renderer] = RendererUse::Receiving;
         let slave = self.config.slaves[self.next_slave];
         self.next_slave = (self.next_slave + 1) % self.config.slaves.len();
         let token = Token {
@@ -186,13 +186,13 @@ impl Master {
             slaves_left: self.config.slaves.len() as u16,
             copy: self.completed.frame_buffer_available(picture),
         };
-        let (words, body) = Order::Token(token).message();
+        let (words, body) = StageOrder::Token(token).message();
         self.gp.send(slave, words, body).await;
     }
 
     fn copy_that_may_begin(&self) -> Option<(usize, u64, RegionId)> {
         self.renderers.iter().enumerate().find_map(|(renderer, state)| match *state {
-            Renderer::Holding(picture, region) if self.completed.frame_buffer_available(picture) => {
+            RendererUse::Holding(picture, region) if self.completed.frame_buffer_available(picture) => {
                 Some((renderer, picture, region))
             }
             _ => None,
@@ -201,7 +201,7 @@ impl Master {
 
     /// Sends the copy command of a region whose frame buffer was not available in time for the last slave.
     async fn copy(&mut self, renderer: usize, picture: u64, region: RegionId) {
-        self.renderers[renderer] = Renderer::Idle;
+        self.renderers[renderer] = RendererUse::Idle;
         let order = self.copy_order(picture, region);
         let list = copy_message(self.config.picture.layout, vec![order], self.config.picture.pixels);
         self.gp.send(self.config.renderers[renderer], list.words(), Body::Commands(list)).await;
@@ -219,12 +219,12 @@ impl Master {
     }
 
     async fn note(&mut self, received: &Received) -> Result<(), Fault> {
-        match Order::read(received, self.gp.node())? {
-            Order::Send(view) => self.completed.sent = view.number + 1,
-            Order::Edited(frame) => self.note_edited(frame).await,
-            Order::Transformed(picture, entries) => self.note_transformed(picture, &entries),
-            Order::Accepted(token) => self.note_accepted(token),
-            Order::Copied { frame_buffer } => self.note_copied(frame_buffer),
+        match StageOrder::read(received, self.gp.node())? {
+            StageOrder::Send(view) => self.completed.sent = view.number + 1,
+            StageOrder::Edited(frame) => self.note_edited(frame).await,
+            StageOrder::Transformed(picture, entries) => self.note_transformed(picture, &entries),
+            StageOrder::Accepted(token) => self.note_accepted(token),
+            StageOrder::Copied { frame_buffer } => self.note_copied(frame_buffer),
             other => return Err(Fault::Protocol { node: self.gp.node(), found: format!("at the master: {other:?}") }),
         }
         Ok(())
@@ -233,9 +233,9 @@ impl Master {
     async fn note_edited(&mut self, frame: u64) {
         self.edited.slaves += 1;
         if self.edited.slaves == self.config.slaves.len() {
-            self.edited = Reports::default();
+            self.edited = SlaveReports::default();
             self.completed.edited = frame + 1;
-            let (words, body) = Order::EditsDone(frame).message();
+            let (words, body) = StageOrder::EditsDone(frame).message();
             self.gp.send(self.config.host, words, body).await;
         }
     }
@@ -243,7 +243,7 @@ impl Master {
     fn note_transformed(&mut self, picture: u64, entries: &[u32]) {
         let place = (picture - self.completed.transformed) as usize;
         while self.transformed.len() <= place {
-            self.transformed.push_back(Reports { slaves: 0, entries: vec![0; entries.len()] });
+            self.transformed.push_back(SlaveReports { slaves: 0, entries: vec![0; entries.len()] });
         }
         let reports = &mut self.transformed[place];
         reports.slaves += 1;
@@ -255,8 +255,8 @@ impl Master {
     }
 
     fn note_accepted(&mut self, token: Token) {
-        let held = Renderer::Holding(token.picture, token.region);
-        self.renderers[usize::from(token.renderer)] = if token.copy { Renderer::Idle } else { held };
+        let held = RendererUse::Holding(token.picture, token.region);
+        self.renderers[usize::from(token.renderer)] = if token.copy { RendererUse::Idle } else { held };
         let Some(rendering) = &mut self.rendering else { return };
         rendering.tokens_out -= 1;
         if rendering.tokens_out == 0 && rendering.unassigned.is_empty() {

@@ -29,7 +29,7 @@ pub(crate) struct Token {
 
 /// Everything that host, master, slaves and renderers tell each other.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Order {
+pub(crate) enum StageOrder {
     /// Host to all: view and edits of a frame.
     Send(FrameView),
     /// Master to slaves: apply the edits of a frame.
@@ -50,7 +50,7 @@ pub(crate) enum Order {
     Copied { frame_buffer: NodeId },
 }
 
-impl Order {
+impl StageOrder {
     /// Length in words and body.
     pub(crate) fn message(&self) -> (u32, Body) {
         let words = self.words();
@@ -139,10 +139,10 @@ mod tests {
     use super::*;
     use pxpl5_sim::Time;
 
-    fn through_words(order: &Order) -> Order {
+    fn through_words(order: &StageOrder) -> StageOrder {
         let (_, body) = order.message();
         let received = Received { arrived: Time::ZERO, source: NodeId(1), body };
-        Order::read(&received, NodeId(0)).expect("our own words")
+        StageOrder::read(&received, NodeId(0)).expect("our own words")
     }
 
     #[test]
@@ -150,15 +150,15 @@ mod tests {
         let token = Token { picture: 1 << 33, region: RegionId(19), renderer: 4, slaves_left: 12, copy: true };
         let view = FrameView { number: 3, eyes: Vec::new(), edits: Vec::new() };
         let orders = [
-            Order::Send(view),
-            Order::Edit(1),
-            Order::Edited(2),
-            Order::EditsDone(1 << 40),
-            Order::Transform(3),
-            Order::Transformed(4, vec![7; 20]),
-            Order::Token(token),
-            Order::Accepted(token),
-            Order::Copied { frame_buffer: NodeId(20) },
+            StageOrder::Send(view),
+            StageOrder::Edit(1),
+            StageOrder::Edited(2),
+            StageOrder::EditsDone(1 << 40),
+            StageOrder::Transform(3),
+            StageOrder::Transformed(4, vec![7; 20]),
+            StageOrder::Token(token),
+            StageOrder::Accepted(token),
+            StageOrder::Copied { frame_buffer: NodeId(20) },
         ];
         orders.iter().for_each(|order| assert_eq!(&through_words(order), order));
     }
@@ -166,7 +166,7 @@ mod tests {
     #[test]
     fn unknown_words_are_a_fault_that_shows_them() {
         let received = Received { arrived: Time::ZERO, source: NodeId(7), body: Body::Words([0xBAD].into()) };
-        let fault = Order::read(&received, NodeId(3)).expect_err("not an order");
+        let fault = StageOrder::read(&received, NodeId(3)).expect_err("not an order");
         assert_eq!(fault.to_string(), "node 3: unexpected message [bad] from node 7");
     }
 }

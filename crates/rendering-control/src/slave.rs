@@ -2,7 +2,7 @@
 
 use crate::config::{BIN_ENTRY_BYTES, PROGRAM_BYTES, RenderingControlConfig};
 use crate::master::copy_order;
-use crate::protocol::{Order, Token};
+use crate::protocol::{StageOrder, Token};
 use pphigs::{FrameView, Pass, RegionEnvelope, Share, Transforming, region_messages};
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
 use pxpl5_sim::Span;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// What both programs of a slave share.
 #[derive(Debug, Default)]
-struct State {
+struct SlaveState {
     views: VecDeque<FrameView>,
     /// Frames whose EDIT may begin, and pictures whose TRANSFORM may.
     edits_allowed: u64,
@@ -23,7 +23,7 @@ struct State {
     bins: [Option<Arc<Pass>>; 2],
 }
 
-type Shared = Rc<RefCell<State>>;
+type SharedSlaveState = Rc<RefCell<SlaveState>>;
 
 /// The programs of slave number `index`, for both levels of its board.
 ///
@@ -35,7 +35,7 @@ pub fn slave(
     share: Share,
     index: usize,
 ) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
-    let state = Shared::default();
+    let state = SharedSlaveState::default();
     [Priority::Interrupt, Priority::Foreground].map(|level| {
         let gp = gp.at_priority(level);
         let config = config.clone();
@@ -51,7 +51,12 @@ pub fn slave(
     })
 }
 
-async fn transform_program(gp: Gp, config: RenderingControlConfig, share: Share, state: Shared) -> Result<(), Fault> {
+async fn transform_program(
+    gp: Gp,
+    config: RenderingControlConfig,
+    share: Share,
+    state: SharedSlaveState,
+) -> Result<(), Fault> {
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     gp.reserve(Account::DisplayList, share.bytes(), None)?;
     gp.install(|processor| share.install(processor))?;
@@ -67,13 +72,13 @@ async fn transform_program(gp: Gp, config: RenderingControlConfig, share: Share,
 }
 
 /// EDIT: applies the edits of a frame and tells the master.
-async fn edit(gp: &Gp, config: &RenderingControlConfig, state: &Shared, frame: u64) -> FrameView {
+async fn edit(gp: &Gp, config: &RenderingControlConfig, state: &SharedSlaveState, frame: u64) -> FrameView {
     gp.until("leave to EDIT", || (state.borrow().edits_allowed > frame).then_some(())).await;
     let view = gp.until("SEND of the frame", || state.borrow_mut().views.pop_front()).await;
     gp.begin(Stage::Edit, frame, None);
     gp.spend(Span::from_ns(gp.timing().edit_ns) * view.edits.len() as u64).await;
     gp.end(Stage::Edit, frame, None);
-    tell_master(gp, config, &Order::Edited(frame)).await;
+    tell_master(gp, config, &StageOrder::Edited(frame)).await;
     view
 }
 
@@ -82,7 +87,7 @@ async fn transform(
     gp: &Gp,
     config: &RenderingControlConfig,
     share: &Share,
-    state: &Shared,
+    state: &SharedSlaveState,
     view: &FrameView,
     picture: u64,
 ) -> Result<(), Fault> {
@@ -98,7 +103,7 @@ async fn transform(
     let entries = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
     state.borrow_mut().bins[usize::from(context)] = Some(pass);
     gp.end(Stage::Transform, frame, Some(eye));
-    tell_master(gp, config, &Order::Transformed(picture, entries)).await;
+    tell_master(gp, config, &StageOrder::Transformed(picture, entries)).await;
     Ok(())
 }
 
@@ -114,25 +119,30 @@ fn reserve_bins(gp: &Gp, pass: &Pass, context: u8) -> Result<(), Fault> {
 }
 
 /// Keeps the views and the leave that arrive, and walks with every token.
-async fn token_program(gp: Gp, config: RenderingControlConfig, index: usize, state: Shared) -> Result<(), Fault> {
+async fn token_program(
+    gp: Gp,
+    config: RenderingControlConfig,
+    index: usize,
+    state: SharedSlaveState,
+) -> Result<(), Fault> {
     loop {
         let received = gp.receive().await;
-        match Order::read(&received, gp.node())? {
-            Order::Send(view) => state.borrow_mut().views.push_back(view),
-            Order::Edit(frame) => {
+        match StageOrder::read(&received, gp.node())? {
+            StageOrder::Send(view) => state.borrow_mut().views.push_back(view),
+            StageOrder::Edit(frame) => {
                 let state = &mut *state.borrow_mut();
                 state.edits_allowed = frame + 1;
                 state.transforms_allowed = frame * config.eyes() + 1;
             }
-            Order::Transform(picture) => state.borrow_mut().transforms_allowed = picture + 1,
-            Order::Token(token) => walk(&gp, &config, index, &state, token).await,
+            StageOrder::Transform(picture) => state.borrow_mut().transforms_allowed = picture + 1,
+            StageOrder::Token(token) => walk(&gp, &config, index, &state, token).await,
             other => return Err(Fault::Protocol { node: gp.node(), found: format!("at a slave: {other:?}") }),
         }
     }
 }
 
 /// Sends this slave's bin of the token's region, then passes the token on.
-async fn walk(gp: &Gp, config: &RenderingControlConfig, index: usize, state: &Shared, token: Token) {
+async fn walk(gp: &Gp, config: &RenderingControlConfig, index: usize, state: &SharedSlaveState, token: Token) {
     let pass = state.borrow().bins[(token.picture % 2) as usize].clone();
     let renderer = config.renderers[usize::from(token.renderer)];
     for list in pass.iter().flat_map(|pass| messages(config, pass, token)) {
@@ -142,9 +152,9 @@ async fn walk(gp: &Gp, config: &RenderingControlConfig, index: usize, state: &Sh
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };
     let (receiver, order) = if last {
-        (config.master, Order::Accepted(next))
+        (config.master, StageOrder::Accepted(next))
     } else {
-        (config.slaves[(index + 1) % config.slaves.len()], Order::Token(next))
+        (config.slaves[(index + 1) % config.slaves.len()], StageOrder::Token(next))
     };
     let (words, body) = order.message();
     gp.send(receiver, words, body).await;
@@ -161,7 +171,7 @@ fn messages(config: &RenderingControlConfig, pass: &Arc<Pass>, token: Token) -> 
     region_messages(pass, token.region, 0, envelope)
 }
 
-async fn tell_master(gp: &Gp, config: &RenderingControlConfig, order: &Order) {
+async fn tell_master(gp: &Gp, config: &RenderingControlConfig, order: &StageOrder) {
     let (words, body) = order.message();
     gp.send(config.master, words, body).await;
 }

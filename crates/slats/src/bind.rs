@@ -1,6 +1,7 @@
 //! Which renderer keeps which region, in which context, and in which order regions are copied.
 
-use crate::config::{CopySchedule, SlatsConfigError};
+use crate::error::SlatsConfigError;
+use crate::schedule::CopySchedule;
 use pxpl5_wire::{Eye, RegionGrid, RegionId};
 
 /// A region of one eye's field, and the renderer and context that keep it for the whole run.

@@ -1,31 +1,12 @@
 //! Who takes part, and which variant runs.
 
 use crate::bind::Binding;
+use crate::error::SlatsConfigError;
+use crate::schedule::CopySchedule;
 use pphigs::{Binning, Picture, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, RegionGrid};
-use thiserror::Error;
-
-/// When the regions of a field are copied to the frame buffers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum CopySchedule {
-    /// All regions before the retrace.
-    Whole,
-    /// Top regions before the retrace, bottom regions right after it (the COPY optimisation).
-    Split,
-    /// All before the retrace, into the buffer that does not hold the last complete field of these lines; only a
-    /// complete field is shown, otherwise that one again. (Beyond the prototype: named as future work in TR94.)
-    Backup,
-}
-
-impl CopySchedule {
-    /// Whether bottom regions are copied after the retrace.
-    #[must_use]
-    pub const fn is_split(self) -> bool {
-        matches!(self, Self::Split)
-    }
-}
 
 /// The boards that take part, and the variant of Slats that they run.
 #[derive(Clone, Debug)]
@@ -46,25 +27,6 @@ pub struct SlatsConfig {
     pub layout: Layout,
     /// Whether somebody may want pixels: without it no command words are made, and all times stay the same.
     pub pixels: bool,
-}
-
-/// A machine on which Slats cannot run.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum SlatsConfigError {
-    /// There are more regions than contexts.
-    #[error(
-        "Slats binds 20 field regions statically: expected at least {expected} renderers of four contexts, found {found}"
-    )]
-    TooFewRenderers {
-        /// How many renderers the machine has.
-        found: usize,
-        /// The fewest whose contexts hold the 20 regions of both eyes.
-        expected: usize,
-    },
-    /// There is no graphics processor.
-    #[error("Slats needs at least one graphics processor, found none")]
-    NoProcessor,
 }
 
 impl SlatsConfig {

@@ -1,7 +1,8 @@
 //! A graphics processor under Slats.
 
 use crate::bind::{Binding, BoundRegion};
-use crate::config::{CopySchedule, SlatsConfig};
+use crate::config::SlatsConfig;
+use crate::schedule::CopySchedule;
 use pphigs::{
     FrameView, Pass, Picture, RegionEnvelope, Share, TransformCost, Transforming, ViewWordsError, copy_message,
     region_messages,
@@ -26,7 +27,7 @@ const CLUMPS_ACCEPTED: Word = 0x000C_1A3D;
 const BEGIN: Word = 0x00BE_6123;
 
 #[derive(Debug, Default)]
-struct State {
+struct ProcessorState {
     /// The newest view from the host, on the leading GP.
     newest: Option<FrameView>,
     /// Fields that the leading GP has begun, on the others.
@@ -39,7 +40,7 @@ struct State {
     finished: Vec<(u64, usize)>,
 }
 
-type Shared = Rc<RefCell<State>>;
+type SharedState = Rc<RefCell<ProcessorState>>;
 
 /// The programs of GP number `index`, for both levels of its board.
 ///
@@ -52,7 +53,7 @@ pub fn processor(
     share: Share,
     index: usize,
 ) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
-    let state = Shared::default();
+    let state = SharedState::default();
     [Priority::Interrupt, Priority::Foreground].map(|level| {
         let gp = gp.at_priority(level);
         let config = config.clone();
@@ -61,7 +62,7 @@ pub fn processor(
         let state = Rc::clone(&state);
         let program = async move {
             match level {
-                Priority::Foreground => Processor { gp, config, binding, share, state, index }.fields().await,
+                Priority::Foreground => SlatsProcessor { gp, config, binding, share, state, index }.fields().await,
                 Priority::Interrupt => listen(gp, state).await,
             }
         };
@@ -70,7 +71,7 @@ pub fn processor(
 }
 
 /// Keeps the newest view and counts finished GPs.
-async fn listen(gp: Gp, state: Shared) -> Result<(), Fault> {
+async fn listen(gp: Gp, state: SharedState) -> Result<(), Fault> {
     loop {
         let received = gp.receive().await;
         let Body::Words(words) = &received.body else {
@@ -91,7 +92,7 @@ fn halves(number: u64) -> [Word; 2] {
     [number as Word, (number >> 32) as Word]
 }
 
-impl State {
+impl ProcessorState {
     fn note(&mut self, words: &[Word]) -> Result<(), ViewWordsError> {
         match words {
             [COPY_ACKNOWLEDGEMENT, ..] => self.copied += 1,
@@ -117,16 +118,16 @@ impl State {
     }
 }
 
-struct Processor {
+struct SlatsProcessor {
     gp: Gp,
     config: SlatsConfig,
     binding: Binding,
     share: Share,
-    state: Shared,
+    state: SharedState,
     index: usize,
 }
 
-impl Processor {
+impl SlatsProcessor {
     async fn fields(self) -> Result<(), Fault> {
         self.gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
         self.gp.reserve(Account::DisplayList, self.share.bytes(), None)?;

@@ -5,7 +5,7 @@
 
 use glam::{Mat4, Vec3};
 use i860::{Config, Cpu, Outcome, Profile, Program, Ram, assemble};
-use pxpl5_geometry::kernel::{Heads, Kernel, Schedule, Surface, display_list_words};
+use pxpl5_geometry::kernel::{Heads, Kernel, KernelSurface, Schedule, display_list_words};
 use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 use pxpl5_renderer::{Command, Layout};
 use std::collections::BTreeMap;
@@ -26,7 +26,7 @@ const TRIANGLE_BYTES: u32 = 96;
 
 /// The kernel of a schedule for Gouraud triangles in bins of a frame, which the report is about.
 pub(crate) const fn frame(schedule: Schedule) -> Kernel {
-    Kernel { schedule, surface: Surface::Gouraud, field: false, binned: true }
+    Kernel { schedule, surface: KernelSurface::Gouraud, field: false, binned: true }
 }
 
 /// Assembles a kernel.
@@ -87,7 +87,7 @@ pub(crate) struct Output {
 
 /// What native code makes of the triangles: the commands of those wholly inside the guard band, their regions, and
 /// the numbers of the rest; and the number of planes flattened, which the kernels do not do.
-pub(crate) fn native(surface: Surface, viewport: Viewport, triangles: &[Triangle]) -> (Output, u64) {
+pub(crate) fn native(surface: KernelSurface, viewport: Viewport, triangles: &[Triangle]) -> (Output, u64) {
     let transform = Transform::new(&view(), viewport, Culling::None).expect("finite");
     let (light, mut stats) = (light(), SetupStats::default());
     let mut output = Output { commands: Vec::new(), regions: Vec::new(), clipped: Vec::new() };
@@ -95,15 +95,16 @@ pub(crate) fn native(surface: Surface, viewport: Viewport, triangles: &[Triangle
         let before = (stats.clipped, stats.outside, stats.not_finite);
         let mut found = Vec::new();
         match surface {
-            Surface::Gouraud => transform.gouraud(triangle, &light, &mut stats, |screen| {
+            KernelSurface::Gouraud => transform.gouraud(triangle, &light, &mut stats, |screen| {
                 let t = screen.gouraud(&viewport, &mut SetupStats::default());
-                let command = pxpl5_renderer::Triangle { edges: t.edges, depth: t.z, colour: t.rgb };
+                let command = pxpl5_renderer::TriangleCommand { edges: t.edges, depth: t.z, colour: t.rgb };
                 found.push((Command::Triangle(command), screen.outline));
             }),
-            Surface::Phong => transform.phong(triangle, &mut stats, |screen| {
+            KernelSurface::Phong => transform.phong(triangle, &mut stats, |screen| {
                 let t = screen.phong(&viewport, &mut SetupStats::default());
                 let colour = t.colour.iter().fold(0, |word, byte| word << 8 | u32::from(*byte));
-                let command = pxpl5_renderer::PhongTriangle { edges: t.edges, depth: t.z, normal: t.normal, colour };
+                let command =
+                    pxpl5_renderer::PhongTriangleCommand { edges: t.edges, depth: t.z, normal: t.normal, colour };
                 found.push((Command::PhongTriangle(command), screen.outline));
             }),
         }
@@ -126,10 +127,10 @@ fn words(command: &Command) -> Vec<u32> {
 }
 
 /// The instruction heads of a triangle command, taken from a command of zeros.
-fn heads(surface: Surface) -> Heads {
+fn heads(surface: KernelSurface) -> Heads {
     let blank = match surface {
-        Surface::Gouraud => words(&Command::Triangle(pxpl5_renderer::Triangle::default())),
-        Surface::Phong => words(&Command::PhongTriangle(pxpl5_renderer::PhongTriangle::default())),
+        KernelSurface::Gouraud => words(&Command::Triangle(pxpl5_renderer::TriangleCommand::default())),
+        KernelSurface::Phong => words(&Command::PhongTriangle(pxpl5_renderer::PhongTriangleCommand::default())),
     };
     [0, 1, 13, 17, 18, 22, 26, 30].map(|at| blank.get(at).copied().unwrap_or_default())
 }

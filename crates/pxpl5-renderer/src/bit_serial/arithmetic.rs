@@ -4,7 +4,7 @@ use super::planes;
 use super::tile::{EMPTY, FULL, Tile, TilePlane};
 use crate::array::FaultKind;
 use crate::controller::{Controller, FieldBits};
-use crate::isa::{ArithmeticOp, Instruction, Test};
+use crate::isa::{ArithmeticOp, ArrayInstruction, Test};
 
 /// An operand that is read least significant bit first and then extended. The sign is latched at the start, since the
 /// result may overwrite it.
@@ -33,39 +33,39 @@ impl Tile {
     pub(super) fn field_instruction(
         &mut self,
         controller: &Controller,
-        instruction: &Instruction,
+        instruction: &ArrayInstruction,
     ) -> Result<(), FaultKind> {
         match *instruction {
-            Instruction::ShiftRight { destination, source, by } => {
+            ArrayInstruction::ShiftRight { destination, source, by } => {
                 self.shift_right(controller.bits(destination)?, controller.bits(source)?, by.into());
             }
-            Instruction::ShiftLeft { destination, source, by } => {
+            ArrayInstruction::ShiftLeft { destination, source, by } => {
                 self.shift_left(controller.bits(destination)?, controller.bits(source)?, by.into());
             }
-            Instruction::Saturate { destination, source } => {
+            ArrayInstruction::Saturate { destination, source } => {
                 self.saturate(controller.bits(destination)?, controller.bits(source)?)
             }
-            Instruction::SquareRoot { destination, radicand } => {
+            ArrayInstruction::SquareRoot { destination, radicand } => {
                 self.square_root(controller.bits(destination)?, controller.bits(radicand)?);
             }
-            Instruction::Arithmetic { op, destination, a, b } => {
+            ArrayInstruction::Arithmetic { op, destination, a, b } => {
                 self.arithmetic(op, controller.bits(destination)?, controller.bits(a)?, controller.bits(b)?);
             }
-            Instruction::Compare { test, a, b } => {
+            ArrayInstruction::Compare { test, a, b } => {
                 let a = controller.bits(a)?;
                 let b = controller.bits(b)?;
                 let source = self.source(b);
                 self.compare(test, a, a.width.max(b.width), |memory, i| source.bit(memory, i));
             }
-            Instruction::CompareConstant { test, a, value } => {
+            ArrayInstruction::CompareConstant { test, a, value } => {
                 let a = controller.bits(a)?;
                 self.compare(test, a, a.width, |_, i| constant_bit(value, i, a.signed));
             }
-            Instruction::LoadConstant { destination, value } => {
+            ArrayInstruction::LoadConstant { destination, value } => {
                 let field = controller.bits(destination)?;
                 self.each_bit(field, |_, i| constant_bit(value, i, field.signed));
             }
-            Instruction::MultiplyConstant { destination, source, factor, factor_bits } => {
+            ArrayInstruction::MultiplyConstant { destination, source, factor, factor_bits } => {
                 let factor = Factor::Constant(factor);
                 self.multiply(
                     controller.bits(destination)?,

@@ -10,20 +10,16 @@
 //!
 //! What is left is done as the definition does it, bit by bit.
 
-use super::BitSerial;
 use super::arithmetic::constant_bit;
-use super::evaluate::{Delivery, ExpressionEffect};
+use super::delivery::{Delivery, ExpressionEffect};
 use super::evaluator::{Evaluator, LinearStreams, Trees, VectorPlace};
 use super::tile::{self, ACROSS, EMPTY, HEIGHT, TILES, Tile, WIDTH, any};
-use crate::array::Executed;
-use crate::controller::LocalExpression;
-use crate::isa::timing::SET_UP_CLOCKS;
-use crate::isa::{Expression, Instruction, LINEAR_BITS, opcode};
+use crate::isa::LINEAR_BITS;
 use crate::simd::{SimdVector, VectorKernel};
-use pxpl5_wire::{Linear, Word};
+use pxpl5_wire::Linear;
 
 /// Most expressions of a run: as many as have their trees in the widest vector.
-const EXPRESSIONS: usize = 8;
+pub(super) const EXPRESSIONS: usize = 8;
 
 /// Bits of a column's number in its tile.
 const LEVELS: usize = 5;
@@ -33,23 +29,23 @@ const NUMBERS: [u32; LEVELS] = [0xaaaa_aaaa, 0xcccc_cccc, 0xf0f0_f0f0, 0xff00_ff
 /// Instructions that follow each other.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InstructionRun {
-    steps: Vec<RunStep>,
+    pub(super) steps: Vec<RunStep>,
     /// Over the array's own columns and rows.
-    expressions: Vec<Linear>,
+    pub(super) expressions: Vec<Linear>,
     /// Words of the list.
-    words: usize,
+    pub(super) words: usize,
 }
 
 /// An instruction of a run.
 #[derive(Clone, Debug)]
-struct RunStep {
-    input: BitOrigin,
-    delivery: Delivery,
+pub(super) struct RunStep {
+    pub(super) input: BitOrigin,
+    pub(super) delivery: Delivery,
 }
 
 /// Where bits come from.
 #[derive(Clone, Copy, Debug)]
-enum BitOrigin {
+pub(super) enum BitOrigin {
     /// An expression of the run.
     Expression(usize),
     Constant(ConstantBits),
@@ -66,65 +62,10 @@ impl RunStep {
     }
 }
 
-impl BitSerial {
-    /// Executes the run that begins at a word; returns how many words it has, 0 where none begins.
-    pub(super) fn execute_run(&mut self, words: &[Word], position: usize, executed: &mut Executed) -> usize {
-        let mut run = std::mem::take(&mut self.run);
-        run.clear();
-        while self.extend(&mut run, words, position) {}
-        if !run.steps.is_empty() {
-            self.vectors.run(RunTiles { run: &run, tiles: &mut self.tiles });
-        }
-        executed.instructions += run.steps.len() as u32;
-        executed.clocks +=
-            run.steps.iter().map(|step| u64::from(SET_UP_CLOCKS) + step.delivery.taken.end as u64).sum::<u64>();
-        let used = run.words;
-        self.run = run;
-        used
-    }
-
-    /// Adds the next instruction, unless it does not belong to the run or is a fault.
-    fn extend(&mut self, run: &mut InstructionRun, words: &[Word], position: usize) -> bool {
-        let position = position + run.words;
-        let Some(head) = words.get(position) else { return false };
-        if !matches!((head >> 24) as u8, opcode::LINEAR..opcode::QUADRATIC | opcode::LOAD_CONSTANT) {
-            return false;
-        }
-        let Ok((instruction, used)) = self.controller.fetch(words, position) else { return false };
-        let Some(step) = self.step_of(run, &instruction) else { return false };
-        run.steps.push(step);
-        run.words += used;
-        true
-    }
-
-    fn step_of(&mut self, run: &mut InstructionRun, instruction: &Instruction) -> Option<RunStep> {
-        match *instruction {
-            Instruction::Evaluate { expression, usage } => {
-                let delivery = self.delivery(&usage, LINEAR_BITS).ok()?;
-                if expression != Expression::LinearAgain || run.expressions.is_empty() {
-                    if run.expressions.len() == EXPRESSIONS {
-                        return None;
-                    }
-                    let LocalExpression::Linear(local) = self.controller.latch(&expression) else { return None };
-                    run.expressions.push(local);
-                }
-                Some(RunStep { input: BitOrigin::Expression(run.expressions.len() - 1), delivery })
-            }
-            Instruction::LoadConstant { destination, value } => {
-                let field = self.controller.bits(destination).ok()?;
-                let delivery =
-                    Delivery { taken: 0..field.width, effect: ExpressionEffect::Load { first: field.first } };
-                Some(RunStep { input: BitOrigin::Constant(ConstantBits { value, signed: field.signed }), delivery })
-            }
-            _ => None,
-        }
-    }
-}
-
 /// A run in all tiles.
-struct RunTiles<'a> {
-    run: &'a InstructionRun,
-    tiles: &'a mut [Tile],
+pub(super) struct RunTiles<'a> {
+    pub(super) run: &'a InstructionRun,
+    pub(super) tiles: &'a mut [Tile],
 }
 
 impl VectorKernel for RunTiles<'_> {
@@ -147,7 +88,7 @@ impl VectorKernel for RunTiles<'_> {
 }
 
 impl InstructionRun {
-    fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.steps.clear();
         self.expressions.clear();
         self.words = 0;
@@ -302,9 +243,9 @@ impl TileStreams {
 
 /// A constant, as though an expression were it.
 #[derive(Clone, Copy, Debug)]
-struct ConstantBits {
-    value: u32,
-    signed: bool,
+pub(super) struct ConstantBits {
+    pub(super) value: u32,
+    pub(super) signed: bool,
 }
 
 impl Evaluator for ConstantBits {

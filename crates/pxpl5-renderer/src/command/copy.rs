@@ -1,7 +1,7 @@
 //! Commands around drawing: region, clearing, copying, backing store.
 
 use super::{CommandKind, enable};
-use crate::isa::{Instruction, Operand};
+use crate::isa::{ArrayInstruction, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::{CopyTarget, Lines, NodeId, RegionGrid, RegionId};
 
@@ -17,13 +17,13 @@ pub struct SelectRegion {
 }
 
 impl SelectRegion {
-    pub(super) const fn program(&self, layout: &Layout) -> [Instruction; 1] {
+    pub(super) const fn program(&self, layout: &Layout) -> [ArrayInstruction; 1] {
         let context_base = layout.context_base(self.context);
-        [Instruction::Select { context_base, left: self.left, top: self.top }]
+        [ArrayInstruction::Select { context_base, left: self.left, top: self.top }]
     }
 
-    pub(super) fn read(program: &[Instruction], layout: &Layout) -> Option<Self> {
-        let &[Instruction::Select { context_base, left, top }] = program else { return None };
+    pub(super) fn read(program: &[ArrayInstruction], layout: &Layout) -> Option<Self> {
+        let &[ArrayInstruction::Select { context_base, left, top }] = program else { return None };
         let context = context_base.checked_div(layout.plan().context_bits)?;
         Some(Self { context, left, top })
     }
@@ -37,17 +37,17 @@ pub struct Clear {
 }
 
 impl Clear {
-    pub(super) fn program(&self, layout: &Layout) -> [Instruction; 3] {
+    pub(super) fn program(&self, layout: &Layout) -> [ArrayInstruction; 3] {
         [
             enable(CommandKind::Clear),
-            Instruction::LoadConstant { destination: layout.plan().colour, value: self.colour },
-            Instruction::LoadConstant { destination: layout.plan().z, value: u32::MAX },
+            ArrayInstruction::LoadConstant { destination: layout.plan().colour, value: self.colour },
+            ArrayInstruction::LoadConstant { destination: layout.plan().z, value: u32::MAX },
         ]
     }
 
-    pub(super) fn read(program: &[Instruction]) -> Option<Self> {
+    pub(super) fn read(program: &[ArrayInstruction]) -> Option<Self> {
         match program.get(1)? {
-            &Instruction::LoadConstant { value: colour, .. } => Some(Self { colour }),
+            &ArrayInstruction::LoadConstant { value: colour, .. } => Some(Self { colour }),
             _ => None,
         }
     }
@@ -61,13 +61,13 @@ pub struct CopyRegion {
 }
 
 impl CopyRegion {
-    pub(super) const fn program(&self, layout: &Layout) -> [Instruction; 1] {
-        [Instruction::Output { field: layout.plan().colour, target: self.target }]
+    pub(super) const fn program(&self, layout: &Layout) -> [ArrayInstruction; 1] {
+        [ArrayInstruction::Output { field: layout.plan().colour, target: self.target }]
     }
 
-    pub(super) fn read(program: &[Instruction]) -> Option<Self> {
+    pub(super) fn read(program: &[ArrayInstruction]) -> Option<Self> {
         match program {
-            &[Instruction::Output { target, .. }] => Some(Self { target }),
+            &[ArrayInstruction::Output { target, .. }] => Some(Self { target }),
             _ => None,
         }
     }
@@ -95,13 +95,13 @@ pub struct StoreBacking {
 }
 
 impl StoreBacking {
-    pub(super) const fn instruction(self) -> Instruction {
-        Instruction::StoreBlock { field: Operand::absolute(self.address, 32), block: self.block }
+    pub(super) const fn instruction(self) -> ArrayInstruction {
+        ArrayInstruction::StoreBlock { field: Operand::absolute(self.address, 32), block: self.block }
     }
 
-    pub(super) fn read(program: &[Instruction]) -> Option<Self> {
+    pub(super) fn read(program: &[ArrayInstruction]) -> Option<Self> {
         match program {
-            &[Instruction::StoreBlock { field, block }] => Some(Self { block, address: field.address }),
+            &[ArrayInstruction::StoreBlock { field, block }] => Some(Self { block, address: field.address }),
             _ => None,
         }
     }
@@ -117,13 +117,13 @@ pub struct LoadBacking {
 }
 
 impl LoadBacking {
-    pub(super) const fn instruction(self) -> Instruction {
-        Instruction::LoadBlock { field: Operand::absolute(self.address, 32), block: self.block }
+    pub(super) const fn instruction(self) -> ArrayInstruction {
+        ArrayInstruction::LoadBlock { field: Operand::absolute(self.address, 32), block: self.block }
     }
 
-    pub(super) fn read(program: &[Instruction]) -> Option<Self> {
+    pub(super) fn read(program: &[ArrayInstruction]) -> Option<Self> {
         match program {
-            &[Instruction::LoadBlock { field, block }] => Some(Self { block, address: field.address }),
+            &[ArrayInstruction::LoadBlock { field, block }] => Some(Self { block, address: field.address }),
             _ => None,
         }
     }

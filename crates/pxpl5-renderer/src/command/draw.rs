@@ -1,14 +1,14 @@
 //! Triangles.
 
 use super::{Command, CommandKind, MissingField, Unsupported, enable, normal};
-use crate::isa::{Expression, ExpressionUse, Instruction, Operand};
+use crate::isa::{ArrayInstruction, Expression, ExpressionUse, Operand};
 use crate::layout::Layout;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
 use pxpl5_wire::{Linear, Word};
 
 /// A triangle with interpolated colour (Gouraud).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Triangle {
+pub struct TriangleCommand {
     /// Inside where all are `>= 0`.
     pub edges: [Linear; 3],
     /// Depth at a pixel, nearer is smaller, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
@@ -19,7 +19,7 @@ pub struct Triangle {
 
 /// A triangle whose normals are interpolated and shaded at the end of the frame (Phong).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PhongTriangle {
+pub struct PhongTriangleCommand {
     /// Inside where all are `>= 0`.
     pub edges: [Linear; 3],
     /// Depth at a pixel, nearer is smaller, with [`pxpl5_wire::format::Z_FRACTION_BITS`].
@@ -30,8 +30,8 @@ pub struct PhongTriangle {
     pub colour: u32,
 }
 
-impl Triangle {
-    pub(super) fn program(&self, layout: &Layout) -> Vec<Instruction> {
+impl TriangleCommand {
+    pub(super) fn program(&self, layout: &Layout) -> Vec<ArrayInstruction> {
         let mut out = vec![enable(CommandKind::Triangle)];
         coverage(&self.edges, self.depth, layout, &mut out);
         for (i, component) in (0..).zip(self.colour) {
@@ -40,43 +40,43 @@ impl Triangle {
         out
     }
 
-    pub(super) fn read(program: &[Instruction]) -> Option<Self> {
+    pub(super) fn read(program: &[ArrayInstruction]) -> Option<Self> {
         let (edges, depth) = read_coverage(program)?;
         let colour = read_three(program.get(6..9)?)?;
         Some(Self { edges, depth, colour })
     }
 }
 
-impl PhongTriangle {
-    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, MissingField> {
+impl PhongTriangleCommand {
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<ArrayInstruction>, MissingField> {
         let mut out = vec![enable(CommandKind::PhongTriangle)];
         coverage(&self.edges, self.depth, layout, &mut out);
         for (i, component) in (0..).zip(self.normal) {
             out.push(load(component, normal(layout, i)?, NORMAL_FRACTION_BITS as u8));
         }
         let destination = layout.plan().colour;
-        out.push(Instruction::LoadConstant { destination, value: self.colour });
+        out.push(ArrayInstruction::LoadConstant { destination, value: self.colour });
         Ok(out)
     }
 
-    pub(super) fn read(program: &[Instruction]) -> Option<Self> {
+    pub(super) fn read(program: &[ArrayInstruction]) -> Option<Self> {
         let (edges, depth) = read_coverage(program)?;
         let normal = read_three(program.get(6..9)?)?;
-        let &Instruction::LoadConstant { value: colour, .. } = program.get(9)? else { return None };
+        let &ArrayInstruction::LoadConstant { value: colour, .. } = program.get(9)? else { return None };
         Some(Self { edges, depth, normal, colour })
     }
 }
 
-pub(super) const fn load(expression: Linear, field: Operand, shift: u8) -> Instruction {
+pub(super) const fn load(expression: Linear, field: Operand, shift: u8) -> ArrayInstruction {
     evaluate(Expression::Linear(expression), ExpressionUse::Load { field, shift })
 }
 
-pub(super) const fn evaluate(expression: Expression, usage: ExpressionUse) -> Instruction {
-    Instruction::Evaluate { expression, usage }
+pub(super) const fn evaluate(expression: Expression, usage: ExpressionUse) -> ArrayInstruction {
+    ArrayInstruction::Evaluate { expression, usage }
 }
 
 /// Three edges, then Z: compare, disable where not nearer, store.
-fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<Instruction>) {
+fn coverage(edges: &[Linear; 3], depth: Linear, layout: &Layout, out: &mut Vec<ArrayInstruction>) {
     out.extend(edges.map(|edge| evaluate(Expression::Linear(edge), ExpressionUse::DisableNegative)));
     let field = layout.plan().z;
     let shift = layout.z_shift();
@@ -109,12 +109,12 @@ impl TriangleEncoder {
     /// For the commands of a layout.
     #[must_use]
     pub fn new(layout: &Layout) -> Self {
-        Self(blank(&Triangle::default().program(layout)))
+        Self(blank(&TriangleCommand::default().program(layout)))
     }
 
     /// Appends the words of [`Command::program`](super::Command::program).
     #[inline(always)]
-    pub fn encode(&self, triangle: &Triangle, out: &mut Vec<Word>) {
+    pub fn encode(&self, triangle: &TriangleCommand, out: &mut Vec<Word>) {
         operands(&self.0, &triangle.edges, &triangle.depth, &triangle.colour, out);
     }
 }
@@ -125,7 +125,7 @@ impl PhongTriangleEncoder {
     /// # Errors
     /// [`Unsupported`] where the layout has no normals.
     pub fn new(layout: &Layout) -> Result<Self, Unsupported> {
-        let blank_one = PhongTriangle::default();
+        let blank_one = PhongTriangleCommand::default();
         let program = blank_one
             .program(layout)
             .map_err(|missing| Command::PhongTriangle(blank_one).unsupported(missing, layout))?;
@@ -134,13 +134,13 @@ impl PhongTriangleEncoder {
 
     /// Appends the words of [`Command::program`](super::Command::program).
     #[inline(always)]
-    pub fn encode(&self, triangle: &PhongTriangle, out: &mut Vec<Word>) {
+    pub fn encode(&self, triangle: &PhongTriangleCommand, out: &mut Vec<Word>) {
         operands(&self.0, &triangle.edges, &triangle.depth, &triangle.normal, out)[COLOUR_AT] = triangle.colour;
     }
 }
 
 /// The words of a program that has as many.
-fn blank<const N: usize>(program: &[Instruction]) -> [Word; N] {
+fn blank<const N: usize>(program: &[ArrayInstruction]) -> [Word; N] {
     let mut words = Vec::with_capacity(N);
     program.iter().for_each(|instruction| instruction.encode(&mut words));
     words.try_into().expect("every program of the kind has the kind's words")
@@ -173,19 +173,19 @@ fn put<const N: usize>(words: &mut [Word; N], at: usize, e: &Linear) {
     words[at + 2] = e.c as Word;
 }
 
-fn read_coverage(program: &[Instruction]) -> Option<([Linear; 3], Linear)> {
+fn read_coverage(program: &[ArrayInstruction]) -> Option<([Linear; 3], Linear)> {
     let edges = read_three(program.get(1..4)?)?;
     Some((edges, read_linear(program.get(4)?)?))
 }
 
-fn read_three(program: &[Instruction]) -> Option<[Linear; 3]> {
+fn read_three(program: &[ArrayInstruction]) -> Option<[Linear; 3]> {
     let [a, b, c] = program else { return None };
     Some([read_linear(a)?, read_linear(b)?, read_linear(c)?])
 }
 
-pub(super) const fn read_linear(instruction: &Instruction) -> Option<Linear> {
+pub(super) const fn read_linear(instruction: &ArrayInstruction) -> Option<Linear> {
     match instruction {
-        Instruction::Evaluate { expression: Expression::Linear(linear), .. } => Some(*linear),
+        ArrayInstruction::Evaluate { expression: Expression::Linear(linear), .. } => Some(*linear),
         _ => None,
     }
 }

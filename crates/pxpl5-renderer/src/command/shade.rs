@@ -1,7 +1,7 @@
 //! Deferred shading at the end of the frame.
 
 use super::{CommandKind, MissingField, enable, normal};
-use crate::isa::{ArithmeticOp, Instruction, Operand, Test};
+use crate::isa::{ArithmeticOp, ArrayInstruction, Operand, Test};
 use crate::layout::Layout;
 
 /// How often the cosine of the highlight is squared: a power of 2^5 = 32 (assumed).
@@ -79,11 +79,11 @@ impl ShadeFields {
 }
 
 impl Shade {
-    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, MissingField> {
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<ArrayInstruction>, MissingField> {
         let f = ShadeFields::in_layout(layout)?;
         let mut out = vec![
             enable(CommandKind::Shade),
-            Instruction::CompareConstant { test: Test::NotEqual, a: f.z, value: u32::MAX },
+            ArrayInstruction::CompareConstant { test: Test::NotEqual, a: f.z, value: u32::MAX },
         ];
         length(&f, &mut out);
         cosine(&f, self.light, f.diffuse, &mut out);
@@ -97,24 +97,24 @@ impl Shade {
     }
 
     /// b's low 8 bits := light on the object's colour; c's bits 10 .. 18 := highlight.
-    fn intensities(&self, f: &ShadeFields, highlight: Operand, out: &mut Vec<Instruction>) {
+    fn intensities(&self, f: &ShadeFields, highlight: Operand, out: &mut Vec<ArrayInstruction>) {
         let sum = f.b.part(0, 19);
         let ambient = u32::from(self.ambient) << COSINE_BITS;
         out.extend([
             multiply_constant(f.b.part(0, 18), f.diffuse, i32::from(self.diffuse), 9),
-            Instruction::LoadConstant { destination: f.c.part(0, 18), value: ambient },
+            ArrayInstruction::LoadConstant { destination: f.c.part(0, 18), value: ambient },
             arithmetic(ArithmeticOp::Add, sum, f.b.part(0, 18), f.c.part(0, 18)),
-            Instruction::Saturate { destination: f.diffuse.part(0, 8), source: sum.part(10, 9) },
+            ArrayInstruction::Saturate { destination: f.diffuse.part(0, 8), source: sum.part(10, 9) },
             multiply_constant(f.c.part(0, 18), highlight, i32::from(self.specular), 9),
         ]);
     }
 
-    pub(super) fn read(program: &[Instruction]) -> Option<Self> {
+    pub(super) fn read(program: &[ArrayInstruction]) -> Option<Self> {
         let light = read_vector(program, 8)?;
         let half = read_vector(program, 15)?;
         let diffuse = read_factor(program, 27)?;
         let ambient = program.get(28)?;
-        let &Instruction::LoadConstant { value, .. } = ambient else { return None };
+        let &ArrayInstruction::LoadConstant { value, .. } = ambient else { return None };
         Some(Self {
             light,
             half,
@@ -125,27 +125,27 @@ impl Shade {
     }
 }
 
-const fn arithmetic(op: ArithmeticOp, destination: Operand, a: Operand, b: Operand) -> Instruction {
-    Instruction::Arithmetic { op, destination, a, b }
+const fn arithmetic(op: ArithmeticOp, destination: Operand, a: Operand, b: Operand) -> ArrayInstruction {
+    ArrayInstruction::Arithmetic { op, destination, a, b }
 }
 
-const fn multiply_constant(destination: Operand, source: Operand, factor: i32, factor_bits: u8) -> Instruction {
-    Instruction::MultiplyConstant { destination, source, factor, factor_bits }
+const fn multiply_constant(destination: Operand, source: Operand, factor: i32, factor_bits: u8) -> ArrayInstruction {
+    ArrayInstruction::MultiplyConstant { destination, source, factor, factor_bits }
 }
 
 /// root := |N|, from the sum of the squares of the normal in a; leaves the remainder there.
-fn length(f: &ShadeFields, out: &mut Vec<Instruction>) {
+fn length(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) {
     let [x, y, z] = f.normal;
     out.push(arithmetic(ArithmeticOp::Multiply, f.a, x, x));
     for component in [y, z] {
         out.push(arithmetic(ArithmeticOp::Multiply, f.b, component, component));
         out.push(arithmetic(ArithmeticOp::Add, f.a, f.a, f.b));
     }
-    out.push(Instruction::SquareRoot { destination: f.root, radicand: f.a });
+    out.push(ArrayInstruction::SquareRoot { destination: f.root, radicand: f.a });
 }
 
 /// cosine := limit(N . vector / |N|).
-fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Instruction>) {
+fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<ArrayInstruction>) {
     let [x, y, z] = vector.map(|v| i32::from(v << 4 >> 4));
     out.push(multiply_constant(f.c, f.normal[0], x, VECTOR_BITS));
     for (component, factor) in [(f.normal[1], y), (f.normal[2], z)] {
@@ -153,12 +153,12 @@ fn cosine(f: &ShadeFields, vector: [i16; 3], cosine: Operand, out: &mut Vec<Inst
         out.push(arithmetic(ArithmeticOp::Add, f.c, f.c, f.b));
     }
     let positive = f.c.part(0, 23);
-    out.push(Instruction::Saturate { destination: positive, source: f.c.signed() });
+    out.push(ArrayInstruction::Saturate { destination: positive, source: f.c.signed() });
     out.push(arithmetic(ArithmeticOp::Divide, cosine, positive, f.root));
 }
 
 /// Squares the cosine of the highlight, to and fro between a and b; returns where the power is.
-fn power(f: &ShadeFields, out: &mut Vec<Instruction>) -> Operand {
+fn power(f: &ShadeFields, out: &mut Vec<ArrayInstruction>) -> Operand {
     let mut base = f.specular;
     for i in 0..SPECULAR_SQUARINGS {
         let square = if i % 2 == 0 { f.a } else { f.b }.part(0, 2 * COSINE_BITS);
@@ -169,24 +169,24 @@ fn power(f: &ShadeFields, out: &mut Vec<Instruction>) -> Operand {
 }
 
 /// component := limit((component * light >> 8) + highlight).
-fn combine(f: &ShadeFields, component: Operand) -> [Instruction; 3] {
+fn combine(f: &ShadeFields, component: Operand) -> [ArrayInstruction; 3] {
     let product = f.a.part(0, 16);
     let sum = f.b.part(0, 9);
     [
         arithmetic(ArithmeticOp::Multiply, product, component, f.diffuse.part(0, 8)),
         arithmetic(ArithmeticOp::Add, sum, product.part(8, 8), f.c.part(10, 8)),
-        Instruction::Saturate { destination: component, source: sum },
+        ArrayInstruction::Saturate { destination: component, source: sum },
     ]
 }
 
-fn read_factor(program: &[Instruction], index: usize) -> Option<i32> {
+fn read_factor(program: &[ArrayInstruction], index: usize) -> Option<i32> {
     match program.get(index)? {
-        Instruction::MultiplyConstant { factor, .. } => Some(*factor),
+        ArrayInstruction::MultiplyConstant { factor, .. } => Some(*factor),
         _ => None,
     }
 }
 
-fn read_vector(program: &[Instruction], first: usize) -> Option<[i16; 3]> {
+fn read_vector(program: &[ArrayInstruction], first: usize) -> Option<[i16; 3]> {
     // The first sum comes between the products of y and z.
     let indices = [first, first + 1, first + 3];
     let [x, y, z] = indices.map(|index| read_factor(program, index).and_then(|factor| i16::try_from(factor).ok()));

@@ -3,7 +3,7 @@
 use super::draw::{evaluate, load, read_linear};
 use super::shade::{SHADE_BITS, SHADE_ROOT};
 use super::{CommandKind, MissingField, enable, normal};
-use crate::isa::{Expression, ExpressionUse, Instruction, Operand, Test};
+use crate::isa::{ArrayInstruction, Expression, ExpressionUse, Operand, Test};
 use crate::layout::Layout;
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_FRACTION_BITS};
 use pxpl5_wire::{Linear, Quadratic};
@@ -44,7 +44,7 @@ pub struct SphereBody {
 /// with a quadratic for each colour, 268 with normals. Its depth is exact nowhere but at the silhouette and the middle, and
 /// spheres that meet would meet in the wrong places, so the root is paid for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sphere {
+pub struct SphereCommand {
     /// Which pixels are inside, and how near they are.
     pub body: SphereBody,
     /// Linear part of red, green and blue with [`COLOUR_FRACTION_BITS`].
@@ -59,7 +59,7 @@ pub struct Sphere {
 /// The z of its normal is `root >> 2`, so that the middle of the sphere has `r / 4`; the sender scales x and y alike
 /// (shading normalises). Under perspective the normal's x and y are taken as linear.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PhongSphere {
+pub struct PhongSphereCommand {
     /// Which pixels are inside, and how near they are.
     pub body: SphereBody,
     /// x and y of the normal with [`NORMAL_FRACTION_BITS`].
@@ -117,7 +117,7 @@ impl SphereScratch {
 }
 
 /// Silhouette, root, depth: compare, disable where not nearer, store.
-fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<Instruction>) {
+fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &mut Vec<ArrayInstruction>) {
     let z = layout.plan().z;
     out.extend([
         evaluate(Expression::Quadratic(body.silhouette), ExpressionUse::DisableNegative),
@@ -125,7 +125,7 @@ fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &m
             Expression::QuadraticAgain,
             ExpressionUse::Load { field: scratch.radicand, shift: body.root_shift.min(24) + 2 * scratch.short() },
         ),
-        Instruction::SquareRoot { destination: scratch.root, radicand: scratch.radicand },
+        ArrayInstruction::SquareRoot { destination: scratch.root, radicand: scratch.radicand },
         evaluate(
             Expression::Linear(body.depth),
             ExpressionUse::LoadMinus {
@@ -135,19 +135,19 @@ fn coverage(body: &SphereBody, layout: &Layout, scratch: &SphereScratch, out: &m
                 left_shift: body.depth_shift.min(20) + scratch.short(),
             },
         ),
-        Instruction::Compare { test: Test::Less, a: scratch.z, b: z },
-        Instruction::ShiftRight { destination: z, source: scratch.z, by: 0 },
+        ArrayInstruction::Compare { test: Test::Less, a: scratch.z, b: z },
+        ArrayInstruction::ShiftRight { destination: z, source: scratch.z, by: 0 },
     ]);
 }
 
-fn read_coverage(program: &[Instruction], layout: &Layout) -> Option<SphereBody> {
+fn read_coverage(program: &[ArrayInstruction], layout: &Layout) -> Option<SphereBody> {
     let short = SphereScratch::in_layout(layout).ok()?.short();
     let &[
         _,
-        Instruction::Evaluate { expression: Expression::Quadratic(silhouette), .. },
-        Instruction::Evaluate { usage: ExpressionUse::Load { shift, .. }, .. },
+        ArrayInstruction::Evaluate { expression: Expression::Quadratic(silhouette), .. },
+        ArrayInstruction::Evaluate { usage: ExpressionUse::Load { shift, .. }, .. },
         _,
-        Instruction::Evaluate {
+        ArrayInstruction::Evaluate {
             expression: Expression::Linear(depth),
             usage: ExpressionUse::LoadMinus { left_shift, .. },
         },
@@ -161,8 +161,8 @@ fn read_coverage(program: &[Instruction], layout: &Layout) -> Option<SphereBody>
     Some(SphereBody { silhouette, root_shift, depth, depth_shift })
 }
 
-impl Sphere {
-    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, MissingField> {
+impl SphereCommand {
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<ArrayInstruction>, MissingField> {
         let scratch = SphereScratch::in_layout(layout)?;
         let mut out = vec![enable(CommandKind::Sphere)];
         coverage(&self.body, layout, &scratch, &mut out);
@@ -173,12 +173,12 @@ impl Sphere {
         Ok(out)
     }
 
-    pub(super) fn read(program: &[Instruction], layout: &Layout) -> Option<Self> {
+    pub(super) fn read(program: &[ArrayInstruction], layout: &Layout) -> Option<Self> {
         let body = read_coverage(program, layout)?;
         let mut colour = [Linear::default(); 3];
         let mut root_factor = [0; 3];
         for (i, part) in program.get(7..16)?.chunks_exact(3).enumerate() {
-            let Instruction::MultiplyConstant { factor, .. } = part[0] else { return None };
+            let ArrayInstruction::MultiplyConstant { factor, .. } = part[0] else { return None };
             root_factor[i] = i16::try_from(factor).ok()?;
             colour[i] = read_linear(&part[1])?;
         }
@@ -187,22 +187,22 @@ impl Sphere {
 }
 
 /// component := limit(linear + (upper root * factor >> 8)), in the upper 10 bits of the product.
-fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &SphereScratch) -> [Instruction; 3] {
+fn shade_component(linear: Linear, factor: i16, component: Operand, scratch: &SphereScratch) -> [ArrayInstruction; 3] {
     let sum = scratch.product.part(8, 10).signed();
     [
-        Instruction::MultiplyConstant {
+        ArrayInstruction::MultiplyConstant {
             destination: scratch.product,
             source: scratch.upper_root(COLOUR_ROOT_BITS),
             factor: i32::from(factor << 6 >> 6),
             factor_bits: FACTOR_BITS,
         },
         evaluate(Expression::Linear(linear), ExpressionUse::Add { field: sum, shift: COLOUR_FRACTION_BITS as u8 }),
-        Instruction::Saturate { destination: component, source: sum },
+        ArrayInstruction::Saturate { destination: component, source: sum },
     ]
 }
 
-impl PhongSphere {
-    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<Instruction>, MissingField> {
+impl PhongSphereCommand {
+    pub(super) fn program(&self, layout: &Layout) -> Result<Vec<ArrayInstruction>, MissingField> {
         let scratch = SphereScratch::in_layout(layout)?;
         let mut out = vec![enable(CommandKind::PhongSphere)];
         coverage(&self.body, layout, &scratch, &mut out);
@@ -210,16 +210,16 @@ impl PhongSphere {
             out.push(load(component, normal(layout, i)?, NORMAL_FRACTION_BITS as u8));
         }
         out.extend([
-            Instruction::ShiftRight { destination: normal(layout, 2)?, source: scratch.upper_root(10), by: 0 },
-            Instruction::LoadConstant { destination: layout.plan().colour, value: self.colour },
+            ArrayInstruction::ShiftRight { destination: normal(layout, 2)?, source: scratch.upper_root(10), by: 0 },
+            ArrayInstruction::LoadConstant { destination: layout.plan().colour, value: self.colour },
         ]);
         Ok(out)
     }
 
-    pub(super) fn read(program: &[Instruction], layout: &Layout) -> Option<Self> {
+    pub(super) fn read(program: &[ArrayInstruction], layout: &Layout) -> Option<Self> {
         let body = read_coverage(program, layout)?;
         let normal = [read_linear(program.get(7)?)?, read_linear(program.get(8)?)?];
-        let &Instruction::LoadConstant { value: colour, .. } = program.get(10)? else { return None };
+        let &ArrayInstruction::LoadConstant { value: colour, .. } = program.get(10)? else { return None };
         Some(Self { body, normal, colour })
     }
 }

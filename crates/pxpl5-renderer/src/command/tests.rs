@@ -19,12 +19,13 @@ fn quadratic() -> impl Strategy<Value = Quadratic> {
 }
 
 fn triangle() -> impl Strategy<Value = Command> {
-    (three(), linear(), three()).prop_map(|(edges, depth, colour)| Command::Triangle(Triangle { edges, depth, colour }))
+    (three(), linear(), three())
+        .prop_map(|(edges, depth, colour)| Command::Triangle(TriangleCommand { edges, depth, colour }))
 }
 
 fn phong_triangle() -> impl Strategy<Value = Command> {
     (three(), linear(), three(), any::<u32>()).prop_map(|(edges, depth, normal, colour)| {
-        Command::PhongTriangle(PhongTriangle { edges, depth, normal, colour })
+        Command::PhongTriangle(PhongTriangleCommand { edges, depth, normal, colour })
     })
 }
 
@@ -39,12 +40,12 @@ fn body() -> impl Strategy<Value = SphereBody> {
 
 fn sphere() -> impl Strategy<Value = Command> {
     (body(), three(), [-512_i16..512, -512_i16..512, -512_i16..512])
-        .prop_map(|(body, colour, root_factor)| Command::Sphere(Sphere { body, colour, root_factor }))
+        .prop_map(|(body, colour, root_factor)| Command::Sphere(SphereCommand { body, colour, root_factor }))
 }
 
 fn phong_sphere() -> impl Strategy<Value = Command> {
     (body(), [linear(), linear()], any::<u32>())
-        .prop_map(|(body, normal, colour)| Command::PhongSphere(PhongSphere { body, normal, colour }))
+        .prop_map(|(body, normal, colour)| Command::PhongSphere(PhongSphereCommand { body, normal, colour }))
 }
 
 fn vector() -> impl Strategy<Value = [i16; 3]> {
@@ -134,7 +135,7 @@ proptest! {
 
     #[test]
     fn any_words_decode_or_name_the_position_without_a_panic(words in any::<Vec<u32>>()) {
-        if let Err(error) = Instruction::decode_all(&words) {
+        if let Err(error) = ArrayInstruction::decode_all(&words) {
             prop_assert!(error.position < words.len());
         }
         let _ = Command::decode(&words, 0, &phong());
@@ -147,7 +148,7 @@ proptest! {
     ) {
         let mut words = vec![opcode << 24 | rest[0] & 0xff_ffff];
         words.extend(rest);
-        if let Ok((instruction, used)) = Instruction::decode(&words, 0) {
+        if let Ok((instruction, used)) = ArrayInstruction::decode(&words, 0) {
             let mut again = Vec::new();
             instruction.encode(&mut again);
             prop_assert_eq!(&again[..], &words[..used]);
@@ -181,8 +182,8 @@ fn the_timing_table_holds_the_clocks_of_the_programs() {
 
 #[test]
 fn the_clocks_of_a_triangle_are_those_of_its_formats() {
-    let program = Command::Triangle(Triangle::default()).program(&phong()).unwrap();
-    let bits: Vec<_> = program.iter().map(Instruction::bit_clocks).collect();
+    let program = Command::Triangle(TriangleCommand::default()).program(&phong()).unwrap();
+    let bits: Vec<_> = program.iter().map(ArrayInstruction::bit_clocks).collect();
     assert_eq!(bits, [2, 32, 32, 32, 32, 32, 20, 20, 20]);
     assert_eq!(258, bits.iter().sum::<u32>() + 9 * SET_UP_CLOCKS);
 }
@@ -231,12 +232,12 @@ fn a_sphere_pays_for_two_quadratics_a_root_and_three_products() {
 }
 
 fn quadratic_clocks(usage: ExpressionUse) -> u32 {
-    Instruction::Evaluate { expression: Expression::QuadraticAgain, usage }.clocks()
+    ArrayInstruction::Evaluate { expression: Expression::QuadraticAgain, usage }.clocks()
 }
 
 #[test]
 fn a_paraboloid_is_a_little_dearer_than_a_triangle() {
-    // What `Sphere` says of it: sign, compare and store of a quadratic, then three colours, or normals and a colour.
+    // What `SphereCommand` says of it: sign, compare and store of a quadratic, then three colours, or normals and a colour.
     let field = phong().plan().z;
     let load = ExpressionUse::Load { field, shift: 0 };
     let depth = quadratic_clocks(ExpressionUse::DisableNegative)
@@ -244,7 +245,7 @@ fn a_paraboloid_is_a_little_dearer_than_a_triangle() {
         + quadratic_clocks(load);
     let coverage = enable(CommandKind::Sphere).clocks() + depth;
     assert_eq!(coverage + 3 * quadratic_clocks(load), 318);
-    let constant = Instruction::LoadConstant { destination: phong().plan().colour, value: 0 }.clocks();
+    let constant = ArrayInstruction::LoadConstant { destination: phong().plan().colour, value: 0 }.clocks();
     assert_eq!(coverage + 3 * (22 + SET_UP_CLOCKS) + constant, 268);
 }
 
@@ -277,7 +278,7 @@ fn a_command_that_the_layout_cannot_hold_is_an_error_that_says_what_is_missing()
 #[test]
 fn a_label_on_another_program_is_no_command() {
     let mut words = Vec::new();
-    Command::Triangle(Triangle::default()).encode(&phong(), &mut words).unwrap();
+    Command::Triangle(TriangleCommand::default()).encode(&phong(), &mut words).unwrap();
     words[13] ^= 1;
     let error = Command::decode(&words, 0, &phong()).unwrap_err();
     assert_eq!((error.position, error.kind), (0, DecodeErrorKind::NotTheCommand(3)));

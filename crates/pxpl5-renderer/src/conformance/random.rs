@@ -1,10 +1,10 @@
 //! Random lists of words, the same for the same number on every host.
 
 use crate::command::{
-    Clear, Command, LoadBacking, PhongSphere, PhongTriangle, SelectRegion, Shade, Sphere, SphereBody, StoreBacking,
-    Triangle,
+    Clear, Command, LoadBacking, PhongSphereCommand, PhongTriangleCommand, SelectRegion, Shade, SphereBody,
+    SphereCommand, StoreBacking, TriangleCommand,
 };
-use crate::isa::Instruction;
+use crate::isa::ArrayInstruction;
 use crate::layout::Layout;
 use pxpl5_wire::{Linear, Quadratic, Word};
 
@@ -69,7 +69,7 @@ impl Random {
             let opcode = 1 + self.below(0x6f) as u32;
             let mut trial = vec![opcode << 24 | self.next() as u32 & 0x3f_ffff];
             trial.extend((0..12).map(|_| self.next() as u32));
-            if let Ok((instruction, _)) = Instruction::decode(&trial, 0) {
+            if let Ok((instruction, _)) = ArrayInstruction::decode(&trial, 0) {
                 instruction.encode(words);
                 wanted -= 1;
             }
@@ -106,27 +106,27 @@ impl Random {
         }
     }
 
-    fn triangle(&mut self) -> Triangle {
+    fn triangle(&mut self) -> TriangleCommand {
         let colour = [self.plane(20), self.plane(20), self.plane(20)];
-        Triangle { edges: self.edges(), depth: self.plane(32), colour }
+        TriangleCommand { edges: self.edges(), depth: self.plane(32), colour }
     }
 
-    fn phong_triangle(&mut self) -> PhongTriangle {
+    fn phong_triangle(&mut self) -> PhongTriangleCommand {
         let normal = [self.plane(22), self.plane(22), self.plane(22)];
         let colour = self.next() as u32;
-        PhongTriangle { edges: self.edges(), depth: self.plane(32), normal, colour }
+        PhongTriangleCommand { edges: self.edges(), depth: self.plane(32), normal, colour }
     }
 
-    fn sphere(&mut self) -> Sphere {
+    fn sphere(&mut self) -> SphereCommand {
         let body = self.sphere_body();
         let colour = [self.plane(20), self.plane(20), self.plane(20)];
         let root_factor = std::array::from_fn(|_| self.between(-512, 512) as i16);
-        Sphere { body, colour, root_factor }
+        SphereCommand { body, colour, root_factor }
     }
 
-    fn phong_sphere(&mut self) -> PhongSphere {
+    fn phong_sphere(&mut self) -> PhongSphereCommand {
         let body = self.sphere_body();
-        PhongSphere { body, normal: [self.plane(22), self.plane(22)], colour: self.next() as u32 }
+        PhongSphereCommand { body, normal: [self.plane(22), self.plane(22)], colour: self.next() as u32 }
     }
 
     fn sphere_body(&mut self) -> SphereBody {
@@ -208,12 +208,12 @@ fn repainted(command: Command) -> Command {
             t.colour.rotate_left(1);
             Command::Triangle(t)
         }
-        Command::PhongTriangle(t) => Command::PhongTriangle(PhongTriangle { colour: !t.colour, ..t }),
+        Command::PhongTriangle(t) => Command::PhongTriangle(PhongTriangleCommand { colour: !t.colour, ..t }),
         Command::Sphere(mut s) => {
             s.colour.rotate_left(1);
             Command::Sphere(s)
         }
-        Command::PhongSphere(s) => Command::PhongSphere(PhongSphere { colour: !s.colour, ..s }),
+        Command::PhongSphere(s) => Command::PhongSphere(PhongSphereCommand { colour: !s.colour, ..s }),
         other => other,
     }
 }

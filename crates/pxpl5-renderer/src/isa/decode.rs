@@ -1,7 +1,7 @@
 //! From words to instructions.
 
 use super::encode::{AGAIN, opcode};
-use super::{ArithmeticOp, BACKING_BLOCKS, Expression, ExpressionUse, Instruction, MEMORY_BITS, Operand, Test};
+use super::{ArithmeticOp, ArrayInstruction, BACKING_BLOCKS, Expression, ExpressionUse, MEMORY_BITS, Operand, Test};
 use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, Quadratic, RegionGrid, RegionId, Word};
 
 /// A word that is no instruction, and where it stands.
@@ -59,7 +59,7 @@ pub enum DecodeErrorKind {
     NotTheCommand(u8),
 }
 
-impl Instruction {
+impl ArrayInstruction {
     /// Reads the instruction at `position`.
     ///
     /// # Errors
@@ -150,7 +150,7 @@ fn alike(a: Operand, b: Operand) -> Result<(), DecodeErrorKind> {
     if a.signed == b.signed { Ok(()) } else { Err(DecodeErrorKind::Signedness) }
 }
 
-fn decode(words: &[Word]) -> Result<(Instruction, usize), DecodeErrorKind> {
+fn decode(words: &[Word]) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
     let Some((&first, tail)) = words.split_first() else {
         return Err(DecodeErrorKind::Truncated { expected: 1, found: 0 });
     };
@@ -173,32 +173,32 @@ fn decode(words: &[Word]) -> Result<(Instruction, usize), DecodeErrorKind> {
     }
 }
 
-fn control(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+fn control(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
     if matches!(encoded.opcode, opcode::ENABLE_ALL | opcode::SELECT) {
         must_be_zero(encoded.operand)?;
     } else {
         encoded.no_modifier()?;
     }
     Ok(match encoded.opcode {
-        opcode::ENABLE_ALL => (Instruction::EnableAll { label: encoded.modifier }, 1),
-        opcode::ENABLE_LOAD => (Instruction::EnableLoad(encoded.bit()?), 1),
-        opcode::ENABLE_STORE => (Instruction::EnableStore(encoded.bit()?), 1),
-        opcode::ENABLE_AND => (Instruction::EnableAnd(encoded.bit()?), 1),
+        opcode::ENABLE_ALL => (ArrayInstruction::EnableAll { label: encoded.modifier }, 1),
+        opcode::ENABLE_LOAD => (ArrayInstruction::EnableLoad(encoded.bit()?), 1),
+        opcode::ENABLE_STORE => (ArrayInstruction::EnableStore(encoded.bit()?), 1),
+        opcode::ENABLE_AND => (ArrayInstruction::EnableAnd(encoded.bit()?), 1),
         opcode::SELECT => {
             let [origin] = encoded.tail()?;
             let left = origin as u16;
             let top = (origin >> 16) as u16;
-            (Instruction::Select { context_base: encoded.modifier, left, top }, 2)
+            (ArrayInstruction::Select { context_base: encoded.modifier, left, top }, 2)
         }
         other => {
             must_be_zero(encoded.operand)?;
             let all = other == opcode::ENABLE_NONE;
-            (if all { Instruction::EnableNone } else { Instruction::EnableInvert }, 1)
+            (if all { ArrayInstruction::EnableNone } else { ArrayInstruction::EnableInvert }, 1)
         }
     })
 }
 
-fn evaluate(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+fn evaluate(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
     let quadratic = encoded.opcode >= opcode::QUADRATIC;
     let use_code = encoded.opcode & 15;
     let (usage, used) = expression_use(encoded, use_code)?;
@@ -212,7 +212,7 @@ fn evaluate(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), De
         (true, false) => (Expression::Quadratic(quadratic_of(rest.tail().map_err(|_| truncated)?)), 12),
     };
     check_use(&usage, expression.bits())?;
-    Ok((Instruction::Evaluate { expression, usage }, used + more))
+    Ok((ArrayInstruction::Evaluate { expression, usage }, used + more))
 }
 
 fn expression_use(encoded: &EncodedInstruction<'_>, code: u8) -> Result<(ExpressionUse, usize), DecodeErrorKind> {
@@ -271,29 +271,29 @@ fn long_coefficient(words: &[Word; 12], i: usize) -> i64 {
     (u64::from(words[2 * i + 1]) << 32 | u64::from(words[2 * i])) as i64
 }
 
-fn one_source(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+fn one_source(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
     let destination = encoded.field()?;
     let source = encoded.source()?;
     let by = encoded.modifier;
     let instruction = match encoded.opcode {
-        opcode::SHIFT_RIGHT => Instruction::ShiftRight { destination, source, by },
-        opcode::SHIFT_LEFT => Instruction::ShiftLeft { destination, source, by },
+        opcode::SHIFT_RIGHT => ArrayInstruction::ShiftRight { destination, source, by },
+        opcode::SHIFT_LEFT => ArrayInstruction::ShiftLeft { destination, source, by },
         opcode::SATURATE => {
             encoded.no_modifier()?;
-            Instruction::Saturate { destination, source }
+            ArrayInstruction::Saturate { destination, source }
         }
         _ => {
             encoded.no_modifier()?;
             unsigned(&[source])?;
             width(source, 2 * u32::from(destination.width))?;
-            Instruction::SquareRoot { destination, radicand: source }
+            ArrayInstruction::SquareRoot { destination, radicand: source }
         }
     };
     must_be_zero(u32::from(by & 0xc0))?;
     Ok((instruction, 2))
 }
 
-fn arithmetic(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+fn arithmetic(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
     encoded.no_modifier()?;
     let destination = encoded.field()?;
     let (a, b) = encoded.pair()?;
@@ -308,18 +308,18 @@ fn arithmetic(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), 
         ArithmeticOp::Minimum | ArithmeticOp::Maximum => alike(a, b)?,
         _ => {}
     }
-    Ok((Instruction::Arithmetic { op, destination, a, b }, 2))
+    Ok((ArrayInstruction::Arithmetic { op, destination, a, b }, 2))
 }
 
-fn compare(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+fn compare(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
     must_be_zero(u32::from(encoded.modifier) | encoded.operand)?;
     let (a, b) = encoded.pair()?;
     alike(a, b)?;
     let test = Test::ALL[usize::from(encoded.opcode - opcode::COMPARE)];
-    Ok((Instruction::Compare { test, a, b }, 2))
+    Ok((ArrayInstruction::Compare { test, a, b }, 2))
 }
 
-fn constant(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+fn constant(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
     let destination = encoded.field()?;
     if encoded.opcode == opcode::MULTIPLY_CONSTANT {
         let source = encoded.source()?;
@@ -327,21 +327,21 @@ fn constant(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), De
         must_be_zero(u32::from(encoded.modifier & 0xe0))?;
         let factor = factor as i32;
         let factor_bits = encoded.modifier + 1;
-        return Ok((Instruction::MultiplyConstant { destination, source, factor, factor_bits }, 3));
+        return Ok((ArrayInstruction::MultiplyConstant { destination, source, factor, factor_bits }, 3));
     }
     encoded.no_modifier()?;
     let [value] = encoded.tail()?;
     if encoded.opcode == opcode::LOAD_CONSTANT {
-        return Ok((Instruction::LoadConstant { destination, value }, 2));
+        return Ok((ArrayInstruction::LoadConstant { destination, value }, 2));
     }
     let test = Test::ALL[usize::from(encoded.opcode - opcode::COMPARE_CONSTANT)];
-    Ok((Instruction::CompareConstant { test, a: destination, value }, 2))
+    Ok((ArrayInstruction::CompareConstant { test, a: destination, value }, 2))
 }
 
-fn backing(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+fn backing(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
     if encoded.opcode == opcode::WAIT {
         must_be_zero(u32::from(encoded.modifier) | encoded.operand)?;
-        return Ok((Instruction::Wait, 1));
+        return Ok((ArrayInstruction::Wait, 1));
     }
     let field = width(encoded.field()?, 32)?;
     let block = encoded.modifier;
@@ -349,17 +349,17 @@ fn backing(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), Dec
         return Err(DecodeErrorKind::UnknownBlock(block));
     }
     Ok(if encoded.opcode == opcode::STORE_BLOCK {
-        (Instruction::StoreBlock { field, block }, 1)
+        (ArrayInstruction::StoreBlock { field, block }, 1)
     } else {
-        (Instruction::LoadBlock { field, block }, 1)
+        (ArrayInstruction::LoadBlock { field, block }, 1)
     })
 }
 
-fn output(encoded: &EncodedInstruction<'_>) -> Result<(Instruction, usize), DecodeErrorKind> {
+fn output(encoded: &EncodedInstruction<'_>) -> Result<(ArrayInstruction, usize), DecodeErrorKind> {
     encoded.no_modifier()?;
     let field = width(encoded.field()?, 24)?;
     let target = target(encoded.tail()?)?;
-    Ok((Instruction::Output { field, target }, 9))
+    Ok((ArrayInstruction::Output { field, target }, 9))
 }
 
 fn target(words: [Word; 8]) -> Result<CopyTarget, DecodeErrorKind> {

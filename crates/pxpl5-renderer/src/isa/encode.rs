@@ -1,6 +1,6 @@
 //! From instructions to words.
 
-use super::{ArithmeticOp, Expression, ExpressionUse, Instruction, Operand, Test};
+use super::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, Operand, Test};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, Word};
 
 pub(crate) mod opcode {
@@ -39,7 +39,7 @@ const fn pair(a: Operand, b: Operand) -> Word {
     a.to_bits() << 16 | b.to_bits()
 }
 
-impl Instruction {
+impl ArrayInstruction {
     /// Appends the instruction's words.
     pub fn encode(&self, out: &mut Vec<Word>) {
         match *self {

@@ -11,7 +11,7 @@
 //! clock). An expression arrives least significant bit first, so a field of `w` bits above `s` bits that are left out
 //! takes `s + w` clocks.
 
-use super::{ArithmeticOp, Expression, ExpressionUse, Instruction, LINEAR_BITS, QUADRATIC_BITS};
+use super::{ArithmeticOp, ArrayInstruction, Expression, ExpressionUse, LINEAR_BITS, QUADRATIC_BITS};
 
 /// Clock of the array in Hz. Published: 40 MHz (F89, TR94).
 pub const CLOCK_HZ: u64 = 40_000_000;
@@ -58,7 +58,7 @@ pub fn divide_clocks(w: u32, a: u32, b: u32) -> u32 {
     (0..w).map(|j| (a - j).max(b) + (a - j)).sum()
 }
 
-impl Instruction {
+impl ArrayInstruction {
     /// Clocks in which the array and its controller are busy.
     #[must_use]
     pub fn clocks(&self) -> u32 {

@@ -182,6 +182,16 @@ fn split_wide(cuts: &[usize]) -> Vec<usize> {
     out
 }
 
+/// Columns of the selected context's fields.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ContextColumns {
+    /// First bit of the context in pixel memory.
+    pub(super) base: u8,
+    pub(super) colour: usize,
+    pub(super) z: usize,
+    pub(super) normal: Option<[usize; 3]>,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

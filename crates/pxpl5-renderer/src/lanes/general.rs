@@ -3,24 +3,28 @@
 use super::{Lanes, values};
 use crate::array::{Executed, FaultKind, OutputRegion, PIXELS};
 use crate::controller::LocalExpression;
-use crate::isa::{ArithmeticOp, ExpressionUse, Instruction, Operand, Test};
+use crate::isa::{ArithmeticOp, ArrayInstruction, ExpressionUse, Operand, Test};
 use pxpl5_wire::REGION_SIZE;
 
 impl Lanes {
     /// Executes an instruction whose operands have been checked.
-    pub(super) fn instruction(&mut self, instruction: &Instruction, executed: &mut Executed) -> Result<(), FaultKind> {
+    pub(super) fn instruction(
+        &mut self,
+        instruction: &ArrayInstruction,
+        executed: &mut Executed,
+    ) -> Result<(), FaultKind> {
         match *instruction {
-            Instruction::Select { context_base, left, top } => {
+            ArrayInstruction::Select { context_base, left, top } => {
                 self.controller.select(context_base, left, top);
             }
-            Instruction::Evaluate { expression, usage } => {
+            ArrayInstruction::Evaluate { expression, usage } => {
                 let local = self.controller.latch(&expression);
                 return self.evaluate(&local, &usage);
             }
-            Instruction::StoreBlock { field, block } => return self.store_block(field, block),
-            Instruction::LoadBlock { field, block } => return self.load_block(field, block),
-            Instruction::Wait => {}
-            Instruction::Output { field, target } => {
+            ArrayInstruction::StoreBlock { field, block } => return self.store_block(field, block),
+            ArrayInstruction::LoadBlock { field, block } => return self.load_block(field, block),
+            ArrayInstruction::Wait => {}
+            ArrayInstruction::Output { field, target } => {
                 let [_, _, width, height] = target.grid.rectangle(target.region);
                 let pixels = self.colour(self.controller.bits(field)?, width, height);
                 executed.outputs.push(OutputRegion { target, pixels });
@@ -30,22 +34,22 @@ impl Lanes {
         Ok(())
     }
 
-    fn enable_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
+    fn enable_instruction(&mut self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
         match *instruction {
-            Instruction::EnableAll { .. } => self.enable.fill(true),
-            Instruction::EnableNone => self.enable.fill(false),
-            Instruction::EnableInvert => self.enable.pixels_mut().iter_mut().for_each(|e| *e = !*e),
-            Instruction::EnableLoad(bit) => {
+            ArrayInstruction::EnableAll { .. } => self.enable.fill(true),
+            ArrayInstruction::EnableNone => self.enable.fill(false),
+            ArrayInstruction::EnableInvert => self.enable.pixels_mut().iter_mut().for_each(|e| *e = !*e),
+            ArrayInstruction::EnableLoad(bit) => {
                 self.enable.fill(true);
                 self.disable_unless(bit, |v| v & 1 == 1)?;
             }
-            Instruction::EnableAnd(bit) => self.disable_unless(bit, |v| v & 1 == 1)?,
-            Instruction::EnableStore(bit) => {
+            ArrayInstruction::EnableAnd(bit) => self.disable_unless(bit, |v| v & 1 == 1)?,
+            ArrayInstruction::EnableStore(bit) => {
                 let values: Vec<_> = self.enable.pixels().iter().map(|e| u64::from(*e)).collect();
                 self.columns.scatter(self.controller.bits(bit)?, &values, &[255; PIXELS]);
             }
-            Instruction::Compare { test, a, b } => self.compare(test, a, b)?,
-            Instruction::CompareConstant { test, a, value } => {
+            ArrayInstruction::Compare { test, a, b } => self.compare(test, a, b)?,
+            ArrayInstruction::CompareConstant { test, a, value } => {
                 let constant = values::extend(value.into(), u32::from(a.width).min(32), a.signed);
                 self.disable_unless(a, |v| values::holds(test, v, constant, a.signed))?;
             }
@@ -54,30 +58,30 @@ impl Lanes {
         Ok(())
     }
 
-    fn field_instruction(&mut self, instruction: &Instruction) -> Result<(), FaultKind> {
+    fn field_instruction(&mut self, instruction: &ArrayInstruction) -> Result<(), FaultKind> {
         match *instruction {
-            Instruction::ShiftRight { destination, source, by } => {
+            ArrayInstruction::ShiftRight { destination, source, by } => {
                 self.map(destination, source, |v| values::shift_right(v, by, source.signed))
             }
-            Instruction::ShiftLeft { destination, source, by } => self.map(destination, source, |v| v << by),
-            Instruction::Saturate { destination, source } => {
+            ArrayInstruction::ShiftLeft { destination, source, by } => self.map(destination, source, |v| v << by),
+            ArrayInstruction::Saturate { destination, source } => {
                 let width = usize::from(destination.width);
                 self.map(destination, source, |v| values::saturate(v, source.signed, width))
             }
-            Instruction::SquareRoot { destination, radicand } => {
+            ArrayInstruction::SquareRoot { destination, radicand } => {
                 self.two_results(destination, radicand, |v, _| (v.isqrt(), v - v.isqrt().pow(2)))
             }
-            Instruction::Arithmetic { op: ArithmeticOp::Divide, destination, a, b } => {
+            ArrayInstruction::Arithmetic { op: ArithmeticOp::Divide, destination, a, b } => {
                 let width = usize::from(destination.width);
                 self.gather(1, b)?;
                 self.two_results(destination, a, |a, b| values::divide(a, b, width))
             }
-            Instruction::Arithmetic { op, destination, a, b } => self.arithmetic(op, destination, a, b),
-            Instruction::LoadConstant { destination, value } => {
+            ArrayInstruction::Arithmetic { op, destination, a, b } => self.arithmetic(op, destination, a, b),
+            ArrayInstruction::LoadConstant { destination, value } => {
                 let constant = values::extend(value.into(), 32, destination.signed);
                 self.map(destination, destination, |_| constant)
             }
-            Instruction::MultiplyConstant { destination, source, factor, factor_bits } => {
+            ArrayInstruction::MultiplyConstant { destination, source, factor, factor_bits } => {
                 let factor = values::extend(factor as u64, factor_bits.into(), true);
                 self.map(destination, source, |v| v.wrapping_mul(factor))
             }

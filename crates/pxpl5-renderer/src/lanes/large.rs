@@ -1,11 +1,14 @@
 //! Spheres and shading as whole commands: long enough to decode their words with care.
 
 use super::Lanes;
+use super::columns::ContextColumns;
 use super::shade::ShadeAll;
 use super::sphere::{DrawSphere, PaintGouraudSphere, PaintPhongSphere};
-use super::whole::{ContextColumns, starts_anew};
+use super::template::starts_anew;
 use crate::array::Executed;
-use crate::command::{Command, CommandKind, PhongSphere, Shade, ShadeFields, Sphere, SphereBody, SphereScratch};
+use crate::command::{
+    Command, CommandKind, PhongSphereCommand, Shade, ShadeFields, SphereBody, SphereCommand, SphereScratch,
+};
 use pxpl5_wire::Word;
 
 /// Columns and shifts of a sphere in this layout.
@@ -53,7 +56,7 @@ impl Lanes {
         same.then_some(place)
     }
 
-    fn sphere(&mut self, sphere: &Sphere, columns: ContextColumns, keep: bool) -> Option<()> {
+    fn sphere(&mut self, sphere: &SphereCommand, columns: ContextColumns, keep: bool) -> Option<()> {
         let place = self.sphere_place()?;
         let body = self.sphere_body(sphere.body, &place);
         let components = [0, 1, 2].map(|i| self.controller.localise(&sphere.colour[i]));
@@ -74,7 +77,7 @@ impl Lanes {
         Some(())
     }
 
-    fn phong_sphere(&mut self, sphere: &PhongSphere, columns: ContextColumns, keep: bool) -> Option<()> {
+    fn phong_sphere(&mut self, sphere: &PhongSphereCommand, columns: ContextColumns, keep: bool) -> Option<()> {
         let place = self.sphere_place()?;
         let normals = columns.normal?;
         let body = self.sphere_body(sphere.body, &place);

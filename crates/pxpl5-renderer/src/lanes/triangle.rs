@@ -3,7 +3,7 @@
 use super::bounds::{Area, Boxes, Edges, SIDE_BY_SIDE};
 use super::columns::Values;
 use super::enable::Enable;
-use super::whole::{Template, starts_anew};
+use super::template::{Template, starts_anew};
 use crate::command::{COLOUR_AT, COMPONENTS_AT, DEPTH_AT, EDGES_AT, PHONG_WORDS, TRIANGLE_WORDS};
 use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::format::{COLOUR_FRACTION_BITS, NORMAL_BITS, NORMAL_FRACTION_BITS};

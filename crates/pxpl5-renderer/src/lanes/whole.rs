@@ -1,107 +1,15 @@
 //! Recognises whole commands in the word stream.
 
 use super::Lanes;
-use super::columns::Values;
+use super::columns::{ContextColumns, Values};
+use super::template::{CommandCost, starts_anew};
 use super::triangle::{DrawTriangles, PaintGouraud, PaintPhong};
 use crate::array::Executed;
-use crate::command::{COMPONENTS_AT, Command, CommandKind, PHONG_WORDS, TRIANGLE_WORDS};
+use crate::command::{COMPONENTS_AT, CommandKind, PHONG_WORDS, TRIANGLE_WORDS};
 use crate::controller::FieldBits;
-use crate::isa::{Operand, head, opcode};
-use crate::layout::Layout;
+use crate::isa::Operand;
 use crate::simd::{SimdVector, VectorKernel};
 use pxpl5_wire::{Linear, Word};
-
-/// What identifies a command of `N` words whose operands are whole words: its other words.
-#[derive(Clone, Debug)]
-pub(super) struct Template<const N: usize> {
-    words: [Word; N],
-    /// All ones where a word is no operand, else zero.
-    fixed: [Word; N],
-    cost: CommandCost,
-}
-
-impl<const N: usize> Template<N> {
-    /// `None` where the layout cannot hold the command.
-    fn for_command(kind: CommandKind, layout: &Layout) -> Option<Self> {
-        let program = Command::blank(kind).program(layout).ok()?;
-        let mut words = Vec::new();
-        let mut fixed = [0; N];
-        for instruction in &program {
-            *fixed.get_mut(words.len())? = Word::MAX;
-            instruction.encode(&mut words);
-        }
-        Some(Self { words: words.try_into().ok()?, fixed, cost: CommandCost::for_command(kind, layout)? })
-    }
-
-    /// The command at the start of `words`, if it is of this kind, and the words behind it.
-    #[inline(always)]
-    pub(super) fn split<'a>(&self, words: &'a [Word]) -> Option<(&'a [Word; N], &'a [Word])> {
-        words.split_first_chunk::<N>().filter(|(command, _)| self.fits(command))
-    }
-
-    /// Whether this is such a command.
-    #[inline(always)]
-    pub(super) fn fits(&self, command: &[Word; N]) -> bool {
-        let mut different = 0;
-        for ((found, word), fixed) in command.iter().zip(&self.words).zip(&self.fixed) {
-            different |= (found ^ word) & fixed;
-        }
-        different == 0
-    }
-}
-
-/// The commands that are recognised by a template.
-#[derive(Clone, Debug)]
-pub(super) struct Templates {
-    clear: Option<Template<CLEAR_WORDS>>,
-    triangle: Option<Template<TRIANGLE_WORDS>>,
-    phong_triangle: Option<Template<PHONG_WORDS>>,
-    large: Vec<(CommandKind, CommandCost)>,
-}
-
-const CLEAR_WORDS: usize = CommandKind::Clear.words() as usize;
-
-/// What a command adds to [`Executed`].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct CommandCost {
-    pub(super) instructions: u32,
-    pub(super) clocks: u64,
-}
-
-impl CommandCost {
-    fn for_command(kind: CommandKind, layout: &Layout) -> Option<Self> {
-        let program = Command::blank(kind).program(layout).ok()?;
-        let clocks = program.iter().map(|i| u64::from(i.clocks())).sum();
-        Some(Self { instructions: program.len() as u32, clocks })
-    }
-}
-
-impl Templates {
-    pub(super) fn new(layout: &Layout) -> Self {
-        Self {
-            clear: Template::for_command(CommandKind::Clear, layout),
-            triangle: Template::for_command(CommandKind::Triangle, layout),
-            phong_triangle: Template::for_command(CommandKind::PhongTriangle, layout),
-            large: [CommandKind::Sphere, CommandKind::PhongSphere, CommandKind::Shade]
-                .into_iter()
-                .filter_map(|kind| Some((kind, CommandCost::for_command(kind, layout)?)))
-                .collect(),
-        }
-    }
-
-    pub(super) fn cost(&self, kind: CommandKind) -> Option<CommandCost> {
-        self.large.iter().find(|(k, _)| *k == kind).map(|(_, cost)| *cost)
-    }
-}
-
-/// Columns of the selected context's fields.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct ContextColumns {
-    base: u8,
-    pub(super) colour: usize,
-    pub(super) z: usize,
-    pub(super) normal: Option<[usize; 3]>,
-}
 
 impl Lanes {
     /// Executes the command at the start of `words`, if it is one of this layout, and the triangles of the same kind that
@@ -220,12 +128,6 @@ impl VectorKernel for Fill<'_> {
     fn run<V: SimdVector>(self) {
         self.column.0.fill(self.value);
     }
-}
-
-/// The next instruction overwrites Enable before anybody reads it: it is *enable all*, whatever its label.
-pub(super) fn starts_anew(next: Option<&Word>) -> bool {
-    const LABEL: Word = 0xff << 16;
-    next.is_some_and(|word| word & !LABEL == head(opcode::ENABLE_ALL, 0, 0))
 }
 
 fn linear(words: &[Word], at: usize) -> Linear {

@@ -5,8 +5,8 @@ use super::ntsc;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
-use jitp::{BlockOrder, Schedule};
-use pphigs::{Counts, Share, TransformCost};
+use jitp::{BlockOrder, DrawingSchedule};
+use pphigs::{PrimitiveCounts, Share, TransformCost};
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{ConfigError, Machine, Record};
@@ -38,7 +38,7 @@ impl Frameless {
     }
 
     /// While a slave transforms for one batch the others' blocks pass the frame buffer's port.
-    fn batch(&self, record: &Record, counts: Counts) -> u32 {
+    fn batch(&self, record: &Record, counts: PrimitiveCounts) -> u32 {
         if self.batch > 0 {
             return self.batch;
         }
@@ -116,7 +116,7 @@ impl Pipeline for Frameless {
             return Err(ConfigError::Value { what, expected: (4, 128), found: u64::from(self.block) });
         }
         let batch = self.batch(machine.record(), Share::new(Arc::clone(&setup.list), 0, 1).counts());
-        let schedule = Schedule::Roam { block: self.block, batch, order: self.order()? };
+        let schedule = DrawingSchedule::Roam { block: self.block, batch, order: self.order()? };
         let config = config(machine.record(), schedule, self.layout(), setup.pixels)?;
         load(machine, setup, &config);
         Ok(())

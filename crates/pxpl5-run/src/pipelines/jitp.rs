@@ -4,7 +4,7 @@ use super::ntsc;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
-use jitp::{Beam, JitpConfig, JitpTiming, Schedule, Transforms, Wanted, host, master, slave};
+use jitp::{Beam, JitpConfig, DrawingSchedule, JitpTiming, Transforms, Wanted, host, master, slave};
 use pphigs::Share;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{Priority, Stage};
@@ -49,7 +49,8 @@ impl Jitp {
     }
 
     fn config(self, record: &Record, pixels: bool) -> Result<JitpConfig, ConfigError> {
-        let schedule = Schedule::Beam { viewpoint: self.viewpoint, racing: self.racing, strip_rows: self.strip_rows };
+        let schedule =
+            DrawingSchedule::Beam { viewpoint: self.viewpoint, racing: self.racing, strip_rows: self.strip_rows };
         config(record, schedule, self.layout(), pixels)
     }
 
@@ -62,7 +63,7 @@ impl Jitp {
 /// The boards of a machine as the firmware wants them.
 pub(super) fn config(
     record: &Record,
-    schedule: Schedule,
+    schedule: DrawingSchedule,
     layout: Layout,
     pixels: bool,
 ) -> Result<JitpConfig, ConfigError> {

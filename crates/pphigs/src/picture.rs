@@ -1,0 +1,38 @@
+//! Pictures: what is made of a view.
+
+use pxpl5_geometry::Viewport;
+use pxpl5_renderer::Layout;
+
+/// Where colours are computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shading {
+    /// At the corners, by the GP; interpolated by the renderers.
+    Gouraud,
+    /// At the pixels, by the renderers, once at the end of the frame.
+    Phong,
+}
+
+/// Which regions a primitive's commands are sent to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Binning {
+    /// Those that it touches.
+    Touched,
+    /// All; a triangle that is not seen costs as much as any other, and draws nothing (Slats prototype, TR94). Spheres,
+    /// which the prototype did not have, go to the regions that they touch: elsewhere a quadratic leaves its 48 bits.
+    All,
+}
+
+/// What to make of a view.
+#[derive(Clone, Copy, Debug)]
+pub struct Picture {
+    /// Lines of the frame that it holds, and how it is cut into regions.
+    pub viewport: Viewport,
+    /// Whether colours are computed at corners or at pixels.
+    pub shading: Shading,
+    /// Which regions get a primitive's commands.
+    pub binning: Binning,
+    /// Division of pixel memory that the commands are encoded for.
+    pub layout: Layout,
+    /// Whether somebody may want the command words.
+    pub pixels: bool,
+}

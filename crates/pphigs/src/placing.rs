@@ -1,0 +1,128 @@
+//! The display list as one eye sees it: structures in place, vertices transformed once for all who share them.
+
+use crate::list::DisplayList;
+use crate::placed::{Corners, PlacedStructure, Vertices, ViewKey};
+use crate::structure::{DisplayStructure, ModelFrame};
+use crate::view::{EyeView, FrameView, product};
+use glam::{Mat4, Vec3};
+use pxpl5_geometry::{Culling, Light, Touched, Transform, UnclippedTriangle, VertexSurface, ViewTransform, Viewport};
+use std::sync::{Arc, OnceLock};
+
+/// The model matrix of a structure that was never edited.
+const UNMOVED: Mat4 = Mat4::IDENTITY;
+
+/// All structures of a display list as an eye (0, or 0 and 1) of a view sees them.
+///
+/// # Panics
+///
+/// If the view has no eye.
+#[must_use]
+pub fn place_all(list: &DisplayList, view: &FrameView, eye: usize, viewport: Viewport) -> Vec<PlacedStructure> {
+    let eye = eye_of(view, eye);
+    let structures = list.structures.iter().enumerate();
+    structures.map(|(i, s)| place(list, s, model(view, i), eye, viewport)).collect()
+}
+
+/// As [`place_all`], made once for all who ask.
+pub(crate) fn place_once(
+    list: &DisplayList,
+    view: &FrameView,
+    eye: usize,
+    viewport: Viewport,
+) -> Arc<[PlacedStructure]> {
+    let key = ViewKey { eye: *eye_of(view, eye), edits: view.edits.clone(), viewport };
+    list.recent.find_or_place(key, || place_all(list, view, eye, viewport))
+}
+
+fn eye_of(view: &FrameView, eye: usize) -> &EyeView {
+    &view.eyes[eye.min(view.eyes.len() - 1)]
+}
+
+fn model(view: &FrameView, structure: usize) -> Mat4 {
+    view.edits.iter().rev().find(|edit| edit.structure as usize == structure).map_or(UNMOVED, |edit| edit.model)
+}
+
+/// A structure whose matrices are not finite is not drawn.
+fn place(
+    list: &DisplayList,
+    structure: &DisplayStructure,
+    model: Mat4,
+    eye: &EyeView,
+    viewport: Viewport,
+) -> PlacedStructure {
+    let to_eye = match structure.frame {
+        ModelFrame::World => eye.world_to_eye,
+        ModelFrame::Head => eye.head_to_eye,
+    };
+    let view = ViewTransform { model_view: product(&to_eye, &model), projection: eye.projection };
+    let light = Light { direction: turned(&to_eye, list.towards_light), ambient: list.ambient, diffuse: list.diffuse };
+    let transform = Transform::new(&view, viewport, Culling::None).ok();
+    PlacedStructure {
+        transform,
+        light,
+        structure: structure.clone(),
+        vertices: OnceLock::new(),
+        touched: OnceLock::new(),
+    }
+}
+
+/// A direction in eye coordinates; the matrix is a rotation and a translation.
+fn turned(matrix: &Mat4, v: Vec3) -> [f32; 3] {
+    let [x, y, z, _] = matrix.to_cols_array_2d();
+    std::array::from_fn(|i| x[i] * v.x + y[i] * v.y + z[i] * v.z)
+}
+
+impl PlacedStructure {
+    /// Its vertices on the screen, transformed when first asked for.
+    pub(crate) fn vertices(&self, list: &DisplayList, transform: &Transform) -> &Vertices {
+        self.vertices.get_or_init(|| {
+            let named = list.triangles[self.structure.triangles.clone()].iter().flatten();
+            let (first, end) = named.fold((u32::MAX, 0), |(low, high), i| (low.min(*i), high.max(*i + 1)));
+            let positions = list.positions.get(first as usize..end as usize).unwrap_or_default();
+            let on_screen = positions.iter().map(|p| transform.screen_vertex(*p)).collect();
+            Vertices { first: first as usize, on_screen, normals: OnceLock::new(), colours: OnceLock::new() }
+        })
+    }
+
+    /// The regions that its triangles touch, found when first asked for.
+    pub(crate) fn touched(&self, list: &DisplayList, transform: &Transform) -> &Touched {
+        self.touched.get_or_init(|| {
+            let vertices = self.vertices(list, transform);
+            let triangles = self.structure.triangles.clone();
+            transform.touched(&vertices.on_screen, triangles.map(|number| vertices.corners(list, number).0))
+        })
+    }
+}
+
+impl Vertices {
+    /// Places of a triangle's corners among the vertices.
+    #[inline(always)]
+    pub(crate) fn corners(&self, list: &DisplayList, triangle: usize) -> Corners {
+        let [a, b, c] = list.triangles[triangle];
+        Corners([a as usize - self.first, b as usize - self.first, c as usize - self.first])
+    }
+
+    /// A triangle's corners on the screen; `None` where it needs clipping.
+    #[inline(always)]
+    pub(crate) fn unclipped(&self, at: &Corners) -> Option<UnclippedTriangle> {
+        UnclippedTriangle::new(at.among(&self.on_screen))
+    }
+
+    /// The normals of all vertices.
+    pub(crate) fn normals(&self, list: &DisplayList, transform: &Transform) -> &[VertexSurface] {
+        self.normals.get_or_init(|| {
+            let all = self.first..self.first + self.on_screen.len();
+            let positions = &list.positions[all.clone()];
+            let normals = &list.normals[all];
+            positions.iter().zip(normals).map(|(p, n)| transform.vertex_normal(*p, *n)).collect()
+        })
+    }
+
+    /// The lit colours of all vertices.
+    pub(crate) fn colours(&self, list: &DisplayList, transform: &Transform, light: &Light) -> &[VertexSurface] {
+        self.colours.get_or_init(|| {
+            let all = self.first..self.first + self.on_screen.len();
+            all.map(|i| transform.vertex_colour(light, list.positions[i], list.normals[i], list.colours[i])).collect()
+        })
+    }
+}

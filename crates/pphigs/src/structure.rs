@@ -1,0 +1,23 @@
+//! Structures: primitives that move together.
+
+use std::ops::Range;
+
+/// What the coordinates of a structure are fixed to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModelFrame {
+    /// The room in which the viewer stands.
+    World,
+    /// The viewer's head, with which it moves.
+    Head,
+}
+
+/// A run of primitives with one model matrix.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DisplayStructure {
+    /// Numbers of its triangles in the display list.
+    pub triangles: Range<usize>,
+    /// Numbers of its spheres in the display list.
+    pub spheres: Range<usize>,
+    /// Whether it stands in the room or moves with the head.
+    pub frame: ModelFrame,
+}

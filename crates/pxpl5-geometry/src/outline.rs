@@ -1,0 +1,60 @@
+//! Corners of a triangle on the screen, and its edges.
+
+use crate::regions::RegionMask;
+use pxpl5_wire::{Linear, format};
+
+/// Subpixels along one side of a pixel.
+pub(crate) const SUBPIXELS: i32 = 1 << format::SUBPIXEL_BITS;
+
+/// Corners and depths of a triangle on the screen, and the regions it touches.
+///
+/// The corners run clockwise as seen on the screen (y grows downwards), whatever the input's winding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outline {
+    /// Distance from the picture's left border in 1/16 px.
+    pub x: [i32; 3],
+    /// Distance from the frame's top border in 1/16 px, also for a field.
+    pub y: [i32; 3],
+    /// Depths, from [`crate::DEPTH_NEAR`] to [`crate::DEPTH_FAR`].
+    pub z: [u32; 3],
+    /// The regions that the triangle touches, to which its commands go.
+    pub regions: RegionMask,
+}
+
+impl Outline {
+    /// Twice the area in 1/256 square px; positive unless the corners lie on one line.
+    #[inline(always)]
+    pub(crate) fn twice_area(&self) -> i64 {
+        let x = &self.x;
+        let y = &self.y;
+        i64::from(x[1] - x[0]) * i64::from(y[2] - y[0]) - i64::from(y[1] - y[0]) * i64::from(x[2] - x[0])
+    }
+
+    /// The edges from corner 0 to 1, 1 to 2 and 2 to 0 at the pixels of the *frame*.
+    #[inline(always)]
+    pub(crate) fn edges(&self) -> [Linear; 3] {
+        [self.edge(0, 1), self.edge(1, 2), self.edge(2, 0)]
+    }
+
+    /// Twice the area of (from, to, pixel centre), in 1/16 square px, rounded down.
+    ///
+    /// The area in 1/256 square px is `16 (dx y - dy x) + k` at pixel (x, y). It is at least 0 exactly where
+    /// `dx y - dy x + floor(k / 16)` is, so nothing is lost. A pixel centre on the line itself belongs to the
+    /// triangle only along a top or a left edge: elsewhere k is less by one.
+    #[inline(always)]
+    fn edge(&self, from: usize, to: usize) -> Linear {
+        let dx = self.x[to] - self.x[from];
+        let dy = self.y[to] - self.y[from];
+        let top_left = dy < 0 || (dy == 0 && dx > 0);
+        let k = i64::from(dx) * i64::from(SUBPIXELS / 2 - self.y[from])
+            - i64::from(dy) * i64::from(SUBPIXELS / 2 - self.x[from])
+            - i64::from(!top_left);
+        Linear { a: -dy, b: dx, c: (k >> format::SUBPIXEL_BITS) as i32 }
+    }
+}
+
+/// Smallest and largest of three.
+#[inline(always)]
+pub(crate) fn extent(v: &[i32; 3]) -> [i32; 2] {
+    [v[0].min(v[1]).min(v[2]), v[0].max(v[1]).max(v[2])]
+}

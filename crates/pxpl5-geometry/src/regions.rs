@@ -1,0 +1,84 @@
+//! Sets of regions.
+
+use pxpl5_wire::RegionId;
+use serde::{Deserialize, Serialize};
+
+/// A set of regions of one picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct RegionMask(u128);
+
+impl RegionMask {
+    /// Most regions that a picture can have: region numbers 0 to 127.
+    pub const CAPACITY: u32 = u128::BITS;
+
+    /// The set that holds no region.
+    pub const EMPTY: Self = Self(0);
+
+    /// One region; empty if its number is [`Self::CAPACITY`] or more.
+    #[must_use]
+    pub const fn only(region: RegionId) -> Self {
+        if region.0 as u32 >= Self::CAPACITY {
+            return Self::EMPTY;
+        }
+        Self(1 << region.0)
+    }
+
+    /// Whether the set is empty.
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Number of regions in the set.
+    #[must_use]
+    pub const fn len(self) -> u32 {
+        self.0.count_ones()
+    }
+
+    /// Whether `region` is in the set.
+    #[must_use]
+    pub const fn contains(self, region: RegionId) -> bool {
+        Self::only(region).0 & self.0 != 0
+    }
+
+    /// The regions that are in this set or in the other.
+    #[must_use]
+    pub const fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Bit n stands for region n.
+    pub(crate) const fn with_bits(bits: u128) -> Self {
+        Self(bits)
+    }
+
+    /// The set as bits: bit n is region n.
+    #[must_use]
+    pub const fn bits(self) -> u128 {
+        self.0
+    }
+
+    /// The regions by rising number.
+    pub fn iter(self) -> impl Iterator<Item = RegionId> {
+        let mut rest = self.0;
+        std::iter::from_fn(move || {
+            let region = rest.trailing_zeros();
+            rest &= rest.wrapping_sub(1);
+            (region < Self::CAPACITY).then_some(RegionId(region as u16))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mask_iterates_its_regions_by_rising_number() {
+        let mask = [0, 5, 127].into_iter().fold(RegionMask::EMPTY, |m, r| m.union(RegionMask::only(RegionId(r))));
+        let found: Vec<u16> = mask.iter().map(|r| r.0).collect();
+        assert_eq!((mask.len(), found), (3, vec![0, 5, 127]));
+        assert!(RegionMask::only(RegionId(128)).is_empty());
+        assert!(!mask.contains(RegionId(128)));
+    }
+}

@@ -1,0 +1,173 @@
+//! What the pixels of a tile do with the bits of an expression as they come.
+
+use super::arithmetic::SerialOperand;
+use super::evaluator::{Evaluator, VectorPlace, full_add};
+use super::tile::{Tile, TilePlane};
+use crate::controller::FieldBits;
+use crate::simd::SimdVector;
+use std::ops::Range;
+
+/// Where the bits of an expression go.
+trait BitSink {
+    /// Takes bit `t` of the expression in the pixels of a tile from word `at` of a plane on; `carry` begins with zeros.
+    fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V);
+
+    /// Takes the carry behind the last bit.
+    fn end<V: SimdVector>(&self, _: &mut Tile, _at: usize, _carry: V) {}
+}
+
+/// What pixels do with an expression.
+#[derive(Clone, Debug)]
+pub(super) struct Delivery {
+    /// Clocks whose bits they take.
+    pub(super) taken: Range<usize>,
+    pub(super) effect: ExpressionEffect,
+}
+
+/// Where the bits go; fields by their first bit.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum ExpressionEffect {
+    DisableNegative,
+    Load { first: usize },
+    Add { first: usize },
+    DisableNotLess { first: usize },
+    LoadMinus { first: usize, shift: usize, subtrahend: FieldBits, left_shift: usize },
+}
+
+impl Delivery {
+    /// Runs all clocks in one vector of pixels.
+    #[inline(always)]
+    pub(super) fn run_pixels<V: SimdVector, E: Evaluator>(&self, evaluator: &E, tile: &mut Tile, place: VectorPlace) {
+        let shift = self.taken.start;
+        match self.effect {
+            ExpressionEffect::DisableNegative => self.run::<V, E, _>(evaluator, &ClearEnable, tile, place),
+            ExpressionEffect::Load { first } => {
+                self.run::<V, E, _>(evaluator, &StoreBits { first, shift }, tile, place)
+            }
+            ExpressionEffect::Add { first } => self.run::<V, E, _>(evaluator, &AddBits { first, shift }, tile, place),
+            ExpressionEffect::DisableNotLess { first } => {
+                self.run::<V, E, _>(evaluator, &CompareBits { first, shift }, tile, place);
+            }
+            ExpressionEffect::LoadMinus { first, shift, subtrahend, left_shift } => {
+                let source = tile.source(subtrahend);
+                self.run::<V, E, _>(evaluator, &StoreDifference { first, shift, source, left_shift }, tile, place);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn run<V: SimdVector, E: Evaluator, S: BitSink>(
+        &self,
+        evaluator: &E,
+        sink: &S,
+        tile: &mut Tile,
+        place: VectorPlace,
+    ) {
+        let at = place.at;
+        let mut carries = E::start::<V>();
+        let mut carry = V::splat(0);
+        for t in 0..self.taken.start {
+            evaluator.bit(t, place, &mut carries);
+        }
+        for t in self.taken.clone() {
+            let bit = evaluator.bit(t, place, &mut carries);
+            sink.take(tile, at, t, bit, &mut carry);
+        }
+        sink.end(tile, at, carry);
+    }
+}
+
+/// Overwrites one bit where enabled.
+#[inline(always)]
+fn store<V: SimdVector>(plane: &mut TilePlane, at: usize, new: V, enable: &TilePlane) {
+    let old = V::load_words(&plane[at..]);
+    let changed = old.xor(new).and(V::load_words(&enable[at..]));
+    old.xor(changed).store_words(&mut plane[at..]);
+}
+
+/// E := 0 where the bit is set.
+struct ClearEnable;
+
+impl BitSink for ClearEnable {
+    #[inline(always)]
+    fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, _: usize, bit: V, _: &mut V) {
+        let enable = V::load_words(&tile.enable[at..]);
+        enable.and(bit).xor(enable).store_words(&mut tile.enable[at..]);
+    }
+}
+
+/// field := bits from `shift` on.
+struct StoreBits {
+    first: usize,
+    shift: usize,
+}
+
+impl BitSink for StoreBits {
+    #[inline(always)]
+    fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, _: &mut V) {
+        store(&mut tile.memory[self.first + t - self.shift], at, bit, &tile.enable);
+    }
+}
+
+/// field := field + bits from `shift` on.
+struct AddBits {
+    first: usize,
+    shift: usize,
+}
+
+impl BitSink for AddBits {
+    #[inline(always)]
+    fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, carry: &mut V) {
+        let plane = &mut tile.memory[self.first + t - self.shift];
+        let sum = full_add(bit, V::load_words(&plane[at..]), carry);
+        store(plane, at, sum, &tile.enable);
+    }
+}
+
+/// E := 0 unless bits from `shift` on are less than the field.
+struct CompareBits {
+    first: usize,
+    shift: usize,
+}
+
+impl BitSink for CompareBits {
+    #[inline(always)]
+    fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, borrow: &mut V) {
+        let field = &tile.memory[self.first + t - self.shift];
+        subtract(bit, V::load_words(&field[at..]), borrow);
+    }
+
+    #[inline(always)]
+    fn end<V: SimdVector>(&self, tile: &mut Tile, at: usize, less: V) {
+        V::load_words(&tile.enable[at..]).and(less).store_words(&mut tile.enable[at..]);
+    }
+}
+
+/// field := bits from `shift` on of the difference from a source.
+struct StoreDifference {
+    first: usize,
+    shift: usize,
+    source: SerialOperand,
+    left_shift: usize,
+}
+
+impl BitSink for StoreDifference {
+    #[inline(always)]
+    fn take<V: SimdVector>(&self, tile: &mut Tile, at: usize, t: usize, bit: V, borrow: &mut V) {
+        let subtrahend = match t.checked_sub(self.left_shift) {
+            Some(i) => V::load_words(&self.source.plane(&tile.memory, i)[at..]),
+            None => V::splat(0),
+        };
+        let difference = subtract(bit, subtrahend, borrow);
+        if let Some(i) = t.checked_sub(self.shift) {
+            store(&mut tile.memory[self.first + i], at, difference, &tile.enable);
+        }
+    }
+}
+
+/// One clock of a serial subtracter in each pixel of a vector: a - b = not (not a + b).
+#[inline(always)]
+fn subtract<V: SimdVector>(a: V, b: V, borrow: &mut V) -> V {
+    let ones = V::splat(-1);
+    full_add(a.xor(ones), b, borrow).xor(ones)
+}

@@ -1,0 +1,22 @@
+//! Why Slats refuses a machine.
+
+use thiserror::Error;
+
+/// A machine on which Slats cannot run.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum SlatsConfigError {
+    /// There are more regions than contexts.
+    #[error(
+        "Slats binds 20 field regions statically: expected at least {expected} renderers of four contexts, found {found}"
+    )]
+    TooFewRenderers {
+        /// How many renderers the machine has.
+        found: usize,
+        /// The fewest whose contexts hold the 20 regions of both eyes.
+        expected: usize,
+    },
+    /// There is no graphics processor.
+    #[error("Slats needs at least one graphics processor, found none")]
+    NoProcessor,
+}
