@@ -14,7 +14,7 @@
 //! | [`results`] | a row for each picture, and what every file opens with so that it can be made again |
 //! | [`charts`] | speed against error of the levels of modelling, error against time, spread of latencies |
 //! | [`page`] | one page of HTML that asks for nothing from outside |
-//! | [`film`] | what the viewer sees, period by period |
+//! | [`Film`] | what the viewer sees, period by period |
 //! | [`png_bytes`] | a picture with its origin in it |
 //!
 //! There is one writer of SVG and HTML with one escaper (`markup`, and `svg` for its shapes), one of PNG (`png_bytes`, and the
@@ -27,7 +27,8 @@
 //! bytes.
 
 pub mod charts;
-pub mod film;
+mod film;
+mod frame_time;
 mod markup;
 pub mod page;
 mod picture;
@@ -37,5 +38,6 @@ pub mod timeline;
 pub mod trace_export;
 mod updates;
 
-pub use film::{FILM_PERIODS, Film, FilmError, FilmOf, frame_seconds};
+pub use film::{FILM_PERIODS, Film, FilmError, FilmOf};
+pub use frame_time::frame_seconds;
 pub use picture::{PngError, png_bytes};

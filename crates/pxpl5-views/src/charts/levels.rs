@@ -113,13 +113,12 @@ fn axis_names(svg: &mut Element) {
 mod tests {
     use super::*;
 
+    fn level(name: &str, speed: f64) -> SpeedAndError {
+        SpeedAndError { name: name.to_owned(), fields_per_host_second: speed, mean_error_percent: 2.0 }
+    }
+
     #[test]
     fn a_tenth_of_the_speed_stands_a_power_further_left() {
-        let level = |name: &str, speed: f64| SpeedAndError {
-            name: name.to_owned(),
-            fields_per_host_second: speed,
-            mean_error_percent: 2.0,
-        };
         let svg = level_chart(&[level("a", 1_000.0), level("b < c", 100.0)]);
         let document = roxmltree::Document::parse(&svg).expect("XML");
         let dots = document.descendants().filter(|node| node.has_tag_name("circle"));

@@ -1,6 +1,6 @@
 //! The page as a whole.
 
-use super::PageRun;
+use super::run::PageRun;
 use super::section::sections;
 use super::summary::summary;
 use crate::markup::Element;

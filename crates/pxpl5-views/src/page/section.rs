@@ -2,8 +2,8 @@
 
 use super::configuration::{configuration, speed};
 use super::latency::{head_to_light, latency};
+use super::run::{PagePicture, PageRun};
 use super::values::{heading, wide};
-use super::{PagePicture, PageRun};
 use crate::markup::Element;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

@@ -1,6 +1,6 @@
 //! The table at the head of the page: a row for each experiment.
 
-use super::PageRun;
+use super::run::PageRun;
 use super::values::{cell, number, number_cell, plain, row, table};
 use crate::markup::Element;
 use serde_json::Value;

@@ -1,0 +1,124 @@
+//! How long a frame of a film is shown.
+
+use pxpl5_display::Display;
+use pxpl5_sim::Time;
+
+/// The time of a frame of a film as a fraction of seconds, as animated PNG has it: of all fractions of two numbers of 16
+/// bits the one that is nearest to a period of the display.
+#[must_use]
+pub fn frame_seconds(display: &dyn Display) -> (u16, u16) {
+    // Ticks are whole picoseconds; over so many periods what is lost does not count.
+    const PERIODS: u64 = 60_000;
+    let span = display.tick(PERIODS).since(Time::ZERO);
+    let nearest = nearest_fraction(Fraction { over: span.0.into(), under: u128::from(PERIODS) * PS_PER_S });
+    (nearest.over as u16, nearest.under as u16)
+}
+
+const PS_PER_S: u128 = 1_000_000_000_000;
+
+/// Greatest number above and below the line.
+const LIMIT: u128 = u16::MAX as u128;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Fraction {
+    over: u128,
+    under: u128,
+}
+
+impl Fraction {
+    /// The distance from another, times both denominators.
+    const fn distance(self, other: Self) -> u128 {
+        (self.over * other.under).abs_diff(other.over * self.under)
+    }
+
+    /// The next fraction of a chain: so many times this one, and the one before it.
+    const fn followed(self, times: u128, before: Self) -> Self {
+        Self { over: times * self.over + before.over, under: times * self.under + before.under }
+    }
+
+    /// How many times this one fits into a fraction within the limit that has the one before it in it too.
+    fn fits(self, before: Self) -> u128 {
+        let above = (LIMIT - before.over).checked_div(self.over).unwrap_or(u128::MAX);
+        above.min((LIMIT - before.under).checked_div(self.under).unwrap_or(u128::MAX))
+    }
+}
+
+/// The nearest fraction within the limit, from the chain of continued fractions: the last that is within it, or the one
+/// between it and the next.
+fn nearest_fraction(exact: Fraction) -> Fraction {
+    let mut before = Fraction { over: 0, under: 1 };
+    let mut last = Fraction { over: 1, under: 0 };
+    let mut rest = exact;
+    while rest.under > 0 {
+        let times = rest.over / rest.under;
+        let fits = last.fits(before);
+        if times > fits {
+            let between = last.followed(fits, before);
+            let last_is_nearer = exact.distance(last) * between.under <= exact.distance(between) * last.under;
+            return if last_is_nearer && last.under > 0 { last } else { between };
+        }
+        let next = last.followed(times, before);
+        before = last;
+        last = next;
+        rest = Fraction { over: rest.under, under: rest.over % rest.under };
+    }
+    last
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_display::DisplayConfig;
+    use pxpl5_framebuffer::{FrameBufferConfig, VideoTiming};
+    use pxpl5_hires::HiResConfig;
+    use pxpl5_wire::NodeId;
+
+    fn seconds(config: &dyn DisplayConfig) -> (u16, u16) {
+        frame_seconds(config.build(&[NodeId(1)]).expect("can be built").as_ref())
+    }
+
+    #[test]
+    fn a_frame_takes_an_ntsc_field() {
+        assert_eq!(seconds(&FrameBufferConfig::NTSC), (1_001, 60_000));
+    }
+
+    /// A line is 4004/63 us and a field half of the frame's lines: with 625, 625 x 4004 / (2 x 63 x 10^6) s = 143/7200 s.
+    #[test]
+    fn a_frame_of_625_lines_takes_longer_in_the_same_proportion() {
+        let video = VideoTiming { frame_lines: 625, ..FrameBufferConfig::NTSC.video };
+        assert_eq!(seconds(&FrameBufferConfig { video, ..FrameBufferConfig::NTSC }), (143, 7_200));
+    }
+
+    #[test]
+    fn a_frame_of_the_high_resolution_display_takes_the_72nd_part_of_a_second() {
+        assert_eq!(seconds(&HiResConfig::PAPERS), (1, 72));
+    }
+
+    #[test]
+    fn a_fraction_that_fits_is_found_exactly() {
+        for (over, under) in [(1, 1), (65_535, 65_534), (1, 65_535), (65_535, 1), (355, 113), (2, 3)] {
+            let exact = Fraction { over, under };
+            assert_eq!(nearest_fraction(Fraction { over: over * 1_000, under: under * 1_000 }), exact);
+        }
+    }
+
+    #[test]
+    fn of_fractions_that_do_not_fit_no_neighbour_is_nearer() {
+        for (over, under) in [(100_003, 100_019), (1, 1_000_003), (141_421_356, 100_000_000), (1_000_003, 70_001)] {
+            let exact = Fraction { over, under };
+            let found = nearest_fraction(exact);
+            assert!(found.over <= LIMIT && (1..=LIMIT).contains(&found.under), "{found:?}");
+            for other_under in (1..=LIMIT).step_by(7) {
+                let other = Fraction { over: (over * other_under / under).min(LIMIT), under: other_under };
+                for other in [other, Fraction { over: (other.over + 1).min(LIMIT), ..other }] {
+                    assert!(exact.distance(found) * other.under <= exact.distance(other) * found.under, "{other:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_takes_longer_than_can_be_said_takes_as_long_as_can_be_said() {
+        assert_eq!(nearest_fraction(Fraction { over: 100_000, under: 1 }), Fraction { over: 65_535, under: 1 });
+    }
+}
