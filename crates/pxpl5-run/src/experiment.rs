@@ -7,6 +7,7 @@ use crate::host::{BareHost, Host};
 use crate::level::{Level, with_clocks_of_instructions};
 use crate::pipeline::{Pipeline, ReportTimes, Setup};
 use crate::raster::Raster;
+use crate::registry::{ClosedForm, Registry};
 use crate::{ExperimentError, Fingerprint, Outcome};
 use pxpl5_machine::{Machine, MachineConfig, Saving};
 use pxpl5_scene::Scene;
@@ -47,6 +48,7 @@ pub struct Experiment {
     given_up: BTreeSet<Saving>,
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
+    closed_form: Option<ClosedForm>,
 }
 
 impl Experiment {
@@ -72,6 +74,7 @@ impl Experiment {
             given_up: BTreeSet::new(),
             level: Level::Transaction,
             head: None,
+            closed_form: None,
         }
     }
 
@@ -137,6 +140,13 @@ impl Experiment {
     #[must_use]
     pub fn head(mut self, head: impl Into<Arc<Head>>) -> Self {
         self.head = Some(head.into());
+        self
+    }
+
+    /// The closed form by which a run that is too short to show anything says how many fields it would take.
+    #[must_use]
+    pub const fn estimated_by(mut self, closed_form: Option<ClosedForm>) -> Self {
+        self.closed_form = closed_form;
         self
     }
 
@@ -224,7 +234,7 @@ impl Experiment {
     /// # Errors
     ///
     /// As [`Experiment::build`]; [`ExperimentError::Run`] with everything observed so far when the run ends early;
-    /// [`ExperimentError::TooShort`] when nothing was shown.
+    /// [`ExperimentError::TooShort`], with the same, when nothing but pictures of the warm-up was shown.
     pub fn run(&self) -> Result<Outcome, ExperimentError> {
         self.run_with(|_, _| {})
     }
@@ -274,14 +284,20 @@ impl Experiment {
         }
         machine.finish_pixels();
         let host_seconds = begun_s.zip(self.host.seconds()).map(|(begin, end)| end - begin);
-        let outcome = Outcome::new(self.clone(), machine.into_record(), head, host_seconds);
+        let record = machine.into_record();
+        let reached = result.as_ref().err().map_or(self.fields, |error| record.display().period_at(error.time()));
+        let outcome = Outcome::new(self.clone(), record, head, reached, host_seconds);
         match result {
             Err(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
-            Ok(()) if outcome.steady_pictures().is_empty() => {
-                Err(ExperimentError::TooShort { fields: self.fields, pictures: outcome.pictures().len() })
-            }
+            Ok(()) if outcome.steady_pictures().is_empty() => Err(self.too_short(outcome)),
             Ok(()) => Ok(outcome),
         }
+    }
+
+    fn too_short(&self, partial: Outcome) -> ExperimentError {
+        let needed = self.closed_form.and_then(|form| (form.fields_needed)(self).ok().flatten());
+        let pictures = partial.pictures().len();
+        ExperimentError::TooShort { fields: self.fields, pictures, needed, partial: Box::new(partial) }
     }
 }
 
@@ -297,9 +313,11 @@ impl Experiment {
     #[must_use]
     pub fn config_hash(&self) -> Fingerprint {
         let mut hash = Fingerprint::default();
-        hash.setting("code", self.config.code.name());
-        self.config.displays.iter().for_each(|display| hash.setting("display", display.name()));
-        self.config.settings().iter().for_each(|(path, value)| hash.setting(path, value));
+        // Firmware without a table of its own runs with the papers' numbers: with them or without, it is the same machine.
+        let config = Registry::of_papers().machine_of(self.config.clone());
+        hash.setting("code", config.code.name());
+        config.displays.iter().for_each(|display| hash.setting("display", display.name()));
+        config.settings().iter().for_each(|(path, value)| hash.setting(path, value));
         hash.setting("pipeline", self.pipeline.name());
         self.pipeline.settings().iter().for_each(|(key, value)| hash.setting(key, value));
         hash.setting("scene", Fingerprint::of_scene(&self.scene));

@@ -133,7 +133,13 @@ pub struct LimitCriterion {
 }
 
 /// The closed form of a pipeline: an experiment without events.
-pub type ClosedForm = fn(&Experiment) -> Result<Summary, ExperimentError>;
+#[derive(Clone, Copy, Debug)]
+pub struct ClosedForm {
+    /// What comes of an experiment.
+    pub summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
+    /// Fields after which the first picture behind the warm-up has been shown; `None` if none ever will be.
+    pub fields_needed: fn(&Experiment) -> Result<Option<u64>, ExperimentError>,
+}
 
 /// A pipeline as everybody finds it.
 #[derive(Clone, Copy, Debug)]

@@ -197,6 +197,11 @@ impl Pipeline for Jitp {
         late.map(region).collect()
     }
 
+    /// A new picture every field.
+    fn retraces_a_picture(&self) -> Option<u64> {
+        Some(1)
+    }
+
     fn missed_retraces(&self, _: &Record, pictures: &[PictureTimes]) -> u64 {
         let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return 0 };
         let complete = pictures.iter().filter(|times| times.complete).count() as u64;
