@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::Motion;
 use crate::config::{GRAVITY, PENDULUM_AMPLITUDE, PENDULUM_ARM};
 use crate::error::ConfigError;
+use crate::identity::Settings;
 use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{nearest_ps, seconds};
@@ -71,6 +72,12 @@ impl Pendulum {
 }
 
 impl Motion for Pendulum {
+    /// Frequency and period follow from the arm and the modulus.
+    fn identify(&self, settings: &mut Settings) {
+        settings("motion", &"pendulum");
+        settings("motion.arm_m", &self.arm_m);
+        settings("motion.modulus", &self.modulus);
+    }
     fn pose(&self, t_ps: u64) -> Pose {
         let (angle, _) = self.angle(t_ps);
         let (sin, cos) = libm::sincos(angle);
