@@ -73,7 +73,7 @@ pub use pxpl5_run::{
     RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary, TestScene, Viewpoint, WARM_UP_PICTURES,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};
-pub use pxpl5_views::{film, results, timeline, trace_export};
+pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmOf, results, timeline, trace_export};
 pub use pxpl5_wire::{Eye, SurfaceId};
 pub use slats::CopySchedule;
 

@@ -3,12 +3,12 @@
 mod support;
 
 use pxpl5::compare::{compare, edge_scene};
-use pxpl5::film::{Film, FilmOf};
 use pxpl5::tracking::motion::{Motion, Pan};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
 use pxpl5::tracking::view::HmdView;
 use pxpl5::{Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Measured, Pixels, Plan, Raster, Viewpoint};
+use pxpl5::{Film, FilmOf};
 use std::sync::Arc;
 use support::video;
 

@@ -3,13 +3,13 @@
 use prost::Message;
 mod support;
 
-use pxpl5::film::{Film, FilmError, FilmOf};
 use pxpl5::results::{columns, csv};
 use pxpl5::trace_export::{Events, Trace, chrome, perfetto};
 use pxpl5::{
     Experiment, Eye, Frameless, Jitp, LATENCY_PARTS, MachineConfig, Measured, Outcome, Pipeline, Pixels,
     RenderingControl, Slats, Viewpoint, scene, side_by_side,
 };
+use pxpl5::{Film, FilmError, FilmOf};
 use pxpl5_framebuffer::seen_at;
 use pxpl5_gp::{Edge, Stage};
 use pxpl5_sim::{Span, Time};

@@ -35,6 +35,8 @@ pub struct ParameterInfo {
     pub unit: &'static str,
     /// How well the value is known.
     pub standing: Standing,
+    /// The value that the papers give or allow: what a table holds before anybody changes it.
+    pub papers: Value,
     /// Smallest and largest value that the sources allow.
     pub range: (Value, Value),
     /// Smallest and largest value that the model can take.

@@ -53,6 +53,7 @@ macro_rules! parameter_table {
                 name: stringify!($field),
                 unit: $unit,
                 standing: $crate::Standing::$standing,
+                papers: $crate::number!(value $($real)? : $value),
                 range: $crate::number!(pair $($real)? : $low, $high),
                 limits: $crate::number!(pair $($real)? : $low, $high $(, $least, $most)?),
                 source: $source,
@@ -105,6 +106,8 @@ macro_rules! parameter_table {
 macro_rules! number {
     (type) => { u64 };
     (type f64) => { f64 };
+    (value : $value:literal) => { $crate::Value::Whole($value) };
+    (value f64 : $value:literal) => { $crate::Value::Real($value) };
     (pair : $low:literal, $high:literal) => { ($crate::Value::Whole($low), $crate::Value::Whole($high)) };
     (pair f64 : $low:literal, $high:literal) => { ($crate::Value::Real($low), $crate::Value::Real($high)) };
     // With limits, the pair is theirs.

@@ -35,8 +35,8 @@ use std::any::Any;
 
 /// Adds the closed forms to the pipelines that have one.
 pub fn add_closed_forms(registry: &mut Registry) {
-    registry.closed_form("rendering-control", rendering_control::closed_form);
-    registry.closed_form("slats", slats::closed_form);
+    registry.closed_form("rendering-control", rendering_control::CLOSED_FORM);
+    registry.closed_form("slats", slats::CLOSED_FORM);
 }
 
 /// Checks an experiment and gives its pipeline, of which there is a closed form.

@@ -7,7 +7,7 @@ use pphigs::{Binning, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
-use pxpl5_run::{Experiment, ExperimentError, Pipeline, RenderingControl, Summary, WARM_UP_PICTURES};
+use pxpl5_run::{ClosedForm, Experiment, ExperimentError, Pipeline, RenderingControl, Summary, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionGrid, RegionId};
 
@@ -282,7 +282,8 @@ fn earliest(times: &[f64]) -> usize {
 pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentError> {
     let still = experiment.scene().structures().iter().all(|s| s.frame == pxpl5_scene::Frame::Head);
     let frames = (experiment.length() / 2).max(1);
-    let times: Vec<u64> = if still { vec![0] } else { (0..frames).map(|frame| frame * FRAME_PS).collect() };
+    let video = video_of(experiment.config())?;
+    let times: Vec<u64> = if still { vec![0] } else { (0..frames).map(|frame| video.retrace(2 * frame).0).collect() };
     let mut loads = Load::of_views(experiment, Viewport::FRAME, Binning::Touched, &times)?;
     while (loads.len() as u64) < 2 * frames {
         loads.extend_from_within(0..2);
@@ -290,18 +291,31 @@ pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentErro
     Ok(loads)
 }
 
-/// Two fields.
-const FRAME_PS: u64 = 33_366_666_667;
-
 /// An experiment with Rendering Control at the analytic level.
-pub(super) fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
+pub(super) const CLOSED_FORM: ClosedForm = ClosedForm { summary: closed_form, fields_needed };
+
+fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
+    let (model, frames) = frames_of(experiment)?;
+    Ok(model.summary(&frames, experiment.length()))
+}
+
+/// A frame is shown at the retrace that begins the last of these fields.
+fn fields_needed(experiment: &Experiment) -> Option<u64> {
+    let first_frames = experiment.clone().fields(2 * (WARM_UP_PICTURES as u64 + 1));
+    let (model, frames) = frames_of(&first_frames).ok()?;
+    let frame = frames.get(WARM_UP_PICTURES)?;
+    Some((frame.shown_ns / model.field_ns).round() as u64 + 1)
+}
+
+fn frames_of(experiment: &Experiment) -> Result<(StereoModel, Vec<StereoTimes>), ExperimentError> {
     let pipeline: RenderingControl = pipeline_of(experiment)?;
     let model = StereoModel::new(experiment.config(), pipeline)?;
     let mut loads = stereo_loads(experiment)?;
     if pipeline.mono {
         loads = loads.into_iter().step_by(2).collect();
     }
-    Ok(model.summary(&model.frames(&loads), experiment.length()))
+    let frames = model.frames(&loads);
+    Ok((model, frames))
 }
 
 impl StereoModel {
@@ -318,18 +332,25 @@ impl StereoModel {
             (0..self.eyes).map(|eye| (frame.copy_ns[eye].1 - frame.transform_ns[eye]) * 1e-6).collect::<Vec<_>>()
         };
         let periods = shown.windows(2).map(|pair| pair[1].shown_ns - pair[0].shown_ns);
-        let missed = periods.clone().map(|ns| (ns / self.field_ns).round() as u64 - self.eyes.min(2) as u64);
+        let missed = periods.clone().map(|ns| self.missed_in(ns));
+        // Frames are given for so many fields; what comes behind the last one is known only if that is beyond the end.
+        let goes_on = frames.iter().any(|frame| frame.shown_ns >= end_ns);
+        let missed_after = shown.last().filter(|_| goes_on).map_or(0, |last| self.missed_in(end_ns - last.shown_ns));
         let all_ns: f64 = periods.clone().sum();
         Summary {
             latencies_ms: shown.iter().map(|frame| (frame.shown_ns - frame.transform_ns[0]) * 1e-6).collect(),
             field_ms: self.field_ns * 1e-6,
-            updates_hz: if all_ns > 0.0 { periods.count() as f64 * 1e9 / all_ns } else { 0.0 },
-            missed_retraces: missed.sum(),
+            updates_hz: (all_ns > 0.0).then(|| periods.count() as f64 * 1e9 / all_ns),
+            missed_retraces: missed.sum::<u64>() + missed_after,
             eye_latencies_ms: shown.iter().flat_map(eyes).collect(),
             region_copy_us: self.copy_ns.iter().sum::<f64>() / self.copy_ns.len() as f64 * 1e-3,
             first_copy_ms: mean(&length(0)),
             last_copy_ms: if self.eyes > 1 { mean(&length(1)) } else { 0.0 },
             copy_begins_ms: mean(&|frame| frame.copy_ns[0].0 - frame.transform_ns[0]),
         }
+    }
+    /// Retraces in a time after a swap beyond one for each eye's copy.
+    fn missed_in(&self, ns: f64) -> u64 {
+        ((ns / self.field_ns).round() as u64).saturating_sub(self.eyes as u64)
     }
 }

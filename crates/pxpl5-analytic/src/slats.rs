@@ -8,7 +8,7 @@ use pphigs::Binning;
 use pxpl5_geometry::Viewport;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
-use pxpl5_run::{Experiment, ExperimentError, Pipeline, Slats, Summary, WARM_UP_PICTURES};
+use pxpl5_run::{ClosedForm, Experiment, ExperimentError, Pipeline, Slats, Summary, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, RegionGrid};
 use slats::CLUMP;
@@ -250,7 +250,24 @@ impl Channels {
 }
 
 /// An experiment with Slats at the analytic level.
-pub(super) fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
+pub(super) const CLOSED_FORM: ClosedForm = ClosedForm { summary: closed_form, fields_needed };
+
+fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
+    let (model, times) = steady_field(experiment)?;
+    Ok(summary(experiment.length(), &model, times))
+}
+
+/// Fields before the first picture behind the warm-up: the warm-up's, one in which the host's first view is under way, and
+/// the one that it is drawn in.
+const FIELDS_BEFORE: u64 = WARM_UP_PICTURES as u64 + 2;
+
+/// A field that comes too late does so always.
+fn fields_needed(experiment: &Experiment) -> Option<u64> {
+    let (_, times) = steady_field(experiment).ok()?;
+    times.in_time.then_some(FIELDS_BEFORE + 1)
+}
+
+fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), ExperimentError> {
     let pipeline: Slats = pipeline_of(experiment)?;
     let model = SlatsModel::new(experiment.config(), pipeline)?;
     let scene = experiment.scene();
@@ -264,16 +281,17 @@ pub(super) fn closed_form(experiment: &Experiment) -> Result<Summary, Experiment
             per_eye / triangles.max(1.0)
         }
     };
-    Ok(summary(experiment.length(), &model, model.field(triangles, entries)))
+    let times = model.field(triangles, entries);
+    Ok((model, times))
 }
 
 fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
-    let pictures = fields.saturating_sub(WARM_UP_PICTURES as u64 + 2).max(1);
+    let pictures = fields.saturating_sub(FIELDS_BEFORE).max(1);
     let field_ms = model.field_ns * 1e-6;
     Summary {
         latencies_ms: vec![field_ms; pictures as usize],
         field_ms,
-        updates_hz: if times.in_time { 1e3 / field_ms } else { 0.0 },
+        updates_hz: times.in_time.then_some(1e3 / field_ms),
         missed_retraces: if times.in_time { 0 } else { pictures },
         eye_latencies_ms: Vec::new(),
         region_copy_us: model.region_ns * 1e-3,

@@ -155,7 +155,7 @@ fn line(row: &Row) -> String {
         row.pipeline,
         shown(row.latency_ms, row.latency_ms > 0.0),
         shown(row.end_to_end.total_ms, timed),
-        shown(row.updates_hz, row.latency_ms > 0.0),
+        row.updates_hz.map_or_else(|| "-".to_owned(), |hz| format!("{hz:.2}")),
         row.missed_retraces,
         shown(row.error.pixels.mean, judged),
         shown(row.error.pixels.p99, judged),

@@ -5,8 +5,8 @@ use crate::output::OutputFolder;
 use crate::settings::SettingArgs;
 use crate::terminal::print;
 use clap::{Args, ValueEnum};
-use pxpl5::film::{Film, FilmOf};
 use pxpl5::{Eye, Pixels};
+use pxpl5::{Film, FilmOf};
 use std::path::PathBuf;
 
 /// Write what a viewer sees as an animated PNG at the true field rate.

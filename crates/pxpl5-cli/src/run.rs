@@ -54,12 +54,23 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let Some((_, report)) = &results.run else { return Err(no_events()) };
     let written = folder.map(|folder| write(folder, &plan, &results)).transpose()?;
     if args.json {
-        return print(&format!("{}\n", json(report)?));
+        print(&format!("{}\n", json(report)?))?;
+    } else if !args.quiet {
+        print(&text(&plan, &results, report, written))?;
     }
-    if args.quiet {
-        return Ok(());
-    }
-    let comparison = comparison(&plan, &results);
+    if report.shown == 0 { Err(nothing_shown(report)) } else { Ok(()) }
+}
+
+/// More fields would not help: pictures came, and all of them came too late.
+fn nothing_shown(report: &Report) -> CliError {
+    CliError::failure(format!(
+        "no complete picture was shown in {} fields: {} regions came after their deadline; draw fewer primitives (--triangles)",
+        report.fields, report.late_regions
+    ))
+}
+
+fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf>) -> String {
+    let comparison = comparison(plan, results);
     let mut text = table(&[(report, comparison.as_ref())]);
     let _ = writeln!(text, "\nLatency: {}.", report.latency_ms.definition);
     if let Some(head) = &report.head {
@@ -73,7 +84,7 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     if let Some(path) = written {
         let _ = writeln!(text, "Written to {}.", path.display());
     }
-    print(&text)
+    text
 }
 
 /// The checked experiment; a sweep is none.

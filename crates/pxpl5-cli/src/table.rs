@@ -36,8 +36,8 @@ pub(crate) fn table(runs: &[(&Report, Option<&Comparison>)]) -> String {
     row("  min to max", &|r| range(&r.latency_fields.statistics, 2));
     row("latency, ms: mean", &|r| mean_and_sd(&r.latency_ms.statistics, 1));
     row("  min to max", &|r| range(&r.latency_ms.statistics, 1));
-    row("updates per second", &|r| format!("{:.2}", r.updates_hz));
-    row("missed retraces", &|r| r.missed_retraces.to_string());
+    row("updates per second", &|r| r.updates_hz.map_or_else(|| "-".to_owned(), |hz| format!("{hz:.2}")));
+    row("missed retraces", &missed);
     if runs.iter().any(|(_, comparison)| comparison.is_some()) {
         rows.extend(comparison_rows(runs));
     }
@@ -53,6 +53,14 @@ fn comparison_rows(runs: &[(&Report, Option<&Comparison>)]) -> [(&'static str, V
         ("  where", cells(&|c| c.source.clone())),
         ("  error", cells(&|c| format!("{:+.1} %", c.error_percent()))),
     ]
+}
+
+/// Of how many, where some were missed.
+fn missed(report: &Report) -> String {
+    match report.missed_retraces {
+        0 => "0".to_owned(),
+        missed => format!("{missed} of {}", report.judged_retraces),
+    }
 }
 
 fn primitives(report: &Report) -> String {

@@ -13,14 +13,18 @@ struct Arriving {
     first_part_at: Time,
 }
 
+type Regions = BTreeMap<RegionId, Arriving>;
+
 /// Two buffers for one surface, of which one is shown.
 ///
 /// **Not modelled:** pixels that arrive while they are lit; whoever needs them keeps the times of all messages, as the
 /// NTSC frame buffer does.
 #[derive(Clone, Debug, Default)]
 pub struct DoubleBuffer {
-    buffers: [BTreeMap<RegionId, Arriving>; 2],
+    buffers: [Regions; 2],
     shown: u8,
+    /// What was shown before the last tick.
+    scanned: Regions,
     /// The last request, and when it arrived.
     requested: Option<(Time, u8)>,
 }
@@ -67,8 +71,9 @@ impl DoubleBuffer {
         BufferReceipt::Part
     }
 
-    /// Shows the buffer that was asked for before (not at) this instant, if one was; which.
+    /// At a tick: shows the buffer that was asked for before (not at) this instant, if one was; which.
     pub fn swap(&mut self, now: Time) -> Option<u8> {
+        self.scanned.clone_from(&self.buffers[usize::from(self.shown)]);
         let (_, buffer) = self.requested.take_if(|(asked_at, _)| *asked_at < now)?;
         self.shown = buffer;
         Some(buffer)
@@ -77,18 +82,28 @@ impl DoubleBuffer {
     /// The buffer that is shown, with every region of which a message has arrived; black elsewhere.
     #[must_use]
     pub fn picture(&self, width: u32, height: u32) -> RgbImage {
-        let mut picture = RgbImage::new(width, height);
-        for (id, region) in &self.buffers[usize::from(self.shown)] {
-            let [left, top, region_width, _] = region.pixels.target.grid.rectangle(*id);
-            for (i, word) in (0..).zip(region.pixels.image.pixels().iter()) {
-                let [_, red, green, blue] = word.to_be_bytes();
-                if let Some(pixel) = picture.get_pixel_mut_checked(left + i % region_width, top + i / region_width) {
-                    *pixel = Rgb([red, green, blue]);
-                }
+        picture_of(&self.buffers[usize::from(self.shown)], width, height)
+    }
+
+    /// What was shown until the last tick, in the same way.
+    #[must_use]
+    pub fn scanned_picture(&self, width: u32, height: u32) -> RgbImage {
+        picture_of(&self.scanned, width, height)
+    }
+}
+
+fn picture_of(regions: &Regions, width: u32, height: u32) -> RgbImage {
+    let mut picture = RgbImage::new(width, height);
+    for (id, region) in regions {
+        let [left, top, region_width, _] = region.pixels.target.grid.rectangle(*id);
+        for (i, word) in (0..).zip(region.pixels.image.pixels().iter()) {
+            let [_, red, green, blue] = word.to_be_bytes();
+            if let Some(pixel) = picture.get_pixel_mut_checked(left + i % region_width, top + i / region_width) {
+                *pixel = Rgb([red, green, blue]);
             }
         }
-        picture
     }
+    picture
 }
 
 #[cfg(test)]

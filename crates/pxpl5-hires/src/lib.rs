@@ -1,7 +1,8 @@
 //! The high-resolution frame buffer of Pixel-Planes 5: 1280 x 1024 at 72 Hz, every line in every scan, double-buffered.
 //!
 //! A board takes regions into the buffer that is not shown and swaps at the next retrace after a request. It is also the
-//! example of how a display is added: this file and a line in the registry are all of it. **Not modelled:** blanking (the scan fills its whole period), pixels that arrive while their line is scanned.
+//! example of how a display is added: this file and a line in the registry are all of it. **Not modelled:** blanking (the
+//! scan fills its whole period), pixels that arrive while their line is scanned.
 //!
 //! Sources: F89 (size), TR94 (words); the rate and the scan without blanking are assumed.
 
@@ -99,7 +100,8 @@ impl Display for HiRes {
     }
 
     fn seen(&self, surface: usize, period: u64) -> Option<RgbImage> {
-        self.shown(surface).filter(|_| self.last_seen() == Some(period))
+        let board = self.boards.get(surface).filter(|_| self.last_seen() == Some(period))?;
+        Some(board.scanned_picture(self.config.width as u32, self.config.height as u32))
     }
 
     fn last_seen(&self) -> Option<u64> {

@@ -25,7 +25,7 @@ pub struct Point {
     pub host_ms: f64,
     /// Mean latency in fields.
     pub latency_fields: f64,
-    /// Frames per second of simulated time.
+    /// Frames per second of simulated time; 0 of fewer than two.
     pub updates_hz: f64,
 }
 
@@ -47,10 +47,13 @@ const TRIANGLE_NS: (u64, u64) = (24_000, 9_200);
 /// Frames that a run must leave room for.
 const FRAMES: u64 = 30;
 
-/// Fields in which [`FRAMES`] stereo frames are shown.
-fn fields(triangles: u64, n_gps: u64, n_renderers: u64) -> u64 {
-    let frame_ns = 2 * triangles * (TRIANGLE_NS.0 / (n_gps - 1) + TRIANGLE_NS.1 / n_renderers);
-    50 + FRAMES * frame_ns / 16_683_333
+/// Fields of a machine's display in which [`FRAMES`] stereo frames are shown.
+fn fields(config: &MachineConfig, triangles: u64) -> Result<u64, ExperimentError> {
+    let slaves = config.n_gps as u64 - 1;
+    let renderers = config.n_renderers as u64;
+    let frame_ns = 2 * triangles * (TRIANGLE_NS.0 / slaves + TRIANGLE_NS.1 / renderers);
+    let period_ns = config.period()?.0 / 1_000;
+    Ok(50 + FRAMES * frame_ns / period_ns)
 }
 
 /// The fastest of three runs, which differ in nothing else.
@@ -65,7 +68,7 @@ fn run(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, Experi
 fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, ExperimentError> {
     let mut config = MachineConfig { n_gps, n_renderers, ..MachineConfig::preset("large")? };
     config.gp.memory_bytes = MEMORY_BYTES;
-    let fields = fields(u64::from(triangles), n_gps as u64, n_renderers as u64);
+    let fields = fields(&config, u64::from(triangles))?;
     let scene = test_scene(TestScene::Typical, triangles);
     let experiment = Experiment::new(config, RenderingControl::stereo(), scene).fields(fields).pixels(Pixels::Off);
     let run = experiment.host(Workstation::new()).run();
@@ -85,7 +88,7 @@ fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, E
         frames,
         host_ms: report.host_seconds.unwrap_or(f64::NAN) * 1e3 / frames.max(1) as f64,
         latency_fields: report.latency_fields.statistics.mean,
-        updates_hz: report.updates_hz,
+        updates_hz: report.updates_hz.unwrap_or_default(),
     })
 }
 
@@ -169,7 +172,7 @@ fn of_seed(outcome: &Outcome) -> (Vec<f64>, f64) {
         .iter()
         .map(|times| (times.shown_at - times.transform_at).as_ms() / outcome.field_ms())
         .collect();
-    (latencies, outcome.report().updates_hz)
+    (latencies, outcome.report().updates_hz.unwrap_or_default())
 }
 
 /// Slope of a straight line through the logarithms.

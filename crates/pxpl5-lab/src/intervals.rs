@@ -67,13 +67,10 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Both designs together, moved to where the figure is at another level.
+    /// Both designs together, as they were computed: at the analytic level, whatever another level says.
     #[must_use]
-    pub fn around(&self, simulated: f64) -> [f64; 2] {
-        let shift = simulated - self.nominal;
-        let low = self.one_at_a_time[0].min(self.joint[0]);
-        let high = self.one_at_a_time[1].max(self.joint[1]);
-        [low + shift, high + shift]
+    pub const fn bounds(&self) -> [f64; 2] {
+        [self.one_at_a_time[0].min(self.joint[0]), self.one_at_a_time[1].max(self.joint[1])]
     }
 }
 
@@ -165,18 +162,62 @@ fn effects(variations: &[Variation], ends: &[f64], nominal: f64) -> Vec<Effect> 
     effects
 }
 
-/// Puts the intervals into the rows; the figure that depends on scenes alone gets the range of its scenes.
+/// Puts the intervals into the rows, as they were computed; the figure that depends on scenes alone has none.
 pub fn fill(rows: &mut [Row], intervals: &[Interval]) {
     for row in rows {
-        let scenes = || bounds(row.details.iter().map(|detail| detail.value));
         let interval = intervals.iter().find(|interval| interval.id == row.id);
-        row.interval = Some(interval.map_or_else(scenes, |interval| interval.around(row.simulated)));
+        row.analytic = interval.map(|interval| interval.nominal);
+        row.interval = interval.map(Interval::bounds);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figures::{Figure, Measured};
+
+    /// Figure 2, published as 31.2 ms: at the analytic level 20 to 22 ms, 21 ms with the presets' numbers.
+    fn row_of_figure_2(simulated: f64) -> Row {
+        let figure: &Figure = FIGURES.iter().find(|figure| figure.id == "2").expect("listed");
+        let interval = Interval {
+            id: figure.id,
+            nominal: 21.0,
+            one_at_a_time: [20.5, 22.0],
+            joint: [20.0, 21.5],
+            likely: [20.2, 21.0],
+            effects: Vec::new(),
+        };
+        let mut rows = [Row::new(figure, Measured::from(simulated))];
+        fill(&mut rows, &[interval]);
+        let [row] = rows;
+        row
+    }
+
+    #[test]
+    fn an_interval_stays_where_it_was_computed_however_far_off_the_simulated_value_is() {
+        for simulated in [1.0, 21.0, 500.0] {
+            let row = row_of_figure_2(simulated);
+            assert_eq!((row.interval, row.analytic), (Some([20.0, 22.0]), Some(21.0)));
+        }
+    }
+
+    #[test]
+    fn a_figure_is_out_of_reach_beyond_the_interval_widened_by_the_distance_of_the_levels() {
+        // 31.2 ms less the last printed digit, 0.312, is 8.888 above the upper bound of 22 ms.
+        for (distance, out_of_reach) in [(0.0, true), (8.8, true), (-8.8, true), (8.9, false), (-8.9, false)] {
+            let row = row_of_figure_2(21.0 + distance);
+            assert_eq!(row.is_out_of_reach(), out_of_reach, "levels {distance} ms apart");
+        }
+    }
+
+    #[test]
+    fn the_figure_of_the_scenes_has_no_interval_and_is_not_judged_by_one() {
+        let figure = FIGURES.iter().find(|figure| figure.id == OF_SCENES).expect("listed");
+        let mut rows = [Row::new(figure, Measured::from(9.0))];
+        fill(&mut rows, &[]);
+        assert_eq!((rows[0].interval, rows[0].analytic), (None, None));
+        assert!(!rows[0].is_out_of_reach());
+    }
 
     #[test]
     fn every_variation_lies_around_its_preset() {

@@ -100,7 +100,7 @@ fn is_reached(goal: Goal, summary: &Summary) -> bool {
     }
     match goal {
         Goal::NoMissedRetrace => summary.missed_retraces == 0,
-        Goal::RateHz(least) => summary.updates_hz >= least * NTSC,
+        Goal::RateHz(least) => summary.updates_hz.is_some_and(|hz| hz >= least * NTSC),
         Goal::LatencyFields(most) => summary.latency_fields().mean <= most,
     }
 }
@@ -149,7 +149,11 @@ pub fn most<E>(ceiling: u32, mut reached: impl FnMut(u32) -> Result<bool, E>) ->
 }
 
 /// Legs of a typical triangle in pixels: its box touches (1 + 18/128)^2 = 1.30 regions of 128 x 128 on average.
-const TYPICAL_LEG_PX: f64 = 18.0;
+pub(crate) const TYPICAL_LEG_PX: f64 = 18.0;
+
+/// Width and height of the place that their corners are spread over: with the disparity of the eyes and the triangle itself
+/// they stay inside the 640 x 480 pixels.
+pub(crate) const TYPICAL_SPREAD_PX: [f64; 2] = [540.0, 420.0];
 
 /// Distance of typical triangles from the head, metres (assumed; any within the display's near and far planes).
 const TYPICAL_DEPTH_M: f32 = 1.0;
@@ -199,8 +203,7 @@ fn typical(count: u32) -> Scene {
 /// The plastic number's recurrence spreads points evenly over the unit square; 16 bits keep it exact.
 fn corners(i: u32, pixel: f32) -> [Vec3; 3] {
     let share = |step: u32| (i.wrapping_mul(step) >> 16) as f32 / 65_536.0;
-    // The disparity of the eyes and the triangle itself stay inside the 640 x 480 pixels.
-    let (width, height) = (540.0, 420.0);
+    let [width, height] = TYPICAL_SPREAD_PX.map(|px| px as f32);
     let x = (share(3_242_174_889) - 0.5) * width * pixel;
     let y = (share(2_447_445_413) - 0.5) * height * pixel;
     let leg = TYPICAL_LEG_PX as f32 * pixel;

@@ -5,6 +5,8 @@ use pxpl5_display::{DisplayConfig, DisplayError};
 use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::NodeId;
 use serde::Serialize;
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -63,7 +65,7 @@ impl PartialEq for MachineConfig {
             && self.boards() == other.boards()
             && self.displays.len() == other.displays.len()
             && self.displays.iter().zip(&other.displays).all(|(own, other)| own.equals(other.as_ref()))
-            && self.parameters() == other.parameters()
+            && self.telling_parameters() == other.telling_parameters()
     }
 }
 
@@ -132,7 +134,9 @@ pub struct Parameter {
 const MAX_BOARDS: u64 = 1_000;
 
 impl MachineConfig {
-    fn boards(&self) -> [u64; 2] {
+    /// Numbers of GPs and of renderers.
+    #[must_use]
+    pub fn boards(&self) -> [u64; 2] {
         [self.n_gps as u64, self.n_renderers as u64]
     }
 
@@ -164,6 +168,18 @@ impl MachineConfig {
         all
     }
 
+    /// The parameters that tell this machine from others: all but those of firmware with the values of the papers, which it
+    /// has without a table too.
+    #[must_use]
+    pub fn telling_parameters(&self) -> Vec<Parameter> {
+        let of_firmware = |parameter: &Parameter| {
+            let board = parameter.path.split_once('.').map(|(board, _)| board);
+            self.firmware.iter().any(|(name, _)| Some(*name) == board)
+        };
+        let all = self.parameters().into_iter();
+        all.filter(|parameter| parameter.value != parameter.info.papers || !of_firmware(parameter)).collect()
+    }
+
     /// Adds the numbers of some firmware, unless it has them already.
     pub fn add_firmware_table(&mut self, name: &'static str, table: Box<dyn FirmwareTable>) {
         if self.firmware.iter().all(|(known, _)| *known != name) {
@@ -183,13 +199,16 @@ impl MachineConfig {
         self.tables().into_iter().flat_map(|(board, table)| parameters_of(board, table)).collect()
     }
 
-    /// Parameters that differ from the preset's, by path.
+    /// Parameters that differ from the preset's, by path; those of tables that the preset has not (firmware, another
+    /// display) where they differ from the value that the papers give.
     #[must_use]
     pub fn overrides(&self) -> BTreeMap<String, Value> {
         let Ok(preset) = Self::preset(&self.preset) else { return BTreeMap::new() };
         let of_preset: BTreeMap<String, Value> = preset.settings().into_iter().collect();
-        let own = self.settings().into_iter();
-        own.filter(|(path, value)| of_preset.get(path).is_some_and(|preset| preset != value)).collect()
+        let of_papers: BTreeMap<String, Value> =
+            self.parameters().into_iter().map(|parameter| (parameter.path, parameter.info.papers)).collect();
+        let expected = |path: &String| of_preset.get(path).or_else(|| of_papers.get(path));
+        self.settings().into_iter().filter(|(path, value)| expected(path) != Some(value)).collect()
     }
 
     /// The numbers of boards and all parameters, by path.
@@ -233,6 +252,17 @@ impl MachineConfig {
         ConfigError::UnknownParameter { found: path.to_owned(), nearest }
     }
 
+    /// The first period of the first display: for NTSC, a field.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError::Board`] when there is no display, or none can be built of its numbers.
+    pub fn period(&self) -> Result<Span, ConfigError> {
+        let display = self.displays.first().ok_or_else(no_display)?;
+        let nodes: Vec<NodeId> = (0..display.ports(1) as u16).map(NodeId).collect();
+        Ok(display.build(&nodes)?.tick(1).since(Time::ZERO))
+    }
+
     /// Checks everything that can be checked before a machine is built.
     ///
     /// # Errors
@@ -245,7 +275,7 @@ impl MachineConfig {
             table.check().map_err(|error| refused(board, error))?;
         }
         if self.displays.is_empty() {
-            return Err(ConfigError::Board("a machine needs a display; found none".to_owned()));
+            return Err(no_display());
         }
         self.displays.iter().try_for_each(|display| Ok(display.check()?))
     }
@@ -261,6 +291,10 @@ fn parameters_of(board: &str, table: &dyn ParameterTable) -> Vec<Parameter> {
 fn whole(path: &str, value: Value) -> Result<usize, ConfigError> {
     let number = value.whole().and_then(|number| usize::try_from(number).ok());
     number.ok_or_else(|| ConfigError::Board(format!("{path} must be a whole number, found {value}")))
+}
+
+fn no_display() -> ConfigError {
+    ConfigError::Board("a machine needs a display; found none".to_owned())
 }
 
 fn refused(board: &str, error: ParameterError) -> ConfigError {
@@ -298,6 +332,29 @@ mod tests {
         assert_eq!((config.gp.triangle_ns, config.n_gps), (30_000, 24));
         let error = config.set("gp.triange_ns", 1).expect_err("misspelt");
         assert!(error.to_string().contains("`gp.triangle_ns`"), "{error}");
+    }
+
+    parameters::parameter_table! {
+        /// Numbers of some firmware.
+        struct Numbers {
+            /// A time that may be changed.
+            step_ns: 500, "ns", Assumed, 100..=900, "made up";
+        }
+    }
+
+    #[test]
+    fn an_override_of_a_table_that_the_preset_has_not_is_what_differs_from_the_papers() {
+        let mut config = MachineConfig::small_hmd();
+        config.add_firmware_table("extra", Box::new(Numbers::PAPERS));
+        assert!(config.overrides().is_empty(), "{:?}", config.overrides());
+        assert_eq!(config, MachineConfig::small_hmd());
+        config.set("extra.step_ns", 600).expect("known");
+        assert_ne!(config, MachineConfig::small_hmd());
+        config.set("ring.word_ns", 51).expect("known");
+        let expected = [("extra.step_ns".to_owned(), 600.into()), ("ring.word_ns".to_owned(), 51.into())];
+        assert_eq!(config.overrides(), BTreeMap::from(expected));
+        config.set("extra.step_ns", 500).expect("known");
+        assert!(!config.overrides().contains_key("extra.step_ns"));
     }
 
     #[test]

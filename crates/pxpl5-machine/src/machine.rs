@@ -72,6 +72,16 @@ pub enum RunError {
     },
 }
 
+impl RunError {
+    /// When the run ended.
+    #[must_use]
+    pub const fn time(&self) -> Time {
+        match self {
+            Self::Fault { time, .. } | Self::Deadlock { time, .. } | Self::Ring { time, .. } => *time,
+        }
+    }
+}
+
 fn waits(blocked: &[Blocked]) -> String {
     blocked.iter().map(|b| format!(" {} waits for {};", b.board, b.waits_for)).collect()
 }

@@ -59,7 +59,10 @@ pub static QUANTITIES: [Quantity; 28] = [
     of_summary("latency_ms.sd", LATENCY, |s| s.latency_ms().sd),
     of_summary("latency_ms.min", LATENCY, |s| s.latency_ms().min),
     of_summary("latency_ms.max", LATENCY, |s| s.latency_ms().max),
-    of_summary("updates_hz", "complete pictures per second of simulated time", |s| s.updates_hz),
+    // What is not a number is no value: see `Measure::of`.
+    of_summary("updates_hz", "complete pictures per second of simulated time; none of fewer than two", |s| {
+        s.updates_hz.unwrap_or(f64::NAN)
+    }),
     of_summary("missed_retraces", "retraces missed, as the pipeline defines it", |s| s.missed_retraces as f64),
     of_summary("region_copy_us", "mean port time of a region of 15,360 pixels", |s| s.region_copy_us),
     of_summary(

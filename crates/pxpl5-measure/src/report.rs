@@ -55,10 +55,14 @@ pub struct Report {
     /// Latency of each eye and of the pair to the end of COPY, to the swap and to light, in milliseconds; empty where the
     /// eyes have no TRANSFORM of their own.
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
-    /// Complete pictures per second of simulated time.
-    pub updates_hz: f64,
+    /// Complete pictures that were shown in the whole run, the warm-up included.
+    pub shown: u64,
+    /// Complete pictures per second of simulated time, after the warm-up; nothing where fewer than two were shown.
+    pub updates_hz: Option<f64>,
     /// Retraces missed.
     pub missed_retraces: u64,
+    /// The retraces among which they are counted.
+    pub judged_retraces: u64,
     /// What that means here.
     pub missed_retraces_definition: String,
     /// Regions that came after their deadline.
@@ -147,9 +151,11 @@ impl Report {
             latency_ms: outcome.latency_ms().defined(pipeline.latency_definition()),
             latency_parts_ms: latency_part_statistics(outcome),
             latency_by_eye_ms: latency_by_surface(outcome),
-            updates_hz: updates_hz(pictures) / pipeline.updates_per_picture(record),
-            missed_retraces: pipeline.missed_retraces(record, pictures),
-            missed_retraces_definition: pipeline.missed_definition().to_owned(),
+            shown: outcome.shown(),
+            updates_hz: updates_hz(pictures).map(|hz| hz / pipeline.updates_per_picture(record)),
+            missed_retraces: outcome.missed_retraces(),
+            judged_retraces: outcome.judged_retraces(),
+            missed_retraces_definition: outcome.missed_definition(),
             late_regions: late.len(),
             first_late_regions: late.into_iter().take(LATE_REGIONS_LISTED).collect(),
             head: outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())),
@@ -160,11 +166,11 @@ impl Report {
     }
 }
 
-/// Complete pictures per second of simulated time.
-fn updates_hz(pictures: &[PictureTimes]) -> f64 {
+/// Complete pictures per second of simulated time; `None` of fewer than two.
+fn updates_hz(pictures: &[PictureTimes]) -> Option<f64> {
     let complete: Vec<_> = pictures.iter().filter(|times| times.complete).collect();
     match complete[..] {
-        [first, .., last] => (complete.len() - 1) as f64 * 1e3 / (last.shown_at - first.shown_at).as_ms(),
-        _ => 0.0,
+        [first, .., last] => Some((complete.len() - 1) as f64 * 1e3 / (last.shown_at - first.shown_at).as_ms()),
+        _ => None,
     }
 }

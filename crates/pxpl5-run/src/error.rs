@@ -20,15 +20,21 @@ pub enum ExperimentError {
         /// What was asked for.
         found: u64,
     },
-    /// Nothing was shown in the time given.
+    /// Nothing but pictures of the warm-up was shown in the time given; what was observed is kept.
     #[error(
-        "only {pictures} pictures were shown in {fields} fields and the first {WARM_UP_PICTURES} are discarded; simulate more fields"
+        "only {pictures} pictures were shown in {fields} fields and the first {WARM_UP_PICTURES} are discarded; {}",
+        advice(*needed)
     )]
     TooShort {
         /// Fields simulated.
         fields: u64,
         /// Pictures that were shown; the first ones are discarded.
         pictures: usize,
+        /// About how many fields it takes until a picture after the warm-up is shown, by the pipeline's closed form;
+        /// `None` where there is none ([`crate::Experiment::estimated_by`]).
+        needed: Option<u64>,
+        /// Everything that was observed.
+        partial: Box<Outcome>,
     },
     /// The analytic level has no events that an experiment could observe.
     #[error("level: expected transaction or cycle, found analytic, which has no events (it is for sweeps and limits)")]
@@ -47,4 +53,12 @@ pub enum ExperimentError {
         /// Everything until then.
         partial: Box<Outcome>,
     },
+}
+
+/// How long a run must be.
+fn advice(needed: Option<u64>) -> String {
+    match needed {
+        Some(fields) => format!("simulate more fields: the next one is shown after about {fields}"),
+        None => "simulate more fields".to_owned(),
+    }
 }

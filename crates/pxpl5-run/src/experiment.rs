@@ -44,7 +44,12 @@ pub struct Experiment {
     pub(crate) given_up: BTreeSet<Saving>,
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
+    pub(crate) fields_needed: Option<FieldsNeeded>,
 }
+
+/// Fields after which the first picture behind the warm-up of an experiment has been shown; `None` if none ever will be, or
+/// if it cannot be said.
+pub type FieldsNeeded = fn(&Experiment) -> Option<u64>;
 
 impl Experiment {
     /// A pipeline on a machine with a scene; 120 fields, pixels when looked at, seed 1.
@@ -69,6 +74,7 @@ impl Experiment {
             given_up: BTreeSet::new(),
             level: Level::Transaction,
             head: None,
+            fields_needed: None,
         }
     }
 
@@ -137,6 +143,13 @@ impl Experiment {
         self
     }
 
+    /// By what a run that is too short to show anything says how many fields it would take: a pipeline's closed form knows.
+    #[must_use]
+    pub const fn estimated_by(mut self, fields_needed: Option<FieldsNeeded>) -> Self {
+        self.fields_needed = fields_needed;
+        self
+    }
+
     /// How the raster before the head's eyes shows the picture.
     #[must_use]
     pub fn raster(&self) -> Raster {
@@ -150,7 +163,10 @@ impl Experiment {
         let mut hash = Fingerprint::default();
         hash.setting("code", self.config.code_name());
         self.config.displays.iter().for_each(|display| hash.setting("display", display.name()));
-        self.config.settings().iter().for_each(|(path, value)| hash.setting(path, value));
+        let [n_gps, n_renderers] = self.config.boards();
+        hash.setting("n_gps", n_gps);
+        hash.setting("n_renderers", n_renderers);
+        self.config.telling_parameters().iter().for_each(|parameter| hash.setting(&parameter.path, parameter.value));
         hash.setting("pipeline", self.pipeline.name());
         self.pipeline.settings().iter().for_each(|(key, value)| hash.setting(key, value));
         hash.setting("scene", Fingerprint::of_scene(&self.scene));

@@ -1,7 +1,9 @@
 //! A short name for contents: 128-bit FNV-1a (Fowler, Noll, Vo), the same on every host. It finds accidents, not malice.
 
-use pxpl5_scene::{Frame, Scene};
+use glam::Vec3;
+use pxpl5_scene::{Frame, Hinge, Lighting, Path, Scene, Sphere, Structure, Vertex};
 use std::fmt::{self, Write};
+use std::ops::Range;
 
 const OFFSET_BASIS: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
 const PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
@@ -26,37 +28,24 @@ impl Fingerprint {
     }
 
     /// Of everything in a scene that can be seen or that takes time: primitives, structures, light and motion; not its
-    /// name.
+    /// name, and not the seed of its motion, which is the experiment's.
+    ///
+    /// The numbers follow each other bit for bit, the least significant byte first: lists as their length (64 bits) and
+    /// their entries, choices as a byte that counts from 0 in the order of their declaration.
     #[must_use]
     pub fn of_scene(scene: &Scene) -> Self {
         let mut all = Self::default();
-        for vertex in scene.vertices() {
-            all.numbers(&vertex.position.to_array());
-            all.numbers(&vertex.normal.to_array());
-            all.add(&vertex.colour);
-        }
+        all.length(scene.vertices());
+        scene.vertices().iter().for_each(|vertex| all.vertex(vertex));
+        all.length(scene.triangles());
         scene.triangles().iter().flatten().for_each(|corner| all.add(&corner.to_le_bytes()));
-        for sphere in scene.spheres() {
-            all.numbers(&sphere.centre.to_array());
-            all.numbers(&[sphere.radius]);
-            all.add(&sphere.colour);
-        }
-        for structure in scene.structures() {
-            let frame = if structure.frame == Frame::Head { "head" } else { "world" };
-            let ranges = (&structure.vertices, &structure.triangles, &structure.spheres);
-            all.add(format!("{frame} {ranges:?} {:?}", structure.hinge).as_bytes());
-        }
-        all.add(format!("{:?} {:?}", scene.lighting(), scene.motion().path()).as_bytes());
-        all.add(&scene.motion().sway().scale.to_le_bytes());
-        all
-    }
-
-    /// Of a value by what `Debug` shows of it.
-    #[must_use]
-    pub fn of_debug(value: &impl fmt::Debug) -> Self {
-        let mut all = Self::default();
-        // Adding bytes cannot fail.
-        let _ = write!(all, "{value:?}");
+        all.length(scene.spheres());
+        scene.spheres().iter().for_each(|sphere| all.sphere(sphere));
+        all.length(scene.structures());
+        scene.structures().iter().for_each(|structure| all.structure(structure));
+        all.lighting(scene.lighting());
+        all.path(scene.motion().path());
+        all.reals(&[scene.motion().sway().scale]);
         all
     }
 
@@ -71,8 +60,96 @@ impl Fingerprint {
         self.0 = bytes.iter().fold(self.0, |hash, byte| (hash ^ u128::from(*byte)).wrapping_mul(PRIME));
     }
 
-    fn numbers(&mut self, numbers: &[f32]) {
+    fn length<T>(&mut self, list: &[T]) {
+        self.add(&(list.len() as u64).to_le_bytes());
+    }
+
+    fn floats(&mut self, numbers: &[f32]) {
         numbers.iter().for_each(|number| self.add(&number.to_le_bytes()));
+    }
+
+    fn reals(&mut self, numbers: &[f64]) {
+        numbers.iter().for_each(|number| self.add(&number.to_le_bytes()));
+    }
+
+    fn vector(&mut self, vector: Vec3) {
+        self.floats(&vector.to_array());
+    }
+
+    fn range(&mut self, range: &Range<usize>) {
+        self.add(&(range.start as u64).to_le_bytes());
+        self.add(&(range.end as u64).to_le_bytes());
+    }
+
+    fn vertex(&mut self, vertex: &Vertex) {
+        let Vertex { position, normal, colour } = vertex;
+        self.vector(*position);
+        self.vector(*normal);
+        self.add(colour);
+    }
+
+    fn sphere(&mut self, sphere: &Sphere) {
+        let Sphere { centre, radius, colour } = sphere;
+        self.vector(*centre);
+        self.floats(&[*radius]);
+        self.add(colour);
+    }
+
+    /// Its name is for people.
+    fn structure(&mut self, structure: &Structure) {
+        let Structure { name: _, vertices, triangles, spheres, frame, hinge } = structure;
+        self.range(vertices);
+        self.range(triangles);
+        self.range(spheres);
+        self.add(&[match frame {
+            Frame::World => 0,
+            Frame::Head => 1,
+        }]);
+        self.add(&[u8::from(hinge.is_some())]);
+        if let Some(Hinge { point, axis, amplitude_deg, period_ps, phase_turns }) = hinge {
+            self.vector(*point);
+            self.vector(*axis);
+            self.reals(&[*amplitude_deg]);
+            self.add(&period_ps.to_le_bytes());
+            self.reals(&[*phase_turns]);
+        }
+    }
+
+    fn lighting(&mut self, lighting: &Lighting) {
+        let Lighting { towards_light, ambient, diffuse, background } = lighting;
+        self.vector(*towards_light);
+        self.floats(&[*ambient, *diffuse]);
+        self.add(background);
+    }
+
+    fn path(&mut self, path: &Path) {
+        match path {
+            Path::Still { eye, target } => {
+                self.add(&[0]);
+                self.vector(*eye);
+                self.vector(*target);
+            }
+            Path::Pan { eye, deg_per_s } => {
+                self.add(&[1]);
+                self.vector(*eye);
+                self.reals(&[*deg_per_s]);
+            }
+            Path::Orbit { target, distance, height, deg_per_s } => {
+                self.add(&[2]);
+                self.vector(*target);
+                self.reals(&[*distance, *height, *deg_per_s]);
+            }
+            Path::Look { target, distance } => {
+                self.add(&[3]);
+                self.vector(*target);
+                self.reals(&[*distance]);
+            }
+            Path::FlyThrough { target, nearest, farthest, lap_s } => {
+                self.add(&[4]);
+                self.vector(*target);
+                self.reals(&[*nearest, *farthest, *lap_s]);
+            }
+        }
     }
 }
 

@@ -66,7 +66,14 @@ impl Head {
     /// Name of everything that it is, the motion included.
     #[must_use]
     pub fn fingerprint(&self) -> Fingerprint {
-        Fingerprint::of_debug(&(&self.motion, self))
+        let mut hash = Fingerprint::default();
+        let mut add = |key: &str, value: &dyn fmt::Display| hash.setting(key, value);
+        self.motion.identify(&mut add);
+        self.tracker.config().identify(&mut add);
+        self.predictor.identify(&mut add);
+        hash.setting("seed", self.seed);
+        hash.setting("raster", self.raster);
+        hash
     }
 
     /// Whether poses are predicted.

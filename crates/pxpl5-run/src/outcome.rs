@@ -15,19 +15,25 @@ pub struct Outcome {
     record: Record,
     head: Option<Arc<HeadViews>>,
     pictures: Vec<PictureTimes>,
+    reached: u64,
     host_seconds: Option<f64>,
 }
+
+/// Which retraces are judged, behind what a pipeline calls missed.
+const JUDGED: &str = "counted from the first picture after the warm-up to the end of the run; where no complete picture came \
+                      after the warm-up, every retrace of the run at which none was shown";
 
 impl Outcome {
     pub(crate) fn new(
         experiment: Experiment,
         record: Record,
         head: Option<Arc<HeadViews>>,
+        reached: u64,
         host_seconds: Option<f64>,
     ) -> Self {
         let end = record.tick(experiment.fields);
         let pictures = experiment.pipeline.pictures(&record, end);
-        Self { experiment, record, head, pictures, host_seconds }
+        Self { experiment, record, head, pictures, reached, host_seconds }
     }
 
     /// What was run.
@@ -46,6 +52,56 @@ impl Outcome {
     #[must_use]
     pub fn steady_pictures(&self) -> &[PictureTimes] {
         self.pictures.get(WARM_UP_PICTURES..).unwrap_or_default()
+    }
+
+    /// Complete pictures that were shown in the whole run, the warm-up included.
+    #[must_use]
+    pub fn shown(&self) -> u64 {
+        self.pictures.iter().filter(|times| times.complete).count() as u64
+    }
+
+    /// Retraces that are judged: from the first picture after the warm-up to the end of the run, or to where it stopped;
+    /// where no complete picture came after the warm-up, all; none of a pipeline that has no retraces to miss.
+    #[must_use]
+    pub fn judged_retraces(&self) -> u64 {
+        if self.pipeline().retraces_a_picture().is_none() {
+            return 0;
+        }
+        let first = self.judged_pictures().first().map_or(0, |times| self.period_of(times));
+        self.reached.saturating_sub(first)
+    }
+
+    /// Judged retraces at which no complete new picture could be shown though it was due: those between pictures, as the
+    /// pipeline defines them, and those from the one at which the next picture was due to the end of the run. Where no
+    /// complete picture came after the warm-up, all at which none was shown.
+    #[must_use]
+    pub fn missed_retraces(&self) -> u64 {
+        let Some(every) = self.pipeline().retraces_a_picture() else { return 0 };
+        let judged = self.judged_pictures();
+        let Some(last) = judged.last() else { return self.reached.saturating_sub(self.shown()) };
+        let after = self.reached.saturating_sub(self.period_of(last)).saturating_sub(every);
+        self.pipeline().missed_retraces(&self.record, judged) + after
+    }
+
+    /// What a missed retrace is here, and which retraces are judged.
+    #[must_use]
+    pub fn missed_definition(&self) -> String {
+        let definition = self.pipeline().missed_definition();
+        if self.pipeline().retraces_a_picture().is_none() {
+            return definition.to_owned();
+        }
+        format!("{definition}; {JUDGED}")
+    }
+
+    /// The pictures after the warm-up, if any of them is complete.
+    fn judged_pictures(&self) -> &[PictureTimes] {
+        let steady = self.steady_pictures();
+        if steady.iter().any(|times| times.complete) { steady } else { &[] }
+    }
+
+    /// The period of the first display in which a picture is shown.
+    fn period_of(&self, times: &PictureTimes) -> u64 {
+        self.record.display().period_at(times.shown_at)
     }
 
     /// The machine's boards as they stand at the end, and everything observed.

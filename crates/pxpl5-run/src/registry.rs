@@ -1,7 +1,7 @@
 //! Which pipelines and displays there are. Whoever offers, reads, compares or limits them iterates over a [`Registry`].
 
 use crate::error::ExperimentError;
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, FieldsNeeded};
 use crate::keys::{Key, PipelineSettings};
 use crate::pipeline::Pipeline;
 use crate::summary::Summary;
@@ -45,7 +45,13 @@ pub struct LimitCriterion {
 }
 
 /// The closed form of a pipeline: an experiment without events.
-pub type ClosedForm = fn(&Experiment) -> Result<Summary, ExperimentError>;
+#[derive(Clone, Copy, Debug)]
+pub struct ClosedForm {
+    /// What comes of an experiment.
+    pub summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
+    /// How long a run must be to show anything.
+    pub fields_needed: FieldsNeeded,
+}
 
 /// A pipeline as everybody finds it.
 #[derive(Clone, Copy, Debug)]

@@ -94,7 +94,7 @@ impl Experiment {
     /// # Errors
     ///
     /// As [`Experiment::build`]; [`ExperimentError::Run`] with everything observed so far when the run ends early;
-    /// [`ExperimentError::TooShort`] when nothing was shown.
+    /// [`ExperimentError::TooShort`], with the same, when nothing but pictures of the warm-up was shown.
     pub fn run(&self) -> Result<Outcome, ExperimentError> {
         self.run_with(|_, _| {})
     }
@@ -144,14 +144,20 @@ impl Experiment {
         }
         machine.finish_pixels();
         let host_seconds = begun_s.zip(self.host.seconds()).map(|(begin, end)| end - begin);
-        let outcome = Outcome::new(self.clone(), machine.into_record(), head, host_seconds);
+        let record = machine.into_record();
+        let reached = result.as_ref().err().map_or(self.fields, |error| record.display().period_at(error.time()));
+        let outcome = Outcome::new(self.clone(), record, head, reached, host_seconds);
         match result {
             Err(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
-            Ok(()) if outcome.steady_pictures().is_empty() => {
-                Err(ExperimentError::TooShort { fields: self.fields, pictures: outcome.pictures().len() })
-            }
+            Ok(()) if outcome.steady_pictures().is_empty() => Err(self.too_short(outcome)),
             Ok(()) => Ok(outcome),
         }
+    }
+
+    fn too_short(&self, partial: Outcome) -> ExperimentError {
+        let needed = self.fields_needed.and_then(|needed| needed(self));
+        let pictures = partial.pictures().len();
+        ExperimentError::TooShort { fields: self.fields, pictures, needed, partial: Box::new(partial) }
     }
 
     /// Fields at which to stop: those asked for, every so many for the progress, the last.

@@ -9,9 +9,9 @@ pub struct Summary {
     pub latencies_ms: Vec<f64>,
     /// A period of the display, milliseconds: an NTSC field.
     pub field_ms: f64,
-    /// Complete pictures a second.
-    pub updates_hz: f64,
-    /// Missed retraces, as the pipeline defines them.
+    /// Complete pictures a second; `None` where fewer than two were shown.
+    pub updates_hz: Option<f64>,
+    /// Missed retraces, as the pipeline defines them, to the end of the run ([`Outcome::missed_retraces`](crate::Outcome::missed_retraces)).
     pub missed_retraces: u64,
     /// From the start of an eye's TRANSFORM to the end of its COPY, milliseconds; empty where eyes have none of their own.
     pub eye_latencies_ms: Vec<f64>,

@@ -3,7 +3,8 @@
 use image::RgbImage;
 use parameters::ParameterTable;
 use pxpl5_display::{
-    Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, DoubleBuffer, Received, Surface,
+    BufferReceipt, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, DoubleBuffer,
+    Surface,
 };
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, Outcome, Pixels, RenderingControl};
@@ -12,7 +13,6 @@ use pxpl5_sim::{Span, Time};
 use pxpl5_views::timeline::{Timeline, TimelineOptions, svg};
 use pxpl5_views::trace_export::Trace;
 use pxpl5_wire::{NodeId, SurfaceId};
-use std::any::Any;
 
 /// Labels and titles.
 const FACES: [(&str, &str); 6] = [
@@ -59,12 +59,12 @@ impl Display for Cube {
         let at = context.now() + Span::from_ns(50);
         match event {
             DisplayEvent::Tick(tick) => {
-                if let Some(buffer) = self.board.swap() {
+                if let Some(buffer) = self.board.swap(context.now()) {
                     context.output(at, DisplayOutput::Swapped { surface: 0, buffer, tick });
                 }
             }
             DisplayEvent::Delivered { body, .. } => {
-                if let Received::Region(pixels, first_part_at) = self.board.receive(body, context.now()) {
+                if let BufferReceipt::Region(pixels, first_part_at) = self.board.receive(body, context.now()) {
                     let target = pixels.target;
                     let surface = (target.picture % 6) as usize;
                     let last_part_at = context.now();
@@ -98,10 +98,6 @@ impl Display for Cube {
 
     fn faults(&self) -> (u64, Option<String>) {
         (0, None)
-    }
-
-    fn as_any(&self) -> &dyn Any {
-        self
     }
 }
 

@@ -62,6 +62,7 @@
 
 pub mod config;
 mod error;
+mod identity;
 pub mod motion;
 mod pose;
 pub mod predict;
@@ -73,4 +74,5 @@ pub mod tracker;
 pub mod view;
 
 pub use error::ConfigError;
+pub use identity::Settings;
 pub use pose::Pose;

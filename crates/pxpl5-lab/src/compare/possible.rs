@@ -31,7 +31,7 @@ pub fn triangles_possible(registry: &Registry, config: &MachineConfig, pipeline:
     let run = |n| run(config, pipeline, n);
     match goal {
         Goal::RateHz(hz) => Possible {
-            triangles: greatest(|n| run(n).is_some_and(|outcome| outcome.report().updates_hz >= hz * NTSC)),
+            triangles: greatest(|n| run(n).is_some_and(|outcome| updates_hz(&outcome) >= hz * NTSC)),
             definition: "full-screen triangles at a pass a frame, 29.97 Hz",
         },
         Goal::LatencyFields(most) => Possible {
@@ -39,13 +39,13 @@ pub fn triangles_possible(registry: &Registry, config: &MachineConfig, pipeline:
             definition: "full-screen triangles at a mean latency",
         },
         Goal::NoMissedRetrace => {
-            let best = run(1).map_or(0.0, |outcome| outcome.report().updates_hz);
+            let best = run(1).map_or(0.0, |outcome| updates_hz(&outcome));
             if run(1).is_some_and(|outcome| is_whole(&outcome)) {
                 let holds = |outcome: &Outcome| are_complete(outcome) && is_whole(outcome);
                 let triangles = greatest(|n| run(n).is_some_and(|outcome| holds(&outcome)));
                 Possible { triangles, definition: "full-screen triangles with every region in time" }
             } else {
-                let holds = |outcome: &Outcome| outcome.report().updates_hz > 0.98 * best;
+                let holds = |outcome: &Outcome| updates_hz(outcome) > 0.98 * best;
                 let triangles = greatest(|n| run(n).is_some_and(|outcome| holds(&outcome)));
                 Possible { triangles, definition: "full-screen triangles at the update rate of one" }
             }
@@ -61,6 +61,11 @@ fn run(config: &MachineConfig, pipeline: &Arc<dyn Pipeline>, triangles: u32) -> 
     let scene = pxpl5_scene::builtin(&format!("full-screen:{triangles}")).ok()?;
     let experiment = Experiment::with(config.clone(), Arc::clone(pipeline), Arc::new(scene));
     experiment.fields(FIELDS).pixels(Pixels::Off).run().ok()
+}
+
+/// Complete pictures a second; 0 of fewer than two, which reaches no rate.
+fn updates_hz(outcome: &Outcome) -> f64 {
+    outcome.report().updates_hz.unwrap_or_default()
 }
 
 fn are_complete(outcome: &Outcome) -> bool {

@@ -27,8 +27,8 @@ pub struct Row {
     pub latency_ms: f64,
     /// From the head's pose to light.
     pub end_to_end: Budget,
-    /// Whole new pictures a second.
-    pub updates_hz: f64,
+    /// Whole new pictures a second; nothing where fewer than two were shown.
+    pub updates_hz: Option<f64>,
     /// Retraces missed, as the pipeline defines it.
     pub missed_retraces: u64,
     /// Regions that came after their deadline.

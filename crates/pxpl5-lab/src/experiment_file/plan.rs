@@ -345,7 +345,9 @@ impl Plan {
     /// The experiment with the scene loaded, on this computer.
     #[must_use]
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
+        let entry = self.registry.pipeline(self.pipeline.name()).ok();
         let experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)
+            .estimated_by(entry.and_then(|entry| Some(entry.closed_form?.fields_needed)))
             .fields(self.fields)
             .seed(self.seed)
             .pixels(self.pixels)

@@ -90,13 +90,13 @@ impl Bench {
             "2" => self.trivial().map(|s| (s.first_copy_ms + s.last_copy_ms).into()),
             "3" => self.copy_alone(),
             "4" => Ok(spread_ms(self.trivial()?.latency_ms())),
-            "4b" => Ok(self.trivial()?.updates_hz.into()),
+            "4b" => Ok(rate_hz(&self.trivial()?).into()),
             "5" => self.equal_stages(),
             "6" => self.long_stages(),
             "7" => self.mig(),
             "8" => regions_touched(),
             "9" => self.slats_latency(),
-            "9b" => Ok(self.slats(100, Slats::split())?.updates_hz.into()),
+            "9b" => Ok(rate_hz(&self.slats(100, Slats::split())?).into()),
             "10" => self.slats(60, Slats::whole()).map(|s| (s.first_copy_ms * 1e3 / s.region_copy_us).into()),
             "11" => Ok(self.slats(100, Slats::split())?.last_copy_ms.into()),
             "12" => self.limit("slats", Slats::whole()),
@@ -172,7 +172,7 @@ impl Bench {
     fn equal_stages(&self) -> Result<Measured> {
         let summary = self.run(self.stages_of(15.6)?, RenderingControl::stereo(), "full-screen:12", 160)?;
         let latency = summary.latency_ms();
-        let details = vec![detail("mean", latency.mean, "ms"), detail("frames a second", summary.updates_hz, "Hz")];
+        let details = vec![detail("mean", latency.mean, "ms"), detail("frames a second", rate_hz(&summary), "Hz")];
         Ok(Measured { value: latency.max, details })
     }
 
@@ -259,14 +259,14 @@ impl Bench {
 fn regions_touched() -> Result<Measured> {
     let mut details = Vec::new();
     for name in ["mig", "molecules", "head"] {
-        details.push(detail(name, touched(&scene_named(name)?)?, "regions"));
+        details.push(detail(name, touched(&scene_named(name)?, VIEWS)?, "regions"));
     }
     let value = details.iter().map(|d| d.value).sum::<f64>() / details.len() as f64;
     Ok(Measured { value, details })
 }
 
-/// Bin entries per triangle that touches any region, over both eyes.
-fn touched(scene: &Arc<Scene>) -> Result<f64> {
+/// Bin entries per triangle that touches any region, over both eyes and so many views.
+fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     let list = Arc::new(display_list(scene).map_err(ExperimentError::Scene)?);
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
     let (views, _) = views(scene, 1, hmd, 2);
@@ -281,7 +281,7 @@ fn touched(scene: &Arc<Scene>) -> Result<f64> {
     };
     let mut entries = 0u64;
     let mut triangles = 0u64;
-    for number in 0..VIEWS {
+    for number in 0..n_views {
         let view = views(number, Time(number * VIEW_PERIOD_PS));
         for eye in 0..2 {
             let pass = share.transform(&view, eye, picture);
@@ -295,6 +295,11 @@ fn touched(scene: &Arc<Scene>) -> Result<f64> {
 
 fn scene_named(name: &str) -> Result<Arc<Scene>> {
     builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()))
+}
+
+/// Complete pictures a second; 0 of fewer than two.
+fn rate_hz(summary: &Summary) -> f64 {
+    summary.updates_hz.unwrap_or_default()
 }
 
 fn detail(name: &str, value: f64, unit: &'static str) -> Detail {
@@ -312,5 +317,34 @@ fn spread_ms(statistics: Statistics) -> Measured {
 impl From<f64> for Measured {
     fn from(value: f64) -> Self {
         Self { value, details: Vec::new() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::limit::{TYPICAL_LEG_PX, TYPICAL_SPREAD_PX, test_scene};
+    use pxpl5_run::TestScene;
+
+    /// Triangles with both legs parallel to the region borders, their corners spread evenly over `TYPICAL_SPREAD_PX`.
+    ///
+    /// A region counts when the triangle covers the centre of one of its pixels, so a leg meets a border across its way with
+    /// a pixel's centre on either side: for leg - 1 of all places. Four borders part the five columns of regions and three
+    /// the four rows; the triangle's box touches (1 + 4 (leg - 1) / width)(1 + 3 (leg - 1) / height) regions on average. The
+    /// far corner of the box is not the triangle's, which leaves out half of the cases in which a place where four regions
+    /// meet lies in the box.
+    fn expected(leg: f64) -> f64 {
+        let [width, height] = TYPICAL_SPREAD_PX;
+        let columns = 4.0 * (leg - 1.0) / width;
+        let rows = 3.0 * (leg - 1.0) / height;
+        (1.0 + columns) * (1.0 + rows) - columns * rows / 2.0
+    }
+
+    #[test]
+    fn triangles_of_18_pixels_touch_as_many_regions_as_the_formula_of_their_legs_says() {
+        let found = touched(&Arc::new(test_scene(TestScene::Typical, 4_000)), 1).expect("it has triangles");
+        let expected = expected(TYPICAL_LEG_PX);
+        // 4,000 evenly spread places leave a few thousandths open.
+        assert!((found - expected).abs() < 0.005, "{found}, expected {expected}");
     }
 }

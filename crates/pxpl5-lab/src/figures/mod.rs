@@ -51,7 +51,11 @@ pub struct Row {
     pub unit: &'static str,
     /// (simulated - published) / published, in percent.
     pub error_percent: f64,
-    /// Least and greatest value when parameters that are not published are varied within their ranges.
+    /// What the analytic level gives with the presets' numbers: how far it is from `simulated` is that level's own error.
+    /// `None` where nothing was varied.
+    pub analytic: Option<f64>,
+    /// Least and greatest value when parameters that are not published are varied within their ranges, as computed at the
+    /// analytic level. `None` where nothing was varied: a property of the scenes.
     pub interval: Option<[f64; 2]>,
     /// `free`, `fitted` or `rule`.
     pub standing: &'static str,
@@ -101,6 +105,7 @@ impl Row {
             simulated: measured.value,
             unit: figure.unit,
             error_percent: 100.0 * (measured.value - figure.value) / figure.value,
+            analytic: None,
             interval: None,
             standing,
             spread: figure.spread,
@@ -114,12 +119,17 @@ impl Row {
     }
 
     /// Whether no values of the open parameters within their ranges give the figure: an error of the model's rules.
+    ///
+    /// The interval is the analytic level's. It is widened on both sides by the distance of `analytic` from `simulated`: as
+    /// far as the levels are apart at the presets they may be at the ends of the ranges. What is published is met within
+    /// its printed range, and where none is printed within its last digit.
     #[must_use]
     pub fn is_out_of_reach(&self) -> bool {
+        let Some([low, high]) = self.interval else { return false };
+        let of_levels = self.analytic.map_or(0.0, |analytic| (analytic - self.simulated).abs());
         let spread = self.spread.unwrap_or(0.0);
-        // An interval of a figure with no range of its own is met by what would be printed for it.
-        let slack = spread.max(self.published.abs() * ROUNDING);
-        self.interval.is_some_and(|[low, high]| self.published + slack < low || self.published - slack > high)
+        let slack = of_levels + spread.max(self.published.abs() * ROUNDING);
+        self.published + slack < low || self.published - slack > high
     }
 
     /// Whether the model is outside of the printed range, or, where none is printed, off by more than

@@ -18,7 +18,7 @@ pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary
     }
     let entry = registry.pipeline(experiment.pipeline().name()).ok();
     match entry.and_then(|entry| entry.closed_form) {
-        Some(closed_form) => closed_form(experiment),
+        Some(closed_form) => (closed_form.summary)(experiment),
         None => Err(ExperimentError::Level),
     }
 }

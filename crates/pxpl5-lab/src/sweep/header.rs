@@ -81,9 +81,17 @@ impl Sweep {
 
 /// The effective settings of the first point are part of it: a preset may change from version to version.
 fn hash(version: &str, first: &Plan, settings: &BTreeMap<String, Value>, axes: &[AxisRecord]) -> Fingerprint {
-    let axes = serde_json::to_string(axes).unwrap_or_default();
-    let measure: Vec<&str> = first.measure.iter().map(pxpl5_measure::Measure::name).collect();
-    Fingerprint::of(format!("{version} {} {settings:?} {measure:?} {axes}", first.fingerprint()).as_bytes())
+    let mut hash = Fingerprint::default();
+    hash.setting("version", version);
+    hash.setting("first", first.fingerprint());
+    // Maps are sorted by their keys: equal settings are equal texts.
+    settings.iter().for_each(|(path, value)| hash.setting(path, value));
+    first.measure.iter().for_each(|measure| hash.setting("measure", measure.name()));
+    for axis in axes {
+        hash.setting("axis", axis.paths.join(","));
+        axis.steps.iter().for_each(|step| hash.setting("step", Value::from(step.clone())));
+    }
+    hash
 }
 
 fn record(axis: &super::Axis) -> AxisRecord {

@@ -51,6 +51,21 @@ fn settings_taken_together_are_one_axis() {
 }
 
 #[test]
+fn a_sweep_is_named_by_its_version_settings_quantities_and_axes_a_line_each() {
+    let sweep = sweep("[sweep.grid]\nseed = [1, 2]\n");
+    let header = sweep.header().expect("valid");
+    let first = sweep.plan(0).expect("valid").fingerprint();
+    let lines = [
+        format!("version={}\nfirst={first}\n", header.version),
+        "fields=10\nmeasure=[\"latency_ms.mean\",\"last_copy_ms\"]\npipeline=\"slats\"\nscene=\"full-screen:4\"\n"
+            .to_owned(),
+        "measure=latency_ms.mean\nmeasure=last_copy_ms\naxis=seed\nstep=[1]\nstep=[2]\n".to_owned(),
+    ];
+    let expected = pxpl5_run::Fingerprint::of(lines.concat().as_bytes());
+    assert_eq!(header.config_hash, expected.to_string());
+}
+
+#[test]
 fn a_space_that_makes_no_sense_is_refused() {
     for (space, says) in [
         ("", "sweep is missing"),

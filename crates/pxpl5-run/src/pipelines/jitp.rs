@@ -4,7 +4,7 @@ use super::ntsc;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
-use jitp::{Beam, JitpConfig, DrawingSchedule, JitpTiming, Transforms, Wanted, host, master, slave};
+use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, host, master, slave};
 use pphigs::Share;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{Priority, Stage};
@@ -197,6 +197,11 @@ impl Pipeline for Jitp {
             lateness: arrival.last_part_at.since(due(video, &arrival.target)),
         };
         late.map(region).collect()
+    }
+
+    /// A new picture every field.
+    fn retraces_a_picture(&self) -> Option<u64> {
+        Some(1)
     }
 
     fn missed_retraces(&self, _: &Record, pictures: &[PictureTimes]) -> u64 {

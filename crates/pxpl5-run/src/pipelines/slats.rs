@@ -183,6 +183,11 @@ impl Pipeline for Slats {
         late.collect()
     }
 
+    /// A new picture every field.
+    fn retraces_a_picture(&self) -> Option<u64> {
+        Some(1)
+    }
+
     /// Fields of which something was late or missing, and fields that were left out.
     fn missed_retraces(&self, _: &Record, pictures: &[PictureTimes]) -> u64 {
         let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return 0 };

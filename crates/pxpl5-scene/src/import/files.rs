@@ -10,12 +10,12 @@ use crate::scene::Scene;
 
 /// Loads a model file, of the format that its extension says.
 ///
-/// What becomes of the model: see [`from_bytes`].
+/// What becomes of the model: see [`crate::from_bytes`].
 ///
 /// # Errors
 ///
 /// [`LoadError::Io`], [`LoadError::NotAFile`] and [`LoadError::UnknownFormat`] for a path that leads to no model, and
-/// all those of [`from_bytes`].
+/// all those of [`crate::from_bytes`].
 pub fn load(path: impl AsRef<Path>) -> Result<Scene, LoadError> {
     let path = path.as_ref();
     let file = path.display().to_string();

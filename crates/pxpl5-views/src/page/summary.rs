@@ -19,10 +19,15 @@ fn summary_row(run: &PageRun) -> Element {
         number_cell(number(&report["triangles"]) + number(&report["spheres"])),
         number_cell(spread(&report["latency_fields"])),
         number_cell(spread(&report["latency_ms"])),
-        number_cell(format_args!("{:.2}", number(&report["updates_hz"]))),
+        number_cell(rate(&report["updates_hz"])),
         number_cell(number(&report["missed_retraces"])),
         cell(published(&run.published)),
     ])
+}
+
+/// Of fewer than two pictures there is no rate.
+fn rate(updates_hz: &Value) -> String {
+    updates_hz.as_f64().map_or_else(|| "-".to_owned(), |hz| format!("{hz:.2}"))
 }
 
 /// Mean and standard deviation.

@@ -16,18 +16,33 @@ pub use synthetic::{Band, Synthetic, SyntheticConfig};
 use glam::DVec3;
 use std::fmt::Debug;
 
+use crate::identity::{Settings, write_pose};
 use crate::pose::Pose;
 use crate::rotation;
-use crate::time::span_s;
+use crate::time::{PS_PER_S, span_s};
 
 /// Half the step of the default central differences: 50 us, at which a 2 Hz motion is off by 2 parts in 10^8.
 const HALF_STEP_PS: u64 = 50_000_000;
 
-/// A motion of the head (or of a pendulum's bob): a pure function of simulated time. What `Debug` shows tells it from
-/// every other motion.
+/// Time between the poses by which a motion that does not say what it is is told from others, and their number.
+const SAMPLE_PS: u64 = PS_PER_S / 8;
+const SAMPLES: u64 = 512;
+
+/// A motion of the head (or of a pendulum's bob): a pure function of simulated time.
 pub trait Motion: Debug {
     /// Pose of the head in the world at `t_ps`, ps of simulated time.
     fn pose(&self, t_ps: u64) -> Pose;
+
+    /// Writes what tells it from every other motion: names of experiments rest on it.
+    ///
+    /// By default its poses at every eighth of a second of the first 64. Motions that differ only between these instants or
+    /// after them must say themselves what they are.
+    fn identify(&self, settings: &mut Settings) {
+        settings("motion", &"sampled");
+        for sample in 0..SAMPLES {
+            write_pose(settings, "motion.pose", &self.pose(sample * SAMPLE_PS));
+        }
+    }
 
     /// Velocity in m/s, world frame. By default a central difference.
     fn velocity(&self, t_ps: u64) -> DVec3 {
@@ -49,6 +64,9 @@ impl<M: Motion + ?Sized> Motion for &M {
     fn pose(&self, t_ps: u64) -> Pose {
         (**self).pose(t_ps)
     }
+    fn identify(&self, settings: &mut Settings) {
+        (**self).identify(settings);
+    }
     fn velocity(&self, t_ps: u64) -> DVec3 {
         (**self).velocity(t_ps)
     }
@@ -60,6 +78,9 @@ impl<M: Motion + ?Sized> Motion for &M {
 impl<M: Motion + ?Sized> Motion for Box<M> {
     fn pose(&self, t_ps: u64) -> Pose {
         (**self).pose(t_ps)
+    }
+    fn identify(&self, settings: &mut Settings) {
+        (**self).identify(settings);
     }
     fn velocity(&self, t_ps: u64) -> DVec3 {
         (**self).velocity(t_ps)

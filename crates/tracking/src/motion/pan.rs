@@ -1,6 +1,7 @@
 use glam::DVec3;
 
 use super::Motion;
+use crate::identity::{Settings, write_pose};
 use crate::pose::Pose;
 use crate::rotation;
 use crate::time::seconds;
@@ -25,6 +26,12 @@ impl Motion for Pan {
     fn pose(&self, t_ps: u64) -> Pose {
         let yaw = libm::fmod(self.deg_per_s * seconds(t_ps), 360.0).to_radians();
         Pose { orientation: rotation::about_y(yaw) * self.start.orientation, ..self.start }
+    }
+    fn identify(&self, settings: &mut Settings) {
+        let Self { start, deg_per_s } = self;
+        settings("motion", &"pan");
+        write_pose(settings, "motion.start", start);
+        settings("motion.deg_per_s", deg_per_s);
     }
     fn velocity(&self, _t_ps: u64) -> DVec3 {
         DVec3::ZERO

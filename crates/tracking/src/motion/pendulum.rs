@@ -6,6 +6,7 @@ use parameters::ParameterTable;
 use super::Motion;
 use crate::config as table;
 use crate::error::ConfigError;
+use crate::identity::Settings;
 use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{nearest_ps, seconds};
@@ -72,6 +73,12 @@ impl Pendulum {
 }
 
 impl Motion for Pendulum {
+    /// Frequency and period follow from the arm and the modulus.
+    fn identify(&self, settings: &mut Settings) {
+        settings("motion", &"pendulum");
+        settings("motion.arm_m", &self.arm_m);
+        settings("motion.modulus", &self.modulus);
+    }
     fn pose(&self, t_ps: u64) -> Pose {
         let (angle, _) = self.angle(t_ps);
         let (sin, cos) = libm::sincos(angle);

@@ -4,6 +4,7 @@ use glam::{DQuat, DVec3};
 use thiserror::Error;
 
 use super::Motion;
+use crate::identity::{Settings, write_pose};
 use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{nearest_ps, span_s};
@@ -70,6 +71,13 @@ impl Motion for Recording {
             Some((a, b)) => a.1.interpolate(&b.1, span_s(a.0, t_ps) / span_s(a.0, b.0)),
             None if t_ps < self.samples[0].0 => self.samples[0].1,
             None => self.samples[self.samples.len() - 1].1,
+        }
+    }
+    fn identify(&self, settings: &mut Settings) {
+        settings("motion", &"recording");
+        for (t_ps, pose) in &self.samples {
+            settings("motion.at_ps", t_ps);
+            write_pose(settings, "motion.pose", pose);
         }
     }
     fn velocity(&self, t_ps: u64) -> DVec3 {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::identity::Settings;
 use crate::random::{bell, bits, stream, unit};
 use crate::time::seconds;
 
@@ -48,6 +49,15 @@ impl Spline {
     pub(super) fn new(spacing_ps: u64, deviation: DVec3, activity: Activity, seed: u64, spells: u64) -> Self {
         let seeds = core::array::from_fn(|axis| stream(seed, axis as u64));
         Self { spacing_ps, scale: deviation / VARIANCE.sqrt(), activity, seeds, spells }
+    }
+
+    /// Writes its numbers as one setting.
+    pub(super) fn identify(&self, key: &str, settings: &mut Settings) {
+        let Self { spacing_ps, scale, activity, seeds, spells } = self;
+        let Activity { calm, power } = activity;
+        let [x, y, z] = scale.to_array();
+        let [a, b, c] = seeds;
+        settings(key, &format_args!("{spacing_ps} {x} {y} {z} {calm} {power} {a} {b} {c} {spells}"));
     }
 
     /// Values and rates (per second).

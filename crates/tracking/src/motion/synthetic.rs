@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use super::Motion;
 use super::spline::{Activity, Spline};
 use crate::error::ConfigError;
+use crate::identity::{Settings, write_vector};
 use crate::pose::Pose;
 use crate::random::stream;
 use crate::rotation;
@@ -96,6 +97,15 @@ impl Motion for Synthetic {
             position: self.centre + self.walk.at(t_ps).0,
             orientation: rotation::from_yaw_pitch_roll(angles.x, angles.y, angles.z),
         }
+    }
+
+    fn identify(&self, settings: &mut Settings) {
+        let Self { turn, glance, walk, centre } = self;
+        settings("motion", &"synthetic");
+        turn.identify("motion.turn", settings);
+        glance.identify("motion.glance", settings);
+        walk.identify("motion.walk", settings);
+        write_vector(settings, "motion.centre_m", *centre);
     }
 
     fn velocity(&self, t_ps: u64) -> DVec3 {
