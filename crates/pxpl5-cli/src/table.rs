@@ -57,9 +57,9 @@ fn comparison_rows(runs: &[(&Report, Option<&Comparison>)]) -> [(&'static str, V
 
 /// Of how many, where some were missed.
 fn missed(report: &Report) -> String {
-    match report.missed_retraces {
-        0 => "0".to_owned(),
-        missed => format!("{missed} of {}", report.judged_retraces),
+    match (report.missed_retraces, report.judged_retraces) {
+        (missed, judged) if missed == 0 || judged == 0 => missed.to_string(),
+        (missed, judged) => format!("{missed} of {judged}"),
     }
 }
 

@@ -49,6 +49,38 @@ fn a_run_prints_one_object_with_units_in_its_names() {
 }
 
 #[test]
+fn a_run_that_shows_nothing_says_so_and_fails() {
+    // A frame of 20,000 triangles takes 70 fields and more, and the first four are discarded.
+    let full = ["run", "--pipeline", "rendering-control", "--scene", "full-screen:20000", "--pixels", "off"];
+    refused(&with(&full, &["--fields", "200"]), 1, &["simulate more fields: the next one is shown after about"]);
+    // Slats shows every field, and none of these is complete in time.
+    let folder = Folder::new("always-late");
+    let late = ["run", "--pipeline", "slats", "--scene", "full-screen:1000", "--fields", "60", "--pixels", "off"];
+    let output = folder.run(&with(&late, &["--json"]));
+    assert_eq!(output.status.code(), Some(1));
+    assert!(err(&output).contains("no complete picture was shown in 60 fields"), "{}", err(&output));
+    let report = json_of(&output);
+    assert_eq!((&report["shown"], &report["updates_hz"]), (&0.into(), &serde_json::Value::Null));
+    assert_eq!((&report["missed_retraces"], &report["judged_retraces"]), (&60.into(), &60.into()));
+}
+
+/// The object on standard output, whatever the exit code.
+fn json_of(output: &std::process::Output) -> serde_json::Value {
+    serde_json::from_str(&out(output)).expect("one object")
+}
+
+#[test]
+fn one_picture_has_no_rate_and_every_retrace_after_it_is_missed() {
+    let folder = Folder::new("one-picture");
+    let full = ["run", "--pipeline", "rendering-control", "--scene", "full-screen:20000", "--pixels", "off"];
+    let report = json(&folder.run(&with(&full, &["--fields", "400", "--json"])));
+    assert_eq!((&report["pictures"], &report["updates_hz"]), (&1.into(), &serde_json::Value::Null));
+    // Each eye's copy takes the retrace at which the next frame could have been shown.
+    let judged = report["judged_retraces"].as_u64().expect("a number");
+    assert_eq!(report["missed_retraces"].as_u64(), Some(judged - 2));
+}
+
+#[test]
 fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
     let folder = Folder::new("files");
     let report = json(&folder.run(&with(&SLATS, &["--json", "--out", "a/b", "--set", "gp.triangle_ns=30000"])));

@@ -17,19 +17,19 @@ use pxpl5_wire::{Linear, format};
 pub const LANES: usize = 8;
 
 /// One of each triangle.
-pub(crate) type PerTriangle<T> = [T; LANES];
+pub(crate) type EachLane<T> = [T; LANES];
 
 /// Up to [`LANES`] triangles that need no clipping, with what their surfaces need.
 #[derive(Clone, Debug)]
 pub struct TriangleLanes {
     len: usize,
     /// First by corner, then by triangle; x and y in 1/16 px.
-    x: [PerTriangle<i32>; 3],
-    y: [PerTriangle<i32>; 3],
-    z: [PerTriangle<u32>; 3],
-    facing: [PerTriangle<f32>; 3],
+    x: [EachLane<i32>; 3],
+    y: [EachLane<i32>; 3],
+    z: [EachLane<u32>; 3],
+    facing: [EachLane<f32>; 3],
     /// First by component of colour or normal, then by corner, then by triangle.
-    surface: [[PerTriangle<f32>; 3]; 3],
+    surface: [[EachLane<f32>; 3]; 3],
 }
 
 impl Default for TriangleLanes {
@@ -95,9 +95,9 @@ impl TriangleLanes {
 /// Linear expressions, one a lane.
 #[derive(Clone, Copy, Debug, Default)]
 struct Linears {
-    a: PerTriangle<i32>,
-    b: PerTriangle<i32>,
-    c: PerTriangle<i32>,
+    a: EachLane<i32>,
+    b: EachLane<i32>,
+    c: EachLane<i32>,
 }
 
 impl Linears {
@@ -108,7 +108,7 @@ impl Linears {
 
     /// A constant where `there` is not all ones, but zero.
     #[inline(always)]
-    fn or_constant(mut self, constant: i32, there: &PerTriangle<i32>) -> Self {
+    fn or_constant(mut self, constant: i32, there: &EachLane<i32>) -> Self {
         for (i, there) in there.iter().enumerate() {
             self.a[i] &= there;
             self.b[i] &= there;
@@ -125,7 +125,7 @@ struct Expressions {
     /// Depth, then the components.
     planes: [Linears; 4],
     /// How many of the planes are flat.
-    flattened: PerTriangle<u8>,
+    flattened: EachLane<u8>,
 }
 
 /// The expressions of one triangle: its edges, its depth, and the components of its colour or normal.
@@ -260,7 +260,7 @@ fn set_up(triangles: &TriangleLanes, half: f32, rows: PictureRows) -> Expression
 }
 
 #[inline(always)]
-fn depths(z: &PerTriangle<u32>) -> PerTriangle<f64> {
+fn depths(z: &EachLane<u32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];
     for i in 0..LANES {
         out[i] = f64::from(z[i]);
@@ -270,7 +270,7 @@ fn depths(z: &PerTriangle<u32>) -> PerTriangle<f64> {
 
 /// Which surfaces face away from the eye on the whole, as in [`crate::light::turned`].
 #[inline(always)]
-fn away([p, q, r]: &[PerTriangle<f32>; 3]) -> PerTriangle<bool> {
+fn away([p, q, r]: &[EachLane<f32>; 3]) -> EachLane<bool> {
     let mut away = [false; LANES];
     for i in 0..LANES {
         away[i] = (p[i] + q[i]) + r[i] < 0.0;
@@ -280,12 +280,12 @@ fn away([p, q, r]: &[PerTriangle<f32>; 3]) -> PerTriangle<bool> {
 
 /// A component at the corners, turned over where it faces away, and `half` a unit more.
 #[inline(always)]
-fn component([p, q, r]: &[PerTriangle<f32>; 3], away: &PerTriangle<bool>, half: f32) -> [PerTriangle<f64>; 3] {
+fn component([p, q, r]: &[EachLane<f32>; 3], away: &EachLane<bool>, half: f32) -> [EachLane<f64>; 3] {
     [values(p, away, half), values(q, away, half), values(r, away, half)]
 }
 
 #[inline(always)]
-fn values(corner: &PerTriangle<f32>, away: &PerTriangle<bool>, half: f32) -> PerTriangle<f64> {
+fn values(corner: &EachLane<f32>, away: &EachLane<bool>, half: f32) -> EachLane<f64> {
     let mut out = [0.0; LANES];
     for i in 0..LANES {
         let value = if away[i] { -corner[i] } else { corner[i] };
@@ -296,7 +296,7 @@ fn values(corner: &PerTriangle<f32>, away: &PerTriangle<bool>, half: f32) -> Per
 
 /// Which triangles have an area: all bits set there.
 #[inline(always)]
-fn with_area(twice_area: &PerTriangle<f64>) -> PerTriangle<i32> {
+fn with_area(twice_area: &EachLane<f64>) -> EachLane<i32> {
     let mut out = [0; LANES];
     for i in 0..LANES {
         out[i] = -i32::from(twice_area[i] != 0.0);
@@ -306,7 +306,7 @@ fn with_area(twice_area: &PerTriangle<f64>) -> PerTriangle<i32> {
 
 /// Which triangles run counterclockwise: all bits set there.
 #[inline(always)]
-fn counterclockwise(twice_area: &PerTriangle<f64>) -> PerTriangle<i32> {
+fn counterclockwise(twice_area: &EachLane<f64>) -> EachLane<i32> {
     let mut out = [0; LANES];
     for i in 0..LANES {
         out[i] = -i32::from(twice_area[i] < 0.0);
@@ -317,7 +317,7 @@ fn counterclockwise(twice_area: &PerTriangle<f64>) -> PerTriangle<i32> {
 /// Corners in clockwise order: two change places where told. By masks, since compilers make choices between addresses of
 /// choices between values.
 #[inline(always)]
-fn clockwise([p, q, r]: &[PerTriangle<i32>; 3], swapped: &PerTriangle<i32>) -> [PerTriangle<i32>; 3] {
+fn clockwise([p, q, r]: &[EachLane<i32>; 3], swapped: &EachLane<i32>) -> [EachLane<i32>; 3] {
     let mut second = [0; LANES];
     let mut third = [0; LANES];
     for i in 0..LANES {
@@ -330,7 +330,7 @@ fn clockwise([p, q, r]: &[PerTriangle<i32>; 3], swapped: &PerTriangle<i32>) -> [
 
 /// The edge from one corner to the next at the pixels of the frame, as in [`crate::Outline`].
 #[inline(always)]
-fn edge([x, to_x]: [&PerTriangle<i32>; 2], [y, to_y]: [&PerTriangle<i32>; 2]) -> Linears {
+fn edge([x, to_x]: [&EachLane<i32>; 2], [y, to_y]: [&EachLane<i32>; 2]) -> Linears {
     let mut out = Linears::default();
     for i in 0..LANES {
         let dx = to_x[i] - x[i];
@@ -355,12 +355,12 @@ fn sixteenth(k: f64) -> i32 {
 
 /// What the planes of each triangle share; see [`plane::Planes`].
 struct LanePlanes {
-    twice_area: PerTriangle<f64>,
-    x: [PerTriangle<f64>; 2],
-    y: [PerTriangle<f64>; 2],
-    per_pixel: PerTriangle<f64>,
-    to_reference: [PerTriangle<f64>; 2],
-    reference: [PerTriangle<i32>; 2],
+    twice_area: EachLane<f64>,
+    x: [EachLane<f64>; 2],
+    y: [EachLane<f64>; 2],
+    per_pixel: EachLane<f64>,
+    to_reference: [EachLane<f64>; 2],
+    reference: [EachLane<i32>; 2],
 }
 
 impl LanePlanes {
@@ -384,7 +384,7 @@ impl LanePlanes {
 
     /// The planes through three values of each at the frame's pixels; counts the flat ones.
     #[inline(always)]
-    fn through(&self, [p, q, r]: &[PerTriangle<f64>; 3], flattened: &mut PerTriangle<u8>) -> Linears {
+    fn through(&self, [p, q, r]: &[EachLane<f64>; 3], flattened: &mut EachLane<u8>) -> Linears {
         let mut out = Linears::default();
         let mut flat = [false; LANES];
         for i in 0..LANES {
@@ -409,7 +409,7 @@ impl LanePlanes {
 }
 
 #[cold]
-fn flatten(v: [&PerTriangle<f64>; 3], flat: &PerTriangle<bool>, out: &mut Linears, flattened: &mut PerTriangle<u8>) {
+fn flatten(v: [&EachLane<f64>; 3], flat: &EachLane<bool>, out: &mut Linears, flattened: &mut EachLane<u8>) {
     for i in (0..LANES).filter(|i| flat[*i]) {
         let Linear { a, b, c } = plane::flat(v.map(|v| v[i]));
         out.a[i] = a;
@@ -421,7 +421,7 @@ fn flatten(v: [&PerTriangle<f64>; 3], flat: &PerTriangle<bool>, out: &mut Linear
 
 /// From one corner to another.
 #[inline(always)]
-fn side(from: &PerTriangle<i32>, to: &PerTriangle<i32>) -> PerTriangle<f64> {
+fn side(from: &EachLane<i32>, to: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];
     for i in 0..LANES {
         out[i] = f64::from(to[i] - from[i]);
@@ -431,7 +431,7 @@ fn side(from: &PerTriangle<i32>, to: &PerTriangle<i32>) -> PerTriangle<f64> {
 
 /// The pixel in the middle of what the picture shows of the corners' range, as in [`crate::Outline`].
 #[inline(always)]
-fn middle([p, q, r]: &[PerTriangle<i32>; 3], last: i32) -> PerTriangle<i32> {
+fn middle([p, q, r]: &[EachLane<i32>; 3], last: i32) -> EachLane<i32> {
     let mut out = [0; LANES];
     for i in 0..LANES {
         let low = p[i].min(q[i]).min(r[i]).clamp(0, last);
@@ -443,7 +443,7 @@ fn middle([p, q, r]: &[PerTriangle<i32>; 3], last: i32) -> PerTriangle<i32> {
 
 /// From a corner to the centre of a pixel, in pixels.
 #[inline(always)]
-fn pixels(from: &PerTriangle<i32>, pixel: &PerTriangle<i32>) -> PerTriangle<f64> {
+fn pixels(from: &EachLane<i32>, pixel: &EachLane<i32>) -> EachLane<f64> {
     let mut out = [0.0; LANES];
     for i in 0..LANES {
         out[i] = f64::from(SUBPIXELS * pixel[i] + SUBPIXELS / 2 - from[i]) * (1.0 / f64::from(SUBPIXELS));

@@ -1,7 +1,7 @@
 //! The regions that the triangles of a mesh touch, found once for all who hold some of them.
 
 use crate::bin::{Binner, Range, quotient};
-use crate::lanes::{LANES, PerTriangle};
+use crate::lanes::{EachLane, LANES};
 use crate::touch::Touch;
 use crate::{RegionMask, ScreenVertex, Transform};
 use multiversion::multiversion;
@@ -83,7 +83,7 @@ impl Transform {
     }
 }
 
-fn range_in(lane: usize, [first, last]: &[PerTriangle<i32>; 2]) -> Range {
+fn range_in(lane: usize, [first, last]: &[EachLane<i32>; 2]) -> Range {
     Range { first: first[lane], last: last[lane] }
 }
 
@@ -91,10 +91,10 @@ fn range_in(lane: usize, [first, last]: &[PerTriangle<i32>; 2]) -> Range {
 #[derive(Debug, Default)]
 struct CornerLanes {
     len: usize,
-    x: [PerTriangle<i32>; 3],
-    y: [PerTriangle<i32>; 3],
+    x: [EachLane<i32>; 3],
+    y: [EachLane<i32>; 3],
     /// Some corner is not inside the guard band.
-    outside: PerTriangle<bool>,
+    outside: EachLane<bool>,
 }
 
 impl CornerLanes {
@@ -126,10 +126,10 @@ impl CornerLanes {
 /// What is found of some triangles at once.
 struct LaneTouches {
     /// As in [`Touched`]; [`SEVERAL`] alone where the edges decide between several regions.
-    codes: PerTriangle<u32>,
+    codes: EachLane<u32>,
     /// First and last column and row of pixels.
-    x: [PerTriangle<i32>; 2],
-    y: [PerTriangle<i32>; 2],
+    x: [EachLane<i32>; 2],
+    y: [EachLane<i32>; 2],
 }
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
@@ -161,7 +161,7 @@ fn touch_lanes(corners: &CornerLanes, binner: &Binner, culling: bool) -> LaneTou
 
 /// Twice the areas, exact: products of two differences of corners need 35 bits.
 #[inline(always)]
-fn areas(CornerLanes { x: [a, b, c], y: [d, e, f], .. }: &CornerLanes) -> PerTriangle<f64> {
+fn areas(CornerLanes { x: [a, b, c], y: [d, e, f], .. }: &CornerLanes) -> EachLane<f64> {
     let mut out = [0.0; LANES];
     for i in 0..LANES {
         let first = f64::from(b[i] - a[i]) * f64::from(f[i] - d[i]);
@@ -172,7 +172,7 @@ fn areas(CornerLanes { x: [a, b, c], y: [d, e, f], .. }: &CornerLanes) -> PerTri
 
 /// Smallest and largest of the corners.
 #[inline(always)]
-fn extent([p, q, r]: &[PerTriangle<i32>; 3]) -> [PerTriangle<i32>; 2] {
+fn extent([p, q, r]: &[EachLane<i32>; 3]) -> [EachLane<i32>; 2] {
     let mut low = [0; LANES];
     let mut high = [0; LANES];
     for i in 0..LANES {
@@ -184,7 +184,7 @@ fn extent([p, q, r]: &[PerTriangle<i32>; 3]) -> [PerTriangle<i32>; 2] {
 
 /// First and last pixel between the smallest and the largest of the corners, as far as the picture goes.
 #[inline(always)]
-fn ranges([low, high]: &[PerTriangle<i32>; 2], within: impl Fn(Range) -> Range) -> [PerTriangle<i32>; 2] {
+fn ranges([low, high]: &[EachLane<i32>; 2], within: impl Fn(Range) -> Range) -> [EachLane<i32>; 2] {
     let mut first = [0; LANES];
     let mut last = [0; LANES];
     for i in 0..LANES {
@@ -199,10 +199,10 @@ fn ranges([low, high]: &[PerTriangle<i32>; 2], within: impl Fn(Range) -> Range) 
 /// and its first and last pixel or line.
 #[inline(always)]
 fn cells(
-    [low, high]: &[PerTriangle<i32>; 2],
-    first: &PerTriangle<i32>,
+    [low, high]: &[EachLane<i32>; 2],
+    first: &EachLane<i32>,
     of: impl Fn(i32) -> (i32, (i32, i32)),
-) -> PerTriangle<i32> {
+) -> EachLane<i32> {
     let mut out = [0; LANES];
     for i in 0..LANES {
         let (cell, (begin, end)) = of(first[i]);

@@ -61,7 +61,7 @@ impl Outcome {
     }
 
     /// Retraces that are judged: from the first picture after the warm-up to the end of the run, or to where it stopped;
-    /// where no complete picture came after the warm-up, all; none of a pipeline that has no retraces to miss.
+    /// where no complete picture came after the warm-up, all; 0 of a pipeline whose pictures are never due.
     #[must_use]
     pub fn judged_retraces(&self) -> u64 {
         if self.pipeline().retraces_a_picture().is_none() {
@@ -73,10 +73,13 @@ impl Outcome {
 
     /// Judged retraces at which no complete new picture could be shown though it was due: those between pictures, as the
     /// pipeline defines them, and those from the one at which the next picture was due to the end of the run. Where no
-    /// complete picture came after the warm-up, all at which none was shown.
+    /// complete picture came after the warm-up, all at which none was shown. Of a pipeline whose pictures are never due,
+    /// what it counts itself.
     #[must_use]
     pub fn missed_retraces(&self) -> u64 {
-        let Some(every) = self.pipeline().retraces_a_picture() else { return 0 };
+        let Some(every) = self.pipeline().retraces_a_picture() else {
+            return self.pipeline().missed_retraces(&self.record, self.steady_pictures());
+        };
         let judged = self.judged_pictures();
         let Some(last) = judged.last() else { return self.reached.saturating_sub(self.shown()) };
         let after = self.reached.saturating_sub(self.period_of(last)).saturating_sub(every);

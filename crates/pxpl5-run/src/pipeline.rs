@@ -104,14 +104,14 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         Vec::new()
     }
 
-    /// Retraces from one picture to the next that is due; `None` where there are no retraces to miss.
+    /// Retraces from one picture to the next that is due; `None` where none ever is. With it those count as missed too that
+    /// come after the last picture: see [`Outcome::missed_retraces`](crate::Outcome::missed_retraces).
     fn retraces_a_picture(&self) -> Option<u64> {
-        Some(self.eyes() as u64)
+        None
     }
 
     /// Retraces between the first and the last of some pictures at which no complete new one could be shown though it was
-    /// due. Those behind the last one are counted for all pipelines alike: see
-    /// [`Outcome::missed_retraces`](crate::Outcome::missed_retraces).
+    /// due.
     fn missed_retraces(&self, record: &Record, pictures: &[PictureTimes]) -> u64;
 
     /// What latency means here, in a sentence.

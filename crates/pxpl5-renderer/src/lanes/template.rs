@@ -55,7 +55,7 @@ pub(super) struct Templates {
 
 const CLEAR_WORDS: usize = CommandKind::Clear.words() as usize;
 
-/// What a command adds to [`Executed`].
+/// What a command adds to [`crate::Executed`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandCost {
     pub(super) instructions: u32,

@@ -159,10 +159,6 @@ impl Pipeline for Frameless {
         false
     }
 
-    fn retraces_a_picture(&self) -> Option<u64> {
-        None
-    }
-
     fn missed_retraces(&self, _: &Record, _: &[PictureTimes]) -> u64 {
         0
     }

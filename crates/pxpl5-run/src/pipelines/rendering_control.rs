@@ -113,6 +113,11 @@ impl Pipeline for RenderingControl {
             .collect()
     }
 
+    /// One for each eye's copy.
+    fn retraces_a_picture(&self) -> Option<u64> {
+        Some(self.eyes() as u64)
+    }
+
     /// Two fields a frame are what two copies of 15.6 ms need; more are counted.
     fn missed_retraces(&self, record: &Record, pictures: &[PictureTimes]) -> u64 {
         let display = record.display();
