@@ -43,7 +43,8 @@ fn paths(module: &str, text: &str) -> Vec<String> {
         for (at, _) in text.match_indices(prefix) {
             let rest: String =
                 text[at..].chars().take_while(|c| c.is_alphanumeric() || *c == '_' || *c == ':').collect();
-            found.extend(absolute(module, rest.trim_end_matches(':')));
+            // What ends before a brace is an import of several names, which were found above.
+            found.extend(absolute(module, &rest).filter(|path| !path.ends_with(':')));
         }
     }
     found

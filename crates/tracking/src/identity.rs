@@ -9,8 +9,6 @@ use core::fmt::Display;
 use glam::DVec3;
 
 use crate::pose::Pose;
-use crate::predict::{PredictorConfig, PredictorKind};
-use crate::tracker::{Fault, HostLine, MagneticDistortion, SerialLine, TrackerConfig};
 
 /// What takes the settings, one after the other: a key and its value.
 pub type Settings<'a> = dyn FnMut(&str, &dyn Display) + 'a;
@@ -27,104 +25,4 @@ pub(crate) fn write_pose(settings: &mut Settings, key: &str, pose: &Pose) {
     let [x, y, z] = position.to_array();
     let [i, j, k, w] = orientation.to_array();
     settings(key, &format_args!("{x} {y} {z} {i} {j} {k} {w}"));
-}
-
-impl TrackerConfig {
-    /// Writes everything that the tracker is.
-    pub fn identify(&self, settings: &mut Settings) {
-        let Self {
-            name,
-            rate_hz,
-            receivers,
-            sync_to_output_ps,
-            position_latency_ps,
-            orientation_latency_ps,
-            position_noise_m,
-            orientation_noise_deg,
-            filter_gain,
-            serial,
-            host,
-            crashes_patched_host_after_ps,
-            distortion,
-            faults,
-        } = self;
-        settings("tracker", name);
-        settings("tracker.rate_hz", rate_hz);
-        settings("tracker.receivers", receivers);
-        settings("tracker.sync_to_output_ps", sync_to_output_ps);
-        settings("tracker.position_latency_ps", position_latency_ps);
-        settings("tracker.orientation_latency_ps", orientation_latency_ps);
-        settings("tracker.position_noise_m", position_noise_m);
-        settings("tracker.orientation_noise_deg", orientation_noise_deg);
-        settings("tracker.filter_gain", filter_gain);
-        if let Some(SerialLine { record_bytes, baud }) = serial {
-            settings("tracker.serial.record_bytes", record_bytes);
-            settings("tracker.serial.baud", baud);
-        }
-        match host {
-            HostLine::Polled { period_ps } => settings("tracker.host.polled_ps", period_ps),
-            HostLine::InterruptPerCharacter => settings("tracker.host", &"interrupt-per-character"),
-        }
-        if let Some(after_ps) = crashes_patched_host_after_ps {
-            settings("tracker.crashes_patched_host_after_ps", after_ps);
-        }
-        if let Some(distortion) = distortion {
-            write_distortion(settings, distortion);
-        }
-        faults.iter().for_each(|fault| write_fault(settings, fault));
-    }
-}
-
-fn write_distortion(settings: &mut Settings, distortion: &MagneticDistortion) {
-    let MagneticDistortion { transmitter_m, towards_metal, depth_per_m2, reach_m } = distortion;
-    write_vector(settings, "tracker.distortion.transmitter_m", *transmitter_m);
-    write_vector(settings, "tracker.distortion.towards_metal", *towards_metal);
-    settings("tracker.distortion.depth_per_m2", depth_per_m2);
-    settings("tracker.distortion.reach_m", reach_m);
-}
-
-fn write_fault(settings: &mut Settings, fault: &Fault) {
-    match fault {
-        Fault::Silence { from_ps } => settings("tracker.fault.silence", from_ps),
-        Fault::Dropout { from_ps, to_ps } => settings("tracker.fault.dropout", &format_args!("{from_ps} {to_ps}")),
-        Fault::RandomDropout { probability } => settings("tracker.fault.random_dropout", probability),
-        Fault::NotANumber { probability } => settings("tracker.fault.not_a_number", probability),
-        Fault::Jump { probability, distance_m, angle_deg } => {
-            settings("tracker.fault.jump", &format_args!("{probability} {distance_m} {angle_deg}"));
-        }
-    }
-}
-
-impl PredictorKind {
-    /// Its name in lists of settings.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::ConstantVelocity => "constant-velocity",
-            Self::ConstantAcceleration => "constant-acceleration",
-            Self::Kalman => "kalman",
-        }
-    }
-}
-
-impl PredictorConfig {
-    /// Writes everything that the predictor is.
-    pub fn identify(&self, settings: &mut Settings) {
-        let Self {
-            kind,
-            baseline_reports,
-            position_noise_m,
-            orientation_noise_deg,
-            position_jerk,
-            orientation_jerk,
-            horizon_ps,
-        } = self;
-        settings("predictor", &kind.name());
-        settings("predictor.baseline_reports", baseline_reports);
-        settings("predictor.position_noise_m", position_noise_m);
-        settings("predictor.orientation_noise_deg", orientation_noise_deg);
-        settings("predictor.position_jerk", position_jerk);
-        settings("predictor.orientation_jerk", orientation_jerk);
-        settings("predictor.horizon_ps", horizon_ps);
-    }
 }

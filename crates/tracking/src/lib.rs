@@ -62,6 +62,7 @@
 
 pub mod config;
 mod error;
+mod identify;
 mod identity;
 pub mod motion;
 mod pose;

@@ -4,6 +4,7 @@ mod config;
 mod distortion;
 mod fault;
 mod model;
+mod report;
 mod reports;
 mod serial;
 
@@ -11,5 +12,6 @@ pub use config::TrackerConfig;
 pub use distortion::MagneticDistortion;
 pub use fault::Fault;
 pub use model::TrackerModel;
-pub use reports::{Report, Reports};
+pub use report::Report;
+pub use reports::Reports;
 pub use serial::{HostLine, SerialLine};

@@ -1,7 +1,5 @@
-use super::reports::Reports;
 use super::{Fault, HostLine, TrackerConfig};
 use crate::error::ConfigError;
-use crate::motion::Motion;
 use crate::time::{PS_PER_S, tick_ps};
 
 /// Longest latency or poll period that a configuration may name.
@@ -54,12 +52,6 @@ impl TrackerModel {
     /// Time of the head's record on the cable.
     pub fn transfer_ps(&self) -> u64 {
         self.config.serial.map_or(0, |serial| serial.transfer_ps(1))
-    }
-
-    /// What the host receives while the head follows `motion`, in order of arrival. It ends when the tracker falls
-    /// silent for good. One (model, motion, seed) gives one sequence on every host.
-    pub fn reports<'a, M: Motion + ?Sized>(&'a self, motion: &'a M, seed: u64) -> Reports<'a, M> {
-        Reports::new(self, motion, seed)
     }
 
     /// Instant of sync `n`; `None` past the end of time.

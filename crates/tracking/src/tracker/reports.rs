@@ -1,24 +1,18 @@
 use glam::{DQuat, DVec3};
 
+use super::report::Report;
 use super::{Fault, HostLine, TrackerModel};
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::random::{below, bits, normal_pair, stream, unit};
 use crate::rotation;
 
-/// What the host gets of one solution of the tracker: a pose with its times.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Report {
-    /// Number of the solution; a step of more than one tells of dropped solutions.
-    pub solution: u64,
-    /// When the orientation was true, ps.
-    pub measured_ps: u64,
-    /// When the position was true, ps: as `measured_ps`, except that the Flock's is older.
-    pub position_measured_ps: u64,
-    /// When the host sees the report, ps.
-    pub arrives_ps: u64,
-    /// The pose, wrong as trackers are.
-    pub pose: Pose,
+impl TrackerModel {
+    /// What the host receives while the head follows `motion`, in order of arrival. It ends when the tracker falls
+    /// silent for good. One (model, motion, seed) gives one sequence on every host.
+    pub fn reports<'a, M: Motion + ?Sized>(&'a self, motion: &'a M, seed: u64) -> Reports<'a, M> {
+        Reports::new(self, motion, seed)
+    }
 }
 
 /// Reports of a tracker in order of arrival: see [`TrackerModel::reports`].

@@ -1,0 +1,106 @@
+//! A published figure beside what the model gives, and when it is missed.
+
+use super::measure::{Detail, Measured};
+use super::table::{Basis, Figure};
+use serde::Serialize;
+
+/// A figure beside what the model gives.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Number of the figure.
+    pub id: &'static str,
+    /// The printed value.
+    pub published: f64,
+    /// The model's.
+    pub simulated: f64,
+    /// Unit of both.
+    pub unit: &'static str,
+    /// (simulated - published) / published, in percent.
+    pub error_percent: f64,
+    /// What the analytic level gives with the presets' numbers: how far it is from `simulated` is that level's own error.
+    /// `None` where nothing was varied.
+    pub analytic: Option<f64>,
+    /// Least and greatest value when parameters that are not published are varied within their ranges, as computed at the
+    /// analytic level. `None` where nothing was varied: a property of the scenes.
+    pub interval: Option<[f64; 2]>,
+    /// `free`, `fitted` or `rule`.
+    pub standing: &'static str,
+    /// Half of the printed range.
+    pub spread: Option<f64>,
+    /// What was fitted, or which rule was chosen; empty for a free check.
+    pub fitted: &'static str,
+    /// Paper and topic.
+    pub source: String,
+    /// The statement.
+    pub statement: &'static str,
+    /// What was run.
+    pub experiment: &'static str,
+    /// What is known of the cause of a miss.
+    pub cause: &'static str,
+    /// Further numbers of the same experiment.
+    pub details: Vec<Detail>,
+}
+
+/// A difference that is called a miss, in percent, where a paper prints no range.
+pub const MISS_PERCENT: f64 = 3.0;
+
+/// Papers print three digits.
+const ROUNDING: f64 = 0.01;
+
+impl Row {
+    /// A figure with what was measured.
+    #[must_use]
+    pub fn new(figure: &Figure, measured: Measured) -> Self {
+        let (standing, fitted) = match figure.basis {
+            Basis::Free => ("free", ""),
+            Basis::Fitted { parameter } => ("fitted", parameter),
+            Basis::Rule { rule } => ("rule", rule),
+        };
+        Self {
+            id: figure.id,
+            published: figure.value,
+            simulated: measured.value,
+            unit: figure.unit,
+            error_percent: 100.0 * (measured.value - figure.value) / figure.value,
+            analytic: None,
+            interval: None,
+            standing,
+            spread: figure.spread,
+            fitted,
+            source: format!("{}, {}", figure.paper, figure.section),
+            statement: figure.statement,
+            experiment: figure.experiment,
+            cause: figure.cause,
+            details: measured.details,
+        }
+    }
+
+    /// Whether no values of the open parameters within their ranges give the figure: an error of the model's rules.
+    ///
+    /// The interval is the analytic level's. It is widened on both sides by the distance of `analytic` from `simulated`: as
+    /// far as the levels are apart at the presets they may be at the ends of the ranges. What is published is met within
+    /// its printed range, and where none is printed within its last digit.
+    #[must_use]
+    pub fn is_out_of_reach(&self) -> bool {
+        let Some([low, high]) = self.interval else { return false };
+        let of_levels = self.analytic.map_or(0.0, |analytic| (analytic - self.simulated).abs());
+        let spread = self.spread.unwrap_or(0.0);
+        let slack = of_levels + spread.max(self.published.abs() * ROUNDING);
+        self.published + slack < low || self.published - slack > high
+    }
+
+    /// Whether the model is outside of the printed range, or, where none is printed, off by more than
+    /// [`MISS_PERCENT`].
+    #[must_use]
+    pub fn misses(&self) -> bool {
+        let allowed = self.spread.unwrap_or(self.published * MISS_PERCENT / 100.0);
+        (self.simulated - self.published).abs() > allowed * (1.0 + 1e-9)
+    }
+}
+
+/// Mean absolute error in percent over the rows that are free checks.
+#[must_use]
+pub fn mean_error_percent(rows: &[Row]) -> f64 {
+    let free: Vec<_> = rows.iter().filter(|row| row.standing == "free").collect();
+    free.iter().map(|row| row.error_percent.abs()).sum::<f64>() / free.len().max(1) as f64
+}
