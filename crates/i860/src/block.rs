@@ -2,14 +2,14 @@
 
 use crate::bus::Bus;
 use crate::cache::Tags;
-use crate::clock::Execution;
-use crate::cpu::TrapCause;
 use crate::decode::decode;
 use crate::decoded::Decoded;
+use crate::execution::Execution;
 use crate::instruction::Op;
 use crate::memo::BlockMemory;
 use crate::state::Mode;
 use crate::timing::ChipSizes;
+use crate::trap::TrapCause;
 
 /// Most units of a block, its slot not counted.
 const LONGEST: usize = 32;

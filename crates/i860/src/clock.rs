@@ -6,6 +6,7 @@ use crate::common::Common;
 use crate::data_cache::DataCache;
 use crate::decoded::{Decoded, hazard};
 use crate::dram::Transfer;
+use crate::execution::Execution;
 use crate::fetch::Fetch;
 use crate::instruction::{Instruction, Op};
 use crate::load_pipe::LoadPipe;
@@ -29,19 +30,6 @@ impl Accesses {
     pub(crate) fn push(&mut self, address: u32) {
         self.0.push(address);
     }
-}
-
-/// How much of a block was executed, and how it ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Execution {
-    /// Units executed, not counting the slot.
-    pub(crate) units: usize,
-    /// Whether the slot was executed.
-    pub(crate) slot: bool,
-    /// Whether the branch at the end was taken.
-    pub(crate) taken: bool,
-    /// Whether the last of these units trapped.
-    pub(crate) trapped: bool,
 }
 
 #[derive(Clone, Debug)]

@@ -1,23 +1,12 @@
 //! Execution of branches, traps by instruction, and the core half as a whole.
 
 use crate::bus::Bus;
-use crate::cpu::{Cpu, TrapCause};
+use crate::cpu::Cpu;
 use crate::decoded::Decoded;
+use crate::flow::Flow;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::state::{Mode, epsr, psr};
-
-/// How control goes on after a unit (an instruction or a pair).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Flow {
-    /// To what follows.
-    Next,
-    /// To a target, at once.
-    Jump(u32),
-    /// To a target, after the next unit.
-    Delayed(u32),
-    /// To what follows the next unit.
-    Skip,
-}
+use crate::trap::TrapCause;
 
 #[inline]
 fn immediate(taken: bool, target: u32) -> Flow {

@@ -1,7 +1,7 @@
 //! Instruction words to [`Instruction`].
 
-use crate::encode::register_mask;
-use crate::instruction::{Flags, Instruction, Op};
+use crate::instruction::{FNOP, Flags, Instruction, Op};
+use crate::syntax::register_mask;
 
 /// A word that is no instruction of the XR part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -11,8 +11,6 @@ pub struct IllegalWord(
     pub u32,
 );
 
-/// `fnop`, the shrd of three r0; bit 9 is its D bit.
-pub(crate) const FNOP: u32 = 0xB000_0000;
 const D_BIT: u32 = 1 << 9;
 /// epsr; bear, ccr and p0 to p3 came with the XP.
 const LAST_XR_CONTROL_REGISTER: u8 = 5;

@@ -1,5 +1,6 @@
 //! Predecoded instructions: what the timing model asks about an instruction, answered once.
 
+use crate::dual_operation::source_widths;
 use crate::instruction::{Flags, Instruction, Op};
 
 /// What an instruction can be held up by; a bit per hazard that lasts some clocks.
@@ -87,7 +88,7 @@ impl Decoded {
         self.marks & mark::DUAL != 0
     }
 
-    /// Whether it accesses data, or may cost more for how it ends: all that [`Clock`](crate::clock::Clock) must be told
+    /// Whether it accesses data, or may cost more for how it ends: all that the clock must be told
     /// of its execution.
     #[inline]
     pub(crate) fn is_told(&self) -> bool {
@@ -113,7 +114,7 @@ fn on(bit: u8, condition: bool) -> u8 {
 
 fn marks(i: &Instruction) -> u8 {
     let floating = i.is_floating();
-    let (first, second) = crate::floating::source_widths(i);
+    let (first, second) = source_widths(i);
     let pipelined = i.op == Op::DualOp || i.has(Flags::PIPELINED);
     let overlaps = i.dest >= 2 && [i.src1, i.src2].iter().any(|n| n & 30 == i.dest & 30);
     on(mark::FLOATING, floating)

@@ -1,7 +1,7 @@
 //! [`Instruction`] to instruction words, the inverse of [`decode`](crate::decode()).
 
-use crate::decode::FNOP;
-use crate::instruction::{Flags, Instruction, Op};
+use crate::instruction::{FNOP, Flags, Instruction, Op};
+use crate::syntax::register_mask;
 
 fn join16(imm: i32) -> u32 {
     let offset = imm as u32;
@@ -21,25 +21,6 @@ pub fn encode(i: &Instruction) -> u32 {
     let immediate = u32::from(i.has(Flags::IMMEDIATE));
     let (code, low) = core_code(i, immediate);
     code << 26 | low | registers & register_mask(i, immediate != 0)
-}
-
-/// Which register fields of the word mean something for this instruction.
-pub(crate) fn register_mask(i: &Instruction, immediate: bool) -> u32 {
-    use crate::mnemonic::Syntax;
-    const SRC2: u32 = 31 << 21;
-    const DEST: u32 = 31 << 16;
-    const SRC1: u32 = 31 << 11;
-    let first = if immediate { 0 } else { SRC1 };
-    match Syntax::from_op(i.op) {
-        Syntax::Bare | Syntax::Branch => 0,
-        Syntax::Store | Syntax::CompareBranch | Syntax::LoopBranch | Syntax::StoreControl => SRC2 | SRC1,
-        Syntax::LoadControl | Syntax::Second => SRC2 | DEST,
-        Syntax::Flush => SRC2,
-        Syntax::Register => SRC1,
-        Syntax::ToFloating | Syntax::ToInteger | Syntax::First => SRC1 | DEST,
-        Syntax::Trap | Syntax::Three => SRC2 | DEST | SRC1,
-        Syntax::Integer | Syntax::Load | Syntax::FloatingLoad | Syntax::FloatingStore => SRC2 | DEST | first,
-    }
 }
 
 fn core_code(i: &Instruction, immediate: u32) -> (u32, u32) {

@@ -1,8 +1,8 @@
 //! Execution in the graphics unit: long-integer arithmetic, pixel and Z merging, Z checks.
 
 use crate::cpu::Cpu;
-use crate::floating::Operands;
 use crate::instruction::{Flags, Instruction, Op};
+use crate::operands::Operands;
 use crate::state::Stage;
 
 /// Bits of a pixel sum that faddp takes into MERGE, and by how much MERGE moves first, per psr.PS.

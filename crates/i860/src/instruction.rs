@@ -254,3 +254,6 @@ impl Instruction {
         self.op >= Op::Fxfr && self.op < Op::DualOp
     }
 }
+
+/// `fnop`, the shrd of three r0; bit 9 is its D bit.
+pub(crate) const FNOP: u32 = 0xB000_0000;

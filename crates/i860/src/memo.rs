@@ -5,7 +5,7 @@
 //! are, so that its clocks follow from what the scoreboard holds at its beginning and from how it was executed. The scoreboard is
 //! known by a number while blocks repeat, and is written out again when one has to be counted.
 
-use crate::clock::Execution;
+use crate::execution::Execution;
 use crate::scoreboard::{Leftover, Scoreboard};
 use crate::timing::Freeze;
 use std::collections::BTreeMap;

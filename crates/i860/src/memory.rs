@@ -1,10 +1,11 @@
 //! Execution of loads and stores.
 
 use crate::bus::Bus;
-use crate::cpu::{Cpu, TrapCause};
+use crate::cpu::Cpu;
 use crate::decoded::Decoded;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::state::Stage;
+use crate::trap::TrapCause;
 
 impl Cpu {
     #[inline]

@@ -1,80 +1,9 @@
-//! Names of instructions, both ways, and the operands that each takes.
+//! Names of instructions, both ways.
 
 use crate::decode::decode;
-use crate::encode::encode;
-use crate::instruction::{Flags, Instruction, Op};
+use crate::instruction::{FNOP, Flags, Instruction, Op};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
-
-/// Which operands an instruction is written with, in order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Syntax {
-    /// None.
-    Bare,
-    /// `src1 or immediate, src2, dest`.
-    Integer,
-    /// `address, dest`.
-    Load,
-    /// `src1, address`.
-    Store,
-    /// `address, fdest`, perhaps with `++`.
-    FloatingLoad,
-    /// `fdest, address`, perhaps with `++`.
-    FloatingStore,
-    /// `control, dest`.
-    LoadControl,
-    /// `src1, control`.
-    StoreControl,
-    /// `src1, fdest`.
-    ToFloating,
-    /// `fsrc1, dest`.
-    ToInteger,
-    /// `address`, perhaps with `++`.
-    Flush,
-    /// `src1, src2, dest`, or nothing.
-    Trap,
-    /// `src1`.
-    Register,
-    /// `target`.
-    Branch,
-    /// `src1 or 5-bit constant, src2, target`.
-    CompareBranch,
-    /// `src1, src2, target`.
-    LoopBranch,
-    /// `fsrc1, fsrc2, fdest`.
-    Three,
-    /// `fsrc1, fdest`.
-    First,
-    /// `fsrc2, fdest`.
-    Second,
-}
-
-impl Syntax {
-    pub(crate) fn from_op(op: Op) -> Syntax {
-        use Op::{Bc, BcT, Bnc, BncT, Br, Bri, Bte, Btne, Call, Calli, LdB, LdC, LdL, LdS, Pfld, StB, StC, StL, StS};
-        match op {
-            Op::Lock | Op::Unlock | Op::Intovr | Op::Fnop => Syntax::Bare,
-            LdB | LdS | LdL => Syntax::Load,
-            StB | StS | StL => Syntax::Store,
-            Op::Fld | Pfld => Syntax::FloatingLoad,
-            Op::Fst | Op::Pst => Syntax::FloatingStore,
-            LdC => Syntax::LoadControl,
-            StC => Syntax::StoreControl,
-            Op::Ixfr => Syntax::ToFloating,
-            Op::Fxfr => Syntax::ToInteger,
-            Op::Flush => Syntax::Flush,
-            Op::Trap => Syntax::Trap,
-            Bri | Calli => Syntax::Register,
-            Br | Call | Bc | BcT | Bnc | BncT => Syntax::Branch,
-            Bte | Btne => Syntax::CompareBranch,
-            Op::Bla => Syntax::LoopBranch,
-            Op::Frcp | Op::Frsqr => Syntax::Second,
-            Op::Fix | Op::Ftrunc | Op::Famov | Op::Form => Syntax::First,
-            _ if op > Op::Fnop => Syntax::Three,
-            _ => Syntax::Integer,
-        }
-    }
-}
 
 /// Names of the data paths by DPC with `_` for p (plus) or s (minus): pfam/pfsm, then pfmam/pfmsm.
 const PATHS: [[&str; 16]; 2] = [
@@ -233,7 +162,7 @@ pub(crate) fn templates() -> &'static BTreeMap<String, Instruction> {
 fn every_word() -> impl Iterator<Item = u32> {
     let floating = (0..2048u32).filter(|low| low & 0x200 == 0).map(|low| 0x12 << 26 | low);
     let core = (0..64u32).filter(|op| *op != 0x12).flat_map(|op| (0..8).map(move |low| op << 26 | low));
-    core.chain(floating).chain([crate::decode::FNOP])
+    core.chain(floating).chain([FNOP])
 }
 
 /// The instruction that a mnemonic names, with its D bit.
@@ -248,72 +177,6 @@ pub(crate) fn lookup(name: &str) -> Option<Instruction> {
     }
     i.flags = i.flags.with(Flags::DUAL, dual);
     Some(i)
-}
-
-/// Control registers by number.
-pub(crate) const CONTROL_REGISTERS: [&str; 6] = ["fir", "psr", "dirbase", "db", "fsr", "epsr"];
-
-/// The text of a word at an address, as the assembler takes it; `.long` when no instruction gives the word back.
-#[must_use]
-pub fn disassemble(word: u32, pc: u32) -> String {
-    let text = decode(word).ok().map(|i| text(&i, pc));
-    let faithful = text.filter(|text| crate::assembler::instruction_word(text, pc).ok() == Some(word));
-    faithful.unwrap_or_else(|| format!(".long {word:#010x}"))
-}
-
-fn text(i: &Instruction, pc: u32) -> String {
-    let operands = operands(i, pc);
-    let name = mnemonic(i);
-    if encode(i) == 0xA000_0000 {
-        return "nop".to_owned();
-    }
-    if operands.is_empty() { name } else { format!("{name} {operands}") }
-}
-
-fn address(i: &Instruction) -> String {
-    let increment = if i.has(Flags::AUTOINCREMENT) { "++" } else { "" };
-    if i.has(Flags::IMMEDIATE) || matches!(i.op, Op::StB | Op::StS | Op::StL) {
-        format!("{}(r{}){increment}", i.imm, i.src2)
-    } else {
-        format!("r{}(r{}){increment}", i.src1, i.src2)
-    }
-}
-
-fn control_register(n: u8) -> &'static str {
-    CONTROL_REGISTERS.get(usize::from(n)).copied().unwrap_or("?")
-}
-
-fn operands(i: &Instruction, pc: u32) -> String {
-    let a = i.src1;
-    let b = i.src2;
-    let d = i.dest;
-    let target = pc.wrapping_add(4).wrapping_add((i.imm as u32) << 2);
-    let first = match i.has(Flags::IMMEDIATE) {
-        true if i.op == Op::Bte || i.op == Op::Btne => a.to_string(),
-        true => i.imm.to_string(),
-        false => format!("r{a}"),
-    };
-    match Syntax::from_op(i.op) {
-        Syntax::Bare => String::new(),
-        Syntax::Integer => format!("{first}, r{b}, r{d}"),
-        Syntax::Load => format!("{}, r{d}", address(i)),
-        Syntax::Store => format!("r{a}, {}", address(i)),
-        Syntax::FloatingLoad => format!("{}, f{d}", address(i)),
-        Syntax::FloatingStore => format!("f{d}, {}", address(i)),
-        Syntax::LoadControl => format!("{}, r{d}", control_register(b)),
-        Syntax::StoreControl => format!("r{a}, {}", control_register(b)),
-        Syntax::ToFloating => format!("r{a}, f{d}"),
-        Syntax::ToInteger => format!("f{a}, r{d}"),
-        Syntax::Flush => address(i),
-        Syntax::Trap => format!("r{a}, r{b}, r{d}"),
-        Syntax::Register => format!("r{a}"),
-        Syntax::Branch => format!("{target:#x}"),
-        Syntax::CompareBranch => format!("{first}, r{b}, {target:#x}"),
-        Syntax::LoopBranch => format!("r{a}, r{b}, {target:#x}"),
-        Syntax::Three => format!("f{a}, f{b}, f{d}"),
-        Syntax::First => format!("f{a}, f{d}"),
-        Syntax::Second => format!("f{b}, f{d}"),
-    }
 }
 
 #[cfg(test)]

@@ -14,41 +14,20 @@
 //! After layout every instruction is checked: see the list in the module `check`.
 
 mod check;
+mod error;
 mod expression;
 mod operand;
 mod source;
+
+pub use error::{AssemblyError, AssemblyErrors};
 
 use crate::encode::encode;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::mnemonic::lookup;
 use expression::{Symbols, evaluate};
 use operand::Filler;
-use source::Line;
+use source::{Line, is_name, split_label};
 use std::collections::BTreeMap;
-
-/// A fault in the source.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}:{line}: {reason}")]
-pub struct AssemblyError {
-    /// File name as given.
-    pub file: String,
-    /// Line from 1; of the call, for text from a macro.
-    pub line: usize,
-    /// What is wrong: expected and found.
-    pub reason: String,
-}
-
-/// All faults of a source, in the order of its lines.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}", lines(.0))]
-pub struct AssemblyErrors(
-    /// In the order of their lines; there is at least one.
-    pub Vec<AssemblyError>,
-);
-
-fn lines(errors: &[AssemblyError]) -> String {
-    errors.iter().map(AssemblyError::to_string).collect::<Vec<_>>().join("\n")
-}
 
 /// An assembled program with its labels, ready to be put into memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -98,19 +77,6 @@ struct Placed {
     address: u32,
     line: usize,
     item: Item,
-}
-
-/// `label: rest`, or no label.
-fn split_label(text: &str) -> (Option<&str>, &str) {
-    match text.split_once(':') {
-        Some((label, rest)) if is_name(label.trim()) => (Some(label.trim()), rest.trim()),
-        _ => (None, text),
-    }
-}
-
-fn is_name(text: &str) -> bool {
-    let starts = text.starts_with(|c: char| c.is_ascii_alphabetic() || "_.$".contains(c));
-    starts && text.chars().all(|c| c.is_ascii_alphanumeric() || "_.$@".contains(c))
 }
 
 /// Bytes that a program may occupy.

@@ -2,7 +2,7 @@
 
 use super::expression::{Symbols, evaluate};
 use crate::instruction::{Flags, Instruction, Op};
-use crate::mnemonic::{CONTROL_REGISTERS, Syntax};
+use crate::syntax::{CONTROL_REGISTERS, Syntax};
 
 /// Splits at commas outside parentheses.
 pub(super) fn split(text: &str) -> Vec<&str> {

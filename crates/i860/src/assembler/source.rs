@@ -1,6 +1,7 @@
 //! Source text to plain lines: comments go, macros and repetitions are written out.
 
-use super::AssemblyError;
+use super::error::AssemblyError;
+use super::operand::split;
 use std::collections::BTreeMap;
 
 /// A line of source with the number that errors name.
@@ -85,7 +86,7 @@ impl Expander<'_> {
         if name.is_empty() {
             return Err(self.error(lines[0].number, ".macro needs a name"));
         }
-        let parameters = super::operand::split(parameters).into_iter().map(str::to_owned).collect();
+        let parameters = split(parameters).into_iter().map(str::to_owned).collect();
         self.macros.insert(name.to_owned(), Macro { parameters, body: lines[1..len].to_vec() });
         Ok(len + 1)
     }
@@ -111,7 +112,7 @@ impl Expander<'_> {
 
     fn plain(&mut self, line: &Line, depth: u32) -> Result<usize, AssemblyError> {
         self.limit(line.number)?;
-        let (label, statement) = super::split_label(&line.text);
+        let (label, statement) = split_label(&line.text);
         let (word, rest) = first_word(statement);
         let Some(called) = self.macros.get(word).cloned() else {
             self.lines.push(line.clone());
@@ -125,7 +126,7 @@ impl Expander<'_> {
     }
 
     fn call(&mut self, called: &Macro, name: &str, rest: &str, line: usize, depth: u32) -> Result<(), AssemblyError> {
-        let arguments = super::operand::split(rest);
+        let arguments = split(rest);
         if depth >= MOST_DEPTH {
             return Err(self.error(line, format!("macro {name} calls itself, or macros nest deeper than {MOST_DEPTH}")));
         }
@@ -166,4 +167,18 @@ fn substitute(text: &str, parameters: &[String], arguments: &[&str], unique: &st
         rest = &rest[end..];
     }
     result + rest
+}
+
+/// `label: rest`, or no label.
+pub(super) fn split_label(text: &str) -> (Option<&str>, &str) {
+    match text.split_once(':') {
+        Some((label, rest)) if is_name(label.trim()) => (Some(label.trim()), rest.trim()),
+        _ => (None, text),
+    }
+}
+
+/// Whether it may be the name of a label.
+pub(super) fn is_name(text: &str) -> bool {
+    let starts = text.starts_with(|c: char| c.is_ascii_alphabetic() || "_.$".contains(c));
+    starts && text.chars().all(|c| c.is_ascii_alphanumeric() || "_.$@".contains(c))
 }

@@ -1,0 +1,14 @@
+//! Where control goes.
+
+/// How control goes on after a unit (an instruction or a pair).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Flow {
+    /// To what follows.
+    Next,
+    /// To a target, at once.
+    Jump(u32),
+    /// To a target, after the next unit.
+    Delayed(u32),
+    /// To what follows the next unit.
+    Skip,
+}

@@ -1,0 +1,75 @@
+//! Operands of the floating-point half, with what leaves a pipe put through.
+
+use crate::decoded::Decoded;
+use crate::dual_operation::first_has_bypass;
+use crate::instruction::{Flags, Instruction, Op};
+use crate::state::{Stage, State};
+
+/// Source registers as read before either half of a pair writes, with the value leaving the pipe put through.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Operands {
+    pub(crate) a: u64,
+    pub(crate) b: u64,
+}
+
+/// Reads the sources of a floating-point or graphics instruction.
+#[inline(always)]
+pub(crate) fn read_operands(state: &State, d: &Decoded) -> Operands {
+    let i = &d.instruction;
+    let (first, second) = d.source_widths();
+    if d.may_bypass() {
+        return read_through(state, i, first, second);
+    }
+    Operands { a: state.f_bits(i.src1, first), b: state.f_bits(i.src2, second) }
+}
+
+fn read_through(state: &State, i: &Instruction, first: bool, second: bool) -> Operands {
+    let Some(out) = leaving(state, i) else {
+        return Operands { a: state.f_bits(i.src1, first), b: state.f_bits(i.src2, second) };
+    };
+    let b = read_bypassed(state, i.src2, second, i.dest, out);
+    let a = match first_has_bypass(i) {
+        true => read_bypassed(state, i.src1, first, i.dest, out),
+        false => state.f_bits(i.src1, first),
+    };
+    Operands { a, b }
+}
+
+/// The last stage of the multiplier for a source precision: two stages for double, three for single.
+pub(crate) fn last_product(state: &State, source_double: bool) -> Stage {
+    state.multiplier[if source_double { 1 } else { 2 }]
+}
+
+/// What a pipelined instruction sends to its destination; `None` for a scalar one.
+fn leaving(state: &State, i: &Instruction) -> Option<Stage> {
+    if i.op == Op::DualOp {
+        let product = last_product(state, i.has(Flags::SOURCE_DOUBLE));
+        return Some(if i.has(Flags::PIPELINED) { state.adder[2] } else { product });
+    }
+    if !i.has(Flags::PIPELINED) {
+        return None;
+    }
+    Some(match () {
+        () if i.uses_adder() => state.adder[2],
+        () if i.uses_multiplier() => last_product(state, i.has(Flags::SOURCE_DOUBLE)),
+        () => state.graphics,
+    })
+}
+
+/// Register `n` as if the leaving value had already reached `dest`.
+fn read_bypassed(state: &State, n: u8, double: bool, dest: u8, leaving: Stage) -> u64 {
+    if dest & 30 != n & 30 || dest < 2 {
+        return state.f_bits(n, double);
+    }
+    let low = usize::from(dest & 30);
+    let mut pair = [state.f[low], state.f[low + 1]];
+    if leaving.double {
+        pair = [leaving.bits as u32, (leaving.bits >> 32) as u32];
+    } else {
+        pair[usize::from(dest & 1)] = leaving.bits as u32;
+    }
+    match double {
+        true => u64::from(pair[1]) << 32 | u64::from(pair[0]),
+        false => u64::from(pair[usize::from(n & 1)]),
+    }
+}

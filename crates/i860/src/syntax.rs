@@ -1,0 +1,94 @@
+//! The operands that each instruction is written with, and the register fields of its word.
+
+use crate::instruction::{Instruction, Op};
+
+/// Which operands an instruction is written with, in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Syntax {
+    /// None.
+    Bare,
+    /// `src1 or immediate, src2, dest`.
+    Integer,
+    /// `address, dest`.
+    Load,
+    /// `src1, address`.
+    Store,
+    /// `address, fdest`, perhaps with `++`.
+    FloatingLoad,
+    /// `fdest, address`, perhaps with `++`.
+    FloatingStore,
+    /// `control, dest`.
+    LoadControl,
+    /// `src1, control`.
+    StoreControl,
+    /// `src1, fdest`.
+    ToFloating,
+    /// `fsrc1, dest`.
+    ToInteger,
+    /// `address`, perhaps with `++`.
+    Flush,
+    /// `src1, src2, dest`, or nothing.
+    Trap,
+    /// `src1`.
+    Register,
+    /// `target`.
+    Branch,
+    /// `src1 or 5-bit constant, src2, target`.
+    CompareBranch,
+    /// `src1, src2, target`.
+    LoopBranch,
+    /// `fsrc1, fsrc2, fdest`.
+    Three,
+    /// `fsrc1, fdest`.
+    First,
+    /// `fsrc2, fdest`.
+    Second,
+}
+
+impl Syntax {
+    pub(crate) fn from_op(op: Op) -> Syntax {
+        use Op::{Bc, BcT, Bnc, BncT, Br, Bri, Bte, Btne, Call, Calli, LdB, LdC, LdL, LdS, Pfld, StB, StC, StL, StS};
+        match op {
+            Op::Lock | Op::Unlock | Op::Intovr | Op::Fnop => Syntax::Bare,
+            LdB | LdS | LdL => Syntax::Load,
+            StB | StS | StL => Syntax::Store,
+            Op::Fld | Pfld => Syntax::FloatingLoad,
+            Op::Fst | Op::Pst => Syntax::FloatingStore,
+            LdC => Syntax::LoadControl,
+            StC => Syntax::StoreControl,
+            Op::Ixfr => Syntax::ToFloating,
+            Op::Fxfr => Syntax::ToInteger,
+            Op::Flush => Syntax::Flush,
+            Op::Trap => Syntax::Trap,
+            Bri | Calli => Syntax::Register,
+            Br | Call | Bc | BcT | Bnc | BncT => Syntax::Branch,
+            Bte | Btne => Syntax::CompareBranch,
+            Op::Bla => Syntax::LoopBranch,
+            Op::Frcp | Op::Frsqr => Syntax::Second,
+            Op::Fix | Op::Ftrunc | Op::Famov | Op::Form => Syntax::First,
+            _ if op > Op::Fnop => Syntax::Three,
+            _ => Syntax::Integer,
+        }
+    }
+}
+
+/// Control registers by number.
+pub(crate) const CONTROL_REGISTERS: [&str; 6] = ["fir", "psr", "dirbase", "db", "fsr", "epsr"];
+
+/// Which register fields of the word mean something for this instruction.
+pub(crate) fn register_mask(i: &Instruction, immediate: bool) -> u32 {
+    const SRC2: u32 = 31 << 21;
+    const DEST: u32 = 31 << 16;
+    const SRC1: u32 = 31 << 11;
+    let first = if immediate { 0 } else { SRC1 };
+    match Syntax::from_op(i.op) {
+        Syntax::Bare | Syntax::Branch => 0,
+        Syntax::Store | Syntax::CompareBranch | Syntax::LoopBranch | Syntax::StoreControl => SRC2 | SRC1,
+        Syntax::LoadControl | Syntax::Second => SRC2 | DEST,
+        Syntax::Flush => SRC2,
+        Syntax::Register => SRC1,
+        Syntax::ToFloating | Syntax::ToInteger | Syntax::First => SRC1 | DEST,
+        Syntax::Trap | Syntax::Three => SRC2 | DEST | SRC1,
+        Syntax::Integer | Syntax::Load | Syntax::FloatingLoad | Syntax::FloatingStore => SRC2 | DEST | first,
+    }
+}
