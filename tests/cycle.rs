@@ -2,7 +2,7 @@
 
 use pxpl5::limit::test_scene;
 use pxpl5::{
-    Experiment, ExperimentError, Level, MachineConfig, Measured, Outcome, Pixels, RenderingControl, Slats, TestScene,
+    CodeVersion, Experiment, ExperimentError, Level, MachineConfig, Measured, Outcome, Pixels, RenderingControl, Slats, TestScene,
     Workstation, scene,
 };
 use pxpl5_gp::Stage;
@@ -70,20 +70,30 @@ fn code_that_fits_the_instruction_cache_is_about_three_times_as_fast() {
     assert!((2.5..3.5).contains(&factor), "{compiled:.0} us and {scheduled:.0} us: a factor of {factor:.2}");
 }
 
-#[test]
-fn a_time_per_triangle_that_is_set_stays() {
-    let full = || scene::builtin("full-screen:30").expect("built in");
-    let machine = |triangle_ns| {
-        let mut machine = MachineConfig::slats();
+/// Times of TRANSFORM of thirty triangles and two eyes, with two times per triangle in the table.
+fn transforms_us(code: Option<CodeVersion>, triangle_ns: [u64; 2]) -> [f64; 2] {
+    triangle_ns.map(|triangle_ns| {
+        let mut machine = MachineConfig { code, ..MachineConfig::slats() };
         machine.set("gp.triangle_ns", triangle_ns).expect("known");
-        machine
-    };
-    let us = [20_000, 21_000].map(|triangle_ns| {
-        let experiment = Experiment::new(machine(triangle_ns), Slats::split(), full()).fields(12).level(Level::Cycle);
+        let full = scene::builtin("full-screen:30").expect("built in");
+        let experiment = Experiment::new(machine, Slats::split(), full).fields(12).level(Level::Cycle);
         transform_us(&experiment.pixels(Pixels::Off).run().expect("it runs"))
-    });
+    })
+}
+
+#[test]
+fn a_time_per_triangle_that_is_set_holds_where_no_code_runs() {
+    let us = transforms_us(None, [20_000, 21_000]);
     // Thirty triangles, two eyes, one microsecond each.
     assert!((us[1] - us[0] - 60.0).abs() < 1e-6, "{us:?}");
+}
+
+/// A nanosecond more in the table once decided whether the code ran at all; now it counts for triangles that are clipped,
+/// for which there is no code: a nanosecond each at most.
+#[test]
+fn a_nanosecond_in_the_table_does_not_choose_the_code() {
+    let us = transforms_us(MachineConfig::slats().code, [21_700, 21_701]);
+    assert!((0.0..=0.060 + 1e-6).contains(&(us[1] - us[0])), "{us:?}");
 }
 
 #[test]

@@ -277,7 +277,7 @@ fn an_experiment_file_reaches_every_setting_and_its_errors_name_the_line() {
     );
     let report = json(&folder.run(&["run", "e.toml", "--set", "copy=whole", "--fields", "14", "--json"]));
     assert_eq!((&report["triangles"], &report["fields"]), (&50.into(), &14.into()));
-    assert!(report["variant"].as_str().expect("text").contains("copy: Whole"));
+    assert!(report["variant"].as_str().expect("text").contains("copy=whole"));
     assert_eq!(report["overrides"]["gp.triangle_ns"], 20_000);
     let cases = [
         ("pipeline = \"slats\"\nsceen = \"mig\"", "line 2", "did you mean `scene`"),
