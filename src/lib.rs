@@ -52,12 +52,12 @@ pub use tracking;
 pub use parameters::{ParameterInfo, ParameterTable, Standing, Value};
 pub use pphigs::Binning;
 pub use pxpl5_framebuffer::{FrameBufferConfig, NtscDisplay};
+pub use pxpl5_gp::CodeVersion;
 pub use pxpl5_hires::HiResConfig;
 pub use pxpl5_lab::{
     ExperimentFile, FileError, HeadChoice, MotionChoice, Outputs, Plan, Published, SceneChoice, Settings, Snapshot,
     SnapshotError, Workstation, compare, figures, growth, intervals, levels, limit, pipeline_figures, registry, sweep,
 };
-pub use pxpl5_gp::CodeVersion;
 pub use pxpl5_machine::{
     Arrival, ConfigError, LateRegion, Machine, MachineConfig, Observation, PRESETS, Parameter, Ports, Preset, Record,
     RunError, Saving, StageSpan, Swap, Traffic, Transfer,

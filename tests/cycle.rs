@@ -2,8 +2,8 @@
 
 use pxpl5::limit::test_scene;
 use pxpl5::{
-    CodeVersion, Experiment, ExperimentError, Level, MachineConfig, Measured, Outcome, Pixels, RenderingControl, Slats, TestScene,
-    Workstation, scene,
+    CodeVersion, Experiment, ExperimentError, Level, MachineConfig, Measured, Outcome, Pixels, RenderingControl, Slats,
+    TestScene, Workstation, scene,
 };
 use pxpl5_gp::Stage;
 
