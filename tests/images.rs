@@ -111,7 +111,7 @@ fn update(name: &str, picture: &RgbImage, subject: &Subject) {
 /// moving scene would show two poses.
 fn shown(outcome: &Outcome, eye: Eye) -> RgbImage {
     let newest = outcome.pictures().last().expect("it has shown some").picture;
-    let frame_buffer = &boards(&outcome)[eye.index()];
+    let frame_buffer = &boards(outcome)[eye.index()];
     match outcome.pipeline().name() {
         "slats" => {
             let last = frame_buffer.last_seen().expect("a field was scanned");

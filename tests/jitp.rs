@@ -55,7 +55,7 @@ fn under_a_pan(viewpoint: Viewpoint, racing: bool) -> Outcome {
 
 /// Seconds between the beam's passes over two pixels of a field.
 fn beam_s(outcome: &Outcome, from: (u32, u32), to: (u32, u32)) -> f64 {
-    let when = |(x, y)| video(&outcome).when(x, y, FIELD).expect("visible").0 as f64;
+    let when = |(x, y)| video(outcome).when(x, y, FIELD).expect("visible").0 as f64;
     (when(to) - when(from)) * 1e-12
 }
 

@@ -61,7 +61,7 @@ fn the_parts_of_every_latency_add_up_to_the_picosecond() {
             assert_eq!(parts.picture, times.picture);
             assert_eq!(parts.published(), times.shown_at - times.transform_at);
             assert_eq!(Some(parts.begin), times.sampled_at);
-            let video = video(&outcome);
+            let video = video(outcome);
             let field = video.field_at(times.shown_at);
             let line = u32::try_from(field % 2).expect("0 or 1");
             assert_eq!(Some(parts.end()), video.when(0, line, field));

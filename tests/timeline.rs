@@ -89,7 +89,7 @@ fn the_way_of_the_chosen_picture_leads_forward_from_its_sample_to_light() {
         assert!(timeline.arrows.len() >= 6);
         assert!(timeline.arrows.iter().all(|arrow| arrow.begin <= arrow.end));
         let times = outcome.pictures().iter().find(|t| Some(t.picture) == timeline.picture).expect("it was shown");
-        let video = video(&outcome);
+        let video = video(outcome);
         let field = video.field_at(times.shown_at);
         let light = video.when(0, u32::try_from(field % 2).expect("0 or 1"), field).expect("visible");
         assert!(timeline.arrows.iter().any(|arrow| arrow.end == light), "no arrow ends at {light}");

@@ -50,14 +50,14 @@ pub(crate) fn functions(text: &str) -> Vec<(String, usize)> {
         let closes =
             |other: &&str| other.len() - other.trim_start().len() == indent && other.trim_start().starts_with('}');
         let one_line = line.trim_end().ends_with('}') && line.contains('{');
-        let length = if one_line { Some(0) } else { lines[begin..].iter().position(|other| closes(&other)) };
+        let length = if one_line { Some(0) } else { lines[begin..].iter().position(|other| closes(other)) };
         found.extend(length.map(|length| (name, length + 1)));
     }
     found
 }
 
 fn function_name(line: &str) -> Option<String> {
-    let words = line.trim_start().split_whitespace();
+    let words = line.split_whitespace();
     let mut words = words.skip_while(|word| {
         word.starts_with("pub") || ["const", "async", "unsafe", "in", "crate)", "super)"].contains(word)
     });

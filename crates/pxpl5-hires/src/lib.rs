@@ -69,8 +69,9 @@ impl Display for HiRes {
             DisplayEvent::Tick(tick) => {
                 self.scans += 1;
                 for (surface, board) in self.boards.iter_mut().enumerate() {
-                    let swapped = board.swap(context.now());
-                    swapped.map(|buffer| context.output(at, DisplayOutput::Swapped { surface, buffer, tick }));
+                    if let Some(buffer) = board.swap(context.now()) {
+                        context.output(at, DisplayOutput::Swapped { surface, buffer, tick });
+                    }
                 }
             }
             DisplayEvent::Delivered { port, body } => match self.boards[port].receive(body, context.now()) {

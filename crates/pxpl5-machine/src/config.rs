@@ -40,6 +40,9 @@ pub struct MachineConfig {
     pub firmware: Vec<(&'static str, Box<dyn FirmwareTable>)>,
 }
 
+/// The first part of the paths of a firmware's numbers, and what makes the table with the values of its papers.
+pub type NamedTable = (&'static str, fn() -> Box<dyn FirmwareTable>);
+
 /// A table of the numbers of some firmware.
 pub trait FirmwareTable: ParameterTable + Any + Debug + Send + Sync {
     /// A copy of the numbers.

@@ -18,7 +18,7 @@ mod record;
 mod savings;
 mod traffic;
 
-pub use config::{ConfigError, FirmwareTable, MachineConfig, Parameter};
+pub use config::{ConfigError, FirmwareTable, MachineConfig, NamedTable, Parameter};
 pub use machine::{Machine, RunError};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
 pub use pixels::{PixelWorker, SameThread};

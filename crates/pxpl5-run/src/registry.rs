@@ -7,7 +7,7 @@ use crate::pipeline::Pipeline;
 use crate::summary::Summary;
 use parameters::nearest;
 use pxpl5_display::DisplayConfig;
-use pxpl5_machine::{FirmwareTable, MachineConfig};
+use pxpl5_machine::{MachineConfig, NamedTable};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -71,7 +71,7 @@ pub struct PipelineEntry {
     /// When it is said to draw a scene in time, with the keys given.
     pub limit: fn(&PipelineSettings) -> LimitCriterion,
     /// Tables of its firmware's own numbers, each with the first part of their paths, such as `jitp`.
-    pub tables: &'static [(&'static str, fn() -> Box<dyn FirmwareTable>)],
+    pub tables: &'static [NamedTable],
     /// Its closed form, if it has one.
     pub closed_form: Option<ClosedForm>,
     /// Whether `compare` has a row of it.

@@ -71,7 +71,7 @@ fn errors_name_the_line_and_what_was_expected() {
         ),
         (
             "pipeline = \"frameless\"\nscene = \"mig\"\n[head]\nmotion = \"still\"\ndisplay = \"vdrt\"",
-            "line 5: head.display = vdrt does not apply to the pipeline frameless",
+            "line 5: head.raster = vdrt does not apply to the pipeline frameless",
         ),
         ("x = 1\nx = 2", "test, line 2: not TOML"),
         ("pipeline = \"slats\"\nscene = \"mig\"\nvideo.field_ps = 5", "did you mean `video."),

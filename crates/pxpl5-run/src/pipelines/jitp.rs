@@ -8,7 +8,7 @@ use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, ho
 use pphigs::Share;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{Priority, Stage};
-use pxpl5_machine::{Arrival, ConfigError, FirmwareTable, LateRegion, Machine, Record};
+use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, NamedTable, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, FieldParity, RegionGrid, RegionId};
@@ -246,7 +246,7 @@ pub fn region_at(grid: &RegionGrid, x: u32, row: u32) -> RegionId {
 }
 
 /// The numbers of its firmware.
-pub(super) const TABLES: &[(&str, fn() -> Box<dyn FirmwareTable>)] = &[("jitp", || Box::new(JitpTiming::PAPERS))];
+pub(super) const TABLES: &[NamedTable] = &[("jitp", || Box::new(JitpTiming::PAPERS))];
 
 const KEYS: &[Key] =
     &[Key { name: "strip_rows", about: "lines of a strip: 1 to 128", values: KeyValues::Whole(1, 128), sets: &[] }];
