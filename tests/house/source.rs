@@ -50,7 +50,7 @@ pub(crate) fn functions(text: &str) -> Vec<(String, usize)> {
         let closes =
             |other: &&str| other.len() - other.trim_start().len() == indent && other.trim_start().starts_with('}');
         let one_line = line.trim_end().ends_with('}') && line.contains('{');
-        let length = if one_line { Some(0) } else { lines[begin..].iter().position(|other| closes(other)) };
+        let length = if one_line { Some(0) } else { lines[begin..].iter().position(closes) };
         found.extend(length.map(|length| (name, length + 1)));
     }
     found

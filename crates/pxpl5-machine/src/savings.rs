@@ -3,10 +3,10 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// A saving that an experiment can [give up](crate::Experiment::without). None of them changes a time or a pixel that is
+/// A saving that an experiment can give up (`Experiment::without`). None of them changes a time or a pixel that is
 /// seen, which `tests/savings.rs` shows by doing without each; `cargo bench --bench savings` measures what they are worth.
 ///
-/// What nobody looks at is the fifth saving: [`Pixels`](crate::Pixels).
+/// What nobody looks at is the fifth saving: `Pixels` of the experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Saving {
     /// Boards sleep until something happens to them. Without it every processor polls its programs and the ring its

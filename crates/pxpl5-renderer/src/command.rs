@@ -144,7 +144,7 @@ impl CommandKind {
 pub struct Unsupported {
     /// The command that was to be encoded.
     pub kind: CommandKind,
-    /// [`ContextPlan::name`](crate::Plan::name) of the layout.
+    /// `ContextPlan::name` of the layout.
     pub layout: &'static str,
     /// The field, or the bits of scratch, that the layout would need.
     pub missing: &'static str,
