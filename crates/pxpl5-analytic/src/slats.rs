@@ -289,7 +289,7 @@ fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
     let pictures = fields.saturating_sub(FIELDS_BEFORE).max(1);
     let field_ms = model.field_ns * 1e-6;
     Summary {
-        latencies_ms: vec![field_ms; pictures as usize],
+        latencies_ms: if times.in_time { vec![field_ms; pictures as usize] } else { Vec::new() },
         field_ms,
         updates_hz: times.in_time.then_some(1e3 / field_ms),
         missed_retraces: if times.in_time { 0 } else { pictures },

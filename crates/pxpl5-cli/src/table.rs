@@ -71,11 +71,18 @@ fn primitives(report: &Report) -> String {
     }
 }
 
+/// Of nothing there are no statistics.
 fn mean_and_sd(s: &Statistics, digits: usize) -> String {
+    if s.mean.is_nan() {
+        return "-".to_owned();
+    }
     format!("{:.digits$}, sd {:.digits$}", s.mean, s.sd)
 }
 
 fn range(s: &Statistics, digits: usize) -> String {
+    if s.mean.is_nan() {
+        return "-".to_owned();
+    }
     format!("{:.digits$} to {:.digits$}", s.min, s.max)
 }
 

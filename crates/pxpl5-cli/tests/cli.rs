@@ -61,6 +61,7 @@ fn a_run_that_shows_nothing_says_so_and_fails() {
     assert!(err(&output).contains("no complete picture was shown in 60 fields"), "{}", err(&output));
     let report = json_of(&output);
     assert_eq!((&report["shown"], &report["updates_hz"]), (&0.into(), &serde_json::Value::Null));
+    assert_eq!((&report["pictures"], &report["latency_fields"]["mean"]), (&0.into(), &serde_json::Value::Null));
     assert_eq!((&report["missed_retraces"], &report["judged_retraces"]), (&60.into(), &60.into()));
 }
 

@@ -74,13 +74,15 @@ impl LatencyParts {
 /// The stages of one picture.
 type Stages = Vec<StageSpan>;
 
-/// The parts of the latency of all pictures after the warm-up.
+/// The parts of the latency of all complete pictures after the warm-up.
 #[must_use]
 pub fn latency_parts(outcome: &Outcome) -> Vec<LatencyParts> {
     let stages = by_picture(outcome.stages());
     let none = Stages::new();
-    let steady = outcome.steady_pictures().iter();
-    steady.map(|times| parts(outcome, times, stages.get(&times.picture).unwrap_or(&none))).collect()
+    outcome
+        .complete_pictures()
+        .map(|times| parts(outcome, times, stages.get(&times.picture).unwrap_or(&none)))
+        .collect()
 }
 
 fn parts(outcome: &Outcome, times: &PictureTimes, stages: &[StageSpan]) -> LatencyParts {
@@ -173,14 +175,15 @@ const ENDS: [(&str, &str, End); 3] = [
     ("light", "the beam at the first visible pixel", |pair, _| pair.light_at),
 ];
 
-/// Latencies of both surfaces and of the pair over the pictures after the warm-up; empty where surfaces have no TRANSFORM
+/// Latencies of both surfaces and of the pair over the complete pictures after the warm-up; empty where surfaces have no TRANSFORM
 /// of their own.
 #[must_use]
 pub fn latency_by_surface(outcome: &Outcome) -> Vec<SurfaceStatistics> {
     let stages = by_picture(outcome.stages());
-    let steady = outcome.steady_pictures().iter();
-    let pairs: Vec<Pair> =
-        steady.filter_map(|times| pair(outcome, times.shown_at, stages.get(&times.picture)?)).collect();
+    let pairs: Vec<Pair> = outcome
+        .complete_pictures()
+        .filter_map(|times| pair(outcome, times.shown_at, stages.get(&times.picture)?))
+        .collect();
     if pairs.is_empty() {
         return Vec::new();
     }

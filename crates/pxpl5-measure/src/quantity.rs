@@ -45,7 +45,8 @@ const fn of_run(name: &'static str, definition: &'static str, value: fn(&Outcome
     Quantity { name, definition, value: Value::OfRun(value) }
 }
 
-const LATENCY: &str = "latency as the pipeline defines it (see the report), over all pictures after the warm-up";
+const LATENCY: &str =
+    "latency as the pipeline defines it (see the report), over all complete pictures after the warm-up";
 
 const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields; only with a head.motion";
 
@@ -79,7 +80,7 @@ pub static QUANTITIES: [Quantity; 28] = [
     of_summary("copy_begins_ms", "from the start of a picture to the first word of its first copy; mean", |s| {
         s.copy_begins_ms
     }),
-    of_summary("eye_ms", "from the start of an eye's TRANSFORM to the end of its COPY; mean; 0 for Slats", |s| {
+    of_summary("eye_ms", "from the start of an eye's TRANSFORM to the end of its COPY; mean; none for Slats", |s| {
         Statistics::of(s.eye_latencies_ms.iter().copied()).mean
     }),
     of_run(
@@ -94,7 +95,7 @@ pub static QUANTITIES: [Quantity; 28] = [
     of_run("error_px.max", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.max)),
     of_run("error_deg.mean", "error_px as an angle", |_, r| Some(r.head.as_ref()?.error.degrees.mean)),
     of_run("late_regions", "regions that came after their deadline", |_, r| Some(r.late_regions as f64)),
-    of_run("pictures", "pictures after the warm-up", |_, r| Some(r.pictures as f64)),
+    of_run("pictures", "complete pictures after the warm-up", |_, r| Some(r.pictures as f64)),
     of_run("events", "events of the simulation", |_, r| Some(r.events as f64)),
     of_run("transform_ms", "mean time of TRANSFORM, an eye or a picture as the pipeline takes them", |o, _| {
         stage_ms(o, Stage::Transform)

@@ -44,7 +44,7 @@ pub struct Report {
     pub spheres: usize,
     /// Fields simulated.
     pub fields: u64,
-    /// Pictures that the statistics are over.
+    /// Complete pictures after the warm-up, that the statistics are over.
     pub pictures: usize,
     /// Latency in periods of the display: for NTSC, fields of 1001/60000 s.
     pub latency_fields: DefinedStatistics,
@@ -146,7 +146,7 @@ impl Report {
             triangles: scene.triangles().len(),
             spheres: scene.spheres().len(),
             fields: outcome.fields(),
-            pictures: pictures.len(),
+            pictures: outcome.complete_pictures().count(),
             latency_fields: outcome.latency_fields().defined(pipeline.latency_definition()),
             latency_ms: outcome.latency_ms().defined(pipeline.latency_definition()),
             latency_parts_ms: latency_part_statistics(outcome),

@@ -25,14 +25,15 @@ pub fn summary(outcome: &Outcome) -> Summary {
     let copies = copies(outcome, message);
     let mean = |place: u8| {
         let spans = pictures.iter().filter_map(|p| copies.get(&(p.picture, place)));
-        Statistics::of(spans.map(|span| (span.end - span.begin).as_ms())).mean
+        let mean = Statistics::of(spans.map(|span| (span.end - span.begin).as_ms())).mean;
+        if mean.is_nan() { 0.0 } else { mean }
     };
     let begins = pictures.iter().filter_map(|p| {
         let begin = copies.get(&(p.picture, 0))?.begin;
         Some(begin.since(p.transform_at).as_ms())
     });
     Summary {
-        latencies_ms: pictures.iter().map(|p| (p.shown_at - p.transform_at).as_ms()).collect(),
+        latencies_ms: outcome.complete_pictures().map(|p| (p.shown_at - p.transform_at).as_ms()).collect(),
         field_ms: outcome.field_ms(),
         updates_hz: report.updates_hz,
         missed_retraces: report.missed_retraces,

@@ -54,6 +54,11 @@ impl Outcome {
         self.pictures.get(WARM_UP_PICTURES..).unwrap_or_default()
     }
 
+    /// Those of them that were complete in time: the others have no latency.
+    pub fn complete_pictures(&self) -> impl Iterator<Item = &PictureTimes> {
+        self.steady_pictures().iter().filter(|times| times.complete)
+    }
+
     /// Complete pictures that were shown in the whole run, the warm-up included.
     #[must_use]
     pub fn shown(&self) -> u64 {
@@ -161,10 +166,10 @@ impl Outcome {
         self.record.tick(self.experiment.fields)
     }
 
-    /// Latency in milliseconds over the pictures after the warm-up, as the pipeline defines it.
+    /// Latency in milliseconds over the complete pictures after the warm-up, as the pipeline defines it.
     #[must_use]
     pub fn latency_ms(&self) -> Statistics {
-        Statistics::of(self.steady_pictures().iter().map(|times| (times.shown_at - times.transform_at).as_ms()))
+        Statistics::of(self.complete_pictures().map(|times| (times.shown_at - times.transform_at).as_ms()))
     }
 
     /// The same in periods of the first display: for NTSC, fields of 1001/60000 s.
@@ -172,7 +177,7 @@ impl Outcome {
     pub fn latency_fields(&self) -> Statistics {
         let field_ms = self.field_ms();
         let fields = |times: &PictureTimes| (times.shown_at - times.transform_at).as_ms() / field_ms;
-        Statistics::of(self.steady_pictures().iter().map(fields))
+        Statistics::of(self.complete_pictures().map(fields))
     }
 
     /// A period of the first display in milliseconds, from 60,000 of them.

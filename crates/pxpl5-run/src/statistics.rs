@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Mean, sample standard deviation, least and greatest of some numbers. All zero for none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// Mean, sample standard deviation, least and greatest of some numbers. Of none all are no numbers (NaN; null in JSON).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
     /// Sum over number.
     pub mean: f64,
@@ -21,7 +21,7 @@ impl Statistics {
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.collect();
         if values.is_empty() {
-            return Self::default();
+            return Self { mean: f64::NAN, sd: f64::NAN, min: f64::NAN, max: f64::NAN };
         }
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
@@ -60,6 +60,11 @@ mod tests {
         let s = Statistics::of([2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0].into_iter());
         assert_eq!((s.mean, s.min, s.max), (5.0, 2.0, 9.0));
         assert!((s.sd - (32.0f64 / 7.0).sqrt()).abs() < 1e-12);
-        assert_eq!(Statistics::of(std::iter::empty()), Statistics::default());
+    }
+
+    #[test]
+    fn of_nothing_there_is_no_number() {
+        let Statistics { mean, sd, min, max } = Statistics::of(std::iter::empty());
+        assert!([mean, sd, min, max].iter().all(|number| number.is_nan()));
     }
 }

@@ -5,7 +5,7 @@ use crate::statistics::Statistics;
 /// What came of an experiment at any level of modelling, over the pictures after the warm-up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Latency of every picture as its pipeline defines it, milliseconds.
+    /// Latency of every complete picture as its pipeline defines it, milliseconds.
     pub latencies_ms: Vec<f64>,
     /// A period of the display, milliseconds: an NTSC field.
     pub field_ms: f64,

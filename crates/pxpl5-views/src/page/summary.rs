@@ -32,6 +32,9 @@ fn rate(updates_hz: &Value) -> String {
 
 /// Mean and standard deviation.
 fn spread(statistics: &Value) -> String {
+    if statistics["mean"].is_null() {
+        return "-".to_owned();
+    }
     format!("{:.3} ± {:.3}", number(&statistics["mean"]), number(&statistics["sd"]))
 }
 
