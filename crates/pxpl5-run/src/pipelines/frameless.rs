@@ -1,14 +1,13 @@
 //! Frameless rendering on the emulated machine.
 
 use super::jitp::{TABLES, config, load};
-use super::ntsc;
+use super::{ntsc, samples};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{BlockOrder, DrawingSchedule};
 use pphigs::{PrimitiveCounts, Share, TransformCost};
 use pxpl5_framebuffer::Video;
-use pxpl5_gp::Stage;
 use pxpl5_machine::{ConfigError, Machine, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
@@ -133,8 +132,7 @@ impl Pipeline for Frameless {
             last.insert(arrival.target.picture, (count, arrival.last_part_at, arrival.target));
         }
         let batch = last.values().map(|entry| entry.0).max().unwrap_or(1);
-        let taken = observation.marks.iter().filter(|mark| mark.stage == Stage::Sample);
-        let times = taken.filter_map(|mark| {
+        let times = samples(record).filter_map(|mark| {
             let (blocks, copied_at, target) = last.get(&mark.picture)?;
             Some(PictureTimes {
                 picture: mark.picture,

@@ -1,13 +1,13 @@
 //! Just-in-time pixels on the emulated machine.
 
-use super::ntsc;
+use super::{late_regions, missed_fields, ntsc, samples};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, host, master, slave};
 use pphigs::Share;
 use pxpl5_framebuffer::Video;
-use pxpl5_gp::{Priority, Stage};
+use pxpl5_gp::Priority;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, NamedTable, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
@@ -168,8 +168,7 @@ impl Pipeline for Jitp {
         }
         let grid = RegionGrid { region_height: self.strip_rows, ..RegionGrid::FIELD };
         let middle_line = |field| 2 * (grid.rows() / 2 * self.strip_rows) + FieldParity::of_field(field).first_line();
-        let taken = observation.marks.iter().filter(|mark| mark.stage == Stage::Sample);
-        let times = taken.map(|mark| {
+        let times = samples(record).map(|mark| {
             let (regions, copied_at) = in_time.get(&mark.picture).copied().unwrap_or_default();
             let field = mark.picture;
             PictureTimes {
@@ -187,16 +186,7 @@ impl Pipeline for Jitp {
 
     fn late_regions(&self, record: &Record, end: Time) -> Vec<LateRegion> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
-        let video = display.video();
-        let arrived = record.observation().arrivals.iter().filter(|arrival| arrival.last_part_at < end);
-        let late = arrived.filter(|arrival| arrival.last_part_at > due(video, &arrival.target));
-        let region = |arrival: &Arrival| LateRegion {
-            field: arrival.target.picture,
-            surface: arrival.surface,
-            region: arrival.target.region.0,
-            lateness: arrival.last_part_at.since(due(video, &arrival.target)),
-        };
-        late.map(region).collect()
+        late_regions(display, record, end, |video, arrival| due(video, &arrival.target))
     }
 
     /// A new picture every field.
@@ -205,9 +195,7 @@ impl Pipeline for Jitp {
     }
 
     fn missed_retraces(&self, _: &Record, pictures: &[PictureTimes]) -> u64 {
-        let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return 0 };
-        let complete = pictures.iter().filter(|times| times.complete).count() as u64;
-        last.picture - first.picture + 1 - complete
+        missed_fields(pictures)
     }
 
     fn latency_definition(&self) -> &'static str {

@@ -10,9 +10,12 @@ pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
 pub use rendering_control::RenderingControl;
 pub use slats::{Code, Slats};
 
+use crate::pipeline::PictureTimes;
 use crate::registry::PipelineEntry;
-use pxpl5_framebuffer::NtscDisplay;
-use pxpl5_machine::{ConfigError, Record};
+use pxpl5_framebuffer::{NtscDisplay, Video};
+use pxpl5_gp::{Mark, Stage};
+use pxpl5_machine::{Arrival, ConfigError, LateRegion, Record};
+use pxpl5_sim::Time;
 use std::any::Any;
 
 pub(crate) fn entries() -> Vec<PipelineEntry> {
@@ -27,4 +30,36 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Confi
         let found = record.display().name();
         ConfigError::Board(format!("{pipeline} draws single fields: expected the display ntsc, found {found}"))
     })
+}
+
+/// When boards took a view to draw for.
+fn samples(record: &Record) -> impl Iterator<Item = &Mark> {
+    record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample)
+}
+
+/// Regions that were there after they were due, in the order of arrival.
+fn late_regions(
+    display: &NtscDisplay,
+    record: &Record,
+    end: Time,
+    due: impl Fn(&Video, &Arrival) -> Time,
+) -> Vec<LateRegion> {
+    let arrived = record.observation().arrivals.iter().filter(|arrival| arrival.last_part_at < end);
+    let late = arrived.filter_map(|arrival| {
+        let due = due(display.video(), arrival);
+        (arrival.last_part_at > due).then(|| LateRegion {
+            field: arrival.target.picture,
+            surface: arrival.surface,
+            region: arrival.target.region.0,
+            lateness: arrival.last_part_at.since(due),
+        })
+    });
+    late.collect()
+}
+
+/// Fields of a pipeline that draws every one: those of which something was late or missing, and those that were left out.
+fn missed_fields(pictures: &[PictureTimes]) -> u64 {
+    let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return 0 };
+    let complete = pictures.iter().filter(|times| times.complete).count() as u64;
+    last.picture - first.picture + 1 - complete
 }

@@ -1,12 +1,12 @@
 //! Slats on the emulated machine.
 
-use super::ntsc;
+use super::{late_regions, missed_fields, ntsc, samples};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use pphigs::{Binning, Share};
 use pxpl5_framebuffer::Video;
-use pxpl5_gp::{CodeVersion, GpTiming, Priority, Stage};
+use pxpl5_gp::{CodeVersion, GpTiming, Priority};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
@@ -148,7 +148,7 @@ impl Pipeline for Slats {
             *entry = (entry.0 + 1, entry.1.max(arrival.last_part_at));
         }
         let leader = record.ports().gps[0];
-        let begun = observation.marks.iter().filter(|mark| mark.stage == Stage::Sample && mark.node == leader);
+        let begun = samples(record).filter(|mark| mark.node == leader);
         let times = begun.map(|mark| {
             let (regions, copied_at) = arrivals.get(&mark.picture).copied().unwrap_or_default();
             let whole = regions == 2 * RegionGrid::FIELD.regions() as usize;
@@ -169,18 +169,9 @@ impl Pipeline for Slats {
 
     fn late_regions(&self, record: &Record, end: Time) -> Vec<LateRegion> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
-        let arrivals = record.observation().arrivals.iter().filter(|arrival| arrival.last_part_at < end);
-        let late = arrivals.filter_map(|arrival| {
-            let due = deadline(display.video(), &arrival.target, self.is_due_before_retrace(arrival));
-            let region = LateRegion {
-                field: arrival.target.picture,
-                surface: arrival.surface,
-                region: arrival.target.region.0,
-                lateness: arrival.last_part_at.since(due),
-            };
-            (arrival.last_part_at > due).then_some(region)
-        });
-        late.collect()
+        let due =
+            |video: &Video, arrival: &Arrival| deadline(video, &arrival.target, self.is_due_before_retrace(arrival));
+        late_regions(display, record, end, due)
     }
 
     /// A new picture every field.
@@ -190,9 +181,7 @@ impl Pipeline for Slats {
 
     /// Fields of which something was late or missing, and fields that were left out.
     fn missed_retraces(&self, _: &Record, pictures: &[PictureTimes]) -> u64 {
-        let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return 0 };
-        let complete = pictures.iter().filter(|times| times.complete).count() as u64;
-        last.picture - first.picture + 1 - complete
+        missed_fields(pictures)
     }
 
     fn latency_definition(&self) -> &'static str {
