@@ -162,7 +162,7 @@ impl Experiment {
     }
 
     /// Fields at which to stop: those asked for, every so many for the progress, the last.
-    fn stops(&self, asked: &[u64]) -> BTreeSet<PeriodNumber> {
+    fn stops(&self, asked: &[PeriodNumber]) -> BTreeSet<PeriodNumber> {
         let end = self.end();
         let regular = PeriodNumber(PROGRESS_FIELDS).until(end).step_by(PROGRESS_FIELDS as usize);
         asked.iter().copied().filter(|field| *field < end).chain(regular).chain([end]).collect()

@@ -2,7 +2,7 @@
 
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::Measured;
-use pxpl5_run::{Experiment, Goal, Outcome, PictureTimes, Pipeline, PipelineSettings, Pixels, Registry};
+use pxpl5_run::{Experiment, Goal, Outcome, Pipeline, PipelineSettings, Pixels, Registry};
 use pxpl5_wire::PictureNumber;
 use serde::Serialize;
 use std::sync::Arc;

@@ -164,7 +164,7 @@ impl Pipeline for Slats {
             }
         });
         // A field whose bottom half is still being scanned is judged by the next run.
-        let judged = |times: &PictureTimes| record.tick(times.picture + 1) <= end;
+        let judged = |times: &PictureTimes| record.tick(times.picture.period_drawn_for().next()) <= end;
         times.filter(judged).collect()
     }
 
