@@ -1,7 +1,7 @@
 //! Where the time goes from the head's pose to light.
 
-use pxpl5_wire::ViewNumber;
 use pxpl5_run::{Outcome, PictureTimes, Sampled};
+use pxpl5_wire::ViewNumber;
 use std::collections::BTreeMap;
 
 /// Mean time in each stage from the head's pose to light, in milliseconds. The stages add up to the total.

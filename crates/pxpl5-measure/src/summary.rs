@@ -4,7 +4,7 @@ use crate::Report;
 use pxpl5_gp::Stage;
 use pxpl5_run::{Outcome, Statistics, Summary};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{SurfaceId, PictureNumber};
+use pxpl5_wire::{PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
 
 /// First and last word of regions that are copied one after the other: an eye of Rendering Control, a half of Slats.

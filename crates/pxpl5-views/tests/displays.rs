@@ -42,11 +42,11 @@ fn a_timeline_counts_the_periods_of_its_display() {
     let outcome = run(hires(40));
     let timeline = Timeline::of(&outcome, &TimelineOptions::default());
     for (n, time) in &timeline.retraces {
-        assert_eq!(*time, Time(n * 1_000_000_000_000 / 72), "tick {n}");
+        assert_eq!(*time, Time(n.0 * 1_000_000_000_000 / 72), "tick {n}");
     }
     let scan = timeline.scans.first().expect("in the drawing");
     // The scan fills its whole period.
-    assert_eq!(scan.begin, Time(scan.period * 1_000_000_000_000 / 72));
+    assert_eq!(scan.begin, Time(scan.period.0 * 1_000_000_000_000 / 72));
     assert!(!copies(&timeline, "frame buffer").is_empty());
     assert!(timeline.bars().all(|bar| bar.surface.is_none() && bar.bottom.is_none()));
     let drawing = svg(&outcome, &TimelineOptions::default());
