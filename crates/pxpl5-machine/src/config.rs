@@ -179,8 +179,7 @@ impl MachineConfig {
 
     /// All tables of numbers in order of the boards, each with the first part of its paths.
     fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)> {
-        let mut all: Vec<(&'static str, &dyn ParameterTable)> =
-            vec![("ring", &self.ring), ("gp", &self.gp)];
+        let mut all: Vec<(&'static str, &dyn ParameterTable)> = vec![("ring", &self.ring), ("gp", &self.gp)];
         all.extend(self.i860.tables());
         all.push(("renderer", &self.renderer));
         all.extend(self.displays.iter().flat_map(|display| display.tables()));
@@ -288,9 +287,7 @@ impl MachineConfig {
     /// Why no table that can be set has a path: it is listed only, or nobody knows it.
     fn not_settable(&self, path: &str) -> ConfigError {
         match self.parameters().into_iter().find(|parameter| parameter.path == path) {
-            Some(Parameter { path, info, value, .. }) => {
-                ConfigError::ReadOnly { path, value, origin: info.source }
-            }
+            Some(Parameter { path, info, value, .. }) => ConfigError::ReadOnly { path, value, origin: info.source },
             None => self.unknown(path),
         }
     }

@@ -6,8 +6,8 @@ use std::path::Path;
 use std::sync::Arc;
 use thiserror::Error;
 use tracking::Pose;
-use tracking::motion::{LoadError, Motion, Pan, Pendulum, Recording, Still, Synthetic};
 use tracking::config::Tables;
+use tracking::motion::{LoadError, Motion, Pan, Pendulum, Recording, Still, Synthetic};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
