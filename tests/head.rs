@@ -44,7 +44,8 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
         let plan = plan(&[&shared[..], &[on, ("pipeline", pipeline), ("head.display", display)]].concat());
         let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("the scene is small");
         let report = outcome.report();
-        let (head, row) = (report.head.expect("a motion was given"), comparison.row(name).expect("a row for each"));
+        let head = report.head.expect("a motion was given");
+        let row = comparison.row(name).expect("a row for each");
         assert!(row.error.judged > 0, "{name}");
         assert_eq!((&head.error, head.end_to_end), (&row.error, row.end_to_end), "{name}");
         assert_eq!(report.updates_hz, row.updates_hz, "{name}");
@@ -71,7 +72,8 @@ fn edges(picture: &image::RgbImage, field: u64) -> Vec<f64> {
 #[test]
 fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
     const FIELD: u64 = 20;
-    let (pan, view) = (Pan::at(30.0), HmdView::ntsc());
+    let pan = Pan::at(30.0);
+    let view = HmdView::ntsc();
     let [plain, vdrt] = [Raster::Plain, Raster::Vdrt].map(|raster| {
         let outcome = panned(30.0, raster, FIELD + 2).run().expect("the scene is small");
         let video = *video(&outcome);

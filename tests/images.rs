@@ -61,13 +61,15 @@ fn fingerprints() -> BTreeMap<String, String> {
 /// The kept piece of a frame, or the lines of it that a field has.
 fn piece(picture: &RgbImage, [left, top, width, height]: [u32; 4]) -> RgbImage {
     let step = 480 / picture.height();
-    let (top, height) = (top / step, height / step);
+    let top = top / step;
+    let height = height / step;
     imageops::crop_imm(picture, left, top, width, height).to_image()
 }
 
 /// Expected, difference (white where equal, black where not), actual.
 fn triptych(expected: &RgbImage, actual: &RgbImage) -> RgbImage {
-    let (width, height) = (expected.width().max(actual.width()), expected.height().max(actual.height()));
+    let width = expected.width().max(actual.width());
+    let height = expected.height().max(actual.height());
     let differs = |x, y| expected.get_pixel_checked(x, y) != actual.get_pixel_checked(x, y);
     let difference = RgbImage::from_fn(width, height, |x, y| Rgb([if differs(x, y) { 0 } else { 255 }; 3]));
     let mut out = RgbImage::new(3 * width, height);
@@ -166,7 +168,8 @@ fn a_still_scene_looks_the_same_however_many_processors_draw_it() {
     let draw = |pipeline: Arc<dyn Pipeline>, n_gps| {
         pictures(pipeline, &MachineConfig { n_gps, ..MachineConfig::small_hmd() }, subject)
     };
-    let (control, slats) = (Arc::new(RenderingControl::stereo()), Arc::new(Slats::split()));
+    let control = Arc::new(RenderingControl::stereo());
+    let slats = Arc::new(Slats::split());
     for n_gps in [3, 13] {
         assert!(draw(control.clone(), n_gps) == draw(control.clone(), 2), "rendering control with {n_gps}");
         assert!(draw(slats.clone(), n_gps) == draw(slats.clone(), 1), "Slats with {n_gps}");

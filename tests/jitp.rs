@@ -118,8 +118,10 @@ fn edge(picture: &image::RgbImage) -> Vec<f64> {
 /// Pixels between the first and the last row of the straight line through all of them.
 fn slant(edge: &[f64]) -> f64 {
     let n = edge.len() as f64;
-    let (mean_row, mean) = ((n - 1.0) / 2.0, edge.iter().sum::<f64>() / n);
-    let (mut up, mut down) = (0.0, 0.0);
+    let mean_row = (n - 1.0) / 2.0;
+    let mean = edge.iter().sum::<f64>() / n;
+    let mut up = 0.0;
+    let mut down = 0.0;
     for (row, column) in edge.iter().enumerate() {
         up += (row as f64 - mean_row) * (column - mean);
         down += (row as f64 - mean_row).powi(2);
@@ -177,7 +179,8 @@ fn places_on_the_screen_are_off_at_the_edge_and_positions_in_the_view_are_not() 
         let dual = errors(viewpoint);
         std::array::from_fn::<f64, 3, _>(|i| (dual[i] - strip[i]).length())
     };
-    let (screen, view) = (off(Viewpoint::Dual(Interpolation::Screen)), off(Viewpoint::Dual(Interpolation::View)));
+    let screen = off(Viewpoint::Dual(Interpolation::Screen));
+    let view = off(Viewpoint::Dual(Interpolation::View));
     println!("dual display list, left edge, middle, right edge: screen {screen:?} view {view:?}");
     // tan is interpolated over the 15.24 ms of the scan: f x turn^2 / 8 x 2 tan 30 / cos^2 30.
     let turn = (PAN * 239.82 * 4004.0 / 63.0 * 1e-6).to_radians();
@@ -216,7 +219,8 @@ fn more_renderers_allow_more_triangles_in_a_line() {
         let jitp: Arc<dyn Pipeline> = Arc::new(Jitp::new(Viewpoint::Strip, true));
         triangles_possible(&pxpl5::registry(), &config, &jitp).triangles
     };
-    let (small, large) = (possible("small-hmd"), possible("design-maximum"));
+    let small = possible("small-hmd");
+    let large = possible("design-maximum");
     println!("triangles per line: small-hmd {small}, design-maximum {large}");
     // A column of a line has 63.6 us at the renderer, of which the copy takes 7.2: 8 triangles of 6.45 us.
     assert!((6..=9).contains(&small), "{small}");
@@ -247,7 +251,8 @@ fn errors_of_pipelines_are_as_their_latencies_from_head_to_light() {
             .expect("the scene is small");
         (Budget::of(&outcome).total_ms, PixelErrors::of(&outcome).centre_deg.mean)
     };
-    let (control, slats) = (measure(Arc::new(RenderingControl::stereo())), measure(Arc::new(Slats::split())));
+    let control = measure(Arc::new(RenderingControl::stereo()));
+    let slats = measure(Arc::new(Slats::split()));
     // A frame of Rendering Control is seen for two fields, so on average half a field later than its first light.
     let latencies = (control.0 + 16.683 / 2.0) / slats.0;
     println!("{control:?} {slats:?}: latencies {latencies:.3}, errors {:.3}", control.1 / slats.1);
@@ -307,7 +312,8 @@ fn metal_misplaces_objects_even_for_a_still_head() {
 #[test]
 fn the_raster_offset_removes_a_pan_in_the_middle_and_leaves_the_edges() {
     let outcome = run(Slats::split(), head(Pan::at(PAN), TrackerConfig::ideal(), PredictorKind::ConstantVelocity), 90);
-    let (plain, offset) = (PixelErrors::of(&outcome), PixelErrors::with_raster_offset(&outcome));
+    let plain = PixelErrors::of(&outcome);
+    let offset = PixelErrors::with_raster_offset(&outcome);
     println!("pan, Slats: {:?}\n with offset: {:?}", plain.pixels, offset.pixels);
     assert!(offset.centre_px.max < 0.05, "{:?}", offset.centre_px);
     assert!(offset.pixels.max > 1.0, "a flat raster is shifted, not turned");
@@ -324,7 +330,8 @@ fn frameless_blocks_come_once_a_pass_and_are_half_a_pass_old() {
     }
     assert_eq!(of_block.len(), frameless.blocks() as usize);
     let counts: Vec<usize> = of_block.values().map(Vec::len).collect();
-    let (least, most) = (counts.iter().min().copied().unwrap_or(0), counts.iter().max().copied().unwrap_or(0));
+    let least = counts.iter().min().copied().unwrap_or(0);
+    let most = counts.iter().max().copied().unwrap_or(0);
     assert!(least > 10 && most - least <= 1, "without repetition: {least} to {most}");
     // At a random moment a block is half of the time between two of its updates old.
     let gaps: Vec<f64> = of_block.values().flat_map(|times| times.windows(2).map(|w| w[1] - w[0])).collect();
@@ -352,11 +359,10 @@ fn the_rig_and_the_time_stamps_agree_within_the_bound_for_every_tracker() {
             let tracker = TrackerConfig { position_noise_m: 0.0, distortion: None, ..tracker };
             let model = TrackerModel::new(tracker).expect("a preset");
             let measured = measure_on(&outcome, &PendulumRig::assumed(), &model, 1).expect("low points are seen");
-            let (difference, bound) = (measured.outside_less_inside_s(), seconds(measured.bound_ps()));
-            let (outside, inside) = (
-                measured.tracking.mean_s + measured.rendering.mean_s,
-                measured.inside_tracking.mean_s + measured.inside_rendering.mean_s,
-            );
+            let difference = measured.outside_less_inside_s();
+            let bound = seconds(measured.bound_ps());
+            let outside = measured.tracking.mean_s + measured.rendering.mean_s;
+            let inside = measured.inside_tracking.mean_s + measured.inside_rendering.mean_s;
             println!(
                 "{:18} {:28} outside {:6.2} ms, inside {:6.2} ms, difference {:5.2} of {:5.2} ms, {} passes",
                 outcome.pipeline().name(),

@@ -86,7 +86,8 @@ fn where_there_is_no_swap_the_parts_are_those_of_the_part_that_meets_the_beam() 
                 let span = stages.iter().find(|s| (s.stage, s.picture) == (stage, times.picture)).expect("marked");
                 (span.begin, span.end.expect("ended"))
             };
-            let (transform, render) = (of(Stage::Transform), of(Stage::Render));
+            let transform = of(Stage::Transform);
+            let render = of(Stage::Render);
             assert_eq!(transform.0, times.transform_at);
             let path = [transform.0, transform.1, render.0, render.1, times.copied_at.expect("copied"), times.shown_at];
             assert!(path.is_sorted(), "{}: {path:?}", outcome.pipeline().name());
@@ -151,7 +152,8 @@ fn the_latencies_of_the_eyes_lie_between_their_events() {
 #[test]
 fn csv_opens_with_its_origin_and_holds_the_latency_of_the_report() {
     for outcome in &all() {
-        let (text, report) = (csv(outcome), outcome.report());
+        let text = csv(outcome);
+        let report = outcome.report();
         let comments: Vec<&str> = text.lines().take_while(|line| line.starts_with("# ")).collect();
         for (key, value) in [("machine", &report.machine), ("config_hash", &report.config_hash)] {
             assert!(comments.contains(&format!("# {key}: {value}").as_str()), "{key} is missing in {comments:?}");

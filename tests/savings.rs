@@ -34,10 +34,12 @@ fn seen(machine: &Machine, fields: u64) -> Vec<SeenField> {
 }
 
 fn assert_same(experiment: &Experiment, saving: Saving, fields: u64) {
-    let (with, without) = (after(experiment, fields), after(&experiment.clone().without(saving), fields));
+    let with = after(experiment, fields);
+    let without = after(&experiment.clone().without(saving), fields);
     assert_eq!(without.record().trace_hash(), with.record().trace_hash(), "{saving} in {experiment:?}");
     let pictures = |machine| seen(machine, fields).iter().map(SeenField::picture).collect::<Vec<_>>();
-    let (with, without) = (pictures(&with), pictures(&without));
+    let with = pictures(&with);
+    let without = pictures(&without);
     assert!(with == without, "{saving} in {experiment:?}");
     let colours = |picture: &image::RgbImage| picture.pixels().map(|pixel| pixel.0).collect::<BTreeSet<_>>().len();
     // In the first fields nothing has been drawn yet.

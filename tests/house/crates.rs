@@ -6,17 +6,17 @@ use std::process::Command;
 
 /// A crate of ours.
 pub(crate) struct Crate {
-    /// Its name.
+    /// Its name, as its manifest has it.
     pub(crate) name: String,
     /// What its manifest says of it.
     pub(crate) about: String,
     /// The crates of ours that it is built of, without those of its tests.
     pub(crate) dependencies: Vec<String>,
-    /// Its sources.
+    /// The Rust files below its `src`.
     pub(crate) files: Vec<SourceFile>,
 }
 
-/// A source file.
+/// A Rust file of a crate, with its text.
 pub(crate) struct SourceFile {
     /// Its path below `src`, with `/`.
     pub(crate) path: String,

@@ -29,7 +29,7 @@ pub(crate) const fn frame(schedule: Schedule) -> Kernel {
     Kernel { schedule, surface: KernelSurface::Gouraud, field: false, binned: true }
 }
 
-/// Assembles a kernel.
+/// The kernel, assembled with its own options.
 pub(crate) fn program(kernel: Kernel) -> Program {
     assemble("kernel", CODE, &kernel.source()).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -77,7 +77,7 @@ pub(crate) fn triangles(count: usize, size: f32, seed: u64) -> Vec<Triangle> {
 /// What a kernel left in memory.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Output {
-    /// Commands in order.
+    /// The words of each command, in the order of the triangles.
     pub(crate) commands: Vec<Vec<u32>>,
     /// Regions of each command, by rising number.
     pub(crate) regions: Vec<Vec<u16>>,
@@ -89,7 +89,8 @@ pub(crate) struct Output {
 /// the numbers of the rest; and the number of planes flattened, which the kernels do not do.
 pub(crate) fn native(surface: KernelSurface, viewport: Viewport, triangles: &[Triangle]) -> (Output, u64) {
     let transform = Transform::new(&view(), viewport, Culling::None).expect("finite");
-    let (light, mut stats) = (light(), SetupStats::default());
+    let light = light();
+    let mut stats = SetupStats::default();
     let mut output = Output { commands: Vec::new(), regions: Vec::new(), clipped: Vec::new() };
     for (n, triangle) in triangles.iter().enumerate() {
         let before = (stats.clipped, stats.outside, stats.not_finite);
@@ -137,9 +138,9 @@ fn heads(surface: KernelSurface) -> Heads {
 
 /// A processor with a kernel and triangles in its memory.
 pub(crate) struct Bench {
-    /// The processor.
+    /// The processor with the kernel in its memory.
     pub(crate) cpu: Cpu,
-    /// The kernel.
+    /// The kernel with its symbols.
     pub(crate) program: Program,
     ram: Ram,
     count: u32,
@@ -148,7 +149,7 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    /// Loads everything.
+    /// A processor with kernel, tables and triangles in its memory, ready to be called.
     pub(crate) fn new(kernel: Kernel, viewport: Viewport, config: Config, triangles: &[Triangle]) -> Bench {
         let mut ram = Ram::new(0, MEMORY);
         let program = program(kernel);
@@ -162,7 +163,8 @@ impl Bench {
         let regions = viewport.grid().regions();
         let bins: Vec<u32> = (0..regions).map(|n| BINS + n * BIN_BYTES).collect();
         ram.load_words(BIN_TABLE, &bins).expect("fits");
-        let (count, command_bytes) = (triangles.len() as u32, kernel.command_bytes());
+        let count = triangles.len() as u32;
+        let command_bytes = kernel.command_bytes();
         Bench { cpu: Cpu::new(config), program, ram, count, command_bytes, regions }
     }
 
@@ -183,7 +185,8 @@ impl Bench {
 
     /// Runs the kernel over all triangles, with empty caches before each.
     pub(crate) fn run_cold(&mut self) {
-        let (mut commands, mut clip_list) = (COMMANDS, CLIP_LIST);
+        let mut commands = COMMANDS;
+        let mut clip_list = CLIP_LIST;
         for n in 0..self.count {
             self.cpu.empty_caches();
             self.call(TRIANGLES + TRIANGLE_BYTES * n, 1, commands, clip_list);
