@@ -12,7 +12,7 @@ use glam::{Mat4, Vec3, Vec4};
 use pphigs::{
     Binning, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionEnvelope, Shading, Share,
 };
-use pxpl5::scene::{self, Hmd, HmdConfig, Scene};
+use pxpl5::scene::{self, Hmd, HmdConfig, Scene, View};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{BitSerial, Lanes, Layout, PixelArray};
 use pxpl5_wire::{RegionId, Word};
@@ -26,14 +26,10 @@ const VIEWS: u64 = 8;
 
 fn views(head: &Scene) -> Vec<EyeView> {
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
-    let view = |i| {
-        let view = hmd.mono(&head.motion().pose(i * 100_000_000_000));
-        let world_to_eye = view.world_to_eye;
-        let head_to_eye = view.head_to_eye;
-        let projection = view.projection;
-        EyeView { world_to_eye, head_to_eye, projection }
-    };
-    (0..VIEWS).map(view).collect()
+    let views = (0..VIEWS).map(|i| hmd.mono(&head.motion().pose(i * 100_000_000_000)));
+    views
+        .map(|View { world_to_eye, head_to_eye, projection, .. }| EyeView { world_to_eye, head_to_eye, projection })
+        .collect()
 }
 
 /// Red, green, blue, 0 to 255.

@@ -130,8 +130,7 @@ fn pictures(pipeline: Arc<dyn Pipeline>, config: &MachineConfig, subject: &Subje
     let name = format!("{}-{}", pipeline.name(), subject.scene.replace(':', "-"));
     let outcome = Experiment::with(config.clone(), pipeline, scene.into()).fields(subject.fields).run();
     let outcome = outcome.unwrap_or_else(|error| panic!("{name}: {error}"));
-    let eye = |eye: Eye| (format!("{name}-{eye:?}").to_lowercase(), shown(&outcome, eye));
-    Eye::BOTH.map(eye).into()
+    Eye::BOTH.map(|eye| (format!("{name}-{eye:?}").to_lowercase(), shown(&outcome, eye))).into()
 }
 
 fn compare(pipeline: impl Pipeline + Copy + 'static, config: &MachineConfig) {
@@ -162,17 +161,21 @@ fn many_boards() -> MachineConfig {
     MachineConfig { n_gps: 32, ..published }
 }
 
+fn drawn_by(n_gps: usize, pipeline: Arc<dyn Pipeline>, subject: &Subject) -> Vec<(String, RgbImage)> {
+    pictures(pipeline, &MachineConfig { n_gps, ..MachineConfig::small_hmd() }, subject)
+}
+
 #[test]
 fn a_still_scene_looks_the_same_however_many_processors_draw_it() {
     let subject = &SUBJECTS[3];
-    let draw = |pipeline: Arc<dyn Pipeline>, n_gps| {
-        pictures(pipeline, &MachineConfig { n_gps, ..MachineConfig::small_hmd() }, subject)
-    };
     let control = Arc::new(RenderingControl::stereo());
     let slats = Arc::new(Slats::split());
     for n_gps in [3, 13] {
-        assert!(draw(control.clone(), n_gps) == draw(control.clone(), 2), "rendering control with {n_gps}");
-        assert!(draw(slats.clone(), n_gps) == draw(slats.clone(), 1), "Slats with {n_gps}");
+        assert!(
+            drawn_by(n_gps, control.clone(), subject) == drawn_by(2, control.clone(), subject),
+            "rendering control with {n_gps}"
+        );
+        assert!(drawn_by(n_gps, slats.clone(), subject) == drawn_by(1, slats.clone(), subject), "Slats with {n_gps}");
     }
 }
 

@@ -71,8 +71,11 @@ fn the_parts_of_every_latency_add_up_to_the_picosecond() {
 
 /// Pipelines that race the beam instead of swapping.
 fn racing() -> [Outcome; 3] {
-    let jitp = |viewpoint, racing| run(Jitp::new(viewpoint, racing), "full-screen:2", 12);
-    [jitp(Viewpoint::Strip, true), jitp(Viewpoint::Field, false), run(Frameless::new(), "full-screen:2", 6)]
+    [
+        run(Jitp::new(Viewpoint::Strip, true), "full-screen:2", 12),
+        run(Jitp::new(Viewpoint::Field, false), "full-screen:2", 12),
+        run(Frameless::new(), "full-screen:2", 6),
+    ]
 }
 
 #[test]
@@ -82,12 +85,10 @@ fn where_there_is_no_swap_the_parts_are_those_of_the_part_that_meets_the_beam() 
         for (parts, times) in outcome.latency_parts().iter().zip(outcome.steady_pictures()) {
             assert_eq!(parts.published(), times.shown_at - times.transform_at);
             assert_eq!(parts.end(), times.shown_at);
-            let of = |stage| {
+            let [transform, render] = [Stage::Transform, Stage::Render].map(|stage| {
                 let span = stages.iter().find(|s| (s.stage, s.picture) == (stage, times.picture)).expect("marked");
                 (span.begin, span.end.expect("ended"))
-            };
-            let transform = of(Stage::Transform);
-            let render = of(Stage::Render);
+            });
             assert_eq!(transform.0, times.transform_at);
             let path = [transform.0, transform.1, render.0, render.1, times.copied_at.expect("copied"), times.shown_at];
             assert!(path.is_sorted(), "{}: {path:?}", outcome.pipeline().name());
@@ -177,12 +178,13 @@ fn rows(text: &str) -> Vec<BTreeMap<String, Option<u64>>> {
     let names: Vec<&str> = lines.next().expect("names").split(',').collect();
     let expected: Vec<String> = columns().into_iter().map(|column| column.name).collect();
     assert_eq!(names, expected);
-    let row = |line: &str| {
-        let values: Vec<Option<u64>> = line.split(',').map(|value| value.parse().ok()).collect();
-        assert_eq!(values.len(), names.len());
-        names.iter().map(|name| (*name).to_owned()).zip(values).collect()
-    };
-    lines.map(row).collect()
+    lines.map(|line| row(&names, line)).collect()
+}
+
+fn row(names: &[&str], line: &str) -> BTreeMap<String, Option<u64>> {
+    let values: Vec<Option<u64>> = line.split(',').map(|value| value.parse().ok()).collect();
+    assert_eq!(values.len(), names.len());
+    names.iter().map(|name| (*name).to_owned()).zip(values).collect()
 }
 
 #[cfg(feature = "parquet")]
@@ -361,9 +363,12 @@ fn recorded_messages_are_those_that_the_boards_counted() {
 fn recording_changes_nothing() {
     let quiet = experiment(Slats::split(), "full-screen:100", 30).pixels(Pixels::Off).run().expect("runs");
     assert_eq!(quiet.record().trace_hash(), split().record().trace_hash());
-    let tracks = |outcome: &Outcome| Trace::of(outcome).tracks.iter().map(|t| t.name.clone()).collect::<Vec<_>>();
-    assert!(tracks(&split()).contains(&"messages in".to_owned()));
-    assert!(!tracks(&quiet).contains(&"messages in".to_owned()));
+    assert!(has_messages(&split()));
+    assert!(!has_messages(&quiet));
+}
+
+fn has_messages(outcome: &Outcome) -> bool {
+    Trace::of(outcome).tracks.iter().any(|track| track.name == "messages in")
 }
 
 #[test]
@@ -375,11 +380,6 @@ fn chrome_json_has_the_same_slices_to_the_picosecond() {
     assert_eq!(json["otherData"]["config_hash"], mono().report().config_hash);
     // Decimal text, not a rounded number.
     let text = String::from_utf8(bytes).expect("UTF-8");
-    let ps = |line: &str, key: &str| {
-        let rest = line.split(&format!("\"{key}\":")).nth(1)?;
-        let (whole, decimals) = rest.split(['}', ',']).next()?.split_once('.')?;
-        Some(whole.parse::<u64>().ok()? * 1_000_000 + decimals.parse::<u64>().ok()?)
-    };
     let written = text.lines().filter(|line| line.contains("\"ph\":\"X\""));
     let written: Vec<(u64, u64)> =
         written.map(|line| (ps(line, "ts").expect("ts"), ps(line, "dur").expect("dur"))).collect();
@@ -387,8 +387,16 @@ fn chrome_json_has_the_same_slices_to_the_picosecond() {
     let expected: Vec<(u64, u64)> = slices.flatten().map(|s| (s.begin.0, (s.end - s.begin).0)).collect();
     assert!(expected.len() > 1_000);
     assert_eq!(written, expected);
-    let count = |kind: &str| json["traceEvents"].as_array().expect("array").iter().filter(|e| e["ph"] == kind).count();
-    assert_eq!(count("s"), count("f"), "every flow that begins ends");
+    let events = json["traceEvents"].as_array().expect("array");
+    let [begun, ended] = ["s", "f"].map(|kind| events.iter().filter(|event| event["ph"] == kind).count());
+    assert_eq!(begun, ended, "every flow that begins ends");
+}
+
+/// A time of a line of JSON, microseconds with six decimals, in picoseconds.
+fn ps(line: &str, key: &str) -> Option<u64> {
+    let rest = line.split(&format!("\"{key}\":")).nth(1)?;
+    let (whole, decimals) = rest.split(['}', ',']).next()?.split_once('.')?;
+    Some(whole.parse::<u64>().ok()? * 1_000_000 + decimals.parse::<u64>().ok()?)
 }
 
 fn frames(bytes: &[u8]) -> (png::Info<'static>, Vec<Vec<u8>>) {
@@ -423,11 +431,11 @@ fn a_film_shows_every_field_at_the_true_rate() {
     assert_eq!((info.width, info.height, frames.len()), (1_280, 480, 4));
     assert!(info.utf8_text.iter().any(|text| text.keyword == "pxpl5 seed"));
     for (field, frame) in (6..).zip(frames) {
-        let eye = |board: usize| {
-            let seen = |n| boards(&outcome)[board].seen(n).expect("remembered");
-            seen(field).interlaced_with(&seen(field - 1))
-        };
-        assert!(frame == side_by_side(&eye(0), &eye(1)).into_raw(), "field {field}");
+        let [left, right] = [0, 1].map(|board: usize| {
+            let [before, now] = [field - 1, field].map(|n| boards(&outcome)[board].seen(n).expect("remembered"));
+            now.interlaced_with(&before)
+        });
+        assert!(frame == side_by_side(&left, &right).into_raw(), "field {field}");
     }
 }
 
