@@ -64,9 +64,17 @@ fn panned(deg_per_s: f64, raster: Raster, fields: u64) -> Experiment {
 /// The column of each line of a field where the wall ends.
 fn edges(picture: &image::RgbImage, field: u64) -> Vec<f64> {
     let lines = (0..picture.height()).filter(|y| u64::from(y % 2) == field % 2);
-    let is_wall = |x, y| picture.get_pixel(x, y).0[0] > 100;
-    let edge = |y| (1..picture.width()).find(|x| is_wall(x - 1, y) && !is_wall(*x, y)).map_or(-1.0, f64::from);
-    lines.map(edge).collect()
+    lines.map(|y| edge(picture, y)).collect()
+}
+
+/// The first column behind the wall in a line; -1 for none.
+fn edge(picture: &image::RgbImage, y: u32) -> f64 {
+    let behind = (1..picture.width()).find(|x| is_wall(picture, x - 1, y) && !is_wall(picture, *x, y));
+    behind.map_or(-1.0, f64::from)
+}
+
+fn is_wall(picture: &image::RgbImage, x: u32, y: u32) -> bool {
+    picture.get_pixel(x, y).0[0] > 100
 }
 
 #[test]

@@ -111,9 +111,12 @@ fn j4_a_vertical_edge_slants_by_speed_times_scan_time() {
 
 /// The column right of the last white pixel of each row.
 fn edge(picture: &image::RgbImage) -> Vec<f64> {
-    let white = |row, x: &u32| picture.get_pixel(*x, row)[0] > 100;
-    let right_of = |row| (0..picture.width()).rev().find(|x| white(row, x)).map_or(0.0, |x| f64::from(x + 1));
-    (0..picture.height()).map(right_of).collect()
+    (0..picture.height()).map(|row| right_of_white(picture, row)).collect()
+}
+
+fn right_of_white(picture: &image::RgbImage, row: u32) -> f64 {
+    let last = (0..picture.width()).rev().find(|x| picture.get_pixel(*x, row)[0] > 100);
+    last.map_or(0.0, |x| f64::from(x + 1))
 }
 
 /// Pixels between the first and the last row of the straight line through all of them.

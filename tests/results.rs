@@ -7,12 +7,13 @@ use pxpl5::results::{columns, csv};
 use pxpl5::trace_export::{Events, Trace, chrome, perfetto};
 use pxpl5::{
     Experiment, Eye, Frameless, Jitp, LATENCY_PARTS, MachineConfig, Measured, Outcome, Pipeline, Pixels,
-    RenderingControl, Slats, Viewpoint, scene, side_by_side,
+    RenderingControl, Report, Slats, Viewpoint, scene, side_by_side,
 };
 use pxpl5::{Film, FilmError, FilmOf};
 use pxpl5_framebuffer::seen_at;
 use pxpl5_gp::{Edge, Stage};
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::SurfaceId;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -107,46 +108,54 @@ fn the_means_of_the_report_add_up_to_its_latency() {
     }
 }
 
+/// When the last board ended a stage of a picture.
+fn end_of(outcome: &Outcome, stage: Stage, surface: Option<SurfaceId>, picture: u64) -> Time {
+    let marks = outcome.observation().marks.iter();
+    let ends = marks.filter(|m| (m.stage, m.surface, m.picture, m.edge) == (stage, surface, picture, Edge::End));
+    ends.map(|mark| mark.time).max().expect("marked")
+}
+
+/// The place of a part among [`LATENCY_PARTS`].
+fn part(name: &str) -> usize {
+    LATENCY_PARTS.iter().position(|part| part.name == name).expect("a part")
+}
+
 #[test]
 fn a_part_is_the_time_between_the_marks_that_define_it() {
     let outcome = stereo();
-    let end_of = |stage, eye, picture| {
-        let marks = outcome.observation().marks.iter();
-        let of = marks.filter(|m| (m.stage, m.surface, m.picture, m.edge) == (stage, eye, picture, Edge::End));
-        of.map(|m| m.time).max().expect("marked")
-    };
-    let part = |name| LATENCY_PARTS.iter().position(|part| part.name == name).expect("a part");
     for (parts, times) in stereo().latency_parts().iter().zip(stereo().steady_pictures()) {
         let copied_at = times.copied_at.expect("copied");
         assert_eq!(parts.spans[part("wait_for_retrace")], times.shown_at - copied_at);
-        let rendered_at = end_of(Stage::Render, Some(Eye::Right.into()), times.picture);
+        let rendered_at = end_of(&outcome, Stage::Render, Some(Eye::Right.into()), times.picture);
         let rest: Span = parts.spans[part("wait_for_copy")] + parts.spans[part("copy")];
         assert_eq!(rest, copied_at - rendered_at);
-        let transformed_at = end_of(Stage::Transform, Some(Eye::Left.into()), times.picture);
+        let transformed_at = end_of(&outcome, Stage::Transform, Some(Eye::Left.into()), times.picture);
         assert_eq!(parts.spans[part("transform")], transformed_at - times.transform_at);
-        let sent_at = end_of(Stage::Send, None, times.picture);
+        let sent_at = end_of(&outcome, Stage::Send, None, times.picture);
         assert_eq!(parts.spans[part("send")], sent_at - times.sampled_at.expect("sampled"));
     }
+}
+
+fn mean_ms(report: &Report, of: &str, until: &str) -> f64 {
+    let found = report.latency_by_eye_ms.iter().find(|entry| (entry.of.as_str(), entry.until) == (of, until));
+    found.expect("listed").statistics.statistics.mean
 }
 
 #[test]
 fn the_latencies_of_the_eyes_lie_between_their_events() {
     let outcome = stereo();
     let report = outcome.report();
-    let mean = |of: &str, until: &str| {
-        let found = report.latency_by_eye_ms.iter().find(|entry| (entry.of.as_str(), entry.until) == (of, until));
-        found.expect("listed").statistics.statistics.mean
-    };
     // The frame's latency is that of the pair: from its first TRANSFORM to the swap.
-    assert!((mean("pair", "swap") - report.latency_ms.statistics.mean).abs() < 1e-9);
+    assert!((mean_ms(&report, "pair", "swap") - report.latency_ms.statistics.mean).abs() < 1e-9);
     let pictures = outcome.steady_pictures().iter();
     let to_copy: Vec<f64> =
         pictures.map(|times| (times.copied_at.expect("copied") - times.transform_at).as_ms()).collect();
     let expected = to_copy.iter().sum::<f64>() / to_copy.len() as f64;
-    assert!((mean("pair", "end_of_copy") - expected).abs() < 1e-9);
+    assert!((mean_ms(&report, "pair", "end_of_copy") - expected).abs() < 1e-9);
     // Both eyes are swapped in at once, so they differ by the time between their TRANSFORMs at every event.
-    let between = mean("left", "swap") - mean("right", "swap");
-    assert!(between > 0.0 && (mean("left", "light") - mean("right", "light") - between).abs() < 1e-9);
+    let [at_swap, at_light] =
+        ["swap", "light"].map(|until| mean_ms(&report, "left", until) - mean_ms(&report, "right", until));
+    assert!(at_swap > 0.0 && (at_light - at_swap).abs() < 1e-9);
     assert!(SPLIT.with(Rc::clone).report().latency_by_eye_ms.is_empty());
 }
 
@@ -446,6 +455,11 @@ fn a_film_without_a_field_is_refused() {
     assert!(matches!(film.write(&[], Vec::new()), Err(FilmError::Periods { found: 0, .. })));
 }
 
+/// Some pixels of a row.
+fn pixels(picture: &image::RgbImage, y: u32, x: std::ops::Range<u32>) -> Vec<image::Rgb<u8>> {
+    x.map(|x| *picture.get_pixel(x, y)).collect()
+}
+
 #[test]
 fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
     let (_, outcome) = remembered();
@@ -456,14 +470,11 @@ fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
     // Field 9 scans the odd lines; the beam is at pixel 320 of line 201.
     let at = video.when(320, 201, 9).expect("scanned");
     let screen = seen_at(video, at, &fields);
-    let row = |picture: &image::RgbImage, y: u32, x: std::ops::Range<u32>| -> Vec<_> {
-        x.map(|x| *picture.get_pixel(x, y)).collect()
-    };
-    assert_eq!(row(&screen, 199, 0..640), row(&now, 99, 0..640));
-    assert_eq!(row(&screen, 201, 0..321), row(&now, 100, 0..321));
-    assert_eq!(row(&screen, 201, 321..640), row(&oldest, 100, 321..640));
-    assert_eq!(row(&screen, 203, 0..640), row(&oldest, 101, 0..640));
-    assert_eq!(row(&screen, 200, 0..640), row(&before, 100, 0..640));
+    assert_eq!(pixels(&screen, 199, 0..640), pixels(&now, 99, 0..640));
+    assert_eq!(pixels(&screen, 201, 0..321), pixels(&now, 100, 0..321));
+    assert_eq!(pixels(&screen, 201, 321..640), pixels(&oldest, 100, 321..640));
+    assert_eq!(pixels(&screen, 203, 0..640), pixels(&oldest, 101, 0..640));
+    assert_eq!(pixels(&screen, 200, 0..640), pixels(&before, 100, 0..640));
     // One picosecond before, the pixel under the beam is the old one.
     let earlier = seen_at(video, Time(at.0 - 1), &fields);
     assert_eq!(earlier.get_pixel(320, 201), oldest.get_pixel(320, 100));

@@ -8,6 +8,7 @@ use i860::{Config, Cpu, Outcome, Profile, Program, Ram, assemble};
 use pxpl5_geometry::kernel::{Heads, Kernel, KernelSurface, Schedule, display_list_words};
 use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 use pxpl5_renderer::{Command, Layout};
+use pxpl5_sim::SplitMix64;
 use std::collections::BTreeMap;
 
 /// Memory of a graphics processor in bytes (published).
@@ -47,31 +48,34 @@ pub(crate) fn light() -> Light {
 }
 
 /// Numbers in -1 to 1, the same on every host.
-struct Numbers(u64);
+struct Numbers(SplitMix64);
 
 impl Numbers {
     fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 40) as f32 / (1u32 << 23) as f32 - 1.0
+        2.0 * self.0.unit() - 1.0
+    }
+
+    fn colour(&mut self) -> [u8; 3] {
+        [0, 1, 2].map(|_| ((self.next() + 1.0) * 127.0) as u8)
     }
 
     fn vector(&mut self, size: f32) -> Vec3 {
         Vec3::new(self.next(), self.next(), self.next()) * size
     }
+
+    fn triangle(&mut self, size: f32) -> Triangle {
+        let centre = self.vector(2.4);
+        let positions = [0, 1, 2].map(|_| centre + self.vector(size));
+        let normals = [0, 1, 2].map(|_| self.vector(1.0));
+        let colours = [0, 1, 2].map(|_| self.colour());
+        Triangle { positions, normals, colours }
+    }
 }
 
 /// Triangles of about `size` world units around the middle of the picture, each corner coloured at random.
 pub(crate) fn triangles(count: usize, size: f32, seed: u64) -> Vec<Triangle> {
-    let mut numbers = Numbers(seed);
-    let mut one = |_| {
-        let centre = numbers.vector(2.4);
-        let positions = [0, 1, 2].map(|_| centre + numbers.vector(size));
-        let normals = [0, 1, 2].map(|_| numbers.vector(1.0));
-        let mut byte = || ((numbers.next() + 1.0) * 127.0) as u8;
-        let colours = [0, 1, 2].map(|_| [byte(), byte(), byte()]);
-        Triangle { positions, normals, colours }
-    };
-    (0..count).map(&mut one).collect()
+    let mut numbers = Numbers(SplitMix64::new(seed));
+    (0..count).map(|_| numbers.triangle(size)).collect()
 }
 
 /// What a kernel left in memory.
