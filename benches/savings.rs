@@ -6,8 +6,8 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5::{
-    Experiment, Level, MachineConfig, NtscDisplay, Pixels, RenderingControl, Saving, Slats, Workstation, scene,
-    scene::Scene,
+    Experiment, Level, MachineConfig, NtscDisplay, PeriodNumber, Pixels, RenderingControl, Saving, Slats, Workstation,
+    scene, scene::Scene,
 };
 use std::hint::black_box;
 
@@ -49,7 +49,7 @@ fn savings(criterion: &mut Criterion) {
 
 fn run(experiment: &Experiment, fields: u64) -> u64 {
     let mut machine = experiment.build().expect("the presets are valid");
-    let end = machine.record().tick(fields);
+    let end = machine.record().tick(PeriodNumber(fields));
     machine.run_until(end).expect("it runs");
     black_box(machine.finish_pixels())
 }
@@ -58,7 +58,7 @@ fn run(experiment: &Experiment, fields: u64) -> u64 {
 fn run_looking(experiment: &Experiment, fields: u64, looks: usize) -> u64 {
     let mut machine = experiment.build().expect("the preset is valid");
     for field in (60..=fields).step_by(60) {
-        let end = machine.record().tick(field);
+        let end = machine.record().tick(PeriodNumber(field));
         machine.run_until(end).expect("it runs");
         for _ in 0..looks {
             let display = machine.record().display_of_kind::<NtscDisplay>().expect("the papers' machine");

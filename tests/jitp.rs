@@ -13,8 +13,8 @@ use pxpl5::tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, seconds};
 use pxpl5::tracking::tracker::{Fault, TrackerConfig, TrackerModel};
 use pxpl5::views::charts::LatencyCurve;
 use pxpl5::{
-    Budget, Experiment, Frameless, Head, Interpolation, Jitp, MachineConfig, Measured, Outcome, Percentiles, Pipeline,
-    PixelErrors, Pixels, Registration, RenderingControl, Slats, Viewpoint,
+    Budget, Experiment, Frameless, Head, Interpolation, Jitp, MachineConfig, Measured, Outcome, Percentiles,
+    PeriodNumber, Pipeline, PixelErrors, Pixels, Registration, RenderingControl, Slats, Viewpoint,
 };
 use pxpl5_sim::TraceHash;
 use std::collections::BTreeMap;
@@ -26,7 +26,7 @@ const PAN: f64 = 200.0;
 /// Focal length of 640 pixels over 60 degrees.
 const FOCAL_PX: f64 = 554.256_258_422_040_8;
 /// A field that is well past the start, and even.
-const FIELD: u64 = 40;
+const FIELD: PeriodNumber = PeriodNumber(40);
 
 fn head(motion: impl Motion + Send + Sync + 'static, tracker: TrackerConfig, kind: PredictorKind) -> Head {
     Head::new(Arc::new(motion), tracker, kind, 1).expect("the settings are in range")
@@ -51,7 +51,7 @@ fn run(pipeline: impl Pipeline + 'static, head: Head, fields: u64) -> Outcome {
 }
 
 fn under_a_pan(viewpoint: Viewpoint, racing: bool) -> Outcome {
-    run(Jitp { strip_rows: 1, ..Jitp::new(viewpoint, racing) }, perfect(Pan::at(PAN)), FIELD + 2)
+    run(Jitp { strip_rows: 1, ..Jitp::new(viewpoint, racing) }, perfect(Pan::at(PAN)), FIELD.0 + 2)
 }
 
 /// Seconds between the beam's passes over two pixels of a field.
@@ -161,7 +161,7 @@ fn a_picture_is_seen_as_it_is_by_a_still_head() {
 fn n_views(viewpoint: Viewpoint) -> usize {
     let outcome = under_a_pan(viewpoint, true);
     let sampled = outcome.head().expect("a head").sampled();
-    sampled.iter().filter(|sample| sample.number / 256 == FIELD).count()
+    sampled.iter().filter(|sample| sample.number.0 / 256 == FIELD.0).count()
 }
 
 #[test]

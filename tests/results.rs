@@ -6,14 +6,14 @@ mod support;
 use pxpl5::results::{columns, csv};
 use pxpl5::trace_export::{Events, Trace, chrome, perfetto};
 use pxpl5::{
-    Experiment, Eye, Frameless, Jitp, LATENCY_PARTS, MachineConfig, Measured, Outcome, Pipeline, Pixels,
+    Experiment, Eye, Frameless, Jitp, LATENCY_PARTS, MachineConfig, Measured, Outcome, PeriodNumber, Pipeline, Pixels,
     RenderingControl, Report, Slats, Viewpoint, scene, side_by_side,
 };
 use pxpl5::{Film, FilmError, FilmOf};
 use pxpl5_framebuffer::seen_at;
 use pxpl5_gp::{Edge, Stage};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::SurfaceId;
+use pxpl5_wire::{PictureNumber, SurfaceId};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -64,7 +64,7 @@ fn the_parts_of_every_latency_add_up_to_the_picosecond() {
             assert_eq!(Some(parts.begin), times.sampled_at);
             let video = video(outcome);
             let field = video.field_at(times.shown_at);
-            let line = u32::try_from(field % 2).expect("0 or 1");
+            let line = u32::try_from(field.0 % 2).expect("0 or 1");
             assert_eq!(Some(parts.end()), video.when(0, line, field));
         }
     }
@@ -109,7 +109,7 @@ fn the_means_of_the_report_add_up_to_its_latency() {
 }
 
 /// When the last board ended a stage of a picture.
-fn end_of(outcome: &Outcome, stage: Stage, surface: Option<SurfaceId>, picture: u64) -> Time {
+fn end_of(outcome: &Outcome, stage: Stage, surface: Option<SurfaceId>, picture: PictureNumber) -> Time {
     let marks = outcome.observation().marks.iter();
     let ends = marks.filter(|m| (m.stage, m.surface, m.picture, m.edge) == (stage, surface, picture, Edge::End));
     ends.map(|mark| mark.time).max().expect("marked")
@@ -313,7 +313,7 @@ fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
     for outcome in &all() {
         let (_, events) = parsed(outcome);
         for times in outcome.steady_pictures() {
-            let id = times.picture + 1;
+            let id = times.picture.next().0;
             let last: Vec<_> = events.iter().filter(|(_, event)| event.terminating_flow_ids == [id]).collect();
             assert_eq!(last.len(), 1, "picture {}", times.picture);
             assert_eq!(last[0].0, times.shown_at.0 / 1_000);
@@ -435,13 +435,16 @@ fn remembered() -> (Experiment, Outcome) {
 fn a_film_shows_every_field_at_the_true_rate() {
     let (experiment, outcome) = remembered();
     let mut bytes = Vec::new();
-    Film::new(experiment, 6, 4, FilmOf::All).write(&[("seed", "1".to_owned())], &mut bytes).expect("written");
+    Film::new(experiment, PeriodNumber(6), 4, FilmOf::All)
+        .write(&[("seed", "1".to_owned())], &mut bytes)
+        .expect("written");
     let (info, frames) = frames(&bytes);
     assert_eq!((info.width, info.height, frames.len()), (1_280, 480, 4));
     assert!(info.utf8_text.iter().any(|text| text.keyword == "pxpl5 seed"));
     for (field, frame) in (6..).zip(frames) {
         let [left, right] = [0, 1].map(|board: usize| {
-            let [before, now] = [field - 1, field].map(|n| boards(&outcome)[board].seen(n).expect("remembered"));
+            let [before, now] =
+                [field - 1, field].map(|n| boards(&outcome)[board].seen(PeriodNumber(n)).expect("remembered"));
             now.interlaced_with(&before)
         });
         assert!(frame == side_by_side(&left, &right).into_raw(), "field {field}");
@@ -451,7 +454,7 @@ fn a_film_shows_every_field_at_the_true_rate() {
 #[test]
 fn a_film_without_a_field_is_refused() {
     let (experiment, _) = remembered();
-    let film = Film::new(experiment, 0, 0, FilmOf::One(Eye::Left.into()));
+    let film = Film::new(experiment, PeriodNumber::FIRST, 0, FilmOf::One(Eye::Left.into()));
     assert!(matches!(film.write(&[], Vec::new()), Err(FilmError::Periods { found: 0, .. })));
 }
 
@@ -464,11 +467,11 @@ fn pixels(picture: &image::RgbImage, y: u32, x: std::ops::Range<u32>) -> Vec<ima
 fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
     let (_, outcome) = remembered();
     let board = &boards(&outcome)[0];
-    let fields: Vec<_> = (7..10).map(|n| board.seen(n).expect("remembered")).collect();
+    let fields: Vec<_> = (7..10).map(|n| board.seen(PeriodNumber(n)).expect("remembered")).collect();
     let video = video(&outcome);
     let [oldest, before, now] = [0, 1, 2].map(|i| fields[i].picture());
     // Field 9 scans the odd lines; the beam is at pixel 320 of line 201.
-    let at = video.when(320, 201, 9).expect("scanned");
+    let at = video.when(320, 201, PeriodNumber(9)).expect("scanned");
     let screen = seen_at(video, at, &fields);
     assert_eq!(pixels(&screen, 199, 0..640), pixels(&now, 99, 0..640));
     assert_eq!(pixels(&screen, 201, 0..321), pixels(&now, 100, 0..321));

@@ -11,7 +11,7 @@ use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
 use pxpl5_run::{ClosedForm, Experiment, ExperimentError, Pipeline, Slats, Summary, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
-use pxpl5_wire::{FieldParity, RegionGrid};
+use pxpl5_wire::{FieldParity, PeriodNumber, RegionGrid};
 use slats::CLUMP;
 
 /// Renderers that are looked at one by one; more than there are field regions never hold one.
@@ -73,8 +73,9 @@ impl SlatsModel {
             return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
         }
         let video = video_of(config)?;
-        let field_ns = video.retrace(1).since(Time::ZERO).as_ms() * 1e6;
-        let bottom = video.line_start(2 * RegionGrid::FIELD.region_height, 2);
+        let field_ns = video.retrace(PeriodNumber(1)).since(Time::ZERO).as_ms() * 1e6;
+        let even = PeriodNumber(2);
+        let bottom = video.line_start(2 * RegionGrid::FIELD.region_height, even);
         let messages = (15_360.0_f64 / 1_024.0).ceil();
         let word_ns = config.ring.word_ns as f64;
         Ok(Self {
@@ -88,7 +89,7 @@ impl SlatsModel {
             clear: Cost::of_command(&config.renderer, CommandKind::Clear),
             region_ns: 15_360.0 * word_ns + messages * config.ring.overhead_words as f64 * word_ns,
             field_ns,
-            bottom_ns: bottom.map_or(0.0, |at| at.since(video.retrace(2)).as_ms() * 1e6),
+            bottom_ns: bottom.map_or(0.0, |at| at.since(video.retrace(even)).as_ms() * 1e6),
             renderers: config.n_renderers.min(MOST_RENDERERS),
             gps: config.n_gps,
             source_channels: (config.ring.source_channels.min(config.ring.fifo_channels).min(config.ring.channels)
@@ -277,7 +278,7 @@ fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), Exp
     let entries = match pipeline.binning {
         Binning::All => 10.0,
         Binning::Touched => {
-            let viewport = Viewport::field(FieldParity::of_field(0));
+            let viewport = Viewport::field(FieldParity::Even);
             let loads = Load::of_views(experiment, viewport, Binning::Touched, &[0])?;
             let per_eye = loads.iter().map(Load::entries).sum::<f64>() / loads.len() as f64;
             per_eye / triangles.max(1.0)
