@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::options::registry;
 use crate::terminal::print;
 use clap::Args;
-use pxpl5::{ConfigError, MachineConfig, PRESETS, Parameter, tracking_parameters};
+use pxpl5::{MachineConfig, PRESETS, Parameter, tracking_parameters};
 use serde_json::json;
 use std::fmt::Write;
 
