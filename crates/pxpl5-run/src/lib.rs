@@ -33,6 +33,7 @@ mod statistics;
 mod summary;
 mod views;
 
+pub use pxpl5_display::{Aim, LightSpan};
 pub use display_list::{display_list, views};
 pub use error::ExperimentError;
 pub use experiment::{Experiment, FIELDS_RANGE, FieldsNeeded, Pixels, WARM_UP_PICTURES};
@@ -50,4 +51,4 @@ pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry
 pub use rehearsal::Rehearsal;
 pub use statistics::{DefinedStatistics, Statistics};
 pub use summary::Summary;
-pub use views::{ReportTimes, Views, ViewsWanted};
+pub use views::{FrameStarts, ReportTimes, Views, ViewsWanted};

@@ -1,14 +1,15 @@
 //! The host: SEND whenever the tracker has something new.
 
 use crate::config::SlatsConfig;
-use pphigs::FrameView;
-use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
-use pxpl5_sim::{Span, Time};
-use pxpl5_wire::Body;
+use pphigs::{FrameView, send_as_tracked};
+use pxpl5_gp::{Fault, Gp, HostTiming};
+use pxpl5_sim::Time;
 
-/// Sends the viewing transforms of both eyes to the leading GP, once every view period.
+/// Sends the viewing transforms of both eyes to the leading GP: once at the start, so that there is a first field, and then
+/// for every report of the tracker ([`send_as_tracked`]). The GP takes the newest that has come when it starts a field.
 ///
-/// `view_of` gives the view of an update whose pose is sampled at a time.
+/// `next_report` gives the arrival of the first report after an instant, and `view_of` the view of an update whose pose is
+/// sampled at a time.
 ///
 /// # Errors
 ///
@@ -17,19 +18,9 @@ pub async fn host(
     gp: Gp,
     config: SlatsConfig,
     timing: HostTiming,
+    next_report: impl Fn(Time) -> Option<Time>,
     mut view_of: impl FnMut(u64, Time) -> FrameView,
 ) -> Result<(), Fault> {
-    for update in 0.. {
-        let started = gp.now();
-        gp.begin(Stage::Send, update, None);
-        let words = view_of(update, started).to_words();
-        let length_words = words.len() as u32;
-        gp.spend(timing.link_span(length_words)).await;
-        let sent = gp.send(config.processors[0], length_words, Body::Words(words.into())).await;
-        gp.accepted(sent).await;
-        gp.end(Stage::Send, update, None);
-        let next = started + Span::from_ns(timing.view_period_ns);
-        gp.spend(next.since(gp.now())).await;
-    }
-    Ok(())
+    let words = |update, known| view_of(update, known).to_words();
+    send_as_tracked(gp, config.processors[0], timing, Some(Time::ZERO), next_report, words).await
 }
