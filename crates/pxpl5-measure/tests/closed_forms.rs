@@ -142,7 +142,7 @@ impl Run {
         assert_eq!(empty, 0, "{}", self.pipeline);
         let found = [pixels.mean, degrees.mean];
         let off = [found[0] / expected[0] - 1.0, found[1] / expected[1] - 1.0];
-        println!("{:24} {:12} {found:?} for {expected:?}: {off:.1e?}", self.pipeline, self.aim.to_string());
+        println!("{:24} {:12} {found:?} for {expected:?}: {off:?}", self.pipeline, self.aim.to_string());
         assert!(off.iter().all(|off| off.abs() < tolerance), "{} {}: {off:?}", self.pipeline, self.aim);
     }
 }
@@ -189,7 +189,7 @@ fn a_fast_pan_too_where_a_picture_is_drawn_for_one_instant() {
 }
 
 /// A head that shakes about the vertical.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Shaking;
 
 /// So little that the square of its rate is nothing (see above).
