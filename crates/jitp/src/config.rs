@@ -5,7 +5,9 @@ use pxpl5_display::{Aim, LightSpan};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, RegionGrid, RegionId};
+use pxpl5_wire::{
+    CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber, RegionGrid, RegionId, ViewNumber,
+};
 use std::fmt;
 use std::sync::Arc;
 use thiserror::Error;
@@ -57,9 +59,9 @@ pub enum DrawingSchedule {
 #[derive(Clone)]
 pub struct Beam {
     /// A function of (field, row of the field, pixel).
-    at: Arc<dyn Fn(u64, u32, u32) -> Time + Send + Sync>,
+    at: Arc<dyn Fn(PeriodNumber, u32, u32) -> Time + Send + Sync>,
     /// A function of the field.
-    retrace: Arc<dyn Fn(u64) -> Time + Send + Sync>,
+    retrace: Arc<dyn Fn(PeriodNumber) -> Time + Send + Sync>,
 }
 
 /// A function of the step: which block comes.
@@ -69,21 +71,21 @@ pub struct BlockOrder(Arc<dyn Fn(u64) -> RegionId + Send + Sync>);
 impl Beam {
     /// A beam that is at (field, row of the field, pixel) when `when` says, and begins a field when `retrace` says.
     pub fn new(
-        when: impl Fn(u64, u32, u32) -> Time + Send + Sync + 'static,
-        retrace: impl Fn(u64) -> Time + Send + Sync + 'static,
+        when: impl Fn(PeriodNumber, u32, u32) -> Time + Send + Sync + 'static,
+        retrace: impl Fn(PeriodNumber) -> Time + Send + Sync + 'static,
     ) -> Self {
         Self { at: Arc::new(when), retrace: Arc::new(retrace) }
     }
 
     /// When the beam is at a pixel of a row of a field.
     #[must_use]
-    pub fn at(&self, field: u64, row: u32, x: u32) -> Time {
+    pub fn at(&self, field: PeriodNumber, row: u32, x: u32) -> Time {
         (self.at)(field, row, x)
     }
 
     /// The retrace that begins a field.
     #[must_use]
-    pub fn retrace(&self, field: u64) -> Time {
+    pub fn retrace(&self, field: PeriodNumber) -> Time {
         (self.retrace)(field)
     }
 }
@@ -115,7 +117,7 @@ impl fmt::Debug for BlockOrder {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
     /// Number that the view gets: see [`JitpConfig::view_number`].
-    pub number: u64,
+    pub number: ViewNumber,
     /// Reports that the host had by then have reached the master.
     pub known: Time,
     /// The moment that the view is drawn for.
@@ -189,8 +191,8 @@ impl JitpConfig {
 
     /// The number of the view of a strip, of the whole field (strip 0), or of the begin (0) and the end (1) of a field.
     #[must_use]
-    pub const fn view_number(field: u64, strip: u64) -> u64 {
-        field * VIEWS_PER_FIELD + strip
+    pub const fn view_number(field: PeriodNumber, strip: u64) -> ViewNumber {
+        ViewNumber(field.0 * VIEWS_PER_FIELD + strip)
     }
 
     /// How a field (strips) or a frame (blocks) is cut into regions.
@@ -210,18 +212,19 @@ impl JitpConfig {
         (strip * columns..(strip + 1) * columns).map(|region| RegionId(region as u16)).collect()
     }
 
-    pub(crate) fn picture(&self, number: u64) -> (Viewport, Lines) {
+    /// The part of the frame that a picture fills, and its lines: of a field, or the whole.
+    pub(crate) fn extent(&self, picture: PictureNumber) -> (Viewport, Lines) {
         match self.schedule {
             DrawingSchedule::Beam { .. } => {
-                let parity = FieldParity::of_field(number);
+                let parity = FieldParity::of_field(picture.period_drawn_for());
                 (Viewport::field(parity), Lines::Field(parity))
             }
             DrawingSchedule::Roam { .. } => (Viewport::FRAME, Lines::Frame),
         }
     }
 
-    pub(crate) fn target(&self, picture: u64, region: RegionId) -> CopyTarget {
-        let (_, lines) = self.picture(picture);
+    pub(crate) fn target(&self, picture: PictureNumber, region: RegionId) -> CopyTarget {
+        let (_, lines) = self.extent(picture);
         CopyTarget { frame_buffer: self.frame_buffer, buffer: 0, lines, grid: self.grid(), region, picture }
     }
 
@@ -237,7 +240,7 @@ impl JitpConfig {
     }
 
     /// When the first pixel of a strip is scanned, by which it must have arrived.
-    pub(crate) fn deadline(&self, field: u64, strip: u32) -> Time {
+    pub(crate) fn deadline(&self, field: PeriodNumber, strip: u32) -> Time {
         self.beam.at(field, self.rows(strip).0, 0)
     }
 
@@ -248,19 +251,19 @@ impl JitpConfig {
 
     /// The instant that a strip is drawn for.
     #[must_use]
-    pub fn aimed_at_strip(&self, field: u64, strip: u32) -> Time {
+    pub fn aimed_at_strip(&self, field: PeriodNumber, strip: u32) -> Time {
         let (first, last) = self.rows(strip);
         self.aimed_at(field, first, last)
     }
 
     /// The instant that a field of one view is drawn for.
     #[must_use]
-    pub fn aimed_at_field(&self, field: u64) -> Time {
+    pub fn aimed_at_field(&self, field: PeriodNumber) -> Time {
         self.aimed_at(field, 0, self.grid().height - 1)
     }
 
     /// The instant that some rows of a field are drawn for.
-    fn aimed_at(&self, field: u64, first: u32, last: u32) -> Time {
+    fn aimed_at(&self, field: PeriodNumber, first: u32, last: u32) -> Time {
         let shown = LightSpan {
             tick: self.beam.retrace(field),
             first: self.beam.at(field, first, 0),
@@ -271,14 +274,14 @@ impl JitpConfig {
 
     /// The first and the last pixel of a field: T0 and T1.
     #[must_use]
-    pub fn ends(&self, field: u64) -> (Time, Time) {
+    pub fn ends(&self, field: PeriodNumber) -> (Time, Time) {
         let RegionGrid { width, height, .. } = self.grid();
         (self.beam.at(field, 0, 0), self.beam.at(field, height - 1, width - 1))
     }
 
     /// How much of the way from T0 to T1 the instant is that a strip is drawn for; below 0 for the retrace, which is before T0.
     #[must_use]
-    pub fn part(&self, field: u64, strip: u32) -> f64 {
+    pub fn part(&self, field: PeriodNumber, strip: u32) -> f64 {
         let (begin, end) = self.ends(field);
         let from_begin = self.aimed_at_strip(field, strip).0 as f64 - begin.0 as f64;
         from_begin / end.since(begin).0 as f64
@@ -286,7 +289,7 @@ impl JitpConfig {
 
     /// From the order of a strip to its beam: every slave has as many strip times as there are slaves.
     pub(crate) fn lead(&self) -> Span {
-        let strip = self.deadline(0, 1).since(self.deadline(0, 0));
+        let strip = self.deadline(PeriodNumber::FIRST, 1).since(self.deadline(PeriodNumber::FIRST, 0));
         strip * self.slaves.len() as u64 + Span::from_ns(self.timing.margin_ns)
     }
 }

@@ -2,7 +2,7 @@
 
 use pxpl5_gp::{Fault, Gp, HostTiming, Stage, Ticket};
 use pxpl5_sim::Time;
-use pxpl5_wire::{Body, NodeId, Word};
+use pxpl5_wire::{Body, NodeId, ViewNumber, Word};
 
 /// Sends what the tracker delivers to one board, as quickly and as often as tracker, link and ring allow (TR94): a message
 /// for each report, as soon as the report is there and the message before it has been accepted. Of several reports that wait
@@ -21,19 +21,21 @@ pub async fn send_as_tracked(
     timing: HostTiming,
     first: Option<Time>,
     next_report: impl Fn(Time) -> Option<Time>,
-    mut message: impl FnMut(u64, Time) -> Vec<Word>,
+    mut message: impl FnMut(ViewNumber, Time) -> Vec<Word>,
 ) -> Result<(), Fault> {
     let mut due = first;
-    let mut number = 0;
+    let mut number = ViewNumber::FIRST;
     while let Some(at) = due {
         gp.spend(at.since(gp.now())).await;
         let known = gp.now();
-        gp.begin(Stage::Send, number, None);
+        // Which pictures will show it is not known here: SEND is marked by the message's own number.
+        let marked_as = number.picture_taken_for();
+        gp.begin(Stage::Send, marked_as, None);
         let sent = send(&gp, receiver, timing, message(number, known)).await;
         gp.accepted(sent).await;
-        gp.end(Stage::Send, number, None);
+        gp.end(Stage::Send, marked_as, None);
         due = next_report(known);
-        number += 1;
+        number = number.next();
     }
     Ok(())
 }

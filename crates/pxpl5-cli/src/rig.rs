@@ -36,9 +36,8 @@ pub(crate) struct RigArgs {
 }
 
 /// Keys that would say what the rig itself says.
-const NOT_OURS: [&str; 8] = [
-    "scene", "triangles", "head.motion", "head.predict", "head.aim", "head.raster", "fields", "pixels",
-];
+const NOT_OURS: [&str; 8] =
+    ["scene", "triangles", "head.motion", "head.predict", "head.aim", "head.raster", "fields", "pixels"];
 
 /// Runs the measurement.
 ///
@@ -58,7 +57,9 @@ pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
 /// Pipeline, machine, tracker and seed of the settings, with what the rig brings along.
 fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
     if let Some(key) = file.keys().find(|key| NOT_OURS.contains(key) || key.starts_with("motion.")) {
-        return Err(CliError::usage(format!("{key}: does not apply to the rig, which has its own scene, motion and length")));
+        return Err(CliError::usage(format!(
+            "{key}: does not apply to the rig, which has its own scene, motion and length"
+        )));
     }
     file.set("scene", "full-screen:2", "the rig")?;
     file.set("head.motion", "pendulum", "the rig")?;
@@ -78,8 +79,11 @@ fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
         "outside",
         "inside"
     );
-    let rows: [(&str, fn(&Side) -> &Latency); 3] =
-        [("tracking latency", |side| &side.tracking), ("rendering latency", |side| &side.rendering), ("together", |side| &side.total)];
+    let rows: [(&str, fn(&Side) -> &Latency); 3] = [
+        ("tracking latency", |side| &side.tracking),
+        ("rendering latency", |side| &side.rendering),
+        ("together", |side| &side.total),
+    ];
     for (name, latency) in rows {
         let _ = writeln!(text, "{name:<20} {:^36} {:^36}", cell(latency(outside)), cell(latency(inside)));
     }

@@ -14,9 +14,10 @@ use glam::{DVec3, Vec3};
 use pxpl5_display::Display;
 use pxpl5_gp::{Edge, Stage};
 use pxpl5_machine::{Machine, MachineConfig, Record};
-use pxpl5_run::{Experiment, ExperimentError, Head, HeadError, Outcome, Pipeline, PictureTimes, Pixels};
+use pxpl5_run::{Experiment, ExperimentError, Head, HeadError, Outcome, PictureTimes, Pipeline, Pixels};
 use pxpl5_scene::{Frame, HeadMotion, Lighting, Path, Scene, SceneParts, Structure, Sway, Vertex};
 use pxpl5_sim::Time;
+use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use thiserror::Error;
@@ -54,7 +55,9 @@ pub enum RigRunError {
     #[error(transparent)]
     Rig(#[from] RigError),
     /// A frame that a low point asked for was not shown complete.
-    #[error("of {expected} frames that low points asked for the pipeline says only of {found} when they were shown complete")]
+    #[error(
+        "of {expected} frames that low points asked for the pipeline says only of {found} when they were shown complete"
+    )]
     NotShown {
         /// Frames asked for.
         expected: usize,
@@ -127,7 +130,7 @@ impl Rig {
             .host(Workstation::with_threads(1));
         let last_ps = sightings.last().map_or(0, |last| last.arrives_ps);
         let end = Time(last_ps + nearest_ps(self.rig.pendulum.period_s() / 2.0));
-        let fields = experiment.build()?.record().display().period_at(end) + 1;
+        let fields = experiment.build()?.record().display().period_at(end).0 + 1;
         Ok(experiment.fields(fields))
     }
 }
@@ -186,9 +189,11 @@ impl Photodiode {
     /// Runs an experiment before its eye. A run in which fewer pictures are shown than pipelines need to fill is long enough here.
     fn watch(&mut self, experiment: &Experiment) -> Result<Outcome, RigRunError> {
         self.check(experiment.build()?.record().display())?;
-        let every: Vec<u64> = (1..experiment.length()).collect();
-        let result = experiment.run_stopping(&every, |field, machine| {
-            self.look(field - 1, machine);
+        let every: Vec<PeriodNumber> = PeriodNumber(1).until(PeriodNumber(experiment.length())).collect();
+        let result = experiment.run_stopping(&every, |period, machine| {
+            if let Some(over) = period.before(1) {
+                self.look(over, machine);
+            }
             Ok(())
         });
         match result {
@@ -198,13 +203,14 @@ impl Photodiode {
     }
 
     fn check(&self, display: &dyn Display) -> Result<(), RigRunError> {
-        let lines = display.surfaces().first().map_or(0, |surface| surface.height / display.rows_lit(0).1);
+        let lines =
+            display.surfaces().first().map_or(0, |surface| surface.height / display.rows_lit(PeriodNumber::FIRST).1);
         let found = self.line;
         if found < lines { Ok(()) } else { Err(RigRunError::Photodiode { lines, found }) }
     }
 
     /// Looks at a period that is over.
-    fn look(&mut self, period: u64, machine: &mut Machine) {
+    fn look(&mut self, period: PeriodNumber, machine: &mut Machine) {
         let record = machine.record();
         let display = record.display();
         let Some(surface) = display.surfaces().first() else { return };
@@ -228,7 +234,7 @@ impl Photodiode {
 }
 
 /// Mean of red, green and blue of a pixel as it was when it lit in a period; dark where nothing was shown.
-fn brightness(display: &dyn Display, x: u32, y: u32, period: u64) -> u32 {
+fn brightness(display: &dyn Display, x: u32, y: u32, period: PeriodNumber) -> u32 {
     let seen = display.seen(0, period);
     seen.map_or(0, |picture| picture.get_pixel(x, y).0.iter().map(|value| u32::from(*value)).sum::<u32>() / 3)
 }
@@ -236,7 +242,8 @@ fn brightness(display: &dyn Display, x: u32, y: u32, period: u64) -> u32 {
 /// The first complete picture of each sighting, as the pipeline says.
 fn frames_asked_for(outcome: &Outcome, sightings: &[Sighting]) -> Result<Vec<PictureTimes>, RigRunError> {
     let sampled = outcome.head().map(|head| head.sampled()).unwrap_or_default();
-    let arrived_at: BTreeMap<u64, Time> = sampled.iter().filter_map(|s| Some((s.number, s.arrived_at?))).collect();
+    let arrived_at: BTreeMap<ViewNumber, Time> =
+        sampled.iter().filter_map(|s| Some((s.number, s.arrived_at?))).collect();
     let mut first: BTreeMap<u64, PictureTimes> = BTreeMap::new();
     for times in outcome.pictures().iter().filter(|times| times.complete) {
         if let Some(arrived) = arrived_at.get(&times.view) {
@@ -251,6 +258,7 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[Sighting]) -> Result<Vec<Pic
 /// When the first board began TRANSFORM of a frame: it switches the D/A line.
 fn started(record: &Record, frame: &PictureTimes) -> Time {
     let marks = record.observation().marks.iter();
-    let begun = marks.filter(|mark| mark.stage == Stage::Transform && mark.edge == Edge::Begin && mark.picture == frame.picture);
+    let begun = marks
+        .filter(|mark| mark.stage == Stage::Transform && mark.edge == Edge::Begin && mark.picture == frame.picture);
     begun.map(|mark| mark.time).min().unwrap_or(frame.transform_at)
 }

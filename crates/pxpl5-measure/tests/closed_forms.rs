@@ -8,6 +8,7 @@ use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measured, PixelErrors, UNJUDGED_FIELDS};
 use pxpl5_run::{Aim, Experiment, Head, Outcome, PipelineSettings, Pixels, Registry, Sampled};
 use pxpl5_scene::builtin;
+use pxpl5_wire::ViewNumber;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -17,7 +18,7 @@ use tracking::tracker::TrackerConfig;
 use tracking::{Pose, Settings};
 
 /// Fields of a run.
-const FIELDS: u64 = 60;
+const FIELDS: u64 = 45;
 
 /// NTSC: a line of 780 pixel periods, of which the last 640 are visible; a field of 262.5 lines, the first 22 of which are blanked,
 /// and in odd fields half a line more (all of the blanking comes first).
@@ -48,7 +49,7 @@ fn aimed(aim: Aim, (first_field, first_row): (u64, u64), (last_field, last_row):
 
 /// What a pixel shows: number of its view, and the instant that it is drawn for.
 struct Content {
-    view: u64,
+    view: ViewNumber,
     drawn_for: f64,
 }
 
@@ -57,11 +58,11 @@ struct Run {
     pipeline: &'static str,
     aim: Aim,
     outcome: Outcome,
-    sampled: BTreeMap<u64, Sampled>,
+    sampled: BTreeMap<ViewNumber, Sampled>,
     /// Field in which each picture begins to be shown, and its view.
-    shown: Vec<(u64, u64)>,
+    shown: Vec<(u64, ViewNumber)>,
     /// Arrivals of each block of frameless rendering: when, and of which update.
-    blocks: BTreeMap<u64, Vec<(f64, u64)>>,
+    blocks: BTreeMap<u64, Vec<(f64, ViewNumber)>>,
 }
 
 impl Run {
@@ -77,16 +78,16 @@ impl Run {
         let sampled = head.sampled().into_iter().map(|sampled| (sampled.number, sampled)).collect();
         let field_of = |at_ps: u64| (at_ps as f64 * 1e-12 / retrace(1) + 1e-9).floor() as u64;
         let shown = outcome.pictures().iter().map(|times| (field_of(times.shown_at.0), times.view)).collect();
-        let mut blocks: BTreeMap<u64, Vec<(f64, u64)>> = BTreeMap::new();
+        let mut blocks: BTreeMap<u64, Vec<(f64, ViewNumber)>> = BTreeMap::new();
         for arrival in &outcome.observation().arrivals {
             let of_block = blocks.entry(arrival.target.region.0.into()).or_default();
-            of_block.push((arrival.last_part_at.0 as f64 * 1e-12, arrival.target.picture));
+            of_block.push((arrival.last_part_at.0 as f64 * 1e-12, ViewNumber::taken_for(arrival.target.picture)));
         }
         Self { pipeline, aim, sampled, shown, blocks, outcome }
     }
 
     /// The newest picture shown in a field: the field in which it began, and its view.
-    fn newest(&self, field: u64) -> (u64, u64) {
+    fn newest(&self, field: u64) -> (u64, ViewNumber) {
         *self.shown.iter().rev().find(|shown| shown.0 <= field).expect("shown before fields are judged")
     }
 
@@ -98,10 +99,12 @@ impl Run {
                 (view, ((begun, 0), (begun + 1, 239)))
             }
             "slats" => (self.newest(field).1, all),
-            "jitp-field" | "jitp-field-racing" => (field * 256, all),
+            "jitp-field" | "jitp-field-racing" => (ViewNumber(field * 256), all),
             "frameless" => return self.content_of_block(field, row, x),
-            strips if strips.starts_with("jitp-scanline") => (field * 256 + row, ((field, row), (field, row))),
-            _ => (field * 256, ((field, row), (field, row))),
+            strips if strips.starts_with("jitp-scanline") => {
+                (ViewNumber(field * 256 + row), ((field, row), (field, row)))
+            }
+            _ => (ViewNumber(field * 256), ((field, row), (field, row))),
         };
         Content { view, drawn_for: aimed(self.aim, first, last) }
     }

@@ -33,7 +33,6 @@ mod statistics;
 mod summary;
 mod views;
 
-pub use pxpl5_display::{Aim, LightSpan};
 pub use display_list::{display_list, views};
 pub use error::ExperimentError;
 pub use experiment::{Experiment, FIELDS_RANGE, FieldsNeeded, Pixels, WARM_UP_PICTURES};
@@ -46,6 +45,7 @@ pub use level::Level;
 pub use outcome::Outcome;
 pub use pipeline::{PictureTimes, Pipeline, Setup, Source};
 pub use pipelines::{Code, Frameless, Interpolation, Jitp, RenderingControl, Slats, Viewpoint, region_at};
+pub use pxpl5_display::{Aim, LightSpan};
 pub use raster::Raster;
 pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};
 pub use rehearsal::Rehearsal;

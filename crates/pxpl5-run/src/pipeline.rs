@@ -9,7 +9,7 @@ use pxpl5_gp::HostTiming;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyTarget, SurfaceId};
+use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -18,14 +18,14 @@ use std::sync::Arc;
 /// Where a part of the screen comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Source {
-    /// A view, by number.
-    View(u64),
+    /// A single view.
+    View(ViewNumber),
     /// Places between those of two views.
     Between {
         /// The view at the begin.
-        from: u64,
+        from: ViewNumber,
         /// The view at the end.
-        to: u64,
+        to: ViewNumber,
         /// How much of the way, 0 to 1.
         part: f64,
         /// Whether places on the screen are interpolated, or positions in the view.
@@ -58,9 +58,9 @@ pub struct Setup {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PictureTimes {
     /// Its number.
-    pub picture: u64,
-    /// Number of the view that it shows, or that its middle shows.
-    pub view: u64,
+    pub picture: PictureNumber,
+    /// The view that it shows, or that its middle shows.
+    pub view: ViewNumber,
     /// When its pose was sampled.
     pub sampled_at: Option<Time>,
     /// Start of TRANSFORM.
@@ -147,7 +147,13 @@ pub trait Pipeline: Any + Debug + Send + Sync {
 
     /// The view that a part of a picture shows; `views` gives the view of a picture as in [`PictureTimes`], `aim` the instant that
     /// the part was drawn for.
-    fn source(&self, _: &Record, target: &CopyTarget, views: &BTreeMap<u64, u64>, _aim: Aim) -> Option<Source> {
+    fn source(
+        &self,
+        _record: &Record,
+        target: &CopyTarget,
+        views: &BTreeMap<PictureNumber, ViewNumber>,
+        _aim: Aim,
+    ) -> Option<Source> {
         views.get(&target.picture).copied().map(Source::View)
     }
 
@@ -155,7 +161,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     fn shown(&self, record: &Record, times: &PictureTimes, next: Option<&PictureTimes>) -> LightSpan {
         let first = record.display().period_at(times.shown_at);
         let next = next.map(|next| record.display().period_at(next.shown_at));
-        let periods = next.map_or(self.retraces_a_picture().unwrap_or(1), |next| next.saturating_sub(first));
+        let periods = next.map_or(self.retraces_a_picture().unwrap_or(1), |next| next.since(first));
         light_span(record, first, periods)
     }
 
@@ -173,13 +179,13 @@ pub trait Pipeline: Any + Debug + Send + Sync {
 }
 
 /// When the first surface lights in so many periods of the first display, at least one.
-pub(crate) fn light_span(record: &Record, first: u64, periods: u64) -> LightSpan {
+pub(crate) fn light_span(record: &Record, first: PeriodNumber, periods: u64) -> LightSpan {
     let display = record.display();
     let tick = display.tick(first);
-    let last = first + periods.max(1) - 1;
+    let last = first.after(periods.max(1) - 1);
     LightSpan {
         tick,
         first: display.first_light(0, first).unwrap_or(tick),
-        last: display.last_light(0, last).unwrap_or_else(|| display.tick(last + 1)),
+        last: display.last_light(0, last).unwrap_or_else(|| display.tick(last.next())),
     }
 }

@@ -4,11 +4,12 @@ use crate::config::SlatsConfig;
 use pphigs::{FrameView, send_as_tracked};
 use pxpl5_gp::{Fault, Gp, HostTiming};
 use pxpl5_sim::Time;
+use pxpl5_wire::ViewNumber;
 
 /// Sends the viewing transforms of both eyes to the leading GP: once at the start, so that there is a first field, and then
 /// for every report of the tracker ([`send_as_tracked`]). The GP takes the newest that has come when it starts a field.
 ///
-/// `next_report` gives the arrival of the first report after an instant, and `view_of` the view of an update whose pose is
+/// `next_report` gives the arrival of the first report after an instant, and `view_of` a view whose pose is
 /// sampled at a time.
 ///
 /// # Errors
@@ -19,8 +20,8 @@ pub async fn host(
     config: SlatsConfig,
     timing: HostTiming,
     next_report: impl Fn(Time) -> Option<Time>,
-    mut view_of: impl FnMut(u64, Time) -> FrameView,
+    mut view_of: impl FnMut(ViewNumber, Time) -> FrameView,
 ) -> Result<(), Fault> {
-    let words = |update, known| view_of(update, known).to_words();
+    let words = |view, known| view_of(view, known).to_words();
     send_as_tracked(gp, config.processors[0], timing, Some(Time::ZERO), next_report, words).await
 }

@@ -45,9 +45,15 @@ fn measure(rig: PendulumRig, config: TrackerConfig) -> Measurement {
 fn the_low_point_is_seen_within_one_report_of_the_optical_tracker_and_33_ms_of_it() {
     let measured = measure(PendulumRig::assumed(), noiseless(TrackerConfig::optical_ceiling()));
     let period_s = 1.0 / 60.0;
-    assert!(measured.outside.tracking.least_s >= 0.033 && measured.outside.tracking.greatest_s <= 0.033 + period_s + 1e-9);
+    assert!(
+        measured.outside.tracking.least_s >= 0.033 && measured.outside.tracking.greatest_s <= 0.033 + period_s + 1e-9
+    );
     // Low points fall anywhere in a period, so on average half of one is added.
-    assert!((measured.outside.tracking.mean_s - 0.033 - period_s / 2.0).abs() < 1.5e-3, "{}", measured.outside.tracking.mean_s);
+    assert!(
+        (measured.outside.tracking.mean_s - 0.033 - period_s / 2.0).abs() < 1.5e-3,
+        "{}",
+        measured.outside.tracking.mean_s
+    );
     assert_eq!(measured.tracking_bound_ps, PS_PER_S / 60);
 }
 

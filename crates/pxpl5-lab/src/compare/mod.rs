@@ -5,7 +5,7 @@ mod pictures;
 mod possible;
 mod rows;
 
-pub use motion::{MotionError, TRACKERS, motion, predictor, tracker};
+pub use motion::{MotionError, TRACKERS, motion, predictor, tracker, tracker_by};
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use possible::{Possible, triangles_possible};
 pub use rows::{Comparison, Row, compare, compare_with};

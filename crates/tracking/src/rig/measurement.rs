@@ -182,11 +182,7 @@ impl Oscilloscope {
     pub fn passes(&self, rig: &PendulumRig) -> Option<Vec<OutsidePass>> {
         let passes = self.dac.edges().iter().map(|step| {
             let light = self.screen.edges().iter().find(|edge| edge.t_ps >= step.t_ps && edge.high == step.high)?;
-            Some(OutsidePass {
-                low_point_ps: rig.low_point_of(step.t_ps),
-                dac_ps: step.t_ps,
-                light_ps: light.t_ps,
-            })
+            Some(OutsidePass { low_point_ps: rig.low_point_of(step.t_ps), dac_ps: step.t_ps, light_ps: light.t_ps })
         });
         passes.collect()
     }
