@@ -135,7 +135,7 @@ fn pictures(config: &MachineConfig, deg_per_s: f64, folder: &mut OutputFolder) -
 fn table(comparison: &Comparison, args: &CompareArgs) -> String {
     let Comparison { scene, triangles, tracker, predictor, aim, fields, machine, .. } = comparison;
     let mut text = format!(
-        "{scene} ({triangles} triangles) on {machine}, {} for {fields} fields, {tracker}, prediction {predictor} for the {aim}\n\n",
+        "{scene} ({triangles} triangles) on {machine}, {} for {fields} fields, {tracker}, prediction {predictor}, aim {aim}\n\n",
         args.motion
     );
     let _ = writeln!(

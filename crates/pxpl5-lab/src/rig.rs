@@ -189,9 +189,10 @@ impl Photodiode {
     /// Runs an experiment before its eye. A run in which fewer pictures are shown than pipelines need to fill is long enough here.
     fn watch(&mut self, experiment: &Experiment) -> Result<Outcome, RigRunError> {
         self.check(experiment.build()?.record().display())?;
-        let every: Vec<PeriodNumber> = PeriodNumber(1).until(PeriodNumber(experiment.length())).collect();
+        let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.length())).collect();
         let result = experiment.run_stopping(&every, |period, machine| {
-            if let Some(over) = period.before(1) {
+            // The stop is before the retrace that ends the period before this one.
+            if let Some(over) = period.before(2) {
                 self.look(over, machine);
             }
             Ok(())
@@ -224,10 +225,10 @@ impl Photodiode {
         self.samples.push((at.0, is_light));
     }
 
-    /// What it saw two periods ago, when the same line was lit, if no message has been on the ring since the period before that:
-    /// with an idle machine the screen stands still.
+    /// What it saw two periods ago, when the same line was lit, if no message has been on the ring since that period began: with an
+    /// idle machine the screen stands still. (The ring is read a period later than the screen.)
     fn unchanged(&self) -> Option<bool> {
-        let [.., before, _, _, now] = self.ring[..] else { return None };
+        let [.., before, _, _, _, now] = self.ring[..] else { return None };
         let (_, was_light) = *self.samples.get(self.samples.len().checked_sub(2)?)?;
         (before == now).then_some(was_light)
     }

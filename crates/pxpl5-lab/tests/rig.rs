@@ -14,9 +14,12 @@ fn noiseless(tracker: TrackerConfig) -> TrackerConfig {
     TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, distortion: None, ..tracker }
 }
 
+fn rig(tracker: TrackerConfig, passes: usize) -> Rig {
+    Rig { passes, ..Rig::assumed(noiseless(tracker)) }
+}
+
 fn measure(tracker: TrackerConfig, pipeline: Arc<dyn Pipeline>, passes: usize) -> Result<Measurement, RigRunError> {
-    let rig = Rig { passes, ..Rig::assumed(noiseless(tracker)) };
-    rig.measure(&MachineConfig::small_hmd(), pipeline)
+    rig(tracker, passes).measure(&MachineConfig::small_hmd(), pipeline)
 }
 
 fn named(name: &str) -> Arc<dyn Pipeline> {
@@ -51,7 +54,9 @@ fn outside_and_inside_agree_within_a_report_and_the_photodiodes_place() {
 
 #[test]
 fn from_outside_a_field_of_slats_takes_a_field_and_the_photodiodes_place() {
-    let measured = measure(TrackerConfig::fastrak(), named("slats"), 6).expect("two triangles");
+    // One processor, which begins TRANSFORM with the retrace; several would be told first.
+    let measured = rig(TrackerConfig::fastrak(), 6).measure(&MachineConfig::slats(), named("slats"));
+    let measured = measured.expect("two triangles");
     let line_ms = 4.004 / 63.0;
     // One field of 262.5 lines; line 120 lies 142 lines behind the retrace, half a line more in odd fields, and the middle of a line
     // 460 of 780 pixel periods behind its start.

@@ -58,7 +58,7 @@ pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
     }
     let [tracker, predictor, display] = ["tracker", "predictor", "display"].map(|key| plain(&head[key]));
     // Reports of older versions do not say it.
-    let aim = head["aim"].as_str().map_or_else(String::new, |aim| format!(" for the {aim}"));
+    let aim = head["aim"].as_str().map_or_else(String::new, |aim| format!(", aim {aim}"));
     let stages = STAGES.iter().map(|stage| stage_row(stage, &head["end_to_end"]));
     let errors = ERRORS.iter().map(|unit| error_row(unit, &head["error"][*unit]));
     vec![
