@@ -56,8 +56,8 @@ pub use pxpl5_gp::CodeVersion;
 pub use pxpl5_hires::HiResConfig;
 pub use pxpl5_lab::{
     ExperimentFile, FileError, HeadChoice, MotionChoice, Outputs, Plan, Published, SceneChoice, Settings, Snapshot,
-    SnapshotError, Workstation, compare, figures, growth, intervals, levels, limit, pipeline_figures, registry, sweep,
-    tracking_parameters,
+    SnapshotError, Workstation, compare, figures, growth, intervals, levels, limit, pipeline_figures, registry, rig,
+    sweep, tracking_parameters,
 };
 pub use pxpl5_machine::{
     Arrival, ConfigError, LateRegion, Machine, MachineConfig, Observation, PRESETS, Parameter, Ports, Preset, Record,
@@ -69,7 +69,7 @@ pub use pxpl5_measure::{
     picture, side_by_side,
 };
 pub use pxpl5_run::{
-    BareHost, Code, DefinedStatistics, Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint,
+    Aim, BareHost, Code, DefinedStatistics, Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint,
     Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key, KeyValue, KeyValues, Level,
     LimitCriterion, Outcome, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry,
     RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary, TestScene, Viewpoint, WARM_UP_PICTURES,

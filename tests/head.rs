@@ -8,7 +8,8 @@ use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
 use pxpl5::tracking::view::HmdView;
 use pxpl5::{
-    Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan, Raster, Viewpoint,
+    Aim, Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan, Raster,
+    Viewpoint,
 };
 use pxpl5::{Film, FilmOf};
 use std::sync::Arc;
@@ -54,7 +55,7 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
     }
 }
 
-/// A wall's edge straight ahead at time zero, under a pan: a picture for one moment a field, for one eye.
+/// A wall's edge straight ahead at time zero, under a pan: a picture for the first moment of each field, for one eye.
 fn panned(deg_per_s: f64, raster: Raster, fields: u64) -> Experiment {
     let head = Head::new(Arc::new(Pan::at(deg_per_s)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
     let head = head.expect("in range").before(raster);

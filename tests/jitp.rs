@@ -3,17 +3,16 @@
 use glam::DVec3;
 mod support;
 
-use pxpl5::compare::{as_seen, compare, edge_pictures, edge_scene, measure_on, motion, triangles_possible};
+use pxpl5::compare::{as_seen, compare, edge_pictures, edge_scene, motion, triangles_possible};
 use pxpl5::scene::{Scene, builtin};
 use pxpl5::tracking::Pose;
 use pxpl5::tracking::motion::{Motion, Pan, Still, Synthetic};
 use pxpl5::tracking::predict::PredictorKind;
-use pxpl5::tracking::rig::PendulumRig;
 use pxpl5::tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, seconds};
-use pxpl5::tracking::tracker::{Fault, TrackerConfig, TrackerModel};
+use pxpl5::tracking::tracker::{Fault, TrackerConfig};
 use pxpl5::views::charts::LatencyCurve;
 use pxpl5::{
-    Budget, Experiment, Frameless, Head, Interpolation, Jitp, MachineConfig, Measured, Outcome, Percentiles,
+    Aim, Budget, Experiment, Frameless, Head, Interpolation, Jitp, MachineConfig, Measured, Outcome, Percentiles,
     PeriodNumber, Pipeline, PixelErrors, Pixels, Registration, RenderingControl, Slats, Viewpoint,
 };
 use pxpl5_sim::TraceHash;
@@ -54,6 +53,12 @@ fn under_a_pan(viewpoint: Viewpoint, racing: bool) -> Outcome {
     run(Jitp { strip_rows: 1, ..Jitp::new(viewpoint, racing) }, perfect(Pan::at(PAN)), FIELD.0 + 2)
 }
 
+/// A field for one moment as the paper's: that of its first pixel.
+fn conventional() -> Outcome {
+    let jitp = Jitp { strip_rows: 1, ..Jitp::new(Viewpoint::Field, true) };
+    run(jitp, perfect(Pan::at(PAN)).aiming(Aim::FirstPixel), FIELD.0 + 2)
+}
+
 /// Seconds between the beam's passes over two pixels of a field.
 fn beam_s(outcome: &Outcome, from: (u32, u32), to: (u32, u32)) -> f64 {
     let [from_ps, to_ps] = [from, to].map(|(x, y)| video(outcome).when(x, y, FIELD).expect("visible").0 as f64);
@@ -62,7 +67,7 @@ fn beam_s(outcome: &Outcome, from: (u32, u32), to: (u32, u32)) -> f64 {
 
 #[test]
 fn j1_one_transform_a_field_is_33_pixels_off_at_its_end() {
-    let outcome = under_a_pan(Viewpoint::Field, true);
+    let outcome = conventional();
     let registration = Registration::of(&outcome).expect("there is a head");
     let last = registration.at(320, 478, FIELD).expect("shown");
     let scan_s = beam_s(&outcome, (0, 0), (320, 478));
@@ -98,7 +103,7 @@ fn j3_a_line_takes_63_56_microseconds() {
 
 #[test]
 fn j4_a_vertical_edge_slants_by_speed_times_scan_time() {
-    let outcome = under_a_pan(Viewpoint::Field, true);
+    let outcome = conventional();
     let registration = Registration::of(&outcome).expect("there is a head");
     for y in [0, 120, 240, 478] {
         let error = registration.at(320, y, FIELD).expect("shown").offset_px.x;
@@ -346,43 +351,6 @@ fn frameless_blocks_come_once_a_pass_and_are_half_a_pass_old() {
 }
 
 #[test]
-fn the_rig_and_the_time_stamps_agree_within_the_bound_for_every_tracker() {
-    for (pipeline, fields) in
-        [(Arc::new(RenderingControl::mono()) as Arc<dyn Pipeline>, 900), (Arc::new(Slats::split()), 900)]
-    {
-        let config = MachineConfig::small_hmd();
-        let run = Experiment::with(config, pipeline, Arc::new(small())).fields(fields).pixels(Pixels::Off).run();
-        let outcome = run.expect("the scene is small");
-        for tracker in [
-            TrackerConfig::ideal(),
-            TrackerConfig::fastrak(),
-            TrackerConfig::flock_of_birds(),
-            TrackerConfig::optical_ceiling(),
-            TrackerConfig::polhemus_3space(),
-        ] {
-            let tracker = TrackerConfig { position_noise_m: 0.0, distortion: None, ..tracker };
-            let model = TrackerModel::new(tracker).expect("a preset");
-            let measured = measure_on(&outcome, &PendulumRig::assumed(), &model, 1).expect("low points are seen");
-            let difference = measured.outside_less_inside_s();
-            let bound = seconds(measured.bound_ps());
-            let outside = measured.tracking.mean_s + measured.rendering.mean_s;
-            let inside = measured.inside_tracking.mean_s + measured.inside_rendering.mean_s;
-            println!(
-                "{:18} {:28} outside {:6.2} ms, inside {:6.2} ms, difference {:5.2} of {:5.2} ms, {} passes",
-                outcome.pipeline().name(),
-                model.config().name,
-                outside * 1e3,
-                inside * 1e3,
-                difference * 1e3,
-                bound * 1e3,
-                measured.passes.len()
-            );
-            assert!(measured.passes.len() >= 15 && difference > 0.0 && difference <= bound);
-        }
-    }
-}
-
-#[test]
 fn every_pipeline_goes_on_when_the_tracker_fails() {
     let faults = [
         vec![Fault::Silence { from_ps: 0 }],
@@ -447,7 +415,10 @@ fn a_comparison_has_a_row_for_every_pipeline_and_just_in_time_comes_nearest_to_t
     assert_eq!(json["pipelines"].as_array().map(Vec::len), Some(14));
     let mean = |name: &str| all.pixels(name).mean;
     assert!(mean("ideal") < 1e-3 && mean("jitp-scanline-racing") < 0.1 && mean("jitp-dual-view-racing") < 0.1);
-    assert!(mean("jitp-field-racing") > 10.0 && mean("rendering-control") > mean("slats-touched"));
+    // All draw for the middle of what they show: one field errs as another, and two fields more.
+    assert!((mean("jitp-field-racing") / mean("slats-touched") - 1.0).abs() < 1e-3);
+    assert!((mean("jitp-field") / mean("slats-touched") - 1.0).abs() < 1e-3);
+    assert!(mean("jitp-field-racing") > 7.0 && mean("rendering-control") > 2.0 * mean("slats-touched"));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::output::OutputFolder;
 use crate::terminal;
 use pxpl5::compare::{Comparison, Row, compare_with, edge_pictures, motion, predictor, tracker};
 use pxpl5::views::charts::{LatencyCurve, error_chart};
-use pxpl5::{Head, MachineConfig, scene};
+use pxpl5::{Aim, Head, MachineConfig, scene};
 use std::fmt::Write as _;
 use std::io::Cursor;
 use std::path::PathBuf;
@@ -34,6 +34,9 @@ pub(crate) struct CompareArgs {
     /// none, velocity, acceleration or kalman.
     #[arg(long, default_value = "kalman")]
     predict: String,
+    /// The instant of what is shown from it that a view is predicted for: middle, first-pixel, last-pixel or retrace.
+    #[arg(long, default_value_t = Aim::Middle, value_parser = aim)]
+    aim: Aim,
     /// Preset of the machine (see `pxpl5 machines`).
     #[arg(long, default_value = "small-hmd", value_name = "PRESET")]
     machine: String,
@@ -71,7 +74,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let tracker = tracker(&args.tracker).map_err(CliError::usage)?;
     let predictor = predictor(&args.predict).map_err(CliError::usage)?;
     let scene = Arc::new(load(&args.scene)?);
-    let head = Arc::new(Head::new(moving, tracker, predictor, args.seed).map_err(CliError::usage)?);
+    let head = Arc::new(Head::new(moving, tracker, predictor, args.seed).map_err(CliError::usage)?.aiming(args.aim));
     let mut folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
     let bar = terminal::progress(0, "pipelines", args.quiet);
     let finished = |done, of| {
@@ -92,6 +95,11 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
         (false, true) => Ok(()),
         (false, false) => terminal::print(&table(&comparison, &args)),
     }
+}
+
+fn aim(name: &str) -> Result<Aim, String> {
+    let found = Aim::ALL.iter().find(|(known, _)| *known == name).map(|(_, aim)| *aim);
+    found.ok_or_else(|| format!("expected {}", Aim::ALL.map(|(known, _)| known).join(", ")))
 }
 
 fn load(name: &str) -> Result<scene::Scene, CliError> {
@@ -125,9 +133,9 @@ fn pictures(config: &MachineConfig, deg_per_s: f64, folder: &mut OutputFolder) -
 }
 
 fn table(comparison: &Comparison, args: &CompareArgs) -> String {
-    let Comparison { scene, triangles, tracker, predictor, fields, machine, .. } = comparison;
+    let Comparison { scene, triangles, tracker, predictor, aim, fields, machine, .. } = comparison;
     let mut text = format!(
-        "{scene} ({triangles} triangles) on {machine}, {} for {fields} fields, {tracker}, prediction {predictor}\n\n",
+        "{scene} ({triangles} triangles) on {machine}, {} for {fields} fields, {tracker}, prediction {predictor}, aim {aim}\n\n",
         args.motion
     );
     let _ = writeln!(

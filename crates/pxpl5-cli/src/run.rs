@@ -74,10 +74,10 @@ fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf
     let mut text = table(&[(report, comparison.as_ref())]);
     let _ = writeln!(text, "\nLatency: {}.", report.latency_ms.definition);
     if let Some(head) = &report.head {
-        let HeadReport { tracker, predictor, display, end_to_end, error } = head;
+        let HeadReport { tracker, predictor, aim, display, end_to_end, error } = head;
         let _ = writeln!(
             text,
-            "Head to light: {:.2} ms ({tracker}, prediction {predictor}). Pixel error (display {display}): mean {:.2} px, 99 % {:.2} px, mean {:.3} degrees.",
+            "Head to light: {:.2} ms ({tracker}, prediction {predictor}, aim {aim}). Pixel error (display {display}): mean {:.2} px, 99 % {:.2} px, mean {:.3} degrees.",
             end_to_end.total_ms, error.pixels.mean, error.pixels.p99, error.degrees.mean
         );
     }

@@ -41,6 +41,10 @@ pub(crate) struct SettingArgs {
     /// Prediction: none, velocity, acceleration or kalman; default kalman.
     #[arg(long)]
     predict: Option<String>,
+    /// The instant of what is shown from it that a view is predicted for: middle, first-pixel, last-pixel or retrace; default
+    /// middle.
+    #[arg(long)]
+    aim: Option<String>,
     /// What the pipeline draws for: ntsc or hires; default ntsc. (plain and vdrt are taken for --raster.)
     #[arg(long)]
     display: Option<String>,
@@ -86,6 +90,7 @@ impl SettingArgs {
             ("head.motion", "--head", self.head),
             ("head.tracker", "--tracker", self.tracker),
             ("head.predict", "--predict", self.predict),
+            ("head.aim", "--aim", self.aim),
             (display_key(self.display.as_deref()), "--display", self.display),
             ("head.raster", "--raster", self.raster),
             ("level", "--level", self.level),

@@ -6,6 +6,7 @@
 //! | how do the levels of modelling differ | [`levels`] |
 //! | how many triangles, how fast does cost grow | [`limit`], [`growth`] |
 //! | which way to fight latency wins | [`compare`] |
+//! | what latency does one measure from outside | [`rig`] |
 //! | the same at many points | [`sweep`] |
 //! | an experiment as text, and continued | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
 //!
@@ -22,6 +23,7 @@ pub mod levels;
 pub mod limit;
 mod parallel;
 pub mod pipeline_figures;
+pub mod rig;
 mod snapshot;
 pub mod sweep;
 

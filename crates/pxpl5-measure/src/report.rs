@@ -5,7 +5,7 @@ use crate::errors::{PixelErrors, pixel_errors};
 use crate::latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
 use parameters::Value;
 use pxpl5_machine::LateRegion;
-use pxpl5_run::{DefinedStatistics, Head, Outcome, PictureTimes, Raster};
+use pxpl5_run::{Aim, DefinedStatistics, Head, Outcome, PictureTimes, Raster};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -87,6 +87,8 @@ pub struct HeadReport {
     pub tracker: String,
     /// Predictor.
     pub predictor: String,
+    /// The instant of what is shown from it that a view is predicted for.
+    pub aim: Aim,
     /// How the raster before the eyes shows the picture.
     pub display: Raster,
     /// From the head's pose to light, milliseconds.
@@ -100,6 +102,7 @@ impl HeadReport {
         Some(Self {
             tracker: head.tracker().config().name.clone(),
             predictor: format!("{:?}", head.predictor_kind()),
+            aim: head.aim(),
             display: head.raster(),
             end_to_end: Budget::of(outcome),
             error: pixel_errors(outcome)?,

@@ -47,7 +47,8 @@ impl<'a> Shown<'a> {
     pub(crate) fn drawn(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<Drawn> {
         let target = self.screen.shown(x, y, field, at)?;
         let pose = |number: ViewNumber| self.poses.get(&number).copied();
-        Some(match self.outcome.pipeline().source(self.outcome.record(), &target, &self.views)? {
+        let aim = self.outcome.experiment().aim();
+        Some(match self.outcome.pipeline().source(self.outcome.record(), &target, &self.views, aim)? {
             Source::View(number) => Drawn::Pose(pose(number)?),
             Source::Between { from, to, part, on_screen } => {
                 Drawn::Between { from: pose(from)?, to: pose(to)?, part, on_screen }

@@ -6,6 +6,7 @@ use crate::host::{BareHost, Host};
 use crate::level::Level;
 use crate::pipeline::Pipeline;
 use crate::raster::Raster;
+use pxpl5_display::Aim;
 use pxpl5_machine::{MachineConfig, Saving};
 use pxpl5_scene::Scene;
 use pxpl5_wire::PeriodNumber;
@@ -45,6 +46,7 @@ pub struct Experiment {
     pub(crate) given_up: BTreeSet<Saving>,
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
+    pub(crate) on_demand: bool,
     pub(crate) fields_needed: Option<FieldsNeeded>,
 }
 
@@ -75,6 +77,7 @@ impl Experiment {
             given_up: BTreeSet::new(),
             level: Level::Transaction,
             head: None,
+            on_demand: false,
             fields_needed: None,
         }
     }
@@ -144,6 +147,14 @@ impl Experiment {
         self
     }
 
+    /// Lets the host begin a frame only when its tracker reports something, so that pipelines are not full: as a measurement
+    /// from outside does. Without a head, or where the host does not begin frames, nothing changes.
+    #[must_use]
+    pub const fn on_demand(mut self) -> Self {
+        self.on_demand = true;
+        self
+    }
+
     /// By what a run that is too short to show anything says how many fields it would take: a pipeline's closed form knows.
     #[must_use]
     pub const fn estimated_by(mut self, fields_needed: Option<FieldsNeeded>) -> Self {
@@ -155,6 +166,12 @@ impl Experiment {
     #[must_use]
     pub fn raster(&self) -> Raster {
         self.head.as_ref().map(|head| head.raster()).unwrap_or_default()
+    }
+
+    /// For which instant of what is shown from them views are drawn.
+    #[must_use]
+    pub fn aim(&self) -> Aim {
+        self.head.as_ref().map(|head| head.aim()).unwrap_or_default()
     }
 
     /// Name of everything on which the trace depends: machine, pipeline with its settings, contents of the scene, fields,
@@ -177,6 +194,9 @@ impl Experiment {
         hash.setting("level", self.level.name());
         if let Some(head) = &self.head {
             hash.setting("head", head.fingerprint());
+        }
+        if self.on_demand {
+            hash.setting("on_demand", true);
         }
         hash
     }

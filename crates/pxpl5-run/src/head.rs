@@ -2,12 +2,14 @@
 
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
+use pxpl5_display::Aim;
+use pxpl5_sim::Time;
 use std::fmt;
 use std::sync::Arc;
 use tracking::ConfigError;
 use tracking::motion::Motion;
 use tracking::predict::{Predictor, PredictorConfig, PredictorKind};
-use tracking::tracker::{TrackerConfig, TrackerModel};
+use tracking::tracker::{Report, TrackerConfig, TrackerModel};
 
 /// Why a head cannot be simulated.
 pub type HeadError = ConfigError;
@@ -20,6 +22,8 @@ pub struct Head {
     predictor: PredictorConfig,
     pub(crate) seed: u64,
     raster: Raster,
+    aim: Aim,
+    reports: Option<Arc<[Report]>>,
 }
 
 impl fmt::Debug for Head {
@@ -29,6 +33,7 @@ impl fmt::Debug for Head {
             .field("predictor", &self.predictor)
             .field("seed", &self.seed)
             .field("raster", &self.raster)
+            .field("aim", &self.aim)
             .finish_non_exhaustive()
     }
 }
@@ -61,7 +66,15 @@ impl Head {
         seed: u64,
     ) -> Result<Self, HeadError> {
         predictor.build()?;
-        Ok(Self { motion, tracker: TrackerModel::new(tracker)?, predictor, seed, raster: Raster::Plain })
+        Ok(Self {
+            motion,
+            tracker: TrackerModel::new(tracker)?,
+            predictor,
+            seed,
+            raster: Raster::Plain,
+            aim: Aim::Middle,
+            reports: None,
+        })
     }
 
     /// Puts a raster before its eyes.
@@ -69,6 +82,34 @@ impl Head {
     pub const fn before(mut self, raster: Raster) -> Self {
         self.raster = raster;
         self
+    }
+
+    /// Says for which instant of what is shown from them views are predicted.
+    #[must_use]
+    pub const fn aiming(mut self, aim: Aim) -> Self {
+        self.aim = aim;
+        self
+    }
+
+    /// Puts these reports, in order of arrival, in the place of those that its tracker would make of the motion.
+    #[must_use]
+    pub fn reporting(self, reports: Vec<Report>) -> Self {
+        Self { reports: Some(reports.into()), ..self }
+    }
+
+    /// The reports that reach the host before an instant.
+    pub(crate) fn reports_until(&self, until: Time) -> Arc<[Report]> {
+        let in_time = |report: &Report| report.arrives_ps < until.0;
+        match &self.reports {
+            Some(reports) => reports.iter().copied().take_while(in_time).collect(),
+            None => self.tracker.reports(self.motion.as_ref(), self.seed).take_while(in_time).collect(),
+        }
+    }
+
+    /// For which instant of what is shown from them views are predicted.
+    #[must_use]
+    pub const fn aim(&self) -> Aim {
+        self.aim
     }
 
     /// How the raster before its eyes shows the picture.
@@ -87,6 +128,10 @@ impl Head {
         self.predictor.identify(&mut add);
         hash.setting("seed", self.seed);
         hash.setting("raster", self.raster);
+        hash.setting("aim", self.aim);
+        self.reports.iter().flat_map(|reports| reports.iter()).for_each(|report| {
+            hash.setting("report", format_args!("{report:?}"));
+        });
         hash
     }
 

@@ -29,7 +29,8 @@ pub struct Sampled {
     pub measured_at: Option<Time>,
     /// When that report reached the host.
     pub arrived_at: Option<Time>,
-    /// The moment that the pose was predicted for; `None` where the newest was taken as it is.
+    /// The moment that the pose was predicted for, by the head's [`Aim`](crate::Aim); `None` where the newest was taken as it
+    /// is.
     pub predicted_for: Option<Time>,
     /// The pose in the scene's coordinates.
     pub pose: Pose,
@@ -107,8 +108,7 @@ impl HeadViews {
         until: Time,
         rehearsal: Option<Rehearsal>,
     ) -> Self {
-        let all = head.tracker.reports(head.motion.as_ref(), head.seed);
-        let reports: Arc<[Report]> = all.take_while(|report| report.arrives_ps < until.0).collect();
+        let reports = head.reports_until(until);
         let of_scene = scene.motion().pose(0);
         let base = Pose { orientation: of_scene.orientation.normalize(), ..of_scene };
         let start = head.motion.pose(0);
@@ -131,7 +131,7 @@ impl HeadViews {
     }
 
     fn newest(&self, number: ViewNumber, time: Time) -> FrameView {
-        let shown_at = self.rehearsal.as_ref().map_or(time, |rehearsal| rehearsal.shown_at(number, time));
+        let shown_at = self.rehearsal.as_ref().map_or(time, |rehearsal| rehearsal.aimed_at(number, time));
         self.view(number, time, shown_at)
     }
 
@@ -143,6 +143,12 @@ impl HeadViews {
         let predicted_for = self.head.predicts().then_some(shown_at);
         sampled.push(Sampled { number, known, measured_at, arrived_at, predicted_for, pose });
         view(&self.scene, &self.hmd, self.eyes, number, shown_at, &pose.in_single_precision())
+    }
+
+    /// The first report that reaches the host at an instant or later.
+    pub(crate) fn report_from(&self, instant: Time) -> Option<Time> {
+        let next = self.reports.partition_point(|report| report.arrives_ps < instant.0);
+        self.reports.get(next).map(|report| Time(report.arrives_ps))
     }
 
     fn report_after(&self, after: Time) -> Option<Time> {

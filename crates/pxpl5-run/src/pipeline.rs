@@ -1,14 +1,15 @@
 //! Pipelines as experiments see them.
 
 use crate::keys::KeyValue;
-use crate::views::{ReportTimes, Views, ViewsWanted};
+use crate::views::{FrameStarts, ReportTimes, Views, ViewsWanted};
 use image::RgbImage;
 use pphigs::DisplayList;
+use pxpl5_display::{Aim, LightSpan};
 use pxpl5_gp::HostTiming;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyTarget, PictureNumber, SurfaceId, ViewNumber};
+use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -41,8 +42,12 @@ pub struct Setup {
     pub views: Views,
     /// The same for firmware that knows when a view will be seen.
     pub wanted: ViewsWanted,
+    /// For which instant of what is shown from it a view is drawn, for firmware that knows when that is.
+    pub aim: Aim,
     /// When the host has something new.
     pub reports: ReportTimes,
+    /// When a host that waits for the pipeline begins a frame.
+    pub starts: FrameStarts,
     /// The host's times.
     pub host: HostTiming,
     /// Whether somebody may want pixels.
@@ -140,14 +145,24 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         0
     }
 
-    /// The view that a part of a picture shows; `views` gives the view of a picture as in [`PictureTimes`].
+    /// The view that a part of a picture shows; `views` gives the view of a picture as in [`PictureTimes`], `aim` the instant that
+    /// the part was drawn for.
     fn source(
         &self,
         _record: &Record,
         target: &CopyTarget,
         views: &BTreeMap<PictureNumber, ViewNumber>,
+        _aim: Aim,
     ) -> Option<Source> {
         views.get(&target.picture).copied().map(Source::View)
+    }
+
+    /// When that which is drawn of a picture's view is shown: until the next picture takes its place, or the run ends.
+    fn shown(&self, record: &Record, times: &PictureTimes, next: Option<&PictureTimes>) -> LightSpan {
+        let first = record.display().period_at(times.shown_at);
+        let next = next.map(|next| record.display().period_at(next.shown_at));
+        let periods = next.map_or(self.retraces_a_picture().unwrap_or(1), |next| next.since(first));
+        light_span(record, first, periods)
     }
 
     /// When the light of a picture's middle comes.
@@ -160,5 +175,17 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     fn picture(&self, record: &Record, surface: SurfaceId) -> Option<RgbImage> {
         let display = record.display();
         display.seen(surface.index(), display.last_seen()?)
+    }
+}
+
+/// When the first surface lights in so many periods of the first display, at least one.
+pub(crate) fn light_span(record: &Record, first: PeriodNumber, periods: u64) -> LightSpan {
+    let display = record.display();
+    let tick = display.tick(first);
+    let last = first.after(periods.max(1) - 1);
+    LightSpan {
+        tick,
+        first: display.first_light(0, first).unwrap_or(tick),
+        last: display.last_light(0, last).unwrap_or_else(|| display.tick(last.next())),
     }
 }

@@ -8,12 +8,11 @@ use crate::level::{Level, with_clocks_of_instructions};
 use crate::outcome::Outcome;
 use crate::pipeline::Setup;
 use crate::rehearsal::Rehearsal;
-use crate::statistics::Statistics;
-use crate::views::ReportTimes;
+use crate::views::{FrameStarts, ReportTimes};
 use pxpl5_machine::{Machine, MachineConfig};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 impl Experiment {
@@ -71,15 +70,23 @@ impl Experiment {
         let list = Arc::new(display_list(&self.scene).map_err(ExperimentError::Scene)?);
         let (views, wanted) = views(&self.scene, self.seed, hmd, eyes);
         let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
-        let setup = Setup { list, views, wanted, reports, host: config.host, pixels: self.pixels != Pixels::Off };
+        let starts: FrameStarts = Arc::new(Some);
+        let aim = self.aim();
+        let pixels = self.pixels != Pixels::Off;
+        let setup = Setup { list, views, wanted, aim, reports, starts, host: config.host, pixels };
         let Some(head) = &self.head else { return Ok((setup, None)) };
         let until = machine.record().tick(self.end());
         let head = Arc::new(HeadViews::new(Arc::clone(head), &self.scene, (hmd, eyes), until, rehearsal));
         let (views, wanted, reports) = HeadViews::functions(&head);
-        Ok((Setup { views, wanted, reports, ..setup }, Some(head)))
+        let setup = Setup { views, wanted, reports, ..setup };
+        if !self.on_demand {
+            return Ok((setup, Some(head)));
+        }
+        let asked = Arc::clone(&head);
+        Ok((Setup { starts: Arc::new(move |ready| asked.report_from(ready)), ..setup }, Some(head)))
     }
 
-    /// When each view is seen, from a run without prediction; `None` where nobody predicts, or the firmware knows.
+    /// For which instant each view is drawn, from a run without prediction; `None` where nobody predicts, or the firmware knows.
     fn rehearse(&self) -> Result<Option<Rehearsal>, ExperimentError> {
         if self.pipeline.knows_when_seen() {
             return Ok(None);
@@ -87,7 +94,7 @@ impl Experiment {
         let Some(head) = self.head.as_ref().filter(|head| head.predicts()) else { return Ok(None) };
         let plain = Self { head: Some(Arc::new(head.without_prediction())), pixels: Pixels::Off, ..self.clone() };
         let outcome = plain.perform(None, &[], |_, _| Ok(()))?;
-        Ok(Some(rehearsal_of(&outcome)))
+        Ok(Some(Rehearsal::of(&outcome, head.aim())))
     }
 
     /// Runs it.
@@ -171,17 +178,3 @@ impl Experiment {
 
 /// Fields between two reports of progress.
 const PROGRESS_FIELDS: u64 = 60;
-
-/// When the views of a run were seen.
-fn rehearsal_of(outcome: &Outcome) -> Rehearsal {
-    let Some(head) = outcome.head() else { return Rehearsal::default() };
-    let record = outcome.record();
-    let pipeline = outcome.pipeline();
-    let mut seen_at = BTreeMap::new();
-    for times in outcome.pictures() {
-        seen_at.entry(times.view).or_insert_with(|| pipeline.light(record, times));
-    }
-    let leads = head.sampled().into_iter().filter_map(|s| Some(seen_at.get(&s.number)?.since(s.known).as_ms()));
-    let mean_lead_ps = (Statistics::of(leads).mean * 1e9) as u64;
-    Rehearsal { seen_at, mean_lead_ps }
-}

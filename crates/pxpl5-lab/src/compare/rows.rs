@@ -6,8 +6,8 @@ use pphigs::Binning;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Budget, Measured, Percentiles, PixelErrors, UNJUDGED_FIELDS};
 use pxpl5_run::{
-    Experiment, ExperimentError, FIELDS_WITH_HEAD, Head, Outcome, Pipeline, PipelineEntry, PipelineSettings, Pixels,
-    Registry, Slats,
+    Aim, Experiment, ExperimentError, FIELDS_WITH_HEAD, Head, Outcome, Pipeline, PipelineEntry, PipelineSettings,
+    Pixels, Registry, Slats,
 };
 use pxpl5_scene::Scene;
 use serde::Serialize;
@@ -62,6 +62,8 @@ pub struct Comparison {
     pub tracker: String,
     /// Predictor.
     pub predictor: String,
+    /// The instant of what is shown from it that a view is predicted for.
+    pub aim: Aim,
     /// Fields simulated.
     pub fields: u64,
     /// A row for each.
@@ -171,6 +173,7 @@ pub fn compare_with(
         triangles: scene.triangles().len(),
         tracker,
         predictor: format!("{:?}", head.predictor_kind()),
+        aim: head.aim(),
         fields,
         pipelines: rows.into_iter().flatten().collect(),
     })

@@ -4,7 +4,7 @@ use super::read::beside;
 use super::{ExperimentFile, FileError, tracking_numbers};
 use crate::compare::{motion, predictor, tracker_by};
 use pxpl5_machine::Parameter;
-use pxpl5_run::{Head, Pipeline, Raster};
+use pxpl5_run::{Aim, Head, Pipeline, Raster};
 use std::sync::Arc;
 use tracking::predict::PredictorConfig;
 
@@ -35,6 +35,7 @@ impl HeadChoice {
     pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline, seed: u64) -> Result<Option<Self>, FileError> {
         let Some(motion_name) = file.text("head.motion")? else { return Self::none(file) };
         let raster = file.choice("head.raster", &Raster::ALL)?.unwrap_or_default();
+        let aim = file.choice("head.aim", &Aim::ALL)?.unwrap_or_default();
         if let (Raster::Vdrt, false, Some(setting)) = (raster, pipeline.has_one_pose(), file.get("head.raster")) {
             let place = setting.place.clone();
             let key = "head.raster = vdrt".to_owned();
@@ -54,7 +55,7 @@ impl HeadChoice {
         let of_predictor = predictor(&predict).map_err(|error| refused(file, "head.predict", &error))?;
         let of_predictor = PredictorConfig::for_tracker_by(&tables, of_predictor, &of_tracker);
         let head = Head::predicted_by(moving, of_tracker, of_predictor, seed);
-        let head = Arc::new(head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster));
+        let head = Arc::new(head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).aiming(aim));
         let numbers = tracking_numbers::parameters_with(&tables, own_table);
         Ok(Some(Self { motion: motion_name, tracker: tracker_name, predict, numbers, head }))
     }
@@ -79,12 +80,13 @@ impl HeadChoice {
     }
 
     /// Its keys and their values.
-    pub(super) fn settings(&self) -> [(&'static str, String); 4] {
+    pub(super) fn settings(&self) -> [(&'static str, String); 5] {
         [
             ("head.motion", self.motion.clone()),
             ("head.tracker", self.tracker.clone()),
             ("head.predict", self.predict.clone()),
             ("head.raster", self.head.raster().to_string()),
+            ("head.aim", self.head.aim().to_string()),
         ]
     }
 }

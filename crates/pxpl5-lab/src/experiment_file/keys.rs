@@ -28,6 +28,10 @@ const COMMON: &[(&str, &str)] = &[
     ("head.motion", "still, pan:DEG_PER_S, pendulum, synthetic:SEED or a recording FILE.csv, seen through a tracker"),
     ("head.tracker", "optical, fastrak, flock, flock-patched, 3space or ideal"),
     ("head.predict", "none, velocity, acceleration or kalman"),
+    (
+        "head.aim",
+        "the instant of what is shown from it that a view is predicted for: middle, first-pixel, last-pixel or retrace",
+    ),
     ("head.raster", "plain, or vdrt (the raster is shifted by what the pose was wrong)"),
     ("seed", "seed of the head motion's sway, or of the tracker's noise"),
     ("fields", "periods of the display to simulate: NTSC fields"),

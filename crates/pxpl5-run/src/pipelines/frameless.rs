@@ -5,7 +5,7 @@ use super::{ntsc, samples};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
-use jitp::{BlockOrder, DrawingSchedule};
+use jitp::{BlockOrder, DrawingSchedule, JitpConfig};
 use pphigs::{PrimitiveCounts, Share, TransformCost};
 use pxpl5_framebuffer::Video;
 use pxpl5_machine::{ConfigError, Machine, Record};
@@ -117,6 +117,7 @@ impl Pipeline for Frameless {
         let batch = self.batch(machine.record(), Share::new(Arc::clone(&setup.list), 0, 1).counts());
         let schedule = DrawingSchedule::Roam { block: self.block, batch, order: self.order()? };
         let config = config(machine.record(), schedule, self.layout(), setup.pixels)?;
+        let config = JitpConfig { aim: setup.aim, ..config };
         load(machine, setup, &config);
         Ok(())
     }

@@ -6,6 +6,7 @@ use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, host, master, slave};
 use pphigs::Share;
+use pxpl5_display::Aim;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Priority;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, NamedTable, Record};
@@ -77,6 +78,7 @@ pub(super) fn config(
         frame_buffer: ports.display()[0],
         schedule,
         beam: beam(*display.video()),
+        aim: Aim::default(),
         layout,
         pixels,
         timing: record.config().firmware_table().copied().unwrap_or(JitpTiming::PAPERS),
@@ -86,10 +88,11 @@ pub(super) fn config(
 }
 
 fn beam(video: Video) -> Beam {
-    Beam::new(move |field, row, x| {
+    let at = move |field, row, x| {
         let line = 2 * row + FieldParity::of_field(field).first_line();
         video.when(x, line, field).unwrap_or_else(|| video.retrace(field))
-    })
+    };
+    Beam::new(at, move |field| video.retrace(field))
 }
 
 /// Loads host, master and slaves.
@@ -150,7 +153,7 @@ impl Pipeline for Jitp {
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
-        let config = self.config(machine.record(), setup.pixels)?;
+        let config = JitpConfig { aim: setup.aim, ..self.config(machine.record(), setup.pixels)? };
         load(machine, setup, &config);
         Ok(())
     }
@@ -207,7 +210,13 @@ impl Pipeline for Jitp {
         "fields of which a strip came after its beam, or that were left out"
     }
 
-    fn source(&self, record: &Record, target: &CopyTarget, _: &BTreeMap<PictureNumber, ViewNumber>) -> Option<Source> {
+    fn source(
+        &self,
+        record: &Record,
+        target: &CopyTarget,
+        _: &BTreeMap<PictureNumber, ViewNumber>,
+        aim: Aim,
+    ) -> Option<Source> {
         let field = target.picture.period_drawn_for();
         let strip = u32::from(target.region.0) / target.grid.columns();
         let view = |i: u32| JitpConfig::view_number(field, u64::from(i));
@@ -217,7 +226,7 @@ impl Pipeline for Jitp {
             Viewpoint::Dual(reading) => Source::Between {
                 from: view(0),
                 to: view(1),
-                part: self.config(record, false).ok()?.part(field, strip),
+                part: JitpConfig { aim, ..self.config(record, false).ok()? }.part(field, strip),
                 on_screen: reading == Interpolation::Screen,
             },
         })

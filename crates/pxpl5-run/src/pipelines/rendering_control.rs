@@ -87,9 +87,12 @@ impl Pipeline for RenderingControl {
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
         let config = self.config(machine, setup.pixels)?;
-        let (foreground, views) = (Priority::Foreground, setup.views.clone());
+        let foreground = Priority::Foreground;
+        let views = Arc::clone(&setup.views);
+        let starts = Arc::clone(&setup.starts);
         let gp = machine.processor(config.host, foreground);
-        let program = host(gp, config.clone(), setup.host, move |view, time| views(view, time));
+        let view_of = move |view, time| views(view, time);
+        let program = host(gp, config.clone(), setup.host, move |ready| starts(ready), view_of);
         machine.load(config.host, foreground, Box::pin(program));
         let gp = machine.processor(config.master, foreground);
         machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));

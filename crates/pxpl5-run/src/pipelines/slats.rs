@@ -2,9 +2,10 @@
 
 use super::{late_regions, missed_fields, ntsc, samples};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
-use crate::pipeline::{PictureTimes, Pipeline, Setup};
+use crate::pipeline::{PictureTimes, Pipeline, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use pphigs::{Binning, Share};
+use pxpl5_display::LightSpan;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{CodeVersion, GpTiming, Priority};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
@@ -125,9 +126,12 @@ impl Pipeline for Slats {
         ntsc(machine.record(), self.name())?;
         let config = self.config(machine, setup.pixels);
         let binding = config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
-        let (foreground, views) = (Priority::Foreground, setup.views.clone());
+        let foreground = Priority::Foreground;
+        let views = Arc::clone(&setup.views);
+        let reports = Arc::clone(&setup.reports);
         let gp = machine.processor(config.host, foreground);
-        let program = host(gp, config.clone(), setup.host, move |view, time| views(view, time));
+        let view_of = move |view, time| views(view, time);
+        let program = host(gp, config.clone(), setup.host, move |after| reports(after), view_of);
         machine.load(config.host, foreground, Box::pin(program));
         for (index, node) in config.processors.iter().enumerate() {
             let gp = machine.processor(*node, foreground);
@@ -178,6 +182,11 @@ impl Pipeline for Slats {
     /// A new picture every field.
     fn retraces_a_picture(&self) -> Option<u64> {
         Some(1)
+    }
+
+    /// A field is scanned once: the next one is of the other lines.
+    fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightSpan {
+        light_span(record, times.picture.period_drawn_for(), 1)
     }
 
     /// Fields of which something was late or missing, and fields that were left out.

@@ -57,11 +57,13 @@ pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
         return Vec::new();
     }
     let [tracker, predictor, display] = ["tracker", "predictor", "display"].map(|key| plain(&head[key]));
+    // Reports of older versions do not say it.
+    let aim = head["aim"].as_str().map_or_else(String::new, |aim| format!(", aim {aim}"));
     let stages = STAGES.iter().map(|stage| stage_row(stage, &head["end_to_end"]));
     let errors = ERRORS.iter().map(|unit| error_row(unit, &head["error"][*unit]));
     vec![
         heading("From the head to light"),
-        paragraph(format_args!("{tracker}, prediction {predictor}, display {display}.")),
+        paragraph(format_args!("{tracker}, prediction {predictor}{aim}, display {display}.")),
         table(&["stage", "mean, ms"], stages),
         table(&["error", "mean", "50 %", "90 %", "99 %", "greatest"], errors),
     ]
