@@ -16,6 +16,8 @@ impl TrackerConfig {
             orientation_latency_ps,
             position_noise_m,
             orientation_noise_deg,
+            position_bias_m,
+            orientation_bias_deg,
             filter_gain,
             serial,
             host,
@@ -31,6 +33,8 @@ impl TrackerConfig {
         settings("tracker.orientation_latency_ps", orientation_latency_ps);
         settings("tracker.position_noise_m", position_noise_m);
         settings("tracker.orientation_noise_deg", orientation_noise_deg);
+        settings("tracker.position_bias_m", position_bias_m);
+        settings("tracker.orientation_bias_deg", orientation_bias_deg);
         settings("tracker.filter_gain", filter_gain);
         if let Some(SerialLine { record_bytes, baud }) = serial {
             settings("tracker.serial.record_bytes", record_bytes);
@@ -87,19 +91,29 @@ impl PredictorConfig {
     pub fn identify(&self, settings: &mut Settings) {
         let Self {
             kind,
-            baseline_reports,
+            position_baseline,
+            orientation_baseline,
             position_noise_m,
             orientation_noise_deg,
             position_jerk,
             orientation_jerk,
+            start_speed,
+            start_acceleration,
+            start_turn,
+            start_turn_acceleration,
             horizon_ps,
         } = self;
         settings("predictor", &kind.name());
-        settings("predictor.baseline_reports", baseline_reports);
+        settings("predictor.position_baseline", position_baseline);
+        settings("predictor.orientation_baseline", orientation_baseline);
         settings("predictor.position_noise_m", position_noise_m);
         settings("predictor.orientation_noise_deg", orientation_noise_deg);
         settings("predictor.position_jerk", position_jerk);
         settings("predictor.orientation_jerk", orientation_jerk);
+        settings("predictor.start_speed", start_speed);
+        settings("predictor.start_acceleration", start_acceleration);
+        settings("predictor.start_turn", start_turn);
+        settings("predictor.start_turn_acceleration", start_turn_acceleration);
         settings("predictor.horizon_ps", horizon_ps);
     }
 }

@@ -226,7 +226,9 @@ fn each_prediction_is_for_the_very_instant_it_is_asked_for() {
 fn settings_out_of_range_are_errors() {
     let good = PredictorConfig::for_tracker(PredictorKind::Kalman, &TrackerConfig::fastrak());
     for bad in [
-        PredictorConfig { baseline_reports: 0, ..good },
+        PredictorConfig { position_baseline: 0, ..good },
+        PredictorConfig { orientation_baseline: 17, ..good },
+        PredictorConfig { start_turn: 0.0, ..good },
         PredictorConfig { position_noise_m: 0.0, ..good },
         PredictorConfig { orientation_jerk: f64::NAN, ..good },
         PredictorConfig { horizon_ps: 0, ..good },

@@ -27,6 +27,10 @@ pub struct TrackerConfig {
     pub position_noise_m: f64,
     /// White noise about each axis, rms, degrees.
     pub orientation_noise_deg: f64,
+    /// Systematic error of each axis, rms over installations, m: drawn once from the seed, the same in every report.
+    pub position_bias_m: f64,
+    /// Systematic error about each axis, rms over installations, degrees: drawn once from the seed, the same in every report.
+    pub orientation_bias_deg: f64,
     /// a of the tracker's filter x' = a x + (1 - a) x'; 1 is no filter. Above 0.
     pub filter_gain: f64,
     /// The cable; `None` when the latency above includes it.
@@ -54,6 +58,7 @@ impl TrackerConfig {
             ..Self::ideal()
                 .named("Polhemus Fastrak", table::Fastrak::PAPERS.rate)
                 .with_noise(table::Fastrak::PAPERS.position_noise, table::Fastrak::PAPERS.orientation_noise)
+                .with_bias(table::Fastrak::PAPERS.position_bias, table::Fastrak::PAPERS.orientation_bias)
         }
     }
 
@@ -69,6 +74,7 @@ impl TrackerConfig {
             ..Self::ideal()
                 .named("Ascension Flock of Birds", table::Flock::PAPERS.rate)
                 .with_noise(table::Flock::PAPERS.position_noise, table::Flock::PAPERS.orientation_noise)
+                .with_bias(table::Flock::PAPERS.position_bias, table::Flock::PAPERS.orientation_bias)
         }
     }
 
@@ -82,6 +88,7 @@ impl TrackerConfig {
         Self::ideal()
             .named("UNC optical ceiling tracker", table::Optical::PAPERS.rate)
             .with_noise(table::Optical::PAPERS.position_noise, table::Optical::PAPERS.orientation_noise)
+                .with_bias(table::Optical::PAPERS.position_bias, table::Optical::PAPERS.orientation_bias)
             .with_latency_ps(table::ms_to_ps(table::Optical::PAPERS.latency))
     }
 
@@ -93,6 +100,7 @@ impl TrackerConfig {
             ..Self::ideal()
                 .named("Polhemus 3Space", table::Space::PAPERS.rate)
                 .with_noise(table::Space::PAPERS.position_noise, table::Space::PAPERS.orientation_noise)
+                .with_bias(table::Space::PAPERS.position_bias, table::Space::PAPERS.orientation_bias)
                 .with_latency_ps(table::ms_to_ps(table::Space::PAPERS.latency))
         }
     }
@@ -108,6 +116,8 @@ impl TrackerConfig {
             orientation_latency_ps: 0,
             position_noise_m: 0.0,
             orientation_noise_deg: 0.0,
+            position_bias_m: 0.0,
+            orientation_bias_deg: 0.0,
             filter_gain: 1.0,
             serial: None,
             host: HostLine::InterruptPerCharacter,
@@ -133,5 +143,14 @@ impl TrackerConfig {
 
     fn with_noise(self, position_mm: f64, orientation_deg: f64) -> Self {
         Self { position_noise_m: position_mm / 1e3, orientation_noise_deg: orientation_deg, ..self }
+    }
+
+    fn with_bias(self, position_mm: f64, orientation_deg: f64) -> Self {
+        Self { position_bias_m: position_mm / 1e3, orientation_bias_deg: orientation_deg, ..self }
+    }
+
+    /// The same without what no filter can know or help: bias, metal, faults.
+    pub fn without_systematic_errors(self) -> Self {
+        Self { position_bias_m: 0.0, orientation_bias_deg: 0.0, distortion: None, faults: Vec::new(), ..self }
     }
 }
