@@ -8,12 +8,13 @@ use crate::pose::Pose;
 use crate::time::{PS_PER_S, span_s};
 use crate::tracker::{Report, TrackerModel};
 
-/// Seconds of motion that a filter is tuned on, and of these the first that are not judged.
-const TRAINING_S: u64 = 20;
+/// Seconds of motion that a filter is tuned on, and of these the first that are not judged. Lively spells are rare: with 20 seconds
+/// a filter tuned for 200 ms was worse there, on other motion, than one tuned for 50 ms.
+const TRAINING_S: u64 = 100;
 const SETTLING_S: u64 = 1;
 
-/// Most reports that it is tuned on: 50 s of a tracker of 120 Hz; a faster one is heard for a shorter time.
-const MOST_REPORTS: usize = 6_000;
+/// Most reports that it is tuned on: all of a tracker of 120 Hz; a faster one is heard for a shorter time.
+const MOST_REPORTS: usize = 12_000;
 
 /// Seed of the noise in training; the next one where this is the seed that is judged.
 const TRAINING_SEED: u64 = 0x7475_6e65;
@@ -65,7 +66,7 @@ pub fn training_seed(judged: u64) -> u64 {
 /// What is searched is, for position and orientation each, the white jerk of a Kalman filter (between 10^-6 and 10^6, in two rounds
 /// over a grid of its logarithm) or the baseline of a difference (all from 1 to 16 reports). The noise of reports is the
 /// tracker's own, and the speeds and accelerations that a Kalman filter believes in at its start are the motion's root mean
-/// squares. It is tuned on 20 seconds of the motion's [`Motion::sibling`], or of the motion where it has none, behind the tracker
+/// squares. It is tuned on 100 seconds of the motion's [`Motion::sibling`], or of the motion where it has none, behind the tracker
 /// without bias, metal and faults, with noise of another seed than `judged_seed`. One (motion, tracker, interval) gives one
 /// result on every host.
 ///
@@ -163,7 +164,7 @@ impl Lesson {
             let steps = spans.map(|(low, high)| (high - low) / (JERKS_A_ROUND - 1) as f64);
             for i in 0..JERKS_A_ROUND {
                 let tried: [f64; 2] = core::array::from_fn(|channel| spans[channel].0 + steps[channel] * i as f64);
-                let [position_jerk, orientation_jerk] = tried.map(power_of_ten);
+                let [position_jerk, orientation_jerk] = tried.map(jerk);
                 let errors = self.errors(&PredictorConfig { position_jerk, orientation_jerk, ..*base })?;
                 better(&mut best, errors, tried);
             }
@@ -171,7 +172,7 @@ impl Lesson {
             let clamped = |(low, high): (f64, f64)| (low.max(JERK_DECADES.0), high.min(JERK_DECADES.1));
             spans = [0, 1].map(|channel| clamped(about(channel)));
         }
-        let [position_jerk, orientation_jerk] = best.map(|(_, decades)| power_of_ten(decades));
+        let [position_jerk, orientation_jerk] = best.map(|(_, decades)| jerk(decades));
         Ok((PredictorConfig { position_jerk, orientation_jerk, ..*base }, best.map(|(error, _)| error)))
     }
 
@@ -179,8 +180,7 @@ impl Lesson {
     fn best_baselines(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), ConfigError> {
         let mut best = [(f64::INFINITY, 1.0); 2];
         for baseline in 1..=LONGEST_BASELINE {
-            let tried =
-                PredictorConfig { position_baseline: baseline, orientation_baseline: baseline, ..*base };
+            let tried = PredictorConfig { position_baseline: baseline, orientation_baseline: baseline, ..*base };
             better(&mut best, self.errors(&tried)?, [f64::from(baseline); 2]);
         }
         let [position_baseline, orientation_baseline] = best.map(|(_, baseline)| baseline as u32);
@@ -197,14 +197,15 @@ fn better(best: &mut [(f64, f64); 2], errors: [f64; 2], tried: [f64; 2]) {
     }
 }
 
-fn power_of_ten(decades: f64) -> f64 {
-    libm::pow(10.0, decades)
+/// The white jerk of a decimal logarithm; both filters' jerks have the same limits.
+fn jerk(decades: f64) -> f64 {
+    within("position_jerk", libm::pow(10.0, decades))
 }
 
 /// A number within the limits of the filter's table.
 fn within(name: &str, value: f64) -> f64 {
     let limits = Filter::INFOS.iter().find(|info| info.name == name).map(|info| info.limits);
-    limits.map_or(value, |(low, high)| value.clamp(low.as_f64(), high.as_f64()))
+    limits.map_or(value, |(low, high)| value.clamp(low.real(), high.real()))
 }
 
 /// Root mean squares, for one of three axes, of speed, acceleration, angular velocity and angular acceleration at the reports.

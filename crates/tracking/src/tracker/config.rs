@@ -88,7 +88,7 @@ impl TrackerConfig {
         Self::ideal()
             .named("UNC optical ceiling tracker", table::Optical::PAPERS.rate)
             .with_noise(table::Optical::PAPERS.position_noise, table::Optical::PAPERS.orientation_noise)
-                .with_bias(table::Optical::PAPERS.position_bias, table::Optical::PAPERS.orientation_bias)
+            .with_bias(table::Optical::PAPERS.position_bias, table::Optical::PAPERS.orientation_bias)
             .with_latency_ps(table::ms_to_ps(table::Optical::PAPERS.latency))
     }
 

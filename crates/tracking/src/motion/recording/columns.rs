@@ -3,8 +3,7 @@ use std::fmt;
 use super::LoadError;
 
 /// What a mapping must say.
-const EXPECTED: &str =
-    "t (or t_ms, t_us, t_ns), x, y, z (or x_mm, y_mm, z_mm), qw, qx, qy and qz, each with the name or number of a column";
+const EXPECTED: &str = "t (or t_ms, t_us, t_ns), x, y, z (or x_mm, y_mm, z_mm), qw, qx, qy and qz, each with the name or number of a column";
 
 /// Which column of a text file holds what, by the column's name in the header or by its number from 1.
 ///

@@ -115,11 +115,7 @@ fn is_euroc(header: &[&str]) -> bool {
 
 fn in_order(names: &[&str; 8], order: [usize; 8], time_places: i32) -> [Column; 8] {
     let places = |slot| if slot == 0 { time_places } else { 0 };
-    std::array::from_fn(|slot| Column {
-        index: order[slot],
-        name: names[order[slot]].to_owned(),
-        places: places(slot),
-    })
+    std::array::from_fn(|slot| Column { index: order[slot], name: names[order[slot]].to_owned(), places: places(slot) })
 }
 
 /// The layout of a file whose columns are said.

@@ -55,10 +55,7 @@ fn bad_rows_are_named_by_line_and_column_and_times_are_in_seconds() {
         ("soon,0,0,0,1,0,0,0\n", "line 3, time_s: expected a finite number, found \"soon\""),
         ("1,0,0,0,1,0,0\n", "line 3: expected 8 fields, found 7"),
         ("1,0,0,0,1,0,0,0,9\n", "line 3: expected 8 fields, found 9"),
-        (
-            "0.25,0,0,0,1,0,0,0\n",
-            "line 3, time_s: expected more than 0.5 s, the time of the line before, found 0.25 s",
-        ),
+        ("0.25,0,0,0,1,0,0,0\n", "line 3, time_s: expected more than 0.5 s, the time of the line before, found 0.25 s"),
         ("1e9,0,0,0,1,0,0,0\n", "line 3, time_s: expected 0 to 10000000 s, found 1000000000 s"),
         ("1,0,0,0,0,0,0,0\n", "line 3, qw,qx,qy,qz: expected a quaternion of length 1, found 0"),
     ];
@@ -136,17 +133,15 @@ fn errors_of_other_formats_name_their_own_columns() {
     assert_eq!(said, "line 4, tz: expected a finite number, found \"up\"");
     let euroc = EUROC.replace("1403636581338555648", "1403636580338555648");
     let said = Recording::read(euroc.as_bytes()).unwrap_err().to_string();
-    assert_eq!(
-        said,
-        "line 3, timestamp [ns]: expected more than 0 s, the time of the line before, found -0.5 s"
-    );
+    assert_eq!(said, "line 3, timestamp [ns]: expected more than 0 s, the time of the line before, found -0.5 s");
     let short = EUROC.replace(",-0.70710678,0,0.2", "");
     assert_eq!(Recording::read(short.as_bytes()).unwrap_err().to_string(), "line 3: expected 8 fields, found 6");
 }
 
 #[test]
 fn other_columns_are_read_by_a_mapping_of_names_or_numbers() {
-    let named = "frame;qx;qy;qz;qw;px;py;pz;stamp\n7;0;0;0;1;0;1700;0;20.5\n8;0;0.70710678;0;0.70710678;250;1700;-500;520.5\n";
+    let named =
+        "frame;qx;qy;qz;qw;px;py;pz;stamp\n7;0;0;0;1;0;1700;0;20.5\n8;0;0.70710678;0;0.70710678;250;1700;-500;520.5\n";
     let columns = Columns::parse("t_ms=stamp,x_mm=px,y_mm=py,z_mm=pz,qw=qw,qx=qx,qy=qy,qz=qz").unwrap();
     let format = RecordingFormat { columns, axes: None };
     let by_name = Recording::read_as(named.as_bytes(), &format).unwrap();
