@@ -76,7 +76,7 @@ fn picture(viewport: Viewport, shading: Shading, binning: Binning) -> Picture {
 }
 
 fn board(version: CodeVersion, share: &Share) -> Processor {
-    let mut processor = Processor::new(NodeId(1), MEMORY, version);
+    let mut processor = Processor::new(NodeId(1), MEMORY, version, i860::Config::cycle());
     share.install(&mut processor).expect("it fits");
     processor
 }
@@ -177,7 +177,7 @@ fn a_picture_without_a_kernel_takes_the_time_of_the_table() {
 #[test]
 fn a_display_list_larger_than_the_memory_is_refused() {
     let share = Share::new(list(300), 0, 1);
-    let mut small = Processor::new(NodeId(4), 1 << 20, CodeVersion::Compiled);
+    let mut small = Processor::new(NodeId(4), 1 << 20, CodeVersion::Compiled, i860::Config::cycle());
     let error = share.install(&mut small).expect_err("it begins behind the first megabyte");
     assert_eq!(error.to_string(), "graphics processor at node 4: no memory for 24 words at 0x00100000");
 }
@@ -194,7 +194,7 @@ fn output_bytes(pass: &Pass, triangles: u32, command_bytes: u32) -> u32 {
 fn both_contexts(memory: u64) -> (Processor, [Arc<Pass>; 2]) {
     let share = Share::new(list(90), 0, 1);
     let view = view();
-    let mut processor = Processor::new(NodeId(2), memory, CodeVersion::Scheduled);
+    let mut processor = Processor::new(NodeId(2), memory, CodeVersion::Scheduled, i860::Config::cycle());
     share.install(&mut processor).expect("it fits");
     let picture = picture(Viewport::FRAME, Shading::Gouraud, Binning::Touched);
     (processor, [0, 1].map(|eye| share.transform(&view, eye, picture)))

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use tracking::Pose;
 use tracking::motion::{Motion, Pan, Synthetic};
-use tracking::predict::{PredictionError, Predictor, PredictorConfig, PredictorKind, prediction_errors};
+use tracking::predict::{PredictionError, Predictor, PredictorConfig, PredictorKind, Start, prediction_errors};
 use tracking::rotation;
 use tracking::time::{PS_PER_MS, PS_PER_S};
 use tracking::tracker::{Fault, Report, TrackerConfig, TrackerModel};
@@ -228,7 +228,7 @@ fn settings_out_of_range_are_errors() {
     for bad in [
         PredictorConfig { position_baseline: 0, ..good },
         PredictorConfig { orientation_baseline: 17, ..good },
-        PredictorConfig { start_turn: 0.0, ..good },
+        PredictorConfig { start: Start { turn: 0.0, ..good.start }, ..good },
         PredictorConfig { position_noise_m: 0.0, ..good },
         PredictorConfig { orientation_jerk: f64::NAN, ..good },
         PredictorConfig { horizon_ps: 0, ..good },

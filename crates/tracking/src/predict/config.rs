@@ -51,22 +51,60 @@ pub struct PredictorConfig {
     pub position_jerk: f64,
     /// The same of orientations, rad/s^3/sqrt(Hz).
     pub orientation_jerk: f64,
-    /// What a Kalman filter believes of the speed of each axis before its second report, rms, m/s.
-    pub start_speed: f64,
-    /// The same of the acceleration, m/s^2.
-    pub start_acceleration: f64,
-    /// The same of the angular velocity about each axis, rad/s.
-    pub start_turn: f64,
-    /// The same of the angular acceleration, rad/s^2.
-    pub start_turn_acceleration: f64,
     /// Longest prediction, ps; beyond it the last pose is given.
     pub horizon_ps: u64,
+    /// What Kalman filters believe of the head before the first report.
+    #[serde(default)]
+    pub start: Start,
+    /// Which reports are believed.
+    #[serde(default = "usual_gate")]
+    pub gate: table::Gate,
+}
+
+/// Standard deviations at the start of a filter, of a head at rest.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Start {
+    /// Of the speed, m/s.
+    pub speed: f64,
+    /// Of the acceleration, m/s^2.
+    pub acceleration: f64,
+    /// Of the angular velocity, rad/s.
+    pub turn: f64,
+    /// Of the angular acceleration, rad/s^2.
+    pub turn_acceleration: f64,
+}
+
+impl Start {
+    const fn of(filter: &table::Filter) -> Self {
+        Self {
+            speed: filter.start_speed,
+            acceleration: filter.start_acceleration,
+            turn: filter.start_turn,
+            turn_acceleration: filter.start_turn_acceleration,
+        }
+    }
+}
+
+impl Default for Start {
+    fn default() -> Self {
+        Self::of(&table::Filter::PAPERS)
+    }
+}
+
+const fn usual_gate() -> table::Gate {
+    table::Gate::PAPERS
 }
 
 impl PredictorConfig {
     /// A filter that knows the noise of this tracker.
     pub fn for_tracker(kind: PredictorKind, tracker: &TrackerConfig) -> Self {
-        let filter = table::Filter::PAPERS;
+        Self::for_tracker_by(&table::Tables::PAPERS, kind, tracker)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn for_tracker_by(tables: &table::Tables, kind: PredictorKind, tracker: &TrackerConfig) -> Self {
+        let filter = &tables.filter;
         Self {
             kind,
             position_baseline: filter.baseline as u32,
@@ -75,11 +113,9 @@ impl PredictorConfig {
             orientation_noise_deg: tracker.orientation_noise_deg.max(LEAST_NOISE_DEG),
             position_jerk: filter.position_jerk,
             orientation_jerk: filter.orientation_jerk,
-            start_speed: filter.start_speed,
-            start_acceleration: filter.start_acceleration,
-            start_turn: filter.start_turn,
-            start_turn_acceleration: filter.start_turn_acceleration,
             horizon_ps: table::ms_to_ps(filter.horizon),
+            start: Start::of(filter),
+            gate: tables.gate,
         }
     }
 
@@ -98,20 +134,21 @@ impl PredictorConfig {
         ConfigError::check("position noise, m", self.position_noise_m, LEAST_NOISE_M, 10.0)?;
         ConfigError::check("orientation noise, deg", self.orientation_noise_deg, LEAST_NOISE_DEG, 90.0)?;
         [self.position_baseline, self.orientation_baseline].into_iter().try_for_each(|b| self.filter(b).check())?;
+        self.gate.check()?;
         Ok(())
     }
 
     /// The numbers of the table, as they are set here, with one of the baselines.
-    fn filter(&self, baseline: u32) -> table::Filter {
+    pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,
             orientation_jerk: self.orientation_jerk,
-            start_speed: self.start_speed,
-            start_acceleration: self.start_acceleration,
-            start_turn: self.start_turn,
-            start_turn_acceleration: self.start_turn_acceleration,
             baseline: baseline.into(),
             horizon: crate::time::seconds(self.horizon_ps) * 1e3,
+            start_speed: self.start.speed,
+            start_acceleration: self.start.acceleration,
+            start_turn: self.start.turn,
+            start_turn_acceleration: self.start.turn_acceleration,
         }
     }
 
@@ -120,6 +157,7 @@ impl PredictorConfig {
             Extrapolation::new(order, self.position_baseline as usize, DVec3::ZERO),
             Extrapolation::new(order, self.orientation_baseline as usize, DQuat::IDENTITY),
             crate::time::seconds(self.horizon_ps),
+            self.gate,
         ))
     }
 
@@ -127,17 +165,18 @@ impl PredictorConfig {
         let position = Belief {
             measurement: self.position_noise_m.powi(2),
             jerk: self.position_jerk.powi(2),
-            start: (self.start_speed.powi(2), self.start_acceleration.powi(2)),
+            start: (self.start.speed.powi(2), self.start.acceleration.powi(2)),
         };
         let orientation = Belief {
             measurement: self.orientation_noise_deg.to_radians().powi(2),
             jerk: self.orientation_jerk.powi(2),
-            start: (self.start_turn.powi(2), self.start_turn_acceleration.powi(2)),
+            start: (self.start.turn.powi(2), self.start.turn_acceleration.powi(2)),
         };
         Box::new(GatedFilters::new(
             PositionKalman::new(position),
             OrientationKalman::new(orientation),
             crate::time::seconds(self.horizon_ps),
+            self.gate,
         ))
     }
 }

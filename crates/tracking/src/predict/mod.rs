@@ -11,7 +11,7 @@ mod position_kalman;
 mod predicting;
 mod tune;
 
-pub use config::{PredictorConfig, PredictorKind};
+pub use config::{PredictorConfig, PredictorKind, Start};
 pub use evaluate::{PredictionError, prediction_errors};
 pub use gate::Counts;
 pub use tune::{Training, Tuned, training_seed, tune};

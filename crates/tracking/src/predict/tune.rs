@@ -1,6 +1,6 @@
 use glam::DVec3;
 
-use super::{PredictorConfig, PredictorKind};
+use super::{PredictorConfig, PredictorKind, Start};
 use crate::config::Filter;
 use crate::error::ConfigError;
 use crate::motion::Motion;
@@ -132,13 +132,13 @@ impl Lesson {
     /// A filter that expects at its start what the motion does.
     fn with_start(&self, base: PredictorConfig) -> PredictorConfig {
         let [speed, acceleration, turn, turn_acceleration] = self.rates;
-        PredictorConfig {
-            start_speed: within("start_speed", speed),
-            start_acceleration: within("start_acceleration", acceleration),
-            start_turn: within("start_turn", turn),
-            start_turn_acceleration: within("start_turn_acceleration", turn_acceleration),
-            ..base
-        }
+        let start = Start {
+            speed: within("start_speed", speed),
+            acceleration: within("start_acceleration", acceleration),
+            turn: within("start_turn", turn),
+            turn_acceleration: within("start_turn_acceleration", turn_acceleration),
+        };
+        PredictorConfig { start, ..base }
     }
 
     /// Mean errors of a predictor: metres and degrees.
