@@ -2,8 +2,8 @@
 
 use crate::display_list::{display_list, hmd_before, views};
 use crate::error::ExperimentError;
-use crate::head::Head;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
+use crate::head::Head;
 use crate::head_views::{FIELDS_WITH_HEAD, HeadViews};
 use crate::level::{Level, with_clocks_of_instructions};
 use crate::outcome::Outcome;

@@ -174,7 +174,7 @@ impl Motion for Nod {
 fn motions_that_differ_have_different_names_even_if_debug_does_not_tell() {
     let recording = |x: f64| {
         let text = format!("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
-        Recording::from_csv(text.as_bytes()).expect("valid")
+        Recording::read(text.as_bytes()).expect("valid")
     };
     let names = [
         head(Nod { hz: 1.0 }),

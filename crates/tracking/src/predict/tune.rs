@@ -1,4 +1,5 @@
 use glam::DVec3;
+use serde::Serialize;
 
 use super::{PredictorConfig, PredictorKind, Start};
 use crate::config::Filter;
@@ -29,7 +30,7 @@ const ROUNDS: usize = 2;
 const LONGEST_BASELINE: u32 = 16;
 
 /// On what a filter was tuned.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Training {
     /// How far ahead it was asked, ps, from the instant at which a report was true.
     pub interval_ps: u64,
