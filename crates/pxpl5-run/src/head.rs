@@ -96,6 +96,13 @@ impl Head {
         self
     }
 
+    /// Has another predictor in the place of its own, with the same numbers, or tuned if its own is.
+    #[must_use]
+    pub const fn predicting(mut self, kind: PredictorKind) -> Self {
+        self.predictor.kind = kind;
+        self
+    }
+
     /// Says at which distance from the eye, in metres, pixel errors are judged; else it is where the scene's content lies.
     ///
     /// # Errors
@@ -154,6 +161,12 @@ impl Head {
     #[must_use]
     pub fn predicts(&self) -> bool {
         self.predictor.kind != PredictorKind::None
+    }
+
+    /// Whether the numbers of its predictor are found when the experiment is run, or were.
+    #[must_use]
+    pub fn is_tuned(&self) -> bool {
+        self.numbers != Numbers::Given
     }
 
     /// Whether the numbers of its predictor are still to be found.

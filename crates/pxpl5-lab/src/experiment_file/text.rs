@@ -34,7 +34,7 @@ impl Plan {
         self.pipeline_settings(&mut all);
         self.scene_settings(&mut all);
         if let Some(head) = &self.head {
-            head.settings().into_iter().for_each(|(path, value)| all.put(path, value));
+            head.settings().into_iter().for_each(|(path, value)| all.put(&path, value));
             head.parameters().iter().for_each(|parameter| all.parameter(&parameter.path, parameter, &[]));
         }
         all.put("fields", self.fields as i64);

@@ -83,6 +83,11 @@ impl Columns {
         Ok(columns)
     }
 
+    /// The fields that are mapped, each with its column, in the order in which they were given.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        self.given.iter().map(|(field, column)| (field.name, column.as_str()))
+    }
+
     /// Whether nothing is mapped.
     pub fn is_empty(&self) -> bool {
         self.given.is_empty()
