@@ -4,7 +4,7 @@ use glam::{DVec2, Vec3};
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measured, PixelErrors, Registration};
 use pxpl5_run::{Experiment, ExperimentError, Head, Outcome, Pixels, Sampled, Slats};
-use pxpl5_scene::{Frame, HeadMotion, Hinge, Lighting, Path, Scene, SceneParts, Structure, Sway, Vertex};
+use pxpl5_scene::{Frame, HeadMotion, HeadPath, Hinge, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
@@ -65,7 +65,7 @@ fn a_translation_is_off_by_focal_length_times_way_over_distance() {
 /// A wheel of 2 m before the viewer that swings about the axis of view.
 fn wheel(hinge: Hinge) -> Scene {
     let corner = |x: f32, y: f32| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };
-    let motion = HeadMotion::new(Path::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, Sway::none());
+    let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, Sway::none());
     Scene::new(SceneParts {
         name: "wheel".to_owned(),
         vertices: vec![corner(-9.0, -9.0), corner(9.0, -9.0), corner(0.0, 9.0)],

@@ -78,7 +78,7 @@ impl Sweep {
         self.base.sweep.as_ref().map(|sweep| sweep.folder.clone()).unwrap_or_default()
     }
 
-    /// The points.
+    /// The space of settings, whose points are the experiments.
     #[must_use]
     pub const fn space(&self) -> &Space {
         &self.space
