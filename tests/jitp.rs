@@ -308,8 +308,13 @@ fn a_perfect_tracker_and_a_still_head_leave_no_error() {
 
 #[test]
 fn metal_misplaces_objects_even_for_a_still_head() {
-    let tracker =
-        TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::polhemus_3space() };
+    let tracker = TrackerConfig {
+        position_noise_m: 0.0,
+        orientation_noise_deg: 0.0,
+        position_bias_m: 0.0,
+        orientation_bias_deg: 0.0,
+        ..TrackerConfig::polhemus_3space()
+    };
     let at = Pose::at(DVec3::new(0.7, 0.0, 0.7));
     let outcome = run(Slats::split(), head(Still(at), tracker, PredictorKind::None), 90);
     let errors = PixelErrors::of(&outcome);

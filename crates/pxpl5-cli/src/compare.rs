@@ -21,12 +21,12 @@ use std::sync::Arc;
 
 To run one of them alone, with pictures: pxpl5 run --pipeline jitp-scanline-racing --head pan:200.")]
 pub(crate) struct CompareArgs {
-    /// How the head moves: still, pan:DEG_PER_S, pendulum, synthetic:SEED, or a recording FILE.csv with the columns
-    /// time_s,x,y,z,qw,qx,qy,qz.
+    /// How the head moves: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, or a recording (FILE.csv,
+    /// .txt, .tum: time_s,x,y,z,qw,qx,qy,qz, EuRoC or TUM).
     #[arg(long, default_value = "synthetic:1", value_name = "MOTION", allow_hyphen_values = true)]
     motion: String,
     /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .pdb.
-    #[arg(long, default_value = "full-screen:4", value_name = "NAME|FILE")]
+    #[arg(long, default_value = "room", value_name = "NAME|FILE")]
     scene: String,
     /// optical, fastrak, flock, flock-patched, 3space or ideal.
     #[arg(long, default_value = "optical")]
@@ -46,6 +46,9 @@ pub(crate) struct CompareArgs {
     /// Seed of the tracker's noise and of the host's polling.
     #[arg(long, default_value_t = 1, value_name = "S")]
     seed: u64,
+    /// Metres from the eye at which pixel errors are judged; default where the scene's content lies.
+    #[arg(long, value_name = "METRES")]
+    judge_at: Option<f64>,
     /// Do not search for the most triangles that each pipeline can draw in time.
     #[arg(long)]
     no_triangles: bool,
@@ -74,7 +77,12 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let tracker = tracker(&args.tracker).map_err(CliError::usage)?;
     let predictor = predictor(&args.predict).map_err(CliError::usage)?;
     let scene = Arc::new(load(&args.scene)?);
-    let head = Arc::new(Head::new(moving, tracker, predictor, args.seed).map_err(CliError::usage)?.aiming(args.aim));
+    let head = Head::new(moving, tracker, predictor, args.seed).map_err(CliError::usage)?.aiming(args.aim);
+    let head = match args.judge_at {
+        Some(metres) => head.judged_at(metres).map_err(CliError::usage)?,
+        None => head,
+    };
+    let head = Arc::new(head);
     let mut folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
     let bar = terminal::progress(0, "pipelines", args.quiet);
     let finished = |done, of| {

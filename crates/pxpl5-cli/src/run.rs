@@ -122,7 +122,10 @@ pub(crate) fn comparison(plan: &Plan, results: &Results) -> Option<Comparison> {
 fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<PathBuf, CliError> {
     let Some((outcome, report)) = &results.run else { return Err(no_events()) };
     folder.put("report.json", format!("{}\n", json(report)?).as_bytes())?;
-    folder.put("experiment.toml", format!("{}{}", origin_lines(report, "# "), plan.settings()).as_bytes())?;
+    folder.put(
+        "experiment.toml",
+        format!("{}{}", origin_lines(report, "# "), plan.settings_for_any_folder()).as_bytes(),
+    )?;
     if plan.output.csv {
         folder.put("results.csv", quantities_csv(report, &plan.measure, results).as_bytes())?;
         folder.put("pictures.csv", pxpl5::results::csv(outcome).as_bytes())?;

@@ -3,7 +3,7 @@
 use crate::percentiles::Percentiles;
 use crate::raster::RasterOffsets;
 use crate::registration::{Judge, middle};
-use crate::shown::{Drawn, Shown};
+use crate::shown::{Drawn, Moment, Shown};
 use pxpl5_display::Display;
 use pxpl5_run::{Outcome, Raster};
 use pxpl5_sim::Time;
@@ -135,8 +135,8 @@ impl PixelErrors {
         let Some(head) = outcome.head() else { return Self::default() };
         let offsets = RasterOffsets::of_run(outcome, head);
         Self::collect(outcome, |shown, view, (x, y, field, at)| {
-            let Some(Drawn::Pose(pose)) = shown.drawn(x, y, field, at) else { return None };
-            Some(Drawn::Shifted(pose, offsets.field(field)?.shift_px(view, at.0)))
+            let Some(Drawn::View(moment)) = shown.drawn(x, y, field, at) else { return None };
+            Some(Drawn::Shifted(moment, offsets.field(field)?.shift_px(view, at.0)))
         })
     }
 
@@ -146,7 +146,9 @@ impl PixelErrors {
     pub fn ideal(outcome: &Outcome) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
         let mut follower = head.follower();
-        Self::collect(outcome, |_, _, (_, _, _, at)| Some(Drawn::Pose(head.follow(&mut follower, at, at))))
+        Self::collect(outcome, |_, _, (_, _, _, at)| {
+            Some(Drawn::View(Moment { pose: head.follow(&mut follower, at, at), objects_at: at }))
+        })
     }
 
     fn collect(

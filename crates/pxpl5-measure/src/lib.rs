@@ -10,6 +10,7 @@
 //! [`Measured`] gives an [`Outcome`] the most common of them as methods.
 
 mod budget;
+mod content;
 mod errors;
 mod latency;
 mod measured;

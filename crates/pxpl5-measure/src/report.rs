@@ -8,6 +8,7 @@ use pxpl5_machine::LateRegion;
 use pxpl5_run::{Aim, DefinedStatistics, Head, Outcome, PictureTimes, Raster};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use tracking::predict::{PredictorConfig, Training};
 
 /// The numbers of one experiment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -89,6 +90,14 @@ pub struct HeadReport {
     pub predictor: String,
     /// The instant of what is shown from it that a view is predicted for.
     pub aim: Aim,
+    /// Its numbers, as it ran.
+    pub prediction: PredictorConfig,
+    /// On what they were tuned; nothing where they were given.
+    pub training: Option<Training>,
+    /// Name of the head with all that it is, the numbers of its predictor included.
+    pub fingerprint: String,
+    /// Distance at which errors are judged, metres; nothing where the scene's content lies.
+    pub judged_at_m: Option<f64>,
     /// How the raster before the eyes shows the picture.
     pub display: Raster,
     /// From the head's pose to light, milliseconds.
@@ -103,6 +112,10 @@ impl HeadReport {
             tracker: head.tracker().config().name.clone(),
             predictor: format!("{:?}", head.predictor_kind()),
             aim: head.aim(),
+            prediction: *head.predictor(),
+            training: head.training().copied(),
+            fingerprint: head.fingerprint().to_string(),
+            judged_at_m: head.judge_at_m(),
             display: head.raster(),
             end_to_end: Budget::of(outcome),
             error: pixel_errors(outcome)?,

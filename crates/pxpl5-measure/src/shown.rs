@@ -3,25 +3,32 @@
 use crate::screen::Screen;
 use glam::DVec2;
 use pxpl5_display::{Display, Surface};
-use pxpl5_run::{HeadViews, Outcome, Source};
+use pxpl5_run::{HeadViews, Outcome, Sampled, Source};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::BTreeMap;
 use tracking::Pose;
 use tracking::view::HmdView;
 
+/// What a view was drawn for: a pose, and the time for which moving objects were placed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment {
+    pub(crate) pose: Pose,
+    pub(crate) objects_at: Time,
+}
+
 /// What a pixel was drawn for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Drawn {
-    Pose(Pose),
+    View(Moment),
     Between {
-        from: Pose,
-        to: Pose,
+        from: Moment,
+        to: Moment,
         part: f64,
         on_screen: bool,
     },
     /// A picture that is shifted on its way to the screen.
-    Shifted(Pose, DVec2),
+    Shifted(Moment, DVec2),
 }
 
 /// Everything that is known of a run's views.
@@ -30,7 +37,7 @@ pub(crate) struct Shown<'a> {
     pub(crate) outcome: &'a Outcome,
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
-    poses: BTreeMap<ViewNumber, Pose>,
+    moments: BTreeMap<ViewNumber, Moment>,
 }
 
 impl<'a> Shown<'a> {
@@ -39,22 +46,26 @@ impl<'a> Shown<'a> {
             outcome,
             screen: Screen::of_record(outcome.record()),
             views: outcome.pictures().iter().map(|times| (times.picture, times.view)).collect(),
-            poses: head.sampled().into_iter().map(|sampled| (sampled.number, sampled.pose)).collect(),
+            moments: head.sampled().into_iter().map(|sampled| (sampled.number, moment_of(&sampled))).collect(),
         }
     }
 
     /// What a pixel that lights at `at` shows; `None` before anything came.
     pub(crate) fn drawn(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<Drawn> {
         let target = self.screen.shown(x, y, field, at)?;
-        let pose = |number: ViewNumber| self.poses.get(&number).copied();
+        let moment = |number: ViewNumber| self.moments.get(&number).copied();
         let aim = self.outcome.experiment().aim();
         Some(match self.outcome.pipeline().source(self.outcome.record(), &target, &self.views, aim)? {
-            Source::View(number) => Drawn::Pose(pose(number)?),
+            Source::View(number) => Drawn::View(moment(number)?),
             Source::Between { from, to, part, on_screen } => {
-                Drawn::Between { from: pose(from)?, to: pose(to)?, part, on_screen }
+                Drawn::Between { from: moment(from)?, to: moment(to)?, part, on_screen }
             }
         })
     }
+}
+
+fn moment_of(sampled: &Sampled) -> Moment {
+    Moment { pose: sampled.pose, objects_at: sampled.objects_at }
 }
 
 /// The picture of the head-mounted display on the first surface of a display.

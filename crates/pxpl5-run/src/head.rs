@@ -8,11 +8,25 @@ use std::fmt;
 use std::sync::Arc;
 use tracking::ConfigError;
 use tracking::motion::Motion;
-use tracking::predict::{Predictor, PredictorConfig, PredictorKind};
+use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Training, tune};
 use tracking::tracker::{Report, TrackerConfig, TrackerModel};
 
 /// Why a head cannot be simulated.
 pub type HeadError = ConfigError;
+
+/// Where the numbers of a predictor come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Numbers {
+    /// They are as they were given.
+    Given,
+    /// They are found when the experiment is run, for the interval that its pipeline has to predict over.
+    ToBeTuned,
+    /// They were found so, if there was anything to find.
+    Tuned(Option<Training>),
+}
+
+/// How a predictor is tuned, in names of experiments; the numbers follow from it and from everything else there.
+const TUNING: &str = "for its interval and motion, version 1";
 
 /// A head, its tracker, a predictor, and the display before its eyes.
 #[derive(Clone)]
@@ -20,6 +34,8 @@ pub struct Head {
     pub(crate) motion: Arc<dyn Motion + Send + Sync>,
     pub(crate) tracker: TrackerModel,
     predictor: PredictorConfig,
+    numbers: Numbers,
+    judge_at_m: Option<f64>,
     pub(crate) seed: u64,
     raster: Raster,
     aim: Aim,
@@ -31,6 +47,8 @@ impl fmt::Debug for Head {
         f.debug_struct("Head")
             .field("tracker", self.tracker.config())
             .field("predictor", &self.predictor)
+            .field("numbers", &self.numbers)
+            .field("judge_at_m", &self.judge_at_m)
             .field("seed", &self.seed)
             .field("raster", &self.raster)
             .field("aim", &self.aim)
@@ -38,8 +56,13 @@ impl fmt::Debug for Head {
     }
 }
 
+/// Distances, in metres, at which errors can be judged.
+const JUDGED_AT_M: (f64, f64) = (1e-3, 1e6);
+
 impl Head {
-    /// A head that moves, a tracker and a predictor that knows the tracker's noise.
+    /// A head that moves, a tracker and a predictor that knows the tracker's noise, and whose numbers are tuned, when the
+    /// experiment is run, for the interval that the pipeline has to predict over and for the motion
+    /// ([`tune`](tracking::predict::tune)).
     ///
     /// # Errors
     ///
@@ -51,10 +74,10 @@ impl Head {
         seed: u64,
     ) -> Result<Self, HeadError> {
         let predictor = PredictorConfig::for_tracker(predictor, &tracker);
-        Self::predicted_by(motion, tracker, predictor, seed)
+        Ok(Self { numbers: Numbers::ToBeTuned, ..Self::predicted_by(motion, tracker, predictor, seed)? })
     }
 
-    /// The same with a predictor whose numbers are not those of the papers.
+    /// The same with a predictor whose numbers are given, and not tuned.
     ///
     /// # Errors
     ///
@@ -66,15 +89,52 @@ impl Head {
         seed: u64,
     ) -> Result<Self, HeadError> {
         predictor.build()?;
+        let tracker = TrackerModel::new(tracker)?;
         Ok(Self {
             motion,
-            tracker: TrackerModel::new(tracker)?,
+            tracker,
             predictor,
+            numbers: Numbers::Given,
+            judge_at_m: None,
             seed,
             raster: Raster::Plain,
             aim: Aim::Middle,
             reports: None,
         })
+    }
+
+    /// Has the numbers of its predictor tuned when the experiment is run; they are searched from the present ones.
+    #[must_use]
+    pub const fn tuned(mut self) -> Self {
+        self.numbers = Numbers::ToBeTuned;
+        self
+    }
+
+    /// Has another predictor in the place of its own, with the same numbers, or tuned if its own is.
+    #[must_use]
+    pub const fn predicting(mut self, kind: PredictorKind) -> Self {
+        self.predictor.kind = kind;
+        self
+    }
+
+    /// Says at which distance from the eye, in metres, pixel errors are judged; else it is where the scene's content lies.
+    ///
+    /// # Errors
+    ///
+    /// [`HeadError`] for a distance that is not within 0.001 to 1,000,000 metres.
+    pub fn judged_at(self, metres: f64) -> Result<Self, HeadError> {
+        let (low, high) = JUDGED_AT_M;
+        if !(low..=high).contains(&metres) {
+            let what = "distance at which errors are judged, m";
+            return Err(HeadError::OutOfRange { what, found: metres, low, high });
+        }
+        Ok(Self { judge_at_m: Some(metres), ..self })
+    }
+
+    /// The distance at which pixel errors are judged, metres; `None` where the scene's content lies.
+    #[must_use]
+    pub const fn judge_at_m(&self) -> Option<f64> {
+        self.judge_at_m
     }
 
     /// Puts a raster before its eyes.
@@ -126,6 +186,14 @@ impl Head {
         self.motion.identify(&mut add);
         self.tracker.config().identify(&mut add);
         self.predictor.identify(&mut add);
+        match self.numbers {
+            Numbers::ToBeTuned if self.predicts() => hash.setting("predictor.tuned", TUNING),
+            Numbers::Tuned(Some(training)) => hash.setting("predictor.tuned_on", format_args!("{training:?}")),
+            Numbers::Given | Numbers::ToBeTuned | Numbers::Tuned(None) => {}
+        }
+        if let Some(metres) = self.judge_at_m {
+            hash.setting("judge_at_m", metres);
+        }
         hash.setting("seed", self.seed);
         hash.setting("raster", self.raster);
         hash.setting("aim", self.aim);
@@ -139,6 +207,36 @@ impl Head {
     #[must_use]
     pub fn predicts(&self) -> bool {
         self.predictor.kind != PredictorKind::None
+    }
+
+    /// Whether the numbers of its predictor are found when the experiment is run, or were.
+    #[must_use]
+    pub fn is_tuned(&self) -> bool {
+        self.numbers != Numbers::Given
+    }
+
+    /// Whether the numbers of its predictor are still to be found.
+    pub(crate) fn is_to_be_tuned(&self) -> bool {
+        self.numbers == Numbers::ToBeTuned && self.predicts()
+    }
+
+    /// The same with the numbers with which its predictor errs least so far ahead of the tracker's reports.
+    pub(crate) fn tuned_for(&self, interval_ps: u64) -> Self {
+        let tuned = tune(self.motion.as_ref(), &self.tracker, interval_ps, &self.predictor, self.seed);
+        let tuned = tuned.expect("checked by Head::new");
+        Self { predictor: tuned.config, numbers: Numbers::Tuned(tuned.training), ..self.clone() }
+    }
+
+    /// The predictor with its numbers: in an outcome those with which it ran.
+    #[must_use]
+    pub const fn predictor(&self) -> &PredictorConfig {
+        &self.predictor
+    }
+
+    /// On what its predictor was tuned; `None` where its numbers were given, or before the experiment is run.
+    #[must_use]
+    pub const fn training(&self) -> Option<&Training> {
+        if let Numbers::Tuned(Some(training)) = &self.numbers { Some(training) } else { None }
     }
 
     /// The predictor.

@@ -32,6 +32,8 @@ pub struct Sampled {
     /// The moment that the pose was predicted for, by the head's [`Aim`](crate::Aim); `None` where the newest was taken as it
     /// is.
     pub predicted_for: Option<Time>,
+    /// The moment for which moving objects were placed.
+    pub objects_at: Time,
     /// The pose in the scene's coordinates.
     pub pose: Pose,
 }
@@ -141,7 +143,7 @@ impl HeadViews {
         let pose = self.in_scene(&follower.predict(shown_at, &self.start));
         let Newest { measured_at, arrived_at } = follower.newest;
         let predicted_for = self.head.predicts().then_some(shown_at);
-        sampled.push(Sampled { number, known, measured_at, arrived_at, predicted_for, pose });
+        sampled.push(Sampled { number, known, measured_at, arrived_at, predicted_for, objects_at: shown_at, pose });
         view(&self.scene, &self.hmd, self.eyes, number, shown_at, &pose.in_single_precision())
     }
 
@@ -175,11 +177,18 @@ impl HeadViews {
         &self.head
     }
 
-    /// Distance from the head's start to the middle of the scene, metres; at least 0.1.
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Where what has no place of its own is judged, metres: the distance that was said, else that from the head's start to the middle
+    /// of the scene, at least 0.1.
     #[must_use]
     pub fn distance_m(&self) -> f64 {
         let (centre, _) = self.scene.bounding_sphere();
-        self.base.position.distance(centre.as_dvec3()).max(0.1)
+        self.head.judge_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
     }
 
     /// Every pose that was asked for, in order of the numbers.

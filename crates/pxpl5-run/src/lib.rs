@@ -25,6 +25,7 @@ mod outcome;
 mod papers;
 mod pipeline;
 mod pipelines;
+mod preparation;
 mod raster;
 mod registry;
 mod rehearsal;

@@ -3,11 +3,12 @@
 use crate::display_list::{display_list, hmd_before, views};
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
+use crate::head::Head;
 use crate::head_views::{FIELDS_WITH_HEAD, HeadViews};
 use crate::level::{Level, with_clocks_of_instructions};
 use crate::outcome::Outcome;
 use crate::pipeline::Setup;
-use crate::rehearsal::Rehearsal;
+use crate::preparation::Preparation;
 use crate::views::{FrameStarts, ReportTimes};
 use pxpl5_machine::{Machine, MachineConfig};
 use pxpl5_sim::Time;
@@ -22,10 +23,10 @@ impl Experiment {
     ///
     /// [`ExperimentError`] for a machine, scene or number of fields that cannot be simulated.
     pub fn build(&self) -> Result<Machine, ExperimentError> {
-        Ok(self.assemble(self.rehearse()?)?.0)
+        Ok(self.assemble(self.prepare()?)?.0)
     }
 
-    fn assemble(&self, rehearsal: Option<Rehearsal>) -> Result<(Machine, Option<Arc<HeadViews>>), ExperimentError> {
+    fn assemble(&self, preparation: Preparation) -> Result<(Machine, Option<Arc<HeadViews>>), ExperimentError> {
         let expected = if self.head.is_some() { (FIELDS_RANGE.0, FIELDS_WITH_HEAD) } else { FIELDS_RANGE };
         if !(expected.0..=expected.1).contains(&self.fields) {
             return Err(ExperimentError::Fields { expected, found: self.fields });
@@ -41,7 +42,7 @@ impl Experiment {
         if self.level == Level::Cycle {
             machine.run_code();
         }
-        let (setup, head) = self.setup(&config, &machine, rehearsal)?;
+        let (setup, head) = self.setup(&config, &machine, preparation)?;
         self.pipeline.load(&mut machine, &setup)?;
         if let Some(seed) = self.shuffle {
             machine.shuffle_ties(seed);
@@ -61,7 +62,7 @@ impl Experiment {
         &self,
         config: &MachineConfig,
         machine: &Machine,
-        rehearsal: Option<Rehearsal>,
+        preparation: Preparation,
     ) -> Result<(Setup, Option<Arc<HeadViews>>), ExperimentError> {
         let surface = machine.record().display().surfaces().first().cloned();
         let hmd = hmd_before(surface.as_ref());
@@ -74,9 +75,10 @@ impl Experiment {
         let aim = self.aim();
         let pixels = self.pixels != Pixels::Off;
         let setup = Setup { list, views, wanted, aim, reports, starts, host: config.host, pixels };
-        let Some(head) = &self.head else { return Ok((setup, None)) };
+        let Some(head) = preparation.head.or_else(|| self.head.clone()) else { return Ok((setup, None)) };
         let until = machine.record().tick(self.end());
-        let head = Arc::new(HeadViews::new(Arc::clone(head), &self.scene, (hmd, eyes), until, rehearsal));
+        check_recording(&head, until)?;
+        let head = Arc::new(HeadViews::new(head, &self.scene, (hmd, eyes), until, preparation.rehearsal));
         let (views, wanted, reports) = HeadViews::functions(&head);
         let setup = Setup { views, wanted, reports, ..setup };
         if !self.on_demand {
@@ -84,17 +86,6 @@ impl Experiment {
         }
         let asked = Arc::clone(&head);
         Ok((Setup { starts: Arc::new(move |ready| asked.report_from(ready)), ..setup }, Some(head)))
-    }
-
-    /// For which instant each view is drawn, from a run without prediction; `None` where nobody predicts, or the firmware knows.
-    fn rehearse(&self) -> Result<Option<Rehearsal>, ExperimentError> {
-        if self.pipeline.knows_when_seen() {
-            return Ok(None);
-        }
-        let Some(head) = self.head.as_ref().filter(|head| head.predicts()) else { return Ok(None) };
-        let plain = Self { head: Some(Arc::new(head.without_prediction())), pixels: Pixels::Off, ..self.clone() };
-        let outcome = plain.perform(None, &[], |_, _| Ok(()))?;
-        Ok(Some(Rehearsal::of(&outcome, head.aim())))
     }
 
     /// Runs it.
@@ -130,17 +121,17 @@ impl Experiment {
         stops: &[PeriodNumber],
         at: impl FnMut(PeriodNumber, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
-        self.perform(self.rehearse()?, stops, at)
+        self.perform(self.prepare()?, stops, at)
     }
 
-    fn perform(
+    pub(crate) fn perform(
         &self,
-        rehearsal: Option<Rehearsal>,
+        preparation: Preparation,
         stops: &[PeriodNumber],
         mut at: impl FnMut(PeriodNumber, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
         let begun_s = self.host.seconds();
-        let (mut machine, head) = self.assemble(rehearsal)?;
+        let (mut machine, head) = self.assemble(preparation)?;
         let mut result = Ok(());
         for field in self.stops(stops) {
             let until = machine.record().tick(field);
@@ -178,3 +169,11 @@ impl Experiment {
 
 /// Fields between two reports of progress.
 const PROGRESS_FIELDS: u64 = 60;
+
+/// A motion that ends must not end before the run.
+fn check_recording(head: &Head, until: Time) -> Result<(), ExperimentError> {
+    match head.motion.ends_ps().filter(|ends_ps| *ends_ps < until.0) {
+        Some(ends_ps) => Err(ExperimentError::Recording { recording: Time(ends_ps), run: until }),
+        None => Ok(()),
+    }
+}

@@ -133,13 +133,20 @@ fn a_head_is_named_by_its_settings_a_line_each() {
         "motion=pan\nmotion.start=0 0 0 0 0 0 1\nmotion.deg_per_s=200\n".to_owned(),
         format!("tracker=ideal\ntracker.rate_hz={rate_hz}\ntracker.receivers=1\ntracker.sync_to_output_ps=0\n"),
         "tracker.position_latency_ps=0\ntracker.orientation_latency_ps=0\n".to_owned(),
-        format!("tracker.position_noise_m=0\ntracker.orientation_noise_deg=0\ntracker.filter_gain={filter_gain}\n"),
+        "tracker.position_noise_m=0\ntracker.orientation_noise_deg=0\n".to_owned(),
+        "tracker.position_bias_m=0\ntracker.orientation_bias_deg=0\n".to_owned(),
+        format!("tracker.filter_gain={filter_gain}\n"),
         "tracker.host=interrupt-per-character\n".to_owned(),
-        format!("predictor=none\npredictor.baseline_reports={}\n", predictor.baseline_reports),
+        format!("predictor=none\npredictor.position_baseline={}\n", predictor.position_baseline),
+        format!("predictor.orientation_baseline={}\n", predictor.orientation_baseline),
         format!("predictor.position_noise_m={}\n", predictor.position_noise_m),
         format!("predictor.orientation_noise_deg={}\n", predictor.orientation_noise_deg),
         format!("predictor.position_jerk={}\n", predictor.position_jerk),
         format!("predictor.orientation_jerk={}\n", predictor.orientation_jerk),
+        format!("predictor.start_speed={}\n", predictor.start.speed),
+        format!("predictor.start_acceleration={}\n", predictor.start.acceleration),
+        format!("predictor.start_turn={}\n", predictor.start.turn),
+        format!("predictor.start_turn_acceleration={}\n", predictor.start.turn_acceleration),
         format!("predictor.horizon_ps={}\nseed=7\nraster=vdrt\n", predictor.horizon_ps),
     ];
     assert_eq!(found, fnv_1a(lines.concat().as_bytes()));
@@ -167,7 +174,7 @@ impl Motion for Nod {
 fn motions_that_differ_have_different_names_even_if_debug_does_not_tell() {
     let recording = |x: f64| {
         let text = format!("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
-        Recording::from_csv(text.as_bytes()).expect("valid")
+        Recording::read(text.as_bytes()).expect("valid")
     };
     let names = [
         head(Nod { hz: 1.0 }),

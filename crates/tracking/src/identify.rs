@@ -19,6 +19,8 @@ impl TrackerConfig {
             orientation_latency_ps,
             position_noise_m,
             orientation_noise_deg,
+            position_bias_m,
+            orientation_bias_deg,
             filter_gain,
             serial,
             host,
@@ -34,6 +36,8 @@ impl TrackerConfig {
         settings("tracker.orientation_latency_ps", orientation_latency_ps);
         settings("tracker.position_noise_m", position_noise_m);
         settings("tracker.orientation_noise_deg", orientation_noise_deg);
+        settings("tracker.position_bias_m", position_bias_m);
+        settings("tracker.orientation_bias_deg", orientation_bias_deg);
         settings("tracker.filter_gain", filter_gain);
         if let Some(SerialLine { record_bytes, baud, byte_bits }) = serial {
             settings("tracker.serial.record_bytes", record_bytes);
@@ -94,24 +98,28 @@ impl PredictorConfig {
     pub fn identify(&self, settings: &mut Settings) {
         let Self {
             kind,
-            baseline_reports,
+            position_baseline,
+            orientation_baseline,
             position_noise_m,
             orientation_noise_deg,
             position_jerk,
             orientation_jerk,
             horizon_ps,
-            start: _,
+            start,
             gate,
         } = self;
         settings("predictor", &kind.name());
-        settings("predictor.baseline_reports", baseline_reports);
+        settings("predictor.position_baseline", position_baseline);
+        settings("predictor.orientation_baseline", orientation_baseline);
         settings("predictor.position_noise_m", position_noise_m);
         settings("predictor.orientation_noise_deg", orientation_noise_deg);
         settings("predictor.position_jerk", position_jerk);
         settings("predictor.orientation_jerk", orientation_jerk);
+        settings("predictor.start_speed", &start.speed);
+        settings("predictor.start_acceleration", &start.acceleration);
+        settings("predictor.start_turn", &start.turn);
+        settings("predictor.start_turn_acceleration", &start.turn_acceleration);
         settings("predictor.horizon_ps", horizon_ps);
-        let starts = self.filter().entries().into_iter().filter(|entry| entry.info.name.starts_with("start_"));
-        starts.for_each(|entry| write_unusual(settings, "predictor", &entry));
         gate.entries().iter().for_each(|entry| write_unusual(settings, "predictor.gate", entry));
     }
 }

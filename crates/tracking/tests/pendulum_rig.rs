@@ -11,7 +11,8 @@ fn pipeline(start_ps: u64) -> u64 {
 }
 
 fn noiseless(config: TrackerConfig) -> TrackerConfig {
-    TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, distortion: None, ..config }
+    let noiseless = TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..config };
+    noiseless.without_systematic_errors()
 }
 
 /// From the retrace to the photodiode's line, without blanking.

@@ -3,9 +3,13 @@
 mod motion;
 mod pictures;
 mod possible;
+mod predictors;
 mod rows;
 
-pub use motion::{MotionError, TRACKERS, motion, predictor, tracker, tracker_by};
+pub use motion::{
+    MOTIONS, MotionError, Replay, TRACKERS, is_recording, motion, predictor, replayed, tracker, tracker_by,
+};
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use possible::{Possible, triangles_possible};
+pub use predictors::{PredictorError, Predictors, predictors};
 pub use rows::{Comparison, Row, compare, compare_with};

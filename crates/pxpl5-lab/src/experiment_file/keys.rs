@@ -1,9 +1,11 @@
 //! The keys of an experiment file.
 
+use super::head::COLUMNS;
 use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
 use parameters::nearest;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Registry;
+use tracking::motion::Columns;
 
 /// A key and what it says.
 #[derive(Clone, Debug)]
@@ -25,13 +27,25 @@ const COMMON: &[(&str, &str)] = &[
     ("motion.sway", "0 to 10: scale of the head's sway"),
     ("motion.distance", "metres from the scene's centre: still, look, orbit"),
     ("motion.deg_per_s", "rate of turn: pan, orbit"),
-    ("head.motion", "still, pan:DEG_PER_S, pendulum, synthetic:SEED or a recording FILE.csv, seen through a tracker"),
+    (
+        "head.motion",
+        "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED or a recording (.csv, .txt, .tum), relative to the \
+         experiment file, seen through a tracker",
+    ),
+    ("head.end", "what comes after a recording: error (a longer run is refused), hold or loop"),
+    ("head.axes", "axes of a recording: opengl, optical, euroc or robot; default what is usual for its kind of file"),
     ("head.tracker", "optical, fastrak, flock, flock-patched, 3space or ideal"),
     ("head.predict", "none, velocity, acceleration or kalman"),
     (
         "head.aim",
         "the instant of what is shown from it that a view is predicted for: middle, first-pixel, last-pixel or retrace",
     ),
+    (
+        "head.filter",
+        "numbers of the predictor: tuned (for the pipeline's own interval and the motion, with other noise than the run's) or given \
+          (those of tracking.filter)",
+    ),
+    ("head.judge_at", "metres from the eye at which pixel errors are judged; default where the scene's content lies"),
     ("head.raster", "plain, or vdrt (the raster is shifted by what the pose was wrong)"),
     ("seed", "seed of the head motion's sway, or of the tracker's noise"),
     ("fields", "periods of the display to simulate: NTSC fields"),
@@ -65,6 +79,11 @@ pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
         common("display", &format!("what the pipeline draws for: {}", displays.join(", "))),
     ];
     all.extend(COMMON.iter().map(|(path, about)| common(path, about)));
+    all.extend(Columns::fields().map(|field| FileKey {
+        path: format!("{COLUMNS}{field}"),
+        about: "name or number of the column of a recording that holds it; _ms, _us, _ns and _mm are units, else s and m".to_owned(),
+        applies_to: Vec::new(),
+    }));
     let of_pipelines = registry.keys().into_iter();
     all.extend(of_pipelines.map(|(key, applies_to)| FileKey {
         path: key.name.to_owned(),

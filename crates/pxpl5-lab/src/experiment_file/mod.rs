@@ -175,7 +175,7 @@ impl ExperimentFile {
     }
 
     /// Puts a setting under the key that it is kept by.
-    fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), FileError> {
+    pub(crate) fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), FileError> {
         let canonical = self.canonical_key(path, &place)?;
         self.settings.insert(canonical, Setting { value, place, folder: folder.to_owned() });
         Ok(())

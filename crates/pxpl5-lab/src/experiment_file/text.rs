@@ -1,7 +1,8 @@
 //! A plan written out in full.
 
 use super::motion::PathChoice;
-use super::plan::{PIXELS, Plan};
+use super::plan::{PIXELS, Plan, is_file};
+use crate::compare::is_recording;
 use parameters::Value as Number;
 use pxpl5_machine::{MachineConfig, Parameter};
 use pxpl5_run::{Fingerprint, KeyValue};
@@ -34,7 +35,7 @@ impl Plan {
         self.pipeline_settings(&mut all);
         self.scene_settings(&mut all);
         if let Some(head) = &self.head {
-            head.settings().into_iter().for_each(|(path, value)| all.put(path, value));
+            head.settings().into_iter().for_each(|(path, value)| all.put(&path, value));
             head.parameters().iter().for_each(|parameter| all.parameter(&parameter.path, parameter, &[]));
         }
         all.put("fields", self.fields as i64);
@@ -47,6 +48,20 @@ impl Plan {
         all.put("output.csv", self.output.csv);
         self.published_settings(&mut all);
         all.machine(&self.machine);
+        all
+    }
+
+    /// The same for a file in any folder: names of files, which are relative to the folder of the file that says them, are absolute.
+    #[must_use]
+    pub fn settings_for_any_folder(&self) -> Settings {
+        let mut all = self.settings();
+        for (key, is_file) in [("scene", is_file as fn(&str) -> bool), ("head.motion", is_recording)] {
+            let named = all.values.get(key).and_then(Value::as_str).filter(|name| is_file(name));
+            // A path that cannot be made absolute (an empty one) stays as it is.
+            if let Some(absolute) = named.and_then(|name| std::path::absolute(name).ok()) {
+                all.put(key, absolute.display().to_string());
+            }
+        }
         all
     }
 

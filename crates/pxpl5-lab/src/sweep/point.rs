@@ -70,7 +70,7 @@ impl Sweep {
     pub fn plan(&self, point: u64) -> Result<Plan, FileError> {
         let mut file = self.base.clone();
         for (path, value) in self.space.settings(point) {
-            file.set(&path, value, &format!("point {point}"))?;
+            file.put(&path, value, format!("point {point}"), &self.folder())?;
         }
         file.resolve()
     }

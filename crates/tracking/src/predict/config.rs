@@ -39,8 +39,10 @@ impl PredictorKind {
 pub struct PredictorConfig {
     /// The filter that is built from these settings.
     pub kind: PredictorKind,
-    /// Reports between the points of a difference, 1 to 16. Kalman filters do not use it.
-    pub baseline_reports: u32,
+    /// Reports between the points of a difference of positions, 1 to 16. Kalman filters do not use it.
+    pub position_baseline: u32,
+    /// The same of orientations.
+    pub orientation_baseline: u32,
     /// Noise of each axis of a report, rms, m.
     pub position_noise_m: f64,
     /// Noise about each axis of a report, rms, degrees.
@@ -105,7 +107,8 @@ impl PredictorConfig {
         let filter = &tables.filter;
         Self {
             kind,
-            baseline_reports: filter.baseline as u32,
+            position_baseline: filter.baseline as u32,
+            orientation_baseline: filter.baseline as u32,
             position_noise_m: tracker.position_noise_m.max(LEAST_NOISE_M),
             orientation_noise_deg: tracker.orientation_noise_deg.max(LEAST_NOISE_DEG),
             position_jerk: filter.position_jerk,
@@ -130,17 +133,17 @@ impl PredictorConfig {
     fn check(&self) -> Result<(), ConfigError> {
         ConfigError::check("position noise, m", self.position_noise_m, LEAST_NOISE_M, 10.0)?;
         ConfigError::check("orientation noise, deg", self.orientation_noise_deg, LEAST_NOISE_DEG, 90.0)?;
-        self.filter().check()?;
+        [self.position_baseline, self.orientation_baseline].into_iter().try_for_each(|b| self.filter(b).check())?;
         self.gate.check()?;
         Ok(())
     }
 
-    /// The numbers of the table, as they are set here.
-    pub(crate) fn filter(&self) -> table::Filter {
+    /// The numbers of the table, as they are set here, with one of the baselines.
+    pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,
             orientation_jerk: self.orientation_jerk,
-            baseline: self.baseline_reports.into(),
+            baseline: baseline.into(),
             horizon: crate::time::seconds(self.horizon_ps) * 1e3,
             start_speed: self.start.speed,
             start_acceleration: self.start.acceleration,
@@ -150,10 +153,9 @@ impl PredictorConfig {
     }
 
     fn extrapolation(&self, order: Order) -> Box<dyn Predictor> {
-        let baseline = self.baseline_reports as usize;
         Box::new(GatedFilters::new(
-            Extrapolation::new(order, baseline, DVec3::ZERO),
-            Extrapolation::new(order, baseline, DQuat::IDENTITY),
+            Extrapolation::new(order, self.position_baseline as usize, DVec3::ZERO),
+            Extrapolation::new(order, self.orientation_baseline as usize, DQuat::IDENTITY),
             crate::time::seconds(self.horizon_ps),
             self.gate,
         ))

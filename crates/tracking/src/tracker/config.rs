@@ -27,6 +27,10 @@ pub struct TrackerConfig {
     pub position_noise_m: f64,
     /// White noise about each axis, rms, degrees.
     pub orientation_noise_deg: f64,
+    /// Systematic error of each axis, rms over installations, m: drawn once from the seed, the same in every report.
+    pub position_bias_m: f64,
+    /// Systematic error about each axis, rms over installations, degrees: drawn once from the seed, the same in every report.
+    pub orientation_bias_deg: f64,
     /// a of the tracker's filter x' = a x + (1 - a) x'; 1 is no filter. Above 0.
     pub filter_gain: f64,
     /// The cable; `None` when the latency above includes it.
@@ -59,6 +63,7 @@ impl TrackerConfig {
             ..Self::ideal_by(tables)
                 .named("Polhemus Fastrak", tables.fastrak.rate)
                 .with_noise(tables.fastrak.position_noise, tables.fastrak.orientation_noise)
+                .with_bias(tables.fastrak.position_bias, tables.fastrak.orientation_bias)
         }
     }
 
@@ -79,6 +84,7 @@ impl TrackerConfig {
             ..Self::ideal_by(tables)
                 .named("Ascension Flock of Birds", tables.flock.rate)
                 .with_noise(tables.flock.position_noise, tables.flock.orientation_noise)
+                .with_bias(tables.flock.position_bias, tables.flock.orientation_bias)
         }
     }
 
@@ -102,6 +108,7 @@ impl TrackerConfig {
         Self::ideal_by(tables)
             .named("UNC optical ceiling tracker", tables.optical.rate)
             .with_noise(tables.optical.position_noise, tables.optical.orientation_noise)
+            .with_bias(tables.optical.position_bias, tables.optical.orientation_bias)
             .with_latency_ps(table::ms_to_ps(tables.optical.latency))
     }
 
@@ -118,6 +125,7 @@ impl TrackerConfig {
             ..Self::ideal_by(tables)
                 .named("Polhemus 3Space", tables.space.rate)
                 .with_noise(tables.space.position_noise, tables.space.orientation_noise)
+                .with_bias(tables.space.position_bias, tables.space.orientation_bias)
                 .with_latency_ps(table::ms_to_ps(tables.space.latency))
         }
     }
@@ -138,6 +146,8 @@ impl TrackerConfig {
             orientation_latency_ps: 0,
             position_noise_m: 0.0,
             orientation_noise_deg: 0.0,
+            position_bias_m: 0.0,
+            orientation_bias_deg: 0.0,
             filter_gain: 1.0,
             serial: None,
             host: HostLine::InterruptPerCharacter,
@@ -163,5 +173,14 @@ impl TrackerConfig {
 
     fn with_noise(self, position_mm: f64, orientation_deg: f64) -> Self {
         Self { position_noise_m: position_mm / 1e3, orientation_noise_deg: orientation_deg, ..self }
+    }
+
+    fn with_bias(self, position_mm: f64, orientation_deg: f64) -> Self {
+        Self { position_bias_m: position_mm / 1e3, orientation_bias_deg: orientation_deg, ..self }
+    }
+
+    /// The same without what no filter can know or help: bias, metal, faults.
+    pub fn without_systematic_errors(self) -> Self {
+        Self { position_bias_m: 0.0, orientation_bias_deg: 0.0, distortion: None, faults: Vec::new(), ..self }
     }
 }

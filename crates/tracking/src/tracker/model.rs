@@ -17,6 +17,8 @@ impl TrackerModel {
         check_times(&config)?;
         ConfigError::check("position noise, m", config.position_noise_m, 0.0, 10.0)?;
         ConfigError::check("orientation noise, deg", config.orientation_noise_deg, 0.0, 90.0)?;
+        ConfigError::check("position bias, m", config.position_bias_m, 0.0, 10.0)?;
+        ConfigError::check("orientation bias, deg", config.orientation_bias_deg, 0.0, 90.0)?;
         ConfigError::check("filter gain", config.filter_gain, 1e-6, 1.0)?;
         if let Some(serial) = config.serial {
             ConfigError::check("record, bytes", f64::from(serial.record_bytes), 1.0, 1000.0)?;
@@ -126,6 +128,7 @@ mod tests {
             TrackerConfig { filter_gain: 0.0, ..good() },
             TrackerConfig { filter_gain: f64::NAN, ..good() },
             TrackerConfig { position_noise_m: -1.0, ..good() },
+            TrackerConfig { orientation_bias_deg: f64::NAN, ..good() },
             TrackerConfig { position_latency_ps: u64::MAX, ..good() },
             TrackerConfig { host: HostLine::Polled { period_ps: 0 }, ..good() },
             TrackerConfig { serial: Some(SerialLine { baud: 0, ..SerialLine::fastrak() }), ..good() },
