@@ -1,6 +1,6 @@
 //! A table of runs: a column each, a row per quantity.
 
-use pxpl5::{Report, Statistics};
+use pxpl5::{DuePictures, Report, Statistics};
 
 /// What a run is compared with.
 #[derive(Clone, Debug)]
@@ -37,7 +37,9 @@ pub(crate) fn table(runs: &[(&Report, Option<&Comparison>)]) -> String {
     row("latency, ms: mean", &|r| mean_and_sd(&r.latency_ms.statistics, 1));
     row("  min to max", &|r| range(&r.latency_ms.statistics, 1));
     row("updates per second", &|r| r.updates_hz.map_or_else(|| "-".to_owned(), |hz| format!("{hz:.2}")));
-    row("missed retraces", &missed);
+    row("not shown in time", &not_shown);
+    row("  late, incompl., missed", &ends);
+    row("  counted in periods", &window);
     if runs.iter().any(|(_, comparison)| comparison.is_some()) {
         rows.extend(comparison_rows(runs));
     }
@@ -55,12 +57,22 @@ fn comparison_rows(runs: &[(&Report, Option<&Comparison>)]) -> [(&'static str, V
     ]
 }
 
-/// Of how many, where some were missed.
-fn missed(report: &Report) -> String {
-    match (report.missed_retraces, report.judged_retraces) {
-        (missed, judged) if missed == 0 || judged == 0 => missed.to_string(),
-        (missed, judged) => format!("{missed} of {judged}"),
-    }
+/// Pictures that were due and not shown, and of how many.
+fn not_shown(report: &Report) -> String {
+    of_due(report, |due| format!("{} of {} pictures due", due.not_shown(), due.due))
+}
+
+fn ends(report: &Report) -> String {
+    of_due(report, |due| format!("{}, {}, {}", due.late, due.incomplete, due.missed))
+}
+
+fn window(report: &Report) -> String {
+    of_due(report, |due| format!("{} to {}", due.first_period, due.last_period))
+}
+
+/// Where no picture is ever due, nothing.
+fn of_due(report: &Report, cell: impl Fn(&DuePictures) -> String) -> String {
+    report.due.as_ref().map_or_else(|| "-".to_owned(), cell)
 }
 
 fn primitives(report: &Report) -> String {
@@ -71,12 +83,13 @@ fn primitives(report: &Report) -> String {
     }
 }
 
-/// Of nothing there are no statistics.
+/// Of nothing there are no statistics, and of one picture there is no deviation.
 fn mean_and_sd(s: &Statistics, digits: usize) -> String {
     if s.mean.is_nan() {
         return "-".to_owned();
     }
-    format!("{:.digits$}, sd {:.digits$}", s.mean, s.sd)
+    let sd = if s.sd.is_nan() { "-".to_owned() } else { format!("{:.digits$}", s.sd) };
+    format!("{:.digits$}, sd {sd}, n {}", s.mean, s.n)
 }
 
 fn range(s: &Statistics, digits: usize) -> String {
@@ -92,7 +105,7 @@ fn laid_out(rows: &[(&str, Vec<String>)]) -> String {
     let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
     let line = |(name, cells): &(&str, Vec<String>)| {
         let padded = cells.iter().zip(&widths).map(|(cell, width)| format!("  {cell:<width$}"));
-        let line = format!("{name:<22}{}", padded.collect::<String>());
+        let line = format!("{name:<25}{}", padded.collect::<String>());
         format!("{}\n", line.trim_end())
     };
     rows.iter().map(line).collect()

@@ -168,8 +168,7 @@ fn application(scene: &'static str, machine: &'static str) -> Result<Application
 /// Latencies in fields, and the rate.
 fn of_seed(outcome: &Outcome) -> (Vec<f64>, f64) {
     let latencies = outcome
-        .steady_pictures()
-        .iter()
+        .complete_pictures()
         .map(|times| (times.shown_at - times.transform_at).as_ms() / outcome.field_ms())
         .collect();
     (latencies, outcome.report().updates_hz.unwrap_or_default())

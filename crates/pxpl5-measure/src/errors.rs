@@ -23,7 +23,8 @@ pub struct FieldError {
     pub centre_px: f64,
 }
 
-/// Errors over a grid of pixels and all fields.
+/// Errors over a grid of pixels and all fields, where pictures are shown that were complete in time: of others there is no
+/// error. What was not judged is no number (NaN; null in JSON).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PixelErrors {
     /// Distance from where it should be, over the grid, pixels.
@@ -40,6 +41,8 @@ pub struct PixelErrors {
     pub behind: u64,
     /// Pixels that showed nothing yet.
     pub empty: u64,
+    /// Pixels that showed a part of a picture that was not complete in time.
+    pub incomplete: u64,
     /// Over time.
     #[serde(skip)]
     pub by_field: Vec<FieldError>,
@@ -66,6 +69,16 @@ fn grid(display: &dyn Display, period: u64) -> Vec<(u32, u32, Time)> {
     pixels
 }
 
+/// What a pixel shows.
+enum Pixel {
+    /// Nothing yet, or nothing that is known.
+    Empty,
+    /// A part of a picture that was not complete in time.
+    Incomplete,
+    /// A part of one that was.
+    Complete(Drawn),
+}
+
 /// Errors as they are collected.
 #[derive(Default)]
 struct Collected {
@@ -81,14 +94,21 @@ impl Collected {
         judge: &Judge<'_>,
         display: &dyn Display,
         field: u64,
-        mut drawn: impl FnMut(u32, u32, Time) -> Option<Drawn>,
+        mut drawn: impl FnMut(u32, u32, Time) -> Pixel,
     ) {
         let begin = self.grid.len();
         let mut centre = None;
         for (i, (x, y, at)) in grid(display, field).into_iter().enumerate() {
-            let Some(drawn) = drawn(x, y, at) else {
-                self.errors.empty += 1;
-                continue;
+            let drawn = match drawn(x, y, at) {
+                Pixel::Empty => {
+                    self.errors.empty += 1;
+                    continue;
+                }
+                Pixel::Incomplete => {
+                    self.errors.incomplete += 1;
+                    continue;
+                }
+                Pixel::Complete(drawn) => drawn,
             };
             let Some(error) = judge.error(middle(x, y), &drawn, at) else {
                 self.errors.behind += 1;
@@ -158,7 +178,10 @@ impl PixelErrors {
         let display = outcome.record().display();
         let mut collected = Collected::default();
         for field in UNJUDGED_FIELDS..outcome.fields().saturating_sub(1) {
-            collected.field(&judge, display, field, |x, y, at| drawn(&shown, &judge.view, (x, y, field, at)));
+            collected.field(&judge, display, field, |x, y, at| match shown.is_complete(x, y, field, at) {
+                Some(false) => Pixel::Incomplete,
+                _ => drawn(&shown, &judge.view, (x, y, field, at)).map_or(Pixel::Empty, Pixel::Complete),
+            });
         }
         collected.finish()
     }

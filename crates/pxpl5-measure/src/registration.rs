@@ -83,12 +83,12 @@ impl<'a> Registration<'a> {
         Some(Self { judge: Judge::new(outcome, head), shown: Shown::of_run(outcome, head) })
     }
 
-    /// The error of a pixel in a field that scans its line; `None` where nothing is shown yet, or where its content
-    /// should be behind the eye.
+    /// The error of a pixel in a field that scans its line; `None` where no picture is shown that was complete in time, or where
+    /// its content should be behind the eye.
     #[must_use]
     pub fn at(&self, x: u32, y: u32, field: u64) -> Option<PixelError> {
         let at = self.shown.outcome.record().display().lights(0, x, y, field)?;
-        let drawn = self.shown.drawn(x, y, field, at)?;
+        let drawn = self.shown.drawn(x, y, field, at).filter(|_| self.shown.is_complete(x, y, field, at) == Some(true))?;
         self.judge.error(middle(x, y), &drawn, at)
     }
 }

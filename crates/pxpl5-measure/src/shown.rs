@@ -5,7 +5,7 @@ use glam::DVec2;
 use pxpl5_display::{Display, Surface};
 use pxpl5_run::{HeadViews, Outcome, Source};
 use pxpl5_sim::Time;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use tracking::Pose;
 use tracking::view::HmdView;
 
@@ -29,6 +29,8 @@ pub(crate) struct Shown<'a> {
     pub(crate) outcome: &'a Outcome,
     screen: Screen,
     views: BTreeMap<u64, u64>,
+    /// Pictures that were complete in time.
+    complete: BTreeSet<u64>,
     poses: BTreeMap<u64, Pose>,
 }
 
@@ -38,8 +40,15 @@ impl<'a> Shown<'a> {
             outcome,
             screen: Screen::of_record(outcome.record()),
             views: outcome.pictures().iter().map(|times| (times.picture, times.view)).collect(),
+            complete: outcome.pictures().iter().filter(|times| times.is_shown()).map(|times| times.picture).collect(),
             poses: head.sampled().into_iter().map(|sampled| (sampled.number, sampled.pose)).collect(),
         }
+    }
+
+    /// Whether a pixel that lights at `at` shows a picture that was complete in time; `None` before anything came.
+    pub(crate) fn is_complete(&self, x: u32, y: u32, field: u64, at: Time) -> Option<bool> {
+        let target = self.screen.shown(x, y, field, at)?;
+        Some(self.complete.contains(&target.picture))
     }
 
     /// What a pixel that lights at `at` shows; `None` before anything came.

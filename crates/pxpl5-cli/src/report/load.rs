@@ -1,6 +1,7 @@
 //! What a results folder holds.
 
 use crate::error::CliError;
+use crate::run::INCOMPLETE;
 use pxpl5::views::page::{PagePicture, PageRun, latencies_ms};
 use serde_json::Value;
 use std::fs;
@@ -18,7 +19,7 @@ pub(super) fn runs(folder: &Path) -> Result<Vec<PageRun>, CliError> {
     let text = fs::read_to_string(&path).map_err(|error| problem(format!("{error}{advice}")))?;
     let all: Value = serde_json::from_str(&text).map_err(|error| problem(format!("{error}{advice}")))?;
     match all["schema"].as_str() {
-        Some("pxpl5-report/1") => Ok(vec![run(folder, "", "", &all, &Value::Null)]),
+        Some("pxpl5-report/2") => Ok(vec![run(folder, "", "", &all, &Value::Null)]),
         Some("pxpl5-demo/1") => {
             let runs = all["runs"].as_array().map(Vec::as_slice).unwrap_or_default();
             Ok(runs.iter().map(|entry| demo_run(folder, entry)).collect())
@@ -51,7 +52,11 @@ fn run(folder: &Path, name: &str, prefix: &str, report: &Value, published: &Valu
 
 /// The last pictures of the surfaces that there can be.
 fn pictures_of(folder: &Path, prefix: &str) -> Vec<PagePicture> {
-    let labels = ["left", "right"].into_iter();
-    let read = |label: &str| fs::read(folder.join(format!("{prefix}{label}.png"))).ok();
-    labels.filter_map(|label| Some(PagePicture { label: format!("{label} eye"), png: read(label)? })).collect()
+    let read = |label: &str, mark: &str| fs::read(folder.join(format!("{prefix}{label}{mark}.png"))).ok();
+    let picture = |label: &str, mark: &str, caption: &str| {
+        Some(PagePicture { label: format!("{label} eye{caption}"), png: read(label, mark)? })
+    };
+    let either =
+        |label| picture(label, "", "").or_else(|| picture(label, INCOMPLETE, ": not complete, it was not there in time"));
+    ["left", "right"].into_iter().filter_map(either).collect()
 }
