@@ -49,7 +49,7 @@ fn every_picture_due_ends_in_one_way_and_no_heavier_load_misses_less() {
         let counts: Vec<DuePictures> = counts.into_iter().map(|due| due.expect("60 fields are enough")).collect();
         for (due, triangles) in counts.iter().zip(LOADS) {
             assert_eq!(due.shown + due.late + due.incomplete + due.missed, due.due, "{pipeline}, {triangles}");
-            let periods = due.last_period + 1 - due.first_period;
+            let periods = due.last_period.next().since(due.first_period);
             assert_eq!(periods, due.due * due.periods_a_picture, "{pipeline}, {triangles}");
         }
         for (pair, triangles) in counts.windows(2).zip(LOADS) {

@@ -3,7 +3,7 @@
 use pxpl5_lab::{ExperimentFile, registry};
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measured, Report};
-use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, RenderingControl, Slats, WARM_UP_PICTURES};
+use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, RenderingControl, WARM_UP_PICTURES};
 use pxpl5_scene::builtin;
 
 fn experiment(config: MachineConfig, scene: &str, fields: u64) -> Experiment {
@@ -93,8 +93,8 @@ fn a_frame_that_takes_two_hundred_fields_is_one_picture_of_a_hundred_that_are_du
     let shown = outcome.pictures().iter().map(|times| outcome.record().display().period_at(times.shown_at));
     let in_window = shown.filter(|field| (due.first_period..=due.last_period).contains(field)).count() as u64;
     assert_eq!((due.shown, due.missed), (in_window, due.due - in_window));
-    assert!(due.last_period + 2 >= report.fields && due.shown > 0, "{due:?}");
-    let window_s = (due.last_period + 1 - due.first_period) as f64 * 1.001 / 60.0;
+    assert!(due.last_period.after(2).0 >= report.fields && due.shown > 0, "{due:?}");
+    let window_s = due.last_period.next().since(due.first_period) as f64 * 1.001 / 60.0;
     let hz = report.updates_hz.expect("shown");
     assert!((hz - in_window as f64 / window_s).abs() < 1e-9, "{hz}");
 }

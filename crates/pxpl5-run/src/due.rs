@@ -10,6 +10,7 @@
 //!
 //! A picture is judged when its period ends, so that none is judged otherwise in a longer run.
 
+use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -49,9 +50,9 @@ pub const WINDOW_DEFINITION: &str = "counted from the 9th period of the display 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DuePictures {
     /// First period of the window.
-    pub first_period: u64,
+    pub first_period: PeriodNumber,
     /// Last period of the window.
-    pub last_period: u64,
+    pub last_period: PeriodNumber,
     /// Periods from one picture that is due to the next.
     pub periods_a_picture: u64,
     /// Pictures due: the periods of the window over those of a picture.
@@ -71,20 +72,21 @@ type Ends = Vec<(u64, Option<PictureEnd>)>;
 
 impl DuePictures {
     /// Counts them. `pictures` gives the period in which each picture that was begun should be seen, and its end;
-    /// `periods_a_picture` is the cadence, and `periods` is how many were over when the run ended.
+    /// `periods_a_picture` is the cadence, and `reached` the first period that was not over when the run ended.
     ///
     /// A picture that comes before it is due, but after the one before it was, is shown. `None` when no whole picture was due.
     #[must_use]
     pub fn count(
-        pictures: impl Iterator<Item = (u64, PictureEnd)>,
+        pictures: impl Iterator<Item = (PeriodNumber, PictureEnd)>,
         periods_a_picture: u64,
-        periods: u64,
+        reached: PeriodNumber,
     ) -> Option<Self> {
+        let periods = reached.0;
         let every = periods_a_picture.max(1);
         let middle = WARM_UP_PERIODS + periods.checked_sub(WARM_UP_PERIODS)? / 2;
         let mut begun: BTreeMap<u64, PictureEnd> = BTreeMap::new();
-        for (period, end) in pictures.filter(|(period, _)| *period < periods) {
-            let best = begun.entry(period).or_insert(end);
+        for (period, end) in pictures.filter(|(period, _)| *period < reached) {
+            let best = begun.entry(period.0).or_insert(end);
             *best = end.min(*best);
         }
         let first_picture = begun.keys().next().copied().unwrap_or_default();
@@ -102,8 +104,8 @@ impl DuePictures {
         let due = ends.len() as u64;
         let first_period = (first_due + 1).saturating_sub(every);
         Some(Self {
-            first_period,
-            last_period: first_period + due * every - 1,
+            first_period: PeriodNumber(first_period),
+            last_period: PeriodNumber(first_period + due * every - 1),
             periods_a_picture: every,
             due,
             shown: number_of(Some(PictureEnd::Shown)),

@@ -7,6 +7,7 @@ use crate::pipeline::{PictureTimes, Pipeline};
 use crate::statistics::Statistics;
 use pxpl5_machine::{Observation, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
 
 /// What came of an experiment: the machine's [`Record`] and the pictures that were shown. It may be sent to another thread.
@@ -16,7 +17,7 @@ pub struct Outcome {
     record: Record,
     head: Option<Arc<HeadViews>>,
     pictures: Vec<PictureTimes>,
-    reached: u64,
+    reached: PeriodNumber,
     host_seconds: Option<f64>,
 }
 
@@ -25,10 +26,10 @@ impl Outcome {
         experiment: Experiment,
         record: Record,
         head: Option<Arc<HeadViews>>,
-        reached: u64,
+        reached: PeriodNumber,
         host_seconds: Option<f64>,
     ) -> Self {
-        let end = record.tick(experiment.fields);
+        let end = record.tick(experiment.end());
         let pictures = experiment.pipeline.pictures(&record, end);
         Self { experiment, record, head, pictures, reached, host_seconds }
     }
@@ -88,10 +89,10 @@ impl Outcome {
         if self.pipeline().periods_a_picture(&self.record).is_some() {
             return self.due()?.updates_hz(self.field_ms());
         }
-        let judged = WARM_UP_PERIODS..self.reached;
+        let judged = PeriodNumber(WARM_UP_PERIODS)..self.reached;
         let shown = self.pictures.iter().filter(|times| times.is_shown() && judged.contains(&self.period_of(times)));
         let pictures = shown.count() as f64 / self.pipeline().updates_per_picture(&self.record);
-        let window_ms = judged.end.saturating_sub(judged.start) as f64 * self.field_ms();
+        let window_ms = judged.end.since(judged.start) as f64 * self.field_ms();
         (pictures > 0.0).then_some(pictures * 1e3 / window_ms)
     }
 
@@ -99,7 +100,7 @@ impl Outcome {
     /// where lines are interlaced), all of them in time.
     #[must_use]
     pub fn ends_complete(&self) -> bool {
-        let (_, fields_of_a_screen) = self.record.display().rows_lit(0);
+        let (_, fields_of_a_screen) = self.record.display().rows_lit(PeriodNumber::FIRST);
         let of_a_pass = self.pipeline().updates_per_picture(&self.record).ceil() as usize;
         let needed = of_a_pass.max(fields_of_a_screen as usize);
         let last = self.pictures.iter().rev().take(needed);
@@ -107,7 +108,7 @@ impl Outcome {
     }
 
     /// The period of the first display in which a picture is shown.
-    fn period_of(&self, times: &PictureTimes) -> u64 {
+    fn period_of(&self, times: &PictureTimes) -> PeriodNumber {
         self.record.display().period_at(times.shown_at)
     }
 
@@ -162,7 +163,7 @@ impl Outcome {
     /// The end of the run.
     #[must_use]
     pub fn end(&self) -> Time {
-        self.record.tick(self.experiment.fields)
+        self.record.tick(self.experiment.end())
     }
 
     /// Latency in milliseconds over the complete pictures after the warm-up, as the pipeline defines it.
@@ -182,6 +183,6 @@ impl Outcome {
     /// A period of the first display in milliseconds, from 60,000 of them.
     #[must_use]
     pub fn field_ms(&self) -> f64 {
-        self.record.tick(60_000).since(Time::ZERO).as_ms() / 60_000.0
+        self.record.tick(PeriodNumber(60_000)).since(Time::ZERO).as_ms() / 60_000.0
     }
 }

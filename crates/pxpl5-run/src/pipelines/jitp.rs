@@ -12,7 +12,7 @@ use pxpl5_gp::Priority;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, NamedTable, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyTarget, FieldParity, RegionGrid, RegionId};
+use pxpl5_wire::{CopyTarget, FieldParity, PictureNumber, RegionGrid, RegionId, ViewNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -116,7 +116,8 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
 
 /// When a region's first pixel is scanned in its field.
 fn due(video: &Video, target: &CopyTarget) -> Time {
-    video.reaches(target, target.picture).unwrap_or_else(|| video.retrace(target.picture))
+    let field = target.picture.period_drawn_for();
+    video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
 /// What has arrived of a field: regions before its end and before their beam, and when the middle strip had.
@@ -167,10 +168,11 @@ impl Pipeline for Jitp {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
         let video = display.video();
-        let mut arrived: BTreeMap<u64, Arrived> = BTreeMap::new();
+        let mut arrived: BTreeMap<PictureNumber, Arrived> = BTreeMap::new();
         for arrival in &observation.arrivals {
             let Arrived { in_period, in_time, middle_at } = arrived.entry(arrival.target.picture).or_default();
-            *in_period += u32::from(arrival.last_part_at <= video.retrace(arrival.target.picture + 1));
+            let next_field = arrival.target.picture.period_drawn_for().next();
+            *in_period += u32::from(arrival.last_part_at <= video.retrace(next_field));
             *in_time += u32::from(arrival.last_part_at <= due(video, &arrival.target));
             if self.is_middle(arrival) {
                 *middle_at = (*middle_at).max(Some(arrival.last_part_at));
@@ -180,9 +182,9 @@ impl Pipeline for Jitp {
         let middle_line = |field| 2 * (grid.rows() / 2 * self.strip_rows) + FieldParity::of_field(field).first_line();
         let times = samples(record).map(|mark| {
             let Arrived { in_period, in_time, middle_at } = arrived.get(&mark.picture).copied().unwrap_or_default();
-            let field = mark.picture;
+            let field = mark.picture.period_drawn_for();
             PictureTimes {
-                picture: field,
+                picture: mark.picture,
                 view: mark.view.unwrap_or_default(),
                 sampled_at: Some(mark.time),
                 transform_at: mark.time,
@@ -191,7 +193,7 @@ impl Pipeline for Jitp {
                 end: PictureEnd::of(in_period == grid.regions(), in_time == grid.regions()),
             }
         });
-        times.filter(|times| video.retrace(times.picture + 1) <= end).collect()
+        times.filter(|times| video.retrace(times.picture.period_drawn_for().next()) <= end).collect()
     }
 
     fn late_regions(&self, record: &Record, end: Time) -> Vec<LateRegion> {
@@ -212,8 +214,8 @@ impl Pipeline for Jitp {
         "a picture is due every field, and in time if every strip is there before its beam"
     }
 
-    fn source(&self, record: &Record, target: &CopyTarget, _: &BTreeMap<u64, u64>) -> Option<Source> {
-        let field = target.picture;
+    fn source(&self, record: &Record, target: &CopyTarget, _: &BTreeMap<PictureNumber, ViewNumber>) -> Option<Source> {
+        let field = target.picture.period_drawn_for();
         let strip = u32::from(target.region.0) / target.grid.columns();
         let view = |i: u32| JitpConfig::view_number(field, u64::from(i));
         Some(match self.viewpoint {

@@ -47,7 +47,7 @@ fn late_regions(
     let late = arrived.filter_map(|arrival| {
         let due = due(display.video(), arrival);
         (arrival.last_part_at > due).then(|| LateRegion {
-            field: arrival.target.picture,
+            field: arrival.target.picture.period_drawn_for(),
             surface: arrival.surface,
             region: arrival.target.region.0,
             lateness: arrival.last_part_at.since(due),

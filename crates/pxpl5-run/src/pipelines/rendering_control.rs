@@ -6,13 +6,13 @@ use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use image::RgbImage;
 use pphigs::{Binning, Picture, Shading};
+use pxpl5_display::Surface;
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Priority, Stage};
 use pxpl5_machine::{Arrival, ConfigError, Machine, Record, StageSpan};
 use pxpl5_renderer::Layout;
-use pxpl5_display::Surface;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, RegionId, SurfaceId};
+use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId, ViewNumber};
 use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::sync::Arc;
 
@@ -91,7 +91,7 @@ impl Pipeline for RenderingControl {
         let config = self.config(machine, setup.pixels)?;
         let (foreground, views) = (Priority::Foreground, setup.views.clone());
         let gp = machine.processor(config.host, foreground);
-        let program = host(gp, config.clone(), setup.host, move |frame, time| views(frame, time));
+        let program = host(gp, config.clone(), setup.host, move |view, time| views(view, time));
         machine.load(config.host, foreground, Box::pin(program));
         let gp = machine.processor(config.master, foreground);
         machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));
@@ -108,7 +108,8 @@ impl Pipeline for RenderingControl {
         let stages = record.stages();
         let shown = record.observation().swap_ticks(self.eyes());
         let shown = shown.iter().map(|tick| record.tick(*tick));
-        (0..)
+        PictureNumber::FIRST
+            .onwards()
             .zip(shown)
             .filter(|(_, shown_at)| *shown_at < end)
             .filter_map(|(frame, at)| times(&stages, frame, at))
@@ -118,7 +119,7 @@ impl Pipeline for RenderingControl {
     /// What COPY of all eyes takes, since one of them is copied at a time: of a stereo pair 31.2 ms, two fields (TR94).
     fn periods_a_picture(&self, record: &Record) -> Option<u64> {
         let copies: Span = record.display().surfaces().iter().map(|surface| copy_span(record, surface)).sum();
-        Some(record.display().period_at(Time(copies.0.saturating_sub(1))) + 1)
+        Some(record.display().period_at(Time(copies.0.saturating_sub(1))).next().0)
     }
 
     fn latency_definition(&self) -> &'static str {
@@ -156,11 +157,11 @@ fn copy_span(record: &Record, surface: &Surface) -> Span {
         .sum()
 }
 
-fn times(stages: &[StageSpan], frame: u64, shown_at: Time) -> Option<PictureTimes> {
+fn times(stages: &[StageSpan], frame: PictureNumber, shown_at: Time) -> Option<PictureTimes> {
     let of = |stage: Stage| stages.iter().filter(move |s| s.picture == frame && s.stage == stage);
     Some(PictureTimes {
         picture: frame,
-        view: frame,
+        view: ViewNumber::taken_for(frame),
         sampled_at: of(Stage::Sample).map(|s| s.begin).min(),
         transform_at: of(Stage::Transform).map(|s| s.begin).min()?,
         copied_at: of(Stage::Copy).filter_map(|s| s.end).max(),
