@@ -1,6 +1,6 @@
 //! How far a pixel's content is from where it should be at the moment when it lights.
 
-use crate::shown::{Drawn, Shown, view_of};
+use crate::shown::{Drawn, Seen, Shown, view_of};
 use glam::{DVec2, DVec3};
 use pxpl5_run::{HeadViews, Outcome};
 use pxpl5_sim::Time;
@@ -89,7 +89,7 @@ impl<'a> Registration<'a> {
     #[must_use]
     pub fn at(&self, x: u32, y: u32, field: PeriodNumber) -> Option<PixelError> {
         let at = self.shown.outcome.record().display().lights(0, x, y, field)?;
-        let drawn = self.shown.drawn(x, y, field, at).filter(|_| self.shown.is_complete(x, y, field, at) == Some(true))?;
+        let Seen::Complete(drawn) = self.shown.seen(x, y, field, at) else { return None };
         self.judge.error(middle(x, y), &drawn, at)
     }
 }

@@ -24,6 +24,17 @@ pub(crate) enum Drawn {
     Shifted(Pose, DVec2),
 }
 
+/// What a pixel shows, as far as it can be judged.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Seen {
+    /// Nothing yet, or nothing that is known.
+    Nothing,
+    /// A part of a picture that was not complete in time.
+    Incomplete,
+    /// A part of one that was.
+    Complete(Drawn),
+}
+
 /// Everything that is known of a run's views.
 #[derive(Debug)]
 pub(crate) struct Shown<'a> {
@@ -46,10 +57,12 @@ impl<'a> Shown<'a> {
         }
     }
 
-    /// Whether a pixel that lights at `at` shows a picture that was complete in time; `None` before anything came.
-    pub(crate) fn is_complete(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<bool> {
-        let target = self.screen.shown(x, y, field, at)?;
-        Some(self.complete.contains(&target.picture))
+    /// What a pixel that lights at `at` shows, and whether its picture was complete in time.
+    pub(crate) fn seen(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Seen {
+        match self.screen.shown(x, y, field, at) {
+            Some(target) if !self.complete.contains(&target.picture) => Seen::Incomplete,
+            _ => self.drawn(x, y, field, at).map_or(Seen::Nothing, Seen::Complete),
+        }
     }
 
     /// What a pixel that lights at `at` shows; `None` before anything came.
