@@ -68,10 +68,11 @@ pub use pxpl5_measure::{
     TooHeavy, picture, side_by_side,
 };
 pub use pxpl5_run::{
-    BareHost, Code, DefinedStatistics, DuePictures, Estimates, Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint,
-    Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key, KeyValue, KeyValues, Level,
-    LimitCriterion, Outcome, PictureEnd, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry,
-    RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary, TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION,
+    BareHost, Code, DefinedStatistics, DuePictures, Estimates, Experiment, ExperimentError, FIELDS_RANGE,
+    FIELDS_WITH_HEAD, Fingerprint, Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key,
+    KeyValue, KeyValues, Level, LimitCriterion, Outcome, PictureEnd, PictureTimes, Pipeline, PipelineEntry,
+    PipelineSettings, Pixels, Raster, Registry, RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary,
+    TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};
 pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmOf, results, timeline, trace_export};

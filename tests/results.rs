@@ -101,7 +101,10 @@ fn the_means_of_the_report_add_up_to_its_latency() {
         let published = report.latency_parts_ms.iter().filter(|part| part.in_published_latency);
         let sum: f64 = published.map(|part| part.statistics.statistics.mean).sum();
         let latency = report.latency_ms.statistics.mean;
-        assert!(report.latency_ms.statistics.n == 0 || (sum - latency).abs() < 1e-9 * latency, "{sum} instead of {latency}");
+        assert!(
+            report.latency_ms.statistics.n == 0 || (sum - latency).abs() < 1e-9 * latency,
+            "{sum} instead of {latency}"
+        );
     }
 }
 

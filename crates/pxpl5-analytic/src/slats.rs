@@ -9,7 +9,7 @@ use pxpl5_geometry::Viewport;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
 use pxpl5_run::{
-    ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, Pipeline, PictureEnd, Slats, Summary,
+    ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureEnd, Pipeline, Slats, Summary,
     WARM_UP_PERIODS, WARM_UP_PICTURES,
 };
 use pxpl5_sim::Time;

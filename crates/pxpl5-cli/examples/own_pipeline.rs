@@ -9,8 +9,8 @@ use pxpl5::firmware::{
     Priority, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport, region_messages, swap_request,
 };
 use pxpl5::{
-    ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureEnd, PictureTimes, Pipeline, PipelineEntry,
-    PipelineSettings, Ports, Record, Registry, Setup, Span, TestScene, Time,
+    ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureEnd, PictureTimes, Pipeline,
+    PipelineEntry, PipelineSettings, Ports, Record, Registry, Setup, Span, TestScene, Time,
 };
 use std::process::ExitCode;
 use std::sync::Arc;

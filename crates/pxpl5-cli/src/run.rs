@@ -49,8 +49,7 @@ pub(crate) struct RunArgs {
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
-    let Simulated { outcome, too_short } =
-        args.snapshot.simulate(&plan, args.threads, &args.without, args.quiet)?;
+    let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, args.threads, &args.without, args.quiet)?;
     let results = Results::of_run(outcome);
     let Some((_, report)) = &results.run else { return Err(no_events()) };
     // Of a run that is too short everything is said, but nothing is kept.

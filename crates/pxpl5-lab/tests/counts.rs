@@ -80,7 +80,9 @@ fn rates_are_those_of_the_load_and_not_of_the_length_of_the_run() {
 }
 
 fn with_a_head(pipeline: &str, scene: &str) -> Report {
-    let text = format!("pipeline = \"{pipeline}\"\nscene = \"{scene}\"\nfields = 60\npixels = \"off\"\nhead.motion = \"pan:200\"");
+    let text = format!(
+        "pipeline = \"{pipeline}\"\nscene = \"{scene}\"\nfields = 60\npixels = \"off\"\nhead.motion = \"pan:200\""
+    );
     let plan = ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect("valid");
     match plan.experiment(plan.load_scene().expect("built in")).run() {
         Ok(outcome) => outcome.report(),

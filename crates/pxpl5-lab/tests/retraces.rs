@@ -101,8 +101,10 @@ fn a_frame_that_takes_two_hundred_fields_is_one_picture_of_a_hundred_that_are_du
 
 #[test]
 fn slats_that_is_always_late_has_shown_nothing_and_says_what_would_do() {
-    let plan =
-        ExperimentFile::parse("pipeline = \"slats\"\nscene = \"full-screen:1000\"\nfields = 60\npixels = \"off\"", "test");
+    let plan = ExperimentFile::parse(
+        "pipeline = \"slats\"\nscene = \"full-screen:1000\"\nfields = 60\npixels = \"off\"",
+        "test",
+    );
     let plan = plan.and_then(|file| file.resolve()).expect("valid");
     let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("late pictures are pictures");
     let report = outcome.report();

@@ -157,9 +157,7 @@ impl PixelErrors {
     pub fn ideal(outcome: &Outcome) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
         let mut follower = head.follower();
-        Self::collect(outcome, |_, _, (_, _, _, at)| {
-            Seen::Complete(Drawn::Pose(head.follow(&mut follower, at, at)))
-        })
+        Self::collect(outcome, |_, _, (_, _, _, at)| Seen::Complete(Drawn::Pose(head.follow(&mut follower, at, at))))
     }
 
     fn collect(

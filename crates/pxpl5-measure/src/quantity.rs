@@ -61,9 +61,11 @@ pub static QUANTITIES: [Quantity; 34] = [
     of_summary("latency_ms.min", LATENCY, |s| s.latency_ms().min),
     of_summary("latency_ms.max", LATENCY, |s| s.latency_ms().max),
     // What is not a number is no value: see `Measure::of`.
-    of_summary("updates_hz", "whole pictures shown a second, over the window of pictures_due; none where none was", |s| {
-        s.updates_hz.unwrap_or(f64::NAN)
-    }),
+    of_summary(
+        "updates_hz",
+        "whole pictures shown a second, over the window of pictures_due; none where none was",
+        |s| s.updates_hz.unwrap_or(f64::NAN),
+    ),
     of_summary("missed_retraces", "pictures due that were not shown: late, incomplete or missed", |s| {
         of_due(s, DuePictures::not_shown)
     }),

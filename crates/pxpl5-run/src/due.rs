@@ -152,4 +152,3 @@ fn ends_of_due(begun: &BTreeMap<u64, PictureEnd>, start: u64, every: u64, period
     })
     .collect()
 }
-

@@ -56,7 +56,8 @@ fn pictures_of(folder: &Path, prefix: &str) -> Vec<PagePicture> {
     let picture = |label: &str, mark: &str, caption: &str| {
         Some(PagePicture { label: format!("{label} eye{caption}"), png: read(label, mark)? })
     };
-    let either =
-        |label| picture(label, "", "").or_else(|| picture(label, INCOMPLETE, ": not complete, it was not there in time"));
+    let either = |label| {
+        picture(label, "", "").or_else(|| picture(label, INCOMPLETE, ": not complete, it was not there in time"))
+    };
     ["left", "right"].into_iter().filter_map(either).collect()
 }

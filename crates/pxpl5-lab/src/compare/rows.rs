@@ -6,8 +6,8 @@ use pphigs::Binning;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Budget, Measured, Percentiles, PixelErrors, UNJUDGED_FIELDS};
 use pxpl5_run::{
-    DuePictures, Experiment, ExperimentError, FIELDS_WITH_HEAD, Head, Outcome, Pipeline, PipelineEntry, PipelineSettings, Pixels,
-    Registry, Slats,
+    DuePictures, Experiment, ExperimentError, FIELDS_WITH_HEAD, Head, Outcome, Pipeline, PipelineEntry,
+    PipelineSettings, Pixels, Registry, Slats,
 };
 use pxpl5_scene::Scene;
 use serde::Serialize;

@@ -46,10 +46,16 @@ pub fn columns() -> Vec<Column> {
             "shown_at_ps",
             "the retrace from which on it is shown; the scan of its middle (just-in-time pixels) or of its last block (frameless)",
         ),
-        Column::optional("latency_ps", "shown_at_ps - transform_at_ps; missing of a picture that was not complete in time"),
+        Column::optional(
+            "latency_ps",
+            "shown_at_ps - transform_at_ps; missing of a picture that was not complete in time",
+        ),
     ];
     columns.extend(LATENCY_PARTS.iter().map(|part| {
-        Column::optional(&format!("{}_ps", part.name), &format!("{}; missing during the warm-up and of a picture that was not complete in time", part.definition))
+        Column::optional(
+            &format!("{}_ps", part.name),
+            &format!("{}; missing during the warm-up and of a picture that was not complete in time", part.definition),
+        )
     }));
     columns
 }
