@@ -112,7 +112,9 @@ fn where_nothing_was_complete_in_time_there_is_no_latency_no_update_and_no_error
             assert_eq!(report.pointer(path), Some(&0.into()), "{pipeline}: {path}");
         }
         assert!(report["too_heavy"]["advice"].is_string() && report["ends_complete"] == false, "{pipeline}");
-        assert!(report["head"]["error"]["incomplete"].as_u64() > Some(0), "{pipeline}");
+        // Of the aircraft no line comes at all; regions of Slats come late.
+        let unjudged = ["incomplete", "empty"].map(|key| report["head"]["error"][key].as_u64().expect("a number"));
+        assert!(unjudged.iter().sum::<u64>() > 0, "{pipeline}");
     }
 }
 
