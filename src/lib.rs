@@ -17,7 +17,7 @@
 //! let trivial = scene::builtin("full-screen:12")?;
 //! let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), trivial).fields(60).run()?;
 //! assert!((outcome.latency_fields().mean - 1.0).abs() < 1e-9);
-//! assert_eq!(outcome.report().missed_retraces, 0);
+//! assert_eq!(outcome.report().missed_retraces, Some(0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -66,13 +66,14 @@ pub use pxpl5_machine::{
 pub use pxpl5_measure::{
     Budget, FieldError, HeadReport, LATENCY_PARTS, LatencyParts, Measure, Measured, NamedStatistics, PartDefinition,
     Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, Report, Results, SurfaceStatistics,
-    picture, side_by_side,
+    TooHeavy, picture, side_by_side,
 };
 pub use pxpl5_run::{
-    Aim, BareHost, Code, DefinedStatistics, Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint,
-    Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key, KeyValue, KeyValues, Level,
-    LimitCriterion, Outcome, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry,
-    RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary, TestScene, Viewpoint, WARM_UP_PICTURES,
+    Aim, BareHost, Code, DefinedStatistics, DuePictures, Estimates, Experiment, ExperimentError, FIELDS_RANGE,
+    FIELDS_WITH_HEAD, Fingerprint, Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key,
+    KeyValue, KeyValues, Level, LimitCriterion, Outcome, PictureEnd, PictureTimes, Pipeline, PipelineEntry,
+    PipelineSettings, Pixels, Raster, Registry, RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary,
+    TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};
 pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmOf, results, timeline, trace_export};

@@ -206,7 +206,7 @@ fn all_combinations_of_viewpoint_and_racing_are_in_time_and_racing_saves_a_field
         let [plain, racing] = [pair[0], pair[1]].map(|jitp| run(jitp, perfect(Pan::at(PAN)), 60));
         for outcome in [&plain, &racing] {
             let report = outcome.report();
-            assert_eq!((report.missed_retraces, report.late_regions), (0, 0), "{}", report.pipeline);
+            assert_eq!((report.missed_retraces, report.late_regions), (Some(0), 0), "{}", report.pipeline);
             assert!((report.updates_hz.expect("two pictures") - 59.94).abs() < 0.01);
         }
         let saved = plain.latency_ms().mean - racing.latency_ms().mean;
@@ -220,7 +220,8 @@ fn lines_that_come_too_late_are_counted_and_nothing_breaks() {
     let mig = builtin("mig").expect("built in");
     let outcome = Experiment::new(MachineConfig::small_hmd(), Jitp::new(Viewpoint::Strip, true), mig).fields(40).run();
     let report = outcome.expect("it runs").report();
-    assert!(report.missed_retraces > 30, "{}", report.missed_retraces);
+    // The first 8 of 40 fields are the warm-up, and no other is complete.
+    assert_eq!(report.missed_retraces, Some(32));
 }
 
 fn possible_in_a_line(preset: &str) -> u32 {
@@ -285,8 +286,7 @@ fn stages_from_head_to_light_add_up() {
         let measured: BTreeMap<_, _> =
             outcome.head().expect("a head").sampled().iter().filter_map(|s| Some((s.number, s.measured_at?))).collect();
         let ages: Vec<f64> = outcome
-            .steady_pictures()
-            .iter()
+            .complete_pictures()
             .filter(|times| times.copied_at.is_some())
             .filter_map(|times| {
                 Some(pipeline.light(outcome.record(), times).since(*measured.get(&times.view)?).as_ms())

@@ -8,7 +8,10 @@ use pxpl5_geometry::Viewport;
 use pxpl5_gp::GpTiming;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
-use pxpl5_run::{ClosedForm, Experiment, ExperimentError, Pipeline, RenderingControl, Summary, WARM_UP_PICTURES};
+use pxpl5_run::{
+    ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureEnd, Pipeline, RenderingControl, Summary,
+    WARM_UP_PICTURES,
+};
 use pxpl5_sim::Time;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, RegionGrid, RegionId};
 
@@ -312,7 +315,12 @@ pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentErro
 }
 
 /// An experiment with Rendering Control at the analytic level.
-pub(super) const CLOSED_FORM: ClosedForm = ClosedForm { summary: closed_form, fields_needed };
+pub(super) const CLOSED_FORM: ClosedForm =
+    ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
+
+fn triangles_in_time(experiment: &Experiment) -> Option<u64> {
+    crate::triangles_in_time(experiment, closed_form)
+}
 
 fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     let (model, frames) = frames_of(experiment)?;
@@ -344,17 +352,13 @@ impl StereoModel {
     pub fn summary(&self, frames: &[StereoTimes], fields: u64) -> Summary {
         let end_ns = fields as f64 * self.field_ns;
         let shown: Vec<_> = frames.iter().filter(|frame| frame.shown_ns < end_ns).skip(WARM_UP_PICTURES).collect();
-        let periods = shown.windows(2).map(|pair| pair[1].shown_ns - pair[0].shown_ns);
-        let missed = periods.clone().map(|ns| self.missed_in(ns));
-        // Frames are given for so many fields; what comes behind the last one is known only if that is beyond the end.
-        let goes_on = frames.iter().any(|frame| frame.shown_ns >= end_ns);
-        let missed_after = shown.last().filter(|_| goes_on).map_or(0, |last| self.missed_in(end_ns - last.shown_ns));
-        let all_ns: f64 = periods.clone().sum();
+        let due = self.due(frames, fields);
+        let field_ms = self.field_ns * 1e-6;
         Summary {
             latencies_ms: shown.iter().map(|frame| (frame.shown_ns - frame.transform_ns[0]) * 1e-6).collect(),
-            field_ms: self.field_ns * 1e-6,
-            updates_hz: (all_ns > 0.0).then(|| periods.count() as f64 * 1e9 / all_ns),
-            missed_retraces: missed.sum::<u64>() + missed_after,
+            field_ms,
+            updates_hz: due.and_then(|due| due.updates_hz(field_ms)),
+            due,
             eye_latencies_ms: shown.iter().flat_map(|frame| self.eye_latencies_ms(frame)).collect(),
             region_copy_us: self.copy_ns.iter().sum::<f64>() / self.copy_ns.len() as f64 * 1e-3,
             first_copy_ms: mean_ms(&shown, |frame| frame.copy_length_ns(0)),
@@ -368,8 +372,12 @@ impl StereoModel {
         (0..self.eyes).map(|eye| (frame.copy_ns[eye].1 - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
-    /// Retraces in a time after a swap beyond one for each eye's copy.
-    fn missed_in(&self, ns: f64) -> u64 {
-        ((ns / self.field_ns).round() as u64).saturating_sub(self.eyes as u64)
+    /// A frame is due as often as COPY of all eyes lets it.
+    fn due(&self, frames: &[StereoTimes], fields: u64) -> Option<DuePictures> {
+        let every = (self.eyes as f64 * self.copy_ns.iter().sum::<f64>() / self.field_ns).ceil() as u64;
+        let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);
+        // Frames are given for so many fields; what comes behind the last one is not known.
+        let known = frames.last().map_or(PeriodNumber::FIRST, |last| field_of(last).next()).min(PeriodNumber(fields));
+        DuePictures::count(frames.iter().map(|frame| (field_of(frame), PictureEnd::Shown)), every, known)
     }
 }

@@ -9,7 +9,10 @@ use pxpl5_geometry::Viewport;
 use pxpl5_gp::GpTiming;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
-use pxpl5_run::{ClosedForm, Experiment, ExperimentError, Pipeline, Slats, Summary, WARM_UP_PICTURES};
+use pxpl5_run::{
+    ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureEnd, Pipeline, Slats, Summary,
+    WARM_UP_PERIODS, WARM_UP_PICTURES,
+};
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, PeriodNumber, RegionGrid};
 use slats::CLUMP;
@@ -128,6 +131,17 @@ impl SlatsModel {
             queue.ready_ns = queue.ready_ns.max(top.ready_ns);
         }
         copy_all(&mut queues[..self.renderers], self.region_ns)
+    }
+
+    /// Field after field like this one: one is begun at every retrace at which the one before is done with its commands.
+    fn due(&self, times: FieldTimes, fields: u64) -> Option<DuePictures> {
+        let copied_ns = times.bottom.unwrap_or(times.top).end_ns;
+        // A field is scanned during the one after that in which it is drawn.
+        let end = PictureEnd::of(copied_ns <= 2.0 * self.field_ns, times.in_time);
+        let messages = if self.split { 2.0 } else { 1.0 };
+        let apart = ((times.rendered_ns + messages * self.message_ns) / self.field_ns).ceil().max(1.0);
+        let begun = (WARM_UP_PERIODS..fields).step_by(apart as usize);
+        DuePictures::count(begun.map(|field| (PeriodNumber(field), end)), 1, PeriodNumber(fields))
     }
 
     /// Copies of the regions for which `wanted` holds; the commands go out one after the other from `from_ns` on.
@@ -253,7 +267,12 @@ impl Channels {
 }
 
 /// An experiment with Slats at the analytic level.
-pub(super) const CLOSED_FORM: ClosedForm = ClosedForm { summary: closed_form, fields_needed };
+pub(super) const CLOSED_FORM: ClosedForm =
+    ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
+
+fn triangles_in_time(experiment: &Experiment) -> Option<u64> {
+    crate::triangles_in_time(experiment, closed_form)
+}
 
 fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     let (model, times) = steady_field(experiment)?;
@@ -291,11 +310,12 @@ fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), Exp
 fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
     let pictures = fields.saturating_sub(FIELDS_BEFORE).max(1);
     let field_ms = model.field_ns * 1e-6;
+    let due = model.due(times, fields);
     Summary {
         latencies_ms: if times.in_time { vec![field_ms; pictures as usize] } else { Vec::new() },
         field_ms,
-        updates_hz: times.in_time.then_some(1e3 / field_ms),
-        missed_retraces: if times.in_time { 0 } else { pictures },
+        updates_hz: due.and_then(|due| due.updates_hz(field_ms)),
+        due,
         eye_latencies_ms: Vec::new(),
         region_copy_us: model.region_ns * 1e-3,
         first_copy_ms: length_ms(times.top),

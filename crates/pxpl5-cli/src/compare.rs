@@ -170,14 +170,15 @@ fn line(row: &Row) -> String {
         return format!("{:<24} {failure}\n", row.pipeline);
     }
     let judged = row.error.judged > 0;
-    let timed = row.end_to_end.pictures > 0;
+    let timed = row.end_to_end.n > 0;
+    let latency = row.latency_ms.unwrap_or(f64::NAN);
     format!(
         "{:<24} {:>9} {:>9} {:>8} {:>7} {:>9} {:>9} {:>9} {:>10}\n",
         row.pipeline,
-        shown(row.latency_ms, row.latency_ms > 0.0),
+        shown(latency, latency.is_finite()),
         shown(row.end_to_end.total_ms, timed),
         row.updates_hz.map_or_else(|| "-".to_owned(), |hz| format!("{hz:.2}")),
-        row.missed_retraces,
+        row.missed_retraces.map_or_else(|| "-".to_owned(), |missed| missed.to_string()),
         shown(row.error.pixels.mean, judged),
         shown(row.error.pixels.p99, judged),
         shown(row.error.degrees.mean, judged),

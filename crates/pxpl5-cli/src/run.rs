@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::output::{OutputFolder, png, timeline};
 use crate::settings::SettingArgs;
-use crate::snapshot::SnapshotArgs;
+use crate::snapshot::{Simulated, SnapshotArgs};
 use crate::table::{Comparison, table};
 use crate::terminal::print;
 use clap::Args;
@@ -49,42 +49,64 @@ pub(crate) struct RunArgs {
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
-    let outcome = args.snapshot.simulate(&plan, args.threads, &args.without, args.quiet)?;
+    let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, args.threads, &args.without, args.quiet)?;
     let results = Results::of_run(outcome);
     let Some((_, report)) = &results.run else { return Err(no_events()) };
+    // Of a run that is too short everything is said, but nothing is kept.
+    let folder = folder.filter(|_| too_short.is_none());
     let written = folder.map(|folder| write(folder, &plan, &results)).transpose()?;
     if args.json {
         print(&format!("{}\n", json(report)?))?;
     } else if !args.quiet {
         print(&text(&plan, &results, report, written))?;
     }
-    if report.shown == 0 { Err(nothing_shown(report)) } else { Ok(()) }
+    match too_short {
+        Some(error) => Err(error),
+        None if report.shown == 0 => Err(nothing_shown(report)),
+        None => Ok(()),
+    }
 }
 
 /// More fields would not help: pictures came, and all of them came too late.
 fn nothing_shown(report: &Report) -> CliError {
+    let advice = report.too_heavy.as_ref().map_or("draw fewer primitives (--triangles)", |heavy| &heavy.advice);
     CliError::failure(format!(
-        "no complete picture was shown in {} fields: {} regions came after their deadline; draw fewer primitives (--triangles)",
+        "no complete picture was shown in {} fields: {} regions came after their deadline; {advice}",
         report.fields, report.late_regions
     ))
 }
 
 fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf>) -> String {
     let comparison = comparison(plan, results);
-    let mut text = table(&[(report, comparison.as_ref())]);
+    let mut text = String::new();
+    if let Some(heavy) = &report.too_heavy {
+        let _ = writeln!(text, "{heavy}\n");
+    }
+    text.push_str(&table(&[(report, comparison.as_ref())]));
     let _ = writeln!(text, "\nLatency: {}.", report.latency_ms.definition);
+    let _ = writeln!(text, "Pictures due: {}.", report.due_definition);
     if let Some(head) = &report.head {
         let HeadReport { tracker, predictor, aim, display, end_to_end, error } = head;
         let _ = writeln!(
             text,
-            "Head to light: {:.2} ms ({tracker}, prediction {predictor}, aim {aim}). Pixel error (display {display}): mean {:.2} px, 99 % {:.2} px, mean {:.3} degrees.",
-            end_to_end.total_ms, error.pixels.mean, error.pixels.p99, error.degrees.mean
+            "Head to light: {} ms, n {} ({tracker}, prediction {predictor}, aim {aim}). Pixel error (display {display}): mean {} px, 99 % {} px, mean {} degrees, n {}.",
+            known(end_to_end.total_ms, 2),
+            end_to_end.n,
+            known(error.pixels.mean, 2),
+            known(error.pixels.p99, 2),
+            known(error.degrees.mean, 3),
+            error.pixels.n
         );
     }
     if let Some(path) = written {
         let _ = writeln!(text, "Written to {}.", path.display());
     }
     text
+}
+
+/// What was not judged is no number.
+fn known(value: f64, digits: usize) -> String {
+    if value.is_nan() { "-".to_owned() } else { format!("{value:.digits$}") }
 }
 
 /// The checked experiment; a sweep is none.
@@ -143,6 +165,9 @@ fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<Pat
     Ok(path)
 }
 
+/// What ends the name of a picture that was not complete in time.
+pub(crate) const INCOMPLETE: &str = "-incomplete";
+
 /// The last displayed pictures; `prefix` begins their names.
 pub(crate) fn pictures(
     folder: &mut OutputFolder,
@@ -154,7 +179,8 @@ pub(crate) fn pictures(
         outcome.record().surfaces().map(|(id, surface)| (id, surface.label)).collect();
     for (surface, label) in surfaces {
         if let Some(picture) = outcome.picture(surface) {
-            folder.put(&format!("{prefix}{label}.png"), &png(&picture, report)?)?;
+            let mark = if report.ends_complete { "" } else { INCOMPLETE };
+            folder.put(&format!("{prefix}{label}{mark}.png"), &png(&picture, report)?)?;
         }
     }
     Ok(())

@@ -1,6 +1,6 @@
 //! A table of runs: a column each, a row per quantity.
 
-use pxpl5::{Report, Statistics};
+use pxpl5::{DuePictures, Report, Statistics};
 
 /// What a run is compared with.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ impl Comparison {
 /// What a table says of a run: the name of a row and the text of its cell.
 type TableRow = (&'static str, fn(&Report) -> String);
 
-const ROWS: [TableRow; 11] = [
+const ROWS: [TableRow; 13] = [
     ("pipeline", |r| r.pipeline.clone()),
     ("machine", boards),
     ("scene", |r| r.scene.clone()),
@@ -35,7 +35,9 @@ const ROWS: [TableRow; 11] = [
     ("latency, ms: mean", |r| mean_and_sd(&r.latency_ms.statistics, 1)),
     ("  min to max", |r| range(&r.latency_ms.statistics, 1)),
     ("updates per second", |r| r.updates_hz.map_or_else(|| "-".to_owned(), |hz| format!("{hz:.2}"))),
-    ("missed retraces", missed),
+    ("not shown in time", not_shown),
+    ("  late, incompl., missed", ends),
+    ("  counted in periods", window),
 ];
 
 /// The table as text.
@@ -61,12 +63,22 @@ fn comparison_cells(runs: &[(&Report, Option<&Comparison>)], cell: impl Fn(&Comp
     runs.iter().map(|(_, comparison)| comparison.map_or_else(String::new, &cell)).collect()
 }
 
-/// Of how many, where some were missed.
-fn missed(report: &Report) -> String {
-    match (report.missed_retraces, report.judged_retraces) {
-        (missed, judged) if missed == 0 || judged == 0 => missed.to_string(),
-        (missed, judged) => format!("{missed} of {judged}"),
-    }
+/// Pictures that were due and not shown, and of how many.
+fn not_shown(report: &Report) -> String {
+    of_due(report, |due| format!("{} of {} pictures due", due.not_shown(), due.due))
+}
+
+fn ends(report: &Report) -> String {
+    of_due(report, |due| format!("{}, {}, {}", due.late, due.incomplete, due.missed))
+}
+
+fn window(report: &Report) -> String {
+    of_due(report, |due| format!("{} to {}", due.first_period, due.last_period))
+}
+
+/// Where no picture is ever due, nothing.
+fn of_due(report: &Report, cell: impl Fn(&DuePictures) -> String) -> String {
+    report.due.as_ref().map_or_else(|| "-".to_owned(), cell)
 }
 
 fn primitives(report: &Report) -> String {
@@ -77,12 +89,13 @@ fn primitives(report: &Report) -> String {
     }
 }
 
-/// Of nothing there are no statistics.
+/// Of nothing there are no statistics, and of one picture there is no deviation.
 fn mean_and_sd(s: &Statistics, digits: usize) -> String {
     if s.mean.is_nan() {
         return "-".to_owned();
     }
-    format!("{:.digits$}, sd {:.digits$}", s.mean, s.sd)
+    let sd = if s.sd.is_nan() { "-".to_owned() } else { format!("{:.digits$}", s.sd) };
+    format!("{:.digits$}, sd {sd}, n {}", s.mean, s.n)
 }
 
 fn range(s: &Statistics, digits: usize) -> String {
@@ -98,7 +111,7 @@ fn laid_out(rows: &[(&str, Vec<String>)]) -> String {
     let mut text = String::new();
     for (name, cells) in rows {
         let padded = cells.iter().zip(&widths).map(|(cell, width)| format!("  {cell:<width$}"));
-        let line = format!("{name:<22}{}", padded.collect::<String>());
+        let line = format!("{name:<25}{}", padded.collect::<String>());
         text.push_str(line.trim_end());
         text.push('\n');
     }

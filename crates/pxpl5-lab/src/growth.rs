@@ -165,8 +165,8 @@ fn application(scene: &'static str, machine: &'static str) -> Result<Application
 /// Latencies in fields, and frames a second, with one seed of head motion.
 fn run_seed(experiment: &Experiment, seed: u64) -> Result<(Vec<f64>, f64), String> {
     let outcome = experiment.clone().seed(seed).run().map_err(|error| error.to_string())?;
-    let pictures = outcome.steady_pictures();
-    let latencies = pictures.iter().map(|times| (times.shown_at - times.transform_at).as_ms() / outcome.field_ms());
+    let pictures = outcome.complete_pictures();
+    let latencies = pictures.map(|times| (times.shown_at - times.transform_at).as_ms() / outcome.field_ms());
     Ok((latencies.collect(), outcome.report().updates_hz.unwrap_or_default()))
 }
 

@@ -113,8 +113,8 @@ struct Contexts {
     display: DisplayContext,
 }
 
-/// Ticks without any event after which a machine with waiting programs is said to be deadlocked.
-const DEADLOCK_TICKS: u64 = 120;
+/// Ticks of the first display without any other event after which a machine with waiting programs is said to be deadlocked.
+pub const DEADLOCK_TICKS: u64 = 120;
 
 /// Events that a tick of the first display causes by itself: the signal to the first GP, and the poll of its programs.
 const EVENTS_OF_A_TICK: u64 = 2;
@@ -316,6 +316,12 @@ impl Machine {
         if blocked.iter().any(|b| b.waits_for != "a retrace") {
             self.failure = Some(RunError::Deadlock { time: now, blocked });
         }
+    }
+
+    /// Whether nothing is under way but the displays and the boards' clock: perhaps only until the next tick.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        self.queue.pending().all(|event| matches!(event, Event::Edge | Event::Tick(..) | Event::Display(..)))
     }
 
     /// Who waits for what.

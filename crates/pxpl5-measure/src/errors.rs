@@ -3,7 +3,7 @@
 use crate::percentiles::Percentiles;
 use crate::raster::RasterOffsets;
 use crate::registration::{Judge, middle};
-use crate::shown::{Drawn, Moment, Shown};
+use crate::shown::{Drawn, Moment, Seen, Shown};
 use pxpl5_display::Display;
 use pxpl5_run::{Outcome, Raster};
 use pxpl5_sim::Time;
@@ -24,7 +24,8 @@ pub struct FieldError {
     pub centre_px: f64,
 }
 
-/// Errors over a grid of pixels and all fields.
+/// Errors over a grid of pixels and all fields, where pictures are shown that were complete in time: of others there is no
+/// error. What was not judged is no number (NaN; null in JSON).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PixelErrors {
     /// Distance from where it should be, over the grid, pixels.
@@ -41,6 +42,8 @@ pub struct PixelErrors {
     pub behind: u64,
     /// Pixels that showed nothing yet.
     pub empty: u64,
+    /// Pixels that showed a part of a picture that was not complete in time.
+    pub incomplete: u64,
     /// Over time.
     #[serde(skip)]
     pub by_field: Vec<FieldError>,
@@ -76,25 +79,18 @@ struct Collected {
 }
 
 impl Collected {
-    /// Judges one field; `drawn` says what each pixel shows.
+    /// Judges one field; `seen` says what each pixel shows.
     fn field(
         &mut self,
         judge: &Judge<'_>,
         display: &dyn Display,
         field: PeriodNumber,
-        mut drawn: impl FnMut(u32, u32, Time) -> Option<Drawn>,
+        mut seen: impl FnMut(u32, u32, Time) -> Seen,
     ) {
         let begin = self.grid.len();
         let mut centre = None;
         for (i, (x, y, at)) in grid(display, field).into_iter().enumerate() {
-            let Some(drawn) = drawn(x, y, at) else {
-                self.errors.empty += 1;
-                continue;
-            };
-            let Some(error) = judge.error(middle(x, y), &drawn, at) else {
-                self.errors.behind += 1;
-                continue;
-            };
+            let Some(error) = self.judged(judge, (x, y), at, seen(x, y, at)) else { continue };
             self.grid.push(error);
             if i == (GRID * GRID / 2) as usize {
                 centre = Some(error);
@@ -107,6 +103,17 @@ impl Collected {
             let time_s = display.tick(field).since(Time::ZERO).as_ms() * 1e-3;
             self.errors.by_field.push(FieldError { field, time_s, mean_px, centre_px: centre.pixels });
         }
+    }
+
+    /// The error of a pixel, or why there is none.
+    fn judged(&mut self, judge: &Judge<'_>, (x, y): (u32, u32), at: Time, seen: Seen) -> Option<PixelError> {
+        let (error, unjudged) = match seen {
+            Seen::Nothing => (None, &mut self.errors.empty),
+            Seen::Incomplete => (None, &mut self.errors.incomplete),
+            Seen::Complete(drawn) => (judge.error(middle(x, y), &drawn, at), &mut self.errors.behind),
+        };
+        *unjudged += u64::from(error.is_none());
+        error
     }
 
     fn finish(self) -> PixelErrors {
@@ -126,7 +133,7 @@ impl PixelErrors {
     /// Of a run with a head; empty without one.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
-        Self::collect(outcome, |shown, _, (x, y, field, at)| shown.drawn(x, y, field, at))
+        Self::collect(outcome, |shown, _, (x, y, field, at)| shown.seen(x, y, field, at))
     }
 
     /// The same with the raster shifted as it is scanned.
@@ -135,8 +142,12 @@ impl PixelErrors {
         let Some(head) = outcome.head() else { return Self::default() };
         let offsets = RasterOffsets::of_run(outcome, head);
         Self::collect(outcome, |shown, view, (x, y, field, at)| {
-            let Some(Drawn::View(moment)) = shown.drawn(x, y, field, at) else { return None };
-            Some(Drawn::Shifted(moment, offsets.field(field)?.shift_px(view, at.0)))
+            let shifted = |moment| Some(Drawn::Shifted(moment, offsets.field(field)?.shift_px(view, at.0)));
+            match shown.seen(x, y, field, at) {
+                Seen::Complete(Drawn::View(moment)) => shifted(moment).map_or(Seen::Nothing, Seen::Complete),
+                Seen::Complete(_) => Seen::Nothing,
+                other => other,
+            }
         })
     }
 
@@ -147,13 +158,13 @@ impl PixelErrors {
         let Some(head) = outcome.head() else { return Self::default() };
         let mut follower = head.follower();
         Self::collect(outcome, |_, _, (_, _, _, at)| {
-            Some(Drawn::View(Moment { pose: head.follow(&mut follower, at, at), objects_at: at }))
+            Seen::Complete(Drawn::View(Moment { pose: head.follow(&mut follower, at, at), objects_at: at }))
         })
     }
 
     fn collect(
         outcome: &Outcome,
-        mut drawn: impl FnMut(&Shown<'_>, &HmdView, (u32, u32, PeriodNumber, Time)) -> Option<Drawn>,
+        mut seen: impl FnMut(&Shown<'_>, &HmdView, (u32, u32, PeriodNumber, Time)) -> Seen,
     ) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
         let judge = Judge::new(outcome, head);
@@ -162,7 +173,7 @@ impl PixelErrors {
         let mut collected = Collected::default();
         let end = PeriodNumber(outcome.fields().saturating_sub(1));
         for field in PeriodNumber(UNJUDGED_FIELDS).until(end) {
-            collected.field(&judge, display, field, |x, y, at| drawn(&shown, &judge.view, (x, y, field, at)));
+            collected.field(&judge, display, field, |x, y, at| seen(&shown, &judge.view, (x, y, field, at)));
         }
         collected.finish()
     }

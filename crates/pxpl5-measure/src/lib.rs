@@ -23,6 +23,7 @@ mod report;
 mod screen;
 mod shown;
 mod summary;
+mod too_heavy;
 
 pub use budget::Budget;
 pub use errors::{FieldError, PixelErrors, UNJUDGED_FIELDS, pixel_errors};
@@ -38,3 +39,4 @@ pub use raster::{RasterOffsets, Vdrt};
 pub use registration::Registration;
 pub use report::{HeadReport, Report};
 pub use summary::summary;
+pub use too_heavy::TooHeavy;

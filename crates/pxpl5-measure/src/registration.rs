@@ -1,7 +1,7 @@
 //! How far a pixel's content is from where it should be at the moment when it lights.
 
 use crate::content::{Content, Contents};
-use crate::shown::{Drawn, Moment, Shown, view_of};
+use crate::shown::{Drawn, Moment, Seen, Shown, view_of};
 use glam::{DVec2, DVec3};
 use pxpl5_run::{HeadViews, Outcome};
 use pxpl5_sim::Time;
@@ -99,12 +99,12 @@ impl<'a> Registration<'a> {
         Some(Self { judge: Judge::new(outcome, head), shown: Shown::of_run(outcome, head) })
     }
 
-    /// The error of a pixel in a field that scans its line; `None` where nothing is shown yet, or where its content
-    /// should be behind the eye.
+    /// The error of a pixel in a field that scans its line; `None` where no picture is shown that was complete in time, or where
+    /// its content should be behind the eye.
     #[must_use]
     pub fn at(&self, x: u32, y: u32, field: PeriodNumber) -> Option<PixelError> {
         let at = self.shown.outcome.record().display().lights(0, x, y, field)?;
-        let drawn = self.shown.drawn(x, y, field, at)?;
+        let Seen::Complete(drawn) = self.shown.seen(x, y, field, at) else { return None };
         self.judge.error(middle(x, y), &drawn, at)
     }
 }

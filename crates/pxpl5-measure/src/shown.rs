@@ -6,7 +6,7 @@ use pxpl5_display::{Display, Surface};
 use pxpl5_run::{HeadViews, Outcome, Sampled, Source};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use tracking::Pose;
 use tracking::view::HmdView;
 
@@ -31,12 +31,25 @@ pub(crate) enum Drawn {
     Shifted(Moment, DVec2),
 }
 
+/// What a pixel shows, as far as it can be judged.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Seen {
+    /// Nothing yet, or nothing that is known.
+    Nothing,
+    /// A part of a picture that was not complete in time.
+    Incomplete,
+    /// A part of one that was.
+    Complete(Drawn),
+}
+
 /// Everything that is known of a run's views.
 #[derive(Debug)]
 pub(crate) struct Shown<'a> {
     pub(crate) outcome: &'a Outcome,
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
+    /// Pictures that were complete in time.
+    complete: BTreeSet<PictureNumber>,
     moments: BTreeMap<ViewNumber, Moment>,
 }
 
@@ -46,7 +59,16 @@ impl<'a> Shown<'a> {
             outcome,
             screen: Screen::of_record(outcome.record()),
             views: outcome.pictures().iter().map(|times| (times.picture, times.view)).collect(),
+            complete: outcome.pictures().iter().filter(|times| times.is_shown()).map(|times| times.picture).collect(),
             moments: head.sampled().into_iter().map(|sampled| (sampled.number, moment_of(&sampled))).collect(),
+        }
+    }
+
+    /// What a pixel that lights at `at` shows, and whether its picture was complete in time.
+    pub(crate) fn seen(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Seen {
+        match self.screen.shown(x, y, field, at) {
+            Some(target) if !self.complete.contains(&target.picture) => Seen::Incomplete,
+            _ => self.drawn(x, y, field, at).map_or(Seen::Nothing, Seen::Complete),
         }
     }
 

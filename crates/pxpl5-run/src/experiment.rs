@@ -47,12 +47,18 @@ pub struct Experiment {
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
-    pub(crate) fields_needed: Option<FieldsNeeded>,
+    pub(crate) estimates: Option<Estimates>,
 }
 
-/// Fields after which the first picture behind the warm-up of an experiment has been shown; `None` if none ever will be, or
-/// if it cannot be said.
-pub type FieldsNeeded = fn(&Experiment) -> Option<u64>;
+/// What a closed form can say of an experiment before or after it is run.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimates {
+    /// Fields after which the first picture behind the warm-up has been shown; `None` if none ever will be, or if it cannot be
+    /// said.
+    pub fields_needed: fn(&Experiment) -> Option<u64>,
+    /// The most primitives of the scene, its first ones, that would all be shown in time; `None` if it cannot be said.
+    pub triangles_in_time: fn(&Experiment) -> Option<u64>,
+}
 
 impl Experiment {
     /// A pipeline on a machine with a scene; 120 fields, pixels when looked at, seed 1.
@@ -78,7 +84,7 @@ impl Experiment {
             level: Level::Transaction,
             head: None,
             on_demand: false,
-            fields_needed: None,
+            estimates: None,
         }
     }
 
@@ -155,11 +161,30 @@ impl Experiment {
         self
     }
 
-    /// By what a run that is too short to show anything says how many fields it would take: a pipeline's closed form knows.
+    /// By what a run that is too short says how many fields it would take, and one that is too heavy how many triangles would
+    /// do: a pipeline's closed form knows.
     #[must_use]
-    pub const fn estimated_by(mut self, fields_needed: Option<FieldsNeeded>) -> Self {
-        self.fields_needed = fields_needed;
+    pub const fn estimated_by(mut self, estimates: Option<Estimates>) -> Self {
+        self.estimates = estimates;
         self
+    }
+
+    /// The most primitives of its scene that would all be shown in time, by the closed form; `None` where there is none.
+    #[must_use]
+    pub fn triangles_in_time(&self) -> Option<u64> {
+        (self.estimates?.triangles_in_time)(self)
+    }
+
+    /// The same experiment with another scene.
+    #[must_use]
+    pub fn with_scene(self, scene: impl Into<Arc<Scene>>) -> Self {
+        Self { scene: scene.into(), ..self }
+    }
+
+    /// The same experiment without a head: the pipeline follows the scene's own motion without any delay.
+    #[must_use]
+    pub fn without_head(self) -> Self {
+        Self { head: None, ..self }
     }
 
     /// How the raster before the head's eyes shows the picture.

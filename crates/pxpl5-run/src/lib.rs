@@ -13,6 +13,7 @@
 
 mod display_list;
 mod displays;
+mod due;
 mod error;
 mod experiment;
 mod fingerprint;
@@ -35,8 +36,9 @@ mod summary;
 mod views;
 
 pub use display_list::{display_list, views};
+pub use due::{DuePictures, PictureEnd, WARM_UP_PERIODS, WINDOW_DEFINITION};
 pub use error::ExperimentError;
-pub use experiment::{Experiment, FIELDS_RANGE, FieldsNeeded, Pixels, WARM_UP_PICTURES};
+pub use experiment::{Estimates, Experiment, FIELDS_RANGE, Pixels, WARM_UP_PICTURES};
 pub use fingerprint::Fingerprint;
 pub use head::{Head, HeadError};
 pub use head_views::{FIELDS_WITH_HEAD, Follower, HeadViews, Sampled};

@@ -1,5 +1,6 @@
 //! Pipelines as experiments see them.
 
+use crate::due::PictureEnd;
 use crate::keys::KeyValue;
 use crate::views::{FrameStarts, ReportTimes, Views, ViewsWanted};
 use image::RgbImage;
@@ -69,8 +70,16 @@ pub struct PictureTimes {
     pub copied_at: Option<Time>,
     /// The retrace from which on it is shown, or when the beam meets the part that stands for it.
     pub shown_at: Time,
-    /// Whether all of it was there in time.
-    pub complete: bool,
+    /// Whether all of it was there, and in time.
+    pub end: PictureEnd,
+}
+
+impl PictureTimes {
+    /// Whether all of it was there in time: what was not has no latency.
+    #[must_use]
+    pub fn is_shown(&self) -> bool {
+        self.end == PictureEnd::Shown
+    }
 }
 
 /// A program of a whole machine, and what its pictures' times are.
@@ -101,7 +110,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// [`ConfigError`] when the machine is not one on which it can run.
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError>;
 
-    /// The pictures shown before `end`, in order.
+    /// The pictures that were begun and, at `end`, are shown or have missed their time, in order.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes>;
 
     /// Regions that missed their deadline before `end`.
@@ -109,21 +118,17 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         Vec::new()
     }
 
-    /// Retraces from one picture to the next that is due; `None` where none ever is. With it those count as missed too that
-    /// come after the last picture: see [`Outcome::missed_retraces`](crate::Outcome::missed_retraces).
-    fn retraces_a_picture(&self) -> Option<u64> {
+    /// Periods of the first display from one picture to the next that is due; `None` where none ever is. All counts and
+    /// rates follow from it and from [`Pipeline::pictures`]: see [`DuePictures`](crate::DuePictures).
+    fn periods_a_picture(&self, _record: &Record) -> Option<u64> {
         None
     }
-
-    /// Retraces between the first and the last of some pictures at which no complete new one could be shown though it was
-    /// due.
-    fn missed_retraces(&self, record: &Record, pictures: &[PictureTimes]) -> u64;
 
     /// What latency means here, in a sentence.
     fn latency_definition(&self) -> &'static str;
 
-    /// What a missed retrace means here, in a sentence.
-    fn missed_definition(&self) -> &'static str;
+    /// When a picture is due here, and what it takes to be in time; or why none ever is.
+    fn due_definition(&self) -> &'static str;
 
     /// How many entries of [`Pipeline::pictures`] make a whole picture.
     fn updates_per_picture(&self, _record: &Record) -> f64 {

@@ -9,8 +9,9 @@ use crate::level::{Level, with_clocks_of_instructions};
 use crate::outcome::Outcome;
 use crate::pipeline::Setup;
 use crate::preparation::Preparation;
+use crate::statistics::Statistics;
 use crate::views::{FrameStarts, ReportTimes};
-use pxpl5_machine::{Machine, MachineConfig};
+use pxpl5_machine::{DEADLOCK_TICKS, Machine, MachineConfig, RunError};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
@@ -141,10 +142,14 @@ impl Experiment {
             }
             at(field, &mut machine)?;
         }
+        if result.is_ok() && machine.is_at_rest() {
+            result = self.deadlock(rehearsal).map_or(Ok(()), Err);
+        }
         machine.finish_pixels();
         let host_seconds = begun_s.zip(self.host.seconds()).map(|(begin, end)| end - begin);
         let record = machine.into_record();
-        let reached = result.as_ref().err().map_or(self.end(), |error| record.display().period_at(error.time()));
+        let stopped = result.as_ref().err().map(|error| record.display().period_at(error.time()));
+        let reached = stopped.unwrap_or(self.end()).min(self.end());
         let outcome = Outcome::new(self.clone(), record, head, reached, host_seconds);
         match result {
             Err(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
@@ -153,8 +158,17 @@ impl Experiment {
         }
     }
 
+    /// Whether a machine that is at rest at the end of the run, which may be too short to tell, would be so for ever: the run
+    /// is repeated for as long as that takes, so that the record of this one ends where it was asked to.
+    fn deadlock(&self, rehearsal: Option<Rehearsal>) -> Option<RunError> {
+        let longer = Self { fields: self.fields + DEADLOCK_TICKS + 2, pixels: Pixels::Off, ..self.clone() };
+        let (mut machine, _) = longer.assemble(rehearsal).ok()?;
+        let end = machine.record().tick(longer.end());
+        machine.run_until(end).err().filter(|error| matches!(error, RunError::Deadlock { .. }))
+    }
+
     fn too_short(&self, partial: Outcome) -> ExperimentError {
-        let needed = self.fields_needed.and_then(|needed| needed(self));
+        let needed = self.estimates.and_then(|estimates| (estimates.fields_needed)(self));
         let pictures = partial.pictures().len();
         ExperimentError::TooShort { fields: self.fields, pictures, needed, partial: Box::new(partial) }
     }

@@ -1,6 +1,7 @@
 //! What a results folder holds.
 
 use crate::error::CliError;
+use crate::run::INCOMPLETE;
 use pxpl5::views::page::{PagePicture, PageRun, latencies_ms};
 use serde_json::Value;
 use std::fs;
@@ -16,7 +17,7 @@ pub(super) fn runs(folder: &Path) -> Result<Vec<PageRun>, CliError> {
     let text = fs::read_to_string(&path).map_err(|error| no_report(&path, &error.to_string()))?;
     let all: Value = serde_json::from_str(&text).map_err(|error| no_report(&path, &error.to_string()))?;
     match all["schema"].as_str() {
-        Some("pxpl5-report/1") => Ok(vec![run(folder, "", "", &all, &Value::Null)]),
+        Some("pxpl5-report/2") => Ok(vec![run(folder, "", "", &all, &Value::Null)]),
         Some("pxpl5-demo/1") => {
             let runs = all["runs"].as_array().map(Vec::as_slice).unwrap_or_default();
             Ok(runs.iter().map(|entry| demo_run(folder, entry)).collect())
@@ -55,8 +56,10 @@ fn run(folder: &Path, name: &str, prefix: &str, report: &Value, published: &Valu
 fn pictures_of(folder: &Path, prefix: &str) -> Vec<PagePicture> {
     let mut pictures = Vec::new();
     for label in ["left", "right"] {
-        if let Some(png) = read(folder, prefix, &format!("{label}.png")) {
-            pictures.push(PagePicture { label: format!("{label} eye"), png });
+        for (mark, caption) in [("", ""), (INCOMPLETE, ": not complete, it was not there in time")] {
+            if let Some(png) = read(folder, prefix, &format!("{label}{mark}.png")) {
+                pictures.push(PagePicture { label: format!("{label} eye{caption}"), png });
+            }
         }
     }
     pictures

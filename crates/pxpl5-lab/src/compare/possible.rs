@@ -1,9 +1,7 @@
 //! How many triangles a pipeline can draw in time, found by simulation.
 
 use pxpl5_machine::MachineConfig;
-use pxpl5_measure::Measured;
 use pxpl5_run::{Experiment, Goal, Outcome, Pipeline, PipelineSettings, Pixels, Registry};
-use pxpl5_wire::PictureNumber;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -23,8 +21,7 @@ const FIELDS: u64 = 24;
 const MOST: u32 = 4_096;
 
 /// Most triangles, each covering the whole screen, that a pipeline draws in time, by the goal of its registry entry: at a
-/// rate, or with no retrace missed. Where pictures have deadlines, that is every region before its beam; else the update
-/// rate that it has with one triangle.
+/// rate, at a latency, or with every picture that is due shown in time.
 #[must_use]
 pub fn triangles_possible(registry: &Registry, config: &MachineConfig, pipeline: &Arc<dyn Pipeline>) -> Possible {
     let entry = registry.pipeline(pipeline.name()).ok();
@@ -39,18 +36,10 @@ pub fn triangles_possible(registry: &Registry, config: &MachineConfig, pipeline:
             triangles: greatest(|n| run(n).is_some_and(|outcome| outcome.latency_fields().mean <= most)),
             definition: "full-screen triangles at a mean latency",
         },
-        Goal::NoMissedRetrace => {
-            let best = run(1).map_or(0.0, |outcome| updates_hz(&outcome));
-            if run(1).is_some_and(|outcome| is_whole(&outcome)) {
-                let holds = |outcome: &Outcome| are_complete(outcome) && is_whole(outcome);
-                let triangles = greatest(|n| run(n).is_some_and(|outcome| holds(&outcome)));
-                Possible { triangles, definition: "full-screen triangles with every region in time" }
-            } else {
-                let holds = |outcome: &Outcome| updates_hz(outcome) > 0.98 * best;
-                let triangles = greatest(|n| run(n).is_some_and(|outcome| holds(&outcome)));
-                Possible { triangles, definition: "full-screen triangles at the update rate of one" }
-            }
-        }
+        Goal::NoMissedRetrace => Possible {
+            triangles: greatest(|n| run(n).is_some_and(|outcome| is_in_time(&outcome))),
+            definition: "full-screen triangles with every picture that is due shown in time",
+        },
     }
 }
 
@@ -64,22 +53,14 @@ fn run(config: &MachineConfig, pipeline: &Arc<dyn Pipeline>, triangles: u32) -> 
     experiment.fields(FIELDS).pixels(Pixels::Off).run().ok()
 }
 
-/// Complete pictures a second; 0 of fewer than two, which reaches no rate.
+/// Whole pictures shown a second; 0 where none was, which reaches no rate.
 fn updates_hz(outcome: &Outcome) -> f64 {
-    outcome.report().updates_hz.unwrap_or_default()
+    outcome.updates_hz().unwrap_or_default()
 }
 
-fn are_complete(outcome: &Outcome) -> bool {
-    outcome.steady_pictures().iter().all(|times| times.complete)
-}
-
-/// Whether no field between the first and the last picture was left out.
-fn is_whole(outcome: &Outcome) -> bool {
-    let pictures = outcome.steady_pictures();
-    let [first, last] =
-        [pictures.first(), pictures.last()].map(|times| times.map_or(PictureNumber::FIRST, |times| times.picture));
-    let shown = pictures.len() as u64;
-    last.next().since(first) == shown && shown > FIELDS / 3
+/// Whether every picture that was due was shown.
+fn is_in_time(outcome: &Outcome) -> bool {
+    outcome.due().is_some_and(|due| due.not_shown() == 0)
 }
 
 /// The greatest number up to [`MOST`] that holds, if it holds for all smaller ones.

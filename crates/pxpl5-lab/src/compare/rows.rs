@@ -6,8 +6,8 @@ use pphigs::Binning;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Budget, Measured, Percentiles, PixelErrors, UNJUDGED_FIELDS};
 use pxpl5_run::{
-    Aim, Experiment, ExperimentError, FIELDS_WITH_HEAD, Head, Outcome, Pipeline, PipelineEntry, PipelineSettings,
-    Pixels, Registry, Slats,
+    Aim, DuePictures, Experiment, ExperimentError, FIELDS_WITH_HEAD, Head, Outcome, Pipeline, PipelineEntry,
+    PipelineSettings, Pixels, Registry, Slats,
 };
 use pxpl5_scene::Scene;
 use serde::Serialize;
@@ -23,14 +23,18 @@ pub struct Row {
     pub eyes: usize,
     /// What its latency is of.
     pub latency_definition: String,
-    /// Mean latency of the machine alone, milliseconds.
-    pub latency_ms: f64,
+    /// Mean latency of the machine alone, milliseconds; nothing where no complete picture was shown.
+    pub latency_ms: Option<f64>,
+    /// Complete pictures that it is the mean of.
+    pub pictures: usize,
     /// From the head's pose to light.
     pub end_to_end: Budget,
-    /// Whole new pictures a second; nothing where fewer than two were shown.
+    /// Whole new pictures a second; nothing where none was shown.
     pub updates_hz: Option<f64>,
-    /// Retraces missed, as the pipeline defines it.
-    pub missed_retraces: u64,
+    /// The pictures that were due, and what became of them; nothing where none ever is.
+    pub due: Option<DuePictures>,
+    /// Pictures that were due and not shown.
+    pub missed_retraces: Option<u64>,
     /// Regions that came after their deadline.
     pub late_regions: usize,
     /// Registration over a grid of pixels and all fields.
@@ -166,7 +170,7 @@ pub fn compare_with(
         rows
     });
     Ok(Comparison {
-        schema: "pxpl5-comparison/1",
+        schema: "pxpl5-comparison/2",
         machine: config.preset.clone(),
         boards: [config.n_gps, config.n_renderers],
         scene: scene.name().to_owned(),
@@ -218,9 +222,11 @@ fn of_outcome(kind: Kind, outcome: &Outcome, blank: Row) -> Row {
     let report = outcome.report();
     Row {
         latency_definition: outcome.pipeline().latency_definition().to_owned(),
-        latency_ms: report.latency_ms.statistics.mean,
+        latency_ms: Some(report.latency_ms.statistics.mean).filter(|mean| mean.is_finite()),
+        pictures: report.pictures,
         end_to_end: Budget::of(outcome),
         updates_hz: report.updates_hz,
+        due: report.due,
         missed_retraces: report.missed_retraces,
         late_regions: report.late_regions,
         error,

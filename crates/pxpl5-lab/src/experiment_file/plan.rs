@@ -360,7 +360,7 @@ impl Plan {
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();
         let experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)
-            .estimated_by(entry.and_then(|entry| Some(entry.closed_form?.fields_needed)))
+            .estimated_by(entry.and_then(|entry| Some(entry.closed_form?.estimates)))
             .fields(self.fields)
             .seed(self.seed)
             .pixels(self.pixels)

@@ -297,7 +297,7 @@ fn scene_named(name: &str) -> Result<Arc<Scene>> {
     builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()))
 }
 
-/// Complete pictures a second; 0 of fewer than two.
+/// Whole pictures shown a second; 0 where none was.
 fn rate_hz(summary: &Summary) -> f64 {
     summary.updates_hz.unwrap_or_default()
 }
@@ -308,7 +308,7 @@ fn detail(name: &str, value: f64, unit: &'static str) -> Detail {
 
 /// The mean with least, greatest and deviation.
 fn spread_ms(statistics: Statistics) -> Measured {
-    let Statistics { mean, sd, min, max } = statistics;
+    let Statistics { mean, sd, min, max, .. } = statistics;
     let details =
         vec![detail("standard deviation", sd, "ms"), detail("least", min, "ms"), detail("greatest", max, "ms")];
     Measured { value: mean, details }

@@ -1,6 +1,7 @@
 //! Just-in-time pixels on the emulated machine.
 
-use super::{late_regions, missed_fields, ntsc, samples};
+use super::{late_regions, ntsc, samples};
+use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
@@ -122,6 +123,14 @@ fn due(video: &Video, target: &CopyTarget) -> Time {
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
+/// What has arrived of a field: regions before its end and before their beam, and when the middle strip had.
+#[derive(Clone, Copy, Debug, Default)]
+struct Arrived {
+    in_period: u32,
+    in_time: u32,
+    middle_at: Option<Time>,
+}
+
 impl Pipeline for Jitp {
     fn name(&self) -> &'static str {
         match (self.viewpoint, self.racing) {
@@ -162,27 +171,29 @@ impl Pipeline for Jitp {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
         let video = display.video();
-        let mut in_time: BTreeMap<PictureNumber, (u32, Option<Time>)> = BTreeMap::new();
+        let mut arrived: BTreeMap<PictureNumber, Arrived> = BTreeMap::new();
         for arrival in &observation.arrivals {
-            let entry = in_time.entry(arrival.target.picture).or_default();
-            entry.0 += u32::from(arrival.last_part_at <= due(video, &arrival.target));
+            let Arrived { in_period, in_time, middle_at } = arrived.entry(arrival.target.picture).or_default();
+            let next_field = arrival.target.picture.period_drawn_for().next();
+            *in_period += u32::from(arrival.last_part_at <= video.retrace(next_field));
+            *in_time += u32::from(arrival.last_part_at <= due(video, &arrival.target));
             if self.is_middle(arrival) {
-                entry.1 = entry.1.max(Some(arrival.last_part_at));
+                *middle_at = (*middle_at).max(Some(arrival.last_part_at));
             }
         }
         let grid = RegionGrid { region_height: self.strip_rows, ..RegionGrid::FIELD };
         let middle_line = |field| 2 * (grid.rows() / 2 * self.strip_rows) + FieldParity::of_field(field).first_line();
         let times = samples(record).map(|mark| {
-            let (regions, copied_at) = in_time.get(&mark.picture).copied().unwrap_or_default();
+            let Arrived { in_period, in_time, middle_at } = arrived.get(&mark.picture).copied().unwrap_or_default();
             let field = mark.picture.period_drawn_for();
             PictureTimes {
                 picture: mark.picture,
                 view: mark.view.unwrap_or_default(),
                 sampled_at: Some(mark.time),
                 transform_at: mark.time,
-                copied_at,
+                copied_at: middle_at,
                 shown_at: video.when(0, middle_line(field), field).unwrap_or_else(|| video.retrace(field)),
-                complete: regions == grid.regions(),
+                end: PictureEnd::of(in_period == grid.regions(), in_time == grid.regions()),
             }
         });
         times.filter(|times| video.retrace(times.picture.period_drawn_for().next()) <= end).collect()
@@ -194,20 +205,16 @@ impl Pipeline for Jitp {
     }
 
     /// A new picture every field.
-    fn retraces_a_picture(&self) -> Option<u64> {
+    fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
-    }
-
-    fn missed_retraces(&self, _: &Record, pictures: &[PictureTimes]) -> u64 {
-        missed_fields(pictures)
     }
 
     fn latency_definition(&self) -> &'static str {
         "from the order of the middle strip (or of the field, where one view serves all of it), for which the newest pose is taken, to the scan of that strip"
     }
 
-    fn missed_definition(&self) -> &'static str {
-        "fields of which a strip came after its beam, or that were left out"
+    fn due_definition(&self) -> &'static str {
+        "a picture is due every field, and in time if every strip is there before its beam"
     }
 
     fn source(
