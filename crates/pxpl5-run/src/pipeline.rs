@@ -166,7 +166,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     fn shown(&self, record: &Record, times: &PictureTimes, next: Option<&PictureTimes>) -> LightSpan {
         let first = record.display().period_at(times.shown_at);
         let next = next.map(|next| record.display().period_at(next.shown_at));
-        let periods = next.map_or(self.retraces_a_picture().unwrap_or(1), |next| next.since(first));
+        let periods = next.map_or(self.periods_a_picture(record).unwrap_or(1), |next| next.since(first));
         light_span(record, first, periods)
     }
 

@@ -19,7 +19,7 @@ const INTERVAL_FIELDS: u64 = 60;
 const INTERVAL_STEP_PS: u64 = 1_000_000_000;
 
 /// What a run is begun with.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Preparation {
     /// When each view is seen; `None` where nobody predicts, or the firmware knows.
     pub(crate) rehearsal: Option<Rehearsal>,

@@ -9,7 +9,6 @@ use crate::level::{Level, with_clocks_of_instructions};
 use crate::outcome::Outcome;
 use crate::pipeline::Setup;
 use crate::preparation::Preparation;
-use crate::statistics::Statistics;
 use crate::views::{FrameStarts, ReportTimes};
 use pxpl5_machine::{DEADLOCK_TICKS, Machine, MachineConfig, RunError};
 use pxpl5_sim::Time;
@@ -132,7 +131,7 @@ impl Experiment {
         mut at: impl FnMut(PeriodNumber, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
         let begun_s = self.host.seconds();
-        let (mut machine, head) = self.assemble(preparation)?;
+        let (mut machine, head) = self.assemble(preparation.clone())?;
         let mut result = Ok(());
         for field in self.stops(stops) {
             let until = machine.record().tick(field);
@@ -143,7 +142,7 @@ impl Experiment {
             at(field, &mut machine)?;
         }
         if result.is_ok() && machine.is_at_rest() {
-            result = self.deadlock(rehearsal).map_or(Ok(()), Err);
+            result = self.deadlock(preparation).map_or(Ok(()), Err);
         }
         machine.finish_pixels();
         let host_seconds = begun_s.zip(self.host.seconds()).map(|(begin, end)| end - begin);
@@ -160,9 +159,9 @@ impl Experiment {
 
     /// Whether a machine that is at rest at the end of the run, which may be too short to tell, would be so for ever: the run
     /// is repeated for as long as that takes, so that the record of this one ends where it was asked to.
-    fn deadlock(&self, rehearsal: Option<Rehearsal>) -> Option<RunError> {
+    fn deadlock(&self, preparation: Preparation) -> Option<RunError> {
         let longer = Self { fields: self.fields + DEADLOCK_TICKS + 2, pixels: Pixels::Off, ..self.clone() };
-        let (mut machine, _) = longer.assemble(rehearsal).ok()?;
+        let (mut machine, _) = longer.assemble(preparation).ok()?;
         let end = machine.record().tick(longer.end());
         machine.run_until(end).err().filter(|error| matches!(error, RunError::Deadlock { .. }))
     }
