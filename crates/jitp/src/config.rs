@@ -249,9 +249,23 @@ impl JitpConfig {
         self.middle(field, strip).since(begin).0 as f64 / end.since(begin).0 as f64
     }
 
-    /// From the order of a strip to its beam: every slave has as many strip times as there are slaves.
-    pub(crate) fn lead(&self) -> Span {
+    /// From the order of a strip to its beam: every slave has as many strip times as there are slaves, and a strip that does
+    /// not race the beam is there a field earlier.
+    ///
+    /// A field has one place in the frame buffer, which holds the field two before it until the beam has passed. No strip is
+    /// ordered before its lines of that field have been scanned, so that it cannot overwrite them.
+    pub(crate) fn lead(&self, racing: bool) -> Span {
         let strip = self.deadline(0, 1).since(self.deadline(0, 0));
-        strip * self.slaves.len() as u64 + Span::from_ns(self.timing.margin_ns)
+        let work = strip * self.slaves.len() as u64 + Span::from_ns(self.timing.margin_ns);
+        let two_fields = self.deadline(2, 0).since(self.deadline(0, 0));
+        let wanted = if racing { work } else { work + two_fields / 2 };
+        wanted.min(self.deadline(2, 0).since(self.scanned(0, 0)))
+    }
+
+    /// When the last pixel of a strip has been scanned.
+    fn scanned(&self, field: u64, strip: u32) -> Time {
+        let RegionGrid { width, height, region_height, .. } = self.grid();
+        let last = ((strip + 1) * region_height).min(height) - 1;
+        self.beam.at(field, last, width - 1)
     }
 }

@@ -69,7 +69,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 
     async fn follow_the_beam(&mut self, viewpoint: Viewpoint, racing: bool) {
-        let ahead = self.config.lead() + if racing { Span::ZERO } else { self.field_span() };
+        let ahead = self.config.lead(racing);
         let first = self.gp.field() + 2;
         let mut prepared = first;
         let strips = self.config.grid().rows();
@@ -87,10 +87,6 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
                 }
             }
         }
-    }
-
-    fn field_span(&self) -> Span {
-        self.config.deadline(2, 0).since(self.config.deadline(0, 0)) / 2
     }
 
     /// When slaves must begin to transform for a field: half again as early as that takes, since they draw meanwhile.

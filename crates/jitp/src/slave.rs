@@ -9,7 +9,7 @@ use pphigs::{DisplayList, FrameView, PrimitiveCounts, Share, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage, Ticket};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Body, NodeId, RegionId};
+use pxpl5_wire::{Body, RegionId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -210,7 +210,9 @@ impl Slave {
         self.gp.send(self.config.master, words, body).await;
     }
 
-    /// Bins, and sends all regions as one chain of messages.
+    /// Bins, and sends all regions as one chain of messages. All slaves draw in the same region context of a renderer, so
+    /// the messages of a region keep the renderer's port until its last one, which copies it: those of another slave would
+    /// be drawn into this region, or clear it.
     async fn send(&self, picture: u64, regions: &[RegionId], viewport: &Viewport, drawing: &Arc<DrawnList>) -> Ticket {
         let windows: Vec<_> = regions.iter().map(|region| window(&self.config, viewport, *region)).collect();
         let (counts, any) = drawing.count(&windows);
@@ -221,17 +223,12 @@ impl Slave {
         self.gp.spend(binning + Span::from_ns(self.config.timing.interpolate_ns * interpolated)).await;
         self.gp.clump_buffer_free().await;
         let pieces = regions.iter().zip(&windows).zip(&counts);
-        let batch: Vec<_> = pieces
-            .flat_map(|((region, window), counts)| {
-                let target = self.config.target(picture, *region);
-                let lists = messages(&self.config, drawing, *window, *counts, target);
-                lists.into_iter().map(|list| self.addressed(*region, list))
-            })
-            .collect();
-        self.gp.send_batch(batch).await
-    }
-
-    fn addressed(&self, region: RegionId, list: pxpl5_wire::CommandList) -> (NodeId, u32, Body) {
-        (self.config.renderer_of(region), list.words(), Body::Commands(list))
+        let groups = pieces.map(|((region, window), counts)| {
+            let target = self.config.target(picture, *region);
+            let lists = messages(&self.config, drawing, *window, *counts, target);
+            let group = lists.into_iter().map(|list| (list.words(), Body::Commands(list)));
+            (self.config.renderer_of(*region), group.collect())
+        });
+        self.gp.send_groups(groups.collect()).await
     }
 }

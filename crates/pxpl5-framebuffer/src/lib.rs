@@ -58,6 +58,7 @@ mod ntsc;
 mod picture;
 mod port;
 mod region;
+mod scans;
 mod seen;
 mod stats;
 mod timing;

@@ -11,4 +11,7 @@ pub struct FrameBufferStats {
     pub regions: u64,
     /// Swap requests that took effect.
     pub swaps: u64,
+    /// Lines of regions that a region of the same place has overwritten before the beam had shown them from the first pixel
+    /// to the last: drawn too early by so much that the picture before was lost, or never shown because they were late.
+    pub lines_never_shown: u64,
 }
