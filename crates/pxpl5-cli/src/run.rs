@@ -73,6 +73,9 @@ fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf
     let comparison = comparison(plan, results);
     let mut text = table(&[(report, comparison.as_ref())]);
     let _ = writeln!(text, "\nLatency: {}.", report.latency_ms.definition);
+    if let Some(lines) = report.lines_never_shown().filter(|lines| *lines > 0) {
+        let _ = writeln!(text, "Lines that were overwritten before they had been shown: {lines}.");
+    }
     if let Some(head) = &report.head {
         let HeadReport { tracker, predictor, display, end_to_end, error } = head;
         let _ = writeln!(

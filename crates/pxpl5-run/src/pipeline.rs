@@ -3,7 +3,7 @@
 use crate::keys::KeyValue;
 use crate::views::{ReportTimes, Views, ViewsWanted};
 use image::RgbImage;
-use pphigs::DisplayList;
+use pphigs::{DisplayList, Shading};
 use pxpl5_gp::HostTiming;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
@@ -83,6 +83,11 @@ pub trait Pipeline: Any + Debug + Send + Sync {
 
     /// How it divides pixel memory.
     fn layout(&self) -> Layout;
+
+    /// Where it computes colours: at the corners, unless said.
+    fn shading(&self) -> Shading {
+        Shading::Gouraud
+    }
 
     /// The machine with what the pipeline's variant changes in it, such as the time of its code.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
