@@ -4,7 +4,7 @@ use crate::region::RegionWrite;
 use crate::scans::{Overwritten, Scans};
 use crate::video::Video;
 use pxpl5_sim::Span;
-use pxpl5_wire::{CopyTarget, Lines};
+use pxpl5_wire::{CopyTarget, Lines, PeriodNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -67,7 +67,7 @@ impl Buffer {
     }
 
     /// Notes that a field is scanned from this buffer.
-    pub(crate) fn scan(&mut self, field: u64) {
+    pub(crate) fn scan(&mut self, field: PeriodNumber) {
         self.scans.begin(field);
     }
 

@@ -3,6 +3,7 @@
 use crate::region::RegionWrite;
 use crate::video::Video;
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::PeriodNumber;
 use std::collections::VecDeque;
 
 /// Fields that are remembered: the newest two of either parity, of which the very last may not have reached a line.
@@ -10,7 +11,7 @@ const REMEMBERED: usize = 4;
 
 /// The last fields that were scanned from a buffer, newest first.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Scans(VecDeque<u64>);
+pub(crate) struct Scans(VecDeque<PeriodNumber>);
 
 /// A region that another one of the same cut has overwritten, both complete.
 pub(crate) struct Overwritten<'a> {
@@ -28,7 +29,7 @@ struct Interval {
 }
 
 impl Scans {
-    pub(crate) fn begin(&mut self, field: u64) {
+    pub(crate) fn begin(&mut self, field: PeriodNumber) {
         self.0.truncate(REMEMBERED - 1);
         self.0.push_front(field);
     }
@@ -86,7 +87,7 @@ impl Stands {
 }
 
 /// When the beam passes over a row of the older region in a field; `None` where it does not.
-fn scan(row: u32, field: u64, pair: &Overwritten<'_>) -> Option<Interval> {
+fn scan(row: u32, field: PeriodNumber, pair: &Overwritten<'_>) -> Option<Interval> {
     let segment = pair.older.row(row, Span::ZERO).next()?;
     let begin = pair.video.when(segment.x, segment.y, field)?;
     Some(Interval { begin, end: pair.video.when(pair.older.last_x(), segment.y, field)? })

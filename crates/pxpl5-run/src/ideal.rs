@@ -6,7 +6,7 @@ use pphigs::{Binning, Picture};
 use pxpl5_geometry::Viewport;
 use pxpl5_oracle::{IdealPicture, ideal_picture};
 use pxpl5_sim::Time;
-use pxpl5_wire::{Lines, SurfaceId};
+use pxpl5_wire::{Lines, SurfaceId, ViewNumber};
 
 impl Outcome {
     /// What a viewer of a surface should see of the scene as it is at a time: all lines of it, drawn by an ideal renderer
@@ -27,8 +27,8 @@ impl Outcome {
         let list = display_list(scene).ok()?;
         let hmd = hmd_before(surfaces.first());
         let view = match self.head() {
-            Some(head) => view(scene, &hmd, eyes, 0, time, &head.truth(time).in_single_precision()),
-            None => views(scene, experiment.seed_of_motion(), hmd, eyes).0(0, time),
+            Some(head) => view(scene, &hmd, eyes, ViewNumber::FIRST, time, &head.truth(time).in_single_precision()),
+            None => views(scene, experiment.seed_of_motion(), hmd, eyes).0(ViewNumber::FIRST, time),
         };
         let viewport = Viewport::new(size.grid(), Lines::Frame).ok()?;
         let layout = pipeline.layout();
