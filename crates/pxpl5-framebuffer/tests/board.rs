@@ -404,7 +404,11 @@ fn a_buffer_that_is_not_displayed_shows_nothing() {
     board.retraces(0..=8);
     let retrace = |n| FrameBuffer::new(FrameBufferConfig::NTSC, NODE).expect("valid").video().retrace(PeriodNumber(n));
     for (picture, field) in [(0, 1), (1, 3), (2, 7)] {
-        board.region(retrace(field) + MESSAGE * 16, target(1, Lines::Frame, RegionGrid::FRAME, 0, picture), &colour(RED));
+        board.region(
+            retrace(field) + MESSAGE * 16,
+            target(1, Lines::Frame, RegionGrid::FRAME, 0, picture),
+            &colour(RED),
+        );
     }
     // Picture 0 is overwritten unseen; picture 1 is shown in fields 4 and 5.
     board.swap(retrace(4) - Span(1), 1);
