@@ -7,6 +7,7 @@
 //! `PXPL5_MODELS=FOLDER cargo test --test still_scenes` draws every model of a folder too.
 
 use pxpl5::oracle::IdealPicture;
+use pxpl5::scene::config::FIT_DISTANCE_RADII;
 use pxpl5::scene::{self, HeadMotion, Path, Scene, Sway};
 use pxpl5::{
     Experiment, ExperimentError, KeyValue, MachineConfig, Measured, Outcome, PipelineEntry, PipelineSettings, Report,
@@ -49,7 +50,8 @@ fn load(pipeline: &str, (gps, renderers): (usize, usize), covers_the_screen: boo
     }
 }
 
-/// The scene at time zero with at most `most` of its primitives, evenly spread, before a head that does not move.
+/// The scene at time zero with at most `most` of its primitives, evenly spread, before a head that stands
+/// where `motion.path = "still"` has it.
 fn still(scene: &Scene, most: usize) -> Scene {
     let all = scene.triangles().len() + scene.spheres().len();
     let mut parts = scene.posed(&scene.edits_at(0)).into_parts();
@@ -66,9 +68,8 @@ fn still(scene: &Scene, most: usize) -> Scene {
     }
     parts.triangles = (0..).zip(parts.triangles).filter(|(i, _)| kept(*i)).map(|(_, t)| t).collect();
     parts.spheres = (n_triangles..).zip(parts.spheres).filter(|(i, _)| kept(*i)).map(|(_, s)| s).collect();
-    let pose = scene.motion().pose(0);
-    let eye = pose.position.as_vec3();
-    let target = (pose.position + pose.orientation * glam::DVec3::NEG_Z).as_vec3();
+    let (target, radius) = scene.bounding_sphere();
+    let eye = target + glam::Vec3::Z * (radius * FIT_DISTANCE_RADII as f32);
     parts.motion = HeadMotion::new(Path::Still { eye, target }, Sway::none()).expect("in range");
     Scene::new(parts).expect("what is kept is whole")
 }
