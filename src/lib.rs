@@ -30,6 +30,7 @@
 //! | [`measure`] | what an outcome says: [`Report`], latencies, errors in pixels, pictures |
 //! | [`analytic`] | the same without events |
 //! | [`lab`] | questions over many experiments: [`figures`], [`levels`], [`limit`], [`compare`], [`sweep`], experiment files |
+//! | [`oracle`] | what should be on the screen: an ideal renderer of one process |
 //! | [`views`] | what people look at: timelines, traces, tables, charts, report pages, films |
 //! | [`scene`], [`tracking`] | what is drawn, and who looks at it |
 //! | [`firmware`] | what a pipeline of one's own is written with |
@@ -44,6 +45,7 @@ pub use pxpl5_display as display;
 pub use pxpl5_lab as lab;
 pub use pxpl5_machine as machine;
 pub use pxpl5_measure as measure;
+pub use pxpl5_oracle as oracle;
 pub use pxpl5_run as run;
 pub use pxpl5_scene as scene;
 pub use pxpl5_views as views;

@@ -287,9 +287,26 @@ impl JitpConfig {
         from_begin / end.since(begin).0 as f64
     }
 
-    /// From the order of a strip to its beam: every slave has as many strip times as there are slaves.
-    pub(crate) fn lead(&self) -> Span {
-        let strip = self.deadline(PeriodNumber::FIRST, 1).since(self.deadline(PeriodNumber::FIRST, 0));
-        strip * self.slaves.len() as u64 + Span::from_ns(self.timing.margin_ns)
+    /// From the order of a strip to its beam: every slave has as many strip times as there are slaves, and a strip that does
+    /// not race the beam is there a field earlier.
+    ///
+    /// A field has one place in the frame buffer, which holds the field two before it until the beam has passed. No strip is
+    /// ordered before its lines of that field have been scanned, so that it cannot overwrite them.
+    pub(crate) fn lead(&self, racing: bool) -> Span {
+        let first = PeriodNumber::FIRST;
+        let begin = self.deadline(first, 0);
+        let strip = self.deadline(first, 1).since(begin);
+        let work = strip * self.slaves.len() as u64 + Span::from_ns(self.timing.margin_ns);
+        let next_of_its_lines = self.deadline(first.after(2), 0);
+        let field = next_of_its_lines.since(begin) / 2;
+        let wanted = if racing { work } else { work + field };
+        wanted.min(next_of_its_lines.since(self.scanned(first, 0)))
+    }
+
+    /// When the last pixel of a strip has been scanned.
+    fn scanned(&self, field: PeriodNumber, strip: u32) -> Time {
+        let RegionGrid { width, height, region_height, .. } = self.grid();
+        let last = ((strip + 1) * region_height).min(height) - 1;
+        self.beam.at(field, last, width - 1)
     }
 }

@@ -71,7 +71,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 
     async fn follow_the_beam(&mut self, viewpoint: Viewpoint, racing: bool) {
-        let ahead = self.config.lead() + if racing { Span::ZERO } else { self.field_span() };
+        let ahead = self.config.lead(racing);
         let first = self.gp.field().after(2);
         let mut prepared = first;
         let strips = self.config.grid().rows();
@@ -89,11 +89,6 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
                 }
             }
         }
-    }
-
-    fn field_span(&self) -> Span {
-        let [first, third] = [PeriodNumber::FIRST, PeriodNumber(2)].map(|field| self.config.deadline(field, 0));
-        third.since(first) / 2
     }
 
     /// When slaves must begin to transform for a field: half again as early as that takes, since they draw meanwhile.

@@ -85,8 +85,11 @@ fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf
     text.push_str(&table(&[(report, comparison.as_ref())]));
     let _ = writeln!(text, "\nLatency: {}.", report.latency_ms.definition);
     let _ = writeln!(text, "Pictures due: {}.", report.due_definition);
+    if let Some(lines) = report.lines_never_shown().filter(|lines| *lines > 0) {
+        let _ = writeln!(text, "Lines that were overwritten before they had been shown: {lines}.");
+    }
     if let Some(head) = &report.head {
-        let HeadReport { tracker, predictor, aim, display, end_to_end, error } = head;
+        let HeadReport { tracker, predictor, aim, display, end_to_end, error, .. } = head;
         let _ = writeln!(
             text,
             "Head to light: {} ms, n {} ({tracker}, prediction {predictor}, aim {aim}). Pixel error (display {display}): mean {} px, 99 % {} px, mean {} degrees, n {}.",

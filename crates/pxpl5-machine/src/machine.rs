@@ -402,8 +402,8 @@ impl Machine {
         let processor = &mut processors[board];
         processor.handle(event, context.at(now));
         schedule_own(queue, context, |event| Event::Gp(board, event));
-        for (order, (time, GpOutput::Send { message, ticket })) in (0..).zip(context.drain_outputs()) {
-            let request = Request { message, ticket: Some(ticket), hold: false, order };
+        for (order, (time, GpOutput::Send { message, ticket, hold })) in (0..).zip(context.drain_outputs()) {
+            let request = Request { message, ticket: Some(ticket), hold, order };
             queue.schedule(time, Phase::Arrive, Event::Ring(RingEvent::Request(request)));
         }
         let fault = processor.fault().cloned();

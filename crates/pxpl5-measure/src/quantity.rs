@@ -51,7 +51,7 @@ const LATENCY: &str =
 const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields, where a picture is shown that was complete in time; only with a head.motion";
 
 /// All quantities. Those that need events have no value at the analytic level.
-pub static QUANTITIES: [Quantity; 34] = [
+pub static QUANTITIES: [Quantity; 35] = [
     of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().mean),
     of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().sd),
     of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
@@ -113,6 +113,11 @@ pub static QUANTITIES: [Quantity; 34] = [
     of_run("error_px.max", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.max)),
     of_run("error_deg.mean", "error_px as an angle", |_, r| Some(r.head.as_ref()?.error.degrees.mean)),
     of_run("late_regions", "regions that came after their deadline", |_, r| Some(r.late_regions as f64)),
+    of_run(
+        "lines_never_shown",
+        "lines of regions that were overwritten before the display had shown them; none of a display that shows whole buffers",
+        |_, r| r.lines_never_shown().map(|lines| lines as f64),
+    ),
     of_run("pictures", "complete pictures after the warm-up", |_, r| Some(r.pictures as f64)),
     of_run("events", "events of the simulation", |_, r| Some(r.events as f64)),
     of_run("transform_ms", "mean time of TRANSFORM, an eye or a picture as the pipeline takes them", |o, _| {

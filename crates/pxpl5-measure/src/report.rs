@@ -5,6 +5,7 @@ use crate::errors::{PixelErrors, pixel_errors};
 use crate::latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
 use crate::too_heavy::TooHeavy;
 use parameters::Value;
+use pxpl5_display::Counter;
 use pxpl5_machine::LateRegion;
 use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster};
 use serde::Serialize;
@@ -75,6 +76,8 @@ pub struct Report {
     pub late_regions: usize,
     /// The first of them; lateness in picoseconds.
     pub first_late_regions: Vec<LateRegion>,
+    /// What the first display has counted since the start.
+    pub display_counters: Vec<Counter>,
     /// From the head to light; nothing of a run without a tracker.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadReport>,
@@ -125,6 +128,15 @@ impl HeadReport {
             end_to_end: Budget::of(outcome),
             error: pixel_errors(outcome)?,
         })
+    }
+}
+
+impl Report {
+    /// Lines of regions that were overwritten before they had been shown; `None` where the display does not count them.
+    #[must_use]
+    pub fn lines_never_shown(&self) -> Option<u64> {
+        let counter = self.display_counters.iter().find(|counter| counter.name == Counter::LINES_NEVER_SHOWN);
+        counter.map(|counter| counter.count)
     }
 }
 
@@ -181,6 +193,7 @@ impl Report {
             ends_complete: outcome.ends_complete(),
             late_regions: late.len(),
             first_late_regions: late.into_iter().take(LATE_REGIONS_LISTED).collect(),
+            display_counters: record.display().counters(),
             head: outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())),
             trace_hash: record.trace_hash().to_string(),
             events: record.events(),

@@ -20,6 +20,7 @@ mod fingerprint;
 mod head;
 mod head_views;
 mod host;
+mod ideal;
 mod keys;
 mod level;
 mod outcome;

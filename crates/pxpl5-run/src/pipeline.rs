@@ -4,7 +4,7 @@ use crate::due::PictureEnd;
 use crate::keys::KeyValue;
 use crate::views::{FrameStarts, ReportTimes, Views, ViewsWanted};
 use image::RgbImage;
-use pphigs::DisplayList;
+use pphigs::{DisplayList, Shading};
 use pxpl5_display::{Aim, LightSpan};
 use pxpl5_gp::HostTiming;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
@@ -97,6 +97,11 @@ pub trait Pipeline: Any + Debug + Send + Sync {
 
     /// How it divides pixel memory.
     fn layout(&self) -> Layout;
+
+    /// Where it computes colours: at the corners, unless said.
+    fn shading(&self) -> Shading {
+        Shading::Gouraud
+    }
 
     /// The machine with what the pipeline's variant changes in it, such as the time of its code.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {

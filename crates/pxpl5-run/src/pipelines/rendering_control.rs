@@ -87,6 +87,10 @@ impl Pipeline for RenderingControl {
         Layout::rendering_control_phong()
     }
 
+    fn shading(&self) -> Shading {
+        self.shading
+    }
+
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
         let config = self.config(machine, setup.pixels)?;
         let foreground = Priority::Foreground;
