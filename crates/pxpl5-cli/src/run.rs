@@ -8,6 +8,7 @@ use crate::table::{Comparison, table};
 use crate::terminal::print;
 use clap::Args;
 use pxpl5::results::{origin_lines, quantities_csv};
+use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::{ExperimentFile, HeadReport, Level, Measured, Outcome, Plan, Report, Results, Saving, SurfaceId};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -74,10 +75,11 @@ fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf
     let mut text = table(&[(report, comparison.as_ref())]);
     let _ = writeln!(text, "\nLatency: {}.", report.latency_ms.definition);
     if let Some(head) = &report.head {
-        let HeadReport { tracker, predictor, display, end_to_end, error } = head;
+        let HeadReport { tracker, predictor, training, display, end_to_end, error, .. } = head;
+        let tuned = training.map_or_else(String::new, |on| format!(", tuned for {} ms", on.interval_ps / PS_PER_MS));
         let _ = writeln!(
             text,
-            "Head to light: {:.2} ms ({tracker}, prediction {predictor}). Pixel error (display {display}): mean {:.2} px, 99 % {:.2} px, mean {:.3} degrees.",
+            "Head to light: {:.2} ms ({tracker}, prediction {predictor}{tuned}). Pixel error (display {display}): mean {:.2} px, 99 % {:.2} px, mean {:.3} degrees.",
             end_to_end.total_ms, error.pixels.mean, error.pixels.p99, error.degrees.mean
         );
     }
