@@ -8,6 +8,7 @@ use crate::table::{Comparison, table};
 use crate::terminal::print;
 use clap::Args;
 use pxpl5::results::{origin_lines, quantities_csv};
+use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::{ExperimentFile, HeadReport, Level, Measured, Outcome, Plan, Report, Results, Saving, SurfaceId};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -89,10 +90,11 @@ fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf
         let _ = writeln!(text, "Lines that were overwritten before they had been shown: {lines}.");
     }
     if let Some(head) = &report.head {
-        let HeadReport { tracker, predictor, aim, display, end_to_end, error, .. } = head;
+        let HeadReport { tracker, predictor, training, aim, display, end_to_end, error, .. } = head;
+        let tuned = training.map_or_else(String::new, |on| format!(", tuned for {} ms", on.interval_ps / PS_PER_MS));
         let _ = writeln!(
             text,
-            "Head to light: {} ms, n {} ({tracker}, prediction {predictor}, aim {aim}). Pixel error (display {display}): mean {} px, 99 % {} px, mean {} degrees, n {}.",
+            "Head to light: {} ms, n {} ({tracker}, prediction {predictor}{tuned}, aim {aim}). Pixel error (display {display}): mean {} px, 99 % {} px, mean {} degrees, n {}.",
             known(end_to_end.total_ms, 2),
             end_to_end.n,
             known(error.pixels.mean, 2),
