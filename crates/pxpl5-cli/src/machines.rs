@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::options::registry;
 use crate::terminal::print;
 use clap::Args;
-use pxpl5::{ConfigError, MachineConfig, PRESETS, Parameter, tracking_parameters};
+use pxpl5::{MachineConfig, PRESETS, Parameter, tracking_parameters};
 use serde_json::json;
 use std::fmt::Write;
 
@@ -24,9 +24,8 @@ pub(crate) struct MachinesArgs {
 }
 
 pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
-    let wrong = |error: ConfigError| CliError::usage(error);
     if let Some(name) = &args.preset {
-        let machine = registry().machine_of(MachineConfig::preset(name).map_err(wrong)?);
+        let machine = registry().machine_of(MachineConfig::preset(name).map_err(CliError::usage)?);
         return print(&if args.json { one_json(&machine) } else { one_text(&machine) });
     }
     print(&if args.json { all_json() } else { all_text() })
@@ -45,7 +44,8 @@ fn all_text() -> String {
 fn all_json() -> String {
     let machines = PRESETS.iter().map(|preset| {
         let machine = MachineConfig::preset(preset.name).ok();
-        let (gps, renderers) = (machine.as_ref().map(|m| m.n_gps), machine.as_ref().map(|m| m.n_renderers));
+        let gps = machine.as_ref().map(|m| m.n_gps);
+        let renderers = machine.as_ref().map(|m| m.n_renderers);
         json!({"name": preset.name, "about": preset.about, "n_gps": gps, "n_renderers": renderers})
     });
     let machines: Vec<_> = machines.collect();
