@@ -114,14 +114,14 @@ impl Pipeline for Faulty {
         let pictures = self.inner.pictures(record, end).into_iter();
         pictures.map(|times| PictureTimes { shown_at: Time(times.shown_at.0 - early), ..times }).collect()
     }
-    fn missed_retraces(&self, record: &Record, pictures: &[PictureTimes]) -> u64 {
-        self.inner.missed_retraces(record, pictures)
+    fn periods_a_picture(&self, record: &Record) -> Option<u64> {
+        self.inner.periods_a_picture(record)
     }
     fn latency_definition(&self) -> &'static str {
         self.inner.latency_definition()
     }
-    fn missed_definition(&self) -> &'static str {
-        self.inner.missed_definition()
+    fn due_definition(&self) -> &'static str {
+        self.inner.due_definition()
     }
 }
 
