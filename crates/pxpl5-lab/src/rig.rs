@@ -15,7 +15,7 @@ use pxpl5_display::Display;
 use pxpl5_gp::{Edge, Stage};
 use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_run::{Experiment, ExperimentError, Head, HeadError, Outcome, PictureTimes, Pipeline, Pixels};
-use pxpl5_scene::{Frame, HeadMotion, Lighting, Path, Scene, SceneParts, Structure, Sway, Vertex};
+use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, ViewNumber};
 use std::collections::BTreeMap;
@@ -154,7 +154,7 @@ fn lamp() -> Scene {
         hinge: None,
     };
     let lighting = Lighting { background: [0; 3], ambient: 1.0, diffuse: 0.0, ..Lighting::over_the_shoulder() };
-    let motion = HeadMotion::new(Path::Still { eye: Vec3::ZERO, target: Vec3::NEG_X }, Sway::none());
+    let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_X }, Sway::none());
     Scene::new(SceneParts {
         name: "lamp".to_owned(),
         vertices: CORNERS.map(vertex).to_vec(),
