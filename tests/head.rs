@@ -57,7 +57,7 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
 /// A wall's edge straight ahead at time zero, under a pan: a picture for the first moment of each field, for one eye.
 fn panned(deg_per_s: f64, raster: Raster, fields: u64) -> Experiment {
     let head = Head::new(Arc::new(Pan::at(deg_per_s)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
-    let head = head.expect("in range").before(raster);
+    let head = head.expect("in range").before(raster).aiming(Aim::FirstPixel);
     Experiment::new(MachineConfig::small_hmd(), Jitp::new(Viewpoint::Field, false), edge_scene(0.0))
         .head(head)
         .fields(fields)
