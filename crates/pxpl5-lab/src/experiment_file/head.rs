@@ -146,9 +146,9 @@ const TUNED: [&str; 7] = [
 /// Whether the predictor's numbers are to be found, from those of `tracking.filter` on; where it is not said, not if any of them is
 /// given.
 fn is_tuned(file: &ExperimentFile) -> Result<bool, FileError> {
-    let is_given = |name: &&str| file.get(&format!("tracking.filter.{name}")).is_some();
+    let is_given = |name: &str| file.get(&format!("tracking.filter.{name}")).is_some();
     let choice = file.choice("head.filter", &[("tuned", true), ("given", false)])?;
-    Ok(choice.unwrap_or(!TUNED.iter().any(|name| is_given(&name))))
+    Ok(choice.unwrap_or(!TUNED.iter().any(|name| is_given(name))))
 }
 
 fn judged(file: &ExperimentFile, head: Head) -> Result<Head, FileError> {
