@@ -95,7 +95,6 @@ fn numbers_that_are_given_are_not_tuned() {
     assert_eq!(ran("head.filter = \"given\"\n").training, None);
     assert!(ran("head.filter = \"tuned\"\n").training.is_some());
     assert!(ran("").training.is_some());
-    let both = file("head.filter = \"tuned\"\ntracking.filter.position_jerk = 1.0\n").expect("keys").resolve();
-    let said = both.expect_err("a contradiction").to_string();
-    assert!(said.contains("tracking.filter.position_jerk and head.filter = tuned"), "{said}");
+    // What a run writes says both: the numbers that it began with, and that they are tuned.
+    assert!(ran("head.filter = \"tuned\"\ntracking.filter.position_jerk = 1.0\n").training.is_some());
 }

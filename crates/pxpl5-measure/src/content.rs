@@ -170,7 +170,7 @@ mod tests {
         let mut met = 0;
         for i in -10..=10 {
             for j in -5..=5 {
-                let direction = DVec3::new(f64::from(i) * 0.03, f64::from(j) * 0.03, -1.0);
+                let direction = DVec3::new(f64::from(i) * 0.015, f64::from(j) * 0.015, -1.0);
                 let ray = Ray { origin: eye, direction };
                 // At time 0 the rudder is at the begin of its swing, so ask where every structure is.
                 let posed = scene.posed(&scene.edits_at(0));

@@ -145,21 +145,12 @@ const TUNED: [&str; 7] = [
     "baseline",
 ];
 
-/// Whether the predictor's numbers are to be found; not where any of them is given.
+/// Whether the predictor's numbers are to be found, from those of `tracking.filter` on; where it is not said, not if any of them is
+/// given.
 fn is_tuned(file: &ExperimentFile) -> Result<bool, FileError> {
-    let given = TUNED.iter().find_map(|name| {
-        let path = format!("tracking.filter.{name}");
-        Some((file.get(&path)?, path))
-    });
+    let is_given = |name: &str| file.get(&format!("tracking.filter.{name}")).is_some();
     let choice = file.choice("head.filter", &[("tuned", true), ("given", false)])?;
-    match (choice, given) {
-        (Some(true), Some((setting, path))) => Err(FileError::Conflict {
-            place: setting.place.clone(),
-            key: path,
-            other: "head.filter = tuned".to_owned(),
-        }),
-        (choice, given) => Ok(choice.unwrap_or(given.is_none())),
-    }
+    Ok(choice.unwrap_or(!TUNED.iter().any(|name| is_given(name))))
 }
 
 fn judged(file: &ExperimentFile, head: Head) -> Result<Head, FileError> {
