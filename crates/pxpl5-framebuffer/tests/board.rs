@@ -411,8 +411,8 @@ fn a_buffer_that_is_not_displayed_shows_nothing() {
         );
     }
     // Picture 0 is overwritten unseen; picture 1 is shown in fields 4 and 5.
-    board.swap(retrace(4) - Span(1), 1);
-    board.swap(retrace(6) - Span(1), 0);
+    board.swap(Time(retrace(4).0 - 1), 1);
+    board.swap(Time(retrace(6).0 - 1), 0);
     board.run();
     assert_eq!(board.device.stats().lines_never_shown, 128);
 }
