@@ -12,7 +12,8 @@ const RED: [u8; 3] = [200, 0, 0];
 const GREEN: [u8; 3] = [0, 200, 0];
 const BACKGROUND: [u8; 3] = [1, 2, 3];
 
-/// A list in which a unit is a pixel, x to the right and y down; it is seen along -z, from 0 to 100.
+/// A list in which a unit is a pixel, x to the right and y up from the picture's lower border; it is seen along -z, from 0
+/// to 100.
 fn list() -> DisplayList {
     DisplayList {
         structures: vec![DisplayStructure { triangles: 0..0, spheres: 0..0, frame: ModelFrame::World }],
@@ -28,7 +29,7 @@ fn list() -> DisplayList {
 fn square(list: &mut DisplayList, across: [f32; 2], down: [f32; 2], distance: f32, colour: [u8; 3]) {
     let first = list.positions.len() as u32;
     for (x, y) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
-        list.positions.push(Vec3::new(across[x], down[y], -distance));
+        list.positions.push(Vec3::new(across[x], 480.0 - down[y], -distance));
         list.normals.push(Vec3::Z);
         list.colours.push(colour);
     }
@@ -37,7 +38,7 @@ fn square(list: &mut DisplayList, across: [f32; 2], down: [f32; 2], distance: f3
 }
 
 fn view() -> FrameView {
-    let projection = Mat4::orthographic_rh(0.0, 640.0, 480.0, 0.0, 0.0, 100.0);
+    let projection = Mat4::orthographic_rh(0.0, 640.0, 0.0, 480.0, 0.0, 100.0);
     let eye = EyeView { world_to_eye: Mat4::IDENTITY, head_to_eye: Mat4::IDENTITY, projection };
     FrameView { number: ViewNumber::FIRST, eyes: vec![eye], edits: Vec::new() }
 }
@@ -115,15 +116,11 @@ fn a_tie_may_show_either_colour_and_no_other() {
 fn a_sphere_is_a_disc_that_bulges_towards_the_eye() {
     let mut list = list();
     let centre = [200.3_f32, 100.2];
-    list.spheres.push(Sphere { centre: Vec3::new(centre[0], centre[1], -50.0), radius: 30.0, colour: RED });
+    list.spheres.push(Sphere { centre: Vec3::new(centre[0], 480.0 - centre[1], -50.0), radius: 30.0, colour: RED });
     list.structures[0].spheres = 0..1;
     // Cuts the sphere 18 units before its middle: a disc of radius 24 stands before it.
     square(&mut list, [100.0, 300.0], [50.0, 150.0], 32.0, GREEN);
     let picture = drawn(&list);
-    for (x, y, Rgb(colour)) in picture.image().enumerate_pixels() {
-        let r = f32::hypot(x as f32 + 0.5 - centre[0], y as f32 + 0.5 - centre[1]);
-        if (colour[0] > 190) != (r < 24.0) && r < 40.0 { println!("{x} {y} {r} {colour:?}"); }
-    }
     for (x, y, Rgb(colour)) in picture.image().enumerate_pixels() {
         let from_middle = f32::hypot(x as f32 + 0.5 - centre[0], y as f32 + 0.5 - centre[1]);
         if from_middle < 23.9 {
