@@ -59,6 +59,7 @@ pub use pxpl5_hires::HiResConfig;
 pub use pxpl5_lab::{
     ExperimentFile, FileError, HeadChoice, MotionChoice, Outputs, Plan, Published, SceneChoice, Settings, Snapshot,
     SnapshotError, Workstation, compare, figures, growth, intervals, levels, limit, pipeline_figures, registry, sweep,
+    tracking_parameters,
 };
 pub use pxpl5_machine::{
     Arrival, ConfigError, LateRegion, Machine, MachineConfig, Observation, PRESETS, Parameter, Ports, Preset, Record,

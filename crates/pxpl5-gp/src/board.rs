@@ -104,10 +104,10 @@ impl GpBoard {
         Self { shared, tasks: Vec::new(), announced: None, poll_pending: false, cycle, fault: None }
     }
 
-    /// Has the time of [`Work`](crate::Work) come from this code from now on, whatever the timing table says.
-    pub fn run_code(&mut self, version: CodeVersion) {
+    /// Has the time of [`Work`](crate::Work) come from this code on such a core from now on, whatever the timing table says.
+    pub fn run_code(&mut self, version: CodeVersion, core: i860::Config) {
         let shared = &mut *self.shared.borrow_mut();
-        shared.processor = Some(Box::new(Processor::new(shared.node, shared.timing.memory_bytes, version)));
+        shared.processor = Some(Box::new(Processor::new(shared.node, shared.timing.memory_bytes, version, core)));
     }
 
     /// Has the processor that runs code memoise nothing; to be called before programs run.

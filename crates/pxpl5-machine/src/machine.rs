@@ -180,7 +180,8 @@ impl Machine {
     /// any; to be called before programs are loaded.
     pub fn run_code(&mut self) {
         if let Some(version) = self.record.config.code {
-            self.processors.iter_mut().skip(1).for_each(|board| board.run_code(version));
+            let core = self.record.config.i860;
+            self.processors.iter_mut().skip(1).for_each(|board| board.run_code(version, core));
         }
     }
 

@@ -168,6 +168,7 @@ impl Experiment {
         hash.setting("n_gps", n_gps);
         hash.setting("n_renderers", n_renderers);
         self.config.telling_parameters().iter().for_each(|parameter| hash.setting(&parameter.path, parameter.value));
+        self.config.i860.unusual_settings().iter().for_each(|(key, value)| hash.setting(key, value));
         hash.setting("pipeline", self.pipeline.name());
         self.pipeline.settings().iter().for_each(|(key, value)| hash.setting(key, value));
         hash.setting("scene", Fingerprint::of_scene(&self.scene));
