@@ -4,7 +4,8 @@
 //! to be drawn into another slave's. Only pixels at which two primitives have the same depth to the last bit may differ, and
 //! only by showing another of these primitives: the oracle knows them.
 //!
-//! `PXPL5_MODELS=FOLDER cargo test --test still_scenes` draws every model of a folder too.
+//! `PXPL5_MODELS=FOLDER cargo test --test still_scenes` draws every model of a folder too; with `PXPL5_PICTURES=FOLDER` all
+//! pictures and the oracle's are written there, to be looked at.
 
 use pxpl5::oracle::IdealPicture;
 use pxpl5::scene::config::FIT_DISTANCE_RADII;
@@ -140,7 +141,7 @@ fn faults(entry: &PipelineEntry, size: (usize, usize), whole: &Scene) -> Vec<Str
         let ideal = ideal(&outcome, &scene, surface);
         let picture = outcome.picture(SurfaceId(surface)).expect("pixels are on");
         let wrong = ideal.differences(&picture);
-        let name = format!("{}-{}-{}-{}-{surface}", entry.name, scene.name().replace(':', "-"), size.0, size.1);
+        let name = format!("{}-{}-{}-{}-{surface}", entry.name, scene.name().replace([':', '/'], "-"), size.0, size.1);
         if let Ok(folder) = std::env::var("PXPL5_PICTURES") {
             picture.save(format!("{folder}/{name}.png")).expect("writable");
             ideal.image().save(format!("{folder}/{name}-ideal.png")).expect("writable");

@@ -12,7 +12,8 @@ const RED: [u8; 3] = [200, 0, 0];
 const GREEN: [u8; 3] = [0, 200, 0];
 const BACKGROUND: [u8; 3] = [1, 2, 3];
 
-/// A list in which a unit is a pixel, x to the right and y down; it is seen along -z, from 0 to 100.
+/// A list in which a unit is a pixel, x to the right and y up from the picture's lower border; it is seen along -z, from 0
+/// to 100.
 fn list() -> DisplayList {
     DisplayList {
         structures: vec![DisplayStructure { triangles: 0..0, spheres: 0..0, frame: ModelFrame::World }],
@@ -28,7 +29,7 @@ fn list() -> DisplayList {
 fn square(list: &mut DisplayList, across: [f32; 2], down: [f32; 2], distance: f32, colour: [u8; 3]) {
     let first = list.positions.len() as u32;
     for (x, y) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
-        list.positions.push(Vec3::new(across[x], down[y], -distance));
+        list.positions.push(Vec3::new(across[x], 480.0 - down[y], -distance));
         list.normals.push(Vec3::Z);
         list.colours.push(colour);
     }
@@ -37,7 +38,7 @@ fn square(list: &mut DisplayList, across: [f32; 2], down: [f32; 2], distance: f3
 }
 
 fn view() -> FrameView {
-    let projection = Mat4::orthographic_rh(0.0, 640.0, 480.0, 0.0, 0.0, 100.0);
+    let projection = Mat4::orthographic_rh(0.0, 640.0, 0.0, 480.0, 0.0, 100.0);
     let eye = EyeView { world_to_eye: Mat4::IDENTITY, head_to_eye: Mat4::IDENTITY, projection };
     FrameView { number: ViewNumber::FIRST, eyes: vec![eye], edits: Vec::new() }
 }
@@ -115,7 +116,7 @@ fn a_tie_may_show_either_colour_and_no_other() {
 fn a_sphere_is_a_disc_that_bulges_towards_the_eye() {
     let mut list = list();
     let centre = [200.3_f32, 100.2];
-    list.spheres.push(Sphere { centre: Vec3::new(centre[0], centre[1], -50.0), radius: 30.0, colour: RED });
+    list.spheres.push(Sphere { centre: Vec3::new(centre[0], 480.0 - centre[1], -50.0), radius: 30.0, colour: RED });
     list.structures[0].spheres = 0..1;
     // Cuts the sphere 18 units before its middle: a disc of radius 24 stands before it.
     square(&mut list, [100.0, 300.0], [50.0, 150.0], 32.0, GREEN);
@@ -136,11 +137,12 @@ fn a_sphere_is_a_disc_that_bulges_towards_the_eye() {
 fn phong_follows_the_cosine() {
     for (turn_deg, light, highlight) in [(0.0_f32, 1.0_f32, 96.0), (60.0, 0.5, 0.0)] {
         let mut list = DisplayList { ambient: 0.25, diffuse: 0.5, ..list() };
-        square(&mut list, [0.0, 64.0], [0.0, 64.0], 10.0, [160, 80, 0]);
+        // Far enough from the origin to be seen from the front there too: two-sided light asks which side that is.
+        square(&mut list, [0.0, 8.0], [0.0, 8.0], 90.0, [160, 80, 0]);
         let turn = turn_deg.to_radians();
         list.normals.fill(Vec3::new(turn.sin(), 0.0, turn.cos()));
         let picture = drawn_in(&list, Viewport::FRAME, Shading::Phong);
-        let Rgb(seen) = *picture.image().get_pixel(20, 20);
+        let Rgb(seen) = *picture.image().get_pixel(4, 4);
         for (component, full) in seen.into_iter().zip([160.0, 80.0, 0.0]) {
             let expected = full * (0.25 + 0.5 * light) + highlight;
             assert!((f32::from(component) - expected).abs() < 6.0, "{turn_deg}: {seen:?}, {expected}");
