@@ -51,6 +51,7 @@
 
 mod builtin;
 pub mod config;
+mod decimate;
 mod edit;
 mod error;
 mod import;
