@@ -9,7 +9,7 @@ use pxpl5_geometry::{Sphere, Viewport};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Span;
-use pxpl5_wire::{FieldParity, NodeId, RegionId, Word};
+use pxpl5_wire::{FieldParity, NodeId, RegionId, ViewNumber, Word};
 use std::sync::Arc;
 
 const MEMORY: u64 = 8 << 20;
@@ -64,7 +64,11 @@ fn eye(x: f32) -> EyeView {
 
 fn view() -> FrameView {
     let model = Mat4::from_translation(Vec3::new(0.2, 0.0, 0.0)) * Mat4::from_rotation_z(0.5);
-    FrameView { number: 0, eyes: vec![eye(-0.03), eye(0.03)], edits: vec![ModelEdit { structure: 1, model }] }
+    FrameView {
+        number: ViewNumber::FIRST,
+        eyes: vec![eye(-0.03), eye(0.03)],
+        edits: vec![ModelEdit { structure: 1, model }],
+    }
 }
 
 fn picture(viewport: Viewport, shading: Shading, binning: Binning) -> Picture {
@@ -72,7 +76,7 @@ fn picture(viewport: Viewport, shading: Shading, binning: Binning) -> Picture {
 }
 
 fn board(version: CodeVersion, share: &Share) -> Processor {
-    let mut processor = Processor::new(NodeId(1), MEMORY, version);
+    let mut processor = Processor::new(NodeId(1), MEMORY, version, i860::Config::cycle());
     share.install(&mut processor).expect("it fits");
     processor
 }
@@ -173,7 +177,7 @@ fn a_picture_without_a_kernel_takes_the_time_of_the_table() {
 #[test]
 fn a_display_list_larger_than_the_memory_is_refused() {
     let share = Share::new(list(300), 0, 1);
-    let mut small = Processor::new(NodeId(4), 1 << 20, CodeVersion::Compiled);
+    let mut small = Processor::new(NodeId(4), 1 << 20, CodeVersion::Compiled, i860::Config::cycle());
     let error = share.install(&mut small).expect_err("it begins behind the first megabyte");
     assert_eq!(error.to_string(), "graphics processor at node 4: no memory for 24 words at 0x00100000");
 }
@@ -190,7 +194,7 @@ fn output_bytes(pass: &Pass, triangles: u32, command_bytes: u32) -> u32 {
 fn both_contexts(memory: u64) -> (Processor, [Arc<Pass>; 2]) {
     let share = Share::new(list(90), 0, 1);
     let view = view();
-    let mut processor = Processor::new(NodeId(2), memory, CodeVersion::Scheduled);
+    let mut processor = Processor::new(NodeId(2), memory, CodeVersion::Scheduled, i860::Config::cycle());
     share.install(&mut processor).expect("it fits");
     let picture = picture(Viewport::FRAME, Shading::Gouraud, Binning::Touched);
     (processor, [0, 1].map(|eye| share.transform(&view, eye, picture)))

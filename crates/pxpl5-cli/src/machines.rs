@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::options::registry;
 use crate::terminal::print;
 use clap::Args;
-use pxpl5::{ConfigError, MachineConfig, PRESETS, Parameter};
+use pxpl5::{ConfigError, MachineConfig, PRESETS, Parameter, tracking_parameters};
 use serde_json::json;
 use std::fmt::Write;
 
@@ -12,7 +12,8 @@ use std::fmt::Write;
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 machines
-  pxpl5 machines small-hmd      every parameter with unit, standing, allowed range and source")]
+  pxpl5 machines small-hmd      every parameter with unit, standing, allowed range and source,
+                                those of the i860 and of trackers too; --set PATH=VALUE changes it")]
 pub(crate) struct MachinesArgs {
     /// Show all parameters of this one.
     #[arg(value_name = "PRESET")]
@@ -58,19 +59,25 @@ fn one_json(machine: &MachineConfig) -> String {
         "n_gps": machine.n_gps,
         "n_renderers": machine.n_renderers,
         "parameters": machine.parameters(),
+        "tracking": tracking_parameters(),
     });
     format!("{object:#}\n")
 }
 
 fn one_text(machine: &MachineConfig) -> String {
     let mut text = format!("{}: {} GPs, {} renderers\n\n", machine.preset, machine.n_gps, machine.n_renderers);
-    for Parameter { path, info, value } in machine.parameters() {
-        let (low, high) = info.range;
-        let _ = writeln!(
-            text,
-            "{path:<30} {value:>12} {:<8} {:<9} {low}..{high}: {}",
-            info.unit, info.standing, info.source
-        );
-    }
+    machine.parameters().iter().for_each(|parameter| line(&mut text, parameter));
+    text.push_str("\nWith a tracked head (head.motion, --head), whatever the machine:\n\n");
+    tracking_parameters().iter().for_each(|parameter| line(&mut text, parameter));
     text
+}
+
+fn line(text: &mut String, Parameter { path, info, value, read_only }: &Parameter) {
+    let (low, high) = info.range;
+    let fixed = if *read_only { " (cannot be set)" } else { "" };
+    let _ = writeln!(
+        text,
+        "{path:<42} {value:>12} {:<8} {:<9} {low}..{high}: {}{fixed}",
+        info.unit, info.standing, info.source
+    );
 }

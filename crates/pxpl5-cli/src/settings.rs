@@ -59,7 +59,8 @@ pub(crate) struct SettingArgs {
     /// Seed of the head motion's sway, or of the tracker's noise; default 1.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seed: Option<i64>,
-    /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000; may be repeated.
+    /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000 or tracking.optical.latency=20; `pxpl5 machines
+    /// small-hmd` lists all numbers; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
 }

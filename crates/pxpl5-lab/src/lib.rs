@@ -27,7 +27,7 @@ pub mod sweep;
 
 pub use experiment_file::{
     ExperimentFile, FileError, FileKey, HeadChoice, MotionChoice, Outputs, PathChoice, Plan, Published, SceneChoice,
-    Settings,
+    Settings, tracking_parameters,
 };
 pub use host::Workstation;
 pub use snapshot::{Snapshot, SnapshotError};

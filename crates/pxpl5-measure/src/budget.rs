@@ -1,6 +1,7 @@
 //! Where the time goes from the head's pose to light.
 
 use pxpl5_run::{Outcome, PictureTimes, Sampled};
+use pxpl5_wire::ViewNumber;
 use std::collections::BTreeMap;
 
 /// Mean time in each stage from the head's pose to light, in milliseconds. The stages add up to the total.
@@ -30,7 +31,7 @@ impl Budget {
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
-        let sampled: BTreeMap<u64, Sampled> = head.sampled().into_iter().map(|s| (s.number, s)).collect();
+        let sampled: BTreeMap<ViewNumber, Sampled> = head.sampled().into_iter().map(|s| (s.number, s)).collect();
         let each: Vec<_> = outcome
             .steady_pictures()
             .iter()

@@ -7,6 +7,7 @@ use crate::shown::{Drawn, Shown};
 use pxpl5_display::Display;
 use pxpl5_run::{Outcome, Raster};
 use pxpl5_sim::Time;
+use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
 use tracking::view::{HmdView, PixelError};
 
@@ -14,7 +15,7 @@ use tracking::view::{HmdView, PixelError};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FieldError {
     /// The field.
-    pub field: u64,
+    pub field: PeriodNumber,
     /// When it begins, seconds.
     pub time_s: f64,
     /// Mean over the grid, pixels.
@@ -52,7 +53,7 @@ pub const UNJUDGED_FIELDS: u64 = 15;
 const GRID: u32 = 5;
 
 /// The pixels of a period at which it is judged, in the order of the beam, and when each lights.
-fn grid(display: &dyn Display, period: u64) -> Vec<(u32, u32, Time)> {
+fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
     let Some(surface) = display.surfaces().first() else { return Vec::new() };
     let (first_row, row_distance) = display.rows_lit(period);
     let place = |i: u32, size: u32| (2 * i + 1) * size / (2 * GRID);
@@ -80,7 +81,7 @@ impl Collected {
         &mut self,
         judge: &Judge<'_>,
         display: &dyn Display,
-        field: u64,
+        field: PeriodNumber,
         mut drawn: impl FnMut(u32, u32, Time) -> Option<Drawn>,
     ) {
         let begin = self.grid.len();
@@ -150,14 +151,15 @@ impl PixelErrors {
 
     fn collect(
         outcome: &Outcome,
-        mut drawn: impl FnMut(&Shown<'_>, &HmdView, (u32, u32, u64, Time)) -> Option<Drawn>,
+        mut drawn: impl FnMut(&Shown<'_>, &HmdView, (u32, u32, PeriodNumber, Time)) -> Option<Drawn>,
     ) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
         let judge = Judge::new(outcome, head);
         let shown = Shown::of_run(outcome, head);
         let display = outcome.record().display();
         let mut collected = Collected::default();
-        for field in UNJUDGED_FIELDS..outcome.fields().saturating_sub(1) {
+        let end = PeriodNumber(outcome.fields().saturating_sub(1));
+        for field in PeriodNumber(UNJUDGED_FIELDS).until(end) {
             collected.field(&judge, display, field, |x, y, at| drawn(&shown, &judge.view, (x, y, field, at)));
         }
         collected.finish()

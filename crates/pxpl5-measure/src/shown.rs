@@ -5,6 +5,7 @@ use glam::DVec2;
 use pxpl5_display::{Display, Surface};
 use pxpl5_run::{HeadViews, Outcome, Source};
 use pxpl5_sim::Time;
+use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::BTreeMap;
 use tracking::Pose;
 use tracking::view::HmdView;
@@ -28,8 +29,8 @@ pub(crate) enum Drawn {
 pub(crate) struct Shown<'a> {
     pub(crate) outcome: &'a Outcome,
     screen: Screen,
-    views: BTreeMap<u64, u64>,
-    poses: BTreeMap<u64, Pose>,
+    views: BTreeMap<PictureNumber, ViewNumber>,
+    poses: BTreeMap<ViewNumber, Pose>,
 }
 
 impl<'a> Shown<'a> {
@@ -43,9 +44,9 @@ impl<'a> Shown<'a> {
     }
 
     /// What a pixel that lights at `at` shows; `None` before anything came.
-    pub(crate) fn drawn(&self, x: u32, y: u32, field: u64, at: Time) -> Option<Drawn> {
+    pub(crate) fn drawn(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<Drawn> {
         let target = self.screen.shown(x, y, field, at)?;
-        let pose = |number: u64| self.poses.get(&number).copied();
+        let pose = |number: ViewNumber| self.poses.get(&number).copied();
         Some(match self.outcome.pipeline().source(self.outcome.record(), &target, &self.views)? {
             Source::View(number) => Drawn::Pose(pose(number)?),
             Source::Between { from, to, part, on_screen } => {

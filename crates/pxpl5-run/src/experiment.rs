@@ -8,6 +8,7 @@ use crate::pipeline::Pipeline;
 use crate::raster::Raster;
 use pxpl5_machine::{MachineConfig, Saving};
 use pxpl5_scene::Scene;
+use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -167,6 +168,7 @@ impl Experiment {
         hash.setting("n_gps", n_gps);
         hash.setting("n_renderers", n_renderers);
         self.config.telling_parameters().iter().for_each(|parameter| hash.setting(&parameter.path, parameter.value));
+        self.config.i860.unusual_settings().iter().for_each(|(key, value)| hash.setting(key, value));
         hash.setting("pipeline", self.pipeline.name());
         self.pipeline.settings().iter().for_each(|(key, value)| hash.setting(key, value));
         hash.setting("scene", Fingerprint::of_scene(&self.scene));
@@ -201,6 +203,11 @@ impl Experiment {
     #[must_use]
     pub const fn length(&self) -> u64 {
         self.fields
+    }
+
+    /// The period of the first display at whose begin the run ends: the first that is not simulated.
+    pub(crate) const fn end(&self) -> PeriodNumber {
+        PeriodNumber::FIRST.after(self.fields)
     }
 
     /// Seed of the head motion's sway.

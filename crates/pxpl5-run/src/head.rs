@@ -46,6 +46,20 @@ impl Head {
         seed: u64,
     ) -> Result<Self, HeadError> {
         let predictor = PredictorConfig::for_tracker(predictor, &tracker);
+        Self::predicted_by(motion, tracker, predictor, seed)
+    }
+
+    /// The same with a predictor whose numbers are not those of the papers.
+    ///
+    /// # Errors
+    ///
+    /// As [`Head::new`].
+    pub fn predicted_by(
+        motion: Arc<dyn Motion + Send + Sync>,
+        tracker: TrackerConfig,
+        predictor: PredictorConfig,
+        seed: u64,
+    ) -> Result<Self, HeadError> {
         predictor.build()?;
         Ok(Self { motion, tracker: TrackerModel::new(tracker)?, predictor, seed, raster: Raster::Plain })
     }

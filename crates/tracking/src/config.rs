@@ -12,39 +12,92 @@ pub(crate) fn ms_to_ps(ms: f64) -> u64 {
     nearest_ps(ms / 1e3)
 }
 
-/// All tables with their names.
-pub const TABLES: [(&str, &dyn ParameterTable); 12] = [
-    ("fastrak", &Fastrak::PAPERS),
-    ("flock", &Flock::PAPERS),
-    ("optical", &Optical::PAPERS),
-    ("space", &Space::PAPERS),
-    ("ideal", &Ideal::PAPERS),
-    ("host", &Host::PAPERS),
-    ("head", &Head::PAPERS),
-    ("rig", &Rig::PAPERS),
-    ("ntsc", &Ntsc::PAPERS),
-    ("view", &View::PAPERS),
-    ("filter", &Filter::PAPERS),
-    ("gate", &Gate::PAPERS),
-];
+/// The numbers of trackers, of the host's port and of predictors, as an experiment may change them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tables {
+    /// Polhemus Fastrak.
+    pub fastrak: Fastrak,
+    /// Ascension Flock of Birds.
+    pub flock: Flock,
+    /// UNC's optical ceiling tracker.
+    pub optical: Optical,
+    /// Polhemus 3Space.
+    pub space: Space,
+    /// The tracker without error and delay.
+    pub ideal: Ideal,
+    /// The host's serial port.
+    pub host: Host,
+    /// What prediction filters believe.
+    pub filter: Filter,
+    /// Which reports are believed.
+    pub gate: Gate,
+}
+
+impl Tables {
+    /// The values that the papers give or allow.
+    pub const PAPERS: Self = Self {
+        fastrak: Fastrak::PAPERS,
+        flock: Flock::PAPERS,
+        optical: Optical::PAPERS,
+        space: Space::PAPERS,
+        ideal: Ideal::PAPERS,
+        host: Host::PAPERS,
+        filter: Filter::PAPERS,
+        gate: Gate::PAPERS,
+    };
+
+    /// All tables with their names.
+    pub fn all(&self) -> [(&'static str, &dyn ParameterTable); 8] {
+        [
+            ("fastrak", &self.fastrak),
+            ("flock", &self.flock),
+            ("optical", &self.optical),
+            ("space", &self.space),
+            ("ideal", &self.ideal),
+            ("host", &self.host),
+            ("filter", &self.filter),
+            ("gate", &self.gate),
+        ]
+    }
+
+    /// The table of that name, to change its numbers; `None` if there is none.
+    pub fn named_mut(&mut self, name: &str) -> Option<&mut dyn ParameterTable> {
+        Some(match name {
+            "fastrak" => &mut self.fastrak,
+            "flock" => &mut self.flock,
+            "optical" => &mut self.optical,
+            "space" => &mut self.space,
+            "ideal" => &mut self.ideal,
+            "host" => &mut self.host,
+            "filter" => &mut self.filter,
+            "gate" => &mut self.gate,
+            _ => return None,
+        })
+    }
+}
+
+/// Tables of facts with their names: what heads, the measuring rig, the video and the picture of the papers are. No number
+/// of them is a setting of a tracked head.
+pub const FACTS: [(&str, &dyn ParameterTable); 4] =
+    [("head", &Head::PAPERS), ("rig", &Rig::PAPERS), ("ntsc", &Ntsc::PAPERS), ("view", &View::PAPERS)];
 
 parameter_table! {
     /// The Polhemus Fastrak, a magnetic tracker.
     pub struct Fastrak {
         /// Fastrak rate over all receivers.
-        rate: 120, "Hz", Published, 120..=120, "PF";
+        rate: 120, "Hz", Published, 120..=120 in 1..=10000, "PF";
         /// Fastrak, sync to first character.
-        sync_to_output: f64 = 5.5, "ms", Published, 5.5..=5.5, "PF";
+        sync_to_output: f64 = 5.5, "ms", Published, 5.5..=5.5 in 0.0..=10000.0, "PF";
         /// Fastrak effective latency, middle of the measurement to first character.
-        latency: f64 = 3.75, "ms", Published, 3.75..=5.5, "PF";
+        latency: f64 = 3.75, "ms", Published, 3.75..=5.5 in 0.0..=10000.0, "PF";
         /// Fastrak ASCII record.
-        record: 47, "bytes", Published, 8..=200, "PF";
+        record: 47, "bytes", Published, 8..=200 in 1..=1000, "PF";
         /// Fastrak line rate.
-        baud: 115200, "baud", Published, 300..=115200, "PF";
+        baud: 115200, "baud", Published, 300..=115200 in 300..=1000000, "PF";
         /// Fastrak position error, rms of each axis.
-        position_noise: f64 = 0.8, "mm", Assumed, 0.0..=2.0, "static accuracy taken as white noise";
+        position_noise: f64 = 0.8, "mm", Assumed, 0.0..=2.0 in 0.0..=10000.0, "static accuracy taken as white noise";
         /// Fastrak orientation error, rms about each axis.
-        orientation_noise: f64 = 0.15, "deg", Assumed, 0.0..=0.5, "static accuracy taken as white noise";
+        orientation_noise: f64 = 0.15, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "static accuracy taken as white noise";
     }
 }
 
@@ -52,15 +105,15 @@ parameter_table! {
     /// The Ascension Flock of Birds, a magnetic tracker.
     pub struct Flock {
         /// Flock of Birds rate.
-        rate: 100, "Hz", Published, 10..=144, "VRPN";
+        rate: 100, "Hz", Published, 10..=144 in 1..=10000, "VRPN";
         /// Flock of Birds position latency, filters off.
-        position_latency: f64 = 7.5, "ms", Published, 7.5..=30.0, "VRPN";
+        position_latency: f64 = 7.5, "ms", Published, 7.5..=30.0 in 0.0..=10000.0, "VRPN";
         /// Flock of Birds orientation latency, filters off.
-        orientation_latency: f64 = 2.0, "ms", Published, 2.0..=30.0, "VRPN";
+        orientation_latency: f64 = 2.0, "ms", Published, 2.0..=30.0 in 0.0..=10000.0, "VRPN";
         /// Flock of Birds position error, rms of each axis.
-        position_noise: f64 = 2.5, "mm", Published, 0.0..=5.0, "Ascension data sheet";
+        position_noise: f64 = 2.5, "mm", Published, 0.0..=5.0 in 0.0..=10000.0, "Ascension data sheet";
         /// Flock of Birds orientation error, rms about each axis.
-        orientation_noise: f64 = 0.5, "deg", Published, 0.0..=1.0, "Ascension data sheet";
+        orientation_noise: f64 = 0.5, "deg", Published, 0.0..=1.0 in 0.0..=90.0, "Ascension data sheet";
         /// Time from the first report to the crash of a patched host with the Flock.
         crash: f64 = 1000.0, "ms", Assumed, 0.0..=600000.0, "TR94 says that it crashes, not when";
     }
@@ -70,13 +123,13 @@ parameter_table! {
     /// UNC's optical ceiling tracker.
     pub struct Optical {
         /// Optical ceiling tracker rate.
-        rate: 60, "Hz", Assumed, 20..=100, "WARD92 gives 20-100";
+        rate: 60, "Hz", Assumed, 20..=100 in 1..=10000, "WARD92 gives 20-100";
         /// Optical ceiling tracker latency.
-        latency: f64 = 33.0, "ms", Published, 20.0..=60.0, "I3D95; WARD92 gives 20-60";
+        latency: f64 = 33.0, "ms", Published, 20.0..=60.0 in 0.0..=10000.0, "I3D95; WARD92 gives 20-60";
         /// Optical ceiling tracker position error, rms of each axis.
-        position_noise: f64 = 2.0, "mm", Published, 0.0..=5.0, "WARD92";
+        position_noise: f64 = 2.0, "mm", Published, 0.0..=5.0 in 0.0..=10000.0, "WARD92";
         /// Optical ceiling tracker orientation error, rms about each axis.
-        orientation_noise: f64 = 0.2, "deg", Published, 0.0..=1.0, "WARD92";
+        orientation_noise: f64 = 0.2, "deg", Published, 0.0..=1.0 in 0.0..=90.0, "WARD92";
     }
 }
 
@@ -84,17 +137,17 @@ parameter_table! {
     /// The Polhemus 3Space, a magnetic tracker, above a steel floor.
     pub struct Space {
         /// 3Space rate over all receivers.
-        rate: 60, "Hz", Assumed, 30..=60, "usual figure of the product";
+        rate: 60, "Hz", Assumed, 30..=60 in 1..=10000, "usual figure of the product";
         /// 3Space latency.
-        latency: f64 = 28.5, "ms", Assumed, 10.0..=90.0, "tens of milliseconds";
+        latency: f64 = 28.5, "ms", Assumed, 10.0..=90.0 in 0.0..=10000.0, "tens of milliseconds";
         /// 3Space position error, rms of each axis.
-        position_noise: f64 = 2.5, "mm", Assumed, 0.0..=5.0, "as the Flock";
+        position_noise: f64 = 2.5, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "as the Flock";
         /// 3Space orientation error, rms about each axis.
-        orientation_noise: f64 = 0.5, "deg", Assumed, 0.0..=1.0, "as the Flock";
+        orientation_noise: f64 = 0.5, "deg", Assumed, 0.0..=1.0 in 0.0..=90.0, "as the Flock";
         /// Depth of the bowl that metal makes of a plane, at 1 m from the transmitter.
-        bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0, "TR94 describes the bowl, not its depth";
+        bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0 in 0.0..=1000.0, "TR94 describes the bowl, not its depth";
         /// Distance at which the bowl has half the depth of its parabola.
-        bowl_reach: f64 = 2.0, "m", Assumed, 0.5..=10.0, "keeps the error finite out of range";
+        bowl_reach: f64 = 2.0, "m", Assumed, 0.5..=10.0 in 0.001..=1000.0, "keeps the error finite out of range";
     }
 }
 
@@ -102,7 +155,7 @@ parameter_table! {
     /// The tracker without error and delay.
     pub struct Ideal {
         /// Ideal tracker rate.
-        rate: 1000, "Hz", Assumed, 1..=10000, "well above all trackers";
+        rate: 1000, "Hz", Assumed, 1..=10000 in 1..=10000, "well above all trackers";
     }
 }
 
@@ -110,9 +163,9 @@ parameter_table! {
     /// How the host hears of a report.
     pub struct Host {
         /// Bits on the line for a byte (start, 8 data, stop).
-        byte_bits: 10, "bits", Derived, 10..=11, "47 x 10 / 115200 = 4.08 ms and / 9600 = 49 ms, the times of PF";
+        byte_bits: 10, "bits", Derived, 10..=11 in 1..=100, "47 x 10 / 115200 = 4.08 ms and / 9600 = 49 ms, the times of PF";
         /// Time between looks of the kernel at the serial line.
-        poll: f64 = 30.0, "ms", Published, 1.0..=100.0, "TR94";
+        poll: f64 = 30.0, "ms", Published, 1.0..=100.0 in 0.001..=10000.0, "TR94";
     }
 }
 
@@ -224,14 +277,15 @@ mod tests {
 
     #[test]
     fn every_value_lies_in_its_range() {
-        for (name, table) in TABLES {
+        for (name, table) in Tables::PAPERS.all().into_iter().chain(FACTS) {
             assert_eq!(table.out_of_range(), [], "{name}");
         }
     }
 
     #[test]
     fn every_parameter_names_unit_and_source() {
-        let infos = TABLES.iter().flat_map(|(_, table)| table.infos());
+        let tables = Tables::PAPERS.all().into_iter().chain(FACTS);
+        let infos = tables.flat_map(|(_, table)| table.infos());
         assert!(infos.into_iter().all(|info| !info.unit.is_empty() && !info.source.is_empty()));
     }
 

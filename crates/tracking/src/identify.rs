@@ -1,5 +1,8 @@
 //! Trackers and predictors, written out as keys and values.
 
+use parameters::{Entry, ParameterTable};
+
+use crate::config::Host;
 use crate::identity::{Settings, write_vector};
 use crate::predict::{PredictorConfig, PredictorKind};
 use crate::tracker::{Fault, HostLine, MagneticDistortion, SerialLine, TrackerConfig};
@@ -32,9 +35,13 @@ impl TrackerConfig {
         settings("tracker.position_noise_m", position_noise_m);
         settings("tracker.orientation_noise_deg", orientation_noise_deg);
         settings("tracker.filter_gain", filter_gain);
-        if let Some(SerialLine { record_bytes, baud }) = serial {
+        if let Some(SerialLine { record_bytes, baud, byte_bits }) = serial {
             settings("tracker.serial.record_bytes", record_bytes);
             settings("tracker.serial.baud", baud);
+            // Names from before it could be set are those of the usual bytes.
+            if u64::from(*byte_bits) != Host::PAPERS.byte_bits {
+                settings("tracker.serial.byte_bits", byte_bits);
+            }
         }
         match host {
             HostLine::Polled { period_ps } => settings("tracker.host.polled_ps", period_ps),
@@ -93,6 +100,8 @@ impl PredictorConfig {
             position_jerk,
             orientation_jerk,
             horizon_ps,
+            start: _,
+            gate,
         } = self;
         settings("predictor", &kind.name());
         settings("predictor.baseline_reports", baseline_reports);
@@ -101,5 +110,15 @@ impl PredictorConfig {
         settings("predictor.position_jerk", position_jerk);
         settings("predictor.orientation_jerk", orientation_jerk);
         settings("predictor.horizon_ps", horizon_ps);
+        let starts = self.filter().entries().into_iter().filter(|entry| entry.info.name.starts_with("start_"));
+        starts.for_each(|entry| write_unusual(settings, "predictor", &entry));
+        gate.entries().iter().for_each(|entry| write_unusual(settings, "predictor.gate", entry));
+    }
+}
+
+/// Writes a number that is not the papers'. Names from before these could be set are those of the papers' numbers.
+fn write_unusual(settings: &mut Settings, of: &str, entry: &Entry) {
+    if entry.value != entry.info.papers {
+        settings(&format!("{of}.{}", entry.info.name), &entry.value);
     }
 }

@@ -6,7 +6,7 @@ mod possible;
 mod rig;
 mod rows;
 
-pub use motion::{MotionError, TRACKERS, motion, predictor, tracker};
+pub use motion::{MotionError, TRACKERS, motion, predictor, tracker, tracker_by};
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use possible::{Possible, triangles_possible};
 pub use rig::measure_on;

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 use thiserror::Error;
 use tracking::Pose;
+use tracking::config::Tables;
 use tracking::motion::{LoadError, Motion, Pan, Pendulum, Recording, Still, Synthetic};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
@@ -97,13 +98,22 @@ pub const TRACKERS: &str = "optical, fastrak, flock, flock-patched, 3space or id
 ///
 /// [`MotionError::Unknown`] lists the names.
 pub fn tracker(name: &str) -> Result<TrackerConfig, MotionError> {
+    Ok(tracker_by(&Tables::PAPERS, name)?.0)
+}
+
+/// A tracker of [`TRACKERS`] with the numbers of these tables, and the name of the table that is its own.
+///
+/// # Errors
+///
+/// As [`tracker`].
+pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'static str), MotionError> {
     Ok(match name {
-        "optical" => TrackerConfig::optical_ceiling(),
-        "fastrak" => TrackerConfig::fastrak(),
-        "flock" => TrackerConfig::flock_of_birds(),
-        "flock-patched" => TrackerConfig::flock_of_birds_on_patched_host(),
-        "3space" => TrackerConfig::polhemus_3space(),
-        "ideal" => TrackerConfig::ideal(),
+        "optical" => (TrackerConfig::optical_ceiling_by(tables), "optical"),
+        "fastrak" => (TrackerConfig::fastrak_by(tables), "fastrak"),
+        "flock" => (TrackerConfig::flock_of_birds_by(tables), "flock"),
+        "flock-patched" => (TrackerConfig::flock_of_birds_on_patched_host_by(tables), "flock"),
+        "3space" => (TrackerConfig::polhemus_3space_by(tables), "space"),
+        "ideal" => (TrackerConfig::ideal_by(tables), "ideal"),
         _ => return Err(MotionError::Unknown { what: "tracker", found: name.to_owned(), expected: TRACKERS }),
     })
 }

@@ -2,7 +2,8 @@
 
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::Measured;
-use pxpl5_run::{Experiment, Goal, Outcome, PictureTimes, Pipeline, PipelineSettings, Pixels, Registry};
+use pxpl5_run::{Experiment, Goal, Outcome, Pipeline, PipelineSettings, Pixels, Registry};
+use pxpl5_wire::PictureNumber;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -75,8 +76,10 @@ fn are_complete(outcome: &Outcome) -> bool {
 /// Whether no field between the first and the last picture was left out.
 fn is_whole(outcome: &Outcome) -> bool {
     let pictures = outcome.steady_pictures();
-    let end = |times: Option<&PictureTimes>| times.map_or(0, |t| t.picture);
-    end(pictures.last()) + 1 - end(pictures.first()) == pictures.len() as u64 && pictures.len() as u64 > FIELDS / 3
+    let [first, last] =
+        [pictures.first(), pictures.last()].map(|times| times.map_or(PictureNumber::FIRST, |times| times.picture));
+    let shown = pictures.len() as u64;
+    last.next().since(first) == shown && shown > FIELDS / 3
 }
 
 /// The greatest number up to [`MOST`] that holds, if it holds for all smaller ones.

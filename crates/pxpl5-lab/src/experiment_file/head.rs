@@ -1,10 +1,12 @@
 //! The head in front of the pipeline: how it moves, its tracker and predictor, and the raster before its eyes.
 
 use super::read::beside;
-use super::{ExperimentFile, FileError};
-use crate::compare::{motion, predictor, tracker};
+use super::{ExperimentFile, FileError, tracking_numbers};
+use crate::compare::{motion, predictor, tracker_by};
+use pxpl5_machine::Parameter;
 use pxpl5_run::{Head, Pipeline, Raster};
 use std::sync::Arc;
+use tracking::predict::PredictorConfig;
 
 /// A head with its tracker, by the names of its parts.
 #[derive(Clone, Debug)]
@@ -12,12 +14,15 @@ pub struct HeadChoice {
     motion: String,
     tracker: String,
     predict: String,
+    numbers: Vec<Parameter>,
     head: Arc<Head>,
 }
 
 impl PartialEq for HeadChoice {
     fn eq(&self, other: &Self) -> bool {
-        self.settings() == other.settings() && self.head.fingerprint() == other.head.fingerprint()
+        self.settings() == other.settings()
+            && self.numbers == other.numbers
+            && self.head.fingerprint() == other.head.fingerprint()
     }
 }
 
@@ -26,7 +31,7 @@ const TRACKER: &str = "optical";
 const PREDICT: &str = "kalman";
 
 impl HeadChoice {
-    /// The head of an experiment; `None` where no `head.` key is set. A recording is read here.
+    /// The head of an experiment; `None` where no `head.` or `tracking.` key is set. A recording is read here.
     pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline, seed: u64) -> Result<Option<Self>, FileError> {
         let Some(motion_name) = file.text("head.motion")? else { return Self::none(file) };
         let raster = file.choice("head.raster", &Raster::ALL)?.unwrap_or_default();
@@ -43,16 +48,20 @@ impl HeadChoice {
         let tracker_name = file.text("head.tracker")?.unwrap_or(TRACKER).to_owned();
         let predict = file.text("head.predict")?.unwrap_or(PREDICT).to_owned();
         let moving = motion(&motion_name).map_err(|error| refused(file, "head.motion", &error))?;
-        let of_tracker = tracker(&tracker_name).map_err(|error| refused(file, "head.tracker", &error))?;
+        let tables = tracking_numbers::read(file, &tracker_name)?;
+        let by_name = tracker_by(&tables, &tracker_name);
+        let (of_tracker, own_table) = by_name.map_err(|error| refused(file, "head.tracker", &error))?;
         let of_predictor = predictor(&predict).map_err(|error| refused(file, "head.predict", &error))?;
-        let head = Head::new(moving, of_tracker, of_predictor, seed);
+        let of_predictor = PredictorConfig::for_tracker_by(&tables, of_predictor, &of_tracker);
+        let head = Head::predicted_by(moving, of_tracker, of_predictor, seed);
         let head = Arc::new(head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster));
-        Ok(Some(Self { motion: motion_name, tracker: tracker_name, predict, head }))
+        let numbers = tracking_numbers::parameters_with(&tables, own_table);
+        Ok(Some(Self { motion: motion_name, tracker: tracker_name, predict, numbers, head }))
     }
 
     /// Without a motion there is nothing to track.
     fn none(file: &ExperimentFile) -> Result<Option<Self>, FileError> {
-        let of_head = file.settings.keys().any(|path| path.starts_with("head."));
+        let of_head = file.settings.keys().any(|path| path.starts_with("head.") || path.starts_with("tracking."));
         let how = "how the head moves, such as head.motion = \"pan:200\"";
         if of_head { Err(FileError::Missing { key: "head.motion", how }) } else { Ok(None) }
     }
@@ -61,6 +70,12 @@ impl HeadChoice {
     #[must_use]
     pub fn head(&self) -> Arc<Head> {
         Arc::clone(&self.head)
+    }
+
+    /// The numbers of its tracker, of the port and of the predictor.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<Parameter> {
+        self.numbers.clone()
     }
 
     /// Its keys and their values.

@@ -1,5 +1,6 @@
 //! The keys of an experiment file.
 
+use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
 use parameters::nearest;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Registry;
@@ -77,7 +78,7 @@ fn common(path: &str, about: &str) -> FileKey {
 pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
     let path = RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now);
     let known = |wanted: &str| keys(registry).iter().any(|key| key.path == wanted);
-    if known(path) || is_machine_parameter(registry, path) {
+    if known(path) || is_machine_parameter(registry, path) || is_tracking_parameter(path) {
         return Some(path.to_owned());
     }
     let long = format!("machine.{path}");
@@ -102,6 +103,7 @@ pub(super) fn nearest_key(registry: &Registry, found: &str) -> String {
     let parameters = parameters(registry);
     let long = parameters.iter().map(|path| format!("machine.{path}"));
     let own = keys(registry).into_iter().map(|key| key.path);
-    let all: Vec<String> = own.chain(long).chain(parameters.iter().cloned()).collect();
+    let of_trackers = tracking_parameters().into_iter().map(|parameter| parameter.path);
+    let all: Vec<String> = own.chain(long).chain(parameters.iter().cloned()).chain(of_trackers).collect();
     nearest(found, all.iter().map(String::as_str)).unwrap_or_default().to_owned()
 }

@@ -31,6 +31,7 @@ mod motion;
 mod plan;
 mod read;
 mod text;
+mod tracking_numbers;
 
 pub use error::FileError;
 pub use head::HeadChoice;
@@ -38,6 +39,7 @@ pub use keys::FileKey;
 pub use motion::{MotionChoice, PathChoice};
 pub use plan::{Outputs, Plan, Published, SceneChoice};
 pub use text::Settings;
+pub use tracking_numbers::tracking_parameters;
 
 use pxpl5_run::Registry;
 use std::collections::BTreeMap;
@@ -82,7 +84,8 @@ impl ExperimentFile {
         &self.registry
     }
 
-    /// All keys but the machine's parameters, which are `machine.` and a path of `MachineConfig::set`.
+    /// All keys but the machine's parameters, which are `machine.` and a path of `MachineConfig::set`, and those of trackers
+    /// and predictors ([`tracking_parameters`]).
     #[must_use]
     pub fn keys_of(registry: &Registry) -> Vec<FileKey> {
         keys::keys(registry)

@@ -8,7 +8,7 @@ use crate::Workstation;
 use crate::levels::summarise;
 use parameters::Value as Number;
 use pxpl5_gp::CodeVersion;
-use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
 use pxpl5_measure::{Measure, Results};
 use pxpl5_run::{
     Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Key, KeyValue, KeyValues, Level, LimitCriterion,
@@ -260,7 +260,7 @@ impl ExperimentFile {
         let adapted = machine.clone();
         for (path, setting) in &self.settings {
             if let Some(parameter) = path.strip_prefix("machine.").filter(|path| !["preset", "code"].contains(path)) {
-                let value = self.machine_number(path, setting)?;
+                let value = number(self, path, setting)?;
                 self.refuse_twice(entry, &adapted, (path, parameter, setting), value)?;
                 machine.set(parameter, value).map_err(|error| refused(&setting.place, error))?;
             }
@@ -274,14 +274,6 @@ impl ExperimentFile {
         let displays: Vec<(&str, &pxpl5_run::DisplayEntry)> =
             self.registry().displays().iter().map(|entry| (entry.name, entry)).collect();
         Ok(self.choice("display", &displays)?.map(|entry| (entry.config)()))
-    }
-
-    /// A number of the machine: whole, or real where the parameter is.
-    fn machine_number(&self, path: &str, setting: &Setting) -> Result<Number, FileError> {
-        match &setting.value {
-            toml::Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
-            _ => Ok(Number::Whole(self.integer(path, 0..=u64::MAX)?.unwrap_or_default())),
-        }
     }
 
     /// A key of the pipeline that sets parameters, and one of these parameters beside it.
@@ -301,6 +293,14 @@ impl ExperimentFile {
             }
         }
         Ok(())
+    }
+}
+
+/// A parameter's value: whole, or real where the text is.
+pub(super) fn number(file: &ExperimentFile, path: &str, setting: &Setting) -> Result<Number, FileError> {
+    match &setting.value {
+        toml::Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
+        _ => Ok(Number::Whole(file.integer(path, 0..=u64::MAX)?.unwrap_or_default())),
     }
 }
 
@@ -328,6 +328,14 @@ impl Plan {
     /// As [`SceneChoice::load`].
     pub fn load_scene(&self) -> Result<Arc<Scene>, FileError> {
         self.scene.load()
+    }
+
+    /// All numbers of the experiment: those of its machine and, with a tracked head, of the tracker, the port and the
+    /// predictor, whose paths begin with `tracking.`.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let of_head = self.head.iter().flat_map(HeadChoice::parameters);
+        self.machine.parameters().into_iter().chain(of_head).collect()
     }
 
     /// Name of the level of modelling.

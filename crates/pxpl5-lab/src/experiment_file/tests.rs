@@ -24,7 +24,7 @@ fn what_is_not_given_is_what_the_papers_used() {
 
 #[test]
 fn every_machine_parameter_is_reached_with_and_without_its_first_part() {
-    for parameter in MachineConfig::small_hmd().parameters() {
+    for parameter in MachineConfig::small_hmd().parameters().into_iter().filter(|parameter| !parameter.read_only) {
         let mut file = ExperimentFile::parse(RC, "test").expect("TOML");
         // One more than the preset's: always in range, but for sizes and rates that frame buffers check together.
         let path = &parameter.path;

@@ -51,19 +51,68 @@ pub struct PredictorConfig {
     pub orientation_jerk: f64,
     /// Longest prediction, ps; beyond it the last pose is given.
     pub horizon_ps: u64,
+    /// What Kalman filters believe of the head before the first report.
+    #[serde(default)]
+    pub start: Start,
+    /// Which reports are believed.
+    #[serde(default = "usual_gate")]
+    pub gate: table::Gate,
+}
+
+/// Standard deviations at the start of a filter, of a head at rest.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Start {
+    /// Of the speed, m/s.
+    pub speed: f64,
+    /// Of the acceleration, m/s^2.
+    pub acceleration: f64,
+    /// Of the angular velocity, rad/s.
+    pub turn: f64,
+    /// Of the angular acceleration, rad/s^2.
+    pub turn_acceleration: f64,
+}
+
+impl Start {
+    const fn of(filter: &table::Filter) -> Self {
+        Self {
+            speed: filter.start_speed,
+            acceleration: filter.start_acceleration,
+            turn: filter.start_turn,
+            turn_acceleration: filter.start_turn_acceleration,
+        }
+    }
+}
+
+impl Default for Start {
+    fn default() -> Self {
+        Self::of(&table::Filter::PAPERS)
+    }
+}
+
+const fn usual_gate() -> table::Gate {
+    table::Gate::PAPERS
 }
 
 impl PredictorConfig {
     /// A filter that knows the noise of this tracker.
     pub fn for_tracker(kind: PredictorKind, tracker: &TrackerConfig) -> Self {
+        Self::for_tracker_by(&table::Tables::PAPERS, kind, tracker)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn for_tracker_by(tables: &table::Tables, kind: PredictorKind, tracker: &TrackerConfig) -> Self {
+        let filter = &tables.filter;
         Self {
             kind,
-            baseline_reports: table::Filter::PAPERS.baseline as u32,
+            baseline_reports: filter.baseline as u32,
             position_noise_m: tracker.position_noise_m.max(LEAST_NOISE_M),
             orientation_noise_deg: tracker.orientation_noise_deg.max(LEAST_NOISE_DEG),
-            position_jerk: table::Filter::PAPERS.position_jerk,
-            orientation_jerk: table::Filter::PAPERS.orientation_jerk,
-            horizon_ps: table::ms_to_ps(table::Filter::PAPERS.horizon),
+            position_jerk: filter.position_jerk,
+            orientation_jerk: filter.orientation_jerk,
+            horizon_ps: table::ms_to_ps(filter.horizon),
+            start: Start::of(filter),
+            gate: tables.gate,
         }
     }
 
@@ -82,17 +131,21 @@ impl PredictorConfig {
         ConfigError::check("position noise, m", self.position_noise_m, LEAST_NOISE_M, 10.0)?;
         ConfigError::check("orientation noise, deg", self.orientation_noise_deg, LEAST_NOISE_DEG, 90.0)?;
         self.filter().check()?;
+        self.gate.check()?;
         Ok(())
     }
 
     /// The numbers of the table, as they are set here.
-    fn filter(&self) -> table::Filter {
+    pub(crate) fn filter(&self) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,
             orientation_jerk: self.orientation_jerk,
             baseline: self.baseline_reports.into(),
             horizon: crate::time::seconds(self.horizon_ps) * 1e3,
-            ..table::Filter::PAPERS
+            start_speed: self.start.speed,
+            start_acceleration: self.start.acceleration,
+            start_turn: self.start.turn,
+            start_turn_acceleration: self.start.turn_acceleration,
         }
     }
 
@@ -102,6 +155,7 @@ impl PredictorConfig {
             Extrapolation::new(order, baseline, DVec3::ZERO),
             Extrapolation::new(order, baseline, DQuat::IDENTITY),
             crate::time::seconds(self.horizon_ps),
+            self.gate,
         ))
     }
 
@@ -109,17 +163,18 @@ impl PredictorConfig {
         let position = Belief {
             measurement: self.position_noise_m.powi(2),
             jerk: self.position_jerk.powi(2),
-            start: (table::Filter::PAPERS.start_speed.powi(2), table::Filter::PAPERS.start_acceleration.powi(2)),
+            start: (self.start.speed.powi(2), self.start.acceleration.powi(2)),
         };
         let orientation = Belief {
             measurement: self.orientation_noise_deg.to_radians().powi(2),
             jerk: self.orientation_jerk.powi(2),
-            start: (table::Filter::PAPERS.start_turn.powi(2), table::Filter::PAPERS.start_turn_acceleration.powi(2)),
+            start: (self.start.turn.powi(2), self.start.turn_acceleration.powi(2)),
         };
         Box::new(GatedFilters::new(
             PositionKalman::new(position),
             OrientationKalman::new(orientation),
             crate::time::seconds(self.horizon_ps),
+            self.gate,
         ))
     }
 }

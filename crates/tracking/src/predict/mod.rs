@@ -10,7 +10,7 @@ mod orientation_kalman;
 mod position_kalman;
 mod predicting;
 
-pub use config::{PredictorConfig, PredictorKind};
+pub use config::{PredictorConfig, PredictorKind, Start};
 pub use evaluate::{PredictionError, prediction_errors};
 pub use gate::Counts;
 

@@ -2,7 +2,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{Fault, HostLine, MagneticDistortion, SerialLine};
-use crate::config as table;
+use crate::config::{self as table, Tables};
 
 /// Settings of a tracker, its cable and the host's port. Presets take every number from [`crate::config`].
 ///
@@ -45,63 +45,93 @@ pub struct TrackerConfig {
 impl TrackerConfig {
     /// Polhemus Fastrak, one receiver, filter off, 115,200 baud, patched kernel.
     pub fn fastrak() -> Self {
-        let latency_ps = table::ms_to_ps(table::Fastrak::PAPERS.latency);
+        Self::fastrak_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn fastrak_by(tables: &Tables) -> Self {
+        let latency_ps = table::ms_to_ps(tables.fastrak.latency);
         Self {
-            sync_to_output_ps: table::ms_to_ps(table::Fastrak::PAPERS.sync_to_output),
+            sync_to_output_ps: table::ms_to_ps(tables.fastrak.sync_to_output),
             position_latency_ps: latency_ps,
             orientation_latency_ps: latency_ps,
-            serial: Some(SerialLine::fastrak()),
-            ..Self::ideal()
-                .named("Polhemus Fastrak", table::Fastrak::PAPERS.rate)
-                .with_noise(table::Fastrak::PAPERS.position_noise, table::Fastrak::PAPERS.orientation_noise)
+            serial: Some(SerialLine::fastrak_by(tables)),
+            ..Self::ideal_by(tables)
+                .named("Polhemus Fastrak", tables.fastrak.rate)
+                .with_noise(tables.fastrak.position_noise, tables.fastrak.orientation_noise)
         }
     }
 
     /// Ascension Flock of Birds, filters off, on the unpatched kernel: the patched one crashes with it.
     pub fn flock_of_birds() -> Self {
-        let position_latency_ps = table::ms_to_ps(table::Flock::PAPERS.position_latency);
+        Self::flock_of_birds_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn flock_of_birds_by(tables: &Tables) -> Self {
+        let position_latency_ps = table::ms_to_ps(tables.flock.position_latency);
         Self {
             sync_to_output_ps: position_latency_ps,
             position_latency_ps,
-            orientation_latency_ps: table::ms_to_ps(table::Flock::PAPERS.orientation_latency),
-            host: HostLine::unix(),
-            crashes_patched_host_after_ps: Some(table::ms_to_ps(table::Flock::PAPERS.crash)),
-            ..Self::ideal()
-                .named("Ascension Flock of Birds", table::Flock::PAPERS.rate)
-                .with_noise(table::Flock::PAPERS.position_noise, table::Flock::PAPERS.orientation_noise)
+            orientation_latency_ps: table::ms_to_ps(tables.flock.orientation_latency),
+            host: HostLine::unix_by(tables),
+            crashes_patched_host_after_ps: Some(table::ms_to_ps(tables.flock.crash)),
+            ..Self::ideal_by(tables)
+                .named("Ascension Flock of Birds", tables.flock.rate)
+                .with_noise(tables.flock.position_noise, tables.flock.orientation_noise)
         }
     }
 
     /// The Flock on a patched host, which dies of it after a second: for fault injection.
     pub fn flock_of_birds_on_patched_host() -> Self {
-        Self { host: HostLine::InterruptPerCharacter, ..Self::flock_of_birds() }
+        Self::flock_of_birds_on_patched_host_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn flock_of_birds_on_patched_host_by(tables: &Tables) -> Self {
+        Self { host: HostLine::InterruptPerCharacter, ..Self::flock_of_birds_by(tables) }
     }
 
     /// UNC optical ceiling tracker: 33 ms in all.
     pub fn optical_ceiling() -> Self {
-        Self::ideal()
-            .named("UNC optical ceiling tracker", table::Optical::PAPERS.rate)
-            .with_noise(table::Optical::PAPERS.position_noise, table::Optical::PAPERS.orientation_noise)
-            .with_latency_ps(table::ms_to_ps(table::Optical::PAPERS.latency))
+        Self::optical_ceiling_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn optical_ceiling_by(tables: &Tables) -> Self {
+        Self::ideal_by(tables)
+            .named("UNC optical ceiling tracker", tables.optical.rate)
+            .with_noise(tables.optical.position_noise, tables.optical.orientation_noise)
+            .with_latency_ps(table::ms_to_ps(tables.optical.latency))
     }
 
     /// Polhemus 3Space above a steel floor, transmitter at the origin, unpatched kernel.
     pub fn polhemus_3space() -> Self {
+        Self::polhemus_3space_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn polhemus_3space_by(tables: &Tables) -> Self {
         Self {
-            host: HostLine::unix(),
-            distortion: Some(MagneticDistortion::floor_below(DVec3::ZERO)),
-            ..Self::ideal()
-                .named("Polhemus 3Space", table::Space::PAPERS.rate)
-                .with_noise(table::Space::PAPERS.position_noise, table::Space::PAPERS.orientation_noise)
-                .with_latency_ps(table::ms_to_ps(table::Space::PAPERS.latency))
+            host: HostLine::unix_by(tables),
+            distortion: Some(MagneticDistortion::floor_below_by(tables, DVec3::ZERO)),
+            ..Self::ideal_by(tables)
+                .named("Polhemus 3Space", tables.space.rate)
+                .with_noise(tables.space.position_noise, tables.space.orientation_noise)
+                .with_latency_ps(table::ms_to_ps(tables.space.latency))
         }
     }
 
     /// No error, no delay, 1,000 reports a second.
     pub fn ideal() -> Self {
+        Self::ideal_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn ideal_by(tables: &Tables) -> Self {
         Self {
             name: "ideal".to_owned(),
-            rate_hz: table::Ideal::PAPERS.rate as u32,
+            rate_hz: tables.ideal.rate as u32,
             receivers: 1,
             sync_to_output_ps: 0,
             position_latency_ps: 0,
