@@ -13,7 +13,7 @@ use std::hint::black_box;
 
 /// The aircraft leaves regions empty under both pipelines, twelve triangles of it nearly all.
 fn experiments() -> [(&'static str, Experiment); 3] {
-    let mig = |triangles| scene::builtin("mig").and_then(|mig| mig.truncated(triangles)).expect("it has 417 triangles");
+    let mig = |triangles| scene::builtin("mig").and_then(|mig| mig.decimated(triangles)).expect("it has 417 triangles");
     [
         ("rendering-control-mig", Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(417))),
         ("rendering-control-12", Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(12))),

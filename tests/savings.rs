@@ -12,7 +12,7 @@ use support::ntsc;
 
 /// Three pipelines, each with a scene that leaves some regions empty and some not.
 fn experiments() -> [Experiment; 3] {
-    let mig = |triangles| scene::builtin("mig").and_then(|mig| mig.truncated(triangles)).expect("it has 417 triangles");
+    let mig = |triangles| scene::builtin("mig").and_then(|mig| mig.decimated(triangles)).expect("it has 417 triangles");
     [
         Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(417)),
         Experiment::new(MachineConfig::slats(), Slats::split(), mig(60)),

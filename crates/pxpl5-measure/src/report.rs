@@ -4,7 +4,7 @@ use crate::budget::Budget;
 use crate::errors::{PixelErrors, pixel_errors};
 use crate::latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
 use parameters::Value;
-use pxpl5_machine::LateRegion;
+use pxpl5_machine::{LateRegion, Parameter};
 use pxpl5_run::{DefinedStatistics, Head, Outcome, PictureTimes, Raster};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -32,6 +32,8 @@ pub struct Report {
     pub display: String,
     /// Parameters of the machine that differ from the preset's, by path.
     pub overrides: BTreeMap<String, Value>,
+    /// What no source allows: each parameter outside its stated range, with range and source.
+    pub warnings: Vec<String>,
     /// Graphics processors.
     pub n_gps: usize,
     /// Renderers.
@@ -140,6 +142,7 @@ impl Report {
                 .join(" "),
             display: record.display().name().to_owned(),
             overrides: config.overrides(),
+            warnings: experiment.out_of_range().iter().map(Parameter::warning).collect(),
             n_gps: config.n_gps,
             n_renderers: config.n_renderers,
             scene: scene.name().to_owned(),

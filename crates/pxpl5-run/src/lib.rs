@@ -35,7 +35,7 @@ mod views;
 
 pub use display_list::{display_list, views};
 pub use error::ExperimentError;
-pub use experiment::{Experiment, FIELDS_RANGE, FieldsNeeded, Pixels, WARM_UP_PICTURES};
+pub use experiment::{Experiment, FIELDS_RANGE, FieldsNeeded, Pixels, WARM_UP_PICTURES, out_of_range};
 pub use fingerprint::Fingerprint;
 pub use head::{Head, HeadError};
 pub use head_views::{FIELDS_WITH_HEAD, Follower, HeadViews, Sampled};

@@ -323,7 +323,8 @@ impl From<f64> for Measured {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limit::{TYPICAL_LEG_PX, TYPICAL_SPREAD_PX, test_scene};
+    use crate::limit::test_scene;
+    use pxpl5_scene::config::{TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
     use pxpl5_run::TestScene;
 
     /// Triangles with both legs parallel to the region borders, their corners spread evenly over `TYPICAL_SPREAD_PX`.
