@@ -30,6 +30,9 @@ mod table;
 mod terminal;
 mod trace;
 
+/// The emulator: a crate with pipelines of its own needs nothing beside this one.
+pub use pxpl5;
+
 use clap::{Parser, Subcommand};
 use error::CliError;
 use pxpl5::Registry;

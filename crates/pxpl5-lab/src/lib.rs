@@ -23,6 +23,7 @@ pub mod limit;
 mod parallel;
 pub mod pipeline_figures;
 mod snapshot;
+mod suitability;
 pub mod sweep;
 
 pub use experiment_file::{
@@ -31,6 +32,7 @@ pub use experiment_file::{
 };
 pub use host::Workstation;
 pub use snapshot::{Snapshot, SnapshotError};
+pub use suitability::{Suitability, suitability};
 
 use pxpl5_run::Registry;
 use std::sync::{Arc, LazyLock};

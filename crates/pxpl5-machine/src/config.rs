@@ -172,7 +172,10 @@ impl Parameter {
         let Self { path, info, value } = self;
         let (low, high) = info.range;
         let unit = info.unit;
-        format!("{path} = {value} {unit} is outside its range, {low} to {high} {unit} ({}: {})", info.standing, info.source)
+        format!(
+            "{path} = {value} {unit} is outside its range, {low} to {high} {unit} ({}: {})",
+            info.standing, info.source
+        )
     }
 }
 
@@ -433,7 +436,10 @@ mod tests {
         let [found] = &config.out_of_range()[..] else { panic!("{:?}", config.out_of_range()) };
         let (low, high) = found.info.range;
         let text = found.warning();
-        assert!(text.starts_with(&format!("gp.triangle_ns = 3 ns is outside its range, {low} to {high} ns (")), "{text}");
+        assert!(
+            text.starts_with(&format!("gp.triangle_ns = 3 ns is outside its range, {low} to {high} ns (")),
+            "{text}"
+        );
         assert!(text.contains(found.info.source), "{text}");
         let inside = low.whole().expect("nanoseconds are whole");
         config.set("gp.triangle_ns", inside).expect("known");

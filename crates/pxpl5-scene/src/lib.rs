@@ -67,9 +67,9 @@ mod view;
 pub use builtin::{builtin, names};
 pub use edit::{Edit, Hinge};
 pub use error::{LoadError, Place, RangeError, SceneError};
+pub use import::{Format, Placement, from_bytes, from_reader, placed_from_bytes, placed_from_reader};
 #[cfg(feature = "files")]
 pub use import::{load, load_placed};
-pub use import::{Format, Placement, from_bytes, from_reader, placed_from_bytes, placed_from_reader};
 pub use motion::{HeadMotion, Path};
 pub use scene::{Frame, Lighting, Scene, SceneParts, Sphere, Structure, Vertex};
 pub use sway::Sway;

@@ -52,9 +52,13 @@ fn the_same_name_gives_the_same_scene() {
 
 #[test]
 fn a_misspelt_name_is_answered_with_the_nearest() {
-    for (wrong, right) in
-        [("mgi", "mig"), ("Haed", "head"), ("molecule", "molecules"), ("fullscreen:4", "full-screen:N"), ("sphre:8", "sphere:N")]
-    {
+    for (wrong, right) in [
+        ("mgi", "mig"),
+        ("Haed", "head"),
+        ("molecule", "molecules"),
+        ("fullscreen:4", "full-screen:N"),
+        ("sphre:8", "sphere:N"),
+    ] {
         let Err(SceneError::UnknownScene { found, nearest, .. }) = builtin(wrong) else {
             panic!("{wrong} must not be a scene");
         };
@@ -262,7 +266,8 @@ fn the_aircraft_is_closed_wound_alike_and_turned_outwards() {
 #[test]
 fn the_aircraft_is_as_wide_as_long_and_symmetric() {
     let aircraft = scene("aircraft");
-    let mirrored = |p: Vec3| aircraft.vertices().iter().any(|v| (v.position * Vec3::new(-1.0, 1.0, 1.0) - p).length() < 1e-3);
+    let mirrored =
+        |p: Vec3| aircraft.vertices().iter().any(|v| (v.position * Vec3::new(-1.0, 1.0, 1.0) - p).length() < 1e-3);
     assert!(aircraft.vertices().iter().all(|v| mirrored(v.position)));
     let reach = |axis: Vec3| aircraft.vertices().iter().map(|v| v.position.dot(axis).abs()).fold(0.0, f32::max);
     assert!((0.7..1.0).contains(&(reach(Vec3::X) / reach(Vec3::Z))), "wings and nose are both there");

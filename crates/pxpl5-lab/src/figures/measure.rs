@@ -324,8 +324,8 @@ impl From<f64> for Measured {
 mod tests {
     use super::*;
     use crate::limit::test_scene;
-    use pxpl5_scene::config::{TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
     use pxpl5_run::TestScene;
+    use pxpl5_scene::config::{TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
 
     /// Triangles with both legs parallel to the region borders, their corners spread evenly over `TYPICAL_SPREAD_PX`.
     ///

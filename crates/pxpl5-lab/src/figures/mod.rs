@@ -21,6 +21,7 @@ pub use table::{Basis, FIGURES, Figure};
 
 use crate::intervals::{Interval, fill, intervals};
 use serde::Serialize;
+use std::sync::atomic::{AtomicU64, Ordering};
 use thiserror::Error;
 
 /// A figure whose experiment gave no result.
@@ -48,12 +49,29 @@ pub struct Figures {
 ///
 /// The first [`FigureError`].
 pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
-    let measure = |figure: &Figure| match bench.measure(figure.id) {
-        Ok(measured) => Ok(Row::new(figure, measured)),
-        Err(error) => Err(FigureError { id: figure.id.to_owned(), reason: error.to_string() }),
+    run_all_with(bench, |_, _| {})
+}
+
+/// The same; `finished` hears how many of all steps are done: one for each figure, and one for the intervals.
+///
+/// # Errors
+///
+/// As [`run_all`].
+pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, FigureError> {
+    let steps = FIGURES.len() as u64 + 1;
+    let done = AtomicU64::new(0);
+    let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
+    let measure = |figure: &Figure| {
+        let measured = bench.measure(figure.id);
+        step();
+        match measured {
+            Ok(measured) => Ok(Row::new(figure, measured)),
+            Err(error) => Err(FigureError { id: figure.id.to_owned(), reason: error.to_string() }),
+        }
     };
     let mut rows = crate::parallel::map(&FIGURES, measure).into_iter().collect::<Result<Vec<_>, _>>()?;
     let intervals = intervals();
+    step();
     fill(&mut rows, &intervals);
     Ok(Figures { rows, intervals })
 }

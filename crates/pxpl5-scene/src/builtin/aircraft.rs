@@ -127,14 +127,14 @@ fn reversed(mut face: Vec<DVec3>) -> Vec<DVec3> {
 
 /// Adds a solid of flat faces, turned outwards: its left and right ones are mirror images.
 fn add_flat(mesh: &mut Mesh, faces: Vec<Vec<DVec3>>, colour: Colour) {
-    let six_volumes = |face: &Vec<DVec3>| -> f64 {
-        face[1..].windows(2).map(|pair| face[0].dot(pair[0].cross(pair[1]))).sum()
-    };
+    let six_volumes =
+        |face: &Vec<DVec3>| -> f64 { face[1..].windows(2).map(|pair| face[0].dot(pair[0].cross(pair[1]))).sum() };
     let is_inside_out = faces.iter().map(six_volumes).sum::<f64>() < 0.0;
     for face in faces {
         let face = if is_inside_out { reversed(face) } else { face };
         let normal = (face[1] - face[0]).cross(face[2] - face[0]);
-        let corners: Vec<u32> = face.iter().map(|&place| mesh.push(place, normal.normalize_or(DVec3::Y), colour)).collect();
+        let corners: Vec<u32> =
+            face.iter().map(|&place| mesh.push(place, normal.normalize_or(DVec3::Y), colour)).collect();
         mesh.fan(&corners);
     }
 }

@@ -15,7 +15,10 @@ use crate::error::SceneError;
 use crate::scene::Scene;
 
 const NAMES: [(&str, &str); 7] = [
-    ("aircraft", "A swept-wing jet of 100 triangles, few enough for Slats; whole and closed, on the fly-through of mig."),
+    (
+        "aircraft",
+        "A swept-wing jet of 100 triangles, few enough for Slats; whole and closed, on the fly-through of mig.",
+    ),
     ("mig", "A swept-wing jet fighter of 417 triangles with moving control surfaces, seen from a fly-through."),
     (
         "molecules",
@@ -26,7 +29,10 @@ const NAMES: [(&str, &str); 7] = [
         FULL_SCREEN,
         "N triangles, each covering the whole screen of both eyes wherever the head turns; 12 make the trivial scene of TR94.",
     ),
-    (TYPICAL, "N small triangles, each touching 1.3 regions on average, spread over the screen wherever the head turns."),
+    (
+        TYPICAL,
+        "N small triangles, each touching 1.3 regions on average, spread over the screen wherever the head turns.",
+    ),
     (SPHERE, "A ball as a closed, smooth surface of N triangles; N is even."),
 ];
 

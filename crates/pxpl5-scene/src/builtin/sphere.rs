@@ -74,7 +74,8 @@ fn join(mesh: &mut Mesh, above: &Ring, below: &Ring) {
     while a < upper || b < lower {
         let corner = |ring: &Ring, index: u32| ring.first + index % ring.points;
         // Whose next point comes first on the way round.
-        let is_upper = b == lower || (a < upper && u64::from(a + 1) * u64::from(lower) <= u64::from(b + 1) * u64::from(upper));
+        let is_upper =
+            b == lower || (a < upper && u64::from(a + 1) * u64::from(lower) <= u64::from(b + 1) * u64::from(upper));
         if is_upper {
             mesh.fan(&[corner(above, a), corner(below, b), corner(above, a + 1)]);
             a += 1;

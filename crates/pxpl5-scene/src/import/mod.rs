@@ -130,12 +130,7 @@ pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, Loa
 /// # Errors
 ///
 /// As [`from_bytes`].
-pub fn placed_from_bytes(
-    bytes: &[u8],
-    format: Format,
-    name: &str,
-    placement: Placement,
-) -> Result<Scene, LoadError> {
+pub fn placed_from_bytes(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Result<Scene, LoadError> {
     let source = Source { name, bytes, placement };
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(LoadError::TooLarge { file: name.to_owned(), expected: MAX_FILE_BYTES });
