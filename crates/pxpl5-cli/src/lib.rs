@@ -176,6 +176,7 @@ mod tests {
             (include_str!("../../../docs/sweeps.md"), 10),
             (include_str!("../../../docs/guide/head-to-light.md"), 5),
             (include_str!("../../../docs/guide/figures.md"), 5),
+            (include_str!("../../../docs/guide/assembler.md"), 3),
             (include_str!("../../../README.md"), 7),
         ] {
             let found = parses(page);

@@ -4,8 +4,8 @@ use crate::error::CliError;
 use crate::options::registry;
 use crate::terminal::{print, progress};
 use clap::Args;
-use pxpl5::{ConfigError, MachineConfig, PRESETS, Parameter, tracking_parameters};
-use serde_json::json;
+use pxpl5::{ConfigError, MachineConfig, PRESETS, Parameter, Preset, Suitability, suitability, tracking_parameters};
+use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
 /// List the machines that are built in.
@@ -105,12 +105,18 @@ fn one_json(machine: &MachineConfig) -> String {
         "n_renderers": machine.n_renderers,
         "pipelines": suitability(&registry(), machine),
         "parameters": machine.parameters(),
+        "tracking": tracking_parameters(),
     });
     format!("{object:#}\n")
 }
 
 fn one_text(machine: &MachineConfig) -> String {
     let mut text = format!("{}: {} GPs, {} renderers\n\n", machine.preset, machine.n_gps, machine.n_renderers);
+    for Suitability { pipeline, lacks } in suitability(&registry(), machine) {
+        let said = lacks.map_or_else(|| "runs".to_owned(), |lacks| format!("cannot run: {lacks}"));
+        let _ = writeln!(text, "{pipeline:<42} {said}");
+    }
+    text.push('\n');
     machine.parameters().iter().for_each(|parameter| line(&mut text, parameter));
     text.push_str("\nWith a tracked head (head.motion, --head), whatever the machine:\n\n");
     tracking_parameters().iter().for_each(|parameter| line(&mut text, parameter));

@@ -169,7 +169,7 @@ impl Parameter {
     /// That the value is outside what the sources allow, with range and source.
     #[must_use]
     pub fn warning(&self) -> String {
-        let Self { path, info, value } = self;
+        let Self { path, info, value, .. } = self;
         let (low, high) = info.range;
         let unit = info.unit;
         format!(

@@ -281,9 +281,10 @@ fn every_sphere_is_closed_of_exactly_its_number_of_triangles_and_nearly_round() 
         assert!(edges(&sphere).values().all(|uses| *uses == [1, 1]), "{count}");
         let (_, radius) = sphere.bounding_sphere();
         let full = 8.0 * std::f64::consts::PI * f64::from(radius).powi(3);
-        // A polyhedron with corners on the sphere: the octahedron has 1/pi of it, the rest misses about 5 / count of it.
+        // Under an equilateral triangle of side s the unit sphere stands off by s^2/8 in the mean; N of them have 4 pi / N of area each,
+        // so s^2 = 16 pi / (sqrt(3) N), and 3 s^2 / 8 = 10.9 / N of the volume is missed; half as much again for uneven ones.
         let share = six_volumes(&sphere) / full;
-        assert!(share < 1.0 && 1.0 - share < 8.0 / count as f64, "{count}: {share}");
+        assert!(share < 1.0 && 1.0 - share < 1.5 * 10.9 / count as f64, "{count}: {share}");
     }
     for count in ["0", "7", "9", "6", "1000002", "x"] {
         let answer = builtin(&format!("sphere:{count}"));

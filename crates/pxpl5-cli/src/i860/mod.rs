@@ -306,6 +306,19 @@ mod tests {
         assert_eq!(run["labels"]["start"], "00001000");
     }
 
+    /// 1 + 4 + 9 + 16 = 30.
+    #[test]
+    fn the_program_of_the_guide_runs_and_gives_what_it_says() {
+        let page = include_str!("../../../../docs/guide/assembler.md");
+        let source = page.split_once("```i860\n").and_then(|(_, rest)| rest.split_once("```")).expect("a program").0;
+        let program = load(&file("guide.s", source), 0x1000).expect("correct");
+        let shown = RunOptions { show: vec!["result:1".to_owned()], json: true, budget: 1_000, ..options() };
+        let (text, result) = execute(&program, &shown).expect("fits");
+        assert_eq!(result, Ok(()));
+        let run: serde_json::Value = serde_json::from_str(&text).expect("one object");
+        assert_eq!((&run["memory"][0]["label"], &run["memory"][0]["words"][0]), (&"result".into(), &"0000001e".into()));
+    }
+
     #[test]
     fn what_is_no_label_is_refused_with_those_that_there_are() {
         let program = load(&file("labels.s", STORE), 0x1000).expect("correct");

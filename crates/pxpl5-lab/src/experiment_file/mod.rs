@@ -210,11 +210,11 @@ impl ExperimentFile {
 
     /// Takes over all settings of another file, in place of its own.
     pub fn overlay(&mut self, other: Self) {
-        self.settings.extend(other.settings);
         if other.is_sweep() {
             self.sweep = other.sweep;
             self.sweep_places = other.sweep_places;
         }
+        self.settings.extend(other.settings);
     }
 
     /// Whether the file describes a sweep.
