@@ -155,7 +155,7 @@ fn lists_name_what_is_built_in() {
     let folder = Folder::new("lists");
     let scenes = json(&folder.run(&["scenes", "--json"]));
     let known: Vec<_> = scenes["scenes"].as_array().expect("a list").iter().map(|scene| &scene["name"]).collect();
-    assert_eq!(known, ["mig", "molecules", "head", "full-screen:N"]);
+    assert_eq!(known, ["aircraft", "mig", "molecules", "head", "full-screen:N", "typical:N", "sphere:N"]);
     let machines = json(&folder.run(&["machines", "--json"]));
     // TR94: 13 GPs and 5 renderers.
     let small =
