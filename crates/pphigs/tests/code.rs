@@ -8,7 +8,7 @@ use pphigs::{
 use pxpl5_geometry::{Sphere, Viewport};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
 use pxpl5_renderer::Layout;
-use pxpl5_sim::Span;
+use pxpl5_sim::{Span, SplitMix64};
 use pxpl5_wire::{FieldParity, NodeId, RegionId, ViewNumber, Word};
 use std::sync::Arc;
 
@@ -16,12 +16,11 @@ const MEMORY: u64 = 8 << 20;
 const VERSIONS: [CodeVersion; 2] = [CodeVersion::Compiled, CodeVersion::Scheduled];
 
 /// Numbers in 0 to 1, the same on every host.
-struct Numbers(u64);
+struct Numbers(SplitMix64);
 
 impl Numbers {
     fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 40) as f32 / (1u32 << 24) as f32
+        self.0.unit()
     }
 
     fn vector(&mut self, size: f32) -> Vec3 {
@@ -31,7 +30,7 @@ impl Numbers {
 
 /// Triangles in two structures, one fixed to the head, all in front of the eye.
 fn list(triangles: u32) -> Arc<DisplayList> {
-    let mut numbers = Numbers(7);
+    let mut numbers = Numbers(SplitMix64::new(7));
     let mut list = DisplayList { towards_light: Vec3::new(0.48, 0.6, 0.64), ..DisplayList::default() };
     list.ambient = 0.25;
     list.diffuse = 0.75;

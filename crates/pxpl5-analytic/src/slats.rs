@@ -4,8 +4,9 @@ use super::copies::{CopyTimes, Queue, copy_all};
 use super::load::Load;
 use super::renderer::{Array, Commands, Cost, Fifo, later};
 use crate::{pipeline_of, video_of};
-use pphigs::Binning;
+use pphigs::{Binning, TransformCost};
 use pxpl5_geometry::Viewport;
+use pxpl5_gp::GpTiming;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
 use pxpl5_run::{ClosedForm, Experiment, ExperimentError, Pipeline, Slats, Summary, WARM_UP_PICTURES};
@@ -25,10 +26,8 @@ pub struct SlatsModel {
     fifo: Fifo,
     overhead_ns: f64,
     hop_ns: f64,
+    gp: GpTiming,
     message_ns: f64,
-    pass_ns: f64,
-    triangle_ns: f64,
-    entry_ns: f64,
     command: Cost,
     select: Cost,
     clear: Cost,
@@ -74,29 +73,23 @@ impl SlatsModel {
             return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
         }
         let video = video_of(config)?;
-        let cost = |kind: CommandKind| Cost {
-            words: f64::from(kind.words()),
-            ns: config.renderer.span(kind).map_or(0.0, |span| span.as_ms() * 1e6),
-        };
         let field_ns = video.retrace(PeriodNumber(1)).since(Time::ZERO).as_ms() * 1e6;
         let even = PeriodNumber(2);
-        let line = |y| video.line_start(y, even).map_or(0.0, |at| at.since(video.retrace(even)).as_ms() * 1e6);
+        let bottom = video.line_start(2 * RegionGrid::FIELD.region_height, even);
         let messages = (15_360.0_f64 / 1_024.0).ceil();
         let word_ns = config.ring.word_ns as f64;
         Ok(Self {
             fifo: Fifo { depth_words: config.renderer.fifo_words as f64, word_ns },
             overhead_ns: config.ring.overhead_words as f64 * word_ns,
             hop_ns: config.ring.hop_ns as f64,
+            gp: config.gp,
             message_ns: config.gp.message_ns as f64,
-            pass_ns: config.gp.pass_ns as f64,
-            triangle_ns: config.gp.triangle_ns as f64,
-            entry_ns: config.gp.bin_entry_ns as f64,
-            command: cost(CommandKind::Triangle),
-            select: cost(CommandKind::SelectRegion),
-            clear: cost(CommandKind::Clear),
+            command: Cost::of_command(&config.renderer, CommandKind::Triangle),
+            select: Cost::of_command(&config.renderer, CommandKind::SelectRegion),
+            clear: Cost::of_command(&config.renderer, CommandKind::Clear),
             region_ns: 15_360.0 * word_ns + messages * config.ring.overhead_words as f64 * word_ns,
             field_ns,
-            bottom_ns: line(2 * RegionGrid::FIELD.region_height),
+            bottom_ns: bottom.map_or(0.0, |at| at.since(video.retrace(even)).as_ms() * 1e6),
             renderers: config.n_renderers.min(MOST_RENDERERS),
             gps: config.n_gps,
             source_channels: (config.ring.source_channels.min(config.ring.fifo_channels).min(config.ring.channels)
@@ -162,38 +155,47 @@ impl SlatsModel {
         let share = triangles / self.gps as f64;
         let clumps = (share / CLUMP as f64).ceil().max(1.0) as usize;
         let mut chain = Chain { released_ns: [0.0; MOST_RENDERERS], accepted_ns: 0.0, draining_ns: 0.0 };
-        let mut cpu_ns = self.pass_ns;
+        let mut cpu_ns = TransformCost { passes: 1.0, ..TransformCost::default() }.ns(&self.gp);
         for clump in 0..clumps {
             let count = (share - (clump * CLUMP) as f64).min(CLUMP as f64);
             // The one clump buffer is written again when all renderers have begun with what was in it.
-            cpu_ns = cpu_ns.max(chain.draining_ns) + 2.0 * count * (self.triangle_ns + self.entry_ns * entries);
+            cpu_ns = cpu_ns.max(chain.draining_ns) + self.clump_ns(count, entries);
             cpu_ns = cpu_ns.max(chain.accepted_ns) + self.message_ns;
             self.send(arrays, &mut chain, cpu_ns, count * entries / 10.0, clump == 0);
         }
         chain.accepted_ns
     }
 
+    /// TRANSFORM of a clump of so many triangles for both eyes, each of which makes so many entries in bins.
+    fn clump_ns(&self, triangles: f64, entries_per_triangle: f64) -> f64 {
+        let both_eyes = 2.0 * triangles;
+        let entries = both_eyes * entries_per_triangle;
+        TransformCost { triangles: both_eyes, entries, ..TransformCost::default() }.ns(&self.gp)
+    }
+
     /// The messages of one clump of every GP, as many at a time as a port drives channels.
     fn send(&self, arrays: &mut [Array; MOST_RENDERERS], chain: &mut Chain, from_ns: f64, count: f64, first: bool) {
-        let (mut channels, mut granted_ns) = (Channels::new(self.source_channels), from_ns);
-        let (of_first, of_others) = (self.commands(count, first), self.commands(count, false));
+        let mut channels = Channels::new(self.source_channels);
+        let mut granted_ns = from_ns;
+        let of_first = self.commands(count, first);
+        let of_others = self.commands(count, false);
         chain.accepted_ns = from_ns;
         // A round is a region of every renderer.
         for round in (0..REGIONS).step_by(self.renderers) {
             let renderers = arrays.iter_mut().zip(&mut chain.released_ns).take(self.renderers.min(REGIONS - round));
             for (renderer, (array, released_ns)) in renderers.enumerate() {
                 let latency_ns = self.hop_ns * (renderer + self.gps) as f64;
-                let mut carry = |begin_ns: f64, commands: &Commands| {
-                    let accepted_ns = array.take(begin_ns + self.overhead_ns + latency_ns, commands);
-                    chain.accepted_ns = later(chain.accepted_ns, accepted_ns);
-                    accepted_ns - latency_ns
-                };
                 granted_ns = later(later(granted_ns, channels.take_first()), *released_ns);
-                *released_ns = carry(granted_ns, &of_first);
+                let mut accepted_ns = array.take(granted_ns + self.overhead_ns + latency_ns, &of_first);
+                *released_ns = accepted_ns - latency_ns;
                 channels.put(*released_ns);
+                chain.accepted_ns = later(chain.accepted_ns, accepted_ns);
                 // Several GPs share the ports of the renderers: their messages follow each other.
                 for _ in 1..self.gps {
-                    *released_ns = carry(later(granted_ns, *released_ns), &of_others);
+                    let begin_ns = later(granted_ns, *released_ns);
+                    accepted_ns = array.take(begin_ns + self.overhead_ns + latency_ns, &of_others);
+                    *released_ns = accepted_ns - latency_ns;
+                    chain.accepted_ns = later(chain.accepted_ns, accepted_ns);
                 }
             }
             if round == 0 {

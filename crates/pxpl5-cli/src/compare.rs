@@ -99,7 +99,7 @@ fn load(name: &str) -> Result<scene::Scene, CliError> {
     if is_file { scene::load(name).map_err(CliError::failure) } else { scene::builtin(name).map_err(CliError::usage) }
 }
 
-/// Longest chart, seconds.
+/// Longest stretch of a motion that a chart shows, seconds.
 const CHART_S: u64 = 30;
 
 /// As in I3D95: the error in the middle of the picture against time, for its two latencies.
@@ -144,12 +144,17 @@ fn table(comparison: &Comparison, args: &CompareArgs) -> String {
     text
 }
 
+/// A number, or a dash for one that is not known.
+fn shown(value: f64, is_known: bool) -> String {
+    if is_known { format!("{value:.2}") } else { "-".to_owned() }
+}
+
 fn line(row: &Row) -> String {
     if let Some(failure) = &row.failure {
         return format!("{:<24} {failure}\n", row.pipeline);
     }
-    let shown = |value: f64, is_known: bool| if is_known { format!("{value:.2}") } else { "-".to_owned() };
-    let (judged, timed) = (row.error.judged > 0, row.end_to_end.pictures > 0);
+    let judged = row.error.judged > 0;
+    let timed = row.end_to_end.pictures > 0;
     format!(
         "{:<24} {:>9} {:>9} {:>8} {:>7} {:>9} {:>9} {:>9} {:>10}\n",
         row.pipeline,

@@ -141,13 +141,15 @@ mod tests {
     fn commands(text: &str) -> Vec<Vec<String>> {
         let joined = text.replace("\\\n", " ");
         let lines = joined.lines().map(str::trim).filter(|line| line.starts_with("pxpl5"));
-        let words = |line: &str| {
-            let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
-            // Help texts explain after three spaces.
-            let line = line.split("   ").next().unwrap_or_default().replace("$SLURM_ARRAY_TASK_ID", "1");
-            line.split_whitespace().map(str::to_owned).collect()
-        };
         lines.map(words).collect()
+    }
+
+    /// The words of a line, without what explains it.
+    fn words(line: &str) -> Vec<String> {
+        let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
+        // Help texts explain after three spaces.
+        let line = line.split("   ").next().unwrap_or_default().replace("$SLURM_ARRAY_TASK_ID", "1");
+        line.split_whitespace().map(str::to_owned).collect()
     }
 
     fn parses(text: &str) -> usize {

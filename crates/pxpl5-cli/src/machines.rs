@@ -24,15 +24,14 @@ pub(crate) struct MachinesArgs {
 }
 
 pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
-    let wrong = |error: ConfigError| CliError::usage(error);
     if let Some(name) = &args.preset {
-        let machine = registry().machine_of(MachineConfig::preset(name).map_err(wrong)?);
+        let machine = registry().machine_of(MachineConfig::preset(name).map_err(CliError::usage)?);
         return print(&if args.json { one_json(&machine) } else { one_text(&machine) });
     }
     let bar = progress(PRESETS.len() as u64, "machines", false);
     let mut machines = Vec::new();
     for preset in &PRESETS {
-        machines.push(Listed::new(preset).map_err(wrong)?);
+        machines.push(Listed::new(preset).map_err(CliError::usage)?);
         bar.inc(1);
     }
     bar.finish_and_clear();

@@ -85,7 +85,7 @@ impl SnapshotArgs {
                 continue_pixels(plan, machine, host);
             }
             if let (Some((folder, name)), true) = (&mut saving, Some(field) == save_at) {
-                let text = Snapshot::of(plan, hash, &scene, field, machine).to_text();
+                let text = Snapshot::of_machine(plan, hash, &scene, field, machine).to_text();
                 folder
                     .put(name, text.as_bytes())
                     .map_err(|error| ExperimentError::Stopped(error.message().to_owned()))?;
@@ -114,7 +114,8 @@ impl SnapshotArgs {
     /// The snapshot to go on from, and its name.
     fn restored(&self, plan: &Plan) -> Result<Option<(Snapshot, String)>, CliError> {
         let Some(path) = &self.restore else { return Ok(None) };
-        let (snapshot, name) = (self.read(path)?, path.display().to_string());
+        let snapshot = self.read(path)?;
+        let name = path.display().to_string();
         if snapshot.field >= PeriodNumber::FIRST.after(plan.fields) {
             let first = snapshot.field.next();
             let found = plan.fields;

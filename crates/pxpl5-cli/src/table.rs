@@ -5,11 +5,11 @@ use pxpl5::{Report, Statistics};
 /// What a run is compared with.
 #[derive(Clone, Debug)]
 pub(crate) struct Comparison {
-    /// The quantity.
+    /// Name of the quantity, with its unit.
     pub(crate) quantity: String,
-    /// As published.
+    /// The value that the paper prints.
     pub(crate) published: f64,
-    /// As simulated.
+    /// The value that the run gave.
     pub(crate) simulated: f64,
     /// The paper, or which figure.
     pub(crate) source: String,
@@ -21,23 +21,27 @@ impl Comparison {
     }
 }
 
+/// What a table says of a run: the name of a row and the text of its cell.
+type TableRow = (&'static str, fn(&Report) -> String);
+
+const ROWS: [TableRow; 11] = [
+    ("pipeline", |r| r.pipeline.clone()),
+    ("machine", boards),
+    ("scene", |r| r.scene.clone()),
+    ("primitives", primitives),
+    ("fields simulated", |r| r.fields.to_string()),
+    ("latency, fields: mean", |r| mean_and_sd(&r.latency_fields.statistics, 2)),
+    ("  min to max", |r| range(&r.latency_fields.statistics, 2)),
+    ("latency, ms: mean", |r| mean_and_sd(&r.latency_ms.statistics, 1)),
+    ("  min to max", |r| range(&r.latency_ms.statistics, 1)),
+    ("updates per second", |r| r.updates_hz.map_or_else(|| "-".to_owned(), |hz| format!("{hz:.2}"))),
+    ("missed retraces", missed),
+];
+
 /// The table as text.
 pub(crate) fn table(runs: &[(&Report, Option<&Comparison>)]) -> String {
-    let mut rows: Vec<(&str, Vec<String>)> = Vec::new();
-    let mut row = |name, cell: &dyn Fn(&Report) -> String| {
-        rows.push((name, runs.iter().map(|(report, _)| cell(report)).collect()));
-    };
-    row("pipeline", &|r| r.pipeline.clone());
-    row("machine", &|r| boards(r));
-    row("scene", &|r| r.scene.clone());
-    row("primitives", &|r| primitives(r));
-    row("fields simulated", &|r| r.fields.to_string());
-    row("latency, fields: mean", &|r| mean_and_sd(&r.latency_fields.statistics, 2));
-    row("  min to max", &|r| range(&r.latency_fields.statistics, 2));
-    row("latency, ms: mean", &|r| mean_and_sd(&r.latency_ms.statistics, 1));
-    row("  min to max", &|r| range(&r.latency_ms.statistics, 1));
-    row("updates per second", &|r| r.updates_hz.map_or_else(|| "-".to_owned(), |hz| format!("{hz:.2}")));
-    row("missed retraces", &missed);
+    let rows = ROWS.iter().map(|(name, cell)| (*name, runs.iter().map(|(report, _)| cell(report)).collect()));
+    let mut rows: Vec<(&str, Vec<String>)> = rows.collect();
     if runs.iter().any(|(_, comparison)| comparison.is_some()) {
         rows.extend(comparison_rows(runs));
     }
@@ -45,14 +49,16 @@ pub(crate) fn table(runs: &[(&Report, Option<&Comparison>)]) -> String {
 }
 
 fn comparison_rows(runs: &[(&Report, Option<&Comparison>)]) -> [(&'static str, Vec<String>); 3] {
-    let cells = |cell: &dyn Fn(&Comparison) -> String| {
-        runs.iter().map(|(_, comparison)| comparison.map_or_else(String::new, cell)).collect()
-    };
     [
-        ("published", cells(&|c| format!("{} {}", c.published, c.quantity))),
-        ("  where", cells(&|c| c.source.clone())),
-        ("  error", cells(&|c| format!("{:+.1} %", c.error_percent()))),
+        ("published", comparison_cells(runs, |c| format!("{} {}", c.published, c.quantity))),
+        ("  where", comparison_cells(runs, |c| c.source.clone())),
+        ("  error", comparison_cells(runs, |c| format!("{:+.1} %", c.error_percent()))),
     ]
+}
+
+/// A cell for each run, empty where it is compared with nothing.
+fn comparison_cells(runs: &[(&Report, Option<&Comparison>)], cell: impl Fn(&Comparison) -> String) -> Vec<String> {
+    runs.iter().map(|(_, comparison)| comparison.map_or_else(String::new, &cell)).collect()
 }
 
 /// Of how many, where some were missed.
@@ -88,17 +94,26 @@ fn range(s: &Statistics, digits: usize) -> String {
 
 fn laid_out(rows: &[(&str, Vec<String>)]) -> String {
     let columns = rows.iter().map(|(_, cells)| cells.len()).max().unwrap_or(0);
-    let width = |column: usize| rows.iter().filter_map(|(_, cells)| cells.get(column)).map(String::len).max();
-    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
-    let line = |(name, cells): &(&str, Vec<String>)| {
+    let widths: Vec<usize> = (0..columns).map(|column| width(rows, column)).collect();
+    let mut text = String::new();
+    for (name, cells) in rows {
         let padded = cells.iter().zip(&widths).map(|(cell, width)| format!("  {cell:<width$}"));
         let line = format!("{name:<22}{}", padded.collect::<String>());
-        format!("{}\n", line.trim_end())
-    };
-    rows.iter().map(line).collect()
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    text
+}
+
+/// Bytes of the longest cell of a column.
+fn width(rows: &[(&str, Vec<String>)], column: usize) -> usize {
+    rows.iter().filter_map(|(_, cells)| cells.get(column)).map(String::len).max().unwrap_or(0)
 }
 
 fn boards(report: &Report) -> String {
-    let plural = |n: usize, name: &str| format!("{n} {name}{}", if n == 1 { "" } else { "s" });
     format!("{} ({}, {})", report.machine, plural(report.n_gps, "GP"), plural(report.n_renderers, "renderer"))
+}
+
+fn plural(n: usize, name: &str) -> String {
+    format!("{n} {name}{}", if n == 1 { "" } else { "s" })
 }

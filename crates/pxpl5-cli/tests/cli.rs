@@ -2,6 +2,7 @@
 
 mod support;
 
+use std::path::Path;
 use std::process::Stdio;
 use support::{Folder, command, err, json, names, out};
 
@@ -81,6 +82,10 @@ fn one_picture_has_no_rate_and_every_retrace_after_it_is_missed() {
     assert_eq!(report["missed_retraces"].as_u64(), Some(judged - 2));
 }
 
+fn read(folder: &Path, name: &str) -> Vec<u8> {
+    std::fs::read(folder.join(name)).expect("written")
+}
+
 #[test]
 fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
     let folder = Folder::new("files");
@@ -91,10 +96,10 @@ fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
         names,
         ["experiment.toml", "left.png", "pictures.csv", "report.json", "results.csv", "right.png", "timeline.svg"]
     );
-    let read = |name: &str| std::fs::read(folder.0.join("a/b").join(name)).expect("written");
+    let written = folder.0.join("a/b");
     let hash = report["config_hash"].as_str().expect("a hash");
     for name in ["experiment.toml", "results.csv", "pictures.csv"] {
-        let text = String::from_utf8(read(name)).expect("text");
+        let text = String::from_utf8(read(&written, name)).expect("text");
         let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with("# schema")).take(5).collect();
         let expected = [
             "# machine: slats",
@@ -105,13 +110,13 @@ fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
         ];
         assert_eq!(lines, expected, "{name}");
     }
-    let saved: serde_json::Value = serde_json::from_slice(&read("report.json")).expect("JSON");
+    let saved: serde_json::Value = serde_json::from_slice(&read(&written, "report.json")).expect("JSON");
     let keys: Vec<&str> = saved.as_object().expect("an object").keys().map(String::as_str).take(6).collect();
     assert_eq!(keys, ["schema", "version", "machine", "config_hash", "level", "seed"]);
     assert_eq!(saved["overrides"]["gp.triangle_ns"], 30_000);
-    let svg = String::from_utf8(read("timeline.svg")).expect("text");
+    let svg = String::from_utf8(read(&written, "timeline.svg")).expect("text");
     assert!(svg.find(hash).is_some_and(|at| at < svg.find("<svg").expect("a drawing")), "the origin comes first");
-    let png = read("left.png");
+    let png = read(&written, "left.png");
     assert!(png.windows(hash.len()).any(|part| part == hash.as_bytes()), "the picture names its configuration");
     assert!(image::load_from_memory(&png).is_ok(), "the picture can be read");
 }
@@ -124,15 +129,18 @@ fn the_written_experiment_runs_to_the_same_trace() {
     assert_eq!((&first["trace_hash"], &first["config_hash"]), (&second["trace_hash"], &second["config_hash"]));
 }
 
+fn trace_hash_with(folder: &Folder, more: &[&str]) -> serde_json::Value {
+    json(&folder.run(&with(&with(&RC, &["--json"]), more)))["trace_hash"].clone()
+}
+
 #[test]
 fn pixels_threads_and_repetition_leave_the_trace_alone() {
     let folder = Folder::new("trace");
-    let hash = |more: &[&str]| json(&folder.run(&with(&with(&RC, &["--json"]), more)))["trace_hash"].clone();
-    let expected = hash(&[]);
+    let expected = trace_hash_with(&folder, &[]);
     for more in
         [&["--pixels", "off"][..], &["--pixels", "all", "--threads", "0"], &["--pixels", "all", "--threads", "2"]]
     {
-        assert_eq!(hash(more), expected, "{more:?}");
+        assert_eq!(trace_hash_with(&folder, more), expected, "{more:?}");
     }
 }
 

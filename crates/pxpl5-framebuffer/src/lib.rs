@@ -68,7 +68,6 @@ pub use config::FrameBufferConfig;
 pub use error::FrameBufferConfigError;
 pub use image::RgbImage;
 pub use ntsc::{NtscDisplay, seen_at};
-pub use picture::{PictureError, write_png};
 pub use port::{Faults, FrameBufferEvent, FrameBufferFault, FrameBufferOutput};
 pub use seen::{BufferContents, SeenField, SeenLateRegion};
 pub use stats::FrameBufferStats;

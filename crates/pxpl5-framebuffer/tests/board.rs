@@ -3,12 +3,10 @@
 mod support;
 
 use pxpl5_framebuffer::{
-    FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferFault, FrameBufferOutput, PictureError, RgbImage,
-    write_png,
+    FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferFault, FrameBufferOutput, RgbImage,
 };
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, Lines, NodeId, PeriodNumber, RegionGrid, RegionPixels};
-use std::io;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use support::{Board, MESSAGE, NODE, WORD, colour, field_target, n_parts, source, target};
@@ -335,27 +333,4 @@ fn a_board_that_cannot_be_built_says_why() {
     let error = FrameBuffer::new(config, NODE).expect_err("nothing kept");
     assert_eq!(error.to_string(), "frame buffer: fields_kept must be 1 to 1000, found 0");
     assert_eq!(error.to_string(), "frame buffer: fields_kept must be 1 to 1000, found 0");
-}
-
-#[test]
-fn a_png_holds_every_pixel_and_a_failing_writer_is_an_error() {
-    let picture = RgbImage::from_fn(5, 3, |x, y| image::Rgb([x as u8, y as u8, 77]));
-    let mut file = Vec::new();
-    write_png(&picture, &mut file).expect("written");
-    let read = image::load_from_memory_with_format(&file, image::ImageFormat::Png).expect("a PNG");
-    assert_eq!(read.to_rgb8(), picture);
-
-    struct Full;
-    impl io::Write for Full {
-        fn write(&mut self, _: &[u8]) -> io::Result<usize> {
-            Err(io::Error::other("disk full"))
-        }
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
-    }
-    let error = write_png(&picture, Full).expect_err("full");
-    assert!(matches!(error, PictureError::Io(_)), "{error:?}");
-    assert_eq!(error.to_string(), "cannot write the picture: disk full");
-    assert!(write_png(&RgbImage::new(0, 0), Vec::new()).is_err());
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 use parameters::{ParameterTable, Value};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, Fingerprint, Head, Jitp, Raster, Registry, RenderingControl, Viewpoint};
-use pxpl5_scene::{Frame, HeadMotion, Hinge, Lighting, Path, Scene, SceneParts, Sphere, Structure, Sway, Vertex};
+use pxpl5_scene::{Frame, HeadMotion, HeadPath, Hinge, Lighting, Scene, SceneParts, Sphere, Structure, Sway, Vertex};
 use std::fmt;
 use std::sync::Arc;
 use tracking::Pose;
@@ -43,7 +43,7 @@ fn parts() -> SceneParts {
         spheres: vec![Sphere { centre: Vec3::NEG_Z, radius: 0.125, colour: [7, 8, 9] }],
         structures: vec![structure],
         lighting: Lighting { towards_light: Vec3::Z, ambient: 0.25, diffuse: 0.75, background: [4, 5, 6] },
-        motion: HeadMotion::new(Path::Pan { eye: Vec3::ZERO, deg_per_s: 30.0 }, Sway::none()).expect("in range"),
+        motion: HeadMotion::new(HeadPath::Pan { eye: Vec3::ZERO, deg_per_s: 30.0 }, Sway::none()).expect("in range"),
     }
 }
 
@@ -95,11 +95,11 @@ fn any_change_of_a_scene_but_of_its_names_changes_its_fingerprint() {
         parts
     };
     let lit = |lighting: Lighting| SceneParts { lighting, ..parts() };
-    let moved = |path: Path, sway: Sway| {
+    let moved = |path: HeadPath, sway: Sway| {
         let motion = HeadMotion::new(path, sway).expect("in range");
         SceneParts { motion, ..parts() }
     };
-    let pan = |deg_per_s: f64| Path::Pan { eye: Vec3::ZERO, deg_per_s };
+    let pan = |deg_per_s: f64| HeadPath::Pan { eye: Vec3::ZERO, deg_per_s };
     let light = parts().lighting;
     let changed = [
         hinged(None),
@@ -108,7 +108,7 @@ fn any_change_of_a_scene_but_of_its_names_changes_its_fingerprint() {
         lit(Lighting { background: [4, 5, 7], ..light }),
         lit(Lighting { ambient: 0.251, ..light }),
         moved(pan(30.000_000_001), Sway::none()),
-        moved(Path::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, Sway::none()),
+        moved(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, Sway::none()),
         moved(pan(30.0), Sway { scale: 0.5, ..Sway::none() }),
     ];
     for (number, parts) in changed.into_iter().enumerate() {

@@ -55,7 +55,7 @@ pub const TYPICAL_LEG_PX: f64 = 18.0;
 /// eyes and the triangle itself they stay inside the 640 x 480 pixels.
 pub const TYPICAL_SPREAD_PX: [f64; 2] = [540.0, 420.0];
 
-/// Mean angular speed of the head under [`crate::Sway`] of scale 1 on [`crate::Path::Look`], degrees per second.
+/// Mean angular speed of the head under [`crate::Sway`] of scale 1 on [`crate::HeadPath::Look`], degrees per second.
 ///
 /// Published: recorded traces of headset use have mean 40, 99.9th percentile 283.
 pub const MEAN_HEAD_SPEED_DEG_PER_S: f64 = 40.0;

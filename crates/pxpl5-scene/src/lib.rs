@@ -70,7 +70,7 @@ pub use error::{LoadError, Place, RangeError, SceneError};
 pub use import::{Format, Placement, from_bytes, from_reader, placed_from_bytes, placed_from_reader};
 #[cfg(feature = "files")]
 pub use import::{load, load_placed};
-pub use motion::{HeadMotion, Path};
+pub use motion::{HeadMotion, HeadPath};
 pub use scene::{Frame, Lighting, Scene, SceneParts, Sphere, Structure, Vertex};
 pub use sway::Sway;
 pub use tracking::Pose;

@@ -42,7 +42,7 @@ fn rendering_is_the_inside_latency_plus_the_photodiodes_place() {
 
 #[test]
 fn outside_and_inside_agree_within_the_bound_for_every_tracker_and_line() {
-    let slow_line = Some(SerialLine { record_bytes: 47, baud: 9600 });
+    let slow_line = Some(SerialLine { baud: 9600, ..SerialLine::fastrak() });
     for config in [
         TrackerConfig::ideal(),
         TrackerConfig::fastrak(),

@@ -53,7 +53,7 @@ fn two_receivers_halve_the_rate() {
 #[test]
 fn at_9600_baud_five_of_six_fastrak_solutions_are_dropped() {
     // 48.96 ms of transfer over 8.33 ms of period: the next ready solution after 5.88 periods is the sixth.
-    let serial = Some(SerialLine { record_bytes: 47, baud: 9600 });
+    let serial = Some(SerialLine { baud: 9600, ..SerialLine::fastrak() });
     let all = reports(TrackerConfig { serial, ..TrackerConfig::fastrak() }, &HEAD, 0, 100);
     assert!(all.windows(2).all(|w| w[1].solution - w[0].solution == 6));
 }

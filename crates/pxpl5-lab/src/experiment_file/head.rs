@@ -66,7 +66,7 @@ impl HeadChoice {
         if of_head { Err(FileError::Missing { key: "head.motion", how }) } else { Ok(None) }
     }
 
-    /// The head itself.
+    /// The head with tracker and predictor as the experiment takes it; all runs of a plan share it.
     #[must_use]
     pub fn head(&self) -> Arc<Head> {
         Arc::clone(&self.head)

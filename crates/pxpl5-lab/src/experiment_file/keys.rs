@@ -8,7 +8,7 @@ use pxpl5_run::Registry;
 /// A key and what it says.
 #[derive(Clone, Debug)]
 pub struct FileKey {
-    /// Its path.
+    /// Its path, as it is written before the equals sign: `motion.path`.
     pub path: String,
     /// What it sets and what it takes.
     pub about: String,
@@ -81,12 +81,16 @@ fn common(path: &str, about: &str) -> FileKey {
 /// The key by which a path is kept: a parameter of the machine may be written without `machine.`. `None` for none.
 pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
     let path = RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now);
-    let known = |wanted: &str| keys(registry).iter().any(|key| key.path == wanted);
-    if known(path) || is_machine_parameter(registry, path) || is_tracking_parameter(path) {
+    if is_key(registry, path) || is_machine_parameter(registry, path) || is_tracking_parameter(path) {
         return Some(path.to_owned());
     }
     let long = format!("machine.{path}");
     is_machine_parameter(registry, &long).then_some(long)
+}
+
+/// Whether a path is a key that is no parameter of the machine.
+fn is_key(registry: &Registry, path: &str) -> bool {
+    keys(registry).iter().any(|key| key.path == path)
 }
 
 /// Whether a machine with some display has such a parameter.

@@ -110,8 +110,8 @@ impl ExperimentFile {
     pub fn and_load(self, path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        let io = |error: std::io::Error| FileError::Io { file: file.clone(), reason: error.to_string() };
-        let text = std::fs::read_to_string(path).map_err(io)?;
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| FileError::Io { file: file.clone(), reason: error.to_string() })?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
         self.parse_in(&text, &file, &folder)
     }
@@ -135,25 +135,21 @@ impl ExperimentFile {
     }
 
     fn parse_in(mut self, text: &str, name: &str, folder: &Path) -> Result<Self, FileError> {
-        let syntax = |error: toml::de::Error| FileError::Syntax {
-            place: format!("{name}, line {}", line(text, error.span().map_or(0, |span| span.start))),
-            reason: error.message().to_owned(),
-        };
-        let spans = DeTable::parse(text).map_err(syntax)?;
-        let values: toml::Table = toml::from_str(text).map_err(syntax)?;
+        let spans = DeTable::parse(text).map_err(|error| not_toml(&error, text, name))?;
+        let values: toml::Table = toml::from_str(text).map_err(|error| not_toml(&error, text, name))?;
         for (key, value) in values {
             let at = spans.get_ref().get_key_value(key.as_str());
-            let place = |start: usize| format!("{name}, line {}", line(text, start));
             let start = at.map_or(0, |(key, _)| key.span().start);
             if key == "sweep" {
-                self.sweep = Some(Setting { value, place: place(start), folder: folder.to_owned() });
+                self.sweep = Some(Setting { value, place: place(text, name, start), folder: folder.to_owned() });
                 let inner = at.map_or_else(Vec::new, |(_, value)| starts("sweep", value.get_ref()));
-                self.sweep_places = inner.into_iter().map(|(path, start)| (path, place(start))).collect();
+                let places = inner.into_iter().map(|(path, start)| (path, place(text, name, start)));
+                self.sweep_places = places.collect();
                 continue;
             }
             let spans = at.map(|(_, value)| value.get_ref());
             for (path, value, start) in flat(key, value, spans, start) {
-                self.put(&path, value, place(start), folder)?;
+                self.put(&path, value, place(text, name, start), folder)?;
             }
         }
         Ok(self)
@@ -259,6 +255,17 @@ fn starts(path: &str, table: &toml::de::DeValue<'_>) -> Vec<(String, usize)> {
         std::iter::once((path, key.span().start)).chain(inner)
     });
     nested.collect()
+}
+
+/// Where a byte of a file stands, for errors.
+fn place(text: &str, name: &str, at: usize) -> String {
+    format!("{name}, line {}", line(text, at))
+}
+
+/// What the parser of TOML says, with its place.
+fn not_toml(error: &toml::de::Error, text: &str, name: &str) -> FileError {
+    let at = error.span().map_or(0, |span| span.start);
+    FileError::Syntax { place: place(text, name, at), reason: error.message().to_owned() }
 }
 
 /// The line of a byte, from 1.

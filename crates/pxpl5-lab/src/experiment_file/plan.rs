@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
 
-/// What is drawn.
+/// The scene that is drawn, how much of it, and how the head moves before it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneChoice {
     /// A built-in scene's name or a model file's path.
@@ -92,7 +92,7 @@ fn is_file(name: &str) -> bool {
 pub struct Outputs {
     /// The last pictures, PNG.
     pub pictures: bool,
-    /// A timeline, SVG.
+    /// A timeline of all boards and pictures, SVG.
     pub timeline: bool,
     /// The measured quantities, CSV.
     pub csv: bool,
@@ -103,11 +103,11 @@ pub struct Outputs {
 pub struct Published {
     /// Its number, if it has one.
     pub figure: Option<u64>,
-    /// The paper.
+    /// Short name of the paper that prints it.
     pub source: Option<String>,
     /// Which measured quantity it is about.
     pub quantity: Measure,
-    /// Its value.
+    /// Its value as printed, in the unit of the quantity.
     pub value: f64,
 }
 
@@ -123,11 +123,10 @@ impl Published {
 }
 
 fn measure(file: &ExperimentFile, key: &str, name: &str) -> Result<Measure, FileError> {
-    let wrong = |nearest: &str| match file.get(key) {
+    Measure::named(name).map_err(|nearest| match file.get(key) {
         Some(setting) => wrong(key, setting, &format!("a quantity that is measured (the nearest is {nearest})")),
         None => FileError::Missing { key: "measure", how: "quantities that are measured" },
-    };
-    Measure::named(name).map_err(wrong)
+    })
 }
 
 /// A checked experiment: everything is known, nothing contradicts.
@@ -137,13 +136,13 @@ pub struct Plan {
     pub title: Option<String>,
     /// The pipelines and displays that there are.
     pub registry: Arc<Registry>,
-    /// The pipeline.
+    /// The pipeline, built from the keys that were given for it.
     pub pipeline: Arc<dyn Pipeline>,
     /// How the most triangles that it draws in time are found.
     pub limit: LimitCriterion,
-    /// The machine.
+    /// The machine: a preset as the pipeline adapts it, with the parameters that were set.
     pub machine: MachineConfig,
-    /// The scene.
+    /// The scene by name, not yet loaded.
     pub scene: SceneChoice,
     /// Fields to simulate; default 120.
     pub fields: u64,
@@ -157,7 +156,7 @@ pub struct Plan {
     pub pixels: Pixels,
     /// Quantities for tables and rows.
     pub measure: Vec<Measure>,
-    /// What is written.
+    /// What a run writes beside its report.
     pub output: Outputs,
     /// What it is compared with.
     pub published: Option<Published>,
@@ -178,8 +177,6 @@ impl ExperimentFile {
         let seed = self.integer("seed", 0..=MAX_SEED)?.unwrap_or(1);
         let head = HeadChoice::read(self, pipeline.as_ref(), seed)?;
         let most_fields = if head.is_some() { FIELDS_WITH_HEAD } else { FIELDS_RANGE.1 };
-        let names = self.texts("measure")?;
-        let measure = |names: Vec<String>| names.iter().map(|name| measure(self, "measure", name)).collect();
         Ok(Plan {
             title: self.text("title")?.map(str::to_owned),
             registry: Arc::clone(self.registry()),
@@ -192,7 +189,7 @@ impl ExperimentFile {
             pipeline,
             head,
             pixels: self.choice("pixels", &PIXELS)?.unwrap_or(Pixels::Lazy),
-            measure: names.map_or_else(|| Ok(Measure::usual()), measure)?,
+            measure: self.measures()?,
             output: Outputs {
                 pictures: self.flag("output.pictures")?.unwrap_or(true),
                 timeline: self.flag("output.timeline")?.unwrap_or(true),
@@ -200,6 +197,14 @@ impl ExperimentFile {
             },
             published: Published::read(self)?,
         })
+    }
+
+    /// The quantities for tables and rows: those that are named, or the usual ones.
+    fn measures(&self) -> Result<Vec<Measure>, FileError> {
+        match self.texts("measure")? {
+            Some(names) => names.iter().map(|name| measure(self, "measure", name)).collect(),
+            None => Ok(Measure::usual()),
+        }
     }
 
     /// The pipeline and the keys given for it.

@@ -1,6 +1,7 @@
 use super::*;
 use pxpl5_machine::MachineConfig;
-use pxpl5_run::Pixels;
+use pxpl5_run::{Fingerprint, Pixels};
+use std::path::Path;
 
 fn plan(text: &str) -> Plan {
     ExperimentFile::parse(text, "test").expect("TOML").resolve().expect("an experiment")
@@ -165,15 +166,21 @@ fn another_recording_of_the_same_name_is_another_experiment() {
     std::fs::create_dir_all(&folder).expect("writable");
     let text = format!("{RC}head.motion = \"head.csv\"\n");
     std::fs::write(folder.join("e.toml"), text).expect("writable");
-    let with = |x: f64| {
-        let rows = format!("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
-        std::fs::write(folder.join("head.csv"), rows).expect("writable");
-        ExperimentFile::load(folder.join("e.toml")).and_then(|file| file.resolve()).expect("beside the file")
-    };
-    let (a, b) = (with(0.1), with(0.2));
-    let hash = |plan: &Plan| plan.experiment(plan.load_scene().expect("built in")).config_hash();
-    assert_eq!(hash(&a), hash(&with(0.1)));
-    assert_ne!(hash(&a), hash(&b));
+    let a = moved_to(0.1, &folder);
+    let b = moved_to(0.2, &folder);
+    assert_eq!(config_hash(&a), config_hash(&moved_to(0.1, &folder)));
+    assert_ne!(config_hash(&a), config_hash(&b));
     assert_ne!(a, b);
     let _ = std::fs::remove_dir_all(folder);
+}
+
+/// The plan of `e.toml` beside a recording of a head that moves so many metres in a second.
+fn moved_to(x: f64, folder: &Path) -> Plan {
+    let rows = format!("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
+    std::fs::write(folder.join("head.csv"), rows).expect("writable");
+    ExperimentFile::load(folder.join("e.toml")).and_then(|file| file.resolve()).expect("beside the file")
+}
+
+fn config_hash(plan: &Plan) -> Fingerprint {
+    plan.experiment(plan.load_scene().expect("built in")).config_hash()
 }

@@ -13,7 +13,7 @@ use toml::Value;
 /// Settings by path, as they take effect; shown as the text of an experiment file that says the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Values by path.
+    /// Values as TOML has them, by the path of their key.
     pub values: BTreeMap<String, Value>,
     /// Remarks by path: units, and what a preset would have said.
     remarks: BTreeMap<String, String>,

@@ -30,7 +30,7 @@ use thiserror::Error;
 pub struct FigureError {
     /// Number of the figure.
     pub id: String,
-    /// Why.
+    /// Why its experiment gave no result.
     pub reason: String,
 }
 
@@ -39,7 +39,7 @@ pub struct FigureError {
 pub struct Figures {
     /// In the order of [`FIGURES`].
     pub rows: Vec<Row>,
-    /// Intervals and elasticities.
+    /// What the open parameters do to each figure but the one of the scenes.
     pub intervals: Vec<Interval>,
 }
 
@@ -61,17 +61,22 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
     let steps = FIGURES.len() as u64 + 1;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
-    let measure = |figure: &Figure| {
-        let measured = bench.measure(figure.id);
+    let rows = crate::parallel::map(&FIGURES, |figure| {
+        let row = row_of(bench, figure);
         step();
-        match measured {
-            Ok(measured) => Ok(Row::new(figure, measured)),
-            Err(error) => Err(FigureError { id: figure.id.to_owned(), reason: error.to_string() }),
-        }
-    };
-    let mut rows = crate::parallel::map(&FIGURES, measure).into_iter().collect::<Result<Vec<_>, _>>()?;
+        row
+    });
+    let mut rows = rows.into_iter().collect::<Result<Vec<_>, _>>()?;
     let intervals = intervals();
     step();
     fill(&mut rows, &intervals);
     Ok(Figures { rows, intervals })
+}
+
+/// A figure with what the bench gives for it.
+fn row_of(bench: &Bench, figure: &Figure) -> Result<Row, FigureError> {
+    match bench.measure(figure.id) {
+        Ok(measured) => Ok(Row::new(figure, measured)),
+        Err(error) => Err(FigureError { id: figure.id.to_owned(), reason: error.to_string() }),
+    }
 }

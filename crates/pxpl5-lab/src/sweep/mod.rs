@@ -73,7 +73,7 @@ impl Sweep {
         &self.base
     }
 
-    /// The points.
+    /// The space of settings, whose points are the experiments.
     #[must_use]
     pub const fn space(&self) -> &Space {
         &self.space

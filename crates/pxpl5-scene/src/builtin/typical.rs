@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::config::{DEFAULT_COLOUR, TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
-use crate::motion::{HeadMotion, Path};
+use crate::motion::{HeadMotion, HeadPath};
 use crate::scene::{Frame, Lighting, Scene, SceneParts, Structure, Vertex};
 use crate::sway::Sway;
 use crate::view::{Hmd, HmdConfig};
@@ -26,7 +26,7 @@ pub(super) fn scene(count: u32) -> Scene {
         frame: Frame::Head,
         hinge: None,
     };
-    let path = Path::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
+    let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
     let parts = SceneParts {
         name,
         vertices,

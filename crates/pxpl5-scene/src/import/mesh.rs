@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use super::Source;
 use crate::config::IMPORT_RADIUS_M;
 use crate::error::LoadError;
-use crate::motion::{HeadMotion, Path};
+use crate::motion::{HeadMotion, HeadPath};
 use crate::scene::{Lighting, Scene, SceneParts, Sphere, Vertex, bounding_sphere};
 use crate::sway::Sway;
 
@@ -136,7 +136,7 @@ pub(crate) fn fitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scen
 
 /// The scene of a model before a head that stands at the origin of its coordinates.
 pub(crate) fn unfitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
-    let path = Path::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
+    let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
     let motion = HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range");
     seen_by(motion, name, mesh, spheres)
 }
