@@ -22,7 +22,7 @@ fn run(experiment: &Experiment, pixels: Pixels, threads: usize) -> Outcome {
 /// An element is a field.
 fn slats_140(criterion: &mut Criterion) {
     const FIELDS: u64 = 120;
-    let aircraft = scene::builtin("mig").and_then(|mig| mig.truncated(140)).expect("it has 417 triangles");
+    let aircraft = scene::builtin("mig").and_then(|mig| mig.decimated(140)).expect("it has 417 triangles");
     let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), aircraft).fields(FIELDS);
     let mut group = criterion.benchmark_group("machine/slats-140");
     group.throughput(Throughput::Elements(FIELDS));
@@ -36,7 +36,7 @@ fn slats_140(criterion: &mut Criterion) {
 /// second, a twentieth of real time.
 fn slats_110_cycle(criterion: &mut Criterion) {
     const FIELDS: u64 = 24;
-    let aircraft = scene::builtin("mig").and_then(|mig| mig.truncated(110)).expect("it has 417 triangles");
+    let aircraft = scene::builtin("mig").and_then(|mig| mig.decimated(110)).expect("it has 417 triangles");
     let machine = MachineConfig::preset("slats-optimised").expect("listed");
     let experiment = Experiment::new(machine, Slats::split(), aircraft).fields(FIELDS).level(Level::Cycle);
     let mut group = criterion.benchmark_group("machine/slats-110");

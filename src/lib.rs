@@ -58,8 +58,8 @@ pub use pxpl5_gp::CodeVersion;
 pub use pxpl5_hires::HiResConfig;
 pub use pxpl5_lab::{
     ExperimentFile, FileError, HeadChoice, MotionChoice, Outputs, Plan, Published, SceneChoice, Settings, Snapshot,
-    SnapshotError, Workstation, compare, figures, growth, intervals, levels, limit, pipeline_figures, registry, rig,
-    sweep, tracking_parameters,
+    SnapshotError, Suitability, Workstation, compare, figures, growth, intervals, levels, limit, pipeline_figures,
+    registry, rig, suitability, sweep, tracking_parameters,
 };
 pub use pxpl5_machine::{
     Arrival, ConfigError, LateRegion, Machine, MachineConfig, Observation, PRESETS, Parameter, Ports, Preset, Record,
@@ -75,7 +75,7 @@ pub use pxpl5_run::{
     FIELDS_WITH_HEAD, Fingerprint, Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key,
     KeyValue, KeyValues, Level, LimitCriterion, Outcome, PictureEnd, PictureTimes, Pipeline, PipelineEntry,
     PipelineSettings, Pixels, Raster, Registry, RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary,
-    TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION,
+    TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION, out_of_range,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};
 pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmOf, results, timeline, trace_export};

@@ -431,7 +431,7 @@ fn frames(bytes: &[u8]) -> (png::Info<'static>, Vec<Vec<u8>>) {
 fn remembered() -> (Experiment, Outcome) {
     let mut machine = MachineConfig::slats();
     machine.displays[0].remember(100);
-    let scene = scene::builtin("mig").and_then(|scene| scene.truncated(100)).expect("built in");
+    let scene = scene::builtin("mig").and_then(|scene| scene.decimated(100)).expect("built in");
     let experiment = Experiment::new(machine, Slats::split(), scene).fields(12);
     let outcome = experiment.run().expect("runs");
     (experiment, outcome)

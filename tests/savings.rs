@@ -10,9 +10,9 @@ use pxpl5_framebuffer::SeenField;
 use std::collections::BTreeSet;
 use support::ntsc;
 
-/// The first triangles of the Mig, of which there are 417.
+/// The Mig of so many triangles, of which there are 417.
 fn mig(triangles: usize) -> Scene {
-    scene::builtin("mig").and_then(|mig| mig.truncated(triangles)).expect("so many")
+    scene::builtin("mig").and_then(|mig| mig.decimated(triangles)).expect("so many")
 }
 
 /// Three pipelines, each with a scene that leaves some regions empty and some not.

@@ -4,16 +4,18 @@
 //! `docs/guide/own-pipeline.md` explains it. `cargo run --release -p pxpl5-cli --example own_pipeline -- run --pipeline
 //! one-at-a-time --scene mig`.
 
-use pxpl5::firmware::{
+// ANCHOR: imports
+use pxpl5_cli::pxpl5::firmware::{
     Binning, Body, CopyOrder, CopyTarget, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture, PictureNumber,
     Priority, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport, region_messages, swap_request,
 };
-use pxpl5::{
+use pxpl5_cli::pxpl5::{
     ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureEnd, PictureTimes, Pipeline,
     PipelineEntry, PipelineSettings, Ports, Record, Registry, Setup, Span, TestScene, Time,
 };
 use std::process::ExitCode;
 use std::sync::Arc;
+// ANCHOR_END: imports
 
 // ANCHOR: pipeline
 /// One processor, one frame at a time: the simplest thing that can work.
@@ -167,7 +169,7 @@ const ONE_AT_A_TIME: PipelineEntry = PipelineEntry {
 
 // ANCHOR: main
 fn main() -> ExitCode {
-    let mut registry: Registry = (*pxpl5::registry()).clone();
+    let mut registry: Registry = (*pxpl5_cli::pxpl5::registry()).clone();
     registry.add(ONE_AT_A_TIME);
     pxpl5_cli::main(Arc::new(registry))
 }

@@ -2,7 +2,7 @@
 
 use crate::error::CliError;
 use crate::settings::SettingArgs;
-use crate::terminal::print;
+use crate::terminal::{print, warn};
 use clap::Args;
 
 /// Print the effective configuration of an experiment; nothing is run.
@@ -19,6 +19,7 @@ pub(crate) struct CheckArgs {
 
 pub(crate) fn run(args: CheckArgs) -> Result<(), CliError> {
     let plan = args.settings.gather()?.resolve()?;
+    warn(&plan.out_of_range(), false);
     let scene = plan.load_scene()?;
     let version = env!("CARGO_PKG_VERSION");
     let hash = plan.experiment(scene).config_hash();

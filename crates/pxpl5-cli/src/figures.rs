@@ -1,10 +1,10 @@
 //! `pxpl5 figures`.
 
 use crate::error::CliError;
-use crate::terminal::print;
+use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::Level;
-use pxpl5::figures::{Bench, Figures, Row, markdown, mean_error_percent, run_all};
+use pxpl5::figures::{Bench, Figures, Row, markdown, mean_error_percent, run_all_with};
 use serde_json::json;
 use std::fmt::Write;
 use std::fs;
@@ -30,7 +30,10 @@ pub(crate) struct FiguresArgs {
 }
 
 pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
-    let figures = run_all(&Bench::new(Level::Transaction)).map_err(CliError::failure)?;
+    let bar = progress(0, "figures", false);
+    let figures = run_all_with(&Bench::new(Level::Transaction), |done, of| advance(&bar, done, of));
+    bar.finish_and_clear();
+    let figures = figures.map_err(CliError::failure)?;
     if let Some(path) = &args.write {
         fs::write(path, markdown(&figures)).map_err(|error| refused(path, &error))?;
     }

@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::output::OutputFolder;
 use crate::settings::SettingArgs;
-use crate::terminal::print;
+use crate::terminal::{print, warn};
 use clap::{Args, ValueEnum};
 use pxpl5::{Eye, Film, FilmOf, PeriodNumber, Pixels};
 use std::path::PathBuf;
@@ -47,6 +47,7 @@ enum Whose {
 
 pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
     let plan = args.settings.gather()?.resolve()?;
+    warn(&plan.out_of_range(), args.quiet);
     let eyes = match args.eye {
         Whose::Left => FilmOf::One(Eye::Left.into()),
         Whose::Right => FilmOf::One(Eye::Right.into()),

@@ -1,10 +1,10 @@
 //! `pxpl5 levels`.
 
 use crate::error::CliError;
-use crate::terminal::print;
+use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::growth;
-use pxpl5::levels::{LevelReport, compare};
+use pxpl5::levels::{LevelReport, compare_with};
 use pxpl5::views::charts::{SpeedAndError, level_chart};
 use serde_json::json;
 use std::fmt::Write;
@@ -32,12 +32,19 @@ pub(crate) struct LevelsArgs {
 
 pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     if let Some(path) = &args.scaling {
-        return write(
-            path,
-            &growth::markdown(&growth::by_triangles()?, &growth::by_machine()?, &growth::applications()?),
-        );
+        let bar = progress(3, "tables", false);
+        let by_triangles = growth::by_triangles()?;
+        bar.inc(1);
+        let by_machine = growth::by_machine()?;
+        bar.inc(1);
+        let applications = growth::applications()?;
+        bar.finish_and_clear();
+        return write(path, &growth::markdown(&by_triangles, &by_machine, &applications));
     }
-    let reports = compare()?;
+    let bar = progress(0, "figures at all levels", false);
+    let reports = compare_with(|done, of| advance(&bar, done, of));
+    bar.finish_and_clear();
+    let reports = reports?;
     if let Some(path) = &args.chart {
         let levels: Vec<SpeedAndError> = reports.iter().map(speed_and_error).collect();
         write(path, &level_chart(&levels))?;

@@ -31,6 +31,9 @@ mod table;
 mod terminal;
 mod trace;
 
+/// The emulator: a crate with pipelines of its own needs nothing beside this one.
+pub use pxpl5;
+
 use clap::{Parser, Subcommand};
 use error::CliError;
 use pxpl5::Registry;
@@ -179,6 +182,7 @@ mod tests {
             (include_str!("../../../docs/sweeps.md"), 10),
             (include_str!("../../../docs/guide/head-to-light.md"), 5),
             (include_str!("../../../docs/guide/figures.md"), 5),
+            (include_str!("../../../docs/guide/assembler.md"), 3),
             (include_str!("../../../README.md"), 7),
         ] {
             let found = parses(page);

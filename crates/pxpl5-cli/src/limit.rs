@@ -2,7 +2,7 @@
 
 use crate::error::CliError;
 use crate::options::{PipelineOptions, option_of, registry};
-use crate::terminal::print;
+use crate::terminal::{print, warn};
 use clap::{Args, ValueEnum};
 use pxpl5::limit::{Limit, LimitQuery};
 use pxpl5::{ExperimentFile, Goal, LimitCriterion, TestScene};
@@ -87,6 +87,7 @@ const LEAST_FIELDS: u64 = 10;
 impl LimitArgs {
     fn query(&self) -> Result<LimitQuery, CliError> {
         let plan = self.file()?.resolve()?;
+        warn(&plan.out_of_range(), false);
         let criterion = plan.limit;
         let fields = self.fields.unwrap_or(criterion.fields);
         if fields < LEAST_FIELDS {

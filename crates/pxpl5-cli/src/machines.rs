@@ -2,10 +2,10 @@
 
 use crate::error::CliError;
 use crate::options::registry;
-use crate::terminal::print;
+use crate::terminal::{print, progress};
 use clap::Args;
-use pxpl5::{MachineConfig, PRESETS, Parameter, tracking_parameters};
-use serde_json::json;
+use pxpl5::{ConfigError, MachineConfig, PRESETS, Parameter, Preset, Suitability, suitability, tracking_parameters};
+use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
 /// List the machines that are built in.
@@ -28,28 +28,72 @@ pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
         let machine = registry().machine_of(MachineConfig::preset(name).map_err(CliError::usage)?);
         return print(&if args.json { one_json(&machine) } else { one_text(&machine) });
     }
-    print(&if args.json { all_json() } else { all_text() })
+    let bar = progress(PRESETS.len() as u64, "machines", false);
+    let mut machines = Vec::new();
+    for preset in &PRESETS {
+        machines.push(Listed::new(preset).map_err(CliError::usage)?);
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    print(&if args.json { all_json(&machines) } else { all_text(&machines) })
 }
 
-fn all_text() -> String {
+/// A preset, and which pipelines it can run.
+struct Listed {
+    preset: &'static Preset,
+    machine: MachineConfig,
+    pipelines: Vec<Suitability>,
+}
+
+impl Listed {
+    fn new(preset: &'static Preset) -> Result<Self, ConfigError> {
+        let machine = MachineConfig::preset(preset.name)?;
+        let pipelines = suitability(&registry(), &machine);
+        Ok(Self { preset, machine, pipelines })
+    }
+
+    fn runs(&self) -> Vec<&'static str> {
+        self.pipelines.iter().filter(|one| one.lacks.is_none()).map(|one| one.pipeline).collect()
+    }
+
+    fn lacks(&self) -> Map<String, Value> {
+        let lacking =
+            self.pipelines.iter().filter_map(|one| Some((one.pipeline.to_owned(), json!(one.lacks.as_ref()?))));
+        lacking.collect()
+    }
+
+    fn about_pipelines(&self) -> String {
+        let runs = self.runs();
+        match runs.len() {
+            all if all == self.pipelines.len() => "runs every pipeline".to_owned(),
+            0 => "runs no pipeline".to_owned(),
+            _ => format!("runs {}", runs.join(", ")),
+        }
+    }
+}
+
+fn all_text(machines: &[Listed]) -> String {
     let mut text = format!("{:<16} {:>4} {:>10}  {}\n", "machine", "GPs", "renderers", "what it is");
-    for preset in PRESETS {
-        let machine = MachineConfig::preset(preset.name);
-        let (gps, renderers) = machine.map_or((0, 0), |machine| (machine.n_gps, machine.n_renderers));
-        let _ = writeln!(text, "{:<16} {gps:>4} {renderers:>10}  {}", preset.name, preset.about);
+    for listed in machines {
+        let MachineConfig { n_gps, n_renderers, .. } = listed.machine;
+        let _ = writeln!(text, "{:<16} {n_gps:>4} {n_renderers:>10}  {}", listed.preset.name, listed.preset.about);
+        let _ = writeln!(text, "{:<32}  {}", "", listed.about_pipelines());
     }
     text
 }
 
-fn all_json() -> String {
-    let machines = PRESETS.iter().map(|preset| {
-        let machine = MachineConfig::preset(preset.name).ok();
-        let gps = machine.as_ref().map(|m| m.n_gps);
-        let renderers = machine.as_ref().map(|m| m.n_renderers);
-        json!({"name": preset.name, "about": preset.about, "n_gps": gps, "n_renderers": renderers})
+fn all_json(machines: &[Listed]) -> String {
+    let machines = machines.iter().map(|listed| {
+        json!({
+            "name": listed.preset.name,
+            "about": listed.preset.about,
+            "n_gps": listed.machine.n_gps,
+            "n_renderers": listed.machine.n_renderers,
+            "pipelines": listed.runs(),
+            "cannot_run": listed.lacks(),
+        })
     });
-    let machines: Vec<_> = machines.collect();
-    format!("{:#}\n", json!({"schema": "pxpl5-machines/1", "machines": machines}))
+    format!("{:#}\n", json!({"schema": "pxpl5-machines/1", "machines": machines.collect::<Vec<_>>()}))
 }
 
 fn one_json(machine: &MachineConfig) -> String {
@@ -58,6 +102,7 @@ fn one_json(machine: &MachineConfig) -> String {
         "name": machine.preset,
         "n_gps": machine.n_gps,
         "n_renderers": machine.n_renderers,
+        "pipelines": suitability(&registry(), machine),
         "parameters": machine.parameters(),
         "tracking": tracking_parameters(),
     });
@@ -66,6 +111,11 @@ fn one_json(machine: &MachineConfig) -> String {
 
 fn one_text(machine: &MachineConfig) -> String {
     let mut text = format!("{}: {} GPs, {} renderers\n\n", machine.preset, machine.n_gps, machine.n_renderers);
+    for Suitability { pipeline, lacks } in suitability(&registry(), machine) {
+        let said = lacks.map_or_else(|| "runs".to_owned(), |lacks| format!("cannot run: {lacks}"));
+        let _ = writeln!(text, "{pipeline:<42} {said}");
+    }
+    text.push('\n');
     machine.parameters().iter().for_each(|parameter| line(&mut text, parameter));
     text.push_str("\nWith a tracked head (head.motion, --head), whatever the machine:\n\n");
     tracking_parameters().iter().for_each(|parameter| line(&mut text, parameter));

@@ -1,13 +1,14 @@
 //! `pxpl5 report`: a results folder as one page.
 
 mod load;
+mod tables;
 
 use crate::error::CliError;
 use crate::output::OutputFolder;
 use crate::terminal::print;
 use clap::Args;
 use pxpl5::views::page;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Make one self-contained HTML page of a results folder.
 #[derive(Args, Debug)]
@@ -15,12 +16,14 @@ use std::path::PathBuf;
   pxpl5 run --pipeline slats --scene mig --triangles 140 --out out/mig
   pxpl5 report out/mig                 writes out/mig/report.html
   pxpl5 report out --write page.html   of what pxpl5 demo wrote
+  pxpl5 report out/slats               of a sweep or a comparison
 
 The page needs no network, fits a phone and can be printed.")]
 pub(crate) struct ReportArgs {
-    /// What `pxpl5 run --out` or `pxpl5 demo` wrote.
-    #[arg(value_name = "DIR")]
-    folder: PathBuf,
+    /// What `pxpl5 run --out`, `pxpl5 demo`, `pxpl5 sweep --out` or `pxpl5 compare --out` wrote: the folder, or its report.json,
+    /// rows.jsonl or comparison.json.
+    #[arg(value_name = "DIR|FILE")]
+    results: PathBuf,
     /// The file to write; default: report.html in the folder.
     #[arg(long, value_name = "FILE")]
     write: Option<PathBuf>,
@@ -30,13 +33,23 @@ pub(crate) struct ReportArgs {
 }
 
 pub(crate) fn run(args: ReportArgs) -> Result<(), CliError> {
-    let runs = load::runs(&args.folder)?;
-    let path = args.write.unwrap_or_else(|| args.folder.join("report.html"));
+    let folder = folder_of(&args.results);
+    let page = match tables::of(folder)? {
+        Some(tables) => page::html_of_tables(&tables),
+        None => page::html(&load::runs(folder)?),
+    };
+    let path = args.write.unwrap_or_else(|| folder.join("report.html"));
     let (mut folder, name) = OutputFolder::of_file(&path)?;
-    folder.put(&name, page::html(&runs).as_bytes())?;
+    folder.put(&name, page.as_bytes())?;
     folder.commit()?;
     if args.quiet {
         return Ok(());
     }
     print(&format!("Written to {}.\n", path.display()))
+}
+
+/// The folder of a results file, or the folder itself.
+fn folder_of(results: &Path) -> &Path {
+    let folder = if results.is_file() { results.parent() } else { None };
+    folder.map_or(results, |folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
 }

@@ -5,7 +5,7 @@ use crate::output::{OutputFolder, png, timeline};
 use crate::settings::SettingArgs;
 use crate::snapshot::{Simulated, SnapshotArgs};
 use crate::table::{Comparison, table};
-use crate::terminal::print;
+use crate::terminal::{print, warn};
 use clap::Args;
 use pxpl5::results::{origin_lines, quantities_csv};
 use pxpl5::tracking::time::PS_PER_MS;
@@ -49,6 +49,7 @@ pub(crate) struct RunArgs {
 
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
+    warn(&plan.out_of_range(), args.quiet);
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
     let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, args.threads, &args.without, args.quiet)?;
     let results = Results::of_run(outcome);

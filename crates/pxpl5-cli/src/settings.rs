@@ -20,9 +20,12 @@ pub(crate) struct SettingArgs {
     /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .pdb.
     #[arg(long, value_name = "NAME|FILE")]
     scene: Option<String>,
-    /// Keep the first N primitives of the scene, triangles before spheres.
+    /// Decimate the scene to at most N primitives, keeping its shape.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     triangles: Option<i64>,
+    /// Leave a model file where its coordinates say, in metres, instead of fitting it into the view of both eyes.
+    #[arg(long)]
+    no_fit: bool,
     /// Preset of the machine (see `pxpl5 machines`); default: the one on which the pipeline was published.
     #[arg(long, value_name = "PRESET")]
     machine: Option<String>,
@@ -121,6 +124,9 @@ impl SettingArgs {
         for column in self.columns.iter().flat_map(|columns| columns.split(',')) {
             let (field, name) = column.split_once('=').unwrap_or((column, ""));
             file.set(&format!("head.columns.{}", field.trim()), name.trim(), "--columns")?;
+        }
+        if self.no_fit {
+            file.set("fit", false, "--no-fit")?;
         }
         for assignment in &self.sets {
             file.set_text(assignment, "--set")?;

@@ -2,10 +2,10 @@
 
 use crate::error::CliError;
 use crate::options::registry;
-use crate::terminal::{complain, print, progress};
+use crate::terminal::{complain, print, progress, warn};
 use clap::Args;
-use pxpl5::ExperimentFile;
 use pxpl5::sweep::{ROWS_FILE, RunOptions, Shard, Status, Store, Sweep};
+use pxpl5::{ExperimentFile, Parameter};
 use std::path::PathBuf;
 
 /// Run an experiment at every point of a space of settings.
@@ -53,7 +53,9 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
         file.set_text(assignment, "--set")?;
     }
     let sweep = Sweep::new(file)?;
+    warn(&supposed(&sweep), args.quiet);
     let mut store = Store::open(&args.out, sweep.header()?, args.resume)?;
+    told_when_interrupted(&args)?;
     let points: Vec<u64> = (0..sweep.space().points()).filter(|point| args.shard.holds(*point)).collect();
     let held = points.iter().filter(|point| store.holds(**point)).count();
     let total = points.len();
@@ -66,6 +68,46 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     bar.finish_and_clear();
     summarise(&args, &store, total)?;
     Ok(store.finish()?)
+}
+
+/// What no source allows at the first or the last point.
+fn supposed(sweep: &Sweep) -> Vec<Parameter> {
+    let ends = [0, sweep.space().points() - 1].map(|point| sweep.plan(point).map(|plan| plan.out_of_range()));
+    let mut all: Vec<Parameter> = ends.into_iter().flatten().flatten().collect();
+    all.dedup();
+    all
+}
+
+/// How a process that Ctrl-C ended is told from others: 128 and the number of the signal, as shells have it.
+const INTERRUPTED: i32 = 130;
+
+/// Ctrl-C ends the sweep and says how it goes on: finished rows are in the file already.
+fn told_when_interrupted(args: &SweepArgs) -> Result<(), CliError> {
+    let again = again(args);
+    let handler = move || {
+        complain(&format!("\npxpl5: interrupted; the finished points are kept. To go on:\n  {again}\n"));
+        std::process::exit(INTERRUPTED);
+    };
+    ctrlc::set_handler(handler).map_err(|error| CliError::failure(format!("Ctrl-C cannot be listened for: {error}")))
+}
+
+/// The command that goes on with what this one began.
+fn again(args: &SweepArgs) -> String {
+    let mut words = vec!["pxpl5 sweep".to_owned(), quoted(&args.file.display().to_string())];
+    words.extend(["--out".to_owned(), quoted(&args.out.display().to_string())]);
+    if args.shard != Shard::ALL {
+        words.extend(["--shard".to_owned(), format!("{}/{}", args.shard.number(), args.shard.of())]);
+    }
+    words.extend(args.threads.map(|threads| format!("--threads {threads}")));
+    words.extend(args.sets.iter().map(|set| format!("--set {}", quoted(set))));
+    words.push("--resume".to_owned());
+    words.join(" ")
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = word.chars().all(|c| c.is_alphanumeric() || "-_./=:,".contains(c)) && !word.is_empty();
+    if is_plain { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
 fn summarise(args: &SweepArgs, store: &Store, total: usize) -> Result<(), CliError> {

@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use pxpl5::Parameter;
 use std::io::{ErrorKind, IsTerminal, Write};
 
 /// Prints a result. A reader that has gone away (`| head`) is no fault.
@@ -22,6 +23,19 @@ pub(crate) fn print(text: &str) -> Result<(), CliError> {
 /// Says something on standard error; if nobody can read that, there is nobody to tell.
 pub(crate) fn complain(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// Says which numbers of a machine no source allows, each once.
+pub(crate) fn warn(supposed: &[Parameter], quiet: bool) {
+    if !quiet {
+        supposed.iter().for_each(|parameter| complain(&format!("pxpl5: warning: {}\n", parameter.warning())));
+    }
+}
+
+/// Moves a bar on.
+pub(crate) fn advance(bar: &ProgressBar, done: u64, of: u64) {
+    bar.set_length(of);
+    bar.set_position(done);
 }
 
 /// A bar with the time to go, on standard error and only on a terminal.

@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::output::OutputFolder;
 use crate::settings::SettingArgs;
-use crate::terminal::{print, progress};
+use crate::terminal::{print, progress, warn};
 use clap::{Args, ValueEnum};
 use pxpl5::trace_export::{Trace, chrome, perfetto};
 use std::path::PathBuf;
@@ -39,6 +39,7 @@ enum Format {
 
 pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     let plan = args.settings.gather()?.resolve()?;
+    warn(&plan.out_of_range(), args.quiet);
     let (mut folder, name) = OutputFolder::of_file(&args.out)?;
     let bar = progress(plan.fields, "fields", args.quiet);
     let experiment = plan.experiment(plan.load_scene()?).record_traffic(true);

@@ -189,7 +189,7 @@ fn lists_name_what_is_built_in() {
     let folder = Folder::new("lists");
     let scenes = json(&folder.run(&["scenes", "--json"]));
     let known: Vec<_> = scenes["scenes"].as_array().expect("a list").iter().map(|scene| &scene["name"]).collect();
-    assert_eq!(known, ["mig", "molecules", "head", "full-screen:N"]);
+    assert_eq!(known, ["aircraft", "mig", "molecules", "head", "full-screen:N", "typical:N", "sphere:N"]);
     let machines = json(&folder.run(&["machines", "--json"]));
     // TR94: 13 GPs and 5 renderers.
     let small =
@@ -376,13 +376,22 @@ fn without_arguments_both_pipelines_run_and_leave_pictures() {
     let output = folder.run(&[]);
     assert!(output.status.success(), "{}", err(&output));
     let text = out(&output);
-    for part in
-        ["rendering-control", "slats", "full-screen:12", "mig", "417 triangles", "140 triangles", "56.5", "4.61"]
-    {
+    for part in [
+        "rendering-control",
+        "slats",
+        "full-screen:12",
+        "mig",
+        "417 triangles",
+        "aircraft",
+        "100 triangles",
+        "56.5",
+        "4.61",
+    ] {
         assert!(text.contains(part), "{part}: {text}");
     }
     let report: serde_json::Value =
         serde_json::from_slice(&std::fs::read(folder.0.join("out/report.json")).expect("written")).expect("JSON");
+    assert_eq!(report["runs"][0]["name"], "rendering-control-mig", "the scene first, the plain rectangle last");
     for run in report["runs"].as_array().expect("a list") {
         assert!(run["report"]["fields"].as_u64().expect("a number") >= 120);
         let timeline = format!("out/{}-timeline.svg", run["name"].as_str().expect("text"));
@@ -392,7 +401,8 @@ fn without_arguments_both_pipelines_run_and_leave_pictures() {
             let picture = image::open(folder.0.join(&name)).expect("a picture").to_rgb8();
             assert_eq!((picture.width(), picture.height()), (640, 480), "{name}");
             // Backgrounds of the two scenes; twelve triangles cover the screen, an aircraft part of the sky.
-            let (empty, least) = if name.contains("mig") { ([92, 140, 200], 5_000) } else { ([16, 24, 48], 640 * 480) };
+            let is_flight = name.contains("mig") || name.contains("aircraft");
+            let (empty, least) = if is_flight { ([92, 140, 200], 5_000) } else { ([16, 24, 48], 640 * 480) };
             let drawn = picture.pixels().filter(|pixel| pixel.0 != empty).count();
             assert!(drawn >= least, "{name}: {drawn} pixels");
         }
@@ -487,6 +497,37 @@ fn every_experiment_file_is_valid_and_every_figure_that_a_run_can_show_has_one()
     // Figure 8 is about scenes, not about a run.
     let expected = (1..=15).filter(|n| *n != 8).map(|n| format!("{n:02}"));
     assert_eq!(figures, expected.collect());
+}
+
+/// Published and simulated value of a figure in ACCURACY.md.
+fn accuracy(id: &str) -> (f64, f64) {
+    let document = include_str!("../../../ACCURACY.md");
+    let row = document.lines().find(|line| line.starts_with(&format!("| {id} |"))).expect("a row");
+    let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+    let number = |cell: &str| cell.split_whitespace().next().and_then(|n| n.parse().ok()).expect("a number");
+    (number(cells[3]), number(cells[4]))
+}
+
+/// A file may say why it does not give ACCURACY.md's number.
+const DIFFERS: &str = "# Not the number of ACCURACY.md: ";
+
+#[test]
+fn the_files_of_figures_agree_with_accuracy_md_or_say_why_not() {
+    for (name, text) in experiments() {
+        let file = pxpl5::ExperimentFile::parse(&text, &name).expect("valid");
+        if file.is_sweep() || text.contains(DIFFERS) {
+            continue;
+        }
+        let plan = file.resolve().expect("an experiment");
+        let published = plan.published.clone().expect("a figure");
+        let id = published.figure.expect("its number").to_string();
+        let results = plan.run(plan.load_scene().expect("a scene")).expect("it runs");
+        let simulated = published.quantity.of(&results).expect("measured");
+        // By their errors, since the units may differ: figure 10 is in region times there. Four digits are printed there.
+        let (printed, found) = accuracy(&id);
+        let (here, there) = (simulated / published.value, found / printed);
+        assert!((here / there - 1.0).abs() < 0.001, "{name}: {here} of the published value, in ACCURACY.md {there}");
+    }
 }
 
 #[test]

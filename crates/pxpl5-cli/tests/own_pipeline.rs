@@ -36,9 +36,26 @@ fn piece(name: &str) -> String {
 
 #[test]
 fn every_piece_of_the_guide_is_cut_from_the_example() {
-    for name in ["pipeline", "firmware", "implementation", "entry", "main"] {
+    for name in ["imports", "pipeline", "firmware", "implementation", "entry", "main"] {
         let shown = format!("<!-- {name} -->\n```rust,ignore\n{}```\n", piece(name));
         assert!(PAGE.contains(&shown), "{name}: run scripts/guide-code");
+    }
+}
+
+/// The guide's Cargo.toml has one dependency, so every path of the example begins with it or with the standard library.
+#[test]
+fn the_example_needs_one_dependency() {
+    let section = PAGE.split_once("[dependencies]\n").expect("a Cargo.toml").1;
+    let dependencies: Vec<&str> = section.lines().take_while(|line| *line != "```").collect();
+    assert_eq!(dependencies.len(), 1);
+    assert!(dependencies[0].starts_with("pxpl5-cli = "), "{dependencies:?}");
+    let code: Vec<&str> = EXAMPLE.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+    for line in code.iter().filter(|line| line.starts_with("use ")) {
+        assert!(line.starts_with("use pxpl5_cli::") || line.starts_with("use std::"), "{line}");
+    }
+    let code = code.join("\n").replace("pxpl5_cli::pxpl5::", "");
+    for foreign in ["pxpl5::", "glam::", "pphigs::", "parameters::", "tracking::", "slats::"] {
+        assert!(!code.contains(foreign), "{foreign}");
     }
 }
 

@@ -92,3 +92,44 @@ fn nothing_is_written_where_a_file_cannot_be() {
     assert_eq!(output.status.code(), Some(2));
     assert_eq!(folder.names(), ["file"]);
 }
+
+#[test]
+fn a_report_of_a_sweep_is_its_rows() {
+    let folder = Folder::new("report-sweep");
+    folder.file(
+        "s.toml",
+        "title = \"Two sizes\"\npipeline = \"slats\"\nscene = \"full-screen:8\"\nfields = 12\n[sweep.grid]\ntriangles = [1, 8]\n",
+    );
+    assert!(folder.run(&["sweep", "s.toml", "--out", "o", "--quiet"]).status.success());
+    for results in ["o", "o/rows.jsonl"] {
+        let output = folder.run(&["report", results]);
+        assert!(output.status.success(), "{}", err(&output));
+        let page = std::fs::read_to_string(folder.0.join("o/report.html")).expect("written");
+        assert!(page.contains("<h2>Two sizes</h2>") && page.contains("2 of 2 points"), "{page}");
+        assert_eq!(page.matches("<tr>").count(), 3);
+        for column in ["triangles", "latency_ms.mean", "missed_retraces"] {
+            assert!(page.contains(&format!("<th>{column}</th>")), "{column}: {page}");
+        }
+    }
+    // Interrupted in the middle of a line: what is whole is shown.
+    let rows = std::fs::read_to_string(folder.0.join("o/rows.jsonl")).expect("written");
+    folder.file("o/rows.jsonl", &rows[..rows.len() - 9]);
+    assert!(folder.run(&["report", "o", "--quiet"]).status.success());
+    assert!(std::fs::read_to_string(folder.0.join("o/report.html")).expect("written").contains("1 of 2 points"));
+}
+
+#[test]
+fn a_report_of_a_comparison_has_a_row_for_each_pipeline_and_its_pictures() {
+    let folder = Folder::new("report-comparison");
+    let args = ["compare", "--fields", "60", "--no-triangles", "--quiet", "--out", "c"];
+    let output = folder.run(&args);
+    assert!(output.status.success(), "{}", err(&output));
+    let output = folder.run(&["report", "c"]);
+    assert!(output.status.success(), "{}", err(&output));
+    let page = std::fs::read_to_string(folder.0.join("c/report.html")).expect("written");
+    for part in ["<td>rendering-control</td>", "<td>slats</td>", "data:image/svg+xml;base64,", "data:image/png;base64,"]
+    {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(page.contains("<h2>Comparison</h2>") && page.contains("pipeline</th>"));
+}

@@ -25,6 +25,7 @@ mod parallel;
 pub mod pipeline_figures;
 pub mod rig;
 mod snapshot;
+mod suitability;
 pub mod sweep;
 
 pub use experiment_file::{
@@ -33,6 +34,7 @@ pub use experiment_file::{
 };
 pub use host::Workstation;
 pub use snapshot::{Snapshot, SnapshotError};
+pub use suitability::{Suitability, suitability};
 
 use pxpl5_run::Registry;
 use std::sync::{Arc, LazyLock};

@@ -305,7 +305,7 @@ mod tests {
             },
         );
         result.expect("it runs");
-        let cut = plan.load_scene().expect("built in").truncated(39).expect("it has 40");
+        let cut = plan.load_scene().expect("built in").decimated(39).expect("it has 40");
         assert!(snapshot.check_scene(&cut, "s").is_err());
     }
 

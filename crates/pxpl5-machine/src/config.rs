@@ -158,6 +158,27 @@ impl Parameter {
     }
 }
 
+impl Parameter {
+    /// Whether the sources allow the value.
+    #[must_use]
+    pub fn is_in_range(&self) -> bool {
+        let (low, high) = self.info.range;
+        (low..=high).contains(&self.value)
+    }
+
+    /// That the value is outside what the sources allow, with range and source.
+    #[must_use]
+    pub fn warning(&self) -> String {
+        let Self { path, info, value, .. } = self;
+        let (low, high) = info.range;
+        let unit = info.unit;
+        format!(
+            "{path} = {value} {unit} is outside its range, {low} to {high} {unit} ({}: {})",
+            info.standing, info.source
+        )
+    }
+}
+
 /// Most boards of a kind: a ring of that many is still far from 16 bits of port numbers.
 const MAX_BOARDS: u64 = 1_000;
 
@@ -246,6 +267,15 @@ impl MachineConfig {
             self.parameters().into_iter().map(|parameter| (parameter.path, parameter.info.papers)).collect();
         let expected = |path: &String| of_preset.get(path).or_else(|| of_papers.get(path));
         self.settings().into_iter().filter(|(path, value)| expected(path) != Some(value)).collect()
+    }
+
+    /// Parameters that no source allows: outside their stated range, and not what the preset says. The model can take them, but
+    /// what comes of them is a supposition.
+    #[must_use]
+    pub fn out_of_range(&self) -> Vec<Parameter> {
+        let changed = self.overrides();
+        let is_supposed = |parameter: &Parameter| !parameter.is_in_range() && changed.contains_key(&parameter.path);
+        self.parameters().into_iter().filter(is_supposed).collect()
     }
 
     /// The numbers of boards and all parameters, by path.
@@ -395,6 +425,33 @@ mod tests {
         assert_eq!(config.overrides(), BTreeMap::from(expected));
         config.set("extra.step_ns", 500).expect("known");
         assert!(!config.overrides().contains_key("extra.step_ns"));
+    }
+
+    #[test]
+    fn a_value_that_no_source_allows_is_told_with_range_and_source() {
+        let mut config = MachineConfig::small_hmd();
+        assert!(config.out_of_range().is_empty());
+        config.set("gp.triangle_ns", 3).expect("within the limits");
+        config.check().expect("the model can take it");
+        let [found] = &config.out_of_range()[..] else { panic!("{:?}", config.out_of_range()) };
+        let (low, high) = found.info.range;
+        let text = found.warning();
+        assert!(
+            text.starts_with(&format!("gp.triangle_ns = 3 ns is outside its range, {low} to {high} ns (")),
+            "{text}"
+        );
+        assert!(text.contains(found.info.source), "{text}");
+        let inside = low.whole().expect("nanoseconds are whole");
+        config.set("gp.triangle_ns", inside).expect("known");
+        assert!(config.out_of_range().is_empty());
+    }
+
+    #[test]
+    fn no_preset_is_warned_of() {
+        for preset in crate::PRESETS {
+            let config = MachineConfig::preset(preset.name).expect("it is listed");
+            assert!(config.out_of_range().is_empty(), "{}: {:?}", preset.name, config.out_of_range());
+        }
     }
 
     #[test]

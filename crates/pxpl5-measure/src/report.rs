@@ -6,7 +6,7 @@ use crate::latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, lat
 use crate::too_heavy::TooHeavy;
 use parameters::Value;
 use pxpl5_display::Counter;
-use pxpl5_machine::LateRegion;
+use pxpl5_machine::{LateRegion, Parameter};
 use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -35,6 +35,8 @@ pub struct Report {
     pub display: String,
     /// Parameters of the machine that differ from the preset's, by path.
     pub overrides: BTreeMap<String, Value>,
+    /// What no source allows: each parameter outside its stated range, with range and source.
+    pub warnings: Vec<String>,
     /// Graphics processors.
     pub n_gps: usize,
     /// Renderers.
@@ -173,6 +175,7 @@ impl Report {
                 .join(" "),
             display: record.display().name().to_owned(),
             overrides: config.overrides(),
+            warnings: experiment.out_of_range().iter().map(Parameter::warning).collect(),
             n_gps: config.n_gps,
             n_renderers: config.n_renderers,
             scene: scene.name().to_owned(),

@@ -7,7 +7,7 @@ use crate::level::Level;
 use crate::pipeline::Pipeline;
 use crate::raster::Raster;
 use pxpl5_display::Aim;
-use pxpl5_machine::{MachineConfig, Saving};
+use pxpl5_machine::{MachineConfig, Parameter, Saving};
 use pxpl5_scene::Scene;
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
@@ -30,6 +30,15 @@ pub const WARM_UP_PICTURES: usize = 4;
 
 /// Smallest and largest number of fields.
 pub const FIELDS_RANGE: (u64, u64) = (1, 10_000_000);
+
+/// Parameters that no source allows for a pipeline: outside their stated range, and neither what the preset says nor what the
+/// pipeline's own code makes of it.
+#[must_use]
+pub fn out_of_range(config: &MachineConfig, pipeline: &dyn Pipeline) -> Vec<Parameter> {
+    let usual = MachineConfig::preset(&config.preset).map(|preset| pipeline.adapt(preset).parameters());
+    let usual = usual.unwrap_or_default();
+    config.out_of_range().into_iter().filter(|parameter| !usual.contains(parameter)).collect()
+}
 
 /// What is to be run.
 #[derive(Clone, Debug)]
@@ -224,6 +233,12 @@ impl Experiment {
             hash.setting("on_demand", true);
         }
         hash
+    }
+
+    /// Parameters of the machine that no source allows: see [`out_of_range`].
+    #[must_use]
+    pub fn out_of_range(&self) -> Vec<Parameter> {
+        out_of_range(&self.config, self.pipeline.as_ref())
     }
 
     /// The scene that is drawn.

@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn a_scene_with_one_triangle_less_has_another_fingerprint() {
         let mig = pxpl5_scene::builtin("mig").expect("built in");
-        let shorter = mig.truncated(416).expect("it has 417");
+        let shorter = mig.decimated(416).expect("it has 417");
         assert_ne!(Fingerprint::of_scene(&mig), Fingerprint::of_scene(&shorter));
         assert_eq!(Fingerprint::of_scene(&mig), Fingerprint::of_scene(&mig.clone()));
     }

@@ -39,7 +39,7 @@ mod views;
 pub use display_list::{display_list, views};
 pub use due::{DuePictures, PictureEnd, WARM_UP_PERIODS, WINDOW_DEFINITION};
 pub use error::ExperimentError;
-pub use experiment::{Estimates, Experiment, FIELDS_RANGE, Pixels, WARM_UP_PICTURES};
+pub use experiment::{Estimates, Experiment, FIELDS_RANGE, Pixels, WARM_UP_PICTURES, out_of_range};
 pub use fingerprint::Fingerprint;
 pub use head::{Head, HeadError};
 pub use head_views::{FIELDS_WITH_HEAD, Follower, HeadViews, Sampled};

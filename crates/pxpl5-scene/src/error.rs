@@ -149,11 +149,13 @@ pub enum SceneError {
         /// All valid names, with commas between.
         valid: String,
     },
-    /// The N of `full-screen:N` is no number or out of range.
-    #[error("scene full-screen:N: expected N from 1 to {expected}, found {found:?}")]
+    /// The N of a scene such as `full-screen:N` is no number or out of range.
+    #[error("scene {scene}: expected N {expected}, found {found:?}")]
     TriangleCount {
-        /// The largest N allowed.
-        expected: u32,
+        /// The scene, with N in its name.
+        scene: &'static str,
+        /// What N may be.
+        expected: String,
         /// What stands after the colon.
         found: String,
     },

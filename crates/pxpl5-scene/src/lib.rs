@@ -19,10 +19,13 @@
 //!
 //! | name | triangles | spheres | standing of the counts |
 //! |---|---|---|---|
+//! | `aircraft` | 100 | | assumed: what Slats draws in time |
 //! | `mig` | 417 | | published TR94 |
 //! | `molecules` | 2,620 | 1,219 | assumed |
 //! | `head` | 59,592 | | assumed |
 //! | `full-screen:N` | N | | published TR94 for N = 12 |
+//! | `typical:N` | N | | published TR94 for their size |
+//! | `sphere:N` | N | | |
 //!
 //! - [`HeadMotion::pose`] gives the head's [`Pose`] at any picosecond; [`Hmd::stereo`] the [`View`]s of its eyes.
 //!
@@ -51,6 +54,7 @@
 
 mod builtin;
 pub mod config;
+mod decimate;
 mod edit;
 mod error;
 mod import;
@@ -63,9 +67,9 @@ mod view;
 pub use builtin::{builtin, names};
 pub use edit::{Edit, Hinge};
 pub use error::{LoadError, Place, RangeError, SceneError};
+pub use import::{Format, Placement, from_bytes, from_reader, placed_from_bytes, placed_from_reader};
 #[cfg(feature = "files")]
-pub use import::load;
-pub use import::{Format, from_bytes, from_reader};
+pub use import::{load, load_placed};
 pub use motion::{HeadMotion, HeadPath};
 pub use scene::{Frame, Lighting, Scene, SceneParts, Sphere, Structure, Vertex};
 pub use sway::Sway;

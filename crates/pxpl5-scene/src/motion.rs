@@ -4,7 +4,7 @@ use glam::{DMat3, DQuat, DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 use tracking::Pose;
 
-use crate::config::FIT_DISTANCE_RADII;
+use crate::config::{FIT_DISTANCE_RADII, WHOLE_DISTANCE_RADII};
 use crate::error::{RangeError, require};
 use crate::sway::{self, Sway, Swing};
 use crate::trig;
@@ -110,6 +110,14 @@ impl HeadMotion {
     #[must_use]
     pub fn looking_at(centre: Vec3, radius: f64) -> Self {
         let path = HeadPath::Look { target: centre, distance: radius * FIT_DISTANCE_RADII };
+        Self { path, sway: Sway { seed: 1, scale: 1.0 } }
+    }
+
+    /// The same from so far away that all of the model is in the view of both eyes at any time, whatever the seed: from
+    /// [`crate::config::WHOLE_DISTANCE_RADII`] times `radius` (metres).
+    #[must_use]
+    pub fn seeing_whole(centre: Vec3, radius: f64) -> Self {
+        let path = HeadPath::Look { target: centre, distance: radius * WHOLE_DISTANCE_RADII };
         Self { path, sway: Sway { seed: 1, scale: 1.0 } }
     }
 

@@ -169,25 +169,6 @@ impl Scene {
         self.parts
     }
 
-    /// The same scene with only the first `n` primitives, triangles before spheres; structures at the end that hold
-    /// none of them are left out, and so are their edits.
-    ///
-    /// # Errors
-    ///
-    /// [`SceneError::Kept`] when `n` is zero or more than there are.
-    pub fn truncated(&self, n: usize) -> Result<Self, SceneError> {
-        let triangles = self.triangles().len();
-        let spheres = self.spheres().len();
-        if n == 0 || n > triangles + spheres {
-            let scene = self.name().to_owned();
-            let expected = triangles + spheres;
-            return Err(SceneError::Kept { scene, expected, found: n });
-        }
-        let mut parts = self.parts.clone();
-        parts.truncate(n.min(triangles), n.saturating_sub(triangles));
-        Self::new(parts)
-    }
-
     /// The edits of a frame begun at simulated time `time_ps` (picoseconds): one for each structure with a script.
     #[must_use]
     pub fn edits_at(&self, time_ps: u64) -> Vec<Edit> {
@@ -246,11 +227,6 @@ fn length(v: DVec3) -> f64 {
     if largest > 0.0 { (v / largest).length() * largest } else { 0.0 }
 }
 
-/// What lies below `end` of a range.
-fn part_below(range: &Range<usize>, end: usize) -> Range<usize> {
-    range.start.min(end)..range.end.min(end)
-}
-
 fn structure_of_all(parts: &SceneParts) -> Structure {
     Structure {
         name: parts.name.clone(),
@@ -263,19 +239,6 @@ fn structure_of_all(parts: &SceneParts) -> Structure {
 }
 
 impl SceneParts {
-    fn truncate(&mut self, triangles: usize, spheres: usize) {
-        for structure in &mut self.structures {
-            structure.triangles = part_below(&structure.triangles, triangles);
-            structure.spheres = part_below(&structure.spheres, spheres);
-        }
-        while self.structures.last().is_some_and(|s| s.triangles.is_empty() && s.spheres.is_empty()) {
-            self.structures.pop();
-        }
-        self.vertices.truncate(self.structures.last().map_or(0, |structure| structure.vertices.end));
-        self.triangles.truncate(triangles);
-        self.spheres.truncate(spheres);
-    }
-
     fn move_structure(&mut self, structure: &Structure, model: &Mat4) {
         let model: DMat4 = model.as_dmat4();
         for vertex in &mut self.vertices[structure.vertices.clone()] {

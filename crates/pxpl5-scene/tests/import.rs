@@ -1,7 +1,7 @@
 //! Importers against files written by hand: what they read, and how they refuse.
 
 use glam::Vec3;
-use pxpl5_scene::config::{DEFAULT_COLOUR, FIT_RADIUS_M};
+use pxpl5_scene::config::{DEFAULT_COLOUR, IMPORT_RADIUS_M};
 #[cfg(feature = "files")]
 use pxpl5_scene::load;
 use pxpl5_scene::{Format, LoadError, Place, Scene, from_bytes};
@@ -20,7 +20,7 @@ fn ply(text: impl AsRef<[u8]>) -> Scene {
 
 /// The square with corners (+-1, +-1, 0) fitted: centre 0, farthest corner at the radius.
 fn fitted_square() -> [Vec3; 4] {
-    let half = FIT_RADIUS_M as f32 / 2.0_f32.sqrt();
+    let half = IMPORT_RADIUS_M as f32 / 2.0_f32.sqrt();
     [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| Vec3::new(x, y, 0.0))
 }
 
@@ -79,7 +79,7 @@ fn models_of_any_size_fit() {
     for size in ["1e-300", "1e-40", "1e15"] {
         let scene = obj(&format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nf 1 2 3\n"));
         let (_, radius) = scene.bounding_sphere();
-        assert!((f64::from(radius) - FIT_RADIUS_M).abs() < 1e-6, "{size}: {radius}");
+        assert!((f64::from(radius) - IMPORT_RADIUS_M).abs() < 1e-6, "{size}: {radius}");
         assert_eq!(scene.vertices()[0].normal, Vec3::Z, "{size}");
     }
 }
@@ -90,7 +90,7 @@ fn points_that_no_face_uses_are_dropped_however_far_they_lie() {
         property double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
         1e15 0 0\n0 0 0\n-1e15 0 0\n1e-300 0 0\n0 1e-300 0\n3 1 3 4\n");
     assert_eq!((scene.vertices().len(), scene.triangles()), (3, &[[0, 1, 2]][..]));
-    assert!((f64::from(scene.bounding_sphere().1) - FIT_RADIUS_M).abs() < 1e-6);
+    assert!((f64::from(scene.bounding_sphere().1) - IMPORT_RADIUS_M).abs() < 1e-6);
 }
 
 const SQUARE_HEADER: &str = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
@@ -164,7 +164,7 @@ fn a_scene_comes_back_from_a_ply_file() {
     let again = ply(written(&back));
     assert_eq!(back.triangles(), mig.triangles());
     // From a radius of 2 m to the fitted one, and centred as before; then unchanged but for rounding.
-    let scale = (FIT_RADIUS_M / 2.0) as f32;
+    let scale = (IMPORT_RADIUS_M / 2.0) as f32;
     for ((a, b), c) in mig.vertices().iter().zip(back.vertices()).zip(again.vertices()) {
         assert!((a.position * scale - b.position).length() < 1e-6);
         assert!((b.position - c.position).length() < 1e-6);

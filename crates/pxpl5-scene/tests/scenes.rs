@@ -31,28 +31,34 @@ fn each_scene_has_the_stated_number_of_primitives() {
     assert_eq!(counts("head"), (59_592, 0));
     assert_eq!(counts("full-screen:12"), (12, 0)); // published TR94
     assert_eq!(counts("full-screen:1"), (1, 0));
+    assert_eq!(counts("aircraft"), (100, 0));
+    assert_eq!(counts("typical:37"), (37, 0));
 }
 
 #[test]
 fn every_listed_name_is_had_with_n_replaced() {
     for (name, sentence) in names() {
-        scene(&name.replace('N', "3"));
+        scene(&name.replace('N', "12"));
         assert!(sentence.ends_with('.'), "{sentence}");
     }
 }
 
 #[test]
 fn the_same_name_gives_the_same_scene() {
-    for name in ["mig", "molecules", "head", "full-screen:7"] {
+    for name in ["aircraft", "mig", "molecules", "head", "full-screen:7", "typical:7", "sphere:22"] {
         assert_eq!(scene(name), scene(name));
     }
 }
 
 #[test]
 fn a_misspelt_name_is_answered_with_the_nearest() {
-    for (wrong, right) in
-        [("mgi", "mig"), ("Haed", "head"), ("molecule", "molecules"), ("fullscreen:4", "full-screen:N")]
-    {
+    for (wrong, right) in [
+        ("mgi", "mig"),
+        ("Haed", "head"),
+        ("molecule", "molecules"),
+        ("fullscreen:4", "full-screen:N"),
+        ("sphre:8", "sphere:N"),
+    ] {
         let Err(SceneError::UnknownScene { found, nearest, .. }) = builtin(wrong) else {
             panic!("{wrong} must not be a scene");
         };
@@ -109,7 +115,7 @@ fn the_head_is_symmetric_and_taller_than_wide() {
 
 #[test]
 fn all_normals_are_of_unit_length() {
-    for name in ["mig", "molecules", "head", "full-screen:12"] {
+    for name in ["aircraft", "mig", "molecules", "head", "full-screen:12", "sphere:30"] {
         for vertex in scene(name).vertices() {
             assert!((vertex.normal.length() - 1.0).abs() < 1e-5, "{name}");
         }
@@ -229,16 +235,59 @@ fn a_hand_made_scene_is_checked_in_every_part() {
     }
 }
 
+/// Edges between places, each with how often it is used forwards and backwards.
+fn edges(scene: &Scene) -> BTreeMap<[[u32; 3]; 2], [u32; 2]> {
+    let mut edges: BTreeMap<[[u32; 3]; 2], [u32; 2]> = BTreeMap::new();
+    let place = |corner: u32| scene.vertices()[corner as usize].position.to_array().map(f32::to_bits);
+    for &[a, b, c] in scene.triangles() {
+        for (from, onto) in [(a, b), (b, c), (c, a)] {
+            let [from, onto] = [place(from), place(onto)];
+            let (key, way) = if from < onto { ([from, onto], 0) } else { ([onto, from], 1) };
+            edges.entry(key).or_default()[way] += 1;
+        }
+    }
+    edges
+}
+
 #[test]
-fn a_truncated_scene_keeps_the_first_primitives_triangles_before_spheres() {
-    let whole = builtin("molecules").expect("built in");
-    let few = whole.truncated(140).expect("it has more");
-    assert_eq!((few.triangles(), few.spheres().len()), (&whole.triangles()[..140], 0));
-    let mixed = whole.truncated(2_620 + 7).expect("it has more");
-    assert_eq!((mixed.triangles().len(), mixed.spheres()), (2_620, &whole.spheres()[..7]));
-    assert_eq!(whole.truncated(2_620 + 1_219).expect("all"), whole);
-    for n in [0, 2_620 + 1_219 + 1] {
-        let error = whole.truncated(n).expect_err("impossible").to_string();
-        assert!(error.contains("1 to 3839") && error.contains(&format!("found {n}")), "{error}");
+fn the_aircraft_is_closed_wound_alike_and_turned_outwards() {
+    let aircraft = scene("aircraft");
+    assert!(edges(&aircraft).values().all(|uses| *uses == [1, 1]));
+    assert!(six_volumes(&aircraft) > 0.0);
+    for triangle in aircraft.triangles() {
+        let [a, b, c] = corners(&aircraft, triangle);
+        let face = (b - a).cross(c - a);
+        assert!(face.length() > 1e-4, "no triangle without area");
+        let against = triangle.iter().all(|&t| aircraft.vertices()[t as usize].normal.as_dvec3().dot(face) < 0.0);
+        assert!(!against, "normals point the way that triangles face");
+    }
+}
+
+#[test]
+fn the_aircraft_is_as_wide_as_long_and_symmetric() {
+    let aircraft = scene("aircraft");
+    let mirrored =
+        |p: Vec3| aircraft.vertices().iter().any(|v| (v.position * Vec3::new(-1.0, 1.0, 1.0) - p).length() < 1e-3);
+    assert!(aircraft.vertices().iter().all(|v| mirrored(v.position)));
+    let reach = |axis: Vec3| aircraft.vertices().iter().map(|v| v.position.dot(axis).abs()).fold(0.0, f32::max);
+    assert!((0.7..1.0).contains(&(reach(Vec3::X) / reach(Vec3::Z))), "wings and nose are both there");
+}
+
+#[test]
+fn every_sphere_is_closed_of_exactly_its_number_of_triangles_and_nearly_round() {
+    for count in (8..400).step_by(2).chain([1_000, 20_000]) {
+        let sphere = scene(&format!("sphere:{count}"));
+        assert_eq!(sphere.triangles().len(), count);
+        assert!(edges(&sphere).values().all(|uses| *uses == [1, 1]), "{count}");
+        let (_, radius) = sphere.bounding_sphere();
+        let full = 8.0 * std::f64::consts::PI * f64::from(radius).powi(3);
+        // Under an equilateral triangle of side s the unit sphere stands off by s^2/8 in the mean; N of them have 4 pi / N of area each,
+        // so s^2 = 16 pi / (sqrt(3) N), and 3 s^2 / 8 = 10.9 / N of the volume is missed; half as much again for uneven ones.
+        let share = six_volumes(&sphere) / full;
+        assert!(share < 1.0 && 1.0 - share < 1.5 * 10.9 / count as f64, "{count}: {share}");
+    }
+    for count in ["0", "7", "9", "6", "1000002", "x"] {
+        let answer = builtin(&format!("sphere:{count}"));
+        assert!(matches!(answer, Err(SceneError::TriangleCount { .. })), "{count}");
     }
 }

@@ -1,4 +1,4 @@
-//! What a results folder holds.
+//! What a results folder holds that `pxpl5 run` or `pxpl5 demo` wrote.
 
 use crate::error::CliError;
 use crate::run::INCOMPLETE;

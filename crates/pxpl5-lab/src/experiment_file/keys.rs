@@ -22,7 +22,11 @@ pub struct FileKey {
 const COMMON: &[(&str, &str)] = &[
     ("title", "a line for people"),
     ("scene", "a built-in scene or a model file (.ply, .obj, .pdb), relative to the experiment file"),
-    ("triangles", "keep the first so many primitives of the scene, triangles before spheres"),
+    ("triangles", "decimate the scene to at most so many primitives, keeping its shape"),
+    (
+        "fit",
+        "move and scale a model file so that both eyes see all of it: true (default) or false (its coordinates are metres)",
+    ),
     ("motion.path", "scene (the scene's own), still, look, pan or orbit"),
     ("motion.sway", "0 to 10: scale of the head's sway"),
     ("motion.distance", "metres from the scene's centre: still, look, orbit"),

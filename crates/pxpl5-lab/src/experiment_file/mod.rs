@@ -63,6 +63,8 @@ pub struct ExperimentFile {
     registry: Arc<Registry>,
     pub(crate) settings: BTreeMap<String, Setting>,
     pub(crate) sweep: Option<Setting>,
+    /// Where each key within the table `sweep` was given, by path.
+    pub(crate) sweep_places: BTreeMap<String, String>,
 }
 
 impl ExperimentFile {
@@ -75,7 +77,7 @@ impl ExperimentFile {
     /// No settings; with the pipelines and displays of a registry.
     #[must_use]
     pub fn with(registry: Arc<Registry>) -> Self {
-        Self { registry, settings: BTreeMap::new(), sweep: None }
+        Self { registry, settings: BTreeMap::new(), sweep: None, sweep_places: BTreeMap::new() }
     }
 
     /// The pipelines and displays that it may name.
@@ -140,6 +142,9 @@ impl ExperimentFile {
             let start = at.map_or(0, |(key, _)| key.span().start);
             if key == "sweep" {
                 self.sweep = Some(Setting { value, place: place(text, name, start), folder: folder.to_owned() });
+                let inner = at.map_or_else(Vec::new, |(_, value)| starts("sweep", value.get_ref()));
+                let places = inner.into_iter().map(|(path, start)| (path, place(text, name, start)));
+                self.sweep_places = places.collect();
                 continue;
             }
             let spans = at.map(|(_, value)| value.get_ref());
@@ -201,8 +206,11 @@ impl ExperimentFile {
 
     /// Takes over all settings of another file, in place of its own.
     pub fn overlay(&mut self, other: Self) {
+        if other.is_sweep() {
+            self.sweep = other.sweep;
+            self.sweep_places = other.sweep_places;
+        }
         self.settings.extend(other.settings);
-        self.sweep = other.sweep.or(self.sweep.take());
     }
 
     /// Whether the file describes a sweep.
@@ -236,6 +244,17 @@ fn flat(
         flat(format!("{path}.{key}"), value, at.map(|(_, value)| value.get_ref()), start)
     });
     entries.collect()
+}
+
+/// Where every key within a table begins, by path.
+fn starts(path: &str, table: &toml::de::DeValue<'_>) -> Vec<(String, usize)> {
+    let entries = table.as_table().into_iter().flatten();
+    let nested = entries.flat_map(|(key, value)| {
+        let path = format!("{path}.{}", key.get_ref());
+        let inner = starts(&path, value.get_ref());
+        std::iter::once((path, key.span().start)).chain(inner)
+    });
+    nested.collect()
 }
 
 /// Where a byte of a file stands, for errors.

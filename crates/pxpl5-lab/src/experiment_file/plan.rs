@@ -6,15 +6,15 @@ use super::read::{beside, plain, wrong};
 use super::{ExperimentFile, FileError, Setting};
 use crate::Workstation;
 use crate::levels::summarise;
-use parameters::Value as Number;
+use parameters::{ParameterError, Value as Number};
 use pxpl5_gp::CodeVersion;
 use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
 use pxpl5_measure::{Measure, Results};
 use pxpl5_run::{
     Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Key, KeyValue, KeyValues, Level, LimitCriterion,
-    Pipeline, PipelineEntry, PipelineSettings, Pixels, Registry,
+    Pipeline, PipelineEntry, PipelineSettings, Pixels, Registry, out_of_range,
 };
-use pxpl5_scene::Scene;
+use pxpl5_scene::{Placement, Scene};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -25,7 +25,9 @@ pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", P
 pub struct SceneChoice {
     /// A built-in scene's name or a model file's path.
     pub name: String,
-    /// How many primitives are kept; `None` for all.
+    /// Whether a model file is moved and scaled into the view; a built-in scene is where it is.
+    pub placement: Placement,
+    /// To how many primitives it is decimated; `None` for all.
     pub triangles: Option<usize>,
     /// How the head moves.
     pub motion: MotionChoice,
@@ -41,7 +43,11 @@ impl SceneChoice {
         let folder = file.get("scene").map(|setting| setting.folder.clone()).unwrap_or_default();
         let name = if is_file(name) { beside(&folder, name) } else { name.to_owned() };
         let triangles = file.integer("triangles", 1..=u64::from(u32::MAX))?.map(|n| n as usize);
-        Ok(Self { name, triangles, motion: MotionChoice::read(file)? })
+        let placement = if file.flag("fit")?.unwrap_or(true) { Placement::Fitted } else { Placement::AsInFile };
+        if let (Some(setting), false) = (file.get("fit"), is_file(&name)) {
+            return Err(wrong("fit", setting, "nothing: only model files are fitted into the view"));
+        }
+        Ok(Self { name, placement, triangles, motion: MotionChoice::read(file)? })
     }
 
     /// Generates it or reads its file.
@@ -54,13 +60,16 @@ impl SceneChoice {
     }
 
     pub(crate) fn load_whole(&self) -> Result<Scene, FileError> {
-        Ok(if is_file(&self.name) { pxpl5_scene::load(&self.name)? } else { pxpl5_scene::builtin(&self.name)? })
+        Ok(match is_file(&self.name) {
+            true => pxpl5_scene::load_placed(&self.name, self.placement)?,
+            false => pxpl5_scene::builtin(&self.name)?,
+        })
     }
 
-    /// The whole scene cut and moved as chosen.
+    /// The whole scene decimated and moved as chosen.
     pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, FileError> {
         let scene = match self.triangles {
-            Some(n) => Arc::new(whole.truncated(n)?),
+            Some(n) => Arc::new(whole.decimated(n)?),
             None => whole,
         };
         if self.motion == MotionChoice::default() {
@@ -270,8 +279,20 @@ impl ExperimentFile {
                 machine.set(parameter, value).map_err(|error| refused(&setting.place, error))?;
             }
         }
-        machine.check().map_err(|error| refused("machine", error))?;
+        machine.check().map_err(|error| refused(self.place_of(&error), error))?;
         Ok(machine)
+    }
+
+    /// Where the number was given that a machine cannot have.
+    fn place_of(&self, error: &ConfigError) -> &str {
+        let key = match error {
+            ConfigError::Value { what, .. } => format!("machine.{what}"),
+            ConfigError::Parameter { board, error: ParameterError::OutOfLimits { name, .. } } => {
+                format!("machine.{board}.{name}")
+            }
+            _ => return "machine",
+        };
+        self.get(&key).map_or("machine", |setting| &setting.place)
     }
 
     /// The display, where one is named.
@@ -341,6 +362,12 @@ impl Plan {
     pub fn parameters(&self) -> Vec<Parameter> {
         let of_head = self.head.iter().flat_map(HeadChoice::parameters);
         self.machine.parameters().into_iter().chain(of_head).collect()
+    }
+
+    /// Parameters of the machine that no source allows.
+    #[must_use]
+    pub fn out_of_range(&self) -> Vec<Parameter> {
+        out_of_range(&self.machine, self.pipeline.as_ref())
     }
 
     /// Name of the level of modelling.

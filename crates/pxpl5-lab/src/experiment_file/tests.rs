@@ -75,6 +75,12 @@ fn errors_name_the_line_and_what_was_expected() {
             "line 5: head.raster = vdrt does not apply to the pipeline frameless",
         ),
         ("x = 1\nx = 2", "test, line 2: not TOML"),
+        (
+            "pipeline = \"slats\"\nscene = \"mig\"\n[machine]\n\ngp.triangle_ns = 9_000_000_000_000",
+            "test, line 5: gp.triangle_ns must be",
+        ),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nmachine.n_renderers = 0", "test, line 3: n_renderers must be 1"),
+        ("pipeline = \"slats\"\nscene = \"mig\"\nfit = false", "test, line 3: fit: expected nothing"),
         ("pipeline = \"slats\"\nscene = \"mig\"\nvideo.field_ps = 5", "did you mean `video."),
     ] {
         let found = refusal(text);

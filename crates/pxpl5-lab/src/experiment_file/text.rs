@@ -6,6 +6,7 @@ use crate::compare::is_recording;
 use parameters::Value as Number;
 use pxpl5_machine::{MachineConfig, Parameter};
 use pxpl5_run::{Fingerprint, KeyValue};
+use pxpl5_scene::Placement;
 use std::collections::BTreeMap;
 use std::fmt;
 use toml::Value;
@@ -89,6 +90,9 @@ impl Plan {
 
     fn scene_settings(&self, all: &mut Settings) {
         all.put("scene", self.scene.name.clone());
+        if self.scene.placement == Placement::AsInFile {
+            all.put("fit", false);
+        }
         if let Some(triangles) = self.scene.triangles {
             all.put("triangles", triangles as i64);
         }

@@ -323,8 +323,9 @@ impl From<f64> for Measured {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limit::{TYPICAL_LEG_PX, TYPICAL_SPREAD_PX, test_scene};
+    use crate::limit::test_scene;
     use pxpl5_run::TestScene;
+    use pxpl5_scene::config::{TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
 
     /// Triangles with both legs parallel to the region borders, their corners spread evenly over `TYPICAL_SPREAD_PX`.
     ///

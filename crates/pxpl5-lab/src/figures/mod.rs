@@ -21,6 +21,7 @@ pub use table::{Basis, FIGURES, Figure};
 
 use crate::intervals::{Interval, fill, intervals};
 use serde::Serialize;
+use std::sync::atomic::{AtomicU64, Ordering};
 use thiserror::Error;
 
 /// A figure whose experiment gave no result.
@@ -48,9 +49,26 @@ pub struct Figures {
 ///
 /// The first [`FigureError`].
 pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
-    let rows = crate::parallel::map(&FIGURES, |figure| row_of(bench, figure));
+    run_all_with(bench, |_, _| {})
+}
+
+/// The same; `finished` hears how many of all steps are done: one for each figure, and one for the intervals.
+///
+/// # Errors
+///
+/// As [`run_all`].
+pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, FigureError> {
+    let steps = FIGURES.len() as u64 + 1;
+    let done = AtomicU64::new(0);
+    let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
+    let rows = crate::parallel::map(&FIGURES, |figure| {
+        let row = row_of(bench, figure);
+        step();
+        row
+    });
     let mut rows = rows.into_iter().collect::<Result<Vec<_>, _>>()?;
     let intervals = intervals();
+    step();
     fill(&mut rows, &intervals);
     Ok(Figures { rows, intervals })
 }

@@ -1,12 +1,13 @@
 //! Speed against error: the same experiments at every level.
 
 use super::summarise;
-use crate::figures::{Bench, FIGURES, Row, mean_error_percent};
+use crate::figures::{Bench, FIGURES, Figure, Row, mean_error_percent};
 use pxpl5_analytic::SlatsModel;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Level, Pixels, RenderingControl, Slats};
 use pxpl5_scene::{Scene, builtin};
 use serde::Serialize;
+use std::cell::Cell;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -57,9 +58,29 @@ fn scene(name: &str) -> Result<Arc<Scene>, ExperimentError> {
 ///
 /// The first [`ExperimentError`].
 pub fn compare() -> Result<Vec<LevelReport>, ExperimentError> {
-    let rows: Vec<Vec<Row>> = Level::ALL.into_iter().map(rows_of).collect::<Result<_, _>>()?;
+    compare_with(|_, _| {})
+}
+
+/// The same; `finished` hears how many of all steps are done: every figure at every level, and the speed of each.
+///
+/// # Errors
+///
+/// As [`compare`].
+pub fn compare_with(finished: impl Fn(u64, u64)) -> Result<Vec<LevelReport>, ExperimentError> {
+    let steps = (Level::ALL.len() * (FIGURES.len() + 1)) as u64;
+    let done = Cell::new(0);
+    let step = || {
+        done.set(done.get() + 1);
+        finished(done.get(), steps);
+    };
+    let rows: Vec<Vec<Row>> = Level::ALL.into_iter().map(|level| rows_of(level, &step)).collect::<Result<_, _>>()?;
     let cycle = rows.last().cloned().unwrap_or_default();
-    Level::ALL.into_iter().zip(&rows).map(|(level, rows)| report(level, rows, &cycle)).collect()
+    let levels = Level::ALL.into_iter().zip(&rows).map(|(level, rows)| {
+        let report = report(level, rows, &cycle);
+        step();
+        report
+    });
+    levels.collect()
 }
 
 /// A level's figures beside those of the cycle level, and its speed on this host, now.
@@ -77,9 +98,14 @@ fn report(level: Level, rows: &[Row], cycle: &[Row]) -> Result<LevelReport, Expe
     })
 }
 
-fn rows_of(level: Level) -> Result<Vec<Row>, ExperimentError> {
+fn rows_of(level: Level, step: &impl Fn()) -> Result<Vec<Row>, ExperimentError> {
     let bench = Bench::new(level).with_mig(MIG.0, MIG.1);
-    FIGURES.iter().map(|figure| Ok(Row::new(figure, bench.measure(figure.id)?))).collect()
+    let row = |figure: &Figure| {
+        let measured = bench.measure(figure.id)?;
+        step();
+        Ok(Row::new(figure, measured))
+    };
+    FIGURES.iter().map(row).collect()
 }
 
 fn speed(level: Level) -> Result<(f64, f64), ExperimentError> {

@@ -24,6 +24,18 @@ impl Shard {
         if number == 0 || number > of { None } else { Some(Self { index: number - 1, of }) }
     }
 
+    /// Which of them it is, from 1.
+    #[must_use]
+    pub const fn number(self) -> u64 {
+        self.index + 1
+    }
+
+    /// How many shares there are.
+    #[must_use]
+    pub const fn of(self) -> u64 {
+        self.of
+    }
+
     /// Whether a point belongs to it.
     #[must_use]
     pub const fn holds(&self, point: u64) -> bool {

@@ -29,7 +29,7 @@ impl Space {
     pub(super) fn read(file: &ExperimentFile) -> Result<Self, FileError> {
         let how = "a table [sweep.grid] with lists or ranges of settings";
         let setting = file.sweep.as_ref().ok_or(FileError::Missing { key: "sweep", how })?;
-        let fault = Fault(setting);
+        let fault = Fault { sweep: setting, places: &file.sweep_places };
         let table = setting.value.as_table().ok_or_else(|| fault.value("sweep", "a table", &setting.value))?;
         if let Some(key) = table.keys().find(|key| !KEYS.contains(&key.as_str())) {
             let nearest = parameters::nearest(key, KEYS.into_iter()).unwrap_or_default();
@@ -76,12 +76,21 @@ impl Space {
     }
 }
 
-/// Makes errors that point to the sweep's place in the file.
-struct Fault<'a>(&'a Setting);
+/// Makes errors that point to a key's place in the file.
+struct Fault<'a> {
+    sweep: &'a Setting,
+    places: &'a BTreeMap<String, String>,
+}
 
 impl Fault<'_> {
+    /// Where a key was given: by its path in the file, or by the setting that an axis varies.
+    fn place(&self, key: &str) -> String {
+        let paths = [key.to_owned(), format!("sweep.grid.{key}"), format!("sweep.together.{key}")];
+        paths.iter().find_map(|path| self.places.get(path)).unwrap_or(&self.sweep.place).clone()
+    }
+
     fn text(&self, key: &str, expected: &str, found: &str) -> FileError {
-        let place = self.0.place.clone();
+        let place = self.place(key);
         FileError::Value { place, key: key.to_owned(), expected: expected.to_owned(), found: found.to_owned() }
     }
 
@@ -90,7 +99,7 @@ impl Fault<'_> {
     }
 
     fn unknown(&self, found: &str, nearest: &str) -> FileError {
-        FileError::UnknownKey { place: self.0.place.clone(), found: found.to_owned(), nearest: nearest.to_owned() }
+        FileError::UnknownKey { place: self.place(found), found: found.to_owned(), nearest: nearest.to_owned() }
     }
 
     fn table(&self, table: &Table, key: &str) -> Result<Table, FileError> {
@@ -152,7 +161,7 @@ impl Fault<'_> {
             return Err(self.text("sweep", "at least one setting under [sweep.grid]", "none"));
         }
         for path in axes.iter().flat_map(|axis| &axis.paths) {
-            let key = file.canonical_key(path, &self.0.place)?;
+            let key = file.canonical_key(path, &self.place(path))?;
             if seen.insert(key, path).is_some() {
                 return Err(self.text(path, "to be in one axis of the sweep", "two"));
             }

@@ -87,6 +87,22 @@ fn a_space_that_makes_no_sense_is_refused() {
 }
 
 #[test]
+fn an_error_of_a_sweep_names_the_line_of_its_key() {
+    // Four lines that all points share stand before the space.
+    for (space, line) in [
+        ("[sweep]", 5),
+        ("[sweep.grid]\n\nseeed = [1]", 7),
+        ("[sweep]\nseeds = 3\n[sweep.grid]\nfields = [9]\nseed = []", 9),
+        ("[sweep.grid]\nfields = [9]\n[sweep.together]\nseed = [1, 2]\ntriangles = [1]", 9),
+        ("[sweep]\n\nseeds = 0", 7),
+        ("[sweep]\nseeds = 1\ngird = {seed = [1]}", 7),
+    ] {
+        let text = refusal(space);
+        assert!(text.starts_with(&format!("test, line {line}: ")), "{space}: {text}");
+    }
+}
+
+#[test]
 fn shards_are_disjoint_and_hold_everything() {
     let shards: Vec<Shard> = (1..=7).map(|i| Shard::new(i, 7).expect("one of seven")).collect();
     assert!((0..1_000).all(|point| shards.iter().filter(|shard| shard.holds(point)).count() == 1));

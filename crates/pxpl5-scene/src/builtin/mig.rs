@@ -22,7 +22,7 @@ const GLASS: Colour = [90, 170, 226];
 const STEEL: Colour = [140, 136, 132];
 
 /// Radius of the finished model, metres. Assumed, 0.5 to 8: a flight round it passes at several metres a second.
-const RADIUS_M: f64 = 2.0;
+pub(super) const RADIUS_M: f64 = 2.0;
 
 /// Sides of the fuselage.
 const SIDES: usize = 14;
@@ -71,7 +71,7 @@ fn finish(mut solid: Solid) -> Scene {
 }
 
 /// From inside the span of the wings, where the aircraft overflows the view, to five radii away, where it is small.
-fn fly_through() -> HeadMotion {
+pub(super) fn fly_through() -> HeadMotion {
     let path = HeadPath::FlyThrough {
         target: glam::Vec3::ZERO,
         nearest: 0.65 * RADIUS_M,

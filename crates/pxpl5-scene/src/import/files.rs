@@ -4,7 +4,7 @@
 use std::fs::{self, File};
 use std::path::Path;
 
-use super::{Format, from_reader};
+use super::{Format, Placement, placed_from_reader};
 use crate::error::LoadError;
 use crate::scene::Scene;
 
@@ -17,6 +17,15 @@ use crate::scene::Scene;
 /// [`LoadError::Io`], [`LoadError::NotAFile`] and [`LoadError::UnknownFormat`] for a path that leads to no model, and
 /// all those of [`crate::from_bytes`].
 pub fn load(path: impl AsRef<Path>) -> Result<Scene, LoadError> {
+    load_placed(path, Placement::Fitted)
+}
+
+/// As [`load`], with the model where `placement` says.
+///
+/// # Errors
+///
+/// As [`load`].
+pub fn load_placed(path: impl AsRef<Path>, placement: Placement) -> Result<Scene, LoadError> {
     let path = path.as_ref();
     let file = path.display().to_string();
     let Some(format) = Format::of_path(path) else {
@@ -29,7 +38,7 @@ pub fn load(path: impl AsRef<Path>) -> Result<Scene, LoadError> {
         return Err(LoadError::NotAFile { file, found });
     }
     let opened = File::open(path).map_err(|source| LoadError::Io { file: file.clone(), source })?;
-    from_reader(opened, format, &file)
+    placed_from_reader(opened, format, &file, placement)
 }
 
 /// The most telling fault of a path without a known extension.

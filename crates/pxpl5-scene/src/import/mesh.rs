@@ -3,10 +3,11 @@
 use glam::{DVec3, Vec3};
 
 use super::Source;
-use crate::config::FIT_RADIUS_M;
+use crate::config::IMPORT_RADIUS_M;
 use crate::error::LoadError;
-use crate::motion::HeadMotion;
+use crate::motion::{HeadMotion, HeadPath};
 use crate::scene::{Lighting, Scene, SceneParts, Sphere, Vertex, bounding_sphere};
+use crate::sway::Sway;
 
 /// Where normals come from that the file does not give.
 #[derive(Clone, Copy)]
@@ -101,13 +102,13 @@ impl Mesh {
             return Err(LoadError::NothingToDraw { file: source.name.to_owned(), expected: "triangle" });
         }
         self.drop_unused();
-        let fit = Fit::new(self.positions.iter().map(|&position| (position, 0.0)));
+        let fit = source.placement.fit(self.positions.iter().map(|&position| (position, 0.0)));
         // Before the normals, whose sums of areas would otherwise leave the range of f64 for the tiniest models.
         for position in &mut self.positions {
             *position = fit.place(*position);
         }
         self.complete_normals(Normals::OfPoints);
-        Ok(fitted_scene(source.name, self, Vec::new()))
+        Ok(source.placement.scene(source.name, self, Vec::new()))
     }
 
     /// The vertices of a scene, rounded to single precision.
@@ -130,6 +131,17 @@ fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {
 
 /// The scene of a model already fitted to the default view.
 pub(crate) fn fitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
+    seen_by(HeadMotion::seeing_whole(Vec3::ZERO, IMPORT_RADIUS_M), name, mesh, spheres)
+}
+
+/// The scene of a model before a head that stands at the origin of its coordinates.
+pub(crate) fn unfitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
+    let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
+    let motion = HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range");
+    seen_by(motion, name, mesh, spheres)
+}
+
+fn seen_by(motion: HeadMotion, name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
     let parts = SceneParts {
         name: name.to_owned(),
         vertices: mesh.vertices(),
@@ -137,12 +149,12 @@ pub(crate) fn fitted_scene(name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scen
         spheres,
         structures: Vec::new(),
         lighting: Lighting::over_the_shoulder(),
-        motion: HeadMotion::looking_at(Vec3::ZERO, FIT_RADIUS_M),
+        motion,
     };
     Scene::new(parts).expect("pxpl5-scene: readers check what they make")
 }
 
-/// Moves the centre of a model to the origin and scales its radius to [`FIT_RADIUS_M`].
+/// Moves the centre of a model to the origin and scales its radius to [`IMPORT_RADIUS_M`].
 pub(crate) struct Fit {
     centre: DVec3,
     pub(crate) scale: f64,
@@ -152,9 +164,14 @@ impl Fit {
     /// From all balls (centre, radius) of the model. A model without extent is only moved.
     pub(crate) fn new(balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> Self {
         let (centre, radius) = bounding_sphere(balls);
-        let scale = FIT_RADIUS_M / radius;
+        let scale = IMPORT_RADIUS_M / radius;
         let scale = if scale.is_finite() { scale } else { 1.0 };
         Self { centre, scale }
+    }
+
+    /// Everything stays where it is.
+    pub(crate) const fn none() -> Self {
+        Self { centre: DVec3::ZERO, scale: 1.0 }
     }
 
     pub(crate) fn place(&self, point: DVec3) -> DVec3 {

@@ -11,15 +11,45 @@ mod source;
 use std::io::Read;
 use std::path::Path;
 
+use glam::DVec3;
+
 #[cfg(feature = "files")]
-pub use files::load;
-pub(crate) use mesh::{Mesh, Normals};
+pub use files::{load, load_placed};
+use mesh::Fit;
+pub(crate) use mesh::{Mesh, Normals, fitted_scene};
 pub(crate) use pdb::{Atom, read_atoms};
 pub(crate) use source::Source;
 
 use crate::config::MAX_FILE_BYTES;
 use crate::error::LoadError;
-use crate::scene::Scene;
+use crate::scene::{Scene, Sphere};
+
+/// Where a model stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Placement {
+    /// Moved to the origin and scaled so that both eyes see all of it, from wherever [`Scene::motion`] takes the head.
+    #[default]
+    Fitted,
+    /// Where its file says: a unit of the file is a metre, and the head stands at the origin and looks along -z.
+    AsInFile,
+}
+
+impl Placement {
+    /// What is done to the coordinates of balls (centre, radius) that the model consists of.
+    fn fit(self, balls: impl Iterator<Item = (DVec3, f64)> + Clone) -> Fit {
+        match self {
+            Self::Fitted => Fit::new(balls),
+            Self::AsInFile => Fit::none(),
+        }
+    }
+
+    fn scene(self, name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
+        match self {
+            Self::Fitted => fitted_scene(name, mesh, spheres),
+            Self::AsInFile => mesh::unfitted_scene(name, mesh, spheres),
+        }
+    }
+}
 
 /// A file format that can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,24 +91,47 @@ impl Format {
 ///
 /// [`LoadError::Io`] if the reader fails, and all those of [`from_bytes`].
 pub fn from_reader(reader: impl Read, format: Format, name: &str) -> Result<Scene, LoadError> {
+    placed_from_reader(reader, format, name, Placement::Fitted)
+}
+
+/// As [`from_reader`], with the model where `placement` says.
+///
+/// # Errors
+///
+/// As [`from_reader`].
+pub fn placed_from_reader(
+    reader: impl Read,
+    format: Format,
+    name: &str,
+    placement: Placement,
+) -> Result<Scene, LoadError> {
     let mut bytes = Vec::new();
     let mut limited = reader.take(MAX_FILE_BYTES + 1);
     limited.read_to_end(&mut bytes).map_err(|source| LoadError::Io { file: name.to_owned(), source })?;
-    from_bytes(&bytes, format, name)
+    placed_from_bytes(&bytes, format, name, placement)
 }
 
 /// Reads a model from memory; `name` stands for it in errors and as the name of the scene.
 ///
 /// Polygons are cut into fans; missing normals become the mean of the adjacent triangles, weighted by area. The model
 /// is moved so that the centre of its box is the origin, and scaled so that its farthest point is
-/// [`crate::config::FIT_RADIUS_M`] away: so it fills the view of [`Scene::motion`], whatever the units of the file.
+/// [`crate::config::IMPORT_RADIUS_M`] away: so both eyes see all of it under [`Scene::motion`], whatever the units of the file.
 /// Its axes stay: +y is up, +z faces the viewer.
 ///
 /// # Errors
 ///
 /// [`LoadError`] says what is wrong, and where. No bytes make it panic or take more than a few times their size.
 pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, LoadError> {
-    let source = Source { name, bytes };
+    placed_from_bytes(bytes, format, name, Placement::Fitted)
+}
+
+/// As [`from_bytes`], with the model where `placement` says.
+///
+/// # Errors
+///
+/// As [`from_bytes`].
+pub fn placed_from_bytes(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Result<Scene, LoadError> {
+    let source = Source { name, bytes, placement };
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(LoadError::TooLarge { file: name.to_owned(), expected: MAX_FILE_BYTES });
     }

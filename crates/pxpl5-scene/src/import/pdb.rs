@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::mesh::{Fit, fitted_scene};
+use super::mesh::Fit;
 use super::source::excerpt;
 use super::{Mesh, Source};
 use crate::error::{LoadError, Place};
@@ -64,9 +64,9 @@ pub(super) fn read(source: &Source<'_>) -> Result<Scene, LoadError> {
     if atoms.is_empty() {
         return Err(LoadError::NothingToDraw { file: source.name.to_owned(), expected: "atom" });
     }
-    let fit = Fit::new(atoms.iter().map(|a| (a.position, a.element.radius)));
+    let fit = source.placement.fit(atoms.iter().map(|a| (a.position, a.element.radius)));
     let spheres = atoms.iter().map(|a| a.sphere(a.position, &fit)).collect();
-    Ok(fitted_scene(source.name, Mesh::default(), spheres))
+    Ok(source.placement.scene(source.name, Mesh::default(), spheres))
 }
 
 impl Atom {

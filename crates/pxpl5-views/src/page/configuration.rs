@@ -43,7 +43,8 @@ fn value_row(key: &str, value: &str) -> Element {
 /// A value as text; `None` of lists and statistics.
 fn shown(value: &Value) -> Option<String> {
     match value {
-        Value::Array(_) => None,
+        Value::Array(all) if all.is_empty() || !all.iter().all(Value::is_string) => None,
+        Value::Array(all) => Some(all.iter().map(plain).collect::<Vec<_>>().join("; ")),
         Value::Object(all) if all.contains_key("definition") => None,
         Value::Object(all) => Some(pairs(all)),
         value => Some(plain(value)),

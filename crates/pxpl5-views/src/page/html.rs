@@ -5,13 +5,13 @@ use super::section::sections;
 use super::summary::summary;
 use crate::markup::Element;
 
-const STYLE: &str = "body{font:16px/1.45 system-ui,sans-serif;max-width:62rem;margin:auto;padding:0 1rem;color:#111;\
-background:#fff}h1{font-size:1.6rem}h2{margin-top:2.2rem;border-bottom:2px solid #0b5394}h3{margin-bottom:.4rem}\
-img{max-width:100%;height:auto}.chart{width:100%;max-width:40rem;height:auto;font:15px system-ui,sans-serif}.wide{overflow-x:auto}\
-.wide img{min-width:40rem;width:100%}.pair{display:flex;flex-wrap:wrap;gap:1rem}.pair figure{flex:1 1 18rem;margin:0}\
+const STYLE: &str = "*{box-sizing:border-box}body{font:16px/1.45 system-ui,sans-serif;max-width:62rem;margin:auto;padding:0 1rem;color:#111;\
+background:#fff}h1,h2,h3,p,figcaption,code{overflow-wrap:anywhere}h1{font-size:1.6rem}h2{margin-top:2.2rem;border-bottom:2px solid #0b5394}h3{margin-bottom:.4rem}\
+img{max-width:100%;height:auto}figure{margin:0;min-width:0}.chart{width:100%;max-width:40rem;height:auto;font:15px system-ui,sans-serif}.wide{overflow-x:auto;max-width:100%}\
+.wide img{min-width:40rem;width:100%}.pair{display:flex;flex-wrap:wrap;gap:1rem}.pair figure{flex:1 1 16rem}\
 .pair img{width:100%}table{border-collapse:collapse;font-variant-numeric:tabular-nums}\
-td,th{padding:.25rem .6rem;border-bottom:1px solid #ccc;text-align:left;vertical-align:top}td.n{text-align:right;white-space:nowrap}\
-.swatch{display:inline-block;width:.8em;height:.8em;margin-right:.4em}.dim{color:#555}.loud{color:#a00;font-weight:bold}code{overflow-wrap:anywhere}\
+td,th{padding:.25rem .6rem;border-bottom:1px solid #ccc;text-align:left;vertical-align:top}.wide td{min-width:4rem}td.n{text-align:right;white-space:nowrap}\
+.swatch{display:inline-block;width:.8em;height:.8em;margin-right:.4em}.dim{color:#555}.loud{color:#a00;font-weight:bold}.wide code{overflow-wrap:normal}\
 @media print{body{max-width:none;font-size:10pt}section,figure,table{break-inside:avoid}.wide img{min-width:0}\
 *{print-color-adjust:exact;-webkit-print-color-adjust:exact}}";
 
@@ -20,13 +20,15 @@ const TITLE: &str = "Pixel-Planes 5: results";
 /// All experiments on one page without anything from outside.
 #[must_use]
 pub fn html(runs: &[PageRun]) -> String {
+    page(std::iter::once(summary(runs)).chain(runs.iter().flat_map(sections)))
+}
+
+/// A page of some sections.
+pub(super) fn page(sections: impl IntoIterator<Item = Element>) -> String {
     let mut body = Element::new("body");
     body.end_line();
     body.add_line(&Element::new("h1").text(TITLE));
-    body.add_line(&summary(runs));
-    for section in runs.iter().flat_map(sections) {
-        body.add_line(&section);
-    }
+    sections.into_iter().for_each(|section| body.add_line(&section));
     format!("<!DOCTYPE html>\n{}\n", Element::new("html").with("lang", "en").child(&head()).child(&body))
 }
 
@@ -69,6 +71,37 @@ mod tests {
         let page = html(&[run]);
         assert!(!page.contains("http://") && !page.contains("https://"));
         assert!(page.contains("data:image/svg+xml;base64,PHN2Zy8+"));
+    }
+
+    /// What is wider than a screen of 390 px must scroll within itself: tables stand in `.wide`, which scrolls; the timeline too;
+    /// text breaks anywhere; a flexible box asks for less than 390 - 2 x 16 px.
+    #[test]
+    fn nothing_makes_a_page_wider_than_a_telephone() {
+        let report = json!({"scene": "x".repeat(200), "config_hash": "f".repeat(32), "latency_parts_ms": [{"name": "copy"}],
+            "latency_ms": {"definition": "d".repeat(300), "mean": 1.0, "sd": 0.0},
+            "head": {"tracker": "T", "end_to_end": {"total_ms": 76.5}, "error": {}}});
+        let timeline = Some(b"<svg/>".to_vec());
+        let run =
+            PageRun { name: "n".repeat(200), report, timeline, latencies_ms: vec![1.0, 2.0], ..PageRun::default() };
+        let page = html(&[run]);
+        let document =
+            roxmltree::Document::parse(page.strip_prefix("<!DOCTYPE html>\n").expect("HTML")).expect("closed");
+        let in_wide = |node: roxmltree::Node<'_, '_>| node.ancestors().any(|a| a.attribute("class") == Some("wide"));
+        let mut tables = document.descendants().filter(|node| node.has_tag_name("table"));
+        assert!(tables.all(in_wide));
+        for (selector, rule) in [
+            (".wide", "overflow-x:auto"),
+            ("h1,h2,h3,p,figcaption,code", "overflow-wrap:anywhere"),
+            ("img", "max-width:100%"),
+            (".chart", "width:100%"),
+            ("figure", "min-width:0"),
+        ] {
+            let block = STYLE.split('}').find_map(|block| block.rsplit_once('{').filter(|(name, _)| *name == selector));
+            assert!(block.is_some_and(|(_, rules)| rules.contains(rule)), "{selector}: {rule}");
+        }
+        let rem = 16;
+        let basis = STYLE.split("flex:1 1 ").nth(1).and_then(|rest| rest.split("rem").next()).expect("a pair");
+        assert!(basis.parse::<u32>().expect("rem") * rem <= 390 - 2 * rem);
     }
 
     #[test]

@@ -10,8 +10,10 @@ mod pictures_csv;
 mod run;
 mod section;
 mod summary;
+mod tables;
 mod values;
 
 pub use html::html;
 pub use pictures_csv::latencies_ms;
 pub use run::{PagePicture, PageRun};
+pub use tables::{PageTable, html_of_tables};

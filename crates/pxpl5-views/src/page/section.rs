@@ -44,7 +44,7 @@ fn figure(picture: &PagePicture) -> Element {
 }
 
 /// A picture that is part of the page.
-fn image(kind: &str, bytes: &[u8], about: &str) -> Element {
+pub(super) fn image(kind: &str, bytes: &[u8], about: &str) -> Element {
     let source = format!("data:{kind};base64,{}", STANDARD.encode(bytes));
     Element::new("img").with("src", source).with("alt", about)
 }

@@ -1,8 +1,11 @@
 //! `pxpl5 i860`: assemble, disassemble, run with a cycle listing, and conformance vectors.
 
-use ::i860::{AddressProfile, Config, Cpu, Outcome, Program, Ram, assemble, disassemble, vectors};
+mod run;
+
+use ::i860::{Config, Program, assemble, disassemble, vectors};
 use clap::{Args, Subcommand};
 use flate2::read::MultiGzDecoder;
+use run::{RunOptions, execute};
 use std::fmt::Write as _;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -35,7 +38,9 @@ enum Command {
         #[arg(long, default_value = "0x1000", value_parser = address)]
         base: u32,
     },
-    /// Assemble (FILE.s) or load (anything else) and run; list clocks by address and by cause.
+    /// Assemble (FILE.s) or load (anything else) and run; tell clocks by address and by cause, registers and memory.
+    ///
+    /// A place is a label of the program, an address, or a label with an offset such as table+8.
     Run {
         /// Assembler source ending in .s, or a binary file.
         file: PathBuf,
@@ -54,6 +59,12 @@ enum Command {
         /// Bytes of memory from address 0.
         #[arg(long, default_value = "0x800000", value_parser = address)]
         memory: u32,
+        /// Show memory from a place on, PLACE or PLACE:WORDS; may be repeated; default: the words that the run changed.
+        #[arg(long, value_name = "PLACE[:WORDS]")]
+        show: Vec<String>,
+        /// Print one JSON object.
+        #[arg(long)]
+        json: bool,
         /// Leave out the listing by address.
         #[arg(long)]
         quiet: bool,
@@ -91,9 +102,9 @@ pub(crate) fn run(args: I860Args) -> Result<(), String> {
             print(&listing(base, &words_of(&read(&file)?), None));
             Ok(())
         }
-        Command::Run { file, base, entry, stop, budget, memory, quiet } => {
+        Command::Run { file, base, entry, stop, budget, memory, show, json, quiet } => {
             let program = load(&file, base)?;
-            let options = RunOptions { entry, stop, budget, memory, quiet };
+            let options = RunOptions { entry, stop, budget, memory, show, json, quiet };
             let (report, result) = execute(&program, &options)?;
             print(&report);
             result
@@ -165,63 +176,6 @@ fn load(file: &Path, base: u32) -> Result<Program, String> {
     }
     let bytes = read(file)?;
     Ok(Program { base, bytes, symbols: Default::default(), labels: Vec::new(), lines: Vec::new() })
-}
-
-struct RunOptions {
-    entry: Option<String>,
-    stop: Option<String>,
-    budget: u64,
-    memory: u32,
-    quiet: bool,
-}
-
-/// An option's label or address, else a default label, else a default address.
-fn place(program: &Program, option: Option<&str>, label: &str, otherwise: u32) -> Result<u32, String> {
-    match option {
-        None => Ok(program.symbol(label).unwrap_or(otherwise)),
-        Some(text) => program.symbol(text).map_or_else(|| address(text), Ok),
-    }
-}
-
-/// Runs a program; gives the listing, and whether the run came to its stop.
-fn execute(program: &Program, options: &RunOptions) -> Result<(String, Result<(), String>), String> {
-    let mut ram = Ram::new(0, options.memory as usize);
-    let size = program.bytes.len();
-    ram.load(program.base, &program.bytes)
-        .map_err(|_| format!("{size} bytes at {:#x} do not fit {:#x} bytes of memory", program.base, options.memory))?;
-    let end = program.base.wrapping_add(size as u32);
-    let stop = place(program, options.stop.as_deref(), "end", end)?;
-    let mut cpu = Cpu::at(Config::cycle(), place(program, options.entry.as_deref(), "start", program.base)?);
-    cpu.watch(Some(AddressProfile::new(program.base, size.div_ceil(4))));
-    let outcome = cpu.run(&mut ram, Some(stop), options.budget);
-    let mut report = if options.quiet { String::new() } else { cycle_listing(program, &cpu) };
-    report.push_str(&label_listing(program, &cpu));
-    let _ = writeln!(report, "{}", cpu.profile());
-    let result = match outcome {
-        Outcome::Stopped => Ok(()),
-        Outcome::Trapped(trap) => Err(trap.to_string()),
-        Outcome::Exhausted => Err(format!("not at {stop:#x} after {} instructions", cpu.instructions())),
-    };
-    Ok((report, result))
-}
-
-/// Clocks between each label and the next.
-fn label_listing(program: &Program, cpu: &Cpu) -> String {
-    let labels: Vec<(&str, u32)> = program.labels.iter().map(|(name, at)| (name.as_str(), *at)).collect();
-    let by_label = cpu.watched().map(|w| w.by_label(&labels)).unwrap_or_default();
-    let visited = by_label.into_iter().filter(|(_, clocks)| *clocks != 0);
-    visited.map(|(name, clocks)| format!("{clocks:>12}  clocks by label: {name}\n")).collect()
-}
-
-fn cycle_listing(program: &Program, cpu: &Cpu) -> String {
-    let mut text = String::from("     visits      clocks  address   word      instruction\n");
-    for (n, word) in program.words().iter().enumerate() {
-        let pc = program.base.wrapping_add(4 * n as u32);
-        let (clocks, visits) = cpu.watched().map_or((0, 0), |w| w.at(pc));
-        let labels = labels_at(Some(program), pc);
-        let _ = writeln!(text, "{labels}{visits:>11} {clocks:>11}  {pc:08x}  {word:08x}  {}", disassemble(*word, pc));
-    }
-    text
 }
 
 /// Runs a file of vectors; gives the report and the number that failed.
@@ -318,12 +272,71 @@ mod tests {
     fn a_run_lists_clocks_by_address_and_stops_at_its_end() {
         let path = file("loop.s", "start: mov 3, r5\nloop: adds -1, r5, r5\nbtne r0, r5, loop\nend: nop");
         let program = load(&path, 0x1000).expect("correct");
-        let options = RunOptions { entry: None, stop: None, budget: 100, memory: 0x2000, quiet: false };
+        let options = options();
         let (report, result) = execute(&program, &options).expect("fits");
         assert_eq!(result, Ok(()));
         assert!(report.contains("          3           3  00001004  94a5ffff  adds -1, r5, r5"), "{report}");
         let short = RunOptions { budget: 2, ..options };
         assert!(execute(&program, &short).expect("fits").1.is_err());
+    }
+
+    fn options() -> RunOptions {
+        RunOptions { entry: None, stop: None, budget: 100, memory: 0x2000, show: Vec::new(), json: false, quiet: false }
+    }
+
+    /// Stores 7 behind the code, at a label of its own.
+    const STORE: &str = "start: mov 7, r5\nmov table, r6\nst.l r5, 4(r6)\nend: nop\ntable: .long 1, 2, 3";
+
+    #[test]
+    fn a_run_tells_registers_and_the_memory_that_it_changed_by_its_labels() {
+        let program = load(&file("store.s", STORE), 0x1000).expect("correct");
+        let table = program.symbol("table").expect("a label");
+        let (text, result) = execute(&program, &options()).expect("fits");
+        assert_eq!(result, Ok(()));
+        assert!(text.contains("r5  00000007") && text.contains(&format!("r6  {table:08x}")), "{text}");
+        assert!(text.contains(&format!("{:08x}  00000007", table + 4)) && text.contains("table+0x4"), "{text}");
+        let shown = RunOptions { show: vec!["table:3".to_owned(), "table+8".to_owned()], ..options() };
+        let (text, _) = execute(&program, &shown).expect("fits");
+        assert!(text.contains("00000001 00000007 00000003"), "{text}");
+    }
+
+    #[test]
+    fn a_run_as_json_has_registers_memory_and_labels() {
+        let program = load(&file("json.s", STORE), 0x1000).expect("correct");
+        let (text, _) = execute(&program, &RunOptions { json: true, ..options() }).expect("fits");
+        let run: serde_json::Value = serde_json::from_str(&text).expect("one object");
+        assert_eq!(
+            (&run["stopped"], &run["r"][5], &run["pc_label"]),
+            (&true.into(), &"00000007".into(), &"end".into())
+        );
+        assert_eq!(run["memory"][0]["words"][0], "00000007");
+        assert_eq!(run["memory"][0]["label"], "table+0x4");
+        assert_eq!(run["labels"]["start"], "00001000");
+    }
+
+    /// 1 + 4 + 9 + 16 = 30.
+    #[test]
+    fn the_program_of_the_guide_runs_and_gives_what_it_says() {
+        let page = include_str!("../../../../docs/guide/assembler.md");
+        let source = page.split_once("```i860\n").and_then(|(_, rest)| rest.split_once("```")).expect("a program").0;
+        let program = load(&file("guide.s", source), 0x1000).expect("correct");
+        let shown = RunOptions { show: vec!["result:1".to_owned()], json: true, budget: 1_000, ..options() };
+        let (text, result) = execute(&program, &shown).expect("fits");
+        assert_eq!(result, Ok(()));
+        let run: serde_json::Value = serde_json::from_str(&text).expect("one object");
+        assert_eq!((&run["memory"][0]["label"], &run["memory"][0]["words"][0]), (&"result".into(), &"0000001e".into()));
+    }
+
+    #[test]
+    fn what_is_no_label_is_refused_with_those_that_there_are() {
+        let program = load(&file("labels.s", STORE), 0x1000).expect("correct");
+        let wrong = RunOptions { stop: Some("ende".to_owned()), ..options() };
+        let error = execute(&program, &wrong).expect_err("no label");
+        assert!(error.contains("start, end, table") && error.contains("`ende`"), "{error}");
+        for show in ["table:0", "table:x", "0x1ffc:2"] {
+            let wrong = RunOptions { show: vec![show.to_owned()], ..options() };
+            assert!(execute(&program, &wrong).is_err(), "{show}");
+        }
     }
 
     #[test]

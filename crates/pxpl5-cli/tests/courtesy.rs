@@ -1,0 +1,110 @@
+//! What the command tells without being asked: doubtful numbers, how to go on after Ctrl-C, what runs where.
+
+mod support;
+
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+use support::{Folder, command, err, json, out};
+
+const RUN: [&str; 7] = ["run", "--pipeline", "slats", "--scene", "full-screen:4", "--fields", "12"];
+
+fn with<'a>(first: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
+    [first, more].concat()
+}
+
+#[test]
+fn a_value_outside_its_range_is_warned_of_once_with_range_and_source() {
+    let folder = Folder::new("warnings");
+    let output = folder.run(&with(&RUN, &["--set", "gp.triangle_ns=3", "--json"]));
+    let said = err(&output);
+    assert_eq!(said.matches("warning").count(), 1, "{said}");
+    assert!(said.contains("gp.triangle_ns = 3 ns is outside its range, 18000 to 32000 ns (derived: "), "{said}");
+    let warnings = json(&output)["warnings"].clone();
+    assert_eq!(warnings.as_array().map(Vec::len), Some(1), "{warnings}");
+    assert!(said.contains(warnings[0].as_str().expect("text")));
+    for fine in
+        [&["--set", "gp.triangle_ns=20000"][..], &["--code", "optimised"], &["--quiet", "--set", "gp.triangle_ns=3"]]
+    {
+        assert_eq!(err(&folder.run(&with(&RUN, fine))), "", "{fine:?}");
+    }
+    let checked = folder.run(&["check", "--pipeline", "slats", "--scene", "mig", "--set", "gp.triangle_ns=3"]);
+    assert_eq!(err(&checked).matches("warning").count(), 1);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_of_a_sweep_names_the_command_that_goes_on_and_it_does() {
+    let folder = Folder::new("ctrl-c");
+    folder.file(
+        "s.toml",
+        "pipeline = \"slats\"\nscene = \"mig\"\nfields = 60\n[sweep.grid]\ntriangles = { from = 1, to = 100 }\nseed = { from = 1, to = 9 }\n",
+    );
+    let mut child = command(&["sweep", "s.toml", "--out", "o", "--threads", "1"]);
+    let child = child.current_dir(&folder.0).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = child.spawn().expect("the command starts");
+    let rows = folder.0.join("o/rows.jsonl");
+    let started = Instant::now();
+    while std::fs::read_to_string(&rows).unwrap_or_default().lines().count() < 3 {
+        assert!(started.elapsed() < Duration::from_secs(120), "no rows");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let interrupt = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(interrupt.expect("there is a kill").success());
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(130), "{}", err(&output));
+    assert!(err(&output).contains("pxpl5 sweep s.toml --out o --threads 1 --resume"), "{}", err(&output));
+    let kept = std::fs::read_to_string(&rows).expect("rows").lines().count();
+    assert!((3..900).contains(&kept), "{kept}");
+}
+
+#[test]
+fn machines_say_which_pipelines_they_run() {
+    let folder = Folder::new("machines");
+    let listed = json(&folder.run(&["machines", "--json"]));
+    let machines = listed["machines"].as_array().expect("a list");
+    assert!(machines.iter().all(|machine| machine["pipelines"].is_array() && machine["cannot_run"].is_object()));
+    let slats = machines.iter().find(|machine| machine["name"] == "slats").expect("a preset");
+    assert!(slats["pipelines"].as_array().expect("a list").contains(&"slats".into()), "{slats}");
+    assert!(out(&folder.run(&["machines"])).contains("runs "));
+    assert!(out(&folder.run(&["machines", "small-hmd"])).contains("rendering-control"));
+}
+
+#[test]
+fn without_fit_a_model_stays_where_its_file_says() {
+    let folder = Folder::new("no-fit");
+    folder.file("m.obj", "v -1 -1 -5\nv 1 -1 -5\nv 0 1 -5\nf 1 2 3\n");
+    let checked = out(&folder.run(&["check", "--pipeline", "slats", "--scene", "m.obj", "--no-fit"]));
+    assert!(checked.contains("fit = false"), "{checked}");
+    let hash = |text: &str| text.lines().find(|line| line.contains("config_hash")).map(str::to_owned);
+    let fitted = out(&folder.run(&["check", "--pipeline", "slats", "--scene", "m.obj"]));
+    assert!(!fitted.contains("fit =") && hash(&fitted) != hash(&checked), "{fitted}");
+    let refused = folder.run(&["check", "--pipeline", "slats", "--scene", "mig", "--no-fit"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(err(&refused).contains("--no-fit"), "{}", err(&refused));
+}
+
+#[test]
+fn fewer_triangles_keep_the_whole_model() {
+    let folder = Folder::new("decimated");
+    let report = json(&folder.run(&[
+        "run",
+        "--pipeline",
+        "slats",
+        "--scene",
+        "head",
+        "--triangles",
+        "100",
+        "--fields",
+        "12",
+        "--json",
+        "--out",
+        "out",
+    ]));
+    assert_eq!(report["triangles"], 100);
+    let picture = image::open(folder.0.join("out/left.png")).expect("a picture").to_rgb8();
+    let background = [16, 24, 48];
+    let rows: Vec<u32> = picture.enumerate_pixels().filter(|(_, _, p)| p.0 != background).map(|(_, y, _)| y).collect();
+    // The first 100 triangles are the crown: a strip of some lines.
+    let height = rows.iter().max().expect("something") - rows.iter().min().expect("something");
+    assert!(height > 200, "{height} lines");
+}

@@ -1,0 +1,170 @@
+//! Which edges are collapsed, in which order.
+
+use std::cmp::Ordering;
+use std::collections::{BTreeSet, BinaryHeap};
+
+use super::quadric::Quadric;
+use super::surface::{Surface, is_degenerate};
+
+/// A triangle may turn by at most 78 degrees when one of its corners moves. Assumed, 45 to 90 degrees.
+const LEAST_COSINE: f64 = 0.2;
+
+/// Rules for a pass over all edges.
+#[derive(Clone, Copy)]
+pub(super) struct Rules {
+    /// Whether triangles may turn over.
+    pub(super) may_fold: bool,
+    /// Whether fewer triangles may be left than wanted, because an edge inside a surface takes two with it.
+    pub(super) may_overshoot: bool,
+}
+
+/// A point that may move onto another one.
+struct Candidate {
+    cost: f64,
+    from: u32,
+    onto: u32,
+    /// How often each of them had changed when the cost was found.
+    changes: [u32; 2],
+}
+
+/// The cheapest first; of equally dear ones that of the lowest points.
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let points = |candidate: &Self| (candidate.from, candidate.onto);
+        other.cost.total_cmp(&self.cost).then_with(|| points(other).cmp(&points(self)))
+    }
+}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Candidate {}
+
+/// A surface that loses edges, with what every point has seen.
+pub(super) struct Collapsing<'s, 'a> {
+    surface: &'s mut Surface<'a>,
+    quadrics: Vec<Quadric>,
+    changes: Vec<u32>,
+}
+
+impl<'s, 'a> Collapsing<'s, 'a> {
+    pub(super) fn new(surface: &'s mut Surface<'a>) -> Self {
+        let points = surface.places.len();
+        let mut quadrics = vec![Quadric::default(); points];
+        for (_, corners) in surface.all() {
+            let normal = surface.normal(corners);
+            let area = normal.length() / 2.0;
+            let Some(normal) = normal.try_normalize() else { continue };
+            let place = surface.places[corners[0] as usize];
+            corners.iter().for_each(|point| quadrics[*point as usize] += Quadric::of_plane(normal, place, area));
+            for side in 0..3 {
+                let ends = [corners[side], corners[(side + 1) % 3]];
+                let places = ends.map(|point| surface.places[point as usize]);
+                let along = places[1] - places[0];
+                // A border stays where it is: as if a wall stood on it.
+                if surface.triangles_at(ends[0], ends[1]) != 2
+                    && let Some(across) = along.cross(normal).try_normalize()
+                {
+                    let wall = Quadric::of_plane(across, places[0], along.length_squared());
+                    ends.iter().for_each(|point| quadrics[*point as usize] += wall);
+                }
+            }
+        }
+        Self { surface, quadrics, changes: vec![0; points] }
+    }
+
+    /// Collapses edges, the cheapest first, until so many triangles are left, or no edge can go.
+    pub(super) fn until(&mut self, wanted: usize, rules: Rules) {
+        while self.surface.left > wanted {
+            let before = self.surface.left;
+            self.pass(wanted, rules);
+            if self.surface.left == before {
+                return;
+            }
+        }
+    }
+
+    fn pass(&mut self, wanted: usize, rules: Rules) {
+        let mut queue = BinaryHeap::new();
+        for point in 0..self.surface.places.len() as u32 {
+            self.enter(point, &mut queue);
+        }
+        while let Some(candidate) = queue.pop() {
+            if self.surface.left <= wanted {
+                return;
+            }
+            let Candidate { from, onto, changes, .. } = candidate;
+            let is_current = changes == [self.changes[from as usize], self.changes[onto as usize]];
+            if !is_current || !self.may_go(from, onto, wanted, rules) {
+                continue;
+            }
+            self.surface.collapse(from, onto);
+            let moved = self.quadrics[from as usize];
+            self.quadrics[onto as usize] += moved;
+            self.changes[from as usize] += 1;
+            self.changes[onto as usize] += 1;
+            self.enter(onto, &mut queue);
+            for neighbour in self.surface.neighbours(onto) {
+                queue.push(self.candidate(neighbour, onto));
+            }
+        }
+    }
+
+    /// The ways in which a point may move along its edges.
+    fn enter(&self, point: u32, queue: &mut BinaryHeap<Candidate>) {
+        queue.extend(self.surface.neighbours(point).into_iter().map(|onto| self.candidate(point, onto)));
+    }
+
+    fn candidate(&self, from: u32, onto: u32) -> Candidate {
+        let quadric = self.quadrics[from as usize] + self.quadrics[onto as usize];
+        let cost = quadric.at(self.surface.places[onto as usize]);
+        Candidate { cost, from, onto, changes: [from, onto].map(|point| self.changes[point as usize]) }
+    }
+
+    /// Whether the surface stays one: nothing closed opens, nothing is doubled, no piece vanishes.
+    fn may_go(&self, from: u32, onto: u32, wanted: usize, rules: Rules) -> bool {
+        let surface = &self.surface;
+        let (going, staying): (Vec<_>, Vec<_>) = surface.round(from).partition(|(_, points)| points.contains(&onto));
+        let leaves_too_few = surface.left < wanted + going.len();
+        if going.is_empty() || (leaves_too_few && !rules.may_overshoot) {
+            return false;
+        }
+        let opposite: BTreeSet<u32> =
+            going.iter().flat_map(|(_, points)| *points).filter(|point| ![from, onto].contains(point)).collect();
+        let own = surface.neighbours(from);
+        let common = own.intersection(&surface.neighbours(onto)).count();
+        let vanishes = staying.is_empty() && surface.round(onto).count() == going.len();
+        if common != opposite.len() || vanishes || !self.keeps_borders(from, onto, &own) {
+            return false;
+        }
+        staying.iter().all(|(_, points)| self.may_move(*points, from, onto, rules.may_fold))
+    }
+
+    /// A point on a border moves along it only, and one where borders meet does not move.
+    fn keeps_borders(&self, from: u32, onto: u32, neighbours: &BTreeSet<u32>) -> bool {
+        let on_border = |other: &&u32| self.surface.triangles_at(from, **other) != 2;
+        let borders: Vec<u32> = neighbours.iter().filter(on_border).copied().collect();
+        borders.is_empty() || (borders.len() == 2 && borders.contains(&onto))
+    }
+
+    /// Whether a triangle survives the move of one of its points: not doubled, not folded over.
+    fn may_move(&self, points: [u32; 3], from: u32, onto: u32, may_fold: bool) -> bool {
+        let moved = points.map(|point| if point == from { onto } else { point });
+        let is_same = |(_, other): (u32, [u32; 3])| moved.iter().all(|point| other.contains(point));
+        if is_degenerate(moved) || self.surface.round(onto).any(is_same) {
+            return false;
+        }
+        let before = self.surface.normal(points);
+        let after = self.surface.normal(moved);
+        may_fold || after.dot(before) > LEAST_COSINE * after.length() * before.length()
+    }
+}

@@ -1,0 +1,76 @@
+//! Results that are tables: sweeps and comparisons.
+
+use super::html::page;
+use super::run::PagePicture;
+use super::section::image;
+use super::values::{cell, heading, number_cell, paragraph, row, table};
+use crate::markup::Element;
+
+/// A table of results with what stands around it.
+#[derive(Clone, Debug, Default)]
+pub struct PageTable {
+    /// What stands over it.
+    pub name: String,
+    /// What it is of, a paragraph each.
+    pub about: Vec<String>,
+    /// The names of its columns.
+    pub columns: Vec<String>,
+    /// Its rows, a cell for each column.
+    pub rows: Vec<Vec<String>>,
+    /// Charts, as SVG, with what they show.
+    pub charts: Vec<PagePicture>,
+    /// Pictures, as PNG, with what they show.
+    pub pictures: Vec<PagePicture>,
+}
+
+/// Tables on one page without anything from outside.
+#[must_use]
+pub fn html_of_tables(tables: &[PageTable]) -> String {
+    page(tables.iter().map(section))
+}
+
+fn section(of: &PageTable) -> Element {
+    let mut section = Element::new("section").child(&Element::new("h2").text(&of.name));
+    section.end_line();
+    of.about.iter().for_each(|text| section.add_line(&paragraph(text)));
+    let names: Vec<&str> = of.columns.iter().map(String::as_str).collect();
+    section.add_line(&table(&names, of.rows.iter().map(|cells| row(cells.iter().map(|text| shown(text))))));
+    let charts = of.charts.iter().map(|chart| figure("image/svg+xml", chart));
+    let pictures = of.pictures.iter().map(|picture| figure("image/png", picture));
+    let figures: Vec<Element> = charts.chain(pictures).collect();
+    if figures.is_empty() {
+        return section;
+    }
+    section.child(&heading("Pictures")).child(&Element::new("div").with("class", "pair").children(figures))
+}
+
+/// Numbers stand right.
+fn shown(text: &str) -> Element {
+    if text == "-" || text.parse::<f64>().is_ok() { number_cell(text) } else { cell(text) }
+}
+
+fn figure(kind: &str, picture: &PagePicture) -> Element {
+    let caption = Element::new("figcaption").text(&picture.label);
+    Element::new("figure").child(&image(kind, &picture.png, &picture.label)).child(&caption)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_of_tables_is_well_formed_and_its_text_is_text() {
+        let of = PageTable {
+            name: "<sweep>".to_owned(),
+            about: vec!["a & b".to_owned()],
+            columns: vec!["n".to_owned(), "what".to_owned()],
+            rows: vec![vec!["1.5".to_owned(), "<b>".to_owned()], vec!["-".to_owned(), "x".to_owned()]],
+            charts: vec![PagePicture { label: "error".to_owned(), png: b"<svg/>".to_vec() }],
+            ..PageTable::default()
+        };
+        let page = html_of_tables(&[of]);
+        roxmltree::Document::parse(page.strip_prefix("<!DOCTYPE html>\n").expect("HTML")).expect("closed");
+        assert!(page.contains("&lt;b&gt;") && page.contains("<td class=\"n\">1.5</td>") && page.contains("<td>x</td>"));
+        assert!(page.contains("data:image/svg+xml;base64,PHN2Zy8+"));
+    }
+}
