@@ -63,12 +63,12 @@ pub use pxpl5_machine::{
     RunError, Saving, StageSpan, Swap, Traffic, Transfer,
 };
 pub use pxpl5_measure::{
-    Budget, FieldError, HeadReport, LATENCY_PARTS, LatencyParts, Measure, Measured, NamedStatistics, PartDefinition,
-    Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, Report, Results, SurfaceStatistics,
+    Budget, ErrorCauses, ErrorPart, FieldError, HeadReport, LATENCY_PARTS, LatencyParts, Measure, Measured, NamedStatistics, PartDefinition,
+    Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, Report, Results, Showing, SurfaceStatistics,
     picture, side_by_side,
 };
 pub use pxpl5_run::{
-    BareHost, Code, DefinedStatistics, Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint,
+    BareHost, Cause, Code, DefinedStatistics, Estimator, Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint,
     Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key, KeyValue, KeyValues, Level,
     LimitCriterion, Outcome, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry,
     RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary, TestScene, Viewpoint, WARM_UP_PICTURES,

@@ -33,7 +33,7 @@ pub(crate) struct SettingArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     renderers: Option<i64>,
     /// Motion of a head with a tracker: still, pan:DEG_PER_S, pendulum, synthetic:SEED or a recording FILE.csv.
-    #[arg(long, value_name = "MOTION")]
+    #[arg(long, alias = "motion", value_name = "MOTION", allow_hyphen_values = true)]
     head: Option<String>,
     /// Its tracker: optical, fastrak, flock, flock-patched, 3space or ideal; default optical.
     #[arg(long)]

@@ -16,6 +16,7 @@ pub mod compare;
 mod experiment_file;
 pub mod figures;
 pub mod growth;
+mod head_names;
 mod host;
 pub mod intervals;
 pub mod levels;
@@ -29,6 +30,7 @@ pub use experiment_file::{
     ExperimentFile, FileError, FileKey, HeadChoice, MotionChoice, Outputs, PathChoice, Plan, Published, SceneChoice,
     Settings,
 };
+pub use head_names::{MotionError, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;
 pub use snapshot::{Snapshot, SnapshotError};
 

@@ -89,7 +89,7 @@ impl<'a> Registration<'a> {
     pub fn at(&self, x: u32, y: u32, field: u64) -> Option<PixelError> {
         let at = self.shown.outcome.record().display().lights(0, x, y, field)?;
         let drawn = self.shown.drawn(x, y, field, at)?;
-        self.judge.error(middle(x, y), &drawn, at)
+        self.judge.error(middle(x, y), &drawn.drawn, at)
     }
 }
 

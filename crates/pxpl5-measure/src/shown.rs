@@ -3,9 +3,9 @@
 use crate::screen::Screen;
 use glam::DVec2;
 use pxpl5_display::{Display, Surface};
-use pxpl5_run::{HeadViews, Outcome, Source};
+use pxpl5_run::{Estimator, HeadViews, Outcome, Sampled, Source};
 use pxpl5_sim::Time;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use tracking::Pose;
 use tracking::view::HmdView;
 
@@ -29,29 +29,77 @@ pub(crate) struct Shown<'a> {
     pub(crate) outcome: &'a Outcome,
     screen: Screen,
     views: BTreeMap<u64, u64>,
-    poses: BTreeMap<u64, Pose>,
+    poses: BTreeMap<u64, Aimed>,
+}
+
+/// A view's pose and the instant that its picture is drawn for.
+#[derive(Clone, Copy, Debug)]
+struct Aimed {
+    pose: Pose,
+    at: Time,
+}
+
+/// What a pixel shows, and the instant that it was drawn for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DrawnFor {
+    pub(crate) drawn: Drawn,
+    pub(crate) instant: Time,
 }
 
 impl<'a> Shown<'a> {
     pub(crate) fn of_run(outcome: &'a Outcome, head: &HeadViews) -> Self {
+        let poses = head.sampled().into_iter().map(|sampled| {
+            let aimed = Aimed { pose: sampled.pose, at: sampled.aimed_at };
+            (sampled.number, aimed)
+        });
         Self {
             outcome,
             screen: Screen::of_record(outcome.record()),
             views: outcome.pictures().iter().map(|times| (times.picture, times.view)).collect(),
-            poses: head.sampled().into_iter().map(|sampled| (sampled.number, sampled.pose)).collect(),
+            poses: poses.collect(),
         }
     }
 
-    /// What a pixel that lights at `at` shows; `None` before anything came.
-    pub(crate) fn drawn(&self, x: u32, y: u32, field: u64, at: Time) -> Option<Drawn> {
+    /// The same run with the poses that some of its views would have had; all others show nothing.
+    pub(crate) fn with_poses(self, head: &HeadViews, of: &BTreeSet<u64>, mut estimator: Estimator<'_>) -> Self {
+        let mut sampled: Vec<Sampled> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
+        sampled.sort_by_key(|sampled| sampled.known);
+        let poses = sampled.into_iter().map(|sampled| {
+            let pose = estimator.pose(sampled.known, sampled.aimed_at);
+            (sampled.number, Aimed { pose, at: sampled.aimed_at })
+        });
+        Self { poses: poses.collect(), ..self }
+    }
+
+    /// The views that a pixel shows which lights at `at`: one, or two between which it stands; none before anything came.
+    pub(crate) fn views_at(&self, x: u32, y: u32, field: u64, at: Time) -> Vec<u64> {
+        match self.source(x, y, field, at) {
+            Some(Source::View(number)) => vec![number],
+            Some(Source::Between { from, to, .. }) => vec![from, to],
+            None => Vec::new(),
+        }
+    }
+
+    fn source(&self, x: u32, y: u32, field: u64, at: Time) -> Option<Source> {
         let target = self.screen.shown(x, y, field, at)?;
-        let pose = |number: u64| self.poses.get(&number).copied();
-        Some(match self.outcome.pipeline().source(self.outcome.record(), &target, &self.views)? {
-            Source::View(number) => Drawn::Pose(pose(number)?),
-            Source::Between { from, to, part, on_screen } => {
-                Drawn::Between { from: pose(from)?, to: pose(to)?, part, on_screen }
+        self.outcome.pipeline().source(self.outcome.record(), &target, &self.views)
+    }
+
+    /// What a pixel that lights at `at` shows; `None` before anything came.
+    pub(crate) fn drawn(&self, x: u32, y: u32, field: u64, at: Time) -> Option<DrawnFor> {
+        match self.source(x, y, field, at)? {
+            Source::View(number) => {
+                let aimed = self.poses.get(&number)?;
+                Some(DrawnFor { drawn: Drawn::Pose(aimed.pose), instant: aimed.at })
             }
-        })
+            Source::Between { from, to, part, on_screen } => {
+                let from = self.poses.get(&from)?;
+                let to = self.poses.get(&to)?;
+                let ahead_ps = to.at.since(from.at).0 as f64 * part;
+                let drawn = Drawn::Between { from: from.pose, to: to.pose, part, on_screen };
+                Some(DrawnFor { drawn, instant: Time(from.at.0 + ahead_ps as u64) })
+            }
+        }
     }
 }
 

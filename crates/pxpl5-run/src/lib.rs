@@ -14,6 +14,7 @@
 mod display_list;
 mod displays;
 mod error;
+mod estimator;
 mod experiment;
 mod fingerprint;
 mod head;
@@ -35,10 +36,11 @@ mod views;
 
 pub use display_list::{display_list, views};
 pub use error::ExperimentError;
+pub use estimator::{Cause, Estimator};
 pub use experiment::{Experiment, FIELDS_RANGE, FieldsNeeded, Pixels, WARM_UP_PICTURES};
 pub use fingerprint::Fingerprint;
 pub use head::{Head, HeadError};
-pub use head_views::{FIELDS_WITH_HEAD, Follower, HeadViews, Sampled};
+pub use head_views::{FIELDS_WITH_HEAD, HeadViews, Sampled};
 pub use host::{BareHost, Host};
 pub use keys::{Key, KeyValue, KeyValues, PipelineSettings};
 pub use level::Level;

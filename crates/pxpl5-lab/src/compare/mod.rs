@@ -1,13 +1,17 @@
-//! All ways to fight latency side by side, in pixels: the same machine, scene, head motion and tracker for each.
+//! The ways to fight latency side by side: one set of settings, every pipeline, several seeds, and one judge.
+//!
+//! [`CompareQuery`] says what is compared; [`Comparison`] is the table of a paper: for every [`Row`] how long from head to light,
+//! over which interval it predicts, how many pixels it is wrong and why, and what it could draw.
 
-mod motion;
+mod contender;
 mod pictures;
-mod possible;
+mod query;
 mod rig;
-mod rows;
+mod row;
+mod trial;
 
-pub use motion::{MotionError, TRACKERS, motion, predictor, tracker};
+pub use crate::head_names::{MotionError, TRACKERS, motion, predictor, tracker};
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
-pub use possible::{Possible, triangles_possible};
+pub use query::{CompareError, CompareQuery, Comparison, LEAST_SEEDS};
 pub use rig::measure_on;
-pub use rows::{Comparison, Row, compare, compare_with};
+pub use row::{CauseShare, ErrorSpread, MeanInterval, Row};

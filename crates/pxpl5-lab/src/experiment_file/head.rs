@@ -2,7 +2,7 @@
 
 use super::read::beside;
 use super::{ExperimentFile, FileError};
-use crate::compare::{motion, predictor, tracker};
+use crate::head_names::{motion, predictor, tracker};
 use pxpl5_run::{Head, Pipeline, Raster};
 use std::sync::Arc;
 
@@ -64,7 +64,8 @@ impl HeadChoice {
     }
 
     /// Its keys and their values.
-    pub(super) fn settings(&self) -> [(&'static str, String); 4] {
+    #[must_use]
+    pub fn settings(&self) -> [(&'static str, String); 4] {
         [
             ("head.motion", self.motion.clone()),
             ("head.tracker", self.tracker.clone()),

@@ -3,6 +3,7 @@
 mod pan;
 mod pendulum;
 mod recording;
+mod shifted;
 mod spline;
 mod still;
 mod synthetic;
@@ -10,6 +11,7 @@ mod synthetic;
 pub use pan::Pan;
 pub use pendulum::Pendulum;
 pub use recording::{LoadError, Recording};
+pub use shifted::Shifted;
 pub use still::Still;
 pub use synthetic::{Band, Synthetic, SyntheticConfig};
 

@@ -3,6 +3,7 @@
 mod channel;
 mod config;
 mod evaluate;
+mod exact;
 mod extrapolation;
 pub mod gain;
 mod gate;
@@ -12,6 +13,7 @@ mod predicting;
 
 pub use config::{PredictorConfig, PredictorKind};
 pub use evaluate::{PredictionError, prediction_errors};
+pub use exact::ExactPredictor;
 pub use gate::Counts;
 
 use crate::pose::Pose;
