@@ -6,7 +6,8 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5::{
-    Experiment, Level, Machine, MachineConfig, Outcome, Pipeline, Pixels, RenderingControl, Slats, Workstation, scene,
+    Experiment, Level, Machine, MachineConfig, Outcome, PeriodNumber, Pipeline, Pixels, RenderingControl, Slats,
+    Workstation, scene,
 };
 use std::hint::black_box;
 
@@ -68,7 +69,7 @@ fn idle(criterion: &mut Criterion) {
             let machine = Machine::new(&MachineConfig::small_hmd(), pipeline.eyes(), pipeline.layout());
             let mut machine = machine.expect("the preset is valid");
             machine.switch_on();
-            let end = machine.record().tick(FIELDS);
+            let end = machine.record().tick(PeriodNumber(FIELDS));
             machine.run_until(end).expect("nothing can fail");
             black_box(machine.events())
         });

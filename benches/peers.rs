@@ -12,6 +12,7 @@ use glam::{Mat4, Vec3, Vec4};
 use pphigs::{
     Binning, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionEnvelope, Shading, Share,
 };
+use pxpl5::ViewNumber;
 use pxpl5::scene::{self, Hmd, HmdConfig, Scene};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{BitSerial, Lanes, Layout, PixelArray};
@@ -145,7 +146,7 @@ impl<A: PixelArray> Ours<A> {
     }
 
     fn draw(&mut self, view: &EyeView) {
-        let view = FrameView { number: 0, eyes: vec![*view], edits: Vec::new() };
+        let view = FrameView { number: ViewNumber::FIRST, eyes: vec![*view], edits: Vec::new() };
         let pass = self.share.transform(&view, 0, self.picture);
         self.pixels.clear();
         let grid = self.picture.viewport.grid();

@@ -6,7 +6,8 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5::{
-    Experiment, Level, MachineConfig, NtscDisplay, Pixels, RenderingControl, Saving, Slats, Workstation, scene,
+    Experiment, Level, MachineConfig, NtscDisplay, PeriodNumber, Pixels, RenderingControl, Saving, Slats, Workstation,
+    scene,
 };
 use std::hint::black_box;
 
@@ -37,7 +38,7 @@ fn savings(criterion: &mut Criterion) {
             for (way, experiment) in [("with", with.clone()), ("without", with.without(saving))] {
                 let run = || {
                     let mut machine = experiment.build().expect("the presets are valid");
-                    let end = machine.record().tick(fields(saving));
+                    let end = machine.record().tick(PeriodNumber(fields(saving)));
                     machine.run_until(end).expect("it runs");
                     black_box(machine.finish_pixels())
                 };
@@ -67,7 +68,7 @@ fn looking(criterion: &mut Criterion) {
         let run = || {
             let mut machine = experiment.build().expect("the preset is valid");
             for field in (60..=FIELDS).step_by(60) {
-                let end = machine.record().tick(field);
+                let end = machine.record().tick(PeriodNumber(field));
                 machine.run_until(end).expect("it runs");
                 for _ in 0..looks {
                     let display = machine.record().display_of_kind::<NtscDisplay>().expect("the papers' machine");

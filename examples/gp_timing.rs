@@ -11,7 +11,7 @@ use i860::{Config, Profile};
 use kernel::{Bench, frame, triangles};
 use parameters::{ParameterTable, Value};
 use pxpl5::limit::{LimitQuery, test_scene};
-use pxpl5::{Experiment, Level, MachineConfig, Pixels, Slats, TestScene};
+use pxpl5::{Experiment, Level, MachineConfig, PictureNumber, Pixels, Slats, TestScene};
 use pxpl5_geometry::kernel::{Kernel, Schedule};
 use pxpl5_geometry::{Triangle, Viewport};
 use pxpl5_gp::Stage;
@@ -201,7 +201,7 @@ fn transform_us(preset: &str, level: Level, triangles: u32) -> Result<f64, Box<d
     let small = test_scene(TestScene::Typical, triangles);
     let experiment = Experiment::new(MachineConfig::preset(preset)?, Slats::split(), small).fields(12).level(level);
     let stages = experiment.pixels(Pixels::Off).run()?.stages();
-    let steady = stages.iter().filter(|span| span.stage == Stage::Transform && span.picture > 4);
+    let steady = stages.iter().filter(|span| span.stage == Stage::Transform && span.picture > PictureNumber(4));
     let times: Vec<f64> = steady.filter_map(|span| Some((span.end? - span.begin).as_ms() * 1e3)).collect();
     Ok(times.iter().sum::<f64>() / times.len() as f64)
 }

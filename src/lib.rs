@@ -75,7 +75,7 @@ pub use pxpl5_run::{
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};
 pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmOf, results, timeline, trace_export};
-pub use pxpl5_wire::{Eye, SurfaceId};
+pub use pxpl5_wire::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 pub use slats::CopySchedule;
 
 /// What a pipeline of one's own is written with: firmware on graphics processors, display lists, commands for renderers, and
@@ -88,7 +88,8 @@ pub mod firmware {
     pub use pxpl5_gp::{Edge, Fault, Firmware, Gp, GpTiming, HostTiming, Mark, Priority, Received, Stage, Ticket};
     pub use pxpl5_renderer::{CommandKind, Layout};
     pub use pxpl5_wire::{
-        Body, CommandList, CopyOrder, CopyTarget, FieldParity, Lines, NodeId, RegionGrid, RegionId, Word, swap_request,
+        Body, CommandList, CopyOrder, CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber, RegionGrid,
+        RegionId, ViewNumber, Word, swap_request,
     };
 }
 

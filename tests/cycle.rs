@@ -2,8 +2,8 @@
 
 use pxpl5::limit::test_scene;
 use pxpl5::{
-    CodeVersion, Experiment, ExperimentError, Level, MachineConfig, Measured, Outcome, Pixels, RenderingControl, Slats,
-    TestScene, Workstation, scene,
+    CodeVersion, Experiment, ExperimentError, Level, MachineConfig, Measured, Outcome, PictureNumber, Pixels,
+    RenderingControl, Slats, TestScene, Workstation, scene,
 };
 use pxpl5_gp::Stage;
 
@@ -33,7 +33,7 @@ fn hash(experiment: &Experiment) -> String {
 /// Mean time of TRANSFORM of the pictures after the first ones, in microseconds.
 fn transform_us(outcome: &Outcome) -> f64 {
     let stages = outcome.stages();
-    let spans = stages.iter().filter(|span| span.stage == Stage::Transform && span.picture > 2);
+    let spans = stages.iter().filter(|span| span.stage == Stage::Transform && span.picture > PictureNumber(2));
     let times: Vec<_> = spans.filter_map(|span| Some((span.end? - span.begin).as_ms() * 1e3)).collect();
     times.iter().sum::<f64>() / times.len() as f64
 }

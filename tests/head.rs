@@ -7,7 +7,9 @@ use pxpl5::tracking::motion::{Motion, Pan};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
 use pxpl5::tracking::view::HmdView;
-use pxpl5::{Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Measured, Pixels, Plan, Raster, Viewpoint};
+use pxpl5::{
+    Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan, Raster, Viewpoint,
+};
 use pxpl5::{Film, FilmOf};
 use std::sync::Arc;
 use support::video;
@@ -61,8 +63,8 @@ fn panned(deg_per_s: f64, raster: Raster, fields: u64) -> Experiment {
 }
 
 /// The column of each line of a field where the wall ends.
-fn edges(picture: &image::RgbImage, field: u64) -> Vec<f64> {
-    let lines = (0..picture.height()).filter(|y| u64::from(y % 2) == field % 2);
+fn edges(picture: &image::RgbImage, field: PeriodNumber) -> Vec<f64> {
+    let lines = (0..picture.height()).filter(|y| u64::from(y % 2) == field.0 % 2);
     let is_wall = |x, y| picture.get_pixel(x, y).0[0] > 100;
     let edge = |y| (1..picture.width()).find(|x| is_wall(x - 1, y) && !is_wall(*x, y)).map_or(-1.0, f64::from);
     lines.map(edge).collect()
@@ -70,16 +72,16 @@ fn edges(picture: &image::RgbImage, field: u64) -> Vec<f64> {
 
 #[test]
 fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
-    const FIELD: u64 = 20;
+    const FIELD: PeriodNumber = PeriodNumber(20);
     let (pan, view) = (Pan::at(30.0), HmdView::ntsc());
     let [plain, vdrt] = [Raster::Plain, Raster::Vdrt].map(|raster| {
-        let outcome = panned(30.0, raster, FIELD + 2).run().expect("the scene is small");
+        let outcome = panned(30.0, raster, FIELD.0 + 2).run().expect("the scene is small");
         let video = *video(&outcome);
         let picture = outcome.picture(Eye::Left).expect("pixels when looked at");
         let found = edges(&picture, FIELD).into_iter().enumerate();
         let errors: Vec<f64> = found
             .map(|(row, column)| {
-                let at = video.when(column as u32, 2 * row as u32 + (FIELD % 2) as u32, FIELD).expect("visible");
+                let at = video.when(column as u32, 2 * row as u32 + (FIELD.0 % 2) as u32, FIELD).expect("visible");
                 let edge = view.project(pan.pose(at.0).view_of(glam::DVec3::NEG_Z * 2.0)).expect("ahead");
                 (column - edge.x).abs()
             })
@@ -96,7 +98,7 @@ fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
 #[test]
 fn a_film_on_a_shifted_raster_shows_the_pictures_of_a_run_on_it() {
     let mut bytes = Vec::new();
-    Film::new(panned(40.0, Raster::Vdrt, 30), 10, 3, FilmOf::One(Eye::Left.into()))
+    Film::new(panned(40.0, Raster::Vdrt, 30), PeriodNumber(10), 3, FilmOf::One(Eye::Left.into()))
         .write(&[], &mut bytes)
         .expect("in range");
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("PNG");

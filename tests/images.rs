@@ -7,7 +7,9 @@
 use image::{Rgb, RgbImage, imageops};
 mod support;
 
-use pxpl5::{Binning, Experiment, Eye, MachineConfig, Measured, Outcome, Pipeline, RenderingControl, Slats, scene};
+use pxpl5::{
+    Binning, Experiment, Eye, MachineConfig, Measured, Outcome, PeriodNumber, Pipeline, RenderingControl, Slats, scene,
+};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -115,8 +117,8 @@ fn shown(outcome: &Outcome, eye: Eye) -> RgbImage {
     match outcome.pipeline().name() {
         "slats" => {
             let last = frame_buffer.last_seen().expect("a field was scanned");
-            let n = last.field() - (last.field() ^ newest) % 2;
-            frame_buffer.seen(n).expect("the last fields are remembered").picture()
+            let n = last.field().0 - (last.field().0 ^ newest.period_drawn_for().0) % 2;
+            frame_buffer.seen(PeriodNumber(n)).expect("the last fields are remembered").picture()
         }
         _ => outcome.picture(eye).expect("pixels are on"),
     }

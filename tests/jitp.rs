@@ -13,8 +13,8 @@ use pxpl5::tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, seconds};
 use pxpl5::tracking::tracker::{Fault, TrackerConfig, TrackerModel};
 use pxpl5::views::charts::LatencyCurve;
 use pxpl5::{
-    Budget, Experiment, Frameless, Head, Interpolation, Jitp, MachineConfig, Measured, Outcome, Percentiles, Pipeline,
-    PixelErrors, Pixels, Registration, RenderingControl, Slats, Viewpoint,
+    Budget, Experiment, Frameless, Head, Interpolation, Jitp, MachineConfig, Measured, Outcome, Percentiles,
+    PeriodNumber, Pipeline, PixelErrors, Pixels, Registration, RenderingControl, Slats, ViewNumber, Viewpoint,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ const PAN: f64 = 200.0;
 /// Focal length of 640 pixels over 60 degrees.
 const FOCAL_PX: f64 = 554.256_258_422_040_8;
 /// A field that is well past the start, and even.
-const FIELD: u64 = 40;
+const FIELD: PeriodNumber = PeriodNumber(40);
 
 fn head(motion: impl Motion + Send + Sync + 'static, tracker: TrackerConfig, kind: PredictorKind) -> Head {
     Head::new(Arc::new(motion), tracker, kind, 1).expect("the settings are in range")
@@ -50,7 +50,7 @@ fn run(pipeline: impl Pipeline + 'static, head: Head, fields: u64) -> Outcome {
 }
 
 fn under_a_pan(viewpoint: Viewpoint, racing: bool) -> Outcome {
-    run(Jitp { strip_rows: 1, ..Jitp::new(viewpoint, racing) }, perfect(Pan::at(PAN)), FIELD + 2)
+    run(Jitp { strip_rows: 1, ..Jitp::new(viewpoint, racing) }, perfect(Pan::at(PAN)), FIELD.0 + 2)
 }
 
 /// Seconds between the beam's passes over two pixels of a field.
@@ -155,7 +155,7 @@ fn a_picture_is_seen_as_it_is_by_a_still_head() {
 fn j5_scanline_rendering_takes_240_transforms_a_field() {
     let views = |viewpoint| {
         let outcome = under_a_pan(viewpoint, true);
-        let of_field = |n: &u64| n / 256 == FIELD;
+        let of_field = |view: &ViewNumber| view.0 / 256 == FIELD.0;
         outcome.head().expect("a head").sampled().iter().map(|s| s.number).filter(of_field).count()
     };
     // The paper counts about 256 lines; 240 of a field are visible.

@@ -4,8 +4,8 @@
 mod support;
 
 use pxpl5::{
-    Arrival, Code, Experiment, Eye, MachineConfig, Measured, Outcome, PictureTimes, Pixels, RenderingControl, Slats,
-    StageSpan, scene,
+    Arrival, Code, Experiment, Eye, MachineConfig, Measured, Outcome, PeriodNumber, PictureNumber, PictureTimes,
+    Pixels, RenderingControl, Slats, StageSpan, scene,
 };
 use pxpl5_gp::Stage;
 use support::video;
@@ -27,7 +27,7 @@ fn slats(machine: &str, pipeline: Slats, triangles: usize) -> Outcome {
     run(Experiment::new(MachineConfig::preset(machine).expect("listed"), pipeline, scene).fields(16))
 }
 
-fn stages(outcome: &Outcome, stage: Stage, picture: u64) -> Vec<StageSpan> {
+fn stages(outcome: &Outcome, stage: Stage, picture: PictureNumber) -> Vec<StageSpan> {
     let message = outcome.record().ring().timing().occupancy(1_024);
     outcome.observation().stages(message).into_iter().filter(|s| s.stage == stage && s.picture == picture).collect()
 }
@@ -52,7 +52,10 @@ fn figure_2_both_eyes_are_copied_in_31_2_ms() {
     // 2 x 640 x 480 pixels in messages of 1,024: 600 x 52 us = 31.2 ms of port time, one eye after the other. At the
     // seam and at the begin a renderer may keep a port waiting: 0.2 %.
     let outcome = trivial();
-    let ms: f64 = stages(&outcome, Stage::Copy, 10).iter().map(|s| (s.end.expect("copied") - s.begin).as_ms()).sum();
+    let ms: f64 = stages(&outcome, Stage::Copy, PictureNumber(10))
+        .iter()
+        .map(|s| (s.end.expect("copied") - s.begin).as_ms())
+        .sum();
     assert!((ms / 31.2 - 1.0).abs() < 0.002, "{ms} ms");
 }
 
@@ -72,7 +75,7 @@ fn figure_9_slats_shows_every_field_exactly_one_field_after_its_start() {
         let one_field = |times: &PictureTimes| {
             let video = video(&outcome);
             let started = video.field_at(times.transform_at);
-            times.transform_at == video.retrace(started) && times.shown_at == video.retrace(started + 1)
+            times.transform_at == video.retrace(started) && times.shown_at == video.retrace(started.next())
         };
         assert!(outcome.steady_pictures().iter().all(one_field));
         assert!((outcome.report().updates_hz.expect("two pictures") - 60_000.0 / 1_001.0).abs() < 1e-3);
@@ -84,7 +87,7 @@ fn figure_10_twenty_field_regions_take_eleven_region_times() {
     // Left and right in turn, in order of arrival: at each end one board idles for one region. A renderer needs a
     // cycle, a word and up to 8 hops to hand over from one board to the other: below 2 us in all.
     let outcome = slats("slats", Slats::whole(), 60);
-    let us = copy_us(outcome.observation().arrivals.iter().filter(|a| a.target.picture == 6));
+    let us = copy_us(outcome.observation().arrivals.iter().filter(|a| a.target.picture == PictureNumber(6)));
     assert!((11.0 * REGION_US..11.0 * REGION_US + 2.0).contains(&us), "{us} us");
 }
 
@@ -92,7 +95,7 @@ fn figure_10_twenty_field_regions_take_eleven_region_times() {
 fn figure_11_half_of_them_take_3_9_ms() {
     let outcome = slats("slats", Slats::split(), 60);
     for bottom in [false, true] {
-        let half = |a: &&Arrival| a.target.picture == 6 && (a.target.region.0 >= 5) == bottom;
+        let half = |a: &&Arrival| a.target.picture == PictureNumber(6) && (a.target.region.0 >= 5) == bottom;
         let us = copy_us(outcome.observation().arrivals.iter().filter(half));
         // Below a microsecond for handing over, and up to 8 hops between the ways of the first and the last renderer.
         assert!((us - 5.0 * REGION_US).abs() < 1.5, "{us} us");
@@ -102,8 +105,8 @@ fn figure_11_half_of_them_take_3_9_ms() {
 #[test]
 fn the_top_half_is_copied_before_the_retrace_and_the_bottom_half_after_it() {
     let outcome = slats("slats", Slats::split(), 100);
-    let retrace = video(&outcome).retrace(6);
-    for arrival in outcome.observation().arrivals.iter().filter(|a| a.target.picture == 6) {
+    let retrace = video(&outcome).retrace(PeriodNumber(6));
+    for arrival in outcome.observation().arrivals.iter().filter(|a| a.target.picture == PictureNumber(6)) {
         let top = arrival.target.region.0 < 5;
         assert_eq!(arrival.last_part_at < retrace, top, "{arrival:?}");
     }
@@ -141,9 +144,10 @@ fn figure_14_the_code_of_1995_draws_about_100_triangles() {
 fn figure_15_the_first_copy_begins_about_12_8_ms_after_the_retrace() {
     // 16.683 - 5 x 0.78 = 12.78 ms is the latest possible begin; the fullest field comes within a triangle of it.
     let outcome = slats("slats", Slats::split(), 148);
-    let top = outcome.observation().arrivals.iter().filter(|a| a.target.picture == 6 && a.target.region.0 < 5);
+    let top =
+        outcome.observation().arrivals.iter().filter(|a| a.target.picture == PictureNumber(6) && a.target.region.0 < 5);
     let begin = top.map(|a| a.first_part_at.0).min().expect("regions") - 52_000_000;
-    let ms = (begin - video(&outcome).retrace(5).0) as f64 * 1e-9;
+    let ms = (begin - video(&outcome).retrace(PeriodNumber(5)).0) as f64 * 1e-9;
     assert!((ms - 12.8).abs() < 0.1, "{ms} ms");
 }
 

@@ -6,7 +6,7 @@ mod support;
 use pxpl5::results::{columns, csv};
 use pxpl5::trace_export::{Events, Trace, chrome, perfetto};
 use pxpl5::{
-    Experiment, Eye, Frameless, Jitp, LATENCY_PARTS, MachineConfig, Measured, Outcome, Pipeline, Pixels,
+    Experiment, Eye, Frameless, Jitp, LATENCY_PARTS, MachineConfig, Measured, Outcome, PeriodNumber, Pipeline, Pixels,
     RenderingControl, Slats, Viewpoint, scene, side_by_side,
 };
 use pxpl5::{Film, FilmError, FilmOf};
@@ -63,7 +63,7 @@ fn the_parts_of_every_latency_add_up_to_the_picosecond() {
             assert_eq!(Some(parts.begin), times.sampled_at);
             let video = video(outcome);
             let field = video.field_at(times.shown_at);
-            let line = u32::try_from(field % 2).expect("0 or 1");
+            let line = u32::try_from(field.0 % 2).expect("0 or 1");
             assert_eq!(Some(parts.end()), video.when(0, line, field));
         }
     }
@@ -300,7 +300,7 @@ fn flows_lead_from_send_to_the_first_field_that_shows_the_picture() {
     for outcome in &all() {
         let (_, events) = parsed(outcome);
         for times in outcome.steady_pictures() {
-            let id = times.picture + 1;
+            let id = times.picture.next().0;
             let last: Vec<_> = events.iter().filter(|(_, event)| event.terminating_flow_ids == [id]).collect();
             assert_eq!(last.len(), 1, "picture {}", times.picture);
             assert_eq!(last[0].0, times.shown_at.0 / 1_000);
@@ -416,13 +416,15 @@ fn remembered() -> (Experiment, Outcome) {
 fn a_film_shows_every_field_at_the_true_rate() {
     let (experiment, outcome) = remembered();
     let mut bytes = Vec::new();
-    Film::new(experiment, 6, 4, FilmOf::All).write(&[("seed", "1".to_owned())], &mut bytes).expect("written");
+    Film::new(experiment, PeriodNumber(6), 4, FilmOf::All)
+        .write(&[("seed", "1".to_owned())], &mut bytes)
+        .expect("written");
     let (info, frames) = frames(&bytes);
     assert_eq!((info.width, info.height, frames.len()), (1_280, 480, 4));
     assert!(info.utf8_text.iter().any(|text| text.keyword == "pxpl5 seed"));
     for (field, frame) in (6..).zip(frames) {
         let eye = |board: usize| {
-            let seen = |n| boards(&outcome)[board].seen(n).expect("remembered");
+            let seen = |n| boards(&outcome)[board].seen(PeriodNumber(n)).expect("remembered");
             seen(field).interlaced_with(&seen(field - 1))
         };
         assert!(frame == side_by_side(&eye(0), &eye(1)).into_raw(), "field {field}");
@@ -432,7 +434,7 @@ fn a_film_shows_every_field_at_the_true_rate() {
 #[test]
 fn a_film_without_a_field_is_refused() {
     let (experiment, _) = remembered();
-    let film = Film::new(experiment, 0, 0, FilmOf::One(Eye::Left.into()));
+    let film = Film::new(experiment, PeriodNumber::FIRST, 0, FilmOf::One(Eye::Left.into()));
     assert!(matches!(film.write(&[], Vec::new()), Err(FilmError::Periods { found: 0, .. })));
 }
 
@@ -440,11 +442,11 @@ fn a_film_without_a_field_is_refused() {
 fn below_the_beam_a_viewer_still_sees_the_field_before_last() {
     let (_, outcome) = remembered();
     let board = &boards(&outcome)[0];
-    let fields: Vec<_> = (7..10).map(|n| board.seen(n).expect("remembered")).collect();
+    let fields: Vec<_> = (7..10).map(|n| board.seen(PeriodNumber(n)).expect("remembered")).collect();
     let video = video(&outcome);
     let [oldest, before, now] = [0, 1, 2].map(|i| fields[i].picture());
     // Field 9 scans the odd lines; the beam is at pixel 320 of line 201.
-    let at = video.when(320, 201, 9).expect("scanned");
+    let at = video.when(320, 201, PeriodNumber(9)).expect("scanned");
     let screen = seen_at(video, at, &fields);
     let row = |picture: &image::RgbImage, y: u32, x: std::ops::Range<u32>| -> Vec<_> {
         x.map(|x| *picture.get_pixel(x, y)).collect()

@@ -3,7 +3,8 @@
 mod support;
 
 use pxpl5::{
-    Experiment, Eye, Jitp, Level, Machine, MachineConfig, Pixels, RenderingControl, Saving, Slats, Viewpoint, scene,
+    Experiment, Eye, Jitp, Level, Machine, MachineConfig, PeriodNumber, Pixels, RenderingControl, Saving, Slats,
+    Viewpoint, scene,
 };
 use pxpl5_framebuffer::SeenField;
 use std::collections::BTreeSet;
@@ -21,7 +22,7 @@ fn experiments() -> [Experiment; 3] {
 
 fn after(experiment: &Experiment, fields: u64) -> Machine {
     let mut machine = experiment.build().expect("the presets are valid");
-    let end = machine.record().tick(fields);
+    let end = machine.record().tick(PeriodNumber(fields));
     machine.run_until(end).expect("it runs");
     machine.finish_pixels();
     machine
@@ -30,7 +31,11 @@ fn after(experiment: &Experiment, fields: u64) -> Machine {
 /// The pixels of every field that was seen, eye by eye.
 fn seen(machine: &Machine, fields: u64) -> Vec<SeenField> {
     let of = |eye: Eye| ntsc(machine.record()).boards().get(eye.index());
-    Eye::BOTH.into_iter().filter_map(of).flat_map(|board| (0..fields).filter_map(|field| board.seen(field))).collect()
+    Eye::BOTH
+        .into_iter()
+        .filter_map(of)
+        .flat_map(|board| (0..fields).filter_map(|field| board.seen(PeriodNumber(field))))
+        .collect()
 }
 
 fn assert_same(experiment: &Experiment, saving: Saving, fields: u64) {

@@ -5,7 +5,9 @@ mod support;
 
 use pxpl5::pipeline_figures::PIPELINE_FIGURES;
 use pxpl5::timeline::{Bar, MAX_FIELDS, Timeline, TimelineOptions, svg};
-use pxpl5::{Experiment, MachineConfig, Measured, Outcome, Pixels, RenderingControl, Slats, scene};
+use pxpl5::{
+    Experiment, MachineConfig, Measured, Outcome, PeriodNumber, PictureNumber, Pixels, RenderingControl, Slats, scene,
+};
 use pxpl5_gp::Stage;
 use pxpl5_sim::{Span, Time};
 use std::rc::Rc;
@@ -73,7 +75,7 @@ fn of_a_split_copy_the_top_ends_before_the_retrace_and_the_bottom_begins_after()
     let copies = bars(&timeline, "right frame buffer");
     assert!(copies.iter().any(|bar| bar.bottom == Some(true)));
     for bar in copies {
-        let retrace = video(&split()).retrace(bar.picture);
+        let retrace = video(&split()).retrace(bar.picture.period_drawn_for());
         match bar.bottom {
             Some(true) => assert!(bar.begin >= retrace),
             Some(false) => assert!(bar.end <= retrace),
@@ -91,7 +93,7 @@ fn the_way_of_the_chosen_picture_leads_forward_from_its_sample_to_light() {
         let times = outcome.pictures().iter().find(|t| Some(t.picture) == timeline.picture).expect("it was shown");
         let video = video(outcome);
         let field = video.field_at(times.shown_at);
-        let light = video.when(0, u32::try_from(field % 2).expect("0 or 1"), field).expect("visible");
+        let light = video.when(0, u32::try_from(field.0 % 2).expect("0 or 1"), field).expect("visible");
         assert!(timeline.arrows.iter().any(|arrow| arrow.end == light), "no arrow ends at {light}");
         assert!(timeline.arrows.iter().all(|arrow| arrow.begin >= timeline.arrows[0].begin));
     }
@@ -103,7 +105,7 @@ fn a_slats_picture_shows_a_view_that_had_reached_the_processor() {
     let send = bars(&timeline, "host").into_iter().find(|bar| timeline.is_chosen(bar)).expect("in the drawing");
     let work = bars(&timeline, "graphics processors").into_iter().find(|bar| timeline.is_chosen(bar)).expect("there");
     assert!(send.end < work.begin);
-    let newer = split().stages().into_iter().filter(|s| s.stage == Stage::Send && s.picture == send.picture + 1);
+    let newer = split().stages().into_iter().filter(|s| s.stage == Stage::Send && s.picture == send.picture.next());
     assert!(newer.map(|s| s.end.expect("sent")).all(|end| end + Span::from_us(12) > work.begin));
 }
 
@@ -160,7 +162,13 @@ proptest! {
         without_host: bool,
         title in proptest::option::of(any::<String>()),
     ) {
-        let options = TimelineOptions { picture, first_field, fields, without_host, title };
+        let options = TimelineOptions {
+            picture: picture.map(PictureNumber),
+            first_field: first_field.map(PeriodNumber),
+            fields,
+            without_host,
+            title,
+        };
         let timeline = Timeline::of(&split(), &options);
         prop_assert!(timeline.retraces.len() as u64 <= MAX_FIELDS + 1);
         prop_assert!(roxmltree::Document::parse(&svg(&split(), &options)).is_ok());
@@ -168,7 +176,7 @@ proptest! {
 
     #[test]
     fn bars_in_a_lane_do_not_hide_each_other(first in 0u64..30) {
-        let options = TimelineOptions { first_field: Some(first), fields: Some(8), ..TimelineOptions::default() };
+        let options = TimelineOptions { first_field: Some(PeriodNumber(first)), fields: Some(8), ..TimelineOptions::default() };
         let timeline = Timeline::of(&trivial(), &options);
         // What overlaps by less than three units of the drawing's 794 may share a lane.
         let touching = Span((timeline.to - timeline.from).0 / 264);
@@ -189,7 +197,7 @@ fn a_run_that_showed_nothing_yet_is_drawn_from_its_start() {
     let run = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), scene).fields(400);
     let error = run.clone().fields(2).run().expect_err("too short");
     assert!(error.to_string().contains("simulate more fields"), "{error}");
-    let options = TimelineOptions { picture: Some(u64::MAX), ..TimelineOptions::default() };
+    let options = TimelineOptions { picture: Some(PictureNumber(u64::MAX)), ..TimelineOptions::default() };
     let timeline = Timeline::of(&trivial(), &options);
     assert_eq!((timeline.from, timeline.picture, timeline.arrows.len()), (Time::ZERO, None, 0));
 }

@@ -4,7 +4,9 @@ use crate::timing::JitpTiming;
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, RegionGrid, RegionId};
+use pxpl5_wire::{
+    CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber, RegionGrid, RegionId, ViewNumber,
+};
 use std::fmt;
 use std::sync::Arc;
 use thiserror::Error;
@@ -54,7 +56,7 @@ pub enum DrawingSchedule {
 
 /// A function of (field, row of the field, pixel): when the beam is there.
 #[derive(Clone)]
-pub struct Beam(Arc<dyn Fn(u64, u32, u32) -> Time + Send + Sync>);
+pub struct Beam(Arc<dyn Fn(PeriodNumber, u32, u32) -> Time + Send + Sync>);
 
 /// A function of the step: which block comes.
 #[derive(Clone)]
@@ -62,13 +64,13 @@ pub struct BlockOrder(Arc<dyn Fn(u64) -> RegionId + Send + Sync>);
 
 impl Beam {
     /// A beam that is at (field, row of the field, pixel) when `when` says.
-    pub fn new(when: impl Fn(u64, u32, u32) -> Time + Send + Sync + 'static) -> Self {
+    pub fn new(when: impl Fn(PeriodNumber, u32, u32) -> Time + Send + Sync + 'static) -> Self {
         Self(Arc::new(when))
     }
 
     /// When the beam is at a pixel of a row of a field.
     #[must_use]
-    pub fn at(&self, field: u64, row: u32, x: u32) -> Time {
+    pub fn at(&self, field: PeriodNumber, row: u32, x: u32) -> Time {
         (self.0)(field, row, x)
     }
 }
@@ -100,7 +102,7 @@ impl fmt::Debug for BlockOrder {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
     /// Number that the view gets: see [`JitpConfig::view_number`].
-    pub number: u64,
+    pub number: ViewNumber,
     /// Reports that the host had by then have reached the master.
     pub known: Time,
     /// When the view will be seen.
@@ -172,8 +174,8 @@ impl JitpConfig {
 
     /// The number of the view of a strip, of the whole field (strip 0), or of the begin (0) and the end (1) of a field.
     #[must_use]
-    pub const fn view_number(field: u64, strip: u64) -> u64 {
-        field * VIEWS_PER_FIELD + strip
+    pub const fn view_number(field: PeriodNumber, strip: u64) -> ViewNumber {
+        ViewNumber(field.0 * VIEWS_PER_FIELD + strip)
     }
 
     /// How a field (strips) or a frame (blocks) is cut into regions.
@@ -193,18 +195,19 @@ impl JitpConfig {
         (strip * columns..(strip + 1) * columns).map(|region| RegionId(region as u16)).collect()
     }
 
-    pub(crate) fn picture(&self, number: u64) -> (Viewport, Lines) {
+    /// The part of the frame that a picture fills, and its lines: of a field, or the whole.
+    pub(crate) fn extent(&self, picture: PictureNumber) -> (Viewport, Lines) {
         match self.schedule {
             DrawingSchedule::Beam { .. } => {
-                let parity = FieldParity::of_field(number);
+                let parity = FieldParity::of_field(picture.period_drawn_for());
                 (Viewport::field(parity), Lines::Field(parity))
             }
             DrawingSchedule::Roam { .. } => (Viewport::FRAME, Lines::Frame),
         }
     }
 
-    pub(crate) fn target(&self, picture: u64, region: RegionId) -> CopyTarget {
-        let (_, lines) = self.picture(picture);
+    pub(crate) fn target(&self, picture: PictureNumber, region: RegionId) -> CopyTarget {
+        let (_, lines) = self.extent(picture);
         CopyTarget { frame_buffer: self.frame_buffer, buffer: 0, lines, grid: self.grid(), region, picture }
     }
 
@@ -220,7 +223,7 @@ impl JitpConfig {
     }
 
     /// When the first pixel of a strip is scanned, by which it must have arrived.
-    pub(crate) fn deadline(&self, field: u64, strip: u32) -> Time {
+    pub(crate) fn deadline(&self, field: PeriodNumber, strip: u32) -> Time {
         self.beam.at(field, self.rows(strip).0, 0)
     }
 
@@ -231,27 +234,27 @@ impl JitpConfig {
 
     /// When the middle of a strip is scanned.
     #[must_use]
-    pub fn middle(&self, field: u64, strip: u32) -> Time {
+    pub fn middle(&self, field: PeriodNumber, strip: u32) -> Time {
         self.beam.at(field, self.rows(strip).1, self.grid().width / 2)
     }
 
     /// The first and the last pixel of a field: T0 and T1.
     #[must_use]
-    pub fn ends(&self, field: u64) -> (Time, Time) {
+    pub fn ends(&self, field: PeriodNumber) -> (Time, Time) {
         let RegionGrid { width, height, .. } = self.grid();
         (self.beam.at(field, 0, 0), self.beam.at(field, height - 1, width - 1))
     }
 
     /// How much of the way from T0 to T1 the middle of a strip is.
     #[must_use]
-    pub fn part(&self, field: u64, strip: u32) -> f64 {
+    pub fn part(&self, field: PeriodNumber, strip: u32) -> f64 {
         let (begin, end) = self.ends(field);
         self.middle(field, strip).since(begin).0 as f64 / end.since(begin).0 as f64
     }
 
     /// From the order of a strip to its beam: every slave has as many strip times as there are slaves.
     pub(crate) fn lead(&self) -> Span {
-        let strip = self.deadline(0, 1).since(self.deadline(0, 0));
+        let strip = self.deadline(PeriodNumber::FIRST, 1).since(self.deadline(PeriodNumber::FIRST, 0));
         strip * self.slaves.len() as u64 + Span::from_ns(self.timing.margin_ns)
     }
 }

@@ -4,6 +4,7 @@ use crate::config::JitpConfig;
 use crate::protocol::DrawingOrder;
 use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
+use pxpl5_wire::PictureNumber;
 
 /// Sends every report of the tracker to the master as it arrives; of several that wait, the newest.
 ///
@@ -20,7 +21,8 @@ pub async fn host(
     mut next_report: impl FnMut(Time) -> Option<Time>,
 ) -> Result<(), Fault> {
     let mut known = Time::ZERO;
-    for report in 0.. {
+    // Which pictures will use a report is not known here: SEND is marked by the report's own number.
+    for report in PictureNumber::FIRST.onwards() {
         let Some(arrives_at) = next_report(known) else { break };
         gp.spend(arrives_at.since(gp.now())).await;
         known = gp.now().max(arrives_at);

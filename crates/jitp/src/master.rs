@@ -5,6 +5,7 @@ use crate::protocol::DrawingOrder;
 use pphigs::{FrameView, PrimitiveCounts, TransformCost};
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage};
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -64,22 +65,22 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         Ok(())
     }
 
-    fn view(&mut self, number: u64, shown_at: Time) -> FrameView {
+    fn view(&mut self, number: ViewNumber, shown_at: Time) -> FrameView {
         (self.view_of)(Wanted { number, known: self.state.known.get(), shown_at })
     }
 
     async fn follow_the_beam(&mut self, viewpoint: Viewpoint, racing: bool) {
         let ahead = self.config.lead() + if racing { Span::ZERO } else { self.field_span() };
-        let first = self.gp.field() + 2;
+        let first = self.gp.field().after(2);
         let mut prepared = first;
         let strips = self.config.grid().rows();
-        for field in first.. {
+        for field in first.onwards() {
             for strip in 0..strips {
                 let order_at = before(self.config.deadline(field, strip), ahead);
                 while viewpoint != Viewpoint::Strip && self.preparation_at(prepared, viewpoint, ahead) <= order_at {
                     self.wait_until(self.preparation_at(prepared, viewpoint, ahead)).await;
                     self.order_field(prepared, viewpoint).await;
-                    prepared += 1;
+                    prepared = prepared.next();
                 }
                 self.wait_until(order_at).await;
                 if self.gp.now() < self.config.deadline(field, strip) {
@@ -90,11 +91,12 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 
     fn field_span(&self) -> Span {
-        self.config.deadline(2, 0).since(self.config.deadline(0, 0)) / 2
+        let [first, third] = [PeriodNumber::FIRST, PeriodNumber(2)].map(|field| self.config.deadline(field, 0));
+        third.since(first) / 2
     }
 
     /// When slaves must begin to transform for a field: half again as early as that takes, since they draw meanwhile.
-    fn preparation_at(&self, field: u64, viewpoint: Viewpoint, ahead: Span) -> Time {
+    fn preparation_at(&self, field: PeriodNumber, viewpoint: Viewpoint, ahead: Span) -> Time {
         let views = if viewpoint == Viewpoint::Field { 1 } else { 2 };
         let span = TransformCost::pass_over(self.counts).span(&self.gp.timing()) * views;
         before(self.config.deadline(field, 0), ahead + span + span / 2)
@@ -106,11 +108,12 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         }
     }
 
-    async fn order_field(&mut self, field: u64, viewpoint: Viewpoint) {
+    async fn order_field(&mut self, field: PeriodNumber, viewpoint: Viewpoint) {
         let (begin, end) = self.config.ends(field);
         let at_begin = JitpConfig::view_number(field, 0);
-        self.gp.begin_view(Stage::Sample, field, at_begin);
-        self.gp.begin(Stage::Transform, field, None);
+        let picture = PictureNumber::drawn_for(field);
+        self.gp.begin_view(Stage::Sample, picture, at_begin);
+        self.gp.begin(Stage::Transform, picture, None);
         let views = match viewpoint {
             Viewpoint::Field => vec![self.view(at_begin, begin)],
             _ => vec![self.view(at_begin, begin), self.view(JitpConfig::view_number(field, 1), end)],
@@ -120,12 +123,13 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
-    async fn order_strip(&mut self, field: u64, strip: u32, viewpoint: Viewpoint) {
+    async fn order_strip(&mut self, field: PeriodNumber, strip: u32, viewpoint: Viewpoint) {
         let own = viewpoint == Viewpoint::Strip;
         let number = JitpConfig::view_number(field, u64::from(strip));
         if own && self.config.is_middle(strip) {
-            self.gp.begin_view(Stage::Sample, field, number);
-            self.gp.begin(Stage::Transform, field, None);
+            let picture = PictureNumber::drawn_for(field);
+            self.gp.begin_view(Stage::Sample, picture, number);
+            self.gp.begin(Stage::Transform, picture, None);
         }
         let view = if own { Some(self.view(number, self.config.middle(field, strip))) } else { None };
         let deadline = self.config.deadline(field, strip);
@@ -139,13 +143,14 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         let slaves = self.config.slaves.len();
         self.state.done.borrow_mut().extend(0..slaves as u32);
         let mut flight = Flight::new(slaves, u64::from(self.config.grid().regions()).div_ceil(batch));
-        for update in 0.. {
+        for update in PictureNumber::FIRST.onwards() {
             let slave = self.gp.until("a slave", || self.state.done.borrow_mut().pop_front()).await;
-            self.gp.begin_view(Stage::Sample, update, update);
+            let number = ViewNumber::taken_for(update);
+            self.gp.begin_view(Stage::Sample, update, number);
             self.gp.begin(Stage::Transform, update, None);
             let shown_at = self.gp.now() + flight.ordered(slave as usize, self.gp.now());
-            let view = self.view(update, shown_at);
-            let (words, body) = DrawingOrder::Blocks { update, step: update * batch, view }.message();
+            let view = self.view(number, shown_at);
+            let (words, body) = DrawingOrder::Blocks { update, step: update.0 * batch, view }.message();
             if let Some(node) = self.config.slaves.get(slave as usize) {
                 self.gp.send(*node, words, body).await;
             }

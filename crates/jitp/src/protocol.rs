@@ -3,7 +3,7 @@
 use pphigs::FrameView;
 use pxpl5_gp::{Fault, Received};
 use pxpl5_sim::Time;
-use pxpl5_wire::{Body, NodeId, Word};
+use pxpl5_wire::{Body, NodeId, PeriodNumber, PictureNumber, Word};
 
 const FIELD: Word = 0x1F1E_1D00;
 const STRIP: Word = 0x1F1E_1D01;
@@ -18,11 +18,11 @@ pub(crate) const REPORT_WORDS: u32 = 20;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum DrawingOrder {
     /// Transform everything for the views of a field.
-    Field { field: u64, views: Vec<FrameView> },
+    Field { field: PeriodNumber, views: Vec<FrameView> },
     /// Draw a strip, with a view of its own or for the field's.
-    Strip { field: u64, strip: u32, deadline: Time, view: Option<FrameView> },
+    Strip { field: PeriodNumber, strip: u32, deadline: Time, view: Option<FrameView> },
     /// Draw blocks from a step of the random order on.
-    Blocks { update: u64, step: u64, view: FrameView },
+    Blocks { update: PictureNumber, step: u64, view: FrameView },
     /// All reports that the host had by then are here.
     Report { known: Time },
     /// A slave can take another order.
@@ -35,17 +35,20 @@ impl DrawingOrder {
         let mut words = Vec::new();
         match self {
             Self::Field { field, views } => {
-                words.extend([FIELD, low(*field), high(*field), views.len() as Word]);
+                let [field_low, field_high] = field.to_words();
+                words.extend([FIELD, field_low, field_high, views.len() as Word]);
                 for view in views {
                     push_view(&mut words, view);
                 }
             }
             Self::Strip { field, strip, deadline, view } => {
-                words.extend([STRIP, low(*field), high(*field), *strip, low(deadline.0), high(deadline.0)]);
+                let [field_low, field_high] = field.to_words();
+                words.extend([STRIP, field_low, field_high, *strip, low(deadline.0), high(deadline.0)]);
                 view.iter().for_each(|view| push_view(&mut words, view));
             }
             Self::Blocks { update, step, view } => {
-                words.extend([BLOCKS, low(*update), high(*update), low(*step), high(*step)]);
+                let [update_low, update_high] = update.to_words();
+                words.extend([BLOCKS, update_low, update_high, low(*step), high(*step)]);
                 push_view(&mut words, view);
             }
             Self::Report { known } => {
@@ -75,16 +78,25 @@ impl DrawingOrder {
             [FIELD, a, b, count, rest @ ..] if *count > 0 => {
                 let mut rest = rest;
                 let views = (0..*count).map(|_| take_view(&mut rest)).collect::<Option<_>>()?;
-                Self::Field { field: long(*a, *b), views }
+                Self::Field { field: PeriodNumber::from_words(*a, *b), views }
             }
             [STRIP, a, b, strip, c, d, rest @ ..] => {
                 let mut rest = rest;
                 let view = if rest.is_empty() { None } else { Some(take_view(&mut rest)?) };
-                Self::Strip { field: long(*a, *b), strip: *strip, deadline: Time(long(*c, *d)), view }
+                Self::Strip {
+                    field: PeriodNumber::from_words(*a, *b),
+                    strip: *strip,
+                    deadline: Time(long(*c, *d)),
+                    view,
+                }
             }
             [BLOCKS, a, b, c, d, rest @ ..] => {
                 let mut rest = rest;
-                Self::Blocks { update: long(*a, *b), step: long(*c, *d), view: take_view(&mut rest)? }
+                Self::Blocks {
+                    update: PictureNumber::from_words(*a, *b),
+                    step: long(*c, *d),
+                    view: take_view(&mut rest)?,
+                }
             }
             [REPORT, a, b, ..] => Self::Report { known: Time(long(*a, *b)) },
             [DONE, slave] => Self::Done { slave: *slave },
@@ -123,8 +135,10 @@ mod tests {
     use super::*;
     use glam::Mat4;
     use pphigs::EyeView;
+    use pxpl5_wire::ViewNumber;
 
     fn view(number: u64) -> FrameView {
+        let number = ViewNumber(number);
         let eye = EyeView { world_to_eye: Mat4::IDENTITY, head_to_eye: Mat4::IDENTITY, projection: Mat4::IDENTITY };
         FrameView { number, eyes: vec![eye], edits: Vec::new() }
     }
@@ -133,10 +147,10 @@ mod tests {
     fn every_order_survives_its_words() {
         let big = (1 << 40) + 3;
         for order in [
-            DrawingOrder::Field { field: big, views: vec![view(1), view(2)] },
-            DrawingOrder::Strip { field: big, strip: 239, deadline: Time(big), view: None },
-            DrawingOrder::Strip { field: 1, strip: 0, deadline: Time(2), view: Some(view(big)) },
-            DrawingOrder::Blocks { update: big, step: big + 1, view: view(3) },
+            DrawingOrder::Field { field: PeriodNumber(big), views: vec![view(1), view(2)] },
+            DrawingOrder::Strip { field: PeriodNumber(big), strip: 239, deadline: Time(big), view: None },
+            DrawingOrder::Strip { field: PeriodNumber(1), strip: 0, deadline: Time(2), view: Some(view(big)) },
+            DrawingOrder::Blocks { update: PictureNumber(big), step: big + 1, view: view(3) },
             DrawingOrder::Report { known: Time(big) },
             DrawingOrder::Done { slave: 11 },
         ] {
@@ -149,7 +163,7 @@ mod tests {
 
     #[test]
     fn words_cut_short_are_a_fault_and_no_panic() {
-        let (_, body) = DrawingOrder::Field { field: 1, views: vec![view(1)] }.message();
+        let (_, body) = DrawingOrder::Field { field: PeriodNumber(1), views: vec![view(1)] }.message();
         let Body::Words(words) = body else { panic!("orders are words") };
         for length in 0..words.len() {
             assert_eq!(DrawingOrder::from_words(&words[..length]), None, "{length}");

@@ -9,7 +9,7 @@ use pphigs::{DisplayList, FrameView, PrimitiveCounts, Share, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage, Ticket};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Body, NodeId, RegionId};
+use pxpl5_wire::{Body, NodeId, PeriodNumber, PictureNumber, RegionId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -21,9 +21,9 @@ const FIELDS_KEPT: usize = 3;
 #[derive(Default)]
 struct SlaveFields {
     /// Numbers and views of the fields that the master wants transformed, oldest first.
-    ordered: VecDeque<(u64, Vec<FrameView>)>,
+    ordered: VecDeque<(PeriodNumber, Vec<FrameView>)>,
     /// Fields transformed, in order.
-    transformed: VecDeque<(u64, Field)>,
+    transformed: VecDeque<(PeriodNumber, Field)>,
 }
 
 /// A field's transforms, and what a conventional picture's strips share.
@@ -38,7 +38,7 @@ type SharedFields = Rc<RefCell<SlaveFields>>;
 /// What the slaves have transformed. All hold the same display list and get the same views, so the simulator computes
 /// each field once; every slave still spends its own time on it.
 #[derive(Clone, Default)]
-pub struct Transforms(Rc<RefCell<VecDeque<(u64, Field)>>>);
+pub struct Transforms(Rc<RefCell<VecDeque<(PeriodNumber, Field)>>>);
 
 impl std::fmt::Debug for Transforms {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -48,7 +48,7 @@ impl std::fmt::Debug for Transforms {
 
 impl Transforms {
     /// The field as another slave has made it, or else as `make` does.
-    fn known_or_made(&self, field: u64, make: impl FnOnce() -> Field) -> Field {
+    fn known_or_made(&self, field: PeriodNumber, make: impl FnOnce() -> Field) -> Field {
         let known = &mut *self.0.borrow_mut();
         if let Some((_, ready)) = known.iter().find(|ready| ready.0 == field) {
             return ready.clone();
@@ -121,7 +121,7 @@ impl Slave {
         loop {
             let (field, views) = self.gp.until("the order of a field", || self.take_newest_order()).await;
             self.gp.spend(TransformCost::pass_over(self.counts).span(&self.gp.timing()) * views.len() as u64).await;
-            self.gp.end(Stage::Transform, field, None);
+            self.gp.end(Stage::Transform, PictureNumber::drawn_for(field), None);
             let ready = self.transforms.known_or_made(field, || self.transform(field, views));
             let state = &mut *self.state.borrow_mut();
             state.transformed.push_back((field, ready));
@@ -132,28 +132,29 @@ impl Slave {
     }
 
     /// The newest field ordered; older ones are left out.
-    fn take_newest_order(&self) -> Option<(u64, Vec<FrameView>)> {
+    fn take_newest_order(&self) -> Option<(PeriodNumber, Vec<FrameView>)> {
         self.state.borrow_mut().ordered.drain(..).next_back()
     }
 
-    fn transform(&self, field: u64, views: Vec<FrameView>) -> Field {
-        let viewport = self.config.picture(field).0;
+    fn transform(&self, field: PeriodNumber, views: Vec<FrameView>) -> Field {
+        let viewport = self.config.extent(PictureNumber::drawn_for(field)).0;
         let whole = Arc::new(DrawnList::from_view(&self.list, &views[0], viewport));
         Field { ends: Ends::new(&self.list, views, viewport), whole }
     }
 
     /// Draws a strip, unless its beam has passed.
-    async fn strip(&self, field: u64, strip: u32, deadline: Time, view: Option<FrameView>) {
+    async fn strip(&self, field: PeriodNumber, strip: u32, deadline: Time, view: Option<FrameView>) {
         if self.gp.now() >= deadline {
             return;
         }
-        let viewport = self.config.picture(field).0;
+        let picture = PictureNumber::drawn_for(field);
+        let viewport = self.config.extent(picture).0;
         let stands_for_field = self.config.is_middle(strip);
         let drawing = match &view {
             Some(view) => {
                 self.gp.spend(TransformCost::pass_over(self.counts).span(&self.gp.timing())).await;
                 if stands_for_field {
-                    self.gp.end(Stage::Transform, field, None);
+                    self.gp.end(Stage::Transform, picture, None);
                 }
                 Some(Arc::new(DrawnList::from_view(&self.list, view, viewport)))
             }
@@ -161,21 +162,21 @@ impl Slave {
         };
         let Some(drawing) = drawing.filter(|_| self.gp.now() < deadline) else { return };
         if stands_for_field {
-            self.gp.begin(Stage::Render, field, None);
+            self.gp.begin(Stage::Render, picture, None);
         }
-        let sent = self.send(field, &self.config.strip_regions(strip), &viewport, &drawing).await;
+        let sent = self.send(picture, &self.config.strip_regions(strip), &viewport, &drawing).await;
         if stands_for_field {
-            self.gp.end_when_accepted(sent, Stage::Render, field);
+            self.gp.end_when_accepted(sent, Stage::Render, picture);
         }
     }
 
     /// Whether a field or a later one is transformed.
-    fn has_transformed(&self, field: u64) -> bool {
+    fn has_transformed(&self, field: PeriodNumber) -> bool {
         self.state.borrow().transformed.back().is_some_and(|newest| newest.0 >= field)
     }
 
     /// The strip as the transforms of its field give it; `None` if they were left out.
-    async fn drawing_of_field(&self, field: u64, strip: u32, viewport: Viewport) -> Option<Arc<DrawnList>> {
+    async fn drawing_of_field(&self, field: PeriodNumber, strip: u32, viewport: Viewport) -> Option<Arc<DrawnList>> {
         self.gp.until("the transforms of the field", || self.has_transformed(field).then_some(())).await;
         let state = self.state.borrow();
         let (_, ready) = state.transformed.iter().find(|ready| ready.0 == field)?;
@@ -196,9 +197,9 @@ impl Slave {
     }
 
     /// Draws the next blocks of the random order and asks for more.
-    async fn blocks(&self, update: u64, step: u64, view: &FrameView) {
+    async fn blocks(&self, update: PictureNumber, step: u64, view: &FrameView) {
         let DrawingSchedule::Roam { batch, order, .. } = &self.config.schedule else { return };
-        let viewport = self.config.picture(update).0;
+        let viewport = self.config.extent(update).0;
         self.gp.spend(TransformCost::pass_over(self.counts).span(&self.gp.timing())).await;
         self.gp.end(Stage::Transform, update, None);
         let drawing = Arc::new(DrawnList::from_view(&self.list, view, viewport));
@@ -211,7 +212,13 @@ impl Slave {
     }
 
     /// Bins, and sends all regions as one chain of messages.
-    async fn send(&self, picture: u64, regions: &[RegionId], viewport: &Viewport, drawing: &Arc<DrawnList>) -> Ticket {
+    async fn send(
+        &self,
+        picture: PictureNumber,
+        regions: &[RegionId],
+        viewport: &Viewport,
+        drawing: &Arc<DrawnList>,
+    ) -> Ticket {
         let windows: Vec<_> = regions.iter().map(|region| window(&self.config, viewport, *region)).collect();
         let (counts, any) = drawing.count(&windows);
         let entries: u64 = counts.iter().map(|c| u64::from(c.total())).sum();

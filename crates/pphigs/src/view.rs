@@ -1,7 +1,7 @@
 //! What the host sends for a frame: viewing transforms and edits, as words of the ring.
 
 use glam::{DMat4, Mat4};
-use pxpl5_wire::{MAX_MESSAGE_WORDS, Word};
+use pxpl5_wire::{MAX_MESSAGE_WORDS, ViewNumber, Word};
 
 /// The matrices of one eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,11 +23,11 @@ pub struct ModelEdit {
     pub model: Mat4,
 }
 
-/// One frame's transforms and edits.
+/// One view: transforms and edits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameView {
-    /// Number of the frame, or of the update.
-    pub number: u64,
+    /// Its number.
+    pub number: ViewNumber,
     /// One eye, or left and right.
     pub eyes: Vec<EyeView>,
     /// Edits since the frame before.
@@ -55,8 +55,8 @@ impl FrameView {
     /// The words: number (two), eyes, edits; then the matrices column by column.
     #[must_use]
     pub fn to_words(&self) -> Vec<Word> {
-        let header =
-            [self.number as Word, (self.number >> 32) as Word, self.eyes.len() as Word, self.edits.len() as Word];
+        let [low, high] = self.number.to_words();
+        let header = [low, high, self.eyes.len() as Word, self.edits.len() as Word];
         let mut words = header.to_vec();
         for eye in &self.eyes {
             [eye.world_to_eye, eye.head_to_eye, eye.projection].iter().for_each(|m| push_matrix(&mut words, m));
@@ -83,7 +83,7 @@ impl FrameView {
         }
         let (eyes, edits) = words[HEADER_WORDS..].split_at(n_eyes * EYE_WORDS);
         Ok(Self {
-            number: u64::from(words[0]) | u64::from(words[1]) << 32,
+            number: ViewNumber::from_words(words[0], words[1]),
             eyes: eyes.chunks_exact(EYE_WORDS).map(eye).collect(),
             edits: edits
                 .chunks_exact(EDIT_WORDS)
@@ -125,7 +125,7 @@ mod tests {
     #[test]
     fn a_view_survives_its_words_bit_for_bit() {
         let edits = vec![ModelEdit { structure: 3, model: some_matrix(9.0) }];
-        let view = FrameView { number: 1 << 40, eyes: vec![some_eye(1.0), some_eye(2.0)], edits };
+        let view = FrameView { number: ViewNumber(1 << 40), eyes: vec![some_eye(1.0), some_eye(2.0)], edits };
         assert_eq!(FrameView::from_words(&view.to_words()), Ok(view));
     }
 

@@ -9,7 +9,7 @@ use pxpl5_geometry::{Sphere, Viewport};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Span;
-use pxpl5_wire::{FieldParity, NodeId, RegionId, Word};
+use pxpl5_wire::{FieldParity, NodeId, RegionId, ViewNumber, Word};
 use std::sync::Arc;
 
 const MEMORY: u64 = 8 << 20;
@@ -64,7 +64,11 @@ fn eye(x: f32) -> EyeView {
 
 fn view() -> FrameView {
     let model = Mat4::from_translation(Vec3::new(0.2, 0.0, 0.0)) * Mat4::from_rotation_z(0.5);
-    FrameView { number: 0, eyes: vec![eye(-0.03), eye(0.03)], edits: vec![ModelEdit { structure: 1, model }] }
+    FrameView {
+        number: ViewNumber::FIRST,
+        eyes: vec![eye(-0.03), eye(0.03)],
+        edits: vec![ModelEdit { structure: 1, model }],
+    }
 }
 
 fn picture(viewport: Viewport, shading: Shading, binning: Binning) -> Picture {

@@ -6,7 +6,7 @@ use pxpl5_renderer::Layout;
 use pxpl5_run::{Experiment, ExperimentError, display_list, views};
 use pxpl5_scene::{Hmd, HmdConfig};
 use pxpl5_sim::Time;
-use pxpl5_wire::RegionId;
+use pxpl5_wire::{RegionId, ViewNumber};
 use std::sync::Arc;
 
 /// One eye's picture of a scene.
@@ -56,7 +56,7 @@ impl Load {
         let layout = Layout::rendering_control_phong();
         let picture = Picture { viewport, shading: Shading::Phong, binning, layout, pixels: false };
         let mut loads = Vec::with_capacity(2 * times.len());
-        for (number, time) in (0..).zip(times) {
+        for (number, time) in ViewNumber::FIRST.onwards().zip(times) {
             let view = views(number, Time(*time));
             loads.extend([0, 1].map(|eye| Self::of_pass(&share, &share.transform(&view, eye, picture))));
         }

@@ -9,7 +9,7 @@ use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
 use pxpl5_run::{ClosedForm, Experiment, ExperimentError, Pipeline, RenderingControl, Summary, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
-use pxpl5_wire::{MAX_MESSAGE_WORDS, RegionGrid, RegionId};
+use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, RegionGrid, RegionId};
 
 /// Words of a token, and of the other messages between master and slaves.
 const ORDER_WORDS: f64 = 6.0;
@@ -127,7 +127,7 @@ impl StereoModel {
             fifo_words: config.renderer.fifo_words as f64,
             backing_regions: config.renderer.backing_regions as usize,
             store_ns: config.renderer.backing_block().as_ms() * 1e6,
-            field_ns: video.retrace(1).since(Time::ZERO).as_ms() * 1e6,
+            field_ns: video.retrace(PeriodNumber(1)).since(Time::ZERO).as_ms() * 1e6,
             copy_ns: (0..grid.regions() as u16).map(copy).collect(),
         })
     }
@@ -283,7 +283,8 @@ pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentErro
     let still = experiment.scene().structures().iter().all(|s| s.frame == pxpl5_scene::Frame::Head);
     let frames = (experiment.length() / 2).max(1);
     let video = video_of(experiment.config())?;
-    let times: Vec<u64> = if still { vec![0] } else { (0..frames).map(|frame| video.retrace(2 * frame).0).collect() };
+    let times: Vec<u64> =
+        if still { vec![0] } else { (0..frames).map(|frame| video.retrace(PeriodNumber(2 * frame)).0).collect() };
     let mut loads = Load::of_views(experiment, Viewport::FRAME, Binning::Touched, &times)?;
     while (loads.len() as u64) < 2 * frames {
         loads.extend_from_within(0..2);

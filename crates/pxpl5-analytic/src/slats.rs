@@ -10,7 +10,7 @@ use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
 use pxpl5_run::{ClosedForm, Experiment, ExperimentError, Pipeline, Slats, Summary, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
-use pxpl5_wire::{FieldParity, RegionGrid};
+use pxpl5_wire::{FieldParity, PeriodNumber, RegionGrid};
 use slats::CLUMP;
 
 /// Renderers that are looked at one by one; more than there are field regions never hold one.
@@ -78,8 +78,9 @@ impl SlatsModel {
             words: f64::from(kind.words()),
             ns: config.renderer.span(kind).map_or(0.0, |span| span.as_ms() * 1e6),
         };
-        let field_ns = video.retrace(1).since(Time::ZERO).as_ms() * 1e6;
-        let line = |y| video.line_start(y, 2).map_or(0.0, |at| at.since(video.retrace(2)).as_ms() * 1e6);
+        let field_ns = video.retrace(PeriodNumber(1)).since(Time::ZERO).as_ms() * 1e6;
+        let even = PeriodNumber(2);
+        let line = |y| video.line_start(y, even).map_or(0.0, |at| at.since(video.retrace(even)).as_ms() * 1e6);
         let messages = (15_360.0_f64 / 1_024.0).ceil();
         let word_ns = config.ring.word_ns as f64;
         Ok(Self {
@@ -275,7 +276,7 @@ fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), Exp
     let entries = match pipeline.binning {
         Binning::All => 10.0,
         Binning::Touched => {
-            let viewport = Viewport::field(FieldParity::of_field(0));
+            let viewport = Viewport::field(FieldParity::Even);
             let loads = Load::of_views(experiment, viewport, Binning::Touched, &[0])?;
             let per_eye = loads.iter().map(Load::entries).sum::<f64>() / loads.len() as f64;
             per_eye / triangles.max(1.0)

@@ -5,8 +5,8 @@
 //! one-at-a-time --scene mig`.
 
 use pxpl5::firmware::{
-    Binning, Body, CopyOrder, CopyTarget, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture, Priority,
-    RegionEnvelope, RegionId, Shading, Share, Stage, Viewport, region_messages, swap_request,
+    Binning, Body, CopyOrder, CopyTarget, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture, PictureNumber,
+    Priority, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport, region_messages, swap_request,
 };
 use pxpl5::{
     ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureTimes, Pipeline, PipelineEntry,
@@ -42,15 +42,16 @@ async fn firmware(
     ports: Ports,
     list: Arc<DisplayList>,
     picture: Picture,
-    mut view: impl FnMut(u64, Time) -> FrameView,
+    mut view: impl FnMut(ViewNumber, Time) -> FrameView,
 ) -> Result<(), Fault> {
     let share = Share::new(list, 0, 1);
     let frame_buffer = ports.display()[0];
-    for frame in 0.. {
+    for frame in PictureNumber::FIRST.onwards() {
         // TRANSFORM: what is computed is real, its time comes from the timing table.
         gp.begin(Stage::Sample, frame, None);
         gp.begin(Stage::Transform, frame, None);
-        let pass = share.transform(&view(frame, gp.now()), 0, picture);
+        let view = view(ViewNumber::taken_for(frame), gp.now());
+        let pass = share.transform(&view, 0, picture);
         let counts = share.counts();
         gp.spend(Span::from_ns(gp.timing().triangle_ns) * u64::from(counts.triangles)).await;
         gp.spend(Span::from_ns(gp.timing().bin_entry_ns) * pass.entries()).await;
@@ -58,7 +59,7 @@ async fn firmware(
 
         // RENDER and COPY: every region goes to one renderer, which copies it when it is drawn and tells us.
         let grid = picture.viewport.grid();
-        let buffer = ((frame + 1) % 2) as u8;
+        let buffer = (frame.next().0 % 2) as u8;
         for region in (0..grid.regions() as u16).map(RegionId) {
             let target = CopyTarget { frame_buffer, buffer, lines: Lines::Frame, grid, region, picture: frame };
             let copy = CopyOrder { target, context: 0, through_backing: true, acknowledge: Some(gp.node()) };
@@ -76,7 +77,7 @@ async fn firmware(
         // Swap at the next retrace, and wait for it.
         let request = gp.send(frame_buffer, 2, Body::Words(swap_request(buffer))).await;
         gp.accepted(request).await;
-        gp.until("the swap", || (gp.status(frame_buffer) > frame).then_some(())).await;
+        gp.until("the swap", || (gp.status(frame_buffer) > frame.0).then_some(())).await;
     }
     Ok(())
 }
@@ -106,7 +107,7 @@ impl Pipeline for OneAtATime {
         let views = Arc::clone(&setup.views);
         let node = ports.gps[0];
         let gp = machine.processor(node, Priority::Foreground);
-        let view = move |frame, time| views(frame, time);
+        let view = move |number, time| views(number, time);
         let program = firmware(gp, ports, Arc::clone(&setup.list), self.picture(), view);
         machine.load(node, Priority::Foreground, Box::pin(program));
         Ok(())
@@ -117,7 +118,7 @@ impl Pipeline for OneAtATime {
         let begun = record.observation().marks.iter().filter(|mark| mark.stage == Stage::Sample);
         let times = begun.zip(shown).map(|(mark, tick)| PictureTimes {
             picture: mark.picture,
-            view: mark.picture,
+            view: ViewNumber::taken_for(mark.picture),
             sampled_at: Some(mark.time),
             transform_at: mark.time,
             copied_at: None,

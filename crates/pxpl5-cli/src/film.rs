@@ -5,8 +5,7 @@ use crate::output::OutputFolder;
 use crate::settings::SettingArgs;
 use crate::terminal::print;
 use clap::{Args, ValueEnum};
-use pxpl5::{Eye, Pixels};
-use pxpl5::{Film, FilmOf};
+use pxpl5::{Eye, Film, FilmOf, PeriodNumber, Pixels};
 use std::path::PathBuf;
 
 /// Write what a viewer sees as an animated PNG at the true field rate.
@@ -57,7 +56,9 @@ pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
     let experiment = plan.experiment(plan.load_scene()?).pixels(Pixels::Lazy).fields(args.from + args.length + 1);
     let texts = [("config_hash", experiment.config_hash().to_string()), ("settings", plan.settings().to_string())];
     let mut bytes = Vec::new();
-    Film::new(experiment, args.from, args.length, eyes).write(&texts, &mut bytes).map_err(CliError::failure)?;
+    Film::new(experiment, PeriodNumber(args.from), args.length, eyes)
+        .write(&texts, &mut bytes)
+        .map_err(CliError::failure)?;
     folder.put(&name, &bytes)?;
     folder.commit()?;
     if args.quiet {

@@ -5,7 +5,9 @@ use crate::options::registry;
 use crate::output::OutputFolder;
 use crate::terminal::progress;
 use clap::Args;
-use pxpl5::{ExperimentError, ExperimentFile, Host, Machine, Outcome, Pixels, Plan, Saving, Snapshot, Workstation};
+use pxpl5::{
+    ExperimentError, ExperimentFile, Host, Machine, Outcome, PeriodNumber, Pixels, Plan, Saving, Snapshot, Workstation,
+};
 use std::path::{Path, PathBuf};
 
 /// A moment to be kept or to go on from.
@@ -73,15 +75,16 @@ impl SnapshotArgs {
             // Pixels of what was seen before the snapshot are computed only if somebody looks.
             experiment = experiment.pixels(if plan.pixels == Pixels::All { Pixels::Lazy } else { plan.pixels });
         }
-        let stops: Vec<u64> = self.save_at.into_iter().chain(restored.iter().map(|(s, _)| s.field)).collect();
+        let save_at = self.save_at.map(PeriodNumber);
+        let stops: Vec<PeriodNumber> = save_at.into_iter().chain(restored.iter().map(|(s, _)| s.field)).collect();
         let bar = progress(plan.fields, "fields", quiet);
         let outcome = experiment.run_stopping(&stops, |field, machine| {
-            bar.set_position(field);
+            bar.set_position(field.since(PeriodNumber::FIRST));
             if let Some((snapshot, name)) = restored.as_ref().filter(|(snapshot, _)| snapshot.field == field) {
                 snapshot.check_machine(machine, name).map_err(|error| ExperimentError::Stopped(error.to_string()))?;
                 continue_pixels(plan, machine, host);
             }
-            if let (Some((folder, name)), true) = (&mut saving, Some(field) == self.save_at) {
+            if let (Some((folder, name)), true) = (&mut saving, Some(field) == save_at) {
                 let text = Snapshot::of(plan, hash, &scene, field, machine).to_text();
                 folder
                     .put(name, text.as_bytes())
@@ -112,8 +115,9 @@ impl SnapshotArgs {
     fn restored(&self, plan: &Plan) -> Result<Option<(Snapshot, String)>, CliError> {
         let Some(path) = &self.restore else { return Ok(None) };
         let (snapshot, name) = (self.read(path)?, path.display().to_string());
-        if snapshot.field >= plan.fields {
-            let (first, found) = (snapshot.field + 1, plan.fields);
+        if snapshot.field >= PeriodNumber::FIRST.after(plan.fields) {
+            let first = snapshot.field.next();
+            let found = plan.fields;
             return Err(CliError::usage(format!(
                 "--fields: {name} was saved at field {}: expected at least {first}, found {found}",
                 snapshot.field

@@ -28,15 +28,15 @@ pub use surface::{Counter, Surface};
 
 use image::RgbImage;
 use pxpl5_sim::{Context, Time};
-use pxpl5_wire::{Body, CopyTarget, NodeId};
+use pxpl5_wire::{Body, CopyTarget, NodeId, PeriodNumber};
 use std::any::Any;
 use std::fmt::Debug;
 
 /// What happens to a display.
 #[derive(Clone, Debug)]
 pub enum DisplayEvent {
-    /// Its clock ticks for the n-th time, at exactly [`Display::tick`]. Phase `Arrive`.
-    Tick(u64),
+    /// Its clock begins a period, at exactly [`Display::tick`]. Phase `Arrive`.
+    Tick(PeriodNumber),
     /// The last word of a message has arrived at a port. Phase `Arrive`.
     Delivered {
         /// The port, counted from the display's first.
@@ -68,8 +68,8 @@ pub enum DisplayOutput {
         surface: usize,
         /// The buffer that is shown now.
         buffer: u8,
-        /// The tick.
-        tick: u64,
+        /// The period that begins with the tick.
+        tick: PeriodNumber,
     },
 }
 
@@ -87,24 +87,24 @@ pub trait Display: Any + Debug + Send + Sync {
     /// Its surfaces, in the order of their numbers.
     fn surfaces(&self) -> &[Surface];
 
-    /// The instant at which its clock ticks for the n-th time; the first tick is 0.
-    fn tick(&self, n: u64) -> Time;
+    /// The tick that begins a period; the first period begins at time zero.
+    fn tick(&self, period: PeriodNumber) -> Time;
 
-    /// The number of the period in which an instant lies; at a tick the one that begins.
-    fn period_at(&self, time: Time) -> u64;
+    /// The period in which an instant lies; at a tick the one that begins.
+    fn period_at(&self, time: Time) -> PeriodNumber;
 
     /// Handles one event.
     fn handle(&mut self, event: DisplayEvent, context: &mut DisplayContext);
 
     /// When pixel (x, y) of a surface lights in a period; `None` when it does not.
-    fn lights(&self, surface: usize, x: u32, y: u32, period: u64) -> Option<Time>;
+    fn lights(&self, surface: usize, x: u32, y: u32, period: PeriodNumber) -> Option<Time>;
 
     /// The buffer from which a surface is shown now, with everything that has arrived in it.
     fn shown(&self, surface: usize) -> Option<RgbImage>;
 
     /// What stands before a viewer at the end of a period: what was lit in it and what still stands from before. `None`
     /// until it is over, and when it is no longer remembered.
-    fn seen(&self, surface: usize, period: u64) -> Option<RgbImage>;
+    fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage>;
 
     /// What stands before a viewer at an instant of a period that is remembered; what he sees at the end of the period,
     /// for a display that is lit as a whole.
@@ -113,11 +113,11 @@ pub trait Display: Any + Debug + Send + Sync {
     }
 
     /// The last period that [`Display::seen`] knows.
-    fn last_seen(&self) -> Option<u64>;
+    fn last_seen(&self) -> Option<PeriodNumber>;
 
     /// What the rows that are lit in a period are, when a picture is shifted line by line on its way: the number of the
     /// surface's first one and their distance.
-    fn rows_lit(&self, _period: u64) -> (u32, u32) {
+    fn rows_lit(&self, _period: PeriodNumber) -> (u32, u32) {
         (0, 1)
     }
 
@@ -128,17 +128,17 @@ pub trait Display: Any + Debug + Send + Sync {
     fn faults(&self) -> (u64, Option<String>);
 
     /// When the first pixel of a line lights in a period; that of the next line, where a period skips lines.
-    fn line_lights(&self, surface: usize, x: u32, y: u32, period: u64) -> Option<Time> {
+    fn line_lights(&self, surface: usize, x: u32, y: u32, period: PeriodNumber) -> Option<Time> {
         self.lights(surface, x, y, period).or_else(|| self.lights(surface, x, y + 1, period))
     }
 
     /// When the first visible pixel of a surface lights in a period.
-    fn first_light(&self, surface: usize, period: u64) -> Option<Time> {
+    fn first_light(&self, surface: usize, period: PeriodNumber) -> Option<Time> {
         self.line_lights(surface, 0, 0, period)
     }
 
     /// When the last visible pixel of a surface lights in a period.
-    fn last_light(&self, surface: usize, period: u64) -> Option<Time> {
+    fn last_light(&self, surface: usize, period: PeriodNumber) -> Option<Time> {
         let size = self.surfaces().get(surface)?;
         self.line_lights(surface, size.width - 1, size.height.saturating_sub(2), period).max(self.lights(
             surface,
@@ -149,7 +149,7 @@ pub trait Display: Any + Debug + Send + Sync {
     }
 
     /// When the middle of a surface lights in a period.
-    fn middle_light(&self, surface: usize, period: u64) -> Option<Time> {
+    fn middle_light(&self, surface: usize, period: PeriodNumber) -> Option<Time> {
         let size = self.surfaces().get(surface)?;
         self.line_lights(surface, size.width / 2, size.height / 2, period)
     }

@@ -8,7 +8,7 @@ use crate::{
     FrameBufferStats, Video,
 };
 use pxpl5_sim::{Context, Span, Time};
-use pxpl5_wire::{NodeId, RegionPixels};
+use pxpl5_wire::{NodeId, PeriodNumber, RegionPixels};
 use std::collections::VecDeque;
 
 type Out = Context<FrameBufferEvent, FrameBufferOutput>;
@@ -23,7 +23,7 @@ pub struct FrameBuffer {
     buffers: [Buffer; 2],
     displayed: u8,
     /// The field that is being scanned.
-    scanning: Option<u64>,
+    scanning: Option<PeriodNumber>,
     /// Requests that have not taken effect: (when, buffer).
     swaps: Vec<(Time, u8)>,
     seen: VecDeque<SeenField>,
@@ -86,14 +86,14 @@ impl FrameBuffer {
 
     /// The field that is being scanned; `None` before the first retrace.
     #[must_use]
-    pub const fn scanning(&self) -> Option<u64> {
+    pub const fn scanning(&self) -> Option<PeriodNumber> {
         self.scanning
     }
 
-    /// Field `n` as it was scanned; `None` until it has been, and when it is no longer remembered.
+    /// A field as it was scanned; `None` until it has been, and when it is no longer remembered.
     #[must_use]
-    pub fn seen(&self, n: u64) -> Option<SeenField> {
-        self.seen.iter().find(|seen| seen.field == n).cloned()
+    pub fn seen(&self, field: PeriodNumber) -> Option<SeenField> {
+        self.seen.iter().find(|seen| seen.field == field).cloned()
     }
 
     /// The field scanned last.
@@ -158,7 +158,7 @@ impl FrameBuffer {
         Ok(())
     }
 
-    fn retrace(&mut self, field: u64, context: &mut Out) -> Result<(), FrameBufferFault> {
+    fn retrace(&mut self, field: PeriodNumber, context: &mut Out) -> Result<(), FrameBufferFault> {
         let now = context.now();
         if let Some(scanned) = self.scanning {
             self.remember(scanned, now);
@@ -176,7 +176,7 @@ impl FrameBuffer {
         Err(FrameBufferFault::Retrace { field, expected, found: now })
     }
 
-    fn remember(&mut self, field: u64, ends_at: Time) {
+    fn remember(&mut self, field: PeriodNumber, ends_at: Time) {
         if self.seen.len() == self.fields_kept {
             self.seen.pop_front();
         }
@@ -191,7 +191,7 @@ impl FrameBuffer {
         });
     }
 
-    fn swap(&mut self, field: u64, context: &mut Out) {
+    fn swap(&mut self, field: PeriodNumber, context: &mut Out) {
         let now = context.now();
         let due = self.swaps.iter().filter(|swap| swap.0 < now).max().copied();
         let Some((_, buffer)) = due else { return };

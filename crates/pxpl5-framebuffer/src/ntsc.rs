@@ -9,7 +9,7 @@ use pxpl5_display::{
     Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
 };
 use pxpl5_sim::{Context, Time};
-use pxpl5_wire::{Body, Eye, FieldParity, NodeId, read_swap_request};
+use pxpl5_wire::{Body, Eye, FieldParity, NodeId, PeriodNumber, read_swap_request};
 
 /// Frame buffers that share a sync generator: one for a single picture, two for the eyes of a stereo pair.
 ///
@@ -82,11 +82,11 @@ impl Display for NtscDisplay {
         &self.surfaces
     }
 
-    fn tick(&self, n: u64) -> Time {
-        self.video.retrace(n)
+    fn tick(&self, period: PeriodNumber) -> Time {
+        self.video.retrace(period)
     }
 
-    fn period_at(&self, time: Time) -> u64 {
+    fn period_at(&self, time: Time) -> PeriodNumber {
         self.video.field_at(time)
     }
 
@@ -102,7 +102,7 @@ impl Display for NtscDisplay {
         }
     }
 
-    fn lights(&self, _surface: usize, x: u32, y: u32, period: u64) -> Option<Time> {
+    fn lights(&self, _surface: usize, x: u32, y: u32, period: PeriodNumber) -> Option<Time> {
         self.video.when(x, y, period)
     }
 
@@ -110,10 +110,10 @@ impl Display for NtscDisplay {
         Some(self.boards.get(surface)?.displayed_frame().picture())
     }
 
-    fn seen(&self, surface: usize, period: u64) -> Option<RgbImage> {
+    fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage> {
         let board = self.boards.get(surface)?;
         let now = board.seen(period)?;
-        let before = period.checked_sub(1).and_then(|field| board.seen(field));
+        let before = period.before(1).and_then(|field| board.seen(field));
         Some(now.interlaced_with(before.as_ref().unwrap_or(&now)))
     }
 
@@ -121,15 +121,16 @@ impl Display for NtscDisplay {
         let board = self.boards.get(surface)?;
         let now = self.video.field_at(time);
         board.seen(now)?;
-        let fields: Vec<SeenField> = (now.saturating_sub(2)..=now).filter_map(|field| board.seen(field)).collect();
+        let oldest = now.before(2).unwrap_or(PeriodNumber::FIRST);
+        let fields: Vec<SeenField> = oldest.until(now.next()).filter_map(|field| board.seen(field)).collect();
         Some(seen_at(&self.video, time, &fields))
     }
 
-    fn last_seen(&self) -> Option<u64> {
+    fn last_seen(&self) -> Option<PeriodNumber> {
         Some(self.boards.first()?.last_seen()?.field())
     }
 
-    fn rows_lit(&self, period: u64) -> (u32, u32) {
+    fn rows_lit(&self, period: PeriodNumber) -> (u32, u32) {
         (FieldParity::of_field(period).first_line(), 2)
     }
 
@@ -155,7 +156,7 @@ impl Display for NtscDisplay {
 #[must_use]
 pub fn seen_at(video: &Video, time: Time, fields: &[SeenField]) -> RgbImage {
     let now = video.field_at(time);
-    let ages = [0, 1, 2].map(|age| picture_of(fields, now.checked_sub(age)));
+    let ages = [0, 1, 2].map(|age| picture_of(fields, now.before(age)));
     let mut screen = RgbImage::new(video.width(), video.height());
     for (x, y, pixel) in screen.enumerate_pixels_mut() {
         let age = match video.when(x, y, now) {
@@ -171,7 +172,7 @@ pub fn seen_at(video: &Video, time: Time, fields: &[SeenField]) -> RgbImage {
 }
 
 /// The lines of one of some fields.
-fn picture_of(fields: &[SeenField], wanted: Option<u64>) -> Option<RgbImage> {
+fn picture_of(fields: &[SeenField], wanted: Option<PeriodNumber>) -> Option<RgbImage> {
     fields.iter().find(|field| Some(field.field()) == wanted).map(SeenField::picture)
 }
 

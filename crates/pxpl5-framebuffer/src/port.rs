@@ -1,7 +1,7 @@
 //! What comes into a frame buffer and what goes out of it.
 
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyTarget, NodeId, RegionPixels};
+use pxpl5_wire::{CopyTarget, NodeId, PeriodNumber, RegionPixels};
 use std::fmt;
 
 /// What happens to a frame buffer.
@@ -19,7 +19,7 @@ pub enum FrameBufferEvent {
     /// Requests that have arrived before (not at) this instant take effect, the last of them.
     Retrace {
         /// The field that begins.
-        field: u64,
+        field: PeriodNumber,
     },
 }
 
@@ -40,7 +40,7 @@ pub enum FrameBufferOutput {
         /// The displayed buffer.
         buffer: u8,
         /// The first field that is scanned from it.
-        field: u64,
+        field: PeriodNumber,
     },
 }
 
@@ -88,7 +88,7 @@ pub enum FrameBufferFault {
     /// A retrace came at another time than the video timing says.
     Retrace {
         /// The field.
-        field: u64,
+        field: PeriodNumber,
         /// When it should begin.
         expected: Time,
         /// When it did.

@@ -6,13 +6,13 @@ use crate::region::{RegionWrite, Segment};
 use crate::video::Video;
 use image::RgbImage;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{CopyTarget, FieldParity};
+use pxpl5_wire::{CopyTarget, FieldParity, PeriodNumber};
 use std::cell::LazyCell;
 
 /// One field as it was scanned: lazy, cheap to clone, independent of what the board does later.
 #[derive(Clone, Debug)]
 pub struct SeenField {
-    pub(crate) field: u64,
+    pub(crate) field: PeriodNumber,
     pub(crate) buffer: u8,
     pub(crate) ends_at: Time,
     pub(crate) video: Video,
@@ -40,7 +40,7 @@ pub struct SeenLateRegion {
 impl SeenField {
     /// The number of the field.
     #[must_use]
-    pub const fn field(&self) -> u64 {
+    pub const fn field(&self) -> PeriodNumber {
         self.field
     }
 

@@ -2,7 +2,7 @@
 
 use crate::{FrameBufferConfigError, VideoTiming};
 use pxpl5_sim::{Clock, Time};
-use pxpl5_wire::{CopyTarget, FieldParity, Lines, RegionGrid};
+use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber, RegionGrid};
 
 /// Times of retraces, lines and pixels, all computed from zero.
 ///
@@ -32,28 +32,28 @@ impl Video {
         })
     }
 
-    /// The start of field `n`.
+    /// The retrace at which a field starts.
     #[must_use]
-    pub const fn retrace(&self, n: u64) -> Time {
-        self.field.edge(n)
+    pub const fn retrace(&self, field: PeriodNumber) -> Time {
+        self.field.edge(field.0)
     }
 
     /// The field that is being scanned at `time`; at a retrace the one that begins.
     #[must_use]
-    pub const fn field_at(&self, time: Time) -> u64 {
+    pub const fn field_at(&self, time: Time) -> PeriodNumber {
         let n = self.field.edge_at_or_after(time);
-        if self.field.edge(n).0 == time.0 { n } else { n - 1 }
+        PeriodNumber(if self.field.edge(n).0 == time.0 { n } else { n - 1 })
     }
 
     /// When the beam begins line `y` of the frame (its blanking) in a field; `None` when that field does not scan it.
     #[must_use]
-    pub fn line_start(&self, y: u32, field: u64) -> Option<Time> {
+    pub fn line_start(&self, y: u32, field: PeriodNumber) -> Option<Time> {
         Some(self.line.edge(self.line_number(y, field)?))
     }
 
     /// When the beam is at pixel `x` of line `y` of the frame in a field; `None` when that field does not scan it.
     #[must_use]
-    pub fn when(&self, x: u32, y: u32, field: u64) -> Option<Time> {
+    pub fn when(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         if x >= self.width() {
             return None;
         }
@@ -65,7 +65,7 @@ impl Video {
     /// When the beam is at the first pixel of a region that a field scans: the region must have arrived by then.
     /// `None` for a region outside of the frame, or without a line in that field.
     #[must_use]
-    pub fn reaches(&self, target: &CopyTarget, field: u64) -> Option<Time> {
+    pub fn reaches(&self, target: &CopyTarget, field: PeriodNumber) -> Option<Time> {
         let [left, top, _, height] = rectangle(self, target)?;
         (top..top + height).find_map(|row| self.when(left, frame_line(target.lines, row), field))
     }
@@ -89,12 +89,12 @@ impl Video {
     }
 
     /// The number of a line since time zero. The half line of an odd field's start is blanked.
-    fn line_number(&self, y: u32, field: u64) -> Option<u64> {
+    fn line_number(&self, y: u32, field: PeriodNumber) -> Option<u64> {
         let parity = FieldParity::of_field(field);
         if y >= self.height() || y % 2 != parity.first_line() {
             return None;
         }
-        let start = field.saturating_mul(self.timing.frame_lines).div_ceil(2);
+        let start = field.0.saturating_mul(self.timing.frame_lines).div_ceil(2);
         Some(start + self.timing.top_blanking + u64::from(y / 2))
     }
 }

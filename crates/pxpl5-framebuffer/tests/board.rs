@@ -7,7 +7,7 @@ use pxpl5_framebuffer::{
     write_png,
 };
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{FieldParity, Lines, NodeId, RegionGrid, RegionPixels};
+use pxpl5_wire::{FieldParity, Lines, NodeId, PeriodNumber, RegionGrid, RegionPixels};
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -33,7 +33,7 @@ fn painted() -> Board {
     board
 }
 
-fn swaps(board: &Board) -> Vec<(Time, u8, u64)> {
+fn swaps(board: &Board) -> Vec<(Time, u8, PeriodNumber)> {
     let swaps = board.bench.outputs.iter().filter_map(|(time, output)| match output {
         FrameBufferOutput::Swapped { buffer, field } => Some((*time, *buffer, *field)),
         FrameBufferOutput::RegionArrived { .. } => None,
@@ -45,11 +45,11 @@ fn swaps(board: &Board) -> Vec<(Time, u8, u64)> {
 fn a_swap_takes_effect_at_the_next_retrace_only() {
     let mut board = painted();
     board.retraces(0..=4);
-    let retrace = board.device.video().retrace(3);
+    let retrace = board.device.video().retrace(PeriodNumber(3));
     board.swap(Time(retrace.0 - 1), 1);
     board.run();
-    assert_eq!(swaps(&board), [(retrace + WORD, 1, 3)]);
-    let seen = [2, 3].map(|field| word(&board.device.seen(field).expect("kept").picture(), 5, 5));
+    assert_eq!(swaps(&board), [(retrace + WORD, 1, PeriodNumber(3))]);
+    let seen = [2, 3].map(|field| word(&board.device.seen(PeriodNumber(field)).expect("kept").picture(), 5, 5));
     assert_eq!(seen, [RED, GREEN]);
     assert_eq!(board.device.displayed(), 1);
 }
@@ -60,10 +60,10 @@ fn a_swap_asked_for_at_the_instant_of_a_retrace_waits_for_the_next() {
         let mut board = Board::new();
         board.bench.queue().shuffle_ties(seed);
         board.retraces(0..=4);
-        let [third, fourth] = [3, 4].map(|field| board.device.video().retrace(field));
+        let [third, fourth] = [3, 4].map(|field| board.device.video().retrace(PeriodNumber(field)));
         board.swap(third, 1);
         board.run();
-        assert_eq!(swaps(&board), [(fourth + WORD, 1, 4)]);
+        assert_eq!(swaps(&board), [(fourth + WORD, 1, PeriodNumber(4))]);
     }
 }
 
@@ -105,19 +105,19 @@ fn rows_of_a_field_region_fill_the_lines_of_that_field() {
     assert_eq!(word(&frame, 255, 241), 128);
     assert_eq!(word(&frame, 128, 243), 129);
     assert_eq!([word(&frame, 128, 242), word(&frame, 127, 241), word(&frame, 256, 241)], [0; 3]);
-    let odd = board.device.seen(1).expect("kept").picture();
+    let odd = board.device.seen(PeriodNumber(1)).expect("kept").picture();
     assert_eq!((odd.dimensions(), word(&odd, 128, 120)), ((640, 240), 1));
-    assert_eq!(word(&board.device.seen(2).expect("kept").picture(), 128, 120), 0);
+    assert_eq!(word(&board.device.seen(PeriodNumber(2)).expect("kept").picture(), 128, 120), 0);
 }
 
 #[test]
 fn two_fields_make_an_interlaced_frame_in_either_order() {
     let mut board = painted();
-    let swap = board.device.video().retrace(2);
+    let swap = board.device.video().retrace(PeriodNumber(2));
     board.swap(swap, 1);
     board.retraces(0..=4);
     board.run();
-    let [even, odd] = [2, 3].map(|field| board.device.seen(field).expect("kept"));
+    let [even, odd] = [2, 3].map(|field| board.device.seen(PeriodNumber(field)).expect("kept"));
     for frame in [even.interlaced_with(&odd), odd.interlaced_with(&even)] {
         assert_eq!(frame.dimensions(), (640, 480));
         assert_eq!([0, 1, 478, 479].map(|y| word(&frame, 639, y)), [RED, GREEN, RED, GREEN]);
@@ -132,10 +132,10 @@ fn a_word_that_arrives_with_the_beam_is_seen_and_one_a_picosecond_later_is_not()
     for (late, expected) in [(0, GREEN), (1, RED)] {
         let mut board = painted();
         board.retraces(0..=3);
-        let beam = board.device.video().when(127, 14, 2).expect("scanned");
+        let beam = board.device.video().when(127, 14, PeriodNumber(2)).expect("scanned");
         board.part(beam + Span(late), field_target(0, FieldParity::Even, 0, 1), &colour(GREEN), 0);
         board.run();
-        let picture = board.device.seen(2).expect("kept").picture();
+        let picture = board.device.seen(PeriodNumber(2)).expect("kept").picture();
         assert_eq!(word(&picture, 127, 7), expected);
         // The pixel before it is 50 ns earlier on the ring but 81 ns earlier under the beam.
         assert_eq!(word(&picture, 126, 7), RED);
@@ -149,11 +149,11 @@ fn a_region_is_late_from_a_picosecond_after_its_first_pixel_was_scanned() {
         let mut board = painted();
         board.retraces(0..=3);
         let bottom = field_target(0, FieldParity::Even, 5, 1);
-        let reached = board.device.video().reaches(&bottom, 2).expect("scanned");
+        let reached = board.device.video().reaches(&bottom, PeriodNumber(2)).expect("scanned");
         let last = reached + Span(late) + WORD * 1_023 + MESSAGE * 14;
         board.region(last, bottom, &colour(GREEN));
         board.run();
-        let seen = board.device.seen(2).expect("kept");
+        let seen = board.device.seen(PeriodNumber(2)).expect("kept");
         let listed = seen.late_regions();
         assert_eq!(listed.len(), late as usize);
         for region in listed {
@@ -168,16 +168,16 @@ fn a_region_is_late_from_a_picosecond_after_its_first_pixel_was_scanned() {
 fn a_region_that_misses_its_field_shows_the_old_picture_on_all_its_lines() {
     let mut board = painted();
     board.retraces(0..=3);
-    let end = board.device.video().retrace(3);
+    let end = board.device.video().retrace(PeriodNumber(3));
     let top = field_target(0, FieldParity::Even, 0, 1);
     board.region(Time(end.0 + MESSAGE.0), top, &colour(GREEN));
     board.run();
-    let seen = board.device.seen(2).expect("kept");
+    let seen = board.device.seen(PeriodNumber(2)).expect("kept");
     let listed = seen.late_regions();
     assert_eq!((listed[0].lines, listed[0].arrived_at), (120, None));
     // Message 0 came 13 messages before the end of the field, its first word 1,023 words earlier: the latest of all,
     // since words come faster than the beam moves.
-    let first_scan = board.device.video().reaches(&top, 2).expect("scanned");
+    let first_scan = board.device.video().reaches(&top, PeriodNumber(2)).expect("scanned");
     assert_eq!(listed[0].lateness, end - first_scan - MESSAGE * 13 - WORD * 1_023);
     assert!((0..120).all(|y| word(&seen.picture(), 64, y) == RED));
     assert_eq!(word(&board.device.displayed_frame().picture(), 64, 0), GREEN);
@@ -195,7 +195,7 @@ fn two_boards_with_the_same_retraces_scan_in_lock_step() {
     let [left, right] = boards;
     assert_eq!(swaps(&left), swaps(&right));
     for field in 5..6 {
-        let [a, b] = [&left, &right].map(|board| board.device.seen(field).expect("kept"));
+        let [a, b] = [&left, &right].map(|board| board.device.seen(PeriodNumber(field)).expect("kept"));
         assert_eq!((a.buffer(), a.parity(), a.picture()), (b.buffer(), b.parity(), b.picture()));
     }
     assert_eq!([left.device.faults().count, right.device.faults().count], [0, 0]);
@@ -207,14 +207,15 @@ fn retraces_of_a_million_fields_are_where_the_board_expects_them() {
     for field in 0..1_000_000 {
         // Exactly n x 1001/60000 s, rounded down.
         let at = Time(field * 1_001_000_000_000 / 60);
-        board.feed(at, FrameBufferEvent::Retrace { field });
+        board.feed(at, FrameBufferEvent::Retrace { field: PeriodNumber(field) });
         if field % 1_000 == 0 {
             board.run();
         }
     }
     board.run();
     assert_eq!((board.device.faults().count, board.device.stats().fields), (0, 1_000_000));
-    board.feed(Time(board.device.video().retrace(1_000_000).0 + 1), FrameBufferEvent::Retrace { field: 1_000_000 });
+    let field = PeriodNumber(1_000_000);
+    board.feed(Time(board.device.video().retrace(field).0 + 1), FrameBufferEvent::Retrace { field });
     board.run();
     assert_eq!(board.device.faults().count, 1);
 }
@@ -231,7 +232,7 @@ fn nobody_computes_pixels_until_somebody_looks_and_hidden_ones_never() {
     board.run();
     let asked = || [&hidden, &shown].map(|image| image.asked.load(Ordering::Relaxed));
     assert_eq!(asked(), [0, 0]);
-    let seen = board.device.seen(2).expect("kept");
+    let seen = board.device.seen(PeriodNumber(2)).expect("kept");
     assert_eq!(word(&seen.picture(), 400, 0), GREEN);
     assert_eq!(asked(), [0, 1]);
 }
@@ -242,12 +243,12 @@ fn what_cannot_be_seen_any_more_is_forgotten() {
     let mut images = Vec::new();
     for field in 0..400u64 {
         board.retraces(field..=field);
-        let begin = board.device.video().retrace(field);
+        let begin = board.device.video().retrace(PeriodNumber(field));
         for region in 0..10 {
             let image = colour(RED);
             images.push(Arc::downgrade(&image));
             let at = begin + MESSAGE * (15 * (u64::from(region) + 1));
-            let parity = FieldParity::of_field(field / 2);
+            let parity = FieldParity::of_field(PeriodNumber(field / 2));
             board.region(at, field_target((field % 2) as u8, parity, region, field), &image);
         }
         // A region that never becomes complete.

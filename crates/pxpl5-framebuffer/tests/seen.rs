@@ -5,7 +5,7 @@ mod support;
 use proptest::prelude::*;
 use pxpl5_framebuffer::{FrameBufferEvent, SeenField, SeenLateRegion};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{CopyTarget, FieldParity, Lines, RegionGrid};
+use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber, RegionGrid};
 use std::sync::Arc;
 use support::{Board, Counted, MESSAGE, n_parts, source, target};
 
@@ -90,7 +90,7 @@ fn seen(copies: &[Copied], shuffle: u64) -> SeenField {
     board.retraces(0..=FIELD + 1);
     board.run();
     assert_eq!(board.device.faults().count, 0);
-    board.device.seen(FIELD).expect("kept")
+    board.device.seen(PeriodNumber(FIELD)).expect("kept")
 }
 
 /// Per pixel the youngest word that had arrived when it was scanned.
@@ -156,11 +156,11 @@ fn simultaneous_events_commute() {
             let mut board = Board::new();
             board.bench.queue().shuffle_ties(shuffle);
             board.retraces(0..=3);
-            let retrace = board.device.video().retrace(2);
+            let retrace = board.device.video().retrace(PeriodNumber(2));
             board.region(retrace, target, &image);
             board.feed(retrace, FrameBufferEvent::SwapRequested { buffer: 0 });
             board.run();
-            let seen = [1, 2].map(|field| board.device.seen(field));
+            let seen = [1, 2].map(PeriodNumber).map(|field| board.device.seen(field));
             let seen = seen.map(|seen| seen.map(|s| (s.picture(), s.late_regions())));
             let mut outputs = board.bench.outputs.clone();
             outputs.sort_by_key(|output| format!("{output:?}"));

@@ -7,7 +7,7 @@ use crate::probe::Mark;
 use crate::processor::{CodeVersion, Processor};
 use crate::timing::GpTiming;
 use pxpl5_sim::{Blocked, Context, Phase, Span};
-use pxpl5_wire::{Message, NodeId};
+use pxpl5_wire::{Message, NodeId, PeriodNumber};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::fmt;
@@ -22,7 +22,7 @@ pub enum GpEvent {
     /// A receiver has accepted a message of a batch (phase `Arrive`).
     Accepted(u64),
     /// A field begins (phase `Arrive`).
-    Retrace(u64),
+    Retrace(PeriodNumber),
     /// A status line of another board changes (phase `Arrive`).
     Status {
         /// The port of that board.
@@ -89,7 +89,7 @@ impl GpBoard {
             in_flight: Vec::new(),
             not_begun: Vec::new(),
             marks: Vec::new(),
-            fields: 0,
+            field: PeriodNumber::FIRST,
             status: Vec::new(),
             draining: 0,
             accepted: 0,
@@ -137,7 +137,7 @@ impl GpBoard {
                 self.wake(Cause::Acceptance, context);
             }
             GpEvent::Retrace(field) => {
-                self.shared.borrow_mut().fields = field;
+                self.shared.borrow_mut().field = field;
                 self.wake(Cause::Arrival, context);
             }
             GpEvent::Status { from, value } => {

@@ -6,7 +6,7 @@ use crate::probe::{Edge, Mark, Stage};
 use crate::processor::{Processor, ProcessorFault};
 use crate::timing::GpTiming;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Body, Message, NodeId, RegionId, SurfaceId};
+use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, PictureNumber, RegionId, SurfaceId, ViewNumber};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::future::{Future, poll_fn};
@@ -78,7 +78,7 @@ pub(crate) struct Shared {
     pub(crate) marks: Vec<Mark>,
     /// Ends of stages that come with the acceptance of a batch, in order.
     pub(crate) ends: VecDeque<(Ticket, Mark)>,
-    pub(crate) fields: u64,
+    pub(crate) field: PeriodNumber,
     pub(crate) status: Vec<(NodeId, u64)>,
     /// Last batch of which every receiver has taken a message, and last one of which all were accepted.
     pub(crate) draining: u64,
@@ -188,10 +188,10 @@ impl Gp {
         self.shared.borrow().timing
     }
 
-    /// The number of the field that is being scanned: that of the last retrace.
+    /// The period that the first display is in: the field that is being scanned, which the last retrace began.
     #[must_use]
-    pub fn field(&self) -> u64 {
-        self.shared.borrow().fields
+    pub fn field(&self) -> PeriodNumber {
+        self.shared.borrow().field
     }
 
     /// The status line of another board (how often a frame buffer has swapped); zero before it first changed.
@@ -253,8 +253,8 @@ impl Gp {
         self.spend(Span::from_ns(self.timing().message_ns)).await;
     }
 
-    /// Waits for the next retrace and gives the number of the field that it begins.
-    pub async fn retrace(&self) -> u64 {
+    /// Waits for the next retrace and gives the field that it begins.
+    pub async fn retrace(&self) -> PeriodNumber {
         let present = self.field();
         self.until("a retrace", || Some(self.field()).filter(|field| *field > present)).await
     }
@@ -317,17 +317,17 @@ impl Gp {
     }
 
     /// Tells the observer that a stage begins.
-    pub fn begin(&self, stage: Stage, picture: u64, surface: Option<SurfaceId>) {
+    pub fn begin(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>) {
         self.mark(stage, picture, surface, Edge::Begin, self.now());
     }
 
     /// Tells the observer that a stage ends.
-    pub fn end(&self, stage: Stage, picture: u64, surface: Option<SurfaceId>) {
+    pub fn end(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>) {
         self.mark(stage, picture, surface, Edge::End, self.now());
     }
 
     /// Tells the observer that a stage ends when a batch is accepted; the program goes on.
-    pub fn end_when_accepted(&self, ticket: Ticket, stage: Stage, picture: u64) {
+    pub fn end_when_accepted(&self, ticket: Ticket, stage: Stage, picture: PictureNumber) {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;
         let node = shared.node;
@@ -337,14 +337,14 @@ impl Gp {
     }
 
     /// Tells the observer of a stage's edge at a time that the program has read off a message.
-    pub fn mark(&self, stage: Stage, picture: u64, surface: Option<SurfaceId>, edge: Edge, time: Time) {
+    pub fn mark(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>, edge: Edge, time: Time) {
         let shared = &mut *self.shared.borrow_mut();
         let node = shared.node;
         shared.marks.push(Mark { time, node, picture, surface, stage, edge, view: None });
     }
 
     /// Tells the observer that a stage begins on a picture that shows view number `view`.
-    pub fn begin_view(&self, stage: Stage, picture: u64, view: u64) {
+    pub fn begin_view(&self, stage: Stage, picture: PictureNumber, view: ViewNumber) {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;
         let node = shared.node;

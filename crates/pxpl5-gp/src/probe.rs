@@ -1,7 +1,7 @@
 //! What firmware tells the observer; it costs nothing and changes nothing.
 
 use pxpl5_sim::Time;
-use pxpl5_wire::{NodeId, SurfaceId};
+use pxpl5_wire::{NodeId, PictureNumber, SurfaceId, ViewNumber};
 use serde::{Deserialize, Serialize};
 
 /// A stage of a pipeline, in the papers' words.
@@ -41,14 +41,14 @@ pub struct Mark {
     pub time: Time,
     /// The port of the board on which it happened.
     pub node: NodeId,
-    /// The picture's number: frame or field, from 0.
-    pub picture: u64,
+    /// The picture. A host that sends views apart from pictures counts its transmissions here.
+    pub picture: PictureNumber,
     /// The surface that it is drawn for, for stages that take one eye at a time.
     pub surface: Option<SurfaceId>,
     /// The stage.
     pub stage: Stage,
     /// Whether the stage began or ended.
     pub edge: Edge,
-    /// Number of the view that the picture shows, where the program knows it and it is not the picture's number.
-    pub view: Option<u64>,
+    /// The view that the picture shows, where the program says it.
+    pub view: Option<ViewNumber>,
 }

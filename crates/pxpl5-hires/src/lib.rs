@@ -13,7 +13,7 @@ use pxpl5_display::{
     DoubleBuffer, Surface,
 };
 use pxpl5_sim::{Clock, Span, Time};
-use pxpl5_wire::NodeId;
+use pxpl5_wire::{NodeId, PeriodNumber};
 
 parameters::parameter_table! {
     /// Size and rate of the scan.
@@ -54,13 +54,13 @@ impl Display for HiRes {
         &self.surfaces
     }
 
-    fn tick(&self, n: u64) -> Time {
-        self.frame.edge(n)
+    fn tick(&self, period: PeriodNumber) -> Time {
+        self.frame.edge(period.0)
     }
 
-    fn period_at(&self, time: Time) -> u64 {
+    fn period_at(&self, time: Time) -> PeriodNumber {
         let n = self.frame.edge_at_or_after(time);
-        if self.frame.edge(n) == time { n } else { n - 1 }
+        PeriodNumber(if self.frame.edge(n) == time { n } else { n - 1 })
     }
 
     fn handle(&mut self, event: DisplayEvent, context: &mut DisplayContext) {
@@ -88,10 +88,10 @@ impl Display for HiRes {
         }
     }
 
-    fn lights(&self, _: usize, x: u32, y: u32, period: u64) -> Option<Time> {
+    fn lights(&self, _: usize, x: u32, y: u32, period: PeriodNumber) -> Option<Time> {
         let pixel = u64::from(y) * self.config.width + u64::from(x);
         let visible = u64::from(x) < self.config.width && u64::from(y) < self.config.height;
-        let frame = self.tick(period + 1).since(self.tick(period));
+        let frame = self.tick(period.next()).since(self.tick(period));
         let share = u128::from(frame.0) * u128::from(pixel) / u128::from(self.config.width * self.config.height);
         visible.then(|| self.tick(period) + Span(share as u64))
     }
@@ -100,13 +100,13 @@ impl Display for HiRes {
         Some(self.boards.get(surface)?.picture(self.config.width as u32, self.config.height as u32))
     }
 
-    fn seen(&self, surface: usize, period: u64) -> Option<RgbImage> {
+    fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage> {
         let board = self.boards.get(surface).filter(|_| self.last_seen() == Some(period))?;
         Some(board.scanned_picture(self.config.width as u32, self.config.height as u32))
     }
 
-    fn last_seen(&self) -> Option<u64> {
-        self.scans.checked_sub(2)
+    fn last_seen(&self) -> Option<PeriodNumber> {
+        self.scans.checked_sub(2).map(PeriodNumber)
     }
 
     fn counters(&self) -> Vec<Counter> {

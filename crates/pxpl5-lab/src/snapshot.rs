@@ -13,6 +13,7 @@ use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_machine::Machine;
 use pxpl5_run::{Fingerprint, Registry};
 use pxpl5_scene::Scene;
+use pxpl5_wire::PeriodNumber;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::sync::Arc;
@@ -35,7 +36,7 @@ pub struct Snapshot {
     /// Seed of the head motion.
     pub seed: u64,
     /// The field whose first retrace is the moment of the snapshot; nothing of that field has happened.
-    pub field: u64,
+    pub field: PeriodNumber,
     /// That moment in picoseconds.
     pub time_ps: u64,
     /// Hash of everything that happened before.
@@ -112,7 +113,7 @@ impl Snapshot {
 
     /// Of a machine that stands at the first retrace of a field.
     #[must_use]
-    pub fn of(plan: &Plan, config_hash: Fingerprint, scene: &Scene, field: u64, machine: &Machine) -> Self {
+    pub fn of(plan: &Plan, config_hash: Fingerprint, scene: &Scene, field: PeriodNumber, machine: &Machine) -> Self {
         Self {
             schema: Self::SCHEMA.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -236,8 +237,8 @@ mod tests {
         let scene = plan.load_scene().expect("built in");
         let experiment = plan.experiment(scene.clone()).pixels(Pixels::Off);
         let mut snapshot = None;
-        let outcome = experiment.run_stopping(&[9], |field, machine| {
-            if field == 9 {
+        let outcome = experiment.run_stopping(&[PeriodNumber(9)], |field, machine| {
+            if field == PeriodNumber(9) {
                 snapshot = Some(Snapshot::of(&plan, experiment.config_hash(), &scene, field, machine));
             }
             Ok(())
@@ -258,8 +259,8 @@ mod tests {
         let scene = restored.load_scene().expect("built in");
         snapshot.check_scene(&scene, "s").expect("the same");
         let mut compared = false;
-        let outcome = restored.experiment(scene).run_stopping(&[9], |field, machine| {
-            if field == 9 {
+        let outcome = restored.experiment(scene).run_stopping(&[PeriodNumber(9)], |field, machine| {
+            if field == PeriodNumber(9) {
                 snapshot.check_machine(machine, "s").expect("the same");
                 compared = true;
             }
@@ -280,13 +281,16 @@ mod tests {
     fn a_machine_of_another_run_is_told_apart() {
         let (plan, snapshot, _) = saved();
         let other = Plan { seed: 6, ..plan.clone() };
-        let result = other.experiment(plan.load_scene().expect("built in")).run_stopping(&[9], |field, machine| {
-            if field == 9 {
-                let error = snapshot.check_machine(machine, "s").expect_err("another seed").to_string();
-                assert!(error.contains("not the one that was saved"), "{error}");
-            }
-            Ok(())
-        });
+        let result = other.experiment(plan.load_scene().expect("built in")).run_stopping(
+            &[PeriodNumber(9)],
+            |field, machine| {
+                if field == PeriodNumber(9) {
+                    let error = snapshot.check_machine(machine, "s").expect_err("another seed").to_string();
+                    assert!(error.contains("not the one that was saved"), "{error}");
+                }
+                Ok(())
+            },
+        );
         result.expect("it runs");
         let cut = plan.load_scene().expect("built in").truncated(39).expect("it has 40");
         assert!(snapshot.check_scene(&cut, "s").is_err());

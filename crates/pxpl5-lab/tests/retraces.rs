@@ -89,7 +89,7 @@ fn of_one_picture_after_the_warm_up_there_is_no_rate_and_every_later_retrace_is_
     let [times] = outcome.steady_pictures() else { panic!("one") };
     let shown = outcome.record().display().period_at(times.shown_at);
     // The next frame was due two retraces later, one for the copy of each eye.
-    assert_eq!(report.judged_retraces, report.fields - shown);
+    assert_eq!(report.judged_retraces, report.fields - shown.0);
     assert_eq!(report.missed_retraces, report.judged_retraces - 2);
     assert!(report.missed_retraces_definition.contains("to the end of the run"));
 }

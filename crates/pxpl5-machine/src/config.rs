@@ -6,7 +6,7 @@ use pxpl5_gp::{CodeVersion, GpTiming, HostTiming};
 use pxpl5_renderer::RendererTiming;
 use pxpl5_ring::RingTiming;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::NodeId;
+use pxpl5_wire::{NodeId, PeriodNumber};
 use serde::Serialize;
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -263,7 +263,7 @@ impl MachineConfig {
     pub fn period(&self) -> Result<Span, ConfigError> {
         let display = self.displays.first().ok_or_else(no_display)?;
         let nodes: Vec<NodeId> = (0..display.ports(1) as u16).map(NodeId).collect();
-        Ok(display.build(&nodes)?.tick(1).since(Time::ZERO))
+        Ok(display.build(&nodes)?.tick(PeriodNumber(1)).since(Time::ZERO))
     }
 
     /// Checks everything that can be checked before a machine is built.

@@ -21,7 +21,7 @@ use pxpl5_gp::{Fault, Firmware, Gp, GpBoard, GpEvent, GpOutput, Mark, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
 use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time};
-use pxpl5_wire::{Body, Message, NodeId, SurfaceId};
+use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, SurfaceId};
 use thiserror::Error;
 
 /// An event of any board.
@@ -34,8 +34,8 @@ enum Event {
     Renderer(usize, RendererEvent),
     /// What a display scheduled for itself.
     Display(usize, DisplayEvent),
-    /// The tick of a display's clock.
-    Tick(usize, u64),
+    /// The tick of a display's clock that begins a period.
+    Tick(usize, PeriodNumber),
     /// An edge of the boards' clock, where every one of them counts.
     Edge,
 }
@@ -246,7 +246,11 @@ impl Machine {
             self.queue.schedule(Time::ZERO, Phase::Work, Event::Gp(board, GpEvent::Poll));
         }
         for (display, device) in self.record.displays.iter().enumerate() {
-            self.queue.schedule(device.tick(0), Phase::Arrive, Event::Tick(display, 0));
+            self.queue.schedule(
+                device.tick(PeriodNumber::FIRST),
+                Phase::Arrive,
+                Event::Tick(display, PeriodNumber::FIRST),
+            );
         }
         if self.every_edge {
             self.queue.schedule(Time::ZERO, Phase::Work, Event::Edge);
@@ -277,7 +281,7 @@ impl Machine {
             Event::Gp(board, event) => self.gp_event(now, board, event),
             Event::Renderer(board, event) => self.renderer_event(now, board, event),
             Event::Display(display, event) => self.display_event(now, display, event),
-            Event::Tick(display, n) => self.tick(now, display, n),
+            Event::Tick(display, period) => self.tick(now, display, period),
             Event::Edge => self.edge(now),
         }
     }
@@ -290,11 +294,12 @@ impl Machine {
     }
 
     /// A display's clock ticks; that of the first one is the sync generator of the first graphics processor.
-    fn tick(&mut self, now: Time, display: usize, n: u64) {
-        self.display_event(now, display, DisplayEvent::Tick(n));
-        self.queue.schedule(self.record.displays[display].tick(n + 1), Phase::Arrive, Event::Tick(display, n + 1));
+    fn tick(&mut self, now: Time, display: usize, period: PeriodNumber) {
+        self.display_event(now, display, DisplayEvent::Tick(period));
+        let next = period.next();
+        self.queue.schedule(self.record.displays[display].tick(next), Phase::Arrive, Event::Tick(display, next));
         if display == 0 {
-            self.queue.schedule(now, Phase::Arrive, Event::Gp(1, GpEvent::Retrace(n)));
+            self.queue.schedule(now, Phase::Arrive, Event::Gp(1, GpEvent::Retrace(period)));
             self.watch(now);
         }
     }
@@ -433,14 +438,14 @@ impl Machine {
             match output {
                 DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at } => {
                     let surface = SurfaceId((first_surface + surface) as u16);
-                    let facts = [5, u64::from(surface.0), u64::from(target.region.0), target.picture];
+                    let facts = [5, u64::from(surface.0), u64::from(target.region.0), target.picture.0];
                     record.hash.record(last_part_at, &facts);
                     record.observation.arrivals.push(Arrival { surface, target, first_part_at, last_part_at });
                 }
                 DisplayOutput::Swapped { surface, buffer, tick } => {
                     let from = record.ports.displays[display][surface];
                     let surface = SurfaceId((first_surface + surface) as u16);
-                    record.hash.record(time, &[6, u64::from(surface.0), u64::from(buffer), tick]);
+                    record.hash.record(time, &[6, u64::from(surface.0), u64::from(buffer), tick.0]);
                     record.observation.swaps.push(Swap { surface, tick });
                     swaps[surface.index()] += 1;
                     let status = GpEvent::Status { from, value: swaps[surface.index()] };
@@ -492,7 +497,7 @@ fn facts(kind: u64, message: &Message) -> [u64; 4] {
 /// What of a mark enters the trace.
 fn facts_of(mark: &Mark) -> [u64; 6] {
     let surface = surface_fact(mark.surface);
-    [4, u64::from(mark.node.0), mark.picture, surface, mark.stage as u64, mark.edge as u64]
+    [4, u64::from(mark.node.0), mark.picture.0, surface, mark.stage as u64, mark.edge as u64]
 }
 
 /// The surface as traces have it since there were two at most, which 2 stands for: none.

@@ -3,7 +3,7 @@
 use crate::traffic::Traffic;
 use pxpl5_gp::{Edge, Mark, Stage};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{CopyTarget, SurfaceId};
+use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
 
 /// A region that has arrived at a display.
@@ -32,8 +32,8 @@ impl Arrival {
 pub struct Swap {
     /// The surface that shows its other buffer.
     pub surface: SurfaceId,
-    /// The tick from which on it does.
-    pub tick: u64,
+    /// The period from whose begin on it does.
+    pub tick: PeriodNumber,
 }
 
 /// Everything that was observed, in order of time as far as it was handled.
@@ -52,8 +52,8 @@ pub struct Observation {
 /// A stage of one picture and surface, from the first board that began it to the last one that ended it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageSpan {
-    /// Frame or field.
-    pub picture: u64,
+    /// The picture.
+    pub picture: PictureNumber,
     /// The surface, for stages that take one eye at a time.
     pub surface: Option<SurfaceId>,
     /// The stage.
@@ -69,7 +69,7 @@ impl Observation {
     /// region's transfer (its first message is `message` long) to its last pixel.
     #[must_use]
     pub fn stages(&self, message: Span) -> Vec<StageSpan> {
-        let mut spans: BTreeMap<(u64, Option<SurfaceId>, Stage), StageSpan> = BTreeMap::new();
+        let mut spans: BTreeMap<(PictureNumber, Option<SurfaceId>, Stage), StageSpan> = BTreeMap::new();
         for mark in &self.marks {
             let fresh = StageSpan {
                 picture: mark.picture,
@@ -98,8 +98,8 @@ impl Observation {
 
     /// The ticks at which frame after frame was swapped in on all of the first `surfaces` surfaces.
     #[must_use]
-    pub fn swap_ticks(&self, surfaces: usize) -> Vec<u64> {
-        let mut ticks: Vec<u64> = self.swaps_of(SurfaceId(0)).collect();
+    pub fn swap_ticks(&self, surfaces: usize) -> Vec<PeriodNumber> {
+        let mut ticks: Vec<PeriodNumber> = self.swaps_of(SurfaceId(0)).collect();
         for surface in (1..surfaces as u16).map(SurfaceId) {
             ticks = ticks.into_iter().zip(self.swaps_of(surface)).map(|(a, b)| a.max(b)).collect();
         }
@@ -107,7 +107,7 @@ impl Observation {
     }
 
     /// The ticks at which a surface was swapped.
-    pub fn swaps_of(&self, surface: SurfaceId) -> impl Iterator<Item = u64> {
+    pub fn swaps_of(&self, surface: SurfaceId) -> impl Iterator<Item = PeriodNumber> {
         self.swaps.iter().filter(move |swap| swap.surface == surface).map(|swap| swap.tick)
     }
 }
@@ -116,7 +116,7 @@ impl Observation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct LateRegion {
     /// The period that it was for: an NTSC display's field.
-    pub field: u64,
+    pub field: PeriodNumber,
     /// The surface that it was for.
     pub surface: SurfaceId,
     /// Its number in its picture's grid.

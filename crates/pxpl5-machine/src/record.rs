@@ -7,7 +7,7 @@ use pxpl5_display::{Display, Surface};
 use pxpl5_renderer::Renderer;
 use pxpl5_ring::Ring;
 use pxpl5_sim::{Span, Time, TraceHash};
-use pxpl5_wire::{MAX_MESSAGE_WORDS, SurfaceId};
+use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, SurfaceId};
 use std::any::Any;
 
 /// The boards of a machine without the programs that ran on it, and everything observed: plain data, which may be sent to
@@ -108,8 +108,8 @@ impl Record {
 
     /// The tick that begins a period of the first display.
     #[must_use]
-    pub fn tick(&self, n: u64) -> Time {
-        self.display().tick(n)
+    pub fn tick(&self, period: PeriodNumber) -> Time {
+        self.display().tick(period)
     }
 
     /// Hash of everything that happened.

@@ -1,6 +1,7 @@
 //! Where the time goes from the head's pose to light.
 
 use pxpl5_run::{Outcome, PictureTimes, Sampled};
+use pxpl5_wire::ViewNumber;
 use std::collections::BTreeMap;
 
 /// Mean time in each stage from the head's pose to light, in milliseconds. The stages add up to the total.
@@ -40,7 +41,7 @@ impl Budget {
 
     fn of_pictures(outcome: &Outcome) -> Vec<[f64; 6]> {
         let Some(head) = outcome.head() else { return Vec::new() };
-        let sampled: BTreeMap<u64, Sampled> = head.sampled().into_iter().map(|s| (s.number, s)).collect();
+        let sampled: BTreeMap<ViewNumber, Sampled> = head.sampled().into_iter().map(|s| (s.number, s)).collect();
         let pictures = outcome.complete_pictures();
         pictures.filter_map(|times| Self::of_picture(outcome, times, sampled.get(&times.view)?)).collect()
     }

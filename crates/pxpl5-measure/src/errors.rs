@@ -7,16 +7,16 @@ use crate::shown::{Drawn, DrawnFor, Shown};
 use pxpl5_display::Display;
 use pxpl5_run::{Cause, Estimator, HeadViews, Outcome, Raster};
 use pxpl5_sim::Time;
+use pxpl5_wire::{PeriodNumber, ViewNumber};
 use serde::Serialize;
 use std::collections::BTreeSet;
-use std::ops::Range;
 use tracking::view::{HmdView, PixelError};
 
 /// The error of one field.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FieldError {
     /// The field.
-    pub field: u64,
+    pub field: PeriodNumber,
     /// When it begins, seconds.
     pub time_s: f64,
     /// Mean over the grid, pixels.
@@ -57,7 +57,7 @@ pub const UNJUDGED_FIELDS: u64 = 15;
 const GRID: u32 = 5;
 
 /// The pixels of a period at which it is judged, in the order of the beam, and when each lights.
-fn grid(display: &dyn Display, period: u64) -> Vec<(u32, u32, Time)> {
+fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
     let Some(surface) = display.surfaces().first() else { return Vec::new() };
     let (first_row, row_distance) = display.rows_lit(period);
     let place = |i: u32, size: u32| (2 * i + 1) * size / (2 * GRID);
@@ -87,7 +87,7 @@ impl Collected {
         &mut self,
         judge: &Judge<'_>,
         display: &dyn Display,
-        field: u64,
+        field: PeriodNumber,
         mut drawn: impl FnMut(u32, u32, Time) -> Option<DrawnFor>,
     ) {
         let begin = self.grid.len();
@@ -211,7 +211,7 @@ impl<'a> Content<'a> {
         }
     }
 
-    fn of_pixel(&mut self, view: &HmdView, x: u32, y: u32, field: u64, at: Time) -> Option<DrawnFor> {
+    fn of_pixel(&mut self, view: &HmdView, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<DrawnFor> {
         match self {
             Self::Plain(shown) => shown.drawn(x, y, field, at),
             Self::Shifted(shown, offsets) => {
@@ -225,12 +225,13 @@ impl<'a> Content<'a> {
 }
 
 /// The fields that are judged: not the first, nor one that the run may not have ended.
-fn fields_judged(outcome: &Outcome) -> Range<u64> {
-    UNJUDGED_FIELDS..outcome.fields().saturating_sub(1)
+fn fields_judged(outcome: &Outcome) -> impl Iterator<Item = PeriodNumber> {
+    let end = PeriodNumber(outcome.fields().saturating_sub(1));
+    PeriodNumber(UNJUDGED_FIELDS).until(end)
 }
 
 /// The views that the judged pixels show.
-fn views_seen(outcome: &Outcome, shown: &Shown<'_>) -> BTreeSet<u64> {
+fn views_seen(outcome: &Outcome, shown: &Shown<'_>) -> BTreeSet<ViewNumber> {
     let display = outcome.record().display();
     let pixels =
         fields_judged(outcome).flat_map(|field| grid(display, field).into_iter().map(move |pixel| (field, pixel)));

@@ -8,7 +8,7 @@ use pxpl5_gp::Stage;
 use pxpl5_machine::StageSpan;
 use pxpl5_run::{DefinedStatistics, Outcome, PictureTimes, Statistics};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::SurfaceId;
+use pxpl5_wire::{PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
 
 /// A part of the way from the tracker's sample to light.
@@ -50,7 +50,7 @@ const fn part(name: &'static str, definition: &'static str, published: bool) -> 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LatencyParts {
     /// The picture.
-    pub picture: u64,
+    pub picture: PictureNumber,
     /// When its pose was sampled; the start of TRANSFORM if that is not known.
     pub begin: Time,
     /// The parts.
@@ -224,8 +224,8 @@ fn own_times(stages: &[StageSpan], surface: SurfaceId) -> Option<(Time, Time)> {
     Some((transform_at, copied_at))
 }
 
-fn by_picture(stages: Vec<StageSpan>) -> BTreeMap<u64, Stages> {
-    let mut pictures: BTreeMap<u64, Stages> = BTreeMap::new();
+fn by_picture(stages: Vec<StageSpan>) -> BTreeMap<PictureNumber, Stages> {
+    let mut pictures: BTreeMap<PictureNumber, Stages> = BTreeMap::new();
     for span in stages {
         pictures.entry(span.picture).or_default().push(span);
     }

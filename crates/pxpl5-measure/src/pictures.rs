@@ -12,7 +12,7 @@ use image::{GenericImage, RgbImage};
 use pxpl5_display::Display;
 use pxpl5_machine::Record;
 use pxpl5_run::{Outcome, Pixels};
-use pxpl5_wire::SurfaceId;
+use pxpl5_wire::{PeriodNumber, SurfaceId};
 
 /// Two pictures next to each other, the left eye's left; the height is that of the higher one.
 #[must_use]
@@ -42,12 +42,17 @@ pub fn picture(outcome: &Outcome, surface: impl Into<SurfaceId>) -> Option<RgbIm
 
 /// What stands before a viewer at the end of a period, shifted as his raster does; black for a surface that is not there.
 #[must_use]
-pub fn screen(record: &Record, surface: SurfaceId, period: u64, offsets: Option<&RasterOffsets<'_>>) -> RgbImage {
+pub fn screen(
+    record: &Record,
+    surface: SurfaceId,
+    period: PeriodNumber,
+    offsets: Option<&RasterOffsets<'_>>,
+) -> RgbImage {
     let display = record.display();
     let Some(seen) = display.seen(surface.index(), period) else { return blank(display) };
     let Some(offsets) = offsets else { return seen };
     let mut shifted = RgbImage::new(seen.width(), seen.height());
-    if let Some(before) = period.checked_sub(1) {
+    if let Some(before) = period.before(1) {
         offsets.shift_rows(&seen, before, &mut shifted);
     }
     offsets.shift_rows(&seen, period, &mut shifted);

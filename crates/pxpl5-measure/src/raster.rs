@@ -6,6 +6,7 @@ use image::{Rgb, RgbImage};
 use pxpl5_display::Display;
 use pxpl5_run::{Estimator, Outcome, Raster};
 use pxpl5_sim::Time;
+use pxpl5_wire::PeriodNumber;
 use tracking::view::{HmdView, RasterOffset};
 use tracking::{Pose, rotation};
 
@@ -33,10 +34,10 @@ impl<'a> Vdrt<'a> {
     }
 
     /// The offset of a field whose picture was drawn for a pose. Fields must be asked for in rising order.
-    pub fn offset(&mut self, field: u64, drawn_for: &Pose) -> RasterOffset {
+    pub fn offset(&mut self, field: PeriodNumber, drawn_for: &Pose) -> RasterOffset {
         let known = self.display.tick(field);
         let first = self.display.first_light(0, field).unwrap_or(known);
-        let field_span = self.display.tick(field + 1).since(known);
+        let field_span = self.display.tick(field.next()).since(known);
         let [begin, end] = [first, first + field_span].map(|at| self.estimator.pose(known, at));
         let seconds = field_span.as_ms() * 1e-3;
         let rate = rotation::difference(begin.orientation, end.orientation) / seconds;
@@ -64,7 +65,8 @@ impl<'a> RasterOffsets<'a> {
     pub(crate) fn of_run(outcome: &'a Outcome, shown: &Shown<'_>, estimator: Estimator<'_>) -> Self {
         let display = outcome.record().display();
         let mut vdrt = Vdrt::new(estimator, display);
-        let offsets = (0..outcome.fields()).map(|field| {
+        let end = PeriodNumber::FIRST.after(outcome.fields());
+        let offsets = PeriodNumber::FIRST.until(end).map(|field| {
             let pose = pose_of_field(display, shown, field)?;
             Some(vdrt.offset(field, &pose))
         });
@@ -73,13 +75,13 @@ impl<'a> RasterOffsets<'a> {
 
     /// Of a field.
     #[must_use]
-    pub fn field(&self, field: u64) -> Option<&RasterOffset> {
-        self.offsets.get(usize::try_from(field).ok()?)?.as_ref()
+    pub fn field(&self, field: PeriodNumber) -> Option<&RasterOffset> {
+        self.offsets.get(usize::try_from(field.0).ok()?)?.as_ref()
     }
 
     /// A screen, the rows that are lit in a field shifted to whole pixels; black where nothing comes in, and where the
     /// field has no offset the rows as they are.
-    pub fn shift_rows(&self, screen: &RgbImage, field: u64, shifted: &mut RgbImage) {
+    pub fn shift_rows(&self, screen: &RgbImage, field: PeriodNumber, shifted: &mut RgbImage) {
         let offset = self.field(field);
         let (first_row, row_distance) = self.display.rows_lit(field);
         for y in (first_row..screen.height()).step_by(row_distance as usize) {
@@ -94,7 +96,13 @@ impl<'a> RasterOffsets<'a> {
     }
 
     /// The pixel that a shift brings to a place, from a row of the same field.
-    fn shifted_pixel(&self, screen: &RgbImage, offset: &RasterOffset, field: u64, [x, y]: [u32; 2]) -> Rgb<u8> {
+    fn shifted_pixel(
+        &self,
+        screen: &RgbImage,
+        offset: &RasterOffset,
+        field: PeriodNumber,
+        [x, y]: [u32; 2],
+    ) -> Rgb<u8> {
         let (first_row, row_distance) = self.display.rows_lit(field);
         let at = self.display.lights(0, x, y, field).unwrap_or(Time::ZERO);
         let shift = offset.shift_px(&self.view, at.0);
@@ -108,7 +116,7 @@ impl<'a> RasterOffsets<'a> {
 }
 
 /// The one pose that all of a field was drawn for.
-fn pose_of_field(display: &dyn Display, shown: &Shown<'_>, field: u64) -> Option<Pose> {
+fn pose_of_field(display: &dyn Display, shown: &Shown<'_>, field: PeriodNumber) -> Option<Pose> {
     let x = display.surfaces().first()?.width / 2;
     let (y, _) = display.rows_lit(field);
     match shown.drawn(x, y, field, display.lights(0, x, y, field)?)?.drawn {

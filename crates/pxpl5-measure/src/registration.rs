@@ -4,6 +4,7 @@ use crate::shown::{Drawn, Shown, view_of};
 use glam::{DVec2, DVec3};
 use pxpl5_run::{HeadViews, Outcome};
 use pxpl5_sim::Time;
+use pxpl5_wire::PeriodNumber;
 use tracking::Pose;
 use tracking::view::{HmdView, PixelError, dual_list};
 
@@ -86,7 +87,7 @@ impl<'a> Registration<'a> {
     /// The error of a pixel in a field that scans its line; `None` where nothing is shown yet, or where its content
     /// should be behind the eye.
     #[must_use]
-    pub fn at(&self, x: u32, y: u32, field: u64) -> Option<PixelError> {
+    pub fn at(&self, x: u32, y: u32, field: PeriodNumber) -> Option<PixelError> {
         let at = self.shown.outcome.record().display().lights(0, x, y, field)?;
         let drawn = self.shown.drawn(x, y, field, at)?;
         self.judge.error(middle(x, y), &drawn.drawn, at)

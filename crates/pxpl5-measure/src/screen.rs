@@ -3,21 +3,21 @@
 use pxpl5_machine::Record;
 use pxpl5_run::region_at;
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyTarget, Lines, RegionGrid, RegionId, SurfaceId};
+use pxpl5_wire::{CopyTarget, Lines, PeriodNumber, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
 /// What the first surface of a run shows.
 #[derive(Debug)]
 pub(crate) struct Screen {
     cuts: Vec<Cut>,
     /// Ticks from which on the other buffer is shown.
-    swaps: Vec<u64>,
+    swaps: Vec<PeriodNumber>,
 }
 
 /// All that came for one buffer in one cut, by region, in order of arrival.
 #[derive(Debug)]
 struct Cut {
     of: CopyTarget,
-    regions: Vec<Vec<(Time, u64)>>,
+    regions: Vec<Vec<(Time, PictureNumber)>>,
 }
 
 impl Cut {
@@ -46,7 +46,7 @@ impl Screen {
         for arrival in observation.arrivals.iter().filter(|arrival| arrival.surface == SurfaceId(0)) {
             let target = arrival.target;
             let place = cuts.iter().position(|cut| Cut::key(&cut.of) == Cut::key(&target)).unwrap_or_else(|| {
-                let of = CopyTarget { region: RegionId(0), picture: 0, ..target };
+                let of = CopyTarget { region: RegionId(0), picture: PictureNumber::FIRST, ..target };
                 cuts.push(Cut { of, regions: vec![Vec::new(); target.grid.regions() as usize] });
                 cuts.len() - 1
             });
@@ -59,7 +59,7 @@ impl Screen {
     }
 
     /// What a pixel of a field shows when the beam is there; `None` before anything came.
-    pub(crate) fn shown(&self, x: u32, y: u32, field: u64, at: Time) -> Option<CopyTarget> {
+    pub(crate) fn shown(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<CopyTarget> {
         // Buffer 0 is shown first, and every swap shows the other one.
         let buffer = (self.swaps.partition_point(|swap| *swap <= field) % 2) as u8;
         let newest = self.cuts.iter().filter(|cut| cut.of.buffer == buffer).filter_map(|cut| cut.newest(x, y, at));

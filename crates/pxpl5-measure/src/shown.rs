@@ -5,6 +5,7 @@ use glam::DVec2;
 use pxpl5_display::{Display, Surface};
 use pxpl5_run::{Estimator, HeadViews, Outcome, Sampled, Source};
 use pxpl5_sim::Time;
+use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use tracking::Pose;
 use tracking::view::HmdView;
@@ -28,8 +29,8 @@ pub(crate) enum Drawn {
 pub(crate) struct Shown<'a> {
     pub(crate) outcome: &'a Outcome,
     screen: Screen,
-    views: BTreeMap<u64, u64>,
-    poses: BTreeMap<u64, Aimed>,
+    views: BTreeMap<PictureNumber, ViewNumber>,
+    poses: BTreeMap<ViewNumber, Aimed>,
 }
 
 /// A view's pose and the instant that its picture is drawn for.
@@ -61,7 +62,7 @@ impl<'a> Shown<'a> {
     }
 
     /// The same run with the poses that some of its views would have had; all others show nothing.
-    pub(crate) fn with_poses(self, head: &HeadViews, of: &BTreeSet<u64>, mut estimator: Estimator<'_>) -> Self {
+    pub(crate) fn with_poses(self, head: &HeadViews, of: &BTreeSet<ViewNumber>, mut estimator: Estimator<'_>) -> Self {
         let mut sampled: Vec<Sampled> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
         sampled.sort_by_key(|sampled| sampled.known);
         let poses = sampled.into_iter().map(|sampled| {
@@ -72,7 +73,7 @@ impl<'a> Shown<'a> {
     }
 
     /// The views that a pixel shows which lights at `at`: one, or two between which it stands; none before anything came.
-    pub(crate) fn views_at(&self, x: u32, y: u32, field: u64, at: Time) -> Vec<u64> {
+    pub(crate) fn views_at(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Vec<ViewNumber> {
         match self.source(x, y, field, at) {
             Some(Source::View(number)) => vec![number],
             Some(Source::Between { from, to, .. }) => vec![from, to],
@@ -80,13 +81,13 @@ impl<'a> Shown<'a> {
         }
     }
 
-    fn source(&self, x: u32, y: u32, field: u64, at: Time) -> Option<Source> {
+    fn source(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<Source> {
         let target = self.screen.shown(x, y, field, at)?;
         self.outcome.pipeline().source(self.outcome.record(), &target, &self.views)
     }
 
     /// What a pixel that lights at `at` shows; `None` before anything came.
-    pub(crate) fn drawn(&self, x: u32, y: u32, field: u64, at: Time) -> Option<DrawnFor> {
+    pub(crate) fn drawn(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<DrawnFor> {
         match self.source(x, y, field, at)? {
             Source::View(number) => {
                 let aimed = self.poses.get(&number)?;

@@ -4,7 +4,7 @@ use crate::Report;
 use pxpl5_gp::Stage;
 use pxpl5_run::{Outcome, Statistics, Summary};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::SurfaceId;
+use pxpl5_wire::{PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
 
 /// First and last word of regions that are copied one after the other: an eye of Rendering Control, a half of Slats.
@@ -14,7 +14,7 @@ struct CopySpan {
 }
 
 /// Copies by picture and place in it.
-type Copies = BTreeMap<(u64, u8), CopySpan>;
+type Copies = BTreeMap<(PictureNumber, u8), CopySpan>;
 
 /// The numbers of an outcome over the pictures after the warm-up.
 #[must_use]
@@ -70,14 +70,15 @@ fn region_copy_us(outcome: &Outcome, message: Span) -> f64 {
 
 fn eye_latencies(outcome: &Outcome) -> Vec<f64> {
     let stages = outcome.stages();
-    let ends: BTreeMap<(u64, Option<SurfaceId>), Time> = stages
+    let ends: BTreeMap<(PictureNumber, Option<SurfaceId>), Time> = stages
         .iter()
         .filter(|s| s.stage == Stage::Copy)
         .filter_map(|s| Some(((s.picture, s.surface), s.end?)))
         .collect();
-    let first = outcome.steady_pictures().first().map_or(u64::MAX, |p| p.picture);
-    let last = outcome.pictures().last().map_or(0, |p| p.picture);
+    let [Some(first), Some(last)] = [outcome.steady_pictures().first(), outcome.pictures().last()] else {
+        return Vec::new();
+    };
     let of_eyes = stages.iter().filter(|s| s.stage == Stage::Transform && s.surface.is_some());
-    let steady = of_eyes.filter(|s| (first..=last).contains(&s.picture));
+    let steady = of_eyes.filter(|s| (first.picture..=last.picture).contains(&s.picture));
     steady.filter_map(|s| Some(ends.get(&(s.picture, s.surface))?.since(s.begin).as_ms())).collect()
 }

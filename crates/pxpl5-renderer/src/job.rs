@@ -160,6 +160,7 @@ impl PixelSource for NoPixels {
 mod tests {
     use super::*;
     use crate::{Clear, CopyRegion, SelectRegion};
+    use pxpl5_wire::PictureNumber;
     use pxpl5_wire::{Lines, NodeId, RegionGrid, RegionId};
 
     #[derive(Debug)]
@@ -176,7 +177,7 @@ mod tests {
         let target = CopyTarget {
             frame_buffer: NodeId(9),
             buffer: (picture % 2) as u8,
-            picture,
+            picture: PictureNumber(picture),
             grid: RegionGrid::FRAME,
             region: RegionId(3),
             lines: Lines::Frame,

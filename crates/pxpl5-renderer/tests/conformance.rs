@@ -6,7 +6,7 @@ use pxpl5_renderer::{
     BitSerial, Clear, Command, CopyRegion, Lanes, Layout, PhongTriangleCommand, PixelArray, SelectRegion,
     TriangleCommand, Vectors,
 };
-use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, RegionGrid, RegionId};
+use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, RegionGrid, RegionId};
 use std::time::{Duration, Instant};
 
 /// Rounds of each layout without the variable.
@@ -235,7 +235,7 @@ fn both_arrays_send_the_same_pixels_of_a_context_to_a_frame_buffer() {
         lines: Lines::Field(FieldParity::Odd),
         grid: RegionGrid::FIELD,
         region: RegionId(9),
-        picture: 77,
+        picture: PictureNumber(77),
     };
     let mut words = Vec::new();
     let select = SelectRegion { context: 2, left: 512, top: 120 };

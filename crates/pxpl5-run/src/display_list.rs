@@ -6,6 +6,7 @@ use pxpl5_display::Surface;
 use pxpl5_geometry::Sphere;
 use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Pose, Scene};
 use pxpl5_sim::Time;
+use pxpl5_wire::ViewNumber;
 use std::sync::Arc;
 
 /// The scene's primitives as a display list.
@@ -46,7 +47,7 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
 }
 
 /// The view of a scene at a time from a pose, through the papers' head-mounted display.
-pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: u64, time: Time, pose: &Pose) -> FrameView {
+pub(crate) fn view(scene: &Scene, hmd: &Hmd, eyes: usize, number: ViewNumber, time: Time, pose: &Pose) -> FrameView {
     let views = if eyes == 1 { vec![hmd.mono(pose)] } else { hmd.stereo(pose).to_vec() };
     let eye = |v: &pxpl5_scene::View| EyeView {
         world_to_eye: v.world_to_eye,
@@ -77,7 +78,7 @@ pub fn views(scene: &Arc<Scene>, seed: u64, hmd: Hmd, eyes: usize) -> (Views, Vi
     let motion: HeadMotion = scene.motion().with_seed(seed);
     let at = {
         let scene = Arc::clone(scene);
-        move |number, time: Time| view(&scene, &hmd, eyes, number, time, &motion.pose(time.0))
+        move |number: ViewNumber, time: Time| view(&scene, &hmd, eyes, number, time, &motion.pose(time.0))
     };
     let wanted = at.clone();
     (Arc::new(at), Arc::new(move |number, _, shown_at| wanted(number, shown_at)))

@@ -8,6 +8,7 @@ use crate::pipeline::Pipeline;
 use crate::raster::Raster;
 use pxpl5_machine::{MachineConfig, Saving};
 use pxpl5_scene::Scene;
+use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -201,6 +202,11 @@ impl Experiment {
     #[must_use]
     pub const fn length(&self) -> u64 {
         self.fields
+    }
+
+    /// The period of the first display at whose begin the run ends: the first that is not simulated.
+    pub(crate) const fn end(&self) -> PeriodNumber {
+        PeriodNumber::FIRST.after(self.fields)
     }
 
     /// Seed of the head motion's sway.

@@ -8,6 +8,7 @@ use glam::{DQuat, DVec3};
 use pphigs::FrameView;
 use pxpl5_scene::{Hmd, Scene};
 use pxpl5_sim::Time;
+use pxpl5_wire::ViewNumber;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tracking::Pose;
@@ -20,8 +21,8 @@ pub const FIELDS_WITH_HEAD: u64 = 250_000;
 /// A pose that a pipeline asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampled {
-    /// Number of the view.
-    pub number: u64,
+    /// The view.
+    pub number: ViewNumber,
     /// Reports that had reached the host by then could be used.
     pub known: Time,
     /// When the newest report used was true; `None` before the first.
@@ -133,12 +134,12 @@ impl HeadViews {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn newest(&self, number: u64, time: Time) -> FrameView {
+    fn newest(&self, number: ViewNumber, time: Time) -> FrameView {
         let shown_at = self.rehearsal.as_ref().map_or(time, |rehearsal| rehearsal.shown_at(number, time));
         self.view(number, time, shown_at)
     }
 
-    fn view(&self, number: u64, known: Time, shown_at: Time) -> FrameView {
+    fn view(&self, number: ViewNumber, known: Time, shown_at: Time) -> FrameView {
         let (follower, sampled) = &mut *self.state();
         let pose = self.in_scene(&follower.pose(known, shown_at, &self.start));
         let Newest { measured_at, arrived_at } = follower.newest;

@@ -6,6 +6,7 @@ use crate::pipeline::{PictureTimes, Pipeline};
 use crate::statistics::Statistics;
 use pxpl5_machine::{Observation, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::PeriodNumber;
 use std::sync::Arc;
 
 /// What came of an experiment: the machine's [`Record`] and the pictures that were shown. It may be sent to another thread.
@@ -15,7 +16,7 @@ pub struct Outcome {
     record: Record,
     head: Option<Arc<HeadViews>>,
     pictures: Vec<PictureTimes>,
-    reached: u64,
+    reached: PeriodNumber,
     host_seconds: Option<f64>,
 }
 
@@ -28,10 +29,10 @@ impl Outcome {
         experiment: Experiment,
         record: Record,
         head: Option<Arc<HeadViews>>,
-        reached: u64,
+        reached: PeriodNumber,
         host_seconds: Option<f64>,
     ) -> Self {
-        let end = record.tick(experiment.fields);
+        let end = record.tick(experiment.end());
         let pictures = experiment.pipeline.pictures(&record, end);
         Self { experiment, record, head, pictures, reached, host_seconds }
     }
@@ -72,8 +73,8 @@ impl Outcome {
         if self.pipeline().retraces_a_picture().is_none() {
             return 0;
         }
-        let first = self.judged_pictures().first().map_or(0, |times| self.period_of(times));
-        self.reached.saturating_sub(first)
+        let first = self.judged_pictures().first().map_or(PeriodNumber::FIRST, |times| self.period_of(times));
+        self.reached.since(first)
     }
 
     /// Judged retraces at which no complete new picture could be shown though it was due: those between pictures, as the
@@ -86,8 +87,10 @@ impl Outcome {
             return self.pipeline().missed_retraces(&self.record, self.steady_pictures());
         };
         let judged = self.judged_pictures();
-        let Some(last) = judged.last() else { return self.reached.saturating_sub(self.shown()) };
-        let after = self.reached.saturating_sub(self.period_of(last)).saturating_sub(every);
+        let Some(last) = judged.last() else {
+            return self.reached.since(PeriodNumber::FIRST).saturating_sub(self.shown());
+        };
+        let after = self.reached.since(self.period_of(last)).saturating_sub(every);
         self.pipeline().missed_retraces(&self.record, judged) + after
     }
 
@@ -108,7 +111,7 @@ impl Outcome {
     }
 
     /// The period of the first display in which a picture is shown.
-    fn period_of(&self, times: &PictureTimes) -> u64 {
+    fn period_of(&self, times: &PictureTimes) -> PeriodNumber {
         self.record.display().period_at(times.shown_at)
     }
 
@@ -163,7 +166,7 @@ impl Outcome {
     /// The end of the run.
     #[must_use]
     pub fn end(&self) -> Time {
-        self.record.tick(self.experiment.fields)
+        self.record.tick(self.experiment.end())
     }
 
     /// Latency in milliseconds over the complete pictures after the warm-up, as the pipeline defines it.
@@ -183,6 +186,6 @@ impl Outcome {
     /// A period of the first display in milliseconds, from 60,000 of them.
     #[must_use]
     pub fn field_ms(&self) -> f64 {
-        self.record.tick(60_000).since(Time::ZERO).as_ms() / 60_000.0
+        self.record.tick(PeriodNumber(60_000)).since(Time::ZERO).as_ms() / 60_000.0
     }
 }

@@ -8,7 +8,7 @@ use pxpl5_gp::HostTiming;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyTarget, SurfaceId};
+use pxpl5_wire::{CopyTarget, PictureNumber, SurfaceId, ViewNumber};
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -17,14 +17,14 @@ use std::sync::Arc;
 /// Where a part of the screen comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Source {
-    /// A view, by number.
-    View(u64),
+    /// A single view.
+    View(ViewNumber),
     /// Places between those of two views.
     Between {
         /// The view at the begin.
-        from: u64,
+        from: ViewNumber,
         /// The view at the end.
-        to: u64,
+        to: ViewNumber,
         /// How much of the way, 0 to 1.
         part: f64,
         /// Whether places on the screen are interpolated, or positions in the view.
@@ -53,9 +53,9 @@ pub struct Setup {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PictureTimes {
     /// Its number.
-    pub picture: u64,
-    /// Number of the view that it shows, or that its middle shows.
-    pub view: u64,
+    pub picture: PictureNumber,
+    /// The view that it shows, or that its middle shows.
+    pub view: ViewNumber,
     /// When its pose was sampled.
     pub sampled_at: Option<Time>,
     /// Start of TRANSFORM.
@@ -141,7 +141,12 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     }
 
     /// The view that a part of a picture shows; `views` gives the view of a picture as in [`PictureTimes`].
-    fn source(&self, _record: &Record, target: &CopyTarget, views: &BTreeMap<u64, u64>) -> Option<Source> {
+    fn source(
+        &self,
+        _record: &Record,
+        target: &CopyTarget,
+        views: &BTreeMap<PictureNumber, ViewNumber>,
+    ) -> Option<Source> {
         views.get(&target.picture).copied().map(Source::View)
     }
 

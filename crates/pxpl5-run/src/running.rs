@@ -12,6 +12,7 @@ use crate::statistics::Statistics;
 use crate::views::ReportTimes;
 use pxpl5_machine::{Machine, MachineConfig};
 use pxpl5_sim::Time;
+use pxpl5_wire::PeriodNumber;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -72,7 +73,7 @@ impl Experiment {
         let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
         let setup = Setup { list, views, wanted, reports, host: config.host, pixels: self.pixels != Pixels::Off };
         let Some(head) = &self.head else { return Ok((setup, None)) };
-        let until = machine.record().tick(self.fields);
+        let until = machine.record().tick(self.end());
         let head = Arc::new(HeadViews::new(Arc::clone(head), &self.scene, (hmd, eyes), until, rehearsal));
         let (views, wanted, reports) = HeadViews::functions(&head);
         Ok((Setup { views, wanted, reports, ..setup }, Some(head)))
@@ -106,7 +107,7 @@ impl Experiment {
     /// As [`Experiment::run`].
     pub fn run_with(&self, mut progress: impl FnMut(u64, u64)) -> Result<Outcome, ExperimentError> {
         self.run_stopping(&[], |field, _| {
-            progress(field, self.fields);
+            progress(field.since(PeriodNumber::FIRST), self.fields);
             Ok(())
         })
     }
@@ -119,8 +120,8 @@ impl Experiment {
     /// As [`Experiment::run`], and what `at` says.
     pub fn run_stopping(
         &self,
-        stops: &[u64],
-        at: impl FnMut(u64, &mut Machine) -> Result<(), ExperimentError>,
+        stops: &[PeriodNumber],
+        at: impl FnMut(PeriodNumber, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
         self.perform(self.rehearse()?, stops, at)
     }
@@ -128,8 +129,8 @@ impl Experiment {
     fn perform(
         &self,
         rehearsal: Option<Rehearsal>,
-        stops: &[u64],
-        mut at: impl FnMut(u64, &mut Machine) -> Result<(), ExperimentError>,
+        stops: &[PeriodNumber],
+        mut at: impl FnMut(PeriodNumber, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
         let begun_s = self.host.seconds();
         let (mut machine, head) = self.assemble(rehearsal)?;
@@ -145,7 +146,7 @@ impl Experiment {
         machine.finish_pixels();
         let host_seconds = begun_s.zip(self.host.seconds()).map(|(begin, end)| end - begin);
         let record = machine.into_record();
-        let reached = result.as_ref().err().map_or(self.fields, |error| record.display().period_at(error.time()));
+        let reached = result.as_ref().err().map_or(self.end(), |error| record.display().period_at(error.time()));
         let outcome = Outcome::new(self.clone(), record, head, reached, host_seconds);
         match result {
             Err(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
@@ -161,9 +162,10 @@ impl Experiment {
     }
 
     /// Fields at which to stop: those asked for, every so many for the progress, the last.
-    fn stops(&self, asked: &[u64]) -> BTreeSet<u64> {
-        let regular = (PROGRESS_FIELDS..self.fields).step_by(PROGRESS_FIELDS as usize);
-        asked.iter().copied().filter(|field| *field < self.fields).chain(regular).chain([self.fields]).collect()
+    fn stops(&self, asked: &[PeriodNumber]) -> BTreeSet<PeriodNumber> {
+        let end = self.end();
+        let regular = PeriodNumber(PROGRESS_FIELDS).until(end).step_by(PROGRESS_FIELDS as usize);
+        asked.iter().copied().filter(|field| *field < end).chain(regular).chain([end]).collect()
     }
 }
 

@@ -2,14 +2,15 @@
 
 use pphigs::FrameView;
 use pxpl5_sim::Time;
+use pxpl5_wire::ViewNumber;
 use std::sync::Arc;
 
-/// The view of a frame or update (by number) whose pose is sampled at a time.
-pub type Views = Arc<dyn Fn(u64, Time) -> FrameView + Send + Sync>;
+/// The view of a number whose pose is sampled at a time.
+pub type Views = Arc<dyn Fn(ViewNumber, Time) -> FrameView + Send + Sync>;
 
 /// The view that firmware with a clock of its own asks for: number, the instant up to which the host's tracking data have
 /// reached it, and when the view will be seen.
-pub type ViewsWanted = Arc<dyn Fn(u64, Time, Time) -> FrameView + Send + Sync>;
+pub type ViewsWanted = Arc<dyn Fn(ViewNumber, Time, Time) -> FrameView + Send + Sync>;
 
 /// When the first report of the tracker after an instant reaches the host; `None` if none will.
 pub type ReportTimes = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;

@@ -8,7 +8,7 @@ use pxpl5_machine::{Machine, RunError};
 use pxpl5_measure::{RasterOffsets, screen, side_by_side};
 use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, Raster};
 use pxpl5_sim::Span;
-use pxpl5_wire::SurfaceId;
+use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::io::Write;
 use thiserror::Error;
 
@@ -26,7 +26,7 @@ pub enum FilmOf {
 #[derive(Clone, Debug)]
 pub struct Film {
     experiment: Experiment,
-    first_period: u64,
+    first_period: PeriodNumber,
     periods: u64,
     of: FilmOf,
 }
@@ -68,7 +68,7 @@ pub const FILM_PERIODS: (u64, u64) = (1, 250_000);
 impl Film {
     /// A film of an experiment, from a period of the display on.
     #[must_use]
-    pub const fn new(experiment: Experiment, first_period: u64, periods: u64, of: FilmOf) -> Self {
+    pub const fn new(experiment: Experiment, first_period: PeriodNumber, periods: u64, of: FilmOf) -> Self {
         Self { experiment, first_period, periods, of }
     }
 
@@ -91,9 +91,9 @@ impl Film {
         encoder.set_animated(self.periods as u32, 0)?;
         encoder.set_frame_delay(delay.0, delay.1)?;
         let mut writer = encoder.write_header()?;
-        for period in self.first_period..self.first_period + self.periods {
+        for period in self.first_period.until(self.first_period.after(self.periods)) {
             // A period is over when the next one has begun, all of whose events are taken.
-            let begun = machine.record().tick(period + 1) + Span(1);
+            let begun = machine.record().tick(period.next()) + Span(1);
             machine.run_until(begun)?;
             writer.write_image_data(frame(&machine, &surfaces, period, offsets.as_ref()).as_raw())?;
         }
@@ -106,8 +106,8 @@ impl Film {
         if self.experiment.raster() == Raster::Plain {
             return Ok(None);
         }
-        let last = self.first_period + self.periods;
-        Ok(Some(self.experiment.clone().pixels(Pixels::Off).fields(last + 1).run()?))
+        let length = self.first_period.after(self.periods).next().since(PeriodNumber::FIRST);
+        Ok(Some(self.experiment.clone().pixels(Pixels::Off).fields(length).run()?))
     }
 
     fn surfaces(&self, display: &dyn Display) -> Result<Vec<SurfaceId>, FilmError> {
@@ -128,7 +128,12 @@ fn size(display: &dyn Display, surfaces: &[SurfaceId]) -> (u32, u32) {
     (width, height.unwrap_or_default())
 }
 
-fn frame(machine: &Machine, surfaces: &[SurfaceId], period: u64, offsets: Option<&RasterOffsets<'_>>) -> RgbImage {
+fn frame(
+    machine: &Machine,
+    surfaces: &[SurfaceId],
+    period: PeriodNumber,
+    offsets: Option<&RasterOffsets<'_>>,
+) -> RgbImage {
     let screens = surfaces.iter().map(|surface| screen(machine.record(), *surface, period, offsets));
     screens.reduce(|left, right| side_by_side(&left, &right)).unwrap_or_default()
 }

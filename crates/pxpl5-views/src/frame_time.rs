@@ -2,6 +2,7 @@
 
 use pxpl5_display::Display;
 use pxpl5_sim::Time;
+use pxpl5_wire::PeriodNumber;
 
 /// The time of a frame of a film as a fraction of seconds, as animated PNG has it: of all fractions of two numbers of 16
 /// bits the one that is nearest to a period of the display.
@@ -9,7 +10,7 @@ use pxpl5_sim::Time;
 pub fn frame_seconds(display: &dyn Display) -> (u16, u16) {
     // Ticks are whole picoseconds; over so many periods what is lost does not count.
     const PERIODS: u64 = 60_000;
-    let span = display.tick(PERIODS).since(Time::ZERO);
+    let span = display.tick(PeriodNumber(PERIODS)).since(Time::ZERO);
     let nearest = nearest_fraction(Fraction { over: span.0.into(), under: u128::from(PERIODS) * PS_PER_S });
     (nearest.over as u16, nearest.under as u16)
 }

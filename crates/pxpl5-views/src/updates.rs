@@ -4,6 +4,7 @@ use pxpl5_gp::Stage;
 use pxpl5_machine::StageSpan;
 use pxpl5_run::{Outcome, PictureTimes};
 use pxpl5_sim::Time;
+use pxpl5_wire::PictureNumber;
 
 /// The host's updates of a run.
 pub(crate) struct Updates {
@@ -17,7 +18,8 @@ pub(crate) struct Updates {
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Received {
     at: Time,
-    update: u64,
+    /// The number that its SEND bears.
+    update: PictureNumber,
 }
 
 impl Updates {
@@ -31,7 +33,7 @@ impl Updates {
     }
 
     /// The picture's own update, or the last that had reached the GP when the picture began.
-    pub(crate) fn shown_by(&self, times: &PictureTimes) -> Option<u64> {
+    pub(crate) fn shown_by(&self, times: &PictureTimes) -> Option<PictureNumber> {
         if self.by_picture {
             return Some(times.picture);
         }

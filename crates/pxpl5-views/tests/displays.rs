@@ -10,7 +10,7 @@ use pxpl5_views::results::origin;
 use pxpl5_views::timeline::{Bar, Timeline, TimelineOptions, svg};
 use pxpl5_views::trace_export::{Events, Trace, Track};
 use pxpl5_views::{Film, FilmError, FilmOf};
-use pxpl5_wire::SurfaceId;
+use pxpl5_wire::{PeriodNumber, SurfaceId};
 use std::io::Cursor;
 
 /// A picture of 1280 x 1024, 72 times a second.
@@ -42,11 +42,11 @@ fn a_timeline_counts_the_periods_of_its_display() {
     let outcome = run(hires(40));
     let timeline = Timeline::of(&outcome, &TimelineOptions::default());
     for (n, time) in &timeline.retraces {
-        assert_eq!(*time, Time(n * 1_000_000_000_000 / 72), "tick {n}");
+        assert_eq!(*time, Time(n.0 * 1_000_000_000_000 / 72), "tick {n}");
     }
     let scan = timeline.scans.first().expect("in the drawing");
     // The scan fills its whole period.
-    assert_eq!(scan.begin, Time(scan.period * 1_000_000_000_000 / 72));
+    assert_eq!(scan.begin, Time(scan.period.0 * 1_000_000_000_000 / 72));
     assert!(!copies(&timeline, "frame buffer").is_empty());
     assert!(timeline.bars().all(|bar| bar.surface.is_none() && bar.bottom.is_none()));
     let drawing = svg(&outcome, &TimelineOptions::default());
@@ -103,7 +103,9 @@ fn every_display_of_a_machine_has_its_groups() {
 #[test]
 fn a_film_has_the_size_and_the_rate_of_its_display() {
     let mut bytes = Vec::new();
-    Film::new(hires(10), 6, 2, FilmOf::All).write(&[("seed", "1".to_owned())], &mut bytes).expect("written");
+    Film::new(hires(10), PeriodNumber(6), 2, FilmOf::All)
+        .write(&[("seed", "1".to_owned())], &mut bytes)
+        .expect("written");
     let reader = png::Decoder::new(Cursor::new(bytes)).read_info().expect("PNG");
     let info = reader.info();
     assert_eq!(info.size(), (1_280, 1_024));
@@ -114,9 +116,9 @@ fn a_film_has_the_size_and_the_rate_of_its_display() {
 
 #[test]
 fn a_film_of_what_is_not_there_is_refused() {
-    let film = Film::new(hires(10), 6, 2, FilmOf::One(SurfaceId(1)));
+    let film = Film::new(hires(10), PeriodNumber(6), 2, FilmOf::One(SurfaceId(1)));
     let error = film.write(&[], Vec::new()).expect_err("there is one surface");
     assert_eq!(error.to_string(), "a film of surface 1: the display has 1, counted from 0");
-    let nothing = Film::new(hires(10), 6, 0, FilmOf::All);
+    let nothing = Film::new(hires(10), PeriodNumber(6), 0, FilmOf::All);
     assert!(matches!(nothing.write(&[], Vec::new()), Err(FilmError::Periods { found: 0, .. })));
 }

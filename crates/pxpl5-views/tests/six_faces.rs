@@ -12,7 +12,7 @@ use pxpl5_scene::builtin;
 use pxpl5_sim::{Span, Time};
 use pxpl5_views::timeline::{Timeline, TimelineOptions, svg};
 use pxpl5_views::trace_export::Trace;
-use pxpl5_wire::{NodeId, SurfaceId};
+use pxpl5_wire::{NodeId, PeriodNumber, SurfaceId};
 
 /// Labels and titles.
 const FACES: [(&str, &str); 6] = [
@@ -47,12 +47,12 @@ impl Display for Cube {
         &self.surfaces
     }
 
-    fn tick(&self, n: u64) -> Time {
-        Time::ZERO + PERIOD * n
+    fn tick(&self, period: PeriodNumber) -> Time {
+        Time::ZERO + PERIOD * period.0
     }
 
-    fn period_at(&self, time: Time) -> u64 {
-        time.0 / PERIOD.0
+    fn period_at(&self, time: Time) -> PeriodNumber {
+        PeriodNumber(time.0 / PERIOD.0)
     }
 
     fn handle(&mut self, event: DisplayEvent, context: &mut DisplayContext) {
@@ -66,7 +66,7 @@ impl Display for Cube {
             DisplayEvent::Delivered { body, .. } => {
                 if let BufferReceipt::Region(pixels, first_part_at) = self.board.receive(body, context.now()) {
                     let target = pixels.target;
-                    let surface = (target.picture % 6) as usize;
+                    let surface = (target.picture.0 % 6) as usize;
                     let last_part_at = context.now();
                     let arrived = DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at };
                     context.output(at, arrived);
@@ -76,7 +76,7 @@ impl Display for Cube {
         }
     }
 
-    fn lights(&self, _: usize, _: u32, _: u32, period: u64) -> Option<Time> {
+    fn lights(&self, _: usize, _: u32, _: u32, period: PeriodNumber) -> Option<Time> {
         Some(self.tick(period))
     }
 
@@ -84,11 +84,11 @@ impl Display for Cube {
         None
     }
 
-    fn seen(&self, _: usize, _: u64) -> Option<RgbImage> {
+    fn seen(&self, _: usize, _: PeriodNumber) -> Option<RgbImage> {
         None
     }
 
-    fn last_seen(&self) -> Option<u64> {
+    fn last_seen(&self) -> Option<PeriodNumber> {
         None
     }
 
@@ -154,7 +154,9 @@ fn a_timeline_has_a_row_for_each_face_and_hatches_all_but_the_first() {
     let faces = timeline.rows.iter().filter(|row| FACES.iter().any(|(_, title)| *title == row.name));
     let mut copied = 0;
     for (face, row) in (0..).zip(faces) {
-        assert!(row.bars.iter().all(|bar| bar.surface == Some(SurfaceId(face)) && bar.picture % 6 == u64::from(face)));
+        assert!(
+            row.bars.iter().all(|bar| bar.surface == Some(SurfaceId(face)) && bar.picture.0 % 6 == u64::from(face))
+        );
         copied += row.bars.len();
     }
     assert!(copied > 2, "{copied}");

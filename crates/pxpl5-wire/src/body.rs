@@ -1,6 +1,6 @@
 //! Messages and what their words mean.
 
-use crate::{NodeId, RegionGrid, RegionId, Word};
+use crate::{NodeId, PeriodNumber, PictureNumber, RegionGrid, RegionId, Word};
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -111,10 +111,10 @@ pub enum FieldParity {
 }
 
 impl FieldParity {
-    /// The parity of the field that starts at retrace `n`: even numbers scan even lines.
+    /// The parity of a field of NTSC video: even numbers scan even lines.
     #[must_use]
-    pub const fn of_field(n: u64) -> Self {
-        if n.is_multiple_of(2) { Self::Even } else { Self::Odd }
+    pub const fn of_field(field: PeriodNumber) -> Self {
+        if field.0.is_multiple_of(2) { Self::Even } else { Self::Odd }
     }
 
     /// First line of the field: 0 or 1.
@@ -137,8 +137,9 @@ pub struct CopyTarget {
     pub grid: RegionGrid,
     /// Which piece.
     pub region: RegionId,
-    /// The picture's number (frame or field), for reports.
-    pub picture: u64,
+    /// The picture that the region is part of, in the count of the pipeline that draws it; see [`PictureNumber`]. Boards
+    /// only tell one copy of a region from the next by it; observers join the regions of a picture.
+    pub picture: PictureNumber,
 }
 
 /// Part of one region's pixels: message `part` of `parts`.
@@ -164,11 +165,15 @@ pub trait PixelSource: Debug + Send + Sync {
 pub const COPY_ACKNOWLEDGEMENT: Word = 0xC0_11_ED;
 
 impl CopyTarget {
-    /// The words that tell a program that this region has been copied: tag, region, picture, frame buffer.
+    /// The words that tell a program that this region has been copied: tag, region, low word of the picture, frame buffer.
     #[must_use]
     pub fn acknowledgement(&self) -> Arc<[Word]> {
-        let words =
-            [COPY_ACKNOWLEDGEMENT, Word::from(self.region.0), self.picture as Word, Word::from(self.frame_buffer.0)];
+        let words = [
+            COPY_ACKNOWLEDGEMENT,
+            Word::from(self.region.0),
+            self.picture.to_words()[0],
+            Word::from(self.frame_buffer.0),
+        ];
         words.into()
     }
 }

@@ -7,6 +7,7 @@
 //! - [`Body`]: what the words mean: renderer commands, pixels of a region, or words that firmware defines;
 //! - [`Linear`] and [`Quadratic`]: the expressions that a renderer evaluates at every pixel;
 //! - [`mod@format`]: the fixed-point formats of those expressions;
+//! - [`PeriodNumber`], [`PictureNumber`], [`ViewNumber`]: what boards and programs count;
 //! - [`RegionGrid`]: how a screen is cut into the regions of 128 x 128 renderer pixels.
 //!
 //! Bodies are *lazy*: a message knows its length and the sequence of its command kinds (which is all that time
@@ -20,6 +21,7 @@
 mod body;
 mod expression;
 pub mod format;
+mod number;
 mod region;
 
 pub use body::{
@@ -27,6 +29,7 @@ pub use body::{
     CopyTarget, FieldParity, Lines, Message, PixelSource, RegionPixels, SWAP_REQUEST, read_swap_request, swap_request,
 };
 pub use expression::{Linear, Quadratic};
+pub use number::{PeriodNumber, PictureNumber, ViewNumber};
 pub use region::{Eye, RegionGrid, RegionId, SurfaceId};
 
 /// One word of the ring: 32 bits (TR94).

@@ -1,8 +1,9 @@
 //! Who takes part.
 
+use crate::rules::EyeDrawing;
 use pphigs::{Picture, Share};
 use pxpl5_geometry::Viewport;
-use pxpl5_wire::{CopyTarget, Lines, NodeId, RegionGrid, RegionId, SurfaceId};
+use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId, SurfaceId};
 
 /// The boards that take part, and the kind of picture that they make.
 #[derive(Clone, Debug)]
@@ -34,13 +35,18 @@ impl RenderingControlConfig {
         self.frame_buffers.len() as u64
     }
 
-    pub(crate) fn frame_of(&self, picture: u64) -> u64 {
-        picture / self.eyes()
+    /// The first eye's drawing of a frame.
+    pub(crate) fn first_of(&self, frame: PictureNumber) -> EyeDrawing {
+        EyeDrawing::first_of(frame, self.eyes())
     }
 
-    /// The surface that a picture is drawn for: its eye's.
-    pub(crate) fn eye_of(&self, picture: u64) -> SurfaceId {
-        SurfaceId((picture % self.eyes()) as u16)
+    pub(crate) fn frame_of(&self, drawing: EyeDrawing) -> PictureNumber {
+        drawing.frame(self.eyes())
+    }
+
+    /// The surface of a drawing: its eye's.
+    pub(crate) fn eye_of(&self, drawing: EyeDrawing) -> SurfaceId {
+        SurfaceId(drawing.eye(self.eyes()) as u16)
     }
 
     pub(crate) fn grid(&self) -> RegionGrid {
@@ -52,14 +58,14 @@ impl RenderingControlConfig {
     }
 
     /// The half of the frame buffer that is not shown while this frame is drawn; buffer 0 is shown at the start.
-    pub(crate) fn buffer_of(frame: u64) -> u8 {
-        ((frame + 1) % 2) as u8
+    pub(crate) fn buffer_of(frame: PictureNumber) -> u8 {
+        (frame.next().0 % 2) as u8
     }
 
-    pub(crate) fn target(&self, picture: u64, region: RegionId) -> CopyTarget {
-        let frame = self.frame_of(picture);
+    pub(crate) fn target(&self, drawing: EyeDrawing, region: RegionId) -> CopyTarget {
+        let frame = self.frame_of(drawing);
         CopyTarget {
-            frame_buffer: self.frame_buffers[self.eye_of(picture).index()],
+            frame_buffer: self.frame_buffers[self.eye_of(drawing).index()],
             buffer: Self::buffer_of(frame),
             lines: Lines::Frame,
             grid: self.grid(),

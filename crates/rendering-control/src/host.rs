@@ -5,11 +5,12 @@ use crate::protocol::StageOrder;
 use pphigs::FrameView;
 use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
 use pxpl5_sim::Time;
+use pxpl5_wire::{PictureNumber, ViewNumber};
 
 /// Sends frame after frame: reads the tracker, sends view and edits over the link to all GPs, and waits until the
 /// edits have been applied.
 ///
-/// `view_of` gives the view of a frame whose pose is sampled at a time.
+/// `view_of` gives a view whose pose is sampled at a time.
 ///
 /// # Errors
 ///
@@ -18,12 +19,12 @@ pub async fn host(
     gp: Gp,
     config: RenderingControlConfig,
     timing: HostTiming,
-    mut view_of: impl FnMut(u64, Time) -> FrameView,
+    mut view_of: impl FnMut(ViewNumber, Time) -> FrameView,
 ) -> Result<(), Fault> {
-    for frame in 0.. {
+    for frame in PictureNumber::FIRST.onwards() {
         gp.begin(Stage::Sample, frame, None);
         gp.begin(Stage::Send, frame, None);
-        let (words, body) = StageOrder::Send(view_of(frame, gp.now())).message();
+        let (words, body) = StageOrder::Send(view_of(ViewNumber::taken_for(frame), gp.now())).message();
         gp.spend(timing.link_span(words)).await;
         let receivers = config.slaves.iter().chain([&config.master]);
         let batch = receivers.map(|node| (*node, words, body.clone())).collect();

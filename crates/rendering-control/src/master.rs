@@ -2,10 +2,10 @@
 
 use crate::config::{PROGRAM_BYTES, RenderingControlConfig};
 use crate::protocol::{StageOrder, Token};
-use crate::rules::Completed;
+use crate::rules::{Completed, EyeDrawing};
 use pphigs::copy_message;
 use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
-use pxpl5_wire::{Body, CopyOrder, NodeId, RegionId, swap_request};
+use pxpl5_wire::{Body, CopyOrder, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
 use std::collections::VecDeque;
 
 /// What a renderer is doing, as far as the master knows.
@@ -15,20 +15,20 @@ enum RendererUse {
     /// A token for it is with the slaves.
     Receiving,
     /// It holds a finished region that waits for a frame buffer.
-    Holding(u64, RegionId),
+    Holding(EyeDrawing, RegionId),
 }
 
 /// RENDER of one eye.
 #[derive(Debug)]
 struct Rendering {
-    picture: u64,
+    drawing: EyeDrawing,
     /// Regions without a renderer yet, heaviest first.
     unassigned: VecDeque<RegionId>,
     /// Tokens that are with the slaves.
     tokens_out: u16,
 }
 
-/// What slaves have reported of a frame or picture that not all have finished.
+/// What slaves have reported of a frame or drawing that not all have finished.
 #[derive(Debug, Default)]
 struct SlaveReports {
     slaves: usize,
@@ -39,9 +39,12 @@ struct RegionMaster {
     gp: Gp,
     config: RenderingControlConfig,
     completed: Completed,
-    edits_begun: u64,
-    transforms_allowed: u64,
-    swaps_requested: u64,
+    /// The frame whose EDIT comes next.
+    next_edit: PictureNumber,
+    /// The first drawing whose TRANSFORM is not allowed yet.
+    next_transform: EyeDrawing,
+    /// The frame whose swap is asked for next.
+    next_swap: PictureNumber,
     edited: SlaveReports,
     /// Of pictures `completed.transformed`, and the one after it.
     transformed: VecDeque<SlaveReports>,
@@ -75,9 +78,9 @@ impl RegionMaster {
     fn new(gp: Gp, config: RenderingControlConfig) -> Self {
         Self {
             completed: Completed::none(config.eyes()),
-            edits_begun: 0,
-            transforms_allowed: 0,
-            swaps_requested: 0,
+            next_edit: PictureNumber::FIRST,
+            next_transform: EyeDrawing::default(),
+            next_swap: PictureNumber::FIRST,
             edited: SlaveReports::default(),
             transformed: VecDeque::new(),
             weights: VecDeque::new(),
@@ -111,13 +114,13 @@ impl RegionMaster {
     async fn begin_one(&mut self) -> bool {
         self.completed.swapped = self.swaps_shown();
         self.begin_render();
-        if let Some((renderer, picture, region)) = self.copy_that_may_begin() {
-            self.copy(renderer, picture, region).await;
+        if let Some((renderer, drawing, region)) = self.copy_that_may_begin() {
+            self.copy(renderer, drawing, region).await;
         } else if let Some((renderer, region)) = self.region_that_may_begin() {
             self.send_token(renderer, region).await;
-        } else if self.completed.may_swap(self.swaps_requested) && self.completed.swapped == self.swaps_requested {
+        } else if self.completed.may_swap(self.next_swap) && self.completed.swapped == self.next_swap.0 {
             self.swap().await;
-        } else if self.completed.may_edit(self.edits_begun) {
+        } else if self.completed.may_edit(self.next_edit) {
             self.edit().await;
         } else if self.a_later_eye_may_begin() {
             self.allow_transform().await;
@@ -128,21 +131,21 @@ impl RegionMaster {
     }
 
     async fn edit(&mut self) {
-        let frame = self.edits_begun;
-        self.edits_begun += 1;
-        self.transforms_allowed = frame * self.config.eyes() + 1;
+        let frame = self.next_edit;
+        self.next_edit = frame.next();
+        self.next_transform = self.config.first_of(frame).after(1);
         self.tell_slaves(&StageOrder::Edit(frame)).await;
     }
 
     fn a_later_eye_may_begin(&self) -> bool {
-        let picture = self.transforms_allowed;
-        !picture.is_multiple_of(self.config.eyes()) && self.completed.may_transform(picture)
+        let drawing = self.next_transform;
+        self.config.eye_of(drawing) != SurfaceId(0) && self.completed.may_transform(drawing)
     }
 
     async fn allow_transform(&mut self) {
-        let picture = self.transforms_allowed;
-        self.transforms_allowed += 1;
-        self.tell_slaves(&StageOrder::Transform(picture)).await;
+        let drawing = self.next_transform;
+        self.next_transform = drawing.after(1);
+        self.tell_slaves(&StageOrder::Transform(drawing)).await;
     }
 
     async fn tell_slaves(&self, order: &StageOrder) {
@@ -150,18 +153,18 @@ impl RegionMaster {
         self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
     }
 
-    /// Sorts the regions of the next picture, heaviest first.
+    /// Sorts the regions of the next drawing, heaviest first.
     fn begin_render(&mut self) {
-        let picture = self.completed.rendered;
-        if self.rendering.is_some() || !self.completed.may_render(picture) {
+        let drawing = EyeDrawing(self.completed.rendered);
+        if self.rendering.is_some() || !self.completed.may_render(drawing) {
             return;
         }
         let weights = self.weights.pop_front().unwrap_or_default();
         let mut regions: Vec<_> = (0..self.config.grid().regions() as usize).collect();
         regions.sort_by_key(|region| std::cmp::Reverse(weights.get(*region).copied().unwrap_or(0)));
         let unassigned = regions.into_iter().map(|region| RegionId(region as u16)).collect();
-        self.gp.begin(Stage::Render, self.config.frame_of(picture), Some(self.config.eye_of(picture)));
-        self.rendering = Some(Rendering { picture, unassigned, tokens_out: 0 });
+        self.gp.begin(Stage::Render, self.config.frame_of(drawing), Some(self.config.eye_of(drawing)));
+        self.rendering = Some(Rendering { drawing, unassigned, tokens_out: 0 });
     }
 
     fn region_that_may_begin(&self) -> Option<(usize, RegionId)> {
@@ -175,54 +178,54 @@ impl RegionMaster {
         let Some(rendering) = &mut self.rendering else { return };
         rendering.unassigned.pop_front();
         rendering.tokens_out += 1;
-        let picture = rendering.picture;
+        let drawing = rendering.drawing;
         self.renderers[renderer] = RendererUse::Receiving;
         let slave = self.config.slaves[self.next_slave];
         self.next_slave = (self.next_slave + 1) % self.config.slaves.len();
         let token = Token {
-            picture,
+            drawing,
             region,
             renderer: renderer as u16,
             slaves_left: self.config.slaves.len() as u16,
-            copy: self.completed.frame_buffer_available(picture),
+            copy: self.completed.frame_buffer_available(drawing),
         };
         let (words, body) = StageOrder::Token(token).message();
         self.gp.send(slave, words, body).await;
     }
 
-    fn copy_that_may_begin(&self) -> Option<(usize, u64, RegionId)> {
+    fn copy_that_may_begin(&self) -> Option<(usize, EyeDrawing, RegionId)> {
         self.renderers.iter().enumerate().find_map(|(renderer, state)| match *state {
-            RendererUse::Holding(picture, region) if self.completed.frame_buffer_available(picture) => {
-                Some((renderer, picture, region))
+            RendererUse::Holding(drawing, region) if self.completed.frame_buffer_available(drawing) => {
+                Some((renderer, drawing, region))
             }
             _ => None,
         })
     }
 
     /// Sends the copy command of a region whose frame buffer was not available in time for the last slave.
-    async fn copy(&mut self, renderer: usize, picture: u64, region: RegionId) {
+    async fn copy(&mut self, renderer: usize, drawing: EyeDrawing, region: RegionId) {
         self.renderers[renderer] = RendererUse::Idle;
-        let order = self.copy_order(picture, region);
+        let order = self.copy_order(drawing, region);
         let list = copy_message(self.config.picture.layout, vec![order], self.config.picture.pixels);
         self.gp.send(self.config.renderers[renderer], list.words(), Body::Commands(list)).await;
     }
 
-    fn copy_order(&self, picture: u64, region: RegionId) -> CopyOrder {
-        copy_order(&self.config, picture, region)
+    fn copy_order(&self, drawing: EyeDrawing, region: RegionId) -> CopyOrder {
+        copy_order(&self.config, drawing, region)
     }
 
     async fn swap(&mut self) {
-        let buffer = RenderingControlConfig::buffer_of(self.swaps_requested);
-        self.swaps_requested += 1;
+        let buffer = RenderingControlConfig::buffer_of(self.next_swap);
+        self.next_swap = self.next_swap.next();
         let requests = self.config.frame_buffers.iter().map(|node| (*node, 2, Body::Words(swap_request(buffer))));
         self.gp.send_batch(requests.collect()).await;
     }
 
     async fn note(&mut self, received: &Received) -> Result<(), Fault> {
         match StageOrder::read(received, self.gp.node())? {
-            StageOrder::Send(view) => self.completed.sent = view.number + 1,
+            StageOrder::Send(view) => self.completed.sent = view.number.picture_taken_for().next().0,
             StageOrder::Edited(frame) => self.note_edited(frame).await,
-            StageOrder::Transformed(picture, entries) => self.note_transformed(picture, &entries),
+            StageOrder::Transformed(drawing, entries) => self.note_transformed(drawing, &entries),
             StageOrder::Accepted(token) => self.note_accepted(token),
             StageOrder::Copied { frame_buffer } => self.note_copied(frame_buffer),
             other => return Err(Fault::Protocol { node: self.gp.node(), found: format!("at the master: {other:?}") }),
@@ -230,18 +233,18 @@ impl RegionMaster {
         Ok(())
     }
 
-    async fn note_edited(&mut self, frame: u64) {
+    async fn note_edited(&mut self, frame: PictureNumber) {
         self.edited.slaves += 1;
         if self.edited.slaves == self.config.slaves.len() {
             self.edited = SlaveReports::default();
-            self.completed.edited = frame + 1;
+            self.completed.edited = frame.next().0;
             let (words, body) = StageOrder::EditsDone(frame).message();
             self.gp.send(self.config.host, words, body).await;
         }
     }
 
-    fn note_transformed(&mut self, picture: u64, entries: &[u32]) {
-        let place = (picture - self.completed.transformed) as usize;
+    fn note_transformed(&mut self, drawing: EyeDrawing, entries: &[u32]) {
+        let place = (drawing.0 - self.completed.transformed) as usize;
         while self.transformed.len() <= place {
             self.transformed.push_back(SlaveReports { slaves: 0, entries: vec![0; entries.len()] });
         }
@@ -255,13 +258,13 @@ impl RegionMaster {
     }
 
     fn note_accepted(&mut self, token: Token) {
-        let held = RendererUse::Holding(token.picture, token.region);
+        let held = RendererUse::Holding(token.drawing, token.region);
         self.renderers[usize::from(token.renderer)] = if token.copy { RendererUse::Idle } else { held };
         let Some(rendering) = &mut self.rendering else { return };
         rendering.tokens_out -= 1;
         if rendering.tokens_out == 0 && rendering.unassigned.is_empty() {
-            let picture = rendering.picture;
-            self.gp.end(Stage::Render, self.config.frame_of(picture), Some(self.config.eye_of(picture)));
+            let drawing = rendering.drawing;
+            self.gp.end(Stage::Render, self.config.frame_of(drawing), Some(self.config.eye_of(drawing)));
             self.completed.rendered += 1;
             self.rendering = None;
         }
@@ -271,21 +274,21 @@ impl RegionMaster {
         if let Some(eye) = self.config.frame_buffers.iter().position(|node| *node == frame_buffer) {
             self.copied_regions[eye] += 1;
         }
-        while self.is_copied(self.completed.copied) {
+        while self.is_copied(EyeDrawing(self.completed.copied)) {
             self.completed.copied += 1;
         }
     }
 
-    /// Regions reach a frame buffer picture by picture, so a count is enough.
-    fn is_copied(&self, picture: u64) -> bool {
+    /// Regions reach a frame buffer drawing by drawing, so a count is enough.
+    fn is_copied(&self, drawing: EyeDrawing) -> bool {
         let regions = u64::from(self.config.grid().regions());
-        self.copied_regions[self.config.eye_of(picture).index()] >= regions * (self.config.frame_of(picture) + 1)
+        self.copied_regions[self.config.eye_of(drawing).index()] >= regions * self.config.frame_of(drawing).next().0
     }
 }
 
-pub(crate) fn copy_order(config: &RenderingControlConfig, picture: u64, region: RegionId) -> CopyOrder {
+pub(crate) fn copy_order(config: &RenderingControlConfig, drawing: EyeDrawing, region: RegionId) -> CopyOrder {
     CopyOrder {
-        target: config.target(picture, region),
+        target: config.target(drawing, region),
         context: 0,
         through_backing: true,
         acknowledge: Some(config.master),

@@ -1,8 +1,9 @@
 //! The messages between host, master and slaves, as words.
 
+use crate::rules::EyeDrawing;
 use pphigs::FrameView;
 use pxpl5_gp::{Fault, Received};
-use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, NodeId, RegionId, Word};
+use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, NodeId, PictureNumber, RegionId, Word};
 
 const SEND: Word = 1;
 const EDIT: Word = 2;
@@ -16,8 +17,7 @@ const EDITS_DONE: Word = 8;
 /// A token: who holds it may send commands of one region to one renderer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token {
-    /// Number of the eye's picture, from 0.
-    pub(crate) picture: u64,
+    pub(crate) drawing: EyeDrawing,
     pub(crate) region: RegionId,
     /// Index of the renderer.
     pub(crate) renderer: u16,
@@ -33,15 +33,15 @@ pub(crate) enum StageOrder {
     /// Host to all: view and edits of a frame.
     Send(FrameView),
     /// Master to slaves: apply the edits of a frame.
-    Edit(u64),
+    Edit(PictureNumber),
     /// Slave to master: edits of a frame applied.
-    Edited(u64),
+    Edited(PictureNumber),
     /// Master to host: all edits of a frame applied.
-    EditsDone(u64),
-    /// Master to slaves: an eye's picture may be transformed.
-    Transform(u64),
+    EditsDone(PictureNumber),
+    /// Master to slaves: the drawing of an eye may be transformed.
+    Transform(EyeDrawing),
     /// Slave to master: transformed; entries of each region's bin.
-    Transformed(u64, Vec<u32>),
+    Transformed(EyeDrawing, Vec<u32>),
     /// A token on its way.
     Token(Token),
     /// Last slave to master: a region's commands were accepted.
@@ -60,11 +60,11 @@ impl StageOrder {
     fn words(&self) -> Vec<Word> {
         match self {
             Self::Send(view) => [vec![SEND], view.to_words()].concat(),
-            Self::Edit(frame) => numbered(EDIT, *frame),
-            Self::Edited(frame) => numbered(EDITED, *frame),
-            Self::EditsDone(frame) => numbered(EDITS_DONE, *frame),
-            Self::Transform(picture) => numbered(TRANSFORM, *picture),
-            Self::Transformed(picture, entries) => [numbered(TRANSFORMED, *picture), entries.clone()].concat(),
+            Self::Edit(frame) => numbered(EDIT, frame.0),
+            Self::Edited(frame) => numbered(EDITED, frame.0),
+            Self::EditsDone(frame) => numbered(EDITS_DONE, frame.0),
+            Self::Transform(drawing) => numbered(TRANSFORM, drawing.0),
+            Self::Transformed(drawing, entries) => [numbered(TRANSFORMED, drawing.0), entries.clone()].concat(),
             Self::Token(token) => token.words(TOKEN),
             Self::Accepted(token) => token.words(ACCEPTED),
             Self::Copied { frame_buffer } => vec![COPY_ACKNOWLEDGEMENT, 0, 0, Word::from(frame_buffer.0)],
@@ -84,11 +84,11 @@ impl StageOrder {
     fn from_words(words: &[Word]) -> Option<Self> {
         match words.first() {
             Some(&SEND) => FrameView::from_words(&words[1..]).ok().map(Self::Send),
-            Some(&EDIT) => number_of(words).map(Self::Edit),
-            Some(&EDITED) => number_of(words).map(Self::Edited),
-            Some(&EDITS_DONE) => number_of(words).map(Self::EditsDone),
-            Some(&TRANSFORM) => number_of(words).map(Self::Transform),
-            Some(&TRANSFORMED) => number_of(words).map(|n| Self::Transformed(n, words[3..].to_vec())),
+            Some(&EDIT) => number_of(words).map(PictureNumber).map(Self::Edit),
+            Some(&EDITED) => number_of(words).map(PictureNumber).map(Self::Edited),
+            Some(&EDITS_DONE) => number_of(words).map(PictureNumber).map(Self::EditsDone),
+            Some(&TRANSFORM) => number_of(words).map(EyeDrawing).map(Self::Transform),
+            Some(&TRANSFORMED) => number_of(words).map(|n| Self::Transformed(EyeDrawing(n), words[3..].to_vec())),
             Some(&TOKEN) => Token::read(words).map(Self::Token),
             Some(&ACCEPTED) => Token::read(words).map(Self::Accepted),
             Some(&COPY_ACKNOWLEDGEMENT) => words.get(3).map(|node| Self::Copied { frame_buffer: NodeId(*node as u16) }),
@@ -97,7 +97,7 @@ impl StageOrder {
     }
 }
 
-/// A message of a tag and the number of a frame or picture.
+/// A message of a tag and the number of a frame or drawing.
 fn numbered(tag: Word, number: u64) -> Vec<Word> {
     vec![tag, number as Word, (number >> 32) as Word]
 }
@@ -114,8 +114,8 @@ impl Token {
         let regions = u32::from(self.region.0) | u32::from(self.renderer) << 16;
         vec![
             tag,
-            self.picture as Word,
-            (self.picture >> 32) as Word,
+            self.drawing.0 as Word,
+            (self.drawing.0 >> 32) as Word,
             regions,
             u32::from(self.slaves_left),
             self.copy.into(),
@@ -125,7 +125,7 @@ impl Token {
     fn read(words: &[Word]) -> Option<Self> {
         let [_, low, high, regions, slaves_left, copy] = *words else { return None };
         Some(Self {
-            picture: u64::from(low) | u64::from(high) << 32,
+            drawing: EyeDrawing(u64::from(low) | u64::from(high) << 32),
             region: RegionId(regions as u16),
             renderer: (regions >> 16) as u16,
             slaves_left: slaves_left as u16,
@@ -138,6 +138,7 @@ impl Token {
 mod tests {
     use super::*;
     use pxpl5_sim::Time;
+    use pxpl5_wire::ViewNumber;
 
     fn through_words(order: &StageOrder) -> StageOrder {
         let (_, body) = order.message();
@@ -147,15 +148,16 @@ mod tests {
 
     #[test]
     fn every_order_survives_its_words() {
-        let token = Token { picture: 1 << 33, region: RegionId(19), renderer: 4, slaves_left: 12, copy: true };
-        let view = FrameView { number: 3, eyes: Vec::new(), edits: Vec::new() };
+        let token =
+            Token { drawing: EyeDrawing(1 << 33), region: RegionId(19), renderer: 4, slaves_left: 12, copy: true };
+        let view = FrameView { number: ViewNumber(3), eyes: Vec::new(), edits: Vec::new() };
         let orders = [
             StageOrder::Send(view),
-            StageOrder::Edit(1),
-            StageOrder::Edited(2),
-            StageOrder::EditsDone(1 << 40),
-            StageOrder::Transform(3),
-            StageOrder::Transformed(4, vec![7; 20]),
+            StageOrder::Edit(PictureNumber(1)),
+            StageOrder::Edited(PictureNumber(2)),
+            StageOrder::EditsDone(PictureNumber(1 << 40)),
+            StageOrder::Transform(EyeDrawing(3)),
+            StageOrder::Transformed(EyeDrawing(4), vec![7; 20]),
             StageOrder::Token(token),
             StageOrder::Accepted(token),
             StageOrder::Copied { frame_buffer: NodeId(20) },

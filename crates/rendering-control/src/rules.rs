@@ -1,6 +1,39 @@
 //! When a stage may begin: the rules of TR94, as functions of how far each stage has come.
 
-/// How many pictures (an eye's, or a mono frame's) or frames have passed each stage. All stages work in order.
+use pxpl5_wire::PictureNumber;
+
+/// One eye's half of a frame, or the whole of a mono frame: drawings are counted from 0, the left eye's of frame 0, over
+/// all frames in their order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EyeDrawing(pub u64);
+
+impl EyeDrawing {
+    /// The drawing for the first eye of a frame of so many eyes.
+    #[must_use]
+    pub const fn first_of(frame: PictureNumber, eyes: u64) -> Self {
+        Self(frame.0 * eyes)
+    }
+
+    /// The frame of so many eyes that it belongs to.
+    #[must_use]
+    pub const fn frame(self, eyes: u64) -> PictureNumber {
+        PictureNumber(self.0 / eyes)
+    }
+
+    /// Which of so many eyes it is for: 0 or 1.
+    #[must_use]
+    pub const fn eye(self, eyes: u64) -> u64 {
+        self.0 % eyes
+    }
+
+    /// The one that comes `count` later.
+    #[must_use]
+    pub const fn after(self, count: u64) -> Self {
+        Self(self.0 + count)
+    }
+}
+
+/// How many drawings (an eye's, or a mono frame's) or frames have passed each stage. All stages work in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Completed {
     /// Eyes of a frame: 1 or 2.
@@ -9,18 +42,18 @@ pub struct Completed {
     pub sent: u64,
     /// Frames whose edits all slaves have applied.
     pub edited: u64,
-    /// Pictures that all slaves have transformed.
+    /// Drawings that all slaves have transformed.
     pub transformed: u64,
-    /// Pictures whose last commands were accepted.
+    /// Drawings whose last commands were accepted.
     pub rendered: u64,
-    /// Pictures that are complete in a frame buffer.
+    /// Drawings that are complete in a frame buffer.
     pub copied: u64,
     /// Frames that have been swapped in.
     pub swapped: u64,
 }
 
 impl Completed {
-    /// The state at switching on: no frame or picture has passed any stage.
+    /// The state at switching on: no frame or drawing has passed any stage.
     #[must_use]
     pub const fn none(eyes: u64) -> Self {
         Self { eyes, sent: 0, edited: 0, transformed: 0, rendered: 0, copied: 0, swapped: 0 }
@@ -29,40 +62,40 @@ impl Completed {
     /// EDIT of a frame needs SEND of it, TRANSFORM of the previous frame, RENDER of the 2nd previous and COPY of the
     /// 3rd previous eye (mono: frame).
     #[must_use]
-    pub const fn may_edit(&self, frame: u64) -> bool {
-        let first = frame * self.eyes;
-        self.sent > frame && self.transformed >= first && self.buffers_free(first)
+    pub const fn may_edit(&self, frame: PictureNumber) -> bool {
+        let first = EyeDrawing::first_of(frame, self.eyes);
+        self.sent > frame.0 && self.transformed >= first.0 && self.buffers_free(first)
     }
 
     /// TRANSFORM of an eye needs EDIT of its frame to have begun, RENDER of the 2nd previous and COPY of the 3rd
     /// previous eye. (Each slave starts as soon as its own edits are done.)
     #[must_use]
-    pub const fn may_transform(&self, picture: u64) -> bool {
-        self.edited > picture / self.eyes && self.buffers_free(picture)
+    pub const fn may_transform(&self, drawing: EyeDrawing) -> bool {
+        self.edited > drawing.frame(self.eyes).0 && self.buffers_free(drawing)
     }
 
-    /// Two bin contexts and two renderer contexts are free for a picture.
-    const fn buffers_free(&self, picture: u64) -> bool {
-        self.rendered + 1 >= picture && self.copied + 2 >= picture
+    /// Two bin contexts and two renderer contexts are free for a drawing.
+    const fn buffers_free(&self, drawing: EyeDrawing) -> bool {
+        self.rendered + 1 >= drawing.0 && self.copied + 2 >= drawing.0
     }
 
     /// RENDER of an eye needs its TRANSFORM by all slaves, and RENDER of the eye before.
     #[must_use]
-    pub const fn may_render(&self, picture: u64) -> bool {
-        self.transformed > picture && self.rendered >= picture
+    pub const fn may_render(&self, drawing: EyeDrawing) -> bool {
+        self.transformed > drawing.0 && self.rendered >= drawing.0
     }
 
     /// A frame buffer is available when its back half holds a picture that is no longer shown: the frame before has
     /// been swapped in.
     #[must_use]
-    pub const fn frame_buffer_available(&self, picture: u64) -> bool {
-        self.swapped >= picture / self.eyes
+    pub const fn frame_buffer_available(&self, drawing: EyeDrawing) -> bool {
+        self.swapped >= drawing.frame(self.eyes).0
     }
 
     /// A frame may be swapped in when all its eyes are complete.
     #[must_use]
-    pub const fn may_swap(&self, frame: u64) -> bool {
-        self.copied >= (frame + 1) * self.eyes
+    pub const fn may_swap(&self, frame: PictureNumber) -> bool {
+        self.copied >= EyeDrawing::first_of(frame.next(), self.eyes).0
     }
 }
 
@@ -74,31 +107,31 @@ mod tests {
     fn mono_edit_waits_for_send_transform_render_and_copy_of_the_frames_before() {
         // EDIT 5 needs SEND 5, TRANSFORM 4, RENDER 3, COPY 2 (TR94).
         let ready = Completed { eyes: 1, sent: 6, edited: 5, transformed: 5, rendered: 4, copied: 3, swapped: 0 };
-        assert!(ready.may_edit(5));
+        assert!(ready.may_edit(PictureNumber(5)));
         for blocked in [
             Completed { sent: 5, ..ready },
             Completed { transformed: 4, ..ready },
             Completed { rendered: 3, ..ready },
             Completed { copied: 2, ..ready },
         ] {
-            assert!(!blocked.may_edit(5), "{blocked:?}");
+            assert!(!blocked.may_edit(PictureNumber(5)), "{blocked:?}");
         }
     }
 
     #[test]
     fn stereo_transform_waits_for_the_second_and_third_previous_eye() {
-        // Right eye of frame 4 is picture 9: RENDER of 7, COPY of 6.
+        // The right eye of frame 4 is drawing 9: RENDER of 7, COPY of 6.
         let ready = Completed { eyes: 2, sent: 5, edited: 5, transformed: 9, rendered: 8, copied: 7, swapped: 0 };
-        assert!(ready.may_transform(9));
-        assert!(!Completed { rendered: 7, ..ready }.may_transform(9));
-        assert!(!Completed { copied: 6, ..ready }.may_transform(9));
-        assert!(!Completed { edited: 4, ..ready }.may_transform(9));
+        assert!(ready.may_transform(EyeDrawing(9)));
+        assert!(!Completed { rendered: 7, ..ready }.may_transform(EyeDrawing(9)));
+        assert!(!Completed { copied: 6, ..ready }.may_transform(EyeDrawing(9)));
+        assert!(!Completed { edited: 4, ..ready }.may_transform(EyeDrawing(9)));
     }
 
     #[test]
     fn a_frame_buffer_is_free_again_when_the_frame_before_is_shown() {
         let state = Completed { swapped: 3, ..Completed::none(2) };
-        assert!(state.frame_buffer_available(6) && state.frame_buffer_available(7));
-        assert!(!state.frame_buffer_available(8));
+        assert!(state.frame_buffer_available(EyeDrawing(6)) && state.frame_buffer_available(EyeDrawing(7)));
+        assert!(!state.frame_buffer_available(EyeDrawing(8)));
     }
 }

@@ -3,10 +3,11 @@
 use crate::config::{BIN_ENTRY_BYTES, PROGRAM_BYTES, RenderingControlConfig};
 use crate::master::copy_order;
 use crate::protocol::{StageOrder, Token};
+use crate::rules::EyeDrawing;
 use pphigs::{FrameView, Pass, RegionEnvelope, Share, Transforming, region_messages};
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
 use pxpl5_sim::Span;
-use pxpl5_wire::{Body, CommandList, RegionId};
+use pxpl5_wire::{Body, CommandList, PictureNumber, RegionId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -16,9 +17,9 @@ use std::sync::Arc;
 #[derive(Debug, Default)]
 struct SlaveState {
     views: VecDeque<FrameView>,
-    /// Frames whose EDIT may begin, and pictures whose TRANSFORM may.
-    edits_allowed: u64,
-    transforms_allowed: u64,
+    /// The first frame whose EDIT may not begin yet, and the first drawing whose TRANSFORM may not.
+    next_edit: PictureNumber,
+    next_transform: EyeDrawing,
     /// The two bin contexts.
     bins: [Option<Arc<Pass>>; 2],
 }
@@ -60,20 +61,20 @@ async fn transform_program(
     gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
     gp.reserve(Account::DisplayList, share.bytes(), None)?;
     gp.install(|processor| share.install(processor))?;
-    for frame in 0.. {
+    for frame in PictureNumber::FIRST.onwards() {
         let view = edit(&gp, &config, &state, frame).await;
         for eye in 0..config.eyes() {
-            let picture = frame * config.eyes() + eye;
-            gp.until("leave to TRANSFORM", || (state.borrow().transforms_allowed > picture).then_some(())).await;
-            transform(&gp, &config, &share, &state, &view, picture).await?;
+            let drawing = config.first_of(frame).after(eye);
+            gp.until("leave to TRANSFORM", || (state.borrow().next_transform > drawing).then_some(())).await;
+            transform(&gp, &config, &share, &state, &view, drawing).await?;
         }
     }
     Ok(())
 }
 
 /// EDIT: applies the edits of a frame and tells the master.
-async fn edit(gp: &Gp, config: &RenderingControlConfig, state: &SharedSlaveState, frame: u64) -> FrameView {
-    gp.until("leave to EDIT", || (state.borrow().edits_allowed > frame).then_some(())).await;
+async fn edit(gp: &Gp, config: &RenderingControlConfig, state: &SharedSlaveState, frame: PictureNumber) -> FrameView {
+    gp.until("leave to EDIT", || (state.borrow().next_edit > frame).then_some(())).await;
     let view = gp.until("SEND of the frame", || state.borrow_mut().views.pop_front()).await;
     gp.begin(Stage::Edit, frame, None);
     gp.spend(Span::from_ns(gp.timing().edit_ns) * view.edits.len() as u64).await;
@@ -89,13 +90,13 @@ async fn transform(
     share: &Share,
     state: &SharedSlaveState,
     view: &FrameView,
-    picture: u64,
+    drawing: EyeDrawing,
 ) -> Result<(), Fault> {
-    let frame = config.frame_of(picture);
-    let eye = config.eye_of(picture);
+    let frame = config.frame_of(drawing);
+    let eye = config.eye_of(drawing);
     gp.begin(Stage::Transform, frame, Some(eye));
     let pass = share.transform(view, eye.index(), config.picture);
-    let context = (picture % 2) as u8;
+    let context = (drawing.0 % 2) as u8;
     reserve_bins(gp, &pass, context)?;
     let passes = std::slice::from_ref(&pass);
     gp.work(&Transforming { passes, context, begins: true }).await?;
@@ -103,7 +104,7 @@ async fn transform(
     let entries = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
     state.borrow_mut().bins[usize::from(context)] = Some(pass);
     gp.end(Stage::Transform, frame, Some(eye));
-    tell_master(gp, config, &StageOrder::Transformed(picture, entries)).await;
+    tell_master(gp, config, &StageOrder::Transformed(drawing, entries)).await;
     Ok(())
 }
 
@@ -131,10 +132,10 @@ async fn token_program(
             StageOrder::Send(view) => state.borrow_mut().views.push_back(view),
             StageOrder::Edit(frame) => {
                 let state = &mut *state.borrow_mut();
-                state.edits_allowed = frame + 1;
-                state.transforms_allowed = frame * config.eyes() + 1;
+                state.next_edit = frame.next();
+                state.next_transform = config.first_of(frame).after(1);
             }
-            StageOrder::Transform(picture) => state.borrow_mut().transforms_allowed = picture + 1,
+            StageOrder::Transform(drawing) => state.borrow_mut().next_transform = drawing.after(1),
             StageOrder::Token(token) => walk(&gp, &config, index, &state, token).await,
             other => return Err(Fault::Protocol { node: gp.node(), found: format!("at a slave: {other:?}") }),
         }
@@ -143,7 +144,7 @@ async fn token_program(
 
 /// Sends this slave's bin of the token's region, then passes the token on.
 async fn walk(gp: &Gp, config: &RenderingControlConfig, index: usize, state: &SharedSlaveState, token: Token) {
-    let pass = state.borrow().bins[(token.picture % 2) as usize].clone();
+    let pass = state.borrow().bins[(token.drawing.0 % 2) as usize].clone();
     let renderer = config.renderers[usize::from(token.renderer)];
     for list in pass.iter().flat_map(|pass| messages(config, pass, token)) {
         gp.clump_buffer_free().await;
@@ -166,7 +167,7 @@ fn messages(config: &RenderingControlConfig, pass: &Arc<Pass>, token: Token) -> 
     let envelope = RegionEnvelope {
         begin: usize::from(token.slaves_left) == config.slaves.len(),
         shade: last,
-        copy: (last && token.copy).then(|| copy_order(config, token.picture, token.region)),
+        copy: (last && token.copy).then(|| copy_order(config, token.drawing, token.region)),
     };
     region_messages(pass, token.region, 0, envelope)
 }

@@ -6,7 +6,7 @@ use crate::schedule::CopySchedule;
 use pphigs::{Binning, Picture, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
-use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, RegionGrid};
+use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber, RegionGrid};
 
 /// The boards that take part, and the variant of Slats that they run.
 #[derive(Clone, Debug)]
@@ -54,14 +54,14 @@ impl SlatsConfig {
 
     /// A field is written into the lines that are not being scanned, so without a backup buffer 0 is enough: interlace
     /// is the double buffer.
-    pub(crate) fn target(&self, bound: &crate::BoundRegion, field: u64, buffer: u8) -> CopyTarget {
+    pub(crate) fn target(&self, bound: &crate::BoundRegion, field: PeriodNumber, buffer: u8) -> CopyTarget {
         CopyTarget {
             frame_buffer: self.frame_buffers[bound.eye.index()],
             buffer,
             lines: Lines::Field(FieldParity::of_field(field)),
             grid: RegionGrid::FIELD,
             region: bound.region,
-            picture: field,
+            picture: PictureNumber::drawn_for(field),
         }
     }
 }

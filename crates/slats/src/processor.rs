@@ -8,7 +8,10 @@ use pphigs::{
     region_messages,
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage, Ticket};
-use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyOrder, Eye, FieldParity, NodeId, Word, swap_request};
+use pxpl5_wire::{
+    Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyOrder, Eye, FieldParity, NodeId, PeriodNumber, PictureNumber, Word,
+    swap_request,
+};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -31,13 +34,13 @@ struct ProcessorState {
     /// The newest view from the host, on the leading GP.
     newest: Option<FrameView>,
     /// Fields that the leading GP has begun, on the others.
-    begun: VecDeque<(u64, FrameView)>,
+    begun: VecDeque<(PeriodNumber, FrameView)>,
     /// Renderers that have said that their last region of a field is copied, since switching on.
     copied: u64,
     /// Buffer that holds the last complete field of even and of odd lines.
     complete: [u8; 2],
     /// How many other GPs have finished each of the fields being drawn: (field, GPs).
-    finished: Vec<(u64, usize)>,
+    finished: Vec<(PeriodNumber, usize)>,
 }
 
 type SharedState = Rc<RefCell<ProcessorState>>;
@@ -82,37 +85,27 @@ async fn listen(gp: Gp, state: SharedState) -> Result<(), Fault> {
     }
 }
 
-/// The 64-bit number whose low and high words these are.
-fn from_halves(low: Word, high: Word) -> u64 {
-    u64::from(low) | u64::from(high) << 32
-}
-
-/// The low and the high word of a 64-bit number.
-fn halves(number: u64) -> [Word; 2] {
-    [number as Word, (number >> 32) as Word]
-}
-
 impl ProcessorState {
     fn note(&mut self, words: &[Word]) -> Result<(), ViewWordsError> {
         match words {
             [COPY_ACKNOWLEDGEMENT, ..] => self.copied += 1,
-            [CLUMPS_ACCEPTED, low, high] => self.note_finished(from_halves(*low, *high)),
+            [CLUMPS_ACCEPTED, low, high] => self.note_finished(PeriodNumber::from_words(*low, *high)),
             [BEGIN, low, high, view @ ..] => {
-                self.begun.push_back((from_halves(*low, *high), FrameView::from_words(view)?));
+                self.begun.push_back((PeriodNumber::from_words(*low, *high), FrameView::from_words(view)?));
             }
             view => self.newest = Some(FrameView::from_words(view)?),
         }
         Ok(())
     }
 
-    fn note_finished(&mut self, field: u64) {
+    fn note_finished(&mut self, field: PeriodNumber) {
         match self.finished.iter_mut().find(|entry| entry.0 == field) {
             Some(entry) => entry.1 += 1,
             None => self.finished.push((field, 1)),
         }
     }
 
-    fn finished(&mut self, field: u64) -> usize {
+    fn finished(&mut self, field: PeriodNumber) -> usize {
         self.finished.retain(|entry| entry.0 >= field);
         self.finished.iter().find(|entry| entry.0 == field).map_or(0, |entry| entry.1)
     }
@@ -138,9 +131,10 @@ impl SlatsProcessor {
     /// Begins a field at every retrace at which the one before is done.
     async fn lead(self) -> Result<(), Fault> {
         self.gp.until("the first view from the host", || self.state.borrow().newest.as_ref().map(|_| ())).await;
-        let mut begin_at = self.gp.field() + 1;
+        let mut begin_at = self.gp.field().next();
         loop {
-            let field = self.gp.until("a retrace", || Some(self.gp.field()).filter(|now| *now >= begin_at)).await + 1;
+            let now = self.gp.until("a retrace", || Some(self.gp.field()).filter(|now| *now >= begin_at)).await;
+            let field = now.next();
             let view = self.gp.until("a view", || self.state.borrow().newest.clone()).await;
             if !self.is_alone() {
                 self.clear(field, &view).await;
@@ -154,7 +148,7 @@ impl SlatsProcessor {
                     (self.state.borrow_mut().finished(field) >= others).then_some(())
                 })
                 .await;
-            self.gp.end(Stage::Render, field, None);
+            self.gp.end(Stage::Render, PictureNumber::drawn_for(field), None);
             self.gp.spend_message().await;
             self.gp.send_prepared(self.copies(field, true));
             self.show_if_complete(field).await;
@@ -162,7 +156,7 @@ impl SlatsProcessor {
                 // The chain for the bottom regions is ready before the retrace and starts with it.
                 self.gp.spend_message().await;
             }
-            begin_at = if self.gp.field() < field { field } else { self.gp.field() + 1 };
+            begin_at = if self.gp.field() < field { field } else { self.gp.field().next() };
             if self.config.copy.is_split() {
                 self.gp.until("a retrace", || (self.gp.field() >= field).then_some(())).await;
                 self.gp.send_prepared(self.copies(field, false));
@@ -171,15 +165,15 @@ impl SlatsProcessor {
     }
 
     /// Asks for the last complete field of these lines; a later request for the new one takes its place.
-    async fn show_backup(&self, field: u64) {
+    async fn show_backup(&self, field: PeriodNumber) {
         if self.config.copy == CopySchedule::Backup {
             self.gp.spend_message().await;
-            self.swap(self.state.borrow().complete[(field % 2) as usize]);
+            self.swap(self.state.borrow().complete[FieldParity::of_field(field) as usize]);
         }
     }
 
     /// Waits for the copies, and has the field shown if they were in time.
-    async fn show_if_complete(&self, field: u64) {
+    async fn show_if_complete(&self, field: PeriodNumber) {
         if self.config.copy != CopySchedule::Backup {
             return;
         }
@@ -189,7 +183,7 @@ impl SlatsProcessor {
         self.gp.spend_message().await;
         if self.gp.field() < field {
             let buffer = self.buffer(field);
-            self.state.borrow_mut().complete[(field % 2) as usize] = buffer;
+            self.state.borrow_mut().complete[FieldParity::of_field(field) as usize] = buffer;
             self.swap(buffer);
         }
     }
@@ -200,8 +194,8 @@ impl SlatsProcessor {
     }
 
     /// Where a field is written.
-    fn buffer(&self, field: u64) -> u8 {
-        let complete = self.state.borrow().complete[(field % 2) as usize];
+    fn buffer(&self, field: PeriodNumber) -> u8 {
+        let complete = self.state.borrow().complete[FieldParity::of_field(field) as usize];
         if self.config.copy == CopySchedule::Backup { 1 - complete } else { 0 }
     }
 
@@ -212,7 +206,7 @@ impl SlatsProcessor {
                 self.gp.until("the leading processor", || self.state.borrow_mut().begun.pop_front()).await;
             self.field(field, &view).await?;
             // Queued behind the clumps, so it arrives when they have been accepted.
-            let [low, high] = halves(field);
+            let [low, high] = field.to_words();
             let words = [CLUMPS_ACCEPTED, low, high];
             self.gp.send(self.config.processors[0], 3, Body::Words(words.into())).await;
         }
@@ -225,15 +219,15 @@ impl SlatsProcessor {
 
     /// Clears all regions by a chain of its own. A chain waits for the one before it, so whoever is told to begin after
     /// this one cannot send a clump that is cleared away.
-    async fn clear(&self, field: u64, view: &FrameView) {
+    async fn clear(&self, field: PeriodNumber, view: &FrameView) {
         let picture = self.config.picture(FieldParity::of_field(field));
         let nothing = self.share.nothing();
         let passes = Eye::BOTH.map(|eye| nothing.transform(view, eye.index(), picture));
         self.send(&passes, true).await;
     }
 
-    async fn tell_others(&self, field: u64, view: &FrameView) {
-        let [low, high] = halves(field);
+    async fn tell_others(&self, field: PeriodNumber, view: &FrameView) {
+        let [low, high] = field.to_words();
         let words: Arc<[Word]> = [vec![BEGIN, low, high], view.to_words()].concat().into();
         let others = self.config.processors.iter().skip(1);
         let messages = others.map(|node| (*node, words.len() as u32, Body::Words(Arc::clone(&words))));
@@ -241,9 +235,10 @@ impl SlatsProcessor {
     }
 
     /// Draws this GP's share of what is shown from the retrace of `field` on.
-    async fn field(&self, field: u64, view: &FrameView) -> Result<(), Fault> {
-        self.gp.begin_view(Stage::Sample, field, view.number);
-        self.gp.begin(Stage::Transform, field, None);
+    async fn field(&self, field: PeriodNumber, view: &FrameView) -> Result<(), Fault> {
+        let number = PictureNumber::drawn_for(field);
+        self.gp.begin_view(Stage::Sample, number, view.number);
+        self.gp.begin(Stage::Transform, number, None);
         self.gp.spend(TransformCost::PASS.span(&self.gp.timing())).await;
         let picture = self.config.picture(FieldParity::of_field(field));
         let mut clumps: Vec<_> = self.share.clumps(CLUMP).collect();
@@ -256,7 +251,7 @@ impl SlatsProcessor {
             let passes = self.transform(clump, view, picture).await?;
             self.gp.clump_buffer_free().await;
             if i == 0 {
-                self.gp.begin(Stage::Render, field, None);
+                self.gp.begin(Stage::Render, number, None);
             }
             let sent = self.send(&passes, i == 0 && self.is_alone()).await;
             // There is no second buffer: the next clump is made in this one while it is emptied.
@@ -264,7 +259,7 @@ impl SlatsProcessor {
                 self.gp.draining(ticket).await;
             }
         }
-        self.gp.end(Stage::Transform, field, None);
+        self.gp.end(Stage::Transform, number, None);
         Ok(())
     }
 
@@ -291,7 +286,7 @@ impl SlatsProcessor {
     }
 
     /// The copy commands of the top regions and, of a whole copy, the bottom ones; or of the bottom regions.
-    fn copies(&self, field: u64, top: bool) -> Vec<(NodeId, u32, Body)> {
+    fn copies(&self, field: PeriodNumber, top: bool) -> Vec<(NodeId, u32, Body)> {
         let batch = (0..self.binding.renderers()).filter_map(|renderer| {
             let regions = self.binding.copies(renderer, top);
             let mut orders: Vec<_> = regions.iter().map(|bound| self.order(bound, field)).collect();
@@ -304,7 +299,7 @@ impl SlatsProcessor {
         batch.collect()
     }
 
-    fn order(&self, bound: &BoundRegion, field: u64) -> CopyOrder {
+    fn order(&self, bound: &BoundRegion, field: PeriodNumber) -> CopyOrder {
         CopyOrder {
             target: self.config.target(bound, field, self.buffer(field)),
             context: bound.context,

@@ -5,7 +5,8 @@
 use pxpl5_framebuffer::{FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferOutput};
 use pxpl5_sim::{Phase, Span, TestBench, Time};
 use pxpl5_wire::{
-    CopyTarget, FieldParity, Lines, MAX_MESSAGE_WORDS, NodeId, PixelSource, RegionGrid, RegionId, RegionPixels, Word,
+    CopyTarget, FieldParity, Lines, MAX_MESSAGE_WORDS, NodeId, PeriodNumber, PictureNumber, PixelSource, RegionGrid,
+    RegionId, RegionPixels, Word,
 };
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -40,7 +41,7 @@ pub(crate) fn colour(word: Word) -> Arc<Counted> {
 }
 
 pub(crate) fn target(buffer: u8, lines: Lines, grid: RegionGrid, region: u16, picture: u64) -> CopyTarget {
-    CopyTarget { frame_buffer: NODE, buffer, lines, grid, region: RegionId(region), picture }
+    CopyTarget { frame_buffer: NODE, buffer, lines, grid, region: RegionId(region), picture: PictureNumber(picture) }
 }
 
 pub(crate) fn field_target(buffer: u8, parity: FieldParity, region: u16, picture: u64) -> CopyTarget {
@@ -72,7 +73,7 @@ impl Board {
     }
 
     pub(crate) fn retraces(&mut self, fields: std::ops::RangeInclusive<u64>) {
-        for field in fields {
+        for field in fields.map(PeriodNumber) {
             let at = self.device.video().retrace(field);
             self.feed(at, FrameBufferEvent::Retrace { field });
         }

@@ -6,7 +6,7 @@ use pxpl5_framebuffer::{FrameBufferConfig, NtscDisplay, Video};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Head, Jitp, Pixels, Viewpoint};
 use pxpl5_scene::{Frame, HeadMotion, Lighting, Path, Scene, SceneParts, Structure, Sway, Vertex};
-use pxpl5_wire::FieldParity;
+use pxpl5_wire::{FieldParity, PeriodNumber};
 use std::sync::Arc;
 use tracking::motion::{Motion, Pan};
 use tracking::predict::PredictorKind;
@@ -28,7 +28,7 @@ pub struct EdgePictures {
 }
 
 /// The field that is looked at; by then the pipelines are full and the predictor has seen many reports.
-const FIELD: u64 = 40;
+const FIELD: PeriodNumber = PeriodNumber(40);
 
 /// Distance of the edge, metres.
 const DISTANCE_M: f32 = 2.0;
@@ -86,7 +86,7 @@ fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<
         .map_err(|e| ExperimentError::Scene(e.to_string()))?;
     let outcome = Experiment::new(config.clone(), Jitp::new(viewpoint, true), scene)
         .head(head)
-        .fields(FIELD + 2)
+        .fields(FIELD.after(2).since(PeriodNumber::FIRST))
         .pixels(Pixels::Lazy)
         .run()?;
     let scanned = outcome.record().display_of_kind::<NtscDisplay>().and_then(|ntsc| ntsc.boards().first()?.seen(FIELD));
@@ -99,7 +99,7 @@ fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<
 /// A scanned field (a row for each of its lines) as an eye sees it that turns with the head: everything at the place
 /// where it stands relative to the head at the moment when the middle of the field lights. Black where nothing is.
 #[must_use]
-pub fn as_seen(picture: &RgbImage, field: u64, video: &Video, motion: &dyn Motion) -> RgbImage {
+pub fn as_seen(picture: &RgbImage, field: PeriodNumber, video: &Video, motion: &dyn Motion) -> RgbImage {
     let (view, parity) = (HmdView::ntsc(), FieldParity::of_field(field).first_line());
     let when = |x: u32, row: u32| video.when(x, 2 * row + parity, field).unwrap_or_default().0;
     let middle_ps = when(video.width() / 2, video.height() / 4);

@@ -5,6 +5,8 @@ use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing};
 use pxpl5_run::{Outcome, Pixels};
 use pxpl5_scene::Scene;
+use pxpl5_wire::ViewNumber;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// What one run of a row says; pools of all runs make the row.
@@ -70,7 +72,7 @@ fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
 /// From the measurement of the newest report that a view rests on to the instant that its picture is drawn for.
 fn prediction_intervals_ms(outcome: &Outcome) -> Vec<f64> {
     let Some(head) = outcome.head() else { return Vec::new() };
-    let views: std::collections::BTreeSet<u64> = outcome.complete_pictures().map(|times| times.view).collect();
+    let views: BTreeSet<ViewNumber> = outcome.complete_pictures().map(|times| times.view).collect();
     let sampled = head.sampled().into_iter().filter(|sampled| views.contains(&sampled.number));
     sampled
         .filter_map(|sampled| Some(sampled.aimed_at.0 as f64 - sampled.measured_at?.0 as f64))

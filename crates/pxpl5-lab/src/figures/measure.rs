@@ -282,7 +282,7 @@ fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     let mut entries = 0u64;
     let mut triangles = 0u64;
     for number in 0..n_views {
-        let view = views(number, Time(number * VIEW_PERIOD_PS));
+        let view = views(pxpl5_wire::ViewNumber(number), Time(number * VIEW_PERIOD_PS));
         for eye in 0..2 {
             let pass = share.transform(&view, eye, picture);
             let regions = (0..picture.viewport.grid().regions() as u16).map(pxpl5_wire::RegionId);

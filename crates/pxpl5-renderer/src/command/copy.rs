@@ -3,7 +3,7 @@
 use super::{CommandKind, enable};
 use crate::isa::{ArrayInstruction, Operand};
 use crate::layout::Layout;
-use pxpl5_wire::{CopyTarget, Lines, NodeId, RegionGrid, RegionId};
+use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId};
 
 /// Selects the context and the screen position of the region that the following commands work on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -79,7 +79,7 @@ impl CopyRegion {
             lines: Lines::Frame,
             grid: RegionGrid::FRAME,
             region: RegionId(0),
-            picture: 0,
+            picture: PictureNumber(0),
         };
         Self { target }
     }

@@ -4,7 +4,7 @@ use crate::isa::timing::{CLOCK_HZ, SET_UP_CLOCKS};
 use crate::isa::{Expression, ExpressionUse};
 use proptest::prelude::*;
 use pxpl5_sim::{Clock, Cycles};
-use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, Quadratic, RegionGrid, RegionId};
+use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, Quadratic, RegionGrid, RegionId};
 
 fn linear() -> impl Strategy<Value = Linear> {
     any::<[i32; 3]>().prop_map(|[a, b, c]| Linear { a, b, c })
@@ -71,7 +71,7 @@ fn copy() -> impl Strategy<Value = Command> {
             lines,
             grid: RegionGrid::FIELD,
             region: RegionId(region),
-            picture,
+            picture: PictureNumber(picture),
         };
         Command::CopyRegion(CopyRegion { target })
     })

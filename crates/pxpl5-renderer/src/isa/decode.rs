@@ -2,7 +2,9 @@
 
 use super::encode::{AGAIN, opcode};
 use super::{ArithmeticOp, ArrayInstruction, BACKING_BLOCKS, Expression, ExpressionUse, MEMORY_BITS, Operand, Test};
-use pxpl5_wire::{CopyTarget, FieldParity, Linear, Lines, NodeId, Quadratic, RegionGrid, RegionId, Word};
+use pxpl5_wire::{
+    CopyTarget, FieldParity, Linear, Lines, NodeId, PictureNumber, Quadratic, RegionGrid, RegionId, Word,
+};
 
 /// A word that is no instruction, and where it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -376,7 +378,7 @@ fn target(words: [Word; 8]) -> Result<CopyTarget, DecodeErrorKind> {
         lines,
         grid: RegionGrid { width, height, region_width, region_height },
         region: RegionId(place as u16),
-        picture: u64::from(high) << 32 | u64::from(low),
+        picture: PictureNumber::from_words(low, high),
     };
     if sensible(&target) { Ok(target) } else { Err(DecodeErrorKind::BadTarget) }
 }

@@ -150,6 +150,7 @@ fn encode_target(target: &CopyTarget, out: &mut Vec<Word>) {
         Lines::Field(FieldParity::Odd) => 2,
     };
     let grid = target.grid;
+    let [picture_low, picture_high] = target.picture.to_words();
     out.extend([
         u32::from(target.frame_buffer.0) << 16 | u32::from(target.region.0),
         lines << 8 | u32::from(target.buffer),
@@ -157,8 +158,8 @@ fn encode_target(target: &CopyTarget, out: &mut Vec<Word>) {
         grid.height,
         grid.region_width,
         grid.region_height,
-        target.picture as u32,
-        (target.picture >> 32) as u32,
+        picture_low,
+        picture_high,
     ]);
 }
 

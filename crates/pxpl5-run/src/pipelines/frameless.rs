@@ -11,7 +11,7 @@ use pxpl5_framebuffer::Video;
 use pxpl5_machine::{ConfigError, Machine, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyTarget, RegionGrid, RegionId};
+use pxpl5_wire::{CopyTarget, PictureNumber, RegionGrid, RegionId, ViewNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use tracking::view::RandomOrder;
@@ -80,7 +80,7 @@ const MOST_BATCH: u64 = 64;
 /// When the beam next reaches a region after an instant.
 fn next_light(video: &Video, target: &CopyTarget, after: Time) -> Time {
     let now = video.field_at(after);
-    let reached = (now..now + 3).filter_map(|field| video.reaches(target, field)).find(|at| *at >= after);
+    let reached = now.until(now.after(3)).filter_map(|field| video.reaches(target, field)).find(|at| *at >= after);
     reached.unwrap_or(after)
 }
 
@@ -126,7 +126,7 @@ impl Pipeline for Frameless {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
         let video = display.video();
-        let mut last: BTreeMap<u64, (u32, Time, CopyTarget)> = BTreeMap::new();
+        let mut last: BTreeMap<PictureNumber, (u32, Time, CopyTarget)> = BTreeMap::new();
         for arrival in &observation.arrivals {
             let count = last.get(&arrival.target.picture).map_or(0, |entry| entry.0) + 1;
             last.insert(arrival.target.picture, (count, arrival.last_part_at, arrival.target));
@@ -136,7 +136,7 @@ impl Pipeline for Frameless {
             let (blocks, copied_at, target) = last.get(&mark.picture)?;
             Some(PictureTimes {
                 picture: mark.picture,
-                view: mark.view.unwrap_or(mark.picture),
+                view: mark.view.unwrap_or(ViewNumber::taken_for(mark.picture)),
                 sampled_at: Some(mark.time),
                 transform_at: mark.time,
                 copied_at: Some(*copied_at),
@@ -171,7 +171,7 @@ impl Pipeline for Frameless {
 
     /// A pass is a whole picture.
     fn updates_per_picture(&self, record: &Record) -> f64 {
-        let mut of_update: BTreeMap<u64, u32> = BTreeMap::new();
+        let mut of_update: BTreeMap<PictureNumber, u32> = BTreeMap::new();
         record.observation().arrivals.iter().for_each(|a| *of_update.entry(a.target.picture).or_default() += 1);
         f64::from(self.blocks()) / f64::from(of_update.into_values().max().unwrap_or(1))
     }

@@ -11,7 +11,7 @@ use pxpl5_gp::Priority;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, NamedTable, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyTarget, FieldParity, RegionGrid, RegionId};
+use pxpl5_wire::{CopyTarget, FieldParity, PictureNumber, RegionGrid, RegionId, ViewNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -115,7 +115,8 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
 
 /// When a region's first pixel is scanned in its field.
 fn due(video: &Video, target: &CopyTarget) -> Time {
-    video.reaches(target, target.picture).unwrap_or_else(|| video.retrace(target.picture))
+    let field = target.picture.period_drawn_for();
+    video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
 }
 
 impl Pipeline for Jitp {
@@ -158,7 +159,7 @@ impl Pipeline for Jitp {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
         let video = display.video();
-        let mut in_time: BTreeMap<u64, (u32, Option<Time>)> = BTreeMap::new();
+        let mut in_time: BTreeMap<PictureNumber, (u32, Option<Time>)> = BTreeMap::new();
         for arrival in &observation.arrivals {
             let entry = in_time.entry(arrival.target.picture).or_default();
             entry.0 += u32::from(arrival.last_part_at <= due(video, &arrival.target));
@@ -170,9 +171,9 @@ impl Pipeline for Jitp {
         let middle_line = |field| 2 * (grid.rows() / 2 * self.strip_rows) + FieldParity::of_field(field).first_line();
         let times = samples(record).map(|mark| {
             let (regions, copied_at) = in_time.get(&mark.picture).copied().unwrap_or_default();
-            let field = mark.picture;
+            let field = mark.picture.period_drawn_for();
             PictureTimes {
-                picture: field,
+                picture: mark.picture,
                 view: mark.view.unwrap_or_default(),
                 sampled_at: Some(mark.time),
                 transform_at: mark.time,
@@ -181,7 +182,7 @@ impl Pipeline for Jitp {
                 complete: regions == grid.regions(),
             }
         });
-        times.filter(|times| video.retrace(times.picture + 1) <= end).collect()
+        times.filter(|times| video.retrace(times.picture.period_drawn_for().next()) <= end).collect()
     }
 
     fn late_regions(&self, record: &Record, end: Time) -> Vec<LateRegion> {
@@ -206,8 +207,8 @@ impl Pipeline for Jitp {
         "fields of which a strip came after its beam, or that were left out"
     }
 
-    fn source(&self, record: &Record, target: &CopyTarget, _: &BTreeMap<u64, u64>) -> Option<Source> {
-        let field = target.picture;
+    fn source(&self, record: &Record, target: &CopyTarget, _: &BTreeMap<PictureNumber, ViewNumber>) -> Option<Source> {
+        let field = target.picture.period_drawn_for();
         let strip = u32::from(target.region.0) / target.grid.columns();
         let view = |i: u32| JitpConfig::view_number(field, u64::from(i));
         Some(match self.viewpoint {

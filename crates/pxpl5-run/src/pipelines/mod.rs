@@ -48,7 +48,7 @@ fn late_regions(
     let late = arrived.filter_map(|arrival| {
         let due = due(display.video(), arrival);
         (arrival.last_part_at > due).then(|| LateRegion {
-            field: arrival.target.picture,
+            field: arrival.target.picture.period_drawn_for(),
             surface: arrival.surface,
             region: arrival.target.region.0,
             lateness: arrival.last_part_at.since(due),
@@ -61,5 +61,5 @@ fn late_regions(
 fn missed_fields(pictures: &[PictureTimes]) -> u64 {
     let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return 0 };
     let complete = pictures.iter().filter(|times| times.complete).count() as u64;
-    last.picture - first.picture + 1 - complete
+    last.picture.next().since(first.picture) - complete
 }

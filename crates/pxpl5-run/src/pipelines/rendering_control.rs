@@ -10,7 +10,7 @@ use pxpl5_gp::{Priority, Stage};
 use pxpl5_machine::{Arrival, ConfigError, Machine, Record, StageSpan};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_wire::{Lines, SurfaceId};
+use pxpl5_wire::{Lines, PictureNumber, SurfaceId, ViewNumber};
 use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::sync::Arc;
 
@@ -89,7 +89,7 @@ impl Pipeline for RenderingControl {
         let config = self.config(machine, setup.pixels)?;
         let (foreground, views) = (Priority::Foreground, setup.views.clone());
         let gp = machine.processor(config.host, foreground);
-        let program = host(gp, config.clone(), setup.host, move |frame, time| views(frame, time));
+        let program = host(gp, config.clone(), setup.host, move |view, time| views(view, time));
         machine.load(config.host, foreground, Box::pin(program));
         let gp = machine.processor(config.master, foreground);
         machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));
@@ -106,7 +106,8 @@ impl Pipeline for RenderingControl {
         let stages = record.stages();
         let shown = record.observation().swap_ticks(self.eyes());
         let shown = shown.iter().map(|tick| record.tick(*tick));
-        (0..)
+        PictureNumber::FIRST
+            .onwards()
             .zip(shown)
             .filter(|(_, shown_at)| *shown_at < end)
             .filter_map(|(frame, at)| times(&stages, frame, at))
@@ -121,7 +122,8 @@ impl Pipeline for RenderingControl {
     /// Two fields a frame are what two copies of 15.6 ms need; more are counted.
     fn missed_retraces(&self, record: &Record, pictures: &[PictureTimes]) -> u64 {
         let display = record.display();
-        let ticks = |pair: &[PictureTimes]| display.period_at(pair[1].shown_at) - display.period_at(pair[0].shown_at);
+        let ticks =
+            |pair: &[PictureTimes]| display.period_at(pair[1].shown_at).since(display.period_at(pair[0].shown_at));
         pictures.windows(2).map(|pair| ticks(pair).saturating_sub(self.eyes() as u64)).sum()
     }
 
@@ -144,11 +146,11 @@ impl Pipeline for RenderingControl {
     }
 }
 
-fn times(stages: &[StageSpan], frame: u64, shown_at: Time) -> Option<PictureTimes> {
+fn times(stages: &[StageSpan], frame: PictureNumber, shown_at: Time) -> Option<PictureTimes> {
     let of = |stage: Stage| stages.iter().filter(move |s| s.picture == frame && s.stage == stage);
     Some(PictureTimes {
         picture: frame,
-        view: frame,
+        view: ViewNumber::taken_for(frame),
         sampled_at: of(Stage::Sample).map(|s| s.begin).min(),
         transform_at: of(Stage::Transform).map(|s| s.begin).min()?,
         copied_at: of(Stage::Copy).filter_map(|s| s.end).max(),

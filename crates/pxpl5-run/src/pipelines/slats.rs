@@ -10,7 +10,7 @@ use pxpl5_gp::{CodeVersion, GpTiming, Priority};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyTarget, RegionGrid};
+use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, RegionGrid, ViewNumber};
 use slats::{CopySchedule, SlatsConfig, host, processor};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -127,7 +127,7 @@ impl Pipeline for Slats {
         let binding = config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
         let (foreground, views) = (Priority::Foreground, setup.views.clone());
         let gp = machine.processor(config.host, foreground);
-        let program = host(gp, config.clone(), setup.host, move |update, time| views(update, time));
+        let program = host(gp, config.clone(), setup.host, move |view, time| views(view, time));
         machine.load(config.host, foreground, Box::pin(program));
         for (index, node) in config.processors.iter().enumerate() {
             let gp = machine.processor(*node, foreground);
@@ -141,8 +141,8 @@ impl Pipeline for Slats {
 
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let observation = record.observation();
-        let late: BTreeSet<u64> = self.late_regions(record, end).iter().map(|region| region.field).collect();
-        let mut arrivals: BTreeMap<u64, (usize, Time)> = BTreeMap::new();
+        let late: BTreeSet<PeriodNumber> = self.late_regions(record, end).iter().map(|region| region.field).collect();
+        let mut arrivals: BTreeMap<PictureNumber, (usize, Time)> = BTreeMap::new();
         for arrival in &observation.arrivals {
             let entry = arrivals.entry(arrival.target.picture).or_default();
             *entry = (entry.0 + 1, entry.1.max(arrival.last_part_at));
@@ -152,18 +152,19 @@ impl Pipeline for Slats {
         let times = begun.map(|mark| {
             let (regions, copied_at) = arrivals.get(&mark.picture).copied().unwrap_or_default();
             let whole = regions == 2 * RegionGrid::FIELD.regions() as usize;
+            let field = mark.picture.period_drawn_for();
             PictureTimes {
                 picture: mark.picture,
-                view: mark.view.unwrap_or(mark.picture),
+                view: mark.view.unwrap_or(ViewNumber::taken_for(mark.picture)),
                 sampled_at: Some(mark.time),
                 transform_at: mark.time,
                 copied_at: whole.then_some(copied_at),
-                shown_at: record.tick(mark.picture),
-                complete: whole && !late.contains(&mark.picture),
+                shown_at: record.tick(field),
+                complete: whole && !late.contains(&field),
             }
         });
         // A field whose bottom half is still being scanned is judged by the next run.
-        let judged = |times: &PictureTimes| record.tick(times.picture + 1) <= end;
+        let judged = |times: &PictureTimes| record.tick(times.picture.period_drawn_for().next()) <= end;
         times.filter(judged).collect()
     }
 
@@ -201,8 +202,9 @@ impl Pipeline for Slats {
 
 /// When a region of a field must be complete.
 fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
-    let retrace = video.retrace(target.picture);
-    if before_retrace { retrace } else { video.reaches(target, target.picture).unwrap_or(retrace) }
+    let field = target.picture.period_drawn_for();
+    let retrace = video.retrace(field);
+    if before_retrace { retrace } else { video.reaches(target, field).unwrap_or(retrace) }
 }
 
 const COPIES: [(&str, CopySchedule); 3] =

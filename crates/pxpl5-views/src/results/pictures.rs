@@ -2,6 +2,7 @@
 
 use pxpl5_measure::{LATENCY_PARTS, LatencyParts, latency_parts};
 use pxpl5_run::{Outcome, PictureTimes, WARM_UP_PICTURES};
+use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
 /// Name and version of the table's schema; a column that is added at the end does not change it.
@@ -55,7 +56,7 @@ pub fn columns() -> Vec<Column> {
 
 /// The rows: a value for each of [`columns`].
 pub(super) fn rows(outcome: &Outcome) -> Vec<Vec<Option<u64>>> {
-    let parts: BTreeMap<u64, LatencyParts> =
+    let parts: BTreeMap<PictureNumber, LatencyParts> =
         latency_parts(outcome).into_iter().map(|parts| (parts.picture, parts)).collect();
     let pictures = outcome.pictures().iter().enumerate();
     pictures.map(|(i, times)| row(times, i >= WARM_UP_PICTURES, parts.get(&times.picture))).collect()
@@ -63,7 +64,7 @@ pub(super) fn rows(outcome: &Outcome) -> Vec<Vec<Option<u64>>> {
 
 fn row(times: &PictureTimes, steady: bool, parts: Option<&LatencyParts>) -> Vec<Option<u64>> {
     let mut row = vec![
-        Some(times.picture),
+        Some(times.picture.0),
         Some(steady.into()),
         Some(times.complete.into()),
         times.sampled_at.map(|time| time.0),

@@ -9,6 +9,7 @@ use pxpl5_display::Display;
 use pxpl5_gp::{Edge, Stage};
 use pxpl5_run::{Outcome, PictureTimes, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
+use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
 
 /// Bars that overlap by less than this part of the drawing are drawn in one lane.
@@ -37,9 +38,13 @@ impl Timeline {
         let mut timeline = Self {
             from,
             to,
-            retraces: (periods.start..=periods.end).map(|period| (period, display.tick(period))).collect(),
+            retraces: periods.start.until(periods.end.next()).map(|period| (period, display.tick(period))).collect(),
             samples: (!options.without_host).then(|| samples(outcome, from..to)),
-            scans: periods.filter_map(|period| scan(display, outcome.pictures(), period)).collect(),
+            scans: periods
+                .start
+                .until(periods.end)
+                .filter_map(|period| scan(display, outcome.pictures(), period))
+                .collect(),
             surfaces: record.surfaces().map(|(_, surface)| surface.clone()).collect(),
             rows,
             picture: chosen.map(|times| times.picture),
@@ -51,7 +56,7 @@ impl Timeline {
     }
 }
 
-fn chosen(pictures: &[PictureTimes], wanted: Option<u64>) -> Option<&PictureTimes> {
+fn chosen(pictures: &[PictureTimes], wanted: Option<PictureNumber>) -> Option<&PictureTimes> {
     match wanted {
         Some(picture) => pictures.iter().find(|times| times.picture == picture),
         None => pictures.get(WARM_UP_PICTURES).or(pictures.last()),
@@ -59,7 +64,7 @@ fn chosen(pictures: &[PictureTimes], wanted: Option<u64>) -> Option<&PictureTime
 }
 
 /// When the host began to send an update; `None` when its row is left out.
-fn sent_at(rows: &[Row], update: Option<u64>) -> Option<Time> {
+fn sent_at(rows: &[Row], update: Option<PictureNumber>) -> Option<Time> {
     let bar = rows.first()?.bars.iter().find(|bar| Some(bar.picture) == update)?;
     (bar.stage == Stage::Send).then_some(bar.begin)
 }
@@ -70,23 +75,26 @@ fn periods(
     options: &TimelineOptions,
     chosen: Option<&PictureTimes>,
     sent_at: Option<Time>,
-) -> Range<u64> {
+) -> Range<PeriodNumber> {
     let display = outcome.record().display();
     let begin = chosen.map_or(Time::ZERO, |times| sent_at.or(times.sampled_at).unwrap_or(times.transform_at));
-    let first = options.first_field.unwrap_or_else(|| display.period_at(begin)).min(outcome.fields());
-    let last = chosen.map_or(first + LEAST_FIELDS, |times| display.period_at(times.shown_at) + 2);
-    let count = options.fields.unwrap_or_else(|| last.saturating_sub(first).max(LEAST_FIELDS));
-    first..first + count.clamp(1, MAX_FIELDS)
+    let first = options
+        .first_field
+        .unwrap_or_else(|| display.period_at(begin))
+        .min(PeriodNumber::FIRST.after(outcome.fields()));
+    let last = chosen.map_or(first.after(LEAST_FIELDS), |times| display.period_at(times.shown_at).after(2));
+    let count = options.fields.unwrap_or_else(|| last.since(first).max(LEAST_FIELDS));
+    first..first.after(count.clamp(1, MAX_FIELDS))
 }
 
-fn samples(outcome: &Outcome, within: Range<Time>) -> Vec<(u64, Time)> {
+fn samples(outcome: &Outcome, within: Range<Time>) -> Vec<(PictureNumber, Time)> {
     let marks = outcome.observation().marks.iter();
     let begun = marks.filter(|mark| mark.stage == Stage::Send && mark.edge == Edge::Begin);
     begun.filter(|mark| within.contains(&mark.time)).map(|mark| (mark.picture, mark.time)).collect()
 }
 
-fn scan(display: &dyn Display, pictures: &[PictureTimes], period: u64) -> Option<Scan> {
-    let next = display.tick(period + 1);
+fn scan(display: &dyn Display, pictures: &[PictureTimes], period: PeriodNumber) -> Option<Scan> {
+    let next = display.tick(period.next());
     let shown = pictures.iter().rev().find(|times| times.shown_at < next);
     Some(Scan {
         period,

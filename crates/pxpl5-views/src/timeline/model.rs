@@ -3,15 +3,15 @@
 use pxpl5_display::Surface;
 use pxpl5_gp::Stage;
 use pxpl5_sim::Time;
-use pxpl5_wire::SurfaceId;
+use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
 
 /// A stage of a picture in a row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bar {
     /// The stage.
     pub stage: Stage,
-    /// Frame, field, or update of the host.
-    pub picture: u64,
+    /// The picture; of SEND under a pipeline whose host sends views apart from pictures, the view's number.
+    pub picture: PictureNumber,
     /// The surface, for stages that take one at a time; `None` where there is only one to be told apart.
     pub surface: Option<SurfaceId>,
     /// Whether it is the bottom half of a picture whose halves are copied apart; `None` for a whole one.
@@ -43,9 +43,9 @@ pub struct Row {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scan {
     /// The period: an NTSC display's field.
-    pub period: u64,
+    pub period: PeriodNumber,
     /// The picture that is shown in it.
-    pub picture: Option<u64>,
+    pub picture: Option<PictureNumber>,
     /// When the first visible pixel lights.
     pub begin: Time,
     /// When the last one does.
@@ -60,9 +60,9 @@ pub struct Timeline {
     /// Its end, a retrace.
     pub to: Time,
     /// Retraces of the first display, each behind the number of the period that it begins.
-    pub retraces: Vec<(u64, Time)>,
+    pub retraces: Vec<(PeriodNumber, Time)>,
     /// Poses that were sampled, the picture or update first; `None` when they are not shown.
-    pub samples: Option<Vec<(u64, Time)>>,
+    pub samples: Option<Vec<(PictureNumber, Time)>>,
     /// The boards.
     pub rows: Vec<Row>,
     /// What the first display shows.
@@ -70,9 +70,9 @@ pub struct Timeline {
     /// All surfaces, in the order of their numbers.
     pub surfaces: Vec<Surface>,
     /// The picture whose dependencies are shown.
-    pub picture: Option<u64>,
-    /// The update of the host that this picture shows.
-    pub update: Option<u64>,
+    pub picture: Option<PictureNumber>,
+    /// The view that this picture shows, by the number that its SEND bears.
+    pub update: Option<PictureNumber>,
     /// What it had to wait for.
     pub arrows: Vec<Arrow>,
 }

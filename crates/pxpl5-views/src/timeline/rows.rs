@@ -6,7 +6,7 @@ use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, Record, StageSpan};
 use pxpl5_run::Outcome;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::SurfaceId;
+use pxpl5_wire::{PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
 
 /// All rows of a run, from the host to the last surface.
@@ -51,7 +51,7 @@ fn has_many_surfaces(record: &Record) -> bool {
 }
 
 /// Copies of one surface by picture and part of it.
-type Parts = BTreeMap<(u64, u8), Bar>;
+type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
 /// COPY of each picture to a surface; two bars where the surface received two parts of it one after the other.
 fn copies(outcome: &Outcome, surface: SurfaceId) -> Vec<Bar> {
@@ -95,8 +95,9 @@ fn first_line(record: &Record, arrival: &Arrival) -> u32 {
 
 /// Says which bars are halves: those of pictures of which the surface received both.
 fn name_halves(parts: &mut Parts) {
-    let bottoms: Vec<u64> = parts.keys().filter(|(_, part)| *part == 1).map(|(picture, _)| *picture).collect();
-    let apart: Vec<u64> = bottoms.into_iter().filter(|picture| parts.contains_key(&(*picture, 0))).collect();
+    let bottoms: Vec<PictureNumber> =
+        parts.keys().filter(|(_, part)| *part == 1).map(|(picture, _)| *picture).collect();
+    let apart: Vec<PictureNumber> = bottoms.into_iter().filter(|picture| parts.contains_key(&(*picture, 0))).collect();
     for ((picture, part), bar) in parts {
         bar.bottom = apart.contains(picture).then_some(*part == 1);
         if bar.bottom != Some(true) {

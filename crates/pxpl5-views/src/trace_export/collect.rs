@@ -11,7 +11,7 @@ use pxpl5_machine::{Record, Traffic};
 use pxpl5_measure::Report;
 use pxpl5_run::{Outcome, PictureTimes};
 use pxpl5_sim::Time;
-use pxpl5_wire::{NodeId, SurfaceId};
+use pxpl5_wire::{NodeId, PeriodNumber, PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
 
 impl Trace {
@@ -58,7 +58,7 @@ impl Trace {
 
     /// The stages that a board marked; one without an end is left out.
     fn stages(&mut self, outcome: &Outcome, group: usize, node: NodeId) {
-        let mut begun: BTreeMap<(Stage, u64, Option<SurfaceId>), Time> = BTreeMap::new();
+        let mut begun: BTreeMap<(Stage, PictureNumber, Option<SurfaceId>), Time> = BTreeMap::new();
         let mut slices: BTreeMap<Stage, Vec<Slice>> = BTreeMap::new();
         for mark in outcome.observation().marks.iter().filter(|mark| mark.node == node) {
             let key = (mark.stage, mark.picture, mark.surface);
@@ -119,10 +119,10 @@ impl Trace {
         }
     }
 
-    fn video(&mut self, group: usize, display: &dyn Display, pictures: &[PictureTimes], periods: u64) {
-        let retraces = (0..=periods).map(|n| (display.tick(n), format!("retrace {n}")));
+    fn video(&mut self, group: usize, display: &dyn Display, pictures: &[PictureTimes], end: PeriodNumber) {
+        let retraces = PeriodNumber::FIRST.until(end.next()).map(|n| (display.tick(n), format!("retrace {n}")));
         self.track(group, "retraces", Events::Instants(retraces.collect()));
-        let slices = (0..periods).map(|period| period_slice(display, pictures, period));
+        let slices = PeriodNumber::FIRST.until(end).map(|period| period_slice(display, pictures, period));
         self.track(group, "displayed", Events::Slices(slices.collect()));
     }
 }
@@ -150,15 +150,15 @@ fn display_of(record: &Record, surface: SurfaceId) -> Option<&dyn Display> {
     None
 }
 
-fn period_slice(display: &dyn Display, pictures: &[PictureTimes], period: u64) -> Slice {
+fn period_slice(display: &dyn Display, pictures: &[PictureTimes], period: PeriodNumber) -> Slice {
     let begin = display.tick(period);
     let picture = shown(pictures, begin);
     let shown = picture.map_or_else(String::new, |picture| format!(": picture {picture}"));
-    Slice { name: format!("field {period}{shown}"), begin, end: display.tick(period + 1), picture, flow: None }
+    Slice { name: format!("field {period}{shown}"), begin, end: display.tick(period.next()), picture, flow: None }
 }
 
 /// The picture that is shown in the period that begins at a retrace.
-fn shown(pictures: &[PictureTimes], retrace: Time) -> Option<u64> {
+fn shown(pictures: &[PictureTimes], retrace: Time) -> Option<PictureNumber> {
     let after = pictures.partition_point(|times| times.shown_at <= retrace);
     after.checked_sub(1).map(|last| pictures[last].picture)
 }

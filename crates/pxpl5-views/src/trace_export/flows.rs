@@ -6,6 +6,7 @@ use crate::updates::Updates;
 use pxpl5_gp::Stage;
 use pxpl5_run::Outcome;
 use pxpl5_sim::Time;
+use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
 /// A slice: when it begins, the track and its place in it.
@@ -29,13 +30,13 @@ pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
         let mut way: Vec<Stop> = stops.filter(|stop| stop.begin <= times.shown_at).collect();
         way.extend(shown.get(&times.picture));
         way.sort_unstable();
-        mark(trace, times.picture + 1, &way);
+        mark(trace, times.picture.next().0, &way);
     }
 }
 
 /// By picture: the first slices of the stages, one for each name, so that each surface has its own.
-fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<u64, Vec<Stop>> {
-    let mut all: BTreeMap<(u64, String), Stop> = BTreeMap::new();
+fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<PictureNumber, Vec<Stop>> {
+    let mut all: BTreeMap<(PictureNumber, String), Stop> = BTreeMap::new();
     let names: Vec<&str> = stages.iter().map(|stage| stage_name(*stage)).collect();
     for (stop, track, slice) in stops(trace).filter(|(_, track, _)| names.contains(track)) {
         let Some(picture) = slice.picture else { continue };
@@ -44,7 +45,7 @@ fn firsts(trace: &Trace, stages: &[Stage]) -> BTreeMap<u64, Vec<Stop>> {
         let first = all.entry((picture, name)).or_insert(stop);
         *first = stop.min(*first);
     }
-    let mut pictures: BTreeMap<u64, Vec<Stop>> = BTreeMap::new();
+    let mut pictures: BTreeMap<PictureNumber, Vec<Stop>> = BTreeMap::new();
     for ((picture, _), first) in all {
         pictures.entry(picture).or_default().push(first);
     }
@@ -61,7 +62,7 @@ fn stops(trace: &Trace) -> impl Iterator<Item = (Stop, &str, &Slice)> {
 }
 
 /// The first period that shows each picture.
-fn first_shown(trace: &Trace) -> BTreeMap<u64, Stop> {
+fn first_shown(trace: &Trace) -> BTreeMap<PictureNumber, Stop> {
     let mut periods = BTreeMap::new();
     for (stop, _, slice) in stops(trace).filter(|(_, track, _)| *track == "displayed") {
         if let Some(picture) = slice.picture {

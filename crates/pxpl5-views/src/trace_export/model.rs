@@ -1,6 +1,7 @@
 //! A run as tracks, before it is written.
 
 use pxpl5_sim::Time;
+use pxpl5_wire::PictureNumber;
 
 /// A run as tracks.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,7 +46,7 @@ pub struct Slice {
     /// When it is over.
     pub end: Time,
     /// The frame, field or update that it belongs to.
-    pub picture: Option<u64>,
+    pub picture: Option<PictureNumber>,
     /// Its place in a flow.
     pub flow: Option<Flow>,
 }

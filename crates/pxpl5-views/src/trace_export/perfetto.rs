@@ -150,7 +150,7 @@ fn begin(track: u64, slice: &Slice) -> Message {
         event = event.fixed64(field, flow.id);
     }
     let Some(picture) = slice.picture else { return event };
-    let picture = Message::default().text(ANNOTATION_NAME, "picture").number(ANNOTATION_NUMBER, picture);
+    let picture = Message::default().text(ANNOTATION_NAME, "picture").number(ANNOTATION_NUMBER, picture.0);
     event.message(EVENT_ANNOTATION, &picture)
 }
 

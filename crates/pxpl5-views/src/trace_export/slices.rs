@@ -4,6 +4,7 @@ use super::model::Slice;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, Transfer};
 use pxpl5_sim::{Span, Time};
+use pxpl5_wire::PictureNumber;
 
 /// The name of a stage, in the papers' words.
 pub(super) const fn stage_name(stage: Stage) -> &'static str {
@@ -19,7 +20,7 @@ pub(super) const fn stage_name(stage: Stage) -> &'static str {
 }
 
 /// A stage of a picture, of one surface with this label or of all.
-pub(super) fn stage_slice(stage: Stage, picture: u64, label: Option<&str>, [begin, end]: [Time; 2]) -> Slice {
+pub(super) fn stage_slice(stage: Stage, picture: PictureNumber, label: Option<&str>, [begin, end]: [Time; 2]) -> Slice {
     let surface = label.map_or_else(String::new, |label| format!(" {label}"));
     let name = format!("{} {picture}{surface}", stage_name(stage));
     Slice { name, begin, end, picture: Some(picture), flow: None }
