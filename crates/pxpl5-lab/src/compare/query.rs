@@ -60,7 +60,7 @@ pub struct Comparison {
     /// Preset of the machine.
     pub machine: String,
     /// Graphics processors and renderers.
-    pub boards: [usize; 2],
+    pub boards: [u64; 2],
     /// Scene.
     pub scene: String,
     /// Its triangles.
