@@ -19,7 +19,8 @@ fn head() -> Arc<Head> {
 
 /// 10 s of head motion on the Mig, all pipelines, no pixels: to take less than 5 s.
 fn all_pipelines(criterion: &mut Criterion) {
-    let (scene, head) = (Arc::new(builtin("mig").expect("built in")), head());
+    let scene = Arc::new(builtin("mig").expect("built in"));
+    let head = head();
     let mut group = criterion.benchmark_group("compare");
     group.sample_size(10);
     group.bench_function("mig, 600 fields", |bencher| {
@@ -30,7 +31,8 @@ fn all_pipelines(criterion: &mut Criterion) {
 
 /// One second of single lines before the beam.
 fn scanlines(criterion: &mut Criterion) {
-    let (scene, head) = (Arc::new(builtin("full-screen:4").expect("built in")), head());
+    let scene = Arc::new(builtin("full-screen:4").expect("built in"));
+    let head = head();
     let mut group = criterion.benchmark_group("jitp");
     group.sample_size(10);
     group.bench_function("scanline, 60 fields", |bencher| {

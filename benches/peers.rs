@@ -13,7 +13,7 @@ use pphigs::{
     Binning, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionEnvelope, Shading, Share,
 };
 use pxpl5::ViewNumber;
-use pxpl5::scene::{self, Hmd, HmdConfig, Scene};
+use pxpl5::scene::{self, Hmd, HmdConfig, Scene, View};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{BitSerial, Lanes, Layout, PixelArray};
 use pxpl5_wire::{RegionId, Word};
@@ -27,12 +27,10 @@ const VIEWS: u64 = 8;
 
 fn views(head: &Scene) -> Vec<EyeView> {
     let hmd = Hmd::new(HmdConfig::unc()).expect("the preset is valid");
-    let view = |i| {
-        let view = hmd.mono(&head.motion().pose(i * 100_000_000_000));
-        let (world_to_eye, head_to_eye, projection) = (view.world_to_eye, view.head_to_eye, view.projection);
-        EyeView { world_to_eye, head_to_eye, projection }
-    };
-    (0..VIEWS).map(view).collect()
+    let views = (0..VIEWS).map(|i| hmd.mono(&head.motion().pose(i * 100_000_000_000)));
+    views
+        .map(|View { world_to_eye, head_to_eye, projection, .. }| EyeView { world_to_eye, head_to_eye, projection })
+        .collect()
 }
 
 /// Red, green, blue, 0 to 255.
@@ -63,7 +61,8 @@ impl euc::Pipeline for Gouraud<'_> {
 
     #[inline(always)]
     fn vert(&self, index: &u32) -> ([f32; 4], Lit) {
-        let (vertex, light) = (&self.head.vertices()[*index as usize], self.head.lighting());
+        let vertex = &self.head.vertices()[*index as usize];
+        let light = self.head.lighting();
         let intensity = light.ambient + light.diffuse * vertex.normal.dot(light.towards_light).max(0.0);
         let place: Vec4 = self.matrix * vertex.position.extend(1.0);
         (place.to_array(), Lit(Vec3::from(vertex.colour.map(f32::from)) * intensity.min(1.0)))
@@ -135,7 +134,9 @@ impl<A: PixelArray> Ours<A> {
             ..DisplayList::default()
         };
         let layout = Layout::rendering_control_phong();
-        let (viewport, shading, binning) = (Viewport::FRAME, Shading::Gouraud, Binning::Touched);
+        let viewport = Viewport::FRAME;
+        let shading = Shading::Gouraud;
+        let binning = Binning::Touched;
         Self {
             share: Share::new(Arc::new(list), 0, 1),
             picture: Picture { viewport, shading, binning, layout, pixels: true },
@@ -169,12 +170,15 @@ impl<A: PixelArray> Ours<A> {
 
 fn peers(criterion: &mut Criterion) {
     let head = scene::builtin("head").expect("built in");
-    let (views, mut euc, mut ours) = (views(&head), Euc::new(&head), Ours::new(&head, Lanes::new));
+    let views = views(&head);
+    let mut euc = Euc::new(&head);
+    let mut ours = Ours::new(&head, Lanes::new);
     let mut skipping = Ours::new(&head, |layout| BitSerial::new(layout).skipping());
     let mut literal = Ours::new(&head, BitSerial::new);
     euc.draw(&head, &views[0]);
     ours.draw(&views[0]);
-    let (theirs, own) = (euc.covered() as f64, ours.covered() as f64);
+    let theirs = euc.covered() as f64;
+    let own = ours.covered() as f64;
     assert!(own > 10_000.0 && (theirs / own - 1.0).abs() < 0.02, "not the same picture: {theirs} and {own} pixels");
     let mut group = criterion.benchmark_group("peers/head, one eye");
     group.throughput(Throughput::Elements(1));

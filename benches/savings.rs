@@ -7,13 +7,17 @@
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use pxpl5::{
     Experiment, Level, MachineConfig, NtscDisplay, PeriodNumber, Pixels, RenderingControl, Saving, Slats, Workstation,
-    scene,
+    scene, scene::Scene,
 };
 use std::hint::black_box;
 
+/// The first triangles of the Mig, of which there are 417.
+fn mig(triangles: usize) -> Scene {
+    scene::builtin("mig").and_then(|mig| mig.truncated(triangles)).expect("so many")
+}
+
 /// The aircraft leaves regions empty under both pipelines, twelve triangles of it nearly all.
 fn experiments() -> [(&'static str, Experiment); 3] {
-    let mig = |triangles| scene::builtin("mig").and_then(|mig| mig.truncated(triangles)).expect("it has 417 triangles");
     [
         ("rendering-control-mig", Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(417))),
         ("rendering-control-12", Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(12))),
@@ -36,17 +40,32 @@ fn savings(criterion: &mut Criterion) {
             let mut group = criterion.benchmark_group(format!("savings/{name}/{saving}"));
             group.throughput(Throughput::Elements(fields(saving)));
             for (way, experiment) in [("with", with.clone()), ("without", with.without(saving))] {
-                let run = || {
-                    let mut machine = experiment.build().expect("the presets are valid");
-                    let end = machine.record().tick(PeriodNumber(fields(saving)));
-                    machine.run_until(end).expect("it runs");
-                    black_box(machine.finish_pixels())
-                };
-                group.bench_function(BenchmarkId::from_parameter(way), |b| b.iter(run));
+                group.bench_function(BenchmarkId::from_parameter(way), |b| b.iter(|| run(&experiment, fields(saving))));
             }
             group.finish();
         }
     }
+}
+
+fn run(experiment: &Experiment, fields: u64) -> u64 {
+    let mut machine = experiment.build().expect("the presets are valid");
+    let end = machine.record().tick(PeriodNumber(fields));
+    machine.run_until(end).expect("it runs");
+    black_box(machine.finish_pixels())
+}
+
+/// The same with so many looks at the left eye's picture every 60 fields.
+fn run_looking(experiment: &Experiment, fields: u64, looks: usize) -> u64 {
+    let mut machine = experiment.build().expect("the preset is valid");
+    for field in (60..=fields).step_by(60) {
+        let end = machine.record().tick(PeriodNumber(field));
+        machine.run_until(end).expect("it runs");
+        for _ in 0..looks {
+            let display = machine.record().display_of_kind::<NtscDisplay>().expect("the papers' machine");
+            black_box(display.boards()[0].last_seen().map(|seen| seen.picture()));
+        }
+    }
+    black_box(machine.finish_pixels())
 }
 
 /// The head of 59,592 triangles in stereo. An element is a field.
@@ -65,19 +84,9 @@ fn looking(criterion: &mut Criterion) {
     ];
     for (name, pixels, looks) in looks {
         let experiment = experiment.clone().pixels(pixels);
-        let run = || {
-            let mut machine = experiment.build().expect("the preset is valid");
-            for field in (60..=FIELDS).step_by(60) {
-                let end = machine.record().tick(PeriodNumber(field));
-                machine.run_until(end).expect("it runs");
-                for _ in 0..looks {
-                    let display = machine.record().display_of_kind::<NtscDisplay>().expect("the papers' machine");
-                    black_box(display.boards()[0].last_seen().map(|seen| seen.picture()));
-                }
-            }
-            black_box(machine.finish_pixels())
-        };
-        group.bench_function(BenchmarkId::new("looked at", name), |b| b.iter(run));
+        group.bench_function(BenchmarkId::new("looked at", name), |b| {
+            b.iter(|| run_looking(&experiment, FIELDS, looks))
+        });
     }
     group.finish();
 }

@@ -18,7 +18,7 @@ fn all(config: MachineConfig, slats: Slats) -> LimitQuery {
     LimitQuery::of_papers(config, slats).expect("Slats is known")
 }
 
-/// Small triangles.
+/// A query with small triangles, spread over the screen.
 fn typical(config: MachineConfig, slats: Slats) -> LimitQuery {
     let mut query = all(config, slats);
     query.criterion.scene = TestScene::Typical;

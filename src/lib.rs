@@ -17,7 +17,7 @@
 //! let trivial = scene::builtin("full-screen:12")?;
 //! let outcome = Experiment::new(MachineConfig::slats(), Slats::split(), trivial).fields(60).run()?;
 //! assert!((outcome.latency_fields().mean - 1.0).abs() < 1e-9);
-//! assert_eq!(outcome.report().missed_retraces, 0);
+//! assert_eq!(outcome.report().missed_retraces, Some(0));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -30,6 +30,7 @@
 //! | [`measure`] | what an outcome says: [`Report`], latencies, errors in pixels, pictures |
 //! | [`analytic`] | the same without events |
 //! | [`lab`] | questions over many experiments: [`figures`], [`levels`], [`limit`], [`compare`], [`sweep`], experiment files |
+//! | [`oracle`] | what should be on the screen: an ideal renderer of one process |
 //! | [`views`] | what people look at: timelines, traces, tables, charts, report pages, films |
 //! | [`scene`], [`tracking`] | what is drawn, and who looks at it |
 //! | [`firmware`] | what a pipeline of one's own is written with |
@@ -44,6 +45,7 @@ pub use pxpl5_display as display;
 pub use pxpl5_lab as lab;
 pub use pxpl5_machine as machine;
 pub use pxpl5_measure as measure;
+pub use pxpl5_oracle as oracle;
 pub use pxpl5_run as run;
 pub use pxpl5_scene as scene;
 pub use pxpl5_views as views;
@@ -56,7 +58,8 @@ pub use pxpl5_gp::CodeVersion;
 pub use pxpl5_hires::HiResConfig;
 pub use pxpl5_lab::{
     ExperimentFile, FileError, HeadChoice, MotionChoice, Outputs, Plan, Published, SceneChoice, Settings, Snapshot,
-    SnapshotError, Workstation, compare, figures, growth, intervals, levels, limit, pipeline_figures, registry, sweep,
+    SnapshotError, Workstation, compare, figures, growth, intervals, levels, limit, pipeline_figures, registry, rig,
+    sweep, tracking_parameters,
 };
 pub use pxpl5_machine::{
     Arrival, ConfigError, LateRegion, Machine, MachineConfig, Observation, PRESETS, Parameter, Ports, Preset, Record,
@@ -65,13 +68,14 @@ pub use pxpl5_machine::{
 pub use pxpl5_measure::{
     Budget, ErrorCauses, ErrorPart, FieldError, HeadReport, LATENCY_PARTS, LatencyParts, Measure, Measured, NamedStatistics, PartDefinition,
     Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, Report, Results, Showing, SurfaceStatistics,
-    picture, side_by_side,
+    TooHeavy, picture, side_by_side,
 };
 pub use pxpl5_run::{
-    BareHost, Cause, Code, DefinedStatistics, Estimator, Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint,
-    Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key, KeyValue, KeyValues, Level,
-    LimitCriterion, Outcome, PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry,
-    RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary, TestScene, Viewpoint, WARM_UP_PICTURES,
+    Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Experiment, ExperimentError, FIELDS_RANGE,
+    FIELDS_WITH_HEAD, Fingerprint, Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key,
+    KeyValue, KeyValues, Level, LimitCriterion, Outcome, PictureEnd, PictureTimes, Pipeline, PipelineEntry,
+    PipelineSettings, Pixels, Raster, Registry, RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary,
+    TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};
 pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmOf, results, timeline, trace_export};

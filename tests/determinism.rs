@@ -3,11 +3,11 @@
 use pxpl5::{Experiment, MachineConfig, Measured, Pixels, RenderingControl, Slats, Workstation, scene};
 
 fn pipelines() -> [Experiment; 3] {
-    let mig = || scene::builtin("mig").expect("built in");
+    let mig = scene::builtin("mig").expect("built in");
     let full = scene::builtin("full-screen:60").expect("built in");
     [
-        Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig()).fields(16),
-        Experiment::new(MachineConfig::small_hmd(), RenderingControl::mono(), mig()).fields(16),
+        Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig.clone()).fields(16),
+        Experiment::new(MachineConfig::small_hmd(), RenderingControl::mono(), mig).fields(16),
         Experiment::new(MachineConfig::slats(), Slats::split(), full).fields(12),
     ]
 }

@@ -46,14 +46,15 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
         let plan = plan(&[&shared[..], &[on, ("pipeline", pipeline), ("head.display", display)]].concat());
         let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("the scene is small");
         let report = outcome.report();
-        let (head, row) = (report.head.expect("a motion was given"), comparison.row(name).expect("a row for each"));
+        let head = report.head.expect("a motion was given");
+        let row = comparison.row(name).expect("a row for each");
         assert!(row.error.judged > 0, "{name}");
         assert_eq!((&head.error, head.end_to_end), (&row.error, row.end_to_end), "{name}");
         assert_eq!(report.updates_hz, row.updates_hz, "{name}");
     }
 }
 
-/// A wall's edge straight ahead at time zero, under a pan: a picture for one moment a field, for one eye.
+/// A wall's edge straight ahead at time zero, under a pan: a picture for the first moment of each field, for one eye.
 fn panned(deg_per_s: f64, raster: Raster, fields: u64) -> Experiment {
     let head = Head::new(Arc::new(Pan::at(deg_per_s)), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
     let head = head.expect("in range").before(raster);
@@ -65,15 +66,24 @@ fn panned(deg_per_s: f64, raster: Raster, fields: u64) -> Experiment {
 /// The column of each line of a field where the wall ends.
 fn edges(picture: &image::RgbImage, field: PeriodNumber) -> Vec<f64> {
     let lines = (0..picture.height()).filter(|y| u64::from(y % 2) == field.0 % 2);
-    let is_wall = |x, y| picture.get_pixel(x, y).0[0] > 100;
-    let edge = |y| (1..picture.width()).find(|x| is_wall(x - 1, y) && !is_wall(*x, y)).map_or(-1.0, f64::from);
-    lines.map(edge).collect()
+    lines.map(|y| edge(picture, y)).collect()
+}
+
+/// The first column behind the wall in a line; -1 for none.
+fn edge(picture: &image::RgbImage, y: u32) -> f64 {
+    let behind = (1..picture.width()).find(|x| is_wall(picture, x - 1, y) && !is_wall(picture, *x, y));
+    behind.map_or(-1.0, f64::from)
+}
+
+fn is_wall(picture: &image::RgbImage, x: u32, y: u32) -> bool {
+    picture.get_pixel(x, y).0[0] > 100
 }
 
 #[test]
 fn a_shifted_raster_shows_the_edge_where_it_is_when_each_line_lights() {
     const FIELD: PeriodNumber = PeriodNumber(20);
-    let (pan, view) = (Pan::at(30.0), HmdView::ntsc());
+    let pan = Pan::at(30.0);
+    let view = HmdView::ntsc();
     let [plain, vdrt] = [Raster::Plain, Raster::Vdrt].map(|raster| {
         let outcome = panned(30.0, raster, FIELD.0 + 2).run().expect("the scene is small");
         let video = *video(&outcome);

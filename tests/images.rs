@@ -63,13 +63,15 @@ fn fingerprints() -> BTreeMap<String, String> {
 /// The kept piece of a frame, or the lines of it that a field has.
 fn piece(picture: &RgbImage, [left, top, width, height]: [u32; 4]) -> RgbImage {
     let step = 480 / picture.height();
-    let (top, height) = (top / step, height / step);
+    let top = top / step;
+    let height = height / step;
     imageops::crop_imm(picture, left, top, width, height).to_image()
 }
 
 /// Expected, difference (white where equal, black where not), actual.
 fn triptych(expected: &RgbImage, actual: &RgbImage) -> RgbImage {
-    let (width, height) = (expected.width().max(actual.width()), expected.height().max(actual.height()));
+    let width = expected.width().max(actual.width());
+    let height = expected.height().max(actual.height());
     let differs = |x, y| expected.get_pixel_checked(x, y) != actual.get_pixel_checked(x, y);
     let difference = RgbImage::from_fn(width, height, |x, y| Rgb([if differs(x, y) { 0 } else { 255 }; 3]));
     let mut out = RgbImage::new(3 * width, height);
@@ -130,8 +132,7 @@ fn pictures(pipeline: Arc<dyn Pipeline>, config: &MachineConfig, subject: &Subje
     let name = format!("{}-{}", pipeline.name(), subject.scene.replace(':', "-"));
     let outcome = Experiment::with(config.clone(), pipeline, scene.into()).fields(subject.fields).run();
     let outcome = outcome.unwrap_or_else(|error| panic!("{name}: {error}"));
-    let eye = |eye: Eye| (format!("{name}-{eye:?}").to_lowercase(), shown(&outcome, eye));
-    Eye::BOTH.map(eye).into()
+    Eye::BOTH.map(|eye| (format!("{name}-{eye:?}").to_lowercase(), shown(&outcome, eye))).into()
 }
 
 fn compare(pipeline: impl Pipeline + Copy + 'static, config: &MachineConfig) {
@@ -162,16 +163,21 @@ fn many_boards() -> MachineConfig {
     MachineConfig { n_gps: 32, ..published }
 }
 
+fn drawn_by(n_gps: usize, pipeline: Arc<dyn Pipeline>, subject: &Subject) -> Vec<(String, RgbImage)> {
+    pictures(pipeline, &MachineConfig { n_gps, ..MachineConfig::small_hmd() }, subject)
+}
+
 #[test]
 fn a_still_scene_looks_the_same_however_many_processors_draw_it() {
     let subject = &SUBJECTS[3];
-    let draw = |pipeline: Arc<dyn Pipeline>, n_gps| {
-        pictures(pipeline, &MachineConfig { n_gps, ..MachineConfig::small_hmd() }, subject)
-    };
-    let (control, slats) = (Arc::new(RenderingControl::stereo()), Arc::new(Slats::split()));
+    let control = Arc::new(RenderingControl::stereo());
+    let slats = Arc::new(Slats::split());
     for n_gps in [3, 13] {
-        assert!(draw(control.clone(), n_gps) == draw(control.clone(), 2), "rendering control with {n_gps}");
-        assert!(draw(slats.clone(), n_gps) == draw(slats.clone(), 1), "Slats with {n_gps}");
+        assert!(
+            drawn_by(n_gps, control.clone(), subject) == drawn_by(2, control.clone(), subject),
+            "rendering control with {n_gps}"
+        );
+        assert!(drawn_by(n_gps, slats.clone(), subject) == drawn_by(1, slats.clone(), subject), "Slats with {n_gps}");
     }
 }
 

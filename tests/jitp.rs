@@ -3,19 +3,19 @@
 use glam::DVec3;
 mod support;
 
-use pxpl5::compare::{as_seen, compare, edge_pictures, edge_scene, measure_on, motion, triangles_possible};
+use pxpl5::compare::{as_seen, compare, edge_pictures, edge_scene, motion, triangles_possible};
 use pxpl5::scene::{Scene, builtin};
 use pxpl5::tracking::Pose;
 use pxpl5::tracking::motion::{Motion, Pan, Still, Synthetic};
 use pxpl5::tracking::predict::PredictorKind;
-use pxpl5::tracking::rig::PendulumRig;
 use pxpl5::tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, seconds};
-use pxpl5::tracking::tracker::{Fault, TrackerConfig, TrackerModel};
+use pxpl5::tracking::tracker::{Fault, TrackerConfig};
 use pxpl5::views::charts::LatencyCurve;
 use pxpl5::{
-    Budget, Experiment, Frameless, Head, Interpolation, Jitp, MachineConfig, Measured, Outcome, Percentiles,
-    PeriodNumber, Pipeline, PixelErrors, Pixels, Registration, RenderingControl, Slats, ViewNumber, Viewpoint,
+    Aim, Budget, Experiment, Frameless, Head, Interpolation, Jitp, MachineConfig, Measured, Outcome, Percentiles,
+    PeriodNumber, Pipeline, PixelErrors, Pixels, Registration, RenderingControl, Slats, Viewpoint,
 };
+use pxpl5_sim::TraceHash;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use support::video;
@@ -53,15 +53,21 @@ fn under_a_pan(viewpoint: Viewpoint, racing: bool) -> Outcome {
     run(Jitp { strip_rows: 1, ..Jitp::new(viewpoint, racing) }, perfect(Pan::at(PAN)), FIELD.0 + 2)
 }
 
+/// A field for one moment as the paper's: that of its first pixel.
+fn conventional() -> Outcome {
+    let jitp = Jitp { strip_rows: 1, ..Jitp::new(Viewpoint::Field, true) };
+    run(jitp, perfect(Pan::at(PAN)).aiming(Aim::FirstPixel), FIELD.0 + 2)
+}
+
 /// Seconds between the beam's passes over two pixels of a field.
 fn beam_s(outcome: &Outcome, from: (u32, u32), to: (u32, u32)) -> f64 {
-    let when = |(x, y)| video(outcome).when(x, y, FIELD).expect("visible").0 as f64;
-    (when(to) - when(from)) * 1e-12
+    let [from_ps, to_ps] = [from, to].map(|(x, y)| video(outcome).when(x, y, FIELD).expect("visible").0 as f64);
+    (to_ps - from_ps) * 1e-12
 }
 
 #[test]
 fn j1_one_transform_a_field_is_33_pixels_off_at_its_end() {
-    let outcome = under_a_pan(Viewpoint::Field, true);
+    let outcome = conventional();
     let registration = Registration::of(&outcome).expect("there is a head");
     let last = registration.at(320, 478, FIELD).expect("shown");
     let scan_s = beam_s(&outcome, (0, 0), (320, 478));
@@ -97,7 +103,7 @@ fn j3_a_line_takes_63_56_microseconds() {
 
 #[test]
 fn j4_a_vertical_edge_slants_by_speed_times_scan_time() {
-    let outcome = under_a_pan(Viewpoint::Field, true);
+    let outcome = conventional();
     let registration = Registration::of(&outcome).expect("there is a head");
     for y in [0, 120, 240, 478] {
         let error = registration.at(320, y, FIELD).expect("shown").offset_px.x;
@@ -110,16 +116,21 @@ fn j4_a_vertical_edge_slants_by_speed_times_scan_time() {
 
 /// The column right of the last white pixel of each row.
 fn edge(picture: &image::RgbImage) -> Vec<f64> {
-    let white = |row, x: &u32| picture.get_pixel(*x, row)[0] > 100;
-    let right_of = |row| (0..picture.width()).rev().find(|x| white(row, x)).map_or(0.0, |x| f64::from(x + 1));
-    (0..picture.height()).map(right_of).collect()
+    (0..picture.height()).map(|row| right_of_white(picture, row)).collect()
+}
+
+fn right_of_white(picture: &image::RgbImage, row: u32) -> f64 {
+    let last = (0..picture.width()).rev().find(|x| picture.get_pixel(*x, row)[0] > 100);
+    last.map_or(0.0, |x| f64::from(x + 1))
 }
 
 /// Pixels between the first and the last row of the straight line through all of them.
 fn slant(edge: &[f64]) -> f64 {
     let n = edge.len() as f64;
-    let (mean_row, mean) = ((n - 1.0) / 2.0, edge.iter().sum::<f64>() / n);
-    let (mut up, mut down) = (0.0, 0.0);
+    let mean_row = (n - 1.0) / 2.0;
+    let mean = edge.iter().sum::<f64>() / n;
+    let mut up = 0.0;
+    let mut down = 0.0;
     for (row, column) in edge.iter().enumerate() {
         up += (row as f64 - mean_row) * (column - mean);
         down += (row as f64 - mean_row).powi(2);
@@ -151,33 +162,36 @@ fn a_picture_is_seen_as_it_is_by_a_still_head() {
     assert_eq!(as_seen(&picture, FIELD, video(&outcome), &still), picture);
 }
 
+/// Views that are sampled for a field.
+fn n_views(viewpoint: Viewpoint) -> usize {
+    let outcome = under_a_pan(viewpoint, true);
+    let sampled = outcome.head().expect("a head").sampled();
+    sampled.iter().filter(|sample| sample.number.0 / 256 == FIELD.0).count()
+}
+
 #[test]
 fn j5_scanline_rendering_takes_240_transforms_a_field() {
-    let views = |viewpoint| {
-        let outcome = under_a_pan(viewpoint, true);
-        let of_field = |view: &ViewNumber| view.0 / 256 == FIELD.0;
-        outcome.head().expect("a head").sampled().iter().map(|s| s.number).filter(of_field).count()
-    };
     // The paper counts about 256 lines; 240 of a field are visible.
     assert_eq!(
-        (views(Viewpoint::Strip), views(Viewpoint::Field), views(Viewpoint::Dual(Interpolation::View))),
+        (n_views(Viewpoint::Strip), n_views(Viewpoint::Field), n_views(Viewpoint::Dual(Interpolation::View))),
         (240, 1, 2)
     );
 }
 
-#[test]
-fn places_on_the_screen_are_off_at_the_edge_and_positions_in_the_view_are_not() {
-    let errors = |viewpoint| {
+/// Distance in pixels from where strips of one line show it: at the left edge, in the middle, at the right edge.
+fn beside_strips(interpolation: Interpolation) -> [f64; 3] {
+    let [strip, dual] = [Viewpoint::Strip, Viewpoint::Dual(interpolation)].map(|viewpoint| {
         let outcome = under_a_pan(viewpoint, true);
         let registration = Registration::of(&outcome).expect("there is a head");
         [2, 320, 637].map(|x| registration.at(x, 240, FIELD).expect("shown").offset_px)
-    };
-    let strip = errors(Viewpoint::Strip);
-    let off = |viewpoint| {
-        let dual = errors(viewpoint);
-        std::array::from_fn::<f64, 3, _>(|i| (dual[i] - strip[i]).length())
-    };
-    let (screen, view) = (off(Viewpoint::Dual(Interpolation::Screen)), off(Viewpoint::Dual(Interpolation::View)));
+    });
+    std::array::from_fn(|i| (dual[i] - strip[i]).length())
+}
+
+#[test]
+fn places_on_the_screen_are_off_at_the_edge_and_positions_in_the_view_are_not() {
+    let screen = beside_strips(Interpolation::Screen);
+    let view = beside_strips(Interpolation::View);
     println!("dual display list, left edge, middle, right edge: screen {screen:?} view {view:?}");
     // tan is interpolated over the 15.24 ms of the scan: f x turn^2 / 8 x 2 tan 30 / cos^2 30.
     let turn = (PAN * 239.82 * 4004.0 / 63.0 * 1e-6).to_radians();
@@ -192,7 +206,7 @@ fn all_combinations_of_viewpoint_and_racing_are_in_time_and_racing_saves_a_field
         let [plain, racing] = [pair[0], pair[1]].map(|jitp| run(jitp, perfect(Pan::at(PAN)), 60));
         for outcome in [&plain, &racing] {
             let report = outcome.report();
-            assert_eq!((report.missed_retraces, report.late_regions), (0, 0), "{}", report.pipeline);
+            assert_eq!((report.missed_retraces, report.late_regions), (Some(0), 0), "{}", report.pipeline);
             assert!((report.updates_hz.expect("two pictures") - 59.94).abs() < 0.01);
         }
         let saved = plain.latency_ms().mean - racing.latency_ms().mean;
@@ -206,17 +220,20 @@ fn lines_that_come_too_late_are_counted_and_nothing_breaks() {
     let mig = builtin("mig").expect("built in");
     let outcome = Experiment::new(MachineConfig::small_hmd(), Jitp::new(Viewpoint::Strip, true), mig).fields(40).run();
     let report = outcome.expect("it runs").report();
-    assert!(report.missed_retraces > 30, "{}", report.missed_retraces);
+    // The first 8 of 40 fields are the warm-up, and no other is complete.
+    assert_eq!(report.missed_retraces, Some(32));
+}
+
+fn possible_in_a_line(preset: &str) -> u32 {
+    let config = MachineConfig::preset(preset).expect("listed");
+    let jitp: Arc<dyn Pipeline> = Arc::new(Jitp::new(Viewpoint::Strip, true));
+    triangles_possible(&pxpl5::registry(), &config, &jitp).triangles
 }
 
 #[test]
 fn more_renderers_allow_more_triangles_in_a_line() {
-    let possible = |preset: &str| {
-        let config = MachineConfig::preset(preset).expect("listed");
-        let jitp: Arc<dyn Pipeline> = Arc::new(Jitp::new(Viewpoint::Strip, true));
-        triangles_possible(&pxpl5::registry(), &config, &jitp).triangles
-    };
-    let (small, large) = (possible("small-hmd"), possible("design-maximum"));
+    let small = possible_in_a_line("small-hmd");
+    let large = possible_in_a_line("design-maximum");
     println!("triangles per line: small-hmd {small}, design-maximum {large}");
     // A column of a line has 63.6 us at the renderer, of which the copy takes 7.2: 8 triangles of 6.45 us.
     assert!((6..=9).contains(&small), "{small}");
@@ -227,27 +244,25 @@ fn more_renderers_allow_more_triangles_in_a_line() {
 fn ninety_milliseconds_are_1_8_times_as_wrong_as_fifty() {
     for seed in 1..=4 {
         let motion = Synthetic::recorded_use(seed);
-        let mean = |ms| LatencyCurve::of(&motion, ms, 120, 1.0).mean_px();
-        let ratio = mean(90) / mean(50);
-        println!("seed {seed}: {:.2} px and {:.2} px, ratio {ratio:.4}", mean(90), mean(50));
+        let [of_90_ms, of_50_ms] = [90, 50].map(|ms| LatencyCurve::of(&motion, ms, 120, 1.0).mean_px());
+        let ratio = of_90_ms / of_50_ms;
+        println!("seed {seed}: {of_90_ms:.2} px and {of_50_ms:.2} px, ratio {ratio:.4}");
         assert!((ratio / 1.8 - 1.0).abs() < 0.05, "seed {seed}: {ratio}");
     }
 }
 
+/// From head to light in milliseconds, and the error in the middle of the picture in degrees, with a tracker without noise.
+fn latency_and_error(pipeline: impl Pipeline + 'static) -> (f64, f64) {
+    let tracker =
+        TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::optical_ceiling() };
+    let outcome = run(pipeline, head(Synthetic::recorded_use(3), tracker, PredictorKind::None), 900);
+    (Budget::of(&outcome).total_ms, PixelErrors::of(&outcome).centre_deg.mean)
+}
+
 #[test]
 fn errors_of_pipelines_are_as_their_latencies_from_head_to_light() {
-    let tracker =
-        || TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::optical_ceiling() };
-    let measure = |pipeline: Arc<dyn Pipeline>| {
-        let outcome = Experiment::with(MachineConfig::small_hmd(), pipeline, Arc::new(small()))
-            .head(head(Synthetic::recorded_use(3), tracker(), PredictorKind::None))
-            .fields(900)
-            .pixels(Pixels::Off)
-            .run()
-            .expect("the scene is small");
-        (Budget::of(&outcome).total_ms, PixelErrors::of(&outcome).centre_deg.mean)
-    };
-    let (control, slats) = (measure(Arc::new(RenderingControl::stereo())), measure(Arc::new(Slats::split())));
+    let control = latency_and_error(RenderingControl::stereo());
+    let slats = latency_and_error(Slats::split());
     // A frame of Rendering Control is seen for two fields, so on average half a field later than its first light.
     let latencies = (control.0 + 16.683 / 2.0) / slats.0;
     println!("{control:?} {slats:?}: latencies {latencies:.3}, errors {:.3}", control.1 / slats.1);
@@ -271,8 +286,7 @@ fn stages_from_head_to_light_add_up() {
         let measured: BTreeMap<_, _> =
             outcome.head().expect("a head").sampled().iter().filter_map(|s| Some((s.number, s.measured_at?))).collect();
         let ages: Vec<f64> = outcome
-            .steady_pictures()
-            .iter()
+            .complete_pictures()
             .filter(|times| times.copied_at.is_some())
             .filter_map(|times| {
                 Some(pipeline.light(outcome.record(), times).since(*measured.get(&times.view)?).as_ms())
@@ -294,8 +308,13 @@ fn a_perfect_tracker_and_a_still_head_leave_no_error() {
 
 #[test]
 fn metal_misplaces_objects_even_for_a_still_head() {
-    let tracker =
-        TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::polhemus_3space() };
+    let tracker = TrackerConfig {
+        position_noise_m: 0.0,
+        orientation_noise_deg: 0.0,
+        position_bias_m: 0.0,
+        orientation_bias_deg: 0.0,
+        ..TrackerConfig::polhemus_3space()
+    };
     let at = Pose::at(DVec3::new(0.7, 0.0, 0.7));
     let outcome = run(Slats::split(), head(Still(at), tracker, PredictorKind::None), 90);
     let errors = PixelErrors::of(&outcome);
@@ -307,7 +326,8 @@ fn metal_misplaces_objects_even_for_a_still_head() {
 #[test]
 fn the_raster_offset_removes_a_pan_in_the_middle_and_leaves_the_edges() {
     let outcome = run(Slats::split(), head(Pan::at(PAN), TrackerConfig::ideal(), PredictorKind::ConstantVelocity), 90);
-    let (plain, offset) = (PixelErrors::of(&outcome), PixelErrors::with_raster_offset(&outcome));
+    let plain = PixelErrors::of(&outcome);
+    let offset = PixelErrors::with_raster_offset(&outcome);
     println!("pan, Slats: {:?}\n with offset: {:?}", plain.pixels, offset.pixels);
     assert!(offset.centre_px.max < 0.05, "{:?}", offset.centre_px);
     assert!(offset.pixels.max > 1.0, "a flat raster is shifted, not turned");
@@ -324,7 +344,8 @@ fn frameless_blocks_come_once_a_pass_and_are_half_a_pass_old() {
     }
     assert_eq!(of_block.len(), frameless.blocks() as usize);
     let counts: Vec<usize> = of_block.values().map(Vec::len).collect();
-    let (least, most) = (counts.iter().min().copied().unwrap_or(0), counts.iter().max().copied().unwrap_or(0));
+    let least = counts.iter().min().copied().unwrap_or(0);
+    let most = counts.iter().max().copied().unwrap_or(0);
     assert!(least > 10 && most - least <= 1, "without repetition: {least} to {most}");
     // At a random moment a block is half of the time between two of its updates old.
     let gaps: Vec<f64> = of_block.values().flat_map(|times| times.windows(2).map(|w| w[1] - w[0])).collect();
@@ -332,44 +353,6 @@ fn frameless_blocks_come_once_a_pass_and_are_half_a_pass_old() {
     let pass_ms = 1e3 / outcome.report().updates_hz.expect("two pictures");
     println!("pass {pass_ms:.2} ms, mean age {age_ms:.2} ms");
     assert!((age_ms / (pass_ms / 2.0) - 1.0).abs() < 0.05, "{age_ms} {pass_ms}");
-}
-
-#[test]
-fn the_rig_and_the_time_stamps_agree_within_the_bound_for_every_tracker() {
-    for (pipeline, fields) in
-        [(Arc::new(RenderingControl::mono()) as Arc<dyn Pipeline>, 900), (Arc::new(Slats::split()), 900)]
-    {
-        let config = MachineConfig::small_hmd();
-        let run = Experiment::with(config, pipeline, Arc::new(small())).fields(fields).pixels(Pixels::Off).run();
-        let outcome = run.expect("the scene is small");
-        for tracker in [
-            TrackerConfig::ideal(),
-            TrackerConfig::fastrak(),
-            TrackerConfig::flock_of_birds(),
-            TrackerConfig::optical_ceiling(),
-            TrackerConfig::polhemus_3space(),
-        ] {
-            let tracker = TrackerConfig { position_noise_m: 0.0, distortion: None, ..tracker };
-            let model = TrackerModel::new(tracker).expect("a preset");
-            let measured = measure_on(&outcome, &PendulumRig::assumed(), &model, 1).expect("low points are seen");
-            let (difference, bound) = (measured.outside_less_inside_s(), seconds(measured.bound_ps()));
-            let (outside, inside) = (
-                measured.tracking.mean_s + measured.rendering.mean_s,
-                measured.inside_tracking.mean_s + measured.inside_rendering.mean_s,
-            );
-            println!(
-                "{:18} {:28} outside {:6.2} ms, inside {:6.2} ms, difference {:5.2} of {:5.2} ms, {} passes",
-                outcome.pipeline().name(),
-                model.config().name,
-                outside * 1e3,
-                inside * 1e3,
-                difference * 1e3,
-                bound * 1e3,
-                measured.passes.len()
-            );
-            assert!(measured.passes.len() >= 15 && difference > 0.0 && difference <= bound);
-        }
-    }
 }
 
 #[test]
@@ -405,24 +388,25 @@ fn every_pipeline_goes_on_when_the_tracker_fails() {
 
 #[test]
 fn the_order_of_simultaneous_events_decides_nothing() {
-    let hash = |pipeline: Arc<dyn Pipeline>, seed: Option<u64>| {
+    let pipelines: [Arc<dyn Pipeline>; 3] = [
+        Arc::new(Jitp::new(Viewpoint::Strip, true)),
+        Arc::new(Jitp::new(Viewpoint::Dual(Interpolation::Screen), false)),
+        Arc::new(Frameless::new()),
+    ];
+    for pipeline in pipelines {
         let scene = Arc::new(builtin("full-screen:3").expect("built in"));
         let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene)
             .head(head(Synthetic::recorded_use(1), TrackerConfig::fastrak(), PredictorKind::Kalman))
             .fields(12);
-        let experiment = seed.map_or(experiment.clone(), |seed| experiment.shuffle_ties(seed));
-        experiment.run().expect("it runs").record().trace_hash()
-    };
-    let of = |seed| {
-        let jitp = |viewpoint, racing| Arc::new(Jitp::new(viewpoint, racing)) as Arc<dyn Pipeline>;
-        [
-            hash(jitp(Viewpoint::Strip, true), seed),
-            hash(jitp(Viewpoint::Dual(Interpolation::Screen), false), seed),
-            hash(Arc::new(Frameless::new()), seed),
-        ]
-    };
-    let plain = of(None);
-    assert!((0..3).all(|seed| of(Some(seed)) == plain));
+        let plain = trace_hash(&experiment);
+        for seed in 0..3 {
+            assert_eq!(trace_hash(&experiment.clone().shuffle_ties(seed)), plain, "{experiment:?}, {seed}");
+        }
+    }
+}
+
+fn trace_hash(experiment: &Experiment) -> TraceHash {
+    experiment.run().expect("it runs").record().trace_hash()
 }
 
 #[test]
@@ -436,16 +420,24 @@ fn a_comparison_has_a_row_for_every_pipeline_and_just_in_time_comes_nearest_to_t
     assert_eq!(json["pipelines"].as_array().map(Vec::len), Some(14));
     let mean = |name: &str| all.pixels(name).mean;
     assert!(mean("ideal") < 1e-3 && mean("jitp-scanline-racing") < 0.1 && mean("jitp-dual-view-racing") < 0.1);
-    assert!(mean("jitp-field-racing") > 10.0 && mean("rendering-control") > mean("slats-touched"));
+    // All draw for the middle of what they show: one field errs as another, and two fields more.
+    assert!((mean("jitp-field-racing") / mean("slats-touched") - 1.0).abs() < 1e-3);
+    assert!((mean("jitp-field") / mean("slats-touched") - 1.0).abs() < 1e-3);
+    assert!(mean("jitp-field-racing") > 7.0 && mean("rendering-control") > 2.0 * mean("slats-touched"));
 }
 
 #[test]
 fn what_cannot_be_compared_is_refused_with_what_was_expected() {
-    let message = |text: &str| motion(text).err().map(|e| e.to_string()).unwrap_or_default();
-    assert!(message("pan:fast").contains("such as pan:200") && message("pan:fast").contains("`fast`"));
-    assert!(message("pan:nan").contains("`nan`"));
-    assert!(message("dance").contains("still, pan:DEG_PER_S"));
-    assert!(message("no-such-file.csv").contains("no-such-file.csv cannot be opened"));
+    for (text, says) in [
+        ("pan:fast", "such as pan:200"),
+        ("pan:fast", "`fast`"),
+        ("pan:nan", "`nan`"),
+        ("dance", "still, pan:DEG_PER_S"),
+        ("no-such-file.csv", "no-such-file.csv cannot be opened"),
+    ] {
+        let error = motion(text).err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(error.contains(says), "{text}: {error}");
+    }
     let head = Arc::new(perfect(Pan::at(PAN)));
     let error = compare(&MachineConfig::small_hmd(), &Arc::new(small()), &head, 3, false).expect_err("too few");
     assert!(error.to_string().contains("found 3"), "{error}");

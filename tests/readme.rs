@@ -7,7 +7,8 @@ fn read(name: &str) -> String {
 
 #[test]
 fn the_readme_shows_every_figure_of_accuracy_md_as_it_stands_there() {
-    let (readme, accuracy) = (read("README.md"), read("ACCURACY.md"));
+    let readme = read("README.md");
+    let accuracy = read("ACCURACY.md");
     let table = accuracy.lines().skip_while(|line| !line.starts_with("| # | figure"));
     let rows: Vec<_> = table.take_while(|line| line.starts_with('|')).collect();
     assert!(rows.len() > 15, "ACCURACY.md has lost its table");

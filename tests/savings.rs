@@ -4,15 +4,19 @@ mod support;
 
 use pxpl5::{
     Experiment, Eye, Jitp, Level, Machine, MachineConfig, PeriodNumber, Pixels, RenderingControl, Saving, Slats,
-    Viewpoint, scene,
+    Viewpoint, scene, scene::Scene,
 };
 use pxpl5_framebuffer::SeenField;
 use std::collections::BTreeSet;
 use support::ntsc;
 
+/// The first triangles of the Mig, of which there are 417.
+fn mig(triangles: usize) -> Scene {
+    scene::builtin("mig").and_then(|mig| mig.truncated(triangles)).expect("so many")
+}
+
 /// Three pipelines, each with a scene that leaves some regions empty and some not.
 fn experiments() -> [Experiment; 3] {
-    let mig = |triangles| scene::builtin("mig").and_then(|mig| mig.truncated(triangles)).expect("it has 417 triangles");
     [
         Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(417)),
         Experiment::new(MachineConfig::slats(), Slats::split(), mig(60)),
@@ -30,21 +34,26 @@ fn after(experiment: &Experiment, fields: u64) -> Machine {
 
 /// The pixels of every field that was seen, eye by eye.
 fn seen(machine: &Machine, fields: u64) -> Vec<SeenField> {
-    let of = |eye: Eye| ntsc(machine.record()).boards().get(eye.index());
-    Eye::BOTH
-        .into_iter()
-        .filter_map(of)
-        .flat_map(|board| (0..fields).filter_map(|field| board.seen(PeriodNumber(field))))
-        .collect()
+    let boards = Eye::BOTH.into_iter().filter_map(|eye| ntsc(machine.record()).boards().get(eye.index()));
+    boards.flat_map(|board| (0..fields).filter_map(|field| board.seen(PeriodNumber(field)))).collect()
+}
+
+fn pictures(machine: &Machine, fields: u64) -> Vec<image::RgbImage> {
+    seen(machine, fields).iter().map(SeenField::picture).collect()
+}
+
+/// How many different colours a picture has.
+fn colours(picture: &image::RgbImage) -> usize {
+    picture.pixels().map(|pixel| pixel.0).collect::<BTreeSet<_>>().len()
 }
 
 fn assert_same(experiment: &Experiment, saving: Saving, fields: u64) {
-    let (with, without) = (after(experiment, fields), after(&experiment.clone().without(saving), fields));
+    let with = after(experiment, fields);
+    let without = after(&experiment.clone().without(saving), fields);
     assert_eq!(without.record().trace_hash(), with.record().trace_hash(), "{saving} in {experiment:?}");
-    let pictures = |machine| seen(machine, fields).iter().map(SeenField::picture).collect::<Vec<_>>();
-    let (with, without) = (pictures(&with), pictures(&without));
+    let with = pictures(&with, fields);
+    let without = pictures(&without, fields);
     assert!(with == without, "{saving} in {experiment:?}");
-    let colours = |picture: &image::RgbImage| picture.pixels().map(|pixel| pixel.0).collect::<BTreeSet<_>>().len();
     // In the first fields nothing has been drawn yet.
     assert!(fields < 10 || with.iter().any(|picture| colours(picture) > 2), "nothing was seen in {experiment:?}");
 }
@@ -80,8 +89,8 @@ fn code_that_repeats_takes_the_clocks_that_are_counted() {
 #[test]
 fn nobody_looking_changes_no_time() {
     for experiment in experiments() {
-        let hash = |pixels| after(&experiment.clone().pixels(pixels), 10).record().trace_hash();
-        assert_eq!(hash(Pixels::Off), hash(Pixels::All));
+        let [off, all] = [Pixels::Off, Pixels::All].map(|pixels| after(&experiment.clone().pixels(pixels), 10));
+        assert_eq!(off.record().trace_hash(), all.record().trace_hash());
     }
 }
 
@@ -98,10 +107,10 @@ fn savings_do_not_meet() {
 #[test]
 fn a_saving_that_is_given_up_is_paid_for_in_events() {
     let [_, slats, _] = experiments();
-    let events = |experiment: &Experiment| after(&experiment.clone().pixels(Pixels::Off), 3).events();
-    let with = events(&slats);
-    assert!(events(&slats.clone().without(Saving::IdleBoards)) > 10 * with);
-    assert!(events(&slats.clone().without(Saving::Transfers)) > 10 * with);
+    let slats = slats.pixels(Pixels::Off);
+    let with = after(&slats, 3).events();
+    assert!(after(&slats.clone().without(Saving::IdleBoards), 3).events() > 10 * with);
+    assert!(after(&slats.clone().without(Saving::Transfers), 3).events() > 10 * with);
 }
 
 #[test]

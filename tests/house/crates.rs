@@ -6,17 +6,17 @@ use std::process::Command;
 
 /// A crate of ours.
 pub(crate) struct Crate {
-    /// Its name.
+    /// Its name, as its manifest has it.
     pub(crate) name: String,
     /// What its manifest says of it.
     pub(crate) about: String,
     /// The crates of ours that it is built of, without those of its tests.
     pub(crate) dependencies: Vec<String>,
-    /// Its sources.
+    /// The Rust files below its `src`.
     pub(crate) files: Vec<SourceFile>,
 }
 
-/// A source file.
+/// A Rust file of a crate, with its text.
 pub(crate) struct SourceFile {
     /// Its path below `src`, with `/`.
     pub(crate) path: String,
@@ -41,7 +41,6 @@ pub(crate) fn workspace() -> Vec<Crate> {
 }
 
 fn read(package: &Value, names: &[&str]) -> Crate {
-    let text = |key: &str| package[key].as_str().unwrap_or_default().to_owned();
     let dependencies = package["dependencies"].as_array().expect("a list").iter();
     let mut below: Vec<String> = dependencies
         .filter(|dependency| dependency["kind"].is_null())
@@ -51,11 +50,20 @@ fn read(package: &Value, names: &[&str]) -> Crate {
         .collect();
     below.sort();
     below.dedup();
-    let src = Path::new(&text("manifest_path")).with_file_name("src");
+    let src = Path::new(text(package, "manifest_path")).with_file_name("src");
     let mut files = Vec::new();
     collect(&src, &src, &mut files);
     files.sort_by(|a, b| a.path.cmp(&b.path));
-    Crate { name: text("name"), about: text("description"), dependencies: below, files }
+    Crate {
+        name: text(package, "name").to_owned(),
+        about: text(package, "description").to_owned(),
+        dependencies: below,
+        files,
+    }
+}
+
+fn text<'a>(package: &'a Value, key: &str) -> &'a str {
+    package[key].as_str().unwrap_or_default()
 }
 
 fn collect(src: &Path, folder: &Path, files: &mut Vec<SourceFile>) {

@@ -17,7 +17,7 @@ const FLOORS: [(&str, &[&str], &[&str]); 11] = [
     ("boards", &["pxpl5-ring", "pxpl5-gp", "pxpl5-renderer", "pxpl5-framebuffer", "pxpl5-hires"], &["ground"]),
     ("world", &["tracking", "pxpl5-scene"], &["ground", "world"]),
     ("geometry", &["pxpl5-geometry", "pphigs"], &["ground", "boards", "geometry"]),
-    ("firmware", &["rendering-control", "slats", "jitp"], &["ground", "boards", "geometry"]),
+    ("firmware", &["rendering-control", "slats", "jitp", "pxpl5-oracle"], &["ground", "boards", "geometry"]),
     ("machine", &["pxpl5-machine"], &["ground", "boards"]),
     ("run", &["pxpl5-run"], &["ground", "boards", "geometry", "firmware", "world", "machine"]),
     (

@@ -32,12 +32,15 @@ pub(crate) fn without_host_feature(text: &str) -> String {
 
 /// Whether a word stands in a text, not as a part of a longer one.
 pub(crate) fn has_word(text: &str, word: &str) -> bool {
-    let part_of_name = |c: char| c.is_alphanumeric() || c == '_';
     text.match_indices(word).any(|(at, _)| {
         let before = text[..at].chars().next_back();
         let after = text[at + word.len()..].chars().next();
         !before.is_some_and(part_of_name) && (word.ends_with(':') || !after.is_some_and(part_of_name))
     })
+}
+
+fn part_of_name(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
 }
 
 /// The lengths of a source's functions in lines, from `fn` to the closing brace of the same indent.
@@ -46,14 +49,19 @@ pub(crate) fn functions(text: &str) -> Vec<(String, usize)> {
     let mut found = Vec::new();
     for (begin, line) in lines.iter().enumerate() {
         let Some(name) = function_name(line) else { continue };
-        let indent = line.len() - line.trim_start().len();
-        let closes =
-            |other: &&str| other.len() - other.trim_start().len() == indent && other.trim_start().starts_with('}');
         let one_line = line.trim_end().ends_with('}') && line.contains('{');
-        let length = if one_line { Some(0) } else { lines[begin..].iter().position(closes) };
+        let length = if one_line {
+            Some(0)
+        } else {
+            lines[begin..].iter().position(|other| other.trim_start().starts_with('}') && indent(other) == indent(line))
+        };
         found.extend(length.map(|length| (name, length + 1)));
     }
     found
+}
+
+fn indent(line: &str) -> usize {
+    line.len() - line.trim_start().len()
 }
 
 fn function_name(line: &str) -> Option<String> {
@@ -70,10 +78,11 @@ fn function_name(line: &str) -> Option<String> {
 
 /// Items that a source shows to other crates, as far as their lines begin so.
 pub(crate) fn public_items(text: &str) -> usize {
+    text.lines().filter(|line| shows_an_item(line)).count()
+}
+
+fn shows_an_item(line: &str) -> bool {
     let kinds = ["fn ", "const fn ", "async fn ", "struct ", "enum ", "trait ", "type ", "const ", "static ", "mod "];
-    let is_public = |line: &&str| {
-        let rest = line.trim_start().strip_prefix("pub ");
-        rest.is_some_and(|rest| kinds.iter().any(|kind| rest.starts_with(kind)))
-    };
-    text.lines().filter(is_public).count()
+    let item = line.trim_start().strip_prefix("pub ");
+    item.is_some_and(|item| kinds.iter().any(|kind| item.starts_with(kind)))
 }

@@ -43,7 +43,7 @@ pub(crate) struct Clock {
     data: DataCache,
     stores: StorePipe,
     loads: LoadPipe,
-    /// `None` without memoisation.
+    /// Blocks whose clocks were counted before; `None` without memoisation.
     memo: Option<Memo>,
 }
 

@@ -33,7 +33,7 @@ pub(crate) mod arm {
     pub(crate) const FLOATING_RESULT: u16 = 1 << 11;
 }
 
-/// No register.
+/// Stands for a register where an instruction has none.
 pub(crate) const NONE: u8 = 0xFF;
 
 /// A decoded instruction with its timing classes.
@@ -48,7 +48,7 @@ pub(crate) struct Decoded {
     marks: u8,
 }
 
-/// Bits of `Decoded::marks`.
+/// Bits of `Decoded::marks`, one for each property.
 mod mark {
     pub(super) const FLOATING: u8 = 1 << 0;
     pub(super) const BRANCH: u8 = 1 << 1;
@@ -82,7 +82,7 @@ impl Decoded {
         self.marks & mark::BRANCH != 0
     }
 
-    /// The D bit.
+    /// The D bit: whether it is issued beside an integer instruction.
     #[inline]
     pub(crate) fn dual(&self) -> bool {
         self.marks & mark::DUAL != 0

@@ -7,7 +7,7 @@ use crate::common::Common;
 use crate::timing::{ChipSizes, Freeze};
 use crate::translation::Translation;
 
-/// No line.
+/// Stands for an address where no line is held.
 const NO_LINE: u32 = u32::MAX;
 const LINE_BYTES: u32 = ChipSizes::PAPERS.line_bytes as u32;
 /// Transfers of a line.

@@ -3,7 +3,7 @@
 /// How control goes on after a unit (an instruction or a pair).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Flow {
-    /// To what follows.
+    /// To the instruction that follows in memory.
     Next,
     /// To a target, at once.
     Jump(u32),

@@ -117,6 +117,13 @@ impl FreezeRules {
         self
     }
 
+    /// The numbers of the rows that apply, in order, and what is read into row 8.
+    pub(crate) fn names(&self) -> String {
+        let applying = FREEZES.iter().filter(|row| self.applies(row.id)).map(|row| row.number);
+        let logicals = self.logicals_delay_branches.then_some("logicals delay branches");
+        applying.chain(logicals).collect::<Vec<_>>().join(" ")
+    }
+
     /// Whether a row applies.
     #[must_use]
     pub fn applies(&self, id: Freeze) -> bool {

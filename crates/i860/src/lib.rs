@@ -134,5 +134,5 @@ pub use mnemonic::mnemonic;
 pub use profile::{AddressProfile, Profile};
 pub use seed::SeedTable;
 pub use state::State;
-pub use timing::Config;
+pub use timing::{CHIP_PATH, Config};
 pub use trap::{Outcome, Trap, TrapCause};

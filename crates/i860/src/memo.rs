@@ -76,7 +76,7 @@ pub(crate) struct RememberedClocks {
     pub(crate) exit: u32,
     pub(crate) clocks: u64,
     pub(crate) instructions: u64,
-    /// Clocks by cause.
+    /// Clocks that the block waited, by cause.
     pub(crate) frozen: Vec<(Freeze, u64)>,
     /// Line of the last fetch.
     pub(crate) line: u32,

@@ -20,6 +20,18 @@ pub enum SeedTable {
     Exact,
 }
 
+impl SeedTable {
+    /// Its name in lists of settings.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Truncated8 => "truncated-8",
+            Self::Midpoint8 => "midpoint-8",
+            Self::Exact => "exact",
+        }
+    }
+}
+
 const FRACTION: u64 = (1 << 52) - 1;
 const DROPPED: u32 = 52 - 8;
 

@@ -5,43 +5,43 @@ use crate::instruction::{Instruction, Op};
 /// Which operands an instruction is written with, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Syntax {
-    /// None.
+    /// No operand: the mnemonic stands alone.
     Bare,
     /// `src1 or immediate, src2, dest`.
     Integer,
-    /// `address, dest`.
+    /// `address, dest`: a load into an integer or floating-point register.
     Load,
-    /// `src1, address`.
+    /// `src1, address`: a store from a register.
     Store,
     /// `address, fdest`, perhaps with `++`.
     FloatingLoad,
     /// `fdest, address`, perhaps with `++`.
     FloatingStore,
-    /// `control, dest`.
+    /// `control, dest`: from a control register.
     LoadControl,
-    /// `src1, control`.
+    /// `src1, control`: into a control register.
     StoreControl,
-    /// `src1, fdest`.
+    /// `src1, fdest`: from an integer register to a floating-point one.
     ToFloating,
-    /// `fsrc1, dest`.
+    /// `fsrc1, dest`: from a floating-point register to an integer one.
     ToInteger,
     /// `address`, perhaps with `++`.
     Flush,
     /// `src1, src2, dest`, or nothing.
     Trap,
-    /// `src1`.
+    /// `src1`: one integer register, such as the target of `bri`.
     Register,
-    /// `target`.
+    /// `target`: a label or an address to branch to.
     Branch,
     /// `src1 or 5-bit constant, src2, target`.
     CompareBranch,
-    /// `src1, src2, target`.
+    /// `src1, src2, target`: two integer registers, and where to branch to.
     LoopBranch,
-    /// `fsrc1, fsrc2, fdest`.
+    /// `fsrc1, fsrc2, fdest`: two floating-point sources and a destination.
     Three,
-    /// `fsrc1, fdest`.
+    /// `fsrc1, fdest`: a first source alone.
     First,
-    /// `fsrc2, fdest`.
+    /// `fsrc2, fdest`: a second source alone.
     Second,
 }
 

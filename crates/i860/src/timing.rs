@@ -130,6 +130,13 @@ parameters::parameter_table! {
     }
 }
 
+/// The first parts of the paths of the tables that can be set.
+const FREEZES_PATH: &str = "i860.freezes";
+const DRAM_PATH: &str = "i860.dram";
+
+/// The first part of the paths of what is on the chip, which is listed and cannot be set.
+pub const CHIP_PATH: &str = "i860.chip";
+
 /// What the processor is built with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
@@ -162,10 +169,30 @@ impl Config {
         }
     }
 
-    /// All numbers of the timing with the names of their tables, for lists of what a machine is made of.
+    /// All numbers of the timing, each table with the first part of its paths, for lists of what a machine is made of.
     #[must_use]
     pub fn tables(&self) -> [(&'static str, &dyn ParameterTable); 3] {
-        [("freezes", &self.freezes.clocks), ("dram", &self.dram), ("chip", &ChipSizes::PAPERS)]
+        [(FREEZES_PATH, &self.freezes.clocks), (DRAM_PATH, &self.dram), (CHIP_PATH, &ChipSizes::PAPERS)]
+    }
+
+    /// The tables whose numbers can be set: all but that of what is on the chip.
+    pub fn tables_mut(&mut self) -> [(&'static str, &mut dyn ParameterTable); 2] {
+        [(FREEZES_PATH, &mut self.freezes.clocks), (DRAM_PATH, &mut self.dram)]
+    }
+
+    /// What stands in no table and changes results, where it is not as in [`Config::cycle`]: for names of experiments. Whether
+    /// blocks are memoised changes none.
+    #[must_use]
+    pub fn unusual_settings(&self) -> Vec<(&'static str, String)> {
+        let Config { timing, freezes, dram: _, seeds, replacement_seed, memoise: _ } = self;
+        let usual = Config::cycle();
+        let all = [
+            ("i860.timing", *timing != usual.timing, timing.to_string()),
+            ("i860.freezes", freezes.names() != usual.freezes.names(), freezes.names()),
+            ("i860.seeds", *seeds != usual.seeds, seeds.name().to_owned()),
+            ("i860.replacement_seed", *replacement_seed != usual.replacement_seed, replacement_seed.to_string()),
+        ];
+        all.into_iter().filter(|(_, differs, _)| *differs).map(|(key, _, value)| (key, value)).collect()
     }
 
     /// The same results without clocks.

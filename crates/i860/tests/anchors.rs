@@ -111,12 +111,15 @@ fn three_reciprocal_square_roots_at_once_take_39_clocks() {
     }
 }
 
+fn singles(n: usize) -> String {
+    "pfmul.ss f9, f10, f11\n".repeat(n)
+}
+
 /// The loop of 106 clocks and 117 instructions of period tree code cannot be re-created from its description; what is
 /// known is its shape: 11 pairs, 95 single instructions, a taken bnc.t, its label at 4 mod 8, no freeze. A loop of
 /// that shape must take 106 clocks a turn.
 #[test]
 fn a_loop_of_the_shape_of_the_tree_code_takes_106_clocks_a_turn() {
-    let singles = |n: usize| "pfmul.ss f9, f10, f11\n".repeat(n);
     // The entry word is two single instructions, then 11 pairs, the last two with D clear.
     let pairs =
         "d.m12apm.ss f9, f10, f11\nadds 1, r6, r6\n".repeat(9) + &"m12apm.ss f9, f10, f11\nadds 1, r6, r6\n".repeat(2);

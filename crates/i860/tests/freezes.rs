@@ -188,15 +188,28 @@ fn row_3_a_floating_load_that_misses_blocks_and_one_that_hits_does_not() {
     assert_eq!(cost(Freeze::FloatingLoadMiss, "fld.d 0(r4), f8\nfld.d 24(r4), f8"), 1 + read);
 }
 
+/// Two instructions with so many others between them.
+fn apart(first: &str, nops: u64, next: &str) -> String {
+    format!("{first}\n{}{next}", "nop\n".repeat(nops as usize))
+}
+
+fn cost_apart(row: Freeze, first: &str, nops: u64, next: &str) -> u64 {
+    cost(row, &apart(first, nops, next))
+}
+
+fn pipelined_loads(n: usize) -> String {
+    "pfld.d 8(r4)++, f8\n".repeat(n)
+}
+
 /// The list, 4, call, calli, ixfr, fxfr, ld.c, st.c while a data miss is in progress: "1 + clocks to first READY#".
 #[test]
 fn row_4_transfers_wait_for_the_first_word_of_a_fill() {
     let read = dram().first_miss;
     for transfer in ["ixfr r6, f8", "fxfr f8, r6", "ld.c psr, r6", "st.c r0, fsr"] {
-        let source = |gap: &str| format!("ld.l 0(r4), r5\n{gap}{transfer}");
-        assert_eq!(cost(Freeze::TransferDuringMiss, &source("")), 1 + read, "{transfer}");
-        assert_eq!(cost(Freeze::TransferDuringMiss, &source(&"nop\n".repeat(read as usize))), 1);
-        assert_eq!(cost(Freeze::TransferDuringMiss, &source(&"nop\n".repeat(read as usize + 1))), 0);
+        let row = Freeze::TransferDuringMiss;
+        assert_eq!(cost_apart(row, "ld.l 0(r4), r5", 0, transfer), 1 + read, "{transfer}");
+        assert_eq!(cost_apart(row, "ld.l 0(r4), r5", read, transfer), 1);
+        assert_eq!(cost_apart(row, "ld.l 0(r4), r5", read + 1, transfer), 0);
     }
 }
 
@@ -206,10 +219,10 @@ fn row_5_accesses_wait_for_the_whole_line() {
     let t = dram();
     let line = t.first_miss + 3 * t.next;
     for access in ["ld.l 4(r4), r6", "st.l r6, 4(r4)", "fld.d 8(r4), f8", "fst.d f8, 8(r4)"] {
-        let source = |gap: u64| format!("ld.l 0(r4), r5\n{}{access}", "nop\n".repeat(gap as usize));
-        assert_eq!(cost(Freeze::AccessDuringMiss, &source(0)), 1 + line, "{access}");
-        assert_eq!(cost(Freeze::AccessDuringMiss, &source(line)), 1);
-        assert_eq!(cost(Freeze::AccessDuringMiss, &source(line + 1)), 0);
+        let row = Freeze::AccessDuringMiss;
+        assert_eq!(cost_apart(row, "ld.l 0(r4), r5", 0, access), 1 + line, "{access}");
+        assert_eq!(cost_apart(row, "ld.l 0(r4), r5", line, access), 1);
+        assert_eq!(cost_apart(row, "ld.l 0(r4), r5", line + 1, access), 0);
     }
 }
 
@@ -232,10 +245,10 @@ fn row_6_the_next_instruction_waits_for_a_load_and_the_one_after_does_not() {
 #[test]
 fn row_7_a_floating_load_is_waited_for_by_two_instructions() {
     for load in ["fld.d 0(r4), f8", "pfld.d 0(r4), f8", "ixfr r5, f8"] {
-        let source = |gap: &str| format!("{load}\n{gap}pfadd.ss f8, f10, f12");
-        assert_eq!(cost(Freeze::FloatingLoadUse, &source("")), 2, "{load}");
-        assert_eq!(cost(Freeze::FloatingLoadUse, &source("nop\n")), 1);
-        assert_eq!(cost(Freeze::FloatingLoadUse, &source("nop\nnop\n")), 0);
+        for (gap, expected) in [(0, 2), (1, 1), (2, 0)] {
+            let found = cost_apart(Freeze::FloatingLoadUse, load, gap, "pfadd.ss f8, f10, f12");
+            assert_eq!(found, expected, "{load}, {gap} between");
+        }
     }
     assert_eq!(cost(Freeze::FloatingLoadUse, "fld.q 0(r4), f8\npfadd.ss f11, f2, f3"), 2);
     assert_eq!(cost(Freeze::FloatingLoadUse, "fld.d 0(r4), f8\npfadd.ss f10, f2, f3"), 0);
@@ -270,10 +283,10 @@ fn row_9_the_first_source_of_a_multiply_waits_for_the_result_before_it() {
 fn row_10_a_scalar_operation_holds_the_unit_for_two_clocks_more() {
     for scalar in ["fadd.ss f8, f9, f10", "fmul.ss f8, f9, f10", "famov.ss f8, f10"] {
         for next in ["fadd.ss f2, f3, f4", "fst.l f3, 0(r4)", "fiadd.ss f2, f3, f4", "pfadd.ss f2, f3, f0"] {
-            let source = |gap: &str| format!("{scalar}\n{gap}{next}");
-            assert_eq!(cost(Freeze::ScalarBusy, &source("")), 2, "{scalar} {next}");
-            assert_eq!(cost(Freeze::ScalarBusy, &source("nop\n")), 1);
-            assert_eq!(cost(Freeze::ScalarBusy, &source("nop\nnop\n")), 0);
+            for (gap, expected) in [(0, 2), (1, 1), (2, 0)] {
+                let found = cost_apart(Freeze::ScalarBusy, scalar, gap, next);
+                assert_eq!(found, expected, "{scalar} {next}, {gap} between");
+            }
         }
     }
     assert_eq!(cost(Freeze::ScalarBusy, "frcp.ss f8, f10\nfadd.ss f2, f3, f4"), 0);
@@ -292,12 +305,14 @@ fn row_10b_a_double_multiply_holds_it_for_three() {
 #[test]
 fn rows_10c_and_10d_add_to_a_wait_but_make_none() {
     let busy = FreezeRules::none().with(Freeze::ScalarBusy);
-    let change = |gap: &str| {
-        cost_beside(busy, Freeze::ScalarPrecisionChange, &format!("fadd.ss f8,f9,f10\n{gap}fadd.dd f2,f4,f6"))
-    };
-    assert_eq!((change(""), change("nop\n"), change("nop\nnop\n")), (1, 1, 0));
-    let pipe = |next: &str| cost_beside(busy, Freeze::ScalarThenPipelined, &format!("fadd.ss f8,f9,f10\n{next}"));
-    assert_eq!((pipe("pfadd.ss f2,f3,f4"), pipe("pfadd.ss f2,f3,f0"), pipe("fadd.ss f2,f3,f4")), (1, 0, 0));
+    for (gap, expected) in [(0, 1), (1, 1), (2, 0)] {
+        let source = apart("fadd.ss f8,f9,f10", gap, "fadd.dd f2,f4,f6");
+        assert_eq!(cost_beside(busy, Freeze::ScalarPrecisionChange, &source), expected, "{gap} between");
+    }
+    for (next, expected) in [("pfadd.ss f2,f3,f4", 1), ("pfadd.ss f2,f3,f0", 0), ("fadd.ss f2,f3,f4", 0)] {
+        let source = apart("fadd.ss f8,f9,f10", 0, next);
+        assert_eq!(cost_beside(busy, Freeze::ScalarThenPipelined, &source), expected, "{next}");
+    }
 }
 
 /// The list, 11, multiplier operation after a double-precision multiply: "1". The data sheet's 60 MFLOPS double at 40 MHz is one
@@ -316,10 +331,11 @@ fn row_11_the_multiplier_takes_a_double_every_second_clock() {
 fn row_12_a_page_seen_first_costs_five_and_two_reads() {
     let t = dram();
     let translation_on = "adds 1, r0, r5\nst.c r5, dirbase\n";
-    let load = |n: u32| format!("{translation_on}{}", "ld.l 0(r4), r6\n".repeat(n as usize));
     let reads = t.first_miss + t.first_miss;
-    assert_eq!(cost(Freeze::TlbMiss, &load(1)), 5 + reads);
-    assert_eq!(cost(Freeze::TlbMiss, &load(3)), 5 + reads);
+    for n_loads in [1, 3] {
+        let source = format!("{translation_on}{}", "ld.l 0(r4), r6\n".repeat(n_loads));
+        assert_eq!(cost(Freeze::TlbMiss, &source), 5 + reads, "{n_loads} loads");
+    }
     assert_eq!(cost(Freeze::TlbMiss, "ld.l 0(r4), r6"), 0, "translation is off");
 }
 
@@ -327,11 +343,10 @@ fn row_12_a_page_seen_first_costs_five_and_two_reads() {
 #[test]
 fn row_13_the_fourth_pipelined_load_waits_for_the_first() {
     let t = dram();
-    let loads = |n: usize| "pfld.d 8(r4)++, f8\n".repeat(n);
-    assert_eq!(cost(Freeze::LoadPipeFull, &loads(3)), 0);
+    assert_eq!(cost(Freeze::LoadPipeFull, &pipelined_loads(3)), 0);
     // The first was requested after one clock; the fourth issues, then waits, at clock 4.
-    assert_eq!(cost(Freeze::LoadPipeFull, &loads(4)), t.first_miss + 1 - 4 + 1);
-    let late = format!("{}{}{}", loads(3), "nop\n".repeat(t.first_miss as usize - 3), loads(1));
+    assert_eq!(cost(Freeze::LoadPipeFull, &pipelined_loads(4)), t.first_miss + 1 - 4 + 1);
+    let late = format!("{}{}{}", pipelined_loads(3), "nop\n".repeat(t.first_miss as usize - 3), pipelined_loads(1));
     assert_eq!(cost(Freeze::LoadPipeFull, &late), 0);
 }
 
@@ -340,10 +355,10 @@ fn row_13_the_fourth_pipelined_load_waits_for_the_first() {
 fn row_14_a_pipelined_load_that_hits_waits_for_the_bus_and_two_more() {
     let t = dram();
     let line = t.first_miss + 3 * t.next;
-    let after = |gap: u64| format!("ld.l 0(r4), r5\n{}pfld.d 8(r4), f8", "nop\n".repeat(gap as usize));
-    assert_eq!(cost(Freeze::PipelinedLoadHit, &after(line + 10)), 2);
+    let row = Freeze::PipelinedLoadHit;
+    assert_eq!(cost_apart(row, "ld.l 0(r4), r5", line + 10, "pfld.d 8(r4), f8"), 2);
     // The line ends `line` clocks after the load's issue, and one of them is this instruction's own.
-    assert_eq!(cost(Freeze::PipelinedLoadHit, &after(0)), line - 1 + 2);
+    assert_eq!(cost_apart(row, "ld.l 0(r4), r5", 0, "pfld.d 8(r4), f8"), line - 1 + 2);
 }
 
 /// The list, 15, store pipe full (2 internal and the bus) and a store misses: "1 + clocks to READY# of next write".
@@ -360,18 +375,16 @@ fn row_15_the_fourth_store_waits_for_the_first_to_leave() {
 fn row_16_a_fourth_request_waits_for_the_first_to_end() {
     let t = dram();
     // Pipelined loads without row 13 use the address pipe alone: requests at 1, 2, 3, then 4.
-    let loads = |n: usize| "pfld.d 8(r4)++, f8\n".repeat(n);
-    assert_eq!(cost(Freeze::AddressPipeFull, &loads(3)), 0);
-    assert_eq!(cost(Freeze::AddressPipeFull, &loads(4)), 1 + t.first_miss - 4);
+    assert_eq!(cost(Freeze::AddressPipeFull, &pipelined_loads(3)), 0);
+    assert_eq!(cost(Freeze::AddressPipeFull, &pipelined_loads(4)), 1 + t.first_miss - 4);
 }
 
 /// The list, 17, ld or fld right after a store that hit: "1".
 #[test]
 fn row_17_a_load_right_behind_a_store_that_hit_waits() {
-    let fill = format!("ld.l 0(r4), r5\n{}", "nop\n".repeat(30));
-    let source = |gap: &str| format!("{fill}st.l r5, 4(r4)\n{gap}ld.l 8(r4), r6");
-    assert_eq!(cost(Freeze::LoadAfterStoreHit, &source("")), 1);
-    assert_eq!(cost(Freeze::LoadAfterStoreHit, &source("nop\n")), 0);
+    let store = apart("ld.l 0(r4), r5", 30, "st.l r5, 4(r4)");
+    assert_eq!(cost_apart(Freeze::LoadAfterStoreHit, &store, 0, "ld.l 8(r4), r6"), 1);
+    assert_eq!(cost_apart(Freeze::LoadAfterStoreHit, &store, 1, "ld.l 8(r4), r6"), 0);
     assert_eq!(cost(Freeze::LoadAfterStoreHit, "st.l r5, 4(r4)\nld.l 8(r4), r6"), 0, "the store missed");
 }
 
@@ -424,9 +437,10 @@ fn row_22_a_graphics_result_is_late_by_one() {
 /// The list, 23, flush after flush: "2 - instructions between".
 #[test]
 fn row_23_a_flush_waits_for_the_flush_before() {
-    let row = Freeze::FlushAfterFlush;
-    let source = |gap: &str| format!("flush 0(r4)\n{gap}flush 32(r4)");
-    assert_eq!((cost(row, &source("")), cost(row, &source("nop\n")), cost(row, &source("nop\nnop\n"))), (2, 1, 0));
+    for (gap, expected) in [(0, 2), (1, 1), (2, 0)] {
+        let found = cost_apart(Freeze::FlushAfterFlush, "flush 0(r4)", gap, "flush 32(r4)");
+        assert_eq!(found, expected, "{gap} between");
+    }
 }
 
 /// The list, 24, fst, pst, then a pipelined operation that overwrites the stored register: "1".
@@ -457,12 +471,15 @@ fn simultaneous_freezes_cost_the_longest() {
     assert_eq!(clocks_with(both, source) - clocks_with(FreezeRules::none(), source), 2);
 }
 
+/// A pair of instructions right behind one that loads f8.
+fn pair_behind_a_transfer(low: &str, high: &str) -> String {
+    format!("d.fnop\nnop\nd.fnop\nixfr r5, f8\nd.{low}\n{high}\nfnop\nnop\nfnop\nnop")
+}
+
 #[test]
 fn both_halves_of_a_pair_wait_together_for_the_longer_freeze() {
-    let halves =
-        |low: &str, high: &str| format!("d.fnop\nnop\nd.fnop\nixfr r5, f8\nd.{low}\n{high}\nfnop\nnop\nfnop\nnop");
-    let plain = halves("pfadd.ss f0, f0, f0", "ld.l 0(r4), r6");
-    let waiting = halves("pfadd.ss f8, f0, f0", "ld.l 0(r4), r6");
+    let plain = pair_behind_a_transfer("pfadd.ss f0, f0, f0", "ld.l 0(r4), r6");
+    let waiting = pair_behind_a_transfer("pfadd.ss f8, f0, f0", "ld.l 0(r4), r6");
     // Two single instructions, then one clock for each of four pairs; the first pair is dual once the word is over.
     assert_eq!(clocks_with(FreezeRules::none(), &plain), 2 + 4);
     let row = FreezeRules::none().with(Freeze::FloatingLoadUse);

@@ -144,10 +144,14 @@ fn a_profile_by_address_accounts_for_the_same_clocks() {
     assert_eq!(by_address, plain.clocks());
 }
 
+/// Misses of the instruction cache and of the data cache.
+fn misses(cpu: &Cpu) -> (u64, u64) {
+    (cpu.profile().instruction_misses, cpu.profile().data_misses)
+}
+
 #[test]
 fn caches_emptied_between_runs_are_noticed() {
     let (mut cpu, mut ram) = run_loop(|_| {});
-    let misses = |cpu: &Cpu| (cpu.profile().instruction_misses, cpu.profile().data_misses);
     let before = misses(&cpu);
     cpu.empty_caches();
     cpu.state.pc = CODE;

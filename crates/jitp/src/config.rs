@@ -1,6 +1,7 @@
 //! Who takes part, and which variant runs.
 
 use crate::timing::JitpTiming;
+use pxpl5_display::{Aim, LightSpan};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
@@ -23,9 +24,9 @@ pub enum Interpolation {
 /// The moments that a field's picture is computed for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Viewpoint {
-    /// One for the whole field: when its first line is scanned.
+    /// One for the whole field.
     Field,
-    /// One for each strip: when its middle is scanned.
+    /// One for each strip.
     Strip,
     /// Between the first and the last pixel of the field.
     Dual(Interpolation),
@@ -54,24 +55,38 @@ pub enum DrawingSchedule {
     },
 }
 
-/// A function of (field, row of the field, pixel): when the beam is there.
+/// When the beam is where.
 #[derive(Clone)]
-pub struct Beam(Arc<dyn Fn(PeriodNumber, u32, u32) -> Time + Send + Sync>);
+pub struct Beam {
+    /// A function of (field, row of the field, pixel).
+    at: Arc<dyn Fn(PeriodNumber, u32, u32) -> Time + Send + Sync>,
+    /// A function of the field.
+    retrace: Arc<dyn Fn(PeriodNumber) -> Time + Send + Sync>,
+}
 
 /// A function of the step: which block comes.
 #[derive(Clone)]
 pub struct BlockOrder(Arc<dyn Fn(u64) -> RegionId + Send + Sync>);
 
 impl Beam {
-    /// A beam that is at (field, row of the field, pixel) when `when` says.
-    pub fn new(when: impl Fn(PeriodNumber, u32, u32) -> Time + Send + Sync + 'static) -> Self {
-        Self(Arc::new(when))
+    /// A beam that is at (field, row of the field, pixel) when `when` says, and begins a field when `retrace` says.
+    pub fn new(
+        when: impl Fn(PeriodNumber, u32, u32) -> Time + Send + Sync + 'static,
+        retrace: impl Fn(PeriodNumber) -> Time + Send + Sync + 'static,
+    ) -> Self {
+        Self { at: Arc::new(when), retrace: Arc::new(retrace) }
     }
 
     /// When the beam is at a pixel of a row of a field.
     #[must_use]
     pub fn at(&self, field: PeriodNumber, row: u32, x: u32) -> Time {
-        (self.0)(field, row, x)
+        (self.at)(field, row, x)
+    }
+
+    /// The retrace that begins a field.
+    #[must_use]
+    pub fn retrace(&self, field: PeriodNumber) -> Time {
+        (self.retrace)(field)
     }
 }
 
@@ -105,7 +120,7 @@ pub struct Wanted {
     pub number: ViewNumber,
     /// Reports that the host had by then have reached the master.
     pub known: Time,
-    /// When the view will be seen.
+    /// The moment that the view is drawn for.
     pub shown_at: Time,
 }
 
@@ -126,6 +141,8 @@ pub struct JitpConfig {
     pub schedule: DrawingSchedule,
     /// When the beam is where.
     pub beam: Beam,
+    /// For which instant of what is shown from it a view is drawn.
+    pub aim: Aim,
     /// How the bits of pixel memory are divided among contexts.
     pub layout: Layout,
     /// Whether somebody may want pixels: without it no command words are made, and all times stay the same.
@@ -215,11 +232,11 @@ impl JitpConfig {
         self.renderers[usize::from(region.0) % self.renderers.len()]
     }
 
-    /// First and middle row of a strip.
+    /// First and last row of a strip.
     pub(crate) fn rows(&self, strip: u32) -> (u32, u32) {
         let RegionGrid { height, region_height, .. } = self.grid();
         let first = strip * region_height;
-        (first, (first + (region_height - 1) / 2).min(height - 1))
+        (first, (first + region_height - 1).min(height - 1))
     }
 
     /// When the first pixel of a strip is scanned, by which it must have arrived.
@@ -232,10 +249,27 @@ impl JitpConfig {
         strip == self.grid().rows() / 2
     }
 
-    /// When the middle of a strip is scanned.
+    /// The instant that a strip is drawn for.
     #[must_use]
-    pub fn middle(&self, field: PeriodNumber, strip: u32) -> Time {
-        self.beam.at(field, self.rows(strip).1, self.grid().width / 2)
+    pub fn aimed_at_strip(&self, field: PeriodNumber, strip: u32) -> Time {
+        let (first, last) = self.rows(strip);
+        self.aimed_at(field, first, last)
+    }
+
+    /// The instant that a field of one view is drawn for.
+    #[must_use]
+    pub fn aimed_at_field(&self, field: PeriodNumber) -> Time {
+        self.aimed_at(field, 0, self.grid().height - 1)
+    }
+
+    /// The instant that some rows of a field are drawn for.
+    fn aimed_at(&self, field: PeriodNumber, first: u32, last: u32) -> Time {
+        let shown = LightSpan {
+            tick: self.beam.retrace(field),
+            first: self.beam.at(field, first, 0),
+            last: self.beam.at(field, last, self.grid().width - 1),
+        };
+        self.aim.instant(&shown)
     }
 
     /// The first and the last pixel of a field: T0 and T1.
@@ -245,16 +279,34 @@ impl JitpConfig {
         (self.beam.at(field, 0, 0), self.beam.at(field, height - 1, width - 1))
     }
 
-    /// How much of the way from T0 to T1 the middle of a strip is.
+    /// How much of the way from T0 to T1 the instant is that a strip is drawn for; below 0 for the retrace, which is before T0.
     #[must_use]
     pub fn part(&self, field: PeriodNumber, strip: u32) -> f64 {
         let (begin, end) = self.ends(field);
-        self.middle(field, strip).since(begin).0 as f64 / end.since(begin).0 as f64
+        let from_begin = self.aimed_at_strip(field, strip).0 as f64 - begin.0 as f64;
+        from_begin / end.since(begin).0 as f64
     }
 
-    /// From the order of a strip to its beam: every slave has as many strip times as there are slaves.
-    pub(crate) fn lead(&self) -> Span {
-        let strip = self.deadline(PeriodNumber::FIRST, 1).since(self.deadline(PeriodNumber::FIRST, 0));
-        strip * self.slaves.len() as u64 + Span::from_ns(self.timing.margin_ns)
+    /// From the order of a strip to its beam: every slave has as many strip times as there are slaves, and a strip that does
+    /// not race the beam is there a field earlier.
+    ///
+    /// A field has one place in the frame buffer, which holds the field two before it until the beam has passed. No strip is
+    /// ordered before its lines of that field have been scanned, so that it cannot overwrite them.
+    pub(crate) fn lead(&self, racing: bool) -> Span {
+        let first = PeriodNumber::FIRST;
+        let begin = self.deadline(first, 0);
+        let strip = self.deadline(first, 1).since(begin);
+        let work = strip * self.slaves.len() as u64 + Span::from_ns(self.timing.margin_ns);
+        let next_of_its_lines = self.deadline(first.after(2), 0);
+        let field = next_of_its_lines.since(begin) / 2;
+        let wanted = if racing { work } else { work + field };
+        wanted.min(next_of_its_lines.since(self.scanned(first, 0)))
+    }
+
+    /// When the last pixel of a strip has been scanned.
+    fn scanned(&self, field: PeriodNumber, strip: u32) -> Time {
+        let RegionGrid { width, height, region_height, .. } = self.grid();
+        let last = ((strip + 1) * region_height).min(height) - 1;
+        self.beam.at(field, last, width - 1)
     }
 }

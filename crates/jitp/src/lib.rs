@@ -20,6 +20,10 @@
 //!   and interpolated, on the screen or in the view before the divide ([`Interpolation`]).
 //! - *Racing the beam* is independent of that: a strip is ordered just in time for the beam, or else one field
 //!   earlier, so that the whole field is there before its retrace.
+//! - All slaves draw in the same region context of a renderer. A region's commands may need several messages; they keep the
+//!   renderer's port until the last one, which copies the region, so that no other slave draws into it.
+//! - A strip is never ordered before its lines of the field two before have been scanned, however many slaves there are:
+//!   their place in the frame buffer is the same.
 //! - A strip whose beam has passed when a slave could begin it is left out; the lines of the field before stay.
 //! - *Frameless* ([`DrawingSchedule::Roam`]): blocks in a random order, each order with the newest view, shown at once.
 //!

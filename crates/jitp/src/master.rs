@@ -3,6 +3,7 @@
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint, Wanted};
 use crate::protocol::DrawingOrder;
 use pphigs::{FrameView, PrimitiveCounts, TransformCost};
+use pxpl5_display::LightSpan;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
@@ -70,7 +71,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
     }
 
     async fn follow_the_beam(&mut self, viewpoint: Viewpoint, racing: bool) {
-        let ahead = self.config.lead() + if racing { Span::ZERO } else { self.field_span() };
+        let ahead = self.config.lead(racing);
         let first = self.gp.field().after(2);
         let mut prepared = first;
         let strips = self.config.grid().rows();
@@ -88,11 +89,6 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
                 }
             }
         }
-    }
-
-    fn field_span(&self) -> Span {
-        let [first, third] = [PeriodNumber::FIRST, PeriodNumber(2)].map(|field| self.config.deadline(field, 0));
-        third.since(first) / 2
     }
 
     /// When slaves must begin to transform for a field: half again as early as that takes, since they draw meanwhile.
@@ -115,7 +111,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
         self.gp.begin_view(Stage::Sample, picture, at_begin);
         self.gp.begin(Stage::Transform, picture, None);
         let views = match viewpoint {
-            Viewpoint::Field => vec![self.view(at_begin, begin)],
+            Viewpoint::Field => vec![self.view(at_begin, self.config.aimed_at_field(field))],
             _ => vec![self.view(at_begin, begin), self.view(JitpConfig::view_number(field, 1), end)],
         };
         self.gp.spend(TransformCost::PASS.span(&self.gp.timing())).await;
@@ -131,7 +127,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
             self.gp.begin_view(Stage::Sample, picture, number);
             self.gp.begin(Stage::Transform, picture, None);
         }
-        let view = if own { Some(self.view(number, self.config.middle(field, strip))) } else { None };
+        let view = if own { Some(self.view(number, self.config.aimed_at_strip(field, strip))) } else { None };
         let deadline = self.config.deadline(field, strip);
         let slave = self.config.slaves[strip as usize % self.config.slaves.len()];
         let (words, body) = DrawingOrder::Strip { field, strip, deadline, view }.message();
@@ -148,7 +144,7 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
             let number = ViewNumber::taken_for(update);
             self.gp.begin_view(Stage::Sample, update, number);
             self.gp.begin(Stage::Transform, update, None);
-            let shown_at = self.gp.now() + flight.ordered(slave as usize, self.gp.now());
+            let shown_at = self.aimed_at_blocks(flight.ordered(slave as usize, self.gp.now()));
             let view = self.view(number, shown_at);
             let (words, body) = DrawingOrder::Blocks { update, step: update.0 * batch, view }.message();
             if let Some(node) = self.config.slaves.get(slave as usize) {
@@ -156,6 +152,21 @@ impl<V: FnMut(Wanted) -> FrameView> DrawingMaster<V> {
             }
         }
     }
+
+    /// The instant that a batch of blocks ordered now is drawn for.
+    fn aimed_at_blocks(&self, expected: Expected) -> Time {
+        let first = self.gp.now() + expected.drawing;
+        let beam = &self.config.beam;
+        let tick =
+            self.gp.field().onwards().map(|field| beam.retrace(field)).find(|tick| *tick >= first).unwrap_or(first);
+        self.config.aim.instant(&LightSpan { tick, first, last: first + expected.standing })
+    }
+}
+
+/// From an order until its blocks stand on the screen, and how long they do.
+struct Expected {
+    drawing: Span,
+    standing: Span,
 }
 
 /// How long orders have been on their way lately.
@@ -171,13 +182,12 @@ impl Flight {
         Self { last_order_of: vec![None; slaves], pass: VecDeque::new(), orders_of_pass: orders_of_pass as usize }
     }
 
-    /// From an order to the middle of the time in which its blocks are seen: as long as this slave's last order took,
-    /// and half a pass.
-    fn ordered(&mut self, slave: usize, now: Time) -> Span {
+    /// What an order may expect: as long as this slave's last order took, then a pass until all blocks are drawn anew.
+    fn ordered(&mut self, slave: usize, now: Time) -> Expected {
         self.pass.push_back(now);
         let oldest = if self.pass.len() > self.orders_of_pass { self.pass.pop_front() } else { None };
         let drawing = self.last_order_of[slave].replace(now).map_or(Span::ZERO, |at| now.since(at));
-        drawing + oldest.map_or(Span::ZERO, |at| now.since(at)) / 2
+        Expected { drawing, standing: oldest.map_or(Span::ZERO, |at| now.since(at)) }
     }
 }
 

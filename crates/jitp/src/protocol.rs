@@ -30,8 +30,14 @@ pub(crate) enum DrawingOrder {
 }
 
 impl DrawingOrder {
-    /// The words and their number.
+    /// The number of words, and the words as a message carries them.
     pub(crate) fn message(&self) -> (u32, Body) {
+        let words = self.words();
+        (words.len() as u32, Body::Words(words.into()))
+    }
+
+    /// The words themselves.
+    pub(crate) fn words(&self) -> Vec<Word> {
         let mut words = Vec::new();
         match self {
             Self::Field { field, views } => {
@@ -57,7 +63,7 @@ impl DrawingOrder {
             }
             Self::Done { slave } => words.extend([DONE, *slave]),
         }
-        (words.len() as u32, Body::Words(words.into()))
+        words
     }
 
     /// Reads a received order.

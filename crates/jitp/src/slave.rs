@@ -9,7 +9,7 @@ use pphigs::{DisplayList, FrameView, PrimitiveCounts, Share, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage, Ticket};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Body, NodeId, PeriodNumber, PictureNumber, RegionId};
+use pxpl5_wire::{Body, PeriodNumber, PictureNumber, RegionId};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
@@ -211,7 +211,9 @@ impl Slave {
         self.gp.send(self.config.master, words, body).await;
     }
 
-    /// Bins, and sends all regions as one chain of messages.
+    /// Bins, and sends all regions as one chain of messages. All slaves draw in the same region context of a renderer, so
+    /// the messages of a region keep the renderer's port until its last one, which copies it: those of another slave would
+    /// be drawn into this region, or clear it.
     async fn send(
         &self,
         picture: PictureNumber,
@@ -228,17 +230,12 @@ impl Slave {
         self.gp.spend(binning + Span::from_ns(self.config.timing.interpolate_ns * interpolated)).await;
         self.gp.clump_buffer_free().await;
         let pieces = regions.iter().zip(&windows).zip(&counts);
-        let batch: Vec<_> = pieces
-            .flat_map(|((region, window), counts)| {
-                let target = self.config.target(picture, *region);
-                let lists = messages(&self.config, drawing, *window, *counts, target);
-                lists.into_iter().map(|list| self.addressed(*region, list))
-            })
-            .collect();
-        self.gp.send_batch(batch).await
-    }
-
-    fn addressed(&self, region: RegionId, list: pxpl5_wire::CommandList) -> (NodeId, u32, Body) {
-        (self.config.renderer_of(region), list.words(), Body::Commands(list))
+        let groups = pieces.map(|((region, window), counts)| {
+            let target = self.config.target(picture, *region);
+            let lists = messages(&self.config, drawing, *window, *counts, target);
+            let group = lists.into_iter().map(|list| (list.words(), Body::Commands(list)));
+            (self.config.renderer_of(*region), group.collect())
+        });
+        self.gp.send_groups(groups.collect()).await
     }
 }

@@ -7,7 +7,7 @@ use crate::pass::{BinEntry, Pass};
 use crate::picture::Shading;
 use crate::placed::{PlacedStructure, Vertices};
 use pxpl5_geometry::{
-    GouraudSphere, GouraudTriangle, LANES, PhongSphere, PhongTriangle, SetupStats, SphereSetup, Transform,
+    GouraudSphere, GouraudTriangle, LANES, Light, PhongSphere, PhongTriangle, SetupStats, SphereSetup, Transform,
     TriangleLanes, VertexSurface,
 };
 use pxpl5_renderer::{
@@ -198,7 +198,7 @@ impl CommandWords for RegionWords {
         self.triangles(out);
         self.spheres(out);
         if self.part.shade {
-            append(&Command::Shade(self.shade()), &picture.layout, out);
+            append(&Command::Shade(shade(self.pass.light())), &picture.layout, out);
         }
         if let Some(order) = &self.part.copy {
             append(&Command::CopyRegion(CopyRegion { target: order.target }), &picture.layout, out);
@@ -312,19 +312,20 @@ impl RegionWords {
             }
         }
     }
+}
 
-    /// Light and highlight in the formats of the command; the eye looks along -z.
-    fn shade(&self) -> Shade {
-        let Some(light) = self.pass.light() else { return Shade::default() };
-        let towards = light.direction;
-        let half = unit([towards[0], towards[1], towards[2] + 1.0]);
-        Shade {
-            light: fixed_direction(towards),
-            half: fixed_direction(half),
-            ambient: fixed_part(light.ambient),
-            diffuse: fixed_part(light.diffuse),
-            specular: SPECULAR,
-        }
+/// Light and highlight in the formats of the command; the eye looks along -z. Nothing is lit without a light.
+#[must_use]
+pub fn shade(light: Option<&Light>) -> Shade {
+    let Some(light) = light else { return Shade::default() };
+    let towards = light.direction;
+    let half = unit([towards[0], towards[1], towards[2] + 1.0]);
+    Shade {
+        light: fixed_direction(towards),
+        half: fixed_direction(half),
+        ambient: fixed_part(light.ambient),
+        diffuse: fixed_part(light.diffuse),
+        specular: SPECULAR,
     }
 }
 

@@ -11,6 +11,7 @@
 //! - [`DisplayList`]: triangles, spheres, and structures with a model matrix each.
 //! - [`Share`]: every n-th primitive, as primitives are dealt to the GPs round-robin (TR94).
 //! - [`FrameView`]: what the host sends for a frame: viewing transforms and edits, as words.
+//! - [`send_as_tracked`]: the host of a pipeline that takes the newest view when it needs one.
 //! - [`Pass`]: one TRANSFORM: which primitives touch which regions, counted at once; command words are made when somebody
 //!   wants pixels, from the same transformed vertices.
 //! - [`TransformCost`]: what a TRANSFORM does, counted, and its time by table.
@@ -30,11 +31,12 @@ mod pass;
 mod picture;
 mod placed;
 mod placing;
+mod sending;
 mod structure;
 mod view;
 
 pub use code::{KernelOutput, Transforming};
-pub use commands::{RegionEnvelope, copy_message, gouraud_sphere, region_messages};
+pub use commands::{RegionEnvelope, copy_message, gouraud_sphere, region_messages, shade};
 pub use cost::TransformCost;
 pub use counts::PrimitiveCounts;
 pub use list::{DisplayList, Share};
@@ -42,5 +44,6 @@ pub use pass::Pass;
 pub use picture::{Binning, Picture, Shading};
 pub use placed::{PlacedStructure, RecentViews};
 pub use placing::place_all;
+pub use sending::send_as_tracked;
 pub use structure::{DisplayStructure, ModelFrame};
 pub use view::{EyeView, FrameView, MAX_EDITS, ModelEdit, ViewWordsError};

@@ -8,7 +8,7 @@ use pphigs::{
 use pxpl5_geometry::{Sphere, Viewport};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
 use pxpl5_renderer::Layout;
-use pxpl5_sim::Span;
+use pxpl5_sim::{Span, SplitMix64};
 use pxpl5_wire::{FieldParity, NodeId, RegionId, ViewNumber, Word};
 use std::sync::Arc;
 
@@ -16,12 +16,11 @@ const MEMORY: u64 = 8 << 20;
 const VERSIONS: [CodeVersion; 2] = [CodeVersion::Compiled, CodeVersion::Scheduled];
 
 /// Numbers in 0 to 1, the same on every host.
-struct Numbers(u64);
+struct Numbers(SplitMix64);
 
 impl Numbers {
     fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 40) as f32 / (1u32 << 24) as f32
+        self.0.unit()
     }
 
     fn vector(&mut self, size: f32) -> Vec3 {
@@ -31,7 +30,7 @@ impl Numbers {
 
 /// Triangles in two structures, one fixed to the head, all in front of the eye.
 fn list(triangles: u32) -> Arc<DisplayList> {
-    let mut numbers = Numbers(7);
+    let mut numbers = Numbers(SplitMix64::new(7));
     let mut list = DisplayList { towards_light: Vec3::new(0.48, 0.6, 0.64), ..DisplayList::default() };
     list.ambient = 0.25;
     list.diffuse = 0.75;
@@ -76,7 +75,7 @@ fn picture(viewport: Viewport, shading: Shading, binning: Binning) -> Picture {
 }
 
 fn board(version: CodeVersion, share: &Share) -> Processor {
-    let mut processor = Processor::new(NodeId(1), MEMORY, version);
+    let mut processor = Processor::new(NodeId(1), MEMORY, version, i860::Config::cycle());
     share.install(&mut processor).expect("it fits");
     processor
 }
@@ -177,7 +176,7 @@ fn a_picture_without_a_kernel_takes_the_time_of_the_table() {
 #[test]
 fn a_display_list_larger_than_the_memory_is_refused() {
     let share = Share::new(list(300), 0, 1);
-    let mut small = Processor::new(NodeId(4), 1 << 20, CodeVersion::Compiled);
+    let mut small = Processor::new(NodeId(4), 1 << 20, CodeVersion::Compiled, i860::Config::cycle());
     let error = share.install(&mut small).expect_err("it begins behind the first megabyte");
     assert_eq!(error.to_string(), "graphics processor at node 4: no memory for 24 words at 0x00100000");
 }
@@ -194,7 +193,7 @@ fn output_bytes(pass: &Pass, triangles: u32, command_bytes: u32) -> u32 {
 fn both_contexts(memory: u64) -> (Processor, [Arc<Pass>; 2]) {
     let share = Share::new(list(90), 0, 1);
     let view = view();
-    let mut processor = Processor::new(NodeId(2), memory, CodeVersion::Scheduled);
+    let mut processor = Processor::new(NodeId(2), memory, CodeVersion::Scheduled, i860::Config::cycle());
     share.install(&mut processor).expect("it fits");
     let picture = picture(Viewport::FRAME, Shading::Gouraud, Binning::Touched);
     (processor, [0, 1].map(|eye| share.transform(&view, eye, picture)))

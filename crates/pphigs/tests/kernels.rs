@@ -54,9 +54,10 @@ fn the_dual_kernel_gives_the_native_words_and_bins() {
 fn each_pass_of_the_dual_kernel_fits_the_instruction_cache() {
     for (surface, field) in [(KernelSurface::Gouraud, false), (KernelSurface::Phong, true)] {
         let program = kernel::program(Kernel { surface, field, ..frame(Schedule::Dual) });
-        let at = |label: &str| program.symbol(label).expect("label");
+        let [batch, lighted, surface, start, second] =
+            ["batch", "lighted", "surface", "start", "second"].map(|label| program.symbol(label).expect("label"));
         let end = program.base + program.bytes.len() as u32;
-        let passes = [at("lighted") - at("batch"), at("start") - at("surface"), end - at("second")];
+        let passes = [lighted - batch, start - surface, end - second];
         assert!(passes.iter().all(|bytes| *bytes <= 4096), "{passes:?} bytes");
     }
 }

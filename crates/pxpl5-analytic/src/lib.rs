@@ -30,8 +30,9 @@ pub use slats::{FieldTimes, SlatsModel};
 
 use pxpl5_framebuffer::{FrameBufferConfig, Video};
 use pxpl5_machine::{ConfigError, MachineConfig};
-use pxpl5_run::{Experiment, ExperimentError, Pipeline, Registry};
+use pxpl5_run::{Experiment, ExperimentError, Pipeline, Registry, Summary};
 use std::any::Any;
+use std::sync::Arc;
 
 /// Adds the closed forms to the pipelines that have one.
 pub fn add_closed_forms(registry: &mut Registry) {
@@ -48,6 +49,32 @@ fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, Experim
     let pipeline: &dyn Any = experiment.pipeline().as_ref();
     let found = pipeline.downcast_ref().copied();
     found.ok_or_else(|| no_form(experiment.pipeline().name()).into())
+}
+
+/// Fields that an estimate looks at: enough for a steady state, and for some of the views of a head that moves.
+const ESTIMATED_FIELDS: (u64, u64) = (24, 60);
+
+/// The most primitives of an experiment's scene, its first ones, with which a closed form has every picture that is due shown.
+/// A head with a tracker is left out: the scene's own motion stands for it.
+fn triangles_in_time(
+    experiment: &Experiment,
+    summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
+) -> Option<u64> {
+    let (least, most) = ESTIMATED_FIELDS;
+    let plain = experiment.clone().without_head().fields(experiment.length().clamp(least, most));
+    let whole = Arc::clone(plain.scene());
+    let is_in_time = |primitives: usize| {
+        let scene = whole.truncated(primitives).ok()?;
+        let due = summary(&plain.clone().with_scene(scene)).ok()?.due?;
+        Some(due.not_shown() == 0)
+    };
+    let mut in_time = 0;
+    let mut too_many = whole.triangles().len() + whole.spheres().len() + 1;
+    while too_many - in_time > 1 {
+        let middle = in_time + (too_many - in_time) / 2;
+        *if is_in_time(middle)? { &mut in_time } else { &mut too_many } = middle;
+    }
+    Some(in_time as u64)
 }
 
 fn no_form(what: &str) -> ConfigError {

@@ -1,6 +1,6 @@
 //! What a scene asks of the machine, as numbers.
 
-use pphigs::{Binning, Picture, Shading, Share};
+use pphigs::{Binning, Picture, PrimitiveCounts, Shading, Share};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_run::{Experiment, ExperimentError, display_list, views};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub struct Load {
     /// Triangles held by all GPs together.
     pub triangles: f64,
-    /// Spheres held.
+    /// Spheres held by all GPs together.
     pub spheres: f64,
     /// Triangles and spheres in the bin of each region.
     pub bins: Vec<[f64; 2]>,
@@ -32,6 +32,12 @@ impl Load {
     #[must_use]
     pub fn entries(&self) -> f64 {
         self.bins.iter().map(|[triangles, spheres]| triangles + spheres).sum()
+    }
+
+    /// Triangles and spheres in a region's bin together.
+    pub(crate) fn primitives_in(&self, region: usize) -> f64 {
+        let [triangles, spheres] = self.bins[region];
+        triangles + spheres
     }
 
     /// The scene of an experiment from views of its own head motion at some times (ps): both eyes of each.
@@ -65,15 +71,16 @@ impl Load {
 
     fn of_pass(share: &Share, pass: &pphigs::Pass) -> Self {
         let held = share.counts();
-        let bin = |region| {
-            let counts = pass.counts(RegionId(region));
-            [f64::from(counts.triangles), f64::from(counts.spheres)]
-        };
-        let regions = pass.picture().viewport.grid().regions() as u16;
+        let regions = (0..pass.picture().viewport.grid().regions() as u16).map(RegionId);
         Self {
             triangles: f64::from(held.triangles),
             spheres: f64::from(held.spheres),
-            bins: (0..regions).map(bin).collect(),
+            bins: regions.map(|region| bin(pass.counts(region))).collect(),
         }
     }
+}
+
+/// Triangles and spheres of a bin.
+fn bin(counts: PrimitiveCounts) -> [f64; 2] {
+    [f64::from(counts.triangles), f64::from(counts.spheres)]
 }

@@ -1,5 +1,7 @@
 //! A renderer's input FIFO and array, a message at a time.
 
+use pxpl5_renderer::{CommandKind, RendererTiming};
+
 /// The later of two times. (`f64::max` has to look for a NaN; there is none.)
 #[inline]
 pub(super) fn later(a: f64, b: f64) -> f64 {
@@ -17,6 +19,14 @@ pub(super) fn sooner(a: f64, b: f64) -> f64 {
 pub(super) struct Cost {
     pub(super) words: f64,
     pub(super) ns: f64,
+}
+
+impl Cost {
+    /// Words and time of one command on a renderer.
+    pub(super) fn of_command(timing: &RendererTiming, kind: CommandKind) -> Self {
+        let ns = timing.span(kind).map_or(0.0, |span| span.as_ms() * 1e6);
+        Self { words: f64::from(kind.words()), ns }
+    }
 }
 
 /// Depth and speed of the FIFO.
@@ -55,7 +65,8 @@ enum Room {
 impl Commands {
     /// `count` commands behind a head.
     pub(super) fn new(fifo: Fifo, head: Cost, count: f64, each: Cost) -> Self {
-        let (total, word_ns) = (head.words + count * each.words, fifo.word_ns);
+        let total = head.words + count * each.words;
+        let word_ns = fifo.word_ns;
         let slowest = each.ns.max(each.words * word_ns);
         let before_last = total - 1.0 - fifo.depth_words - head.words;
         let room = if before_last >= 0.0 {

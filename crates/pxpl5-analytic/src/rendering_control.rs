@@ -3,11 +3,15 @@
 use super::load::Load;
 use super::renderer::Cost;
 use crate::{pipeline_of, video_of};
-use pphigs::{Binning, Shading};
+use pphigs::{Binning, Shading, TransformCost};
 use pxpl5_geometry::Viewport;
+use pxpl5_gp::GpTiming;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
-use pxpl5_run::{ClosedForm, Experiment, ExperimentError, Pipeline, RenderingControl, Summary, WARM_UP_PICTURES};
+use pxpl5_run::{
+    ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureEnd, Pipeline, RenderingControl, Summary,
+    WARM_UP_PICTURES,
+};
 use pxpl5_sim::Time;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, RegionGrid, RegionId};
 
@@ -20,15 +24,12 @@ pub struct StereoModel {
     eyes: usize,
     slaves: f64,
     renderers: usize,
+    gp: GpTiming,
     message_ns: f64,
     host_ns: f64,
     word_ns: f64,
     overhead_ns: f64,
     hop_ns: f64,
-    pass_ns: f64,
-    triangle_ns: f64,
-    sphere_ns: f64,
-    entry_ns: f64,
     clear: Cost,
     triangle: Cost,
     sphere: Cost,
@@ -51,6 +52,18 @@ pub struct StereoTimes {
     pub copy_ns: [(f64, f64); 2],
     /// The retrace at which the frame is shown.
     pub shown_ns: f64,
+}
+
+impl StereoTimes {
+    /// From the first word of an eye's copy to its last one.
+    fn copy_length_ns(&self, eye: usize) -> f64 {
+        self.copy_ns[eye].1 - self.copy_ns[eye].0
+    }
+}
+
+/// Mean of a time in nanoseconds over frames, in milliseconds.
+fn mean_ms(frames: &[&StereoTimes], ns: impl Fn(&StereoTimes) -> f64) -> f64 {
+    frames.iter().map(|frame| ns(frame)).sum::<f64>() / frames.len().max(1) as f64 * 1e-6
 }
 
 /// How far each stage has come; pictures before the first are done at time 0.
@@ -81,6 +94,13 @@ fn back(times: &[f64], picture: usize, by: usize) -> f64 {
     picture.checked_sub(by).and_then(|i| times.get(i)).copied().unwrap_or(0.0)
 }
 
+/// Time that a region's messages take at a frame buffer's port.
+fn copy_ns(grid: RegionGrid, region: RegionId, word_ns: f64, overhead_ns: f64) -> f64 {
+    let [_, _, width, height] = grid.rectangle(region);
+    let pixels = width * height;
+    f64::from(pixels) * word_ns + f64::from(pixels.div_ceil(MAX_MESSAGE_WORDS)) * overhead_ns
+}
+
 impl StereoModel {
     /// Reduces a machine.
     ///
@@ -93,42 +113,38 @@ impl StereoModel {
             return Err(ConfigError::Value { what, expected: (2, 1_000), found: config.n_gps as u64 });
         }
         let video = video_of(config)?;
-        let cost = |kind: CommandKind| Cost {
-            words: f64::from(kind.words()),
-            ns: config.renderer.span(kind).map_or(0.0, |span| span.as_ms() * 1e6),
-        };
         let phong = program.shading == Shading::Phong;
         let word_ns = config.ring.word_ns as f64;
         let overhead_ns = config.ring.overhead_words as f64 * word_ns;
         let grid = RegionGrid::FRAME;
-        let copy = |region| {
-            let [_, _, width, height] = grid.rectangle(RegionId(region));
-            let pixels = width * height;
-            f64::from(pixels) * word_ns + f64::from(pixels.div_ceil(MAX_MESSAGE_WORDS)) * overhead_ns
+        let regions = (0..grid.regions() as u16).map(RegionId);
+        let kinds = if phong {
+            [CommandKind::PhongTriangle, CommandKind::PhongSphere]
+        } else {
+            [CommandKind::Triangle, CommandKind::Sphere]
         };
+        let [triangle, sphere] = kinds.map(|kind| Cost::of_command(&config.renderer, kind));
+        let shade = Cost::of_command(&config.renderer, CommandKind::Shade);
         Ok(Self {
             eyes: program.eyes(),
             slaves: (config.n_gps - 1) as f64,
             renderers: config.n_renderers,
+            gp: config.gp,
             message_ns: config.gp.message_ns as f64,
             host_ns: config.host.message_ns as f64 * 2.0 + config.host.link_span(100).as_ms() * 1e6,
             word_ns,
             overhead_ns,
             hop_ns: config.ring.hop_ns as f64,
-            pass_ns: config.gp.pass_ns as f64,
-            triangle_ns: config.gp.triangle_ns as f64,
-            sphere_ns: config.gp.sphere_ns as f64,
-            entry_ns: config.gp.bin_entry_ns as f64,
-            clear: cost(CommandKind::Clear),
-            triangle: cost(if phong { CommandKind::PhongTriangle } else { CommandKind::Triangle }),
-            sphere: cost(if phong { CommandKind::PhongSphere } else { CommandKind::Sphere }),
-            shade: if phong { cost(CommandKind::Shade) } else { Cost::default() },
+            clear: Cost::of_command(&config.renderer, CommandKind::Clear),
+            triangle,
+            sphere,
+            shade: if phong { shade } else { Cost::default() },
             copy_words: f64::from(CommandKind::CopyRegion.words()),
             fifo_words: config.renderer.fifo_words as f64,
             backing_regions: config.renderer.backing_regions as usize,
             store_ns: config.renderer.backing_block().as_ms() * 1e6,
             field_ns: video.retrace(PeriodNumber(1)).since(Time::ZERO).as_ms() * 1e6,
-            copy_ns: (0..grid.regions() as u16).map(copy).collect(),
+            copy_ns: regions.map(|region| copy_ns(grid, region, word_ns, overhead_ns)).collect(),
         })
     }
 
@@ -190,11 +206,16 @@ impl StereoModel {
 
     /// TRANSFORM of the slave with the largest share.
     fn transform_ns(&self, load: &Load) -> f64 {
-        let most = |all: f64| (all / self.slaves).ceil();
-        let primitives = most(load.triangles) * self.triangle_ns + most(load.spheres) * self.sphere_ns;
+        let triangles = self.largest_share(load.triangles);
+        let spheres = self.largest_share(load.spheres);
         let all = (load.triangles + load.spheres).max(1.0);
-        let largest = most(load.triangles) + most(load.spheres);
-        self.pass_ns + primitives + self.entry_ns * load.entries() * largest / all
+        let entries = load.entries() * (triangles + spheres) / all;
+        TransformCost { passes: 1.0, triangles, spheres, entries }.ns(&self.gp)
+    }
+
+    /// Primitives that the slave with the most of them holds.
+    fn largest_share(&self, primitives: f64) -> f64 {
+        (primitives / self.slaves).ceil()
     }
 
     /// RENDER and COPY of an eye: when the master knows that the last commands were accepted; first and last word.
@@ -207,9 +228,10 @@ impl StereoModel {
         available_ns: f64,
     ) -> (f64, (f64, f64)) {
         let mut regions: Vec<usize> = (0..load.bins.len()).collect();
-        let weight = |region: &usize| load.bins[*region][0] + load.bins[*region][1];
-        regions.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
-        let (mut rendered_ns, mut copy, mut master_ns) = (start_ns, (f64::INFINITY, 0.0_f64), start_ns);
+        regions.sort_by(|a, b| load.primitives_in(*b).total_cmp(&load.primitives_in(*a)));
+        let mut rendered_ns = start_ns;
+        let mut copy = (f64::INFINITY, 0.0_f64);
+        let mut master_ns = start_ns;
         for region in regions {
             let r = earliest(&all.idle_ns);
             let token_ns = master_ns.max(all.idle_ns[r]).max(start_ns) + self.message_ns;
@@ -293,7 +315,12 @@ pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentErro
 }
 
 /// An experiment with Rendering Control at the analytic level.
-pub(super) const CLOSED_FORM: ClosedForm = ClosedForm { summary: closed_form, fields_needed };
+pub(super) const CLOSED_FORM: ClosedForm =
+    ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
+
+fn triangles_in_time(experiment: &Experiment) -> Option<u64> {
+    crate::triangles_in_time(experiment, closed_form)
+}
 
 fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     let (model, frames) = frames_of(experiment)?;
@@ -325,33 +352,32 @@ impl StereoModel {
     pub fn summary(&self, frames: &[StereoTimes], fields: u64) -> Summary {
         let end_ns = fields as f64 * self.field_ns;
         let shown: Vec<_> = frames.iter().filter(|frame| frame.shown_ns < end_ns).skip(WARM_UP_PICTURES).collect();
-        let mean = |of: &dyn Fn(&StereoTimes) -> f64| {
-            shown.iter().map(|frame| of(frame)).sum::<f64>() / shown.len().max(1) as f64 * 1e-6
-        };
-        let length = |eye: usize| move |frame: &StereoTimes| frame.copy_ns[eye].1 - frame.copy_ns[eye].0;
-        let eyes = |frame: &&StereoTimes| {
-            (0..self.eyes).map(|eye| (frame.copy_ns[eye].1 - frame.transform_ns[eye]) * 1e-6).collect::<Vec<_>>()
-        };
-        let periods = shown.windows(2).map(|pair| pair[1].shown_ns - pair[0].shown_ns);
-        let missed = periods.clone().map(|ns| self.missed_in(ns));
-        // Frames are given for so many fields; what comes behind the last one is known only if that is beyond the end.
-        let goes_on = frames.iter().any(|frame| frame.shown_ns >= end_ns);
-        let missed_after = shown.last().filter(|_| goes_on).map_or(0, |last| self.missed_in(end_ns - last.shown_ns));
-        let all_ns: f64 = periods.clone().sum();
+        let due = self.due(frames, fields);
+        let field_ms = self.field_ns * 1e-6;
         Summary {
             latencies_ms: shown.iter().map(|frame| (frame.shown_ns - frame.transform_ns[0]) * 1e-6).collect(),
-            field_ms: self.field_ns * 1e-6,
-            updates_hz: (all_ns > 0.0).then(|| periods.count() as f64 * 1e9 / all_ns),
-            missed_retraces: missed.sum::<u64>() + missed_after,
-            eye_latencies_ms: shown.iter().flat_map(eyes).collect(),
+            field_ms,
+            updates_hz: due.and_then(|due| due.updates_hz(field_ms)),
+            due,
+            eye_latencies_ms: shown.iter().flat_map(|frame| self.eye_latencies_ms(frame)).collect(),
             region_copy_us: self.copy_ns.iter().sum::<f64>() / self.copy_ns.len() as f64 * 1e-3,
-            first_copy_ms: mean(&length(0)),
-            last_copy_ms: if self.eyes > 1 { mean(&length(1)) } else { 0.0 },
-            copy_begins_ms: mean(&|frame| frame.copy_ns[0].0 - frame.transform_ns[0]),
+            first_copy_ms: mean_ms(&shown, |frame| frame.copy_length_ns(0)),
+            last_copy_ms: if self.eyes > 1 { mean_ms(&shown, |frame| frame.copy_length_ns(1)) } else { 0.0 },
+            copy_begins_ms: mean_ms(&shown, |frame| frame.copy_ns[0].0 - frame.transform_ns[0]),
         }
     }
-    /// Retraces in a time after a swap beyond one for each eye's copy.
-    fn missed_in(&self, ns: f64) -> u64 {
-        ((ns / self.field_ns).round() as u64).saturating_sub(self.eyes as u64)
+
+    /// From the beginning of TRANSFORM to the last word of COPY, for each eye.
+    fn eye_latencies_ms(&self, frame: &StereoTimes) -> Vec<f64> {
+        (0..self.eyes).map(|eye| (frame.copy_ns[eye].1 - frame.transform_ns[eye]) * 1e-6).collect()
+    }
+
+    /// A frame is due as often as COPY of all eyes lets it.
+    fn due(&self, frames: &[StereoTimes], fields: u64) -> Option<DuePictures> {
+        let every = (self.eyes as f64 * self.copy_ns.iter().sum::<f64>() / self.field_ns).ceil() as u64;
+        let field_of = |frame: &StereoTimes| PeriodNumber((frame.shown_ns / self.field_ns).round() as u64);
+        // Frames are given for so many fields; what comes behind the last one is not known.
+        let known = frames.last().map_or(PeriodNumber::FIRST, |last| field_of(last).next()).min(PeriodNumber(fields));
+        DuePictures::count(frames.iter().map(|frame| (field_of(frame), PictureEnd::Shown)), every, known)
     }
 }

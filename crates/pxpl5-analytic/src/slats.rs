@@ -4,11 +4,15 @@ use super::copies::{CopyTimes, Queue, copy_all};
 use super::load::Load;
 use super::renderer::{Array, Commands, Cost, Fifo, later};
 use crate::{pipeline_of, video_of};
-use pphigs::Binning;
+use pphigs::{Binning, TransformCost};
 use pxpl5_geometry::Viewport;
+use pxpl5_gp::GpTiming;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
-use pxpl5_run::{ClosedForm, Experiment, ExperimentError, Pipeline, Slats, Summary, WARM_UP_PICTURES};
+use pxpl5_run::{
+    ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureEnd, Pipeline, Slats, Summary,
+    WARM_UP_PERIODS, WARM_UP_PICTURES,
+};
 use pxpl5_sim::Time;
 use pxpl5_wire::{FieldParity, PeriodNumber, RegionGrid};
 use slats::CLUMP;
@@ -25,10 +29,8 @@ pub struct SlatsModel {
     fifo: Fifo,
     overhead_ns: f64,
     hop_ns: f64,
+    gp: GpTiming,
     message_ns: f64,
-    pass_ns: f64,
-    triangle_ns: f64,
-    entry_ns: f64,
     command: Cost,
     select: Cost,
     clear: Cost,
@@ -74,29 +76,23 @@ impl SlatsModel {
             return Self::new(&program.adapt(config.clone()), Slats { code: None, ..program });
         }
         let video = video_of(config)?;
-        let cost = |kind: CommandKind| Cost {
-            words: f64::from(kind.words()),
-            ns: config.renderer.span(kind).map_or(0.0, |span| span.as_ms() * 1e6),
-        };
         let field_ns = video.retrace(PeriodNumber(1)).since(Time::ZERO).as_ms() * 1e6;
         let even = PeriodNumber(2);
-        let line = |y| video.line_start(y, even).map_or(0.0, |at| at.since(video.retrace(even)).as_ms() * 1e6);
+        let bottom = video.line_start(2 * RegionGrid::FIELD.region_height, even);
         let messages = (15_360.0_f64 / 1_024.0).ceil();
         let word_ns = config.ring.word_ns as f64;
         Ok(Self {
             fifo: Fifo { depth_words: config.renderer.fifo_words as f64, word_ns },
             overhead_ns: config.ring.overhead_words as f64 * word_ns,
             hop_ns: config.ring.hop_ns as f64,
+            gp: config.gp,
             message_ns: config.gp.message_ns as f64,
-            pass_ns: config.gp.pass_ns as f64,
-            triangle_ns: config.gp.triangle_ns as f64,
-            entry_ns: config.gp.bin_entry_ns as f64,
-            command: cost(CommandKind::Triangle),
-            select: cost(CommandKind::SelectRegion),
-            clear: cost(CommandKind::Clear),
+            command: Cost::of_command(&config.renderer, CommandKind::Triangle),
+            select: Cost::of_command(&config.renderer, CommandKind::SelectRegion),
+            clear: Cost::of_command(&config.renderer, CommandKind::Clear),
             region_ns: 15_360.0 * word_ns + messages * config.ring.overhead_words as f64 * word_ns,
             field_ns,
-            bottom_ns: line(2 * RegionGrid::FIELD.region_height),
+            bottom_ns: bottom.map_or(0.0, |at| at.since(video.retrace(even)).as_ms() * 1e6),
             renderers: config.n_renderers.min(MOST_RENDERERS),
             gps: config.n_gps,
             source_channels: (config.ring.source_channels.min(config.ring.fifo_channels).min(config.ring.channels)
@@ -137,6 +133,17 @@ impl SlatsModel {
         copy_all(&mut queues[..self.renderers], self.region_ns)
     }
 
+    /// Field after field like this one: one is begun at every retrace at which the one before is done with its commands.
+    fn due(&self, times: FieldTimes, fields: u64) -> Option<DuePictures> {
+        let copied_ns = times.bottom.unwrap_or(times.top).end_ns;
+        // A field is scanned during the one after that in which it is drawn.
+        let end = PictureEnd::of(copied_ns <= 2.0 * self.field_ns, times.in_time);
+        let messages = if self.split { 2.0 } else { 1.0 };
+        let apart = ((times.rendered_ns + messages * self.message_ns) / self.field_ns).ceil().max(1.0);
+        let begun = (WARM_UP_PERIODS..fields).step_by(apart as usize);
+        DuePictures::count(begun.map(|field| (PeriodNumber(field), end)), 1, PeriodNumber(fields))
+    }
+
     /// Copies of the regions for which `wanted` holds; the commands go out one after the other from `from_ns` on.
     fn queues(&self, wanted: impl Fn(usize) -> bool, from_ns: f64) -> [Queue; MOST_RENDERERS] {
         let mut queues: [Queue; MOST_RENDERERS] = std::array::from_fn(|_| Queue::default());
@@ -162,38 +169,47 @@ impl SlatsModel {
         let share = triangles / self.gps as f64;
         let clumps = (share / CLUMP as f64).ceil().max(1.0) as usize;
         let mut chain = Chain { released_ns: [0.0; MOST_RENDERERS], accepted_ns: 0.0, draining_ns: 0.0 };
-        let mut cpu_ns = self.pass_ns;
+        let mut cpu_ns = TransformCost { passes: 1.0, ..TransformCost::default() }.ns(&self.gp);
         for clump in 0..clumps {
             let count = (share - (clump * CLUMP) as f64).min(CLUMP as f64);
             // The one clump buffer is written again when all renderers have begun with what was in it.
-            cpu_ns = cpu_ns.max(chain.draining_ns) + 2.0 * count * (self.triangle_ns + self.entry_ns * entries);
+            cpu_ns = cpu_ns.max(chain.draining_ns) + self.clump_ns(count, entries);
             cpu_ns = cpu_ns.max(chain.accepted_ns) + self.message_ns;
             self.send(arrays, &mut chain, cpu_ns, count * entries / 10.0, clump == 0);
         }
         chain.accepted_ns
     }
 
+    /// TRANSFORM of a clump of so many triangles for both eyes, each of which makes so many entries in bins.
+    fn clump_ns(&self, triangles: f64, entries_per_triangle: f64) -> f64 {
+        let both_eyes = 2.0 * triangles;
+        let entries = both_eyes * entries_per_triangle;
+        TransformCost { triangles: both_eyes, entries, ..TransformCost::default() }.ns(&self.gp)
+    }
+
     /// The messages of one clump of every GP, as many at a time as a port drives channels.
     fn send(&self, arrays: &mut [Array; MOST_RENDERERS], chain: &mut Chain, from_ns: f64, count: f64, first: bool) {
-        let (mut channels, mut granted_ns) = (Channels::new(self.source_channels), from_ns);
-        let (of_first, of_others) = (self.commands(count, first), self.commands(count, false));
+        let mut channels = Channels::new(self.source_channels);
+        let mut granted_ns = from_ns;
+        let of_first = self.commands(count, first);
+        let of_others = self.commands(count, false);
         chain.accepted_ns = from_ns;
         // A round is a region of every renderer.
         for round in (0..REGIONS).step_by(self.renderers) {
             let renderers = arrays.iter_mut().zip(&mut chain.released_ns).take(self.renderers.min(REGIONS - round));
             for (renderer, (array, released_ns)) in renderers.enumerate() {
                 let latency_ns = self.hop_ns * (renderer + self.gps) as f64;
-                let mut carry = |begin_ns: f64, commands: &Commands| {
-                    let accepted_ns = array.take(begin_ns + self.overhead_ns + latency_ns, commands);
-                    chain.accepted_ns = later(chain.accepted_ns, accepted_ns);
-                    accepted_ns - latency_ns
-                };
                 granted_ns = later(later(granted_ns, channels.take_first()), *released_ns);
-                *released_ns = carry(granted_ns, &of_first);
+                let mut accepted_ns = array.take(granted_ns + self.overhead_ns + latency_ns, &of_first);
+                *released_ns = accepted_ns - latency_ns;
                 channels.put(*released_ns);
+                chain.accepted_ns = later(chain.accepted_ns, accepted_ns);
                 // Several GPs share the ports of the renderers: their messages follow each other.
                 for _ in 1..self.gps {
-                    *released_ns = carry(later(granted_ns, *released_ns), &of_others);
+                    let begin_ns = later(granted_ns, *released_ns);
+                    accepted_ns = array.take(begin_ns + self.overhead_ns + latency_ns, &of_others);
+                    *released_ns = accepted_ns - latency_ns;
+                    chain.accepted_ns = later(chain.accepted_ns, accepted_ns);
                 }
             }
             if round == 0 {
@@ -251,7 +267,12 @@ impl Channels {
 }
 
 /// An experiment with Slats at the analytic level.
-pub(super) const CLOSED_FORM: ClosedForm = ClosedForm { summary: closed_form, fields_needed };
+pub(super) const CLOSED_FORM: ClosedForm =
+    ClosedForm { summary: closed_form, estimates: Estimates { fields_needed, triangles_in_time } };
+
+fn triangles_in_time(experiment: &Experiment) -> Option<u64> {
+    crate::triangles_in_time(experiment, closed_form)
+}
 
 fn closed_form(experiment: &Experiment) -> Result<Summary, ExperimentError> {
     let (model, times) = steady_field(experiment)?;
@@ -289,11 +310,12 @@ fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), Exp
 fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
     let pictures = fields.saturating_sub(FIELDS_BEFORE).max(1);
     let field_ms = model.field_ns * 1e-6;
+    let due = model.due(times, fields);
     Summary {
         latencies_ms: if times.in_time { vec![field_ms; pictures as usize] } else { Vec::new() },
         field_ms,
-        updates_hz: times.in_time.then_some(1e3 / field_ms),
-        missed_retraces: if times.in_time { 0 } else { pictures },
+        updates_hz: due.and_then(|due| due.updates_hz(field_ms)),
+        due,
         eye_latencies_ms: Vec::new(),
         region_copy_us: model.region_ns * 1e-3,
         first_copy_ms: length_ms(times.top),

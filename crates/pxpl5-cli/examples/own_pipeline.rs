@@ -9,8 +9,8 @@ use pxpl5::firmware::{
     Priority, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport, region_messages, swap_request,
 };
 use pxpl5::{
-    ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureTimes, Pipeline, PipelineEntry,
-    PipelineSettings, Ports, Record, Registry, Setup, Span, TestScene, Time,
+    ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureEnd, PictureTimes, Pipeline,
+    PipelineEntry, PipelineSettings, Ports, Record, Registry, Setup, Span, TestScene, Time,
 };
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -123,21 +123,17 @@ impl Pipeline for OneAtATime {
             transform_at: mark.time,
             copied_at: None,
             shown_at: record.tick(tick),
-            complete: true,
+            end: PictureEnd::Shown,
         });
         times.filter(|times| times.shown_at < end).collect()
-    }
-
-    fn missed_retraces(&self, _: &Record, _: &[PictureTimes]) -> u64 {
-        0
     }
 
     fn latency_definition(&self) -> &'static str {
         "from the start of TRANSFORM to the retrace at which the frame is swapped in"
     }
 
-    fn missed_definition(&self) -> &'static str {
-        "frames are shown whenever they are finished, so none is missed"
+    fn due_definition(&self) -> &'static str {
+        "no frame is ever due: each is shown when it is finished"
     }
 }
 // ANCHOR_END: implementation

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 /// The command line or an experiment file is wrong.
 const USAGE: u8 = 2;
-/// Something failed.
+/// Exit code of a command that was understood but failed.
 const FAILURE: u8 = 1;
 
 /// A message and an exit code.

@@ -37,9 +37,9 @@ pub(crate) struct FilmArgs {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Whose {
-    /// The left eye's.
+    /// The left eye's picture alone.
     Left,
-    /// The right eye's.
+    /// The right eye's picture alone.
     Right,
     /// Side by side, the left eye left.
     Both,

@@ -137,8 +137,12 @@ fn asm(file: &Path, base: u32, output: Option<&Path>) -> Result<(), String> {
 }
 
 fn words_of(bytes: &[u8]) -> Vec<u32> {
-    let word = |b: &[u8]| (0..4).map(|n| u32::from(b.get(n).copied().unwrap_or(0)) << (8 * n)).sum();
-    bytes.chunks(4).map(word).collect()
+    bytes.chunks(4).map(word_of).collect()
+}
+
+/// A word of up to four bytes, the lowest first; missing ones are 0.
+fn word_of(bytes: &[u8]) -> u32 {
+    (0..4).map(|n| u32::from(bytes.get(n).copied().unwrap_or(0)) << (8 * n)).sum()
 }
 
 fn labels_at(program: Option<&Program>, pc: u32) -> String {
@@ -147,11 +151,12 @@ fn labels_at(program: Option<&Program>, pc: u32) -> String {
 }
 
 fn listing(base: u32, words: &[u32], program: Option<&Program>) -> String {
-    let line = |(n, word): (usize, &u32)| {
-        let pc = base.wrapping_add(4 * n as u32);
-        format!("{}{pc:08x}  {word:08x}  {}\n", labels_at(program, pc), disassemble(*word, pc))
-    };
-    words.iter().enumerate().map(line).collect()
+    let mut text = String::new();
+    for (n, word) in (0..).zip(words) {
+        let pc = base.wrapping_add(4 * n);
+        let _ = writeln!(text, "{}{pc:08x}  {word:08x}  {}", labels_at(program, pc), disassemble(*word, pc));
+    }
+    text
 }
 
 fn load(file: &Path, base: u32) -> Result<Program, String> {
@@ -257,8 +262,11 @@ fn json_report(summary: &vectors::Summary, show: usize) -> String {
     format!("{report:#}\n")
 }
 
+fn hex(bits: u32) -> String {
+    format!("{bits:08x}")
+}
+
 fn json_failure(id: &str, what: &str, failure: &vectors::Failure) -> serde_json::Value {
-    let hex = |bits: u32| format!("{bits:08x}");
     let differences: Vec<_> = match failure {
         vectors::Failure::Differs(list) => (list.iter())
             .map(|d| serde_json::json!({"place": d.place, "expected": hex(d.expected), "found": hex(d.found)}))

@@ -21,6 +21,7 @@ mod merge;
 mod options;
 mod output;
 mod report;
+mod rig;
 mod run;
 mod scenes;
 mod settings;
@@ -78,6 +79,8 @@ enum Command {
     Sweep(sweep::SweepArgs),
     /// Join the shards of a sweep.
     Merge(merge::MergeArgs),
+    /// Measure latency from outside: pendulum and photodiodes, beside the system's time stamps.
+    Rig(rig::RigArgs),
     /// Make one page of a results folder.
     Report(report::ReportArgs),
     /// Run one experiment and write a trace of everything that happened.
@@ -121,6 +124,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Machines(args)) => machines::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
         Some(Command::Merge(args)) => merge::run(args),
+        Some(Command::Rig(args)) => rig::run(args),
         Some(Command::Report(args)) => report::run(args),
         Some(Command::Trace(args)) => trace::run(args),
         Some(Command::Film(args)) => film::run(args),
@@ -138,13 +142,15 @@ mod tests {
     fn commands(text: &str) -> Vec<Vec<String>> {
         let joined = text.replace("\\\n", " ");
         let lines = joined.lines().map(str::trim).filter(|line| line.starts_with("pxpl5"));
-        let words = |line: &str| {
-            let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
-            // Help texts explain after three spaces.
-            let line = line.split("   ").next().unwrap_or_default().replace("$SLURM_ARRAY_TASK_ID", "1");
-            line.split_whitespace().map(str::to_owned).collect()
-        };
         lines.map(words).collect()
+    }
+
+    /// The words of a line, without what explains it.
+    fn words(line: &str) -> Vec<String> {
+        let line = line.split(['#', '>']).next().unwrap_or_default().replace('"', "");
+        // Help texts explain after three spaces.
+        let line = line.split("   ").next().unwrap_or_default().replace("$SLURM_ARRAY_TASK_ID", "1");
+        line.split_whitespace().map(str::to_owned).collect()
     }
 
     fn parses(text: &str) -> usize {

@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::options::registry;
 use crate::terminal::print;
 use clap::Args;
-use pxpl5::{ConfigError, MachineConfig, PRESETS, Parameter};
+use pxpl5::{MachineConfig, PRESETS, Parameter, tracking_parameters};
 use serde_json::json;
 use std::fmt::Write;
 
@@ -12,7 +12,8 @@ use std::fmt::Write;
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 machines
-  pxpl5 machines small-hmd      every parameter with unit, standing, allowed range and source")]
+  pxpl5 machines small-hmd      every parameter with unit, standing, allowed range and source,
+                                those of the i860 and of trackers too; --set PATH=VALUE changes it")]
 pub(crate) struct MachinesArgs {
     /// Show all parameters of this one.
     #[arg(value_name = "PRESET")]
@@ -23,9 +24,8 @@ pub(crate) struct MachinesArgs {
 }
 
 pub(crate) fn run(args: MachinesArgs) -> Result<(), CliError> {
-    let wrong = |error: ConfigError| CliError::usage(error);
     if let Some(name) = &args.preset {
-        let machine = registry().machine_of(MachineConfig::preset(name).map_err(wrong)?);
+        let machine = registry().machine_of(MachineConfig::preset(name).map_err(CliError::usage)?);
         return print(&if args.json { one_json(&machine) } else { one_text(&machine) });
     }
     print(&if args.json { all_json() } else { all_text() })
@@ -44,7 +44,8 @@ fn all_text() -> String {
 fn all_json() -> String {
     let machines = PRESETS.iter().map(|preset| {
         let machine = MachineConfig::preset(preset.name).ok();
-        let (gps, renderers) = (machine.as_ref().map(|m| m.n_gps), machine.as_ref().map(|m| m.n_renderers));
+        let gps = machine.as_ref().map(|m| m.n_gps);
+        let renderers = machine.as_ref().map(|m| m.n_renderers);
         json!({"name": preset.name, "about": preset.about, "n_gps": gps, "n_renderers": renderers})
     });
     let machines: Vec<_> = machines.collect();
@@ -58,19 +59,25 @@ fn one_json(machine: &MachineConfig) -> String {
         "n_gps": machine.n_gps,
         "n_renderers": machine.n_renderers,
         "parameters": machine.parameters(),
+        "tracking": tracking_parameters(),
     });
     format!("{object:#}\n")
 }
 
 fn one_text(machine: &MachineConfig) -> String {
     let mut text = format!("{}: {} GPs, {} renderers\n\n", machine.preset, machine.n_gps, machine.n_renderers);
-    for Parameter { path, info, value } in machine.parameters() {
-        let (low, high) = info.range;
-        let _ = writeln!(
-            text,
-            "{path:<30} {value:>12} {:<8} {:<9} {low}..{high}: {}",
-            info.unit, info.standing, info.source
-        );
-    }
+    machine.parameters().iter().for_each(|parameter| line(&mut text, parameter));
+    text.push_str("\nWith a tracked head (head.motion, --head), whatever the machine:\n\n");
+    tracking_parameters().iter().for_each(|parameter| line(&mut text, parameter));
     text
+}
+
+fn line(text: &mut String, Parameter { path, info, value, read_only }: &Parameter) {
+    let (low, high) = info.range;
+    let fixed = if *read_only { " (cannot be set)" } else { "" };
+    let _ = writeln!(
+        text,
+        "{path:<42} {value:>12} {:<8} {:<9} {low}..{high}: {}{fixed}",
+        info.unit, info.standing, info.source
+    );
 }

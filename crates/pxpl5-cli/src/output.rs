@@ -113,14 +113,15 @@ pub(crate) fn timeline(outcome: &Outcome, report: &Report) -> String {
     format!("{}{comment}{}", &svg[..at], &svg[at..])
 }
 
-/// A picture as PNG, with its origin as text chunks.
+/// A picture as PNG, with its origin, and whether it is complete, as text chunks.
 ///
 /// # Errors
 ///
 /// When the encoder refuses it.
 pub(crate) fn png(picture: &RgbImage, report: &Report) -> Result<Vec<u8>, CliError> {
-    png_bytes(picture, &origin(report))
-        .map_err(|error| CliError::failure(format!("a picture cannot be encoded: {error}")))
+    let mut chunks = origin(report);
+    chunks.push(("complete", report.ends_complete.to_string()));
+    png_bytes(picture, &chunks).map_err(|error| CliError::failure(format!("a picture cannot be encoded: {error}")))
 }
 
 #[cfg(test)]

@@ -3,11 +3,12 @@
 use crate::error::CliError;
 use crate::output::{OutputFolder, png, timeline};
 use crate::settings::SettingArgs;
-use crate::snapshot::SnapshotArgs;
+use crate::snapshot::{Simulated, SnapshotArgs};
 use crate::table::{Comparison, table};
 use crate::terminal::print;
 use clap::Args;
 use pxpl5::results::{origin_lines, quantities_csv};
+use pxpl5::tracking::time::PS_PER_MS;
 use pxpl5::{ExperimentFile, HeadReport, Level, Measured, Outcome, Plan, Report, Results, Saving, SurfaceId};
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -49,42 +50,68 @@ pub(crate) struct RunArgs {
 pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
-    let outcome = args.snapshot.simulate(&plan, args.threads, &args.without, args.quiet)?;
+    let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, args.threads, &args.without, args.quiet)?;
     let results = Results::of_run(outcome);
     let Some((_, report)) = &results.run else { return Err(no_events()) };
+    // Of a run that is too short everything is said, but nothing is kept.
+    let folder = folder.filter(|_| too_short.is_none());
     let written = folder.map(|folder| write(folder, &plan, &results)).transpose()?;
     if args.json {
         print(&format!("{}\n", json(report)?))?;
     } else if !args.quiet {
         print(&text(&plan, &results, report, written))?;
     }
-    if report.shown == 0 { Err(nothing_shown(report)) } else { Ok(()) }
+    match too_short {
+        Some(error) => Err(error),
+        None if report.shown == 0 => Err(nothing_shown(report)),
+        None => Ok(()),
+    }
 }
 
 /// More fields would not help: pictures came, and all of them came too late.
 fn nothing_shown(report: &Report) -> CliError {
+    let advice = report.too_heavy.as_ref().map_or("draw fewer primitives (--triangles)", |heavy| &heavy.advice);
     CliError::failure(format!(
-        "no complete picture was shown in {} fields: {} regions came after their deadline; draw fewer primitives (--triangles)",
+        "no complete picture was shown in {} fields: {} regions came after their deadline; {advice}",
         report.fields, report.late_regions
     ))
 }
 
 fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf>) -> String {
     let comparison = comparison(plan, results);
-    let mut text = table(&[(report, comparison.as_ref())]);
+    let mut text = String::new();
+    if let Some(heavy) = &report.too_heavy {
+        let _ = writeln!(text, "{heavy}\n");
+    }
+    text.push_str(&table(&[(report, comparison.as_ref())]));
     let _ = writeln!(text, "\nLatency: {}.", report.latency_ms.definition);
+    let _ = writeln!(text, "Pictures due: {}.", report.due_definition);
+    if let Some(lines) = report.lines_never_shown().filter(|lines| *lines > 0) {
+        let _ = writeln!(text, "Lines that were overwritten before they had been shown: {lines}.");
+    }
     if let Some(head) = &report.head {
-        let HeadReport { tracker, predictor, display, end_to_end, error } = head;
+        let HeadReport { tracker, predictor, training, aim, display, end_to_end, error, .. } = head;
+        let tuned = training.map_or_else(String::new, |on| format!(", tuned for {} ms", on.interval_ps / PS_PER_MS));
         let _ = writeln!(
             text,
-            "Head to light: {:.2} ms ({tracker}, prediction {predictor}). Pixel error (display {display}): mean {:.2} px, 99 % {:.2} px, mean {:.3} degrees.",
-            end_to_end.total_ms, error.pixels.mean, error.pixels.p99, error.degrees.mean
+            "Head to light: {} ms, n {} ({tracker}, prediction {predictor}{tuned}, aim {aim}). Pixel error (display {display}): mean {} px, 99 % {} px, mean {} degrees, n {}.",
+            known(end_to_end.total_ms, 2),
+            end_to_end.n,
+            known(error.pixels.mean, 2),
+            known(error.pixels.p99, 2),
+            known(error.degrees.mean, 3),
+            error.pixels.n
         );
     }
     if let Some(path) = written {
         let _ = writeln!(text, "Written to {}.", path.display());
     }
     text
+}
+
+/// What was not judged is no number.
+fn known(value: f64, digits: usize) -> String {
+    if value.is_nan() { "-".to_owned() } else { format!("{value:.digits$}") }
 }
 
 /// The checked experiment; a sweep is none.
@@ -122,7 +149,10 @@ pub(crate) fn comparison(plan: &Plan, results: &Results) -> Option<Comparison> {
 fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<PathBuf, CliError> {
     let Some((outcome, report)) = &results.run else { return Err(no_events()) };
     folder.put("report.json", format!("{}\n", json(report)?).as_bytes())?;
-    folder.put("experiment.toml", format!("{}{}", origin_lines(report, "# "), plan.settings()).as_bytes())?;
+    folder.put(
+        "experiment.toml",
+        format!("{}{}", origin_lines(report, "# "), plan.settings_for_any_folder()).as_bytes(),
+    )?;
     if plan.output.csv {
         folder.put("results.csv", quantities_csv(report, &plan.measure, results).as_bytes())?;
         folder.put("pictures.csv", pxpl5::results::csv(outcome).as_bytes())?;
@@ -140,6 +170,9 @@ fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<Pat
     Ok(path)
 }
 
+/// What ends the name of a picture that was not complete in time.
+pub(crate) const INCOMPLETE: &str = "-incomplete";
+
 /// The last displayed pictures; `prefix` begins their names.
 pub(crate) fn pictures(
     folder: &mut OutputFolder,
@@ -151,7 +184,8 @@ pub(crate) fn pictures(
         outcome.record().surfaces().map(|(id, surface)| (id, surface.label)).collect();
     for (surface, label) in surfaces {
         if let Some(picture) = outcome.picture(surface) {
-            folder.put(&format!("{prefix}{label}.png"), &png(&picture, report)?)?;
+            let mark = if report.ends_complete { "" } else { INCOMPLETE };
+            folder.put(&format!("{prefix}{label}{mark}.png"), &png(&picture, report)?)?;
         }
     }
     Ok(())

@@ -32,15 +32,27 @@ pub(crate) struct SettingArgs {
     /// Renderers.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     renderers: Option<i64>,
-    /// Motion of a head with a tracker: still, pan:DEG_PER_S, pendulum, synthetic:SEED or a recording FILE.csv.
+    /// Motion of a head with a tracker: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED or a recording
+    /// (FILE.csv, .txt, .tum: time_s,x,y,z,qw,qx,qy,qz, EuRoC, TUM, or any with --columns).
     #[arg(long, alias = "motion", value_name = "MOTION", allow_hyphen_values = true)]
     head: Option<String>,
+    /// Columns of a recording, by name or number: t_ns=stamp,x=px,y=py,z=pz,qw=qw,qx=qx,qy=qy,qz=qz (t, t_ms, t_us or t_ns; x or
+    /// x_mm).
+    #[arg(long, value_name = "FIELD=COLUMN,...")]
+    columns: Option<String>,
+    /// Metres from the eye at which pixel errors are judged; default where the scene's content lies.
+    #[arg(long, value_name = "METRES")]
+    judge_at: Option<f64>,
     /// Its tracker: optical, fastrak, flock, flock-patched, 3space or ideal; default optical.
     #[arg(long)]
     tracker: Option<String>,
     /// Prediction: none, velocity, acceleration or kalman; default kalman.
     #[arg(long)]
     predict: Option<String>,
+    /// The instant of what is shown from it that a view is predicted for: middle, first-pixel, last-pixel or retrace; default
+    /// middle.
+    #[arg(long)]
+    aim: Option<String>,
     /// What the pipeline draws for: ntsc or hires; default ntsc. (plain and vdrt are taken for --raster.)
     #[arg(long)]
     display: Option<String>,
@@ -59,7 +71,8 @@ pub(crate) struct SettingArgs {
     /// Seed of the head motion's sway, or of the tracker's noise; default 1.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     seed: Option<i64>,
-    /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000; may be repeated.
+    /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000 or tracking.optical.latency=20; `pxpl5 machines
+    /// small-hmd` lists all numbers; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
 }
@@ -85,6 +98,7 @@ impl SettingArgs {
             ("head.motion", "--head", self.head),
             ("head.tracker", "--tracker", self.tracker),
             ("head.predict", "--predict", self.predict),
+            ("head.aim", "--aim", self.aim),
             (display_key(self.display.as_deref()), "--display", self.display),
             ("head.raster", "--raster", self.raster),
             ("level", "--level", self.level),
@@ -102,6 +116,11 @@ impl SettingArgs {
         ];
         for (key, option, value) in numbers {
             value.map(|value| file.set(key, value, option)).transpose()?;
+        }
+        self.judge_at.map(|metres| file.set("head.judge_at", metres, "--judge-at")).transpose()?;
+        for column in self.columns.iter().flat_map(|columns| columns.split(',')) {
+            let (field, name) = column.split_once('=').unwrap_or((column, ""));
+            file.set(&format!("head.columns.{}", field.trim()), name.trim(), "--columns")?;
         }
         for assignment in &self.sets {
             file.set_text(assignment, "--set")?;

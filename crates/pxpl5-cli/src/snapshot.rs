@@ -24,6 +24,40 @@ pub(crate) struct SnapshotArgs {
     restore: Option<PathBuf>,
 }
 
+/// What came of a run, and that it was too short to say much.
+#[derive(Debug)]
+pub(crate) struct Simulated {
+    pub(crate) outcome: Outcome,
+    pub(crate) too_short: Option<CliError>,
+}
+
+impl Simulated {
+    /// A run that is too short has an outcome all the same.
+    fn of(run: Result<Outcome, ExperimentError>) -> Result<Self, CliError> {
+        match run {
+            Ok(outcome) => Ok(Self { outcome, too_short: None }),
+            Err(error) => {
+                let too_short = CliError::failure(&error);
+                match error {
+                    ExperimentError::TooShort { partial, .. } => {
+                        Ok(Self { outcome: *partial, too_short: Some(too_short) })
+                    }
+                    other => Err(other.into()),
+                }
+            }
+        }
+    }
+
+    /// Of a run that is known to be long enough.
+    ///
+    /// # Errors
+    ///
+    /// When it was not.
+    pub(crate) fn long_enough(self) -> Result<Outcome, CliError> {
+        self.too_short.map_or(Ok(self.outcome), Err)
+    }
+}
+
 /// What may be said beside a snapshot: the rest is in it.
 const BESIDE: [&str; 4] = ["fields", "pixels", "measure", "output."];
 
@@ -62,7 +96,7 @@ impl SnapshotArgs {
         threads: Option<u64>,
         without: &[Saving],
         quiet: bool,
-    ) -> Result<Outcome, CliError> {
+    ) -> Result<Simulated, CliError> {
         let mut saving = self.saving(plan)?;
         let scene = plan.load_scene()?;
         let host = threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
@@ -85,7 +119,7 @@ impl SnapshotArgs {
                 continue_pixels(plan, machine, host);
             }
             if let (Some((folder, name)), true) = (&mut saving, Some(field) == save_at) {
-                let text = Snapshot::of(plan, hash, &scene, field, machine).to_text();
+                let text = Snapshot::of_machine(plan, hash, &scene, field, machine).to_text();
                 folder
                     .put(name, text.as_bytes())
                     .map_err(|error| ExperimentError::Stopped(error.message().to_owned()))?;
@@ -93,9 +127,9 @@ impl SnapshotArgs {
             Ok(())
         });
         bar.finish_and_clear();
-        let outcome = outcome?;
+        let simulated = Simulated::of(outcome)?;
         saving.map(|(folder, _)| folder.commit()).transpose()?;
-        Ok(outcome)
+        Ok(simulated)
     }
 
     /// The folder and name of the snapshot to be written.
@@ -114,7 +148,8 @@ impl SnapshotArgs {
     /// The snapshot to go on from, and its name.
     fn restored(&self, plan: &Plan) -> Result<Option<(Snapshot, String)>, CliError> {
         let Some(path) = &self.restore else { return Ok(None) };
-        let (snapshot, name) = (self.read(path)?, path.display().to_string());
+        let snapshot = self.read(path)?;
+        let name = path.display().to_string();
         if snapshot.field >= PeriodNumber::FIRST.after(plan.fields) {
             let first = snapshot.field.next();
             let found = plan.fields;

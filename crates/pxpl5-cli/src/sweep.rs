@@ -54,10 +54,11 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     }
     let sweep = Sweep::new(file)?;
     let mut store = Store::open(&args.out, sweep.header()?, args.resume)?;
-    let held = |store: &Store| (0..sweep.space().points()).filter(|p| args.shard.holds(*p) && store.holds(*p)).count();
-    let total = (0..sweep.space().points()).filter(|point| args.shard.holds(*point)).count();
+    let points: Vec<u64> = (0..sweep.space().points()).filter(|point| args.shard.holds(*point)).collect();
+    let held = points.iter().filter(|point| store.holds(**point)).count();
+    let total = points.len();
     let bar = progress(total as u64, "points", args.quiet);
-    bar.set_position(held(&store) as u64);
+    bar.set_position(held as u64);
     bar.reset_eta();
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let options = RunOptions { shard: args.shard, threads: args.threads.map_or(cores, |threads| threads as usize) };
@@ -72,7 +73,8 @@ fn summarise(args: &SweepArgs, store: &Store, total: usize) -> Result<(), CliErr
     let failed: Vec<_> = store.rows().values().filter(|row| row.status == Status::Failed).collect();
     if let Some(first) = failed.first() {
         let error = first.error.as_deref().unwrap_or_default();
-        let (count, point) = (failed.len(), first.point);
+        let count = failed.len();
+        let point = first.point;
         complain(&format!("pxpl5: {count} of {total} points could not be simulated; point {point}: {error}\n"));
     }
     if args.quiet { Ok(()) } else { print(&format!("{total} points are in {}.\n", path.display())) }

@@ -44,7 +44,8 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     let experiment = plan.experiment(plan.load_scene()?).record_traffic(true);
     let outcome = experiment.run_with(|field, _| bar.set_position(field))?;
     bar.finish_and_clear();
-    let (trace, mut bytes) = (Trace::of(&outcome), Vec::new());
+    let trace = Trace::of(&outcome);
+    let mut bytes = Vec::new();
     let written = match args.format {
         Format::Perfetto => perfetto(&trace, &mut bytes),
         Format::Chrome => chrome(&trace, &mut bytes),
@@ -55,6 +56,7 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     if args.quiet {
         return Ok(());
     }
-    let (path, tracks) = (args.out.display(), trace.tracks.len());
+    let path = args.out.display();
+    let tracks = trace.tracks.len();
     print(&format!("{path}: {} fields, {tracks} tracks; open it with ui.perfetto.dev.\n", plan.fields))
 }

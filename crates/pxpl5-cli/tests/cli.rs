@@ -2,6 +2,7 @@
 
 mod support;
 
+use std::path::Path;
 use std::process::Stdio;
 use support::{Folder, command, err, json, names, out};
 
@@ -31,7 +32,7 @@ fn refused(args: &[&str], code: i32, says: &[&str]) {
 fn a_run_prints_one_object_with_units_in_its_names() {
     let folder = Folder::new("json");
     let report = json(&folder.run(&with(&SLATS, &["--json", "--seed", "7"])));
-    assert_eq!(report["schema"], "pxpl5-report/1");
+    assert_eq!(report["schema"], "pxpl5-report/2");
     assert_eq!((&report["pipeline"], &report["machine"]), (&"slats".into(), &"slats".into()));
     assert_eq!((&report["scene"], &report["triangles"]), (&"full-screen:10".into(), &10.into()));
     assert_eq!((&report["spheres"], &report["fields"], &report["seed"]), (&0.into(), &12.into(), &7.into()));
@@ -41,10 +42,11 @@ fn a_run_prints_one_object_with_units_in_its_names() {
             let value = report[key][part].as_f64().expect("a number");
             assert!((value / one_field - 1.0).abs() < 1e-6, "{key}.{part} = {value}");
         }
+        assert_eq!(report[key]["n"], report["pictures"]);
         assert!(report[key]["sd"].is_number() && report[key]["definition"].is_string());
     }
     assert!(report["updates_hz"].is_number() && report["host_seconds"].is_number());
-    assert_eq!(report["missed_retraces"], 0);
+    assert_eq!((&report["missed_retraces"], &report["too_heavy"]), (&0.into(), &serde_json::Value::Null));
     assert_eq!(report["trace_hash"].as_str().map(str::len), Some(16));
 }
 
@@ -62,7 +64,31 @@ fn a_run_that_shows_nothing_says_so_and_fails() {
     let report = json_of(&output);
     assert_eq!((&report["shown"], &report["updates_hz"]), (&0.into(), &serde_json::Value::Null));
     assert_eq!((&report["pictures"], &report["latency_fields"]["mean"]), (&0.into(), &serde_json::Value::Null));
-    assert_eq!((&report["missed_retraces"], &report["judged_retraces"]), (&60.into(), &60.into()));
+    // The first 8 of 60 fields are the warm-up.
+    let due = &report["due"];
+    assert_eq!((&due["due"], &due["shown"], &report["missed_retraces"]), (&52.into(), &0.into(), &52.into()));
+    assert_eq!((&due["first_period"], &due["last_period"]), (&8.into(), &59.into()));
+    assert!(report["too_heavy"]["triangles_in_time"].as_u64() > Some(100));
+}
+
+#[test]
+fn a_run_that_is_too_short_prints_what_it_has() {
+    let folder = Folder::new("too-short");
+    let full = ["run", "--pipeline", "rendering-control", "--scene", "full-screen:20000", "--pixels", "off"];
+    let short = with(&full, &["--fields", "60"]);
+    let output = folder.run(&with(&short, &["--json"]));
+    assert_eq!(output.status.code(), Some(1));
+    assert!(err(&output).contains("simulate more fields: the next one is shown after about"), "{}", err(&output));
+    let report = json_of(&output);
+    for key in ["mean", "sd", "min", "max"] {
+        assert_eq!(report["latency_ms"][key], serde_json::Value::Null);
+    }
+    assert_eq!((&report["latency_ms"]["n"], &report["updates_hz"]), (&0.into(), &serde_json::Value::Null));
+    let text = folder.run(&short);
+    assert_eq!(text.status.code(), Some(1));
+    for part in ["latency, fields: mean    -", "not shown in time", "TOO HEAVY"] {
+        assert!(out(&text).contains(part), "{part}: {}", out(&text));
+    }
 }
 
 /// The object on standard output, whatever the exit code.
@@ -71,14 +97,19 @@ fn json_of(output: &std::process::Output) -> serde_json::Value {
 }
 
 #[test]
-fn one_picture_has_no_rate_and_every_retrace_after_it_is_missed() {
+fn one_picture_of_many_that_are_due_has_no_deviation() {
     let folder = Folder::new("one-picture");
     let full = ["run", "--pipeline", "rendering-control", "--scene", "full-screen:20000", "--pixels", "off"];
     let report = json(&folder.run(&with(&full, &["--fields", "400", "--json"])));
-    assert_eq!((&report["pictures"], &report["updates_hz"]), (&1.into(), &serde_json::Value::Null));
-    // Each eye's copy takes the retrace at which the next frame could have been shown.
-    let judged = report["judged_retraces"].as_u64().expect("a number");
-    assert_eq!(report["missed_retraces"].as_u64(), Some(judged - 2));
+    assert_eq!((&report["pictures"], &report["latency_ms"]["sd"]), (&1.into(), &serde_json::Value::Null));
+    // A frame is due every second field, and takes 70 and more.
+    let [due, shown] = ["due", "shown"].map(|key| report["due"][key].as_u64().expect("a number"));
+    assert!(due > 100 && (1..=5).contains(&shown), "{shown} of {due}");
+    assert_eq!(report["missed_retraces"].as_u64(), Some(due - shown));
+}
+
+fn read(folder: &Path, name: &str) -> Vec<u8> {
+    std::fs::read(folder.join(name)).expect("written")
 }
 
 #[test]
@@ -91,10 +122,10 @@ fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
         names,
         ["experiment.toml", "left.png", "pictures.csv", "report.json", "results.csv", "right.png", "timeline.svg"]
     );
-    let read = |name: &str| std::fs::read(folder.0.join("a/b").join(name)).expect("written");
+    let written = folder.0.join("a/b");
     let hash = report["config_hash"].as_str().expect("a hash");
     for name in ["experiment.toml", "results.csv", "pictures.csv"] {
-        let text = String::from_utf8(read(name)).expect("text");
+        let text = String::from_utf8(read(&written, name)).expect("text");
         let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with("# schema")).take(5).collect();
         let expected = [
             "# machine: slats",
@@ -105,13 +136,13 @@ fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
         ];
         assert_eq!(lines, expected, "{name}");
     }
-    let saved: serde_json::Value = serde_json::from_slice(&read("report.json")).expect("JSON");
+    let saved: serde_json::Value = serde_json::from_slice(&read(&written, "report.json")).expect("JSON");
     let keys: Vec<&str> = saved.as_object().expect("an object").keys().map(String::as_str).take(6).collect();
     assert_eq!(keys, ["schema", "version", "machine", "config_hash", "level", "seed"]);
     assert_eq!(saved["overrides"]["gp.triangle_ns"], 30_000);
-    let svg = String::from_utf8(read("timeline.svg")).expect("text");
+    let svg = String::from_utf8(read(&written, "timeline.svg")).expect("text");
     assert!(svg.find(hash).is_some_and(|at| at < svg.find("<svg").expect("a drawing")), "the origin comes first");
-    let png = read("left.png");
+    let png = read(&written, "left.png");
     assert!(png.windows(hash.len()).any(|part| part == hash.as_bytes()), "the picture names its configuration");
     assert!(image::load_from_memory(&png).is_ok(), "the picture can be read");
 }
@@ -124,15 +155,18 @@ fn the_written_experiment_runs_to_the_same_trace() {
     assert_eq!((&first["trace_hash"], &first["config_hash"]), (&second["trace_hash"], &second["config_hash"]));
 }
 
+fn trace_hash_with(folder: &Folder, more: &[&str]) -> serde_json::Value {
+    json(&folder.run(&with(&with(&RC, &["--json"]), more)))["trace_hash"].clone()
+}
+
 #[test]
 fn pixels_threads_and_repetition_leave_the_trace_alone() {
     let folder = Folder::new("trace");
-    let hash = |more: &[&str]| json(&folder.run(&with(&with(&RC, &["--json"]), more)))["trace_hash"].clone();
-    let expected = hash(&[]);
+    let expected = trace_hash_with(&folder, &[]);
     for more in
         [&["--pixels", "off"][..], &["--pixels", "all", "--threads", "0"], &["--pixels", "all", "--threads", "2"]]
     {
-        assert_eq!(hash(more), expected, "{more:?}");
+        assert_eq!(trace_hash_with(&folder, more), expected, "{more:?}");
     }
 }
 
@@ -142,7 +176,7 @@ fn a_table_goes_to_standard_output_and_quiet_says_nothing() {
     let output = folder.run(&SLATS);
     assert!(output.status.success() && err(&output).is_empty());
     let text = out(&output);
-    for part in ["pipeline", "slats", "full-screen:10", "10 triangles", "1.00, sd 0.00", "missed retraces"] {
+    for part in ["pipeline", "slats", "full-screen:10", "10 triangles", "1.00, sd 0.00, n", "not shown in time"] {
         assert!(text.contains(part), "{part}: {text}");
     }
     assert!(!text.contains('\u{1b}'), "no colour where there is no terminal");

@@ -40,8 +40,12 @@ fn lines(path: &Path) -> Vec<String> {
 }
 
 fn points(path: &Path) -> Vec<u64> {
-    let point = |line: &String| serde_json::from_str::<serde_json::Value>(line).expect("JSON")["point"].as_u64();
-    lines(path).iter().map(|line| point(line).expect("a number")).collect()
+    lines(path).iter().map(|line| point_of(line)).collect()
+}
+
+fn point_of(line: &str) -> u64 {
+    let row: serde_json::Value = serde_json::from_str(line).expect("JSON");
+    row["point"].as_u64().expect("a number")
 }
 
 #[test]
@@ -79,7 +83,8 @@ fn killed_after(mut child: Child, time: Duration) -> bool {
 fn a_sweep_killed_again_and_again_loses_no_finished_point_and_repeats_none() {
     let folder = folder("kill");
     let rows = folder.0.join("killed/rows.jsonl");
-    let (mut kills, mut finished) = (0, BTreeSet::new());
+    let mut kills = 0;
+    let mut finished = BTreeSet::new();
     for attempt in 0u64.. {
         let mut child = command(&["sweep", "s.toml", "--out", "killed", "--resume", "--quiet"]);
         let child = child.current_dir(&folder.0).stdout(Stdio::null()).spawn().expect("the command starts");

@@ -18,10 +18,12 @@
 //! **Not here:** what firmware must know of a display to draw for it (fields, beams): a pipeline that is written for one
 //! display finds it by its type: a display is [`Any`].
 
+mod aim;
 mod config;
 mod double_buffer;
 mod surface;
 
+pub use aim::{Aim, LightSpan};
 pub use config::{DisplayConfig, DisplayError};
 pub use double_buffer::{BufferReceipt, DoubleBuffer};
 pub use surface::{Counter, Surface};

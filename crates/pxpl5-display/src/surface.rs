@@ -53,3 +53,9 @@ pub struct Counter {
     /// How many.
     pub count: u64,
 }
+
+impl Counter {
+    /// Name of the count of lines that were overwritten before the display had shown them, where a display counts them: not
+    /// one that shows whole buffers.
+    pub const LINES_NEVER_SHOWN: &'static str = "lines never shown";
+}

@@ -139,7 +139,9 @@ impl FrameBuffer {
         self.stats.messages += 1;
         if let Some(last_part_at) = buffer.region(place).last_at() {
             self.stats.regions += 1;
-            buffer.hide_below(place);
+            if let Some(older) = buffer.hide_below(place) {
+                self.stats.lines_never_shown += buffer.lines_never_shown(older, place, &self.video, self.word);
+            }
             let arrived = FrameBufferOutput::RegionArrived {
                 target,
                 first_part_at: buffer.region(place).first_at(),
@@ -167,6 +169,7 @@ impl FrameBuffer {
             buffer.prune(self.video.width(), self.video.height());
         }
         self.swap(field, context);
+        self.buffers[usize::from(self.displayed)].scan(field);
         self.scanning = Some(field);
         self.stats.fields += 1;
         let expected = self.video.retrace(field);

@@ -1,8 +1,10 @@
 //! One of the two buffers: the regions written into it, as far as one of their pixels can still be seen.
 
 use crate::region::RegionWrite;
+use crate::scans::{Overwritten, Scans};
+use crate::video::Video;
 use pxpl5_sim::Span;
-use pxpl5_wire::{CopyTarget, Lines};
+use pxpl5_wire::{CopyTarget, Lines, PeriodNumber};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -22,6 +24,7 @@ pub(crate) struct Buffer {
     arriving: Vec<usize>,
     /// Place of the newest complete region of each cut: those below it are hidden already.
     newest: BTreeMap<[u32; 6], usize>,
+    scans: Scans,
 }
 
 #[derive(Clone, Debug)]
@@ -32,7 +35,14 @@ struct Held {
 
 impl Buffer {
     pub(crate) fn new() -> Self {
-        Self { held: Vec::new(), shared: None, search_above: FEW, arriving: Vec::new(), newest: BTreeMap::new() }
+        Self {
+            held: Vec::new(),
+            shared: None,
+            search_above: FEW,
+            arriving: Vec::new(),
+            newest: BTreeMap::new(),
+            scans: Scans::default(),
+        }
     }
 
     /// The region of this target that is arriving.
@@ -56,14 +66,28 @@ impl Buffer {
         Arc::make_mut(&mut self.held[place].region)
     }
 
-    /// Marks what a complete region hides.
-    pub(crate) fn hide_below(&mut self, place: usize) {
+    /// Notes that a field is scanned from this buffer.
+    pub(crate) fn scan(&mut self, field: PeriodNumber) {
+        self.scans.begin(field);
+    }
+
+    /// Marks what a complete region hides; the place of the older one whose pixels it has overwritten.
+    pub(crate) fn hide_below(&mut self, place: usize) -> Option<usize> {
         self.arriving.retain(|other| *other != place);
         let newest = self.newest.entry(cut(&self.held[place].region.target)).or_insert(place);
-        if *newest != place {
-            self.held[place.min(*newest)].hidden = true;
-            *newest = place.max(*newest);
+        if *newest == place {
+            return None;
         }
+        let older = place.min(*newest);
+        self.held[older].hidden = true;
+        *newest = place.max(*newest);
+        (older != place).then_some(older)
+    }
+
+    /// Lines of one region that another of the same cut has overwritten before the beam had shown all of them.
+    pub(crate) fn lines_never_shown(&self, older: usize, newer: usize, video: &Video, word: Span) -> u64 {
+        let [older, newer] = [older, newer].map(|place| self.region(place));
+        self.scans.lines_never_shown(&Overwritten { older, newer, video, word })
     }
 
     /// Finds again what is arriving and what is newest, when places have changed.

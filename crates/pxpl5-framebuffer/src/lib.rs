@@ -21,6 +21,8 @@
 //!    what is in the buffer when the beam is there: of a word that arrives at that instant the new value, of a later
 //!    one the old. So a region that comes too late is seen torn, word by word, and listed by
 //!    [`SeenField::late_regions`].
+//!    A line that is overwritten by another region of the same place before the beam has shown all of it is counted
+//!    ([`FrameBufferStats::lines_never_shown`]). Regions are compared with those of the same cut alone.
 //! 5. Two boards scan in lock-step because the wiring gives both the same retraces.
 //! 6. What cannot be done (pixels for another board, a region outside of the frame, a message twice) is a counted
 //!    fault without effect: [`FrameBuffer::faults`].
@@ -58,6 +60,7 @@ mod ntsc;
 mod picture;
 mod port;
 mod region;
+mod scans;
 mod seen;
 mod stats;
 mod timing;
@@ -68,7 +71,6 @@ pub use config::FrameBufferConfig;
 pub use error::FrameBufferConfigError;
 pub use image::RgbImage;
 pub use ntsc::{NtscDisplay, seen_at};
-pub use picture::{PictureError, write_png};
 pub use port::{Faults, FrameBufferEvent, FrameBufferFault, FrameBufferOutput};
 pub use seen::{BufferContents, SeenField, SeenLateRegion};
 pub use stats::FrameBufferStats;

@@ -140,6 +140,7 @@ impl Display for NtscDisplay {
             Counter { name: "messages", count: self.sum(|board| board.stats().messages) },
             Counter { name: "regions", count: self.sum(|board| board.stats().regions) },
             Counter { name: "swaps", count: self.sum(|board| board.stats().swaps) },
+            Counter { name: Counter::LINES_NEVER_SHOWN, count: self.sum(|board| board.stats().lines_never_shown) },
         ]
     }
 

@@ -1,11 +1,8 @@
-//! Pixels in memory and in files.
+//! Pixels in memory.
 
 use crate::region::Segment;
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder, RgbImage};
+use image::RgbImage;
 use pxpl5_wire::Word;
-use std::fmt;
-use std::io::{self, Write};
 use std::ops::Deref;
 use std::sync::Arc;
 
@@ -58,48 +55,4 @@ impl CanvasRow<'_> {
             }
         }
     }
-}
-
-/// Why a picture could not be written.
-#[derive(Debug)]
-#[non_exhaustive]
-pub enum PictureError {
-    /// The writer failed.
-    Io(io::Error),
-    /// The encoder refused the picture.
-    Encode(image::ImageError),
-}
-
-impl fmt::Display for PictureError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Io(error) => write!(f, "cannot write the picture: {error}"),
-            Self::Encode(error) => write!(f, "cannot encode the picture: {error}"),
-        }
-    }
-}
-
-impl std::error::Error for PictureError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Io(error) => Some(error),
-            Self::Encode(error) => Some(error),
-        }
-    }
-}
-
-/// Writes a picture as PNG.
-///
-/// # Errors
-///
-/// [`PictureError::Io`] when the writer fails, [`PictureError::Encode`] when the picture has no pixels.
-pub fn write_png(picture: &RgbImage, mut out: impl Write) -> Result<(), PictureError> {
-    let (width, height) = picture.dimensions();
-    PngEncoder::new(&mut out).write_image(picture.as_raw(), width, height, ExtendedColorType::Rgb8).map_err(
-        |error| match error {
-            image::ImageError::IoError(error) => PictureError::Io(error),
-            error => PictureError::Encode(error),
-        },
-    )?;
-    out.flush().map_err(PictureError::Io)
 }

@@ -2,7 +2,7 @@
 
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, NodeId, PeriodNumber, RegionPixels};
-use std::fmt;
+use thiserror::Error;
 
 /// What happens to a frame buffer.
 #[derive(Clone, Debug)]
@@ -45,10 +45,11 @@ pub enum FrameBufferOutput {
 }
 
 /// Something that a frame buffer cannot do. It is counted, recorded and otherwise without effect.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum FrameBufferFault {
     /// Pixels for another board came here.
+    #[error("pixels for node {} came to the frame buffer at node {}", found.0, expected.0)]
     WrongBoard {
         /// This board's port.
         expected: NodeId,
@@ -56,11 +57,16 @@ pub enum FrameBufferFault {
         found: NodeId,
     },
     /// There are two buffers, 0 and 1.
+    #[error("expected buffer 0 or 1, found {found}")]
     NoSuchBuffer {
         /// The buffer that was asked for.
         found: u8,
     },
     /// A region does not lie in the frame, or is larger than a renderer's array.
+    #[error(
+        "region {} of {:?}, {:?}, does not lie in the frame of {} x {} or exceeds 128 x 128",
+        target.region.0, target.grid, target.lines, frame[0], frame[1]
+    )]
     Region {
         /// Where the pixels were to go.
         target: CopyTarget,
@@ -68,6 +74,7 @@ pub enum FrameBufferFault {
         frame: [u32; 2],
     },
     /// A region's number of messages does not fit its number of pixels.
+    #[error("region {} needs {expected} messages of pixels, found {found}", target.region.0)]
     Parts {
         /// Where the pixels were to go.
         target: CopyTarget,
@@ -77,6 +84,7 @@ pub enum FrameBufferFault {
         found: u32,
     },
     /// A message does not exist in its region, or has arrived already.
+    #[error("message {found} of {parts} of region {} does not exist or has arrived already", target.region.0)]
     Part {
         /// Where the pixels were to go.
         target: CopyTarget,
@@ -86,6 +94,7 @@ pub enum FrameBufferFault {
         parts: u32,
     },
     /// A retrace came at another time than the video timing says.
+    #[error("retrace {field} expected at {expected}, found at {found}")]
     Retrace {
         /// The field.
         field: PeriodNumber,
@@ -111,34 +120,3 @@ impl Faults {
         self.first.get_or_insert((now, fault));
     }
 }
-
-impl fmt::Display for FrameBufferFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::WrongBoard { expected, found } => {
-                write!(f, "pixels for node {} came to the frame buffer at node {}", found.0, expected.0)
-            }
-            Self::NoSuchBuffer { found } => {
-                write!(f, "expected buffer 0 or 1, found {found}")
-            }
-            Self::Region { target, frame: [width, height] } => write!(
-                f,
-                "region {} of {:?}, {:?}, does not lie in the frame of {width} x {height} or exceeds 128 x 128",
-                target.region.0, target.grid, target.lines
-            ),
-            Self::Parts { target, expected, found } => {
-                write!(f, "region {} needs {expected} messages of pixels, found {found}", target.region.0)
-            }
-            Self::Part { target, found, parts } => write!(
-                f,
-                "message {found} of {parts} of region {} does not exist or has arrived already",
-                target.region.0
-            ),
-            Self::Retrace { field, expected, found } => {
-                write!(f, "retrace {field} expected at {expected}, found at {found}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for FrameBufferFault {}

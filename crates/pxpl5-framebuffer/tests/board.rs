@@ -3,12 +3,10 @@
 mod support;
 
 use pxpl5_framebuffer::{
-    FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferFault, FrameBufferOutput, PictureError, RgbImage,
-    write_png,
+    FrameBuffer, FrameBufferConfig, FrameBufferEvent, FrameBufferFault, FrameBufferOutput, RgbImage,
 };
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, Lines, NodeId, PeriodNumber, RegionGrid, RegionPixels};
-use std::io;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use support::{Board, MESSAGE, NODE, WORD, colour, field_target, n_parts, source, target};
@@ -337,25 +335,59 @@ fn a_board_that_cannot_be_built_says_why() {
     assert_eq!(error.to_string(), "frame buffer: fields_kept must be 1 to 1000, found 0");
 }
 
-#[test]
-fn a_png_holds_every_pixel_and_a_failing_writer_is_an_error() {
-    let picture = RgbImage::from_fn(5, 3, |x, y| image::Rgb([x as u8, y as u8, 77]));
-    let mut file = Vec::new();
-    write_png(&picture, &mut file).expect("written");
-    let read = image::load_from_memory_with_format(&file, image::ImageFormat::Png).expect("a PNG");
-    assert_eq!(read.to_rgb8(), picture);
-
-    struct Full;
-    impl io::Write for Full {
-        fn write(&mut self, _: &[u8]) -> io::Result<usize> {
-            Err(io::Error::other("disk full"))
-        }
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
+/// Regions 0 of a field, one after the other, each complete at a time; how many of its lines were never shown.
+fn never_shown(parity: FieldParity, at: &[Time]) -> u64 {
+    let mut board = Board::new();
+    board.retraces(0..=8);
+    for (picture, last) in (0..).zip(at) {
+        board.region(*last, field_target(0, parity, 0, picture), &colour(RED));
     }
-    let error = write_png(&picture, Full).expect_err("full");
-    assert!(matches!(error, PictureError::Io(_)), "{error:?}");
-    assert_eq!(error.to_string(), "cannot write the picture: disk full");
-    assert!(write_png(&RgbImage::new(0, 0), Vec::new()).is_err());
+    board.run();
+    board.device.stats().lines_never_shown
+}
+
+#[test]
+fn lines_that_are_overwritten_before_their_scan_are_counted_one_by_one() {
+    let board = Board::new();
+    let video = board.device.video();
+    let beam = |row: u32, field| video.when(0, 2 * row, PeriodNumber(field)).expect("scanned");
+    let retrace = |field| video.retrace(PeriodNumber(field));
+    let span = MESSAGE * 15;
+    // Between two fields of its parity nothing is lost, whether the region comes early or late in the other one.
+    let shown = [retrace(1) + span, retrace(3) + span, retrace(5)];
+    assert_eq!(never_shown(FieldParity::Even, &shown), 0);
+    // Two pictures between two fields of their parity: all 120 lines of the first are lost.
+    let early = [retrace(1) + span, retrace(1) + span * 2, retrace(3) + span];
+    assert_eq!(never_shown(FieldParity::Even, &early), 120);
+    // A region complete when the beam is at its row 60, its words 15 messages of 8 rows long: the rows that were there before
+    // the beam stay to be shown; those that came after it are overwritten before the next field. Row k came at
+    // last - (119 - k) rows of 6.5 us; the beam passes it at begin + k x 63.556 us.
+    let last = beam(60, 2);
+    let late_rows = (0..120).filter(|row| {
+        let message_at = Time(last.0 - (MESSAGE * (14 - row / 8)).0);
+        let arrived = Time(message_at.0 - (WORD * (1023 - row % 8 * 128)).0);
+        arrived > beam(*row as u32, 2)
+    });
+    let late_rows = late_rows.count() as u64;
+    assert!((40..60).contains(&late_rows), "{late_rows}");
+    assert_eq!(never_shown(FieldParity::Even, &[Time::ZERO + span, last, retrace(3) + span]), late_rows);
+}
+
+#[test]
+fn a_buffer_that_is_not_displayed_shows_nothing() {
+    let mut board = Board::new();
+    board.retraces(0..=8);
+    let retrace = |n| FrameBuffer::new(FrameBufferConfig::NTSC, NODE).expect("valid").video().retrace(PeriodNumber(n));
+    for (picture, field) in [(0, 1), (1, 3), (2, 7)] {
+        board.region(
+            retrace(field) + MESSAGE * 16,
+            target(1, Lines::Frame, RegionGrid::FRAME, 0, picture),
+            &colour(RED),
+        );
+    }
+    // Picture 0 is overwritten unseen; picture 1 is shown in fields 4 and 5.
+    board.swap(Time(retrace(4).0 - 1), 1);
+    board.swap(Time(retrace(6).0 - 1), 0);
+    board.run();
+    assert_eq!(board.device.stats().lines_never_shown, 128);
 }

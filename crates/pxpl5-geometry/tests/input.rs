@@ -198,7 +198,7 @@ fn a_projection_that_is_neither_perspective_nor_parallel_draws_no_spheres() {
 
 #[test]
 fn silhouettes_are_exact_to_the_pixel_and_regions_miss_none_of_it() {
-    let mut random = Random(77);
+    let mut random = Random::new(77);
     let mut pixels = 0;
     for _ in 0..25 {
         let radius = random.between(0.02, 1.0);

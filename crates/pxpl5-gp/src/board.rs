@@ -1,7 +1,7 @@
 //! The board: it polls its programs whenever something has happened to them.
 
 use crate::cpu::{Cpu, Priority};
-use crate::firmware::{Cause, Fault, Firmware, Gp, Received, Shared, Wait};
+use crate::firmware::{Cause, ChainLink, Fault, Firmware, Gp, Received, Shared, Wait};
 use crate::memory::Memory;
 use crate::probe::Mark;
 use crate::processor::{CodeVersion, Processor};
@@ -45,6 +45,8 @@ pub enum GpOutput {
         message: Message,
         /// Its batch, and its place in it in the lower [`PLACE_BITS`].
         ticket: u64,
+        /// Whether the receiver's port stays reserved for the next message.
+        hold: bool,
     },
 }
 
@@ -102,10 +104,10 @@ impl GpBoard {
         Self { shared, tasks: Vec::new(), announced: None, poll_pending: false, cycle, fault: None }
     }
 
-    /// Has the time of [`Work`](crate::Work) come from this code from now on, whatever the timing table says.
-    pub fn run_code(&mut self, version: CodeVersion) {
+    /// Has the time of [`Work`](crate::Work) come from this code on such a core from now on, whatever the timing table says.
+    pub fn run_code(&mut self, version: CodeVersion, core: i860::Config) {
         let shared = &mut *self.shared.borrow_mut();
-        shared.processor = Some(Box::new(Processor::new(shared.node, shared.timing.memory_bytes, version)));
+        shared.processor = Some(Box::new(Processor::new(shared.node, shared.timing.memory_bytes, version, core)));
     }
 
     /// Has the processor that runs code memoise nothing; to be called before programs run.
@@ -179,9 +181,9 @@ impl GpBoard {
         self.poll_until_quiet();
         let shared = &mut *self.shared.borrow_mut();
         if let Some(batch) = shared.next_batch() {
-            for (place, message) in (0..).zip(batch.messages) {
+            for (place, ChainLink { message, hold }) in (0..).zip(batch.links) {
                 let ticket = batch.ticket.0 << PLACE_BITS | place;
-                context.output(context.now() + self.cycle, GpOutput::Send { message, ticket });
+                context.output(context.now() + self.cycle, GpOutput::Send { message, ticket, hold });
             }
         }
         let end = shared.cpu.next_end().filter(|end| self.announced != Some(end.1));
@@ -350,6 +352,27 @@ mod tests {
         bench.run(|event, context| board.handle(event, context));
         let first = Time(1_000_000) + CYCLE;
         assert_eq!(sent(bench), [(first, 1, 0), (Time(10_000_000) + CYCLE, 1, 1)]);
+    }
+
+    #[test]
+    fn a_group_keeps_its_receiver_until_its_last_message() {
+        async fn groups(gp: Gp) -> Result<(), Fault> {
+            let word = |value: u32| (1, Body::Words([value].into()));
+            gp.send_groups(vec![(NodeId(1), vec![word(0), word(1), word(2)]), (NodeId(2), vec![word(3)])]).await;
+            Ok(())
+        }
+        let mut board = GpBoard::new(NodeId(9), GpTiming::PAPERS, CYCLE);
+        let gp = board.handle_for(Priority::Foreground);
+        board.load(Priority::Foreground, Box::pin(groups(gp)));
+        let mut bench = TestBench::new();
+        bench.feed(Time(0), Phase::Work, GpEvent::Poll);
+        bench.run(|event, context| board.handle(event, context));
+        let held: Vec<_> = bench
+            .outputs
+            .iter()
+            .map(|(_, GpOutput::Send { message, hold, .. })| (message.destination.0, value(&message.body), *hold))
+            .collect();
+        assert_eq!(held, [(1, 0, true), (1, 1, true), (1, 2, false), (2, 3, false)]);
     }
 
     #[test]

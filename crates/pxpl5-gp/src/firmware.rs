@@ -56,7 +56,15 @@ pub struct Ticket(pub(crate) u64);
 #[derive(Debug)]
 pub(crate) struct Batch {
     pub(crate) ticket: Ticket,
-    pub(crate) messages: Vec<Message>,
+    pub(crate) links: Vec<ChainLink>,
+}
+
+/// A message in its chain.
+#[derive(Debug)]
+pub(crate) struct ChainLink {
+    pub(crate) message: Message,
+    /// Whether the receiver's port stays reserved for the next one.
+    pub(crate) hold: bool,
 }
 
 /// What the board and its programs share.
@@ -143,7 +151,7 @@ impl Shared {
     /// The next batch, if the DMA is free.
     pub(crate) fn next_batch(&mut self) -> Option<Batch> {
         let batch = if self.in_flight.is_empty() { self.batches.pop_front() } else { None }?;
-        self.in_flight = (0..).zip(batch.messages.iter().map(|message| message.destination)).collect();
+        self.in_flight = (0..).zip(batch.links.iter().map(|link| link.message.destination)).collect();
         self.not_begun = self.in_flight.iter().map(|flight| flight.1).collect();
         Some(batch)
     }
@@ -268,7 +276,19 @@ impl Gp {
     /// time where they have different receivers. A chain waits for the one before it.
     pub async fn send_batch(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
         self.spend_message().await;
-        self.post(batch)
+        self.send_prepared(batch)
+    }
+
+    /// As [`Gp::send_batch`], for messages that belong together, in groups of one receiver each: between the first and the
+    /// last of a group the receiver takes no message of another board, because the group keeps its port.
+    pub async fn send_groups(&self, groups: Vec<(NodeId, Vec<(u32, Body)>)>) -> Ticket {
+        self.spend_message().await;
+        let links = groups.into_iter().flat_map(|(destination, group)| {
+            let last = group.len().saturating_sub(1);
+            let numbered = (0..).zip(group);
+            numbered.map(move |(place, (words, body))| (destination, words, body, place < last))
+        });
+        self.post(links.collect())
     }
 
     /// Waits until the clump buffer is free: everything sent before has been accepted.
@@ -291,10 +311,12 @@ impl Gp {
 
     /// Hands a chain of messages to the DMA whose software cost was paid before by [`Gp::spend_message`].
     pub fn send_prepared(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
-        self.post(batch)
+        self.post(batch.into_iter().map(|(destination, words, body)| (destination, words, body, false)).collect())
     }
 
-    fn post(&self, batch: Vec<(NodeId, u32, Body)>) -> Ticket {
+    /// Hands a chain to the DMA: of each message its receiver, words, what it carries, and whether it keeps the receiver's
+    /// port for the next one.
+    fn post(&self, batch: Vec<(NodeId, u32, Body, bool)>) -> Ticket {
         let shared = &mut *self.shared.borrow_mut();
         if batch.is_empty() {
             return Ticket(shared.issued);
@@ -302,8 +324,11 @@ impl Gp {
         shared.issued += 1;
         let ticket = Ticket(shared.issued);
         let source = shared.node;
-        let messages = batch.into_iter().map(|(destination, words, body)| Message { source, destination, words, body });
-        shared.batches.push_back(Batch { ticket, messages: messages.collect() });
+        let links = batch.into_iter().map(|(destination, words, body, hold)| ChainLink {
+            message: Message { source, destination, words, body },
+            hold,
+        });
+        shared.batches.push_back(Batch { ticket, links: links.collect() });
         ticket
     }
 

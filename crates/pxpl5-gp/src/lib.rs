@@ -17,7 +17,8 @@
 //! - Programs have two priorities: that of [`Priority::Interrupt`] stops that of [`Priority::Foreground`] while it
 //!   spends time. There is one program for each.
 //! - [`Gp::send`] costs the CPU a fixed software time and hands the messages to the DMA, which sends in the
-//!   background. There is one clump buffer, so a second batch waits until the first was accepted.
+//!   background. There is one clump buffer, so a second batch waits until the first was accepted. Messages that belong
+//!   together ([`Gp::send_groups`]) keep their receiver's port from the first to the last.
 //! - [`Memory`] accounts for 8 MB; what does not fit is a [`Fault`] that names the board and the region.
 //!
 //! The host workstation runs on the same board model with its own timing table.

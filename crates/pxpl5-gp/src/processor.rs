@@ -107,6 +107,8 @@ const LINK: usize = 1;
 pub struct Processor {
     gp: NodeId,
     version: CodeVersion,
+    /// What its core is built with, again at every reset.
+    core: i860::Config,
     cpu: Cpu,
     ram: Ram,
     loaded: Option<Arc<Program>>,
@@ -124,16 +126,17 @@ impl Processor {
     /// Time of a clock: 40 MHz (TR94).
     pub const CLOCK: Span = Span(25_000);
 
-    /// A processor after reset, its memory all zero.
+    /// A processor after reset, its memory all zero; `core` gives the clocks of its instructions and of the memory.
     #[must_use]
-    pub fn new(gp: NodeId, memory_bytes: u64, version: CodeVersion) -> Self {
+    pub fn new(gp: NodeId, memory_bytes: u64, version: CodeVersion, core: i860::Config) -> Self {
         let ram = Ram::new(0, memory_bytes as usize);
-        Self { gp, version, cpu: Cpu::new(i860::Config::cycle()), ram, loaded: None, outputs: [None, None] }
+        Self { gp, version, core, cpu: Cpu::new(core), ram, loaded: None, outputs: [None, None] }
     }
 
     /// Resets it to a processor that memoises nothing; every time stays the same.
     pub fn count_every_clock(&mut self) {
-        self.cpu = Cpu::new(i860::Config { memoise: false, ..i860::Config::cycle() });
+        self.core.memoise = false;
+        self.cpu = Cpu::new(self.core);
     }
 
     /// Which version of the code the board runs.
@@ -245,7 +248,7 @@ mod tests {
     use super::*;
 
     fn processor() -> Processor {
-        Processor::new(NodeId(3), 1 << 16, CodeVersion::Scheduled)
+        Processor::new(NodeId(3), 1 << 16, CodeVersion::Scheduled, i860::Config::cycle())
     }
 
     fn program(source: &str) -> Arc<Program> {

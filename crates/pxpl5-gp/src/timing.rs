@@ -46,7 +46,7 @@ parameters::parameter_table! {
         link_bytes_per_s: 5_000_000, "bytes/s", Assumed, 4000000..=10000000 in 1_000..=MAX, "a workstation's parallel interface";
         /// CPU time of the host to send or receive a message.
         message_ns: 20_000, "ns", Assumed, 10000..=100000 in 0..=MAX, "a system call";
-        /// Time between two views that the host sends unasked (Slats).
+        /// Time between two poses of the scene's own motion that the host sends unasked; with a tracker it sends what that delivers.
         view_period_ns: 16_683_333, "ns", Assumed, 8333333..=50000000 in 1_000..=MAX, "a tracker at about the field rate; TR94 gives 20 to 120 Hz";
     }
 }

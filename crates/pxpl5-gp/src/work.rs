@@ -76,7 +76,7 @@ mod tests {
     fn run(timing: GpTiming, code: Option<CodeVersion>, turns: Option<u32>) -> GpBoard {
         let mut board = GpBoard::new(NodeId(5), timing, Span(25_000));
         if let Some(version) = code {
-            board.run_code(version);
+            board.run_code(version, i860::Config::cycle());
         }
         let gp = board.handle_for(Priority::Foreground);
         board.load(Priority::Foreground, Box::pin(async move { gp.work(&Turns(turns)).await }));

@@ -4,7 +4,7 @@ use crate::limit::test_scene;
 use crate::{Workstation, parallel};
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::Measured;
-use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, RenderingControl, Statistics, TestScene};
+use pxpl5_run::{Experiment, ExperimentError, Pixels, RenderingControl, Statistics, TestScene};
 use pxpl5_scene::builtin;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -13,13 +13,13 @@ use std::sync::Arc;
 /// One run. All zero behind the boards when no frame was shown.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Point {
-    /// Triangles (and spheres).
+    /// Triangles and spheres of the scene.
     pub primitives: usize,
-    /// Graphics processors.
+    /// Graphics processors of the machine, the master among them.
     pub n_gps: usize,
-    /// Renderers.
+    /// Renderers of the machine, of 128 x 128 pixels each.
     pub n_renderers: usize,
-    /// Stereo frames shown.
+    /// Stereo frames that were shown, complete, before the run ended.
     pub frames: usize,
     /// Host time of a frame, milliseconds, without pixels: the fastest of three runs.
     pub host_ms: f64,
@@ -114,15 +114,15 @@ pub fn by_machine() -> Result<Vec<Point>, ExperimentError> {
 /// An application scene on a preset: which machine the papers used is not known.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Application {
-    /// The scene.
+    /// Name of the built-in scene.
     pub scene: &'static str,
-    /// The preset.
+    /// Name of the preset of the machine.
     pub machine: &'static str,
     /// Latency in fields: mean and standard deviation over frames of all seeds.
     pub latency_fields: [f64; 2],
     /// Frames per second of simulated time.
     pub updates_hz: f64,
-    /// Frames.
+    /// Frames of all seeds together, after the warm-up.
     pub frames: usize,
 }
 
@@ -148,14 +148,11 @@ pub fn applications() -> Result<Vec<Application>, ExperimentError> {
 fn application(scene: &'static str, machine: &'static str) -> Result<Application, ExperimentError> {
     let built = Arc::new(builtin(scene).map_err(|error| ExperimentError::Scene(error.to_string()))?);
     let config = MachineConfig::preset(machine)?;
-    let run = |seed: u64| {
-        let experiment = Experiment::new(config.clone(), RenderingControl::stereo(), Arc::clone(&built));
-        experiment.fields(FIELDS).seed(seed).pixels(Pixels::Off).run()
-    };
+    let experiment = Experiment::new(config, RenderingControl::stereo(), built).fields(FIELDS).pixels(Pixels::Off);
     let seeds: Vec<u64> = (1..=SEEDS).collect();
-    let (mut latencies, mut hz) = (Vec::new(), 0.0);
-    let each = |seed: &u64| run(*seed).map(|outcome| of_seed(&outcome)).map_err(|error| error.to_string());
-    for outcome in parallel::map(&seeds, each) {
+    let mut latencies = Vec::new();
+    let mut hz = 0.0;
+    for outcome in parallel::map(&seeds, |seed| run_seed(&experiment, *seed)) {
         let (of_seed, updates_hz) = outcome.map_err(ExperimentError::Stopped)?;
         latencies.extend(of_seed);
         hz += updates_hz / SEEDS as f64;
@@ -165,14 +162,12 @@ fn application(scene: &'static str, machine: &'static str) -> Result<Application
     Ok(Application { scene, machine, latency_fields: [fields.mean, fields.sd], updates_hz: hz, frames })
 }
 
-/// Latencies in fields, and the rate.
-fn of_seed(outcome: &Outcome) -> (Vec<f64>, f64) {
-    let latencies = outcome
-        .steady_pictures()
-        .iter()
-        .map(|times| (times.shown_at - times.transform_at).as_ms() / outcome.field_ms())
-        .collect();
-    (latencies, outcome.report().updates_hz.unwrap_or_default())
+/// Latencies in fields, and frames a second, with one seed of head motion.
+fn run_seed(experiment: &Experiment, seed: u64) -> Result<(Vec<f64>, f64), String> {
+    let outcome = experiment.clone().seed(seed).run().map_err(|error| error.to_string())?;
+    let pictures = outcome.complete_pictures();
+    let latencies = pictures.map(|times| (times.shown_at - times.transform_at).as_ms() / outcome.field_ms());
+    Ok((latencies.collect(), outcome.report().updates_hz.unwrap_or_default()))
 }
 
 /// Slope of a straight line through the logarithms.
@@ -180,7 +175,8 @@ fn of_seed(outcome: &Outcome) -> (Vec<f64>, f64) {
 pub fn exponent(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
     let n = logs.len() as f64;
-    let (mean_x, mean_y) = (logs.iter().map(|p| p.0).sum::<f64>() / n, logs.iter().map(|p| p.1).sum::<f64>() / n);
+    let mean_x = logs.iter().map(|p| p.0).sum::<f64>() / n;
+    let mean_y = logs.iter().map(|p| p.1).sum::<f64>() / n;
     let products: f64 = logs.iter().map(|p| (p.0 - mean_x) * (p.1 - mean_y)).sum();
     products / logs.iter().map(|p| (p.0 - mean_x) * (p.0 - mean_x)).sum::<f64>()
 }
@@ -188,7 +184,6 @@ pub fn exponent(points: &[(f64, f64)]) -> f64 {
 /// docs/scaling.md: tables, exponents and a chart.
 #[must_use]
 pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Application]) -> String {
-    let host = |from| power(triangles, from, |p| p.host_ms);
     let mut text = format!(
         "# Growth\n\nGenerated by `pxpl5 levels --scaling docs/scaling.md`. Rendering Control in stereo, triangles of 18 pixels,\n\
          no pixels computed, GPs with 1 GB instead of 8 MB; host times are the fastest of three\n\
@@ -197,8 +192,8 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
          Host time grows with the power {:.2} of the triangles from 1,000 on and {:.2} from 100,000 on: below that the tokens of\n\
          40 regions, which every GP takes and passes on, cost more than the triangles. Simulated latency grows with the power\n\
          {:.2} from 100,000 on (below that COPY is the bottleneck).\n\n",
-        host(1_000),
-        host(100_000),
+        power(triangles, 1_000, |p| p.host_ms),
+        power(triangles, 100_000, |p| p.host_ms),
         power(triangles, 100_000, |p| p.latency_fields),
     );
     table(&mut text, triangles);
@@ -206,12 +201,11 @@ pub fn markdown(triangles: &[Point], machines: &[Point], applications: &[Applica
     chart(&mut text, triangles);
     text.push_str("```\n\n## Machines\n\n");
     for scene in SCENES {
-        let more = |machine| more_host_time(machines, scene as usize, machine).unwrap_or(f64::NAN);
         let _ = writeln!(
             text,
             "{scene} triangles: 50 GPs instead of 13 take {:.0} % more host time a frame, 20 renderers instead of 5 {:.0} %.",
-            more((50, 5)),
-            more((13, 20))
+            more_host_time(machines, scene as usize, (50, 5)).unwrap_or(f64::NAN),
+            more_host_time(machines, scene as usize, (13, 20)).unwrap_or(f64::NAN)
         );
     }
     text.push('\n');
@@ -240,11 +234,15 @@ fn power(points: &[Point], from: usize, of: impl Fn(&Point) -> f64) -> f64 {
 
 /// Host time of a frame on a machine over that of 13 GPs and 5 renderers, per cent.
 fn more_host_time(points: &[Point], primitives: usize, machine: (usize, usize)) -> Option<f64> {
-    let host_ms = |(n_gps, n_renderers)| {
-        let same = |p: &&Point| (p.primitives, p.n_gps, p.n_renderers) == (primitives, n_gps, n_renderers);
-        points.iter().filter(|p| p.frames > 0).find(same).map(|p| p.host_ms)
-    };
-    Some((host_ms(machine)? / host_ms((13, 5))? - 1.0) * 100.0)
+    let other_ms = host_ms(points, primitives, machine)?;
+    Some((other_ms / host_ms(points, primitives, (13, 5))? - 1.0) * 100.0)
+}
+
+/// Host time of a frame on a machine of so many GPs and renderers; `None` where no frame was shown.
+fn host_ms(points: &[Point], primitives: usize, (n_gps, n_renderers): (usize, usize)) -> Option<f64> {
+    let mut shown = points.iter().filter(|p| p.frames > 0);
+    let point = shown.find(|p| (p.primitives, p.n_gps, p.n_renderers) == (primitives, n_gps, n_renderers))?;
+    Some(point.host_ms)
 }
 
 fn table(text: &mut String, points: &[Point]) {

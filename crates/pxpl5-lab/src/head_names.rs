@@ -6,7 +6,10 @@ use std::path::Path;
 use std::sync::Arc;
 use thiserror::Error;
 use tracking::Pose;
-use tracking::motion::{LoadError, Motion, Pan, Pendulum, Recording, Still, Synthetic};
+use tracking::config::Tables;
+use tracking::motion::{
+    End, LoadError, Motion, Pan, Pendulum, Recording, RecordingFormat, Sinusoid, Slide, Still, Synthetic,
+};
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
 
@@ -53,14 +56,46 @@ pub enum MotionError {
     },
 }
 
-const MOTIONS: &str = "still, pan:DEG_PER_S, pendulum, synthetic:SEED or a file FILE.csv";
+/// Names of [`motion`].
+pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED or a recording \
+                           (FILE.csv, FILE.txt or FILE.tum)";
 
-/// `still`, `pan:DEG_PER_S`, `pendulum`, `synthetic:SEED`, or the path of a recording that ends in `.csv`.
+/// Fastest slide, metres per second, and highest frequency of a sine, Hz.
+const FASTEST_SLIDE: f64 = 100.0;
+const HIGHEST_HZ: f64 = 100.0;
+
+/// How the file of a recording is read, and what comes after its end.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Replay {
+    /// Columns and axes, where the file does not say them itself.
+    pub format: RecordingFormat,
+    /// What comes after the last sample.
+    pub end: End,
+}
+
+/// Whether the name of a motion is the path of a recording.
+#[must_use]
+pub fn is_recording(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    [".csv", ".txt", ".tum"].iter().any(|end| name.ends_with(end))
+}
+
+/// `still`, `pan:DEG_PER_S`, `slide:M_PER_S` (to the right), `sine:DEG:HZ` (of the yaw), `pendulum`, `synthetic:SEED`, or the path
+/// of a recording that ends in `.csv`, `.txt` or `.tum` ([`Recording::read`]).
 ///
 /// # Errors
 ///
 /// [`MotionError`] says what was expected and what was found.
 pub fn motion(text: &str) -> Result<Arc<dyn Motion + Send + Sync>, MotionError> {
+    replayed(text, &Replay::default())
+}
+
+/// The same, with how a recording is to be read and what comes after it.
+///
+/// # Errors
+///
+/// As [`motion`].
+pub fn replayed(text: &str, replay: &Replay) -> Result<Arc<dyn Motion + Send + Sync>, MotionError> {
     let number = |found: &str, expected| MotionError::Number { found: found.to_owned(), expected };
     Ok(match text.split_once(':').unwrap_or((text, "")) {
         ("still", "") => Arc::new(Still(Pose::IDENTITY)),
@@ -73,19 +108,36 @@ pub fn motion(text: &str) -> Result<Arc<dyn Motion + Send + Sync>, MotionError> 
                 .ok_or_else(|| number(rate, "a pan of -10000 to 10000 degrees per second, such as pan:200"))?;
             Arc::new(Pan::at(deg_per_s))
         }
+        ("slide", speed) => {
+            let expected = "a slide of -100 to 100 metres per second, such as slide:0.5";
+            Arc::new(Slide::right_at(within(speed, FASTEST_SLIDE).ok_or_else(|| number(speed, expected))?))
+        }
+        ("sine", both) => {
+            let sine = both.split_once(':').and_then(|(degrees, hz)| {
+                Some(Sinusoid::of_yaw(within(degrees, 180.0)?, within(hz, HIGHEST_HZ).filter(|hz| *hz > 0.0)?))
+            });
+            let expected = "an amplitude of -180 to 180 degrees and a frequency up to 100 Hz, such as sine:20:0.5";
+            Arc::new(sine.ok_or_else(|| number(both, expected))?)
+        }
         ("synthetic", seed) => {
             let seed = seed.parse().map_err(|_| number(seed, "a seed of 0 to 2^64 - 1, such as synthetic:1"))?;
             Arc::new(Synthetic::recorded_use(seed))
         }
-        _ if text.to_ascii_lowercase().ends_with(".csv") => Arc::new(recording(Path::new(text))?),
+        _ if is_recording(text) => Arc::new(recording(Path::new(text), replay)?),
         _ => return Err(MotionError::Unknown { what: "motion", found: text.to_owned(), expected: MOTIONS }),
     })
 }
 
-fn recording(path: &Path) -> Result<Recording, MotionError> {
+/// A number of at most this size, either sign.
+fn within(text: &str, most: f64) -> Option<f64> {
+    text.parse().ok().filter(|number: &f64| number.abs() <= most)
+}
+
+fn recording(path: &Path, replay: &Replay) -> Result<Recording, MotionError> {
     let name = || path.display().to_string();
     let file = File::open(path).map_err(|error| MotionError::Open { path: name(), error })?;
-    Recording::from_csv(file).map_err(|error| MotionError::Load { path: name(), error })
+    let recording = Recording::read_as(file, &replay.format);
+    Ok(recording.map_err(|error| MotionError::Load { path: name(), error })?.ending(replay.end))
 }
 
 /// Names of [`tracker`].
@@ -97,13 +149,22 @@ pub const TRACKERS: &str = "optical, fastrak, flock, flock-patched, 3space or id
 ///
 /// [`MotionError::Unknown`] lists the names.
 pub fn tracker(name: &str) -> Result<TrackerConfig, MotionError> {
+    Ok(tracker_by(&Tables::PAPERS, name)?.0)
+}
+
+/// A tracker of [`TRACKERS`] with the numbers of these tables, and the name of the table that is its own.
+///
+/// # Errors
+///
+/// As [`tracker`].
+pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'static str), MotionError> {
     Ok(match name {
-        "optical" => TrackerConfig::optical_ceiling(),
-        "fastrak" => TrackerConfig::fastrak(),
-        "flock" => TrackerConfig::flock_of_birds(),
-        "flock-patched" => TrackerConfig::flock_of_birds_on_patched_host(),
-        "3space" => TrackerConfig::polhemus_3space(),
-        "ideal" => TrackerConfig::ideal(),
+        "optical" => (TrackerConfig::optical_ceiling_by(tables), "optical"),
+        "fastrak" => (TrackerConfig::fastrak_by(tables), "fastrak"),
+        "flock" => (TrackerConfig::flock_of_birds_by(tables), "flock"),
+        "flock-patched" => (TrackerConfig::flock_of_birds_on_patched_host_by(tables), "flock"),
+        "3space" => (TrackerConfig::polhemus_3space_by(tables), "space"),
+        "ideal" => (TrackerConfig::ideal_by(tables), "ideal"),
         _ => return Err(MotionError::Unknown { what: "tracker", found: name.to_owned(), expected: TRACKERS }),
     })
 }

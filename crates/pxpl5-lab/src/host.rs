@@ -1,6 +1,6 @@
 //! The computer that experiments run on: its clock, and threads that compute pixels apart from simulated time.
 
-use crossbeam_channel::{Sender, bounded};
+use crossbeam_channel::{Receiver, Sender, bounded};
 use pxpl5_machine::{PixelWorker, SameThread};
 use pxpl5_run::Host;
 use pxpl5_wire::PixelSource;
@@ -63,17 +63,19 @@ struct PixelThreads {
 impl PixelThreads {
     fn start(threads: usize) -> Self {
         let (regions, waiting) = bounded::<Arc<dyn PixelSource>>(WAITING_REGIONS);
-        let start_one = |_| {
-            let waiting = waiting.clone();
-            std::thread::spawn(move || {
-                waiting.iter().fold(0, |regions, region| {
-                    let _ = region.pixels();
-                    regions + 1
-                })
-            })
-        };
-        Self { regions, threads: (0..threads).map(start_one).collect() }
+        let threads = (0..threads).map(|_| start_thread(waiting.clone())).collect();
+        Self { regions, threads }
     }
+}
+
+/// A thread that computes regions until there will be no more, and counts them.
+fn start_thread(waiting: Receiver<Arc<dyn PixelSource>>) -> JoinHandle<u64> {
+    std::thread::spawn(move || {
+        waiting.iter().fold(0, |regions, region| {
+            let _ = region.pixels();
+            regions + 1
+        })
+    })
 }
 
 impl PixelWorker for PixelThreads {

@@ -6,6 +6,7 @@
 //! | how do the levels of modelling differ | [`levels`] |
 //! | how many triangles, how fast does cost grow | [`limit`], [`growth`] |
 //! | which way to fight latency wins | [`compare`] |
+//! | what latency does one measure from outside | [`rig`] |
 //! | the same at many points | [`sweep`] |
 //! | an experiment as text, and continued | [`ExperimentFile`], [`Plan`], [`Snapshot`] |
 //!
@@ -23,12 +24,13 @@ pub mod levels;
 pub mod limit;
 mod parallel;
 pub mod pipeline_figures;
+pub mod rig;
 mod snapshot;
 pub mod sweep;
 
 pub use experiment_file::{
     ExperimentFile, FileError, FileKey, HeadChoice, MotionChoice, Outputs, PathChoice, Plan, Published, SceneChoice,
-    Settings,
+    Settings, tracking_parameters,
 };
 pub use head_names::{MotionError, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;

@@ -8,21 +8,23 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///
 /// When `run` does.
 pub(crate) fn map<I: Sync, O: Send>(items: &[I], run: impl Fn(&I) -> O + Sync) -> Vec<O> {
-    let (next, run) = (AtomicUsize::new(0), &run);
+    let next = AtomicUsize::new(0);
     let threads = std::thread::available_parallelism().map_or(1, usize::from).min(items.len().max(1));
-    let work = || {
-        let mut done = Vec::new();
-        while let Some((index, item)) = take(&next, items) {
-            done.push((index, run(item)));
-        }
-        done
-    };
     let mut all: Vec<(usize, O)> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(|| work(&next, items, &run))).collect();
         workers.into_iter().flat_map(|worker| worker.join().expect("a run panicked")).collect()
     });
     all.sort_by_key(|(index, _)| *index);
     all.into_iter().map(|(_, output)| output).collect()
+}
+
+/// What one thread does: it takes items until there are no more.
+fn work<I, O>(next: &AtomicUsize, items: &[I], run: impl Fn(&I) -> O) -> Vec<(usize, O)> {
+    let mut done = Vec::new();
+    while let Some((index, item)) = take(next, items) {
+        done.push((index, run(item)));
+    }
+    done
 }
 
 fn take<'a, I>(next: &AtomicUsize, items: &'a [I]) -> Option<(usize, &'a I)> {

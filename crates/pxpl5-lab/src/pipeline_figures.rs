@@ -11,7 +11,7 @@ pub struct PipelineFigure {
     pub name: &'static str,
     /// Where it was published.
     pub source: &'static str,
-    /// What it shows.
+    /// What it shows: the pipeline, and what to look at.
     pub shows: &'static str,
     /// The experiment, as text of an experiment file.
     pub experiment: &'static str,

@@ -31,7 +31,7 @@ pub struct Snapshot {
     pub machine: String,
     /// Name of everything on which the trace of the whole run depends.
     pub config_hash: String,
-    /// Level of modelling.
+    /// Name of the level of modelling: `transaction` or `cycle`.
     pub level: String,
     /// Seed of the head motion.
     pub seed: u64,
@@ -41,7 +41,7 @@ pub struct Snapshot {
     pub time_ps: u64,
     /// Hash of everything that happened before.
     pub trace_hash: String,
-    /// Events before.
+    /// Number of events that happened before that moment.
     pub events: u64,
     /// Fingerprint of the scene's contents.
     pub scene_hash: String,
@@ -56,37 +56,37 @@ pub enum SnapshotError {
     /// It is something else.
     #[error("{file}: this is no snapshot: {reason}")]
     Foreign {
-        /// The file.
+        /// Name of the file, as it was given.
         file: String,
-        /// Why.
+        /// What is wrong with its text.
         reason: String,
     },
     /// Its layout is of another version.
     #[error("{file}: expected a snapshot of layout {expected}, found {found}; use the version of pxpl5 that wrote it")]
     Version {
-        /// The file.
+        /// Name of the file, as it was given.
         file: String,
         /// The layout that is read.
         expected: &'static str,
-        /// The layout found.
+        /// The layout that the file names.
         found: String,
     },
     /// It was changed after it was written.
     #[error("{file}: the snapshot is damaged: its checksum should be {expected}, found {found}")]
     Damaged {
-        /// The file.
+        /// Name of the file, as it was given.
         file: String,
-        /// Of the contents.
+        /// The checksum that the contents have.
         expected: String,
-        /// In the file.
+        /// The checksum that stands in the file.
         found: String,
     },
     /// The experiment in it is not understood.
     #[error("{file}: {error}")]
     Experiment {
-        /// The file.
+        /// Name of the file, as it was given.
         file: String,
-        /// Why.
+        /// What is wrong with the experiment in it.
         error: Box<FileError>,
     },
     /// The run is not the one that was saved.
@@ -94,15 +94,15 @@ pub enum SnapshotError {
         "{file}: the run is not the one that was saved (by version {version}): {what} was {expected}, now it is {found}"
     )]
     Differs {
-        /// The file.
+        /// Name of the file, as it was given.
         file: String,
         /// The version that saved it.
         version: String,
-        /// What differs.
+        /// What differs first: a fingerprint, a hash, a number.
         what: &'static str,
-        /// As saved.
+        /// Its value when the snapshot was saved.
         expected: String,
-        /// As found.
+        /// Its value in the run that was repeated.
         found: String,
     },
 }
@@ -113,7 +113,13 @@ impl Snapshot {
 
     /// Of a machine that stands at the first retrace of a field.
     #[must_use]
-    pub fn of(plan: &Plan, config_hash: Fingerprint, scene: &Scene, field: PeriodNumber, machine: &Machine) -> Self {
+    pub fn of_machine(
+        plan: &Plan,
+        config_hash: Fingerprint,
+        scene: &Scene,
+        field: PeriodNumber,
+        machine: &Machine,
+    ) -> Self {
         Self {
             schema: Self::SCHEMA.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -145,17 +151,18 @@ impl Snapshot {
     ///
     /// [`SnapshotError`] for anything that was not written by [`Self::to_text`].
     pub fn read(text: &str, file: &str) -> Result<Self, SnapshotError> {
-        let foreign = |reason: String| SnapshotError::Foreign { file: file.to_owned(), reason };
-        let value: Value = serde_json::from_str(text).map_err(|error| foreign(format!("not whole JSON: {error}")))?;
+        let value: Value =
+            serde_json::from_str(text).map_err(|error| foreign(file, format!("not whole JSON: {error}")))?;
         let found = value.get("schema").and_then(Value::as_str).unwrap_or("none");
         if !found.starts_with("pxpl5-snapshot/") {
-            return Err(foreign(format!("expected schema {}, found {found}", Self::SCHEMA)));
+            return Err(foreign(file, format!("expected schema {}, found {found}", Self::SCHEMA)));
         }
         if found != Self::SCHEMA {
-            let (file, found) = (file.to_owned(), found.to_owned());
+            let file = file.to_owned();
+            let found = found.to_owned();
             return Err(SnapshotError::Version { file, expected: Self::SCHEMA, found });
         }
-        let sealed: Sealed = serde_json::from_value(value).map_err(|error| foreign(error.to_string()))?;
+        let sealed: Sealed = serde_json::from_value(value).map_err(|error| foreign(file, error.to_string()))?;
         let expected = sealed.snapshot.checksum();
         if sealed.checksum != expected {
             return Err(SnapshotError::Damaged { file: file.to_owned(), expected, found: sealed.checksum });
@@ -211,9 +218,15 @@ impl Snapshot {
         if expected == found {
             return Ok(());
         }
-        let (file, version, expected) = (file.to_owned(), self.version.clone(), expected.to_owned());
+        let file = file.to_owned();
+        let version = self.version.clone();
+        let expected = expected.to_owned();
         Err(SnapshotError::Differs { file, version, what, expected, found })
     }
+}
+
+fn foreign(file: &str, reason: String) -> SnapshotError {
+    SnapshotError::Foreign { file: file.to_owned(), reason }
 }
 
 /// As it is written.
@@ -239,7 +252,7 @@ mod tests {
         let mut snapshot = None;
         let outcome = experiment.run_stopping(&[PeriodNumber(9)], |field, machine| {
             if field == PeriodNumber(9) {
-                snapshot = Some(Snapshot::of(&plan, experiment.config_hash(), &scene, field, machine));
+                snapshot = Some(Snapshot::of_machine(&plan, experiment.config_hash(), &scene, field, machine));
             }
             Ok(())
         });

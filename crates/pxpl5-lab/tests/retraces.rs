@@ -1,10 +1,9 @@
-//! Missed retraces: they are counted in the display's own periods, to the end of the run, and a run that shows nothing says
-//! so.
+//! Pictures due: they are counted in the display's own periods, in a stated window, and a run that shows nothing says so.
 
 use pxpl5_lab::{ExperimentFile, registry};
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Measured, Report};
-use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, RenderingControl, Slats, WARM_UP_PICTURES};
+use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels, RenderingControl, WARM_UP_PICTURES};
 use pxpl5_scene::builtin;
 
 fn experiment(config: MachineConfig, scene: &str, fields: u64) -> Experiment {
@@ -20,11 +19,12 @@ fn with_frame_lines(lines: u64) -> Report {
 
 #[test]
 fn on_a_display_of_625_or_1051_lines_rendering_control_misses_no_retrace_either() {
-    // A field of 625 lines takes 19.9 ms, one of 1051 lines 33.4 ms; COPY of an eye takes 15.6 ms on each.
-    for lines in [525, 625, 1_051] {
-        let report = with_frame_lines(lines);
-        assert_eq!(report.missed_retraces, 0, "{lines} lines");
-        assert!(report.judged_retraces > 50, "{lines} lines: {}", report.judged_retraces);
+    // A field of 625 lines takes 19.9 ms, one of 1051 lines 33.4 ms; COPY of both eyes takes 31.2 ms on each.
+    for (lines, fields_of_two_copies) in [(525, 2), (625, 2), (1_051, 1)] {
+        let due = with_frame_lines(lines).due.expect("frames are due");
+        assert_eq!(due.periods_a_picture, fields_of_two_copies, "{lines} lines");
+        assert_eq!(due.not_shown(), 0, "{lines} lines: {due:?}");
+        assert!(due.due > 50, "{lines} lines: {due:?}");
     }
 }
 
@@ -62,7 +62,9 @@ fn a_run_in_which_nothing_was_shown_keeps_what_it_saw_and_says_how_long_it_must_
     );
     let report = outcome.report();
     assert_eq!((report.shown, report.updates_hz), (0, None));
-    assert_eq!((report.missed_retraces, report.judged_retraces), (60, 60));
+    // The first 8 of 60 fields are the warm-up; two fields a frame.
+    let due = report.due.expect("frames are due");
+    assert_eq!((due.due, due.missed, report.missed_retraces), (26, 26, Some(26)));
     // The closed form follows the events closely: with a fifth more there is something to see.
     plan.fields = needed + needed / 5;
     let longer = plan.experiment(scene).run().expect("long enough");
@@ -78,27 +80,41 @@ fn without_a_closed_form_the_message_only_asks_for_more() {
 }
 
 #[test]
-fn of_one_picture_after_the_warm_up_there_is_no_rate_and_every_later_retrace_is_missed() {
-    let form = registry().pipeline("rendering-control").expect("known").closed_form.map(|form| form.fields_needed);
+fn a_frame_that_takes_two_hundred_fields_is_one_picture_of_a_hundred_that_are_due() {
+    let form = registry().pipeline("rendering-control").expect("known").closed_form.map(|form| form.estimates);
     let short = experiment(slow(), "full-screen:12", 60).estimated_by(form);
     let needed = partial(short.run().expect_err("too short")).0.expect("it has a closed form");
-    // From the first picture after the warm-up the next one is about a fifth of the way off.
     let outcome = experiment(slow(), "full-screen:12", needed + needed / 10).run().expect("long enough");
     let report = outcome.report();
-    assert_eq!((report.pictures, report.updates_hz), (1, None));
-    let [times] = outcome.steady_pictures() else { panic!("one") };
-    let shown = outcome.record().display().period_at(times.shown_at);
-    // The next frame was due two retraces later, one for the copy of each eye.
-    assert_eq!(report.judged_retraces, report.fields - shown.0);
-    assert_eq!(report.missed_retraces, report.judged_retraces - 2);
-    assert!(report.missed_retraces_definition.contains("to the end of the run"));
+    assert_eq!((report.pictures, report.latency_ms.statistics.n), (1, 1));
+    assert!(report.latency_ms.statistics.sd.is_nan(), "one picture has no deviation");
+    let due = report.due.expect("frames are due");
+    // The window ends at the last field, and begins with the first frame or behind it; each frame is one picture.
+    let shown = outcome.pictures().iter().map(|times| outcome.record().display().period_at(times.shown_at));
+    let in_window = shown.filter(|field| (due.first_period..=due.last_period).contains(field)).count() as u64;
+    assert_eq!((due.shown, due.missed), (in_window, due.due - in_window));
+    assert!(due.last_period.after(2).0 >= report.fields && due.shown > 0, "{due:?}");
+    let window_s = due.last_period.next().since(due.first_period) as f64 * 1.001 / 60.0;
+    let hz = report.updates_hz.expect("shown");
+    assert!((hz - in_window as f64 / window_s).abs() < 1e-9, "{hz}");
 }
 
 #[test]
-fn slats_that_is_always_late_has_shown_nothing_and_missed_everything() {
-    let scene = builtin("full-screen:1000").expect("built in");
-    let experiment = Experiment::new(MachineConfig::slats(), Slats::split(), scene).fields(60).pixels(Pixels::Off);
-    let report = experiment.run().expect("late pictures are pictures").report();
-    assert_eq!((report.shown, report.updates_hz), (0, None));
-    assert_eq!((report.missed_retraces, report.judged_retraces), (60, 60));
+fn slats_that_is_always_late_has_shown_nothing_and_says_what_would_do() {
+    let plan = ExperimentFile::parse(
+        "pipeline = \"slats\"\nscene = \"full-screen:1000\"\nfields = 60\npixels = \"off\"",
+        "test",
+    );
+    let plan = plan.and_then(|file| file.resolve()).expect("valid");
+    let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("late pictures are pictures");
+    let report = outcome.report();
+    assert_eq!((report.shown, report.updates_hz, report.latency_ms.statistics.n), (0, None, 0));
+    let due = report.due.expect("fields are due");
+    assert_eq!((due.due, due.shown, report.missed_retraces), (52, 0, Some(52)));
+    assert!(due.missed > 0 && due.incomplete + due.late > 0, "{due:?}");
+    let heavy = report.too_heavy.expect("nothing was shown");
+    // TR94: 140 triangles with the COPY optimisation.
+    let would_do = heavy.triangles_in_time.expect("Slats has a closed form");
+    assert!((136..=150).contains(&would_do), "{heavy}");
+    assert!(heavy.to_string().contains(&format!("--triangles {would_do}")), "{heavy}");
 }

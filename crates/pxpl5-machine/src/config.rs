@@ -30,6 +30,8 @@ pub struct MachineConfig {
     pub gp: GpTiming,
     /// Which i860 code they run where clocks are counted (cycle level), whatever the table says; `None` for the table.
     pub code: Option<CodeVersion>,
+    /// The core and the memory that this code runs on: clocks of its freezes and of its DRAM.
+    pub i860: i860::Config,
     /// Clocks of the renderers' commands, their FIFO and backing store.
     pub renderer: RendererTiming,
     /// The host workstation and its link.
@@ -65,6 +67,7 @@ impl PartialEq for MachineConfig {
     fn eq(&self, other: &Self) -> bool {
         self.preset == other.preset
             && self.code == other.code
+            && self.i860.unusual_settings() == other.i860.unusual_settings()
             && self.boards() == other.boards()
             && self.displays.len() == other.displays.len()
             && self.displays.iter().zip(&other.displays).all(|(own, other)| own.equals(other.as_ref()))
@@ -102,6 +105,16 @@ pub enum ConfigError {
         /// The nearest valid path.
         nearest: String,
     },
+    /// A number is what a part is, and no machine can have another.
+    #[error("{path} is {value} in every machine ({origin}); it is listed, but cannot be set")]
+    ReadOnly {
+        /// The number's path.
+        path: String,
+        /// The value that it has.
+        value: Value,
+        /// Where the value comes from.
+        origin: &'static str,
+    },
     /// A number is none that its table can take.
     #[error("{board}.{error}")]
     Parameter {
@@ -131,6 +144,18 @@ pub struct Parameter {
     pub info: ParameterInfo,
     /// The value.
     pub value: Value,
+    /// Whether it is listed only: what a part is, which nobody can set.
+    pub read_only: bool,
+}
+
+impl Parameter {
+    /// The numbers of a table, whose paths begin with `prefix`; `read_only` says that none of them can be set.
+    pub fn of_table(prefix: &str, table: &dyn ParameterTable, read_only: bool) -> impl Iterator<Item = Self> {
+        table.entries().into_iter().map(move |Entry { info, value }| {
+            let path = format!("{prefix}.{}", info.name);
+            Self { path, info: *info, value, read_only }
+        })
+    }
 }
 
 /// Most boards of a kind: a ring of that many is still far from 16 bits of port numbers.
@@ -154,33 +179,41 @@ impl MachineConfig {
 
     /// All tables of numbers in order of the boards, each with the first part of its paths.
     fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)> {
-        let mut all: Vec<(&'static str, &dyn ParameterTable)> =
-            vec![("ring", &self.ring), ("gp", &self.gp), ("renderer", &self.renderer)];
+        let mut all: Vec<(&'static str, &dyn ParameterTable)> = vec![("ring", &self.ring), ("gp", &self.gp)];
+        all.extend(self.i860.tables());
+        all.push(("renderer", &self.renderer));
         all.extend(self.displays.iter().flat_map(|display| display.tables()));
         all.push(("host", &self.host));
         all.extend(self.firmware.iter().map(|(name, table)| (*name, table.as_ref() as &dyn ParameterTable)));
         all
     }
 
+    /// The tables whose numbers can be set.
     fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)> {
         let mut all: Vec<(&'static str, &mut dyn ParameterTable)> =
-            vec![("ring", &mut self.ring), ("gp", &mut self.gp), ("renderer", &mut self.renderer)];
+            vec![("ring", &mut self.ring), ("gp", &mut self.gp)];
+        all.extend(self.i860.tables_mut());
+        all.push(("renderer", &mut self.renderer));
         all.extend(self.displays.iter_mut().flat_map(|display| display.tables_mut()));
         all.push(("host", &mut self.host));
         all.extend(self.firmware.iter_mut().map(|(name, table)| (*name, table.as_mut() as &mut dyn ParameterTable)));
         all
     }
 
-    /// The parameters that tell this machine from others: all but those of firmware with the values of the papers, which it
-    /// has without a table too.
+    /// The parameters that tell this machine from others: all but those of firmware and of the i860 with the values of the
+    /// papers. It has those of firmware without a table too, and those of the i860 had every machine before they could be set,
+    /// so that names of experiments made then are the same now.
     #[must_use]
     pub fn telling_parameters(&self) -> Vec<Parameter> {
-        let of_firmware = |parameter: &Parameter| {
-            let board = parameter.path.split_once('.').map(|(board, _)| board);
-            self.firmware.iter().any(|(name, _)| Some(*name) == board)
-        };
         let all = self.parameters().into_iter();
-        all.filter(|parameter| parameter.value != parameter.info.papers || !of_firmware(parameter)).collect()
+        all.filter(|parameter| parameter.value != parameter.info.papers || !self.is_implied(parameter)).collect()
+    }
+
+    /// Whether a parameter has the value of the papers in every machine that does not say otherwise.
+    fn is_implied(&self, parameter: &Parameter) -> bool {
+        let table = parameter.path.rsplit_once('.').map(|(table, _)| table);
+        let of_i860 = self.i860.tables().map(|(name, _)| name);
+        self.firmware.iter().map(|(name, _)| *name).chain(of_i860).any(|name| Some(name) == table)
     }
 
     /// Adds the numbers of some firmware, unless it has them already.
@@ -199,7 +232,8 @@ impl MachineConfig {
     /// All parameters in order of the boards.
     #[must_use]
     pub fn parameters(&self) -> Vec<Parameter> {
-        self.tables().into_iter().flat_map(|(board, table)| parameters_of(board, table)).collect()
+        let all = self.tables().into_iter();
+        all.flat_map(|(path, table)| Parameter::of_table(path, table, path == i860::CHIP_PATH)).collect()
     }
 
     /// Parameters that differ from the preset's, by path; those of tables that the preset has not (firmware, another
@@ -227,8 +261,8 @@ impl MachineConfig {
     ///
     /// # Errors
     ///
-    /// [`ConfigError::UnknownParameter`] with the nearest valid path; [`ConfigError::Parameter`] for a number that is not
-    /// whole where one must be.
+    /// [`ConfigError::UnknownParameter`] with the nearest valid path; [`ConfigError::ReadOnly`] for what a part is;
+    /// [`ConfigError::Parameter`] for a number that is not whole where one must be.
     pub fn set(&mut self, path: &str, value: impl Into<Value>) -> Result<(), ConfigError> {
         let value = value.into();
         match path {
@@ -240,13 +274,22 @@ impl MachineConfig {
     }
 
     fn set_parameter(&mut self, path: &str, value: Value) -> Result<(), ConfigError> {
-        let Some((board, name)) = path.split_once('.') else { return Err(self.unknown(path)) };
+        // The last part is the number's name; tables may have names of two parts, and numbers of the same name.
+        let Some((board, name)) = path.rsplit_once('.') else { return Err(self.unknown(path)) };
         for (prefix, table) in self.tables_mut() {
             if prefix == board && table.infos().iter().any(|info| info.name == name) {
                 return table.set(name, value).map_err(|error| refused(board, error));
             }
         }
-        Err(self.unknown(path))
+        Err(self.not_settable(path))
+    }
+
+    /// Why no table that can be set has a path: it is listed only, or nobody knows it.
+    fn not_settable(&self, path: &str) -> ConfigError {
+        match self.parameters().into_iter().find(|parameter| parameter.path == path) {
+            Some(Parameter { path, info, value, .. }) => ConfigError::ReadOnly { path, value, origin: info.source },
+            None => self.unknown(path),
+        }
     }
 
     fn unknown(&self, path: &str) -> ConfigError {
@@ -282,12 +325,6 @@ impl MachineConfig {
         }
         self.displays.iter().try_for_each(|display| Ok(display.check()?))
     }
-}
-
-/// The numbers of a table with their paths.
-fn parameters_of(board: &str, table: &dyn ParameterTable) -> Vec<Parameter> {
-    let parameter = |Entry { info, value }| Parameter { path: format!("{board}.{}", info.name), info: *info, value };
-    table.entries().into_iter().map(parameter).collect()
 }
 
 /// A number of boards.

@@ -19,7 +19,7 @@ mod savings;
 mod traffic;
 
 pub use config::{ConfigError, FirmwareTable, MachineConfig, NamedTable, Parameter};
-pub use machine::{Machine, RunError};
+pub use machine::{DEADLOCK_TICKS, Machine, RunError};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
 pub use pixels::{PixelWorker, SameThread};
 pub use ports::Ports;

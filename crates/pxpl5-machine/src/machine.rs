@@ -113,8 +113,8 @@ struct Contexts {
     display: DisplayContext,
 }
 
-/// Ticks without any event after which a machine with waiting programs is said to be deadlocked.
-const DEADLOCK_TICKS: u64 = 120;
+/// Ticks of the first display without any other event after which a machine with waiting programs is said to be deadlocked.
+pub const DEADLOCK_TICKS: u64 = 120;
 
 /// Events that a tick of the first display causes by itself: the signal to the first GP, and the poll of its programs.
 const EVENTS_OF_A_TICK: u64 = 2;
@@ -180,7 +180,8 @@ impl Machine {
     /// any; to be called before programs are loaded.
     pub fn run_code(&mut self) {
         if let Some(version) = self.record.config.code {
-            self.processors.iter_mut().skip(1).for_each(|board| board.run_code(version));
+            let core = self.record.config.i860;
+            self.processors.iter_mut().skip(1).for_each(|board| board.run_code(version, core));
         }
     }
 
@@ -317,6 +318,12 @@ impl Machine {
         }
     }
 
+    /// Whether nothing is under way but the displays and the boards' clock: perhaps only until the next tick.
+    #[must_use]
+    pub fn is_at_rest(&self) -> bool {
+        self.queue.pending().all(|event| matches!(event, Event::Edge | Event::Tick(..) | Event::Display(..)))
+    }
+
     /// Who waits for what.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
@@ -395,8 +402,8 @@ impl Machine {
         let processor = &mut processors[board];
         processor.handle(event, context.at(now));
         schedule_own(queue, context, |event| Event::Gp(board, event));
-        for (order, (time, GpOutput::Send { message, ticket })) in (0..).zip(context.drain_outputs()) {
-            let request = Request { message, ticket: Some(ticket), hold: false, order };
+        for (order, (time, GpOutput::Send { message, ticket, hold })) in (0..).zip(context.drain_outputs()) {
+            let request = Request { message, ticket: Some(ticket), hold, order };
             queue.schedule(time, Phase::Arrive, Event::Ring(RingEvent::Request(request)));
         }
         let fault = processor.fault().cloned();

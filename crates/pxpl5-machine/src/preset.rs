@@ -106,6 +106,7 @@ impl MachineConfig {
             ring: RingTiming::PAPERS,
             gp: preset.gp,
             code: Some(preset.code),
+            i860: i860::Config::cycle(),
             renderer: RendererTiming::PAPERS,
             host: HostTiming::PAPERS,
             displays: vec![Box::new(FrameBufferConfig::NTSC)],

@@ -1,11 +1,12 @@
 //! Where the time goes from the head's pose to light.
 
-use pxpl5_run::{Outcome, PictureTimes, Sampled};
+use pxpl5_run::{Outcome, PictureTimes, Sampled, Statistics};
 use pxpl5_wire::ViewNumber;
 use std::collections::BTreeMap;
 
-/// Mean time in each stage from the head's pose to light, in milliseconds. The stages add up to the total.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+/// Mean time in each stage from the head's pose to light, in milliseconds. The stages add up to the total. Of no picture there
+/// is none of these (NaN; null in JSON).
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Budget {
     /// From the pose to the arrival of its report at the host: tracker, cable, host's kernel.
     pub tracking_ms: f64,
@@ -23,13 +24,31 @@ pub struct Budget {
     /// From the pose to the light of the picture's middle.
     pub total_ms: f64,
     /// Pictures that this is the mean of.
-    pub pictures: usize,
+    pub n: u64,
+}
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self::mean(&[])
+    }
 }
 
 impl Budget {
-    /// Of the pictures after the warm-up whose pose was measured.
+    /// Of the complete pictures after the warm-up whose pose was measured.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
+        Self::mean(&Self::of_pictures(outcome))
+    }
+
+    /// From the pose to the light of each picture's middle, milliseconds, in order.
+    #[must_use]
+    pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
+        Self::of_pictures(outcome).iter().map(|stages| stages.iter().sum()).collect()
+    }
+
+    fn of_pictures(outcome: &Outcome) -> Vec<[f64; 6]> {
+        let Some(head) = outcome.head() else { return Vec::new() };
+        let sampled: BTreeMap<ViewNumber, Sampled> = head.sampled().into_iter().map(|s| (s.number, s)).collect();
         Self::mean(&Self::of_pictures(outcome))
     }
 
@@ -63,11 +82,10 @@ impl Budget {
     }
 
     fn mean(each: &[[f64; 6]]) -> Self {
-        let n = each.len().max(1) as f64;
-        let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms] =
-            std::array::from_fn(|i| each.iter().fold(0.0, |sum, stages| sum + stages[i]) / n);
+        let stage = |i: usize| Statistics::of(each.iter().map(|stages| stages[i])).mean;
+        let [tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms] = std::array::from_fn(stage);
         let total_ms = tracking_ms + waiting_ms + sending_ms + drawing_ms + showing_ms + scanning_ms;
-        let pictures = each.len();
-        Self { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, pictures }
+        let n = each.len() as u64;
+        Self { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, n }
     }
 }

@@ -3,7 +3,7 @@
 use crate::percentiles::Percentiles;
 use crate::raster::RasterOffsets;
 use crate::registration::{Judge, middle};
-use crate::shown::{Drawn, DrawnFor, Shown};
+use crate::shown::{Drawn, Moment, Seen, Shown};
 use pxpl5_display::Display;
 use pxpl5_run::{Cause, Estimator, HeadViews, Outcome, Raster};
 use pxpl5_sim::Time;
@@ -25,7 +25,8 @@ pub struct FieldError {
     pub centre_px: f64,
 }
 
-/// Errors over a grid of pixels and all fields.
+/// Errors over a grid of pixels and all fields, where pictures are shown that were complete in time: of others there is no
+/// error. What was not judged is no number (NaN; null in JSON).
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PixelErrors {
     /// Distance from where it should be, over the grid, pixels.
@@ -42,6 +43,8 @@ pub struct PixelErrors {
     pub behind: u64,
     /// Pixels that showed nothing yet.
     pub empty: u64,
+    /// Pixels that showed a part of a picture that was not complete in time.
+    pub incomplete: u64,
     /// Over time.
     #[serde(skip)]
     pub by_field: Vec<FieldError>,
@@ -82,26 +85,18 @@ struct Collected {
 }
 
 impl Collected {
-    /// Judges one field; `drawn` says what each pixel shows.
+    /// Judges one field; `seen` says what each pixel shows.
     fn field(
         &mut self,
         judge: &Judge<'_>,
         display: &dyn Display,
         field: PeriodNumber,
-        mut drawn: impl FnMut(u32, u32, Time) -> Option<DrawnFor>,
+        mut seen: impl FnMut(u32, u32, Time) -> Seen,
     ) {
         let begin = self.grid.len();
         let mut centre = None;
         for (i, (x, y, at)) in grid(display, field).into_iter().enumerate() {
-            let Some(drawn) = drawn(x, y, at) else {
-                self.errors.empty += 1;
-                continue;
-            };
-            let judged_at = if self.at_one_instant { drawn.instant } else { at };
-            let Some(error) = judge.error(middle(x, y), &drawn.drawn, judged_at) else {
-                self.errors.behind += 1;
-                continue;
-            };
+            let Some(error) = self.judged(judge, (x, y), at, seen(x, y, at)) else { continue };
             self.grid.push(error);
             if i == (GRID * GRID / 2) as usize {
                 centre = Some(error);
@@ -114,6 +109,20 @@ impl Collected {
             let time_s = display.tick(field).since(Time::ZERO).as_ms() * 1e-3;
             self.errors.by_field.push(FieldError { field, time_s, mean_px, centre_px: centre.pixels });
         }
+    }
+
+    /// The error of a pixel, or why there is none.
+    fn judged(&mut self, judge: &Judge<'_>, (x, y): (u32, u32), at: Time, seen: Seen) -> Option<PixelError> {
+        let (error, unjudged) = match seen {
+            Seen::Nothing => (None, &mut self.errors.empty),
+            Seen::Incomplete => (None, &mut self.errors.incomplete),
+            Seen::Complete(drawn) => {
+                let judged_at = if self.at_one_instant { drawn.instant(at) } else { at };
+                (judge.error(middle(x, y), &drawn, judged_at), &mut self.errors.behind)
+            }
+        };
+        *unjudged += u64::from(error.is_none());
+        error
     }
 
     fn finish(self) -> PixelErrors {
@@ -189,7 +198,7 @@ impl PixelErrors {
         let mut content = Content::new(outcome, showing, shown, estimator);
         let mut collected = Collected { at_one_instant: without == Some(Cause::ScanOut), ..Collected::default() };
         for field in fields_judged(outcome) {
-            collected.field(&judge, display, field, |x, y, at| content.of_pixel(&judge.view, x, y, field, at));
+            collected.field(&judge, display, field, |x, y, at| content.seen(&judge.view, [x, y], field, at));
         }
         collected.finish()
     }
@@ -211,15 +220,21 @@ impl<'a> Content<'a> {
         }
     }
 
-    fn of_pixel(&mut self, view: &HmdView, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<DrawnFor> {
+    fn seen(&mut self, view: &HmdView, [x, y]: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
         match self {
-            Self::Plain(shown) => shown.drawn(x, y, field, at),
-            Self::Shifted(shown, offsets) => {
-                let Drawn::Pose(pose) = shown.drawn(x, y, field, at)?.drawn else { return None };
-                let shift = offsets.field(field)?.shift_px(view, at.0);
-                Some(DrawnFor { drawn: Drawn::Shifted(pose, shift), instant: at })
+            Self::Plain(shown) => shown.seen(x, y, field, at),
+            Self::Shifted(shown, offsets) => match shown.seen(x, y, field, at) {
+                Seen::Complete(Drawn::View(moment)) => {
+                    let offset = offsets.field(field);
+                    let shift = offset.map(|offset| offset.shift_px(view, at.0));
+                    shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::Shifted(moment, shift)))
+                }
+                Seen::Complete(_) => Seen::Nothing,
+                other => other,
+            },
+            Self::Ideal(estimator) => {
+                Seen::Complete(Drawn::View(Moment { pose: estimator.pose(at, at), objects_at: at }))
             }
-            Self::Ideal(estimator) => Some(DrawnFor { drawn: Drawn::Pose(estimator.pose(at, at)), instant: at }),
         }
     }
 }

@@ -11,6 +11,7 @@
 
 mod budget;
 mod causes;
+mod content;
 mod errors;
 mod latency;
 mod measured;
@@ -23,6 +24,7 @@ mod report;
 mod screen;
 mod shown;
 mod summary;
+mod too_heavy;
 
 pub use budget::Budget;
 pub use causes::{ErrorCauses, ErrorPart};
@@ -39,3 +41,4 @@ pub use raster::{RasterOffsets, Vdrt};
 pub use registration::Registration;
 pub use report::{HeadReport, Report};
 pub use summary::summary;
+pub use too_heavy::TooHeavy;

@@ -2,9 +2,11 @@
 
 use serde::Serialize;
 
-/// Mean and percentiles of some numbers, all zero for none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+/// How many numbers there are, their mean and percentiles. Of none there is none of these (NaN; null in JSON).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Percentiles {
+    /// How many numbers there are.
+    pub n: u64,
     /// Mean.
     pub mean: f64,
     /// Median.
@@ -17,6 +19,13 @@ pub struct Percentiles {
     pub max: f64,
 }
 
+impl Default for Percentiles {
+    fn default() -> Self {
+        let none = f64::NAN;
+        Self { n: 0, mean: none, p50: none, p90: none, p99: none, max: none }
+    }
+}
+
 impl Percentiles {
     /// Of some numbers, none of them NaN. A percentile is the smallest number that so many do not exceed.
     #[must_use]
@@ -26,7 +35,7 @@ impl Percentiles {
         let Some(max) = values.last().copied() else { return Self::default() };
         let at = |percent: usize| values[(values.len() * percent).div_ceil(100).max(1) - 1];
         let mean = values.iter().sum::<f64>() / values.len() as f64;
-        Self { mean, p50: at(50), p90: at(90), p99: at(99), max }
+        Self { n: values.len() as u64, mean, p50: at(50), p90: at(90), p99: at(99), max }
     }
 }
 
@@ -37,7 +46,13 @@ mod tests {
     #[test]
     fn percentiles_of_one_to_a_hundred() {
         let p = Percentiles::of((1..=100).rev().map(f64::from));
-        assert_eq!((p.mean, p.p50, p.p90, p.p99, p.max), (50.5, 50.0, 90.0, 99.0, 100.0));
-        assert_eq!(Percentiles::of(std::iter::empty()), Percentiles::default());
+        assert_eq!((p.n, p.mean, p.p50, p.p90, p.p99, p.max), (100, 50.5, 50.0, 90.0, 99.0, 100.0));
+    }
+
+    #[test]
+    fn of_nothing_there_is_no_number() {
+        let Percentiles { n, mean, p50, p90, p99, max } = Percentiles::of(std::iter::empty());
+        assert_eq!(n, 0);
+        assert!([mean, p50, p90, p99, max].iter().all(|number| number.is_nan()));
     }
 }

@@ -5,7 +5,7 @@ use crate::summary::summary;
 use parameters::nearest;
 use pxpl5_gp::Stage;
 use pxpl5_machine::StageSpan;
-use pxpl5_run::{Outcome, Statistics, Summary};
+use pxpl5_run::{DuePictures, Outcome, Statistics, Summary};
 
 /// A quantity that can be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,10 +48,10 @@ const fn of_run(name: &'static str, definition: &'static str, value: fn(&Outcome
 const LATENCY: &str =
     "latency as the pipeline defines it (see the report), over all complete pictures after the warm-up";
 
-const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields; only with a head.motion";
+const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields, where a picture is shown that was complete in time; only with a head.motion";
 
 /// All quantities. Those that need events have no value at the analytic level.
-pub static QUANTITIES: [Quantity; 28] = [
+pub static QUANTITIES: [Quantity; 35] = [
     of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().mean),
     of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().sd),
     of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
@@ -61,10 +61,28 @@ pub static QUANTITIES: [Quantity; 28] = [
     of_summary("latency_ms.min", LATENCY, |s| s.latency_ms().min),
     of_summary("latency_ms.max", LATENCY, |s| s.latency_ms().max),
     // What is not a number is no value: see `Measure::of`.
-    of_summary("updates_hz", "complete pictures per second of simulated time; none of fewer than two", |s| {
-        s.updates_hz.unwrap_or(f64::NAN)
+    of_summary(
+        "updates_hz",
+        "whole pictures shown a second, over the window of pictures_due; none where none was",
+        |s| s.updates_hz.unwrap_or(f64::NAN),
+    ),
+    of_summary("missed_retraces", "pictures due that were not shown: late, incomplete or missed", |s| {
+        of_due(s, DuePictures::not_shown)
     }),
-    of_summary("missed_retraces", "retraces missed, as the pipeline defines it", |s| s.missed_retraces as f64),
+    of_summary("missed_share", "missed_retraces over pictures_due, 0 to 1", |s| {
+        s.due.map_or(f64::NAN, |due| due.not_shown_share())
+    }),
+    of_summary("pictures_due", "pictures due in the window (see the report); none of frameless rendering", |s| {
+        of_due(s, |due| due.due)
+    }),
+    of_summary("pictures_shown", "those of them that were whole and in time", |s| of_due(s, |due| due.shown)),
+    of_summary("pictures_late", "those that were whole before their period ended, but not in time", |s| {
+        of_due(s, |due| due.late)
+    }),
+    of_summary("pictures_incomplete", "those that were begun and not whole when their period ended", |s| {
+        of_due(s, |due| due.incomplete)
+    }),
+    of_summary("pictures_missed", "those that were never begun, or left out", |s| of_due(s, |due| due.missed)),
     of_summary("region_copy_us", "mean port time of a region of 15,360 pixels", |s| s.region_copy_us),
     of_summary(
         "first_copy_ms",
@@ -95,6 +113,11 @@ pub static QUANTITIES: [Quantity; 28] = [
     of_run("error_px.max", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.max)),
     of_run("error_deg.mean", "error_px as an angle", |_, r| Some(r.head.as_ref()?.error.degrees.mean)),
     of_run("late_regions", "regions that came after their deadline", |_, r| Some(r.late_regions as f64)),
+    of_run(
+        "lines_never_shown",
+        "lines of regions that were overwritten before the display had shown them; none of a display that shows whole buffers",
+        |_, r| r.lines_never_shown().map(|lines| lines as f64),
+    ),
     of_run("pictures", "complete pictures after the warm-up", |_, r| Some(r.pictures as f64)),
     of_run("events", "events of the simulation", |_, r| Some(r.events as f64)),
     of_run("transform_ms", "mean time of TRANSFORM, an eye or a picture as the pipeline takes them", |o, _| {
@@ -104,6 +127,11 @@ pub static QUANTITIES: [Quantity; 28] = [
         stage_ms(o, Stage::Render)
     }),
 ];
+
+/// A count of the pictures that were due; not a number where none was.
+fn of_due(summary: &Summary, count: fn(&DuePictures) -> u64) -> f64 {
+    summary.due.map_or(f64::NAN, |due| count(&due) as f64)
+}
 
 impl Measure {
     /// The quantity of this name.

@@ -120,7 +120,7 @@ fn pose_of_field(display: &dyn Display, shown: &Shown<'_>, field: PeriodNumber) 
     let x = display.surfaces().first()?.width / 2;
     let (y, _) = display.rows_lit(field);
     match shown.drawn(x, y, field, display.lights(0, x, y, field)?)?.drawn {
-        Drawn::Pose(pose) => Some(pose),
+        Drawn::View(moment) => Some(moment.pose),
         Drawn::Between { .. } | Drawn::Shifted(..) => None,
     }
 }

@@ -1,6 +1,7 @@
 //! How far a pixel's content is from where it should be at the moment when it lights.
 
-use crate::shown::{Drawn, Shown, view_of};
+use crate::content::{Content, Contents};
+use crate::shown::{Drawn, Moment, Seen, Shown, view_of};
 use glam::{DVec2, DVec3};
 use pxpl5_run::{HeadViews, Outcome};
 use pxpl5_sim::Time;
@@ -13,55 +14,69 @@ use tracking::view::{HmdView, PixelError, dual_list};
 pub(crate) struct Judge<'a> {
     pub(crate) view: HmdView,
     head: &'a HeadViews,
+    /// What rays meet; nothing where errors are judged at a distance that was said.
+    contents: Contents,
+    /// Where rays end that meet nothing.
     distance_m: f64,
 }
 
 impl<'a> Judge<'a> {
     pub(crate) fn new(outcome: &Outcome, head: &'a HeadViews) -> Self {
         let view = view_of(outcome.record().display());
-        Self { view, head, distance_m: head.distance_m() }
+        let at_content = head.head().judge_at_m().is_none();
+        let contents = if at_content { Contents::of(head.scene()) } else { Contents::default() };
+        Self { view, head, contents, distance_m: head.distance_m() }
     }
 
-    /// The point in head axes that a place of the picture shows.
-    fn point(&self, place: DVec2) -> DVec3 {
+    /// The direction in head axes that a place of the picture shows, 1 m deep.
+    fn direction(&self, place: DVec2) -> DVec3 {
         let from_centre = (place - self.view.centre_px()) / self.view.focal_px();
-        DVec3::new(from_centre.x, -from_centre.y, -1.0) * self.distance_m
+        DVec3::new(from_centre.x, -from_centre.y, -1.0)
     }
 
-    fn world(&self, pose: &Pose, place: DVec2) -> DVec3 {
-        pose.position + pose.orientation * self.point(place)
+    /// What stands at a place of a view: the scene's content there, or a point at the distance of what has none.
+    fn met(&self, moment: &Moment, place: DVec2) -> Content {
+        let Pose { position, orientation } = moment.pose;
+        let direction = orientation * self.direction(place);
+        let met = self.contents.met(position, direction, moment.objects_at);
+        met.unwrap_or_else(|| Content::fixed(position + direction * self.distance_m))
     }
 
-    /// The world point that stands at a place of what was drawn.
-    fn content(&self, drawn: &Drawn, place: DVec2) -> DVec3 {
-        match *drawn {
-            Drawn::Pose(pose) => self.world(&pose, place),
-            Drawn::Shifted(pose, shift) => self.world(&pose, place - shift),
+    /// What stands at a place of what was drawn.
+    fn content(&self, drawn: &Drawn, place: DVec2) -> Content {
+        match drawn {
+            Drawn::View(moment) => self.met(moment, place),
+            Drawn::Shifted(moment, shift) => self.met(moment, place - *shift),
             Drawn::Between { from, to, part, on_screen } => {
-                let between = from.interpolate(&to, part);
-                let drawn_at = |world: DVec3| {
-                    let (a, b) = (from.view_of(world), to.view_of(world));
-                    let interpolate = if on_screen { dual_list::screen_space } else { dual_list::view_space };
-                    interpolate(&self.view, a, b, part)
-                };
+                let between = between(from, to, *part);
                 let mut guess = place;
                 // Each step leaves the square of a per cent or two.
                 for _ in 0..4 {
-                    guess += drawn_at(self.world(&between, guess)).map_or(DVec2::ZERO, |at| place - at);
+                    let content = self.met(&between, guess);
+                    let [a, b] = [from, to].map(|end| end.pose.view_of(self.contents.place(&content, end.objects_at)));
+                    let interpolate = if *on_screen { dual_list::screen_space } else { dual_list::view_space };
+                    guess += interpolate(&self.view, a, b, *part).map_or(DVec2::ZERO, |at| place - at);
                 }
-                self.world(&between, guess)
+                self.met(&between, guess)
             }
         }
     }
 
-    /// The error of a place of the picture that lights at `at`; `None` if its content should be behind the eye.
+    /// The error of a place of the picture that lights at `at`, against where its content is then; `None` if that is behind
+    /// the eye.
     pub(crate) fn error(&self, place: DVec2, drawn: &Drawn, at: Time) -> Option<PixelError> {
-        let seen = self.head.truth(at).view_of(self.content(drawn, place));
-        let shown = self.point(place);
+        let content = self.contents.place(&self.content(drawn, place), at);
+        let seen = self.head.truth(at).view_of(content);
         let offset_px = place - self.view.project(seen)?;
-        let degrees = angle_between(shown, seen).to_degrees();
+        let degrees = angle_between(self.direction(place), seen).to_degrees();
         Some(PixelError { offset_px, pixels: offset_px.length(), degrees })
     }
+}
+
+/// A part of the way from one moment to another.
+fn between(from: &Moment, to: &Moment, part: f64) -> Moment {
+    let (begin, end) = (from.objects_at.0 as f64, to.objects_at.0 as f64);
+    Moment { pose: from.pose.interpolate(&to.pose, part), objects_at: Time((begin + (end - begin) * part) as u64) }
 }
 
 /// Angle between two vectors, exact for small ones too.
@@ -84,13 +99,13 @@ impl<'a> Registration<'a> {
         Some(Self { judge: Judge::new(outcome, head), shown: Shown::of_run(outcome, head) })
     }
 
-    /// The error of a pixel in a field that scans its line; `None` where nothing is shown yet, or where its content
-    /// should be behind the eye.
+    /// The error of a pixel in a field that scans its line; `None` where no picture is shown that was complete in time, or where
+    /// its content should be behind the eye.
     #[must_use]
     pub fn at(&self, x: u32, y: u32, field: PeriodNumber) -> Option<PixelError> {
         let at = self.shown.outcome.record().display().lights(0, x, y, field)?;
-        let drawn = self.shown.drawn(x, y, field, at)?;
-        self.judge.error(middle(x, y), &drawn.drawn, at)
+        let Seen::Complete(drawn) = self.shown.seen(x, y, field, at) else { return None };
+        self.judge.error(middle(x, y), &drawn, at)
     }
 }
 

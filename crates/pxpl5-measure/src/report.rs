@@ -3,11 +3,14 @@
 use crate::budget::Budget;
 use crate::errors::{PixelErrors, pixel_errors};
 use crate::latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
+use crate::too_heavy::TooHeavy;
 use parameters::Value;
+use pxpl5_display::Counter;
 use pxpl5_machine::LateRegion;
-use pxpl5_run::{DefinedStatistics, Head, Outcome, PictureTimes, Raster};
+use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use tracking::predict::{PredictorConfig, Training};
 
 /// The numbers of one experiment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -57,18 +60,24 @@ pub struct Report {
     pub latency_by_eye_ms: Vec<SurfaceStatistics>,
     /// Complete pictures that were shown in the whole run, the warm-up included.
     pub shown: u64,
-    /// Complete pictures per second of simulated time, after the warm-up; nothing where fewer than two were shown.
+    /// Whole new pictures a second, over the window of `due`; nothing where none was shown.
     pub updates_hz: Option<f64>,
-    /// Retraces missed.
-    pub missed_retraces: u64,
-    /// The retraces among which they are counted.
-    pub judged_retraces: u64,
-    /// What that means here.
-    pub missed_retraces_definition: String,
+    /// The pictures that were due, in a stated window, and what became of them; nothing where none was.
+    pub due: Option<DuePictures>,
+    /// When a picture is due here, what it takes to be in time, and which are counted.
+    pub due_definition: String,
+    /// Pictures that were due and not shown: late, incomplete or missed.
+    pub missed_retraces: Option<u64>,
+    /// That the load was too heavy, and what would do; nothing where it was not.
+    pub too_heavy: Option<TooHeavy>,
+    /// Whether the pictures that the viewer sees at the end are complete.
+    pub ends_complete: bool,
     /// Regions that came after their deadline.
     pub late_regions: usize,
     /// The first of them; lateness in picoseconds.
     pub first_late_regions: Vec<LateRegion>,
+    /// What the first display has counted since the start.
+    pub display_counters: Vec<Counter>,
     /// From the head to light; nothing of a run without a tracker.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadReport>,
@@ -87,6 +96,16 @@ pub struct HeadReport {
     pub tracker: String,
     /// Predictor.
     pub predictor: String,
+    /// The instant of what is shown from it that a view is predicted for.
+    pub aim: Aim,
+    /// Its numbers, as it ran.
+    pub prediction: PredictorConfig,
+    /// On what they were tuned; nothing where they were given.
+    pub training: Option<Training>,
+    /// Name of the head with all that it is, the numbers of its predictor included.
+    pub fingerprint: String,
+    /// Distance at which errors are judged, metres; nothing where the scene's content lies.
+    pub judged_at_m: Option<f64>,
     /// How the raster before the eyes shows the picture.
     pub display: Raster,
     /// From the head's pose to light, milliseconds.
@@ -100,10 +119,24 @@ impl HeadReport {
         Some(Self {
             tracker: head.tracker().config().name.clone(),
             predictor: format!("{:?}", head.predictor_kind()),
+            aim: head.aim(),
+            prediction: *head.predictor(),
+            training: head.training().copied(),
+            fingerprint: head.fingerprint().to_string(),
+            judged_at_m: head.judge_at_m(),
             display: head.raster(),
             end_to_end: Budget::of(outcome),
             error: pixel_errors(outcome)?,
         })
+    }
+}
+
+impl Report {
+    /// Lines of regions that were overwritten before they had been shown; `None` where the display does not count them.
+    #[must_use]
+    pub fn lines_never_shown(&self) -> Option<u64> {
+        let counter = self.display_counters.iter().find(|counter| counter.name == Counter::LINES_NEVER_SHOWN);
+        counter.map(|counter| counter.count)
     }
 }
 
@@ -112,7 +145,7 @@ const LATE_REGIONS_LISTED: usize = 20;
 
 impl Report {
     /// Name and version of the layout.
-    pub const SCHEMA: &'static str = "pxpl5-report/1";
+    pub const SCHEMA: &'static str = "pxpl5-report/2";
 
     /// Everything that an outcome says, as numbers.
     #[must_use]
@@ -122,7 +155,7 @@ impl Report {
         let scene = experiment.scene();
         let pipeline = outcome.pipeline();
         let record = outcome.record();
-        let pictures = outcome.steady_pictures();
+        let due = outcome.due();
         let late = pipeline.late_regions(record, outcome.end());
         Self {
             schema: Self::SCHEMA.to_owned(),
@@ -152,25 +185,19 @@ impl Report {
             latency_parts_ms: latency_part_statistics(outcome),
             latency_by_eye_ms: latency_by_surface(outcome),
             shown: outcome.shown(),
-            updates_hz: updates_hz(pictures).map(|hz| hz / pipeline.updates_per_picture(record)),
-            missed_retraces: outcome.missed_retraces(),
-            judged_retraces: outcome.judged_retraces(),
-            missed_retraces_definition: outcome.missed_definition(),
+            updates_hz: outcome.updates_hz(),
+            due,
+            due_definition: outcome.due_definition(),
+            missed_retraces: due.map(|due| due.not_shown()),
+            too_heavy: due.and_then(|due| TooHeavy::of(experiment, &due)),
+            ends_complete: outcome.ends_complete(),
             late_regions: late.len(),
             first_late_regions: late.into_iter().take(LATE_REGIONS_LISTED).collect(),
+            display_counters: record.display().counters(),
             head: outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())),
             trace_hash: record.trace_hash().to_string(),
             events: record.events(),
             host_seconds: outcome.host_seconds(),
         }
-    }
-}
-
-/// Complete pictures per second of simulated time; `None` of fewer than two.
-fn updates_hz(pictures: &[PictureTimes]) -> Option<f64> {
-    let complete: Vec<_> = pictures.iter().filter(|times| times.complete).collect();
-    match complete[..] {
-        [first, .., last] => Some((complete.len() - 1) as f64 * 1e3 / (last.shown_at - first.shown_at).as_ms()),
-        _ => None,
     }
 }

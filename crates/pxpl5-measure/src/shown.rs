@@ -10,18 +10,50 @@ use std::collections::{BTreeMap, BTreeSet};
 use tracking::Pose;
 use tracking::view::HmdView;
 
+/// What a view was drawn for: a pose, and the time for which moving objects were placed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment {
+    pub(crate) pose: Pose,
+    pub(crate) objects_at: Time,
+}
+
 /// What a pixel was drawn for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Drawn {
-    Pose(Pose),
+    View(Moment),
     Between {
-        from: Pose,
-        to: Pose,
+        from: Moment,
+        to: Moment,
         part: f64,
         on_screen: bool,
     },
     /// A picture that is shifted on its way to the screen.
-    Shifted(Pose, DVec2),
+    Shifted(Moment, DVec2),
+}
+
+impl Drawn {
+    /// The instant that it was drawn for; what is shifted on its way is drawn for the instant of its light.
+    pub(crate) fn instant(&self, light: Time) -> Time {
+        match self {
+            Self::View(moment) => moment.objects_at,
+            Self::Between { from, to, part, .. } => {
+                let ahead_ps = to.objects_at.since(from.objects_at).0 as f64 * part;
+                Time(from.objects_at.0 + ahead_ps as u64)
+            }
+            Self::Shifted(..) => light,
+        }
+    }
+}
+
+/// What a pixel shows, as far as it can be judged.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Seen {
+    /// Nothing yet, or nothing that is known.
+    Nothing,
+    /// A part of a picture that was not complete in time.
+    Incomplete,
+    /// A part of one that was.
+    Complete(Drawn),
 }
 
 /// Everything that is known of a run's views.
@@ -30,34 +62,27 @@ pub(crate) struct Shown<'a> {
     pub(crate) outcome: &'a Outcome,
     screen: Screen,
     views: BTreeMap<PictureNumber, ViewNumber>,
-    poses: BTreeMap<ViewNumber, Aimed>,
-}
-
-/// A view's pose and the instant that its picture is drawn for.
-#[derive(Clone, Copy, Debug)]
-struct Aimed {
-    pose: Pose,
-    at: Time,
-}
-
-/// What a pixel shows, and the instant that it was drawn for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct DrawnFor {
-    pub(crate) drawn: Drawn,
-    pub(crate) instant: Time,
+    /// Pictures that were complete in time.
+    complete: BTreeSet<PictureNumber>,
+    moments: BTreeMap<ViewNumber, Moment>,
 }
 
 impl<'a> Shown<'a> {
     pub(crate) fn of_run(outcome: &'a Outcome, head: &HeadViews) -> Self {
-        let poses = head.sampled().into_iter().map(|sampled| {
-            let aimed = Aimed { pose: sampled.pose, at: sampled.aimed_at };
-            (sampled.number, aimed)
-        });
         Self {
             outcome,
             screen: Screen::of_record(outcome.record()),
             views: outcome.pictures().iter().map(|times| (times.picture, times.view)).collect(),
-            poses: poses.collect(),
+            complete: outcome.pictures().iter().filter(|times| times.is_shown()).map(|times| times.picture).collect(),
+            moments: head.sampled().into_iter().map(|sampled| (sampled.number, moment_of(&sampled))).collect(),
+        }
+    }
+
+    /// What a pixel that lights at `at` shows, and whether its picture was complete in time.
+    pub(crate) fn seen(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Seen {
+        match self.screen.shown(x, y, field, at) {
+            Some(target) if !self.complete.contains(&target.picture) => Seen::Incomplete,
+            _ => self.drawn(x, y, field, at).map_or(Seen::Nothing, Seen::Complete),
         }
     }
 
@@ -65,11 +90,11 @@ impl<'a> Shown<'a> {
     pub(crate) fn with_poses(self, head: &HeadViews, of: &BTreeSet<ViewNumber>, mut estimator: Estimator<'_>) -> Self {
         let mut sampled: Vec<Sampled> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
         sampled.sort_by_key(|sampled| sampled.known);
-        let poses = sampled.into_iter().map(|sampled| {
-            let pose = estimator.pose(sampled.known, sampled.aimed_at);
-            (sampled.number, Aimed { pose, at: sampled.aimed_at })
+        let moments = sampled.into_iter().map(|sampled| {
+            let pose = estimator.pose(sampled.known, sampled.objects_at);
+            (sampled.number, Moment { pose, objects_at: sampled.objects_at })
         });
-        Self { poses: poses.collect(), ..self }
+        Self { moments: moments.collect(), ..self }
     }
 
     /// The views that a pixel shows which lights at `at`: one, or two between which it stands; none before anything came.
@@ -83,25 +108,24 @@ impl<'a> Shown<'a> {
 
     fn source(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<Source> {
         let target = self.screen.shown(x, y, field, at)?;
-        self.outcome.pipeline().source(self.outcome.record(), &target, &self.views)
+        let aim = self.outcome.experiment().aim();
+        self.outcome.pipeline().source(self.outcome.record(), &target, &self.views, aim)
     }
 
     /// What a pixel that lights at `at` shows; `None` before anything came.
-    pub(crate) fn drawn(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<DrawnFor> {
-        match self.source(x, y, field, at)? {
-            Source::View(number) => {
-                let aimed = self.poses.get(&number)?;
-                Some(DrawnFor { drawn: Drawn::Pose(aimed.pose), instant: aimed.at })
-            }
+    pub(crate) fn drawn(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<Drawn> {
+        let moment = |number: ViewNumber| self.moments.get(&number).copied();
+        Some(match self.source(x, y, field, at)? {
+            Source::View(number) => Drawn::View(moment(number)?),
             Source::Between { from, to, part, on_screen } => {
-                let from = self.poses.get(&from)?;
-                let to = self.poses.get(&to)?;
-                let ahead_ps = to.at.since(from.at).0 as f64 * part;
-                let drawn = Drawn::Between { from: from.pose, to: to.pose, part, on_screen };
-                Some(DrawnFor { drawn, instant: Time(from.at.0 + ahead_ps as u64) })
+                Drawn::Between { from: moment(from)?, to: moment(to)?, part, on_screen }
             }
-        }
+        })
     }
+}
+
+fn moment_of(sampled: &Sampled) -> Moment {
+    Moment { pose: sampled.pose, objects_at: sampled.objects_at }
 }
 
 /// The picture of the head-mounted display on the first surface of a display.

@@ -1,6 +1,5 @@
 //! An outcome as the few numbers that every level of modelling gives.
 
-use crate::Report;
 use pxpl5_gp::Stage;
 use pxpl5_run::{Outcome, Statistics, Summary};
 use pxpl5_sim::{Span, Time};
@@ -19,7 +18,6 @@ type Copies = BTreeMap<(PictureNumber, u8), CopySpan>;
 /// The numbers of an outcome over the pictures after the warm-up.
 #[must_use]
 pub fn summary(outcome: &Outcome) -> Summary {
-    let report = Report::of(outcome);
     let pictures = outcome.steady_pictures();
     let message = outcome.record().message_span();
     let copies = copies(outcome, message);
@@ -35,8 +33,8 @@ pub fn summary(outcome: &Outcome) -> Summary {
     Summary {
         latencies_ms: outcome.complete_pictures().map(|p| (p.shown_at - p.transform_at).as_ms()).collect(),
         field_ms: outcome.field_ms(),
-        updates_hz: report.updates_hz,
-        missed_retraces: report.missed_retraces,
+        updates_hz: outcome.updates_hz(),
+        due: outcome.due(),
         eye_latencies_ms: eye_latencies(outcome),
         region_copy_us: region_copy_us(outcome, message),
         first_copy_ms: mean(0),

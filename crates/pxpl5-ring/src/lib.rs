@@ -18,7 +18,8 @@
 //! 3. A message occupies channel and both ports for 16 + `words` word times; at the instant at which that is over
 //!    the next one is granted. What a board sends and what it receives do not disturb each other.
 //! 4. A message sent with [`Request::hold`] leaves its destination reserved for the same source: the messages of a
-//!    region transfer follow each other, and transfers come in order of arrival.
+//!    region transfer follow each other, and transfers come in order of arrival. (Published for frame buffers, TR94; assumed
+//!    for all receivers, because all boards have the same port.)
 //! 5. A receiver is *elastic* (takes every word as it comes: graphics processors, frame buffers, the host) or has a
 //!    FIFO that may be full (renderers). The elastic one is handed the message when its last word has arrived
 //!    ([`RingOutput::Delivered`]). The other one is told that the message is coming ([`RingOutput::Announce`]) and

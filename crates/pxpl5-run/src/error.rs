@@ -3,6 +3,7 @@
 use crate::experiment::WARM_UP_PICTURES;
 use crate::outcome::Outcome;
 use pxpl5_machine::{ConfigError, RunError};
+use pxpl5_sim::Time;
 use thiserror::Error;
 
 /// Why an experiment gave no result.
@@ -36,6 +37,19 @@ pub enum ExperimentError {
         /// Everything that was observed.
         partial: Box<Outcome>,
     },
+    /// The head's motion ends before the run does.
+    #[error(
+        "the recording of the head ends after {:.3} s and the run takes {:.3} s: simulate fewer fields, or say what comes after its end \
+         (head.end = \"hold\" or \"loop\")",
+        seconds(*recording),
+        seconds(*run)
+    )]
+    Recording {
+        /// The end of the recording.
+        recording: Time,
+        /// The end of the run.
+        run: Time,
+    },
     /// The analytic level has no events that an experiment could observe.
     #[error("level: expected transaction or cycle, found analytic, which has no events (it is for sweeps and limits)")]
     Level,
@@ -53,6 +67,10 @@ pub enum ExperimentError {
         /// Everything until then.
         partial: Box<Outcome>,
     },
+}
+
+fn seconds(at: Time) -> f64 {
+    at.since(Time::ZERO).as_ms() * 1e-3
 }
 
 /// How long a run must be.

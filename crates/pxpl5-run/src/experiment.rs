@@ -6,6 +6,7 @@ use crate::host::{BareHost, Host};
 use crate::level::Level;
 use crate::pipeline::Pipeline;
 use crate::raster::Raster;
+use pxpl5_display::Aim;
 use pxpl5_machine::{MachineConfig, Saving};
 use pxpl5_scene::Scene;
 use pxpl5_wire::PeriodNumber;
@@ -45,12 +46,19 @@ pub struct Experiment {
     pub(crate) given_up: BTreeSet<Saving>,
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
-    pub(crate) fields_needed: Option<FieldsNeeded>,
+    pub(crate) on_demand: bool,
+    pub(crate) estimates: Option<Estimates>,
 }
 
-/// Fields after which the first picture behind the warm-up of an experiment has been shown; `None` if none ever will be, or
-/// if it cannot be said.
-pub type FieldsNeeded = fn(&Experiment) -> Option<u64>;
+/// What a closed form can say of an experiment before or after it is run.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimates {
+    /// Fields after which the first picture behind the warm-up has been shown; `None` if none ever will be, or if it cannot be
+    /// said.
+    pub fields_needed: fn(&Experiment) -> Option<u64>,
+    /// The most primitives of the scene, its first ones, that would all be shown in time; `None` if it cannot be said.
+    pub triangles_in_time: fn(&Experiment) -> Option<u64>,
+}
 
 impl Experiment {
     /// A pipeline on a machine with a scene; 120 fields, pixels when looked at, seed 1.
@@ -75,7 +83,8 @@ impl Experiment {
             given_up: BTreeSet::new(),
             level: Level::Transaction,
             head: None,
-            fields_needed: None,
+            on_demand: false,
+            estimates: None,
         }
     }
 
@@ -144,17 +153,50 @@ impl Experiment {
         self
     }
 
-    /// By what a run that is too short to show anything says how many fields it would take: a pipeline's closed form knows.
+    /// Lets the host begin a frame only when its tracker reports something, so that pipelines are not full: as a measurement
+    /// from outside does. Without a head, or where the host does not begin frames, nothing changes.
     #[must_use]
-    pub const fn estimated_by(mut self, fields_needed: Option<FieldsNeeded>) -> Self {
-        self.fields_needed = fields_needed;
+    pub const fn on_demand(mut self) -> Self {
+        self.on_demand = true;
         self
+    }
+
+    /// By what a run that is too short says how many fields it would take, and one that is too heavy how many triangles would
+    /// do: a pipeline's closed form knows.
+    #[must_use]
+    pub const fn estimated_by(mut self, estimates: Option<Estimates>) -> Self {
+        self.estimates = estimates;
+        self
+    }
+
+    /// The most primitives of its scene that would all be shown in time, by the closed form; `None` where there is none.
+    #[must_use]
+    pub fn triangles_in_time(&self) -> Option<u64> {
+        (self.estimates?.triangles_in_time)(self)
+    }
+
+    /// The same experiment with another scene.
+    #[must_use]
+    pub fn with_scene(self, scene: impl Into<Arc<Scene>>) -> Self {
+        Self { scene: scene.into(), ..self }
+    }
+
+    /// The same experiment without a head: the pipeline follows the scene's own motion without any delay.
+    #[must_use]
+    pub fn without_head(self) -> Self {
+        Self { head: None, ..self }
     }
 
     /// How the raster before the head's eyes shows the picture.
     #[must_use]
     pub fn raster(&self) -> Raster {
         self.head.as_ref().map(|head| head.raster()).unwrap_or_default()
+    }
+
+    /// For which instant of what is shown from them views are drawn.
+    #[must_use]
+    pub fn aim(&self) -> Aim {
+        self.head.as_ref().map(|head| head.aim()).unwrap_or_default()
     }
 
     /// Name of everything on which the trace depends: machine, pipeline with its settings, contents of the scene, fields,
@@ -168,6 +210,7 @@ impl Experiment {
         hash.setting("n_gps", n_gps);
         hash.setting("n_renderers", n_renderers);
         self.config.telling_parameters().iter().for_each(|parameter| hash.setting(&parameter.path, parameter.value));
+        self.config.i860.unusual_settings().iter().for_each(|(key, value)| hash.setting(key, value));
         hash.setting("pipeline", self.pipeline.name());
         self.pipeline.settings().iter().for_each(|(key, value)| hash.setting(key, value));
         hash.setting("scene", Fingerprint::of_scene(&self.scene));
@@ -176,6 +219,9 @@ impl Experiment {
         hash.setting("level", self.level.name());
         if let Some(head) = &self.head {
             hash.setting("head", head.fingerprint());
+        }
+        if self.on_demand {
+            hash.setting("on_demand", true);
         }
         hash
     }

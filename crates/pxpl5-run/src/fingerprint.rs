@@ -1,7 +1,7 @@
 //! A short name for contents: 128-bit FNV-1a (Fowler, Noll, Vo), the same on every host. It finds accidents, not malice.
 
 use glam::Vec3;
-use pxpl5_scene::{Frame, Hinge, Lighting, Path, Scene, Sphere, Structure, Vertex};
+use pxpl5_scene::{Frame, HeadPath, Hinge, Lighting, Scene, Sphere, Structure, Vertex};
 use std::fmt::{self, Write};
 use std::ops::Range;
 
@@ -122,29 +122,29 @@ impl Fingerprint {
         self.add(background);
     }
 
-    fn path(&mut self, path: &Path) {
+    fn path(&mut self, path: &HeadPath) {
         match path {
-            Path::Still { eye, target } => {
+            HeadPath::Still { eye, target } => {
                 self.add(&[0]);
                 self.vector(*eye);
                 self.vector(*target);
             }
-            Path::Pan { eye, deg_per_s } => {
+            HeadPath::Pan { eye, deg_per_s } => {
                 self.add(&[1]);
                 self.vector(*eye);
                 self.reals(&[*deg_per_s]);
             }
-            Path::Orbit { target, distance, height, deg_per_s } => {
+            HeadPath::Orbit { target, distance, height, deg_per_s } => {
                 self.add(&[2]);
                 self.vector(*target);
                 self.reals(&[*distance, *height, *deg_per_s]);
             }
-            Path::Look { target, distance } => {
+            HeadPath::Look { target, distance } => {
                 self.add(&[3]);
                 self.vector(*target);
                 self.reals(&[*distance]);
             }
-            Path::FlyThrough { target, nearest, farthest, lap_s } => {
+            HeadPath::FlyThrough { target, nearest, farthest, lap_s } => {
                 self.add(&[4]);
                 self.vector(*target);
                 self.reals(&[*nearest, *farthest, *lap_s]);

@@ -2,15 +2,31 @@
 
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
+use pxpl5_display::Aim;
+use pxpl5_sim::Time;
 use std::fmt;
 use std::sync::Arc;
 use tracking::ConfigError;
 use tracking::motion::Motion;
-use tracking::predict::{Predictor, PredictorConfig, PredictorKind};
-use tracking::tracker::{TrackerConfig, TrackerModel};
+use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Training, tune};
+use tracking::tracker::{Report, TrackerConfig, TrackerModel};
 
 /// Why a head cannot be simulated.
 pub type HeadError = ConfigError;
+
+/// Where the numbers of a predictor come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Numbers {
+    /// They are as they were given.
+    Given,
+    /// They are found when the experiment is run, for the interval that its pipeline has to predict over.
+    ToBeTuned,
+    /// They were found so, if there was anything to find.
+    Tuned(Option<Training>),
+}
+
+/// How a predictor is tuned, in names of experiments; the numbers follow from it and from everything else there.
+const TUNING: &str = "for its interval and motion, version 1";
 
 /// A head, its tracker, a predictor, and the display before its eyes.
 #[derive(Clone)]
@@ -18,8 +34,12 @@ pub struct Head {
     pub(crate) motion: Arc<dyn Motion + Send + Sync>,
     pub(crate) tracker: TrackerModel,
     predictor: PredictorConfig,
+    numbers: Numbers,
+    judge_at_m: Option<f64>,
     pub(crate) seed: u64,
     raster: Raster,
+    aim: Aim,
+    reports: Option<Arc<[Report]>>,
 }
 
 impl fmt::Debug for Head {
@@ -27,14 +47,22 @@ impl fmt::Debug for Head {
         f.debug_struct("Head")
             .field("tracker", self.tracker.config())
             .field("predictor", &self.predictor)
+            .field("numbers", &self.numbers)
+            .field("judge_at_m", &self.judge_at_m)
             .field("seed", &self.seed)
             .field("raster", &self.raster)
+            .field("aim", &self.aim)
             .finish_non_exhaustive()
     }
 }
 
+/// Distances, in metres, at which errors can be judged.
+const JUDGED_AT_M: (f64, f64) = (1e-3, 1e6);
+
 impl Head {
-    /// A head that moves, a tracker and a predictor that knows the tracker's noise.
+    /// A head that moves, a tracker and a predictor that knows the tracker's noise, and whose numbers are tuned, when the
+    /// experiment is run, for the interval that the pipeline has to predict over and for the motion
+    /// ([`tune`](tracking::predict::tune)).
     ///
     /// # Errors
     ///
@@ -46,8 +74,67 @@ impl Head {
         seed: u64,
     ) -> Result<Self, HeadError> {
         let predictor = PredictorConfig::for_tracker(predictor, &tracker);
+        Ok(Self { numbers: Numbers::ToBeTuned, ..Self::predicted_by(motion, tracker, predictor, seed)? })
+    }
+
+    /// The same with a predictor whose numbers are given, and not tuned.
+    ///
+    /// # Errors
+    ///
+    /// As [`Head::new`].
+    pub fn predicted_by(
+        motion: Arc<dyn Motion + Send + Sync>,
+        tracker: TrackerConfig,
+        predictor: PredictorConfig,
+        seed: u64,
+    ) -> Result<Self, HeadError> {
         predictor.build()?;
-        Ok(Self { motion, tracker: TrackerModel::new(tracker)?, predictor, seed, raster: Raster::Plain })
+        let tracker = TrackerModel::new(tracker)?;
+        Ok(Self {
+            motion,
+            tracker,
+            predictor,
+            numbers: Numbers::Given,
+            judge_at_m: None,
+            seed,
+            raster: Raster::Plain,
+            aim: Aim::Middle,
+            reports: None,
+        })
+    }
+
+    /// Has the numbers of its predictor tuned when the experiment is run; they are searched from the present ones.
+    #[must_use]
+    pub const fn tuned(mut self) -> Self {
+        self.numbers = Numbers::ToBeTuned;
+        self
+    }
+
+    /// Has another predictor in the place of its own, with the same numbers, or tuned if its own is.
+    #[must_use]
+    pub const fn predicting(mut self, kind: PredictorKind) -> Self {
+        self.predictor.kind = kind;
+        self
+    }
+
+    /// Says at which distance from the eye, in metres, pixel errors are judged; else it is where the scene's content lies.
+    ///
+    /// # Errors
+    ///
+    /// [`HeadError`] for a distance that is not within 0.001 to 1,000,000 metres.
+    pub fn judged_at(self, metres: f64) -> Result<Self, HeadError> {
+        let (low, high) = JUDGED_AT_M;
+        if !(low..=high).contains(&metres) {
+            let what = "distance at which errors are judged, m";
+            return Err(HeadError::OutOfRange { what, found: metres, low, high });
+        }
+        Ok(Self { judge_at_m: Some(metres), ..self })
+    }
+
+    /// The distance at which pixel errors are judged, metres; `None` where the scene's content lies.
+    #[must_use]
+    pub const fn judge_at_m(&self) -> Option<f64> {
+        self.judge_at_m
     }
 
     /// Puts a raster before its eyes.
@@ -55,6 +142,34 @@ impl Head {
     pub const fn before(mut self, raster: Raster) -> Self {
         self.raster = raster;
         self
+    }
+
+    /// Says for which instant of what is shown from them views are predicted.
+    #[must_use]
+    pub const fn aiming(mut self, aim: Aim) -> Self {
+        self.aim = aim;
+        self
+    }
+
+    /// Puts these reports, in order of arrival, in the place of those that its tracker would make of the motion.
+    #[must_use]
+    pub fn reporting(self, reports: Vec<Report>) -> Self {
+        Self { reports: Some(reports.into()), ..self }
+    }
+
+    /// The reports that reach the host before an instant.
+    pub(crate) fn reports_until(&self, until: Time) -> Arc<[Report]> {
+        let in_time = |report: &Report| report.arrives_ps < until.0;
+        match &self.reports {
+            Some(reports) => reports.iter().copied().take_while(in_time).collect(),
+            None => self.tracker.reports(self.motion.as_ref(), self.seed).take_while(in_time).collect(),
+        }
+    }
+
+    /// For which instant of what is shown from them views are predicted.
+    #[must_use]
+    pub const fn aim(&self) -> Aim {
+        self.aim
     }
 
     /// How the raster before its eyes shows the picture.
@@ -71,8 +186,20 @@ impl Head {
         self.motion.identify(&mut add);
         self.tracker.config().identify(&mut add);
         self.predictor.identify(&mut add);
+        match self.numbers {
+            Numbers::ToBeTuned if self.predicts() => hash.setting("predictor.tuned", TUNING),
+            Numbers::Tuned(Some(training)) => hash.setting("predictor.tuned_on", format_args!("{training:?}")),
+            Numbers::Given | Numbers::ToBeTuned | Numbers::Tuned(None) => {}
+        }
+        if let Some(metres) = self.judge_at_m {
+            hash.setting("judge_at_m", metres);
+        }
         hash.setting("seed", self.seed);
         hash.setting("raster", self.raster);
+        hash.setting("aim", self.aim);
+        self.reports.iter().flat_map(|reports| reports.iter()).for_each(|report| {
+            hash.setting("report", format_args!("{report:?}"));
+        });
         hash
     }
 
@@ -80,6 +207,36 @@ impl Head {
     #[must_use]
     pub fn predicts(&self) -> bool {
         self.predictor.kind != PredictorKind::None
+    }
+
+    /// Whether the numbers of its predictor are found when the experiment is run, or were.
+    #[must_use]
+    pub fn is_tuned(&self) -> bool {
+        self.numbers != Numbers::Given
+    }
+
+    /// Whether the numbers of its predictor are still to be found.
+    pub(crate) fn is_to_be_tuned(&self) -> bool {
+        self.numbers == Numbers::ToBeTuned && self.predicts()
+    }
+
+    /// The same with the numbers with which its predictor errs least so far ahead of the tracker's reports.
+    pub(crate) fn tuned_for(&self, interval_ps: u64) -> Self {
+        let tuned = tune(self.motion.as_ref(), &self.tracker, interval_ps, &self.predictor, self.seed);
+        let tuned = tuned.expect("checked by Head::new");
+        Self { predictor: tuned.config, numbers: Numbers::Tuned(tuned.training), ..self.clone() }
+    }
+
+    /// The predictor with its numbers: in an outcome those with which it ran.
+    #[must_use]
+    pub const fn predictor(&self) -> &PredictorConfig {
+        &self.predictor
+    }
+
+    /// On what its predictor was tuned; `None` where its numbers were given, or before the experiment is run.
+    #[must_use]
+    pub const fn training(&self) -> Option<&Training> {
+        if let Numbers::Tuned(Some(training)) = &self.numbers { Some(training) } else { None }
     }
 
     /// The predictor.

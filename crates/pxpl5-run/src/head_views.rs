@@ -29,9 +29,9 @@ pub struct Sampled {
     pub measured_at: Option<Time>,
     /// When that report reached the host.
     pub arrived_at: Option<Time>,
-    /// The moment that the picture is drawn for.
-    pub aimed_at: Time,
-    /// The moment that the pose was predicted for; `None` where the newest was taken as it is.
+    /// The moment that the view's picture is drawn for, by the head's [`Aim`](crate::Aim): moving objects stand where they are then.
+    pub objects_at: Time,
+    /// The same where the pose was predicted; `None` where the newest was taken as it is.
     pub predicted_for: Option<Time>,
     /// The pose in the scene's coordinates.
     pub pose: Pose,
@@ -111,8 +111,7 @@ impl HeadViews {
         until: Time,
         rehearsal: Option<Rehearsal>,
     ) -> Self {
-        let all = head.tracker.reports(head.motion.as_ref(), head.seed);
-        let reports: Arc<[Report]> = all.take_while(|report| report.arrives_ps < until.0).collect();
+        let reports = head.reports_until(until);
         let of_scene = scene.motion().pose(0);
         let base = Pose { orientation: of_scene.orientation.normalize(), ..of_scene };
         let start = head.motion.pose(0);
@@ -135,7 +134,7 @@ impl HeadViews {
     }
 
     fn newest(&self, number: ViewNumber, time: Time) -> FrameView {
-        let shown_at = self.rehearsal.as_ref().map_or(time, |rehearsal| rehearsal.shown_at(number, time));
+        let shown_at = self.rehearsal.as_ref().map_or(time, |rehearsal| rehearsal.aimed_at(number, time));
         self.view(number, time, shown_at)
     }
 
@@ -144,8 +143,14 @@ impl HeadViews {
         let pose = self.in_scene(&follower.pose(known, shown_at, &self.start));
         let Newest { measured_at, arrived_at } = follower.newest;
         let predicted_for = self.head.predicts().then_some(shown_at);
-        sampled.push(Sampled { number, known, measured_at, arrived_at, aimed_at: shown_at, predicted_for, pose });
+        let pose = self.in_scene(&follower.pose(known, shown_at, &self.start));
         view(&self.scene, &self.hmd, self.eyes, number, shown_at, &pose.in_single_precision())
+    }
+
+    /// The first report that reaches the host at an instant or later.
+    pub(crate) fn report_from(&self, instant: Time) -> Option<Time> {
+        let next = self.reports.partition_point(|report| report.arrives_ps < instant.0);
+        self.reports.get(next).map(|report| Time(report.arrives_ps))
     }
 
     fn report_after(&self, after: Time) -> Option<Time> {
@@ -172,11 +177,18 @@ impl HeadViews {
         &self.head
     }
 
-    /// Distance from the head's start to the middle of the scene, metres; at least 0.1.
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Where what has no place of its own is judged, metres: the distance that was said, else that from the head's start to the middle
+    /// of the scene, at least 0.1.
     #[must_use]
     pub fn distance_m(&self) -> f64 {
         let (centre, _) = self.scene.bounding_sphere();
-        self.base.position.distance(centre.as_dvec3()).max(0.1)
+        self.head.judge_at_m().unwrap_or_else(|| self.base.position.distance(centre.as_dvec3()).max(0.1))
     }
 
     /// Every pose that was asked for, in order of the numbers.

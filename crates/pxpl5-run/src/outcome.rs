@@ -1,5 +1,6 @@
 //! What came of an experiment, as data.
 
+use crate::due::{DuePictures, WARM_UP_PERIODS, WINDOW_DEFINITION};
 use crate::experiment::{Experiment, WARM_UP_PICTURES};
 use crate::head_views::HeadViews;
 use crate::pipeline::{PictureTimes, Pipeline};
@@ -20,10 +21,6 @@ pub struct Outcome {
     host_seconds: Option<f64>,
 }
 
-/// Which retraces are judged, behind what a pipeline calls missed.
-const JUDGED: &str = "counted from the first picture after the warm-up to the end of the run; where no complete picture came \
-                      after the warm-up, every retrace of the run at which none was shown";
-
 impl Outcome {
     pub(crate) fn new(
         experiment: Experiment,
@@ -43,7 +40,7 @@ impl Outcome {
         &self.experiment
     }
 
-    /// All pictures that were shown.
+    /// All pictures that were begun and judged, complete or not.
     #[must_use]
     pub fn pictures(&self) -> &[PictureTimes] {
         &self.pictures
@@ -57,57 +54,57 @@ impl Outcome {
 
     /// Those of them that were complete in time: the others have no latency.
     pub fn complete_pictures(&self) -> impl Iterator<Item = &PictureTimes> {
-        self.steady_pictures().iter().filter(|times| times.complete)
+        self.steady_pictures().iter().filter(|times| times.is_shown())
     }
 
     /// Complete pictures that were shown in the whole run, the warm-up included.
     #[must_use]
     pub fn shown(&self) -> u64 {
-        self.pictures.iter().filter(|times| times.complete).count() as u64
+        self.pictures.iter().filter(|times| times.is_shown()).count() as u64
     }
 
-    /// Retraces that are judged: from the first picture after the warm-up to the end of the run, or to where it stopped;
-    /// where no complete picture came after the warm-up, all; 0 of a pipeline whose pictures are never due.
+    /// The pictures that were due, and what became of them; `None` of a pipeline whose pictures never are, and of a run that
+    /// was over before any was.
     #[must_use]
-    pub fn judged_retraces(&self) -> u64 {
-        if self.pipeline().retraces_a_picture().is_none() {
-            return 0;
+    pub fn due(&self) -> Option<DuePictures> {
+        let every = self.pipeline().periods_a_picture(&self.record)?;
+        let ends = self.pictures.iter().map(|times| (self.period_of(times), times.end));
+        DuePictures::count(ends, every, self.reached)
+    }
+
+    /// When a picture is due here, what it takes to be in time, and which are counted.
+    #[must_use]
+    pub fn due_definition(&self) -> String {
+        let definition = self.pipeline().due_definition();
+        match self.pipeline().periods_a_picture(&self.record) {
+            Some(_) => format!("{definition}; {WINDOW_DEFINITION}"),
+            None => definition.to_owned(),
         }
-        let first = self.judged_pictures().first().map_or(PeriodNumber::FIRST, |times| self.period_of(times));
-        self.reached.since(first)
     }
 
-    /// Judged retraces at which no complete new picture could be shown though it was due: those between pictures, as the
-    /// pipeline defines them, and those from the one at which the next picture was due to the end of the run. Where no
-    /// complete picture came after the warm-up, all at which none was shown. Of a pipeline whose pictures are never due,
-    /// what it counts itself.
+    /// Whole new pictures a second, over the window of [`Outcome::due`]; where none is ever due, over all of the run behind
+    /// the first [`WARM_UP_PERIODS`]. `None` where none was shown.
     #[must_use]
-    pub fn missed_retraces(&self) -> u64 {
-        let Some(every) = self.pipeline().retraces_a_picture() else {
-            return self.pipeline().missed_retraces(&self.record, self.steady_pictures());
-        };
-        let judged = self.judged_pictures();
-        let Some(last) = judged.last() else {
-            return self.reached.since(PeriodNumber::FIRST).saturating_sub(self.shown());
-        };
-        let after = self.reached.since(self.period_of(last)).saturating_sub(every);
-        self.pipeline().missed_retraces(&self.record, judged) + after
-    }
-
-    /// What a missed retrace is here, and which retraces are judged.
-    #[must_use]
-    pub fn missed_definition(&self) -> String {
-        let definition = self.pipeline().missed_definition();
-        if self.pipeline().retraces_a_picture().is_none() {
-            return definition.to_owned();
+    pub fn updates_hz(&self) -> Option<f64> {
+        if self.pipeline().periods_a_picture(&self.record).is_some() {
+            return self.due()?.updates_hz(self.field_ms());
         }
-        format!("{definition}; {JUDGED}")
+        let judged = PeriodNumber(WARM_UP_PERIODS)..self.reached;
+        let shown = self.pictures.iter().filter(|times| times.is_shown() && judged.contains(&self.period_of(times)));
+        let pictures = shown.count() as f64 / self.pipeline().updates_per_picture(&self.record);
+        let window_ms = judged.end.since(judged.start) as f64 * self.field_ms();
+        (pictures > 0.0).then_some(pictures * 1e3 / window_ms)
     }
 
-    /// The pictures after the warm-up, if any of them is complete.
-    fn judged_pictures(&self) -> &[PictureTimes] {
-        let steady = self.steady_pictures();
-        if steady.iter().any(|times| times.complete) { steady } else { &[] }
+    /// Whether what a viewer sees at the end is complete: made of as many pictures as a whole screen takes (two fields,
+    /// where lines are interlaced), all of them in time.
+    #[must_use]
+    pub fn ends_complete(&self) -> bool {
+        let (_, fields_of_a_screen) = self.record.display().rows_lit(PeriodNumber::FIRST);
+        let of_a_pass = self.pipeline().updates_per_picture(&self.record).ceil() as usize;
+        let needed = of_a_pass.max(fields_of_a_screen as usize);
+        let last = self.pictures.iter().rev().take(needed);
+        self.pictures.len() >= needed && last.into_iter().all(PictureTimes::is_shown)
     }
 
     /// The period of the first display in which a picture is shown.

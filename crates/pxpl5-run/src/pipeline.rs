@@ -1,14 +1,16 @@
 //! Pipelines as experiments see them.
 
+use crate::due::PictureEnd;
 use crate::keys::KeyValue;
-use crate::views::{ReportTimes, Views, ViewsWanted};
+use crate::views::{FrameStarts, ReportTimes, Views, ViewsWanted};
 use image::RgbImage;
-use pphigs::DisplayList;
+use pphigs::{DisplayList, Shading};
+use pxpl5_display::{Aim, LightSpan};
 use pxpl5_gp::HostTiming;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyTarget, PictureNumber, SurfaceId, ViewNumber};
+use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -41,8 +43,12 @@ pub struct Setup {
     pub views: Views,
     /// The same for firmware that knows when a view will be seen.
     pub wanted: ViewsWanted,
+    /// For which instant of what is shown from it a view is drawn, for firmware that knows when that is.
+    pub aim: Aim,
     /// When the host has something new.
     pub reports: ReportTimes,
+    /// When a host that waits for the pipeline begins a frame.
+    pub starts: FrameStarts,
     /// The host's times.
     pub host: HostTiming,
     /// Whether somebody may want pixels.
@@ -64,8 +70,16 @@ pub struct PictureTimes {
     pub copied_at: Option<Time>,
     /// The retrace from which on it is shown, or when the beam meets the part that stands for it.
     pub shown_at: Time,
-    /// Whether all of it was there in time.
-    pub complete: bool,
+    /// Whether all of it was there, and in time.
+    pub end: PictureEnd,
+}
+
+impl PictureTimes {
+    /// Whether all of it was there in time: what was not has no latency.
+    #[must_use]
+    pub fn is_shown(&self) -> bool {
+        self.end == PictureEnd::Shown
+    }
 }
 
 /// A program of a whole machine, and what its pictures' times are.
@@ -84,6 +98,11 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// How it divides pixel memory.
     fn layout(&self) -> Layout;
 
+    /// Where it computes colours: at the corners, unless said.
+    fn shading(&self) -> Shading {
+        Shading::Gouraud
+    }
+
     /// The machine with what the pipeline's variant changes in it, such as the time of its code.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         config
@@ -96,7 +115,7 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// [`ConfigError`] when the machine is not one on which it can run.
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError>;
 
-    /// The pictures shown before `end`, in order.
+    /// The pictures that were begun and, at `end`, are shown or have missed their time, in order.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes>;
 
     /// Regions that missed their deadline before `end`.
@@ -104,21 +123,17 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         Vec::new()
     }
 
-    /// Retraces from one picture to the next that is due; `None` where none ever is. With it those count as missed too that
-    /// come after the last picture: see [`Outcome::missed_retraces`](crate::Outcome::missed_retraces).
-    fn retraces_a_picture(&self) -> Option<u64> {
+    /// Periods of the first display from one picture to the next that is due; `None` where none ever is. All counts and
+    /// rates follow from it and from [`Pipeline::pictures`]: see [`DuePictures`](crate::DuePictures).
+    fn periods_a_picture(&self, _record: &Record) -> Option<u64> {
         None
     }
-
-    /// Retraces between the first and the last of some pictures at which no complete new one could be shown though it was
-    /// due.
-    fn missed_retraces(&self, record: &Record, pictures: &[PictureTimes]) -> u64;
 
     /// What latency means here, in a sentence.
     fn latency_definition(&self) -> &'static str;
 
-    /// What a missed retrace means here, in a sentence.
-    fn missed_definition(&self) -> &'static str;
+    /// When a picture is due here, and what it takes to be in time; or why none ever is.
+    fn due_definition(&self) -> &'static str;
 
     /// How many entries of [`Pipeline::pictures`] make a whole picture.
     fn updates_per_picture(&self, _record: &Record) -> f64 {
@@ -140,14 +155,24 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         0
     }
 
-    /// The view that a part of a picture shows; `views` gives the view of a picture as in [`PictureTimes`].
+    /// The view that a part of a picture shows; `views` gives the view of a picture as in [`PictureTimes`], `aim` the instant that
+    /// the part was drawn for.
     fn source(
         &self,
         _record: &Record,
         target: &CopyTarget,
         views: &BTreeMap<PictureNumber, ViewNumber>,
+        _aim: Aim,
     ) -> Option<Source> {
         views.get(&target.picture).copied().map(Source::View)
+    }
+
+    /// When that which is drawn of a picture's view is shown: until the next picture takes its place, or the run ends.
+    fn shown(&self, record: &Record, times: &PictureTimes, next: Option<&PictureTimes>) -> LightSpan {
+        let first = record.display().period_at(times.shown_at);
+        let next = next.map(|next| record.display().period_at(next.shown_at));
+        let periods = next.map_or(self.periods_a_picture(record).unwrap_or(1), |next| next.since(first));
+        light_span(record, first, periods)
     }
 
     /// When the light of a picture's middle comes.
@@ -160,5 +185,17 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     fn picture(&self, record: &Record, surface: SurfaceId) -> Option<RgbImage> {
         let display = record.display();
         display.seen(surface.index(), display.last_seen()?)
+    }
+}
+
+/// When the first surface lights in so many periods of the first display, at least one.
+pub(crate) fn light_span(record: &Record, first: PeriodNumber, periods: u64) -> LightSpan {
+    let display = record.display();
+    let tick = display.tick(first);
+    let last = first.after(periods.max(1) - 1);
+    LightSpan {
+        tick,
+        first: display.first_light(0, first).unwrap_or(tick),
+        last: display.last_light(0, last).unwrap_or_else(|| display.tick(last.next())),
     }
 }

@@ -1,7 +1,7 @@
 //! Which pipelines and displays there are. Whoever offers, reads, compares or limits them iterates over a [`Registry`].
 
 use crate::error::ExperimentError;
-use crate::experiment::{Experiment, FieldsNeeded};
+use crate::experiment::{Estimates, Experiment};
 use crate::keys::{Key, PipelineSettings};
 use crate::pipeline::Pipeline;
 use crate::summary::Summary;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Goal {
-    /// No retrace is missed.
+    /// Every picture that is due is shown in time.
     NoMissedRetrace,
     /// At least so many updates per second, counted as the papers count: 30 and 60 stand for NTSC's 29.97 and 59.94.
     RateHz(f64),
@@ -63,8 +63,8 @@ pub struct LimitCriterion {
 pub struct ClosedForm {
     /// What comes of an experiment.
     pub summary: fn(&Experiment) -> Result<Summary, ExperimentError>,
-    /// How long a run must be to show anything.
-    pub fields_needed: FieldsNeeded,
+    /// What else it can say of an experiment.
+    pub estimates: Estimates,
 }
 
 /// A pipeline as everybody finds it.

@@ -3,17 +3,17 @@
 use crate::display_list::{display_list, hmd_before, views};
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
+use crate::head::Head;
 use crate::head_views::{FIELDS_WITH_HEAD, HeadViews};
 use crate::level::{Level, with_clocks_of_instructions};
 use crate::outcome::Outcome;
 use crate::pipeline::Setup;
-use crate::rehearsal::Rehearsal;
-use crate::statistics::Statistics;
-use crate::views::ReportTimes;
-use pxpl5_machine::{Machine, MachineConfig};
+use crate::preparation::Preparation;
+use crate::views::{FrameStarts, ReportTimes};
+use pxpl5_machine::{DEADLOCK_TICKS, Machine, MachineConfig, RunError};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 impl Experiment {
@@ -23,10 +23,10 @@ impl Experiment {
     ///
     /// [`ExperimentError`] for a machine, scene or number of fields that cannot be simulated.
     pub fn build(&self) -> Result<Machine, ExperimentError> {
-        Ok(self.assemble(self.rehearse()?)?.0)
+        Ok(self.assemble(self.prepare()?)?.0)
     }
 
-    fn assemble(&self, rehearsal: Option<Rehearsal>) -> Result<(Machine, Option<Arc<HeadViews>>), ExperimentError> {
+    fn assemble(&self, preparation: Preparation) -> Result<(Machine, Option<Arc<HeadViews>>), ExperimentError> {
         let expected = if self.head.is_some() { (FIELDS_RANGE.0, FIELDS_WITH_HEAD) } else { FIELDS_RANGE };
         if !(expected.0..=expected.1).contains(&self.fields) {
             return Err(ExperimentError::Fields { expected, found: self.fields });
@@ -42,7 +42,7 @@ impl Experiment {
         if self.level == Level::Cycle {
             machine.run_code();
         }
-        let (setup, head) = self.setup(&config, &machine, rehearsal)?;
+        let (setup, head) = self.setup(&config, &machine, preparation)?;
         self.pipeline.load(&mut machine, &setup)?;
         if let Some(seed) = self.shuffle {
             machine.shuffle_ties(seed);
@@ -62,7 +62,7 @@ impl Experiment {
         &self,
         config: &MachineConfig,
         machine: &Machine,
-        rehearsal: Option<Rehearsal>,
+        preparation: Preparation,
     ) -> Result<(Setup, Option<Arc<HeadViews>>), ExperimentError> {
         let surface = machine.record().display().surfaces().first().cloned();
         let hmd = hmd_before(surface.as_ref());
@@ -71,23 +71,21 @@ impl Experiment {
         let list = Arc::new(display_list(&self.scene).map_err(ExperimentError::Scene)?);
         let (views, wanted) = views(&self.scene, self.seed, hmd, eyes);
         let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
-        let setup = Setup { list, views, wanted, reports, host: config.host, pixels: self.pixels != Pixels::Off };
-        let Some(head) = &self.head else { return Ok((setup, None)) };
+        let starts: FrameStarts = Arc::new(Some);
+        let aim = self.aim();
+        let pixels = self.pixels != Pixels::Off;
+        let setup = Setup { list, views, wanted, aim, reports, starts, host: config.host, pixels };
+        let Some(head) = preparation.head.or_else(|| self.head.clone()) else { return Ok((setup, None)) };
         let until = machine.record().tick(self.end());
-        let head = Arc::new(HeadViews::new(Arc::clone(head), &self.scene, (hmd, eyes), until, rehearsal));
+        check_recording(&head, until)?;
+        let head = Arc::new(HeadViews::new(head, &self.scene, (hmd, eyes), until, preparation.rehearsal));
         let (views, wanted, reports) = HeadViews::functions(&head);
-        Ok((Setup { views, wanted, reports, ..setup }, Some(head)))
-    }
-
-    /// When each view is seen, from a run without prediction; `None` where nobody predicts, or the firmware knows.
-    fn rehearse(&self) -> Result<Option<Rehearsal>, ExperimentError> {
-        if self.pipeline.knows_when_seen() {
-            return Ok(None);
+        let setup = Setup { views, wanted, reports, ..setup };
+        if !self.on_demand {
+            return Ok((setup, Some(head)));
         }
-        let Some(head) = self.head.as_ref().filter(|head| head.predicts()) else { return Ok(None) };
-        let plain = Self { head: Some(Arc::new(head.without_prediction())), pixels: Pixels::Off, ..self.clone() };
-        let outcome = plain.perform(None, &[], |_, _| Ok(()))?;
-        Ok(Some(rehearsal_of(&outcome)))
+        let asked = Arc::clone(&head);
+        Ok((Setup { starts: Arc::new(move |ready| asked.report_from(ready)), ..setup }, Some(head)))
     }
 
     /// Runs it.
@@ -123,17 +121,17 @@ impl Experiment {
         stops: &[PeriodNumber],
         at: impl FnMut(PeriodNumber, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
-        self.perform(self.rehearse()?, stops, at)
+        self.perform(self.prepare()?, stops, at)
     }
 
-    fn perform(
+    pub(crate) fn perform(
         &self,
-        rehearsal: Option<Rehearsal>,
+        preparation: Preparation,
         stops: &[PeriodNumber],
         mut at: impl FnMut(PeriodNumber, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
         let begun_s = self.host.seconds();
-        let (mut machine, head) = self.assemble(rehearsal)?;
+        let (mut machine, head) = self.assemble(preparation.clone())?;
         let mut result = Ok(());
         for field in self.stops(stops) {
             let until = machine.record().tick(field);
@@ -143,10 +141,14 @@ impl Experiment {
             }
             at(field, &mut machine)?;
         }
+        if result.is_ok() && machine.is_at_rest() {
+            result = self.deadlock(preparation).map_or(Ok(()), Err);
+        }
         machine.finish_pixels();
         let host_seconds = begun_s.zip(self.host.seconds()).map(|(begin, end)| end - begin);
         let record = machine.into_record();
-        let reached = result.as_ref().err().map_or(self.end(), |error| record.display().period_at(error.time()));
+        let stopped = result.as_ref().err().map(|error| record.display().period_at(error.time()));
+        let reached = stopped.unwrap_or(self.end()).min(self.end());
         let outcome = Outcome::new(self.clone(), record, head, reached, host_seconds);
         match result {
             Err(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
@@ -155,8 +157,17 @@ impl Experiment {
         }
     }
 
+    /// Whether a machine that is at rest at the end of the run, which may be too short to tell, would be so for ever: the run
+    /// is repeated for as long as that takes, so that the record of this one ends where it was asked to.
+    fn deadlock(&self, preparation: Preparation) -> Option<RunError> {
+        let longer = Self { fields: self.fields + DEADLOCK_TICKS + 2, pixels: Pixels::Off, ..self.clone() };
+        let (mut machine, _) = longer.assemble(preparation).ok()?;
+        let end = machine.record().tick(longer.end());
+        machine.run_until(end).err().filter(|error| matches!(error, RunError::Deadlock { .. }))
+    }
+
     fn too_short(&self, partial: Outcome) -> ExperimentError {
-        let needed = self.fields_needed.and_then(|needed| needed(self));
+        let needed = self.estimates.and_then(|estimates| (estimates.fields_needed)(self));
         let pictures = partial.pictures().len();
         ExperimentError::TooShort { fields: self.fields, pictures, needed, partial: Box::new(partial) }
     }
@@ -172,16 +183,10 @@ impl Experiment {
 /// Fields between two reports of progress.
 const PROGRESS_FIELDS: u64 = 60;
 
-/// When the views of a run were seen.
-fn rehearsal_of(outcome: &Outcome) -> Rehearsal {
-    let Some(head) = outcome.head() else { return Rehearsal::default() };
-    let record = outcome.record();
-    let pipeline = outcome.pipeline();
-    let mut seen_at = BTreeMap::new();
-    for times in outcome.pictures() {
-        seen_at.entry(times.view).or_insert_with(|| pipeline.light(record, times));
+/// A motion that ends must not end before the run.
+fn check_recording(head: &Head, until: Time) -> Result<(), ExperimentError> {
+    match head.motion.ends_ps().filter(|ends_ps| *ends_ps < until.0) {
+        Some(ends_ps) => Err(ExperimentError::Recording { recording: Time(ends_ps), run: until }),
+        None => Ok(()),
     }
-    let leads = head.sampled().into_iter().filter_map(|s| Some(seen_at.get(&s.number)?.since(s.known).as_ms()));
-    let mean_lead_ps = (Statistics::of(leads).mean * 1e9) as u64;
-    Rehearsal { seen_at, mean_lead_ps }
 }

@@ -1,13 +1,16 @@
 //! Mean and spread of some numbers.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-/// Mean, sample standard deviation, least and greatest of some numbers. Of none all are no numbers (NaN; null in JSON).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// How many numbers there are, their mean, sample standard deviation, least and greatest. Of none there is none of these, and
+/// of one no deviation (NaN; null in JSON).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Statistics {
+    /// How many numbers there are.
+    pub n: u64,
     /// Sum over number.
     pub mean: f64,
-    /// Sample standard deviation (n - 1).
+    /// Sample standard deviation (n - 1), of two numbers or more.
     pub sd: f64,
     /// The smallest of the numbers.
     pub min: f64,
@@ -21,14 +24,15 @@ impl Statistics {
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.collect();
         if values.is_empty() {
-            return Self { mean: f64::NAN, sd: f64::NAN, min: f64::NAN, max: f64::NAN };
+            return Self { n: 0, mean: f64::NAN, sd: f64::NAN, min: f64::NAN, max: f64::NAN };
         }
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
         let squares = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>();
         Self {
+            n: values.len() as u64,
             mean,
-            sd: if values.len() > 1 { (squares / (n - 1.0)).sqrt() } else { 0.0 },
+            sd: if values.len() > 1 { (squares / (n - 1.0)).sqrt() } else { f64::NAN },
             min: values.iter().copied().fold(f64::INFINITY, f64::min),
             max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         }
@@ -44,7 +48,7 @@ impl Statistics {
 /// Statistics with their definition beside them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DefinedStatistics {
-    /// The four numbers.
+    /// The numbers.
     #[serde(flatten)]
     pub statistics: Statistics,
     /// What they are of, in a sentence.
@@ -58,13 +62,21 @@ mod tests {
     #[test]
     fn statistics_of_a_known_sample() {
         let s = Statistics::of([2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0].into_iter());
-        assert_eq!((s.mean, s.min, s.max), (5.0, 2.0, 9.0));
+        assert_eq!((s.n, s.mean, s.min, s.max), (8, 5.0, 2.0, 9.0));
         assert!((s.sd - (32.0f64 / 7.0).sqrt()).abs() < 1e-12);
     }
 
     #[test]
     fn of_nothing_there_is_no_number() {
-        let Statistics { mean, sd, min, max } = Statistics::of(std::iter::empty());
+        let Statistics { n, mean, sd, min, max } = Statistics::of(std::iter::empty());
+        assert_eq!(n, 0);
         assert!([mean, sd, min, max].iter().all(|number| number.is_nan()));
+    }
+
+    #[test]
+    fn one_number_has_no_deviation() {
+        let one = Statistics::of(std::iter::once(3.0));
+        assert_eq!((one.n, one.mean, one.min, one.max), (1, 3.0, 3.0, 3.0));
+        assert!(one.sd.is_nan());
     }
 }

@@ -1,5 +1,6 @@
 //! What came of an experiment as a few numbers, whatever the level of modelling.
 
+use crate::due::DuePictures;
 use crate::statistics::Statistics;
 
 /// What came of an experiment at any level of modelling, over the pictures after the warm-up.
@@ -9,10 +10,10 @@ pub struct Summary {
     pub latencies_ms: Vec<f64>,
     /// A period of the display, milliseconds: an NTSC field.
     pub field_ms: f64,
-    /// Complete pictures a second; `None` where fewer than two were shown.
+    /// Whole pictures shown a second, over the window of `due`; `None` where none was shown.
     pub updates_hz: Option<f64>,
-    /// Missed retraces, as the pipeline defines them, to the end of the run ([`Outcome::missed_retraces`](crate::Outcome::missed_retraces)).
-    pub missed_retraces: u64,
+    /// The pictures that were due, and what became of them; `None` where none was.
+    pub due: Option<DuePictures>,
     /// From the start of an eye's TRANSFORM to the end of its COPY, milliseconds; empty where eyes have none of their own.
     pub eye_latencies_ms: Vec<f64>,
     /// Port time of a region of 15,360 pixels, microseconds.

@@ -9,8 +9,11 @@ use std::sync::Arc;
 pub type Views = Arc<dyn Fn(ViewNumber, Time) -> FrameView + Send + Sync>;
 
 /// The view that firmware with a clock of its own asks for: number, the instant up to which the host's tracking data have
-/// reached it, and when the view will be seen.
+/// reached it, and the moment that the view is drawn for.
 pub type ViewsWanted = Arc<dyn Fn(ViewNumber, Time, Time) -> FrameView + Send + Sync>;
 
 /// When the first report of the tracker after an instant reaches the host; `None` if none will.
 pub type ReportTimes = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;
+
+/// When a host that waits for its pipeline and is ready for a frame begins it, at that instant or later; `None` for never.
+pub type FrameStarts = Arc<dyn Fn(Time) -> Option<Time> + Send + Sync>;

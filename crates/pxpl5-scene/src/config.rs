@@ -30,7 +30,7 @@ pub const DEFAULT_COLOUR: [u8; 3] = [200, 196, 188];
 /// Largest N of the scene `full-screen:N`. Assumed, from 12 (published TR94) upwards: it bounds memory only.
 pub const MAX_FULL_SCREEN_TRIANGLES: u32 = 1_000_000;
 
-/// Mean angular speed of the head under [`crate::Sway`] of scale 1 on [`crate::Path::Look`], degrees per second.
+/// Mean angular speed of the head under [`crate::Sway`] of scale 1 on [`crate::HeadPath::Look`], degrees per second.
 ///
 /// Published: recorded traces of headset use have mean 40, 99.9th percentile 283.
 pub const MEAN_HEAD_SPEED_DEG_PER_S: f64 = 40.0;

@@ -66,7 +66,7 @@ pub use error::{LoadError, Place, RangeError, SceneError};
 #[cfg(feature = "files")]
 pub use import::load;
 pub use import::{Format, from_bytes, from_reader};
-pub use motion::{HeadMotion, Path};
+pub use motion::{HeadMotion, HeadPath};
 pub use scene::{Frame, Lighting, Scene, SceneParts, Sphere, Structure, Vertex};
 pub use sway::Sway;
 pub use tracking::Pose;

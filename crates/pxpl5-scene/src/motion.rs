@@ -15,7 +15,7 @@ const LIMIT: f64 = 1e9;
 /// What the head would do without sway. Lengths in metres, angles in degrees, world coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub enum Path {
+pub enum HeadPath {
     /// Stands at `eye` and looks at `target`.
     Still {
         /// Place of the head in the world, metres.
@@ -65,7 +65,7 @@ pub enum Path {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked", into = "Unchecked")]
 pub struct HeadMotion {
-    path: Path,
+    path: HeadPath,
     sway: Sway,
 }
 
@@ -73,7 +73,7 @@ pub struct HeadMotion {
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Unchecked {
-    path: Path,
+    path: HeadPath,
     sway: Sway,
 }
 
@@ -97,25 +97,25 @@ impl HeadMotion {
     /// # Errors
     ///
     /// [`RangeError`] names the first number out of its range.
-    pub fn new(path: Path, sway: Sway) -> Result<Self, RangeError> {
+    pub fn new(path: HeadPath, sway: Sway) -> Result<Self, RangeError> {
         path.check()?;
         require((0.0..=10.0).contains(&sway.scale), "sway scale", "0 to 10", sway.scale)?;
         Ok(Self { path, sway })
     }
 
-    /// Looks at a model with the published head speeds ([`Path::Look`], sway of scale 1, seed 1).
+    /// Looks at a model with the published head speeds ([`HeadPath::Look`], sway of scale 1, seed 1).
     ///
     /// The distance is [`crate::config::FIT_DISTANCE_RADII`] times `radius` (metres); so the model, if it lies within
     /// `radius` of `centre`, roughly fills the default view.
     #[must_use]
     pub fn looking_at(centre: Vec3, radius: f64) -> Self {
-        let path = Path::Look { target: centre, distance: radius * FIT_DISTANCE_RADII };
+        let path = HeadPath::Look { target: centre, distance: radius * FIT_DISTANCE_RADII };
         Self { path, sway: Sway { seed: 1, scale: 1.0 } }
     }
 
     /// What the head does without sway.
     #[must_use]
-    pub fn path(&self) -> &Path {
+    pub fn path(&self) -> &HeadPath {
         &self.path
     }
 
@@ -146,28 +146,28 @@ impl HeadMotion {
     }
 }
 
-impl Path {
+impl HeadPath {
     fn check(&self) -> Result<(), RangeError> {
         match *self {
-            Path::Still { eye, target } => {
+            HeadPath::Still { eye, target } => {
                 check_point("eye", eye)?;
                 check_point("target", target)
             }
-            Path::Pan { eye, deg_per_s } => {
+            HeadPath::Pan { eye, deg_per_s } => {
                 check_point("eye", eye)?;
                 check_either_sign("deg_per_s", deg_per_s)
             }
-            Path::Orbit { target, distance, height, deg_per_s } => {
+            HeadPath::Orbit { target, distance, height, deg_per_s } => {
                 check_point("target", target)?;
                 check_length("distance", distance)?;
                 check_either_sign("height", height)?;
                 check_either_sign("deg_per_s", deg_per_s)
             }
-            Path::Look { target, distance } => {
+            HeadPath::Look { target, distance } => {
                 check_point("target", target)?;
                 check_length("distance", distance)
             }
-            Path::FlyThrough { target, nearest, farthest, lap_s } => {
+            HeadPath::FlyThrough { target, nearest, farthest, lap_s } => {
                 check_point("target", target)?;
                 check_length("nearest", nearest)?;
                 require(farthest >= nearest, "farthest", "at least nearest", farthest)?;
@@ -180,18 +180,18 @@ impl Path {
     /// Place of the head, and its orientation before the gaze wanders.
     fn eye_and_gaze(&self, seconds: f64, swing: &Swing) -> (DVec3, DQuat) {
         match *self {
-            Path::Still { eye, target } => facing(eye.as_dvec3(), target.as_dvec3()),
-            Path::Pan { eye, deg_per_s } => (eye.as_dvec3(), sway::turn_about(DVec3::Y, deg_per_s * seconds)),
-            Path::Orbit { target, distance, height, deg_per_s } => {
+            HeadPath::Still { eye, target } => facing(eye.as_dvec3(), target.as_dvec3()),
+            HeadPath::Pan { eye, deg_per_s } => (eye.as_dvec3(), sway::turn_about(DVec3::Y, deg_per_s * seconds)),
+            HeadPath::Orbit { target, distance, height, deg_per_s } => {
                 let arm = direction(deg_per_s * seconds, 0.0) * distance + DVec3::Y * height;
                 facing(target.as_dvec3() + arm, target.as_dvec3())
             }
-            Path::Look { target, distance } => {
+            HeadPath::Look { target, distance } => {
                 let arm = direction(swing.azimuth_deg, swing.elevation_deg) * distance;
                 let target = target.as_dvec3();
                 facing(target + arm * swing.distance_factor, target)
             }
-            Path::FlyThrough { target, nearest, farthest, lap_s } => {
+            HeadPath::FlyThrough { target, nearest, farthest, lap_s } => {
                 let arm = fly_through_arm(seconds / lap_s, nearest, farthest);
                 facing(target.as_dvec3() + arm, target.as_dvec3())
             }

@@ -9,12 +9,12 @@ use crate::trig;
 /// Unconscious and conscious movement upon a path: sums of sines of fixed frequencies, all below
 /// [`crate::config::HEAD_BAND_HZ`], with phases drawn from the seed.
 ///
-/// At scale 1 on [`crate::Path::Look`] the mean angular speed is about
+/// At scale 1 on [`crate::HeadPath::Look`] the mean angular speed is about
 /// [`crate::config::MEAN_HEAD_SPEED_DEG_PER_S`], never above [`crate::config::MAX_HEAD_SPEED_DEG_PER_S`], and at
 /// least 95 % of the energy of yaw lies below 0.14 Hz, all three as in recorded traces of headset use. Unlike those,
 /// the speeds have no long tail: a sum of sines is nearly Gaussian.
 ///
-/// On [`crate::Path::Look`] the head moves round the target and the gaze wanders; on all other paths only the gaze
+/// On [`crate::HeadPath::Look`] the head moves round the target and the gaze wanders; on all other paths only the gaze
 /// wanders, by at most 11 degrees a scale.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

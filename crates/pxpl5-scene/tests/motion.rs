@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use pxpl5_scene::config::{MAX_HEAD_SPEED_DEG_PER_S, MEAN_HEAD_SPEED_DEG_PER_S};
-use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Path, Pose, Scene, Sway, builtin};
+use pxpl5_scene::{HeadMotion, HeadPath, Hmd, HmdConfig, Pose, Scene, Sway, builtin};
 
 const SECOND: u64 = 1_000_000_000_000;
 /// Ten samples a second see every sine below 2 Hz; a tenth of a field's worth of time between poses gives speeds.
@@ -103,7 +103,7 @@ fn the_same_seed_gives_the_same_pose_and_another_seed_another() {
 
 #[test]
 fn a_pan_of_90_degrees_per_second_looks_left_after_a_second() {
-    let path = Path::Pan { eye: Vec3::ONE, deg_per_s: 90.0 };
+    let path = HeadPath::Pan { eye: Vec3::ONE, deg_per_s: 90.0 };
     let motion = HeadMotion::new(path, Sway::none()).expect("in range");
     assert!((forward(&motion.pose(0)) - DVec3::NEG_Z).length() < 1e-6);
     assert!((forward(&motion.pose(SECOND)) - DVec3::NEG_X).length() < 1e-6);
@@ -113,7 +113,7 @@ fn a_pan_of_90_degrees_per_second_looks_left_after_a_second() {
 #[test]
 fn a_pan_turns_by_the_rate_times_the_time() {
     // JITP: 200 deg/s give 3.3 deg in a sixtieth of a second.
-    let path = Path::Pan { eye: Vec3::ZERO, deg_per_s: 200.0 };
+    let path = HeadPath::Pan { eye: Vec3::ZERO, deg_per_s: 200.0 };
     let motion = HeadMotion::new(path, Sway::none()).expect("in range");
     let turned = motion.pose(5 * SECOND).angle_deg(&motion.pose(5 * SECOND + SECOND / 60));
     assert!((turned - 200.0 / 60.0).abs() < 1e-3, "{turned}");
@@ -122,7 +122,7 @@ fn a_pan_turns_by_the_rate_times_the_time() {
 #[test]
 fn an_orbit_faces_its_target_from_the_stated_distance() {
     let target = Vec3::new(1.0, 0.0, -2.0);
-    let path = Path::Orbit { target, distance: 3.0, height: 0.0, deg_per_s: 90.0 };
+    let path = HeadPath::Orbit { target, distance: 3.0, height: 0.0, deg_per_s: 90.0 };
     let motion = HeadMotion::new(path, Sway::none()).expect("in range");
     assert!((motion.pose(0).position - DVec3::new(1.0, 0.0, 1.0)).length() < 1e-6);
     let pose = motion.pose(SECOND);
@@ -132,7 +132,7 @@ fn an_orbit_faces_its_target_from_the_stated_distance() {
 
 #[test]
 fn a_still_head_stays_upright_even_when_it_looks_straight_down() {
-    let path = Path::Still { eye: Vec3::Y, target: Vec3::ZERO };
+    let path = HeadPath::Still { eye: Vec3::Y, target: Vec3::ZERO };
     let pose = HeadMotion::new(path, Sway::none()).expect("in range").pose(SECOND);
     assert!((forward(&pose) - DVec3::NEG_Y).length() < 1e-6);
     assert!((pose.orientation.length() - 1.0).abs() < 1e-6);
@@ -186,9 +186,9 @@ fn the_head_fills_about_a_third_of_the_view_at_all_times() {
 
 #[test]
 fn numbers_out_of_range_are_refused_also_from_a_file() {
-    let nan = Path::Pan { eye: Vec3::ZERO, deg_per_s: f64::NAN };
+    let nan = HeadPath::Pan { eye: Vec3::ZERO, deg_per_s: f64::NAN };
     assert_eq!(HeadMotion::new(nan, Sway::none()).expect_err("not a number").what, "deg_per_s");
-    let far = Path::Look { target: Vec3::splat(f32::INFINITY), distance: 1.0 };
+    let far = HeadPath::Look { target: Vec3::splat(f32::INFINITY), distance: 1.0 };
     assert_eq!(HeadMotion::new(far, Sway::none()).expect_err("infinite").what, "target");
     let text = serde_json::to_string(&swaying(7)).expect("plain data");
     assert_eq!(serde_json::from_str::<HeadMotion>(&text).expect("its own text"), swaying(7));

@@ -31,11 +31,13 @@
 mod clock;
 mod context;
 mod queue;
+mod random;
 mod time;
 mod trace;
 
 pub use clock::{Clock, Cycles};
 pub use context::{Blocked, Context, TestBench};
 pub use queue::{EventQueue, Phase};
+pub use random::SplitMix64;
 pub use time::{Span, Time};
 pub use trace::{TraceHash, mix};

@@ -113,6 +113,11 @@ impl<E> EventQueue<E> {
         Some((due.time, phase, event))
     }
 
+    /// All events that wait, in no order.
+    pub fn pending(&self) -> impl Iterator<Item = &E> {
+        self.events.iter().flatten()
+    }
+
     /// The time of the next event.
     #[must_use]
     pub fn next_time(&self) -> Option<Time> {

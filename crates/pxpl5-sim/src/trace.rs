@@ -4,10 +4,13 @@ use crate::Time;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
+/// The increment of SplitMix64: 2^64 / golden ratio, made odd.
+pub(crate) const INCREMENT: u64 = 0x9E37_79B9_7F4A_7C15;
+
 /// Mixes 64 bits into 64 well-spread bits (the finaliser of SplitMix64, a bijection).
 #[must_use]
 pub const fn mix(value: u64) -> u64 {
-    let a = value.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let a = value.wrapping_add(INCREMENT);
     let b = (a ^ (a >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     let c = (b ^ (b >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     c ^ (c >> 31)

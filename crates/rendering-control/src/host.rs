@@ -8,9 +8,10 @@ use pxpl5_sim::Time;
 use pxpl5_wire::{PictureNumber, ViewNumber};
 
 /// Sends frame after frame: reads the tracker, sends view and edits over the link to all GPs, and waits until the
-/// edits have been applied.
+/// edits have been applied: SEND of a frame may not begin before EDIT of the one before has finished (TR94).
 ///
-/// `view_of` gives a view whose pose is sampled at a time.
+/// `start_of` says when the host begins a frame that it is ready for: at once, or on demand; `None` for never. `view_of`
+/// gives a view whose pose is sampled at a time.
 ///
 /// # Errors
 ///
@@ -19,9 +20,12 @@ pub async fn host(
     gp: Gp,
     config: RenderingControlConfig,
     timing: HostTiming,
+    start_of: impl Fn(Time) -> Option<Time>,
     mut view_of: impl FnMut(ViewNumber, Time) -> FrameView,
 ) -> Result<(), Fault> {
     for frame in PictureNumber::FIRST.onwards() {
+        let Some(start) = start_of(gp.now()) else { break };
+        gp.spend(start.since(gp.now())).await;
         gp.begin(Stage::Sample, frame, None);
         gp.begin(Stage::Send, frame, None);
         let (words, body) = StageOrder::Send(view_of(ViewNumber::taken_for(frame), gp.now())).message();

@@ -1,14 +1,16 @@
 //! The host: SEND whenever the tracker has something new.
 
 use crate::config::SlatsConfig;
-use pphigs::FrameView;
-use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
-use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Body, ViewNumber};
+use pphigs::{FrameView, send_as_tracked};
+use pxpl5_gp::{Fault, Gp, HostTiming};
+use pxpl5_sim::Time;
+use pxpl5_wire::ViewNumber;
 
-/// Sends the viewing transforms of both eyes to the leading GP, once every view period.
+/// Sends the viewing transforms of both eyes to the leading GP: once at the start, so that there is a first field, and then
+/// for every report of the tracker ([`send_as_tracked`]). The GP takes the newest that has come when it starts a field.
 ///
-/// `view_of` gives a view whose pose is sampled at a time.
+/// `next_report` gives the arrival of the first report after an instant, and `view_of` a view whose pose is
+/// sampled at a time.
 ///
 /// # Errors
 ///
@@ -17,21 +19,9 @@ pub async fn host(
     gp: Gp,
     config: SlatsConfig,
     timing: HostTiming,
+    next_report: impl Fn(Time) -> Option<Time>,
     mut view_of: impl FnMut(ViewNumber, Time) -> FrameView,
 ) -> Result<(), Fault> {
-    for view in ViewNumber::FIRST.onwards() {
-        let started = gp.now();
-        // Which pictures will show it is not known here: SEND is marked by the view's own number.
-        let marked_as = view.picture_taken_for();
-        gp.begin(Stage::Send, marked_as, None);
-        let words = view_of(view, started).to_words();
-        let length_words = words.len() as u32;
-        gp.spend(timing.link_span(length_words)).await;
-        let sent = gp.send(config.processors[0], length_words, Body::Words(words.into())).await;
-        gp.accepted(sent).await;
-        gp.end(Stage::Send, marked_as, None);
-        let next = started + Span::from_ns(timing.view_period_ns);
-        gp.spend(next.since(gp.now())).await;
-    }
-    Ok(())
+    let words = |view, known| view_of(view, known).to_words();
+    send_as_tracked(gp, config.processors[0], timing, Some(Time::ZERO), next_report, words).await
 }

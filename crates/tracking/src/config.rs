@@ -2,7 +2,7 @@
 //!
 //! Short names of sources: PF = Polhemus Fastrak manual rev. G; VRPN = notes in UNC's VRPN library; WARD92 = Ward et
 //! al., optical ceiling tracker, 1992; TR94 = Cohen and Olano, UNC TR94-028; I3D95 = Olano, Cohen, Mine and Bishop,
-//! I3D 1995; JITP = Mine and Bishop, UNC TR93-005; LIST83 = List 1983, cited by JITP.
+//! I3D 1995; A95 = Azuma and Bishop 1995; JITP = Mine and Bishop, UNC TR93-005; LIST83 = List 1983, cited by JITP.
 
 use crate::time::nearest_ps;
 use parameters::{ParameterTable, parameter_table};
@@ -12,39 +12,96 @@ pub(crate) fn ms_to_ps(ms: f64) -> u64 {
     nearest_ps(ms / 1e3)
 }
 
-/// All tables with their names.
-pub const TABLES: [(&str, &dyn ParameterTable); 12] = [
-    ("fastrak", &Fastrak::PAPERS),
-    ("flock", &Flock::PAPERS),
-    ("optical", &Optical::PAPERS),
-    ("space", &Space::PAPERS),
-    ("ideal", &Ideal::PAPERS),
-    ("host", &Host::PAPERS),
-    ("head", &Head::PAPERS),
-    ("rig", &Rig::PAPERS),
-    ("ntsc", &Ntsc::PAPERS),
-    ("view", &View::PAPERS),
-    ("filter", &Filter::PAPERS),
-    ("gate", &Gate::PAPERS),
-];
+/// The numbers of trackers, of the host's port and of predictors, as an experiment may change them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tables {
+    /// Polhemus Fastrak.
+    pub fastrak: Fastrak,
+    /// Ascension Flock of Birds.
+    pub flock: Flock,
+    /// UNC's optical ceiling tracker.
+    pub optical: Optical,
+    /// Polhemus 3Space.
+    pub space: Space,
+    /// The tracker without error and delay.
+    pub ideal: Ideal,
+    /// The host's serial port.
+    pub host: Host,
+    /// What prediction filters believe.
+    pub filter: Filter,
+    /// Which reports are believed.
+    pub gate: Gate,
+}
+
+impl Tables {
+    /// The values that the papers give or allow.
+    pub const PAPERS: Self = Self {
+        fastrak: Fastrak::PAPERS,
+        flock: Flock::PAPERS,
+        optical: Optical::PAPERS,
+        space: Space::PAPERS,
+        ideal: Ideal::PAPERS,
+        host: Host::PAPERS,
+        filter: Filter::PAPERS,
+        gate: Gate::PAPERS,
+    };
+
+    /// All tables with their names.
+    pub fn all(&self) -> [(&'static str, &dyn ParameterTable); 8] {
+        [
+            ("fastrak", &self.fastrak),
+            ("flock", &self.flock),
+            ("optical", &self.optical),
+            ("space", &self.space),
+            ("ideal", &self.ideal),
+            ("host", &self.host),
+            ("filter", &self.filter),
+            ("gate", &self.gate),
+        ]
+    }
+
+    /// The table of that name, to change its numbers; `None` if there is none.
+    pub fn named_mut(&mut self, name: &str) -> Option<&mut dyn ParameterTable> {
+        Some(match name {
+            "fastrak" => &mut self.fastrak,
+            "flock" => &mut self.flock,
+            "optical" => &mut self.optical,
+            "space" => &mut self.space,
+            "ideal" => &mut self.ideal,
+            "host" => &mut self.host,
+            "filter" => &mut self.filter,
+            "gate" => &mut self.gate,
+            _ => return None,
+        })
+    }
+}
+
+/// Tables of facts with their names: what heads, the measuring rig, the video and the picture of the papers are. No number
+/// of them is a setting of a tracked head.
+pub const FACTS: [(&str, &dyn ParameterTable); 4] =
+    [("head", &Head::PAPERS), ("rig", &Rig::PAPERS), ("ntsc", &Ntsc::PAPERS), ("view", &View::PAPERS)];
 
 parameter_table! {
     /// The Polhemus Fastrak, a magnetic tracker.
     pub struct Fastrak {
         /// Fastrak rate over all receivers.
-        rate: 120, "Hz", Published, 120..=120, "PF";
+        rate: 120, "Hz", Published, 120..=120 in 1..=10000, "PF";
         /// Fastrak, sync to first character.
-        sync_to_output: f64 = 5.5, "ms", Published, 5.5..=5.5, "PF";
+        sync_to_output: f64 = 5.5, "ms", Published, 5.5..=5.5 in 0.0..=10000.0, "PF";
         /// Fastrak effective latency, middle of the measurement to first character.
-        latency: f64 = 3.75, "ms", Published, 3.75..=5.5, "PF";
+        latency: f64 = 3.75, "ms", Published, 3.75..=5.5 in 0.0..=10000.0, "PF";
         /// Fastrak ASCII record.
-        record: 47, "bytes", Published, 8..=200, "PF";
+        record: 47, "bytes", Published, 8..=200 in 1..=1000, "PF";
         /// Fastrak line rate.
-        baud: 115200, "baud", Published, 300..=115200, "PF";
-        /// Fastrak position error, rms of each axis.
-        position_noise: f64 = 0.8, "mm", Assumed, 0.0..=2.0, "static accuracy taken as white noise";
-        /// Fastrak orientation error, rms about each axis.
-        orientation_noise: f64 = 0.15, "deg", Assumed, 0.0..=0.5, "static accuracy taken as white noise";
+        baud: 115200, "baud", Published, 300..=115200 in 300..=1000000, "PF";
+        /// Fastrak position noise from report to report, rms of each axis.
+        position_noise: f64 = 0.2, "mm", Assumed, 0.0..=0.8 in 0.0..=10000.0, "PF gives none: less than its static accuracy";
+        /// Fastrak orientation noise from report to report, rms about each axis.
+        orientation_noise: f64 = 0.03, "deg", Assumed, 0.0..=0.15 in 0.0..=90.0, "PF gives none: less than its static accuracy";
+        /// Fastrak static accuracy of a position, rms of each axis: a bias, the same in every report of a run.
+        position_bias: f64 = 0.8, "mm", Published, 0.0..=2.0 in 0.0..=10000.0, "PF";
+        /// Fastrak static accuracy of an orientation, rms about each axis: a bias, the same in every report of a run.
+        orientation_bias: f64 = 0.15, "deg", Published, 0.0..=0.5 in 0.0..=90.0, "PF";
     }
 }
 
@@ -52,15 +109,19 @@ parameter_table! {
     /// The Ascension Flock of Birds, a magnetic tracker.
     pub struct Flock {
         /// Flock of Birds rate.
-        rate: 100, "Hz", Published, 10..=144, "VRPN";
+        rate: 100, "Hz", Published, 10..=144 in 1..=10000, "VRPN";
         /// Flock of Birds position latency, filters off.
-        position_latency: f64 = 7.5, "ms", Published, 7.5..=30.0, "VRPN";
+        position_latency: f64 = 7.5, "ms", Published, 7.5..=30.0 in 0.0..=10000.0, "VRPN";
         /// Flock of Birds orientation latency, filters off.
-        orientation_latency: f64 = 2.0, "ms", Published, 2.0..=30.0, "VRPN";
-        /// Flock of Birds position error, rms of each axis.
-        position_noise: f64 = 2.5, "mm", Published, 0.0..=5.0, "Ascension data sheet";
-        /// Flock of Birds orientation error, rms about each axis.
-        orientation_noise: f64 = 0.5, "deg", Published, 0.0..=1.0, "Ascension data sheet";
+        orientation_latency: f64 = 2.0, "ms", Published, 2.0..=30.0 in 0.0..=10000.0, "VRPN";
+        /// Flock of Birds position noise from report to report, rms of each axis.
+        position_noise: f64 = 0.5, "mm", Assumed, 0.0..=2.5 in 0.0..=10000.0, "none published: less than the static accuracy";
+        /// Flock of Birds orientation noise from report to report, rms about each axis.
+        orientation_noise: f64 = 0.1, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "none published: less than the static accuracy";
+        /// Flock of Birds static accuracy of a position, rms of each axis: a bias, the same in every report of a run.
+        position_bias: f64 = 2.5, "mm", Published, 0.0..=5.0 in 0.0..=10000.0, "Ascension data sheet";
+        /// Flock of Birds static accuracy of an orientation, rms about each axis: a bias, the same in every report of a run.
+        orientation_bias: f64 = 0.5, "deg", Published, 0.0..=1.0 in 0.0..=90.0, "Ascension data sheet";
         /// Time from the first report to the crash of a patched host with the Flock.
         crash: f64 = 1000.0, "ms", Assumed, 0.0..=600000.0, "TR94 says that it crashes, not when";
     }
@@ -70,13 +131,17 @@ parameter_table! {
     /// UNC's optical ceiling tracker.
     pub struct Optical {
         /// Optical ceiling tracker rate.
-        rate: 60, "Hz", Assumed, 20..=100, "WARD92 gives 20-100";
+        rate: 60, "Hz", Assumed, 20..=100 in 1..=10000, "WARD92 gives 20-100";
         /// Optical ceiling tracker latency.
-        latency: f64 = 33.0, "ms", Published, 20.0..=60.0, "I3D95; WARD92 gives 20-60";
-        /// Optical ceiling tracker position error, rms of each axis.
-        position_noise: f64 = 2.0, "mm", Published, 0.0..=5.0, "WARD92";
-        /// Optical ceiling tracker orientation error, rms about each axis.
-        orientation_noise: f64 = 0.2, "deg", Published, 0.0..=1.0, "WARD92";
+        latency: f64 = 33.0, "ms", Published, 20.0..=60.0 in 0.0..=10000.0, "I3D95; WARD92 gives 20-60";
+        /// Optical ceiling tracker position noise from report to report, rms of each axis.
+        position_noise: f64 = 1.5, "mm", Assumed, 0.6..=2.0 in 0.0..=10000.0, "at most WARD92's resolution of 2 mm, at least 2/sqrt(12); between by the angle's";
+        /// Optical ceiling tracker orientation noise from report to report, rms about each axis.
+        orientation_noise: f64 = 0.15, "deg", Assumed, 0.06..=0.2 in 0.0..=90.0, "at most WARD92's resolution of 0.2 deg, at least 0.2/sqrt(12); with 0.1 to 0.15 prediction cuts the error 2 to 3 times below 80 ms, as A95 measured on this tracker";
+        /// Optical ceiling tracker static error of a position, rms of each axis: a bias, the same in every report of a run.
+        position_bias: f64 = 0.0, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "WARD92 gives none; 0 for a calibrated ceiling";
+        /// Optical ceiling tracker static error of an orientation, rms about each axis: a bias, the same in every report of a run.
+        orientation_bias: f64 = 0.0, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "WARD92 gives none; 0 for a calibrated ceiling";
     }
 }
 
@@ -84,17 +149,21 @@ parameter_table! {
     /// The Polhemus 3Space, a magnetic tracker, above a steel floor.
     pub struct Space {
         /// 3Space rate over all receivers.
-        rate: 60, "Hz", Assumed, 30..=60, "usual figure of the product";
+        rate: 60, "Hz", Assumed, 30..=60 in 1..=10000, "usual figure of the product";
         /// 3Space latency.
-        latency: f64 = 28.5, "ms", Assumed, 10.0..=90.0, "tens of milliseconds";
-        /// 3Space position error, rms of each axis.
-        position_noise: f64 = 2.5, "mm", Assumed, 0.0..=5.0, "as the Flock";
-        /// 3Space orientation error, rms about each axis.
-        orientation_noise: f64 = 0.5, "deg", Assumed, 0.0..=1.0, "as the Flock";
+        latency: f64 = 28.5, "ms", Assumed, 10.0..=90.0 in 0.0..=10000.0, "tens of milliseconds";
+        /// 3Space position noise from report to report, rms of each axis.
+        position_noise: f64 = 0.5, "mm", Assumed, 0.0..=2.5 in 0.0..=10000.0, "as the Flock";
+        /// 3Space orientation noise from report to report, rms about each axis.
+        orientation_noise: f64 = 0.1, "deg", Assumed, 0.0..=0.5 in 0.0..=90.0, "as the Flock";
+        /// 3Space static accuracy of a position, rms of each axis: a bias, the same in every report of a run.
+        position_bias: f64 = 2.5, "mm", Assumed, 0.0..=5.0 in 0.0..=10000.0, "as the Flock";
+        /// 3Space static accuracy of an orientation, rms about each axis: a bias, the same in every report of a run.
+        orientation_bias: f64 = 0.5, "deg", Assumed, 0.0..=1.0 in 0.0..=90.0, "as the Flock";
         /// Depth of the bowl that metal makes of a plane, at 1 m from the transmitter.
-        bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0, "TR94 describes the bowl, not its depth";
+        bowl: f64 = 20.0, "mm", Assumed, 0.0..=200.0 in 0.0..=1000.0, "TR94 describes the bowl, not its depth";
         /// Distance at which the bowl has half the depth of its parabola.
-        bowl_reach: f64 = 2.0, "m", Assumed, 0.5..=10.0, "keeps the error finite out of range";
+        bowl_reach: f64 = 2.0, "m", Assumed, 0.5..=10.0 in 0.001..=1000.0, "keeps the error finite out of range";
     }
 }
 
@@ -102,7 +171,7 @@ parameter_table! {
     /// The tracker without error and delay.
     pub struct Ideal {
         /// Ideal tracker rate.
-        rate: 1000, "Hz", Assumed, 1..=10000, "well above all trackers";
+        rate: 1000, "Hz", Assumed, 1..=10000 in 1..=10000, "well above all trackers";
     }
 }
 
@@ -110,9 +179,9 @@ parameter_table! {
     /// How the host hears of a report.
     pub struct Host {
         /// Bits on the line for a byte (start, 8 data, stop).
-        byte_bits: 10, "bits", Derived, 10..=11, "47 x 10 / 115200 = 4.08 ms and / 9600 = 49 ms, the times of PF";
+        byte_bits: 10, "bits", Derived, 10..=11 in 1..=100, "47 x 10 / 115200 = 4.08 ms and / 9600 = 49 ms, the times of PF";
         /// Time between looks of the kernel at the serial line.
-        poll: f64 = 30.0, "ms", Published, 1.0..=100.0, "TR94";
+        poll: f64 = 30.0, "ms", Published, 1.0..=100.0 in 0.001..=10000.0, "TR94";
     }
 }
 
@@ -180,17 +249,17 @@ parameter_table! {
     /// What the prediction filters believe.
     pub struct Filter {
         /// White jerk of the position filter, root of its spectral density.
-        position_jerk: f64 = 0.4, "m/s^3/sqrt(Hz)", Assumed, 0.01..=1000.0, "least mean error 50 ms ahead, flat from 0.2 to 0.6";
+        position_jerk: f64 = 0.4, "m/s^3/sqrt(Hz)", Assumed, 0.01..=1000.0 in 0.000001..=1000000.0, "least mean error 50 ms ahead, flat from 0.2 to 0.6; used where the filter is not tuned";
         /// White jerk of the orientation filter, root of its spectral density.
-        orientation_jerk: f64 = 14.0, "rad/s^3/sqrt(Hz)", Assumed, 0.1..=10000.0, "least mean error 50 ms ahead, flat from 10 to 20";
+        orientation_jerk: f64 = 14.0, "rad/s^3/sqrt(Hz)", Assumed, 0.1..=10000.0 in 0.000001..=1000000.0, "least mean error 50 ms ahead, flat from 10 to 20; used where the filter is not tuned";
         /// Standard deviation of the speed at the start of a filter.
-        start_speed: f64 = 1.0, "m/s", Assumed, 0.01..=10.0, "above the mean translation speed";
+        start_speed: f64 = 1.0, "m/s", Assumed, 0.01..=10.0 in 0.000001..=1000.0, "above the mean translation speed";
         /// Standard deviation of the acceleration at the start of a filter.
-        start_acceleration: f64 = 5.0, "m/s^2", Assumed, 0.01..=100.0, "half of gravity";
+        start_acceleration: f64 = 5.0, "m/s^2", Assumed, 0.01..=100.0 in 0.000001..=10000.0, "half of gravity";
         /// Standard deviation of the angular velocity at the start of a filter.
-        start_turn: f64 = 2.0, "rad/s", Assumed, 0.01..=20.0, "the 95th percentile of recorded traces";
+        start_turn: f64 = 2.0, "rad/s", Assumed, 0.01..=20.0 in 0.000001..=1000.0, "the 95th percentile of recorded traces";
         /// Standard deviation of the angular acceleration at the start of a filter.
-        start_turn_acceleration: f64 = 20.0, "rad/s^2", Assumed, 0.01..=1000.0, "100 ms to reach the above";
+        start_turn_acceleration: f64 = 20.0, "rad/s^2", Assumed, 0.01..=1000.0 in 0.000001..=100000.0, "100 ms to reach the above";
         /// Reports between the points of a difference (1 takes neighbours).
         baseline: 4, "reports", Assumed, 1..=16, "noise of the velocity falls with it, delay rises";
         /// Longest prediction; beyond it the last pose is given.
@@ -206,9 +275,9 @@ parameter_table! {
         /// Fastest believable turn.
         turn: f64 = 1000.0, "deg/s", Assumed, 370.0..=10000.0, "2.7 times the peak of LIST83";
         /// Distance that noise alone may jump.
-        distance: f64 = 30.0, "mm", Assumed, 1.0..=1000.0, "8 standard deviations of a difference of two Flock reports";
+        distance: f64 = 30.0, "mm", Assumed, 1.0..=1000.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
         /// Angle that noise alone may jump.
-        angle: f64 = 6.0, "deg", Assumed, 0.1..=90.0, "8 standard deviations of a difference of two Flock reports";
+        angle: f64 = 6.0, "deg", Assumed, 0.1..=90.0, "40 standard deviations of a difference of two Flock reports, or 8 of one whose bias were noise";
         /// Rejected jumps in a row after which the new place is believed.
         patience: 5, "reports", Assumed, 1..=100, "42 ms at 120 Hz";
         /// Silence after which velocities are forgotten.
@@ -224,14 +293,15 @@ mod tests {
 
     #[test]
     fn every_value_lies_in_its_range() {
-        for (name, table) in TABLES {
+        for (name, table) in Tables::PAPERS.all().into_iter().chain(FACTS) {
             assert_eq!(table.out_of_range(), [], "{name}");
         }
     }
 
     #[test]
     fn every_parameter_names_unit_and_source() {
-        let infos = TABLES.iter().flat_map(|(_, table)| table.infos());
+        let tables = Tables::PAPERS.all().into_iter().chain(FACTS);
+        let infos = tables.flat_map(|(_, table)| table.infos());
         assert!(infos.into_iter().all(|info| !info.unit.is_empty() && !info.source.is_empty()));
     }
 

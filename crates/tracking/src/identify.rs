@@ -1,5 +1,8 @@
 //! Trackers and predictors, written out as keys and values.
 
+use parameters::{Entry, ParameterTable};
+
+use crate::config::Host;
 use crate::identity::{Settings, write_vector};
 use crate::predict::{PredictorConfig, PredictorKind};
 use crate::tracker::{Fault, HostLine, MagneticDistortion, SerialLine, TrackerConfig};
@@ -16,6 +19,8 @@ impl TrackerConfig {
             orientation_latency_ps,
             position_noise_m,
             orientation_noise_deg,
+            position_bias_m,
+            orientation_bias_deg,
             filter_gain,
             serial,
             host,
@@ -31,10 +36,16 @@ impl TrackerConfig {
         settings("tracker.orientation_latency_ps", orientation_latency_ps);
         settings("tracker.position_noise_m", position_noise_m);
         settings("tracker.orientation_noise_deg", orientation_noise_deg);
+        settings("tracker.position_bias_m", position_bias_m);
+        settings("tracker.orientation_bias_deg", orientation_bias_deg);
         settings("tracker.filter_gain", filter_gain);
-        if let Some(SerialLine { record_bytes, baud }) = serial {
+        if let Some(SerialLine { record_bytes, baud, byte_bits }) = serial {
             settings("tracker.serial.record_bytes", record_bytes);
             settings("tracker.serial.baud", baud);
+            // Names from before it could be set are those of the usual bytes.
+            if u64::from(*byte_bits) != Host::PAPERS.byte_bits {
+                settings("tracker.serial.byte_bits", byte_bits);
+            }
         }
         match host {
             HostLine::Polled { period_ps } => settings("tracker.host.polled_ps", period_ps),
@@ -87,19 +98,35 @@ impl PredictorConfig {
     pub fn identify(&self, settings: &mut Settings) {
         let Self {
             kind,
-            baseline_reports,
+            position_baseline,
+            orientation_baseline,
             position_noise_m,
             orientation_noise_deg,
             position_jerk,
             orientation_jerk,
             horizon_ps,
+            start,
+            gate,
         } = self;
         settings("predictor", &kind.name());
-        settings("predictor.baseline_reports", baseline_reports);
+        settings("predictor.position_baseline", position_baseline);
+        settings("predictor.orientation_baseline", orientation_baseline);
         settings("predictor.position_noise_m", position_noise_m);
         settings("predictor.orientation_noise_deg", orientation_noise_deg);
         settings("predictor.position_jerk", position_jerk);
         settings("predictor.orientation_jerk", orientation_jerk);
+        settings("predictor.start_speed", &start.speed);
+        settings("predictor.start_acceleration", &start.acceleration);
+        settings("predictor.start_turn", &start.turn);
+        settings("predictor.start_turn_acceleration", &start.turn_acceleration);
         settings("predictor.horizon_ps", horizon_ps);
+        gate.entries().iter().for_each(|entry| write_unusual(settings, "predictor.gate", entry));
+    }
+}
+
+/// Writes a number that is not the papers'. Names from before these could be set are those of the papers' numbers.
+fn write_unusual(settings: &mut Settings, of: &str, entry: &Entry) {
+    if entry.value != entry.info.papers {
+        settings(&format!("{of}.{}", entry.info.name), &entry.value);
     }
 }

@@ -33,7 +33,7 @@ pub fn ntsc_lines_ps(n: u32) -> u64 {
 
 /// Seconds to the nearest picosecond. Negative spans and NaN give 0, spans of 2^64 ps and more
 /// the end of time.
-pub(crate) fn nearest_ps(seconds: f64) -> u64 {
+pub fn nearest_ps(seconds: f64) -> u64 {
     let whole = libm::floor(seconds);
     let rest_ps = libm::round((seconds - whole) * PS_PER_S as f64) as u64;
     (whole as u64).saturating_mul(PS_PER_S).saturating_add(rest_ps)

@@ -1,7 +1,7 @@
 //! The rig finds, from outside, the latencies that were put in.
 
 use tracking::motion::Motion;
-use tracking::rig::{Detection, Measurement, PendulumRig, RigError};
+use tracking::rig::{Detection, InsidePass, Measurement, Oscilloscope, PendulumRig, RigError, Sighting, Trace};
 use tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, ntsc_lines_ps, seconds};
 use tracking::tracker::{Fault, HostLine, SerialLine, TrackerConfig, TrackerModel};
 
@@ -11,20 +11,50 @@ fn pipeline(start_ps: u64) -> u64 {
 }
 
 fn noiseless(config: TrackerConfig) -> TrackerConfig {
-    TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, distortion: None, ..config }
+    let noiseless = TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..config };
+    noiseless.without_systematic_errors()
+}
+
+/// From the retrace to the photodiode's line, without blanking.
+fn place_ps(rig: &PendulumRig) -> u64 {
+    ntsc_lines_ps(rig.photodiode_line)
+}
+
+/// What a system that tells the truth says of itself.
+fn inside(rig: &PendulumRig, tracker: &TrackerModel, passes: usize) -> Vec<InsidePass> {
+    let sightings = rig.sightings(tracker, 1, passes).unwrap();
+    let pass = |sighting: Sighting| {
+        let started_ps = sighting.arrives_ps;
+        InsidePass { sighting, started_ps, shown_ps: pipeline(started_ps) }
+    };
+    sightings.into_iter().map(pass).collect()
+}
+
+fn oscilloscope(rig: &PendulumRig, inside: &[InsidePass]) -> Oscilloscope {
+    let dac = Trace::toggling("D/A line", inside.iter().map(|pass| pass.started_ps).collect());
+    let light = inside.iter().map(|pass| pass.shown_ps + place_ps(rig));
+    Oscilloscope::of(rig, dac, Trace::toggling("screen", light.collect()))
 }
 
 fn measure(rig: PendulumRig, config: TrackerConfig) -> Measurement {
-    rig.measure(&TrackerModel::new(config).unwrap(), 1, 200, pipeline).unwrap()
+    let tracker = TrackerModel::new(config).unwrap();
+    let inside = inside(&rig, &tracker, 200);
+    rig.compare(&tracker, place_ps(&rig), &oscilloscope(&rig, &inside), inside).unwrap()
 }
 
 #[test]
 fn the_low_point_is_seen_within_one_report_of_the_optical_tracker_and_33_ms_of_it() {
     let measured = measure(PendulumRig::assumed(), noiseless(TrackerConfig::optical_ceiling()));
     let period_s = 1.0 / 60.0;
-    assert!(measured.tracking.least_s >= 0.033 && measured.tracking.greatest_s <= 0.033 + period_s + 1e-9);
+    assert!(
+        measured.outside.tracking.least_s >= 0.033 && measured.outside.tracking.greatest_s <= 0.033 + period_s + 1e-9
+    );
     // Low points fall anywhere in a period, so on average half of one is added.
-    assert!((measured.tracking.mean_s - 0.033 - period_s / 2.0).abs() < 1.5e-3, "{}", measured.tracking.mean_s);
+    assert!(
+        (measured.outside.tracking.mean_s - 0.033 - period_s / 2.0).abs() < 1.5e-3,
+        "{}",
+        measured.outside.tracking.mean_s
+    );
     assert_eq!(measured.tracking_bound_ps, PS_PER_S / 60);
 }
 
@@ -33,16 +63,16 @@ fn rendering_is_the_inside_latency_plus_the_photodiodes_place() {
     for photodiode_line in [0, 120, 239] {
         let rig = PendulumRig { photodiode_line, ..PendulumRig::assumed() };
         let measured = measure(rig, noiseless(TrackerConfig::optical_ceiling()));
-        let difference = measured.rendering.mean_s - measured.inside_rendering.mean_s;
+        let difference = measured.outside.rendering.mean_s - measured.inside.rendering.mean_s;
         assert!((difference - seconds(ntsc_lines_ps(photodiode_line))).abs() < 1e-12);
         // 57 ms and the wait for a field.
-        assert!(measured.inside_rendering.least_s >= 0.057 && measured.inside_rendering.greatest_s < 0.074);
+        assert!(measured.inside.rendering.least_s >= 0.057 && measured.inside.rendering.greatest_s < 0.074);
     }
 }
 
 #[test]
 fn outside_and_inside_agree_within_the_bound_for_every_tracker_and_line() {
-    let slow_line = Some(SerialLine { record_bytes: 47, baud: 9600 });
+    let slow_line = Some(SerialLine { baud: 9600, ..SerialLine::fastrak() });
     for config in [
         TrackerConfig::ideal(),
         TrackerConfig::fastrak(),
@@ -57,8 +87,9 @@ fn outside_and_inside_agree_within_the_bound_for_every_tracker_and_line() {
             let measured = measure(rig, noiseless(config.clone()));
             let difference = measured.outside_less_inside_s();
             assert!(difference > 0.0 && difference <= seconds(measured.bound_ps()), "{}", config.name);
-            for pass in &measured.passes {
-                let late_ps = pass.measured_ps - pass.low_point_ps;
+            assert!(measured.agrees(), "{}", config.name);
+            for (outside, inside) in measured.outside_passes.iter().zip(&measured.inside_passes) {
+                let late_ps = inside.sighting.measured_ps - outside.low_point_ps;
                 assert!(late_ps <= measured.tracking_bound_ps + 1, "{} {detection:?}: {late_ps}", config.name);
             }
         }
@@ -79,28 +110,33 @@ fn the_sign_of_the_velocity_fails_with_a_millimetre_of_noise() {
     // Why crossing is the default: around the low point the arc is flat.
     let rig = PendulumRig { detection: Detection::VelocitySign, ..PendulumRig::assumed() };
     let measured = measure(rig, TrackerConfig::fastrak());
-    let wrong = measured.passes.iter().filter(|p| p.measured_ps.abs_diff(p.low_point_ps) > 20 * PS_PER_MS).count();
-    assert!(wrong > measured.passes.len() / 4, "{wrong}");
+    let passes = measured.outside_passes.iter().zip(&measured.inside_passes);
+    let off_ps = passes.map(|(outside, inside)| inside.sighting.measured_ps.abs_diff(outside.low_point_ps));
+    let wrong = off_ps.filter(|off| *off > 20 * PS_PER_MS).count();
+    assert!(wrong > measured.outside_passes.len() / 4, "{wrong}");
 }
 
 #[test]
 fn every_low_point_is_seen_once_and_frames_alternate() {
     let rig = PendulumRig::assumed();
-    let measured = measure(rig, TrackerConfig::fastrak());
-    for (n, pass) in measured.passes.iter().enumerate() {
+    let tracker = TrackerModel::new(TrackerConfig::fastrak()).unwrap();
+    let inside = inside(&rig, &tracker, 200);
+    let screen = oscilloscope(&rig, &inside);
+    for (n, pass) in screen.passes(&rig).unwrap().iter().enumerate() {
         assert_eq!(pass.low_point_ps, rig.pendulum.low_point_ps(n as u64));
-        assert!(measured.low_point.level(pass.low_point_ps));
-        assert_eq!(measured.screen.level(pass.light_ps), n % 2 == 0);
-        assert_eq!(measured.screen.level(pass.light_ps - 1), n % 2 == 1);
-        assert_eq!(measured.dac.level(pass.dac_ps), n % 2 == 0);
+        assert!(screen.low_point.level(pass.low_point_ps));
+        assert_eq!(screen.screen.level(pass.light_ps), n % 2 == 0);
+        assert_eq!(screen.screen.level(pass.light_ps - 1), n % 2 == 1);
+        assert_eq!(screen.dac.level(pass.dac_ps), n % 2 == 0);
     }
 }
 
 #[test]
 fn the_low_points_pulse_lasts_as_long_as_the_bob_is_in_the_beam() {
     let rig = PendulumRig::assumed();
-    let measured = measure(rig, TrackerConfig::ideal());
-    let [on, off] = [0, 1].map(|i| measured.low_point.edges()[i].t_ps);
+    let tracker = TrackerModel::new(TrackerConfig::ideal()).unwrap();
+    let low_point = oscilloscope(&rig, &inside(&rig, &tracker, 1)).low_point;
+    let [on, off] = [0, 1].map(|i| low_point.edges()[i].t_ps);
     let width_m = rig.pendulum.pose(on).distance_m(&rig.pendulum.pose(off));
     assert!((width_m - 0.002).abs() < 1e-6);
 }
@@ -110,13 +146,43 @@ fn a_silent_tracker_is_an_error() {
     let faults = vec![Fault::Silence { from_ps: 3 * PS_PER_S }];
     let tracker = TrackerModel::new(TrackerConfig { faults, ..TrackerConfig::fastrak() }).unwrap();
     // Low points at 0.36 s and every 0.71 s: four before the silence.
-    let error = PendulumRig::assumed().measure(&tracker, 1, 100, pipeline).unwrap_err();
+    let error = PendulumRig::assumed().sightings(&tracker, 1, 100).unwrap_err();
     assert_eq!(error, RigError::TooFewPasses { expected: 100, found: 4 });
 }
 
 #[test]
-fn light_before_the_start_is_an_error() {
+fn a_frame_whose_light_never_comes_is_an_error() {
+    let rig = PendulumRig::assumed();
     let tracker = TrackerModel::new(TrackerConfig::ideal()).unwrap();
-    let error = PendulumRig::assumed().measure(&tracker, 1, 1, |t| t - 1).unwrap_err();
-    assert!(matches!(error, RigError::LightBeforeStart { started_ps, found_ps } if found_ps + 1 == started_ps));
+    let inside = inside(&rig, &tracker, 3);
+    let oscilloscope = oscilloscope(&rig, &inside[..2]);
+    let dac = Trace::toggling("D/A line", inside.iter().map(|pass| pass.started_ps).collect());
+    let dark = Oscilloscope { dac, ..oscilloscope };
+    let error = rig.compare(&tracker, 0, &dark, inside).unwrap_err();
+    assert_eq!(error, RigError::NoLight { expected: 3, found: 2 });
+}
+
+/// Each side finds what is wrong with the other: by more than the bound, 8.3 and 7.6 ms here, they do not agree.
+#[test]
+fn an_error_of_one_side_is_found_by_the_other() {
+    let rig = PendulumRig::assumed();
+    let tracker = TrackerModel::new(noiseless(TrackerConfig::fastrak())).unwrap();
+    let truth = inside(&rig, &tracker, 50);
+    let scope = oscilloscope(&rig, &truth);
+    let agree = |scope: &Oscilloscope, inside: Vec<InsidePass>| {
+        rig.compare(&tracker, place_ps(&rig), scope, inside).unwrap().agrees()
+    };
+    let shifted = |by_ps: i64| -> Vec<InsidePass> {
+        let shift = |pass: &InsidePass| InsidePass { shown_ps: pass.shown_ps.strict_add_signed(by_ps), ..*pass };
+        truth.iter().map(shift).collect()
+    };
+    assert!(agree(&scope, truth.clone()));
+    // The pipeline counts a field too few, or stamps its start 20 ms late.
+    assert!(!agree(&scope, shifted(-(NTSC_FIELD_PS as i64))));
+    let late_stamp = |pass: &InsidePass| InsidePass { started_ps: pass.started_ps + 20 * PS_PER_MS, ..*pass };
+    assert!(!agree(&scope, truth.iter().map(late_stamp).collect()));
+    // The photodiode hangs a field late, or the light is that of the frame before.
+    let late = truth.iter().map(|pass| pass.shown_ps + place_ps(&rig) + NTSC_FIELD_PS);
+    let late = Oscilloscope { screen: Trace::toggling("screen", late.collect()), ..scope };
+    assert!(!agree(&late, truth.clone()));
 }

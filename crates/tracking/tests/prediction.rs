@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use tracking::Pose;
 use tracking::motion::{Motion, Pan, Synthetic};
-use tracking::predict::{PredictionError, Predictor, PredictorConfig, PredictorKind, prediction_errors};
+use tracking::predict::{PredictionError, Predictor, PredictorConfig, PredictorKind, Start, prediction_errors};
 use tracking::rotation;
 use tracking::time::{PS_PER_MS, PS_PER_S};
 use tracking::tracker::{Fault, Report, TrackerConfig, TrackerModel};
@@ -16,7 +16,8 @@ fn build(kind: PredictorKind, tracker: &TrackerConfig) -> Box<dyn Predictor> {
 
 fn errors(kind: PredictorKind, tracker: TrackerConfig, seed: u64, span_s: (u64, u64)) -> Vec<PredictionError> {
     let config = PredictorConfig::for_tracker(kind, &tracker);
-    let model = TrackerModel::new(tracker).unwrap();
+    let unbiased = TrackerConfig { position_bias_m: 0.0, orientation_bias_deg: 0.0, ..tracker };
+    let model = TrackerModel::new(unbiased).unwrap();
     let span = (span_s.0 * PS_PER_S, span_s.1 * PS_PER_S);
     prediction_errors(&Synthetic::recorded_use(seed), &model, &config, seed, &HORIZONS, span).unwrap()
 }
@@ -41,19 +42,18 @@ fn without_prediction_errors_grow_1_93_and_3_64_times() {
 
 #[test]
 fn with_the_kalman_filter_errors_grow_about_as_fast_as_azumas() {
-    // Azuma: 2.3 and 9 times; a constant-velocity Kalman filter on recorded traces: 2.7 and 7.1. Other motion and
-    // other noise: a quarter either way of the two published values is allowed.
-    for tracker in [TrackerConfig::fastrak, TrackerConfig::optical_ceiling] {
-        let [_, at_50, at_100, at_200] = mean_degrees(PredictorKind::Kalman, tracker);
-        assert!((2.3 * 0.75..2.7 * 1.25).contains(&(at_100 / at_50)), "{}", at_100 / at_50);
-        assert!((7.1 * 0.75..9.0 * 1.25).contains(&(at_200 / at_50)), "{}", at_200 / at_50);
-    }
+    // Azuma, behind this tracker: 2.3 and 9 times; a constant-velocity Kalman filter on recorded traces: 2.7 and 7.1.
+    // Other motion: a quarter either way of the two published values is allowed.
+    let [_, at_50, at_100, at_200] = mean_degrees(PredictorKind::Kalman, TrackerConfig::optical_ceiling);
+    println!("growth: {:.2} and {:.2} (Azuma 2.3 and 9)", at_100 / at_50, at_200 / at_50);
+    assert!((2.3 * 0.75..2.7 * 1.25).contains(&(at_100 / at_50)), "{}", at_100 / at_50);
+    assert!((7.1 * 0.75..9.0 * 1.25).contains(&(at_200 / at_50)), "{}", at_200 / at_50);
 }
 
 #[test]
 fn below_80_ms_the_kalman_filter_cuts_the_mean_error_2_to_3_times() {
-    let none = mean_degrees(PredictorKind::None, TrackerConfig::fastrak);
-    let kalman = mean_degrees(PredictorKind::Kalman, TrackerConfig::fastrak);
+    let none = mean_degrees(PredictorKind::None, TrackerConfig::optical_ceiling);
+    let kalman = mean_degrees(PredictorKind::Kalman, TrackerConfig::optical_ceiling);
     for i in 0..2 {
         assert!((2.0..3.0).contains(&(none[i] / kalman[i])), "{}", none[i] / kalman[i]);
     }
@@ -61,8 +61,8 @@ fn below_80_ms_the_kalman_filter_cuts_the_mean_error_2_to_3_times() {
 
 #[test]
 fn far_ahead_prediction_by_acceleration_is_worse_than_none() {
-    let none = mean_degrees(PredictorKind::None, TrackerConfig::fastrak);
-    let second = mean_degrees(PredictorKind::ConstantAcceleration, TrackerConfig::fastrak);
+    let none = mean_degrees(PredictorKind::None, TrackerConfig::optical_ceiling);
+    let second = mean_degrees(PredictorKind::ConstantAcceleration, TrackerConfig::optical_ceiling);
     assert!(second[3] > none[3]);
 }
 
@@ -226,7 +226,9 @@ fn each_prediction_is_for_the_very_instant_it_is_asked_for() {
 fn settings_out_of_range_are_errors() {
     let good = PredictorConfig::for_tracker(PredictorKind::Kalman, &TrackerConfig::fastrak());
     for bad in [
-        PredictorConfig { baseline_reports: 0, ..good },
+        PredictorConfig { position_baseline: 0, ..good },
+        PredictorConfig { orientation_baseline: 17, ..good },
+        PredictorConfig { start: Start { turn: 0.0, ..good.start }, ..good },
         PredictorConfig { position_noise_m: 0.0, ..good },
         PredictorConfig { orientation_jerk: f64::NAN, ..good },
         PredictorConfig { horizon_ps: 0, ..good },

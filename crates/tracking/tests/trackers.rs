@@ -16,8 +16,12 @@ fn reports(config: TrackerConfig, motion: &dyn Motion, seed: u64, n: usize) -> V
     model(config).reports(motion, seed).take(n).collect()
 }
 
+fn unbiased(config: TrackerConfig) -> TrackerConfig {
+    TrackerConfig { position_bias_m: 0.0, orientation_bias_deg: 0.0, ..config }
+}
+
 fn noiseless(config: TrackerConfig) -> TrackerConfig {
-    TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..config }
+    TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..unbiased(config) }
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -53,7 +57,7 @@ fn two_receivers_halve_the_rate() {
 #[test]
 fn at_9600_baud_five_of_six_fastrak_solutions_are_dropped() {
     // 48.96 ms of transfer over 8.33 ms of period: the next ready solution after 5.88 periods is the sixth.
-    let serial = Some(SerialLine { record_bytes: 47, baud: 9600 });
+    let serial = Some(SerialLine { baud: 9600, ..SerialLine::fastrak() });
     let all = reports(TrackerConfig { serial, ..TrackerConfig::fastrak() }, &HEAD, 0, 100);
     assert!(all.windows(2).all(|w| w[1].solution - w[0].solution == 6));
 }
@@ -108,12 +112,31 @@ fn polling_never_changes_the_order() {
 #[test]
 fn noise_has_the_configured_deviation_on_each_axis() {
     // 20,000 reports: the standard error of a deviation is 0.5 %.
-    let all = reports(TrackerConfig::fastrak(), &HEAD, 3, 20_000);
+    let noise = TrackerConfig { position_noise_m: 0.8e-3, orientation_noise_deg: 0.15, ..TrackerConfig::fastrak() };
+    let all = reports(unbiased(noise), &HEAD, 3, 20_000);
     for axis in 0..3 {
         let place = mean(all.iter().map(|r| (r.pose.position - HEAD.0.position)[axis].powi(2))).sqrt();
         assert!((place / 0.8e-3 - 1.0).abs() < 0.025, "{place}");
         let turn = mean(all.iter().map(|r| tracking::rotation::log(r.pose.orientation)[axis].powi(2))).sqrt();
         assert!((turn.to_degrees() / 0.15 - 1.0).abs() < 0.025, "{turn}");
+    }
+}
+
+#[test]
+fn static_accuracy_is_a_bias_the_same_in_every_report_and_another_for_each_installation() {
+    let config = TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..TrackerConfig::fastrak() };
+    let of_seed = |seed| {
+        let all = reports(config.clone(), &HEAD, seed, 50);
+        assert!(all.iter().all(|r| r.pose == all[0].pose), "seed {seed}");
+        all[0].pose
+    };
+    // 4,000 installations: the standard error of a deviation is 1.1 %.
+    let poses: Vec<Pose> = (0..4_000).map(of_seed).collect();
+    for axis in 0..3 {
+        let place = mean(poses.iter().map(|p| (p.position - HEAD.0.position)[axis].powi(2))).sqrt();
+        assert!((place / 0.8e-3 - 1.0).abs() < 0.05, "{place}");
+        let turn = mean(poses.iter().map(|p| tracking::rotation::log(p.orientation)[axis].powi(2))).sqrt();
+        assert!((turn.to_degrees() / 0.15 - 1.0).abs() < 0.05, "{turn}");
     }
 }
 
@@ -139,7 +162,7 @@ fn the_filter_lags_a_pan_by_dt_times_1_minus_a_over_a() {
 
 #[test]
 fn the_filter_cuts_white_noise_by_the_root_of_a_over_2_minus_a() {
-    let config = TrackerConfig { filter_gain: 0.2, ..TrackerConfig::fastrak() };
+    let config = TrackerConfig { filter_gain: 0.2, position_noise_m: 0.8e-3, ..unbiased(TrackerConfig::fastrak()) };
     let all = reports(config, &HEAD, 3, 40_000);
     let place = mean(all.iter().skip(100).map(|r| (r.pose.position.x - 0.3).powi(2))).sqrt();
     assert!((place / (0.8e-3 * (0.2f64 / 1.8).sqrt()) - 1.0).abs() < 0.04, "{place}");

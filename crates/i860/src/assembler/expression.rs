@@ -14,7 +14,7 @@ struct Parser<'a> {
     depth: u32,
 }
 
-/// Evaluates an expression.
+/// The value of an expression of numbers, symbols and operators, 64 bits.
 pub(super) fn evaluate(text: &str, symbols: &Symbols) -> Result<i64, String> {
     let mut parser = Parser { text: text.trim(), symbols, depth: 0 };
     if parser.text.is_empty() {

@@ -8,6 +8,7 @@ use i860::{Config, Cpu, Outcome, Profile, Program, Ram, assemble};
 use pxpl5_geometry::kernel::{Heads, Kernel, KernelSurface, Schedule, display_list_words};
 use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 use pxpl5_renderer::{Command, Layout};
+use pxpl5_sim::SplitMix64;
 use std::collections::BTreeMap;
 
 /// Memory of a graphics processor in bytes (published).
@@ -29,7 +30,7 @@ pub(crate) const fn frame(schedule: Schedule) -> Kernel {
     Kernel { schedule, surface: KernelSurface::Gouraud, field: false, binned: true }
 }
 
-/// Assembles a kernel.
+/// The kernel, assembled with its own options.
 pub(crate) fn program(kernel: Kernel) -> Program {
     assemble("kernel", CODE, &kernel.source()).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -47,37 +48,40 @@ pub(crate) fn light() -> Light {
 }
 
 /// Numbers in -1 to 1, the same on every host.
-struct Numbers(u64);
+struct Numbers(SplitMix64);
 
 impl Numbers {
     fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 40) as f32 / (1u32 << 23) as f32 - 1.0
+        2.0 * self.0.unit() - 1.0
+    }
+
+    fn colour(&mut self) -> [u8; 3] {
+        [0, 1, 2].map(|_| ((self.next() + 1.0) * 127.0) as u8)
     }
 
     fn vector(&mut self, size: f32) -> Vec3 {
         Vec3::new(self.next(), self.next(), self.next()) * size
     }
+
+    fn triangle(&mut self, size: f32) -> Triangle {
+        let centre = self.vector(2.4);
+        let positions = [0, 1, 2].map(|_| centre + self.vector(size));
+        let normals = [0, 1, 2].map(|_| self.vector(1.0));
+        let colours = [0, 1, 2].map(|_| self.colour());
+        Triangle { positions, normals, colours }
+    }
 }
 
 /// Triangles of about `size` world units around the middle of the picture, each corner coloured at random.
 pub(crate) fn triangles(count: usize, size: f32, seed: u64) -> Vec<Triangle> {
-    let mut numbers = Numbers(seed);
-    let mut one = |_| {
-        let centre = numbers.vector(2.4);
-        let positions = [0, 1, 2].map(|_| centre + numbers.vector(size));
-        let normals = [0, 1, 2].map(|_| numbers.vector(1.0));
-        let mut byte = || ((numbers.next() + 1.0) * 127.0) as u8;
-        let colours = [0, 1, 2].map(|_| [byte(), byte(), byte()]);
-        Triangle { positions, normals, colours }
-    };
-    (0..count).map(&mut one).collect()
+    let mut numbers = Numbers(SplitMix64::new(seed));
+    (0..count).map(|_| numbers.triangle(size)).collect()
 }
 
 /// What a kernel left in memory.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Output {
-    /// Commands in order.
+    /// The words of each command, in the order of the triangles.
     pub(crate) commands: Vec<Vec<u32>>,
     /// Regions of each command, by rising number.
     pub(crate) regions: Vec<Vec<u16>>,
@@ -89,7 +93,8 @@ pub(crate) struct Output {
 /// the numbers of the rest; and the number of planes flattened, which the kernels do not do.
 pub(crate) fn native(surface: KernelSurface, viewport: Viewport, triangles: &[Triangle]) -> (Output, u64) {
     let transform = Transform::new(&view(), viewport, Culling::None).expect("finite");
-    let (light, mut stats) = (light(), SetupStats::default());
+    let light = light();
+    let mut stats = SetupStats::default();
     let mut output = Output { commands: Vec::new(), regions: Vec::new(), clipped: Vec::new() };
     for (n, triangle) in triangles.iter().enumerate() {
         let before = (stats.clipped, stats.outside, stats.not_finite);
@@ -137,9 +142,9 @@ fn heads(surface: KernelSurface) -> Heads {
 
 /// A processor with a kernel and triangles in its memory.
 pub(crate) struct Bench {
-    /// The processor.
+    /// The processor with the kernel in its memory.
     pub(crate) cpu: Cpu,
-    /// The kernel.
+    /// The kernel with its symbols.
     pub(crate) program: Program,
     ram: Ram,
     count: u32,
@@ -148,7 +153,7 @@ pub(crate) struct Bench {
 }
 
 impl Bench {
-    /// Loads everything.
+    /// A processor with kernel, tables and triangles in its memory, ready to be called.
     pub(crate) fn new(kernel: Kernel, viewport: Viewport, config: Config, triangles: &[Triangle]) -> Bench {
         let mut ram = Ram::new(0, MEMORY);
         let program = program(kernel);
@@ -162,7 +167,8 @@ impl Bench {
         let regions = viewport.grid().regions();
         let bins: Vec<u32> = (0..regions).map(|n| BINS + n * BIN_BYTES).collect();
         ram.load_words(BIN_TABLE, &bins).expect("fits");
-        let (count, command_bytes) = (triangles.len() as u32, kernel.command_bytes());
+        let count = triangles.len() as u32;
+        let command_bytes = kernel.command_bytes();
         Bench { cpu: Cpu::new(config), program, ram, count, command_bytes, regions }
     }
 
@@ -183,7 +189,8 @@ impl Bench {
 
     /// Runs the kernel over all triangles, with empty caches before each.
     pub(crate) fn run_cold(&mut self) {
-        let (mut commands, mut clip_list) = (COMMANDS, CLIP_LIST);
+        let mut commands = COMMANDS;
+        let mut clip_list = CLIP_LIST;
         for n in 0..self.count {
             self.cpu.empty_caches();
             self.call(TRIANGLES + TRIANGLE_BYTES * n, 1, commands, clip_list);

@@ -1,6 +1,7 @@
 //! What a results folder holds.
 
 use crate::error::CliError;
+use crate::run::INCOMPLETE;
 use pxpl5::views::page::{PagePicture, PageRun, latencies_ms};
 use serde_json::Value;
 use std::fs;
@@ -13,18 +14,21 @@ use std::path::Path;
 /// When `report.json` is missing or is no report.
 pub(super) fn runs(folder: &Path) -> Result<Vec<PageRun>, CliError> {
     let path = folder.join("report.json");
-    let problem = |what: String| CliError::failure(format!("{}: {what}", path.display()));
-    let advice = "; expected what `pxpl5 run --out` or `pxpl5 demo` writes";
-    let text = fs::read_to_string(&path).map_err(|error| problem(format!("{error}{advice}")))?;
-    let all: Value = serde_json::from_str(&text).map_err(|error| problem(format!("{error}{advice}")))?;
+    let text = fs::read_to_string(&path).map_err(|error| no_report(&path, &error.to_string()))?;
+    let all: Value = serde_json::from_str(&text).map_err(|error| no_report(&path, &error.to_string()))?;
     match all["schema"].as_str() {
-        Some("pxpl5-report/1") => Ok(vec![run(folder, "", "", &all, &Value::Null)]),
+        Some("pxpl5-report/2") => Ok(vec![run(folder, "", "", &all, &Value::Null)]),
         Some("pxpl5-demo/1") => {
             let runs = all["runs"].as_array().map(Vec::as_slice).unwrap_or_default();
             Ok(runs.iter().map(|entry| demo_run(folder, entry)).collect())
         }
-        found => Err(problem(format!("schema {}{advice}", found.unwrap_or("missing")))),
+        found => Err(no_report(&path, &format!("schema {}", found.unwrap_or("missing")))),
     }
+}
+
+fn no_report(path: &Path, found: &str) -> CliError {
+    let path = path.display();
+    CliError::failure(format!("{path}: {found}; expected what `pxpl5 run --out` or `pxpl5 demo` writes"))
 }
 
 fn demo_run(folder: &Path, entry: &Value) -> PageRun {
@@ -35,23 +39,37 @@ fn demo_run(folder: &Path, entry: &Value) -> PageRun {
 }
 
 fn run(folder: &Path, name: &str, prefix: &str, report: &Value, published: &Value) -> PageRun {
-    let read = |file: &str| fs::read(folder.join(format!("{prefix}{file}"))).ok();
-    let pictures = read("pictures.csv").and_then(|bytes| String::from_utf8(bytes).ok());
-    let text = |key: &str| report[key].as_str().unwrap_or("?").to_owned();
-    let name = if name.is_empty() { format!("{}, {}", text("pipeline"), text("scene")) } else { name.to_owned() };
+    let pictures = read(folder, prefix, "pictures.csv").and_then(|bytes| String::from_utf8(bytes).ok());
+    let own_name = format!("{}, {}", text(report, "pipeline"), text(report, "scene"));
+    let name = if name.is_empty() { own_name } else { name.to_owned() };
     PageRun {
         name,
         report: report.clone(),
         published: published.clone(),
         pictures: pictures_of(folder, prefix),
-        timeline: read("timeline.svg"),
+        timeline: read(folder, prefix, "timeline.svg"),
         latencies_ms: pictures.map(|csv| latencies_ms(&csv)).unwrap_or_default(),
     }
 }
 
 /// The last pictures of the surfaces that there can be.
 fn pictures_of(folder: &Path, prefix: &str) -> Vec<PagePicture> {
-    let labels = ["left", "right"].into_iter();
-    let read = |label: &str| fs::read(folder.join(format!("{prefix}{label}.png"))).ok();
-    labels.filter_map(|label| Some(PagePicture { label: format!("{label} eye"), png: read(label)? })).collect()
+    let mut pictures = Vec::new();
+    for label in ["left", "right"] {
+        for (mark, caption) in [("", ""), (INCOMPLETE, ": not complete, it was not there in time")] {
+            if let Some(png) = read(folder, prefix, &format!("{label}{mark}.png")) {
+                pictures.push(PagePicture { label: format!("{label} eye{caption}"), png });
+            }
+        }
+    }
+    pictures
+}
+
+/// A file of a run; `None` where there is none.
+fn read(folder: &Path, prefix: &str, file: &str) -> Option<Vec<u8>> {
+    fs::read(folder.join(format!("{prefix}{file}"))).ok()
+}
+
+fn text<'a>(report: &'a Value, key: &str) -> &'a str {
+    report[key].as_str().unwrap_or("?")
 }

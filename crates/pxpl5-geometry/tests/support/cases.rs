@@ -32,7 +32,7 @@ fn tiling(name: &'static str, triangles: Vec<Triangle>) -> Case {
 }
 
 fn many(seed: u64, count: usize, make: impl Fn(&mut Random) -> [Vec3; 3]) -> Vec<Triangle> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     (0..count)
         .map(|_| {
             let positions = make(&mut random);
@@ -86,7 +86,7 @@ fn slivers(name: &'static str, width: f32) -> Case {
 
 /// Triangles around one corner, as a closed fan.
 fn fan() -> Case {
-    let mut random = Random(4);
+    let mut random = Random::new(4);
     let hub = at_pixel(320.3, 240.7, 1.0);
     let count = 48;
     let rim: Vec<Vec3> = (0..count)
@@ -112,7 +112,7 @@ fn fan() -> Case {
 
 /// A jittered grid, of which neighbours share edges with opposite directions.
 fn grid(name: &'static str, step: f32, jitter: f32) -> Case {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let columns = 40_usize;
     let rows = 30_usize;
     let vertices: Vec<Vec3> = (0..=rows * (columns + 1) + columns)
@@ -204,7 +204,7 @@ fn depth_range() -> Case {
 
 /// A view like a user's, with a rotation, of a model of a given size somewhere.
 fn placed(name: &'static str, seed: u64, size: f32, place: Vec3) -> Case {
-    let random = &mut Random(seed);
+    let random = &mut Random::new(seed);
     let triangles = (0..100)
         .map(|_| {
             let centre = Vec3::new(random.within(1.0), random.within(0.8), random.within(0.5));
@@ -256,7 +256,7 @@ fn edge_on() -> Case {
 
 /// 4,000 px long, half a subpixel thick, from far to near across that: slopes beyond any format.
 fn overflowing() -> Case {
-    let mut random = Random(15);
+    let mut random = Random::new(15);
     let triangles = (0..20)
         .map(|n| {
             let y = 20.0 * n as f32 + 10.0;

@@ -1,20 +1,23 @@
 //! Random numbers that are the same on every host.
 
-/// SplitMix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014).
+use pxpl5_sim::SplitMix64;
+
+/// Random numbers, and what geometry makes of them.
 #[derive(Clone, Debug)]
-pub struct Random(pub u64);
+pub struct Random(SplitMix64);
 
 impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(SplitMix64::new(seed))
+    }
+
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        self.0.bits()
     }
 
     /// From `low` to `high`, in 2^24 steps.
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
-        low + (high - low) * ((self.bits() >> 40) as f32 / 16_777_216.0)
+        low + (high - low) * self.0.unit()
     }
 
     /// From `-spread` to `spread`.
@@ -24,7 +27,7 @@ impl Random {
 
     /// An integer from `low` to `high`, both included.
     pub fn integer(&mut self, low: i32, high: i32) -> i32 {
-        low + (self.bits() % (high - low + 1) as u64) as i32
+        low + (self.0.below((high - low + 1) as u64)) as i32
     }
 
     pub fn colour(&mut self) -> [u8; 3] {

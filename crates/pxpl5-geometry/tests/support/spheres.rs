@@ -123,7 +123,7 @@ pub fn native(setup: &SphereSetup, x: i32, y: i32) -> Option<u32> {
 }
 
 fn family(name: &'static str, seed: u64, pixels: f32, count: usize, on_centre: bool) -> SphereCase {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let spheres = (0..count).map(|_| {
         let mut x = random.between(20.0, 620.0);
         let mut y = random.between(20.0, 460.0);
@@ -140,7 +140,7 @@ fn family(name: &'static str, seed: u64, pixels: f32, count: usize, on_centre: b
 }
 
 fn beside_the_eye() -> SphereCase {
-    let mut random = Random(30);
+    let mut random = Random::new(30);
     let spheres = (0..12).map(|_| {
         let centre = Vec3::new(random.between(-20.0, 20.0), random.between(-20.0, 20.0), random.between(-40.0, -4.0));
         let radius = (-centre.z - 1.1) * random.between(0.3, 0.999);

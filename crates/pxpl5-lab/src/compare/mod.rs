@@ -5,13 +5,15 @@
 
 mod contender;
 mod pictures;
+mod predictors;
 mod query;
-mod rig;
 mod row;
 mod trial;
 
-pub use crate::head_names::{MotionError, TRACKERS, motion, predictor, tracker};
+pub use crate::head_names::{
+    MOTIONS, MotionError, Replay, TRACKERS, is_recording, motion, predictor, replayed, tracker, tracker_by,
+};
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
+pub use predictors::{PredictorError, Predictors, predictors};
 pub use query::{CompareError, CompareQuery, Comparison, LEAST_SEEDS};
-pub use rig::measure_on;
 pub use row::{CauseShare, ErrorSpread, MeanInterval, Row};

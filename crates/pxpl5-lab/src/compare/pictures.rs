@@ -5,7 +5,7 @@ use image::{Rgb, RgbImage};
 use pxpl5_framebuffer::{FrameBufferConfig, NtscDisplay, Video};
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Head, Jitp, Pixels, Viewpoint};
-use pxpl5_scene::{Frame, HeadMotion, Lighting, Path, Scene, SceneParts, Structure, Sway, Vertex};
+use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 use std::sync::Arc;
 use tracking::motion::{Motion, Pan};
@@ -42,7 +42,7 @@ pub fn edge_scene(yaw_deg: f64) -> Scene {
     let vertices = vec![vertex(-9.0, -9.0), vertex(0.0, -9.0), vertex(0.0, 9.0), vertex(-9.0, 9.0)];
     let (sin, cos) = yaw_deg.to_radians().sin_cos();
     let target = DVec3::new(-sin, 0.0, -cos).as_vec3();
-    let motion = HeadMotion::new(Path::Still { eye: Vec3::ZERO, target }, Sway::none());
+    let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target }, Sway::none());
     let structure = Structure {
         name: "wall".to_owned(),
         vertices: 0..4,

@@ -6,6 +6,7 @@ use distrs::StudentsT;
 use pxpl5_measure::{Budget, FieldError, Percentiles, Showing};
 use pxpl5_run::{Cause, Pipeline, Statistics};
 use serde::Serialize;
+use tracking::predict::PredictorKind;
 
 /// A mean over seeds and where it lies with 95 % confidence (Student's t over the means of the seeds).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -60,6 +61,15 @@ pub struct CauseShare {
     pub px: MeanInterval,
 }
 
+/// What a predictor would make of a row.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct PredictorMean {
+    /// The predictor.
+    pub kind: PredictorKind,
+    /// Mean error, pixels; no number where none was judged.
+    pub mean_px: f64,
+}
+
 /// One way to fight latency.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
@@ -81,16 +91,18 @@ pub struct Row {
     pub prediction_interval_ms: Statistics,
     /// Whole new pictures a second, over seeds; no number where fewer than two were shown.
     pub updates_hz: MeanInterval,
-    /// Retraces missed, of all seeds.
-    pub missed_retraces: u64,
-    /// The retraces among which they are counted.
-    pub judged_retraces: u64,
+    /// Pictures that were due, of all seeds; 0 where none ever is.
+    pub due: u64,
+    /// Those of them that were not shown: late, incomplete and missed.
+    pub not_shown: u64,
     /// Regions that came after their deadline, of all seeds.
     pub late_regions: usize,
     /// Registration over a grid of pixels and all fields.
     pub error: ErrorSpread,
     /// The mean error by cause; they add up to it.
     pub causes: Vec<CauseShare>,
+    /// The mean error of the first seed with each predictor; nothing of what is not drawn by firmware.
+    pub predictors: Vec<PredictorMean>,
     /// Most triangles by the pipeline's own criterion; `None` where it was not asked for or means nothing.
     pub triangles_possible: Option<u32>,
     /// What that number means.
@@ -124,17 +136,25 @@ impl Row {
             end_to_end: trials.first().filter(|_| !is_reference).map_or_else(Budget::default, |trial| trial.budget),
             prediction_interval_ms: pooled(trials, |trial| &trial.prediction_interval_ms),
             updates_hz: MeanInterval::of(&hz),
-            missed_retraces: trials.iter().map(|trial| trial.missed_retraces).sum(),
-            judged_retraces: trials.iter().map(|trial| trial.judged_retraces).sum(),
+            due: trials.iter().filter_map(|trial| trial.due).map(|due| due.due).sum(),
+            not_shown: trials.iter().filter_map(|trial| trial.due).map(|due| due.not_shown()).sum(),
             late_regions: trials.iter().map(|trial| trial.late_regions).sum(),
             error: ErrorSpread::of(trials),
             causes: causes(trials),
+            predictors: Vec::new(),
             triangles_possible: None,
             triangles_definition: String::new(),
             failure: None,
             host_seconds: trials.iter().map(|trial| trial.host_seconds).sum(),
             by_field: trials.first().map(|trial| trial.errors.by_field.clone()).unwrap_or_default(),
         }
+    }
+
+    /// The predictor with the least mean error, if any was judged.
+    #[must_use]
+    pub fn best_predictor(&self) -> Option<PredictorMean> {
+        let judged = self.predictors.iter().copied().filter(|one| one.mean_px.is_finite());
+        judged.min_by(|one, other| one.mean_px.total_cmp(&other.mean_px))
     }
 
     /// Whether any pixel of it could be judged.

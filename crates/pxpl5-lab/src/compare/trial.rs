@@ -3,7 +3,7 @@
 use super::contender::Contender;
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing};
-use pxpl5_run::{Outcome, Pixels};
+use pxpl5_run::{DuePictures, Outcome, Pixels};
 use pxpl5_scene::Scene;
 use pxpl5_wire::ViewNumber;
 use std::collections::BTreeSet;
@@ -19,8 +19,7 @@ pub(super) struct Trial {
     pub(super) errors: PixelErrors,
     pub(super) causes: Option<ErrorCauses>,
     pub(super) updates_hz: Option<f64>,
-    pub(super) missed_retraces: u64,
-    pub(super) judged_retraces: u64,
+    pub(super) due: Option<DuePictures>,
     pub(super) late_regions: usize,
     pub(super) host_seconds: f64,
 }
@@ -57,8 +56,7 @@ impl Trial {
             errors: PixelErrors::shown(outcome, showing),
             causes: ErrorCauses::of(outcome, showing),
             updates_hz: report.updates_hz.filter(|_| is_timed),
-            missed_retraces: report.missed_retraces,
-            judged_retraces: report.judged_retraces,
+            due: report.due.filter(|_| is_timed),
             late_regions: report.late_regions,
             host_seconds: outcome.host_seconds().unwrap_or_default(),
         }
@@ -75,7 +73,7 @@ fn prediction_intervals_ms(outcome: &Outcome) -> Vec<f64> {
     let views: BTreeSet<ViewNumber> = outcome.complete_pictures().map(|times| times.view).collect();
     let sampled = head.sampled().into_iter().filter(|sampled| views.contains(&sampled.number));
     sampled
-        .filter_map(|sampled| Some(sampled.aimed_at.0 as f64 - sampled.measured_at?.0 as f64))
+        .filter_map(|sampled| Some(sampled.objects_at.0 as f64 - sampled.measured_at?.0 as f64))
         .map(|ps| ps * 1e-9)
         .collect()
 }

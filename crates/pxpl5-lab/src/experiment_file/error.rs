@@ -11,7 +11,7 @@ pub enum FileError {
     /// The file cannot be read.
     #[error("{file}: expected a readable experiment file, found: {reason}")]
     Io {
-        /// Path as given.
+        /// Path of the file, as it was given.
         file: String,
         /// What the operating system said.
         reason: String,
@@ -29,7 +29,7 @@ pub enum FileError {
     UnknownKey {
         /// File and line, or option.
         place: String,
-        /// The key.
+        /// The key that nobody knows, as it was written.
         found: String,
         /// The nearest valid one.
         nearest: String,
@@ -39,11 +39,11 @@ pub enum FileError {
     Value {
         /// File and line, or option.
         place: String,
-        /// The key.
+        /// Path of the key that was set.
         key: String,
-        /// What it takes.
+        /// What values the key takes, in words.
         expected: String,
-        /// What was given.
+        /// The value that was given, at most 60 characters of it.
         found: String,
     },
     /// A setting has no meaning for the pipeline that was chosen.
@@ -51,9 +51,9 @@ pub enum FileError {
     NotApplicable {
         /// File and line, or option.
         place: String,
-        /// The key.
+        /// Path of the key that was set.
         key: String,
-        /// The pipeline chosen.
+        /// Name of the pipeline that was chosen.
         pipeline: &'static str,
         /// The pipelines that know it.
         applies_to: String,
@@ -61,7 +61,7 @@ pub enum FileError {
     /// A setting that must be given is missing.
     #[error("{key} is missing: give {how}")]
     Missing {
-        /// The key.
+        /// Path of the key that nobody set.
         key: &'static str,
         /// How to give it.
         how: &'static str,
@@ -79,9 +79,9 @@ pub enum FileError {
     Conflict {
         /// File and line, or option.
         place: String,
-        /// One key.
+        /// Path of the parameter that was set.
         key: String,
-        /// The other one.
+        /// The key of the pipeline that sets it too, with its value.
         other: String,
     },
     /// The machine or its numbers are impossible.
@@ -89,7 +89,7 @@ pub enum FileError {
     Config {
         /// File and line, or option; "machine" for the machine as a whole.
         place: String,
-        /// Why.
+        /// What the machine says about it.
         error: ConfigError,
     },
     /// There is no such scene.

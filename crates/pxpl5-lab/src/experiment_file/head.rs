@@ -1,23 +1,31 @@
 //! The head in front of the pipeline: how it moves, its tracker and predictor, and the raster before its eyes.
 
-use super::read::beside;
-use super::{ExperimentFile, FileError};
-use crate::head_names::{motion, predictor, tracker};
-use pxpl5_run::{Head, Pipeline, Raster};
+use super::read::{beside, plain, wrong};
+use super::{ExperimentFile, FileError, tracking_numbers};
+use crate::head_names::{Replay, is_recording, predictor, replayed, tracker_by};
+use pxpl5_machine::Parameter;
+use pxpl5_run::{Aim, Head, Pipeline, Raster};
 use std::sync::Arc;
+use toml::Value;
+use tracking::motion::{Axes, Columns, End, RecordingFormat};
+use tracking::predict::PredictorConfig;
 
 /// A head with its tracker, by the names of its parts.
 #[derive(Clone, Debug)]
 pub struct HeadChoice {
     motion: String,
+    replay: Replay,
     tracker: String,
     predict: String,
+    numbers: Vec<Parameter>,
     head: Arc<Head>,
 }
 
 impl PartialEq for HeadChoice {
     fn eq(&self, other: &Self) -> bool {
-        self.settings() == other.settings() && self.head.fingerprint() == other.head.fingerprint()
+        self.settings() == other.settings()
+            && self.numbers == other.numbers
+            && self.head.fingerprint() == other.head.fingerprint()
     }
 }
 
@@ -26,52 +34,138 @@ const TRACKER: &str = "optical";
 const PREDICT: &str = "kalman";
 
 impl HeadChoice {
-    /// The head of an experiment; `None` where no `head.` key is set. A recording is read here.
+    /// The head of an experiment; `None` where no `head.` or `tracking.` key is set. A recording is read here.
     pub(super) fn read(file: &ExperimentFile, pipeline: &dyn Pipeline, seed: u64) -> Result<Option<Self>, FileError> {
         let Some(motion_name) = file.text("head.motion")? else { return Self::none(file) };
         let raster = file.choice("head.raster", &Raster::ALL)?.unwrap_or_default();
+        let aim = file.choice("head.aim", &Aim::ALL)?.unwrap_or_default();
         if let (Raster::Vdrt, false, Some(setting)) = (raster, pipeline.has_one_pose(), file.get("head.raster")) {
             let place = setting.place.clone();
             let key = "head.raster = vdrt".to_owned();
             let applies_to = "rendering-control, slats and jitp-field, whose pictures are of one pose".to_owned();
             return Err(FileError::NotApplicable { place, key, pipeline: pipeline.name(), applies_to });
         }
+        let replay = replay(file)?;
         let motion_name = match file.get("head.motion") {
-            Some(setting) if motion_name.to_ascii_lowercase().ends_with(".csv") => beside(&setting.folder, motion_name),
+            Some(setting) if is_recording(motion_name) => beside(&setting.folder, motion_name),
             _ => motion_name.to_owned(),
         };
+        refuse_replay_of_others(file, &motion_name)?;
         let tracker_name = file.text("head.tracker")?.unwrap_or(TRACKER).to_owned();
         let predict = file.text("head.predict")?.unwrap_or(PREDICT).to_owned();
-        let moving = motion(&motion_name).map_err(|error| refused(file, "head.motion", &error))?;
-        let of_tracker = tracker(&tracker_name).map_err(|error| refused(file, "head.tracker", &error))?;
+        let moving = replayed(&motion_name, &replay).map_err(|error| refused(file, "head.motion", &error))?;
+        let tables = tracking_numbers::read(file, &tracker_name)?;
+        let by_name = tracker_by(&tables, &tracker_name);
+        let (of_tracker, own_table) = by_name.map_err(|error| refused(file, "head.tracker", &error))?;
         let of_predictor = predictor(&predict).map_err(|error| refused(file, "head.predict", &error))?;
-        let head = Head::new(moving, of_tracker, of_predictor, seed);
-        let head = Arc::new(head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster));
-        Ok(Some(Self { motion: motion_name, tracker: tracker_name, predict, head }))
+        let of_predictor = PredictorConfig::for_tracker_by(&tables, of_predictor, &of_tracker);
+        let head = Head::predicted_by(moving, of_tracker, of_predictor, seed);
+        let head = head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).aiming(aim);
+        let head = judged(file, if is_tuned(file)? { head.tuned() } else { head })?;
+        let numbers = tracking_numbers::parameters_with(&tables, own_table);
+        Ok(Some(Self { motion: motion_name, replay, tracker: tracker_name, predict, numbers, head: Arc::new(head) }))
     }
 
     /// Without a motion there is nothing to track.
     fn none(file: &ExperimentFile) -> Result<Option<Self>, FileError> {
-        let of_head = file.settings.keys().any(|path| path.starts_with("head."));
+        let of_head = file.settings.keys().any(|path| path.starts_with("head.") || path.starts_with("tracking."));
         let how = "how the head moves, such as head.motion = \"pan:200\"";
         if of_head { Err(FileError::Missing { key: "head.motion", how }) } else { Ok(None) }
     }
 
-    /// The head itself.
+    /// The head with tracker and predictor as the experiment takes it; all runs of a plan share it.
     #[must_use]
     pub fn head(&self) -> Arc<Head> {
         Arc::clone(&self.head)
     }
 
-    /// Its keys and their values.
+    /// The numbers of its tracker, of the port and of the predictor.
     #[must_use]
-    pub fn settings(&self) -> [(&'static str, String); 4] {
-        [
+    pub fn parameters(&self) -> Vec<Parameter> {
+        self.numbers.clone()
+    }
+
+    /// Its keys and their values.
+    pub(crate) fn settings(&self) -> Vec<(String, Value)> {
+        let filter = if self.head.is_tuned() { "tuned" } else { "given" };
+        let mut all: Vec<(String, Value)> = [
             ("head.motion", self.motion.clone()),
             ("head.tracker", self.tracker.clone()),
             ("head.predict", self.predict.clone()),
+            ("head.filter", filter.to_owned()),
             ("head.raster", self.head.raster().to_string()),
+            ("head.aim", self.head.aim().to_string()),
         ]
+        .map(|(key, value)| (key.to_owned(), Value::from(value)))
+        .into();
+        all.extend(self.head.judge_at_m().map(|metres| ("head.judge_at".to_owned(), Value::from(metres))));
+        if is_recording(&self.motion) {
+            let Replay { format, end } = &self.replay;
+            all.push(("head.end".to_owned(), Value::from(end.name())));
+            all.extend(format.axes.map(|axes| ("head.axes".to_owned(), Value::from(axes.name()))));
+            let columns = format.columns.iter();
+            all.extend(columns.map(|(field, column)| (format!("{COLUMNS}{field}"), Value::from(column))));
+        }
+        all
+    }
+}
+
+/// What keys of columns begin with.
+pub(super) const COLUMNS: &str = "head.columns.";
+
+/// How a recording is to be read.
+fn replay(file: &ExperimentFile) -> Result<Replay, FileError> {
+    let mut columns = Columns::default();
+    for (path, setting) in &file.settings {
+        if let Some(field) = path.strip_prefix(COLUMNS) {
+            columns.map(field, &plain(&setting.value)).map_err(|error| refused(file, path, &error))?;
+        }
+    }
+    let format = RecordingFormat { columns, axes: file.choice("head.axes", &Axes::NAMES)? };
+    Ok(Replay { format, end: file.choice("head.end", &End::NAMES)?.unwrap_or_default() })
+}
+
+/// What is said of a recording has no meaning for other motions.
+fn refuse_replay_of_others(file: &ExperimentFile, motion: &str) -> Result<(), FileError> {
+    let is_of_recordings = |path: &str| ["head.end", "head.axes"].contains(&path) || path.starts_with(COLUMNS);
+    match file.settings.iter().find(|(path, _)| is_of_recordings(path) && !is_recording(motion)) {
+        Some((path, setting)) => Err(wrong(path, setting, "nothing: head.motion is no recording")),
+        None => Ok(()),
+    }
+}
+
+/// Numbers of the filter that tuning would find itself.
+const TUNED: [&str; 7] = [
+    "position_jerk",
+    "orientation_jerk",
+    "start_speed",
+    "start_acceleration",
+    "start_turn",
+    "start_turn_acceleration",
+    "baseline",
+];
+
+/// Whether the predictor's numbers are to be found; not where any of them is given.
+fn is_tuned(file: &ExperimentFile) -> Result<bool, FileError> {
+    let given = TUNED.iter().find_map(|name| {
+        let path = format!("tracking.filter.{name}");
+        Some((file.get(&path)?, path))
+    });
+    let choice = file.choice("head.filter", &[("tuned", true), ("given", false)])?;
+    match (choice, given) {
+        (Some(true), Some((setting, path))) => Err(FileError::Conflict {
+            place: setting.place.clone(),
+            key: path,
+            other: "head.filter = tuned".to_owned(),
+        }),
+        (choice, given) => Ok(choice.unwrap_or(given.is_none())),
+    }
+}
+
+fn judged(file: &ExperimentFile, head: Head) -> Result<Head, FileError> {
+    match file.number("head.judge_at")? {
+        Some(metres) => head.judged_at(metres).map_err(|error| refused(file, "head.judge_at", &error)),
+        None => Ok(head),
     }
 }
 

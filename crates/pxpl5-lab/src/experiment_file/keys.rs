@@ -1,13 +1,16 @@
 //! The keys of an experiment file.
 
+use super::head::COLUMNS;
+use super::tracking_numbers::{is_tracking_parameter, tracking_parameters};
 use parameters::nearest;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Registry;
+use tracking::motion::Columns;
 
 /// A key and what it says.
 #[derive(Clone, Debug)]
 pub struct FileKey {
-    /// Its path.
+    /// Its path, as it is written before the equals sign: `motion.path`.
     pub path: String,
     /// What it sets and what it takes.
     pub about: String,
@@ -24,9 +27,25 @@ const COMMON: &[(&str, &str)] = &[
     ("motion.sway", "0 to 10: scale of the head's sway"),
     ("motion.distance", "metres from the scene's centre: still, look, orbit"),
     ("motion.deg_per_s", "rate of turn: pan, orbit"),
-    ("head.motion", "still, pan:DEG_PER_S, pendulum, synthetic:SEED or a recording FILE.csv, seen through a tracker"),
+    (
+        "head.motion",
+        "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED or a recording (.csv, .txt, .tum), relative to the \
+         experiment file, seen through a tracker",
+    ),
+    ("head.end", "what comes after a recording: error (a longer run is refused), hold or loop"),
+    ("head.axes", "axes of a recording: opengl, optical, euroc or robot; default what is usual for its kind of file"),
     ("head.tracker", "optical, fastrak, flock, flock-patched, 3space or ideal"),
     ("head.predict", "none, velocity, acceleration or kalman"),
+    (
+        "head.aim",
+        "the instant of what is shown from it that a view is predicted for: middle, first-pixel, last-pixel or retrace",
+    ),
+    (
+        "head.filter",
+        "numbers of the predictor: tuned (for the pipeline's own interval and the motion, with other noise than the run's) or given \
+          (those of tracking.filter)",
+    ),
+    ("head.judge_at", "metres from the eye at which pixel errors are judged; default where the scene's content lies"),
     ("head.raster", "plain, or vdrt (the raster is shifted by what the pose was wrong)"),
     ("seed", "seed of the head motion's sway, or of the tracker's noise"),
     ("fields", "periods of the display to simulate: NTSC fields"),
@@ -60,6 +79,11 @@ pub(super) fn keys(registry: &Registry) -> Vec<FileKey> {
         common("display", &format!("what the pipeline draws for: {}", displays.join(", "))),
     ];
     all.extend(COMMON.iter().map(|(path, about)| common(path, about)));
+    all.extend(Columns::fields().map(|field| FileKey {
+        path: format!("{COLUMNS}{field}"),
+        about: "name or number of the column of a recording that holds it; _ms, _us, _ns and _mm are units, else s and m".to_owned(),
+        applies_to: Vec::new(),
+    }));
     let of_pipelines = registry.keys().into_iter();
     all.extend(of_pipelines.map(|(key, applies_to)| FileKey {
         path: key.name.to_owned(),
@@ -76,12 +100,16 @@ fn common(path: &str, about: &str) -> FileKey {
 /// The key by which a path is kept: a parameter of the machine may be written without `machine.`. `None` for none.
 pub(super) fn canonical(registry: &Registry, path: &str) -> Option<String> {
     let path = RENAMED.iter().find(|(before, _)| *before == path).map_or(path, |(_, now)| now);
-    let known = |wanted: &str| keys(registry).iter().any(|key| key.path == wanted);
-    if known(path) || is_machine_parameter(registry, path) {
+    if is_key(registry, path) || is_machine_parameter(registry, path) || is_tracking_parameter(path) {
         return Some(path.to_owned());
     }
     let long = format!("machine.{path}");
     is_machine_parameter(registry, &long).then_some(long)
+}
+
+/// Whether a path is a key that is no parameter of the machine.
+fn is_key(registry: &Registry, path: &str) -> bool {
+    keys(registry).iter().any(|key| key.path == path)
 }
 
 /// Whether a machine with some display has such a parameter.
@@ -102,6 +130,7 @@ pub(super) fn nearest_key(registry: &Registry, found: &str) -> String {
     let parameters = parameters(registry);
     let long = parameters.iter().map(|path| format!("machine.{path}"));
     let own = keys(registry).into_iter().map(|key| key.path);
-    let all: Vec<String> = own.chain(long).chain(parameters.iter().cloned()).collect();
+    let of_trackers = tracking_parameters().into_iter().map(|parameter| parameter.path);
+    let all: Vec<String> = own.chain(long).chain(parameters.iter().cloned()).chain(of_trackers).collect();
     nearest(found, all.iter().map(String::as_str)).unwrap_or_default().to_owned()
 }

@@ -31,6 +31,7 @@ mod motion;
 mod plan;
 mod read;
 mod text;
+mod tracking_numbers;
 
 pub use error::FileError;
 pub use head::HeadChoice;
@@ -38,6 +39,7 @@ pub use keys::FileKey;
 pub use motion::{MotionChoice, PathChoice};
 pub use plan::{Outputs, Plan, Published, SceneChoice};
 pub use text::Settings;
+pub use tracking_numbers::tracking_parameters;
 
 use pxpl5_run::Registry;
 use std::collections::BTreeMap;
@@ -85,7 +87,8 @@ impl ExperimentFile {
         &self.registry
     }
 
-    /// All keys but the machine's parameters, which are `machine.` and a path of `MachineConfig::set`.
+    /// All keys but the machine's parameters, which are `machine.` and a path of `MachineConfig::set`, and those of trackers
+    /// and predictors ([`tracking_parameters`]).
     #[must_use]
     pub fn keys_of(registry: &Registry) -> Vec<FileKey> {
         keys::keys(registry)
@@ -108,8 +111,8 @@ impl ExperimentFile {
     pub fn and_load(self, path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
         let file = path.display().to_string();
-        let io = |error: std::io::Error| FileError::Io { file: file.clone(), reason: error.to_string() };
-        let text = std::fs::read_to_string(path).map_err(io)?;
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| FileError::Io { file: file.clone(), reason: error.to_string() })?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
         self.parse_in(&text, &file, &folder)
     }
@@ -133,23 +136,18 @@ impl ExperimentFile {
     }
 
     fn parse_in(mut self, text: &str, name: &str, folder: &Path) -> Result<Self, FileError> {
-        let syntax = |error: toml::de::Error| FileError::Syntax {
-            place: format!("{name}, line {}", line(text, error.span().map_or(0, |span| span.start))),
-            reason: error.message().to_owned(),
-        };
-        let spans = DeTable::parse(text).map_err(syntax)?;
-        let values: toml::Table = toml::from_str(text).map_err(syntax)?;
+        let spans = DeTable::parse(text).map_err(|error| not_toml(&error, text, name))?;
+        let values: toml::Table = toml::from_str(text).map_err(|error| not_toml(&error, text, name))?;
         for (key, value) in values {
             let at = spans.get_ref().get_key_value(key.as_str());
-            let place = |start: usize| format!("{name}, line {}", line(text, start));
             let start = at.map_or(0, |(key, _)| key.span().start);
             if key == "sweep" {
-                self.sweep = Some(Setting { value, place: place(start), folder: folder.to_owned() });
+                self.sweep = Some(Setting { value, place: place(text, name, start), folder: folder.to_owned() });
                 continue;
             }
             let spans = at.map(|(_, value)| value.get_ref());
             for (path, value, start) in flat(key, value, spans, start) {
-                self.put(&path, value, place(start), folder)?;
+                self.put(&path, value, place(text, name, start), folder)?;
             }
         }
         Ok(self)
@@ -209,7 +207,7 @@ impl ExperimentFile {
     }
 
     /// Puts a setting under the key that it is kept by.
-    fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), FileError> {
+    pub(crate) fn put(&mut self, path: &str, value: Value, place: String, folder: &Path) -> Result<(), FileError> {
         let canonical = self.canonical_key(path, &place)?;
         self.settings.insert(canonical, Setting { value, place, folder: folder.to_owned() });
         Ok(())
@@ -270,6 +268,17 @@ fn flat(
         flat(format!("{path}.{key}"), value, at.map(|(_, value)| value.get_ref()), start)
     });
     entries.collect()
+}
+
+/// Where a byte of a file stands, for errors.
+fn place(text: &str, name: &str, at: usize) -> String {
+    format!("{name}, line {}", line(text, at))
+}
+
+/// What the parser of TOML says, with its place.
+fn not_toml(error: &toml::de::Error, text: &str, name: &str) -> FileError {
+    let at = error.span().map_or(0, |span| span.start);
+    FileError::Syntax { place: place(text, name, at), reason: error.message().to_owned() }
 }
 
 /// The line of a byte, from 1.

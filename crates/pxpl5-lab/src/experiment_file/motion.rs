@@ -4,7 +4,7 @@ use super::read::wrong;
 use super::{ExperimentFile, FileError};
 use glam::Vec3;
 use pxpl5_scene::config::FIT_DISTANCE_RADII;
-use pxpl5_scene::{HeadMotion, Path, Scene, Sway};
+use pxpl5_scene::{HeadMotion, HeadPath, Scene, Sway};
 
 /// How the head moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,12 +32,12 @@ pub enum PathChoice {
     Orbit {
         /// Metres from the scene's centre; `None` fits the scene into the view.
         distance: Option<f64>,
-        /// Degrees per second.
+        /// Rate of turn, degrees per second.
         deg_per_s: f64,
     },
     /// Stands before the scene and turns.
     Pan {
-        /// Degrees per second.
+        /// Rate of turn, degrees per second.
         deg_per_s: f64,
     },
 }
@@ -82,17 +82,21 @@ impl MotionChoice {
 }
 
 impl PathChoice {
-    fn around(self, scene: &Scene) -> Path {
+    fn around(self, scene: &Scene) -> HeadPath {
         let (target, radius) = scene.bounding_sphere();
         let fitted = f64::from(radius) * FIT_DISTANCE_RADII;
-        let before = |distance: f64| target + Vec3::Z * distance as f32;
         match self {
-            Self::Still { distance } => Path::Still { eye: before(distance.unwrap_or(fitted)), target },
-            Self::Look { distance } => Path::Look { target, distance: distance.unwrap_or(fitted) },
+            Self::Still { distance } => HeadPath::Still { eye: before(target, distance.unwrap_or(fitted)), target },
+            Self::Look { distance } => HeadPath::Look { target, distance: distance.unwrap_or(fitted) },
             Self::Orbit { distance, deg_per_s } => {
-                Path::Orbit { target, distance: distance.unwrap_or(fitted), height: 0.0, deg_per_s }
+                HeadPath::Orbit { target, distance: distance.unwrap_or(fitted), height: 0.0, deg_per_s }
             }
-            Self::Pan { deg_per_s } => Path::Pan { eye: before(fitted), deg_per_s },
+            Self::Pan { deg_per_s } => HeadPath::Pan { eye: before(target, fitted), deg_per_s },
         }
     }
+}
+
+/// The point in front of another, on its +z side, so many metres away.
+fn before(target: Vec3, distance: f64) -> Vec3 {
+    target + Vec3::Z * distance as f32
 }

@@ -8,7 +8,7 @@ use crate::Workstation;
 use crate::levels::summarise;
 use parameters::Value as Number;
 use pxpl5_gp::CodeVersion;
-use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
 use pxpl5_measure::{Measure, Results};
 use pxpl5_run::{
     Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Key, KeyValue, KeyValues, Level, LimitCriterion,
@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 pub(super) const PIXELS: [(&str, Pixels); 3] = [("off", Pixels::Off), ("lazy", Pixels::Lazy), ("all", Pixels::All)];
 
-/// What is drawn.
+/// The scene that is drawn, how much of it, and how the head moves before it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneChoice {
     /// A built-in scene's name or a model file's path.
@@ -73,7 +73,7 @@ impl SceneChoice {
 }
 
 /// Whether a scene's name is a path: it has a model file's extension, or a separator.
-fn is_file(name: &str) -> bool {
+pub(super) fn is_file(name: &str) -> bool {
     let extension = Path::new(name).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     name.contains(['/', std::path::MAIN_SEPARATOR]) || extension.is_some_and(|e| MODEL_FILES.contains(&e.as_str()))
 }
@@ -83,7 +83,7 @@ fn is_file(name: &str) -> bool {
 pub struct Outputs {
     /// The last pictures, PNG.
     pub pictures: bool,
-    /// A timeline, SVG.
+    /// A timeline of all boards and pictures, SVG.
     pub timeline: bool,
     /// The measured quantities, CSV.
     pub csv: bool,
@@ -94,11 +94,11 @@ pub struct Outputs {
 pub struct Published {
     /// Its number, if it has one.
     pub figure: Option<u64>,
-    /// The paper.
+    /// Short name of the paper that prints it.
     pub source: Option<String>,
     /// Which measured quantity it is about.
     pub quantity: Measure,
-    /// Its value.
+    /// Its value as printed, in the unit of the quantity.
     pub value: f64,
 }
 
@@ -114,11 +114,10 @@ impl Published {
 }
 
 fn measure(file: &ExperimentFile, key: &str, name: &str) -> Result<Measure, FileError> {
-    let wrong = |nearest: &str| match file.get(key) {
+    Measure::named(name).map_err(|nearest| match file.get(key) {
         Some(setting) => wrong(key, setting, &format!("a quantity that is measured (the nearest is {nearest})")),
         None => FileError::Missing { key: "measure", how: "quantities that are measured" },
-    };
-    Measure::named(name).map_err(wrong)
+    })
 }
 
 /// A checked experiment: everything is known, nothing contradicts.
@@ -128,13 +127,13 @@ pub struct Plan {
     pub title: Option<String>,
     /// The pipelines and displays that there are.
     pub registry: Arc<Registry>,
-    /// The pipeline.
+    /// The pipeline, built from the keys that were given for it.
     pub pipeline: Arc<dyn Pipeline>,
     /// How the most triangles that it draws in time are found.
     pub limit: LimitCriterion,
-    /// The machine.
+    /// The machine: a preset as the pipeline adapts it, with the parameters that were set.
     pub machine: MachineConfig,
-    /// The scene.
+    /// The scene by name, not yet loaded.
     pub scene: SceneChoice,
     /// Fields to simulate; default 120.
     pub fields: u64,
@@ -148,7 +147,7 @@ pub struct Plan {
     pub pixels: Pixels,
     /// Quantities for tables and rows.
     pub measure: Vec<Measure>,
-    /// What is written.
+    /// What a run writes beside its report.
     pub output: Outputs,
     /// What it is compared with.
     pub published: Option<Published>,
@@ -169,8 +168,6 @@ impl ExperimentFile {
         let seed = self.seed()?;
         let head = HeadChoice::read(self, pipeline.as_ref(), seed)?;
         let most_fields = if head.is_some() { FIELDS_WITH_HEAD } else { FIELDS_RANGE.1 };
-        let names = self.texts("measure")?;
-        let measure = |names: Vec<String>| names.iter().map(|name| measure(self, "measure", name)).collect();
         Ok(Plan {
             title: self.text("title")?.map(str::to_owned),
             registry: Arc::clone(self.registry()),
@@ -183,7 +180,7 @@ impl ExperimentFile {
             pipeline,
             head,
             pixels: self.choice("pixels", &PIXELS)?.unwrap_or(Pixels::Lazy),
-            measure: names.map_or_else(|| Ok(Measure::usual()), measure)?,
+            measure: self.measures()?,
             output: Outputs {
                 pictures: self.flag("output.pictures")?.unwrap_or(true),
                 timeline: self.flag("output.timeline")?.unwrap_or(true),
@@ -191,6 +188,14 @@ impl ExperimentFile {
             },
             published: Published::read(self)?,
         })
+    }
+
+    /// The quantities for tables and rows: those that are named, or the usual ones.
+    fn measures(&self) -> Result<Vec<Measure>, FileError> {
+        match self.texts("measure")? {
+            Some(names) => names.iter().map(|name| measure(self, "measure", name)).collect(),
+            None => Ok(Measure::usual()),
+        }
     }
 
     /// The pipeline and the keys given for it.
@@ -260,7 +265,7 @@ impl ExperimentFile {
         let adapted = machine.clone();
         for (path, setting) in &self.settings {
             if let Some(parameter) = path.strip_prefix("machine.").filter(|path| !["preset", "code"].contains(path)) {
-                let value = self.machine_number(path, setting)?;
+                let value = number(self, path, setting)?;
                 self.refuse_twice(entry, &adapted, (path, parameter, setting), value)?;
                 machine.set(parameter, value).map_err(|error| refused(&setting.place, error))?;
             }
@@ -274,14 +279,6 @@ impl ExperimentFile {
         let displays: Vec<(&str, &pxpl5_run::DisplayEntry)> =
             self.registry().displays().iter().map(|entry| (entry.name, entry)).collect();
         Ok(self.choice("display", &displays)?.map(|entry| (entry.config)()))
-    }
-
-    /// A number of the machine: whole, or real where the parameter is.
-    fn machine_number(&self, path: &str, setting: &Setting) -> Result<Number, FileError> {
-        match &setting.value {
-            toml::Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
-            _ => Ok(Number::Whole(self.integer(path, 0..=u64::MAX)?.unwrap_or_default())),
-        }
     }
 
     /// A key of the pipeline that sets parameters, and one of these parameters beside it.
@@ -301,6 +298,14 @@ impl ExperimentFile {
             }
         }
         Ok(())
+    }
+}
+
+/// A parameter's value: whole, or real where the text is.
+pub(super) fn number(file: &ExperimentFile, path: &str, setting: &Setting) -> Result<Number, FileError> {
+    match &setting.value {
+        toml::Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
+        _ => Ok(Number::Whole(file.integer(path, 0..=u64::MAX)?.unwrap_or_default())),
     }
 }
 
@@ -330,6 +335,14 @@ impl Plan {
         self.scene.load()
     }
 
+    /// All numbers of the experiment: those of its machine and, with a tracked head, of the tracker, the port and the
+    /// predictor, whose paths begin with `tracking.`.
+    #[must_use]
+    pub fn parameters(&self) -> Vec<Parameter> {
+        let of_head = self.head.iter().flat_map(HeadChoice::parameters);
+        self.machine.parameters().into_iter().chain(of_head).collect()
+    }
+
     /// Name of the level of modelling.
     #[must_use]
     pub fn level_name(&self) -> String {
@@ -347,7 +360,7 @@ impl Plan {
     pub fn experiment(&self, scene: Arc<Scene>) -> Experiment {
         let entry = self.registry.pipeline(self.pipeline.name()).ok();
         let experiment = Experiment::with(self.machine.clone(), Arc::clone(&self.pipeline), scene)
-            .estimated_by(entry.and_then(|entry| Some(entry.closed_form?.fields_needed)))
+            .estimated_by(entry.and_then(|entry| Some(entry.closed_form?.estimates)))
             .fields(self.fields)
             .seed(self.seed)
             .pixels(self.pixels)

@@ -12,56 +12,47 @@ impl ExperimentFile {
     }
 
     pub(super) fn text(&self, key: &str) -> Result<Option<&str>, FileError> {
-        let text = |setting: &'_ Setting| -> Result<(), FileError> {
-            setting.value.as_str().map(|_| ()).ok_or_else(|| wrong(key, setting, "text in quotes"))
-        };
-        self.get(key).map_or(Ok(()), text)?;
-        Ok(self.get(key).and_then(|setting| setting.value.as_str()))
+        let Some(setting) = self.get(key) else { return Ok(None) };
+        setting.value.as_str().map(Some).ok_or_else(|| wrong(key, setting, "text in quotes"))
     }
 
     pub(super) fn flag(&self, key: &str) -> Result<Option<bool>, FileError> {
-        let flag = |setting: &Setting| setting.value.as_bool().ok_or_else(|| wrong(key, setting, "true or false"));
-        self.get(key).map(flag).transpose()
+        let Some(setting) = self.get(key) else { return Ok(None) };
+        setting.value.as_bool().map(Some).ok_or_else(|| wrong(key, setting, "true or false"))
     }
 
     pub(super) fn integer(&self, key: &str, range: RangeInclusive<u64>) -> Result<Option<u64>, FileError> {
-        let integer = |setting: &Setting| {
-            let value = setting.value.as_integer().and_then(|value| u64::try_from(value).ok());
-            let expected = || wrong(key, setting, &format!("a whole number from {} to {}", range.start(), range.end()));
-            value.filter(|value| range.contains(value)).ok_or_else(expected)
-        };
-        self.get(key).map(integer).transpose()
+        let Some(setting) = self.get(key) else { return Ok(None) };
+        let value = setting.value.as_integer().and_then(|value| u64::try_from(value).ok());
+        value
+            .filter(|value| range.contains(value))
+            .map(Some)
+            .ok_or_else(|| wrong(key, setting, &format!("a whole number from {} to {}", range.start(), range.end())))
     }
 
     pub(super) fn number(&self, key: &str) -> Result<Option<f64>, FileError> {
-        let number = |setting: &Setting| {
-            let value = setting.value.as_float().or(setting.value.as_integer().map(|value| value as f64));
-            value.filter(|value| value.is_finite()).ok_or_else(|| wrong(key, setting, "a number"))
-        };
-        self.get(key).map(number).transpose()
+        let Some(setting) = self.get(key) else { return Ok(None) };
+        let value = setting.value.as_float().or(setting.value.as_integer().map(|value| value as f64));
+        value.filter(|value| value.is_finite()).map(Some).ok_or_else(|| wrong(key, setting, "a number"))
     }
 
     pub(super) fn texts(&self, key: &str) -> Result<Option<Vec<String>>, FileError> {
-        let texts = |setting: &Setting| {
-            let list =
-                setting.value.as_array().map(|list| list.iter().map(|v| v.as_str().map(str::to_owned)).collect());
-            list.flatten().ok_or_else(|| wrong(key, setting, "a list of texts in quotes"))
-        };
-        self.get(key).map(texts).transpose()
+        let Some(setting) = self.get(key) else { return Ok(None) };
+        let list: Option<Option<Vec<String>>> =
+            setting.value.as_array().map(|list| list.iter().map(|v| v.as_str().map(str::to_owned)).collect());
+        list.flatten().map(Some).ok_or_else(|| wrong(key, setting, "a list of texts in quotes"))
     }
 
     /// One of some names; a number is taken by its digits, so that `code = 1994` needs no quotes.
     pub(super) fn choice<T: Copy>(&self, key: &str, choices: &[(&str, T)]) -> Result<Option<T>, FileError> {
-        let choice = |setting: &Setting| {
-            let found = plain(&setting.value);
-            let chosen = choices.iter().find(|(name, _)| *name == found).map(|(_, value)| *value);
-            chosen.ok_or_else(|| {
-                let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-                let near = nearest(&found, names.iter().copied()).unwrap_or_default();
-                wrong(key, setting, &format!("one of {} (the nearest is {near})", names.join(", ")))
-            })
-        };
-        self.get(key).map(choice).transpose()
+        let Some(setting) = self.get(key) else { return Ok(None) };
+        let found = plain(&setting.value);
+        if let Some((_, value)) = choices.iter().find(|(name, _)| *name == found) {
+            return Ok(Some(*value));
+        }
+        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+        let near = nearest(&found, names.iter().copied()).unwrap_or_default();
+        Err(wrong(key, setting, &format!("one of {} (the nearest is {near})", names.join(", "))))
     }
 }
 

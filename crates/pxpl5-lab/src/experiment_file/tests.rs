@@ -1,6 +1,7 @@
 use super::*;
 use pxpl5_machine::MachineConfig;
-use pxpl5_run::Pixels;
+use pxpl5_run::{Fingerprint, Pixels};
+use std::path::Path;
 
 fn plan(text: &str) -> Plan {
     ExperimentFile::parse(text, "test").expect("TOML").resolve().expect("an experiment")
@@ -24,7 +25,7 @@ fn what_is_not_given_is_what_the_papers_used() {
 
 #[test]
 fn every_machine_parameter_is_reached_with_and_without_its_first_part() {
-    for parameter in MachineConfig::small_hmd().parameters() {
+    for parameter in MachineConfig::small_hmd().parameters().into_iter().filter(|parameter| !parameter.read_only) {
         let mut file = ExperimentFile::parse(RC, "test").expect("TOML");
         // One more than the preset's: always in range, but for sizes and rates that frame buffers check together.
         let path = &parameter.path;
@@ -159,15 +160,63 @@ fn another_recording_of_the_same_name_is_another_experiment() {
     std::fs::create_dir_all(&folder).expect("writable");
     let text = format!("{RC}head.motion = \"head.csv\"\n");
     std::fs::write(folder.join("e.toml"), text).expect("writable");
-    let with = |x: f64| {
-        let rows = format!("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
-        std::fs::write(folder.join("head.csv"), rows).expect("writable");
-        ExperimentFile::load(folder.join("e.toml")).and_then(|file| file.resolve()).expect("beside the file")
-    };
-    let (a, b) = (with(0.1), with(0.2));
-    let hash = |plan: &Plan| plan.experiment(plan.load_scene().expect("built in")).config_hash();
-    assert_eq!(hash(&a), hash(&with(0.1)));
-    assert_ne!(hash(&a), hash(&b));
+    let a = moved_to(0.1, &folder);
+    let b = moved_to(0.2, &folder);
+    assert_eq!(config_hash(&a), config_hash(&moved_to(0.1, &folder)));
+    assert_ne!(config_hash(&a), config_hash(&b));
     assert_ne!(a, b);
     let _ = std::fs::remove_dir_all(folder);
+}
+
+#[test]
+fn a_recording_is_read_beside_its_file_with_the_columns_and_the_end_that_it_says() {
+    let folder = std::env::temp_dir().join(format!("pxpl5-recording-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let poses = "stamp;qx;qy;qz;qw;px;py;pz\n10;0;0;0;1;0;0;0\n1010;0;0;0;1;2000;0;0\n";
+    std::fs::write(folder.join("poses.csv"), poses).expect("written");
+    let text = "pipeline = \"slats\"\nscene = \"room\"\n[head]\nmotion = \"poses.csv\"\nend = \"hold\"\njudge_at = 3.5\n\
+                [head.columns]\nt_ms = \"stamp\"\nx_mm = 6\ny = 7\nz = 8\nqw = \"qw\"\nqx = \"qx\"\nqy = \"qy\"\nqz = \"qz\"\n";
+    let path = folder.join("experiment.toml");
+    std::fs::write(&path, text).expect("written");
+    let plan = ExperimentFile::load(&path).expect("keys").resolve().expect("a plan");
+    let head = plan.head.as_ref().expect("a head").head();
+    assert!(
+        (head.motion().pose(500_000_000_000).position.x - 1.0).abs() < 1e-12,
+        "half of 2,000 mm after half a second"
+    );
+    assert_eq!((head.motion().ends_ps(), head.judge_at_m()), (None, Some(3.5)));
+    // What is written into another folder means the same.
+    let other = folder.join("elsewhere");
+    std::fs::create_dir_all(&other).expect("a folder");
+    std::fs::write(other.join("again.toml"), plan.settings_for_any_folder().to_string()).expect("written");
+    let again = ExperimentFile::load(other.join("again.toml")).expect("keys").resolve().expect("the same plan");
+    assert_eq!(again.head.as_ref().expect("a head").head().fingerprint(), head.fingerprint());
+    let _ = std::fs::remove_dir_all(&folder);
+}
+
+#[test]
+fn what_is_said_of_a_head_is_checked() {
+    let refusal = |more: &str| {
+        let text = format!("pipeline = \"slats\"\nscene = \"room\"\n{more}\n");
+        ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect_err("refused").to_string()
+    };
+    let at = refusal("head.motion = \"pan:1\"\nhead.judge_at = 0");
+    assert!(at.contains("distance at which errors are judged, m: expected 0.001 to 1000000, found 0"), "{at}");
+    let end = refusal("head.motion = \"pan:1\"\nhead.end = \"hold\"");
+    assert!(end.contains("line 4: head.end: expected nothing: head.motion is no recording"), "{end}");
+    let sine = refusal("head.motion = \"sine:20\"");
+    assert!(sine.contains("such as sine:20:0.5, found `20`"), "{sine}");
+    let judged = refusal("head.judge_at = 2.0");
+    assert!(judged.contains("head.motion is missing"), "{judged}");
+}
+
+/// The plan of `e.toml` beside a recording of a head that moves so many metres in a second.
+fn moved_to(x: f64, folder: &Path) -> Plan {
+    let rows = format!("time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,{x},0,0,1,0,0,0\n");
+    std::fs::write(folder.join("head.csv"), rows).expect("writable");
+    ExperimentFile::load(folder.join("e.toml")).and_then(|file| file.resolve()).expect("beside the file")
+}
+
+fn config_hash(plan: &Plan) -> Fingerprint {
+    plan.experiment(plan.load_scene().expect("built in")).config_hash()
 }

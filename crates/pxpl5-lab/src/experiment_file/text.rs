@@ -1,9 +1,10 @@
 //! A plan written out in full.
 
 use super::motion::PathChoice;
-use super::plan::{PIXELS, Plan};
+use super::plan::{PIXELS, Plan, is_file};
+use crate::compare::is_recording;
 use parameters::Value as Number;
-use pxpl5_machine::MachineConfig;
+use pxpl5_machine::{MachineConfig, Parameter};
 use pxpl5_run::{Fingerprint, KeyValue};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -12,7 +13,7 @@ use toml::Value;
 /// Settings by path, as they take effect; shown as the text of an experiment file that says the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Values by path.
+    /// Values as TOML has them, by the path of their key.
     pub values: BTreeMap<String, Value>,
     /// Remarks by path: units, and what a preset would have said.
     remarks: BTreeMap<String, String>,
@@ -34,7 +35,8 @@ impl Plan {
         self.pipeline_settings(&mut all);
         self.scene_settings(&mut all);
         if let Some(head) = &self.head {
-            head.settings().into_iter().for_each(|(path, value)| all.put(path, value));
+            head.settings().into_iter().for_each(|(path, value)| all.put(&path, value));
+            head.parameters().iter().for_each(|parameter| all.parameter(&parameter.path, parameter, &[]));
         }
         all.put("fields", self.fields as i64);
         all.put("seed", self.seed as i64);
@@ -46,6 +48,20 @@ impl Plan {
         all.put("output.csv", self.output.csv);
         self.published_settings(&mut all);
         all.machine(&self.machine);
+        all
+    }
+
+    /// The same for a file in any folder: names of files, which are relative to the folder of the file that says them, are absolute.
+    #[must_use]
+    pub fn settings_for_any_folder(&self) -> Settings {
+        let mut all = self.settings();
+        for (key, is_file) in [("scene", is_file as fn(&str) -> bool), ("head.motion", is_recording)] {
+            let named = all.values.get(key).and_then(Value::as_str).filter(|name| is_file(name));
+            // A path that cannot be made absolute (an empty one) stays as it is.
+            if let Some(absolute) = named.and_then(|name| std::path::absolute(name).ok()) {
+                all.put(key, absolute.display().to_string());
+            }
+        }
         all
     }
 
@@ -117,15 +133,19 @@ impl Settings {
         self.put("machine.n_gps", machine.n_gps as i64);
         self.put("machine.n_renderers", machine.n_renderers as i64);
         let preset = MachineConfig::preset(&machine.preset).map(|preset| preset.parameters()).unwrap_or_default();
-        for parameter in machine.parameters() {
-            let path = format!("machine.{}", parameter.path);
-            let own = preset.iter().find(|other| other.path == parameter.path).map(|other| other.value);
-            let changed = own.filter(|own| *own != parameter.value);
-            let changed = changed.map_or_else(String::new, |own| format!("; the preset has {own}"));
-            let remark = format!("{}, {}{changed}", parameter.info.unit, parameter.info.standing);
-            self.remarks.insert(path.clone(), remark);
-            self.put(&path, toml_number(parameter.value));
+        for parameter in machine.parameters().into_iter().filter(|parameter| !parameter.read_only) {
+            self.parameter(&format!("machine.{}", parameter.path), &parameter, &preset);
         }
+    }
+
+    /// A number under its key, with a remark on unit and standing, and on what it is among the parameters of a preset.
+    fn parameter(&mut self, key: &str, parameter: &Parameter, preset: &[Parameter]) {
+        let own = preset.iter().find(|other| other.path == parameter.path).map(|other| other.value);
+        let changed = own.filter(|own| *own != parameter.value);
+        let changed = changed.map_or_else(String::new, |own| format!("; the preset has {own}"));
+        let remark = format!("{}, {}{changed}", parameter.info.unit, parameter.info.standing);
+        self.remarks.insert(key.to_owned(), remark);
+        self.put(key, toml_number(parameter.value));
     }
 
     fn lines(&self, f: &mut fmt::Formatter<'_>, table: Option<&str>) -> fmt::Result {
@@ -154,7 +174,7 @@ fn toml_number(value: Number) -> Value {
 impl fmt::Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.lines(f, None)?;
-        for table in ["motion", "head", "machine", "output", "published"] {
+        for table in ["motion", "head", "tracking", "machine", "output", "published"] {
             if self.values.keys().any(|path| path.split_once('.').is_some_and(|(of, _)| of == table)) {
                 writeln!(f, "\n[{table}]")?;
                 self.lines(f, Some(table))?;

@@ -7,7 +7,8 @@ use std::fmt::Write as _;
 /// ACCURACY.md: every figure, then the misses one by one.
 #[must_use]
 pub fn markdown(figures: &Figures) -> String {
-    let (mut text, rows) = (String::new(), &figures.rows);
+    let mut text = String::new();
+    let rows = &figures.rows;
     head(&mut text, rows);
     rows.iter().for_each(|row| line(&mut text, row));
     misses(&mut text, rows);
@@ -28,16 +29,21 @@ fn sensitivity(text: &mut String, intervals: &[Interval]) {
          end, then the elasticity (relative change of the figure over relative change of the parameter).\n\n\
          | # | one at a time | joint | 5 % to 95 % | moved by |\n|---|---|---|---|---|\n"
     );
-    let range = |[low, high]: [f64; 2]| format!("{} to {}", number(low), number(high));
     for i in intervals {
         let strongest = i.effects.iter().take(STRONGEST);
         let effects: Vec<_> = strongest
             .map(|e| format!("`{}` ({}, {}; {:+.2})", e.path, number(e.ends[0]), number(e.ends[1]), e.elasticity))
             .collect();
         let moved = if effects.is_empty() { "nothing".to_owned() } else { effects.join(", ") };
-        let (single, joint, likely) = (range(i.one_at_a_time), range(i.joint), range(i.likely));
+        let single = range(i.one_at_a_time);
+        let joint = range(i.joint);
+        let likely = range(i.likely);
         let _ = writeln!(text, "| {} | {single} | {joint} | {likely} | {moved} |", i.id);
     }
+}
+
+fn range([low, high]: [f64; 2]) -> String {
+    format!("{} to {}", number(low), number(high))
 }
 
 fn head(text: &mut String, rows: &[Row]) {
@@ -65,9 +71,9 @@ fn head(text: &mut String, rows: &[Row]) {
 
 fn line(text: &mut String, row: &Row) {
     let analytic = row.analytic.map_or("-".to_owned(), number);
-    let interval = row.interval.map_or("not varied".to_owned(), |[low, high]| {
+    let interval = row.interval.map_or("not varied".to_owned(), |bounds| {
         let outside = if row.is_out_of_reach() { ", **out of reach**" } else { "" };
-        format!("{} to {}{outside}", number(low), number(high))
+        format!("{}{outside}", range(bounds))
     });
     let spread = row.spread.map_or(String::new(), |spread| format!(" +- {}", number(spread)));
     let miss = if row.misses() { " **miss**" } else { "" };
@@ -121,7 +127,7 @@ fn number(value: f64) -> String {
 mod tests {
     #[test]
     fn numbers_have_four_significant_digits() {
-        let of = |value| super::number(value);
-        assert_eq!([of(54.116), of(780.0), of(1.0), of(0.0), of(16_800.0)], ["54.12", "780", "1", "0", "16800"]);
+        let texts = [54.116, 780.0, 1.0, 0.0, 16_800.0].map(super::number);
+        assert_eq!(texts, ["54.12", "780", "1", "0", "16800"]);
     }
 }

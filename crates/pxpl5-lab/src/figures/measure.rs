@@ -2,7 +2,7 @@
 
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
-use pphigs::{Binning, Picture, Shading, Share};
+use pphigs::{Binning, Picture, Shading, Share, TransformCost};
 use pxpl5_analytic::{Load, StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
 use pxpl5_machine::{ConfigError, MachineConfig};
@@ -19,11 +19,11 @@ use std::sync::{Arc, OnceLock};
 /// A further number of an experiment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Detail {
-    /// What it is.
+    /// What the number is, in a few words: `standard deviation`.
     pub name: String,
-    /// The number.
+    /// The number, in the unit that stands beside it.
     pub value: f64,
-    /// Its unit.
+    /// Unit of the value: `ms`, `fields`, `Hz`, `triangles`.
     pub unit: &'static str,
 }
 
@@ -32,21 +32,21 @@ pub struct Detail {
 pub struct Measured {
     /// The figure's own number.
     pub value: f64,
-    /// Others.
+    /// Further numbers of the same experiment, each with a unit of its own.
     pub details: Vec<Detail>,
 }
 
 /// A bench for the figures: a level of modelling, and changes to the machine's parameters.
 #[derive(Clone, Debug)]
 pub struct Bench {
-    /// The level.
+    /// The level of modelling at which every figure is measured.
     pub level: Level,
     /// Parameters by path that differ from the presets. A path that begins with a preset's name and a colon changes
     /// that one only; the times of PPHIGS code do not change the machines that run Slats.
     pub changes: Vec<(String, u64)>,
     /// Seeds of the head motion of figure 7.
     pub seeds: u64,
-    /// Frames of each.
+    /// Frames of figure 7 that count, for each seed.
     pub frames: u64,
     pub(crate) mig: MigLoads,
 }
@@ -161,8 +161,8 @@ impl Bench {
     fn stages_of(&self, ms: f64) -> Result<MachineConfig> {
         let mut machine = self.machine("small-hmd")?;
         let regions = 20_u64.div_ceil(machine.n_renderers as u64) as f64;
-        let entries_ns = 20 * machine.gp.bin_entry_ns + machine.gp.pass_ns;
-        machine.set("gp.triangle_ns", (ms * 1e6) as u64 - entries_ns)?;
+        let rest_ns = TransformCost { entries: 20, ..TransformCost::PASS }.ns(&machine.gp);
+        machine.set("gp.triangle_ns", (ms * 1e6) as u64 - rest_ns)?;
         machine.code = None;
         let clocks = ms * 1e-3 / regions / 12.0 * machine.renderer.clock_hz as f64;
         machine.set("renderer.phong_triangle_clocks", clocks as u64)?;
@@ -211,8 +211,8 @@ impl Bench {
         let loads = match self.mig.get() {
             Some(loads) => loads,
             None => {
-                let loads_of_seed = |seed| stereo_loads(&self.mig_experiment(seed)?);
-                let all = (1..=self.seeds).map(loads_of_seed).collect::<Result<_>>()?;
+                let all = (1..=self.seeds).map(|seed| stereo_loads(&self.mig_experiment(seed)?));
+                let all = all.collect::<Result<_>>()?;
                 self.mig.get_or_init(|| all)
             }
         };
@@ -297,7 +297,7 @@ fn scene_named(name: &str) -> Result<Arc<Scene>> {
     builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()))
 }
 
-/// Complete pictures a second; 0 of fewer than two.
+/// Whole pictures shown a second; 0 where none was.
 fn rate_hz(summary: &Summary) -> f64 {
     summary.updates_hz.unwrap_or_default()
 }
@@ -308,7 +308,7 @@ fn detail(name: &str, value: f64, unit: &'static str) -> Detail {
 
 /// The mean with least, greatest and deviation.
 fn spread_ms(statistics: Statistics) -> Measured {
-    let Statistics { mean, sd, min, max } = statistics;
+    let Statistics { mean, sd, min, max, .. } = statistics;
     let details =
         vec![detail("standard deviation", sd, "ms"), detail("least", min, "ms"), detail("greatest", max, "ms")];
     Measured { value: mean, details }

@@ -29,7 +29,7 @@ use thiserror::Error;
 pub struct FigureError {
     /// Number of the figure.
     pub id: String,
-    /// Why.
+    /// Why its experiment gave no result.
     pub reason: String,
 }
 
@@ -38,7 +38,7 @@ pub struct FigureError {
 pub struct Figures {
     /// In the order of [`FIGURES`].
     pub rows: Vec<Row>,
-    /// Intervals and elasticities.
+    /// What the open parameters do to each figure but the one of the scenes.
     pub intervals: Vec<Interval>,
 }
 
@@ -48,12 +48,17 @@ pub struct Figures {
 ///
 /// The first [`FigureError`].
 pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
-    let measure = |figure: &Figure| match bench.measure(figure.id) {
-        Ok(measured) => Ok(Row::new(figure, measured)),
-        Err(error) => Err(FigureError { id: figure.id.to_owned(), reason: error.to_string() }),
-    };
-    let mut rows = crate::parallel::map(&FIGURES, measure).into_iter().collect::<Result<Vec<_>, _>>()?;
+    let rows = crate::parallel::map(&FIGURES, |figure| row_of(bench, figure));
+    let mut rows = rows.into_iter().collect::<Result<Vec<_>, _>>()?;
     let intervals = intervals();
     fill(&mut rows, &intervals);
     Ok(Figures { rows, intervals })
+}
+
+/// A figure with what the bench gives for it.
+fn row_of(bench: &Bench, figure: &Figure) -> Result<Row, FigureError> {
+    match bench.measure(figure.id) {
+        Ok(measured) => Ok(Row::new(figure, measured)),
+        Err(error) => Err(FigureError { id: figure.id.to_owned(), reason: error.to_string() }),
+    }
 }

@@ -9,11 +9,11 @@ use serde::Serialize;
 pub struct Row {
     /// Number of the figure.
     pub id: &'static str,
-    /// The printed value.
+    /// The value that the paper prints, in `unit`.
     pub published: f64,
-    /// The model's.
+    /// The model's value, in `unit`, at the level of the bench.
     pub simulated: f64,
-    /// Unit of both.
+    /// Unit of the published and the simulated value.
     pub unit: &'static str,
     /// (simulated - published) / published, in percent.
     pub error_percent: f64,
@@ -29,11 +29,11 @@ pub struct Row {
     pub spread: Option<f64>,
     /// What was fitted, or which rule was chosen; empty for a free check.
     pub fitted: &'static str,
-    /// Paper and topic.
+    /// Short name of the paper, and the topic within it.
     pub source: String,
-    /// The statement.
+    /// What the paper states, in a few words.
     pub statement: &'static str,
-    /// What was run.
+    /// What was run for it here: machine, pipeline, scene.
     pub experiment: &'static str,
     /// What is known of the cause of a miss.
     pub cause: &'static str,

@@ -10,12 +10,12 @@ pub enum Basis {
     Free,
     /// A parameter was fitted to this figure, or derived from it.
     Fitted {
-        /// Which.
+        /// Path of the parameter, and the preset in which it stands.
         parameter: &'static str,
     },
     /// A rule of the model was chosen because of this figure.
     Rule {
-        /// Which.
+        /// The rule of the model, in a few words.
         rule: &'static str,
     },
 }
@@ -29,17 +29,17 @@ pub struct Figure {
     pub paper: &'static str,
     /// What part of the paper it belongs to, by topic.
     pub section: &'static str,
-    /// The statement.
+    /// What the paper states, in a few words.
     pub statement: &'static str,
-    /// The printed value.
+    /// The value that the paper prints, in `unit`.
     pub value: f64,
-    /// Its unit.
+    /// Unit of the printed value.
     pub unit: &'static str,
     /// Half of the range that the paper prints or words like "about" and "1 to 2" give; `None` where it gives none.
     pub spread: Option<f64>,
     /// The experiment that produces it here.
     pub experiment: &'static str,
-    /// Fitted or free.
+    /// Whether something was fitted or chosen so that the figure comes out.
     pub basis: Basis,
     /// What is known of the cause where the model misses the figure; empty where it does not.
     pub cause: &'static str,

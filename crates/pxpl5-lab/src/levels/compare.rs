@@ -13,7 +13,7 @@ use std::time::Instant;
 /// A level's speed and error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LevelReport {
-    /// The level.
+    /// The level that was timed and judged.
     pub level: Level,
     /// Simulated fields per second of this host's time, over the experiments of [`cases`], without pixels.
     pub fields_per_host_second: f64,
@@ -59,20 +59,22 @@ fn scene(name: &str) -> Result<Arc<Scene>, ExperimentError> {
 pub fn compare() -> Result<Vec<LevelReport>, ExperimentError> {
     let rows: Vec<Vec<Row>> = Level::ALL.into_iter().map(rows_of).collect::<Result<_, _>>()?;
     let cycle = rows.last().cloned().unwrap_or_default();
-    let report = |(level, rows): (Level, &Vec<Row>)| {
-        let deviations = rows.iter().zip(&cycle).map(|(a, b)| 100.0 * (a.simulated / b.simulated - 1.0).abs());
-        let worst = deviations.clone().fold(0.0, f64::max);
-        let (fields_per_host_second, configurations_per_host_second) = speed(level)?;
-        Ok(LevelReport {
-            level,
-            fields_per_host_second,
-            configurations_per_host_second,
-            mean_error_percent: mean_error_percent(rows),
-            deviation_percent: [deviations.sum::<f64>() / rows.len().max(1) as f64, worst],
-            figures: rows.iter().map(|row| (row.id, row.simulated)).collect(),
-        })
-    };
-    Level::ALL.into_iter().zip(&rows).map(report).collect()
+    Level::ALL.into_iter().zip(&rows).map(|(level, rows)| report(level, rows, &cycle)).collect()
+}
+
+/// A level's figures beside those of the cycle level, and its speed on this host, now.
+fn report(level: Level, rows: &[Row], cycle: &[Row]) -> Result<LevelReport, ExperimentError> {
+    let deviations = rows.iter().zip(cycle).map(|(a, b)| 100.0 * (a.simulated / b.simulated - 1.0).abs());
+    let worst = deviations.clone().fold(0.0, f64::max);
+    let (fields_per_host_second, configurations_per_host_second) = speed(level)?;
+    Ok(LevelReport {
+        level,
+        fields_per_host_second,
+        configurations_per_host_second,
+        mean_error_percent: mean_error_percent(rows),
+        deviation_percent: [deviations.sum::<f64>() / rows.len().max(1) as f64, worst],
+        figures: rows.iter().map(|row| (row.id, row.simulated)).collect(),
+    })
 }
 
 fn rows_of(level: Level) -> Result<Vec<Row>, ExperimentError> {
@@ -99,7 +101,8 @@ fn speed(level: Level) -> Result<(f64, f64), ExperimentError> {
 const CONFIGURATIONS: u64 = 20_000;
 
 fn analytic_speed() -> Result<f64, ExperimentError> {
-    let (mut machine, host_time) = (MachineConfig::slats(), Instant::now());
+    let mut machine = MachineConfig::slats();
+    let host_time = Instant::now();
     let mut in_time = 0;
     for i in 0..CONFIGURATIONS {
         machine.gp.triangle_ns = 20_000 + i;

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use pxpl5_run::TestScene;
 use pxpl5_scene::{
-    Frame, HeadMotion, Hmd, HmdConfig, Lighting, Path, Scene, SceneParts, Structure, Sway, Vertex, builtin,
+    Frame, HeadMotion, HeadPath, Hmd, HmdConfig, Lighting, Scene, SceneParts, Structure, Sway, Vertex, builtin,
 };
 
 /// Legs of a typical triangle in pixels: its box touches (1 + 18/128)^2 = 1.30 regions of 128 x 128 on average.
@@ -53,7 +53,7 @@ fn typical(count: u32) -> Scene {
             hinge: None,
         }],
         lighting: Lighting::over_the_shoulder(),
-        motion: HeadMotion::new(Path::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, Sway::none()).expect("in range"),
+        motion: HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, Sway::none()).expect("in range"),
     };
     Scene::new(parts).expect("indices and normals are right by construction")
 }

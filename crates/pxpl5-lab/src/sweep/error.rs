@@ -12,7 +12,7 @@ pub enum SweepError {
     Io {
         /// The file or folder.
         path: String,
-        /// What was tried.
+        /// What was tried, in words: `cannot be read`.
         doing: &'static str,
         /// What the operating system said.
         reason: String,
@@ -20,23 +20,23 @@ pub enum SweepError {
     /// Another process is writing into the folder.
     #[error("{path}: another process is writing here; wait for it, or choose another folder")]
     Locked {
-        /// The folder.
+        /// Path of the folder, as it was given.
         path: String,
     },
     /// The folder holds results already.
     #[error("{path}: there are {rows} finished points here already; continue with --resume, or choose another folder")]
     NotEmpty {
-        /// The folder.
+        /// Path of the folder, as it was given.
         path: String,
-        /// How many.
+        /// Number of finished points that it holds.
         rows: usize,
     },
     /// The folder holds results of another sweep.
     #[error("{path}: these are results of another sweep: {what} was {found}, expected {expected}")]
     Foreign {
-        /// The file.
+        /// Path of the file of rows.
         path: String,
-        /// What differs.
+        /// What differs first between the two headers.
         what: String,
         /// What this sweep has.
         expected: String,
@@ -46,7 +46,7 @@ pub enum SweepError {
     /// A line is no row.
     #[error("{path}, line {line}: expected a row of a sweep, found {found}")]
     Damaged {
-        /// The file.
+        /// Path of the file of rows.
         path: String,
         /// The line, from 1.
         line: usize,
@@ -56,21 +56,21 @@ pub enum SweepError {
     /// A point has two different rows.
     #[error("point {point} has different rows in {first} and {second}")]
     Contradiction {
-        /// The point.
+        /// Number of the point, from 0.
         point: u64,
-        /// A file.
+        /// The file with the row that was read first.
         first: String,
         /// Another file, or the same.
         second: String,
     },
-    /// Points are missing.
+    /// Some points are in none of the folders.
     #[error("{missing} of {points} points are missing: {which}; run the shards that hold them with --resume")]
     Missing {
-        /// How many.
+        /// Number of points that are missing.
         missing: u64,
-        /// Of how many.
+        /// Number of points of the whole sweep.
         points: u64,
-        /// Which, as ranges.
+        /// Which points, as ranges of their numbers.
         which: String,
     },
     /// The experiment file is wrong.

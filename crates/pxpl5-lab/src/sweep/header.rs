@@ -24,7 +24,7 @@ pub struct Header {
     pub seed: u64,
     /// A line for people.
     pub title: Option<String>,
-    /// Number of points.
+    /// Number of points of the whole sweep, all shards together.
     pub points: u64,
     /// The quantities measured, and their definitions.
     pub measure: BTreeMap<String, String>,

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What was joined.
+/// What joining the shards of a sweep found, point by point.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Merged {
     /// Points of the sweep.
@@ -80,12 +80,15 @@ fn join(joined: &mut Joined, rows: BTreeMap<u64, Row>, name: &str) -> Result<Vec
 
 fn write(folders: &[PathBuf], out: &Path, header: &Header, rows: &BTreeMap<u64, Row>) -> Result<(), SweepError> {
     fs::create_dir_all(out).map_err(SweepError::io(out, "cannot be made"))?;
-    let times = |folder: &PathBuf| fs::read_to_string(folder.join(TIMES_FILE)).unwrap_or_default();
-    // Each begins with the header.
-    let lines = |text: String| text.lines().skip(1).map(|line| format!("{line}\n")).collect::<String>();
-    let times: String = [line_of(header)].into_iter().chain(folders.iter().map(times).map(lines)).collect();
+    let times: String = [line_of(header)].into_iter().chain(folders.iter().map(|folder| times_of(folder))).collect();
     replace(&out.join(TIMES_FILE), &times)?;
     write_all(out, header, rows)
+}
+
+/// The lines of a folder's times behind the first one, which is the header.
+fn times_of(folder: &Path) -> String {
+    let text = fs::read_to_string(folder.join(TIMES_FILE)).unwrap_or_default();
+    text.lines().skip(1).map(|line| format!("{line}\n")).collect()
 }
 
 /// Ranges of numbers in order, at most ten of them.
@@ -97,8 +100,10 @@ fn ranges(numbers: &[u64]) -> String {
             _ => ranges.push((*number, *number)),
         }
     }
-    let text =
-        |(first, last): &(u64, u64)| if first == last { first.to_string() } else { format!("{first} to {last}") };
     let more = if ranges.len() > 10 { ", ..." } else { "" };
-    format!("{}{more}", ranges.iter().take(10).map(text).collect::<Vec<_>>().join(", "))
+    format!("{}{more}", ranges.iter().take(10).map(range_text).collect::<Vec<_>>().join(", "))
+}
+
+fn range_text((first, last): &(u64, u64)) -> String {
+    if first == last { first.to_string() } else { format!("{first} to {last}") }
 }

@@ -38,7 +38,7 @@ pub use space::{Axis, MAX_POINTS, Space};
 pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};
 
 use crate::experiment_file::{ExperimentFile, FileError};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// An experiment file with a space of settings.
 #[derive(Clone, Debug)]
@@ -73,7 +73,12 @@ impl Sweep {
         &self.base
     }
 
-    /// The points.
+    /// The folder of the sweep's file, to which names of files are relative.
+    fn folder(&self) -> PathBuf {
+        self.base.sweep.as_ref().map(|sweep| sweep.folder.clone()).unwrap_or_default()
+    }
+
+    /// The space of settings, whose points are the experiments.
     #[must_use]
     pub const fn space(&self) -> &Space {
         &self.space

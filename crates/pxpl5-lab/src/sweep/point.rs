@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
-    /// It could.
+    /// It could be simulated; `measured` holds what came of it.
     Done,
     /// It could not; `error` says why.
     Failed,
@@ -23,11 +23,11 @@ pub enum Status {
 /// What came of a point; the same on every host.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Its number.
+    /// Number of the point, from 0, in the order of the space.
     pub point: u64,
     /// Whether it could be simulated.
     pub status: Status,
-    /// Its settings.
+    /// The settings of the point that are not those of all, by key.
     pub parameters: BTreeMap<String, Value>,
     /// Quantities by name; null where the run shows none.
     pub measured: BTreeMap<String, Option<f64>>,
@@ -44,7 +44,8 @@ pub struct Row {
 pub(super) struct Scenes(Mutex<BTreeMap<String, Arc<Scene>>>);
 
 impl Scenes {
-    fn of(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
+    /// The scene of a plan, loaded once for all points that share it.
+    fn scene_of(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
         // Loading under the lock: nobody else should load the same.
         let mut loaded = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let whole = match loaded.get(&plan.scene.name) {
@@ -69,7 +70,7 @@ impl Sweep {
     pub fn plan(&self, point: u64) -> Result<Plan, FileError> {
         let mut file = self.base.clone();
         for (path, value) in self.space.settings(point) {
-            file.set(&path, value, &format!("point {point}"))?;
+            file.put(&path, value, format!("point {point}"), &self.folder())?;
         }
         file.resolve()
     }
@@ -102,7 +103,7 @@ impl Sweep {
 
     fn simulate(&self, point: u64, scenes: &Scenes) -> Result<Simulated, String> {
         let plan = self.plan(point).map_err(|error| error.to_string())?;
-        let scene = scenes.of(&plan).map_err(|error| error.to_string())?;
+        let scene = scenes.scene_of(&plan).map_err(|error| error.to_string())?;
         let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
         // Nobody looks at the pictures of a sweep, and pixels change no time.
         let results = plan.run(scene).map_err(|error| error.to_string())?;

@@ -15,7 +15,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// All points.
+    /// The whole sweep in one share.
     pub const ALL: Self = Self { index: 0, of: 1 };
 
     /// Share `number` of `of`, counted from 1; `None` when there is no such share.
@@ -54,25 +54,19 @@ pub fn run(
     options: RunOptions,
     mut finished: impl FnMut(&Row),
 ) -> Result<(), SweepError> {
-    let missing = |point: &u64| options.shard.holds(*point) && !store.holds(*point);
-    let points: Vec<u64> = (0..sweep.space().points()).filter(missing).collect();
-    let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let scenes = Scenes::default();
-    let (sender, rows) = bounded(WAITING_ROWS);
-    let worker = |sender: Sender<(Row, f64)>| {
-        while !stop.load(Ordering::Relaxed) {
-            let Some(point) = points.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
-            let begin = Instant::now();
-            let row = sweep.row(*point, &scenes);
-            if sender.send((row, begin.elapsed().as_secs_f64())).is_err() {
-                break;
-            }
-        }
+    let points = (0..sweep.space().points()).filter(|point| options.shard.holds(*point) && !store.holds(*point));
+    let work = Work {
+        sweep,
+        points: points.collect(),
+        next: AtomicUsize::new(0),
+        stop: AtomicBool::new(false),
+        scenes: Scenes::default(),
     };
+    let (sender, rows) = bounded(WAITING_ROWS);
     thread::scope(|scope| {
-        for _ in 0..options.threads.clamp(1, points.len().max(1)) {
-            let (sender, worker) = (sender.clone(), &worker);
-            scope.spawn(move || worker(sender));
+        for _ in 0..options.threads.clamp(1, work.points.len().max(1)) {
+            let sender = sender.clone();
+            scope.spawn(|| work.run(sender));
         }
         drop(sender);
         let result = rows.iter().try_for_each(|(row, seconds)| {
@@ -80,8 +74,31 @@ pub fn run(
             finished(&row);
             Ok(())
         });
-        stop.store(true, Ordering::Relaxed);
+        work.stop.store(true, Ordering::Relaxed);
         drop(rows);
         result
     })
+}
+
+/// The points that are missing, which all threads take from.
+struct Work<'a> {
+    sweep: &'a Sweep,
+    points: Vec<u64>,
+    next: AtomicUsize,
+    stop: AtomicBool,
+    scenes: Scenes,
+}
+
+impl Work<'_> {
+    /// What one thread does: it simulates points until there are no more, or nobody wants their rows.
+    fn run(&self, rows: Sender<(Row, f64)>) {
+        while !self.stop.load(Ordering::Relaxed) {
+            let Some(point) = self.points.get(self.next.fetch_add(1, Ordering::Relaxed)) else { break };
+            let begin = Instant::now();
+            let row = self.sweep.row(*point, &self.scenes);
+            if rows.send((row, begin.elapsed().as_secs_f64())).is_err() {
+                break;
+            }
+        }
+    }
 }

@@ -49,7 +49,7 @@ impl Space {
         Ok(Self { axes, points })
     }
 
-    /// The axes.
+    /// The axes, of which the last one changes fastest.
     #[must_use]
     pub fn axes(&self) -> &[Axis] {
         &self.axes
@@ -111,12 +111,9 @@ impl Fault<'_> {
 
     fn range(&self, path: &str, range: &Table) -> Result<Vec<Value>, FileError> {
         let expected = "whole numbers { from, to, step } with from <= to and step > 0";
-        let wrong = || self.value(path, expected, &Value::Table(range.clone()));
-        let number = |key: &str| range.get(key).and_then(Value::as_integer);
-        let (from, to) = (number("from").ok_or_else(wrong)?, number("to").ok_or_else(wrong)?);
-        let step = if range.contains_key("step") { number("step").ok_or_else(wrong)? } else { 1 };
-        let known = range.keys().all(|key| ["from", "to", "step"].contains(&key.as_str()));
-        let count = to.checked_sub(from).filter(|_| known && from <= to && step > 0).ok_or_else(wrong)? / step;
+        let Some([from, step, count]) = from_step_count(range) else {
+            return Err(self.value(path, expected, &Value::Table(range.clone())));
+        };
         if count as u64 >= MAX_POINTS {
             return Err(self.text(path, &format!("at most {MAX_POINTS} points"), "more"));
         }
@@ -141,9 +138,10 @@ impl Fault<'_> {
 
     fn seeds(&self, seeds: Option<&Value>) -> Result<Option<Axis>, FileError> {
         let Some(value) = seeds else { return Ok(None) };
-        let count = value.as_integer().filter(|count| (1..=MAX_POINTS as i64).contains(count));
-        let expected = || self.value("sweep.seeds", &format!("a number of seeds from 1 to {MAX_POINTS}"), value);
-        let steps = (1..=count.ok_or_else(expected)?).map(|seed| vec![Value::Integer(seed)]).collect();
+        let Some(count) = value.as_integer().filter(|count| (1..=MAX_POINTS as i64).contains(count)) else {
+            return Err(self.value("sweep.seeds", &format!("a number of seeds from 1 to {MAX_POINTS}"), value));
+        };
+        let steps = (1..=count).map(|seed| vec![Value::Integer(seed)]).collect();
         Ok(Some(Axis { paths: vec!["seed".to_owned()], steps }))
     }
 
@@ -163,13 +161,26 @@ impl Fault<'_> {
     }
 }
 
+/// The first value of a range, the distance between two of them, and how many come behind the first.
+fn from_step_count(range: &Table) -> Option<[i64; 3]> {
+    let from = range.get("from")?.as_integer()?;
+    let to = range.get("to")?.as_integer()?;
+    let step = range.get("step").map_or(Some(1), Value::as_integer)?;
+    let known = range.keys().all(|key| ["from", "to", "step"].contains(&key.as_str()));
+    let length = to.checked_sub(from).filter(|_| known && from <= to && step > 0)?;
+    Some([from, step, length / step])
+}
+
 /// Paths and values; a table with `from` is a range, any other one part of the path.
 fn leaves(table: Table) -> Vec<(String, Value)> {
-    let leaf = |(key, value): (String, Value)| match value {
-        Value::Table(inner) if !inner.contains_key("from") => {
-            leaves(inner).into_iter().map(|(path, value)| (format!("{key}.{path}"), value)).collect()
+    let mut all = Vec::new();
+    for (key, value) in table {
+        match value {
+            Value::Table(inner) if !inner.contains_key("from") => {
+                all.extend(leaves(inner).into_iter().map(|(path, value)| (format!("{key}.{path}"), value)));
+            }
+            value => all.push((key, value)),
         }
-        value => vec![(key, value)],
-    };
-    table.into_iter().flat_map(leaf).collect()
+    }
+    all
 }

@@ -2,6 +2,7 @@
 
 use super::{Header, Row, SweepError};
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
@@ -77,7 +78,7 @@ impl Store {
         self.rows.contains_key(&point)
     }
 
-    /// The finished points.
+    /// The rows of all finished points, by the number of the point.
     #[must_use]
     pub const fn rows(&self) -> &BTreeMap<u64, Row> {
         &self.rows
@@ -155,11 +156,11 @@ fn lock(folder: &Path) -> Result<File, SweepError> {
 /// Opens for appending after the first `keep` bytes.
 fn opened(path: &Path, keep: usize) -> Result<File, SweepError> {
     let file = OpenOptions::new().create(true).append(true).open(path);
-    let cut = |file: File| {
+    let cut = file.and_then(|file| {
         file.set_len(keep as u64)?;
         Ok(file)
-    };
-    file.and_then(cut).map_err(SweepError::io(path, "cannot be written"))
+    });
+    cut.map_err(SweepError::io(path, "cannot be written"))
 }
 
 /// What a file of rows holds.
@@ -184,16 +185,11 @@ pub(super) fn read_rows(path: &Path, bytes: &[u8]) -> Result<Found, SweepError> 
     let mut found = Found { whole_bytes, ..Found::default() };
     let name = path.display().to_string();
     for (number, line) in (1..).zip(bytes[..whole_bytes].split_inclusive(|byte| *byte == b'\n')) {
-        let damaged = |error: serde_json::Error| SweepError::Damaged {
-            path: name.clone(),
-            line: number,
-            found: format!("{} ({error})", excerpt(line)),
-        };
         if number == 1 {
-            found.header = Some(serde_json::from_slice(line).map_err(damaged)?);
+            found.header = Some(read_line(line, number, &name)?);
             continue;
         }
-        let row: Row = serde_json::from_slice(line).map_err(damaged)?;
+        let row: Row = read_line(line, number, &name)?;
         match found.rows.get(&row.point) {
             Some(other) if *other == row => found.repeated.push(row.point),
             Some(other) => {
@@ -205,6 +201,15 @@ pub(super) fn read_rows(path: &Path, bytes: &[u8]) -> Result<Found, SweepError> 
         }
     }
     Ok(found)
+}
+
+/// What a line of a file holds.
+fn read_line<T: DeserializeOwned>(line: &[u8], number: usize, file: &str) -> Result<T, SweepError> {
+    serde_json::from_slice(line).map_err(|error| SweepError::Damaged {
+        path: file.to_owned(),
+        line: number,
+        found: format!("{} ({error})", excerpt(line)),
+    })
 }
 
 fn excerpt(line: &[u8]) -> String {
@@ -247,14 +252,20 @@ fn table(header: &Header, rows: &BTreeMap<u64, Row>) -> String {
     for row in rows.values() {
         let status = if row.status == super::Status::Done { "done" } else { "failed" };
         let settings = parameters.iter().map(|path| row.parameters.get(*path).map_or_else(String::new, plain));
-        let value =
-            |name: &&String| row.measured.get(*name).copied().flatten().map_or_else(String::new, |v| v.to_string());
+        let values = measured.iter().map(|name| row.value_text(name));
         let cells = [row.point.to_string(), status.to_owned()].into_iter().chain(settings);
         let last = [row.trace_hash.clone().unwrap_or_default(), row.error.clone().unwrap_or_default()];
-        put_line(&mut writer, cells.chain(measured.iter().map(value)).chain(last));
+        put_line(&mut writer, cells.chain(values).chain(last));
     }
     let bytes = writer.into_inner().unwrap_or_default();
     String::from_utf8(bytes).unwrap_or_default()
+}
+
+impl Row {
+    /// A quantity's value as text; empty where the run shows none.
+    fn value_text(&self, name: &str) -> String {
+        self.measured.get(name).copied().flatten().map_or_else(String::new, |value| value.to_string())
+    }
 }
 
 fn plain(value: &serde_json::Value) -> String {

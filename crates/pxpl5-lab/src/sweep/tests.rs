@@ -160,3 +160,24 @@ fn only_one_process_may_write_into_a_folder() {
     Store::open(&path, header, true).expect("free again");
     let _ = std::fs::remove_dir_all(path);
 }
+
+#[test]
+fn files_named_by_a_sweep_are_beside_it_in_axes_too() {
+    let place = folder("relative");
+    std::fs::create_dir_all(&place).expect("a folder");
+    let poses = "time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n9,0,0,0,1,0,0,0\n";
+    for name in ["base.csv", "axis.csv"] {
+        std::fs::write(place.join(name), poses).expect("written");
+    }
+    let text = format!(
+        "{BASE}head.motion = \"base.csv\"\n[sweep.grid]\nhead.motion = [\"base.csv\", \"axis.csv\"]\nseed = [1, 2]\n"
+    );
+    let path = place.join("sweep.toml");
+    std::fs::write(&path, text).expect("written");
+    let sweep = Sweep::load(&path).expect("a sweep");
+    for point in 0..4 {
+        let plan = sweep.plan(point).unwrap_or_else(|error| panic!("point {point}: {error}"));
+        assert!(plan.head.is_some());
+    }
+    let _ = std::fs::remove_dir_all(&place);
+}

@@ -6,31 +6,29 @@ use crate::command::{
 };
 use crate::isa::ArrayInstruction;
 use crate::layout::Layout;
+use pxpl5_sim::SplitMix64;
 use pxpl5_wire::{Linear, Quadratic, Word};
 
-/// A generator of random numbers (SplitMix64, Steele and others 2014) and of lists made with it.
+/// Random numbers, and lists of words made with them.
 #[derive(Clone, Copy, Debug)]
-pub struct Random(u64);
+pub struct Random(SplitMix64);
 
 impl Random {
     /// Each seed gives another sequence.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0xd129_0d3b_3f4b_7ec5))
+        Self(SplitMix64::new(seed.wrapping_mul(0xd129_0d3b_3f4b_7ec5)))
     }
 
     /// The next 64 bits.
     #[allow(clippy::should_implement_trait)] // An iterator that never ends would make every caller unwrap.
     pub const fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let a = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let b = (a ^ a >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        b ^ b >> 31
+        self.0.bits()
     }
 
     /// A number from 0 to `n` - 1.
     pub const fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
+        self.0.below(n)
     }
 
     /// A two's complement number of `bits` bits, 1 to 32.

@@ -2,10 +2,11 @@
 
 use super::jitp::{TABLES, config, load};
 use super::{ntsc, samples};
+use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
-use jitp::{BlockOrder, DrawingSchedule};
+use jitp::{BlockOrder, DrawingSchedule, JitpConfig};
 use pphigs::{PrimitiveCounts, Share, TransformCost};
 use pxpl5_framebuffer::Video;
 use pxpl5_machine::{ConfigError, Machine, Record};
@@ -117,6 +118,7 @@ impl Pipeline for Frameless {
         let batch = self.batch(machine.record(), Share::new(Arc::clone(&setup.list), 0, 1).counts());
         let schedule = DrawingSchedule::Roam { block: self.block, batch, order: self.order()? };
         let config = config(machine.record(), schedule, self.layout(), setup.pixels)?;
+        let config = JitpConfig { aim: setup.aim, ..config };
         load(machine, setup, &config);
         Ok(())
     }
@@ -141,10 +143,10 @@ impl Pipeline for Frameless {
                 transform_at: mark.time,
                 copied_at: Some(*copied_at),
                 shown_at: next_light(video, target, *copied_at),
-                complete: *blocks == batch,
+                end: PictureEnd::of(*blocks == batch, true),
             })
         });
-        let mut times: Vec<_> = times.filter(|times| times.complete && times.shown_at <= end).collect();
+        let mut times: Vec<_> = times.filter(|times| times.is_shown() && times.shown_at <= end).collect();
         times.sort_by_key(|times| times.shown_at);
         times
     }
@@ -157,16 +159,12 @@ impl Pipeline for Frameless {
         false
     }
 
-    fn missed_retraces(&self, _: &Record, _: &[PictureTimes]) -> u64 {
-        0
-    }
-
     fn latency_definition(&self) -> &'static str {
         "from the order of a batch of blocks, for which the newest pose is taken, to the first light of its last block"
     }
 
-    fn missed_definition(&self) -> &'static str {
-        "nothing: there are no frames to miss"
+    fn due_definition(&self) -> &'static str {
+        "no picture is ever due: blocks are shown as they come, and there are no frames to miss"
     }
 
     /// A pass is a whole picture.

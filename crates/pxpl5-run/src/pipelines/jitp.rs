@@ -1,11 +1,13 @@
 //! Just-in-time pixels on the emulated machine.
 
-use super::{late_regions, missed_fields, ntsc, samples};
+use super::{late_regions, ntsc, samples};
+use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup, Source};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{Beam, DrawingSchedule, JitpConfig, JitpTiming, Transforms, Wanted, host, master, slave};
 use pphigs::Share;
+use pxpl5_display::Aim;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::Priority;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, NamedTable, Record};
@@ -77,6 +79,7 @@ pub(super) fn config(
         frame_buffer: ports.display()[0],
         schedule,
         beam: beam(*display.video()),
+        aim: Aim::default(),
         layout,
         pixels,
         timing: record.config().firmware_table().copied().unwrap_or(JitpTiming::PAPERS),
@@ -86,10 +89,11 @@ pub(super) fn config(
 }
 
 fn beam(video: Video) -> Beam {
-    Beam::new(move |field, row, x| {
+    let at = move |field, row, x| {
         let line = 2 * row + FieldParity::of_field(field).first_line();
         video.when(x, line, field).unwrap_or_else(|| video.retrace(field))
-    })
+    };
+    Beam::new(at, move |field| video.retrace(field))
 }
 
 /// Loads host, master and slaves.
@@ -117,6 +121,14 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
 fn due(video: &Video, target: &CopyTarget) -> Time {
     let field = target.picture.period_drawn_for();
     video.reaches(target, field).unwrap_or_else(|| video.retrace(field))
+}
+
+/// What has arrived of a field: regions before its end and before their beam, and when the middle strip had.
+#[derive(Clone, Copy, Debug, Default)]
+struct Arrived {
+    in_period: u32,
+    in_time: u32,
+    middle_at: Option<Time>,
 }
 
 impl Pipeline for Jitp {
@@ -150,7 +162,7 @@ impl Pipeline for Jitp {
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
-        let config = self.config(machine.record(), setup.pixels)?;
+        let config = JitpConfig { aim: setup.aim, ..self.config(machine.record(), setup.pixels)? };
         load(machine, setup, &config);
         Ok(())
     }
@@ -159,27 +171,29 @@ impl Pipeline for Jitp {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
         let video = display.video();
-        let mut in_time: BTreeMap<PictureNumber, (u32, Option<Time>)> = BTreeMap::new();
+        let mut arrived: BTreeMap<PictureNumber, Arrived> = BTreeMap::new();
         for arrival in &observation.arrivals {
-            let entry = in_time.entry(arrival.target.picture).or_default();
-            entry.0 += u32::from(arrival.last_part_at <= due(video, &arrival.target));
+            let Arrived { in_period, in_time, middle_at } = arrived.entry(arrival.target.picture).or_default();
+            let next_field = arrival.target.picture.period_drawn_for().next();
+            *in_period += u32::from(arrival.last_part_at <= video.retrace(next_field));
+            *in_time += u32::from(arrival.last_part_at <= due(video, &arrival.target));
             if self.is_middle(arrival) {
-                entry.1 = entry.1.max(Some(arrival.last_part_at));
+                *middle_at = (*middle_at).max(Some(arrival.last_part_at));
             }
         }
         let grid = RegionGrid { region_height: self.strip_rows, ..RegionGrid::FIELD };
         let middle_line = |field| 2 * (grid.rows() / 2 * self.strip_rows) + FieldParity::of_field(field).first_line();
         let times = samples(record).map(|mark| {
-            let (regions, copied_at) = in_time.get(&mark.picture).copied().unwrap_or_default();
+            let Arrived { in_period, in_time, middle_at } = arrived.get(&mark.picture).copied().unwrap_or_default();
             let field = mark.picture.period_drawn_for();
             PictureTimes {
                 picture: mark.picture,
                 view: mark.view.unwrap_or_default(),
                 sampled_at: Some(mark.time),
                 transform_at: mark.time,
-                copied_at,
+                copied_at: middle_at,
                 shown_at: video.when(0, middle_line(field), field).unwrap_or_else(|| video.retrace(field)),
-                complete: regions == grid.regions(),
+                end: PictureEnd::of(in_period == grid.regions(), in_time == grid.regions()),
             }
         });
         times.filter(|times| video.retrace(times.picture.period_drawn_for().next()) <= end).collect()
@@ -191,23 +205,25 @@ impl Pipeline for Jitp {
     }
 
     /// A new picture every field.
-    fn retraces_a_picture(&self) -> Option<u64> {
+    fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
-    }
-
-    fn missed_retraces(&self, _: &Record, pictures: &[PictureTimes]) -> u64 {
-        missed_fields(pictures)
     }
 
     fn latency_definition(&self) -> &'static str {
         "from the order of the middle strip (or of the field, where one view serves all of it), for which the newest pose is taken, to the scan of that strip"
     }
 
-    fn missed_definition(&self) -> &'static str {
-        "fields of which a strip came after its beam, or that were left out"
+    fn due_definition(&self) -> &'static str {
+        "a picture is due every field, and in time if every strip is there before its beam"
     }
 
-    fn source(&self, record: &Record, target: &CopyTarget, _: &BTreeMap<PictureNumber, ViewNumber>) -> Option<Source> {
+    fn source(
+        &self,
+        record: &Record,
+        target: &CopyTarget,
+        _: &BTreeMap<PictureNumber, ViewNumber>,
+        aim: Aim,
+    ) -> Option<Source> {
         let field = target.picture.period_drawn_for();
         let strip = u32::from(target.region.0) / target.grid.columns();
         let view = |i: u32| JitpConfig::view_number(field, u64::from(i));
@@ -217,7 +233,7 @@ impl Pipeline for Jitp {
             Viewpoint::Dual(reading) => Source::Between {
                 from: view(0),
                 to: view(1),
-                part: self.config(record, false).ok()?.part(field, strip),
+                part: JitpConfig { aim, ..self.config(record, false).ok()? }.part(field, strip),
                 on_screen: reading == Interpolation::Screen,
             },
         })

@@ -10,7 +10,6 @@ pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
 pub use rendering_control::RenderingControl;
 pub use slats::{Code, Slats};
 
-use crate::pipeline::PictureTimes;
 use crate::registry::PipelineEntry;
 use pxpl5_framebuffer::{NtscDisplay, Video};
 use pxpl5_gp::{Mark, Stage};
@@ -55,11 +54,4 @@ fn late_regions(
         })
     });
     late.collect()
-}
-
-/// Fields of a pipeline that draws every one: those of which something was late or missing, and those that were left out.
-fn missed_fields(pictures: &[PictureTimes]) -> u64 {
-    let (Some(first), Some(last)) = (pictures.first(), pictures.last()) else { return 0 };
-    let complete = pictures.iter().filter(|times| times.complete).count() as u64;
-    last.picture.next().since(first.picture) - complete
 }

@@ -1,16 +1,18 @@
 //! Rendering Control on the emulated machine.
 
+use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use image::RgbImage;
 use pphigs::{Binning, Picture, Shading};
+use pxpl5_display::Surface;
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Priority, Stage};
 use pxpl5_machine::{Arrival, ConfigError, Machine, Record, StageSpan};
 use pxpl5_renderer::Layout;
-use pxpl5_sim::Time;
-use pxpl5_wire::{Lines, PictureNumber, SurfaceId, ViewNumber};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId, ViewNumber};
 use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::sync::Arc;
 
@@ -85,11 +87,18 @@ impl Pipeline for RenderingControl {
         Layout::rendering_control_phong()
     }
 
+    fn shading(&self) -> Shading {
+        self.shading
+    }
+
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
         let config = self.config(machine, setup.pixels)?;
-        let (foreground, views) = (Priority::Foreground, setup.views.clone());
+        let foreground = Priority::Foreground;
+        let views = Arc::clone(&setup.views);
+        let starts = Arc::clone(&setup.starts);
         let gp = machine.processor(config.host, foreground);
-        let program = host(gp, config.clone(), setup.host, move |view, time| views(view, time));
+        let view_of = move |view, time| views(view, time);
+        let program = host(gp, config.clone(), setup.host, move |ready| starts(ready), view_of);
         machine.load(config.host, foreground, Box::pin(program));
         let gp = machine.processor(config.master, foreground);
         machine.load(config.master, foreground, Box::pin(master(gp, config.clone())));
@@ -114,25 +123,18 @@ impl Pipeline for RenderingControl {
             .collect()
     }
 
-    /// One for each eye's copy.
-    fn retraces_a_picture(&self) -> Option<u64> {
-        Some(self.eyes() as u64)
-    }
-
-    /// Two fields a frame are what two copies of 15.6 ms need; more are counted.
-    fn missed_retraces(&self, record: &Record, pictures: &[PictureTimes]) -> u64 {
-        let display = record.display();
-        let ticks =
-            |pair: &[PictureTimes]| display.period_at(pair[1].shown_at).since(display.period_at(pair[0].shown_at));
-        pictures.windows(2).map(|pair| ticks(pair).saturating_sub(self.eyes() as u64)).sum()
+    /// What COPY of all eyes takes, since one of them is copied at a time: of a stereo pair 31.2 ms, two fields (TR94).
+    fn periods_a_picture(&self, record: &Record) -> Option<u64> {
+        let copies: Span = record.display().surfaces().iter().map(|surface| copy_span(record, surface)).sum();
+        Some(record.display().period_at(Time(copies.0.saturating_sub(1))).next().0)
     }
 
     fn latency_definition(&self) -> &'static str {
         "from the start of TRANSFORM of the frame's first eye on the first slave to the retrace at which the frame is swapped in"
     }
 
-    fn missed_definition(&self) -> &'static str {
-        "retraces between two swaps beyond one for each eye's copy"
+    fn due_definition(&self) -> &'static str {
+        "a frame is due as often as COPY lets it: in so many periods as the pixels of all eyes need at a frame buffer's port, one eye at a time (two NTSC fields for a stereo pair); it is shown when it is swapped in"
     }
 
     /// An eye's copy is timed by itself.
@@ -146,6 +148,22 @@ impl Pipeline for RenderingControl {
     }
 }
 
+/// Time of a surface's pixels at its port: every region in messages of at most [`MAX_MESSAGE_WORDS`].
+fn copy_span(record: &Record, surface: &Surface) -> Span {
+    let timing = record.ring().timing();
+    let grid = surface.grid();
+    let regions = (0..grid.regions() as u16).map(RegionId);
+    regions
+        .map(|region| {
+            let [_, _, width, height] = grid.rectangle(region);
+            let words = width * height;
+            let last = words % MAX_MESSAGE_WORDS;
+            let of_last = if last == 0 { Span::ZERO } else { timing.occupancy(last) };
+            timing.occupancy(MAX_MESSAGE_WORDS) * u64::from(words / MAX_MESSAGE_WORDS) + of_last
+        })
+        .sum()
+}
+
 fn times(stages: &[StageSpan], frame: PictureNumber, shown_at: Time) -> Option<PictureTimes> {
     let of = |stage: Stage| stages.iter().filter(move |s| s.picture == frame && s.stage == stage);
     Some(PictureTimes {
@@ -155,7 +173,7 @@ fn times(stages: &[StageSpan], frame: PictureNumber, shown_at: Time) -> Option<P
         transform_at: of(Stage::Transform).map(|s| s.begin).min()?,
         copied_at: of(Stage::Copy).filter_map(|s| s.end).max(),
         shown_at,
-        complete: true,
+        end: PictureEnd::Shown,
     })
 }
 

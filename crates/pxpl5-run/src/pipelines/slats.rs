@@ -1,10 +1,12 @@
 //! Slats on the emulated machine.
 
-use super::{late_regions, missed_fields, ntsc, samples};
+use super::{late_regions, ntsc, samples};
+use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
-use crate::pipeline::{PictureTimes, Pipeline, Setup};
+use crate::pipeline::{PictureTimes, Pipeline, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use pphigs::{Binning, Share};
+use pxpl5_display::LightSpan;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{CodeVersion, GpTiming, Priority};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
@@ -125,9 +127,12 @@ impl Pipeline for Slats {
         ntsc(machine.record(), self.name())?;
         let config = self.config(machine, setup.pixels);
         let binding = config.check().map_err(|error| ConfigError::Board(error.to_string()))?;
-        let (foreground, views) = (Priority::Foreground, setup.views.clone());
+        let foreground = Priority::Foreground;
+        let views = Arc::clone(&setup.views);
+        let reports = Arc::clone(&setup.reports);
         let gp = machine.processor(config.host, foreground);
-        let program = host(gp, config.clone(), setup.host, move |view, time| views(view, time));
+        let view_of = move |view, time| views(view, time);
+        let program = host(gp, config.clone(), setup.host, move |after| reports(after), view_of);
         machine.load(config.host, foreground, Box::pin(program));
         for (index, node) in config.processors.iter().enumerate() {
             let gp = machine.processor(*node, foreground);
@@ -153,6 +158,7 @@ impl Pipeline for Slats {
             let (regions, copied_at) = arrivals.get(&mark.picture).copied().unwrap_or_default();
             let whole = regions == 2 * RegionGrid::FIELD.regions() as usize;
             let field = mark.picture.period_drawn_for();
+            let in_its_period = whole && copied_at <= record.tick(field.next());
             PictureTimes {
                 picture: mark.picture,
                 view: mark.view.unwrap_or(ViewNumber::taken_for(mark.picture)),
@@ -160,7 +166,7 @@ impl Pipeline for Slats {
                 transform_at: mark.time,
                 copied_at: whole.then_some(copied_at),
                 shown_at: record.tick(field),
-                complete: whole && !late.contains(&field),
+                end: PictureEnd::of(in_its_period, !late.contains(&field)),
             }
         });
         // A field whose bottom half is still being scanned is judged by the next run.
@@ -176,21 +182,21 @@ impl Pipeline for Slats {
     }
 
     /// A new picture every field.
-    fn retraces_a_picture(&self) -> Option<u64> {
+    fn periods_a_picture(&self, _: &Record) -> Option<u64> {
         Some(1)
     }
 
-    /// Fields of which something was late or missing, and fields that were left out.
-    fn missed_retraces(&self, _: &Record, pictures: &[PictureTimes]) -> u64 {
-        missed_fields(pictures)
+    /// A field is scanned once: the next one is of the other lines.
+    fn shown(&self, record: &Record, times: &PictureTimes, _: Option<&PictureTimes>) -> LightSpan {
+        light_span(record, times.picture.period_drawn_for(), 1)
     }
 
     fn latency_definition(&self) -> &'static str {
         "from the retrace at which the newest view is taken and TRANSFORM starts to the retrace from which on the field is scanned out"
     }
 
-    fn missed_definition(&self) -> &'static str {
-        "fields of which a region came after its deadline (the retrace; for the bottom regions of a split copy the scan of their first line), or that were left out"
+    fn due_definition(&self) -> &'static str {
+        "a picture is due every field, and in time if every region is there at its deadline: the retrace, or for the bottom regions of a split copy the scan of their first line"
     }
 
     /// The halves of a split copy are timed apart.

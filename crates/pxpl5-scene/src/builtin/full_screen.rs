@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::import::Mesh;
-use crate::motion::{HeadMotion, Path};
+use crate::motion::{HeadMotion, HeadPath};
 use crate::scene::{Frame, Lighting, Scene, SceneParts, Structure};
 use crate::sway::Sway;
 
@@ -33,7 +33,7 @@ pub(super) fn scene(count: u32) -> Scene {
         frame: Frame::Head,
         hinge: None,
     };
-    let path = Path::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
+    let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
     let parts = SceneParts {
         name,
         vertices: mesh.vertices(),

@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::solid::{Colour, Solid};
 use crate::edit::Hinge;
 use crate::import::Mesh;
-use crate::motion::{HeadMotion, Path};
+use crate::motion::{HeadMotion, HeadPath};
 use crate::scene::{Lighting, Scene, SceneParts, bounding_sphere};
 use crate::sway::Sway;
 use crate::trig;
@@ -72,8 +72,12 @@ fn finish(mut solid: Solid) -> Scene {
 
 /// From inside the span of the wings, where the aircraft overflows the view, to five radii away, where it is small.
 fn fly_through() -> HeadMotion {
-    let path =
-        Path::FlyThrough { target: glam::Vec3::ZERO, nearest: 0.65 * RADIUS_M, farthest: 5.0 * RADIUS_M, lap_s: 20.0 };
+    let path = HeadPath::FlyThrough {
+        target: glam::Vec3::ZERO,
+        nearest: 0.65 * RADIUS_M,
+        farthest: 5.0 * RADIUS_M,
+        lap_s: 20.0,
+    };
     HeadMotion::new(path, Sway { seed: 1, scale: 1.0 }).expect("pxpl5-scene: constants are in range")
 }
 

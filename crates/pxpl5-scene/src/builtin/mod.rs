@@ -5,19 +5,24 @@ mod head;
 mod head_shape;
 mod mig;
 mod molecules;
+mod room;
 mod solid;
 
 use crate::config::MAX_FULL_SCREEN_TRIANGLES;
 use crate::error::SceneError;
 use crate::scene::Scene;
 
-const NAMES: [(&str, &str); 4] = [
+const NAMES: [(&str, &str); 5] = [
     ("mig", "A swept-wing jet fighter of 417 triangles with moving control surfaces, seen from a fly-through."),
     (
         "molecules",
         "Sperm-whale myoglobin twice: 1,216 atoms, and its backbone as a ribbon of 2,620 triangles; with a water molecule.",
     ),
     ("head", "A human head as a closed, smooth surface of 59,592 triangles."),
+    (
+        "room",
+        "A room of 4 triangles, whose walls are 2 m from the viewer and meet in corners 6 m away: world content wherever the head turns.",
+    ),
     (
         "full-screen:N",
         "N triangles, each covering the whole screen of both eyes wherever the head turns; 12 make the trivial scene of TR94.",
@@ -41,6 +46,7 @@ pub fn builtin(name: &str) -> Result<Scene, SceneError> {
         "mig" => Ok(mig::scene()),
         "molecules" => Ok(molecules::scene()),
         "head" => Ok(head::scene()),
+        "room" => Ok(room::scene()),
         _ => match name.strip_prefix("full-screen:") {
             Some(count) => full_screen(count),
             None => Err(unknown(name)),

@@ -11,7 +11,7 @@ img{max-width:100%;height:auto}.chart{width:100%;max-width:40rem;height:auto;fon
 .wide img{min-width:40rem;width:100%}.pair{display:flex;flex-wrap:wrap;gap:1rem}.pair figure{flex:1 1 18rem;margin:0}\
 .pair img{width:100%}table{border-collapse:collapse;font-variant-numeric:tabular-nums}\
 td,th{padding:.25rem .6rem;border-bottom:1px solid #ccc;text-align:left;vertical-align:top}td.n{text-align:right;white-space:nowrap}\
-.swatch{display:inline-block;width:.8em;height:.8em;margin-right:.4em}.dim{color:#555}code{overflow-wrap:anywhere}\
+.swatch{display:inline-block;width:.8em;height:.8em;margin-right:.4em}.dim{color:#555}.loud{color:#a00;font-weight:bold}code{overflow-wrap:anywhere}\
 @media print{body{max-width:none;font-size:10pt}section,figure,table{break-inside:avoid}.wide img{min-width:0}\
 *{print-color-adjust:exact;-webkit-print-color-adjust:exact}}";
 

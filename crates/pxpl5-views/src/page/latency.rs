@@ -1,6 +1,6 @@
 //! Latency: how it is spread, where it goes, and from the head on.
 
-use super::values::{cell, heading, list, number, number_cell, paragraph, plain, row, table};
+use super::values::{cell, decimal, heading, known, list, number, number_cell, paragraph, plain, row, table};
 use crate::charts::{MeanPart, colour_of_part, histogram_element, part_bar_element};
 use crate::markup::Element;
 use serde_json::Value;
@@ -8,6 +8,7 @@ use serde_json::Value;
 pub(super) fn latency(report: &Value, latencies_ms: &[f64]) -> Vec<Element> {
     let definition = plain(&report["latency_ms"]["definition"]);
     let mut all = vec![heading("Latency"), paragraph(format_args!("{definition}."))];
+    all.extend(of_how_many(&report["latency_ms"]["n"]));
     if !latencies_ms.is_empty() {
         all.push(histogram_element(latencies_ms));
     }
@@ -17,9 +18,36 @@ pub(super) fn latency(report: &Value, latencies_ms: &[f64]) -> Vec<Element> {
     }
     let means: Vec<MeanPart> = parts.iter().map(mean_part).collect();
     all.push(heading("Where it goes"));
-    all.push(paragraph("Mean over all pictures; the frame holds what the papers count."));
+    all.push(paragraph("Mean over all complete pictures; the frame holds what the papers count."));
     all.extend(part_bar_element(&means));
-    all.push(table(&["part", "mean, ms", "sd", "definition"], parts.iter().map(part_row)));
+    all.push(table(&["part", "mean, ms", "sd", "n", "definition"], parts.iter().map(part_row)));
+    all
+}
+
+/// How many pictures the latency is of.
+fn of_how_many(n: &Value) -> Option<Element> {
+    match n.as_u64()? {
+        0 => Some(paragraph("No complete picture was shown after the warm-up, so there is no latency.")),
+        n => Some(paragraph(format_args!("Of {n} complete pictures after the warm-up."))),
+    }
+}
+
+/// The pictures that were due, and what became of them; a loud line where the scene was too heavy.
+pub(super) fn due(report: &Value) -> Vec<Element> {
+    let heavy = report["too_heavy"]["advice"].as_str().map(|advice| {
+        let [missed, due] = ["not_shown", "due"].map(|key| known(&report["too_heavy"][key]));
+        let text = format!("Too heavy: {missed} of {due} pictures due were not shown in time; {advice}.");
+        Element::new("p").with("class", "loud").text(text)
+    });
+    let mut all: Vec<Element> = heavy.into_iter().collect();
+    if let Some(definition) = report["due_definition"].as_str() {
+        all.push(heading("Pictures due"));
+        all.push(paragraph(format_args!("{definition}.")));
+    }
+    if report["due"].is_object() {
+        let cells = DUE.map(|key| number_cell(known(&report["due"][key])));
+        all.push(table(&DUE.map(|key| key.replace('_', " ")).each_ref().map(String::as_str), [row(cells)]));
+    }
     all
 }
 
@@ -35,8 +63,9 @@ fn part_row(part: &Value) -> Element {
     let name = plain(&part["name"]);
     row([
         Element::new("td").child(&swatch(&name)).text(name.replace('_', " ")),
-        number_cell(format_args!("{:.3}", number(&part["mean"]))),
-        number_cell(format_args!("{:.3}", number(&part["sd"]))),
+        number_cell(decimal(&part["mean"], 3)),
+        number_cell(decimal(&part["sd"], 3)),
+        number_cell(known(&part["n"])),
         cell(plain(&part["definition"])),
     ])
 }
@@ -46,6 +75,8 @@ fn swatch(name: &str) -> Element {
     let colour = format!("background:{}", colour_of_part(name));
     Element::new("span").with("class", "swatch").with("style", colour).text("")
 }
+
+const DUE: [&str; 7] = ["first_period", "last_period", "due", "shown", "late", "incomplete", "missed"];
 
 const STAGES: [&str; 7] = ["tracking", "waiting", "sending", "drawing", "showing", "scanning", "total"];
 const ERRORS: [&str; 2] = ["pixels", "degrees"];
@@ -57,22 +88,24 @@ pub(super) fn head_to_light(head: &Value) -> Vec<Element> {
         return Vec::new();
     }
     let [tracker, predictor, display] = ["tracker", "predictor", "display"].map(|key| plain(&head[key]));
+    // Reports of older versions do not say it.
+    let aim = head["aim"].as_str().map_or_else(String::new, |aim| format!(", aim {aim}"));
     let stages = STAGES.iter().map(|stage| stage_row(stage, &head["end_to_end"]));
     let errors = ERRORS.iter().map(|unit| error_row(unit, &head["error"][*unit]));
     vec![
         heading("From the head to light"),
-        paragraph(format_args!("{tracker}, prediction {predictor}, display {display}.")),
+        paragraph(format_args!("{tracker}, prediction {predictor}{aim}, display {display}.")),
+        paragraph(format_args!("Mean over {} complete pictures.", known(&head["end_to_end"]["n"]))),
         table(&["stage", "mean, ms"], stages),
-        table(&["error", "mean", "50 %", "90 %", "99 %", "greatest"], errors),
+        table(&["error", "mean", "50 %", "90 %", "99 %", "greatest", "n"], errors),
     ]
 }
 
 fn stage_row(stage: &str, end_to_end: &Value) -> Element {
-    let ms = number(&end_to_end[format!("{stage}_ms")]);
-    row([cell(stage), number_cell(format_args!("{ms:.3}"))])
+    row([cell(stage), number_cell(decimal(&end_to_end[format!("{stage}_ms")], 3))])
 }
 
 fn error_row(unit: &str, error: &Value) -> Element {
-    let values = PERCENTILES.iter().map(|key| number_cell(format_args!("{:.3}", number(&error[*key]))));
-    row([cell(unit)].into_iter().chain(values))
+    let values = PERCENTILES.iter().map(|key| number_cell(decimal(&error[*key], 3)));
+    row([cell(unit)].into_iter().chain(values).chain([number_cell(known(&error["n"]))]))
 }

@@ -7,7 +7,7 @@ use serde_json::Value;
 pub struct PageRun {
     /// What stands over it.
     pub name: String,
-    /// Its report, as in `report.json` (schema `pxpl5-report/1`).
+    /// Its report, as in `report.json` (schema `pxpl5-report/2`).
     pub report: Value,
     /// The published value beside the simulated one: `quantity`, `published`, `error_percent`, `source`; null if there is
     /// none.

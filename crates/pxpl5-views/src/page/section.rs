@@ -1,7 +1,7 @@
 //! Everything of one experiment.
 
 use super::configuration::{configuration, speed};
-use super::latency::{head_to_light, latency};
+use super::latency::{due, head_to_light, latency};
 use super::run::{PagePicture, PageRun};
 use super::values::{heading, wide};
 use crate::markup::Element;
@@ -29,7 +29,7 @@ fn seen(run: &PageRun) -> Element {
 }
 
 fn timed(run: &PageRun) -> Element {
-    let section = Element::new("section").children(latency(&run.report, &run.latencies_ms));
+    let section = Element::new("section").children(due(&run.report)).children(latency(&run.report, &run.latencies_ms));
     section.children(head_to_light(&run.report["head"]))
 }
 

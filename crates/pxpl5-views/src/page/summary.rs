@@ -1,12 +1,20 @@
 //! The table at the head of the page: a row for each experiment.
 
 use super::run::PageRun;
-use super::values::{cell, number, number_cell, plain, row, table};
+use super::values::{cell, decimal, known, number, number_cell, plain, row, table};
 use crate::markup::Element;
 use serde_json::Value;
 
-const NAMES: [&str; 7] =
-    ["experiment", "primitives", "latency, fields", "latency, ms", "updates, Hz", "missed retraces", "published"];
+const NAMES: [&str; 8] = [
+    "experiment",
+    "primitives",
+    "latency, fields",
+    "latency, ms",
+    "pictures",
+    "updates, Hz",
+    "not shown in time",
+    "published",
+];
 
 pub(super) fn summary(runs: &[PageRun]) -> Element {
     table(&NAMES, runs.iter().map(summary_row))
@@ -19,23 +27,27 @@ fn summary_row(run: &PageRun) -> Element {
         number_cell(number(&report["triangles"]) + number(&report["spheres"])),
         number_cell(spread(&report["latency_fields"])),
         number_cell(spread(&report["latency_ms"])),
-        number_cell(rate(&report["updates_hz"])),
-        number_cell(number(&report["missed_retraces"])),
+        number_cell(known(&report["latency_ms"]["n"])),
+        number_cell(decimal(&report["updates_hz"], 2)),
+        number_cell(not_shown(report)),
         cell(published(&run.published)),
     ])
 }
 
-/// Of fewer than two pictures there is no rate.
-fn rate(updates_hz: &Value) -> String {
-    updates_hz.as_f64().map_or_else(|| "-".to_owned(), |hz| format!("{hz:.2}"))
+/// Of how many that were due.
+fn not_shown(report: &Value) -> String {
+    match report["missed_retraces"].as_u64() {
+        Some(missed) => format!("{missed} of {}", known(&report["due"]["due"])),
+        None => "-".to_owned(),
+    }
 }
 
-/// Mean and standard deviation.
+/// Mean and standard deviation, of one picture the mean.
 fn spread(statistics: &Value) -> String {
-    if statistics["mean"].is_null() {
-        return "-".to_owned();
+    match statistics["sd"].as_f64() {
+        Some(sd) => format!("{} ± {sd:.3}", decimal(&statistics["mean"], 3)),
+        None => decimal(&statistics["mean"], 3),
     }
-    format!("{:.3} ± {:.3}", number(&statistics["mean"]), number(&statistics["sd"]))
 }
 
 fn published(published: &Value) -> String {

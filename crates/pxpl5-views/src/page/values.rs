@@ -9,6 +9,16 @@ pub(super) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or(f64::NAN)
 }
 
+/// A number with so many digits behind the point; `-` where there is none.
+pub(super) fn decimal(value: &Value, digits: usize) -> String {
+    value.as_f64().map_or_else(|| "-".to_owned(), |number| format!("{number:.digits$}"))
+}
+
+/// A value as text; `-` where there is none.
+pub(super) fn known(value: &Value) -> String {
+    if value.is_null() { "-".to_owned() } else { plain(value) }
+}
+
 /// A value as text, without the quotes of a string.
 pub(super) fn plain(value: &Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)

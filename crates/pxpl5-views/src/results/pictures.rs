@@ -6,7 +6,7 @@ use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
 /// Name and version of the table's schema; a column that is added at the end does not change it.
-pub const SCHEMA: &str = "pxpl5-pictures/1";
+pub const SCHEMA: &str = "pxpl5-pictures/2";
 
 /// A column of the table: whole numbers, some of which can be missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,10 +46,16 @@ pub fn columns() -> Vec<Column> {
             "shown_at_ps",
             "the retrace from which on it is shown; the scan of its middle (just-in-time pixels) or of its last block (frameless)",
         ),
-        Column::always("latency_ps", "shown_at_ps - transform_at_ps"),
+        Column::optional(
+            "latency_ps",
+            "shown_at_ps - transform_at_ps; missing of a picture that was not complete in time",
+        ),
     ];
     columns.extend(LATENCY_PARTS.iter().map(|part| {
-        Column::optional(&format!("{}_ps", part.name), &format!("{}; missing during the warm-up", part.definition))
+        Column::optional(
+            &format!("{}_ps", part.name),
+            &format!("{}; missing during the warm-up and of a picture that was not complete in time", part.definition),
+        )
     }));
     columns
 }
@@ -66,12 +72,12 @@ fn row(times: &PictureTimes, steady: bool, parts: Option<&LatencyParts>) -> Vec<
     let mut row = vec![
         Some(times.picture.0),
         Some(steady.into()),
-        Some(times.complete.into()),
+        Some(times.is_shown().into()),
         times.sampled_at.map(|time| time.0),
         Some(times.transform_at.0),
         times.copied_at.map(|time| time.0),
         Some(times.shown_at.0),
-        Some(times.shown_at.since(times.transform_at).0),
+        times.is_shown().then(|| times.shown_at.since(times.transform_at).0),
     ];
     row.extend((0..LATENCY_PARTS.len()).map(|i| parts.map(|parts| parts.spans[i].0)));
     row

@@ -4,14 +4,18 @@ mod pan;
 mod pendulum;
 mod recording;
 mod shifted;
+mod sinusoid;
+mod slide;
 mod spline;
 mod still;
 mod synthetic;
 
 pub use pan::Pan;
 pub use pendulum::Pendulum;
-pub use recording::{LoadError, Recording};
+pub use recording::{Axes, Columns, End, LoadError, Recording, RecordingFormat};
 pub use shifted::Shifted;
+pub use sinusoid::Sinusoid;
+pub use slide::Slide;
 pub use still::Still;
 pub use synthetic::{Band, Synthetic, SyntheticConfig};
 
@@ -46,6 +50,17 @@ pub trait Motion: Debug {
         }
     }
 
+    /// When it ends, ps, if no run may go on after that; `None` where it goes on for ever, or stands still at its end.
+    fn ends_ps(&self) -> Option<u64> {
+        None
+    }
+
+    /// Another motion of the same kind, drawn with other random numbers: filters are tuned on it, so that they do not know
+    /// the motion on which they are judged. `None` where there is only this one.
+    fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
+        None
+    }
+
     /// Velocity in m/s, world frame. By default a central difference.
     fn velocity(&self, t_ps: u64) -> DVec3 {
         let before = t_ps.saturating_sub(HALF_STEP_PS);
@@ -69,6 +84,12 @@ impl<M: Motion + ?Sized> Motion for &M {
     fn identify(&self, settings: &mut Settings) {
         (**self).identify(settings);
     }
+    fn ends_ps(&self) -> Option<u64> {
+        (**self).ends_ps()
+    }
+    fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
+        (**self).sibling()
+    }
     fn velocity(&self, t_ps: u64) -> DVec3 {
         (**self).velocity(t_ps)
     }
@@ -83,6 +104,12 @@ impl<M: Motion + ?Sized> Motion for Box<M> {
     }
     fn identify(&self, settings: &mut Settings) {
         (**self).identify(settings);
+    }
+    fn ends_ps(&self) -> Option<u64> {
+        (**self).ends_ps()
+    }
+    fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
+        (**self).sibling()
     }
     fn velocity(&self, t_ps: u64) -> DVec3 {
         (**self).velocity(t_ps)

@@ -25,6 +25,9 @@ pub struct Band {
     pub power: u32,
 }
 
+/// The stream of a seed from which a sibling's seed is drawn.
+const SIBLING: u64 = 10;
+
 /// Settings of [`Synthetic`]: one band for each kind of movement, and the place about which the head walks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -56,6 +59,8 @@ impl SyntheticConfig {
 /// random splines, so any instant is found in constant time and memory.
 #[derive(Clone, Debug)]
 pub struct Synthetic {
+    config: SyntheticConfig,
+    seed: u64,
     turn: Spline,
     glance: Spline,
     walk: Spline,
@@ -70,6 +75,8 @@ impl Synthetic {
         }
         let radians = std::f64::consts::PI / 180.0;
         Ok(Self {
+            config: *config,
+            seed,
             turn: spline(&config.turn, radians, stream(seed, 1))?,
             glance: spline(&config.glance, radians, stream(seed, 2))?,
             walk: spline(&config.walk, 1.0, stream(seed, 3))?,
@@ -100,12 +107,17 @@ impl Motion for Synthetic {
     }
 
     fn identify(&self, settings: &mut Settings) {
-        let Self { turn, glance, walk, centre } = self;
+        let Self { config: _, seed: _, turn, glance, walk, centre } = self;
         settings("motion", &"synthetic");
         turn.identify("motion.turn", settings);
         glance.identify("motion.glance", settings);
         walk.identify("motion.walk", settings);
         write_vector(settings, "motion.centre_m", *centre);
+    }
+
+    fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
+        let sibling = Self::new(&self.config, stream(self.seed, SIBLING)).ok()?;
+        Some(Box::new(sibling))
     }
 
     fn velocity(&self, t_ps: u64) -> DVec3 {

@@ -39,8 +39,10 @@ impl PredictorKind {
 pub struct PredictorConfig {
     /// The filter that is built from these settings.
     pub kind: PredictorKind,
-    /// Reports between the points of a difference, 1 to 16. Kalman filters do not use it.
-    pub baseline_reports: u32,
+    /// Reports between the points of a difference of positions, 1 to 16. Kalman filters do not use it.
+    pub position_baseline: u32,
+    /// The same of orientations.
+    pub orientation_baseline: u32,
     /// Noise of each axis of a report, rms, m.
     pub position_noise_m: f64,
     /// Noise about each axis of a report, rms, degrees.
@@ -51,19 +53,69 @@ pub struct PredictorConfig {
     pub orientation_jerk: f64,
     /// Longest prediction, ps; beyond it the last pose is given.
     pub horizon_ps: u64,
+    /// What Kalman filters believe of the head before the first report.
+    #[serde(default)]
+    pub start: Start,
+    /// Which reports are believed.
+    #[serde(default = "usual_gate")]
+    pub gate: table::Gate,
+}
+
+/// Standard deviations at the start of a filter, of a head at rest.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Start {
+    /// Of the speed, m/s.
+    pub speed: f64,
+    /// Of the acceleration, m/s^2.
+    pub acceleration: f64,
+    /// Of the angular velocity, rad/s.
+    pub turn: f64,
+    /// Of the angular acceleration, rad/s^2.
+    pub turn_acceleration: f64,
+}
+
+impl Start {
+    const fn of(filter: &table::Filter) -> Self {
+        Self {
+            speed: filter.start_speed,
+            acceleration: filter.start_acceleration,
+            turn: filter.start_turn,
+            turn_acceleration: filter.start_turn_acceleration,
+        }
+    }
+}
+
+impl Default for Start {
+    fn default() -> Self {
+        Self::of(&table::Filter::PAPERS)
+    }
+}
+
+const fn usual_gate() -> table::Gate {
+    table::Gate::PAPERS
 }
 
 impl PredictorConfig {
     /// A filter that knows the noise of this tracker.
     pub fn for_tracker(kind: PredictorKind, tracker: &TrackerConfig) -> Self {
+        Self::for_tracker_by(&table::Tables::PAPERS, kind, tracker)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn for_tracker_by(tables: &table::Tables, kind: PredictorKind, tracker: &TrackerConfig) -> Self {
+        let filter = &tables.filter;
         Self {
             kind,
-            baseline_reports: table::Filter::PAPERS.baseline as u32,
+            position_baseline: filter.baseline as u32,
+            orientation_baseline: filter.baseline as u32,
             position_noise_m: tracker.position_noise_m.max(LEAST_NOISE_M),
             orientation_noise_deg: tracker.orientation_noise_deg.max(LEAST_NOISE_DEG),
-            position_jerk: table::Filter::PAPERS.position_jerk,
-            orientation_jerk: table::Filter::PAPERS.orientation_jerk,
-            horizon_ps: table::ms_to_ps(table::Filter::PAPERS.horizon),
+            position_jerk: filter.position_jerk,
+            orientation_jerk: filter.orientation_jerk,
+            horizon_ps: table::ms_to_ps(filter.horizon),
+            start: Start::of(filter),
+            gate: tables.gate,
         }
     }
 
@@ -81,27 +133,31 @@ impl PredictorConfig {
     fn check(&self) -> Result<(), ConfigError> {
         ConfigError::check("position noise, m", self.position_noise_m, LEAST_NOISE_M, 10.0)?;
         ConfigError::check("orientation noise, deg", self.orientation_noise_deg, LEAST_NOISE_DEG, 90.0)?;
-        self.filter().check()?;
+        [self.position_baseline, self.orientation_baseline].into_iter().try_for_each(|b| self.filter(b).check())?;
+        self.gate.check()?;
         Ok(())
     }
 
-    /// The numbers of the table, as they are set here.
-    fn filter(&self) -> table::Filter {
+    /// The numbers of the table, as they are set here, with one of the baselines.
+    pub(crate) fn filter(&self, baseline: u32) -> table::Filter {
         table::Filter {
             position_jerk: self.position_jerk,
             orientation_jerk: self.orientation_jerk,
-            baseline: self.baseline_reports.into(),
+            baseline: baseline.into(),
             horizon: crate::time::seconds(self.horizon_ps) * 1e3,
-            ..table::Filter::PAPERS
+            start_speed: self.start.speed,
+            start_acceleration: self.start.acceleration,
+            start_turn: self.start.turn,
+            start_turn_acceleration: self.start.turn_acceleration,
         }
     }
 
     fn extrapolation(&self, order: Order) -> Box<dyn Predictor> {
-        let baseline = self.baseline_reports as usize;
         Box::new(GatedFilters::new(
-            Extrapolation::new(order, baseline, DVec3::ZERO),
-            Extrapolation::new(order, baseline, DQuat::IDENTITY),
+            Extrapolation::new(order, self.position_baseline as usize, DVec3::ZERO),
+            Extrapolation::new(order, self.orientation_baseline as usize, DQuat::IDENTITY),
             crate::time::seconds(self.horizon_ps),
+            self.gate,
         ))
     }
 
@@ -109,17 +165,18 @@ impl PredictorConfig {
         let position = Belief {
             measurement: self.position_noise_m.powi(2),
             jerk: self.position_jerk.powi(2),
-            start: (table::Filter::PAPERS.start_speed.powi(2), table::Filter::PAPERS.start_acceleration.powi(2)),
+            start: (self.start.speed.powi(2), self.start.acceleration.powi(2)),
         };
         let orientation = Belief {
             measurement: self.orientation_noise_deg.to_radians().powi(2),
             jerk: self.orientation_jerk.powi(2),
-            start: (table::Filter::PAPERS.start_turn.powi(2), table::Filter::PAPERS.start_turn_acceleration.powi(2)),
+            start: (self.start.turn.powi(2), self.start.turn_acceleration.powi(2)),
         };
         Box::new(GatedFilters::new(
             PositionKalman::new(position),
             OrientationKalman::new(orientation),
             crate::time::seconds(self.horizon_ps),
+            self.gate,
         ))
     }
 }

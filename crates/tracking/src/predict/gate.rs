@@ -30,14 +30,19 @@ pub(super) enum Verdict {
 }
 
 /// Decides which reports can be true. It keeps no secrets: every decision is counted.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Gate {
+    limits: table::Gate,
     last: Option<Report>,
     jumps_in_a_row: u64,
     pub(super) counts: Counts,
 }
 
 impl Gate {
+    pub(super) fn new(limits: table::Gate) -> Self {
+        Self { limits, last: None, jumps_in_a_row: 0, counts: Counts::default() }
+    }
+
     pub(super) fn judge(&mut self, report: &Report) -> Verdict {
         let verdict = self.verdict(report);
         if verdict != Verdict::Reject {
@@ -57,31 +62,31 @@ impl Gate {
         let Some(last) = self.last else { return Verdict::Restart };
         let dt_s = span_s(last.measured_ps, report.measured_ps)
             .min(span_s(last.position_measured_ps, report.position_measured_ps));
-        if dt_s < table::Gate::PAPERS.interval / 1e3 {
+        if dt_s < self.limits.interval / 1e3 {
             self.counts.untimely += 1;
             return Verdict::Reject;
         }
-        if dt_s > table::Gate::PAPERS.gap / 1e3 {
+        if dt_s > self.limits.gap / 1e3 {
             return Verdict::Restart;
         }
-        if is_possible(&last.pose, &report.pose, dt_s) { Verdict::Update } else { self.jump() }
+        if self.is_possible(&last.pose, &report.pose, dt_s) { Verdict::Update } else { self.jump() }
     }
 
     fn jump(&mut self) -> Verdict {
         self.jumps_in_a_row += 1;
-        if self.jumps_in_a_row > table::Gate::PAPERS.patience {
+        if self.jumps_in_a_row > self.limits.patience {
             return Verdict::Restart;
         }
         self.counts.jumps += 1;
         Verdict::Reject
     }
+
+    fn is_possible(&self, from: &Pose, to: &Pose, dt_s: f64) -> bool {
+        from.distance_m(to) <= self.limits.distance / 1e3 + self.limits.speed * dt_s
+            && from.angle_deg(to) <= self.limits.angle + self.limits.turn * dt_s
+    }
 }
 
 fn is_well_formed(pose: &Pose) -> bool {
     pose.is_finite() && (pose.orientation.length_squared() - 1.0).abs() < LENGTH_TOLERANCE
-}
-
-fn is_possible(from: &Pose, to: &Pose, dt_s: f64) -> bool {
-    from.distance_m(to) <= table::Gate::PAPERS.distance / 1e3 + table::Gate::PAPERS.speed * dt_s
-        && from.angle_deg(to) <= table::Gate::PAPERS.angle + table::Gate::PAPERS.turn * dt_s
 }

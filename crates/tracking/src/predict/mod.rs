@@ -10,11 +10,13 @@ mod gate;
 mod orientation_kalman;
 mod position_kalman;
 mod predicting;
+mod tune;
 
-pub use config::{PredictorConfig, PredictorKind};
+pub use config::{PredictorConfig, PredictorKind, Start};
 pub use evaluate::{PredictionError, prediction_errors};
 pub use exact::ExactPredictor;
 pub use gate::Counts;
+pub use tune::{Training, Tuned, training_seed, tune};
 
 use crate::pose::Pose;
 use crate::tracker::Report;

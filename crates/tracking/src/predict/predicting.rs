@@ -3,6 +3,7 @@ use glam::{DQuat, DVec3};
 use super::Predictor;
 use super::channel::Channel;
 use super::gate::{Counts, Gate, Verdict};
+use crate::config as table;
 use crate::pose::Pose;
 use crate::time::span_s;
 use crate::tracker::Report;
@@ -19,8 +20,8 @@ pub(super) struct GatedFilters<P, O> {
 }
 
 impl<P, O> GatedFilters<P, O> {
-    pub(super) fn new(position: P, orientation: O, horizon_s: f64) -> Self {
-        Self { gate: Gate::default(), position, orientation, newest_ps: None, horizon_s }
+    pub(super) fn new(position: P, orientation: O, horizon_s: f64, limits: table::Gate) -> Self {
+        Self { gate: Gate::new(limits), position, orientation, newest_ps: None, horizon_s }
     }
 
     /// Seconds to extrapolate; beyond the horizon none, since the last pose is the best guess then.

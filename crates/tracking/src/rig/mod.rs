@@ -4,20 +4,23 @@
 //! sees the low point it starts a new frame and switches a D/A line; frames alternate dark and light under a photodiode
 //! on the screen. On the oscilloscope, tracking latency is the way from the low point to the D/A line, rendering
 //! latency from the D/A line to the screen (TR94).
+//!
+//! This module has what stands outside of the system: the pendulum, the host's eye for low points, the oscilloscope. What
+//! the system makes of the sightings, and the light on its screen, come from whoever simulates it.
 
 mod detection;
 mod measurement;
 mod oscilloscope;
 
 pub use detection::Detection;
-pub use measurement::{Latency, Measurement, Pass};
+pub use measurement::{InsidePass, Latency, Measurement, Oscilloscope, OutsidePass, Side, Sighting};
 pub use oscilloscope::{Edge, Trace};
 
 use thiserror::Error;
 
 use crate::config as table;
 use crate::motion::Pendulum;
-use crate::time::{PS_PER_S, ntsc_lines_ps};
+use crate::time::PS_PER_S;
 use crate::tracker::TrackerModel;
 
 /// Silence after which the rig gives up waiting for a low point.
@@ -51,13 +54,13 @@ pub enum RigError {
         /// How many low points the host saw.
         found: usize,
     },
-    /// The pipeline put light on the screen before the frame was started.
-    #[error("expected light after the frame's start at {started_ps} ps, found {found_ps} ps")]
-    LightBeforeStart {
-        /// When the frame was started, ps.
-        started_ps: u64,
-        /// When its light came, ps.
-        found_ps: u64,
+    /// A frame was started and its light never came, or frames were started that nobody asked for.
+    #[error("expected the photodiode on the screen to change for each of {expected} frames, found {found} changes")]
+    NoLight {
+        /// Frames that low points asked for.
+        expected: usize,
+        /// Changes between dark and light.
+        found: usize,
     },
 }
 
@@ -72,48 +75,42 @@ impl PendulumRig {
         }
     }
 
-    /// Measures over `n_passes` low points, at least 1. `pipeline` maps the start of a frame to the instant at which
-    /// the scan of that frame begins on the screen; the photodiode sees it `photodiode_line` lines later.
-    pub fn measure(
-        &self,
-        tracker: &TrackerModel,
-        seed: u64,
-        n_passes: usize,
-        mut pipeline: impl FnMut(u64) -> u64,
-    ) -> Result<Measurement, RigError> {
-        let seen = self.passes_seen(tracker, seed, n_passes);
-        if seen.len() < n_passes.max(1) {
-            return Err(RigError::TooFewPasses { expected: n_passes.max(1), found: seen.len() });
-        }
-        let mut passes = Vec::with_capacity(seen.len());
-        for report in seen {
-            let started_ps = report.arrives_ps;
-            let scan_ps = pipeline(started_ps);
-            if scan_ps < started_ps {
-                return Err(RigError::LightBeforeStart { started_ps, found_ps: scan_ps });
-            }
-            passes.push(Pass {
-                low_point_ps: self.low_point_of(started_ps),
-                measured_ps: report.position_measured_ps,
-                dac_ps: started_ps,
-                scan_ps,
-                light_ps: scan_ps.saturating_add(ntsc_lines_ps(self.photodiode_line)),
-            });
-        }
-        Ok(Measurement::new(self, tracker, passes))
-    }
-
-    /// The reports at which the host sees low points.
-    fn passes_seen(&self, tracker: &TrackerModel, seed: u64, n_passes: usize) -> Vec<crate::tracker::Report> {
-        let dead_ps = self.half_swing_ps() / 2;
-        let mut detector = self.detection.start(dead_ps);
-        let limit_ps = self.pendulum.low_point_ps(n_passes as u64).saturating_add(PATIENCE_PS);
-        tracker
+    /// The first `n` low points that the host sees, at least 1, from what a tracker on the bob tells it.
+    ///
+    /// # Errors
+    ///
+    /// [`RigError::TooFewPasses`] when the tracker falls silent or never shows a low point.
+    pub fn sightings(&self, tracker: &TrackerModel, seed: u64, n: usize) -> Result<Vec<Sighting>, RigError> {
+        let expected = n.max(1);
+        let mut detector = self.detection.start(self.half_swing_ps() / 2);
+        let limit_ps = self.pendulum.low_point_ps(n as u64).saturating_add(PATIENCE_PS);
+        let seen: Vec<Sighting> = tracker
             .reports(&self.pendulum, seed)
             .take_while(|report| report.measured_ps < limit_ps)
             .filter(|report| detector.sees_low_point(report))
-            .take(n_passes.max(1))
-            .collect()
+            .map(|report| Sighting { measured_ps: report.position_measured_ps, arrives_ps: report.arrives_ps })
+            .take(expected)
+            .collect();
+        if seen.len() < expected { Err(RigError::TooFewPasses { expected, found: seen.len() }) } else { Ok(seen) }
+    }
+
+    /// Reads the oscilloscope, and puts what the system's time stamps say of the same passes beside it. `place_ps` is the
+    /// photodiode's place in the scan: from the retrace to the beam's passing it.
+    ///
+    /// # Errors
+    ///
+    /// [`RigError::NoLight`] when the screen never shows a frame, or the passes are not the same.
+    pub fn compare(
+        &self,
+        tracker: &TrackerModel,
+        place_ps: u64,
+        oscilloscope: &Oscilloscope,
+        inside: Vec<InsidePass>,
+    ) -> Result<Measurement, RigError> {
+        let found = oscilloscope.screen.edges().len();
+        let no_light = RigError::NoLight { expected: inside.len(), found };
+        let outside = oscilloscope.passes(self).filter(|passes| passes.len() == inside.len() && !inside.is_empty());
+        Ok(Measurement::new(self.detection, tracker, place_ps, outside.ok_or(no_light)?, inside))
     }
 
     /// The low point that an event on the D/A line belongs to: the last one, or one that noise announced too early.

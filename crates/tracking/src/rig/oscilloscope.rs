@@ -16,8 +16,21 @@ pub struct Trace {
 }
 
 impl Trace {
+    /// A line that has these levels from these instants on, in order of time.
+    #[must_use]
+    pub fn sampled(name: &'static str, samples: impl IntoIterator<Item = (u64, bool)>) -> Self {
+        let mut edges: Vec<Edge> = Vec::new();
+        for (t_ps, high) in samples {
+            if high != edges.last().is_some_and(|last| last.high) {
+                edges.push(Edge { t_ps, high });
+            }
+        }
+        Self { name, edges }
+    }
+
     /// A line that changes its level at each of these instants.
-    pub(super) fn toggling(name: &'static str, mut instants: Vec<u64>) -> Self {
+    #[must_use]
+    pub fn toggling(name: &'static str, mut instants: Vec<u64>) -> Self {
         instants.sort_unstable();
         let edges = instants.into_iter().enumerate().map(|(i, t_ps)| Edge { t_ps, high: i % 2 == 0 });
         Self { name, edges: edges.collect() }
@@ -56,6 +69,12 @@ mod tests {
     fn a_toggling_line_is_low_then_high_then_low() {
         let trace = Trace::toggling("screen", vec![30, 10]);
         assert_eq!([9, 10, 29, 30].map(|t| trace.level(t)), [false, true, true, false]);
+    }
+
+    #[test]
+    fn a_sampled_line_has_an_edge_where_its_level_changes() {
+        let trace = Trace::sampled("screen", [(5, false), (10, true), (20, true), (30, false)]);
+        assert_eq!(trace, Trace::toggling("screen", vec![10, 30]));
     }
 
     #[test]

@@ -2,7 +2,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::{Fault, HostLine, MagneticDistortion, SerialLine};
-use crate::config as table;
+use crate::config::{self as table, Tables};
 
 /// Settings of a tracker, its cable and the host's port. Presets take every number from [`crate::config`].
 ///
@@ -27,6 +27,10 @@ pub struct TrackerConfig {
     pub position_noise_m: f64,
     /// White noise about each axis, rms, degrees.
     pub orientation_noise_deg: f64,
+    /// Systematic error of each axis, rms over installations, m: drawn once from the seed, the same in every report.
+    pub position_bias_m: f64,
+    /// Systematic error about each axis, rms over installations, degrees: drawn once from the seed, the same in every report.
+    pub orientation_bias_deg: f64,
     /// a of the tracker's filter x' = a x + (1 - a) x'; 1 is no filter. Above 0.
     pub filter_gain: f64,
     /// The cable; `None` when the latency above includes it.
@@ -45,69 +49,105 @@ pub struct TrackerConfig {
 impl TrackerConfig {
     /// Polhemus Fastrak, one receiver, filter off, 115,200 baud, patched kernel.
     pub fn fastrak() -> Self {
-        let latency_ps = table::ms_to_ps(table::Fastrak::PAPERS.latency);
+        Self::fastrak_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn fastrak_by(tables: &Tables) -> Self {
+        let latency_ps = table::ms_to_ps(tables.fastrak.latency);
         Self {
-            sync_to_output_ps: table::ms_to_ps(table::Fastrak::PAPERS.sync_to_output),
+            sync_to_output_ps: table::ms_to_ps(tables.fastrak.sync_to_output),
             position_latency_ps: latency_ps,
             orientation_latency_ps: latency_ps,
-            serial: Some(SerialLine::fastrak()),
-            ..Self::ideal()
-                .named("Polhemus Fastrak", table::Fastrak::PAPERS.rate)
-                .with_noise(table::Fastrak::PAPERS.position_noise, table::Fastrak::PAPERS.orientation_noise)
+            serial: Some(SerialLine::fastrak_by(tables)),
+            ..Self::ideal_by(tables)
+                .named("Polhemus Fastrak", tables.fastrak.rate)
+                .with_noise(tables.fastrak.position_noise, tables.fastrak.orientation_noise)
+                .with_bias(tables.fastrak.position_bias, tables.fastrak.orientation_bias)
         }
     }
 
     /// Ascension Flock of Birds, filters off, on the unpatched kernel: the patched one crashes with it.
     pub fn flock_of_birds() -> Self {
-        let position_latency_ps = table::ms_to_ps(table::Flock::PAPERS.position_latency);
+        Self::flock_of_birds_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn flock_of_birds_by(tables: &Tables) -> Self {
+        let position_latency_ps = table::ms_to_ps(tables.flock.position_latency);
         Self {
             sync_to_output_ps: position_latency_ps,
             position_latency_ps,
-            orientation_latency_ps: table::ms_to_ps(table::Flock::PAPERS.orientation_latency),
-            host: HostLine::unix(),
-            crashes_patched_host_after_ps: Some(table::ms_to_ps(table::Flock::PAPERS.crash)),
-            ..Self::ideal()
-                .named("Ascension Flock of Birds", table::Flock::PAPERS.rate)
-                .with_noise(table::Flock::PAPERS.position_noise, table::Flock::PAPERS.orientation_noise)
+            orientation_latency_ps: table::ms_to_ps(tables.flock.orientation_latency),
+            host: HostLine::unix_by(tables),
+            crashes_patched_host_after_ps: Some(table::ms_to_ps(tables.flock.crash)),
+            ..Self::ideal_by(tables)
+                .named("Ascension Flock of Birds", tables.flock.rate)
+                .with_noise(tables.flock.position_noise, tables.flock.orientation_noise)
+                .with_bias(tables.flock.position_bias, tables.flock.orientation_bias)
         }
     }
 
     /// The Flock on a patched host, which dies of it after a second: for fault injection.
     pub fn flock_of_birds_on_patched_host() -> Self {
-        Self { host: HostLine::InterruptPerCharacter, ..Self::flock_of_birds() }
+        Self::flock_of_birds_on_patched_host_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn flock_of_birds_on_patched_host_by(tables: &Tables) -> Self {
+        Self { host: HostLine::InterruptPerCharacter, ..Self::flock_of_birds_by(tables) }
     }
 
     /// UNC optical ceiling tracker: 33 ms in all.
     pub fn optical_ceiling() -> Self {
-        Self::ideal()
-            .named("UNC optical ceiling tracker", table::Optical::PAPERS.rate)
-            .with_noise(table::Optical::PAPERS.position_noise, table::Optical::PAPERS.orientation_noise)
-            .with_latency_ps(table::ms_to_ps(table::Optical::PAPERS.latency))
+        Self::optical_ceiling_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn optical_ceiling_by(tables: &Tables) -> Self {
+        Self::ideal_by(tables)
+            .named("UNC optical ceiling tracker", tables.optical.rate)
+            .with_noise(tables.optical.position_noise, tables.optical.orientation_noise)
+            .with_bias(tables.optical.position_bias, tables.optical.orientation_bias)
+            .with_latency_ps(table::ms_to_ps(tables.optical.latency))
     }
 
     /// Polhemus 3Space above a steel floor, transmitter at the origin, unpatched kernel.
     pub fn polhemus_3space() -> Self {
+        Self::polhemus_3space_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn polhemus_3space_by(tables: &Tables) -> Self {
         Self {
-            host: HostLine::unix(),
-            distortion: Some(MagneticDistortion::floor_below(DVec3::ZERO)),
-            ..Self::ideal()
-                .named("Polhemus 3Space", table::Space::PAPERS.rate)
-                .with_noise(table::Space::PAPERS.position_noise, table::Space::PAPERS.orientation_noise)
-                .with_latency_ps(table::ms_to_ps(table::Space::PAPERS.latency))
+            host: HostLine::unix_by(tables),
+            distortion: Some(MagneticDistortion::floor_below_by(tables, DVec3::ZERO)),
+            ..Self::ideal_by(tables)
+                .named("Polhemus 3Space", tables.space.rate)
+                .with_noise(tables.space.position_noise, tables.space.orientation_noise)
+                .with_bias(tables.space.position_bias, tables.space.orientation_bias)
+                .with_latency_ps(table::ms_to_ps(tables.space.latency))
         }
     }
 
     /// No error, no delay, 1,000 reports a second.
     pub fn ideal() -> Self {
+        Self::ideal_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn ideal_by(tables: &Tables) -> Self {
         Self {
             name: "ideal".to_owned(),
-            rate_hz: table::Ideal::PAPERS.rate as u32,
+            rate_hz: tables.ideal.rate as u32,
             receivers: 1,
             sync_to_output_ps: 0,
             position_latency_ps: 0,
             orientation_latency_ps: 0,
             position_noise_m: 0.0,
             orientation_noise_deg: 0.0,
+            position_bias_m: 0.0,
+            orientation_bias_deg: 0.0,
             filter_gain: 1.0,
             serial: None,
             host: HostLine::InterruptPerCharacter,
@@ -148,5 +188,14 @@ impl TrackerConfig {
 
     fn with_noise(self, position_mm: f64, orientation_deg: f64) -> Self {
         Self { position_noise_m: position_mm / 1e3, orientation_noise_deg: orientation_deg, ..self }
+    }
+
+    fn with_bias(self, position_mm: f64, orientation_deg: f64) -> Self {
+        Self { position_bias_m: position_mm / 1e3, orientation_bias_deg: orientation_deg, ..self }
+    }
+
+    /// The same without what no filter can know or help: bias, metal, faults.
+    pub fn without_systematic_errors(self) -> Self {
+        Self { position_bias_m: 0.0, orientation_bias_deg: 0.0, distortion: None, faults: Vec::new(), ..self }
     }
 }

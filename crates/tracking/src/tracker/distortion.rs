@@ -1,7 +1,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::config as table;
+use crate::config::Tables;
 use crate::error::ConfigError;
 use crate::pose::Pose;
 use crate::rotation;
@@ -27,11 +27,16 @@ pub struct MagneticDistortion {
 impl MagneticDistortion {
     /// Metal in the floor below a transmitter at this place: 20 mm at 1 m (assumed).
     pub fn floor_below(transmitter_m: DVec3) -> Self {
+        Self::floor_below_by(&Tables::PAPERS, transmitter_m)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn floor_below_by(tables: &Tables, transmitter_m: DVec3) -> Self {
         Self {
             transmitter_m,
             towards_metal: DVec3::NEG_Y,
-            depth_per_m2: table::Space::PAPERS.bowl / 1e3,
-            reach_m: table::Space::PAPERS.bowl_reach,
+            depth_per_m2: tables.space.bowl / 1e3,
+            reach_m: tables.space.bowl_reach,
         }
     }
 

@@ -17,9 +17,12 @@ impl TrackerModel {
         check_times(&config)?;
         ConfigError::check("position noise, m", config.position_noise_m, 0.0, 10.0)?;
         ConfigError::check("orientation noise, deg", config.orientation_noise_deg, 0.0, 90.0)?;
+        ConfigError::check("position bias, m", config.position_bias_m, 0.0, 10.0)?;
+        ConfigError::check("orientation bias, deg", config.orientation_bias_deg, 0.0, 90.0)?;
         ConfigError::check("filter gain", config.filter_gain, 1e-6, 1.0)?;
         if let Some(serial) = config.serial {
             ConfigError::check("record, bytes", f64::from(serial.record_bytes), 1.0, 1000.0)?;
+            ConfigError::check("bits of a byte", f64::from(serial.byte_bits), 1.0, 100.0)?;
             ConfigError::check("line rate, baud", f64::from(serial.baud), 300.0, 1e6)?;
         }
         config.distortion.map_or(Ok(()), |d| d.check())?;
@@ -125,9 +128,10 @@ mod tests {
             TrackerConfig { filter_gain: 0.0, ..good() },
             TrackerConfig { filter_gain: f64::NAN, ..good() },
             TrackerConfig { position_noise_m: -1.0, ..good() },
+            TrackerConfig { orientation_bias_deg: f64::NAN, ..good() },
             TrackerConfig { position_latency_ps: u64::MAX, ..good() },
             TrackerConfig { host: HostLine::Polled { period_ps: 0 }, ..good() },
-            TrackerConfig { serial: Some(SerialLine { record_bytes: 47, baud: 0 }), ..good() },
+            TrackerConfig { serial: Some(SerialLine { baud: 0, ..SerialLine::fastrak() }), ..good() },
             TrackerConfig { faults: vec![Fault::RandomDropout { probability: 1.0 }], ..good() },
             TrackerConfig { faults: vec![Fault::Dropout { from_ps: 2, to_ps: 1 }], ..good() },
         ];

@@ -1,7 +1,7 @@
 use glam::{DQuat, DVec3};
 
 use super::report::Report;
-use super::{Fault, HostLine, TrackerModel};
+use super::{Fault, HostLine, TrackerConfig, TrackerModel};
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::random::{below, bits, normal_pair, stream, unit};
@@ -21,6 +21,8 @@ pub struct Reports<'a, M: ?Sized> {
     model: &'a TrackerModel,
     motion: &'a M,
     noise: u64,
+    /// Systematic error: metres, and a rotation vector in radians.
+    bias: (DVec3, DVec3),
     faults: u64,
     poll_phase_ps: u64,
     next_solution: u64,
@@ -45,6 +47,7 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
             model,
             motion,
             noise: stream(seed, 2),
+            bias: bias(config, stream(seed, 4)),
             faults: stream(seed, 3),
             poll_phase_ps,
             next_solution: 0,
@@ -72,8 +75,16 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
         if let Some(distortion) = config.distortion {
             pose = distortion.distort(&pose);
         }
-        let pose = self.filter(self.with_noise(pose, solution));
+        let pose = self.filter(self.with_noise(self.with_bias(pose), solution));
         Report { solution, measured_ps, position_measured_ps, arrives_ps: output_ps, pose }
+    }
+
+    fn with_bias(&self, pose: Pose) -> Pose {
+        let (offset, turn) = self.bias;
+        if offset == DVec3::ZERO && turn == DVec3::ZERO {
+            return pose;
+        }
+        Pose { position: pose.position + offset, orientation: rotation::exp(turn) * pose.orientation }
     }
 
     fn with_noise(&self, pose: Pose, solution: u64) -> Pose {
@@ -159,6 +170,13 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
             self.crashes = false;
         }
     }
+}
+
+/// Draws the systematic error of an installation.
+fn bias(config: &TrackerConfig, seed: u64) -> (DVec3, DVec3) {
+    let [(a, b), (c, d), (e, f)] = core::array::from_fn(|i| normal_pair(seed, i as u64));
+    let turn = DVec3::new(d, e, f) * config.orientation_bias_deg.to_radians();
+    (DVec3::new(a, b, c) * config.position_bias_m, turn)
 }
 
 impl<M: Motion + ?Sized> Iterator for Reports<'_, M> {

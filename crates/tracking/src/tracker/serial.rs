@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::config as table;
+use crate::config::{self as table, Tables};
 use crate::time::PS_PER_S;
 
 /// The cable from tracker to host. One record travels at a time.
@@ -11,17 +11,33 @@ pub struct SerialLine {
     pub record_bytes: u32,
     /// Line rate, bits per second, 300 to 1,000,000.
     pub baud: u32,
+    /// Bits on the line for a byte, with start and stop, 1 to 100.
+    #[serde(default = "usual_byte_bits")]
+    pub byte_bits: u32,
+}
+
+fn usual_byte_bits() -> u32 {
+    table::Host::PAPERS.byte_bits as u32
 }
 
 impl SerialLine {
     /// A 47-byte Fastrak record at 115,200 baud: 4.08 ms.
     pub fn fastrak() -> Self {
-        Self { record_bytes: table::Fastrak::PAPERS.record as u32, baud: table::Fastrak::PAPERS.baud as u32 }
+        Self::fastrak_by(&Tables::PAPERS)
     }
 
-    /// Time of `records` records on the line: bytes x 10 bits / baud.
+    /// The same with the numbers of these tables.
+    pub fn fastrak_by(tables: &Tables) -> Self {
+        Self {
+            record_bytes: tables.fastrak.record as u32,
+            baud: tables.fastrak.baud as u32,
+            byte_bits: tables.host.byte_bits as u32,
+        }
+    }
+
+    /// Time of `records` records on the line: bytes x bits of a byte / baud.
     pub fn transfer_ps(&self, records: u32) -> u64 {
-        let bits = u128::from(self.record_bytes) * u128::from(table::Host::PAPERS.byte_bits) * u128::from(records);
+        let bits = u128::from(self.record_bytes) * u128::from(self.byte_bits) * u128::from(records);
         let ps = bits.saturating_mul(u128::from(PS_PER_S)) / u128::from(self.baud.max(1));
         u64::try_from(ps).unwrap_or(u64::MAX)
     }
@@ -44,7 +60,12 @@ pub enum HostLine {
 impl HostLine {
     /// The unpatched kernel, which looks every 30 ms (TR94).
     pub fn unix() -> Self {
-        Self::Polled { period_ps: table::ms_to_ps(table::Host::PAPERS.poll) }
+        Self::unix_by(&Tables::PAPERS)
+    }
+
+    /// The same with the numbers of these tables.
+    pub fn unix_by(tables: &Tables) -> Self {
+        Self::Polled { period_ps: table::ms_to_ps(tables.host.poll) }
     }
 
     /// When a record that is complete at `t_ps` is seen. `phase_ps` is the instant of the first look.
@@ -84,7 +105,7 @@ mod tests {
 
     #[test]
     fn unchecked_lines_are_slow_or_late_but_never_a_panic() {
-        assert!(SerialLine { record_bytes: u32::MAX, baud: 0 }.transfer_ps(u32::MAX) > 0);
+        assert!(SerialLine { record_bytes: u32::MAX, baud: 0, byte_bits: u32::MAX }.transfer_ps(u32::MAX) > 0);
         assert_eq!(HostLine::Polled { period_ps: 0 }.seen_ps(9, 5), 9);
         assert_eq!(HostLine::Polled { period_ps: u64::MAX }.seen_ps(9, 5), u64::MAX);
     }

@@ -1,0 +1,145 @@
+//! `pxpl5 rig`: latency measured from outside, as by I3D95's pendulum, beside the system's own time stamps.
+
+use crate::error::CliError;
+use crate::settings::SettingArgs;
+use crate::terminal::print;
+use clap::Args;
+use pxpl5::rig::{PASSES, Rig};
+use pxpl5::tracking::rig::{Latency, Measurement, Side};
+use pxpl5::{ExperimentFile, Plan};
+use serde_json::{Value, json};
+use std::fmt::Write;
+
+/// Measure the latency of a pipeline from outside, with a pendulum and photodiodes, beside what its time stamps say.
+///
+/// A tracker on a pendulum's bob feeds the host. When the host sees the low point it starts a frame; frames alternate dark and
+/// light under a photodiode in the middle of a line of the screen. The pipeline draws nothing else: it is not full.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 rig --pipeline rendering-control
+  pxpl5 rig --pipeline slats --tracker fastrak --passes 100 --json
+  pxpl5 rig --pipeline rendering-control --machine large --set gp.triangle_ns=30000
+
+Scene, motion and length are the rig's own: --scene, --triangles, --head, --fields, --predict, --aim, --raster and --pixels do not apply.")]
+pub(crate) struct RigArgs {
+    #[command(flatten)]
+    settings: SettingArgs,
+    /// Low points to measure, 2 to 10,000.
+    #[arg(long, default_value_t = PASSES as u64, value_name = "N", value_parser = clap::value_parser!(u64).range(2..=10_000))]
+    passes: u64,
+    /// Line of a field under the photodiode on the screen, 0 at the top; default 120, the middle of NTSC's 240.
+    #[arg(long, value_name = "N")]
+    line: Option<u32>,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Keys that would say what the rig itself says.
+const NOT_OURS: [&str; 8] =
+    ["scene", "triangles", "head.motion", "head.predict", "head.aim", "head.raster", "fields", "pixels"];
+
+/// Runs the measurement.
+///
+/// # Errors
+///
+/// What is wrong with an option, or why nothing can be measured.
+pub(crate) fn run(args: RigArgs) -> Result<(), CliError> {
+    let plan = plan(args.settings.gather()?)?;
+    let tracker = plan.head.as_ref().map(|head| head.head().tracker().config().clone());
+    let tracker = tracker.ok_or_else(|| CliError::failure("no tracker"))?;
+    let mut rig = Rig { seed: plan.seed, passes: args.passes as usize, ..Rig::assumed(tracker) };
+    rig.rig.photodiode_line = args.line.unwrap_or(rig.rig.photodiode_line);
+    let measured = rig.measure(&plan.machine, plan.pipeline.clone()).map_err(CliError::failure)?;
+    print(&if args.json { json_text(&plan, &rig, &measured) } else { text(&plan, &rig, &measured) })
+}
+
+/// Pipeline, machine, tracker and seed of the settings, with what the rig brings along.
+fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
+    if let Some(key) = file.keys().find(|key| NOT_OURS.contains(key) || key.starts_with("motion.")) {
+        return Err(CliError::usage(format!(
+            "{key}: does not apply to the rig, which has its own scene, motion and length"
+        )));
+    }
+    file.set("scene", "full-screen:2", "the rig")?;
+    file.set("head.motion", "pendulum", "the rig")?;
+    Ok(file.resolve()?)
+}
+
+fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
+    let Measurement { outside, inside, .. } = measured;
+    let mut text = format!(
+        "{} on {}: {} low points, {}, photodiode at line {}\n\n{:<20} {:^36} {:^36}\n",
+        plan.pipeline.name(),
+        plan.machine.preset,
+        outside.total.n,
+        rig.tracker.name,
+        rig.rig.photodiode_line,
+        "mean, sd (range) ms",
+        "outside",
+        "inside"
+    );
+    let rows: [(&str, fn(&Side) -> &Latency); 3] = [
+        ("tracking latency", |side| &side.tracking),
+        ("rendering latency", |side| &side.rendering),
+        ("together", |side| &side.total),
+    ];
+    for (name, latency) in rows {
+        let _ = writeln!(text, "{name:<20} {:^36} {:^36}", cell(latency(outside)), cell(latency(inside)));
+    }
+    let _ = writeln!(text, "\n{}", verdict(measured));
+    text.push_str(DEFINITIONS);
+    text
+}
+
+const DEFINITIONS: &str = "
+Outside, tracking: from the bob's low point to the step of the D/A line, which is switched when the frame's TRANSFORM begins.
+Outside, rendering: from that step to the light of the frame under the photodiode.
+Inside, tracking: from the time stamp of the report that shows the low point to the start of the frame.
+Inside, rendering: from the start of TRANSFORM to where the pipeline says that the frame is shown.
+";
+
+fn cell(latency: &Latency) -> String {
+    let Latency { mean_s, deviation_s, least_s, greatest_s, .. } = latency;
+    format!("{:.2}, {:.2} ({:.2} to {:.2})", mean_s * 1e3, deviation_s * 1e3, least_s * 1e3, greatest_s * 1e3)
+}
+
+fn verdict(measured: &Measurement) -> String {
+    format!(
+        "Outside less inside: {:.2} ms. Expected: 0 to {:.2} ms of tracking (a report's interval) and up to {:.2} ms of rendering (the \
+         photodiode's place in the scan). They {}.",
+        measured.outside_less_inside_s() * 1e3,
+        measured.tracking_bound_ps as f64 * 1e-9,
+        measured.rendering_bound_ps as f64 * 1e-9,
+        if measured.agrees() { "agree" } else { "DO NOT AGREE" }
+    )
+}
+
+fn json_text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
+    let value = json!({
+        "schema": "pxpl5-rig/1",
+        "pipeline": plan.pipeline.name(),
+        "machine": plan.machine.preset,
+        "overrides": plan.machine.overrides(),
+        "tracker": rig.tracker.name,
+        "seed": rig.seed,
+        "photodiode_line": rig.rig.photodiode_line,
+        "n": measured.outside.total.n,
+        "outside_ms": side(&measured.outside),
+        "inside_ms": side(&measured.inside),
+        "outside_less_inside_ms": measured.outside_less_inside_s() * 1e3,
+        "tracking_bound_ms": measured.tracking_bound_ps as f64 * 1e-9,
+        "rendering_bound_ms": measured.rendering_bound_ps as f64 * 1e-9,
+        "agrees": measured.agrees(),
+    });
+    format!("{value:#}\n")
+}
+
+fn side(side: &Side) -> Value {
+    json!({"tracking": latency(&side.tracking), "rendering": latency(&side.rendering), "total": latency(&side.total)})
+}
+
+fn latency(latency: &Latency) -> Value {
+    let Latency { n, mean_s, deviation_s, least_s, greatest_s } = latency;
+    json!({"n": n, "mean": mean_s * 1e3, "sd": deviation_s * 1e3, "min": least_s * 1e3, "max": greatest_s * 1e3})
+}

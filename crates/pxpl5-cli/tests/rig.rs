@@ -1,0 +1,34 @@
+//! `pxpl5 rig` as a user starts it.
+
+mod support;
+
+use support::Folder;
+
+#[test]
+fn outside_stands_beside_inside_with_number_and_spread() {
+    let folder = Folder::new("rig");
+    let output = folder.run(&["rig", "--pipeline", "slats", "--tracker", "fastrak", "--passes", "3", "--json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON and nothing else");
+    assert_eq!((&json["n"], &json["agrees"]), (&serde_json::json!(3), &serde_json::json!(true)), "{json}");
+    for side in ["outside_ms", "inside_ms"] {
+        for latency in ["tracking", "rendering", "total"] {
+            let latency = &json[side][latency];
+            assert!(latency["mean"].as_f64() > Some(0.0) && latency["sd"].as_f64() >= Some(0.0), "{json}");
+            assert_eq!(latency["n"], 3);
+        }
+    }
+    // A field from TRANSFORM to the retrace.
+    assert!((json["inside_ms"]["rendering"]["mean"].as_f64().expect("a number") - 16.683).abs() < 1e-3, "{json}");
+}
+
+#[test]
+fn what_the_rig_itself_brings_is_refused() {
+    let folder = Folder::new("rig-refused");
+    for option in [["--scene", "mig"], ["--head", "pan:200"], ["--fields", "60"], ["--aim", "retrace"]] {
+        let output = folder.run(&["rig", "--pipeline", "slats", option[0], option[1]]);
+        assert_eq!(output.status.code(), Some(2), "{option:?}");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(said.contains("does not apply to the rig"), "{said}");
+    }
+}

@@ -1,0 +1,78 @@
+//! The numbers of trackers, predictors and of the port between them, as an experiment sets them: `tracking.table.name`.
+
+use super::plan::number;
+use super::{ExperimentFile, FileError, Setting};
+use crate::compare::tracker_by;
+use parameters::ParameterTable;
+use pxpl5_machine::{ConfigError, Parameter};
+use tracking::config::{FACTS, Tables};
+
+/// The first part of every path.
+const PREFIX: &str = "tracking.";
+
+/// Tables that matter to every tracker: the host's serial port, the prediction filters, the gate before them.
+const COMMON: [&str; 3] = ["host", "filter", "gate"];
+
+/// Every number with the value of the papers. Those that describe heads, the measuring rig, the video and the picture of the
+/// papers are read-only: they are facts that models are compared with, and no setting of a tracked head.
+#[must_use]
+pub fn tracking_parameters() -> Vec<Parameter> {
+    let numbers = Tables::PAPERS.all().into_iter().flat_map(|(name, table)| parameters_of(name, table, false));
+    let facts = FACTS.into_iter().flat_map(|(name, table)| parameters_of(name, table, true));
+    numbers.chain(facts).collect()
+}
+
+fn parameters_of(name: &str, table: &dyn ParameterTable, read_only: bool) -> Vec<Parameter> {
+    Parameter::of_table(&format!("{PREFIX}{name}"), table, read_only).collect()
+}
+
+/// The numbers of an experiment whose tracker's own table has this name.
+pub(super) fn parameters_with(tables: &Tables, own: &str) -> Vec<Parameter> {
+    let applying = tables.all().into_iter().filter(|(name, _)| applies(name, own));
+    applying.flat_map(|(name, table)| parameters_of(name, table, false)).collect()
+}
+
+fn applies(table: &str, own: &str) -> bool {
+    table == own || COMMON.contains(&table)
+}
+
+/// Whether a path is one of these numbers.
+pub(super) fn is_tracking_parameter(path: &str) -> bool {
+    path.starts_with(PREFIX) && tracking_parameters().iter().any(|parameter| parameter.path == path)
+}
+
+/// The numbers that a file sets, for the tracker of this name.
+pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, FileError> {
+    let mut tables = Tables::PAPERS;
+    // An unknown tracker is refused by who builds it.
+    let own = tracker_by(&tables, tracker).map_or("", |(_, own)| own);
+    for (path, setting) in &file.settings {
+        let Some((table, name)) = path.strip_prefix(PREFIX).and_then(|path| path.split_once('.')) else { continue };
+        refuse_facts(path, setting)?;
+        if !applies(table, own) && !own.is_empty() {
+            let reason = format!("{path} does not apply to head.tracker = {tracker}; leave it out");
+            return Err(FileError::Head { place: setting.place.clone(), reason });
+        }
+        let value = number(file, path, setting)?;
+        if let Some(table) = tables.named_mut(table) {
+            let set = table.set(name, value).and_then(|()| table.check());
+            set.map_err(|error| refused(path, setting, &error))?;
+        }
+    }
+    Ok(tables)
+}
+
+fn refused(path: &str, setting: &Setting, error: &dyn std::error::Error) -> FileError {
+    let table = path.rsplit_once('.').map_or(path, |(table, _)| table);
+    FileError::Head { place: setting.place.clone(), reason: format!("{table}.{error}") }
+}
+
+fn refuse_facts(path: &str, setting: &Setting) -> Result<(), FileError> {
+    match tracking_parameters().into_iter().find(|parameter| parameter.path == path && parameter.read_only) {
+        Some(Parameter { path, info, value, .. }) => {
+            let error = ConfigError::ReadOnly { path, value, origin: info.source };
+            Err(FileError::Config { place: setting.place.clone(), error })
+        }
+        None => Ok(()),
+    }
+}

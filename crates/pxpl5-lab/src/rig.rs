@@ -1,0 +1,265 @@
+//! The pendulum rig in front of the emulated machine: latency measured from outside, beside the system's own time stamps.
+//!
+//! As in I3D95, the host starts a frame when it sees the pendulum's low point, frames alternate dark and light, and a D/A line
+//! goes up or down when such a frame is started. So frames come on demand, the pipeline is not full, and no wait for the stages
+//! of an earlier frame is in the latency.
+//!
+//! Nothing that the oscilloscope shows comes from what the pipeline says of its pictures: the low points are the pendulum's, the
+//! light is that of the pixels that the display scans at the photodiode's place, and the D/A line is switched by the board
+//! that begins TRANSFORM of the frame. What the pipeline says is the other side.
+
+use crate::Workstation;
+use core::f64::consts::FRAC_PI_2;
+use glam::{DVec3, Vec3};
+use pxpl5_display::Display;
+use pxpl5_gp::{Edge, Stage};
+use pxpl5_machine::{Machine, MachineConfig, Record};
+use pxpl5_run::{Experiment, ExperimentError, Head, HeadError, Outcome, PictureTimes, Pipeline, Pixels};
+use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
+use pxpl5_sim::Time;
+use pxpl5_wire::{PeriodNumber, ViewNumber};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use thiserror::Error;
+use tracking::motion::Still;
+use tracking::predict::PredictorKind;
+use tracking::rig::{InsidePass, Measurement, Oscilloscope, PendulumRig, RigError, Sighting, Trace};
+use tracking::time::nearest_ps;
+use tracking::tracker::{Report, TrackerConfig, TrackerModel};
+use tracking::{Pose, rotation};
+
+/// A measurement that is to be done.
+#[derive(Clone, Debug)]
+pub struct Rig {
+    /// Pendulum, detection and photodiodes.
+    pub rig: PendulumRig,
+    /// The tracker on the bob.
+    pub tracker: TrackerConfig,
+    /// Seed of the tracker's noise.
+    pub seed: u64,
+    /// Low points to be measured, at least 2.
+    pub passes: usize,
+}
+
+/// Why a measurement failed.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RigRunError {
+    /// The tracker's settings are impossible.
+    #[error(transparent)]
+    Tracker(#[from] HeadError),
+    /// The pipeline cannot run there.
+    #[error(transparent)]
+    Run(#[from] ExperimentError),
+    /// The rig saw no low point or no light.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// A frame that a low point asked for was not shown complete.
+    #[error(
+        "of {expected} frames that low points asked for the pipeline says only of {found} when they were shown complete"
+    )]
+    NotShown {
+        /// Frames asked for.
+        expected: usize,
+        /// Those shown complete, as the pipeline says.
+        found: usize,
+    },
+    /// The photodiode lies below the screen.
+    #[error("photodiode: expected one of the {lines} lines that are lit in a period, from 0; found {found}")]
+    Photodiode {
+        /// Lines of the screen.
+        lines: u32,
+        /// The photodiode's.
+        found: u32,
+    },
+}
+
+/// The bob's low points fall anywhere in a field: enough that the mean wait for a retrace is known to a fifth of a field.
+pub const PASSES: usize = 24;
+
+impl Rig {
+    /// The rig as assumed, with a tracker.
+    #[must_use]
+    pub fn assumed(tracker: TrackerConfig) -> Self {
+        Self { rig: PendulumRig::assumed(), tracker, seed: 1, passes: PASSES }
+    }
+
+    /// Measures a pipeline on a machine.
+    ///
+    /// # Errors
+    ///
+    /// [`RigRunError`] when the pipeline cannot run there, or does not show what it is asked for.
+    pub fn measure(&self, machine: &MachineConfig, pipeline: Arc<dyn Pipeline>) -> Result<Measurement, RigRunError> {
+        let tracker = TrackerModel::new(self.tracker.clone())?;
+        let sightings = self.rig.sightings(&tracker, self.seed, self.passes.max(2))?;
+        let experiment = self.experiment(machine, pipeline, &sightings)?;
+        let mut photodiode = Photodiode::new(self.rig.photodiode_line);
+        let outcome = photodiode.watch(&experiment)?;
+        let frames = frames_asked_for(&outcome, &sightings)?;
+        let dac = Trace::toggling("D/A line", frames.iter().map(|frame| started(outcome.record(), frame).0).collect());
+        let screen = Trace::sampled("screen", photodiode.samples);
+        let oscilloscope = Oscilloscope::of(&self.rig, dac, screen);
+        let inside = sightings.iter().zip(&frames).map(|(sighting, frame)| InsidePass {
+            sighting: *sighting,
+            started_ps: frame.transform_at.0,
+            shown_ps: frame.shown_at.0,
+        });
+        Ok(self.rig.compare(&tracker, photodiode.place_ps, &oscilloscope, inside.collect())?)
+    }
+
+    /// The experiment: a head that turns away or back at every sighting, until the last frame must have been shown.
+    fn experiment(
+        &self,
+        machine: &MachineConfig,
+        pipeline: Arc<dyn Pipeline>,
+        sightings: &[Sighting],
+    ) -> Result<Experiment, RigRunError> {
+        let reports = (0..).zip(sightings).map(|(number, sighting)| Report {
+            solution: number,
+            measured_ps: sighting.measured_ps,
+            position_measured_ps: sighting.measured_ps,
+            arrives_ps: sighting.arrives_ps,
+            pose: if number % 2 == 0 { Pose::IDENTITY } else { away() },
+        });
+        let head = Head::new(Arc::new(Still(away())), self.tracker.clone(), PredictorKind::None, self.seed)?;
+        let head = head.reporting(reports.collect());
+        let experiment = Experiment::with(machine.clone(), pipeline, Arc::new(lamp()))
+            .head(head)
+            .on_demand()
+            .pixels(Pixels::Lazy)
+            .host(Workstation::with_threads(1));
+        let last_ps = sightings.last().map_or(0, |last| last.arrives_ps);
+        let end = Time(last_ps + nearest_ps(self.rig.pendulum.period_s() / 2.0));
+        let fields = experiment.build()?.record().display().period_at(end).0 + 1;
+        Ok(experiment.fields(fields))
+    }
+}
+
+/// The pose in which the lamp is behind the viewer's shoulder: dark frames.
+fn away() -> Pose {
+    Pose { position: DVec3::ZERO, orientation: rotation::about_y(FRAC_PI_2) }
+}
+
+/// A white wall straight ahead (along -z) that fills the view, and nothing elsewhere; its own viewer looks away from it. Two
+/// triangles: the minimal data set.
+fn lamp() -> Scene {
+    const CORNERS: [[f32; 2]; 4] = [[-1.6, -1.6], [1.6, -1.6], [1.6, 1.6], [-1.6, 1.6]];
+    let vertex = |[x, y]: [f32; 2]| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };
+    let structure = Structure {
+        name: "lamp".to_owned(),
+        vertices: 0..4,
+        triangles: 0..2,
+        spheres: 0..0,
+        frame: Frame::World,
+        hinge: None,
+    };
+    let lighting = Lighting { background: [0; 3], ambient: 1.0, diffuse: 0.0, ..Lighting::over_the_shoulder() };
+    let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_X }, Sway::none());
+    Scene::new(SceneParts {
+        name: "lamp".to_owned(),
+        vertices: CORNERS.map(vertex).to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        spheres: Vec::new(),
+        structures: vec![structure],
+        lighting,
+        motion: motion.expect("a still head is in range"),
+    })
+    .expect("a quadrangle is a scene")
+}
+
+/// The photodiode on the screen, in the middle of a line: what it sees each time that the beam passes it.
+struct Photodiode {
+    line: u32,
+    /// From the tick of a period to the beam's passing it, the longest.
+    place_ps: u64,
+    /// When the beam passed, and whether it was light.
+    samples: Vec<(u64, bool)>,
+    /// Messages that the ring had carried by the end of each period, and whether it knew of none on its way.
+    ring: Vec<(u64, bool)>,
+}
+
+/// Mean of red, green and blue above which it is light: half of a white wall's.
+const LIGHT: u32 = 128;
+
+impl Photodiode {
+    const fn new(line: u32) -> Self {
+        Self { line, place_ps: 0, samples: Vec::new(), ring: Vec::new() }
+    }
+
+    /// Runs an experiment before its eye. A run in which fewer pictures are shown than pipelines need to fill is long enough here.
+    fn watch(&mut self, experiment: &Experiment) -> Result<Outcome, RigRunError> {
+        self.check(experiment.build()?.record().display())?;
+        let every: Vec<PeriodNumber> = PeriodNumber(2).until(PeriodNumber(experiment.length())).collect();
+        let result = experiment.run_stopping(&every, |period, machine| {
+            // The stop is before the retrace that ends the period before this one.
+            if let Some(over) = period.before(2) {
+                self.look(over, machine);
+            }
+            Ok(())
+        });
+        match result {
+            Err(ExperimentError::TooShort { partial, .. }) => Ok(*partial),
+            other => Ok(other?),
+        }
+    }
+
+    fn check(&self, display: &dyn Display) -> Result<(), RigRunError> {
+        let lines =
+            display.surfaces().first().map_or(0, |surface| surface.height / display.rows_lit(PeriodNumber::FIRST).1);
+        let found = self.line;
+        if found < lines { Ok(()) } else { Err(RigRunError::Photodiode { lines, found }) }
+    }
+
+    /// Looks at a period that is over.
+    fn look(&mut self, period: PeriodNumber, machine: &mut Machine) {
+        let record = machine.record();
+        let display = record.display();
+        let Some(surface) = display.surfaces().first() else { return };
+        let (first_row, row_distance) = display.rows_lit(period);
+        let x = surface.width / 2;
+        let y = first_row + self.line * row_distance;
+        let Some(at) = display.lights(0, x, y, period) else { return };
+        self.place_ps = self.place_ps.max(at.since(display.tick(period)).0);
+        self.ring.push((record.ring().stats().messages, record.ring().is_idle()));
+        let is_light = self.unchanged().unwrap_or_else(|| brightness(display, x, y, period) >= LIGHT);
+        self.samples.push((at.0, is_light));
+    }
+
+    /// What it saw two periods ago, when the same line was lit, if no message has been on the ring since that period began: with an
+    /// idle machine the screen stands still. (The ring is read a period later than the screen.)
+    fn unchanged(&self) -> Option<bool> {
+        let [.., before, _, _, _, now] = self.ring[..] else { return None };
+        let (_, was_light) = *self.samples.get(self.samples.len().checked_sub(2)?)?;
+        (before == now).then_some(was_light)
+    }
+}
+
+/// Mean of red, green and blue of a pixel as it was when it lit in a period; dark where nothing was shown.
+fn brightness(display: &dyn Display, x: u32, y: u32, period: PeriodNumber) -> u32 {
+    let seen = display.seen(0, period);
+    seen.map_or(0, |picture| picture.get_pixel(x, y).0.iter().map(|value| u32::from(*value)).sum::<u32>() / 3)
+}
+
+/// The first complete picture of each sighting, as the pipeline says.
+fn frames_asked_for(outcome: &Outcome, sightings: &[Sighting]) -> Result<Vec<PictureTimes>, RigRunError> {
+    let sampled = outcome.head().map(|head| head.sampled()).unwrap_or_default();
+    let arrived_at: BTreeMap<ViewNumber, Time> =
+        sampled.iter().filter_map(|s| Some((s.number, s.arrived_at?))).collect();
+    let mut first: BTreeMap<u64, PictureTimes> = BTreeMap::new();
+    for times in outcome.pictures().iter().filter(|times| times.is_shown()) {
+        if let Some(arrived) = arrived_at.get(&times.view) {
+            first.entry(arrived.0).or_insert(*times);
+        }
+    }
+    let found: Vec<_> = sightings.iter().filter_map(|sighting| first.get(&sighting.arrives_ps).copied()).collect();
+    let expected = sightings.len();
+    if found.len() == expected { Ok(found) } else { Err(RigRunError::NotShown { expected, found: found.len() }) }
+}
+
+/// When the first board began TRANSFORM of a frame: it switches the D/A line.
+fn started(record: &Record, frame: &PictureTimes) -> Time {
+    let marks = record.observation().marks.iter();
+    let begun = marks
+        .filter(|mark| mark.stage == Stage::Transform && mark.edge == Edge::Begin && mark.picture == frame.picture);
+    begun.map(|mark| mark.time).min().unwrap_or(frame.transform_at)
+}

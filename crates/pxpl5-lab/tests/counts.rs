@@ -1,0 +1,126 @@
+//! What is counted, of every pipeline: each picture due ends in one way, rates are the load's and not the run's, and a pipeline
+//! that breaks at a load stays broken above it.
+
+use pxpl5_lab::{ExperimentFile, registry};
+use pxpl5_measure::{Measured, Report};
+use pxpl5_run::{DuePictures, ExperimentError, Outcome};
+
+/// A pipeline with so many triangles of the whole screen. Strips of eight lines where there are strips: an eighth of the events.
+fn run(pipeline: &str, triangles: u32, fields: u64) -> Result<Outcome, ExperimentError> {
+    let strips = if pipeline.starts_with("jitp") { "strip_rows = 8\n" } else { "" };
+    let text = format!(
+        "pipeline = \"{pipeline}\"\nscene = \"full-screen:{triangles}\"\nfields = {fields}\npixels = \"off\"\n{strips}"
+    );
+    let plan = ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect("valid");
+    plan.experiment(plan.load_scene().expect("built in")).run()
+}
+
+/// What was due of a run, too short or not.
+fn due(pipeline: &str, triangles: u32, fields: u64) -> Option<DuePictures> {
+    match run(pipeline, triangles, fields) {
+        Ok(outcome) => outcome.due(),
+        Err(ExperimentError::TooShort { partial, .. }) => partial.due(),
+        Err(error) => panic!("{pipeline}, {triangles} triangles: {error}"),
+    }
+}
+
+fn pipelines() -> Vec<&'static str> {
+    registry().pipelines().iter().map(|entry| entry.name).collect()
+}
+
+/// From light to far beyond what any pipeline of the papers draws in time.
+const LOADS: [u32; 9] = [1, 4, 16, 64, 110, 150, 400, 1_000, 3_000];
+
+/// Slats sends clumps of 30: a clump that is nearly empty costs as many messages as a full one, so a few triangles more may be
+/// one field less late. Of the loads here none is so near its limit; what is left is that of two runs whose windows begin in
+/// different periods, one picture each.
+fn tolerance(a: &DuePictures, b: &DuePictures) -> f64 {
+    1.0 / a.due as f64 + 1.0 / b.due as f64
+}
+
+#[test]
+fn every_picture_due_ends_in_one_way_and_no_heavier_load_misses_less() {
+    for pipeline in pipelines() {
+        let counts: Vec<_> = LOADS.iter().map(|triangles| due(pipeline, *triangles, 60)).collect();
+        if pipeline == "frameless" {
+            assert!(counts.iter().all(Option::is_none), "no picture of frameless rendering is ever due");
+            continue;
+        }
+        let counts: Vec<DuePictures> = counts.into_iter().map(|due| due.expect("60 fields are enough")).collect();
+        for (due, triangles) in counts.iter().zip(LOADS) {
+            assert_eq!(due.shown + due.late + due.incomplete + due.missed, due.due, "{pipeline}, {triangles}");
+            let periods = due.last_period.next().since(due.first_period);
+            assert_eq!(periods, due.due * due.periods_a_picture, "{pipeline}, {triangles}");
+        }
+        for (pair, triangles) in counts.windows(2).zip(LOADS) {
+            let falls = pair[0].not_shown_share() - pair[1].not_shown_share();
+            assert!(falls <= tolerance(&pair[0], &pair[1]), "{pipeline} above {triangles}: {pair:?}");
+        }
+        assert_eq!(counts[0].not_shown(), 0, "{pipeline} draws one triangle in time: {:?}", counts[0]);
+        assert!(counts[LOADS.len() - 1].not_shown_share() > 0.5, "{pipeline}: {:?}", counts[LOADS.len() - 1]);
+    }
+}
+
+#[test]
+fn rates_are_those_of_the_load_and_not_of_the_length_of_the_run() {
+    let cases: [(&str, &[u32]); 4] = [
+        ("rendering-control", &[12, 200, 800]),
+        ("slats", &[100, 150, 400]),
+        ("jitp-field", &[4, 100, 800]),
+        ("jitp-dual-screen-racing", &[4, 60]),
+    ];
+    for (pipeline, loads) in cases {
+        for triangles in loads {
+            let [short, long] = [400, 800].map(|fields| due(pipeline, *triangles, fields).expect("long enough"));
+            let expected = long.shown as f64 / long.due as f64 * short.due as f64;
+            let difference = (short.shown as f64 - expected).abs();
+            assert!(difference <= 1.0, "{pipeline}, {triangles} triangles: {short:?} {long:?}");
+        }
+    }
+}
+
+fn with_a_head(pipeline: &str, scene: &str) -> Report {
+    let text = format!(
+        "pipeline = \"{pipeline}\"\nscene = \"{scene}\"\nfields = 60\npixels = \"off\"\nhead.motion = \"pan:200\""
+    );
+    let plan = ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).expect("valid");
+    match plan.experiment(plan.load_scene().expect("built in")).run() {
+        Ok(outcome) => outcome.report(),
+        Err(ExperimentError::TooShort { partial, .. }) => partial.report(),
+        Err(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn where_nothing_was_complete_in_time_there_is_no_latency_no_update_and_no_error() {
+    for (pipeline, scene) in [("jitp-scanline-racing", "mig"), ("slats", "full-screen:1000")] {
+        let report = serde_json::to_value(with_a_head(pipeline, scene)).expect("JSON");
+        for path in [
+            "/latency_ms/mean",
+            "/latency_fields/mean",
+            "/updates_hz",
+            "/head/end_to_end/total_ms",
+            "/head/end_to_end/drawing_ms",
+            "/head/error/pixels/mean",
+            "/head/error/pixels/p99",
+            "/head/error/degrees/mean",
+            "/head/error/centre_px/max",
+        ] {
+            assert_eq!(report.pointer(path), Some(&serde_json::Value::Null), "{pipeline}: {path}");
+        }
+        for path in ["/latency_ms/n", "/head/end_to_end/n", "/head/error/pixels/n", "/head/error/judged"] {
+            assert_eq!(report.pointer(path), Some(&0.into()), "{pipeline}: {path}");
+        }
+        assert!(report["too_heavy"]["advice"].is_string() && report["ends_complete"] == false, "{pipeline}");
+        // Of the aircraft no line comes at all; regions of Slats come late.
+        let unjudged = ["incomplete", "empty"].map(|key| report["head"]["error"][key].as_u64().expect("a number"));
+        assert!(unjudged.iter().sum::<u64>() > 0, "{pipeline}");
+    }
+}
+
+#[test]
+fn a_pipeline_without_a_closed_form_says_how_its_limit_is_found() {
+    let heavy = run("jitp-field", 3_000, 60).expect("fields are begun").report().too_heavy.expect("far too many");
+    assert_eq!(heavy.triangles_in_time, None);
+    assert!(heavy.advice.contains("pxpl5 limit --pipeline jitp-field"), "{heavy}");
+}

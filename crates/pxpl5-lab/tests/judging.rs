@@ -1,0 +1,138 @@
+//! Pixel errors are judged where the content lies, at the moment when it lights, objects that move included.
+
+use glam::{DVec2, Vec3};
+use pxpl5_machine::MachineConfig;
+use pxpl5_measure::{Measured, PixelErrors, Registration};
+use pxpl5_run::{Experiment, ExperimentError, Head, Outcome, Pixels, Sampled, Slats};
+use pxpl5_scene::{Frame, HeadMotion, HeadPath, Hinge, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
+use pxpl5_sim::Time;
+use pxpl5_wire::PeriodNumber;
+use std::sync::Arc;
+use tracking::Pose;
+use tracking::motion::{End, Motion, Recording, Slide, Still};
+use tracking::predict::PredictorKind;
+use tracking::tracker::TrackerConfig;
+
+/// Focal length of 640 pixels over 60 degrees.
+const FOCAL_PX: f64 = 554.256_258_422_040_8;
+/// A field that is well past the start.
+const FIELD: PeriodNumber = PeriodNumber(40);
+
+fn head(motion: impl Motion + Send + Sync + 'static) -> Head {
+    Head::new(Arc::new(motion), TrackerConfig::ideal(), PredictorKind::None, 1).expect("in range")
+}
+
+fn run(scene: Scene, head: Head) -> Result<Outcome, ExperimentError> {
+    let experiment = Experiment::new(MachineConfig::small_hmd(), Slats::split(), scene);
+    experiment.head(head).fields(FIELD.0 + 2).pixels(Pixels::Off).run()
+}
+
+/// The view whose picture a field shows, and when a pixel of it lights.
+fn view_of_field(outcome: &Outcome, (x, y): (u32, u32)) -> (Sampled, Time) {
+    let display = outcome.record().display();
+    let in_field = outcome.pictures().iter().find(|times| display.period_at(times.shown_at) == FIELD);
+    let view = in_field.expect("Slats shows a picture a field").view;
+    let sampled = outcome.head().expect("there is a head").sampled();
+    let sampled = sampled.into_iter().find(|sampled| sampled.number == view).expect("it was asked for");
+    (sampled, display.lights(0, x, y, FIELD).expect("lit"))
+}
+
+fn offset_px(outcome: &Outcome, (x, y): (u32, u32)) -> DVec2 {
+    let registration = Registration::of(outcome).expect("there is a head");
+    registration.at(x, y, FIELD).expect("shown").offset_px
+}
+
+#[test]
+fn a_translation_is_off_by_focal_length_times_way_over_distance() {
+    const SPEED: f64 = 0.5;
+    let room = || pxpl5_scene::builtin("room").expect("built in");
+    // The wall ahead is 2 m away; else what was said.
+    for (judged_at, distance_m) in [(None, 2.0), (Some(5.0), 5.0), (Some(0.5), 0.5)] {
+        let head = head(Slide::right_at(SPEED));
+        let head = judged_at.map_or_else(|| head.clone(), |metres| head.clone().judged_at(metres).expect("in range"));
+        let outcome = run(room(), head).expect("it runs");
+        for pixel in [(320, 240), (100, 120), (600, 400)] {
+            let (view, lights_at) = view_of_field(&outcome, pixel);
+            let late_s = lights_at.since(view.measured_at.expect("measured")).as_ms() * 1e-3;
+            let expected = FOCAL_PX * SPEED * late_s / distance_m;
+            let found = offset_px(&outcome, pixel);
+            println!("{distance_m} m, {pixel:?}: {found} px, closed form {expected}");
+            assert!((found.x / expected - 1.0).abs() < 1e-3 && found.y.abs() < 1e-3 * expected, "{found} {expected}");
+        }
+    }
+}
+
+/// A wheel of 2 m before the viewer that swings about the axis of view.
+fn wheel(hinge: Hinge) -> Scene {
+    let corner = |x: f32, y: f32| Vertex { position: Vec3::new(x, y, -2.0), normal: Vec3::Z, colour: [255; 3] };
+    let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, Sway::none());
+    Scene::new(SceneParts {
+        name: "wheel".to_owned(),
+        vertices: vec![corner(-9.0, -9.0), corner(9.0, -9.0), corner(0.0, 9.0)],
+        triangles: vec![[0, 1, 2]],
+        spheres: Vec::new(),
+        structures: vec![Structure {
+            name: "wheel".to_owned(),
+            vertices: 0..3,
+            triangles: 0..1,
+            spheres: 0..0,
+            frame: Frame::World,
+            hinge: Some(hinge),
+        }],
+        lighting: Lighting::over_the_shoulder(),
+        motion: motion.expect("in range"),
+    })
+    .expect("a scene")
+}
+
+#[test]
+fn an_object_that_turns_under_a_still_head_is_off_by_the_chord_of_its_turn() {
+    // At the field that is judged the swing is near its middle, where it turns fastest: 30 degrees x 2 pi x 0.5 Hz.
+    let hinge = Hinge {
+        point: Vec3::ZERO,
+        axis: Vec3::Z,
+        amplitude_deg: 30.0,
+        period_ps: 2_000_000_000_000,
+        phase_turns: 0.17,
+    };
+    let outcome = run(wheel(hinge), head(Still(Pose::IDENTITY))).expect("it runs");
+    for pixel in [(320, 240), (420, 240), (320, 340), (200, 120)] {
+        let (view, lights_at) = view_of_field(&outcome, pixel);
+        let turned_deg = hinge.angle_deg(lights_at.0) - hinge.angle_deg(view.objects_at.0);
+        let radius_px = f64::hypot(f64::from(pixel.0) + 0.5 - 320.0, f64::from(pixel.1) + 0.5 - 240.0);
+        let expected = 2.0 * radius_px * (turned_deg.to_radians().abs() / 2.0).sin();
+        let found = offset_px(&outcome, pixel).length();
+        println!("{pixel:?}: {found} px, closed form {expected}, turned {turned_deg} deg");
+        assert!(turned_deg.abs() > 0.5 && (found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+    }
+    let at_a_distance = head(Still(Pose::IDENTITY)).judged_at(2.0).expect("in range");
+    let outcome = run(wheel(hinge), at_a_distance).expect("it runs");
+    assert!(PixelErrors::of(&outcome).pixels.max < 1e-9, "points at a distance do not move with objects");
+}
+
+#[test]
+fn what_moves_with_the_head_is_judged_as_a_point_behind_it_would_be() {
+    let scene = pxpl5_scene::builtin("full-screen:4").expect("built in");
+    let outcome = run(scene, head(Slide::right_at(0.5))).expect("it runs");
+    assert!(PixelErrors::of(&outcome).pixels.mean > 0.1);
+}
+
+#[test]
+fn a_recording_that_is_shorter_than_the_run_is_refused_and_held_on_request() {
+    let text = "time_s,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0.5,0.1,0,0,1,0,0,0\n";
+    let recording = || Recording::read(text.as_bytes()).expect("valid");
+    let room = || pxpl5_scene::builtin("room").expect("built in");
+    let error = run(room(), head(recording())).expect_err("42 fields are 0.7 s");
+    let said = error.to_string();
+    assert!(said.starts_with("the recording of the head ends after 0.500 s and the run takes 0.701 s"), "{said}");
+    let held = run(room(), head(recording().ending(End::Hold))).expect("it runs");
+    let looped = run(room(), head(recording().ending(End::Loop))).expect("it runs");
+    assert_ne!(
+        held.experiment().config_hash(),
+        looped.experiment().config_hash(),
+        "what comes after the end belongs to the experiment"
+    );
+    // Held, the head stands still at the end of the run; in a loop it goes on.
+    assert!(held.report().head.expect("a head").error.by_field.last().expect("judged").mean_px < 1e-9);
+    assert!(looped.report().head.expect("a head").error.by_field.last().expect("judged").mean_px > 0.1);
+}

@@ -1,0 +1,161 @@
+//! Every number that is listed can be set: by its path, within its limits, and to an effect.
+
+use parameters::Value;
+use pxpl5_lab::{ExperimentFile, Plan, tracking_parameters};
+use pxpl5_machine::{MachineConfig, Parameter};
+use pxpl5_measure::Measured;
+use pxpl5_run::{Pixels, Registry};
+
+const TRACKERS: [&str; 6] = ["optical", "fastrak", "flock", "flock-patched", "3space", "ideal"];
+
+const SMALL: [&str; 4] = ["pipeline=slats", "machine.preset=slats", "scene=full-screen:2", "fields=24"];
+
+fn file(settings: &[&str]) -> ExperimentFile {
+    let mut file = ExperimentFile::new();
+    for assignment in SMALL.iter().chain(settings) {
+        file.set_text(assignment, "--set").expect("known");
+    }
+    file
+}
+
+fn plan(settings: &[&str]) -> Plan {
+    file(settings).resolve().expect("an experiment")
+}
+
+fn refusal(settings: &[&str]) -> String {
+    file(settings).resolve().expect_err("it is refused").to_string()
+}
+
+fn hash(plan: &Plan) -> String {
+    plan.experiment(plan.load_scene().expect("built in")).config_hash().to_string()
+}
+
+#[test]
+fn every_number_of_the_machine_set_to_its_own_value_is_the_same_machine() {
+    let machine = Registry::of_papers().machine_of(MachineConfig::small_hmd());
+    for Parameter { path, value, .. } in machine.parameters().into_iter().filter(|parameter| !parameter.read_only) {
+        let mut same = machine.clone();
+        same.set(&path, value).expect("listed");
+        assert_eq!(same.check(), Ok(()), "{path}");
+        assert_eq!((&same, same.overrides().len()), (&machine, 0), "{path}");
+    }
+}
+
+#[test]
+fn every_number_of_an_experiment_set_to_its_own_value_is_the_same_experiment() {
+    for tracker in TRACKERS {
+        let tracker = format!("head.tracker={tracker}");
+        let head = ["head.motion=pan:40", &tracker];
+        let plain = plan(&head);
+        for Parameter { path, value, .. } in plain.parameters().into_iter().filter(|parameter| !parameter.read_only) {
+            let same = plan(&[&head[..], &[&format!("{path}={value}")]].concat());
+            assert_eq!((same.fingerprint(), hash(&same)), (plain.fingerprint(), hash(&plain)), "{tracker}, {path}");
+        }
+    }
+}
+
+#[test]
+fn every_read_only_number_says_that_it_is() {
+    let listed = plan(&[]).parameters().into_iter().chain(tracking_parameters());
+    let read_only: Vec<Parameter> = listed.filter(|parameter| parameter.read_only).collect();
+    assert!(read_only.iter().any(|parameter| parameter.path == "i860.chip.page_bytes"));
+    for Parameter { path, value, .. } in read_only {
+        let found = refusal(&["head.motion=still", &format!("{path}={value}")]);
+        let expected = format!("--set: {path} is {value} in every machine");
+        assert!(found.starts_with(&expected) && found.ends_with("cannot be set"), "{found}");
+    }
+}
+
+#[test]
+fn every_table_of_the_i860_is_listed_and_its_last_part_is_the_numbers_name() {
+    let mut machine = MachineConfig::slats();
+    machine.set("i860.dram.page_bytes", 2_048).expect("the memory's");
+    assert_eq!((machine.i860.dram.page_bytes, machine.i860.freezes), (2_048, MachineConfig::slats().i860.freezes));
+    machine.set("i860.freezes.tlb_miss", 6).expect("a freeze");
+    assert_eq!(machine.i860.freezes.clocks.tlb_miss, 6);
+    let error = machine.set("i860.dram.page_byte", 1).expect_err("misspelt").to_string();
+    assert!(error.contains("did you mean `i860.dram.page_bytes`"), "{error}");
+}
+
+/// The trace of a run at the cycle level, and what all its TRANSFORMs took together, ms.
+fn traced(settings: &[&str]) -> (String, f64) {
+    let plan = plan(&[&["level=cycle"], settings].concat());
+    let experiment = plan.experiment(plan.load_scene().expect("built in")).pixels(Pixels::Off);
+    let outcome = experiment.run().expect("it is small");
+    let stages = outcome.stages();
+    let spans = stages.iter().filter(|span| span.stage == pxpl5_gp::Stage::Transform);
+    let total_ms: f64 = spans.filter_map(|span| Some((span.end? - span.begin).as_ms())).sum();
+    (outcome.report().trace_hash, total_ms)
+}
+
+/// The memory's clocks hold up the code that reads it: with every access ten times as slow, TRANSFORM is slower, and nothing
+/// that does not run code is asked for them.
+#[test]
+fn a_slower_memory_makes_a_run_of_code_slower() {
+    let (hash_of_papers, papers_ms) = traced(&[]);
+    let slow = ["i860.dram.first_hit=80", "i860.dram.first_miss=110"];
+    let (hash_of_slow, slow_ms) = traced(&slow);
+    assert_ne!(hash_of_papers, hash_of_slow);
+    assert!(slow_ms > papers_ms, "{slow_ms} ms with a slow memory, {papers_ms} ms with the papers'");
+    let plain = plan(&[]);
+    assert_ne!(hash(&plan(&slow)), hash(&plain));
+    assert_eq!(plan(&slow).machine.overrides().len(), 2);
+}
+
+/// The clocks are those of the configuration whether blocks of code are remembered or counted each time.
+#[test]
+fn what_is_memoised_has_the_clocks_of_the_same_memory() {
+    let plan = plan(&["level=cycle", "i860.dram.first_hit=80", "i860.freezes.load_use=3"]);
+    let experiment = plan.experiment(plan.load_scene().expect("built in")).pixels(Pixels::Off);
+    let counted = experiment.clone().without(pxpl5_machine::Saving::RepeatedCode).run().expect("it is small");
+    assert_eq!(experiment.run().expect("it is small").report().trace_hash, counted.report().trace_hash);
+}
+
+/// Mean time from head to light in ms: an optical tracker that reports a thousand times a second, so that the age of a report
+/// when the host looks at it is that of the tracker to a millisecond.
+fn head_to_light_ms(latency_ms: u64) -> f64 {
+    let latency = format!("tracking.optical.latency={latency_ms}");
+    let plan = plan(&["head.motion=pan:40", "head.predict=none", "tracking.optical.rate=1000", "fields=60", &latency]);
+    let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("it is small");
+    outcome.report().head.expect("a head").end_to_end.total_ms
+}
+
+#[test]
+fn a_tracker_that_is_later_makes_head_to_light_longer_by_as_much() {
+    let longer = head_to_light_ms(50) - head_to_light_ms(20);
+    assert!((longer - 30.0).abs() < 1.0, "{longer} ms for 30 ms");
+}
+
+#[test]
+fn a_number_of_a_tracker_that_nobody_could_have_is_refused_with_what_was_expected() {
+    for (settings, says) in [
+        (
+            &["head.motion=still", "tracking.optical.rate=0"][..],
+            "--set: tracking.optical.rate must be 1 to 10000, found 0",
+        ),
+        (&["head.motion=still", "tracking.optical.rate=60.5"], "--set: tracking.optical.rate must be a whole number"),
+        (&["head.motion=still", "tracking.filter.baseline=17"], "--set: tracking.filter.baseline must be 1 to 16"),
+        (
+            &["head.motion=still", "tracking.fastrak.rate=60"],
+            "tracking.fastrak.rate does not apply to head.tracker = optical",
+        ),
+        (&["tracking.optical.rate=60"], "head.motion is missing"),
+        (&["i860.dram.first_hit=1000001"], "i860.dram.first_hit must be 0 to 1000000, found 1000001"),
+    ] {
+        let found = refusal(settings);
+        assert!(found.contains(says), "{settings:?}: {found}");
+    }
+    let error = ExperimentFile::new().set_text("tracking.optcal.rate=60", "--set").expect_err("misspelt").to_string();
+    assert!(error.contains("did you mean `tracking.optical.rate`"), "{error}");
+}
+
+#[test]
+fn a_file_written_out_has_the_numbers_of_its_tracker() {
+    let first = plan(&["head.motion=pan:40", "head.tracker=fastrak", "tracking.host.byte_bits=11"]);
+    let text = first.settings().to_string();
+    let second = ExperimentFile::parse(&text, "written").and_then(|file| file.resolve()).expect("it reads itself");
+    assert_eq!((&first, first.fingerprint(), hash(&first)), (&second, second.fingerprint(), hash(&second)));
+    let of_line = second.parameters().into_iter().find(|parameter| parameter.path == "tracking.host.byte_bits");
+    assert_eq!(of_line.map(|parameter| parameter.value), Some(Value::Whole(11)));
+    assert_ne!(hash(&first), hash(&plan(&["head.motion=pan:40", "head.tracker=fastrak"])));
+}

@@ -1,0 +1,101 @@
+//! Every predictor on one experiment, tuned for its pipeline: none is made worse by noise than no prediction on a still head.
+
+use pxpl5_lab::compare::{Predictors, predictors};
+use pxpl5_lab::{ExperimentFile, registry};
+use pxpl5_machine::MachineConfig;
+use pxpl5_measure::Measured;
+use pxpl5_run::{Experiment, Head, Pipeline, RenderingControl, Slats};
+use std::sync::Arc;
+use tracking::Pose;
+use tracking::motion::{Motion, Pan, Still};
+use tracking::predict::PredictorKind;
+use tracking::tracker::TrackerConfig;
+
+const FIELDS: u64 = 180;
+
+fn experiment(pipeline: impl Pipeline + 'static, motion: impl Motion + Send + Sync + 'static) -> Experiment {
+    let scene = pxpl5_scene::builtin("room").expect("built in");
+    let head = Head::new(Arc::new(motion), TrackerConfig::optical_ceiling(), PredictorKind::Kalman, 1);
+    Experiment::new(MachineConfig::small_hmd(), pipeline, scene).head(head.expect("in range")).fields(FIELDS)
+}
+
+fn mean(all: &Predictors, kind: PredictorKind) -> f64 {
+    all.of(kind).and_then(|one| one.error.as_ref()).expect("judged").pixels.mean
+}
+
+fn shown(name: &str, all: &Predictors) {
+    for one in &all.each {
+        let (numbers, training) = (one.numbers.expect("it ran"), one.training);
+        let interval_ms = training.map_or(0, |training| training.interval_ps / 1_000_000_000);
+        println!(
+            "{name} {:?}: {:.2} px; interval {interval_ms} ms, jerks {:.3e} {:.3e}, baselines {} {}",
+            one.kind,
+            mean(all, one.kind),
+            numbers.position_jerk,
+            numbers.orientation_jerk,
+            numbers.position_baseline,
+            numbers.orientation_baseline
+        );
+    }
+    println!("{name}: best {:?}, chosen {:?}", all.best, all.chosen);
+}
+
+#[test]
+fn on_a_still_head_a_tuned_filter_costs_nothing_against_no_prediction() {
+    let still = || Still(Pose::IDENTITY);
+    for (name, experiment) in [
+        ("rendering-control", experiment(RenderingControl::stereo(), still())),
+        ("slats", experiment(Slats::split(), still())),
+    ] {
+        let all = predictors(&experiment).expect("there is a head");
+        shown(name, &all);
+        let (none, kalman) = (mean(&all, PredictorKind::None), mean(&all, PredictorKind::Kalman));
+        // Each picture shows one report, and reports come 60 times a second: so many independent errors of no prediction, whose
+        // lengths deviate by at most their mean.
+        let independent =
+            all.of(PredictorKind::None).and_then(|one| one.error.as_ref()).expect("judged").by_field.len() / 2;
+        let tolerance = 3.0 / (independent as f64).sqrt();
+        assert!(kalman <= none * (1.0 + tolerance), "{name}: {kalman} px with the filter, {none} without");
+        assert_eq!(all.chosen, PredictorKind::Kalman);
+        let least = PredictorKind::ALL.map(|kind| mean(&all, kind)).into_iter().fold(f64::INFINITY, f64::min);
+        assert_eq!(mean(&all, all.best.expect("judged")), least);
+    }
+}
+
+#[test]
+fn the_report_says_for_what_a_filter_was_tuned_and_the_interval_is_the_pipelines_own() {
+    let outcome = experiment(RenderingControl::stereo(), Pan::at(60.0)).run().expect("it runs");
+    let head = outcome.report().head.expect("there is a head");
+    let training = head.training.expect("tuned");
+    let interval_ms = training.interval_ps as f64 * 1e-9;
+    println!("interval {interval_ms} ms, budget {:?}", head.end_to_end);
+    assert!((interval_ms - head.end_to_end.total_ms).abs() <= 1.0, "{interval_ms} {}", head.end_to_end.total_ms);
+    assert_ne!(training.seed, 1, "not on the noise that is judged");
+    assert_eq!(head.prediction.kind, PredictorKind::Kalman);
+    // What was asked for is what names the experiment; what ran has a name of its own.
+    let asked = outcome.experiment().tracked_head().expect("asked for").fingerprint().to_string();
+    assert_ne!(head.fingerprint, asked);
+}
+
+#[test]
+fn numbers_that_are_given_are_not_tuned() {
+    let file = |more: &str| {
+        let text = format!(
+            "pipeline = \"slats\"\nscene = \"room\"\nfields = 40\nhead.motion = \"pan:50\"\nhead.tracker = \"fastrak\"\n{more}"
+        );
+        ExperimentFile::with(registry()).and_parse(&text, "test.toml")
+    };
+    let ran = |more: &str| {
+        let plan = file(more).expect("keys").resolve().expect("a plan");
+        let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("it runs");
+        outcome.report().head.expect("a head")
+    };
+    let given = ran("tracking.filter.orientation_jerk = 77.0\n");
+    assert_eq!((given.prediction.orientation_jerk, given.training), (77.0, None));
+    assert_eq!(ran("head.filter = \"given\"\n").training, None);
+    assert!(ran("head.filter = \"tuned\"\n").training.is_some());
+    assert!(ran("").training.is_some());
+    let both = file("head.filter = \"tuned\"\ntracking.filter.position_jerk = 1.0\n").expect("keys").resolve();
+    let said = both.expect_err("a contradiction").to_string();
+    assert!(said.contains("tracking.filter.position_jerk and head.filter = tuned"), "{said}");
+}

@@ -1,0 +1,149 @@
+//! The rig in front of the machine: outside and inside agree, and each finds what is wrong with the other.
+
+use pphigs::FrameView;
+use pxpl5_lab::rig::{Rig, RigRunError};
+use pxpl5_machine::{ConfigError, Machine, MachineConfig, Record};
+use pxpl5_renderer::Layout;
+use pxpl5_run::{PictureTimes, Pipeline, PipelineSettings, Registry, RenderingControl, Setup, Views};
+use pxpl5_sim::Time;
+use std::sync::{Arc, Mutex};
+use tracking::rig::Measurement;
+use tracking::tracker::TrackerConfig;
+
+fn noiseless(tracker: TrackerConfig) -> TrackerConfig {
+    TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, distortion: None, ..tracker }
+}
+
+fn rig(tracker: TrackerConfig, passes: usize) -> Rig {
+    Rig { passes, ..Rig::assumed(noiseless(tracker)) }
+}
+
+fn measure(tracker: TrackerConfig, pipeline: Arc<dyn Pipeline>, passes: usize) -> Result<Measurement, RigRunError> {
+    rig(tracker, passes).measure(&MachineConfig::small_hmd(), pipeline)
+}
+
+fn named(name: &str) -> Arc<dyn Pipeline> {
+    (Registry::of_papers().pipeline(name).expect("listed").build)(&PipelineSettings::default())
+}
+
+fn ms(seconds: f64) -> f64 {
+    seconds * 1e3
+}
+
+#[test]
+fn outside_and_inside_agree_within_a_report_and_the_photodiodes_place() {
+    let trackers = [TrackerConfig::ideal(), TrackerConfig::fastrak(), TrackerConfig::optical_ceiling()];
+    for pipeline in ["rendering-control", "slats", "jitp-field-racing"] {
+        for tracker in &trackers {
+            let measured = measure(tracker.clone(), named(pipeline), 6).expect("two triangles");
+            let Measurement { outside, inside, .. } = &measured;
+            println!(
+                "{pipeline} {}: tracking {:.2} {:.2}, rendering {:.2} {:.2} ms",
+                tracker.name,
+                ms(outside.tracking.mean_s),
+                ms(inside.tracking.mean_s),
+                ms(outside.rendering.mean_s),
+                ms(inside.rendering.mean_s)
+            );
+            assert!(measured.agrees(), "{pipeline} {}", tracker.name);
+            let bound_s = measured.bound_ps() as f64 * 1e-12;
+            assert!(measured.outside_less_inside_s().abs() <= bound_s, "{pipeline} {}", tracker.name);
+        }
+    }
+}
+
+#[test]
+fn from_outside_a_field_of_slats_takes_a_field_and_the_photodiodes_place() {
+    // One processor, which begins TRANSFORM with the retrace; several would be told first.
+    let measured = rig(TrackerConfig::fastrak(), 6).measure(&MachineConfig::slats(), named("slats"));
+    let measured = measured.expect("two triangles");
+    let line_ms = 4.004 / 63.0;
+    // One field of 262.5 lines; line 120 lies 142 lines behind the retrace, half a line more in odd fields, and the middle of a line
+    // 460 of 780 pixel periods behind its start.
+    let least = (262.5 + 142.0 + 460.0 / 780.0) * line_ms;
+    let found = measured.outside.rendering;
+    assert!(
+        (ms(found.least_s) - least).abs() < 1e-3 || (ms(found.least_s) - least - line_ms / 2.0).abs() < 1e-3,
+        "{found:?}"
+    );
+    assert!(ms(found.greatest_s) < least + line_ms / 2.0 + 1e-3, "{found:?}");
+}
+
+/// Rendering Control with a fault.
+#[derive(Debug)]
+struct Faulty {
+    inner: RenderingControl,
+    fault: Fault,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fault {
+    /// The time stamps of pictures are a field early: inside is wrong.
+    EarlyStamps,
+    /// Frames show the pose of the frame before: light comes a frame late, whatever the time stamps say.
+    StaleViews,
+}
+
+/// Views that are one behind.
+fn stale(views: &Views) -> Views {
+    let views = Arc::clone(views);
+    let last: Mutex<Option<FrameView>> = Mutex::new(None);
+    Arc::new(move |number, time| {
+        let fresh = views(number, time);
+        let shown = last.lock().expect("one thread").replace(fresh.clone()).unwrap_or_else(|| fresh.clone());
+        FrameView { number: fresh.number, ..shown }
+    })
+}
+
+impl Pipeline for Faulty {
+    fn name(&self) -> &'static str {
+        "faulty"
+    }
+    fn eyes(&self) -> usize {
+        self.inner.eyes()
+    }
+    fn layout(&self) -> Layout {
+        self.inner.layout()
+    }
+    fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+        let views = if self.fault == Fault::StaleViews { stale(&setup.views) } else { Arc::clone(&setup.views) };
+        self.inner.load(machine, &Setup { views, ..setup.clone() })
+    }
+    fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
+        let early = if self.fault == Fault::EarlyStamps { 16_683_333_333 } else { 0 };
+        let pictures = self.inner.pictures(record, end).into_iter();
+        pictures.map(|times| PictureTimes { shown_at: Time(times.shown_at.0 - early), ..times }).collect()
+    }
+    fn periods_a_picture(&self, record: &Record) -> Option<u64> {
+        self.inner.periods_a_picture(record)
+    }
+    fn latency_definition(&self) -> &'static str {
+        self.inner.latency_definition()
+    }
+    fn due_definition(&self) -> &'static str {
+        self.inner.due_definition()
+    }
+}
+
+#[test]
+fn an_error_of_one_side_is_found_by_the_other() {
+    let with = |fault| {
+        let faulty = Faulty { inner: RenderingControl::stereo(), fault };
+        measure(TrackerConfig::fastrak(), Arc::new(faulty), 4)
+    };
+    let early = with(Fault::EarlyStamps).expect("light comes");
+    assert!(!early.agrees(), "{early:?}");
+    // The last frame's light never comes: either that is said, or the latencies do not agree.
+    match with(Fault::StaleViews) {
+        Ok(stale) => assert!(!stale.agrees(), "{stale:?}"),
+        Err(error) => assert!(matches!(error, RigRunError::Rig(_)), "{error}"),
+    }
+}
+
+#[test]
+fn a_photodiode_below_the_screen_is_refused() {
+    let mut rig = Rig::assumed(TrackerConfig::ideal());
+    rig.rig.photodiode_line = 240;
+    let error = rig.measure(&MachineConfig::small_hmd(), named("slats")).expect_err("there are 240 lines");
+    assert!(error.to_string().contains("240 lines"), "{error}");
+}

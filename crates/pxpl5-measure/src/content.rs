@@ -1,0 +1,204 @@
+//! What a pixel shows: the point of the scene that the ray through it meets, and where that point is at another time.
+
+use glam::{DMat4, DVec3};
+use pxpl5_scene::{Frame, Hinge, HmdConfig, Scene, Structure};
+use pxpl5_sim::Time;
+
+/// A point that is shown, in the coordinates of what it is fixed to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Content {
+    point: DVec3,
+    /// The structure that moves with it, by its place in [`Contents`]; `None` of the world.
+    body: Option<usize>,
+}
+
+impl Content {
+    /// A point of the world that does not move.
+    pub(crate) const fn fixed(point: DVec3) -> Self {
+        Self { point, body: None }
+    }
+}
+
+/// Primitives that rays can meet: all of the scene that is fixed to the world. What is fixed to the head is always where it
+/// should be.
+#[derive(Debug, Default)]
+pub(crate) struct Contents {
+    bodies: Vec<Body>,
+}
+
+/// A structure of the scene.
+#[derive(Debug)]
+struct Body {
+    hinge: Option<Hinge>,
+    patches: Vec<Patch>,
+    spheres: Vec<(DVec3, f64)>,
+}
+
+/// Some triangles that follow each other, which in a mesh mostly lie beside each other, and a sphere around them.
+#[derive(Debug)]
+struct Patch {
+    centre: DVec3,
+    radius: f64,
+    triangles: Vec<[DVec3; 3]>,
+}
+
+/// Triangles of a patch.
+const PATCH: usize = 32;
+
+/// A half line; at `t` metres of depth it is at `origin + t direction`.
+#[derive(Clone, Copy, Debug)]
+struct Ray {
+    origin: DVec3,
+    direction: DVec3,
+}
+
+impl Contents {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let in_world = scene.structures().iter().filter(|structure| structure.frame == Frame::World);
+        Self { bodies: in_world.map(|structure| Body::of(scene, structure)).collect() }
+    }
+
+    /// What the ray from an eye meets first, with its objects where they are at a time; `direction` goes 1 m deep into the view.
+    /// `None` where there is nothing between the near and the far plane.
+    pub(crate) fn met(&self, origin: DVec3, direction: DVec3, objects_at: Time) -> Option<Content> {
+        let hmd = HmdConfig::unc();
+        let mut nearest = (hmd.far_m, None);
+        for (i, body) in self.bodies.iter().enumerate() {
+            let to_body = body.model(objects_at).inverse();
+            let ray = Ray { origin: to_body.transform_point3(origin), direction: to_body.transform_vector3(direction) };
+            if let Some(depth) = body.met(&ray, (hmd.near_m, nearest.0)) {
+                nearest = (depth, Some(Content { point: ray.origin + ray.direction * depth, body: Some(i) }));
+            }
+        }
+        nearest.1
+    }
+
+    /// Where a point is in the world at a time.
+    pub(crate) fn place(&self, content: &Content, at: Time) -> DVec3 {
+        let body = content.body.and_then(|body| self.bodies.get(body));
+        body.map_or(content.point, |body| body.model(at).transform_point3(content.point))
+    }
+}
+
+impl Body {
+    fn of(scene: &Scene, structure: &Structure) -> Self {
+        let corner = |vertex: u32| scene.vertices()[vertex as usize].position.as_dvec3();
+        let triangles = scene.triangles()[structure.triangles.clone()].iter();
+        let triangles: Vec<[DVec3; 3]> = triangles.map(|triangle| triangle.map(corner)).collect();
+        let spheres = scene.spheres()[structure.spheres.clone()].iter();
+        Self {
+            hinge: structure.hinge,
+            patches: triangles.chunks(PATCH).map(Patch::of).collect(),
+            spheres: spheres.map(|sphere| (sphere.centre.as_dvec3(), f64::from(sphere.radius))).collect(),
+        }
+    }
+
+    /// From its coordinates to the world's.
+    fn model(&self, at: Time) -> DMat4 {
+        self.hinge.map_or(DMat4::IDENTITY, |hinge| hinge.model(at.0).as_dmat4())
+    }
+
+    /// The least depth of what a ray meets between two depths.
+    fn met(&self, ray: &Ray, (near, far): (f64, f64)) -> Option<f64> {
+        let patches = self.patches.iter().filter(|patch| ray.passes(patch.centre, patch.radius));
+        let of_triangles =
+            patches.flat_map(|patch| &patch.triangles).filter_map(|triangle| ray.meets_triangle(triangle));
+        let of_spheres = self.spheres.iter().filter_map(|(centre, radius)| ray.meets_sphere(*centre, *radius));
+        of_triangles.chain(of_spheres).filter(|depth| (near..far).contains(depth)).min_by(f64::total_cmp)
+    }
+}
+
+impl Patch {
+    fn of(triangles: &[[DVec3; 3]]) -> Self {
+        let corners = || triangles.iter().flatten().copied();
+        let low = corners().fold(DVec3::INFINITY, DVec3::min);
+        let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let centre = (low + high) / 2.0;
+        let radius = corners().map(|corner| corner.distance(centre)).fold(0.0, f64::max);
+        // Rounding must not lose a corner.
+        Self { centre, radius: radius * (1.0 + 1e-9), triangles: triangles.to_vec() }
+    }
+}
+
+impl Ray {
+    /// Whether its line comes as near to a point as this.
+    fn passes(&self, centre: DVec3, radius: f64) -> bool {
+        let way = centre - self.origin;
+        let along = way.dot(self.direction);
+        way.length_squared() - along * along / self.direction.length_squared() <= radius * radius
+    }
+
+    /// Depth at which it meets a triangle, from either side (Moeller and Trumbore 1997).
+    fn meets_triangle(&self, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
+        let (ab, ac) = (b - a, c - a);
+        let normal = self.direction.cross(ac);
+        let determinant = ab.dot(normal);
+        if determinant == 0.0 {
+            return None;
+        }
+        let way = self.origin - a;
+        let u = way.dot(normal) / determinant;
+        let across = way.cross(ab);
+        let v = self.direction.dot(across) / determinant;
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| ac.dot(across) / determinant)
+    }
+
+    /// Depth at which it enters a sphere.
+    fn meets_sphere(&self, centre: DVec3, radius: f64) -> Option<f64> {
+        let way = centre - self.origin;
+        let squared = self.direction.length_squared();
+        let along = way.dot(self.direction);
+        let under = along * along - squared * (way.length_squared() - radius * radius);
+        (under >= 0.0).then(|| (along - under.sqrt()) / squared)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn contents(name: &str) -> (Contents, Scene) {
+        let scene = pxpl5_scene::builtin(name).expect("built in");
+        (Contents::of(&scene), scene)
+    }
+
+    #[test]
+    fn a_ray_meets_what_every_triangle_one_by_one_says() {
+        let (contents, scene) = contents("mig");
+        let (centre, radius) = scene.bounding_sphere();
+        let eye = centre.as_dvec3() + DVec3::Z * 3.0 * f64::from(radius);
+        let mut met = 0;
+        for i in -10..=10 {
+            for j in -5..=5 {
+                let direction = DVec3::new(f64::from(i) * 0.03, f64::from(j) * 0.03, -1.0);
+                let ray = Ray { origin: eye, direction };
+                // At time 0 the rudder is at the begin of its swing, so ask where every structure is.
+                let posed = scene.posed(&scene.edits_at(0));
+                let corner = |v: u32| posed.vertices()[v as usize].position.as_dvec3();
+                let all = posed.triangles().iter().filter_map(|t| ray.meets_triangle(&t.map(corner)));
+                let expected = all.filter(|depth| *depth > 0.05).min_by(f64::total_cmp);
+                let found = contents.met(eye, direction, Time::ZERO);
+                let depth = found.map(|content| (contents.place(&content, Time::ZERO) - eye).z / direction.z);
+                assert_eq!(depth.is_some(), expected.is_some(), "{i} {j}");
+                if let Some((depth, expected)) = depth.zip(expected) {
+                    assert!((depth - expected).abs() < 1e-5, "{i} {j}: {depth} {expected}");
+                    met += 1;
+                }
+            }
+        }
+        assert!(met > 10, "the aircraft is in view: {met}");
+    }
+
+    #[test]
+    fn a_sphere_is_met_where_it_begins() {
+        let ray = Ray { origin: DVec3::ZERO, direction: DVec3::NEG_Z };
+        assert_eq!(ray.meets_sphere(DVec3::NEG_Z * 5.0, 2.0), Some(3.0));
+        assert_eq!(ray.meets_sphere(DVec3::new(2.1, 0.0, -5.0), 2.0), None);
+    }
+
+    #[test]
+    fn what_is_fixed_to_the_head_is_no_content() {
+        let (contents, _) = contents("full-screen:4");
+        assert_eq!(contents.met(DVec3::ZERO, DVec3::NEG_Z, Time::ZERO), None);
+    }
+}

@@ -1,0 +1,246 @@
+//! Pixel errors of every pipeline beside closed forms that share nothing with the program but NTSC's numbers.
+//!
+//! With a perfect tracker and constant velocity a steady turn is predicted exactly, so what remains is scan-out: a pixel that
+//! lights at t and was drawn for a is turned by |v| |t - a|. For a sinusoid the prediction itself is wrong, by what a straight
+//! line through two of its points is.
+
+use pxpl5_machine::MachineConfig;
+use pxpl5_measure::{Measured, PixelErrors, UNJUDGED_FIELDS};
+use pxpl5_run::{Aim, Experiment, Head, Outcome, PipelineSettings, Pixels, Registry, Sampled};
+use pxpl5_scene::builtin;
+use pxpl5_wire::ViewNumber;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use tracking::motion::{Motion, Pan};
+use tracking::predict::PredictorKind;
+use tracking::tracker::TrackerConfig;
+use tracking::{Pose, Settings};
+
+/// Fields of a run.
+const FIELDS: u64 = 45;
+
+/// NTSC: a line of 780 pixel periods, of which the last 640 are visible; a field of 262.5 lines, the first 22 of which are blanked,
+/// and in odd fields half a line more (all of the blanking comes first).
+const LINE_S: f64 = 4004.0 / 63.0 * 1e-6;
+
+/// When the beam begins a field.
+fn retrace(field: u64) -> f64 {
+    field as f64 * 262.5 * LINE_S
+}
+
+/// When the beam is at a pixel of a row of a field.
+fn beam(field: u64, row: u64, x: u64) -> f64 {
+    let half = (field % 2) as f64 / 2.0;
+    retrace(field) + (half + 22.0 + row as f64 + (140.0 + x as f64) / 780.0) * LINE_S
+}
+
+/// The instant of some rows that an aim means.
+fn aimed(aim: Aim, (first_field, first_row): (u64, u64), (last_field, last_row): (u64, u64)) -> f64 {
+    let first = beam(first_field, first_row, 0);
+    let last = beam(last_field, last_row, 639);
+    match aim {
+        Aim::Middle => (first + last) / 2.0,
+        Aim::FirstPixel => first,
+        Aim::LastPixel => last,
+        Aim::Retrace => retrace(first_field),
+    }
+}
+
+/// What a pixel shows: number of its view, and the instant that it is drawn for.
+struct Content {
+    view: ViewNumber,
+    drawn_for: f64,
+}
+
+/// A run, and what is known of it.
+struct Run {
+    pipeline: &'static str,
+    aim: Aim,
+    outcome: Outcome,
+    sampled: BTreeMap<ViewNumber, Sampled>,
+    /// Field in which each picture begins to be shown, and its view.
+    shown: Vec<(u64, ViewNumber)>,
+    /// Arrivals of each block of frameless rendering: when, and of which update.
+    blocks: BTreeMap<u64, Vec<(f64, ViewNumber)>>,
+}
+
+impl Run {
+    fn new(pipeline: &'static str, aim: Aim, motion: impl Motion + Send + Sync + 'static) -> Self {
+        let registry = Registry::of_papers();
+        let built = (registry.pipeline(pipeline).expect("listed").build)(&PipelineSettings::default());
+        let head = Head::new(Arc::new(motion), TrackerConfig::ideal(), PredictorKind::ConstantVelocity, 1);
+        let head = head.expect("in range").aiming(aim);
+        let scene = Arc::new(builtin("full-screen:2").expect("built in"));
+        let experiment = Experiment::with(MachineConfig::small_hmd(), built, scene).head(head);
+        let outcome = experiment.fields(FIELDS).pixels(Pixels::Off).run().expect("two triangles");
+        let head = outcome.head().expect("there is one");
+        let sampled = head.sampled().into_iter().map(|sampled| (sampled.number, sampled)).collect();
+        let field_of = |at_ps: u64| (at_ps as f64 * 1e-12 / retrace(1) + 1e-9).floor() as u64;
+        let shown = outcome.pictures().iter().map(|times| (field_of(times.shown_at.0), times.view)).collect();
+        let mut blocks: BTreeMap<u64, Vec<(f64, ViewNumber)>> = BTreeMap::new();
+        for arrival in &outcome.observation().arrivals {
+            let of_block = blocks.entry(arrival.target.region.0.into()).or_default();
+            of_block.push((arrival.last_part_at.0 as f64 * 1e-12, ViewNumber::taken_for(arrival.target.picture)));
+        }
+        Self { pipeline, aim, sampled, shown, blocks, outcome }
+    }
+
+    /// The newest picture shown in a field: the field in which it began, and its view.
+    fn newest(&self, field: u64) -> (u64, ViewNumber) {
+        *self.shown.iter().rev().find(|shown| shown.0 <= field).expect("shown before fields are judged")
+    }
+
+    fn content(&self, field: u64, row: u64, x: u64) -> Content {
+        let all = ((field, 0), (field, 239));
+        let (view, (first, last)) = match self.pipeline {
+            "rendering-control" => {
+                let (begun, view) = self.newest(field);
+                (view, ((begun, 0), (begun + 1, 239)))
+            }
+            "slats" => (self.newest(field).1, all),
+            "jitp-field" | "jitp-field-racing" => (ViewNumber(field * 256), all),
+            "frameless" => return self.content_of_block(field, row, x),
+            strips if strips.starts_with("jitp-scanline") => {
+                (ViewNumber(field * 256 + row), ((field, row), (field, row)))
+            }
+            _ => (ViewNumber(field * 256), ((field, row), (field, row))),
+        };
+        Content { view, drawn_for: aimed(self.aim, first, last) }
+    }
+
+    /// The random order decides when a block is drawn: the instant is taken from the run.
+    fn content_of_block(&self, field: u64, row: u64, x: u64) -> Content {
+        let y = 2 * row + field % 2;
+        let arrivals = &self.blocks[&(y / 16 * 40 + x / 16)];
+        let (_, view) = arrivals.iter().rev().find(|arrival| arrival.0 <= beam(field, row, x)).expect("drawn by now");
+        let predicted_for = self.sampled[view].predicted_for.expect("predicted");
+        Content { view: *view, drawn_for: predicted_for.0 as f64 * 1e-12 }
+    }
+
+    /// The pixels that are judged: five by five of every field, as [`PixelErrors`] says.
+    fn judged() -> impl Iterator<Item = (u64, u64, u64)> {
+        let places = |size: u64| (0..5).map(move |i| (2 * i + 1) * size / 10);
+        let in_field = move |field| places(480).flat_map(move |y| places(640).map(move |x| (field, y / 2, x)));
+        (UNJUDGED_FIELDS..FIELDS - 1).flat_map(in_field)
+    }
+
+    /// Mean error in pixels and degrees where a pixel's content is turned about the vertical by `turned_rad` to the left of where
+    /// it should be.
+    fn expected(&self, turned_rad: impl Fn(&Content, f64) -> f64) -> [f64; 2] {
+        let mut sum = [0.0, 0.0];
+        let mut n = 0.0;
+        for (field, row, x) in Self::judged() {
+            let turned = turned_rad(&self.content(field, row, x), beam(field, row, x));
+            let y = (2 * row + field % 2) as f64;
+            let [pixels, degrees] = error(x as f64 + 0.5 - 320.0, 240.0 - (y + 0.5), turned);
+            sum = [sum[0] + pixels, sum[1] + degrees];
+            n += 1.0;
+        }
+        sum.map(|sum| sum / n)
+    }
+
+    fn check(&self, expected: [f64; 2], tolerance: f64) {
+        let PixelErrors { pixels, degrees, empty, .. } = self.outcome.pixel_errors().expect("a head");
+        assert_eq!(empty, 0, "{}", self.pipeline);
+        let found = [pixels.mean, degrees.mean];
+        let off = [found[0] / expected[0] - 1.0, found[1] / expected[1] - 1.0];
+        println!("{:24} {:12} {found:?} for {expected:?}: {off:?}", self.pipeline, self.aim.to_string());
+        assert!(off.iter().all(|off| off.abs() < tolerance), "{} {}: {off:?}", self.pipeline, self.aim);
+    }
+}
+
+/// Distance in pixels and in degrees between a place of the picture, from its middle, and where the point that it shows is after the
+/// head has turned to the left.
+fn error(right: f64, up: f64, turned_rad: f64) -> [f64; 2] {
+    let focal = 320.0 / 30f64.to_radians().tan();
+    let (sin, cos) = turned_rad.sin_cos();
+    let seen = [right * cos + focal * sin, up, focal * cos - right * sin];
+    let place = [seen[0] * focal / seen[2], seen[1] * focal / seen[2]];
+    // The point runs on a circle about the vertical; the angle is that of its chord.
+    let radius = right.hypot(focal);
+    let chord = radius / radius.hypot(up) * (turned_rad.abs() / 2.0).sin();
+    [(place[0] - right).hypot(place[1] - up), 2.0 * chord.asin().to_degrees()]
+}
+
+fn pipelines() -> Vec<&'static str> {
+    Registry::of_papers().pipelines().iter().map(|entry| entry.name).collect()
+}
+
+#[test]
+fn under_a_pan_nothing_but_scan_out_is_left_at_every_pipeline_and_aim() {
+    // So slow that interpolation on the screen between the ends of a field (0.34 px at 200 deg/s, with the square of the rate)
+    // is nothing beside a line's scan-out.
+    const DEG_PER_S: f64 = 0.02;
+    for pipeline in pipelines() {
+        for (_, aim) in Aim::ALL {
+            let run = Run::new(pipeline, aim, Pan::at(DEG_PER_S));
+            let turned = |content: &Content, at: f64| DEG_PER_S.to_radians() * (at - content.drawn_for);
+            run.check(run.expected(turned), 1e-3);
+        }
+    }
+}
+
+#[test]
+fn a_fast_pan_too_where_a_picture_is_drawn_for_one_instant() {
+    const DEG_PER_S: f64 = 200.0;
+    for pipeline in pipelines().into_iter().filter(|name| !name.contains("dual")) {
+        let run = Run::new(pipeline, Aim::Middle, Pan::at(DEG_PER_S));
+        let turned = |content: &Content, at: f64| DEG_PER_S.to_radians() * (at - content.drawn_for);
+        run.check(run.expected(turned), 1e-3);
+    }
+}
+
+/// A head that shakes about the vertical.
+#[derive(Clone, Copy, Debug)]
+struct Shaking;
+
+/// So little that the square of its rate is nothing (see above).
+const AMPLITUDE_DEG: f64 = 0.1;
+const HZ: f64 = 0.5;
+
+fn yaw(at_s: f64) -> f64 {
+    (AMPLITUDE_DEG * (TAU * HZ * at_s).sin()).to_radians()
+}
+
+impl Motion for Shaking {
+    fn pose(&self, t_ps: u64) -> Pose {
+        Pose::facing(glam::DQuat::from_rotation_y(yaw(t_ps as f64 * 1e-12)))
+    }
+    fn identify(&self, settings: &mut Settings) {
+        settings("motion", &"shaking");
+    }
+    fn velocity(&self, _: u64) -> glam::DVec3 {
+        glam::DVec3::ZERO
+    }
+    fn angular_velocity(&self, t_ps: u64) -> glam::DVec3 {
+        let rate = AMPLITUDE_DEG.to_radians() * TAU * HZ * (TAU * HZ * t_ps as f64 * 1e-12).cos();
+        glam::DVec3::Y * rate
+    }
+}
+
+#[test]
+fn a_sinusoid_is_wrong_by_its_distance_from_a_straight_line_and_by_scan_out() {
+    // The predictor's line goes through the newest report and the fourth before it, 4 ms apart.
+    const BASELINE_S: f64 = 0.004;
+    for pipeline in pipelines() {
+        let run = Run::new(pipeline, Aim::Middle, Shaking);
+        let turned = |content: &Content, at: f64| {
+            let measured_at = run.sampled[&content.view].measured_at.expect("reports came").0 as f64 * 1e-12;
+            let slope = (yaw(measured_at) - yaw(measured_at - BASELINE_S)) / BASELINE_S;
+            yaw(at) - (yaw(measured_at) + slope * (content.drawn_for - measured_at))
+        };
+        run.check(run.expected(turned), 1e-3);
+    }
+}
+
+#[test]
+fn blocks_of_frameless_rendering_are_drawn_for_the_middle_of_the_time_in_which_they_are_seen() {
+    let run = Run::new("frameless", Aim::Middle, Pan::at(20.0));
+    let pass_s = 1.0 / run.outcome.report().updates_hz.expect("two passes");
+    let early = |(field, row, x)| beam(field, row, x) - run.content(field, row, x).drawn_for;
+    let all: Vec<f64> = Run::judged().map(early).collect();
+    let mean_s = all.iter().sum::<f64>() / all.len() as f64;
+    println!("mean {:.3} ms of a pass of {:.3} ms", mean_s * 1e3, pass_s * 1e3);
+    assert!(mean_s.abs() < pass_s * 0.1, "{mean_s} {pass_s}");
+}

@@ -1,0 +1,103 @@
+//! Pixels with their depths, and those at which more than one primitive is nearest.
+
+use crate::shade::Paint;
+use image::{Rgb, RgbImage};
+use std::collections::BTreeMap;
+
+/// A picture as it should be.
+#[derive(Clone, Debug)]
+pub struct IdealPicture {
+    image: RgbImage,
+    ties: BTreeMap<[u32; 2], Vec<[u8; 3]>>,
+}
+
+/// A pixel at which several primitives are nearest, with the same depth to the last bit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tie<'a> {
+    /// Column, from the left.
+    pub x: u32,
+    /// Row of the picture, from the top.
+    pub y: u32,
+    /// Red, green and blue that each of them would give, in the order of the display list.
+    pub colours: &'a [[u8; 3]],
+}
+
+impl IdealPicture {
+    /// What is seen; at a tie the primitive that comes first in the display list.
+    #[must_use]
+    pub const fn image(&self) -> &RgbImage {
+        &self.image
+    }
+
+    /// The pixels at which the order of arrival decides, row by row.
+    pub fn ties(&self) -> impl ExactSizeIterator<Item = Tie<'_>> {
+        self.ties.iter().map(|([y, x], colours)| Tie { x: *x, y: *y, colours })
+    }
+
+    /// Pixels (x, y) of another picture that no order of arrival explains, row by row; all of its pixels where it has another
+    /// size.
+    #[must_use]
+    pub fn differences(&self, other: &RgbImage) -> Vec<[u32; 2]> {
+        let same_size = other.dimensions() == self.image.dimensions();
+        let pixels = other.enumerate_pixels();
+        let wrong = pixels.filter(|(x, y, colour)| !same_size || !self.may_be(*x, *y, **colour));
+        wrong.map(|(x, y, _)| [x, y]).collect()
+    }
+
+    fn may_be(&self, x: u32, y: u32, Rgb(colour): Rgb<u8>) -> bool {
+        let tied = || self.ties.get(&[y, x]).is_some_and(|colours| colours.contains(&colour));
+        self.image.get_pixel(x, y).0 == colour || tied()
+    }
+}
+
+/// What the nearest primitive of a pixel leaves there.
+#[derive(Clone, Copy, Debug)]
+struct Nearest {
+    depth: u32,
+    primitive: usize,
+    paint: Paint,
+}
+
+/// Pixels while primitives are drawn.
+#[derive(Debug)]
+pub(crate) struct DepthBuffer {
+    width: u32,
+    far: u32,
+    nearest: Vec<Option<Nearest>>,
+    /// What others than the first would have left that were as near.
+    tied: BTreeMap<[u32; 2], Vec<Paint>>,
+}
+
+impl DepthBuffer {
+    /// Nothing drawn yet; depths of at least `far` are behind everything.
+    pub(crate) fn new(width: u32, height: u32, far: u32) -> Self {
+        Self { width, far, nearest: vec![None; (width * height) as usize], tied: BTreeMap::new() }
+    }
+
+    /// Draws one pixel of a primitive, numbered in the order of drawing; `paint` is asked only where it is as near as the
+    /// nearest.
+    pub(crate) fn draw(&mut self, pixel: [i32; 2], primitive: usize, depth: u32, paint: impl FnOnce() -> Paint) {
+        let [x, y] = pixel.map(i32::cast_unsigned);
+        let place = &mut self.nearest[(y * self.width + x) as usize];
+        let before = place.as_ref().map_or(self.far, |nearest| nearest.depth);
+        if depth < before {
+            *place = Some(Nearest { depth, primitive, paint: paint() });
+            self.tied.remove(&[y, x]);
+        } else if depth == before && place.as_ref().is_some_and(|nearest| nearest.primitive != primitive) {
+            self.tied.entry([y, x]).or_default().push(paint());
+        }
+    }
+
+    /// The picture over a background, each pixel coloured by `colour`.
+    pub(crate) fn finish(self, background: [u8; 3], colour: impl Fn(Paint) -> [u8; 3]) -> IdealPicture {
+        let width = self.width;
+        let at = |x: u32, y: u32| self.nearest[(y * width + x) as usize].map(|nearest| colour(nearest.paint));
+        let height = self.nearest.len() as u32 / width.max(1);
+        let image = RgbImage::from_fn(width, height, |x, y| Rgb(at(x, y).unwrap_or(background)));
+        let ties = self.tied.iter().map(|([y, x], others)| {
+            let first = at(*x, *y).into_iter();
+            ([*y, *x], first.chain(others.iter().map(|paint| colour(*paint))).collect())
+        });
+        IdealPicture { ties: ties.collect(), image }
+    }
+}

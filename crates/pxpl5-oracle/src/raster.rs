@@ -1,0 +1,141 @@
+//! Primitives in the order of the display list, each evaluated at every pixel of its box.
+
+use crate::picture::{DepthBuffer, IdealPicture};
+use crate::shade::{Paint, Surface, component, normal};
+use crate::sphere::SpherePoint;
+use crate::widths::Widths;
+use pphigs::{DisplayList, FrameView, Picture, PlacedStructure, Shading, place_all, shade};
+use pxpl5_geometry::{Outline, RegionMask, SetupStats, Transform};
+use pxpl5_wire::Linear;
+use pxpl5_wire::format::SUBPIXEL_BITS;
+use std::ops::Range;
+
+/// What an eye (0, or 0 and 1) of a view sees of a display list, as `picture` wants it: lines, shading and the widths of its
+/// layout. Who gets commands and whether there are pixels means nothing here.
+///
+/// # Panics
+///
+/// If the view has no eye.
+#[must_use]
+pub fn ideal_picture(list: &DisplayList, view: &FrameView, eye: usize, picture: &Picture) -> IdealPicture {
+    let placed = place_all(list, view, eye, picture.viewport);
+    let widths = Widths::of_layout(&picture.layout);
+    let raster = Raster { list, picture, widths };
+    let grid = picture.viewport.grid();
+    let mut buffer = DepthBuffer::new(grid.width, grid.height, widths.stored_depth(u32::MAX));
+    for place in &placed {
+        let Some(transform) = &place.transform else { continue };
+        let placed = Placed { place, transform };
+        place.structure.triangles.clone().for_each(|number| raster.triangle(&placed, number, &mut buffer));
+        place.structure.spheres.clone().for_each(|number| raster.sphere(&placed, number, &mut buffer));
+    }
+    let shade = shade(placed.first().map(|first| &first.light));
+    buffer.finish(list.background, |paint| paint.colour(&shade))
+}
+
+struct Raster<'a> {
+    list: &'a DisplayList,
+    picture: &'a Picture,
+    widths: Widths,
+}
+
+/// A structure that is drawn.
+struct Placed<'a> {
+    place: &'a PlacedStructure,
+    transform: &'a Transform,
+}
+
+impl Raster<'_> {
+    fn triangle(&self, Placed { place, transform }: &Placed<'_>, number: usize, buffer: &mut DepthBuffer) {
+        let viewport = &self.picture.viewport;
+        let triangle = self.list.triangle(number);
+        // What is cut, dropped or made flat is so on the machine.
+        let mut stats = SetupStats::default();
+        match self.picture.shading {
+            Shading::Gouraud => transform.gouraud(&triangle, &place.light, &mut stats, |seen| {
+                let planes = seen.gouraud(viewport, &mut SetupStats::default());
+                self.inside(&seen.outline, &planes.edges, |x, y| {
+                    let paint = || Paint::Lit(planes.rgb.map(|plane| component(&plane, x, y)));
+                    buffer.draw([x, y], number, self.depth(&planes.z, x, y), paint);
+                });
+            }),
+            Shading::Phong => transform.phong(&triangle, &mut stats, |seen| {
+                let planes = seen.phong(viewport, &mut SetupStats::default());
+                self.inside(&seen.outline, &planes.edges, |x, y| {
+                    let normal = planes.normal.map(|plane| normal(&plane, x, y));
+                    let paint = || Paint::Surface(Surface { normal, colour: planes.colour });
+                    buffer.draw([x, y], number, self.depth(&planes.z, x, y), paint);
+                });
+            }),
+        }
+    }
+
+    fn sphere(&self, Placed { place, transform }: &Placed<'_>, sphere: usize, buffer: &mut DepthBuffer) {
+        let viewport = &self.picture.viewport;
+        let number = self.list.triangles.len() + sphere;
+        let mut stats = SetupStats::default();
+        let Some(seen) = transform.sphere(&self.list.spheres[sphere], &mut stats) else { return };
+        match self.picture.shading {
+            Shading::Gouraud => {
+                let planes = seen.gouraud(viewport, &place.light, &mut stats);
+                self.around(seen.regions, |x, y| {
+                    if let Some(point) = SpherePoint::at(&planes.setup, x, y, self.widths) {
+                        buffer.draw([x, y], number, point.depth, || Paint::Lit(point.colour(&planes, x, y)));
+                    }
+                });
+            }
+            Shading::Phong => {
+                let planes = seen.phong(viewport, &mut stats);
+                self.around(seen.regions, |x, y| {
+                    if let Some(point) = SpherePoint::at(&planes.setup, x, y, self.widths) {
+                        let [across, up] = planes.normal.map(|plane| normal(&plane, x, y));
+                        let normal = [across, up, point.normal_z()];
+                        let paint = || Paint::Surface(Surface { normal, colour: planes.colour });
+                        buffer.draw([x, y], number, point.depth, paint);
+                    }
+                });
+            }
+        }
+    }
+
+    fn depth(&self, plane: &Linear, x: i32, y: i32) -> u32 {
+        self.widths.stored_depth(plane.at(x, y) as u32)
+    }
+
+    /// Calls `sink` for each pixel (x, row of the picture) that lies inside of all edges.
+    fn inside(&self, outline: &Outline, edges: &[Linear; 3], mut sink: impl FnMut(i32, i32)) {
+        let viewport = &self.picture.viewport;
+        let grid = viewport.grid();
+        let across = between(&outline.x, [0, 1], grid.width);
+        let every_line = [viewport.first_line() as i32, viewport.line_step() as i32];
+        for y in between(&outline.y, every_line, grid.height) {
+            for x in across.clone() {
+                if edges.iter().all(|edge| edge.at(x, y) >= 0) {
+                    sink(x, y);
+                }
+            }
+        }
+    }
+
+    /// Calls `sink` for each pixel of some regions: a box around a sphere.
+    fn around(&self, regions: RegionMask, mut sink: impl FnMut(i32, i32)) {
+        let grid = self.picture.viewport.grid();
+        for region in regions.iter() {
+            let [left, top, width, height] = grid.rectangle(region).map(|v| v as i32);
+            for y in top..top + height {
+                (left..left + width).for_each(|x| sink(x, y));
+            }
+        }
+    }
+}
+
+/// Which of `count` columns, or of rows that are every `step`-th line from `first` on, may lie between the outermost of three
+/// corners in subpixels: one more at either end than needed.
+fn between(corners: &[i32; 3], [first, step]: [i32; 2], count: u32) -> Range<i32> {
+    let low = corners.iter().copied().fold(i32::MAX, i32::min) >> SUBPIXEL_BITS;
+    let high = corners.iter().copied().fold(i32::MIN, i32::max) >> SUBPIXEL_BITS;
+    let begin = (low - first).div_euclid(step) - 1;
+    let end = (high - first).div_euclid(step) + 2;
+    let count = count as i32;
+    begin.clamp(0, count)..end.clamp(0, count)
+}

@@ -1,0 +1,39 @@
+//! What an ideal renderer would show in an outcome's place.
+
+use crate::display_list::{display_list, hmd_before, view, views};
+use crate::outcome::Outcome;
+use pphigs::{Binning, Picture};
+use pxpl5_geometry::Viewport;
+use pxpl5_oracle::{IdealPicture, ideal_picture};
+use pxpl5_sim::Time;
+use pxpl5_wire::{Lines, SurfaceId, ViewNumber};
+
+impl Outcome {
+    /// What a viewer of a surface should see of the scene as it is at a time: all lines of it, drawn by an ideal renderer
+    /// with the shading and the widths of the pipeline. The head is where the scene's own motion has it at that time, or a
+    /// tracked head truly is.
+    ///
+    /// Of a still scene and a still head every complete picture of the machine is this one, but for its
+    /// [ties](IdealPicture::ties). `None` for a surface that the first display or the pipeline does not have.
+    #[must_use]
+    pub fn ideal_picture(&self, surface: impl Into<SurfaceId>, time: Time) -> Option<IdealPicture> {
+        let experiment = self.experiment();
+        let pipeline = self.pipeline();
+        let scene = experiment.scene();
+        let surface = surface.into().index();
+        let eyes = pipeline.eyes();
+        let surfaces = self.record().display().surfaces();
+        let size = surfaces.get(surface).filter(|_| surface < eyes)?;
+        let list = display_list(scene).ok()?;
+        let hmd = hmd_before(surfaces.first());
+        let view = match self.head() {
+            Some(head) => view(scene, &hmd, eyes, ViewNumber::FIRST, time, &head.truth(time).in_single_precision()),
+            None => views(scene, experiment.seed_of_motion(), hmd, eyes).0(ViewNumber::FIRST, time),
+        };
+        let viewport = Viewport::new(size.grid(), Lines::Frame).ok()?;
+        let layout = pipeline.layout();
+        let shading = pipeline.shading();
+        let picture = Picture { viewport, shading, binning: Binning::Touched, layout, pixels: true };
+        Some(ideal_picture(&list, &view, surface, &picture))
+    }
+}

@@ -1,0 +1,74 @@
+//! What is known before a run: when views are seen, and the numbers of a predictor that is tuned for it.
+
+use crate::error::ExperimentError;
+use crate::experiment::{Experiment, Pixels};
+use crate::head::Head;
+use crate::outcome::Outcome;
+use crate::rehearsal::Rehearsal;
+use crate::statistics::Statistics;
+use pxpl5_wire::ViewNumber;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Fields of the run that tells how far ahead firmware predicts that knows itself when its views are seen. As many as its
+/// statistics need; of all fields where no picture is complete in so few.
+const INTERVAL_FIELDS: u64 = 60;
+
+/// Least step of an interval for which a predictor is tuned, picoseconds: a millisecond. A finer one changes no number of a filter
+/// by a per cent.
+const INTERVAL_STEP_PS: u64 = 1_000_000_000;
+
+/// What a run is begun with.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Preparation {
+    /// When each view is seen; `None` where nobody predicts, or the firmware knows.
+    pub(crate) rehearsal: Option<Rehearsal>,
+    /// The head with its predictor tuned; `None` where there is nothing to tune.
+    pub(crate) head: Option<Arc<Head>>,
+}
+
+impl Experiment {
+    /// Runs without prediction, as far as somebody predicts who does not know what that run tells.
+    pub(crate) fn prepare(&self) -> Result<Preparation, ExperimentError> {
+        let Some(head) = self.head.as_ref().filter(|head| head.predicts()) else { return Ok(Preparation::default()) };
+        let knows_when_seen = self.pipeline.knows_when_seen();
+        if knows_when_seen && !head.is_to_be_tuned() {
+            return Ok(Preparation::default());
+        }
+        let outcome = if knows_when_seen { self.short_rehearsal(head)? } else { self.rehearsal(head, self.fields)? };
+        let interval_ps = interval_ps(&outcome).filter(|_| head.is_to_be_tuned());
+        Ok(Preparation {
+            rehearsal: (!knows_when_seen).then(|| Rehearsal::of(&outcome, head.aim())),
+            head: interval_ps.map(|interval_ps| Arc::new(head.tuned_for(interval_ps))),
+        })
+    }
+
+    fn rehearsal(&self, head: &Head, fields: u64) -> Result<Outcome, ExperimentError> {
+        let plain = Some(Arc::new(head.without_prediction()));
+        let plain = Self { head: plain, pixels: Pixels::Off, fields, ..self.clone() };
+        plain.perform(Preparation::default(), &[], |_, _| Ok(()))
+    }
+
+    fn short_rehearsal(&self, head: &Head) -> Result<Outcome, ExperimentError> {
+        match self.rehearsal(head, self.fields.min(INTERVAL_FIELDS)) {
+            Ok(outcome) if interval_ps(&outcome).is_some() => Ok(outcome),
+            Ok(_) | Err(ExperimentError::TooShort { .. }) => self.rehearsal(head, self.fields),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// Mean time from the instant at which the newest report of a view was true to the light of the view's picture, to the nearest
+/// millisecond; `None` where no picture was drawn for a report.
+fn interval_ps(outcome: &Outcome) -> Option<u64> {
+    let head = outcome.head()?;
+    let measured: BTreeMap<ViewNumber, _> =
+        head.sampled().into_iter().filter_map(|sampled| Some((sampled.number, sampled.measured_at?))).collect();
+    let of_picture = outcome.complete_pictures().filter_map(|times| {
+        let light = outcome.pipeline().light(outcome.record(), times);
+        Some(light.since(*measured.get(&times.view)?).as_ms())
+    });
+    let intervals = Statistics::of(of_picture);
+    let steps = (intervals.mean * 1e9 / INTERVAL_STEP_PS as f64).round();
+    intervals.mean.is_finite().then_some(steps as u64 * INTERVAL_STEP_PS)
+}

@@ -1,0 +1,134 @@
+//! Pictures due: each ends in exactly one way, the window is the load's and not the run's, and loads are in order.
+
+use proptest::prelude::*;
+use pxpl5_run::PictureEnd::{Incomplete, Late, Shown};
+use pxpl5_run::{DuePictures, PictureEnd, WARM_UP_PERIODS};
+use pxpl5_wire::PeriodNumber;
+
+fn count(pictures: &[(u64, PictureEnd)], every: u64, periods: u64) -> DuePictures {
+    counted(pictures, every, periods).expect("a window")
+}
+
+fn counted(pictures: &[(u64, PictureEnd)], every: u64, periods: u64) -> Option<DuePictures> {
+    let pictures = pictures.iter().map(|(period, end)| (PeriodNumber(*period), *end));
+    DuePictures::count(pictures, every, PeriodNumber(periods))
+}
+
+/// Periods of the window.
+fn window(due: &DuePictures) -> u64 {
+    due.last_period.next().since(due.first_period)
+}
+
+/// A picture every `apart` periods from `first` on, all with the same end.
+fn regular(first: u64, apart: u64, periods: u64, end: PictureEnd) -> Vec<(u64, PictureEnd)> {
+    (first..periods).step_by(apart as usize).map(|period| (period, end)).collect()
+}
+
+#[test]
+fn pictures_of_every_field_are_all_shown() {
+    let due = count(&regular(2, 1, 100, Shown), 1, 100);
+    assert_eq!((due.first_period.0, due.last_period.0), (WARM_UP_PERIODS, 99));
+    assert_eq!((due.due, due.shown, due.not_shown()), (92, 92, 0));
+}
+
+#[test]
+fn each_kind_of_end_is_counted_once() {
+    let mut pictures = regular(2, 1, 108, Shown);
+    pictures[10].1 = Late;
+    pictures[11].1 = Incomplete;
+    pictures.remove(12);
+    // The window begins with the first that was not shown, in period 12.
+    let due = count(&pictures, 1, 108);
+    assert_eq!((due.first_period.0, due.last_period.0, due.due), (12, 107, 96));
+    assert_eq!((due.shown, due.late, due.incomplete, due.missed), (93, 1, 1, 1));
+}
+
+#[test]
+fn of_pictures_three_periods_apart_that_are_due_every_second_a_third_is_missed() {
+    // Swaps at 9, 12, 15, 18 ... against 9, 11, 13, 15, 17, 19 ...: of three pictures due two find a new one.
+    let due = count(&regular(9, 3, 609, Shown), 2, 609);
+    assert!((due.not_shown_share() - 1.0 / 3.0).abs() < 1.0 / due.due as f64, "{due:?}");
+    assert_eq!(window(&due), 2 * due.due);
+}
+
+#[test]
+fn one_retrace_of_delay_is_one_picture_missed() {
+    let mut pictures = regular(9, 2, 50, Shown);
+    pictures.iter_mut().filter(|picture| picture.0 >= 31).for_each(|picture| picture.0 += 1);
+    assert_eq!(count(&pictures, 2, 51).missed, 1);
+}
+
+#[test]
+fn two_pictures_for_one_that_is_due_are_one_that_is_shown() {
+    let due = count(&regular(4, 1, 40, Shown), 2, 40);
+    assert_eq!((due.due, due.shown), (16, 16));
+}
+
+#[test]
+fn what_never_showed_anything_missed_all() {
+    let due = count(&[], 1, 60);
+    assert_eq!((due.due, due.missed, due.updates_hz(1001.0 / 60.0)), (52, 52, None));
+}
+
+#[test]
+fn a_run_within_the_warm_up_says_nothing() {
+    for periods in 0..=WARM_UP_PERIODS {
+        assert_eq!(counted(&regular(2, 1, periods, Shown), 1, periods), None);
+    }
+}
+
+#[test]
+fn a_rate_is_that_of_the_pictures_due_times_their_share() {
+    let due = count(&regular(5, 2, 100, Shown), 2, 100);
+    let hz = due.updates_hz(1001.0 / 60.0).expect("shown");
+    assert!((hz - 30_000.0 / 1_001.0).abs() < 1e-9, "{hz}");
+}
+
+/// A pipeline whose queues are empty at first: pictures are in time until `filled`, and of those after it every `apart`-th is.
+fn filling(filled: u64, apart: u64, periods: u64) -> Vec<(u64, PictureEnd)> {
+    let in_time = |period: u64| period < filled || (period - filled) % apart == apart - 1;
+    (2..periods).map(|period| (period, if in_time(period) { Shown } else { Incomplete })).collect()
+}
+
+fn ends() -> impl Strategy<Value = Vec<(u64, PictureEnd)>> {
+    let end = prop_oneof![Just(None), Just(Some(Shown)), Just(Some(Late)), Just(Some(Incomplete))];
+    proptest::collection::vec(end, 0..200)
+        .prop_map(|ends| (0..).zip(ends).filter_map(|(period, end)| Some((period, end?))).collect())
+}
+
+proptest! {
+    #[test]
+    fn every_picture_that_is_due_ends_in_exactly_one_way(pictures in ends(), every in 1u64..12, periods in 0u64..260) {
+        if let Some(due) = counted(&pictures, every, periods) {
+            prop_assert_eq!(due.shown + due.late + due.incomplete + due.missed, due.due);
+            prop_assert_eq!(window(&due), due.due * every);
+            prop_assert!(due.last_period.0 < periods && due.due > 0);
+        }
+    }
+
+    /// Start-up does not decide a rate: as long as it is shorter than half of the run, a run twice as long says the same within
+    /// one picture.
+    #[test]
+    fn a_rate_does_not_depend_on_the_length_of_the_run(filled in 2u64..190, apart in 1u64..9) {
+        let [short, long] = [400, 800].map(|periods| count(&filling(filled, apart, periods), 1, periods));
+        let expected = long.shown as f64 / long.due as f64 * short.due as f64;
+        prop_assert!((short.shown as f64 - expected).abs() <= 1.0, "{:?} {:?}", short, long);
+    }
+
+    /// Pictures that come further apart never make a smaller share missed.
+    #[test]
+    fn the_share_missed_rises_with_the_time_a_picture_takes(first in 0u64..40, every in 1u64..4, apart in 1u64..20) {
+        let share = |apart| count(&regular(first, apart, 2_000, Shown), every, 2_000).not_shown_share();
+        prop_assert!(share(apart + 1) + 1e-2 >= share(apart));
+    }
+
+    /// No failure is left out: a picture after the warm-up that was not shown is in the window.
+    #[test]
+    fn the_window_holds_every_picture_that_was_not_shown(at in WARM_UP_PERIODS..300, periods in 300u64..400) {
+        let mut pictures = regular(0, 1, periods, Shown);
+        pictures.retain(|picture| picture.0 != at);
+        let due = count(&pictures, 1, periods);
+        prop_assert_eq!(due.missed, 1);
+        prop_assert!(due.due >= (periods - WARM_UP_PERIODS) / 2);
+    }
+}

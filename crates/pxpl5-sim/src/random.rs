@@ -1,0 +1,68 @@
+//! Random numbers that are the same on every host.
+
+use crate::trace::{INCREMENT, mix};
+
+/// The sequence SplitMix64 (Steele, Lea and Flood: Fast splittable pseudorandom number generators, 2014): 2^64 numbers of 64
+/// bits, each once. For tests and for lists made by chance; it keeps no secrets.
+#[derive(Clone, Copy, Debug)]
+pub struct SplitMix64 {
+    state: u64,
+}
+
+impl SplitMix64 {
+    /// The sequence that starts at a seed; those of other seeds are the same one, begun elsewhere.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
+        Self { state: seed }
+    }
+
+    /// The next 64 bits of the sequence.
+    pub const fn bits(&mut self) -> u64 {
+        let bits = mix(self.state);
+        self.state = self.state.wrapping_add(INCREMENT);
+        bits
+    }
+
+    /// A number from 0 to `n` - 1, biased by less than `n` / 2^64.
+    ///
+    /// # Panics
+    ///
+    /// When `n` is 0.
+    pub const fn below(&mut self, n: u64) -> u64 {
+        self.bits() % n
+    }
+
+    /// A number of [0, 1), in steps of 2^-24: every one of them is an `f32`.
+    pub const fn unit(&mut self) -> f32 {
+        (self.bits() >> 40) as f32 / (1u32 << 24) as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// First outputs for the seed 1234567, as Vigna's reference program prints them.
+    const PUBLISHED: [u64; 5] = [
+        6_457_827_717_110_365_317,
+        3_203_168_211_198_807_973,
+        9_817_491_932_198_370_423,
+        4_593_380_528_125_082_431,
+        16_408_922_859_458_223_821,
+    ];
+
+    #[test]
+    fn the_sequence_is_the_published_one() {
+        let mut random = SplitMix64::new(1_234_567);
+        assert_eq!(PUBLISHED.map(|_| random.bits()), PUBLISHED);
+    }
+
+    #[test]
+    fn parts_of_the_range_come_from_the_same_bits() {
+        let mut random = SplitMix64::new(1_234_567);
+        assert_eq!(random.below(1_000), PUBLISHED[0] % 1_000);
+        let unit = f64::from(random.unit());
+        let exact = PUBLISHED[1] as f64 / 2f64.powi(64);
+        assert!(unit <= exact && exact < unit + 2f64.powi(-24), "{unit}, expected {exact}");
+    }
+}

@@ -1,0 +1,132 @@
+use std::fmt;
+
+use super::LoadError;
+
+/// What a mapping must say.
+const EXPECTED: &str = "t (or t_ms, t_us, t_ns), x, y, z (or x_mm, y_mm, z_mm), qw, qx, qy and qz, each with the name or number of a column";
+
+/// Which column of a text file holds what, by the column's name in the header or by its number from 1.
+///
+/// The field's name says the unit: `t` seconds, `t_ms`, `t_us`, `t_ns`; `x`, `y`, `z` metres, `x_mm` and so on millimetres; `qw` is
+/// the real part of the quaternion that turns the head's axes into the world's.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct Columns {
+    /// Field and column, in the order in which they were given.
+    given: Vec<(&'static Field, String)>,
+}
+
+/// A field of a sample, in some unit.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Field {
+    name: &'static str,
+    /// Which of time, x, y, z, qw, qx, qy, qz.
+    slot: usize,
+    /// Its unit is 10^-`places` of seconds or metres.
+    places: i32,
+}
+
+const fn field(name: &'static str, slot: usize, places: i32) -> Field {
+    Field { name, slot, places }
+}
+
+static FIELDS: [Field; 14] = [
+    field("t", 0, 0),
+    field("t_ms", 0, 3),
+    field("t_us", 0, 6),
+    field("t_ns", 0, 9),
+    field("x", 1, 0),
+    field("y", 2, 0),
+    field("z", 3, 0),
+    field("x_mm", 1, 3),
+    field("y_mm", 2, 3),
+    field("z_mm", 3, 3),
+    field("qw", 4, 0),
+    field("qx", 5, 0),
+    field("qy", 6, 0),
+    field("qz", 7, 0),
+];
+
+/// A column of a file: where it is, what it is called, and its unit as 10^-`places` of seconds or metres.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Column {
+    pub(super) index: usize,
+    pub(super) name: String,
+    pub(super) places: i32,
+}
+
+impl Columns {
+    /// Names of the fields, as [`Self::map`] takes them.
+    pub fn fields() -> impl Iterator<Item = &'static str> {
+        FIELDS.iter().map(|field| field.name)
+    }
+
+    /// Says which column holds a field.
+    pub fn map(&mut self, field: &str, column: &str) -> Result<(), LoadError> {
+        let mapping = |found: String| LoadError::Mapping { expected: EXPECTED, found };
+        let known = FIELDS.iter().find(|known| known.name == field);
+        let known = known.ok_or_else(|| mapping(format!("`{field}`")))?;
+        if let Some((other, _)) = self.given.iter().find(|(other, _)| other.slot == known.slot) {
+            return Err(mapping(format!("{} and {field}", other.name)));
+        }
+        self.given.push((known, column.trim().to_owned()));
+        Ok(())
+    }
+
+    /// `t_ns=stamp,x=px,...`.
+    pub fn parse(text: &str) -> Result<Self, LoadError> {
+        let mut columns = Self::default();
+        for part in text.split(',') {
+            let mapping = || LoadError::Mapping { expected: EXPECTED, found: format!("`{}`", part.trim()) };
+            let (field, column) = part.split_once('=').ok_or_else(mapping)?;
+            columns.map(field.trim(), column)?;
+        }
+        Ok(columns)
+    }
+
+    /// The fields that are mapped, each with its column, in the order in which they were given.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        self.given.iter().map(|(field, column)| (field.name, column.as_str()))
+    }
+
+    /// Whether nothing is mapped.
+    pub fn is_empty(&self) -> bool {
+        self.given.is_empty()
+    }
+
+    /// Whether columns are told by their numbers, so that a file needs no header.
+    pub(super) fn are_numbers(&self) -> bool {
+        self.given.iter().all(|(_, column)| number(column).is_some())
+    }
+
+    /// The columns of a file with this header, in the order of the slots; a header that is none is empty.
+    pub(super) fn in_header(&self, line: u64, header: &[&str]) -> Result<[Column; 8], LoadError> {
+        let mut found: [Option<Column>; 8] = Default::default();
+        for (field, wanted) in &self.given {
+            let named = header.iter().position(|name| name == wanted);
+            let index = named.or_else(|| number(wanted)).ok_or_else(|| LoadError::Column {
+                line,
+                field: field.name.to_owned(),
+                expected: wanted.clone(),
+                found: header.join(", "),
+            })?;
+            found[field.slot] = Some(Column { index, name: wanted.clone(), places: field.places });
+        }
+        let all: Vec<Column> = found.into_iter().flatten().collect();
+        all.try_into().map_err(|_| LoadError::Mapping { expected: EXPECTED, found: self.to_string() })
+    }
+}
+
+/// The index of a column that is told by its number from 1.
+fn number(column: &str) -> Option<usize> {
+    column.parse::<usize>().ok()?.checked_sub(1)
+}
+
+impl fmt::Display for Columns {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, (field, column)) in self.given.iter().enumerate() {
+            let comma = if i == 0 { "" } else { "," };
+            write!(f, "{comma}{}={column}", field.name)?;
+        }
+        Ok(())
+    }
+}

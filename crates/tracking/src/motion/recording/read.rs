@@ -1,0 +1,195 @@
+use glam::{DQuat, DVec3};
+
+use super::axes::Axes;
+use super::columns::{Column, Columns};
+use super::decimal::scaled;
+use super::{LATEST_S, LoadError, Sample};
+use crate::pose::Pose;
+use crate::time::PS_PER_S;
+
+/// Columns of this crate's own files, in this order: seconds, metres, unit quaternion (head to world, real part first).
+const OWN: [&str; 8] = ["time_s", "x", "y", "z", "qw", "qx", "qy", "qz"];
+
+/// What the names of the columns of a EuRoC ground truth end in, without their units, in this order.
+const EUROC: [&str; 8] = ["timestamp", "_x", "_y", "_z", "_w", "_x", "_y", "_z"];
+
+/// Columns of a TUM trajectory, which has no header: the real part last.
+const TUM: [&str; 8] = ["timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"];
+
+/// Where in a TUM line the time, the position and the quaternion, real part first, are.
+const TUM_ORDER: [usize; 8] = [0, 1, 2, 3, 7, 4, 5, 6];
+
+/// How far the length of a recorded quaternion may be from 1; four printed decimals stay well within it.
+const LENGTH_TOLERANCE: f64 = 1e-2;
+
+/// How the lines of a file are to be read.
+struct Layout {
+    /// What parts the fields; `None` for any white space.
+    separator: Option<char>,
+    /// Time, x, y, z, qw, qx, qy, qz.
+    columns: [Column; 8],
+    /// How many fields a line has; `None` for at least those of the columns.
+    n_fields: Option<usize>,
+    axes: Axes,
+    /// Whether time counts from the first line, whatever its stamp.
+    from_first: bool,
+    /// The first line that may be a sample.
+    begins_after: u64,
+}
+
+/// A line with something on it.
+struct Line<'a> {
+    number: u64,
+    text: &'a str,
+}
+
+impl<'a> Line<'a> {
+    fn fields(&self, separator: Option<char>) -> Vec<&'a str> {
+        match separator {
+            Some(separator) => self.text.split(separator).map(bare).collect(),
+            None => self.text.split_whitespace().map(bare).collect(),
+        }
+    }
+}
+
+/// A field without blanks and quotes.
+fn bare(field: &str) -> &str {
+    field.trim().trim_matches('"')
+}
+
+/// Reads the samples of a recording, in this crate's axes.
+pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Vec<Sample>, LoadError> {
+    let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
+    let lines = lines.map(|(text, number)| Line { number, text: text.trim() }).filter(|line| !line.text.is_empty());
+    let lines: Vec<Line<'_>> = lines.collect();
+    let layout = if columns.is_empty() { recognised(&lines)? } else { mapped(&lines, columns)? };
+    let axes = axes.unwrap_or(layout.axes);
+    let mut first_ps = None;
+    let mut samples: Vec<Sample> = Vec::new();
+    for line in lines.iter().filter(|line| line.number > layout.begins_after && !line.text.starts_with('#')) {
+        let (stamp_ps, pose) = layout.sample(line)?;
+        let origin_ps = if layout.from_first { *first_ps.get_or_insert(stamp_ps) } else { 0 };
+        let t_ps = layout.time(line, stamp_ps - origin_ps, samples.last())?;
+        samples.push((t_ps, axes.convert(pose)));
+    }
+    if samples.is_empty() { Err(LoadError::Empty) } else { Ok(samples) }
+}
+
+/// The layout of a file that says itself what it is.
+fn recognised(lines: &[Line<'_>]) -> Result<Layout, LoadError> {
+    let first = lines.first().ok_or(LoadError::Empty)?;
+    let header: Vec<&str> = first.text.trim_start_matches('#').split(',').map(bare).collect();
+    if header == OWN {
+        let columns = in_order(&OWN, [0, 1, 2, 3, 4, 5, 6, 7], 0);
+        let (axes, begins_after) = (Axes::OpenGl, first.number);
+        return Ok(Layout { separator: Some(','), columns, n_fields: Some(8), axes, from_first: false, begins_after });
+    }
+    if first.text.starts_with('#') && is_euroc(&header) {
+        let names: [&str; 8] = std::array::from_fn(|i| header[i]);
+        let columns = in_order(&names, [0, 1, 2, 3, 4, 5, 6, 7], 9);
+        let begins_after = first.number;
+        return Ok(Layout {
+            separator: Some(','),
+            columns,
+            n_fields: None,
+            axes: Axes::Euroc,
+            from_first: true,
+            begins_after,
+        });
+    }
+    let numbers = lines.iter().find(|line| !line.text.starts_with('#')).ok_or(LoadError::Empty)?;
+    let fields = numbers.fields(None);
+    if fields.len() == TUM.len() && fields.iter().all(|field| field.parse::<f64>().is_ok()) {
+        let columns = in_order(&TUM, TUM_ORDER, 0);
+        let axes = Axes::Optical;
+        return Ok(Layout { separator: None, columns, n_fields: Some(8), axes, from_first: true, begins_after: 0 });
+    }
+    Err(LoadError::Format { line: first.number, found: first.text.to_owned() })
+}
+
+/// Whether a header is that of a EuRoC ground truth: what follows the first eight columns (velocity, biases) is left alone.
+fn is_euroc(header: &[&str]) -> bool {
+    let name = |column: &str| column.split('[').next().unwrap_or_default().trim().to_owned();
+    header.len() >= EUROC.len() && header.iter().zip(EUROC).all(|(column, end)| name(column).ends_with(end))
+}
+
+fn in_order(names: &[&str; 8], order: [usize; 8], time_places: i32) -> [Column; 8] {
+    let places = |slot| if slot == 0 { time_places } else { 0 };
+    std::array::from_fn(|slot| Column { index: order[slot], name: names[order[slot]].to_owned(), places: places(slot) })
+}
+
+/// The layout of a file whose columns are said.
+fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, LoadError> {
+    let first = lines.first().ok_or(LoadError::Empty)?;
+    let separator = [',', ';', '\t'].into_iter().find(|separator| first.text.contains(*separator));
+    let header = Line { number: first.number, text: first.text.trim_start_matches('#').trim() };
+    let fields = header.fields(separator);
+    let has_header = !fields.iter().all(|field| field.parse::<f64>().is_ok());
+    let names = if has_header { fields } else { Vec::new() };
+    if !has_header && !columns.are_numbers() {
+        return Err(LoadError::Format { line: first.number, found: first.text.to_owned() });
+    }
+    Ok(Layout {
+        separator,
+        columns: columns.in_header(first.number, &names)?,
+        n_fields: None,
+        axes: Axes::OpenGl,
+        from_first: true,
+        begins_after: if has_header { first.number } else { 0 },
+    })
+}
+
+impl Layout {
+    /// The stamp of a line in picoseconds, and its pose in the recorded axes.
+    fn sample(&self, line: &Line<'_>) -> Result<(i128, Pose), LoadError> {
+        let fields = line.fields(self.separator);
+        let needed = self.columns.iter().map(|column| column.index + 1).max().unwrap_or_default();
+        let (expected, found) = (self.n_fields.unwrap_or(needed), fields.len());
+        if found < needed || self.n_fields.is_some_and(|exact| exact != found) {
+            return Err(LoadError::Fields { line: line.number, expected, found });
+        }
+        let [time, numbers @ ..] = &self.columns;
+        let stamp_ps = scaled(fields[time.index], 12 - time.places);
+        let stamp_ps = stamp_ps.ok_or_else(|| not_a_number(line, time, fields[time.index]))?;
+        let mut values = [0.0; 7];
+        for (value, column) in values.iter_mut().zip(numbers) {
+            *value = number(line, column, fields[column.index])?;
+        }
+        let [x, y, z, qw, qx, qy, qz] = values;
+        let orientation = self.unit_quaternion(line, DQuat::from_xyzw(qx, qy, qz, qw))?;
+        Ok((stamp_ps, Pose { position: DVec3::new(x, y, z), orientation }))
+    }
+
+    fn unit_quaternion(&self, line: &Line<'_>, q: DQuat) -> Result<DQuat, LoadError> {
+        let found = q.length();
+        if (found - 1.0).abs() <= LENGTH_TOLERANCE {
+            return Ok(q.normalize());
+        }
+        let names: Vec<&str> = self.columns[4..].iter().map(|column| column.name.as_str()).collect();
+        Err(LoadError::NotUnit { line: line.number, columns: names.join(","), found })
+    }
+
+    /// The instant of a sample, after that of the one before.
+    fn time(&self, line: &Line<'_>, t_ps: i128, previous: Option<&Sample>) -> Result<u64, LoadError> {
+        let column = self.columns[0].name.clone();
+        let line = line.number;
+        let found_s = t_ps as f64 / PS_PER_S as f64;
+        if let Some((previous_ps, _)) = previous.filter(|(previous_ps, _)| t_ps <= i128::from(*previous_ps)) {
+            let previous_s = *previous_ps as f64 / PS_PER_S as f64;
+            return Err(LoadError::NotRising { line, column, previous_s, found_s });
+        }
+        let latest_ps = LATEST_S as i128 * i128::from(PS_PER_S);
+        let in_range = u64::try_from(t_ps).ok().filter(|_| t_ps <= latest_ps);
+        in_range.ok_or(LoadError::TimeOutOfRange { line, column, found_s })
+    }
+}
+
+fn number(line: &Line<'_>, column: &Column, text: &str) -> Result<f64, LoadError> {
+    let parsed = text.parse().ok().filter(|x: &f64| x.is_finite());
+    let number = parsed.ok_or_else(|| not_a_number(line, column, text))?;
+    Ok(if column.places == 3 { number / 1e3 } else { number })
+}
+
+fn not_a_number(line: &Line<'_>, column: &Column, found: &str) -> LoadError {
+    LoadError::NotANumber { line: line.number, column: column.name.clone(), found: found.to_owned() }
+}

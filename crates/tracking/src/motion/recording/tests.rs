@@ -1,0 +1,187 @@
+use super::*;
+use crate::time::{PS_PER_MS, PS_PER_S};
+
+const HEADER: &str = "time_s,x,y,z,qw,qx,qy,qz\n";
+
+fn load(rows: &str) -> Result<Recording, LoadError> {
+    Recording::read(format!("{HEADER}{rows}").as_bytes())
+}
+
+#[test]
+fn half_way_between_two_samples_lie_half_the_way_and_half_the_turn() {
+    let recording = load("1,0,0,0,1,0,0,0\n2, 2,0,0, 0.70710678,0,0.70710678,0\n").unwrap();
+    let pose = recording.pose(PS_PER_S * 3 / 2);
+    assert!((pose.position - DVec3::X).length() < 1e-12);
+    assert!(pose.angle_deg(&Pose::facing(rotation::about_y(45f64.to_radians()))) < 1e-6);
+    assert!((recording.angular_velocity(PS_PER_S * 3 / 2).y - 90f64.to_radians()).abs() < 1e-6);
+    assert_eq!(recording.velocity(PS_PER_S), DVec3::X * 2.0);
+}
+
+#[test]
+fn outside_of_a_held_recording_the_head_stands_still() {
+    let recording = load("1,5,0,0,1,0,0,0\n2,6,0,0,1,0,0,0\n").unwrap();
+    assert_eq!(recording.ends_ps(), Some(2 * PS_PER_S), "a run must not go on after it");
+    let held = recording.ending(End::Hold);
+    assert_eq!(held.pose(0).position.x, 5.0);
+    assert_eq!(held.pose(3 * PS_PER_S).position.x, 6.0);
+    assert_eq!(held.velocity(3 * PS_PER_S), DVec3::ZERO);
+    assert_eq!(held.ends_ps(), None);
+}
+
+#[test]
+fn a_recording_in_a_loop_begins_again() {
+    let recording = load("1,5,0,0,1,0,0,0\n2,6,0,0,1,0,0,0\n").unwrap().ending(End::Loop);
+    for (ms, x) in [(1_250, 5.25), (2_000, 6.0), (2_250, 5.25), (7_750, 5.75)] {
+        assert!((recording.pose(ms * PS_PER_MS).position.x - x).abs() < 1e-12, "{ms} ms");
+    }
+    assert_eq!(recording.velocity(7_750 * PS_PER_MS), DVec3::X);
+    let alone = load("1,5,0,0,1,0,0,0\n").unwrap().ending(End::Loop);
+    assert_eq!(alone.pose(9 * PS_PER_S).position.x, 5.0);
+}
+
+#[test]
+fn a_sign_change_of_the_quaternion_is_no_motion() {
+    let recording = load("0,0,0,0,1,0,0,0\n1,0,0,0,-1,0,0,0\n").unwrap();
+    assert!(recording.pose(PS_PER_S / 2).angle_deg(&Pose::IDENTITY) < 1e-12);
+}
+
+#[test]
+fn bad_rows_are_named_by_line_and_column_and_times_are_in_seconds() {
+    let good = "0.5,0,0,0,1,0,0,0\n";
+    let cases = [
+        ("1,0,0,NaN,1,0,0,0\n", "line 3, z: expected a finite number, found \"NaN\""),
+        ("1,0,0,0,inf,0,0,0\n", "line 3, qw: expected a finite number, found \"inf\""),
+        ("1,0,0,zero,1,0,0,0\n", "line 3, z: expected a finite number, found \"zero\""),
+        ("soon,0,0,0,1,0,0,0\n", "line 3, time_s: expected a finite number, found \"soon\""),
+        ("1,0,0,0,1,0,0\n", "line 3: expected 8 fields, found 7"),
+        ("1,0,0,0,1,0,0,0,9\n", "line 3: expected 8 fields, found 9"),
+        ("0.25,0,0,0,1,0,0,0\n", "line 3, time_s: expected more than 0.5 s, the time of the line before, found 0.25 s"),
+        ("1e9,0,0,0,1,0,0,0\n", "line 3, time_s: expected 0 to 10000000 s, found 1000000000 s"),
+        ("1,0,0,0,0,0,0,0\n", "line 3, qw,qx,qy,qz: expected a quaternion of length 1, found 0"),
+    ];
+    for (row, message) in cases {
+        assert_eq!(load(&format!("{good}{row}")).unwrap_err().to_string(), message);
+    }
+    let negative = load("-1,0,0,0,1,0,0,0\n").unwrap_err();
+    assert_eq!(negative.to_string(), "line 2, time_s: expected 0 to 10000000 s, found -1 s");
+}
+
+#[test]
+fn an_empty_recording_is_an_error() {
+    assert_eq!(Recording::read(&b""[..]), Err(LoadError::Empty));
+    assert_eq!(Recording::read(&b"# nothing but a comment\n"[..]), Err(LoadError::Empty));
+    assert_eq!(load(""), Err(LoadError::Empty));
+}
+
+#[test]
+fn columns_that_nobody_knows_are_an_error_that_says_what_is_known() {
+    let error = Recording::read(&b"t,x,y,z\n0,0,0,0\n"[..]).unwrap_err();
+    let said = error.to_string();
+    assert!(said.starts_with("line 1: expected the columns time_s,x,y,z,qw,qx,qy,qz, a EuRoC file"), "{said}");
+    assert!(said.ends_with("found t,x,y,z"), "{said}");
+}
+
+#[test]
+fn bytes_that_are_not_text_are_an_error() {
+    assert!(matches!(Recording::read(&b"\xff\xfe"[..]), Err(LoadError::Unreadable { .. })));
+}
+
+// One motion in three kinds of file. The head stands at (0, 1.7, 0) and looks along -z; half a second later it has turned a quarter
+// to the left and moved to (0.25, 1.7, -0.5); then it looks 30 degrees up. In the other two files up is z and what was -z is y.
+// Their matrices have as columns where the sensor's axes point, in words of each format, and were turned into quaternions by
+// hand. At the start the optical frame has x east, y down, z north: (w, x, y, z) = (s, -s, 0, 0) with s = sqrt(1/2); EuRoC's
+// x up, y east, z north: (1, -1, -1, -1) / 2.
+const OWN: &str = "time_s,x,y,z,qw,qx,qy,qz
+0,0,1.7,0,1,0,0,0
+0.5,0.25,1.7,-0.5,0.70710678,0,0.70710678,0
+1,0.25,1.7,-0.5,0.96592583,0.25881905,0,0
+";
+const TUM: &str = "# ground truth trajectory
+# timestamp tx ty tz qx qy qz qw
+1305031098.6659 0 0 1.7 -0.70710678 0 0 0.70710678
+1305031099.1659 0.25 0.5 1.7 -0.5 -0.5 0.5 0.5
+
+1305031099.6659   0.25 0.5 1.7 -0.5 0 0 0.8660254
+";
+const EUROC: &str = "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z [], v_RS_R_x [m s^-1]
+1403636580838555648,0,0,1.7,0.5,-0.5,-0.5,-0.5,0.1
+1403636581338555648,0.25,0.5,1.7,0.70710678,0,-0.70710678,0,0.2
+1403636581838555648,0.25,0.5,1.7,0.61237244,-0.35355339,-0.35355339,-0.61237244,0.3
+";
+
+#[test]
+fn the_same_motion_in_three_formats_gives_the_same_poses() {
+    let own = Recording::read(OWN.as_bytes()).unwrap();
+    let left = Pose { position: DVec3::new(0.25, 1.7, -0.5), orientation: rotation::about_y(90f64.to_radians()) };
+    assert!(own.pose(PS_PER_S / 2).angle_deg(&left) < 1e-6 && own.pose(PS_PER_S / 2).distance_m(&left) < 1e-12);
+    for (name, text) in [("TUM", TUM), ("EuRoC", EUROC)] {
+        let other = Recording::read(text.as_bytes()).unwrap();
+        assert_eq!(other.span_ps(), (0, PS_PER_S), "{name}");
+        for ms in [0, 250, 500, 700, 1_000] {
+            let expected = own.pose(ms * PS_PER_MS);
+            let found = other.pose(ms * PS_PER_MS);
+            assert!(found.angle_deg(&expected) < 2e-6, "{name} at {ms} ms: {}", found.angle_deg(&expected));
+            assert!(found.distance_m(&expected) < 1e-12, "{name} at {ms} ms");
+        }
+    }
+}
+
+#[test]
+fn errors_of_other_formats_name_their_own_columns() {
+    let tum = TUM.replace("0.25 0.5 1.7 -0.5 -0.5", "0.25 0.5 up -0.5 -0.5");
+    let said = Recording::read(tum.as_bytes()).unwrap_err().to_string();
+    assert_eq!(said, "line 4, tz: expected a finite number, found \"up\"");
+    let euroc = EUROC.replace("1403636581338555648", "1403636580338555648");
+    let said = Recording::read(euroc.as_bytes()).unwrap_err().to_string();
+    assert_eq!(said, "line 3, timestamp [ns]: expected more than 0 s, the time of the line before, found -0.5 s");
+    let short = EUROC.replace(",-0.70710678,0,0.2", "");
+    assert_eq!(Recording::read(short.as_bytes()).unwrap_err().to_string(), "line 3: expected 8 fields, found 6");
+}
+
+#[test]
+fn other_columns_are_read_by_a_mapping_of_names_or_numbers() {
+    let named =
+        "frame;qx;qy;qz;qw;px;py;pz;stamp\n7;0;0;0;1;0;1700;0;20.5\n8;0;0.70710678;0;0.70710678;250;1700;-500;520.5\n";
+    let columns = Columns::parse("t_ms=stamp,x_mm=px,y_mm=py,z_mm=pz,qw=qw,qx=qx,qy=qy,qz=qz").unwrap();
+    let format = RecordingFormat { columns, axes: None };
+    let by_name = Recording::read_as(named.as_bytes(), &format).unwrap();
+    let numbered: String = named.lines().skip(1).map(|line| line.replace(';', " ") + "\n").collect();
+    let columns = Columns::parse("t_ms=9,x_mm=6,y_mm=7,z_mm=8,qw=5,qx=2,qy=3,qz=4").unwrap();
+    let by_number = Recording::read_as(numbered.as_bytes(), &RecordingFormat { columns, axes: None }).unwrap();
+    assert_eq!(by_name, by_number);
+    let own = Recording::read(OWN.as_bytes()).unwrap();
+    for ms in [0, 300, 500] {
+        assert!(by_name.pose(ms * PS_PER_MS).angle_deg(&own.pose(ms * PS_PER_MS)) < 1e-6);
+        assert!(by_name.pose(ms * PS_PER_MS).distance_m(&own.pose(ms * PS_PER_MS)) < 1e-12);
+    }
+}
+
+#[test]
+fn a_mapping_that_is_not_whole_is_an_error() {
+    for (mapping, found) in [
+        ("t=1,x=2,y=3", "found t=1,x=2,y=3"),
+        ("t=1,t_ms=2", "found t and t_ms"),
+        ("u=1", "found `u`"),
+        ("t", "found `t`"),
+    ] {
+        let said = Columns::parse(mapping).and_then(|columns| {
+            Recording::read_as(&b"1,2,3\n"[..], &RecordingFormat { columns, axes: None }).map(|_| ())
+        });
+        let said = said.unwrap_err().to_string();
+        assert!(said.starts_with("columns: expected t (or t_ms") && said.ends_with(found), "{mapping}: {said}");
+    }
+    let columns = Columns::parse("t=stamp,x=x,y=y,z=z,qw=w,qx=i,qy=j,qz=k").unwrap();
+    let error = Recording::read_as(&b"time,x,y,z,w,i,j,k\n"[..], &RecordingFormat { columns, axes: None }).unwrap_err();
+    assert_eq!(error.to_string(), "line 1: expected a column `stamp` for t, found time, x, y, z, w, i, j, k");
+}
+
+#[test]
+fn axes_can_be_said() {
+    // A robot that faces north and turns a quarter to the left, about its z axis, which is up.
+    let text = "1 0 0 1.7 0 0 0.70710678 0.70710678\n2 0 0 1.7 0 0 1 0\n";
+    let format = RecordingFormat { axes: Some(Axes::Robot), ..RecordingFormat::default() };
+    let recording = Recording::read_as(text.as_bytes(), &format).unwrap();
+    assert!(recording.pose(0).angle_deg(&Pose::IDENTITY) < 1e-6, "north is -z");
+    let left = Pose::facing(rotation::about_y(90f64.to_radians()));
+    assert!(recording.pose(PS_PER_S).angle_deg(&left) < 1e-6);
+}

@@ -1,0 +1,224 @@
+use glam::DVec3;
+use serde::Serialize;
+
+use super::{PredictorConfig, PredictorKind, Start};
+use crate::config::Filter;
+use crate::error::ConfigError;
+use crate::motion::Motion;
+use crate::pose::Pose;
+use crate::time::{PS_PER_S, span_s};
+use crate::tracker::{Report, TrackerModel};
+
+/// Seconds of motion that a filter is tuned on, and of these the first that are not judged. Lively spells are rare: with 20 seconds
+/// a filter tuned for 200 ms was worse there, on other motion, than one tuned for 50 ms.
+const TRAINING_S: u64 = 100;
+const SETTLING_S: u64 = 1;
+
+/// Most reports that it is tuned on: all of a tracker of 120 Hz; a faster one is heard for a shorter time.
+const MOST_REPORTS: usize = 12_000;
+
+/// Seed of the noise in training; the next one where this is the seed that is judged.
+const TRAINING_SEED: u64 = 0x7475_6e65;
+
+/// Decimal logarithms between which the white jerk is searched, and the values tried in each round of the search: a step of the
+/// last round is 0.2 decades, 8 % of the filter's time constant, which goes with the sixth root.
+const JERK_DECADES: (f64, f64) = (-6.0, 6.0);
+const JERKS_A_ROUND: usize = 13;
+const ROUNDS: usize = 2;
+
+/// Most reports between the points of a difference.
+const LONGEST_BASELINE: u32 = 16;
+
+/// On what a filter was tuned.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Training {
+    /// How far ahead it was asked, ps, from the instant at which a report was true.
+    pub interval_ps: u64,
+    /// Whether it was another motion of the same kind; else the motion itself.
+    pub sibling: bool,
+    /// Seconds of motion, the first of them to settle.
+    pub seconds: f64,
+    /// Reports whose predictions were judged.
+    pub reports: u64,
+    /// Seed of the tracker's noise, never the one that is judged.
+    pub seed: u64,
+    /// Mean distance between prediction and truth that is left, m.
+    pub mean_m: f64,
+    /// Mean angle between prediction and truth that is left, degrees.
+    pub mean_deg: f64,
+}
+
+/// A predictor with the numbers that were found, and on what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuned {
+    /// The predictor.
+    pub config: PredictorConfig,
+    /// On what it was tuned; `None` where there was nothing to tune, or nothing to tune it on.
+    pub training: Option<Training>,
+}
+
+/// The seed of the noise on which a filter is tuned whose noise of this seed is judged.
+pub fn training_seed(judged: u64) -> u64 {
+    if judged == TRAINING_SEED { TRAINING_SEED + 1 } else { TRAINING_SEED }
+}
+
+/// The numbers with which a predictor has the least mean error `interval_ps` ahead of a tracker's reports of a motion.
+///
+/// What is searched is, for position and orientation each, the white jerk of a Kalman filter (between 10^-6 and 10^6, in two rounds
+/// over a grid of its logarithm) or the baseline of a difference (all from 1 to 16 reports). The noise of reports is the
+/// tracker's own, and the speeds and accelerations that a Kalman filter believes in at its start are the motion's root mean
+/// squares. It is tuned on 100 seconds of the motion's [`Motion::sibling`], or of the motion where it has none, behind the tracker
+/// without bias, metal and faults, with noise of another seed than `judged_seed`. One (motion, tracker, interval) gives one
+/// result on every host.
+///
+/// # Errors
+///
+/// [`ConfigError`] for `base` out of range.
+pub fn tune<M: Motion + ?Sized>(
+    motion: &M,
+    tracker: &TrackerModel,
+    interval_ps: u64,
+    base: &PredictorConfig,
+    judged_seed: u64,
+) -> Result<Tuned, ConfigError> {
+    base.build()?;
+    let seed = training_seed(judged_seed);
+    let tracker = TrackerModel::new(tracker.config().clone().without_systematic_errors())?;
+    let sibling = motion.sibling();
+    let lesson = match &sibling {
+        Some(sibling) => Lesson::of(sibling.as_ref(), &tracker, interval_ps, seed),
+        None => Lesson::of(motion, &tracker, interval_ps, seed),
+    };
+    let Some(lesson) = lesson.filter(|_| base.kind != PredictorKind::None) else {
+        return Ok(Tuned { config: *base, training: None });
+    };
+    let (config, [mean_m, mean_deg]) = match base.kind {
+        PredictorKind::Kalman => lesson.best_jerks(&lesson.with_start(*base))?,
+        _ => lesson.best_baselines(base)?,
+    };
+    let reports = (lesson.reports.len() - lesson.settled) as u64;
+    let seconds = lesson.seconds;
+    let training = Training { interval_ps, sibling: sibling.is_some(), seconds, reports, seed, mean_m, mean_deg };
+    Ok(Tuned { config, training: Some(training) })
+}
+
+/// Reports, and what would have been right to predict from each.
+struct Lesson {
+    reports: Vec<Report>,
+    truths: Vec<Pose>,
+    /// Reports at the start whose predictions are not judged.
+    settled: usize,
+    seconds: f64,
+    /// Instants of the predictions.
+    interval_ps: u64,
+    /// Root mean squares a axis: speed, acceleration, angular velocity, angular acceleration.
+    rates: [f64; 4],
+}
+
+impl Lesson {
+    /// Of a motion behind a tracker; `None` where no report could be judged.
+    fn of<M: Motion + ?Sized>(motion: &M, tracker: &TrackerModel, interval_ps: u64, seed: u64) -> Option<Self> {
+        let until_ps = motion.ends_ps().unwrap_or(u64::MAX).min(TRAINING_S * PS_PER_S);
+        let settling_ps = (SETTLING_S * PS_PER_S).min(until_ps / 2);
+        let in_time = |report: &Report| report.measured_ps.saturating_add(interval_ps) <= until_ps;
+        let reports: Vec<Report> = tracker.reports(motion, seed).take_while(in_time).take(MOST_REPORTS).collect();
+        let settled = reports.partition_point(|report| report.measured_ps < settling_ps);
+        let last = reports.get(settled..)?.last()?;
+        let seconds = crate::time::seconds(last.measured_ps.saturating_add(interval_ps));
+        let truths = reports.iter().map(|report| motion.pose(report.measured_ps + interval_ps)).collect();
+        let rates = rates(motion, &reports);
+        Some(Self { truths, settled, seconds, interval_ps, rates, reports })
+    }
+
+    /// A filter that expects at its start what the motion does.
+    fn with_start(&self, base: PredictorConfig) -> PredictorConfig {
+        let [speed, acceleration, turn, turn_acceleration] = self.rates;
+        let start = Start {
+            speed: within("start_speed", speed),
+            acceleration: within("start_acceleration", acceleration),
+            turn: within("start_turn", turn),
+            turn_acceleration: within("start_turn_acceleration", turn_acceleration),
+        };
+        PredictorConfig { start, ..base }
+    }
+
+    /// Mean errors of a predictor: metres and degrees.
+    fn errors(&self, config: &PredictorConfig) -> Result<[f64; 2], ConfigError> {
+        let mut predictor = config.build()?;
+        let mut sums = [0.0; 2];
+        for (i, (report, truth)) in self.reports.iter().zip(&self.truths).enumerate() {
+            predictor.observe(report);
+            if i >= self.settled {
+                let predicted = predictor.predict(report.measured_ps + self.interval_ps);
+                sums[0] += predicted.distance_m(truth);
+                sums[1] += predicted.angle_deg(truth);
+            }
+        }
+        Ok(sums.map(|sum| sum / (self.reports.len() - self.settled) as f64))
+    }
+
+    /// The white jerks with the least errors, and those.
+    fn best_jerks(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), ConfigError> {
+        let mut spans = [JERK_DECADES; 2];
+        let mut best = [(f64::INFINITY, 0.0); 2];
+        for _ in 0..ROUNDS {
+            let steps = spans.map(|(low, high)| (high - low) / (JERKS_A_ROUND - 1) as f64);
+            for i in 0..JERKS_A_ROUND {
+                let tried: [f64; 2] = core::array::from_fn(|channel| spans[channel].0 + steps[channel] * i as f64);
+                let [position_jerk, orientation_jerk] = tried.map(jerk);
+                let errors = self.errors(&PredictorConfig { position_jerk, orientation_jerk, ..*base })?;
+                better(&mut best, errors, tried);
+            }
+            let about = |channel: usize| (best[channel].1 - steps[channel], best[channel].1 + steps[channel]);
+            let clamped = |(low, high): (f64, f64)| (low.max(JERK_DECADES.0), high.min(JERK_DECADES.1));
+            spans = [0, 1].map(|channel| clamped(about(channel)));
+        }
+        let [position_jerk, orientation_jerk] = best.map(|(_, decades)| jerk(decades));
+        Ok((PredictorConfig { position_jerk, orientation_jerk, ..*base }, best.map(|(error, _)| error)))
+    }
+
+    /// The baselines with the least errors, and those.
+    fn best_baselines(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), ConfigError> {
+        let mut best = [(f64::INFINITY, 1.0); 2];
+        for baseline in 1..=LONGEST_BASELINE {
+            let tried = PredictorConfig { position_baseline: baseline, orientation_baseline: baseline, ..*base };
+            better(&mut best, self.errors(&tried)?, [f64::from(baseline); 2]);
+        }
+        let [position_baseline, orientation_baseline] = best.map(|(_, baseline)| baseline as u32);
+        Ok((PredictorConfig { position_baseline, orientation_baseline, ..*base }, best.map(|(error, _)| error)))
+    }
+}
+
+/// Keeps, for each channel, the first value with the least error.
+fn better(best: &mut [(f64, f64); 2], errors: [f64; 2], tried: [f64; 2]) {
+    for (best, found) in best.iter_mut().zip(errors.into_iter().zip(tried)) {
+        if found.0 < best.0 {
+            *best = found;
+        }
+    }
+}
+
+/// The white jerk of a decimal logarithm; both filters' jerks have the same limits.
+fn jerk(decades: f64) -> f64 {
+    within("position_jerk", libm::pow(10.0, decades))
+}
+
+/// A number within the limits of the filter's table.
+fn within(name: &str, value: f64) -> f64 {
+    let limits = Filter::INFOS.iter().find(|info| info.name == name).map(|info| info.limits);
+    limits.map_or(value, |(low, high)| value.clamp(low.real(), high.real()))
+}
+
+/// Root mean squares, for one of three axes, of speed, acceleration, angular velocity and angular acceleration at the reports.
+fn rates<M: Motion + ?Sized>(motion: &M, reports: &[Report]) -> [f64; 4] {
+    let at = |report: &Report| (motion.velocity(report.measured_ps), motion.angular_velocity(report.measured_ps));
+    let mut squares = [0.0; 4];
+    for pair in reports.windows(2) {
+        let dt_s = span_s(pair[0].measured_ps, pair[1].measured_ps);
+        let (before, after) = (at(&pair[0]), at(&pair[1]));
+        let four: [DVec3; 4] = [after.0, (after.0 - before.0) / dt_s, after.1, (after.1 - before.1) / dt_s];
+        squares.iter_mut().zip(four).for_each(|(sum, rate)| *sum += rate.length_squared());
+    }
+    let n = 3.0 * reports.len().saturating_sub(1).max(1) as f64;
+    squares.map(|sum| (sum / n).sqrt())
+}

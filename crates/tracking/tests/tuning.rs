@@ -1,0 +1,207 @@
+//! Tuned filters: no worse than none on a still head, near the best there is on a moving one, and the closed forms of
+//! prediction on sine waves.
+
+use std::f64::consts::{PI, TAU};
+
+use tracking::Pose;
+use tracking::motion::{Motion, Pan, Sinusoid, Still, Synthetic};
+use tracking::predict::{
+    PredictionError, PredictorConfig, PredictorKind, gain, prediction_errors, training_seed, tune,
+};
+use tracking::time::{PS_PER_MS, PS_PER_S};
+use tracking::tracker::{TrackerConfig, TrackerModel};
+
+/// Seed of the noise on which filters are judged here.
+const JUDGED: u64 = 1;
+
+fn model(config: TrackerConfig) -> TrackerModel {
+    TrackerModel::new(config.without_systematic_errors()).unwrap()
+}
+
+fn tuned(motion: &dyn Motion, tracker: &TrackerModel, kind: PredictorKind, interval_ps: u64) -> PredictorConfig {
+    let base = PredictorConfig::for_tracker(kind, tracker.config());
+    tune(motion, tracker, interval_ps, &base, JUDGED).unwrap().config
+}
+
+fn error(motion: &dyn Motion, tracker: &TrackerModel, config: &PredictorConfig, interval_ps: u64) -> PredictionError {
+    let span = (PS_PER_S, 60 * PS_PER_S);
+    prediction_errors(motion, tracker, config, JUDGED, &[interval_ps], span).unwrap()[0]
+}
+
+#[test]
+fn on_a_still_head_a_tuned_filter_is_no_worse_than_none() {
+    let still = Still(Pose::IDENTITY);
+    for tracker in [model(TrackerConfig::optical_ceiling()), model(TrackerConfig::fastrak())] {
+        for interval_ps in [50, 100, 145, 250].map(|ms| ms * PS_PER_MS) {
+            let without = PredictorConfig::for_tracker(PredictorKind::None, tracker.config());
+            let none = error(&still, &tracker, &without, interval_ps);
+            let kalman =
+                error(&still, &tracker, &tuned(&still, &tracker, PredictorKind::Kalman, interval_ps), interval_ps);
+            let given = PredictorConfig::for_tracker(PredictorKind::Kalman, tracker.config());
+            let given = error(&still, &tracker, &given, interval_ps);
+            // Without prediction the error is the length of three normal deviates: mean s sqrt(8 / pi), variance
+            // s^2 (3 - 8 / pi).
+            let config = tracker.config();
+            let tolerance = 4.0 * ((3.0 - 8.0 / PI) / none.n as f64).sqrt();
+            for (name, noise, found) in [
+                ("m", config.position_noise_m, [none.mean_m, kalman.mean_m, given.mean_m]),
+                ("deg", config.orientation_noise_deg, [none.mean_deg, kalman.mean_deg, given.mean_deg]),
+            ] {
+                let [none, kalman, given] = found.map(|mean| mean / noise);
+                let name = format!("{} {} ms {name}", config.name, interval_ps / PS_PER_MS);
+                println!("{name}: none {none:.3}, tuned {kalman:.3}, not tuned {given:.3} times the noise");
+                assert!((none - (8.0 / PI).sqrt()).abs() < tolerance, "{name}: {none}");
+                assert!(kalman <= (8.0 / PI).sqrt() + tolerance, "{name}: {kalman}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_tuned_filter_is_near_the_best_of_all_on_motion_and_noise_that_it_has_not_seen() {
+    let tracker = model(TrackerConfig::optical_ceiling());
+    let motion = Synthetic::recorded_use(3);
+    for interval_ps in [50, 145].map(|ms| ms * PS_PER_MS) {
+        let found =
+            error(&motion, &tracker, &tuned(&motion, &tracker, PredictorKind::Kalman, interval_ps), interval_ps);
+        let base = tuned(&motion, &tracker, PredictorKind::Kalman, interval_ps);
+        let all = (-8..=12).map(|i| {
+            let jerk = 10f64.powf(f64::from(i) / 4.0);
+            error(
+                &motion,
+                &tracker,
+                &PredictorConfig { position_jerk: jerk, orientation_jerk: jerk, ..base },
+                interval_ps,
+            )
+        });
+        let all: Vec<PredictionError> = all.collect();
+        let least_m = all.iter().map(|e| e.mean_m).fold(f64::INFINITY, f64::min);
+        let least_deg = all.iter().map(|e| e.mean_deg).fold(f64::INFINITY, f64::min);
+        println!(
+            "{} ms: {:.3} mm of {:.3}, {:.4} deg of {:.4}",
+            interval_ps / PS_PER_MS,
+            found.mean_m * 1e3,
+            least_m * 1e3,
+            found.mean_deg,
+            least_deg
+        );
+        // Trained on 19 s of another motion of the kind: the means of two such spells differ, but the best jerk hardly.
+        assert!(found.mean_m < 1.1 * least_m && found.mean_deg < 1.1 * least_deg);
+    }
+}
+
+#[test]
+fn a_filter_is_never_tuned_on_the_noise_on_which_it_is_judged() {
+    let tracker = model(TrackerConfig::fastrak());
+    let base = PredictorConfig::for_tracker(PredictorKind::Kalman, tracker.config());
+    let usual = training_seed(0);
+    for judged in [0, 1, usual, usual + 1, u64::MAX] {
+        assert_ne!(training_seed(judged), judged);
+        let tuned = tune(&Pan::at(50.0), &tracker, 50 * PS_PER_MS, &base, judged).unwrap();
+        let training = tuned.training.unwrap();
+        assert_eq!((training.seed, training.sibling), (training_seed(judged), false));
+    }
+    let of_synthetic = tune(&Synthetic::recorded_use(1), &tracker, 50 * PS_PER_MS, &base, 1).unwrap();
+    assert!(of_synthetic.training.unwrap().sibling, "nor on the same motion, where there are others of its kind");
+}
+
+#[test]
+fn tuning_gives_the_same_every_time_and_nothing_where_there_is_nothing_to_tune() {
+    let tracker = model(TrackerConfig::optical_ceiling());
+    let motion = Synthetic::recorded_use(1);
+    for kind in PredictorKind::ALL {
+        let base = PredictorConfig::for_tracker(kind, tracker.config());
+        let once = tune(&motion, &tracker, 80 * PS_PER_MS, &base, 1).unwrap();
+        assert_eq!(once, tune(&motion, &tracker, 80 * PS_PER_MS, &base, 1).unwrap());
+        assert_eq!(once.training.is_none(), kind == PredictorKind::None);
+    }
+    let bad = PredictorConfig {
+        position_jerk: f64::NAN,
+        ..PredictorConfig::for_tracker(PredictorKind::Kalman, tracker.config())
+    };
+    assert!(tune(&motion, &tracker, 80 * PS_PER_MS, &bad, 1).is_err());
+}
+
+/// A complex number, and what it takes here.
+type Complex = (f64, f64);
+
+fn times(a: Complex, b: Complex) -> Complex {
+    (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
+}
+
+fn turn(angle: f64) -> Complex {
+    (angle.cos(), angle.sin())
+}
+
+/// By what a difference of reports `h` seconds apart multiplies a sine wave of `w` rad/s, predicted by `p` seconds: the
+/// Newton polynomials, with z = e^(-jwh) for a report's delay.
+fn of_differences(order: u32, w: f64, h: f64, p: f64) -> Complex {
+    let z = turn(-w * h);
+    let slope = ((1.0 - z.0) / h, -z.1 / h);
+    let z2 = times(z, z);
+    let curvature = ((1.0 - 2.0 * z.0 + z2.0) / (h * h), (-2.0 * z.1 + z2.1) / (h * h));
+    let second = if order == 2 { p * (p + h) / 2.0 } else { 0.0 };
+    (1.0 + slope.0 * p + curvature.0 * second, slope.1 * p + curvature.1 * second)
+}
+
+#[test]
+fn errors_on_sine_waves_are_the_closed_forms() {
+    let tracker = model(TrackerConfig::ideal());
+    let h = 1e-3;
+    // Sampled 1,000 times a second, the greatest error is found to (pi f / 1000)^2 / 2 at least.
+    for (hz, p_ms) in [(1.0, 50), (1.0, 100), (2.0, 100), (2.0, 200)] {
+        let motion = Sinusoid { sway_m: 0.1, ..Sinusoid::of_yaw(5.0, hz) };
+        let (w, p) = (TAU * hz, p_ms as f64 * 1e-3);
+        for (kind, order, closed) in [
+            (PredictorKind::None, 0, gain::none as fn(f64) -> gain::Gain),
+            (PredictorKind::ConstantVelocity, 1, gain::constant_velocity),
+            (PredictorKind::ConstantAcceleration, 2, gain::constant_acceleration),
+        ] {
+            let base = PredictorConfig::for_tracker(kind, tracker.config());
+            let config = PredictorConfig { position_baseline: 1, orientation_baseline: 1, ..base };
+            let span = (PS_PER_S, 3 * PS_PER_S);
+            let found = prediction_errors(&motion, &tracker, &config, 1, &[p_ms * PS_PER_MS], span).unwrap()[0];
+            let relative = [found.max_m / 0.1, found.max_deg / 5.0];
+            let by_differences = if order == 0 { (1.0, 0.0) } else { of_differences(order, w, h, p) };
+            let wanted = turn(w * p);
+            let expected = (wanted.0 - by_differences.0).hypot(wanted.1 - by_differences.1);
+            let exact = closed(w * p);
+            let of_a_difference = (exact.re - by_differences.0).hypot(exact.im - by_differences.1);
+            let spec = gain::relative_error(closed, w * p);
+            println!("{hz} Hz {p_ms} ms order {order}: {relative:?}, by differences {expected:.5}, exact {spec:.5}");
+            for found in relative {
+                assert!((found / expected - 1.0).abs() < 1e-4, "{hz} Hz {p_ms} ms {kind:?}: {found} for {expected}");
+                assert!(
+                    (found - spec).abs() <= of_a_difference + 1e-4 * spec,
+                    "{hz} Hz {p_ms} ms {kind:?}: {found} for {spec}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn growth_of_the_error_with_the_interval_is_reported_beside_azumas() {
+    // Azuma: 2.3 times at 100 and 9 times at 200 ms what it is at 50 ms; recorded traces behind a constant-velocity filter 2.7 and
+    // 7.1. Other motion: a quarter either way of the two, as for the filter that is tuned once.
+    let tracker = model(TrackerConfig::optical_ceiling());
+    let mean = |config: fn(&dyn Motion, &TrackerModel, u64) -> PredictorConfig, ms: u64| {
+        let each = (0..4).map(|seed| {
+            let motion = Synthetic::recorded_use(seed);
+            error(&motion, &tracker, &config(&motion, &tracker, ms * PS_PER_MS), ms * PS_PER_MS).mean_deg
+        });
+        each.sum::<f64>() / 4.0
+    };
+    let for_each =
+        [50, 100, 200].map(|ms| mean(|motion, tracker, at| tuned(motion, tracker, PredictorKind::Kalman, at), ms));
+    let once = [50, 100, 200]
+        .map(|ms| mean(|motion, tracker, _| tuned(motion, tracker, PredictorKind::Kalman, 50 * PS_PER_MS), ms));
+    let growth = |[at_50, at_100, at_200]: [f64; 3]| [at_100 / at_50, at_200 / at_50];
+    println!("growth: tuned for 50 ms {:.2?}, tuned for each {:.2?} (Azuma 2.3 and 9)", growth(once), growth(for_each));
+    for [by_100, by_200] in [growth(once), growth(for_each)] {
+        assert!((2.3 * 0.75..2.7 * 1.25).contains(&by_100), "{by_100}");
+        assert!((7.1 * 0.75..9.0 * 1.25).contains(&by_200), "{by_200}");
+    }
+    // Seeds whose lively spells training had not seen may go either way, but not by much.
+    assert!(for_each[2] < 1.05 * once[2], "tuned for 200 ms: {for_each:?}, for 50 ms: {once:?}");
+}
