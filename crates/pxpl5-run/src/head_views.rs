@@ -143,7 +143,7 @@ impl HeadViews {
         let pose = self.in_scene(&follower.pose(known, shown_at, &self.start));
         let Newest { measured_at, arrived_at } = follower.newest;
         let predicted_for = self.head.predicts().then_some(shown_at);
-        let pose = self.in_scene(&follower.pose(known, shown_at, &self.start));
+        sampled.push(Sampled { number, known, measured_at, arrived_at, predicted_for, objects_at: shown_at, pose });
         view(&self.scene, &self.hmd, self.eyes, number, shown_at, &pose.in_single_precision())
     }
 

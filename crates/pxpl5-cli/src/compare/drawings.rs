@@ -76,7 +76,7 @@ fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> Axes {
 /// Columns of the table of rows, and what stands in them.
 type Column = (&'static str, fn(&Row) -> String);
 
-const COLUMNS: [Column; 22] = [
+const COLUMNS: [Column; 24] = [
     ("pipeline", |row| row.pipeline.clone()),
     ("settings", |row| row.settings.clone()),
     ("latency_ms_mean", |row| number(row.latency_ms.mean)),
@@ -86,8 +86,10 @@ const COLUMNS: [Column; 22] = [
     ("prediction_interval_ms_mean", |row| number(row.prediction_interval_ms.mean)),
     ("prediction_interval_ms_sd", |row| number(row.prediction_interval_ms.sd)),
     ("updates_hz", |row| number(row.updates_hz.mean)),
-    ("missed_retraces", |row| row.missed_retraces.to_string()),
-    ("judged_retraces", |row| row.judged_retraces.to_string()),
+    ("not_shown", |row| row.not_shown.to_string()),
+    ("due", |row| row.due.to_string()),
+    ("best_predictor", |row| row.best_predictor().map_or_else(String::new, |best| best.kind.name().to_owned())),
+    ("best_predictor_px", |row| row.best_predictor().map_or_else(String::new, |best| number(best.mean_px))),
     ("late_regions", |row| row.late_regions.to_string()),
     ("error_px_mean", |row| number(row.error.mean_px.mean)),
     ("error_px_low", |row| number(row.error.mean_px.low)),

@@ -48,12 +48,8 @@ pub(crate) struct CompareArgs {
 }
 
 /// What is compared where nothing is said: a key of the experiment file and its value.
-const DEFAULTS: [(&str, &str); 4] = [
-    ("scene", "full-screen:4"),
-    ("machine.preset", "small-hmd"),
-    ("head.motion", "synthetic"),
-    ("head.tracker", "optical"),
-];
+const DEFAULTS: [(&str, &str); 4] =
+    [("scene", "room"), ("machine.preset", "small-hmd"), ("head.motion", "synthetic"), ("head.tracker", "optical")];
 
 /// Fields of each run where nothing is said: five seconds.
 const FIELDS: i64 = 300;

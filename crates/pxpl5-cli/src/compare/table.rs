@@ -5,18 +5,19 @@ use pxpl5::compare::{Comparison, MeanInterval, Row};
 use std::fmt::Write as _;
 
 /// Columns: name, unit, width.
-const COLUMNS: [(&str, &str, usize); 12] = [
+const COLUMNS: [(&str, &str, usize); 13] = [
     ("to light", "ms", 9),
     ("sd", "ms", 6),
     ("predicts", "ms", 9),
     ("updates", "Hz", 8),
-    ("missed", "", 12),
+    ("not shown", "", 12),
     ("error", "px", 8),
     ("95 %", "px", 14),
     ("50 %", "px", 7),
     ("90 %", "px", 7),
     ("99 %", "px", 8),
     ("n", "", 8),
+    ("best with", "px", 19),
     ("triangles", "possible", 10),
 ];
 
@@ -31,7 +32,8 @@ pub(super) fn text(comparison: &Comparison) -> String {
     text.push_str(&causes(comparison));
     text.push_str(
         "\nto light: from the head's pose to the light of the picture's middle; predicts: from the newest measurement to the instant that a\n\
-         picture is drawn for; 95 %: where the mean lies, by the seeds; n: judged pixels; - : nothing to judge.\n",
+         picture is drawn for; 95 %: where the mean lies, by the seeds; n: judged pixels; best with: the predictor\n\
+         with the least error of the first seed; - : nothing to judge.\n",
     );
     text
 }
@@ -58,11 +60,7 @@ fn line(row: &Row) -> String {
     if let Some(failure) = &row.failure {
         return format!("{:<NAME$} {failure}\n", row.pipeline);
     }
-    let missed = if row.judged_retraces == 0 {
-        "-".to_owned()
-    } else {
-        format!("{} of {}", row.missed_retraces, row.judged_retraces)
-    };
+    let missed = if row.due == 0 { "-".to_owned() } else { format!("{} of {}", row.not_shown, row.due) };
     let values = [
         number(row.head_to_light_ms.mean, 2),
         number(row.head_to_light_ms.sd, 2),
@@ -75,6 +73,7 @@ fn line(row: &Row) -> String {
         number(row.error.pixels.p90, 2),
         number(row.error.pixels.p99, 2),
         row.error.n.to_string(),
+        row.best_predictor().map_or_else(|| "-".to_owned(), |best| format!("{} {:.2}", best.kind.name(), best.mean_px)),
         row.triangles_possible.map_or_else(|| "-".to_owned(), |n| n.to_string()),
     ];
     let cells: String = COLUMNS.iter().zip(values).map(|((_, _, width), value)| format!(" {value:>width$}")).collect();

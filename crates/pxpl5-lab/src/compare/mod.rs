@@ -16,4 +16,4 @@ pub use crate::head_names::{
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use predictors::{PredictorError, Predictors, predictors};
 pub use query::{CompareError, CompareQuery, Comparison, LEAST_SEEDS};
-pub use row::{CauseShare, ErrorSpread, MeanInterval, Row};
+pub use row::{CauseShare, ErrorSpread, MeanInterval, PredictorMean, Row};

@@ -1,9 +1,10 @@
 //! The comparison itself.
 
 use super::contender::{Contender, contenders};
-use super::row::Row;
+use super::predictors::predictors_shown;
+use super::row::{PredictorMean, Row};
 use super::trial::Trial;
-use crate::experiment_file::{ExperimentFile, FileError, Plan};
+use crate::experiment_file::{ExperimentFile, FileError, Plan, plain};
 use crate::limit::LimitQuery;
 use crate::parallel;
 use pxpl5_measure::UNJUDGED_FIELDS;
@@ -115,12 +116,7 @@ impl CompareQuery {
             boards: any.machine.boards(),
             scene: scene.name().to_owned(),
             triangles: scene.triangles().len(),
-            head: any
-                .head
-                .iter()
-                .flat_map(|head| head.settings())
-                .map(|(key, value)| (key.to_owned(), value))
-                .collect(),
+            head: any.head.iter().flat_map(|head| head.settings()).map(|(key, value)| (key, plain(&value))).collect(),
             fields: any.fields,
             seeds: self.seeds.clone(),
             pipelines: pipelines.into_iter().collect::<Result<_, _>>()?,
@@ -148,10 +144,22 @@ impl CompareQuery {
         (0..contenders.len()).flat_map(|contender| self.seeds.iter().map(move |seed| (contender, *seed))).collect()
     }
 
+    /// The first seed's run with each predictor.
+    fn predictors(&self, contender: &Contender, plan: &Plan) -> Vec<PredictorMean> {
+        let Ok(scene) = plan.load_scene() else { return Vec::new() };
+        let with_each = predictors_shown(&plan.experiment(scene), contender.showing);
+        let each = with_each.into_iter().flat_map(|predictors| predictors.each);
+        each.map(|one| PredictorMean { kind: one.kind, mean_px: one.error.map_or(f64::NAN, |error| error.pixels.mean) })
+            .collect()
+    }
+
     fn row(&self, contender: &Contender, trials: &[Result<Trial, String>]) -> Result<Row, CompareError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
         let ran: Vec<Trial> = trials.iter().flatten().cloned().collect();
         let mut row = Row::of(contender, plan.pipeline.as_ref(), &ran);
+        if !contender.is_reference() {
+            row.predictors = self.predictors(contender, &plan);
+        }
         if self.limits && !contender.is_reference() {
             row.triangles_definition = definition(&plan);
             row.triangles_possible = LimitQuery::of_plan(&plan).search().ok().map(|limit| limit.triangles);

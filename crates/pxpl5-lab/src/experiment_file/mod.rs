@@ -38,6 +38,7 @@ pub use head::HeadChoice;
 pub use keys::FileKey;
 pub use motion::{MotionChoice, PathChoice};
 pub use plan::{Outputs, Plan, Published, SceneChoice};
+pub(crate) use read::plain;
 pub use text::Settings;
 pub use tracking_numbers::tracking_parameters;
 

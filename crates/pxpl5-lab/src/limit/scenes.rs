@@ -53,7 +53,8 @@ fn typical(count: u32) -> Scene {
             hinge: None,
         }],
         lighting: Lighting::over_the_shoulder(),
-        motion: HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, Sway::none()).expect("in range"),
+        motion: HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z }, Sway::none())
+            .expect("in range"),
     };
     Scene::new(parts).expect("indices and normals are right by construction")
 }
