@@ -66,14 +66,14 @@ pub use pxpl5_machine::{
     RunError, Saving, StageSpan, Swap, Traffic, Transfer,
 };
 pub use pxpl5_measure::{
-    Budget, FieldError, HeadReport, LATENCY_PARTS, LatencyParts, Measure, Measured, NamedStatistics, PartDefinition,
-    Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration, Report, Results, SurfaceStatistics,
-    TooHeavy, picture, side_by_side,
+    Budget, ErrorCauses, ErrorPart, FieldError, HeadReport, LATENCY_PARTS, LatencyParts, Measure, Measured,
+    NamedStatistics, PartDefinition, Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration,
+    Report, Results, Showing, SurfaceStatistics, TooHeavy, picture, side_by_side,
 };
 pub use pxpl5_run::{
-    Aim, BareHost, Code, DefinedStatistics, DuePictures, Estimates, Experiment, ExperimentError, FIELDS_RANGE,
-    FIELDS_WITH_HEAD, Fingerprint, Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation, Jitp, Key,
-    KeyValue, KeyValues, Level, LimitCriterion, Outcome, PictureEnd, PictureTimes, Pipeline, PipelineEntry,
+    Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Experiment, ExperimentError,
+    FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint, Frameless, Goal, Head, HeadError, HeadViews, Host, Interpolation,
+    Jitp, Key, KeyValue, KeyValues, Level, LimitCriterion, Outcome, PictureEnd, PictureTimes, Pipeline, PipelineEntry,
     PipelineSettings, Pixels, Raster, Registry, RenderingControl, Sampled, Setup, Slats, Source, Statistics, Summary,
     TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION, out_of_range,
 };

@@ -3,8 +3,8 @@
 use crate::error::CliError;
 use crate::options::{PipelineOptions, option_of, registry};
 use crate::terminal::{print, warn};
-use clap::{Args, ValueEnum};
-use pxpl5::limit::{Limit, LimitQuery};
+use clap::Args;
+use pxpl5::limit::{Limit, LimitQuery, Model};
 use pxpl5::{ExperimentFile, Goal, LimitCriterion, TestScene};
 use serde_json::json;
 
@@ -16,6 +16,7 @@ use serde_json::json;
   pxpl5 limit --pipeline slats --machine slats-1995       100 triangles were published (I3D95)
   pxpl5 limit --pipeline slats --gps 4 --renderers 10 --binning touched
   pxpl5 limit --pipeline rendering-control --rate 30
+  pxpl5 limit --pipeline slats --scene mig                the aircraft, with ever more of its triangles
   pxpl5 limit --pipeline rendering-control --latency 5    fields
   pxpl5 limit --pipeline slats --set gp.triangle_ns=20000
 
@@ -35,9 +36,10 @@ pub(crate) struct LimitArgs {
     /// What the pipeline draws for: ntsc or hires.
     #[arg(long)]
     display: Option<String>,
-    /// Triangles; default: full-screen where every region gets them all, typical otherwise.
-    #[arg(long, value_enum)]
-    scene: Option<SceneArg>,
+    /// Triangles: full-screen, typical (small ones that touch 1.3 regions on average), or a built-in scene or model file that is thinned
+    /// out evenly; default: full-screen where every region gets them all, typical otherwise.
+    #[arg(long, value_name = "full-screen|typical|NAME|FILE")]
+    scene: Option<String>,
     /// Least updates per second.
     #[arg(long, value_name = "HZ", conflicts_with = "latency")]
     rate: Option<f64>,
@@ -58,23 +60,6 @@ pub(crate) struct LimitArgs {
     json: bool,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum SceneArg {
-    /// Triangles that cover the whole screen.
-    FullScreen,
-    /// Small ones that touch 1.3 regions on average.
-    Typical,
-}
-
-impl From<SceneArg> for TestScene {
-    fn from(scene: SceneArg) -> Self {
-        match scene {
-            SceneArg::FullScreen => Self::FullScreen,
-            SceneArg::Typical => Self::Typical,
-        }
-    }
-}
-
 pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
     let query = args.query()?;
     let limit = query.search()?;
@@ -88,27 +73,29 @@ impl LimitArgs {
     fn query(&self) -> Result<LimitQuery, CliError> {
         let plan = self.file()?.resolve()?;
         warn(&plan.out_of_range(), false);
-        let criterion = plan.limit;
-        let fields = self.fields.unwrap_or(criterion.fields);
+        let query = LimitQuery::of_plan(&plan);
+        let fields = self.fields.unwrap_or(query.criterion.fields);
         if fields < LEAST_FIELDS {
             return Err(CliError::usage(format!("--fields: expected at least {LEAST_FIELDS}, found {fields}")));
         }
-        let scene = self.scene.map_or(criterion.scene, TestScene::from);
-        let goal = self.goal()?.unwrap_or(criterion.goal);
-        Ok(LimitQuery {
-            criterion: LimitCriterion { goal, scene, fields },
-            config: plan.machine,
-            pipeline: plan.pipeline,
-            level: plan.level,
-            registry: plan.registry,
-        })
+        let scene = self.test_scene().unwrap_or(query.criterion.scene);
+        let goal = self.goal()?.unwrap_or(query.criterion.goal);
+        let model =
+            if self.scene.is_some() && self.test_scene().is_none() { Some(Model::load(plan.scene)?) } else { None };
+        Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
+    }
+
+    /// The triangles of the papers' limits, where `--scene` names them.
+    fn test_scene(&self) -> Option<TestScene> {
+        TestScene::ALL.into_iter().find(|scene| self.scene.as_deref() == Some(scene.name()))
     }
 
     /// The settings of all sizes, with a scene that stands for each of them.
     fn file(&self) -> Result<ExperimentFile, CliError> {
         let mut file = ExperimentFile::with(registry());
         file.set("pipeline", "slats", "--pipeline")?;
-        file.set("scene", "full-screen:1", "--scene")?;
+        let model = self.scene.as_deref().filter(|_| self.test_scene().is_none());
+        file.set("scene", model.unwrap_or("full-screen:1"), "--scene")?;
         for (key, value) in &self.pipeline.given {
             file.set_text(&format!("{key}={value}"), &format!("--{}", option_of(key)))?;
         }
@@ -149,7 +136,7 @@ fn json_text(query: &LimitQuery, limit: Limit) -> String {
         "sizes_tried": limit.tried,
         "pipeline": query.pipeline.name(),
         "goal": query.criterion.goal,
-        "scene": query.criterion.scene,
+        "scene": scene(query),
         "settings": settings(query),
         "machine": query.config.preset,
         "n_gps": query.config.n_gps,
@@ -160,14 +147,20 @@ fn json_text(query: &LimitQuery, limit: Limit) -> String {
     format!("{object:#}\n")
 }
 
+/// What was drawn at every size.
+fn scene(query: &LimitQuery) -> String {
+    query.model.as_ref().map_or_else(|| query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned())
+}
+
 fn text(query: &LimitQuery, limit: Limit) -> String {
     let first_miss = limit.first_miss.map_or("none was missed".to_owned(), |n| format!("the first miss is {n}"));
     format!(
-        "{} on {} GPs and {} renderers: at most {} triangles ({first_miss}; {} sizes were simulated for {} fields)\n",
+        "{} on {} GPs and {} renderers: at most {} triangles of {} ({first_miss}; {} sizes were simulated for {} fields)\n",
         query.pipeline.name(),
         query.config.n_gps,
         query.config.n_renderers,
         limit.triangles,
+        scene(query),
         limit.tried,
         query.criterion.fields,
     )

@@ -37,7 +37,7 @@ pub(crate) struct SettingArgs {
     renderers: Option<i64>,
     /// Motion of a head with a tracker: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED or a recording
     /// (FILE.csv, .txt, .tum: time_s,x,y,z,qw,qx,qy,qz, EuRoC, TUM, or any with --columns).
-    #[arg(long, value_name = "MOTION", allow_hyphen_values = true)]
+    #[arg(long, alias = "motion", value_name = "MOTION", allow_hyphen_values = true)]
     head: Option<String>,
     /// Columns of a recording, by name or number: t_ns=stamp,x=px,y=py,z=pz,qw=qw,qx=qx,qy=qy,qz=qz (t, t_ms, t_us or t_ns; x or
     /// x_mm).

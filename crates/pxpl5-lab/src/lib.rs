@@ -17,6 +17,7 @@ pub mod compare;
 mod experiment_file;
 pub mod figures;
 pub mod growth;
+mod head_names;
 mod host;
 pub mod intervals;
 pub mod levels;
@@ -32,6 +33,7 @@ pub use experiment_file::{
     ExperimentFile, FileError, FileKey, HeadChoice, MotionChoice, Outputs, PathChoice, Plan, Published, SceneChoice,
     Settings, tracking_parameters,
 };
+pub use head_names::{MotionError, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;
 pub use snapshot::{Snapshot, SnapshotError};
 pub use suitability::{Suitability, suitability};

@@ -5,10 +5,11 @@ use crate::raster::RasterOffsets;
 use crate::registration::{Judge, middle};
 use crate::shown::{Drawn, Moment, Seen, Shown};
 use pxpl5_display::Display;
-use pxpl5_run::{Outcome, Raster};
+use pxpl5_run::{Cause, Estimator, HeadViews, Outcome, Raster};
 use pxpl5_sim::Time;
-use pxpl5_wire::PeriodNumber;
+use pxpl5_wire::{PeriodNumber, ViewNumber};
 use serde::Serialize;
+use std::collections::BTreeSet;
 use tracking::view::{HmdView, PixelError};
 
 /// The error of one field.
@@ -47,6 +48,9 @@ pub struct PixelErrors {
     /// Over time.
     #[serde(skip)]
     pub by_field: Vec<FieldError>,
+    /// Every judged pixel's, pixels.
+    #[serde(skip)]
+    pub all_px: Vec<f64>,
 }
 
 /// Fields at the start that are not judged: pipelines fill, and the tracker's first reports arrive.
@@ -73,6 +77,8 @@ fn grid(display: &dyn Display, period: PeriodNumber) -> Vec<(u32, u32, Time)> {
 /// Errors as they are collected.
 #[derive(Default)]
 struct Collected {
+    /// Whether a pixel is judged at the instant that it was drawn for, and not when it lights.
+    at_one_instant: bool,
     grid: Vec<PixelError>,
     centre: Vec<PixelError>,
     errors: PixelErrors,
@@ -110,7 +116,10 @@ impl Collected {
         let (error, unjudged) = match seen {
             Seen::Nothing => (None, &mut self.errors.empty),
             Seen::Incomplete => (None, &mut self.errors.incomplete),
-            Seen::Complete(drawn) => (judge.error(middle(x, y), &drawn, at), &mut self.errors.behind),
+            Seen::Complete(drawn) => {
+                let judged_at = if self.at_one_instant { drawn.instant(at) } else { at };
+                (judge.error(middle(x, y), &drawn, judged_at), &mut self.errors.behind)
+            }
         };
         *unjudged += u64::from(error.is_none());
         error
@@ -124,66 +133,128 @@ impl Collected {
             degrees: of(&self.grid, |e| e.degrees),
             centre_px: of(&self.centre, |e| e.pixels),
             centre_deg: of(&self.centre, |e| e.degrees),
+            all_px: self.grid.iter().map(|error| error.pixels).collect(),
             ..self.errors
         }
     }
 }
 
+/// How a run's pictures come before the eyes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Showing {
+    /// As they were drawn.
+    Plain,
+    /// On a raster that is shifted while it is scanned.
+    RasterOffset,
+    /// Not at all: the view is evaluated at every pixel's own moment, from all reports that the host has by then. The reference,
+    /// computed and not timed.
+    Ideal,
+}
+
+impl From<Raster> for Showing {
+    fn from(raster: Raster) -> Self {
+        match raster {
+            Raster::Plain => Self::Plain,
+            Raster::Vdrt => Self::RasterOffset,
+        }
+    }
+}
+
 impl PixelErrors {
-    /// Of a run with a head; empty without one.
+    /// Of a run with a head, its pictures as they were drawn; empty without one.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
-        Self::collect(outcome, |shown, _, (x, y, field, at)| shown.seen(x, y, field, at))
+        Self::shown(outcome, Showing::Plain)
     }
 
-    /// The same with the raster shifted as it is scanned.
+    /// The same with its pictures shown so.
     #[must_use]
-    pub fn with_raster_offset(outcome: &Outcome) -> Self {
+    pub fn shown(outcome: &Outcome, showing: Showing) -> Self {
         let Some(head) = outcome.head() else { return Self::default() };
-        let offsets = RasterOffsets::of_run(outcome, head);
-        Self::collect(outcome, |shown, view, (x, y, field, at)| {
-            let shifted = |moment| Some(Drawn::Shifted(moment, offsets.field(field)?.shift_px(view, at.0)));
-            match shown.seen(x, y, field, at) {
-                Seen::Complete(Drawn::View(moment)) => shifted(moment).map_or(Seen::Nothing, Seen::Complete),
-                Seen::Complete(_) => Seen::Nothing,
-                other => other,
-            }
-        })
-    }
-
-    /// The reference: the view is evaluated at every pixel's own moment, from all reports that the host has by then.
-    /// Computed, not timed.
-    #[must_use]
-    pub fn ideal(outcome: &Outcome) -> Self {
-        let Some(head) = outcome.head() else { return Self::default() };
-        let mut follower = head.follower();
-        Self::collect(outcome, |_, _, (_, _, _, at)| {
-            Seen::Complete(Drawn::View(Moment { pose: head.follow(&mut follower, at, at), objects_at: at }))
-        })
-    }
-
-    fn collect(
-        outcome: &Outcome,
-        mut seen: impl FnMut(&Shown<'_>, &HmdView, (u32, u32, PeriodNumber, Time)) -> Seen,
-    ) -> Self {
-        let Some(head) = outcome.head() else { return Self::default() };
-        let judge = Judge::new(outcome, head);
         let shown = Shown::of_run(outcome, head);
+        Self::judged(outcome, head, showing, &shown, None)
+    }
+
+    /// The same without one cause of error: with the reports and poses that the run would have had, its times being as they are.
+    #[must_use]
+    pub fn without(outcome: &Outcome, showing: Showing, cause: Cause) -> Self {
+        let Some(head) = outcome.head() else { return Self::default() };
+        let shown = Shown::of_run(outcome, head);
+        let seen = views_seen(outcome, &shown);
+        let shown = shown.with_poses(head, &seen, Estimator::new(head, Some(cause)));
+        Self::judged(outcome, head, showing, &shown, Some(cause))
+    }
+
+    fn judged(
+        outcome: &Outcome,
+        head: &HeadViews,
+        showing: Showing,
+        shown: &Shown<'_>,
+        without: Option<Cause>,
+    ) -> Self {
+        let judge = Judge::new(outcome, head);
         let display = outcome.record().display();
-        let mut collected = Collected::default();
-        let end = PeriodNumber(outcome.fields().saturating_sub(1));
-        for field in PeriodNumber(UNJUDGED_FIELDS).until(end) {
-            collected.field(&judge, display, field, |x, y, at| seen(&shown, &judge.view, (x, y, field, at)));
+        let estimator = Estimator::new(head, without);
+        let mut content = Content::new(outcome, showing, shown, estimator);
+        let mut collected = Collected { at_one_instant: without == Some(Cause::ScanOut), ..Collected::default() };
+        for field in fields_judged(outcome) {
+            collected.field(&judge, display, field, |x, y, at| content.seen(&judge.view, [x, y], field, at));
         }
         collected.finish()
     }
 }
 
+/// What the pixels of a run show, as it is shown.
+enum Content<'a> {
+    Plain(&'a Shown<'a>),
+    Shifted(&'a Shown<'a>, RasterOffsets<'a>),
+    Ideal(Estimator<'a>),
+}
+
+impl<'a> Content<'a> {
+    fn new(outcome: &'a Outcome, showing: Showing, shown: &'a Shown<'a>, estimator: Estimator<'a>) -> Self {
+        match showing {
+            Showing::Plain => Self::Plain(shown),
+            Showing::RasterOffset => Self::Shifted(shown, RasterOffsets::of_run(outcome, shown, estimator)),
+            Showing::Ideal => Self::Ideal(estimator),
+        }
+    }
+
+    fn seen(&mut self, view: &HmdView, [x, y]: [u32; 2], field: PeriodNumber, at: Time) -> Seen {
+        match self {
+            Self::Plain(shown) => shown.seen(x, y, field, at),
+            Self::Shifted(shown, offsets) => match shown.seen(x, y, field, at) {
+                Seen::Complete(Drawn::View(moment)) => {
+                    let offset = offsets.field(field);
+                    let shift = offset.map(|offset| offset.shift_px(view, at.0));
+                    shift.map_or(Seen::Nothing, |shift| Seen::Complete(Drawn::Shifted(moment, shift)))
+                }
+                Seen::Complete(_) => Seen::Nothing,
+                other => other,
+            },
+            Self::Ideal(estimator) => {
+                Seen::Complete(Drawn::View(Moment { pose: estimator.pose(at, at), objects_at: at }))
+            }
+        }
+    }
+}
+
+/// The fields that are judged: not the first, nor one that the run may not have ended.
+fn fields_judged(outcome: &Outcome) -> impl Iterator<Item = PeriodNumber> {
+    let end = PeriodNumber(outcome.fields().saturating_sub(1));
+    PeriodNumber(UNJUDGED_FIELDS).until(end)
+}
+
+/// The views that the judged pixels show.
+fn views_seen(outcome: &Outcome, shown: &Shown<'_>) -> BTreeSet<ViewNumber> {
+    let display = outcome.record().display();
+    let pixels =
+        fields_judged(outcome).flat_map(|field| grid(display, field).into_iter().map(move |pixel| (field, pixel)));
+    pixels.flat_map(|(field, (x, y, at))| shown.views_at(x, y, field, at)).collect()
+}
+
 /// Pixel errors on the raster before the eyes; `None` of a run without a head.
 #[must_use]
 pub fn pixel_errors(outcome: &Outcome) -> Option<PixelErrors> {
-    Some(match outcome.head()?.head().raster() {
-        Raster::Plain => PixelErrors::of(outcome),
-        Raster::Vdrt => PixelErrors::with_raster_offset(outcome),
-    })
+    Some(PixelErrors::shown(outcome, outcome.head()?.head().raster().into()))
 }

@@ -3,13 +3,14 @@
 //! | question | answer |
 //! |---|---|
 //! | how long, and which part of the machine takes it | [`latency_parts`], [`latency_by_surface`], [`Budget`] |
-//! | how many pixels wrong | [`PixelErrors`], [`Registration`] |
+//! | how many pixels wrong, and why | [`PixelErrors`], [`Registration`], [`ErrorCauses`] |
 //! | what does the viewer see | [`picture`], [`side_by_side`], [`RasterOffsets`] |
 //! | everything as numbers with units | [`Report`], [`Measure`] |
 //!
 //! [`Measured`] gives an [`Outcome`] the most common of them as methods.
 
 mod budget;
+mod causes;
 mod content;
 mod errors;
 mod latency;
@@ -26,7 +27,8 @@ mod summary;
 mod too_heavy;
 
 pub use budget::Budget;
-pub use errors::{FieldError, PixelErrors, UNJUDGED_FIELDS, pixel_errors};
+pub use causes::{ErrorCauses, ErrorPart};
+pub use errors::{FieldError, PixelErrors, Showing, UNJUDGED_FIELDS, pixel_errors};
 pub use latency::{
     LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition, SurfaceStatistics, latency_by_surface, latency_parts,
 };

@@ -4,7 +4,7 @@ use crate::shown::{Drawn, Shown, view_of};
 use glam::DVec2;
 use image::{Rgb, RgbImage};
 use pxpl5_display::Display;
-use pxpl5_run::{Follower, HeadViews, Outcome, Raster};
+use pxpl5_run::{Estimator, Outcome, Raster};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use tracking::view::{HmdView, RasterOffset};
@@ -16,22 +16,21 @@ use tracking::{Pose, rotation};
 /// shifted by the yaw and the pitch between the pose that it was drawn for and this one, and during the field by their
 /// predicted rates. Roll and translation remain. A flat raster is shifted, not turned, so the edges keep an error.
 pub struct Vdrt<'a> {
-    head: &'a HeadViews,
-    follower: Follower,
+    estimator: Estimator<'a>,
     display: &'a dyn Display,
 }
 
 impl std::fmt::Debug for Vdrt<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Vdrt").field("head", &self.head).finish_non_exhaustive()
+        f.debug_struct("Vdrt").finish_non_exhaustive()
     }
 }
 
 impl<'a> Vdrt<'a> {
-    /// A display behind a head's tracker.
+    /// A display behind what the host knows of a head.
     #[must_use]
-    pub fn new(head: &'a HeadViews, display: &'a dyn Display) -> Self {
-        Self { head, follower: head.follower(), display }
+    pub const fn new(estimator: Estimator<'a>, display: &'a dyn Display) -> Self {
+        Self { estimator, display }
     }
 
     /// The offset of a field whose picture was drawn for a pose. Fields must be asked for in rising order.
@@ -39,7 +38,7 @@ impl<'a> Vdrt<'a> {
         let known = self.display.tick(field);
         let first = self.display.first_light(0, field).unwrap_or(known);
         let field_span = self.display.tick(field.next()).since(known);
-        let [begin, end] = [first, first + field_span].map(|at| self.head.follow(&mut self.follower, known, at));
+        let [begin, end] = [first, first + field_span].map(|at| self.estimator.pose(known, at));
         let seconds = field_span.as_ms() * 1e-3;
         let rate = rotation::difference(begin.orientation, end.orientation) / seconds;
         RasterOffset::between(drawn_for, &begin, first.0).with_rates(&begin, rate)
@@ -59,17 +58,16 @@ impl<'a> RasterOffsets<'a> {
     #[must_use]
     pub fn of(outcome: &'a Outcome) -> Option<Self> {
         let shifted = outcome.head().filter(|head| head.head().raster() == Raster::Vdrt);
-        shifted.map(|head| Self::of_run(outcome, head))
+        shifted.map(|head| Self::of_run(outcome, &Shown::of_run(outcome, head), Estimator::new(head, None)))
     }
 
     /// As they would be on such a raster. A field of which nothing is drawn, or not for one pose, has none.
-    pub(crate) fn of_run(outcome: &'a Outcome, head: &HeadViews) -> Self {
+    pub(crate) fn of_run(outcome: &'a Outcome, shown: &Shown<'_>, estimator: Estimator<'_>) -> Self {
         let display = outcome.record().display();
-        let shown = Shown::of_run(outcome, head);
-        let mut vdrt = Vdrt::new(head, display);
+        let mut vdrt = Vdrt::new(estimator, display);
         let end = PeriodNumber::FIRST.after(outcome.fields());
         let offsets = PeriodNumber::FIRST.until(end).map(|field| {
-            let pose = pose_of_field(display, &shown, field)?;
+            let pose = pose_of_field(display, shown, field)?;
             Some(vdrt.offset(field, &pose))
         });
         Self { display, view: view_of(display), offsets: offsets.collect() }
@@ -121,7 +119,7 @@ impl<'a> RasterOffsets<'a> {
 fn pose_of_field(display: &dyn Display, shown: &Shown<'_>, field: PeriodNumber) -> Option<Pose> {
     let x = display.surfaces().first()?.width / 2;
     let (y, _) = display.rows_lit(field);
-    match shown.drawn(x, y, field, display.lights(0, x, y, field)?)? {
+    match shown.drawn(x, y, field, display.lights(0, x, y, field)?)?.drawn {
         Drawn::View(moment) => Some(moment.pose),
         Drawn::Between { .. } | Drawn::Shifted(..) => None,
     }

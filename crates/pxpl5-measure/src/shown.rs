@@ -3,7 +3,7 @@
 use crate::screen::Screen;
 use glam::DVec2;
 use pxpl5_display::{Display, Surface};
-use pxpl5_run::{HeadViews, Outcome, Sampled, Source};
+use pxpl5_run::{Estimator, HeadViews, Outcome, Sampled, Source};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,6 +29,20 @@ pub(crate) enum Drawn {
     },
     /// A picture that is shifted on its way to the screen.
     Shifted(Moment, DVec2),
+}
+
+impl Drawn {
+    /// The instant that it was drawn for; what is shifted on its way is drawn for the instant of its light.
+    pub(crate) fn instant(&self, light: Time) -> Time {
+        match self {
+            Self::View(moment) => moment.objects_at,
+            Self::Between { from, to, part, .. } => {
+                let ahead_ps = to.objects_at.since(from.objects_at).0 as f64 * part;
+                Time(from.objects_at.0 + ahead_ps as u64)
+            }
+            Self::Shifted(..) => light,
+        }
+    }
 }
 
 /// What a pixel shows, as far as it can be judged.
@@ -72,12 +86,36 @@ impl<'a> Shown<'a> {
         }
     }
 
+    /// The same run with the poses that some of its views would have had; all others show nothing.
+    pub(crate) fn with_poses(self, head: &HeadViews, of: &BTreeSet<ViewNumber>, mut estimator: Estimator<'_>) -> Self {
+        let mut sampled: Vec<Sampled> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
+        sampled.sort_by_key(|sampled| sampled.known);
+        let moments = sampled.into_iter().map(|sampled| {
+            let pose = estimator.pose(sampled.known, sampled.objects_at);
+            (sampled.number, Moment { pose, objects_at: sampled.objects_at })
+        });
+        Self { moments: moments.collect(), ..self }
+    }
+
+    /// The views that a pixel shows which lights at `at`: one, or two between which it stands; none before anything came.
+    pub(crate) fn views_at(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Vec<ViewNumber> {
+        match self.source(x, y, field, at) {
+            Some(Source::View(number)) => vec![number],
+            Some(Source::Between { from, to, .. }) => vec![from, to],
+            None => Vec::new(),
+        }
+    }
+
+    fn source(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<Source> {
+        let target = self.screen.shown(x, y, field, at)?;
+        let aim = self.outcome.experiment().aim();
+        self.outcome.pipeline().source(self.outcome.record(), &target, &self.views, aim)
+    }
+
     /// What a pixel that lights at `at` shows; `None` before anything came.
     pub(crate) fn drawn(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<Drawn> {
-        let target = self.screen.shown(x, y, field, at)?;
         let moment = |number: ViewNumber| self.moments.get(&number).copied();
-        let aim = self.outcome.experiment().aim();
-        Some(match self.outcome.pipeline().source(self.outcome.record(), &target, &self.views, aim)? {
+        Some(match self.source(x, y, field, at)? {
             Source::View(number) => Drawn::View(moment(number)?),
             Source::Between { from, to, part, on_screen } => {
                 Drawn::Between { from: moment(from)?, to: moment(to)?, part, on_screen }

@@ -29,11 +29,10 @@ pub struct Sampled {
     pub measured_at: Option<Time>,
     /// When that report reached the host.
     pub arrived_at: Option<Time>,
-    /// The moment that the pose was predicted for, by the head's [`Aim`](crate::Aim); `None` where the newest was taken as it
-    /// is.
-    pub predicted_for: Option<Time>,
-    /// The moment for which moving objects were placed.
+    /// The moment that the view's picture is drawn for, by the head's [`Aim`](crate::Aim): moving objects stand where they are then.
     pub objects_at: Time,
+    /// The same where the pose was predicted; `None` where the newest was taken as it is.
+    pub predicted_for: Option<Time>,
     /// The pose in the scene's coordinates.
     pub pose: Pose,
 }
@@ -46,20 +45,20 @@ struct Newest {
 }
 
 /// Reports fed to a predictor as time goes on.
-pub struct Follower {
+pub(crate) struct Follower<'a> {
     reports: Arc<[Report]>,
     next: usize,
-    predictor: Box<dyn Predictor>,
+    predictor: Box<dyn Predictor + 'a>,
     newest: Newest,
 }
 
-impl Follower {
-    fn new(head: &Head, reports: Arc<[Report]>) -> Self {
-        Self { reports, next: 0, predictor: head.build_predictor(), newest: Newest::default() }
+impl<'a> Follower<'a> {
+    pub(crate) fn new(reports: Arc<[Report]>, predictor: Box<dyn Predictor + 'a>) -> Self {
+        Self { reports, next: 0, predictor, newest: Newest::default() }
     }
 
     /// Takes what had arrived by `known`; asked for earlier times it does not forget.
-    pub(crate) fn follow(&mut self, known: Time) {
+    fn follow(&mut self, known: Time) {
         while let Some(report) = self.reports.get(self.next).filter(|report| report.arrives_ps <= known.0) {
             let accepted = self.predictor.counts().accepted;
             self.predictor.observe(report);
@@ -72,8 +71,10 @@ impl Follower {
         }
     }
 
-    /// The pose at a time, in the tracker's coordinates; the start of the motion before the first report.
-    pub(crate) fn predict(&self, at: Time, start: &Pose) -> Pose {
+    /// The pose at a time with what had arrived by `known`, in the tracker's coordinates; the start of the motion before the first
+    /// report.
+    pub(crate) fn pose(&mut self, known: Time, at: Time, start: &Pose) -> Pose {
+        self.follow(known);
         if self.newest.measured_at.is_none() { *start } else { self.predictor.predict(at.0) }
     }
 }
@@ -89,7 +90,7 @@ pub struct HeadViews {
     /// Where the scene wants its viewer at time zero.
     base: Pose,
     start: Pose,
-    state: Mutex<(Follower, Vec<Sampled>)>,
+    state: Mutex<(Follower<'static>, Vec<Sampled>)>,
 }
 
 impl fmt::Debug for HeadViews {
@@ -114,7 +115,7 @@ impl HeadViews {
         let of_scene = scene.motion().pose(0);
         let base = Pose { orientation: of_scene.orientation.normalize(), ..of_scene };
         let start = head.motion.pose(0);
-        let state = Mutex::new((Follower::new(&head, Arc::clone(&reports)), Vec::new()));
+        let state = Mutex::new((Follower::new(Arc::clone(&reports), head.build_predictor()), Vec::new()));
         Self { head, scene: Arc::clone(scene), hmd, eyes, reports, rehearsal, base, start, state }
     }
 
@@ -128,7 +129,7 @@ impl HeadViews {
         )
     }
 
-    fn state(&self) -> MutexGuard<'_, (Follower, Vec<Sampled>)> {
+    fn state(&self) -> MutexGuard<'_, (Follower<'static>, Vec<Sampled>)> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -139,8 +140,7 @@ impl HeadViews {
 
     fn view(&self, number: ViewNumber, known: Time, shown_at: Time) -> FrameView {
         let (follower, sampled) = &mut *self.state();
-        follower.follow(known);
-        let pose = self.in_scene(&follower.predict(shown_at, &self.start));
+        let pose = self.in_scene(&follower.pose(known, shown_at, &self.start));
         let Newest { measured_at, arrived_at } = follower.newest;
         let predicted_for = self.head.predicts().then_some(shown_at);
         sampled.push(Sampled { number, known, measured_at, arrived_at, predicted_for, objects_at: shown_at, pose });
@@ -159,7 +159,7 @@ impl HeadViews {
     }
 
     /// A pose of the tracker in the scene: the motion's start is where the scene's own motion starts.
-    fn in_scene(&self, tracked: &Pose) -> Pose {
+    pub(crate) fn in_scene(&self, tracked: &Pose) -> Pose {
         let turn: DQuat = self.base.orientation * self.start.orientation.conjugate();
         let way: DVec3 = turn * (tracked.position - self.start.position);
         Pose { position: self.base.position + way, orientation: (turn * tracked.orientation).normalize() }
@@ -199,16 +199,15 @@ impl HeadViews {
         all
     }
 
-    /// A follower of the same reports, to ask for poses in rising order of time.
-    #[must_use]
-    pub fn follower(&self) -> Follower {
-        Follower::new(&self.head, Arc::clone(&self.reports))
+    pub(crate) fn follower(&self) -> Follower<'static> {
+        Follower::new(Arc::clone(&self.reports), self.head.build_predictor())
     }
 
-    /// What a follower knows, in the scene: from the reports that had arrived by `known`, for `at`.
-    #[must_use]
-    pub fn follow(&self, follower: &mut Follower, known: Time, at: Time) -> Pose {
-        follower.follow(known);
-        self.in_scene(&follower.predict(at, &self.start))
+    pub(crate) const fn reports(&self) -> &Arc<[Report]> {
+        &self.reports
+    }
+
+    pub(crate) const fn start(&self) -> &Pose {
+        &self.start
     }
 }

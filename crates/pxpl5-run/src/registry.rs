@@ -33,6 +33,20 @@ pub enum TestScene {
     Typical,
 }
 
+impl TestScene {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::FullScreen, Self::Typical];
+
+    /// Its name on the command line and in tables.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::FullScreen => "full-screen",
+            Self::Typical => "typical",
+        }
+    }
+}
+
 /// How the most triangles that a pipeline draws in time are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitCriterion {

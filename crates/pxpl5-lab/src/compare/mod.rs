@@ -1,15 +1,19 @@
-//! All ways to fight latency side by side, in pixels: the same machine, scene, head motion and tracker for each.
+//! The ways to fight latency side by side: one set of settings, every pipeline, several seeds, and one judge.
+//!
+//! [`CompareQuery`] says what is compared; [`Comparison`] is the table of a paper: for every [`Row`] how long from head to light,
+//! over which interval it predicts, how many pixels it is wrong and why, and what it could draw.
 
-mod motion;
+mod contender;
 mod pictures;
-mod possible;
 mod predictors;
-mod rows;
+mod query;
+mod row;
+mod trial;
 
-pub use motion::{
+pub use crate::head_names::{
     MOTIONS, MotionError, Replay, TRACKERS, is_recording, motion, predictor, replayed, tracker, tracker_by,
 };
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
-pub use possible::{Possible, triangles_possible};
 pub use predictors::{PredictorError, Predictors, predictors};
-pub use rows::{Comparison, Row, compare, compare_with};
+pub use query::{CompareError, CompareQuery, Comparison, LEAST_SEEDS};
+pub use row::{CauseShare, ErrorSpread, MeanInterval, PredictorMean, Row};

@@ -1,7 +1,7 @@
 //! One experiment with every predictor: the best of none, velocity, acceleration and Kalman beside the chosen one.
 
 use crate::parallel;
-use pxpl5_measure::{PixelErrors, pixel_errors};
+use pxpl5_measure::{PixelErrors, Showing};
 use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels};
 use serde::Serialize;
 use std::sync::Arc;
@@ -45,10 +45,16 @@ impl Predictors {
 /// its numbers; everything else stays. `None` of an experiment without a head. No pixels are computed.
 #[must_use]
 pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
+    let raster = experiment.tracked_head()?.raster();
+    predictors_shown(experiment, raster.into())
+}
+
+/// The same with pictures shown otherwise than on the head's own raster.
+pub(super) fn predictors_shown(experiment: &Experiment, showing: Showing) -> Option<Predictors> {
     let head = experiment.tracked_head()?;
     let each = parallel::map(&PredictorKind::ALL, |kind| {
         let with_kind = Arc::new(head.as_ref().clone().predicting(*kind));
-        of_run(*kind, experiment.clone().head(with_kind).pixels(Pixels::Off).run())
+        of_run(*kind, showing, experiment.clone().head(with_kind).pixels(Pixels::Off).run())
     });
     let mean = |one: &PredictorError| one.error.as_ref().map(|error| (one.kind, error.pixels.mean));
     let judged = each.iter().filter_map(mean).filter(|(_, mean)| mean.is_finite());
@@ -56,13 +62,13 @@ pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
     Some(Predictors { chosen: head.predictor_kind(), best: best.map(|(kind, _)| kind), each })
 }
 
-fn of_run(kind: PredictorKind, run: Result<Outcome, ExperimentError>) -> PredictorError {
+fn of_run(kind: PredictorKind, showing: Showing, run: Result<Outcome, ExperimentError>) -> PredictorError {
     let blank = PredictorError { kind, numbers: None, training: None, error: None, failure: None };
     match run {
         Ok(outcome) => PredictorError {
             numbers: outcome.head().map(|views| *views.head().predictor()),
             training: outcome.head().and_then(|views| views.head().training().copied()),
-            error: pixel_errors(&outcome).filter(|error| error.judged > 0),
+            error: Some(PixelErrors::shown(&outcome, showing)).filter(|error| error.judged > 0),
             ..blank
         },
         Err(error) => PredictorError { failure: Some(error.to_string()), ..blank },

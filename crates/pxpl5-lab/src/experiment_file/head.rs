@@ -2,7 +2,7 @@
 
 use super::read::{beside, plain, wrong};
 use super::{ExperimentFile, FileError, tracking_numbers};
-use crate::compare::{Replay, is_recording, predictor, replayed, tracker_by};
+use crate::head_names::{Replay, is_recording, predictor, replayed, tracker_by};
 use pxpl5_machine::Parameter;
 use pxpl5_run::{Aim, Head, Pipeline, Raster};
 use std::sync::Arc;
@@ -86,7 +86,7 @@ impl HeadChoice {
     }
 
     /// Its keys and their values.
-    pub(super) fn settings(&self) -> Vec<(String, Value)> {
+    pub(crate) fn settings(&self) -> Vec<(String, Value)> {
         let filter = if self.head.is_tuned() { "tuned" } else { "given" };
         let mut all: Vec<(String, Value)> = [
             ("head.motion", self.motion.clone()),

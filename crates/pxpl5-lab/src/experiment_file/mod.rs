@@ -38,6 +38,7 @@ pub use head::HeadChoice;
 pub use keys::FileKey;
 pub use motion::{MotionChoice, PathChoice};
 pub use plan::{Outputs, Plan, Published, SceneChoice};
+pub(crate) use read::plain;
 pub use text::Settings;
 pub use tracking_numbers::tracking_parameters;
 
@@ -56,6 +57,9 @@ pub(crate) struct Setting {
     /// The folder to which file names are relative.
     pub(crate) folder: PathBuf,
 }
+
+/// A motion whose seed is the run's, where there are several runs.
+const SYNTHETIC: &str = "synthetic";
 
 /// Settings by path that were read but not yet checked together.
 #[derive(Clone, Debug)]
@@ -162,6 +166,35 @@ impl ExperimentFile {
     /// [`FileError::UnknownKey`] with the nearest valid path.
     pub fn set(&mut self, path: &str, value: impl Into<Value>, place: &str) -> Result<(), FileError> {
         self.put(path, value.into(), place.to_owned(), Path::new(""))
+    }
+
+    /// Where a key was set: a line, an option; `None` of one that was not.
+    #[must_use]
+    pub fn place_of(&self, key: &str) -> Option<&str> {
+        self.settings.get(key).map(|setting| setting.place.as_str())
+    }
+
+    /// The seed, 1 where none is set.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError`] when it is no whole number from 0 on.
+    pub fn seed(&self) -> Result<u64, FileError> {
+        Ok(self.integer("seed", 0..=plan::MAX_SEED)?.unwrap_or(1))
+    }
+
+    /// The checked experiment of one seed; a `head.motion` of `synthetic` moves as that seed says.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::resolve`].
+    pub fn resolve_for(&self, seed: u64) -> Result<Plan, FileError> {
+        let mut file = self.clone();
+        file.set("seed", i64::try_from(seed).unwrap_or(i64::MAX), "seed")?;
+        if file.text("head.motion")? == Some(SYNTHETIC) {
+            file.set("head.motion", format!("{SYNTHETIC}:{seed}"), "seed")?;
+        }
+        file.resolve()
     }
 
     /// Sets `path=value`; a value that is not TOML is taken as text.

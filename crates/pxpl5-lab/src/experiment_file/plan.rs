@@ -163,7 +163,7 @@ pub struct Plan {
 }
 
 /// Seeds that TOML can write.
-const MAX_SEED: u64 = i64::MAX as u64;
+pub(super) const MAX_SEED: u64 = i64::MAX as u64;
 
 impl ExperimentFile {
     /// Checks all settings together.
@@ -174,7 +174,7 @@ impl ExperimentFile {
     pub fn resolve(&self) -> Result<Plan, FileError> {
         let (entry, given) = self.pipeline()?;
         let pipeline = (entry.build)(&given);
-        let seed = self.integer("seed", 0..=MAX_SEED)?.unwrap_or(1);
+        let seed = self.seed()?;
         let head = HeadChoice::read(self, pipeline.as_ref(), seed)?;
         let most_fields = if head.is_some() { FIELDS_WITH_HEAD } else { FIELDS_RANGE.1 };
         Ok(Plan {

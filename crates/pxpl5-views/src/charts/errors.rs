@@ -1,5 +1,6 @@
 //! Error against time for some latencies, as a curve and as SVG.
 
+use super::ticks;
 use crate::markup::Element;
 use crate::svg::{self, Tenths, anchored, line};
 use tracking::motion::Motion;
@@ -121,20 +122,6 @@ fn axes(svg: &mut Element) {
     svg.add_line(&name.text("error in the middle, pixels"));
 }
 
-/// Round numbers from 0 to a greatest: steps of 1, 2 or 5 times a power of ten, of which there are at most ten.
-fn ticks(greatest: f64) -> Vec<f64> {
-    let power = 10f64.powf((greatest / 10.0).log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|times| times * power);
-    let step = steps.into_iter().find(|step| greatest / step <= 10.0).unwrap_or(greatest);
-    let values = (0..=10).map(|i| readable(f64::from(i) * step));
-    values.take_while(|value| *value <= greatest).collect()
-}
-
-/// Products of whole numbers and a step such as 0.2 have digits that nobody wants to read.
-fn readable(value: f64) -> f64 {
-    (value * 1e9).round() / 1e9
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -145,14 +132,6 @@ mod tests {
         let curve = LatencyCurve::of(&Pan::at(40.0), 90, 2, 3.0);
         let expected = 320.0 / 30f64.to_radians().tan() * 3.6f64.to_radians().tan();
         assert!((curve.mean_px() - expected).abs() < 1e-9, "{} {expected}", curve.mean_px());
-    }
-
-    #[test]
-    fn ticks_are_round_and_at_most_eleven() {
-        assert_eq!(ticks(10.0), (0..=10).map(f64::from).collect::<Vec<_>>());
-        assert_eq!(ticks(97.3), (0..=9).map(|i| f64::from(i) * 10.0).collect::<Vec<_>>());
-        assert_eq!(ticks(1.1), [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]);
-        assert_eq!(ticks(0.024), [0.0, 0.005, 0.01, 0.015, 0.02]);
     }
 
     #[test]

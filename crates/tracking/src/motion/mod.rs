@@ -3,6 +3,7 @@
 mod pan;
 mod pendulum;
 mod recording;
+mod shifted;
 mod sinusoid;
 mod slide;
 mod spline;
@@ -12,6 +13,7 @@ mod synthetic;
 pub use pan::Pan;
 pub use pendulum::Pendulum;
 pub use recording::{Axes, Columns, End, LoadError, Recording, RecordingFormat};
+pub use shifted::Shifted;
 pub use sinusoid::Sinusoid;
 pub use slide::Slide;
 pub use still::Still;

@@ -31,6 +31,16 @@ pub enum PredictorKind {
 impl PredictorKind {
     /// All kinds, the simplest first.
     pub const ALL: [Self; 4] = [Self::None, Self::ConstantVelocity, Self::ConstantAcceleration, Self::Kalman];
+
+    /// Its name in experiment files and tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::ConstantVelocity => "velocity",
+            Self::ConstantAcceleration => "acceleration",
+            Self::Kalman => "kalman",
+        }
+    }
 }
 
 /// Settings of a predictor: the filter, and what it believes about the noise of reports and motion.

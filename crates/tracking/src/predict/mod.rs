@@ -3,6 +3,7 @@
 mod channel;
 mod config;
 mod evaluate;
+mod exact;
 mod extrapolation;
 pub mod gain;
 mod gate;
@@ -13,6 +14,7 @@ mod tune;
 
 pub use config::{PredictorConfig, PredictorKind, Start};
 pub use evaluate::{PredictionError, prediction_errors};
+pub use exact::ExactPredictor;
 pub use gate::Counts;
 pub use tune::{Training, Tuned, training_seed, tune};
 

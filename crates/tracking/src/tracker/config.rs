@@ -167,6 +167,21 @@ impl TrackerConfig {
         }
     }
 
+    /// The same tracker without noise: what it reports is where the head was.
+    pub fn without_noise(self) -> Self {
+        Self { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..self }
+    }
+
+    /// The same tracker without latency: the host knows a measurement at the instant at which it is made.
+    pub fn without_latency(self) -> Self {
+        Self { serial: None, ..self.without_polling().with_latency_ps(0) }
+    }
+
+    /// The same tracker on a host whose kernel takes every character as it comes.
+    pub fn without_polling(self) -> Self {
+        Self { host: HostLine::InterruptPerCharacter, crashes_patched_host_after_ps: None, ..self }
+    }
+
     fn named(self, name: &str, rate_hz: u64) -> Self {
         Self { name: name.to_owned(), rate_hz: rate_hz as u32, ..self }
     }

@@ -58,6 +58,11 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
         }
     }
 
+    /// Skips what was synchronised before an instant; a filter inside the tracker begins anew there.
+    pub fn from(self, from_ps: u64) -> Self {
+        Self { next_solution: self.model.solution_at(from_ps), ..self }
+    }
+
     /// The tracker's own result, noise, metal and filter included, and the times at which its parts were true.
     fn solve(&mut self, solution: u64, output_ps: u64) -> Report {
         let config = self.model.config();

@@ -1,0 +1,137 @@
+//! `pxpl5 compare`: every way to fight latency side by side.
+
+mod drawings;
+mod table;
+
+use crate::error::CliError;
+use crate::output::OutputFolder;
+use crate::settings::SettingArgs;
+use crate::terminal;
+use pxpl5::compare::{CompareQuery, LEAST_SEEDS, edge_pictures};
+use pxpl5::{ExperimentFile, MachineConfig};
+use std::io::Cursor;
+use std::path::PathBuf;
+
+/// What is compared.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 compare --head pan:200 --scene mig --tracker fastrak
+  pxpl5 compare --head head.csv --predict none --out out/compare
+  pxpl5 compare --machine design-maximum --gps 34 --set gp.triangle_ns=20000 --seeds 10 --json
+  pxpl5 compare --fields 60 --seeds 1 --no-limits
+
+Every pipeline gets the same settings, a run for each seed. A head of `synthetic` moves otherwise in every one of them. Pipelines have the
+values of their papers; to run one of them alone, with its own keys and pictures: pxpl5 run --pipeline jitp-scanline-racing.")]
+pub(crate) struct CompareArgs {
+    #[command(flatten)]
+    settings: SettingArgs,
+    /// Seeds of tracker, host and synthetic motion: so many runs of each pipeline, from --seed on. The interval of a mean needs two
+    /// or more.
+    #[arg(long, default_value_t = LEAST_SEEDS as u64, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000))]
+    seeds: u64,
+    /// Do not search for the most triangles that each pipeline can draw in time.
+    #[arg(long, alias = "no-triangles")]
+    no_limits: bool,
+    /// Write comparison.json, rows.csv, errors.csv, the drawings (error over time, distribution, error against latency and against
+    /// prediction interval, causes) and the pictures of a vertical edge into this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Speed of the pan of the pictures, degrees per second.
+    #[arg(long, default_value_t = 200.0, value_name = "DEG_PER_S", allow_negative_numbers = true, value_parser = pan)]
+    edge_pan: f64,
+    /// Print JSON: an object whose `pipelines` lists a row each.
+    #[arg(long)]
+    json: bool,
+    /// Print nothing but errors (and the object of --json).
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// What is compared where nothing is said: a key of the experiment file and its value.
+const DEFAULTS: [(&str, &str); 4] =
+    [("scene", "room"), ("machine.preset", "small-hmd"), ("head.motion", "synthetic"), ("head.tracker", "optical")];
+
+/// Fields of each run where nothing is said: five seconds.
+const FIELDS: i64 = 300;
+
+/// Fastest pan of the pictures, degrees a second.
+const FASTEST: f64 = 10_000.0;
+
+fn pan(text: &str) -> Result<f64, String> {
+    let expected = format!("expected a number from -{FASTEST} to {FASTEST}, found {text}");
+    text.parse().ok().filter(|rate: &f64| rate.abs() <= FASTEST).ok_or(expected)
+}
+
+/// Runs the comparison.
+///
+/// # Errors
+///
+/// What is wrong with an option, or why a file cannot be written.
+pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
+    let mut folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
+    let shared = with_defaults(args.settings.gather()?)?;
+    let first = shared.seed()?;
+    let seeds = (first..=first.saturating_add(args.seeds - 1)).collect();
+    let query = CompareQuery { shared, seeds, limits: !args.no_limits };
+    let bar = terminal::progress(0, "runs", args.quiet);
+    let comparison = query.run(|done, of| {
+        bar.set_length(of);
+        bar.set_position(done);
+    });
+    bar.finish_and_clear();
+    let comparison = comparison?;
+    let json = serde_json::to_string_pretty(&comparison).map_err(CliError::failure)? + "\n";
+    if let Some(folder) = &mut folder {
+        folder.put("comparison.json", json.as_bytes())?;
+        for (name, text) in drawings::files(&comparison) {
+            folder.put(name, text.as_bytes())?;
+        }
+        edges(&query, args.edge_pan, folder)?;
+    }
+    folder.map(OutputFolder::commit).transpose()?;
+    match (args.json, args.quiet) {
+        (true, _) => terminal::print(&json),
+        (false, true) => Ok(()),
+        (false, false) => terminal::print(&table::text(&comparison)),
+    }
+}
+
+/// The settings of all rows; what is not said has the defaults.
+fn with_defaults(mut file: ExperimentFile) -> Result<ExperimentFile, CliError> {
+    if let Some(place) = file.place_of("pipeline") {
+        return Err(CliError::usage(format!(
+            "{place}: compare runs every pipeline; to run one, use `pxpl5 run --pipeline`"
+        )));
+    }
+    for (key, value) in DEFAULTS {
+        if file.place_of(key).is_none() {
+            file.set(key, value, "compare")?;
+        }
+    }
+    if file.place_of("fields").is_none() {
+        file.set("fields", FIELDS, "compare")?;
+    }
+    Ok(file)
+}
+
+fn edges(query: &CompareQuery, deg_per_s: f64, folder: &mut OutputFolder) -> Result<(), CliError> {
+    let plates = edge_pictures(&machine(query)?, deg_per_s)?;
+    for (name, picture) in [
+        ("edge-conventional-computed.png", &plates.conventional),
+        ("edge-conventional-seen.png", &plates.conventional_seen),
+        ("edge-just-in-time-computed.png", &plates.just_in_time),
+        ("edge-just-in-time-seen.png", &plates.just_in_time_seen),
+    ] {
+        let mut bytes = Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, image::ImageFormat::Png).map_err(CliError::failure)?;
+        folder.put(name, bytes.get_ref())?;
+    }
+    Ok(())
+}
+
+/// The machine of the edge's pictures: the comparison's, as the pipeline that draws them has it.
+fn machine(query: &CompareQuery) -> Result<MachineConfig, CliError> {
+    let mut file = query.shared.clone();
+    file.set("pipeline", "jitp-field", "compare")?;
+    Ok(file.resolve_for(query.seeds.first().copied().unwrap_or(1))?.machine)
+}

@@ -1,0 +1,106 @@
+//! The table on the terminal.
+
+use pxpl5::Cause;
+use pxpl5::compare::{Comparison, MeanInterval, Row};
+use std::fmt::Write as _;
+
+/// Columns: name, unit, width.
+const COLUMNS: [(&str, &str, usize); 13] = [
+    ("to light", "ms", 9),
+    ("sd", "ms", 6),
+    ("predicts", "ms", 9),
+    ("updates", "Hz", 8),
+    ("not shown", "", 12),
+    ("error", "px", 8),
+    ("95 %", "px", 14),
+    ("50 %", "px", 7),
+    ("90 %", "px", 7),
+    ("99 %", "px", 8),
+    ("n", "", 8),
+    ("best with", "px", 19),
+    ("triangles", "possible", 10),
+];
+
+/// Width of the names.
+const NAME: usize = 24;
+
+/// The comparison for people.
+pub(super) fn text(comparison: &Comparison) -> String {
+    let mut text = heading(comparison);
+    let _ = writeln!(text, "\n{}", header());
+    comparison.pipelines.iter().for_each(|row| text.push_str(&line(row)));
+    text.push_str(&causes(comparison));
+    text.push_str(
+        "\nto light: from the head's pose to the light of the picture's middle; predicts: from the newest measurement to the instant that a\n\
+         picture is drawn for; 95 %: where the mean lies, by the seeds; n: judged pixels; best with: the predictor\n\
+         with the least error of the first seed; - : nothing to judge.\n",
+    );
+    text
+}
+
+fn heading(comparison: &Comparison) -> String {
+    let Comparison { scene, triangles, machine, boards, fields, seeds, head, .. } = comparison;
+    let head: Vec<String> = head.iter().map(|(key, value)| format!("{key} {value}")).collect();
+    format!(
+        "{scene} ({triangles} triangles) on {machine} ({} GPs, {} renderers); {}; {fields} fields, {} seeds\n",
+        boards[0],
+        boards[1],
+        head.join(", "),
+        seeds.len()
+    )
+}
+
+fn header() -> String {
+    let names: String = COLUMNS.iter().map(|(name, _, width)| format!(" {name:>width$}")).collect();
+    let units: String = COLUMNS.iter().map(|(_, unit, width)| format!(" {unit:>width$}")).collect();
+    format!("{:<NAME$}{names}\n{:<NAME$}{units}", "pipeline", "")
+}
+
+fn line(row: &Row) -> String {
+    if let Some(failure) = &row.failure {
+        return format!("{:<NAME$} {failure}\n", row.pipeline);
+    }
+    let missed = if row.due == 0 { "-".to_owned() } else { format!("{} of {}", row.not_shown, row.due) };
+    let values = [
+        number(row.head_to_light_ms.mean, 2),
+        number(row.head_to_light_ms.sd, 2),
+        number(row.prediction_interval_ms.mean, 2),
+        number(row.updates_hz.mean, 2),
+        missed,
+        number(row.error.mean_px.mean, 2),
+        interval(&row.error.mean_px),
+        number(row.error.pixels.p50, 2),
+        number(row.error.pixels.p90, 2),
+        number(row.error.pixels.p99, 2),
+        row.error.n.to_string(),
+        row.best_predictor().map_or_else(|| "-".to_owned(), |best| format!("{} {:.2}", best.kind.name(), best.mean_px)),
+        row.triangles_possible.map_or_else(|| "-".to_owned(), |n| n.to_string()),
+    ];
+    let cells: String = COLUMNS.iter().zip(values).map(|((_, _, width), value)| format!(" {value:>width$}")).collect();
+    format!("{:<NAME$}{cells}\n", row.pipeline)
+}
+
+/// The error by cause.
+fn causes(comparison: &Comparison) -> String {
+    let mut text = format!("\n{:<NAME$}", "error by cause, px");
+    for cause in Cause::ALL {
+        let _ = write!(text, " {:>11}", cause.name());
+    }
+    let _ = writeln!(text, " {:>11} {:>11}", "interaction", "all");
+    for row in comparison.pipelines.iter().filter(|row| !row.causes.is_empty()) {
+        let _ = write!(text, "{:<NAME$}", row.pipeline);
+        row.causes.iter().for_each(|share| {
+            let _ = write!(text, " {:>11}", number(share.px.mean, 2));
+        });
+        let _ = writeln!(text, " {:>11}", number(row.error.mean_px.mean, 2));
+    }
+    text
+}
+
+fn number(value: f64, digits: usize) -> String {
+    if value.is_finite() { format!("{value:.digits$}") } else { "-".to_owned() }
+}
+
+fn interval(mean: &MeanInterval) -> String {
+    if mean.low.is_finite() { format!("{:.2} to {:.2}", mean.low, mean.high) } else { "-".to_owned() }
+}

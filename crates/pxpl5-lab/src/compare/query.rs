@@ -1,0 +1,211 @@
+//! The comparison itself.
+
+use super::contender::{Contender, contenders};
+use super::predictors::predictors_shown;
+use super::row::{PredictorMean, Row};
+use super::trial::Trial;
+use crate::experiment_file::{ExperimentFile, FileError, Plan, plain};
+use crate::limit::LimitQuery;
+use crate::parallel;
+use pxpl5_measure::UNJUDGED_FIELDS;
+use pxpl5_run::{FIELDS_WITH_HEAD, Goal};
+use pxpl5_scene::Scene;
+use serde::Serialize;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use thiserror::Error;
+
+/// Fewest seeds of a comparison whose intervals mean something.
+pub const LEAST_SEEDS: usize = 5;
+
+/// What is compared: settings that all rows share, each of which has a pipeline and a few settings of its own.
+#[derive(Clone, Debug)]
+pub struct CompareQuery {
+    /// Machine, scene, head and fields, with the registry whose pipelines are compared; no pipeline. A `head.motion` of
+    /// `synthetic` is a motion of its own for every seed.
+    pub shared: ExperimentFile,
+    /// Seeds of tracker, host and motion: a run for each.
+    pub seeds: Vec<u64>,
+    /// Whether the most triangles that each row can draw are searched for.
+    pub limits: bool,
+}
+
+/// Why nothing can be compared.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// A setting is wrong.
+    #[error(transparent)]
+    Settings(#[from] FileError),
+    /// Too few or too many fields.
+    #[error("expected {} to {} fields, found {found}", expected.0, expected.1)]
+    Fields {
+        /// Least and most.
+        expected: (u64, u64),
+        /// The number given.
+        found: u64,
+    },
+    /// There is nothing to take a mean over.
+    #[error("expected at least one seed, found none")]
+    NoSeed,
+    /// There is nothing to track.
+    #[error("expected a head.motion, found none: without a head there is no error to compare")]
+    NoHead,
+}
+
+/// All rows.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// Name and version of this record's layout.
+    pub schema: &'static str,
+    /// Preset of the machine.
+    pub machine: String,
+    /// Graphics processors and renderers.
+    pub boards: [u64; 2],
+    /// Scene.
+    pub scene: String,
+    /// Its triangles.
+    pub triangles: usize,
+    /// The settings of the head, with their keys.
+    pub head: Vec<(String, String)>,
+    /// Fields simulated for each seed.
+    pub fields: u64,
+    /// The seeds.
+    pub seeds: Vec<u64>,
+    /// A row for each way to fight latency.
+    pub pipelines: Vec<Row>,
+}
+
+impl CompareQuery {
+    /// Runs every row with every seed; `finished` hears how many of all runs are done. No pixels are computed.
+    ///
+    /// A pipeline that cannot run on the machine, or that shows nothing of the scene, has a row that says why and what it could draw.
+    ///
+    /// # Errors
+    ///
+    /// [`CompareError`] when a setting is wrong, or the run too short to judge anything.
+    pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, CompareError> {
+        let any = self.any_plan()?;
+        let scene = any.load_scene()?;
+        let contenders = contenders(&any.registry);
+        let runs = self.runs(&contenders);
+        let searches = if self.limits { contenders.len() } else { 0 };
+        let all = (runs.len() + searches) as u64;
+        let done = AtomicU64::new(0);
+        let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+        let trials = parallel::map(&runs, |(contender, seed)| {
+            let trial = contenders[*contender].tried(&self.shared, *seed, &scene);
+            step();
+            trial
+        });
+        let mut of_row = trials.into_iter();
+        let rows: Vec<_> = contenders
+            .iter()
+            .map(|contender| (contender, of_row.by_ref().take(self.seeds.len()).collect::<Vec<_>>()))
+            .collect();
+        let pipelines = parallel::map(&rows, |(contender, trials)| {
+            let row = self.row(contender, trials);
+            if self.limits {
+                step();
+            }
+            row
+        });
+        Ok(Comparison {
+            schema: "pxpl5-comparison/2",
+            machine: any.machine.preset.clone(),
+            boards: any.machine.boards(),
+            scene: scene.name().to_owned(),
+            triangles: scene.triangles().len(),
+            head: any.head.iter().flat_map(|head| head.settings()).map(|(key, value)| (key, plain(&value))).collect(),
+            fields: any.fields,
+            seeds: self.seeds.clone(),
+            pipelines: pipelines.into_iter().collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The settings checked with some pipeline.
+    fn any_plan(&self) -> Result<Plan, CompareError> {
+        let seed = *self.seeds.first().ok_or(CompareError::NoSeed)?;
+        let contenders = contenders(self.shared.registry());
+        let first = contenders.first().ok_or(CompareError::NoHead)?;
+        let plan = first.plan(&self.shared, seed)?;
+        if plan.head.is_none() {
+            return Err(CompareError::NoHead);
+        }
+        let expected = (UNJUDGED_FIELDS + 2, FIELDS_WITH_HEAD);
+        if !(expected.0..=expected.1).contains(&plan.fields) {
+            return Err(CompareError::Fields { expected, found: plan.fields });
+        }
+        Ok(plan)
+    }
+
+    /// Contenders by place and seeds, in the order of rows.
+    fn runs(&self, contenders: &[Contender]) -> Vec<(usize, u64)> {
+        (0..contenders.len()).flat_map(|contender| self.seeds.iter().map(move |seed| (contender, *seed))).collect()
+    }
+
+    /// The first seed's run with each predictor.
+    fn predictors(&self, contender: &Contender, plan: &Plan) -> Vec<PredictorMean> {
+        let Ok(scene) = plan.load_scene() else { return Vec::new() };
+        let with_each = predictors_shown(&plan.experiment(scene), contender.showing);
+        let each = with_each.into_iter().flat_map(|predictors| predictors.each);
+        each.map(|one| PredictorMean { kind: one.kind, mean_px: one.error.map_or(f64::NAN, |error| error.pixels.mean) })
+            .collect()
+    }
+
+    fn row(&self, contender: &Contender, trials: &[Result<Trial, String>]) -> Result<Row, CompareError> {
+        let plan = contender.plan(&self.shared, self.seeds[0])?;
+        let ran: Vec<Trial> = trials.iter().flatten().cloned().collect();
+        let mut row = Row::of(contender, plan.pipeline.as_ref(), &ran);
+        if !contender.is_reference() {
+            row.predictors = self.predictors(contender, &plan);
+        }
+        if self.limits && !contender.is_reference() {
+            row.triangles_definition = definition(&plan);
+            row.triangles_possible = LimitQuery::of_plan(&plan).search().ok().map(|limit| limit.triangles);
+        }
+        let error = trials.iter().find_map(|trial| trial.as_ref().err().cloned());
+        row.failure = error.or_else(|| nothing_shown(&row, plan.fields));
+        Ok(row)
+    }
+}
+
+impl Contender {
+    fn is_reference(&self) -> bool {
+        self.showing == pxpl5_measure::Showing::Ideal
+    }
+
+    fn tried(&self, shared: &ExperimentFile, seed: u64, scene: &Arc<Scene>) -> Result<Trial, String> {
+        let plan = self.plan(shared, seed).map_err(|error| error.to_string())?;
+        self.trial(&plan, scene)
+    }
+}
+
+/// What a row without a single complete picture says.
+fn nothing_shown(row: &Row, fields: u64) -> Option<String> {
+    if row.is_judged() {
+        return None;
+    }
+    let could = row
+        .triangles_possible
+        .map_or_else(String::new, |n| format!("; it could draw {n} {}", row.triangles_definition));
+    Some(format!("no complete picture in {fields} fields: the scene is too heavy{could}"))
+}
+
+/// What the number of triangles means.
+fn definition(plan: &Plan) -> String {
+    let goal = match plan.limit.goal {
+        Goal::NoMissedRetrace => "with no retrace missed".to_owned(),
+        Goal::RateHz(hz) => format!("at {hz} Hz"),
+        Goal::LatencyFields(fields) => format!("at a mean latency of {fields} fields"),
+    };
+    format!("{} triangles {goal}", plan.limit.scene.name())
+}
+
+impl Comparison {
+    /// A row by name.
+    #[must_use]
+    pub fn row(&self, pipeline: &str) -> Option<&Row> {
+        self.pipelines.iter().find(|row| row.pipeline == pipeline)
+    }
+}

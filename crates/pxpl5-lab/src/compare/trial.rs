@@ -1,0 +1,79 @@
+//! One run of one row.
+
+use super::contender::Contender;
+use crate::experiment_file::{ExperimentFile, FileError, Plan};
+use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing};
+use pxpl5_run::{DuePictures, Outcome, Pixels};
+use pxpl5_scene::Scene;
+use pxpl5_wire::ViewNumber;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// What one run of a row says; pools of all runs make the row.
+#[derive(Clone, Debug)]
+pub(super) struct Trial {
+    pub(super) latency_ms: Vec<f64>,
+    pub(super) head_to_light_ms: Vec<f64>,
+    pub(super) prediction_interval_ms: Vec<f64>,
+    pub(super) budget: Budget,
+    pub(super) errors: PixelErrors,
+    pub(super) causes: Option<ErrorCauses>,
+    pub(super) updates_hz: Option<f64>,
+    pub(super) due: Option<DuePictures>,
+    pub(super) late_regions: usize,
+    pub(super) host_seconds: f64,
+}
+
+impl Contender {
+    /// The settings of all with this row's pipeline and a seed.
+    pub(super) fn plan(&self, shared: &ExperimentFile, seed: u64) -> Result<Plan, FileError> {
+        let mut file = shared.clone();
+        file.set("pipeline", self.pipeline, "compare")?;
+        for (key, value) in self.settings {
+            file.set(key, *value, "compare")?;
+        }
+        file.resolve_for(seed)
+    }
+
+    /// Runs it once; what failed says why.
+    pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>) -> Result<Trial, String> {
+        let experiment = plan.experiment(Arc::clone(scene)).pixels(Pixels::Off);
+        let outcome = experiment.run().map_err(|error| error.to_string())?;
+        Ok(Trial::of(&outcome, self.showing))
+    }
+}
+
+impl Trial {
+    fn of(outcome: &Outcome, showing: Showing) -> Self {
+        let report = outcome.report();
+        let is_timed = showing != Showing::Ideal;
+        let times = |values: Vec<f64>| if is_timed { values } else { Vec::new() };
+        Self {
+            latency_ms: times(latencies_ms(outcome)),
+            head_to_light_ms: times(Budget::totals_ms(outcome)),
+            prediction_interval_ms: times(prediction_intervals_ms(outcome)),
+            budget: Budget::of(outcome),
+            errors: PixelErrors::shown(outcome, showing),
+            causes: ErrorCauses::of(outcome, showing),
+            updates_hz: report.updates_hz.filter(|_| is_timed),
+            due: report.due.filter(|_| is_timed),
+            late_regions: report.late_regions,
+            host_seconds: outcome.host_seconds().unwrap_or_default(),
+        }
+    }
+}
+
+fn latencies_ms(outcome: &Outcome) -> Vec<f64> {
+    outcome.complete_pictures().map(|times| (times.shown_at - times.transform_at).as_ms()).collect()
+}
+
+/// From the measurement of the newest report that a view rests on to the instant that its picture is drawn for.
+fn prediction_intervals_ms(outcome: &Outcome) -> Vec<f64> {
+    let Some(head) = outcome.head() else { return Vec::new() };
+    let views: BTreeSet<ViewNumber> = outcome.complete_pictures().map(|times| times.view).collect();
+    let sampled = head.sampled().into_iter().filter(|sampled| views.contains(&sampled.number));
+    sampled
+        .filter_map(|sampled| Some(sampled.objects_at.0 as f64 - sampled.measured_at?.0 as f64))
+        .map(|ps| ps * 1e-9)
+        .collect()
+}

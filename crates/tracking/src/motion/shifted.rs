@@ -1,0 +1,33 @@
+use glam::DVec3;
+
+use super::Motion;
+use crate::identity::Settings;
+use crate::pose::Pose;
+
+/// Another motion, so much later in its course at every instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Shifted<M> {
+    /// The motion.
+    pub motion: M,
+    /// How far ahead of it this one is, ps.
+    pub by_ps: u64,
+}
+
+impl<M: Motion> Motion for Shifted<M> {
+    fn pose(&self, t_ps: u64) -> Pose {
+        self.motion.pose(t_ps.saturating_add(self.by_ps))
+    }
+
+    fn identify(&self, settings: &mut Settings) {
+        settings("motion.shifted_ps", &self.by_ps);
+        self.motion.identify(settings);
+    }
+
+    fn velocity(&self, t_ps: u64) -> DVec3 {
+        self.motion.velocity(t_ps.saturating_add(self.by_ps))
+    }
+
+    fn angular_velocity(&self, t_ps: u64) -> DVec3 {
+        self.motion.angular_velocity(t_ps.saturating_add(self.by_ps))
+    }
+}

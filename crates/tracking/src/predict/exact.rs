@@ -1,0 +1,82 @@
+use glam::DQuat;
+
+use super::Predictor;
+use super::gate::{Counts, Gate, Verdict};
+use crate::motion::Motion;
+use crate::pose::Pose;
+use crate::tracker::Report;
+
+/// Knows how the head moves, but not where it is: the newest report, carried on by the true motion.
+///
+/// No machine has it. It is what all other predictors are measured against: what is wrong with its poses is wrong with the
+/// report, not with the prediction.
+#[derive(Clone, Debug)]
+pub struct ExactPredictor<M> {
+    motion: M,
+    gate: Gate,
+    newest: Option<Report>,
+}
+
+impl<M: Motion> ExactPredictor<M> {
+    /// For a head that moves so.
+    pub fn new(motion: M) -> Self {
+        Self { motion, gate: Gate::default(), newest: None }
+    }
+}
+
+impl<M: Motion + Send> Predictor for ExactPredictor<M> {
+    fn observe(&mut self, report: &Report) {
+        if self.gate.judge(report) != Verdict::Reject {
+            self.newest = Some(*report);
+        }
+    }
+
+    fn predict(&self, at_ps: u64) -> Pose {
+        let Some(report) = &self.newest else { return Pose::IDENTITY };
+        let moved = self.motion.pose(at_ps);
+        let place = self.motion.pose(report.position_measured_ps).position;
+        let attitude = self.motion.pose(report.measured_ps).orientation;
+        let wrong: DQuat = report.pose.orientation * attitude.conjugate();
+        Pose {
+            position: moved.position + (report.pose.position - place),
+            orientation: (wrong * moved.orientation).normalize(),
+        }
+    }
+
+    fn counts(&self) -> Counts {
+        self.gate.counts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::{Pan, Pendulum};
+    use crate::tracker::{TrackerConfig, TrackerModel};
+
+    #[test]
+    fn without_noise_it_knows_where_the_head_will_be() {
+        let motion = Pendulum::rig();
+        let tracker = TrackerModel::new(TrackerConfig::flock_of_birds().without_noise()).unwrap();
+        let mut exact = ExactPredictor::new(&motion);
+        for report in tracker.reports(&motion, 1).take(40) {
+            exact.observe(&report);
+            let later = report.measured_ps + 200_000_000_000;
+            let (predicted, truth) = (exact.predict(later), motion.pose(later));
+            assert!(predicted.distance_m(&truth) < 1e-12 && predicted.angle_deg(&truth) < 1e-6);
+        }
+    }
+
+    #[test]
+    fn its_error_is_the_error_of_the_report_however_far_it_predicts() {
+        let motion = Pan::at(200.0);
+        let tracker = TrackerModel::new(TrackerConfig::optical_ceiling()).unwrap();
+        let mut exact = ExactPredictor::new(&motion);
+        for report in tracker.reports(&motion, 1).take(40) {
+            exact.observe(&report);
+            let of_report = report.pose.angle_deg(&motion.pose(report.measured_ps));
+            let later = report.measured_ps + 300_000_000_000;
+            assert!((exact.predict(later).angle_deg(&motion.pose(later)) - of_report).abs() < 1e-6);
+        }
+    }
+}
