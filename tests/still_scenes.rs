@@ -9,7 +9,7 @@
 
 use pxpl5::oracle::IdealPicture;
 use pxpl5::scene::config::FIT_DISTANCE_RADII;
-use pxpl5::scene::{self, HeadMotion, Path, Scene, Sway};
+use pxpl5::scene::{self, HeadMotion, HeadPath, Scene, Sway};
 use pxpl5::{
     Experiment, ExperimentError, KeyValue, MachineConfig, Measured, Outcome, PipelineEntry, PipelineSettings, Report,
     SurfaceId, Time, registry,
@@ -71,7 +71,7 @@ fn still(scene: &Scene, most: usize) -> Scene {
     parts.spheres = (n_triangles..).zip(parts.spheres).filter(|(i, _)| kept(*i)).map(|(_, s)| s).collect();
     let (target, radius) = scene.bounding_sphere();
     let eye = target + glam::Vec3::Z * (radius * FIT_DISTANCE_RADII as f32);
-    parts.motion = HeadMotion::new(Path::Still { eye, target }, Sway::none()).expect("in range");
+    parts.motion = HeadMotion::new(HeadPath::Still { eye, target }, Sway::none()).expect("in range");
     Scene::new(parts).expect("what is kept is whole")
 }
 
