@@ -93,6 +93,9 @@ impl Side {
     }
 }
 
+/// Means of seconds are rounded by less than the picosecond in which all instants are given.
+const ROUNDING_S: f64 = 1e-12;
+
 /// Both measurements of the same passes, and by how much they may differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
@@ -149,8 +152,9 @@ impl Measurement {
     pub fn agrees(&self) -> bool {
         let tracking_s = self.outside.tracking.mean_s - self.inside.tracking.mean_s;
         let rendering_s = self.outside.rendering.mean_s - self.inside.rendering.mean_s;
-        (0.0..=span_s(0, self.tracking_bound_ps)).contains(&tracking_s)
-            && rendering_s.abs() <= span_s(0, self.rendering_bound_ps)
+        let most_tracking_s = span_s(0, self.tracking_bound_ps) + ROUNDING_S;
+        let most_rendering_s = span_s(0, self.rendering_bound_ps) + ROUNDING_S;
+        (-ROUNDING_S..=most_tracking_s).contains(&tracking_s) && rendering_s.abs() <= most_rendering_s
     }
 }
 
