@@ -36,7 +36,7 @@ pub struct OutsidePass {
 /// A latency over all passes, seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Latency {
-    /// Passes.
+    /// Passes of the bob that it is over.
     pub n: usize,
     /// Mean over the passes, seconds.
     pub mean_s: f64,
@@ -71,7 +71,7 @@ pub struct Side {
     pub tracking: Latency,
     /// From the start of the frame to the screen (outside: light under the photodiode; inside: the frame is shown).
     pub rendering: Latency,
-    /// Both together.
+    /// Tracking and rendering together, from head to light.
     pub total: Latency,
 }
 
@@ -103,9 +103,9 @@ pub struct Measurement {
     pub outside_passes: Vec<OutsidePass>,
     /// From inside, in the same order.
     pub inside_passes: Vec<InsidePass>,
-    /// Latencies from outside.
+    /// What oscilloscope and photodiodes say.
     pub outside: Side,
-    /// Latencies from inside.
+    /// What the time stamps of host and boards say.
     pub inside: Side,
     /// How much longer tracking may be from outside: the detection's delay, one report interval for a crossing.
     pub tracking_bound_ps: u64,
