@@ -8,7 +8,8 @@ use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
 use pxpl5::tracking::view::HmdView;
 use pxpl5::{
-    Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan, Raster, Viewpoint,
+    Aim, Experiment, ExperimentFile, Eye, Head, Jitp, MachineConfig, Measured, PeriodNumber, Pixels, Plan, Raster,
+    Viewpoint,
 };
 use pxpl5::{Film, FilmOf};
 use std::sync::Arc;

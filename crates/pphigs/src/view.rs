@@ -26,7 +26,7 @@ pub struct ModelEdit {
 /// One view: transforms and edits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameView {
-    /// Its number.
+    /// Its number in the pipeline's own count of views.
     pub number: ViewNumber,
     /// One eye, or left and right.
     pub eyes: Vec<EyeView>,

@@ -66,6 +66,9 @@ fn plan(mut file: ExperimentFile) -> Result<Plan, CliError> {
     Ok(file.resolve()?)
 }
 
+/// A latency of either side of the rig, by name.
+type Column = (&'static str, fn(&Side) -> &Latency);
+
 fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
     let Measurement { outside, inside, .. } = measured;
     let mut text = format!(
@@ -79,7 +82,7 @@ fn text(plan: &Plan, rig: &Rig, measured: &Measurement) -> String {
         "outside",
         "inside"
     );
-    let rows: [(&str, fn(&Side) -> &Latency); 3] = [
+    let rows: [Column; 3] = [
         ("tracking latency", |side| &side.tracking),
         ("rendering latency", |side| &side.rendering),
         ("together", |side| &side.total),

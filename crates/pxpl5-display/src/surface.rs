@@ -12,7 +12,7 @@ pub struct Surface {
     pub title: &'static str,
     /// Visible pixels of a line.
     pub width: u32,
-    /// Visible lines.
+    /// Visible lines from top to bottom.
     pub height: u32,
 }
 
@@ -48,9 +48,9 @@ impl Surface {
 /// Something that a display has counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Counter {
-    /// What was counted.
+    /// What was counted, as reports and sweeps name it.
     pub name: &'static str,
-    /// How many.
+    /// How many there were in the whole run.
     pub count: u64,
 }
 

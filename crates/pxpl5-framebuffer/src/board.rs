@@ -13,7 +13,7 @@ use std::collections::VecDeque;
 
 type Out = Context<FrameBufferEvent, FrameBufferOutput>;
 
-/// One frame-buffer board.
+/// A frame-buffer board: two buffers of pixels, its port on the ring, and the scan.
 #[derive(Clone, Debug)]
 pub struct FrameBuffer {
     node: NodeId,
@@ -54,7 +54,7 @@ impl FrameBuffer {
         })
     }
 
-    /// Handles one event.
+    /// Takes what happens to it: pixels from the ring, swap requests, retraces.
     pub fn handle(&mut self, event: FrameBufferEvent, context: &mut Out) {
         let done = match event {
             FrameBufferEvent::Pixels(pixels) => self.receive(&pixels, context),
@@ -66,7 +66,7 @@ impl FrameBuffer {
         }
     }
 
-    /// The board's port.
+    /// Where the board is plugged into the ring.
     #[must_use]
     pub const fn node(&self) -> NodeId {
         self.node

@@ -8,7 +8,7 @@ use parameters::{ParameterTable, check};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrameBufferConfig {
-    /// Video.
+    /// When lines and pixels are scanned.
     pub video: VideoTiming,
     /// Port to the ring.
     pub port: PortTiming,

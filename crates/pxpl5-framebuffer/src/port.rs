@@ -108,7 +108,7 @@ pub enum FrameBufferFault {
 /// Faults of one board.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Faults {
-    /// How many.
+    /// How many faults there were in the whole run.
     pub count: u64,
     /// The first, with its time.
     pub first: Option<(Time, FrameBufferFault)>,

@@ -54,7 +54,7 @@ impl Scans {
         let rows = pair.older.rows();
         // Every second row lies in the other field, where the region is one of a frame.
         rows.clone().take(2).all(|first| {
-            let last = rows.clone().skip(first as usize).step_by(2).last().unwrap_or(first);
+            let last = rows.clone().skip(first as usize).step_by(2).next_back().unwrap_or(first);
             self.0.iter().any(|field| [first, last].iter().all(|row| stands.shows(scan(*row, *field, pair))))
         })
     }

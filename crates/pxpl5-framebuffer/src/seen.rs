@@ -24,7 +24,7 @@ pub struct SeenField {
 /// which field it was meant the board cannot know: compare `target.picture`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SeenLateRegion {
-    /// The region.
+    /// Which region of which picture came.
     pub target: CopyTarget,
     /// When its last message arrived; `None` when that was not before the end of the field.
     pub arrived_at: Option<Time>,

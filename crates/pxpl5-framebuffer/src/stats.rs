@@ -3,7 +3,7 @@
 /// Counts since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct FrameBufferStats {
-    /// Fields begun.
+    /// Fields whose scan has begun so far.
     pub fields: u64,
     /// Messages of pixels received.
     pub messages: u64,

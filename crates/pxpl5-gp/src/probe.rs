@@ -45,7 +45,7 @@ pub struct Mark {
     pub picture: PictureNumber,
     /// The surface that it is drawn for, for stages that take one eye at a time.
     pub surface: Option<SurfaceId>,
-    /// The stage.
+    /// Which part of its work the firmware begins or ends.
     pub stage: Stage,
     /// Whether the stage began or ended.
     pub edge: Edge,

@@ -11,7 +11,7 @@ use tracking::rig::Measurement;
 use tracking::tracker::TrackerConfig;
 
 fn noiseless(tracker: TrackerConfig) -> TrackerConfig {
-    TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, distortion: None, ..tracker }
+    TrackerConfig { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..tracker }.without_systematic_errors()
 }
 
 fn rig(tracker: TrackerConfig, passes: usize) -> Rig {

@@ -22,7 +22,7 @@ pub struct MachineConfig {
     pub preset: String,
     /// Graphics processors, the master included.
     pub n_gps: usize,
-    /// Renderers.
+    /// Renderer boards on the ring, each with an array of 128 x 128 pixels.
     pub n_renderers: usize,
     /// The ring's channels, clock and overhead.
     pub ring: RingTiming,
@@ -142,7 +142,7 @@ pub struct Parameter {
     /// Unit, standing, range and source.
     #[serde(flatten)]
     pub info: ParameterInfo,
-    /// The value.
+    /// Its value in this machine, in the unit that its table states.
     pub value: Value,
     /// Whether it is listed only: what a part is, which nobody can set.
     pub read_only: bool,

@@ -468,7 +468,7 @@ impl Machine {
         &self.processors
     }
 
-    /// Events handled.
+    /// Events that the simulation has handled so far.
     #[must_use]
     pub const fn events(&self) -> u64 {
         self.queue.events_taken()

@@ -43,7 +43,7 @@ pub struct Observation {
     pub marks: Vec<Mark>,
     /// Regions that have arrived.
     pub arrivals: Vec<Arrival>,
-    /// Swaps.
+    /// Swaps of double buffers, in the order in which displays made them.
     pub swaps: Vec<Swap>,
     /// Messages and FIFOs, if they were recorded.
     pub traffic: Option<Box<Traffic>>,
@@ -52,11 +52,11 @@ pub struct Observation {
 /// A stage of one picture and surface, from the first board that began it to the last one that ended it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageSpan {
-    /// The picture.
+    /// The picture that the stage worked for, in its pipeline's own count.
     pub picture: PictureNumber,
     /// The surface, for stages that take one eye at a time.
     pub surface: Option<SurfaceId>,
-    /// The stage.
+    /// Which part of the work it was.
     pub stage: Stage,
     /// When the first board began.
     pub begin: Time,

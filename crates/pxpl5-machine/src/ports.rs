@@ -6,11 +6,11 @@ use pxpl5_wire::NodeId;
 /// Which port of the ring each board has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ports {
-    /// The host interface.
+    /// Where the host computer is plugged into the ring.
     pub host: NodeId,
-    /// The graphics processors.
+    /// Where the graphics processors are, in the order of their boards.
     pub gps: Vec<NodeId>,
-    /// The renderers.
+    /// Where the renderers are, in the order of their boards.
     pub renderers: Vec<NodeId>,
     /// The ports of each display, in the machine's order.
     pub displays: Vec<Vec<NodeId>>,

@@ -24,7 +24,7 @@ pub struct Preset {
     code: CodeVersion,
 }
 
-/// All presets.
+/// The machines that are built in, those of the papers first.
 pub const PRESETS: [Preset; 7] = [
     Preset {
         name: "small-hmd",

@@ -37,19 +37,19 @@ impl Record {
         &self.ports
     }
 
-    /// The ring.
+    /// The ring as it stands at the end of the run.
     #[must_use]
     pub const fn ring(&self) -> &Ring {
         &self.ring
     }
 
-    /// The renderers.
+    /// The renderers as they stand at the end of the run, in the order of their boards.
     #[must_use]
     pub fn renderers(&self) -> &[Renderer] {
         &self.renderers
     }
 
-    /// The displays.
+    /// The displays as they stand at the end of the run; the first is the sync generator.
     #[must_use]
     pub fn displays(&self) -> &[Box<dyn Display>] {
         &self.displays

@@ -24,7 +24,7 @@ pub enum Saving {
 }
 
 impl Saving {
-    /// All of them.
+    /// Every saving that an experiment can give up.
     pub const ALL: [Self; 4] = [Self::IdleBoards, Self::Transfers, Self::EmptyRegions, Self::RepeatedCode];
 
     /// The name by which the command knows it.

@@ -7,11 +7,11 @@ use std::collections::BTreeMap;
 /// A message on its way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Transfer {
-    /// The sender.
+    /// The port of the board that sent it.
     pub source: NodeId,
-    /// The receiver.
+    /// The port of the board that it was for.
     pub destination: NodeId,
-    /// Its length.
+    /// Its length in words of 32 bits, header included.
     pub words: u32,
     /// When its first word reached the receiver.
     pub begin: Time,

@@ -15,7 +15,7 @@ use tracking::view::{HmdView, PixelError};
 /// The error of one field.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FieldError {
-    /// The field.
+    /// The period of the display that was judged.
     pub field: PeriodNumber,
     /// When it begins, seconds.
     pub time_s: f64,
@@ -37,7 +37,7 @@ pub struct PixelErrors {
     pub centre_px: Percentiles,
     /// In the middle of the picture, degrees.
     pub centre_deg: Percentiles,
-    /// Pixels judged.
+    /// Pixels that have an error, over the grid and all fields.
     pub judged: u64,
     /// Pixels whose content should not be before the eye at all.
     pub behind: u64,
@@ -45,7 +45,7 @@ pub struct PixelErrors {
     pub empty: u64,
     /// Pixels that showed a part of a picture that was not complete in time.
     pub incomplete: u64,
-    /// Over time.
+    /// The same field by field, in the order of time.
     #[serde(skip)]
     pub by_field: Vec<FieldError>,
     /// Every judged pixel's, pixels.

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 /// A part of the way from the tracker's sample to light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartDefinition {
-    /// Name.
+    /// Its name in tables, files and timelines.
     pub name: &'static str,
     /// From when to when.
     pub definition: &'static str,
@@ -49,11 +49,11 @@ const fn part(name: &'static str, definition: &'static str, published: bool) -> 
 /// The parts of one picture's latency, in the order of [`LATENCY_PARTS`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LatencyParts {
-    /// The picture.
+    /// The picture whose latency is taken apart.
     pub picture: PictureNumber,
     /// When its pose was sampled; the start of TRANSFORM if that is not known.
     pub begin: Time,
-    /// The parts.
+    /// How long each part of [`LATENCY_PARTS`] took, in that order; they add up to the latency.
     pub spans: [Span; LATENCY_PARTS.len()],
 }
 

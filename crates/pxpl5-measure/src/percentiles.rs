@@ -7,15 +7,15 @@ use serde::Serialize;
 pub struct Percentiles {
     /// How many numbers there are.
     pub n: u64,
-    /// Mean.
+    /// Sum of the numbers over how many there are.
     pub mean: f64,
-    /// Median.
+    /// The median: half of the numbers are at most this.
     pub p50: f64,
     /// 90 of 100 are at most this.
     pub p90: f64,
     /// 99 of 100 are at most this.
     pub p99: f64,
-    /// Greatest.
+    /// The greatest of all numbers.
     pub max: f64,
 }
 

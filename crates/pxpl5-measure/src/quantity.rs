@@ -16,7 +16,7 @@ pub struct Measure(&'static Quantity);
 pub struct Quantity {
     /// Its name, with the unit.
     pub name: &'static str,
-    /// Its definition.
+    /// What is measured, from where to where, in a sentence.
     pub definition: &'static str,
     value: Value,
 }
@@ -157,7 +157,7 @@ impl Measure {
         self.0.name
     }
 
-    /// Its definition.
+    /// What is measured, from where to where, in a sentence.
     #[must_use]
     pub const fn definition(&self) -> &'static str {
         self.0.definition

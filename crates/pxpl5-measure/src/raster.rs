@@ -73,7 +73,7 @@ impl<'a> RasterOffsets<'a> {
         Self { display, view: view_of(display), offsets: offsets.collect() }
     }
 
-    /// Of a field.
+    /// The offset in one period of the display; `None` where nothing is drawn, or not for one pose.
     #[must_use]
     pub fn field(&self, field: PeriodNumber) -> Option<&RasterOffset> {
         self.offsets.get(usize::try_from(field.0).ok()?)?.as_ref()

@@ -23,11 +23,11 @@ pub struct Report {
     pub machine: String,
     /// Name of everything on which the trace depends ([`pxpl5_run::Experiment::config_hash`]).
     pub config_hash: String,
-    /// Level of modelling.
+    /// Level of modelling: `transaction` or `cycle`.
     pub level: String,
     /// Seed of the head motion.
     pub seed: u64,
-    /// Pipeline.
+    /// Name of the pipeline, as in experiment files.
     pub pipeline: String,
     /// Its keys and their values, as they take effect.
     pub variant: String,
@@ -37,23 +37,23 @@ pub struct Report {
     pub overrides: BTreeMap<String, Value>,
     /// What no source allows: each parameter outside its stated range, with range and source.
     pub warnings: Vec<String>,
-    /// Graphics processors.
+    /// Graphics processors of the machine, the master included.
     pub n_gps: usize,
-    /// Renderers.
+    /// Renderer boards of the machine.
     pub n_renderers: usize,
-    /// Scene.
+    /// Name of the scene that was drawn.
     pub scene: String,
     /// Triangles in the scene.
     pub triangles: usize,
     /// Spheres in the scene.
     pub spheres: usize,
-    /// Fields simulated.
+    /// Periods of the display that were simulated: NTSC fields.
     pub fields: u64,
     /// Complete pictures after the warm-up, that the statistics are over.
     pub pictures: usize,
     /// Latency in periods of the display: for NTSC, fields of 1001/60000 s.
     pub latency_fields: DefinedStatistics,
-    /// Latency in milliseconds.
+    /// The same latency in milliseconds of simulated time.
     pub latency_ms: DefinedStatistics,
     /// Where the latency goes, in milliseconds: parts that add up to the way from the sample of the pose to light.
     pub latency_parts_ms: Vec<NamedStatistics>,
@@ -85,7 +85,7 @@ pub struct Report {
     pub head: Option<HeadReport>,
     /// Hash of everything that happened.
     pub trace_hash: String,
-    /// Events handled.
+    /// Events of the simulation that were handled.
     pub events: u64,
     /// Time that the run took on this host; nothing on a host without a clock.
     pub host_seconds: Option<f64>,
@@ -94,9 +94,9 @@ pub struct Report {
 /// What a tracker, a predictor and a display make of a pipeline.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HeadReport {
-    /// Tracker.
+    /// Name of the tracker that reported the head.
     pub tracker: String,
-    /// Predictor.
+    /// Name of the predictor between tracker and pipeline.
     pub predictor: String,
     /// The instant of what is shown from it that a view is predicted for.
     pub aim: Aim,

@@ -16,7 +16,7 @@ pub struct TooHeavy {
     /// How many of them, the scene's first ones, would be shown in time, by the pipeline's closed form; nothing where it has
     /// none, or where that has so many in time.
     pub triangles_in_time: Option<u64>,
-    /// What to do.
+    /// How to get pictures in time: a number of triangles, or how to find one.
     pub advice: String,
 }
 

@@ -55,11 +55,11 @@ impl Surface {
     /// Its colour under a light, as the renderer's formula has it.
     fn lit(&self, shade: &Shade) -> [u8; 3] {
         let diffuse = self.cosine(shade.light);
-        let highlight = (0..SQUARINGS).fold(self.cosine(shade.half), |cosine, _| cosine * cosine >> 10);
+        let highlight = (0..SQUARINGS).fold(self.cosine(shade.half), |cosine, _| (cosine * cosine) >> 10);
         let full = diffuse * i32::from(shade.diffuse) + (i32::from(shade.ambient) << 10);
         let intensity = (full >> 10).min(255);
-        let white = highlight * i32::from(shade.specular) >> 10;
-        self.colour.map(|component| ((i32::from(component) * intensity >> 8) + white).min(255) as u8)
+        let white = (highlight * i32::from(shade.specular)) >> 10;
+        self.colour.map(|component| (((i32::from(component) * intensity) >> 8) + white).min(255) as u8)
     }
 
     /// Cosine between the normal and a vector, 0 where they are turned from each other. A normal of zero counts as turned

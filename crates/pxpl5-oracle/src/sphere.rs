@@ -38,7 +38,7 @@ impl SpherePoint {
     pub(crate) fn colour(&self, sphere: &GouraudSphere, x: i32, y: i32) -> [u8; 3] {
         let root = self.upper_root(COLOUR_ROOT_BITS);
         std::array::from_fn(|i| {
-            let rise = root * i32::from(sphere.root_factor[i].min(511)) >> 8;
+            let rise = (root * i32::from(sphere.root_factor[i].min(511))) >> 8;
             let sum = rise.wrapping_add(sphere.rgb[i].at(x, y) >> COLOUR_FRACTION_BITS);
             two_s_complement(sum, 10).clamp(0, 255) as u8
         })

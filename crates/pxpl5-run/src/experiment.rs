@@ -17,7 +17,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Pixels {
-    /// None.
+    /// No pixel is computed; firmware keeps counts where it would keep bins.
     Off,
     /// Those that somebody looks at, when he does.
     Lazy,

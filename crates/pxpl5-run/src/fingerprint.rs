@@ -19,7 +19,7 @@ impl Default for Fingerprint {
 }
 
 impl Fingerprint {
-    /// Of some bytes.
+    /// The name of some bytes alone: FNV-1a with 128 bits.
     #[must_use]
     pub fn of(bytes: &[u8]) -> Self {
         let mut fingerprint = Self::default();
@@ -55,7 +55,7 @@ impl Fingerprint {
         let _ = writeln!(self, "{key}={value}");
     }
 
-    /// Adds bytes.
+    /// Takes further bytes into the name.
     pub fn add(&mut self, bytes: &[u8]) {
         self.0 = bytes.iter().fold(self.0, |hash, byte| (hash ^ u128::from(*byte)).wrapping_mul(PRIME));
     }

@@ -239,13 +239,13 @@ impl Head {
         if let Numbers::Tuned(Some(training)) = &self.numbers { Some(training) } else { None }
     }
 
-    /// The predictor.
+    /// Which filter makes poses of the tracker's reports.
     #[must_use]
     pub const fn predictor_kind(&self) -> PredictorKind {
         self.predictor.kind
     }
 
-    /// The tracker.
+    /// The tracker that reports where the head is.
     #[must_use]
     pub const fn tracker(&self) -> &TrackerModel {
         &self.tracker

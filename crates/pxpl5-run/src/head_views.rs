@@ -21,7 +21,7 @@ pub const FIELDS_WITH_HEAD: u64 = 250_000;
 /// A pose that a pipeline asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampled {
-    /// The view.
+    /// The view that the pose is for, in the pipeline's own count.
     pub number: ViewNumber,
     /// Reports that had reached the host by then could be used.
     pub known: Time,
@@ -171,13 +171,13 @@ impl HeadViews {
         self.in_scene(&self.head.motion.pose(time.0))
     }
 
-    /// The head.
+    /// The head that is tracked, with its tracker and predictor.
     #[must_use]
     pub fn head(&self) -> &Head {
         &self.head
     }
 
-    /// The scene.
+    /// The scene that the head looks at.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene

@@ -6,9 +6,9 @@ use std::fmt;
 /// The value of a pipeline's key.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KeyValue {
-    /// True or false.
+    /// Whether something is done: true or false.
     Flag(bool),
-    /// A whole number.
+    /// A whole number within the range of its key.
     Whole(u64),
     /// One of some names.
     Name(&'static str),
@@ -27,11 +27,11 @@ impl fmt::Display for KeyValue {
 /// The values that a key takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyValues {
-    /// True or false.
+    /// It takes true or false.
     Flag,
     /// Whole numbers from the first to the second.
     Whole(u64, u64),
-    /// These names.
+    /// It takes one of these names.
     Names(&'static [&'static str]),
 }
 
@@ -54,7 +54,7 @@ pub struct Key {
     pub name: &'static str,
     /// What it sets, in a line of help.
     pub about: &'static str,
-    /// What it takes.
+    /// Which values it takes, with their range.
     pub values: KeyValues,
     /// Machine parameters that it sets too, and that must therefore not be given beside it.
     pub sets: &'static [&'static str],

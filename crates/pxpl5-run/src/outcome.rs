@@ -34,7 +34,7 @@ impl Outcome {
         Self { experiment, record, head, pictures, reached, host_seconds }
     }
 
-    /// What was run.
+    /// The experiment that was run, as it was asked for.
     #[must_use]
     pub const fn experiment(&self) -> &Experiment {
         &self.experiment
@@ -130,7 +130,7 @@ impl Outcome {
         self.host_seconds
     }
 
-    /// What was observed.
+    /// Marks of firmware, arrivals at displays and swaps, in the order of time.
     #[must_use]
     pub const fn observation(&self) -> &Observation {
         self.record.observation()
@@ -154,7 +154,7 @@ impl Outcome {
         self.experiment.pipeline.as_ref()
     }
 
-    /// Fields simulated.
+    /// Periods of the first display that were asked for: NTSC fields.
     #[must_use]
     pub const fn fields(&self) -> u64 {
         self.experiment.fields

@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// Where a part of the screen comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Source {
-    /// A single view.
+    /// One view, by its number in the pipeline's own count.
     View(ViewNumber),
     /// Places between those of two views.
     Between {
@@ -37,9 +37,9 @@ pub enum Source {
 /// What a pipeline is given to draw.
 #[derive(Clone)]
 pub struct Setup {
-    /// Primitives.
+    /// The primitives that are drawn in every picture.
     pub list: Arc<DisplayList>,
-    /// Transforms and edits.
+    /// The host's answer to "which view now": transforms and edits.
     pub views: Views,
     /// The same for firmware that knows when a view will be seen.
     pub wanted: ViewsWanted,
@@ -49,7 +49,7 @@ pub struct Setup {
     pub reports: ReportTimes,
     /// When a host that waits for the pipeline begins a frame.
     pub starts: FrameStarts,
-    /// The host's times.
+    /// How long the host takes for what it does, nanoseconds.
     pub host: HostTiming,
     /// Whether somebody may want pixels.
     pub pixels: bool,
@@ -58,15 +58,15 @@ pub struct Setup {
 /// One picture (a frame, or a field) and when it went through the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PictureTimes {
-    /// Its number.
+    /// Its number in the pipeline's own count.
     pub picture: PictureNumber,
     /// The view that it shows, or that its middle shows.
     pub view: ViewNumber,
     /// When its pose was sampled.
     pub sampled_at: Option<Time>,
-    /// Start of TRANSFORM.
+    /// When TRANSFORM began to work for it.
     pub transform_at: Time,
-    /// End of COPY.
+    /// When the last of its pixels was in the display; `None` while some are missing.
     pub copied_at: Option<Time>,
     /// The retrace from which on it is shown, or when the beam meets the part that stands for it.
     pub shown_at: Time,

@@ -6,6 +6,8 @@ use crate::head::Head;
 use crate::outcome::Outcome;
 use crate::rehearsal::Rehearsal;
 use crate::statistics::Statistics;
+use pxpl5_display::{Aim, LightSpan};
+use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -38,7 +40,7 @@ impl Experiment {
         let outcome = if knows_when_seen { self.short_rehearsal(head)? } else { self.rehearsal(head, self.fields)? };
         let interval_ps = interval_ps(&outcome).filter(|_| head.is_to_be_tuned());
         Ok(Preparation {
-            rehearsal: (!knows_when_seen).then(|| Rehearsal::of(&outcome, head.aim())),
+            rehearsal: (!knows_when_seen).then(|| rehearsed(&outcome, head.aim())),
             head: interval_ps.map(|interval_ps| Arc::new(head.tuned_for(interval_ps))),
         })
     }
@@ -71,4 +73,25 @@ fn interval_ps(outcome: &Outcome) -> Option<u64> {
     let intervals = Statistics::of(of_picture);
     let steps = (intervals.mean * 1e9 / INTERVAL_STEP_PS as f64).round();
     intervals.mean.is_finite().then_some(steps as u64 * INTERVAL_STEP_PS)
+}
+
+/// What an aim makes of a run without prediction.
+fn rehearsed(outcome: &Outcome, aim: Aim) -> Rehearsal {
+    let Some(head) = outcome.head() else { return Rehearsal::default() };
+    let aimed_at: BTreeMap<ViewNumber, Time> =
+        shown(outcome).into_iter().map(|(view, shown)| (view, aim.instant(&shown))).collect();
+    let leads = head.sampled().into_iter().filter_map(|s| Some(aimed_at.get(&s.number)?.since(s.known).as_ms()));
+    let mean_lead_ps = (Statistics::of(leads).mean * 1e9) as u64;
+    Rehearsal::new(aimed_at, mean_lead_ps)
+}
+
+/// When each view is shown, in as many pictures as are of it.
+fn shown(outcome: &Outcome) -> BTreeMap<ViewNumber, LightSpan> {
+    let mut all: BTreeMap<ViewNumber, LightSpan> = BTreeMap::new();
+    let pictures = outcome.pictures();
+    for (i, times) in pictures.iter().enumerate() {
+        let shown = outcome.pipeline().shown(outcome.record(), times, pictures.get(i + 1));
+        all.entry(times.view).and_modify(|known| known.last = known.last.max(shown.last)).or_insert(shown);
+    }
+    all
 }

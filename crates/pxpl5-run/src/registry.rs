@@ -50,9 +50,9 @@ impl TestScene {
 /// How the most triangles that a pipeline draws in time are found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitCriterion {
-    /// What must hold.
+    /// What must hold for every size that counts as reached.
     pub goal: Goal,
-    /// The triangles.
+    /// What the scene is made of as it grows.
     pub scene: TestScene,
     /// Fields that each size is simulated for: enough to show a steady state.
     pub fields: u64,
@@ -78,7 +78,7 @@ pub struct PipelineEntry {
     pub about: &'static str,
     /// The preset of the machine on which its papers ran it, or could have.
     pub preset: &'static str,
-    /// Its own keys.
+    /// The keys that only it takes, with values, help and range.
     pub keys: &'static [Key],
     /// Makes it of its keys; those not given have the values of its papers.
     pub build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,

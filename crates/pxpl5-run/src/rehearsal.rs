@@ -1,8 +1,5 @@
 //! For which instants views are drawn, known from a run without prediction.
 
-use crate::outcome::Outcome;
-use crate::statistics::Statistics;
-use pxpl5_display::{Aim, LightSpan};
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
 use std::collections::BTreeMap;
@@ -17,13 +14,8 @@ pub struct Rehearsal {
 }
 
 impl Rehearsal {
-    /// What an aim makes of a run.
-    pub(crate) fn of(outcome: &Outcome, aim: Aim) -> Self {
-        let Some(head) = outcome.head() else { return Self::default() };
-        let aimed_at: BTreeMap<ViewNumber, Time> =
-            shown(outcome).into_iter().map(|(view, shown)| (view, aim.instant(&shown))).collect();
-        let leads = head.sampled().into_iter().filter_map(|s| Some(aimed_at.get(&s.number)?.since(s.known).as_ms()));
-        let mean_lead_ps = (Statistics::of(leads).mean * 1e9) as u64;
+    /// The instants of the views that were shown, and how long after its sample a view is shown on average, picoseconds.
+    pub(crate) const fn new(aimed_at: BTreeMap<ViewNumber, Time>, mean_lead_ps: u64) -> Self {
         Self { aimed_at, mean_lead_ps }
     }
 
@@ -32,15 +24,4 @@ impl Rehearsal {
         let expected = Time(sampled_at.0 + self.mean_lead_ps);
         self.aimed_at.get(&number).copied().filter(|at| *at >= sampled_at).unwrap_or(expected)
     }
-}
-
-/// When each view is shown, in as many pictures as are of it.
-fn shown(outcome: &Outcome) -> BTreeMap<ViewNumber, LightSpan> {
-    let mut all: BTreeMap<ViewNumber, LightSpan> = BTreeMap::new();
-    let pictures = outcome.pictures();
-    for (i, times) in pictures.iter().enumerate() {
-        let shown = outcome.pipeline().shown(outcome.record(), times, pictures.get(i + 1));
-        all.entry(times.view).and_modify(|known| known.last = known.last.max(shown.last)).or_insert(shown);
-    }
-    all
 }

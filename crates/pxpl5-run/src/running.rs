@@ -141,7 +141,8 @@ impl Experiment {
             }
             at(field, &mut machine)?;
         }
-        if result.is_ok() && machine.is_at_rest() {
+        // Where frames are begun on demand, a host without a further report is at rest for good reason.
+        if result.is_ok() && !self.on_demand && machine.is_at_rest() {
             result = self.deadlock(preparation).map_or(Ok(()), Err);
         }
         machine.finish_pixels();

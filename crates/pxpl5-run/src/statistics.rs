@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct Statistics {
     /// How many numbers there are.
     pub n: u64,
-    /// Sum over number.
+    /// Sum of the numbers over how many there are.
     pub mean: f64,
     /// Sample standard deviation (n - 1), of two numbers or more.
     pub sd: f64,
@@ -19,7 +19,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Of some numbers.
+    /// Of some numbers, in any order, none of them NaN.
     #[must_use]
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.collect();
@@ -48,7 +48,7 @@ impl Statistics {
 /// Statistics with their definition beside them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DefinedStatistics {
-    /// The numbers.
+    /// Mean, deviation, least and greatest of what is defined beside.
     #[serde(flatten)]
     pub statistics: Statistics,
     /// What they are of, in a sentence.

@@ -27,7 +27,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Latency in milliseconds.
+    /// The latencies' mean, deviation, least and greatest, milliseconds.
     #[must_use]
     pub fn latency_ms(&self) -> Statistics {
         Statistics::of(self.latencies_ms.iter().copied())

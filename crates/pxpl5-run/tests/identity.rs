@@ -147,7 +147,7 @@ fn a_head_is_named_by_its_settings_a_line_each() {
         format!("predictor.start_acceleration={}\n", predictor.start.acceleration),
         format!("predictor.start_turn={}\n", predictor.start.turn),
         format!("predictor.start_turn_acceleration={}\n", predictor.start.turn_acceleration),
-        format!("predictor.horizon_ps={}\nseed=7\nraster=vdrt\n", predictor.horizon_ps),
+        format!("predictor.horizon_ps={}\nseed=7\nraster=vdrt\naim=middle\n", predictor.horizon_ps),
     ];
     assert_eq!(found, fnv_1a(lines.concat().as_bytes()));
 }

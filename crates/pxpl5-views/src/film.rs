@@ -38,7 +38,7 @@ pub enum FilmError {
     /// The experiment cannot be run.
     #[error(transparent)]
     Experiment(#[from] ExperimentError),
-    /// The machine stopped.
+    /// The machine stopped before the last picture of the film.
     #[error(transparent)]
     Run(#[from] RunError),
     /// A film of no period, or of more than a PNG can hold.

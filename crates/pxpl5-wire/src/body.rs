@@ -8,9 +8,9 @@ use std::sync::Arc;
 /// One message on one channel of the ring.
 #[derive(Clone, Debug)]
 pub struct Message {
-    /// The sender's port.
+    /// The port of the board that sends it.
     pub source: NodeId,
-    /// The receiver's port.
+    /// The port of the board that it is for.
     pub destination: NodeId,
     /// Length in words, 1 to [`crate::MAX_MESSAGE_WORDS`].
     pub words: u32,
@@ -21,7 +21,7 @@ pub struct Message {
 /// What a message carries.
 #[derive(Clone, Debug)]
 pub enum Body {
-    /// Renderer commands.
+    /// Commands for a renderer, in the order in which it executes them.
     Commands(CommandList),
     /// Part of a region's pixels on the way to a frame buffer.
     Pixels(RegionPixels),
@@ -74,7 +74,7 @@ pub struct CommandRun {
     pub opcode: u8,
     /// Length of one command in words.
     pub words_each: u32,
-    /// How many commands.
+    /// How many commands of this kind follow each other.
     pub count: u32,
 }
 
@@ -94,7 +94,7 @@ impl CommandWords for Vec<Word> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Lines {
-    /// All lines.
+    /// All lines of the screen, one under the other.
     Frame,
     /// The lines of one field.
     Field(FieldParity),
@@ -135,7 +135,7 @@ pub struct CopyTarget {
     pub lines: Lines,
     /// How the picture is cut.
     pub grid: RegionGrid,
-    /// Which piece.
+    /// Which piece of the grid the region is.
     pub region: RegionId,
     /// The picture that the region is part of, in the count of the pipeline that draws it; see [`PictureNumber`]. Boards
     /// only tell one copy of a region from the next by it; observers join the regions of a picture.
@@ -145,7 +145,7 @@ pub struct CopyTarget {
 /// Part of one region's pixels: message `part` of `parts`.
 #[derive(Clone, Debug)]
 pub struct RegionPixels {
-    /// Where they go.
+    /// The place in a display that the pixels go to.
     pub target: CopyTarget,
     /// The whole region's pixels.
     pub image: Arc<dyn PixelSource>,

@@ -42,11 +42,11 @@ pub struct Quadratic {
     pub xy: i64,
     /// Coefficient of y squared.
     pub yy: i64,
-    /// Coefficient of x.
+    /// Coefficient of the pixel's column, A in Ax + By + C.
     pub x: i64,
-    /// Coefficient of y.
+    /// Coefficient of the pixel's row, B in Ax + By + C.
     pub y: i64,
-    /// Constant term.
+    /// The constant term, C in Ax + By + C.
     pub one: i64,
 }
 

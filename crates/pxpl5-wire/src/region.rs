@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Which eye's picture.
+/// For which eye a picture is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Eye {
     /// The left eye, and the only one of a mono picture.
     Left,
-    /// The right eye.
+    /// The right eye, shown by the second frame buffer.
     Right,
 }
 
@@ -22,7 +22,7 @@ impl Eye {
         self as usize
     }
 
-    /// `left` or `right`.
+    /// Its name in files and tables: `left` or `right`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -81,13 +81,13 @@ impl RegionGrid {
         self.width.div_ceil(self.region_width)
     }
 
-    /// Rows of regions.
+    /// Regions from top to bottom, the last one cut off where the height is no multiple.
     #[must_use]
     pub const fn rows(&self) -> u32 {
         self.height.div_ceil(self.region_height)
     }
 
-    /// Regions in all.
+    /// Regions of the whole grid: columns times rows.
     #[must_use]
     pub const fn regions(&self) -> u32 {
         self.columns() * self.rows()

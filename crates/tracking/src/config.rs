@@ -15,13 +15,13 @@ pub(crate) fn ms_to_ps(ms: f64) -> u64 {
 /// The numbers of trackers, of the host's port and of predictors, as an experiment may change them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tables {
-    /// Polhemus Fastrak.
+    /// The Polhemus Fastrak, magnetic.
     pub fastrak: Fastrak,
     /// Ascension Flock of Birds.
     pub flock: Flock,
     /// UNC's optical ceiling tracker.
     pub optical: Optical,
-    /// Polhemus 3Space.
+    /// The Polhemus 3Space, magnetic.
     pub space: Space,
     /// The tracker without error and delay.
     pub ideal: Ideal,
@@ -186,7 +186,7 @@ parameter_table! {
 }
 
 parameter_table! {
-    /// How heads move.
+    /// How heads move, by published measurements.
     pub struct Head {
         /// Typical speed of a fast head turn.
         typical_turn: f64 = 200.0, "deg/s", Published, 0.0..=370.0, "JITP, LIST83";

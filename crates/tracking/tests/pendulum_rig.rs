@@ -86,7 +86,8 @@ fn outside_and_inside_agree_within_the_bound_for_every_tracker_and_line() {
             let rig = PendulumRig { detection, ..PendulumRig::assumed() };
             let measured = measure(rig, noiseless(config.clone()));
             let difference = measured.outside_less_inside_s();
-            assert!(difference > 0.0 && difference <= seconds(measured.bound_ps()), "{}", config.name);
+            let bound = seconds(measured.bound_ps());
+            assert!(difference > 0.0 && difference <= bound, "{} {detection:?}: {difference} of {bound}", config.name);
             assert!(measured.agrees(), "{}", config.name);
             for (outside, inside) in measured.outside_passes.iter().zip(&measured.inside_passes) {
                 let late_ps = inside.sighting.measured_ps - outside.low_point_ps;

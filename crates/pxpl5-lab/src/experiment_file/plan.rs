@@ -274,7 +274,7 @@ impl ExperimentFile {
         let adapted = machine.clone();
         for (path, setting) in &self.settings {
             if let Some(parameter) = path.strip_prefix("machine.").filter(|path| !["preset", "code"].contains(path)) {
-                let value = number(self, path, setting)?;
+                let value = self.parameter_value(path, setting)?;
                 self.refuse_twice(entry, &adapted, (path, parameter, setting), value)?;
                 machine.set(parameter, value).map_err(|error| refused(&setting.place, error))?;
             }
@@ -319,14 +319,6 @@ impl ExperimentFile {
             }
         }
         Ok(())
-    }
-}
-
-/// A parameter's value: whole, or real where the text is.
-pub(super) fn number(file: &ExperimentFile, path: &str, setting: &Setting) -> Result<Number, FileError> {
-    match &setting.value {
-        toml::Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
-        _ => Ok(Number::Whole(file.integer(path, 0..=u64::MAX)?.unwrap_or_default())),
     }
 }
 

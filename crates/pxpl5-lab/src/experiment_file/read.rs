@@ -1,7 +1,7 @@
 //! Typed reading of settings.
 
 use super::{ExperimentFile, FileError, Setting};
-use parameters::nearest;
+use parameters::{Value as Number, nearest};
 use std::ops::RangeInclusive;
 use std::path::Path;
 use toml::Value;
@@ -28,6 +28,14 @@ impl ExperimentFile {
             .filter(|value| range.contains(value))
             .map(Some)
             .ok_or_else(|| wrong(key, setting, &format!("a whole number from {} to {}", range.start(), range.end())))
+    }
+
+    /// A parameter's value: whole, or real where the text is.
+    pub(super) fn parameter_value(&self, path: &str, setting: &Setting) -> Result<Number, FileError> {
+        match &setting.value {
+            Value::Float(number) if number.is_finite() => Ok(Number::Real(*number)),
+            _ => Ok(Number::Whole(self.integer(path, 0..=u64::MAX)?.unwrap_or_default())),
+        }
     }
 
     pub(super) fn number(&self, key: &str) -> Result<Option<f64>, FileError> {

@@ -1,6 +1,5 @@
 //! The numbers of trackers, predictors and of the port between them, as an experiment sets them: `tracking.table.name`.
 
-use super::plan::number;
 use super::{ExperimentFile, FileError, Setting};
 use crate::compare::tracker_by;
 use parameters::ParameterTable;
@@ -53,7 +52,7 @@ pub(super) fn read(file: &ExperimentFile, tracker: &str) -> Result<Tables, FileE
             let reason = format!("{path} does not apply to head.tracker = {tracker}; leave it out");
             return Err(FileError::Head { place: setting.place.clone(), reason });
         }
-        let value = number(file, path, setting)?;
+        let value = file.parameter_value(path, setting)?;
         if let Some(table) = tables.named_mut(table) {
             let set = table.set(name, value).and_then(|()| table.check());
             set.map_err(|error| refused(path, setting, &error))?;

@@ -10,7 +10,7 @@ use tracking::view::HmdView;
 /// The error in the middle of the picture that a latency alone makes of a motion, field by field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LatencyCurve {
-    /// The latency, milliseconds.
+    /// Milliseconds from the pose that is drawn to its light.
     pub latency_ms: u64,
     /// Time in seconds and error in pixels.
     pub points: Vec<(f64, f64)>,

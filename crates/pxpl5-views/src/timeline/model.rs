@@ -8,7 +8,7 @@ use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
 /// A stage of a picture in a row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bar {
-    /// The stage.
+    /// The stage whose work the bar stands for.
     pub stage: Stage,
     /// The picture; of SEND under a pipeline whose host sends views apart from pictures, the view's number.
     pub picture: PictureNumber,
@@ -63,7 +63,7 @@ pub struct Timeline {
     pub retraces: Vec<(PeriodNumber, Time)>,
     /// Poses that were sampled, the picture or update first; `None` when they are not shown.
     pub samples: Option<Vec<(PictureNumber, Time)>>,
-    /// The boards.
+    /// A row for each board, from top to bottom.
     pub rows: Vec<Row>,
     /// What the first display shows.
     pub scans: Vec<Scan>,
@@ -96,7 +96,7 @@ impl Timeline {
 pub struct Arrow {
     /// Row and lane where it begins.
     pub from: Place,
-    /// When that happened.
+    /// The instant at which the arrow begins.
     pub begin: Time,
     /// Row and lane where it ends.
     pub to: Place,

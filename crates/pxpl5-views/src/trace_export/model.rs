@@ -30,7 +30,7 @@ pub struct Track {
 pub enum Events {
     /// Slices that do not overlap.
     Slices(Vec<Slice>),
-    /// Instants with names.
+    /// Instants, each with the name that stands at it.
     Instants(Vec<(Time, String)>),
     /// Values from a time on.
     Counter(Vec<(Time, i64)>),
@@ -41,7 +41,7 @@ pub enum Events {
 pub struct Slice {
     /// What stands in it.
     pub name: String,
-    /// When it begins.
+    /// The instant at which it begins.
     pub begin: Time,
     /// When it is over.
     pub end: Time,
@@ -63,11 +63,11 @@ pub struct Flow {
 /// Where on its way a flow is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// At its begin.
+    /// Where it begins.
     First,
     /// Between begin and end.
     Middle,
-    /// At its end.
+    /// Where it ends.
     Last,
 }
 

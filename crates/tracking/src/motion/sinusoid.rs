@@ -14,7 +14,7 @@ use crate::time::seconds;
 pub struct Sinusoid {
     /// The middle of the motion, where it is at time 0.
     pub start: Pose,
-    /// Frequency, Hz.
+    /// Full swings a second, Hz.
     pub hz: f64,
     /// Amplitude of the yaw, degrees; it first turns left.
     pub yaw_deg: f64,

@@ -51,7 +51,7 @@ pub struct Training {
 /// A predictor with the numbers that were found, and on what.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuned {
-    /// The predictor.
+    /// The predictor with the numbers that were found.
     pub config: PredictorConfig,
     /// On what it was tuned; `None` where there was nothing to tune, or nothing to tune it on.
     pub training: Option<Training>,

@@ -36,7 +36,7 @@ pub struct OutsidePass {
 /// A latency over all passes, seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Latency {
-    /// Passes.
+    /// Passes of the bob that it is over.
     pub n: usize,
     /// Mean over the passes, seconds.
     pub mean_s: f64,
@@ -71,7 +71,7 @@ pub struct Side {
     pub tracking: Latency,
     /// From the start of the frame to the screen (outside: light under the photodiode; inside: the frame is shown).
     pub rendering: Latency,
-    /// Both together.
+    /// Tracking and rendering together, from head to light.
     pub total: Latency,
 }
 
@@ -93,6 +93,9 @@ impl Side {
     }
 }
 
+/// Means of seconds are rounded by less than the picosecond in which all instants are given.
+const ROUNDING_S: f64 = 1e-12;
+
 /// Both measurements of the same passes, and by how much they may differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
@@ -100,9 +103,9 @@ pub struct Measurement {
     pub outside_passes: Vec<OutsidePass>,
     /// From inside, in the same order.
     pub inside_passes: Vec<InsidePass>,
-    /// Latencies from outside.
+    /// What oscilloscope and photodiodes say.
     pub outside: Side,
-    /// Latencies from inside.
+    /// What the time stamps of host and boards say.
     pub inside: Side,
     /// How much longer tracking may be from outside: the detection's delay, one report interval for a crossing.
     pub tracking_bound_ps: u64,
@@ -149,8 +152,9 @@ impl Measurement {
     pub fn agrees(&self) -> bool {
         let tracking_s = self.outside.tracking.mean_s - self.inside.tracking.mean_s;
         let rendering_s = self.outside.rendering.mean_s - self.inside.rendering.mean_s;
-        (0.0..=span_s(0, self.tracking_bound_ps)).contains(&tracking_s)
-            && rendering_s.abs() <= span_s(0, self.rendering_bound_ps)
+        let most_tracking_s = span_s(0, self.tracking_bound_ps) + ROUNDING_S;
+        let most_rendering_s = span_s(0, self.rendering_bound_ps) + ROUNDING_S;
+        (-ROUNDING_S..=most_tracking_s).contains(&tracking_s) && rendering_s.abs() <= most_rendering_s
     }
 }
 

@@ -24,7 +24,7 @@ impl Axes {
     pub const NAMES: [(&'static str, Self); 4] =
         [("opengl", Self::OpenGl), ("optical", Self::Optical), ("euroc", Self::Euroc), ("robot", Self::Robot)];
 
-    /// Its name.
+    /// Its name in experiment files and on the command line.
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, axes)| *axes == self).map_or("", |(name, _)| name)
     }

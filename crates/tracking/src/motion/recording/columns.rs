@@ -72,7 +72,7 @@ impl Columns {
         Ok(())
     }
 
-    /// `t_ns=stamp,x=px,...`.
+    /// Reads a mapping such as `t_ns=stamp,x=px,y=py`.
     pub fn parse(text: &str) -> Result<Self, LoadError> {
         let mut columns = Self::default();
         for part in text.split(',') {

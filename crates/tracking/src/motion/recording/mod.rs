@@ -42,7 +42,7 @@ impl End {
     /// All of them, by the names under which experiments know them.
     pub const NAMES: [(&'static str, Self); 3] = [("error", Self::Refuse), ("hold", Self::Hold), ("loop", Self::Loop)];
 
-    /// Its name.
+    /// Its name in experiment files and on the command line.
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, end)| *end == self).map_or("", |(name, _)| name)
     }
