@@ -17,22 +17,22 @@ use pxpl5_scene::{
 use serde::Serialize;
 use std::sync::Arc;
 
-/// A question.
+/// Which pipeline, on which machine, must do what.
 #[derive(Clone, Debug)]
 pub struct LimitQuery {
     /// Where the pipeline's closed form is found.
     pub registry: Arc<Registry>,
-    /// The machine.
+    /// The machine that it runs on.
     pub config: MachineConfig,
-    /// The pipeline.
+    /// The pipeline whose limit is sought.
     pub pipeline: Arc<dyn Pipeline>,
     /// The triangles, what must hold, and for how many fields each size is simulated.
     pub criterion: LimitCriterion,
-    /// How literally.
+    /// The level of modelling at which every size is tried.
     pub level: Level,
 }
 
-/// The answer.
+/// What was found, and how sure it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Limit {
     /// Most triangles for which the goal was reached; 0 if it was not reached with one.
@@ -120,7 +120,8 @@ pub fn most<E>(ceiling: u32, mut reached: impl FnMut(u32) -> Result<bool, E>) ->
         tried.insert(size, answer);
         Ok(answer)
     };
-    let (mut low, mut high) = (0, 1);
+    let mut low = 0;
+    let mut high = 1;
     while high < ceiling && ask(high)? {
         (low, high) = (high, (high * 2).min(ceiling));
     }

@@ -56,7 +56,7 @@ pub enum MotionError {
     },
 }
 
-/// Names of [`motion`].
+/// Every motion that [`motion`] knows, as help and errors say it.
 pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED or a recording \
                            (FILE.csv, FILE.txt or FILE.tum)";
 
@@ -140,7 +140,7 @@ fn recording(path: &Path, replay: &Replay) -> Result<Recording, MotionError> {
     Ok(recording.map_err(|error| MotionError::Load { path: name(), error })?.ending(replay.end))
 }
 
-/// Names of [`tracker`].
+/// Every tracker that [`tracker`] knows, as help and errors say it.
 pub const TRACKERS: &str = "optical, fastrak, flock, flock-patched, 3space or ideal";
 
 /// A tracker of [`TRACKERS`].

@@ -69,7 +69,8 @@ fn greatest(holds: impl Fn(u32) -> bool) -> u32 {
     while high <= MOST && holds(high) {
         high *= 2;
     }
-    let (mut low, mut high) = (high / 2, high.min(MOST + 1));
+    let mut low = high / 2;
+    let mut high = high.min(MOST + 1);
     while high - low > 1 {
         let middle = (low + high) / 2;
         *(if holds(middle) { &mut low } else { &mut high }) = middle;

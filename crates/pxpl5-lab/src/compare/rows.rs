@@ -14,10 +14,10 @@ use serde::Serialize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// One pipeline.
+/// What came of one pipeline on the shared machine, scene and head.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Row {
-    /// Its name.
+    /// Name of the row: the pipeline, or a variant of it.
     pub pipeline: String,
     /// Frame buffers that it draws into.
     pub eyes: usize,
@@ -49,7 +49,7 @@ pub struct Row {
     pub host_seconds: f64,
 }
 
-/// All pipelines.
+/// A row for each pipeline, and what they share.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
     /// Name and version of this record's layout.
@@ -58,17 +58,17 @@ pub struct Comparison {
     pub machine: String,
     /// Graphics processors and renderers.
     pub boards: [usize; 2],
-    /// Scene.
+    /// Name of the scene that all draw.
     pub scene: String,
-    /// Its triangles.
+    /// Triangles of the scene that all draw.
     pub triangles: usize,
-    /// Tracker.
+    /// Name of the tracker that all have.
     pub tracker: String,
-    /// Predictor.
+    /// Name of the predictor that all have.
     pub predictor: String,
     /// The instant of what is shown from it that a view is predicted for.
     pub aim: Aim,
-    /// Fields simulated.
+    /// Periods of the display that each was simulated for: NTSC fields.
     pub fields: u64,
     /// A row for each.
     pub pipelines: Vec<Row>,

@@ -81,7 +81,8 @@ fn recognised(lines: &[Line<'_>]) -> Result<Layout, LoadError> {
     let header: Vec<&str> = first.text.trim_start_matches('#').split(',').map(bare).collect();
     if header == OWN {
         let columns = in_order(&OWN, [0, 1, 2, 3, 4, 5, 6, 7], 0);
-        let (axes, begins_after) = (Axes::OpenGl, first.number);
+        let axes = Axes::OpenGl;
+        let begins_after = first.number;
         return Ok(Layout { separator: Some(','), columns, n_fields: Some(8), axes, from_first: false, begins_after });
     }
     if first.text.starts_with('#') && is_euroc(&header) {
@@ -144,7 +145,8 @@ impl Layout {
     fn sample(&self, line: &Line<'_>) -> Result<(i128, Pose), LoadError> {
         let fields = line.fields(self.separator);
         let needed = self.columns.iter().map(|column| column.index + 1).max().unwrap_or_default();
-        let (expected, found) = (self.n_fields.unwrap_or(needed), fields.len());
+        let expected = self.n_fields.unwrap_or(needed);
+        let found = fields.len();
         if found < needed || self.n_fields.is_some_and(|exact| exact != found) {
             return Err(LoadError::Fields { line: line.number, expected, found });
         }
