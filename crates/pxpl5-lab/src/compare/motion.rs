@@ -8,7 +8,7 @@ use thiserror::Error;
 use tracking::Pose;
 use tracking::config::Tables;
 use tracking::motion::{
-    End, LoadError, Motion, Pan, Pendulum, Recording, RecordingFormat, Sinusoid, Slide, Still, Synthetic,
+    End, Motion, Pan, Pendulum, Recording, RecordingError, RecordingFormat, Sinusoid, Slide, Still, Synthetic,
 };
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
@@ -52,7 +52,7 @@ pub enum MotionError {
         /// The file.
         path: String,
         /// Why.
-        error: LoadError,
+        error: RecordingError,
     },
 }
 

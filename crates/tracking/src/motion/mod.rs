@@ -11,7 +11,7 @@ mod synthetic;
 
 pub use pan::Pan;
 pub use pendulum::Pendulum;
-pub use recording::{Axes, Columns, End, LoadError, Recording, RecordingFormat};
+pub use recording::{Axes, Columns, End, Recording, RecordingError, RecordingFormat};
 pub use sinusoid::Sinusoid;
 pub use slide::Slide;
 pub use still::Still;
