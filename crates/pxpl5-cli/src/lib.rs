@@ -62,7 +62,7 @@ Exit codes: 0 all went well, 1 something failed, 2 the command line or an experi
 enum Command {
     /// Show both pipelines at work on built-in scenes: a table, pictures, timelines and report.json.
     Demo(demo::DemoArgs),
-    /// Run one experiment.
+    /// Run one experiment and print what came of it.
     Run(run::RunArgs),
     /// Print the effective configuration of an experiment.
     Check(check::CheckArgs),

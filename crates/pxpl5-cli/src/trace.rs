@@ -31,7 +31,7 @@ pub(crate) struct TraceArgs {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Format {
-    /// Perfetto's, in nanoseconds.
+    /// A protobuf of Perfetto, times in nanoseconds.
     Perfetto,
     /// Chrome's JSON, in exact microseconds.
     Chrome,

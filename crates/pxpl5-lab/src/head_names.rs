@@ -8,7 +8,7 @@ use thiserror::Error;
 use tracking::Pose;
 use tracking::config::Tables;
 use tracking::motion::{
-    End, LoadError, Motion, Pan, Pendulum, Recording, RecordingFormat, Sinusoid, Slide, Still, Synthetic,
+    End, Motion, Pan, Pendulum, Recording, RecordingError, RecordingFormat, Sinusoid, Slide, Still, Synthetic,
 };
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
@@ -52,11 +52,11 @@ pub enum MotionError {
         /// The file.
         path: String,
         /// Why.
-        error: LoadError,
+        error: RecordingError,
     },
 }
 
-/// Names of [`motion`].
+/// Every motion that [`motion`] knows, as help and errors say it.
 pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED or a recording \
                            (FILE.csv, FILE.txt or FILE.tum)";
 
@@ -140,7 +140,7 @@ fn recording(path: &Path, replay: &Replay) -> Result<Recording, MotionError> {
     Ok(recording.map_err(|error| MotionError::Load { path: name(), error })?.ending(replay.end))
 }
 
-/// Names of [`tracker`].
+/// Every tracker that [`tracker`] knows, as help and errors say it.
 pub const TRACKERS: &str = "optical, fastrak, flock, flock-patched, 3space or ideal";
 
 /// A tracker of [`TRACKERS`].

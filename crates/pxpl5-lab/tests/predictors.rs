@@ -25,7 +25,8 @@ fn mean(all: &Predictors, kind: PredictorKind) -> f64 {
 
 fn shown(name: &str, all: &Predictors) {
     for one in &all.each {
-        let (numbers, training) = (one.numbers.expect("it ran"), one.training);
+        let numbers = one.numbers.expect("it ran");
+        let training = one.training;
         let interval_ms = training.map_or(0, |training| training.interval_ps / 1_000_000_000);
         println!(
             "{name} {:?}: {:.2} px; interval {interval_ms} ms, jerks {:.3e} {:.3e}, baselines {} {}",
@@ -49,7 +50,8 @@ fn on_a_still_head_a_tuned_filter_costs_nothing_against_no_prediction() {
     ] {
         let all = predictors(&experiment).expect("there is a head");
         shown(name, &all);
-        let (none, kalman) = (mean(&all, PredictorKind::None), mean(&all, PredictorKind::Kalman));
+        let none = mean(&all, PredictorKind::None);
+        let kalman = mean(&all, PredictorKind::Kalman);
         // Each picture shows one report, and reports come 60 times a second: so many independent errors of no prediction, whose
         // lengths deviate by at most their mean.
         let independent =

@@ -130,7 +130,8 @@ impl Ray {
 
     /// Depth at which it meets a triangle, from either side (Moeller and Trumbore 1997).
     fn meets_triangle(&self, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
-        let (ab, ac) = (b - a, c - a);
+        let ab = b - a;
+        let ac = c - a;
         let normal = self.direction.cross(ac);
         let determinant = ab.dot(normal);
         if determinant == 0.0 {

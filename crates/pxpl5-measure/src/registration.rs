@@ -75,7 +75,8 @@ impl<'a> Judge<'a> {
 
 /// A part of the way from one moment to another.
 fn between(from: &Moment, to: &Moment, part: f64) -> Moment {
-    let (begin, end) = (from.objects_at.0 as f64, to.objects_at.0 as f64);
+    let begin = from.objects_at.0 as f64;
+    let end = to.objects_at.0 as f64;
     Moment { pose: from.pose.interpolate(&to.pose, part), objects_at: Time((begin + (end - begin) * part) as u64) }
 }
 

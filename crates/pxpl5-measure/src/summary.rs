@@ -57,7 +57,8 @@ fn copies(outcome: &Outcome, message: Span) -> Copies {
 }
 
 fn region_copy_us(outcome: &Outcome, message: Span) -> f64 {
-    let (mut ms, mut pixels) = (0.0, 0u64);
+    let mut ms = 0.0;
+    let mut pixels = 0u64;
     for arrival in &outcome.observation().arrivals {
         let [_, _, width, height] = arrival.target.grid.rectangle(arrival.target.region);
         ms += (arrival.last_part_at - arrival.first_part_at + message).as_ms();

@@ -151,7 +151,8 @@ fn errors_on_sine_waves_are_the_closed_forms() {
     // Sampled 1,000 times a second, the greatest error is found to (pi f / 1000)^2 / 2 at least.
     for (hz, p_ms) in [(1.0, 50), (1.0, 100), (2.0, 100), (2.0, 200)] {
         let motion = Sinusoid { sway_m: 0.1, ..Sinusoid::of_yaw(5.0, hz) };
-        let (w, p) = (TAU * hz, p_ms as f64 * 1e-3);
+        let w = TAU * hz;
+        let p = p_ms as f64 * 1e-3;
         for (kind, order, closed) in [
             (PredictorKind::None, 0, gain::none as fn(f64) -> gain::Gain),
             (PredictorKind::ConstantVelocity, 1, gain::constant_velocity),

@@ -70,9 +70,8 @@ pub fn edge_scene(yaw_deg: f64) -> Scene {
 ///
 /// As [`Experiment::run`].
 pub fn edge_pictures(config: &MachineConfig, deg_per_s: f64) -> Result<EdgePictures, ExperimentError> {
-    let draw = |viewpoint| draw(config, deg_per_s, viewpoint);
-    let ((conventional, conventional_seen), (just_in_time, just_in_time_seen)) =
-        (draw(Viewpoint::Field)?, draw(Viewpoint::Strip)?);
+    let (conventional, conventional_seen) = draw(config, deg_per_s, Viewpoint::Field)?;
+    let (just_in_time, just_in_time_seen) = draw(config, deg_per_s, Viewpoint::Strip)?;
     Ok(EdgePictures { conventional, conventional_seen, just_in_time, just_in_time_seen })
 }
 
@@ -100,7 +99,8 @@ fn draw(config: &MachineConfig, deg_per_s: f64, viewpoint: Viewpoint) -> Result<
 /// where it stands relative to the head at the moment when the middle of the field lights. Black where nothing is.
 #[must_use]
 pub fn as_seen(picture: &RgbImage, field: PeriodNumber, video: &Video, motion: &dyn Motion) -> RgbImage {
-    let (view, parity) = (HmdView::ntsc(), FieldParity::of_field(field).first_line());
+    let view = HmdView::ntsc();
+    let parity = FieldParity::of_field(field).first_line();
     let when = |x: u32, row: u32| video.when(x, 2 * row + parity, field).unwrap_or_default().0;
     let middle_ps = when(video.width() / 2, video.height() / 4);
     // A head turns by hundredths of a degree in a line, so the rate of the middle serves the whole field.
@@ -117,7 +117,8 @@ pub fn as_seen(picture: &RgbImage, field: PeriodNumber, video: &Video, motion: &
     RgbImage::from_fn(picture.width(), picture.height(), |x, row| {
         let way = moved(x, row);
         let from = (f64::from(x) - way.x, f64::from(row) - way.y / 2.0);
-        let (from_x, from_row) = (from.0.round(), from.1.round());
+        let from_x = from.0.round();
+        let from_row = from.1.round();
         let inside = from_x >= 0.0 && from_row >= 0.0;
         let pixel = inside.then(|| picture.get_pixel_checked(from_x as u32, from_row as u32)).flatten();
         pixel.copied().unwrap_or(Rgb([0; 3]))

@@ -10,7 +10,7 @@ use tracking::predict::{PredictorConfig, PredictorKind, Training};
 /// What one predictor makes of an experiment.
 #[derive(Clone, Debug, Serialize)]
 pub struct PredictorError {
-    /// The predictor.
+    /// The filter that was put between tracker and pipeline.
     pub kind: PredictorKind,
     /// Its numbers, as it ran; nothing where it could not.
     pub numbers: Option<PredictorConfig>,

@@ -176,7 +176,7 @@ fn another_recording_of_the_same_name_is_another_experiment() {
 
 #[test]
 fn a_recording_is_read_beside_its_file_with_the_columns_and_the_end_that_it_says() {
-    let folder = std::env::temp_dir().join(format!("pxpl5-recording-{}", std::process::id()));
+    let folder = std::env::temp_dir().join(format!("pxpl5-recording-columns-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     let poses = "stamp;qx;qy;qz;qw;px;py;pz\n10;0;0;0;1;0;0;0\n1010;0;0;0;1;2000;0;0\n";
     std::fs::write(folder.join("poses.csv"), poses).expect("written");

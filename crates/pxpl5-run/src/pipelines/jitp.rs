@@ -102,7 +102,8 @@ pub(super) fn load(machine: &mut Machine, setup: &Setup, config: &JitpConfig) {
     let reports = Arc::clone(&setup.reports);
     let program = host(gp, config.clone(), setup.host, move |after| reports(after));
     machine.load(config.host, Priority::Foreground, Box::pin(program));
-    let (gp, views) = (machine.processor(config.master, Priority::Foreground), Arc::clone(&setup.wanted));
+    let gp = machine.processor(config.master, Priority::Foreground);
+    let views = Arc::clone(&setup.wanted);
     let counts = Share::new(Arc::clone(&setup.list), 0, 1).counts();
     let view_of = move |wanted: Wanted| views(wanted.number, wanted.known, wanted.shown_at);
     for (level, program) in master(&gp, config, counts, view_of) {

@@ -15,7 +15,8 @@ const WALL_M: f64 = 2.0;
 fn corners() -> [DVec3; 4] {
     // On the wall ahead the three lie on a circle of sqrt(8) times the wall's distance.
     let ring = WALL_M * 8f64.sqrt();
-    let (low, side) = (ring / 2.0, ring * 0.75f64.sqrt());
+    let low = ring / 2.0;
+    let side = ring * 0.75f64.sqrt();
     [
         DVec3::Z * (3.0 * WALL_M),
         DVec3::new(0.0, ring, -WALL_M),

@@ -63,11 +63,11 @@ pub struct Flow {
 /// Where on its way a flow is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Where it begins.
+    /// Where the message sets out.
     First,
     /// Between begin and end.
     Middle,
-    /// Where it ends.
+    /// Where the message has arrived.
     Last,
 }
 

@@ -12,7 +12,7 @@ mod synthetic;
 
 pub use pan::Pan;
 pub use pendulum::Pendulum;
-pub use recording::{Axes, Columns, End, LoadError, Recording, RecordingFormat};
+pub use recording::{Axes, Columns, End, Recording, RecordingError, RecordingFormat};
 pub use shifted::Shifted;
 pub use sinusoid::Sinusoid;
 pub use slide::Slide;

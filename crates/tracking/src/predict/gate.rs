@@ -8,7 +8,7 @@ const LENGTH_TOLERANCE: f64 = 1e-3;
 
 /// What became of the reports that a predictor was given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
+pub struct ReportCounts {
     /// Believed, and given to the filters.
     pub accepted: u64,
     /// Rejected: NaN, infinite, or not a unit quaternion.
@@ -35,12 +35,12 @@ pub(super) struct Gate {
     limits: table::Gate,
     last: Option<Report>,
     jumps_in_a_row: u64,
-    pub(super) counts: Counts,
+    pub(super) counts: ReportCounts,
 }
 
 impl Gate {
     pub(super) fn new(limits: table::Gate) -> Self {
-        Self { limits, last: None, jumps_in_a_row: 0, counts: Counts::default() }
+        Self { limits, last: None, jumps_in_a_row: 0, counts: ReportCounts::default() }
     }
 
     pub(super) fn judge(&mut self, report: &Report) -> Verdict {

@@ -15,7 +15,7 @@ mod tune;
 pub use config::{PredictorConfig, PredictorKind, Start};
 pub use evaluate::{PredictionError, prediction_errors};
 pub use exact::ExactPredictor;
-pub use gate::Counts;
+pub use gate::ReportCounts;
 pub use tune::{Training, Tuned, training_seed, tune};
 
 use crate::pose::Pose;
@@ -31,5 +31,5 @@ pub trait Predictor: Send {
     fn predict(&self, at_ps: u64) -> Pose;
 
     /// What became of the reports so far.
-    fn counts(&self) -> Counts;
+    fn counts(&self) -> ReportCounts;
 }

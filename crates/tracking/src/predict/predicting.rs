@@ -2,7 +2,7 @@ use glam::{DQuat, DVec3};
 
 use super::Predictor;
 use super::channel::Channel;
-use super::gate::{Counts, Gate, Verdict};
+use super::gate::{Gate, ReportCounts, Verdict};
 use crate::config as table;
 use crate::pose::Pose;
 use crate::time::span_s;
@@ -57,7 +57,7 @@ impl<P: Channel<DVec3>, O: Channel<DQuat>> Predictor for GatedFilters<P, O> {
         }
     }
 
-    fn counts(&self) -> Counts {
+    fn counts(&self) -> ReportCounts {
         self.gate.counts
     }
 }

@@ -215,7 +215,8 @@ fn rates<M: Motion + ?Sized>(motion: &M, reports: &[Report]) -> [f64; 4] {
     let mut squares = [0.0; 4];
     for pair in reports.windows(2) {
         let dt_s = span_s(pair[0].measured_ps, pair[1].measured_ps);
-        let (before, after) = (at(&pair[0]), at(&pair[1]));
+        let before = at(&pair[0]);
+        let after = at(&pair[1]);
         let four: [DVec3; 4] = [after.0, (after.0 - before.0) / dt_s, after.1, (after.1 - before.1) / dt_s];
         squares.iter_mut().zip(four).for_each(|(sum, rate)| *sum += rate.length_squared());
     }

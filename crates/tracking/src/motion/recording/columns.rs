@@ -1,6 +1,6 @@
 use std::fmt;
 
-use super::LoadError;
+use super::RecordingError;
 
 /// What a mapping must say.
 const EXPECTED: &str = "t (or t_ms, t_us, t_ns), x, y, z (or x_mm, y_mm, z_mm), qw, qx, qy and qz, each with the name or number of a column";
@@ -61,8 +61,8 @@ impl Columns {
     }
 
     /// Says which column holds a field.
-    pub fn map(&mut self, field: &str, column: &str) -> Result<(), LoadError> {
-        let mapping = |found: String| LoadError::Mapping { expected: EXPECTED, found };
+    pub fn map(&mut self, field: &str, column: &str) -> Result<(), RecordingError> {
+        let mapping = |found: String| RecordingError::Mapping { expected: EXPECTED, found };
         let known = FIELDS.iter().find(|known| known.name == field);
         let known = known.ok_or_else(|| mapping(format!("`{field}`")))?;
         if let Some((other, _)) = self.given.iter().find(|(other, _)| other.slot == known.slot) {
@@ -73,10 +73,10 @@ impl Columns {
     }
 
     /// Reads a mapping such as `t_ns=stamp,x=px,y=py`.
-    pub fn parse(text: &str) -> Result<Self, LoadError> {
+    pub fn parse(text: &str) -> Result<Self, RecordingError> {
         let mut columns = Self::default();
         for part in text.split(',') {
-            let mapping = || LoadError::Mapping { expected: EXPECTED, found: format!("`{}`", part.trim()) };
+            let mapping = || RecordingError::Mapping { expected: EXPECTED, found: format!("`{}`", part.trim()) };
             let (field, column) = part.split_once('=').ok_or_else(mapping)?;
             columns.map(field.trim(), column)?;
         }
@@ -99,11 +99,11 @@ impl Columns {
     }
 
     /// The columns of a file with this header, in the order of the slots; a header that is none is empty.
-    pub(super) fn in_header(&self, line: u64, header: &[&str]) -> Result<[Column; 8], LoadError> {
+    pub(super) fn in_header(&self, line: u64, header: &[&str]) -> Result<[Column; 8], RecordingError> {
         let mut found: [Option<Column>; 8] = Default::default();
         for (field, wanted) in &self.given {
             let named = header.iter().position(|name| name == wanted);
-            let index = named.or_else(|| number(wanted)).ok_or_else(|| LoadError::Column {
+            let index = named.or_else(|| number(wanted)).ok_or_else(|| RecordingError::Column {
                 line,
                 field: field.name.to_owned(),
                 expected: wanted.clone(),
@@ -112,7 +112,7 @@ impl Columns {
             found[field.slot] = Some(Column { index, name: wanted.clone(), places: field.places });
         }
         let all: Vec<Column> = found.into_iter().flatten().collect();
-        all.try_into().map_err(|_| LoadError::Mapping { expected: EXPECTED, found: self.to_string() })
+        all.try_into().map_err(|_| RecordingError::Mapping { expected: EXPECTED, found: self.to_string() })
     }
 }
 

@@ -5,7 +5,7 @@ use super::LATEST_S;
 /// Why a recording cannot be replayed. Lines count from 1; times are in seconds.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
-pub enum LoadError {
+pub enum RecordingError {
     /// The recording holds no samples.
     #[error("expected at least one sample, found none")]
     Empty,

@@ -8,7 +8,7 @@ mod tests;
 
 pub use axes::Axes;
 pub use columns::Columns;
-pub use error::LoadError;
+pub use error::RecordingError;
 
 use std::io::Read;
 
@@ -78,8 +78,8 @@ impl Recording {
     ///
     /// # Errors
     ///
-    /// [`LoadError`] names line and column, what was expected and what was found.
-    pub fn read(input: impl Read) -> Result<Self, LoadError> {
+    /// [`RecordingError`] names line and column, what was expected and what was found.
+    pub fn read(input: impl Read) -> Result<Self, RecordingError> {
         Self::read_as(input, &RecordingFormat::default())
     }
 
@@ -89,9 +89,9 @@ impl Recording {
     /// # Errors
     ///
     /// As [`Self::read`].
-    pub fn read_as(mut input: impl Read, format: &RecordingFormat) -> Result<Self, LoadError> {
+    pub fn read_as(mut input: impl Read, format: &RecordingFormat) -> Result<Self, RecordingError> {
         let mut text = String::new();
-        let unreadable = |error: std::io::Error| LoadError::Unreadable { why: error.to_string() };
+        let unreadable = |error: std::io::Error| RecordingError::Unreadable { why: error.to_string() };
         input.read_to_string(&mut text).map_err(unreadable)?;
         Ok(Self { samples: read::samples(&text, &format.columns, format.axes)?, end: End::default() })
     }

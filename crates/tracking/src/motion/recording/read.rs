@@ -3,7 +3,7 @@ use glam::{DQuat, DVec3};
 use super::axes::Axes;
 use super::columns::{Column, Columns};
 use super::decimal::scaled;
-use super::{LATEST_S, LoadError, Sample};
+use super::{LATEST_S, RecordingError, Sample};
 use crate::pose::Pose;
 use crate::time::PS_PER_S;
 
@@ -58,7 +58,7 @@ fn bare(field: &str) -> &str {
 }
 
 /// Reads the samples of a recording, in this crate's axes.
-pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Vec<Sample>, LoadError> {
+pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Result<Vec<Sample>, RecordingError> {
     let lines = text.trim_start_matches('\u{feff}').lines().zip(1..);
     let lines = lines.map(|(text, number)| Line { number, text: text.trim() }).filter(|line| !line.text.is_empty());
     let lines: Vec<Line<'_>> = lines.collect();
@@ -72,16 +72,17 @@ pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Resu
         let t_ps = layout.time(line, stamp_ps - origin_ps, samples.last())?;
         samples.push((t_ps, axes.convert(pose)));
     }
-    if samples.is_empty() { Err(LoadError::Empty) } else { Ok(samples) }
+    if samples.is_empty() { Err(RecordingError::Empty) } else { Ok(samples) }
 }
 
 /// The layout of a file that says itself what it is.
-fn recognised(lines: &[Line<'_>]) -> Result<Layout, LoadError> {
-    let first = lines.first().ok_or(LoadError::Empty)?;
+fn recognised(lines: &[Line<'_>]) -> Result<Layout, RecordingError> {
+    let first = lines.first().ok_or(RecordingError::Empty)?;
     let header: Vec<&str> = first.text.trim_start_matches('#').split(',').map(bare).collect();
     if header == OWN {
         let columns = in_order(&OWN, [0, 1, 2, 3, 4, 5, 6, 7], 0);
-        let (axes, begins_after) = (Axes::OpenGl, first.number);
+        let axes = Axes::OpenGl;
+        let begins_after = first.number;
         return Ok(Layout { separator: Some(','), columns, n_fields: Some(8), axes, from_first: false, begins_after });
     }
     if first.text.starts_with('#') && is_euroc(&header) {
@@ -97,14 +98,14 @@ fn recognised(lines: &[Line<'_>]) -> Result<Layout, LoadError> {
             begins_after,
         });
     }
-    let numbers = lines.iter().find(|line| !line.text.starts_with('#')).ok_or(LoadError::Empty)?;
+    let numbers = lines.iter().find(|line| !line.text.starts_with('#')).ok_or(RecordingError::Empty)?;
     let fields = numbers.fields(None);
     if fields.len() == TUM.len() && fields.iter().all(|field| field.parse::<f64>().is_ok()) {
         let columns = in_order(&TUM, TUM_ORDER, 0);
         let axes = Axes::Optical;
         return Ok(Layout { separator: None, columns, n_fields: Some(8), axes, from_first: true, begins_after: 0 });
     }
-    Err(LoadError::Format { line: first.number, found: first.text.to_owned() })
+    Err(RecordingError::Format { line: first.number, found: first.text.to_owned() })
 }
 
 /// Whether a header is that of a EuRoC ground truth: what follows the first eight columns (velocity, biases) is left alone.
@@ -119,15 +120,15 @@ fn in_order(names: &[&str; 8], order: [usize; 8], time_places: i32) -> [Column; 
 }
 
 /// The layout of a file whose columns are said.
-fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, LoadError> {
-    let first = lines.first().ok_or(LoadError::Empty)?;
+fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, RecordingError> {
+    let first = lines.first().ok_or(RecordingError::Empty)?;
     let separator = [',', ';', '\t'].into_iter().find(|separator| first.text.contains(*separator));
     let header = Line { number: first.number, text: first.text.trim_start_matches('#').trim() };
     let fields = header.fields(separator);
     let has_header = !fields.iter().all(|field| field.parse::<f64>().is_ok());
     let names = if has_header { fields } else { Vec::new() };
     if !has_header && !columns.are_numbers() {
-        return Err(LoadError::Format { line: first.number, found: first.text.to_owned() });
+        return Err(RecordingError::Format { line: first.number, found: first.text.to_owned() });
     }
     Ok(Layout {
         separator,
@@ -141,12 +142,13 @@ fn mapped(lines: &[Line<'_>], columns: &Columns) -> Result<Layout, LoadError> {
 
 impl Layout {
     /// The stamp of a line in picoseconds, and its pose in the recorded axes.
-    fn sample(&self, line: &Line<'_>) -> Result<(i128, Pose), LoadError> {
+    fn sample(&self, line: &Line<'_>) -> Result<(i128, Pose), RecordingError> {
         let fields = line.fields(self.separator);
         let needed = self.columns.iter().map(|column| column.index + 1).max().unwrap_or_default();
-        let (expected, found) = (self.n_fields.unwrap_or(needed), fields.len());
+        let expected = self.n_fields.unwrap_or(needed);
+        let found = fields.len();
         if found < needed || self.n_fields.is_some_and(|exact| exact != found) {
-            return Err(LoadError::Fields { line: line.number, expected, found });
+            return Err(RecordingError::Fields { line: line.number, expected, found });
         }
         let [time, numbers @ ..] = &self.columns;
         let stamp_ps = scaled(fields[time.index], 12 - time.places);
@@ -160,36 +162,36 @@ impl Layout {
         Ok((stamp_ps, Pose { position: DVec3::new(x, y, z), orientation }))
     }
 
-    fn unit_quaternion(&self, line: &Line<'_>, q: DQuat) -> Result<DQuat, LoadError> {
+    fn unit_quaternion(&self, line: &Line<'_>, q: DQuat) -> Result<DQuat, RecordingError> {
         let found = q.length();
         if (found - 1.0).abs() <= LENGTH_TOLERANCE {
             return Ok(q.normalize());
         }
         let names: Vec<&str> = self.columns[4..].iter().map(|column| column.name.as_str()).collect();
-        Err(LoadError::NotUnit { line: line.number, columns: names.join(","), found })
+        Err(RecordingError::NotUnit { line: line.number, columns: names.join(","), found })
     }
 
     /// The instant of a sample, after that of the one before.
-    fn time(&self, line: &Line<'_>, t_ps: i128, previous: Option<&Sample>) -> Result<u64, LoadError> {
+    fn time(&self, line: &Line<'_>, t_ps: i128, previous: Option<&Sample>) -> Result<u64, RecordingError> {
         let column = self.columns[0].name.clone();
         let line = line.number;
         let found_s = t_ps as f64 / PS_PER_S as f64;
         if let Some((previous_ps, _)) = previous.filter(|(previous_ps, _)| t_ps <= i128::from(*previous_ps)) {
             let previous_s = *previous_ps as f64 / PS_PER_S as f64;
-            return Err(LoadError::NotRising { line, column, previous_s, found_s });
+            return Err(RecordingError::NotRising { line, column, previous_s, found_s });
         }
         let latest_ps = LATEST_S as i128 * i128::from(PS_PER_S);
         let in_range = u64::try_from(t_ps).ok().filter(|_| t_ps <= latest_ps);
-        in_range.ok_or(LoadError::TimeOutOfRange { line, column, found_s })
+        in_range.ok_or(RecordingError::TimeOutOfRange { line, column, found_s })
     }
 }
 
-fn number(line: &Line<'_>, column: &Column, text: &str) -> Result<f64, LoadError> {
+fn number(line: &Line<'_>, column: &Column, text: &str) -> Result<f64, RecordingError> {
     let parsed = text.parse().ok().filter(|x: &f64| x.is_finite());
     let number = parsed.ok_or_else(|| not_a_number(line, column, text))?;
     Ok(if column.places == 3 { number / 1e3 } else { number })
 }
 
-fn not_a_number(line: &Line<'_>, column: &Column, found: &str) -> LoadError {
-    LoadError::NotANumber { line: line.number, column: column.name.clone(), found: found.to_owned() }
+fn not_a_number(line: &Line<'_>, column: &Column, found: &str) -> RecordingError {
+    RecordingError::NotANumber { line: line.number, column: column.name.clone(), found: found.to_owned() }
 }

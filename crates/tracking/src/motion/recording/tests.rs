@@ -3,7 +3,7 @@ use crate::time::{PS_PER_MS, PS_PER_S};
 
 const HEADER: &str = "time_s,x,y,z,qw,qx,qy,qz\n";
 
-fn load(rows: &str) -> Result<Recording, LoadError> {
+fn load(rows: &str) -> Result<Recording, RecordingError> {
     Recording::read(format!("{HEADER}{rows}").as_bytes())
 }
 
@@ -68,9 +68,9 @@ fn bad_rows_are_named_by_line_and_column_and_times_are_in_seconds() {
 
 #[test]
 fn an_empty_recording_is_an_error() {
-    assert_eq!(Recording::read(&b""[..]), Err(LoadError::Empty));
-    assert_eq!(Recording::read(&b"# nothing but a comment\n"[..]), Err(LoadError::Empty));
-    assert_eq!(load(""), Err(LoadError::Empty));
+    assert_eq!(Recording::read(&b""[..]), Err(RecordingError::Empty));
+    assert_eq!(Recording::read(&b"# nothing but a comment\n"[..]), Err(RecordingError::Empty));
+    assert_eq!(load(""), Err(RecordingError::Empty));
 }
 
 #[test]
@@ -83,7 +83,7 @@ fn columns_that_nobody_knows_are_an_error_that_says_what_is_known() {
 
 #[test]
 fn bytes_that_are_not_text_are_an_error() {
-    assert!(matches!(Recording::read(&b"\xff\xfe"[..]), Err(LoadError::Unreadable { .. })));
+    assert!(matches!(Recording::read(&b"\xff\xfe"[..]), Err(RecordingError::Unreadable { .. })));
 }
 
 // One motion in three kinds of file. The head stands at (0, 1.7, 0) and looks along -z; half a second later it has turned a quarter
