@@ -54,7 +54,7 @@ fn pipeline_of<P: Pipeline + Copy>(experiment: &Experiment) -> Result<P, Experim
 /// Fields that an estimate looks at: enough for a steady state, and for some of the views of a head that moves.
 const ESTIMATED_FIELDS: (u64, u64) = (24, 60);
 
-/// The most primitives of an experiment's scene, its first ones, with which a closed form has every picture that is due shown.
+/// The most primitives to which an experiment's scene can be decimated so that.
 /// A head with a tracker is left out: the scene's own motion stands for it.
 fn triangles_in_time(
     experiment: &Experiment,
@@ -64,7 +64,7 @@ fn triangles_in_time(
     let plain = experiment.clone().without_head().fields(experiment.length().clamp(least, most));
     let whole = Arc::clone(plain.scene());
     let is_in_time = |primitives: usize| {
-        let scene = whole.truncated(primitives).ok()?;
+        let scene = whole.decimated(primitives).ok()?;
         let due = summary(&plain.clone().with_scene(scene)).ok()?.due?;
         Some(due.not_shown() == 0)
     };

@@ -1,5 +1,6 @@
 //! What ends a command early.
 
+use pxpl5::compare::CompareError;
 use pxpl5::sweep::SweepError;
 use pxpl5::{ExperimentError, FileError, SnapshotError};
 use std::fmt::Display;
@@ -57,6 +58,15 @@ impl From<SweepError> for CliError {
             SweepError::File(error) => error.into(),
             SweepError::NotEmpty { .. } | SweepError::Foreign { .. } => Self::usage(error),
             _ => Self::failure(error),
+        }
+    }
+}
+
+impl From<CompareError> for CliError {
+    fn from(error: CompareError) -> Self {
+        match error {
+            CompareError::Settings(error) => error.into(),
+            _ => Self::usage(error),
         }
     }
 }

@@ -1,11 +1,30 @@
 //! `pxpl5 compare` as a user starts it.
 
+use serde_json::Value;
 use std::path::PathBuf;
 use std::process::{Command, Output};
 
-fn compare(arguments: &[&str]) -> Output {
-    let output = Command::new(env!("CARGO_BIN_EXE_pxpl5")).arg("compare").args(arguments).output();
+fn pxpl5(command: &str, arguments: &[&str]) -> Output {
+    let output = Command::new(env!("CARGO_BIN_EXE_pxpl5")).arg(command).args(arguments).output();
     output.expect("the command is built")
+}
+
+fn compare(arguments: &[&str]) -> Output {
+    pxpl5("compare", arguments)
+}
+
+fn json(output: &Output) -> Value {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON and nothing else")
+}
+
+fn rows(comparison: &Value) -> &Vec<Value> {
+    comparison["pipelines"].as_array().expect("a list")
+}
+
+fn row<'a>(comparison: &'a Value, name: &str) -> &'a Value {
+    let named = rows(comparison).iter().find(|row| row["pipeline"] == name);
+    named.unwrap_or_else(|| panic!("no row {name}"))
 }
 
 fn folder(name: &str) -> PathBuf {
@@ -15,30 +34,87 @@ fn folder(name: &str) -> PathBuf {
 }
 
 #[test]
-fn json_lists_a_row_for_each_pipeline_with_latency_error_updates_and_triangles() {
-    let output = compare(&["--motion", "pan:200", "--scene", "full-screen:2", "--fields", "24", "--json"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON and nothing else");
-    let rows = json["pipelines"].as_array().expect("a list");
-    let names: Vec<_> = rows.iter().filter_map(|row| row["pipeline"].as_str()).collect();
+fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up() {
+    let arguments = ["--head", "pan:200", "--scene", "full-screen:2", "--fields", "30", "--seeds", "2", "--no-limits"];
+    let json = json(&compare(&[arguments.as_slice(), &["--json"]].concat()));
+    assert_eq!(json["seeds"].as_array().map(Vec::len), Some(2));
+    let names: Vec<_> = rows(&json).iter().filter_map(|row| row["pipeline"].as_str()).collect();
     for name in ["rendering-control", "slats", "vdrt", "frameless", "ideal", "jitp-field", "jitp-scanline-racing"] {
         assert!(names.contains(&name), "{name} is not among {names:?}");
     }
-    for row in rows.iter().filter(|row| row["pipeline"] != "ideal") {
-        assert!(row["end_to_end"]["total_ms"].as_f64() > Some(0.0), "{row}");
-        assert!(row["error"]["pixels"]["mean"].as_f64() > Some(0.0), "{row}");
-        assert!(row["updates_hz"].as_f64() > Some(0.0) && row["triangles_possible"].as_u64() > Some(0), "{row}");
+    for row in rows(&json) {
+        let mean_px = row["error"]["mean_px"]["mean"].as_f64().expect("every pipeline can draw two triangles");
+        assert!(row["error"]["mean_px"]["low"].as_f64() <= Some(mean_px), "{row}");
+        assert!(row["error"]["pixels"]["p50"].as_f64() <= row["error"]["pixels"]["p99"].as_f64(), "{row}");
+        let parts: f64 = row["causes"].as_array().expect("a list").iter().filter_map(|c| c["px"]["mean"].as_f64()).sum();
+        assert!((parts - mean_px).abs() < 1e-9, "{parts} of {mean_px}: {row}");
+    }
+    for row in rows(&json).iter().filter(|row| row["pipeline"] != "ideal") {
+        assert!(row["head_to_light_ms"]["mean"].as_f64() > Some(0.0), "{row}");
+        assert!(row["prediction_interval_ms"]["mean"].as_f64() > Some(0.0), "{row}");
+        assert!(row["updates_hz"]["mean"].as_f64() > Some(0.0), "{row}");
+        assert_eq!(row["predictors"].as_array().map(Vec::len), Some(4), "{row}");
     }
 }
 
 #[test]
-fn a_folder_gets_the_chart_and_the_four_pictures() {
+fn boards_triangles_seeds_and_any_setting_are_those_of_the_command_line() {
+    let json = json(&compare(&[
+        "--gps", "17", "--renderers", "9", "--set", "gp.triangle_ns=20000", "--scene", "mig", "--triangles",
+        "60", "--fields", "24", "--seeds", "1", "--seed", "7", "--no-limits", "--json",
+    ]));
+    assert_eq!(json["boards"], serde_json::json!([17, 9]));
+    assert_eq!(json["seeds"], serde_json::json!([7]));
+    assert!(json["triangles"].as_u64().is_some_and(|n| (40..=60).contains(&n)), "{}", json["triangles"]);
+}
+
+#[test]
+fn what_is_too_heavy_for_a_pipeline_says_so_and_what_it_could_draw_as_limit_does() {
+    let settings = ["--machine", "small-hmd", "--set", "fields=24"];
+    let json = json(&compare(
+        &[settings.as_slice(), &["--scene", "mig", "--seeds", "1", "--head", "still", "--json"]].concat(),
+    ));
+    let racing = row(&json, "jitp-scanline-racing");
+    let could = racing["triangles_possible"].as_u64().expect("limits are searched for");
+    let failure = racing["failure"].as_str().expect("a line of the Mig takes far longer than a line lasts");
+    assert!(failure.contains("too heavy") && failure.contains(&format!("could draw {could} ")), "{failure}");
+    assert!(racing["error"]["mean_px"]["mean"].is_null() && racing["head_to_light_ms"]["mean"].is_null(), "{racing}");
+    for name in ["slats", "jitp-scanline-racing"] {
+        let limit = pxpl5("limit", &["--pipeline", name, "--machine", "small-hmd", "--json"]);
+        let limit: Value = serde_json::from_slice(&limit.stdout).expect("an object");
+        assert_eq!(limit["triangles"], row(&json, name)["triangles_possible"], "{name}");
+    }
+}
+
+#[test]
+fn a_folder_gets_the_tables_the_drawings_of_the_run_and_the_four_pictures() {
     let out = folder("files");
     let path = out.to_str().expect("a plain path");
-    let output = compare(&["--fields", "20", "--no-triangles", "--out", path]);
+    let output = compare(&["--fields", "24", "--seeds", "2", "--scene", "full-screen:2", "--no-limits", "--out", path]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let svg = std::fs::read_to_string(out.join("error.svg")).expect("the chart");
-    assert!(svg.contains("90 ms: mean") && svg.contains("50 ms: mean"));
+    let text = |name: &str| std::fs::read_to_string(out.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let json: Value = serde_json::from_str(&text("comparison.json")).expect("JSON");
+    let table = text("rows.csv");
+    let mut lines = table.lines();
+    let header: Vec<_> = lines.next().expect("a header").split(',').collect();
+    let mean = header.iter().position(|name| *name == "error_px_mean").expect("a column");
+    for (line, row) in lines.zip(rows(&json)) {
+        let cell: f64 = line.split(',').nth(mean).and_then(|cell| cell.parse().ok()).expect("a number");
+        assert_eq!(Some(cell), row["error"]["mean_px"]["mean"].as_f64(), "{line}");
+    }
+    assert!(text("errors.csv").lines().count() > rows(&json).len());
+    let drawings =
+        ["error-over-time.svg", "error-distribution.svg", "error-over-latency.svg", "error-over-prediction.svg"];
+    for name in drawings {
+        let drawing = text(name);
+        assert!(drawing.contains("rendering-control") && drawing.contains("jitp-field"), "{name}");
+    }
+    let gallery = text("gallery.html");
+    for name in ["rendering-control", "slats", "vdrt", "frameless", "jitp-field", "jitp-scanline-racing"] {
+        assert!(gallery.contains(&format!("{name}: ")), "{name} is not in the gallery");
+        let picture = image::open(out.join(format!("picture-{name}.png"))).expect("two triangles are complete");
+        assert_eq!((picture.width(), picture.height()), (640, 480));
+    }
     for name in ["conventional-computed", "conventional-seen", "just-in-time-computed", "just-in-time-seen"] {
         let picture = image::open(out.join(format!("edge-{name}.png"))).expect("a picture");
         assert_eq!((picture.width(), picture.height()), (640, 240));
@@ -49,11 +125,13 @@ fn a_folder_gets_the_chart_and_the_four_pictures() {
 #[test]
 fn what_is_wrong_with_an_option_is_said_and_the_exit_code_is_2() {
     for (arguments, expected) in [
-        (["--motion", "pan:fast"], "such as pan:200"),
-        (["--motion", "dance"], "expected still, pan:DEG_PER_S"),
+        (["--head", "pan:fast"], "such as pan:200"),
+        (["--head", "dance"], "expected still, pan:DEG_PER_S"),
         (["--tracker", "sonar"], "expected optical, fastrak"),
         (["--predict", "oracle"], "expected none, velocity"),
         (["--fields", "3"], "found 3"),
+        (["--seeds", "0"], "--seeds"),
+        (["--pipeline", "slats"], "pxpl5 run --pipeline"),
         (["--machine", "smal-hmd"], "small-hmd"),
     ] {
         let output = compare(&arguments);

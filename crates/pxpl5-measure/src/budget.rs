@@ -49,18 +49,6 @@ impl Budget {
     fn of_pictures(outcome: &Outcome) -> Vec<[f64; 6]> {
         let Some(head) = outcome.head() else { return Vec::new() };
         let sampled: BTreeMap<ViewNumber, Sampled> = head.sampled().into_iter().map(|s| (s.number, s)).collect();
-        Self::mean(&Self::of_pictures(outcome))
-    }
-
-    /// From the pose to the light of each picture's middle, milliseconds, in order.
-    #[must_use]
-    pub fn totals_ms(outcome: &Outcome) -> Vec<f64> {
-        Self::of_pictures(outcome).iter().map(|stages| stages.iter().sum()).collect()
-    }
-
-    fn of_pictures(outcome: &Outcome) -> Vec<[f64; 6]> {
-        let Some(head) = outcome.head() else { return Vec::new() };
-        let sampled: BTreeMap<ViewNumber, Sampled> = head.sampled().into_iter().map(|s| (s.number, s)).collect();
         let pictures = outcome.complete_pictures();
         pictures.filter_map(|times| Self::of_picture(outcome, times, sampled.get(&times.view)?)).collect()
     }

@@ -119,7 +119,7 @@ impl<'a> RasterOffsets<'a> {
 fn pose_of_field(display: &dyn Display, shown: &Shown<'_>, field: PeriodNumber) -> Option<Pose> {
     let x = display.surfaces().first()?.width / 2;
     let (y, _) = display.rows_lit(field);
-    match shown.drawn(x, y, field, display.lights(0, x, y, field)?)?.drawn {
+    match shown.drawn(x, y, field, display.lights(0, x, y, field)?)? {
         Drawn::View(moment) => Some(moment.pose),
         Drawn::Between { .. } | Drawn::Shifted(..) => None,
     }

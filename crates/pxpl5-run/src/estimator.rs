@@ -75,7 +75,7 @@ impl<'a> Estimator<'a> {
             Some(Cause::Noise) => Way::Following(follower_of(views, tracker.without_noise())),
             Some(Cause::Latency) => Way::AtOnce(follower_of(views, tracker.without_latency())),
             Some(Cause::Prediction) => {
-                let exact = Box::new(ExactPredictor::new(head.motion()));
+                let exact = Box::new(ExactPredictor::new(head.motion(), head.predictor().gate));
                 Way::Following(Follower::new(Arc::clone(views.reports()), exact))
             }
             Some(Cause::Sampling) => Way::Fresh(model_of(tracker.without_polling())),

@@ -9,7 +9,7 @@ use crate::statistics::Statistics;
 use pxpl5_display::{Aim, LightSpan};
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// Fields of the run that tells how far ahead firmware predicts that knows itself when its views are seen. As many as its
@@ -38,7 +38,7 @@ impl Experiment {
             return Ok(Preparation::default());
         }
         let outcome = if knows_when_seen { self.short_rehearsal(head)? } else { self.rehearsal(head, self.fields)? };
-        let interval_ps = interval_ps(&outcome).filter(|_| head.is_to_be_tuned());
+        let interval_ps = interval_ps(&outcome, head.aim()).filter(|_| head.is_to_be_tuned());
         Ok(Preparation {
             rehearsal: (!knows_when_seen).then(|| rehearsed(&outcome, head.aim())),
             head: interval_ps.map(|interval_ps| Arc::new(head.tuned_for(interval_ps))),
@@ -53,24 +53,23 @@ impl Experiment {
 
     fn short_rehearsal(&self, head: &Head) -> Result<Outcome, ExperimentError> {
         match self.rehearsal(head, self.fields.min(INTERVAL_FIELDS)) {
-            Ok(outcome) if interval_ps(&outcome).is_some() => Ok(outcome),
+            Ok(outcome) if interval_ps(&outcome, head.aim()).is_some() => Ok(outcome),
             Ok(_) | Err(ExperimentError::TooShort { .. }) => self.rehearsal(head, self.fields),
             Err(error) => Err(error),
         }
     }
 }
 
-/// Mean time from the instant at which the newest report of a view was true to the light of the view's picture, to the nearest
-/// millisecond; `None` where no picture was drawn for a report.
-fn interval_ps(outcome: &Outcome) -> Option<u64> {
+/// Mean time from the instant at which the newest report of a view was true to the one that the view is drawn for, to the nearest
+/// millisecond; `None` where no picture was complete whose view had a report.
+fn interval_ps(outcome: &Outcome, aim: Aim) -> Option<u64> {
     let head = outcome.head()?;
-    let measured: BTreeMap<ViewNumber, _> =
+    let measured: BTreeMap<ViewNumber, Time> =
         head.sampled().into_iter().filter_map(|sampled| Some((sampled.number, sampled.measured_at?))).collect();
-    let of_picture = outcome.complete_pictures().filter_map(|times| {
-        let light = outcome.pipeline().light(outcome.record(), times);
-        Some(light.since(*measured.get(&times.view)?).as_ms())
-    });
-    let intervals = Statistics::of(of_picture);
+    let complete: BTreeSet<ViewNumber> = outcome.complete_pictures().map(|times| times.view).collect();
+    let shown = shown(outcome).into_iter().filter(|(view, _)| complete.contains(view));
+    let each = shown.filter_map(|(view, shown)| Some(aim.instant(&shown).since(*measured.get(&view)?).as_ms()));
+    let intervals = Statistics::of(each);
     let steps = (intervals.mean * 1e9 / INTERVAL_STEP_PS as f64).round();
     intervals.mean.is_finite().then_some(steps as u64 * INTERVAL_STEP_PS)
 }

@@ -4,7 +4,7 @@ use parameters::{Entry, ParameterTable};
 
 use crate::config::Host;
 use crate::identity::{Settings, write_vector};
-use crate::predict::{PredictorConfig, PredictorKind};
+use crate::predict::PredictorConfig;
 use crate::tracker::{Fault, HostLine, MagneticDistortion, SerialLine, TrackerConfig};
 
 impl TrackerConfig {
@@ -77,18 +77,6 @@ fn write_fault(settings: &mut Settings, fault: &Fault) {
         Fault::NotANumber { probability } => settings("tracker.fault.not_a_number", probability),
         Fault::Jump { probability, distance_m, angle_deg } => {
             settings("tracker.fault.jump", &format_args!("{probability} {distance_m} {angle_deg}"));
-        }
-    }
-}
-
-impl PredictorKind {
-    /// Its name in lists of settings.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::ConstantVelocity => "constant-velocity",
-            Self::ConstantAcceleration => "constant-acceleration",
-            Self::Kalman => "kalman",
         }
     }
 }

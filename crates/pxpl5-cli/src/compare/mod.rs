@@ -1,6 +1,7 @@
 //! `pxpl5 compare`: every way to fight latency side by side.
 
 mod drawings;
+mod gallery;
 mod table;
 
 use crate::error::CliError;
@@ -8,8 +9,8 @@ use crate::output::OutputFolder;
 use crate::settings::SettingArgs;
 use crate::terminal;
 use pxpl5::compare::{CompareQuery, LEAST_SEEDS, edge_pictures};
+use pxpl5::views::png_bytes;
 use pxpl5::{ExperimentFile, MachineConfig};
-use std::io::Cursor;
 use std::path::PathBuf;
 
 /// What is compared.
@@ -32,8 +33,8 @@ pub(crate) struct CompareArgs {
     /// Do not search for the most triangles that each pipeline can draw in time.
     #[arg(long, alias = "no-triangles")]
     no_limits: bool,
-    /// Write comparison.json, rows.csv, errors.csv, the drawings (error over time, distribution, error against latency and against
-    /// prediction interval, causes) and the pictures of a vertical edge into this folder.
+    /// Write into this folder: comparison.json, rows.csv, errors.csv, the drawings (error over time, its distribution, against latency
+    /// and against prediction interval), gallery.html with the picture of every pipeline, and the pictures of a vertical edge.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Speed of the pan of the pictures, degrees per second.
@@ -86,6 +87,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
         for (name, text) in drawings::files(&comparison) {
             folder.put(name, text.as_bytes())?;
         }
+        gallery::put(folder, &comparison, &query.gallery(|_, _| ())?)?;
         edges(&query, args.edge_pan, folder)?;
     }
     folder.map(OutputFolder::commit).transpose()?;
@@ -122,9 +124,8 @@ fn edges(query: &CompareQuery, deg_per_s: f64, folder: &mut OutputFolder) -> Res
         ("edge-just-in-time-computed.png", &plates.just_in_time),
         ("edge-just-in-time-seen.png", &plates.just_in_time_seen),
     ] {
-        let mut bytes = Cursor::new(Vec::new());
-        picture.write_to(&mut bytes, image::ImageFormat::Png).map_err(CliError::failure)?;
-        folder.put(name, bytes.get_ref())?;
+        let texts = [("pan, degrees per second", deg_per_s.to_string())];
+        folder.put(name, &png_bytes(picture, &texts).map_err(CliError::failure)?)?;
     }
     Ok(())
 }

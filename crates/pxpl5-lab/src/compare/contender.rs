@@ -16,13 +16,17 @@ pub(super) struct Contender {
 /// where they are seen leave the raster offset a picture to work on.
 const TOUCHED: &[(&str, &str)] = &[("binning", "touched")];
 
+/// The same before eyes whose raster is shifted.
+const SHIFTED: &[(&str, &str)] = &[("binning", "touched"), ("head.raster", "vdrt")];
+
 impl Contender {
     fn plain(pipeline: &'static str) -> Self {
         Self { name: pipeline.to_owned(), pipeline, settings: &[], showing: Showing::Plain }
     }
 
     fn of_slats(name: &str, showing: Showing) -> Self {
-        Self { name: name.to_owned(), pipeline: "slats", settings: TOUCHED, showing }
+        let settings = if showing == Showing::RasterOffset { SHIFTED } else { TOUCHED };
+        Self { name: name.to_owned(), pipeline: "slats", settings, showing }
     }
 }
 

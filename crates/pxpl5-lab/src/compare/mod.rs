@@ -4,6 +4,7 @@
 //! over which interval it predicts, how many pixels it is wrong and why, and what it could draw.
 
 mod contender;
+mod gallery;
 mod pictures;
 mod predictors;
 mod query;
@@ -13,6 +14,7 @@ mod trial;
 pub use crate::head_names::{
     MOTIONS, MotionError, Replay, TRACKERS, is_recording, motion, predictor, replayed, tracker, tracker_by,
 };
+pub use gallery::GalleryPicture;
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use predictors::{PredictorError, Predictors, predictors};
 pub use query::{CompareError, CompareQuery, Comparison, LEAST_SEEDS};

@@ -124,7 +124,7 @@ impl CompareQuery {
     }
 
     /// The settings checked with some pipeline.
-    fn any_plan(&self) -> Result<Plan, CompareError> {
+    pub(super) fn any_plan(&self) -> Result<Plan, CompareError> {
         let seed = *self.seeds.first().ok_or(CompareError::NoSeed)?;
         let contenders = contenders(self.shared.registry());
         let first = contenders.first().ok_or(CompareError::NoHead)?;
@@ -171,7 +171,7 @@ impl CompareQuery {
 }
 
 impl Contender {
-    fn is_reference(&self) -> bool {
+    pub(super) fn is_reference(&self) -> bool {
         self.showing == pxpl5_measure::Showing::Ideal
     }
 

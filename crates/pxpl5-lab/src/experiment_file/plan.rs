@@ -279,12 +279,12 @@ impl ExperimentFile {
                 machine.set(parameter, value).map_err(|error| refused(&setting.place, error))?;
             }
         }
-        machine.check().map_err(|error| refused(self.place_of(&error), error))?;
+        machine.check().map_err(|error| refused(self.place_of_error(&error), error))?;
         Ok(machine)
     }
 
     /// Where the number was given that a machine cannot have.
-    fn place_of(&self, error: &ConfigError) -> &str {
+    fn place_of_error(&self, error: &ConfigError) -> &str {
         let key = match error {
             ConfigError::Value { what, .. } => format!("machine.{what}"),
             ConfigError::Parameter { board, error: ParameterError::OutOfLimits { name, .. } } => {

@@ -6,7 +6,7 @@ use super::section::image;
 use super::values::{cell, heading, number_cell, paragraph, row, table};
 use crate::markup::Element;
 
-/// A table of results with what stands around it.
+/// A table of results with what stands around it; without columns only that.
 #[derive(Clone, Debug, Default)]
 pub struct PageTable {
     /// What stands over it.
@@ -34,7 +34,9 @@ fn section(of: &PageTable) -> Element {
     section.end_line();
     of.about.iter().for_each(|text| section.add_line(&paragraph(text)));
     let names: Vec<&str> = of.columns.iter().map(String::as_str).collect();
-    section.add_line(&table(&names, of.rows.iter().map(|cells| row(cells.iter().map(|text| shown(text))))));
+    if !names.is_empty() {
+        section.add_line(&table(&names, of.rows.iter().map(|cells| row(cells.iter().map(|text| shown(text))))));
+    }
     let charts = of.charts.iter().map(|chart| figure("image/svg+xml", chart));
     let pictures = of.pictures.iter().map(|picture| figure("image/png", picture));
     let figures: Vec<Element> = charts.chain(pictures).collect();

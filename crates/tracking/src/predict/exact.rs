@@ -1,7 +1,8 @@
 use glam::DQuat;
 
 use super::Predictor;
-use super::gate::{Counts, Gate, Verdict};
+use super::gate::{Gate, ReportCounts, Verdict};
+use crate::config as table;
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tracker::Report;
@@ -18,9 +19,9 @@ pub struct ExactPredictor<M> {
 }
 
 impl<M: Motion> ExactPredictor<M> {
-    /// For a head that moves so.
-    pub fn new(motion: M) -> Self {
-        Self { motion, gate: Gate::default(), newest: None }
+    /// For a head that moves so, believing the reports that a gate lets through.
+    pub fn new(motion: M, gate: table::Gate) -> Self {
+        Self { motion, gate: Gate::new(gate), newest: None }
     }
 }
 
@@ -43,7 +44,7 @@ impl<M: Motion + Send> Predictor for ExactPredictor<M> {
         }
     }
 
-    fn counts(&self) -> Counts {
+    fn counts(&self) -> ReportCounts {
         self.gate.counts
     }
 }
@@ -58,11 +59,12 @@ mod tests {
     fn without_noise_it_knows_where_the_head_will_be() {
         let motion = Pendulum::rig();
         let tracker = TrackerModel::new(TrackerConfig::flock_of_birds().without_noise()).unwrap();
-        let mut exact = ExactPredictor::new(&motion);
+        let mut exact = ExactPredictor::new(&motion, table::Gate::PAPERS);
         for report in tracker.reports(&motion, 1).take(40) {
             exact.observe(&report);
             let later = report.measured_ps + 200_000_000_000;
-            let (predicted, truth) = (exact.predict(later), motion.pose(later));
+            let predicted = exact.predict(later);
+            let truth = motion.pose(later);
             assert!(predicted.distance_m(&truth) < 1e-12 && predicted.angle_deg(&truth) < 1e-6);
         }
     }
@@ -71,7 +73,7 @@ mod tests {
     fn its_error_is_the_error_of_the_report_however_far_it_predicts() {
         let motion = Pan::at(200.0);
         let tracker = TrackerModel::new(TrackerConfig::optical_ceiling()).unwrap();
-        let mut exact = ExactPredictor::new(&motion);
+        let mut exact = ExactPredictor::new(&motion, table::Gate::PAPERS);
         for report in tracker.reports(&motion, 1).take(40) {
             exact.observe(&report);
             let of_report = report.pose.angle_deg(&motion.pose(report.measured_ps));
