@@ -3,12 +3,12 @@
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use pxpl5::compare::compare;
+use pxpl5::compare::CompareQuery;
 use pxpl5::scene::builtin;
 use pxpl5::tracking::motion::Synthetic;
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
-use pxpl5::{Experiment, Head, Jitp, MachineConfig, Pixels, Viewpoint};
+use pxpl5::{Experiment, ExperimentFile, Head, Jitp, MachineConfig, Pixels, Viewpoint};
 use std::sync::Arc;
 
 fn head() -> Arc<Head> {
@@ -17,14 +17,23 @@ fn head() -> Arc<Head> {
     Arc::new(head.expect("the presets are in range"))
 }
 
-/// 10 s of head motion on the Mig, all pipelines, no pixels: to take less than 5 s.
+/// The question of one seed, without the search for limits.
+fn query() -> CompareQuery {
+    let mut shared = ExperimentFile::new();
+    for (key, value) in [("scene", "mig"), ("machine.preset", "small-hmd"), ("head.motion", "synthetic")] {
+        shared.set(key, value, "bench").expect("known");
+    }
+    shared.set("fields", 600, "bench").expect("known");
+    CompareQuery { shared, seeds: vec![1], limits: false }
+}
+
+/// 10 s of head motion on the Mig, all pipelines with every predictor and every cause of error turned off in turn; no pixels.
 fn all_pipelines(criterion: &mut Criterion) {
-    let scene = Arc::new(builtin("mig").expect("built in"));
-    let head = head();
+    let query = query();
     let mut group = criterion.benchmark_group("compare");
     group.sample_size(10);
     group.bench_function("mig, 600 fields", |bencher| {
-        bencher.iter(|| compare(&MachineConfig::small_hmd(), &scene, &head, 600, false).expect("it runs"));
+        bencher.iter(|| query.run(|_, _| ()).expect("it runs"));
     });
     group.finish();
 }

@@ -2,7 +2,7 @@
 
 mod support;
 
-use pxpl5::compare::{compare, edge_scene};
+use pxpl5::compare::{CompareQuery, edge_scene};
 use pxpl5::tracking::motion::{Motion, Pan};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::tracker::TrackerConfig;
@@ -15,43 +15,53 @@ use pxpl5::{Film, FilmOf};
 use std::sync::Arc;
 use support::video;
 
-fn plan(settings: &[(&str, &str)]) -> Plan {
+fn file(settings: &[(&str, &str)]) -> ExperimentFile {
     let mut file = ExperimentFile::new();
     for (path, value) in settings {
         file.set_text(&format!("{path}={value}"), "test").expect("known");
     }
-    file.resolve().expect("an experiment")
+    file
+}
+
+fn plan(settings: &[(&str, &str)]) -> Plan {
+    file(settings).resolve().expect("an experiment")
 }
 
 #[test]
 fn an_experiment_file_gives_the_numbers_of_the_comparison() {
-    let shared = [("scene", "full-screen:2"), ("fields", "40"), ("head.motion", "synthetic:3"), ("pixels", "off")];
-    let on = ("machine.preset", "small-hmd");
-    let comparison = {
-        let plan = plan(&[&shared[..], &[on, ("pipeline", "slats")]].concat());
-        let head = plan.head.as_ref().expect("a motion was given").head();
-        let scene = plan.load_scene().expect("built in");
-        compare(&plan.machine, &scene, &head, plan.fields, false).expect("in range")
-    };
+    let shared = [
+        ("scene", "full-screen:2"),
+        ("fields", "40"),
+        ("head.motion", "synthetic:3"),
+        ("pixels", "off"),
+        ("machine.preset", "small-hmd"),
+    ];
+    let query = CompareQuery { shared: file(&shared), seeds: vec![1], limits: false };
+    let comparison = query.run(|_, _| ()).expect("in range");
     let rows = [
         ("rendering-control", "rendering-control", "plain"),
         ("slats", "slats", "plain"),
-        ("vdrt", "slats", "vdrt"),
         ("frameless", "frameless", "plain"),
         ("jitp-field", "jitp-field", "plain"),
         ("jitp-scanline-racing", "jitp-scanline-racing", "plain"),
         ("jitp-dual-screen", "jitp-dual-screen", "plain"),
         ("jitp-dual-view-racing", "jitp-dual-view-racing", "plain"),
+        ("vdrt", "slats", "vdrt"),
     ];
-    for (name, pipeline, display) in rows {
-        let plan = plan(&[&shared[..], &[on, ("pipeline", pipeline), ("head.display", display)]].concat());
+    for (name, pipeline, raster) in rows {
+        let mut own = vec![("pipeline", pipeline), ("head.raster", raster)];
+        own.extend((name == "vdrt").then_some(("binning", "touched")));
+        let plan = plan(&[&shared[..], &own].concat());
         let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("the scene is small");
         let report = outcome.report();
         let head = report.head.expect("a motion was given");
         let row = comparison.row(name).expect("a row for each");
-        assert!(row.error.judged > 0, "{name}");
-        assert_eq!((&head.error, head.end_to_end), (&row.error, row.end_to_end), "{name}");
-        assert_eq!(report.updates_hz, row.updates_hz, "{name}");
+        assert!(row.error.n > 0, "{name}");
+        assert_eq!((head.error.pixels.mean, head.error.judged), (row.error.mean_px.mean, row.error.n), "{name}");
+        assert_eq!((head.error.pixels.p99, head.end_to_end), (row.error.pixels.p99, row.end_to_end), "{name}");
+        assert_eq!(report.updates_hz, Some(row.updates_hz.mean), "{name}");
+        assert_eq!(head.end_to_end.n, row.head_to_light_ms.n, "{name}");
+        assert!((head.end_to_end.total_ms - row.head_to_light_ms.mean).abs() < 1e-9, "{name}");
     }
 }
 

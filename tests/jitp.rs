@@ -3,7 +3,8 @@
 use glam::DVec3;
 mod support;
 
-use pxpl5::compare::{as_seen, compare, edge_pictures, edge_scene, motion, triangles_possible};
+use pxpl5::compare::{CompareQuery, as_seen, edge_pictures, edge_scene, motion};
+use pxpl5::limit::LimitQuery;
 use pxpl5::scene::{Scene, builtin};
 use pxpl5::tracking::Pose;
 use pxpl5::tracking::motion::{Motion, Pan, Still, Synthetic};
@@ -12,8 +13,9 @@ use pxpl5::tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, seconds};
 use pxpl5::tracking::tracker::{Fault, TrackerConfig};
 use pxpl5::views::charts::LatencyCurve;
 use pxpl5::{
-    Aim, Budget, Experiment, Frameless, Head, Interpolation, Jitp, MachineConfig, Measured, Outcome, Percentiles,
-    PeriodNumber, Pipeline, PixelErrors, Pixels, Registration, RenderingControl, Slats, Viewpoint,
+    Aim, Budget, Experiment, ExperimentFile, Frameless, Head, Interpolation, Jitp, MachineConfig, Measured, Outcome,
+    Percentiles, PeriodNumber, Pipeline, PipelineSettings, PixelErrors, Pixels, Registration, RenderingControl,
+    Showing, Slats, Viewpoint,
 };
 use pxpl5_sim::TraceHash;
 use std::collections::BTreeMap;
@@ -226,8 +228,8 @@ fn lines_that_come_too_late_are_counted_and_nothing_breaks() {
 
 fn possible_in_a_line(preset: &str) -> u32 {
     let config = MachineConfig::preset(preset).expect("listed");
-    let jitp: Arc<dyn Pipeline> = Arc::new(Jitp::new(Viewpoint::Strip, true));
-    triangles_possible(&pxpl5::registry(), &config, &jitp).triangles
+    let query = LimitQuery::of_papers(config, Jitp::new(Viewpoint::Strip, true)).expect("a pipeline of the papers");
+    query.search().expect("it runs on that machine").triangles
 }
 
 #[test]
@@ -327,7 +329,7 @@ fn metal_misplaces_objects_even_for_a_still_head() {
 fn the_raster_offset_removes_a_pan_in_the_middle_and_leaves_the_edges() {
     let outcome = run(Slats::split(), head(Pan::at(PAN), TrackerConfig::ideal(), PredictorKind::ConstantVelocity), 90);
     let plain = PixelErrors::of(&outcome);
-    let offset = PixelErrors::with_raster_offset(&outcome);
+    let offset = PixelErrors::shown(&outcome, Showing::RasterOffset);
     println!("pan, Slats: {:?}\n with offset: {:?}", plain.pixels, offset.pixels);
     assert!(offset.centre_px.max < 0.05, "{:?}", offset.centre_px);
     assert!(offset.pixels.max > 1.0, "a flat raster is shifted, not turned");
@@ -374,14 +376,16 @@ fn every_pipeline_goes_on_when_the_tracker_fails() {
         .into_iter()
         .map(|faults| TrackerConfig { faults, ..TrackerConfig::fastrak() })
         .chain([late, TrackerConfig::flock_of_birds_on_patched_host()]);
+    let registry = pxpl5::registry();
     for tracker in trackers {
-        let config = MachineConfig::small_hmd();
         let head = Arc::new(head(Synthetic::recorded_use(2), tracker, PredictorKind::Kalman));
-        let all = compare(&config, &Arc::new(small()), &head, 45, false).expect("45 fields");
-        for row in &all.pipelines {
-            assert_eq!(row.failure, None, "{}", row.pipeline);
-            let Percentiles { mean, max, .. } = row.error.pixels;
-            assert!(mean.is_finite() && max.is_finite() && row.error.judged > 100, "{} {:?}", row.pipeline, row.error);
+        for entry in registry.pipelines().iter().filter(|entry| entry.compared) {
+            let pipeline = (entry.build)(&PipelineSettings::default());
+            let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, Arc::new(small()));
+            let outcome = experiment.head(Arc::clone(&head)).fields(45).pixels(Pixels::Off).run().expect(entry.name);
+            let errors = PixelErrors::of(&outcome);
+            let Percentiles { mean, max, .. } = errors.pixels;
+            assert!(mean.is_finite() && max.is_finite() && errors.judged > 100, "{} {errors:?}", entry.name);
         }
     }
 }
@@ -411,19 +415,36 @@ fn trace_hash(experiment: &Experiment) -> TraceHash {
 
 #[test]
 fn a_comparison_has_a_row_for_every_pipeline_and_just_in_time_comes_nearest_to_the_ideal() {
-    let head = Arc::new(perfect(Pan::at(PAN)));
-    let all = compare(&MachineConfig::small_hmd(), &Arc::new(small()), &head, 90, false).expect("90 fields");
+    let all = comparison(90).run(|_, _| ()).expect("90 fields");
     let names: Vec<_> = all.pipelines.iter().map(|row| row.pipeline.as_str()).collect();
     println!("{names:?}");
-    assert_eq!(names.len(), 14);
+    assert_eq!(names.len(), 15);
     let json = serde_json::to_value(&all).expect("plain data");
-    assert_eq!(json["pipelines"].as_array().map(Vec::len), Some(14));
-    let mean = |name: &str| all.pixels(name).mean;
+    assert_eq!(json["pipelines"].as_array().map(Vec::len), Some(15));
+    let mean = |name: &str| all.row(name).expect("a row").error.mean_px.mean;
     assert!(mean("ideal") < 1e-3 && mean("jitp-scanline-racing") < 0.1 && mean("jitp-dual-view-racing") < 0.1);
     // All draw for the middle of what they show: one field errs as another, and two fields more.
     assert!((mean("jitp-field-racing") / mean("slats-touched") - 1.0).abs() < 1e-3);
     assert!((mean("jitp-field") / mean("slats-touched") - 1.0).abs() < 1e-3);
     assert!(mean("jitp-field-racing") > 7.0 && mean("rendering-control") > 2.0 * mean("slats-touched"));
+}
+
+/// A pan before walls that stand still, with a tracker that knows where the head is.
+fn comparison(fields: u64) -> CompareQuery {
+    let mut shared = ExperimentFile::new();
+    let pan = format!("pan:{PAN}");
+    let settings = [
+        ("machine.preset", "small-hmd"),
+        ("scene", "room"),
+        ("head.motion", &pan),
+        ("head.tracker", "ideal"),
+        ("head.predict", "velocity"),
+    ];
+    for (key, value) in settings {
+        shared.set(key, value, "test").expect("known");
+    }
+    shared.set("fields", i64::try_from(fields).expect("few"), "test").expect("known");
+    CompareQuery { shared, seeds: vec![1], limits: false }
 }
 
 #[test]
@@ -438,7 +459,6 @@ fn what_cannot_be_compared_is_refused_with_what_was_expected() {
         let error = motion(text).err().map(|error| error.to_string()).unwrap_or_default();
         assert!(error.contains(says), "{text}: {error}");
     }
-    let head = Arc::new(perfect(Pan::at(PAN)));
-    let error = compare(&MachineConfig::small_hmd(), &Arc::new(small()), &head, 3, false).expect_err("too few");
+    let error = comparison(3).run(|_, _| ()).expect_err("too few");
     assert!(error.to_string().contains("found 3"), "{error}");
 }

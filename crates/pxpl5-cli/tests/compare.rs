@@ -46,7 +46,8 @@ fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up
         let mean_px = row["error"]["mean_px"]["mean"].as_f64().expect("every pipeline can draw two triangles");
         assert!(row["error"]["mean_px"]["low"].as_f64() <= Some(mean_px), "{row}");
         assert!(row["error"]["pixels"]["p50"].as_f64() <= row["error"]["pixels"]["p99"].as_f64(), "{row}");
-        let parts: f64 = row["causes"].as_array().expect("a list").iter().filter_map(|c| c["px"]["mean"].as_f64()).sum();
+        let parts: f64 =
+            row["causes"].as_array().expect("a list").iter().filter_map(|c| c["px"]["mean"].as_f64()).sum();
         assert!((parts - mean_px).abs() < 1e-9, "{parts} of {mean_px}: {row}");
     }
     for row in rows(&json).iter().filter(|row| row["pipeline"] != "ideal") {
@@ -60,8 +61,24 @@ fn json_lists_a_row_for_each_pipeline_with_times_and_an_error_whose_parts_add_up
 #[test]
 fn boards_triangles_seeds_and_any_setting_are_those_of_the_command_line() {
     let json = json(&compare(&[
-        "--gps", "17", "--renderers", "9", "--set", "gp.triangle_ns=20000", "--scene", "mig", "--triangles",
-        "60", "--fields", "24", "--seeds", "1", "--seed", "7", "--no-limits", "--json",
+        "--gps",
+        "17",
+        "--renderers",
+        "9",
+        "--set",
+        "gp.triangle_ns=20000",
+        "--scene",
+        "mig",
+        "--triangles",
+        "60",
+        "--fields",
+        "24",
+        "--seeds",
+        "1",
+        "--seed",
+        "7",
+        "--no-limits",
+        "--json",
     ]));
     assert_eq!(json["boards"], serde_json::json!([17, 9]));
     assert_eq!(json["seeds"], serde_json::json!([7]));
