@@ -2,7 +2,7 @@
 //! are (FIXME(accuracy)). Causes stand in ACCURACY.md, which must be what these runs give.
 
 use pxpl5::Level;
-use pxpl5::figures::{Bench, Figures, Row, markdown, run_all};
+use pxpl5::figures::{Bench, Figures, Row, WITHOUT_CLOSED_FORM, markdown, run_all};
 use std::sync::LazyLock;
 
 static FIGURES: LazyLock<Figures> =
@@ -10,6 +10,11 @@ static FIGURES: LazyLock<Figures> =
 
 fn row(id: &str) -> &'static Row {
     FIGURES.rows.iter().find(|row| row.id == id).expect("listed")
+}
+
+/// The rows of which there is a closed form, and so an interval.
+fn varied() -> impl Iterator<Item = &'static Row> {
+    FIGURES.rows.iter().filter(|row| !WITHOUT_CLOSED_FORM.contains(&row.id))
 }
 
 #[track_caller]
@@ -97,6 +102,28 @@ fn the_first_copy_of_a_full_field_begins_after_about_12_8_ms() {
 }
 
 #[test]
+fn the_rig_sees_frames_on_demand_ten_milliseconds_sooner_than_the_paper() {
+    // FIXME(accuracy): published 54 to 57 ms.
+    within("17", 45.0, 49.0);
+    assert!(row("17").misses());
+}
+
+#[test]
+fn ninety_milliseconds_are_1_8_times_as_wrong_as_fifty() {
+    // The ratio of the latencies, but for the bends of the motion within them.
+    within("18", 1.75, 1.8);
+}
+
+#[test]
+fn tracker_and_rendering_together_are_the_parts_that_were_measured_one_by_one() {
+    for (id, rendering) in [("19", row("4").simulated), ("19b", row("9").simulated * 1001.0 / 60.0)] {
+        let of = |name: &str| row(id).details.iter().find(|detail| detail.name == name).expect("listed").value;
+        assert!((of("tracking") + of("rendering") - row(id).simulated).abs() < 1e-9, "{id}");
+        assert!((of("rendering") / rendering - 1.0).abs() < 0.05, "{id}: {} and {rendering}", of("rendering"));
+    }
+}
+
+#[test]
 fn every_row_names_its_source_and_every_miss_its_cause() {
     for row in &FIGURES.rows {
         assert!(row.source.contains("TR94") || row.source.contains("I3D95"), "{}", row.id);
@@ -121,11 +148,11 @@ fn the_joint_sample_of_machines_lies_on_both_sides_of_the_presets() {
 #[test]
 fn what_is_simulated_lies_in_the_interval_of_the_analytic_level_or_within_3_percent_of_it() {
     // The interval stands as it was computed at the other level: it could be anywhere.
-    for row in FIGURES.rows.iter().filter(|row| row.id != "8") {
-        let [low, high] = row.interval.expect("every figure but that of the scenes has one");
+    for row in varied() {
+        let [low, high] = row.interval.expect("every figure with a closed form has one");
         assert!((0.97 * low..=1.03 * high).contains(&row.simulated), "figure {}", row.id);
     }
-    assert_eq!(row("8").interval, None, "no parameter moves it");
+    assert!(WITHOUT_CLOSED_FORM.iter().all(|id| row(id).interval.is_none()), "nothing was varied");
 }
 
 #[test]
@@ -139,7 +166,7 @@ fn three_figures_are_out_of_reach_of_all_parameters_and_the_limits_are_not() {
 fn the_analytic_level_agrees_with_the_transaction_level() {
     // Closed form against events: within 3 %.
     let bench = Bench::new(Level::Analytic).with_mig(2, 60);
-    for row in FIGURES.rows.iter().filter(|row| row.id != "8") {
+    for row in varied() {
         let value = bench.measure(row.id).expect("it runs").value;
         assert!((value / row.simulated - 1.0).abs() < 0.03, "figure {}: {value} and {}", row.id, row.simulated);
     }

@@ -9,7 +9,7 @@
 //! within the range that gives the figure exactly. So the interval of a fitted figure says how much it would be off
 //! if nothing were fitted anew.
 
-use crate::figures::{Bench, FIGURES, Row};
+use crate::figures::{Bench, FIGURES, Row, WITHOUT_CLOSED_FORM};
 use parameters::Standing;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Level;
@@ -106,13 +106,10 @@ fn measure(bench: &Bench, changes: Vec<(String, u64)>) -> Vec<Option<f64>> {
     FIGURES.iter().map(|figure| value_of(&bench, figure.id)).collect()
 }
 
-/// A figure's value; `None` for that of the scenes, and where the experiment gives none.
+/// A figure's value; `None` for one without a closed form, and where the experiment gives none.
 fn value_of(bench: &Bench, id: &str) -> Option<f64> {
-    if id == OF_SCENES { None } else { Some(bench.measure(id).ok()?.value) }
+    if WITHOUT_CLOSED_FORM.contains(&id) { None } else { Some(bench.measure(id).ok()?.value) }
 }
-
-/// The figure that depends on the scenes alone; no parameter moves it.
-const OF_SCENES: &str = "8";
 
 /// Intervals of all figures.
 #[must_use]
@@ -125,7 +122,7 @@ pub fn intervals() -> Vec<Interval> {
     let samples: Vec<u64> = (0..SAMPLES).collect();
     let joint = crate::parallel::map(&samples, |sample| measure(&bench, draw(&variations, *sample)));
     let mut intervals = Vec::new();
-    for (index, figure) in FIGURES.iter().enumerate().filter(|(_, figure)| figure.id != OF_SCENES) {
+    for (index, figure) in FIGURES.iter().enumerate().filter(|(_, figure)| !WITHOUT_CLOSED_FORM.contains(&figure.id)) {
         let nominal = nominal[index].unwrap_or(f64::NAN);
         let ends: Vec<f64> = at_ends.iter().map(|all| all[index].unwrap_or(nominal)).collect();
         let joint = joint.iter().filter_map(|all| all[index]).collect();
@@ -188,7 +185,7 @@ impl Effect {
     }
 }
 
-/// Puts the intervals into the rows, as they were computed; the figure that depends on scenes alone has none.
+/// Puts the intervals into the rows, as they were computed; a figure without a closed form has none.
 pub fn fill(rows: &mut [Row], intervals: &[Interval]) {
     for row in rows {
         let interval = intervals.iter().find(|interval| interval.id == row.id);
@@ -238,7 +235,7 @@ mod tests {
 
     #[test]
     fn the_figure_of_the_scenes_has_no_interval_and_is_not_judged_by_one() {
-        let figure = FIGURES.iter().find(|figure| figure.id == OF_SCENES).expect("listed");
+        let figure = FIGURES.iter().find(|figure| figure.id == "8").expect("listed");
         let mut rows = [Row::new(figure, Measured::from(9.0))];
         fill(&mut rows, &[]);
         assert_eq!((rows[0].interval, rows[0].analytic), (None, None));

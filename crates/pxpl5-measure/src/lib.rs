@@ -4,6 +4,7 @@
 //! |---|---|
 //! | how long, and which part of the machine takes it | [`latency_parts`], [`latency_by_surface`], [`Budget`] |
 //! | how many pixels wrong, and why | [`PixelErrors`], [`Registration`], [`ErrorCauses`] |
+//! | how wrong is a latency by itself | [`LatencyCurve`] |
 //! | what does the viewer see | [`picture`], [`side_by_side`], [`RasterOffsets`] |
 //! | everything as numbers with units | [`Report`], [`Measure`] |
 //!
@@ -14,6 +15,7 @@ mod causes;
 mod content;
 mod errors;
 mod latency;
+mod latency_curve;
 mod measured;
 mod percentiles;
 mod pictures;
@@ -32,6 +34,7 @@ pub use errors::{FieldError, PixelErrors, Showing, UNJUDGED_FIELDS, pixel_errors
 pub use latency::{
     LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition, SurfaceStatistics, latency_by_surface, latency_parts,
 };
+pub use latency_curve::LatencyCurve;
 pub use measured::Measured;
 pub use percentiles::Percentiles;
 pub use pictures::{picture, screen, side_by_side};

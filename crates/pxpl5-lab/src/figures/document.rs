@@ -60,7 +60,8 @@ fn head(text: &mut String, rows: &[Row]) {
          computed at the analytic level and stands as computed; *analytic* is that level with the presets' numbers, so that\n\
          its distance from *simulated* is the level's own error. A figure is *out of reach* when it lies outside of the\n\
          interval even if this is widened by that distance on both sides: an error of the model's rules, not of a number.\n\
-         A figure that is *not varied* is a property of the scenes, which no parameter moves.\n\n\
+         A figure that is *not varied* is a property of the scenes, which no parameter moves, or has a head before the machine,\n\
+         of which there is no closed form.\n\n\
          {} figures, {free} of them free checks with a mean absolute error of {:.1} %; {missed} are missed.\n\n\
          | # | figure | published | simulated | error | analytic | interval | standing |\n\
          |---|---|---|---|---|---|---|---|\n",

@@ -1,5 +1,6 @@
 //! The experiments behind the figures.
 
+use super::heads;
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
 use pphigs::{Binning, Picture, Shading, Share, TransformCost};
@@ -54,7 +55,7 @@ pub struct Bench {
 /// The Mig's loads by seed, computed once for all benches that were cloned from one.
 pub(crate) type MigLoads = Arc<OnceLock<Vec<Vec<Load>>>>;
 
-type Result<T> = std::result::Result<T, ExperimentError>;
+pub(super) type Result<T> = std::result::Result<T, ExperimentError>;
 
 /// TRANSFORM and RENDER of figure 6 (milliseconds): a spread of lengths, because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
@@ -103,6 +104,10 @@ impl Bench {
             "13" => self.limit("slats", Slats::split()),
             "14" => self.limit("slats-1995", Slats::split()),
             "15" => self.time_before_copy(),
+            "17" => heads::rig(&self.machine("small-hmd")?),
+            "18" => Ok(heads::ratio_of_errors()),
+            "19" => heads::tracker_and_rendering(self.machine("small-hmd")?, RenderingControl::stereo()),
+            "19b" => heads::tracker_and_rendering(self.machine("slats")?, Slats::split()),
             _ => Err(ExperimentError::Scene(format!("there is no figure {id}"))),
         }
     }
@@ -293,7 +298,7 @@ fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     Ok(entries as f64 / triangles.max(1) as f64)
 }
 
-fn scene_named(name: &str) -> Result<Arc<Scene>> {
+pub(super) fn scene_named(name: &str) -> Result<Arc<Scene>> {
     builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()))
 }
 
@@ -302,7 +307,7 @@ fn rate_hz(summary: &Summary) -> f64 {
     summary.updates_hz.unwrap_or_default()
 }
 
-fn detail(name: &str, value: f64, unit: &'static str) -> Detail {
+pub(super) fn detail(name: &str, value: f64, unit: &'static str) -> Detail {
     Detail { name: name.to_owned(), value, unit }
 }
 

@@ -10,6 +10,7 @@
 //! Sources: TR94, I3D95; the loads of the experiments are ours.
 
 mod document;
+mod heads;
 mod measure;
 mod row;
 mod table;
@@ -17,7 +18,7 @@ mod table;
 pub use document::markdown;
 pub use measure::{Bench, Detail, Measured};
 pub use row::{MISS_PERCENT, Row, mean_error_percent};
-pub use table::{Basis, FIGURES, Figure};
+pub use table::{Basis, FIGURES, Figure, WITHOUT_CLOSED_FORM};
 
 use crate::intervals::{Interval, fill, intervals};
 use serde::Serialize;

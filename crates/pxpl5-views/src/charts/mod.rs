@@ -3,18 +3,15 @@
 //! | chart | shows |
 //! |---|---|
 //! | [`level_chart`] | speed against error of the levels of modelling |
-//! | [`error_chart`] | error against time that a latency makes of a motion ([`LatencyCurve`]) |
 //! | [`curve_chart`], [`point_chart`] | anything over anything: a comparison's errors over time, latency or share of pixels |
 //! | [`histogram`] | how the latencies of a run are spread |
 //! | [`part_bar`] | where the latency of a run goes |
 
-mod errors;
 mod histogram;
 mod levels;
 mod parts;
 mod plane;
 
-pub use errors::{LatencyCurve, error_chart};
 pub use histogram::histogram;
 pub(crate) use histogram::histogram_element;
 pub use levels::{SpeedAndError, level_chart};
