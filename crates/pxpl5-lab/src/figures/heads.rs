@@ -1,6 +1,6 @@
 //! Experiments with a head: the pendulum rig, and what passes from head to light.
 
-use super::measure::{Measured, Result, detail, scene_named};
+use super::measured::{Measured, Result, detail, scene_named};
 use crate::rig::Rig;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Budget, LatencyCurve};

@@ -1,6 +1,7 @@
 //! The experiments behind the figures.
 
 use super::heads;
+use super::measured::{Measured, Result, detail, scene_named};
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
 use pphigs::{Binning, Picture, Shading, Share, TransformCost};
@@ -12,30 +13,9 @@ use pxpl5_run::{
     Experiment, ExperimentError, Level, Pipeline, Pixels, RenderingControl, Slats, Statistics, Summary,
     WARM_UP_PICTURES, display_list, views,
 };
-use pxpl5_scene::{Hmd, HmdConfig, Scene, builtin};
+use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::Time;
-use serde::Serialize;
 use std::sync::{Arc, OnceLock};
-
-/// A further number of an experiment.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Detail {
-    /// What the number is, in a few words: `standard deviation`.
-    pub name: String,
-    /// The number, in the unit that stands beside it.
-    pub value: f64,
-    /// Unit of the value: `ms`, `fields`, `Hz`, `triangles`.
-    pub unit: &'static str,
-}
-
-/// What an experiment gave.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
-    /// The figure's own number.
-    pub value: f64,
-    /// Further numbers of the same experiment, each with a unit of its own.
-    pub details: Vec<Detail>,
-}
 
 /// A bench for the figures: a level of modelling, and changes to the machine's parameters.
 #[derive(Clone, Debug)]
@@ -54,8 +34,6 @@ pub struct Bench {
 
 /// The Mig's loads by seed, computed once for all benches that were cloned from one.
 pub(crate) type MigLoads = Arc<OnceLock<Vec<Vec<Load>>>>;
-
-pub(super) type Result<T> = std::result::Result<T, ExperimentError>;
 
 /// TRANSFORM and RENDER of figure 6 (milliseconds): a spread of lengths, because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
@@ -298,17 +276,9 @@ fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     Ok(entries as f64 / triangles.max(1) as f64)
 }
 
-pub(super) fn scene_named(name: &str) -> Result<Arc<Scene>> {
-    builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()))
-}
-
 /// Whole pictures shown a second; 0 where none was.
 fn rate_hz(summary: &Summary) -> f64 {
     summary.updates_hz.unwrap_or_default()
-}
-
-pub(super) fn detail(name: &str, value: f64, unit: &'static str) -> Detail {
-    Detail { name: name.to_owned(), value, unit }
 }
 
 /// The mean with least, greatest and deviation.
@@ -317,12 +287,6 @@ fn spread_ms(statistics: Statistics) -> Measured {
     let details =
         vec![detail("standard deviation", sd, "ms"), detail("least", min, "ms"), detail("greatest", max, "ms")];
     Measured { value: mean, details }
-}
-
-impl From<f64> for Measured {
-    fn from(value: f64) -> Self {
-        Self { value, details: Vec::new() }
-    }
 }
 
 #[cfg(test)]

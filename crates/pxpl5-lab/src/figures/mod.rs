@@ -12,11 +12,13 @@
 mod document;
 mod heads;
 mod measure;
+mod measured;
 mod row;
 mod table;
 
 pub use document::markdown;
-pub use measure::{Bench, Detail, Measured};
+pub use measure::Bench;
+pub use measured::{Detail, Measured};
 pub use row::{MISS_PERCENT, Row, mean_error_percent};
 pub use table::{Basis, FIGURES, Figure, WITHOUT_CLOSED_FORM};
 
