@@ -68,8 +68,9 @@ impl Around {
         let [from, to] = ends.map(|end| pixel_of(view, end, self.size));
         let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
         let steps = length.ceil().max(1.0);
-        for i in 0..=steps as u32 {
-            let t = f64::from(i) / steps;
+        for i in 0..steps as u32 {
+            // In the middle of each step, so that no point is counted for two triangles.
+            let t = (f64::from(i) + 0.5) / steps;
             let [x, y] = [0, 1].map(|axis| from[axis] * (1.0 - t) + to[axis] * t);
             if x >= 0.0 && y >= 0.0 && x < f64::from(self.size[0]) && y < f64::from(self.size[1]) {
                 found.samples += 1;

@@ -40,7 +40,10 @@ fn clips() -> impl Strategy<Value = SliceClip> {
 
 /// Triangles of different colours, some a line and some a point, with a way to combine them.
 fn mixed(triangles: &[Triangle], combine: Combine) -> CommandBuffer {
-    let mut context = Context { combine, line_width: 2.5, point_size: 3.5, ..Context::default() };
+    let mut context = Context::default();
+    context.combine = combine;
+    context.line_width = 2.5;
+    context.point_size = 3.5;
     for (i, triangle) in triangles.iter().enumerate() {
         let colour = |corner: usize| [(i * 53 + corner * 90) as u8, (i * 31) as u8, 255 - (i * 17) as u8];
         let vertices = (0..3).map(|k| Vertex::new(DVec3::from_array(triangle[k]), colour(k))).collect();
