@@ -50,7 +50,15 @@ const fn row(
     (published, half_digit): (f64, f64),
     computed: f64,
 ) -> Figure {
-    Figure { id, statement, unit, published, interval: [published - half_digit, published + half_digit], computed, standing }
+    Figure {
+        id,
+        statement,
+        unit,
+        published,
+        interval: [published - half_digit, published + half_digit],
+        computed,
+        standing,
+    }
 }
 
 const P: Standing = Standing::Published;
@@ -92,7 +100,10 @@ fn printed(config: &PerspectaConfig) -> Vec<Figure> {
         Figure { interval: [90.0, 100.0], ..row("P8", "waste of 32-bit pixels: over", "%", P, (90.0, 0.0), waste) },
         row("P9", "pixels in a packed word", "pixels", P, (8.0, 0.0), f64::from(PIXELS_PER_WORD)),
         row("P10", "3-bit pixels that a word could hold", "pixels", P, (10.0, 0.0), DENSE_PIXELS as f64),
-        Figure { interval: [100.0, 1000.0], ..row("P11", "image data a frame: 100s of MB", "MB", P, (550.0, 0.0), bytes) },
+        Figure {
+            interval: [100.0, 1000.0],
+            ..row("P11", "image data a frame: 100s of MB", "MB", P, (550.0, 0.0), bytes)
+        },
         row("P13", "bin planes", "planes", P, (4.0, 0.0), BinLayout::double_wedges(0.0).planes.len() as f64),
         row("P16", "side of a tile", "pixels", P, (32.0, 0.0), f64::from(tiling.tile.unwrap_or(0))),
         row("P18", "slices between stencil clears", "slices", P, (4.0, 0.0), f64::from(tiling.batch)),
@@ -140,7 +151,14 @@ fn geometry(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
         row("D2", "volumes a second at 600 rpm", "Hz", D, (20.0, 0.0), at_600_rpm(config).volume_hz()),
         row("D3", "half thickness at the rim", "px", D, (3.046_456_8, 5e-8), rim),
         row("D4", "radius where the slab is one pixel thick", "px", D, (63.02, 5e-3), 0.5 / wedge.tan),
-        row("D5", "voxels of 198 planes", "voxels", D, (116_785_152.0, 0.0), (config.slices / 2 * config.width * config.height) as f64),
+        row(
+            "D5",
+            "voxels of 198 planes",
+            "voxels",
+            D,
+            (116_785_152.0, 0.0),
+            (config.slices / 2 * config.width * config.height) as f64,
+        ),
         row("D5", "spacing of voxels around the axis at the rim", "px", D, (6.09, 5e-3), spacing),
         row("D9", "planes that a double wedge serves", "planes", D, (50.0, 0.0), served as f64),
     ]
@@ -182,8 +200,22 @@ fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
         100.0 * cpu / (cpu + gpu)
     };
     vec![
-        row("D10", "planes that show a point, mean over the disc, prism", "planes", D, (2.0, 5e-4), mean(SliceClip::Prism, wedge, planes)),
-        row("D11", "the same of the hyperbola", "planes", D, (1.081, 5e-4), mean(SliceClip::Hyperbolic(0.25), wedge, planes)),
+        row(
+            "D10",
+            "planes that show a point, mean over the disc, prism",
+            "planes",
+            D,
+            (2.0, 5e-4),
+            mean(SliceClip::Prism, wedge, planes),
+        ),
+        row(
+            "D11",
+            "the same of the hyperbola",
+            "planes",
+            D,
+            (1.081, 5e-4),
+            mean(SliceClip::Hyperbolic(0.25), wedge, planes),
+        ),
         row("D12", "share of the CPU in 18 months, GPU doubling in 9", "%", D, (67.0, 0.5), share(9.0)),
         row("D12", "share of the CPU in 18 months, GPU doubling in 6", "%", D, (80.0, 0.5), share(6.0)),
     ]

@@ -131,12 +131,7 @@ impl Context {
     ///
     /// [`SpatialError::Range`] if the range leaves the buffer; [`SpatialError::Setting`] if a point size or line width is
     /// not above zero or the matrix is not finite.
-    pub fn draw(
-        &mut self,
-        buffer: &VertexBuffer,
-        range: Range<usize>,
-        topology: Topology,
-    ) -> Result<(), SpatialError> {
+    pub fn draw(&mut self, buffer: &VertexBuffer, range: Range<usize>, topology: Topology) -> Result<(), SpatialError> {
         let vertices = buffer.len();
         let Some(run) = buffer.vertices.get(range.clone()) else {
             return Err(SpatialError::Range { start: range.start, end: range.end, vertices });

@@ -51,6 +51,24 @@ impl SliceImage {
         }
     }
 
+    /// Whether anything was drawn on the eight pixels from one on, the number of which is a multiple of 8.
+    #[inline(always)]
+    pub(crate) fn is_marked_at(&self, at: usize) -> bool {
+        self.stencil[at / 8] != 0
+    }
+
+    /// Makes the eight pixels from one on dark and clears their stencil and depth.
+    #[inline(always)]
+    pub(crate) fn darken_eight(&mut self, at: usize) {
+        for channel in &mut self.channels {
+            channel[at..at + 8].fill(0);
+        }
+        self.stencil[at / 8] = 0;
+        if !self.depth.is_empty() {
+            self.depth[at..at + 8].fill(f64::INFINITY);
+        }
+    }
+
     /// Eight values of each channel from a pixel on, the number of which is a multiple of 8; the leftmost in the lowest
     /// byte.
     #[inline(always)]

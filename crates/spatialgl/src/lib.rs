@@ -85,7 +85,7 @@ pub use pack::{
     BitOrder, DENSE_PIXELS, PIXELS_PER_WORD, in_bit_order, pack_dense, packed_word, pixel_of_word, unpack_dense,
 };
 pub use projection::{Jitter, Projection, Size, SliceEye};
-pub use raster::{Coverage, HostRenderer, OracleRenderer, SliceRenderer, SliceStats, SliceWork};
+pub use raster::{Bin, Coverage, HostRenderer, OracleRenderer, SliceRenderer, SliceStats, SliceWork};
 pub use render::{Strobes, VolumeConfig, render_volume};
 pub use scene::{SCENE_REACH, record_scene, tessellated_sphere};
 pub use slice_volume::{SliceVolume, TieRule, WedgePlanes, WedgeTest};

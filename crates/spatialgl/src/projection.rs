@@ -151,12 +151,9 @@ impl SliceEye {
         let middle = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];
         let [kx, ky] = self.shear;
         match self.eye {
-            None => [
-                [1.0, 0.0, kx, middle[0]],
-                [0.0, -1.0, -ky, middle[1]],
-                depth_row(None, reach),
-                [0.0, 0.0, 0.0, 1.0],
-            ],
+            None => {
+                [[1.0, 0.0, kx, middle[0]], [0.0, -1.0, -ky, middle[1]], depth_row(None, reach), [0.0, 0.0, 0.0, 1.0]]
+            }
             Some([eu, ev, d]) => [
                 [d, 0.0, d * kx - eu - middle[0], middle[0] * d],
                 [0.0, -d, ev - d * ky - middle[1], middle[1] * d],

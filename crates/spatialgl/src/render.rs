@@ -8,7 +8,7 @@ use crate::halftone::{Halftone, bits_above};
 use crate::image::SliceImage;
 use crate::pack::packed_word;
 use crate::projection::Size;
-use crate::raster::{Coverage, SliceRenderer, SliceStats, SliceWork};
+use crate::raster::{Bin, Coverage, SliceRenderer, SliceStats, SliceWork};
 use crate::stats::VolumeStats;
 use crate::tile::{TileGrid, Tiling};
 use crate::view::{SliceView, SpatialDisplay};
@@ -92,19 +92,19 @@ pub fn render_volume(
     let bins = Bins::of(display, commands, config);
     let volume = Volume { commands, config, renderer, bins: &bins, size, scratch: Mutex::new(Vec::new()) };
     let mut planes = BitPlanes::dark(size, shown as u32);
-    let mut batches = volume.batches(&display.views()[..drawn], &mut planes);
+    let (first, second) = planes.words.split_at_mut(drawn * words_of_slice(size));
+    let mut batches = volume.batches(&display.views()[..drawn], first, second);
     let tasks = batches.iter_mut().map(|batch| Box::new(|| volume.draw(batch)) as Task<'_>).collect();
     workers.run(tasks);
     let mut stats = volume.count(display, &batches);
     let colours = batches.into_iter().flat_map(|batch| batch.colours).collect();
     stats.passes = display.views().first().map_or(0, |view| u64::from(view.volume.passes()));
-    mirror(&mut planes, drawn as u32);
     Ok(VolumeFrame { planes, stats, colours: config.keeps_colours.then_some(colours) })
 }
 
 /// The primitives that each group of slices draws.
 struct Bins {
-    lists: BTreeMap<u64, Vec<u32>>,
+    lists: BTreeMap<u64, Bin>,
     memberships: u64,
 }
 
@@ -122,10 +122,28 @@ impl Bins {
         let mut lists = BTreeMap::new();
         for view in display.views() {
             let drawn_by = |i: &u32| groups[*i as usize] & view.bins != 0;
-            lists.entry(view.bins).or_insert_with(|| (0..groups.len() as u32).filter(drawn_by).collect());
+            let list = || Bin::new(commands, (0..groups.len() as u32).filter(drawn_by).collect());
+            lists.entry(view.bins).or_insert_with(list);
         }
         let memberships = groups.iter().map(|groups| u64::from(groups.count_ones())).sum();
         Self { lists, memberships }
+    }
+}
+
+/// The words of a slice, and of the one that shows it turned over, if there is one: both dark so far.
+struct SliceWords<'a> {
+    own: &'a mut [u32],
+    turned: Option<&'a mut [u32]>,
+    row: usize,
+}
+
+impl SliceWords<'_> {
+    #[inline(always)]
+    fn set(&mut self, row: usize, column: usize, word: u32) {
+        self.own[row * self.row + column] = word;
+        if let Some(turned) = &mut self.turned {
+            turned[(row + 1) * self.row - 1 - column] = word.reverse_bits().swap_bytes();
+        }
     }
 }
 
@@ -143,17 +161,19 @@ struct Volume<'a> {
 /// Slices that are drawn, queried and packed together, and what came of them.
 struct Batch<'a> {
     views: &'a [SliceView],
-    words: Vec<&'a mut [u32]>,
+    words: Vec<SliceWords<'a>>,
     slices: Vec<SliceStats>,
     occupied: Vec<u32>,
     colours: Vec<Vec<ColourSample>>,
 }
 
 impl<'a> Volume<'a> {
-    fn batches(&self, views: &'a [SliceView], planes: &'a mut BitPlanes) -> Vec<Batch<'a>> {
-        let batch = self.config.tiling.batch as usize;
-        let mut words = planes.words.chunks_mut(words_of_slice(self.size));
-        let batches = views.chunks(batch).map(|views| Batch {
+    fn batches(&self, views: &'a [SliceView], first: &'a mut [u32], second: &'a mut [u32]) -> Vec<Batch<'a>> {
+        let slice = words_of_slice(self.size);
+        let row = (self.size[0] / 8) as usize;
+        let mut turned = second.chunks_mut(slice);
+        let mut words = first.chunks_mut(slice).map(|own| SliceWords { own, turned: turned.next(), row });
+        let batches = views.chunks(self.config.tiling.batch as usize).map(|views| Batch {
             views,
             words: words.by_ref().take(views.len()).collect(),
             slices: Vec::new(),
@@ -171,14 +191,13 @@ impl<'a> Volume<'a> {
             batch.slices.push(self.renderer.render(work, view, image));
         }
         let grid = self.config.tiling.grid(self.size);
-        batch.occupied = (0..grid.tiles()).filter(|tile| self.is_occupied(&grid, *tile, &images)).collect();
+        batch.occupied = self.occupied(&grid, &images);
         for (image, words) in images.iter_mut().zip(&mut batch.words) {
             if self.config.keeps_colours {
                 batch.colours.push(samples(image));
             }
             for tile in &batch.occupied {
-                pack_tile(image, grid.rectangle(*tile), &self.config.halftone, words);
-                self.clean_tile(image, grid.rectangle(*tile));
+                self.pack_tile(image, grid.rectangle(*tile), words);
             }
         }
         self.scratch.lock().unwrap_or_else(PoisonError::into_inner).append(&mut images);
@@ -195,14 +214,42 @@ impl<'a> Volume<'a> {
         })
     }
 
-    /// Without tiles everything is; with a background that is not dark too.
-    fn is_occupied(&self, grid: &TileGrid, tile: u32, images: &[SliceImage]) -> bool {
-        let all = self.config.tiling.tile.is_none() || self.commands.background != [0; 3];
-        all || images.iter().any(|image| grid.is_marked(image, tile))
+    /// The tiles of a batch that hold something: without tiles all, with a background that is not dark too.
+    fn occupied(&self, grid: &TileGrid, images: &[SliceImage]) -> Vec<u32> {
+        let mut marked = vec![!self.is_sparse(); grid.tiles() as usize];
+        for image in images.iter().filter(|_| self.is_sparse()) {
+            grid.mark(image, &mut marked);
+        }
+        (0..).zip(marked).filter(|(_, is_marked)| *is_marked).map(|(tile, _)| tile).collect()
     }
 
-    fn clean_tile(&self, image: &mut SliceImage, rectangle: [u32; 4]) {
-        image.clear_rectangle(rectangle, self.commands.background);
+    /// Whether what was not drawn on is dark and need not be looked at.
+    fn is_sparse(&self) -> bool {
+        self.config.tiling.tile.is_some() && self.commands.background == [0; 3]
+    }
+
+    /// Halftones and packs a rectangle, the sides of which are multiples of 8 from the left, and cleans it.
+    fn pack_tile(&self, image: &mut SliceImage, rectangle: [u32; 4], words: &mut SliceWords<'_>) {
+        let [left, top, right, bottom] = rectangle;
+        let width = image.size()[0];
+        let is_sparse = self.is_sparse();
+        for y in top..bottom {
+            for x in (left..right).step_by(8) {
+                let at = (y * width + x) as usize;
+                if is_sparse && !image.is_marked_at(at) {
+                    continue;
+                }
+                let thresholds = self.config.halftone.eight(x, y);
+                let [red, green, blue] = image.eight(at).map(|values| bits_above(values, thresholds));
+                words.set(y as usize, x as usize / 8, packed_word(red, green, blue));
+                if is_sparse {
+                    image.darken_eight(at);
+                }
+            }
+        }
+        if !is_sparse {
+            image.clear_rectangle(rectangle, self.commands.background);
+        }
     }
 
     fn count(&self, display: &dyn SpatialDisplay, batches: &[Batch<'_>]) -> VolumeStats {
@@ -244,35 +291,9 @@ fn outside(display: &dyn SpatialDisplay, commands: &CommandBuffer) -> u64 {
     commands.primitives.iter().filter(|primitive| is_outside(primitive.corners())).count() as u64
 }
 
-/// Halftones and packs a rectangle, the sides of which are multiples of 8 from the left.
-fn pack_tile(image: &SliceImage, [left, top, right, bottom]: [u32; 4], halftone: &Halftone, words: &mut [u32]) {
-    let width = image.size()[0];
-    for y in top..bottom {
-        for x in (left..right).step_by(8) {
-            let thresholds = halftone.eight(x, y);
-            let at = (y * width + x) as usize;
-            let [red, green, blue] = image.eight(at).map(|values| bits_above(values, thresholds));
-            words[at / 8] = packed_word(red, green, blue);
-        }
-    }
-}
-
 /// The pixels that were drawn on, with their colours.
 fn samples(image: &SliceImage) -> Vec<ColourSample> {
     let [width, height] = image.size();
     let drawn = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).filter(|(x, y)| image.is_marked(*x, *y));
     drawn.map(|(x, y)| ColourSample { pixel: y * width + x, colour: image.pixel(x, y) }).collect()
-}
-
-/// Shows the first slices turned over in the place of those that were not drawn.
-fn mirror(planes: &mut BitPlanes, drawn: u32) {
-    let row = (planes.size()[0] / 8) as usize;
-    for k in drawn..planes.slices() {
-        let source = planes.slice(k - drawn).to_vec();
-        let turned = source.chunks(row).flat_map(|row| row.iter().rev());
-        let turned = turned.map(|word| word.reverse_bits().swap_bytes());
-        for (word, source) in planes.slice_mut(k).iter_mut().zip(turned) {
-            *word = source;
-        }
-    }
 }

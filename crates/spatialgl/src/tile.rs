@@ -69,14 +69,18 @@ impl TileGrid {
         u64::from((right - left) / 8) * u64::from(bottom - top)
     }
 
-    /// Whether any fragment was drawn in a tile.
-    #[must_use]
-    pub fn is_marked(&self, image: &SliceImage, tile: u32) -> bool {
-        let [left, top, right, bottom] = self.rectangle(tile);
+    /// Notes the tiles in which any fragment was drawn.
+    pub(crate) fn mark(&self, image: &SliceImage, tiles: &mut [bool]) {
         let row_bytes = self.size[0] as usize / 8;
-        (top as usize..bottom as usize).any(|y| {
-            let row = &image.stencil[y * row_bytes..][left as usize / 8..right as usize / 8];
-            row.iter().any(|byte| *byte != 0)
-        })
+        let tile_bytes = self.tile as usize / 8;
+        for (y, row) in image.stencil.chunks(row_bytes).enumerate() {
+            if row.iter().fold(0, |any, byte| any | byte) == 0 {
+                continue;
+            }
+            let first = y / self.tile as usize * self.columns as usize;
+            for (column, bytes) in row.chunks(tile_bytes).enumerate() {
+                tiles[first + column] |= bytes.iter().fold(0, |any, byte| any | byte) != 0;
+            }
+        }
     }
 }

@@ -111,7 +111,8 @@ impl TimeModel {
     fn cpu_ms(&self, stats: &VolumeStats) -> f64 {
         let GpuTiming { vertex_ns, primitive_ns, call_ns, issue_ns, .. } = self.timing;
         let calls = stats.slices_rendered * stats.passes;
-        let ns = stats.vertices * vertex_ns + stats.primitives * primitive_ns + calls * call_ns + stats.draws * issue_ns;
+        let ns =
+            stats.vertices * vertex_ns + stats.primitives * primitive_ns + calls * call_ns + stats.draws * issue_ns;
         ns as f64 / 1e6
     }
 

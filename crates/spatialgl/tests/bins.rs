@@ -46,10 +46,8 @@ fn two_planes_are_weaker_than_all() {
 
 #[test]
 fn case_21_dilated_clips_lose_fragments_without_a_tolerance() {
-    let cases = [
-        (T8, SliceClip::Hyperbolic(0.25), 476, 118, 100..=102),
-        (T2, SliceClip::Prism, 110_101, 39_363, 195..=197),
-    ];
+    let cases =
+        [(T8, SliceClip::Hyperbolic(0.25), 476, 118, 100..=102), (T2, SliceClip::Prism, 110_101, 39_363, 195..=197)];
     for (triangle, clip, all, lost, slices) in cases {
         let display = swept(clip, Projection::Orthographic);
         let draw = |bin_tolerance| {

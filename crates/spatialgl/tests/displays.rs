@@ -130,7 +130,10 @@ fn the_model_of_time_is_the_specifications() {
     near(model.packed(&tenth, size, 32).readback_ms, 58.4);
     near(all.gpu_ms - model.packed(&tenth, size, 32).gpu_ms, 36.5 - 3.65 + 0.005);
     // 396 colour targets 36.5 ms and 99 stencils a quarter of it, filling queries 9.1 ms, 57,024 queries 114.0 ms.
-    near(model.packed(&VolumeStats { pixels_packed: 0, ..stats.clone() }, size, 32).gpu_ms, 36.5 * 1.25 + 9.12 + 114.05);
+    near(
+        model.packed(&VolumeStats { pixels_packed: 0, ..stats.clone() }, size, 32).gpu_ms,
+        36.5 * 1.25 + 9.12 + 114.05,
+    );
     near(all.cpu_ms, 0.792);
     let fill = |batched: u64| batched as f64 * 1024.0 / 6.4e9 * 1e3;
     near(fill(57_024), 9.1);

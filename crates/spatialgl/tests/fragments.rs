@@ -116,8 +116,7 @@ fn case_19_a_triangle_seen_from_aside() {
 
 #[test]
 fn case_20_a_quad_is_the_same_by_either_diagonal() {
-    let [a, b, c, d] =
-        [[-150.2, -80.1, 60.3], [140.7, -80.1, 20.6], [140.7, 90.4, 20.6], [-150.2, 90.4, 60.3]];
+    let [a, b, c, d] = [[-150.2, -80.1, 60.3], [140.7, -80.1, 20.6], [140.7, 90.4, 20.6], [-150.2, 90.4, 60.3]];
     for (clip, expected) in [(EXACT, 38_420), (SliceClip::Prism, 177_820), (HYPERBOLA, 48_790)] {
         let one = fragments(&[[a, b, c], [a, c, d]], clip, ORTHOGRAPHIC).0;
         let other = fragments(&[[a, b, d], [b, c, d]], clip, ORTHOGRAPHIC).0;

@@ -148,7 +148,8 @@ fn lines_and_points_have_their_size_on_the_slice() {
         let mut context = Context::default();
         context.line_width = width;
         context.draw(&buffer, 0..2, Topology::Lines).expect("valid");
-        let frame = both(&swept(SliceClip::ShaderPlanes, ORTHOGRAPHIC), &context.present(), &half(VolumeConfig::plain()));
+        let frame =
+            both(&swept(SliceClip::ShaderPlanes, ORTHOGRAPHIC), &context.present(), &half(VolumeConfig::plain()));
         lit_of(&frame) as f64
     };
     let disc = std::f64::consts::PI * 100.0;
@@ -173,7 +174,8 @@ fn strips_and_fans_make_the_triangles_of_gl() {
         let mut context = Context::default();
         context.draw(&buffer, 0..5, topology).expect("valid");
         let commands = context.present();
-        let triangles = commands.triangles().map(|triangle| triangle.map(|corner| corner[0] as i32)).collect::<Vec<_>>();
+        let triangles =
+            commands.triangles().map(|triangle| triangle.map(|corner| corner[0] as i32)).collect::<Vec<_>>();
         (commands.primitives(), triangles)
     };
     assert_eq!(firsts(Topology::Triangles), (1, vec![[0, 1, 2]]));
@@ -188,8 +190,9 @@ fn strips_and_fans_make_the_triangles_of_gl() {
 fn settings_that_no_display_has_are_named() {
     let valid = SweptConfig::perspecta(SliceClip::Hyperbolic(0.25), ORTHOGRAPHIC);
     let clip = |clip| SweptConfig { clip, ..valid };
-    let at = |distance| {
-        SweptConfig { projection: Projection::Perspective { eye: [0.0; 2], distance, shear: [0.0; 2] }, ..valid }
+    let at = |distance| SweptConfig {
+        projection: Projection::Perspective { eye: [0.0; 2], distance, shear: [0.0; 2] },
+        ..valid
     };
     let cases = [
         (SweptConfig { slices: 395, ..valid }, "display.slices: expected an even number, found 395"),

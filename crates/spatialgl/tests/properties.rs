@@ -206,7 +206,9 @@ fn fragments_over_facing_are_the_area() {
     let frame = volume(&display, &recording(&[T4]), &half(VolumeConfig::plain()));
     let slices = frame.stats.slices.iter().zip(display.views());
     let sum: f64 = slices
-        .map(|(slice, view)| slice.accepted as f64 / cross.normalize().dot(view.view.transpose().z_axis.truncate()).abs())
+        .map(|(slice, view)| {
+            slice.accepted as f64 / cross.normalize().dot(view.view.transpose().z_axis.truncate()).abs()
+        })
         .sum();
     assert!((area - 18_630.0).abs() < 1.0, "{area}");
     assert!((sum - 18_690.0).abs() < 15.0, "{sum}");

@@ -32,13 +32,7 @@ impl FlatDisplay {
     /// # Errors
     ///
     /// As [`Self::new`].
-    pub fn around(
-        size: Size,
-        azimuth: f64,
-        elevation: f64,
-        distance: f64,
-        focal: f64,
-    ) -> Result<Self, SpatialError> {
+    pub fn around(size: Size, azimuth: f64, elevation: f64, distance: f64, focal: f64) -> Result<Self, SpatialError> {
         let (sin_a, cos_a) = libm::sincos(azimuth);
         let (sin_e, cos_e) = libm::sincos(elevation);
         let eye = distance * DVec3::new(cos_e * sin_a, sin_e, cos_e * cos_a);

@@ -1,6 +1,6 @@
 //! From world vertices to the window of one slice; points and lines become triangles.
 
-use super::setup::{Corner, along};
+use super::setup::{Corner, Place, along};
 use crate::command::{CommandBuffer, Primitive, Shape};
 use crate::slice_volume::SliceVolume;
 use crate::view::SliceView;
@@ -34,16 +34,17 @@ impl SliceTransform {
         self.corner_at(world, self.local(world), colour)
     }
 
-    /// Homogeneous window coordinates of a point of the slice.
-    pub(super) fn window(&self, local: [f64; 3]) -> [f64; 4] {
-        [0, 1, 2, 3].map(|row| along(&self.window[row], local))
-    }
-
     #[inline(always)]
     fn corner_at(&self, world: [f64; 3], local: [f64; 3], colour: [f64; 3]) -> Corner {
-        let [x, y, z, w] = self.window;
         let [p, q] = self.volume.attributes(world, local[0], local[2]);
-        Corner { x: along(&x, local), y: along(&y, local), z: along(&z, local), w: along(&w, local), p, q, colour }
+        Corner { place: self.place(local), p, q, colour }
+    }
+
+    /// Homogeneous window coordinates of a point of the slice.
+    #[inline(always)]
+    pub(super) fn place(&self, local: [f64; 3]) -> Place {
+        let [x, y, z, w] = &self.window;
+        Place { x: along(x, local), y: along(y, local), z: along(z, local), w: along(w, local) }
     }
 
     /// The triangles of a primitive, in the order of drawing.
@@ -94,10 +95,14 @@ fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut
     let Some([begin, end]) = between_planes(from, to) else { return };
     let first = from.mixed(to, begin);
     let last = from.mixed(to, end);
-    if first.w <= 0.0 || last.w <= 0.0 {
+    let [begin_place, end_place] = [&first.place, &last.place];
+    if begin_place.w <= 0.0 || end_place.w <= 0.0 {
         return;
     }
-    let across = [last.x / last.w - first.x / first.w, last.y / last.w - first.y / first.w];
+    let across = [
+        end_place.x / end_place.w - begin_place.x / begin_place.w,
+        end_place.y / end_place.w - begin_place.y / begin_place.w,
+    ];
     let length = libm::hypot(across[0], across[1]);
     if length > 0.0 {
         let side = [-across[1] / length * half, across[0] / length * half];
@@ -115,6 +120,7 @@ fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut
 /// The part of a line between near and far plane, as a range of 0..1; `None` if nothing of it lies there.
 fn between_planes(from: &Corner, to: &Corner) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
+    let [from, to] = [&from.place, &to.place];
     for [a, b] in [[from.z, to.z], [from.w - from.z, to.w - to.z]] {
         if a < 0.0 && b < 0.0 {
             return None;

@@ -2,6 +2,7 @@
 
 use super::SliceWork;
 use super::assemble::SliceTransform;
+use super::setup::Place;
 use crate::command::Shape;
 use crate::curve::plane_curve;
 use crate::image::SliceImage;
@@ -16,7 +17,7 @@ struct CurvePoint {
 /// Fills the gaps that sampling left along every triangle's curve; how many pixels that were.
 pub(super) fn draw(work: SliceWork<'_>, transform: &SliceTransform, image: &mut SliceImage) -> u64 {
     let mut added = 0;
-    for primitive in work.bin.iter().map(|i| &work.commands.primitives[*i as usize]) {
+    for primitive in work.bin.primitives().iter().map(|i| &work.commands.primitives[*i as usize]) {
         if primitive.shape != Shape::Triangle {
             continue;
         }
@@ -24,7 +25,7 @@ pub(super) fn draw(work: SliceWork<'_>, transform: &SliceTransform, image: &mut 
         let colours = primitive.vertices.map(|i| work.commands.colours[i as usize]);
         let Some((ends, weights)) = plane_curve(local, transform.volume.middle()) else { continue };
         let point = |i: usize| {
-            let [x, y, _, w] = transform.window(ends[i]);
+            let Place { x, y, w, .. } = transform.place(ends[i]);
             let colour = [0, 1, 2].map(|c| (0..3).map(|corner| weights[i][corner] * colours[corner][c]).sum());
             CurvePoint { at: [x / w, y / w], colour }
         };

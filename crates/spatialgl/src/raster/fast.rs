@@ -2,10 +2,10 @@
 
 use super::assemble::SliceTransform;
 use super::connected;
-use super::lanes::{self, Mode};
-use super::setup::{Setup, along};
+use super::lanes::{self, Fragments, Mode};
+use super::setup::{Corner, Setup, along, bounds};
 use super::{Coverage, SliceRenderer, SliceStats, SliceWork};
-use crate::command::{Primitive, Shape};
+use crate::command::{CommandBuffer, Shape};
 use crate::image::SliceImage;
 use crate::view::SliceView;
 use multiversion::multiversion;
@@ -21,9 +21,8 @@ impl SliceRenderer for HostRenderer {
     fn render(&self, work: SliceWork<'_>, view: &SliceView, image: &mut SliceImage) -> SliceStats {
         let transform = SliceTransform::new(view);
         let mut stats = SliceStats::default();
-        let distances = distances(&transform, &work.commands.positions);
         for pass in 0..view.volume.passes() {
-            render_pass(work, view, &transform, &distances, pass, image, &mut stats);
+            render_pass(work, view, &transform, pass, image, &mut stats);
         }
         if work.coverage == Coverage::Connected {
             stats.added = connected::draw(work, &transform, image);
@@ -32,9 +31,12 @@ impl SliceRenderer for HostRenderer {
     }
 }
 
-#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn distances(transform: &SliceTransform, positions: &[[f64; 3]]) -> Vec<f64> {
-    positions.iter().map(|position| along(&transform.rows[2], *position)).collect()
+impl SliceStats {
+    #[inline(always)]
+    const fn add(&mut self, fragments: Fragments) {
+        self.generated += fragments.generated;
+        self.accepted += fragments.accepted;
+    }
 }
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
@@ -42,7 +44,6 @@ fn render_pass(
     work: SliceWork<'_>,
     view: &SliceView,
     transform: &SliceTransform,
-    distances: &[f64],
     pass: u32,
     image: &mut SliceImage,
     stats: &mut SliceStats,
@@ -51,37 +52,59 @@ fn render_pass(
     let test = view.volume.test(pass);
     let clips_first = view.volume.clips_before_fragments();
     let [low, high] = view.reach.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-    stats.draws += work.bin.len() as u64;
-    for i in work.bin {
-        let primitive = &work.commands.primitives[*i as usize];
-        if is_off_slice(primitive, distances, low, high) {
+    let positions = &work.commands.positions;
+    stats.draws += work.bin.primitives().len() as u64;
+    for (ball, cluster) in work.bin.clusters() {
+        let distance = along(&transform.rows[2], ball.centre);
+        if distance - ball.radius > high || distance + ball.radius < low {
             continue;
         }
-        let mode = Mode { test, combine: primitive.combine, clips_first, hides: view.hides };
-        if primitive.shape == Shape::Triangle {
-            let world = primitive.vertices.map(|i| work.commands.positions[i as usize]);
-            let colour = primitive.vertices.map(|i| work.commands.colours[i as usize]);
-            let corners = [0, 1, 2].map(|i| transform.corner(world[i], colour[i]));
-            if let Some(setup) = Setup::new(&corners, size) {
-                let fragments = lanes::draw(&setup, mode, image);
-                stats.generated += fragments.generated;
-                stats.accepted += fragments.accepted;
+        for primitive in cluster.iter().map(|i| &work.commands.primitives[*i as usize]) {
+            let mode = Mode { test, combine: primitive.combine, clips_first, hides: view.hides };
+            if primitive.shape == Shape::Triangle {
+                let [a, b, c] = primitive.vertices;
+                let corners = [&positions[a as usize], &positions[b as usize], &positions[c as usize]];
+                if is_off_slice(&transform.rows[2], corners, low, high) {
+                    continue;
+                }
+                if let Some(setup) = triangle(transform, corners, primitive.vertices, work.commands, size) {
+                    stats.add(lanes::draw(&setup, mode, image));
+                }
+                continue;
             }
-            continue;
+            transform.triangles(work.commands, primitive, &mut |corners| {
+                if let Some(setup) = Setup::new(corners, size) {
+                    stats.add(lanes::draw(&setup, mode, image));
+                }
+            });
         }
-        transform.triangles(work.commands, primitive, &mut |corners| {
-            if let Some(setup) = Setup::new(corners, size) {
-                let fragments = lanes::draw(&setup, mode, image);
-                stats.generated += fragments.generated;
-                stats.accepted += fragments.accepted;
-            }
-        });
     }
+}
+
+/// Set-up of a triangle that looks at what its corners carry only when something of it can be seen.
+#[inline(always)]
+fn triangle(
+    transform: &SliceTransform,
+    [a, b, c]: [&[f64; 3]; 3],
+    vertices: [u32; 3],
+    commands: &CommandBuffer,
+    size: [u32; 2],
+) -> Option<Setup> {
+    let local = [transform.local(*a), transform.local(*b), transform.local(*c)];
+    let places = [transform.place(local[0]), transform.place(local[1]), transform.place(local[2])];
+    let bounds = bounds([&places[0], &places[1], &places[2]], size)?;
+    let corner = |i: usize, world: &[f64; 3]| {
+        let [p, q] = transform.volume.attributes(*world, local[i][0], local[i][2]);
+        Corner { place: places[i], p, q, colour: commands.colours[vertices[i] as usize] }
+    };
+    Setup::within(&[corner(0, a), corner(1, b), corner(2, c)], bounds)
 }
 
 /// Whether all corners lie on one side of all that the slice can show.
 #[inline(always)]
-fn is_off_slice(primitive: &Primitive, distances: &[f64], low: f64, high: f64) -> bool {
-    let [a, b, c] = primitive.vertices.map(|i| distances[i as usize]);
-    (a > high && b > high && c > high) || (a < low && b < low && c < low)
+fn is_off_slice(row: &[f64; 4], corners: [&[f64; 3]; 3], low: f64, high: f64) -> bool {
+    let a = along(row, *corners[0]);
+    let b = along(row, *corners[1]);
+    let c = along(row, *corners[2]);
+    (a.min(b).min(c) > high) | (a.max(b).max(c) < low)
 }

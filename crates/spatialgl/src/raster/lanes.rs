@@ -14,6 +14,9 @@ const LANES: usize = 8;
 /// One value a pixel.
 type EachLane = [f64; LANES];
 
+/// Pixels of the bounds up to which their rows are taken as one.
+const SMALL: u32 = 64;
+
 /// Width in pixels from which on the range of each row is computed before its pixels are.
 const WIDE: u32 = 24;
 
@@ -65,19 +68,61 @@ fn draw_rounded(setup: &Setup, mode: Mode, scale: f64, image: &mut SliceImage) -
 fn rows(setup: &Setup, mode: Mode, image: &mut SliceImage, accepts: impl Fn(f64, f64, f64) -> bool) -> Fragments {
     let mut fragments = Fragments::default();
     let [left, right] = setup.bounds.x;
-    let is_wide = right - left > WIDE;
+    let [top, bottom] = setup.bounds.y;
     let checks = Checks { near: has_negative(setup.near), far: has_negative(setup.far) };
-    for y in setup.bounds.y[0]..setup.bounds.y[1] {
-        let row = setup.edges.map(|edge| edge.row(f64::from(y) + 0.5));
+    if (right - left) * (bottom - top) <= SMALL {
+        small(setup, mode, image, checks, &accepts, &mut fragments);
+        return fragments;
+    }
+    let is_wide = right - left > WIDE;
+    for y in top..bottom {
+        let centre = f64::from(y) + 0.5;
+        let row = [setup.edges[0].row(centre), setup.edges[1].row(centre), setup.edges[2].row(centre)];
         let [from, to] = if is_wide { setup.row_range(row, checks) } else { [left, right] };
-        let mut x = from & !(LANES as u32 - 1);
+        let mut x = from;
         while x < to {
             let weights = setup.weights_at(x, row);
-            chunk(setup, mode, image, [x, y], &weights, checks, &accepts, &mut fragments);
+            let pixels = Pixels { weights, count: to - x, x, y, width: u32::MAX };
+            chunk(setup, mode, image, &pixels, checks, &accepts, &mut fragments);
             x += LANES as u32;
         }
     }
     fragments
+}
+
+/// A triangle of few pixels: those of all its rows fill vectors one after the other.
+#[inline(always)]
+fn small(
+    setup: &Setup,
+    mode: Mode,
+    image: &mut SliceImage,
+    checks: Checks,
+    accepts: &impl Fn(f64, f64, f64) -> bool,
+    fragments: &mut Fragments,
+) {
+    let [left, right] = setup.bounds.x;
+    let [top, bottom] = setup.bounds.y;
+    let width = right - left;
+    let area = width * (bottom - top);
+    let mut first = 0;
+    while first < area {
+        let weights = setup.weights_of_block(first, width);
+        let pixels = Pixels { weights, count: area - first, x: left + first, y: top, width };
+        chunk(setup, mode, image, &pixels, checks, accepts, fragments);
+        first += LANES as u32;
+    }
+}
+
+/// Eight pixels, and the weights of the corners at each.
+struct Pixels {
+    weights: [EachLane; 3],
+    /// How many of them there are, if less than eight.
+    count: u32,
+    /// Column of the first, in the block's top row.
+    x: u32,
+    y: u32,
+    /// Width of a block whose rows follow each other.
+    width: u32,
 }
 
 /// Which of the two planes some corner lies beyond.
@@ -94,11 +139,15 @@ fn has_negative(values: [f64; 3]) -> bool {
 
 #[inline(always)]
 fn bits(holds: impl Fn(usize) -> bool) -> u8 {
-    let mut lanes = [0u8; LANES];
+    let mut lanes = [0u64; LANES];
     for i in 0..LANES {
-        lanes[i] = u8::from(holds(i)) << i;
+        lanes[i] = if holds(i) { 1 << i } else { 0 };
     }
-    lanes.iter().fold(0, |mask, lane| mask | lane)
+    let mut mask = 0;
+    for lane in lanes {
+        mask |= lane;
+    }
+    mask as u8
 }
 
 #[inline(always)]
@@ -110,21 +159,33 @@ fn weighted_lanes(weights: &[EachLane; 3], values: [f64; 3]) -> EachLane {
     sums
 }
 
+impl Pixels {
+    /// Column and row of a pixel; `left` is the block's first column.
+    #[inline(always)]
+    const fn place(&self, lane: u32, left: u32) -> [u32; 2] {
+        if self.width == u32::MAX {
+            return [self.x + lane, self.y];
+        }
+        let number = self.x - left + lane;
+        [left + number % self.width, self.y + number / self.width]
+    }
+}
+
 #[inline(always)]
-#[expect(clippy::too_many_arguments, reason = "inlined: a struct of these would be taken apart again")]
 fn chunk(
     setup: &Setup,
     mode: Mode,
     image: &mut SliceImage,
-    [x, y]: [u32; 2],
-    weights: &[EachLane; 3],
+    pixels: &Pixels,
     checks: Checks,
     accepts: &impl Fn(f64, f64, f64) -> bool,
     fragments: &mut Fragments,
 ) {
+    let weights = &pixels.weights;
     let [a, b, c] = weights;
     let least = setup.least;
-    let mut inside = bits(|i| (a[i] >= least[0]) & (b[i] >= least[1]) & (c[i] >= least[2]));
+    let there = if pixels.count < LANES as u32 { (1 << pixels.count) - 1 } else { u8::MAX };
+    let mut inside = there & bits(|i| (a[i] >= least[0]) & (b[i] >= least[1]) & (c[i] >= least[2]));
     if inside == 0 {
         return;
     }
@@ -149,14 +210,16 @@ fn chunk(
     while rest != 0 {
         let i = rest.trailing_zeros() as usize;
         rest &= rest - 1;
-        fragment(setup, mode, image, [x + i as u32, y], [a[i], b[i], c[i]], sum[i]);
+        let at = pixels.place(i as u32, setup.bounds.x[0]);
+        fragment(setup, mode, image, at, [a[i], b[i], c[i]], sum[i]);
     }
 }
 
 #[inline(always)]
 fn fragment(setup: &Setup, mode: Mode, image: &mut SliceImage, [x, y]: [u32; 2], weights: [f64; 3], sum: f64) {
     let inverse = 1.0 / sum;
-    let colour = [0, 1, 2].map(|c| channel(weights, setup.colour[c], inverse));
+    let [red, green, blue] = &setup.colour;
+    let colour = [channel(weights, *red, inverse), channel(weights, *green, inverse), channel(weights, *blue, inverse)];
     if mode.hides && !image.is_nearest(x, y, super::setup::weighted(weights, setup.near) / sum) {
         return;
     }
@@ -172,6 +235,31 @@ impl Setup {
             for (i, lane) in lanes.iter_mut().enumerate() {
                 let centre = f64::from(x) + (i as f64 + 0.5);
                 *lane = edge.a * (centre - edge.x) + row[k];
+            }
+        }
+        weights
+    }
+
+    /// The weights at eight pixels of the bounds, numbered row by row, from `first` on.
+    #[inline(always)]
+    fn weights_of_block(&self, first: u32, width: u32) -> [EachLane; 3] {
+        let columns = f64::from(width);
+        let left = f64::from(self.bounds.x[0]) + 0.5;
+        let top = f64::from(self.bounds.y[0]) + 0.5;
+        let mut x = [0.0; LANES];
+        let mut y = [0.0; LANES];
+        for i in 0..LANES {
+            let number = f64::from(first) + i as f64;
+            // Whole numbers below 72: half a column more keeps the quotient's rounding away from a whole number.
+            let row = ((number + 0.5) / columns).floor();
+            x[i] = left + (number - row * columns);
+            y[i] = top + row;
+        }
+        let mut weights = [[0.0; LANES]; 3];
+        for (k, lanes) in weights.iter_mut().enumerate() {
+            let edge = &self.edges[k];
+            for i in 0..LANES {
+                lanes[i] = edge.a * (x[i] - edge.x) + edge.row(y[i]);
             }
         }
         weights

@@ -1,12 +1,14 @@
 //! From primitives to fragments: set-up, the literal rasteriser and the fast one, which agree in every voxel.
 
 mod assemble;
+mod cluster;
 mod connected;
 mod fast;
 mod lanes;
 mod oracle;
 mod setup;
 
+pub use cluster::Bin;
 pub use fast::HostRenderer;
 pub use oracle::OracleRenderer;
 
@@ -45,8 +47,8 @@ pub struct SliceStats {
 pub struct SliceWork<'a> {
     /// The recording.
     pub commands: &'a CommandBuffer,
-    /// Numbers of the primitives to draw.
-    pub bin: &'a [u32],
+    /// The primitives to draw.
+    pub bin: &'a Bin,
     /// What of them is drawn.
     pub coverage: Coverage,
 }

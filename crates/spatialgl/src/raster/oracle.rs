@@ -19,7 +19,7 @@ impl SliceRenderer for OracleRenderer {
         let mut stats = SliceStats::default();
         for pass in 0..view.volume.passes() {
             let test = view.volume.test(pass);
-            for primitive in work.bin.iter().map(|i| &work.commands.primitives[*i as usize]) {
+            for primitive in work.bin.primitives().iter().map(|i| &work.commands.primitives[*i as usize]) {
                 stats.draws += 1;
                 transform.triangles(work.commands, primitive, &mut |corners| {
                     draw(corners, test, primitive.combine, view, image, &mut stats);

@@ -4,13 +4,19 @@
 //! them are the weights of the corners at every sample, up to one positive factor; behind the eye all are negative. What a
 //! vertex carries is interpolated by these weights, so corners behind the eye or 10^6 px away need no case of their own.
 
-/// A corner in homogeneous window coordinates, with what it carries for the test of the slice's volume, and its colour.
+/// A place in homogeneous window coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
+pub(super) struct Place {
     pub(super) x: f64,
     pub(super) y: f64,
     pub(super) z: f64,
     pub(super) w: f64,
+}
+
+/// A corner, with what it carries for the test of the slice's volume, and its colour.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    pub(super) place: Place,
     pub(super) p: f64,
     pub(super) q: f64,
     pub(super) colour: [f64; 3],
@@ -20,11 +26,10 @@ impl Corner {
     /// The point at `t` of the way to another.
     pub(super) fn mixed(&self, other: &Self, t: f64) -> Self {
         let mix = |a: f64, b: f64| a * (1.0 - t) + b * t;
+        let [from, to] = [&self.place, &other.place];
+        let place = Place { x: mix(from.x, to.x), y: mix(from.y, to.y), z: mix(from.z, to.z), w: mix(from.w, to.w) };
         Self {
-            x: mix(self.x, other.x),
-            y: mix(self.y, other.y),
-            z: mix(self.z, other.z),
-            w: mix(self.w, other.w),
+            place,
             p: mix(self.p, other.p),
             q: mix(self.q, other.q),
             colour: [0, 1, 2].map(|i| mix(self.colour[i], other.colour[i])),
@@ -33,7 +38,8 @@ impl Corner {
 
     /// The corner moved in the window by so many pixels.
     pub(super) fn moved(&self, [dx, dy]: [f64; 2]) -> Self {
-        Self { x: self.x + dx * self.w, y: self.y + dy * self.w, ..*self }
+        let Place { x, y, z, w } = self.place;
+        Self { place: Place { x: x + dx * w, y: y + dy * w, z, w }, ..*self }
     }
 }
 
@@ -58,7 +64,7 @@ pub(super) struct Edge {
 
 impl Edge {
     #[inline(always)]
-    fn between(from: &Corner, to: &Corner) -> Self {
+    fn between(from: &Place, to: &Place) -> Self {
         let a = from.y * to.w - from.w * to.y;
         let b = from.w * to.x - from.x * to.w;
         if from.w > 0.0 && to.w > 0.0 {
@@ -81,7 +87,7 @@ impl Edge {
 
     /// Value at a homogeneous point.
     #[inline(always)]
-    fn dot(&self, corner: &Corner) -> f64 {
+    fn dot(&self, corner: &Place) -> f64 {
         if corner.w > 0.0 {
             return corner.w * self.at(corner.x / corner.w, corner.y / corner.w);
         }
@@ -93,15 +99,18 @@ impl Edge {
         Self { a: -self.a, b: -self.b, c: -self.c, ..self }
     }
 
-    /// Whether samples on the edge belong to the triangle: its left edges and its upper horizontal ones have them.
-    fn has_its_samples(&self) -> bool {
-        self.a > 0.0 || (self.a == 0.0 && self.b > 0.0)
+    /// The least value with which a sample is inside: zero for left edges and upper horizontal ones, which have the
+    /// samples on them, and else just above it.
+    #[inline(always)]
+    fn least(&self) -> f64 {
+        let has_its_samples = self.a > 0.0 || (self.a == 0.0 && self.b > 0.0);
+        if has_its_samples { 0.0 } else { f64::from_bits(1) }
     }
 }
 
 /// The end of an edge that both its triangles measure from: the left one, of two above each other the upper one.
 #[inline(always)]
-fn anchor(from: &Corner, to: &Corner) -> [f64; 2] {
+fn anchor(from: &Place, to: &Place) -> [f64; 2] {
     if from.w == 1.0 && to.w == 1.0 {
         let first = from.x < to.x || (from.x == to.x && from.y < to.y);
         return if first { [from.x, from.y] } else { [to.x, to.y] };
@@ -140,25 +149,31 @@ pub(super) struct Setup {
 const MARGIN: f64 = 1e-3;
 
 impl Setup {
-    /// `None` if the triangle's plane contains the eye, if it lies beyond the near or far plane, or outside the image.
+    /// `None` if the triangle's plane contains the eye, or as [`bounds`] has none.
     #[inline(always)]
     pub(super) fn new(corners: &[Corner; 3], size: [u32; 2]) -> Option<Self> {
         let [a, b, c] = corners;
-        let near = [a.z, b.z, c.z];
-        let far = [a.w - a.z, b.w - b.z, c.w - c.z];
-        if all_negative(near) || all_negative(far) {
-            return None;
-        }
-        let bounds = bounds(corners, size)?;
-        let edges = [Edge::between(b, c), Edge::between(c, a), Edge::between(a, b)];
-        let area = edges[0].dot(a);
+        let bounds = bounds([&a.place, &b.place, &c.place], size)?;
+        Self::within(corners, bounds)
+    }
+
+    /// The same with the bounds that [`bounds`] has found.
+    #[inline(always)]
+    pub(super) fn within(corners: &[Corner; 3], bounds: Bounds) -> Option<Self> {
+        let [a, b, c] = corners;
+        let near = [a.place.z, b.place.z, c.place.z];
+        let far = [a.place.w - a.place.z, b.place.w - b.place.z, c.place.w - c.place.z];
+        let [a_place, b_place, c_place] = [&a.place, &b.place, &c.place];
+        let edges = [Edge::between(b_place, c_place), Edge::between(c_place, a_place), Edge::between(a_place, b_place)];
+        let area = edges[0].dot(a_place);
         let edges = match area {
             area if area > 0.0 => edges,
-            area if area < 0.0 => edges.map(Edge::negated),
+            area if area < 0.0 => [edges[0].negated(), edges[1].negated(), edges[2].negated()],
             _ => return None,
         };
-        let least = edges.map(|edge| if edge.has_its_samples() { 0.0 } else { f64::from_bits(1) });
-        let colour = [0, 1, 2].map(|channel| [a.colour[channel], b.colour[channel], c.colour[channel]]);
+        let least = [edges[0].least(), edges[1].least(), edges[2].least()];
+        let channel = |i: usize| [a.colour[i], b.colour[i], c.colour[i]];
+        let colour = [channel(0), channel(1), channel(2)];
         Some(Self { edges, least, near, far, p: [a.p, b.p, c.p], q: [a.q, b.q, c.q], colour, bounds })
     }
 }
@@ -168,11 +183,15 @@ fn all_negative(values: [f64; 3]) -> bool {
     values[0] < 0.0 && values[1] < 0.0 && values[2] < 0.0
 }
 
-/// The pixels whose centres the triangle can cover; all of them if a corner is behind the eye.
+/// The pixels whose centres the triangle can cover; all of them if a corner is behind the eye. `None` if there are none
+/// or if it lies beyond the near or far plane.
 #[inline(always)]
-fn bounds(corners: &[Corner; 3], size: [u32; 2]) -> Option<Bounds> {
-    let [a, b, c] = corners;
-    let [width, height] = size.map(f64::from);
+pub(super) fn bounds([a, b, c]: [&Place; 3], size: [u32; 2]) -> Option<Bounds> {
+    if all_negative([a.z, b.z, c.z]) || all_negative([a.w - a.z, b.w - b.z, c.w - c.z]) {
+        return None;
+    }
+    let width = f64::from(size[0]);
+    let height = f64::from(size[1]);
     if !(a.w > 0.0 && b.w > 0.0 && c.w > 0.0) {
         let is_behind = a.w <= 0.0 && b.w <= 0.0 && c.w <= 0.0;
         return (!is_behind).then_some(Bounds { x: [0, size[0]], y: [0, size[1]] });
