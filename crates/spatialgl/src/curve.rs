@@ -1,8 +1,11 @@
 //! Where a triangle crosses the plane of a slice.
 
+/// The two ends of a curve, and the weights of the triangle's corners at each.
+pub(crate) type PlaneCurve = ([[f64; 3]; 2], [[f64; 3]; 2]);
+
 /// The two ends of a triangle's intersection with the plane s = `s`, and the weights of its corners there; `None` if it
 /// does not cross the plane or lies in it.
-pub(crate) fn plane_curve(corners: [[f64; 3]; 3], s: f64) -> Option<([[f64; 3]; 2], [[f64; 3]; 2])> {
+pub(crate) fn plane_curve(corners: [[f64; 3]; 3], s: f64) -> Option<PlaneCurve> {
     let side = corners.map(|corner| corner[2] - s);
     if side == [0.0; 3] {
         return None;

@@ -4,6 +4,7 @@ mod support;
 
 use glam::DVec3;
 use spatialgl::*;
+use std::f64::consts::FRAC_1_SQRT_2;
 use support::*;
 
 const EXACT: SliceClip = SliceClip::ShaderPlanes;
@@ -57,8 +58,8 @@ fn case_3_distances_from_the_boundary_planes() {
     let cases = [
         (0, [100.0, 20.0, 0.5], [1.293_307, 0.293_339]),
         (1, [100.0, 20.0, 0.5], [-0.293_339, 1.879_911]),
-        (50, [90.0, -40.0, 91.0], [0.707_107, 1.323_609]),
-        (248, [90.0, -40.0, 91.0], [-0.707_107, -1.323_609]),
+        (50, [90.0, -40.0, 91.0], [FRAC_1_SQRT_2, 1.323_609]),
+        (248, [90.0, -40.0, 91.0], [-FRAC_1_SQRT_2, -1.323_609]),
     ];
     for (k, p, expected) in cases {
         let found = distances(k, p);

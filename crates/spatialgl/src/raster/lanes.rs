@@ -140,8 +140,8 @@ fn has_negative(values: [f64; 3]) -> bool {
 #[inline(always)]
 fn bits(holds: impl Fn(usize) -> bool) -> u8 {
     let mut lanes = [0u64; LANES];
-    for i in 0..LANES {
-        lanes[i] = if holds(i) { 1 << i } else { 0 };
+    for (i, lane) in lanes.iter_mut().enumerate() {
+        *lane = if holds(i) { 1 << i } else { 0 };
     }
     let mut mask = 0;
     for lane in lanes {
@@ -268,11 +268,10 @@ impl Setup {
     /// The pixels of a row that can be inside and between near and far plane, a pixel more on both sides.
     fn row_range(&self, row: [f64; 3], checks: Checks) -> [u32; 2] {
         let mut range = self.bounds.x.map(f64::from);
-        for k in 0..3 {
-            let Edge { a, b, x, c, .. } = self.edges[k];
-            let is_well_posed = c == 0.0 && a.abs() > 1e-6 * b.abs();
+        for (Edge { a, b, x, c, .. }, row) in self.edges.iter().zip(row) {
+            let is_well_posed = *c == 0.0 && a.abs() > 1e-6 * b.abs();
             if is_well_posed {
-                narrow(&mut range, a, x - row[k] / a);
+                narrow(&mut range, *a, x - row / a);
             }
         }
         if checks.near {
