@@ -58,6 +58,7 @@ mod image;
 mod measure;
 mod pack;
 mod projection;
+mod quadratic;
 mod raster;
 mod render;
 mod scene;
@@ -85,6 +86,7 @@ pub use pack::{
     BitOrder, DENSE_PIXELS, PIXELS_PER_WORD, in_bit_order, pack_dense, packed_word, pixel_of_word, unpack_dense,
 };
 pub use projection::{Jitter, Projection, Size, SliceEye};
+pub use quadratic::ClipQuadratic;
 pub use raster::{Bin, Coverage, HostRenderer, OracleRenderer, SliceRenderer, SliceStats, SliceWork};
 pub use render::{Strobes, VolumeConfig, render_volume};
 pub use scene::{SCENE_REACH, record_scene, tessellated_sphere};
