@@ -293,7 +293,15 @@ fn outside(display: &dyn SpatialDisplay, commands: &CommandBuffer) -> u64 {
 
 /// The pixels that were drawn on, with their colours.
 fn samples(image: &SliceImage) -> Vec<ColourSample> {
-    let [width, height] = image.size();
-    let drawn = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).filter(|(x, y)| image.is_marked(*x, *y));
-    drawn.map(|(x, y)| ColourSample { pixel: y * width + x, colour: image.pixel(x, y) }).collect()
+    let width = image.size()[0];
+    let mut samples = Vec::new();
+    for (at, byte) in (0u32..).zip(&image.stencil).filter(|(_, byte)| **byte != 0) {
+        let mut rest = *byte;
+        while rest != 0 {
+            let pixel = at * 8 + rest.trailing_zeros();
+            rest &= rest - 1;
+            samples.push(ColourSample { pixel, colour: image.pixel(pixel % width, pixel / width) });
+        }
+    }
+    samples
 }
