@@ -27,7 +27,8 @@ pub(crate) fn code(text: &str) -> String {
 
 /// A source without what the features `files` and `threads` add; a file that is all of it is left out by its first line.
 pub(crate) fn without_host_feature(text: &str) -> String {
-    let is_of_the_host = ["files", "threads"].iter().any(|name| text.contains(&format!("#![cfg(feature = \"{name}\")]")));
+    let is_of_the_host =
+        ["files", "threads"].iter().any(|name| text.contains(&format!("#![cfg(feature = \"{name}\")]")));
     if is_of_the_host { String::new() } else { code(text) }
 }
 

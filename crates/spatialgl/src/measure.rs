@@ -54,7 +54,8 @@ impl Around {
         let [width, height] = size;
         let mut near = vec![false; width as usize * height as usize];
         for sample in drawn {
-            let [x, y] = [sample.pixel % width, sample.pixel / width];
+            let x = sample.pixel % width;
+            let y = sample.pixel / width;
             for row in y.saturating_sub(1)..(y + 2).min(height) {
                 for column in x.saturating_sub(1)..(x + 2).min(width) {
                     near[(row * width + column) as usize] = true;

@@ -180,8 +180,8 @@ pub(crate) fn matrix_of_rows(rows: [[f64; 4]; 4]) -> DMat4 {
 /// The rows to homogeneous window coordinates of any projection to clip coordinates.
 pub(crate) fn window_of(projection: &DMat4, size: Size) -> [[f64; 4]; 4] {
     let rows = projection.transpose();
-    let [x, y, z, w] = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis];
+    let w = rows.w_axis;
     let half_width = f64::from(size[0]) / 2.0;
     let half_height = f64::from(size[1]) / 2.0;
-    [(x + w) * half_width, (w - y) * half_height, z, w].map(|row| row.to_array())
+    [(rows.x_axis + w) * half_width, (w - rows.y_axis) * half_height, rows.z_axis, w].map(|row| row.to_array())
 }

@@ -45,7 +45,9 @@ impl ClipQuadratic {
     pub fn of_corners(corners: [[f64; 3]; 3], wedge: HalfWedge, bias: f64) -> Option<Self> {
         let [first, second, third] = corners;
         let along = |axis: usize| [second[axis] - first[axis], third[axis] - first[axis]];
-        let [u, v, s] = [along(0), along(1), along(2)];
+        let u = along(0);
+        let v = along(1);
+        let s = along(2);
         let area = u[0] * v[1] - u[1] * v[0];
         if area == 0.0 {
             return None;

@@ -71,8 +71,10 @@ pub fn tessellated_sphere(centre: DVec3, radius: f64, rows: u32, colour: [u8; 3]
     let mut indices = Vec::new();
     for a in 0..rows {
         for b in 0..columns {
-            let [here, beside] = [a * columns + b, a * columns + (b + 1) % columns];
-            let [below, across] = [here + columns, beside + columns];
+            let here = a * columns + b;
+            let beside = a * columns + (b + 1) % columns;
+            let below = here + columns;
+            let across = beside + columns;
             if a > 0 {
                 indices.extend([here, below, beside]);
             }

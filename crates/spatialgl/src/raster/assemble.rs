@@ -95,7 +95,8 @@ fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut
     let Some([begin, end]) = between_planes(from, to) else { return };
     let first = from.mixed(to, begin);
     let last = from.mixed(to, end);
-    let [begin_place, end_place] = [&first.place, &last.place];
+    let begin_place = &first.place;
+    let end_place = &last.place;
     if begin_place.w <= 0.0 || end_place.w <= 0.0 {
         return;
     }
@@ -120,7 +121,8 @@ fn line(from: &Corner, to: &Corner, crossing: Option<f64>, half: f64, draw: &mut
 /// The part of a line between near and far plane, as a range of 0..1; `None` if nothing of it lies there.
 fn between_planes(from: &Corner, to: &Corner) -> Option<[f64; 2]> {
     let mut range = [0.0f64, 1.0f64];
-    let [from, to] = [&from.place, &to.place];
+    let from = &from.place;
+    let to = &to.place;
     for [a, b] in [[from.z, to.z], [from.w - from.z, to.w - to.z]] {
         if a < 0.0 && b < 0.0 {
             return None;

@@ -26,7 +26,8 @@ impl Corner {
     /// The point at `t` of the way to another.
     pub(super) fn mixed(&self, other: &Self, t: f64) -> Self {
         let mix = |a: f64, b: f64| a * (1.0 - t) + b * t;
-        let [from, to] = [&self.place, &other.place];
+        let from = &self.place;
+        let to = &other.place;
         let place = Place { x: mix(from.x, to.x), y: mix(from.y, to.y), z: mix(from.z, to.z), w: mix(from.w, to.w) };
         Self {
             place,
@@ -163,9 +164,11 @@ impl Setup {
         let [a, b, c] = corners;
         let near = [a.place.z, b.place.z, c.place.z];
         let far = [a.place.w - a.place.z, b.place.w - b.place.z, c.place.w - c.place.z];
-        let [a_place, b_place, c_place] = [&a.place, &b.place, &c.place];
-        let edges = [Edge::between(b_place, c_place), Edge::between(c_place, a_place), Edge::between(a_place, b_place)];
-        let area = edges[0].dot(a_place);
+        let opposite_a = Edge::between(&b.place, &c.place);
+        let opposite_b = Edge::between(&c.place, &a.place);
+        let opposite_c = Edge::between(&a.place, &b.place);
+        let edges = [opposite_a, opposite_b, opposite_c];
+        let area = opposite_a.dot(&a.place);
         let edges = match area {
             area if area > 0.0 => edges,
             area if area < 0.0 => [edges[0].negated(), edges[1].negated(), edges[2].negated()],
