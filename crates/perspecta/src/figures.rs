@@ -8,14 +8,14 @@ use spatialgl::{
     VolumeStats,
 };
 
-/// One figure.
+/// One figure of the paper beside what the model has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
     /// Its number in the specification: P is printed in the paper, D derived from it.
     pub id: &'static str,
-    /// What it states.
+    /// What it states, in words.
     pub statement: &'static str,
-    /// Its unit.
+    /// Unit of both values and of the interval.
     pub unit: &'static str,
     /// The value that is printed or derived; for "over" and "about" the middle or the end of the interval.
     pub published: f64,

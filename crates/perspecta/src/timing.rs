@@ -67,7 +67,7 @@ impl PerspectaConfig {
         2.0 * self.spin_rpm as f64 / 60.0
     }
 
-    /// Strobes a second.
+    /// Strobes a second: slices times revolutions.
     #[must_use]
     pub fn strobe_hz(&self) -> f64 {
         self.slices as f64 * self.spin_rpm as f64 / 60.0

@@ -36,7 +36,7 @@ pub enum Binning {
     Off,
     /// Only the planes that bound a region decide: weaker, as in the first version of the paper.
     TwoPlanes,
-    /// Every plane decides.
+    /// All planes of the layout decide for each region.
     #[default]
     AllPlanes,
 }
@@ -50,7 +50,7 @@ pub enum BinTolerance {
     OfTheClip,
     /// The paper's codes: zero is positive, and nothing lies on both sides. Loses fragments of dilated clips.
     Codes,
-    /// So many pixels.
+    /// So many pixels, whatever the clip is.
     Pixels(f64),
 }
 

@@ -40,11 +40,11 @@ pub const DEFAULT_BIAS_PX2: f64 = 0.25;
 /// Half the wedge that a slice stands for: sine, cosine and tangent of d/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfWedge {
-    /// S = sin(d/2).
+    /// S = sin(d/2), with d the angle between slices.
     pub sin: f64,
-    /// C = cos(d/2).
+    /// C = cos(d/2) of the same angle.
     pub cos: f64,
-    /// T = tan(d/2).
+    /// T = tan(d/2) of the same angle.
     pub tan: f64,
     /// Half the width of the image, which is the radius of the display, pixels.
     pub radius: f64,

@@ -61,7 +61,7 @@ pub struct CommandBuffer {
 }
 
 impl CommandBuffer {
-    /// Vertices after transformation.
+    /// How many vertices were transformed and lit.
     #[must_use]
     pub const fn vertices(&self) -> usize {
         self.positions.len()

@@ -32,7 +32,7 @@ pub struct VertexBuffer {
 }
 
 impl VertexBuffer {
-    /// Takes vertices in.
+    /// Takes vertices in and checks that all of them can be drawn.
     ///
     /// # Errors
     ///

@@ -12,10 +12,10 @@ pub const PIXELS_PER_WORD: u32 = 8;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BitOrder {
-    /// Bit 7. Assumed.
+    /// Bit 7 is the leftmost pixel. Assumed.
     #[default]
     LeftIsHigh,
-    /// Bit 0.
+    /// Bit 0 is the leftmost pixel.
     LeftIsLow,
 }
 

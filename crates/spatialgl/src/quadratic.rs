@@ -9,15 +9,15 @@ use crate::clip::HalfWedge;
 /// pixels for the value; orthographic. A shear changes (u, v) affinely and an eye divides by w^2: both stay quadratics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClipQuadratic {
-    /// Coefficient of u^2.
+    /// Coefficient of u^2, a pure number.
     pub uu: f64,
-    /// Coefficient of u v.
+    /// Coefficient of u v, a pure number.
     pub uv: f64,
-    /// Coefficient of v^2.
+    /// Coefficient of v^2, a pure number.
     pub vv: f64,
-    /// Coefficient of u.
+    /// Coefficient of u, in pixels.
     pub u: f64,
-    /// Coefficient of v.
+    /// Coefficient of v, in pixels.
     pub v: f64,
     /// The constant, square pixels.
     pub one: f64,

@@ -36,7 +36,7 @@ pub struct VolumeConfig {
     pub binning: Binning,
     /// How far from a plane a vertex counts for both its sides.
     pub bin_tolerance: BinTolerance,
-    /// Tiles and batches.
+    /// Size of tiles, and how many slices are queried together.
     pub tiling: Tiling,
     /// From eight bits to one.
     pub halftone: Halftone,

@@ -34,9 +34,9 @@ pub struct VolumeStats {
     pub tiles_occupied: u64,
     /// Occlusion queries: tiles of all batches.
     pub queries: u64,
-    /// Stencil clears: batches.
+    /// Stencil clears: one for each batch.
     pub stencil_clears: u64,
-    /// Pixels packed.
+    /// Pixels that were halftoned and packed.
     pub pixels_packed: u64,
     /// Bytes of all slices with a word of 32 bits a pixel.
     pub bytes_unpacked: u64,

@@ -41,7 +41,7 @@ parameters::parameter_table! {
 /// Unpacked transfers take 4 bytes a pixel, and nothing is packed.
 #[derive(Clone, Copy, Debug)]
 pub struct TimeModel {
-    /// Rates and times.
+    /// The rates and times that it is computed with.
     pub timing: GpuTiming,
 }
 
@@ -79,7 +79,7 @@ impl VolumeTime {
 }
 
 impl TimeModel {
-    /// The preset `geforce-6800`.
+    /// The preset `geforce-6800`, the hardware of 2005.
     pub const GEFORCE_6800: Self = Self { timing: GpuTiming::PAPERS };
 
     /// The model with a table.

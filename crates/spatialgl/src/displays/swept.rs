@@ -100,7 +100,7 @@ pub struct SweptDisplay {
 }
 
 impl SweptDisplay {
-    /// Makes all views.
+    /// Makes the views of all slices, with their volumes, eyes and bins.
     ///
     /// # Errors
     ///

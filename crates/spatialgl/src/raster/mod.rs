@@ -45,7 +45,7 @@ pub struct SliceStats {
 /// One slice's share of a recording: the primitives of its bin, in their order.
 #[derive(Clone, Copy, Debug)]
 pub struct SliceWork<'a> {
-    /// The recording.
+    /// The recording whose primitives are drawn.
     pub commands: &'a CommandBuffer,
     /// The primitives to draw.
     pub bin: &'a Bin,
