@@ -24,7 +24,7 @@ pub struct ClipQuadratic {
 }
 
 impl ClipQuadratic {
-    /// That of the plane s = slope[0] u + slope[1] v + offset, with a bias of b square pixels.
+    /// That of the plane s = a u + c v + offset with the slope (a, c), and a bias of b square pixels.
     #[must_use]
     pub fn of_plane(slope: [f64; 2], offset: f64, wedge: HalfWedge, bias: f64) -> Self {
         let [a, c] = slope;
