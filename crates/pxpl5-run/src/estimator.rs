@@ -20,7 +20,7 @@ pub enum Cause {
     Latency,
     /// A picture is drawn for one instant and lights over many. Without it all of it is judged at that instant.
     ScanOut,
-    /// The tracker's noise. Without it reports say where the head was.
+    /// The tracker's noise and bias. Without them reports say where the head was.
     Noise,
     /// What the predictor makes of the reports. Without it the newest one is carried on by the true motion.
     Prediction,

@@ -167,9 +167,15 @@ impl TrackerConfig {
         }
     }
 
-    /// The same tracker without noise: what it reports is where the head was.
+    /// The same tracker without noise and bias: what it reports is where the head was.
     pub fn without_noise(self) -> Self {
-        Self { position_noise_m: 0.0, orientation_noise_deg: 0.0, ..self }
+        Self {
+            position_noise_m: 0.0,
+            orientation_noise_deg: 0.0,
+            position_bias_m: 0.0,
+            orientation_bias_deg: 0.0,
+            ..self
+        }
     }
 
     /// The same tracker without latency: the host knows a measurement at the instant at which it is made.
