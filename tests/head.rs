@@ -36,7 +36,7 @@ fn an_experiment_file_gives_the_numbers_of_the_comparison() {
         ("pixels", "off"),
         ("machine.preset", "small-hmd"),
     ];
-    let query = CompareQuery { shared: file(&shared), seeds: vec![1], limits: false };
+    let query = CompareQuery { shared: file(&shared), seeds: vec![1], limits: false, pictures: false };
     let comparison = query.run(|_, _| ()).expect("in range");
     let rows = [
         ("rendering-control", "rendering-control", "plain"),

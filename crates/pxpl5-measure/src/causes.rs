@@ -28,11 +28,11 @@ pub struct ErrorPart {
 }
 
 impl ErrorCauses {
-    /// Of a run whose pictures are shown so; `None` of a run without a head, or of which no pixel could be judged.
+    /// Of a run whose pictures are shown so, and what its errors are then ([`PixelErrors::shown`]); `None` of a run without a head, or of
+    /// which no pixel could be judged.
     #[must_use]
-    pub fn of(outcome: &Outcome, showing: Showing) -> Option<Self> {
+    pub fn of(outcome: &Outcome, showing: Showing, whole: &PixelErrors) -> Option<Self> {
         outcome.head()?;
-        let whole = PixelErrors::shown(outcome, showing);
         if whole.judged == 0 {
             return None;
         }

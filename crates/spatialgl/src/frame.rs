@@ -1,8 +1,9 @@
 //! A finished volume: the bits of all slices, and what was counted while they were drawn.
 
 use crate::pack::pixel_of_word;
-use crate::projection::{Size, mix};
+use crate::projection::Size;
 use crate::stats::VolumeStats;
+use pxpl5_sim::mix;
 
 /// One bit a colour for every pixel of every slice, eight pixels a word as the projector takes them.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -2,6 +2,7 @@
 
 use crate::error::{SpatialError, require};
 use glam::{DMat4, DVec4};
+use pxpl5_sim::mix;
 use serde::{Deserialize, Serialize};
 
 /// Size of an image: width, then height, in pixels.
@@ -110,14 +111,6 @@ fn unit(seed: u64, slice: u32, draw: u64) -> f64 {
     let counter = (u64::from(slice) << 2) | draw;
     let hash = mix(mix(seed).wrapping_add(counter));
     (hash >> 11) as f64 / (1u64 << 53) as f64
-}
-
-/// The mixing function of splitmix64 (Steele, Lea and Flood 2014).
-pub(crate) const fn mix(x: u64) -> u64 {
-    let x = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    x ^ (x >> 31)
 }
 
 impl SliceEye {

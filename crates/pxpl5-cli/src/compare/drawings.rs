@@ -24,20 +24,19 @@ fn judged(comparison: &Comparison) -> impl Iterator<Item = &Row> {
 fn over_time(comparison: &Comparison) -> String {
     let seed = comparison.seeds.first().copied().unwrap_or_default();
     let axes = axes(comparison, &format!("Error over time, seed {seed}"), "time, s", "mean error over the picture, px");
-    let curves = judged(comparison).map(|row| Curve {
-        name: row.pipeline.clone(),
-        points: row.by_field.iter().map(|field| (field.time_s, field.mean_px)).collect(),
-    });
-    curve_chart(&axes, &curves.collect::<Vec<_>>())
+    curves(comparison, &axes, |row| row.by_field.iter().map(|field| (field.time_s, field.mean_px)).collect())
 }
 
 fn distribution(comparison: &Comparison) -> String {
     let axes = axes(comparison, "Distribution of the error", "error, px", "pixels with at most this error, %");
-    let curves = judged(comparison).map(|row| Curve {
-        name: row.pipeline.clone(),
-        points: row.error.distribution_px.iter().enumerate().map(|(percent, px)| (*px, percent as f64)).collect(),
-    });
-    curve_chart(&axes, &curves.collect::<Vec<_>>())
+    curves(comparison, &axes, |row| {
+        row.error.distribution_px.iter().enumerate().map(|(percent, px)| (*px, percent as f64)).collect()
+    })
+}
+
+fn curves(comparison: &Comparison, axes: &Axes, points: impl Fn(&Row) -> Vec<(f64, f64)>) -> String {
+    let curves = judged(comparison).map(|row| Curve { name: row.pipeline.clone(), points: points(row) });
+    curve_chart(axes, &curves.collect::<Vec<_>>())
 }
 
 fn over_latency(comparison: &Comparison) -> String {

@@ -3,70 +3,96 @@
 use crate::error::CliError;
 use crate::output::OutputFolder;
 use crate::run::INCOMPLETE;
-use pxpl5::compare::{Comparison, GalleryPicture};
+use image::RgbImage;
+use pxpl5::compare::{Comparison, LastPicture, Row};
 use pxpl5::views::page::{PagePicture, PageTable, html_of_tables};
 use pxpl5::views::png_bytes;
 
-/// Writes a picture for each row, the one that should be there, and a page of all of them.
+/// Writes a picture for each row, those that should be there, and a page of all of them.
 ///
 /// # Errors
 ///
 /// When a file cannot be written.
-pub(super) fn put(
-    folder: &mut OutputFolder,
-    comparison: &Comparison,
-    gallery: &[GalleryPicture],
-) -> Result<(), CliError> {
-    let mut pictures = Vec::new();
-    if let Some(should_be) = gallery.iter().find_map(|one| one.should_be.as_ref()) {
-        let texts = [("scene", comparison.scene.clone())];
-        let png = png_bytes(should_be, &texts).map_err(CliError::failure)?;
-        folder.put("picture-should-be.png", &png)?;
-        pictures.push(PagePicture { label: "as it should be in the middle of the last field".to_owned(), png });
+pub(super) fn put(folder: &mut OutputFolder, comparison: &Comparison) -> Result<(), CliError> {
+    let mut gallery = Gallery { folder, comparison, pictures: Vec::new(), ideals: Vec::new() };
+    for row in &comparison.pipelines {
+        if let Some(last) = &row.picture {
+            gallery.ideal(row, last)?;
+            gallery.seen(row, last)?;
+        }
     }
-    for one in gallery {
-        let Ok(seen) = &one.seen else { continue };
-        let texts = [
-            ("pipeline", one.pipeline.clone()),
-            ("scene", comparison.scene.clone()),
-            ("complete", one.is_complete.to_string()),
-        ];
-        let png = png_bytes(seen, &texts).map_err(CliError::failure)?;
-        let mark = if one.is_complete { "" } else { INCOMPLETE };
-        folder.put(&format!("picture-{}{mark}.png", one.pipeline), &png)?;
-        pictures.push(PagePicture { label: caption(comparison, one), png });
-    }
+    let Gallery { pictures, .. } = gallery;
     let page = PageTable {
         name: format!("{}: what the first eye sees at the end", comparison.scene),
-        about: about(comparison, gallery),
+        about: about(comparison),
         pictures,
         ..PageTable::default()
     };
     folder.put("gallery.html", html_of_tables(&[page]).as_bytes())
 }
 
+/// A page as it is filled.
+struct Gallery<'a> {
+    folder: &'a mut OutputFolder,
+    comparison: &'a Comparison,
+    pictures: Vec<PagePicture>,
+    /// Pictures as they should be that are on the page: pipelines of the same shading share one.
+    ideals: Vec<&'a RgbImage>,
+}
+
+impl<'a> Gallery<'a> {
+    fn ideal(&mut self, row: &Row, last: &'a LastPicture) -> Result<(), CliError> {
+        let Some(ideal) = last.should_be.as_ref().filter(|ideal| !self.ideals.contains(ideal)) else { return Ok(()) };
+        self.ideals.push(ideal);
+        let name = format!("picture-should-be-{}.png", self.ideals.len());
+        let caption = format!("as it should be in the middle of the last period, in the shading of {}", row.pipeline);
+        self.add(&name, caption, ideal, [("picture", "as it should be".to_owned())])
+    }
+
+    fn seen(&mut self, row: &Row, last: &LastPicture) -> Result<(), CliError> {
+        let mark = if last.is_complete { "" } else { INCOMPLETE };
+        let name = format!("picture-{}{mark}.png", row.pipeline);
+        let texts = [("pipeline", row.pipeline.clone()), ("complete", last.is_complete.to_string())];
+        self.add(&name, caption(row, last), &last.seen, texts)
+    }
+
+    fn add<const N: usize>(
+        &mut self,
+        name: &str,
+        label: String,
+        picture: &RgbImage,
+        texts: [(&str, String); N],
+    ) -> Result<(), CliError> {
+        let texts = [texts.as_slice(), &[("scene", self.comparison.scene.clone())]].concat();
+        let png = png_bytes(picture, &texts).map_err(CliError::failure)?;
+        self.folder.put(name, &png)?;
+        self.pictures.push(PagePicture { label, png });
+        Ok(())
+    }
+}
+
 /// Whose picture it is, how old, and how wrong.
-fn caption(comparison: &Comparison, one: &GalleryPicture) -> String {
-    let mut caption = one.pipeline.clone();
-    if !one.is_complete {
+fn caption(row: &Row, last: &LastPicture) -> String {
+    let mut caption = row.pipeline.clone();
+    if !last.is_complete {
         caption.push_str(": not complete, it was not there in time");
         return caption;
     }
-    let to_light_ms = comparison.row(&one.pipeline).map_or(f64::NAN, |row| row.head_to_light_ms.mean);
-    if to_light_ms.is_finite() {
-        caption.push_str(&format!(": {to_light_ms:.1} ms from head to light"));
+    if row.head_to_light_ms.mean.is_finite() {
+        caption.push_str(&format!(": {:.1} ms from head to light", row.head_to_light_ms.mean));
     }
-    if let Some(error) = &one.last_error {
-        caption.push_str(&format!(", {:.2} px beside its place", error.mean_px));
+    if let Some(error) = row.by_field.last() {
+        caption.push_str(&format!(", {:.2} px beside its place in the last field", error.mean_px));
     }
     caption
 }
 
 /// The run, and the rows without a picture.
-fn about(comparison: &Comparison, gallery: &[GalleryPicture]) -> Vec<String> {
-    let seed = comparison.seeds.first().copied().unwrap_or_default();
-    let triangles = comparison.triangles;
-    let run = format!("{triangles} triangles on {}, {} fields, seed {seed}", comparison.machine, comparison.fields);
-    let without = gallery.iter().filter_map(|one| Some(format!("{}: {}", one.pipeline, one.seen.as_ref().err()?)));
-    std::iter::once(run).chain(without).collect()
+fn about(comparison: &Comparison) -> Vec<String> {
+    let Comparison { triangles, machine, fields, seeds, pipelines, .. } = comparison;
+    let seed = seeds.first().copied().unwrap_or_default();
+    let mut about = vec![format!("{triangles} triangles on {machine}, {fields} fields, seed {seed}")];
+    let failed = pipelines.iter().filter(|row| row.picture.is_none());
+    about.extend(failed.filter_map(|row| Some(format!("{}: {}", row.pipeline, row.failure.as_ref()?))));
+    about
 }

@@ -73,7 +73,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let shared = with_defaults(args.settings.gather()?)?;
     let first = shared.seed()?;
     let seeds = (first..=first.saturating_add(args.seeds - 1)).collect();
-    let query = CompareQuery { shared, seeds, limits: !args.no_limits };
+    let query = CompareQuery { shared, seeds, limits: !args.no_limits, pictures: folder.is_some() };
     let bar = terminal::progress(0, "runs", args.quiet);
     let comparison = query.run(|done, of| {
         bar.set_length(of);
@@ -87,7 +87,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
         for (name, text) in drawings::files(&comparison) {
             folder.put(name, text.as_bytes())?;
         }
-        gallery::put(folder, &comparison, &query.gallery(|_, _| ())?)?;
+        gallery::put(folder, &comparison)?;
         edges(&query, args.edge_pan, folder)?;
     }
     folder.map(OutputFolder::commit).transpose()?;

@@ -14,7 +14,7 @@ mod trial;
 pub use crate::head_names::{
     MOTIONS, MotionError, Replay, TRACKERS, is_recording, motion, predictor, replayed, tracker, tracker_by,
 };
-pub use gallery::GalleryPicture;
+pub use gallery::LastPicture;
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use predictors::{PredictorError, Predictors, predictors};
 pub use query::{CompareError, CompareQuery, Comparison, LEAST_SEEDS};

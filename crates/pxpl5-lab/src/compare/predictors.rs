@@ -1,8 +1,9 @@
 //! One experiment with every predictor: the best of none, velocity, acceleration and Kalman beside the chosen one.
 
+use super::row::PredictorMean;
 use crate::parallel;
 use pxpl5_measure::{PixelErrors, Showing};
-use pxpl5_run::{Experiment, ExperimentError, Outcome, Pixels};
+use pxpl5_run::{Experiment, ExperimentError, Head, Outcome, Pixels};
 use serde::Serialize;
 use std::sync::Arc;
 use tracking::predict::{PredictorConfig, PredictorKind, Training};
@@ -45,21 +46,31 @@ impl Predictors {
 /// its numbers; everything else stays. `None` of an experiment without a head. No pixels are computed.
 #[must_use]
 pub fn predictors(experiment: &Experiment) -> Option<Predictors> {
-    let raster = experiment.tracked_head()?.raster();
-    predictors_shown(experiment, raster.into())
-}
-
-/// The same with pictures shown otherwise than on the head's own raster.
-pub(super) fn predictors_shown(experiment: &Experiment, showing: Showing) -> Option<Predictors> {
     let head = experiment.tracked_head()?;
-    let each = parallel::map(&PredictorKind::ALL, |kind| {
-        let with_kind = Arc::new(head.as_ref().clone().predicting(*kind));
-        of_run(*kind, showing, experiment.clone().head(with_kind).pixels(Pixels::Off).run())
-    });
+    let showing = head.raster().into();
+    let each = parallel::map(&PredictorKind::ALL, |kind| with_predictor(experiment, head, showing, *kind));
     let mean = |one: &PredictorError| one.error.as_ref().map(|error| (one.kind, error.pixels.mean));
     let judged = each.iter().filter_map(mean).filter(|(_, mean)| mean.is_finite());
     let best = judged.reduce(|best, next| if next.1 < best.1 { next } else { best });
     Some(Predictors { chosen: head.predictor_kind(), best: best.map(|(kind, _)| kind), each })
+}
+
+/// The mean error of an experiment with each predictor, of which that with the chosen one has been run; no number where none was judged.
+pub(super) fn predictor_means(experiment: &Experiment, showing: Showing, of_chosen_px: f64) -> Vec<PredictorMean> {
+    let Some(head) = experiment.tracked_head() else { return Vec::new() };
+    parallel::map(&PredictorKind::ALL, |kind| {
+        let mean_px = if *kind == head.predictor_kind() {
+            of_chosen_px
+        } else {
+            with_predictor(experiment, head, showing, *kind).error.map_or(f64::NAN, |error| error.pixels.mean)
+        };
+        PredictorMean { kind: *kind, mean_px }
+    })
+}
+
+fn with_predictor(experiment: &Experiment, head: &Head, showing: Showing, kind: PredictorKind) -> PredictorError {
+    let with_kind = Arc::new(head.clone().predicting(kind));
+    of_run(kind, showing, experiment.clone().head(with_kind).pixels(Pixels::Off).run())
 }
 
 fn of_run(kind: PredictorKind, showing: Showing, run: Result<Outcome, ExperimentError>) -> PredictorError {

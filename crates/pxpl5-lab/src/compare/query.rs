@@ -1,14 +1,14 @@
 //! The comparison itself.
 
 use super::contender::{Contender, contenders};
-use super::predictors::predictors_shown;
-use super::row::{PredictorMean, Row};
+use super::predictors::predictor_means;
+use super::row::Row;
 use super::trial::Trial;
 use crate::experiment_file::{ExperimentFile, FileError, Plan, plain};
 use crate::limit::LimitQuery;
 use crate::parallel;
-use pxpl5_measure::UNJUDGED_FIELDS;
-use pxpl5_run::{FIELDS_WITH_HEAD, Goal};
+use pxpl5_measure::{Showing, UNJUDGED_FIELDS};
+use pxpl5_run::{FIELDS_WITH_HEAD, Goal, Pixels};
 use pxpl5_scene::Scene;
 use serde::Serialize;
 use std::sync::Arc;
@@ -28,6 +28,8 @@ pub struct CompareQuery {
     pub seeds: Vec<u64>,
     /// Whether the most triangles that each row can draw are searched for.
     pub limits: bool,
+    /// Whether the first seed's runs compute pixels, for [`Row::picture`].
+    pub pictures: bool,
 }
 
 /// Why nothing can be compared.
@@ -48,6 +50,9 @@ pub enum CompareError {
     /// There is nothing to take a mean over.
     #[error("expected at least one seed, found none")]
     NoSeed,
+    /// The registry has no pipeline that is compared.
+    #[error("expected a registry with a pipeline that is compared, found none")]
+    NoPipeline,
     /// There is nothing to track.
     #[error("expected a head.motion, found none: without a head there is no error to compare")]
     NoHead,
@@ -77,7 +82,7 @@ pub struct Comparison {
 }
 
 impl CompareQuery {
-    /// Runs every row with every seed; `finished` hears how many of all runs are done. No pixels are computed.
+    /// Runs every row with every seed; `finished` hears how many of all runs are done.
     ///
     /// A pipeline that cannot run on the machine, or that shows nothing of the scene, has a row that says why and what it could draw.
     ///
@@ -94,7 +99,7 @@ impl CompareQuery {
         let done = AtomicU64::new(0);
         let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, all);
         let trials = parallel::map(&runs, |(contender, seed)| {
-            let trial = contenders[*contender].tried(&self.shared, *seed, &scene);
+            let trial = self.trial(&contenders[*contender], *seed, &scene);
             step();
             trial
         });
@@ -104,7 +109,7 @@ impl CompareQuery {
             .map(|contender| (contender, of_row.by_ref().take(self.seeds.len()).collect::<Vec<_>>()))
             .collect();
         let pipelines = parallel::map(&rows, |(contender, trials)| {
-            let row = self.row(contender, trials);
+            let row = self.row(contender, trials, &scene);
             if self.limits {
                 step();
             }
@@ -124,10 +129,10 @@ impl CompareQuery {
     }
 
     /// The settings checked with some pipeline.
-    pub(super) fn any_plan(&self) -> Result<Plan, CompareError> {
+    fn any_plan(&self) -> Result<Plan, CompareError> {
         let seed = *self.seeds.first().ok_or(CompareError::NoSeed)?;
         let contenders = contenders(self.shared.registry());
-        let first = contenders.first().ok_or(CompareError::NoHead)?;
+        let first = contenders.first().ok_or(CompareError::NoPipeline)?;
         let plan = first.plan(&self.shared, seed)?;
         if plan.head.is_none() {
             return Err(CompareError::NoHead);
@@ -144,21 +149,27 @@ impl CompareQuery {
         (0..contenders.len()).flat_map(|contender| self.seeds.iter().map(move |seed| (contender, *seed))).collect()
     }
 
-    /// The first seed's run with each predictor.
-    fn predictors(&self, contender: &Contender, plan: &Plan) -> Vec<PredictorMean> {
-        let Ok(scene) = plan.load_scene() else { return Vec::new() };
-        let with_each = predictors_shown(&plan.experiment(scene), contender.showing);
-        let each = with_each.into_iter().flat_map(|predictors| predictors.each);
-        each.map(|one| PredictorMean { kind: one.kind, mean_px: one.error.map_or(f64::NAN, |error| error.pixels.mean) })
-            .collect()
+    fn trial(&self, contender: &Contender, seed: u64, scene: &Arc<Scene>) -> Result<Trial, String> {
+        let is_seen = self.pictures && self.seeds.first() == Some(&seed) && !contender.is_reference();
+        let pixels = if is_seen { Pixels::Lazy } else { Pixels::Off };
+        let plan = contender.plan(&self.shared, seed).map_err(|error| error.to_string())?;
+        contender.trial(&plan, scene, pixels)
     }
 
-    fn row(&self, contender: &Contender, trials: &[Result<Trial, String>]) -> Result<Row, CompareError> {
+    fn row(
+        &self,
+        contender: &Contender,
+        trials: &[Result<Trial, String>],
+        scene: &Arc<Scene>,
+    ) -> Result<Row, CompareError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
-        let ran: Vec<Trial> = trials.iter().flatten().cloned().collect();
+        let ran: Vec<&Trial> = trials.iter().flatten().collect();
         let mut row = Row::of(contender, plan.pipeline.as_ref(), &ran);
-        if !contender.is_reference() {
-            row.predictors = self.predictors(contender, &plan);
+        if let Some(Ok(first)) = trials.first()
+            && !contender.is_reference()
+        {
+            let experiment = plan.experiment(Arc::clone(scene));
+            row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
         }
         if self.limits && !contender.is_reference() {
             row.triangles_definition = definition(&plan);
@@ -171,13 +182,8 @@ impl CompareQuery {
 }
 
 impl Contender {
-    pub(super) fn is_reference(&self) -> bool {
-        self.showing == pxpl5_measure::Showing::Ideal
-    }
-
-    fn tried(&self, shared: &ExperimentFile, seed: u64, scene: &Arc<Scene>) -> Result<Trial, String> {
-        let plan = self.plan(shared, seed).map_err(|error| error.to_string())?;
-        self.trial(&plan, scene)
+    fn is_reference(&self) -> bool {
+        self.showing == Showing::Ideal
     }
 }
 

@@ -1,6 +1,7 @@
 //! A row of the table: all of its runs together.
 
 use super::contender::Contender;
+use super::gallery::LastPicture;
 use super::trial::Trial;
 use distrs::StudentsT;
 use pxpl5_measure::{Budget, FieldError, Percentiles, Showing};
@@ -114,11 +115,14 @@ pub struct Row {
     /// Errors of the first seed over time.
     #[serde(skip)]
     pub by_field: Vec<FieldError>,
+    /// What the first eye sees at the end of the first seed's run; `None` where pictures were not asked for, or nothing was shown.
+    #[serde(skip)]
+    pub picture: Option<LastPicture>,
 }
 
 impl Row {
     /// All runs of a contender; a row without any has no numbers.
-    pub(super) fn of(contender: &Contender, pipeline: &dyn Pipeline, trials: &[Trial]) -> Self {
+    pub(super) fn of(contender: &Contender, pipeline: &dyn Pipeline, trials: &[&Trial]) -> Self {
         let is_reference = contender.showing == Showing::Ideal;
         let definition = if is_reference {
             "none: every pixel's own moment, computed and not timed"
@@ -147,6 +151,7 @@ impl Row {
             failure: None,
             host_seconds: trials.iter().map(|trial| trial.host_seconds).sum(),
             by_field: trials.first().map(|trial| trial.errors.by_field.clone()).unwrap_or_default(),
+            picture: trials.first().and_then(|trial| trial.picture.clone()),
         }
     }
 
@@ -169,12 +174,12 @@ fn settings_text(contender: &Contender) -> String {
     settings.collect::<Vec<_>>().join(" ")
 }
 
-fn pooled(trials: &[Trial], values: impl Fn(&Trial) -> &Vec<f64>) -> Statistics {
-    Statistics::of(trials.iter().flat_map(values).copied())
+fn pooled(trials: &[&Trial], values: impl Fn(&Trial) -> &Vec<f64>) -> Statistics {
+    Statistics::of(trials.iter().flat_map(|trial| values(trial)).copied())
 }
 
 /// The interaction comes last.
-fn causes(trials: &[Trial]) -> Vec<CauseShare> {
+fn causes(trials: &[&Trial]) -> Vec<CauseShare> {
     let split: Vec<_> = trials.iter().filter_map(|trial| trial.causes.as_ref()).collect();
     if split.is_empty() {
         return Vec::new();
@@ -195,8 +200,8 @@ fn causes(trials: &[Trial]) -> Vec<CauseShare> {
 }
 
 impl ErrorSpread {
-    fn of(trials: &[Trial]) -> Self {
-        let judged: Vec<&Trial> = trials.iter().filter(|trial| trial.errors.judged > 0).collect();
+    fn of(trials: &[&Trial]) -> Self {
+        let judged: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.errors.judged > 0).collect();
         let px: Vec<f64> = judged.iter().map(|trial| trial.errors.pixels.mean).collect();
         let deg: Vec<f64> = judged.iter().map(|trial| trial.errors.degrees.mean).collect();
         let mut all: Vec<f64> = judged.iter().flat_map(|trial| &trial.errors.all_px).copied().collect();

@@ -1,6 +1,7 @@
 //! One run of one row.
 
 use super::contender::Contender;
+use super::gallery::LastPicture;
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing};
 use pxpl5_run::{DuePictures, Outcome, Pixels};
@@ -22,6 +23,8 @@ pub(super) struct Trial {
     pub(super) due: Option<DuePictures>,
     pub(super) late_regions: usize,
     pub(super) host_seconds: f64,
+    /// Of a run with pixels that showed something.
+    pub(super) picture: Option<LastPicture>,
 }
 
 impl Contender {
@@ -36,8 +39,8 @@ impl Contender {
     }
 
     /// Runs it once; what failed says why.
-    pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>) -> Result<Trial, String> {
-        let experiment = plan.experiment(Arc::clone(scene)).pixels(Pixels::Off);
+    pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>, pixels: Pixels) -> Result<Trial, String> {
+        let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels);
         let outcome = experiment.run().map_err(|error| error.to_string())?;
         Ok(Trial::of(&outcome, self.showing))
     }
@@ -48,17 +51,19 @@ impl Trial {
         let report = outcome.report();
         let is_timed = showing != Showing::Ideal;
         let times = |values: Vec<f64>| if is_timed { values } else { Vec::new() };
+        let errors = PixelErrors::shown(outcome, showing);
         Self {
             latency_ms: times(latencies_ms(outcome)),
             head_to_light_ms: times(Budget::totals_ms(outcome)),
             prediction_interval_ms: times(prediction_intervals_ms(outcome)),
             budget: Budget::of(outcome),
-            errors: PixelErrors::shown(outcome, showing),
-            causes: ErrorCauses::of(outcome, showing),
+            causes: ErrorCauses::of(outcome, showing, &errors),
+            errors,
             updates_hz: report.updates_hz.filter(|_| is_timed),
             due: report.due.filter(|_| is_timed),
             late_regions: report.late_regions,
             host_seconds: outcome.host_seconds().unwrap_or_default(),
+            picture: LastPicture::of(outcome, report.ends_complete).filter(|_| is_timed),
         }
     }
 }

@@ -1,11 +1,10 @@
 //! Triangles fixed to the head that cover the whole screen.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
+use super::one_structure;
 use crate::import::Mesh;
-use crate::motion::{HeadMotion, HeadPath};
-use crate::scene::{Frame, Lighting, Scene, SceneParts, Structure};
-use crate::sway::Sway;
+use crate::scene::{Frame, Scene};
 
 /// Nearest and farthest triangle, metres before the head. Assumed, within the near and far planes of any display.
 const NEAR_M: f64 = 1.0;
@@ -25,25 +24,7 @@ pub(super) fn scene(count: u32) -> Scene {
         push(&mut mesh, FAR_M + (NEAR_M - FAR_M) * fraction, colour(i));
     }
     let name = format!("full-screen:{count}");
-    let structure = Structure {
-        name: name.clone(),
-        vertices: 0..mesh.positions.len(),
-        triangles: 0..mesh.triangles.len(),
-        spheres: 0..0,
-        frame: Frame::Head,
-        hinge: None,
-    };
-    let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
-    let parts = SceneParts {
-        name,
-        vertices: mesh.vertices(),
-        triangles: mesh.triangles,
-        spheres: Vec::new(),
-        structures: vec![structure],
-        lighting: Lighting::over_the_shoulder(),
-        motion: HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range"),
-    };
-    Scene::new(parts).expect("pxpl5-scene: generators check what they make")
+    one_structure::scene(&name, &name, Frame::Head, mesh.vertices(), mesh.triangles)
 }
 
 /// A right angle at the lower left whose long side runs through the upper right corner of the covered square.

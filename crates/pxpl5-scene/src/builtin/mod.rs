@@ -6,6 +6,7 @@ mod head;
 mod head_shape;
 mod mig;
 mod molecules;
+mod one_structure;
 mod room;
 mod solid;
 mod sphere;

@@ -1,11 +1,10 @@
 //! A room around the viewer: the simplest scene that stands in the world and fills the view wherever the head turns.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
+use super::one_structure;
 use crate::import::Mesh;
-use crate::motion::{HeadMotion, HeadPath};
-use crate::scene::{Frame, Lighting, Scene, SceneParts, Structure};
-use crate::sway::Sway;
+use crate::scene::{Frame, Scene};
 
 /// Distance of every wall from the viewer, metres: so far that a head may walk to and fro. Assumed.
 const WALL_M: f64 = 2.0;
@@ -37,25 +36,7 @@ pub(super) fn scene() -> Scene {
         let vertices = places.map(|place| mesh.push(place, inwards, colour));
         mesh.fan(&vertices);
     }
-    let structure = Structure {
-        name: "walls".to_owned(),
-        vertices: 0..mesh.positions.len(),
-        triangles: 0..mesh.triangles.len(),
-        spheres: 0..0,
-        frame: Frame::World,
-        hinge: None,
-    };
-    let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
-    let parts = SceneParts {
-        name: "room".to_owned(),
-        vertices: mesh.vertices(),
-        triangles: mesh.triangles,
-        spheres: Vec::new(),
-        structures: vec![structure],
-        lighting: Lighting::over_the_shoulder(),
-        motion: HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range"),
-    };
-    Scene::new(parts).expect("pxpl5-scene: generators check what they make")
+    one_structure::scene("room", "walls", Frame::World, mesh.vertices(), mesh.triangles)
 }
 
 #[cfg(test)]

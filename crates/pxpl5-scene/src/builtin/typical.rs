@@ -2,10 +2,9 @@
 
 use glam::Vec3;
 
+use super::one_structure;
 use crate::config::{DEFAULT_COLOUR, TYPICAL_LEG_PX, TYPICAL_SPREAD_PX};
-use crate::motion::{HeadMotion, HeadPath};
-use crate::scene::{Frame, Lighting, Scene, SceneParts, Structure, Vertex};
-use crate::sway::Sway;
+use crate::scene::{Frame, Scene, Vertex};
 use crate::view::{Hmd, HmdConfig};
 
 /// Distance from the head, metres. Assumed, any within the display's near and far planes.
@@ -18,25 +17,8 @@ pub(super) fn scene(count: u32) -> Scene {
     let vertex = |position: Vec3| Vertex { position, normal: Vec3::Z, colour: DEFAULT_COLOUR };
     let vertices: Vec<Vertex> = (0..count).flat_map(|i| corners(i, pixel)).map(vertex).collect();
     let name = format!("typical:{count}");
-    let structure = Structure {
-        name: name.clone(),
-        vertices: 0..vertices.len(),
-        triangles: 0..count as usize,
-        spheres: 0..0,
-        frame: Frame::Head,
-        hinge: None,
-    };
-    let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
-    let parts = SceneParts {
-        name,
-        vertices,
-        triangles: (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
-        spheres: Vec::new(),
-        structures: vec![structure],
-        lighting: Lighting::over_the_shoulder(),
-        motion: HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range"),
-    };
-    Scene::new(parts).expect("pxpl5-scene: generators check what they make")
+    let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    one_structure::scene(&name, &name, Frame::Head, vertices, triangles)
 }
 
 /// The plastic number's recurrence spreads points evenly over the unit square; 16 bits keep it exact.

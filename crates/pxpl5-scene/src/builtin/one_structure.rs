@@ -1,0 +1,36 @@
+//! Scenes of one structure that does not move, seen by a head that stands still unless a motion is chosen for it.
+
+use glam::Vec3;
+
+use crate::motion::{HeadMotion, HeadPath};
+use crate::scene::{Frame, Lighting, Scene, SceneParts, Structure, Vertex};
+use crate::sway::Sway;
+
+/// All triangles in one structure of this name, fixed to the room or to the head; the head looks along -z from the origin.
+pub(super) fn scene(
+    name: &str,
+    structure: &str,
+    frame: Frame,
+    vertices: Vec<Vertex>,
+    triangles: Vec<[u32; 3]>,
+) -> Scene {
+    let structure = Structure {
+        name: structure.to_owned(),
+        vertices: 0..vertices.len(),
+        triangles: 0..triangles.len(),
+        spheres: 0..0,
+        frame,
+        hinge: None,
+    };
+    let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
+    let parts = SceneParts {
+        name: name.to_owned(),
+        vertices,
+        triangles,
+        spheres: Vec::new(),
+        structures: vec![structure],
+        lighting: Lighting::over_the_shoulder(),
+        motion: HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range"),
+    };
+    Scene::new(parts).expect("pxpl5-scene: generators check what they make")
+}
