@@ -34,6 +34,8 @@
 //!   dual operations, pipelined loads, graphics unit, delay slots, `bla`, dual-instruction mode, control registers.
 //! - Arithmetic is IEEE, to nearest even, with the same bits on every host; fsr.FZ flushes results. Without traps a
 //!   NaN result is the first NaN operand made quiet, or the default NaN with its sign set.
+//! - A scalar operation, a seed too, destroys what the pipe of its unit holds: it becomes NaN here. The assembler objects to
+//!   code that takes a result out of a pipe behind one.
 //! - The seeds of `frcp` and `frsqr` come from a [`SeedTable`], because the part's table is not public.
 //! - Traps leave the state of the part at the handler's first instruction, and [`Cpu::step`] says which it was.
 //!   Illegal words and pairs, a branch in a slot and a misaligned pair are instruction traps.
@@ -73,7 +75,7 @@
 //! - Address translation: ATE charges TLB misses, but addresses stay what they are. Page protection likewise.
 //! - Big-endian data (epsr.BE), breakpoints (db), floating-point traps (FTE), kill-next (KNF), the 8-bit boot mode.
 //! - Rounding modes other than to nearest, except in `fix`. Status bits of fsr.
-//! - That a scalar operation destroys what its pipe holds, and undefined register choices.
+//! - Undefined register choices.
 //! - Contents of the caches: they are always coherent; only time is theirs. Own stores into code are seen at once.
 //! - XP additions: `pfld.q`, `pfmul3`, registers bear, ccr, p0 to p3.
 //!

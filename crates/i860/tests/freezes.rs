@@ -159,8 +159,10 @@ fn row_1_a_line_that_is_held_costs_nothing() {
 fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
     let t = dram();
     let others = FreezeRules::none().with(Freeze::InstructionMiss);
-    let fill = t.first_miss + 3 * t.next;
-    let turns_until_full = (fill - 4).div_ceil(2);
+    // The data lie in another row, so that they come behind the instructions. The next line is wanted after the first word,
+    // mov, ld, the turns and four nops.
+    let fill = 2 * (t.first_miss + 3 * t.next);
+    let turns_until_full = (fill - t.first_miss - 6).div_ceil(2);
     let row = Freeze::InstructionMissBehindData;
     assert_eq!(cost_beside(others, row, &next_line_behind_load(1)), 2);
     assert_eq!(cost_beside(others, row, &next_line_behind_load(turns_until_full - 1)), 2);
@@ -490,6 +492,7 @@ fn both_halves_of_a_pair_wait_together_for_the_longer_freeze() {
 #[test]
 fn a_row_switched_off_among_all_others_costs_nothing() {
     let all_but = FreezeRules::all().without(Freeze::ConditionUse);
-    let source = "adds 1, r5, r5\nbc end";
-    assert_eq!(clocks_with(FreezeRules::all(), source) - clocks_with(all_but, source), 1);
+    // Behind the last word of the line: before it, row 1 makes it longer (fills.rs).
+    let source = format!("{}adds 1, r5, r5\nbc end", "nop\n".repeat(6));
+    assert_eq!(clocks_with(FreezeRules::all(), &source) - clocks_with(all_but, &source), 1);
 }
