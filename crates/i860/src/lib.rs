@@ -108,6 +108,7 @@ mod freeze;
 mod graphics;
 mod instruction;
 mod integer;
+pub mod linear;
 mod load_pipe;
 mod memo;
 mod memory;

@@ -1,0 +1,4 @@
+        d.fnop
+            br      slow
+        d.fnop
+            nop

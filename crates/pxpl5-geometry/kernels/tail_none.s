@@ -1,0 +1,2 @@
+        d.fnop
+            btne    r22, r0, slow
