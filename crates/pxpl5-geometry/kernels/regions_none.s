@@ -1,5 +1,5 @@
         // r22 is not 0 where more must be asked: corners in doubt or near the guard band, no area
-guard   = or 65504, r0
+guard   = or 55264, r0
 leastw  = subs bias, guard
 leastv  = adds 8, leastw
 lxb     = ld.l LOW_XY(r2) !low

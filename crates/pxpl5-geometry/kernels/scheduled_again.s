@@ -20,7 +20,7 @@ again:  d.fnop
         d.fnop
             ld.l    P_HEADS+4(r20), r25
         d.fnop
-            adds    64, r3, r4
+            adds    48, r3, r4
         d.fnop
-            adds    128, r3, r5
+            adds    96, r3, r5
 triangles:

@@ -13,8 +13,8 @@ BOX     = 40        // low x, high x, low y, high y
 SCRATCH = 64        // 16 bytes for each corner
 CLIP    = SCRATCH   // clip coordinates, for the exact tests
 RECORDS = 384
-BATCH_TRIANGLES = 16
-CORNERS_BYTES = 192
+BATCH_TRIANGLES = 24
+CORNERS_BYTES = 144
 
         .macro  edgeword k, n, to
         ld.l    8+16*\k+4*\n(r18), \to

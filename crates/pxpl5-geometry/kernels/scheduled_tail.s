@@ -28,18 +28,16 @@ slow:   fnop
             nop
         fnop
             st.l    r31, LEFT(r2)
-        ld.l    AREA_WORD+4(r2), r7
         ld.l    R_DOUBT(r3), r8
         ld.l    R_DOUBT(r4), r9
         ld.l    R_DOUBT(r5), r10
-        bte     r0, r7, drop                // nothing to draw
         or      r8, r9, r8
         or      r8, r10, r8
         subs    r8, r0, r0
         bc      doubt                       // 0 > the words
         call    box
         nop
-        or      65504, r0, r7               // inside the guard band by two pixels?
+        or      55264, r0, r7               // inside the guard band, which ends at 65520 and twice the centre less that?
         adds    r7, r24, r8
         adds    r7, r26, r9
         subs    r7, r25, r10
@@ -51,11 +49,14 @@ slow:   fnop
         bnc     accepted
         call    exact
         nop
-accepted: call  box
-        nop
+accepted: ld.l  AREA_WORD+4(r2), r22
+        call    box
+        shl     1, r22, r22
+        bte     r0, r22, drop                // nothing to draw
         call    bins
         nop
         bte     r0, r22, drop               // no region
+        restated_after
         adds    COMMAND_BYTES, r18, r18
 drop:   ld.l    LEFT(r2), r31
         adds    TRIANGLE_BYTES, r16, r16

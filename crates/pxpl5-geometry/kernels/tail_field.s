@@ -1,3 +1,6 @@
+        .macro  restated_after
+        restate
+        .endm
         d.fnop
             br      slow
         d.fnop

@@ -1,3 +1,5 @@
+        .macro  restated_after
+        .endm
         d.fnop
             btne    r22, r0, slow
         d.fnop

@@ -10,5 +10,5 @@ R_DEPTH   = 16
 R_AWAY    = 24
 R_DOUBT   = 28
 R_SURFACE = 32
-RECORD    = 64
+RECORD    = 48
 

@@ -116,7 +116,8 @@ impl Kernel {
             (KernelSurface::Phong, false) => (".linear 100 30 1 6 0", ".linear 64 30 1 10 0"),
             (KernelSurface::Phong, true) => (".linear 100 30 1 6 0", ".linear 200 30 2 6 0"),
         };
-        let planes = match self.field {
+        // With bins the expressions are restated for a field when the regions are known.
+        let planes = match self.field && !self.binned {
             true => include_str!("../kernels/planes_field.s"),
             false => include_str!("../kernels/planes_frame.s"),
         };
@@ -177,7 +178,8 @@ impl Kernel {
         words.singles(320, &transform.normals.to_world(light.direction));
         words.singles(336, &[light.ambient, light.diffuse, 1.0, TWO_23, clip::MIN_W, MAX_CLIP]);
         words.integers(360, &[20 << 23]);
-        words.singles(364, &[ROUND_SINGLE - 16.0 * transform.viewport.first_line() as f32]);
+        let line = if self.binned { 0 } else { transform.viewport.first_line() };
+        words.singles(364, &[ROUND_SINGLE - 16.0 * line as f32]);
         words.doubles(368, &[ROUND_DOUBLE + f64::from(DEPTH_NEAR), 16.0 * ROUND_DOUBLE]);
         words.singles(384, &[2.0 * ROUND_SINGLE + 8.0, ROUND_SINGLE / 16.0]);
         words.doubles(440, &[16.0, -16.0]);
