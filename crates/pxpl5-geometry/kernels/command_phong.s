@@ -1,5 +1,5 @@
         // heads, and the colour of the first corner
-colour  = ld.l COLOUR(r16)
+colour  = ld.l R_COLOUR(r3)
         st.l r24, 0(r18)
         st.l r25, 4(r18)
         st.l r25, 20(r18)

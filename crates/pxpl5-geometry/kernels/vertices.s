@@ -35,6 +35,7 @@ cwe$i    = add.ss cwd$i, cwc$i
         for i 0 1 2
 w$i     = add.ss cwe$i, cw3
         endfor
+        prefetch TRIANGLE_BYTES(r29)
 two     = fld.l P_TWO_S(r20)
         for i 0 1 2
 s$i     = rcp.ss w$i
@@ -77,6 +78,7 @@ nd$i    = mul.ss w$i, nc$i
 ne$i    = sub.ss two, nd$i
         endfor
         // far enough from w itself that rounding does not matter, and w fit to be divided by
+        prefetch TRIANGLE_BYTES+32(r29)
 least   = ld.l P_LEAST_W(r20)
 most    = ld.l P_MOST_W(r20)
 nearly  = ld.l P_NEARLY(r20)
@@ -164,6 +166,7 @@ fg$i    = or fe$i, ff$i
 fh$i    = or fg$i, fd$i
 @fh$i   st.l fh$i, RECORD*$i+R_DOUBT(r6)
         endfor
+        prefetch TRIANGLE_BYTES+64(r29)
 scalex  = fld.l P_SCREEN(r20)
 middlex = fld.l P_SCREEN+8(r20)
 round   = fld.l P_ROUND_S(r20)

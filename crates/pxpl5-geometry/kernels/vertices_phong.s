@@ -26,4 +26,6 @@ hf$k$i  = add.ss he$k$i, round
         fst.l hf$k$i, RECORD*$i+R_SURFACE+4*$k(r6)
         endfor
         endfor
+colour  = ld.l COLOUR(r29)
+        st.l colour, R_COLOUR(r6)
         .endlinear

@@ -82,10 +82,15 @@ impl Kernel {
         let bins = if self.binned { include_str!("../kernels/bins.s") } else { include_str!("../kernels/unbinned.s") };
         let common = [include_str!("../kernels/parameters.s"), picture, include_str!("../kernels/exact.s")];
         let triangle = match self.schedule {
-            Schedule::Straight => self.straight(),
-            Schedule::Dual => self.dual(),
+            Schedule::Straight => [self.straight(), vec![bins]].concat(),
+            // What is seldom needed comes last, so that bins do not share sets of the cache with the end of the second loop.
+            Schedule::Dual if self.binned && !self.field => {
+                let bins = include_str!("../kernels/bins_scheduled.s");
+                [self.dual(), vec![bins, include_str!("../kernels/scheduled_doubt.s")]].concat()
+            }
+            Schedule::Dual => [self.dual(), vec![bins, include_str!("../kernels/scheduled_doubt.s")]].concat(),
         };
-        [common.as_slice(), &triangle, &[bins]].concat().join("\n")
+        [common.as_slice(), &triangle].concat().join("\n")
     }
 
     fn straight(&self) -> Vec<&'static str> {
@@ -113,8 +118,8 @@ impl Kernel {
         let (vertices, setup) = match (self.surface, self.field) {
             (KernelSurface::Gouraud, false) => (".linear 200 30 1 6 0", ".linear 200 30 2 6 0"),
             (KernelSurface::Gouraud, true) => (".linear 200 30 1 6 0", ".linear 200 30 2 6 0"),
-            (KernelSurface::Phong, false) => (".linear 100 30 1 6 0", ".linear 64 30 1 10 0"),
-            (KernelSurface::Phong, true) => (".linear 100 30 1 6 0", ".linear 200 30 2 6 0"),
+            (KernelSurface::Phong, false) => (".linear 200 30 2 6 0", ".linear 64 30 1 10 0"),
+            (KernelSurface::Phong, true) => (".linear 200 30 2 6 0", ".linear 200 30 2 6 0"),
         };
         // With bins the expressions are restated for a field when the regions are known.
         let planes = match self.field && !self.binned {
