@@ -1,19 +1,3 @@
-        // corners in clockwise order
-bb      = fld.d R_SNAPPED(second)
-cc      = fld.d R_SNAPPED(third)
-ex0     = sub.ss bb.0, a.0
-ey0     = sub.ss bb.1, a.1
-ex2     = sub.ss a.0, cc.0
-ey2     = sub.ss a.1, cc.1
-ex1     = sub.ss cc.0, bb.0
-ey1     = sub.ss cc.1, bb.1
-        // 16 / area goes on
-rd      = mul.dd ac, rc
-re      = sub.dd two, rd
-rf      = mul.dd rc, re
-rg      = mul.dd ac, rf
-rh      = sub.dd two, rg
-ri      = mul.dd rf, rh
 round   = fld.l P_ROUND_S(r20)
         // edges: a and b in integers
 xa      = ld.l R_SNAPPED(r3)
@@ -41,10 +25,9 @@ qy2     = sub.ss nnc.1, roundy
         for k 0 1 2
         // 2 a + (b > 0) is positive for a top and for a left edge, which own their pixels
 ta$k    = subs r0, eb$k
-tb$k    = shr 31, ta$k
-tc$k    = adds ea$k, tb$k
-td$k    = adds ea$k, tc$k
-te$k    = subs r0, td$k
+tb$k    = shra 31, ta$k
+tc$k    = subs tb$k, ea$k
+te$k    = subs tc$k, ea$k
 tf$k    = shra 31, te$k
 tg$k    = shl 3, tf$k
 th$k    = adds tg$k, r20

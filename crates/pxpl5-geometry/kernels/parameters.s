@@ -62,3 +62,4 @@ P_ROUND19   = 388         // single: 1.5 * 2^19, of which the last bit is 1/16
 // unit less 1.5 * 2^23 units (double).
 P_SIDES     = 392
 P_SIXTEENS  = 440         // doubles: 16, and -16 for triangles that are turned round
+P_DEPTH_SCALE = 456       // single: far - near in depth units

@@ -1,10 +1,9 @@
         // r22 is not 0 where more must be asked: corners in doubt, no area, no pixel, not in one region alone;
         // else r23 is the place of the region's bin in the table, r7 its end
-low8    = adds 8, bias
 lxb     = ld.l LOW_XY(r2) !low
 lyb     = ld.l LOW_XY+4(r2) !low
-ga      = subs lxb, low8
-gb      = subs lyb, low8
+ga      = subs lxb, bias8
+gb      = subs lyb, bias8
 hxb     = ld.l HIGH_XY(r2) !high
 hyb     = ld.l HIGH_XY+4(r2) !high
 past    = adds 15, bias

@@ -22,7 +22,7 @@ clip:   st.l    r16, 0(r21)
         bc      near\@
         adds    -2049, r0, r7
         st.l    r7, R_DEPTH(\r)
-near\@: st.l    r0, R_DOUBT(\r)
+near\@: nop
         .endm
 
 doubt:  call    exact
@@ -30,6 +30,7 @@ doubt:  call    exact
         nofarther r3
         nofarther r4
         nofarther r5
+        st.l    r0, R_DOUBT(r3)
         .align  8
 more:   d.fnop
             nop

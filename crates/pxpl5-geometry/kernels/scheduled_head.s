@@ -12,7 +12,7 @@ LEFT    = 4         // triangles left in the batch, while others use its registe
 BOX     = 40        // low x, high x, low y, high y
 SCRATCH = 64        // 16 bytes for each corner
 CLIP    = SCRATCH   // clip coordinates, for the exact tests
-RECORDS = 384
+RECORDS = 512
 BATCH_TRIANGLES = 24
 CORNERS_BYTES = 144
 

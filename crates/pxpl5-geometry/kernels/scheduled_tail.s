@@ -29,10 +29,7 @@ slow:   fnop
         fnop
             st.l    r31, LEFT(r2)
         ld.l    R_DOUBT(r3), r8
-        ld.l    R_DOUBT(r4), r9
-        ld.l    R_DOUBT(r5), r10
-        or      r8, r9, r8
-        or      r8, r10, r8
+        nop
         subs    r8, r0, r0
         bc      doubt                       // 0 > the words
         call    box

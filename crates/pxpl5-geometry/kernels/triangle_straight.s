@@ -119,13 +119,14 @@ SURF   = 328      // surface words
         st.l    r30, \to+4*\n(r2)
         .endm
 
-// depth: the integer nearest to z / w * (far - near) + near, at most far
+// depth: the integer nearest to z (1 / w * (far - near)) + near, at most far
         .macro  depth n
         fld.l   CLIP+16*\n+8(r2), f8
         fld.l   INV+4*\n(r2), f9
+        fld.l   P_DEPTH_SCALE(r20), f10
+        fmul.ss f9, f10, f9
         fmul.sd f8, f9, f10
         fld.d   P_DEPTH(r20), f12
-        fmul.dd f10, f12, f10
         pfgt.dd f10, f12, f0
         bnc     near\@
         fld.d   P_DEPTH(r20), f10

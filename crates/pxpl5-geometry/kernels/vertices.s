@@ -150,12 +150,11 @@ gd$i    = add.ss ga$i, gb$i
         endfor
         for i 0 1 2
 ge$i    = add.ss gd$i, gc$i
-@g$i    fst.l ge$i, RECORD*$i+R_AWAY(r6)
         endfor
         for i 0 1 2
-iw$i    = ld.l SCRATCH+16*$i(r2) !w$i
+@iw$i   iw$i    = ld.l SCRATCH+16*$i(r2) !w$i
 iz$i    = ld.l SCRATCH+16*$i+4(r2) !z$i
-id$i    = ld.l SCRATCH+16*$i+8(r2) !d$i
+@e$i    id$i    = ld.l SCRATCH+16*$i+8(r2) !d$i
 fa$i    = subs iw$i, least
 fb$i    = subs most, iw$i
 fc$i    = subs id$i, iw$i
@@ -164,9 +163,8 @@ fe$i    = or fa$i, fb$i
 ff$i    = or iz$i, id$i
 fg$i    = or fe$i, ff$i
 fh$i    = or fg$i, fd$i
-@fh$i   st.l fh$i, RECORD*$i+R_DOUBT(r6)
+@fh$i   st.l fh$i, SCRATCH+16*$i(r2) !iw$i
         endfor
-        prefetch TRIANGLE_BYTES+64(r29)
 scalex  = fld.l P_SCREEN(r20)
 middlex = fld.l P_SCREEN+8(r20)
 round   = fld.l P_ROUND_S(r20)
@@ -199,12 +197,12 @@ yj$i    = sub.ss turn, yi$i
 @yi$i   fst.l yi$i, RECORD*$i+R_SNAPPED+4(r6)
 @yj$i   fst.l yj$i, RECORD*$i+R_TURNED+4(r6)
         endfor
-range   = fld.d P_DEPTH(r20)
+range   = fld.l P_DEPTH_SCALE(r20)
 biased  = fld.d P_DEPTH_BIAS(r20)
         for i 0 1 2
 zr$i    = fld.l SCRATCH+16*$i+4(r2) !z$i
-zf$i    = mul.sd zr$i, v$i
-zg$i    = mul.dd zf$i, range
+zf$i    = mul.ss v$i, range
+zg$i    = mul.sd zr$i, zf$i
 zh$i    = add.dd zg$i, biased
         fst.d zh$i, RECORD*$i+R_DEPTH(r6)
         endfor
@@ -217,7 +215,9 @@ qd$i    = ld.l RECORD*$i+R_SNAPPED+4(r6) !yi$i
 qe$i    = ld.l RECORD*$i+R_TURNED+4(r6) !yj$i
 qf$i    = or qd$i, qe$i
 qg$i    = or qc$i, qf$i
-qh$i    = ld.l RECORD*$i+R_DOUBT(r6) !fh$i
+qh$i    = ld.l SCRATCH+16*$i(r2) !fh$i
 qi$i    = or qg$i, qh$i
-        st.l qi$i, RECORD*$i+R_DOUBT(r6)
         endfor
+qj      = or qi0, qi1
+qk      = or qj, qi2
+        st.l qk, R_DOUBT(r6)

@@ -17,7 +17,8 @@ he$i    = add.ss hd$i, hc$i
 @h$i    fst.l he$i, SCRATCH+16*$i+12(r2)
         endfor
         for i 0 1 2
-ia$i    = ld.l RECORD*$i+R_AWAY(r6) !g$i
+@g$i    fst.l ge$i, SCRATCH+16*$i+8(r2) !e$i
+ia$i    = ld.l SCRATCH+16*$i+8(r2) !g$i
 ib$i    = ld.l SCRATCH+16*$i+12(r2) !h$i
 ic$i    = shra 31, ia$i
 ie$i    = subs r0, ia$i
@@ -60,4 +61,6 @@ lf$k$i  = add.ss le$k$i, round
         fst.l lf$k$i, RECORD*$i+R_SURFACE+4*$k(r6)
         endfor
         endfor
+        prefetch TRIANGLE_BYTES+64(r29)
+        st.l r0, R_SIDE(r6)
         .endlinear

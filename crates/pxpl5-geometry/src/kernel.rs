@@ -55,7 +55,7 @@ pub type Heads = [Word; 8];
 pub const TRIANGLE_WORDS: usize = 24;
 
 /// Words of the parameter block.
-pub const PARAMETER_WORDS: usize = 114;
+pub const PARAMETER_WORDS: usize = 116;
 
 /// The constants of single precision whose bits the kernels know: 1.5 * 2^23 and 2^23.
 const ROUND_SINGLE: f32 = 12_582_912.0;
@@ -118,7 +118,7 @@ impl Kernel {
         let (vertices, setup) = match (self.surface, self.field) {
             (KernelSurface::Gouraud, false) => (".linear 200 30 1 6 0", ".linear 200 30 2 6 0"),
             (KernelSurface::Gouraud, true) => (".linear 200 30 1 6 0", ".linear 200 30 2 6 0"),
-            (KernelSurface::Phong, false) => (".linear 200 30 2 6 0", ".linear 64 30 1 10 0"),
+            (KernelSurface::Phong, false) => (".linear 100 30 1 5 0", ".linear 150 20 1 8 0"),
             (KernelSurface::Phong, true) => (".linear 200 30 2 6 0", ".linear 200 30 2 6 0"),
         };
         // With bins the expressions are restated for a field when the regions are known.
@@ -144,6 +144,8 @@ impl Kernel {
             setup,
             include_str!("../kernels/setup.s"),
             include_str!("../kernels/reference.s"),
+            include_str!("../kernels/corners.s"),
+            include_str!("../kernels/slopes.s"),
             include_str!("../kernels/edges.s"),
             planes,
             words,
@@ -188,6 +190,7 @@ impl Kernel {
         words.doubles(368, &[ROUND_DOUBLE + f64::from(DEPTH_NEAR), 16.0 * ROUND_DOUBLE]);
         words.singles(384, &[2.0 * ROUND_SINGLE + 8.0, ROUND_SINGLE / 16.0]);
         words.doubles(440, &[16.0, -16.0]);
+        words.singles(456, &[screen::DEPTH_SCALE]);
         self.sides().iter().zip([392, 416]).for_each(|((unit, less), at)| {
             words.doubles(at, &[*unit]);
             words.singles(at + 8, &[*unit as f32]);

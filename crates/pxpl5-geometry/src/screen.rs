@@ -56,12 +56,16 @@ pub(crate) fn reciprocal(w: f32) -> f32 {
     better * (2.0 - w * better)
 }
 
-/// Depth in fixed point, to the nearest unit, to even between two; what lies outside [0, 1] is clamped, NaN is near.
+/// What the reciprocal of w is multiplied by for depths: the range of depths, rounded to a single.
+pub(crate) const DEPTH_SCALE: f32 = (DEPTH_FAR - DEPTH_NEAR) as f32;
+
+/// Depth in fixed point from units beyond near, to the nearest unit, to even between two; what lies outside near and far is
+/// clamped, NaN is near.
 #[inline(always)]
-pub(crate) fn depth_fixed(depth: f64) -> u32 {
+pub(crate) fn depth_fixed(beyond_near: f64) -> u32 {
     const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
     const RANGE: f64 = (DEPTH_FAR - DEPTH_NEAR) as f64;
-    let scaled = (depth * RANGE).max(0.0).min(RANGE);
+    let scaled = beyond_near.max(0.0).min(RANGE);
     (scaled + (ROUND_DOUBLE + DEPTH_NEAR as f64)).to_bits() as u32
 }
 

@@ -108,7 +108,7 @@ impl ToScreen {
         Snapped {
             x: screen::rounded((x * inverse) * self.scale[0] + self.centre[0]),
             y: screen::rounded((y * inverse) * self.scale[1] + self.centre[1]),
-            z: screen::depth_fixed(f64::from(z) * f64::from(inverse)),
+            z: screen::depth_fixed(f64::from(z) * f64::from(inverse * screen::DEPTH_SCALE)),
         }
     }
 
@@ -126,7 +126,7 @@ impl ToScreen {
         if !cut {
             return Some(self.snap(clip.map(|v| v as f32)));
         }
-        let z = screen::depth_fixed(clip[2] * inverse);
+        let z = screen::depth_fixed(clip[2] * inverse * f64::from(screen::DEPTH_SCALE));
         Some(Snapped { x: x.round_ties_even() as i32, y: y.round_ties_even() as i32, z })
     }
 }

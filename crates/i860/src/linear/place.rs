@@ -573,7 +573,7 @@ fn heights(operations: &[Operation], shake: u32) -> Vec<u32> {
     let mut state = u64::from(shake);
     for n in (0..operations.len()).rev() {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let noise = if shake == 0 { 0 } else { (state >> 40) as u32 % 6 };
+        let noise = if shake == 0 { 0 } else { (state >> 40) as u32 % (6 << (shake % 4)) };
         heights[n] += operations[n].name.latency + noise;
         let height = heights[n];
         for before in operations[n].reads().chain(operations[n].after.iter().copied()) {
