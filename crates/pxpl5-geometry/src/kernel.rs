@@ -118,7 +118,7 @@ impl Kernel {
         let (vertices, setup) = match (self.surface, self.field) {
             (KernelSurface::Gouraud, false) => (".linear 200 30 1 6 0", ".linear 200 30 2 6 0"),
             (KernelSurface::Gouraud, true) => (".linear 200 30 1 6 0", ".linear 200 30 2 6 0"),
-            (KernelSurface::Phong, false) => (".linear 100 30 1 5 0", ".linear 150 20 1 8 0"),
+            (KernelSurface::Phong, false) => (".linear 100 30 1 5 0", ".linear 300 30 1 8 4"),
             (KernelSurface::Phong, true) => (".linear 200 30 2 6 0", ".linear 200 30 2 6 0"),
         };
         // With bins the expressions are restated for a field when the regions are known.

@@ -6,7 +6,7 @@
 //! computed stays what is written, operation by operation, so that results do not depend on the order.
 //!
 //! ```text
-//!         .linear 24 2                  window and eagerness to drain (both may be left out)
+//!         .linear                       or with numbers: window, eagerness, reserve, slope, shake
 //!         for i 0 1 2                   repeated with $i replaced, until endfor
 //! a$i   = fld.d 16*$i(r16)              a pair: its halves are a0.0 and a0.1 as singles
 //! d$i   = sub.ss a$i.0, a$i.1
@@ -34,10 +34,13 @@
 //!
 //! # Method
 //!
-//! List scheduling, clock by clock: of the operations that could issue, the one with the longest way to the end, out of a window of
-//! so many lines from the first one that has not issued (which bounds how many values live at a time). A pipe without an
-//! operation to push it is pushed by a drain if what waits in it is more urgent. The rules of issue are those of the freeze table, so
-//! that code in the caches runs without freezes.
+//! List scheduling, clock by clock: of the operations that could issue, the one with the longest way to the end, out of a
+//! *window* of lines from the first one that has not issued. That one may take the last registers; the others leave a *reserve*,
+//! and more the farther ahead they are (*slope*, for each 64 lines), so that no schedule runs into a corner. A pipe is pushed by a
+//! drain when there is nothing else to do, or when what waits in it is more urgent by the *eagerness*. An operation that
+//! can be a dual operation pushes the other pipe on its way, where that loses nothing. The rules of issue are those of the freeze
+//! table, so that code in the caches runs without freezes. A *shake* other than 0 changes priorities a little: schedules of
+//! the same text differ by some per cent, and who wants the shortest tries many.
 
 mod machine;
 mod parse;
@@ -71,7 +74,7 @@ pub fn schedule(source: &str) -> Result<String, LinearError> {
                 let settings = parse::settings(line, parameters)?;
                 let block: Vec<(usize, &str)> = lines.by_ref().take_while(|(_, t)| t.trim() != ".endlinear").collect();
                 let operations = parse::operations(&block)?;
-                let pairs = place::best(&operations, &pool, settings).map_err(|reason| LinearError { line, reason })?;
+                let pairs = place::pairs_of(&operations, &pool, settings).map_err(|reason| LinearError { line, reason })?;
                 for (floating, core) in pairs {
                     let _ = writeln!(out, "        d.{floating}\n            {core}");
                 }

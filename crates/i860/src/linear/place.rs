@@ -39,8 +39,11 @@ impl Default for Settings {
 /// The pairs of a stretch, floating-point and core half.
 pub(super) type Pairs = Vec<(String, String)>;
 
-/// The shortest of the schedules near the settings; with a shake given, that schedule alone.
-pub(super) fn best(operations: &[Operation], pool: &[u8], settings: Settings) -> Result<Pairs, String> {
+/// Gives every operation its clock and every value its registers.
+///
+/// # Errors
+/// Where the values do not fit the registers.
+pub(super) fn pairs_of(operations: &[Operation], pool: &[u8], settings: Settings) -> Result<Pairs, String> {
     Placer::new(operations, pool, settings).run()
 }
 
@@ -171,18 +174,12 @@ impl<'a> Placer<'a> {
             }
             if self.now > progress + PATIENCE {
                 let line = self.operations[self.first.min(self.operations.len() - 1)].name.mnemonic;
-                if std::env::var("H153").is_ok() {
-                    eprintln!("first {line} adder {:?} mult {:?} ints {} floats {}", self.adder, self.multiplier, self.integers.free(self.now), self.floats.free(self.now));
-                    for (n, p) in self.places.iter().enumerate() { if let Place::Ready{..} | Place::InPipe = p { eprint!("{n}:{}:{}/{} ", self.operations[n].name.mnemonic, self.uses_left[n], self.width(n).registers()); } }
-                    eprintln!();
-                }
                 return Err(format!("the values do not fit the registers (operation {}, {line})", self.first));
             }
             pairs.push((floating, core));
             self.now += 1;
             self.move_on();
         }
-        // Loads and results that are still on their way, for code behind the stretch.
         Ok(pairs)
     }
 
@@ -313,10 +310,7 @@ impl<'a> Placer<'a> {
         let best = self.candidates(true).into_iter().next();
         let drain = self.most_urgent_drain();
         match (best, drain) {
-            (Some(n), Some((height, unit))) if height > self.heights[n] + self.settings.eagerness => {
-                let _ = n;
-                self.drain(unit)
-            }
+            (Some(n), Some((height, unit))) if height > self.heights[n] + self.settings.eagerness => self.drain(unit),
             (Some(n), _) => self.issue_floating(n),
             (None, Some((_, unit))) => self.drain(unit),
             (None, None) => "fnop".to_owned(),
