@@ -13,7 +13,7 @@ BOX     = 40        // low x, high x, low y, high y
 SCRATCH = 64        // 16 bytes for each corner
 CLIP    = SCRATCH   // clip coordinates, for the exact tests
 RECORDS = 512
-BATCH_TRIANGLES = 24
+BATCH_TRIANGLES = 26
 CORNERS_BYTES = 144
 
         .macro  edgeword k, n, to

@@ -111,8 +111,6 @@ SURF   = 328      // surface words
         fmul.ss f8, f9, f8
         fld.l   P_SCREEN+8+4*\k(r20), f9
         fadd.ss f8, f9, f8
-        fld.l   P_ROUND_S(r20), f9
-        fadd.ss f8, f9, f8
         fxfr    f8, r30
         orh     0x4B40, r0, r31             // bits of 1.5 * 2^23
         subs    r30, r31, r30

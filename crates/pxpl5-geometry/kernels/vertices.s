@@ -176,8 +176,7 @@ xf$i    = mul.ss xx$i, v$i
 xg$i    = mul.ss xf$i, scalex
         endfor
         for i 0 1 2
-xh$i    = add.ss xg$i, middlex
-xi$i    = add.ss xh$i, round
+xi$i    = add.ss xg$i, middlex
 xj$i    = sub.ss turn, xi$i
 @xi$i   fst.l xi$i, RECORD*$i+R_SNAPPED(r6)
 @xj$i   fst.l xj$i, RECORD*$i+R_TURNED(r6)
@@ -191,8 +190,7 @@ yf$i    = mul.ss yy$i, v$i
 yg$i    = mul.ss yf$i, scaley
         endfor
         for i 0 1 2
-yh$i    = add.ss yg$i, middley
-yi$i    = add.ss yh$i, round
+yi$i    = add.ss yg$i, middley
 yj$i    = sub.ss turn, yi$i
 @yi$i   fst.l yi$i, RECORD*$i+R_SNAPPED+4(r6)
 @yj$i   fst.l yj$i, RECORD*$i+R_TURNED+4(r6)
@@ -206,18 +204,3 @@ zg$i    = mul.sd zr$i, zf$i
 zh$i    = add.dd zg$i, biased
         fst.d zh$i, RECORD*$i+R_DEPTH(r6)
         endfor
-        // and not so far beside the picture that the words have lost their order
-        for i 0 1 2
-qa$i    = ld.l RECORD*$i+R_SNAPPED(r6) !xi$i
-qb$i    = ld.l RECORD*$i+R_TURNED(r6) !xj$i
-qc$i    = or qa$i, qb$i
-qd$i    = ld.l RECORD*$i+R_SNAPPED+4(r6) !yi$i
-qe$i    = ld.l RECORD*$i+R_TURNED+4(r6) !yj$i
-qf$i    = or qd$i, qe$i
-qg$i    = or qc$i, qf$i
-qh$i    = ld.l SCRATCH+16*$i(r2) !fh$i
-qi$i    = or qg$i, qh$i
-        endfor
-qj      = or qi0, qi1
-qk      = or qj, qi2
-        st.l qk, R_DOUBT(r6)

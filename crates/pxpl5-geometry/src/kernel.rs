@@ -116,10 +116,10 @@ impl Kernel {
         };
         // Window, eagerness, reserve and shake of the shortest schedules that were found.
         let (vertices, setup) = match (self.surface, self.field) {
-            (KernelSurface::Gouraud, false) => (".linear 200 30 1 6 0", ".linear 200 30 2 6 0"),
-            (KernelSurface::Gouraud, true) => (".linear 200 30 1 6 0", ".linear 200 30 2 6 0"),
+            (KernelSurface::Gouraud, false) => (".linear 300 20 2 3 0", ".linear 150 20 1 8 0"),
+            (KernelSurface::Gouraud, true) => (".linear 300 20 2 3 0", ".linear 64 30 1 8 12"),
             (KernelSurface::Phong, false) => (".linear 100 30 1 5 0", ".linear 300 30 1 8 4"),
-            (KernelSurface::Phong, true) => (".linear 200 30 2 6 0", ".linear 200 30 2 6 0"),
+            (KernelSurface::Phong, true) => (".linear 100 30 1 5 0", ".linear 150 20 1 8 0"),
         };
         // With bins the expressions are restated for a field when the regions are known.
         let planes = match self.field && !self.binned {
@@ -139,6 +139,7 @@ impl Kernel {
             vertices,
             include_str!("../kernels/vertices.s"),
             surface,
+            include_str!("../kernels/vertices_end.s"),
             include_str!("../kernels/scheduled_again.s"),
             include_str!("../kernels/setup_head.s"),
             setup,
@@ -175,7 +176,7 @@ impl Kernel {
         words.singles(0, clip.as_flattened());
         words.singles(64, &transform.to_clip.origin().to_array());
         words.singles(80, &[guard.x, guard.y, clip::MIN_W, MAX_CLIP]);
-        words.singles(96, &[screen.scale, screen.centre].concat());
+        words.singles(96, &[screen.scale, screen.centre.map(|centre| centre + ROUND_SINGLE)].concat());
         words.singles(112, &[2.0, ROUND_SINGLE]);
         words.integers(120, &[FLIP, transform.viewport.first_line()]);
         words.doubles(128, &self.doubles());

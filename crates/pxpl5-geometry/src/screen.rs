@@ -34,6 +34,12 @@ pub(crate) fn rounded(value: f32) -> i32 {
     ((value + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
 }
 
+/// Integer nearest to a value and a whole number below 2^20, rounded once.
+#[inline(always)]
+pub(crate) fn rounded_sum(value: f32, whole: f32) -> i32 {
+    ((value + (whole + ROUND)).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
+}
+
 /// A lit colour of 0 to 255 * 256 in whole 1/256 of a unit.
 #[inline(always)]
 pub(crate) fn colour_fixed(colour: f32) -> u16 {

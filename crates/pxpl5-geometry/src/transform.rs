@@ -106,8 +106,8 @@ impl ToScreen {
     pub(crate) fn snap(&self, [x, y, z, w]: [f32; 4]) -> Snapped {
         let inverse = screen::reciprocal(w);
         Snapped {
-            x: screen::rounded((x * inverse) * self.scale[0] + self.centre[0]),
-            y: screen::rounded((y * inverse) * self.scale[1] + self.centre[1]),
+            x: screen::rounded_sum((x * inverse) * self.scale[0], self.centre[0]),
+            y: screen::rounded_sum((y * inverse) * self.scale[1], self.centre[1]),
             z: screen::depth_fixed(f64::from(z) * f64::from(inverse * screen::DEPTH_SCALE)),
         }
     }

@@ -10,7 +10,7 @@ const DOUBLE_STAGES: usize = 2;
 /// Clocks in which nothing goes to memory behind a prefetch: what a line takes.
 const PREFETCH: u32 = 18;
 /// Stores that wait for the bus at most, and clocks that one takes it.
-const STORES: u32 = 3;
+const STORES: u32 = 2;
 const STORE: u32 = 3;
 /// Clocks without progress after which a schedule is given up.
 const PATIENCE: u32 = 80;
