@@ -9,6 +9,7 @@
 //!            |        blocks that repeat                      |
 //!            +------------------------------------------------+
 //!  text -> assemble -> Program       word -> disassemble -> text
+//!  linear code -> linear::schedule -> text in dual-instruction mode
 //! ```
 //!
 //! ```
@@ -60,9 +61,9 @@
 //! remembered, as FastSim does (Schnarr and Larus, ASPLOS 1998). The rest is counted unit by unit. Both give the same
 //! state, clocks and profile after every run (tests/memo.rs: random programs; crates/pphigs/tests/memo.rs: the triangle
 //! kernels with every row switched);
-//! [`Config::memoise`] chooses. It takes over all of a loop in cache, 61 % of the instructions of the triangle kernel
-//! scheduled for the cache (its data come and go), and 0.2 % of the one larger than the cache. Measured in one process,
-//! that makes the first kernel 1.4 times as fast, and leaves the second one as it was. Clocks by address ([`Cpu::watch`]) and translation on are always counted.
+//! [`Config::memoise`] chooses. It takes over all of a loop in cache, and nothing of code larger than the cache; what it is
+//! worth for the triangle kernels, crates/pphigs/benches measures.
+//! Clocks by address ([`Cpu::watch`]) and translation on are always counted.
 //!
 //! # Conformance
 //!

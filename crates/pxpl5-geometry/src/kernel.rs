@@ -9,7 +9,9 @@
 //!   parameter block ---------------------+--> kernel --> command words, bins, list for the clipper
 //! ```
 //!
-//! Registers and layouts stand in kernels/parameters.s. The sources are put together as a linker would, one file for
+//! The computation is that of the native code, so that the words are the same bit for bit: 1 / w by a seed and two Newton steps in
+//! single precision, normals as the display list holds them turned by a matrix and not made unit again, light in the coordinates of
+//! the normals. Registers and layouts stand in kernels/parameters.s. The sources are put together as a linker would, one file for
 //! each choice. This crate does not assemble or run them.
 
 use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip, light, screen};
@@ -21,7 +23,8 @@ pub enum Schedule {
     /// As a compiler of 1989 would give it: every statement through the stack frame, everything inlined, larger than
     /// the instruction cache.
     Straight,
-    /// By hand in dual-instruction mode, in passes over batches that each fit the instruction cache.
+    /// In dual-instruction mode, in two loops over batches that each fit the instruction cache. Most of it is linear code, which
+    /// the i860's assembler does not know: what assembles it puts it in order first.
     Dual,
 }
 
@@ -75,7 +78,8 @@ impl Kernel {
         (viewport.grid() == grid).then_some(Self { schedule, surface, field, binned })
     }
 
-    /// The source in i860 assembly; its entry is the label `start`.
+    /// The source in i860 assembly, with linear stretches where the schedule is [`Schedule::Dual`]; its entry is the label
+    /// `start`.
     #[must_use]
     pub fn source(&self) -> String {
         let picture = if self.field { include_str!("../kernels/field.s") } else { include_str!("../kernels/frame.s") };

@@ -5,7 +5,9 @@
 pub(super) enum Unit {
     Adder,
     /// Single or double sources, which make a pipe of three or two stages.
-    Multiplier { double: bool },
+    Multiplier {
+        double: bool,
+    },
     Graphics,
     Seed,
     Load,
@@ -100,9 +102,7 @@ pub(super) fn named(text: &str) -> Option<Name> {
         "fst.l" => store("fst.l"),
         "fst.d" => store("fst.d"),
         "st.l" => store("st.l"),
-        "prefetch" => {
-            Name { unit: Prefetch, mnemonic: "ld.l", result: None, sources: 0, addresses: true, latency: 1 }
-        }
+        "prefetch" => Name { unit: Prefetch, mnemonic: "ld.l", result: None, sources: 0, addresses: true, latency: 1 },
         _ => return integer(text),
     })
 }

@@ -74,7 +74,8 @@ pub fn schedule(source: &str) -> Result<String, LinearError> {
                 let settings = parse::settings(line, parameters)?;
                 let block: Vec<(usize, &str)> = lines.by_ref().take_while(|(_, t)| t.trim() != ".endlinear").collect();
                 let operations = parse::operations(&block)?;
-                let pairs = place::pairs_of(&operations, &pool, settings).map_err(|reason| LinearError { line, reason })?;
+                let pairs =
+                    place::pairs_of(&operations, &pool, settings).map_err(|reason| LinearError { line, reason })?;
                 for (floating, core) in pairs {
                     let _ = writeln!(out, "        d.{floating}\n            {core}");
                 }

@@ -93,13 +93,13 @@ fn repeat(lines: &[(usize, String)]) -> Result<Vec<(usize, String)>, LinearError
         match words.as_slice() {
             [] => {}
             ["for", variable, values @ ..] => {
-                let end = at + matching_end(&lines[at..]).ok_or_else(|| LinearError {
-                    line: *line,
-                    reason: "`for` without `endfor`".to_owned(),
-                })?;
+                let end = at
+                    + matching_end(&lines[at..])
+                        .ok_or_else(|| LinearError { line: *line, reason: "`for` without `endfor`".to_owned() })?;
                 for value in values {
                     let name = format!("${variable}");
-                    let body: Vec<_> = lines[at..end].iter().map(|(n, text)| (*n, text.replace(&name, value))).collect();
+                    let body: Vec<_> =
+                        lines[at..end].iter().map(|(n, text)| (*n, text.replace(&name, value))).collect();
                     out.extend(repeat(&body)?);
                 }
                 at = end + 1;
@@ -161,13 +161,7 @@ impl Parser {
         Ok(())
     }
 
-    fn operation(
-        &self,
-        line: usize,
-        name: Name,
-        operands: &str,
-        awaited: &[&str],
-    ) -> Result<Operation, LinearError> {
+    fn operation(&self, line: usize, name: Name, operands: &str, awaited: &[&str]) -> Result<Operation, LinearError> {
         let mut operands: Vec<&str> = operands.split(',').map(str::trim).filter(|text| !text.is_empty()).collect();
         let address = match name.addresses {
             true => Some(self.address(line, operands.pop().unwrap_or_default())?),

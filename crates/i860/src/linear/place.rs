@@ -53,7 +53,10 @@ enum Place {
     Nowhere,
     InPipe,
     /// In registers from this one on, to be read from a clock on.
-    Ready { at: u32, register: u8 },
+    Ready {
+        at: u32,
+        register: u8,
+    },
     Gone,
 }
 
@@ -209,7 +212,10 @@ impl<'a> Placer<'a> {
     fn can_issue(&self, n: usize, is_oldest: bool) -> bool {
         let operation = &self.operations[n];
         let awaited = operation.after.iter().all(|store| self.issued[*store].is_some_and(|at| at + 2 <= self.now));
-        awaited && operation.reads().all(|value| self.is_ready(value)) && self.unit_accepts(n) && self.has_room(n, is_oldest)
+        awaited
+            && operation.reads().all(|value| self.is_ready(value))
+            && self.unit_accepts(n)
+            && self.has_room(n, is_oldest)
     }
 
     fn is_ready(&self, value: usize) -> bool {
@@ -287,7 +293,9 @@ impl<'a> Placer<'a> {
         let count = width.registers();
         if width == Width::Integer {
             let spare = self.spare(n);
-            return self.operations[n].register.is_some() || self.frees_integer(n) || self.integers.free(self.now) > spare;
+            return self.operations[n].register.is_some()
+                || self.frees_integer(n)
+                || self.integers.free(self.now) > spare;
         }
         let piped = matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. });
         let coming: usize =
@@ -358,7 +366,8 @@ impl<'a> Placer<'a> {
     fn issue_floating(&mut self, n: usize) -> String {
         let operation = &self.operations[n];
         let mnemonic = operation.name.mnemonic;
-        let swapped = matches!(operation.name.unit, Unit::Multiplier { .. }) && self.is_last_result(&operation.sources[0]);
+        let swapped =
+            matches!(operation.name.unit, Unit::Multiplier { .. }) && self.is_last_result(&operation.sources[0]);
         let mut texts: Vec<String> = operation.sources.iter().map(|source| self.floating_text(source)).collect();
         if swapped {
             texts.swap(0, 1);
@@ -491,7 +500,9 @@ impl<'a> Placer<'a> {
         let read: Vec<usize> = self.operations[n].reads().collect();
         for value in read {
             let is_last = self.uses_left[value] == self.operations[n].reads().filter(|v| *v == value).count();
-            if let (Place::Ready { register, .. }, Width::Integer, true) = (self.places[value], self.width(value), is_last) {
+            if let (Place::Ready { register, .. }, Width::Integer, true) =
+                (self.places[value], self.width(value), is_last)
+            {
                 self.integers.give_back(register, 1, self.now);
                 self.places[value] = Place::Gone;
             }
