@@ -66,7 +66,7 @@ fn samples() -> Vec<Sample> {
         sample(Freeze::ScalarBusy, "fadd.ss f8, f9, f10\nfadd.ss f2, f3, f4"),
         sample(Freeze::ScalarDoubleMultiplyBusy, "fmul.dd f8, f10, f12\nfadd.dd f2, f4, f6"),
         sample_beside(Freeze::ScalarBusy, Freeze::ScalarPrecisionChange, "fadd.ss f8,f9,f10\nfadd.dd f2,f4,f6"),
-        sample_beside(Freeze::ScalarBusy, Freeze::ScalarThenPipelined, "fadd.ss f8,f9,f10\npfadd.ss f2,f3,f4"),
+        sample_beside(Freeze::ScalarBusy, Freeze::ScalarThenPipelined, "fadd.ss f8,f9,f10\npfmul.ss f2,f3,f4"),
         sample(Freeze::DoubleMultiply, "pfmul.dd f8, f10, f12\npfmul.dd f8, f10, f12"),
         sample(Freeze::TlbMiss, "adds 1, r0, r5\nst.c r5, dirbase\nld.l 0(r4), r6"),
         sample(Freeze::LoadPipeFull, "pfld.d 8(r4)++, f8\n".repeat(4)),
@@ -311,7 +311,7 @@ fn rows_10c_and_10d_add_to_a_wait_but_make_none() {
         let source = apart("fadd.ss f8,f9,f10", gap, "fadd.dd f2,f4,f6");
         assert_eq!(cost_beside(busy, Freeze::ScalarPrecisionChange, &source), expected, "{gap} between");
     }
-    for (next, expected) in [("pfadd.ss f2,f3,f4", 1), ("pfadd.ss f2,f3,f0", 0), ("fadd.ss f2,f3,f4", 0)] {
+    for (next, expected) in [("pfmul.ss f2,f3,f4", 1), ("pfadd.ss f2,f3,f0", 0), ("fadd.ss f2,f3,f4", 0)] {
         let source = apart("fadd.ss f8,f9,f10", 0, next);
         assert_eq!(cost_beside(busy, Freeze::ScalarThenPipelined, &source), expected, "{next}");
     }

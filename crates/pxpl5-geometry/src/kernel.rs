@@ -174,7 +174,7 @@ impl Kernel {
     pub fn parameters(&self, transform: &Transform, light: &Light, heads: &Heads) -> [Word; PARAMETER_WORDS] {
         let mut words = ParameterWords([0; PARAMETER_WORDS]);
         let clip = transform.to_clip.rows();
-        let normals = transform.normals.rows.map(|row| normal_row(row));
+        let normals = transform.normals.rows.map(normal_row);
         let guard = &transform.guard;
         let screen = &transform.to_screen;
         words.singles(0, clip.as_flattened());

@@ -67,6 +67,7 @@ pub(crate) const DEPTH_SCALE: f32 = (DEPTH_FAR - DEPTH_NEAR) as f32;
 
 /// Depth in fixed point from units beyond near, to the nearest unit, to even between two; what lies outside near and far is
 /// clamped, NaN is near.
+#[allow(clippy::manual_clamp, reason = "`clamp` would leave a NaN, which is to be near")]
 #[inline(always)]
 pub(crate) fn depth_fixed(beyond_near: f64) -> u32 {
     const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
