@@ -14,8 +14,10 @@ use crate::memo::{Memo, RememberedClocks};
 use crate::profile::{AddressProfile, Profile};
 use crate::scoreboard::{NO_WAIT, Scoreboard};
 use crate::store_pipe::StorePipe;
-use crate::timing::{Config, FREEZES, Freeze};
+use crate::timing::{ChipSizes, Config, FREEZES, Freeze};
 use crate::translation::Translation;
+
+const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 
 /// Addresses of data accesses, in order; at most one for each unit of a block.
 #[derive(Clone, Debug, Default)]
@@ -135,7 +137,7 @@ impl Clock {
     #[inline]
     fn entry(&mut self, block: &mut Block, accesses: &Accesses) -> Option<u32> {
         let memo = self.memo.as_mut()?;
-        let apart = self.fetch.is_filling(self.common.now) || self.translation.is_on() || self.sampler.is_some();
+        let apart = self.common.is_filling() || self.translation.is_on() || self.sampler.is_some();
         if apart || !block.in_caches_only {
             return None;
         }
@@ -262,7 +264,7 @@ impl Clock {
         let Some(address) = accesses.next().copied() else { return };
         match i.op {
             Op::LdB | Op::LdS | Op::LdL => self.load_integer(address, i.dest, bus),
-            Op::Fld => self.load_floating(address, bus),
+            Op::Fld => self.load_floating(address, i.size, bus),
             Op::Pfld => self.load_pipelined(address, u32::from(i.size)),
             Op::Flush => self.data.flush(address, &mut self.stores, &mut self.common),
             Op::Fst | Op::Pst => self.store(address, u32::from(i.size)),
@@ -274,7 +276,7 @@ impl Clock {
     #[inline]
     fn load_integer<B: Bus>(&mut self, address: u32, dest: u8, bus: &B) {
         self.board.forget(dest);
-        if let Some(transfer) = self.load(address, bus)
+        if let Some(transfer) = self.load(address, BUS_BYTES, bus)
             && self.common.costs.applies(Freeze::LoadMissUse)
         {
             let until = transfer.first + self.common.costs.clocks(Freeze::LoadMissUse);
@@ -282,21 +284,22 @@ impl Clock {
         }
     }
 
-    /// A floating-point load: a miss blocks until the needed word is there.
+    /// A floating-point load: a miss blocks until all that is needed is there, 16 bytes in two transfers.
     #[inline]
-    fn load_floating<B: Bus>(&mut self, address: u32, bus: &B) {
-        if let Some(transfer) = self.load(address, bus)
+    fn load_floating<B: Bus>(&mut self, address: u32, size: u8, bus: &B) {
+        if let Some(transfer) = self.load(address, u32::from(size), bus)
             && self.common.costs.applies(Freeze::FloatingLoadMiss)
         {
-            let until = transfer.first + self.common.costs.clocks(Freeze::FloatingLoadMiss);
+            let needed = u32::from(size).div_ceil(BUS_BYTES);
+            let until = transfer.arrival(needed - 1) + self.common.costs.clocks(Freeze::FloatingLoadMiss);
             self.common.freeze_until(until, Freeze::FloatingLoadMiss);
         }
     }
 
-    /// Looks an address up; gives the transfer of a miss.
-    fn load<B: Bus>(&mut self, address: u32, bus: &B) -> Option<Transfer> {
+    /// Looks `size` bytes up; gives the transfer of a miss.
+    fn load<B: Bus>(&mut self, address: u32, size: u32, bus: &B) -> Option<Transfer> {
         self.translation.translate(address, &mut self.common);
-        let transfer = self.data.load(address, &mut self.stores, &mut self.common, bus)?;
+        let transfer = self.data.load(address, size, &mut self.stores, &mut self.common, bus)?;
         self.hold_up(hazard::TRANSFER_IN_MISS, transfer.first, Freeze::TransferDuringMiss);
         self.hold_up(hazard::ACCESS_IN_MISS, transfer.last, Freeze::AccessDuringMiss);
         Some(transfer)

@@ -20,6 +20,8 @@ pub(crate) struct Common {
     pub(crate) chance: Chance,
     /// Clock at which the latest fill of a data line ends; instruction misses before it wait longer.
     pub(crate) data_fill_end: u64,
+    /// Clock at which the latest fill of an instruction line ends; a freeze that begins before it lasts as long.
+    pub(crate) instruction_fill_end: u64,
 }
 
 impl Common {
@@ -32,6 +34,7 @@ impl Common {
             bus: Dram::new(config.dram),
             chance: Chance::new(config.replacement_seed),
             data_fill_end: 0,
+            instruction_fill_end: 0,
         }
     }
 
@@ -52,9 +55,38 @@ impl Common {
         self.bus.page_misses = 0;
     }
 
-    /// Stands still until a clock.
+    /// Stands still until a clock, and for the rest of an instruction line that comes in meanwhile (row 1).
     #[inline]
     pub(crate) fn freeze_until(&mut self, until: u64, why: Freeze) {
+        if until > self.now {
+            let is_filling = self.is_filling();
+            self.stand_still(until, why);
+            if is_filling {
+                self.stand_still(self.instruction_fill_end, Freeze::InstructionMiss);
+            }
+        }
+    }
+
+    /// Stands still until an instruction is there, which is no other freeze.
+    #[inline]
+    pub(crate) fn await_instruction(&mut self, until: u64) {
+        self.stand_still(until, Freeze::InstructionMiss);
+    }
+
+    /// What a busy data side adds to the wait for an instruction.
+    pub(crate) fn await_instruction_behind_data(&mut self) {
+        let until = self.now + self.costs.clocks(Freeze::InstructionMissBehindData);
+        self.stand_still(until, Freeze::InstructionMissBehindData);
+    }
+
+    /// Whether an instruction line is still coming in.
+    #[inline]
+    pub(crate) fn is_filling(&self) -> bool {
+        self.now < self.instruction_fill_end
+    }
+
+    #[inline]
+    fn stand_still(&mut self, until: u64, why: Freeze) {
         if until > self.now {
             self.profile.frozen[why as usize] += until - self.now;
             self.now = until;
@@ -69,9 +101,14 @@ impl Common {
 
     /// Reads `beats` transfers of 8 bytes for the data side, once the address pipe has room.
     pub(crate) fn read_data(&mut self, address: u32, beats: u32) -> Transfer {
+        self.await_address_pipe();
+        self.bus.read(self.now, address, beats)
+    }
+
+    /// Stands still while three requests are outstanding, whoever made them.
+    pub(crate) fn await_address_pipe(&mut self) {
         if self.costs.applies(Freeze::AddressPipeFull) {
             self.freeze_until(self.bus.accepts_at(), Freeze::AddressPipeFull);
         }
-        self.bus.read(self.now, address, beats)
     }
 }

@@ -7,8 +7,9 @@ use crate::dram::Transfer;
 use crate::store_pipe::StorePipe;
 use crate::timing::ChipSizes;
 
+const BUS_BYTES: u32 = ChipSizes::PAPERS.bus_bytes as u32;
 /// Transfers of a line.
-const BEATS: u32 = (ChipSizes::PAPERS.line_bytes / ChipSizes::PAPERS.bus_bytes) as u32;
+const BEATS: u32 = ChipSizes::PAPERS.line_bytes as u32 / BUS_BYTES;
 
 #[derive(Clone, Debug)]
 pub(crate) struct DataCache(Tags);
@@ -50,11 +51,12 @@ impl DataCache {
         held.is_some()
     }
 
-    /// Brings in what a load needs; `None` if it is there.
+    /// Brings in the `size` bytes that a load needs; `None` if they are there.
     #[inline]
     pub(crate) fn load<B: Bus>(
         &mut self,
         address: u32,
+        size: u32,
         stores: &mut StorePipe,
         common: &mut Common,
         bus: &B,
@@ -64,7 +66,7 @@ impl DataCache {
         }
         let transfer = match bus.is_cacheable(address) {
             true => self.fill_line(address, stores, common),
-            false => common.read_data(address, 1),
+            false => common.read_data(address, size.div_ceil(BUS_BYTES)),
         };
         common.data_fill_end = transfer.last;
         Some(transfer)

@@ -160,7 +160,6 @@ fn bytes_of(double: bool) -> u8 {
 
 fn floating_reads(i: &Instruction) -> u64 {
     let s = i.has(Flags::SOURCE_DOUBLE);
-    let r = i.has(Flags::RESULT_DOUBLE);
     let a = float_mask(i.src1, bytes_of(s));
     let b = float_mask(i.src2, bytes_of(s));
     match i.op {
@@ -168,7 +167,10 @@ fn floating_reads(i: &Instruction) -> u64 {
         Op::Frcp | Op::Frsqr => b,
         Op::Fix | Op::Ftrunc | Op::Famov | Op::Form => a,
         Op::Fxfr => float_mask(i.src1, 4),
-        Op::DualOp => float_mask(i.src1, bytes_of(s || r)) | float_mask(i.src2, bytes_of(s || r)),
+        Op::DualOp => {
+            let (first, second) = source_widths(i);
+            float_mask(i.src1, bytes_of(first)) | float_mask(i.src2, bytes_of(second))
+        }
         _ => a | b,
     }
 }

@@ -12,14 +12,25 @@ pub(crate) struct Transfer {
     pub(crate) first: u64,
     /// Clock at which the last 8 bytes are there.
     pub(crate) last: u64,
+    /// Clocks between 8 bytes and the next.
+    step: u64,
+}
+
+impl Transfer {
+    /// Clock at which 8 bytes are there, the needed ones being number 0.
+    pub(crate) fn arrival(&self, number: u32) -> u64 {
+        self.first + u64::from(number) * self.step
+    }
 }
 
 /// State of bus and memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Dram {
     timing: DramTiming,
-    /// Clock from which a new request can start.
+    /// Clock from which a read of the open row can start, overlapping with the data of the read before.
     free: u64,
+    /// Clock at which the last data of all requests have passed: before it no write begins, and no other row is opened.
+    data_end: u64,
     open_page: u64,
     next_refresh: u64,
     next_dma: u64,
@@ -36,6 +47,7 @@ impl Dram {
         Dram {
             timing,
             free: 0,
+            data_end: 0,
             open_page: CLOSED,
             next_refresh: timing.refresh_interval,
             next_dma: timing.dma_interval,
@@ -52,7 +64,7 @@ impl Dram {
 
     /// Clock at which everything requested so far is done.
     pub(crate) fn idle_at(&self) -> u64 {
-        self.outstanding[BUS_DEPTH - 1].max(self.free)
+        self.data_end.max(self.free)
     }
 
     /// Refreshes and transfers of other masters that fall due before a request at `now`.
@@ -73,50 +85,55 @@ impl Dram {
         }
     }
 
-    fn begin(&mut self, now: u64, address: u32) -> (u64, bool) {
-        self.steal(now);
+    /// Whether an address lies in the open row, which that of the address is from now on.
+    fn open(&mut self, address: u32) -> bool {
         let page = u64::from(address) / self.timing.page_bytes.max(BUS_BYTES);
         let hit = page == self.open_page;
         self.open_page = page;
         self.transfers += 1;
         self.page_misses += u64::from(!hit);
-        (self.free.max(now), hit)
+        hit
     }
 
     fn finish(&mut self, transfer: Transfer) -> Transfer {
-        let latest = self.outstanding[BUS_DEPTH - 1];
+        self.data_end = self.data_end.max(transfer.last);
         self.outstanding.rotate_left(1);
-        self.outstanding[BUS_DEPTH - 1] = transfer.last.max(latest);
+        self.outstanding[BUS_DEPTH - 1] = self.data_end;
         transfer
     }
 
     /// Reads `beats` transfers of 8 bytes, the needed one first.
     ///
-    /// Requests to the open row overlap: the next one's first data follow `next` clocks after this one's last.
+    /// Requests to the open row overlap: the next one's first data follow `next` clocks after this one's last. A row is
+    /// closed when its last data have passed.
     pub(crate) fn read(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
-        let (start, hit) = self.begin(now, address);
+        self.steal(now);
+        let hit = self.open(address);
+        let start = now.max(if hit { self.free } else { self.free.max(self.data_end) });
         let t = self.timing;
         let first = start + if hit { t.first_hit } else { t.first_miss };
         let last = first + u64::from(beats - 1) * t.next;
         let opening = if hit { 0 } else { t.first_miss.saturating_sub(t.first_hit) };
         self.free = start + opening + u64::from(beats) * t.next;
-        self.finish(Transfer { first, last })
+        self.finish(Transfer { first, last, step: t.next })
     }
 
-    /// Writes `beats` transfers of 8 bytes within one row.
+    /// Writes `beats` transfers of 8 bytes within one row, once the bus is done with the data of all reads.
     pub(crate) fn write(&mut self, now: u64, address: u32, beats: u32) -> Transfer {
-        let (start, hit) = self.begin(now, address);
+        self.steal(now);
+        let hit = self.open(address);
+        let start = self.free.max(self.data_end).max(now);
         let t = self.timing;
         let first = start + if hit { t.write_hit } else { t.write_miss };
         let last = first + u64::from(beats - 1) * t.write_hit;
         self.free = last;
-        self.finish(Transfer { first, last })
+        self.finish(Transfer { first, last, step: t.write_hit })
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Dram, Transfer};
+    use super::Dram;
     use crate::timing::DramTiming;
 
     fn quiet() -> DramTiming {
@@ -128,7 +145,7 @@ mod tests {
         let t = quiet();
         let mut dram = Dram::new(t);
         let opening = dram.read(0, 0, 4);
-        assert_eq!(opening, Transfer { first: t.first_miss, last: t.first_miss + 3 * t.next });
+        assert_eq!((opening.first, opening.last), (t.first_miss, t.first_miss + 3 * t.next));
         let open = dram.read(1000, 32, 4);
         assert_eq!(open.last - 1000, t.first_hit + 3 * t.next);
     }
@@ -140,6 +157,22 @@ mod tests {
         let first = dram.read(0, 0, 1);
         let second = dram.read(1, 8, 1);
         assert_eq!(second.first - first.last, t.next);
+    }
+
+    #[test]
+    fn a_write_begins_when_the_data_of_a_read_have_passed() {
+        let t = quiet();
+        let mut dram = Dram::new(t);
+        let line = dram.read(0, 0, 4);
+        assert_eq!(dram.write(1, 32, 1).last - line.last, t.write_hit);
+    }
+
+    #[test]
+    fn another_row_is_opened_when_the_data_of_a_read_have_passed() {
+        let t = quiet();
+        let mut dram = Dram::new(t);
+        let line = dram.read(0, 0, 4);
+        assert_eq!(dram.read(1, t.page_bytes as u32, 1).first - line.last, t.first_miss);
     }
 
     #[test]

@@ -20,14 +20,12 @@ pub(crate) struct Fetch {
     line: u32,
     /// Clocks at which its transfers arrive, by place in the line.
     arrivals: [u64; BEATS as usize],
-    /// Clock at which all of it is there.
-    line_end: u64,
 }
 
 impl Fetch {
     pub(crate) fn new() -> Fetch {
         let cache = Tags::of_cache(ChipSizes::PAPERS.instruction_cache_bytes);
-        Fetch { cache, line: NO_LINE, arrivals: [0; BEATS as usize], line_end: 0 }
+        Fetch { cache, line: NO_LINE, arrivals: [0; BEATS as usize] }
     }
 
     /// Number of the line of the last fetch, for what continues there.
@@ -40,12 +38,6 @@ impl Fetch {
     #[inline]
     pub(crate) fn continue_in(&mut self, line: u32) {
         self.line = line;
-    }
-
-    /// Whether a line is still coming in.
-    #[inline]
-    pub(crate) fn is_filling(&self, now: u64) -> bool {
-        now < self.line_end
     }
 
     /// Whether all of a block is known to be in the cache.
@@ -62,7 +54,7 @@ impl Fetch {
     /// Fetches the word or the pair at `pc`.
     #[inline]
     pub(crate) fn fetch<B: Bus>(&mut self, pc: u32, translation: &mut Translation, common: &mut Common, bus: &B) {
-        if pc / LINE_BYTES != self.line || self.is_filling(common.now) {
+        if pc / LINE_BYTES != self.line || common.is_filling() {
             self.fetch_slowly(pc, translation, common, bus);
         }
     }
@@ -73,9 +65,9 @@ impl Fetch {
         }
         if pc / LINE_BYTES == self.line {
             let arrival = self.arrivals[(pc / 8 % BEATS) as usize];
-            return common.freeze_until(arrival, Freeze::InstructionMiss);
+            return common.await_instruction(arrival);
         }
-        common.freeze_until(self.line_end, Freeze::InstructionMiss);
+        common.await_instruction(common.instruction_fill_end);
         translation.translate(pc, common);
         self.line = pc / LINE_BYTES;
         if self.cache.find(pc).is_none() {
@@ -86,15 +78,16 @@ impl Fetch {
     fn miss<B: Bus>(&mut self, pc: u32, common: &mut Common, bus: &B) {
         common.profile.instruction_misses += 1;
         let is_behind_data = common.now < common.data_fill_end;
+        common.await_address_pipe();
         if bus.is_cacheable(pc) {
             self.fill_line(pc, common);
         } else {
             let word = common.bus.read(common.now, pc, 1);
             self.line = NO_LINE;
-            common.freeze_until(word.first, Freeze::InstructionMiss);
+            common.await_instruction(word.first);
         }
         if is_behind_data {
-            common.charge(Freeze::InstructionMissBehindData);
+            common.await_instruction_behind_data();
         }
     }
 
@@ -102,11 +95,10 @@ impl Fetch {
         let random = common.chance.next();
         self.cache.fill(pc, random);
         let line = common.bus.read(common.now, pc, BEATS);
-        let step = (line.last - line.first) / u64::from(BEATS - 1);
         for beat in 0..BEATS {
-            self.arrivals[((pc / 8 + beat) % BEATS) as usize] = line.first + u64::from(beat) * step;
+            self.arrivals[((pc / 8 + beat) % BEATS) as usize] = line.arrival(beat);
         }
-        self.line_end = line.last;
-        common.freeze_until(line.first, Freeze::InstructionMiss);
+        common.instruction_fill_end = line.last;
+        common.await_instruction(line.first);
     }
 }

@@ -18,7 +18,7 @@ impl Cpu {
             Op::Fadd => self.add(i, Operation::Add, from),
             Op::Fsub => self.add(i, Operation::Subtract, from),
             Op::Pfgt | Op::Pfle | Op::Pfeq => self.compare(i, from),
-            Op::Fmlow => self.state.set_f64(i.dest, multiply_low(from.a, from.b)),
+            Op::Fmlow => self.multiply_low(i, from),
             Op::Frcp | Op::Frsqr => self.seed(i, from.b),
             Op::Fix | Op::Ftrunc => self.integer_part(i, from.a),
             Op::Famov => self.adder_move(i, from.a),
@@ -40,8 +40,14 @@ impl Cpu {
             self.state.set_f(i.dest, last_product(&self.state, s));
             self.push_product(product);
         } else {
+            lose(&mut self.state.multiplier);
             self.state.set_f(i.dest, product);
         }
+    }
+
+    fn multiply_low(&mut self, i: &Instruction, Operands { a, b }: Operands) {
+        lose(&mut self.state.multiplier);
+        self.state.set_f64(i.dest, multiply_low(a, b));
     }
 
     #[inline]
@@ -63,6 +69,7 @@ impl Cpu {
             self.state.set_f(i.dest, self.state.adder[2]);
             self.push_sum(result);
         } else {
+            lose(&mut self.state.adder);
             self.state.set_f(i.dest, result);
         }
     }
@@ -98,6 +105,7 @@ impl Cpu {
             _ => self.seeds.reciprocal_root(x),
         };
         let bits = if r { y } else { u64::from(narrow(y, self.flush_to_zero())) };
+        lose(&mut self.state.multiplier);
         self.state.set_f(i.dest, Stage { bits, double: r });
     }
 
@@ -163,6 +171,17 @@ impl Cpu {
     fn load_constant(&mut self, imaginary: bool, value: u64) {
         let register = if imaginary { &mut self.state.ki } else { &mut self.state.kr };
         *register = value;
+    }
+}
+
+/// No number, in both precisions: what the part leaves undefined should be seen.
+const LOST: u64 = 0x7FF8_0000_7FC0_0000;
+
+/// A scalar operation goes through the pipe of its unit, and what was there is lost.
+#[inline(always)]
+fn lose(pipe: &mut [Stage; 3]) {
+    for stage in pipe {
+        stage.bits = LOST;
     }
 }
 

@@ -9,6 +9,7 @@
 //!            |        blocks that repeat                      |
 //!            +------------------------------------------------+
 //!  text -> assemble -> Program       word -> disassemble -> text
+//!  linear code -> linear::schedule -> text in dual-instruction mode
 //! ```
 //!
 //! ```
@@ -34,6 +35,8 @@
 //!   dual operations, pipelined loads, graphics unit, delay slots, `bla`, dual-instruction mode, control registers.
 //! - Arithmetic is IEEE, to nearest even, with the same bits on every host; fsr.FZ flushes results. Without traps a
 //!   NaN result is the first NaN operand made quiet, or the default NaN with its sign set.
+//! - A scalar operation, a seed too, destroys what the pipe of its unit holds: it becomes NaN here. The assembler objects to
+//!   code that takes a result out of a pipe behind one.
 //! - The seeds of `frcp` and `frsqr` come from a [`SeedTable`], because the part's table is not public.
 //! - Traps leave the state of the part at the handler's first instruction, and [`Cpu::step`] says which it was.
 //!   Illegal words and pairs, a branch in a slot and a misaligned pair are instruction traps.
@@ -58,9 +61,9 @@
 //! remembered, as FastSim does (Schnarr and Larus, ASPLOS 1998). The rest is counted unit by unit. Both give the same
 //! state, clocks and profile after every run (tests/memo.rs: random programs; crates/pphigs/tests/memo.rs: the triangle
 //! kernels with every row switched);
-//! [`Config::memoise`] chooses. It takes over all of a loop in cache, 61 % of the instructions of the triangle kernel
-//! scheduled for the cache (its data come and go), and 0.2 % of the one larger than the cache. Measured in one process,
-//! that makes the first kernel 1.4 times as fast, and leaves the second one as it was. Clocks by address ([`Cpu::watch`]) and translation on are always counted.
+//! [`Config::memoise`] chooses. It takes over all of a loop in cache, and nothing of code larger than the cache; what it is
+//! worth for the triangle kernels, crates/pphigs/benches measures.
+//! Clocks by address ([`Cpu::watch`]) and translation on are always counted.
 //!
 //! # Conformance
 //!
@@ -73,7 +76,7 @@
 //! - Address translation: ATE charges TLB misses, but addresses stay what they are. Page protection likewise.
 //! - Big-endian data (epsr.BE), breakpoints (db), floating-point traps (FTE), kill-next (KNF), the 8-bit boot mode.
 //! - Rounding modes other than to nearest, except in `fix`. Status bits of fsr.
-//! - That a scalar operation destroys what its pipe holds, and undefined register choices.
+//! - Undefined register choices.
 //! - Contents of the caches: they are always coherent; only time is theirs. Own stores into code are seen at once.
 //! - XP additions: `pfld.q`, `pfmul3`, registers bear, ccr, p0 to p3.
 //!
@@ -106,6 +109,7 @@ mod freeze;
 mod graphics;
 mod instruction;
 mod integer;
+pub mod linear;
 mod load_pipe;
 mod memo;
 mod memory;

@@ -21,6 +21,7 @@ impl StorePipe {
         if common.costs.applies(Freeze::StorePipeFull) {
             self.wait_for_room(common);
         }
+        common.await_address_pipe();
         let end = common.bus.write(common.now, address, size.div_ceil(BUS_BYTES)).last;
         self.ends.rotate_left(1);
         self.ends[DEPTH - 1] = end;

@@ -126,6 +126,26 @@ fn all_faults_of_a_source_are_reported_in_line_order() {
     assert_eq!(errors[0].to_string(), "t.s:1: `foo` is not an operation");
 }
 
+/// The manual: a scalar operation goes through the pipe of its unit, so that what was in it is lost.
+#[test]
+fn a_result_may_not_be_taken_out_behind_a_scalar_operation() {
+    let fault = |source: &str| assemble("t.s", 0, source).err().map(|errors| errors.0[0].to_string());
+    let drain = "pfadd.ss f0, f0, f0\n".repeat(2);
+    let lost = fault(&format!("pfadd.ss f2, f3, f0\nfadd.ss f4, f5, f6\n{drain}pfadd.ss f0, f0, f10"));
+    let reason = "takes a result out of the adder's pipe that a scalar operation destroyed";
+    assert_eq!(lost.as_deref(), Some(format!("t.s:5: {reason}").as_str()));
+    assert!(fault("frcp.ss f2, f3\npfmul.ss f4, f5, f6").is_some(), "a seed goes through the multiplier");
+    assert!(fault("fmul.dd f2, f4, f6\npfmul.dd f2, f4, f0\nm12apm.dd f2, f4, f8").is_some(), "the adder gets it");
+    for sound in [
+        format!("fadd.ss f4, f5, f6\npfadd.ss f2, f3, f0\n{drain}pfadd.ss f0, f0, f10"),
+        format!("pfadd.ss f2, f3, f0\nfmul.ss f4, f5, f6\n{drain}pfadd.ss f0, f0, f10"),
+        "fadd.ss f4, f5, f6\nelsewhere: pfadd.ss f0, f0, f10".to_owned(),
+        "fmul.dd f2, f4, f6\npfmul.dd f2, f4, f0\npfmul.dd f2, f4, f0\npfmul.dd f2, f4, f8".to_owned(),
+    ] {
+        assert_eq!(fault(&sound), None, "{sound}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
 

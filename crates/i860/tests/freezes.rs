@@ -66,7 +66,7 @@ fn samples() -> Vec<Sample> {
         sample(Freeze::ScalarBusy, "fadd.ss f8, f9, f10\nfadd.ss f2, f3, f4"),
         sample(Freeze::ScalarDoubleMultiplyBusy, "fmul.dd f8, f10, f12\nfadd.dd f2, f4, f6"),
         sample_beside(Freeze::ScalarBusy, Freeze::ScalarPrecisionChange, "fadd.ss f8,f9,f10\nfadd.dd f2,f4,f6"),
-        sample_beside(Freeze::ScalarBusy, Freeze::ScalarThenPipelined, "fadd.ss f8,f9,f10\npfadd.ss f2,f3,f4"),
+        sample_beside(Freeze::ScalarBusy, Freeze::ScalarThenPipelined, "fadd.ss f8,f9,f10\npfmul.ss f2,f3,f4"),
         sample(Freeze::DoubleMultiply, "pfmul.dd f8, f10, f12\npfmul.dd f8, f10, f12"),
         sample(Freeze::TlbMiss, "adds 1, r0, r5\nst.c r5, dirbase\nld.l 0(r4), r6"),
         sample(Freeze::LoadPipeFull, "pfld.d 8(r4)++, f8\n".repeat(4)),
@@ -159,8 +159,10 @@ fn row_1_a_line_that_is_held_costs_nothing() {
 fn row_1b_an_instruction_miss_behind_a_data_fill_costs_two_more() {
     let t = dram();
     let others = FreezeRules::none().with(Freeze::InstructionMiss);
-    let fill = t.first_miss + 3 * t.next;
-    let turns_until_full = (fill - 4).div_ceil(2);
+    // The data lie in another row, so that they come behind the instructions. The next line is wanted after the first word,
+    // mov, ld, the turns and four nops.
+    let fill = 2 * (t.first_miss + 3 * t.next);
+    let turns_until_full = (fill - t.first_miss - 6).div_ceil(2);
     let row = Freeze::InstructionMissBehindData;
     assert_eq!(cost_beside(others, row, &next_line_behind_load(1)), 2);
     assert_eq!(cost_beside(others, row, &next_line_behind_load(turns_until_full - 1)), 2);
@@ -309,7 +311,7 @@ fn rows_10c_and_10d_add_to_a_wait_but_make_none() {
         let source = apart("fadd.ss f8,f9,f10", gap, "fadd.dd f2,f4,f6");
         assert_eq!(cost_beside(busy, Freeze::ScalarPrecisionChange, &source), expected, "{gap} between");
     }
-    for (next, expected) in [("pfadd.ss f2,f3,f4", 1), ("pfadd.ss f2,f3,f0", 0), ("fadd.ss f2,f3,f4", 0)] {
+    for (next, expected) in [("pfmul.ss f2,f3,f4", 1), ("pfadd.ss f2,f3,f0", 0), ("fadd.ss f2,f3,f4", 0)] {
         let source = apart("fadd.ss f8,f9,f10", 0, next);
         assert_eq!(cost_beside(busy, Freeze::ScalarThenPipelined, &source), expected, "{next}");
     }
@@ -490,6 +492,7 @@ fn both_halves_of_a_pair_wait_together_for_the_longer_freeze() {
 #[test]
 fn a_row_switched_off_among_all_others_costs_nothing() {
     let all_but = FreezeRules::all().without(Freeze::ConditionUse);
-    let source = "adds 1, r5, r5\nbc end";
-    assert_eq!(clocks_with(FreezeRules::all(), source) - clocks_with(all_but, source), 1);
+    // Behind the last word of the line: before it, row 1 makes it longer (fills.rs).
+    let source = format!("{}adds 1, r5, r5\nbc end", "nop\n".repeat(6));
+    assert_eq!(clocks_with(FreezeRules::all(), &source) - clocks_with(all_but, &source), 1);
 }

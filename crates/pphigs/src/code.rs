@@ -248,7 +248,11 @@ fn program(kernel: Kernel) -> Arc<Program> {
 }
 
 fn assembled(kernel: Kernel) -> Program {
-    match i860::assemble("kernel", CODE, &kernel.source()) {
+    let source = match i860::linear::schedule(&kernel.source()) {
+        Ok(source) => source,
+        Err(error) => unreachable!("every kernel is scheduled by the tests: {error}"),
+    };
+    match i860::assemble("kernel", CODE, &source) {
         Ok(program) => program,
         Err(errors) => unreachable!("every kernel is assembled by the tests: {errors}"),
     }

@@ -60,10 +60,13 @@ most\@: nop
 // In: r5 triangle, r6 where the words go. Changes r7 to r14 and all floating-point registers.
         .align  32
 surface: normals
-        fld.l   P_LIGHT(r20), f4
-        fld.l   P_LIGHT+4(r20), f5
-        fld.l   P_LIGHT+8(r20), f6
-        sum     f26, f27, f28, f29, f30, f31, f2, f3, f7, f4, f4, f4, f5, f5, f5, f6, f6, f6, f12, f13, f14, f8, f9, f10
+        fld.l   P_LIGHT(r20), f16
+        fld.l   P_LIGHT+4(r20), f17
+        fld.l   P_LIGHT+8(r20), f18
+        weighted f16, f17, f18, f4, f8, f12, f5, f9, f13, f6, f10, f14, f26, f27, f28
+        fmov.ss f26, f8
+        fmov.ss f27, f9
+        fmov.ss f28, f10
         cosine  f11, f8
         cosine  f15, f9
         cosine  f19, f10

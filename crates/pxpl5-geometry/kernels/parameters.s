@@ -21,7 +21,7 @@ SURFACE_WORD   = 8
 P_ROWS      = 0
 P_ORIGIN    = 64          // eye x, y, z, (unused)
 P_GUARD     = 80          // guard band x, y; least w; greatest w
-P_SCREEN    = 96          // scale x, y; centre x, y (subpixels)
+P_SCREEN    = 96          // scale x, y; centre x, y (subpixels) and 1.5 * 2^23
 P_TWO_S     = 112         // 2.0
 P_ROUND_S   = 116         // 1.5 * 2^23
 P_FLIP      = 120         // the word 0x97000000: less a biased integer it turns the order round
@@ -43,13 +43,23 @@ P_TIE_OUT   = 224         // -8.5: the same for an edge that does not own its pi
 // Words: instruction heads of the command (enable, edge, depth compare, depth again, three components, colour).
 P_HEADS     = 232
 P_THREE_HALVES = 264      // 1.5, double
-// Singles: rows x, y, z from the world to the eye as c0 c1 c2 t.
+// Singles: rows x, y, z of normals from the world to the eye, in units of the command's normal; the fourth is free.
 P_EYE       = 272
-P_LIGHT     = 320         // towards the light, in eye coordinates; (unused)
+P_LIGHT     = 320         // towards the light, as the normals are given; (unused)
 P_AMBIENT   = 336         // part of the colour that is seen in shadow
 P_DIFFUSE   = 340         // part added where the light falls square
 P_ONE       = 344         // 1.0
 P_TWO23     = 348         // 2^23
-P_LEAST     = 352         // least and greatest square of a normal that has a direction
-P_MOST      = 356
-P_UNIT      = 360         // a component of 1.0 in units of the command's normal
+P_LEAST_W   = 352         // words: least and greatest w, as P_GUARD
+P_MOST_W    = 356
+P_NEARLY    = 360         // 20 << 23: to be w - z times 2^20 at least as great as w, bits of singles being nearly logarithms
+P_ROUND_LINE = 364        // 1.5 * 2^23, less 16 in a field that begins with line 1
+P_DEPTH_BIAS = 368        // double: 1.5 * 2^52 + near
+P_ROUND56   = 376         // double: 1.5 * 2^56
+P_TURN      = 384         // single: 3 * 2^23 + 8
+P_ROUND19   = 388         // single: 1.5 * 2^19, of which the last bit is 1/16
+// The surface's words to the planes' values, as they are and turned over: unit (double), unit (single, and 4 bytes free), and half a
+// unit less 1.5 * 2^23 units (double).
+P_SIDES     = 392
+P_SIXTEENS  = 440         // doubles: 16, and -16 for triangles that are turned round
+P_DEPTH_SCALE = 456       // single: far - near in depth units

@@ -89,64 +89,17 @@ SURF   = 328      // surface words
 
 // ---- one corner
 
-// clip coordinate `to` of corner n: ((c0 x + c1 y) + c2 z) + t with x y z in f16 f17 f18
-        .macro  row n, k
-        fld.l   P_ROWS+16*\k(r20), f8
-        fmul.ss f8, f16, f9
-        fld.l   P_ROWS+16*\k+4(r20), f8
-        fmul.ss f8, f17, f10
-        fadd.ss f9, f10, f9
-        fld.l   P_ROWS+16*\k+8(r20), f8
-        fmul.ss f8, f18, f10
-        fadd.ss f9, f10, f9
-        fld.l   P_ROWS+16*\k+12(r20), f8
-        fadd.ss f9, f8, f9
-        fst.l   f9, CLIP+16*\n+4*\k(r2)
-        .endm
-
-// relative to the eye
-        .macro  relative n, k, to
-        fld.l   32*\n+4*\k(r16), f8
-        fld.l   P_ORIGIN+4*\k(r20), f9
-        fsub.ss f8, f9, \to
-        .endm
-
-// to the clipper unless a <= b
-        .macro  need a, b
-        pfle.ss \a, \b, f0
-        bc      clip
-        .endm
-
-// |coordinate k| <= guard k * w
-        .macro  side n, k
-        fld.l   CLIP+16*\n+12(r2), f8
-        fld.l   P_GUARD+4*\k(r20), f9
-        fmul.ss f9, f8, f9
-        fld.l   CLIP+16*\n+4*\k(r2), f10
-        need    f10, f9
-        fsub.ss f0, f10, f10
-        need    f10, f9
-        .endm
-
-        .macro  inside n
-        side    \n, 0
-        side    \n, 1
-        fld.l   CLIP+16*\n+8(r2), f10
-        fld.l   CLIP+16*\n+12(r2), f8
-        need    f0, f10
-        need    f10, f8
-        fld.l   P_GUARD+8(r20), f9
-        need    f9, f8
-        fld.l   P_GUARD+12(r20), f9
-        need    f8, f9
-        .endm
-
+// 1 / w: seed and two Newton steps in single precision
         .macro  invert n
         fld.l   CLIP+16*\n+12(r2), f16
-        famov.sd f16, f8
-        reciprocal
-        famov.ds f12, f16
-        fst.l   f16, INV+4*\n(r2)
+        fld.l   P_TWO_S(r20), f17
+        frcp.ss f16, f18
+        .rept   2
+        fmul.ss f16, f18, f19
+        fsub.ss f17, f19, f19
+        fmul.ss f18, f19, f18
+        .endr
+        fst.l   f18, INV+4*\n(r2)
         .endm
 
 // screen coordinate k in subpixels
@@ -158,44 +111,27 @@ SURF   = 328      // surface words
         fmul.ss f8, f9, f8
         fld.l   P_SCREEN+8+4*\k(r20), f9
         fadd.ss f8, f9, f8
-        fld.l   P_ROUND_S(r20), f9
-        fadd.ss f8, f9, f8
         fxfr    f8, r30
         orh     0x4B40, r0, r31             // bits of 1.5 * 2^23
         subs    r30, r31, r30
         st.l    r30, \to+4*\n(r2)
         .endm
 
-// depth: floor(z / w * (far - near) + near + 0.5)
+// depth: the integer nearest to z (1 / w * (far - near)) + near, at most far
         .macro  depth n
         fld.l   CLIP+16*\n+8(r2), f8
         fld.l   INV+4*\n(r2), f9
-        fmul.ss f8, f9, f8
-        famov.sd f8, f10
+        fld.l   P_DEPTH_SCALE(r20), f10
+        fmul.ss f9, f10, f9
+        fmul.sd f8, f9, f10
         fld.d   P_DEPTH(r20), f12
-        fmul.dd f10, f12, f10
-        fld.d   P_NEAR(r20), f12
-        fadd.dd f10, f12, f10
-        fld.d   P_HALF(r20), f12
-        fadd.dd f10, f12, f10
-        fld.d   P_TWO52(r20), f12
-        fadd.dd f10, f12, f14               // nearest integer in the low word
-        fsub.dd f14, f12, f12
+        pfgt.dd f10, f12, f0
+        bnc     near\@
+        fld.d   P_DEPTH(r20), f10
+near\@: fld.d   P_DEPTH_BIAS(r20), f12
+        fadd.dd f10, f12, f14               // in the low word
         fxfr    f14, r30
-        pfgt.dd f12, f10, f0                // rounded up?
-        bnc     down\@
-        adds    -1, r30, r30
-down\@: st.l    r30, SZ+4*\n(r2)
-        .endm
-
-        .macro  corner n
-        relative \n, 0, f16
-        relative \n, 1, f17
-        relative \n, 2, f18
-        row     \n, 0
-        row     \n, 1
-        row     \n, 2
-        row     \n, 3
+        st.l    r30, SZ+4*\n(r2)
         .endm
 
         .macro  place n

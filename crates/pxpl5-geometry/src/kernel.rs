@@ -9,10 +9,12 @@
 //!   parameter block ---------------------+--> kernel --> command words, bins, list for the clipper
 //! ```
 //!
-//! Registers and layouts stand in kernels/parameters.s. The sources are put together as a linker would, one file for
+//! The computation is that of the native code, so that the words are the same bit for bit: 1 / w by a seed and two Newton steps in
+//! single precision, normals as the display list holds them turned by a matrix and not made unit again, light in the coordinates of
+//! the normals. Registers and layouts stand in kernels/parameters.s. The sources are put together as a linker would, one file for
 //! each choice. This crate does not assemble or run them.
 
-use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip};
+use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip, light, screen};
 use pxpl5_wire::{Lines, RegionGrid, Word};
 
 /// How the code was made.
@@ -21,7 +23,8 @@ pub enum Schedule {
     /// As a compiler of 1989 would give it: every statement through the stack frame, everything inlined, larger than
     /// the instruction cache.
     Straight,
-    /// By hand in dual-instruction mode, in passes over batches that each fit the instruction cache.
+    /// In dual-instruction mode, in two loops over batches that each fit the instruction cache. Most of it is linear code, which
+    /// the i860's assembler does not know: what assembles it puts it in order first.
     Dual,
 }
 
@@ -55,11 +58,13 @@ pub type Heads = [Word; 8];
 pub const TRIANGLE_WORDS: usize = 24;
 
 /// Words of the parameter block.
-pub const PARAMETER_WORDS: usize = 91;
+pub const PARAMETER_WORDS: usize = 116;
 
 /// The constants of single precision whose bits the kernels know: 1.5 * 2^23 and 2^23.
 const ROUND_SINGLE: f32 = 12_582_912.0;
 const TWO_23: f32 = 8_388_608.0;
+/// 1.5 * 2^52.
+const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
 
 /// Less a biased integer, this word turns the order of integers round.
 const FLIP: Word = 0x9700_0000;
@@ -73,21 +78,86 @@ impl Kernel {
         (viewport.grid() == grid).then_some(Self { schedule, surface, field, binned })
     }
 
-    /// The source in i860 assembly; its entry is the label `start`.
+    /// The source in i860 assembly, with linear stretches where the schedule is [`Schedule::Dual`]; its entry is the label
+    /// `start`.
     #[must_use]
     pub fn source(&self) -> String {
         let picture = if self.field { include_str!("../kernels/field.s") } else { include_str!("../kernels/frame.s") };
+        let bins = if self.binned { include_str!("../kernels/bins.s") } else { include_str!("../kernels/unbinned.s") };
+        let common = [include_str!("../kernels/parameters.s"), picture, include_str!("../kernels/exact.s")];
+        let triangle = match self.schedule {
+            Schedule::Straight => [self.straight(), vec![bins]].concat(),
+            // What is seldom needed comes last, so that bins do not share sets of the cache with the end of the second loop.
+            Schedule::Dual if self.binned && !self.field => {
+                let bins = include_str!("../kernels/bins_scheduled.s");
+                [self.dual(), vec![bins, include_str!("../kernels/scheduled_doubt.s")]].concat()
+            }
+            Schedule::Dual => [self.dual(), vec![bins, include_str!("../kernels/scheduled_doubt.s")]].concat(),
+        };
+        [common.as_slice(), &triangle].concat().join("\n")
+    }
+
+    fn straight(&self) -> Vec<&'static str> {
         let surface = match self.surface {
             KernelSurface::Gouraud => include_str!("../kernels/gouraud.s"),
             KernelSurface::Phong => include_str!("../kernels/phong.s"),
         };
-        let triangle = match self.schedule {
-            Schedule::Straight => include_str!("../kernels/triangle_straight.s"),
-            Schedule::Dual => include_str!("../kernels/triangle_dual.s"),
+        vec![include_str!("../kernels/surface.s"), surface, include_str!("../kernels/triangle_straight.s")]
+    }
+
+    fn dual(&self) -> Vec<&'static str> {
+        let (head, surface, words) = match self.surface {
+            KernelSurface::Gouraud => (
+                "COMMAND_BYTES = 120",
+                include_str!("../kernels/vertices_gouraud.s"),
+                include_str!("../kernels/command_gouraud.s"),
+            ),
+            KernelSurface::Phong => (
+                "COMMAND_BYTES = 128",
+                include_str!("../kernels/vertices_phong.s"),
+                include_str!("../kernels/command_phong.s"),
+            ),
         };
-        let bins = if self.binned { include_str!("../kernels/bins.s") } else { include_str!("../kernels/unbinned.s") };
-        let common = [include_str!("../kernels/parameters.s"), picture, include_str!("../kernels/surface.s")];
-        [common.as_slice(), &[surface, triangle, bins]].concat().join("\n")
+        // Window, eagerness, reserve and shake of the shortest schedules that were found.
+        let (vertices, setup) = match (self.surface, self.field) {
+            (KernelSurface::Gouraud, false) => (".linear 300 20 2 3 0", ".linear 150 20 1 8 0"),
+            (KernelSurface::Gouraud, true) => (".linear 300 20 2 3 0", ".linear 64 30 1 8 12"),
+            (KernelSurface::Phong, false) => (".linear 100 30 1 5 0", ".linear 300 30 1 8 4"),
+            (KernelSurface::Phong, true) => (".linear 100 30 1 5 0", ".linear 150 20 1 8 0"),
+        };
+        // With bins the expressions are restated for a field when the regions are known.
+        let planes = match self.field && !self.binned {
+            true => include_str!("../kernels/planes_field.s"),
+            false => include_str!("../kernels/planes_frame.s"),
+        };
+        let (regions, tail) = match (self.binned, self.field) {
+            (false, _) => (include_str!("../kernels/regions_none.s"), include_str!("../kernels/tail_none.s")),
+            (true, true) => (include_str!("../kernels/regions_field.s"), include_str!("../kernels/tail_field.s")),
+            (true, false) => (include_str!("../kernels/regions_frame.s"), include_str!("../kernels/tail_frame.s")),
+        };
+        vec![
+            head,
+            include_str!("../kernels/scheduled_head.s"),
+            "corners:",
+            include_str!("../kernels/vertices_head.s"),
+            vertices,
+            include_str!("../kernels/vertices.s"),
+            surface,
+            include_str!("../kernels/vertices_end.s"),
+            include_str!("../kernels/scheduled_again.s"),
+            include_str!("../kernels/setup_head.s"),
+            setup,
+            include_str!("../kernels/setup.s"),
+            include_str!("../kernels/reference.s"),
+            include_str!("../kernels/corners.s"),
+            include_str!("../kernels/slopes.s"),
+            include_str!("../kernels/edges.s"),
+            planes,
+            words,
+            regions,
+            tail,
+            include_str!("../kernels/scheduled_tail.s"),
+        ]
     }
 
     /// Bytes of a command that it makes.
@@ -104,23 +174,43 @@ impl Kernel {
     pub fn parameters(&self, transform: &Transform, light: &Light, heads: &Heads) -> [Word; PARAMETER_WORDS] {
         let mut words = ParameterWords([0; PARAMETER_WORDS]);
         let clip = transform.to_clip.rows();
-        let eye = transform.to_eye.rows();
+        let normals = transform.normals.rows.map(normal_row);
         let guard = &transform.guard;
         let screen = &transform.to_screen;
         words.singles(0, clip.as_flattened());
         words.singles(64, &transform.to_clip.origin().to_array());
         words.singles(80, &[guard.x, guard.y, clip::MIN_W, MAX_CLIP]);
-        words.singles(96, &[screen.scale, screen.centre].concat());
+        words.singles(96, &[screen.scale, screen.centre.map(|centre| centre + ROUND_SINGLE)].concat());
         words.singles(112, &[2.0, ROUND_SINGLE]);
         words.integers(120, &[FLIP, transform.viewport.first_line()]);
         words.doubles(128, &self.doubles());
         words.integers(232, heads);
         words.doubles(264, &[1.5]);
-        words.singles(272, eye[..3].as_flattened());
-        words.singles(320, &light.direction);
-        words.singles(336, &[light.ambient, light.diffuse, 1.0, TWO_23, f32::MIN_POSITIVE, f32::MAX]);
-        words.singles(360, &[f32::from(NORMAL_UNIT)]);
+        words.singles(272, normals.as_flattened());
+        words.singles(320, &transform.normals.to_world(light.direction));
+        words.singles(336, &[light.ambient, light.diffuse, 1.0, TWO_23, clip::MIN_W, MAX_CLIP]);
+        words.integers(360, &[20 << 23]);
+        let line = if self.binned { 0 } else { transform.viewport.first_line() };
+        words.singles(364, &[ROUND_SINGLE - 16.0 * line as f32]);
+        words.doubles(368, &[ROUND_DOUBLE + f64::from(DEPTH_NEAR), 16.0 * ROUND_DOUBLE]);
+        words.singles(384, &[2.0 * ROUND_SINGLE + 8.0, ROUND_SINGLE / 16.0]);
+        words.doubles(440, &[16.0, -16.0]);
+        words.singles(456, &[screen::DEPTH_SCALE]);
+        self.sides().iter().zip([392, 416]).for_each(|((unit, less), at)| {
+            words.doubles(at, &[*unit]);
+            words.singles(at + 8, &[*unit as f32]);
+            words.doubles(at + 16, &[*less]);
+        });
         words.0
+    }
+
+    /// Unit of the surface's words in the planes, and half a unit less the bias in it, as they are and turned over.
+    fn sides(&self) -> [(f64, f64); 2] {
+        let (units, half) = match self.surface {
+            KernelSurface::Gouraud => ([16.0, 16.0], screen::colour_value(0)),
+            KernelSurface::Phong => ([64.0, -64.0], screen::NORMAL_HALF),
+        };
+        units.map(|unit| (unit, f64::from(half) - unit * f64::from(ROUND_SINGLE)))
     }
 
     fn doubles(&self) -> [f64; 13] {
@@ -165,12 +255,18 @@ impl ParameterWords {
     }
 }
 
+/// A row of the matrix of normals in units of the command's normal.
+fn normal_row(row: [f32; 3]) -> [f32; 4] {
+    let [x, y, z] = row.map(|v| v * f32::from(NORMAL_UNIT));
+    [x, y, z, 0.0]
+}
+
 /// A double as the i860 holds it in memory: the low half first.
 const fn halves(value: f64) -> [Word; 2] {
     [value.to_bits() as Word, (value.to_bits() >> 32) as Word]
 }
 
-/// A triangle as the display list holds it.
+/// A triangle as the display list holds it, its normals of unit length.
 #[must_use]
 pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
     let mut words = [0; TRIANGLE_WORDS];
@@ -178,7 +274,7 @@ pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
         let [r, g, b] = triangle.colours[n].map(Word::from);
         corner[..3].copy_from_slice(&triangle.positions[n].to_array().map(f32::to_bits));
         corner[3] = r << 16 | g << 8 | b;
-        corner[4..7].copy_from_slice(&triangle.normals[n].to_array().map(f32::to_bits));
+        corner[4..7].copy_from_slice(&light::unit_normal(triangle.normals[n]).map(f32::to_bits));
     }
     words
 }

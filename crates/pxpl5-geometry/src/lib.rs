@@ -14,10 +14,12 @@
 //! 1. **Transform** in 32-bit floating point, relative to the eye (so that models far from the origin lose nothing),
 //!    to clip coordinates: right-handed, looking along -Z, depth 0 to 1.
 //! 2. **Light**: for Gouraud shading each vertex by a directional [`Light`], two-sided; for Phong shading the normals
-//!    in eye coordinates.
+//!    in eye coordinates. Normals are made unit once, as the display list takes them, and turned by a matrix without
+//!    being made unit again, as the code of the processors does.
 //! 3. **Clip** by the near and far planes and a guard band of [`GUARD_PIXELS`], before the divide. Nothing is clipped by
 //!    the sides of the picture. A shared edge is cut at one point, whichever triangle it is cut for.
-//! 4. **Snap** to 1/16 px of the *frame*. A field is its frame's even or odd lines exactly: the same snapped vertices,
+//! 4. **Divide** by w as a processor without a divider does: a seed of 8 bits and two Newton steps in single precision.
+//!    **Snap** to 1/16 px of the *frame*. A field is its frame's even or odd lines exactly: the same snapped vertices,
 //!    the expressions restated for every second line.
 //! 5. **Drop** triangles without area and, on request, back faces ([`Culling`]).
 //! 6. **Bin**: the exact set of regions touched ([`RegionMask`]), from the edges; one comparison per side for the many

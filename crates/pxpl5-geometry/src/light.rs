@@ -1,13 +1,54 @@
 //! Lighting of vertices, and normals for deferred shading.
 
-use crate::view::FromWorld;
+use crate::view::{self, FromWorld};
 use crate::{Light, Triangle};
 use glam::Vec3;
 
-/// A light seen from one eye.
-pub(crate) struct EyeLighting<'a> {
-    to_eye: &'a FromWorld,
+/// A light in the coordinates in which a structure's normals are given.
+pub(crate) struct ModelLight<'a> {
+    normals: &'a NormalRows,
+    direction: [f32; 3],
     light: &'a Light,
+}
+
+/// Takes unit normals of the world to eye coordinates without making them unit again.
+///
+/// The matrix is that of points, divided by the length of its longest row: rotated normals stay unit (the same scale along all
+/// axes goes), and no component exceeds 1, whatever the matrix. The renderer makes them unit at each pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NormalRows {
+    pub(crate) rows: [[f32; 3]; 3],
+    /// The eye in the world.
+    origin: Vec3,
+}
+
+impl NormalRows {
+    pub(crate) fn new(to_eye: &FromWorld) -> Self {
+        let rows = to_eye.rows();
+        let [x, y, z] = [rows[0], rows[1], rows[2]].map(|[a, b, c, _]| [a, b, c].map(f64::from));
+        let longest = [x, y, z].map(|row| view::dot(row, row)).into_iter().fold(0.0, f64::max).sqrt();
+        let scale = if longest > 0.0 { 1.0 / longest } else { 0.0 };
+        Self { rows: [x, y, z].map(|row| row.map(|v| (v * scale) as f32)), origin: to_eye.origin() }
+    }
+
+    /// A direction of eye coordinates as normals of the world see it.
+    pub(crate) fn to_world(self, direction: [f32; 3]) -> [f32; 3] {
+        let rows = self.rows.map(|row| row.map(f64::from));
+        let [x, y, z] = direction.map(f64::from);
+        [0, 1, 2].map(|axis| view::dot([rows[0][axis], rows[1][axis], rows[2][axis]], [x, y, z]) as f32)
+    }
+
+    #[inline(always)]
+    fn apply(&self, normal: [f32; 3]) -> [f32; 3] {
+        self.rows.map(|row| dot(row, normal))
+    }
+
+    /// How far a unit normal at `position` turns towards the eye.
+    #[inline(always)]
+    fn towards_eye(&self, position: Vec3, normal: [f32; 3]) -> f32 {
+        let relative = [position.x - self.origin.x, position.y - self.origin.y, position.z - self.origin.z];
+        -dot(relative, normal)
+    }
 }
 
 #[inline(always)]
@@ -15,37 +56,30 @@ fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2]
 }
 
-/// The eye-space normal of unit length; towards +Z if it has no direction.
+/// A normal of unit length, as the display list holds it; along +Z if it has no direction.
 #[inline(always)]
-fn unit_normal(to_eye: &FromWorld, normal: Vec3) -> [f32; 3] {
-    let n = to_eye.direction(normal);
-    let square = dot(n, n);
-    if (f32::MIN_POSITIVE..=f32::MAX).contains(&square) {
+pub(crate) fn unit_normal(normal: Vec3) -> [f32; 3] {
+    let n = normal.to_array().map(f64::from);
+    let square = view::dot(n, n);
+    if square > 0.0 && square.is_finite() {
         let inverse = 1.0 / square.sqrt();
-        n.map(|v| v * inverse)
+        n.map(|v| (v * inverse) as f32)
     } else {
         [0.0, 0.0, 1.0]
     }
 }
 
-/// How far a normal at `position` turns towards the eye.
-#[inline(always)]
-fn towards_eye(to_eye: &FromWorld, position: Vec3, normal: [f32; 3]) -> f32 {
-    let [x, y, z, _] = to_eye.point(position);
-    -dot([x, y, z], normal)
-}
-
-impl<'a> EyeLighting<'a> {
-    pub(crate) fn new(to_eye: &'a FromWorld, light: &'a Light) -> Self {
-        Self { to_eye, light }
+impl<'a> ModelLight<'a> {
+    pub(crate) fn new(normals: &'a NormalRows, light: &'a Light) -> Self {
+        Self { normals, direction: normals.to_world(light.direction), light }
     }
 
     /// Lit colour in 1/256 of a unit, 0 to 255 * 256. Two-sided: the normal counts as the one that faces the eye.
     #[inline(always)]
     pub(crate) fn colour(&self, position: Vec3, normal: Vec3, colour: [u8; 3]) -> [f32; 3] {
-        let n = unit_normal(self.to_eye, normal);
-        let toward_light = dot(n, self.light.direction);
-        let facing = towards_eye(self.to_eye, position, n);
+        let n = unit_normal(normal);
+        let toward_light = dot(n, self.direction);
+        let facing = self.normals.towards_eye(position, n);
         let cosine = if facing < 0.0 { -toward_light } else { toward_light };
         let intensity = self.intensity(cosine);
         colour.map(|c| f32::from(c) * 256.0 * intensity)
@@ -65,17 +99,17 @@ impl<'a> EyeLighting<'a> {
     }
 }
 
-/// Unit normals in eye coordinates, all three turned over if the surface faces away.
-pub(crate) fn facing_normals(to_eye: &FromWorld, positions: &[Vec3; 3], normals: &[Vec3; 3]) -> [[f32; 3]; 3] {
-    let [a, b, c] = [0, 1, 2].map(|i| unit_and_facing(to_eye, positions[i], normals[i]));
+/// Normals in eye coordinates, all three turned over if the surface faces away.
+pub(crate) fn facing_normals(rows: &NormalRows, positions: &[Vec3; 3], normals: &[Vec3; 3]) -> [[f32; 3]; 3] {
+    let [a, b, c] = [0, 1, 2].map(|i| normal_and_facing(rows, positions[i], normals[i]));
     turned([a.0, b.0, c.0], [a.1, b.1, c.1])
 }
 
-/// A unit normal in eye coordinates, and how far it turns towards the eye.
+/// A normal in eye coordinates, and how far it turns towards the eye.
 #[inline(always)]
-pub(crate) fn unit_and_facing(to_eye: &FromWorld, position: Vec3, normal: Vec3) -> ([f32; 3], f32) {
-    let n = unit_normal(to_eye, normal);
-    (n, towards_eye(to_eye, position, n))
+pub(crate) fn normal_and_facing(rows: &NormalRows, position: Vec3, normal: Vec3) -> ([f32; 3], f32) {
+    let n = unit_normal(normal);
+    (rows.apply(n), rows.towards_eye(position, n))
 }
 
 /// The normals of three corners, all turned over if they face away from the eye on the whole.

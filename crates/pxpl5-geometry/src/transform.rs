@@ -3,7 +3,7 @@
 use crate::bin::Binner;
 use crate::clip::{self, ClipVertex, Corner, Guard};
 use crate::lens::Lens;
-use crate::light::EyeLighting;
+use crate::light::{ModelLight, NormalRows};
 use crate::outline::{Outline, SUBPIXELS};
 use crate::screen::{self, LitColours, ScreenTriangle, SurfaceNormals};
 use crate::touch::Touch;
@@ -28,6 +28,7 @@ pub enum Culling {
 pub struct Transform {
     pub(crate) viewport: Viewport,
     pub(crate) to_eye: FromWorld,
+    pub(crate) normals: NormalRows,
     /// `None` where spheres cannot be drawn.
     pub(crate) lens: Option<Lens>,
     pub(crate) to_clip: FromWorld,
@@ -103,11 +104,11 @@ impl ToScreen {
     /// Divides by w and snaps. Only for vertices inside the guard band.
     #[inline(always)]
     pub(crate) fn snap(&self, [x, y, z, w]: [f32; 4]) -> Snapped {
-        let inverse = 1.0 / w;
+        let inverse = screen::reciprocal(w);
         Snapped {
-            x: screen::rounded((x * inverse) * self.scale[0] + self.centre[0]),
-            y: screen::rounded((y * inverse) * self.scale[1] + self.centre[1]),
-            z: screen::depth_fixed(z * inverse),
+            x: screen::rounded_sum((x * inverse) * self.scale[0], self.centre[0]),
+            y: screen::rounded_sum((y * inverse) * self.scale[1], self.centre[1]),
+            z: screen::depth_fixed(f64::from(z) * f64::from(inverse * screen::DEPTH_SCALE)),
         }
     }
 
@@ -125,7 +126,7 @@ impl ToScreen {
         if !cut {
             return Some(self.snap(clip.map(|v| v as f32)));
         }
-        let z = screen::depth_fixed((clip[2] * inverse) as f32);
+        let z = screen::depth_fixed(clip[2] * inverse * f64::from(screen::DEPTH_SCALE));
         Some(Snapped { x: x.round_ties_even() as i32, y: y.round_ties_even() as i32, z })
     }
 }
@@ -174,10 +175,12 @@ impl Transform {
             }
         }
         let to_screen = ToScreen::new(&viewport);
+        let to_eye = FromWorld::to_eye(&model_view);
         Ok(Self {
             viewport,
             to_clip: FromWorld::to_clip(&projection, &model_view),
-            to_eye: FromWorld::to_eye(&model_view),
+            normals: NormalRows::new(&to_eye),
+            to_eye,
             lens: Lens::from_projection(&projection, viewport.grid().width, viewport.frame_lines()),
             guard: to_screen.guard(),
             to_screen,
@@ -225,7 +228,7 @@ impl Transform {
         stats: &mut SetupStats,
         mut sink: impl FnMut(ScreenTriangle<LitColours>),
     ) {
-        let lighting = EyeLighting::new(&self.to_eye, light);
+        let lighting = ModelLight::new(&self.normals, light);
         self.triangle(
             &triangle.positions,
             |i| lighting.corner_colour(triangle, i),
@@ -244,7 +247,7 @@ impl Transform {
         stats: &mut SetupStats,
         mut sink: impl FnMut(ScreenTriangle<SurfaceNormals>),
     ) {
-        let normals = crate::light::facing_normals(&self.to_eye, &triangle.positions, &triangle.normals);
+        let normals = crate::light::facing_normals(&self.normals, &triangle.positions, &triangle.normals);
         let colour = triangle.colours[0];
         self.triangle(
             &triangle.positions,
@@ -303,7 +306,7 @@ impl Transform {
     ) {
         stats.triangles += 1;
         if let Some(whole) = self.assemble(ends.at(s), stats) {
-            let lighting = EyeLighting::new(&self.to_eye, light);
+            let lighting = ModelLight::new(&self.normals, light);
             let colours = whole.order([0, 1, 2]).map(|i| lighting.corner_colour(triangle, i));
             sink(lit_triangle(whole.outline, colours));
         }

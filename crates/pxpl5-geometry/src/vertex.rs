@@ -3,7 +3,7 @@
 //! Triangles that need no clipping are [binned](Transform::touched) and set up [together](crate::TriangleLanes) from them,
 //! exactly as by [`Transform::bin`], [`Transform::gouraud`] and [`Transform::phong`]. The others are left to those.
 
-use crate::light::{self, EyeLighting};
+use crate::light::{self, ModelLight};
 use crate::screen;
 use crate::transform::Snapped;
 use crate::{Light, Transform};
@@ -40,7 +40,7 @@ impl UnclippedTriangle {
     }
 }
 
-/// A component of a unit normal on the grid of [`screen::normal_fixed`], in the expressions' units.
+/// A component of a normal on the grid of [`screen::normal_fixed`], in the expressions' units.
 #[inline(always)]
 fn snapped_component(component: f32) -> f32 {
     screen::normal_value(screen::normal_fixed(component)) - screen::NORMAL_HALF
@@ -61,15 +61,15 @@ impl Transform {
     #[inline]
     #[must_use]
     pub fn vertex_normal(&self, position: Vec3, normal: Vec3) -> VertexSurface {
-        let (unit, facing) = light::unit_and_facing(&self.to_eye, position, normal);
-        VertexSurface { values: unit.map(snapped_component), facing }
+        let (normal, facing) = light::normal_and_facing(&self.normals, position, normal);
+        VertexSurface { values: normal.map(snapped_component), facing }
     }
 
     /// The lit colour of a vertex, for Gouraud shading.
     #[inline]
     #[must_use]
     pub fn vertex_colour(&self, light: &Light, position: Vec3, normal: Vec3, colour: [u8; 3]) -> VertexSurface {
-        let lit = EyeLighting::new(&self.to_eye, light).colour(position, normal, colour);
+        let lit = ModelLight::new(&self.normals, light).colour(position, normal, colour);
         VertexSurface { values: lit.map(|v| screen::colour_value(screen::colour_fixed(v))), facing: 0.0 }
     }
 }

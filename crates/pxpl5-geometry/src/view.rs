@@ -245,13 +245,6 @@ impl FromWorld {
         std::array::from_fn(|i| ((cx[i] * x + cy[i] * y) + cz[i] * z) + ct[i])
     }
 
-    /// Transforms a direction, rows x, y, z.
-    #[inline(always)]
-    pub(crate) fn direction(&self, v: Vec3) -> [f32; 3] {
-        let [cx, cy, cz, _] = &self.columns;
-        std::array::from_fn(|i| (cx[i] * v.x + cy[i] * v.y) + cz[i] * v.z)
-    }
-
     /// The greatest factor by which an axis is stretched.
     pub(crate) fn scale(&self) -> f64 {
         let squares = self.columns[..3].iter().map(|&[x, y, z, _]| {

@@ -46,7 +46,7 @@ fn nan_infinite_and_huge_coordinates_are_counted_and_never_drawn() {
 #[test]
 fn nan_normals_give_a_colour_and_no_panic() {
     let mut bad = triangle(clockwise());
-    bad.normals = [Vec3::NAN, Vec3::ZERO, Vec3::splat(f32::MAX)];
+    bad.normals = [Vec3::NAN, Vec3::ZERO, Vec3::splat(f32::INFINITY)];
     let mut out = Vec::new();
     let mut stats = SetupStats::default();
     transform(Culling::None).gouraud(&bad, &Light::HEADLIGHT, &mut stats, |t| out.push(t));

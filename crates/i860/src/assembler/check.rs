@@ -7,24 +7,107 @@
 //! * no branch in the slot of a delayed branch; a `call` slot does not write r1
 //! * a pipelined multiply does not have its first source as destination
 //! * `bla` has two different registers
+//! * no result is taken out of a pipe that a scalar operation has gone through since it was put in
 //!
 //! Pairing is followed in address order, as a reader would; a program that jumps into the middle of a dual stretch
 //! is on its own.
 
 use crate::decoded::float_mask;
+use crate::dual_operation::{MULTIPLIER_ROUTES, ROUTES, Source};
 use crate::instruction::{Flags, Instruction, Op};
 use crate::state::Mode;
+use std::collections::BTreeSet;
 
 type Located = (u32, usize, Instruction);
 
-/// All broken rules, as source line and reason.
-pub(super) fn faults(program: &[Located]) -> Vec<(usize, String)> {
+/// All broken rules, as source line and reason; `labels` are the addresses that code elsewhere may jump to.
+pub(super) fn faults(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, String)> {
     let mut faults: Vec<(usize, String)> = program
         .iter()
         .filter_map(|(address, line, i)| alone(*address, i).map(|reason| (*line, reason.to_owned())))
         .collect();
     faults.extend(program.windows(2).filter_map(slot));
     faults.extend(pairs(program));
+    faults.extend(lost_results(program, labels));
+    faults
+}
+
+/// Operations put into a pipe since a scalar one went through it; `None` where what it holds is not known.
+#[derive(Clone, Copy, Default)]
+struct Refilled(Option<usize>);
+
+impl Refilled {
+    /// Whether the result that an operation of a pipe with so many stages takes out was lost.
+    fn has_lost(self, stages: usize) -> bool {
+        self.0.is_some_and(|operations| operations < stages)
+    }
+
+    fn push(&mut self) {
+        self.0 = self.0.map(|operations| operations + 1);
+    }
+}
+
+/// What an instruction does with the pipes of adder and multiplier, in this order.
+#[derive(Clone, Copy, Default)]
+struct PipeUse {
+    scalar: [bool; 2],
+    pushes: [bool; 2],
+    takes: [bool; 2],
+}
+
+impl PipeUse {
+    fn of(i: &Instruction) -> PipeUse {
+        match i.op {
+            Op::DualOp => PipeUse::of_dual_operation(i),
+            _ if !i.is_floating() => PipeUse::default(),
+            Op::Frcp | Op::Frsqr | Op::Fmlow => PipeUse { scalar: [false, true], ..PipeUse::default() },
+            _ => PipeUse::of_operation(i, [i.uses_adder(), i.uses_multiplier()]),
+        }
+    }
+
+    fn of_operation(i: &Instruction, units: [bool; 2]) -> PipeUse {
+        match i.has(Flags::PIPELINED) {
+            true => PipeUse { scalar: [false; 2], pushes: units, takes: units.map(|unit| unit && i.dest >= 2) },
+            false => PipeUse { scalar: units, ..PipeUse::default() },
+        }
+    }
+
+    fn of_dual_operation(i: &Instruction) -> PipeUse {
+        let to_adder = i.has(Flags::PIPELINED);
+        let route = &(if to_adder { &ROUTES } else { &MULTIPLIER_ROUTES })[(i.imm & 15) as usize];
+        let uses = |source| route.multiplier.contains(&source) || route.adder.contains(&source);
+        let is_kept = i.dest >= 2;
+        let takes = [uses(Source::A) || is_kept && to_adder, uses(Source::M) || is_kept && !to_adder];
+        PipeUse { scalar: [false; 2], pushes: [true; 2], takes }
+    }
+}
+
+/// Results taken out of a pipe behind a scalar operation, as far as the code is straight.
+fn lost_results(program: &[Located], labels: &BTreeSet<u32>) -> Vec<(usize, String)> {
+    let mut faults = Vec::new();
+    let mut pipes = [Refilled::default(); 2];
+    for (address, line, i) in program {
+        if labels.contains(address) || i.is_branch() {
+            pipes = [Refilled::default(); 2];
+        }
+        let used = PipeUse::of(i);
+        let double = i.has(Flags::SOURCE_DOUBLE);
+        for (unit, stages) in [(0, 3), (1, if double { 2 } else { 3 })] {
+            if used.takes[unit] && pipes[unit].has_lost(stages) {
+                let name = ["adder", "multiplier"][unit];
+                faults.push((
+                    *line,
+                    format!("takes a result out of the {name}'s pipe that a scalar operation destroyed"),
+                ));
+            }
+            if used.pushes[unit] {
+                pipes[unit].push();
+            }
+            if used.scalar[unit] {
+                pipes[unit] = Refilled(Some(0));
+            }
+        }
+    }
     faults
 }
 

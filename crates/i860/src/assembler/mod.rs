@@ -289,7 +289,8 @@ impl Assembler<'_> {
                 Err(reason) => self.fault(placed.line, reason),
             }
         }
-        for (line, reason) in check::faults(&instructions) {
+        let labels = self.labels.iter().map(|(_, address)| *address).collect();
+        for (line, reason) in check::faults(&instructions, &labels) {
             self.fault(line, reason);
         }
         self.errors.sort_by_key(|e| e.line);

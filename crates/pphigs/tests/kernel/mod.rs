@@ -4,7 +4,7 @@
 #![allow(dead_code, reason = "the test and the example each use a part")]
 
 use glam::{Mat4, Vec3};
-use i860::{Config, Cpu, Outcome, Profile, Program, Ram, assemble};
+use i860::{Config, Cpu, Outcome, Profile, Program, Ram, assemble, linear};
 use pxpl5_geometry::kernel::{Heads, Kernel, KernelSurface, Schedule, display_list_words};
 use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 use pxpl5_renderer::{Command, Layout};
@@ -32,7 +32,8 @@ pub(crate) const fn frame(schedule: Schedule) -> Kernel {
 
 /// The kernel, assembled with its own options.
 pub(crate) fn program(kernel: Kernel) -> Program {
-    assemble("kernel", CODE, &kernel.source()).unwrap_or_else(|e| panic!("{e}"))
+    let source = linear::schedule(&kernel.source()).unwrap_or_else(|e| panic!("{e}"));
+    assemble("kernel", CODE, &source).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A view over a frame of 640 x 480.

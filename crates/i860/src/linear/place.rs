@@ -1,0 +1,589 @@
+//! The scheduler: operations into pairs, clock by clock.
+
+use super::machine::{Unit, Width};
+use super::parse::{Operation, Source};
+
+/// Stages of the adder's pipe, and of the multiplier's with single sources.
+const STAGES: usize = 3;
+/// Stages of the multiplier's pipe with double sources.
+const DOUBLE_STAGES: usize = 2;
+/// Clocks in which nothing goes to memory behind a prefetch: what a line takes.
+const PREFETCH: u32 = 18;
+/// Stores that wait for the bus at most, and clocks that one takes it.
+const STORES: u32 = 2;
+const STORE: u32 = 3;
+/// Clocks without progress after which a schedule is given up.
+const PATIENCE: u32 = 80;
+
+/// How a stretch is scheduled.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settings {
+    /// Lines from the first one that has not issued that may issue.
+    pub(super) window: usize,
+    /// How much more urgent an operation must be than what a drain would bring out.
+    pub(super) eagerness: u32,
+    /// Registers of either file that only the first line which has not issued may take.
+    pub(super) reserve: usize,
+    /// Registers more for each 64 lines behind that one, so that what is far ahead waits when they run short.
+    pub(super) slope: usize,
+    /// Start of a sequence that shakes the priorities; 0 leaves them.
+    pub(super) shake: u32,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { window: 40, eagerness: 20, reserve: 2, slope: 10, shake: 0 }
+    }
+}
+
+/// The pairs of a stretch, floating-point and core half.
+pub(super) type Pairs = Vec<(String, String)>;
+
+/// Gives every operation its clock and every value its registers.
+///
+/// # Errors
+/// Where the values do not fit the registers.
+pub(super) fn pairs_of(operations: &[Operation], pool: &[u8], settings: Settings) -> Result<Pairs, String> {
+    Placer::new(operations, pool, settings).run()
+}
+
+/// Where a value is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    Nowhere,
+    InPipe,
+    /// In registers from this one on, to be read from a clock on.
+    Ready {
+        at: u32,
+        register: u8,
+    },
+    Gone,
+}
+
+/// One file of registers: the clock from which each may be written, `None` while it holds a value.
+#[derive(Clone, Debug)]
+struct File {
+    free_from: Vec<Option<u32>>,
+    usable: Vec<bool>,
+}
+
+impl File {
+    fn new(usable: impl Fn(usize) -> bool) -> File {
+        File { free_from: vec![Some(0); 32], usable: (0..32).map(usable).collect() }
+    }
+
+    fn is_free(&self, n: usize, now: u32) -> bool {
+        self.usable[n] && self.free_from[n].is_some_and(|from| from <= now)
+    }
+
+    fn free(&self, now: u32) -> usize {
+        (0..32).filter(|n| self.is_free(*n, now)).count()
+    }
+
+    /// Registers for a value: for one alone, rather beside a register in use.
+    fn find(&self, count: usize, now: u32, but: Option<u8>) -> Option<u8> {
+        let fits = |first: &usize| (*first..first + count).all(|n| self.is_free(n, now) && Some(n as u8) != but);
+        let mut starts = (0..32).step_by(count).filter(fits);
+        let start = match count {
+            1 => {
+                let all: Vec<usize> = starts.collect();
+                let lonely = all.iter().copied().find(|n| !self.is_free(n ^ 1, now));
+                lonely.or_else(|| all.first().copied())
+            }
+            2 => {
+                let all: Vec<usize> = starts.collect();
+                let lonely = all.iter().copied().find(|n| (n & !3..(n & !3) + 4).any(|m| !self.is_free(m, now)));
+                lonely.or_else(|| all.first().copied())
+            }
+            _ => starts.next(),
+        };
+        start.map(|n| n as u8)
+    }
+
+    fn take(&mut self, first: u8, count: usize) {
+        (usize::from(first)..usize::from(first) + count).for_each(|n| self.free_from[n] = None);
+    }
+
+    fn give_back(&mut self, first: u8, count: usize, from: u32) {
+        (usize::from(first)..usize::from(first) + count).for_each(|n| self.free_from[n] = Some(from));
+    }
+}
+
+struct Placer<'a> {
+    operations: &'a [Operation],
+    settings: Settings,
+    heights: Vec<u32>,
+    uses_left: Vec<usize>,
+    places: Vec<Place>,
+    /// Clock of issue.
+    issued: Vec<Option<u32>>,
+    now: u32,
+    /// First line that has not issued.
+    first: usize,
+    /// Operations that a dual operation may not follow, since it would read what a seed has destroyed.
+    after_seed: usize,
+    /// Values in the pipes, the oldest first; `None` for what nobody waits for.
+    adder: Vec<Option<usize>>,
+    multiplier: Vec<Option<usize>>,
+    multiplies_double: bool,
+    multiplier_free: u32,
+    /// First register and number of what the floating-point operation of the clock before wrote, for row 9.
+    last_result: Option<(u8, usize)>,
+    last_result_at: u32,
+    last_store: Option<u32>,
+    bus_free: u32,
+    memory_free: u32,
+    floats: File,
+    integers: File,
+}
+
+impl<'a> Placer<'a> {
+    fn new(operations: &'a [Operation], pool: &[u8], settings: Settings) -> Placer<'a> {
+        let mut uses_left = vec![0; operations.len()];
+        operations.iter().flat_map(Operation::reads).for_each(|n| uses_left[n] += 1);
+        Placer {
+            operations,
+            settings,
+            heights: heights(operations, settings.shake),
+            uses_left,
+            places: vec![Place::Nowhere; operations.len()],
+            issued: vec![None; operations.len()],
+            now: 0,
+            first: 0,
+            after_seed: 0,
+            adder: vec![None; STAGES],
+            multiplier: vec![None; STAGES],
+            multiplies_double: false,
+            multiplier_free: 0,
+            last_result: None,
+            last_result_at: 0,
+            last_store: None,
+            bus_free: 0,
+            memory_free: 0,
+            floats: File::new(|n| n >= 2),
+            integers: File::new(|n| pool.contains(&(n as u8))),
+        }
+    }
+
+    fn run(mut self) -> Result<Pairs, String> {
+        let mut pairs = Vec::new();
+        let mut progress = 0;
+        while self.first < self.operations.len() || self.is_something_in_pipes() {
+            let before = self.issued.iter().flatten().count();
+            let floating = self.floating_half();
+            let core = self.core_half();
+            if self.issued.iter().flatten().count() > before {
+                progress = self.now;
+            }
+            if self.now > progress + PATIENCE {
+                let line = self.operations[self.first.min(self.operations.len() - 1)].name.mnemonic;
+                return Err(format!("the values do not fit the registers (operation {}, {line})", self.first));
+            }
+            pairs.push((floating, core));
+            self.now += 1;
+            self.move_on();
+        }
+        Ok(pairs)
+    }
+
+    fn is_something_in_pipes(&self) -> bool {
+        self.adder.iter().chain(&self.multiplier).any(Option::is_some)
+    }
+
+    /// Past what has issued.
+    fn move_on(&mut self) {
+        while self.first < self.operations.len() && self.issued[self.first].is_some() {
+            self.first += 1;
+        }
+    }
+
+    // ---- which operation
+
+    fn candidates(&self, floating: bool) -> Vec<usize> {
+        let window = self.first..self.operations.len().min(self.first + self.settings.window);
+        let mut all: Vec<usize> = window
+            .filter(|n| self.issued[*n].is_none() && self.operations[*n].name.unit.is_floating() == floating)
+            .filter(|n| self.can_issue(*n, *n == self.first))
+            .collect();
+        all.sort_by_key(|n| (std::cmp::Reverse(self.heights[*n]), *n));
+        all
+    }
+
+    fn can_issue(&self, n: usize, is_oldest: bool) -> bool {
+        let operation = &self.operations[n];
+        let awaited = operation.after.iter().all(|store| self.issued[*store].is_some_and(|at| at + 2 <= self.now));
+        awaited
+            && operation.reads().all(|value| self.is_ready(value))
+            && self.unit_accepts(n)
+            && self.has_room(n, is_oldest)
+    }
+
+    fn is_ready(&self, value: usize) -> bool {
+        matches!(self.places[value], Place::Ready { at, .. } if at <= self.now)
+    }
+
+    fn unit_accepts(&self, n: usize) -> bool {
+        let operation = &self.operations[n];
+        let base_is_command = matches!(&operation.address, Some((_, Source::Text(base))) if base == "r18");
+        let follows_store = self.last_store.is_some_and(|at| at + 1 == self.now);
+        match operation.name.unit {
+            Unit::Adder => self.can_push(&self.adder, STAGES, None),
+            Unit::Multiplier { double } => self.multiplier_accepts(n, double),
+            Unit::Seed => self.multiplier.iter().all(Option::is_none),
+            Unit::Graphics | Unit::Integer => true,
+            Unit::Load => self.memory_free <= self.now && !follows_store,
+            Unit::Prefetch => self.memory_free <= self.now && !follows_store && self.bus_free <= self.now,
+            Unit::Store => {
+                let room = !base_is_command || self.bus_free < self.now + STORES * STORE;
+                self.memory_free <= self.now && room
+            }
+        }
+    }
+
+    fn multiplier_accepts(&self, n: usize, double: bool) -> bool {
+        let mixes = double != self.multiplies_double && self.multiplier.iter().any(Option::is_some);
+        self.multiplier_free <= self.now && !mixes && {
+            let first = self.first_source_register(n);
+            let stages = if double { DOUBLE_STAGES } else { STAGES };
+            self.can_push(&self.multiplier, stages, first) && !self.waits_for_first_source(n)
+        }
+    }
+
+    /// Whether what leaves a pipe finds registers, other than one that must not be written.
+    fn can_push(&self, pipe: &[Option<usize>], stages: usize, but: Option<u8>) -> bool {
+        match pipe[STAGES - stages] {
+            Some(value) => self.floats.find(self.width(value).registers(), self.now, but).is_some(),
+            None => true,
+        }
+    }
+
+    fn width(&self, value: usize) -> Width {
+        self.operations[value].name.result.unwrap_or(Width::Integer)
+    }
+
+    /// Row 9: the first source of a multiplication must not be the result of the operation before.
+    fn waits_for_first_source(&self, n: usize) -> bool {
+        let sources = &self.operations[n].sources;
+        self.is_last_result(&sources[0]) && self.is_last_result(&sources[1])
+    }
+
+    fn is_last_result(&self, source: &Source) -> bool {
+        let Some((first, count)) = self.last_result else { return false };
+        let fresh = self.last_result_at + 1 == self.now;
+        fresh && self.register(source).is_some_and(|r| (first..first + count as u8).contains(&r))
+    }
+
+    fn register(&self, source: &Source) -> Option<u8> {
+        let Source::Value(value, part) = source else { return None };
+        match self.places[*value] {
+            Place::Ready { register, .. } => Some(register + part.unwrap_or(0)),
+            _ => None,
+        }
+    }
+
+    /// The register that a multiplication will have as its first source.
+    fn first_source_register(&self, n: usize) -> Option<u8> {
+        let sources = &self.operations[n].sources;
+        self.register(&sources[usize::from(self.is_last_result(&sources[0]))])
+    }
+
+    /// Whether there are registers for its result, beside those for what is in the pipes; the oldest line may take the last ones.
+    fn has_room(&self, n: usize, is_oldest: bool) -> bool {
+        let Some(width) = self.operations[n].name.result else { return true };
+        let count = width.registers();
+        if width == Width::Integer {
+            let spare = self.spare(n);
+            return self.operations[n].register.is_some()
+                || self.frees_integer(n)
+                || self.integers.free(self.now) > spare;
+        }
+        let piped = matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. });
+        let coming: usize =
+            self.adder.iter().chain(&self.multiplier).flatten().map(|value| self.width(*value).registers()).sum();
+        let free = self.floats.free(self.now);
+        let fits = piped || self.floats.find(count, self.now, None).is_some();
+        let spare = self.spare(n);
+        fits && (free >= coming + count + spare || piped && is_oldest)
+    }
+
+    /// Registers that must be left to lines before one.
+    fn spare(&self, n: usize) -> usize {
+        let behind = n - self.first;
+        if behind == 0 { 0 } else { self.settings.reserve + behind * self.settings.slope / 64 }
+    }
+
+    // ---- floating-point half
+
+    fn floating_half(&mut self) -> String {
+        let best = self.candidates(true).into_iter().next();
+        let drain = self.most_urgent_drain();
+        match (best, drain) {
+            (Some(n), Some((height, unit))) if height > self.heights[n] + self.settings.eagerness => self.drain(unit),
+            (Some(n), _) => self.issue_floating(n),
+            (None, Some((_, unit))) => self.drain(unit),
+            (None, None) => "fnop".to_owned(),
+        }
+    }
+
+    /// The pipe whose values are most urgent, if pushing it is possible.
+    fn most_urgent_drain(&self) -> Option<(u32, Unit)> {
+        let double = self.multiplies_double;
+        let stages = if double { DOUBLE_STAGES } else { STAGES };
+        let adder = (self.urgency(&self.adder), Unit::Adder, self.can_push(&self.adder, STAGES, None));
+        let free = self.multiplier_free <= self.now;
+        let multiplier = (
+            self.urgency(&self.multiplier),
+            Unit::Multiplier { double },
+            free && self.can_push(&self.multiplier, stages, None),
+        );
+        [adder, multiplier]
+            .into_iter()
+            .filter(|(_, _, possible)| *possible)
+            .filter_map(|(height, unit, _)| Some((height?, unit)))
+            .max_by_key(|(height, _)| *height)
+    }
+
+    /// The longest way to the end from a value in a pipe.
+    fn urgency(&self, pipe: &[Option<usize>]) -> Option<u32> {
+        pipe.iter().flatten().map(|n| self.heights[*n].saturating_sub(self.operations[*n].name.latency)).max()
+    }
+
+    fn drain(&mut self, unit: Unit) -> String {
+        let (mnemonic, dest) = match unit {
+            Unit::Adder => {
+                let dest = self.push_adder(None);
+                (self.with_multiplier("pfadd.ss"), dest)
+            }
+            _ => {
+                let double = self.multiplies_double;
+                let dest = self.push_multiplier(None, double, None);
+                (self.with_adder(if double { "pfmul.dd" } else { "pfmul.ss" }), dest)
+            }
+        };
+        format!("{mnemonic} f0, f0, {dest}")
+    }
+
+    fn issue_floating(&mut self, n: usize) -> String {
+        let operation = &self.operations[n];
+        let mnemonic = operation.name.mnemonic;
+        let swapped =
+            matches!(operation.name.unit, Unit::Multiplier { .. }) && self.is_last_result(&operation.sources[0]);
+        let mut texts: Vec<String> = operation.sources.iter().map(|source| self.floating_text(source)).collect();
+        if swapped {
+            texts.swap(0, 1);
+        }
+        let (mnemonic, dest) = match operation.name.unit {
+            Unit::Adder => {
+                let dest = self.push_adder(Some(n));
+                (self.with_multiplier(mnemonic), dest)
+            }
+            Unit::Multiplier { double } => {
+                let first = self.first_source_register(n);
+                let dest = self.push_multiplier(Some(n), double, first);
+                (self.with_adder(mnemonic), dest)
+            }
+            unit => {
+                let dest = self.place(n, self.now + 2);
+                self.last_result = None;
+                if unit == Unit::Seed {
+                    self.after_seed = STAGES;
+                }
+                (mnemonic, dest)
+            }
+        };
+        self.finish_issue(n);
+        format!("{mnemonic} {}, {dest}", texts.join(", "))
+    }
+
+    /// An addition of singles as a dual operation, which pushes the multiplier's pipe too, if that loses nothing.
+    fn with_multiplier(&mut self, mnemonic: &'static str) -> &'static str {
+        let dual = match mnemonic {
+            "pfadd.ss" => "ra1p2.ss",
+            "pfsub.ss" => "ra1s2.ss",
+            _ => return mnemonic,
+        };
+        let waits = self.multiplier.iter().any(Option::is_some) && self.multiplier[0].is_none();
+        if self.multiplies_double || !waits || self.multiplier_free > self.now {
+            return mnemonic;
+        }
+        self.multiplier.rotate_left(1);
+        dual
+    }
+
+    /// A multiplication as a dual operation, which pushes the adder's pipe too, if that loses nothing.
+    fn with_adder(&mut self, mnemonic: &'static str) -> &'static str {
+        let dual = match mnemonic {
+            "pfmul.ss" => "mm12mpm.ss",
+            "pfmul.sd" => "mm12mpm.sd",
+            "pfmul.dd" => "mm12mpm.dd",
+            _ => return mnemonic,
+        };
+        if self.after_seed > 0 {
+            self.after_seed -= 1;
+            return mnemonic;
+        }
+        if self.adder[0].is_some() || self.adder.iter().all(Option::is_none) {
+            return mnemonic;
+        }
+        self.adder.rotate_left(1);
+        dual
+    }
+
+    fn floating_text(&self, source: &Source) -> String {
+        match source {
+            Source::Text(text) => text.clone(),
+            value => format!("f{}", self.register(value).unwrap_or(0)),
+        }
+    }
+
+    fn push_adder(&mut self, n: Option<usize>) -> String {
+        let leaving = self.adder.remove(0);
+        self.adder.push(n);
+        self.leave(leaving, None)
+    }
+
+    /// With double sources the first of three stages is not used.
+    fn push_multiplier(&mut self, n: Option<usize>, double: bool, first_source: Option<u8>) -> String {
+        let at = if double { STAGES - DOUBLE_STAGES } else { 0 };
+        self.multiplies_double = double;
+        let leaving = self.multiplier.remove(at);
+        self.multiplier.push(n);
+        if double {
+            self.multiplier_free = self.now + 2;
+        }
+        self.leave(leaving, first_source)
+    }
+
+    /// A value leaves a pipe for registers; the text of the destination.
+    fn leave(&mut self, value: Option<usize>, but: Option<u8>) -> String {
+        self.last_result = None;
+        let Some(value) = value else { return "f0".to_owned() };
+        let count = self.width(value).registers();
+        let Some(register) = self.floats.find(count, self.now, but) else { return "f0".to_owned() };
+        self.floats.take(register, count);
+        self.places[value] = Place::Ready { at: self.now + 1, register };
+        self.last_result = Some((register, count));
+        self.last_result_at = self.now;
+        format!("f{register}")
+    }
+
+    // ---- core half
+
+    fn core_half(&mut self) -> String {
+        let Some(n) = self.candidates(false).into_iter().next() else { return "nop".to_owned() };
+        let operation = &self.operations[n];
+        let mnemonic = operation.name.mnemonic;
+        let mut texts: Vec<String> = operation.sources.iter().map(|source| self.core_text(source)).collect();
+        if let Some((offset, base)) = &operation.address {
+            texts.push(format!("{offset}({})", self.core_text(base)));
+        }
+        self.note_memory(n);
+        if operation.name.unit == Unit::Integer {
+            self.release_integers(n);
+        }
+        let dest = operation.name.result.is_some().then(|| self.place(n, self.now + operation.name.latency));
+        let dest = if operation.name.unit == Unit::Prefetch { Some("r0".to_owned()) } else { dest };
+        self.finish_issue(n);
+        texts.extend(dest);
+        format!("{mnemonic} {}", texts.join(", "))
+    }
+
+    /// Whether an integer operation is the last to read one of its sources.
+    fn frees_integer(&self, n: usize) -> bool {
+        let mut read = self.operations[n].reads();
+        self.operations[n].name.unit == Unit::Integer
+            && read.any(|value| self.width(value) == Width::Integer && self.uses_left[value] == 1)
+    }
+
+    /// An integer operation may write over what it is the last to read.
+    fn release_integers(&mut self, n: usize) {
+        let read: Vec<usize> = self.operations[n].reads().collect();
+        for value in read {
+            let is_last = self.uses_left[value] == self.operations[n].reads().filter(|v| *v == value).count();
+            if let (Place::Ready { register, .. }, Width::Integer, true) =
+                (self.places[value], self.width(value), is_last)
+            {
+                self.integers.give_back(register, 1, self.now);
+                self.places[value] = Place::Gone;
+            }
+        }
+    }
+
+    fn core_text(&self, source: &Source) -> String {
+        let Source::Value(value, _) = source else { return self.floating_text(source) };
+        let file = if self.width(*value) == Width::Integer { 'r' } else { 'f' };
+        format!("{file}{}", self.register(source).unwrap_or(0))
+    }
+
+    fn note_memory(&mut self, n: usize) {
+        let operation = &self.operations[n];
+        match operation.name.unit {
+            Unit::Store => {
+                self.last_store = Some(self.now);
+                if matches!(&operation.address, Some((_, Source::Text(base))) if base == "r18") {
+                    self.bus_free = self.bus_free.max(self.now) + STORE;
+                }
+            }
+            Unit::Prefetch => self.memory_free = self.now + PREFETCH,
+            _ => {}
+        }
+    }
+
+    /// Gives a result its registers.
+    fn place(&mut self, n: usize, at: u32) -> String {
+        let width = self.width(n);
+        let (file, letter) = match width {
+            Width::Integer => (&mut self.integers, 'r'),
+            _ => (&mut self.floats, 'f'),
+        };
+        if let Some(register) = self.operations[n].register {
+            return format!("r{register}");
+        }
+        let register = file.find(width.registers(), self.now, None).unwrap_or(0);
+        file.take(register, width.registers());
+        self.places[n] = Place::Ready { at, register };
+        format!("{letter}{register}")
+    }
+
+    /// Registers that nobody will read again are free from the next clock on, those that were stored one clock later (row 24).
+    fn finish_issue(&mut self, n: usize) {
+        self.issued[n] = Some(self.now);
+        if matches!(self.operations[n].name.unit, Unit::Adder | Unit::Multiplier { .. }) {
+            self.places[n] = Place::InPipe;
+        }
+        let stores = self.operations[n].name.unit == Unit::Store;
+        let from = self.now + if stores { 2 } else { 1 };
+        let read: Vec<usize> = self.operations[n].reads().collect();
+        for value in read {
+            self.uses_left[value] -= 1;
+            if self.uses_left[value] == 0 {
+                self.forget(value, from);
+            }
+        }
+    }
+
+    fn forget(&mut self, value: usize, from: u32) {
+        let width = self.width(value);
+        if let Place::Ready { register, .. } = self.places[value] {
+            let file = if width == Width::Integer { &mut self.integers } else { &mut self.floats };
+            file.give_back(register, width.registers(), from);
+        }
+        self.places[value] = Place::Gone;
+    }
+}
+
+/// The longest way from each operation to the end, in clocks; shaken a little.
+fn heights(operations: &[Operation], shake: u32) -> Vec<u32> {
+    let mut heights = vec![0; operations.len()];
+    let mut state = u64::from(shake);
+    for n in (0..operations.len()).rev() {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let noise = if shake == 0 { 0 } else { (state >> 40) as u32 % (6 << (shake % 4)) };
+        heights[n] += operations[n].name.latency + noise;
+        let height = heights[n];
+        for before in operations[n].reads().chain(operations[n].after.iter().copied()) {
+            heights[before] = heights[before].max(height);
+        }
+    }
+    heights
+}

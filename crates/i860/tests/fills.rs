@@ -1,0 +1,128 @@
+//! What happens while memory is busy: fills of instruction lines beside freezes, stores and reads of other rows; loads of 16
+//! bytes; the address pipe. Each program is small enough to be counted by hand, and the count stands beside it.
+//!
+//! Memory of the tests: 11 clocks to the first 8 bytes where a row is opened, 8 in the open row, then 2 for each 8 bytes
+//! more; a write takes 9 or 3. A line of 8 instructions that comes in at clock 0 is there in pairs at 11, 13, 15 and 17.
+
+use i860::timing::{DramTiming, Freeze, FreezeRules};
+use i860::{Config, Cpu, Outcome, Ram, assemble};
+
+const CODE: u32 = 0x1000;
+/// In another row of the memory than the code.
+const DATA: u32 = 0x8000;
+
+fn dram() -> DramTiming {
+    DramTiming {
+        first_hit: 8,
+        first_miss: 11,
+        next: 2,
+        write_hit: 3,
+        write_miss: 9,
+        page_bytes: 4096,
+        refresh_interval: 0,
+        dma_interval: 0,
+        ..DramTiming::PAPERS
+    }
+}
+
+fn clocks(rows: &[Freeze], source: &str) -> u64 {
+    let program = assemble("fills.s", CODE, &format!("{source}\nend:")).unwrap_or_else(|e| panic!("{e}"));
+    let freezes = rows.iter().fold(FreezeRules::none(), |rules, row| rules.with(*row));
+    let mut ram = Ram::new(0, 0x20000);
+    ram.load(CODE, &program.bytes).expect("fits");
+    let mut cpu = Cpu::at(Config { freezes, dram: dram(), ..Config::cycle() }, CODE);
+    cpu.state.r[4] = DATA;
+    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 1000), Outcome::Stopped, "{source}");
+    assert_eq!(cpu.profile().clocks(), cpu.clocks(), "every clock has a cause");
+    cpu.clocks()
+}
+
+/// The list, 1: "+ remaining READY#s of the block if a jump or another freeze occurs meanwhile".
+#[test]
+fn row_1_another_freeze_while_a_line_comes_in_waits_for_the_rest_of_it() {
+    let source = "adds 1, r5, r5\nbc end\nnop\nnop\nnop\nnop\nnop\nnop";
+    // The first word at 11, adds 12; bc would wait until 13, so it waits for the line, 17; bc 18; six more 24.
+    assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::ConditionUse], source), 24);
+    // Without the freeze: adds 12, bc 13, then the words of 13, 15 and 17: 15, 17, 19.
+    assert_eq!(clocks(&[Freeze::InstructionMiss], source), 19);
+    // Behind the line's last word the freeze is what it always is: six nops until 17, adds 18, bc waits until 19: 20.
+    let late = "nop\nnop\nnop\nnop\nnop\nnop\nadds 1, r5, r5\nbc end";
+    assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::ConditionUse], late), 20);
+}
+
+/// A constant part of a row that is paid at the end of an instruction is such a freeze too.
+#[test]
+fn row_1_a_branch_within_the_line_waits_for_the_rest_of_it() {
+    let source = "bnc on\nnop\nnop\non: nop\nnop\nnop\nnop\nnop";
+    // The first word at 11, bnc 12, taken 13: waits until 17; five nops more.
+    assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::BranchTaken], source), 22);
+}
+
+/// The data of a read occupy the bus until the last of them, so that a write comes after it.
+#[test]
+fn a_store_waits_for_the_last_word_of_a_fill() {
+    let source = "st.l r5, 0(r4)\nst.l r5, 8(r4)\nst.l r5, 16(r4)\nst.l r5, 24(r4)\nnop\nnop\nnop\nnop";
+    // The first store is requested at 12 and begins behind the line, 17; it opens a row: 26. The fourth issues at 15 and
+    // waits for it to leave and one more, 27; four nops.
+    assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::StorePipeFull], source), 31);
+}
+
+/// A row cannot be closed while its data are still being read.
+#[test]
+fn a_read_of_another_row_waits_for_the_last_word_of_a_fill() {
+    let source = "ld.l 0(r4), r5\nadds r5, r0, r6\nnop\nnop\nnop\nnop\nnop\nnop";
+    // Requested at 12, begun at 17, there at 28; its user waits one more, 29, and issues: 30. Six nops.
+    assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::LoadMissUse], source), 36);
+}
+
+/// The list, 3: the wait is for the data, and a bus of 64 bits brings 16 bytes in two transfers.
+#[test]
+fn row_3_a_miss_of_16_bytes_waits_for_both_transfers() {
+    // Issue 1, first 8 bytes 12, next 14, one more by the list.
+    assert_eq!(clocks(&[Freeze::FloatingLoadMiss], "fld.q 0(r4), f8"), 15);
+    assert_eq!(clocks(&[Freeze::FloatingLoadMiss], "fld.d 0(r4), f8"), 13);
+}
+
+/// The list, 16, address pipe full: "until next address can issue", whoever issues it.
+#[test]
+fn row_16_holds_a_store_behind_three_requests() {
+    let source = "pfld.d 8(r4)++, f8\npfld.d 8(r4)++, f8\npfld.d 8(r4)++, f8\nst.l r5, 0(r4)";
+    // Requests at 1, 2, 3; the first is there at 12. The store has issued at 4.
+    assert_eq!(clocks(&[Freeze::AddressPipeFull], source), 12);
+}
+
+#[test]
+fn row_16_holds_an_instruction_fill_behind_three_requests() {
+    let loads = "pfld.d 8(r7)++, f8\n".repeat(3);
+    let source = format!("mov 0x1800, r7\nnop\nnop\nnop\nnop\n{loads}nop");
+    // mov and nops until 16; loads of the open row requested at 17, 18, 19 are there at 25, 27, 29. The next line is
+    // wanted at 19. Without the row its first word follows them on the bus, 31; with it, it is requested at 25: 33.
+    assert_eq!(clocks(&[Freeze::InstructionMiss], &source), 32);
+    assert_eq!(clocks(&[Freeze::InstructionMiss, Freeze::AddressPipeFull], &source), 34);
+}
+
+/// Adds 1 + 2 in the adder's pipe, then does something, then takes the sum out.
+fn sum_behind(operation: &str) -> f32 {
+    let source = format!(
+        "orh 0x3F80, r0, r5\nixfr r5, f2\norh 0x4000, r0, r5\nixfr r5, f3\n\
+         pfadd.ss f2, f3, f0\npfmul.ss f2, f3, f0\nl: {operation}\nm: pfadd.ss f0, f0, f0\npfadd.ss f0, f0, f0\n\
+         pfadd.ss f0, f0, f10\nend:"
+    );
+    let program = assemble("pipes.s", CODE, &source).unwrap_or_else(|e| panic!("{e}"));
+    let mut ram = Ram::new(0, 0x20000);
+    ram.load(CODE, &program.bytes).expect("fits");
+    let mut cpu = Cpu::at(Config::cycle(), CODE);
+    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 1000), Outcome::Stopped);
+    f32::from_bits(cpu.state.f[10])
+}
+
+/// The manual: a scalar operation goes through the pipe of its unit, and what was in it is lost.
+#[test]
+fn a_scalar_operation_destroys_what_the_pipe_of_its_unit_holds() {
+    for keeps in ["nop", "fmul.ss f2, f3, f4", "frcp.ss f2, f4", "fiadd.ss f2, f3, f4"] {
+        assert_eq!(sum_behind(keeps).to_bits(), 3f32.to_bits(), "{keeps}");
+    }
+    for destroys in ["fadd.ss f2, f3, f4", "fsub.ss f2, f3, f4", "famov.ss f2, f4", "fix.sd f2, f4"] {
+        assert!(sum_behind(destroys).is_nan(), "{destroys}");
+    }
+}

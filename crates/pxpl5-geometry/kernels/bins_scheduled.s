@@ -1,0 +1,111 @@
+// As bins.s for frames, without a multiplication: each edge's greatest value over a region from that over the one before.
+//
+// In: low and high x, low and high y in r24 to r27; edges in the command at r18; table of bins r19.
+// Out: number of regions r22. Changes r4 to r15, r23 to r31.
+
+// a and b times 128, and the greatest value over region 0, 0: its right side where a > 0, its last line where b > 0
+        .macro  greatest k, a, b, c
+        edgeword \k, 0, \a
+        edgeword \k, 1, \b
+        edgeword \k, 2, \c
+        shra    31, \a, r23
+        andnot  r23, \a, r23
+        shl     7, r23, r28
+        subs    r28, r23, r28
+        adds    r28, \c, \c
+        shra    31, \b, r23
+        andnot  r23, \b, r23
+        shl     7, r23, r28
+        subs    r28, r23, r28
+        adds    r28, \c, \c
+        shl     7, \a, \a
+        shl     7, \b, \b
+        .endm
+
+// the last row of regions has 32 lines less
+        .macro  shorter b, c
+        shra    31, \b, r23
+        andnot  r23, \b, r23
+        shr     2, r23, r23
+        subs    \c, r23, \c
+        .endm
+
+// first pixel whose centre is not before a low side, last one before a high side
+        .macro  firstpixel r
+        adds    7, \r, \r
+        shra    4, \r, \r
+        shra    31, \r, r23
+        andnot  r23, \r, \r
+        .endm
+        .macro  lastpixel r, most
+        adds    -9, \r, \r
+        shra    4, \r, \r
+        subs    \most, \r, r23
+        shra    31, r23, r28
+        and     r28, r23, r23
+        adds    r23, \r, \r
+        .endm
+
+        .align  32
+bins:   firstpixel r24
+        lastpixel r25, 639
+        firstpixel r26
+        lastpixel r27, 479
+        mov     r0, r22
+        subs    r25, r24, r23
+        subs    r27, r26, r28
+        or      r23, r28, r23
+        subs    r23, r0, r0
+        bc      nowhere                     // 0 > the difference: no pixel
+        shr     7, r24, r24
+        shr     7, r25, r25
+        shr     7, r26, r26
+        shr     7, r27, r27
+        greatest 0, r5, r8, r11
+        greatest 1, r6, r9, r12
+        greatest 2, r7, r10, r13
+        mov     r0, r30
+rows:   subs    r30, r26, r0
+        bc      below                       // first row > this one
+        btne    3, r30, whole
+        shorter r8, r11
+        shorter r9, r12
+        shorter r10, r13
+whole:  mov     r11, r14
+        mov     r12, r15
+        mov     r13, r4
+        mov     r0, r29
+        br      columns
+        nop
+below:  adds    r8, r11, r11
+        adds    r9, r12, r12
+        adds    r10, r13, r13
+        adds    1, r30, r30
+        subs    r27, r30, r0
+        bnc     rows
+nowhere: bri    r1
+        nop
+columns: subs   r29, r24, r0
+        bc      beside                      // first column > this one
+        or      r14, r15, r23
+        or      r4, r23, r23
+        subs    r23, r0, r0
+        bc      beside                      // 0 > a value
+        shl     2, r30, r23
+        adds    r30, r23, r23
+        adds    r29, r23, r23
+        shl     2, r23, r23
+        ld.l    r23(r19), r31
+        adds    r23, r19, r23
+        adds    1, r22, r22
+        st.l    r18, 0(r31)
+        adds    4, r31, r31
+        st.l    r31, 0(r23)
+beside: adds    r5, r14, r14
+        adds    r6, r15, r15
+        adds    r7, r4, r4
+        adds    1, r29, r29
+        subs    r25, r29, r0
+        bnc     columns
+        br      below
+        nop

@@ -1,0 +1,47 @@
+        // r22 is not 0 where more must be asked: corners in doubt, no area, no pixel, not in one region alone;
+        // else r23 is the place of the region's bin in the table, r7 its end
+lxb     = ld.l LOW_XY(r2) !low
+lyb     = ld.l LOW_XY+4(r2) !low
+ga      = subs lxb, bias8
+gb      = subs lyb, bias8
+hxb     = ld.l HIGH_XY(r2) !high
+hyb     = ld.l HIGH_XY+4(r2) !high
+past    = adds 15, bias
+gi      = subs past, hxb
+gk      = subs past, hyb
+gc      = subs 10239, gi
+gd      = subs 7679, gk
+ge      = or ga, gb
+gf      = or gc, gd
+gg      = or ge, gf
+gh      = or gg, doubt
+column  = shra 11, ga
+gj      = shra 11, gi
+row     = shra 11, gb
+gl      = shra 11, gk
+gm      = xor column, gj
+gn      = xor row, gl
+go      = or gm, gn
+lx_fa   = adds 15, ga
+lx_fb   = shra 4, lx_fa
+ly_fa   = adds 15, gb
+ly_fb   = shra 4, ly_fa
+hx_la   = adds -16, gi
+hx_lb   = shra 4, hx_la
+hy_la   = adds -16, gk
+hy_lb   = shra 4, hy_la
+gp      = subs hx_lb, lx_fb
+gq      = subs hy_lb, ly_fb
+gr      = or gp, gq
+gs      = or gr, gh
+gt      = shr 31, gs
+r22     = or gt, go
+ia      = shl 2, row
+ib      = adds ia, row
+ic      = adds ib, column
+id      = and 31, ic
+ie      = shl 2, id
+entry   = adds ie, r19
+r23     = or r0, entry
+r7      = ld.l 0(entry)
+        .endlinear

@@ -1,0 +1,44 @@
+// the tests of the native code, to `clip` if one fails
+exact:  corner  0
+        corner  1
+        corner  2
+        inside  0
+        inside  1
+        inside  2
+        bri     r1
+        nop
+
+clip:   st.l    r16, 0(r21)
+        br      drop
+        adds    4, r21, r21
+
+// inside after all: no depth beyond the far plane, and once more through the set-up
+        .macro  nofarther r
+        ld.l    R_DEPTH(\r), r7
+        subs    r7, r0, r0
+        bnc     near\@
+        adds    2048, r7, r8
+        subs    r8, r0, r0
+        bc      near\@
+        adds    -2049, r0, r7
+        st.l    r7, R_DEPTH(\r)
+near\@: nop
+        .endm
+
+doubt:  call    exact
+        nop
+        nofarther r3
+        nofarther r4
+        nofarther r5
+        st.l    r0, R_DOUBT(r3)
+        .align  8
+more:   d.fnop
+            nop
+        d.fnop
+            br      again
+        d.fnop
+            nop
+        fnop                                // never reached: what follows is single
+            nop
+        fnop
+            nop

@@ -1,0 +1,7 @@
+        .macro  restated_after
+        restate
+        .endm
+        d.fnop
+            br      slow
+        d.fnop
+            nop

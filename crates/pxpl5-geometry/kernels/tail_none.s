@@ -1,0 +1,4 @@
+        .macro  restated_after
+        .endm
+        d.fnop
+            btne    r22, r0, slow
