@@ -92,7 +92,7 @@ pub mod firmware {
     pub use pxpl5_gp::{Edge, Fault, Firmware, Gp, GpTiming, HostTiming, Mark, Priority, Received, Stage, Ticket};
     pub use pxpl5_renderer::{CommandKind, Layout};
     pub use pxpl5_wire::{
-        Body, CommandList, CopyOrder, CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber, RegionGrid,
+        Body, CommandList, CopyOrder, CopyTarget, CopyWay, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber, RegionGrid,
         RegionId, ViewNumber, Word, swap_request,
     };
 }

@@ -32,6 +32,7 @@ pub(super) fn scene(count: u32) -> Scene {
         spheres: 0..0,
         frame: Frame::Head,
         hinge: None,
+        culls_back_faces: false,
     };
     let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
     let parts = SceneParts {

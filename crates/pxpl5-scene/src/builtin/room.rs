@@ -44,6 +44,7 @@ pub(super) fn scene() -> Scene {
         spheres: 0..0,
         frame: Frame::World,
         hinge: None,
+        culls_back_faces: false,
     };
     let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
     let parts = SceneParts {
