@@ -12,9 +12,9 @@ use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, seconds};
 use pxpl5::tracking::tracker::{Fault, TrackerConfig};
 use pxpl5::{
-    Aim, Budget, Experiment, ExperimentFile, Frameless, Head, Interpolation, Jitp, LatencyCurve, MachineConfig, Measured, Outcome,
-    Percentiles, PeriodNumber, Pipeline, PipelineSettings, PixelErrors, Pixels, Registration, RenderingControl,
-    Showing, Slats, Viewpoint,
+    Aim, Budget, Experiment, ExperimentFile, Frameless, Head, Interpolation, Jitp, LatencyCurve, MachineConfig,
+    Measured, Outcome, Percentiles, PeriodNumber, Pipeline, PipelineSettings, PixelErrors, Pixels, Registration,
+    RenderingControl, Showing, Slats, Viewpoint,
 };
 use pxpl5_sim::TraceHash;
 use std::collections::BTreeMap;

@@ -5,7 +5,9 @@ use crate::drawing::{DrawnList, Window};
 use pphigs::PrimitiveCounts;
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{Clear, Command, CommandKind, CopyRegion, Layout, SelectRegion};
-use pxpl5_wire::{CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, CopyWay, MAX_MESSAGE_WORDS, RegionId, Word};
+use pxpl5_wire::{
+    CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, CopyWay, MAX_MESSAGE_WORDS, RegionId, Word,
+};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -6,8 +6,9 @@
 
 // ANCHOR: imports
 use pxpl5_cli::pxpl5::firmware::{
-    Binning, Body, CopyOrder, CopyTarget, CopyWay, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture, PictureNumber,
-    Priority, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport, region_messages, swap_request,
+    Binning, Body, CopyOrder, CopyTarget, CopyWay, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture,
+    PictureNumber, Priority, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport, region_messages,
+    swap_request,
 };
 use pxpl5_cli::pxpl5::{
     ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureEnd, PictureTimes, Pipeline,

@@ -16,7 +16,12 @@ const BACKGROUND: [u8; 3] = [1, 2, 3];
 /// to 100.
 fn list() -> DisplayList {
     DisplayList {
-        structures: vec![DisplayStructure { triangles: 0..0, spheres: 0..0, frame: ModelFrame::World, culling: Culling::None }],
+        structures: vec![DisplayStructure {
+            triangles: 0..0,
+            spheres: 0..0,
+            frame: ModelFrame::World,
+            culling: Culling::None,
+        }],
         towards_light: Vec3::Z,
         ambient: 1.0,
         diffuse: 0.0,

@@ -6,8 +6,8 @@ use crate::job::{ArrayPool, NoPixels, PixelJob};
 use crate::timing::RendererTiming;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{
-    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, CopyWay, MAX_MESSAGE_WORDS, Message,
-    NodeId, PixelSource, RegionPixels,
+    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, CopyWay,
+    MAX_MESSAGE_WORDS, Message, NodeId, PixelSource, RegionPixels,
 };
 use std::collections::VecDeque;
 use std::sync::{Arc, OnceLock};

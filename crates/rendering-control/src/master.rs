@@ -324,10 +324,5 @@ pub(crate) fn copy_order(
     region: RegionId,
     way: CopyWay,
 ) -> CopyOrder {
-    CopyOrder {
-        target: config.target(drawing, region),
-        context: 0,
-        way,
-        acknowledge: Some(config.master),
-    }
+    CopyOrder { target: config.target(drawing, region), context: 0, way, acknowledge: Some(config.master) }
 }

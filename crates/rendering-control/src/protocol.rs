@@ -172,8 +172,13 @@ mod tests {
 
     #[test]
     fn every_order_survives_its_words() {
-        let token =
-            Token { drawing: EyeDrawing(1 << 33), region: RegionId(19), renderer: 4, slaves_left: 12, end: RegionEnd::Stored };
+        let token = Token {
+            drawing: EyeDrawing(1 << 33),
+            region: RegionId(19),
+            renderer: 4,
+            slaves_left: 12,
+            end: RegionEnd::Stored,
+        };
         let view = FrameView { number: ViewNumber(3), eyes: Vec::new(), edits: Vec::new() };
         let orders = [
             StageOrder::Send(view),

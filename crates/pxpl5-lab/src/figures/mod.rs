@@ -12,11 +12,13 @@
 mod document;
 mod heads;
 mod measure;
+mod reading;
 mod row;
 mod table;
 
 pub use document::markdown;
 pub use measure::{Bench, Detail, Measured};
+pub use reading::{FieldCount, ROOM, Reading, Samples};
 pub use row::{MISS_PERCENT, Row, mean_error_percent};
 pub use table::{Basis, FIGURES, Figure, WITHOUT_CLOSED_FORM};
 
