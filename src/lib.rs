@@ -66,9 +66,9 @@ pub use pxpl5_machine::{
     RunError, Saving, StageSpan, Swap, Traffic, Transfer,
 };
 pub use pxpl5_measure::{
-    Budget, ErrorCauses, ErrorPart, FieldError, HeadReport, LATENCY_PARTS, LatencyParts, Measure, Measured,
-    NamedStatistics, PartDefinition, Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets, Registration,
-    Report, Results, Showing, SurfaceStatistics, TooHeavy, picture, side_by_side,
+    Budget, ErrorCauses, ErrorPart, FieldError, HeadReport, LATENCY_PARTS, LatencyCurve, LatencyParts, Measure,
+    Measured, NamedStatistics, PartDefinition, Percentiles, PixelErrors, QUANTITIES, Quantity, RasterOffsets,
+    Registration, Report, Results, Showing, SurfaceStatistics, TooHeavy, picture, side_by_side,
 };
 pub use pxpl5_run::{
     Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Experiment, ExperimentError,

@@ -130,3 +130,27 @@ fn a_film_on_a_shifted_raster_shows_the_pictures_of_a_run_on_it() {
         assert!(run.picture(Eye::Left).expect("pixels").into_raw() == pixels, "field {field}");
     }
 }
+
+#[test]
+fn slats_takes_a_report_no_older_than_the_trackers_interval_and_the_way_to_the_processors() {
+    // Sent as it comes, the newest report waits for the retrace from nothing to one interval; sent once a field just after the retrace
+    // it would wait for a whole field more, 16.68 ms. A thousand reports a second come at all places of a field, so that they wait for half
+    // of an interval in the mean; the Fastrak's 120 need 500 fields for that, of which these are a part. (Trackers behind the port of a host
+    // whose kernel looks 60 times a second always come at the same place.)
+    for (tracker, least_ms, most_ms) in [("fastrak", 0.0, 1e3 / 120.0), ("ideal", 0.5, 0.5)] {
+        let settings = [
+            ("pipeline", "slats"),
+            ("scene", "room"),
+            ("fields", "300"),
+            ("head.motion", "synthetic:1"),
+            ("head.tracker", tracker),
+            ("pixels", "off"),
+        ];
+        let plan = plan(&settings);
+        let outcome = plan.experiment(plan.load_scene().expect("built in")).run().expect("four triangles");
+        let budget = outcome.report().head.expect("a motion was given").end_to_end;
+        let wait_ms = budget.waiting_ms + budget.sending_ms;
+        // The host's message at either end and the link of 5 MB/s take less than a millisecond.
+        assert!((least_ms..most_ms + 1.0).contains(&wait_ms), "{tracker}: {wait_ms}");
+    }
+}

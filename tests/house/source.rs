@@ -25,9 +25,11 @@ pub(crate) fn code(text: &str) -> String {
     lines.fold(String::new(), |all, line| all + line + "\n")
 }
 
-/// A source without what the feature `files` adds; a file that is all of it is left out by its first line.
+/// A source without what the features `files` and `threads` add; a file that is all of it is left out by its first line.
 pub(crate) fn without_host_feature(text: &str) -> String {
-    if text.contains("#![cfg(feature = \"files\")]") { String::new() } else { code(text) }
+    let is_of_the_host =
+        ["files", "threads"].iter().any(|name| text.contains(&format!("#![cfg(feature = \"{name}\")]")));
+    if is_of_the_host { String::new() } else { code(text) }
 }
 
 /// Whether a word stands in a text, not as a part of a longer one.

@@ -535,7 +535,8 @@ fn the_files_of_figures_agree_with_accuracy_md_or_say_why_not() {
         let simulated = published.quantity.of(&results).expect("measured");
         // By their errors, since the units may differ: figure 10 is in region times there. Four digits are printed there.
         let (printed, found) = accuracy(&id);
-        let (here, there) = (simulated / published.value, found / printed);
+        let here = simulated / published.value;
+        let there = found / printed;
         assert!((here / there - 1.0).abs() < 0.001, "{name}: {here} of the published value, in ACCURACY.md {there}");
     }
 }

@@ -31,6 +31,22 @@ fn a_value_outside_its_range_is_warned_of_once_with_range_and_source() {
     assert_eq!(err(&checked).matches("warning").count(), 1);
 }
 
+#[test]
+fn a_number_of_the_tracker_outside_its_range_is_warned_of_too() {
+    let folder = Folder::new("tracker-warnings");
+    let noisy = ["--head", "still", "--tracker", "fastrak", "--set", "tracking.fastrak.position_noise=50", "--json"];
+    let output = folder.run(&with(&RUN, &noisy));
+    let said = err(&output);
+    assert_eq!(said.matches("warning").count(), 1, "{said}");
+    assert!(
+        said.contains("tracking.fastrak.position_noise = 50 mm is outside its range, 0 to 0.8 mm (assumed: "),
+        "{said}"
+    );
+    assert_eq!(json(&output)["warnings"].as_array().map(Vec::len), Some(1));
+    let of_others = ["--head", "still", "--tracker", "fastrak"];
+    assert_eq!(err(&folder.run(&with(&RUN, &of_others))), "");
+}
+
 #[cfg(unix)]
 #[test]
 fn ctrl_c_of_a_sweep_names_the_command_that_goes_on_and_it_does() {

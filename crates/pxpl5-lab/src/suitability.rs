@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// Whether a pipeline runs on a machine.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Suitability {
-    /// The pipeline.
+    /// Name of the pipeline that was tried.
     pub pipeline: &'static str,
     /// What the machine lacks; nothing where the pipeline runs.
     pub lacks: Option<String>,

@@ -21,7 +21,7 @@ pub struct ErrorCauses {
 /// What one cause adds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ErrorPart {
-    /// The cause.
+    /// What was turned off.
     pub cause: Cause,
     /// Mean error less the mean error without the cause, pixels.
     pub px: f64,

@@ -235,10 +235,11 @@ impl Experiment {
         hash
     }
 
-    /// Parameters of the machine that no source allows: see [`out_of_range`].
+    /// Parameters of the machine and of what tracks the head that no source allows: see [`out_of_range`].
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
-        out_of_range(&self.config, self.pipeline.as_ref())
+        let of_head = self.head.iter().flat_map(|head| head.suppositions()).cloned();
+        out_of_range(&self.config, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
     /// The scene that is drawn.

@@ -3,6 +3,7 @@
 use crate::fingerprint::Fingerprint;
 use crate::raster::Raster;
 use pxpl5_display::Aim;
+use pxpl5_machine::Parameter;
 use pxpl5_sim::Time;
 use std::fmt;
 use std::sync::Arc;
@@ -40,6 +41,8 @@ pub struct Head {
     raster: Raster,
     aim: Aim,
     reports: Option<Arc<[Report]>>,
+    /// Numbers of its tracker and predictor that no source allows.
+    suppositions: Vec<Parameter>,
 }
 
 impl fmt::Debug for Head {
@@ -100,6 +103,7 @@ impl Head {
             raster: Raster::Plain,
             aim: Aim::Middle,
             reports: None,
+            suppositions: Vec::new(),
         })
     }
 
@@ -149,6 +153,18 @@ impl Head {
     pub const fn aiming(mut self, aim: Aim) -> Self {
         self.aim = aim;
         self
+    }
+
+    /// Says which numbers of its tracker and predictor lie outside of what their sources allow, so that reports warn of them.
+    #[must_use]
+    pub fn supposing(self, suppositions: Vec<Parameter>) -> Self {
+        Self { suppositions, ..self }
+    }
+
+    /// The numbers of its tracker and predictor that no source allows, as far as they were said.
+    #[must_use]
+    pub fn suppositions(&self) -> &[Parameter] {
+        &self.suppositions
     }
 
     /// Puts these reports, in order of arrival, in the place of those that its tracker would make of the motion.

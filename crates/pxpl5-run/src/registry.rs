@@ -34,7 +34,7 @@ pub enum TestScene {
 }
 
 impl TestScene {
-    /// Both.
+    /// Both kinds of triangles, the larger first.
     pub const ALL: [Self; 2] = [Self::FullScreen, Self::Typical];
 
     /// Its name on the command line and in tables.

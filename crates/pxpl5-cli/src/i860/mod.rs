@@ -1,10 +1,12 @@
 //! `pxpl5 i860`: assemble, disassemble, run with a cycle listing, and conformance vectors.
 
+mod names;
 mod run;
 
 use ::i860::{Config, Program, assemble, disassemble, vectors};
 use clap::{Args, Subcommand};
 use flate2::read::MultiGzDecoder;
+use names::{address, labels_at};
 use run::{RunOptions, execute};
 use std::fmt::Write as _;
 use std::io::Read;
@@ -82,15 +84,6 @@ enum Command {
     },
 }
 
-fn address(text: &str) -> Result<u32, String> {
-    let lower = text.to_ascii_lowercase();
-    let parsed = match lower.strip_prefix("0x") {
-        Some(digits) => u32::from_str_radix(digits, 16),
-        None => lower.parse(),
-    };
-    parsed.map_err(|_| format!("expected a 32-bit address such as 0x1000, found `{text}`"))
-}
-
 /// Runs the command.
 ///
 /// # Errors
@@ -154,11 +147,6 @@ fn words_of(bytes: &[u8]) -> Vec<u32> {
 /// A word of up to four bytes, the lowest first; missing ones are 0.
 fn word_of(bytes: &[u8]) -> u32 {
     (0..4).map(|n| u32::from(bytes.get(n).copied().unwrap_or(0)) << (8 * n)).sum()
-}
-
-fn labels_at(program: Option<&Program>, pc: u32) -> String {
-    let labels = program.map_or(&[][..], |p| &p.labels);
-    labels.iter().filter(|(_, at)| *at == pc).map(|(name, _)| format!("{name}:\n")).collect()
 }
 
 fn listing(base: u32, words: &[u32], program: Option<&Program>) -> String {

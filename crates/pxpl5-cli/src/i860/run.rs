@@ -1,6 +1,6 @@
 //! `pxpl5 i860 run`: a program executed, and what it left in registers and memory.
 
-use super::labels_at;
+use super::names::{address, labels_at};
 use ::i860::{AddressProfile, Config, Cpu, Outcome, Program, Ram, disassemble};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -78,9 +78,9 @@ fn known(program: &Program, text: &str) -> Result<u32, String> {
     if let Some((label, offset)) = text.split_once('+')
         && let Some(at) = program.symbol(label)
     {
-        return Ok(at.wrapping_add(super::address(offset)?));
+        return Ok(at.wrapping_add(address(offset)?));
     }
-    super::address(text).map_err(|_| {
+    address(text).map_err(|_| {
         let labels: Vec<&str> = program.labels.iter().map(|(name, _)| name.as_str()).collect();
         let labels = if labels.is_empty() { "it has none".to_owned() } else { labels.join(", ") };
         format!("expected a label of the program ({labels}) or an address such as 0x1000, found `{text}`")

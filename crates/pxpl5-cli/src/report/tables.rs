@@ -12,14 +12,16 @@ const COMPARISON_FILE: &str = "comparison.json";
 /// Rows of a sweep that a page holds: more are for a table program.
 const MOST_ROWS: usize = 5_000;
 
+/// Makes a table of a file's text, or says what is wrong with it.
+type Reader = fn(&str) -> Result<PageTable, String>;
+
 /// The tables of a folder; nothing where it holds neither a sweep nor a comparison.
 ///
 /// # Errors
 ///
 /// When its file cannot be read, or is none of these.
 pub(super) fn of(folder: &Path) -> Result<Option<Vec<PageTable>>, CliError> {
-    let readers: [(&str, fn(&str) -> Result<PageTable, String>); 2] =
-        [(ROWS_FILE, sweep), (COMPARISON_FILE, comparison)];
+    let readers: [(&str, Reader); 2] = [(ROWS_FILE, sweep), (COMPARISON_FILE, comparison)];
     for (name, read) in readers {
         let path = folder.join(name);
         if path.is_file() {

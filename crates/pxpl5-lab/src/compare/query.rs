@@ -53,7 +53,7 @@ pub enum CompareError {
     NoHead,
 }
 
-/// All rows.
+/// A row for each way to fight latency, and what all of them share.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
     /// Name and version of this record's layout.
@@ -62,15 +62,15 @@ pub struct Comparison {
     pub machine: String,
     /// Graphics processors and renderers.
     pub boards: [u64; 2],
-    /// Scene.
+    /// Name of the scene that all draw.
     pub scene: String,
-    /// Its triangles.
+    /// How many triangles that scene has.
     pub triangles: usize,
     /// The settings of the head, with their keys.
     pub head: Vec<(String, String)>,
     /// Fields simulated for each seed.
     pub fields: u64,
-    /// The seeds.
+    /// The seeds, of each of which every row had a run.
     pub seeds: Vec<u64>,
     /// A row for each way to fight latency.
     pub pipelines: Vec<Row>,

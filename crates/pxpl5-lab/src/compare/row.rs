@@ -17,7 +17,7 @@ pub struct MeanInterval {
     pub low: f64,
     /// Upper end of the interval.
     pub high: f64,
-    /// Seeds.
+    /// Seeds whose means these are.
     pub n: usize,
 }
 
@@ -40,13 +40,13 @@ fn quantile_of_t(freedom: usize) -> f64 {
 /// Errors of all runs together.
 #[derive(Clone, Debug, Serialize)]
 pub struct ErrorSpread {
-    /// Mean, pixels.
+    /// Mean distance from where a pixel's content should be, pixels.
     pub mean_px: MeanInterval,
-    /// Mean, degrees.
+    /// The same as an angle, degrees.
     pub mean_deg: MeanInterval,
     /// Percentiles over all judged pixels of all seeds, pixels.
     pub pixels: Percentiles,
-    /// Judged pixels.
+    /// Judged pixels of all seeds together.
     pub n: u64,
     /// Every hundredth of the judged pixels' errors, pixels: 101 numbers from the least to the greatest; empty where none was judged.
     pub distribution_px: Vec<f64>,
@@ -57,14 +57,14 @@ pub struct ErrorSpread {
 pub struct CauseShare {
     /// The cause; none for what is left, the interaction of all.
     pub cause: Option<Cause>,
-    /// Pixels.
+    /// Pixels of the mean error; negative where the error is greater without the cause.
     pub px: MeanInterval,
 }
 
 /// What a predictor would make of a row.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct PredictorMean {
-    /// The predictor.
+    /// The predictor that stood in the place of the chosen one.
     pub kind: PredictorKind,
     /// Mean error, pixels; no number where none was judged.
     pub mean_px: f64,
@@ -73,7 +73,7 @@ pub struct PredictorMean {
 /// One way to fight latency.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// Its name.
+    /// Name of the row: the pipeline, or a variant of it.
     pub pipeline: String,
     /// What tells it from others of the same pipeline.
     pub settings: String,

@@ -63,6 +63,8 @@ impl HeadChoice {
         let head = head.map_err(|error| refused(file, "head.tracker", &error))?.before(raster).aiming(aim);
         let head = judged(file, if is_tuned(file)? { head.tuned() } else { head })?;
         let numbers = tracking_numbers::parameters_with(&tables, own_table);
+        let supposed = numbers.iter().filter(|number| !number.is_in_range()).cloned().collect();
+        let head = head.supposing(supposed);
         Ok(Some(Self { motion: motion_name, replay, tracker: tracker_name, predict, numbers, head: Arc::new(head) }))
     }
 

@@ -360,10 +360,11 @@ impl Plan {
         self.machine.parameters().into_iter().chain(of_head).collect()
     }
 
-    /// Parameters of the machine that no source allows.
+    /// Parameters of the machine and of what tracks the head that no source allows.
     #[must_use]
     pub fn out_of_range(&self) -> Vec<Parameter> {
-        out_of_range(&self.machine, self.pipeline.as_ref())
+        let of_head = self.head.iter().flat_map(|head| head.head().suppositions().to_vec());
+        out_of_range(&self.machine, self.pipeline.as_ref()).into_iter().chain(of_head).collect()
     }
 
     /// Name of the level of modelling.

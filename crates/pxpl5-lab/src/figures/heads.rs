@@ -1,6 +1,6 @@
 //! Experiments with a head: the pendulum rig, and what passes from head to light.
 
-use super::measure::{Measured, Result, detail, scene_named};
+use super::measured::{Measured, Result, detail, scene_named};
 use crate::rig::Rig;
 use pxpl5_machine::MachineConfig;
 use pxpl5_measure::{Budget, LatencyCurve};
@@ -48,7 +48,7 @@ pub(super) fn tracker_and_rendering(machine: MachineConfig, pipeline: impl Pipel
     let motion = Arc::new(Synthetic::recorded_use(1));
     let head = Head::new(motion, TrackerConfig::optical_ceiling(), PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
-    let experiment = Experiment::new(machine, pipeline, scene_named("room")?);
+    let experiment = Experiment::new(machine, pipeline, scene_named("full-screen:12")?);
     let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, .. } =
         Budget::of(&outcome);

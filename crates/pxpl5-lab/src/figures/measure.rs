@@ -1,11 +1,13 @@
 //! The experiments behind the figures.
 
 use super::heads;
+use super::applications::Applications;
+use super::measured::{Measured, Result, detail, scene_named};
 use super::reading::{Reading, Samples};
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
 use pphigs::{Binning, Picture, Shading, Share, TransformCost};
-use pxpl5_analytic::{Load, StereoModel, stereo_loads};
+use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::Layout;
@@ -13,31 +15,9 @@ use pxpl5_run::{
     Experiment, ExperimentError, Level, Pipeline, Pixels, RenderingControl, Slats, Statistics, Summary,
     WARM_UP_PICTURES, display_list, views,
 };
-use pxpl5_scene::{Hmd, HmdConfig, Scene, builtin};
+use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::Time;
-use serde::Serialize;
-use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
-
-/// A further number of an experiment.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Detail {
-    /// What the number is, in a few words: `standard deviation`.
-    pub name: String,
-    /// The number, in the unit that stands beside it.
-    pub value: f64,
-    /// Unit of the value: `ms`, `fields`, `Hz`, `triangles`.
-    pub unit: &'static str,
-}
-
-/// What an experiment gave.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
-    /// The figure's own number.
-    pub value: f64,
-    /// Further numbers of the same experiment, each with a unit of its own.
-    pub details: Vec<Detail>,
-}
+use std::sync::Arc;
 
 /// A bench for the figures: a level of modelling, and changes to the machine's parameters.
 #[derive(Clone, Debug)]
@@ -53,13 +33,8 @@ pub struct Bench {
     pub frames: u64,
     /// How the open questions of Rendering Control are answered.
     pub reading: Reading,
-    pub(crate) loads: SceneLoads,
+    pub(crate) applications: Arc<Applications>,
 }
-
-/// Loads of the application scenes' views, a list for each seed, computed once for all benches that were cloned from one.
-pub(crate) type SceneLoads = Arc<Mutex<BTreeMap<(&'static str, bool), Arc<Vec<Vec<Load>>>>>>;
-
-pub(super) type Result<T> = std::result::Result<T, ExperimentError>;
 
 /// TRANSFORM and RENDER of figure 6 (milliseconds): a spread of lengths, because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
@@ -84,14 +59,14 @@ impl Bench {
             seeds: 30,
             frames: 300,
             reading: Reading::USUAL,
-            loads: SceneLoads::default(),
+            applications: Arc::default(),
         }
     }
 
     /// The same with fewer or more seeds and frames of the Mig.
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
-        Self { seeds, frames, loads: SceneLoads::default(), ..self }
+        Self { seeds, frames, applications: Arc::default(), ..self }
     }
 
     /// Measures a figure.
@@ -244,30 +219,17 @@ impl Bench {
         if self.level != Level::Analytic {
             return self.summarise(&experiment);
         }
-        let loads = self.loads_of(scene, seeds)?;
+        let of_seeds = || (1..=seeds).map(|seed| stereo_loads(&self.application_experiment(scene, seed)?)).collect();
+        let loads = self.applications.loads(scene, self.reading.culled, of_seeds)?;
         let model = StereoModel::new(experiment.config(), self.reading.pipeline())?;
         Ok(model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()))
-    }
-
-    /// The loads of a scene's views with every seed.
-    fn loads_of(&self, scene: &'static str, seeds: u64) -> Result<Arc<Vec<Vec<Load>>>> {
-        let mut all = self.loads.lock().unwrap_or_else(PoisonError::into_inner);
-        let key = (scene, self.reading.culled);
-        if let Some(known) = all.get(&key) {
-            return Ok(Arc::clone(known));
-        }
-        let of_seeds = (1..=seeds).map(|seed| stereo_loads(&self.application_experiment(scene, seed)?));
-        let loads = Arc::new(of_seeds.collect::<Result<Vec<_>>>()?);
-        all.insert(key, Arc::clone(&loads));
-        Ok(loads)
     }
 
     /// Two fields a frame at 30 Hz; of slower frames fewer are shown.
     fn application_experiment(&self, scene: &'static str, seed: u64) -> Result<Experiment> {
         let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
         let machine = self.reading.on(self.machine(self.reading.machine)?)?;
-        let whole = scene_named(scene)?;
-        let drawn = if self.reading.culled { Arc::new(Arc::unwrap_or_clone(whole).culled()) } else { whole };
+        let drawn = self.applications.scene(scene, self.reading.culled)?;
         Ok(Experiment::with(machine, Arc::new(self.reading.pipeline()), drawn).fields(fields).seed(seed))
     }
 
@@ -337,17 +299,9 @@ fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     Ok(entries as f64 / triangles.max(1) as f64)
 }
 
-pub(super) fn scene_named(name: &str) -> Result<Arc<Scene>> {
-    builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()))
-}
-
 /// Whole pictures shown a second; 0 where none was.
 fn rate_hz(summary: &Summary) -> f64 {
     summary.updates_hz.unwrap_or_default()
-}
-
-pub(super) fn detail(name: &str, value: f64, unit: &'static str) -> Detail {
-    Detail { name: name.to_owned(), value, unit }
 }
 
 /// The mean with least, greatest and deviation.
@@ -356,12 +310,6 @@ fn spread_ms(statistics: Statistics) -> Measured {
     let details =
         vec![detail("standard deviation", sd, "ms"), detail("least", min, "ms"), detail("greatest", max, "ms")];
     Measured { value: mean, details }
-}
-
-impl From<f64> for Measured {
-    fn from(value: f64) -> Self {
-        Self { value, details: Vec::new() }
-    }
 }
 
 #[cfg(test)]

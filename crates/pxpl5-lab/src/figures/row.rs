@@ -1,6 +1,6 @@
 //! A published figure beside what the model gives, and when it is missed.
 
-use super::measure::{Detail, Measured};
+use super::measured::{Detail, Measured};
 use super::table::{Basis, Figure};
 use serde::Serialize;
 

@@ -294,7 +294,7 @@ pub const FIGURES: [Figure; 25] = [
         ("I3D95", HEAD),
         "optical tracker and Rendering Control together",
         (90.0, "ms", None),
-        "room on small-hmd, synthetic motion, no prediction: from the pose to the arrival of its report, and from the start of \
+        "full-screen:12 on small-hmd, synthetic motion, no prediction: from the pose to the arrival of its report, and from the start of \
          TRANSFORM to the swap",
         FREE,
     ),

@@ -18,20 +18,20 @@ use pxpl5_run::{
 use pxpl5_scene::{Scene, builtin};
 use std::sync::Arc;
 
-/// A question.
+/// Which pipeline, on which machine, must draw what in time.
 #[derive(Clone, Debug)]
 pub struct LimitQuery {
     /// Where the pipeline's closed form is found.
     pub registry: Arc<Registry>,
-    /// The machine.
+    /// The machine that it runs on.
     pub config: MachineConfig,
-    /// The pipeline.
+    /// The pipeline whose limit is sought.
     pub pipeline: Arc<dyn Pipeline>,
     /// The triangles, what must hold, and for how many fields each size is simulated.
     pub criterion: LimitCriterion,
     /// A model in place of the criterion's triangles.
     pub model: Option<Model>,
-    /// How literally.
+    /// The level of modelling at which every size is tried.
     pub level: Level,
 }
 
@@ -40,7 +40,7 @@ pub struct LimitQuery {
 pub struct Model {
     /// As the experiment chose it, whatever number of triangles that names.
     pub choice: SceneChoice,
-    /// All of it.
+    /// The model with all of its primitives.
     pub whole: Arc<Scene>,
 }
 

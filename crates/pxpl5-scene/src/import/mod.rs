@@ -5,6 +5,7 @@ mod files;
 mod mesh;
 mod obj;
 mod pdb;
+mod placement;
 mod ply;
 mod source;
 
@@ -18,21 +19,12 @@ pub use files::{load, load_placed};
 use mesh::Fit;
 pub(crate) use mesh::{Mesh, Normals, fitted_scene};
 pub(crate) use pdb::{Atom, read_atoms};
+pub use placement::Placement;
 pub(crate) use source::Source;
 
 use crate::config::MAX_FILE_BYTES;
 use crate::error::LoadError;
 use crate::scene::{Scene, Sphere};
-
-/// Where a model stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Placement {
-    /// Moved to the origin and scaled so that both eyes see all of it, from wherever [`Scene::motion`] takes the head.
-    #[default]
-    Fitted,
-    /// Where its file says: a unit of the file is a metre, and the head stands at the origin and looks along -z.
-    AsInFile,
-}
 
 impl Placement {
     /// What is done to the coordinates of balls (centre, radius) that the model consists of.

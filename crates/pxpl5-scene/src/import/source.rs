@@ -1,6 +1,6 @@
 //! The file being read: its name, its bytes, and the errors that point into it.
 
-use super::Placement;
+use super::placement::Placement;
 use crate::config::MAX_COORDINATE;
 use crate::error::{LoadError, Place};
 

@@ -7,7 +7,7 @@ use crate::svg::{self, Tenths, anchored, hint, line};
 /// What a chart is about.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axes {
-    /// Stands above it.
+    /// What stands above the chart.
     pub title: String,
     /// Name and unit of what goes to the right.
     pub across: String,

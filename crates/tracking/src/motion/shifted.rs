@@ -7,7 +7,7 @@ use crate::pose::Pose;
 /// Another motion, so much later in its course at every instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Shifted<M> {
-    /// The motion.
+    /// The motion that is looked at later.
     pub motion: M,
     /// How far ahead of it this one is, ps.
     pub by_ps: u64,

@@ -1,0 +1,316 @@
+//! What an eye at any place sees of one revolution: the sum of all lit pixels of all strobes.
+
+use crate::error::PerspectaError;
+use image::{Rgb, RgbImage};
+use spatialgl::{BitPlanes, ColourSample, Size, VolumeFrame, Workers, sin_cos_of_turn};
+use std::sync::{Mutex, PoisonError};
+
+/// Units of light of one lit pixel: 256 x 256, so that bilinear shares are whole numbers.
+const FULL: u64 = 1 << 16;
+
+/// Slices that one task adds up before it puts its sums to those of others.
+const SLICES_PER_TASK: u32 = 33;
+
+/// Where the eye is and how its picture is drawn. It looks at the middle of the display, image y downwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Angle around the axis from +z to +x, degrees.
+    pub azimuth_deg: f64,
+    /// Angle above the horizon, degrees.
+    pub elevation_deg: f64,
+    /// Distance from the middle of the display, pixels of the display.
+    pub distance: f64,
+    /// Focal length, pixels of the picture.
+    pub focal: f64,
+    /// Width and height of the picture, pixels.
+    pub size: Size,
+}
+
+impl Camera {
+    /// An eye four radii away from a display of this radius, its picture as wide as the display.
+    #[must_use]
+    pub fn around(radius: f64, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Self {
+        let focal = f64::from(side) * 1.9;
+        Self { azimuth_deg, elevation_deg, distance: 4.0 * radius, focal, size: [side, side] }
+    }
+
+    fn check(&self, reach: f64) -> Result<(), PerspectaError> {
+        let rule = |holds: bool, what, expected, found| {
+            if holds { Ok(()) } else { Err(PerspectaError::Camera { what, expected, found }) }
+        };
+        rule(self.azimuth_deg.is_finite(), "azimuth", "a finite angle", self.azimuth_deg)?;
+        rule(self.elevation_deg.is_finite(), "elevation", "a finite angle", self.elevation_deg)?;
+        let is_outside = self.distance.is_finite() && self.distance > reach;
+        rule(is_outside, "distance", "an eye outside of the display", self.distance)?;
+        rule(self.focal.is_finite() && self.focal > 0.0, "focal", "a length above 0 px", self.focal)?;
+        for side in self.size {
+            rule((1..=8192).contains(&side), "size", "1 to 8192 px", f64::from(side))?;
+        }
+        Ok(())
+    }
+
+    /// Axes of the eye: to the right, up, and from the middle of the display to the eye.
+    fn axes(&self) -> [[f64; 3]; 3] {
+        let (sin_a, cos_a) = libm::sincos(self.azimuth_deg.to_radians());
+        let (sin_e, cos_e) = libm::sincos(self.elevation_deg.to_radians());
+        [[cos_a, 0.0, -sin_a], [-sin_e * sin_a, cos_e, -sin_e * cos_a], [cos_e * sin_a, sin_e, cos_e * cos_a]]
+    }
+
+    /// Where a point of the world is seen, pixels from the top left of the picture.
+    #[must_use]
+    pub fn project(&self, world: [f64; 3]) -> [f64; 2] {
+        let [right, up, back] = self.axes().map(|axis| dot(axis, world));
+        let scale = self.focal / (self.distance - back);
+        let [width, height] = self.size.map(f64::from);
+        [width / 2.0 + right * scale, height / 2.0 - up * scale]
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// What of a volume is looked at, and how.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ViewOptions {
+    /// Angles around the axis, degrees from +x to +z, of which nothing is shown: a cutaway.
+    pub cut_deg: Option<[f64; 2]>,
+    /// Whether a pixel is as bright as its screen is turned towards the eye: |view . e_s|.
+    pub lambert: bool,
+}
+
+/// Light that reached a picture, in units that add up exactly, whatever the order and the threads.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Light {
+    size: Size,
+    /// Red, green and blue of each pixel.
+    sums: Vec<[u64; 3]>,
+}
+
+impl Light {
+    fn dark(size: Size) -> Self {
+        Self { size, sums: vec![[0; 3]; size[0] as usize * size[1] as usize] }
+    }
+
+    /// All light of the picture in lit pixels of single strobes, by channel.
+    #[must_use]
+    pub fn total(&self) -> [f64; 3] {
+        let mut sums = [0.0; 3];
+        for pixel in &self.sums {
+            for (sum, value) in sums.iter_mut().zip(pixel) {
+                *sum += *value as f64 / FULL as f64;
+            }
+        }
+        sums
+    }
+
+    /// The exposure with which so much of the lit part of the picture (0 to 1) stays below white.
+    #[must_use]
+    pub fn exposure(&self, share: f64) -> f64 {
+        let lit = self.sums.iter().map(|pixel| pixel[0].max(pixel[1]).max(pixel[2])).filter(|value| *value > 0);
+        let mut lit: Vec<u64> = lit.collect();
+        if lit.is_empty() {
+            return 1.0;
+        }
+        let at = ((lit.len() - 1) as f64 * share.clamp(0.0, 1.0)) as usize;
+        let (_, value, _) = lit.select_nth_unstable(at);
+        255.0 * FULL as f64 / *value as f64
+    }
+
+    /// The picture, with so many of 255 steps for one lit pixel of one strobe.
+    #[must_use]
+    pub fn picture(&self, exposure: f64) -> RgbImage {
+        let mut picture = RgbImage::new(self.size[0], self.size[1]);
+        for (pixel, sums) in picture.pixels_mut().zip(&self.sums) {
+            *pixel = Rgb(sums.map(|sum| (sum as f64 * exposure / FULL as f64 + 0.5) as u8));
+        }
+        picture
+    }
+
+    fn add(&mut self, other: &Self) {
+        for (sum, more) in self.sums.iter_mut().zip(&other.sums) {
+            *sum = [0, 1, 2].map(|c| sum[c] + more[c]);
+        }
+    }
+
+    /// Adds a point of light bilinearly; `levels` are 0 to 255 and `weight` 0 to 256.
+    #[inline(always)]
+    fn splat(&mut self, [x, y]: [f64; 2], levels: [u64; 3], weight: u64) {
+        let left = (x - 0.5).floor();
+        let top = (y - 0.5).floor();
+        let across = ((x - 0.5 - left) * 256.0 + 0.5) as u64;
+        let down = ((y - 0.5 - top) * 256.0 + 0.5) as u64;
+        for (row, part) in [(top, 256 - down), (top + 1.0, down)] {
+            for (column, share) in [(left, 256 - across), (left + 1.0, across)] {
+                let is_inside = row >= 0.0 && column >= 0.0 && row < f64::from(self.size[1]);
+                if is_inside && column < f64::from(self.size[0]) {
+                    let sum = &mut self.sums[row as usize * self.size[0] as usize + column as usize];
+                    let light = part * share * weight;
+                    *sum = [0, 1, 2].map(|c| sum[c] + light * levels[c] / (255 * 256));
+                }
+            }
+        }
+    }
+}
+
+/// Light of one revolution of a volume as the display shows it, halftoned.
+///
+/// # Errors
+///
+/// [`PerspectaError::Camera`] if the eye sees nothing.
+pub fn view_planes(
+    planes: &BitPlanes,
+    camera: &Camera,
+    options: ViewOptions,
+    workers: &dyn Workers,
+) -> Result<Light, PerspectaError> {
+    sum(planes.size(), planes.slices(), camera, options, workers, &|k, each| {
+        let row = planes.size()[0] / 8;
+        for (at, word) in (0u32..).zip(planes.slice(k)).filter(|(_, word)| **word != 0) {
+            let mut rest = (word | word >> 8 | word >> 16) & 0xFF;
+            while rest != 0 {
+                let bit = rest.ilog2();
+                rest &= !(1 << bit);
+                let levels = [0, 8, 16].map(|shift| 255 * u64::from(word >> (bit + shift) & 1));
+                each(at % row * 8 + 7 - bit, at / row, levels);
+            }
+        }
+    })
+}
+
+/// The same before halftoning, with all 256 levels: what dither costs shows beside it.
+///
+/// `None` if the frame was made without its colours.
+///
+/// # Errors
+///
+/// As [`view_planes`].
+pub fn view_undithered(
+    frame: &VolumeFrame,
+    camera: &Camera,
+    options: ViewOptions,
+    workers: &dyn Workers,
+) -> Result<Option<Light>, PerspectaError> {
+    let Some(colours) = frame.colours.as_ref() else { return Ok(None) };
+    let size = frame.planes.size();
+    let light = sum(size, frame.planes.slices(), camera, options, workers, &|k, each| {
+        let drawn = colours.len() as u32;
+        let is_mirrored = k >= drawn;
+        for ColourSample { pixel, colour } in &colours[(k % drawn) as usize] {
+            let x = pixel % size[0];
+            each(if is_mirrored { size[0] - 1 - x } else { x }, pixel / size[0], colour.map(u64::from));
+        }
+    })?;
+    Ok(Some(light))
+}
+
+/// Calls for every lit pixel of a slice: column, row and levels.
+type EachPixel<'a> = dyn Fn(u32, &mut dyn FnMut(u32, u32, [u64; 3])) + Sync + 'a;
+
+fn sum(
+    size: Size,
+    slices: u32,
+    camera: &Camera,
+    options: ViewOptions,
+    workers: &dyn Workers,
+    pixels: &EachPixel<'_>,
+) -> Result<Light, PerspectaError> {
+    let [half_width, half_height] = size.map(|side| f64::from(side) / 2.0);
+    camera.check(libm::hypot(half_width, half_height))?;
+    let total = Mutex::new(Light::dark(camera.size));
+    let part = |first: u32| {
+        let mut light = Light::dark(camera.size);
+        for k in first..(first + SLICES_PER_TASK).min(slices) {
+            let strobe = Strobe::new(k, slices, size, camera, options);
+            pixels(k, &mut |x, y, levels| strobe.add(&mut light, x, y, levels));
+        }
+        total.lock().unwrap_or_else(PoisonError::into_inner).add(&light);
+    };
+    let firsts = (0..slices).step_by(SLICES_PER_TASK as usize);
+    workers.run(firsts.map(|first| Box::new(move || part(first)) as spatialgl::Task<'_>).collect());
+    Ok(total.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// One strobe as the eye has it: its pixels in the axes of the eye.
+struct Strobe {
+    half: [f64; 2],
+    /// Of one pixel to the right, and of one up: right, up and back.
+    across: [f64; 3],
+    upward: [f64; 3],
+    /// The screen's normal, in the same axes.
+    normal: [f64; 3],
+    distance: f64,
+    focal: f64,
+    centre: [f64; 2],
+    lambert: bool,
+    /// Which halves of the screen (u < 0, u >= 0) are left out.
+    cut: [bool; 2],
+}
+
+impl Strobe {
+    fn new(k: u32, slices: u32, size: Size, camera: &Camera, options: ViewOptions) -> Self {
+        let (sin, cos) = sin_cos_of_turn(i64::from(k), slices);
+        let axes = camera.axes();
+        let turned = |direction: [f64; 3]| axes.map(|axis| dot(axis, direction));
+        let angle = 360.0 * f64::from(k) / f64::from(slices);
+        Self {
+            half: size.map(|side| f64::from(side) / 2.0),
+            across: turned([cos, 0.0, sin]),
+            upward: turned([0.0, 1.0, 0.0]),
+            normal: turned([-sin, 0.0, cos]),
+            distance: camera.distance,
+            focal: camera.focal,
+            centre: camera.size.map(|side| f64::from(side) / 2.0),
+            lambert: options.lambert,
+            cut: [is_cut(options.cut_deg, angle + 180.0), is_cut(options.cut_deg, angle)],
+        }
+    }
+
+    #[inline(always)]
+    fn add(&self, light: &mut Light, x: u32, y: u32, levels: [u64; 3]) {
+        let u = f64::from(x) + 0.5 - self.half[0];
+        let v = self.half[1] - f64::from(y) - 0.5;
+        if self.cut[usize::from(u >= 0.0)] {
+            return;
+        }
+        let [right, up, back] = [0, 1, 2].map(|i| u * self.across[i] + v * self.upward[i]);
+        let ahead = self.distance - back;
+        let scale = self.focal / ahead;
+        let weight = if self.lambert { self.facing([-right, -up, ahead]) } else { 256 };
+        light.splat([self.centre[0] + right * scale, self.centre[1] - up * scale], levels, weight);
+    }
+
+    /// |view . e_s| in steps of 1/256.
+    fn facing(&self, to_eye: [f64; 3]) -> u64 {
+        let length = dot(to_eye, to_eye).sqrt();
+        (256.0 * (dot(self.normal, to_eye) / length).abs() + 0.5) as u64
+    }
+}
+
+/// Whether an angle lies in a range of angles that may run over 360 degrees.
+fn is_cut(cut: Option<[f64; 2]>, angle: f64) -> bool {
+    let Some([from, to]) = cut else { return false };
+    let past = (angle - from).rem_euclid(360.0);
+    to - from >= 360.0 || past < (to - from).rem_euclid(360.0)
+}
+
+/// Pictures of a turn around a volume, `frames` of them from the camera's own place on, all with one exposure.
+///
+/// # Errors
+///
+/// As [`view_planes`]; the first picture says so already.
+pub fn film(
+    planes: &BitPlanes,
+    camera: Camera,
+    options: ViewOptions,
+    frames: u32,
+    workers: &dyn Workers,
+) -> impl Iterator<Item = Result<RgbImage, PerspectaError>> {
+    let mut exposure = None;
+    (0..frames).map(move |i| {
+        let azimuth_deg = camera.azimuth_deg + 360.0 * f64::from(i) / f64::from(frames);
+        let light = view_planes(planes, &Camera { azimuth_deg, ..camera }, options, workers)?;
+        let exposure = *exposure.get_or_insert_with(|| light.exposure(0.98));
+        Ok(light.picture(exposure))
+    })
+}

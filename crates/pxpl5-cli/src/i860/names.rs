@@ -1,0 +1,19 @@
+//! Addresses and labels as text.
+
+use ::i860::Program;
+
+/// A number of 32 bits, decimal or with 0x.
+pub(super) fn address(text: &str) -> Result<u32, String> {
+    let lower = text.to_ascii_lowercase();
+    let parsed = match lower.strip_prefix("0x") {
+        Some(digits) => u32::from_str_radix(digits, 16),
+        None => lower.parse(),
+    };
+    parsed.map_err(|_| format!("expected a 32-bit address such as 0x1000, found `{text}`"))
+}
+
+/// A line for each label of an address.
+pub(super) fn labels_at(program: Option<&Program>, pc: u32) -> String {
+    let labels = program.map_or(&[][..], |p| &p.labels);
+    labels.iter().filter(|(_, at)| *at == pc).map(|(name, _)| format!("{name}:\n")).collect()
+}

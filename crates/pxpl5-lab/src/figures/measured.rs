@@ -1,0 +1,42 @@
+//! What an experiment behind a figure gives.
+
+use pxpl5_run::ExperimentError;
+use pxpl5_scene::{Scene, builtin};
+use serde::Serialize;
+use std::sync::Arc;
+
+pub(super) type Result<T> = std::result::Result<T, ExperimentError>;
+
+/// A further number of an experiment.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Detail {
+    /// What the number is, in a few words: `standard deviation`.
+    pub name: String,
+    /// The number, in the unit that stands beside it.
+    pub value: f64,
+    /// Unit of the value: `ms`, `fields`, `Hz`, `triangles`.
+    pub unit: &'static str,
+}
+
+/// What an experiment gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// The figure's own number.
+    pub value: f64,
+    /// Further numbers of the same experiment, each with a unit of its own.
+    pub details: Vec<Detail>,
+}
+
+impl From<f64> for Measured {
+    fn from(value: f64) -> Self {
+        Self { value, details: Vec::new() }
+    }
+}
+
+pub(super) fn detail(name: &str, value: f64, unit: &'static str) -> Detail {
+    Detail { name: name.to_owned(), value, unit }
+}
+
+pub(super) fn scene_named(name: &str) -> Result<Arc<Scene>> {
+    builtin(name).map(Arc::new).map_err(|error| ExperimentError::Scene(error.to_string()))
+}

@@ -1,0 +1,71 @@
+//! Sine and cosine of fractions of a turn, with the symmetries of the circle in every bit.
+
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
+
+/// Sine and cosine of `numerator / denominator` of a turn.
+///
+/// The angle is reduced to the first eighth with whole numbers, so that half a turn more gives the exact negative of both,
+/// a quarter exchanges them, and at 45 degrees they are equal.
+///
+/// # Panics
+/// If the denominator is zero.
+#[must_use]
+pub fn sin_cos_of_turn(numerator: i64, denominator: u32) -> (f64, f64) {
+    let whole = i64::from(denominator);
+    let eighths = 8 * numerator.rem_euclid(whole);
+    let octant = eighths / whole;
+    let remainder = eighths % whole;
+    let is_odd = octant % 2 == 1;
+    let within = if is_odd { whole - remainder } else { remainder };
+    let (s, c) = first_eighth(within, whole);
+    match octant {
+        0 => (s, c),
+        1 => (c, s),
+        2 => (c, -s),
+        3 => (s, -c),
+        4 => (-s, -c),
+        5 => (-c, -s),
+        6 => (-c, s),
+        _ => (-s, c),
+    }
+}
+
+/// Sine and cosine of `part / whole` of 45 degrees.
+fn first_eighth(part: i64, whole: i64) -> (f64, f64) {
+    if part == whole {
+        return (FRAC_1_SQRT_2, FRAC_1_SQRT_2);
+    }
+    libm::sincos(FRAC_PI_4 * (part as f64 / whole as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sin_cos_of_turn;
+    use proptest::prelude::*;
+
+    #[test]
+    fn quarters_and_eighths_are_exact() {
+        assert_eq!(sin_cos_of_turn(0, 4), (0.0, 1.0));
+        assert_eq!(sin_cos_of_turn(1, 4), (1.0, 0.0));
+        assert_eq!(sin_cos_of_turn(2, 4), (0.0, -1.0));
+        assert_eq!(sin_cos_of_turn(-1, 4), (-1.0, 0.0));
+        let (s, c) = sin_cos_of_turn(99, 792);
+        assert_eq!(s.to_bits(), c.to_bits());
+    }
+
+    proptest! {
+        #[test]
+        fn half_a_turn_negates_every_bit(n in -5000i64..5000, half in 2u32..1000) {
+            let (s, c) = sin_cos_of_turn(n, 2 * half);
+            let (t, d) = sin_cos_of_turn(n + i64::from(half), 2 * half);
+            prop_assert_eq!((t, d), (-s, -c));
+        }
+
+        #[test]
+        fn it_is_the_sine_and_the_cosine(n in -5000i64..5000, whole in 1u32..2000) {
+            let (s, c) = sin_cos_of_turn(n, whole);
+            let angle = std::f64::consts::TAU * n as f64 / f64::from(whole);
+            prop_assert!((s - angle.sin()).abs() < 1e-11 && (c - angle.cos()).abs() < 1e-11);
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! A flat screen: one view, the whole frustum, hidden surfaces removed.
+
+use crate::error::{SpatialError, require};
+use crate::projection::Size;
+use crate::slice_volume::SliceVolume;
+use crate::view::{PixelFormat, SliceView, SpatialDisplay};
+use glam::{DMat4, DVec3};
+
+/// The canonical pipeline: one picture of the scene from an eye, with depth.
+#[derive(Clone, Debug)]
+pub struct FlatDisplay {
+    size: Size,
+    views: [SliceView; 1],
+}
+
+impl FlatDisplay {
+    /// A screen with any view matrix and any projection to clip coordinates of depth 0 to 1.
+    ///
+    /// # Errors
+    ///
+    /// [`SpatialError::Setting`] if the size is zero or its width no multiple of 8.
+    pub fn new(size: Size, view: DMat4, projection: DMat4) -> Result<Self, SpatialError> {
+        check_size(size)?;
+        let mut only = SliceView::new(view, projection, SliceVolume::Frustum, size);
+        only.hides = true;
+        Ok(Self { size, views: [only] })
+    }
+
+    /// A screen behind an eye that looks at the origin from azimuth `azimuth` (from +z to +x) and elevation `elevation`,
+    /// radians, at a distance and with a focal length in pixels.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::new`].
+    pub fn around(size: Size, azimuth: f64, elevation: f64, distance: f64, focal: f64) -> Result<Self, SpatialError> {
+        let (sin_a, cos_a) = libm::sincos(azimuth);
+        let (sin_e, cos_e) = libm::sincos(elevation);
+        let eye = distance * DVec3::new(cos_e * sin_a, sin_e, cos_e * cos_a);
+        let view = DMat4::look_at_rh(eye, DVec3::ZERO, DVec3::Y);
+        let near = distance * 0.01;
+        let far = distance * 100.0;
+        let half = [f64::from(size[0]) / 2.0, f64::from(size[1]) / 2.0];
+        let columns = [
+            [focal / half[0], 0.0, 0.0, 0.0],
+            [0.0, focal / half[1], 0.0, 0.0],
+            [0.0, 0.0, far / (near - far), -1.0],
+            [0.0, 0.0, near * far / (near - far), 0.0],
+        ];
+        Self::new(size, view, DMat4::from_cols_array_2d(&columns))
+    }
+}
+
+/// Checks the size of an image.
+pub(super) fn check_size(size: Size) -> Result<(), SpatialError> {
+    let [width, height] = size;
+    require((8..=4096).contains(&width), "display.width", "8 to 4096", width)?;
+    require(width.is_multiple_of(8), "display.width", "a multiple of 8", width)?;
+    require((1..=4096).contains(&height), "display.height", "1 to 4096", height)
+}
+
+impl SpatialDisplay for FlatDisplay {
+    fn views(&self) -> &[SliceView] {
+        &self.views
+    }
+
+    fn target_size(&self) -> Size {
+        self.size
+    }
+
+    fn pixel_format(&self) -> PixelFormat {
+        PixelFormat::Rgb8
+    }
+
+    fn shows(&self, point: DVec3) -> bool {
+        let clip = self.views[0].projection * self.views[0].view * point.extend(1.0);
+        clip.w > 0.0 && clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && (0.0..=clip.w).contains(&clip.z)
+    }
+}

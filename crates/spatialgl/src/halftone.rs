@@ -1,0 +1,117 @@
+//! From eight bits a channel to one: ordered dither by Bayer's matrix, eight pixels of a row at a time.
+
+use crate::error::{SpatialError, require};
+
+/// Thresholds of an ordered dither, the same for all channels and slices.
+///
+/// Assumed: the matrix of 8 x 8 (2, 4 and 16 are allowed), the threshold floor((2 M + 1) 255 / 2 n^2) of a matrix element
+/// M, and a bit where the channel is above it. So 0 gives no bits, 255 all, and c in between round(n^2 c / 255) of n^2.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Halftone {
+    size: u32,
+    /// Rows of thresholds, each repeated to a multiple of eight pixels.
+    rows: Vec<Vec<u8>>,
+}
+
+impl Halftone {
+    /// The thresholds of a matrix of this size.
+    ///
+    /// # Errors
+    ///
+    /// [`SpatialError::Setting`] unless the size is 2, 4, 8 or 16.
+    pub fn bayer(size: u32) -> Result<Self, SpatialError> {
+        require([2, 4, 8, 16].contains(&size), "halftone.matrix", "2, 4, 8 or 16", size)?;
+        let period = size.max(8);
+        let threshold = |i: u32, j: u32| ((2 * bayer(size, i % size, j % size) + 1) * 255 / (2 * size * size)) as u8;
+        let rows = (0..size).map(|j| (0..period).map(|i| threshold(i, j)).collect()).collect();
+        Ok(Self { size, rows })
+    }
+
+    /// Rows and columns of the matrix.
+    #[must_use]
+    pub const fn size(&self) -> u32 {
+        self.size
+    }
+
+    /// The value that a channel of pixel (x, y) must exceed to be lit.
+    #[must_use]
+    pub fn threshold(&self, x: u32, y: u32) -> u8 {
+        self.rows[(y % self.size) as usize][(x % self.size) as usize]
+    }
+
+    /// The eight thresholds of a row's pixels from x on, which is a multiple of 8; the leftmost in the lowest byte.
+    #[inline(always)]
+    pub(crate) fn eight(&self, x: u32, y: u32) -> u64 {
+        let row = &self.rows[(y % self.size) as usize];
+        let at = x as usize % row.len();
+        let mut bytes = [0; 8];
+        bytes.copy_from_slice(&row[at..at + 8]);
+        u64::from_le_bytes(bytes)
+    }
+}
+
+/// Element (column i, row j) of Bayer's matrix: the bits of i xor j and of j, taken in turn from the lowest.
+fn bayer(size: u32, i: u32, j: u32) -> u32 {
+    let levels = size.trailing_zeros();
+    let digit = |bit: u32| ((i ^ j) >> bit & 1) << 1 | (j >> bit & 1);
+    (0..levels).fold(0, |value, bit| value << 2 | digit(bit))
+}
+
+/// The bits of eight channel values against eight thresholds, the leftmost pixel (lowest byte) in bit 7.
+#[inline(always)]
+pub(crate) fn bits_above(values: u64, thresholds: u64) -> u8 {
+    const HIGH: u64 = 0x8080_8080_8080_8080;
+    // value > threshold is not (threshold >= value), byte by byte without borrows from one to the next.
+    let low_bits = (thresholds | HIGH) - (values & !HIGH);
+    let not_above = ((thresholds & !values) | (!(thresholds ^ values) & low_bits)) & HIGH;
+    let above = (!not_above & HIGH) >> 7;
+    // Byte i of `above` (0 or 1) goes to bit 63 - i.
+    (above.wrapping_mul(0x8040_2010_0804_0201) >> 56) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn thresholds(size: u32) -> Vec<u8> {
+        let halftone = Halftone::bayer(size).expect("a size");
+        (0..size).flat_map(|y| (0..size).map(move |x| (x, y))).map(|(x, y)| halftone.threshold(x, y)).collect()
+    }
+
+    #[test]
+    fn the_first_rows_of_the_matrix_are_bayers() {
+        let row = |j| (0..8).map(|i| bayer(8, i, j)).collect::<Vec<_>>();
+        assert_eq!(row(0), [0, 32, 8, 40, 2, 34, 10, 42]);
+        assert_eq!(row(1), [48, 16, 56, 24, 50, 18, 58, 26]);
+    }
+
+    /// Case 22 of the specification.
+    #[test]
+    fn so_many_of_64_pixels_are_lit() {
+        let counts = [0u8, 1, 2, 64, 127, 128, 200, 253, 254, 255]
+            .map(|c| thresholds(8).iter().filter(|threshold| c > **threshold).count());
+        assert_eq!(counts, [0, 0, 1, 16, 32, 32, 50, 63, 64, 64]);
+    }
+
+    #[test]
+    fn every_size_lights_the_rounded_share() {
+        for size in [2u32, 4, 8, 16] {
+            for c in 0..=255u8 {
+                let lit = thresholds(size).iter().filter(|threshold| c > **threshold).count();
+                let share = f64::from(size * size) * f64::from(c) / 255.0;
+                assert!((lit as f64 - share).abs() <= 0.5 + 1e-9 + share * 0.01, "{size} {c}: {lit} of {share}");
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn eight_at_a_time_are_as_one_by_one(values: [u8; 8], thresholds: [u8; 8]) {
+            let bits = bits_above(u64::from_le_bytes(values), u64::from_le_bytes(thresholds));
+            for i in 0..8 {
+                prop_assert_eq!(bits >> (7 - i) & 1 == 1, values[i] > thresholds[i]);
+            }
+        }
+    }
+}

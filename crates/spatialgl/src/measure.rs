@@ -1,0 +1,120 @@
+//! What a volume shows of a scene: how connected surfaces are, how bright at which radius, and what is dark at the axis.
+
+use crate::command::CommandBuffer;
+use crate::curve::plane_curve;
+use crate::frame::{BitPlanes, ColourSample, VolumeFrame};
+use crate::view::{SliceView, SpatialDisplay};
+use glam::DVec3;
+use serde::Serialize;
+
+/// Samples of the curves in which a mesh crosses the slices, and how many of them are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Connected {
+    /// Samples inside the image, at most a pixel apart.
+    pub samples: u64,
+    /// Those with a drawn pixel among the nine around them.
+    pub shown: u64,
+}
+
+impl Connected {
+    /// Part of the samples that is shown, percent; 100 of none.
+    #[must_use]
+    pub fn percent(&self) -> f64 {
+        if self.samples == 0 { 100.0 } else { 100.0 * self.shown as f64 / self.samples as f64 }
+    }
+}
+
+/// How connected a swept volume shows a mesh. `None` if the frame was made without its colours
+/// ([`VolumeConfig::keeps_colours`](crate::VolumeConfig::keeps_colours)): dither would count as gaps.
+#[must_use]
+pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<Connected> {
+    let colours = frame.colours.as_ref()?;
+    let size = display.target_size();
+    let mut found = Connected::default();
+    for (view, drawn) in display.views().iter().zip(colours) {
+        let around = Around::new(size, drawn);
+        for triangle in commands.triangles() {
+            let local = triangle.map(|corner| view.local(DVec3::from_array(corner)).to_array());
+            if let Some((ends, _)) = plane_curve(local, view.volume.middle()) {
+                around.count(view, ends, &mut found);
+            }
+        }
+    }
+    Some(found)
+}
+
+/// The drawn pixels of a slice, each with its eight neighbours.
+struct Around {
+    size: [u32; 2],
+    near: Vec<bool>,
+}
+
+impl Around {
+    fn new(size: [u32; 2], drawn: &[ColourSample]) -> Self {
+        let [width, height] = size;
+        let mut near = vec![false; width as usize * height as usize];
+        for sample in drawn {
+            let x = sample.pixel % width;
+            let y = sample.pixel / width;
+            for row in y.saturating_sub(1)..(y + 2).min(height) {
+                for column in x.saturating_sub(1)..(x + 2).min(width) {
+                    near[(row * width + column) as usize] = true;
+                }
+            }
+        }
+        Self { size, near }
+    }
+
+    fn count(&self, view: &SliceView, ends: [[f64; 3]; 2], found: &mut Connected) {
+        let [from, to] = ends.map(|end| pixel_of(view, end, self.size));
+        let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
+        let steps = length.ceil().max(1.0);
+        for i in 0..steps as u32 {
+            // In the middle of each step, so that no point is counted for two triangles.
+            let t = (f64::from(i) + 0.5) / steps;
+            let [x, y] = [0, 1].map(|axis| from[axis] * (1.0 - t) + to[axis] * t);
+            if x >= 0.0 && y >= 0.0 && x < f64::from(self.size[0]) && y < f64::from(self.size[1]) {
+                found.samples += 1;
+                found.shown += u64::from(self.near[y as usize * self.size[0] as usize + x as usize]);
+            }
+        }
+    }
+}
+
+/// Where a point of the slice lies in its image, pixels from the top left.
+fn pixel_of(view: &SliceView, local: [f64; 3], size: [u32; 2]) -> [f64; 2] {
+    let clip = view.projection * DVec3::from_array(local).extend(1.0);
+    let [width, height] = size.map(f64::from);
+    [(clip.x / clip.w + 1.0) * width / 2.0, (1.0 - clip.y / clip.w) * height / 2.0]
+}
+
+/// Lit pixels of all slices by their distance from the middle column, in rings of so many pixels.
+#[must_use]
+pub fn brightness_by_radius(planes: &BitPlanes, ring: u32) -> Vec<u64> {
+    let [width, _] = planes.size();
+    let radius = width / 2;
+    let mut rings = vec![0; radius.div_ceil(ring.max(1)) as usize];
+    for (x, lit) in (0..width).zip(lit_by_column(planes)) {
+        let distance = if x < radius { radius - 1 - x } else { x - radius };
+        rings[(distance / ring.max(1)) as usize] += lit;
+    }
+    rings
+}
+
+/// Radius in pixels within which no slice shows anything; `None` for a dark volume.
+#[must_use]
+pub fn dead_zone_radius(planes: &BitPlanes) -> Option<u32> {
+    brightness_by_radius(planes, 1).iter().position(|lit| *lit > 0).map(|radius| radius as u32)
+}
+
+fn lit_by_column(planes: &BitPlanes) -> Vec<u64> {
+    let row = (planes.size()[0] / 8) as usize;
+    let mut columns = vec![0; row * 8];
+    for (at, word) in planes.words.iter().enumerate().filter(|(_, word)| **word != 0) {
+        let lit = word | word >> 8 | word >> 16;
+        for pixel in 0..8 {
+            columns[at % row * 8 + pixel] += u64::from(lit >> (7 - pixel) & 1);
+        }
+    }
+    columns
+}

@@ -1,0 +1,87 @@
+//! Projector pixels of three bits in words of 32: eight a word as the paper packs them, or ten for comparison.
+
+use serde::{Deserialize, Serialize};
+
+/// Pixels of three bits in one word of [`pack_dense`] (P10: 32 / 3).
+pub const DENSE_PIXELS: usize = 10;
+
+/// Pixels in one word as published (P9).
+pub const PIXELS_PER_WORD: u32 = 8;
+
+/// Which bit of a byte is the leftmost of its eight pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BitOrder {
+    /// Bit 7 is the leftmost pixel. Assumed.
+    #[default]
+    LeftIsHigh,
+    /// Bit 0 is the leftmost pixel.
+    LeftIsLow,
+}
+
+/// A word of eight pixels: byte 0 red, byte 1 green, byte 2 blue, byte 3 zero; bit 7 of each is the leftmost pixel.
+#[inline(always)]
+#[must_use]
+pub const fn packed_word(red: u8, green: u8, blue: u8) -> u32 {
+    u32::from_le_bytes([red, green, blue, 0])
+}
+
+/// The three bits (bit 0 red, 1 green, 2 blue) of pixel 0 (the leftmost) to 7 of a word.
+#[inline(always)]
+#[must_use]
+pub const fn pixel_of_word(word: u32, pixel: u32) -> u8 {
+    let column = word >> (7 - pixel % 8);
+    (column & 1 | column >> 7 & 2 | column >> 14 & 4) as u8
+}
+
+/// A word with its bytes in an order of bits.
+#[must_use]
+pub const fn in_bit_order(word: u32, order: BitOrder) -> u32 {
+    match order {
+        BitOrder::LeftIsHigh => word,
+        BitOrder::LeftIsLow => word.reverse_bits().swap_bytes(),
+    }
+}
+
+/// Ten pixels of three bits a word, the first in bits 0 to 2; the last word may hold fewer. For comparison only.
+#[must_use]
+pub fn pack_dense(pixels: &[u8]) -> Vec<u32> {
+    let word = |pixels: &[u8]| pixels.iter().rev().fold(0, |word, pixel| word << 3 | u32::from(pixel & 7));
+    pixels.chunks(DENSE_PIXELS).map(word).collect()
+}
+
+/// The first `count` pixels of densely packed words.
+#[must_use]
+pub fn unpack_dense(words: &[u32], count: usize) -> Vec<u8> {
+    let pixels = words.iter().flat_map(|word| (0..DENSE_PIXELS).map(move |i| (word >> (3 * i) & 7) as u8));
+    pixels.take(count).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn the_reversed_order_mirrors_each_byte_in_its_place() {
+        assert_eq!(in_bit_order(packed_word(0x80, 0x40, 0x03), BitOrder::LeftIsLow), packed_word(0x01, 0x02, 0xC0));
+    }
+
+    proptest! {
+        #[test]
+        fn dense_words_give_back_their_pixels(pixels in prop::collection::vec(0u8..8, 0..64)) {
+            let words = pack_dense(&pixels);
+            prop_assert_eq!(words.len(), pixels.len().div_ceil(10));
+            prop_assert_eq!(unpack_dense(&words, pixels.len()), pixels);
+        }
+
+        #[test]
+        fn a_word_gives_back_its_pixels(pixels: [u8; 8]) {
+            let byte = |channel: u32| (0..8).fold(0, |byte, i| byte << 1 | (pixels[i] >> channel & 1));
+            let word = packed_word(byte(0), byte(1), byte(2));
+            for i in 0..8 {
+                prop_assert_eq!(pixel_of_word(word, i), pixels[i as usize] & 7);
+            }
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! Connected rasterisation, which is **beyond the paper**: pixels that touch each other along triangle and slice plane.
+
+use super::SliceWork;
+use super::assemble::SliceTransform;
+use super::setup::Place;
+use crate::command::Shape;
+use crate::curve::plane_curve;
+use crate::image::SliceImage;
+
+/// A point of a triangle's curve: window coordinates and colour.
+#[derive(Clone, Copy)]
+struct CurvePoint {
+    at: [f64; 2],
+    colour: [f64; 3],
+}
+
+/// Fills the gaps that sampling left along every triangle's curve; how many pixels that were.
+pub(super) fn draw(work: SliceWork<'_>, transform: &SliceTransform, image: &mut SliceImage) -> u64 {
+    let mut added = 0;
+    for primitive in work.bin.primitives().iter().map(|i| &work.commands.primitives[*i as usize]) {
+        if primitive.shape != Shape::Triangle {
+            continue;
+        }
+        let local = primitive.vertices.map(|i| transform.local(work.commands.positions[i as usize]));
+        let colours = primitive.vertices.map(|i| work.commands.colours[i as usize]);
+        let Some((ends, weights)) = plane_curve(local, transform.volume.middle()) else { continue };
+        let point = |i: usize| {
+            let Place { x, y, w, .. } = transform.place(ends[i]);
+            let colour = [0, 1, 2].map(|c| (0..3).map(|corner| weights[i][corner] * colours[corner][c]).sum());
+            CurvePoint { at: [x / w, y / w], colour }
+        };
+        added += line(point(0), point(1), image);
+    }
+    added
+}
+
+/// Lights unlit pixels on the way from one point to another, one a column or row, whichever are more.
+fn line(from: CurvePoint, to: CurvePoint, image: &mut SliceImage) -> u64 {
+    let Some([begin, end]) = inside(from.at, to.at, image.size()) else { return 0 };
+    let mix = |a: f64, b: f64, t: f64| a * (1.0 - t) + b * t;
+    let span = |axis: usize| ((to.at[axis] - from.at[axis]) * (end - begin)).abs();
+    let steps = span(0).max(span(1)).ceil().max(1.0);
+    let mut added = 0;
+    for i in 0..=steps as u32 {
+        let t = mix(begin, end, f64::from(i) / steps);
+        let x = mix(from.at[0], to.at[0], t).floor();
+        let y = mix(from.at[1], to.at[1], t).floor();
+        let colour = [0, 1, 2].map(|c| (mix(from.colour[c], to.colour[c], t) + 0.5) as u8);
+        added += u64::from(image.fill_gap(x, y, colour));
+    }
+    added
+}
+
+/// The part of a line, as a range of 0..1, that lies in the image.
+fn inside(from: [f64; 2], to: [f64; 2], size: [u32; 2]) -> Option<[f64; 2]> {
+    let mut range = [0.0f64, 1.0f64];
+    for axis in 0..2 {
+        let step = to[axis] - from[axis];
+        let limits = [-from[axis], f64::from(size[axis]) - from[axis]];
+        if step == 0.0 {
+            if limits[0] > 0.0 || limits[1] < 0.0 {
+                return None;
+            }
+            continue;
+        }
+        let crossings = limits.map(|limit| limit / step);
+        range[0] = range[0].max(crossings[0].min(crossings[1]));
+        range[1] = range[1].min(crossings[0].max(crossings[1]));
+    }
+    (range[0] <= range[1]).then_some(range)
+}

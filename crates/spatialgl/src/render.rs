@@ -1,0 +1,307 @@
+//! A volume from a recording: bins, batches of slices, tile queries, halftone and packing.
+
+use crate::bin::{BinTolerance, Binning};
+use crate::command::CommandBuffer;
+use crate::error::SpatialError;
+use crate::frame::{BitPlanes, ColourSample, VolumeFrame, words_of_slice};
+use crate::halftone::{Halftone, bits_above};
+use crate::image::SliceImage;
+use crate::pack::packed_word;
+use crate::projection::Size;
+use crate::raster::{Bin, Coverage, SliceRenderer, SliceStats, SliceWork};
+use crate::stats::VolumeStats;
+use crate::tile::{TileGrid, Tiling};
+use crate::view::{SliceView, SpatialDisplay};
+use crate::workers::{Task, Workers};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
+/// Which slices of a turn are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Strobes {
+    /// Each slice is drawn for itself.
+    #[default]
+    Each,
+    /// The first half is drawn, and the other half shows it turned over, jitter included. **Beyond the paper.**
+    Mirror,
+}
+
+/// How a volume is made of a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VolumeConfig {
+    /// How primitives are sorted before slices are drawn.
+    pub binning: Binning,
+    /// How far from a plane a vertex counts for both its sides.
+    pub bin_tolerance: BinTolerance,
+    /// Size of tiles, and how many slices are queried together.
+    pub tiling: Tiling,
+    /// From eight bits to one.
+    pub halftone: Halftone,
+    /// What of a primitive is drawn.
+    pub coverage: Coverage,
+    /// Which slices are drawn.
+    pub strobes: Strobes,
+    /// Whether the colours before halftoning are kept.
+    pub keeps_colours: bool,
+}
+
+impl VolumeConfig {
+    /// The paper's algorithms, with bins that lose nothing and Bayer's matrix of 8 x 8.
+    ///
+    /// # Panics
+    /// Never: the matrix has a valid size.
+    #[must_use]
+    pub fn paper() -> Self {
+        Self {
+            binning: Binning::AllPlanes,
+            bin_tolerance: BinTolerance::OfTheClip,
+            tiling: Tiling::PAPER,
+            halftone: Halftone::bayer(8).expect("a valid size"),
+            coverage: Coverage::Sampled,
+            strobes: Strobes::Each,
+            keeps_colours: false,
+        }
+    }
+
+    /// The same picture by brute force: every slice draws everything, and every pixel is packed and sent.
+    #[must_use]
+    pub fn plain() -> Self {
+        Self { binning: Binning::Off, tiling: Tiling::OFF, ..Self::paper() }
+    }
+}
+
+/// Draws a volume. The result does not depend on the workers, nor on bins and tiles.
+///
+/// # Errors
+///
+/// [`SpatialError::Setting`] if tiles or batches have a size that they cannot have.
+pub fn render_volume(
+    display: &dyn SpatialDisplay,
+    commands: &CommandBuffer,
+    config: &VolumeConfig,
+    renderer: &dyn SliceRenderer,
+    workers: &dyn Workers,
+) -> Result<VolumeFrame, SpatialError> {
+    config.tiling.check()?;
+    let size = display.target_size();
+    let shown = display.views().len();
+    let drawn = if config.strobes == Strobes::Mirror { shown.div_ceil(2) } else { shown };
+    let bins = Bins::of(display, commands, config);
+    let volume = Volume { commands, config, renderer, bins: &bins, size, scratch: Mutex::new(Vec::new()) };
+    let mut planes = BitPlanes::dark(size, shown as u32);
+    let (first, second) = planes.words.split_at_mut(drawn * words_of_slice(size));
+    let mut batches = volume.batches(&display.views()[..drawn], first, second);
+    let tasks = batches.iter_mut().map(|batch| Box::new(|| volume.draw(batch)) as Task<'_>).collect();
+    workers.run(tasks);
+    let mut stats = volume.count(display, &batches);
+    let colours = batches.into_iter().flat_map(|batch| batch.colours).collect();
+    stats.passes = display.views().first().map_or(0, |view| u64::from(view.volume.passes()));
+    Ok(VolumeFrame { planes, stats, colours: config.keeps_colours.then_some(colours) })
+}
+
+/// The primitives that each group of slices draws.
+struct Bins {
+    lists: BTreeMap<u64, Bin>,
+    memberships: u64,
+}
+
+impl Bins {
+    fn of(display: &dyn SpatialDisplay, commands: &CommandBuffer, config: &VolumeConfig) -> Self {
+        let layout = display.bins();
+        let groups: Vec<u64> = commands
+            .primitives
+            .iter()
+            .map(|primitive| {
+                let (corners, used) = commands.corners_of(primitive);
+                layout.groups(&corners[..used], config.binning, config.bin_tolerance, primitive.extra())
+            })
+            .collect();
+        let mut lists = BTreeMap::new();
+        for view in display.views() {
+            let drawn_by = |i: &u32| groups[*i as usize] & view.bins != 0;
+            let list = || Bin::new(commands, (0..groups.len() as u32).filter(drawn_by).collect());
+            lists.entry(view.bins).or_insert_with(list);
+        }
+        let memberships = groups.iter().map(|groups| u64::from(groups.count_ones())).sum();
+        Self { lists, memberships }
+    }
+}
+
+/// The words of a slice, and of the one that shows it turned over, if there is one: both dark so far.
+struct SliceWords<'a> {
+    own: &'a mut [u32],
+    turned: Option<&'a mut [u32]>,
+    row: usize,
+}
+
+impl SliceWords<'_> {
+    #[inline(always)]
+    fn set(&mut self, row: usize, column: usize, word: u32) {
+        self.own[row * self.row + column] = word;
+        if let Some(turned) = &mut self.turned {
+            turned[(row + 1) * self.row - 1 - column] = word.reverse_bits().swap_bytes();
+        }
+    }
+}
+
+/// What is the same for all batches.
+struct Volume<'a> {
+    commands: &'a CommandBuffer,
+    config: &'a VolumeConfig,
+    renderer: &'a dyn SliceRenderer,
+    bins: &'a Bins,
+    size: Size,
+    /// Clean targets that no batch uses.
+    scratch: Mutex<Vec<SliceImage>>,
+}
+
+/// Slices that are drawn, queried and packed together, and what came of them.
+struct Batch<'a> {
+    views: &'a [SliceView],
+    words: Vec<SliceWords<'a>>,
+    slices: Vec<SliceStats>,
+    occupied: Vec<u32>,
+    colours: Vec<Vec<ColourSample>>,
+}
+
+impl<'a> Volume<'a> {
+    fn batches(&self, views: &'a [SliceView], first: &'a mut [u32], second: &'a mut [u32]) -> Vec<Batch<'a>> {
+        let slice = words_of_slice(self.size);
+        let row = (self.size[0] / 8) as usize;
+        let mut turned = second.chunks_mut(slice);
+        let mut words = first.chunks_mut(slice).map(|own| SliceWords { own, turned: turned.next(), row });
+        let batches = views.chunks(self.config.tiling.batch as usize).map(|views| Batch {
+            views,
+            words: words.by_ref().take(views.len()).collect(),
+            slices: Vec::new(),
+            occupied: Vec::new(),
+            colours: Vec::new(),
+        });
+        batches.collect()
+    }
+
+    fn draw(&self, batch: &mut Batch<'_>) {
+        let mut images: Vec<SliceImage> = batch.views.iter().map(|_| self.target()).collect();
+        for (view, image) in batch.views.iter().zip(&mut images) {
+            let bin = &self.bins.lists[&view.bins];
+            let work = SliceWork { commands: self.commands, bin, coverage: self.config.coverage };
+            batch.slices.push(self.renderer.render(work, view, image));
+        }
+        let grid = self.config.tiling.grid(self.size);
+        batch.occupied = self.occupied(&grid, &images);
+        for (image, words) in images.iter_mut().zip(&mut batch.words) {
+            if self.config.keeps_colours {
+                batch.colours.push(samples(image));
+            }
+            for tile in &batch.occupied {
+                self.pack_tile(image, grid.rectangle(*tile), words);
+            }
+        }
+        self.scratch.lock().unwrap_or_else(PoisonError::into_inner).append(&mut images);
+    }
+
+    fn target(&self) -> SliceImage {
+        let used = self.scratch.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        used.unwrap_or_else(|| {
+            let mut image = SliceImage::new(self.size);
+            if self.commands.background != [0; 3] {
+                image.clear(self.commands.background);
+            }
+            image
+        })
+    }
+
+    /// The tiles of a batch that hold something: without tiles all, with a background that is not dark too.
+    fn occupied(&self, grid: &TileGrid, images: &[SliceImage]) -> Vec<u32> {
+        let mut marked = vec![!self.is_sparse(); grid.tiles() as usize];
+        for image in images.iter().filter(|_| self.is_sparse()) {
+            grid.mark(image, &mut marked);
+        }
+        (0..).zip(marked).filter(|(_, is_marked)| *is_marked).map(|(tile, _)| tile).collect()
+    }
+
+    /// Whether what was not drawn on is dark and need not be looked at.
+    fn is_sparse(&self) -> bool {
+        self.config.tiling.tile.is_some() && self.commands.background == [0; 3]
+    }
+
+    /// Halftones and packs a rectangle, the sides of which are multiples of 8 from the left, and cleans it.
+    fn pack_tile(&self, image: &mut SliceImage, rectangle: [u32; 4], words: &mut SliceWords<'_>) {
+        let [left, top, right, bottom] = rectangle;
+        let width = image.size()[0];
+        let is_sparse = self.is_sparse();
+        for y in top..bottom {
+            for x in (left..right).step_by(8) {
+                let at = (y * width + x) as usize;
+                if is_sparse && !image.is_marked_at(at) {
+                    continue;
+                }
+                let thresholds = self.config.halftone.eight(x, y);
+                let [red, green, blue] = image.eight(at).map(|values| bits_above(values, thresholds));
+                words.set(y as usize, x as usize / 8, packed_word(red, green, blue));
+                if is_sparse {
+                    image.darken_eight(at);
+                }
+            }
+        }
+        if !is_sparse {
+            image.clear_rectangle(rectangle, self.commands.background);
+        }
+    }
+
+    fn count(&self, display: &dyn SpatialDisplay, batches: &[Batch<'_>]) -> VolumeStats {
+        let mut stats = VolumeStats::default();
+        let tiling = self.config.tiling;
+        let grid = tiling.grid(self.size);
+        let [width, height] = self.size.map(u64::from);
+        for batch in batches {
+            let slices = batch.views.len() as u64;
+            let words: u64 = batch.occupied.iter().map(|tile| grid.words(*tile)).sum();
+            stats.slices_rendered += slices;
+            stats.slices.extend(&batch.slices);
+            stats.pixels_packed += words * 8 * slices;
+            stats.bytes_sent += words * 4 * slices;
+            if tiling.tile.is_some() {
+                stats.tiles_occupied += batch.occupied.len() as u64;
+                stats.queries += u64::from(grid.tiles());
+                stats.stencil_clears += 1;
+                stats.bytes_sent += u64::from(grid.tiles().div_ceil(8));
+            }
+        }
+        stats.bytes_unpacked = stats.slices_rendered * width * height * 4;
+        stats.bytes_packed = stats.slices_rendered * width * height / 2;
+        stats.vertices = self.commands.vertices() as u64;
+        stats.primitives = self.commands.primitives() as u64;
+        stats.bin_memberships = self.bins.memberships;
+        let views = batches.iter().flat_map(|batch| batch.views);
+        stats.draws_unbinned = views.map(|view| u64::from(view.volume.passes()) * stats.primitives).sum();
+        stats.outside_volume = outside(display, self.commands);
+        stats.add_slices();
+        stats
+    }
+}
+
+/// Primitives with a corner where the display shows nothing.
+fn outside(display: &dyn SpatialDisplay, commands: &CommandBuffer) -> u64 {
+    let is_shown: Vec<bool> = commands.positions.iter().map(|p| display.shows(DVec3::from_array(*p))).collect();
+    let is_outside = |corners: &[u32]| corners.iter().any(|i| !is_shown[*i as usize]);
+    commands.primitives.iter().filter(|primitive| is_outside(primitive.corners())).count() as u64
+}
+
+/// The pixels that were drawn on, with their colours.
+fn samples(image: &SliceImage) -> Vec<ColourSample> {
+    let width = image.size()[0];
+    let mut samples = Vec::new();
+    for (at, byte) in (0u32..).zip(&image.stencil).filter(|(_, byte)| **byte != 0) {
+        let mut rest = *byte;
+        while rest != 0 {
+            let pixel = at * 8 + rest.trailing_zeros();
+            rest &= rest - 1;
+            samples.push(ColourSample { pixel, colour: image.pixel(pixel % width, pixel / width) });
+        }
+    }
+    samples
+}

@@ -1,0 +1,87 @@
+//! Scenes of `pxpl5-scene` as recordings: centred on the axis, the farthest corner at a given radius, spheres tessellated.
+
+use crate::command::CommandBuffer;
+use crate::context::{Context, Light, Topology, Vertex, VertexBuffer};
+use crate::error::SpatialError;
+use glam::{DMat4, DVec3};
+use pxpl5_scene::{Scene, Sphere};
+
+/// Facets of a tessellated sphere from pole to pole; twice as many around it.
+const SPHERE_ROWS: u32 = 12;
+
+/// Part of the display's radius at which the farthest corner of a scene lies.
+pub const SCENE_REACH: f64 = 0.9;
+
+/// Records a scene for a display of this radius: the middle of its box at the origin, its farthest point at
+/// [`SCENE_REACH`] of the radius, its own light if `lit`. Nothing else fills the slices: the background stays dark.
+///
+/// # Errors
+///
+/// [`SpatialError`] if the scene holds what no recording can.
+pub fn record_scene(scene: &Scene, radius: f64, lit: bool) -> Result<CommandBuffer, SpatialError> {
+    let (centre, reach) = scene.bounding_sphere();
+    let scale = if reach > 0.0 { SCENE_REACH * radius / f64::from(reach) } else { 1.0 };
+    let mut context = Context::default();
+    context.model_view = DMat4::from_scale(DVec3::splat(scale)) * DMat4::from_translation(-centre.as_dvec3());
+    if lit {
+        let lighting = scene.lighting();
+        context.light = Some(Light {
+            direction: lighting.towards_light.as_dvec3(),
+            ambient: f64::from(lighting.ambient),
+            diffuse: f64::from(lighting.diffuse),
+        });
+    }
+    draw_triangles(&mut context, scene)?;
+    for sphere in scene.spheres() {
+        draw_sphere(&mut context, sphere)?;
+    }
+    Ok(context.present())
+}
+
+fn draw_triangles(context: &mut Context, scene: &Scene) -> Result<(), SpatialError> {
+    let vertices = scene.vertices().iter().map(|v| Vertex {
+        position: v.position.as_dvec3(),
+        normal: v.normal.as_dvec3(),
+        colour: v.colour,
+    });
+    let buffer = VertexBuffer::new(vertices.collect())?;
+    context.draw_indexed(&buffer, scene.triangles().as_flattened(), Topology::Triangles)
+}
+
+fn draw_sphere(context: &mut Context, sphere: &Sphere) -> Result<(), SpatialError> {
+    let (vertices, indices) =
+        tessellated_sphere(sphere.centre.as_dvec3(), f64::from(sphere.radius), SPHERE_ROWS, sphere.colour);
+    context.draw_indexed(&VertexBuffer::new(vertices)?, &indices, Topology::Triangles)
+}
+
+/// A sphere of `rows` x `2 rows` facets: vertices at polar angles pi a / rows from +y and azimuths pi b / rows from +x to
+/// +z, and the indices of its triangles.
+#[must_use]
+pub fn tessellated_sphere(centre: DVec3, radius: f64, rows: u32, colour: [u8; 3]) -> (Vec<Vertex>, Vec<u32>) {
+    let columns = 2 * rows;
+    let mut vertices = Vec::new();
+    for a in 0..=rows {
+        let (sin, cos) = crate::angle::sin_cos_of_turn(i64::from(a), 2 * rows);
+        for b in 0..columns {
+            let (across, along) = crate::angle::sin_cos_of_turn(i64::from(b), columns);
+            let normal = DVec3::new(sin * along, cos, sin * across);
+            vertices.push(Vertex { position: centre + radius * normal, normal, colour });
+        }
+    }
+    let mut indices = Vec::new();
+    for a in 0..rows {
+        for b in 0..columns {
+            let here = a * columns + b;
+            let beside = a * columns + (b + 1) % columns;
+            let below = here + columns;
+            let across = beside + columns;
+            if a > 0 {
+                indices.extend([here, below, beside]);
+            }
+            if a + 1 < rows {
+                indices.extend([beside, below, across]);
+            }
+        }
+    }
+    (vertices, indices)
+}

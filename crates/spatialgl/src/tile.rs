@@ -1,0 +1,86 @@
+//! Tiles and the queries that tell which of them hold anything.
+
+use crate::error::{SpatialError, require};
+use crate::image::SliceImage;
+use crate::projection::Size;
+use serde::{Deserialize, Serialize};
+
+/// How targets are cut into tiles, and how many slices are queried together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tiling {
+    /// Side of a tile in pixels, a multiple of 8; `None` packs and sends everything.
+    pub tile: Option<u32>,
+    /// Slices whose stencils are cleared and queried together.
+    pub batch: u32,
+}
+
+impl Tiling {
+    /// Tiles of 32 x 32 pixels (published, P16), queried every 4 slices (published, P18).
+    pub const PAPER: Self = Self { tile: Some(32), batch: 4 };
+
+    /// No tiles: every pixel of every slice is packed and sent.
+    pub const OFF: Self = Self { tile: None, batch: 4 };
+
+    pub(crate) fn check(self) -> Result<(), SpatialError> {
+        if let Some(tile) = self.tile {
+            require((8..=4096).contains(&tile), "tile.size", "8 to 4096", tile)?;
+            require(tile.is_multiple_of(8), "tile.size", "a multiple of 8", tile)?;
+        }
+        require(self.batch >= 1, "tile.batch", "1 or more", self.batch)
+    }
+
+    /// The grid of tiles of a target; one tile of all of it when there are none.
+    #[must_use]
+    pub fn grid(self, size: Size) -> TileGrid {
+        let tile = self.tile.unwrap_or_else(|| size[0].max(size[1]).next_multiple_of(8));
+        TileGrid { size, tile, columns: size[0].div_ceil(tile), rows: size[1].div_ceil(tile) }
+    }
+}
+
+/// The tiles of one target, row by row from the top left; those at the right and lower edge may be cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TileGrid {
+    size: Size,
+    tile: u32,
+    columns: u32,
+    rows: u32,
+}
+
+impl TileGrid {
+    /// Tiles of a target.
+    #[must_use]
+    pub const fn tiles(&self) -> u32 {
+        self.columns * self.rows
+    }
+
+    /// Left, top, right and bottom of a tile in pixels, the last two excluded.
+    #[must_use]
+    pub fn rectangle(&self, tile: u32) -> [u32; 4] {
+        let left = tile % self.columns * self.tile;
+        let top = tile / self.columns * self.tile;
+        [left, top, (left + self.tile).min(self.size[0]), (top + self.tile).min(self.size[1])]
+    }
+
+    /// Words of eight pixels in a tile.
+    #[must_use]
+    pub fn words(&self, tile: u32) -> u64 {
+        let [left, top, right, bottom] = self.rectangle(tile);
+        u64::from((right - left) / 8) * u64::from(bottom - top)
+    }
+
+    /// Notes the tiles in which any fragment was drawn.
+    pub(crate) fn mark(&self, image: &SliceImage, tiles: &mut [bool]) {
+        let row_bytes = self.size[0] as usize / 8;
+        let tile_bytes = self.tile as usize / 8;
+        for (y, row) in image.stencil.chunks(row_bytes).enumerate() {
+            if row.iter().fold(0, |any, byte| any | byte) == 0 {
+                continue;
+            }
+            let first = y / self.tile as usize * self.columns as usize;
+            for (column, bytes) in row.chunks(tile_bytes).enumerate() {
+                tiles[first + column] |= bytes.iter().fold(0, |any, byte| any | byte) != 0;
+            }
+        }
+    }
+}

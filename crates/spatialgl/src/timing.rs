@@ -1,0 +1,138 @@
+//! Time of a volume as a stated model of processor, GPU and bus; every number of it stands here.
+
+use crate::projection::Size;
+use crate::stats::VolumeStats;
+use parameters::{ParameterError, ParameterTable};
+use serde::Serialize;
+
+parameters::parameter_table! {
+    /// The preset `geforce-6800`: a GPU, a processor and a bus of 2005, which the SpatialGL paper does not name.
+    pub struct GpuTiming {
+        /// Fragments that the GPU fills a second.
+        fill_mpixels: 6_400, "Mpixel/s", Published, 6400..=6400 in 1..=MAX, "GeForce 6800 Ultra (SPIE 5664 names the board)";
+        /// Texels that it reads a second.
+        texel_mtexels: 6_400, "Mtexel/s", Published, 6400..=6400 in 1..=MAX, "GeForce 6800 Ultra";
+        /// Vertices that it transforms a second.
+        vertex_mvertices: 600, "Mvertex/s", Published, 600..=600 in 1..=MAX, "GeForce 6800 Ultra";
+        /// Bytes read back, and sent to the projector, a second.
+        readback_mb_s: 200, "MB/s", Assumed, 100..=1000 in 1..=MAX, "AGP writes back slowly";
+        /// Time of one occlusion query beside its fill.
+        query_ns: 2_000, "ns", Assumed, 500..=10000 in 0..=MAX, "a call of the driver";
+        /// Time of the calls for one pass of one slice.
+        call_ns: 2_000, "ns", Assumed, 500..=10000 in 0..=MAX, "a call of the driver";
+        /// Processor time for one vertex: its transformation and code.
+        vertex_ns: 20, "ns", Assumed, 2..=50 in 0..=MAX, "Athlon 64";
+        /// Processor time for one primitive: its bins.
+        primitive_ns: 10, "ns", Assumed, 2..=50 in 0..=MAX, "Athlon 64";
+        /// Processor time to issue one primitive of a bin.
+        issue_ns: 10, "ns", Assumed, 2..=50 in 0..=MAX, "indexed arrays";
+    }
+}
+
+/// The model: times are linear in the counts.
+///
+/// ```text
+/// CPU  vertices t_vertex + primitives t_primitive + slices passes t_call + draws t_issue
+/// GPU  3 draws / vertex rate + fragments generated / fill + W H (slices + batches) / fill
+///      + queries t_query + queries tile^2 / fill + pixels packed / texel rate
+/// bus  bytes sent / readback, and the same to the projector
+/// ```
+///
+/// Unpacked transfers take 4 bytes a pixel, and nothing is packed.
+#[derive(Clone, Copy, Debug)]
+pub struct TimeModel {
+    /// The rates and times that it is computed with.
+    pub timing: GpuTiming,
+}
+
+/// Milliseconds of one volume.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct VolumeTime {
+    /// Processor: vertices, bins and calls.
+    pub cpu_ms: f64,
+    /// GPU: vertices, fragments, clears, queries and packing.
+    pub gpu_ms: f64,
+    /// Bus: reading back from the GPU.
+    pub readback_ms: f64,
+    /// Bus: sending the same to the projector.
+    pub projector_ms: f64,
+}
+
+impl VolumeTime {
+    /// Both ways over the bus, one after the other.
+    #[must_use]
+    pub fn bus_ms(&self) -> f64 {
+        self.readback_ms + self.projector_ms
+    }
+
+    /// Volumes a second if one part begins when the other has ended.
+    #[must_use]
+    pub fn serial_hz(&self) -> f64 {
+        1e3 / (self.cpu_ms + self.gpu_ms + self.bus_ms())
+    }
+
+    /// Volumes a second if all three work at the same time on different volumes.
+    #[must_use]
+    pub fn overlapped_hz(&self) -> f64 {
+        1e3 / self.cpu_ms.max(self.gpu_ms).max(self.bus_ms())
+    }
+}
+
+impl TimeModel {
+    /// The preset `geforce-6800`, the hardware of 2005.
+    pub const GEFORCE_6800: Self = Self { timing: GpuTiming::PAPERS };
+
+    /// The model with a table.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError::OutOfLimits`] for the first number that the model cannot take.
+    pub fn new(timing: GpuTiming) -> Result<Self, ParameterError> {
+        ParameterTable::check(&timing)?;
+        Ok(Self { timing })
+    }
+
+    /// Time of a volume with these counts, packed and sent by tiles as counted.
+    #[must_use]
+    pub fn packed(&self, stats: &VolumeStats, size: Size, tile: u32) -> VolumeTime {
+        let packing_ms = millions_ms(stats.pixels_packed, self.timing.texel_mtexels);
+        let gpu_ms = self.gpu_ms(stats, size, tile) + packing_ms;
+        self.with_bus(stats, gpu_ms, stats.bytes_sent)
+    }
+
+    /// The same with all pixels sent as words of 32 bits, without queries.
+    #[must_use]
+    pub fn unpacked(&self, stats: &VolumeStats, size: Size) -> VolumeTime {
+        let unqueried = VolumeStats { queries: 0, stencil_clears: 0, ..stats.clone() };
+        let gpu_ms = self.gpu_ms(&unqueried, size, 0);
+        self.with_bus(stats, gpu_ms, stats.bytes_unpacked)
+    }
+
+    fn cpu_ms(&self, stats: &VolumeStats) -> f64 {
+        let GpuTiming { vertex_ns, primitive_ns, call_ns, issue_ns, .. } = self.timing;
+        let calls = stats.slices_rendered * stats.passes;
+        let ns =
+            stats.vertices * vertex_ns + stats.primitives * primitive_ns + calls * call_ns + stats.draws * issue_ns;
+        ns as f64 / 1e6
+    }
+
+    fn gpu_ms(&self, stats: &VolumeStats, size: Size, tile: u32) -> f64 {
+        let timing = &self.timing;
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let cleared = pixels * (stats.slices_rendered + stats.stencil_clears);
+        let queried = stats.queries * u64::from(tile) * u64::from(tile);
+        millions_ms(3 * stats.draws, timing.vertex_mvertices)
+            + millions_ms(stats.fragments_generated + cleared + queried, timing.fill_mpixels)
+            + (stats.queries * timing.query_ns) as f64 / 1e6
+    }
+
+    fn with_bus(&self, stats: &VolumeStats, gpu_ms: f64, bytes: u64) -> VolumeTime {
+        let one_way_ms = millions_ms(bytes, self.timing.readback_mb_s);
+        VolumeTime { cpu_ms: self.cpu_ms(stats), gpu_ms, readback_ms: one_way_ms, projector_ms: one_way_ms }
+    }
+}
+
+/// Milliseconds of so many things at a rate in millions a second.
+fn millions_ms(count: u64, millions: u64) -> f64 {
+    count as f64 / (millions as f64 * 1e3)
+}

@@ -1,0 +1,178 @@
+//! The same recording on three displays, connectedness (case 28), and the model of time.
+
+mod support;
+
+use glam::DVec3;
+use pxpl5_scene::builtin;
+use spatialgl::*;
+use support::*;
+
+/// The sphere of section 6: 24 x 48 facets, r = 300.
+fn sphere() -> CommandBuffer {
+    let (vertices, indices) = tessellated_sphere(DVec3::ZERO, 300.0, 24, [255; 3]);
+    let mut context = Context::default();
+    context.draw_indexed(&VertexBuffer::new(vertices).expect("finite"), &indices, Topology::Triangles).expect("valid");
+    context.present()
+}
+
+fn connected_percent(clip: SliceClip, projection: Projection, coverage: Coverage) -> f64 {
+    let config = VolumeConfig { coverage, keeps_colours: true, ..half(VolumeConfig::paper()) };
+    let display = swept(clip, projection);
+    let frame = volume(&display, &sphere(), &config);
+    connected(&display, &sphere(), &frame).expect("colours kept").percent()
+}
+
+/// Case 28, and the trial's table of section 6 for the sphere. The specification does not say where on a curve its samples
+/// lie; ours, in the middle of equal steps of each facet's part, find 18.3, 18.8 and 25.4 % where it has 18.7, 19.3 and
+/// 26.0. Jitter is compared as a law: other eyes, the same shares.
+#[test]
+fn case_28_connected_surfaces_of_a_sphere() {
+    let jittered = Projection::Jittered(Jitter::new(1));
+    let sampled = |clip, projection| connected_percent(clip, projection, Coverage::Sampled);
+    let cases = [
+        (SliceClip::ShaderPlanes, Projection::Orthographic, 18.7, 0.7),
+        (SliceClip::Hyperbolic(0.25), Projection::Orthographic, 19.3, 0.7),
+        (SliceClip::Prism, Projection::Orthographic, 26.0, 0.7),
+        (SliceClip::ShaderPlanes, jittered, 74.0, 3.0),
+        (SliceClip::Hyperbolic(0.25), jittered, 78.0, 3.0),
+        (SliceClip::Hyperbolic(1.0), jittered, 84.0, 3.0),
+    ];
+    for (clip, projection, expected, within) in cases {
+        let found = sampled(clip, projection);
+        assert!((found - expected).abs() < within, "{clip:?} {}: {found}, not {expected}", projection.name());
+    }
+    assert!(sampled(SliceClip::ShaderPlanes, Projection::Orthographic) < 25.0);
+    assert!(sampled(SliceClip::Hyperbolic(0.25), jittered) > 70.0);
+    for projection in [Projection::Orthographic, jittered] {
+        let percent = connected_percent(SliceClip::ShaderPlanes, projection, Coverage::Connected);
+        assert!(percent > 99.999_999, "{percent}");
+    }
+}
+
+/// Neighbouring slabs meet without a gap or an overlap: a triangle across all of them has each of its samples once.
+#[test]
+fn a_stack_of_planes_divides_a_triangle_among_its_slabs() {
+    let one = PlaneStack::new([256, 256], 1, 200.0).expect("valid");
+    let many = PlaneStack::new([256, 256], 23, 200.0).expect("valid");
+    let inside = T4.map(|p| p.map(|x| x * 0.8));
+    let samples = both(&one, &recording(&[inside]), &VolumeConfig::paper()).stats;
+    let divided = both(&many, &recording(&[inside]), &VolumeConfig::paper()).stats;
+    assert!(samples.fragments_accepted > 1_000);
+    assert_eq!(divided.fragments_accepted, samples.fragments_accepted);
+    assert!(divided.slices.iter().filter(|slice| slice.accepted > 0).count() > 5);
+}
+
+/// A near and a far square: the flat screen shows the near one, in whatever order they are drawn.
+#[test]
+fn a_flat_screen_hides_what_is_behind() {
+    let square = |z: f64, size: f64, colour: [u8; 3]| {
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]
+            .map(|[x, y]| Vertex::new(DVec3::new(x * size, y * size, z), colour))
+    };
+    let near = square(10.0, 20.0, [255, 0, 0]);
+    let far = square(-10.0, 60.0, [0, 0, 255]);
+    let display = FlatDisplay::around([128, 128], 0.0, 0.0, 400.0, 400.0).expect("valid");
+    for order in [[near, far], [far, near]] {
+        let buffer = VertexBuffer::new(order.as_flattened().to_vec()).expect("finite");
+        let mut context = Context::default();
+        context.draw(&buffer, 0..12, Topology::Triangles).expect("valid");
+        let frame = both(&display, &context.present(), &VolumeConfig::paper());
+        let colours = [(64, 64), (64 + 15, 64 - 15), (64 + 40, 64), (64, 3)].map(|(x, y)| frame.planes.pixel(0, x, y));
+        assert_eq!(colours, [0b001, 0b001, 0b100, 0]);
+        // The far square is 2 x 60 x 400 / 410 px wide.
+        let side = 120.0 * 400.0 / 410.0;
+        assert!((frame.planes.lit_voxels() as f64 - side * side).abs() < 2.0 * side);
+    }
+}
+
+/// The same Mig on a swept screen, a stack and a flat screen, from one recording.
+#[test]
+fn a_scene_does_not_know_the_display() {
+    let scene = builtin("mig").expect("built in");
+    let commands = record_scene(&scene, 384.0, true).expect("valid");
+    assert_eq!(commands.primitives(), 417);
+    let reach = commands.positions().iter().map(|p| DVec3::from_array(*p).length()).fold(0.0, f64::max);
+    assert!((reach - 0.9 * 384.0).abs() < 0.01, "{reach}");
+    let displays: [Box<dyn SpatialDisplay>; 3] = [
+        Box::new(swept(SliceClip::Hyperbolic(0.25), Projection::Jittered(Jitter::new(1)))),
+        Box::new(PlaneStack::new([768, 768], 60, 768.0).expect("valid")),
+        Box::new(FlatDisplay::around([768, 768], 0.6, 0.3, 1536.0, 1024.0).expect("valid")),
+    ];
+    for display in displays {
+        let frame = both(&*display, &commands, &VolumeConfig::paper());
+        assert!(frame.planes.lit_voxels() > 5_000);
+        assert_eq!(frame.stats.outside_volume, 0);
+    }
+}
+
+/// The closed forms of section 6 for 396 slices of 768 x 768, from counts alone.
+#[test]
+fn the_model_of_time_is_the_specifications() {
+    let size = [768, 768];
+    let pixels = 768 * 768 * 396;
+    let stats = VolumeStats {
+        slices_rendered: 396,
+        passes: 1,
+        queries: 57_024,
+        stencil_clears: 99,
+        pixels_packed: pixels,
+        bytes_unpacked: pixels * 4,
+        bytes_packed: pixels / 2,
+        bytes_sent: pixels / 2,
+        ..VolumeStats::default()
+    };
+    let model = TimeModel::GEFORCE_6800;
+    let all = model.packed(&stats, size, 32);
+    let near = |found: f64, expected: f64| assert!((found / expected - 1.0).abs() < 0.003, "{found}, not {expected}");
+    near(model.unpacked(&stats, size).readback_ms, 4_671.0);
+    near(all.readback_ms, 584.0);
+    let tenth = VolumeStats { bytes_sent: pixels / 20, pixels_packed: pixels / 10, ..stats.clone() };
+    near(model.packed(&tenth, size, 32).readback_ms, 58.4);
+    near(all.gpu_ms - model.packed(&tenth, size, 32).gpu_ms, 36.5 - 3.65 + 0.005);
+    // 396 colour targets 36.5 ms and 99 stencils a quarter of it, filling queries 9.1 ms, 57,024 queries 114.0 ms.
+    near(
+        model.packed(&VolumeStats { pixels_packed: 0, ..stats.clone() }, size, 32).gpu_ms,
+        36.5 * 1.25 + 9.12 + 114.05,
+    );
+    near(all.cpu_ms, 0.792);
+    let fill = |batched: u64| batched as f64 * 1024.0 / 6.4e9 * 1e3;
+    near(fill(57_024), 9.1);
+    near(fill(228_096), 36.5);
+    assert!(all.overlapped_hz() > all.serial_hz());
+}
+
+#[test]
+fn a_table_beyond_its_limits_is_refused() {
+    let timing = GpuTiming { fill_mpixels: 0, ..GpuTiming::PAPERS };
+    let error = TimeModel::new(timing).expect_err("zero").to_string();
+    assert!(error.contains("fill_mpixels"), "{error}");
+}
+
+/// Precision as a cause of the dead zone: with q bits nothing shows within 2^-(q+1) / S of the axis.
+#[test]
+fn planes_of_few_bits_leave_a_dead_zone() {
+    for (bits, radius) in [(4, 3.94), (8, 0.246)] {
+        let config = SweptConfig {
+            plane_fraction_bits: Some(bits),
+            ..SweptConfig::perspecta(SliceClip::ShaderPlanes, Projection::Orthographic)
+        };
+        let display = SweptDisplay::new(config).expect("valid");
+        // In the plane of slice 0 A = B = r S.
+        let first = (1..10_000).map(|i| f64::from(i) * 1e-3).find(|r| display.accepts(0, DVec3::new(*r, 0.0, 0.0)));
+        assert!((first.expect("somewhere") - radius).abs() < 0.002 + radius * 0.002, "{first:?}");
+    }
+}
+
+/// Section 1 of the specification: the prism is bright near the axis, exact planes dark; the hyperbola neither.
+#[test]
+fn brightness_over_radius_by_variant() {
+    let wall = [[-300.0, -200.2, 1.3], [300.1, -200.2, 1.3], [0.6, 280.7, 1.3]];
+    let rings = |clip| {
+        let display = swept(clip, Projection::Orthographic);
+        brightness_by_radius(&volume(&display, &recording(&[wall]), &half(VolumeConfig::paper())).planes, 16)
+    };
+    let [prism, exact, hyperbola] = [SliceClip::Prism, SliceClip::ShaderPlanes, SliceClip::Hyperbolic(0.25)].map(rings);
+    assert!(prism[0] > 5 * exact[0] && hyperbola[0] > exact[0] && prism[0] > hyperbola[0]);
+    let outer = |rings: &[u64]| rings[12..16].iter().sum::<u64>() as f64;
+    assert!((outer(&hyperbola) / outer(&exact) - 1.0).abs() < 0.05, "away from the axis the hyperbola is exact");
+}

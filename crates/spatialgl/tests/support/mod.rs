@@ -1,0 +1,57 @@
+//! The triangles of the specification's section 8 and what draws them.
+#![allow(dead_code, reason = "each test uses some of it")]
+
+use glam::DVec3;
+use spatialgl::*;
+
+pub(crate) type Triangle = [[f64; 3]; 3];
+
+pub(crate) const T1: Triangle = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
+pub(crate) const T2: Triangle = [[50.3, -100.2, 0.0], [300.7, -100.2, 0.0], [50.3, 150.6, 0.0]];
+pub(crate) const T3: Triangle = [[-200.3, 10.2, -100.4], [250.6, 10.2, -150.3], [30.7, 10.2, 260.9]];
+pub(crate) const T4: Triangle = [[-100.3, -80.2, -30.6], [120.4, -60.7, 40.3], [10.9, 90.1, 20.2]];
+pub(crate) const T5: Triangle = [[3.3, -50.2, 2.1], [9.7, -50.2, -4.4], [5.1, 60.6, 6.3]];
+pub(crate) const T8: Triangle = [[0.1, -20.0, 5.0], [0.3, -20.0, 6.0], [0.2, 20.0, 5.5]];
+
+/// Case 9's eye and shear.
+pub(crate) const ASIDE: Projection =
+    Projection::Perspective { eye: [100.0, -150.0], distance: 1536.0, shear: [0.05, 0.1] };
+
+/// A recording of white triangles.
+pub(crate) fn recording(triangles: &[Triangle]) -> CommandBuffer {
+    let vertices = triangles.iter().flatten().map(|p| Vertex::new(DVec3::from_array(*p), [255; 3])).collect();
+    let buffer = VertexBuffer::new(vertices).expect("finite");
+    let mut context = Context::default();
+    context.draw(&buffer, 0..buffer.len(), Topology::Triangles).expect("in range");
+    context.present()
+}
+
+pub(crate) fn swept(clip: SliceClip, projection: Projection) -> SweptDisplay {
+    SweptDisplay::new(SweptConfig::perspecta(clip, projection)).expect("valid")
+}
+
+/// Only the first half of the slices, which are all there are without jitter.
+pub(crate) fn half(config: VolumeConfig) -> VolumeConfig {
+    VolumeConfig { strobes: Strobes::Mirror, ..config }
+}
+
+pub(crate) fn volume(display: &dyn SpatialDisplay, commands: &CommandBuffer, config: &VolumeConfig) -> VolumeFrame {
+    render_volume(display, commands, config, &HostRenderer, &OneThread).expect("valid")
+}
+
+/// As [`volume`], and the oracle draws and counts the same.
+pub(crate) fn both(display: &dyn SpatialDisplay, commands: &CommandBuffer, config: &VolumeConfig) -> VolumeFrame {
+    let fast = volume(display, commands, config);
+    let literal = render_volume(display, commands, config, &OracleRenderer, &Threads::all()).expect("valid");
+    assert!(fast.planes == literal.planes, "the oracle has other voxels");
+    assert_eq!(fast.stats, literal.stats);
+    assert!(fast.colours == literal.colours);
+    fast
+}
+
+/// Fragments of slices 0 to 197 without bins, and the slices that are not empty. The fast path alone: where the oracle is to
+/// draw the same at full size, tests say [`both`].
+pub(crate) fn fragments(triangles: &[Triangle], clip: SliceClip, projection: Projection) -> (u64, u64) {
+    let frame = volume(&swept(clip, projection), &recording(triangles), &half(VolumeConfig::plain()));
+    (frame.stats.fragments_accepted, frame.stats.slices_rendered - frame.stats.slices_empty)
+}
