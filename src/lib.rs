@@ -59,7 +59,7 @@ pub use pxpl5_hires::HiResConfig;
 pub use pxpl5_lab::{
     ExperimentFile, FileError, HeadChoice, MotionChoice, Outputs, Plan, Published, SceneChoice, Settings, Snapshot,
     SnapshotError, Suitability, Workstation, compare, figures, growth, intervals, levels, limit, pipeline_figures,
-    registry, rig, suitability, sweep, tracking_parameters,
+    readings, registry, rig, suitability, sweep, tracking_parameters,
 };
 pub use pxpl5_machine::{
     Arrival, ConfigError, LateRegion, Machine, MachineConfig, Observation, PRESETS, Parameter, Ports, Preset, Record,
@@ -92,8 +92,8 @@ pub mod firmware {
     pub use pxpl5_gp::{Edge, Fault, Firmware, Gp, GpTiming, HostTiming, Mark, Priority, Received, Stage, Ticket};
     pub use pxpl5_renderer::{CommandKind, Layout};
     pub use pxpl5_wire::{
-        Body, CommandList, CopyOrder, CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber, RegionGrid,
-        RegionId, ViewNumber, Word, swap_request,
+        Body, CommandList, CopyOrder, CopyTarget, CopyWay, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber,
+        RegionGrid, RegionId, ViewNumber, Word, swap_request,
     };
 }
 

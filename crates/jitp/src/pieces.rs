@@ -5,7 +5,9 @@ use crate::drawing::{DrawnList, Window};
 use pphigs::PrimitiveCounts;
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{Clear, Command, CommandKind, CopyRegion, Layout, SelectRegion};
-use pxpl5_wire::{CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, MAX_MESSAGE_WORDS, RegionId, Word};
+use pxpl5_wire::{
+    CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, CopyWay, MAX_MESSAGE_WORDS, RegionId, Word,
+};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -89,7 +91,7 @@ pub(crate) fn messages(
     let lists = parts(counts).into_iter().map(|part| {
         let runs = part.runs();
         let copies = if part.last {
-            vec![CopyOrder { target, context: 0, through_backing: false, acknowledge: None }]
+            vec![CopyOrder { target, context: 0, way: CopyWay::FromPixelMemory, acknowledge: None }]
         } else {
             Vec::new()
         };

@@ -18,7 +18,7 @@ use i860::Program;
 use pxpl5_geometry::kernel::{
     Heads, Kernel, KernelSurface, PARAMETER_WORDS, Schedule, TRIANGLE_WORDS, display_list_words,
 };
-use pxpl5_geometry::{Light, Transform};
+use pxpl5_geometry::{Culling, Light, Transform};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::{Command, PhongTriangleCommand, TriangleCommand};
 use pxpl5_sim::Span;
@@ -136,7 +136,7 @@ impl Pass {
     /// What the kernel does not do, so that it takes the table's time.
     fn cost_without_code(&self, output: &KernelOutput) -> TransformCost {
         TransformCost {
-            triangles: output.left_to_clipper(),
+            triangles: output.left_to_clipper() + self.culled_by_table(),
             entries: self.entries_without_code(output),
             ..TransformCost::primitives(self.transformed())
         }
@@ -202,9 +202,16 @@ impl Pass {
         [0, 1, 13, 17, 18, 22, 26, 30].map(|at| words.get(at).copied().unwrap_or_default())
     }
 
+    /// Triangles of structures that cull, which the kernel leaves to the table: it has no test of the facing.
+    fn culled_by_table(&self) -> u64 {
+        let culling = self.placed().iter().filter(|place| place.structure.culling != Culling::None);
+        culling.map(|place| self.share().held_places(&place.structure.triangles).len() as u64).sum()
+    }
+
     /// Structures with their triangles, counted in those that the GP holds.
     fn calls(&self) -> impl Iterator<Item = (&Transform, &Light, Range<usize>)> {
-        self.placed().iter().filter_map(|place| {
+        let drawn = self.placed().iter().filter(|place| place.structure.culling == Culling::None);
+        drawn.filter_map(|place| {
             let held = self.share().held_places(&place.structure.triangles);
             Some((place.transform.as_ref()?, &place.light, held)).filter(|call| !call.2.is_empty())
         })

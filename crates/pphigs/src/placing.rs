@@ -5,7 +5,7 @@ use crate::placed::{Corners, PlacedStructure, Vertices, ViewKey};
 use crate::structure::{DisplayStructure, ModelFrame};
 use crate::view::{EyeView, FrameView, product};
 use glam::{Mat4, Vec3};
-use pxpl5_geometry::{Culling, Light, Touched, Transform, UnclippedTriangle, VertexSurface, ViewTransform, Viewport};
+use pxpl5_geometry::{Light, Touched, Transform, UnclippedTriangle, VertexSurface, ViewTransform, Viewport};
 use std::sync::{Arc, OnceLock};
 
 /// The model matrix of a structure that was never edited.
@@ -56,7 +56,7 @@ fn place(
     };
     let view = ViewTransform { model_view: product(&to_eye, &model), projection: eye.projection };
     let light = Light { direction: turned(&to_eye, list.towards_light), ambient: list.ambient, diffuse: list.diffuse };
-    let transform = Transform::new(&view, viewport, Culling::None).ok();
+    let transform = Transform::new(&view, viewport, structure.culling).ok();
     PlacedStructure {
         transform,
         light,

@@ -1,5 +1,6 @@
 //! Structures: primitives that move together.
 
+use pxpl5_geometry::Culling;
 use std::ops::Range;
 
 /// What the coordinates of a structure are fixed to.
@@ -20,4 +21,6 @@ pub struct DisplayStructure {
     pub spheres: Range<usize>,
     /// Whether it stands in the room or moves with the head.
     pub frame: ModelFrame,
+    /// Which of its triangles are dropped for the way they face, as PHIGS+ has it for a structure.
+    pub culling: Culling,
 }

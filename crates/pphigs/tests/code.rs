@@ -5,7 +5,7 @@ use pphigs::{
     Binning, DisplayList, DisplayStructure, EyeView, FrameView, KernelOutput, ModelEdit, ModelFrame, Pass, Picture,
     RegionEnvelope, Shading, Share, Transforming, region_messages,
 };
-use pxpl5_geometry::{Sphere, Viewport};
+use pxpl5_geometry::{Culling, Sphere, Viewport};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, SplitMix64};
@@ -46,8 +46,8 @@ fn list(triangles: u32) -> Arc<DisplayList> {
     let middle = triangles as usize / 3;
     let end = triangles as usize;
     list.structures = vec![
-        DisplayStructure { triangles: 0..middle, spheres: 0..0, frame: ModelFrame::World },
-        DisplayStructure { triangles: middle..end, spheres: 0..0, frame: ModelFrame::Head },
+        DisplayStructure { triangles: 0..middle, spheres: 0..0, frame: ModelFrame::World, culling: Culling::None },
+        DisplayStructure { triangles: middle..end, spheres: 0..0, frame: ModelFrame::Head, culling: Culling::None },
     ];
     Arc::new(list)
 }

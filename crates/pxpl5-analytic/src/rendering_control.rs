@@ -38,6 +38,8 @@ pub struct StereoModel {
     fifo_words: f64,
     store_ns: f64,
     backing_regions: usize,
+    /// Finished regions that a renderer keeps while their frame buffer is not available.
+    regions_stored: usize,
     field_ns: f64,
     /// Port time of each region.
     copy_ns: Vec<f64>,
@@ -84,6 +86,8 @@ struct Renderers {
     free_ns: Vec<f64>,
     /// When each one's regions had been copied.
     sent_ns: Vec<Vec<f64>>,
+    /// When the frame buffers of the regions that each one keeps become available.
+    stored_until_ns: Vec<Vec<f64>>,
     /// Words sent to each, and of its latest regions: words before it, when its first command started, of which time.
     words: Vec<f64>,
     started: Vec<Vec<(f64, f64, Cost)>>,
@@ -142,6 +146,7 @@ impl StereoModel {
             copy_words: f64::from(CommandKind::CopyRegion.words()),
             fifo_words: config.renderer.fifo_words as f64,
             backing_regions: config.renderer.backing_regions as usize,
+            regions_stored: program.finished.stored(config.renderer.backing_regions) as usize,
             store_ns: config.renderer.backing_block().as_ms() * 1e6,
             field_ns: video.retrace(PeriodNumber(1)).since(Time::ZERO).as_ms() * 1e6,
             copy_ns: regions.map(|region| copy_ns(grid, region, word_ns, overhead_ns)).collect(),
@@ -155,6 +160,7 @@ impl StereoModel {
         history.rendering.idle_ns = vec![0.0; self.renderers];
         history.rendering.free_ns = vec![0.0; self.renderers];
         history.rendering.sent_ns = vec![Vec::new(); self.renderers];
+        history.rendering.stored_until_ns = vec![Vec::new(); self.renderers];
         history.rendering.words = vec![0.0; self.renderers];
         history.rendering.started = vec![Vec::new(); self.renderers];
         loads.chunks(self.eyes).enumerate().map(|(frame, eyes)| self.frame(&mut history, frame, eyes)).collect()
@@ -241,14 +247,21 @@ impl StereoModel {
             let (accepted_ns, executed_ns) = self.execute(all, r, token_ns, arrived_ns, &load.bins[region]);
             let heard_ns = accepted_ns + self.transit_ns() + self.message_ns;
             rendered_ns = rendered_ns.max(heard_ns);
-            let waits = token_ns < available_ns;
-            let ready_ns = if waits { executed_ns.max(available_ns + self.order_ns()) } else { executed_ns };
+            let is_late = token_ns >= available_ns;
+            all.stored_until_ns[r].retain(|until| *until > token_ns);
+            let is_stored = !is_late && all.stored_until_ns[r].len() < self.regions_stored;
+            let ordered_ns = if is_late { 0.0 } else { available_ns + self.order_ns() };
+            let ready_ns = if is_stored { executed_ns } else { executed_ns.max(ordered_ns) };
+            if is_stored {
+                all.stored_until_ns[r].push(available_ns);
+            }
+            let waits = !is_late && !is_stored;
             all.idle_ns[r] = if waits { heard_ns.max(available_ns + self.message_ns) } else { heard_ns };
             // Into the backing store, which holds a few regions, and from there to the frame buffer, one after the other.
             all.free_ns[r] =
                 ready_ns.max(back(&all.sent_ns[r], all.sent_ns[r].len(), self.backing_regions)) + self.store_ns;
             let sent_ns = all.sent_ns[r].last().copied().unwrap_or(0.0);
-            let begin_ns = all.free_ns[r].max(sent_ns).max(all.ports_ns[eye]);
+            let begin_ns = all.free_ns[r].max(ordered_ns).max(sent_ns).max(all.ports_ns[eye]);
             all.ports_ns[eye] = begin_ns + self.copy_ns[region];
             all.sent_ns[r].push(all.ports_ns[eye]);
             copy = (copy.0.min(begin_ns), copy.1.max(all.ports_ns[eye]));
@@ -360,6 +373,7 @@ impl StereoModel {
             updates_hz: due.and_then(|due| due.updates_hz(field_ms)),
             due,
             eye_latencies_ms: shown.iter().flat_map(|frame| self.eye_latencies_ms(frame)).collect(),
+            eye_swap_latencies_ms: shown.iter().flat_map(|frame| self.eye_swap_latencies_ms(frame)).collect(),
             region_copy_us: self.copy_ns.iter().sum::<f64>() / self.copy_ns.len() as f64 * 1e-3,
             first_copy_ms: mean_ms(&shown, |frame| frame.copy_length_ns(0)),
             last_copy_ms: if self.eyes > 1 { mean_ms(&shown, |frame| frame.copy_length_ns(1)) } else { 0.0 },
@@ -370,6 +384,11 @@ impl StereoModel {
     /// From the beginning of TRANSFORM to the last word of COPY, for each eye.
     fn eye_latencies_ms(&self, frame: &StereoTimes) -> Vec<f64> {
         (0..self.eyes).map(|eye| (frame.copy_ns[eye].1 - frame.transform_ns[eye]) * 1e-6).collect()
+    }
+
+    /// From the beginning of TRANSFORM to the retrace at which the frame is shown, for each eye.
+    fn eye_swap_latencies_ms(&self, frame: &StereoTimes) -> Vec<f64> {
+        (0..self.eyes).map(|eye| (frame.shown_ns - frame.transform_ns[eye]) * 1e-6).collect()
     }
 
     /// A frame is due as often as COPY of all eyes lets it.

@@ -317,6 +317,7 @@ fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
         updates_hz: due.and_then(|due| due.updates_hz(field_ms)),
         due,
         eye_latencies_ms: Vec::new(),
+        eye_swap_latencies_ms: Vec::new(),
         region_copy_us: model.region_ns * 1e-3,
         first_copy_ms: length_ms(times.top),
         last_copy_ms: times.bottom.map_or(0.0, length_ms),

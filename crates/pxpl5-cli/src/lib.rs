@@ -20,6 +20,7 @@ mod machines;
 mod merge;
 mod options;
 mod output;
+mod readings;
 mod report;
 mod rig;
 mod run;
@@ -70,6 +71,7 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Measure every published figure and compare.
     Figures(figures::FiguresArgs),
+    Readings(readings::ReadingsArgs),
     /// Find the most triangles that a pipeline draws in time.
     Limit(limit::LimitArgs),
     /// Compare the levels of modelling: speed against error.
@@ -121,6 +123,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Check(args)) => check::run(args),
         Some(Command::Compare(args)) => compare::run(args),
         Some(Command::Figures(args)) => figures::run(args),
+        Some(Command::Readings(args)) => readings::run(args),
         Some(Command::Limit(args)) => limit::run(args),
         Some(Command::Levels(args)) => levels::run(args),
         Some(Command::Scenes(args)) => scenes::run(args),

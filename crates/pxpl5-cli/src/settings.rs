@@ -26,6 +26,9 @@ pub(crate) struct SettingArgs {
     /// Leave a model file where its coordinates say, in metres, instead of fitting it into the view of both eyes.
     #[arg(long)]
     no_fit: bool,
+    /// Drop triangles that face away from the eye: of surfaces without holes nothing is missing then.
+    #[arg(long)]
+    cull: bool,
     /// Preset of the machine (see `pxpl5 machines`); default: the one on which the pipeline was published.
     #[arg(long, value_name = "PRESET")]
     machine: Option<String>,
@@ -127,6 +130,9 @@ impl SettingArgs {
         }
         if self.no_fit {
             file.set("fit", false, "--no-fit")?;
+        }
+        if self.cull {
+            file.set("cull", true, "--cull")?;
         }
         for assignment in &self.sets {
             file.set_text(assignment, "--set")?;

@@ -3,6 +3,7 @@
 use crate::bin::{Binner, Range, quotient};
 use crate::lanes::{EachLane, LANES};
 use crate::touch::Touch;
+use crate::transform::Turn;
 use crate::{RegionMask, ScreenVertex, Transform};
 use multiversion::multiversion;
 use pxpl5_wire::RegionId;
@@ -64,7 +65,7 @@ impl Transform {
         let mut all = Touched { codes: Vec::with_capacity(triangles.size_hint().0), several: Vec::new() };
         let mut some = CornerLanes::default();
         while some.take(vertices, &mut triangles) > 0 {
-            let found = touch_lanes(&some, &self.binner, self.culls_back_faces());
+            let found = touch_lanes(&some, &self.binner, self.dropped);
             for lane in 0..some.len {
                 match found.codes[lane] {
                     _ if some.outside[lane] => all.codes.push(NEEDS_CLIPPING),
@@ -133,7 +134,7 @@ struct LaneTouches {
 }
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn touch_lanes(corners: &CornerLanes, binner: &Binner, culling: bool) -> LaneTouches {
+fn touch_lanes(corners: &CornerLanes, binner: &Binner, dropped: Option<Turn>) -> LaneTouches {
     let x = extent(&corners.x);
     let y = extent(&corners.y);
     let columns = ranges(&x, |range| range.within(binner.width));
@@ -147,13 +148,16 @@ fn touch_lanes(corners: &CornerLanes, binner: &Binner, culling: bool) -> LaneTou
         (row, binner.row_box(row))
     });
     let areas = areas(corners);
+    let clockwise = dropped == Some(Turn::Clockwise);
+    let counterclockwise = dropped == Some(Turn::Counterclockwise);
     let mut codes = [0; LANES];
     for i in 0..LANES {
         let one = in_column[i] + in_row[i] * binner.columns_of_regions();
         let code = if (in_column[i] | in_row[i]) < 0 { SEVERAL } else { one as u32 };
         let empty = (columns[0][i] > columns[1][i]) | (rows[0][i] > rows[1][i]);
         let code = if empty { UNTOUCHED } else { code };
-        let code = if culling & (areas[i] > 0.0) { BACK_FACING } else { code };
+        let is_dropped = (clockwise & (areas[i] > 0.0)) | (counterclockwise & (areas[i] < 0.0));
+        let code = if is_dropped { BACK_FACING } else { code };
         codes[i] = if areas[i] == 0.0 { DEGENERATE } else { code };
     }
     LaneTouches { codes, x: columns, y: rows }

@@ -19,7 +19,8 @@ pub enum Culling {
     /// All are drawn, whichever way they face.
     #[default]
     None,
-    /// Those whose corners run clockwise on the screen.
+    /// Those whose corners run clockwise as they are seen in their own (model) coordinates. Matrices that mirror turn a picture of
+    /// them round, and change nothing in what is dropped.
     Back,
 }
 
@@ -35,7 +36,15 @@ pub struct Transform {
     pub(crate) to_screen: ToScreen,
     pub(crate) guard: Guard,
     pub(crate) binner: Binner,
-    culling: Culling,
+    /// The way in which the corners of a dropped triangle run on the screen; `None` where all are drawn.
+    pub(crate) dropped: Option<Turn>,
+}
+
+/// The way in which the corners of a triangle run on the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Turn {
+    Clockwise,
+    Counterclockwise,
 }
 
 /// From normalised device coordinates to subpixels of the frame: `scale * v + centre`.
@@ -161,6 +170,16 @@ impl Assembled {
     }
 }
 
+/// Whether a view turns round the way in which corners run: the sign of the determinant of what takes model coordinates to x, y and w of
+/// the screen, or to x, y and depth where w is the same everywhere, is the other one than that of a view along -Z.
+fn is_mirrored(view: &ViewTransform) -> bool {
+    let matrix = view.projection * view.model_view;
+    let [x, y, z, w] = [0, 1, 2, 3].map(|row| matrix.row(row).truncate().as_dvec3());
+    let of_perspective = x.cross(y).dot(w);
+    let determinant = if of_perspective == 0.0 { x.cross(y).dot(z) } else { of_perspective };
+    determinant > 0.0
+}
+
 impl Transform {
     /// Prepares a view of the world on a picture.
     ///
@@ -185,7 +204,11 @@ impl Transform {
             guard: to_screen.guard(),
             to_screen,
             binner: Binner::new(&viewport),
-            culling,
+            dropped: match culling {
+                Culling::None => None,
+                Culling::Back if is_mirrored(view) => Some(Turn::Counterclockwise),
+                Culling::Back => Some(Turn::Clockwise),
+            },
         })
     }
 
@@ -330,15 +353,12 @@ impl Transform {
         Some(whole)
     }
 
-    pub(crate) fn culls_back_faces(&self) -> bool {
-        self.culling == Culling::Back
-    }
-
     /// What binning finds of a triangle with corners inside the guard band; `None` is one without area.
     #[inline(always)]
     fn touch(&self, whole: Option<&Assembled>) -> Touch {
         let Some(whole) = whole else { return Touch::Degenerate };
-        if !whole.swapped && self.culls_back_faces() {
+        let turn = if whole.swapped { Turn::Counterclockwise } else { Turn::Clockwise };
+        if self.dropped == Some(turn) {
             return Touch::BackFacing;
         }
         Touch::from_mask(self.binner.triangle(&whole.outline))

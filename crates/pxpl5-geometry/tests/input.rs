@@ -74,6 +74,42 @@ fn back_faces_are_dropped_only_on_request() {
 }
 
 #[test]
+fn matrices_that_mirror_turn_no_face_round() {
+    let view = pixel_view(1.0, 16_384.0);
+    let culled = |view: &ViewTransform, positions: [Vec3; 3]| {
+        let transform = Transform::new(view, Viewport::FRAME, Culling::Back).expect("a finite view");
+        let vertices = positions.map(|p| transform.screen_vertex(p));
+        let stats = drawn(&transform, positions).1;
+        let shared = transform.touched(&vertices, std::iter::once([0, 1, 2])).get(0) == Touch::BackFacing;
+        assert_eq!(stats.back_facing == 1, shared, "alone and with shared vertices");
+        shared
+    };
+    for (scale, mirrors) in [
+        (Vec3::new(-1.0, 1.0, 1.0), true),
+        (Vec3::new(1.0, -1.0, 1.0), true),
+        (Vec3::new(1.0, 1.0, -1.0), true),
+        (Vec3::new(-1.0, -1.0, 1.0), false),
+        (Vec3::splat(-2.0), true),
+        (Vec3::splat(3.0), false),
+    ] {
+        let scaled = ViewTransform { model_view: Mat4::from_scale(scale), ..view };
+        // At the same place of the screen: the model's own triangle runs the other way round where the matrix mirrors.
+        let there = clockwise().map(|p| p / scale);
+        assert_eq!(culled(&scaled, there), !mirrors, "{scale}");
+        assert_eq!(culled(&scaled, [there[0], there[2], there[1]]), mirrors, "{scale}");
+    }
+    // A projection with y downwards turns the picture round, and not the model.
+    let down = ViewTransform { projection: Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * view.projection, ..view };
+    assert!(culled(&down, clockwise()));
+    // Without perspective the depth says which way the eye looks.
+    let projection = Mat4::orthographic_rh(-960.0, 960.0, -960.0, 960.0, 1.0, 16_384.0);
+    for (scale, mirrors) in [(Vec3::ONE, false), (Vec3::new(-1.0, 1.0, 1.0), true)] {
+        let flat = ViewTransform { model_view: Mat4::from_scale(scale), projection };
+        assert_eq!(culled(&flat, clockwise().map(|p| p / scale)), !mirrors, "{scale}");
+    }
+}
+
+#[test]
 fn colours_follow_their_corners_when_a_triangle_is_turned_clockwise() {
     let [a, b, c] = clockwise();
     let (out, _) = drawn(&transform(Culling::None), [a, c, b]);

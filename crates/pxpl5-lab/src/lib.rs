@@ -3,6 +3,7 @@
 //! | question | module |
 //! |---|---|
 //! | what do the published figures come out as, and how sure is that | [`figures`], [`intervals`], [`pipeline_figures`] |
+//! | which reading of the papers explains them | [`readings`] |
 //! | how do the levels of modelling differ | [`levels`] |
 //! | how many triangles, how fast does cost grow | [`limit`], [`growth`] |
 //! | which way to fight latency wins | [`compare`] |
@@ -24,6 +25,7 @@ pub mod levels;
 pub mod limit;
 mod parallel;
 pub mod pipeline_figures;
+pub mod readings;
 pub mod rig;
 mod snapshot;
 mod suitability;

@@ -152,6 +152,7 @@ fn lamp() -> Scene {
         spheres: 0..0,
         frame: Frame::World,
         hinge: None,
+        culls_back_faces: false,
     };
     let lighting = Lighting { background: [0; 3], ambient: 1.0, diffuse: 0.0, ..Lighting::over_the_shoulder() };
     let motion = HeadMotion::new(HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_X }, Sway::none());

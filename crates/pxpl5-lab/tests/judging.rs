@@ -78,6 +78,7 @@ fn wheel(hinge: Hinge) -> Scene {
             spheres: 0..0,
             frame: Frame::World,
             hinge: Some(hinge),
+            culls_back_faces: false,
         }],
         lighting: Lighting::over_the_shoulder(),
         motion: motion.expect("in range"),

@@ -36,6 +36,7 @@ pub fn summary(outcome: &Outcome) -> Summary {
         updates_hz: outcome.updates_hz(),
         due: outcome.due(),
         eye_latencies_ms: eye_latencies(outcome),
+        eye_swap_latencies_ms: eye_swap_latencies(outcome),
         region_copy_us: region_copy_us(outcome, message),
         first_copy_ms: mean(0),
         last_copy_ms: mean(1),
@@ -80,4 +81,15 @@ fn eye_latencies(outcome: &Outcome) -> Vec<f64> {
     let of_eyes = stages.iter().filter(|s| s.stage == Stage::Transform && s.surface.is_some());
     let steady = of_eyes.filter(|s| (first.picture..=last.picture).contains(&s.picture));
     steady.filter_map(|s| Some(ends.get(&(s.picture, s.surface))?.since(s.begin).as_ms())).collect()
+}
+
+/// From an eye's first TRANSFORM on any slave to the swap of its picture.
+fn eye_swap_latencies(outcome: &Outcome) -> Vec<f64> {
+    let shown: BTreeMap<PictureNumber, Time> = outcome.complete_pictures().map(|p| (p.picture, p.shown_at)).collect();
+    let mut begins: BTreeMap<(PictureNumber, SurfaceId), Time> = BTreeMap::new();
+    for stage in outcome.stages().iter().filter(|s| s.stage == Stage::Transform && shown.contains_key(&s.picture)) {
+        let Some(eye) = stage.surface else { continue };
+        begins.entry((stage.picture, eye)).and_modify(|begin| *begin = stage.begin.min(*begin)).or_insert(stage.begin);
+    }
+    begins.iter().map(|((picture, _), begin)| shown[picture].since(*begin).as_ms()).collect()
 }

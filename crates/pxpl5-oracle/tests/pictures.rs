@@ -3,7 +3,7 @@
 use glam::{Mat4, Vec3};
 use image::Rgb;
 use pphigs::{Binning, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, Shading};
-use pxpl5_geometry::{Sphere, Viewport};
+use pxpl5_geometry::{Culling, Sphere, Viewport};
 use pxpl5_oracle::{IdealPicture, ideal_picture};
 use pxpl5_renderer::Layout;
 use pxpl5_wire::{FieldParity, ViewNumber};
@@ -16,7 +16,12 @@ const BACKGROUND: [u8; 3] = [1, 2, 3];
 /// to 100.
 fn list() -> DisplayList {
     DisplayList {
-        structures: vec![DisplayStructure { triangles: 0..0, spheres: 0..0, frame: ModelFrame::World }],
+        structures: vec![DisplayStructure {
+            triangles: 0..0,
+            spheres: 0..0,
+            frame: ModelFrame::World,
+            culling: Culling::None,
+        }],
         towards_light: Vec3::Z,
         ambient: 1.0,
         diffuse: 0.0,

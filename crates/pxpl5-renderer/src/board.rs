@@ -6,8 +6,8 @@ use crate::job::{ArrayPool, NoPixels, PixelJob};
 use crate::timing::RendererTiming;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{
-    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder, MAX_MESSAGE_WORDS, Message,
-    NodeId, PixelSource, RegionPixels,
+    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, CopyWay,
+    MAX_MESSAGE_WORDS, Message, NodeId, PixelSource, RegionPixels,
 };
 use std::collections::VecDeque;
 use std::sync::{Arc, OnceLock};
@@ -82,7 +82,7 @@ pub struct Renderer {
     /// Copies through the backing store whose regions are in pixel memory; the first may be on its way.
     unstored: VecDeque<PendingCopy>,
     storing: bool,
-    /// Copies whose regions are in the backing store and wait for the transfer before them.
+    /// Copies whose regions are in the backing store and wait for the transfer before them, or for their release.
     stored: VecDeque<PendingCopy>,
     stats: RendererStats,
 }
@@ -101,6 +101,8 @@ struct ContextLog {
 struct PendingCopy {
     order: CopyOrder,
     image: Arc<dyn PixelSource>,
+    /// Whether it may leave the backing store as soon as it is in it.
+    is_released: bool,
 }
 
 impl Renderer {
@@ -171,7 +173,8 @@ impl Renderer {
         log.drawn |= has_primitives(&list.runs);
         for order in &list.copies {
             let image = self.image(order);
-            self.copies.push_back(PendingCopy { order: *order, image });
+            let is_released = order.way != CopyWay::IntoBacking;
+            self.copies.push_back(PendingCopy { order: *order, image, is_released });
         }
         list.runs.iter().map(|run| self.work(run)).collect()
     }
@@ -211,11 +214,27 @@ impl Renderer {
             let progress = self.fifo.resume(context.now());
             return self.report(progress, context);
         };
-        if !copy.order.through_backing {
-            return self.transfer(&copy, context);
+        match copy.order.way {
+            CopyWay::FromPixelMemory => self.transfer(&copy, context),
+            CopyWay::FromBacking => self.release(copy.order.target, context),
+            CopyWay::ThroughBacking | CopyWay::IntoBacking => {
+                self.unstored.push_back(copy);
+                self.store_next(context);
+            }
         }
-        self.unstored.push_back(copy);
-        self.store_next(context);
+    }
+
+    /// Lets a kept region leave the backing store; a command for one that is not there is none.
+    fn release(&mut self, target: CopyTarget, context: &mut Context<RendererEvent, RendererOutput>) {
+        let kept = self.stored.iter_mut().chain(&mut self.unstored);
+        let found = kept.filter(|copy| !copy.is_released).find(|copy| copy.order.target == target);
+        match found {
+            Some(copy) => copy.is_released = true,
+            None => self.stats.illegal_commands += 1,
+        }
+        let progress = self.fifo.resume(context.now());
+        self.report(progress, context);
+        self.transfer_next(context);
     }
 
     /// Moves a finished region's colours to the backing store when there is a place for them; the controller is free when
@@ -240,16 +259,18 @@ impl Renderer {
     }
 
     fn transfer_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
-        if self.copying.is_none()
-            && let Some(copy) = self.stored.pop_front()
-        {
+        if self.copying.is_some() {
+            return;
+        }
+        let released = self.stored.iter().position(|copy| copy.is_released);
+        if let Some(copy) = released.and_then(|place| self.stored.remove(place)) {
             self.transfer(&copy, context);
         }
     }
 
     fn transfer(
         &mut self,
-        PendingCopy { order, image }: &PendingCopy,
+        PendingCopy { order, image, .. }: &PendingCopy,
         context: &mut Context<RendererEvent, RendererOutput>,
     ) {
         self.copying = Some(*order);
@@ -274,7 +295,7 @@ impl Renderer {
             let message = Message { source: self.node, destination, words: COPY_ACKNOWLEDGEMENT_WORDS, body };
             context.output(context.now() + self.cycle, RendererOutput::Send { message, ticket: false, hold: false });
         }
-        if !order.through_backing {
+        if order.way == CopyWay::FromPixelMemory {
             let progress = self.fifo.resume(context.now());
             self.report(progress, context);
         }

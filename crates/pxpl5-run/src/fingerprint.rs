@@ -97,7 +97,7 @@ impl Fingerprint {
 
     /// Its name is for people.
     fn structure(&mut self, structure: &Structure) {
-        let Structure { name: _, vertices, triangles, spheres, frame, hinge } = structure;
+        let Structure { name: _, vertices, triangles, spheres, frame, hinge, culls_back_faces } = structure;
         self.range(vertices);
         self.range(triangles);
         self.range(spheres);
@@ -105,7 +105,7 @@ impl Fingerprint {
             Frame::World => 0,
             Frame::Head => 1,
         }]);
-        self.add(&[u8::from(hinge.is_some())]);
+        self.add(&[u8::from(hinge.is_some()) | u8::from(*culls_back_faces) << 1]);
         if let Some(Hinge { point, axis, amplitude_deg, period_ps, phase_turns }) = hinge {
             self.vector(*point);
             self.vector(*axis);

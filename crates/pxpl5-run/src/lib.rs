@@ -50,7 +50,9 @@ pub use keys::{Key, KeyValue, KeyValues, PipelineSettings};
 pub use level::Level;
 pub use outcome::Outcome;
 pub use pipeline::{PictureTimes, Pipeline, Setup, Source};
-pub use pipelines::{Code, Frameless, Interpolation, Jitp, RenderingControl, Slats, Viewpoint, region_at};
+pub use pipelines::{
+    Code, FinishedRegions, Frameless, Interpolation, Jitp, RenderingControl, Slats, Viewpoint, region_at,
+};
 pub use pxpl5_display::{Aim, LightSpan};
 pub use raster::Raster;
 pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};

@@ -16,6 +16,9 @@ pub struct Summary {
     pub due: Option<DuePictures>,
     /// From the start of an eye's TRANSFORM to the end of its COPY, milliseconds; empty where eyes have none of their own.
     pub eye_latencies_ms: Vec<f64>,
+    /// From the start of an eye's TRANSFORM to the retrace at which its picture is swapped in, milliseconds; empty where eyes have none
+    /// of their own.
+    pub eye_swap_latencies_ms: Vec<f64>,
     /// Port time of a region of 15,360 pixels, microseconds.
     pub region_copy_us: f64,
     /// First to last word of a picture's first copy (see [`Pipeline::copy_part`](crate::Pipeline::copy_part)), milliseconds.

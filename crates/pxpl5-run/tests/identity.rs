@@ -35,6 +35,7 @@ fn parts() -> SceneParts {
         spheres: 0..1,
         frame: Frame::Head,
         hinge: Some(HINGE),
+        culls_back_faces: false,
     };
     SceneParts {
         name: "small".to_owned(),

@@ -54,6 +54,9 @@ pub struct Structure {
     pub frame: Frame,
     /// Its scripted motion, if it has one.
     pub hinge: Option<Hinge>,
+    /// Whether triangles that face away from the eye are dropped: those whose corners run clockwise, seen from the eye. Right for
+    /// surfaces without holes that are seen from outside.
+    pub culls_back_faces: bool,
 }
 
 /// One directional light, the same for all scenes.
@@ -163,6 +166,14 @@ impl Scene {
         &self.parts.motion
     }
 
+    /// The same scene, all of whose structures drop their back faces: right for surfaces without holes that are seen from outside; of
+    /// others the inside cannot be seen any more.
+    #[must_use]
+    pub fn culled(mut self) -> Self {
+        self.parts.structures.iter_mut().for_each(|structure| structure.culls_back_faces = true);
+        self
+    }
+
     /// Takes the scene apart, to change it and check it again.
     #[must_use]
     pub fn into_parts(self) -> SceneParts {
@@ -235,6 +246,7 @@ fn structure_of_all(parts: &SceneParts) -> Structure {
         spheres: 0..parts.spheres.len(),
         frame: Frame::World,
         hinge: None,
+        culls_back_faces: false,
     }
 }
 

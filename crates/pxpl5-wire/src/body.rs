@@ -49,11 +49,24 @@ pub struct CopyOrder {
     pub target: CopyTarget,
     /// The region context that holds it.
     pub context: u8,
-    /// Whether the colours go to the backing store first and from there to the frame buffer, beside the commands that
-    /// follow; or straight from pixel memory, so that the commands that follow wait.
-    pub through_backing: bool,
+    /// The way of its colours.
+    pub way: CopyWay,
     /// Who is told, by a message of [`COPY_ACKNOWLEDGEMENT_WORDS`], when the last pixel has arrived.
     pub acknowledge: Option<NodeId>,
+}
+
+/// The way of a region's colours from pixel memory to the frame buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum CopyWay {
+    /// Straight from pixel memory: the commands that follow wait until the last pixel has arrived.
+    FromPixelMemory,
+    /// Into the backing store, and from there to the frame buffer as soon as no other region of this renderer is on its way,
+    /// beside the commands that follow.
+    ThroughBacking,
+    /// Into the backing store, where they stay until a command [`CopyWay::FromBacking`] of the same target.
+    IntoBacking,
+    /// From the backing store, where an earlier command [`CopyWay::IntoBacking`] has put them.
+    FromBacking,
 }
 
 /// Length of the message that tells a program that a region has been copied (assumed).

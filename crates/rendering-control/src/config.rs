@@ -20,6 +20,10 @@ pub struct RenderingControlConfig {
     pub frame_buffers: Vec<NodeId>,
     /// What is drawn of each eye.
     pub picture: Picture,
+    /// Finished regions that a renderer keeps in its backing store while their frame buffer is not available, and goes on with the
+    /// next region; 0 where it waits for the copy with the region in pixel memory. At most as many as there is room for
+    /// (`renderer.backing_regions`).
+    pub regions_stored: usize,
 }
 
 /// Bytes of program, stacks and message buffers on a GP (assumed).

@@ -1,11 +1,11 @@
 //! The master GP: it synchronises host, slaves, renderers and frame buffers.
 
 use crate::config::{PROGRAM_BYTES, RenderingControlConfig};
-use crate::protocol::{StageOrder, Token};
+use crate::protocol::{RegionEnd, StageOrder, Token};
 use crate::rules::{Completed, EyeDrawing};
 use pphigs::copy_message;
 use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
-use pxpl5_wire::{Body, CopyOrder, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
+use pxpl5_wire::{Body, CopyOrder, CopyWay, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
 use std::collections::VecDeque;
 
 /// What a renderer is doing, as far as the master knows.
@@ -14,8 +14,17 @@ enum RendererUse {
     Idle,
     /// A token for it is with the slaves.
     Receiving,
-    /// It holds a finished region that waits for a frame buffer.
+    /// It holds a finished region in pixel memory that waits for a frame buffer.
     Holding(EyeDrawing, RegionId),
+}
+
+/// A copy that the frame buffer is available for.
+#[derive(Clone, Copy, Debug)]
+struct Copying {
+    renderer: usize,
+    drawing: EyeDrawing,
+    region: RegionId,
+    way: CopyWay,
 }
 
 /// RENDER of one eye.
@@ -52,6 +61,8 @@ struct RegionMaster {
     weights: VecDeque<Vec<u64>>,
     rendering: Option<Rendering>,
     renderers: Vec<RendererUse>,
+    /// Finished regions in the backing store of each renderer that wait for a frame buffer, the oldest first.
+    stored: Vec<VecDeque<(EyeDrawing, RegionId)>>,
     /// Regions that have arrived in each frame buffer.
     copied_regions: Vec<u64>,
     next_slave: usize,
@@ -86,6 +97,7 @@ impl RegionMaster {
             weights: VecDeque::new(),
             rendering: None,
             renderers: vec![RendererUse::Idle; config.renderers.len()],
+            stored: vec![VecDeque::new(); config.renderers.len()],
             copied_regions: vec![0; config.frame_buffers.len()],
             next_slave: 0,
             gp,
@@ -114,8 +126,8 @@ impl RegionMaster {
     async fn begin_one(&mut self) -> bool {
         self.completed.swapped = self.swaps_shown();
         self.begin_render();
-        if let Some((renderer, drawing, region)) = self.copy_that_may_begin() {
-            self.copy(renderer, drawing, region).await;
+        if let Some(copying) = self.copy_that_may_begin() {
+            self.copy(copying).await;
         } else if let Some((renderer, region)) = self.region_that_may_begin() {
             self.send_token(renderer, region).await;
         } else if self.completed.may_swap(self.next_swap) && self.completed.swapped == self.next_swap.0 {
@@ -187,31 +199,45 @@ impl RegionMaster {
             region,
             renderer: renderer as u16,
             slaves_left: self.config.slaves.len() as u16,
-            copy: self.completed.frame_buffer_available(drawing),
+            end: self.end_of(renderer, drawing),
         };
         let (words, body) = StageOrder::Token(token).message();
         self.gp.send(slave, words, body).await;
     }
 
-    fn copy_that_may_begin(&self) -> Option<(usize, EyeDrawing, RegionId)> {
-        self.renderers.iter().enumerate().find_map(|(renderer, state)| match *state {
-            RendererUse::Holding(drawing, region) if self.completed.frame_buffer_available(drawing) => {
-                Some((renderer, drawing, region))
-            }
-            _ => None,
+    /// What becomes of a region when its last commands are executed.
+    fn end_of(&self, renderer: usize, drawing: EyeDrawing) -> RegionEnd {
+        if self.completed.frame_buffer_available(drawing) {
+            RegionEnd::Copied
+        } else if self.stored[renderer].len() < self.config.regions_stored {
+            RegionEnd::Stored
+        } else {
+            RegionEnd::Held
+        }
+    }
+
+    /// Of each renderer what has waited longest: what is in its backing store, then what is in its pixel memory.
+    fn copy_that_may_begin(&self) -> Option<Copying> {
+        (0..self.renderers.len()).find_map(|renderer| {
+            let (drawing, region, way) = match (self.stored[renderer].front(), self.renderers[renderer]) {
+                (Some((drawing, region)), _) => (*drawing, *region, CopyWay::FromBacking),
+                (None, RendererUse::Holding(drawing, region)) => (drawing, region, CopyWay::ThroughBacking),
+                _ => return None,
+            };
+            let is_available = self.completed.frame_buffer_available(drawing);
+            is_available.then_some(Copying { renderer, drawing, region, way })
         })
     }
 
     /// Sends the copy command of a region whose frame buffer was not available in time for the last slave.
-    async fn copy(&mut self, renderer: usize, drawing: EyeDrawing, region: RegionId) {
-        self.renderers[renderer] = RendererUse::Idle;
-        let order = self.copy_order(drawing, region);
+    async fn copy(&mut self, Copying { renderer, drawing, region, way }: Copying) {
+        match way {
+            CopyWay::FromBacking => drop(self.stored[renderer].pop_front()),
+            _ => self.renderers[renderer] = RendererUse::Idle,
+        }
+        let order = copy_order(&self.config, drawing, region, way);
         let list = copy_message(self.config.picture.layout, vec![order], self.config.picture.pixels);
         self.gp.send(self.config.renderers[renderer], list.words(), Body::Commands(list)).await;
-    }
-
-    fn copy_order(&self, drawing: EyeDrawing, region: RegionId) -> CopyOrder {
-        copy_order(&self.config, drawing, region)
     }
 
     async fn swap(&mut self) {
@@ -258,8 +284,14 @@ impl RegionMaster {
     }
 
     fn note_accepted(&mut self, token: Token) {
-        let held = RendererUse::Holding(token.drawing, token.region);
-        self.renderers[usize::from(token.renderer)] = if token.copy { RendererUse::Idle } else { held };
+        let renderer = usize::from(token.renderer);
+        self.renderers[renderer] = match token.end {
+            RegionEnd::Held => RendererUse::Holding(token.drawing, token.region),
+            RegionEnd::Stored | RegionEnd::Copied => RendererUse::Idle,
+        };
+        if token.end == RegionEnd::Stored {
+            self.stored[renderer].push_back((token.drawing, token.region));
+        }
         let Some(rendering) = &mut self.rendering else { return };
         rendering.tokens_out -= 1;
         if rendering.tokens_out == 0 && rendering.unassigned.is_empty() {
@@ -286,11 +318,11 @@ impl RegionMaster {
     }
 }
 
-pub(crate) fn copy_order(config: &RenderingControlConfig, drawing: EyeDrawing, region: RegionId) -> CopyOrder {
-    CopyOrder {
-        target: config.target(drawing, region),
-        context: 0,
-        through_backing: true,
-        acknowledge: Some(config.master),
-    }
+pub(crate) fn copy_order(
+    config: &RenderingControlConfig,
+    drawing: EyeDrawing,
+    region: RegionId,
+    way: CopyWay,
+) -> CopyOrder {
+    CopyOrder { target: config.target(drawing, region), context: 0, way, acknowledge: Some(config.master) }
 }

@@ -3,7 +3,7 @@
 use crate::rules::EyeDrawing;
 use pphigs::FrameView;
 use pxpl5_gp::{Fault, Received};
-use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, NodeId, PictureNumber, RegionId, Word};
+use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CopyWay, NodeId, PictureNumber, RegionId, Word};
 
 const SEND: Word = 1;
 const EDIT: Word = 2;
@@ -23,8 +23,32 @@ pub(crate) struct Token {
     pub(crate) renderer: u16,
     /// Slaves that have not had it yet, this one included.
     pub(crate) slaves_left: u16,
-    /// Whether the last slave adds the copy command.
-    pub(crate) copy: bool,
+    /// The command that the last slave adds.
+    pub(crate) end: RegionEnd,
+}
+
+/// What becomes of a region when its last commands are executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RegionEnd {
+    /// It stays in pixel memory, and the renderer waits.
+    Held,
+    /// It goes into the backing store and stays there.
+    Stored,
+    /// It is copied to its frame buffer.
+    Copied,
+}
+
+impl RegionEnd {
+    const ALL: [Self; 3] = [Self::Held, Self::Stored, Self::Copied];
+
+    /// The way that a copy command says; `None` where there is no command.
+    pub(crate) const fn way(self) -> Option<CopyWay> {
+        match self {
+            Self::Held => None,
+            Self::Stored => Some(CopyWay::IntoBacking),
+            Self::Copied => Some(CopyWay::ThroughBacking),
+        }
+    }
 }
 
 /// Everything that host, master, slaves and renderers tell each other.
@@ -118,18 +142,18 @@ impl Token {
             (self.drawing.0 >> 32) as Word,
             regions,
             u32::from(self.slaves_left),
-            self.copy.into(),
+            self.end as Word,
         ]
     }
 
     fn read(words: &[Word]) -> Option<Self> {
-        let [_, low, high, regions, slaves_left, copy] = *words else { return None };
+        let [_, low, high, regions, slaves_left, end] = *words else { return None };
         Some(Self {
             drawing: EyeDrawing(u64::from(low) | u64::from(high) << 32),
             region: RegionId(regions as u16),
             renderer: (regions >> 16) as u16,
             slaves_left: slaves_left as u16,
-            copy: copy != 0,
+            end: *RegionEnd::ALL.get(end as usize)?,
         })
     }
 }
@@ -148,8 +172,13 @@ mod tests {
 
     #[test]
     fn every_order_survives_its_words() {
-        let token =
-            Token { drawing: EyeDrawing(1 << 33), region: RegionId(19), renderer: 4, slaves_left: 12, copy: true };
+        let token = Token {
+            drawing: EyeDrawing(1 << 33),
+            region: RegionId(19),
+            renderer: 4,
+            slaves_left: 12,
+            end: RegionEnd::Stored,
+        };
         let view = FrameView { number: ViewNumber(3), eyes: Vec::new(), edits: Vec::new() };
         let orders = [
             StageOrder::Send(view),

@@ -167,7 +167,7 @@ fn messages(config: &RenderingControlConfig, pass: &Arc<Pass>, token: Token) -> 
     let envelope = RegionEnvelope {
         begin: usize::from(token.slaves_left) == config.slaves.len(),
         shade: last,
-        copy: (last && token.copy).then(|| copy_order(config, token.drawing, token.region)),
+        copy: token.end.way().filter(|_| last).map(|way| copy_order(config, token.drawing, token.region, way)),
     };
     region_messages(pass, token.region, 0, envelope)
 }

@@ -9,8 +9,8 @@ use pphigs::{
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage, Ticket};
 use pxpl5_wire::{
-    Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyOrder, Eye, FieldParity, NodeId, PeriodNumber, PictureNumber, Word,
-    swap_request,
+    Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyOrder, CopyWay, Eye, FieldParity, NodeId, PeriodNumber, PictureNumber,
+    Word, swap_request,
 };
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -303,7 +303,7 @@ impl SlatsProcessor {
         CopyOrder {
             target: self.config.target(bound, field, self.buffer(field)),
             context: bound.context,
-            through_backing: false,
+            way: CopyWay::FromPixelMemory,
             acknowledge: None,
         }
     }

@@ -50,6 +50,7 @@ pub fn edge_scene(yaw_deg: f64) -> Scene {
         spheres: 0..0,
         frame: Frame::World,
         hinge: None,
+        culls_back_faces: false,
     };
     Scene::new(SceneParts {
         name: "edge".to_owned(),

@@ -27,6 +27,7 @@ const COMMON: &[(&str, &str)] = &[
         "fit",
         "move and scale a model file so that both eyes see all of it: true (default) or false (its coordinates are metres)",
     ),
+    ("cull", "drop triangles that face away from the eye, in all structures of the scene: true or false (default)"),
     ("motion.path", "scene (the scene's own), still, look, pan or orbit"),
     ("motion.sway", "0 to 10: scale of the head's sway"),
     ("motion.distance", "metres from the scene's centre: still, look, orbit"),

@@ -29,6 +29,8 @@ pub struct SceneChoice {
     pub placement: Placement,
     /// To how many primitives it is decimated; `None` for all.
     pub triangles: Option<usize>,
+    /// Whether all its structures drop their back faces.
+    pub culled: bool,
     /// How the head moves.
     pub motion: MotionChoice,
 }
@@ -47,7 +49,8 @@ impl SceneChoice {
         if let (Some(setting), false) = (file.get("fit"), is_file(&name)) {
             return Err(wrong("fit", setting, "nothing: only model files are fitted into the view"));
         }
-        Ok(Self { name, placement, triangles, motion: MotionChoice::read(file)? })
+        let culled = file.flag("cull")?.unwrap_or(false);
+        Ok(Self { name, placement, triangles, culled, motion: MotionChoice::read(file)? })
     }
 
     /// Generates it or reads its file.
@@ -60,10 +63,11 @@ impl SceneChoice {
     }
 
     pub(crate) fn load_whole(&self) -> Result<Scene, FileError> {
-        Ok(match is_file(&self.name) {
+        let whole = match is_file(&self.name) {
             true => pxpl5_scene::load_placed(&self.name, self.placement)?,
             false => pxpl5_scene::builtin(&self.name)?,
-        })
+        };
+        Ok(if self.culled { whole.culled() } else { whole })
     }
 
     /// The whole scene decimated and moved as chosen.

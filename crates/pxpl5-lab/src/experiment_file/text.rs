@@ -93,6 +93,9 @@ impl Plan {
         if self.scene.placement == Placement::AsInFile {
             all.put("fit", false);
         }
+        if self.scene.culled {
+            all.put("cull", true);
+        }
         if let Some(triangles) = self.scene.triangles {
             all.put("triangles", triangles as i64);
         }

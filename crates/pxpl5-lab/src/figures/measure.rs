@@ -1,11 +1,13 @@
 //! The experiments behind the figures.
 
 use super::heads;
+use super::applications::Applications;
 use super::measured::{Measured, Result, detail, scene_named};
+use super::reading::{Reading, Samples};
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
 use pphigs::{Binning, Picture, Shading, Share, TransformCost};
-use pxpl5_analytic::{Load, StereoModel, stereo_loads};
+use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::Layout;
@@ -15,7 +17,7 @@ use pxpl5_run::{
 };
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::Time;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// A bench for the figures: a level of modelling, and changes to the machine's parameters.
 #[derive(Clone, Debug)]
@@ -29,14 +31,16 @@ pub struct Bench {
     pub seeds: u64,
     /// Frames of figure 7 that count, for each seed.
     pub frames: u64,
-    pub(crate) mig: MigLoads,
+    /// How the open questions of Rendering Control are answered.
+    pub reading: Reading,
+    pub(crate) applications: Arc<Applications>,
 }
-
-/// The Mig's loads by seed, computed once for all benches that were cloned from one.
-pub(crate) type MigLoads = Arc<OnceLock<Vec<Vec<Load>>>>;
 
 /// TRANSFORM and RENDER of figure 6 (milliseconds): a spread of lengths, because the swap waits for a retrace.
 const LONG_STAGES_MS: [u64; 7] = [22, 23, 24, 25, 26, 27, 28];
+
+/// Fields of figures 16b and 16c, whose frames take about 30 each.
+const FIELDS_OF_FULL_BINS: u64 = 600;
 
 /// Parameters of the code that Rendering Control runs.
 const PPHIGS_CODE: [&str; 3] = ["gp.triangle_ns", "gp.sphere_ns", "gp.bin_entry_ns"];
@@ -49,13 +53,20 @@ impl Bench {
     /// The presets as they are, with 30 seeds of 300 frames.
     #[must_use]
     pub fn new(level: Level) -> Self {
-        Self { level, changes: Vec::new(), seeds: 30, frames: 300, mig: MigLoads::default() }
+        Self {
+            level,
+            changes: Vec::new(),
+            seeds: 30,
+            frames: 300,
+            reading: Reading::USUAL,
+            applications: Arc::default(),
+        }
     }
 
     /// The same with fewer or more seeds and frames of the Mig.
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
-        Self { seeds, frames, mig: MigLoads::default(), ..self }
+        Self { seeds, frames, applications: Arc::default(), ..self }
     }
 
     /// Measures a figure.
@@ -68,12 +79,19 @@ impl Bench {
             "1" => Ok(self.trivial()?.region_copy_us.into()),
             "2" => self.trivial().map(|s| (s.first_copy_ms + s.last_copy_ms).into()),
             "3" => self.copy_alone(),
-            "4" => Ok(spread_ms(self.trivial()?.latency_ms())),
+            "4" => {
+                let summary = self.trivial()?;
+                Ok(spread_ms(Statistics::of(self.reading.latencies_ms(&summary).iter().copied())))
+            }
             "4b" => Ok(rate_hz(&self.trivial()?).into()),
             "5" => self.equal_stages(),
             "6" => self.long_stages(),
-            "7" => self.mig(),
+            "7" => self.application("mig", 1),
+            "7b" => self.application("molecules", 3),
+            "7c" => self.application("head", 15),
             "8" => regions_touched(),
+            "16b" => Ok(rate_hz(&self.full_bins()?).into()),
+            "16c" => Ok(spread_ms(Statistics::of(self.full_bins()?.eye_latencies_ms.into_iter()))),
             "9" => self.slats_latency(),
             "9b" => Ok(rate_hz(&self.slats(100, Slats::split())?).into()),
             "10" => self.slats(60, Slats::whole()).map(|s| (s.first_copy_ms * 1e3 / s.region_copy_us).into()),
@@ -119,12 +137,18 @@ impl Bench {
     }
 
     fn stereo(&self, machine: MachineConfig) -> Result<Summary> {
-        self.run(machine, RenderingControl::stereo(), "full-screen:12", 80)
+        self.run(self.reading.on(machine)?, self.reading.pipeline(), "full-screen:12", 80)
     }
 
     /// Figures 1, 2, 4: twelve triangles that cover the screen.
     fn trivial(&self) -> Result<Summary> {
         self.stereo(self.machine("small-hmd")?)
+    }
+
+    /// Figures 16b and 16c: as many triangles that cover the screen as the bins were said to hold.
+    fn full_bins(&self) -> Result<Summary> {
+        let machine = self.reading.on(self.machine("small-hmd")?)?;
+        self.run(machine, self.reading.pipeline(), "full-screen:7700", FIELDS_OF_FULL_BINS)
     }
 
     /// Figure 3: everything but COPY is free.
@@ -153,8 +177,9 @@ impl Bench {
     }
 
     fn equal_stages(&self) -> Result<Measured> {
-        let summary = self.run(self.stages_of(15.6)?, RenderingControl::stereo(), "full-screen:12", 160)?;
-        let latency = summary.latency_ms();
+        let machine = self.reading.on(self.stages_of(15.6)?)?;
+        let summary = self.run(machine, self.reading.pipeline(), "full-screen:12", 160)?;
+        let latency = Statistics::of(self.reading.latencies_ms(&summary).iter().copied());
         let details = vec![detail("mean", latency.mean, "ms"), detail("frames a second", rate_hz(&summary), "Hz")];
         Ok(Measured { value: latency.max, details })
     }
@@ -162,52 +187,50 @@ impl Bench {
     fn long_stages(&self) -> Result<Measured> {
         let mut means = Vec::new();
         for ms in LONG_STAGES_MS {
-            let machine = self.stages_of(ms as f64)?;
-            let summary = self.run(machine, RenderingControl::stereo(), "full-screen:12", 160)?;
-            means.push(summary.latency_ms().mean);
+            let machine = self.reading.on(self.stages_of(ms as f64)?)?;
+            let summary = self.run(machine, self.reading.pipeline(), "full-screen:12", 160)?;
+            means.push(Statistics::of(self.reading.latencies_ms(&summary).iter().copied()).mean);
         }
         Ok(spread_ms(Statistics::of(means.into_iter())))
     }
 
-    fn mig(&self) -> Result<Measured> {
+    /// Figures 7, 7b and 7c: a fly-through of an application scene, with one seed for so many of figure 7.
+    fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<Measured> {
         let mut latencies = Vec::new();
-        for seed in 1..=self.seeds {
-            let summary = self.mig_seed(seed)?;
-            latencies.extend(summary.latencies_ms.iter().take(self.frames as usize).map(|ms| ms / summary.field_ms));
+        let samples_a_frame = if self.reading.samples == Samples::EachEye { 2 } else { 1 };
+        for seed in 1..=self.seeds.div_ceil(seeds_of_one) {
+            let summary = self.fly_through(scene, seed, self.seeds.div_ceil(seeds_of_one))?;
+            let samples = self.reading.latencies_ms(&summary).iter().take(samples_a_frame * self.frames as usize);
+            latencies.extend(samples.map(|ms| self.reading.fields_of(*ms, summary.field_ms)));
         }
-        let frames = latencies.len() as f64;
+        let samples = latencies.len() as f64;
         let all = Statistics::of(latencies.into_iter());
         let details = vec![
             detail("standard deviation", all.sd, "fields"),
             detail("least", all.min, "fields"),
             detail("greatest", all.max, "fields"),
-            detail("frames", frames, "frames"),
+            detail("samples", samples, ""),
         ];
         Ok(Measured { value: all.mean, details })
     }
 
-    fn mig_seed(&self, seed: u64) -> Result<Summary> {
-        let experiment = self.mig_experiment(seed)?;
+    fn fly_through(&self, scene: &'static str, seed: u64, seeds: u64) -> Result<Summary> {
+        let experiment = self.application_experiment(scene, seed)?;
         if self.level != Level::Analytic {
             return self.summarise(&experiment);
         }
-        let loads = match self.mig.get() {
-            Some(loads) => loads,
-            None => {
-                let all = (1..=self.seeds).map(|seed| stereo_loads(&self.mig_experiment(seed)?));
-                let all = all.collect::<Result<_>>()?;
-                self.mig.get_or_init(|| all)
-            }
-        };
-        let model = StereoModel::new(experiment.config(), RenderingControl::stereo())?;
+        let of_seeds = || (1..=seeds).map(|seed| stereo_loads(&self.application_experiment(scene, seed)?)).collect();
+        let loads = self.applications.loads(scene, self.reading.culled, of_seeds)?;
+        let model = StereoModel::new(experiment.config(), self.reading.pipeline())?;
         Ok(model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()))
     }
 
     /// Two fields a frame at 30 Hz; of slower frames fewer are shown.
-    fn mig_experiment(&self, seed: u64) -> Result<Experiment> {
+    fn application_experiment(&self, scene: &'static str, seed: u64) -> Result<Experiment> {
         let fields = 2 * (self.frames + WARM_UP_PICTURES as u64) + 8;
-        let machine = self.machine("small-hmd")?;
-        Ok(Experiment::new(machine, RenderingControl::stereo(), scene_named("mig")?).fields(fields).seed(seed))
+        let machine = self.reading.on(self.machine(self.reading.machine)?)?;
+        let drawn = self.applications.scene(scene, self.reading.culled)?;
+        Ok(Experiment::with(machine, Arc::new(self.reading.pipeline()), drawn).fields(fields).seed(seed))
     }
 
     fn slats(&self, triangles: u32, pipeline: Slats) -> Result<Summary> {

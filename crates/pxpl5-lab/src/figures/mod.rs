@@ -9,16 +9,19 @@
 //!
 //! Sources: TR94, I3D95; the loads of the experiments are ours.
 
+mod applications;
 mod document;
 mod heads;
 mod measure;
 mod measured;
+mod reading;
 mod row;
 mod table;
 
 pub use document::markdown;
 pub use measure::Bench;
 pub use measured::{Detail, Measured};
+pub use reading::{FieldCount, ROOM, Reading, Samples};
 pub use row::{MISS_PERCENT, Row, mean_error_percent};
 pub use table::{Basis, FIGURES, Figure, WITHOUT_CLOSED_FORM};
 

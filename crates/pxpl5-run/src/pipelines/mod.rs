@@ -7,7 +7,7 @@ mod slats;
 
 pub use frameless::Frameless;
 pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
-pub use rendering_control::RenderingControl;
+pub use rendering_control::{FinishedRegions, RenderingControl};
 pub use slats::{Code, Slats};
 
 use crate::registry::PipelineEntry;

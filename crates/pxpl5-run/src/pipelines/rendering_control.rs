@@ -23,19 +23,56 @@ pub struct RenderingControl {
     pub mono: bool,
     /// Where colours are computed.
     pub shading: Shading,
+    /// What a renderer does with a finished region whose frame buffer is not available.
+    pub finished: FinishedRegions,
+}
+
+/// What the master does with a renderer whose region is finished while the frame buffer is not available. TR94 says that the last
+/// slave returns the token, that the master assigns the renderer to the next region, and that the copy command comes later if the
+/// frame buffer was not available; it does not say whether the renderer has the next region before that.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum FinishedRegions {
+    /// The region stays in pixel memory, and the renderer waits for the copy.
+    #[default]
+    Wait,
+    /// The region goes into the backing store as long as there is room, and the renderer gets the next one.
+    Store,
+}
+
+impl FinishedRegions {
+    /// Both, the default first.
+    pub const ALL: [Self; 2] = [Self::Wait, Self::Store];
+
+    /// Its name in experiment files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Wait => "wait",
+            Self::Store => "store",
+        }
+    }
+
+    /// Regions that a renderer with room for so many keeps while their frame buffer is not available.
+    #[must_use]
+    pub const fn stored(self, room: u64) -> u64 {
+        match self {
+            Self::Wait => 0,
+            Self::Store => room,
+        }
+    }
 }
 
 impl RenderingControl {
     /// Stereo with Phong shading, as measured in TR94.
     #[must_use]
     pub const fn stereo() -> Self {
-        Self { mono: false, shading: Shading::Phong }
+        Self { mono: false, shading: Shading::Phong, finished: FinishedRegions::Wait }
     }
 
     /// One picture with Phong shading.
     #[must_use]
     pub const fn mono() -> Self {
-        Self { mono: true, shading: Shading::Phong }
+        Self { mono: true, ..Self::stereo() }
     }
 
     fn config(self, machine: &Machine, pixels: bool) -> Result<RenderingControlConfig, ConfigError> {
@@ -57,6 +94,7 @@ impl RenderingControl {
             renderers: ports.renderers.clone(),
             frame_buffers: ports.display().to_vec(),
             picture,
+            regions_stored: self.finished.stored(machine.record().config().renderer.backing_regions) as usize,
         })
     }
 }
@@ -76,7 +114,8 @@ impl Pipeline for RenderingControl {
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
         let (shading, _) = SHADINGS[usize::from(self.shading == SHADINGS[1].1)];
-        vec![("mono", KeyValue::Flag(self.mono)), ("shading", KeyValue::Name(shading))]
+        let finished = KeyValue::Name(self.finished.name());
+        vec![("mono", KeyValue::Flag(self.mono)), ("shading", KeyValue::Name(shading)), ("finished", finished)]
     }
 
     fn eyes(&self) -> usize {
@@ -198,6 +237,12 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
             values: KeyValues::Names(&[SHADINGS[0].0, SHADINGS[1].0]),
             sets: &[],
         },
+        Key {
+            name: "finished",
+            about: "what becomes of a finished region whose frame buffer is not available: wait in pixel memory, or store (the renderer goes on with the next)",
+            values: KeyValues::Names(&[FinishedRegions::Wait.name(), FinishedRegions::Store.name()]),
+            sets: &[],
+        },
     ],
     build,
     limit: |_| LimitCriterion { goal: Goal::NoMissedRetrace, scene: TestScene::Typical, fields: 90 },
@@ -212,5 +257,9 @@ fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     Arc::new(RenderingControl {
         mono: settings.flag("mono").unwrap_or(stereo.mono),
         shading: shading.map_or(stereo.shading, |(_, shading)| *shading),
+        finished: match settings.name("finished") {
+            Some("store") => FinishedRegions::Store,
+            _ => FinishedRegions::Wait,
+        },
     })
 }

@@ -21,6 +21,7 @@ pub(super) fn scene(
         spheres: 0..0,
         frame,
         hinge: None,
+        culls_back_faces: false,
     };
     let path = HeadPath::Still { eye: Vec3::ZERO, target: Vec3::NEG_Z };
     let parts = SceneParts {

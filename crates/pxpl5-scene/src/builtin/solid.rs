@@ -28,6 +28,7 @@ impl Solid {
             spheres: 0..0,
             frame: Frame::World,
             hinge,
+            culls_back_faces: false,
         });
     }
 

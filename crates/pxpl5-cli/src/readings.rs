@@ -1,0 +1,99 @@
+//! `pxpl5 readings`: what the papers leave open about Rendering Control, and which answers explain their figures.
+
+use crate::error::CliError;
+use crate::terminal::{advance, print, progress};
+use clap::Args;
+use pxpl5::readings::{Fit, LeftOut, Readings, run as rank};
+use std::fmt::Write;
+
+/// Rank all readings of the papers' open questions by how well they explain the figures of Rendering Control.
+///
+/// Whose latency is a mean, how fields were counted, how many finished regions a renderer keeps, what the master does with it meanwhile,
+/// which machine drew the application scenes, and whether back faces were culled: every combination, with one machine for all figures.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 readings
+  pxpl5 readings --best 5 --rows 40
+  pxpl5 readings --json > readings.json")]
+pub(crate) struct ReadingsArgs {
+    /// Readings that are measured with events as well.
+    #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=256))]
+    best: u64,
+    /// Readings of each level that are printed.
+    #[arg(long, default_value_t = 20, value_name = "N")]
+    rows: usize,
+    /// Seeds of figure 7's fly-through; a third of them for the molecules, a fifteenth for the head.
+    #[arg(long, default_value_t = 6, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100))]
+    seeds: u64,
+    /// Frames of each fly-through.
+    #[arg(long, default_value_t = 150, value_name = "N", value_parser = clap::value_parser!(u64).range(10..=1_000))]
+    frames: u64,
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+    /// Print nothing but errors (and the object of --json).
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Ranks them.
+///
+/// # Errors
+///
+/// Why a figure cannot be measured.
+pub(crate) fn run(args: ReadingsArgs) -> Result<(), CliError> {
+    let bar = progress(0, "readings", args.quiet);
+    let readings = rank(args.seeds, args.frames, args.best as usize, |done, of| advance(&bar, done, of));
+    bar.finish_and_clear();
+    let readings = readings?;
+    match (args.json, args.quiet) {
+        (true, _) => print(&(serde_json::to_string_pretty(&readings).map_err(CliError::failure)? + "\n")),
+        (false, true) => Ok(()),
+        (false, false) => print(&text(&readings, args.rows)),
+    }
+}
+
+fn text(readings: &Readings, rows: usize) -> String {
+    let mut text = format!("{} readings\n", readings.analytic.len());
+    for (level, fits) in [("analytic level", &readings.analytic), ("transaction level", &readings.transaction)] {
+        if let Some(first) = fits.first() {
+            let _ = write!(text, "\n{level}, the least mean error first\n{}", header(first));
+            fits.iter().take(rows).for_each(|fit| text.push_str(&line(fit)));
+        }
+    }
+    let _ = writeln!(
+        text,
+        "\n{} of them are as good as the best but for the printed digits ({:.2} % of a mean error).",
+        readings.as_good, readings.rounding_percent
+    );
+    let _ = writeln!(text, "\nEach figure as the reading predicts it that the others choose:");
+    readings.left_out.iter().for_each(|one| text.push_str(&left_out(one)));
+    text
+}
+
+fn header(fit: &Fit) -> String {
+    let figures: String = fit.figures.iter().map(|figure| format!(" {:>8}", figure.id)).collect();
+    let published: String = fit.figures.iter().map(|figure| format!(" {:>8}", figure.published)).collect();
+    format!(
+        "{:>7} {:>8} {:>7}{figures}  reading\n{:>7} {:>8} {:>7}{published}  published\n",
+        "mean %", "worst %", "log L", "", "", ""
+    )
+}
+
+fn line(fit: &Fit) -> String {
+    let values: String = fit.figures.iter().map(|figure| format!(" {:>8.2}", figure.simulated)).collect();
+    let sds: Vec<String> =
+        fit.figures.iter().filter_map(|figure| Some(format!("{} {:.2}", figure.id, figure.simulated_sd?))).collect();
+    format!(
+        "{:>7.2} {:>8.2} {:>7.1}{values}  {}; sd {}\n",
+        fit.mean_error_percent,
+        fit.greatest_error_percent,
+        fit.log_likelihood,
+        fit.words,
+        sds.join(", ")
+    )
+}
+
+fn left_out(one: &LeftOut) -> String {
+    format!("{:<4} {:>+7.1} %  {}\n", one.id, one.error_percent, one.words)
+}

@@ -1,0 +1,56 @@
+//! The application scenes of the papers and the loads of their fly-throughs, made once for all benches that share them.
+
+use super::measured::{Result, scene_named};
+use pxpl5_analytic::Load;
+use pxpl5_scene::Scene;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// A scene by its name, and whether its back faces are dropped.
+type Key = (&'static str, bool);
+
+/// Loads of every view of a fly-through, a list for each seed.
+type LoadsOfSeeds = Arc<Vec<Vec<Load>>>;
+
+/// What was made so far.
+#[derive(Debug, Default)]
+pub(crate) struct Applications {
+    scenes: Mutex<BTreeMap<Key, Arc<Scene>>>,
+    loads: Mutex<BTreeMap<Key, LoadsOfSeeds>>,
+}
+
+impl Applications {
+    /// A built-in scene.
+    pub(super) fn scene(&self, name: &'static str, culled: bool) -> Result<Arc<Scene>> {
+        let make = || {
+            let whole = scene_named(name)?;
+            Ok(if culled { Arc::new(Arc::unwrap_or_clone(whole).culled()) } else { whole })
+        };
+        find_or_make(&self.scenes, (name, culled), make)
+    }
+
+    /// The loads of a scene, from `make` where they are asked for the first time.
+    pub(super) fn loads(
+        &self,
+        name: &'static str,
+        culled: bool,
+        make: impl FnOnce() -> Result<Vec<Vec<Load>>>,
+    ) -> Result<LoadsOfSeeds> {
+        find_or_make(&self.loads, (name, culled), || make().map(Arc::new))
+    }
+}
+
+/// Others who ask for the same wait until it is made.
+fn find_or_make<T>(
+    all: &Mutex<BTreeMap<Key, Arc<T>>>,
+    key: Key,
+    make: impl FnOnce() -> Result<Arc<T>>,
+) -> Result<Arc<T>> {
+    let mut all: MutexGuard<'_, _> = all.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = all.get(&key) {
+        return Ok(Arc::clone(known));
+    }
+    let made = make()?;
+    all.insert(key, Arc::clone(&made));
+    Ok(made)
+}

@@ -1,0 +1,92 @@
+//! All readings, ranked.
+
+use super::fit::{Fit, half_a_digit};
+use super::{FIGURES, all};
+use crate::figures::{Bench, Reading};
+use crate::parallel;
+use pxpl5_run::{ExperimentError, Level};
+use serde::Serialize;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A figure as the reading predicts it that all others choose.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// Number of the figure.
+    pub id: &'static str,
+    /// The reading with the least mean error of the other figures.
+    pub chosen: Reading,
+    /// The same in words.
+    pub words: String,
+    /// What it gives for the figure, less what the paper prints, percent.
+    pub error_percent: f64,
+}
+
+/// What all readings make of the figures.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Readings {
+    /// Name and version of this record\'s layout.
+    pub schema: &'static str,
+    /// Every reading at the analytic level, the least mean error first.
+    pub analytic: Vec<Fit>,
+    /// The best of them at the transaction level, the least mean error first.
+    pub transaction: Vec<Fit>,
+    /// Each figure left out in turn, at the analytic level.
+    pub left_out: Vec<LeftOut>,
+    /// Readings whose mean error is that of the best one but for the digits that the papers print.
+    pub as_good: usize,
+    /// What those digits can hide of a mean error, percent.
+    pub rounding_percent: f64,
+}
+
+/// Ranks all readings; `best` of them at the transaction level too. `finished` hears how many of all runs are done.
+///
+/// # Errors
+///
+/// As [`Bench::measure`].
+pub fn run(
+    seeds: u64,
+    frames: u64,
+    best: usize,
+    finished: impl Fn(u64, u64) + Sync,
+) -> Result<Readings, ExperimentError> {
+    let readings = all();
+    let best = best.min(readings.len());
+    let steps = (readings.len() + best) as u64;
+    let done = AtomicU64::new(0);
+    let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
+    let fits = |level: Level, readings: &[Reading]| {
+        let bench = Bench::new(level).with_mig(seeds, frames);
+        let fits = parallel::map(readings, |reading| {
+            let fit = Fit::of(&bench, *reading);
+            step();
+            fit
+        });
+        fits.into_iter().collect::<Result<Vec<_>, _>>().map(ranked)
+    };
+    let analytic = fits(Level::Analytic, &readings)?;
+    let chosen: Vec<Reading> = analytic.iter().take(best).map(|fit| fit.reading).collect();
+    let transaction = fits(Level::Transaction, &chosen)?;
+    let rounding_percent = rounding_percent(&analytic);
+    let least = analytic.first().map_or(f64::NAN, |fit| fit.mean_error_percent);
+    let as_good = analytic.iter().filter(|fit| fit.mean_error_percent <= least + rounding_percent).count();
+    let left_out = FIGURES.iter().filter_map(|id| left_out(&analytic, id)).collect();
+    Ok(Readings { schema: "pxpl5-readings/1", analytic, transaction, left_out, as_good, rounding_percent })
+}
+
+fn ranked(mut fits: Vec<Fit>) -> Vec<Fit> {
+    fits.sort_by(|a, b| a.mean_error_percent.total_cmp(&b.mean_error_percent).then(a.reading.cmp(&b.reading)));
+    fits
+}
+
+fn left_out(fits: &[Fit], id: &'static str) -> Option<LeftOut> {
+    let chosen = fits.iter().min_by(|a, b| a.mean_error_without(id).total_cmp(&b.mean_error_without(id)))?;
+    let figure = chosen.figures.iter().find(|figure| figure.id == id)?;
+    Some(LeftOut { id, chosen: chosen.reading, words: chosen.words.clone(), error_percent: figure.error_percent })
+}
+
+/// Half of the last printed digit, as a mean over the figures: three digits are printed.
+fn rounding_percent(fits: &[Fit]) -> f64 {
+    let published = fits.first().into_iter().flat_map(|fit| &fit.figures).map(|figure| figure.published);
+    let halves: Vec<f64> = published.map(|value| 100.0 * half_a_digit(value) / value).collect();
+    halves.iter().sum::<f64>() / halves.len().max(1) as f64
+}
