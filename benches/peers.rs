@@ -10,11 +10,12 @@ use euc::rasterizer::{BackfaceCullingDisabled, Triangles};
 use euc::{Interpolate, Pipeline as _, Target as _};
 use glam::{Mat4, Vec3, Vec4};
 use pphigs::{
-    Binning, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionEnvelope, Shading, Share,
+    Binning, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionEnvelope, Shading,
+    Share,
 };
 use pxpl5::ViewNumber;
 use pxpl5::scene::{self, Hmd, HmdConfig, Scene, View};
-use pxpl5_geometry::Viewport;
+use pxpl5_geometry::{Culling, Viewport};
 use pxpl5_renderer::{BitSerial, Lanes, Layout, PixelArray};
 use pxpl5_wire::{RegionId, Word};
 use std::sync::Arc;
@@ -119,8 +120,12 @@ const BACKGROUND: [u8; 3] = [1, 2, 3];
 impl<A: PixelArray> Ours<A> {
     fn new(head: &Scene, array: impl Fn(&Layout) -> A) -> Self {
         let light = head.lighting();
-        let structure =
-            DisplayStructure { triangles: 0..head.triangles().len(), spheres: 0..0, frame: ModelFrame::World };
+        let structure = DisplayStructure {
+            triangles: 0..head.triangles().len(),
+            spheres: 0..0,
+            frame: ModelFrame::World,
+            culling: Culling::None,
+        };
         let list = DisplayList {
             positions: head.vertices().iter().map(|v| v.position).collect(),
             normals: head.vertices().iter().map(|v| v.normal).collect(),

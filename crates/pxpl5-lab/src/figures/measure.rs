@@ -1,7 +1,7 @@
 //! The experiments behind the figures.
 
-use super::heads;
 use super::applications::Applications;
+use super::heads;
 use super::measured::{Measured, Result, detail, scene_named};
 use super::reading::{Reading, Samples};
 use crate::levels::summarise;
