@@ -10,8 +10,7 @@ use euc::rasterizer::{BackfaceCullingDisabled, Triangles};
 use euc::{Interpolate, Pipeline as _, Target as _};
 use glam::{Mat4, Vec3, Vec4};
 use pphigs::{
-    Binning, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionEnvelope, Shading,
-    Share,
+    Binning, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionEnvelope, Shading, Share,
 };
 use pxpl5::ViewNumber;
 use pxpl5::scene::{self, Hmd, HmdConfig, Scene, View};

@@ -171,6 +171,9 @@ impl Pass {
     }
 }
 
+/// Bytes of a pointer in a bin: the commands that it points to are held once, for all regions (TR94).
+pub const BIN_ENTRY_BYTES: u64 = 4;
+
 fn bytes(kind: CommandKind, count: u32) -> u64 {
     4 * u64::from(kind.words()) * u64::from(count)
 }

@@ -3,7 +3,7 @@
 use super::load::Load;
 use super::renderer::Cost;
 use crate::{pipeline_of, video_of};
-use pphigs::{Binning, Shading, TransformCost};
+use pphigs::{BIN_ENTRY_BYTES, Binning, Shading, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::GpTiming;
 use pxpl5_machine::{ConfigError, MachineConfig};
@@ -74,6 +74,8 @@ struct History {
     transformed: Vec<f64>,
     rendered: Vec<f64>,
     copied: Vec<f64>,
+    /// Bytes of a slave's bins for the drawing before.
+    bin_bytes: f64,
     edited_ns: f64,
     swapped_ns: f64,
     rendering: Renderers,
@@ -145,8 +147,8 @@ impl StereoModel {
             shade: if phong { shade } else { Cost::default() },
             copy_words: f64::from(CommandKind::CopyRegion.words()),
             fifo_words: config.renderer.fifo_words as f64,
-            backing_regions: config.renderer.backing_regions as usize,
-            regions_stored: program.finished.stored(config.renderer.backing_regions) as usize,
+            backing_regions: config.renderer.backing_regions() as usize,
+            regions_stored: program.finished.stored(config.renderer.backing_regions()) as usize,
             store_ns: config.renderer.backing_block().as_ms() * 1e6,
             field_ns: video.retrace(PeriodNumber(1)).since(Time::ZERO).as_ms() * 1e6,
             copy_ns: regions.map(|region| copy_ns(grid, region, word_ns, overhead_ns)).collect(),
@@ -192,6 +194,12 @@ impl StereoModel {
                 let ready = [back(&history.rendered, picture, 2), back(&history.copied, picture, 3), history.edited_ns];
                 begin_ns = begin_ns.max(ready.into_iter().fold(0.0, f64::max) + self.order_ns());
             }
+            let bin_bytes = self.bin_bytes(load);
+            if history.bin_bytes + bin_bytes > self.gp.bin_bytes as f64 {
+                // The tokens of the drawing before have been at all slaves.
+                begin_ns = begin_ns.max(back(&history.rendered, picture, 1));
+            }
+            history.bin_bytes = bin_bytes;
             times.transform_ns[eye] = begin_ns;
             begin_ns += self.transform_ns(load);
             // The master hears all slaves one after the other.
@@ -210,12 +218,21 @@ impl StereoModel {
         times
     }
 
+    /// Entries in the bins of the slave with the largest share.
+    fn entries(&self, load: &Load) -> f64 {
+        let primitives = self.largest_share(load.triangles) + self.largest_share(load.spheres);
+        load.entries() * primitives / (load.triangles + load.spheres).max(1.0)
+    }
+
+    fn bin_bytes(&self, load: &Load) -> f64 {
+        self.entries(load) * BIN_ENTRY_BYTES as f64
+    }
+
     /// TRANSFORM of the slave with the largest share.
     fn transform_ns(&self, load: &Load) -> f64 {
         let triangles = self.largest_share(load.triangles);
         let spheres = self.largest_share(load.spheres);
-        let all = (load.triangles + load.spheres).max(1.0);
-        let entries = load.entries() * (triangles + spheres) / all;
+        let entries = self.entries(load);
         TransformCost { passes: 1.0, triangles, spheres, entries }.ns(&self.gp)
     }
 

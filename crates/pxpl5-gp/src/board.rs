@@ -84,7 +84,7 @@ impl GpBoard {
             now: pxpl5_sim::Time::ZERO,
             timing,
             cpu: Cpu::default(),
-            memory: Memory::new(node, timing.memory_bytes),
+            memory: Memory::new(node, timing.memory_bytes, timing.bin_bytes),
             processor: None,
             inbox: VecDeque::new(),
             batches: VecDeque::new(),

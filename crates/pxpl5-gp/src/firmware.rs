@@ -341,6 +341,14 @@ impl Gp {
         Ok(self.shared.borrow_mut().memory.set(account, bytes, region)?)
     }
 
+    /// Whether the bins of a context would fit beside those that the other context holds now.
+    #[must_use]
+    pub fn has_room_for_bins(&self, context: u8, bytes: u64) -> bool {
+        let shared = self.shared.borrow();
+        let other = shared.memory.held(Account::Bins(context ^ 1));
+        other.saturating_add(bytes) <= shared.timing.bin_bytes
+    }
+
     /// Tells the observer that a stage begins.
     pub fn begin(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>) {
         self.mark(stage, picture, surface, Edge::Begin, self.now());

@@ -1,4 +1,4 @@
-//! The 8 MB of a board, accounted for by use.
+//! The 8 MB of a board, accounted for by use. Bins have a part of their own.
 
 use pxpl5_wire::{NodeId, RegionId};
 use serde::Serialize;
@@ -70,15 +70,16 @@ fn named(region: Option<RegionId>) -> String {
 pub struct Memory {
     gp: NodeId,
     capacity: u64,
+    bins: u64,
     used: [u64; Account::SLOTS],
     peak: u64,
 }
 
 impl Memory {
-    /// Memory of `capacity` bytes, all free.
+    /// Memory of `capacity` bytes, all free, of which the bins of both contexts may take `bins`.
     #[must_use]
-    pub const fn new(gp: NodeId, capacity: u64) -> Self {
-        Self { gp, capacity, used: [0; Account::SLOTS], peak: 0 }
+    pub const fn new(gp: NodeId, capacity: u64, bins: u64) -> Self {
+        Self { gp, capacity, bins, used: [0; Account::SLOTS], peak: 0 }
     }
 
     /// Sets the bytes that an account holds.
@@ -88,13 +89,23 @@ impl Memory {
     /// [`OutOfMemory`] when they do not fit beside the other accounts; nothing changes then.
     pub fn set(&mut self, account: Account, bytes: u64, region: Option<RegionId>) -> Result<(), OutOfMemory> {
         let others = self.used() - self.used[account.slot()];
-        let available_bytes = self.capacity.saturating_sub(others);
+        let free = self.capacity.saturating_sub(others);
+        let available_bytes = match account {
+            Account::Bins(context) => free.min(self.bins.saturating_sub(self.held(Account::Bins(context ^ 1)))),
+            _ => free,
+        };
         if bytes > available_bytes {
             return Err(OutOfMemory { gp: self.gp, account, region, needed_bytes: bytes, available_bytes });
         }
         self.used[account.slot()] = bytes;
         self.peak = self.peak.max(others + bytes);
         Ok(())
+    }
+
+    /// Bytes that an account holds.
+    #[must_use]
+    pub const fn held(&self, account: Account) -> u64 {
+        self.used[account.slot()]
     }
 
     /// Bytes in use by all accounts.
@@ -116,7 +127,7 @@ mod tests {
 
     #[test]
     fn an_overflow_names_the_board_the_use_and_the_region_and_changes_nothing() {
-        let mut memory = Memory::new(NodeId(3), 1_000);
+        let mut memory = Memory::new(NodeId(3), 1_000, 1_000);
         memory.set(Account::DisplayList, 600, None).expect("fits");
         memory.set(Account::Bins(1), 400, Some(RegionId(7))).expect("fits exactly");
         let error = memory.set(Account::Bins(1), 401, Some(RegionId(7))).expect_err("one byte too many");
@@ -125,5 +136,16 @@ mod tests {
             "graphics processor at node 3: bins of context 1 (region 7) needs 401 bytes, 400 are available"
         );
         assert_eq!((memory.used(), memory.peak()), (1_000, 1_000));
+    }
+
+    #[test]
+    fn the_bins_of_both_contexts_share_their_own_part() {
+        let mut memory = Memory::new(NodeId(0), 1_000, 300);
+        memory.set(Account::Bins(0), 200, Some(RegionId(0))).expect("fits");
+        let error = memory.set(Account::Bins(1), 101, Some(RegionId(4))).expect_err("100 are left of 300");
+        assert_eq!((error.needed_bytes, error.available_bytes, error.region), (101, 100, Some(RegionId(4))));
+        memory.set(Account::Commands(1), 500, None).expect("commands are not in the bins' part");
+        memory.set(Account::Bins(0), 0, None).expect("less always fits");
+        memory.set(Account::Bins(1), 300, Some(RegionId(4))).expect("fits now");
     }
 }

@@ -68,6 +68,7 @@ fn run(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, Experi
 fn run_once(triangles: u32, n_gps: usize, n_renderers: usize) -> Result<Point, ExperimentError> {
     let mut config = MachineConfig { n_gps, n_renderers, ..MachineConfig::preset("large")? };
     config.gp.memory_bytes = MEMORY_BYTES;
+    config.gp.bin_bytes = MEMORY_BYTES;
     let fields = fields(&config, u64::from(triangles))?;
     let scene = test_scene(TestScene::Typical, triangles);
     let experiment = Experiment::new(config, RenderingControl::stereo(), scene).fields(fields).pixels(Pixels::Off);

@@ -1,15 +1,16 @@
 //! Intervals instead of points: what the figures do when parameters that no paper prints move within their ranges.
 //!
-//! Two designs, both at the analytic level, which follows the transaction level closely enough for differences:
+//! Three designs, all at the analytic level, which follows the transaction level closely enough for differences:
 //!
 //! - *one at a time*: each parameter at the low and at the high end of its range, all others at their presets;
+//! - *readings*: each question that the papers leave open answered otherwise ([`Reading::neighbours`]), one at a time;
 //! - *joint*: [`SAMPLES`] machines with every parameter drawn uniformly from its range, from a fixed seed.
 //!
 //! Parameters that were fitted to a figure stay what they are, except the two times per triangle of Slats, which move
 //! within the range that gives the figure exactly. So the interval of a fitted figure says how much it would be off
 //! if nothing were fitted anew.
 
-use crate::figures::{Bench, FIGURES, Row, WITHOUT_CLOSED_FORM};
+use crate::figures::{Bench, FIGURES, Reading, Row, WITHOUT_CLOSED_FORM};
 use parameters::Standing;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Level;
@@ -58,6 +59,10 @@ pub struct Interval {
     pub nominal: f64,
     /// Least and greatest over the ends of every range, one parameter at a time.
     pub one_at_a_time: [f64; 2],
+    /// Least and greatest over the readings that answer one question differently.
+    pub readings: [f64; 2],
+    /// The readings among them that move the figure, the strongest first, with its value.
+    pub rules: Vec<(String, f64)>,
     /// Least and greatest over the joint sample.
     pub joint: [f64; 2],
     /// 5th and 95th percentile of the joint sample.
@@ -67,9 +72,16 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Both designs together, as they were computed: at the analytic level, whatever another level says.
+    /// All designs together, as they were computed: at the analytic level, whatever another level says.
     #[must_use]
     pub const fn bounds(&self) -> [f64; 2] {
+        let [low, high] = self.of_parameters();
+        [low.min(self.readings[0]), high.max(self.readings[1])]
+    }
+
+    /// What parameters do, without the readings.
+    #[must_use]
+    pub const fn of_parameters(&self) -> [f64; 2] {
         [self.one_at_a_time[0].min(self.joint[0]), self.one_at_a_time[1].max(self.joint[1])]
     }
 }
@@ -121,12 +133,17 @@ pub fn intervals() -> Vec<Interval> {
     let at_ends = crate::parallel::map(&ends, |(v, value)| measure(&bench, vec![(v.path.clone(), *value)]));
     let samples: Vec<u64> = (0..SAMPLES).collect();
     let joint = crate::parallel::map(&samples, |sample| measure(&bench, draw(&variations, *sample)));
+    let neighbours = bench.reading.neighbours();
+    let read = crate::parallel::map(&neighbours, |reading| measure(&bench.with(*reading), Vec::new()));
     let mut intervals = Vec::new();
     for (index, figure) in FIGURES.iter().enumerate().filter(|(_, figure)| !WITHOUT_CLOSED_FORM.contains(&figure.id)) {
         let nominal = nominal[index].unwrap_or(f64::NAN);
         let ends: Vec<f64> = at_ends.iter().map(|all| all[index].unwrap_or(nominal)).collect();
         let joint = joint.iter().filter_map(|all| all[index]).collect();
-        intervals.push(interval(figure.id, nominal, &ends, joint, &variations));
+        let mut interval = interval(figure.id, nominal, &ends, joint, &variations);
+        let values = neighbours.iter().zip(&read).filter_map(|(reading, all)| Some((*reading, all[index]?)));
+        interval.add_readings(&bench.reading, values);
+        intervals.push(interval);
     }
     intervals
 }
@@ -138,9 +155,23 @@ fn interval(id: &'static str, nominal: f64, ends: &[f64], mut joint: Vec<f64>, v
         id,
         nominal,
         one_at_a_time: bounds(ends.iter().copied().chain([nominal])),
+        readings: [nominal; 2],
+        rules: Vec::new(),
         joint: [percentile(&joint, 0.0), percentile(&joint, 1.0)],
         likely: [percentile(&joint, 0.05), percentile(&joint, 0.95)],
         effects: effects(variations, ends, nominal),
+    }
+}
+
+impl Interval {
+    /// Puts in what other readings give.
+    fn add_readings(&mut self, usual: &Reading, values: impl Iterator<Item = (Reading, f64)>) {
+        let reach = |value: f64| (value / self.nominal - 1.0).abs();
+        let moving = values.filter(|(_, value)| reach(*value) > VISIBLE);
+        let mut rules: Vec<_> = moving.map(|(reading, value)| (reading.difference(usual), value)).collect();
+        rules.sort_by(|a, b| reach(b.1).total_cmp(&reach(a.1)));
+        self.readings = bounds(rules.iter().map(|(_, value)| *value).chain([self.nominal]));
+        self.rules = rules;
     }
 }
 
@@ -206,6 +237,8 @@ mod tests {
             id: figure.id,
             nominal: 21.0,
             one_at_a_time: [20.5, 22.0],
+            readings: [21.0, 21.0],
+            rules: Vec::new(),
             joint: [20.0, 21.5],
             likely: [20.2, 21.0],
             effects: Vec::new(),

@@ -241,7 +241,7 @@ impl Renderer {
     /// they are there.
     fn store_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
         let held = self.stored.len() + usize::from(self.copying.is_some());
-        if self.storing || self.unstored.is_empty() || held as u64 >= self.timing.backing_regions {
+        if self.storing || self.unstored.is_empty() || held as u64 >= self.timing.backing_regions() {
             return;
         }
         self.storing = true;

@@ -25,8 +25,10 @@ parameters::parameter_table! {
         shade_clocks: 3_790, "clocks", Derived, 3_790..=8_000 in 0..=MAX, "its program, with one light: 95 us; assumed before: 100 to 200 us";
         /// Transfer of one 32-bit block of all pixels to or from the backing store.
         backing_block_clocks: 2_040, "clocks", Assumed, 1024..=4096 in 0..=MAX, "51 us";
-        /// Finished regions that a renderer keeps in its backing store until they are copied.
-        backing_regions: 1, "regions", Derived, 1..=4 in 0..=MAX, "from the published 56.5 ms of a trivial scene (TR94); with 3 or more it would be 65 ms, and 47.6 of the 50 ms of its theory; 4,096 bits have room for them";
+        /// Backing store of a pixel.
+        backing_bits: 4_096, "bits", Published, 4_096..=4_096 in 0..=MAX, "F89: video memory beside each pixel's 208 bits";
+        /// What a finished region needs of it until it is copied.
+        kept_bits: 32, "bits", Derived, 32..=256 in 1..=MAX, "its 24 bits of colour, moved in blocks of 32 (F89); 256 if all 208 bits of a pixel were kept";
         /// Depth of the input FIFO.
         fifo_words: 448, "words", Derived, 400..=512 in 128..=1_048_576, "from the published 56.5 ms of a trivial scene (TR94)";
     }
@@ -37,6 +39,15 @@ impl RendererTiming {
     #[must_use]
     pub fn backing_block(&self) -> Span {
         Clock::from_hz(self.clock_hz).map_or(Span::ZERO, |clock| clock.span(Cycles(self.backing_block_clocks)))
+    }
+
+    /// Finished regions that the backing store has room for: 128.
+    #[must_use]
+    pub const fn backing_regions(&self) -> u64 {
+        match self.backing_bits.checked_div(self.kept_bits) {
+            Some(regions) => regions,
+            None => 0,
+        }
     }
 
     /// Execution time of one command; `None` for the copy of a region, which ends when the frame buffer has it.

@@ -22,15 +22,12 @@ pub struct RenderingControlConfig {
     pub picture: Picture,
     /// Finished regions that a renderer keeps in its backing store while their frame buffer is not available, and goes on with the
     /// next region; 0 where it waits for the copy with the region in pixel memory. At most as many as there is room for
-    /// (`renderer.backing_regions`).
+    /// (`renderer.backing_bits / renderer.kept_bits`).
     pub regions_stored: usize,
 }
 
 /// Bytes of program, stacks and message buffers on a GP (assumed).
 pub(crate) const PROGRAM_BYTES: u64 = 1 << 20;
-
-/// Bytes of a pointer in a bin.
-pub(crate) const BIN_ENTRY_BYTES: u64 = 4;
 
 impl RenderingControlConfig {
     /// Eyes of a frame: 1 or 2.

@@ -1,10 +1,10 @@
 //! A slave GP: EDIT and TRANSFORM in the foreground, tokens in the background.
 
-use crate::config::{BIN_ENTRY_BYTES, PROGRAM_BYTES, RenderingControlConfig};
+use crate::config::{PROGRAM_BYTES, RenderingControlConfig};
 use crate::master::copy_order;
 use crate::protocol::{StageOrder, Token};
 use crate::rules::EyeDrawing;
-use pphigs::{FrameView, Pass, RegionEnvelope, Share, Transforming, region_messages};
+use pphigs::{BIN_ENTRY_BYTES, FrameView, Pass, RegionEnvelope, Share, Transforming, region_messages};
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, PictureNumber, RegionId};
@@ -20,8 +20,9 @@ struct SlaveState {
     /// The first frame whose EDIT may not begin yet, and the first drawing whose TRANSFORM may not.
     next_edit: PictureNumber,
     next_transform: EyeDrawing,
-    /// The two bin contexts.
+    /// The two bin contexts, and the regions of each that no token has been here for.
     bins: [Option<Arc<Pass>>; 2],
+    regions_left: [u32; 2],
 }
 
 type SharedSlaveState = Rc<RefCell<SlaveState>>;
@@ -83,7 +84,10 @@ async fn edit(gp: &Gp, config: &RenderingControlConfig, state: &SharedSlaveState
     view
 }
 
-/// TRANSFORM: makes commands of all held primitives and puts them into bins.
+/// TRANSFORM: makes commands of all held primitives and puts them into bins, when there is room for them.
+///
+/// Where the bins of two drawings do not fit side by side, this waits until RENDER of the drawing before has freed its own. The
+/// emulated program knows how many entries there will be; a real one would go by the drawing before.
 async fn transform(
     gp: &Gp,
     config: &RenderingControlConfig,
@@ -94,18 +98,30 @@ async fn transform(
 ) -> Result<(), Fault> {
     let frame = config.frame_of(drawing);
     let eye = config.eye_of(drawing);
-    gp.begin(Stage::Transform, frame, Some(eye));
     let pass = share.transform(view, eye.index(), config.picture);
     let context = (drawing.0 % 2) as u8;
+    wait_for_bins(gp, state, &pass, context).await;
+    gp.begin(Stage::Transform, frame, Some(eye));
     reserve_bins(gp, &pass, context)?;
     let passes = std::slice::from_ref(&pass);
     gp.work(&Transforming { passes, context, begins: true }).await?;
     let regions = config.grid().regions() as u16;
     let entries = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
-    state.borrow_mut().bins[usize::from(context)] = Some(pass);
+    let SlaveState { bins, regions_left, .. } = &mut *state.borrow_mut();
+    bins[usize::from(context)] = Some(pass);
+    regions_left[usize::from(context)] = config.grid().regions();
     gp.end(Stage::Transform, frame, Some(eye));
     tell_master(gp, config, &StageOrder::Transformed(drawing, entries)).await;
     Ok(())
+}
+
+/// Until the bins of a pass fit, or the other context is empty.
+async fn wait_for_bins(gp: &Gp, state: &SharedSlaveState, pass: &Pass, context: u8) {
+    let regions = (0..pass.picture().viewport.grid().regions() as u16).map(RegionId);
+    let bytes = regions.map(|region| u64::from(pass.counts(region).total()) * BIN_ENTRY_BYTES).sum();
+    let other = usize::from(context ^ 1);
+    let fits = || gp.has_room_for_bins(context, bytes) || state.borrow().bins[other].is_none();
+    gp.until("room in the bins", || fits().then_some(())).await;
 }
 
 /// Accounts for commands and bins; an overflow names the region whose bin was being filled.
@@ -136,7 +152,10 @@ async fn token_program(
                 state.next_transform = config.first_of(frame).after(1);
             }
             StageOrder::Transform(drawing) => state.borrow_mut().next_transform = drawing.after(1),
-            StageOrder::Token(token) => walk(&gp, &config, index, &state, token).await,
+            StageOrder::Token(token) => {
+                walk(&gp, &config, index, &state, token).await;
+                free_bins(&gp, &state, token.drawing)?;
+            }
             other => return Err(Fault::Protocol { node: gp.node(), found: format!("at a slave: {other:?}") }),
         }
     }
@@ -159,6 +178,20 @@ async fn walk(gp: &Gp, config: &RenderingControlConfig, index: usize, state: &Sh
     };
     let (words, body) = order.message();
     gp.send(receiver, words, body).await;
+}
+
+/// Frees a drawing's commands and bins when the tokens of all its regions have been here.
+fn free_bins(gp: &Gp, state: &SharedSlaveState, drawing: EyeDrawing) -> Result<(), Fault> {
+    let context = (drawing.0 % 2) as u8;
+    let SlaveState { bins, regions_left, .. } = &mut *state.borrow_mut();
+    let left = &mut regions_left[usize::from(context)];
+    *left -= 1;
+    if *left == 0 {
+        bins[usize::from(context)] = None;
+        gp.reserve(Account::Commands(context), 0, None)?;
+        gp.reserve(Account::Bins(context), 0, None)?;
+    }
+    Ok(())
 }
 
 /// The first slave begins the region, the last one ends it.

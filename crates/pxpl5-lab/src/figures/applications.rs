@@ -1,7 +1,9 @@
-//! The application scenes of the papers and the loads of their fly-throughs, made once for all benches that share them.
+//! The application scenes of the papers, the loads of their fly-throughs, and what the rig measures: made once for all benches that
+//! share them.
 
-use super::measured::{Result, scene_named};
+use super::measured::{Measured, Result, scene_named};
 use pxpl5_analytic::Load;
+use pxpl5_run::FinishedRegions;
 use pxpl5_scene::Scene;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -12,11 +14,15 @@ type Key = (&'static str, bool);
 /// Loads of every view of a fly-through, a list for each seed.
 type LoadsOfSeeds = Arc<Vec<Vec<Load>>>;
 
+/// Regions kept, the master's rule, and changed parameters.
+pub(super) type RigKey = (u64, FinishedRegions, Vec<(String, u64)>);
+
 /// What was made so far.
 #[derive(Debug, Default)]
 pub(crate) struct Applications {
     scenes: Mutex<BTreeMap<Key, Arc<Scene>>>,
     loads: Mutex<BTreeMap<Key, LoadsOfSeeds>>,
+    rigs: Mutex<BTreeMap<RigKey, Arc<Measured>>>,
 }
 
 impl Applications {
@@ -38,12 +44,17 @@ impl Applications {
     ) -> Result<LoadsOfSeeds> {
         find_or_make(&self.loads, (name, culled), || make().map(Arc::new))
     }
+
+    /// What the pendulum rig measures with these rules, from `make` where it is asked for the first time.
+    pub(super) fn rig(&self, key: RigKey, make: impl FnOnce() -> Result<Measured>) -> Result<Measured> {
+        find_or_make(&self.rigs, key, || make().map(Arc::new)).map(Arc::unwrap_or_clone)
+    }
 }
 
 /// Others who ask for the same wait until it is made.
-fn find_or_make<T>(
-    all: &Mutex<BTreeMap<Key, Arc<T>>>,
-    key: Key,
+fn find_or_make<K: Ord, T>(
+    all: &Mutex<BTreeMap<K, Arc<T>>>,
+    key: K,
     make: impl FnOnce() -> Result<Arc<T>>,
 ) -> Result<Arc<T>> {
     let mut all: MutexGuard<'_, _> = all.lock().unwrap_or_else(PoisonError::into_inner);

@@ -12,9 +12,9 @@ use tracking::rig::Latency;
 use tracking::tracker::TrackerConfig;
 
 /// Figure 17: the mean that is seen from outside.
-pub(super) fn rig(machine: &MachineConfig) -> Result<Measured> {
+pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl) -> Result<Measured> {
     let rig = Rig::assumed(TrackerConfig::optical_ceiling());
-    let measured = rig.measure(machine, Arc::new(RenderingControl::stereo()));
+    let measured = rig.measure(machine, Arc::new(pipeline));
     let measured = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
     let Latency { mean_s, least_s, greatest_s, .. } = measured.outside.rendering;
     let details = vec![

@@ -1,6 +1,7 @@
 //! What the papers leave open about Rendering Control, as values.
 
 use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_renderer::RendererTiming;
 use pxpl5_run::{FinishedRegions, RenderingControl, Summary};
 use serde::Serialize;
 
@@ -34,7 +35,7 @@ pub struct Reading {
     pub samples: Samples,
     /// How latencies that are printed in fields were counted.
     pub fields: FieldCount,
-    /// Finished regions that a renderer keeps in its backing store (`renderer.backing_regions`).
+    /// Finished regions that a renderer keeps in its backing store, 1 to [`ROOM`] (`renderer.kept_bits`).
     pub kept: u64,
     /// What the master does with a renderer whose region is finished while the frame buffer is not available.
     #[serde(serialize_with = "by_name")]
@@ -43,25 +44,72 @@ pub struct Reading {
     pub machine: &'static str,
     /// Whether the application scenes were drawn without their back faces.
     pub culled: bool,
+    /// Drawings of an eye, 1 or 2, that the 7,700 triangles fill the bins with (`gp.bin_bytes`).
+    pub bins: u64,
 }
 
 fn by_name<S: serde::Serializer>(finished: &FinishedRegions, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(finished.name())
 }
 
-/// Regions that a renderer's backing store has room for: 4,096 bits a pixel (TR94), of which the colours of a region take a block of 32.
-pub const ROOM: u64 = 4_096 / 32;
+/// Regions that a renderer's backing store has room for: 4,096 bits a pixel, of which a region's colours take a block of 32.
+pub const ROOM: u64 = RendererTiming::PAPERS.backing_regions();
 
 impl Reading {
-    /// The one with which figures are measured.
+    /// The one with which figures are measured: what `pxpl5 readings` finds best, and nothing in the text contradicts.
     pub const USUAL: Self = Self {
-        samples: Samples::FirstEye,
-        fields: FieldCount::Exact,
-        kept: 1,
+        samples: Samples::EachEye,
+        fields: FieldCount::Whole,
+        kept: ROOM,
         finished: FinishedRegions::Wait,
-        machine: "small-hmd",
-        culled: false,
+        machine: "large",
+        culled: true,
+        bins: 1,
     };
+
+    /// The rules of TR94 alone, on a machine that never keeps them waiting: what its theory (figures 3 and 5) is derived from.
+    pub const THEORY: Self = Self { kept: ROOM, finished: FinishedRegions::Store, ..Self::USUAL };
+
+    /// The readings that answer one question differently.
+    #[must_use]
+    pub fn neighbours(&self) -> Vec<Self> {
+        Self::all().into_iter().filter(|other| self.differences(other) == 1).collect()
+    }
+
+    /// Every combination of answers.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let mut all = vec![Self::USUAL];
+        all = varied(&all, &MACHINES, |reading, machine| Self { machine, ..reading });
+        all = varied(&all, &[false, true], |reading, culled| Self { culled, ..reading });
+        all = varied(&all, &FinishedRegions::ALL, |reading, finished| Self { finished, ..reading });
+        all = varied(&all, &KEPT, |reading, kept| Self { kept, ..reading });
+        all = varied(&all, &[1, 2], |reading, bins| Self { bins, ..reading });
+        all = varied(&all, &[Samples::FirstEye, Samples::EachEye], |reading, samples| Self { samples, ..reading });
+        varied(&all, &[FieldCount::Exact, FieldCount::Whole], |reading, fields| Self { fields, ..reading })
+    }
+
+    /// Its answers in words, in the order of the questions.
+    fn answers(&self) -> [String; 7] {
+        let samples = if self.samples == Samples::FirstEye { "first eye" } else { "each eye" };
+        let fields = if self.fields == FieldCount::Exact { "exact" } else { "whole fields" };
+        let kept = if self.kept == ROOM { "room for all".to_owned() } else { format!("{} kept", self.kept) };
+        let faces = if self.culled { "culled" } else { "all faces" };
+        let bins = if self.bins == 1 { "bins of one eye" } else { "bins of both eyes" };
+        let [samples, fields, machine, faces, bins] = [samples, fields, self.machine, faces, bins].map(str::to_owned);
+        [samples, fields, kept, self.finished.name().to_owned(), machine, faces, bins]
+    }
+
+    /// What it answers differently, in words.
+    #[must_use]
+    pub fn difference(&self, other: &Self) -> String {
+        let both = self.answers().into_iter().zip(other.answers());
+        both.filter(|(mine, others)| mine != others).map(|(mine, _)| mine).collect::<Vec<_>>().join(", ")
+    }
+
+    fn differences(&self, other: &Self) -> usize {
+        self.answers().iter().zip(&other.answers()).filter(|(mine, others)| mine != others).count()
+    }
 
     /// The pipeline as it reads the rules.
     #[must_use]
@@ -76,7 +124,10 @@ impl Reading {
     /// [`ConfigError`] for a number of regions beyond the parameter's limits.
     pub fn on(&self, mut machine: MachineConfig) -> Result<MachineConfig, ConfigError> {
         if self.kept != Self::USUAL.kept {
-            machine.set("renderer.backing_regions", self.kept)?;
+            machine.set("renderer.kept_bits", machine.renderer.backing_bits / self.kept)?;
+        }
+        if self.bins != Self::USUAL.bins {
+            machine.set("gp.bin_bytes", self.bins * machine.gp.bin_bytes)?;
         }
         Ok(machine)
     }
@@ -103,13 +154,39 @@ impl Reading {
     }
 }
 
+/// Machines that could have drawn the application scenes.
+const MACHINES: [&str; 4] = ["small-hmd", "medium", "design-maximum", "large"];
+
+/// Regions that a renderer may keep; the last is what its backing store has room for.
+const KEPT: [u64; 4] = [1, 2, 3, ROOM];
+
+/// Each reading with each answer to one question.
+fn varied<A: Copy>(readings: &[Reading], answers: &[A], answer: impl Fn(Reading, A) -> Reading) -> Vec<Reading> {
+    readings.iter().flat_map(|reading| answers.iter().map(|one| answer(*reading, *one))).collect()
+}
+
 impl std::fmt::Display for Reading {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { samples, fields, kept, finished, machine, culled } = self;
-        let samples = if *samples == Samples::FirstEye { "first eye" } else { "each eye" };
-        let fields = if *fields == FieldCount::Exact { "exact" } else { "whole fields" };
-        let room = if *kept == ROOM { "no limit".to_owned() } else { format!("{kept} kept") };
-        let faces = if *culled { "culled" } else { "all faces" };
-        write!(f, "{samples}, {fields}, {room}, {}, {machine}, {faces}", finished.name())
+        f.write_str(&self.answers().join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_combination_occurs_once_and_the_usual_one_is_among_them() {
+        let all = Reading::all();
+        assert_eq!(all.len(), 4 * 2 * 2 * 4 * 2 * 2 * 2);
+        assert_eq!(all.iter().collect::<BTreeSet<_>>().len(), all.len());
+        assert!(all.contains(&Reading::USUAL) && all.contains(&Reading::THEORY));
+    }
+
+    #[test]
+    fn a_neighbour_answers_one_question_differently() {
+        // Three other machines, three other numbers of regions, and five questions with two answers.
+        assert_eq!(Reading::USUAL.neighbours().len(), 3 + 3 + 5);
     }
 }

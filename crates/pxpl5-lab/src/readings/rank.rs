@@ -1,7 +1,7 @@
 //! All readings, ranked.
 
+use super::FIGURES;
 use super::fit::{Fit, half_a_digit};
-use super::{FIGURES, all};
 use crate::figures::{Bench, Reading};
 use crate::parallel;
 use pxpl5_run::{ExperimentError, Level};
@@ -49,7 +49,7 @@ pub fn run(
     best: usize,
     finished: impl Fn(u64, u64) + Sync,
 ) -> Result<Readings, ExperimentError> {
-    let readings = all();
+    let readings = Reading::all();
     let best = best.min(readings.len());
     let steps = (readings.len() + best) as u64;
     let done = AtomicU64::new(0);

@@ -94,7 +94,7 @@ impl RenderingControl {
             renderers: ports.renderers.clone(),
             frame_buffers: ports.display().to_vec(),
             picture,
-            regions_stored: self.finished.stored(machine.record().config().renderer.backing_regions) as usize,
+            regions_stored: self.finished.stored(machine.record().config().renderer.backing_regions()) as usize,
         })
     }
 }
