@@ -2,7 +2,7 @@
 //! are (FIXME(accuracy)). Causes stand in ACCURACY.md, which must be what these runs give.
 
 use pxpl5::Level;
-use pxpl5::figures::{Bench, Figures, Row, WITHOUT_CLOSED_FORM, markdown, run_all};
+use pxpl5::figures::{Bench, Figures, Reading, Row, Samples, WITHOUT_CLOSED_FORM, markdown, run_all};
 use std::sync::LazyLock;
 
 static FIGURES: LazyLock<Figures> =
@@ -34,22 +34,19 @@ fn both_eyes_are_copied_in_31_2_ms() {
 }
 
 #[test]
-fn copy_alone_takes_less_than_the_three_fields_of_the_theory() {
-    // FIXME(accuracy): published 50 ms.
-    within("3", 39.0, 41.0);
-    assert!(row("3").misses());
+fn copy_alone_takes_the_three_fields_of_the_theory() {
+    within("3", 49.5, 50.5);
 }
 
 #[test]
 fn a_trivial_stereo_scene_takes_3_percent_more_than_measured() {
-    within("4", 56.5, 58.2);
+    within("4", 56.5, 56.5 * 1.03);
     within("4b", 29.9, 30.0);
 }
 
 #[test]
-fn equal_stages_keep_30_hz_and_stay_below_four_fields() {
-    // FIXME(accuracy): published up to 66.7 ms.
-    within("5", 57.0, 66.74);
+fn equal_stages_keep_30_hz_and_take_four_fields() {
+    within("5", 66.7 * 0.98, 66.7 * 1.02);
     assert!(row("5").details.iter().any(|d| d.unit == "Hz" && (29.9..30.0).contains(&d.value)));
 }
 
@@ -59,10 +56,21 @@ fn long_stages_take_three_transforms_and_one_to_two_copies() {
 }
 
 #[test]
-fn the_mig_is_shown_most_of_a_field_sooner_than_measured() {
-    // FIXME(accuracy): published 4.61 fields, sd 0.589.
-    within("7", 3.7, 4.0);
-    assert!(row("7").misses());
+fn application_scenes_take_as_many_fields_as_measured() {
+    for (id, mean, sd) in [("7", 4.61, 0.589), ("7b", 4.47, 0.502), ("7c", 8.13, 2.48)] {
+        within(id, mean * 0.95, mean * 1.05);
+        let found = row(id).details.iter().find(|detail| detail.name == "standard deviation").expect("listed").value;
+        assert!((found / sd - 1.0).abs() < 0.27, "figure {id}: deviation {found}, published {sd}");
+    }
+}
+
+#[test]
+fn the_bins_hold_7_700_triangles_that_cover_the_screen() {
+    // As many on each of 12 slaves: 7,704 is the first multiple of 12 that is not below.
+    within("16", 7_700.0, 7_704.0);
+    within("16b", 1.5, 2.5);
+    // FIXME(accuracy): published 293 ms.
+    within("16c", 240.0, 265.0);
 }
 
 #[test]
@@ -91,9 +99,9 @@ fn the_limits_that_parameters_were_fitted_to_come_out_exactly() {
 }
 
 #[test]
-fn the_copy_optimisation_raises_the_limit_by_eight_triangles_too_many() {
+fn the_copy_optimisation_raises_the_limit_by_seven_triangles_too_many() {
     // FIXME(accuracy): published 140.
-    within("13", 148.0, 148.0);
+    within("13", 146.0, 147.0);
 }
 
 #[test]
@@ -114,9 +122,16 @@ fn ninety_milliseconds_are_1_8_times_as_wrong_as_fifty() {
     within("18", 1.75, 1.8);
 }
 
+/// Figure 4 is over both eyes; what passes from head to light is of a frame, from its first eye on.
+fn first_eye_of_figure_4_ms() -> f64 {
+    let bench = Bench::new(Level::Transaction);
+    let reading = Reading { samples: Samples::FirstEye, ..Reading::USUAL };
+    bench.with(reading).measure("4").expect("it runs").value
+}
+
 #[test]
 fn tracker_and_rendering_together_are_the_parts_that_were_measured_one_by_one() {
-    for (id, rendering) in [("19", row("4").simulated), ("19b", row("9").simulated * 1001.0 / 60.0)] {
+    for (id, rendering) in [("19", first_eye_of_figure_4_ms()), ("19b", row("9").simulated * 1001.0 / 60.0)] {
         let of = |name: &str| row(id).details.iter().find(|detail| detail.name == name).expect("listed").value;
         assert!((of("tracking") + of("rendering") - row(id).simulated).abs() < 1e-9, "{id}");
         assert!((of("rendering") / rendering - 1.0).abs() < 0.05, "{id}: {} and {rendering}", of("rendering"));
@@ -156,10 +171,9 @@ fn what_is_simulated_lies_in_the_interval_of_the_analytic_level_or_within_3_perc
 }
 
 #[test]
-fn three_figures_are_out_of_reach_of_all_parameters_and_the_limits_are_not() {
+fn no_figure_is_out_of_reach_of_all_parameters_and_readings() {
     let out_of_reach: Vec<&str> = FIGURES.rows.iter().filter(|row| row.is_out_of_reach()).map(|row| row.id).collect();
-    // FIXME(accuracy): see ACCURACY.md for the causes.
-    assert_eq!(out_of_reach, ["3", "4", "7"]);
+    assert_eq!(out_of_reach, [""; 0]);
 }
 
 #[test]

@@ -26,6 +26,7 @@ pub use row::{MISS_PERCENT, Row, mean_error_percent};
 pub use table::{Basis, FIGURES, Figure, WITHOUT_CLOSED_FORM};
 
 use crate::intervals::{Interval, fill, intervals};
+use crate::readings::{self, Readings};
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
 use thiserror::Error;
@@ -47,7 +48,13 @@ pub struct Figures {
     pub rows: Vec<Row>,
     /// What the open parameters do to each figure but the one of the scenes.
     pub intervals: Vec<Interval>,
+    /// What all readings make of the figures of Rendering Control, at the analytic level.
+    pub readings: Readings,
 }
+
+/// Seeds and frames of the application scenes by which readings are ranked.
+const SEEDS: u64 = 2;
+const FRAMES: u64 = 60;
 
 /// Measures all figures, several at a time, with their intervals.
 ///
@@ -58,13 +65,13 @@ pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
     run_all_with(bench, |_, _| {})
 }
 
-/// The same; `finished` hears how many of all steps are done: one for each figure, and one for the intervals.
+/// The same; `finished` hears how many of all steps are done: one for each figure, one for the intervals and one for the readings.
 ///
 /// # Errors
 ///
 /// As [`run_all`].
 pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, FigureError> {
-    let steps = FIGURES.len() as u64 + 1;
+    let steps = FIGURES.len() as u64 + 2;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
     let rows = crate::parallel::map(&FIGURES, |figure| {
@@ -76,7 +83,10 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
     let intervals = intervals();
     step();
     fill(&mut rows, &intervals);
-    Ok(Figures { rows, intervals })
+    let readings = readings::run(SEEDS, FRAMES, 0, |_, _| {});
+    let readings = readings.map_err(|error| FigureError { id: "7".to_owned(), reason: error.to_string() })?;
+    step();
+    Ok(Figures { rows, intervals, readings })
 }
 
 /// A figure with what the bench gives for it.
