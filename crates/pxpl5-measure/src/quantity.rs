@@ -48,10 +48,14 @@ const fn of_run(name: &'static str, definition: &'static str, value: fn(&Outcome
 const LATENCY: &str =
     "latency as the pipeline defines it (see the report), over all complete pictures after the warm-up";
 
+const EYE_LATENCY: &str = "from the start of an eye's TRANSFORM to the swap of its frame, over both eyes of all complete pictures after the warm-up; none for Slats";
+
+const EYE_RETRACES: &str = "the same in retraces: those of that time, the one of the swap included";
+
 const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields, where a picture is shown that was complete in time; only with a head.motion";
 
 /// All quantities. Those that need events have no value at the analytic level.
-pub static QUANTITIES: [Quantity; 35] = [
+pub static QUANTITIES: [Quantity; 39] = [
     of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().mean),
     of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().sd),
     of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
@@ -60,6 +64,10 @@ pub static QUANTITIES: [Quantity; 35] = [
     of_summary("latency_ms.sd", LATENCY, |s| s.latency_ms().sd),
     of_summary("latency_ms.min", LATENCY, |s| s.latency_ms().min),
     of_summary("latency_ms.max", LATENCY, |s| s.latency_ms().max),
+    of_summary("eye_latency_ms.mean", EYE_LATENCY, |s| s.eye_latency_ms().mean),
+    of_summary("eye_latency_ms.sd", EYE_LATENCY, |s| s.eye_latency_ms().sd),
+    of_summary("eye_retraces.mean", EYE_RETRACES, |s| s.eye_retraces().mean),
+    of_summary("eye_retraces.sd", EYE_RETRACES, |s| s.eye_retraces().sd),
     // What is not a number is no value: see `Measure::of`.
     of_summary(
         "updates_hz",

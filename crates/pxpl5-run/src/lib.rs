@@ -58,5 +58,5 @@ pub use raster::Raster;
 pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};
 pub use rehearsal::Rehearsal;
 pub use statistics::{DefinedStatistics, Statistics};
-pub use summary::Summary;
+pub use summary::{Summary, retraces};
 pub use views::{FrameStarts, ReportTimes, Views, ViewsWanted};

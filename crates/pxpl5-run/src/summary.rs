@@ -36,9 +36,30 @@ impl Summary {
         Statistics::of(self.latencies_ms.iter().copied())
     }
 
+    /// The mean over both eyes, each from the start of its own TRANSFORM to the swap, milliseconds; of nothing where eyes have none of
+    /// their own.
+    #[must_use]
+    pub fn eye_latency_ms(&self) -> Statistics {
+        Statistics::of(self.eye_swap_latencies_ms.iter().copied())
+    }
+
+    /// The same in retraces: up to and with the one of the swap.
+    #[must_use]
+    pub fn eye_retraces(&self) -> Statistics {
+        Statistics::of(self.eye_swap_latencies_ms.iter().map(|ms| retraces(*ms, self.field_ms)))
+    }
+
     /// Latency in periods of the display: for NTSC, fields of 1001/60000 s.
     #[must_use]
     pub fn latency_fields(&self) -> Statistics {
         Statistics::of(self.latencies_ms.iter().map(|ms| ms / self.field_ms))
     }
+}
+
+/// Retraces in a latency that ends with one, that one included: whole periods of the display of `field_ms`.
+#[must_use]
+pub fn retraces(latency_ms: f64, field_ms: f64) -> f64 {
+    /// A latency of exactly so many periods ends with a retrace, whatever the last bit of the quotient is.
+    const ROUNDING: f64 = 1e-9;
+    (latency_ms / field_ms - ROUNDING).ceil()
 }

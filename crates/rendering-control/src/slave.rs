@@ -25,6 +25,24 @@ struct SlaveState {
     regions_left: [u32; 2],
 }
 
+impl SlaveState {
+    /// A context has the bins of a pass, and no token has been here for any of its regions.
+    fn fill(&mut self, context: usize, pass: Arc<Pass>, regions: u32) {
+        self.bins[context] = Some(pass);
+        self.regions_left[context] = regions;
+    }
+
+    /// A token of a context has been here; whether it was the last, and the context is empty now.
+    fn is_emptied(&mut self, context: usize) -> bool {
+        self.regions_left[context] -= 1;
+        let is_last = self.regions_left[context] == 0;
+        if is_last {
+            self.bins[context] = None;
+        }
+        is_last
+    }
+}
+
 type SharedSlaveState = Rc<RefCell<SlaveState>>;
 
 /// The programs of slave number `index`, for both levels of its board.
@@ -107,9 +125,7 @@ async fn transform(
     gp.work(&Transforming { passes, context, begins: true }).await?;
     let regions = config.grid().regions() as u16;
     let entries = (0..regions).map(|region| pass.counts(RegionId(region)).total()).collect();
-    let SlaveState { bins, regions_left, .. } = &mut *state.borrow_mut();
-    bins[usize::from(context)] = Some(pass);
-    regions_left[usize::from(context)] = config.grid().regions();
+    state.borrow_mut().fill(usize::from(context), pass, config.grid().regions());
     gp.end(Stage::Transform, frame, Some(eye));
     tell_master(gp, config, &StageOrder::Transformed(drawing, entries)).await;
     Ok(())
@@ -183,11 +199,7 @@ async fn walk(gp: &Gp, config: &RenderingControlConfig, index: usize, state: &Sh
 /// Frees a drawing's commands and bins when the tokens of all its regions have been here.
 fn free_bins(gp: &Gp, state: &SharedSlaveState, drawing: EyeDrawing) -> Result<(), Fault> {
     let context = (drawing.0 % 2) as u8;
-    let SlaveState { bins, regions_left, .. } = &mut *state.borrow_mut();
-    let left = &mut regions_left[usize::from(context)];
-    *left -= 1;
-    if *left == 0 {
-        bins[usize::from(context)] = None;
+    if state.borrow_mut().is_emptied(usize::from(context)) {
         gp.reserve(Account::Commands(context), 0, None)?;
         gp.reserve(Account::Bins(context), 0, None)?;
     }

@@ -2,7 +2,7 @@
 
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::RendererTiming;
-use pxpl5_run::{FinishedRegions, RenderingControl, Summary};
+use pxpl5_run::{FinishedRegions, RenderingControl, Summary, retraces};
 use serde::Serialize;
 
 /// Whose latency a published mean is of.
@@ -144,12 +144,9 @@ impl Reading {
     /// A latency in fields.
     #[must_use]
     pub fn fields_of(&self, latency_ms: f64, field_ms: f64) -> f64 {
-        /// A latency of exactly so many fields ends with a retrace, whatever the last bit of the quotient is.
-        const ROUNDING: f64 = 1e-9;
-        let exact = latency_ms / field_ms;
         match self.fields {
-            FieldCount::Exact => exact,
-            FieldCount::Whole => (exact - ROUNDING).ceil(),
+            FieldCount::Exact => latency_ms / field_ms,
+            FieldCount::Whole => retraces(latency_ms, field_ms),
         }
     }
 }
