@@ -22,7 +22,7 @@ pub(crate) struct ReadingsArgs {
     /// Readings of each level that are printed.
     #[arg(long, default_value_t = 20, value_name = "N")]
     rows: usize,
-    /// Seeds of figure 7's fly-through; a third of them for the molecules, a fifteenth for the head.
+    /// Seeds of figure 7's fly-through; a third of them for the molecules, a fifth for the head.
     #[arg(long, default_value_t = 6, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100))]
     seeds: u64,
     /// Frames of each fly-through.

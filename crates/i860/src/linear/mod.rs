@@ -45,6 +45,7 @@
 mod machine;
 mod parse;
 mod place;
+mod settings;
 
 use std::fmt::Write as _;
 

@@ -2,7 +2,7 @@
 
 use super::LinearError;
 use super::machine::{self, Name, Width};
-use super::place::Settings;
+use super::settings::Settings;
 use std::collections::HashMap;
 
 /// What an operation reads.

@@ -2,6 +2,7 @@
 
 use super::machine::{Unit, Width};
 use super::parse::{Operation, Source};
+use super::settings::Settings;
 
 /// Stages of the adder's pipe, and of the multiplier's with single sources.
 const STAGES: usize = 3;
@@ -14,27 +15,6 @@ const STORES: u32 = 2;
 const STORE: u32 = 3;
 /// Clocks without progress after which a schedule is given up.
 const PATIENCE: u32 = 80;
-
-/// How a stretch is scheduled.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Settings {
-    /// Lines from the first one that has not issued that may issue.
-    pub(super) window: usize,
-    /// How much more urgent an operation must be than what a drain would bring out.
-    pub(super) eagerness: u32,
-    /// Registers of either file that only the first line which has not issued may take.
-    pub(super) reserve: usize,
-    /// Registers more for each 64 lines behind that one, so that what is far ahead waits when they run short.
-    pub(super) slope: usize,
-    /// Start of a sequence that shakes the priorities; 0 leaves them.
-    pub(super) shake: u32,
-}
-
-impl Default for Settings {
-    fn default() -> Settings {
-        Settings { window: 40, eagerness: 20, reserve: 2, slope: 10, shake: 0 }
-    }
-}
 
 /// The pairs of a stretch, floating-point and core half.
 pub(super) type Pairs = Vec<(String, String)>;

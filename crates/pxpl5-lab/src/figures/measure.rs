@@ -50,13 +50,13 @@ const VIEWS: u64 = 40;
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
 impl Bench {
-    /// The presets as they are, with 30 seeds of 300 frames.
+    /// The presets as they are, with 10 seeds of 300 frames.
     #[must_use]
     pub fn new(level: Level) -> Self {
         Self {
             level,
             changes: Vec::new(),
-            seeds: 30,
+            seeds: 10,
             frames: 300,
             reading: Reading::USUAL,
             applications: Arc::default(),
@@ -88,7 +88,7 @@ impl Bench {
             "6" => self.long_stages(),
             "7" => self.application("mig", 1),
             "7b" => self.application("molecules", 3),
-            "7c" => self.application("head", 15),
+            "7c" => self.application("head", 5),
             "8" => regions_touched(),
             "16" => self.most_in_bins(),
             "16b" => Ok(rate_hz(&self.full_bins()?).into()),

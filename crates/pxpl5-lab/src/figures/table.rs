@@ -127,7 +127,7 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "Mig, 417 triangles, fly-through in an HMD: mean latency (sd 0.589)",
         (4.61, "fields", Some(0.589)),
-        "mig on large without back faces: 30 seeds of head motion, 300 frames each; mean over both eyes of all frames, each in \
+        "mig on large without back faces: 10 seeds of head motion, 300 frames each; mean over both eyes of all frames, each in \
          retraces from the start of its TRANSFORM",
         FREE,
     ),
@@ -136,7 +136,7 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "molecules, 2,620 triangles and 1,219 spheres, fly-through: mean latency (sd 0.502)",
         (4.47, "fields", Some(0.502)),
-        "molecules as in figure 7: 10 seeds of head motion, 300 frames each",
+        "molecules as in figure 7: 4 seeds of head motion, 300 frames each",
         FREE,
     ),
     figure(
