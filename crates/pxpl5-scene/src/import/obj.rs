@@ -18,7 +18,9 @@ pub(super) fn read(source: &Source<'_>) -> Result<Scene, LoadError> {
     for (number, line) in source.lines()? {
         reader.line(Place::Line(number), line)?;
     }
-    reader.mesh.into_scene(source)
+    // What faces refer to is not needed any more, and takes as much as the mesh.
+    let Reader { mesh, .. } = { reader };
+    mesh.into_scene(source)
 }
 
 struct Reader<'a> {
