@@ -6,7 +6,7 @@ parameters::parameter_table! {
     /// Times and sizes of a graphics processor and of the code that it runs.
     pub struct GpTiming {
         /// Memory of a board.
-        memory_bytes: 8_388_608, "bytes", Published, 8388608..=8388608 in 0..=MAX, "TR94: 8 MB";
+        memory_bytes: 8_388_608, "bytes", Published, 8388608..=8388608 in 0..=1_073_741_824, "TR94: 8 MB";
         /// CPU time to send a batch of messages or to receive one.
         message_ns: 12_000, "ns", Assumed, 10000..=25000 in 0..=MAX, "software of a message; the range is what the published latencies allow";
         /// CPU time of one triangle and eye: transform, light, set up, make commands.
