@@ -258,6 +258,10 @@ fn machines_of_any_numbers_run_or_are_refused() {
         }
         let told = changed.join(" ");
         let _told = Told(round, told.as_bytes());
+        if first > 0 {
+            // What hangs has no last word.
+            println!("{round}: {told}");
+        }
         if config.check().is_ok() {
             let scene = pxpl5::scene::builtin("full-screen:6").expect("built in");
             let experiment = Experiment::new(config, Slats::split(), scene).fields(16).pixels(Pixels::Off);

@@ -8,7 +8,7 @@ start: add3 r5, r6
 .rept 3
   fld.d 8(r4)++, f8
 .endr
-  d.fadd.ss f2, f3, f4
+  fadd.ss f2, f3, f4
   nop
 .align 16
 data: .long size, start, h%start
