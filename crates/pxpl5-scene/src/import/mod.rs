@@ -112,7 +112,7 @@ pub fn placed_from_reader(
 ///
 /// # Errors
 ///
-/// [`LoadError`] says what is wrong, and where. No bytes make it panic or take more than a few times their size.
+/// [`LoadError`] says what is wrong, and where. No bytes make it panic, or take more than fifteen times their size.
 pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, LoadError> {
     placed_from_bytes(bytes, format, name, Placement::Fitted)
 }
