@@ -181,3 +181,39 @@ proptest! {
         let _ = assemble("any.s", 0, &source);
     }
 }
+
+/// What writes itself out without end is refused at the line of the source that does so, soon and in little memory.
+#[test]
+fn what_spends_the_budget_is_refused_at_its_line() {
+    let spent = "written out to more than";
+    assert_fault("nop\n.rept 1000000000000\n.macro a\n.endm\n.endr", 2, spent);
+    assert_fault(".macro e\n.endm\n.rept 1000000000000\ne\n.endr", 3, spent);
+    assert_fault("nop\n.rept 1000000000000\n.rept 0\nnop\n.endr\n.endr", 2, spent);
+    let long = format!("nop\nnop\n.rept 1000000\n.byte {}\n.endr", vec!["0"; 5_000].join(", "));
+    assert_fault(&long, 3, spent);
+    let wide = format!(".macro a x\n.byte {}\n.endm\nnop\na {}", "\\x".repeat(20_000), "1".repeat(20_000));
+    assert_fault(&wide, 5, spent);
+    let doubling = ".macro a x\na \\x\\x\n.endm\n";
+    assert_fault(&format!("{doubling}a 1"), 4, spent);
+    assert!(assemble("t.s", 0, "nop\n.rept 1000000000000\n.endr").is_ok(), "nothing is repeated");
+}
+
+#[test]
+fn the_line_that_spent_most_is_named_and_not_the_last_one() {
+    let source = ".rept 900000\nnop\n.endr\nnop\n.rept 200000\nnop\n.endr";
+    assert_fault(source, 1, "written out to more than");
+}
+
+#[test]
+fn repetitions_lie_in_each_other_only_so_deep() {
+    let nested = |depth: usize| format!("{}nop\n{}", ".rept 1\n".repeat(depth), ".endr\n".repeat(depth));
+    assert_fault(&nested(20_000), 33, "nest deeper than 32");
+    assert_eq!(assemble("t.s", 0, &nested(32)).expect("allowed").words().len(), 1);
+}
+
+/// A million repetitions of a word are as many words, a fourth of the longest program.
+#[test]
+fn a_million_words_are_written_out() {
+    let program = assemble("t.s", 0, ".rept 1000000\n.long 7\n.endr").expect("within the budget");
+    assert_eq!(program.bytes.len(), 4_000_000);
+}

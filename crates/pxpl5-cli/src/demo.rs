@@ -3,7 +3,7 @@
 use crate::error::CliError;
 use crate::output::{OutputFolder, timeline};
 use crate::run::{comparison, pictures};
-use crate::snapshot::SnapshotArgs;
+use crate::snapshot::{How, SnapshotArgs};
 use crate::table::{Comparison, table};
 use crate::terminal::print;
 use clap::Args;
@@ -86,7 +86,8 @@ pub(crate) fn run(args: DemoArgs) -> Result<(), CliError> {
 
 fn one(name: &'static str, text: &str, quiet: bool) -> Result<Run, CliError> {
     let plan: Plan = ExperimentFile::parse(text, name)?.resolve()?;
-    let results = Results::of_run(SnapshotArgs::default().simulate(&plan, None, &[], quiet)?.long_enough()?);
+    let results =
+        Results::of_run(SnapshotArgs::default().simulate(&plan, How { quiet, ..How::default() })?.long_enough()?);
     let comparison = comparison(&plan, &results);
     let (outcome, report) = results.run.ok_or_else(|| CliError::failure("a run without events"))?;
     Ok(Run { name, outcome, report, comparison })

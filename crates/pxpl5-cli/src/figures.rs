@@ -1,6 +1,7 @@
 //! `pxpl5 figures`.
 
 use crate::error::CliError;
+use crate::output::OutputFile;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::Level;
@@ -30,13 +31,12 @@ pub(crate) struct FiguresArgs {
 }
 
 pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
+    let file = args.write.as_deref().map(OutputFile::open).transpose()?;
     let bar = progress(0, "figures", false);
     let figures = run_all_with(&Bench::new(Level::Transaction), |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
     let figures = figures.map_err(CliError::failure)?;
-    if let Some(path) = &args.write {
-        fs::write(path, markdown(&figures)).map_err(|error| refused(path, &error))?;
-    }
+    file.map(|file| file.write(markdown(&figures).as_bytes())).transpose()?;
     if let Some(path) = &args.check {
         check(path, &figures)?;
     }
@@ -44,16 +44,12 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
 }
 
 fn check(path: &Path, figures: &Figures) -> Result<(), CliError> {
-    let kept = fs::read_to_string(path).map_err(|error| refused(path, &error))?;
+    let kept = fs::read_to_string(path).map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
     if kept == markdown(figures) {
         return Ok(());
     }
     let path = path.display();
     Err(CliError::failure(format!("{path} is stale: run `pxpl5 figures --write {path}`")))
-}
-
-fn refused(path: &Path, error: &std::io::Error) -> CliError {
-    CliError::failure(format!("{}: {error}", path.display()))
 }
 
 fn json_text(figures: &Figures) -> String {

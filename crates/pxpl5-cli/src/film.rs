@@ -1,7 +1,7 @@
 //! `pxpl5 film`.
 
 use crate::error::CliError;
-use crate::output::OutputFolder;
+use crate::output::OutputFile;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
 use clap::{Args, ValueEnum};
@@ -53,16 +53,16 @@ pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
         Whose::Right => FilmOf::One(Eye::Right.into()),
         Whose::Both => FilmOf::All,
     };
-    let (mut folder, name) = OutputFolder::of_file(&args.out)?;
+    let file = OutputFile::open(&args.out)?;
     let experiment = plan.experiment(plan.load_scene()?).pixels(Pixels::Lazy).fields(args.from + args.length + 1);
     let texts = [("config_hash", experiment.config_hash().to_string()), ("settings", plan.settings().to_string())];
     let mut bytes = Vec::new();
     Film::new(experiment, PeriodNumber(args.from), args.length, eyes)
         .write(&texts, &mut bytes)
         .map_err(CliError::failure)?;
-    folder.put(&name, &bytes)?;
-    folder.commit()?;
-    if args.quiet {
+    let silent = args.quiet || file.is_standard_output();
+    file.write(&bytes)?;
+    if silent {
         return Ok(());
     }
     print(&format!("{}: {} fields from field {} on.\n", args.out.display(), args.length, args.from))

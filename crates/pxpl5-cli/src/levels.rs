@@ -1,6 +1,7 @@
 //! `pxpl5 levels`.
 
 use crate::error::CliError;
+use crate::output::OutputFile;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::growth;
@@ -8,8 +9,7 @@ use pxpl5::levels::{LevelReport, compare_with};
 use pxpl5::views::charts::{SpeedAndError, level_chart};
 use serde_json::json;
 use std::fmt::Write;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Run the same experiments at every level of modelling: speed against error.
 #[derive(Args, Debug)]
@@ -32,6 +32,7 @@ pub(crate) struct LevelsArgs {
 
 pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     if let Some(path) = &args.scaling {
+        let file = OutputFile::open(path)?;
         let bar = progress(3, "tables", false);
         let by_triangles = growth::by_triangles()?;
         bar.inc(1);
@@ -39,15 +40,16 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
         bar.inc(1);
         let applications = growth::applications()?;
         bar.finish_and_clear();
-        return write(path, &growth::markdown(&by_triangles, &by_machine, &applications));
+        return file.write(growth::markdown(&by_triangles, &by_machine, &applications).as_bytes());
     }
+    let chart = args.chart.as_deref().map(OutputFile::open).transpose()?;
     let bar = progress(0, "figures at all levels", false);
     let reports = compare_with(|done, of| advance(&bar, done, of));
     bar.finish_and_clear();
     let reports = reports?;
-    if let Some(path) = &args.chart {
+    if let Some(file) = chart {
         let levels: Vec<SpeedAndError> = reports.iter().map(speed_and_error).collect();
-        write(path, &level_chart(&levels))?;
+        file.write(level_chart(&levels).as_bytes())?;
     }
     print(&if args.json { json_text(&reports) } else { text(&reports) })
 }
@@ -58,10 +60,6 @@ fn speed_and_error(report: &LevelReport) -> SpeedAndError {
         fields_per_host_second: report.fields_per_host_second,
         mean_error_percent: report.mean_error_percent,
     }
-}
-
-fn write(path: &Path, text: &str) -> Result<(), CliError> {
-    fs::write(path, text).map_err(|error| CliError::failure(format!("{}: {error}", path.display())))
 }
 
 fn json_text(reports: &[LevelReport]) -> String {

@@ -6,6 +6,7 @@
 //! Exit codes: 0 when all went well, 1 when something failed, 2 when the command line or an experiment file is wrong.
 //! Results go to standard output, everything else to standard error.
 
+mod budget;
 mod check;
 mod compare;
 mod completions;
@@ -134,7 +135,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Report(args)) => report::run(args),
         Some(Command::Trace(args)) => trace::run(args),
         Some(Command::Film(args)) => film::run(args),
-        Some(Command::I860(args)) => i860::run(args).map_err(CliError::failure),
+        Some(Command::I860(args)) => i860::run(args),
         Some(Command::Completions(args)) => completions::run(args),
     }
 }

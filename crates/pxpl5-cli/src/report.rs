@@ -4,7 +4,7 @@ mod load;
 mod tables;
 
 use crate::error::CliError;
-use crate::output::OutputFolder;
+use crate::output::OutputFile;
 use crate::terminal::print;
 use clap::Args;
 use pxpl5::views::page;
@@ -39,10 +39,10 @@ pub(crate) fn run(args: ReportArgs) -> Result<(), CliError> {
         None => page::html(&load::runs(folder)?),
     };
     let path = args.write.unwrap_or_else(|| folder.join("report.html"));
-    let (mut folder, name) = OutputFolder::of_file(&path)?;
-    folder.put(&name, page.as_bytes())?;
-    folder.commit()?;
-    if args.quiet {
+    let file = OutputFile::open(&path)?;
+    let silent = args.quiet || file.is_standard_output();
+    file.write(page.as_bytes())?;
+    if silent {
         return Ok(());
     }
     print(&format!("Written to {}.\n", path.display()))

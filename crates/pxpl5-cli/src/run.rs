@@ -1,9 +1,10 @@
 //! `pxpl5 run`.
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
 use crate::output::{OutputFolder, png, timeline};
 use crate::settings::SettingArgs;
-use crate::snapshot::{Simulated, SnapshotArgs};
+use crate::snapshot::{How, Simulated, SnapshotArgs};
 use crate::table::{Comparison, table};
 use crate::terminal::{print, warn};
 use clap::Args;
@@ -39,6 +40,8 @@ pub(crate) struct RunArgs {
     out: Option<PathBuf>,
     #[command(flatten)]
     snapshot: SnapshotArgs,
+    #[command(flatten)]
+    budget: BudgetArgs,
     /// Print the report as one JSON object.
     #[arg(long)]
     json: bool,
@@ -51,7 +54,8 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     warn(&plan.out_of_range(), args.quiet);
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
-    let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, args.threads, &args.without, args.quiet)?;
+    let how = How { threads: args.threads, without: &args.without, budget: args.budget, quiet: args.quiet };
+    let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, how)?;
     let results = Results::of_run(outcome);
     let Some((_, report)) = &results.run else { return Err(no_events()) };
     // Of a run that is too short everything is said, but nothing is kept.

@@ -1,8 +1,9 @@
 //! Running an experiment, with a snapshot saved or restored on the way.
 
+use crate::budget::{BudgetArgs, YOUNG};
 use crate::error::CliError;
 use crate::options::registry;
-use crate::output::OutputFolder;
+use crate::output::OutputFile;
 use crate::terminal::progress;
 use clap::Args;
 use pxpl5::{
@@ -22,6 +23,17 @@ pub(crate) struct SnapshotArgs {
     /// Go on from a snapshot: the run is repeated up to its field, without pixels, compared, and continued.
     #[arg(long, value_name = "FILE")]
     restore: Option<PathBuf>,
+}
+
+/// How a run is to be made, whatever comes of it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct How<'a> {
+    /// Worker threads for all pixels; one a core where it is not said.
+    pub(crate) threads: Option<u64>,
+    /// Savings to do without.
+    pub(crate) without: &'a [Saving],
+    pub(crate) budget: BudgetArgs,
+    pub(crate) quiet: bool,
 }
 
 /// What came of a run, and that it was too short to say much.
@@ -90,18 +102,12 @@ impl SnapshotArgs {
     /// # Errors
     ///
     /// When the run fails, is not the one of the snapshot, or the snapshot cannot be written.
-    pub(crate) fn simulate(
-        &self,
-        plan: &Plan,
-        threads: Option<u64>,
-        without: &[Saving],
-        quiet: bool,
-    ) -> Result<Simulated, CliError> {
+    pub(crate) fn simulate(&self, plan: &Plan, how: How<'_>) -> Result<Simulated, CliError> {
         let mut saving = self.saving(plan)?;
         let scene = plan.load_scene()?;
-        let host = threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
+        let host = how.threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
         let experiment = plan.experiment(scene.clone()).host(host);
-        let mut experiment = without.iter().fold(experiment, |experiment, saving| experiment.without(*saving));
+        let mut experiment = how.without.iter().fold(experiment, |experiment, saving| experiment.without(*saving));
         let hash = experiment.config_hash();
         let restored = self.restored(plan)?;
         if let Some((snapshot, name)) = &restored {
@@ -110,39 +116,39 @@ impl SnapshotArgs {
             experiment = experiment.pixels(if plan.pixels == Pixels::All { Pixels::Lazy } else { plan.pixels });
         }
         let save_at = self.save_at.map(PeriodNumber);
-        let stops: Vec<PeriodNumber> = save_at.into_iter().chain(restored.iter().map(|(s, _)| s.field)).collect();
-        let bar = progress(plan.fields, "fields", quiet);
+        let young = YOUNG.map(|field| PeriodNumber::FIRST.after(field));
+        let stops = save_at.into_iter().chain(restored.iter().map(|(s, _)| s.field)).chain(young);
+        let stops: Vec<PeriodNumber> = stops.collect();
+        let bar = progress(plan.fields, "fields", how.quiet);
+        let watch = how.budget.watch(plan.fields);
         let outcome = experiment.run_stopping(&stops, |field, machine| {
-            bar.set_position(field.since(PeriodNumber::FIRST));
+            let done = field.since(PeriodNumber::FIRST);
+            bar.set_position(done);
+            watch.check(done).map_err(ExperimentError::Stopped)?;
             if let Some((snapshot, name)) = restored.as_ref().filter(|(snapshot, _)| snapshot.field == field) {
                 snapshot.check_machine(machine, name).map_err(|error| ExperimentError::Stopped(error.to_string()))?;
                 continue_pixels(plan, machine, host);
             }
-            if let (Some((folder, name)), true) = (&mut saving, Some(field) == save_at) {
+            if let (Some(file), true) = (&mut saving, Some(field) == save_at) {
                 let text = Snapshot::of_machine(plan, hash, &scene, field, machine).to_text();
-                folder
-                    .put(name, text.as_bytes())
-                    .map_err(|error| ExperimentError::Stopped(error.message().to_owned()))?;
+                file.put(text.as_bytes()).map_err(|error| ExperimentError::Stopped(error.message().to_owned()))?;
             }
             Ok(())
         });
         bar.finish_and_clear();
         let simulated = Simulated::of(outcome)?;
-        saving.map(|(folder, _)| folder.commit()).transpose()?;
+        saving.map(OutputFile::commit).transpose()?;
         Ok(simulated)
     }
 
-    /// The folder and name of the snapshot to be written.
-    fn saving(&self, plan: &Plan) -> Result<Option<(OutputFolder, String)>, CliError> {
+    /// Where the snapshot goes.
+    fn saving(&self, plan: &Plan) -> Result<Option<OutputFile>, CliError> {
         let (Some(field), Some(path)) = (self.save_at, &self.save) else { return Ok(None) };
         if !(1..plan.fields).contains(&field) {
             let last = plan.fields.saturating_sub(1);
             return Err(CliError::usage(format!("--save-at: expected a field from 1 to {last}, found {field}")));
         }
-        let name =
-            path.file_name().ok_or_else(|| CliError::usage(format!("--save: {} names no file", path.display())))?;
-        let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        Ok(Some((OutputFolder::open(parent)?, name.to_string_lossy().into_owned())))
+        OutputFile::open(path).map(Some)
     }
 
     /// The snapshot to go on from, and its name.

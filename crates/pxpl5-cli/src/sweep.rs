@@ -10,8 +10,8 @@ use std::path::PathBuf;
 
 /// Run an experiment at every point of a space of settings.
 ///
-/// Rows are appended to rows.jsonl as points are finished; a point that cannot be simulated has a row that says why.
-/// The file is the same whatever the threads, shards and interruptions.
+/// Rows are appended to rows.jsonl as points are finished; a point that cannot be simulated has a row that says why, and only when
+/// none can the command fails. The file is the same whatever the threads, shards and interruptions.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 sweep experiments/sweep-slats.toml --out out/slats
@@ -56,18 +56,18 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     warn(&supposed(&sweep), args.quiet);
     let mut store = Store::open(&args.out, sweep.header()?, args.resume)?;
     told_when_interrupted(&args)?;
-    let points: Vec<u64> = (0..sweep.space().points()).filter(|point| args.shard.holds(*point)).collect();
-    let held = points.iter().filter(|point| store.holds(**point)).count();
-    let total = points.len();
-    let bar = progress(total as u64, "points", args.quiet);
-    bar.set_position(held as u64);
+    let held = store.rows().keys().filter(|point| args.shard.holds(**point)).count() as u64;
+    let total = args.shard.share_of(sweep.space().points());
+    let bar = progress(total, "points", args.quiet);
+    bar.set_position(held);
     bar.reset_eta();
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let options = RunOptions { shard: args.shard, threads: args.threads.map_or(cores, |threads| threads as usize) };
     pxpl5::sweep::run(&sweep, &mut store, options, |_| bar.inc(1))?;
     bar.finish_and_clear();
-    summarise(&args, &store, total)?;
-    Ok(store.finish()?)
+    let failed = summarise(&args, &store, total)?;
+    store.finish()?;
+    if failed >= total { Err(CliError::failure("no point could be simulated")) } else { Ok(()) }
 }
 
 /// What no source allows at the first or the last point.
@@ -110,14 +110,19 @@ fn quoted(word: &str) -> String {
     if is_plain { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
-fn summarise(args: &SweepArgs, store: &Store, total: usize) -> Result<(), CliError> {
+/// Says where the rows are, and how many of them hold nothing but a reason: so many are given.
+fn summarise(args: &SweepArgs, store: &Store, total: u64) -> Result<u64, CliError> {
     let path = args.out.join(ROWS_FILE);
-    let failed: Vec<_> = store.rows().values().filter(|row| row.status == Status::Failed).collect();
+    let ours = store.rows().values().filter(|row| args.shard.holds(row.point));
+    let failed: Vec<_> = ours.filter(|row| row.status == Status::Failed).collect();
     if let Some(first) = failed.first() {
         let error = first.error.as_deref().unwrap_or_default();
         let count = failed.len();
         let point = first.point;
         complain(&format!("pxpl5: {count} of {total} points could not be simulated; point {point}: {error}\n"));
     }
-    if args.quiet { Ok(()) } else { print(&format!("{total} points are in {}.\n", path.display())) }
+    if !args.quiet {
+        print(&format!("{total} points are in {}.\n", path.display()))?;
+    }
+    Ok(failed.len() as u64)
 }

@@ -1,11 +1,13 @@
 //! `pxpl5 trace`.
 
+use crate::budget::{BudgetArgs, YOUNG};
 use crate::error::CliError;
-use crate::output::OutputFolder;
+use crate::output::OutputFile;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, progress, warn};
 use clap::{Args, ValueEnum};
 use pxpl5::trace_export::{Trace, chrome, perfetto};
+use pxpl5::{ExperimentError, PeriodNumber};
 use std::path::PathBuf;
 
 /// Run one experiment and write what happened as a trace for ui.perfetto.dev.
@@ -24,6 +26,8 @@ pub(crate) struct TraceArgs {
     /// Format of the file.
     #[arg(long, value_enum, default_value_t = Format::Perfetto)]
     format: Format,
+    #[command(flatten)]
+    budget: BudgetArgs,
     /// Print nothing but errors.
     #[arg(long, short)]
     quiet: bool,
@@ -40,10 +44,15 @@ enum Format {
 pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     let plan = args.settings.gather()?.resolve()?;
     warn(&plan.out_of_range(), args.quiet);
-    let (mut folder, name) = OutputFolder::of_file(&args.out)?;
+    let file = OutputFile::open(&args.out)?;
     let bar = progress(plan.fields, "fields", args.quiet);
     let experiment = plan.experiment(plan.load_scene()?).record_traffic(true);
-    let outcome = experiment.run_with(|field, _| bar.set_position(field))?;
+    let watch = args.budget.watch(plan.fields);
+    let outcome = experiment.run_stopping(&YOUNG.map(|field| PeriodNumber::FIRST.after(field)), |field, _| {
+        let done = field.since(PeriodNumber::FIRST);
+        bar.set_position(done);
+        watch.check(done).map_err(ExperimentError::Stopped)
+    })?;
     bar.finish_and_clear();
     let trace = Trace::of(&outcome);
     let mut bytes = Vec::new();
@@ -52,9 +61,9 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
         Format::Chrome => chrome(&trace, &mut bytes),
     };
     written.map_err(CliError::failure)?;
-    folder.put(&name, &bytes)?;
-    folder.commit()?;
-    if args.quiet {
+    let silent = args.quiet || file.is_standard_output();
+    file.write(&bytes)?;
+    if silent {
         return Ok(());
     }
     let path = args.out.display();

@@ -124,3 +124,75 @@ fn fewer_triangles_keep_the_whole_model() {
     let height = rows.iter().max().expect("something") - rows.iter().min().expect("something");
     assert!(height > 200, "{height} lines");
 }
+
+/// Runs that would take hours, and gigabytes: they are refused within seconds, with what they would take.
+#[test]
+fn a_run_that_takes_too_much_is_refused_with_an_estimate() {
+    let folder = Folder::new("budget");
+    let slats = ["--pipeline", "slats", "--scene", "full-screen:20", "--fields", "10000000"];
+    for (args, says) in [
+        (&["run", "--pixels", "off", "--out", "o", "--max-seconds", "60"][..], "--max-seconds"),
+        (&["trace", "--pixels", "off", "--out", "o/t", "--max-seconds", "60"], "--max-seconds"),
+        (&["trace", "--pixels", "off", "--out", "o/t", "--max-memory", "200"], "--max-memory"),
+    ] {
+        let output = folder.run(&[args, &slats].concat());
+        let text = err(&output);
+        assert_eq!(output.status.code(), Some(1), "{args:?}: {text}");
+        assert!(text.contains("the run is expected to take") && text.contains(says), "{args:?}: {text}");
+        assert!(folder.names().is_empty(), "{args:?} left {:?}", folder.names());
+    }
+}
+
+/// What a screen cannot have is refused; what it can have runs, however odd.
+#[test]
+fn numbers_that_once_hung_or_panicked_are_refused_or_run() {
+    let folder = Folder::new("odd");
+    let run = |pipeline: &str, set: &str| {
+        let args =
+            ["run", "--pipeline", pipeline, "--scene", "full-screen:4", "--fields", "12", "--quiet", "--set", set];
+        let output = folder.run(&args);
+        let text = err(&output);
+        assert!(matches!(output.status.code(), Some(0..=2)) && !text.contains("panicked"), "{set}: {text}");
+        (output.status.code(), text)
+    };
+    for set in ["video.line_pixels=9223372036854775807", "video.top_blanking=1000000", "gp.memory_bytes=1000000000000"]
+    {
+        let (code, text) = run("slats", set);
+        assert!(code == Some(2) && text.contains(set.split_once('=').expect("a setting").0), "{set}: {text}");
+    }
+    run("slats", "video.pixel_ps=4294967295");
+    for lines in [1, 6] {
+        run("jitp-dual-screen", &format!("video.visible_lines={lines}"));
+        run("jitp-dual-view", &format!("video.visible_lines={lines}"));
+    }
+    for pan in ["nan", "inf", "1e308"] {
+        let output = folder.run(&["compare", &format!("--edge-pan={pan}"), "--fields", "30"]);
+        assert_eq!(output.status.code(), Some(2), "{pan}: {}", err(&output));
+    }
+    let output = folder.run(&["limit", "--pipeline", "slats", "--fields", "9"]);
+    assert!(output.status.code() == Some(2) && err(&output).contains("at least 10"), "{}", err(&output));
+}
+
+/// A picture that is ordered long after its field has been scanned has no latency, and not one of a billion fields.
+#[test]
+fn no_latency_is_longer_than_the_run() {
+    let folder = Folder::new("latency");
+    for pipeline in [
+        "jitp-field",
+        "jitp-field-racing",
+        "jitp-scanline",
+        "jitp-dual-screen",
+        "frameless",
+        "slats",
+        "rendering-control",
+    ] {
+        let args =
+            ["run", "--pipeline", pipeline, "--scene", "full-screen:4", "--fields", "60", "--pixels", "off", "--json"];
+        let output = folder.run(&[&args[..], &["--set", "gp.pass_ns=100000000"]].concat());
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one object");
+        for part in ["mean", "min", "max"] {
+            let fields = report["latency_fields"][part].as_f64();
+            assert!(fields.is_none_or(|fields| (0.0..=60.0).contains(&fields)), "{pipeline}: {fields:?}");
+        }
+    }
+}

@@ -239,3 +239,34 @@ fn the_published_sweep_has_some_hundred_points() {
     assert!((200..=900).contains(&sweep.space().points()), "{}", sweep.space().points());
     (0..sweep.space().points()).for_each(|point| drop(sweep.plan(point).expect("an experiment")));
 }
+
+/// A relative scene lies beside the sweep's file, wherever the command is started, in an axis too.
+#[test]
+fn scenes_of_a_sweep_lie_beside_its_file_and_what_fails_altogether_fails() {
+    let folder = Folder::new("beside");
+    fs::create_dir(folder.0.join("inner")).expect("ours");
+    folder.file("inner/m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let text = |scene: &str| format!("pipeline = \"slats\"\nfields = 10\n[sweep.grid]\nscene = [{scene}]\n");
+    folder.file("inner/s.toml", text("\"m.obj\", \"full-screen:4\""));
+    succeeds(&folder.run(&["sweep", "inner/s.toml", "--out", "o", "--quiet"]));
+    assert_eq!(read(&folder, "o/results.csv").matches(",done,").count(), 2);
+    folder.file("inner/none.toml", text("\"none.obj\", \"nothing.ply\""));
+    let output = folder.run(&["sweep", "inner/none.toml", "--out", "none"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(err(&output).contains("no point could be simulated"), "{}", err(&output));
+    assert_eq!(lines(&folder.0.join("none/rows.jsonl")).len(), 2, "the rows say why");
+}
+
+#[test]
+fn an_edited_model_is_not_mixed_with_what_was_made_of_it_before() {
+    let folder = Folder::new("edited");
+    let model = |x: i32| folder.file("m.obj", format!("v 0 0 0\nv {x} 0 0\nv 0 1 0\nf 1 2 3\n"));
+    folder.file("s.toml", "pipeline = \"slats\"\nscene = \"m.obj\"\nfields = 10\n[sweep]\nseeds = 2\n");
+    model(1);
+    succeeds(&sweep(&folder, &["--out", "a"]));
+    succeeds(&sweep(&folder, &["--out", "a", "--resume"]));
+    model(2);
+    let output = sweep(&folder, &["--out", "a", "--resume"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(err(&output).contains("results of another sweep"), "{}", err(&output));
+}

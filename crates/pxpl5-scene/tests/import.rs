@@ -384,3 +384,75 @@ fn paths_that_lead_to_no_model_are_refused() {
     assert!(error.contains("missing.obj: expected a readable file, found:"), "{error}");
     std::fs::remove_dir_all(&folder).expect("its own directory");
 }
+
+#[test]
+fn a_mark_at_the_begin_of_a_text_and_lines_that_end_in_cr_alone_change_nothing() {
+    let text = format!("{SQUARE_OBJ}f 1 2 3 4\n");
+    let first_is_a_vertex = text.trim_start_matches("# a square, 5 right and 2 wide\no s\n");
+    assert_square(&obj(&format!("\u{feff}{first_is_a_vertex}")));
+    assert_square(&obj(&text.replace('\n', "\r\n")));
+    assert_square(&obj(&text.replace('\n', "\r")));
+    let error = read(Format::Obj, "v 0 0 0\rv 1 0 x\r").expect_err("no number").to_string();
+    assert!(error.contains("line 2"), "{error}");
+}
+
+/// Two vertices and one row too many, in every place where there may be something.
+#[test]
+fn what_is_too_much_in_a_ply_file_is_refused_where_it_stands() {
+    let file = |version: &str, again: &str, vertex: &str, face: &str, rest: &str| {
+        format!(
+            "ply\nformat ascii {version}\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{again}element face 1\n\
+             property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0{vertex}\n0 1 0\n3 0 1 2{face}\n{rest}"
+        )
+    };
+    ply(file("1.0", "", "", "", "\n \n"));
+    for (text, says) in [
+        (file("2.0", "", "", "", ""), "line 2: expected version 1.0, found \"2.0\""),
+        (
+            file("1.0", "property float y\n", "", "", ""),
+            "line 7: expected a property that the element does not have yet",
+        ),
+        (file("1.0", "", " 7", "", ""), "line 11: expected the end of a row of \"vertex\" (x y z), found \"7\""),
+        (file("1.0", "", "", " 0", ""), "line 13: expected the end of a row of \"face\" (vertex_indices), found \"0\""),
+        (file("1.0", "", "", "", "3 0 1 2\n"), "line 14: expected the end of the file behind the last row"),
+    ] {
+        let error = read(Format::Ply, &text).expect_err(says).to_string();
+        assert!(error.contains(says), "{error}");
+    }
+}
+
+#[test]
+fn triangle_strips_are_read_and_every_other_triangle_is_turned() {
+    let scene = ply(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n\
+                     property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 1 2\n",
+    );
+    assert_eq!(scene.triangles(), [[0, 1, 2], [2, 1, 3], [0, 1, 2]]);
+    // All of them face the viewer.
+    assert!(scene.vertices().iter().all(|vertex| vertex.normal == Vec3::Z));
+}
+
+/// Serine 5 has two places for CB, one of its OG, and a third residue shares its place; atom CA of 6 has B and C only.
+#[test]
+fn an_atom_is_where_its_first_alternate_location_is_whatever_its_letter() {
+    let atom = |name: &str, alternate: &str, residue: &str, place: u32, x: f64| {
+        format!("ATOM      1  {name:<3}{alternate}{residue} A{place:>4}    {x:>8.3}{:>8.3}{:>8.3}\n", 0.0, 0.0)
+    };
+    let text = [
+        atom("N", " ", "SER", 5, 1.0),
+        atom("CB", "A", "SER", 5, 2.0),
+        atom("CB", "B", "SER", 5, 3.0),
+        atom("OG", "B", "SER", 5, 4.0),
+        atom("CB", "C", "THR", 5, 5.0),
+        atom("CG2", "C", "THR", 5, 6.0),
+        atom("CA", "B", "GLY", 6, 7.0),
+        atom("CA", "C", "GLY", 6, 8.0),
+    ];
+    let scene = from_bytes(text.concat().as_bytes(), Format::Pdb, "test").expect("atoms");
+    let centres: Vec<f32> = scene.spheres().iter().map(|sphere| sphere.centre.x).collect();
+    assert_eq!(centres.len(), 4);
+    // The places 1, 2, 4 and 7: steps of 1, 2 and 3.
+    let step = centres[1] - centres[0];
+    let steps: Vec<f32> = centres.windows(2).map(|pair| (pair[1] - pair[0]) / step).collect();
+    assert!(steps.iter().zip([1.0, 2.0, 3.0]).all(|(found, expected)| (found - expected).abs() < 1e-4), "{steps:?}");
+}

@@ -33,10 +33,11 @@ impl Clock {
         Self::new(1_000_000_000_000, hz)
     }
 
-    /// The instant of edge `n`.
+    /// The instant of edge `n`; the end of time for one behind it.
     #[must_use]
     pub const fn edge(&self, n: u64) -> Time {
-        Time((n as u128 * self.numerator_ps as u128 / self.denominator as u128) as u64)
+        let exact = n as u128 * self.numerator_ps as u128 / self.denominator as u128;
+        if exact < u64::MAX as u128 { Time(exact as u64) } else { Time::END }
     }
 
     /// The number of the first edge at or after `time`.
@@ -80,6 +81,15 @@ mod tests {
                 assert_eq!(clock.edge_at_or_after(edge + Span(1)), n + 1);
             }
         }
+    }
+
+    #[test]
+    fn an_edge_behind_the_end_of_time_is_at_its_end() {
+        let seconds = Clock::from_hz(1).expect("valid");
+        // 2^64 ps are 18,446,744 s and some.
+        assert_eq!(seconds.edge(18_446_744), Time(18_446_744_000_000_000_000));
+        assert_eq!((seconds.edge(18_446_745), seconds.edge(u64::MAX)), (Time::END, Time::END));
+        assert_eq!(seconds.edge_at_or_after(Time::END), 18_446_745);
     }
 
     #[test]

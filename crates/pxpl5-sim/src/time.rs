@@ -1,4 +1,7 @@
 //! Instants and differences of simulated time.
+//!
+//! Time ends after 2^64 ps, 213 days: what would be later is at [`Time::END`], which no run reaches, and so never happens. Nothing
+//! wraps round to an earlier instant.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -16,6 +19,9 @@ impl Time {
     /// The start of simulated time.
     pub const ZERO: Self = Self(0);
 
+    /// The end of simulated time, which no run reaches.
+    pub const END: Self = Self(u64::MAX);
+
     /// The time passed since `earlier`, zero when that is later.
     #[must_use]
     pub const fn since(self, earlier: Self) -> Span {
@@ -30,13 +36,13 @@ impl Span {
     /// A span of whole nanoseconds.
     #[must_use]
     pub const fn from_ns(ns: u64) -> Self {
-        Self(ns * 1_000)
+        Self(ns.saturating_mul(1_000))
     }
 
     /// A span of whole microseconds.
     #[must_use]
     pub const fn from_us(us: u64) -> Self {
-        Self(us * 1_000_000)
+        Self(us.saturating_mul(1_000_000))
     }
 
     /// The span in milliseconds, for reports only.
@@ -49,47 +55,49 @@ impl Span {
 impl Add<Span> for Time {
     type Output = Self;
     fn add(self, span: Span) -> Self {
-        Self(self.0 + span.0)
+        Self(self.0.saturating_add(span.0))
     }
 }
 
 impl AddAssign<Span> for Time {
     fn add_assign(&mut self, span: Span) {
-        self.0 += span.0;
+        *self = *self + span;
     }
 }
 
 impl Sub for Time {
     type Output = Span;
     fn sub(self, earlier: Self) -> Span {
-        Span(self.0 - earlier.0)
+        debug_assert!(self >= earlier, "{earlier} is not before {self}");
+        self.since(earlier)
     }
 }
 
 impl Add for Span {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self(self.0 + other.0)
+        Self(self.0.saturating_add(other.0))
     }
 }
 
 impl AddAssign for Span {
     fn add_assign(&mut self, other: Self) {
-        self.0 += other.0;
+        *self = *self + other;
     }
 }
 
 impl Sub for Span {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Self(self.0 - other.0)
+        debug_assert!(self >= other, "{other} is more than {self}");
+        Self(self.0.saturating_sub(other.0))
     }
 }
 
 impl Mul<u64> for Span {
     type Output = Self;
     fn mul(self, n: u64) -> Self {
-        Self(self.0 * n)
+        Self(self.0.saturating_mul(n))
     }
 }
 
@@ -126,5 +134,16 @@ mod tests {
     fn times_print_in_microseconds_to_the_picosecond() {
         assert_eq!(Time(12_345_678).to_string(), "12.345678 us");
         assert_eq!((Time(5) + Span::from_ns(2)).0, 2_005);
+    }
+
+    #[test]
+    fn nothing_is_later_than_the_end_of_time_or_earlier_for_being_so_late() {
+        let late = Time(u64::MAX - 1);
+        assert_eq!(late + Span(2), Time::END);
+        assert_eq!((Span(u64::MAX) + Span(1), Span(1 << 40) * (1 << 40)), (Span(u64::MAX), Span(u64::MAX)));
+        assert_eq!((Span::from_ns(u64::MAX / 999), Span::from_us(1 << 60)), (Span(u64::MAX), Span(u64::MAX)));
+        let mut time = late;
+        time += Span(u64::MAX);
+        assert_eq!(time, Time::END);
     }
 }

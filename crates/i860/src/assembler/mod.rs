@@ -66,10 +66,22 @@ fn word_of(bytes: &[u8]) -> u32 {
 /// What a line puts into memory.
 #[derive(Clone, Debug)]
 enum Item {
-    Instruction { template: Instruction, operands: String },
-    Integers { size: u32, values: Vec<String> },
-    Floats { double: bool, values: Vec<String> },
-    Gap { end: u32 },
+    Instruction {
+        template: Instruction,
+        operands: String,
+    },
+    /// Values are kept as their line has them: a list of texts would take many times as much.
+    Integers {
+        size: u32,
+        values: String,
+    },
+    Floats {
+        double: bool,
+        values: String,
+    },
+    Gap {
+        end: u32,
+    },
 }
 
 #[derive(Clone, Debug)]
@@ -245,8 +257,8 @@ impl Assembler<'_> {
     }
 
     fn directive(&mut self, word: &str, rest: &str, line: usize) -> Result<(), String> {
-        let values: Vec<String> = operand::split(rest).into_iter().map(str::to_owned).collect();
-        let count = values.len() as u32;
+        let count = operand::split(rest).len() as u32;
+        let values = rest.to_owned();
         match word {
             ".text" | ".data" | ".globl" | ".file" => Ok(()),
             ".equ" | ".set" => {
@@ -312,7 +324,7 @@ impl Assembler<'_> {
                 return Ok((encode(&i).to_le_bytes().to_vec(), Some(i)));
             }
             Item::Integers { size, values } => {
-                for text in values {
+                for text in operand::split(values) {
                     let value = evaluate(text, &self.symbols)?;
                     let bits = 8 * size;
                     if !(-(1 << (bits - 1))..1 << bits).contains(&value) {
@@ -322,7 +334,7 @@ impl Assembler<'_> {
                 }
             }
             Item::Floats { double, values } => {
-                for text in values {
+                for text in operand::split(values) {
                     let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
                     match double {
                         true => bytes.extend(value.to_le_bytes()),

@@ -11,10 +11,62 @@ pub(super) struct Line {
     pub(super) text: String,
 }
 
-/// Lines that a program may expand to.
-const MOST_LINES: usize = 1 << 20;
-/// How deeply macros may call macros.
+/// Lines that macros and repetitions may be written out to, those of bodies that are passed over included. Assumed: a million
+/// repetitions of one line.
+const MOST_STEPS: usize = 1 << 21;
+/// Bytes of text that they may be written out to. Assumed: four for each byte of the longest program.
+const MOST_TEXT: usize = 64 << 20;
+/// How deeply macros and repetitions may lie in each other.
 const MOST_DEPTH: u32 = 32;
+
+/// What macros and repetitions may still be written out to, and which line of the source took most of it.
+struct Budget {
+    steps: usize,
+    text: usize,
+    /// The line of the source that is being written out, and what was left when it began.
+    current: (usize, usize),
+    /// The line that took most before it, and how much.
+    greediest: (usize, usize),
+}
+
+impl Budget {
+    const fn new() -> Self {
+        Self { steps: MOST_STEPS, text: MOST_TEXT, current: (0, 0), greediest: (0, 0) }
+    }
+
+    /// Steps and bytes together, each in parts of what there was.
+    const fn left(&self) -> usize {
+        self.steps * (MOST_TEXT / MOST_STEPS) + self.text
+    }
+
+    /// A line of the source itself begins.
+    fn begin(&mut self, line: usize) {
+        self.greediest = self.greediest();
+        self.current = (line, self.left());
+    }
+
+    fn greediest(&self) -> (usize, usize) {
+        let (line, before) = self.current;
+        let taken = before - self.left().min(before);
+        if taken > self.greediest.1 { (line, taken) } else { self.greediest }
+    }
+
+    fn take(&mut self, steps: usize, text: usize) -> Result<(), AssemblyFault> {
+        let enough = steps <= self.steps && text <= self.text;
+        self.steps = self.steps.saturating_sub(steps);
+        self.text = self.text.saturating_sub(text);
+        if enough { Ok(()) } else { Err((self.greediest().0, spent())) }
+    }
+}
+
+/// A line and what is wrong there.
+type AssemblyFault = (usize, String);
+
+fn spent() -> String {
+    format!(
+        "macros and repetitions are written out to more than {MOST_STEPS} lines or {MOST_TEXT} bytes, most of them by this line"
+    )
+}
 
 #[derive(Clone, Debug)]
 struct Macro {
@@ -27,6 +79,7 @@ struct Expander<'a> {
     macros: BTreeMap<String, Macro>,
     lines: Vec<Line>,
     calls: usize,
+    budget: Budget,
 }
 
 /// Everything from `//` or `;` on is comment.
@@ -39,7 +92,7 @@ fn without_comment(text: &str) -> &str {
 pub(super) fn expand(file: &str, source: &str) -> Result<Vec<Line>, AssemblyError> {
     let plain = (1..).zip(source.lines().map(without_comment)).filter(|(_, text)| !text.is_empty());
     let lines: Vec<Line> = plain.map(|(number, text)| Line { number, text: text.to_owned() }).collect();
-    let mut expander = Expander { file, macros: BTreeMap::new(), lines: Vec::new(), calls: 0 };
+    let mut expander = Expander { file, macros: BTreeMap::new(), lines: Vec::new(), calls: 0, budget: Budget::new() };
     expander.block(&lines, 0)?;
     Ok(expander.lines)
 }
@@ -53,9 +106,18 @@ impl Expander<'_> {
         AssemblyError { file: self.file.to_owned(), line, reason: reason.into() }
     }
 
+    fn take(&mut self, steps: usize, text: usize) -> Result<(), AssemblyError> {
+        self.budget.take(steps, text).map_err(|(line, reason)| self.error(line, reason))
+    }
+
     fn block(&mut self, lines: &[Line], depth: u32) -> Result<(), AssemblyError> {
         let mut at = 0;
         while let Some(line) = lines.get(at) {
+            match depth {
+                // The source itself costs nothing: it is as long as it is.
+                0 => self.budget.begin(line.number),
+                _ => self.take(1, line.text.len())?,
+            }
             let (word, rest) = first_word(&line.text);
             at += match word {
                 ".macro" => self.define(rest, &lines[at..])?,
@@ -68,12 +130,13 @@ impl Expander<'_> {
     }
 
     /// Number of lines up to the one that closes a block; nested blocks are passed over.
-    fn body_len(&self, lines: &[Line], open: &str, close: &str) -> Result<usize, AssemblyError> {
+    fn body_len(&mut self, lines: &[Line], open: &str, close: &str) -> Result<usize, AssemblyError> {
         let mut depth = 0;
         for (n, line) in lines.iter().enumerate() {
             let word = first_word(&line.text).0;
             depth += i32::from(word == open) - i32::from(word == close);
             if depth == 0 {
+                self.take(n, 0)?;
                 return Ok(n);
             }
         }
@@ -95,23 +158,18 @@ impl Expander<'_> {
         let len = self.body_len(lines, ".rept", ".endr")?;
         let count: usize =
             count.parse().map_err(|_| self.error(lines[0].number, format!(".rept needs a number, found `{count}`")))?;
+        if depth >= MOST_DEPTH {
+            return Err(self.error(lines[0].number, format!("repetitions and macros nest deeper than {MOST_DEPTH}")));
+        }
+        let count = if len == 1 { 0 } else { count };
         for _ in 0..count {
-            self.limit(lines[0].number)?;
+            self.take(1, 0)?;
             self.block(&lines[1..len], depth + 1)?;
-            if len == 1 {
-                break;
-            }
         }
         Ok(len + 1)
     }
 
-    fn limit(&self, line: usize) -> Result<(), AssemblyError> {
-        let within = self.lines.len() < MOST_LINES && self.calls < MOST_LINES;
-        if within { Ok(()) } else { Err(self.error(line, format!("more than {MOST_LINES} lines or macro calls"))) }
-    }
-
     fn plain(&mut self, line: &Line, depth: u32) -> Result<usize, AssemblyError> {
-        self.limit(line.number)?;
         let (label, statement) = split_label(&line.text);
         let (word, rest) = first_word(statement);
         let Some(called) = self.macros.get(word).cloned() else {
@@ -137,15 +195,20 @@ impl Expander<'_> {
         }
         self.calls += 1;
         let unique = self.calls.to_string();
-        let body: Vec<Line> = (called.body.iter())
-            .map(|l| Line { number: line, text: substitute(&l.text, &called.parameters, &arguments, &unique) })
-            .collect();
+        let mut body = Vec::with_capacity(called.body.len());
+        for own in &called.body {
+            let text = substitute(&own.text, &called.parameters, &arguments, &unique, self.budget.text);
+            // What was cut off has taken all that was left, and one byte more.
+            let taken = text.as_ref().map_or(self.budget.text + 1, String::len);
+            self.take(1, taken)?;
+            body.extend(text.map(|text| Line { number: line, text }));
+        }
         self.block(&body, depth + 1)
     }
 }
 
-/// `\name` becomes the argument, `\@` a number that differs with every call.
-fn substitute(text: &str, parameters: &[String], arguments: &[&str], unique: &str) -> String {
+/// `\name` becomes the argument, `\@` a number that differs with every call; `None` where the line would be longer than `most`.
+fn substitute(text: &str, parameters: &[String], arguments: &[&str], unique: &str, most: usize) -> Option<String> {
     let mut result = String::new();
     let mut rest = text;
     while let Some(at) = rest.find('\\') {
@@ -165,8 +228,11 @@ fn substitute(text: &str, parameters: &[String], arguments: &[&str], unique: &st
             }
         }
         rest = &rest[end..];
+        if result.len() > most {
+            return None;
+        }
     }
-    result + rest
+    Some(result + rest).filter(|text| text.len() <= most)
 }
 
 /// `label: rest`, or no label.

@@ -3,6 +3,9 @@
 mod names;
 mod run;
 
+use crate::error::CliError;
+use crate::output::OutputFile;
+use crate::terminal::print;
 use ::i860::{Config, Program, assemble, disassemble, vectors};
 use clap::{Args, Subcommand};
 use flate2::read::MultiGzDecoder;
@@ -58,8 +61,8 @@ enum Command {
         /// Most instructions to execute.
         #[arg(long, default_value_t = 10_000_000)]
         budget: u64,
-        /// Bytes of memory from address 0.
-        #[arg(long, default_value = "0x800000", value_parser = address)]
+        /// Bytes of memory from address 0, at most 1 GiB.
+        #[arg(long, default_value = "0x800000", value_parser = memory)]
         memory: u32,
         /// Show memory from a place on, PLACE or PLACE:WORDS; may be repeated; default: the words that the run changed.
         #[arg(long, value_name = "PLACE[:WORDS]")]
@@ -88,32 +91,33 @@ enum Command {
 ///
 /// # Errors
 /// What to tell the user before a non-zero exit.
-pub(crate) fn run(args: I860Args) -> Result<(), String> {
+pub(crate) fn run(args: I860Args) -> Result<(), CliError> {
     match args.command {
         Command::Asm { file, base, output } => asm(&file, base, output.as_deref()),
         Command::Disasm { file, base } => {
-            print(&listing(base, &words_of(&read(&file)?), None));
-            Ok(())
+            print(&listing(base, &words_of(&read(&file).map_err(CliError::failure)?), None))
         }
         Command::Run { file, base, entry, stop, budget, memory, show, json, quiet } => {
-            let program = load(&file, base)?;
+            let program = load(&file, base).map_err(CliError::failure)?;
             let options = RunOptions { entry, stop, budget, memory, show, json, quiet };
-            let (report, result) = execute(&program, &options)?;
-            print(&report);
-            result
+            let (report, result) = execute(&program, &options).map_err(CliError::failure)?;
+            print(&report)?;
+            result.map_err(CliError::failure)
         }
         Command::Vectors { file, json, show } => {
-            let (report, failed) = check_vectors(&file, json, show)?;
-            print(&report);
-            if failed == 0 { Ok(()) } else { Err(format!("{failed} vectors failed")) }
+            let (report, failed) = check_vectors(&file, json, show).map_err(CliError::failure)?;
+            print(&report)?;
+            if failed == 0 { Ok(()) } else { Err(CliError::failure(format!("{failed} vectors failed"))) }
         }
     }
 }
 
-fn print(text: &str) {
-    use std::io::Write;
-    // A closed pipe (`| head`) is no fault.
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+/// A size of memory: of twice as much the run would make copies.
+fn memory(text: &str) -> Result<u32, String> {
+    let most = 1 << 30;
+    Some(address(text)?)
+        .filter(|bytes| *bytes <= most)
+        .ok_or_else(|| format!("expected at most {most:#x}, found `{text}`"))
 }
 
 fn read(file: &Path) -> Result<Vec<u8>, String> {
@@ -129,14 +133,11 @@ fn assembled(file: &Path, base: u32) -> Result<Program, String> {
     assemble(&file.display().to_string(), base, &source).map_err(|e| e.to_string())
 }
 
-fn asm(file: &Path, base: u32, output: Option<&Path>) -> Result<(), String> {
-    let program = assembled(file, base)?;
+fn asm(file: &Path, base: u32, output: Option<&Path>) -> Result<(), CliError> {
+    let program = assembled(file, base).map_err(CliError::failure)?;
     match output {
-        Some(path) => std::fs::write(path, &program.bytes).map_err(|e| format!("{}: {e}", path.display())),
-        None => {
-            print(&listing(base, &program.words(), Some(&program)));
-            Ok(())
-        }
+        Some(path) => OutputFile::open(path)?.write(&program.bytes),
+        None => print(&listing(base, &program.words(), Some(&program))),
     }
 }
 
@@ -168,21 +169,29 @@ fn load(file: &Path, base: u32) -> Result<Program, String> {
 
 /// Runs a file of vectors; gives the report and the number that failed.
 fn check_vectors(file: &Path, json: bool, show: usize) -> Result<(String, usize), String> {
-    let text = text_of(file, unpacked(file, read(file)?)?)?;
+    let text = text_of(file, unpacked(file, read(file)?, MOST_VECTOR_BYTES)?)?;
     let list = vectors::parse(&text).map_err(|e| format!("{}: {e}", file.display()))?;
     let summary = vectors::run(&list, Config::cycle());
     let report = if json { json_report(&summary, show) } else { plain_report(&summary, show) };
     Ok((report, summary.failed()))
 }
 
-/// The file's contents; gzip is known by its first two bytes.
-fn unpacked(file: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, String> {
+/// Most bytes of a file of vectors, unpacked: assumed, some ten times the published set. A few kilobytes of gzip can stand for
+/// gigabytes.
+const MOST_VECTOR_BYTES: u64 = 256 << 20;
+
+/// The file's contents, at most so many bytes of them where they are packed; gzip is known by its first two bytes.
+fn unpacked(file: &Path, bytes: Vec<u8>, most: u64) -> Result<Vec<u8>, String> {
     if !bytes.starts_with(&[0x1F, 0x8B]) {
         return Ok(bytes);
     }
     let mut plain = Vec::new();
-    let result = MultiGzDecoder::new(bytes.as_slice()).read_to_end(&mut plain);
-    result.map(|_| plain).map_err(|e| format!("{}: gzip: {e}", file.display()))
+    let mut limited = MultiGzDecoder::new(bytes.as_slice()).take(most + 1);
+    limited.read_to_end(&mut plain).map_err(|e| format!("{}: gzip: {e}", file.display()))?;
+    if plain.len() as u64 > most {
+        return Err(format!("{}: expected at most {most} bytes unpacked, found more", file.display()));
+    }
+    Ok(plain)
 }
 
 fn plain_report(summary: &vectors::Summary, show: usize) -> String {
@@ -247,6 +256,22 @@ mod tests {
         let (json, _) = check_vectors(&path, true, 10).expect("well-formed");
         let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
         assert_eq!((&json["passed"], &json["failures"][0]["differences"][0]["found"]), (&1.into(), &"00000005".into()));
+    }
+
+    #[test]
+    fn a_gzip_bomb_of_vectors_is_refused() {
+        use std::io::Write;
+        let packed = |length: usize| {
+            let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+            packer.write_all(&vec![b'\n'; length]).expect("memory can be written");
+            packer.finish().expect("memory can be written")
+        };
+        let at = Path::new("v.gz");
+        assert_eq!(unpacked(at, packed(1 << 20), 1 << 20).expect("not too much").len(), 1 << 20);
+        let bomb = packed((1 << 20) + 1);
+        assert!(bomb.len() < 2_000);
+        let error = unpacked(at, bomb, 1 << 20).expect_err("too much");
+        assert_eq!(error, "v.gz: expected at most 1048576 bytes unpacked, found more");
     }
 
     #[test]

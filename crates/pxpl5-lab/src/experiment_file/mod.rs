@@ -37,8 +37,9 @@ pub use error::FileError;
 pub use head::HeadChoice;
 pub use keys::FileKey;
 pub use motion::{MotionChoice, PathChoice};
+pub(crate) use plan::is_file;
 pub use plan::{Outputs, Plan, Published, SceneChoice};
-pub(crate) use read::plain;
+pub(crate) use read::{beside, plain};
 pub use text::Settings;
 pub use tracking_numbers::tracking_parameters;
 

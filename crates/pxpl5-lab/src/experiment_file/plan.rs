@@ -86,7 +86,7 @@ impl SceneChoice {
 }
 
 /// Whether a scene's name is a path: it has a model file's extension, or a separator.
-pub(super) fn is_file(name: &str) -> bool {
+pub(crate) fn is_file(name: &str) -> bool {
     let extension = Path::new(name).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
     name.contains(['/', std::path::MAIN_SEPARATOR]) || extension.is_some_and(|e| MODEL_FILES.contains(&e.as_str()))
 }

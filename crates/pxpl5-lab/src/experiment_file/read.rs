@@ -75,6 +75,6 @@ pub(super) fn wrong(key: &str, setting: &Setting, expected: &str) -> FileError {
 }
 
 /// A file beside others in a folder.
-pub(super) fn beside(folder: &Path, name: &str) -> String {
+pub(crate) fn beside(folder: &Path, name: &str) -> String {
     folder.join(name).display().to_string()
 }

@@ -1,6 +1,6 @@
 //! The first line of a sweep's rows: everything that is needed to make them again.
 
-use super::Sweep;
+use super::{Axis, Sweep, Values};
 use crate::experiment_file::{FileError, Plan};
 use pxpl5_run::Fingerprint;
 use serde::{Deserialize, Serialize};
@@ -39,14 +39,31 @@ pub struct Header {
 pub struct AxisRecord {
     /// Keys of the experiment file.
     pub paths: Vec<String>,
-    /// For each step one value per path.
-    pub steps: Vec<Vec<Value>>,
+    /// What they take.
+    #[serde(flatten)]
+    pub steps: Steps,
 }
+
+/// The steps of an axis as they are written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Steps {
+    /// For each step one value per path.
+    Steps(Vec<Vec<Value>>),
+    /// Of a long axis that consists of ranges: for each path the first value, the distance between two, and their number.
+    Ranges(Vec<[i64; 3]>),
+}
+
+/// Steps up to which all are written out.
+const LISTED_STEPS: u64 = 1_000;
 
 impl Header {
     /// Name and version of the layout.
     pub const SCHEMA: &'static str = "pxpl5-sweep/1";
 }
+
+/// Points among which the first experiment is looked for: assumed, some seconds' worth.
+const MOST_LOOKED_AT: u64 = 100_000;
 
 impl Sweep {
     /// The header of the sweep's rows.
@@ -55,7 +72,8 @@ impl Sweep {
     ///
     /// [`FileError`] of the first point when no point is an experiment.
     pub fn header(&self) -> Result<Header, FileError> {
-        let mut points = (0..self.space.points()).map(|point| self.plan(point));
+        let looked_at = self.space.points().min(MOST_LOOKED_AT);
+        let mut points = (0..looked_at).map(|point| self.plan(point));
         let first = points.find_map(Result::ok).map_or_else(|| self.plan(0), Ok)?;
         let axes: Vec<AxisRecord> = self.space.axes().iter().map(record).collect();
         let settings: BTreeMap<String, Value> =
@@ -66,7 +84,7 @@ impl Sweep {
         Ok(Header {
             schema: Header::SCHEMA.to_owned(),
             machine: first.machine.preset.clone(),
-            config_hash: hash(&version, &first, &settings, &axes).to_string(),
+            config_hash: hash(&version, &first, &settings, &axes, &self.inputs()).to_string(),
             version,
             level: first.level_name(),
             seed: first.seed,
@@ -79,8 +97,15 @@ impl Sweep {
     }
 }
 
-/// The effective settings of the first point are part of it: a preset may change from version to version.
-fn hash(version: &str, first: &Plan, settings: &BTreeMap<String, Value>, axes: &[AxisRecord]) -> Fingerprint {
+/// The effective settings of the first point are part of it: a preset may change from version to version. So are the contents of
+/// all files that points name.
+fn hash(
+    version: &str,
+    first: &Plan,
+    settings: &BTreeMap<String, Value>,
+    axes: &[AxisRecord],
+    inputs: &BTreeMap<String, Fingerprint>,
+) -> Fingerprint {
     let mut hash = Fingerprint::default();
     hash.setting("version", version);
     hash.setting("first", first.fingerprint());
@@ -89,14 +114,30 @@ fn hash(version: &str, first: &Plan, settings: &BTreeMap<String, Value>, axes: &
     first.measure.iter().for_each(|measure| hash.setting("measure", measure.name()));
     for axis in axes {
         hash.setting("axis", axis.paths.join(","));
-        axis.steps.iter().for_each(|step| hash.setting("step", Value::from(step.clone())));
+        match &axis.steps {
+            Steps::Steps(steps) => steps.iter().for_each(|step| hash.setting("step", Value::from(step.clone()))),
+            Steps::Ranges(ranges) => ranges.iter().for_each(|range| hash.setting("range", Value::from(range.to_vec()))),
+        }
     }
+    inputs.iter().for_each(|(name, contents)| hash.setting("input", format_args!("{name}={contents}")));
     hash
 }
 
-fn record(axis: &super::Axis) -> AxisRecord {
-    let steps = axis.steps.iter().map(|step| step.iter().map(json).collect()).collect();
-    AxisRecord { paths: axis.paths.clone(), steps }
+fn record(axis: &Axis) -> AxisRecord {
+    let paths = axis.paths.clone();
+    let ranges: Option<Vec<[i64; 3]>> = axis.values.iter().map(range).collect();
+    let steps = match ranges.filter(|_| axis.len() > LISTED_STEPS) {
+        Some(ranges) => Steps::Ranges(ranges),
+        None => Steps::Steps((0..axis.len()).map(|n| axis.step(n).iter().map(json).collect()).collect()),
+    };
+    AxisRecord { paths, steps }
+}
+
+fn range(values: &Values) -> Option<[i64; 3]> {
+    match values {
+        Values::Range { from, step, count } => Some([*from, *step, i64::try_from(*count).ok()?]),
+        Values::Listed(_) => None,
+    }
 }
 
 pub(super) fn json(value: &toml::Value) -> Value {

@@ -23,8 +23,10 @@
 
 mod error;
 mod header;
+mod inputs;
 mod merge;
 mod point;
+mod points;
 mod run;
 mod space;
 mod store;
@@ -34,7 +36,7 @@ pub use header::Header;
 pub use merge::{Merged, merge};
 pub use point::{Row, Status};
 pub use run::{RunOptions, Shard, run};
-pub use space::{Axis, MAX_POINTS, Space};
+pub use space::{Axis, MAX_POINTS, Space, Values};
 pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};
 
 use crate::experiment_file::{ExperimentFile, FileError};

@@ -1,9 +1,10 @@
 //! Simulating the points of a sweep on all cores.
 
 use super::point::{Row, Scenes};
+use super::points::Points;
 use super::{Store, Sweep, SweepError};
 use crossbeam_channel::{Sender, bounded};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::Instant;
 
@@ -36,6 +37,12 @@ impl Shard {
         self.of
     }
 
+    /// How many of the first `points` points belong to it.
+    #[must_use]
+    pub const fn share_of(&self, points: u64) -> u64 {
+        (points + self.of - 1 - self.index) / self.of
+    }
+
     /// Whether a point belongs to it.
     #[must_use]
     pub const fn holds(&self, point: u64) -> bool {
@@ -66,17 +73,18 @@ pub fn run(
     options: RunOptions,
     mut finished: impl FnMut(&Row),
 ) -> Result<(), SweepError> {
-    let points = (0..sweep.space().points()).filter(|point| options.shard.holds(*point) && !store.holds(*point));
     let work = Work {
         sweep,
-        points: points.collect(),
-        next: AtomicUsize::new(0),
+        shard: options.shard,
+        finished: store.held(),
+        next: AtomicU64::new(0),
         stop: AtomicBool::new(false),
         scenes: Scenes::default(),
     };
     let (sender, rows) = bounded(WAITING_ROWS);
     thread::scope(|scope| {
-        for _ in 0..options.threads.clamp(1, work.points.len().max(1)) {
+        let points = usize::try_from(sweep.space().points()).unwrap_or(usize::MAX);
+        for _ in 0..options.threads.clamp(1, points.max(1)) {
             let sender = sender.clone();
             scope.spawn(|| work.run(sender));
         }
@@ -92,11 +100,14 @@ pub fn run(
     })
 }
 
-/// The points that are missing, which all threads take from.
+/// The points that are missing, which all threads take from, one at a time.
 struct Work<'a> {
     sweep: &'a Sweep,
-    points: Vec<u64>,
-    next: AtomicUsize,
+    shard: Shard,
+    /// Points that were finished before.
+    finished: Points,
+    /// Number of the next point that somebody may take.
+    next: AtomicU64,
     stop: AtomicBool,
     scenes: Scenes,
 }
@@ -105,12 +116,20 @@ impl Work<'_> {
     /// What one thread does: it simulates points until there are no more, or nobody wants their rows.
     fn run(&self, rows: Sender<(Row, f64)>) {
         while !self.stop.load(Ordering::Relaxed) {
-            let Some(point) = self.points.get(self.next.fetch_add(1, Ordering::Relaxed)) else { break };
+            let Some(point) = self.take() else { break };
             let begin = Instant::now();
-            let row = self.sweep.row(*point, &self.scenes);
+            let row = self.sweep.row(point, &self.scenes);
             if rows.send((row, begin.elapsed().as_secs_f64())).is_err() {
                 break;
             }
         }
+    }
+
+    /// A point of the shard that nobody has simulated or taken; `None` when there are no more.
+    fn take(&self) -> Option<u64> {
+        let all = self.sweep.space().points();
+        let mut taken =
+            std::iter::from_fn(|| Some(self.next.fetch_add(1, Ordering::Relaxed)).filter(|point| *point < all));
+        taken.find(|point| self.shard.holds(*point) && !self.finished.holds(*point))
     }
 }

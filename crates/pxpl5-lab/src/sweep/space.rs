@@ -12,8 +12,75 @@ pub const MAX_POINTS: u64 = 10_000_000;
 pub struct Axis {
     /// Keys of the experiment file.
     pub paths: Vec<String>,
-    /// For each step one value per path.
-    pub steps: Vec<Vec<Value>>,
+    /// What each of them takes; all have as many values.
+    pub values: Vec<Values>,
+}
+
+impl Axis {
+    fn of_one(path: String, values: Values) -> Self {
+        Self { paths: vec![path], values: vec![values] }
+    }
+
+    /// The number of steps.
+    #[must_use]
+    pub fn len(&self) -> u64 {
+        self.values.first().map_or(0, Values::len)
+    }
+
+    /// Whether it has no steps; none of a [`Space`] is so.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// One value per path, at a step from 0.
+    #[must_use]
+    pub fn step(&self, n: u64) -> Vec<Value> {
+        self.values.iter().map(|values| values.at(n)).collect()
+    }
+}
+
+/// The values that a setting takes, in order. A range takes no memory for them.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// As the file lists them.
+    Listed(Vec<Value>),
+    /// Whole numbers.
+    Range {
+        /// The first.
+        from: i64,
+        /// From one to the next, above 0.
+        step: i64,
+        /// How many there are.
+        count: u64,
+    },
+}
+
+impl Values {
+    /// How many there are.
+    #[must_use]
+    pub fn len(&self) -> u64 {
+        match self {
+            Self::Listed(list) => list.len() as u64,
+            Self::Range { count, .. } => *count,
+        }
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The value at a step from 0; the last one behind the end.
+    #[must_use]
+    pub fn at(&self, n: u64) -> Value {
+        let n = n.min(self.len().saturating_sub(1));
+        match self {
+            Self::Listed(list) => list[n as usize].clone(),
+            Self::Range { from, step, .. } => Value::Integer(from + n as i64 * step),
+        }
+    }
 }
 
 /// All combinations of the steps of all axes; the last axis changes fastest.
@@ -37,13 +104,13 @@ impl Space {
         }
         let mut axes = Vec::new();
         for (path, values) in leaves(fault.table(table, "grid")?) {
-            let steps = fault.values(&path, &values)?;
-            axes.push(Axis { paths: vec![path], steps: steps.into_iter().map(|value| vec![value]).collect() });
+            let values = fault.values(&path, &values)?;
+            axes.push(Axis::of_one(path, values));
         }
         axes.extend(fault.together(fault.table(table, "together")?)?);
         axes.extend(fault.seeds(table.get("seeds"))?);
         fault.check(file, &axes)?;
-        let points = axes.iter().try_fold(1u64, |all, axis| all.checked_mul(axis.steps.len() as u64));
+        let points = axes.iter().try_fold(1u64, |all, axis| all.checked_mul(axis.len()));
         let points = points.filter(|points| *points <= MAX_POINTS);
         let points = points.ok_or_else(|| fault.text("sweep", &format!("at most {MAX_POINTS} points"), "more"))?;
         Ok(Self { axes, points })
@@ -67,10 +134,9 @@ impl Space {
         let mut rest = point;
         let mut settings = BTreeMap::new();
         for axis in self.axes.iter().rev() {
-            let steps = axis.steps.len() as u64;
-            let step = &axis.steps[(rest % steps) as usize];
-            rest /= steps;
-            settings.extend(axis.paths.iter().cloned().zip(step.iter().cloned()));
+            let step = axis.step(rest % axis.len());
+            rest /= axis.len();
+            settings.extend(axis.paths.iter().cloned().zip(step));
         }
         settings
     }
@@ -110,39 +176,40 @@ impl Fault<'_> {
         }
     }
 
-    fn values(&self, path: &str, value: &Value) -> Result<Vec<Value>, FileError> {
+    fn values(&self, path: &str, value: &Value) -> Result<Values, FileError> {
         match value {
-            Value::Array(list) if !list.is_empty() => Ok(list.clone()),
+            Value::Array(list) if !list.is_empty() => Ok(Values::Listed(list.clone())),
             Value::Table(range) => self.range(path, range),
             other => Err(self.value(path, "a list with values, or { from, to, step }", other)),
         }
     }
 
-    fn range(&self, path: &str, range: &Table) -> Result<Vec<Value>, FileError> {
+    fn range(&self, path: &str, range: &Table) -> Result<Values, FileError> {
         let expected = "whole numbers { from, to, step } with from <= to and step > 0";
-        let Some([from, step, count]) = from_step_count(range) else {
+        let Some([from, step, last]) = from_step_last(range) else {
             return Err(self.value(path, expected, &Value::Table(range.clone())));
         };
-        if count as u64 >= MAX_POINTS {
+        let count = last as u64 + 1;
+        if count > MAX_POINTS {
             return Err(self.text(path, &format!("at most {MAX_POINTS} points"), "more"));
         }
-        Ok((0..=count).map(|n| Value::Integer(from + n * step)).collect())
+        Ok(Values::Range { from, step, count })
     }
 
     /// Lists of the same length, taken in step.
     fn together(&self, table: Table) -> Result<Option<Axis>, FileError> {
-        let lists: Vec<(String, Vec<Value>)> = leaves(table)
-            .into_iter()
-            .map(|(path, v)| Ok((path.clone(), self.values(&path, &v)?)))
-            .collect::<Result<_, FileError>>()?;
-        let Some((_, first)) = lists.first() else { return Ok(None) };
-        let length = first.len();
-        if let Some((path, list)) = lists.iter().find(|(_, list)| list.len() != length) {
-            let expected = format!("{length} values, as many as the other lists of sweep.together");
-            return Err(self.text(path, &expected, &list.len().to_string()));
+        let mut axis = Axis { paths: Vec::new(), values: Vec::new() };
+        for (path, value) in leaves(table) {
+            let values = self.values(&path, &value)?;
+            let expected = axis.values.first().map_or(values.len(), Values::len);
+            if values.len() != expected {
+                let expected = format!("{expected} values, as many as the other lists of sweep.together");
+                return Err(self.text(&path, &expected, &values.len().to_string()));
+            }
+            axis.paths.push(path);
+            axis.values.push(values);
         }
-        let steps = (0..length).map(|n| lists.iter().map(|(_, list)| list[n].clone()).collect()).collect();
-        Ok(Some(Axis { paths: lists.into_iter().map(|(path, _)| path).collect(), steps }))
+        Ok(Some(axis).filter(|axis| !axis.paths.is_empty()))
     }
 
     fn seeds(&self, seeds: Option<&Value>) -> Result<Option<Axis>, FileError> {
@@ -150,8 +217,7 @@ impl Fault<'_> {
         let Some(count) = value.as_integer().filter(|count| (1..=MAX_POINTS as i64).contains(count)) else {
             return Err(self.value("sweep.seeds", &format!("a number of seeds from 1 to {MAX_POINTS}"), value));
         };
-        let steps = (1..=count).map(|seed| vec![Value::Integer(seed)]).collect();
-        Ok(Some(Axis { paths: vec!["seed".to_owned()], steps }))
+        Ok(Some(Axis::of_one("seed".to_owned(), Values::Range { from: 1, step: 1, count: count as u64 })))
     }
 
     /// Every path is a key, and no two axes set the same.
@@ -171,7 +237,7 @@ impl Fault<'_> {
 }
 
 /// The first value of a range, the distance between two of them, and how many come behind the first.
-fn from_step_count(range: &Table) -> Option<[i64; 3]> {
+fn from_step_last(range: &Table) -> Option<[i64; 3]> {
     let from = range.get("from")?.as_integer()?;
     let to = range.get("to")?.as_integer()?;
     let step = range.get("step").map_or(Some(1), Value::as_integer)?;

@@ -1,5 +1,6 @@
 //! The folder of a sweep: rows are appended with one write each, and survive a kill at any moment.
 
+use super::points::Points;
 use super::{Header, Row, SweepError};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -45,6 +46,7 @@ impl Store {
     pub fn open(folder: &Path, header: Header, resume: bool) -> Result<Self, SweepError> {
         fs::create_dir_all(folder).map_err(SweepError::io(folder, "cannot be made"))?;
         let lock = lock(folder)?;
+        remove_left_over(folder);
         let path = folder.join(ROWS_FILE);
         let found = match fs::read(&path) {
             Ok(bytes) => read_rows(&path, &bytes)?,
@@ -76,6 +78,11 @@ impl Store {
     #[must_use]
     pub fn holds(&self, point: u64) -> bool {
         self.rows.contains_key(&point)
+    }
+
+    /// The points that are finished.
+    pub(super) fn held(&self) -> Points {
+        self.rows.keys().copied().collect()
     }
 
     /// The rows of all finished points, by the number of the point.
@@ -122,6 +129,23 @@ pub(super) fn write_all(folder: &Path, header: &Header, rows: &BTreeMap<u64, Row
     let lines: String = rows.values().map(line_of).collect();
     replace(&folder.join(ROWS_FILE), &format!("{}{lines}", line_of(header)))?;
     replace(&folder.join(RESULTS_FILE), &table(header, rows))
+}
+
+/// Removes what processes that were killed while they finished have left under temporary names. Nobody else is at work here: the
+/// folder is locked.
+fn remove_left_over(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let is_temporary = |file: &str| {
+            let stem = file.split('.').next().unwrap_or_default();
+            let number =
+                name.to_str().and_then(|name| name.strip_prefix(stem)?.strip_prefix('.')?.strip_suffix(".tmp"));
+            number.is_some_and(|number| !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()))
+        };
+        if [ROWS_FILE, TIMES_FILE, RESULTS_FILE].into_iter().any(is_temporary) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 pub(super) fn replace(path: &Path, text: &str) -> Result<(), SweepError> {
@@ -190,6 +214,11 @@ pub(super) fn read_rows(path: &Path, bytes: &[u8]) -> Result<Found, SweepError> 
             continue;
         }
         let row: Row = read_line(line, number, &name)?;
+        let points = found.header.as_ref().map_or(0, |header: &Header| header.points);
+        if row.point >= points {
+            let found = format!("point {} of {points}", row.point);
+            return Err(SweepError::Damaged { path: name, line: number, found });
+        }
         match found.rows.get(&row.point) {
             Some(other) if *other == row => found.repeated.push(row.point),
             Some(other) => {

@@ -22,7 +22,7 @@ pub(crate) enum Normals {
 #[derive(Default)]
 pub(crate) struct Mesh {
     pub(crate) positions: Vec<DVec3>,
-    /// Not yet of unit length; zero where the file gives none.
+    /// Not yet of unit length; zero where the file gives none, and empty as long as it has given none at all.
     pub(crate) normals: Vec<DVec3>,
     pub(crate) colours: Vec<[u8; 3]>,
     /// Which point of the file each vertex lies on.
@@ -39,8 +39,11 @@ impl Mesh {
     }
 
     pub(crate) fn push_on_point(&mut self, point: u32, position: DVec3, normal: DVec3, colour: [u8; 3]) {
+        if normal != DVec3::ZERO || !self.normals.is_empty() {
+            self.normals.resize(self.positions.len(), DVec3::ZERO);
+            self.normals.push(normal);
+        }
         self.positions.push(position);
-        self.normals.push(normal);
         self.colours.push(colour);
         self.points.push(point);
     }
@@ -56,23 +59,35 @@ impl Mesh {
     /// Gives a unit normal to every vertex without one: the mean over its triangles, weighted by area; +z if it has
     /// only triangles without area.
     pub(crate) fn complete_normals(&mut self, normals: Normals) {
-        let group: Vec<u32> = match normals {
-            Normals::OfVertices => (0..self.positions.len() as u32).collect(),
-            Normals::OfPoints => self.points.clone(),
-        };
-        let groups = group.iter().max().map_or(0, |&last| last as usize + 1);
-        let mut sums = vec![DVec3::ZERO; groups];
+        let are_points = self.points.iter().zip(0..).all(|(&point, vertex)| point == vertex);
+        let of_vertices = are_points || matches!(normals, Normals::OfVertices);
+        let mut sums = self.sums_of_areas(of_vertices);
+        if of_vertices && self.normals.is_empty() {
+            // Where there are none, nothing is held twice.
+            sums.iter_mut().for_each(|sum| *sum = unit(*sum).unwrap_or(DVec3::Z));
+            self.normals = sums;
+            return;
+        }
+        self.normals.resize(self.positions.len(), DVec3::ZERO);
+        for (vertex, normal) in self.normals.iter_mut().enumerate() {
+            let group = if of_vertices { vertex } else { self.points[vertex] as usize };
+            *normal = unit(*normal).or_else(|| unit(sums[group])).unwrap_or(DVec3::Z);
+        }
+    }
+
+    /// The sum of the areas around each vertex, or around each point, as vectors.
+    fn sums_of_areas(&self, of_vertices: bool) -> Vec<DVec3> {
+        let last_point = self.points.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut sums = vec![DVec3::ZERO; if of_vertices { self.positions.len() } else { last_point }];
         for triangle in &self.triangles {
             let [a, b, c] = triangle.map(|corner| self.positions[corner as usize]);
             let area = (b - a).cross(c - a);
             for &corner in triangle {
-                sums[group[corner as usize] as usize] += area;
+                let group = if of_vertices { corner } else { self.points[corner as usize] };
+                sums[group as usize] += area;
             }
         }
-        for (normal, &group) in self.normals.iter_mut().zip(&group) {
-            let given = normal.try_normalize();
-            *normal = given.unwrap_or_else(|| sums[group as usize].normalize_or(DVec3::Z));
-        }
+        sums
     }
 
     /// Keeps the vertices that triangles use: others must not decide on the fit, nor cost time in every frame.
@@ -124,6 +139,14 @@ impl Mesh {
     }
 }
 
+/// The vector with length 1; `None` of one without length. Its largest component is brought near 1 first, by a power of two that
+/// changes no bit: squares of the smallest and the largest numbers of a file would leave the range of f64.
+fn unit(v: DVec3) -> Option<DVec3> {
+    let (_, exponent) = libm::frexp(v.abs().max_element());
+    DVec3::from_array(v.to_array().map(|x| libm::ldexp(x, -exponent))).try_normalize()
+}
+
+/// Of an empty list there is nothing to keep.
 fn retain<T>(items: &mut Vec<T>, keep: &[bool]) {
     let mut keep = keep.iter();
     items.retain(|_| keep.next() == Some(&true));

@@ -47,11 +47,11 @@ impl Placement {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// Polygon file: ASCII, binary little-endian or binary big-endian; element `vertex` with `x y z`, optionally
-    /// `nx ny nz` and `red green blue`; element `face` with `vertex_indices` or `vertex_index`.
+    /// `nx ny nz` and `red green blue`; element `face`, or `tristrips`, with `vertex_indices` or `vertex_index`.
     Ply,
     /// Wavefront object: `v`, `vn`, `f`; everything else is passed over. No line continuations.
     Obj,
-    /// Protein Data Bank: `ATOM` and `HETATM` of the first model become spheres; of alternate locations the first.
+    /// Protein Data Bank: `ATOM` and `HETATM` of the first model become spheres; of an atom's alternate locations the first.
     Pdb,
 }
 
@@ -112,7 +112,7 @@ pub fn placed_from_reader(
 ///
 /// # Errors
 ///
-/// [`LoadError`] says what is wrong, and where. No bytes make it panic or take more than a few times their size.
+/// [`LoadError`] says what is wrong, and where. No bytes make it panic, or take more than fifteen times their size.
 pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, LoadError> {
     placed_from_bytes(bytes, format, name, Placement::Fitted)
 }

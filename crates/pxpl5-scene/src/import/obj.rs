@@ -13,24 +13,51 @@ use crate::error::{LoadError, Place};
 use crate::scene::Scene;
 
 pub(super) fn read(source: &Source<'_>) -> Result<Scene, LoadError> {
-    let mut reader =
-        Reader { source, points: Vec::new(), normals: Vec::new(), corners: HashMap::new(), mesh: Mesh::default() };
+    let mut reader = Reader::new(source);
     for (number, line) in source.lines()? {
         reader.line(Place::Line(number), line)?;
     }
-    reader.mesh.into_scene(source)
+    reader.into_mesh().into_scene(source)
 }
 
 struct Reader<'a> {
     source: &'a Source<'a>,
     points: Vec<DVec3>,
     normals: Vec<DVec3>,
-    /// Vertex of the mesh by point and normal. Looked up only, never walked, so its order shows nowhere.
-    corners: HashMap<(u32, Option<u32>), u32>,
+    /// Vertex of the mesh by its corner. Looked up only, never walked, so its order shows nowhere.
+    vertices: HashMap<Corner, u32>,
+    /// The corners in the order of their vertices.
+    corners: Vec<Corner>,
     mesh: Mesh,
 }
 
-impl Reader<'_> {
+/// A point, and its normal counted from 1; 0 for none. Short, since a file can have many times more of them than points.
+type Corner = (u32, u32);
+
+impl<'a> Reader<'a> {
+    fn new(source: &'a Source<'a>) -> Self {
+        Self {
+            source,
+            points: Vec::new(),
+            normals: Vec::new(),
+            vertices: HashMap::new(),
+            corners: Vec::new(),
+            mesh: Mesh::default(),
+        }
+    }
+
+    /// The vertices with their places and normals, when all of them are known and nothing is looked up any more.
+    fn into_mesh(self) -> Mesh {
+        let Self { points, normals, vertices, corners, mut mesh, .. } = self;
+        drop(vertices);
+        mesh.positions.reserve_exact(corners.len());
+        for (point, normal) in corners {
+            let direction = if normal == 0 { DVec3::ZERO } else { normals[normal as usize - 1] };
+            mesh.push_on_point(point, points[point as usize], direction, DEFAULT_COLOUR);
+        }
+        mesh
+    }
+
     fn line(&mut self, at: Place, line: &str) -> Result<(), LoadError> {
         let line = line.split('#').next().unwrap_or_default();
         let mut words = line.split_whitespace();
@@ -70,21 +97,19 @@ impl Reader<'_> {
         let point = fields.next().unwrap_or_default();
         let point = self.index(at, "vertices", point, self.points.len())?;
         let normal = match fields.nth(1) {
-            None | Some("") => None,
-            Some(normal) => Some(self.index(at, "normals", normal, self.normals.len())?),
+            None | Some("") => 0,
+            Some(normal) => self.index(at, "normals", normal, self.normals.len())? + 1,
         };
-        Ok(self.vertex(point, normal))
+        Ok(self.vertex((point, normal)))
     }
 
-    fn vertex(&mut self, point: u32, normal: Option<u32>) -> u32 {
-        let mesh = &mut self.mesh;
-        *self.corners.entry((point, normal)).or_insert_with(|| {
-            let vertex = mesh.positions.len() as u32;
-            let direction = normal.map_or(DVec3::ZERO, |n| self.normals[n as usize]);
-            let position = self.points[point as usize];
-            mesh.push_on_point(point, position, direction, DEFAULT_COLOUR);
-            vertex
-        })
+    fn vertex(&mut self, corner: Corner) -> u32 {
+        let next = self.corners.len() as u32;
+        let vertex = *self.vertices.entry(corner).or_insert(next);
+        if vertex == next {
+            self.corners.push(corner);
+        }
+        vertex
     }
 
     /// 1 is the first of the file; -1 the last so far.

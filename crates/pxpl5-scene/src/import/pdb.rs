@@ -1,5 +1,7 @@
 //! Protein Data Bank files: fixed columns, counted from 1 as in the format's guide, version 3.3.
 
+use std::collections::{HashMap, HashSet};
+
 use glam::DVec3;
 
 use super::mesh::Fit;
@@ -80,13 +82,14 @@ impl Atom {
     }
 }
 
-/// The atoms of the first model, in the order of the file.
+/// The atoms of the first model, in the order of the file; of an atom's alternate locations the first.
 pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, LoadError> {
     let mut atoms = Vec::new();
+    let mut alternates = Alternates::default();
     for (number, line) in source.lines()? {
         let at = Place::Line(number);
         match columns(line, 1, 6) {
-            "ATOM" | "HETATM" if is_first_location(line) => atoms.push(atom(source, at, line)?),
+            "ATOM" | "HETATM" if alternates.is_first(line) => atoms.push(atom(source, at, line)?),
             "ENDMDL" => break,
             _ => {}
         }
@@ -94,8 +97,26 @@ pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, LoadError> {
     Ok(atoms)
 }
 
-fn is_first_location(line: &str) -> bool {
-    matches!(columns(line, 17, 17), "" | "A" | "1")
+/// Alternate locations that were met. Looked up only, never walked, so that no order shows anywhere.
+#[derive(Default)]
+struct Alternates<'a> {
+    /// Name of the first residue at a place of the chain (columns 22 to 27) that has alternates: others there are another
+    /// molecule's.
+    residues: HashMap<&'a str, &'a str>,
+    /// Place and name of every atom that has alternates.
+    atoms: HashSet<(&'a str, &'a str)>,
+}
+
+impl<'a> Alternates<'a> {
+    /// Whether an atom has one location only, or this is the first of them.
+    fn is_first(&mut self, line: &'a str) -> bool {
+        if columns(line, 17, 17).is_empty() {
+            return true;
+        }
+        let place = columns(line, 22, 27);
+        let residue = columns(line, 18, 20);
+        *self.residues.entry(place).or_insert(residue) == residue && self.atoms.insert((place, columns(line, 13, 16)))
+    }
 }
 
 fn atom(source: &Source<'_>, at: Place, line: &str) -> Result<Atom, LoadError> {

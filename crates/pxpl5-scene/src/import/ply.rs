@@ -23,9 +23,11 @@ pub(super) fn read(source: &Source<'_>) -> Result<Scene, LoadError> {
         match element.name.as_str() {
             "vertex" => rows.vertices(element, &mut mesh)?,
             "face" => rows.faces(element, &mut mesh)?,
+            "tristrips" => rows.strips(element, &mut mesh)?,
             _ => rows.skip(element)?,
         }
     }
+    rows.check_end()?;
     mesh.into_scene(source)
 }
 
@@ -50,6 +52,7 @@ impl<'a> Rows<'a> {
             let line = e.line().map_or(line, |line| line as u64);
             header_fault(source, line.max(1), &e)
         })?;
+        check_header(source, source.text(cursor.position() as usize)?)?;
         if header.encoding == Encoding::Ascii {
             source.text(source.bytes.len())?;
         }
@@ -82,6 +85,10 @@ impl<'a> Rows<'a> {
         let row = match self.header.encoding {
             Encoding::Ascii => {
                 self.next_line(element)?;
+                if let Some(surplus) = surplus(&self.text, element) {
+                    let expected = format!("the end of {}", row_of(element));
+                    return Err(self.source.syntax(at, expected, excerpt(surplus)));
+                }
                 parser.read_ascii_element(&self.text, element)
             }
             Encoding::BinaryLittleEndian => parser.read_little_endian_element(&mut self.cursor, element),
@@ -149,6 +156,35 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
+    /// Corners of strips, which -1 parts: each but the first two of a strip ends a triangle, of which every other one is turned.
+    fn strips(&mut self, element: &ElementDef, mesh: &mut Mesh) -> Result<(), LoadError> {
+        let count = mesh.positions.len();
+        for _ in 0..element.count {
+            let (at, row) = self.next::<FaceRow>(element)?;
+            for strip in row.corners.split(|&corner| corner == -1) {
+                let corners = strip.iter().map(|&c| self.source.index(at, "vertices", c, count, c));
+                let corners: Vec<u32> = corners.collect::<Result<_, _>>()?;
+                for (n, three) in corners.windows(3).enumerate() {
+                    let turned = n % 2;
+                    mesh.triangles.push([three[turned], three[1 - turned], three[2]]);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Behind the last row there is nothing but white space.
+    fn check_end(&self) -> Result<(), LoadError> {
+        let rest = &self.source.bytes[self.cursor.position() as usize..];
+        if rest.iter().all(u8::is_ascii_whitespace) {
+            return Ok(());
+        }
+        let expected = "the end of the file behind the last row that the header announces";
+        let first = rest.iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or_default();
+        let found = String::from_utf8_lossy(&rest[first..rest.len().min(first + 40)]).into_owned();
+        Err(self.source.syntax(self.place(), expected, excerpt(&found)))
+    }
+
     fn skip(&mut self, element: &ElementDef) -> Result<(), LoadError> {
         (0..element.count).try_for_each(|_| self.next::<Skipped>(element).map(|_| ()))
     }
@@ -159,6 +195,40 @@ fn row_of(element: &ElementDef) -> String {
     let properties: Vec<&str> = element.properties.keys().map(String::as_str).collect();
     let properties: String = properties.join(" ").chars().take(80).collect();
     format!("a row of {:?} ({properties})", element.name)
+}
+
+/// What the library lets pass: a version that nobody has defined, and a property that an element has twice.
+fn check_header(source: &Source<'_>, header: &str) -> Result<(), LoadError> {
+    let mut known = Vec::new();
+    for (number, line) in (1..).zip(header.lines()) {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        match words.as_slice() {
+            ["format", _, version, ..] if *version != "1.0" => {
+                return Err(source.syntax(Place::Line(number), "version 1.0", excerpt(version)));
+            }
+            ["element", ..] => known.clear(),
+            ["property", .., name] if known.contains(name) => {
+                let expected = "a property that the element does not have yet";
+                return Err(source.syntax(Place::Line(number), expected, excerpt(line)));
+            }
+            ["property", .., name] => known.push(name),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// What stands in a row behind the numbers of its element.
+fn surplus<'t>(row: &'t str, element: &ElementDef) -> Option<&'t str> {
+    let mut words = row.split_whitespace();
+    for property in element.properties.values() {
+        let first = words.next()?;
+        if matches!(property.data_type, PropertyType::List(..)) {
+            let count: usize = first.parse().ok()?;
+            count.checked_sub(1).map(|last| words.nth(last));
+        }
+    }
+    words.next()
 }
 
 fn header_fault(source: &Source<'_>, line: u64, error: &ParseError) -> LoadError {

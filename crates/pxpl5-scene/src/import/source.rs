@@ -21,9 +21,13 @@ impl<'a> Source<'a> {
         })
     }
 
-    /// All lines with their numbers, from 1.
+    /// All lines with their numbers, from 1, whether they end in LF, CR LF or, as they did once, in CR alone; without the mark by
+    /// which some editors begin a text (U+FEFF).
     pub(crate) fn lines(&self) -> Result<impl Iterator<Item = (u64, &'a str)>, LoadError> {
-        Ok((1..).zip(self.text(self.bytes.len())?.lines()))
+        let text = self.text(self.bytes.len())?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let end = if text.contains('\n') { '\n' } else { '\r' };
+        Ok((1..).zip(text.split_terminator(end).map(|line| line.strip_suffix('\r').unwrap_or(line))))
     }
 
     pub(crate) fn syntax(&self, at: Place, expected: impl Into<String>, found: impl Into<String>) -> LoadError {

@@ -1,6 +1,6 @@
 use thiserror::Error;
 
-use super::LATEST_S;
+use super::{FARTHEST_M, FASTEST, LATEST_S};
 
 /// Why a recording cannot be replayed. Lines count from 1; times are in seconds.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -97,5 +97,27 @@ pub enum RecordingError {
         columns: String,
         /// Length of its quaternion.
         found: f64,
+    },
+    /// A position is farther away than any place on Earth.
+    #[error("line {line}, {column}: expected -{FARTHEST_M:e} to {FARTHEST_M:e} m, found {found_m:e} m")]
+    TooFar {
+        /// Number of the line, from 1.
+        line: u64,
+        /// Name of the column, as in the header.
+        column: String,
+        /// The coordinate, m.
+        found_m: f64,
+    },
+    /// From one sample to the next the head moves or turns faster than anything does.
+    #[error(
+        "line {line}: expected at most {FASTEST:e} m/s and {FASTEST:e} rad/s from the line before, found {found:e} {unit}"
+    )]
+    TooFast {
+        /// Number of the line, from 1.
+        line: u64,
+        /// The speed.
+        found: f64,
+        /// Its unit.
+        unit: &'static str,
     },
 }

@@ -23,6 +23,14 @@ use crate::time::span_s;
 /// Latest time stamp of a recording: 10^7 s (115 days), safely below the end of simulated time.
 const LATEST_S: f64 = 1e7;
 
+/// Farthest coordinate of a recording, m. Assumed: 1e6 to 1e12; the coordinates of maps, which count from the equator, reach 1e7,
+/// and squares of this are far from the end of single precision.
+const FARTHEST_M: f64 = 1e8;
+
+/// Fastest movement between two samples, m/s, and fastest turn, rad/s. Assumed: 1e3 to 1e9; no head moves so, but where a tracker
+/// loses its place and finds it again a recording jumps within a millisecond.
+const FASTEST: f64 = 1e6;
+
 /// Time stamp (ps) and pose.
 type Sample = (u64, Pose);
 

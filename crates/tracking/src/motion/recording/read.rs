@@ -3,9 +3,10 @@ use glam::{DQuat, DVec3};
 use super::axes::Axes;
 use super::columns::{Column, Columns};
 use super::decimal::scaled;
-use super::{LATEST_S, RecordingError, Sample};
+use super::{FARTHEST_M, FASTEST, LATEST_S, RecordingError, Sample};
 use crate::pose::Pose;
-use crate::time::PS_PER_S;
+use crate::rotation;
+use crate::time::{PS_PER_S, span_s};
 
 /// Columns of this crate's own files, in this order: seconds, metres, unit quaternion (head to world, real part first).
 const OWN: [&str; 8] = ["time_s", "x", "y", "z", "qw", "qx", "qy", "qz"];
@@ -70,9 +71,21 @@ pub(super) fn samples(text: &str, columns: &Columns, axes: Option<Axes>) -> Resu
         let (stamp_ps, pose) = layout.sample(line)?;
         let origin_ps = if layout.from_first { *first_ps.get_or_insert(stamp_ps) } else { 0 };
         let t_ps = layout.time(line, stamp_ps - origin_ps, samples.last())?;
-        samples.push((t_ps, axes.convert(pose)));
+        let sample = (t_ps, axes.convert(pose));
+        if let Some(before) = samples.last() {
+            check_speed(line, before, &sample)?;
+        }
+        samples.push(sample);
     }
     if samples.is_empty() { Err(RecordingError::Empty) } else { Ok(samples) }
+}
+
+fn check_speed(line: &Line<'_>, (before_ps, before): &Sample, (t_ps, pose): &Sample) -> Result<(), RecordingError> {
+    let seconds = span_s(*before_ps, *t_ps);
+    let moved = (pose.position - before.position).length() / seconds;
+    let turned = rotation::difference(before.orientation, pose.orientation).length() / seconds;
+    let too_fast = [(moved, "m/s"), (turned, "rad/s")].into_iter().find(|(found, _)| *found > FASTEST);
+    too_fast.map_or(Ok(()), |(found, unit)| Err(RecordingError::TooFast { line: line.number, found, unit }))
 }
 
 /// The layout of a file that says itself what it is.
@@ -156,6 +169,12 @@ impl Layout {
         let mut values = [0.0; 7];
         for (value, column) in values.iter_mut().zip(numbers) {
             *value = number(line, column, fields[column.index])?;
+        }
+        if let Some((found_m, column)) =
+            values.iter().zip(numbers).take(3).find(|(metres, _)| metres.abs() > FARTHEST_M)
+        {
+            let column = column.name.clone();
+            return Err(RecordingError::TooFar { line: line.number, column, found_m: *found_m });
         }
         let [x, y, z, qw, qx, qy, qz] = values;
         let orientation = self.unit_quaternion(line, DQuat::from_xyzw(qx, qy, qz, qw))?;

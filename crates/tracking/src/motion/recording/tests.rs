@@ -67,6 +67,27 @@ fn bad_rows_are_named_by_line_and_column_and_times_are_in_seconds() {
 }
 
 #[test]
+fn places_and_speeds_that_no_head_has_are_refused() {
+    let good = "0.5,0,0,0,1,0,0,0\n";
+    for (row, message) in [
+        ("1,0,1e308,0,1,0,0,0\n", "line 3, y: expected -1e8 to 1e8 m, found 1e308 m"),
+        (
+            "0.500000000001,1e7,0,0,1,0,0,0\n",
+            "line 3: expected at most 1e6 m/s and 1e6 rad/s from the line before, found 1e19 m/s",
+        ),
+    ] {
+        assert_eq!(load(&format!("{good}{row}")).unwrap_err().to_string(), message);
+    }
+    // Half a turn, pi rad, within 1 us.
+    let turned = load(&format!("{good}0.500001,0,0,0,0,0,1,0\n")).unwrap_err().to_string();
+    assert!(turned.contains("found 3.14159265") && turned.ends_with("e6 rad/s"), "{turned}");
+    // A jump of 10 m and of half a turn within 10 us.
+    assert!(load(&format!("{good}0.50001,10,0,0,0,0,1,0\n")).is_ok());
+    let far = load(&format!("{good}9,99999999,0,0,1,0,0,0\n")).expect("a map's coordinates");
+    assert!(far.velocity(PS_PER_S).is_finite());
+}
+
+#[test]
 fn an_empty_recording_is_an_error() {
     assert_eq!(Recording::read(&b""[..]), Err(RecordingError::Empty));
     assert_eq!(Recording::read(&b"# nothing but a comment\n"[..]), Err(RecordingError::Empty));

@@ -1,14 +1,18 @@
 //! Result files: all of them appear, whole, or none.
 
+mod batch;
+mod target;
+
 use crate::error::CliError;
+use batch::Batch;
 use image::RgbImage;
 use pxpl5::results::{origin, origin_lines};
 use pxpl5::timeline::TimelineOptions;
 use pxpl5::views::png_bytes;
 use pxpl5::{Outcome, Report};
-use std::fs;
-use std::io::Write;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
+use target::{Target, refused};
 
 /// A folder that can be written, and the files that are going to be in it.
 #[derive(Debug)]
@@ -16,8 +20,7 @@ pub(crate) struct OutputFolder {
     path: PathBuf,
     /// Folders that were made for it, outermost first.
     made: Vec<PathBuf>,
-    /// Temporary and final names.
-    files: Vec<(PathBuf, PathBuf)>,
+    batch: Batch,
 }
 
 impl OutputFolder {
@@ -31,77 +34,118 @@ impl OutputFolder {
         let mut made: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
         made.reverse();
         fs::create_dir_all(path).map_err(|error| refused(path, &error))?;
-        let mut folder = Self { path: path.to_path_buf(), made, files: Vec::new() };
-        folder.put(".pxpl5-probe", b"")?;
-        folder.discard();
+        let mut folder = Self { path: path.to_path_buf(), made, batch: Batch::default() };
+        folder.batch.put(&Target::File(path.join("probe")), b"")?;
+        folder.batch.discard();
         Ok(folder)
-    }
-
-    /// The folder of a file, and the file's name in it.
-    ///
-    /// # Errors
-    ///
-    /// As [`Self::open`], and when the path does not end in a name.
-    pub(crate) fn of_file(path: &Path) -> Result<(Self, String), CliError> {
-        let name = path.file_name().filter(|_| !path.is_dir());
-        let name =
-            name.ok_or_else(|| CliError::usage(format!("{} is no file name; give one with --out", path.display())))?;
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        Ok((Self::open(folder.unwrap_or_else(|| Path::new(".")))?, name.to_string_lossy().into_owned()))
     }
 
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Writes a file under a temporary name.
+    /// Writes a file under a temporary name; a device, a pipe or a link of that name is written through when all files
+    /// are given their names.
     ///
     /// # Errors
     ///
-    /// When it cannot be written.
+    /// When it cannot be written, or is a folder.
     pub(crate) fn put(&mut self, name: &str, bytes: &[u8]) -> Result<(), CliError> {
-        let temporary = self.path.join(format!(".{name}.{}.tmp", std::process::id()));
-        let result = fs::File::create(&temporary).and_then(|mut file| file.write_all(bytes));
-        self.files.push((temporary, self.path.join(name)));
-        result.map_err(|error| refused(&self.path.join(name), &error))
+        let target = Target::of(&self.path.join(name))?;
+        self.batch.put(&target, bytes)
     }
 
-    /// Gives all files their names.
+    /// Gives all files their names, or none. Of several processes that write into one folder, one after the other does.
     ///
     /// # Errors
     ///
-    /// When a file of that name is in the way and cannot be replaced.
+    /// When a file of that name is in the way and cannot be replaced; every name has then what it had before.
     pub(crate) fn commit(mut self) -> Result<(), CliError> {
-        for (temporary, name) in std::mem::take(&mut self.files) {
-            let renamed = fs::rename(&temporary, &name);
-            if let Err(error) = renamed {
-                let _ = fs::remove_file(&temporary);
-                return Err(refused(&name, &error));
-            }
-        }
+        // A file system without locks: better no protection than no results.
+        let lock = File::open(&self.path).ok();
+        let _locked = lock.as_ref().map(File::lock);
+        self.batch.commit()?;
         self.made.clear();
         Ok(())
-    }
-
-    fn discard(&mut self) {
-        for (temporary, _) in self.files.drain(..) {
-            let _ = fs::remove_file(temporary);
-        }
     }
 }
 
 /// What was not committed leaves no trace: files are removed, and so are folders made for them, if still empty.
 impl Drop for OutputFolder {
     fn drop(&mut self) {
-        self.discard();
+        self.batch.discard();
         for folder in self.made.iter().rev() {
             let _ = fs::remove_dir(folder);
         }
     }
 }
 
-fn refused(path: &Path, error: &std::io::Error) -> CliError {
-    CliError::failure(format!("{} cannot be written: {error}; choose another folder with --out", path.display()))
+/// One file that is going to be written: whole or not at all, and through whatever is no regular file.
+#[derive(Debug)]
+pub(crate) struct OutputFile {
+    target: Target,
+    /// Goes before the folder, which is removed only if it is empty.
+    batch: Batch,
+    /// The folder that it will be in; none for what is there already and is no file.
+    folder: Option<OutputFolder>,
+}
+
+impl OutputFile {
+    /// Looks where the path leads, and tries to write there if that can be done without a trace.
+    ///
+    /// # Errors
+    ///
+    /// When the path is a folder, does not end in a name, or its folder cannot be made or written.
+    pub(crate) fn open(path: &Path) -> Result<Self, CliError> {
+        if path.file_name().is_none() || path.is_dir() {
+            return Err(CliError::usage(format!("{} is no file name; give the name of a file", path.display())));
+        }
+        let target = Target::of(path)?;
+        let folder = match &target {
+            Target::File(name) => Some(OutputFolder::open(folder_of(name))?),
+            Target::Through(_) | Target::StandardOutput => None,
+        };
+        Ok(Self { target, batch: Batch::default(), folder })
+    }
+
+    /// Whether it goes to standard output, where nothing else should go then.
+    pub(crate) fn is_standard_output(&self) -> bool {
+        self.target == Target::StandardOutput
+    }
+
+    /// Says what it will hold; nobody sees it yet.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be written.
+    pub(crate) fn put(&mut self, bytes: &[u8]) -> Result<(), CliError> {
+        self.batch.put(&self.target, bytes)
+    }
+
+    /// Gives the file its name, or writes into what is there.
+    ///
+    /// # Errors
+    ///
+    /// When that cannot be done; a regular file is then as it was.
+    pub(crate) fn commit(mut self) -> Result<(), CliError> {
+        self.batch.commit()?;
+        self.folder.map_or(Ok(()), OutputFolder::commit)
+    }
+
+    /// Writes all of it at once.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::put`] and [`Self::commit`].
+    pub(crate) fn write(mut self, bytes: &[u8]) -> Result<(), CliError> {
+        self.put(bytes)?;
+        self.commit()
+    }
+}
+
+/// The folder of a file; the one that the process is in, of a bare name.
+fn folder_of(file: &Path) -> &Path {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// A timeline as SVG, with its origin as a comment behind the XML declaration, if it has one.

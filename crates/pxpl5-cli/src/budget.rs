@@ -1,0 +1,137 @@
+//! What a run may take of this computer: estimated while it is young, and refused before it is felt.
+
+use clap::Args;
+use std::time::Instant;
+
+/// Most memory and time that a run may take.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct BudgetArgs {
+    /// Refuse a run that would take more memory than this, in MB of 10^6 bytes.
+    #[arg(long, value_name = "MB", default_value_t = MOST_MEGABYTES, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    max_memory: u64,
+    /// Refuse a run that would take longer than this, in seconds.
+    #[arg(long, value_name = "S", default_value_t = MOST_SECONDS, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    max_seconds: u64,
+}
+
+/// What a command allows that has no such options.
+impl Default for BudgetArgs {
+    fn default() -> Self {
+        Self { max_memory: MOST_MEGABYTES, max_seconds: MOST_SECONDS }
+    }
+}
+
+/// What is allowed where nothing is said. Assumed: a workstation's memory, and a day.
+const MOST_MEGABYTES: u64 = 16_000;
+const MOST_SECONDS: u64 = 86_400;
+
+/// Fields at which a young run is looked at; later it is whenever it reports progress.
+pub(crate) const YOUNG: [u64; 6] = [1, 2, 4, 8, 16, 32];
+
+/// Seconds that a run must have taken before its whole time is estimated from them: pipelines fill, caches are cold.
+const TELLING_SECONDS: f64 = 0.5;
+
+/// Bytes that a run must have taken before the whole is estimated from them.
+const TELLING_BYTES: f64 = 50e6;
+
+/// A run that goes on, and what this process had taken when it began.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Watch {
+    budget: BudgetArgs,
+    fields: u64,
+    begun: Instant,
+    bytes_before: Option<f64>,
+}
+
+impl BudgetArgs {
+    /// Of a run of so many fields, which begins now.
+    pub(crate) fn watch(self, fields: u64) -> Watch {
+        Watch { budget: self, fields, begun: Instant::now(), bytes_before: resident_bytes() }
+    }
+}
+
+impl Watch {
+    /// What to say when the run would take too much; `done` fields are simulated.
+    ///
+    /// # Errors
+    ///
+    /// The estimate, and what to do about it.
+    pub(crate) fn check(&self, done: u64) -> Result<(), String> {
+        let part = done.min(self.fields) as f64 / self.fields as f64;
+        let taken = Taken {
+            seconds: self.begun.elapsed().as_secs_f64(),
+            bytes: resident_bytes().zip(self.bytes_before).map_or(0.0, |(now, before)| (now - before).max(0.0)),
+        };
+        match self.budget.refusal(taken, part) {
+            Some(reason) => Err(format!("after {done} of {} fields {reason}; nothing was written", self.fields)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// What part of a run has taken.
+#[derive(Clone, Copy, Debug)]
+struct Taken {
+    seconds: f64,
+    bytes: f64,
+}
+
+impl BudgetArgs {
+    /// Why the whole is too much, when a part (above 0) of it has taken so much: it goes on as it began.
+    fn refusal(&self, taken: Taken, part: f64) -> Option<String> {
+        let megabytes = taken.bytes / part / 1e6;
+        let seconds = taken.seconds / part;
+        if taken.bytes > TELLING_BYTES && megabytes > self.max_memory as f64 {
+            let most = self.max_memory;
+            return Some(format!(
+                "the run is expected to take {megabytes:.0} MB, more than {most}: simulate fewer fields, or allow it with --max-memory"
+            ));
+        }
+        if taken.seconds > TELLING_SECONDS && seconds > self.max_seconds as f64 {
+            let most = self.max_seconds;
+            return Some(format!(
+                "the run is expected to take {seconds:.0} s, more than {most}: simulate fewer fields, or allow it with --max-seconds"
+            ));
+        }
+        None
+    }
+}
+
+/// Memory that this process holds; `None` where the operating system does not tell.
+fn resident_bytes() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kilobytes * 1024.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BUDGET: BudgetArgs = BudgetArgs { max_memory: 1_000, max_seconds: 100 };
+
+    #[test]
+    fn a_run_goes_on_as_it_began_and_is_refused_with_what_it_would_take() {
+        let refusal = |seconds: f64, bytes: f64| BUDGET.refusal(Taken { seconds, bytes }, 0.1);
+        assert_eq!((refusal(10.0, 100e6), refusal(0.4, 49e6)), (None, None));
+        assert!(refusal(10.1, 0.0).is_some_and(|reason| reason.contains("take 101 s, more than 100")));
+        assert!(refusal(0.0, 101e6).is_some_and(|reason| reason.contains("take 1010 MB, more than 1000")));
+    }
+
+    #[test]
+    fn what_was_too_short_to_tell_is_no_reason() {
+        let refusal = |seconds: f64, bytes: f64| BUDGET.refusal(Taken { seconds, bytes }, 1e-6);
+        assert_eq!(refusal(0.4, 49e6), None);
+        assert!(refusal(0.6, 0.0).is_some());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn memory_of_this_process_is_known() {
+        let before = resident_bytes().expect("Linux tells");
+        let held = vec![1u8; 64 << 20];
+        let after = resident_bytes().expect("Linux tells");
+        assert!(after - before > 32e6, "{before} to {after}, {}", held.len());
+    }
+}

@@ -1,0 +1,40 @@
+//! The files that the points of a sweep read.
+
+use super::{Sweep, Values};
+use crate::experiment_file::{beside, is_file};
+use crate::head_names::is_recording;
+use pxpl5_run::Fingerprint;
+use std::collections::BTreeMap;
+use std::path::Path;
+use toml::Value;
+
+/// Keys whose values may name a file, and which values do.
+type NamesFile = fn(&str) -> bool;
+const KEYS: [(&str, NamesFile); 2] = [("scene", is_file), ("head.motion", is_recording)];
+
+impl Sweep {
+    /// What is in each file that a point may read, by the name under which the sweep knows it. A file that cannot be read has
+    /// the contents of none: its points fail and say why.
+    pub(super) fn inputs(&self) -> BTreeMap<String, Fingerprint> {
+        let mut inputs = BTreeMap::new();
+        for (key, names_file) in KEYS {
+            if let Some(setting) = self.base.settings.get(key) {
+                put(&mut inputs, names_file, &setting.folder, &setting.value);
+            }
+            let folder = self.folder();
+            for (path, values) in self.space.axes().iter().flat_map(|axis| axis.paths.iter().zip(&axis.values)) {
+                if let (true, Values::Listed(list)) = (path == key, values) {
+                    list.iter().for_each(|value| put(&mut inputs, names_file, &folder, value));
+                }
+            }
+        }
+        inputs
+    }
+}
+
+fn put(inputs: &mut BTreeMap<String, Fingerprint>, names_file: NamesFile, folder: &Path, value: &Value) {
+    if let Some(name) = value.as_str().filter(|name| names_file(name)) {
+        let contents = std::fs::read(beside(folder, name)).unwrap_or_default();
+        inputs.insert(name.to_owned(), Fingerprint::of(&contents));
+    }
+}
