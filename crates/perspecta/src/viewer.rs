@@ -2,7 +2,7 @@
 
 use crate::error::PerspectaError;
 use image::{Rgb, RgbImage};
-use spatialgl::{BitPlanes, ColourSample, Size, VolumeFrame, Workers, sin_cos_of_turn};
+use spatialgl::{BitPlanes, ColourSample, Rotation, Size, VolumeFrame, Workers, sin_cos_of_turn};
 use std::sync::{Mutex, PoisonError};
 
 /// Units of light of one lit pixel: 256 x 256, so that bilinear shares are whole numbers.
@@ -77,6 +77,22 @@ pub struct ViewOptions {
     pub cut_deg: Option<[f64; 2]>,
     /// Whether a pixel is as bright as its screen is turned towards the eye: |view . e_s|.
     pub lambert: bool,
+    /// Angle of slice 0 from +x towards +z, degrees.
+    pub phase_deg: f64,
+    /// Which way the screen turns.
+    pub rotation: Rotation,
+}
+
+impl ViewOptions {
+    /// Degrees from +x to +z of a slice, with their sine and cosine.
+    fn angle(&self, k: u32, slices: u32) -> (f64, f64, f64) {
+        let is_forward = self.rotation == Rotation::XToZ;
+        let steps = if is_forward { i64::from(k) } else { -i64::from(k) };
+        let degrees = 360.0 * steps as f64 / f64::from(slices) + self.phase_deg;
+        let (sin, cos) =
+            if self.phase_deg == 0.0 { sin_cos_of_turn(steps, slices) } else { libm::sincos(degrees.to_radians()) };
+        (degrees, sin, cos)
+    }
 }
 
 /// Light that reached a picture, in units that add up exactly, whatever the order and the threads.
@@ -249,10 +265,9 @@ struct Strobe {
 
 impl Strobe {
     fn new(k: u32, slices: u32, size: Size, camera: &Camera, options: ViewOptions) -> Self {
-        let (sin, cos) = sin_cos_of_turn(i64::from(k), slices);
+        let (angle, sin, cos) = options.angle(k, slices);
         let axes = camera.axes();
         let turned = |direction: [f64; 3]| axes.map(|axis| dot(axis, direction));
-        let angle = 360.0 * f64::from(k) / f64::from(slices);
         Self {
             half: size.map(|side| f64::from(side) / 2.0),
             across: turned([cos, 0.0, sin]),

@@ -85,6 +85,14 @@ impl CommandBuffer {
         triangles.map(|primitive| primitive.vertices.map(|i| self.positions[i as usize]))
     }
 
+    /// The same primitives with another rule for several fragments on one pixel.
+    #[must_use]
+    pub fn combining(&self, combine: Combine) -> Self {
+        let mut combining = self.clone();
+        combining.primitives.iter_mut().for_each(|primitive| primitive.combine = combine);
+        combining
+    }
+
     /// The same primitives drawn in the opposite order.
     #[must_use]
     pub fn reversed(&self) -> Self {

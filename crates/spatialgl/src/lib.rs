@@ -81,13 +81,13 @@ pub use error::SpatialError;
 pub use frame::{BitPlanes, ColourSample, VolumeFrame};
 pub use halftone::Halftone;
 pub use image::SliceImage;
-pub use measure::{Connected, brightness_by_radius, connected, dead_zone_radius};
+pub use measure::{Connected, brightness_by_radius, connected, dead_zone_radius, gap_correlation};
 pub use pack::{
     BitOrder, DENSE_PIXELS, PIXELS_PER_WORD, in_bit_order, pack_dense, packed_word, pixel_of_word, unpack_dense,
 };
 pub use projection::{Jitter, Projection, Size, SliceEye};
 pub use quadratic::ClipQuadratic;
-pub use raster::{Bin, Coverage, HostRenderer, OracleRenderer, SliceRenderer, SliceStats, SliceWork};
+pub use raster::{Bin, Coverage, HostRenderer, OracleRenderer, SliceRenderer, SliceStats, SliceWork, Supersampled};
 pub use render::{Strobes, VolumeConfig, render_volume};
 pub use scene::{SCENE_REACH, record_scene, tessellated_sphere};
 pub use slice_volume::{SliceVolume, TieRule, WedgePlanes, WedgeTest};
