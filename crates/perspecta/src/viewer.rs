@@ -34,7 +34,14 @@ impl Camera {
         Self { azimuth_deg, elevation_deg, distance: 4.0 * radius, focal, size: [side, side] }
     }
 
-    fn check(&self, reach: f64) -> Result<(), PerspectaError> {
+    /// Checks that it is an eye outside of a display whose slices have this size.
+    ///
+    /// # Errors
+    ///
+    /// [`PerspectaError::Camera`] names the number that is wrong.
+    pub fn check_before(&self, slice: Size) -> Result<(), PerspectaError> {
+        let [half_width, half_height] = slice.map(|side| f64::from(side) / 2.0);
+        let reach = libm::hypot(half_width, half_height);
         let rule = |holds: bool, what, expected, found| {
             if holds { Ok(()) } else { Err(PerspectaError::Camera { what, expected, found }) }
         };
@@ -231,8 +238,7 @@ fn sum(
     workers: &dyn Workers,
     pixels: &EachPixel<'_>,
 ) -> Result<Light, PerspectaError> {
-    let [half_width, half_height] = size.map(|side| f64::from(side) / 2.0);
-    camera.check(libm::hypot(half_width, half_height))?;
+    camera.check_before(size)?;
     let total = Mutex::new(Light::dark(camera.size));
     let part = |first: u32| {
         let mut light = Light::dark(camera.size);

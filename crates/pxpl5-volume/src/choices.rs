@@ -41,6 +41,15 @@ impl ProjectionKind {
     pub const ALL: [Self; 3] = [Self::Orthographic, Self::Perspective, Self::Jittered];
 }
 
+/// Who draws the slices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RendererKind {
+    /// This computer, as the paper's GPU would.
+    Host,
+    /// The renderers of Pixel-Planes 5, which is beyond the paper.
+    PixelPlanes,
+}
+
 /// Something that has names in options, files and reports.
 pub(crate) trait Named: Copy + PartialEq + 'static {
     /// Names and what they stand for.
@@ -73,6 +82,10 @@ impl Named for ClipKind {
 impl Named for ProjectionKind {
     const NAMES: &'static [(&'static str, Self)] =
         &[("orthographic", Self::Orthographic), ("perspective", Self::Perspective), ("jittered", Self::Jittered)];
+}
+
+impl Named for RendererKind {
+    const NAMES: &'static [(&'static str, Self)] = &[("host", Self::Host), ("pixel-planes", Self::PixelPlanes)];
 }
 
 impl Named for TieRule {

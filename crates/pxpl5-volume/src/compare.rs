@@ -165,7 +165,7 @@ pub fn compare(
 
 impl Viewpoint {
     fn look(&self, volume: &Volume) -> Look {
-        Look::around(volume, self.azimuth_deg, self.elevation_deg, self.side)
+        Look::around(&volume.settings, self.azimuth_deg, self.elevation_deg, self.side)
     }
 }
 

@@ -1,6 +1,8 @@
 //! One volume: a scene, settings, and what was drawn.
 
+use crate::choices::RendererKind;
 use crate::error::VolumeError;
+use crate::pixel_planes::{ArrayKind, PixelPlanesRenderer, SliceBounds};
 use crate::settings::VolumeSettings;
 use pxpl5_scene::Scene;
 use spatialgl::{
@@ -22,6 +24,8 @@ pub struct Volume {
     pub commands: CommandBuffer,
     /// Bits, counts, and colours before halftoning.
     pub frame: VolumeFrame,
+    /// What the renderers of Pixel-Planes 5 did for it, if they drew it.
+    pub bounds: Option<SliceBounds>,
     /// Seconds that this computer took to draw it.
     pub host_seconds: f64,
 }
@@ -51,14 +55,22 @@ impl Volume {
         let display = settings.swept_display()?;
         let config = settings.volume_config()?;
         let commands = commands.combining(settings.combine);
-        let renderer: Box<dyn SliceRenderer> = match settings.draw.samples {
-            1 => Box::new(HostRenderer),
-            samples => Box::new(Supersampled::new(HostRenderer, samples as u32)?),
-        };
+        let draw = |renderer: &dyn SliceRenderer| render_volume(&display, &commands, &config, renderer, workers);
         let started = Instant::now();
-        let frame = render_volume(&display, &commands, &config, renderer.as_ref(), workers)?;
+        let mut bounds = None;
+        let frame = match (settings.renderer, settings.draw.samples) {
+            (RendererKind::Host, 1) => draw(&HostRenderer)?,
+            (RendererKind::Host, samples) => draw(&Supersampled::new(HostRenderer, samples as u32)?)?,
+            (RendererKind::PixelPlanes, _) => {
+                let renderer = PixelPlanesRenderer::new(settings, ArrayKind::Lanes)?;
+                let frame = draw(&renderer)?;
+                bounds = Some(SliceBounds::of(renderer.work(), &frame, config.tiling));
+                frame
+            }
+        };
         let host_seconds = started.elapsed().as_secs_f64();
-        Ok(Self { settings: settings.clone(), scene: scene.to_owned(), display, commands, frame, host_seconds })
+        let settings = settings.clone();
+        Ok(Self { settings, scene: scene.to_owned(), display, commands, frame, bounds, host_seconds })
     }
 
     /// A slice of the turn.

@@ -6,7 +6,8 @@ use crate::settings::VolumeSettings;
 use parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
 
 /// Paths of choices, and of numbers that stand in no table.
-const CHOICES: [&str; 11] = [
+const CHOICES: [&str; 12] = [
+    "on",
     "clip.variant",
     "clip.ties",
     "projection",
@@ -50,6 +51,7 @@ impl VolumeSettings {
             "clip.variant" => self.set_clip(text),
             "clip.ties" => choose(&mut self.ties, text),
             "projection" => choose(&mut self.projection, text),
+            "on" => choose(&mut self.renderer, text),
             "seed" => whole(text).map(|seed| self.seed = seed),
             "bins.planes" => choose(&mut self.binning, text),
             "bins.tolerance" => self.set_tolerance(text),

@@ -2,6 +2,7 @@
 
 use crate::error::VolumeError;
 use crate::experiment::Volume;
+use crate::settings::VolumeSettings;
 use image::imageops::{self, FilterType};
 use image::{GenericImage, Rgb, RgbImage};
 use perspecta::{Camera, Light, ViewOptions, film, view_planes, view_undithered};
@@ -33,11 +34,21 @@ pub struct Look {
 impl Look {
     /// An eye four radii away, its picture so many pixels wide and high.
     #[must_use]
-    pub fn around(volume: &Volume, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Self {
-        let camera = Camera::around(volume.settings.radius(), azimuth_deg, elevation_deg, side);
-        let phase_deg = volume.settings.sweep.phase_deg;
-        let options = ViewOptions { phase_deg, rotation: volume.settings.rotation, ..ViewOptions::default() };
+    pub fn around(settings: &VolumeSettings, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Self {
+        let camera = Camera::around(settings.radius(), azimuth_deg, elevation_deg, side);
+        let phase_deg = settings.sweep.phase_deg;
+        let options = ViewOptions { phase_deg, rotation: settings.rotation, ..ViewOptions::default() };
         Self { camera, options, is_undithered: false }
+    }
+
+    /// Checks that the eye sees a display with these settings.
+    ///
+    /// # Errors
+    ///
+    /// [`VolumeError::Display`] names the number that is wrong.
+    pub fn check(&self, settings: &VolumeSettings) -> Result<(), VolumeError> {
+        let display = &settings.display;
+        Ok(self.camera.check_before([display.width as u32, display.height as u32])?)
     }
 
     /// Light of one turn.

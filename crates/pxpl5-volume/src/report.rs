@@ -1,6 +1,7 @@
 //! What a volume's report says: `pxpl5-volume/1`.
 
 use crate::experiment::Volume;
+use crate::pixel_planes::{BoundRow, SliceBounds};
 use crate::settings::VolumeSettings;
 use parameters::Value;
 use serde::Serialize;
@@ -26,6 +27,8 @@ pub struct VolumeReport {
     pub seed: u64,
     /// Who drew the slices.
     pub renderer: &'static str,
+    /// What the renderers of Pixel-Planes 5 did, and their bounds; none if this computer drew.
+    pub pixel_planes: Option<PixelPlanesReport>,
     /// Samples taken of each pixel.
     pub samples: u64,
     /// Triangles, lines and points of the scene.
@@ -88,6 +91,32 @@ pub struct VolumeReport {
     pub beyond_paper: Vec<&'static str>,
     /// Seconds that this computer took.
     pub host_seconds: f64,
+}
+
+/// What a volume costs on Pixel-Planes 5, which is beyond the paper.
+#[derive(Clone, Debug, Serialize)]
+pub struct PixelPlanesReport {
+    /// Counted clocks, commands and words, and the tiles sent.
+    #[serde(flatten)]
+    pub counts: SliceBounds,
+    /// What the milliseconds of the bounds are.
+    pub definition: &'static str,
+    /// Volumes a second with more and more boards.
+    pub bounds: Vec<BoundRow>,
+}
+
+/// Renderers and graphics processors of the bounds; the third is the largest machine that was built.
+const BOARDS: [[u64; 2]; 5] = [[1, 4], [5, 13], [20, 50], [20, 13], [5, 50]];
+
+const BOUNDS: &str = "renderers: clocks of clears, triangles and halftones / 40 MHz; ring: words of commands and of occupied tiles with \
+                      their overhead; processors: slice triangles as triangles of a frame, and commands as entries of bins; each by itself, \
+                      without events";
+
+impl PixelPlanesReport {
+    fn of(counts: SliceBounds) -> Self {
+        let bounds = BOARDS.map(|[renderers, processors]| counts.with(renderers, processors));
+        Self { counts, definition: BOUNDS, bounds: bounds.to_vec() }
+    }
 }
 
 /// The display in numbers.
@@ -177,7 +206,8 @@ impl Volume {
             clip: settings.clip_text(),
             projection: settings.projection_text(),
             seed: settings.seed,
-            renderer: "host",
+            renderer: settings.renderer_text(),
+            pixel_planes: self.bounds.map(PixelPlanesReport::of),
             samples: stats.samples,
             triangles: stats.primitives,
             slices_rendered: stats.slices_rendered,

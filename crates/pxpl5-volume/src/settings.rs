@@ -1,6 +1,6 @@
 //! What an experiment is made of, by path.
 
-use crate::choices::{ClipKind, Named, ProjectionKind};
+use crate::choices::{ClipKind, Named, ProjectionKind, RendererKind};
 use crate::error::VolumeError;
 use crate::numbers::{ClipNumbers, DrawNumbers, EyeNumbers, JitterNumbers, SweepNumbers, TileNumbers};
 use parameters::ParameterTable;
@@ -51,6 +51,8 @@ pub struct VolumeSettings {
     pub combine: Combine,
     /// Whether the scene's light shines.
     pub is_lit: bool,
+    /// Who draws the slices.
+    pub renderer: RendererKind,
     /// Rates and times of the host and its GPU.
     pub gpu: GpuTiming,
 }
@@ -81,6 +83,7 @@ impl VolumeSettings {
             strobes: Strobes::Each,
             combine: Combine::Last,
             is_lit: true,
+            renderer: RendererKind::Host,
             gpu: GpuTiming::PAPERS,
         }
     }
@@ -203,6 +206,12 @@ impl VolumeSettings {
         TimeModel { timing: self.gpu }
     }
 
+    /// What the renderer is called in options and reports.
+    #[must_use]
+    pub fn renderer_text(&self) -> &'static str {
+        self.renderer.name()
+    }
+
     /// What of these settings is not the paper's.
     #[must_use]
     pub fn beyond_paper(&self) -> Vec<&'static str> {
@@ -212,6 +221,9 @@ impl VolumeSettings {
         }
         if self.strobes == Strobes::Mirror {
             beyond.push("mirrored strobes");
+        }
+        if self.renderer == RendererKind::PixelPlanes {
+            beyond.push("renderers of Pixel-Planes 5");
         }
         beyond
     }

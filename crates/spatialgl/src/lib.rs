@@ -74,7 +74,7 @@ mod workers;
 pub use angle::sin_cos_of_turn;
 pub use bin::{BinLayout, BinRegion, BinTolerance, Binning};
 pub use clip::{DEFAULT_BIAS_PX2, DEFAULT_OFFSET_PX, HalfWedge, SliceClip};
-pub use command::{Combine, CommandBuffer};
+pub use command::{Combine, CommandBuffer, CommandTriangle};
 pub use context::{Context, Light, Topology, Vertex, VertexBuffer};
 pub use displays::{FlatDisplay, PlaneStack, Rotation, SweptConfig, SweptDisplay};
 pub use error::SpatialError;

@@ -7,7 +7,7 @@ use crate::output::OutputFolder;
 use crate::terminal::progress;
 use clap::Args;
 use pxpl5::views::Animation;
-use pxpl5::volume::Volume;
+use pxpl5::volume::VolumeSettings;
 use pxpl5::volume::pictures::Look;
 use std::path::PathBuf;
 
@@ -49,7 +49,7 @@ pub(super) struct ViewArgs {
     #[arg(long)]
     undithered: bool,
     /// Steps of 255 for one lit pixel of one slice; default: so that 98 % of the picture stays below white.
-    #[arg(long, value_name = "STEPS")]
+    #[arg(long, value_name = "STEPS", allow_negative_numbers = true)]
     exposure: Option<f64>,
     /// The file to write (PNG).
     #[arg(long, value_name = "FILE")]
@@ -86,12 +86,14 @@ fn cut(text: &str) -> Result<[f64; 2], String> {
 }
 
 impl EyeArgs {
-    fn look(&self, volume: &Volume) -> Look {
-        let mut look = Look::around(volume, self.azimuth, self.elevation, self.size);
-        look.camera.distance = self.distance * volume.settings.radius();
+    /// The eye, once it is known that it can see anything.
+    fn look(&self, settings: &VolumeSettings) -> Result<Look, CliError> {
+        let mut look = Look::around(settings, self.azimuth, self.elevation, self.size);
+        look.camera.distance = self.distance * settings.radius();
         look.options.cut_deg = self.cut;
         look.options.lambert = self.lambert;
-        look
+        look.check(settings)?;
+        Ok(look)
     }
 }
 
@@ -101,8 +103,9 @@ pub(super) fn view(args: ViewArgs) -> Result<(), CliError> {
         return Err(CliError::usage(format!("--exposure: expected a number above 0, found {found}")));
     }
     let file = OutputFolder::of_file(&args.out)?;
-    let volume = args.volume.draw()?;
-    let look = Look { is_undithered: args.undithered, ..args.eye.look(&volume) };
+    let settings = args.volume.settings.gather()?;
+    let look = Look { is_undithered: args.undithered, ..args.eye.look(&settings)? };
+    let volume = args.volume.draw(&settings)?;
     let picture = look.picture(&volume, exposure, &args.volume.settings.threads())?;
     write(file, &picture, &volume)?;
     let from = format!("{} from azimuth {}, elevation {}", volume.scene, args.eye.azimuth, args.eye.elevation);
@@ -111,14 +114,16 @@ pub(super) fn view(args: ViewArgs) -> Result<(), CliError> {
 
 pub(super) fn film(args: FilmArgs) -> Result<(), CliError> {
     let (mut folder, name) = OutputFolder::of_file(&args.out)?;
-    let volume = args.volume.draw()?;
+    let settings = args.volume.settings.gather()?;
+    let look = args.eye.look(&settings)?;
+    let volume = args.volume.draw(&settings)?;
     let threads = args.volume.settings.threads();
     let mut bytes = Vec::new();
     let size = (args.eye.size, args.eye.size);
     let mut animation =
         Animation::begin(&mut bytes, size, args.frames, (1, args.rate), &origin(&volume)).map_err(CliError::failure)?;
     let bar = progress(u64::from(args.frames), "pictures", args.volume.settings.quiet);
-    for picture in args.eye.look(&volume).film(&volume, args.frames, &threads) {
+    for picture in look.film(&volume, args.frames, &threads) {
         animation.add(&picture?).map_err(CliError::failure)?;
         bar.inc(1);
     }

@@ -7,7 +7,7 @@ use crate::terminal::print;
 use clap::Args;
 use pxpl5::views::results::csv_table;
 use pxpl5::volume::pictures::{Look, before_and_after, sheet, tile_map};
-use pxpl5::volume::{Volume, VolumeReport};
+use pxpl5::volume::{PixelPlanesReport, Volume, VolumeReport};
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -17,7 +17,8 @@ use std::path::PathBuf;
   pxpl5 volume run --scene mig --clip hyperbolic:0.25 --projection jittered --seed 1 --out out/volume --json
   pxpl5 volume run --scene head --set display.slices=200 --set display.spin_rpm=600
   pxpl5 volume run --scene molecules --clip exact --set gpu.readback_mb_s=1000
-  pxpl5 volume run --scene head --strobes mirror --coverage connected")]
+  pxpl5 volume run --scene head --strobes mirror --coverage connected
+  pxpl5 volume run --scene mig --projection orthographic --strobes mirror --on pixel-planes")]
 pub(super) struct RunArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,
@@ -32,7 +33,7 @@ pub(super) struct RunArgs {
 
 pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
-    let volume = args.volume.draw()?;
+    let volume = args.volume.draw(&args.volume.settings.gather()?)?;
     let report = volume.report();
     let json = serde_json::to_string_pretty(&report).map_err(CliError::failure)? + "\n";
     let threads = args.volume.settings.threads();
@@ -44,7 +45,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
         if let Some(map) = tile_map(&volume) {
             folder.put("tiles.png", &png(&map, &volume)?)?;
         }
-        let look = Look::around(&volume, 40.0, 25.0, 512);
+        let look = Look::around(&volume.settings, 40.0, 25.0, 512);
         folder.put("view.png", &png(&look.picture(&volume, None, &threads)?, &volume)?)?;
         folder.commit()?;
     }
@@ -53,6 +54,35 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
         (false, true) => Ok(()),
         (false, false) => print(&text(&report, args.out.as_deref())),
     }
+}
+
+/// What renderers did and which part of the machine limits.
+fn bounds(planes: &PixelPlanesReport) -> String {
+    let work = &planes.counts.work;
+    let mut text = format!(
+        "\nPixel-Planes 5: {} slice triangles, {} commands in {} regions, {} left out, {} clocks\n{:>10} {:>11} {:>13} {:>9} {:>14} \
+         {:>11}  limited by\n",
+        work.triangles,
+        work.commands,
+        work.regions,
+        work.left_out,
+        work.clocks,
+        "renderers",
+        "processors",
+        "renderers, ms",
+        "ring, ms",
+        "processors, ms",
+        "volumes/s"
+    );
+    for row in &planes.bounds {
+        let [renderers, ring, processors] = row.ms;
+        let _ = writeln!(
+            text,
+            "{:>10} {:>11} {renderers:>13.1} {ring:>9.1} {processors:>14.1} {:>11.2}  {}",
+            row.renderers, row.processors, row.volumes_hz, row.limited_by
+        );
+    }
+    text
 }
 
 fn slices_csv(volume: &Volume) -> String {
@@ -119,6 +149,9 @@ fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
     ];
     for (name, value) in rows {
         let _ = writeln!(text, "{name:<20} {value}");
+    }
+    if let Some(planes) = &report.pixel_planes {
+        text.push_str(&bounds(planes));
     }
     if !report.beyond_paper.is_empty() {
         let _ = writeln!(text, "\nBeyond the paper: {}.", report.beyond_paper.join(", "));

@@ -6,8 +6,9 @@ use clap::Args;
 use image::RgbImage;
 use pxpl5::scene::{Placement, Scene};
 use pxpl5::views::png_bytes;
+use pxpl5::volume::pixel_planes::supported;
 use pxpl5::volume::spatialgl::Threads;
-use pxpl5::volume::{Counted, Volume, VolumeSettings};
+use pxpl5::volume::{Counted, RendererKind, Volume, VolumeSettings};
 use pxpl5::{MotionChoice, Parameter, SceneChoice};
 use std::num::NonZero;
 use std::sync::Arc;
@@ -48,6 +49,9 @@ pub(super) struct SettingOptions {
     /// Which slices are drawn: each, or mirror (half of them, beyond the paper); default each.
     #[arg(long, value_name = "STROBES")]
     strobes: Option<String>,
+    /// Who draws: host, or pixel-planes (beyond the paper; hyperbolic clip and orthographic projection alone); default host.
+    #[arg(long, value_name = "RENDERER")]
+    on: Option<String>,
     /// Set any number or choice by its path, such as display.slices=200, clip.bias_px2=1, tile.size=16 or gpu.readback_mb_s=400;
     /// docs/volumetric.md lists all numbers; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
@@ -75,6 +79,7 @@ impl SettingOptions {
             ("draw.samples", "--samples", &self.samples),
             ("draw.coverage", "--coverage", &self.coverage),
             ("draw.strobes", "--strobes", &self.strobes),
+            ("on", "--on", &self.on),
         ];
         for (path, option, text) in options {
             text.as_ref().map(|text| settings.set(path, text, option)).transpose()?;
@@ -85,6 +90,9 @@ impl SettingOptions {
         // What does not fit together is said before anything is drawn.
         settings.swept_display()?;
         settings.volume_config()?;
+        if settings.renderer == RendererKind::PixelPlanes {
+            supported(&settings)?;
+        }
         warn(&out_of_range(&settings), self.quiet);
         Ok(settings)
     }
@@ -116,13 +124,12 @@ impl VolumeSettingArgs {
     /// # Errors
     ///
     /// What is wrong with a setting or the scene.
-    pub(super) fn draw(&self) -> Result<Volume, CliError> {
-        let settings = self.settings.gather()?;
+    pub(super) fn draw(&self, settings: &VolumeSettings) -> Result<Volume, CliError> {
         let scene = self.load_scene()?;
         let bar = progress(0, "batches of slices", self.settings.quiet);
         let finished = |done, of| advance(&bar, done, of);
         let threads = self.settings.threads();
-        let volume = Volume::draw(&settings, &scene, &Counted::new(&threads, &finished));
+        let volume = Volume::draw(settings, &scene, &Counted::new(&threads, &finished));
         bar.finish_and_clear();
         Ok(volume?)
     }

@@ -57,7 +57,7 @@ enum Part {
 
 pub(super) fn sheet(args: SheetArgs) -> Result<(), CliError> {
     let folder = OutputFolder::of_file(&args.out)?;
-    let volume = args.volume.draw()?;
+    let volume = args.volume.draw(&args.volume.settings.gather()?)?;
     let slices = volume.frame.planes.slices();
     write(folder, &sheet_of(&volume), &volume)?;
     say(args.volume.settings.quiet, &args.out, &format!("{slices} slices of {}", volume.scene))
@@ -66,11 +66,12 @@ pub(super) fn sheet(args: SheetArgs) -> Result<(), CliError> {
 pub(super) fn slice(args: SliceArgs) -> Result<(), CliError> {
     let folder = OutputFolder::of_file(&args.out)?;
     // Whether there is such a slice is known before it is drawn.
-    let slices = args.volume.settings.gather()?.display.slices;
+    let settings = args.volume.settings.gather()?;
+    let slices = settings.display.slices;
     if u64::from(args.slice) >= slices {
         return Err(CliError::usage(format!("K: expected a slice from 0 to {}, found {}", slices - 1, args.slice)));
     }
-    let volume = args.volume.draw()?;
+    let volume = args.volume.draw(&settings)?;
     let slice = volume.check_slice(args.slice)?;
     let picture = match args.show {
         Part::Both => before_and_after(&volume, slice),

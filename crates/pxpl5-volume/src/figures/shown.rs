@@ -1,6 +1,6 @@
 //! What the paper states without numbers, each with a number that shows it or does not.
 
-use super::plain;
+use super::plain::plain;
 use crate::choices::{ClipKind, ProjectionKind};
 use crate::error::VolumeError;
 use crate::experiment::Volume;
@@ -125,10 +125,11 @@ fn recording(vertices: Vec<spatialgl::Vertex>, indices: &[u32]) -> Result<Comman
     Ok(context.present())
 }
 
-/// A sphere of 24 x 48 facets with a radius of 300 px: a surface of revolution.
+/// A sphere of 198 x 396 facets with a radius of 300 px: every slice meets the same facets, so that along the normal all have
+/// the same gaps.
 fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
     let likeness = |projection| {
-        let (vertices, indices) = tessellated_sphere(glam::DVec3::ZERO, 300.0, 24, [255; 3]);
+        let (vertices, indices) = tessellated_sphere(glam::DVec3::ZERO, 300.0, 198, [255; 3]);
         let settings = VolumeSettings { projection, ..VolumeSettings::paper() };
         let volume = Volume::draw_commands(&settings, "sphere", recording(vertices, &indices)?, workers)?;
         Ok::<_, VolumeError>(gap_correlation(&volume.display, &volume.commands, &volume.frame).unwrap_or(f64::NAN))
@@ -138,7 +139,7 @@ fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
     Ok(Shown {
         statement: "jitter turns moire into uncorrelated noise",
         evidence: format!(
-            "gaps of neighbouring slices of a sphere (shown share of each row): correlation {along:.2} along the normal, {jittered:.2} \
+            "gaps of neighbouring slices of a sphere of 198 x 396 facets (shown share of each row): correlation {along:.2} along the normal, {jittered:.2} \
              with jitter"
         ),
         holds: jittered.abs() < 0.5 * along,
