@@ -189,10 +189,12 @@ impl VolumeSettings {
     pub fn volume_config(&self) -> Result<VolumeConfig, VolumeError> {
         self.check_tables()?;
         let size = self.tile.size as u32;
+        let tiling = Tiling { tile: (size > 0).then_some(size), batch: self.tile.batch as u32 };
+        tiling.check()?;
         Ok(VolumeConfig {
             binning: self.binning,
             bin_tolerance: self.bin_tolerance,
-            tiling: Tiling { tile: (size > 0).then_some(size), batch: self.tile.batch as u32 },
+            tiling,
             halftone: Halftone::bayer(self.draw.matrix as u32)?,
             coverage: self.coverage,
             strobes: self.strobes,
@@ -231,7 +233,7 @@ impl VolumeSettings {
     /// Checks every number against the limits of its table, and those that only a few values suit.
     fn check_tables(&self) -> Result<(), VolumeError> {
         for (prefix, table) in self.tables() {
-            for entry in table.entries().into_iter().filter(|entry| !entry.is_within_limits()) {
+            if let Some(entry) = table.entries().into_iter().find(|entry| !entry.is_within_limits()) {
                 let (least, most) = entry.info.limits;
                 return Err(Self::wrong(prefix, entry.info.name, &format!("{least} to {most}"), entry.value));
             }
