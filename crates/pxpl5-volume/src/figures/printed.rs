@@ -175,7 +175,10 @@ fn stencil(frame: &VolumeFrame) -> Vec<Figure> {
             0.0,
             marked(99),
         ),
-        row("P15", "pixels equal to 1 after 209 fragments", "pixels", 209.0, 2.0, marked(SLICE)),
+        Figure {
+            standing: D,
+            ..row("P15", "pixels equal to 1 after 209 fragments", "pixels", 209.0, 2.0, marked(SLICE))
+        },
         row("D8", "queries between two clears", "queries", f64::from(queries), 0.0, per_batch),
     ]
 }
