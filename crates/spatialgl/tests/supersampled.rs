@@ -67,7 +67,8 @@ fn both_rasterisers_take_the_same_samples() {
 fn a_line_keeps_its_width() {
     let ends = [[20.0, -50.0, 0.0], [20.0, 50.0, 0.0]].map(|p| Vertex::new(p.into(), [255; 3]));
     let buffer = VertexBuffer::new(ends.to_vec()).expect("finite");
-    let mut context = Context { line_width: 6.0, ..Context::default() };
+    let mut context = Context::default();
+    context.line_width = 6.0;
     context.draw(&buffer, 0..2, Topology::Lines).expect("valid");
     let commands = context.present();
     let frame = drawn(&commands, 16, "host");
