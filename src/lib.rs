@@ -37,6 +37,7 @@
 //! | [`lab`] | questions over many experiments: [`figures`], [`levels`], [`limit`], [`compare`], [`sweep`], experiment files |
 //! | [`oracle`] | what should be on the screen: an ideal renderer of one process |
 //! | [`views`] | what people look at: timelines, traces, tables, charts, report pages, films |
+//! | [`volume`] | the same scenes as slices of a spinning volumetric display: settings, reports, variants, figures |
 //! | [`scene`], [`tracking`] | what is drawn, and who looks at it |
 //! | [`firmware`] | what a pipeline of one's own is written with |
 //!
@@ -54,6 +55,7 @@ pub use pxpl5_oracle as oracle;
 pub use pxpl5_run as run;
 pub use pxpl5_scene as scene;
 pub use pxpl5_views as views;
+pub use pxpl5_volume as volume;
 pub use tracking;
 
 pub use parameters::{ParameterInfo, ParameterTable, Standing, Value};

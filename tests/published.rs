@@ -2,7 +2,7 @@
 //! are (FIXME(accuracy)). Causes stand in ACCURACY.md, which must be what these runs give.
 
 use pxpl5::Level;
-use pxpl5::figures::{Bench, Figures, Reading, Row, Samples, WITHOUT_CLOSED_FORM, markdown, run_all};
+use pxpl5::figures::{Bench, Figures, Row, WITHOUT_CLOSED_FORM, markdown, run_all};
 use std::sync::LazyLock;
 
 static FIGURES: LazyLock<Figures> =
@@ -60,7 +60,7 @@ fn application_scenes_take_as_many_fields_as_measured() {
     for (id, mean, sd) in [("7", 4.61, 0.589), ("7b", 4.47, 0.502), ("7c", 8.13, 2.48)] {
         within(id, mean * 0.95, mean * 1.05);
         let found = row(id).details.iter().find(|detail| detail.name == "standard deviation").expect("listed").value;
-        assert!((found / sd - 1.0).abs() < 0.27, "figure {id}: deviation {found}, published {sd}");
+        assert!((found / sd - 1.0).abs() < 0.25, "figure {id}: deviation {found}, published {sd}");
     }
 }
 
@@ -69,8 +69,7 @@ fn the_bins_hold_7_700_triangles_that_cover_the_screen() {
     // As many on each of 12 slaves: 7,704 is the first multiple of 12 that is not below.
     within("16", 7_700.0, 7_704.0);
     within("16b", 1.5, 2.5);
-    // FIXME(accuracy): published 293 ms.
-    within("16c", 240.0, 265.0);
+    within("16c", 293.0 * 0.97, 293.0 * 1.03);
 }
 
 #[test]
@@ -122,16 +121,9 @@ fn ninety_milliseconds_are_1_8_times_as_wrong_as_fifty() {
     within("18", 1.75, 1.8);
 }
 
-/// Figure 4 is over both eyes; what passes from head to light is of a frame, from its first eye on.
-fn first_eye_of_figure_4_ms() -> f64 {
-    let bench = Bench::new(Level::Transaction);
-    let reading = Reading { samples: Samples::FirstEye, ..Reading::USUAL };
-    bench.with(reading).measure("4").expect("it runs").value
-}
-
 #[test]
 fn tracker_and_rendering_together_are_the_parts_that_were_measured_one_by_one() {
-    for (id, rendering) in [("19", first_eye_of_figure_4_ms()), ("19b", row("9").simulated * 1001.0 / 60.0)] {
+    for (id, rendering) in [("19", row("4").simulated), ("19b", row("9").simulated * 1001.0 / 60.0)] {
         let of = |name: &str| row(id).details.iter().find(|detail| detail.name == name).expect("listed").value;
         assert!((of("tracking") + of("rendering") - row(id).simulated).abs() < 1e-9, "{id}");
         assert!((of("rendering") / rendering - 1.0).abs() < 0.05, "{id}: {} and {rendering}", of("rendering"));
@@ -179,7 +171,8 @@ fn no_figure_is_out_of_reach_of_all_parameters_and_readings() {
 #[test]
 fn the_analytic_level_agrees_with_the_transaction_level() {
     // Closed form against events: within 3 %.
-    let bench = Bench::new(Level::Analytic).with_mig(2, 60);
+    // The same views of the head at both; of figure 7's and 7b's more than half.
+    let bench = Bench::new(Level::Analytic).with_mig(6, 150);
     for row in varied() {
         let value = bench.measure(row.id).expect("it runs").value;
         assert!((value / row.simulated - 1.0).abs() < 0.03, "figure {}: {value} and {}", row.id, row.simulated);

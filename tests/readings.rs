@@ -3,7 +3,7 @@
 mod support;
 
 use pxpl5::figures::{Bench, ROOM, Reading};
-use pxpl5::scene::{Scene, builtin};
+use pxpl5::scene::{HeadMotion, HeadPath, Scene, Sway, builtin};
 use pxpl5::{
     Experiment, ExperimentError, Eye, FinishedRegions, Level, MachineConfig, Measured, Outcome, Pixels,
     RenderingControl, Statistics,
@@ -35,7 +35,9 @@ fn the_closed_form_follows_every_rule() {
         for id in ["4", "4b", "6"] {
             let [closed, run] = [Level::Analytic, Level::Transaction]
                 .map(|level| bench(level, kept, finished).measure(id).expect("it runs").value);
-            assert!((closed / run - 1.0).abs() < 0.05, "figure {id}, {kept} kept, {finished:?}: {closed} and {run}");
+            // Figure 6 is a mean of seven lengths, each of which ends with a retrace: two of them may be one sooner or later.
+            let allowed = if id == "6" { 2.0 * FIELD_MS / 7.0 } else { 0.05 * run };
+            assert!((closed - run).abs() < allowed, "figure {id}, {kept} kept, {finished:?}: {closed} and {run}");
         }
     }
 }
@@ -67,10 +69,12 @@ fn where_the_bins_of_both_eyes_do_not_fit_transform_waits_for_render_of_the_eye_
         let summary = pxpl5::measure::summary(&outcome);
         Statistics::of(summary.eye_latencies_ms.into_iter()).mean
     };
-    // A slave has 200 triangles: 16,000 bytes an eye. RENDER takes 2,400 x 4 x 7.3 us = 70 ms. With room for both eyes TRANSFORM
-    // begins one RENDER earlier than without.
+    // A slave has 200 triangles: 16,000 bytes an eye. A region takes a renderer 2,400 x 7.3 us = 17.5 ms, RENDER four of them. With room
+    // for both eyes TRANSFORM begins one RENDER earlier, and its own 200 x (21.7 + 20) us are hidden behind it. Without, the first of 12
+    // slaves begins when the last five tokens have been there, 7/12 of a region before the last slave.
     let [one, both] = [16_000, 32_000].map(path_ms);
-    assert!((both - one - 70.0).abs() < 7.0, "{both} ms with room for both eyes, {one} ms for one");
+    let expected = 4.0 * 17.5 - 200.0 * 0.0417 - 7.0 / 12.0 * 17.5;
+    assert!((both - one - expected).abs() < 3.0, "{both} ms with room for both eyes, {one} ms for one");
 }
 
 #[test]
@@ -95,6 +99,15 @@ fn pictures_are_the_same_whatever_becomes_of_finished_regions() {
     }
 }
 
+/// The scene before a head that stands still, far enough to see all of it.
+fn still(scene: Scene) -> Scene {
+    let (target, radius) = scene.bounding_sphere();
+    let eye = target + glam::Vec3::Z * 3.0 * radius;
+    let mut parts = scene.into_parts();
+    parts.motion = HeadMotion::new(HeadPath::Still { eye, target }, Sway::none()).expect("in range");
+    Scene::new(parts).expect("it was whole")
+}
+
 #[test]
 fn of_a_closed_surface_nothing_is_missing_without_its_back_faces_and_half_of_the_work_is() {
     let run = |scene: Scene| {
@@ -108,7 +121,8 @@ fn of_a_closed_surface_nothing_is_missing_without_its_back_faces_and_half_of_the
         (pictures, commands as f64 / regions as f64)
     };
     for name in ["aircraft", "sphere:400"] {
-        let whole = builtin(name).expect("built in");
+        // Less work is done sooner: the pictures are only the same before a head that stands still.
+        let whole = still(builtin(name).expect("built in"));
         let (all, all_commands) = run(whole.clone());
         let (culled, culled_commands) = run(whole.culled());
         let differing =

@@ -26,7 +26,11 @@ const FLOORS: [(&str, &[&str], &[&str]); 12] = [
         &["pxpl5-measure", "pxpl5-analytic"],
         &["ground", "boards", "geometry", "firmware", "world", "machine", "run"],
     ),
-    ("lab", &["pxpl5-lab"], &["ground", "boards", "geometry", "firmware", "world", "machine", "run", "measure"]),
+    (
+        "lab",
+        &["pxpl5-lab", "pxpl5-volume"],
+        &["ground", "boards", "geometry", "firmware", "world", "volume", "machine", "run", "measure"],
+    ),
     ("views", &["pxpl5-views"], &["ground", "boards", "world", "machine", "run", "measure"]),
     (
         "front",

@@ -61,6 +61,12 @@ const fn row(
     }
 }
 
+/// Months in which the performance of GPUs doubles, least and most (published, P20).
+pub const GPU_DOUBLES_MONTHS: [f64; 2] = [6.0, 9.0];
+
+/// Months in which the performance of CPUs doubles (published, P20).
+pub const CPU_DOUBLES_MONTHS: f64 = 18.0;
+
 const P: Standing = Standing::Published;
 const D: Standing = Standing::Derived;
 
@@ -181,25 +187,31 @@ fn amounts(config: &PerspectaConfig) -> Vec<Figure> {
         row("D6", "waste of ten pixels a word", "%", D, (6.25, 0.0), 100.0 * (1.0 - 3.0 * DENSE_PIXELS as f64 / 32.0)),
         row("D7", "a volume in 32-bit pixels", "B", D, (934_281_216.0, 0.0), pixels * 4.0),
         row("D7", "a volume packed", "B", D, (116_785_152.0, 0.0), packed),
+        row("D7", "a slice in 32-bit pixels", "B", D, (2_359_296.0, 0.0), pixels * 4.0 / slices),
+        row("D7", "a volume packed, 10 % of its tiles", "MB", D, (11.68, 5e-3), packed * 0.1 / 1e6),
         row("D7", "a slice packed", "B", D, (294_912.0, 0.0), packed / slices),
         row("D7", "a tile packed", "B", D, (512.0, 0.0), grid.words(0) as f64 * 4.0),
         row("D7", "two frame stores of 3-bit pixels", "MB", D, (175.2, 0.05), 2.0 * pixels * 3.0 / 8.0 / 1e6),
         row("D8", "tiles of a slice", "tiles", D, (576.0, 0.0), tiles),
         row("D8", "queries of a volume, slice by slice", "queries", D, (228_096.0, 0.0), tiles * slices),
         row("D8", "queries of a volume, in batches", "queries", D, (57_024.0, 0.0), tiles * slices / batch),
+        row("D8", "stencil clears of a volume, slice by slice", "clears", D, (396.0, 0.0), slices),
         row("D8", "stencil clears, in batches", "clears", D, (99.0, 0.0), slices / batch),
     ]
 }
 
 fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
     let planes = config.slices as f64 / 2.0;
-    // GPUs double in 6 to 9 months, CPUs in 18 (P20): after 18 months of equal times today.
+    // Equal times today, and what is left of them in 18 months.
     let share = |months: f64| {
         let cpu = 0.5f64;
-        let gpu = libm::exp2(-18.0 / months);
+        let gpu = libm::exp2(-CPU_DOUBLES_MONTHS / months);
         100.0 * cpu / (cpu + gpu)
     };
     vec![
+        row("P20", "months in which a GPU doubles, at least", "months", P, (6.0, 0.0), GPU_DOUBLES_MONTHS[0]),
+        row("P20", "months in which a GPU doubles, at most", "months", P, (9.0, 0.0), GPU_DOUBLES_MONTHS[1]),
+        row("P20", "months in which a CPU doubles", "months", P, (18.0, 0.0), CPU_DOUBLES_MONTHS),
         row(
             "D10",
             "planes that show a point, mean over the disc, prism",
@@ -216,8 +228,22 @@ fn means(config: &PerspectaConfig, wedge: HalfWedge) -> Vec<Figure> {
             (1.081, 5e-4),
             mean(SliceClip::Hyperbolic(0.25), wedge, planes),
         ),
-        row("D12", "share of the CPU in 18 months, GPU doubling in 9", "%", D, (67.0, 0.5), share(9.0)),
-        row("D12", "share of the CPU in 18 months, GPU doubling in 6", "%", D, (80.0, 0.5), share(6.0)),
+        row(
+            "D12",
+            "share of the CPU in 18 months, GPU doubling in 9",
+            "%",
+            D,
+            (67.0, 0.5),
+            share(GPU_DOUBLES_MONTHS[1]),
+        ),
+        row(
+            "D12",
+            "share of the CPU in 18 months, GPU doubling in 6",
+            "%",
+            D,
+            (80.0, 0.5),
+            share(GPU_DOUBLES_MONTHS[0]),
+        ),
     ]
 }
 

@@ -2,7 +2,7 @@
 
 use crate::error::PerspectaError;
 use image::{Rgb, RgbImage};
-use spatialgl::{BitPlanes, ColourSample, Size, VolumeFrame, Workers, sin_cos_of_turn};
+use spatialgl::{BitPlanes, ColourSample, Rotation, Size, VolumeFrame, Workers, sin_cos_of_turn};
 use std::sync::{Mutex, PoisonError};
 
 /// Units of light of one lit pixel: 256 x 256, so that bilinear shares are whole numbers.
@@ -34,7 +34,14 @@ impl Camera {
         Self { azimuth_deg, elevation_deg, distance: 4.0 * radius, focal, size: [side, side] }
     }
 
-    fn check(&self, reach: f64) -> Result<(), PerspectaError> {
+    /// Checks that it is an eye outside of a display whose slices have this size.
+    ///
+    /// # Errors
+    ///
+    /// [`PerspectaError::Camera`] names the number that is wrong.
+    pub fn check_before(&self, slice: Size) -> Result<(), PerspectaError> {
+        let [half_width, half_height] = slice.map(|side| f64::from(side) / 2.0);
+        let reach = libm::hypot(half_width, half_height);
         let rule = |holds: bool, what, expected, found| {
             if holds { Ok(()) } else { Err(PerspectaError::Camera { what, expected, found }) }
         };
@@ -77,6 +84,22 @@ pub struct ViewOptions {
     pub cut_deg: Option<[f64; 2]>,
     /// Whether a pixel is as bright as its screen is turned towards the eye: |view . e_s|.
     pub lambert: bool,
+    /// Angle of slice 0 from +x towards +z, degrees.
+    pub phase_deg: f64,
+    /// Which way the screen turns.
+    pub rotation: Rotation,
+}
+
+impl ViewOptions {
+    /// Degrees from +x to +z of a slice, with their sine and cosine.
+    fn angle(&self, k: u32, slices: u32) -> (f64, f64, f64) {
+        let is_forward = self.rotation == Rotation::XToZ;
+        let steps = if is_forward { i64::from(k) } else { -i64::from(k) };
+        let degrees = 360.0 * steps as f64 / f64::from(slices) + self.phase_deg;
+        let (sin, cos) =
+            if self.phase_deg == 0.0 { sin_cos_of_turn(steps, slices) } else { libm::sincos(degrees.to_radians()) };
+        (degrees, sin, cos)
+    }
 }
 
 /// Light that reached a picture, in units that add up exactly, whatever the order and the threads.
@@ -215,8 +238,7 @@ fn sum(
     workers: &dyn Workers,
     pixels: &EachPixel<'_>,
 ) -> Result<Light, PerspectaError> {
-    let [half_width, half_height] = size.map(|side| f64::from(side) / 2.0);
-    camera.check(libm::hypot(half_width, half_height))?;
+    camera.check_before(size)?;
     let total = Mutex::new(Light::dark(camera.size));
     let part = |first: u32| {
         let mut light = Light::dark(camera.size);
@@ -249,10 +271,9 @@ struct Strobe {
 
 impl Strobe {
     fn new(k: u32, slices: u32, size: Size, camera: &Camera, options: ViewOptions) -> Self {
-        let (sin, cos) = sin_cos_of_turn(i64::from(k), slices);
+        let (angle, sin, cos) = options.angle(k, slices);
         let axes = camera.axes();
         let turned = |direction: [f64; 3]| axes.map(|axis| dot(axis, direction));
-        let angle = 360.0 * f64::from(k) / f64::from(slices);
         Self {
             half: size.map(|side| f64::from(side) / 2.0),
             across: turned([cos, 0.0, sin]),

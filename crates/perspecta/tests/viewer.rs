@@ -4,12 +4,12 @@ use image::RgbImage;
 use perspecta::{Camera, PerspectaConfig, PerspectaError, ViewOptions, figures, film, view_planes, view_undithered};
 use pxpl5_scene::builtin;
 use spatialgl::{
-    BitPlanes, HostRenderer, Jitter, OneThread, Projection, SliceClip, Strobes, Threads, VolumeConfig, VolumeFrame,
-    record_scene, render_volume, sin_cos_of_turn,
+    BitPlanes, HostRenderer, Jitter, OneThread, Projection, Rotation, SliceClip, Strobes, Threads, VolumeConfig,
+    VolumeFrame, record_scene, render_volume, sin_cos_of_turn,
 };
 use std::num::NonZero;
 
-const PLAIN: ViewOptions = ViewOptions { cut_deg: None, lambert: false };
+const PLAIN: ViewOptions = ViewOptions { cut_deg: None, lambert: false, phase_deg: 0.0, rotation: Rotation::XToZ };
 
 fn case_8(azimuth_deg: f64, elevation_deg: f64) -> Camera {
     Camera { azimuth_deg, elevation_deg, distance: 1536.0, focal: 512.0, size: [512, 512] }
@@ -51,6 +51,22 @@ fn case_8_a_pixel_is_seen_where_its_voxel_is() {
         let found = centre(&light.picture(255.0));
         assert!((found[0] - expected[0]).abs() < 0.01 && (found[1] - expected[1]).abs() < 0.01, "{found:?}");
         assert!(light.total().iter().all(|sum| (sum - 1.0).abs() < 1e-9), "one pixel's light");
+    }
+}
+
+/// A slice stands at phase + k d, or phase - k d on a screen that turns the other way.
+#[test]
+fn phase_and_direction_of_the_turn_place_a_slice() {
+    let camera = case_8(40.0, 25.0);
+    for (phase_deg, rotation, sign) in
+        [(0.0, Rotation::ZToX, -1.0), (30.0, Rotation::XToZ, 1.0), (-71.5, Rotation::ZToX, -1.0)]
+    {
+        let angle = (phase_deg + sign * 33.0 * 360.0 / 396.0f64).to_radians();
+        let expected = camera.project([99.5 * angle.cos(), 100.5, 99.5 * angle.sin()]);
+        let options = ViewOptions { phase_deg, rotation, ..PLAIN };
+        let light = view_planes(&one_pixel(33, 483, 283), &camera, options, &OneThread).expect("valid");
+        let found = centre(&light.picture(255.0));
+        assert!((found[0] - expected[0]).abs() < 0.01 && (found[1] - expected[1]).abs() < 0.01, "{found:?}");
     }
 }
 

@@ -74,8 +74,9 @@ struct History {
     transformed: Vec<f64>,
     rendered: Vec<f64>,
     copied: Vec<f64>,
-    /// Bytes of a slave's bins for the drawing before.
+    /// Bytes of a slave's bins for the drawing before, and how long before the others the first slave has freed them.
     bin_bytes: f64,
+    first_free_ns: f64,
     edited_ns: f64,
     swapped_ns: f64,
     rendering: Renderers,
@@ -195,12 +196,14 @@ impl StereoModel {
                 begin_ns = begin_ns.max(ready.into_iter().fold(0.0, f64::max) + self.order_ns());
             }
             let bin_bytes = self.bin_bytes(load);
+            times.transform_ns[eye] = begin_ns;
             if history.bin_bytes + bin_bytes > self.gp.bin_bytes as f64 {
-                // The tokens of the drawing before have been at all slaves.
-                begin_ns = begin_ns.max(back(&history.rendered, picture, 1));
+                let freed_ns = back(&history.rendered, picture, 1);
+                times.transform_ns[eye] = begin_ns.max(freed_ns - history.first_free_ns);
+                begin_ns = begin_ns.max(freed_ns);
             }
             history.bin_bytes = bin_bytes;
-            times.transform_ns[eye] = begin_ns;
+            history.first_free_ns = self.first_free_ns(load);
             begin_ns += self.transform_ns(load);
             // The master hears all slaves one after the other.
             let known_ns = begin_ns + self.message_ns + self.transit_ns() + self.slaves * self.message_ns;
@@ -226,6 +229,14 @@ impl StereoModel {
 
     fn bin_bytes(&self, load: &Load) -> f64 {
         self.entries(load) * BIN_ENTRY_BYTES as f64
+    }
+
+    /// How long before the last slave the first one has had the last tokens of a drawing. They begin with one slave each, in turn, and
+    /// reach slave after slave as the renderers take the commands: with fewer renderers than slaves, one slave has had all of them when
+    /// each has been at so many slaves as there are renderers.
+    fn first_free_ns(&self, load: &Load) -> f64 {
+        let drawing_ns = load.entries() / load.bins.len().max(1) as f64 * self.triangle.ns;
+        drawing_ns * (1.0 - self.renderers as f64 / self.slaves).max(0.0)
     }
 
     /// TRANSFORM of the slave with the largest share.

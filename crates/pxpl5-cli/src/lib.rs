@@ -32,6 +32,7 @@ mod sweep;
 mod table;
 mod terminal;
 mod trace;
+mod volume;
 
 /// The emulator: a crate with pipelines of its own needs nothing beside this one.
 pub use pxpl5;
@@ -93,6 +94,8 @@ enum Command {
     Trace(trace::TraceArgs),
     /// Write what a viewer sees as an animated PNG.
     Film(film::FilmArgs),
+    /// Draw a scene as slices of a spinning volumetric display.
+    Volume(volume::VolumeArgs),
     /// Work with programs of the graphics processor's CPU.
     I860(i860::I860Args),
     /// Print a completion script for a shell.
@@ -135,6 +138,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Report(args)) => report::run(args),
         Some(Command::Trace(args)) => trace::run(args),
         Some(Command::Film(args)) => film::run(args),
+        Some(Command::Volume(args)) => volume::run(args),
         Some(Command::I860(args)) => i860::run(args),
         Some(Command::Completions(args)) => completions::run(args),
     }

@@ -3,6 +3,8 @@
 use crate::error::CliError;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
+use pxpl5::Level;
+use pxpl5::figures::Bench;
 use pxpl5::readings::{Fit, LeftOut, Readings, run as rank};
 use std::fmt::Write;
 
@@ -42,8 +44,9 @@ pub(crate) struct ReadingsArgs {
 ///
 /// Why a figure cannot be measured.
 pub(crate) fn run(args: ReadingsArgs) -> Result<(), CliError> {
+    let bench = Bench::new(Level::Analytic).with_mig(args.seeds, args.frames);
     let bar = progress(0, "readings", args.quiet);
-    let readings = rank(args.seeds, args.frames, args.best as usize, |done, of| advance(&bar, done, of));
+    let readings = rank(&bench, args.best as usize, |done, of| advance(&bar, done, of));
     bar.finish_and_clear();
     let readings = readings?;
     match (args.json, args.quiet) {

@@ -8,7 +8,7 @@ parameters::parameter_table! {
         /// Memory of a board.
         memory_bytes: 8_388_608, "bytes", Published, 8388608..=8388608 in 0..=1_073_741_824, "TR94: 8 MB";
         /// Part of the memory in which the bins of Rendering Control are kept, those of both contexts together.
-        bin_bytes: 51_360, "bytes", Derived, 51_360..=102_720 in 0..=MAX, "TR94: the bins of 12 slaves hold 7,700 triangles that cover the screen: 642 a slave in 20 bins, 4 bytes a pointer; 102,720 if both contexts hold so many";
+        bin_bytes: 51_360, "bytes", Derived, 51_040..=51_680 in 0..=MAX, "TR94: the bins of 12 slaves hold 7,700 triangles that cover the screen: 642 a slave in 20 bins, 4 bytes a pointer; printed to three digits. If they hold so many for each eye it is twice that";
         /// CPU time to send a batch of messages or to receive one.
         message_ns: 12_000, "ns", Assumed, 10000..=25000 in 0..=MAX, "software of a message; the range is what the published latencies allow";
         /// CPU time of one triangle and eye: transform, light, set up, make commands.

@@ -24,7 +24,7 @@ pub const SAMPLES: u64 = 500;
 const SEED: u64 = 0x5EED_0F05;
 
 /// Seeds and frames of the Mig in every sample.
-const MIG: (u64, u64) = (2, 60);
+const MIG: (u64, u64) = (6, 150);
 
 /// A parameter that may be moved.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -123,10 +123,10 @@ fn value_of(bench: &Bench, id: &str) -> Option<f64> {
     if WITHOUT_CLOSED_FORM.contains(&id) { None } else { Some(bench.measure(id).ok()?.value) }
 }
 
-/// Intervals of all figures.
+/// Intervals of all figures, around what a bench has at the analytic level.
 #[must_use]
-pub fn intervals() -> Vec<Interval> {
-    let bench = Bench::new(Level::Analytic).with_mig(MIG.0, MIG.1);
+pub fn intervals(bench: &Bench) -> Vec<Interval> {
+    let bench = Bench { level: Level::Analytic, ..bench.clone() }.with_mig(MIG.0, MIG.1);
     let variations = variations();
     let nominal = measure(&bench, Vec::new());
     let ends: Vec<_> = variations.iter().flat_map(|v| [(v, v.range.0), (v, v.range.1)]).collect();

@@ -1,7 +1,8 @@
 //! Films: what a viewer sees, period by period, as animated PNG.
 
+use crate::animation::Animation;
 use crate::frame_time::frame_seconds;
-use crate::picture::encoder;
+use crate::picture::PngError;
 use image::RgbImage;
 use pxpl5_display::{Display, Surface};
 use pxpl5_machine::{Machine, RunError};
@@ -58,8 +59,8 @@ pub enum FilmError {
         found: SurfaceId,
     },
     /// The PNG could not be written.
-    #[error("the film cannot be written: {0}")]
-    Png(#[from] png::EncodingError),
+    #[error("the film: {0}")]
+    Png(#[from] PngError),
 }
 
 /// Smallest and largest number of periods in a film: an hour of NTSC and more.
@@ -86,18 +87,16 @@ impl Film {
         let offsets = plain.as_ref().and_then(RasterOffsets::of);
         let mut machine = self.experiment.build()?;
         let surfaces = self.surfaces(machine.record().display())?;
-        let mut encoder = encoder(out, size(machine.record().display(), &surfaces), texts)?;
         let delay = frame_seconds(machine.record().display());
-        encoder.set_animated(self.periods as u32, 0)?;
-        encoder.set_frame_delay(delay.0, delay.1)?;
-        let mut writer = encoder.write_header()?;
+        let size = size(machine.record().display(), &surfaces);
+        let mut animation = Animation::begin(out, size, self.periods as u32, delay, texts)?;
         for period in self.first_period.until(self.first_period.after(self.periods)) {
             // A period is over when the next one has begun, all of whose events are taken.
             let begun = machine.record().tick(period.next()) + Span(1);
             machine.run_until(begun)?;
-            writer.write_image_data(frame(&machine, &surfaces, period, offsets.as_ref()).as_raw())?;
+            animation.add(&frame(&machine, &surfaces, period, offsets.as_ref()))?;
         }
-        Ok(writer.finish()?)
+        Ok(animation.finish()?)
     }
 
     /// A run of the same length without pixels, from which it is known how the raster shifts each period; `None` where it

@@ -16,9 +16,10 @@
 //! | [`page`] | one page of HTML that asks for nothing from outside |
 //! | [`Film`] | what the viewer sees, period by period |
 //! | [`png_bytes`] | a picture with its origin in it |
+//! | [`Animation`] | pictures one after the other, as animated PNG |
 //!
-//! There is one writer of SVG and HTML with one escaper (`markup`, and `svg` for its shapes), one of PNG (`png_bytes`, and the
-//! film), one of CSV ([`results::csv_table`]).
+//! There is one writer of SVG and HTML with one escaper (`markup`, and `svg` for its shapes), one of PNG (`png_bytes`, and
+//! `Animation`), one of CSV ([`results::csv_table`]).
 //!
 //! What is drawn depends on simulated time alone, so it is the same on every host. Names, colours and letters of surfaces
 //! come from the machine's displays ([`pxpl5_display::Surface`]); nothing here knows an eye or a field's lines.
@@ -26,6 +27,7 @@
 //! **Not here:** files, threads and clocks of the host. Everything goes to a [`std::io::Write`], or comes back as text or
 //! bytes.
 
+mod animation;
 pub mod charts;
 mod film;
 mod frame_time;
@@ -38,6 +40,7 @@ pub mod timeline;
 pub mod trace_export;
 mod updates;
 
+pub use animation::Animation;
 pub use film::{FILM_PERIODS, Film, FilmError, FilmOf};
 pub use frame_time::frame_seconds;
 pub use picture::{PngError, png_bytes};

@@ -60,6 +60,15 @@ pub struct CommandBuffer {
     pub(crate) background: [u8; 3],
 }
 
+/// A triangle as a renderer gets it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CommandTriangle {
+    /// Its corners in the world, pixels.
+    pub corners: [[f64; 3]; 3],
+    /// Red, green and blue of each corner, lit, 0 to 255.
+    pub colours: [[f64; 3]; 3],
+}
+
 impl CommandBuffer {
     /// How many vertices were transformed and lit.
     #[must_use]
@@ -83,6 +92,25 @@ impl CommandBuffer {
     pub fn triangles(&self) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
         let triangles = self.primitives.iter().filter(|primitive| primitive.shape == Shape::Triangle);
         triangles.map(|primitive| primitive.vertices.map(|i| self.positions[i as usize]))
+    }
+
+    /// A triangle by its number among the primitives; `None` of a line, a point, and beyond the last one.
+    #[must_use]
+    pub fn triangle(&self, primitive: u32) -> Option<CommandTriangle> {
+        let primitive = self.primitives.get(primitive as usize)?;
+        let is_triangle = primitive.shape == Shape::Triangle;
+        is_triangle.then(|| CommandTriangle {
+            corners: primitive.vertices.map(|i| self.positions[i as usize]),
+            colours: primitive.vertices.map(|i| self.colours[i as usize]),
+        })
+    }
+
+    /// The same primitives with another rule for several fragments on one pixel.
+    #[must_use]
+    pub fn combining(&self, combine: Combine) -> Self {
+        let mut combining = self.clone();
+        combining.primitives.iter_mut().for_each(|primitive| primitive.combine = combine);
+        combining
     }
 
     /// The same primitives drawn in the opposite order.

@@ -129,6 +129,20 @@ impl SliceImage {
         }
     }
 
+    /// Draws one fragment: marks its pixel and gives it a colour.
+    ///
+    /// # Panics
+    /// If the pixel lies outside the image.
+    pub fn draw_pixel(&mut self, x: u32, y: u32, colour: [u8; 3], combine: Combine) {
+        self.put(x, y, colour, combine);
+    }
+
+    /// Pixels on which a fragment has been drawn.
+    #[must_use]
+    pub fn marked(&self) -> u64 {
+        self.stencil.iter().map(|byte| u64::from(byte.count_ones())).sum()
+    }
+
     /// Lights a pixel on which nothing has been drawn; whether it did.
     pub(crate) fn fill_gap(&mut self, x: f64, y: f64, colour: [u8; 3]) -> bool {
         let inside = x >= 0.0 && y >= 0.0 && x < f64::from(self.size[0]) && y < f64::from(self.size[1]);

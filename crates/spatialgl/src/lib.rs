@@ -74,20 +74,20 @@ mod workers;
 pub use angle::sin_cos_of_turn;
 pub use bin::{BinLayout, BinRegion, BinTolerance, Binning};
 pub use clip::{DEFAULT_BIAS_PX2, DEFAULT_OFFSET_PX, HalfWedge, SliceClip};
-pub use command::{Combine, CommandBuffer};
+pub use command::{Combine, CommandBuffer, CommandTriangle};
 pub use context::{Context, Light, Topology, Vertex, VertexBuffer};
 pub use displays::{FlatDisplay, PlaneStack, Rotation, SweptConfig, SweptDisplay};
 pub use error::SpatialError;
 pub use frame::{BitPlanes, ColourSample, VolumeFrame};
 pub use halftone::Halftone;
 pub use image::SliceImage;
-pub use measure::{Connected, brightness_by_radius, connected, dead_zone_radius};
+pub use measure::{Connected, brightness_by_radius, connected, dead_zone_radius, gap_correlation};
 pub use pack::{
     BitOrder, DENSE_PIXELS, PIXELS_PER_WORD, in_bit_order, pack_dense, packed_word, pixel_of_word, unpack_dense,
 };
 pub use projection::{Jitter, Projection, Size, SliceEye};
 pub use quadratic::ClipQuadratic;
-pub use raster::{Bin, Coverage, HostRenderer, OracleRenderer, SliceRenderer, SliceStats, SliceWork};
+pub use raster::{Bin, Coverage, HostRenderer, OracleRenderer, SliceRenderer, SliceStats, SliceWork, Supersampled};
 pub use render::{Strobes, VolumeConfig, render_volume};
 pub use scene::{SCENE_REACH, record_scene, tessellated_sphere};
 pub use slice_volume::{SliceVolume, TieRule, WedgePlanes, WedgeTest};

@@ -36,11 +36,63 @@ pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: 
         for triangle in commands.triangles() {
             let local = triangle.map(|corner| view.local(DVec3::from_array(corner)).to_array());
             if let Some((ends, _)) = plane_curve(local, view.volume.middle()) {
-                around.count(view, ends, &mut found);
+                around.samples(view, ends, |_, is_shown| {
+                    found.samples += 1;
+                    found.shown += u64::from(is_shown);
+                });
             }
         }
     }
     Some(found)
+}
+
+/// How alike the gaps of neighbouring slices are: the correlation, over the rows of the image, of the shares of a row's
+/// samples that are shown, on the mean over all neighbours; 1 for a pattern that all slices share, near 0 for noise.
+///
+/// `None` without colours, as [`connected`], and of volumes without gaps.
+#[must_use]
+pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<f64> {
+    let colours = frame.colours.as_ref()?;
+    let size = display.target_size();
+    let rows: Vec<Vec<Connected>> = display
+        .views()
+        .iter()
+        .zip(colours)
+        .map(|(view, drawn)| rows_of_slice(view, commands, &Around::new(size, drawn), size[1]))
+        .collect();
+    let pairs = rows.windows(2).filter_map(|pair| correlation(&pair[0], &pair[1]));
+    let (sum, count) = pairs.fold((0.0, 0u32), |(sum, count), value| (sum + value, count + 1));
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+/// Samples of each row of a slice's image.
+fn rows_of_slice(view: &SliceView, commands: &CommandBuffer, around: &Around, height: u32) -> Vec<Connected> {
+    let mut rows = vec![Connected::default(); height as usize];
+    for triangle in commands.triangles() {
+        let local = triangle.map(|corner| view.local(DVec3::from_array(corner)).to_array());
+        if let Some((ends, _)) = plane_curve(local, view.volume.middle()) {
+            around.samples(view, ends, |y, is_shown| {
+                rows[y as usize].samples += 1;
+                rows[y as usize].shown += u64::from(is_shown);
+            });
+        }
+    }
+    rows
+}
+
+/// Pearson's correlation of the shown shares of the rows that both have samples in; `None` if either is the same in all.
+fn correlation(one: &[Connected], other: &[Connected]) -> Option<f64> {
+    let both: Vec<[f64; 2]> = one
+        .iter()
+        .zip(other)
+        .filter(|(a, b)| a.samples > 0 && b.samples > 0)
+        .map(|(a, b)| [a.percent(), b.percent()])
+        .collect();
+    let count = both.len() as f64;
+    let mean = [0, 1].map(|i| both.iter().map(|pair| pair[i]).sum::<f64>() / count);
+    let product = |i: usize, j: usize| both.iter().map(|pair| (pair[i] - mean[i]) * (pair[j] - mean[j])).sum::<f64>();
+    let spread = (product(0, 0) * product(1, 1)).sqrt();
+    (spread > 0.0).then(|| product(0, 1) / spread)
 }
 
 /// The drawn pixels of a slice, each with its eight neighbours.
@@ -65,7 +117,8 @@ impl Around {
         Self { size, near }
     }
 
-    fn count(&self, view: &SliceView, ends: [[f64; 3]; 2], found: &mut Connected) {
+    /// Calls for each sample of a curve inside the image, with its row and whether it is shown.
+    fn samples(&self, view: &SliceView, ends: [[f64; 3]; 2], mut each: impl FnMut(u32, bool)) {
         let [from, to] = ends.map(|end| pixel_of(view, end, self.size));
         let length = libm::hypot(to[0] - from[0], to[1] - from[1]);
         let steps = length.ceil().max(1.0);
@@ -74,8 +127,7 @@ impl Around {
             let t = (f64::from(i) + 0.5) / steps;
             let [x, y] = [0, 1].map(|axis| from[axis] * (1.0 - t) + to[axis] * t);
             if x >= 0.0 && y >= 0.0 && x < f64::from(self.size[0]) && y < f64::from(self.size[1]) {
-                found.samples += 1;
-                found.shown += u64::from(self.near[y as usize * self.size[0] as usize + x as usize]);
+                each(y as u32, self.near[y as usize * self.size[0] as usize + x as usize]);
             }
         }
     }

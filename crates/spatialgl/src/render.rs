@@ -98,6 +98,7 @@ pub fn render_volume(
     workers.run(tasks);
     let mut stats = volume.count(display, &batches);
     let colours = batches.into_iter().flat_map(|batch| batch.colours).collect();
+    stats.samples = u64::from(renderer.samples());
     stats.passes = display.views().first().map_or(0, |view| u64::from(view.volume.passes()));
     Ok(VolumeFrame { planes, stats, colours: config.keeps_colours.then_some(colours) })
 }

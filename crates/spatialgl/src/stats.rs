@@ -16,6 +16,8 @@ pub struct VolumeStats {
     pub slices_rendered: u64,
     /// How often the commands are replayed for a slice.
     pub passes: u64,
+    /// Samples taken of each pixel.
+    pub samples: u64,
     /// Primitives issued for all slices and passes.
     pub draws: u64,
     /// What they would be without bins.

@@ -22,7 +22,12 @@ impl Tiling {
     /// No tiles: every pixel of every slice is packed and sent.
     pub const OFF: Self = Self { tile: None, batch: 4 };
 
-    pub(crate) fn check(self) -> Result<(), SpatialError> {
+    /// Checks that tiles are whole words wide and batches not empty.
+    ///
+    /// # Errors
+    ///
+    /// [`SpatialError::Setting`] names the number, what was expected and what was found.
+    pub fn check(self) -> Result<(), SpatialError> {
         if let Some(tile) = self.tile {
             require((8..=4096).contains(&tile), "tile.size", "8 to 4096", tile)?;
             require(tile.is_multiple_of(8), "tile.size", "a multiple of 8", tile)?;

@@ -35,6 +35,7 @@ parameters::parameter_table! {
 /// CPU  vertices t_vertex + primitives t_primitive + slices passes t_call + draws t_issue
 /// GPU  3 draws / vertex rate + fragments generated / fill + W H (slices + batches) / fill
 ///      + queries t_query + queries tile^2 / fill + pixels packed / texel rate
+///      (every pixel of a target counts for each of its samples, if there are several)
 /// bus  bytes sent / readback, and the same to the projector
 /// ```
 ///
@@ -95,7 +96,7 @@ impl TimeModel {
     /// Time of a volume with these counts, packed and sent by tiles as counted.
     #[must_use]
     pub fn packed(&self, stats: &VolumeStats, size: Size, tile: u32) -> VolumeTime {
-        let packing_ms = millions_ms(stats.pixels_packed, self.timing.texel_mtexels);
+        let packing_ms = millions_ms(stats.pixels_packed * stats.samples.max(1), self.timing.texel_mtexels);
         let gpu_ms = self.gpu_ms(stats, size, tile) + packing_ms;
         self.with_bus(stats, gpu_ms, stats.bytes_sent)
     }
@@ -118,9 +119,9 @@ impl TimeModel {
 
     fn gpu_ms(&self, stats: &VolumeStats, size: Size, tile: u32) -> f64 {
         let timing = &self.timing;
-        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let pixels = u64::from(size[0]) * u64::from(size[1]) * stats.samples.max(1);
         let cleared = pixels * (stats.slices_rendered + stats.stencil_clears);
-        let queried = stats.queries * u64::from(tile) * u64::from(tile);
+        let queried = stats.queries * u64::from(tile) * u64::from(tile) * stats.samples.max(1);
         millions_ms(3 * stats.draws, timing.vertex_mvertices)
             + millions_ms(stats.fragments_generated + cleared + queried, timing.fill_mpixels)
             + (stats.queries * timing.query_ns) as f64 / 1e6

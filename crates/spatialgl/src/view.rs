@@ -22,6 +22,8 @@ pub struct SliceView {
     pub(crate) window: [[f64; 4]; 4],
     /// All s at which anything can be drawn, with some slack, where that is known.
     pub(crate) reach: Option<[f64; 2]>,
+    /// Samples along a pixel of the image: more than one while a supersampled image is drawn.
+    pub(crate) magnification: f64,
 }
 
 impl SliceView {
@@ -29,7 +31,18 @@ impl SliceView {
     #[must_use]
     pub fn new(view: DMat4, projection: DMat4, volume: SliceVolume, size: Size) -> Self {
         let window = window_of(&projection, size);
-        Self { view, projection, volume, bins: 1, hides: false, window, reach: None }
+        Self { view, projection, volume, bins: 1, hides: false, window, reach: None, magnification: 1.0 }
+    }
+
+    /// The same view of an image with so many samples along each pixel.
+    pub(crate) fn magnified(&self, factor: u32) -> Self {
+        let factor = f64::from(factor);
+        let mut view = self.clone();
+        for row in &mut view.window[..2] {
+            *row = row.map(|coefficient| coefficient * factor);
+        }
+        view.magnification = factor;
+        view
     }
 
     /// A point of the world in the coordinates of the slice: u, v, s.

@@ -49,6 +49,24 @@ fn case_28_connected_surfaces_of_a_sphere() {
     }
 }
 
+/// The share of each row's samples that is shown, correlated between neighbouring slices: a sphere with as many facets
+/// around it as there are slices has the same gaps in every slice along the normal, and with eyes of their own others.
+#[test]
+fn jitter_makes_gaps_of_neighbouring_slices_unlike() {
+    let (vertices, indices) = tessellated_sphere(DVec3::ZERO, 300.0, 198, [255; 3]);
+    let mut context = Context::default();
+    context.draw_indexed(&VertexBuffer::new(vertices).expect("finite"), &indices, Topology::Triangles).expect("valid");
+    let commands = context.present();
+    let likeness = |projection| {
+        let display = swept(SliceClip::Hyperbolic(0.25), projection);
+        let frame = volume(&display, &commands, &VolumeConfig { keeps_colours: true, ..half(VolumeConfig::paper()) });
+        gap_correlation(&display, &commands, &frame).expect("a sphere has gaps")
+    };
+    let along = likeness(Projection::Orthographic);
+    let jittered = likeness(Projection::Jittered(Jitter::new(1)));
+    assert!(along > 0.95 && jittered.abs() < 0.5, "{along} along the normal, {jittered} with jitter");
+}
+
 /// Neighbouring slabs meet without a gap or an overlap: a triangle across all of them has each of its samples once.
 #[test]
 fn a_stack_of_planes_divides_a_triangle_among_its_slabs() {

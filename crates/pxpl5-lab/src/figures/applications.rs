@@ -11,6 +11,9 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 /// A scene by its name, and whether its back faces are dropped.
 type Key = (&'static str, bool);
 
+/// The same, with the number of seeds and of frames.
+type LoadsKey = (&'static str, bool, u64, u64);
+
 /// Loads of every view of a fly-through, a list for each seed.
 type LoadsOfSeeds = Arc<Vec<Vec<Load>>>;
 
@@ -21,7 +24,7 @@ pub(super) type RigKey = (u64, FinishedRegions, Vec<(String, u64)>);
 #[derive(Debug, Default)]
 pub(crate) struct Applications {
     scenes: Mutex<BTreeMap<Key, Arc<Scene>>>,
-    loads: Mutex<BTreeMap<Key, LoadsOfSeeds>>,
+    loads: Mutex<BTreeMap<LoadsKey, LoadsOfSeeds>>,
     rigs: Mutex<BTreeMap<RigKey, Arc<Measured>>>,
 }
 
@@ -36,13 +39,8 @@ impl Applications {
     }
 
     /// The loads of a scene, from `make` where they are asked for the first time.
-    pub(super) fn loads(
-        &self,
-        name: &'static str,
-        culled: bool,
-        make: impl FnOnce() -> Result<Vec<Vec<Load>>>,
-    ) -> Result<LoadsOfSeeds> {
-        find_or_make(&self.loads, (name, culled), || make().map(Arc::new))
+    pub(super) fn loads(&self, key: LoadsKey, make: impl FnOnce() -> Result<Vec<Vec<Load>>>) -> Result<LoadsOfSeeds> {
+        find_or_make(&self.loads, key, || make().map(Arc::new))
     }
 
     /// What the pendulum rig measures with these rules, from `make` where it is asked for the first time.

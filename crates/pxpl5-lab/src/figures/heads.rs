@@ -1,9 +1,10 @@
 //! Experiments with a head: the pendulum rig, and what passes from head to light.
 
 use super::measured::{Measured, Result, detail, scene_named};
+use super::reading::Reading;
 use crate::rig::Rig;
 use pxpl5_machine::MachineConfig;
-use pxpl5_measure::{Budget, LatencyCurve};
+use pxpl5_measure::{Budget, LatencyCurve, summary};
 use pxpl5_run::{Experiment, ExperimentError, Head, Pipeline, Pixels, RenderingControl, Statistics};
 use std::sync::Arc;
 use tracking::motion::Synthetic;
@@ -44,7 +45,11 @@ pub(super) fn ratio_of_errors() -> Measured {
 const FIELDS: u64 = 600;
 
 /// Figures 19 and 19b: the parts that the paper adds, and beside them those that it does not.
-pub(super) fn tracker_and_rendering(machine: MachineConfig, pipeline: impl Pipeline) -> Result<Measured> {
+pub(super) fn tracker_and_rendering(
+    machine: MachineConfig,
+    pipeline: impl Pipeline,
+    reading: &Reading,
+) -> Result<Measured> {
     let motion = Arc::new(Synthetic::recorded_use(1));
     let head = Head::new(motion, TrackerConfig::optical_ceiling(), PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
@@ -52,13 +57,19 @@ pub(super) fn tracker_and_rendering(machine: MachineConfig, pipeline: impl Pipel
     let outcome = experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()?;
     let Budget { tracking_ms, waiting_ms, sending_ms, drawing_ms, showing_ms, scanning_ms, total_ms, .. } =
         Budget::of(&outcome);
+    // The paper adds its own means, which are read as figure 4 is; eyes of Slats have no TRANSFORM of their own.
+    let of_eyes = summary(&outcome);
+    let samples = reading.latencies_ms(&of_eyes);
+    let rendering_ms =
+        if samples.is_empty() { drawing_ms + showing_ms } else { Statistics::of(samples.iter().copied()).mean };
     let details = vec![
         detail("tracking", tracking_ms, "ms"),
-        detail("rendering", drawing_ms + showing_ms, "ms"),
+        detail("rendering", rendering_ms, "ms"),
+        detail("from the first eye on", drawing_ms + showing_ms, "ms"),
         detail("not in the paper's sum: waiting for the pipeline", waiting_ms, "ms"),
         detail("sending and edits", sending_ms, "ms"),
         detail("scan to the middle", scanning_ms, "ms"),
         detail("all from head to light", total_ms, "ms"),
     ];
-    Ok(Measured { value: tracking_ms + drawing_ms + showing_ms, details })
+    Ok(Measured { value: tracking_ms + rendering_ms, details })
 }

@@ -12,8 +12,8 @@ use pxpl5_geometry::Viewport;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::Layout;
 use pxpl5_run::{
-    Experiment, ExperimentError, Level, Pipeline, Pixels, RenderingControl, Slats, Statistics, Summary,
-    WARM_UP_PICTURES, display_list, views,
+    Experiment, ExperimentError, Level, Pipeline, Pixels, Slats, Statistics, Summary, WARM_UP_PICTURES, display_list,
+    views,
 };
 use pxpl5_scene::{Hmd, HmdConfig, Scene};
 use pxpl5_sim::Time;
@@ -50,14 +50,14 @@ const VIEWS: u64 = 40;
 const VIEW_PERIOD_PS: u64 = 500_000_000_000;
 
 impl Bench {
-    /// The presets as they are, with 10 seeds of 300 frames.
+    /// The presets as they are, with 10 seeds of 150 frames.
     #[must_use]
     pub fn new(level: Level) -> Self {
         Self {
             level,
             changes: Vec::new(),
             seeds: 10,
-            frames: 300,
+            frames: 150,
             reading: Reading::USUAL,
             applications: Arc::default(),
         }
@@ -66,7 +66,7 @@ impl Bench {
     /// The same with fewer or more seeds and frames of the Mig.
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
-        Self { seeds, frames, applications: Arc::default(), ..self }
+        Self { seeds, frames, ..self }
     }
 
     /// Measures a figure.
@@ -103,8 +103,11 @@ impl Bench {
             "15" => self.time_before_copy(),
             "17" => self.rig(),
             "18" => Ok(heads::ratio_of_errors()),
-            "19" => heads::tracker_and_rendering(self.machine("small-hmd")?, RenderingControl::stereo()),
-            "19b" => heads::tracker_and_rendering(self.machine("slats")?, Slats::split()),
+            "19" => {
+                let machine = self.reading.on(self.machine("small-hmd")?)?;
+                heads::tracker_and_rendering(machine, self.reading.pipeline(), &self.reading)
+            }
+            "19b" => heads::tracker_and_rendering(self.machine("slats")?, Slats::split(), &self.reading),
             _ => Err(ExperimentError::Scene(format!("there is no figure {id}"))),
         }
     }
@@ -244,7 +247,7 @@ impl Bench {
             return self.summarise(&experiment);
         }
         let of_seeds = || (1..=seeds).map(|seed| stereo_loads(&self.application_experiment(scene, seed)?)).collect();
-        let loads = self.applications.loads(scene, self.reading.culled, of_seeds)?;
+        let loads = self.applications.loads((scene, self.reading.culled, seeds, self.frames), of_seeds)?;
         let model = StereoModel::new(experiment.config(), self.reading.pipeline())?;
         Ok(model.summary(&model.frames(&loads[seed as usize - 1]), experiment.length()))
     }

@@ -53,8 +53,8 @@ pub struct Figures {
 }
 
 /// Seeds and frames of the application scenes by which readings are ranked.
-const SEEDS: u64 = 2;
-const FRAMES: u64 = 60;
+const SEEDS: u64 = 6;
+const FRAMES: u64 = 150;
 
 /// Measures all figures, several at a time, with their intervals.
 ///
@@ -80,10 +80,10 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
         row
     });
     let mut rows = rows.into_iter().collect::<Result<Vec<_>, _>>()?;
-    let intervals = intervals();
+    let intervals = intervals(bench);
     step();
     fill(&mut rows, &intervals);
-    let readings = readings::run(SEEDS, FRAMES, 0, |_, _| {});
+    let readings = readings::run(&bench.clone().with_mig(SEEDS, FRAMES), 0, |_, _| {});
     let readings = readings.map_err(|error| FigureError { id: "7".to_owned(), reason: error.to_string() })?;
     step();
     Ok(Figures { rows, intervals, readings })

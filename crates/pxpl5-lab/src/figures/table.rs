@@ -127,7 +127,7 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "Mig, 417 triangles, fly-through in an HMD: mean latency (sd 0.589)",
         (4.61, "fields", Some(0.589)),
-        "mig on large without back faces: 10 seeds of head motion, 300 frames each; mean over both eyes of all frames, each in \
+        "mig on large without back faces: 10 seeds of head motion, 150 frames each; mean over both eyes of all frames, each in \
          retraces from the start of its TRANSFORM",
         FREE,
     ),
@@ -136,7 +136,7 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "molecules, 2,620 triangles and 1,219 spheres, fly-through: mean latency (sd 0.502)",
         (4.47, "fields", Some(0.502)),
-        "molecules as in figure 7: 4 seeds of head motion, 300 frames each",
+        "molecules as in figure 7: 4 seeds of head motion, 150 frames each",
         FREE,
     ),
     figure(
@@ -144,7 +144,7 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "head, 59,592 triangles, fly-through: mean latency (sd 2.48)",
         (8.13, "fields", Some(2.48)),
-        "head as in figure 7: 2 seeds of head motion, 300 frames each",
+        "head as in figure 7: 2 seeds of head motion, 150 frames each",
         FREE,
     ),
     figure(
@@ -254,9 +254,7 @@ pub const FIGURES: [Figure; 26] = [
         Basis::Rule { rule: "TRANSFORM waits until the bins have room for it" },
     )
     .because(
-        "33 ms of TRANSFORM, 225 of RENDER, and the copies of the last regions; COPY of the others is over by then. If COPY began \
-         when RENDER has ended it would be 289 ms. With bins for both eyes at once TRANSFORM of an eye begins while the other one is \
-         rendered, and it would be 454 ms at 2.2 Hz"
+        "with bins for both eyes at once TRANSFORM of an eye begins while the other one is rendered, and it would be 454 ms at 2.2 Hz"
     ),
     figure(
         "17",
@@ -286,7 +284,7 @@ pub const FIGURES: [Figure; 26] = [
         "optical tracker and Rendering Control together",
         (90.0, "ms", None),
         "full-screen:12 on small-hmd, synthetic motion, no prediction: from the pose to the arrival of its report, and from the start of \
-         TRANSFORM to the swap",
+         TRANSFORM to the swap as in figure 4",
         FREE,
     ),
     figure(

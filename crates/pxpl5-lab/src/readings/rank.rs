@@ -38,24 +38,19 @@ pub struct Readings {
     pub rounding_percent: f64,
 }
 
-/// Ranks all readings; `best` of them at the transaction level too. `finished` hears how many of all runs are done.
+/// Ranks all readings, with the seeds and frames of a bench; `best` of them at the transaction level too. `finished` hears how many of all runs are done.
 ///
 /// # Errors
 ///
 /// As [`Bench::measure`].
-pub fn run(
-    seeds: u64,
-    frames: u64,
-    best: usize,
-    finished: impl Fn(u64, u64) + Sync,
-) -> Result<Readings, ExperimentError> {
+pub fn run(bench: &Bench, best: usize, finished: impl Fn(u64, u64) + Sync) -> Result<Readings, ExperimentError> {
     let readings = Reading::all();
     let best = best.min(readings.len());
     let steps = (readings.len() + best) as u64;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
     let fits = |level: Level, readings: &[Reading]| {
-        let bench = Bench::new(level).with_mig(seeds, frames);
+        let bench = Bench { level, ..bench.clone() };
         let fits = parallel::map(readings, |reading| {
             let fit = Fit::of(&bench, *reading);
             step();

@@ -161,6 +161,7 @@ fn view(config: &SweptConfig, k: u32) -> SliceView {
         hides: false,
         window: eye.window_rows(size, reach),
         reach: Some([-slack, slack]),
+        magnification: 1.0,
     }
 }
 

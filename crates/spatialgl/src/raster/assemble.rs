@@ -14,13 +14,14 @@ pub(super) struct SliceTransform {
     pub(super) rows: [[f64; 4]; 3],
     window: [[f64; 4]; 4],
     pub(super) volume: SliceVolume,
+    magnification: f64,
 }
 
 impl SliceTransform {
     pub(super) fn new(view: &SliceView) -> Self {
         let rows = view.view.transpose();
         let rows = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.to_array());
-        Self { rows, window: view.window, volume: view.volume }
+        Self { rows, window: view.window, volume: view.volume, magnification: view.magnification }
     }
 
     /// A point of the world in the coordinates of the slice.
@@ -64,7 +65,7 @@ impl SliceTransform {
                 let middle = self.volume.middle();
                 let off = [a, b].map(|i| self.local(world(i))[2] - middle);
                 let ends = [a, b].map(|i| self.corner(world(i), colour(i)));
-                line(&ends[0], &ends[1], crossing(off), width / 2.0, draw);
+                line(&ends[0], &ends[1], crossing(off), width / 2.0 * self.magnification, draw);
             }
         }
     }

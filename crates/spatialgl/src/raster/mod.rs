@@ -7,10 +7,12 @@ mod fast;
 mod lanes;
 mod oracle;
 mod setup;
+mod supersampled;
 
 pub use cluster::Bin;
 pub use fast::HostRenderer;
 pub use oracle::OracleRenderer;
+pub use supersampled::Supersampled;
 
 use crate::command::CommandBuffer;
 use crate::image::SliceImage;
@@ -57,4 +59,9 @@ pub struct SliceWork<'a> {
 pub trait SliceRenderer: Send + Sync {
     /// Draws one slice in all its passes.
     fn render(&self, work: SliceWork<'_>, view: &SliceView, image: &mut SliceImage) -> SliceStats;
+
+    /// How many samples it takes of each pixel, all of which are counted as fragments.
+    fn samples(&self) -> u32 {
+        1
+    }
 }

@@ -1,0 +1,128 @@
+//! `pxpl5 volume figures`.
+
+use super::settings::load;
+use crate::error::CliError;
+use crate::output::{OutputFile, OutputFolder};
+use crate::terminal::{advance, print, progress};
+use clap::Args;
+use pxpl5::scene::Scene;
+use pxpl5::views::png_bytes;
+use pxpl5::volume::figures::{Drawing, FigureRow, Figures, all, drawings, markdown};
+use pxpl5::volume::spatialgl::Threads;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Measure the figures of the SpatialGL paper beside the model's, and draw its drawings anew.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 volume figures
+  pxpl5 volume figures --json
+  pxpl5 volume figures --out out/figures                  its figures 4 to 12, redrawn from the model
+  pxpl5 volume figures --write docs/volumetric.md
+  pxpl5 volume figures --check docs/volumetric.md         fails when the file is not what the figures give")]
+pub(super) struct FiguresArgs {
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+    /// Write the document of all figures to this file.
+    #[arg(long, value_name = "FILE", conflicts_with = "check")]
+    write: Option<PathBuf>,
+    /// Compare the document with this file.
+    #[arg(long, value_name = "FILE")]
+    check: Option<PathBuf>,
+    /// Write the redrawn figures 4 to 12 into this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print nothing but errors (and the object of --json).
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// Scenes on which rows are measured.
+const SCENES: [&str; 3] = ["mig", "head", "molecules"];
+
+pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
+    let document = args.write.as_deref().map(OutputFile::open).transpose()?;
+    let mut folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
+    let scenes = SCENES.iter().map(|name| load(name, None)).collect::<Result<Vec<_>, _>>()?;
+    let bar = progress(0, "scenes", args.quiet);
+    let figures = all(&scenes, &Threads::all(), |done, of| advance(&bar, done, of));
+    bar.finish_and_clear();
+    let figures = figures?;
+    if let Some(document) = document {
+        document.write(markdown(&figures).as_bytes())?;
+    }
+    if let Some(folder) = &mut folder {
+        draw(folder, &scenes)?;
+    }
+    folder.map(OutputFolder::commit).transpose()?;
+    if let Some(path) = &args.check {
+        check(path, &figures)?;
+    }
+    match (args.json, args.quiet) {
+        (true, _) => print(&(serde_json::to_string_pretty(&figures).map_err(CliError::failure)? + "\n")),
+        (false, true) => Ok(()),
+        (false, false) => print(&text(&figures)),
+    }
+}
+
+fn draw(folder: &mut OutputFolder, scenes: &[Arc<Scene>]) -> Result<(), CliError> {
+    let Some(scene) = scenes.first() else { return Ok(()) };
+    let drawn = drawings(scene, &Threads::all())?;
+    for drawing in &drawn {
+        let texts = [("figure", drawing.number.to_string()), ("about", drawing.about.to_owned())];
+        let png = png_bytes(&drawing.picture, &texts).map_err(CliError::failure)?;
+        folder.put(&format!("figure-{:02}.png", drawing.number), &png)?;
+    }
+    let texts = [("about", "figures 4 to 12, row by row".to_owned())];
+    folder.put("figures.png", &png_bytes(&Drawing::sheet(&drawn), &texts).map_err(CliError::failure)?)
+}
+
+fn check(path: &Path, figures: &Figures) -> Result<(), CliError> {
+    let kept =
+        std::fs::read_to_string(path).map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
+    if kept == markdown(figures) {
+        return Ok(());
+    }
+    let path = path.display();
+    Err(CliError::failure(format!("{path} is stale: run `pxpl5 volume figures --write {path}`")))
+}
+
+fn text(figures: &Figures) -> String {
+    let mut text = format!(
+        "{:<9} {:>16} {:>16}  {:<9} {:>9}  {:<9} {:<6} {}\n",
+        "#", "expected", "model", "unit", "error", "standing", "", "what"
+    );
+    figures.figures.iter().for_each(|row| line(&mut text, row));
+    text.push_str("\nStated without numbers:\n");
+    for shown in &figures.shown {
+        let mark = if shown.holds { "shown" } else { "NOT SHOWN" };
+        let _ = writeln!(text, "  {mark:<9} {}: {}", shown.statement, shown.evidence);
+    }
+    let missed = figures.figures.iter().filter(|row| !row.is_met).count();
+    let _ = writeln!(text, "\n{} rows, {missed} missed", figures.figures.len());
+    text
+}
+
+fn line(text: &mut String, row: &FigureRow) {
+    let figure = &row.figure;
+    let scene = row.scene.as_ref().map_or_else(String::new, |scene| format!(" ({scene})"));
+    let mark = if row.is_met { "met" } else { "MISSED" };
+    let _ = writeln!(
+        text,
+        "{:<9} {:>16} {:>16}  {:<9} {:>+8.2}%  {:<9} {mark:<6} {}{scene}",
+        figure.id,
+        compact(figure.published),
+        compact(figure.computed),
+        figure.unit,
+        if figure.published == 0.0 { 0.0 } else { row.error_percent },
+        figure.standing,
+        figure.statement
+    );
+}
+
+/// Whole numbers whole, others with ten significant digits at most.
+fn compact(value: f64) -> String {
+    if value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:.7}") }
+}

@@ -1,0 +1,134 @@
+//! `pxpl5 volume view` and `pxpl5 volume film`.
+
+use super::settings::{VolumeSettingArgs, origin};
+use super::slices::{say, write};
+use crate::error::CliError;
+use crate::output::OutputFile;
+use crate::terminal::progress;
+use clap::Args;
+use pxpl5::views::Animation;
+use pxpl5::volume::VolumeSettings;
+use pxpl5::volume::pictures::Look;
+use std::path::PathBuf;
+
+/// From where a volume is seen.
+#[derive(Args, Debug)]
+struct EyeArgs {
+    /// Angle around the axis from +z to +x, degrees.
+    #[arg(long, value_name = "DEG", default_value_t = 40.0, allow_negative_numbers = true)]
+    azimuth: f64,
+    /// Angle above the horizon, degrees.
+    #[arg(long, value_name = "DEG", default_value_t = 25.0, allow_negative_numbers = true)]
+    elevation: f64,
+    /// Distance of the eye from the middle of the display, in its radii.
+    #[arg(long, value_name = "RADII", default_value_t = 4.0, allow_negative_numbers = true)]
+    distance: f64,
+    /// Width and height of the picture, pixels.
+    #[arg(long, value_name = "PX", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=8192))]
+    size: u32,
+    /// Leave out what lies between two angles around the axis from +x to +z, degrees: a cutaway.
+    #[arg(long, value_name = "FROM:TO", allow_hyphen_values = true, value_parser = cut)]
+    cut: Option<[f64; 2]>,
+    /// Show each pixel as bright as the screen is turned towards the eye.
+    #[arg(long)]
+    lambert: bool,
+}
+
+/// Draw what an eye sees of one turn: the sum of all lit pixels of all slices.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 volume view --scene head --azimuth 40 --elevation 25 --out view.png
+  pxpl5 volume view --scene head --cut 0:90 --out cutaway.png
+  pxpl5 volume view --scene mig --undithered --lambert --out undithered.png")]
+pub(super) struct ViewArgs {
+    #[command(flatten)]
+    volume: VolumeSettingArgs,
+    #[command(flatten)]
+    eye: EyeArgs,
+    /// Show the colours before halftoning.
+    #[arg(long)]
+    undithered: bool,
+    /// Steps of 255 for one lit pixel of one slice; default: so that 98 % of the picture stays below white.
+    #[arg(long, value_name = "STEPS", allow_negative_numbers = true)]
+    exposure: Option<f64>,
+    /// The file to write (PNG).
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// Write a turn around the volume as an animated PNG, of one exposure.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 volume film --scene mig --frames 60 --size 256 --out turn.png
+
+Browsers play the file.")]
+pub(super) struct FilmArgs {
+    #[command(flatten)]
+    volume: VolumeSettingArgs,
+    #[command(flatten)]
+    eye: EyeArgs,
+    /// Pictures of a turn.
+    #[arg(long, value_name = "N", default_value_t = 72, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    frames: u32,
+    /// Pictures a second.
+    #[arg(long, value_name = "HZ", default_value_t = 24, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    rate: u16,
+    /// The file to write (PNG).
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// Two angles with a colon between them.
+fn cut(text: &str) -> Result<[f64; 2], String> {
+    let angles = text.split_once(':').and_then(|(from, to)| Some([from.parse().ok()?, to.parse().ok()?]));
+    let finite = angles.filter(|angles: &[f64; 2]| angles.iter().all(|angle| angle.is_finite()));
+    finite.ok_or_else(|| format!("expected two angles such as 0:90, found {text}"))
+}
+
+impl EyeArgs {
+    /// The eye, once it is known that it can see anything.
+    fn look(&self, settings: &VolumeSettings) -> Result<Look, CliError> {
+        let mut look = Look::around(settings, self.azimuth, self.elevation, self.size);
+        look.camera.distance = self.distance * settings.radius();
+        look.options.cut_deg = self.cut;
+        look.options.lambert = self.lambert;
+        look.check(settings)?;
+        Ok(look)
+    }
+}
+
+pub(super) fn view(args: ViewArgs) -> Result<(), CliError> {
+    let exposure = args.exposure.filter(|steps| steps.is_finite() && *steps > 0.0);
+    if let (Some(found), None) = (args.exposure, exposure) {
+        return Err(CliError::usage(format!("--exposure: expected a number above 0, found {found}")));
+    }
+    let file = OutputFile::open(&args.out)?;
+    let settings = args.volume.settings.gather()?;
+    let look = Look { is_undithered: args.undithered, ..args.eye.look(&settings)? };
+    let volume = args.volume.draw(&settings)?;
+    let picture = look.picture(&volume, exposure, &args.volume.settings.threads())?;
+    write(file, &picture, &volume)?;
+    let from = format!("{} from azimuth {}, elevation {}", volume.scene, args.eye.azimuth, args.eye.elevation);
+    say(args.volume.settings.quiet, &args.out, &from)
+}
+
+pub(super) fn film(args: FilmArgs) -> Result<(), CliError> {
+    let file = OutputFile::open(&args.out)?;
+    let settings = args.volume.settings.gather()?;
+    let look = args.eye.look(&settings)?;
+    let volume = args.volume.draw(&settings)?;
+    let threads = args.volume.settings.threads();
+    let mut bytes = Vec::new();
+    let size = (args.eye.size, args.eye.size);
+    let mut animation =
+        Animation::begin(&mut bytes, size, args.frames, (1, args.rate), &origin(&volume)).map_err(CliError::failure)?;
+    let bar = progress(u64::from(args.frames), "pictures", args.volume.settings.quiet);
+    for picture in look.film(&volume, args.frames, &threads) {
+        animation.add(&picture?).map_err(CliError::failure)?;
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    animation.finish().map_err(CliError::failure)?;
+    file.write(&bytes)?;
+    say(args.volume.settings.quiet, &args.out, &format!("{} pictures of a turn around {}", args.frames, volume.scene))
+}

@@ -1,0 +1,63 @@
+//! `pxpl5 volume`: a scene as slices of a spinning volumetric display.
+
+mod compare;
+mod figures;
+mod look;
+mod run;
+mod settings;
+mod slices;
+
+use crate::error::CliError;
+use clap::{Args, Subcommand};
+use pxpl5::volume::VolumeError;
+
+/// Draw a scene as the 396 slices of a spinning volumetric display (SpatialGL on Perspecta, 2005).
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 volume run --scene mig --clip hyperbolic:0.25 --projection jittered --seed 1 --out out/volume
+  pxpl5 volume slice 50 --scene head --out slice.png
+  pxpl5 volume view --scene head --azimuth 40 --elevation 25 --cut 0:90 --out view.png
+  pxpl5 volume compare --scene mig --out out/variants
+  pxpl5 volume figures
+
+The display draws no picture for an eye: everything within a slice is lit, and an eye anywhere sees the sum of one turn.")]
+pub(crate) struct VolumeArgs {
+    #[command(subcommand)]
+    command: VolumeCommand,
+}
+
+#[derive(Subcommand, Debug)]
+enum VolumeCommand {
+    /// Draw a volume and print what was counted.
+    Run(run::RunArgs),
+    /// Draw all slices as thumbnails on one sheet.
+    Sheet(slices::SheetArgs),
+    /// Draw one slice, before and after halftoning.
+    Slice(slices::SliceArgs),
+    /// Draw what an eye sees of one turn.
+    View(look::ViewArgs),
+    /// Write a turn around the volume as an animated PNG.
+    Film(look::FilmArgs),
+    /// Compare all clips and projections.
+    Compare(compare::CompareArgs),
+    /// Measure the paper's figures and draw its drawings anew.
+    Figures(figures::FiguresArgs),
+}
+
+pub(crate) fn run(args: VolumeArgs) -> Result<(), CliError> {
+    match args.command {
+        VolumeCommand::Run(args) => run::run(args),
+        VolumeCommand::Sheet(args) => slices::sheet(args),
+        VolumeCommand::Slice(args) => slices::slice(args),
+        VolumeCommand::View(args) => look::view(args),
+        VolumeCommand::Film(args) => look::film(args),
+        VolumeCommand::Compare(args) => compare::run(args),
+        VolumeCommand::Figures(args) => figures::run(args),
+    }
+}
+
+impl From<VolumeError> for CliError {
+    fn from(error: VolumeError) -> Self {
+        if error.is_of_scene() { Self::failure(error) } else { Self::usage(error) }
+    }
+}

@@ -1,0 +1,163 @@
+//! `pxpl5 volume run`.
+
+use super::settings::{VolumeSettingArgs, png};
+use crate::error::CliError;
+use crate::output::OutputFolder;
+use crate::terminal::print;
+use clap::Args;
+use pxpl5::views::results::csv_table;
+use pxpl5::volume::pictures::{Look, before_and_after, sheet, tile_map};
+use pxpl5::volume::{PixelPlanesReport, Volume, VolumeReport};
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+/// Draw a volume and print what was counted.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 volume run --scene mig --clip hyperbolic:0.25 --projection jittered --seed 1 --out out/volume --json
+  pxpl5 volume run --scene head --set display.slices=200 --set display.spin_rpm=600
+  pxpl5 volume run --scene molecules --clip exact --set gpu.readback_mb_s=1000
+  pxpl5 volume run --scene head --strobes mirror --coverage connected
+  pxpl5 volume run --scene mig --projection orthographic --strobes mirror --on pixel-planes")]
+pub(super) struct RunArgs {
+    #[command(flatten)]
+    volume: VolumeSettingArgs,
+    /// Write into this folder: report.json, slices.csv, the sheet of all slices, slice 0 before and after halftoning, the tiles of all
+    /// batches, and what an eye sees.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the report as one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
+    let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
+    let volume = args.volume.draw(&args.volume.settings.gather()?)?;
+    let report = volume.report();
+    let json = serde_json::to_string_pretty(&report).map_err(CliError::failure)? + "\n";
+    let threads = args.volume.settings.threads();
+    if let Some(mut folder) = folder {
+        folder.put("report.json", json.as_bytes())?;
+        folder.put("slices.csv", slices_csv(&volume).as_bytes())?;
+        folder.put("sheet.png", &png(&sheet(&volume), &volume)?)?;
+        folder.put("slice-0.png", &png(&before_and_after(&volume, 0), &volume)?)?;
+        if let Some(map) = tile_map(&volume) {
+            folder.put("tiles.png", &png(&map, &volume)?)?;
+        }
+        let look = Look::around(&volume.settings, 40.0, 25.0, 512);
+        folder.put("view.png", &png(&look.picture(&volume, None, &threads)?, &volume)?)?;
+        folder.commit()?;
+    }
+    match (args.json, args.volume.settings.quiet) {
+        (true, _) => print(&json),
+        (false, true) => Ok(()),
+        (false, false) => print(&text(&report, args.out.as_deref())),
+    }
+}
+
+/// What renderers did and which part of the machine limits.
+fn bounds(planes: &PixelPlanesReport) -> String {
+    let work = &planes.counts.work;
+    let mut text = format!(
+        "\nPixel-Planes 5: {} slice triangles, {} commands in {} regions, {} left out, {} clocks\n{:>10} {:>11} {:>13} {:>9} {:>14} \
+         {:>11}  limited by\n",
+        work.triangles,
+        work.commands,
+        work.regions,
+        work.left_out,
+        work.clocks,
+        "renderers",
+        "processors",
+        "renderers, ms",
+        "ring, ms",
+        "processors, ms",
+        "volumes/s"
+    );
+    for row in &planes.bounds {
+        let [renderers, ring, processors] = row.ms;
+        let _ = writeln!(
+            text,
+            "{:>10} {:>11} {renderers:>13.1} {ring:>9.1} {processors:>14.1} {:>11.2}  {}",
+            row.renderers, row.processors, row.volumes_hz, row.limited_by
+        );
+    }
+    text
+}
+
+fn slices_csv(volume: &Volume) -> String {
+    let columns = ["slice", "draws", "fragments_generated", "fragments_accepted", "fragments_added"];
+    let rows = volume.frame.stats.slices.iter().enumerate().map(|(slice, stats)| {
+        [slice as u64, stats.draws, stats.generated, stats.accepted, stats.added].map(|number| number.to_string())
+    });
+    csv_table("", columns, rows)
+}
+
+fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
+    let VolumeReport { display, model_ms, .. } = report;
+    let mut text = format!(
+        "{} ({} primitives) on {}: {} slices of {} x {}, {} rpm\nclip {}, projection {}, seed {}\n\n",
+        report.scene,
+        report.triangles,
+        display.name,
+        display.slices,
+        display.width,
+        display.height,
+        display.spin_rpm,
+        report.clip,
+        report.projection,
+        report.seed
+    );
+    let draws = 100.0 * report.draws as f64 / report.draws_unbinned.max(1) as f64;
+    let megabytes = |bytes: u64| format!("{:.1} MB", bytes as f64 / 1e6);
+    let rows = [
+        (
+            "slices drawn",
+            format!("{} in {} passes, {} empty", report.slices_rendered, report.passes, report.slices_empty),
+        ),
+        ("draws", format!("{} of {} ({draws:.1} %)", report.draws, report.draws_unbinned)),
+        ("fragments", format!("{} accepted of {} generated", report.fragments_accepted, report.fragments_generated)),
+        ("tiles occupied", format!("{:.1} % of {} queried", report.tile_occupancy_percent, report.queries)),
+        (
+            "bytes",
+            format!(
+                "{} unpacked, {} packed, {} sent",
+                megabytes(report.bytes_unpacked),
+                megabytes(report.bytes_packed),
+                megabytes(report.bytes_sent)
+            ),
+        ),
+        ("lit voxels", report.lit_voxels.to_string()),
+        ("connected", format!("{:.1} %", report.connected_percent)),
+        ("outside the volume", format!("{} primitives with a corner there", report.outside_volume)),
+        (
+            "model of time",
+            format!(
+                "processor {:.1} ms, GPU {:.1} ms, bus {:.1} ms",
+                model_ms.cpu.ms, model_ms.gpu.ms, model_ms.bus.ms
+            ),
+        ),
+        (
+            "volumes a second",
+            format!(
+                "{:.2} one after the other, {:.2} overlapped; the eye gets {}",
+                report.volumes_hz_serial, report.volumes_hz_overlapped, display.volumes_hz
+            ),
+        ),
+        ("volume hash", report.volume_hash.clone()),
+        ("drawn here in", format!("{:.2} s", report.host_seconds)),
+    ];
+    for (name, value) in rows {
+        let _ = writeln!(text, "{name:<20} {value}");
+    }
+    if let Some(planes) = &report.pixel_planes {
+        text.push_str(&bounds(planes));
+    }
+    if !report.beyond_paper.is_empty() {
+        let _ = writeln!(text, "\nBeyond the paper: {}.", report.beyond_paper.join(", "));
+    }
+    if let Some(path) = out {
+        let _ = writeln!(text, "\nWritten to {}.", path.display());
+    }
+    text
+}

@@ -1,0 +1,169 @@
+//! Options that say what a volume is; each stands for a path of `--set`.
+
+use crate::error::CliError;
+use crate::terminal::{advance, progress, warn};
+use clap::Args;
+use image::RgbImage;
+use pxpl5::scene::{Placement, Scene};
+use pxpl5::views::png_bytes;
+use pxpl5::volume::pixel_planes::supported;
+use pxpl5::volume::spatialgl::Threads;
+use pxpl5::volume::{Counted, RendererKind, Volume, VolumeSettings};
+use pxpl5::{MotionChoice, Parameter, SceneChoice};
+use std::num::NonZero;
+use std::sync::Arc;
+
+/// The scene, the settings that differ from the paper's, and who draws.
+#[derive(Args, Debug)]
+pub(super) struct VolumeSettingArgs {
+    /// A built-in scene (see `pxpl5 scenes`) or a model file: .ply, .obj, .pdb. It is centred on the axis, its farthest corner at 0.9
+    /// of the display's radius.
+    #[arg(long, value_name = "NAME|FILE", default_value = "mig")]
+    scene: String,
+    /// Decimate the scene to at most N primitives, keeping its shape.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=4_294_967_295))]
+    triangles: Option<u64>,
+    #[command(flatten)]
+    pub(super) settings: SettingOptions,
+}
+
+/// The settings alone, for commands that choose their scenes themselves.
+#[derive(Args, Debug)]
+pub(super) struct SettingOptions {
+    /// How the scene is clipped to a slice: prism, user-planes, exact, tapered:PX, parallel:PX or hyperbolic:PX2; default
+    /// hyperbolic:0.25.
+    #[arg(long, value_name = "CLIP")]
+    clip: Option<String>,
+    /// orthographic, perspective or jittered; default jittered.
+    #[arg(long, value_name = "PROJECTION")]
+    projection: Option<String>,
+    /// Names the sequence of the jitter; default 1.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    seed: Option<String>,
+    /// Samples of each pixel: 1, 4 or 16; default 1.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    samples: Option<String>,
+    /// What of a primitive is drawn: sampled or connected (beyond the paper); default sampled.
+    #[arg(long, value_name = "COVERAGE")]
+    coverage: Option<String>,
+    /// Which slices are drawn: each, or mirror (half of them, beyond the paper); default each.
+    #[arg(long, value_name = "STROBES")]
+    strobes: Option<String>,
+    /// Who draws: host, or pixel-planes (beyond the paper; hyperbolic clip and orthographic projection alone); default host.
+    #[arg(long, value_name = "RENDERER")]
+    on: Option<String>,
+    /// Set any number or choice by its path, such as display.slices=200, clip.bias_px2=1, tile.size=16 or gpu.readback_mb_s=400;
+    /// docs/volumetric.md lists all numbers; may be repeated.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    sets: Vec<String>,
+    /// Worker threads; default: one a core.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
+    threads: Option<u64>,
+    /// Print nothing but errors (and the object of --json).
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+impl SettingOptions {
+    /// The paper's settings with the options applied, `--set` last; numbers that no source allows are warned of.
+    ///
+    /// # Errors
+    ///
+    /// Which option is wrong, what was expected and what was found.
+    pub(super) fn gather(&self) -> Result<VolumeSettings, CliError> {
+        let mut settings = VolumeSettings::paper();
+        let options = [
+            ("clip.variant", "--clip", &self.clip),
+            ("projection", "--projection", &self.projection),
+            ("seed", "--seed", &self.seed),
+            ("draw.samples", "--samples", &self.samples),
+            ("draw.coverage", "--coverage", &self.coverage),
+            ("draw.strobes", "--strobes", &self.strobes),
+            ("on", "--on", &self.on),
+        ];
+        for (path, option, text) in options {
+            text.as_ref().map(|text| settings.set(path, text, option)).transpose()?;
+        }
+        for assignment in &self.sets {
+            settings.assign(assignment, "--set")?;
+        }
+        // What does not fit together is said before anything is drawn.
+        settings.swept_display()?;
+        settings.volume_config()?;
+        if settings.renderer == RendererKind::PixelPlanes {
+            supported(&settings)?;
+        }
+        warn(&out_of_range(&settings), self.quiet);
+        Ok(settings)
+    }
+
+    /// The threads that draw.
+    pub(super) fn threads(&self) -> Threads {
+        let asked = self.threads.and_then(|threads| NonZero::new(threads as usize));
+        asked.map_or_else(Threads::all, Threads)
+    }
+}
+
+fn out_of_range(settings: &VolumeSettings) -> Vec<Parameter> {
+    let numbers = settings.numbers().into_iter().filter(|(_, entry)| !entry.is_in_range());
+    numbers.map(|(path, entry)| Parameter { path, info: *entry.info, value: entry.value, read_only: false }).collect()
+}
+
+impl VolumeSettingArgs {
+    /// The scene, loaded and decimated.
+    ///
+    /// # Errors
+    ///
+    /// When there is no such scene, or its file cannot be used.
+    pub(super) fn load_scene(&self) -> Result<Arc<Scene>, CliError> {
+        load(&self.scene, self.triangles)
+    }
+
+    /// Draws the volume under a progress bar.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with a setting or the scene.
+    pub(super) fn draw(&self, settings: &VolumeSettings) -> Result<Volume, CliError> {
+        let scene = self.load_scene()?;
+        let bar = progress(0, "batches of slices", self.settings.quiet);
+        let finished = |done, of| advance(&bar, done, of);
+        let threads = self.settings.threads();
+        let volume = Volume::draw(settings, &scene, &Counted::new(&threads, &finished));
+        bar.finish_and_clear();
+        Ok(volume?)
+    }
+}
+
+/// A scene by name or file, as every command has it.
+pub(super) fn load(name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, CliError> {
+    let choice = SceneChoice {
+        name: name.to_owned(),
+        placement: Placement::Fitted,
+        triangles: triangles.map(|triangles| triangles as usize),
+        culled: false,
+        motion: MotionChoice::default(),
+    };
+    Ok(choice.load()?)
+}
+
+/// A picture as PNG with where it comes from.
+pub(super) fn png(picture: &RgbImage, volume: &Volume) -> Result<Vec<u8>, CliError> {
+    png_bytes(picture, &origin(volume)).map_err(CliError::failure)
+}
+
+/// What every picture of a volume says of itself.
+pub(super) fn origin(volume: &Volume) -> Vec<(&'static str, String)> {
+    let report = volume.report();
+    let overrides: Vec<String> = report.overrides.iter().map(|set| format!("{}={}", set.path, set.value)).collect();
+    vec![
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("scene", report.scene),
+        ("clip", report.clip),
+        ("projection", report.projection.to_owned()),
+        ("seed", report.seed.to_string()),
+        ("volume_hash", report.volume_hash),
+        ("overrides", overrides.join(" ")),
+        ("beyond_paper", report.beyond_paper.join(", ")),
+    ]
+}

@@ -1,0 +1,168 @@
+//! `pxpl5 volume`: files, JSON, exit codes.
+
+mod support;
+
+use image::RgbImage;
+use serde_json::Value;
+use support::{Folder, err, json, names, out};
+
+/// 36 slices of 128 x 96 pixels.
+const SMALL: [&str; 6] = ["--set", "display.slices=36", "--set", "display.width=128", "--set", "display.height=96"];
+
+fn volume<'a>(command: &'a str, arguments: &[&'a str]) -> Vec<&'a str> {
+    [&["volume", command], arguments, &SMALL].concat()
+}
+
+fn picture(folder: &Folder, name: &str) -> RgbImage {
+    image::open(folder.0.join(name)).unwrap_or_else(|error| panic!("{name}: {error}")).to_rgb8()
+}
+
+#[test]
+fn run_prints_one_json_object_and_writes_the_same() {
+    let folder = Folder::new("volume-run");
+    let arguments = ["--scene", "mig", "--clip", "hyperbolic:1", "--seed", "7", "--json", "--out", "a/b"];
+    let report = json(&folder.run(&volume("run", &arguments)));
+    assert_eq!(report["schema"], "pxpl5-volume/1");
+    assert_eq!((&report["clip"], &report["seed"]), (&Value::from("hyperbolic:1"), &Value::from(7)));
+    assert_eq!(report["bytes_unpacked"], 36 * 128 * 96 * 4);
+    let paths: Vec<_> = report["overrides"].as_array().expect("a list").iter().map(|o| o["path"].clone()).collect();
+    assert_eq!(paths, ["display.slices", "display.width", "display.height", "clip.bias_px2"]);
+    let written = folder.0.join("a/b");
+    assert_eq!(names(&written), ["report.json", "sheet.png", "slice-0.png", "slices.csv", "tiles.png", "view.png"]);
+    let kept: Value =
+        serde_json::from_slice(&std::fs::read(written.join("report.json")).expect("written")).expect("JSON");
+    assert_eq!(kept["volume_hash"], report["volume_hash"]);
+    let slices = std::fs::read_to_string(written.join("slices.csv")).expect("written");
+    assert_eq!(slices.lines().count(), 1 + 36);
+    let accepted: u64 = slices.lines().skip(1).filter_map(|line| line.split(',').nth(3)?.parse::<u64>().ok()).sum();
+    assert_eq!(report["fragments_accepted"], accepted);
+    assert_eq!(picture(&folder, "a/b/sheet.png").dimensions(), (22 * 64, 2 * 64));
+}
+
+#[test]
+fn run_prints_a_table_and_what_is_beyond_the_paper() {
+    let folder = Folder::new("volume-text");
+    let text = out(&folder.run(&volume("run", &["--strobes", "mirror"])));
+    for part in ["mig (417 primitives)", "18 in 1 passes", "Beyond the paper: mirrored strobes.", "volumes a second"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    assert_eq!(out(&folder.run(&volume("run", &["--quiet"]))), "");
+}
+
+#[test]
+fn a_slice_a_sheet_a_view_and_a_film_are_pictures_with_their_origin() {
+    let folder = Folder::new("volume-pictures");
+    for (arguments, size) in [
+        (volume("slice", &["7", "--out", "o.png"]), (256, 96)),
+        (volume("slice", &["7", "--show", "after", "--out", "o.png"]), (128, 96)),
+        (volume("slice", &["7", "--show", "tiles", "--out", "o.png"]), (128, 96)),
+        (volume("sheet", &["--out", "o.png"]), (22 * 64, 2 * 64)),
+        (volume("view", &["--size", "64", "--cut", "0:90", "--out", "o.png"]), (64, 64)),
+        (
+            volume("view", &["--size", "64", "--undithered", "--lambert", "--azimuth", "-30", "--out", "o.png"]),
+            (64, 64),
+        ),
+        (volume("film", &["--size", "32", "--frames", "5", "--out", "o.png"]), (32, 32)),
+    ] {
+        let output = folder.run(&arguments);
+        assert!(output.status.success(), "{arguments:?}: {}", err(&output));
+        assert_eq!(picture(&folder, "o.png").dimensions(), size, "{arguments:?}");
+        let file = std::fs::File::open(folder.0.join("o.png")).expect("written");
+        let reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("PNG");
+        let keys: Vec<_> = reader.info().utf8_text.iter().map(|text| text.keyword.clone()).collect();
+        assert!(keys.contains(&"pxpl5 volume_hash".to_owned()), "{keys:?}");
+        assert_eq!(folder.names(), ["o.png"], "nothing else is left");
+        std::fs::remove_file(folder.0.join("o.png")).expect("ours");
+    }
+}
+
+/// A cutaway leaves out light, and another place another picture.
+#[test]
+fn a_cutaway_is_darker_and_a_turn_has_other_pictures() {
+    let folder = Folder::new("volume-cut");
+    let view = |name: &str, more: &[&str]| {
+        let arguments = [more, &["--size", "64", "--exposure", "20", "--out", name]].concat();
+        let output = folder.run(&volume("view", &arguments));
+        assert!(output.status.success(), "{}", err(&output));
+        picture(&folder, name).pixels().map(|pixel| u64::from(pixel.0[1])).sum::<u64>()
+    };
+    let whole = view("whole.png", &[]);
+    assert!(view("cut.png", &["--cut", "0:120"]) < whole);
+    assert_ne!(picture(&folder, "whole.png"), {
+        view("turned.png", &["--azimuth", "130"]);
+        picture(&folder, "turned.png")
+    });
+}
+
+#[test]
+fn compare_lists_every_variant_and_writes_its_files() {
+    let folder = Folder::new("volume-compare");
+    let comparison = json(&folder.run(&volume("compare", &["--size", "32", "--json", "--out", "o"])));
+    assert_eq!(comparison["schema"], "pxpl5-volume-comparison/1");
+    assert_eq!(comparison["variants"].as_array().map(Vec::len), Some(21));
+    assert_eq!(
+        names(&folder.0.join("o")),
+        ["brightness.svg", "comparison.json", "rows.csv", "samples.png", "variants.png"]
+    );
+    assert_eq!(picture(&folder, "o/variants.png").dimensions(), (3 * 32, 6 * 32));
+    let text = out(&folder.run(&volume("compare", &[])));
+    assert!(text.contains("tapered:0.5") && text.contains("connected is beyond the paper"), "{text}");
+}
+
+#[test]
+fn model_files_are_drawn_and_bad_ones_say_what_is_wrong() {
+    let folder = Folder::new("volume-model");
+    folder.file("m.obj", "v -1 -1 -5\nv 1 -1 -5\nv 0 1 -5\nf 1 2 3\n");
+    let report = json(&folder.run(&volume("run", &["--scene", "m.obj", "--json"])));
+    assert_eq!(report["triangles"], 1);
+    folder.file("bad.obj", "v -1 -1 -5\nv 1 nan -5\nv 0 1 -5\nf 1 2 3\n");
+    let output = folder.run(&volume("run", &["--scene", "bad.obj", "--out", "o"]));
+    assert_eq!(output.status.code(), Some(1), "{}", err(&output));
+    folder.file("index.obj", "v -1 -1 -5\nv 1 0 -5\nv 0 1 -5\nf 1 2 9\n");
+    let output = folder.run(&volume("run", &["--scene", "index.obj", "--out", "o"]));
+    assert_eq!(output.status.code(), Some(1), "{}", err(&output));
+    assert!(!folder.0.join("o").exists(), "what failed leaves nothing");
+}
+
+#[test]
+fn what_is_wrong_with_an_option_is_said_before_anything_is_drawn_and_the_exit_code_is_2() {
+    let folder = Folder::new("volume-refused");
+    for (arguments, parts) in [
+        (&["run", "--set", "display.slices=397"][..], &["display.slices", "even", "397"][..]),
+        (&["run", "--set", "display.width=770"], &["display.width", "multiple of 8", "770"]),
+        (&["run", "--set", "tile.size=12"], &["tile.size", "multiple of 8", "12"]),
+        (&["run", "--clip", "hyperbolic:-1"], &["clip.bias_px2", "0 to", "-1"]),
+        (&["run", "--clip", "tapered:4"], &["clip.offset_px", "0 to 3.04", "4"]),
+        (&["run", "--clip", "cone"], &["--clip", "prism, user-planes", "cone"]),
+        (&["run", "--projection", "fisheye"], &["--projection", "orthographic", "fisheye"]),
+        (&["run", "--set", "jitter.eye_distance=0.005"], &["jitter.eye_distance", "more than", "1.92"]),
+        (&["run", "--set", "clip.bias=1"], &["clip.bias", "did you mean"]),
+        (&["run", "--set", "clip.bias_px2"], &["--set", "equals sign"]),
+        (&["run", "--samples", "9"], &["draw.samples", "1, 4 or 16", "9"]),
+        (&["run", "--scene", "migg"], &["mig"]),
+        (&["slice", "396", "--out", "o.png"], &["0 to 395", "396"]),
+        (&["view", "--cut", "90", "--out", "o.png"], &["0:90", "90"]),
+        (&["view", "--distance", "1", "--out", "o.png"], &["distance", "outside of the display", "384"]),
+        (&["view", "--exposure", "-1", "--out", "o.png"], &["--exposure", "above 0", "-1"]),
+        (&["sheet"], &["--out"]),
+    ] {
+        let output = folder.run(&[&["volume"], arguments].concat());
+        let message = err(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        for part in parts {
+            assert!(message.contains(part), "{arguments:?}: `{part}` is not in: {message}");
+        }
+        assert_eq!(folder.names(), Vec::<String>::new(), "{arguments:?} left something");
+    }
+}
+
+#[test]
+fn numbers_that_no_source_allows_are_warned_of() {
+    let folder = Folder::new("volume-warning");
+    let output = folder.run(&volume("run", &["--set", "display.spin_rpm=3000"]));
+    assert!(
+        err(&output).contains("display.spin_rpm = 3000 1/min is outside its range, 600 to 900"),
+        "{}",
+        err(&output)
+    );
+}

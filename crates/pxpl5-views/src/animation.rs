@@ -1,0 +1,78 @@
+//! Animated PNG: pictures of one size, one after the other.
+
+use crate::picture::{PngError, encoder};
+use image::RgbImage;
+use std::io::Write;
+
+/// An animated PNG that is being written.
+pub struct Animation<W: Write> {
+    writer: png::Writer<W>,
+}
+
+impl<W: Write> Animation<W> {
+    /// Begins a file of so many pictures of a width and height, each shown for a fraction of seconds, in a loop. `texts` go
+    /// into its text chunks, as those of [`png_bytes`](crate::png_bytes).
+    ///
+    /// # Errors
+    ///
+    /// [`PngError`] when the encoder refuses it, such as an animation without pictures.
+    pub fn begin(
+        out: W,
+        size: (u32, u32),
+        pictures: u32,
+        delay: (u16, u16),
+        texts: &[(&str, String)],
+    ) -> Result<Self, PngError> {
+        let mut encoder = encoder(out, size, texts)?;
+        encoder.set_animated(pictures, 0)?;
+        encoder.set_frame_delay(delay.0, delay.1)?;
+        Ok(Self { writer: encoder.write_header()? })
+    }
+
+    /// Adds the next picture.
+    ///
+    /// # Errors
+    ///
+    /// [`PngError`] when it has another size, or there are too many.
+    pub fn add(&mut self, picture: &RgbImage) -> Result<(), PngError> {
+        Ok(self.writer.write_image_data(picture.as_raw())?)
+    }
+
+    /// Ends the file, in which all pictures must be.
+    ///
+    /// # Errors
+    ///
+    /// [`PngError`] when some are missing.
+    pub fn finish(self) -> Result<(), PngError> {
+        Ok(self.writer.finish()?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::Rgb;
+    use std::io::Cursor;
+
+    #[test]
+    fn every_picture_comes_back_in_its_order() {
+        let mut bytes = Vec::new();
+        let mut animation = Animation::begin(&mut bytes, (2, 1), 3, (1, 25), &[]).expect("valid");
+        for level in [10, 20, 30] {
+            animation.add(&RgbImage::from_pixel(2, 1, Rgb([level; 3]))).expect("of its size");
+        }
+        animation.finish().expect("whole");
+        let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().expect("PNG");
+        assert_eq!(reader.info().animation_control().map(|control| control.num_frames), Some(3));
+        for level in [10, 20, 30] {
+            let mut pixels = vec![0; 6];
+            reader.next_frame(&mut pixels).expect("a picture");
+            assert_eq!(pixels, [level; 6]);
+        }
+    }
+
+    #[test]
+    fn an_animation_without_pictures_is_refused() {
+        assert!(Animation::begin(Vec::new(), (2, 1), 0, (1, 25), &[]).is_err());
+    }
+}

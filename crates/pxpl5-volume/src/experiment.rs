@@ -1,0 +1,88 @@
+//! One volume: a scene, settings, and what was drawn.
+
+use crate::choices::RendererKind;
+use crate::error::VolumeError;
+use crate::pixel_planes::{ArrayKind, PixelPlanesRenderer, SliceBounds};
+use crate::settings::VolumeSettings;
+use pxpl5_scene::Scene;
+use spatialgl::{
+    CommandBuffer, HostRenderer, SliceRenderer, Supersampled, SweptDisplay, VolumeFrame, Workers, record_scene,
+    render_volume,
+};
+use std::time::Instant;
+
+/// A volume that has been drawn, with all that it was drawn from.
+#[derive(Clone, Debug)]
+pub struct Volume {
+    /// The settings that it was drawn with.
+    pub settings: VolumeSettings,
+    /// Name of the scene that it shows.
+    pub scene: String,
+    /// The display's slices, volumes and bins.
+    pub display: SweptDisplay,
+    /// The recording that was replayed for every slice.
+    pub commands: CommandBuffer,
+    /// Bits, counts, and colours before halftoning.
+    pub frame: VolumeFrame,
+    /// What the renderers of Pixel-Planes 5 did for it, if they drew it.
+    pub bounds: Option<SliceBounds>,
+    /// Seconds that this computer took to draw it.
+    pub host_seconds: f64,
+}
+
+impl Volume {
+    /// Draws a scene: its middle on the axis, its farthest corner at 0.9 of the radius.
+    ///
+    /// # Errors
+    ///
+    /// [`VolumeError`] names what is wrong with a setting, or with the scene.
+    pub fn draw(settings: &VolumeSettings, scene: &Scene, workers: &dyn Workers) -> Result<Self, VolumeError> {
+        let commands = record_scene(scene, settings.radius(), settings.is_lit)?;
+        Self::draw_commands(settings, scene.name(), commands, workers)
+    }
+
+    /// Draws a recording whose vertices are in pixels already.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::draw`].
+    pub fn draw_commands(
+        settings: &VolumeSettings,
+        scene: &str,
+        commands: CommandBuffer,
+        workers: &dyn Workers,
+    ) -> Result<Self, VolumeError> {
+        let display = settings.swept_display()?;
+        let config = settings.volume_config()?;
+        let commands = commands.combining(settings.combine);
+        let draw = |renderer: &dyn SliceRenderer| render_volume(&display, &commands, &config, renderer, workers);
+        let started = Instant::now();
+        let mut bounds = None;
+        let frame = match (settings.renderer, settings.draw.samples) {
+            (RendererKind::Host, 1) => draw(&HostRenderer)?,
+            (RendererKind::Host, samples) => draw(&Supersampled::new(HostRenderer, samples as u32)?)?,
+            (RendererKind::PixelPlanes, _) => {
+                let renderer = PixelPlanesRenderer::new(settings, ArrayKind::Lanes)?;
+                let frame = draw(&renderer)?;
+                bounds = Some(SliceBounds::of(renderer.work(), &frame, config.tiling));
+                frame
+            }
+        };
+        let host_seconds = started.elapsed().as_secs_f64();
+        let settings = settings.clone();
+        Ok(Self { settings, scene: scene.to_owned(), display, commands, frame, bounds, host_seconds })
+    }
+
+    /// A slice of the turn.
+    ///
+    /// # Errors
+    ///
+    /// [`VolumeError::Missing`] if there are not so many.
+    pub fn check_slice(&self, slice: u32) -> Result<u32, VolumeError> {
+        let slices = self.frame.planes.slices();
+        if slice < slices {
+            return Ok(slice);
+        }
+        Err(VolumeError::Missing { what: "slice", expected: format!("0 to {}", slices - 1), found: slice.to_string() })
+    }
+}

@@ -1,0 +1,46 @@
+//! The SpatialGL paper's figures beside the model's: rows with standings, what it says without numbers, its drawings anew.
+
+mod document;
+mod drawings;
+mod plain;
+mod printed;
+mod row;
+mod shown;
+
+pub use document::markdown;
+pub use drawings::{Drawing, drawings};
+pub use row::{FigureRow, Figures, MeasuredScene};
+pub use shown::Shown;
+
+use crate::error::VolumeError;
+use crate::experiment::Volume;
+use perspecta::figures::{formulas, measured};
+use plain::plain;
+use pxpl5_scene::Scene;
+use row::order;
+use spatialgl::Workers;
+use std::sync::Arc;
+
+/// Measures everything; P17 and the draws that bins leave on each of the scenes. `finished` hears how many steps are done.
+///
+/// # Errors
+///
+/// [`VolumeError`] if a scene cannot be drawn.
+pub fn all(scenes: &[Arc<Scene>], workers: &dyn Workers, finished: impl Fn(u64, u64)) -> Result<Figures, VolumeError> {
+    let steps = scenes.len() as u64 + 2;
+    let mut rows: Vec<FigureRow> = formulas().into_iter().map(|figure| FigureRow::of(figure, None)).collect();
+    rows.extend(printed::figures(workers)?.into_iter().map(|figure| FigureRow::of(figure, None)));
+    finished(1, steps);
+    let mut of_scenes = Vec::new();
+    for (i, scene) in scenes.iter().enumerate() {
+        let volume = Volume::draw(&plain(), scene, workers)?;
+        let found = measured(&volume.frame.stats);
+        rows.extend(found.into_iter().map(|figure| FigureRow::of(figure, Some(scene.name()))));
+        of_scenes.push(MeasuredScene::of(&volume));
+        finished(i as u64 + 2, steps);
+    }
+    rows.sort_by_key(|row| order(row.figure.id));
+    let shown = shown::all(scenes, workers)?;
+    finished(steps, steps);
+    Ok(Figures { schema: "pxpl5-volume-figures/1", figures: rows, shown, scenes: of_scenes })
+}

@@ -1,0 +1,240 @@
+//! Figures that need slices to be asked or drawn: rules of the clip, bits of a pixel, stencil, jitter.
+
+use crate::error::VolumeError;
+use parameters::Standing;
+use perspecta::PerspectaConfig;
+use perspecta::figures::Figure;
+use spatialgl::{
+    BinLayout, CommandBuffer, Context, HalfWedge, HostRenderer, Jitter, Projection, SliceClip, SliceView, SliceVolume,
+    SpatialDisplay, Strobes, SweptDisplay, TieRule, Tiling, TimeModel, Topology, Vertex, VertexBuffer, VolumeConfig,
+    VolumeFrame, VolumeStats, WedgePlanes, WedgeTest, Workers, packed_word, pixel_of_word, render_volume,
+};
+
+const P: Standing = Standing::Published;
+const D: Standing = Standing::Derived;
+
+/// A triangle that stands upright beside the axis, pixels: the first of the specification's.
+const TRIANGLE: [[f64; 3]; 3] = [[-200.3, -150.2, 40.1], [200.4, -150.2, 40.1], [0.6, 200.7, 40.1]];
+
+/// The slice of the triangle that is looked at: 209 pixels of it are in the exact volume (derived: the intersection's area).
+const SLICE: usize = 13;
+
+/// All rows of this module.
+pub(super) fn figures(workers: &dyn Workers) -> Result<Vec<Figure>, VolumeError> {
+    let exact = display(SliceClip::ShaderPlanes, Projection::Orthographic)?;
+    let frame = draw(&exact, workers)?;
+    let mut rows = boundaries(&exact);
+    rows.extend(signs());
+    rows.extend(pixels(&frame));
+    rows.extend(binning());
+    rows.extend(stencil(&frame));
+    rows.extend(jitter()?);
+    rows.extend(means()?);
+    Ok(rows)
+}
+
+fn row(
+    id: &'static str,
+    statement: &'static str,
+    unit: &'static str,
+    published: f64,
+    half_digit: f64,
+    computed: f64,
+) -> Figure {
+    let interval = [published - half_digit, published + half_digit];
+    let standing = if id.starts_with('P') { P } else { D };
+    Figure { id, statement, unit, published, interval, computed, standing }
+}
+
+fn display(clip: SliceClip, projection: Projection) -> Result<SweptDisplay, VolumeError> {
+    Ok(PerspectaConfig::PAPERS.swept(clip, projection)?)
+}
+
+fn recording() -> Result<CommandBuffer, VolumeError> {
+    let vertices = TRIANGLE.map(|corner| Vertex::new(corner.into(), [255; 3]));
+    let buffer = VertexBuffer::new(vertices.to_vec())?;
+    let mut context = Context::default();
+    context.draw(&buffer, 0..3, Topology::Triangles)?;
+    Ok(context.present())
+}
+
+fn draw(display: &SweptDisplay, workers: &dyn Workers) -> Result<VolumeFrame, VolumeError> {
+    let config = VolumeConfig { strobes: Strobes::Mirror, keeps_colours: true, ..VolumeConfig::paper() };
+    Ok(render_volume(display, &recording()?, &config, &HostRenderer, workers)?)
+}
+
+/// P2: a walk around the axis meets each plane on both sides; whoever is on the axis is in both planes.
+fn boundaries(display: &SweptDisplay) -> Vec<Figure> {
+    let view = &display.views()[7];
+    let steps = 100_000;
+    let place = |i: u32| {
+        let (sin, cos) = spatialgl::sin_cos_of_turn(i64::from(i), steps);
+        [100.0 * cos, 0.0, 100.0 * sin]
+    };
+    let accepts = |i: u32| view.accepts(place(i % steps).into());
+    let crossings = (0..steps).filter(|i| accepts(*i) != accepts(i + 1)).count();
+    let on_axis = display.views().iter().filter(|view| has_axis(view)).count();
+    vec![
+        row("P2", "planes that bound a slice volume", "planes", 2.0, 0.0, crossings as f64 / 2.0),
+        row("P2", "slices whose planes both contain the axis", "slices", 396.0, 0.0, on_axis as f64),
+    ]
+}
+
+/// Whether a slice that has its boundary planes has a point of the axis, and none beside it in all directions.
+fn has_axis(view: &SliceView) -> bool {
+    let SliceVolume::Wedge(planes, _) = view.volume else { return false };
+    let closed = SliceVolume::Wedge(planes, WedgeTest::Shader(TieRule::Closed));
+    let across = view.view.transpose().z_axis;
+    closed.contains([0.0, 33.0, 0.0], 0.0, 0.0) && !closed.contains([1e-6 * across.x, 33.0, 1e-6 * across.z], 0.0, 1e-6)
+}
+
+/// Points on a grid that has places in many planes, off the axis.
+fn grid() -> impl Iterator<Item = [f64; 3]> {
+    let side = -60..=60i32;
+    let places = side.clone().flat_map(move |x| side.clone().map(move |z| [f64::from(x), 7.0, f64::from(z)]));
+    places.filter(|[x, _, z]| *x != 0.0 || *z != 0.0)
+}
+
+fn percent(total: usize, agreeing: usize) -> f64 {
+    100.0 * agreeing as f64 / total as f64
+}
+
+/// P3 by the codes of bins, P4 by the printed product against the clip, for the normals of figure 5 left and right.
+fn signs() -> Vec<Figure> {
+    let layout = BinLayout::double_wedges(0.0);
+    let rule = |plane: &[f64; 4], p: [f64; 3]| plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] >= 0.0;
+    let expected = |p: [f64; 3]| {
+        let bits = layout.planes.iter().enumerate().map(|(i, plane)| u32::from(rule(plane, p)) << i);
+        bits.sum::<u32>()
+    };
+    let coded = grid().filter(|p| layout.code(*p) == expected(*p)).count();
+    let left = grid().filter(|p| agrees(*p, 1.0)).count();
+    let right = grid().filter(|p| agrees(*p, -1.0)).count();
+    let total = grid().count();
+    vec![
+        row("P3", "points that have the sign of the printed rule", "%", 100.0, 0.0, percent(total, coded)),
+        row("P4", "points accepted as printed, normals as in figure 5 left", "%", 100.0, 0.0, percent(total, left)),
+        row("P4", "points accepted as printed, normals as in figure 5 right", "%", 100.0, 0.0, percent(total, right)),
+    ]
+}
+
+/// Whether slice 50 has a point just if the product of its signed distances is positive, or negative where the second
+/// normal is turned round (`orientation` -1).
+fn agrees(p: [f64; 3], orientation: f64) -> bool {
+    let (sin, cos) = spatialgl::sin_cos_of_turn(99, 792);
+    let (next_sin, next_cos) = spatialgl::sin_cos_of_turn(101, 792);
+    let planes = WedgePlanes { a: [-sin, cos], b: [next_sin, -next_cos], fraction_bits: None };
+    let volume = SliceVolume::Wedge(planes, WedgeTest::Shader(TieRule::ProductPositive));
+    let first = p[2] * cos - p[0] * sin;
+    let second = orientation * (p[0] * next_sin - p[2] * next_cos);
+    let printed = orientation * (first * second) > 0.0;
+    volume.contains(p, 0.0, 0.0) == printed
+}
+
+/// P6, P7: bits of what is counted unpacked, and bits of a word of eight pixels that the projector can tell apart.
+fn pixels(frame: &VolumeFrame) -> Vec<Figure> {
+    let [width, height] = frame.planes.size().map(u64::from);
+    let pixels = frame.stats.slices_rendered * width * height;
+    let gpu = (8 * frame.stats.bytes_unpacked) as f64 / pixels as f64;
+    let white = packed_word(0xFF, 0xFF, 0xFF);
+    let projector = (0..8).map(|pixel| pixel_of_word(white, pixel).count_ones()).sum::<u32>();
+    vec![
+        row("P6", "bits of a pixel on the GPU", "bits", 32.0, 0.0, gpu),
+        row("P7", "bits of a pixel on the projector", "bits", 3.0, 0.0, f64::from(projector) / 8.0),
+    ]
+}
+
+/// P14: the stages that cost time once a volume, whatever the slices are, and the planes of each region.
+fn binning() -> Vec<Figure> {
+    let none = VolumeStats::default();
+    let costs = |stats: VolumeStats| TimeModel::GEFORCE_6800.packed(&stats, [8, 8], 8).cpu_ms > 0.0;
+    let stages = [VolumeStats { vertices: 1, ..none.clone() }, VolumeStats { primitives: 1, ..none }];
+    let stages = stages.into_iter().filter(|stats| costs(stats.clone())).count();
+    let layout = BinLayout::double_wedges(0.0);
+    let bounds: Vec<u32> = layout.regions.iter().map(|region| region.bounds.count_ones()).collect();
+    let most = bounds.iter().max().copied().unwrap_or(0);
+    let least = bounds.iter().min().copied().unwrap_or(0);
+    vec![
+        row("P14", "stages of binning: vertices, primitives", "stages", 2.0, 0.0, stages as f64),
+        row("P14", "planes that bound a bin region, fewest", "planes", 2.0, 0.0, f64::from(least)),
+        row("P14", "planes that bound a bin region, most", "planes", 2.0, 0.0, f64::from(most)),
+    ]
+}
+
+/// P15: marks of a slice on which something is drawn, and of one on which nothing is.
+fn stencil(frame: &VolumeFrame) -> Vec<Figure> {
+    let marked = |slice: usize| frame.colours.as_ref().map_or(0, |colours| colours[slice].len()) as f64;
+    let queries = Tiling::PAPER.grid(frame.planes.size()).tiles();
+    let per_batch = frame.stats.queries as f64 / frame.stats.stencil_clears.max(1) as f64;
+    vec![
+        row(
+            "P15",
+            "pixels equal to 1 after the clear: slice 99, which the triangle does not meet",
+            "pixels",
+            0.0,
+            0.0,
+            marked(99),
+        ),
+        Figure {
+            standing: D,
+            ..row("P15", "pixels equal to 1 after 209 fragments", "pixels", 209.0, 2.0, marked(SLICE))
+        },
+        row("D8", "queries between two clears", "queries", f64::from(queries), 0.0, per_batch),
+    ]
+}
+
+/// P19: the largest shift that any slice's shear makes at the face of its slab, and how many eyes there are.
+fn jitter() -> Result<Vec<Figure>, VolumeError> {
+    let clip = SliceClip::Hyperbolic(0.25);
+    let wedge = HalfWedge::new(396, 384.0);
+    let reach = clip.reach(wedge);
+    let projection = Projection::Jittered(Jitter::new(1));
+    let eyes: Vec<_> = (0..396).map(|slice| projection.eye(slice, wedge.radius, reach)).collect();
+    let shift = eyes.iter().map(|eye| reach * (eye.shear[0].powi(2) + eye.shear[1].powi(2)).sqrt());
+    let largest = shift.fold(0.0, f64::max);
+    let mut places: Vec<_> = eyes.iter().filter_map(|eye| eye.eye.map(|place| place.map(f64::to_bits))).collect();
+    places.sort_unstable();
+    places.dedup();
+    let display = display(clip, projection)?;
+    let mut matrices: Vec<_> =
+        display.views().iter().map(|view: &SliceView| view.projection.to_cols_array().map(f64::to_bits)).collect();
+    matrices.sort_unstable();
+    matrices.dedup();
+    Ok(vec![
+        Figure {
+            interval: [0.0, 1.0],
+            ..row("P19", "largest shift by the shear: below a pixel", "px", 1.0, 0.0, largest)
+        },
+        row("P19", "eyes, one for each slice", "eyes", 396.0, 0.0, places.len() as f64),
+        row("P19", "matrices, one for all of a slice", "matrices", 396.0, 0.0, matrices.len() as f64),
+    ])
+}
+
+/// D10 and D11 by asking slices: how many planes have each of some points spread evenly over the disc.
+fn means() -> Result<Vec<Figure>, VolumeError> {
+    let prism = mean_planes(SliceClip::Prism)?;
+    let hyperbola = mean_planes(SliceClip::Hyperbolic(0.25))?;
+    let exact = mean_planes(SliceClip::ShaderPlanes)?;
+    Ok(vec![
+        row("D10", "planes that accept a point, mean over 20,000 points, prism", "planes", 2.0, 0.02, prism),
+        row("D11", "the same of the hyperbola, accepted", "planes", 1.081, 0.01, hyperbola),
+        row("D11", "the same of the exact clip", "planes", 1.0, 0.0, exact),
+    ])
+}
+
+fn mean_planes(clip: SliceClip) -> Result<f64, VolumeError> {
+    let display = display(clip, Projection::Orthographic)?;
+    let views = &display.views()[..198];
+    let points = 20_000;
+    let golden = (5f64.sqrt() - 1.0) / 2.0;
+    let accepted: usize = (0..points)
+        .map(|i| {
+            // A sunflower: equal areas, angles that never line up.
+            let radius = 384.0 * ((f64::from(i) + 0.5) / f64::from(points)).sqrt();
+            let angle = std::f64::consts::TAU * (f64::from(i) * golden).fract();
+            let point = [radius * angle.cos(), 0.0, radius * angle.sin()];
+            views.iter().filter(|view| view.accepts(point.into())).count()
+        })
+        .sum();
+    Ok(accepted as f64 / f64::from(points))
+}

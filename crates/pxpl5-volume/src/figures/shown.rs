@@ -1,0 +1,193 @@
+//! What the paper states without numbers, each with a number that shows it or does not.
+
+use super::plain::plain;
+use crate::choices::{ClipKind, ProjectionKind};
+use crate::error::VolumeError;
+use crate::experiment::Volume;
+use crate::settings::VolumeSettings;
+use pxpl5_scene::Scene;
+use serde::Serialize;
+use spatialgl::{
+    CommandBuffer, Context, HalfWedge, SliceClip, SliceVolume, TieRule, Topology, VertexBuffer, VolumeStats,
+    WedgePlanes, WedgeTest, Workers, gap_correlation, tessellated_sphere,
+};
+use std::sync::Arc;
+
+/// A statement of the paper, and what the model does.
+#[derive(Clone, Debug, Serialize)]
+pub struct Shown {
+    /// What the paper states, in words.
+    pub statement: &'static str,
+    /// The numbers by which it was looked at.
+    pub evidence: String,
+    /// Whether they show it.
+    pub holds: bool,
+}
+
+/// Every statement, looked at on the first of the scenes where one is needed.
+pub(super) fn all(scenes: &[Arc<Scene>], workers: &dyn Workers) -> Result<Vec<Shown>, VolumeError> {
+    let mut shown = vec![dead_zone(), dilation()];
+    if let Some(scene) = scenes.first() {
+        let volume = Volume::draw(&plain(), scene, workers)?;
+        shown.insert(0, prism(scene, workers)?);
+        shown.push(limits(&volume));
+        shown.push(tiles(scene, workers)?);
+    }
+    shown.push(orthographic(workers)?);
+    shown.push(noise(workers)?);
+    Ok(shown)
+}
+
+/// Lit pixels of the prism over those of the exact clip, in rings of 8 px.
+fn prism(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
+    let rings = |clip| {
+        let volume = Volume::draw(&VolumeSettings { clip, ..plain() }, scene, workers)?;
+        Ok::<_, VolumeError>(volume.brightness().lit_voxels)
+    };
+    let prism = rings(ClipKind::Prism)?;
+    let exact = rings(ClipKind::Exact)?;
+    let ratio = |from: usize, to: usize| {
+        let sum = |rings: &[u64]| rings[from..to].iter().sum::<u64>() as f64;
+        sum(&prism) / sum(&exact).max(1.0)
+    };
+    let near = ratio(1, 4);
+    let far = ratio(36, 43);
+    Ok(Shown {
+        statement: "the bounding prism is blurry and too bright near the axis",
+        evidence: format!(
+            "{}: {near:.1} times as many lit pixels as the exact clip from 8 to 32 px from the axis, {far:.2} times from 288 to 344 px",
+            scene.name()
+        ),
+        holds: near > 4.0 && far < 1.5,
+    })
+}
+
+/// Radius within which no point is accepted when planes have few bits: 2^-(bits + 1) / S (derived).
+fn dead_zone() -> Shown {
+    let radius = |bits: u32| {
+        let wedge = HalfWedge::new(396, 384.0);
+        let planes = WedgePlanes { a: [wedge.sin, wedge.cos], b: [wedge.sin, -wedge.cos], fraction_bits: Some(bits) };
+        let volume = SliceVolume::Wedge(planes, WedgeTest::Shader(TieRule::HalfOpen));
+        let steps = (1..=10_000).map(|i| f64::from(i) * 1e-3);
+        steps.take_while(|r| !volume.contains([*r, 0.0, 0.0], *r, 0.0)).last().unwrap_or(0.0)
+    };
+    let four = radius(4);
+    let eight = radius(8);
+    Shown {
+        statement: "clip planes leave a dead zone at the axis",
+        evidence: format!(
+            "planes of 4 fraction bits accept nothing within {four:.2} px (formula 3.94), of 8 bits within {eight:.3} px (0.246)"
+        ),
+        holds: (four - 3.939).abs() < 2e-3 && (eight - 0.246).abs() < 2e-3,
+    }
+}
+
+fn dilation() -> Shown {
+    let wedge = HalfWedge::new(396, 384.0);
+    let more =
+        |clip: SliceClip, u: f64| clip.half_thickness(wedge, u) - SliceClip::ShaderPlanes.half_thickness(wedge, u);
+    let parallel = [0.0, 384.0].map(|u| more(SliceClip::Parallel(0.5), u));
+    let hyperbola = [0.0, 384.0].map(|u| more(SliceClip::Hyperbolic(0.25), u));
+    Shown {
+        statement: "parallel offsets dilate everywhere, the hyperbola mainly at the axis",
+        evidence: format!(
+            "half a slab is thicker by {:.3} and {:.3} px with parallel offsets, at the axis and at the rim, and by {:.3} and {:.3} px \
+             with the hyperbola",
+            parallel[0], parallel[1], hyperbola[0], hyperbola[1]
+        ),
+        holds: (parallel[0] - parallel[1]).abs() < 1e-3 && hyperbola[0] > 10.0 * hyperbola[1],
+    }
+}
+
+/// A triangle in a plane perpendicular to the axis: the third of the specification's.
+const LEVEL: [[f64; 3]; 3] = [[-200.3, 10.2, -100.4], [250.6, 10.2, -150.3], [30.7, 10.2, 260.9]];
+
+fn orthographic(workers: &dyn Workers) -> Result<Shown, VolumeError> {
+    let fragments = |projection| {
+        let vertices = LEVEL.map(|corner| spatialgl::Vertex::new(corner.into(), [255; 3])).to_vec();
+        let settings = VolumeSettings { projection, ..VolumeSettings::paper() };
+        let volume = Volume::draw_commands(&settings, "a level triangle", recording(vertices, &[0, 1, 2])?, workers)?;
+        Ok::<_, VolumeError>(volume.frame.stats.fragments_accepted)
+    };
+    let along = fragments(ProjectionKind::Orthographic)?;
+    let jittered = fragments(ProjectionKind::Jittered)?;
+    Ok(Shown {
+        statement: "an orthographic projection loses every plane perpendicular to the axis",
+        evidence: format!("a triangle of 87,200 px^2 in such a plane: {along} fragments, and {jittered} with jitter"),
+        holds: along == 0 && jittered > 0,
+    })
+}
+
+fn recording(vertices: Vec<spatialgl::Vertex>, indices: &[u32]) -> Result<CommandBuffer, VolumeError> {
+    let buffer = VertexBuffer::new(vertices)?;
+    let mut context = Context::default();
+    context.draw_indexed(&buffer, indices, Topology::Triangles)?;
+    Ok(context.present())
+}
+
+/// A sphere of 198 x 396 facets with a radius of 300 px: every slice meets the same facets, so that along the normal all have
+/// the same gaps.
+fn noise(workers: &dyn Workers) -> Result<Shown, VolumeError> {
+    let likeness = |projection| {
+        let (vertices, indices) = tessellated_sphere(glam::DVec3::ZERO, 300.0, 198, [255; 3]);
+        let settings = VolumeSettings { projection, ..VolumeSettings::paper() };
+        let volume = Volume::draw_commands(&settings, "sphere", recording(vertices, &indices)?, workers)?;
+        Ok::<_, VolumeError>(gap_correlation(&volume.display, &volume.commands, &volume.frame).unwrap_or(f64::NAN))
+    };
+    let along = likeness(ProjectionKind::Orthographic)?;
+    let jittered = likeness(ProjectionKind::Jittered)?;
+    Ok(Shown {
+        statement: "jitter turns moire into uncorrelated noise",
+        evidence: format!(
+            "gaps of neighbouring slices of a sphere of 198 x 396 facets (shown share of each row): correlation {along:.2} along the normal, {jittered:.2} \
+             with jitter"
+        ),
+        holds: jittered.abs() < 0.5 * along,
+    })
+}
+
+/// The parts of the model's GPU time, and of the bus without packing and tiles.
+fn limits(volume: &Volume) -> Shown {
+    let stats = &volume.frame.stats;
+    let model = volume.settings.time_model();
+    let size = volume.frame.planes.size();
+    let time = volume.time();
+    let unpacked = model.unpacked(stats, size);
+    let vertices_only = VolumeStats { draws: stats.draws, ..VolumeStats::default() };
+    let vertices_ms = model.unpacked(&vertices_only, size).gpu_ms;
+    let fill_ms = unpacked.gpu_ms - vertices_ms;
+    Shown {
+        statement: "rendering is limited by fill, and reading back is the narrow path",
+        evidence: format!(
+            "{}, model: fill {fill_ms:.1} ms against {vertices_ms:.1} ms for vertices; reading back {:.0} ms unpacked, {:.0} ms packed by \
+             tiles, of a volume of {:.0} ms",
+            volume.scene,
+            unpacked.readback_ms,
+            time.readback_ms,
+            1e3 / time.serial_hz()
+        ),
+        holds: fill_ms > vertices_ms && unpacked.readback_ms > unpacked.gpu_ms,
+    }
+}
+
+fn tiles(scene: &Scene, workers: &dyn Workers) -> Result<Shown, VolumeError> {
+    let mut found = Vec::new();
+    for size in [64, 32, 16, 8] {
+        let mut settings = plain();
+        settings.tile.size = size;
+        let volume = Volume::draw(&settings, scene, workers)?;
+        let stats = &volume.frame.stats;
+        let queries_ms = (stats.queries * settings.gpu.query_ns) as f64 / 1e6;
+        let share = 100.0 * stats.pixels_packed as f64 / (stats.bytes_unpacked / 4) as f64;
+        found.push((size, share, queries_ms));
+    }
+    let text: Vec<String> = found
+        .iter()
+        .map(|(size, share, ms)| format!("{size} px: {share:.1} % packed, {ms:.0} ms of queries"))
+        .collect();
+    Ok(Shown {
+        statement: "smaller tiles skip more and cost more",
+        evidence: format!("{}: {}", scene.name(), text.join("; ")),
+        holds: found.windows(2).all(|pair| pair[1].1 < pair[0].1 && pair[1].2 > pair[0].2),
+    })
+}

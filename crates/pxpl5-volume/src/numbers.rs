@@ -1,0 +1,69 @@
+//! Every number of an experiment that belongs neither to the display nor to the model of time.
+
+parameters::parameter_table! {
+    /// Offsets and bias of the clips, and the precision of their planes.
+    pub struct ClipNumbers {
+        /// Offset of the tapered and the parallel clip.
+        offset_px: f64 = 0.5, "px", Assumed, 0.0..=2.0 in 0.0..=4096.0, "half a pixel, so that no slab is thinner than one";
+        /// Bias of the hyperbolic clip.
+        bias_px2: f64 = 0.25, "px^2", Assumed, 0.0..=4.0 in 0.0..=16777216.0, "the square of the offset";
+        /// Fraction bits of the evaluated planes; 53 stands for double precision.
+        plane_fraction_bits: 53, "bits", Assumed, 4..=53 in 0..=53, "open in the paper; the dead zone shows what few bits do";
+    }
+}
+
+parameters::parameter_table! {
+    /// The law by which each slice's eye and shear are drawn.
+    pub struct JitterNumbers {
+        /// Distance of the eye from the slice.
+        eye_distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "open in the paper";
+        /// Radius of the disc in which the eye lies.
+        eye_radius: f64 = 0.5, "radii", Assumed, 0.0..=1.0 in 0.0..=1000.0, "open in the paper";
+        /// Largest shift by the shear at the face of the slab.
+        shear_px: f64 = 0.5, "px", Assumed, 0.0..=1.0 in 0.0..=1000.0, "the paper: below a pixel";
+    }
+}
+
+parameters::parameter_table! {
+    /// The eye of the perspective projection, the same for all slices.
+    pub struct EyeNumbers {
+        /// Place along the slice.
+        across_px: f64 = 0.0, "px", Assumed, -384.0..=384.0 in -1000000.0..=1000000.0, "on the axis";
+        /// Place up the slice.
+        up_px: f64 = 0.0, "px", Assumed, -384.0..=384.0 in -1000000.0..=1000000.0, "in the middle";
+        /// Distance of the eye from the slice.
+        distance: f64 = 4.0, "radii", Assumed, 2.0..=16.0 in 0.001..=1000000.0, "as with jitter";
+        /// Shear along the slice, pixels a pixel of distance from the slice.
+        shear_across: f64 = 0.0, "1", Assumed, -0.2..=0.2 in -1000.0..=1000.0, "none";
+        /// Shear up the slice.
+        shear_up: f64 = 0.0, "1", Assumed, -0.2..=0.2 in -1000.0..=1000.0, "none";
+    }
+}
+
+parameters::parameter_table! {
+    /// Tiles and batches of queries.
+    pub struct TileNumbers {
+        /// Side of a tile; 0 packs and sends every pixel.
+        size: 32, "px", Published, 32..=32 in 0..=4096, "the SpatialGL paper (P16)";
+        /// Slices between stencil clears and queries.
+        batch: 4, "slices", Published, 4..=4 in 1..=65536, "the SpatialGL paper (P18)";
+    }
+}
+
+parameters::parameter_table! {
+    /// How slices are sampled and halftoned.
+    pub struct DrawNumbers {
+        /// Samples of each pixel.
+        samples: 1, "samples", Published, 1..=1 in 1..=16, "the SpatialGL paper rejects more as too dear; 4 and 16 for comparison";
+        /// Rows and columns of the dither matrix.
+        matrix: 8, "px", Assumed, 2..=16 in 2..=16, "open in the paper";
+    }
+}
+
+parameters::parameter_table! {
+    /// Where the turn begins.
+    pub struct SweepNumbers {
+        /// Angle of slice 0.
+        phase_deg: f64 = 0.0, "deg", Assumed, 0.0..=360.0 in -360.0..=360.0, "open in the paper";
+    }
+}

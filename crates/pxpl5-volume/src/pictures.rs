@@ -1,0 +1,256 @@
+//! What there is to look at of a volume: all slices, one slice before and after halftoning, tiles, and what an eye sees.
+
+use crate::error::VolumeError;
+use crate::experiment::Volume;
+use crate::settings::VolumeSettings;
+use image::imageops::{self, FilterType};
+use image::{GenericImage, Rgb, RgbImage};
+use perspecta::{Camera, Light, ViewOptions, film, view_planes, view_undithered};
+use spatialgl::{SpatialDisplay, Strobes, Tiling, Workers};
+
+/// Thumbnails in a row of a sheet: 22 x 18 are the 396 slices of the paper.
+pub const SHEET_COLUMNS: u32 = 22;
+
+/// Distance of thumbnails in a sheet, pixels.
+const THUMBNAIL: u32 = 64;
+
+/// Part of the lit pixels of a view that stays below white.
+const BELOW_WHITE: f64 = 0.98;
+
+/// Batches in a row of a map of tiles.
+const MAP_COLUMNS: u32 = 11;
+
+/// How an eye looks at a volume.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// Where the eye is, and the size of its picture.
+    pub camera: Camera,
+    /// Angles left out, and whether pixels are as bright as the screen is turned.
+    pub options: ViewOptions,
+    /// Whether the colours before halftoning are seen.
+    pub is_undithered: bool,
+}
+
+impl Look {
+    /// An eye four radii away, its picture so many pixels wide and high.
+    #[must_use]
+    pub fn around(settings: &VolumeSettings, azimuth_deg: f64, elevation_deg: f64, side: u32) -> Self {
+        let camera = Camera::around(settings.radius(), azimuth_deg, elevation_deg, side);
+        let phase_deg = settings.sweep.phase_deg;
+        let options = ViewOptions { phase_deg, rotation: settings.rotation, ..ViewOptions::default() };
+        Self { camera, options, is_undithered: false }
+    }
+
+    /// Checks that the eye sees a display with these settings.
+    ///
+    /// # Errors
+    ///
+    /// [`VolumeError::Display`] names the number that is wrong.
+    pub fn check(&self, settings: &VolumeSettings) -> Result<(), VolumeError> {
+        let display = &settings.display;
+        Ok(self.camera.check_before([display.width as u32, display.height as u32])?)
+    }
+
+    /// Light of one turn.
+    ///
+    /// # Errors
+    ///
+    /// [`VolumeError::Display`] if the eye sees nothing.
+    pub fn light(&self, volume: &Volume, workers: &dyn Workers) -> Result<Light, VolumeError> {
+        let undithered = match self.is_undithered {
+            true => view_undithered(&volume.frame, &self.camera, self.options, workers)?,
+            false => None,
+        };
+        match undithered {
+            Some(light) => Ok(light),
+            None => Ok(view_planes(&volume.frame.planes, &self.camera, self.options, workers)?),
+        }
+    }
+
+    /// The picture with its own exposure, or with one that is given.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::light`].
+    pub fn picture(
+        &self,
+        volume: &Volume,
+        exposure: Option<f64>,
+        workers: &dyn Workers,
+    ) -> Result<RgbImage, VolumeError> {
+        let light = self.light(volume, workers)?;
+        Ok(light.picture(exposure.unwrap_or_else(|| light.exposure(BELOW_WHITE))))
+    }
+
+    /// The exposure with which most of the picture stays below white.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::light`].
+    pub fn exposure(&self, volume: &Volume, workers: &dyn Workers) -> Result<f64, VolumeError> {
+        Ok(self.light(volume, workers)?.exposure(BELOW_WHITE))
+    }
+
+    /// Pictures of a turn around the volume, all with one exposure.
+    pub fn film<'a>(
+        &self,
+        volume: &'a Volume,
+        frames: u32,
+        workers: &'a dyn Workers,
+    ) -> impl Iterator<Item = Result<RgbImage, VolumeError>> + use<'a> {
+        let pictures = film(&volume.frame.planes, self.camera, self.options, frames, workers);
+        pictures.map(|picture| Ok(picture?))
+    }
+}
+
+/// All slices as thumbnails, row by row.
+#[must_use]
+pub fn sheet(volume: &Volume) -> RgbImage {
+    let slices = volume.frame.planes.slices();
+    let columns = SHEET_COLUMNS.min(slices);
+    let mut all = RgbImage::from_pixel(columns * THUMBNAIL, slices.div_ceil(columns) * THUMBNAIL, Rgb([48; 3]));
+    let [width, height] = volume.frame.planes.size();
+    let longest = width.max(height);
+    let inner = THUMBNAIL - 2;
+    let side = |length: u32| (length * inner / longest).max(1);
+    for k in 0..slices {
+        let thumbnail = imageops::thumbnail(&halftoned(volume, k), side(width), side(height));
+        let place = (k % columns * THUMBNAIL + 1, k / columns * THUMBNAIL + 1);
+        // A thumbnail is smaller than its place.
+        let _ = all.copy_from(&thumbnail, place.0, place.1);
+    }
+    all
+}
+
+/// A slice as it is lit: each channel on or off.
+///
+/// # Panics
+/// If there is no such slice ([`Volume::check_slice`]).
+#[must_use]
+pub fn halftoned(volume: &Volume, slice: u32) -> RgbImage {
+    let planes = &volume.frame.planes;
+    let [width, height] = planes.size();
+    let mut picture = RgbImage::new(width, height);
+    for (at, word) in (0u32..).zip(planes.slice(slice)).filter(|(_, word)| **word != 0) {
+        let row = at / (width / 8);
+        let left = at % (width / 8) * 8;
+        for pixel in 0..8 {
+            let bits = spatialgl::pixel_of_word(*word, pixel);
+            picture.put_pixel(left + pixel, row, Rgb([0, 1, 2].map(|channel| 255 * (bits >> channel & 1))));
+        }
+    }
+    picture
+}
+
+/// A slice before halftoning, with all 256 levels.
+///
+/// # Panics
+/// As [`halftoned`].
+#[must_use]
+pub fn coloured(volume: &Volume, slice: u32) -> RgbImage {
+    let [width, height] = volume.frame.planes.size();
+    let background = volume.commands.background();
+    let mut picture = RgbImage::from_pixel(width, height, Rgb(background));
+    let Some(colours) = &volume.frame.colours else { return picture };
+    let drawn = colours.len() as u32;
+    let is_mirrored = volume.settings.strobes == Strobes::Mirror && slice >= drawn;
+    for sample in &colours[(slice % drawn) as usize] {
+        let x = sample.pixel % width;
+        let column = if is_mirrored { width - 1 - x } else { x };
+        picture.put_pixel(column, sample.pixel / width, Rgb(sample.colour));
+    }
+    picture
+}
+
+/// A slice before and after halftoning, beside each other.
+///
+/// # Panics
+/// As [`halftoned`].
+#[must_use]
+pub fn before_and_after(volume: &Volume, slice: u32) -> RgbImage {
+    beside(&[coloured(volume, slice), halftoned(volume, slice)])
+}
+
+/// The tiles of every batch, a pixel each, white where something was drawn; batches follow each other row by row. Nothing
+/// without tiles.
+#[must_use]
+pub fn tile_map(volume: &Volume) -> Option<RgbImage> {
+    let tile = u32::try_from(volume.settings.tile.size).ok().filter(|tile| *tile > 0)?;
+    let colours = volume.frame.colours.as_ref()?;
+    let [width, height] = volume.display.target_size();
+    let grid = [width.div_ceil(tile), height.div_ceil(tile)];
+    let batch = volume.settings.tile.batch as usize;
+    let batches = colours.chunks(batch);
+    let rows = (batches.len() as u32).div_ceil(MAP_COLUMNS);
+    let columns = MAP_COLUMNS.min(batches.len() as u32);
+    let mut map = RgbImage::from_pixel(columns * (grid[0] + 1), rows * (grid[1] + 1), Rgb([64, 64, 96]));
+    for (i, slices) in (0u32..).zip(batches) {
+        let place = [i % MAP_COLUMNS * (grid[0] + 1), i / MAP_COLUMNS * (grid[1] + 1)];
+        fill(&mut map, place, grid, Rgb([0; 3]));
+        for sample in slices.iter().flatten() {
+            let x = sample.pixel % width / tile;
+            let y = sample.pixel / width / tile;
+            map.put_pixel(place[0] + x, place[1] + y, Rgb([255; 3]));
+        }
+    }
+    let scale = 3;
+    let [map_width, map_height] = [map.width() * scale, map.height() * scale];
+    Some(imageops::resize(&map, map_width, map_height, FilterType::Nearest))
+}
+
+fn fill(picture: &mut RgbImage, [left, top]: [u32; 2], [width, height]: [u32; 2], colour: Rgb<u8>) {
+    for y in top..top + height {
+        for x in left..left + width {
+            picture.put_pixel(x, y, colour);
+        }
+    }
+}
+
+/// A slice with its tiles: those that are sent lighter, those that are not dark; what was drawn in white.
+///
+/// # Panics
+/// As [`halftoned`].
+#[must_use]
+pub fn tiles_of_slice(volume: &Volume, slice: u32, tiling: Tiling) -> RgbImage {
+    let picture = coloured(volume, slice);
+    let grid = tiling.grid(volume.display.target_size());
+    let mut shown = RgbImage::new(picture.width(), picture.height());
+    for tile in 0..grid.tiles() {
+        let [left, top, right, bottom] = grid.rectangle(tile);
+        let places = || (top..bottom).flat_map(move |y| (left..right).map(move |x| (x, y)));
+        let is_lit = |(x, y): (u32, u32)| picture.get_pixel(x, y).0 != [0; 3];
+        let is_occupied = places().any(is_lit);
+        for (x, y) in places() {
+            let is_edge = x == left || y == top;
+            let colour = match (is_lit((x, y)), is_occupied, is_edge) {
+                (true, ..) => [255; 3],
+                (false, true, false) => [64, 96, 64],
+                (false, true, true) => [96, 144, 96],
+                (false, false, true) => [48; 3],
+                (false, false, false) => [16; 3],
+            };
+            shown.put_pixel(x, y, Rgb(colour));
+        }
+    }
+    shown
+}
+
+/// Pictures beside each other, all as high as the highest.
+#[must_use]
+pub fn beside(pictures: &[RgbImage]) -> RgbImage {
+    grid(pictures, pictures.len().max(1) as u32)
+}
+
+/// Pictures row by row, so many in a row, each in a place as large as the largest.
+#[must_use]
+pub fn grid(pictures: &[RgbImage], columns: u32) -> RgbImage {
+    let width = pictures.iter().map(RgbImage::width).max().unwrap_or(1);
+    let height = pictures.iter().map(RgbImage::height).max().unwrap_or(1);
+    let rows = (pictures.len() as u32).div_ceil(columns).max(1);
+    let mut all = RgbImage::new(width * columns, height * rows);
+    for (i, picture) in (0u32..).zip(pictures) {
+        // Each has its place.
+        let _ = all.copy_from(picture, i % columns * width, i / columns * height);
+    }
+    all
+}

@@ -1,0 +1,79 @@
+//! Volumes a second against renderers and graphics processors: the bound of each part by itself.
+
+use super::renderer::RendererWork;
+use pxpl5_gp::GpTiming;
+use pxpl5_renderer::isa::timing::CLOCK_HZ;
+use pxpl5_ring::RingTiming;
+use pxpl5_wire::MAX_MESSAGE_WORDS;
+use serde::Serialize;
+use spatialgl::{Tiling, VolumeFrame};
+
+/// Milliseconds that each part needs for a volume if it has nothing to wait for.
+///
+/// ```text
+/// renderers   clocks of clears, triangles and halftones / 40 MHz / renderers
+/// ring in     (command words + overhead of messages) t_word / channels that may end at renderers
+/// ring out    (words of occupied tiles + overhead of one message each) t_word / channels
+/// processors  (slice triangles t_triangle + commands t_bin_entry) / processors
+/// ```
+///
+/// A slice triangle costs a processor what a triangle of a frame does (assumed: the hyperbola's six coefficients in place
+/// of depth).
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct SliceBounds {
+    /// What the renderers did for the volume.
+    pub work: RendererWork,
+    /// Tiles sent, each with its words.
+    pub tiles: u64,
+    /// Words of a tile.
+    pub tile_words: u64,
+}
+
+/// The bounds with so many boards.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BoundRow {
+    /// Renderers that share the slices.
+    pub renderers: u64,
+    /// Graphics processors that share the triangles.
+    pub processors: u64,
+    /// Milliseconds: renderers, ring (both ways), processors.
+    pub ms: [f64; 3],
+    /// Volumes a second if nothing but the slowest of them limits.
+    pub volumes_hz: f64,
+    /// The slowest: `renderers`, `ring` or `processors`.
+    pub limited_by: &'static str,
+}
+
+impl SliceBounds {
+    /// Those of a volume that renderers drew: its occupied tiles are sent for every slice of their batch.
+    #[must_use]
+    pub fn of(work: RendererWork, frame: &VolumeFrame, tiling: Tiling) -> Self {
+        let tile_words = tiling.grid(frame.planes.size()).words(0);
+        let tiles = frame.stats.pixels_packed / 8 / tile_words.max(1);
+        Self { work, tiles, tile_words }
+    }
+
+    /// The bounds with so many renderers and graphics processors, each 1 or more.
+    #[must_use]
+    pub fn with(&self, renderers: u64, processors: u64) -> BoundRow {
+        let renderer_ms = self.work.clocks as f64 / CLOCK_HZ as f64 * 1e3 / renderers.max(1) as f64;
+        let gp = GpTiming::PAPERS;
+        let gp_ns = self.work.triangles * gp.triangle_ns + self.work.commands * gp.bin_entry_ns;
+        let ms = [renderer_ms, self.ring_ms(), gp_ns as f64 / 1e6 / processors.max(1) as f64];
+        let names = ["renderers", "ring", "processors"];
+        let slowest = if ms[0] >= ms[1] && ms[0] >= ms[2] { 0 } else { usize::from(ms[2] > ms[1]) + 1 };
+        BoundRow { renderers, processors, ms, volumes_hz: 1e3 / ms[slowest], limited_by: names[slowest] }
+    }
+
+    /// Commands and tiles share the ring's channels, of which renderers may hold six at a time.
+    fn ring_ms(&self) -> f64 {
+        let ring = RingTiming::PAPERS;
+        let messages = self.work.command_words.div_ceil(u64::from(MAX_MESSAGE_WORDS)).max(self.work.regions);
+        let words_in = self.work.command_words + messages * ring.overhead_words;
+        let words_out = self.tiles * (self.tile_words + ring.overhead_words);
+        let ms = |words: u64| (words * ring.word_ns) as f64 / 1e6;
+        let alone = ms(words_in) / ring.fifo_channels as f64;
+        let together = ms(words_in + words_out) / ring.channels as f64;
+        alone.max(together)
+    }
+}

@@ -1,0 +1,238 @@
+//! Slices region by region on the emulated pixel arrays.
+
+use super::command::{SliceCorner, SliceTriangle};
+use crate::error::VolumeError;
+use crate::settings::VolumeSettings;
+use crate::{ClipKind, ProjectionKind};
+use pxpl5_renderer::{BitSerial, Clear, Command, CommandKind, Lanes, Layout, PixelArray, SelectRegion};
+use pxpl5_wire::format::SUBPIXEL_BITS;
+use pxpl5_wire::{REGION_SIZE, Word};
+use serde::Serialize;
+use spatialgl::{Combine, HalfWedge, SliceImage, SliceRenderer, SliceStats, SliceView, SliceWork};
+use std::sync::{Mutex, PoisonError};
+
+/// Which of the two pixel arrays draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArrayKind {
+    /// Values of the pixels that a command touches: the fast one.
+    Lanes,
+    /// One bit of one instruction after the other: the definition, without what cannot change anything.
+    BitSerial,
+}
+
+/// What renderers did for a volume, whoever of them did it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct RendererWork {
+    /// Regions that were cleared and drawn.
+    pub regions: u64,
+    /// Slice triangles, counted once for each slice that draws them.
+    pub triangles: u64,
+    /// Commands of slice triangles, counted once for each region that they touch.
+    pub commands: u64,
+    /// Triangles without area on the sub-pixel grid, which no pixel can have, and those whose planes fit no word.
+    pub left_out: u64,
+    /// Clocks of clears, triangles and halftones.
+    pub clocks: u64,
+    /// Words of commands on the ring.
+    pub command_words: u64,
+}
+
+/// Draws slices with a hyperbolic clip along the normal, the colours of the last triangle on top.
+///
+/// A pixel is marked where its colour is not black: the arrays keep no stencil.
+#[derive(Debug)]
+pub struct PixelPlanesRenderer {
+    layout: Layout,
+    wedge: HalfWedge,
+    bias: f64,
+    kind: ArrayKind,
+    work: Mutex<RendererWork>,
+}
+
+/// Clocks to halftone a region from a resident plane of thresholds: for each channel enable all, compare eight bits, store
+/// Enable (derived: 3 x (6 + 12 + 6)).
+pub(super) const HALFTONE_CLOCKS: u64 = 72;
+
+/// Checks that these settings are what the renderers draw.
+///
+/// # Errors
+///
+/// [`VolumeError::Missing`] names the setting that they cannot draw.
+pub fn supported(settings: &VolumeSettings) -> Result<(), VolumeError> {
+    let rules = [
+        (settings.clip == ClipKind::Hyperbolic, "--clip", "hyperbolic, which is one quadratic", settings.clip_text()),
+        (
+            settings.projection == ProjectionKind::Orthographic,
+            "--projection",
+            "orthographic",
+            settings.projection_text().to_owned(),
+        ),
+        (settings.combine == Combine::Last, "draw.combine", "last", "another".to_owned()),
+        (settings.draw.samples == 1, "draw.samples", "1", settings.draw.samples.to_string()),
+        (settings.coverage == spatialgl::Coverage::Sampled, "draw.coverage", "sampled", "connected".to_owned()),
+    ];
+    match rules.into_iter().find(|(holds, ..)| !holds) {
+        None => Ok(()),
+        Some((_, what, expected, found)) => {
+            Err(VolumeError::Missing { what, expected: format!("{expected} with --on pixel-planes"), found })
+        }
+    }
+}
+
+impl PixelPlanesRenderer {
+    /// Renderers for a display with these settings.
+    ///
+    /// # Errors
+    ///
+    /// As [`supported`].
+    pub fn new(settings: &VolumeSettings, kind: ArrayKind) -> Result<Self, VolumeError> {
+        supported(settings)?;
+        let wedge = HalfWedge::new(settings.display.slices as u32, settings.radius());
+        let work = Mutex::new(RendererWork::default());
+        let layout = Layout::rendering_control_phong();
+        Ok(Self { layout, wedge, bias: settings.clip_numbers.bias_px2, kind, work })
+    }
+
+    /// What was done since it was made.
+    #[must_use]
+    pub fn work(&self) -> RendererWork {
+        *self.work.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The slice's triangles that anything of the slice can have, as commands with the pixels that they can touch.
+    fn commands(&self, work: SliceWork<'_>, view: &SliceView, size: [u32; 2]) -> (Vec<Placed>, u64) {
+        let mut placed = Vec::new();
+        let mut left_out = 0;
+        let reach = self.half_thickness();
+        for primitive in work.bin.primitives() {
+            let Some(triangle) = work.commands.triangle(*primitive) else { continue };
+            let local = triangle.corners.map(|corner| view.local(corner.into()));
+            if local.iter().all(|p| p.z > reach) || local.iter().all(|p| p.z < -reach) {
+                continue;
+            }
+            let corners = [0, 1, 2].map(|i| snapped(local[i].to_array(), triangle.colours[i], size));
+            match SliceTriangle::of_corners(corners, size, self.wedge, self.bias) {
+                Some(command) => placed.push(Placed { command, bounds: bounds(&corners) }),
+                None => left_out += 1,
+            }
+        }
+        (placed, left_out)
+    }
+
+    /// Half the slab at the rim, where it is thickest, with some slack.
+    fn half_thickness(&self) -> f64 {
+        spatialgl::SliceClip::Hyperbolic(self.bias).reach(self.wedge) + 1e-6
+    }
+
+    /// Runs a region on an array and puts what it has into the image.
+    fn region(&self, [left, top]: [u32; 2], placed: &[Placed], image: &mut SliceImage) -> RendererWork {
+        let [width, height] = image.size();
+        let within = [REGION_SIZE.min(width - left), REGION_SIZE.min(height - top)];
+        let mut words = Vec::new();
+        self.encode(Command::SelectRegion(SelectRegion { context: 0, left: left as u16, top: top as u16 }), &mut words);
+        self.encode(Command::Clear(Clear { colour: 0 }), &mut words);
+        let touching = placed.iter().filter(|one| one.touches([left, top]));
+        let mut commands = 0;
+        for one in touching {
+            one.command.encode(&self.layout, &mut words);
+            commands += 1;
+        }
+        let mut work =
+            RendererWork { regions: 1, commands, command_words: words.len() as u64, ..RendererWork::default() };
+        if commands == 0 {
+            work.clocks = self.empty_clocks();
+            return work;
+        }
+        let (clocks, colours) = self.execute(&words, within);
+        work.clocks = clocks + HALFTONE_CLOCKS;
+        for (at, colour) in (0u32..).zip(colours.iter()).filter(|(_, colour)| **colour != 0) {
+            let [_, red, green, blue] = colour.to_be_bytes();
+            image.draw_pixel(left + at % within[0], top + at / within[0], [red, green, blue], Combine::Last);
+        }
+        work
+    }
+
+    fn execute(&self, words: &[Word], [width, height]: [u32; 2]) -> (u64, std::sync::Arc<[Word]>) {
+        match self.kind {
+            ArrayKind::Lanes => run(&mut Lanes::new(&self.layout), words, width, height),
+            ArrayKind::BitSerial => run(&mut BitSerial::new(&self.layout).skipping(), words, width, height),
+        }
+    }
+
+    /// Clocks of a region on which nothing is drawn: it is selected, cleared and halftoned all the same.
+    fn empty_clocks(&self) -> u64 {
+        let of = |kind: CommandKind| u64::from(kind.clocks(&self.layout).unwrap_or(0));
+        of(CommandKind::SelectRegion) + of(CommandKind::Clear) + HALFTONE_CLOCKS
+    }
+
+    fn encode(&self, command: Command, words: &mut Vec<Word>) {
+        // Selecting and clearing need colour and depth alone, which every layout has.
+        let _ = command.encode(&self.layout, words);
+    }
+}
+
+/// Clocks and colours of a list; the commands are ours, so that none of them is illegal.
+fn run(array: &mut impl PixelArray, words: &[Word], width: u32, height: u32) -> (u64, std::sync::Arc<[Word]>) {
+    let clocks = array.execute(words).map_or(0, |executed| executed.clocks);
+    (clocks, array.read_colour(width, height))
+}
+
+/// A command and the pixels that it can touch: left, top, right, bottom, the last two included.
+struct Placed {
+    command: SliceTriangle,
+    bounds: [i32; 4],
+}
+
+impl Placed {
+    fn touches(&self, corner: [u32; 2]) -> bool {
+        let [left, top] = corner.map(|side| side as i32);
+        let side = REGION_SIZE as i32;
+        let [x0, y0, x1, y1] = self.bounds;
+        x0 < left + side && x1 >= left && y0 < top + side && y1 >= top
+    }
+}
+
+fn bounds(corners: &[SliceCorner; 3]) -> [i32; 4] {
+    let along = |axis: usize| corners.map(|corner| corner.place[axis].div_euclid(1 << SUBPIXEL_BITS));
+    let least = |values: [i32; 3]| values[0].min(values[1]).min(values[2]);
+    let most = |values: [i32; 3]| values[0].max(values[1]).max(values[2]);
+    [least(along(0)), least(along(1)), most(along(0)), most(along(1))]
+}
+
+/// A corner of a slice (u, v, s) on the sub-pixel grid of its image.
+fn snapped([u, v, s]: [f64; 3], colour: [f64; 3], size: [u32; 2]) -> SliceCorner {
+    let steps = f64::from(1 << SUBPIXEL_BITS);
+    let [half_width, half_height] = size.map(|side| f64::from(side) / 2.0);
+    let place = [u + half_width, half_height - v].map(|place| (place * steps).round() as i32);
+    SliceCorner { place, off: s, colour }
+}
+
+impl SliceRenderer for PixelPlanesRenderer {
+    fn render(&self, work: SliceWork<'_>, view: &SliceView, image: &mut SliceImage) -> SliceStats {
+        let size = image.size();
+        let (placed, left_out) = self.commands(work, view, size);
+        let mut done = RendererWork { triangles: placed.len() as u64, left_out, ..RendererWork::default() };
+        for top in (0..size[1]).step_by(REGION_SIZE as usize) {
+            for left in (0..size[0]).step_by(REGION_SIZE as usize) {
+                done = done.and(self.region([left, top], &placed, image));
+            }
+        }
+        let mut total = self.work.lock().unwrap_or_else(PoisonError::into_inner);
+        *total = total.and(done);
+        let drawn = image.marked();
+        SliceStats { draws: placed.len() as u64, generated: drawn, accepted: drawn, added: 0 }
+    }
+}
+
+impl RendererWork {
+    const fn and(self, other: Self) -> Self {
+        Self {
+            regions: self.regions + other.regions,
+            triangles: self.triangles + other.triangles,
+            commands: self.commands + other.commands,
+            left_out: self.left_out + other.left_out,
+            clocks: self.clocks + other.clocks,
+            command_words: self.command_words + other.command_words,
+        }
+    }
+}

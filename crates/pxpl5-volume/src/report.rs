@@ -1,0 +1,297 @@
+//! What a volume's report says: `pxpl5-volume/1`.
+
+use crate::experiment::Volume;
+use crate::pixel_planes::{BoundRow, SliceBounds};
+use crate::settings::VolumeSettings;
+use parameters::Value;
+use serde::Serialize;
+use spatialgl::{SpatialDisplay, VolumeTime, brightness_by_radius, connected, dead_zone_radius};
+
+/// Width of the rings in which brightness is reported, pixels.
+const RING_PX: u32 = 8;
+
+/// One volume in numbers; all counts are exact, times are a model whose definitions stand beside them.
+#[derive(Clone, Debug, Serialize)]
+pub struct VolumeReport {
+    /// Name and version of this record's layout.
+    pub schema: &'static str,
+    /// Name of the scene that was drawn.
+    pub scene: String,
+    /// The display that it was drawn for.
+    pub display: DisplayReport,
+    /// The clip with its offset or bias.
+    pub clip: String,
+    /// Name of the projection.
+    pub projection: &'static str,
+    /// Names the sequence of the jitter.
+    pub seed: u64,
+    /// Who drew the slices.
+    pub renderer: &'static str,
+    /// What the renderers of Pixel-Planes 5 did, and their bounds; none if this computer drew.
+    pub pixel_planes: Option<PixelPlanesReport>,
+    /// Samples taken of each pixel.
+    pub samples: u64,
+    /// Triangles, lines and points of the scene.
+    pub triangles: u64,
+    /// Slices drawn; fewer than are shown if some are mirrored.
+    pub slices_rendered: u64,
+    /// How often the scene is drawn for a slice.
+    pub passes: u64,
+    /// Primitives issued for all slices and passes.
+    pub draws: u64,
+    /// What they would be without bins.
+    pub draws_unbinned: u64,
+    /// Entries in all bins.
+    pub bin_memberships: u64,
+    /// Fragments that reached the fragment program.
+    pub fragments_generated: u64,
+    /// Fragments that lie in their slice's volume.
+    pub fragments_accepted: u64,
+    /// Pixels added to connect intersections, which is beyond the paper.
+    pub fragments_added: u64,
+    /// Slices on which nothing was drawn.
+    pub slices_empty: u64,
+    /// Tiles of batches that hold something.
+    pub tiles_occupied: u64,
+    /// Part of the queried tiles that holds something, percent.
+    pub tile_occupancy_percent: f64,
+    /// Queries of tiles of all batches.
+    pub queries: u64,
+    /// Stencil clears, one a batch.
+    pub stencil_clears: u64,
+    /// Bytes of all slices with 32 bits a pixel.
+    pub bytes_unpacked: u64,
+    /// Bytes of all slices packed.
+    pub bytes_packed: u64,
+    /// Bytes sent: packed words of occupied tiles and the maps of tiles.
+    pub bytes_sent: u64,
+    /// Bits of unpacked pixels that the projector has no use for, percent.
+    pub waste_percent: f64,
+    /// Pixels lit in any colour, in all slices.
+    pub lit_voxels: u64,
+    /// Samples on the mesh's intersections with the slices that have a drawn pixel beside them, percent.
+    pub connected_percent: f64,
+    /// Lit pixels by their distance from the axis.
+    pub brightness_by_radius: Brightness,
+    /// Radius within which no slice shows anything; none of a dark volume.
+    pub dead_zone_radius_px: Option<u32>,
+    /// Times of the model.
+    pub model_ms: ModelTimes,
+    /// Volumes a second if processor, GPU and bus follow each other.
+    pub volumes_hz_serial: f64,
+    /// Volumes a second if they work at the same time.
+    pub volumes_hz_overlapped: f64,
+    /// Primitives with a corner outside what the display shows.
+    pub outside_volume: u64,
+    /// A number, in hexadecimal digits, that any other bit of the volume would change.
+    pub volume_hash: String,
+    /// Numbers that are not the papers'.
+    pub overrides: Vec<Override>,
+    /// What of it is not the paper's.
+    pub beyond_paper: Vec<&'static str>,
+    /// Seconds that this computer took.
+    pub host_seconds: f64,
+}
+
+/// What a volume costs on Pixel-Planes 5, which is beyond the paper.
+#[derive(Clone, Debug, Serialize)]
+pub struct PixelPlanesReport {
+    /// Counted clocks, commands and words, and the tiles sent.
+    #[serde(flatten)]
+    pub counts: SliceBounds,
+    /// What the milliseconds of the bounds are.
+    pub definition: &'static str,
+    /// Volumes a second with more and more boards.
+    pub bounds: Vec<BoundRow>,
+}
+
+/// Renderers and graphics processors of the bounds; the third is the largest machine that was built.
+const BOARDS: [[u64; 2]; 5] = [[1, 4], [5, 13], [20, 50], [20, 13], [5, 50]];
+
+const BOUNDS: &str = "renderers: clocks of clears, triangles and halftones / 40 MHz; ring: words of commands and of occupied tiles with \
+                      their overhead; processors: slice triangles as triangles of a frame, and commands as entries of bins; each by itself, \
+                      without events";
+
+impl PixelPlanesReport {
+    fn of(counts: SliceBounds) -> Self {
+        let bounds = BOARDS.map(|[renderers, processors]| counts.with(renderers, processors));
+        Self { counts, definition: BOUNDS, bounds: bounds.to_vec() }
+    }
+}
+
+/// The display in numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct DisplayReport {
+    /// What it is called.
+    pub name: &'static str,
+    /// Slices of a turn.
+    pub slices: u64,
+    /// Width of a slice, pixels.
+    pub width: u64,
+    /// Height of a slice, pixels.
+    pub height: u64,
+    /// Turns of the screen a minute.
+    pub spin_rpm: u64,
+    /// Volumes a second that an eye gets: two a turn.
+    pub volumes_hz: f64,
+}
+
+/// Lit pixels in rings around the axis.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Brightness {
+    /// Width of each ring, pixels.
+    pub ring_px: u32,
+    /// Lit pixels of all slices in each ring, from the axis outwards.
+    pub lit_voxels: Vec<u64>,
+}
+
+/// A part of the model's time.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelPart {
+    /// Milliseconds of one volume.
+    pub ms: f64,
+    /// The formula that it is computed by.
+    pub definition: &'static str,
+}
+
+/// Milliseconds of one volume, each with its formula.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelTimes {
+    /// The processor: vertices, bins and calls.
+    pub cpu: ModelPart,
+    /// The GPU: vertices, fragments, clears, queries and packing.
+    pub gpu: ModelPart,
+    /// The bus: from the GPU and to the projector.
+    pub bus: ModelPart,
+    /// The same volume sent as pixels of 32 bits, without queries and packing: bus.
+    pub bus_unpacked: ModelPart,
+}
+
+/// A number that was set.
+#[derive(Clone, Debug, Serialize)]
+pub struct Override {
+    /// Its path, as after `--set`.
+    pub path: String,
+    /// The value that it has.
+    pub value: Value,
+    /// The value that the paper gives or allows.
+    pub papers: Value,
+}
+
+const CPU: &str = "vertices t_vertex + primitives t_primitive + slices passes t_call + draws t_issue";
+const GPU: &str = "3 draws / vertex rate + fragments generated / fill + W H (slices + batches) / fill + queries t_query \
+                   + queries tile^2 / fill + pixels packed / texel rate";
+const BUS: &str = "bytes sent / readback, and the same to the projector";
+const BUS_UNPACKED: &str = "4 bytes a pixel of all slices / readback, and the same to the projector";
+
+impl Volume {
+    /// Milliseconds of the volume by the model of its settings.
+    #[must_use]
+    pub fn time(&self) -> VolumeTime {
+        let tile = self.settings.tile.size as u32;
+        self.settings.time_model().packed(&self.frame.stats, self.display.target_size(), tile)
+    }
+
+    /// The volume in numbers.
+    #[must_use]
+    pub fn report(&self) -> VolumeReport {
+        let stats = &self.frame.stats;
+        let planes = &self.frame.planes;
+        let time = self.time();
+        let settings = &self.settings;
+        VolumeReport {
+            schema: "pxpl5-volume/1",
+            scene: self.scene.clone(),
+            display: DisplayReport::of(settings),
+            clip: settings.clip_text(),
+            projection: settings.projection_text(),
+            seed: settings.seed,
+            renderer: settings.renderer_text(),
+            pixel_planes: self.bounds.map(PixelPlanesReport::of),
+            samples: stats.samples,
+            triangles: stats.primitives,
+            slices_rendered: stats.slices_rendered,
+            passes: stats.passes,
+            draws: stats.draws,
+            draws_unbinned: stats.draws_unbinned,
+            bin_memberships: stats.bin_memberships,
+            fragments_generated: stats.fragments_generated,
+            fragments_accepted: stats.fragments_accepted,
+            fragments_added: stats.fragments_added,
+            slices_empty: stats.slices_empty,
+            tiles_occupied: stats.tiles_occupied,
+            tile_occupancy_percent: stats.tile_occupancy_percent(),
+            queries: stats.queries,
+            stencil_clears: stats.stencil_clears,
+            bytes_unpacked: stats.bytes_unpacked,
+            bytes_packed: stats.bytes_packed,
+            bytes_sent: stats.bytes_sent,
+            waste_percent: waste_percent(stats.bytes_unpacked, settings),
+            lit_voxels: planes.lit_voxels(),
+            connected_percent: self.connected_percent(),
+            brightness_by_radius: self.brightness(),
+            dead_zone_radius_px: dead_zone_radius(planes),
+            model_ms: self.model_times(&time),
+            volumes_hz_serial: time.serial_hz(),
+            volumes_hz_overlapped: time.overlapped_hz(),
+            outside_volume: stats.outside_volume,
+            volume_hash: format!("{:016x}", planes.hash()),
+            overrides: settings.overrides(),
+            beyond_paper: settings.beyond_paper(),
+            host_seconds: self.host_seconds,
+        }
+    }
+
+    /// Part of the mesh's intersections with the slices that is shown, percent.
+    #[must_use]
+    pub fn connected_percent(&self) -> f64 {
+        connected(&self.display, &self.commands, &self.frame).map_or(f64::NAN, |found| found.percent())
+    }
+
+    /// Lit pixels in rings around the axis.
+    #[must_use]
+    pub fn brightness(&self) -> Brightness {
+        Brightness { ring_px: RING_PX, lit_voxels: brightness_by_radius(&self.frame.planes, RING_PX) }
+    }
+
+    fn model_times(&self, time: &VolumeTime) -> ModelTimes {
+        let unpacked = self.settings.time_model().unpacked(&self.frame.stats, self.display.target_size());
+        ModelTimes {
+            cpu: ModelPart { ms: time.cpu_ms, definition: CPU },
+            gpu: ModelPart { ms: time.gpu_ms, definition: GPU },
+            bus: ModelPart { ms: time.bus_ms(), definition: BUS },
+            bus_unpacked: ModelPart { ms: unpacked.bus_ms(), definition: BUS_UNPACKED },
+        }
+    }
+}
+
+/// Bits that the projector has no use for, of all bits that are sent unpacked.
+fn waste_percent(bytes_unpacked: u64, settings: &VolumeSettings) -> f64 {
+    let display = &settings.display;
+    let slices = if settings.strobes == spatialgl::Strobes::Mirror { display.slices / 2 } else { display.slices };
+    let used = 3.0 * (slices * display.width * display.height) as f64;
+    100.0 * (1.0 - used / (8 * bytes_unpacked) as f64)
+}
+
+impl DisplayReport {
+    fn of(settings: &VolumeSettings) -> Self {
+        let display = &settings.display;
+        Self {
+            name: "perspecta",
+            slices: display.slices,
+            width: display.width,
+            height: display.height,
+            spin_rpm: display.spin_rpm,
+            volumes_hz: display.volume_hz(),
+        }
+    }
+}
+
+impl VolumeSettings {
+    /// The numbers that are not the papers'.
+    #[must_use]
+    pub fn overrides(&self) -> Vec<Override> {
+        let changed = self.numbers().into_iter().filter(|(_, entry)| entry.value != entry.info.papers);
+        changed.map(|(path, entry)| Override { path, value: entry.value, papers: entry.info.papers }).collect()
+    }
+}

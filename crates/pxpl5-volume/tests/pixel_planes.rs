@@ -1,0 +1,177 @@
+//! Slices on the renderers of Pixel-Planes 5: the program's clocks, both pixel arrays, the host's picture, the bounds.
+
+use pxpl5_renderer::{CommandKind, Layout};
+use pxpl5_volume::pixel_planes::{
+    ArrayKind, PixelPlanesRenderer, RendererWork, SliceBounds, SliceCorner, SliceTriangle,
+};
+use pxpl5_volume::spatialgl::{
+    Bin, ClipQuadratic, CommandBuffer, Context, Coverage, HalfWedge, HostRenderer, SliceImage, SliceRenderer,
+    SliceWork, SpatialDisplay, Topology, Vertex, VertexBuffer,
+};
+use pxpl5_volume::{ProjectionKind, VolumeSettings};
+
+/// A corner in sixteenths of a pixel of the image, its distance off the slice in pixels, and its colour.
+type Corner = ([i32; 2], f64, [u8; 3]);
+
+const SIZE: [u32; 2] = [768, 768];
+
+fn settings() -> VolumeSettings {
+    VolumeSettings { projection: ProjectionKind::Orthographic, ..VolumeSettings::paper() }
+}
+
+fn wedge() -> HalfWedge {
+    HalfWedge::new(396, 384.0)
+}
+
+/// Numbers of [0, 1) from a counter: the low-discrepancy sequence of the plastic number.
+fn unit(n: u32, dimension: u32) -> f64 {
+    (0.5 + f64::from(n) * 0.754_877_666_246_692_8 * f64::from(dimension + 1).sqrt()).fract()
+}
+
+/// Triangles of all sizes around the axis, most of which cross slice 0.
+fn triangles() -> Vec<[Corner; 3]> {
+    let corner = |n: u32, i: u32| {
+        let reach = [40.0, 300.0, 700.0][n as usize % 3];
+        let at = |d: u32| unit(n, 5 * i + d);
+        let place = [0, 1].map(|d| ((384.0 + (at(d) - 0.5) * reach) * 16.0).round() as i32);
+        let off = (at(2) - 0.5) * [2.0, 20.0, 150.0][n as usize / 3 % 3];
+        (place, off, [at(3), at(4), at(0)].map(|x| (40.0 + 215.0 * x) as u8))
+    };
+    (1..=36).map(|n| [0, 1, 2].map(|i| corner(n, i))).collect()
+}
+
+/// The same triangle in the world: in slice 0 of a display without phase u, v and s are x, y and z.
+fn recording(corners: &[Corner; 3]) -> CommandBuffer {
+    let vertices = corners.map(|([x, y], off, colour)| {
+        let place = [f64::from(x) / 16.0 - 384.0, 384.0 - f64::from(y) / 16.0, off];
+        Vertex::new(place.into(), colour)
+    });
+    let buffer = VertexBuffer::new(vertices.to_vec()).expect("finite");
+    let mut context = Context::default();
+    context.draw(&buffer, 0..3, Topology::Triangles).expect("in range");
+    context.present()
+}
+
+fn drawn(renderer: &dyn SliceRenderer, commands: &CommandBuffer) -> SliceImage {
+    let display = settings().swept_display().expect("valid");
+    let mut image = SliceImage::new(SIZE);
+    let bin = Bin::new(commands, vec![0]);
+    let work = SliceWork { commands, bin: &bin, coverage: Coverage::Sampled };
+    renderer.render(work, &display.views()[0], &mut image);
+    image
+}
+
+/// Enable all 6, three edges 108, the hyperbola 52, three colours 72: 238 clocks, 5.95 us at 40 MHz, 38 words.
+#[test]
+fn a_slice_triangle_takes_238_clocks_and_38_words() {
+    let layout = Layout::rendering_control_phong();
+    assert_eq!(SliceTriangle::clocks(&layout), 6 + 3 * 36 + 52 + 3 * 24);
+    assert_eq!(SliceTriangle::words(&layout), 1 + 3 * 4 + 13 + 3 * 4);
+    assert_eq!(40_000_000 / SliceTriangle::clocks(&layout), 168_067);
+}
+
+/// The exact value of the hyperbola at the middle of every pixel, to the rounding of its coefficients.
+#[test]
+fn the_commands_quadratic_is_the_hyperbola_at_the_middle_of_pixels() {
+    let one = f64::from(1 << 26);
+    let within = SliceTriangle::clip_rounding_px2(SIZE);
+    assert!(within < 0.02, "{within}");
+    let mut compared = 0;
+    for corners in triangles() {
+        let command = command(&corners);
+        let local = corners.map(|([x, y], off, _)| [f64::from(x) / 16.0 - 384.0, 384.0 - f64::from(y) / 16.0, off]);
+        let exact = ClipQuadratic::of_corners(local, wedge(), 0.25).expect("it has an area");
+        for (x, y) in [(0, 0), (384, 384), (767, 0), (13, 700), (500, 301)] {
+            let value = exact.at(f64::from(x) + 0.5 - 384.0, 383.5 - f64::from(y));
+            let found = command.clip.at(x, y) as f64 / one;
+            assert!((found - value).abs() <= within + 1e-9 * value.abs(), "({x}, {y}): {found}, not {value}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 36 * 5);
+}
+
+fn command(corners: &[Corner; 3]) -> SliceTriangle {
+    let corners = corners.map(|(place, off, colour)| SliceCorner { place, off, colour: colour.map(f64::from) });
+    SliceTriangle::of_corners(corners, SIZE, wedge(), 0.25).expect("it has an area")
+}
+
+/// Wherever the hyperbola is farther from zero than the rounding of its coefficients, the arrays have the host's pixels, and
+/// their colours to a level; both arrays have the same ones everywhere.
+#[test]
+fn both_pixel_arrays_draw_what_the_host_draws() {
+    let lanes = PixelPlanesRenderer::new(&settings(), ArrayKind::Lanes).expect("supported");
+    let serial = PixelPlanesRenderer::new(&settings(), ArrayKind::BitSerial).expect("supported");
+    let rounding = SliceTriangle::clip_rounding_px2(SIZE) * f64::from(1 << 26);
+    let mut lit = 0;
+    let mut undecided = 0;
+    for (n, corners) in triangles().iter().enumerate() {
+        let commands = recording(corners);
+        let host = drawn(&HostRenderer, &commands);
+        let own = drawn(&lanes, &commands);
+        let definition = (n % 4 == 0).then(|| drawn(&serial, &commands));
+        let clip = command(corners).clip;
+        for (x, y) in (0..768).flat_map(|y| (0..768).map(move |x| (x, y))) {
+            if let Some(definition) = &definition {
+                assert_eq!(definition.pixel(x, y), own.pixel(x, y), "triangle {n}: the arrays differ at {x}, {y}");
+            }
+            if (clip.at(x as i32, y as i32) as f64).abs() <= rounding {
+                undecided += u32::from(host.is_marked(x, y) != own.is_marked(x, y));
+                continue;
+            }
+            assert_eq!(own.is_marked(x, y), host.is_marked(x, y), "triangle {n} at {x}, {y}");
+            let differs = own.pixel(x, y).iter().zip(host.pixel(x, y)).any(|(a, b)| a.abs_diff(b) > 1);
+            assert!(!differs, "triangle {n} at {x}, {y}: {:?}, not {:?}", own.pixel(x, y), host.pixel(x, y));
+            lit += u32::from(own.is_marked(x, y));
+        }
+    }
+    assert!(lit > 20_000, "{lit} pixels");
+    assert!(undecided < lit / 100, "{undecided} of {lit} pixels lie on the hyperbola's edge");
+}
+
+/// 36 regions of a slice, each selected (6 clocks), cleared (62) and halftoned (72); a triangle in one region takes 238 more.
+#[test]
+fn clocks_and_words_are_those_of_the_programs() {
+    let renderer = PixelPlanesRenderer::new(&settings(), ArrayKind::Lanes).expect("supported");
+    let corners = [([6400, 6400], 0.0, [200; 3]), ([6560, 6400], 0.0, [200; 3]), ([6400, 6560], 0.0, [200; 3])];
+    drawn(&renderer, &recording(&corners));
+    let work = renderer.work();
+    assert_eq!((work.regions, work.triangles, work.commands, work.left_out), (36, 1, 1, 0));
+    assert_eq!(work.clocks, 36 * (6 + 62 + 72) + 238);
+    assert_eq!(work.command_words, 36 * (2 + 5) + 38);
+    // Clearing all regions of 198 slices: 11.05 ms of one renderer.
+    let layout = Layout::rendering_control_phong();
+    let clears = 198 * 36 * CommandKind::Clear.clocks(&layout).expect("every layout");
+    assert!((f64::from(clears) / 40e6 * 1e3 - 11.05).abs() < 0.005);
+}
+
+/// The specification's numbers: a tile 7.2 us on the ring, 10 % of the tiles of 198 slices 82 ms of one channel and 10.3 ms
+/// of eight; renderers and processors divide their work.
+#[test]
+fn bounds_follow_from_counts() {
+    let bounds = SliceBounds { work: RendererWork::default(), tiles: 11_405, tile_words: 128 };
+    let row = bounds.with(1, 1);
+    assert!((row.ms[1] - 11_405.0 * 7.2e-3 / 8.0).abs() < 1e-9 && (row.ms[1] - 10.3).abs() < 0.05, "{row:?}");
+    assert_eq!(row.limited_by, "ring");
+    let work = RendererWork { clocks: 4_000_000_000, triangles: 1_000, commands: 1_000, ..RendererWork::default() };
+    let bounds = SliceBounds { work, ..bounds };
+    let row = bounds.with(10, 5);
+    assert!((row.ms[0] - 10_000.0).abs() < 1e-6 && row.limited_by == "renderers");
+    assert!((row.ms[2] - 1_000.0 * (21.7e-3 + 1e-3) / 5.0).abs() < 1e-9);
+    assert!((row.volumes_hz - 0.1).abs() < 1e-9);
+}
+
+#[test]
+fn what_is_no_single_quadratic_is_refused() {
+    for (path, text, part) in [
+        ("clip.variant", "exact", "hyperbolic"),
+        ("projection", "jittered", "orthographic"),
+        ("draw.combine", "max", "last"),
+        ("draw.coverage", "connected", "sampled"),
+    ] {
+        let mut settings = settings();
+        settings.set(path, text, "test").expect("a setting");
+        let error = PixelPlanesRenderer::new(&settings, ArrayKind::Lanes).expect_err("not supported").to_string();
+        assert!(error.contains(part) && error.contains("--on pixel-planes"), "{error}");
+    }
+}
