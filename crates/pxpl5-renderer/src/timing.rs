@@ -30,7 +30,7 @@ parameters::parameter_table! {
         /// What a finished region needs of it until it is copied.
         kept_bits: 32, "bits", Derived, 32..=256 in 1..=MAX, "its 24 bits of colour, moved in blocks of 32 (F89); 256 if all 208 bits of a pixel were kept";
         /// Depth of the input FIFO.
-        fifo_words: 448, "words", Derived, 400..=512 in 128..=1_048_576, "from the published 56.5 ms of a trivial scene (TR94)";
+        fifo_words: 448, "words", Assumed, 400..=512 in 128..=1_048_576, "no source. It was fitted to the 56.5 ms of a trivial scene (TR94) while renderers kept one region, and does not move that any more";
     }
 }
 
