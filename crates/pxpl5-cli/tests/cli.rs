@@ -28,6 +28,19 @@ fn refused(args: &[&str], code: i32, says: &[&str]) {
     assert!(folder.names().is_empty(), "{args:?} left {:?}", folder.names());
 }
 
+/// More than the machine can draw for many seconds, on slaves with room for the bins of both eyes.
+const FULL: [&str; 9] = [
+    "run",
+    "--pipeline",
+    "rendering-control",
+    "--scene",
+    "full-screen:20000",
+    "--pixels",
+    "off",
+    "--set",
+    "gp.bin_bytes=400000",
+];
+
 /// A run that ends before anything can be said of it: it fails, says how long it would have to be, and prints what it has.
 fn too_short(args: &[&str], says: &str) {
     let output = Folder::new(&format!("short-{}", args.len())).run(args);
@@ -61,8 +74,7 @@ fn a_run_prints_one_object_with_units_in_its_names() {
 #[test]
 fn a_run_that_shows_nothing_says_so_and_fails() {
     // A frame of 20,000 triangles takes 70 fields and more, and the first four are discarded.
-    let full = ["run", "--pipeline", "rendering-control", "--scene", "full-screen:20000", "--pixels", "off"];
-    too_short(&with(&full, &["--fields", "200"]), "simulate more fields: the next one is shown after about");
+    too_short(&with(&FULL, &["--fields", "200"]), "simulate more fields: the next one is shown after about");
     // Slats shows every field, and none of these is complete in time.
     let folder = Folder::new("always-late");
     let late = ["run", "--pipeline", "slats", "--scene", "full-screen:1000", "--fields", "60", "--pixels", "off"];
@@ -82,8 +94,7 @@ fn a_run_that_shows_nothing_says_so_and_fails() {
 #[test]
 fn a_run_that_is_too_short_prints_what_it_has() {
     let folder = Folder::new("too-short");
-    let full = ["run", "--pipeline", "rendering-control", "--scene", "full-screen:20000", "--pixels", "off"];
-    let short = with(&full, &["--fields", "60"]);
+    let short = with(&FULL, &["--fields", "60"]);
     let output = folder.run(&with(&short, &["--json"]));
     assert_eq!(output.status.code(), Some(1));
     assert!(err(&output).contains("simulate more fields: the next one is shown after about"), "{}", err(&output));
@@ -108,8 +119,7 @@ fn json_of(output: &std::process::Output) -> serde_json::Value {
 #[test]
 fn one_picture_of_many_that_are_due_has_no_deviation() {
     let folder = Folder::new("one-picture");
-    let full = ["run", "--pipeline", "rendering-control", "--scene", "full-screen:20000", "--pixels", "off"];
-    let report = json(&folder.run(&with(&full, &["--fields", "400", "--json"])));
+    let report = json(&folder.run(&with(&FULL, &["--fields", "400", "--json"])));
     assert_eq!((&report["pictures"], &report["latency_ms"]["sd"]), (&1.into(), &serde_json::Value::Null));
     // A frame is due every second field, and takes 70 and more.
     let [due, shown] = ["due", "shown"].map(|key| report["due"][key].as_u64().expect("a number"));
@@ -124,7 +134,7 @@ fn read(folder: &Path, name: &str) -> Vec<u8> {
 #[test]
 fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
     let folder = Folder::new("files");
-    let report = json(&folder.run(&with(&SLATS, &["--json", "--out", "a/b", "--set", "gp.triangle_ns=30000"])));
+    let report = json(&folder.run(&with(&SLATS, &["--json", "--out", "a/b", "--set", "gp.triangle_ns=31000"])));
     // With the feature of that name there is a Parquet file too.
     let names: Vec<String> = names(&folder.0.join("a/b")).into_iter().filter(|n| !n.ends_with(".parquet")).collect();
     assert_eq!(
@@ -148,7 +158,7 @@ fn every_result_file_opens_with_preset_configuration_version_level_and_seed() {
     let saved: serde_json::Value = serde_json::from_slice(&read(&written, "report.json")).expect("JSON");
     let keys: Vec<&str> = saved.as_object().expect("an object").keys().map(String::as_str).take(6).collect();
     assert_eq!(keys, ["schema", "version", "machine", "config_hash", "level", "seed"]);
-    assert_eq!(saved["overrides"]["gp.triangle_ns"], 30_000);
+    assert_eq!(saved["overrides"]["gp.triangle_ns"], 31_000);
     let svg = String::from_utf8(read(&written, "timeline.svg")).expect("text");
     assert!(svg.find(hash).is_some_and(|at| at < svg.find("<svg").expect("a drawing")), "the origin comes first");
     let png = read(&written, "left.png");
