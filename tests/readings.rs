@@ -60,6 +60,16 @@ fn a_triangle_too_many_for_the_bins_is_a_fault_that_names_region_need_and_room()
     assert!(text.contains("(region 18) needs 836 bytes, 800 are available"), "{text}");
 }
 
+/// Figure 16: a multiple of 12 slaves fits, and one triangle more does not.
+#[test]
+fn the_bins_of_the_machine_hold_7_704_triangles_that_cover_the_screen_and_no_more() {
+    let presets = MachineConfig::small_hmd().gp.bin_bytes;
+    // Too few fields for a frame of half a second: but nothing overflows.
+    assert!(matches!(cover(7_704, presets), Err(ExperimentError::TooShort { .. })));
+    let Err(ExperimentError::Run { error, .. }) = cover(7_705, presets) else { panic!("one slave has 643 triangles") };
+    assert!(error.to_string().contains("needs 51440 bytes, 51360 are available"), "{error}");
+}
+
 #[test]
 fn where_the_bins_of_both_eyes_do_not_fit_transform_waits_for_render_of_the_eye_before() {
     let path_ms = |bin_bytes: u64| {

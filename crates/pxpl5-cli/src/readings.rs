@@ -76,7 +76,7 @@ fn text(readings: &Readings, rows: usize) -> String {
 
 fn header(fit: &Fit) -> String {
     let figures: String = fit.figures.iter().map(|figure| format!(" {:>8}", figure.id)).collect();
-    let published: String = fit.figures.iter().map(|figure| format!(" {:>8}", figure.published)).collect();
+    let published: String = fit.figures.iter().map(|figure| format!(" {:>8.2}", figure.published)).collect();
     format!(
         "{:>7} {:>8} {:>7}{figures}  reading\n{:>7} {:>8} {:>7}{published}  published\n",
         "mean %", "worst %", "log L", "", "", ""

@@ -85,14 +85,14 @@ impl Kernel {
         let picture = if self.field { include_str!("../kernels/field.s") } else { include_str!("../kernels/frame.s") };
         let bins = if self.binned { include_str!("../kernels/bins.s") } else { include_str!("../kernels/unbinned.s") };
         let common = [include_str!("../kernels/parameters.s"), picture, include_str!("../kernels/exact.s")];
+        let bins_of_frames =
+            if self.binned && !self.field { include_str!("../kernels/bins_scheduled.s") } else { bins };
         let triangle = match self.schedule {
             Schedule::Straight => [self.straight(), vec![bins]].concat(),
             // What is seldom needed comes last, so that bins do not share sets of the cache with the end of the second loop.
-            Schedule::Dual if self.binned && !self.field => {
-                let bins = include_str!("../kernels/bins_scheduled.s");
-                [self.dual(), vec![bins, include_str!("../kernels/scheduled_doubt.s")]].concat()
+            Schedule::Dual => {
+                [self.dual(), vec![bins_of_frames, include_str!("../kernels/scheduled_doubt.s")]].concat()
             }
-            Schedule::Dual => [self.dual(), vec![bins, include_str!("../kernels/scheduled_doubt.s")]].concat(),
         };
         [common.as_slice(), &triangle].concat().join("\n")
     }
@@ -131,8 +131,8 @@ impl Kernel {
             false => include_str!("../kernels/planes_frame.s"),
         };
         let (regions, tail) = match (self.binned, self.field) {
-            (false, _) => (include_str!("../kernels/regions_none.s"), include_str!("../kernels/tail_none.s")),
-            (true, true) => (include_str!("../kernels/regions_field.s"), include_str!("../kernels/tail_field.s")),
+            (false, _) => (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_none.s")),
+            (true, true) => (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_field.s")),
             (true, false) => (include_str!("../kernels/regions_frame.s"), include_str!("../kernels/tail_frame.s")),
         };
         vec![

@@ -344,9 +344,7 @@ impl Gp {
     /// Whether the bins of a context would fit beside those that the other context holds now.
     #[must_use]
     pub fn has_room_for_bins(&self, context: u8, bytes: u64) -> bool {
-        let shared = self.shared.borrow();
-        let other = shared.memory.held(Account::Bins(context ^ 1));
-        other.saturating_add(bytes) <= shared.timing.bin_bytes
+        bytes <= self.shared.borrow().memory.room_for_bins(context)
     }
 
     /// Tells the observer that a stage begins.

@@ -91,7 +91,7 @@ impl Memory {
         let others = self.used() - self.used[account.slot()];
         let free = self.capacity.saturating_sub(others);
         let available_bytes = match account {
-            Account::Bins(context) => free.min(self.bins.saturating_sub(self.held(Account::Bins(context ^ 1)))),
+            Account::Bins(context) => free.min(self.room_for_bins(context)),
             _ => free,
         };
         if bytes > available_bytes {
@@ -102,10 +102,10 @@ impl Memory {
         Ok(())
     }
 
-    /// Bytes that an account holds.
+    /// Bytes that the bins of a context may take beside those of the other one.
     #[must_use]
-    pub const fn held(&self, account: Account) -> u64 {
-        self.used[account.slot()]
+    pub const fn room_for_bins(&self, context: u8) -> u64 {
+        self.bins.saturating_sub(self.used[Account::Bins(context ^ 1).slot()])
     }
 
     /// Bytes in use by all accounts.

@@ -181,15 +181,16 @@ impl Variant {
 
     fn row(&self, volume: &Volume) -> VariantRow {
         let report = volume.report();
-        let model = &report.model_ms;
+        let stats = &volume.frame.stats;
+        let time = volume.time();
         VariantRow {
             clip: report.clip,
             projection: report.projection,
             samples: report.samples,
             coverage: self.coverage.name(),
             passes: report.passes,
-            fragments_generated: report.fragments_generated,
-            fragments_accepted: report.fragments_accepted,
+            fragments_generated: stats.fragments_generated,
+            fragments_accepted: stats.fragments_accepted,
             draws_percent: 100.0 * report.draws as f64 / report.draws_unbinned.max(1) as f64,
             tile_occupancy_percent: report.tile_occupancy_percent,
             connected_percent: report.connected_percent,
@@ -197,9 +198,9 @@ impl Variant {
             lit_voxels: report.lit_voxels,
             brightness_by_radius: report.brightness_by_radius.lit_voxels,
             brightness_over_exact: Vec::new(),
-            model_ms: [model.cpu.ms, model.gpu.ms, model.bus.ms],
-            volumes_hz_serial: report.volumes_hz_serial,
-            volumes_hz_overlapped: report.volumes_hz_overlapped,
+            model_ms: [time.cpu_ms, time.gpu_ms, time.bus_ms()],
+            volumes_hz_serial: time.serial_hz(),
+            volumes_hz_overlapped: time.overlapped_hz(),
             volume_hash: report.volume_hash,
             beyond_paper: report.beyond_paper,
             host_seconds: report.host_seconds,

@@ -43,10 +43,10 @@ pub struct VolumeReport {
     pub draws_unbinned: u64,
     /// Entries in all bins.
     pub bin_memberships: u64,
-    /// Fragments that reached the fragment program.
-    pub fragments_generated: u64,
-    /// Fragments that lie in their slice's volume.
-    pub fragments_accepted: u64,
+    /// Fragments that reached the fragment program; none if the renderers of Pixel-Planes 5 drew, which count no fragments.
+    pub fragments_generated: Option<u64>,
+    /// Fragments that lie in their slice's volume; none likewise.
+    pub fragments_accepted: Option<u64>,
     /// Pixels added to connect intersections, which is beyond the paper.
     pub fragments_added: u64,
     /// Slices on which nothing was drawn.
@@ -75,12 +75,12 @@ pub struct VolumeReport {
     pub brightness_by_radius: Brightness,
     /// Radius within which no slice shows anything; none of a dark volume.
     pub dead_zone_radius_px: Option<u32>,
-    /// Times of the model.
-    pub model_ms: ModelTimes,
-    /// Volumes a second if processor, GPU and bus follow each other.
-    pub volumes_hz_serial: f64,
-    /// Volumes a second if they work at the same time.
-    pub volumes_hz_overlapped: f64,
+    /// Times of the model of a host with a GPU; none if the renderers of Pixel-Planes 5 drew.
+    pub model_ms: Option<ModelTimes>,
+    /// Volumes a second if processor, GPU and bus follow each other; none likewise.
+    pub volumes_hz_serial: Option<f64>,
+    /// Volumes a second if they work at the same time; none likewise.
+    pub volumes_hz_overlapped: Option<f64>,
     /// Primitives with a corner outside what the display shows.
     pub outside_volume: u64,
     /// A number, in hexadecimal digits, that any other bit of the volume would change.
@@ -197,8 +197,10 @@ impl Volume {
     pub fn report(&self) -> VolumeReport {
         let stats = &self.frame.stats;
         let planes = &self.frame.planes;
-        let time = self.time();
         let settings = &self.settings;
+        // The model of time and its counts of fragments are a GPU's.
+        let fragments = self.bounds.is_none().then_some(stats);
+        let time = self.bounds.is_none().then(|| self.time());
         VolumeReport {
             schema: "pxpl5-volume/1",
             scene: self.scene.clone(),
@@ -215,8 +217,8 @@ impl Volume {
             draws: stats.draws,
             draws_unbinned: stats.draws_unbinned,
             bin_memberships: stats.bin_memberships,
-            fragments_generated: stats.fragments_generated,
-            fragments_accepted: stats.fragments_accepted,
+            fragments_generated: fragments.map(|stats| stats.fragments_generated),
+            fragments_accepted: fragments.map(|stats| stats.fragments_accepted),
             fragments_added: stats.fragments_added,
             slices_empty: stats.slices_empty,
             tiles_occupied: stats.tiles_occupied,
@@ -231,9 +233,9 @@ impl Volume {
             connected_percent: self.connected_percent(),
             brightness_by_radius: self.brightness(),
             dead_zone_radius_px: dead_zone_radius(planes),
-            model_ms: self.model_times(&time),
-            volumes_hz_serial: time.serial_hz(),
-            volumes_hz_overlapped: time.overlapped_hz(),
+            model_ms: time.as_ref().map(|time| self.model_times(time)),
+            volumes_hz_serial: time.as_ref().map(VolumeTime::serial_hz),
+            volumes_hz_overlapped: time.as_ref().map(VolumeTime::overlapped_hz),
             outside_volume: stats.outside_volume,
             volume_hash: format!("{:016x}", planes.hash()),
             overrides: settings.overrides(),

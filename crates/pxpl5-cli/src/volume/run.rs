@@ -87,14 +87,44 @@ fn bounds(planes: &PixelPlanesReport) -> String {
 
 fn slices_csv(volume: &Volume) -> String {
     let columns = ["slice", "draws", "fragments_generated", "fragments_accepted", "fragments_added"];
+    // Renderers of Pixel-Planes 5 count no fragments.
+    let counts = volume.bounds.is_none();
     let rows = volume.frame.stats.slices.iter().enumerate().map(|(slice, stats)| {
-        [slice as u64, stats.draws, stats.generated, stats.accepted, stats.added].map(|number| number.to_string())
+        let fragments =
+            [stats.generated, stats.accepted].map(|count| if counts { count.to_string() } else { String::new() });
+        let [generated, accepted] = fragments;
+        [slice.to_string(), stats.draws.to_string(), generated, accepted, stats.added.to_string()]
     });
     csv_table("", columns, rows)
 }
 
+/// What is not known of a volume that no GPU drew.
+const NOT_COUNTED: &str = "- (no GPU drew it)";
+
+fn fragments(report: &VolumeReport) -> String {
+    match (report.fragments_accepted, report.fragments_generated) {
+        (Some(accepted), Some(generated)) => format!("{accepted} accepted of {generated} generated"),
+        _ => NOT_COUNTED.to_owned(),
+    }
+}
+
+fn model_of_time(report: &VolumeReport) -> String {
+    let Some(model) = &report.model_ms else { return NOT_COUNTED.to_owned() };
+    format!("processor {:.1} ms, GPU {:.1} ms, bus {:.1} ms", model.cpu.ms, model.gpu.ms, model.bus.ms)
+}
+
+fn volumes_a_second(report: &VolumeReport) -> String {
+    match (report.volumes_hz_serial, report.volumes_hz_overlapped) {
+        (Some(serial), Some(overlapped)) => {
+            let eye = report.display.volumes_hz;
+            format!("{serial:.2} one after the other, {overlapped:.2} overlapped; the eye gets {eye}")
+        }
+        _ => NOT_COUNTED.to_owned(),
+    }
+}
+
 fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
-    let VolumeReport { display, model_ms, .. } = report;
+    let display = &report.display;
     let mut text = format!(
         "{} ({} primitives) on {}: {} slices of {} x {}, {} rpm\nclip {}, projection {}, seed {}\n\n",
         report.scene,
@@ -116,7 +146,7 @@ fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
             format!("{} in {} passes, {} empty", report.slices_rendered, report.passes, report.slices_empty),
         ),
         ("draws", format!("{} of {} ({draws:.1} %)", report.draws, report.draws_unbinned)),
-        ("fragments", format!("{} accepted of {} generated", report.fragments_accepted, report.fragments_generated)),
+        ("fragments", fragments(report)),
         ("tiles occupied", format!("{:.1} % of {} queried", report.tile_occupancy_percent, report.queries)),
         (
             "bytes",
@@ -130,20 +160,8 @@ fn text(report: &VolumeReport, out: Option<&std::path::Path>) -> String {
         ("lit voxels", report.lit_voxels.to_string()),
         ("connected", format!("{:.1} %", report.connected_percent)),
         ("outside the volume", format!("{} primitives with a corner there", report.outside_volume)),
-        (
-            "model of time",
-            format!(
-                "processor {:.1} ms, GPU {:.1} ms, bus {:.1} ms",
-                model_ms.cpu.ms, model_ms.gpu.ms, model_ms.bus.ms
-            ),
-        ),
-        (
-            "volumes a second",
-            format!(
-                "{:.2} one after the other, {:.2} overlapped; the eye gets {}",
-                report.volumes_hz_serial, report.volumes_hz_overlapped, display.volumes_hz
-            ),
-        ),
+        ("model of time", model_of_time(report)),
+        ("volumes a second", volumes_a_second(report)),
         ("volume hash", report.volume_hash.clone()),
         ("drawn here in", format!("{:.2} s", report.host_seconds)),
     ];

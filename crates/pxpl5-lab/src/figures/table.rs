@@ -209,9 +209,9 @@ pub const FIGURES: [Figure; 26] = [
         FREE,
     )
     .because(
-        "the copy optimisation makes 4.68 ms free; the published 30 triangles more need 156 us each, here each takes 123 us \
-         (65 us of code for both eyes, and the wait until all renderers have begun with a clump). A triangle's clocks on \
-         the renderers or the depth of the FIFO, at other values within their ranges, give 140 as well",
+        "the copy optimisation makes 4.68 ms free; the published 30 triangles more need 156 us each, here each takes 126 us \
+         (60 us of code for both eyes, and the wait until all renderers have begun with a clump). One channel for each board instead of \
+         two would give 127 with the same code",
     ),
     figure(
         "14",
@@ -234,7 +234,7 @@ pub const FIGURES: [Figure; 26] = [
         ("TR94", RC),
         "triangles that cover the screen, as many as the bins of 12 slaves hold: about",
         (7_700.0, "triangles", None),
-        "full-screen:N on small-hmd: the last N whose bins fit for one eye",
+        "full-screen:N on small-hmd: the last N whose bins fit for one eye, by their size (tests/readings.rs runs it and one more)",
         Basis::Fitted { parameter: "gp.bin_bytes" },
     ),
     figure(

@@ -161,19 +161,21 @@ impl PixelPlanesRenderer {
 
     /// Clocks of a region on which nothing is drawn: it is selected, cleared and halftoned all the same.
     fn empty_clocks(&self) -> u64 {
-        let of = |kind: CommandKind| u64::from(kind.clocks(&self.layout).unwrap_or(0));
-        of(CommandKind::SelectRegion) + of(CommandKind::Clear) + HALFTONE_CLOCKS
+        self.clocks(CommandKind::SelectRegion) + self.clocks(CommandKind::Clear) + HALFTONE_CLOCKS
+    }
+
+    fn clocks(&self, kind: CommandKind) -> u64 {
+        u64::from(kind.clocks(&self.layout).expect("pxpl5-volume: neither command waits for anything"))
     }
 
     fn encode(&self, command: Command, words: &mut Vec<Word>) {
-        // Selecting and clearing need colour and depth alone, which every layout has.
-        let _ = command.encode(&self.layout, words);
+        command.encode(&self.layout, words).expect("pxpl5-volume: every layout has the fields to select and clear");
     }
 }
 
 /// Clocks and colours of a list; the commands are ours, so that none of them is illegal.
 fn run(array: &mut impl PixelArray, words: &[Word], width: u32, height: u32) -> (u64, std::sync::Arc<[Word]>) {
-    let clocks = array.execute(words).map_or(0, |executed| executed.clocks);
+    let clocks = array.execute(words).expect("pxpl5-volume: commands of our own").clocks;
     (clocks, array.read_colour(width, height))
 }
 

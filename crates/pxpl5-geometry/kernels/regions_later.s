@@ -1,4 +1,4 @@
-        // r22 is not 0 where more must be asked: corners in doubt or near the guard band, no area; the bins are made by the common routine
+        // r22 is not 0 where more must be asked: corners in doubt or near the guard band, no area; bins, if any, are made afterwards
 guard   = or 55264, r0
 leastw  = subs bias, guard
 leastv  = adds 8, leastw
