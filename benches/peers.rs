@@ -10,7 +10,8 @@ use euc::rasterizer::{BackfaceCullingDisabled, Triangles};
 use euc::{Interpolate, Pipeline as _, Target as _};
 use glam::{Mat4, Vec3, Vec4};
 use pphigs::{
-    Binning, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionEnvelope, Shading, Share,
+    DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionBinning, RegionEnvelope, Shading,
+    Share,
 };
 use pxpl5::ViewNumber;
 use pxpl5::scene::{self, Hmd, HmdConfig, Scene, View};
@@ -140,7 +141,7 @@ impl<A: PixelArray> Ours<A> {
         let layout = Layout::rendering_control_phong();
         let viewport = Viewport::FRAME;
         let shading = Shading::Gouraud;
-        let binning = Binning::Touched;
+        let binning = RegionBinning::Touched;
         Self {
             share: Share::new(Arc::new(list), 0, 1),
             picture: Picture { viewport, shading, binning, layout, pixels: true },

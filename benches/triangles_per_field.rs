@@ -5,7 +5,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use pxpl5::limit::LimitQuery;
-use pxpl5::{Binning, Level, MachineConfig, Slats, TestScene};
+use pxpl5::{Level, MachineConfig, RegionBinning, Slats, TestScene};
 use std::time::Duration;
 
 fn machine(preset: &str, n_gps: usize, n_renderers: usize) -> MachineConfig {
@@ -26,7 +26,7 @@ fn typical(config: MachineConfig, slats: Slats) -> LimitQuery {
 }
 
 fn queries() -> Vec<(&'static str, LimitQuery)> {
-    let touched = Slats { binning: Binning::Touched, ..Slats::split() };
+    let touched = Slats { binning: RegionBinning::Touched, ..Slats::split() };
     vec![
         ("prototype, whole copy (published 110)", all(machine("slats", 1, 5), Slats::whole())),
         ("prototype, split copy (published 140)", all(machine("slats", 1, 5), Slats::split())),

@@ -59,7 +59,7 @@ pub use pxpl5_volume as volume;
 pub use tracking;
 
 pub use parameters::{ParameterInfo, ParameterTable, Standing, Value};
-pub use pphigs::Binning;
+pub use pphigs::RegionBinning;
 pub use pxpl5_framebuffer::{FrameBufferConfig, NtscDisplay};
 pub use pxpl5_gp::CodeVersion;
 pub use pxpl5_hires::HiResConfig;
@@ -93,10 +93,10 @@ pub use slats::CopySchedule;
 /// what travels on the ring.
 pub mod firmware {
     pub use pphigs::{
-        Binning, DisplayList, EyeView, FrameView, Pass, Picture, RegionEnvelope, Shading, Share, region_messages,
+        DisplayList, EyeView, FrameView, Pass, Picture, RegionBinning, RegionEnvelope, Shading, Share, region_messages,
     };
     pub use pxpl5_geometry::Viewport;
-    pub use pxpl5_gp::{Edge, Fault, Firmware, Gp, GpTiming, HostTiming, Mark, Priority, Received, Stage, Ticket};
+    pub use pxpl5_gp::{Fault, Firmware, Gp, GpTiming, HostTiming, Mark, Priority, Received, Stage, StageEdge, Ticket};
     pub use pxpl5_renderer::{CommandKind, Layout};
     pub use pxpl5_wire::{
         Body, CommandList, CopyOrder, CopyTarget, CopyWay, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber,

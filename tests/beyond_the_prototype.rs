@@ -5,7 +5,7 @@ mod support;
 
 use pxpl5::limit::LimitQuery;
 use pxpl5::scene::builtin;
-use pxpl5::{Binning, Experiment, MachineConfig, Measured, Outcome, Pixels, RenderingControl, Slats, TestScene};
+use pxpl5::{Experiment, MachineConfig, Measured, Outcome, Pixels, RegionBinning, RenderingControl, Slats, TestScene};
 use support::boards;
 
 fn run(slats: Slats, scene: &str) -> Outcome {
@@ -48,7 +48,7 @@ fn a_backup_costs_a_few_triangles_of_the_limit_of_a_whole_copy() {
 
 #[test]
 fn typical_triangles_sent_only_where_they_touch_raise_the_limit() {
-    let touched = Slats { binning: Binning::Touched, ..Slats::split() };
+    let touched = Slats { binning: RegionBinning::Touched, ..Slats::split() };
     let all = limit(1, 5, Slats::split(), TestScene::Typical);
     let touched = limit(1, 5, touched, TestScene::Typical);
     assert!(touched > all, "{touched} and {all}");

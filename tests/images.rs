@@ -8,7 +8,8 @@ use image::{Rgb, RgbImage, imageops};
 mod support;
 
 use pxpl5::{
-    Binning, Experiment, Eye, MachineConfig, Measured, Outcome, PeriodNumber, Pipeline, RenderingControl, Slats, scene,
+    Experiment, Eye, MachineConfig, Measured, Outcome, PeriodNumber, Pipeline, RegionBinning, RenderingControl, Slats,
+    scene,
 };
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -185,5 +186,5 @@ fn a_still_scene_looks_the_same_however_many_processors_draw_it() {
 #[test]
 fn both_pipelines_show_the_golden_images_to_both_eyes() {
     compare(RenderingControl::stereo(), &MachineConfig::small_hmd());
-    compare(Slats { binning: Binning::Touched, ..Slats::split() }, &many_boards());
+    compare(Slats { binning: RegionBinning::Touched, ..Slats::split() }, &many_boards());
 }

@@ -10,7 +10,7 @@ use pxpl5::tracking::Pose;
 use pxpl5::tracking::motion::{Motion, Pan, Still, Synthetic};
 use pxpl5::tracking::predict::PredictorKind;
 use pxpl5::tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, seconds};
-use pxpl5::tracking::tracker::{Fault, TrackerConfig};
+use pxpl5::tracking::tracker::{TrackerConfig, TrackerFault};
 use pxpl5::{
     Aim, Budget, Experiment, ExperimentFile, Frameless, Head, Interpolation, Jitp, LatencyCurve, MachineConfig,
     Measured, Outcome, Percentiles, PeriodNumber, Pipeline, PipelineSettings, PixelErrors, Pixels, Registration,
@@ -359,15 +359,15 @@ fn frameless_blocks_come_once_a_pass_and_are_half_a_pass_old() {
 #[test]
 fn every_pipeline_goes_on_when_the_tracker_fails() {
     let faults = [
-        vec![Fault::Silence { from_ps: 0 }],
-        vec![Fault::Silence { from_ps: 300 * PS_PER_MS }],
+        vec![TrackerFault::Silence { from_ps: 0 }],
+        vec![TrackerFault::Silence { from_ps: 300 * PS_PER_MS }],
         vec![
-            Fault::Dropout { from_ps: 200 * PS_PER_MS, to_ps: 700 * PS_PER_MS },
-            Fault::RandomDropout { probability: 0.5 },
+            TrackerFault::Dropout { from_ps: 200 * PS_PER_MS, to_ps: 700 * PS_PER_MS },
+            TrackerFault::RandomDropout { probability: 0.5 },
         ],
         vec![
-            Fault::NotANumber { probability: 0.5 },
-            Fault::Jump { probability: 0.5, distance_m: 1e3, angle_deg: 170.0 },
+            TrackerFault::NotANumber { probability: 0.5 },
+            TrackerFault::Jump { probability: 0.5, distance_m: 1e3, angle_deg: 170.0 },
         ],
     ];
     let late = TrackerConfig::optical_ceiling().with_latency_ps(PS_PER_S / 2);

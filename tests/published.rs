@@ -2,18 +2,18 @@
 //! are (FIXME(accuracy)). Causes stand in ACCURACY.md, which must be what these runs give.
 
 use pxpl5::Level;
-use pxpl5::figures::{Bench, Figures, Row, WITHOUT_CLOSED_FORM, markdown, run_all};
+use pxpl5::figures::{Bench, FigureRow, Figures, WITHOUT_CLOSED_FORM, markdown, run_all};
 use std::sync::LazyLock;
 
 static FIGURES: LazyLock<Figures> =
     LazyLock::new(|| run_all(&Bench::new(Level::Transaction)).expect("every experiment runs on its preset"));
 
-fn row(id: &str) -> &'static Row {
+fn row(id: &str) -> &'static FigureRow {
     FIGURES.rows.iter().find(|row| row.id == id).expect("listed")
 }
 
 /// The rows of which there is a closed form, and so an interval.
-fn varied() -> impl Iterator<Item = &'static Row> {
+fn varied() -> impl Iterator<Item = &'static FigureRow> {
     FIGURES.rows.iter().filter(|row| !WITHOUT_CLOSED_FORM.contains(&row.id))
 }
 

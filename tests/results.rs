@@ -11,7 +11,7 @@ use pxpl5::{
 };
 use pxpl5::{Film, FilmError, FilmOf};
 use pxpl5_framebuffer::seen_at;
-use pxpl5_gp::{Edge, Stage};
+use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{PictureNumber, SurfaceId};
 use serde_json::Value;
@@ -114,7 +114,7 @@ fn the_means_of_the_report_add_up_to_its_latency() {
 /// When the last board ended a stage of a picture.
 fn end_of(outcome: &Outcome, stage: Stage, surface: Option<SurfaceId>, picture: PictureNumber) -> Time {
     let marks = outcome.observation().marks.iter();
-    let ends = marks.filter(|m| (m.stage, m.surface, m.picture, m.edge) == (stage, surface, picture, Edge::End));
+    let ends = marks.filter(|m| (m.stage, m.surface, m.picture, m.edge) == (stage, surface, picture, StageEdge::End));
     ends.map(|mark| mark.time).max().expect("marked")
 }
 

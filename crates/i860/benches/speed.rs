@@ -4,7 +4,7 @@
 #![allow(missing_docs, reason = "criterion_group makes an undocumented function")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use i860::{Config, Cpu, Outcome, Ram, assemble};
+use i860::{Config, Cpu, Ram, RunEnd, assemble};
 use std::hint::black_box;
 
 const INSTRUCTIONS: u64 = 1_000_000;
@@ -77,7 +77,7 @@ fn speed(c: &mut Criterion) {
             group.bench_function(format!("{name}/{mode}"), |b| {
                 b.iter(|| {
                     let outcome = cpu.run(&mut ram, None, INSTRUCTIONS);
-                    assert_eq!(outcome, Outcome::Exhausted);
+                    assert_eq!(outcome, RunEnd::Exhausted);
                     black_box(cpu.clocks())
                 });
             });

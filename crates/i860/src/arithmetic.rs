@@ -4,7 +4,7 @@
 //! the NaN that comes out differs between hosts. So a NaN result is replaced: the first NaN operand made quiet, or
 //! the default NaN (sign set, as Intel's other parts) when the operation made it.
 
-use crate::state::Stage;
+use crate::state::PipeStage;
 
 const NAN32: u32 = 0xFFC0_0000;
 const NAN64: u64 = 0xFFF8_0000_0000_0000;
@@ -91,19 +91,19 @@ pub(crate) fn narrow(bits: u64, flush: bool) -> u32 {
 
 /// One operation with the precisions of an instruction's S and R bits. Operands are in source precision.
 #[inline]
-pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result: bool, flush: bool) -> Stage {
+pub(crate) fn operate(operation: Operation, a: u64, b: u64, source: bool, result: bool, flush: bool) -> PipeStage {
     if !source && !result {
         let bits = single(operation, f32::from_bits(a as u32), f32::from_bits(b as u32), flush);
-        return Stage { bits: u64::from(bits), double: false };
+        return PipeStage { bits: u64::from(bits), double: false };
     }
     let (a, b) = if source { (a, b) } else { (widen(a as u32), widen(b as u32)) };
     let bits = double(operation, f64::from_bits(a), f64::from_bits(b), flush);
-    Stage { bits, double: true }
+    PipeStage { bits, double: true }
 }
 
 /// A value made with one precision, read with another.
 #[inline]
-pub(crate) fn convert(value: Stage, double: bool, flush: bool) -> u64 {
+pub(crate) fn convert(value: PipeStage, double: bool, flush: bool) -> u64 {
     match (value.double, double) {
         (false, true) => widen(value.bits as u32),
         (true, false) => u64::from(narrow(value.bits, flush)),

@@ -11,7 +11,7 @@ use crate::profile::{AddressProfile, Profile};
 use crate::seed::SeedTable;
 use crate::state::{Mode, State, TRAP_VECTOR, psr};
 use crate::timing::Config;
-use crate::trap::{Outcome, Trap, TrapCause};
+use crate::trap::{RunEnd, Trap, TrapCause};
 use std::fmt;
 
 /// Entries of the table of blocks (a host matter, not the part's instruction cache).
@@ -139,17 +139,17 @@ impl Cpu {
 
     /// Runs until `stop` is reached in single-instruction mode, a trap is taken, or `budget` more instructions have
     /// been executed (a branch and its slot are not parted, so it can be passed by three).
-    pub fn run<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, budget: u64) -> Outcome {
+    pub fn run<B: Bus>(&mut self, bus: &mut B, stop: Option<u32>, budget: u64) -> RunEnd {
         let end = self.instructions().saturating_add(budget);
         loop {
             if Some(self.state.pc) == stop && self.state.mode == Mode::Single {
-                return Outcome::Stopped;
+                return RunEnd::Stopped;
             }
             if self.instructions() >= end {
-                return Outcome::Exhausted;
+                return RunEnd::Exhausted;
             }
             if let Err(trap) = self.advance(bus, stop, end - self.instructions()) {
-                return Outcome::Trapped(trap);
+                return RunEnd::Trapped(trap);
             }
         }
     }

@@ -5,7 +5,7 @@ use crate::cpu::Cpu;
 use crate::dual_operation::{MULTIPLIER_ROUTES, ROUTES};
 use crate::instruction::{Flags, Instruction, Op};
 use crate::operands::{Operands, last_product};
-use crate::state::{Stage, fsr, psr};
+use crate::state::{PipeStage, fsr, psr};
 
 impl Cpu {
     /// Executes a floating-point or graphics instruction with its operands already read.
@@ -51,20 +51,20 @@ impl Cpu {
     }
 
     #[inline]
-    fn push_product(&mut self, product: Stage) {
+    fn push_product(&mut self, product: PipeStage) {
         let pipe = &mut self.state.multiplier;
         *pipe = [product, pipe[0], pipe[1]];
     }
 
     #[inline]
-    fn push_sum(&mut self, sum: Stage) {
+    fn push_sum(&mut self, sum: PipeStage) {
         let pipe = &mut self.state.adder;
         *pipe = [sum, pipe[0], pipe[1]];
     }
 
     /// A result of the adder goes to its register, or into the pipe while the oldest one leaves.
     #[inline]
-    fn adder_result(&mut self, i: &Instruction, result: Stage) {
+    fn adder_result(&mut self, i: &Instruction, result: PipeStage) {
         if i.has(Flags::PIPELINED) {
             self.state.set_f(i.dest, self.state.adder[2]);
             self.push_sum(result);
@@ -93,7 +93,7 @@ impl Cpu {
             _ => x.partial_cmp(&y).is_none_or(std::cmp::Ordering::is_gt),
         };
         self.state.set_psr_bit(psr::CC, condition);
-        self.adder_result(i, Stage { bits: 0, double });
+        self.adder_result(i, PipeStage { bits: 0, double });
     }
 
     fn seed(&mut self, i: &Instruction, x: u64) {
@@ -106,7 +106,7 @@ impl Cpu {
         };
         let bits = if r { y } else { u64::from(narrow(y, self.flush_to_zero())) };
         lose(&mut self.state.multiplier);
-        self.state.set_f(i.dest, Stage { bits, double: r });
+        self.state.set_f(i.dest, PipeStage { bits, double: r });
     }
 
     /// The high word of the result is undefined on the part: `fix` clears it here, scalar `ftrunc` leaves it.
@@ -115,14 +115,14 @@ impl Cpu {
         let mode = if i.op == Op::Fix { self.state.fsr >> fsr::RM_SHIFT & 3 } else { 3 };
         let bits = u64::from(to_integer(round(f64::from_bits(wide), mode)));
         let whole_pair = i.op == Op::Fix || i.has(Flags::PIPELINED);
-        self.adder_result(i, Stage { bits, double: whole_pair && i.has(Flags::RESULT_DOUBLE) });
+        self.adder_result(i, PipeStage { bits, double: whole_pair && i.has(Flags::RESULT_DOUBLE) });
     }
 
     fn adder_move(&mut self, i: &Instruction, x: u64) {
         let s = i.has(Flags::SOURCE_DOUBLE);
         let r = i.has(Flags::RESULT_DOUBLE);
-        let bits = convert(Stage { bits: x, double: s }, r, self.flush_to_zero());
-        self.adder_result(i, Stage { bits, double: r });
+        let bits = convert(PipeStage { bits: x, double: s }, r, self.flush_to_zero());
+        self.adder_result(i, PipeStage { bits, double: r });
     }
 
     /// pfam, pfsm, pfmam, pfmsm. K and T are read before they are reloaded.
@@ -154,14 +154,14 @@ impl Cpu {
 
     /// The values of all [`Source`]s in the precision of one unit, in the order of the enumeration.
     #[inline(always)]
-    fn sources(&self, from: Operands, product: Stage, sum: Stage, double: bool) -> [u64; 7] {
+    fn sources(&self, from: Operands, product: PipeStage, sum: PipeStage, double: bool) -> [u64; 7] {
         let product = self.in_precision(product, double);
         let sum = self.in_precision(sum, double);
         [self.state.kr, self.state.ki, self.state.t, from.a, from.b, product, sum]
     }
 
     #[inline(always)]
-    fn in_precision(&self, stage: Stage, double: bool) -> u64 {
+    fn in_precision(&self, stage: PipeStage, double: bool) -> u64 {
         match stage.double == double {
             true => stage.bits,
             false => convert(stage, double, self.flush_to_zero()),
@@ -179,7 +179,7 @@ const LOST: u64 = 0x7FF8_0000_7FC0_0000;
 
 /// A scalar operation goes through the pipe of its unit, and what was there is lost.
 #[inline(always)]
-fn lose(pipe: &mut [Stage; 3]) {
+fn lose(pipe: &mut [PipeStage; 3]) {
     for stage in pipe {
         stage.bits = LOST;
     }

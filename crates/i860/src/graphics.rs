@@ -3,7 +3,7 @@
 use crate::cpu::Cpu;
 use crate::instruction::{Flags, Instruction, Op};
 use crate::operands::Operands;
-use crate::state::Stage;
+use crate::state::PipeStage;
 
 /// Bits of a pixel sum that faddp takes into MERGE, and by how much MERGE moves first, per psr.PS.
 const PIXEL_MERGE: [(u64, u32); 3] =
@@ -35,10 +35,10 @@ impl Cpu {
             _ => std::mem::take(&mut self.state.merge) | a,
         };
         let double = !matches!(i.op, Op::Fiadd | Op::Fisub) || i.has(Flags::RESULT_DOUBLE);
-        self.graphics_result(i, Stage { bits, double });
+        self.graphics_result(i, PipeStage { bits, double });
     }
 
-    fn graphics_result(&mut self, i: &Instruction, result: Stage) {
+    fn graphics_result(&mut self, i: &Instruction, result: PipeStage) {
         if i.has(Flags::PIPELINED) {
             let leaving = std::mem::replace(&mut self.state.graphics, result);
             self.state.set_f(i.dest, leaving);

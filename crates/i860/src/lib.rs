@@ -139,4 +139,4 @@ pub use profile::{AddressProfile, Profile};
 pub use seed::SeedTable;
 pub use state::State;
 pub use timing::{CHIP_PATH, Config};
-pub use trap::{Outcome, Trap, TrapCause};
+pub use trap::{RunEnd, Trap, TrapCause};

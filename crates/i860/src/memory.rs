@@ -4,7 +4,7 @@ use crate::bus::Bus;
 use crate::cpu::Cpu;
 use crate::decoded::Decoded;
 use crate::instruction::{Flags, Instruction, Op};
-use crate::state::Stage;
+use crate::state::PipeStage;
 use crate::trap::TrapCause;
 
 impl Cpu {
@@ -127,7 +127,7 @@ impl Cpu {
         let bits = self.read(bus, address, size)?;
         let [first, second, leaving] = self.state.load;
         self.state.set_f(i.dest, leaving);
-        self.state.load = [Stage { bits, double: size == 8 }, first, second];
+        self.state.load = [PipeStage { bits, double: size == 8 }, first, second];
         self.increment(i, address);
         self.accesses.push(address);
         Ok(())

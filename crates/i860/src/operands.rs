@@ -3,7 +3,7 @@
 use crate::decoded::Decoded;
 use crate::dual_operation::first_has_bypass;
 use crate::instruction::{Flags, Instruction, Op};
-use crate::state::{Stage, State};
+use crate::state::{PipeStage, State};
 
 /// Source registers as read before either half of a pair writes, with the value leaving the pipe put through.
 #[derive(Clone, Copy, Debug, Default)]
@@ -36,12 +36,12 @@ fn read_through(state: &State, i: &Instruction, first: bool, second: bool) -> Op
 }
 
 /// The last stage of the multiplier for a source precision: two stages for double, three for single.
-pub(crate) fn last_product(state: &State, source_double: bool) -> Stage {
+pub(crate) fn last_product(state: &State, source_double: bool) -> PipeStage {
     state.multiplier[if source_double { 1 } else { 2 }]
 }
 
 /// What a pipelined instruction sends to its destination; `None` for a scalar one.
-fn leaving(state: &State, i: &Instruction) -> Option<Stage> {
+fn leaving(state: &State, i: &Instruction) -> Option<PipeStage> {
     if i.op == Op::DualOp {
         let product = last_product(state, i.has(Flags::SOURCE_DOUBLE));
         return Some(if i.has(Flags::PIPELINED) { state.adder[2] } else { product });
@@ -57,7 +57,7 @@ fn leaving(state: &State, i: &Instruction) -> Option<Stage> {
 }
 
 /// Register `n` as if the leaving value had already reached `dest`.
-fn read_bypassed(state: &State, n: u8, double: bool, dest: u8, leaving: Stage) -> u64 {
+fn read_bypassed(state: &State, n: u8, double: bool, dest: u8, leaving: PipeStage) -> u64 {
     if dest & 30 != n & 30 || dest < 2 {
         return state.f_bits(n, double);
     }

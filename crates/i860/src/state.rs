@@ -86,7 +86,7 @@ pub mod dirbase {
 
 /// A value in a pipe with the precision that it was made with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub struct Stage {
+pub struct PipeStage {
     /// Bit pattern; a single occupies the low word.
     pub bits: u64,
     /// Whether it is a double (two registers).
@@ -154,13 +154,13 @@ pub struct State {
     /// The graphics unit's MERGE.
     pub merge: u64,
     /// Adder pipe, last stage at the end.
-    pub adder: [Stage; 3],
+    pub adder: [PipeStage; 3],
     /// Multiplier pipe; double-precision operations use the first two stages.
-    pub multiplier: [Stage; 3],
+    pub multiplier: [PipeStage; 3],
     /// Load pipe of three stages.
-    pub load: [Stage; 3],
+    pub load: [PipeStage; 3],
     /// Graphics pipe, of one stage.
-    pub graphics: Stage,
+    pub graphics: PipeStage,
     /// Whether instructions issue singly or in pairs.
     pub mode: Mode,
 }
@@ -186,10 +186,10 @@ impl State {
             ki: 0,
             t: 0,
             merge: 0,
-            adder: [Stage::default(); 3],
-            multiplier: [Stage::default(); 3],
-            load: [Stage::default(); 3],
-            graphics: Stage::default(),
+            adder: [PipeStage::default(); 3],
+            multiplier: [PipeStage::default(); 3],
+            load: [PipeStage::default(); 3],
+            graphics: PipeStage::default(),
             mode: Mode::Single,
         }
     }
@@ -239,7 +239,7 @@ impl State {
     }
 
     #[inline]
-    pub(crate) fn set_f(&mut self, n: u8, value: Stage) {
+    pub(crate) fn set_f(&mut self, n: u8, value: PipeStage) {
         if value.double { self.set_f64(n, value.bits) } else { self.set_f32(n, value.bits as u32) }
     }
 

@@ -61,7 +61,7 @@ pub struct Trap {
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum RunEnd {
     /// The stop address was reached in single-instruction mode; its instruction was not executed.
     Stopped,
     /// A trap was taken.

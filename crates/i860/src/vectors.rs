@@ -6,7 +6,7 @@
 //! ```
 //! Every register starts at zero, pc at `entry`; the run ends when pc is `stop` in single-instruction mode.
 
-use crate::{Bus, Config, Cpu, Outcome, Trap, Unmapped};
+use crate::{Bus, Config, Cpu, RunEnd, Trap, Unmapped};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -221,9 +221,9 @@ impl Vector {
         cpu.state.pc = self.entry;
         let mut memory = self.memory();
         match cpu.run(&mut memory, Some(self.stop), BUDGET) {
-            Outcome::Stopped => self.compare(cpu, &memory),
-            Outcome::Trapped(trap) => Err(Failure::Trapped(trap)),
-            Outcome::Exhausted => Err(Failure::Exhausted { pc: cpu.state.pc }),
+            RunEnd::Stopped => self.compare(cpu, &memory),
+            RunEnd::Trapped(trap) => Err(Failure::Trapped(trap)),
+            RunEnd::Exhausted => Err(Failure::Exhausted { pc: cpu.state.pc }),
         }
     }
 
@@ -242,14 +242,14 @@ impl Vector {
 
 /// Result of a file of vectors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Summary {
+pub struct VectorSummary {
     /// Vectors that came out as asked.
     pub passed: usize,
     /// The others: identifier, description, reason.
     pub failures: Vec<(String, String, Failure)>,
 }
 
-impl Summary {
+impl VectorSummary {
     /// Number of vectors that failed.
     #[must_use]
     pub fn failed(&self) -> usize {
@@ -259,9 +259,9 @@ impl Summary {
 
 /// Runs all vectors on one processor, each from its own state.
 #[must_use]
-pub fn run(vectors: &[Vector], config: Config) -> Summary {
+pub fn run(vectors: &[Vector], config: Config) -> VectorSummary {
     let mut cpu = Cpu::new(config);
-    let mut summary = Summary::default();
+    let mut summary = VectorSummary::default();
     for vector in vectors {
         match vector.check_on(&mut cpu) {
             Ok(()) => summary.passed += 1,

@@ -1,7 +1,7 @@
 //! Published clock counts of hand-written code, re-created from their descriptions. Nothing is tuned to one of them:
 //! all run with the full freeze table and the default memory, code and data in cache.
 
-use i860::{Config, Cpu, Outcome, Ram, assemble};
+use i860::{Config, Cpu, Ram, RunEnd, assemble};
 
 const CODE: u32 = 0x1000;
 const DATA: u32 = 0x8000;
@@ -26,9 +26,9 @@ fn measure(source: &str, floats: &[f32]) -> Measured {
     for _ in 0..3 {
         cpu.state.pc = CODE;
         cpu.state.r[4] = DATA;
-        assert_eq!(cpu.run(&mut ram, Some(begin), 10_000), Outcome::Stopped);
+        assert_eq!(cpu.run(&mut ram, Some(begin), 10_000), RunEnd::Stopped);
         start = (cpu.clocks(), cpu.instructions());
-        assert_eq!(cpu.run(&mut ram, Some(end), 100_000), Outcome::Stopped);
+        assert_eq!(cpu.run(&mut ram, Some(end), 100_000), RunEnd::Stopped);
     }
     Measured { clocks: cpu.clocks() - start.0, instructions: cpu.instructions() - start.1, cpu }
 }

@@ -5,7 +5,7 @@
 //! more; a write takes 9 or 3. A line of 8 instructions that comes in at clock 0 is there in pairs at 11, 13, 15 and 17.
 
 use i860::timing::{DramTiming, Freeze, FreezeRules};
-use i860::{Config, Cpu, Outcome, Ram, assemble};
+use i860::{Config, Cpu, Ram, RunEnd, assemble};
 
 const CODE: u32 = 0x1000;
 /// In another row of the memory than the code.
@@ -32,7 +32,7 @@ fn clocks(rows: &[Freeze], source: &str) -> u64 {
     ram.load(CODE, &program.bytes).expect("fits");
     let mut cpu = Cpu::at(Config { freezes, dram: dram(), ..Config::cycle() }, CODE);
     cpu.state.r[4] = DATA;
-    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 1000), Outcome::Stopped, "{source}");
+    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 1000), RunEnd::Stopped, "{source}");
     assert_eq!(cpu.profile().clocks(), cpu.clocks(), "every clock has a cause");
     cpu.clocks()
 }
@@ -112,7 +112,7 @@ fn sum_behind(operation: &str) -> f32 {
     let mut ram = Ram::new(0, 0x20000);
     ram.load(CODE, &program.bytes).expect("fits");
     let mut cpu = Cpu::at(Config::cycle(), CODE);
-    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 1000), Outcome::Stopped);
+    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 1000), RunEnd::Stopped);
     f32::from_bits(cpu.state.f[10])
 }
 

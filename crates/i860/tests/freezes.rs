@@ -6,7 +6,7 @@
 //! What the rows amount to together is held against published counts in anchors.rs.
 
 use i860::timing::{DramTiming, FREEZES, Freeze, FreezeRules};
-use i860::{Config, Cpu, Outcome, Ram, assemble};
+use i860::{Config, Cpu, Ram, RunEnd, assemble};
 use parameters::{ParameterTable, Value};
 
 const CODE: u32 = 0x1000;
@@ -23,7 +23,7 @@ fn clocks_with(rules: FreezeRules, source: &str) -> u64 {
     let mut cpu = Cpu::at(Config { freezes: rules, dram: dram(), ..Config::cycle() }, CODE);
     cpu.state.r[4] = DATA;
     let outcome = cpu.run(&mut ram, program.symbol("end"), 1000);
-    assert_eq!(outcome, Outcome::Stopped, "{source}");
+    assert_eq!(outcome, RunEnd::Stopped, "{source}");
     assert_eq!(cpu.profile().clocks(), cpu.clocks(), "every clock has a cause");
     cpu.clocks()
 }

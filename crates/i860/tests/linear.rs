@@ -2,7 +2,7 @@
 
 use i860::linear::schedule;
 use i860::timing::{FREEZES, Freeze};
-use i860::{Config, Cpu, Outcome, Profile, Ram, assemble};
+use i860::{Config, Cpu, Profile, Ram, RunEnd, assemble};
 
 const CODE: u32 = 0x1000;
 const DATA: u32 = 0x8000;
@@ -20,9 +20,9 @@ fn run(settings: &str, body: &str, data: &[u32]) -> (Vec<u32>, Profile) {
     ram.load_words(DATA, data).expect("fits");
     let mut cpu = Cpu::at(Config::cycle(), CODE);
     cpu.state.r[4] = DATA;
-    assert_eq!(cpu.run(&mut ram, program.symbol("first"), 10_000), Outcome::Stopped);
+    assert_eq!(cpu.run(&mut ram, program.symbol("first"), 10_000), RunEnd::Stopped);
     cpu.clear_profile();
-    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 10_000), Outcome::Stopped);
+    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 10_000), RunEnd::Stopped);
     (ram.words(DATA, 32).expect("inside"), cpu.profile())
 }
 

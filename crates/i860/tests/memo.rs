@@ -2,7 +2,7 @@
 //! crates/pphigs/tests/memo.rs.
 
 use i860::timing::{FREEZES, Freeze, FreezeRules};
-use i860::{AddressProfile, Config, Cpu, Outcome, Ram, assemble, decode};
+use i860::{AddressProfile, Config, Cpu, Ram, RunEnd, assemble, decode};
 use proptest::prelude::*;
 
 const CODE: u32 = 0x1000;
@@ -122,7 +122,7 @@ fn run_loop(prepare: impl Fn(&mut Cpu)) -> (Cpu, Ram) {
     let mut cpu = Cpu::at(Config::cycle(), CODE);
     cpu.state.r[4] = 0x4000;
     prepare(&mut cpu);
-    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 10_000), Outcome::Stopped);
+    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 10_000), RunEnd::Stopped);
     (cpu, ram)
 }
 
@@ -155,7 +155,7 @@ fn caches_emptied_between_runs_are_noticed() {
     let before = misses(&cpu);
     cpu.empty_caches();
     cpu.state.pc = CODE;
-    assert_eq!(cpu.run(&mut ram, Some(CODE + 36), 10_000), Outcome::Stopped);
+    assert_eq!(cpu.run(&mut ram, Some(CODE + 36), 10_000), RunEnd::Stopped);
     assert_eq!(misses(&cpu), (2 * before.0, 2 * before.1));
     assert!(cpu.profile().frozen_by(Freeze::InstructionMiss) > 0);
 }

@@ -1,7 +1,7 @@
 //! Profiles account for every clock, by cause and by label.
 
 use i860::timing::{Freeze, FreezeRules};
-use i860::{AddressProfile, Config, Cpu, Outcome, Ram, assemble};
+use i860::{AddressProfile, Config, Cpu, Ram, RunEnd, assemble};
 
 fn run(source: &str, freezes: FreezeRules) -> (Cpu, i860::Program) {
     let program = assemble("p.s", 0x1000, source).unwrap_or_else(|e| panic!("{e}"));
@@ -9,7 +9,7 @@ fn run(source: &str, freezes: FreezeRules) -> (Cpu, i860::Program) {
     ram.load(0x1000, &program.bytes).expect("fits");
     let mut cpu = Cpu::at(Config { freezes, ..Config::cycle() }, 0x1000);
     cpu.watch(Some(AddressProfile::new(0x1000, program.words().len())));
-    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 1000), Outcome::Stopped);
+    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 1000), RunEnd::Stopped);
     (cpu, program)
 }
 

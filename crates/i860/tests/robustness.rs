@@ -1,10 +1,10 @@
 //! Nothing that a user can hand in makes the processor panic or run on for ever.
 
 use i860::state::{TRAP_VECTOR, psr};
-use i860::{Config, Cpu, Outcome, Ram, TrapCause, assemble};
+use i860::{Config, Cpu, Ram, RunEnd, TrapCause, assemble};
 use proptest::prelude::*;
 
-fn run_words(words: &[u32], registers: &[u32; 8], budget: u64) -> (Cpu, Outcome) {
+fn run_words(words: &[u32], registers: &[u32; 8], budget: u64) -> (Cpu, RunEnd) {
     let mut ram = Ram::new(0, 0x10000);
     ram.load_words(0x1000, words).expect("fits");
     let mut cpu = Cpu::at(Config::cycle(), 0x1000);
@@ -32,7 +32,7 @@ proptest! {
         registers: [u32; 8],
     ) {
         let (cpu, outcome) = run_words(&words, &registers, 500);
-        prop_assert!(matches!(outcome, Outcome::Trapped(_) | Outcome::Exhausted));
+        prop_assert!(matches!(outcome, RunEnd::Trapped(_) | RunEnd::Exhausted));
         prop_assert!(cpu.instructions() <= 503, "{}", cpu.instructions());
         prop_assert_eq!(cpu.profile().clocks(), cpu.clocks());
         prop_assert_eq!((cpu.state.r[0], cpu.state.f[0], cpu.state.f[1]), (0, 0, 0));
@@ -58,7 +58,7 @@ proptest! {
 fn trap_of(source: &str) -> (Cpu, TrapCause, u32) {
     let program = assemble("t.s", 0x1000, source).unwrap_or_else(|e| panic!("{e}"));
     let (cpu, outcome) = run_words(&program.words(), &[0x8000, 3, 0, 0, 0, 0, 0, 0], 100);
-    let Outcome::Trapped(trap) = outcome else { panic!("{outcome:?}") };
+    let RunEnd::Trapped(trap) = outcome else { panic!("{outcome:?}") };
     assert_eq!((cpu.state.pc, cpu.state.fir), (TRAP_VECTOR, trap.pc));
     (cpu, trap.cause, trap.pc)
 }
@@ -112,8 +112,8 @@ fn a_handler_returns_to_the_trapped_pair_in_dual_mode() {
     let mut bus = TwoBanks { low, high };
     let mut cpu = Cpu::at(Config::cycle(), 0x1000);
     let end = program.symbol("end");
-    assert!(matches!(cpu.run(&mut bus, end, 100), Outcome::Trapped(_)));
-    assert_eq!(cpu.run(&mut bus, end, 100), Outcome::Stopped);
+    assert!(matches!(cpu.run(&mut bus, end, 100), RunEnd::Trapped(_)));
+    assert_eq!(cpu.run(&mut bus, end, 100), RunEnd::Stopped);
     assert_eq!((cpu.state.r[10], bus.low.words(0x8004, 1)), (3, Ok(vec![1])));
     assert_eq!(cpu.state.psr & psr::TRAPS, 0);
 }
@@ -156,6 +156,6 @@ fn a_store_into_code_is_seen_by_the_next_fetch() {
     let mut ram = Ram::new(0, 0x10000);
     ram.load(0x1000, &program.bytes).expect("fits");
     let mut cpu = Cpu::at(Config::cycle(), 0x1000);
-    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 100), Outcome::Stopped);
+    assert_eq!(cpu.run(&mut ram, program.symbol("end"), 100), RunEnd::Stopped);
     assert_eq!(cpu.state.r[10], 17);
 }

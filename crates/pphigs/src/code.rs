@@ -13,7 +13,7 @@
 use crate::cost::TransformCost;
 use crate::list::Share;
 use crate::pass::Pass;
-use crate::picture::{Binning, Shading};
+use crate::picture::{RegionBinning, Shading};
 use i860::Program;
 use pxpl5_geometry::kernel::{
     Heads, Kernel, KernelSurface, PARAMETER_WORDS, Schedule, TRIANGLE_WORDS, display_list_words,
@@ -187,7 +187,7 @@ impl Pass {
     }
 
     fn is_binned(&self) -> bool {
-        self.picture().binning == Binning::Touched
+        self.picture().binning == RegionBinning::Touched
     }
 
     /// What is alike in all triangle commands, read off one of zeros.

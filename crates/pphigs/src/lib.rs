@@ -41,7 +41,7 @@ pub use cost::TransformCost;
 pub use counts::PrimitiveCounts;
 pub use list::{DisplayList, Share};
 pub use pass::Pass;
-pub use picture::{Binning, Picture, Shading};
+pub use picture::{Picture, RegionBinning, Shading};
 pub use placed::{PlacedStructure, RecentViews};
 pub use placing::place_all;
 pub use sending::send_as_tracked;

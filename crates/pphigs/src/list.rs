@@ -5,7 +5,7 @@ use crate::placed::RecentViews;
 use crate::structure::DisplayStructure;
 use glam::Vec3;
 use pxpl5_geometry::kernel::TRIANGLE_WORDS;
-use pxpl5_geometry::{Sphere, Triangle};
+use pxpl5_geometry::{Triangle, WorldSphere};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ pub struct DisplayList {
     /// Each triangle's corners, by their places among the positions.
     pub triangles: Vec<[u32; 3]>,
     /// Spheres in their structure's coordinates.
-    pub spheres: Vec<Sphere>,
+    pub spheres: Vec<WorldSphere>,
     /// The structures, whose triangles and spheres follow one another.
     pub structures: Vec<DisplayStructure>,
     /// Towards the light, unit length, in each structure's frame.
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn clumps_hold_every_primitive_of_a_share_once_triangles_first() {
-        let sphere = Sphere { centre: Vec3::ZERO, radius: 1.0, colour: [0; 3] };
+        let sphere = WorldSphere { centre: Vec3::ZERO, radius: 1.0, colour: [0; 3] };
         let list = DisplayList { triangles: vec![[0; 3]; 70], spheres: vec![sphere; 25], ..DisplayList::default() };
         let clumps: Vec<_> = Share::new(Arc::new(list), 0, 1).clumps(30).collect();
         let counts: Vec<_> = clumps.iter().map(|c| (c.counts().triangles, c.counts().spheres)).collect();

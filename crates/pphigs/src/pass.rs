@@ -3,7 +3,7 @@
 use crate::counts::PrimitiveCounts;
 use crate::encoder::Encoder;
 use crate::list::Share;
-use crate::picture::{Binning, Picture};
+use crate::picture::{Picture, RegionBinning};
 use crate::placed::PlacedStructure;
 use crate::placing::place_once;
 use crate::view::FrameView;
@@ -93,7 +93,7 @@ impl Pass {
         let mut in_one_region = 0;
         for number in share.held_triangles(&place.structure.triangles) {
             let touch = touched.get(number - first);
-            if let (Touch::Region(region), Binning::Touched) = (touch, self.picture.binning) {
+            if let (Touch::Region(region), RegionBinning::Touched) = (touch, self.picture.binning) {
                 in_one_region += 1;
                 self.put_in(region, BinEntry { triangle: number as u32, piece: Some(0) });
                 continue;
@@ -113,7 +113,7 @@ impl Pass {
                     }
                 }
             }
-            if pieces == 0 && self.picture.binning == Binning::All {
+            if pieces == 0 && self.picture.binning == RegionBinning::All {
                 self.put_triangle(RegionMask::EMPTY, BinEntry { triangle, piece: None });
             }
         }
@@ -125,8 +125,8 @@ impl Pass {
 
     fn receivers(&self, mask: RegionMask) -> RegionMask {
         match self.picture.binning {
-            Binning::Touched => mask,
-            Binning::All => {
+            RegionBinning::Touched => mask,
+            RegionBinning::All => {
                 let all = (0..self.counts.len()).map(|i| RegionMask::only(RegionId(i as u16)));
                 all.fold(RegionMask::EMPTY, RegionMask::union)
             }

@@ -14,7 +14,7 @@ pub enum Shading {
 
 /// Which regions a primitive's commands are sent to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Binning {
+pub enum RegionBinning {
     /// Those that it touches.
     Touched,
     /// All; a triangle that is not seen costs as much as any other, and draws nothing (Slats prototype, TR94). Spheres,
@@ -30,7 +30,7 @@ pub struct Picture {
     /// Whether colours are computed at corners or at pixels.
     pub shading: Shading,
     /// Which regions get a primitive's commands.
-    pub binning: Binning,
+    pub binning: RegionBinning,
     /// Division of pixel memory that the commands are encoded for.
     pub layout: Layout,
     /// Whether somebody may want the command words.

@@ -2,10 +2,10 @@
 
 use glam::{Mat4, Vec3};
 use pphigs::{
-    Binning, DisplayList, DisplayStructure, EyeView, FrameView, KernelOutput, ModelEdit, ModelFrame, Pass, Picture,
-    RegionEnvelope, Shading, Share, Transforming, region_messages,
+    DisplayList, DisplayStructure, EyeView, FrameView, KernelOutput, ModelEdit, ModelFrame, Pass, Picture,
+    RegionBinning, RegionEnvelope, Shading, Share, Transforming, region_messages,
 };
-use pxpl5_geometry::{Culling, Sphere, Viewport};
+use pxpl5_geometry::{Culling, Viewport, WorldSphere};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, Work};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, SplitMix64};
@@ -70,7 +70,7 @@ fn view() -> FrameView {
     }
 }
 
-fn picture(viewport: Viewport, shading: Shading, binning: Binning) -> Picture {
+fn picture(viewport: Viewport, shading: Shading, binning: RegionBinning) -> Picture {
     Picture { viewport, shading, binning, layout: Layout::rendering_control_phong(), pixels: true }
 }
 
@@ -106,7 +106,7 @@ fn the_words_in_memory_are_those_of_the_native_firmware() {
         for viewport in [Viewport::FRAME, Viewport::field(FieldParity::Even), Viewport::field(FieldParity::Odd)] {
             for (shading, command_words) in [(Shading::Gouraud, 30), (Shading::Phong, 32)] {
                 for eye in 0..2 {
-                    let pass = share.transform(&view, eye, picture(viewport, shading, Binning::Touched));
+                    let pass = share.transform(&view, eye, picture(viewport, shading, RegionBinning::Touched));
                     assert_eq!(pass.stats().clipped + pass.stats().outside, 0, "all are inside the guard band");
                     let made = pass.run_code(&mut processor, eye as u8).expect("it returns").expect("it has a kernel");
                     assert!(made.clipped.is_empty());
@@ -131,7 +131,7 @@ fn without_bins_every_command_is_made_in_order() {
     for version in VERSIONS {
         let mut processor = board(version, &share);
         for (clump, first) in share.clumps(30).zip([0, 30]) {
-            let pass = clump.transform(&view, 0, picture(viewport, Shading::Gouraud, Binning::All));
+            let pass = clump.transform(&view, 0, picture(viewport, Shading::Gouraud, RegionBinning::All));
             assert_eq!(pass.stats().screen_triangles, 30, "clump from {first}: all are on the screen");
             let made = pass.run_code(&mut processor, 0).expect("it returns").expect("it has a kernel");
             let words = (made.commands.end - made.commands.start) as usize / 4;
@@ -146,10 +146,10 @@ fn what_has_no_code_takes_the_time_of_the_table() {
     let mut list = Arc::unwrap_or_clone(list(30));
     // One triangle reaches behind the eye, so that it is left to the clipper; and there is a sphere.
     list.positions[3].z = 5.0;
-    list.spheres = vec![Sphere { centre: Vec3::new(0.0, 0.0, -5.0), radius: 0.1, colour: [9; 3] }];
+    list.spheres = vec![WorldSphere { centre: Vec3::new(0.0, 0.0, -5.0), radius: 0.1, colour: [9; 3] }];
     list.structures[0].spheres = 0..1;
     let share = Share::new(Arc::new(list), 0, 1);
-    let pass = share.transform(&view(), 0, picture(Viewport::FRAME, Shading::Phong, Binning::Touched));
+    let pass = share.transform(&view(), 0, picture(Viewport::FRAME, Shading::Phong, RegionBinning::Touched));
     let made = pass.run_code(&mut board(CodeVersion::Scheduled, &share), 0).expect("it returns").expect("a kernel");
     assert_eq!(made.clipped.len(), 4, "one address");
     let by_kernel: u32 = made.bins.iter().map(|bin| (bin.end - bin.start) / 4).sum();
@@ -167,7 +167,7 @@ fn a_picture_without_a_kernel_takes_the_time_of_the_table() {
     let share = Share::new(list(30), 0, 1);
     let grid = pxpl5_wire::RegionGrid { width: 320, height: 240, region_width: 128, region_height: 128 };
     let viewport = Viewport::new(grid, pxpl5_wire::Lines::Frame).expect("a valid picture");
-    let passes = [share.transform(&view(), 0, picture(viewport, Shading::Phong, Binning::Touched))];
+    let passes = [share.transform(&view(), 0, picture(viewport, Shading::Phong, RegionBinning::Touched))];
     let work = Transforming { passes: &passes, context: 0, begins: false };
     let span = work.by_code(&GpTiming::PAPERS, &mut board(CodeVersion::Compiled, &share)).expect("it returns");
     assert_eq!(span, work.by_table(&GpTiming::PAPERS));
@@ -195,7 +195,7 @@ fn both_contexts(memory: u64) -> (Processor, [Arc<Pass>; 2]) {
     let view = view();
     let mut processor = Processor::new(NodeId(2), memory, CodeVersion::Scheduled, i860::Config::cycle());
     share.install(&mut processor).expect("it fits");
-    let picture = picture(Viewport::FRAME, Shading::Gouraud, Binning::Touched);
+    let picture = picture(Viewport::FRAME, Shading::Gouraud, RegionBinning::Touched);
     (processor, [0, 1].map(|eye| share.transform(&view, eye, picture)))
 }
 

@@ -63,18 +63,18 @@ fn triangles_in_time(
     let (least, most) = ESTIMATED_FIELDS;
     let plain = experiment.clone().without_head().fields(experiment.length().clamp(least, most));
     let whole = Arc::clone(plain.scene());
-    let is_in_time = |primitives: usize| {
-        let scene = whole.decimated(primitives).ok()?;
-        let due = summary(&plain.clone().with_scene(scene)).ok()?.due?;
-        Some(due.not_shown() == 0)
-    };
     let mut in_time = 0;
     let mut too_many = whole.triangles().len() + whole.spheres().len() + 1;
     while too_many - in_time > 1 {
         let middle = in_time + (too_many - in_time) / 2;
-        *if is_in_time(middle)? { &mut in_time } else { &mut too_many } = middle;
+        let thinned = plain.clone().with_scene(whole.decimated(middle).ok()?);
+        *if is_in_time(&summary(&thinned).ok()?)? { &mut in_time } else { &mut too_many } = middle;
     }
     Some(in_time as u64)
+}
+
+fn is_in_time(summary: &Summary) -> Option<bool> {
+    summary.due.map(|due| due.not_shown() == 0)
 }
 
 fn no_form(what: &str) -> ConfigError {

@@ -1,6 +1,6 @@
 //! What a scene asks of the machine, as numbers.
 
-use pphigs::{Binning, Picture, PrimitiveCounts, Shading, Share};
+use pphigs::{Picture, PrimitiveCounts, RegionBinning, Shading, Share};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_run::{Experiment, ExperimentError, display_list, views};
@@ -52,7 +52,7 @@ impl Load {
     pub fn of_views(
         experiment: &Experiment,
         viewport: Viewport,
-        binning: Binning,
+        binning: RegionBinning,
         times: &[u64],
     ) -> Result<Vec<Self>, ExperimentError> {
         let list = Arc::new(display_list(experiment.scene()).map_err(ExperimentError::Scene)?);

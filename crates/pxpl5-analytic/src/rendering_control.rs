@@ -3,7 +3,7 @@
 use super::load::Load;
 use super::renderer::Cost;
 use crate::{pipeline_of, video_of};
-use pphigs::{BIN_ENTRY_BYTES, Binning, Shading, TransformCost};
+use pphigs::{BIN_ENTRY_BYTES, RegionBinning, Shading, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::GpTiming;
 use pxpl5_machine::{ConfigError, MachineConfig};
@@ -348,7 +348,7 @@ pub fn stereo_loads(experiment: &Experiment) -> Result<Vec<Load>, ExperimentErro
     let video = video_of(experiment.config())?;
     let times: Vec<u64> =
         if still { vec![0] } else { (0..frames).map(|frame| video.retrace(PeriodNumber(2 * frame)).0).collect() };
-    let mut loads = Load::of_views(experiment, Viewport::FRAME, Binning::Touched, &times)?;
+    let mut loads = Load::of_views(experiment, Viewport::FRAME, RegionBinning::Touched, &times)?;
     while (loads.len() as u64) < 2 * frames {
         loads.extend_from_within(0..2);
     }

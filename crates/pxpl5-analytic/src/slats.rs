@@ -4,7 +4,7 @@ use super::copies::{CopyTimes, Queue, copy_all};
 use super::load::Load;
 use super::renderer::{Array, Commands, Cost, Fifo, later};
 use crate::{pipeline_of, video_of};
-use pphigs::{Binning, TransformCost};
+use pphigs::{RegionBinning, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::GpTiming;
 use pxpl5_machine::{ConfigError, MachineConfig};
@@ -295,10 +295,10 @@ fn steady_field(experiment: &Experiment) -> Result<(SlatsModel, FieldTimes), Exp
     let scene = experiment.scene();
     let triangles = (scene.triangles().len() + scene.spheres().len()) as f64;
     let entries = match pipeline.binning {
-        Binning::All => 10.0,
-        Binning::Touched => {
+        RegionBinning::All => 10.0,
+        RegionBinning::Touched => {
             let viewport = Viewport::field(FieldParity::Even);
-            let loads = Load::of_views(experiment, viewport, Binning::Touched, &[0])?;
+            let loads = Load::of_views(experiment, viewport, RegionBinning::Touched, &[0])?;
             let per_eye = loads.iter().map(Load::entries).sum::<f64>() / loads.len() as f64;
             per_eye / triangles.max(1.0)
         }

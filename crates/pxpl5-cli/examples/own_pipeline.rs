@@ -6,8 +6,8 @@
 
 // ANCHOR: imports
 use pxpl5_cli::pxpl5::firmware::{
-    Binning, Body, CopyOrder, CopyTarget, CopyWay, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture,
-    PictureNumber, Priority, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport, region_messages,
+    Body, CopyOrder, CopyTarget, CopyWay, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture, PictureNumber,
+    Priority, RegionBinning, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport, region_messages,
     swap_request,
 };
 use pxpl5_cli::pxpl5::{
@@ -30,7 +30,7 @@ impl OneAtATime {
         Picture {
             viewport: Viewport::FRAME,
             shading: self.shading,
-            binning: Binning::Touched,
+            binning: RegionBinning::Touched,
             layout: Layout::rendering_control_phong(),
             pixels: true,
         }

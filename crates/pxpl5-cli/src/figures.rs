@@ -5,7 +5,7 @@ use crate::output::OutputFile;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::Level;
-use pxpl5::figures::{Bench, Figures, Row, markdown, mean_error_percent, run_all_with};
+use pxpl5::figures::{Bench, FigureRow, Figures, markdown, mean_error_percent, run_all_with};
 use serde_json::json;
 use std::fmt::Write;
 use std::fs;
@@ -62,7 +62,7 @@ fn json_text(figures: &Figures) -> String {
     format!("{object:#}\n")
 }
 
-fn text(rows: &[Row]) -> String {
+fn text(rows: &[FigureRow]) -> String {
     let mut text = format!(
         "{:<4} {:>10} {:>10}  {:<13} {:>8}  {:<22} {:<7} {}\n",
         "#", "published", "simulated", "unit", "error", "interval", "standing", "what"

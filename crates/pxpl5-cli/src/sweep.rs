@@ -84,11 +84,13 @@ const INTERRUPTED: i32 = 130;
 /// Ctrl-C ends the sweep and says how it goes on: finished rows are in the file already.
 fn told_when_interrupted(args: &SweepArgs) -> Result<(), CliError> {
     let again = again(args);
-    let handler = move || {
-        complain(&format!("\npxpl5: interrupted; the finished points are kept. To go on:\n  {again}\n"));
-        std::process::exit(INTERRUPTED);
-    };
-    ctrlc::set_handler(handler).map_err(|error| CliError::failure(format!("Ctrl-C cannot be listened for: {error}")))
+    let listening = ctrlc::set_handler(move || end_interrupted(&again));
+    listening.map_err(|error| CliError::failure(format!("Ctrl-C cannot be listened for: {error}")))
+}
+
+fn end_interrupted(again: &str) {
+    complain(&format!("\npxpl5: interrupted; the finished points are kept. To go on:\n  {again}\n"));
+    std::process::exit(INTERRUPTED);
 }
 
 /// The command that goes on with what this one began.

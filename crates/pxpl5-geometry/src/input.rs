@@ -16,7 +16,7 @@ pub struct Triangle {
 
 /// A sphere in world coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sphere {
+pub struct WorldSphere {
     /// Centre in world coordinates.
     pub centre: Vec3,
     /// Radius in units of the world, not negative.

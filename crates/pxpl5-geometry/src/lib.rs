@@ -101,7 +101,7 @@ mod vertex;
 mod view;
 
 pub use clip::MAX_CLIP;
-pub use input::{Light, Sphere, Triangle};
+pub use input::{Light, Triangle, WorldSphere};
 pub use lanes::{GouraudLanes, LANES, PhongLanes, TriangleLanes};
 pub use outline::Outline;
 pub use plane::MAX_SLOPE;

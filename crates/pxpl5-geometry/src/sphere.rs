@@ -20,7 +20,7 @@ use crate::lens::Lens;
 use crate::screen::{DEPTH_FAR, DEPTH_NEAR};
 use crate::transform::Transform;
 use crate::view::{FromWorld, dot};
-use crate::{RegionMask, SetupStats, Sphere};
+use crate::{RegionMask, SetupStats, WorldSphere};
 
 /// Largest eye coordinate and radius of a sphere; the squares of larger ones could overflow.
 const MAX_COORDINATE: f64 = 1e30;
@@ -76,7 +76,7 @@ struct EyeSphere {
 
 impl EyeSphere {
     /// `None` for NaN, huge numbers and a negative radius.
-    fn new(to_eye: &FromWorld, sphere: &Sphere) -> Option<Self> {
+    fn new(to_eye: &FromWorld, sphere: &WorldSphere) -> Option<Self> {
         let [x, y, z, _] = to_eye.point(sphere.centre).map(f64::from);
         let radius = f64::from(sphere.radius) * to_eye.scale();
         let fits = [x, y, z, radius].into_iter().all(|v| v.abs() <= MAX_COORDINATE);
@@ -182,7 +182,7 @@ impl Transform {
     ///
     /// The model-view matrix must be a rotation, translation and uniform scale, the projection along -Z; other
     /// projections are counted as [`SetupStats::spheres_unprojectable`].
-    pub fn sphere(&self, sphere: &Sphere, stats: &mut SetupStats) -> Option<ScreenSphere> {
+    pub fn sphere(&self, sphere: &WorldSphere, stats: &mut SetupStats) -> Option<ScreenSphere> {
         stats.spheres += 1;
         let Some(lens) = &self.lens else {
             stats.spheres_unprojectable += 1;

@@ -4,8 +4,8 @@ mod support;
 
 use glam::{Mat4, Vec3};
 use pxpl5_geometry::{
-    Culling, GouraudSphere, LANES, Light, LitColours, ScreenTriangle, SetupStats, Sphere, Touch, Transform, Triangle,
-    TriangleLanes, UnclippedTriangle, VertexSurface, ViewError, ViewTransform, Viewport,
+    Culling, GouraudSphere, LANES, Light, LitColours, ScreenTriangle, SetupStats, Touch, Transform, Triangle,
+    TriangleLanes, UnclippedTriangle, VertexSurface, ViewError, ViewTransform, Viewport, WorldSphere,
 };
 use pxpl5_wire::{FieldParity, Linear};
 use support::random::Random;
@@ -215,7 +215,7 @@ fn spheres_behind_around_or_cut_are_counted_each_under_its_own_name() {
 /// Counts of one sphere with its centre on the eye's axis.
 fn one(z: f32, radius: f32) -> SetupStats {
     let mut stats = SetupStats::default();
-    let sphere = Sphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [1; 3] };
+    let sphere = WorldSphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [1; 3] };
     let found = spheres::transform().sphere(&sphere, &mut stats);
     assert_eq!(found.is_some(), stats.screen_spheres == 1);
     stats
@@ -227,7 +227,7 @@ fn a_projection_that_is_neither_perspective_nor_parallel_draws_no_spheres() {
     view.projection.x_axis.y = 0.5;
     let transform = Transform::new(&view, Viewport::FRAME, Culling::None).expect("a finite view");
     let mut stats = SetupStats::default();
-    let sphere = Sphere { centre: Vec3::new(0.0, 0.0, -5.0), radius: 1.0, colour: [1; 3] };
+    let sphere = WorldSphere { centre: Vec3::new(0.0, 0.0, -5.0), radius: 1.0, colour: [1; 3] };
     assert!(transform.sphere(&sphere, &mut stats).is_none());
     assert_eq!(stats.spheres_unprojectable, 1);
 }
@@ -239,7 +239,7 @@ fn silhouettes_are_exact_to_the_pixel_and_regions_miss_none_of_it() {
     for _ in 0..25 {
         let radius = random.between(0.02, 1.0);
         let centre = at_pixel(random.between(0.0, 640.0), random.between(0.0, 480.0), random.between(0.01, 1.0));
-        let sphere = Sphere { centre, radius: radius * radius * -centre.z * 0.7, colour: [200; 3] };
+        let sphere = WorldSphere { centre, radius: radius * radius * -centre.z * 0.7, colour: [200; 3] };
         let exact = ExactSphere::new(&sphere);
         let mut stats = SetupStats::default();
         let Some(screen) = spheres::transform().sphere(&sphere, &mut stats) else { continue };
@@ -262,7 +262,7 @@ fn silhouettes_are_exact_to_the_pixel_and_regions_miss_none_of_it() {
 fn depths_of_spheres_that_touch_the_near_or_the_far_plane_never_wrap() {
     let cases = [(-5.0, 3.999), (-2_000.0, 1_998.9), (-9_000.0, 8_998.0), (-16_380.0, 100.0), (-16_384.0, 600.0)];
     for (z, radius) in cases {
-        let sphere = Sphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [1; 3] };
+        let sphere = WorldSphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [1; 3] };
         let mut stats = SetupStats::default();
         let screen = spheres::transform().sphere(&sphere, &mut stats).unwrap_or_else(|| panic!("{z}: {stats:?}"));
         let setup = screen.phong(&Viewport::FRAME, &mut stats).setup;
@@ -280,7 +280,7 @@ fn depths_of_spheres_that_touch_the_near_or_the_far_plane_never_wrap() {
 
 #[test]
 fn a_sphere_of_a_field_is_every_second_line_of_the_frame() {
-    let sphere = Sphere { centre: Vec3::new(20.0, 30.0, -200.0), radius: 60.0, colour: [200, 100, 50] };
+    let sphere = WorldSphere { centre: Vec3::new(20.0, 30.0, -200.0), radius: 60.0, colour: [200, 100, 50] };
     for parity in [FieldParity::Even, FieldParity::Odd] {
         let [frame, field] = [Viewport::FRAME, Viewport::field(parity)].map(|viewport| {
             let view = pixel_view(1.0, 16_384.0);
@@ -310,7 +310,7 @@ fn a_sphere_under_a_parallel_projection_is_a_circle_with_a_root_for_its_depth() 
         projection: Mat4::orthographic_rh(-5.0, 5.0, -3.75, 3.75, 1.0, 9.0),
     };
     let transform = Transform::new(&view, Viewport::FRAME, Culling::None).expect("a finite view");
-    let sphere = Sphere { centre: Vec3::new(1.0, -0.5, -5.0), radius: 1.5, colour: [255; 3] };
+    let sphere = WorldSphere { centre: Vec3::new(1.0, -0.5, -5.0), radius: 1.5, colour: [255; 3] };
     let mut stats = SetupStats::default();
     let setup = transform.sphere(&sphere, &mut stats).expect("in sight").phong(&Viewport::FRAME, &mut stats).setup;
     let mut seen = 0;
@@ -336,7 +336,7 @@ fn a_sphere_under_a_parallel_projection_is_a_circle_with_a_root_for_its_depth() 
 
 #[test]
 fn a_gouraud_sphere_is_full_in_the_middle_and_ambient_at_its_rim_under_a_headlight() {
-    let sphere = Sphere { centre: Vec3::new(0.0, 0.0, -1920.0), radius: 600.0, colour: [200, 0, 0] };
+    let sphere = WorldSphere { centre: Vec3::new(0.0, 0.0, -1920.0), radius: 600.0, colour: [200, 0, 0] };
     let mut stats = SetupStats::default();
     let screen = spheres::transform().sphere(&sphere, &mut stats).expect("in sight");
     let sphere = screen.gouraud(&Viewport::FRAME, &Light::HEADLIGHT, &mut stats);

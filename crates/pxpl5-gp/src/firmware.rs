@@ -2,7 +2,7 @@
 
 use crate::cpu::{Cpu, Priority};
 use crate::memory::{Account, Memory, OutOfMemory};
-use crate::probe::{Edge, Mark, Stage};
+use crate::probe::{Mark, Stage, StageEdge};
 use crate::processor::{Processor, ProcessorFault};
 use crate::timing::GpTiming;
 use pxpl5_sim::{Span, Time};
@@ -349,12 +349,12 @@ impl Gp {
 
     /// Tells the observer that a stage begins.
     pub fn begin(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>) {
-        self.mark(stage, picture, surface, Edge::Begin, self.now());
+        self.mark(stage, picture, surface, StageEdge::Begin, self.now());
     }
 
     /// Tells the observer that a stage ends.
     pub fn end(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>) {
-        self.mark(stage, picture, surface, Edge::End, self.now());
+        self.mark(stage, picture, surface, StageEdge::End, self.now());
     }
 
     /// Tells the observer that a stage ends when a batch is accepted; the program goes on.
@@ -364,11 +364,11 @@ impl Gp {
         let node = shared.node;
         shared
             .ends
-            .push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: Edge::End, view: None }));
+            .push_back((ticket, Mark { time, node, picture, surface: None, stage, edge: StageEdge::End, view: None }));
     }
 
     /// Tells the observer of a stage's edge at a time that the program has read off a message.
-    pub fn mark(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>, edge: Edge, time: Time) {
+    pub fn mark(&self, stage: Stage, picture: PictureNumber, surface: Option<SurfaceId>, edge: StageEdge, time: Time) {
         let shared = &mut *self.shared.borrow_mut();
         let node = shared.node;
         shared.marks.push(Mark { time, node, picture, surface, stage, edge, view: None });
@@ -379,6 +379,6 @@ impl Gp {
         let shared = &mut *self.shared.borrow_mut();
         let time = shared.now;
         let node = shared.node;
-        shared.marks.push(Mark { time, node, picture, surface: None, stage, edge: Edge::Begin, view: Some(view) });
+        shared.marks.push(Mark { time, node, picture, surface: None, stage, edge: StageEdge::Begin, view: Some(view) });
     }
 }

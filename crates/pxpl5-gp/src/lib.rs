@@ -44,7 +44,7 @@ pub use board::{GpBoard, GpEvent, GpOutput, PLACE_BITS};
 pub use cpu::Priority;
 pub use firmware::{Fault, Firmware, Gp, Received, Ticket};
 pub use memory::{Account, Memory, OutOfMemory};
-pub use probe::{Edge, Mark, Stage};
+pub use probe::{Mark, Stage, StageEdge};
 pub use processor::{CodeVersion, Processor, ProcessorFault};
 pub use timing::{GpTiming, HostTiming};
 pub use work::Work;

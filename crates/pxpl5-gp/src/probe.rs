@@ -27,7 +27,7 @@ pub enum Stage {
 /// Begin or end of a stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Edge {
+pub enum StageEdge {
     /// The stage begins: its program turns to it.
     Begin,
     /// The stage ends: its last work or message is done.
@@ -48,7 +48,7 @@ pub struct Mark {
     /// Which part of its work the firmware begins or ends.
     pub stage: Stage,
     /// Whether the stage began or ended.
-    pub edge: Edge,
+    pub edge: StageEdge,
     /// The view that the picture shows, where the program says it.
     pub view: Option<ViewNumber>,
 }

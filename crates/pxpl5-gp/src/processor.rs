@@ -1,6 +1,6 @@
 //! The board's i860 with its memory, where programs run and clocks are counted.
 
-use i860::{Cpu, Outcome, Program, Ram, Trap};
+use i860::{Cpu, Program, Ram, RunEnd, Trap};
 use pxpl5_sim::Span;
 use pxpl5_wire::{NodeId, Word};
 use serde::{Deserialize, Serialize};
@@ -226,9 +226,9 @@ impl Processor {
             state.r[*number] = *value;
         }
         match self.cpu.run(&mut self.ram, Some(RETURN), budget) {
-            Outcome::Stopped => Ok(Self::CLOCK * (self.cpu.clocks() - begin)),
-            Outcome::Trapped(trap) => Err(ProcessorFault::Trap { gp, trap }),
-            Outcome::Exhausted => Err(ProcessorFault::Endless { gp, address: self.cpu.state.pc, budget }),
+            RunEnd::Stopped => Ok(Self::CLOCK * (self.cpu.clocks() - begin)),
+            RunEnd::Trapped(trap) => Err(ProcessorFault::Trap { gp, trap }),
+            RunEnd::Exhausted => Err(ProcessorFault::Endless { gp, address: self.cpu.state.pc, budget }),
         }
     }
 

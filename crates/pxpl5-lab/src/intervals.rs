@@ -10,7 +10,7 @@
 //! within the range that gives the figure exactly. So the interval of a fitted figure says how much it would be off
 //! if nothing were fitted anew.
 
-use crate::figures::{Bench, FIGURES, Reading, Row, WITHOUT_CLOSED_FORM};
+use crate::figures::{Bench, FIGURES, FigureRow, Reading, WITHOUT_CLOSED_FORM};
 use parameters::Standing;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::Level;
@@ -217,7 +217,7 @@ impl Effect {
 }
 
 /// Puts the intervals into the rows, as they were computed; a figure without a closed form has none.
-pub fn fill(rows: &mut [Row], intervals: &[Interval]) {
+pub fn fill(rows: &mut [FigureRow], intervals: &[Interval]) {
     for row in rows {
         let interval = intervals.iter().find(|interval| interval.id == row.id);
         row.analytic = interval.map(|interval| interval.nominal);
@@ -228,10 +228,10 @@ pub fn fill(rows: &mut [Row], intervals: &[Interval]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figures::{Figure, Measured};
+    use crate::figures::{Figure, FigureValue};
 
     /// Figure 2, published as 31.2 ms: at the analytic level 20 to 22 ms, 21 ms with the presets' numbers.
-    fn row_of_figure_2(simulated: f64) -> Row {
+    fn row_of_figure_2(simulated: f64) -> FigureRow {
         let figure: &Figure = FIGURES.iter().find(|figure| figure.id == "2").expect("listed");
         let interval = Interval {
             id: figure.id,
@@ -243,7 +243,7 @@ mod tests {
             likely: [20.2, 21.0],
             effects: Vec::new(),
         };
-        let mut rows = [Row::new(figure, Measured::from(simulated))];
+        let mut rows = [FigureRow::new(figure, FigureValue::from(simulated))];
         fill(&mut rows, &[interval]);
         let [row] = rows;
         row
@@ -269,7 +269,7 @@ mod tests {
     #[test]
     fn the_figure_of_the_scenes_has_no_interval_and_is_not_judged_by_one() {
         let figure = FIGURES.iter().find(|figure| figure.id == "8").expect("listed");
-        let mut rows = [Row::new(figure, Measured::from(9.0))];
+        let mut rows = [FigureRow::new(figure, FigureValue::from(9.0))];
         fill(&mut rows, &[]);
         assert_eq!((rows[0].interval, rows[0].analytic), (None, None));
         assert!(!rows[0].is_out_of_reach());

@@ -12,7 +12,7 @@ use crate::Workstation;
 use core::f64::consts::FRAC_PI_2;
 use glam::{DVec3, Vec3};
 use pxpl5_display::Display;
-use pxpl5_gp::{Edge, Stage};
+use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_machine::{Machine, MachineConfig, Record};
 use pxpl5_run::{Experiment, ExperimentError, Head, HeadError, Outcome, PictureTimes, Pipeline, Pixels};
 use pxpl5_scene::{Frame, HeadMotion, HeadPath, Lighting, Scene, SceneParts, Structure, Sway, Vertex};
@@ -23,9 +23,9 @@ use std::sync::Arc;
 use thiserror::Error;
 use tracking::motion::Still;
 use tracking::predict::PredictorKind;
-use tracking::rig::{InsidePass, Measurement, Oscilloscope, PendulumRig, RigError, Sighting, Trace};
+use tracking::rig::{InsidePass, Measurement, Oscilloscope, PendulumRig, RigError, ScopeTrace, Sighting};
 use tracking::time::nearest_ps;
-use tracking::tracker::{Report, TrackerConfig, TrackerModel};
+use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 use tracking::{Pose, rotation};
 
 /// A measurement that is to be done.
@@ -96,8 +96,9 @@ impl Rig {
         let mut photodiode = Photodiode::new(self.rig.photodiode_line);
         let outcome = photodiode.watch(&experiment)?;
         let frames = frames_asked_for(&outcome, &sightings)?;
-        let dac = Trace::toggling("D/A line", frames.iter().map(|frame| started(outcome.record(), frame).0).collect());
-        let screen = Trace::sampled("screen", photodiode.samples);
+        let dac =
+            ScopeTrace::toggling("D/A line", frames.iter().map(|frame| started(outcome.record(), frame).0).collect());
+        let screen = ScopeTrace::sampled("screen", photodiode.samples);
         let oscilloscope = Oscilloscope::of(&self.rig, dac, screen);
         let inside = sightings.iter().zip(&frames).map(|(sighting, frame)| InsidePass {
             sighting: *sighting,
@@ -114,7 +115,7 @@ impl Rig {
         pipeline: Arc<dyn Pipeline>,
         sightings: &[Sighting],
     ) -> Result<Experiment, RigRunError> {
-        let reports = (0..).zip(sightings).map(|(number, sighting)| Report {
+        let reports = (0..).zip(sightings).map(|(number, sighting)| TrackerReport {
             solution: number,
             measured_ps: sighting.measured_ps,
             position_measured_ps: sighting.measured_ps,
@@ -260,7 +261,8 @@ fn frames_asked_for(outcome: &Outcome, sightings: &[Sighting]) -> Result<Vec<Pic
 /// When the first board began TRANSFORM of a frame: it switches the D/A line.
 fn started(record: &Record, frame: &PictureTimes) -> Time {
     let marks = record.observation().marks.iter();
-    let begun = marks
-        .filter(|mark| mark.stage == Stage::Transform && mark.edge == Edge::Begin && mark.picture == frame.picture);
+    let begun = marks.filter(|mark| {
+        mark.stage == Stage::Transform && mark.edge == StageEdge::Begin && mark.picture == frame.picture
+    });
     begun.map(|mark| mark.time).min().unwrap_or(frame.transform_at)
 }

@@ -1,7 +1,7 @@
 //! What was observed of a run, and the pictures' histories that follow from it.
 
 use crate::traffic::Traffic;
-use pxpl5_gp::{Edge, Mark, Stage};
+use pxpl5_gp::{Mark, Stage, StageEdge};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
@@ -80,8 +80,8 @@ impl Observation {
             };
             let span = spans.entry((mark.picture, mark.surface, mark.stage)).or_insert(fresh);
             match mark.edge {
-                Edge::Begin => span.begin = span.begin.min(mark.time),
-                Edge::End => span.end = span.end.max(Some(mark.time)),
+                StageEdge::Begin => span.begin = span.begin.min(mark.time),
+                StageEdge::End => span.end = span.end.max(Some(mark.time)),
             }
         }
         for arrival in &self.arrivals {

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use tracking::motion::{Motion, Pan};
 use tracking::predict::{PredictorConfig, PredictorKind};
 use tracking::tracker::TrackerConfig;
-use tracking::{Pose, Settings};
+use tracking::{Pose, SettingSink};
 
 /// Fields of a run.
 const FIELDS: u64 = 45;
@@ -210,7 +210,7 @@ impl Motion for Shaking {
     fn pose(&self, t_ps: u64) -> Pose {
         Pose::facing(glam::DQuat::from_rotation_y(yaw(t_ps as f64 * 1e-12)))
     }
-    fn identify(&self, settings: &mut Settings) {
+    fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"shaking");
     }
     fn velocity(&self, _: u64) -> glam::DVec3 {

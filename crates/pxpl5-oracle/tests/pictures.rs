@@ -2,8 +2,8 @@
 
 use glam::{Mat4, Vec3};
 use image::Rgb;
-use pphigs::{Binning, DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, Shading};
-use pxpl5_geometry::{Culling, Sphere, Viewport};
+use pphigs::{DisplayList, DisplayStructure, EyeView, FrameView, ModelFrame, Picture, RegionBinning, Shading};
+use pxpl5_geometry::{Culling, Viewport, WorldSphere};
 use pxpl5_oracle::{IdealPicture, ideal_picture};
 use pxpl5_renderer::Layout;
 use pxpl5_wire::{FieldParity, ViewNumber};
@@ -53,7 +53,12 @@ fn drawn_in(list: &DisplayList, viewport: Viewport, shading: Shading) -> IdealPi
         Shading::Gouraud => Layout::slats(),
         Shading::Phong => Layout::rendering_control_phong(),
     };
-    ideal_picture(list, &view(), 0, &Picture { viewport, shading, binning: Binning::Touched, layout, pixels: true })
+    ideal_picture(
+        list,
+        &view(),
+        0,
+        &Picture { viewport, shading, binning: RegionBinning::Touched, layout, pixels: true },
+    )
 }
 
 fn drawn(list: &DisplayList) -> IdealPicture {
@@ -121,7 +126,11 @@ fn a_tie_may_show_either_colour_and_no_other() {
 fn a_sphere_is_a_disc_that_bulges_towards_the_eye() {
     let mut list = list();
     let centre = [200.3_f32, 100.2];
-    list.spheres.push(Sphere { centre: Vec3::new(centre[0], 480.0 - centre[1], -50.0), radius: 30.0, colour: RED });
+    list.spheres.push(WorldSphere {
+        centre: Vec3::new(centre[0], 480.0 - centre[1], -50.0),
+        radius: 30.0,
+        colour: RED,
+    });
     list.structures[0].spheres = 0..1;
     // Cuts the sphere 18 units before its middle: a disc of radius 24 stands before it.
     square(&mut list, [100.0, 300.0], [50.0, 150.0], 32.0, GREEN);

@@ -3,7 +3,7 @@
 use crate::views::{Views, ViewsWanted};
 use pphigs::{DisplayList, DisplayStructure, EyeView, FrameView, MAX_EDITS, ModelEdit, ModelFrame, RecentViews};
 use pxpl5_display::Surface;
-use pxpl5_geometry::{Culling, Sphere};
+use pxpl5_geometry::{Culling, WorldSphere};
 use pxpl5_scene::{HeadMotion, Hmd, HmdConfig, Pose, Scene};
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
@@ -30,7 +30,7 @@ pub fn display_list(scene: &Scene) -> Result<DisplayList, String> {
         },
         culling: if s.culls_back_faces { Culling::Back } else { Culling::None },
     };
-    let sphere = |s: &pxpl5_scene::Sphere| Sphere { centre: s.centre, radius: s.radius, colour: s.colour };
+    let sphere = |s: &pxpl5_scene::Sphere| WorldSphere { centre: s.centre, radius: s.radius, colour: s.colour };
     let light = scene.lighting();
     Ok(DisplayList {
         positions: scene.vertices().iter().map(|v| v.position).collect(),

@@ -8,7 +8,7 @@ use tracking::Pose;
 use tracking::motion::Shifted;
 use tracking::predict::ExactPredictor;
 use tracking::time::PS_PER_S;
-use tracking::tracker::{Report, TrackerConfig, TrackerModel};
+use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 
 /// Why content is seen where it should not be. Each can be turned off in the reports and poses of a run that has ended; the
 /// machine's times stay as they were.
@@ -106,7 +106,7 @@ fn follower_of(views: &HeadViews, tracker: TrackerConfig) -> Follower<'static> {
     let head = views.head();
     let model = model_of(tracker);
     let reports = model.reports(head.motion(), head.seed);
-    let all: Arc<[Report]> = reports.take_while(|report| report.arrives_ps <= until).collect();
+    let all: Arc<[TrackerReport]> = reports.take_while(|report| report.arrives_ps <= until).collect();
     Follower::new(all, head.build_predictor())
 }
 

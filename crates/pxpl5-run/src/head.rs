@@ -7,13 +7,13 @@ use pxpl5_machine::Parameter;
 use pxpl5_sim::Time;
 use std::fmt;
 use std::sync::Arc;
-use tracking::ConfigError;
+use tracking::SettingError;
 use tracking::motion::Motion;
 use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Training, tune};
-use tracking::tracker::{Report, TrackerConfig, TrackerModel};
+use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 
 /// Why a head cannot be simulated.
-pub type HeadError = ConfigError;
+pub type HeadError = SettingError;
 
 /// Where the numbers of a predictor come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +40,7 @@ pub struct Head {
     pub(crate) seed: u64,
     raster: Raster,
     aim: Aim,
-    reports: Option<Arc<[Report]>>,
+    reports: Option<Arc<[TrackerReport]>>,
     /// Numbers of its tracker and predictor that no source allows.
     suppositions: Vec<Parameter>,
 }
@@ -169,13 +169,13 @@ impl Head {
 
     /// Puts these reports, in order of arrival, in the place of those that its tracker would make of the motion.
     #[must_use]
-    pub fn reporting(self, reports: Vec<Report>) -> Self {
+    pub fn reporting(self, reports: Vec<TrackerReport>) -> Self {
         Self { reports: Some(reports.into()), ..self }
     }
 
     /// The reports that reach the host before an instant.
-    pub(crate) fn reports_until(&self, until: Time) -> Arc<[Report]> {
-        let in_time = |report: &Report| report.arrives_ps < until.0;
+    pub(crate) fn reports_until(&self, until: Time) -> Arc<[TrackerReport]> {
+        let in_time = |report: &TrackerReport| report.arrives_ps < until.0;
         match &self.reports {
             Some(reports) => reports.iter().copied().take_while(in_time).collect(),
             None => self.tracker.reports(self.motion.as_ref(), self.seed).take_while(in_time).collect(),

@@ -13,7 +13,7 @@ use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tracking::Pose;
 use tracking::predict::Predictor;
-use tracking::tracker::Report;
+use tracking::tracker::TrackerReport;
 
 /// Most fields of a run with a tracker: its reports are held in memory. An hour and more.
 pub const FIELDS_WITH_HEAD: u64 = 250_000;
@@ -46,14 +46,14 @@ struct Newest {
 
 /// Reports fed to a predictor as time goes on.
 pub(crate) struct Follower<'a> {
-    reports: Arc<[Report]>,
+    reports: Arc<[TrackerReport]>,
     next: usize,
     predictor: Box<dyn Predictor + 'a>,
     newest: Newest,
 }
 
 impl<'a> Follower<'a> {
-    pub(crate) fn new(reports: Arc<[Report]>, predictor: Box<dyn Predictor + 'a>) -> Self {
+    pub(crate) fn new(reports: Arc<[TrackerReport]>, predictor: Box<dyn Predictor + 'a>) -> Self {
         Self { reports, next: 0, predictor, newest: Newest::default() }
     }
 
@@ -85,7 +85,7 @@ pub struct HeadViews {
     scene: Arc<Scene>,
     hmd: Hmd,
     eyes: usize,
-    reports: Arc<[Report]>,
+    reports: Arc<[TrackerReport]>,
     rehearsal: Option<Rehearsal>,
     /// Where the scene wants its viewer at time zero.
     base: Pose,
@@ -203,7 +203,7 @@ impl HeadViews {
         Follower::new(Arc::clone(&self.reports), self.head.build_predictor())
     }
 
-    pub(crate) const fn reports(&self) -> &Arc<[Report]> {
+    pub(crate) const fn reports(&self) -> &Arc<[TrackerReport]> {
         &self.reports
     }
 

@@ -2,7 +2,7 @@
 
 use crate::display_list::{display_list, hmd_before, view, views};
 use crate::outcome::Outcome;
-use pphigs::{Binning, Picture};
+use pphigs::{Picture, RegionBinning};
 use pxpl5_geometry::Viewport;
 use pxpl5_oracle::{IdealPicture, ideal_picture};
 use pxpl5_sim::Time;
@@ -33,7 +33,7 @@ impl Outcome {
         let viewport = Viewport::new(size.grid(), Lines::Frame).ok()?;
         let layout = pipeline.layout();
         let shading = pipeline.shading();
-        let picture = Picture { viewport, shading, binning: Binning::Touched, layout, pixels: true };
+        let picture = Picture { viewport, shading, binning: RegionBinning::Touched, layout, pixels: true };
         Some(ideal_picture(&list, &view, surface, &picture))
     }
 }

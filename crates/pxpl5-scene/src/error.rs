@@ -7,18 +7,18 @@ use thiserror::Error;
 
 /// Where in a file a fault was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePlace {
     /// A line, counted from 1.
     Line(u64),
     /// An offset from the beginning of the file, in bytes.
     Byte(u64),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::Line(line) => write!(f, "line {line}"),
-            Place::Byte(byte) => write!(f, "byte {byte}"),
+            FilePlace::Line(line) => write!(f, "line {line}"),
+            FilePlace::Byte(byte) => write!(f, "byte {byte}"),
         }
     }
 }
@@ -71,7 +71,7 @@ pub enum LoadError {
         /// Name of the file, as it was given.
         file: String,
         /// Where in the file the fault was found.
-        at: Place,
+        at: FilePlace,
         /// The first byte that does not belong.
         found: u8,
     },
@@ -81,7 +81,7 @@ pub enum LoadError {
         /// Name of the file, as it was given.
         file: String,
         /// Where in the file the fault was found.
-        at: Place,
+        at: FilePlace,
         /// What the format asks for.
         expected: String,
         /// What stands there, quoted and cut to 40 characters.
@@ -93,7 +93,7 @@ pub enum LoadError {
         /// Name of the file, as it was given.
         file: String,
         /// Where in the file the fault was found.
-        at: Place,
+        at: FilePlace,
         /// What the file announced, for example a number of rows.
         expected: String,
         /// What is left of the file instead.
@@ -105,7 +105,7 @@ pub enum LoadError {
         /// Name of the file, as it was given.
         file: String,
         /// Where in the file the fault was found.
-        at: Place,
+        at: FilePlace,
         /// What is indexed: "vertices" or "normals".
         what: &'static str,
         /// How many of them the file has up to that place.
@@ -119,7 +119,7 @@ pub enum LoadError {
         /// Name of the file, as it was given.
         file: String,
         /// Where in the file the fault was found.
-        at: Place,
+        at: FilePlace,
         /// The limit, in units of the file.
         expected: f64,
         /// The coordinate as read, in units of the file.

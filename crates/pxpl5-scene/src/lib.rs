@@ -66,7 +66,7 @@ mod view;
 
 pub use builtin::{builtin, names};
 pub use edit::{Edit, Hinge};
-pub use error::{LoadError, Place, RangeError, SceneError};
+pub use error::{FilePlace, LoadError, RangeError, SceneError};
 pub use import::{Format, Placement, from_bytes, from_reader, placed_from_bytes, placed_from_reader};
 #[cfg(feature = "files")]
 pub use import::{load, load_placed};
@@ -74,4 +74,4 @@ pub use motion::{HeadMotion, HeadPath};
 pub use scene::{Frame, Lighting, Scene, SceneParts, Sphere, Structure, Vertex};
 pub use sway::Sway;
 pub use tracking::Pose;
-pub use view::{Eye, Hmd, HmdConfig, View};
+pub use view::{EyePoint, Hmd, HmdConfig, View};

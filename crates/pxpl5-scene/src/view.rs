@@ -10,7 +10,7 @@ use crate::trig;
 
 /// An eye. Left comes first everywhere.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Eye {
+pub enum EyePoint {
     /// The left eye, half the eye separation left of the head's place.
     Left,
     /// The right eye, half the eye separation right of the head's place.
@@ -23,7 +23,7 @@ pub enum Eye {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     /// The eye that sees the picture.
-    pub eye: Eye,
+    pub eye: EyePoint,
     /// From world to eye coordinates: right-handed, +y up, looking along -z. Rigid.
     pub world_to_eye: Mat4,
     /// From head to eye coordinates, for structures fixed to the head. Rigid.
@@ -122,13 +122,13 @@ impl Hmd {
     /// The views of the left and the right eye.
     #[must_use]
     pub fn stereo(&self, head: &Pose) -> [View; 2] {
-        [Eye::Left, Eye::Right].map(|eye| self.view(eye, head))
+        [EyePoint::Left, EyePoint::Right].map(|eye| self.view(eye, head))
     }
 
     /// One view, from between the eyes.
     #[must_use]
     pub fn mono(&self, head: &Pose) -> View {
-        self.view(Eye::Centre, head)
+        self.view(EyePoint::Centre, head)
     }
 
     /// Distance from the eye to the picture, in pixels: how many pixels a tangent of 1 takes.
@@ -144,12 +144,12 @@ impl Hmd {
         self.config.eye_separation_m * self.focal_length_px() / depth_m
     }
 
-    fn view(&self, eye: Eye, head: &Pose) -> View {
+    fn view(&self, eye: EyePoint, head: &Pose) -> View {
         let half = self.config.eye_separation_m / 2.0;
         let right_of_head = match eye {
-            Eye::Left => -half,
-            Eye::Right => half,
-            Eye::Centre => 0.0,
+            EyePoint::Left => -half,
+            EyePoint::Right => half,
+            EyePoint::Centre => 0.0,
         };
         let head_to_eye = DMat4::from_translation(DVec3::new(-right_of_head, 0.0, 0.0));
         View {

@@ -4,7 +4,7 @@ use glam::Vec3;
 use pxpl5_scene::config::{DEFAULT_COLOUR, IMPORT_RADIUS_M};
 #[cfg(feature = "files")]
 use pxpl5_scene::load;
-use pxpl5_scene::{Format, LoadError, Place, Scene, from_bytes};
+use pxpl5_scene::{FilePlace, Format, LoadError, Scene, from_bytes};
 
 fn read(format: Format, text: impl AsRef<[u8]>) -> Result<Scene, LoadError> {
     from_bytes(text.as_ref(), format, "test")
@@ -228,7 +228,7 @@ fn a_file_with_nothing_to_draw_says_what_is_missing() {
 fn a_coordinate_that_is_no_place_is_refused() {
     for bad in ["nan", "inf", "-inf", "1e16", "-1e300", "1e999"] {
         match read(Format::Obj, format!("v 0 0 0\nv 0 {bad} 0\nf 1 2 1\n")) {
-            Err(LoadError::Coordinate { at, .. }) => assert_eq!(at, Place::Line(2)),
+            Err(LoadError::Coordinate { at, .. }) => assert_eq!(at, FilePlace::Line(2)),
             other => panic!("{bad}: {other:?}"),
         }
     }
@@ -238,7 +238,7 @@ fn a_coordinate_that_is_no_place_is_refused() {
     match read(Format::Ply, file) {
         Err(LoadError::Coordinate { at, found, .. }) => {
             assert!(found.is_nan());
-            assert_eq!(at, Place::Byte(second_vertex as u64));
+            assert_eq!(at, FilePlace::Byte(second_vertex as u64));
         }
         other => panic!("{other:?}"),
     }
@@ -252,7 +252,7 @@ fn an_index_out_of_range_is_named_with_its_line() {
         let text = format!("{SQUARE_OBJ}f 1 2 {corner}\n");
         match read(Format::Obj, text) {
             Err(LoadError::Index { at, what, expected, found: written, .. }) => {
-                assert_eq!((at, what, expected, written), (Place::Line(9), "vertices", 4, found));
+                assert_eq!((at, what, expected, written), (FilePlace::Line(9), "vertices", 4, found));
             }
             other => panic!("{corner}: {other:?}"),
         }
@@ -270,7 +270,7 @@ fn an_index_of_ply_out_of_range_is_named_with_its_place() {
     let face = file.len() - 17;
     file[face + 4] = 4;
     match read(Format::Ply, file) {
-        Err(LoadError::Index { at, found, .. }) => assert_eq!((at, found), (Place::Byte(face as u64), 4)),
+        Err(LoadError::Index { at, found, .. }) => assert_eq!((at, found), (FilePlace::Byte(face as u64), 4)),
         other => panic!("{other:?}"),
     }
 }
@@ -354,7 +354,7 @@ fn what_breaks_a_format_is_named_with_line_expectation_and_finding() {
 fn text_that_is_not_utf8_is_refused_with_its_place() {
     for format in [Format::Obj, Format::Pdb] {
         match read(format, b"# caf\xe9\nv 0 0 0\n") {
-            Err(LoadError::NotText { at, found, .. }) => assert_eq!((at, found), (Place::Byte(5), 0xe9)),
+            Err(LoadError::NotText { at, found, .. }) => assert_eq!((at, found), (FilePlace::Byte(5), 0xe9)),
             other => panic!("{other:?}"),
         }
     }

@@ -1,7 +1,7 @@
 //! Views against values computed by hand.
 
 use glam::{DQuat, DVec3, Mat4, Vec3, Vec4};
-use pxpl5_scene::{Eye, Hmd, HmdConfig, Pose, View};
+use pxpl5_scene::{EyePoint, Hmd, HmdConfig, Pose, View};
 
 fn hmd() -> Hmd {
     Hmd::new(HmdConfig::unc()).expect("the preset is in range")
@@ -25,7 +25,7 @@ fn pixel_x(view: &View, world: Vec3) -> f64 {
 #[test]
 fn a_point_ahead_of_a_turned_head_lies_on_the_minus_z_axis_of_the_eye() {
     let view = hmd().mono(&turned_left());
-    assert_eq!(view.eye, Eye::Centre);
+    assert_eq!(view.eye, EyePoint::Centre);
     assert!(close(view.world_to_eye.transform_point3(Vec3::new(-4.0, 2.0, 3.0)), Vec3::new(0.0, 0.0, -5.0)));
     // One metre towards -z in the world is one metre to the right of that head.
     assert!(close(view.world_to_eye.transform_point3(Vec3::new(1.0, 2.5, 2.0)), Vec3::new(1.0, 0.5, 0.0)));
@@ -34,7 +34,7 @@ fn a_point_ahead_of_a_turned_head_lies_on_the_minus_z_axis_of_the_eye() {
 #[test]
 fn the_left_eye_is_32_mm_left_of_the_head() {
     let [left, right] = hmd().stereo(&turned_left());
-    assert_eq!((left.eye, right.eye), (Eye::Left, Eye::Right));
+    assert_eq!((left.eye, right.eye), (EyePoint::Left, EyePoint::Right));
     // Left of a head that looks along -x is +z.
     assert!(close(left.world_to_eye.transform_point3(Vec3::new(1.0, 2.0, 3.032)), Vec3::ZERO));
     assert!(close(right.world_to_eye.transform_point3(Vec3::new(1.0, 2.0, 2.968)), Vec3::ZERO));

@@ -3,7 +3,7 @@
 use crate::bind::Binding;
 use crate::error::SlatsConfigError;
 use crate::schedule::CopySchedule;
-use pphigs::{Binning, Picture, Shading};
+use pphigs::{Picture, RegionBinning, Shading};
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::Layout;
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, NodeId, PeriodNumber, PictureNumber, RegionGrid};
@@ -22,7 +22,7 @@ pub struct SlatsConfig {
     /// When the regions of a field are copied.
     pub copy: CopySchedule,
     /// Who gets the commands of a clump.
-    pub binning: Binning,
+    pub binning: RegionBinning,
     /// How the bits of pixel memory are divided among contexts.
     pub layout: Layout,
     /// Whether somebody may want pixels: without it no command words are made, and all times stay the same.

@@ -11,7 +11,7 @@
 //! - SEND: the host sends the viewing transforms whenever the tracker has new ones; at the start of a field the newest
 //!   is taken, and the same again if none came. Primitives are there from the start.
 //! - TRANSFORM: every 30 primitives make a *clump*, which goes to all regions of both eyes
-//!   ([`pphigs::Binning::All`], the prototype) or to those that it touches. There is one clump buffer.
+//!   ([`pphigs::RegionBinning::All`], the prototype) or to those that it touches. There is one clump buffer.
 //! - RENDER: regions are bound to renderers; only the lines of the coming field are drawn. A renderer keeps up to four
 //!   region contexts in its 208 bits, hence Gouraud shading.
 //! - COPY: whole ([`CopySchedule::Whole`]): all regions before the retrace. Split ([`CopySchedule::Split`]): the top regions before the

@@ -22,11 +22,11 @@ pub struct Tables {
     /// UNC's optical ceiling tracker.
     pub optical: Optical,
     /// The Polhemus 3Space, magnetic.
-    pub space: Space,
+    pub space: ThreeSpace,
     /// The tracker without error and delay.
     pub ideal: Ideal,
     /// The host's serial port.
-    pub host: Host,
+    pub host: HostPort,
     /// What prediction filters believe.
     pub filter: Filter,
     /// Which reports are believed.
@@ -39,9 +39,9 @@ impl Tables {
         fastrak: Fastrak::PAPERS,
         flock: Flock::PAPERS,
         optical: Optical::PAPERS,
-        space: Space::PAPERS,
+        space: ThreeSpace::PAPERS,
         ideal: Ideal::PAPERS,
-        host: Host::PAPERS,
+        host: HostPort::PAPERS,
         filter: Filter::PAPERS,
         gate: Gate::PAPERS,
     };
@@ -78,8 +78,12 @@ impl Tables {
 
 /// Tables of facts with their names: what heads, the measuring rig, the video and the picture of the papers are. No number
 /// of them is a setting of a tracked head.
-pub const FACTS: [(&str, &dyn ParameterTable); 4] =
-    [("head", &Head::PAPERS), ("rig", &Rig::PAPERS), ("ntsc", &Ntsc::PAPERS), ("view", &View::PAPERS)];
+pub const FACTS: [(&str, &dyn ParameterTable); 4] = [
+    ("head", &HeadSpeeds::PAPERS),
+    ("rig", &RigNumbers::PAPERS),
+    ("ntsc", &Ntsc::PAPERS),
+    ("view", &HeadMountedView::PAPERS),
+];
 
 parameter_table! {
     /// The Polhemus Fastrak, a magnetic tracker.
@@ -147,7 +151,7 @@ parameter_table! {
 
 parameter_table! {
     /// The Polhemus 3Space, a magnetic tracker, above a steel floor.
-    pub struct Space {
+    pub struct ThreeSpace {
         /// 3Space rate over all receivers.
         rate: 60, "Hz", Assumed, 30..=60 in 1..=10000, "usual figure of the product";
         /// 3Space latency.
@@ -177,7 +181,7 @@ parameter_table! {
 
 parameter_table! {
     /// How the host hears of a report.
-    pub struct Host {
+    pub struct HostPort {
         /// Bits on the line for a byte (start, 8 data, stop).
         byte_bits: 10, "bits", Derived, 10..=11 in 1..=100, "47 x 10 / 115200 = 4.08 ms and / 9600 = 49 ms, the times of PF";
         /// Time between looks of the kernel at the serial line.
@@ -187,7 +191,7 @@ parameter_table! {
 
 parameter_table! {
     /// How heads move, by published measurements.
-    pub struct Head {
+    pub struct HeadSpeeds {
         /// Typical speed of a fast head turn.
         typical_turn: f64 = 200.0, "deg/s", Published, 0.0..=370.0, "JITP, LIST83";
         /// Peak speed of a head turn.
@@ -209,7 +213,7 @@ parameter_table! {
 
 parameter_table! {
     /// The pendulum that measures latency, and what detects its low point.
-    pub struct Rig {
+    pub struct RigNumbers {
         /// Arm of the measuring pendulum.
         pendulum_arm: f64 = 0.5, "m", Assumed, 0.1..=2.0 in 0.001..=1000.0, "TR94 gives none";
         /// Greatest angle of the measuring pendulum.
@@ -235,7 +239,7 @@ parameter_table! {
 
 parameter_table! {
     /// The picture of a head-mounted display.
-    pub struct View {
+    pub struct HeadMountedView {
         /// Width of the head-mounted display.
         width: 640, "px", Published, 1..=16384, "TR94";
         /// Height of the head-mounted display.

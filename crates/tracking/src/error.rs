@@ -6,7 +6,7 @@ use thiserror::Error;
 /// A setting that no machine could have.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
-pub enum ConfigError {
+pub enum SettingError {
     /// A number of the tables is not finite or out of range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
@@ -30,7 +30,7 @@ pub enum ConfigError {
     },
 }
 
-impl ConfigError {
+impl SettingError {
     /// `found` if it is within [low, high], which NaN never is.
     pub(crate) fn check(what: &'static str, found: f64, low: f64, high: f64) -> Result<(), Self> {
         if (low..=high).contains(&found) {
@@ -46,7 +46,7 @@ mod tests {
 
     #[test]
     fn the_message_says_what_was_expected_and_found() {
-        let error = ConfigError::check("line rate", f64::NAN, 300.0, 115_200.0).unwrap_err();
+        let error = SettingError::check("line rate", f64::NAN, 300.0, 115_200.0).unwrap_err();
         assert_eq!(error.to_string(), "line rate: expected 300 to 115200, found NaN");
     }
 }

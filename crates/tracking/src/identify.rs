@@ -2,14 +2,14 @@
 
 use parameters::{Entry, ParameterTable};
 
-use crate::config::Host;
-use crate::identity::{Settings, write_vector};
+use crate::config::HostPort;
+use crate::identity::{SettingSink, write_vector};
 use crate::predict::PredictorConfig;
-use crate::tracker::{Fault, HostLine, MagneticDistortion, SerialLine, TrackerConfig};
+use crate::tracker::{HostLine, MagneticDistortion, SerialLine, TrackerConfig, TrackerFault};
 
 impl TrackerConfig {
     /// Writes everything that the tracker is.
-    pub fn identify(&self, settings: &mut Settings) {
+    pub fn identify(&self, settings: &mut SettingSink) {
         let Self {
             name,
             rate_hz,
@@ -43,7 +43,7 @@ impl TrackerConfig {
             settings("tracker.serial.record_bytes", record_bytes);
             settings("tracker.serial.baud", baud);
             // Names from before it could be set are those of the usual bytes.
-            if u64::from(*byte_bits) != Host::PAPERS.byte_bits {
+            if u64::from(*byte_bits) != HostPort::PAPERS.byte_bits {
                 settings("tracker.serial.byte_bits", byte_bits);
             }
         }
@@ -61,7 +61,7 @@ impl TrackerConfig {
     }
 }
 
-fn write_distortion(settings: &mut Settings, distortion: &MagneticDistortion) {
+fn write_distortion(settings: &mut SettingSink, distortion: &MagneticDistortion) {
     let MagneticDistortion { transmitter_m, towards_metal, depth_per_m2, reach_m } = distortion;
     write_vector(settings, "tracker.distortion.transmitter_m", *transmitter_m);
     write_vector(settings, "tracker.distortion.towards_metal", *towards_metal);
@@ -69,13 +69,15 @@ fn write_distortion(settings: &mut Settings, distortion: &MagneticDistortion) {
     settings("tracker.distortion.reach_m", reach_m);
 }
 
-fn write_fault(settings: &mut Settings, fault: &Fault) {
+fn write_fault(settings: &mut SettingSink, fault: &TrackerFault) {
     match fault {
-        Fault::Silence { from_ps } => settings("tracker.fault.silence", from_ps),
-        Fault::Dropout { from_ps, to_ps } => settings("tracker.fault.dropout", &format_args!("{from_ps} {to_ps}")),
-        Fault::RandomDropout { probability } => settings("tracker.fault.random_dropout", probability),
-        Fault::NotANumber { probability } => settings("tracker.fault.not_a_number", probability),
-        Fault::Jump { probability, distance_m, angle_deg } => {
+        TrackerFault::Silence { from_ps } => settings("tracker.fault.silence", from_ps),
+        TrackerFault::Dropout { from_ps, to_ps } => {
+            settings("tracker.fault.dropout", &format_args!("{from_ps} {to_ps}"))
+        }
+        TrackerFault::RandomDropout { probability } => settings("tracker.fault.random_dropout", probability),
+        TrackerFault::NotANumber { probability } => settings("tracker.fault.not_a_number", probability),
+        TrackerFault::Jump { probability, distance_m, angle_deg } => {
             settings("tracker.fault.jump", &format_args!("{probability} {distance_m} {angle_deg}"));
         }
     }
@@ -83,7 +85,7 @@ fn write_fault(settings: &mut Settings, fault: &Fault) {
 
 impl PredictorConfig {
     /// Writes everything that the predictor is.
-    pub fn identify(&self, settings: &mut Settings) {
+    pub fn identify(&self, settings: &mut SettingSink) {
         let Self {
             kind,
             position_baseline,
@@ -113,7 +115,7 @@ impl PredictorConfig {
 }
 
 /// Writes a number that is not the papers'. Names from before these could be set are those of the papers' numbers.
-fn write_unusual(settings: &mut Settings, of: &str, entry: &Entry) {
+fn write_unusual(settings: &mut SettingSink, of: &str, entry: &Entry) {
     if entry.value != entry.info.papers {
         settings(&format!("{of}.{}", entry.info.name), &entry.value);
     }

@@ -11,16 +11,16 @@ use glam::DVec3;
 use crate::pose::Pose;
 
 /// What takes the settings, one after the other: a key and its value.
-pub type Settings<'a> = dyn FnMut(&str, &dyn Display) + 'a;
+pub type SettingSink<'a> = dyn FnMut(&str, &dyn Display) + 'a;
 
 /// Writes the three numbers of a place or direction.
-pub(crate) fn write_vector(settings: &mut Settings, key: &str, vector: DVec3) {
+pub(crate) fn write_vector(settings: &mut SettingSink, key: &str, vector: DVec3) {
     let [x, y, z] = vector.to_array();
     settings(key, &format_args!("{x} {y} {z}"));
 }
 
 /// Writes a position and a quaternion, real part last.
-pub(crate) fn write_pose(settings: &mut Settings, key: &str, pose: &Pose) {
+pub(crate) fn write_pose(settings: &mut SettingSink, key: &str, pose: &Pose) {
     let Pose { position, orientation } = pose;
     let [x, y, z] = position.to_array();
     let [i, j, k, w] = orientation.to_array();

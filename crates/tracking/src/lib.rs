@@ -74,6 +74,6 @@ pub mod time;
 pub mod tracker;
 pub mod view;
 
-pub use error::ConfigError;
-pub use identity::Settings;
+pub use error::SettingError;
+pub use identity::SettingSink;
 pub use pose::Pose;

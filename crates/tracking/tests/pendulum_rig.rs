@@ -1,9 +1,9 @@
 //! The rig finds, from outside, the latencies that were put in.
 
 use tracking::motion::Motion;
-use tracking::rig::{Detection, InsidePass, Measurement, Oscilloscope, PendulumRig, RigError, Sighting, Trace};
+use tracking::rig::{Detection, InsidePass, Measurement, Oscilloscope, PendulumRig, RigError, ScopeTrace, Sighting};
 use tracking::time::{NTSC_FIELD_PS, PS_PER_MS, PS_PER_S, ntsc_lines_ps, seconds};
-use tracking::tracker::{Fault, HostLine, SerialLine, TrackerConfig, TrackerModel};
+use tracking::tracker::{HostLine, SerialLine, TrackerConfig, TrackerFault, TrackerModel};
 
 /// A pipeline of 57 ms (Rendering Control) whose frames wait for the next field.
 fn pipeline(start_ps: u64) -> u64 {
@@ -31,9 +31,9 @@ fn inside(rig: &PendulumRig, tracker: &TrackerModel, passes: usize) -> Vec<Insid
 }
 
 fn oscilloscope(rig: &PendulumRig, inside: &[InsidePass]) -> Oscilloscope {
-    let dac = Trace::toggling("D/A line", inside.iter().map(|pass| pass.started_ps).collect());
+    let dac = ScopeTrace::toggling("D/A line", inside.iter().map(|pass| pass.started_ps).collect());
     let light = inside.iter().map(|pass| pass.shown_ps + place_ps(rig));
-    Oscilloscope::of(rig, dac, Trace::toggling("screen", light.collect()))
+    Oscilloscope::of(rig, dac, ScopeTrace::toggling("screen", light.collect()))
 }
 
 fn measure(rig: PendulumRig, config: TrackerConfig) -> Measurement {
@@ -144,7 +144,7 @@ fn the_low_points_pulse_lasts_as_long_as_the_bob_is_in_the_beam() {
 
 #[test]
 fn a_silent_tracker_is_an_error() {
-    let faults = vec![Fault::Silence { from_ps: 3 * PS_PER_S }];
+    let faults = vec![TrackerFault::Silence { from_ps: 3 * PS_PER_S }];
     let tracker = TrackerModel::new(TrackerConfig { faults, ..TrackerConfig::fastrak() }).unwrap();
     // Low points at 0.36 s and every 0.71 s: four before the silence.
     let error = PendulumRig::assumed().sightings(&tracker, 1, 100).unwrap_err();
@@ -157,7 +157,7 @@ fn a_frame_whose_light_never_comes_is_an_error() {
     let tracker = TrackerModel::new(TrackerConfig::ideal()).unwrap();
     let inside = inside(&rig, &tracker, 3);
     let oscilloscope = oscilloscope(&rig, &inside[..2]);
-    let dac = Trace::toggling("D/A line", inside.iter().map(|pass| pass.started_ps).collect());
+    let dac = ScopeTrace::toggling("D/A line", inside.iter().map(|pass| pass.started_ps).collect());
     let dark = Oscilloscope { dac, ..oscilloscope };
     let error = rig.compare(&tracker, 0, &dark, inside).unwrap_err();
     assert_eq!(error, RigError::NoLight { expected: 3, found: 2 });
@@ -184,6 +184,6 @@ fn an_error_of_one_side_is_found_by_the_other() {
     assert!(!agree(&scope, truth.iter().map(late_stamp).collect()));
     // The photodiode hangs a field late, or the light is that of the frame before.
     let late = truth.iter().map(|pass| pass.shown_ps + place_ps(&rig) + NTSC_FIELD_PS);
-    let late = Oscilloscope { screen: Trace::toggling("screen", late.collect()), ..scope };
+    let late = Oscilloscope { screen: ScopeTrace::toggling("screen", late.collect()), ..scope };
     assert!(!agree(&late, truth.clone()));
 }

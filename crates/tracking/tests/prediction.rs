@@ -6,7 +6,7 @@ use tracking::motion::{Motion, Pan, Synthetic};
 use tracking::predict::{PredictionError, Predictor, PredictorConfig, PredictorKind, Start, prediction_errors};
 use tracking::rotation;
 use tracking::time::{PS_PER_MS, PS_PER_S};
-use tracking::tracker::{Fault, Report, TrackerConfig, TrackerModel};
+use tracking::tracker::{TrackerConfig, TrackerFault, TrackerModel, TrackerReport};
 
 const HORIZONS: [u64; 4] = [20 * PS_PER_MS, 50 * PS_PER_MS, 100 * PS_PER_MS, 200 * PS_PER_MS];
 
@@ -22,8 +22,8 @@ fn errors(kind: PredictorKind, tracker: TrackerConfig, seed: u64, span_s: (u64, 
     prediction_errors(&Synthetic::recorded_use(seed), &model, &config, seed, &HORIZONS, span).unwrap()
 }
 
-fn report(at_ps: u64, pose: Pose) -> Report {
-    Report { solution: at_ps, measured_ps: at_ps, position_measured_ps: at_ps, arrives_ps: at_ps, pose }
+fn report(at_ps: u64, pose: Pose) -> TrackerReport {
+    TrackerReport { solution: at_ps, measured_ps: at_ps, position_measured_ps: at_ps, arrives_ps: at_ps, pose }
 }
 
 /// Mean angular errors, averaged over four ten-minute traces.
@@ -163,10 +163,10 @@ fn after_a_gap_old_velocities_are_forgotten() {
 #[test]
 fn faults_of_all_kinds_cost_accuracy_but_nothing_else() {
     let faults = vec![
-        Fault::RandomDropout { probability: 0.05 },
-        Fault::NotANumber { probability: 0.05 },
-        Fault::Jump { probability: 0.05, distance_m: 2.0, angle_deg: 120.0 },
-        Fault::Dropout { from_ps: 20 * PS_PER_S, to_ps: 21 * PS_PER_S },
+        TrackerFault::RandomDropout { probability: 0.05 },
+        TrackerFault::NotANumber { probability: 0.05 },
+        TrackerFault::Jump { probability: 0.05, distance_m: 2.0, angle_deg: 120.0 },
+        TrackerFault::Dropout { from_ps: 20 * PS_PER_S, to_ps: 21 * PS_PER_S },
     ];
     for kind in PredictorKind::ALL {
         let clean = errors(kind, TrackerConfig::fastrak(), 5, (1, 120));

@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use tracking::config::Head;
+use tracking::config::HeadSpeeds;
 use tracking::motion::{Motion, Synthetic};
 use tracking::time::PS_PER_S;
 
@@ -29,7 +29,7 @@ fn speeds(seed: u64) -> [f64; 4] {
 
 #[test]
 fn speeds_of_17_minutes_are_those_of_recorded_use() {
-    let Head { mean_turn, turn_95, turn_999, mean_translation, .. } = Head::PAPERS;
+    let HeadSpeeds { mean_turn, turn_95, turn_999, mean_translation, .. } = HeadSpeeds::PAPERS;
     let published = [mean_turn, turn_95, turn_999, mean_translation];
     let traces: Vec<_> = (0..SEEDS).map(speeds).collect();
     for (i, expected) in published.into_iter().enumerate() {
@@ -65,7 +65,7 @@ fn bin_energy(signal: &[f64], mean: f64, bin: usize) -> f64 {
 #[test]
 fn ninety_five_percent_of_the_yaw_energy_is_below_0_14_hz() {
     // 17-minute figures scatter by 0.006.
-    let parts: Vec<_> = (0..8).map(|seed| yaw_energy_below(seed, Head::PAPERS.yaw_energy_95, 5)).collect();
+    let parts: Vec<_> = (0..8).map(|seed| yaw_energy_below(seed, HeadSpeeds::PAPERS.yaw_energy_95, 5)).collect();
     assert!(parts.iter().all(|part| (part - 0.95).abs() < 0.02), "{parts:?}");
     let mean = parts.iter().sum::<f64>() / 8.0;
     assert!((mean - 0.95).abs() < 0.006, "{mean}");
@@ -73,7 +73,7 @@ fn ninety_five_percent_of_the_yaw_energy_is_below_0_14_hz() {
 
 #[test]
 fn practically_all_yaw_energy_is_below_2_hz() {
-    let part = yaw_energy_below(1, Head::PAPERS.yaw_energy_all, 12);
+    let part = yaw_energy_below(1, HeadSpeeds::PAPERS.yaw_energy_all, 12);
     assert!((0.999..=1.000_001).contains(&part), "{part}");
 }
 

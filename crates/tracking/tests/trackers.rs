@@ -4,7 +4,7 @@ use glam::DVec3;
 use tracking::Pose;
 use tracking::motion::{Motion, Pan, Still, Synthetic};
 use tracking::time::{PS_PER_MS, PS_PER_S};
-use tracking::tracker::{Fault, HostLine, Report, SerialLine, TrackerConfig, TrackerModel};
+use tracking::tracker::{HostLine, SerialLine, TrackerConfig, TrackerFault, TrackerModel, TrackerReport};
 
 const HEAD: Still = Still(Pose { position: DVec3::new(0.3, 1.7, -0.2), orientation: glam::DQuat::IDENTITY });
 
@@ -12,7 +12,7 @@ fn model(config: TrackerConfig) -> TrackerModel {
     TrackerModel::new(config).unwrap()
 }
 
-fn reports(config: TrackerConfig, motion: &dyn Motion, seed: u64, n: usize) -> Vec<Report> {
+fn reports(config: TrackerConfig, motion: &dyn Motion, seed: u64, n: usize) -> Vec<TrackerReport> {
     model(config).reports(motion, seed).take(n).collect()
 }
 
@@ -179,7 +179,7 @@ fn a_still_head_near_metal_is_misplaced_by_3space() {
 fn a_dropout_leaves_no_report_between_its_ends() {
     let from_ps = PS_PER_S;
     let to_ps = PS_PER_S + 300 * PS_PER_MS;
-    let config = TrackerConfig { faults: vec![Fault::Dropout { from_ps, to_ps }], ..TrackerConfig::ideal() };
+    let config = TrackerConfig { faults: vec![TrackerFault::Dropout { from_ps, to_ps }], ..TrackerConfig::ideal() };
     let all = reports(config, &HEAD, 0, 1500);
     assert!(all.iter().all(|r| !(from_ps..to_ps).contains(&r.measured_ps)));
     assert!(all.iter().any(|r| r.measured_ps == to_ps) && all.iter().any(|r| r.measured_ps == from_ps - PS_PER_MS));
@@ -187,11 +187,11 @@ fn a_dropout_leaves_no_report_between_its_ends() {
 
 #[test]
 fn a_dropout_for_all_time_ends_the_reports() {
-    let faults = vec![Fault::Dropout { from_ps: 0, to_ps: u64::MAX }];
+    let faults = vec![TrackerFault::Dropout { from_ps: 0, to_ps: u64::MAX }];
     assert_eq!(reports(TrackerConfig { faults, ..TrackerConfig::fastrak() }, &HEAD, 0, 1), []);
 }
 
-fn ideal_but_for(fault: Fault) -> TrackerConfig {
+fn ideal_but_for(fault: TrackerFault) -> TrackerConfig {
     TrackerConfig { faults: vec![fault], ..TrackerConfig::ideal() }
 }
 
@@ -202,11 +202,11 @@ fn is_a_tenth_of_20_000(found: usize) -> bool {
 
 #[test]
 fn random_faults_strike_as_often_as_told() {
-    let lost = reports(ideal_but_for(Fault::RandomDropout { probability: 0.1 }), &HEAD, 1, 18_000);
+    let lost = reports(ideal_but_for(TrackerFault::RandomDropout { probability: 0.1 }), &HEAD, 1, 18_000);
     assert!((lost.last().unwrap().solution as f64 - 20_000.0).abs() < 250.0);
-    let nan = reports(ideal_but_for(Fault::NotANumber { probability: 0.1 }), &HEAD, 1, 20_000);
+    let nan = reports(ideal_but_for(TrackerFault::NotANumber { probability: 0.1 }), &HEAD, 1, 20_000);
     assert!(is_a_tenth_of_20_000(nan.iter().filter(|r| !r.pose.is_finite()).count()));
-    let jump = Fault::Jump { probability: 0.1, distance_m: 0.5, angle_deg: 40.0 };
+    let jump = TrackerFault::Jump { probability: 0.1, distance_m: 0.5, angle_deg: 40.0 };
     let jumped = reports(ideal_but_for(jump), &HEAD, 1, 20_000);
     let off = jumped
         .iter()
@@ -216,7 +216,7 @@ fn random_faults_strike_as_often_as_told() {
 
 #[test]
 fn a_silent_tracker_says_nothing_from_that_instant() {
-    let faults = vec![Fault::Silence { from_ps: PS_PER_S }];
+    let faults = vec![TrackerFault::Silence { from_ps: PS_PER_S }];
     let all = reports(TrackerConfig { faults, ..TrackerConfig::ideal() }, &HEAD, 0, 5000);
     assert_eq!(all.len(), 1000);
     assert_eq!(all[999].arrives_ps, 999 * PS_PER_MS);

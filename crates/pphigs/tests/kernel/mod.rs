@@ -4,7 +4,7 @@
 #![allow(dead_code, reason = "the test and the example each use a part")]
 
 use glam::{Mat4, Vec3};
-use i860::{Config, Cpu, Outcome, Profile, Program, Ram, assemble, linear};
+use i860::{Config, Cpu, Profile, Program, Ram, RunEnd, assemble, linear};
 use pxpl5_geometry::kernel::{Heads, Kernel, KernelSurface, Schedule, display_list_words};
 use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 use pxpl5_renderer::{Command, Layout};
@@ -180,7 +180,7 @@ impl Bench {
         (state.r[16], state.r[17], state.r[18]) = (first, count, commands);
         (state.r[19], state.r[20], state.r[21]) = (BIN_TABLE, PARAMETERS, clip_list);
         let outcome = self.cpu.run(&mut self.ram, Some(RETURN), 20_000 * u64::from(count) + 1000);
-        assert_eq!(outcome, Outcome::Stopped, "pc {:#x}", self.cpu.state.pc);
+        assert_eq!(outcome, RunEnd::Stopped, "pc {:#x}", self.cpu.state.pc);
     }
 
     /// Runs the kernel over all triangles in one call.

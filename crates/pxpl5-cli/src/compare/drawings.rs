@@ -1,7 +1,7 @@
 //! The files of a comparison: tables for other programs, and drawings of what was run.
 
-use pxpl5::compare::{Comparison, Row};
-use pxpl5::views::charts::{Axes, Curve, MarkedPoint, curve_chart, point_chart};
+use pxpl5::compare::{Comparison, ComparisonRow};
+use pxpl5::views::charts::{ChartAxes, Curve, MarkedPoint, curve_chart, point_chart};
 use pxpl5::views::results::csv_table;
 
 /// Names and contents.
@@ -17,7 +17,7 @@ pub(super) fn files(comparison: &Comparison) -> [(&'static str, String); 6] {
 }
 
 /// The rows of which something was judged.
-fn judged(comparison: &Comparison) -> impl Iterator<Item = &Row> {
+fn judged(comparison: &Comparison) -> impl Iterator<Item = &ComparisonRow> {
     comparison.pipelines.iter().filter(|row| row.is_judged())
 }
 
@@ -34,7 +34,7 @@ fn distribution(comparison: &Comparison) -> String {
     })
 }
 
-fn curves(comparison: &Comparison, axes: &Axes, points: impl Fn(&Row) -> Vec<(f64, f64)>) -> String {
+fn curves(comparison: &Comparison, axes: &ChartAxes, points: impl Fn(&ComparisonRow) -> Vec<(f64, f64)>) -> String {
     let curves = judged(comparison).map(|row| Curve { name: row.pipeline.clone(), points: points(row) });
     curve_chart(axes, &curves.collect::<Vec<_>>())
 }
@@ -59,7 +59,7 @@ fn over_prediction(comparison: &Comparison) -> String {
     points(comparison, &axes, |row| row.prediction_interval_ms.mean)
 }
 
-fn points(comparison: &Comparison, axes: &Axes, across: impl Fn(&Row) -> f64) -> String {
+fn points(comparison: &Comparison, axes: &ChartAxes, across: impl Fn(&ComparisonRow) -> f64) -> String {
     let points = judged(comparison).map(|row| {
         let error = &row.error.mean_px;
         MarkedPoint { name: row.pipeline.clone(), at: (across(row), error.mean), interval: (error.low, error.high) }
@@ -67,13 +67,13 @@ fn points(comparison: &Comparison, axes: &Axes, across: impl Fn(&Row) -> f64) ->
     point_chart(axes, &points.collect::<Vec<_>>())
 }
 
-fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> Axes {
+fn axes(comparison: &Comparison, title: &str, across: &str, up: &str) -> ChartAxes {
     let title = format!("{title}: {} on {}", comparison.scene, comparison.machine);
-    Axes { title, across: across.to_owned(), up: up.to_owned() }
+    ChartAxes { title, across: across.to_owned(), up: up.to_owned() }
 }
 
 /// Columns of the table of rows, and what stands in them.
-type Column = (&'static str, fn(&Row) -> String);
+type Column = (&'static str, fn(&ComparisonRow) -> String);
 
 const COLUMNS: [Column; 24] = [
     ("pipeline", |row| row.pipeline.clone()),

@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::output::OutputFolder;
 use crate::run::INCOMPLETE;
 use image::RgbImage;
-use pxpl5::compare::{Comparison, LastPicture, Row};
+use pxpl5::compare::{Comparison, ComparisonRow, LastPicture};
 use pxpl5::views::page::{PagePicture, PageTable, html_of_tables};
 use pxpl5::views::png_bytes;
 
@@ -41,7 +41,7 @@ struct Gallery<'a> {
 }
 
 impl<'a> Gallery<'a> {
-    fn ideal(&mut self, row: &Row, last: &'a LastPicture) -> Result<(), CliError> {
+    fn ideal(&mut self, row: &ComparisonRow, last: &'a LastPicture) -> Result<(), CliError> {
         let Some(ideal) = last.should_be.as_ref().filter(|ideal| !self.ideals.contains(ideal)) else { return Ok(()) };
         self.ideals.push(ideal);
         let name = format!("picture-should-be-{}.png", self.ideals.len());
@@ -49,7 +49,7 @@ impl<'a> Gallery<'a> {
         self.add(&name, caption, ideal, [("picture", "as it should be".to_owned())])
     }
 
-    fn seen(&mut self, row: &Row, last: &LastPicture) -> Result<(), CliError> {
+    fn seen(&mut self, row: &ComparisonRow, last: &LastPicture) -> Result<(), CliError> {
         let mark = if last.is_complete { "" } else { INCOMPLETE };
         let name = format!("picture-{}{mark}.png", row.pipeline);
         let texts = [("pipeline", row.pipeline.clone()), ("complete", last.is_complete.to_string())];
@@ -72,7 +72,7 @@ impl<'a> Gallery<'a> {
 }
 
 /// Whose picture it is, how old, and how wrong.
-fn caption(row: &Row, last: &LastPicture) -> String {
+fn caption(row: &ComparisonRow, last: &LastPicture) -> String {
     let mut caption = row.pipeline.clone();
     if !last.is_complete {
         caption.push_str(": not complete, it was not there in time");

@@ -1,7 +1,7 @@
 //! The table on the terminal.
 
 use pxpl5::Cause;
-use pxpl5::compare::{Comparison, MeanInterval, Row};
+use pxpl5::compare::{Comparison, ComparisonRow, MeanInterval};
 use std::fmt::Write as _;
 
 /// Columns: name, unit, width.
@@ -56,7 +56,7 @@ fn header() -> String {
     format!("{:<NAME$}{names}\n{:<NAME$}{units}", "pipeline", "")
 }
 
-fn line(row: &Row) -> String {
+fn line(row: &ComparisonRow) -> String {
     if let Some(failure) = &row.failure {
         return format!("{:<NAME$} {failure}\n", row.pipeline);
     }

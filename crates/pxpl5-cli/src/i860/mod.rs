@@ -194,7 +194,7 @@ fn unpacked(file: &Path, bytes: Vec<u8>, most: u64) -> Result<Vec<u8>, String> {
     Ok(plain)
 }
 
-fn plain_report(summary: &vectors::Summary, show: usize) -> String {
+fn plain_report(summary: &vectors::VectorSummary, show: usize) -> String {
     let mut text = format!("passed {}\nfailed {}\n", summary.passed, summary.failed());
     for (id, what, failure) in summary.failures.iter().take(show) {
         let _ = writeln!(text, "{id} ({what}): {failure}");
@@ -202,7 +202,7 @@ fn plain_report(summary: &vectors::Summary, show: usize) -> String {
     text
 }
 
-fn json_report(summary: &vectors::Summary, show: usize) -> String {
+fn json_report(summary: &vectors::VectorSummary, show: usize) -> String {
     let shown = summary.failures.iter().take(show);
     let failures: Vec<_> = shown.map(|(id, what, failure)| json_failure(id, what, failure)).collect();
     let report = serde_json::json!({
@@ -258,14 +258,15 @@ mod tests {
         assert_eq!((&json["passed"], &json["failures"][0]["differences"][0]["found"]), (&1.into(), &"00000005".into()));
     }
 
+    fn packed(empty_lines: usize) -> Vec<u8> {
+        use std::io::Write;
+        let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+        packer.write_all(&vec![b'\n'; empty_lines]).expect("memory can be written");
+        packer.finish().expect("memory can be written")
+    }
+
     #[test]
     fn a_gzip_bomb_of_vectors_is_refused() {
-        use std::io::Write;
-        let packed = |length: usize| {
-            let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
-            packer.write_all(&vec![b'\n'; length]).expect("memory can be written");
-            packer.finish().expect("memory can be written")
-        };
         let at = Path::new("v.gz");
         assert_eq!(unpacked(at, packed(1 << 20), 1 << 20).expect("not too much").len(), 1 << 20);
         let bomb = packed((1 << 20) + 1);

@@ -1,7 +1,7 @@
 //! `pxpl5 i860 run`: a program executed, and what it left in registers and memory.
 
 use super::names::{address, labels_at};
-use ::i860::{AddressProfile, Config, Cpu, Outcome, Program, Ram, disassemble};
+use ::i860::{AddressProfile, Config, Cpu, Program, Ram, RunEnd, disassemble};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
@@ -29,7 +29,7 @@ struct Span {
 struct Run<'a> {
     program: &'a Program,
     cpu: Cpu,
-    outcome: Outcome,
+    outcome: RunEnd,
     stop: u32,
     memory: Vec<Span>,
     /// Changed words that are not told.
@@ -122,9 +122,9 @@ fn changed(before: &Ram, after: &Ram) -> (Vec<Span>, usize) {
 impl Run<'_> {
     fn result(&self) -> Result<(), String> {
         match &self.outcome {
-            Outcome::Stopped => Ok(()),
-            Outcome::Trapped(trap) => Err(format!("{trap}, at {}", self.named(self.cpu.state.pc))),
-            Outcome::Exhausted => {
+            RunEnd::Stopped => Ok(()),
+            RunEnd::Trapped(trap) => Err(format!("{trap}, at {}", self.named(self.cpu.state.pc))),
+            RunEnd::Exhausted => {
                 let instructions = self.cpu.instructions();
                 Err(format!(
                     "not at {} after {instructions} instructions, but at {}",

@@ -118,11 +118,12 @@ fn tabular(name: &str, about: Vec<String>, rows: &[Vec<(String, String)>]) -> Pa
             columns.push(key.clone());
         }
     }
-    let cell = |row: &[(String, String)], column: &String| {
-        row.iter().find(|(key, _)| key == column).map_or_else(|| "-".to_owned(), |(_, text)| text.clone())
-    };
     let rows = rows.iter().map(|row| columns.iter().map(|column| cell(row, column)).collect()).collect();
     PageTable { name: name.to_owned(), about, columns, rows, ..PageTable::default() }
+}
+
+fn cell(row: &[(String, String)], column: &str) -> String {
+    row.iter().find(|(key, _)| key == column).map_or_else(|| "-".to_owned(), |(_, text)| text.clone())
 }
 
 /// What was not judged is "-", never 0; a number is rounded to what can be read.
@@ -149,11 +150,12 @@ fn with_pictures(table: PageTable, folder: &Path) -> PageTable {
     names.sort();
     let of_kind = |kind: &str| -> Vec<PagePicture> {
         let files = names.iter().filter(|path| path.extension().is_some_and(|found| found == kind));
-        let picture = |path: &std::path::PathBuf| {
-            let label = path.file_stem()?.to_string_lossy().replace('-', " ");
-            Some(PagePicture { label, png: fs::read(path).ok()? })
-        };
-        files.filter_map(picture).collect()
+        files.filter_map(|path| picture(path)).collect()
     };
     PageTable { charts: of_kind("svg"), pictures: of_kind("png"), ..table }
+}
+
+fn picture(path: &Path) -> Option<PagePicture> {
+    let label = path.file_stem()?.to_string_lossy().replace('-', " ");
+    Some(PagePicture { label, png: fs::read(path).ok()? })
 }

@@ -5,7 +5,7 @@ use crate::error::CliError;
 use crate::output::OutputFolder;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
-use pxpl5::views::charts::{Axes, Curve, curve_chart};
+use pxpl5::views::charts::{ChartAxes, Curve, curve_chart};
 use pxpl5::views::png_bytes;
 use pxpl5::views::results::csv_table;
 use pxpl5::volume::compare::{VariantRow, Viewpoint, VolumeComparison, compare, variant_count};
@@ -175,7 +175,7 @@ fn laid_out<'a>(cells: impl Iterator<Item = &'a str>, widths: &[usize]) -> Strin
 
 /// Lit pixels a pixel of radius, for the clips along the normal.
 fn brightness(comparison: &VolumeComparison) -> String {
-    let axes = Axes {
+    let axes = ChartAxes {
         title: format!("Lit pixels over radius: {}, along the normal", comparison.scene),
         across: "distance from the axis, px".to_owned(),
         up: "lit pixels of all slices, a pixel of radius".to_owned(),

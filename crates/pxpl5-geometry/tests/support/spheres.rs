@@ -8,7 +8,7 @@ use glam::Vec3;
 use num_bigint::BigInt;
 use num_traits::{Signed, ToPrimitive};
 use pxpl5_geometry::{
-    Culling, DEPTH_FAR, DEPTH_NEAR, ScreenSphere, SetupStats, Sphere, SphereSetup, Transform, Viewport,
+    Culling, DEPTH_FAR, DEPTH_NEAR, ScreenSphere, SetupStats, SphereSetup, Transform, Viewport, WorldSphere,
 };
 use pxpl5_wire::format;
 
@@ -19,7 +19,7 @@ const FAR: f32 = 16_384.0;
 #[derive(Clone, Debug)]
 pub struct SphereCase {
     pub name: &'static str,
-    pub spheres: Vec<Sphere>,
+    pub spheres: Vec<WorldSphere>,
 }
 
 /// Measurements of one family.
@@ -50,7 +50,7 @@ pub struct ExactSphere {
 }
 
 impl ExactSphere {
-    pub fn new(sphere: &Sphere) -> Self {
+    pub fn new(sphere: &WorldSphere) -> Self {
         let c = sphere.centre.to_array().map(fixed);
         let r = fixed(sphere.radius);
         let values = [[0, 0], [1, 0], [0, 1], [2, 0], [0, 2], [1, 1]];
@@ -134,7 +134,7 @@ fn family(name: &'static str, seed: u64, pixels: f32, count: usize, on_centre: b
         let scale = 2.0;
         let centre = at_pixel(x, y, scale);
         // A pixel at this distance is 3 * scale wide.
-        Sphere { centre, radius: pixels * 3.0 * scale, colour: random.colour() }
+        WorldSphere { centre, radius: pixels * 3.0 * scale, colour: random.colour() }
     });
     SphereCase { name, spheres: spheres.collect() }
 }
@@ -144,14 +144,14 @@ fn beside_the_eye() -> SphereCase {
     let spheres = (0..12).map(|_| {
         let centre = Vec3::new(random.between(-20.0, 20.0), random.between(-20.0, 20.0), random.between(-40.0, -4.0));
         let radius = (-centre.z - 1.1) * random.between(0.3, 0.999);
-        Sphere { centre, radius, colour: [255; 3] }
+        WorldSphere { centre, radius, colour: [255; 3] }
     });
     SphereCase { name: "beside the eye, long ellipses", spheres: spheres.collect() }
 }
 
 /// A sphere with its centre on the eye's axis.
-fn on_axis(z: f32, radius: f32) -> Sphere {
-    Sphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [255; 3] }
+fn on_axis(z: f32, radius: f32) -> WorldSphere {
+    WorldSphere { centre: Vec3::new(0.0, 0.0, z), radius, colour: [255; 3] }
 }
 
 fn not_drawn() -> SphereCase {
@@ -198,7 +198,7 @@ pub fn measure(case: &SphereCase) -> SphereRow {
 }
 
 impl SphereRow {
-    fn compare(&mut self, sphere: &Sphere, screen: &ScreenSphere) {
+    fn compare(&mut self, sphere: &WorldSphere, screen: &ScreenSphere) {
         let setup = screen.phong(&Viewport::FRAME, &mut self.stats).setup;
         let exact = ExactSphere::new(sphere);
         let bulge = Self::bulge(sphere);
@@ -229,7 +229,7 @@ impl SphereRow {
     }
 
     /// From the front to the silhouette on the axis, in units of pixel depth.
-    fn bulge(sphere: &Sphere) -> f64 {
+    fn bulge(sphere: &WorldSphere) -> f64 {
         let t = f64::from(-sphere.centre.z);
         let r = f64::from(sphere.radius);
         pixel_depth(t / (t * t - r * r)) - pixel_depth(1.0 / (t - r))

@@ -1,6 +1,6 @@
 //! The ways to fight latency side by side: one set of settings, every pipeline, several seeds, and one judge.
 //!
-//! [`CompareQuery`] says what is compared; [`Comparison`] is the table of a paper: for every [`Row`] how long from head to light,
+//! [`CompareQuery`] says what is compared; [`Comparison`] is the table of a paper: for every [`ComparisonRow`] how long from head to light,
 //! over which interval it predicts, how many pixels it is wrong and why, and what it could draw.
 
 mod contender;
@@ -18,4 +18,4 @@ pub use gallery::LastPicture;
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};
 pub use predictors::{PredictorError, Predictors, predictors};
 pub use query::{CompareError, CompareQuery, Comparison, LEAST_SEEDS};
-pub use row::{CauseShare, ErrorSpread, MeanInterval, PredictorMean, Row};
+pub use row::{CauseShare, ComparisonRow, ErrorSpread, MeanInterval, PredictorMean};

@@ -2,7 +2,7 @@
 
 use super::contender::{Contender, contenders};
 use super::predictors::predictor_means;
-use super::row::Row;
+use super::row::ComparisonRow;
 use super::trial::Trial;
 use crate::experiment_file::{ExperimentFile, FileError, Plan, plain};
 use crate::limit::LimitQuery;
@@ -28,7 +28,7 @@ pub struct CompareQuery {
     pub seeds: Vec<u64>,
     /// Whether the most triangles that each row can draw are searched for.
     pub limits: bool,
-    /// Whether the first seed's runs compute pixels, for [`Row::picture`].
+    /// Whether the first seed's runs compute pixels, for [`ComparisonRow::picture`].
     pub pictures: bool,
 }
 
@@ -78,7 +78,7 @@ pub struct Comparison {
     /// The seeds, of each of which every row had a run.
     pub seeds: Vec<u64>,
     /// A row for each way to fight latency.
-    pub pipelines: Vec<Row>,
+    pub pipelines: Vec<ComparisonRow>,
 }
 
 impl CompareQuery {
@@ -161,10 +161,10 @@ impl CompareQuery {
         contender: &Contender,
         trials: &[Result<Trial, String>],
         scene: &Arc<Scene>,
-    ) -> Result<Row, CompareError> {
+    ) -> Result<ComparisonRow, CompareError> {
         let plan = contender.plan(&self.shared, self.seeds[0])?;
         let ran: Vec<&Trial> = trials.iter().flatten().collect();
-        let mut row = Row::of(contender, plan.pipeline.as_ref(), &ran);
+        let mut row = ComparisonRow::of(contender, plan.pipeline.as_ref(), &ran);
         if let Some(Ok(first)) = trials.first()
             && !contender.is_reference()
         {
@@ -188,7 +188,7 @@ impl Contender {
 }
 
 /// What a row without a single complete picture says.
-fn nothing_shown(row: &Row, fields: u64) -> Option<String> {
+fn nothing_shown(row: &ComparisonRow, fields: u64) -> Option<String> {
     if row.is_judged() {
         return None;
     }
@@ -211,7 +211,7 @@ fn definition(plan: &Plan) -> String {
 impl Comparison {
     /// A row by name.
     #[must_use]
-    pub fn row(&self, pipeline: &str) -> Option<&Row> {
+    pub fn row(&self, pipeline: &str) -> Option<&ComparisonRow> {
         self.pipelines.iter().find(|row| row.pipeline == pipeline)
     }
 }

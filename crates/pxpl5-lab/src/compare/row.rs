@@ -73,7 +73,7 @@ pub struct PredictorMean {
 
 /// One way to fight latency.
 #[derive(Clone, Debug, Serialize)]
-pub struct Row {
+pub struct ComparisonRow {
     /// Name of the row: the pipeline, or a variant of it.
     pub pipeline: String,
     /// What tells it from others of the same pipeline.
@@ -120,7 +120,7 @@ pub struct Row {
     pub picture: Option<LastPicture>,
 }
 
-impl Row {
+impl ComparisonRow {
     /// All runs of a contender; a row without any has no numbers.
     pub(super) fn of(contender: &Contender, pipeline: &dyn Pipeline, trials: &[&Trial]) -> Self {
         let is_reference = contender.showing == Showing::Ideal;

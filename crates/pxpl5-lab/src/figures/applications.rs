@@ -1,7 +1,7 @@
 //! The application scenes of the papers, the loads of their fly-throughs, and what the rig measures: made once for all benches that
 //! share them.
 
-use super::measured::{Measured, Result, scene_named};
+use super::measured::{FigureValue, Result, scene_named};
 use pxpl5_analytic::Load;
 use pxpl5_run::FinishedRegions;
 use pxpl5_scene::Scene;
@@ -25,7 +25,7 @@ pub(super) type RigKey = (u64, FinishedRegions, Vec<(String, u64)>);
 pub(crate) struct Applications {
     scenes: Mutex<BTreeMap<Key, Arc<Scene>>>,
     loads: Mutex<BTreeMap<LoadsKey, LoadsOfSeeds>>,
-    rigs: Mutex<BTreeMap<RigKey, Arc<Measured>>>,
+    rigs: Mutex<BTreeMap<RigKey, Arc<FigureValue>>>,
 }
 
 impl Applications {
@@ -44,7 +44,7 @@ impl Applications {
     }
 
     /// What the pendulum rig measures with these rules, from `make` where it is asked for the first time.
-    pub(super) fn rig(&self, key: RigKey, make: impl FnOnce() -> Result<Measured>) -> Result<Measured> {
+    pub(super) fn rig(&self, key: RigKey, make: impl FnOnce() -> Result<FigureValue>) -> Result<FigureValue> {
         find_or_make(&self.rigs, key, || make().map(Arc::new)).map(Arc::unwrap_or_clone)
     }
 }

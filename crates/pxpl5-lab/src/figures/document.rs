@@ -1,6 +1,6 @@
 //! The figures as a document.
 
-use super::{Figures, MISS_PERCENT, Reading, Row, mean_error_percent};
+use super::{FigureRow, Figures, MISS_PERCENT, Reading, mean_error_percent};
 use crate::intervals::{Interval, SAMPLES};
 use crate::readings::{self, Fit, FitOfFigure, Readings};
 use std::fmt::Write as _;
@@ -118,7 +118,7 @@ fn range([low, high]: [f64; 2]) -> String {
     format!("{} to {}", number(low), number(high))
 }
 
-fn head(text: &mut String, rows: &[Row]) {
+fn head(text: &mut String, rows: &[FigureRow]) {
     let free = rows.iter().filter(|row| row.standing == "free").count();
     let missed = rows.iter().filter(|row| row.misses()).count();
     let _ = write!(
@@ -143,7 +143,7 @@ fn head(text: &mut String, rows: &[Row]) {
     );
 }
 
-fn line(text: &mut String, row: &Row) {
+fn line(text: &mut String, row: &FigureRow) {
     let analytic = row.analytic.map_or("-".to_owned(), number);
     let interval = row.interval.map_or("not varied".to_owned(), |bounds| {
         let outside = if row.is_out_of_reach() { ", **out of reach**" } else { "" };
@@ -166,11 +166,11 @@ fn line(text: &mut String, row: &Row) {
     );
 }
 
-fn standing(row: &Row) -> String {
+fn standing(row: &FigureRow) -> String {
     if row.fitted.is_empty() { row.standing.to_owned() } else { format!("{}: {}", row.standing, row.fitted) }
 }
 
-fn misses(text: &mut String, rows: &[Row]) {
+fn misses(text: &mut String, rows: &[FigureRow]) {
     let _ = writeln!(text, "\n## Misses, and what is known of their causes\n");
     for row in rows.iter().filter(|row| row.misses()) {
         let cause = if row.cause.is_empty() { "the cause is not known" } else { row.cause };
@@ -180,7 +180,7 @@ fn misses(text: &mut String, rows: &[Row]) {
     }
 }
 
-fn experiments(text: &mut String, rows: &[Row]) {
+fn experiments(text: &mut String, rows: &[FigureRow]) {
     let _ = writeln!(text, "\n## Experiments\n");
     for row in rows {
         let details: Vec<_> =

@@ -1,6 +1,6 @@
 //! Experiments with a head: the pendulum rig, and what passes from head to light.
 
-use super::measured::{Measured, Result, detail, scene_named};
+use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::Reading;
 use crate::rig::Rig;
 use pxpl5_machine::MachineConfig;
@@ -13,7 +13,7 @@ use tracking::rig::Latency;
 use tracking::tracker::TrackerConfig;
 
 /// Figure 17: the mean that is seen from outside.
-pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl) -> Result<Measured> {
+pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl) -> Result<FigureValue> {
     let rig = Rig::assumed(TrackerConfig::optical_ceiling());
     let measured = rig.measure(machine, Arc::new(pipeline));
     let measured = measured.map_err(|error| ExperimentError::Scene(error.to_string()))?;
@@ -23,7 +23,7 @@ pub(super) fn rig(machine: &MachineConfig, pipeline: RenderingControl) -> Result
         detail("greatest", greatest_s * 1e3, "ms"),
         detail("inside, to the swap", measured.inside.rendering.mean_s * 1e3, "ms"),
     ];
-    Ok(Measured { value: mean_s * 1e3, details })
+    Ok(FigureValue { value: mean_s * 1e3, details })
 }
 
 /// Seeds and length of figure 18's motion.
@@ -31,14 +31,14 @@ const SEEDS: u64 = 4;
 const SECONDS: u64 = 120;
 
 /// Figure 18. The error is that of a rotation, but for the little that a point 1 m ahead adds.
-pub(super) fn ratio_of_errors() -> Measured {
+pub(super) fn ratio_of_errors() -> FigureValue {
     let ratio = |seed: u64| {
         let motion = Synthetic::recorded_use(seed);
         let [slow, fast] = [90, 50].map(|ms| LatencyCurve::of(&motion, ms, SECONDS, 1.0).mean_px());
         slow / fast
     };
     let Statistics { mean, min, max, .. } = Statistics::of((1..=SEEDS).map(ratio));
-    Measured { value: mean, details: vec![detail("least", min, ""), detail("greatest", max, "")] }
+    FigureValue { value: mean, details: vec![detail("least", min, ""), detail("greatest", max, "")] }
 }
 
 /// Fields of figure 19's runs: ten seconds.
@@ -49,7 +49,7 @@ pub(super) fn tracker_and_rendering(
     machine: MachineConfig,
     pipeline: impl Pipeline,
     reading: &Reading,
-) -> Result<Measured> {
+) -> Result<FigureValue> {
     let motion = Arc::new(Synthetic::recorded_use(1));
     let head = Head::new(motion, TrackerConfig::optical_ceiling(), PredictorKind::None, 1);
     let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
@@ -71,5 +71,5 @@ pub(super) fn tracker_and_rendering(
         detail("scan to the middle", scanning_ms, "ms"),
         detail("all from head to light", total_ms, "ms"),
     ];
-    Ok(Measured { value: tracking_ms + rendering_ms, details })
+    Ok(FigureValue { value: tracking_ms + rendering_ms, details })
 }

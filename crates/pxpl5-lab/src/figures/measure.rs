@@ -2,11 +2,11 @@
 
 use super::applications::Applications;
 use super::heads;
-use super::measured::{Measured, Result, detail, scene_named};
+use super::measured::{FigureValue, Result, detail, scene_named};
 use super::reading::{Reading, Samples};
 use crate::levels::summarise;
 use crate::limit::LimitQuery;
-use pphigs::{BIN_ENTRY_BYTES, Binning, Picture, Shading, Share, TransformCost};
+use pphigs::{BIN_ENTRY_BYTES, Picture, RegionBinning, Shading, Share, TransformCost};
 use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
 use pxpl5_machine::{ConfigError, MachineConfig};
@@ -74,7 +74,7 @@ impl Bench {
     /// # Errors
     ///
     /// [`ExperimentError`]; [`ExperimentError::Scene`] for an unknown figure.
-    pub fn measure(&self, id: &str) -> Result<Measured> {
+    pub fn measure(&self, id: &str) -> Result<FigureValue> {
         match id {
             "1" => Ok(self.trivial()?.region_copy_us.into()),
             "2" => self.trivial().map(|s| (s.first_copy_ms + s.last_copy_ms).into()),
@@ -162,7 +162,7 @@ impl Bench {
     }
 
     /// Figure 3: everything but COPY is free.
-    fn copy_alone(&self) -> Result<Measured> {
+    fn copy_alone(&self) -> Result<FigureValue> {
         let mut machine = self.machine("small-hmd")?;
         let gp = ["message_ns", "triangle_ns", "bin_entry_ns", "edit_ns", "pass_ns"].map(|name| format!("gp.{name}"));
         machine.code = None;
@@ -175,7 +175,7 @@ impl Bench {
     }
 
     /// Figure 16: triangles that cover the screen, as many as the slaves' bins hold for one eye, or for both.
-    fn most_in_bins(&self) -> Result<Measured> {
+    fn most_in_bins(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         let slaves = machine.n_gps as u64 - 1;
         let regions = u64::from(Viewport::FRAME.grid().regions());
@@ -184,7 +184,7 @@ impl Bench {
     }
 
     /// Figure 17. Its events do not depend on the level, nor on how samples are taken.
-    fn rig(&self) -> Result<Measured> {
+    fn rig(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.machine("small-hmd")?)?;
         let key = (self.reading.kept, self.reading.finished, self.changes.clone());
         self.applications.rig(key, || heads::rig(&machine, self.reading.pipeline()))
@@ -202,15 +202,15 @@ impl Bench {
         Ok(machine)
     }
 
-    fn equal_stages(&self) -> Result<Measured> {
+    fn equal_stages(&self) -> Result<FigureValue> {
         let machine = self.reading.on(self.stages_of(15.6)?)?;
         let summary = self.run(machine, self.reading.pipeline(), "full-screen:12", 160)?;
         let latency = Statistics::of(summary.latencies_ms.iter().copied());
         let details = vec![detail("mean", latency.mean, "ms"), detail("frames a second", rate_hz(&summary), "Hz")];
-        Ok(Measured { value: latency.max, details })
+        Ok(FigureValue { value: latency.max, details })
     }
 
-    fn long_stages(&self) -> Result<Measured> {
+    fn long_stages(&self) -> Result<FigureValue> {
         let mut means = Vec::new();
         for ms in LONG_STAGES_MS {
             let machine = self.reading.on(self.stages_of(ms as f64)?)?;
@@ -222,7 +222,7 @@ impl Bench {
     }
 
     /// Figures 7, 7b and 7c: a fly-through of an application scene, with one seed for so many of figure 7.
-    fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<Measured> {
+    fn application(&self, scene: &'static str, seeds_of_one: u64) -> Result<FigureValue> {
         let mut latencies = Vec::new();
         let samples_a_frame = if self.reading.samples == Samples::EachEye { 2 } else { 1 };
         for seed in 1..=self.seeds.div_ceil(seeds_of_one) {
@@ -238,7 +238,7 @@ impl Bench {
             detail("greatest", all.max, "fields"),
             detail("samples", samples, ""),
         ];
-        Ok(Measured { value: all.mean, details })
+        Ok(FigureValue { value: all.mean, details })
     }
 
     fn fly_through(&self, scene: &'static str, seed: u64, seeds: u64) -> Result<Summary> {
@@ -264,38 +264,38 @@ impl Bench {
         self.run(self.machine("slats")?, pipeline, &format!("full-screen:{triangles}"), 40)
     }
 
-    fn slats_latency(&self) -> Result<Measured> {
+    fn slats_latency(&self) -> Result<FigureValue> {
         let fields = self.slats(100, Slats::split())?.latency_fields();
         let details = vec![detail("least", fields.min, "fields"), detail("greatest", fields.max, "fields")];
-        Ok(Measured { value: fields.mean, details })
+        Ok(FigureValue { value: fields.mean, details })
     }
 
-    fn limit(&self, preset: &str, pipeline: Slats) -> Result<Measured> {
+    fn limit(&self, preset: &str, pipeline: Slats) -> Result<FigureValue> {
         let limit = self.limit_query(preset, pipeline)?.search()?;
         let triangles = f64::from(limit.triangles);
         let details = vec![detail("both eyes, 60 fields a second", triangles * 120.0, "triangles/s")];
-        Ok(Measured { value: triangles, details })
+        Ok(FigureValue { value: triangles, details })
     }
 
     fn limit_query(&self, preset: &str, pipeline: Slats) -> Result<LimitQuery> {
         Ok(LimitQuery { level: self.level, ..LimitQuery::of_papers(self.machine(preset)?, pipeline)? })
     }
 
-    fn time_before_copy(&self) -> Result<Measured> {
+    fn time_before_copy(&self) -> Result<FigureValue> {
         let most = self.limit_query("slats", Slats::split())?.search()?.triangles;
         let summary = self.slats(most, Slats::split())?;
-        Ok(Measured { value: summary.copy_begins_ms, details: vec![detail("triangles", most.into(), "triangles")] })
+        Ok(FigureValue { value: summary.copy_begins_ms, details: vec![detail("triangles", most.into(), "triangles")] })
     }
 }
 
 /// Figure 8: bins of one pass over each scene, from the views of its own head motion.
-fn regions_touched() -> Result<Measured> {
+fn regions_touched() -> Result<FigureValue> {
     let mut details = Vec::new();
     for name in ["mig", "molecules", "head"] {
         details.push(detail(name, touched(&scene_named(name)?, VIEWS)?, "regions"));
     }
     let value = details.iter().map(|d| d.value).sum::<f64>() / details.len() as f64;
-    Ok(Measured { value, details })
+    Ok(FigureValue { value, details })
 }
 
 /// Bin entries per triangle that touches any region, over both eyes and so many views.
@@ -308,7 +308,7 @@ fn touched(scene: &Arc<Scene>, n_views: u64) -> Result<f64> {
     let picture = Picture {
         viewport: Viewport::FRAME,
         shading: Shading::Phong,
-        binning: Binning::Touched,
+        binning: RegionBinning::Touched,
         layout,
         pixels: false,
     };
@@ -332,11 +332,11 @@ fn rate_hz(summary: &Summary) -> f64 {
 }
 
 /// The mean with least, greatest and deviation.
-fn spread_ms(statistics: Statistics) -> Measured {
+fn spread_ms(statistics: Statistics) -> FigureValue {
     let Statistics { mean, sd, min, max, .. } = statistics;
     let details =
         vec![detail("standard deviation", sd, "ms"), detail("least", min, "ms"), detail("greatest", max, "ms")];
-    Measured { value: mean, details }
+    FigureValue { value: mean, details }
 }
 
 #[cfg(test)]

@@ -20,14 +20,14 @@ pub struct Detail {
 
 /// What an experiment gave.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
+pub struct FigureValue {
     /// The figure's own number.
     pub value: f64,
     /// Further numbers of the same experiment, each with a unit of its own.
     pub details: Vec<Detail>,
 }
 
-impl From<f64> for Measured {
+impl From<f64> for FigureValue {
     fn from(value: f64) -> Self {
         Self { value, details: Vec::new() }
     }

@@ -20,9 +20,9 @@ mod table;
 
 pub use document::markdown;
 pub use measure::Bench;
-pub use measured::{Detail, Measured};
+pub use measured::{Detail, FigureValue};
 pub use reading::{FieldCount, ROOM, Reading, Samples};
-pub use row::{MISS_PERCENT, Row, mean_error_percent};
+pub use row::{FigureRow, MISS_PERCENT, mean_error_percent};
 pub use table::{Basis, FIGURES, Figure, WITHOUT_CLOSED_FORM};
 
 use crate::intervals::{Interval, fill, intervals};
@@ -45,7 +45,7 @@ pub struct FigureError {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
     /// In the order of [`FIGURES`].
-    pub rows: Vec<Row>,
+    pub rows: Vec<FigureRow>,
     /// What the open parameters do to each figure but the one of the scenes.
     pub intervals: Vec<Interval>,
     /// What all readings make of the figures of Rendering Control, at the analytic level.
@@ -90,9 +90,9 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
 }
 
 /// A figure with what the bench gives for it.
-fn row_of(bench: &Bench, figure: &Figure) -> Result<Row, FigureError> {
+fn row_of(bench: &Bench, figure: &Figure) -> Result<FigureRow, FigureError> {
     match bench.measure(figure.id) {
-        Ok(measured) => Ok(Row::new(figure, measured)),
+        Ok(measured) => Ok(FigureRow::new(figure, measured)),
         Err(error) => Err(FigureError { id: figure.id.to_owned(), reason: error.to_string() }),
     }
 }

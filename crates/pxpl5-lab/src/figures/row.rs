@@ -1,12 +1,12 @@
 //! A published figure beside what the model gives, and when it is missed.
 
-use super::measured::{Detail, Measured};
+use super::measured::{Detail, FigureValue};
 use super::table::{Basis, Figure};
 use serde::Serialize;
 
 /// A figure beside what the model gives.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct FigureRow {
     /// Number of the figure.
     pub id: &'static str,
     /// The value that the paper prints, in `unit`.
@@ -47,10 +47,10 @@ pub const MISS_PERCENT: f64 = 3.0;
 /// Papers print three digits.
 const ROUNDING: f64 = 0.01;
 
-impl Row {
+impl FigureRow {
     /// A figure with what was measured.
     #[must_use]
-    pub fn new(figure: &Figure, measured: Measured) -> Self {
+    pub fn new(figure: &Figure, measured: FigureValue) -> Self {
         let (standing, fitted) = match figure.basis {
             Basis::Free => ("free", ""),
             Basis::Fitted { parameter } => ("fitted", parameter),
@@ -100,7 +100,7 @@ impl Row {
 
 /// Mean absolute error in percent over the rows that are free checks.
 #[must_use]
-pub fn mean_error_percent(rows: &[Row]) -> f64 {
+pub fn mean_error_percent(rows: &[FigureRow]) -> f64 {
     let free: Vec<_> = rows.iter().filter(|row| row.standing == "free").collect();
     free.iter().map(|row| row.error_percent.abs()).sum::<f64>() / free.len().max(1) as f64
 }

@@ -1,7 +1,7 @@
 //! Speed against error: the same experiments at every level.
 
 use super::summarise;
-use crate::figures::{Bench, FIGURES, Figure, Row, mean_error_percent};
+use crate::figures::{Bench, FIGURES, Figure, FigureRow, mean_error_percent};
 use pxpl5_analytic::SlatsModel;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, ExperimentError, Level, Pixels, RenderingControl, Slats};
@@ -73,7 +73,8 @@ pub fn compare_with(finished: impl Fn(u64, u64)) -> Result<Vec<LevelReport>, Exp
         done.set(done.get() + 1);
         finished(done.get(), steps);
     };
-    let rows: Vec<Vec<Row>> = Level::ALL.into_iter().map(|level| rows_of(level, &step)).collect::<Result<_, _>>()?;
+    let rows: Vec<Vec<FigureRow>> =
+        Level::ALL.into_iter().map(|level| rows_of(level, &step)).collect::<Result<_, _>>()?;
     let cycle = rows.last().cloned().unwrap_or_default();
     let levels = Level::ALL.into_iter().zip(&rows).map(|(level, rows)| {
         let report = report(level, rows, &cycle);
@@ -84,7 +85,7 @@ pub fn compare_with(finished: impl Fn(u64, u64)) -> Result<Vec<LevelReport>, Exp
 }
 
 /// A level's figures beside those of the cycle level, and its speed on this host, now.
-fn report(level: Level, rows: &[Row], cycle: &[Row]) -> Result<LevelReport, ExperimentError> {
+fn report(level: Level, rows: &[FigureRow], cycle: &[FigureRow]) -> Result<LevelReport, ExperimentError> {
     let deviations = rows.iter().zip(cycle).map(|(a, b)| 100.0 * (a.simulated / b.simulated - 1.0).abs());
     let worst = deviations.clone().fold(0.0, f64::max);
     let (fields_per_host_second, configurations_per_host_second) = speed(level)?;
@@ -98,12 +99,12 @@ fn report(level: Level, rows: &[Row], cycle: &[Row]) -> Result<LevelReport, Expe
     })
 }
 
-fn rows_of(level: Level, step: &impl Fn()) -> Result<Vec<Row>, ExperimentError> {
+fn rows_of(level: Level, step: &impl Fn()) -> Result<Vec<FigureRow>, ExperimentError> {
     let bench = Bench::new(level).with_mig(MIG.0, MIG.1);
     let row = |figure: &Figure| {
         let measured = bench.measure(figure.id)?;
         step();
-        Ok(Row::new(figure, measured))
+        Ok(FigureRow::new(figure, measured))
     };
     FIGURES.iter().map(row).collect()
 }

@@ -1,7 +1,7 @@
 //! Joining shards.
 
 use super::store::{Found, check_header, line_of, read_rows, replace, write_all};
-use super::{Header, ROWS_FILE, Row, Status, SweepError, TIMES_FILE};
+use super::{Header, ROWS_FILE, Status, SweepError, SweepRow, TIMES_FILE};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ pub struct Merged {
 }
 
 /// Rows by point, each with the file that it is from.
-type Joined = BTreeMap<u64, (Row, String)>;
+type Joined = BTreeMap<u64, (SweepRow, String)>;
 
 /// Joins the rows of folders into one folder, in order of the points. Nothing is written unless all is well.
 ///
@@ -48,7 +48,7 @@ pub fn merge(folders: &[PathBuf], out: &Path, allow_missing: bool) -> Result<Mer
         let which = ranges(&missing);
         return Err(SweepError::Missing { missing: missing.len() as u64, points: header.points, which });
     }
-    let rows: BTreeMap<u64, Row> = joined.into_iter().map(|(point, (row, _))| (point, row)).collect();
+    let rows: BTreeMap<u64, SweepRow> = joined.into_iter().map(|(point, (row, _))| (point, row)).collect();
     write(folders, out, &header, &rows)?;
     duplicates.sort_unstable();
     duplicates.dedup();
@@ -62,7 +62,7 @@ fn found(path: &Path) -> Result<Found, SweepError> {
 }
 
 /// Adds rows; gives the points that were there already.
-fn join(joined: &mut Joined, rows: BTreeMap<u64, Row>, name: &str) -> Result<Vec<u64>, SweepError> {
+fn join(joined: &mut Joined, rows: BTreeMap<u64, SweepRow>, name: &str) -> Result<Vec<u64>, SweepError> {
     let mut duplicates = Vec::new();
     for (point, row) in rows {
         match joined.get(&point) {
@@ -78,7 +78,7 @@ fn join(joined: &mut Joined, rows: BTreeMap<u64, Row>, name: &str) -> Result<Vec
     Ok(duplicates)
 }
 
-fn write(folders: &[PathBuf], out: &Path, header: &Header, rows: &BTreeMap<u64, Row>) -> Result<(), SweepError> {
+fn write(folders: &[PathBuf], out: &Path, header: &Header, rows: &BTreeMap<u64, SweepRow>) -> Result<(), SweepError> {
     fs::create_dir_all(out).map_err(SweepError::io(out, "cannot be made"))?;
     let times: String = [line_of(header)].into_iter().chain(folders.iter().map(|folder| times_of(folder))).collect();
     replace(&out.join(TIMES_FILE), &times)?;

@@ -34,9 +34,9 @@ mod store;
 pub use error::SweepError;
 pub use header::Header;
 pub use merge::{Merged, merge};
-pub use point::{Row, Status};
+pub use point::{Status, SweepRow};
 pub use run::{RunOptions, Shard, run};
-pub use space::{Axis, MAX_POINTS, Space, Values};
+pub use space::{Axis, MAX_POINTS, SweepSpace, Values};
 pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};
 
 use crate::experiment_file::{ExperimentFile, FileError};
@@ -46,7 +46,7 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug)]
 pub struct Sweep {
     base: ExperimentFile,
-    space: Space,
+    space: SweepSpace,
 }
 
 impl Sweep {
@@ -65,7 +65,7 @@ impl Sweep {
     ///
     /// [`FileError`] when it has none, or one that makes no sense.
     pub fn new(base: ExperimentFile) -> Result<Self, FileError> {
-        let space = Space::read(&base)?;
+        let space = SweepSpace::read(&base)?;
         Ok(Self { base, space })
     }
 
@@ -82,7 +82,7 @@ impl Sweep {
 
     /// The space of settings, whose points are the experiments.
     #[must_use]
-    pub const fn space(&self) -> &Space {
+    pub const fn space(&self) -> &SweepSpace {
         &self.space
     }
 }

@@ -22,7 +22,7 @@ pub enum Status {
 
 /// What came of a point; the same on every host.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct SweepRow {
     /// Number of the point, from 0, in the order of the space.
     pub point: u64,
     /// Whether it could be simulated.
@@ -76,11 +76,11 @@ impl Sweep {
     }
 
     /// Simulates a point; what is wrong with it, even a panic, becomes its row.
-    pub(super) fn row(&self, point: u64, scenes: &Scenes) -> Row {
+    pub(super) fn row(&self, point: u64, scenes: &Scenes) -> SweepRow {
         let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point, scenes)));
         let result = result.unwrap_or_else(|panic| Err(format!("a bug of the emulator: {}", panic_text(&*panic))));
         let parameters = self.space.settings(point).iter().map(|(path, value)| (path.clone(), json(value))).collect();
-        let empty = Row {
+        let empty = SweepRow {
             point,
             status: Status::Failed,
             parameters,
@@ -90,14 +90,14 @@ impl Sweep {
             error: None,
         };
         match result {
-            Ok(simulated) => Row {
+            Ok(simulated) => SweepRow {
                 status: Status::Done,
                 measured: simulated.measured,
                 config_hash: Some(simulated.config_hash),
                 trace_hash: simulated.trace_hash,
                 ..empty
             },
-            Err(error) => Row { error: Some(error), ..empty },
+            Err(error) => SweepRow { error: Some(error), ..empty },
         }
     }
 

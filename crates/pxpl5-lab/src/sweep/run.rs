@@ -1,6 +1,6 @@
 //! Simulating the points of a sweep on all cores.
 
-use super::point::{Row, Scenes};
+use super::point::{Scenes, SweepRow};
 use super::points::Points;
 use super::{Store, Sweep, SweepError};
 use crossbeam_channel::{Sender, bounded};
@@ -71,7 +71,7 @@ pub fn run(
     sweep: &Sweep,
     store: &mut Store,
     options: RunOptions,
-    mut finished: impl FnMut(&Row),
+    mut finished: impl FnMut(&SweepRow),
 ) -> Result<(), SweepError> {
     let work = Work {
         sweep,
@@ -114,7 +114,7 @@ struct Work<'a> {
 
 impl Work<'_> {
     /// What one thread does: it simulates points until there are no more, or nobody wants their rows.
-    fn run(&self, rows: Sender<(Row, f64)>) {
+    fn run(&self, rows: Sender<(SweepRow, f64)>) {
         while !self.stop.load(Ordering::Relaxed) {
             let Some(point) = self.take() else { break };
             let begin = Instant::now();

@@ -27,7 +27,7 @@ impl Axis {
         self.values.first().map_or(0, Values::len)
     }
 
-    /// Whether it has no steps; none of a [`Space`] is so.
+    /// Whether it has no steps; none of a [`SweepSpace`] is so.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -85,14 +85,14 @@ impl Values {
 
 /// All combinations of the steps of all axes; the last axis changes fastest.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Space {
+pub struct SweepSpace {
     axes: Vec<Axis>,
     points: u64,
 }
 
 const KEYS: [&str; 3] = ["grid", "together", "seeds"];
 
-impl Space {
+impl SweepSpace {
     pub(super) fn read(file: &ExperimentFile) -> Result<Self, FileError> {
         let how = "a table [sweep.grid] with lists or ranges of settings";
         let setting = file.sweep.as_ref().ok_or(FileError::Missing { key: "sweep", how })?;

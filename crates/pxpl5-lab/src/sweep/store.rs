@@ -1,7 +1,7 @@
 //! The folder of a sweep: rows are appended with one write each, and survive a kill at any moment.
 
 use super::points::Points;
-use super::{Header, Row, SweepError};
+use super::{Header, SweepError, SweepRow};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
@@ -22,7 +22,7 @@ const LOCK_FILE: &str = ".lock";
 pub struct Store {
     folder: PathBuf,
     header: Header,
-    rows: BTreeMap<u64, Row>,
+    rows: BTreeMap<u64, SweepRow>,
     rows_file: File,
     times_file: File,
     /// Held as long as the store lives; the operating system gives it back after a kill.
@@ -87,7 +87,7 @@ impl Store {
 
     /// The rows of all finished points, by the number of the point.
     #[must_use]
-    pub const fn rows(&self) -> &BTreeMap<u64, Row> {
+    pub const fn rows(&self) -> &BTreeMap<u64, SweepRow> {
         &self.rows
     }
 
@@ -96,7 +96,7 @@ impl Store {
     /// # Errors
     ///
     /// [`SweepError::Io`].
-    pub fn append(&mut self, row: &Row, host_seconds: f64) -> Result<(), SweepError> {
+    pub fn append(&mut self, row: &SweepRow, host_seconds: f64) -> Result<(), SweepError> {
         self.append_line(&line_of(row))?;
         self.append_time(&line_of(&PointTime { point: row.point, host_seconds }))?;
         self.rows.insert(row.point, row.clone());
@@ -125,7 +125,7 @@ impl Store {
 }
 
 /// Rows in order, and the table.
-pub(super) fn write_all(folder: &Path, header: &Header, rows: &BTreeMap<u64, Row>) -> Result<(), SweepError> {
+pub(super) fn write_all(folder: &Path, header: &Header, rows: &BTreeMap<u64, SweepRow>) -> Result<(), SweepError> {
     let lines: String = rows.values().map(line_of).collect();
     replace(&folder.join(ROWS_FILE), &format!("{}{lines}", line_of(header)))?;
     replace(&folder.join(RESULTS_FILE), &table(header, rows))
@@ -191,7 +191,7 @@ fn opened(path: &Path, keep: usize) -> Result<File, SweepError> {
 #[derive(Debug, Default)]
 pub(super) struct Found {
     pub(super) header: Option<Header>,
-    pub(super) rows: BTreeMap<u64, Row>,
+    pub(super) rows: BTreeMap<u64, SweepRow>,
     /// Points that have a second, equal row.
     pub(super) repeated: Vec<u64>,
     /// Bytes up to the end of the last whole line.
@@ -213,7 +213,7 @@ pub(super) fn read_rows(path: &Path, bytes: &[u8]) -> Result<Found, SweepError> 
             found.header = Some(read_line(line, number, &name)?);
             continue;
         }
-        let row: Row = read_line(line, number, &name)?;
+        let row: SweepRow = read_line(line, number, &name)?;
         let points = found.header.as_ref().map_or(0, |header: &Header| header.points);
         if row.point >= points {
             let found = format!("point {} of {points}", row.point);
@@ -264,7 +264,7 @@ pub(super) fn check_header(path: &Path, expected: &Header, found: Option<&Header
 }
 
 /// Rows as comma-separated values after a header of comments.
-fn table(header: &Header, rows: &BTreeMap<u64, Row>) -> String {
+fn table(header: &Header, rows: &BTreeMap<u64, SweepRow>) -> String {
     let parameters: Vec<&String> = header.axes.iter().flat_map(|axis| &axis.paths).collect();
     let measured: Vec<&String> = header.measure.keys().collect();
     let origin = [
@@ -290,7 +290,7 @@ fn table(header: &Header, rows: &BTreeMap<u64, Row>) -> String {
     String::from_utf8(bytes).unwrap_or_default()
 }
 
-impl Row {
+impl SweepRow {
     /// A quantity's value as text; empty where the run shows none.
     fn value_text(&self, name: &str) -> String {
         self.measured.get(name).copied().flatten().map_or_else(String::new, |value| value.to_string())

@@ -121,7 +121,7 @@ fn a_point_that_fails_is_recorded_and_the_rest_go_on() {
     let path = folder("fails");
     let mut store = Store::open(&path, sweep.header().expect("a valid point"), false).expect("writable");
     all(&sweep, &mut store);
-    let rows: Vec<&Row> = store.rows().values().collect();
+    let rows: Vec<&SweepRow> = store.rows().values().collect();
     let statuses: Vec<Status> = rows.iter().map(|row| row.status).collect();
     assert_eq!(statuses, [Status::Failed, Status::Failed, Status::Done]);
     assert!(rows[0].error.as_deref().is_some_and(|e| e.contains("n_renderers must be 1 to 1000, found 0")));

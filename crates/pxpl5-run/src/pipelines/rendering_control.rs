@@ -5,7 +5,7 @@ use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use image::RgbImage;
-use pphigs::{Binning, Picture, Shading};
+use pphigs::{Picture, RegionBinning, Shading};
 use pxpl5_display::Surface;
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Priority, Stage};
@@ -86,7 +86,7 @@ impl RenderingControl {
         let grid = surface.map_or(Viewport::FRAME.grid(), |surface| surface.grid());
         let viewport = Viewport::new(grid, Lines::Frame).map_err(|error| ConfigError::Board(error.to_string()))?;
         let picture =
-            Picture { viewport, shading: self.shading, binning: Binning::Touched, layout: self.layout(), pixels };
+            Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels };
         Ok(RenderingControlConfig {
             host: ports.host,
             master: *master,

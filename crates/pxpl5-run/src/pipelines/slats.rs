@@ -5,7 +5,7 @@ use crate::due::PictureEnd;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup, light_span};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
-use pphigs::{Binning, Share};
+use pphigs::{RegionBinning, Share};
 use pxpl5_display::LightSpan;
 use pxpl5_framebuffer::Video;
 use pxpl5_gp::{CodeVersion, GpTiming, Priority};
@@ -52,7 +52,7 @@ pub struct Slats {
     /// When regions are copied.
     pub copy: CopySchedule,
     /// Who gets the commands of a clump.
-    pub binning: Binning,
+    pub binning: RegionBinning,
     /// The code, where it is not that of the machine's preset.
     pub code: Option<Code>,
 }
@@ -61,19 +61,19 @@ impl Slats {
     /// The prototype with the COPY optimisation (TR94).
     #[must_use]
     pub const fn split() -> Self {
-        Self { copy: CopySchedule::Split, binning: Binning::All, code: None }
+        Self { copy: CopySchedule::Split, binning: RegionBinning::All, code: None }
     }
 
     /// The prototype without the COPY optimisation (TR94).
     #[must_use]
     pub const fn whole() -> Self {
-        Self { copy: CopySchedule::Whole, binning: Binning::All, code: None }
+        Self { copy: CopySchedule::Whole, binning: RegionBinning::All, code: None }
     }
 
     /// Whole copies into the other buffer, so that the last complete field stands in for one that is late.
     #[must_use]
     pub const fn backup() -> Self {
-        Self { copy: CopySchedule::Backup, binning: Binning::All, code: None }
+        Self { copy: CopySchedule::Backup, binning: RegionBinning::All, code: None }
     }
 
     fn config(&self, machine: &Machine, pixels: bool) -> SlatsConfig {
@@ -215,7 +215,7 @@ fn deadline(video: &Video, target: &CopyTarget, before_retrace: bool) -> Time {
 
 const COPIES: [(&str, CopySchedule); 3] =
     [("whole", CopySchedule::Whole), ("split", CopySchedule::Split), ("backup", CopySchedule::Backup)];
-const BINNINGS: [(&str, Binning); 2] = [("all", Binning::All), ("touched", Binning::Touched)];
+const BINNINGS: [(&str, RegionBinning); 2] = [("all", RegionBinning::All), ("touched", RegionBinning::Touched)];
 const CODES: [(&str, Code); 3] = [("1994", Code::Of1994), ("1995", Code::Of1995), ("optimised", Code::Optimised)];
 
 /// The name of a choice.

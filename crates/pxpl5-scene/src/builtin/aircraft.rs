@@ -87,10 +87,13 @@ fn tailplane(side: f64) -> Vec<Vec<DVec3>> {
     pyramid(&root, DVec3::new(side * 2.2, 0.5, -5.6))
 }
 
+/// The section of a fin: its leading edge and the corners of its trailing edge.
+fn wedge(leading: DVec3, chord: f64, half_thickness: f64) -> [DVec3; 3] {
+    let trailing = [half_thickness, -half_thickness].map(|x| leading + DVec3::new(x, 0.0, -chord));
+    [leading, trailing[0], trailing[1]]
+}
+
 fn fin() -> Vec<Vec<DVec3>> {
-    let wedge = |leading: DVec3, chord: f64, half: f64| {
-        [DVec3::ZERO, DVec3::new(half, 0.0, -chord), DVec3::new(-half, 0.0, -chord)].map(|offset| leading + offset)
-    };
     let root = wedge(DVec3::new(0.0, 0.4, -2.4), 2.5, 0.14);
     let tip = wedge(DVec3::new(0.0, 2.7, -4.8), 1.0, 0.06);
     prism(&root, &tip)

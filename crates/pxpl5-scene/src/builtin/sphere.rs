@@ -37,18 +37,19 @@ fn rings(count: u32) -> Vec<u32> {
     let side = (16.0 * std::f64::consts::PI / (3f64.sqrt() * f64::from(count))).sqrt();
     let rows = (std::f64::consts::PI / (side * 3f64.sqrt() / 2.0) + 0.5) as u32;
     let rings = rows.max(2) - 1;
-    let length = |ring: u32| trig::sin_turns(f64::from(ring) / f64::from(2 * (rings + 1)));
-    let all: f64 = (1..=rings).map(length).sum();
+    let lengths: Vec<f64> =
+        (1..=rings).map(|ring| trig::sin_turns(f64::from(ring) / f64::from(2 * (rings + 1)))).collect();
+    let all: f64 = lengths.iter().sum();
+    let mut points = Vec::with_capacity(lengths.len());
     let mut sum = 0.0;
     let mut given = 0;
-    let share = |ring: u32| {
-        sum += length(ring);
+    for length in lengths {
+        sum += length;
         let until = (sum / all * f64::from(count / 2) + 0.5) as u32;
-        let points = until - given;
+        points.push(until - given);
         given = until;
-        points
-    };
-    (1..=rings).map(share).collect()
+    }
+    points
 }
 
 fn push(mesh: &mut Mesh, direction: DVec3) -> u32 {

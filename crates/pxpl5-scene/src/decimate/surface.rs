@@ -136,11 +136,7 @@ impl<'a> Surface<'a> {
     /// Of the vertices on a point the one most like a vertex: in normal, then in colour.
     fn counterpart(&self, vertex: u32, onto: u32) -> u32 {
         let wanted = self.vertices[vertex as usize];
-        let likeness = |candidate: &u32| {
-            let other = self.vertices[*candidate as usize];
-            let shades = wanted.colour.iter().zip(other.colour).map(|(a, b)| f64::from(a.abs_diff(b)));
-            f64::from(wanted.normal.dot(other.normal)) - shades.sum::<f64>() / (3.0 * 255.0)
-        };
+        let likeness = |candidate: &u32| likeness(&wanted, &self.vertices[*candidate as usize]);
         let candidates = self.vertices_on[onto as usize].iter();
         let best = candidates.max_by(|a, b| likeness(a).total_cmp(&likeness(b)).then(b.cmp(a)));
         best.copied().unwrap_or(vertex)
@@ -175,4 +171,10 @@ impl<'a> Surface<'a> {
 /// Whether a triangle joins a point with itself.
 pub(super) fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
+}
+
+/// How alike two vertices are: in normal, then in colour.
+fn likeness(one: &Vertex, other: &Vertex) -> f64 {
+    let shades = one.colour.iter().zip(other.colour).map(|(a, b)| f64::from(a.abs_diff(b)));
+    f64::from(one.normal.dot(other.normal)) - shades.sum::<f64>() / (3.0 * 255.0)
 }

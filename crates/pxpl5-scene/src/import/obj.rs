@@ -9,13 +9,13 @@ use glam::DVec3;
 use super::source::excerpt;
 use super::{Mesh, Source};
 use crate::config::DEFAULT_COLOUR;
-use crate::error::{LoadError, Place};
+use crate::error::{FilePlace, LoadError};
 use crate::scene::Scene;
 
 pub(super) fn read(source: &Source<'_>) -> Result<Scene, LoadError> {
     let mut reader = Reader::new(source);
     for (number, line) in source.lines()? {
-        reader.line(Place::Line(number), line)?;
+        reader.line(FilePlace::Line(number), line)?;
     }
     reader.into_mesh().into_scene(source)
 }
@@ -58,7 +58,7 @@ impl<'a> Reader<'a> {
         mesh
     }
 
-    fn line(&mut self, at: Place, line: &str) -> Result<(), LoadError> {
+    fn line(&mut self, at: FilePlace, line: &str) -> Result<(), LoadError> {
         let line = line.split('#').next().unwrap_or_default();
         let mut words = line.split_whitespace();
         match words.next() {
@@ -79,7 +79,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    fn vector<'w>(&self, at: Place, mut words: impl Iterator<Item = &'w str>) -> Result<DVec3, LoadError> {
+    fn vector<'w>(&self, at: FilePlace, mut words: impl Iterator<Item = &'w str>) -> Result<DVec3, LoadError> {
         let mut v = [0.0; 3];
         for (x, axis) in v.iter_mut().zip(["x", "y", "z"]) {
             let word = words.next().unwrap_or_default();
@@ -92,7 +92,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A corner is point, point/texture, point//normal or point/texture/normal.
-    fn corner(&mut self, at: Place, word: &str) -> Result<u32, LoadError> {
+    fn corner(&mut self, at: FilePlace, word: &str) -> Result<u32, LoadError> {
         let mut fields = word.splitn(3, '/');
         let point = fields.next().unwrap_or_default();
         let point = self.index(at, "vertices", point, self.points.len())?;
@@ -113,7 +113,7 @@ impl<'a> Reader<'a> {
     }
 
     /// 1 is the first of the file; -1 the last so far.
-    fn index(&self, at: Place, what: &'static str, word: &str, count: usize) -> Result<u32, LoadError> {
+    fn index(&self, at: FilePlace, what: &'static str, word: &str, count: usize) -> Result<u32, LoadError> {
         let written: i64 =
             word.parse().map_err(|_| self.source.syntax(at, format!("an index of {what}"), excerpt(word)))?;
         let zero_based = if written < 0 { written.saturating_add(count as i64) } else { written - 1 };

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::mesh::Fit;
 use super::source::excerpt;
 use super::{Mesh, Source};
-use crate::error::{LoadError, Place};
+use crate::error::{FilePlace, LoadError};
 use crate::scene::{Scene, Sphere};
 
 /// One atom of a file.
@@ -87,7 +87,7 @@ pub(crate) fn read_atoms(source: &Source<'_>) -> Result<Vec<Atom>, LoadError> {
     let mut atoms = Vec::new();
     let mut alternates = Alternates::default();
     for (number, line) in source.lines()? {
-        let at = Place::Line(number);
+        let at = FilePlace::Line(number);
         match columns(line, 1, 6) {
             "ATOM" | "HETATM" if alternates.is_first(line) => atoms.push(atom(source, at, line)?),
             "ENDMDL" => break,
@@ -119,7 +119,7 @@ impl<'a> Alternates<'a> {
     }
 }
 
-fn atom(source: &Source<'_>, at: Place, line: &str) -> Result<Atom, LoadError> {
+fn atom(source: &Source<'_>, at: FilePlace, line: &str) -> Result<Atom, LoadError> {
     let mut position = [0.0; 3];
     for (x, (axis, first)) in position.iter_mut().zip([("x", 31), ("y", 39), ("z", 47)]) {
         let field = columns(line, first, first + 7);

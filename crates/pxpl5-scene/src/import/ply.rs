@@ -11,7 +11,7 @@ use ply_rs_bw::ply::{
 use super::source::excerpt;
 use super::{Mesh, Source};
 use crate::config::DEFAULT_COLOUR;
-use crate::error::{LoadError, Place};
+use crate::error::{FilePlace, LoadError};
 use crate::scene::Scene;
 
 pub(super) fn read(source: &Source<'_>) -> Result<Scene, LoadError> {
@@ -59,10 +59,10 @@ impl<'a> Rows<'a> {
         Ok(Self { source, header, line, cursor, text: String::new() })
     }
 
-    fn place(&self) -> Place {
+    fn place(&self) -> FilePlace {
         match self.header.encoding {
-            Encoding::Ascii => Place::Line(self.line),
-            _ => Place::Byte(self.cursor.position()),
+            Encoding::Ascii => FilePlace::Line(self.line),
+            _ => FilePlace::Byte(self.cursor.position()),
         }
     }
 
@@ -79,7 +79,7 @@ impl<'a> Rows<'a> {
         Err(self.source.truncated(self.place(), expected, format!("{left} bytes")))
     }
 
-    fn next<E: PropertyAccess>(&mut self, element: &ElementDef) -> Result<(Place, E), LoadError> {
+    fn next<E: PropertyAccess>(&mut self, element: &ElementDef) -> Result<(FilePlace, E), LoadError> {
         let at = self.place();
         let parser = Parser::<E>::new();
         let row = match self.header.encoding {
@@ -97,7 +97,7 @@ impl<'a> Rows<'a> {
         row.map(|row| (at, row)).map_err(|e| self.row_fault(at, element, &e))
     }
 
-    fn row_fault(&self, at: Place, element: &ElementDef, error: &ParseError) -> LoadError {
+    fn row_fault(&self, at: FilePlace, element: &ElementDef, error: &ParseError) -> LoadError {
         let expected = row_of(element);
         match (self.header.encoding, error.kind()) {
             (_, ErrorKind::UnexpectedEof) => self.source.truncated(at, expected, "the end of the file"),
@@ -129,7 +129,7 @@ impl<'a> Rows<'a> {
         for axis in ["x", "y", "z"] {
             if !element.properties.contains_key(axis) {
                 let expected = format!("a property {axis:?} of \"vertex\"");
-                return Err(self.source.syntax(Place::Line(1), expected, "none"));
+                return Err(self.source.syntax(FilePlace::Line(1), expected, "none"));
             }
         }
         for _ in 0..element.count {
@@ -204,12 +204,12 @@ fn check_header(source: &Source<'_>, header: &str) -> Result<(), LoadError> {
         let words: Vec<&str> = line.split_whitespace().collect();
         match words.as_slice() {
             ["format", _, version, ..] if *version != "1.0" => {
-                return Err(source.syntax(Place::Line(number), "version 1.0", excerpt(version)));
+                return Err(source.syntax(FilePlace::Line(number), "version 1.0", excerpt(version)));
             }
             ["element", ..] => known.clear(),
             ["property", .., name] if known.contains(name) => {
                 let expected = "a property that the element does not have yet";
-                return Err(source.syntax(Place::Line(number), expected, excerpt(line)));
+                return Err(source.syntax(FilePlace::Line(number), expected, excerpt(line)));
             }
             ["property", .., name] => known.push(name),
             _ => {}
@@ -232,7 +232,7 @@ fn surplus<'t>(row: &'t str, element: &ElementDef) -> Option<&'t str> {
 }
 
 fn header_fault(source: &Source<'_>, line: u64, error: &ParseError) -> LoadError {
-    let at = Place::Line(line);
+    let at = FilePlace::Line(line);
     let text = String::from_utf8_lossy(source.bytes);
     match (error.kind(), text.lines().nth(line as usize - 1)) {
         (ErrorKind::UnexpectedEof, _) | (_, None) => {

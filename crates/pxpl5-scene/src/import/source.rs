@@ -2,7 +2,7 @@
 
 use super::placement::Placement;
 use crate::config::MAX_COORDINATE;
-use crate::error::{LoadError, Place};
+use crate::error::{FilePlace, LoadError};
 
 pub(crate) struct Source<'a> {
     pub(crate) name: &'a str,
@@ -16,7 +16,7 @@ impl<'a> Source<'a> {
         let bytes = &self.bytes[..length];
         std::str::from_utf8(bytes).map_err(|e| LoadError::NotText {
             file: self.name.to_owned(),
-            at: Place::Byte(e.valid_up_to() as u64),
+            at: FilePlace::Byte(e.valid_up_to() as u64),
             found: bytes[e.valid_up_to()],
         })
     }
@@ -30,16 +30,16 @@ impl<'a> Source<'a> {
         Ok((1..).zip(text.split_terminator(end).map(|line| line.strip_suffix('\r').unwrap_or(line))))
     }
 
-    pub(crate) fn syntax(&self, at: Place, expected: impl Into<String>, found: impl Into<String>) -> LoadError {
+    pub(crate) fn syntax(&self, at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> LoadError {
         LoadError::Syntax { file: self.name.to_owned(), at, expected: expected.into(), found: found.into() }
     }
 
-    pub(crate) fn truncated(&self, at: Place, expected: impl Into<String>, found: impl Into<String>) -> LoadError {
+    pub(crate) fn truncated(&self, at: FilePlace, expected: impl Into<String>, found: impl Into<String>) -> LoadError {
         LoadError::Truncated { file: self.name.to_owned(), at, expected: expected.into(), found: found.into() }
     }
 
     /// The vector, if each of its coordinates is usable.
-    pub(crate) fn coordinates(&self, at: Place, v: [f64; 3]) -> Result<[f64; 3], LoadError> {
+    pub(crate) fn coordinates(&self, at: FilePlace, v: [f64; 3]) -> Result<[f64; 3], LoadError> {
         match v.into_iter().find(|x| x.is_nan() || x.abs() > MAX_COORDINATE) {
             None => Ok(v),
             Some(found) => {
@@ -51,7 +51,7 @@ impl<'a> Source<'a> {
     /// The index counted from 0, if it is below `count`; `found` is what the file says.
     pub(crate) fn index(
         &self,
-        at: Place,
+        at: FilePlace,
         what: &'static str,
         zero_based: i64,
         count: usize,

@@ -17,7 +17,7 @@ pub(crate) use histogram::histogram_element;
 pub use levels::{SpeedAndError, level_chart};
 pub use parts::{MeanPart, part_bar};
 pub(crate) use parts::{colour_of_part, part_bar_element};
-pub use plane::{Axes, Curve, MarkedPoint, curve_chart, point_chart};
+pub use plane::{ChartAxes, Curve, MarkedPoint, curve_chart, point_chart};
 
 /// Round numbers from 0 to a greatest: steps of 1, 2 or 5 times a power of ten, of which there are at most ten.
 fn ticks(greatest: f64) -> Vec<f64> {

@@ -6,7 +6,7 @@ use crate::svg::{self, Tenths, anchored, hint, line};
 
 /// What a chart is about.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Axes {
+pub struct ChartAxes {
     /// What stands above the chart.
     pub title: String,
     /// Name and unit of what goes to the right.
@@ -57,7 +57,7 @@ fn dash(i: usize) -> &'static str {
 
 /// An SVG: curves with a legend. Both axes begin at 0.
 #[must_use]
-pub fn curve_chart(axes: &Axes, curves: &[Curve]) -> String {
+pub fn curve_chart(axes: &ChartAxes, curves: &[Curve]) -> String {
     let plane = Plane::reaching(curves.iter().flat_map(|curve| curve.points.iter().copied()));
     let mut svg = plane.empty(axes);
     for (i, curve) in curves.iter().enumerate() {
@@ -69,7 +69,7 @@ pub fn curve_chart(axes: &Axes, curves: &[Curve]) -> String {
 
 /// An SVG: points with their intervals and a legend. Both axes begin at 0.
 #[must_use]
-pub fn point_chart(axes: &Axes, points: &[MarkedPoint]) -> String {
+pub fn point_chart(axes: &ChartAxes, points: &[MarkedPoint]) -> String {
     let tops = points.iter().map(|point| (point.at.0, point.at.1.max(point.interval.1)));
     let plane = Plane::reaching(tops);
     let mut svg = plane.empty(axes);
@@ -115,7 +115,7 @@ impl Plane {
         FLOOR - up / self.up * (FLOOR - TOP)
     }
 
-    fn empty(&self, axes: &Axes) -> Element {
+    fn empty(&self, axes: &ChartAxes) -> Element {
         let svg = svg::document().with("viewBox", format_args!("0 0 {WIDTH} {HEIGHT}"));
         let mut svg = svg.with("font-family", "sans-serif").with("font-size", 12);
         svg.end_line();
@@ -173,8 +173,8 @@ impl Plane {
 mod tests {
     use super::*;
 
-    fn axes() -> Axes {
-        Axes { title: "a < b".to_owned(), across: "time, s".to_owned(), up: "error, px".to_owned() }
+    fn axes() -> ChartAxes {
+        ChartAxes { title: "a < b".to_owned(), across: "time, s".to_owned(), up: "error, px".to_owned() }
     }
 
     fn attributes(svg: &str, tag: &str, name: &str) -> Vec<String> {

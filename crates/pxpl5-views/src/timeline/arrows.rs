@@ -1,6 +1,6 @@
 //! From the tracker's sample to light: what one picture had to wait for.
 
-use super::model::{Arrow, Bar, Place, Timeline};
+use super::model::{Arrow, Bar, DrawingPlace, Timeline};
 use pxpl5_display::Display;
 use pxpl5_gp::Stage;
 use pxpl5_run::PictureTimes;
@@ -18,7 +18,7 @@ pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<
     }
     for copy in bars.iter().filter(|located| located.bar.stage == Stage::Copy) {
         let end = light(display, chosen, copy.bar);
-        arrows.push(Arrow { from: copy.place, begin: copy.bar.end.min(end), to: Place::Beam, end });
+        arrows.push(Arrow { from: copy.place, begin: copy.bar.end.min(end), to: DrawingPlace::Beam, end });
     }
     arrows.retain(|arrow| arrow.begin >= timeline.from && arrow.end <= timeline.to);
     arrows
@@ -27,7 +27,7 @@ pub(super) fn arrows(timeline: &Timeline, display: &dyn Display, chosen: Option<
 /// A bar and where it stands.
 #[derive(Clone, Copy)]
 struct Located<'a> {
-    place: Place,
+    place: DrawingPlace,
     bar: &'a Bar,
 }
 
@@ -36,7 +36,7 @@ fn located(timeline: &Timeline) -> Vec<Located<'_>> {
     let mut located = Vec::new();
     for (row, bars) in timeline.rows.iter().map(|row| &row.bars).enumerate() {
         let chosen = bars.iter().filter(|bar| timeline.is_chosen(bar));
-        located.extend(chosen.map(|bar| Located { place: Place::Lane { row, lane: bar.lane }, bar }));
+        located.extend(chosen.map(|bar| Located { place: DrawingPlace::Lane { row, lane: bar.lane }, bar }));
     }
     located
 }
@@ -44,7 +44,7 @@ fn located(timeline: &Timeline) -> Vec<Located<'_>> {
 fn from_tracker(timeline: &Timeline, bars: &[Located<'_>]) -> Option<Arrow> {
     timeline.samples.as_ref()?;
     let send = bars.iter().find(|located| located.bar.stage == Stage::Send)?;
-    Some(Arrow { from: Place::Tracker, begin: send.bar.begin, to: send.place, end: send.bar.begin })
+    Some(Arrow { from: DrawingPlace::Tracker, begin: send.bar.begin, to: send.place, end: send.bar.begin })
 }
 
 /// The bar of the stage before, of the same surface where that stage has surfaces; but a second surface's TRANSFORM

@@ -1,12 +1,12 @@
 //! A timeline from what was observed.
 
 use super::arrows::arrows;
-use super::model::{Row, Scan, Timeline};
+use super::model::{Scan, Timeline, TimelineRow};
 use super::options::{MAX_FIELDS, TimelineOptions};
 use super::rows::{rows, set_lanes};
 use crate::updates::Updates;
 use pxpl5_display::Display;
-use pxpl5_gp::{Edge, Stage};
+use pxpl5_gp::{Stage, StageEdge};
 use pxpl5_run::{Outcome, PictureTimes, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
@@ -64,7 +64,7 @@ fn chosen(pictures: &[PictureTimes], wanted: Option<PictureNumber>) -> Option<&P
 }
 
 /// When the host began to send an update; `None` when its row is left out.
-fn sent_at(rows: &[Row], update: Option<PictureNumber>) -> Option<Time> {
+fn sent_at(rows: &[TimelineRow], update: Option<PictureNumber>) -> Option<Time> {
     let bar = rows.first()?.bars.iter().find(|bar| Some(bar.picture) == update)?;
     (bar.stage == Stage::Send).then_some(bar.begin)
 }
@@ -89,7 +89,7 @@ fn periods(
 
 fn samples(outcome: &Outcome, within: Range<Time>) -> Vec<(PictureNumber, Time)> {
     let marks = outcome.observation().marks.iter();
-    let begun = marks.filter(|mark| mark.stage == Stage::Send && mark.edge == Edge::Begin);
+    let begun = marks.filter(|mark| mark.stage == Stage::Send && mark.edge == StageEdge::Begin);
     begun.filter(|mark| within.contains(&mark.time)).map(|mark| (mark.picture, mark.time)).collect()
 }
 

@@ -1,7 +1,7 @@
 //! The drawing.
 
 use super::legend::legend;
-use super::model::{Arrow, Bar, Place, Row, Scan, Timeline};
+use super::model::{Arrow, Bar, DrawingPlace, Scan, Timeline, TimelineRow};
 use super::style::{class_of, definitions, letters, pattern, style};
 use crate::markup::Element;
 use crate::svg::{self, Units, caption, hint, rectangle, segment};
@@ -72,7 +72,7 @@ impl<'a> Drawing<'a> {
         Self { timeline, out: outermost(top + LANE + FOOT), tracker, rows, beam: top }
     }
 
-    fn for_each_row(&mut self, draw: impl Fn(&mut Self, &Row, i64)) {
+    fn for_each_row(&mut self, draw: impl Fn(&mut Self, &TimelineRow, i64)) {
         let timeline = self.timeline;
         for (i, row) in timeline.rows.iter().enumerate() {
             draw(self, row, self.rows[i]);
@@ -137,13 +137,13 @@ impl<'a> Drawing<'a> {
         self.out.add_line(&caption("name", place).text(text));
     }
 
-    fn row(&mut self, row: &Row, top: i64) {
+    fn row(&mut self, row: &TimelineRow, top: i64) {
         let height = height_of(row);
         self.name(row.name, top, height);
         self.out.add_line(&rectangle("row", [LEFT, top, WIDTH - LEFT - RIGHT, height].map(Units::whole)));
     }
 
-    fn bars(&mut self, row: &Row, top: i64) {
+    fn bars(&mut self, row: &TimelineRow, top: i64) {
         // The chosen picture's outlines lie on top.
         for chosen in [false, true] {
             for bar in row.bars.iter().filter(|bar| self.timeline.is_chosen(bar) == chosen) {
@@ -168,7 +168,7 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    fn labels(&mut self, row: &Row, top: i64) {
+    fn labels(&mut self, row: &TimelineRow, top: i64) {
         for bar in &row.bars {
             self.label(bar, Units::whole(top + LANE * bar.lane as i64));
         }
@@ -243,16 +243,16 @@ impl<'a> Drawing<'a> {
         self.out.add_line(&segment("arrow", [self.x(arrow.begin), from, self.x(arrow.end), to]));
     }
 
-    fn high(&self, place: Place) -> Units {
+    fn high(&self, place: DrawingPlace) -> Units {
         Units::whole(match place {
-            Place::Tracker => self.tracker,
-            Place::Lane { row, lane } => self.rows[row] + LANE * lane as i64,
-            Place::Beam => self.beam,
+            DrawingPlace::Tracker => self.tracker,
+            DrawingPlace::Lane { row, lane } => self.rows[row] + LANE * lane as i64,
+            DrawingPlace::Beam => self.beam,
         })
     }
 
-    fn low(&self, place: Place) -> Units {
-        self.high(place) + Units::whole(if place == Place::Tracker { TRACKER } else { LANE })
+    fn low(&self, place: DrawingPlace) -> Units {
+        self.high(place) + Units::whole(if place == DrawingPlace::Tracker { TRACKER } else { LANE })
     }
 }
 
@@ -262,7 +262,7 @@ fn outermost(height: i64) -> Element {
     svg.with("font-family", "Helvetica, Arial, 'Liberation Sans', sans-serif").with("font-size", 15)
 }
 
-const fn height_of(row: &Row) -> i64 {
+const fn height_of(row: &TimelineRow) -> i64 {
     LANE * row.lanes as i64
 }
 

@@ -24,7 +24,7 @@ mod options;
 mod rows;
 mod style;
 
-pub use model::{Arrow, Bar, Place, Row, Scan, Timeline};
+pub use model::{Arrow, Bar, DrawingPlace, Scan, Timeline, TimelineRow};
 pub use options::{MAX_FIELDS, TimelineOptions};
 
 use crate::results::{count_of, origin_lines};

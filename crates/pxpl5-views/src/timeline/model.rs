@@ -30,7 +30,7 @@ pub struct Bar {
 
 /// A resource that works independently.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Row {
+pub struct TimelineRow {
     /// What stands left of it.
     pub name: &'static str,
     /// Its stages in order of begin.
@@ -64,7 +64,7 @@ pub struct Timeline {
     /// Poses that were sampled, the picture or update first; `None` when they are not shown.
     pub samples: Option<Vec<(PictureNumber, Time)>>,
     /// A row for each board, from top to bottom.
-    pub rows: Vec<Row>,
+    pub rows: Vec<TimelineRow>,
     /// What the first display shows.
     pub scans: Vec<Scan>,
     /// All surfaces, in the order of their numbers.
@@ -95,18 +95,18 @@ impl Timeline {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Arrow {
     /// Row and lane where it begins.
-    pub from: Place,
+    pub from: DrawingPlace,
     /// The instant at which the arrow begins.
     pub begin: Time,
     /// Row and lane where it ends.
-    pub to: Place,
+    pub to: DrawingPlace,
     /// When that could begin.
     pub end: Time,
 }
 
 /// Where in a drawing something happens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum DrawingPlace {
     /// In the tracker's row.
     Tracker,
     /// In a lane of a row of boards.

@@ -1,6 +1,6 @@
 //! Rows of a timeline: what each board, or kind of boards, worked at.
 
-use super::model::{Bar, Row};
+use super::model::{Bar, TimelineRow};
 use super::options::TimelineOptions;
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, Record, StageSpan};
@@ -10,7 +10,7 @@ use pxpl5_wire::{PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
 
 /// All rows of a run, from the host to the last surface.
-pub(super) fn rows(outcome: &Outcome, stages: &[StageSpan], options: &TimelineOptions) -> Vec<Row> {
+pub(super) fn rows(outcome: &Outcome, stages: &[StageSpan], options: &TimelineOptions) -> Vec<TimelineRow> {
     let mut rows = Vec::new();
     if !options.without_host {
         rows.push(stage_row("host", outcome, stages, &[Stage::Send]));
@@ -21,12 +21,12 @@ pub(super) fn rows(outcome: &Outcome, stages: &[StageSpan], options: &TimelineOp
     rows
 }
 
-fn row(name: &'static str, mut bars: Vec<Bar>) -> Row {
+fn row(name: &'static str, mut bars: Vec<Bar>) -> TimelineRow {
     bars.sort_by_key(|bar| (bar.begin, bar.picture, bar.surface));
-    Row { name, bars, lanes: 1 }
+    TimelineRow { name, bars, lanes: 1 }
 }
 
-fn stage_row(name: &'static str, outcome: &Outcome, stages: &[StageSpan], wanted: &[Stage]) -> Row {
+fn stage_row(name: &'static str, outcome: &Outcome, stages: &[StageSpan], wanted: &[Stage]) -> TimelineRow {
     let spans = stages.iter().filter(|span| wanted.contains(&span.stage));
     row(name, spans.map(|span| stage_bar(outcome, span)).collect())
 }
@@ -122,7 +122,7 @@ fn join(times: &mut Vec<(Time, Time)>) {
 }
 
 /// Gives each bar of a row the first lane that is free.
-pub(super) fn set_lanes(row: &mut Row, touching: Span) {
+pub(super) fn set_lanes(row: &mut TimelineRow, touching: Span) {
     let mut free_at: Vec<Time> = Vec::new();
     for bar in &mut row.bars {
         let free = free_at.iter().position(|time| time.since(bar.begin) <= touching);

@@ -6,7 +6,7 @@ use super::model::{Events, Slice, Trace, Track};
 use super::slices::{apart, message_slice, region_slice, stage_name, stage_slice};
 use crate::results::origin;
 use pxpl5_display::Display;
-use pxpl5_gp::{Edge, Mark, Stage};
+use pxpl5_gp::{Mark, Stage, StageEdge};
 use pxpl5_machine::{Record, Traffic};
 use pxpl5_measure::Report;
 use pxpl5_run::{Outcome, PictureTimes};
@@ -63,8 +63,8 @@ impl Trace {
         for mark in outcome.observation().marks.iter().filter(|mark| mark.node == node) {
             let key = (mark.stage, mark.picture, mark.surface);
             match mark.edge {
-                Edge::Begin => drop(begun.insert(key, mark.time)),
-                Edge::End => {
+                StageEdge::Begin => drop(begun.insert(key, mark.time)),
+                StageEdge::End => {
                     let slice = begun.remove(&key).map(|begin| ended(outcome.record(), mark, begin));
                     slices.entry(mark.stage).or_default().extend(slice);
                 }

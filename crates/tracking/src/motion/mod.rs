@@ -22,7 +22,7 @@ pub use synthetic::{Band, Synthetic, SyntheticConfig};
 use glam::DVec3;
 use std::fmt::Debug;
 
-use crate::identity::{Settings, write_pose};
+use crate::identity::{SettingSink, write_pose};
 use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{PS_PER_S, span_s};
@@ -43,7 +43,7 @@ pub trait Motion: Debug {
     ///
     /// By default its poses at every eighth of a second of the first 64. Motions that differ only between these instants or
     /// after them must say themselves what they are.
-    fn identify(&self, settings: &mut Settings) {
+    fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"sampled");
         for sample in 0..SAMPLES {
             write_pose(settings, "motion.pose", &self.pose(sample * SAMPLE_PS));
@@ -81,7 +81,7 @@ impl<M: Motion + ?Sized> Motion for &M {
     fn pose(&self, t_ps: u64) -> Pose {
         (**self).pose(t_ps)
     }
-    fn identify(&self, settings: &mut Settings) {
+    fn identify(&self, settings: &mut SettingSink) {
         (**self).identify(settings);
     }
     fn ends_ps(&self) -> Option<u64> {
@@ -102,7 +102,7 @@ impl<M: Motion + ?Sized> Motion for Box<M> {
     fn pose(&self, t_ps: u64) -> Pose {
         (**self).pose(t_ps)
     }
-    fn identify(&self, settings: &mut Settings) {
+    fn identify(&self, settings: &mut SettingSink) {
         (**self).identify(settings);
     }
     fn ends_ps(&self) -> Option<u64> {

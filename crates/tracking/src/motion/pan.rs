@@ -1,7 +1,7 @@
 use glam::DVec3;
 
 use super::Motion;
-use crate::identity::{Settings, write_pose};
+use crate::identity::{SettingSink, write_pose};
 use crate::pose::Pose;
 use crate::rotation;
 use crate::time::seconds;
@@ -27,7 +27,7 @@ impl Motion for Pan {
         let yaw = libm::fmod(self.deg_per_s * seconds(t_ps), 360.0).to_radians();
         Pose { orientation: rotation::about_y(yaw) * self.start.orientation, ..self.start }
     }
-    fn identify(&self, settings: &mut Settings) {
+    fn identify(&self, settings: &mut SettingSink) {
         let Self { start, deg_per_s } = self;
         settings("motion", &"pan");
         write_pose(settings, "motion.start", start);

@@ -5,8 +5,8 @@ use parameters::ParameterTable;
 
 use super::Motion;
 use crate::config as table;
-use crate::error::ConfigError;
-use crate::identity::Settings;
+use crate::error::SettingError;
+use crate::identity::SettingSink;
 use crate::pose::Pose;
 use crate::rotation;
 use crate::time::{nearest_ps, seconds};
@@ -27,17 +27,18 @@ pub struct Pendulum {
 
 impl Pendulum {
     /// A pendulum with an arm in metres (above 0) and an amplitude in degrees (above 0, below 180).
-    pub fn new(arm_m: f64, amplitude_deg: f64) -> Result<Self, ConfigError> {
-        table::Rig { pendulum_arm: arm_m, pendulum_amplitude: amplitude_deg, ..table::Rig::PAPERS }.check()?;
+    pub fn new(arm_m: f64, amplitude_deg: f64) -> Result<Self, SettingError> {
+        table::RigNumbers { pendulum_arm: arm_m, pendulum_amplitude: amplitude_deg, ..table::RigNumbers::PAPERS }
+            .check()?;
         let modulus = libm::sin(amplitude_deg.to_radians() / 2.0);
-        let natural_rad_per_s = (table::Rig::PAPERS.gravity / arm_m).sqrt();
+        let natural_rad_per_s = (table::RigNumbers::PAPERS.gravity / arm_m).sqrt();
         let period_s = 4.0 * quarter_period(modulus) / natural_rad_per_s;
         Ok(Self { arm_m, modulus, natural_rad_per_s, period_s })
     }
 
     /// The measuring pendulum: arm 0.5 m, amplitude 20 degrees, both assumed.
     pub fn rig() -> Self {
-        Self::new(table::Rig::PAPERS.pendulum_arm, table::Rig::PAPERS.pendulum_amplitude)
+        Self::new(table::RigNumbers::PAPERS.pendulum_arm, table::RigNumbers::PAPERS.pendulum_amplitude)
             .expect("the table's values are in range")
     }
 
@@ -74,7 +75,7 @@ impl Pendulum {
 
 impl Motion for Pendulum {
     /// Frequency and period follow from the arm and the modulus.
-    fn identify(&self, settings: &mut Settings) {
+    fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"pendulum");
         settings("motion.arm_m", &self.arm_m);
         settings("motion.modulus", &self.modulus);
@@ -149,7 +150,7 @@ mod tests {
 
     /// Derivative of (angle, rate) of a pendulum with this arm.
     fn slope(arm: f64, state: DVec2) -> DVec2 {
-        DVec2::new(state.y, -table::Rig::PAPERS.gravity / arm * state.x.sin())
+        DVec2::new(state.y, -table::RigNumbers::PAPERS.gravity / arm * state.x.sin())
     }
 
     #[test]

@@ -1,7 +1,7 @@
 use glam::DVec3;
 
 use super::Motion;
-use crate::identity::Settings;
+use crate::identity::SettingSink;
 use crate::pose::Pose;
 
 /// Another motion, so much later in its course at every instant.
@@ -18,7 +18,7 @@ impl<M: Motion> Motion for Shifted<M> {
         self.motion.pose(t_ps.saturating_add(self.by_ps))
     }
 
-    fn identify(&self, settings: &mut Settings) {
+    fn identify(&self, settings: &mut SettingSink) {
         settings("motion.shifted_ps", &self.by_ps);
         self.motion.identify(settings);
     }

@@ -3,7 +3,7 @@ use core::f64::consts::TAU;
 use glam::DVec3;
 
 use super::Motion;
-use crate::identity::{Settings, write_pose};
+use crate::identity::{SettingSink, write_pose};
 use crate::pose::Pose;
 use crate::rotation;
 use crate::time::seconds;
@@ -42,7 +42,7 @@ impl Motion for Sinusoid {
             orientation: rotation::about_y(self.yaw_deg.to_radians() * sin) * self.start.orientation,
         }
     }
-    fn identify(&self, settings: &mut Settings) {
+    fn identify(&self, settings: &mut SettingSink) {
         let Self { start, hz, yaw_deg, sway_m } = self;
         settings("motion", &"sinusoid");
         write_pose(settings, "motion.start", start);

@@ -1,7 +1,7 @@
 use glam::DVec3;
 
 use super::Motion;
-use crate::identity::{Settings, write_pose, write_vector};
+use crate::identity::{SettingSink, write_pose, write_vector};
 use crate::pose::Pose;
 use crate::time::seconds;
 
@@ -25,7 +25,7 @@ impl Motion for Slide {
     fn pose(&self, t_ps: u64) -> Pose {
         Pose { position: self.start.position + self.m_per_s * seconds(t_ps), ..self.start }
     }
-    fn identify(&self, settings: &mut Settings) {
+    fn identify(&self, settings: &mut SettingSink) {
         let Self { start, m_per_s } = self;
         settings("motion", &"slide");
         write_pose(settings, "motion.start", start);

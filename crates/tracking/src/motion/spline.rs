@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::identity::Settings;
+use crate::identity::SettingSink;
 use crate::random::{bell, bits, stream, unit};
 use crate::time::seconds;
 
@@ -52,7 +52,7 @@ impl Spline {
     }
 
     /// Writes its numbers as one setting.
-    pub(super) fn identify(&self, key: &str, settings: &mut Settings) {
+    pub(super) fn identify(&self, key: &str, settings: &mut SettingSink) {
         let Self { spacing_ps, scale, activity, seeds, spells } = self;
         let Activity { calm, power } = activity;
         let [x, y, z] = scale.to_array();

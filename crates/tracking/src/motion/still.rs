@@ -1,7 +1,7 @@
 use glam::DVec3;
 
 use super::Motion;
-use crate::identity::{Settings, write_pose};
+use crate::identity::{SettingSink, write_pose};
 use crate::pose::Pose;
 
 /// A head that does not move.
@@ -12,7 +12,7 @@ impl Motion for Still {
     fn pose(&self, _t_ps: u64) -> Pose {
         self.0
     }
-    fn identify(&self, settings: &mut Settings) {
+    fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"still");
         write_pose(settings, "motion.pose", &self.0);
     }

@@ -3,8 +3,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Motion;
 use super::spline::{Activity, Spline};
-use crate::error::ConfigError;
-use crate::identity::{Settings, write_vector};
+use crate::error::SettingError;
+use crate::identity::{SettingSink, write_vector};
 use crate::pose::Pose;
 use crate::random::stream;
 use crate::rotation;
@@ -43,7 +43,7 @@ pub struct SyntheticConfig {
 }
 
 impl SyntheticConfig {
-    /// Fitted to recorded headset traces: see [`crate::config::Head`]. The deviations are
+    /// Fitted to recorded headset traces: see [`crate::config::HeadSpeeds`]. The deviations are
     /// assumed; the statistics that they give are published, and tested.
     pub fn recorded_use() -> Self {
         Self {
@@ -69,9 +69,9 @@ pub struct Synthetic {
 
 impl Synthetic {
     /// A generator. One (config, seed) gives one motion on every host.
-    pub fn new(config: &SyntheticConfig, seed: u64) -> Result<Self, ConfigError> {
+    pub fn new(config: &SyntheticConfig, seed: u64) -> Result<Self, SettingError> {
         for metres in config.centre_m {
-            ConfigError::check("centre of the motion", metres, -1e6, 1e6)?;
+            SettingError::check("centre of the motion", metres, -1e6, 1e6)?;
         }
         let radians = std::f64::consts::PI / 180.0;
         Ok(Self {
@@ -106,7 +106,7 @@ impl Motion for Synthetic {
         }
     }
 
-    fn identify(&self, settings: &mut Settings) {
+    fn identify(&self, settings: &mut SettingSink) {
         let Self { config: _, seed: _, turn, glance, walk, centre } = self;
         settings("motion", &"synthetic");
         turn.identify("motion.turn", settings);
@@ -132,12 +132,12 @@ impl Motion for Synthetic {
     }
 }
 
-fn spline(band: &Band, unit: f64, seed: u64) -> Result<Spline, ConfigError> {
-    ConfigError::check("spacing of knots, s", band.spacing_s, 0.01, 1000.0)?;
-    ConfigError::check("level of calm spells", band.calm, 0.0, 1.0)?;
-    ConfigError::check("power of lively spells", f64::from(band.power), 1.0, 16.0)?;
+fn spline(band: &Band, unit: f64, seed: u64) -> Result<Spline, SettingError> {
+    SettingError::check("spacing of knots, s", band.spacing_s, 0.01, 1000.0)?;
+    SettingError::check("level of calm spells", band.calm, 0.0, 1.0)?;
+    SettingError::check("power of lively spells", f64::from(band.power), 1.0, 16.0)?;
     for deviation in band.deviation {
-        ConfigError::check("deviation of a band", deviation, 0.0, 1e6)?;
+        SettingError::check("deviation of a band", deviation, 0.0, 1e6)?;
     }
     let activity = Activity { calm: band.calm, power: band.power };
     let deviation = DVec3::from_array(band.deviation) * unit;

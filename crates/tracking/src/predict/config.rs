@@ -8,7 +8,7 @@ use super::orientation_kalman::OrientationKalman;
 use super::position_kalman::{Belief, PositionKalman};
 use super::predicting::GatedFilters;
 use crate::config as table;
-use crate::error::ConfigError;
+use crate::error::SettingError;
 use crate::tracker::TrackerConfig;
 
 /// Least noise a Kalman filter may believe in; 0 would make its covariance singular.
@@ -130,7 +130,7 @@ impl PredictorConfig {
     }
 
     /// Checks the settings and builds the filter.
-    pub fn build(&self) -> Result<Box<dyn Predictor>, ConfigError> {
+    pub fn build(&self) -> Result<Box<dyn Predictor>, SettingError> {
         self.check()?;
         Ok(match self.kind {
             PredictorKind::None => self.extrapolation(Order::Zeroth),
@@ -140,9 +140,9 @@ impl PredictorConfig {
         })
     }
 
-    fn check(&self) -> Result<(), ConfigError> {
-        ConfigError::check("position noise, m", self.position_noise_m, LEAST_NOISE_M, 10.0)?;
-        ConfigError::check("orientation noise, deg", self.orientation_noise_deg, LEAST_NOISE_DEG, 90.0)?;
+    fn check(&self) -> Result<(), SettingError> {
+        SettingError::check("position noise, m", self.position_noise_m, LEAST_NOISE_M, 10.0)?;
+        SettingError::check("orientation noise, deg", self.orientation_noise_deg, LEAST_NOISE_DEG, 90.0)?;
         [self.position_baseline, self.orientation_baseline].into_iter().try_for_each(|b| self.filter(b).check())?;
         self.gate.check()?;
         Ok(())

@@ -1,5 +1,5 @@
 use super::{Predictor, PredictorConfig};
-use crate::error::ConfigError;
+use crate::error::SettingError;
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::tracker::TrackerModel;
@@ -40,7 +40,7 @@ pub fn prediction_errors<M: Motion + ?Sized>(
     seed: u64,
     horizons_ps: &[u64],
     (from_ps, until_ps): (u64, u64),
-) -> Result<Vec<PredictionError>, ConfigError> {
+) -> Result<Vec<PredictionError>, SettingError> {
     let mut predictor: Box<dyn Predictor> = config.build()?;
     let mut errors = vec![PredictionError::default(); horizons_ps.len()];
     for report in tracker.reports(motion, seed).take_while(|r| r.measured_ps < until_ps) {

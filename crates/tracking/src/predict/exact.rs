@@ -5,7 +5,7 @@ use super::gate::{Gate, ReportCounts, Verdict};
 use crate::config as table;
 use crate::motion::Motion;
 use crate::pose::Pose;
-use crate::tracker::Report;
+use crate::tracker::TrackerReport;
 
 /// Knows how the head moves, but not where it is: the newest report, carried on by the true motion.
 ///
@@ -15,7 +15,7 @@ use crate::tracker::Report;
 pub struct ExactPredictor<M> {
     motion: M,
     gate: Gate,
-    newest: Option<Report>,
+    newest: Option<TrackerReport>,
 }
 
 impl<M: Motion> ExactPredictor<M> {
@@ -26,7 +26,7 @@ impl<M: Motion> ExactPredictor<M> {
 }
 
 impl<M: Motion + Send> Predictor for ExactPredictor<M> {
-    fn observe(&mut self, report: &Report) {
+    fn observe(&mut self, report: &TrackerReport) {
         if self.gate.judge(report) != Verdict::Reject {
             self.newest = Some(*report);
         }

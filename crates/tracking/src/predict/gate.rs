@@ -1,7 +1,7 @@
 use crate::config as table;
 use crate::pose::Pose;
 use crate::time::span_s;
-use crate::tracker::Report;
+use crate::tracker::TrackerReport;
 
 /// How far the squared length of a reported quaternion may be from 1.
 const LENGTH_TOLERANCE: f64 = 1e-3;
@@ -33,7 +33,7 @@ pub(super) enum Verdict {
 #[derive(Clone, Debug)]
 pub(super) struct Gate {
     limits: table::Gate,
-    last: Option<Report>,
+    last: Option<TrackerReport>,
     jumps_in_a_row: u64,
     pub(super) counts: ReportCounts,
 }
@@ -43,7 +43,7 @@ impl Gate {
         Self { limits, last: None, jumps_in_a_row: 0, counts: ReportCounts::default() }
     }
 
-    pub(super) fn judge(&mut self, report: &Report) -> Verdict {
+    pub(super) fn judge(&mut self, report: &TrackerReport) -> Verdict {
         let verdict = self.verdict(report);
         if verdict != Verdict::Reject {
             self.last = Some(*report);
@@ -54,7 +54,7 @@ impl Gate {
         verdict
     }
 
-    fn verdict(&mut self, report: &Report) -> Verdict {
+    fn verdict(&mut self, report: &TrackerReport) -> Verdict {
         if !is_well_formed(&report.pose) {
             self.counts.malformed += 1;
             return Verdict::Reject;

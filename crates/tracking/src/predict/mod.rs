@@ -19,12 +19,12 @@ pub use gate::ReportCounts;
 pub use tune::{Training, Tuned, training_seed, tune};
 
 use crate::pose::Pose;
-use crate::tracker::Report;
+use crate::tracker::TrackerReport;
 
 /// Something that turns late reports into a pose at a wanted instant.
 pub trait Predictor: Send {
     /// Takes a report in order of arrival. Reports that cannot be true are rejected and counted, never an error.
-    fn observe(&mut self, report: &Report);
+    fn observe(&mut self, report: &TrackerReport);
 
     /// The pose at `at_ps`. Before the first accepted report it is [`Pose::IDENTITY`]; farther from the last report
     /// than the horizon of the configuration it is the last pose, as when the tracker has fallen silent.

@@ -6,7 +6,7 @@ use super::gate::{Gate, ReportCounts, Verdict};
 use crate::config as table;
 use crate::pose::Pose;
 use crate::time::span_s;
-use crate::tracker::Report;
+use crate::tracker::TrackerReport;
 
 /// A gate in front of two filters, one for position and one for orientation, each with its own time stamps.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ impl<P, O> GatedFilters<P, O> {
 }
 
 impl<P: Channel<DVec3>, O: Channel<DQuat>> Predictor for GatedFilters<P, O> {
-    fn observe(&mut self, report: &Report) {
+    fn observe(&mut self, report: &TrackerReport) {
         let stamps = (report.position_measured_ps, report.measured_ps);
         let orientation = report.pose.orientation.normalize();
         match self.gate.judge(report) {

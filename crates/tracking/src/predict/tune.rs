@@ -3,11 +3,11 @@ use serde::Serialize;
 
 use super::{PredictorConfig, PredictorKind, Start};
 use crate::config::Filter;
-use crate::error::ConfigError;
+use crate::error::SettingError;
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::time::{PS_PER_S, span_s};
-use crate::tracker::{Report, TrackerModel};
+use crate::tracker::{TrackerModel, TrackerReport};
 
 /// Seconds of motion that a filter is tuned on, and of these the first that are not judged. Lively spells are rare: with 20 seconds
 /// a filter tuned for 200 ms was worse there, on other motion, than one tuned for 50 ms.
@@ -80,7 +80,7 @@ pub fn tune<M: Motion + ?Sized>(
     interval_ps: u64,
     base: &PredictorConfig,
     judged_seed: u64,
-) -> Result<Tuned, ConfigError> {
+) -> Result<Tuned, SettingError> {
     base.build()?;
     let seed = training_seed(judged_seed);
     let tracker = TrackerModel::new(tracker.config().clone().without_systematic_errors())?;
@@ -104,7 +104,7 @@ pub fn tune<M: Motion + ?Sized>(
 
 /// Reports, and what would have been right to predict from each.
 struct Lesson {
-    reports: Vec<Report>,
+    reports: Vec<TrackerReport>,
     truths: Vec<Pose>,
     /// Reports at the start whose predictions are not judged.
     settled: usize,
@@ -120,8 +120,9 @@ impl Lesson {
     fn of<M: Motion + ?Sized>(motion: &M, tracker: &TrackerModel, interval_ps: u64, seed: u64) -> Option<Self> {
         let until_ps = motion.ends_ps().unwrap_or(u64::MAX).min(TRAINING_S * PS_PER_S);
         let settling_ps = (SETTLING_S * PS_PER_S).min(until_ps / 2);
-        let in_time = |report: &Report| report.measured_ps.saturating_add(interval_ps) <= until_ps;
-        let reports: Vec<Report> = tracker.reports(motion, seed).take_while(in_time).take(MOST_REPORTS).collect();
+        let in_time = |report: &TrackerReport| report.measured_ps.saturating_add(interval_ps) <= until_ps;
+        let reports: Vec<TrackerReport> =
+            tracker.reports(motion, seed).take_while(in_time).take(MOST_REPORTS).collect();
         let settled = reports.partition_point(|report| report.measured_ps < settling_ps);
         let last = reports.get(settled..)?.last()?;
         let seconds = crate::time::seconds(last.measured_ps.saturating_add(interval_ps));
@@ -143,7 +144,7 @@ impl Lesson {
     }
 
     /// Mean errors of a predictor: metres and degrees.
-    fn errors(&self, config: &PredictorConfig) -> Result<[f64; 2], ConfigError> {
+    fn errors(&self, config: &PredictorConfig) -> Result<[f64; 2], SettingError> {
         let mut predictor = config.build()?;
         let mut sums = [0.0; 2];
         for (i, (report, truth)) in self.reports.iter().zip(&self.truths).enumerate() {
@@ -158,7 +159,7 @@ impl Lesson {
     }
 
     /// The white jerks with the least errors, and those.
-    fn best_jerks(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), ConfigError> {
+    fn best_jerks(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut spans = [JERK_DECADES; 2];
         let mut best = [(f64::INFINITY, 0.0); 2];
         for _ in 0..ROUNDS {
@@ -178,7 +179,7 @@ impl Lesson {
     }
 
     /// The baselines with the least errors, and those.
-    fn best_baselines(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), ConfigError> {
+    fn best_baselines(&self, base: &PredictorConfig) -> Result<(PredictorConfig, [f64; 2]), SettingError> {
         let mut best = [(f64::INFINITY, 1.0); 2];
         for baseline in 1..=LONGEST_BASELINE {
             let tried = PredictorConfig { position_baseline: baseline, orientation_baseline: baseline, ..*base };
@@ -210,8 +211,9 @@ fn within(name: &str, value: f64) -> f64 {
 }
 
 /// Root mean squares, for one of three axes, of speed, acceleration, angular velocity and angular acceleration at the reports.
-fn rates<M: Motion + ?Sized>(motion: &M, reports: &[Report]) -> [f64; 4] {
-    let at = |report: &Report| (motion.velocity(report.measured_ps), motion.angular_velocity(report.measured_ps));
+fn rates<M: Motion + ?Sized>(motion: &M, reports: &[TrackerReport]) -> [f64; 4] {
+    let at =
+        |report: &TrackerReport| (motion.velocity(report.measured_ps), motion.angular_velocity(report.measured_ps));
     let mut squares = [0.0; 4];
     for pair in reports.windows(2) {
         let dt_s = span_s(pair[0].measured_ps, pair[1].measured_ps);

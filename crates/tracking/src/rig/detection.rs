@@ -1,4 +1,4 @@
-use crate::tracker::Report;
+use crate::tracker::TrackerReport;
 
 /// How the host finds the low point in the bob's positions. The paper does not say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub(super) struct Detector {
 }
 
 impl Detector {
-    pub(super) fn sees_low_point(&mut self, report: &Report) -> bool {
+    pub(super) fn sees_low_point(&mut self, report: &TrackerReport) -> bool {
         if !report.pose.is_finite() {
             return false;
         }

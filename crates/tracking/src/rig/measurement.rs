@@ -1,4 +1,4 @@
-use super::{Detection, PendulumRig, Trace};
+use super::{Detection, PendulumRig, ScopeTrace};
 use crate::time::{nearest_ps, span_s};
 use crate::tracker::TrackerModel;
 
@@ -162,22 +162,22 @@ impl Measurement {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Oscilloscope {
     /// Photodiode at the low point: a pulse for each, half of it before.
-    pub low_point: Trace,
+    pub low_point: ScopeTrace,
     /// D/A line: a step for each frame that a low point asked for.
-    pub dac: Trace,
+    pub dac: ScopeTrace,
     /// Photodiode on the screen: dark and light frames.
-    pub screen: Trace,
+    pub screen: ScopeTrace,
 }
 
 impl Oscilloscope {
     /// With a pulse for every low point of the pendulum up to the last step of the D/A line, as wide as the bob is in the LED's
     /// beam.
     #[must_use]
-    pub fn of(rig: &PendulumRig, dac: Trace, screen: Trace) -> Self {
+    pub fn of(rig: &PendulumRig, dac: ScopeTrace, screen: ScopeTrace) -> Self {
         let last_ps = dac.edges().last().map_or(0, |edge| edge.t_ps);
         let low_points = (0..).map(|n| rig.pendulum.low_point_ps(n)).take_while(|t_ps| *t_ps <= last_ps);
         let pulse_ps = nearest_ps((rig.beam_m / rig.pendulum.low_point_speed()).clamp(0.0, 1.0));
-        Self { low_point: Trace::pulsing("low point", low_points, pulse_ps), dac, screen }
+        Self { low_point: ScopeTrace::pulsing("low point", low_points, pulse_ps), dac, screen }
     }
 
     /// The passes as they are read off it: for each step of the D/A line the low point that it belongs to, and the next step of

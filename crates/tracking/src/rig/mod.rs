@@ -14,7 +14,7 @@ mod oscilloscope;
 
 pub use detection::Detection;
 pub use measurement::{InsidePass, Latency, Measurement, Oscilloscope, OutsidePass, Side, Sighting};
-pub use oscilloscope::{Edge, Trace};
+pub use oscilloscope::{ScopeEdge, ScopeTrace};
 
 use thiserror::Error;
 
@@ -70,8 +70,8 @@ impl PendulumRig {
         Self {
             pendulum: Pendulum::rig(),
             detection: Detection::Crossing,
-            beam_m: table::Rig::PAPERS.led_beam / 1e3,
-            photodiode_line: table::Rig::PAPERS.photodiode_line as u32,
+            beam_m: table::RigNumbers::PAPERS.led_beam / 1e3,
+            photodiode_line: table::RigNumbers::PAPERS.photodiode_line as u32,
         }
     }
 

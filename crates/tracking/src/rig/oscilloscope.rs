@@ -1,6 +1,6 @@
 /// A step of a channel from low to high or from high to low.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Edge {
+pub struct ScopeEdge {
     /// Instant of the step, ps of simulated time.
     pub t_ps: u64,
     /// The level from that instant on: true is high.
@@ -9,20 +9,20 @@ pub struct Edge {
 
 /// One channel of the oscilloscope, low before its first edge.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Trace {
+pub struct ScopeTrace {
     /// What the probe of this channel touches.
     pub name: &'static str,
-    edges: Vec<Edge>,
+    edges: Vec<ScopeEdge>,
 }
 
-impl Trace {
+impl ScopeTrace {
     /// A line that has these levels from these instants on, in order of time.
     #[must_use]
     pub fn sampled(name: &'static str, samples: impl IntoIterator<Item = (u64, bool)>) -> Self {
-        let mut edges: Vec<Edge> = Vec::new();
+        let mut edges: Vec<ScopeEdge> = Vec::new();
         for (t_ps, high) in samples {
             if high != edges.last().is_some_and(|last| last.high) {
-                edges.push(Edge { t_ps, high });
+                edges.push(ScopeEdge { t_ps, high });
             }
         }
         Self { name, edges }
@@ -32,7 +32,7 @@ impl Trace {
     #[must_use]
     pub fn toggling(name: &'static str, mut instants: Vec<u64>) -> Self {
         instants.sort_unstable();
-        let edges = instants.into_iter().enumerate().map(|(i, t_ps)| Edge { t_ps, high: i % 2 == 0 });
+        let edges = instants.into_iter().enumerate().map(|(i, t_ps)| ScopeEdge { t_ps, high: i % 2 == 0 });
         Self { name, edges: edges.collect() }
     }
 
@@ -43,7 +43,7 @@ impl Trace {
     }
 
     /// The steps, in order of time.
-    pub fn edges(&self) -> &[Edge] {
+    pub fn edges(&self) -> &[ScopeEdge] {
         &self.edges
     }
 
@@ -67,25 +67,25 @@ mod tests {
 
     #[test]
     fn a_toggling_line_is_low_then_high_then_low() {
-        let trace = Trace::toggling("screen", vec![30, 10]);
+        let trace = ScopeTrace::toggling("screen", vec![30, 10]);
         assert_eq!([9, 10, 29, 30].map(|t| trace.level(t)), [false, true, true, false]);
     }
 
     #[test]
     fn a_sampled_line_has_an_edge_where_its_level_changes() {
-        let trace = Trace::sampled("screen", [(5, false), (10, true), (20, true), (30, false)]);
-        assert_eq!(trace, Trace::toggling("screen", vec![10, 30]));
+        let trace = ScopeTrace::sampled("screen", [(5, false), (10, true), (20, true), (30, false)]);
+        assert_eq!(trace, ScopeTrace::toggling("screen", vec![10, 30]));
     }
 
     #[test]
     fn a_pulse_is_centred_on_its_instant() {
-        let trace = Trace::pulsing("low point", [100, 200].into_iter(), 10);
+        let trace = ScopeTrace::pulsing("low point", [100, 200].into_iter(), 10);
         assert_eq!([94, 95, 104, 105, 195].map(|t| trace.level(t)), [false, true, true, false, true]);
     }
 
     #[test]
     fn samples_are_the_levels() {
-        let trace = Trace::toggling("screen", vec![10, 30]);
+        let trace = ScopeTrace::toggling("screen", vec![10, 30]);
         let levels: Vec<f64> = trace.samples(0, 50, 10).map(|(_, v)| v).collect();
         assert_eq!(levels, [0.0, 1.0, 1.0, 0.0, 0.0]);
     }

@@ -1,7 +1,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Fault, HostLine, MagneticDistortion, SerialLine};
+use super::{HostLine, MagneticDistortion, SerialLine, TrackerFault};
 use crate::config::{self as table, Tables};
 
 /// Settings of a tracker, its cable and the host's port. Presets take every number from [`crate::config`].
@@ -43,7 +43,7 @@ pub struct TrackerConfig {
     /// What metal near a magnetic tracker does; `None` for none.
     pub distortion: Option<MagneticDistortion>,
     /// Faults to inject, in order of precedence; empty for a healthy tracker.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<TrackerFault>,
 }
 
 impl TrackerConfig {

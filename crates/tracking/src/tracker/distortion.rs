@@ -2,7 +2,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::config::Tables;
-use crate::error::ConfigError;
+use crate::error::SettingError;
 use crate::pose::Pose;
 use crate::rotation;
 
@@ -54,12 +54,12 @@ impl MagneticDistortion {
         }
     }
 
-    pub(super) fn check(&self) -> Result<(), ConfigError> {
+    pub(super) fn check(&self) -> Result<(), SettingError> {
         if !(self.transmitter_m.is_finite() && self.towards_metal.try_normalize().is_some()) {
-            return Err(ConfigError::Contradiction { what: "magnetic distortion needs a place and a direction" });
+            return Err(SettingError::Contradiction { what: "magnetic distortion needs a place and a direction" });
         }
-        ConfigError::check("depth of magnetic distortion", self.depth_per_m2, -1.0, 1.0)?;
-        ConfigError::check("reach of magnetic distortion", self.reach_m, 1e-3, 1e3)
+        SettingError::check("depth of magnetic distortion", self.depth_per_m2, -1.0, 1.0)?;
+        SettingError::check("reach of magnetic distortion", self.reach_m, 1e-3, 1e3)
     }
 }
 

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use crate::error::ConfigError;
+use crate::error::SettingError;
 
 /// Most likely random fault: more would be a tracker that hardly reports.
 const MOST_LIKELY: f64 = 0.99;
@@ -8,7 +8,7 @@ const MOST_LIKELY: f64 = 0.99;
 /// A fault to inject. Several can be combined; where two random faults want one report, the first listed wins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub enum Fault {
+pub enum TrackerFault {
     /// The tracker falls silent for good: nothing reaches the host at or after this instant.
     Silence {
         /// The first instant at which nothing arrives, ps.
@@ -42,24 +42,24 @@ pub enum Fault {
     },
 }
 
-impl Fault {
-    pub(super) fn check(&self) -> Result<(), ConfigError> {
+impl TrackerFault {
+    pub(super) fn check(&self) -> Result<(), SettingError> {
         match *self {
             Self::Silence { .. } => Ok(()),
             Self::Dropout { from_ps, to_ps } if from_ps > to_ps => {
-                Err(ConfigError::Contradiction { what: "a dropout ends before it begins" })
+                Err(SettingError::Contradiction { what: "a dropout ends before it begins" })
             }
             Self::Dropout { .. } => Ok(()),
             Self::RandomDropout { probability } | Self::NotANumber { probability } => check_probability(probability),
             Self::Jump { probability, distance_m, angle_deg } => {
-                ConfigError::check("distance of a jump", distance_m, 0.0, 1e6)?;
-                ConfigError::check("angle of a jump", angle_deg, 0.0, 180.0)?;
+                SettingError::check("distance of a jump", distance_m, 0.0, 1e6)?;
+                SettingError::check("angle of a jump", angle_deg, 0.0, 180.0)?;
                 check_probability(probability)
             }
         }
     }
 }
 
-fn check_probability(probability: f64) -> Result<(), ConfigError> {
-    ConfigError::check("probability of a fault", probability, 0.0, MOST_LIKELY)
+fn check_probability(probability: f64) -> Result<(), SettingError> {
+    SettingError::check("probability of a fault", probability, 0.0, MOST_LIKELY)
 }

@@ -10,8 +10,8 @@ mod serial;
 
 pub use config::TrackerConfig;
 pub use distortion::MagneticDistortion;
-pub use fault::Fault;
+pub use fault::TrackerFault;
 pub use model::TrackerModel;
-pub use report::Report;
+pub use report::TrackerReport;
 pub use reports::Reports;
 pub use serial::{HostLine, SerialLine};

@@ -1,5 +1,5 @@
-use super::{Fault, HostLine, TrackerConfig};
-use crate::error::ConfigError;
+use super::{HostLine, TrackerConfig, TrackerFault};
+use crate::error::SettingError;
 use crate::time::{PS_PER_S, tick_ps};
 
 /// Longest latency or poll period that a configuration may name.
@@ -13,20 +13,20 @@ pub struct TrackerModel {
 
 impl TrackerModel {
     /// Checks the settings, once.
-    pub fn new(config: TrackerConfig) -> Result<Self, ConfigError> {
+    pub fn new(config: TrackerConfig) -> Result<Self, SettingError> {
         check_times(&config)?;
-        ConfigError::check("position noise, m", config.position_noise_m, 0.0, 10.0)?;
-        ConfigError::check("orientation noise, deg", config.orientation_noise_deg, 0.0, 90.0)?;
-        ConfigError::check("position bias, m", config.position_bias_m, 0.0, 10.0)?;
-        ConfigError::check("orientation bias, deg", config.orientation_bias_deg, 0.0, 90.0)?;
-        ConfigError::check("filter gain", config.filter_gain, 1e-6, 1.0)?;
+        SettingError::check("position noise, m", config.position_noise_m, 0.0, 10.0)?;
+        SettingError::check("orientation noise, deg", config.orientation_noise_deg, 0.0, 90.0)?;
+        SettingError::check("position bias, m", config.position_bias_m, 0.0, 10.0)?;
+        SettingError::check("orientation bias, deg", config.orientation_bias_deg, 0.0, 90.0)?;
+        SettingError::check("filter gain", config.filter_gain, 1e-6, 1.0)?;
         if let Some(serial) = config.serial {
-            ConfigError::check("record, bytes", f64::from(serial.record_bytes), 1.0, 1000.0)?;
-            ConfigError::check("bits of a byte", f64::from(serial.byte_bits), 1.0, 100.0)?;
-            ConfigError::check("line rate, baud", f64::from(serial.baud), 300.0, 1e6)?;
+            SettingError::check("record, bytes", f64::from(serial.record_bytes), 1.0, 1000.0)?;
+            SettingError::check("bits of a byte", f64::from(serial.byte_bits), 1.0, 100.0)?;
+            SettingError::check("line rate, baud", f64::from(serial.baud), 300.0, 1e6)?;
         }
         config.distortion.map_or(Ok(()), |d| d.check())?;
-        config.faults.iter().try_for_each(Fault::check)?;
+        config.faults.iter().try_for_each(TrackerFault::check)?;
         Ok(Self { config })
     }
 
@@ -70,16 +70,16 @@ impl TrackerModel {
     }
 }
 
-fn check_times(config: &TrackerConfig) -> Result<(), ConfigError> {
-    ConfigError::check("tracker rate, Hz", f64::from(config.rate_hz), 1.0, 10_000.0)?;
-    ConfigError::check("receivers", f64::from(config.receivers), 1.0, 16.0)?;
+fn check_times(config: &TrackerConfig) -> Result<(), SettingError> {
+    SettingError::check("tracker rate, Hz", f64::from(config.rate_hz), 1.0, 10_000.0)?;
+    SettingError::check("receivers", f64::from(config.receivers), 1.0, 16.0)?;
     let longest = LONGEST_PS as f64;
-    ConfigError::check("sync to output, ps", config.sync_to_output_ps as f64, 0.0, longest)?;
+    SettingError::check("sync to output, ps", config.sync_to_output_ps as f64, 0.0, longest)?;
     if config.position_latency_ps.max(config.orientation_latency_ps) > config.sync_to_output_ps {
-        return Err(ConfigError::Contradiction { what: "a latency is longer than the time from sync to output" });
+        return Err(SettingError::Contradiction { what: "a latency is longer than the time from sync to output" });
     }
     if let HostLine::Polled { period_ps } = config.host {
-        ConfigError::check("poll period, ps", period_ps as f64, 1.0, longest)?;
+        SettingError::check("poll period, ps", period_ps as f64, 1.0, longest)?;
     }
     Ok(())
 }
@@ -132,8 +132,8 @@ mod tests {
             TrackerConfig { position_latency_ps: u64::MAX, ..good() },
             TrackerConfig { host: HostLine::Polled { period_ps: 0 }, ..good() },
             TrackerConfig { serial: Some(SerialLine { baud: 0, ..SerialLine::fastrak() }), ..good() },
-            TrackerConfig { faults: vec![Fault::RandomDropout { probability: 1.0 }], ..good() },
-            TrackerConfig { faults: vec![Fault::Dropout { from_ps: 2, to_ps: 1 }], ..good() },
+            TrackerConfig { faults: vec![TrackerFault::RandomDropout { probability: 1.0 }], ..good() },
+            TrackerConfig { faults: vec![TrackerFault::Dropout { from_ps: 2, to_ps: 1 }], ..good() },
         ];
         for config in bad {
             assert!(TrackerModel::new(config.clone()).is_err(), "{config:?}");

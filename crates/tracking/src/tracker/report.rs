@@ -2,7 +2,7 @@ use crate::pose::Pose;
 
 /// What the host gets of one solution of the tracker: a pose with its times.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Report {
+pub struct TrackerReport {
     /// Number of the solution; a step of more than one tells of dropped solutions.
     pub solution: u64,
     /// When the orientation was true, ps.

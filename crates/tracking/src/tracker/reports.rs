@@ -1,7 +1,7 @@
 use glam::{DQuat, DVec3};
 
-use super::report::Report;
-use super::{Fault, HostLine, TrackerConfig, TrackerModel};
+use super::report::TrackerReport;
+use super::{HostLine, TrackerConfig, TrackerFault, TrackerModel};
 use crate::motion::Motion;
 use crate::pose::Pose;
 use crate::random::{below, bits, normal_pair, stream, unit};
@@ -40,7 +40,7 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
             HostLine::InterruptPerCharacter => 0,
         };
         let silence = config.faults.iter().filter_map(|fault| match fault {
-            Fault::Silence { from_ps } => Some(*from_ps),
+            TrackerFault::Silence { from_ps } => Some(*from_ps),
             _ => None,
         });
         Self {
@@ -64,7 +64,7 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
     }
 
     /// The tracker's own result, noise, metal and filter included, and the times at which its parts were true.
-    fn solve(&mut self, solution: u64, output_ps: u64) -> Report {
+    fn solve(&mut self, solution: u64, output_ps: u64) -> TrackerReport {
         let config = self.model.config();
         let position_measured_ps = output_ps - config.position_latency_ps;
         let measured_ps = output_ps - config.orientation_latency_ps;
@@ -76,7 +76,7 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
             pose = distortion.distort(&pose);
         }
         let pose = self.filter(self.with_noise(self.with_bias(pose), solution));
-        Report { solution, measured_ps, position_measured_ps, arrives_ps: output_ps, pose }
+        TrackerReport { solution, measured_ps, position_measured_ps, arrives_ps: output_ps, pose }
     }
 
     fn with_bias(&self, pose: Pose) -> Pose {
@@ -116,11 +116,11 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
         let model = self.model;
         for (i, fault) in model.config().faults.iter().enumerate() {
             match *fault {
-                Fault::Dropout { from_ps, to_ps } if (from_ps..to_ps).contains(&sync_ps) => {
+                TrackerFault::Dropout { from_ps, to_ps } if (from_ps..to_ps).contains(&sync_ps) => {
                     self.next_solution = model.solution_at(to_ps);
                     return true;
                 }
-                Fault::RandomDropout { probability } if self.strikes(i, solution, probability) => return true,
+                TrackerFault::RandomDropout { probability } if self.strikes(i, solution, probability) => return true,
                 _ => {}
             }
         }
@@ -132,14 +132,16 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
     }
 
     /// What the cable makes of the pose.
-    fn corrupt(&self, report: &mut Report) {
+    fn corrupt(&self, report: &mut TrackerReport) {
         for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
-                Fault::NotANumber { probability } if self.strikes(i, report.solution, probability) => {
+                TrackerFault::NotANumber { probability } if self.strikes(i, report.solution, probability) => {
                     report.pose = Pose { position: DVec3::NAN, orientation: DQuat::NAN };
                     return;
                 }
-                Fault::Jump { probability, distance_m, angle_deg } if self.strikes(i, report.solution, probability) => {
+                TrackerFault::Jump { probability, distance_m, angle_deg }
+                    if self.strikes(i, report.solution, probability) =>
+                {
                     let draws = stream(stream(self.faults, i as u64), report.solution);
                     report.pose.position += random_direction(draws, 0) * distance_m;
                     let turn = rotation::exp(random_direction(draws, 2) * angle_deg.to_radians());
@@ -180,9 +182,9 @@ fn bias(config: &TrackerConfig, seed: u64) -> (DVec3, DVec3) {
 }
 
 impl<M: Motion + ?Sized> Iterator for Reports<'_, M> {
-    type Item = Report;
+    type Item = TrackerReport;
 
-    fn next(&mut self) -> Option<Report> {
+    fn next(&mut self) -> Option<TrackerReport> {
         loop {
             let solution = self.next_solution;
             let sync_ps = self.model.sync_ps(solution)?;

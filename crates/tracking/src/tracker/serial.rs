@@ -17,7 +17,7 @@ pub struct SerialLine {
 }
 
 fn usual_byte_bits() -> u32 {
-    table::Host::PAPERS.byte_bits as u32
+    table::HostPort::PAPERS.byte_bits as u32
 }
 
 impl SerialLine {

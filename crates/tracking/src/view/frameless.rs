@@ -1,4 +1,4 @@
-use crate::error::ConfigError;
+use crate::error::SettingError;
 use crate::random::{bits, stream};
 
 /// Rounds of the Feistel network; four make a good permutation of a good mixing function (Luby and Rackoff 1988).
@@ -19,8 +19,8 @@ pub struct RandomOrder {
 
 impl RandomOrder {
     /// An order of `n_pixels`, at least 1 and at most 2^31.
-    pub fn new(n_pixels: u32, seed: u64) -> Result<Self, ConfigError> {
-        ConfigError::check("pixels of a frameless order", f64::from(n_pixels), 1.0, f64::from(1u32 << 31))?;
+    pub fn new(n_pixels: u32, seed: u64) -> Result<Self, SettingError> {
+        SettingError::check("pixels of a frameless order", f64::from(n_pixels), 1.0, f64::from(1u32 << 31))?;
         let width = n_pixels.next_power_of_two().trailing_zeros().max(2);
         Ok(Self { n_pixels, half_bits: width / 2, odd_bit: width % 2, seed: stream(seed, 5) })
     }

@@ -2,7 +2,7 @@ use glam::{DVec2, DVec3};
 use parameters::ParameterTable;
 
 use crate::config as table;
-use crate::error::ConfigError;
+use crate::error::SettingError;
 use crate::pose::Pose;
 use crate::time::seconds;
 
@@ -32,8 +32,9 @@ pub struct PixelError {
 
 impl HmdView {
     /// A view of this size (1 to 16,384 px each) and horizontal angle (1 to 170 degrees).
-    pub fn new(width_px: u32, height_px: u32, horizontal_deg: f64) -> Result<Self, ConfigError> {
-        table::View { width: width_px.into(), height: height_px.into(), horizontal_angle: horizontal_deg }.check()?;
+    pub fn new(width_px: u32, height_px: u32, horizontal_deg: f64) -> Result<Self, SettingError> {
+        table::HeadMountedView { width: width_px.into(), height: height_px.into(), horizontal_angle: horizontal_deg }
+            .check()?;
         let width_px = f64::from(width_px);
         let height_px = f64::from(height_px);
         let focal_px = width_px / 2.0 / libm::tan(horizontal_deg.to_radians() / 2.0);
@@ -43,9 +44,9 @@ impl HmdView {
     /// 640 x 480 pixels, 60 degrees.
     pub fn ntsc() -> Self {
         Self::new(
-            table::View::PAPERS.width as u32,
-            table::View::PAPERS.height as u32,
-            table::View::PAPERS.horizontal_angle,
+            table::HeadMountedView::PAPERS.width as u32,
+            table::HeadMountedView::PAPERS.height as u32,
+            table::HeadMountedView::PAPERS.horizontal_angle,
         )
         .expect("the table's values are in range")
     }

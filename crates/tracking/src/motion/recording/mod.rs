@@ -15,7 +15,7 @@ use std::io::Read;
 use glam::DVec3;
 
 use super::Motion;
-use crate::identity::{Settings, write_pose};
+use crate::identity::{SettingSink, write_pose};
 use crate::pose::Pose;
 use crate::rotation;
 use crate::time::span_s;
@@ -145,7 +145,7 @@ impl Motion for Recording {
             None => self.samples[self.samples.len() - 1].1,
         }
     }
-    fn identify(&self, settings: &mut Settings) {
+    fn identify(&self, settings: &mut SettingSink) {
         settings("motion", &"recording");
         settings("motion.end", &self.end.name());
         for (t_ps, pose) in &self.samples {
