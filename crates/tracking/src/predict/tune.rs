@@ -73,7 +73,7 @@ pub fn training_seed(judged: u64) -> u64 {
 ///
 /// # Errors
 ///
-/// [`ConfigError`] for `base` out of range.
+/// [`SettingError`] for `base` out of range.
 pub fn tune<M: Motion + ?Sized>(
     motion: &M,
     tracker: &TrackerModel,
