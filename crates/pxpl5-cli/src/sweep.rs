@@ -4,7 +4,7 @@ use crate::error::CliError;
 use crate::options::registry;
 use crate::terminal::{complain, print, progress, warn};
 use clap::Args;
-use pxpl5::sweep::{ROWS_FILE, RunOptions, Shard, Status, Store, Sweep};
+use pxpl5::sweep::{ROWS_FILE, RunOptions, Shard, Store, Sweep};
 use pxpl5::{ExperimentFile, Parameter};
 use std::path::PathBuf;
 
@@ -56,10 +56,9 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     warn(&supposed(&sweep), args.quiet);
     let mut store = Store::open(&args.out, sweep.header()?, args.resume)?;
     told_when_interrupted(&args)?;
-    let held = store.rows().keys().filter(|point| args.shard.holds(**point)).count() as u64;
     let total = args.shard.share_of(sweep.space().points());
     let bar = progress(total, "points", args.quiet);
-    bar.set_position(held);
+    bar.set_position(store.finished(args.shard));
     bar.reset_eta();
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let options = RunOptions { shard: args.shard, threads: args.threads.map_or(cores, |threads| threads as usize) };
@@ -115,16 +114,13 @@ fn quoted(word: &str) -> String {
 /// Says where the rows are, and how many of them hold nothing but a reason: so many are given.
 fn summarise(args: &SweepArgs, store: &Store, total: u64) -> Result<u64, CliError> {
     let path = args.out.join(ROWS_FILE);
-    let ours = store.rows().values().filter(|row| args.shard.holds(row.point));
-    let failed: Vec<_> = ours.filter(|row| row.status == Status::Failed).collect();
-    if let Some(first) = failed.first() {
-        let error = first.error.as_deref().unwrap_or_default();
-        let count = failed.len();
-        let point = first.point;
-        complain(&format!("pxpl5: {count} of {total} points could not be simulated; point {point}: {error}\n"));
+    let failed = store.failed(args.shard).count() as u64;
+    if let Some(point) = store.failed(args.shard).next() {
+        let error = store.row(point)?.and_then(|row| row.error).unwrap_or_default();
+        complain(&format!("pxpl5: {failed} of {total} points could not be simulated; point {point}: {error}\n"));
     }
     if !args.quiet {
         print(&format!("{total} points are in {}.\n", path.display()))?;
     }
-    Ok(failed.len() as u64)
+    Ok(failed)
 }

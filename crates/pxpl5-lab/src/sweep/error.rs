@@ -29,7 +29,7 @@ pub enum SweepError {
         /// Path of the folder, as it was given.
         path: String,
         /// Number of finished points that it holds.
-        rows: usize,
+        rows: u64,
     },
     /// The folder holds results of another sweep.
     #[error("{path}: these are results of another sweep: {what} was {found}, expected {expected}")]

@@ -1,9 +1,11 @@
 //! Joining shards.
 
-use super::store::{Found, check_header, line_of, read_rows, replace, write_all};
-use super::{Header, ROWS_FILE, Status, SweepError, SweepRow, TIMES_FILE};
-use std::collections::BTreeMap;
-use std::fs;
+use super::replacement::Replacement;
+use super::rows::{RowFile, RowReader};
+use super::store::{check_header, line_of, write_all};
+use super::{Header, ROWS_FILE, SweepError, SweepRow, TIMES_FILE};
+use std::fs::File;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 /// What joining the shards of a sweep found, point by point.
@@ -19,9 +21,6 @@ pub struct Merged {
     pub missing: Vec<u64>,
 }
 
-/// Rows by point, each with the file that it is from.
-type Joined = BTreeMap<u64, (SweepRow, String)>;
-
 /// Joins the rows of folders into one folder, in order of the points. Nothing is written unless all is well.
 ///
 /// # Errors
@@ -29,66 +28,80 @@ type Joined = BTreeMap<u64, (SweepRow, String)>;
 /// [`SweepError::Foreign`] when a folder is of another sweep, [`SweepError::Contradiction`] when a point has different
 /// rows, [`SweepError::Missing`] when points are nowhere and that is not allowed.
 pub fn merge(folders: &[PathBuf], out: &Path, allow_missing: bool) -> Result<Merged, SweepError> {
-    let mut all: Option<(Header, Joined)> = None;
-    let mut duplicates = Vec::new();
-    for folder in folders {
-        let path = folder.join(ROWS_FILE);
-        let Found { header, rows, repeated, .. } = found(&path)?;
-        let Some(header) = header else { continue };
-        duplicates.extend(repeated);
-        let (first, joined) = all.get_or_insert_with(|| (header.clone(), Joined::new()));
-        check_header(&path, first, Some(&header))?;
-        duplicates.extend(join(joined, rows, &path.display().to_string())?);
-    }
-    let Some((header, joined)) = all else {
+    let files = folders.iter().map(|folder| RowFile::open(&folder.join(ROWS_FILE)));
+    let files: Vec<RowFile> =
+        files.filter(|file| !file.as_ref().is_ok_and(RowFile::is_empty)).collect::<Result<_, _>>()?;
+    let Some(header) = files.iter().find_map(RowFile::header) else {
         return Err(SweepError::Missing { missing: 0, points: 0, which: "no folder holds a row".to_owned() });
     };
-    let missing: Vec<u64> = (0..header.points).filter(|point| !joined.contains_key(point)).collect();
+    files.iter().try_for_each(|file| check_header(file.path(), header, file.header()))?;
+    let duplicates = duplicates(&files, header)?;
+    let missing: Vec<u64> = (0..header.points).filter(|point| holder(&files, *point).is_none()).collect();
     if !missing.is_empty() && !allow_missing {
         let which = ranges(&missing);
         return Err(SweepError::Missing { missing: missing.len() as u64, points: header.points, which });
     }
-    let rows: BTreeMap<u64, SweepRow> = joined.into_iter().map(|(point, (row, _))| (point, row)).collect();
-    write(folders, out, &header, &rows)?;
-    duplicates.sort_unstable();
-    duplicates.dedup();
-    let failed = rows.values().filter(|row| row.status == Status::Failed).count() as u64;
+    write(&files, folders, out, header)?;
+    let is_failed = |point: &u64| holder(&files, *point).is_some_and(|file| files[file].is_failed(*point));
+    let failed = (0..header.points).filter(is_failed).count() as u64;
     Ok(Merged { points: header.points, failed, duplicates, missing })
 }
 
-fn found(path: &Path) -> Result<Found, SweepError> {
-    let bytes = fs::read(path).map_err(SweepError::io(path, "cannot be read"))?;
-    read_rows(path, &bytes)
+/// The first file that has a row of a point.
+fn holder(files: &[RowFile], point: u64) -> Option<usize> {
+    files.iter().position(|file| file.holds(point))
 }
 
-/// Adds rows; gives the points that were there already.
-fn join(joined: &mut Joined, rows: BTreeMap<u64, SweepRow>, name: &str) -> Result<Vec<u64>, SweepError> {
-    let mut duplicates = Vec::new();
-    for (point, row) in rows {
-        match joined.get(&point) {
-            Some((other, _)) if *other == row => duplicates.push(point),
-            Some((_, first)) => {
-                return Err(SweepError::Contradiction { point, first: first.clone(), second: name.to_owned() });
+fn readers(files: &[RowFile]) -> Result<Vec<RowReader<'_>>, SweepError> {
+    files.iter().map(RowFile::reader).collect()
+}
+
+/// Points that have several rows, all equal.
+fn duplicates(files: &[RowFile], header: &Header) -> Result<Vec<u64>, SweepError> {
+    let mut all: Vec<u64> = files.iter().flat_map(RowFile::repeated).copied().collect();
+    let mut readers = readers(files)?;
+    for point in 0..header.points {
+        let mut holders = (0..files.len()).filter(|file| files[*file].holds(point));
+        let Some(first) = holders.next() else { continue };
+        for other in holders {
+            if readers[first].row(point)? != readers[other].row(point)? {
+                let [first, second] = [first, other].map(|file| files[file].path().display().to_string());
+                return Err(SweepError::Contradiction { point, first, second });
             }
-            None => {
-                joined.insert(point, (row, name.to_owned()));
-            }
+            all.push(point);
         }
     }
-    Ok(duplicates)
+    all.sort_unstable();
+    all.dedup();
+    Ok(all)
 }
 
-fn write(folders: &[PathBuf], out: &Path, header: &Header, rows: &BTreeMap<u64, SweepRow>) -> Result<(), SweepError> {
-    fs::create_dir_all(out).map_err(SweepError::io(out, "cannot be made"))?;
-    let times: String = [line_of(header)].into_iter().chain(folders.iter().map(|folder| times_of(folder))).collect();
-    replace(&out.join(TIMES_FILE), &times)?;
+fn write(files: &[RowFile], folders: &[PathBuf], out: &Path, header: &Header) -> Result<(), SweepError> {
+    std::fs::create_dir_all(out).map_err(SweepError::io(out, "cannot be made"))?;
+    let mut times = Replacement::of(&out.join(TIMES_FILE))?;
+    times.put(line_of(header).as_bytes())?;
+    folders.iter().try_for_each(|folder| put_times(&mut times, &folder.join(TIMES_FILE)))?;
+    times.finish()?;
+    let mut readers = readers(files)?;
+    let rows = (0..header.points).filter_map(|point| row(&mut readers, point).transpose());
     write_all(out, header, rows)
 }
 
+/// A point's row from the first file that has one.
+fn row(readers: &mut [RowReader], point: u64) -> Result<Option<SweepRow>, SweepError> {
+    for reader in readers {
+        if let Some(row) = reader.row(point)? {
+            return Ok(Some(row));
+        }
+    }
+    Ok(None)
+}
+
 /// The lines of a folder's times behind the first one, which is the header.
-fn times_of(folder: &Path) -> String {
-    let text = fs::read_to_string(folder.join(TIMES_FILE)).unwrap_or_default();
-    text.lines().skip(1).map(|line| format!("{line}\n")).collect()
+fn put_times(times: &mut Replacement, path: &Path) -> Result<(), SweepError> {
+    let Ok(file) = File::open(path) else { return Ok(()) };
+    let lines = BufReader::new(file).lines().map_while(Result::ok);
+    lines.skip(1).try_for_each(|line| times.put(format!("{line}\n").as_bytes()))
 }
 
 /// Ranges of numbers in order, at most ten of them.

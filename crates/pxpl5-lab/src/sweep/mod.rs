@@ -27,15 +27,20 @@ mod inputs;
 mod merge;
 mod point;
 mod points;
+mod replacement;
+mod rows;
 mod run;
+mod shard;
 mod space;
 mod store;
+mod table;
 
 pub use error::SweepError;
 pub use header::Header;
 pub use merge::{Merged, merge};
 pub use point::{Status, SweepRow};
-pub use run::{RunOptions, Shard, run};
+pub use run::{RunOptions, run};
+pub use shard::Shard;
 pub use space::{Axis, MAX_POINTS, SweepSpace, Values};
 pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};
 

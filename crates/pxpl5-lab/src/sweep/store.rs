@@ -1,12 +1,14 @@
 //! The folder of a sweep: rows are appended with one write each, and survive a kill at any moment.
 
 use super::points::Points;
+use super::replacement::Replacement;
+use super::rows::RowFile;
+use super::shard::Shard;
+use super::table::Table;
 use super::{Header, SweepError, SweepRow};
 use serde::Serialize;
-use serde::de::DeserializeOwned;
-use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
-use std::io::Write;
+use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 
 /// A header line, then a row a line.
@@ -22,7 +24,9 @@ const LOCK_FILE: &str = ".lock";
 pub struct Store {
     folder: PathBuf,
     header: Header,
-    rows: BTreeMap<u64, SweepRow>,
+    rows: RowFile,
+    /// Where the next row begins.
+    end: u64,
     rows_file: File,
     times_file: File,
     /// Held as long as the store lives; the operating system gives it back after a kill.
@@ -48,27 +52,22 @@ impl Store {
         let lock = lock(folder)?;
         remove_left_over(folder);
         let path = folder.join(ROWS_FILE);
-        let found = match fs::read(&path) {
-            Ok(bytes) => read_rows(&path, &bytes)?,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => Found::default(),
-            Err(error) => return Err(SweepError::io(&path, "cannot be read")(error)),
-        };
-        check_header(&path, &header, found.header.as_ref())?;
-        if !resume && !found.rows.is_empty() {
-            return Err(SweepError::NotEmpty { path: folder.display().to_string(), rows: found.rows.len() });
+        let rows = RowFile::open_or_none(&path)?;
+        check_header(&path, &header, rows.header())?;
+        if !resume && rows.finished() > 0 {
+            return Err(SweepError::NotEmpty { path: folder.display().to_string(), rows: rows.finished() });
         }
-        let rows_file = opened(&path, found.whole_bytes)?;
+        let end = rows.whole_bytes();
+        let rows_file = opened(&path, end)?;
         let times_path = folder.join(TIMES_FILE);
-        let times_whole = whole_lines(&fs::read(&times_path).unwrap_or_default());
-        let times_file = opened(&times_path, times_whole)?;
-        let fresh = found.header.is_none();
-        let mut store =
-            Self { folder: folder.to_owned(), header, rows: found.rows, rows_file, times_file, _lock: lock };
+        let times_end = whole_lines(&times_path);
+        let times_file = opened(&times_path, times_end)?;
+        let mut store = Self { folder: folder.to_owned(), header, rows, end, rows_file, times_file, _lock: lock };
         let header = line_of(&store.header);
-        if fresh {
+        if end == 0 {
             store.append_line(&header)?;
         }
-        if times_whole == 0 {
+        if times_end == 0 {
             store.append_time(&header)?;
         }
         Ok(store)
@@ -77,18 +76,32 @@ impl Store {
     /// Whether a point is finished.
     #[must_use]
     pub fn holds(&self, point: u64) -> bool {
-        self.rows.contains_key(&point)
+        self.rows.holds(point)
     }
 
     /// The points that are finished.
     pub(super) fn held(&self) -> Points {
-        self.rows.keys().copied().collect()
+        self.rows.points().collect()
     }
 
-    /// The rows of all finished points, by the number of the point.
+    /// How many points of a shard are finished.
     #[must_use]
-    pub const fn rows(&self) -> &BTreeMap<u64, SweepRow> {
-        &self.rows
+    pub fn finished(&self, shard: Shard) -> u64 {
+        self.rows.points().filter(|point| shard.holds(*point)).count() as u64
+    }
+
+    /// The points of a shard that could not be simulated, in order.
+    pub fn failed(&self, shard: Shard) -> impl Iterator<Item = u64> {
+        self.rows.points().filter(move |point| shard.holds(*point) && self.rows.is_failed(*point))
+    }
+
+    /// The row of a point, read from the file; `None` of one that is not finished.
+    ///
+    /// # Errors
+    ///
+    /// [`SweepError::Io`].
+    pub fn row(&self, point: u64) -> Result<Option<SweepRow>, SweepError> {
+        self.rows.reader()?.row(point)
     }
 
     /// Appends the row of a finished point.
@@ -97,16 +110,19 @@ impl Store {
     ///
     /// [`SweepError::Io`].
     pub fn append(&mut self, row: &SweepRow, host_seconds: f64) -> Result<(), SweepError> {
+        let begin = self.end;
         self.append_line(&line_of(row))?;
         self.append_time(&line_of(&PointTime { point: row.point, host_seconds }))?;
-        self.rows.insert(row.point, row.clone());
+        self.rows.add(row, begin);
         Ok(())
     }
 
     /// One write, so that a kill tears at most this line.
     fn append_line(&mut self, line: &str) -> Result<(), SweepError> {
         let path = self.folder.join(ROWS_FILE);
-        self.rows_file.write_all(line.as_bytes()).map_err(SweepError::io(&path, "cannot be written"))
+        self.rows_file.write_all(line.as_bytes()).map_err(SweepError::io(&path, "cannot be written"))?;
+        self.end += line.len() as u64;
+        Ok(())
     }
 
     fn append_time(&mut self, line: &str) -> Result<(), SweepError> {
@@ -120,15 +136,30 @@ impl Store {
     ///
     /// [`SweepError::Io`].
     pub fn finish(self) -> Result<(), SweepError> {
-        write_all(&self.folder, &self.header, &self.rows)
+        let mut reader = self.rows.reader()?;
+        let rows = self.rows.points().filter_map(|point| reader.row(point).transpose());
+        write_all(&self.folder, &self.header, rows)
     }
 }
 
-/// Rows in order, and the table.
-pub(super) fn write_all(folder: &Path, header: &Header, rows: &BTreeMap<u64, SweepRow>) -> Result<(), SweepError> {
-    let lines: String = rows.values().map(line_of).collect();
-    replace(&folder.join(ROWS_FILE), &format!("{}{lines}", line_of(header)))?;
-    replace(&folder.join(RESULTS_FILE), &table(header, rows))
+/// Rows in order, and the table; a row is held at a time.
+pub(super) fn write_all(
+    folder: &Path,
+    header: &Header,
+    rows: impl Iterator<Item = Result<SweepRow, SweepError>>,
+) -> Result<(), SweepError> {
+    let mut lines = Replacement::of(&folder.join(ROWS_FILE))?;
+    let mut results = Replacement::of(&folder.join(RESULTS_FILE))?;
+    let table = Table::of(header);
+    lines.put(line_of(header).as_bytes())?;
+    results.put(&table.head())?;
+    for row in rows {
+        let row = row?;
+        lines.put(line_of(&row).as_bytes())?;
+        results.put(&table.line(&row))?;
+    }
+    lines.finish()?;
+    results.finish()
 }
 
 /// Removes what processes that were killed while they finished have left under temporary names. Nobody else is at work here: the
@@ -148,19 +179,6 @@ fn remove_left_over(folder: &Path) {
     }
 }
 
-pub(super) fn replace(path: &Path, text: &str) -> Result<(), SweepError> {
-    let temporary = path.with_extension(format!("{}.tmp", std::process::id()));
-    let written = File::create(&temporary).and_then(|mut file| {
-        file.write_all(text.as_bytes())?;
-        file.sync_all()?;
-        fs::rename(&temporary, path)
-    });
-    written.map_err(|error| {
-        let _ = fs::remove_file(&temporary);
-        SweepError::io(path, "cannot be written")(error)
-    })
-}
-
 pub(super) fn line_of(value: &impl Serialize) -> String {
     let mut line = serde_json::to_string(value).unwrap_or_default();
     line.push('\n');
@@ -178,72 +196,26 @@ fn lock(folder: &Path) -> Result<File, SweepError> {
 }
 
 /// Opens for appending after the first `keep` bytes.
-fn opened(path: &Path, keep: usize) -> Result<File, SweepError> {
+fn opened(path: &Path, keep: u64) -> Result<File, SweepError> {
     let file = OpenOptions::new().create(true).append(true).open(path);
     let cut = file.and_then(|file| {
-        file.set_len(keep as u64)?;
+        file.set_len(keep)?;
         Ok(file)
     });
     cut.map_err(SweepError::io(path, "cannot be written"))
 }
 
-/// What a file of rows holds.
-#[derive(Debug, Default)]
-pub(super) struct Found {
-    pub(super) header: Option<Header>,
-    pub(super) rows: BTreeMap<u64, SweepRow>,
-    /// Points that have a second, equal row.
-    pub(super) repeated: Vec<u64>,
-    /// Bytes up to the end of the last whole line.
-    whole_bytes: usize,
-}
-
-/// Bytes up to the end of the last whole line.
-fn whole_lines(bytes: &[u8]) -> usize {
-    bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1)
-}
-
-/// Reads a file of rows; a last line without an end is passed over.
-pub(super) fn read_rows(path: &Path, bytes: &[u8]) -> Result<Found, SweepError> {
-    let whole_bytes = whole_lines(bytes);
-    let mut found = Found { whole_bytes, ..Found::default() };
-    let name = path.display().to_string();
-    for (number, line) in (1..).zip(bytes[..whole_bytes].split_inclusive(|byte| *byte == b'\n')) {
-        if number == 1 {
-            found.header = Some(read_line(line, number, &name)?);
-            continue;
-        }
-        let row: SweepRow = read_line(line, number, &name)?;
-        let points = found.header.as_ref().map_or(0, |header: &Header| header.points);
-        if row.point >= points {
-            let found = format!("point {} of {points}", row.point);
-            return Err(SweepError::Damaged { path: name, line: number, found });
-        }
-        match found.rows.get(&row.point) {
-            Some(other) if *other == row => found.repeated.push(row.point),
-            Some(other) => {
-                return Err(SweepError::Contradiction { point: other.point, first: name.clone(), second: name });
-            }
-            None => {
-                found.rows.insert(row.point, row);
-            }
-        }
+/// Bytes up to the end of the last whole line; 0 of a file that cannot be read.
+fn whole_lines(path: &Path) -> u64 {
+    let Ok(file) = File::open(path) else { return 0 };
+    let mut file = BufReader::new(file);
+    let mut whole = 0;
+    let mut line = Vec::new();
+    while file.read_until(b'\n', &mut line).is_ok() && line.last() == Some(&b'\n') {
+        whole += line.len() as u64;
+        line.clear();
     }
-    Ok(found)
-}
-
-/// What a line of a file holds.
-fn read_line<T: DeserializeOwned>(line: &[u8], number: usize, file: &str) -> Result<T, SweepError> {
-    serde_json::from_slice(line).map_err(|error| SweepError::Damaged {
-        path: file.to_owned(),
-        line: number,
-        found: format!("{} ({error})", excerpt(line)),
-    })
-}
-
-fn excerpt(line: &[u8]) -> String {
-    let text: String = String::from_utf8_lossy(line).trim_end().chars().take(40).collect();
-    format!("{text:?}")
+    whole
 }
 
 /// Names the first thing in which two headers differ.
@@ -261,47 +233,4 @@ pub(super) fn check_header(path: &Path, expected: &Header, found: Option<&Header
         None => ("title", format!("{:?}", expected.title), format!("{:?}", found.title)),
     };
     Err(SweepError::Foreign { path: path.display().to_string(), what: what.to_owned(), expected, found })
-}
-
-/// Rows as comma-separated values after a header of comments.
-fn table(header: &Header, rows: &BTreeMap<u64, SweepRow>) -> String {
-    let parameters: Vec<&String> = header.axes.iter().flat_map(|axis| &axis.paths).collect();
-    let measured: Vec<&String> = header.measure.keys().collect();
-    let origin = [
-        ("machine", header.machine.clone()),
-        ("config_hash", header.config_hash.clone()),
-        ("version", header.version.clone()),
-        ("level", header.level.clone()),
-        ("seed", header.seed.to_string()),
-    ];
-    let comments: String = origin.iter().map(|(key, value)| format!("# {key}: {value}\n")).collect();
-    let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(comments.into_bytes());
-    let columns = ["point", "status"].into_iter().chain(parameters.iter().chain(&measured).map(|name| name.as_str()));
-    put_line(&mut writer, columns.chain(["trace_hash", "error"]).map(str::to_owned));
-    for row in rows.values() {
-        let status = if row.status == super::Status::Done { "done" } else { "failed" };
-        let settings = parameters.iter().map(|path| row.parameters.get(*path).map_or_else(String::new, plain));
-        let values = measured.iter().map(|name| row.value_text(name));
-        let cells = [row.point.to_string(), status.to_owned()].into_iter().chain(settings);
-        let last = [row.trace_hash.clone().unwrap_or_default(), row.error.clone().unwrap_or_default()];
-        put_line(&mut writer, cells.chain(values).chain(last));
-    }
-    let bytes = writer.into_inner().unwrap_or_default();
-    String::from_utf8(bytes).unwrap_or_default()
-}
-
-impl SweepRow {
-    /// A quantity's value as text; empty where the run shows none.
-    fn value_text(&self, name: &str) -> String {
-        self.measured.get(name).copied().flatten().map_or_else(String::new, |value| value.to_string())
-    }
-}
-
-fn plain(value: &serde_json::Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
-}
-
-/// Puts a line; memory can always be written.
-fn put_line(writer: &mut csv::Writer<Vec<u8>>, cells: impl Iterator<Item = String>) {
-    let _ = writer.write_record(cells);
 }

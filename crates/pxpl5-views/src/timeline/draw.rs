@@ -9,7 +9,7 @@ use pxpl5_sim::{Span, Time};
 
 /// Width of the document, and of what stands left and right of the time axis.
 const WIDTH: i64 = 960;
-const LEFT: i64 = 152;
+const LEFT: i64 = 172;
 const RIGHT: i64 = 14;
 /// Height of what stands above the rows, of a lane, and of the space between rows.
 const HEAD: i64 = 84;

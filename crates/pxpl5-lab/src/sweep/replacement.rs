@@ -1,0 +1,44 @@
+//! A file that takes another's place when it is whole.
+
+use super::SweepError;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// What is written goes under a temporary name beside the file; dropped before its end, it leaves nothing.
+#[derive(Debug)]
+pub(super) struct Replacement {
+    path: PathBuf,
+    temporary: PathBuf,
+    writer: BufWriter<File>,
+}
+
+impl Replacement {
+    pub(super) fn of(path: &Path) -> Result<Self, SweepError> {
+        let temporary = path.with_extension(format!("{}.tmp", std::process::id()));
+        let file = File::create(&temporary).map_err(SweepError::io(path, "cannot be written"))?;
+        Ok(Self { path: path.to_owned(), temporary, writer: BufWriter::new(file) })
+    }
+
+    pub(super) fn put(&mut self, bytes: &[u8]) -> Result<(), SweepError> {
+        self.writer.write_all(bytes).map_err(SweepError::io(&self.path, "cannot be written"))
+    }
+
+    /// Puts it in the place of the file, which changes at once or not at all.
+    pub(super) fn finish(mut self) -> Result<(), SweepError> {
+        self.take_place().map_err(SweepError::io(&self.path, "cannot be written"))
+    }
+
+    fn take_place(&mut self) -> io::Result<()> {
+        self.writer.flush()?;
+        self.writer.get_ref().sync_all()?;
+        fs::rename(&self.temporary, &self.path)
+    }
+}
+
+impl Drop for Replacement {
+    fn drop(&mut self) {
+        // Once it has taken its place there is nothing under the temporary name.
+        let _ = fs::remove_file(&self.temporary);
+    }
+}

@@ -1,0 +1,66 @@
+//! Rows as comma-separated values.
+
+use super::{Header, Status, SweepRow};
+
+/// Which columns there are: the settings that differ and the quantities that were measured.
+#[derive(Debug)]
+pub(super) struct Table<'a> {
+    header: &'a Header,
+    parameters: Vec<&'a str>,
+    measured: Vec<&'a str>,
+}
+
+impl<'a> Table<'a> {
+    pub(super) fn of(header: &'a Header) -> Self {
+        Self {
+            header,
+            parameters: header.axes.iter().flat_map(|axis| &axis.paths).map(String::as_str).collect(),
+            measured: header.measure.keys().map(String::as_str).collect(),
+        }
+    }
+
+    /// Comments, and the names of the columns.
+    pub(super) fn head(&self) -> Vec<u8> {
+        let header = self.header;
+        let origin = [
+            ("machine", header.machine.clone()),
+            ("config_hash", header.config_hash.clone()),
+            ("version", header.version.clone()),
+            ("level", header.level.clone()),
+            ("seed", header.seed.to_string()),
+        ];
+        let comments: String = origin.iter().map(|(key, value)| format!("# {key}: {value}\n")).collect();
+        let settings = self.parameters.iter().chain(&self.measured).copied();
+        let columns = ["point", "status"].into_iter().chain(settings).chain(["trace_hash", "error"]);
+        let names = line_of_cells(columns.map(str::to_owned));
+        [comments.into_bytes(), names].concat()
+    }
+
+    /// The line of a row.
+    pub(super) fn line(&self, row: &SweepRow) -> Vec<u8> {
+        let status = if row.status == Status::Done { "done" } else { "failed" };
+        let settings = self.parameters.iter().map(|path| row.parameters.get(*path).map_or_else(String::new, plain));
+        let values = self.measured.iter().map(|name| row.value_text(name));
+        let cells = [row.point.to_string(), status.to_owned()].into_iter().chain(settings);
+        let last = [row.trace_hash.clone().unwrap_or_default(), row.error.clone().unwrap_or_default()];
+        line_of_cells(cells.chain(values).chain(last))
+    }
+}
+
+impl SweepRow {
+    /// A quantity's value as text; empty where the run shows none.
+    fn value_text(&self, name: &str) -> String {
+        self.measured.get(name).copied().flatten().map_or_else(String::new, |value| value.to_string())
+    }
+}
+
+fn plain(value: &serde_json::Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
+}
+
+/// A line of its own; memory can always be written.
+fn line_of_cells(cells: impl Iterator<Item = String>) -> Vec<u8> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let _ = writer.write_record(cells);
+    writer.into_inner().unwrap_or_default()
+}
