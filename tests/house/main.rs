@@ -14,7 +14,11 @@ use std::collections::{BTreeMap, BTreeSet};
 /// where that is said.
 const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ("ground", &["parameters", "pxpl5-sim", "pxpl5-wire", "i860", "pxpl5-display"], &["ground"]),
-    ("boards", &["pxpl5-ring", "pxpl5-gp", "pxpl5-renderer", "pxpl5-framebuffer", "pxpl5-hires"], &["ground"]),
+    (
+        "boards",
+        &["pxpl5-ring", "pxpl5-gp", "pxpl5-renderer", "pxpl5-framebuffer", "pxpl5-hires", "address-recalculation"],
+        &["ground"],
+    ),
     ("world", &["tracking", "pxpl5-scene"], &["ground", "world"]),
     ("volume", &["spatialgl", "perspecta"], &["ground", "world", "volume"]),
     ("geometry", &["pxpl5-geometry", "pphigs"], &["ground", "boards", "geometry"]),
