@@ -82,10 +82,12 @@ impl Composition {
 
     fn weighed(&self, four: [u32; 4], weights: [Option<u32>; 4], is_rounded: bool) -> u32 {
         if weights.contains(&None) {
-            let sum: u64 = four.iter().zip(weights).filter_map(|(value, weight)| weight.map(|_| u64::from(*value))).sum();
+            let sum: u64 =
+                four.iter().zip(weights).filter_map(|(value, weight)| weight.map(|_| u64::from(*value))).sum();
             return if is_rounded { ((2 * sum + 3) / 6) as u32 } else { (sum / 3) as u32 };
         }
-        let sum: u64 = four.iter().zip(weights).map(|(value, weight)| u64::from(*value) * u64::from(weight.unwrap_or(0))).sum();
+        let sum: u64 =
+            four.iter().zip(weights).map(|(value, weight)| u64::from(*value) * u64::from(weight.unwrap_or(0))).sum();
         let half = if is_rounded { (1 << (2 * self.weight_bits)) >> 1 } else { 0 };
         ((sum + half) >> (2 * self.weight_bits)) as u32
     }

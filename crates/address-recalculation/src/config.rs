@@ -44,8 +44,7 @@ impl ArpConfig {
     };
 
     /// Fed by an ideal renderer: faces of 512 texels.
-    pub const IDEAL: Self =
-        Self { timing: ArpTiming { face_texels: 512, ..ArpTiming::PAPERS }, ..Self::MACHINE };
+    pub const IDEAL: Self = Self { timing: ArpTiming { face_texels: 512, ..ArpTiming::PAPERS }, ..Self::MACHINE };
 
     /// Checks that a display can be built: numbers, rules between them, and the lens.
     ///
@@ -100,7 +99,11 @@ impl ArpConfig {
     /// How memories become pixels.
     #[must_use]
     pub const fn composition(&self) -> Composition {
-        Composition { order: self.order, background: self.background & 0x00FF_FFFF, weight_bits: self.timing.weight_bits }
+        Composition {
+            order: self.order,
+            background: self.background & 0x00FF_FFFF,
+            weight_bits: self.timing.weight_bits,
+        }
     }
 
     /// Ports of one eye: one for each memory, and one for the background memory.

@@ -34,7 +34,8 @@ impl EyeBoards {
     /// Swaps what can be swapped: alone, or all memories of a set that are ready at this retrace.
     fn retrace(&mut self, now: Time) -> Vec<u8> {
         let ready: Vec<Option<u8>> = self.memories.iter().map(|memory| memory.is_ready(now)).collect();
-        let all_ready = |set: u8| (0..u8::BITS as usize).all(|k| set >> k & 1 == 0 || matches!(ready.get(k), Some(Some(_))));
+        let all_ready =
+            |set: u8| (0..u8::BITS as usize).all(|k| set >> k & 1 == 0 || matches!(ready.get(k), Some(Some(_))));
         let may_swap: Vec<bool> = ready.iter().map(|set| set.is_some_and(all_ready)).collect();
         let memories = self.memories.iter_mut().zip(may_swap);
         memories.filter_map(|(memory, may_swap)| memory.retrace(may_swap, now)).collect()
@@ -150,7 +151,9 @@ impl AddressRecalculationPipeline {
         let message = read(words, self.optics.config.timing.face_texels as u32).map_err(|error| error.to_string())?;
         let boards = &mut self.eyes[surface];
         match message {
-            ArpMessage::Begin { buffer, regions } => boards.memories[memory].begin(buffer, regions).map_err(str::to_owned),
+            ArpMessage::Begin { buffer, regions } => {
+                boards.memories[memory].begin(buffer, regions).map_err(str::to_owned)
+            }
             ArpMessage::Swap { buffer, together } => {
                 boards.memories[memory].ask(buffer, together, now);
                 Ok(())

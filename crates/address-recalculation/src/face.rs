@@ -181,7 +181,8 @@ impl FaceGeometry {
     #[must_use]
     pub fn direction(&self, texel: TexelAddress) -> Vector {
         let inner = f64::from(self.inner());
-        let [u, v] = [texel.column, texel.row].map(|n| (2.0 * (f64::from(n) - f64::from(self.guard)) + 1.0) / inner - 1.0);
+        let [u, v] =
+            [texel.column, texel.row].map(|n| (2.0 * (f64::from(n) - f64::from(self.guard)) + 1.0) / inner - 1.0);
         let forward = texel.face.forward();
         let right = texel.face.right();
         let up = texel.face.up();
@@ -191,7 +192,8 @@ impl FaceGeometry {
     /// Solid angle that a texel covers, in steradians; all that are not of the guard cover 4 pi.
     #[must_use]
     pub fn solid_angle(&self, texel: TexelAddress) -> f64 {
-        let edge = |n: u32, next: f64| 2.0 * (f64::from(n) - f64::from(self.guard) + next) / f64::from(self.inner()) - 1.0;
+        let edge =
+            |n: u32, next: f64| 2.0 * (f64::from(n) - f64::from(self.guard) + next) / f64::from(self.inner()) - 1.0;
         let [left, right] = [0.0, 1.0].map(|next| edge(texel.column, next));
         let [top, bottom] = [0.0, 1.0].map(|next| edge(texel.row, next));
         corner_angle(right, bottom) - corner_angle(left, bottom) - corner_angle(right, top) + corner_angle(left, top)

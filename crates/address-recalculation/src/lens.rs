@@ -109,7 +109,8 @@ impl Lens {
         let mut last = 0;
         for (number, line) in (1..).zip(reader.lines()) {
             last = number;
-            let wrong = |expected: &str, found: String| ArpError::Table { line: number, expected: expected.to_owned(), found };
+            let wrong =
+                |expected: &str, found: String| ArpError::Table { line: number, expected: expected.to_owned(), found };
             let line = line.map_err(|error| wrong("text in UTF-8", error.to_string()))?;
             if line.trim().is_empty() || line.trim_start().starts_with('#') {
                 continue;
@@ -117,7 +118,8 @@ impl Lens {
             if vectors.len() == wanted {
                 return Err(wrong(&format!("nothing after {wanted} vectors"), excerpt(&line)));
             }
-            let vector = vector_of(&line).ok_or_else(|| wrong("three numbers, finite and not all 0", excerpt(&line)))?;
+            let vector =
+                vector_of(&line).ok_or_else(|| wrong("three numbers, finite and not all 0", excerpt(&line)))?;
             vectors.push(vector);
         }
         if vectors.len() < wanted {

@@ -197,7 +197,11 @@ impl<'a> Lookup<'a> {
 
     fn pixels(&self, lanes: &Addresses) -> Each<u32> {
         let four = self.nearest(lanes);
-        if self.addressing.unit.weight_bits == 0 { four[0] } else { mix(&four, lanes, self.addressing.unit.weight_bits as u32) }
+        if self.addressing.unit.weight_bits == 0 {
+            four[0]
+        } else {
+            mix(&four, lanes, self.addressing.unit.weight_bits as u32)
+        }
     }
 
     /// The composed colours of the four texels of each lane; of the first alone where nothing is interpolated.
@@ -212,7 +216,9 @@ impl<'a> Lookup<'a> {
                 let words = square(faces.words(), first, stride, self.addressing.unit.weight_bits);
                 best = [0, 1, 2, 3].map(|k| nearer(best[k], words[k]));
             }
-            let behind = self.background.map_or([0; 4], |faces| square(faces.words(), first, stride, self.addressing.unit.weight_bits));
+            let behind = self
+                .background
+                .map_or([0; 4], |faces| square(faces.words(), first, stride, self.addressing.unit.weight_bits));
             for k in 0..4 {
                 four[k][lane] = shown(best[k], shown(behind[k], self.composition.background));
             }
@@ -257,12 +263,30 @@ fn addresses(unit: &AddressUnit, vectors: &[Each<f64>; 3], matrix: &MatrixWords)
         let [ax, ay, az] = [x.abs(), y.abs(), z.abs()];
         let is_x = ax >= ay && ax >= az;
         let is_y = !is_x && ay >= az;
-        let longest = if is_x { x } else if is_y { y } else { z };
+        let longest = if is_x {
+            x
+        } else if is_y {
+            y
+        } else {
+            z
+        };
         let sign = if longest < 0.0 { -1.0 } else { 1.0 };
-        let axis = if is_x { 0 } else if is_y { 2 } else { 4 };
+        let axis = if is_x {
+            0
+        } else if is_y {
+            2
+        } else {
+            4
+        };
         face[lane] = axis + i32::from(longest < 0.0);
         forward[lane] = longest.abs();
-        right[lane] = if is_x { sign * z } else if is_y { x } else { -sign * x };
+        right[lane] = if is_x {
+            sign * z
+        } else if is_y {
+            x
+        } else {
+            -sign * x
+        };
         up[lane] = if is_y { sign * z } else { y };
     }
     let across = places(unit, &right, &forward);

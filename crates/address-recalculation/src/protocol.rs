@@ -115,10 +115,13 @@ fn announced(map: &[Word], count: u32) -> Result<Vec<u16>, ArpError> {
     if map.len() != count.div_ceil(Word::BITS) as usize {
         return Err(wrong(&format!("a map of {count} regions"), &format!("{} words", map.len())));
     }
-    let bits = (0..map.len() as u32 * Word::BITS).filter(|bit| map[(bit / Word::BITS) as usize] >> (bit % Word::BITS) & 1 == 1);
+    let bits = (0..map.len() as u32 * Word::BITS)
+        .filter(|bit| map[(bit / Word::BITS) as usize] >> (bit % Word::BITS) & 1 == 1);
     let regions: Vec<u16> = bits.map(|bit| bit as u16).collect();
     match regions.last() {
-        Some(last) if u32::from(*last) >= count => Err(wrong(&format!("a map of {count} regions"), &format!("region {last}"))),
+        Some(last) if u32::from(*last) >= count => {
+            Err(wrong(&format!("a map of {count} regions"), &format!("region {last}")))
+        }
         _ => Ok(regions),
     }
 }

@@ -117,7 +117,8 @@ impl ScanTiming {
         let field_lines = self.frame_lines / 2;
         check("visible_lines", self.visible_lines, (1, field_lines)).map_err(path)?;
         check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines)).map_err(path)?;
-        self.clocks().ok_or_else(|| ArpError::Number("arp_scan.pixel_ps: expected a period below 2^63 ps a field".to_owned()))?;
+        self.clocks()
+            .ok_or_else(|| ArpError::Number("arp_scan.pixel_ps: expected a period below 2^63 ps a field".to_owned()))?;
         Ok(())
     }
 

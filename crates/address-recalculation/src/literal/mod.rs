@@ -11,6 +11,7 @@
 mod arithmetic;
 mod banks;
 mod output;
+mod registers;
 
 pub use banks::BankedMemory;
 
@@ -21,7 +22,7 @@ use crate::face::CubeFace;
 use crate::lens::LensTable;
 use crate::orientation::MatrixWords;
 use arithmetic::{Divider, multiply, multiply_unsigned, signed};
-use output::Candidate;
+use registers::Registers;
 use std::collections::VecDeque;
 
 /// What a stage does to the registers of the pixel in it.
@@ -37,41 +38,6 @@ enum Stage {
     Memory,
     Compare,
     Interpolate,
-}
-
-/// The registers that travel with a pixel.
-#[derive(Clone, Debug)]
-struct Registers {
-    pixel: [u32; 2],
-    matrix: MatrixWords,
-    vector: [i64; 3],
-    products: [[i64; 3]; 3],
-    sums: [i64; 3],
-    face: CubeFace,
-    dividers: [Divider; 2],
-    footprint: Option<Footprint>,
-    candidates: Vec<Candidate>,
-    behind: [u32; 4],
-    colour: u32,
-}
-
-impl Registers {
-    const fn of(pixel: [u32; 2], matrix: MatrixWords) -> Self {
-        let none = Divider::new(0, 1);
-        Self {
-            pixel,
-            matrix,
-            vector: [0; 3],
-            products: [[0; 3]; 3],
-            sums: [0; 3],
-            face: CubeFace::PosX,
-            dividers: [none; 2],
-            footprint: None,
-            candidates: Vec::new(),
-            behind: [0; 4],
-            colour: 0,
-        }
-    }
 }
 
 /// A pixel that leaves the last stage.

@@ -1,17 +1,10 @@
 //! The stages behind the memories: comparators and interpolation.
 
-use super::Registers;
 use super::arithmetic::multiply_unsigned;
 use super::banks::BankedMemory;
+use super::registers::{Candidate, Registers};
 use crate::composition::{Composition, CompositionOrder};
-
-/// Four texels of a memory on their way through the comparators; all alike once they are interpolated.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Candidate {
-    depths: [u32; 4],
-    /// In 8 bits a channel; of empty texels what is behind them.
-    colours: [u32; 4],
-}
+use crate::face::TexelAddress;
 
 /// Reads the four banks of all memories.
 pub(super) fn read(
@@ -26,10 +19,11 @@ pub(super) fn read(
         let read = candidate(memory, &footprint.texels, [constant; 4]);
         registers.behind = read.colours;
     }
-    registers.candidates = memories.iter().map(|memory| candidate(memory, &footprint.texels, registers.behind)).collect();
+    registers.candidates =
+        memories.iter().map(|memory| candidate(memory, &footprint.texels, registers.behind)).collect();
 }
 
-fn candidate(memory: &BankedMemory, texels: &[Option<crate::TexelAddress>; 4], behind: [u32; 4]) -> Candidate {
+fn candidate(memory: &BankedMemory, texels: &[Option<TexelAddress>; 4], behind: [u32; 4]) -> Candidate {
     let mut read = Candidate { depths: [memory.farthest(); 4], colours: behind };
     for (k, texel) in texels.iter().enumerate() {
         let Some(cell) = texel.map(|texel| memory.read(texel)) else { continue };
@@ -81,7 +75,11 @@ pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[
     match (composition.order, registers.candidates.first()) {
         (CompositionOrder::DepthFirst, _) | (_, None) => registers.colour,
         (CompositionOrder::InterpolationFirst, Some(nearest)) => {
-            if nearest.depths[0] == farthest { registers.behind[0] } else { nearest.colours[0] }
+            if nearest.depths[0] == farthest {
+                registers.behind[0]
+            } else {
+                nearest.colours[0]
+            }
         }
     }
 }
