@@ -88,10 +88,11 @@ impl AddressUnit {
     }
 
     /// Places between the middles of texels, in parts of 2^quotient_bits: guard + quotient x inner, less half a texel for
-    /// four of them.
+    /// four of them. A quotient rounded down stands for the middle of its interval, so half of its last bit is added.
     fn place(&self, quotient: i64) -> i64 {
         let half = if self.weight_bits == 0 { 0 } else { 1 << (self.quotient_bits - 1) };
-        (i64::from(self.geometry.guard) << self.quotient_bits) + quotient * i64::from(self.geometry.inner()) - half
+        let inner = i64::from(self.geometry.inner());
+        (i64::from(self.geometry.guard) << self.quotient_bits) + quotient * inner + inner / 2 - half
     }
 
     /// The fraction of a place in `weight_bits` bits, halves rounded up, up to one.

@@ -23,7 +23,7 @@
 //! 3. **Turn.** Nine products and six sums, kept in full.
 //! 4. **Face.** The longest component, on ties x before y before z ([`CubeFace`]).
 //! 5. **Divide.** (1 + u) / 2 and (1 + v) / 2, a bit a stage, rounded down, all ones for 1.
-//! 6. **Address.** The place between four texels; the upper bits are the texel, the next ones the fractions, rounded. The four
+//! 6. **Address.** Quotient times face, half of the quotient's last bit added, is the place between four texels; the upper bits are the texel, the next ones the fractions, rounded. The four
 //!    lie in four banks, so that one access reads them all. Without guard texels one beyond an edge is its neighbour's, and the one
 //!    beyond a corner the mean of the other three ([`Footprint`]).
 //! 7. **Compose.** Of each texel the nearest of all memories, the lowest memory on ties; what is farthest is empty and shows the

@@ -301,8 +301,8 @@ fn places(unit: &AddressUnit, side: &Each<f64>, forward: &Each<f64>) -> Each<i32
     let scale = f64::from(1_u32 << q);
     let largest = (1_i32 << q) - 1;
     let half = if unit.weight_bits == 0 { 0 } else { 1 << (q - 1) };
-    let first = ((unit.geometry.guard as i32) << q) - half;
     let inner = unit.geometry.inner() as i32;
+    let first = ((unit.geometry.guard as i32) << q) + inner / 2 - half;
     let mut out = [0; LANES];
     for lane in 0..LANES {
         let quotient = (forward[lane] + side[lane]) * scale / (2.0 * forward[lane]);

@@ -127,7 +127,7 @@ impl Bench {
 
 #[test]
 fn an_update_is_shown_from_the_next_retrace_on() {
-    let mut bench = Bench::new(&CONFIG);
+    let mut bench = Bench::new(&ArpConfig { fields_kept: 4, ..CONFIG });
     bench.update(0, 1, &flat(0x11_22_33, 500));
     (1..4).for_each(|field| bench.tick(field));
     assert_eq!(

@@ -190,7 +190,7 @@ impl LiteralPipeline {
         let q = self.unit.quotient_bits;
         let inner = u64::from(self.unit.geometry.inner());
         let half = if self.unit.weight_bits == 0 { 0 } else { 1_i64 << (q - 1) };
-        let first = (i64::from(self.unit.geometry.guard) << q) - half;
+        let first = (i64::from(self.unit.geometry.guard) << q) + (inner / 2) as i64 - half;
         let places = registers.dividers.map(|divider| first + multiply_unsigned(divider.quotient, inner) as i64);
         let whole = places.map(|place| place >> q);
         if self.unit.weight_bits == 0 {

@@ -6,19 +6,19 @@ use glam::DQuat;
 use pxpl5_sim::SplitMix64;
 
 /// The orientation of a quaternion.
-pub fn turned(quaternion: DQuat) -> Orientation {
+pub(crate) fn turned(quaternion: DQuat) -> Orientation {
     Orientation::from_quaternion(quaternion.to_array()).expect("a rotation")
 }
 
 /// All texels of faces of a size, guard included.
-pub fn texels(size: u32) -> impl Iterator<Item = TexelAddress> {
+pub(crate) fn texels(size: u32) -> impl Iterator<Item = TexelAddress> {
     CubeFace::ALL.into_iter().flat_map(move |face| {
         (0..size).flat_map(move |row| (0..size).map(move |column| TexelAddress { face, column, row }))
     })
 }
 
 /// Faces of any colours; a third of the texels is empty, many depths are alike.
-pub fn noise(config: &ArpConfig, random: &mut SplitMix64) -> FaceSet {
+pub(crate) fn noise(config: &ArpConfig, random: &mut SplitMix64) -> FaceSet {
     let mut faces = FaceSet::new(config.geometry().texels, config.format());
     for texel in texels(config.geometry().texels) {
         let bits = random.bits();
@@ -33,7 +33,7 @@ pub fn noise(config: &ArpConfig, random: &mut SplitMix64) -> FaceSet {
 }
 
 /// Faces that show a colour in each direction, at one depth.
-pub fn painted(config: &ArpConfig, depth: u32, colour: impl Fn(Vector) -> u32) -> FaceSet {
+pub(crate) fn painted(config: &ArpConfig, depth: u32, colour: impl Fn(Vector) -> u32) -> FaceSet {
     let geometry = config.geometry();
     let mut faces = FaceSet::new(geometry.texels, config.format());
     for texel in texels(geometry.texels) {
