@@ -6,7 +6,7 @@ use crate::timing::ArpTiming;
 /// Where a direction meets a face: the lengths of its components along the face's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Meeting {
-    /// The face.
+    /// The face that the direction meets.
     pub(crate) face: CubeFace,
     /// Along its axis, above zero.
     pub(crate) forward: i64,

@@ -23,7 +23,7 @@ impl CompositionOrder {
 /// How memories become pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Composition {
-    /// What comes first.
+    /// Whether depths or weights come first.
     pub order: CompositionOrder,
     /// What empty texels show where there is no background memory: 0x00RRGGBB.
     pub background: u32,

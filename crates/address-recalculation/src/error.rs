@@ -24,7 +24,7 @@ pub enum ArpError {
         line: usize,
         /// What should stand there.
         expected: String,
-        /// What stands there.
+        /// What stands there instead.
         found: String,
     },
     /// A matrix that turns nothing: not finite, stretched, or a reflection.

@@ -10,15 +10,15 @@ pub type Vector = [f64; 3];
 pub enum CubeFace {
     /// To the right of a head that is not turned.
     PosX,
-    /// To its left.
+    /// To the left of that head.
     NegX,
-    /// Above it.
+    /// Over the head's crown.
     PosY,
-    /// Below it.
+    /// Under the head's feet.
     NegY,
-    /// Behind it.
+    /// Behind the head's back.
     PosZ,
-    /// Before it.
+    /// Straight ahead of the head.
     NegZ,
 }
 
@@ -100,7 +100,7 @@ fn along(vector: Vector, axis: [i64; 3]) -> f64 {
 /// Where a texel lies in the six faces of a buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TexelAddress {
-    /// The face.
+    /// The face that it lies on.
     pub face: CubeFace,
     /// Column from the left edge of the face, guard texels included.
     pub column: u32,

@@ -41,7 +41,7 @@ pub struct Picture {
 
 impl Picture {
     /// A pixel's middle from the middle of the picture, in pixels to the right and down.
-    fn from_middle(&self, x: u32, y: u32) -> [f64; 2] {
+    fn offset(&self, x: u32, y: u32) -> [f64; 2] {
         [f64::from(x) + 0.5 - f64::from(self.width) / 2.0, f64::from(y) + 0.5 - f64::from(self.height) / 2.0]
     }
 
@@ -52,7 +52,7 @@ impl Picture {
 
     /// Square of the distance of a pixel from the middle, 1 at the edges of the middle line.
     fn rho_squared(&self, x: u32, y: u32) -> f64 {
-        let [right, down] = self.from_middle(x, y).map(|p| p / (f64::from(self.width) / 2.0));
+        let [right, down] = self.offset(x, y).map(|p| p / (f64::from(self.width) / 2.0));
         right * right + down * down
     }
 }
@@ -80,7 +80,7 @@ impl Lens {
     /// Where a pixel looks, in head axes (x to the right, y up, the head looks along -z); not of unit length.
     #[must_use]
     pub fn view(&self, picture: &Picture, x: u32, y: u32) -> Vector {
-        let [right, down] = picture.from_middle(x, y);
+        let [right, down] = picture.offset(x, y);
         let focal = f64::from(picture.width) / 2.0 / picture.tangent();
         match self {
             Self::Flat => [right / focal, -down / focal, -1.0],

@@ -1,12 +1,12 @@
 //! Address recalculation pipeline: a display that decides at scan-out which texel around the head a pixel is.
 //!
 //! ```text
-//!                      latched orientation
+//!                     latched orientation
 //!                              |
 //!  beam -> [ lens table ] -> [ 3 x 3 ] -> [ face ] -> [ divide x 2 ] -> [ address ] --+--> memory 0 --+
-//!                                                                                     +--> memory 1 --+-> [ nearest ] -> [ mix ] -> light
-//!  ring --map, regions with depth, swap request--> port k of memory k ----------------+--> ...      --+        ^
-//!  host --nine words--> [ orientation register ]                                      +--> background ---------+
+//!                                                                                     +--> memory 1 --+--> [ nearest ]
+//!  ring --map, regions with depth, swap request--> port k of memory k                 +--> ...      --+        |
+//!  host --nine words--> [ orientation register ]                                      +--> background --> [ interpolate ] -> light
 //! ```
 //!
 //! The renderer draws all that surrounds the eye onto six faces of a cube. When a pixel is wanted, its viewing vector is turned by
@@ -23,9 +23,9 @@
 //! 3. **Turn.** Nine products and six sums, kept in full.
 //! 4. **Face.** The longest component, on ties x before y before z ([`CubeFace`]).
 //! 5. **Divide.** (1 + u) / 2 and (1 + v) / 2, a bit a stage, rounded down, all ones for 1.
-//! 6. **Address.** Quotient times face, half of the quotient's last bit added, is the place between four texels; the upper bits are the texel, the next ones the fractions, rounded. The four
-//!    lie in four banks, so that one access reads them all. Without guard texels one beyond an edge is its neighbour's, and the one
-//!    beyond a corner the mean of the other three ([`Footprint`]).
+//! 6. **Address.** Quotient times face, half of the quotient's last bit added, is the place between four texels: the upper bits are
+//!    the texel, the next ones the fractions, rounded. The four lie in four banks, so that one access reads them all. Without guard
+//!    texels one beyond an edge is its neighbour's, and the one beyond a corner the mean of the other three ([`Footprint`]).
 //! 7. **Compose.** Of each texel the nearest of all memories, the lowest memory on ties; what is farthest is empty and shows the
 //!    background memory, or the background colour ([`Composition`]).
 //! 8. **Interpolate.** Weights are products of the two fractions; halves are rounded up.

@@ -209,8 +209,7 @@ impl<'a> Lookup<'a> {
     fn nearest(&self, lanes: &Addresses) -> [Each<u32>; 4] {
         let stride = self.addressing.unit.geometry.texels as usize;
         let mut four = [[0; LANES]; 4];
-        for lane in 0..LANES {
-            let first = lanes.index[lane] as usize;
+        for (lane, first) in lanes.index.iter().map(|index| *index as usize).enumerate() {
             let mut best = [0; 4];
             for faces in &self.memories {
                 let words = square(faces.words(), first, stride, self.addressing.unit.weight_bits);

@@ -15,7 +15,7 @@ pub enum Latch {
     Field,
     /// The first visible pixel of each line.
     Line,
-    /// Each pixel.
+    /// Each pixel by itself.
     Pixel,
 }
 

@@ -187,8 +187,7 @@ fn any_rotation(random: &mut SplitMix64) -> DQuat {
 /// The largest distance in texels between the place by words and the place in real numbers, over 40,000 pairs of a rotation
 /// and a pixel; where both meet the same face.
 fn worst_address(bits: u64) -> f64 {
-    let timing =
-        ArpTiming { face_texels: 512, vector_bits: bits, matrix_bits: bits, quotient_bits: 20, ..ArpTiming::PAPERS };
+    let timing = ArpTiming { face_texels: 512, vector_bits: bits, matrix_bits: bits, ..ArpTiming::PAPERS };
     let config = ArpConfig { timing, ..ArpConfig::IDEAL };
     let table = config.table().expect("valid");
     let mut random = SplitMix64::new(15);

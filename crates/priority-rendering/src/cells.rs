@@ -10,9 +10,9 @@ use std::collections::BTreeSet;
 /// A square of the floor, counted along x and z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Cell {
-    /// Along x.
+    /// Whole sides along x, rounded down.
     pub x: i64,
-    /// Along z.
+    /// Whole sides along z, rounded down.
     pub z: i64,
 }
 

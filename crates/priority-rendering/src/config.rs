@@ -16,7 +16,7 @@ parameters::parameter_table! {
         falloff_m: f64 = 5.0, "m", Assumed, 0.1..=100.0 in 1e-3..=1e6, "not printed: a cell's side";
         /// Frames a second: the rate of the fastest memory.
         frame_hz: f64 = 60.0, "Hz", Published, 60.0..=60.0 in 1.0..=1000.0, "CPR05 4.2";
-        /// Display memories.
+        /// Display memories of different rates.
         memories: 4, "memories", Published, 1..=8, "CPR05 tables 1 and 2";
         /// The fastest turn of a head, for faces that are out of sight.
         fastest_turn_deg_per_s: f64 = 370.0, "deg/s", Published, 200.0..=600.0 in 1.0..=100000.0, "JITP, LIST83: the peak turn of a head";

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The angle by which an image may be wrong, and how it is reckoned with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Threshold {
-    /// The angle, radians.
+    /// How much may be wrong, radians.
     pub angle: f64,
     /// How far the eye may go before a point is off by that angle.
     pub translation: Translation,
@@ -68,7 +68,7 @@ pub struct SeenObject {
 pub struct ValidityPeriod {
     /// The object's place, seen from a moving eye.
     pub translation_s: f64,
-    /// Its size.
+    /// Its size as it comes nearer.
     pub size_s: f64,
     /// Its animation, as the user states it.
     pub animation_s: f64,

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub enum Falloff {
     /// No vertex is moved: cuts tear.
     None,
-    /// Evenly to nothing.
+    /// It falls evenly to nothing.
     #[default]
     Linear,
     /// With a smooth beginning and end.

@@ -43,9 +43,9 @@ enum Stage {
 /// A pixel that leaves the last stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LitPixel {
-    /// Column and line.
+    /// Column and line in the frame.
     pub pixel: [u32; 2],
-    /// 0x00RRGGBB.
+    /// What it shows: 0x00RRGGBB.
     pub colour: u32,
     /// The texels that it was made of.
     pub footprint: Footprint,
