@@ -239,9 +239,12 @@ fn memories_are_composed_by_depth_over_the_ring() {
     }
 }
 
+/// Sends a bench something.
+type Send = fn(&mut Bench);
+
 #[test]
 fn what_cannot_be_used_is_a_counted_fault_without_effect() {
-    let cases: [(&str, fn(&mut Bench)); 8] = [
+    let cases: [(&str, Send); 8] = [
         ("shown", |bench| bench.begin(0, 0, &[1])),
         ("shown", |bench| bench.parts(0, 0, 0, &flat(1, 1), 0..1)),
         ("announced", |bench| bench.parts(0, 1, 0, &flat(1, 1), 0..1)),

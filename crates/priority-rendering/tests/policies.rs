@@ -143,9 +143,9 @@ fn a_warped_border_is_closed_in_every_frame() {
             assert_eq!(dealing.to_slower(vertex, memory), Some(0.0));
             vertices[memory] = vec![warp.moved(vertex, Some(0.0)) - own, vertex];
         }
-        for memory in 0..3 {
+        for (memory, drawn) in vertices.iter().enumerate().take(3) {
             let slower = cells.drawn_from(memory + 1).expect("drawn");
-            let [shown, vertex] = vertices[memory][..] else { continue };
+            let [shown, vertex] = drawn[..] else { continue };
             worst = worst.max((shown - (vertex - slower)).length());
         }
     }
@@ -182,13 +182,13 @@ proptest! {
         let mut before = [None; 5];
         for (frame, periods) in (0_u64..).zip(periods) {
             let update = policy.frame(frame, &periods);
-            for object in 0..5 {
+            for (object, before) in before.iter_mut().enumerate() {
                 let now = policy.memory(object).expect("placed");
-                if let Some(was) = before[object].filter(|was| *was != now) {
+                if let Some(was) = before.filter(|was| *was != now) {
                     let pair: [usize; 2] = [was, now];
                     prop_assert!(pair.iter().all(|k| update.due[*k] && update.together[*k] && frame.is_multiple_of(1 << k)));
                 }
-                before[object] = Some(now);
+                *before = Some(now);
             }
         }
     }
