@@ -40,7 +40,7 @@ fn by_registers(
     let mut pixels = vec![0; 31 * 14];
     let mut stats = [0; 2];
     for clock in 0..pixels.len() + pipeline.stages() - 1 {
-        let entering = (clock < pixels.len()).then(|| ([clock as u32 % 31, clock as u32 / 31], matrix));
+        let entering = (clock < pixels.len()).then_some(([clock as u32 % 31, clock as u32 / 31], matrix));
         let lit = pipeline.clock(entering, &banks, behind.as_ref());
         assert_eq!(lit.is_some(), clock + 1 >= pipeline.stages(), "clock {clock}");
         if let Some(lit) = lit {
