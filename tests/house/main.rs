@@ -22,7 +22,11 @@ const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ("world", &["tracking", "pxpl5-scene"], &["ground", "world"]),
     ("volume", &["spatialgl", "perspecta"], &["ground", "world", "volume"]),
     ("geometry", &["pxpl5-geometry", "pphigs"], &["ground", "boards", "geometry"]),
-    ("firmware", &["rendering-control", "slats", "jitp", "priority-rendering", "pxpl5-oracle"], &["ground", "boards", "geometry"]),
+    (
+        "firmware",
+        &["rendering-control", "slats", "jitp", "priority-rendering", "pxpl5-oracle"],
+        &["ground", "boards", "geometry"],
+    ),
     ("machine", &["pxpl5-machine"], &["ground", "boards"]),
     ("run", &["pxpl5-run"], &["ground", "boards", "geometry", "firmware", "world", "machine"]),
     (

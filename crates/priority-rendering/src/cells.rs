@@ -20,7 +20,7 @@ impl Cell {
     /// The cell of a place in the world, with cells of this side, m. Borders belong to the cell on their positive side.
     #[must_use]
     pub fn of(x: f64, z: f64, side_m: f64) -> Self {
-        Self { x: (x / side_m).floor() as i64, z: (z / side_m).floor() as i64 }
+        Self { x: column(x, side_m), z: column(z, side_m) }
     }
 
     /// Rings between two cells: 0 for the same, 1 for its eight neighbours.
@@ -28,6 +28,19 @@ impl Cell {
     pub fn ring(self, other: Self) -> u64 {
         self.x.abs_diff(other.x).max(self.z.abs_diff(other.z))
     }
+}
+
+/// Where a column of cells begins, m.
+pub(crate) fn border(number: i64, side_m: f64) -> f64 {
+    number as f64 * side_m
+}
+
+/// The column of cells of a coordinate: the last one that begins at or before it, whatever a division would round to.
+pub(crate) fn column(coordinate: f64, side_m: f64) -> i64 {
+    let near = (coordinate / side_m).floor() as i64;
+    let after = i64::from(border(near.saturating_add(1), side_m) <= coordinate);
+    let before = i64::from(border(near, side_m) > coordinate);
+    near.saturating_add(after - before)
 }
 
 /// How cells are dealt around the one that counts as the user's.

@@ -19,6 +19,8 @@
 //!   rings. A memory is due when the eye has gone farther than its nearest cell allows. When the eye has left the home cell and the
 //!   slowest memory is due, cells are dealt anew, and the memories whose cells are others are shown together. With warping an update
 //!   of a memory makes all faster ones due (cascade).
+//! - **Segmentation** ([`Segmentation`]): meshes are cut at the borders of cells, each line once for all who share it, so that parts
+//!   meet in the same vertices bit for bit. A segment is what a mesh has in a cell.
 //! - **Warping** ([`RegionWarp`]): a vertex on the border to the slower memory is moved by the difference of the places that both
 //!   were drawn from, so that it has the same direction and depth in both.
 //!
@@ -26,8 +28,7 @@
 //!
 //! # Not here
 //!
-//! Faces and their source, the cutting of meshes at cells' borders, and what happens to updates that come too late: those belong to
-//! the pipeline that draws.
+//! Faces and their source, and what happens to updates that come too late: those belong to the pipeline that draws.
 //!
 //! # Sources
 //!
@@ -39,6 +40,7 @@ mod cells;
 mod config;
 mod error;
 mod objects;
+mod segment;
 mod sight;
 mod update;
 mod validity;
@@ -49,6 +51,7 @@ pub use cells::{Cell, Cells, Dealing};
 pub use config::PriorityTiming;
 pub use error::PriorityError;
 pub use objects::Objects;
+pub use segment::{CutVertex, Segmentation};
 pub use sight::{angle_to_face, mean_faces_touched, until_in_sight_s};
 pub use update::Update;
 pub use validity::{Distance, SeenObject, SizeRule, Threshold, Translation, ValidityPeriod, level};
