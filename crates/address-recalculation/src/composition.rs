@@ -96,7 +96,8 @@ impl Composition {
 /// The nearer of two texels' words, the first on ties.
 #[inline(always)]
 pub(crate) const fn nearer(first: u64, second: u64) -> u64 {
-    if second > first | 0xFFFF_FFFF { second } else { first }
+    // Both are below 2^56: signed comparisons, which vector units have.
+    if second as i64 > (first | 0xFFFF_FFFF) as i64 { second } else { first }
 }
 
 /// A texel's colour, or what is behind it where it is empty.

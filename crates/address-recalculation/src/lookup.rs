@@ -110,6 +110,8 @@ pub struct Lookup<'a> {
     addressing: Addressing<'a>,
     composition: Composition,
     memories: Vec<&'a FaceSet>,
+    /// Those memories' words.
+    words: Vec<&'a [u64]>,
     background: Option<&'a FaceSet>,
 }
 
@@ -127,7 +129,9 @@ impl<'a> Lookup<'a> {
     ) -> Self {
         let texels = config.timing.face_texels as u32;
         assert!(memories.iter().chain(&background).all(|faces| faces.texels() == texels), "faces of {texels} texels");
-        Self { addressing: Addressing::new(config, table), composition: config.composition(), memories, background }
+        let words = memories.iter().map(|faces| faces.words()).collect();
+        let addressing = Addressing::new(config, table);
+        Self { addressing, composition: config.composition(), memories, words, background }
     }
 
     /// Looks up pixels from one on, in the order of lines, for one orientation: colours as 0x00RRGGBB.
@@ -205,40 +209,56 @@ impl<'a> Lookup<'a> {
     }
 
     /// The composed colours of the four texels of each lane; of the first alone where nothing is interpolated.
-    #[inline]
     fn nearest(&self, lanes: &Addresses) -> [Each<u32>; 4] {
-        let stride = self.addressing.unit.geometry.texels as usize;
-        let mut four = [[0; LANES]; 4];
-        for (lane, first) in lanes.index.iter().map(|index| *index as usize).enumerate() {
-            let mut best = [0; 4];
-            for faces in &self.memories {
-                let words = square(faces.words(), first, stride, self.addressing.unit.weight_bits);
-                best = [0, 1, 2, 3].map(|k| nearer(best[k], words[k]));
-            }
-            let behind = self
-                .background
-                .map_or([0; 4], |faces| square(faces.words(), first, stride, self.addressing.unit.weight_bits));
-            for k in 0..4 {
-                four[k][lane] = shown(best[k], shown(behind[k], self.composition.background));
-            }
+        let reach =
+            if self.addressing.unit.weight_bits == 0 { 0 } else { self.addressing.unit.geometry.texels as usize };
+        let mut best = [[0; LANES]; 4];
+        for words in &self.words {
+            compare(&mut best, words, &lanes.index, reach);
         }
-        four
+        let mut behind = [[0; LANES]; 4];
+        if let Some(faces) = self.background {
+            compare(&mut behind, faces.words(), &lanes.index, reach);
+        }
+        colours(&best, &behind, self.composition.background)
     }
+}
+
+/// Puts the nearer texels of a memory in the place of what other memories have; `reach` texels down lies the next row, or none
+/// where nothing is interpolated.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn compare(best: &mut [Each<u64>; 4], words: &[u64], index: &Each<u32>, reach: usize) {
+    let right = usize::from(reach > 0);
+    let mut read = [[0; LANES]; 4];
+    for (lane, first) in index.iter().enumerate() {
+        let first = *first as usize;
+        let square = &words[first..=first + reach + right];
+        read[0][lane] = square[0];
+        read[1][lane] = square[right];
+        read[2][lane] = square[reach];
+        read[3][lane] = square[reach + right];
+    }
+    for (best, read) in best.iter_mut().zip(&read) {
+        for (best, read) in best.iter_mut().zip(read) {
+            *best = nearer(*best, *read);
+        }
+    }
+}
+
+/// The colours of four texels of each lane, or what is behind those that are empty.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn colours(best: &[Each<u64>; 4], behind: &[Each<u64>; 4], background: u32) -> [Each<u32>; 4] {
+    let mut four = [[0; LANES]; 4];
+    for k in 0..4 {
+        for lane in 0..LANES {
+            four[k][lane] = shown(best[k][lane], shown(behind[k][lane], background));
+        }
+    }
+    four
 }
 
 fn word(faces: &FaceSet, texel: TexelAddress) -> u64 {
     faces.words()[texel.index(faces.texels())]
-}
-
-/// Four neighbouring texels, or one four times where nothing is interpolated.
-#[inline(always)]
-fn square(words: &[u64], first: usize, stride: usize, weight_bits: u64) -> [u64; 4] {
-    if weight_bits == 0 {
-        return [words[first]; 4];
-    }
-    let top = &words[first..first + 2];
-    let bottom = &words[first + stride..first + stride + 2];
-    [top[0], top[1], bottom[0], bottom[1]]
 }
 
 /// Where the footprints of eight pixels begin, and their fractions.
