@@ -67,7 +67,11 @@ impl<'a> Addressing<'a> {
         if !self.is_exact {
             return None;
         }
-        let filled = vectors.map(|axis| std::array::from_fn(|lane| f64::from(axis[lane.min(axis.len() - 1)])));
+        let mut filled = [[0; LANES]; 3];
+        for (lanes, axis) in filled.iter_mut().zip(vectors) {
+            lanes.fill(axis[0]);
+            lanes[..axis.len()].copy_from_slice(axis);
+        }
         let lanes = addresses(&self.unit, &filled, matrix);
         lanes.is_inside.then_some(lanes)
     }
@@ -271,14 +275,17 @@ struct Addresses {
 }
 
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn addresses(unit: &AddressUnit, vectors: &[Each<f64>; 3], matrix: &MatrixWords) -> Addresses {
+fn addresses(unit: &AddressUnit, vectors: &[Each<i32>; 3], matrix: &MatrixWords) -> Addresses {
     let mut face = [0; LANES];
     let mut forward = [0.0; LANES];
     let mut right = [0.0; LANES];
     let mut up = [0.0; LANES];
     let m = matrix.0.map(|row| row.map(f64::from));
     for lane in 0..LANES {
-        let [x, y, z] = m.map(|row| row[0] * vectors[0][lane] + row[1] * vectors[1][lane] + row[2] * vectors[2][lane]);
+        let v = [f64::from(vectors[0][lane]), f64::from(vectors[1][lane]), f64::from(vectors[2][lane])];
+        let x = m[0][0] * v[0] + m[0][1] * v[1] + m[0][2] * v[2];
+        let y = m[1][0] * v[0] + m[1][1] * v[1] + m[1][2] * v[2];
+        let z = m[2][0] * v[0] + m[2][1] * v[1] + m[2][2] * v[2];
         let [ax, ay, az] = [x.abs(), y.abs(), z.abs()];
         let is_x = ax >= ay && ax >= az;
         let is_y = !is_x && ay >= az;
