@@ -14,11 +14,19 @@ use std::collections::{BTreeMap, BTreeSet};
 /// where that is said.
 const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ("ground", &["parameters", "pxpl5-sim", "pxpl5-wire", "i860", "pxpl5-display"], &["ground"]),
-    ("boards", &["pxpl5-ring", "pxpl5-gp", "pxpl5-renderer", "pxpl5-framebuffer", "pxpl5-hires"], &["ground"]),
+    (
+        "boards",
+        &["pxpl5-ring", "pxpl5-gp", "pxpl5-renderer", "pxpl5-framebuffer", "pxpl5-hires", "address-recalculation"],
+        &["ground"],
+    ),
     ("world", &["tracking", "pxpl5-scene"], &["ground", "world"]),
     ("volume", &["spatialgl", "perspecta"], &["ground", "world", "volume"]),
     ("geometry", &["pxpl5-geometry", "pphigs"], &["ground", "boards", "geometry"]),
-    ("firmware", &["rendering-control", "slats", "jitp", "pxpl5-oracle"], &["ground", "boards", "geometry"]),
+    (
+        "firmware",
+        &["rendering-control", "slats", "jitp", "priority-rendering", "pxpl5-oracle"],
+        &["ground", "boards", "geometry"],
+    ),
     ("machine", &["pxpl5-machine"], &["ground", "boards"]),
     ("run", &["pxpl5-run"], &["ground", "boards", "geometry", "firmware", "world", "machine"]),
     (

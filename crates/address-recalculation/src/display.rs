@@ -1,0 +1,328 @@
+//! The display on the ring: a port for each memory, an orientation register, a picture for each eye.
+
+use crate::config::ArpConfig;
+use crate::error::ArpError;
+use crate::face::Vector;
+use crate::field::{Field, Optics, ShownBuffers};
+use crate::lookup::LookStats;
+use crate::memory::{DisplayMemory, MemoryKind, PixelReceipt};
+use crate::orientation::{MatrixWords, OrientationLatch};
+use crate::protocol::{ArpMessage, read};
+use image::RgbImage;
+use parameters::ParameterTable;
+use pxpl5_display::{
+    Counter, Display, DisplayConfig, DisplayContext, DisplayError, DisplayEvent, DisplayOutput, Surface,
+};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{Body, Eye, NodeId, PeriodNumber, RegionPixels, Word};
+use std::collections::VecDeque;
+
+/// The memories and the orientation of one eye.
+#[derive(Debug)]
+struct EyeBoards {
+    memories: Vec<DisplayMemory>,
+    latch: OrientationLatch,
+    /// What was shown in past fields, the newest last.
+    scanned: VecDeque<(PeriodNumber, ShownBuffers)>,
+}
+
+impl EyeBoards {
+    fn shown(&self) -> ShownBuffers {
+        ShownBuffers { memories: self.memories.iter().map(|memory| (memory.kind(), memory.shown())).collect() }
+    }
+
+    /// Swaps what can be swapped: alone, or all memories of a set that are ready at this retrace.
+    fn retrace(&mut self, now: Time) -> Vec<u8> {
+        let ready: Vec<Option<u8>> = self.memories.iter().map(|memory| memory.is_ready(now)).collect();
+        let all_ready =
+            |set: u8| (0..u8::BITS as usize).all(|k| set >> k & 1 == 0 || matches!(ready.get(k), Some(Some(_))));
+        let may_swap: Vec<bool> = ready.iter().map(|set| set.is_some_and(all_ready)).collect();
+        let memories = self.memories.iter_mut().zip(may_swap);
+        memories.filter_map(|(memory, may_swap)| memory.retrace(may_swap, now)).collect()
+    }
+}
+
+/// An address recalculation pipeline and its display memories, for one eye or two.
+#[derive(Debug)]
+pub struct AddressRecalculationPipeline {
+    optics: Optics,
+    nodes: Vec<NodeId>,
+    surfaces: Vec<Surface>,
+    eyes: Vec<EyeBoards>,
+    fields: u64,
+    faults: u64,
+    first_fault: Option<String>,
+}
+
+impl AddressRecalculationPipeline {
+    /// What it is built of.
+    #[must_use]
+    pub const fn config(&self) -> &ArpConfig {
+        &self.optics.config
+    }
+
+    /// The display memories of an eye, the background memory last; none of an eye that it does not have.
+    #[must_use]
+    pub fn memories(&self, eye: Eye) -> &[DisplayMemory] {
+        self.eyes.get(eye.index()).map_or(&[], |boards| &boards.memories)
+    }
+
+    /// Loads an orientation by the host's own port: the rows of the matrix that turns head axes into world axes.
+    ///
+    /// # Errors
+    ///
+    /// [`ArpError::Orientation`] for what is no rotation, which is counted; the last good one stays.
+    pub fn load_orientation(&mut self, eye: Eye, rows: [Vector; 3], now: Time) -> Result<(), ArpError> {
+        self.eyes.get_mut(eye.index()).map_or(Ok(()), |boards| boards.latch.load(rows, now))
+    }
+
+    /// The matrix that a pixel of a remembered field was looked up with.
+    #[must_use]
+    pub fn latched(&self, eye: Eye, x: u32, y: u32, field: PeriodNumber) -> Option<MatrixWords> {
+        self.field(eye.index(), field)?.matrix(x, y)
+    }
+
+    /// What looking a remembered field up costs besides one access a pixel and memory.
+    #[must_use]
+    pub fn look_stats(&self, eye: Eye, field: PeriodNumber) -> Option<LookStats> {
+        let mut frame = self.empty_frame();
+        Some(self.field(eye.index(), field)?.draw(&mut frame))
+    }
+
+    fn field(&self, eye: usize, number: PeriodNumber) -> Option<Field<'_>> {
+        let boards = self.eyes.get(eye)?;
+        let (_, shown) = boards.scanned.iter().find(|(scanned, _)| *scanned == number)?;
+        Some(Field { optics: &self.optics, latch: &boards.latch, shown, number })
+    }
+
+    fn empty_frame(&self) -> RgbImage {
+        RgbImage::new(self.optics.scan.width(), self.optics.scan.height())
+    }
+
+    fn retrace(&mut self, tick: PeriodNumber, context: &mut DisplayContext) {
+        let now = context.now();
+        let at = now + Span::from_ns(self.optics.config.timing.word_ns);
+        let kept = self.optics.config.fields_kept;
+        let oldest = self.optics.scan.retrace(tick.before(kept).unwrap_or(PeriodNumber::FIRST));
+        self.fields += 1;
+        for (surface, boards) in self.eyes.iter_mut().enumerate() {
+            if let Some(over) = tick.before(1) {
+                boards.scanned.push_back((over, boards.shown()));
+            }
+            while boards.scanned.len() as u64 > kept {
+                boards.scanned.pop_front();
+            }
+            boards.latch.forget_before(Time(oldest.0.saturating_sub(self.optics.config.timing.depth().0)));
+            for buffer in boards.retrace(now) {
+                context.output(at, DisplayOutput::Swapped { surface, buffer, tick });
+            }
+        }
+    }
+
+    fn receive(&mut self, port: usize, body: Body, context: &mut DisplayContext) -> Result<(), String> {
+        let ports = self.optics.config.ports_of_an_eye();
+        let node = *self.nodes.get(port).ok_or("a port that it does not have")?;
+        match body {
+            Body::Pixels(pixels) if pixels.target.frame_buffer != node => Err("pixels for another port".to_owned()),
+            Body::Pixels(pixels) => self.pixels(port / ports, port % ports, pixels, context).map_err(str::to_owned),
+            Body::Words(words) => self.words(port / ports, port % ports, &words, context.now()),
+            Body::Commands(_) => Err("commands for a renderer".to_owned()),
+        }
+    }
+
+    fn pixels(
+        &mut self,
+        surface: usize,
+        memory: usize,
+        pixels: RegionPixels,
+        context: &mut DisplayContext,
+    ) -> Result<(), &'static str> {
+        let target = pixels.target;
+        let last_part_at = context.now();
+        let receipt = self.eyes[surface].memories[memory].receive(pixels, last_part_at)?;
+        if let PixelReceipt::Region(first_part_at) = receipt {
+            let at = last_part_at + Span::from_ns(self.optics.config.timing.word_ns);
+            context.output(at, DisplayOutput::RegionArrived { surface, target, first_part_at, last_part_at });
+        }
+        Ok(())
+    }
+
+    fn words(&mut self, surface: usize, memory: usize, words: &[Word], now: Time) -> Result<(), String> {
+        let message = read(words, self.optics.config.timing.face_texels as u32).map_err(|error| error.to_string())?;
+        let boards = &mut self.eyes[surface];
+        match message {
+            ArpMessage::Begin { buffer, regions } => {
+                boards.memories[memory].begin(buffer, regions).map_err(str::to_owned)
+            }
+            ArpMessage::Swap { buffer, together } => {
+                boards.memories[memory].ask(buffer, together, now);
+                Ok(())
+            }
+            ArpMessage::Matrix(rows) => boards.latch.load(rows, now).map_err(|error| error.to_string()),
+        }
+    }
+
+    fn sum(&self, count: fn(&DisplayMemory) -> u64) -> u64 {
+        self.eyes.iter().flat_map(|boards| &boards.memories).map(count).sum()
+    }
+
+    fn matrices(&self, which: usize) -> u64 {
+        self.eyes.iter().map(|boards| boards.latch.counts()[which]).sum()
+    }
+}
+
+/// Its name on the command line.
+const NAME: &str = "arp";
+
+impl Display for AddressRecalculationPipeline {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn nodes(&self) -> &[NodeId] {
+        &self.nodes
+    }
+
+    fn surfaces(&self) -> &[Surface] {
+        &self.surfaces
+    }
+
+    fn tick(&self, period: PeriodNumber) -> Time {
+        self.optics.scan.retrace(period)
+    }
+
+    fn period_at(&self, time: Time) -> PeriodNumber {
+        self.optics.scan.field_at(time)
+    }
+
+    fn handle(&mut self, event: DisplayEvent, context: &mut DisplayContext) {
+        match event {
+            DisplayEvent::Tick(tick) => self.retrace(tick, context),
+            DisplayEvent::Delivered { port, body } => {
+                if let Err(fault) = self.receive(port, body, context) {
+                    self.faults += 1;
+                    self.first_fault.get_or_insert_with(|| format!("{}: {fault}", context.now()));
+                }
+            }
+            DisplayEvent::Timer(_) => {}
+        }
+    }
+
+    fn lights(&self, _surface: usize, x: u32, y: u32, period: PeriodNumber) -> Option<Time> {
+        self.optics.scan.lights(x, y, period)
+    }
+
+    fn shown(&self, surface: usize) -> Option<RgbImage> {
+        let boards = self.eyes.get(surface)?;
+        let shown = boards.shown();
+        let mut frame = self.empty_frame();
+        let now = PeriodNumber(self.fields.saturating_sub(1));
+        for number in [now, now.next()] {
+            Field { optics: &self.optics, latch: &boards.latch, shown: &shown, number }.draw(&mut frame);
+        }
+        Some(frame)
+    }
+
+    fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage> {
+        let mut frame = self.empty_frame();
+        self.field(surface, period)?.draw(&mut frame);
+        if let Some(before) = period.before(1).and_then(|field| self.field(surface, field)) {
+            before.draw(&mut frame);
+        }
+        Some(frame)
+    }
+
+    fn last_seen(&self) -> Option<PeriodNumber> {
+        self.fields.checked_sub(2).map(PeriodNumber)
+    }
+
+    fn rows_lit(&self, period: PeriodNumber) -> (u32, u32) {
+        (pxpl5_wire::FieldParity::of_field(period).first_line(), 2)
+    }
+
+    fn counters(&self) -> Vec<Counter> {
+        vec![
+            Counter { name: "fields", count: self.fields },
+            Counter { name: "regions", count: self.sum(|memory| memory.stats().regions) },
+            Counter { name: "swaps", count: self.sum(|memory| memory.stats().swaps) },
+            Counter { name: "swaps missed", count: self.sum(|memory| memory.stats().missed) },
+            Counter { name: "matrix loads", count: self.matrices(0) },
+            Counter { name: "matrices refused", count: self.matrices(1) },
+        ]
+    }
+
+    fn faults(&self) -> (u64, Option<String>) {
+        (self.faults, self.first_fault.clone())
+    }
+}
+
+impl DisplayConfig for ArpConfig {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn about(&self) -> &'static str {
+        "address recalculation pipeline: six faces around the head, looked up at scan-out by the newest orientation (VRAIS 93)"
+    }
+
+    fn tables(&self) -> Vec<(&'static str, &dyn ParameterTable)> {
+        vec![("arp", &self.timing), ("arp_scan", &self.scan)]
+    }
+
+    fn tables_mut(&mut self) -> Vec<(&'static str, &mut dyn ParameterTable)> {
+        vec![("arp", &mut self.timing), ("arp_scan", &mut self.scan)]
+    }
+
+    /// One for each memory of each eye.
+    fn ports(&self, pictures: usize) -> usize {
+        pictures.clamp(1, Eye::BOTH.len()) * self.ports_of_an_eye()
+    }
+
+    fn check(&self) -> Result<(), DisplayError> {
+        Self::check(self).map_err(refused)
+    }
+
+    fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
+        let table = self.table().map_err(refused)?;
+        let scan = self.scan().map_err(refused)?;
+        let eyes = nodes.len() / self.ports_of_an_eye();
+        if nodes.len() != self.ports(eyes) {
+            let expected = format!("{} ports for one eye, {} for two", self.ports(1), self.ports(2));
+            return Err(DisplayError(format!("arp: expected {expected}, found {}", nodes.len())));
+        }
+        Ok(Box::new(AddressRecalculationPipeline {
+            surfaces: Surface::of_frame_buffers(eyes, scan.width(), scan.height()),
+            optics: Optics { config: self.clone(), table, scan },
+            nodes: nodes.to_vec(),
+            eyes: (0..eyes).map(|_| boards(self)).collect(),
+            fields: 0,
+            faults: 0,
+            first_fault: None,
+        }))
+    }
+
+    fn boxed(&self) -> Box<dyn DisplayConfig> {
+        Box::new(self.clone())
+    }
+
+    fn remember(&mut self, periods: u64) {
+        self.fields_kept = periods;
+    }
+
+    fn equals(&self, other: &dyn DisplayConfig) -> bool {
+        (other as &dyn std::any::Any).downcast_ref::<Self>() == Some(self)
+    }
+}
+
+fn boards(config: &ArpConfig) -> EyeBoards {
+    let kind = MemoryKind { face_texels: config.timing.face_texels as u32, format: config.format(), has_depth: true };
+    let mut memories = vec![DisplayMemory::new(kind); config.timing.display_memories as usize];
+    if config.has_background_memory {
+        memories.push(DisplayMemory::new(MemoryKind { has_depth: false, ..kind }));
+    }
+    EyeBoards { memories, latch: OrientationLatch::new(config.timing.matrix_bits), scanned: VecDeque::new() }
+}
+
+fn refused(error: ArpError) -> DisplayError {
+    DisplayError(error.to_string())
+}

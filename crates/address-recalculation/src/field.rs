@@ -1,0 +1,120 @@
+//! A field that was scanned, ready to be looked at: nothing is computed before.
+
+use crate::config::ArpConfig;
+use crate::lens::LensTable;
+use crate::lookup::{Addressing, LookStats, Lookup};
+use crate::memory::{MemoryKind, Regions};
+use crate::orientation::{MatrixWords, OrientationLatch};
+use crate::protocol::region_grid;
+use crate::scan::{Latch, Scan};
+use crate::texel::FaceSet;
+use image::{Rgb, RgbImage};
+use pxpl5_wire::{FieldParity, PeriodNumber};
+use std::sync::Arc;
+
+/// What all fields of a display have in common.
+#[derive(Debug)]
+pub(crate) struct Optics {
+    pub(crate) config: ArpConfig,
+    pub(crate) table: LensTable,
+    pub(crate) scan: Scan,
+}
+
+/// The buffers that one eye's memories showed, the background memory last.
+#[derive(Clone, Debug)]
+pub(crate) struct ShownBuffers {
+    pub(crate) memories: Vec<(MemoryKind, Arc<Regions>)>,
+}
+
+/// A run of pixels of a line with one orientation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Run {
+    x: u32,
+    y: u32,
+    count: u32,
+    matrix: MatrixWords,
+}
+
+/// A field of one eye.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Field<'a> {
+    pub(crate) optics: &'a Optics,
+    pub(crate) latch: &'a OrientationLatch,
+    pub(crate) shown: &'a ShownBuffers,
+    pub(crate) number: PeriodNumber,
+}
+
+impl Field<'_> {
+    /// The orientation that a pixel of the field was looked up with; `None` for one that it does not scan.
+    pub(crate) fn matrix(&self, x: u32, y: u32) -> Option<MatrixWords> {
+        let latch = self.optics.config.latch;
+        Some(self.latch.at(self.optics.scan.latches(latch, x, y, self.number)?))
+    }
+
+    /// Writes the lines that the field scans into a frame.
+    pub(crate) fn draw(&self, frame: &mut RgbImage) -> LookStats {
+        let parity = FieldParity::of_field(self.number).first_line();
+        let lines = (parity..self.optics.scan.height()).step_by(2);
+        let runs: Vec<Run> = lines.flat_map(|y| self.runs(y)).collect();
+        let wanted = self.wanted(&runs);
+        let faces: Vec<FaceSet> = self.shown.memories.iter().map(|memory| drawn(memory, &wanted)).collect();
+        let mut memories: Vec<&FaceSet> = faces.iter().collect();
+        let background = if self.optics.config.has_background_memory { memories.pop() } else { None };
+        let lookup = Lookup::new(&self.optics.config, &self.optics.table, memories, background);
+        let mut stats = LookStats::default();
+        let mut colours = vec![0; self.optics.table.width() as usize];
+        for run in runs {
+            let pixels = &mut colours[..run.count as usize];
+            stats.add(lookup.run(self.place(&run), &run.matrix, pixels));
+            write(frame, &run, pixels);
+        }
+        stats
+    }
+
+    fn place(&self, run: &Run) -> usize {
+        run.y as usize * self.optics.table.width() as usize + run.x as usize
+    }
+
+    /// The pieces of the faces that the field's pixels read.
+    fn wanted(&self, runs: &[Run]) -> Vec<bool> {
+        let grid = region_grid(self.optics.config.timing.face_texels as u32);
+        let mut wanted = vec![false; grid.regions() as usize];
+        let addressing = Addressing::new(&self.optics.config, &self.optics.table);
+        for run in runs {
+            addressing.mark(self.place(run), run.count as usize, &run.matrix, &mut wanted);
+        }
+        wanted
+    }
+
+    /// A line, cut where the orientation changes.
+    fn runs(&self, y: u32) -> Vec<Run> {
+        let width = self.optics.scan.width();
+        let whole = self.matrix(0, y).map(|matrix| Run { x: 0, y, count: width, matrix });
+        let is_one = self.optics.config.latch != Latch::Pixel || self.matrix(width - 1, y) == self.matrix(0, y);
+        if is_one {
+            return whole.into_iter().collect();
+        }
+        let mut runs: Vec<Run> = Vec::new();
+        for x in 0..width {
+            let Some(matrix) = self.matrix(x, y) else { continue };
+            match runs.last_mut().filter(|run| run.matrix == matrix) {
+                Some(run) => run.count += 1,
+                None => runs.push(Run { x, y, count: 1, matrix }),
+            }
+        }
+        runs
+    }
+}
+
+fn drawn((kind, regions): &(MemoryKind, Arc<Regions>), wanted: &[bool]) -> FaceSet {
+    let mut faces = FaceSet::new(kind.face_texels, kind.format);
+    kind.draw(regions, wanted, &mut faces);
+    faces
+}
+
+fn write(frame: &mut RgbImage, run: &Run, colours: &[u32]) {
+    for (x, colour) in (run.x..).zip(colours) {
+        let [_, red, green, blue] = colour.to_be_bytes();
+        frame.put_pixel(x, run.y, Rgb([red, green, blue]));
+    }
+}

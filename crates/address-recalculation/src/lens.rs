@@ -1,0 +1,259 @@
+//! The table of viewing vectors: where each pixel of the picture looks, through the lens.
+
+use crate::error::ArpError;
+use crate::face::Vector;
+use std::io::BufRead;
+use std::sync::Arc;
+
+/// Widest angle of a flat picture or a radial lens, degrees: as in the other pipelines.
+const WIDEST_FLAT_DEG: f64 = 170.0;
+
+/// What lies between the picture and the eye.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Lens {
+    /// Nothing: pixels lie on a plane.
+    #[default]
+    Flat,
+    /// A radial polynomial: a pixel at distance rho from the middle (1 at the edge of a line) is seen 1 + k1 rho^2 +
+    /// k2 rho^4 times as far out.
+    Radial {
+        /// Coefficient of the second power.
+        k1: f64,
+        /// Coefficient of the fourth power.
+        k2: f64,
+    },
+    /// The angle grows with the distance from the middle; up to 360 degrees wide.
+    Equidistant,
+    /// Vectors from a file, row by row, see [`Lens::read`].
+    Table(Arc<[Vector]>),
+}
+
+/// Size and angle of the picture that a lens shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Picture {
+    /// Pixels of a line.
+    pub width: u32,
+    /// Lines of the whole frame.
+    pub height: u32,
+    /// Horizontal angle, degrees; between the edges of the picture as it is without a lens.
+    pub horizontal_deg: f64,
+}
+
+impl Picture {
+    /// A pixel's middle from the middle of the picture, in pixels to the right and down.
+    fn offset(&self, x: u32, y: u32) -> [f64; 2] {
+        [f64::from(x) + 0.5 - f64::from(self.width) / 2.0, f64::from(y) + 0.5 - f64::from(self.height) / 2.0]
+    }
+
+    /// Tangent of half the horizontal angle.
+    fn tangent(&self) -> f64 {
+        libm::tan(self.horizontal_deg.to_radians() / 2.0)
+    }
+
+    /// Square of the distance of a pixel from the middle, 1 at the edges of the middle line.
+    fn rho_squared(&self, x: u32, y: u32) -> f64 {
+        let [right, down] = self.offset(x, y).map(|p| p / (f64::from(self.width) / 2.0));
+        right * right + down * down
+    }
+}
+
+impl Lens {
+    /// Checks that no two pixels of a picture look through one point of the lens, and that the angle is possible.
+    ///
+    /// # Errors
+    ///
+    /// [`ArpError::Lens`] says what was expected and found.
+    pub fn check(&self, picture: &Picture) -> Result<(), ArpError> {
+        let widest = if matches!(self, Self::Flat | Self::Radial { .. }) { WIDEST_FLAT_DEG } else { 360.0 };
+        let angle = picture.horizontal_deg;
+        if !(angle > 0.0 && angle <= widest) {
+            let expected = format!("a horizontal angle above 0 and up to {widest} deg");
+            return Err(ArpError::Lens { expected, found: format!("{angle} deg") });
+        }
+        match self {
+            Self::Radial { k1, k2 } => check_radial(*k1, *k2, picture.rho_squared(0, 0)),
+            Self::Table(vectors) => check_table(vectors, picture),
+            Self::Flat | Self::Equidistant => Ok(()),
+        }
+    }
+
+    /// Where a pixel looks, in head axes (x to the right, y up, the head looks along -z); not of unit length.
+    #[must_use]
+    pub fn view(&self, picture: &Picture, x: u32, y: u32) -> Vector {
+        let [right, down] = picture.offset(x, y);
+        let focal = f64::from(picture.width) / 2.0 / picture.tangent();
+        match self {
+            Self::Flat => [right / focal, -down / focal, -1.0],
+            Self::Radial { k1, k2 } => {
+                let square = picture.rho_squared(x, y);
+                let stretch = 1.0 + k1 * square + k2 * square * square;
+                [stretch * right / focal, -stretch * down / focal, -1.0]
+            }
+            Self::Equidistant => equidistant([right, down], picture),
+            Self::Table(vectors) => {
+                let place = y as usize * picture.width as usize + x as usize;
+                vectors.get(place).copied().unwrap_or([0.0, 0.0, -1.0])
+            }
+        }
+    }
+
+    /// Reads a table of viewing vectors for a picture: a line of text for each pixel, row by row, with x, y and z between
+    /// blanks; lines that are empty or begin with `#` are skipped. Lengths do not matter.
+    ///
+    /// # Errors
+    ///
+    /// [`ArpError::Table`] names the line, what was expected and what was found.
+    pub fn read(reader: impl BufRead, picture: &Picture) -> Result<Self, ArpError> {
+        let wanted = picture.width as usize * picture.height as usize;
+        let mut vectors = Vec::new();
+        let mut last = 0;
+        for (number, line) in (1..).zip(reader.lines()) {
+            last = number;
+            let wrong =
+                |expected: &str, found: String| ArpError::Table { line: number, expected: expected.to_owned(), found };
+            let line = line.map_err(|error| wrong("text in UTF-8", error.to_string()))?;
+            if line.trim().is_empty() || line.trim_start().starts_with('#') {
+                continue;
+            }
+            if vectors.len() == wanted {
+                return Err(wrong(&format!("nothing after {wanted} vectors"), excerpt(&line)));
+            }
+            let vector =
+                vector_of(&line).ok_or_else(|| wrong("three numbers, finite and not all 0", excerpt(&line)))?;
+            vectors.push(vector);
+        }
+        if vectors.len() < wanted {
+            let expected = format!("{wanted} vectors, one for each pixel");
+            return Err(ArpError::Table { line: last + 1, expected, found: format!("{} vectors", vectors.len()) });
+        }
+        Ok(Self::Table(vectors.into()))
+    }
+}
+
+/// A long line is cut: the message stays short.
+fn excerpt(line: &str) -> String {
+    line.chars().take(40).collect()
+}
+
+fn vector_of(line: &str) -> Option<Vector> {
+    let numbers = line.split_whitespace().map(|word| word.parse().ok());
+    let numbers: Vec<f64> = numbers.collect::<Option<_>>()?;
+    let vector: Vector = numbers.try_into().ok()?;
+    is_direction(vector).then_some(vector)
+}
+
+/// Whether a vector's length is a number above zero and not beyond all squares.
+fn is_direction(vector: Vector) -> bool {
+    let square: f64 = vector.iter().map(|component| component * component).sum();
+    square.is_normal()
+}
+
+fn check_table(vectors: &[Vector], picture: &Picture) -> Result<(), ArpError> {
+    let wanted = picture.width as usize * picture.height as usize;
+    if vectors.len() != wanted {
+        let expected = format!("{wanted} vectors for {} x {} pixels", picture.width, picture.height);
+        return Err(ArpError::Lens { expected, found: format!("{} vectors", vectors.len()) });
+    }
+    match vectors.iter().position(|vector| !is_direction(*vector)) {
+        Some(place) => {
+            let expected = "vectors that are finite and not all 0".to_owned();
+            Err(ArpError::Lens { expected, found: format!("{:?} as vector {place}", vectors[place]) })
+        }
+        None => Ok(()),
+    }
+}
+
+/// The slope of rho (1 + k1 rho^2 + k2 rho^4) is above zero up to the corner.
+fn check_radial(k1: f64, k2: f64, corner: f64) -> Result<(), ArpError> {
+    let slope = |square: f64| 1.0 + 3.0 * k1 * square + 5.0 * k2 * square * square;
+    let turn = -3.0 * k1 / (10.0 * k2);
+    let inside = if turn > 0.0 && turn < corner { slope(turn) } else { 1.0 };
+    let least = inside.min(slope(corner));
+    if k1.is_finite() && k2.is_finite() && least > 0.0 {
+        return Ok(());
+    }
+    let expected = "1 + 3 k1 rho^2 + 5 k2 rho^4 above 0 up to the corner pixel".to_owned();
+    Err(ArpError::Lens { expected, found: format!("{least} for k1 {k1}, k2 {k2}") })
+}
+
+fn equidistant(from_middle: [f64; 2], picture: &Picture) -> Vector {
+    let half = f64::from(picture.width) / 2.0;
+    let [right, down] = from_middle.map(|p| p / half);
+    let distance = libm::hypot(right, down);
+    if distance == 0.0 {
+        return [0.0, 0.0, -1.0];
+    }
+    let angle = distance * picture.horizontal_deg.to_radians() / 2.0;
+    let sine = libm::sin(angle);
+    [sine * right / distance, -sine * down / distance, -libm::cos(angle)]
+}
+
+/// Viewing vectors as the table's memory holds them: for each pixel a unit vector in signed words, the largest word for 1.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LensTable {
+    width: u32,
+    height: u32,
+    /// x, y and z of all pixels, row by row.
+    words: [Vec<i32>; 3],
+}
+
+impl LensTable {
+    /// The table of a lens and a picture, in words of so many bits.
+    ///
+    /// # Errors
+    ///
+    /// As [`Lens::check`].
+    pub fn new(lens: &Lens, picture: &Picture, vector_bits: u64) -> Result<Self, ArpError> {
+        lens.check(picture)?;
+        let mut words = [Vec::new(), Vec::new(), Vec::new()];
+        for y in 0..picture.height {
+            for x in 0..picture.width {
+                let entry = unit_words(lens.view(picture, x, y), vector_bits);
+                for (column, word) in words.iter_mut().zip(entry) {
+                    column.push(word);
+                }
+            }
+        }
+        Ok(Self { width: picture.width, height: picture.height, words })
+    }
+
+    /// Pixels of a line.
+    #[must_use]
+    pub const fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Lines of the frame.
+    #[must_use]
+    pub const fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The words of a pixel.
+    ///
+    /// # Panics
+    /// Beyond the picture.
+    #[must_use]
+    pub fn entry(&self, x: u32, y: u32) -> [i32; 3] {
+        let place = y as usize * self.width as usize + x as usize;
+        [0, 1, 2].map(|axis| self.words[axis][place])
+    }
+
+    /// The words of a run of pixels, by axis.
+    pub(crate) fn run(&self, first: usize, count: usize) -> [&[i32]; 3] {
+        [0, 1, 2].map(|axis| &self.words[axis][first..first + count])
+    }
+}
+
+/// A vector made unit, in signed words of so many bits, rounded to even.
+#[must_use]
+pub(crate) fn unit_words(vector: Vector, bits: u64) -> [i32; 3] {
+    let length = libm::sqrt(vector.iter().map(|component| component * component).sum());
+    vector.map(|component| signed_word(component / length, bits))
+}
+
+/// A number from -1 to 1 in a signed word, the largest for 1, rounded to even.
+pub(crate) fn signed_word(value: f64, bits: u64) -> i32 {
+    let largest = f64::from((1_i32 << (bits - 1)) - 1);
+    (value * largest).round_ties_even().clamp(-largest, largest) as i32
+}

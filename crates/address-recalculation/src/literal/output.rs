@@ -1,0 +1,116 @@
+//! The stages behind the memories: comparators and interpolation.
+
+use super::arithmetic::multiply_unsigned;
+use super::banks::BankedMemory;
+use super::registers::{Candidate, Registers};
+use crate::composition::{Composition, CompositionOrder};
+use crate::face::TexelAddress;
+
+/// Reads the four banks of all memories.
+pub(super) fn read(
+    registers: &mut Registers,
+    memories: &[BankedMemory],
+    background: Option<&BankedMemory>,
+    constant: u32,
+) {
+    let Some(footprint) = registers.footprint else { return };
+    registers.behind = [constant; 4];
+    if let Some(memory) = background {
+        let read = candidate(memory, &footprint.texels, [constant; 4]);
+        registers.behind = read.colours;
+    }
+    registers.candidates =
+        memories.iter().map(|memory| candidate(memory, &footprint.texels, registers.behind)).collect();
+}
+
+fn candidate(memory: &BankedMemory, texels: &[Option<TexelAddress>; 4], behind: [u32; 4]) -> Candidate {
+    let mut read = Candidate { depths: [memory.farthest(); 4], colours: behind };
+    for (k, texel) in texels.iter().enumerate() {
+        let Some(cell) = texel.map(|texel| memory.read(texel)) else { continue };
+        read.depths[k] = cell.depth;
+        if cell.depth != memory.farthest() {
+            read.colours[k] = memory.wide(cell);
+        }
+    }
+    read
+}
+
+/// One level of the tree: of each two neighbours the nearer, the first on ties; one without a neighbour goes on.
+pub(super) fn compare(registers: &mut Registers) {
+    let pairs = registers.candidates.chunks(2);
+    registers.candidates = pairs.map(|pair| pair.iter().copied().reduce(nearer).unwrap_or(pair[0])).collect();
+}
+
+fn nearer(first: Candidate, second: Candidate) -> Candidate {
+    let mut nearest = first;
+    for k in 0..4 {
+        if second.depths[k] < first.depths[k] {
+            nearest.depths[k] = second.depths[k];
+            nearest.colours[k] = second.colours[k];
+        }
+    }
+    nearest
+}
+
+/// Weighs the four texels of every candidate that is left.
+pub(super) fn interpolate(composition: &Composition, registers: &mut Registers) {
+    let Some(footprint) = registers.footprint else { return };
+    let products = footprint.weights(composition.weight_bits);
+    let weights = [0, 1, 2, 3].map(|k| footprint.texels[k].map(|_| u64::from(products[k])));
+    let bits = 2 * composition.weight_bits;
+    for candidate in &mut registers.candidates {
+        let depth = weighed(candidate.depths, weights, bits, Rounding::Up);
+        candidate.depths = [depth; 4];
+        candidate.colours = [mixed(candidate.colours, weights, bits); 4];
+    }
+    if composition.order == CompositionOrder::InterpolationFirst {
+        registers.behind = [mixed(registers.behind, weights, bits); 4];
+    }
+    registers.colour = registers.candidates.first().map_or(0, |candidate| candidate.colours[0]);
+}
+
+/// The colour that leaves the last stage: what is behind all memories where their nearest is the farthest.
+pub(super) fn lit(composition: &Composition, registers: &Registers, memories: &[BankedMemory]) -> u32 {
+    let farthest = memories.first().map_or(0, BankedMemory::farthest);
+    match (composition.order, registers.candidates.first()) {
+        (CompositionOrder::DepthFirst, _) | (_, None) => registers.colour,
+        (CompositionOrder::InterpolationFirst, Some(nearest)) => {
+            if nearest.depths[0] == farthest {
+                registers.behind[0]
+            } else {
+                nearest.colours[0]
+            }
+        }
+    }
+}
+
+/// What becomes of the bits below the word.
+#[derive(Clone, Copy)]
+enum Rounding {
+    Nearest,
+    Up,
+}
+
+fn mixed(colours: [u32; 4], weights: [Option<u64>; 4], bits: u64) -> u32 {
+    let channel = |shift: u32| weighed(colours.map(|colour| colour >> shift & 0xFF), weights, bits, Rounding::Nearest);
+    channel(16) << 16 | channel(8) << 8 | channel(0)
+}
+
+/// A sum of products with weights that add up to 2^bits; the mean of three where one has none.
+fn weighed(values: [u32; 4], weights: [Option<u64>; 4], bits: u64, rounding: Rounding) -> u32 {
+    if weights.contains(&None) {
+        let three: u64 = (0..4).filter(|k| weights[*k].is_some()).map(|k| u64::from(values[k])).sum();
+        let remainder = three % 3;
+        let more = match rounding {
+            Rounding::Nearest => remainder == 2,
+            Rounding::Up => remainder > 0,
+        };
+        return (three / 3 + u64::from(more)) as u32;
+    }
+    let sum: u64 = (0..4).map(|k| multiply_unsigned(u64::from(values[k]), weights[k].unwrap_or(0))).sum();
+    let added = match rounding {
+        Rounding::Nearest => (1 << bits) >> 1,
+        Rounding::Up => (1 << bits) - 1,
+    };
+    ((sum + added) >> bits) as u32
+}

@@ -1,0 +1,49 @@
+//! What travels with a pixel from stage to stage.
+
+use super::arithmetic::Divider;
+use crate::address::Footprint;
+use crate::face::CubeFace;
+use crate::orientation::MatrixWords;
+
+/// Four texels of a memory on their way through the comparators; all alike once they are interpolated.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidate {
+    pub(super) depths: [u32; 4],
+    /// In 8 bits a channel; of empty texels what is behind them.
+    pub(super) colours: [u32; 4],
+}
+
+/// The registers that travel with a pixel.
+#[derive(Clone, Debug)]
+pub(super) struct Registers {
+    pub(super) pixel: [u32; 2],
+    pub(super) matrix: MatrixWords,
+    pub(super) vector: [i64; 3],
+    pub(super) products: [[i64; 3]; 3],
+    pub(super) sums: [i64; 3],
+    pub(super) face: CubeFace,
+    pub(super) dividers: [Divider; 2],
+    pub(super) footprint: Option<Footprint>,
+    pub(super) candidates: Vec<Candidate>,
+    pub(super) behind: [u32; 4],
+    pub(super) colour: u32,
+}
+
+impl Registers {
+    pub(super) const fn of(pixel: [u32; 2], matrix: MatrixWords) -> Self {
+        let none = Divider::new(0, 1);
+        Self {
+            pixel,
+            matrix,
+            vector: [0; 3],
+            products: [[0; 3]; 3],
+            sums: [0; 3],
+            face: CubeFace::PosX,
+            dividers: [none; 2],
+            footprint: None,
+            candidates: Vec::new(),
+            behind: [0; 4],
+            colour: 0,
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! The messages that a display memory takes besides pixels.
+//!
+//! ```text
+//! BEGIN    buffer  bit i: region i is coming     clears all valid bits of that buffer
+//! SWAP     buffer                                (pxpl5_wire::swap_request) at the next retrace at which all is there
+//! TOGETHER buffer  bit k: memory k               as SWAP, but at a retrace at which all of these memories can
+//! MATRIX   nine words, row by row                an orientation, in single precision
+//! ```
+
+use crate::error::ArpError;
+use crate::face::{CubeFace, Vector};
+use pxpl5_wire::{REGION_SIZE, RegionGrid, RegionId, Word, read_swap_request};
+use std::sync::Arc;
+
+/// First word of the message that begins an update of a buffer.
+const BEGIN: Word = 0x0041_5042;
+
+/// First word of a request to swap together with other memories.
+const TOGETHER: Word = 0x0041_5054;
+
+/// First word of an orientation.
+const MATRIX: Word = 0x0041_504D;
+
+/// How the six faces of a memory are cut: one under the other, in the order of their indices, in pieces of 128 x 128.
+#[must_use]
+pub const fn region_grid(face_texels: u32) -> RegionGrid {
+    let height = face_texels * CubeFace::ALL.len() as u32;
+    RegionGrid { width: face_texels, height, region_width: REGION_SIZE, region_height: REGION_SIZE }
+}
+
+/// The piece of a face in that column and row of pieces; `None` beyond the face.
+#[must_use]
+pub const fn face_region(face_texels: u32, face: CubeFace, column: u32, row: u32) -> Option<RegionId> {
+    let across = face_texels / REGION_SIZE;
+    if column >= across || row >= across {
+        return None;
+    }
+    Some(RegionId(((face as u32 * across + row) * across + column) as u16))
+}
+
+/// The words that begin an update of a buffer in which these regions are coming; all others will be empty.
+#[must_use]
+pub fn begin_update(face_texels: u32, buffer: u8, regions: &[RegionId]) -> Arc<[Word]> {
+    let count = region_grid(face_texels).regions();
+    let mut words = vec![0; 2 + count.div_ceil(Word::BITS) as usize];
+    words[0] = BEGIN;
+    words[1] = buffer.into();
+    for region in regions.iter().map(|region| u32::from(region.0)).filter(|region| *region < count) {
+        words[2 + (region / Word::BITS) as usize] |= 1 << (region % Word::BITS);
+    }
+    words.into()
+}
+
+/// The words of a request to show a buffer from the first retrace on at which every memory of a set (bit k: memory k) can.
+#[must_use]
+pub fn swap_together(buffer: u8, memories: u8) -> Arc<[Word]> {
+    [TOGETHER, buffer.into(), memories.into()].into()
+}
+
+/// The words of an orientation, given by the rows of its matrix, which turns head axes into world axes.
+#[must_use]
+pub fn orientation_message(rows: [Vector; 3]) -> Arc<[Word]> {
+    let components = rows.into_iter().flatten().map(|component| (component as f32).to_bits());
+    [MATRIX].into_iter().chain(components).collect()
+}
+
+/// A message as the display reads it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum ArpMessage {
+    /// An update of a buffer begins, with these regions.
+    Begin { buffer: u8, regions: Vec<u16> },
+    /// Show a buffer, together with other memories or (none) alone.
+    Swap { buffer: u8, together: u8 },
+    /// An orientation, unchecked.
+    Matrix([Vector; 3]),
+}
+
+/// Reads a message for faces of so many texels.
+///
+/// # Errors
+///
+/// Says what was expected and found.
+pub(crate) fn read(words: &[Word], face_texels: u32) -> Result<ArpMessage, ArpError> {
+    if let Some(buffer) = read_swap_request(words) {
+        return Ok(ArpMessage::Swap { buffer: checked_buffer(buffer.into())?, together: 0 });
+    }
+    match words {
+        [BEGIN, buffer, map @ ..] => {
+            let buffer = checked_buffer(*buffer)?;
+            Ok(ArpMessage::Begin { buffer, regions: announced(map, region_grid(face_texels).regions())? })
+        }
+        [TOGETHER, buffer, memories] => {
+            let together = u8::try_from(*memories).map_err(|_| wrong("a set of 8 memories", memories))?;
+            Ok(ArpMessage::Swap { buffer: checked_buffer(*buffer)?, together })
+        }
+        [MATRIX, components @ ..] => {
+            let components: [Word; 9] = components.try_into().map_err(|_| wrong("9 components", &components.len()))?;
+            let row = |first: usize| [0, 1, 2].map(|i| f64::from(f32::from_bits(components[first + i])));
+            Ok(ArpMessage::Matrix([row(0), row(3), row(6)]))
+        }
+        _ => Err(wrong("BEGIN, SWAP, TOGETHER or MATRIX", &format!("{:#x?}", words.first()))),
+    }
+}
+
+fn wrong(expected: &str, found: &dyn std::fmt::Display) -> ArpError {
+    ArpError::Number(format!("message: expected {expected}, found {found}"))
+}
+
+fn checked_buffer(buffer: Word) -> Result<u8, ArpError> {
+    u8::try_from(buffer).ok().filter(|buffer| *buffer < 2).ok_or_else(|| wrong("buffer 0 or 1", &buffer))
+}
+
+/// The regions of a map, which has exactly one bit for each and none beyond.
+fn announced(map: &[Word], count: u32) -> Result<Vec<u16>, ArpError> {
+    if map.len() != count.div_ceil(Word::BITS) as usize {
+        return Err(wrong(&format!("a map of {count} regions"), &format!("{} words", map.len())));
+    }
+    let bits = (0..map.len() as u32 * Word::BITS)
+        .filter(|bit| map[(bit / Word::BITS) as usize] >> (bit % Word::BITS) & 1 == 1);
+    let regions: Vec<u16> = bits.map(|bit| bit as u16).collect();
+    match regions.last() {
+        Some(last) if u32::from(*last) >= count => {
+            Err(wrong(&format!("a map of {count} regions"), &format!("region {last}")))
+        }
+        _ => Ok(regions),
+    }
+}

@@ -1,0 +1,131 @@
+//! Every number of the display.
+
+use crate::error::ArpError;
+use parameters::{MAX, ParameterTable, check};
+use pxpl5_sim::{Clock, Span};
+
+parameters::parameter_table! {
+    /// Words, memories and the clock of the pipeline.
+    pub struct ArpTiming {
+        /// Display memories of an eye, each a double-buffered cube with depth.
+        display_memories: 4, "memories", Published, 1..=8, "CPR05 tables 1 and 2: memories 0 to 3";
+        /// Texels along an edge of a face, guard texels included; a multiple of 128.
+        face_texels: 256, "texels", Assumed, 128..=2048, "not printed; 256 is what a port of the ring can fill 25 times a second, 512 with ideal faces";
+        /// Texels on each side of a face that show what the neighbouring face shows there.
+        guard_texels: 1, "texels", Assumed, 0..=8, "not printed; one keeps every footprint on its face";
+        /// Bits of each component of a viewing vector, sign included.
+        vector_bits: 16, "bits", Assumed, 8..=24, "not printed; 16 bits err by 0.02 texels of 512";
+        /// Bits of each component of the matrix, sign included.
+        matrix_bits: 16, "bits", Assumed, 8..=24, "not printed; as the vectors";
+        /// Bits of a quotient, each a stage of the divider.
+        quotient_bits: 16, "bits", Assumed, 8..=20, "not printed; 1/128 texel of 512";
+        /// Bits of each of the two fractions that weigh four texels; 0 takes the nearest texel.
+        weight_bits: 4, "bits", Assumed, 0..=8, "RPM has hardware for it, its words are not printed";
+        /// Bits of depth in a display memory: 16 or 24.
+        depth_bits: 24, "bits", Derived, 16..=24, "the machine's depth";
+        /// Bits of colour in a display memory: 24, or 16 as 5, 6 and 5.
+        colour_bits: 24, "bits", Derived, 16..=24, "the machine's colour";
+        /// Time of a stage.
+        stage_ps: 25_000, "ps", Assumed, 1_000..=38_461 in 1..=1_000_000, "RP94: orientation less than 1 us before the first pixel, so below 38.46 ns in 26 stages";
+        /// Horizontal angle of the picture.
+        horizontal_deg: f64 = 60.0, "deg", Published, 1.0..=360.0, "JITP; above 170 with the equidistant lens or a table alone";
+        /// Time of one word at a port.
+        word_ns: 50, "ns", Published, 50..=50 in 1..=1_000_000, "TR94: 20 Mwords/s per channel";
+    }
+}
+
+parameters::parameter_table! {
+    /// The scan: NTSC video, as that of the frame buffer of Pixel-Planes 5.
+    pub struct ScanTiming {
+        /// Period of the pixel clock, times `pixel_divisor`.
+        pixel_ps: 11_000_000, "ps", Derived, 11000000..=11000000 in 1..=MAX, "NTSC square pixels: 135/11 MHz";
+        /// Divisor of the period of the pixel clock.
+        pixel_divisor: 135, "1", Derived, 135..=135 in 1..=MAX, "NTSC square pixels: 135/11 MHz";
+        /// Pixel periods in a line.
+        line_pixels: 780, "pixels", Derived, 780..=780 in 1..=16_384, "(4004/63 us) x (135/11 MHz)";
+        /// Lines in a frame of two fields.
+        frame_lines: 525, "lines", Published, 525..=525 in 2..=16_384, "NTSC: 262.5 lines a field";
+        /// Visible pixels of a line.
+        visible_pixels: 640, "pixels", Published, 640..=640 in 1..=4_096, "TR94";
+        /// Visible lines of a field.
+        visible_lines: 240, "lines", Published, 240..=240 in 1..=4_096, "TR94: 480 lines in two fields";
+        /// Blanked pixel periods before the visible ones of a line.
+        left_blanking: 140, "pixels", Assumed, 0..=140 in 0..=16_384, "as in the frame buffer: all horizontal blanking comes first";
+        /// Blanked whole lines after a retrace.
+        top_blanking: 22, "lines", Assumed, 0..=22 in 0..=16_384, "as in the frame buffer: all vertical blanking comes first";
+    }
+}
+
+/// Stages of one clock each besides those of the divider and the comparators: table, multiply, two adders, face, address,
+/// memory, interpolate.
+const FIXED_STAGES: u64 = 8;
+
+impl ArpTiming {
+    /// Stages in which so many memories are compared in pairs.
+    #[must_use]
+    pub const fn compare_stages(&self) -> u64 {
+        self.display_memories.next_power_of_two().trailing_zeros() as u64
+    }
+
+    /// Stages from the table to the light: 8, the quotient's bits and the comparators; 26 for four memories and 16 bits.
+    #[must_use]
+    pub const fn stages(&self) -> u64 {
+        FIXED_STAGES + self.quotient_bits + self.compare_stages()
+    }
+
+    /// The time of all stages: how long before its light a pixel's orientation must be known.
+    #[must_use]
+    pub const fn depth(&self) -> Span {
+        Span(self.stages() * self.stage_ps)
+    }
+
+    /// How long before its light a pixel's texels are read: memory, comparators, interpolation.
+    #[must_use]
+    pub const fn read_ahead(&self) -> Span {
+        Span((2 + self.compare_stages()) * self.stage_ps)
+    }
+
+    /// Checks every number against its limits, and the rules between them.
+    ///
+    /// # Errors
+    ///
+    /// [`ArpError::Number`] names the number, what was expected and what was found.
+    pub fn check(&self) -> Result<(), ArpError> {
+        ParameterTable::check(self).map_err(|error| ArpError::Number(format!("arp.{error}")))?;
+        rule(self.face_texels.is_multiple_of(128), "face_texels", "a multiple of 128", self.face_texels)?;
+        rule([16, 24].contains(&self.depth_bits), "depth_bits", "16 or 24", self.depth_bits)?;
+        rule([16, 24].contains(&self.colour_bits), "colour_bits", "16 or 24", self.colour_bits)
+    }
+}
+
+fn rule(holds: bool, name: &'static str, expected: &'static str, found: u64) -> Result<(), ArpError> {
+    if holds { Ok(()) } else { Err(ArpError::Number(format!("arp.{name}: expected {expected}, found {found}"))) }
+}
+
+impl ScanTiming {
+    /// Checks every number against its limits; visible pixels and lines with their blanking fit in a line and a field.
+    ///
+    /// # Errors
+    ///
+    /// [`ArpError::Number`] names the number, what was expected and what was found.
+    pub fn check(&self) -> Result<(), ArpError> {
+        let path = |error| ArpError::Number(format!("arp_scan.{error}"));
+        ParameterTable::check(self).map_err(path)?;
+        check("pixel_ps", self.pixel_ps, (self.pixel_divisor, MAX)).map_err(path)?;
+        check("visible_pixels", self.visible_pixels, (1, self.line_pixels)).map_err(path)?;
+        check("left_blanking", self.left_blanking, (0, self.line_pixels - self.visible_pixels)).map_err(path)?;
+        let field_lines = self.frame_lines / 2;
+        check("visible_lines", self.visible_lines, (1, field_lines)).map_err(path)?;
+        check("top_blanking", self.top_blanking, (0, field_lines - self.visible_lines)).map_err(path)?;
+        self.clocks()
+            .ok_or_else(|| ArpError::Number("arp_scan.pixel_ps: expected a period below 2^63 ps a field".to_owned()))?;
+        Ok(())
+    }
+
+    /// Pixel clock and clock of the fields; `None` where a number is too large.
+    pub(crate) fn clocks(&self) -> Option<[Clock; 2]> {
+        let pixels = self.frame_lines.checked_mul(self.line_pixels)?;
+        let field = Clock::new(self.pixel_ps.checked_mul(pixels)?, self.pixel_divisor.checked_mul(2)?)?;
+        Some([Clock::new(self.pixel_ps, self.pixel_divisor)?, field])
+    }
+}

@@ -1,0 +1,428 @@
+//! The display on the ring: updates, swaps, orientations, and what a viewer sees.
+
+mod support;
+
+use address_recalculation::{
+    AddressRecalculationPipeline, ArpConfig, ArpTiming, CubeFace, Latch, begin_update, face_region,
+    orientation_message, region_grid, swap_together,
+};
+use glam::DQuat;
+use pxpl5_display::{Display, DisplayConfig, DisplayEvent, DisplayOutput};
+use pxpl5_sim::{Context, Time};
+use pxpl5_wire::{
+    Body, CopyTarget, Eye, Lines, NodeId, PeriodNumber, PictureNumber, PixelSource, RegionId, RegionPixels, Word,
+    swap_request,
+};
+use std::any::Any;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use support::turned;
+
+/// 16,384 colours before 16,384 depths, and how often they were asked for.
+#[derive(Debug)]
+struct Flat {
+    colour: u32,
+    depth: u32,
+    asked: AtomicU64,
+}
+
+impl PixelSource for Flat {
+    fn pixels(&self) -> Arc<[Word]> {
+        self.asked.fetch_add(1, Ordering::Relaxed);
+        [vec![self.colour; 16_384], vec![self.depth; 16_384]].concat().into()
+    }
+}
+
+fn flat(colour: u32, depth: u32) -> Arc<Flat> {
+    Arc::new(Flat { colour, depth, asked: AtomicU64::new(0) })
+}
+
+/// A display, its clock, and what it put out.
+struct Bench {
+    display: Box<dyn Display>,
+    outputs: Vec<(Time, DisplayOutput)>,
+    texels: u32,
+}
+
+const CONFIG: ArpConfig = ArpConfig {
+    timing: ArpTiming { face_texels: 128, display_memories: 2, ..ArpTiming::PAPERS },
+    ..ArpConfig::MACHINE
+};
+
+impl Bench {
+    fn new(config: &ArpConfig) -> Self {
+        let nodes: Vec<NodeId> = (40..40 + config.ports(1) as u16).map(NodeId).collect();
+        let display = config.build(&nodes).expect("valid");
+        let mut bench = Self { display, outputs: Vec::new(), texels: config.timing.face_texels as u32 };
+        bench.tick(0);
+        bench
+    }
+
+    fn event(&mut self, at: Time, event: DisplayEvent) {
+        let mut context = Context::default();
+        self.display.handle(event, context.at(at));
+        self.outputs.extend(context.drain_outputs());
+    }
+
+    fn tick(&mut self, field: u64) {
+        let at = self.display.tick(PeriodNumber(field));
+        self.event(at, DisplayEvent::Tick(PeriodNumber(field)));
+    }
+
+    fn words(&mut self, at: Time, port: usize, words: Arc<[Word]>) {
+        self.event(at, DisplayEvent::Delivered { port, body: Body::Words(words) });
+    }
+
+    fn begin(&mut self, port: usize, buffer: u8, regions: &[u16]) {
+        let regions: Vec<RegionId> = regions.iter().copied().map(RegionId).collect();
+        self.words(Time(10), port, begin_update(self.texels, buffer, &regions));
+    }
+
+    fn target(&self, port: usize, buffer: u8, region: u16) -> CopyTarget {
+        let grid = region_grid(self.texels);
+        let frame_buffer = self.display.nodes()[port];
+        CopyTarget {
+            frame_buffer,
+            buffer,
+            lines: Lines::Frame,
+            grid,
+            region: RegionId(region),
+            picture: PictureNumber(0),
+        }
+    }
+
+    fn parts(&mut self, port: usize, buffer: u8, region: u16, source: &Arc<Flat>, parts: std::ops::Range<u32>) {
+        for part in parts {
+            let image: Arc<dyn PixelSource> = Arc::<Flat>::clone(source);
+            let pixels = RegionPixels { target: self.target(port, buffer, region), image, part, parts: 32 };
+            self.event(Time(100 + u64::from(part)), DisplayEvent::Delivered { port, body: Body::Pixels(pixels) });
+        }
+    }
+
+    /// A whole update of the buffer that is not shown, with the same region on every face.
+    fn update(&mut self, port: usize, buffer: u8, source: &Arc<Flat>) {
+        let regions: Vec<u16> = (0..region_grid(self.texels).regions() as u16).collect();
+        self.begin(port, buffer, &regions);
+        regions.iter().for_each(|region| self.parts(port, buffer, *region, source, 0..32));
+        self.words(Time(1_000), port, swap_request(buffer));
+    }
+
+    fn pixel(&self, field: u64, x: u32, y: u32) -> u32 {
+        let [red, green, blue] = self.display.seen(0, PeriodNumber(field)).expect("remembered").get_pixel(x, y).0;
+        u32::from_be_bytes([0, red, green, blue])
+    }
+
+    fn arp(&self) -> &AddressRecalculationPipeline {
+        (&*self.display as &dyn Any).downcast_ref().expect("an address recalculation pipeline")
+    }
+
+    fn arp_mut(&mut self) -> &mut AddressRecalculationPipeline {
+        (&mut *self.display as &mut dyn Any).downcast_mut().expect("an address recalculation pipeline")
+    }
+
+    fn fault(&self) -> String {
+        self.display.faults().1.unwrap_or_default()
+    }
+}
+
+#[test]
+fn an_update_is_shown_from_the_next_retrace_on() {
+    let mut bench = Bench::new(&ArpConfig { fields_kept: 4, ..CONFIG });
+    bench.update(0, 1, &flat(0x11_22_33, 500));
+    (1..4).for_each(|field| bench.tick(field));
+    assert_eq!(
+        [bench.pixel(0, 320, 240), bench.pixel(1, 320, 241), bench.pixel(2, 320, 240)],
+        [0, 0x11_22_33, 0x11_22_33]
+    );
+    let swaps = bench
+        .outputs
+        .iter()
+        .filter(|(_, output)| matches!(output, DisplayOutput::Swapped { surface: 0, buffer: 1, tick } if tick.0 == 1));
+    assert_eq!(swaps.count(), 1);
+    let arrived = bench.outputs.iter().filter(|(_, output)| matches!(output, DisplayOutput::RegionArrived { .. }));
+    assert_eq!(arrived.count(), 6);
+    assert_eq!(bench.display.last_seen(), Some(PeriodNumber(2)));
+    assert_eq!(bench.display.faults(), (0, None));
+}
+
+#[test]
+fn nothing_is_computed_before_somebody_looks_and_then_only_what_is_read() {
+    let mut bench = Bench::new(&CONFIG);
+    let source = flat(0x33, 1);
+    bench.update(0, 1, &source);
+    (1..3).for_each(|field| bench.tick(field));
+    assert_eq!(source.asked.load(Ordering::Relaxed), 0);
+    // 60 degrees straight ahead meet one face of the six: one region of 128 texels.
+    assert_eq!(bench.pixel(1, 320, 241), 0x33);
+    assert_eq!(source.asked.load(Ordering::Relaxed), 1);
+    bench.pixel(1, 5, 5);
+    assert_eq!(source.asked.load(Ordering::Relaxed), 1, "once");
+}
+
+#[test]
+fn an_incomplete_update_is_never_shown_and_its_lateness_is_counted() {
+    let mut bench = Bench::new(&CONFIG);
+    bench.update(0, 1, &flat(0xAA, 9));
+    bench.tick(1);
+    let front = face_region(128, CubeFace::NegZ, 0, 0).expect("a region").0;
+    let late = flat(0xBB, 9);
+    bench.begin(0, 0, &[front, 0]);
+    bench.parts(0, 0, front, &late, 0..32);
+    bench.parts(0, 0, 0, &late, 0..31);
+    bench.words(Time(1_000), 0, swap_request(0));
+    (2..4).for_each(|field| bench.tick(field));
+    assert_eq!([bench.pixel(1, 9, 9), bench.pixel(2, 9, 8)], [0xAA, 0xAA], "the last message is missing");
+    bench.parts(0, 0, 0, &late, 31..32);
+    (4..6).for_each(|field| bench.tick(field));
+    assert_eq!(bench.pixel(4, 9, 8), 0xBB);
+    let stats = *bench.arp().memories(Eye::Left)[0].stats();
+    assert_eq!((stats.swaps, stats.missed, stats.regions), (2, 2, 8));
+    let two_fields = bench.display.tick(PeriodNumber(4)).since(bench.display.tick(PeriodNumber(2)));
+    assert_eq!(stats.lateness, two_fields);
+    assert_eq!(bench.arp().memories(Eye::Left)[1].stats().missed, 0);
+}
+
+#[test]
+fn regions_without_primitives_are_not_sent_and_are_empty() {
+    let mut bench = Bench::new(&CONFIG);
+    bench.update(0, 1, &flat(0xAA, 9));
+    bench.tick(1);
+    bench.begin(0, 0, &[]);
+    bench.words(Time(1_000), 0, swap_request(0));
+    (2..4).for_each(|field| bench.tick(field));
+    assert_eq!([bench.pixel(1, 9, 9), bench.pixel(2, 9, 8)], [0xAA, 0]);
+}
+
+#[test]
+fn a_request_at_the_instant_of_a_retrace_waits_for_the_next() {
+    let retrace = Bench::new(&CONFIG).display.tick(PeriodNumber(1));
+    for (at, shown_in) in [(Time(retrace.0 - 1), 1), (retrace, 2)] {
+        let mut bench = Bench::new(&CONFIG);
+        bench.begin(0, 1, &[]);
+        bench.words(at, 0, swap_request(1));
+        (1..4).for_each(|field| bench.tick(field));
+        let swapped = bench.outputs.iter().find_map(|(_, output)| match output {
+            DisplayOutput::Swapped { tick, .. } => Some(tick.0),
+            DisplayOutput::RegionArrived { .. } => None,
+        });
+        assert_eq!(swapped, Some(shown_in));
+    }
+}
+
+#[test]
+fn memories_that_exchanged_objects_swap_together_or_not_at_all() {
+    let mut bench = Bench::new(&CONFIG);
+    bench.begin(0, 1, &[]);
+    bench.begin(1, 1, &[3]);
+    bench.words(Time(1_000), 0, swap_together(1, 0b11));
+    bench.words(Time(1_000), 1, swap_together(1, 0b11));
+    bench.tick(1);
+    let buffers = |bench: &Bench| [0, 1].map(|k| bench.arp().memories(Eye::Left)[k].shown_buffer());
+    assert_eq!(buffers(&bench), [0, 0], "the second one waits for a region");
+    bench.parts(1, 1, 3, &flat(1, 1), 0..32);
+    bench.tick(2);
+    assert_eq!(buffers(&bench), [1, 1]);
+    let missed = [0, 1].map(|k| bench.arp().memories(Eye::Left)[k].stats().missed);
+    assert_eq!(missed, [1, 1]);
+}
+
+#[test]
+fn memories_are_composed_by_depth_over_the_ring() {
+    for (depths, expected) in
+        [([7, 8], 0xA0), ([8, 7], 0xB0), ([7, 7], 0xA0), ([0xFF_FFFF, 8], 0xB0), ([0xFF_FFFF; 2], 0)]
+    {
+        let mut bench = Bench::new(&CONFIG);
+        bench.update(0, 1, &flat(0xA0, depths[0]));
+        bench.update(1, 1, &flat(0xB0, depths[1]));
+        (1..3).for_each(|field| bench.tick(field));
+        assert_eq!(bench.pixel(1, 77, 33), expected, "{depths:?}");
+    }
+}
+
+/// Sends a bench something.
+type Send = fn(&mut Bench);
+
+#[test]
+fn what_cannot_be_used_is_a_counted_fault_without_effect() {
+    let cases: [(&str, Send); 8] = [
+        ("shown", |bench| bench.begin(0, 0, &[1])),
+        ("shown", |bench| bench.parts(0, 0, 0, &flat(1, 1), 0..1)),
+        ("announced", |bench| bench.parts(0, 1, 0, &flat(1, 1), 0..1)),
+        ("twice", |bench| {
+            bench.begin(0, 1, &[0]);
+            bench.parts(0, 1, 0, &flat(1, 1), 0..1);
+            bench.parts(0, 1, 0, &flat(1, 1), 0..1);
+        }),
+        ("expected buffer 0 or 1, found 2", |bench| bench.words(Time(5), 0, swap_request(2))),
+        ("expected a map of 6 regions, found region 31", |bench| {
+            bench.words(Time(5), 0, vec![0x0041_5042, 1, 1 << 31].into())
+        }),
+        ("expected 9 components, found 2", |bench| bench.words(Time(5), 0, vec![0x0041_504D, 1, 2].into())),
+        ("expected BEGIN, SWAP, TOGETHER or MATRIX", |bench| bench.words(Time(5), 0, vec![12].into())),
+    ];
+    for (expected, send) in cases {
+        let mut bench = Bench::new(&CONFIG);
+        send(&mut bench);
+        assert_eq!(bench.display.faults().0, 1, "{expected}");
+        assert!(bench.fault().contains(expected), "{}", bench.fault());
+    }
+}
+
+/// Colours alone are 16 messages: a memory with depth takes none of them, the background memory no others.
+#[test]
+fn a_region_needs_depths_but_in_the_background_memory() {
+    let config = ArpConfig { has_background_memory: true, ..CONFIG };
+    for (port, parts, faults) in [(0, 16, 1), (0, 32, 0), (2, 16, 0), (2, 32, 1)] {
+        let mut bench = Bench::new(&config);
+        bench.begin(port, 1, &[0]);
+        let pixels = RegionPixels { target: bench.target(port, 1, 0), image: flat(5, 5), part: 0, parts };
+        bench.event(Time(99), DisplayEvent::Delivered { port, body: Body::Pixels(pixels) });
+        assert_eq!(bench.display.faults().0, faults, "port {port}, {parts} messages");
+    }
+}
+
+#[test]
+fn the_background_memory_is_seen_where_nothing_else_is() {
+    let config = ArpConfig { has_background_memory: true, ..CONFIG };
+    let mut bench = Bench::new(&config);
+    bench.begin(2, 1, &[0, 1, 2, 3, 4, 5]);
+    let sky = flat(0x77, 0);
+    for region in 0..6 {
+        for part in 0..16 {
+            let pixels = RegionPixels { target: bench.target(2, 1, region), image: sky.clone(), part, parts: 16 };
+            bench.event(Time(99), DisplayEvent::Delivered { port: 2, body: Body::Pixels(pixels) });
+        }
+    }
+    bench.words(Time(100), 2, swap_request(1));
+    (1..3).for_each(|field| bench.tick(field));
+    assert_eq!(bench.pixel(1, 3, 3), 0x77);
+    bench.update(0, 1, &flat(0x88, 0xFF_FFFE));
+    (3..5).for_each(|field| bench.tick(field));
+    assert_eq!(bench.pixel(3, 3, 3), 0x88);
+}
+
+/// Six faces of one colour each.
+fn coloured(bench: &mut Bench) {
+    let regions: Vec<u16> = (0..6).collect();
+    bench.begin(0, 1, &regions);
+    regions.iter().for_each(|face| bench.parts(0, 1, *face, &flat(0x10 * (u32::from(*face) + 1), 9), 0..32));
+    bench.words(Time(1_000), 0, swap_request(1));
+}
+
+const QUARTER: [[f64; 3]; 3] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]];
+
+/// Turned a quarter to the left (about +y), a head that looked along -z looks along -x: face 1.
+#[test]
+fn a_turn_of_the_head_needs_no_update() {
+    let mut bench = Bench::new(&CONFIG);
+    coloured(&mut bench);
+    bench.tick(1);
+    let at = bench.display.tick(PeriodNumber(2));
+    bench.arp_mut().load_orientation(Eye::Left, QUARTER, at).expect("a rotation");
+    (2..5).for_each(|field| bench.tick(field));
+    assert_eq!([bench.pixel(2, 320, 240), bench.pixel(3, 320, 241)], [0x20, 0x20]);
+    assert_eq!(bench.arp().memories(Eye::Left)[0].stats().swaps, 1);
+}
+
+#[test]
+fn an_orientation_is_latched_to_the_picosecond() {
+    for (latch, x, y) in [(Latch::Field, 0, 0), (Latch::Line, 0, 100), (Latch::Pixel, 7, 200)] {
+        let config = ArpConfig { latch, ..CONFIG };
+        let latched = config.scan().expect("valid").latches(latch, x, y, PeriodNumber(2)).expect("an even line");
+        for (late, expected) in [(0, 0x20), (1, 0x60)] {
+            let mut bench = Bench::new(&config);
+            coloured(&mut bench);
+            bench.tick(1);
+            bench.tick(2);
+            bench.words(latched + pxpl5_sim::Span(late), 1, orientation_message(QUARTER));
+            (3..4).for_each(|field| bench.tick(field));
+            assert_eq!(bench.pixel(2, x, y), expected, "{latch:?}, {late} ps late");
+        }
+    }
+}
+
+/// Latched by pixel, a matrix that comes in the middle of a line splits it there; by line at the next line; by field not at all.
+#[test]
+fn a_picture_is_torn_where_the_latch_lets_it() {
+    let split = |latch| {
+        let config = ArpConfig { latch, ..CONFIG };
+        let lit = config.scan().expect("valid").latches(Latch::Pixel, 320, 100, PeriodNumber(2)).expect("an even line");
+        let mut bench = Bench::new(&config);
+        coloured(&mut bench);
+        (1..3).for_each(|field| bench.tick(field));
+        bench.arp_mut().load_orientation(Eye::Left, QUARTER, lit).expect("a rotation");
+        bench.tick(3);
+        [(0, 100), (319, 100), (320, 100), (0, 102), (639, 478)].map(|(x, y)| bench.pixel(2, x, y))
+    };
+    assert_eq!(split(Latch::Field), [0x60, 0x60, 0x60, 0x60, 0x60]);
+    assert_eq!(split(Latch::Line), [0x60, 0x60, 0x60, 0x20, 0x20]);
+    assert_eq!(split(Latch::Pixel), [0x60, 0x60, 0x20, 0x20, 0x20]);
+}
+
+#[test]
+fn nonsense_of_a_tracker_is_refused_and_the_last_good_orientation_stays() {
+    let mirror = [[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let stretched = [[1.01, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let not_finite = [[f64::NAN, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, f64::INFINITY]];
+    let mut bench = Bench::new(&CONFIG);
+    coloured(&mut bench);
+    bench.arp_mut().load_orientation(Eye::Left, QUARTER, Time(5)).expect("a rotation");
+    for (rows, what) in [
+        (mirror, "a reflection"),
+        (stretched, "rows 0 and 0"),
+        (not_finite, "a component of NaN"),
+        ([[0.0; 3]; 3], "rows 0 and 0"),
+    ] {
+        let error = bench.arp_mut().load_orientation(Eye::Left, rows, Time(6)).expect_err(what).to_string();
+        assert!(
+            error.starts_with("orientation: expected a rotation within 1e-3, found ") && error.contains(what),
+            "{error}"
+        );
+        bench.words(Time(7), 0, orientation_message(rows));
+    }
+    (1..3).for_each(|field| bench.tick(field));
+    assert_eq!(bench.pixel(1, 320, 241), 0x20);
+    let counters = bench.display.counters();
+    let count = |name| counters.iter().find(|counter| counter.name == name).map(|counter| counter.count);
+    assert_eq!([count("matrix loads"), count("matrices refused")], [Some(1), Some(8)]);
+    assert_eq!(bench.display.faults().0, 4, "those that came over the ring");
+}
+
+/// A tracker that falls silent: the last orientation stands for as many fields as one likes.
+#[test]
+fn a_silent_tracker_leaves_the_last_orientation() {
+    let mut bench = Bench::new(&CONFIG);
+    coloured(&mut bench);
+    bench
+        .arp_mut()
+        .load_orientation(Eye::Left, turned(DQuat::from_rotation_y(std::f64::consts::PI)).rows(), Time(5))
+        .expect("a rotation");
+    (1..200).for_each(|field| bench.tick(field));
+    assert_eq!(bench.pixel(198, 320, 240), 0x50, "behind");
+    assert_eq!(bench.display.seen(0, PeriodNumber(100)), None, "no longer remembered");
+}
+
+#[test]
+fn two_eyes_have_memories_and_orientations_of_their_own() {
+    let nodes: Vec<NodeId> = (1..=4).map(NodeId).collect();
+    let display = CONFIG.build(&nodes).expect("valid");
+    assert_eq!((display.surfaces().len(), CONFIG.ports(2), display.nodes().len()), (2, 4, 4));
+    let mut bench = Bench { display, outputs: Vec::new(), texels: 128 };
+    bench.tick(0);
+    bench.update(0, 1, &flat(0x0A, 3));
+    bench.update(3, 1, &flat(0x0B, 3));
+    (1..3).for_each(|field| bench.tick(field));
+    let seen = [0, 1].map(|eye| bench.display.seen(eye, PeriodNumber(1)).expect("remembered").get_pixel(9, 9).0[2]);
+    assert_eq!(seen, [0x0A, 0x0B]);
+    let error = CONFIG.build(&nodes[..3]).expect_err("three ports").to_string();
+    assert_eq!(error, "arp: expected 2 ports for one eye, 4 for two, found 3");
+}
+
+#[test]
+fn what_is_shown_now_follows_the_newest_orientation() {
+    let mut bench = Bench::new(&CONFIG);
+    coloured(&mut bench);
+    bench.tick(1);
+    let shown = bench.display.shown(0).expect("a picture");
+    assert!(shown.pixels().all(|pixel| pixel.0[2] == 0x60));
+}

@@ -1,0 +1,150 @@
+//! The fast path gives the literal twin's bits, whatever the words, faces and contents.
+
+mod support;
+
+use address_recalculation::literal::{BankedMemory, LiteralPipeline};
+use address_recalculation::{ArpConfig, ArpTiming, CompositionOrder, FaceSet, Lens, Lookup, Orientation, ScanTiming};
+use glam::DQuat;
+use proptest::prelude::*;
+use pxpl5_sim::SplitMix64;
+use support::{noise, turned};
+
+/// 31 x 14 pixels: lines that are no multiple of eight.
+const SMALL: ScanTiming = ScanTiming { visible_pixels: 31, visible_lines: 7, ..ScanTiming::PAPERS };
+
+fn by_lookup(
+    config: &ArpConfig,
+    orientation: &Orientation,
+    memories: &[FaceSet],
+    behind: Option<&FaceSet>,
+) -> (Vec<u32>, [u64; 2]) {
+    let table = config.table().expect("valid");
+    let lookup = Lookup::new(config, &table, memories.iter().collect(), behind);
+    let mut pixels = vec![0; 31 * 14];
+    let stats = lookup.run(0, &orientation.words(config.timing.matrix_bits), &mut pixels);
+    (pixels, [stats.split, stats.conflicts])
+}
+
+/// Every pixel through every stage; a pixel leaves as many clocks after it entered as there are stages.
+fn by_registers(
+    config: &ArpConfig,
+    orientation: &Orientation,
+    memories: &[FaceSet],
+    behind: Option<&FaceSet>,
+) -> (Vec<u32>, [u64; 2]) {
+    let banks: Vec<BankedMemory> = memories.iter().map(BankedMemory::of).collect();
+    let behind = behind.map(BankedMemory::of);
+    let mut pipeline = LiteralPipeline::new(config, config.table().expect("valid"));
+    assert_eq!(pipeline.stages() as u64, config.timing.stages());
+    let matrix = orientation.words(config.timing.matrix_bits);
+    let mut pixels = vec![0; 31 * 14];
+    let mut stats = [0; 2];
+    for clock in 0..pixels.len() + pipeline.stages() - 1 {
+        let entering = (clock < pixels.len()).then_some(([clock as u32 % 31, clock as u32 / 31], matrix));
+        let lit = pipeline.clock(entering, &banks, behind.as_ref());
+        assert_eq!(lit.is_some(), clock + 1 >= pipeline.stages(), "clock {clock}");
+        if let Some(lit) = lit {
+            let place = clock + 1 - pipeline.stages();
+            assert_eq!(lit.pixel, [place as u32 % 31, place as u32 / 31]);
+            pixels[place] = lit.colour;
+            stats[0] += u64::from(lit.footprint.is_split);
+            stats[1] += u64::from(lit.footprint.has_conflict());
+        }
+    }
+    (pixels, stats)
+}
+
+fn check(config: &ArpConfig, orientation: &Orientation, seed: u64) {
+    config.check().expect("valid");
+    let mut random = SplitMix64::new(seed);
+    let memories: Vec<FaceSet> = (0..config.timing.display_memories).map(|_| noise(config, &mut random)).collect();
+    let behind = config.has_background_memory.then(|| noise(config, &mut random));
+    let fast = by_lookup(config, orientation, &memories, behind.as_ref());
+    let literal = by_registers(config, orientation, &memories, behind.as_ref());
+    assert_eq!(fast, literal, "{config:?} {orientation:?}");
+}
+
+/// Words as in the table of numbers.
+fn words() -> impl Strategy<Value = ArpTiming> {
+    let bits = (8_u64..=24, 8_u64..=24, 8_u64..=20, 0_u64..=8);
+    let usual = Just((16, 16, 16, 4));
+    (prop_oneof![usual, bits], 1_u64..=8, 0_u64..=8, any::<bool>(), any::<bool>()).prop_map(
+        |((vector_bits, matrix_bits, quotient_bits, weight_bits), display_memories, guard_texels, narrow, shallow)| {
+            ArpTiming {
+                display_memories,
+                face_texels: 128,
+                guard_texels,
+                vector_bits,
+                matrix_bits,
+                quotient_bits,
+                weight_bits,
+                depth_bits: if shallow { 16 } else { 24 },
+                colour_bits: if narrow { 16 } else { 24 },
+                ..ArpTiming::PAPERS
+            }
+        },
+    )
+}
+
+fn config() -> impl Strategy<Value = ArpConfig> {
+    let lens = prop_oneof![
+        (1.0..170.0_f64).prop_map(|angle| (Lens::Flat, angle)),
+        (0.0..1.0_f64, 20.0..120.0_f64).prop_map(|(k1, angle)| (Lens::Radial { k1, k2: 0.01 }, angle)),
+        (100.0..=360.0_f64).prop_map(|angle| (Lens::Equidistant, angle)),
+    ];
+    (words(), lens, any::<bool>(), any::<bool>(), 0_u32..0x100_0000).prop_map(
+        |(timing, (lens, horizontal_deg), mixed_first, has_background_memory, background)| ArpConfig {
+            timing: ArpTiming { horizontal_deg, ..timing },
+            scan: SMALL,
+            lens,
+            order: CompositionOrder::ALL[usize::from(mixed_first)].1,
+            background,
+            has_background_memory,
+            ..ArpConfig::MACHINE
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn the_fast_path_gives_the_bits_of_the_registers(
+        config in config(),
+        axes in prop::array::uniform4(-1.0..1.0_f64),
+        seed in any::<u64>(),
+    ) {
+        prop_assume!(axes.iter().map(|a| a * a).sum::<f64>() > 1e-3);
+        check(&config, &Orientation::from_quaternion(axes).expect("a rotation"), seed);
+    }
+}
+
+/// Faces meet along edges and in corners: those are in the picture when the head is turned by eighths.
+#[test]
+fn they_agree_where_faces_meet() {
+    for guard_texels in [0, 1] {
+        let timing = ArpTiming { face_texels: 128, guard_texels, horizontal_deg: 3.0, ..ArpTiming::PAPERS };
+        let config = ArpConfig { timing, scan: SMALL, ..ArpConfig::MACHINE };
+        for n in 0..64 {
+            let yaw = DQuat::from_rotation_y(f64::from(n % 8).mul_add(45.0, 0.0).to_radians());
+            let corner = (1.0 / 2_f64.sqrt()).atan();
+            let pitch = [0.0, corner, -corner, 0.25 * std::f64::consts::PI][n as usize / 8 % 4];
+            check(&config, &turned(yaw * DQuat::from_rotation_x(pitch)), u64::from(n as u32));
+        }
+    }
+}
+
+/// A corner of the bare cube is split; in a guarded one nothing is.
+#[test]
+fn split_footprints_are_counted_without_a_guard_alone() {
+    let corner =
+        turned(DQuat::from_rotation_y(45_f64.to_radians()) * DQuat::from_rotation_x((1.0 / 2_f64.sqrt()).atan()));
+    let counts = [0, 1].map(|guard_texels| {
+        let timing = ArpTiming { face_texels: 128, guard_texels, horizontal_deg: 10.0, ..ArpTiming::PAPERS };
+        let config = ArpConfig { timing, scan: SMALL, ..ArpConfig::MACHINE };
+        let faces: Vec<FaceSet> = (0..4).map(|seed| noise(&config, &mut SplitMix64::new(seed))).collect();
+        by_lookup(&config, &corner, &faces, None).1
+    });
+    assert!(counts[0][0] > 0 && counts[0][1] > 0 && counts[0][1] <= counts[0][0], "{counts:?}");
+    assert_eq!(counts[1], [0, 0]);
+}

@@ -1,0 +1,278 @@
+//! The specification's numeric cases that concern the display: 640 x 480 pixels, 60 degrees, faces of 512 texels.
+
+use address_recalculation::{
+    AddressUnit, ArpConfig, ArpTiming, CubeFace, FaceGeometry, Latch, Lens, Orientation, Picture, TexelAddress, Vector,
+};
+use glam::DQuat;
+use pxpl5_sim::SplitMix64;
+use pxpl5_wire::PeriodNumber;
+
+const PICTURE: Picture = Picture { width: 640, height: 480, horizontal_deg: 60.0 };
+const GUARDED: FaceGeometry = FaceGeometry { texels: 512, guard: 1 };
+const BARE: FaceGeometry = FaceGeometry { texels: 512, guard: 0 };
+
+fn near(found: Vector, expected: Vector, tolerance: f64) {
+    for (a, b) in found.iter().zip(expected) {
+        assert!((a - b).abs() <= tolerance, "{found:?}, expected {expected:?}");
+    }
+}
+
+fn texel(geometry: FaceGeometry, direction: Vector) -> (CubeFace, u32, u32) {
+    let texel = geometry.texel(direction).expect("a direction");
+    (texel.face, texel.column, texel.row)
+}
+
+/// The same texel by the hardware's words, from a direction of 30 bits.
+fn texel_by_words(guard: u64, direction: Vector) -> (CubeFace, u32, u32) {
+    let timing = ArpTiming { face_texels: 512, guard_texels: guard, weight_bits: 0, ..ArpTiming::PAPERS };
+    let longest = direction.iter().fold(0.0_f64, |most, component| most.max(component.abs()));
+    let words = direction.map(|component| (component / longest * f64::from(1 << 30)).round() as i64);
+    let footprint = AddressUnit::new(&timing).footprint(words).expect("a direction");
+    let texel = footprint.texels[0].expect("on a face");
+    (texel.face, texel.column, texel.row)
+}
+
+#[test]
+fn case_1_the_corner_pixel_of_a_flat_picture_and_its_words() {
+    near(Lens::Flat.view(&PICTURE, 0, 0), [-0.576448159, 0.432110592, -1.0], 1e-9);
+    let table = ArpConfig::IDEAL.table().expect("valid");
+    assert_eq!(table.entry(0, 0), [-15326, 11488, -26586]);
+}
+
+#[test]
+fn case_2_a_pixel_beside_the_middle() {
+    near(Lens::Flat.view(&PICTURE, 320, 240), [0.000902110, -0.000902110, -1.0], 1e-9);
+}
+
+#[test]
+fn cases_3_and_4_a_radial_lens() {
+    let lens = Lens::Radial { k1: 0.32, k2: 0.0 };
+    let flat = Lens::Flat.view(&PICTURE, 0, 0);
+    let seen = lens.view(&PICTURE, 0, 0);
+    assert!((seen[0] / flat[0] - 1.498251563).abs() < 1e-9);
+    let off_axis = seen[0].hypot(seen[1]).atan().to_degrees();
+    assert!((off_axis - 47.186136).abs() < 1e-6, "{off_axis}");
+    let edge = lens.view(&PICTURE, 639, 240);
+    assert!((edge[0] / Lens::Flat.view(&PICTURE, 639, 240)[0] - 1.319001563).abs() < 1e-9);
+    assert!((edge[0] - 0.760336023).abs() < 1e-9);
+}
+
+#[test]
+fn case_5_a_lens_that_folds_is_refused() {
+    let lens = |k1| Lens::Radial { k1, k2: 0.0 }.check(&PICTURE);
+    let error = lens(-0.215).expect_err("folds").to_string();
+    assert!(error.starts_with("arp.lens: expected 1 + 3 k1 rho^2") && error.contains("found -0.00"), "{error}");
+    lens(-0.214).expect("does not fold");
+    lens(-0.214_081_950).expect("just inside of the limit");
+    lens(-0.214_081_952).expect_err("just beyond the limit");
+    lens(f64::NAN).expect_err("no number");
+    // 1 - 3 t + 2 t^2 (t = rho^2) is above zero at the corner (t 1.557) after it was below between 0.5 and 1.
+    let turning = Lens::Radial { k1: -1.0, k2: 0.4 };
+    turning.check(&PICTURE).expect_err("folds before the corner");
+}
+
+#[test]
+fn case_6_an_equidistant_lens_sees_behind_the_head() {
+    let wide = Picture { horizontal_deg: 200.0, ..PICTURE };
+    let seen = Lens::Equidistant.view(&wide, 639, 240);
+    near(seen, [0.985276071, -0.001541903, 0.170963991], 1e-9);
+    assert_eq!(CubeFace::of(seen), Some(CubeFace::PosX));
+    Lens::Equidistant.check(&wide).expect("up to 360 degrees");
+    Lens::Flat.check(&wide).expect_err("a plane has less than 180");
+}
+
+/// The case lies on the edge between two texels: 1 + (1 + 1/3) / 2 x 510 = 341 exactly. In 16 bits the quotient 2/3 is 43,690,
+/// and 43,690 x 510 + 255 = 22,282,155 is 85 parts of 65,536 less than 340 x 65,536: the texel before.
+#[test]
+fn case_7_a_direction_has_a_face_and_a_texel() {
+    let direction = [0.3, -0.2, -0.9];
+    let (face, [u, v]) = GUARDED.place(direction).expect("a direction");
+    assert_eq!(face, CubeFace::NegZ);
+    assert!((u - 1.0 / 3.0).abs() < 1e-15 && (v - 2.0 / 9.0).abs() < 1e-15);
+    assert_eq!(texel(GUARDED, direction), (CubeFace::NegZ, 341, 312));
+    assert_eq!(texel_by_words(1, direction), (CubeFace::NegZ, 340, 312));
+    assert_eq!(texel_by_words(1, [0.3001, -0.2, -0.9]), (CubeFace::NegZ, 341, 312));
+}
+
+/// 18.3333 by exact fractions 1/2 and 1/6; 3/16 for 1/6 gives 15 + 20 x 3/16 = 18.75.
+#[test]
+fn case_8_four_texels_in_four_banks() {
+    let (_, [a, b]) = GUARDED.between_texels([0.3, -0.2, -0.9]).expect("a direction");
+    assert_eq!([a.floor(), b.floor()], [340.0, 312.0]);
+    assert!((a.fract() - 0.5).abs() < 1e-9 && (b.fract() - 1.0 / 6.0).abs() < 1e-9);
+    let timing = ArpTiming { face_texels: 512, ..ArpTiming::PAPERS };
+    let footprint = AddressUnit::new(&timing).footprint([300_000, -200_000, -900_000]).expect("a direction");
+    let texels = footprint.texels.map(|texel| texel.expect("on the face"));
+    assert_eq!(texels.map(|texel| [texel.column, texel.row]), [[340, 312], [341, 312], [340, 313], [341, 313]]);
+    assert_eq!(texels.map(|texel| texel.bank()), [0, 1, 2, 3]);
+    assert_eq!(texels.map(|texel| texel.word(512)), [40106; 4]);
+    assert!(!footprint.has_conflict() && !footprint.is_split);
+    assert_eq!(footprint.fractions, [8, 3]);
+    let values = [10, 20, 30, 40];
+    let sum: u32 = footprint.weights(4).iter().zip(values).map(|(weight, value)| weight * value).sum();
+    assert_eq!(f64::from(sum) / 256.0, 18.75);
+}
+
+#[test]
+fn cases_9_and_10_corners_and_edges() {
+    use CubeFace::{NegX, PosX, PosY};
+    let cases = [
+        (1, [1.0, 1.0, 1.0], (PosX, 510, 1)),
+        (1, [-1.0, -1.0, -1.0], (NegX, 510, 510)),
+        (0, [1.0, 1.0, 1.0], (PosX, 511, 0)),
+        (0, [-1.0, -1.0, -1.0], (NegX, 511, 511)),
+        (0, [1.0, 0.0, -1.0], (PosX, 0, 256)),
+        (0, [0.0, 1.0, -1.0], (PosY, 256, 511)),
+        (0, [-1.0, 0.0, 1.0], (NegX, 0, 256)),
+    ];
+    for (guard, direction, expected) in cases {
+        assert_eq!(texel(FaceGeometry { texels: 512, guard }, direction), expected, "{direction:?}");
+        assert_eq!(texel_by_words(guard.into(), direction), expected, "{direction:?} in words");
+    }
+}
+
+#[test]
+fn case_11_what_is_no_direction_has_no_texel() {
+    assert_eq!(BARE.texel([0.0; 3]), None);
+    assert_eq!(BARE.texel([f64::NAN, 1.0, 0.0]), None);
+    assert_eq!(BARE.texel([f64::INFINITY, 1.0, 0.0]), None);
+    assert_eq!(texel(BARE, [1e-300, 0.0, 0.0]), (CubeFace::PosX, 256, 256));
+    assert_eq!(texel(BARE, [-0.0, 0.0, -1.0]), (CubeFace::NegZ, 256, 256));
+    assert_eq!(AddressUnit::new(&ArpTiming::PAPERS).footprint([0; 3]), None);
+}
+
+fn yaw(degrees: f64) -> Orientation {
+    turned(DQuat::from_rotation_y(degrees.to_radians()))
+}
+
+fn turned(quaternion: DQuat) -> Orientation {
+    Orientation::from_quaternion(quaternion.to_array()).expect("a rotation")
+}
+
+#[test]
+fn cases_12_and_13_a_head_that_turns() {
+    use CubeFace::{NegX, NegZ, PosY};
+    let pitch = turned(DQuat::from_rotation_x(60_f64.to_radians()));
+    let pixel = |x, y| Lens::Flat.view(&PICTURE, x, y);
+    let cases = [
+        (yaw(30.0), [0.0, 0.0, -1.0], (NegZ, 108, 256)),
+        (yaw(30.0), pixel(0, 0), (NegX, 403, 145)),
+        (yaw(30.0), pixel(639, 479), (NegZ, 255, 351)),
+        (yaw(100.0), pixel(0, 0), (NegX, 42, 131)),
+        (pitch, pixel(320, 240), (PosY, 256, 403)),
+    ];
+    for (orientation, direction, expected) in cases {
+        assert_eq!(texel(GUARDED, orientation.turn(direction)), expected, "{direction:?}");
+    }
+}
+
+#[test]
+fn case_14_solid_angles_of_all_texels_are_those_of_a_sphere() {
+    let at = |column, row| BARE.solid_angle(TexelAddress { face: CubeFace::PosX, column, row });
+    let face: f64 = (0..512).flat_map(|row| (0..512).map(move |column| (column, row))).map(|(c, r)| at(c, r)).sum();
+    assert!((6.0 * face - 4.0 * std::f64::consts::PI).abs() < 1e-9);
+    assert!((at(256, 256) - 1.525856e-5).abs() < 1e-11, "{}", at(256, 256));
+    assert!((at(0, 0) - 2.948055e-6).abs() < 1e-12, "{}", at(0, 0));
+}
+
+/// A quaternion that is as likely as any other.
+fn any_rotation(random: &mut SplitMix64) -> DQuat {
+    let mut uniform = || (random.bits() >> 11) as f64 / (1_u64 << 53) as f64;
+    let [u, v, w] = [uniform(), uniform() * std::f64::consts::TAU, uniform() * std::f64::consts::TAU];
+    let short = (1.0 - u).sqrt();
+    let long = u.sqrt();
+    DQuat::from_xyzw(short * v.sin(), short * v.cos(), long * w.sin(), long * w.cos())
+}
+
+/// The largest distance in texels between the place by words and the place in real numbers, over 40,000 pairs of a rotation
+/// and a pixel; where both meet the same face.
+fn worst_address(bits: u64) -> f64 {
+    let timing = ArpTiming { face_texels: 512, vector_bits: bits, matrix_bits: bits, ..ArpTiming::PAPERS };
+    let config = ArpConfig { timing, ..ArpConfig::IDEAL };
+    let table = config.table().expect("valid");
+    let mut random = SplitMix64::new(15);
+    let mut worst = 0.0_f64;
+    for _ in 0..40_000 {
+        let orientation = turned(any_rotation(&mut random));
+        let x = (random.bits() % 640) as u32;
+        let y = (random.bits() % 480) as u32;
+        let exact = GUARDED.between_texels(orientation.turn(Lens::Flat.view(&PICTURE, x, y))).expect("a direction");
+        let words = orientation.words(bits).turn(table.entry(x, y)).map(|word| word as f64);
+        let found = GUARDED.between_texels(words).expect("a direction");
+        if found.0 == exact.0 {
+            let off = [0, 1].map(|i| (found.1[i] - exact.1[i]).abs());
+            worst = worst.max(off[0]).max(off[1]);
+        }
+    }
+    worst
+}
+
+/// The printed values are those of another sample, so the bound is 1.5 times.
+#[test]
+fn case_15_addresses_err_by_as_much_as_their_words_are_short() {
+    for (bits, printed) in [(8, 5.7), (10, 1.39), (12, 0.33), (14, 0.088), (16, 0.021)] {
+        let worst = worst_address(bits);
+        assert!(worst <= 1.5 * printed && worst >= printed / 2.0, "{bits} bits: {worst}, printed {printed}");
+    }
+}
+
+#[test]
+fn case_30_when_a_pixel_lights_and_what_happened_before() {
+    let scan = ArpConfig::IDEAL.scan().expect("valid");
+    let field = PeriodNumber(0);
+    assert_eq!(ArpConfig::IDEAL.timing.stages(), 26);
+    assert_eq!(scan.lights(320, 240, field).map(|time| time.0), Some(9_062_370_370));
+    assert_eq!(scan.reads(320, 240, field).map(|time| time.0), Some(9_062_270_370));
+    assert_eq!(scan.latches(Latch::Pixel, 320, 240, field).map(|time| time.0), Some(9_061_720_370));
+    assert_eq!(scan.lights(320, 241, field), None, "an odd line");
+}
+
+/// The error of an ideal tracker is the turn between latch and light: f tan(200 deg/s x age).
+#[test]
+fn case_31_a_pan_of_200_degrees_a_second() {
+    let scan = ArpConfig::IDEAL.scan().expect("valid");
+    let focal = 320.0 / 30_f64.to_radians().tan();
+    let lit = scan.lights(320, 240, PeriodNumber(0)).expect("an even line");
+    for (latch, printed, tolerance) in
+        [(Latch::Field, 14.81, 0.005), (Latch::Line, 0.0517, 5e-5), (Latch::Pixel, 0.00126, 5e-6)]
+    {
+        let latched = scan.latches(latch, 320, 240, PeriodNumber(0)).expect("an even line");
+        let age = lit.since(latched).0 as f64 * 1e-12;
+        let error = focal * (200.0 * age).to_radians().tan();
+        assert!((error - printed).abs() < tolerance, "{latch:?}: {error}");
+    }
+}
+
+/// A17: the orientation must be known less than 1 us before the first pixel, so stages are shorter than 38.46 ns.
+#[test]
+fn the_pipeline_is_shorter_than_a_microsecond() {
+    assert_eq!(ArpTiming::PAPERS.depth().0, 650_000);
+    let slowest = ArpTiming { stage_ps: 38_461, ..ArpTiming::PAPERS };
+    assert!(slowest.depth().0 < 1_000_000);
+    let stages = [1, 2, 3, 4, 5, 8].map(|n| ArpTiming { display_memories: n, ..ArpTiming::PAPERS }.stages());
+    assert_eq!(stages, [24, 25, 26, 26, 27, 27]);
+}
+
+/// Boards do not know each other; their numbers agree.
+#[test]
+fn the_scan_is_that_of_the_frame_buffer() {
+    let video = pxpl5_framebuffer::Video::new(pxpl5_framebuffer::VideoTiming::PAPERS).expect("valid");
+    let scan = ArpConfig::IDEAL.scan().expect("valid");
+    for n in [0, 1, 2, 59, 60, 1_000_001] {
+        let field = PeriodNumber(n);
+        assert_eq!(scan.retrace(field), video.retrace(field));
+        assert_eq!(scan.field_at(scan.retrace(field)), field);
+        for (x, y) in [(0, 0), (0, 1), (639, 479), (320, 240), (17, 478), (640, 0), (0, 480)] {
+            assert_eq!(scan.lights(x, y, field), video.when(x, y, field), "field {n}: {x}, {y}");
+        }
+    }
+}
+
+/// tan(half angle) = N/M: 90.2242 degrees for 512 and 1; an NTSC pixel of 60 degrees is 0.1034 degrees in the middle.
+#[test]
+fn angles_of_faces_and_pixels() {
+    let degrees = 2.0 * GUARDED.tangent().atan().to_degrees();
+    assert!((degrees - 90.2242).abs() < 1e-4, "{degrees}");
+    let [across, ..] = Lens::Flat.view(&PICTURE, 320, 240);
+    assert!((2.0 * across.atan().to_degrees() - 0.1034).abs() < 5e-5);
+}

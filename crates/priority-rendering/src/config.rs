@@ -1,0 +1,46 @@
+//! Every number of the policies.
+
+use crate::error::PriorityError;
+use parameters::ParameterTable;
+
+parameters::parameter_table! {
+    /// When an image is wrong, how the world is cut, and how fast memories are redrawn.
+    pub struct PriorityTiming {
+        /// The angle by which an image may be wrong before it is drawn again.
+        theta_deg: f64 = 0.17578125, "deg", Assumed, 0.05..=0.5 in 1e-9..=90.0, "not printed; 90/512: a texel of the display memory";
+        /// Rings of cells around the user's own that the fastest memory holds besides it.
+        inner_rings: 1, "rings", Derived, 0..=2 in 0..=100, "with 0 the second memory of table 1 would be as fast as the first";
+        /// Side of a cell.
+        cell_m: f64 = 5.0, "m", Derived, 1.0..=100.0 in 1e-3..=1e6, "fitted to one rate of table 1";
+        /// Distance from a border within which warping moves vertices, at most a cell's side.
+        falloff_m: f64 = 5.0, "m", Assumed, 0.1..=100.0 in 1e-3..=1e6, "not printed: a cell's side";
+        /// Frames a second: the rate of the fastest memory.
+        frame_hz: f64 = 60.0, "Hz", Published, 60.0..=60.0 in 1.0..=1000.0, "CPR05 4.2";
+        /// Display memories of different rates.
+        memories: 4, "memories", Published, 1..=8, "CPR05 tables 1 and 2";
+        /// The fastest turn of a head, for faces that are out of sight.
+        fastest_turn_deg_per_s: f64 = 370.0, "deg/s", Published, 200.0..=600.0 in 1.0..=100000.0, "JITP, LIST83: the peak turn of a head";
+    }
+}
+
+impl PriorityTiming {
+    /// Checks every number against its limits, and the falloff against the cell.
+    ///
+    /// # Errors
+    ///
+    /// [`PriorityError`] names the key, what was expected and what was found.
+    pub fn check(&self) -> Result<(), PriorityError> {
+        ParameterTable::check(self).map_err(|error| PriorityError(format!("priority.{error}")))?;
+        if self.falloff_m > self.cell_m {
+            let text = format!("at most a cell's side of {} m, found {}", self.cell_m, self.falloff_m);
+            return Err(PriorityError(format!("priority.falloff_m: expected {text}")));
+        }
+        Ok(())
+    }
+
+    /// Seconds of a frame.
+    #[must_use]
+    pub fn frame_s(&self) -> f64 {
+        1.0 / self.frame_hz
+    }
+}

@@ -1,0 +1,235 @@
+//! Policies over many frames: what is drawn when, and what is never wrong.
+
+use glam::DVec3;
+use priority_rendering::{Cell, Cells, Falloff, Objects, PriorityTiming, RegionWarp, Threshold, level};
+use proptest::prelude::*;
+
+const PAPERS: PriorityTiming = PriorityTiming::PAPERS;
+const FRAME_M: f64 = 1.0 / 60.0;
+
+fn square(cells: i64) -> impl Iterator<Item = Cell> {
+    (-cells..=cells).flat_map(move |x| (-cells..=cells).map(move |z| Cell { x, z }))
+}
+
+fn at(x: f64, z: f64) -> DVec3 {
+    DVec3::new(x, 1.7, z)
+}
+
+/// Updates of each memory and re-deals over a path, after the first frame.
+fn walk(cells: &mut Cells, path: impl Iterator<Item = DVec3>) -> (Vec<u64>, u64) {
+    let mut updates = vec![0; 8];
+    let mut deals = 0;
+    for eye in path {
+        let update = cells.frame(eye);
+        update.memories().for_each(|memory| updates[memory] += 1);
+        deals += u64::from(update.deals_anew);
+    }
+    (updates, deals)
+}
+
+/// Rates of the memories over two minutes of a straight walk at 1 m/s, in a direction and a lane.
+fn rates(side_m: f64, heading: f64, lane_m: f64) -> [f64; 4] {
+    let timing = PriorityTiming { cell_m: side_m, falloff_m: side_m, ..PAPERS };
+    let mut cells = Cells::new(&timing, square(60), false);
+    let place = |n: u32| {
+        let way = f64::from(n) * FRAME_M;
+        at(way * heading.cos() - lane_m * heading.sin(), way * heading.sin() + lane_m * heading.cos())
+    };
+    cells.frame(place(0));
+    let (updates, _) = walk(&mut cells, (1..=7_200).map(place));
+    [0, 1, 2, 3].map(|k| updates[k] as f64 / 120.0)
+}
+
+/// E5's shape: printed are 60.00, 39.25, 28.21 and 16.15 (table 1) of a path that is not. With cells of 5 m, fitted to the second
+/// rate, the specification's own simulation has 37 to 41, 24 to 30 and 17 to 20, and misses the printed ones by 10 to 14 percent
+/// (root mean square); so do walks that cross cells slantwise.
+#[test]
+fn the_second_rate_is_fitted_and_the_others_miss_by_about_a_tenth() {
+    for heading in [0.2, 0.4, 0.785] {
+        let rates = rates(5.0, heading, 0.7);
+        for (rate, expected) in rates.iter().zip([60.0..=60.0, 37.0..=41.0, 24.0..=30.0, 17.0..=20.0]) {
+            assert!(expected.contains(rate), "{rates:?}");
+        }
+        let misses: f64 =
+            rates.iter().zip([60.0, 39.25, 28.21, 16.15]).map(|(rate, printed)| (rate / printed - 1.0).powi(2)).sum();
+        assert!((0.09..=0.14).contains(&(misses / 3.0).sqrt()), "{}", (misses / 3.0).sqrt());
+    }
+}
+
+/// Along a row of cells the way that is left to the border's nearest side decides: in its middle half no lane differs, near its edge
+/// the second memory is drawn in every frame, for 2 x 5.3 m x sin(theta / 2) are less than a frame's way.
+#[test]
+fn a_walk_along_cells_depends_on_its_lane_only_near_their_edges() {
+    let middle = rates(5.0, 0.0, 2.5);
+    assert_eq!(rates(5.0, 0.0, 1.5), middle);
+    assert!(middle.is_sorted_by(|a, b| a > b), "{middle:?}");
+    assert!(Threshold::of_degrees(PAPERS.theta_deg).way(5.3) < FRAME_M);
+    assert_eq!(rates(5.0, 0.0, 0.3)[1], 60.0);
+}
+
+#[test]
+fn a_still_eye_needs_nothing_whatever_the_head_does() {
+    let mut cells = Cells::new(&PAPERS, square(5), true);
+    assert_eq!(cells.frame(at(1.0, 2.0)).due, [true; 4]);
+    for _ in 0..100 {
+        assert_eq!(cells.frame(at(1.0, 2.0)).due, [false; 4]);
+    }
+}
+
+/// The margin before a re-deal lies between 0 and D_3; at a = 5 m that is at least 46.0 mm (15 m x 2 sin(theta / 2)).
+#[test]
+fn to_and_fro_across_a_border_deals_once_at_most() {
+    let threshold = Threshold::of_degrees(PAPERS.theta_deg);
+    assert!((1e3 * threshold.way(15.0) - 46.02).abs() < 0.01);
+    for start in [0, 7, 13] {
+        let mut cells = Cells::new(&PAPERS, square(5), true);
+        cells.frame(at(4.9, 2.0));
+        let path = (start..start + 6_000).map(|n| at(5.0 + 0.020 * (f64::from(n) * 0.1).sin(), 2.0));
+        assert!(walk(&mut cells, path).1 <= 1);
+    }
+}
+
+#[test]
+fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
+    let mut cells = Cells::new(&PAPERS, square(300), true);
+    cells.frame(at(1.0, 2.0));
+    let update = cells.frame(at(1_001.0, 2.0));
+    assert!(update.deals_anew && update.due == [true; 4], "{update:?}");
+    assert_eq!(update.together_bits(), 0b1111);
+    assert!((0..4).all(|k| cells.drawn_from(k) == Some(at(1_001.0, 2.0))));
+    assert_eq!(cells.dealing().home, Cell { x: 200, z: 0 });
+    assert_eq!(cells.frame(at(1_001.0, 2.0)).due, [false; 4]);
+}
+
+/// theta so small that everything is drawn in every frame, and so large that nothing is redrawn within a cell.
+#[test]
+fn thresholds_at_their_ends() {
+    let walk_with = |theta_deg| {
+        let mut cells = Cells::new(&PriorityTiming { theta_deg, ..PAPERS }, square(5), false);
+        cells.frame(at(0.1, 2.0));
+        walk(&mut cells, (1..60).map(|n| at(0.1 + f64::from(n) * FRAME_M, 2.0))).0
+    };
+    assert_eq!(walk_with(1e-6)[..4], [59; 4]);
+    assert_eq!(walk_with(60.0)[..4], [59, 0, 0, 0]);
+}
+
+#[test]
+fn one_memory_and_eight() {
+    for memories in [1, 8] {
+        let mut cells = Cells::new(&PriorityTiming { memories, ..PAPERS }, square(12), true);
+        cells.frame(at(0.0, 0.0));
+        let (updates, _) = walk(&mut cells, (1..300).map(|n| at(f64::from(n) * FRAME_M, 0.0)));
+        assert_eq!(updates[0], 299);
+        assert!(updates[..memories as usize].is_sorted_by(|a, b| a >= b), "{updates:?}");
+    }
+}
+
+/// With the cascade a faster memory is never older than a slower one, so what warping joined stays joined.
+#[test]
+fn a_warped_border_is_closed_in_every_frame() {
+    let mut cells = Cells::new(&PAPERS, square(10), true);
+    let mut worst = 0.0_f64;
+    let mut vertices: Vec<Vec<DVec3>> = vec![Vec::new(); 4];
+    for n in 0..600 {
+        let turn = f64::from(n) * 0.01;
+        let update = cells.frame(at(6.0 * turn.sin(), 6.0 * turn.cos() * turn.sin()));
+        let dealing = *cells.dealing();
+        for memory in update.memories().filter(|memory| *memory < 3) {
+            let [own, slower] = [memory, memory + 1].map(|k| cells.drawn_from(k).expect("drawn"));
+            let warp = RegionWarp::new(Falloff::Linear, 5.0, own, slower).expect("a length");
+            let ring = (dealing.inner_rings + memory as u64) as f64;
+            let border = (dealing.home.x as f64 + ring + 1.0) * 5.0;
+            let vertex = DVec3::new(border, 1.0, dealing.home.z as f64 * 5.0 + 1.0);
+            assert_eq!(dealing.to_slower(vertex, memory), Some(0.0));
+            vertices[memory] = vec![warp.moved(vertex, Some(0.0)) - own, vertex];
+        }
+        for (memory, drawn) in vertices.iter().enumerate().take(3) {
+            let slower = cells.drawn_from(memory + 1).expect("drawn");
+            let [shown, vertex] = drawn[..] else { continue };
+            worst = worst.max((shown - (vertex - slower)).length());
+        }
+    }
+    assert!(worst < 1e-12, "{worst}");
+}
+
+proptest! {
+    /// Nothing in memory k is off by more than asin(D_k / d_k), which is theta but for the chord, when updates take no time.
+    #[test]
+    fn no_point_is_ever_wrong_by_more_than_the_threshold(
+        steps in prop::collection::vec((-0.05..0.05_f64, -0.05..0.05_f64), 1..200),
+        point in (0.0..1.0_f64, 0.0..4.0_f64, 0.0..1.0_f64),
+    ) {
+        let mut cells = Cells::new(&PAPERS, square(6), false);
+        let mut eye = at(2.5, 2.5);
+        let bound = (2.0 * (PAPERS.theta_deg.to_radians() / 2.0).sin()).asin();
+        for (x, z) in steps {
+            eye += DVec3::new(x, 0.0, z);
+            cells.frame(eye);
+            for cell in square(6) {
+                let memory = cells.dealing().memory(cell);
+                let place = DVec3::new(cell.x as f64 + point.0, 0.0, cell.z as f64 + point.2) * 5.0 + DVec3::Y * point.1;
+                let from = cells.drawn_from(memory).expect("drawn");
+                let off = (place - eye).angle_between(place - from);
+                prop_assert!(memory == 0 || off <= bound * (1.0 + 1e-9), "{} in memory {}", off, memory);
+            }
+        }
+    }
+
+    /// An object is in one memory in every frame and changes only when both are drawn and shown together.
+    #[test]
+    fn objects_change_memories_only_together(periods in prop::collection::vec(prop::collection::vec(0.0..0.3_f64, 5), 1..80)) {
+        let mut policy = Objects::new(&PAPERS, 5);
+        let mut before = [None; 5];
+        for (frame, periods) in (0_u64..).zip(periods) {
+            let update = policy.frame(frame, &periods);
+            for (object, before) in before.iter_mut().enumerate() {
+                let now = policy.memory(object).expect("placed");
+                if let Some(was) = before.filter(|was| *was != now) {
+                    let pair: [usize; 2] = [was, now];
+                    prop_assert!(pair.iter().all(|k| update.due[*k] && update.together[*k] && frame.is_multiple_of(1 << k)));
+                }
+                *before = Some(now);
+            }
+        }
+    }
+}
+
+/// An object whose image stays right for T is never shown longer than that: it is drawn again before.
+#[test]
+fn images_are_drawn_again_before_they_are_wrong() {
+    for period in [0.01, 0.0334, 0.05, 0.0667, 0.1, 0.1334, 0.3] {
+        let mut policy = Objects::new(&PAPERS, 1);
+        let mut drawn_at = 0;
+        for frame in 0..200_u64 {
+            let update = policy.frame(frame, &[period]);
+            if update.memories().next().is_some() {
+                drawn_at = frame;
+            }
+            let shown_for = (frame + 1 - drawn_at) as f64 / 60.0;
+            assert!(shown_for <= period.max(1.0 / 60.0) + 1e-9, "{period}: {shown_for}");
+        }
+    }
+}
+
+/// E4: point objects, uniform on a disc of 100 m around a walker: 60 x objects / draws = 6.01 at 1 m/s with four memories, 13.40 at
+/// 0.37 m/s with five.
+#[test]
+fn far_objects_are_drawn_seldom() {
+    let threshold = Threshold::of_degrees(PAPERS.theta_deg);
+    for (speed, memories, expected) in [(1.0, 4, 6.01), (0.37, 5, 13.40)] {
+        let objects = 20_000;
+        // The n-th of so many equal rings of area.
+        let periods: Vec<f64> = (0..objects)
+            .map(|n| threshold.way(100.0 * ((f64::from(n) + 0.5) / f64::from(objects)).sqrt()) / speed)
+            .collect();
+        let mut policy = Objects::new(&PriorityTiming { memories, ..PAPERS }, objects as usize);
+        (0..160).for_each(|frame| {
+            policy.frame(frame, &periods);
+        });
+        let reduction = 160.0 * f64::from(objects) / policy.counts()[1] as f64;
+        assert!((reduction - expected).abs() < 0.01, "{reduction}");
+        let by_levels: f64 =
+            periods.iter().map(|period| 60.0 / f64::from(1 << level(*period, FRAME_M, memories as usize))).sum();
+        assert!((60.0 * f64::from(objects) / by_levels - expected).abs() < 0.01);
+    }
+}
