@@ -10,7 +10,7 @@ use crate::terminal::{print, warn};
 use clap::Args;
 use pxpl5::results::{origin_lines, quantities_csv};
 use pxpl5::tracking::time::PS_PER_MS;
-use pxpl5::{ExperimentFile, HeadReport, Level, Measured, Outcome, Plan, Report, Results, Saving, SurfaceId};
+use pxpl5::{ExperimentFile, HeadReport, Keep, Level, Measured, Outcome, Plan, Report, Results, Saving, SurfaceId};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -54,7 +54,9 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     warn(&plan.out_of_range(), args.quiet);
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
-    let how = How { threads: args.threads, without: &args.without, budget: args.budget, quiet: args.quiet };
+    // Files list every picture; the report needs statistics only, however long the run is.
+    let keep = if folder.is_some() { Keep::Everything } else { Keep::Statistics };
+    let how = How { threads: args.threads, without: &args.without, keep, budget: args.budget, quiet: args.quiet };
     let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, how)?;
     let results = Results::of_run(outcome);
     let Some((_, report)) = &results.run else { return Err(no_events()) };

@@ -202,6 +202,12 @@ impl Machine {
         self.record.renderers.iter_mut().for_each(Renderer::watch_fifo);
     }
 
+    /// Gives up marks, arrivals and swaps before an instant: nobody will ask for them. No time changes.
+    pub fn forget_before(&mut self, instant: Time) {
+        let Record { observation, displays, .. } = &mut self.record;
+        observation.forget_before(instant, |period| displays[0].tick(period));
+    }
+
     /// Its boards and everything observed so far.
     #[must_use]
     pub const fn record(&self) -> &Record {
@@ -472,6 +478,12 @@ impl Machine {
     #[must_use]
     pub const fn events(&self) -> u64 {
         self.queue.events_taken()
+    }
+
+    /// Events that wait.
+    #[must_use]
+    pub fn pending_events(&self) -> usize {
+        self.queue.len()
     }
 
     /// Waits for the worker that computes pixels; the number of regions that it computed.

@@ -2,7 +2,7 @@
 
 use crate::display_list::{display_list, hmd_before, views};
 use crate::error::ExperimentError;
-use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
+use crate::experiment::{Experiment, FIELDS_RANGE, Pixels, WARM_UP_PICTURES};
 use crate::head::Head;
 use crate::head_views::{FIELDS_WITH_HEAD, HeadViews};
 use crate::level::{Level, with_clocks_of_instructions};
@@ -10,6 +10,7 @@ use crate::outcome::Outcome;
 use crate::pipeline::Setup;
 use crate::preparation::Preparation;
 use crate::views::{FrameStarts, ReportTimes};
+use crate::window::Window;
 use pxpl5_machine::{DEADLOCK_TICKS, Machine, MachineConfig, RunError};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
@@ -132,6 +133,7 @@ impl Experiment {
     ) -> Result<Outcome, ExperimentError> {
         let begun_s = self.host.seconds();
         let (mut machine, head) = self.assemble(preparation.clone())?;
+        let mut window = Window::new(self, machine.record());
         let mut result = Ok(());
         for field in self.stops(stops) {
             let until = machine.record().tick(field);
@@ -140,6 +142,7 @@ impl Experiment {
                 break;
             }
             at(field, &mut machine)?;
+            window.look(self.pipeline.as_ref(), &mut machine, until);
         }
         // Where frames are begun on demand, a host without a further report is at rest for good reason.
         if result.is_ok() && !self.on_demand && machine.is_at_rest() {
@@ -150,10 +153,10 @@ impl Experiment {
         let record = machine.into_record();
         let stopped = result.as_ref().err().map(|error| record.display().period_at(error.time()));
         let reached = stopped.unwrap_or(self.end()).min(self.end());
-        let outcome = Outcome::new(self.clone(), record, head, reached, host_seconds);
+        let outcome = Outcome::new(self.clone(), record, head, window, reached, host_seconds);
         match result {
             Err(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
-            Ok(()) if outcome.steady_pictures().is_empty() => Err(self.too_short(outcome)),
+            Ok(()) if outcome.tally().pictures <= WARM_UP_PICTURES as u64 => Err(self.too_short(outcome)),
             Ok(()) => Ok(outcome),
         }
     }
@@ -169,15 +172,21 @@ impl Experiment {
 
     fn too_short(&self, partial: Outcome) -> ExperimentError {
         let needed = self.estimates.and_then(|estimates| (estimates.fields_needed)(self));
-        let pictures = partial.pictures().len();
+        let pictures = partial.tally().pictures as usize;
         ExperimentError::TooShort { fields: self.fields, pictures, needed, partial: Box::new(partial) }
     }
 
     /// Fields at which to stop: those asked for, every so many for the progress, the last.
-    fn stops(&self, asked: &[PeriodNumber]) -> BTreeSet<PeriodNumber> {
+    fn stops(&self, asked: &[PeriodNumber]) -> impl Iterator<Item = PeriodNumber> {
         let end = self.end();
-        let regular = PeriodNumber(PROGRESS_FIELDS).until(end).step_by(PROGRESS_FIELDS as usize);
-        asked.iter().copied().filter(|field| *field < end).chain(regular).chain([end]).collect()
+        let mut asked: BTreeSet<PeriodNumber> = asked.iter().copied().filter(|field| *field < end).collect();
+        let mut regular = PeriodNumber(PROGRESS_FIELDS).until(end).step_by(PROGRESS_FIELDS as usize).chain([end]).peekable();
+        std::iter::from_fn(move || {
+            let next = regular.peek().into_iter().chain(asked.first()).copied().min()?;
+            regular.next_if_eq(&next);
+            asked.remove(&next);
+            Some(next)
+        })
     }
 }
 
