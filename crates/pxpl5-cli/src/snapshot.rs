@@ -7,7 +7,8 @@ use crate::output::OutputFile;
 use crate::terminal::progress;
 use clap::Args;
 use pxpl5::{
-    ExperimentError, ExperimentFile, Host, Keep, Machine, Outcome, PeriodNumber, Pixels, Plan, Saving, Snapshot, Workstation,
+    ExperimentError, ExperimentFile, Host, Keep, Machine, Outcome, PeriodNumber, Pixels, Plan, Saving, Snapshot,
+    Workstation,
 };
 use std::path::{Path, PathBuf};
 

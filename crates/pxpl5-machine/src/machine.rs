@@ -192,6 +192,8 @@ impl Machine {
             Saving::Transfers => self.record.ring.move_every_word(),
             Saving::EmptyRegions => self.record.renderers.iter_mut().for_each(Renderer::draw_every_region),
             Saving::RepeatedCode => self.processors.iter_mut().for_each(GpBoard::count_every_clock),
+            Saving::DelayedWork => self.processors.iter_mut().for_each(GpBoard::announce_every_end),
+            Saving::EmptyBins => self.processors.iter_mut().for_each(GpBoard::pay_one_by_one),
         }
     }
 

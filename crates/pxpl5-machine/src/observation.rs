@@ -140,7 +140,9 @@ impl Observation {
         self.marks.retain(|mark| mark.time >= instant);
         self.arrivals.retain(|arrival| arrival.last_part_at >= instant);
         let mut swapped: BTreeMap<SurfaceId, u64> = BTreeMap::new();
-        self.swaps.iter().for_each(|swap| *swapped.entry(swap.surface).or_default() += u64::from(tick(swap.tick) < instant));
+        self.swaps
+            .iter()
+            .for_each(|swap| *swapped.entry(swap.surface).or_default() += u64::from(tick(swap.tick) < instant));
         let gone = swapped.values().copied().min().unwrap_or_default();
         swapped.values_mut().for_each(|left| *left = gone);
         self.swaps.retain(|swap| {

@@ -170,7 +170,10 @@ impl InputFifo {
     /// Takes commands none of which waits for more than the one before it, since none blocks: what [`InputFifo::arrival`] and
     /// [`InputFifo::start`] say of each, in one loop. Nobody watches, and each fits.
     fn run_freely(&mut self, work: EqualCommands, mut free_at: Time, span: Span) {
-        debug_assert!(self.waiting.is_empty() && self.words_left == self.words_in, "only behind a block does anything wait");
+        debug_assert!(
+            self.waiting.is_empty() && self.words_left == self.words_in,
+            "only behind a block does anything wait"
+        );
         let words = u64::from(work.words_each);
         let on_channel = self.word * words;
         let mut words_in = self.words_in;

@@ -188,7 +188,8 @@ impl Outcome {
     #[must_use]
     pub fn latency_parts(&self) -> Vec<LatencyParts> {
         let stages = self.stages();
-        let parts = self.complete_pictures().map(|times| parts(&self.record, times, of_picture(&stages, times.picture)));
+        let parts =
+            self.complete_pictures().map(|times| parts(&self.record, times, of_picture(&stages, times.picture)));
         parts.collect()
     }
 

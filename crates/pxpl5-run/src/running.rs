@@ -180,7 +180,8 @@ impl Experiment {
     fn stops(&self, asked: &[PeriodNumber]) -> impl Iterator<Item = PeriodNumber> {
         let end = self.end();
         let mut asked: BTreeSet<PeriodNumber> = asked.iter().copied().filter(|field| *field < end).collect();
-        let mut regular = PeriodNumber(PROGRESS_FIELDS).until(end).step_by(PROGRESS_FIELDS as usize).chain([end]).peekable();
+        let mut regular =
+            PeriodNumber(PROGRESS_FIELDS).until(end).step_by(PROGRESS_FIELDS as usize).chain([end]).peekable();
         std::iter::from_fn(move || {
             let next = regular.peek().into_iter().chain(asked.first()).copied().min()?;
             regular.next_if_eq(&next);

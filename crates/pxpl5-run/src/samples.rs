@@ -113,8 +113,7 @@ impl Moments {
     fn of(values: &[f64]) -> Self {
         let origin = values.first().copied().unwrap_or_default();
         let none = DoubleSum::default();
-        let mut moments =
-            Self { n: 0, origin, sum: none, squares: none, min: f64::INFINITY, max: f64::NEG_INFINITY };
+        let mut moments = Self { n: 0, origin, sum: none, squares: none, min: f64::INFINITY, max: f64::NEG_INFINITY };
         values.iter().for_each(|value| moments.push(*value));
         moments
     }

@@ -198,7 +198,8 @@ impl Tally {
     fn take_eye_swaps<'a>(&mut self, stages: &[StageSpan], complete: impl Iterator<Item = &'a PictureTimes>) {
         let shown: BTreeMap<PictureNumber, Time> = complete.map(|times| (times.picture, times.shown_at)).collect();
         let mut begins: BTreeMap<(PictureNumber, SurfaceId), Time> = BTreeMap::new();
-        let transforms = stages.iter().filter(|span| span.stage == Stage::Transform && shown.contains_key(&span.picture));
+        let transforms =
+            stages.iter().filter(|span| span.stage == Stage::Transform && shown.contains_key(&span.picture));
         for stage in transforms {
             let Some(eye) = stage.surface else { continue };
             let begin = begins.entry((stage.picture, eye)).or_insert(stage.begin);

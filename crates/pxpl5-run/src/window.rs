@@ -64,7 +64,8 @@ impl Window {
         let until = fresh[newest_taken].shown_at.min(before(record, now)?);
         let held = fresh.partition_point(|times| times.shown_at <= until);
         let (old, held) = fresh.split_at(held);
-        let needed = held.iter().map(|times| times.sampled_at.unwrap_or(times.transform_at).min(times.transform_at)).min()?;
+        let needed =
+            held.iter().map(|times| times.sampled_at.unwrap_or(times.transform_at).min(times.transform_at)).min()?;
         let begin = before(record, needed).filter(|begin| *begin > record.observation().forgotten.before)?;
         self.tally.take(pipeline, record, old);
         self.taken_to = Some(until);

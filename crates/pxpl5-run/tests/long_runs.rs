@@ -38,13 +38,14 @@ fn run(experiment: &Experiment, keep: Keep) -> Outcome {
 /// Everything that is said of a run over all of it.
 fn said(outcome: &Outcome) -> Vec<String> {
     let tally = outcome.tally();
-    let all: Vec<&Samples> = [&tally.latency_ms, &tally.eye_ms, &tally.eye_swap_ms, &tally.eye_retraces, &tally.copy_begins_ms]
-        .into_iter()
-        .chain(&tally.parts_ms)
-        .chain(&tally.copy_ms)
-        .chain(tally.stage_ms.iter().map(|(_, samples)| samples))
-        .chain(tally.latencies_of_surfaces().map(|latency| latency.ms))
-        .collect();
+    let all: Vec<&Samples> =
+        [&tally.latency_ms, &tally.eye_ms, &tally.eye_swap_ms, &tally.eye_retraces, &tally.copy_begins_ms]
+            .into_iter()
+            .chain(&tally.parts_ms)
+            .chain(&tally.copy_ms)
+            .chain(tally.stage_ms.iter().map(|(_, samples)| samples))
+            .chain(tally.latencies_of_surfaces().map(|latency| latency.ms))
+            .collect();
     let late: &[LateRegion] = &tally.first_late_regions;
     let counts = [tally.pictures, tally.shown, tally.complete, tally.shown_in_a_row, tally.late_regions];
     let mut said: Vec<String> = all.iter().map(|samples| format!("{:?}", samples.statistics())).collect();
@@ -63,7 +64,11 @@ fn what_is_kept_changes_nothing_that_is_said() {
         assert!(forgotten.before.0 > 0, "{name}: records were given up");
         assert!(everything.tally().pictures > 100, "{name}: there is something to be said");
         let all = everything.pictures();
-        assert_eq!(statistics.pictures(), &all[all.len() - statistics.pictures().len()..], "{name}: the last ones are kept");
+        assert_eq!(
+            statistics.pictures(),
+            &all[all.len() - statistics.pictures().len()..],
+            "{name}: the last ones are kept"
+        );
     }
 }
 
@@ -91,7 +96,10 @@ fn twenty_times_the_fields_hold_no_more_and_take_twenty_times_the_work() {
         let [records_5, waiting_5, looked_at_5, _] = work(&experiment, 5 * fields);
         let [records_20, waiting_20, looked_at_20, events_20] = work(&experiment, 20 * fields);
         // A head's sway changes what is visible a little; 60 fields may come between two looks.
-        assert!(records_20 <= records_5 + records_5 / 20, "{name}: {records_20} records, {records_5} in a quarter of the time");
+        assert!(
+            records_20 <= records_5 + records_5 / 20,
+            "{name}: {records_20} records, {records_5} in a quarter of the time"
+        );
         assert!(waiting_20 <= 2 * waiting_5, "{name}: {waiting_20} events wait, {waiting_5} in a quarter of the time");
         let looks = looked_at_20 as f64 / (4 * looked_at_5) as f64;
         assert!(looks < 1.25, "{name}: {looks} times the records looked at a field");
