@@ -200,14 +200,14 @@ impl GpBoard {
             shared.cpu.settle(shared.now);
         }
         self.poll_until_quiet();
-        let shared = &mut *self.shared.borrow_mut();
-        if let Some(batch) = shared.next_batch() {
+        let batch = self.shared.borrow_mut().next_batch();
+        if let Some(batch) = batch {
             for (place, ChainLink { message, hold }) in (0..).zip(batch.links) {
                 let ticket = batch.ticket.0 << PLACE_BITS | place;
                 context.output(context.now() + self.cycle, GpOutput::Send { message, ticket, hold });
             }
         }
-        let end = shared.cpu.next_end();
+        let end = self.shared.borrow().cpu.next_end();
         self.announce(end, context);
     }
 

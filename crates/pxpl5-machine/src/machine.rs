@@ -326,6 +326,12 @@ impl Machine {
         }
     }
 
+    /// Ticks of the first display, up to the last one, between which nothing happened but ticks.
+    #[must_use]
+    pub const fn idle_ticks(&self) -> u64 {
+        self.idle_ticks
+    }
+
     /// Whether nothing is under way but the displays and the boards' clock: perhaps only until the next tick.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {

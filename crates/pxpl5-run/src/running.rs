@@ -145,7 +145,7 @@ impl Experiment {
             window.look(self.pipeline.as_ref(), &mut machine, until);
         }
         // Where frames are begun on demand, a host without a further report is at rest for good reason.
-        if result.is_ok() && !self.on_demand && machine.is_at_rest() {
+        if result.is_ok() && !self.on_demand && self.may_be_stuck(&machine) {
             result = self.deadlock(preparation).map_or(Ok(()), Err);
         }
         machine.finish_pixels();
@@ -161,13 +161,23 @@ impl Experiment {
         }
     }
 
+    /// Whether a machine at the end of the run may never go on. A pipeline that waits for a swap is at rest until the next tick; only
+    /// a run that was over soon could have come to rest for ever in the last periods before its end, and not before.
+    fn may_be_stuck(&self, machine: &Machine) -> bool {
+        machine.is_at_rest() && (self.fields <= SHORT_RUN || machine.idle_ticks() >= IDLE_TICKS)
+    }
+
     /// Whether a machine that is at rest at the end of the run, which may be too short to tell, would be so for ever: the run
     /// is repeated for as long as that takes, so that the record of this one ends where it was asked to.
     fn deadlock(&self, preparation: Preparation) -> Option<RunError> {
         let longer = Self { fields: self.fields + DEADLOCK_TICKS + 2, pixels: Pixels::Off, ..self.clone() };
         let (mut machine, _) = longer.assemble(preparation).ok()?;
-        let end = machine.record().tick(longer.end());
-        machine.run_until(end).err().filter(|error| matches!(error, RunError::Deadlock { .. }))
+        longer.stops(&[]).find_map(|field| {
+            let until = machine.record().tick(field);
+            let ended = machine.run_until(until).err();
+            machine.forget_before(until);
+            ended.filter(|error| matches!(error, RunError::Deadlock { .. }))
+        })
     }
 
     fn too_short(&self, partial: Outcome) -> ExperimentError {
@@ -190,6 +200,11 @@ impl Experiment {
         })
     }
 }
+
+/// Fields of a run that may be over before a deadlock has been noticed, and ticks without work from which on a longer one may be in one
+/// that it was too short to notice.
+const SHORT_RUN: u64 = 2 * DEADLOCK_TICKS;
+const IDLE_TICKS: u64 = 2;
 
 /// Fields between two reports of progress.
 const PROGRESS_FIELDS: u64 = 60;
