@@ -172,12 +172,14 @@ impl Experiment {
     fn deadlock(&self, preparation: Preparation) -> Option<RunError> {
         let longer = Self { fields: self.fields + DEADLOCK_TICKS + 2, pixels: Pixels::Off, ..self.clone() };
         let (mut machine, _) = longer.assemble(preparation).ok()?;
-        longer.stops(&[]).find_map(|field| {
+        for field in longer.stops(&[]) {
             let until = machine.record().tick(field);
-            let ended = machine.run_until(until).err();
+            if let Err(error) = machine.run_until(until) {
+                return Some(error).filter(|error| matches!(error, RunError::Deadlock { .. }));
+            }
             machine.forget_before(until);
-            ended.filter(|error| matches!(error, RunError::Deadlock { .. }))
-        })
+        }
+        None
     }
 
     fn too_short(&self, partial: Outcome) -> ExperimentError {
