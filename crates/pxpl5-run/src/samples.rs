@@ -3,8 +3,8 @@
 use crate::statistics::Statistics;
 use std::ops::Deref;
 
-/// How many numbers of each kind a run keeps that keeps statistics only: 256 KiB. Fields of a run of Slats, pictures of any other.
-pub const KEPT_SAMPLES: usize = 32_768;
+/// How many numbers of each kind a run keeps that keeps statistics only: 512 KiB. Fields of a run of Slats, pictures of any other.
+pub const KEPT_SAMPLES: usize = 65_536;
 
 /// Numbers in the order in which they came. Up to a limit all of them are kept, and statistics are those of [`Statistics::of`],
 /// bit for bit. Beyond it the limit's first numbers are kept and the statistics come from sums of twice the precision of `f64`,

@@ -22,11 +22,11 @@ fn experiments() -> [(&'static str, Experiment); 6] {
     let small = MachineConfig::small_hmd;
     let slats = MachineConfig::slats;
     [
-        ("rendering control", experiment(small(), RenderingControl::stereo(), scene("mig", 0), 4_000)),
+        ("rendering control", experiment(small(), RenderingControl::stereo(), scene("mig", 0), 2_500)),
         ("one eye", experiment(small(), RenderingControl::mono(), scene("mig", 60), 4_000)),
-        ("slats", experiment(slats(), Slats::split(), scene("mig", 60), 3_000)),
-        ("slats with too much", experiment(slats(), Slats::split(), scene("mig", 250), 4_000)),
-        ("frameless", experiment(small(), Frameless::new(), scene("full-screen:4", 0), 150)),
+        ("slats", experiment(slats(), Slats::split(), scene("mig", 60), 2_500)),
+        ("slats with too much", experiment(slats(), Slats::split(), scene("mig", 250), 2_500)),
+        ("frameless", experiment(small(), Frameless::new(), scene("full-screen:4", 0), 100)),
         ("jitp", experiment(small(), Jitp::new(Viewpoint::Strip, true), scene("full-screen:4", 0), 400)),
     ]
 }
@@ -88,9 +88,9 @@ fn work(experiment: &Experiment, fields: u64) -> [u64; 4] {
 fn twenty_times_the_fields_hold_no_more_and_take_twenty_times_the_work() {
     let small = MachineConfig::small_hmd;
     for (name, experiment, fields) in [
-        ("slats", experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1), 1_000),
-        ("rendering control", experiment(small(), RenderingControl::mono(), scene("mig", 12), 1), 1_000),
-        ("frameless", experiment(small(), Frameless::new(), scene("full-screen:4", 0), 1), 50),
+        ("slats", experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1), 500),
+        ("rendering control", experiment(small(), RenderingControl::mono(), scene("mig", 12), 1), 800),
+        ("frameless", experiment(small(), Frameless::new(), scene("full-screen:4", 0), 1), 25),
     ] {
         let [_, _, _, events] = work(&experiment, fields);
         let [records_5, waiting_5, looked_at_5, _] = work(&experiment, 5 * fields);
