@@ -135,5 +135,8 @@ fn savings_are_known_by_their_names() {
         assert_eq!(saving.name().parse(), Ok(saving));
     }
     let error = "idleness".parse::<Saving>().expect_err("no saving");
-    assert_eq!(error, "expected idle-boards, transfers, empty-regions, repeated-code, delayed-work, empty-bins, found \"idleness\"");
+    assert_eq!(
+        error,
+        "expected idle-boards, transfers, empty-regions, repeated-code, delayed-work, empty-bins, found \"idleness\""
+    );
 }

@@ -26,7 +26,7 @@ fn experiments() -> [(&'static str, Experiment); 6] {
         ("one eye", experiment(small(), RenderingControl::mono(), scene("mig", 60), 4_000)),
         ("slats", experiment(slats(), Slats::split(), scene("mig", 60), 2_500)),
         ("slats with too much", experiment(slats(), Slats::split(), scene("mig", 250), 2_500)),
-        ("frameless", experiment(small(), Frameless::new(), scene("full-screen:4", 0), 100)),
+        ("frameless", experiment(small(), Frameless::new(), scene("full-screen:4", 0), 150)),
         ("jitp", experiment(small(), Jitp::new(Viewpoint::Strip, true), scene("full-screen:4", 0), 400)),
     ]
 }
@@ -88,9 +88,13 @@ fn work(experiment: &Experiment, fields: u64) -> [u64; 4] {
 fn twenty_times_the_fields_hold_no_more_and_take_twenty_times_the_work() {
     let small = MachineConfig::small_hmd;
     for (name, experiment, fields) in [
-        ("slats", experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1), 500),
+        ("slats", experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1), 300),
         ("rendering control", experiment(small(), RenderingControl::mono(), scene("mig", 12), 1), 800),
-        ("frameless", experiment(small(), Frameless::new(), scene("full-screen:4", 0), 1), 25),
+        (
+            "frameless",
+            experiment(small(), Frameless { block: 64, ..Frameless::new() }, scene("full-screen:4", 0), 1),
+            150,
+        ),
     ] {
         let [_, _, _, events] = work(&experiment, fields);
         let [records_5, waiting_5, looked_at_5, _] = work(&experiment, 5 * fields);
