@@ -73,6 +73,22 @@ fn transfers_in_closed_form_end_when_their_words_do() {
 }
 
 #[test]
+fn delayed_work_ends_when_it_would_have_been_announced() {
+    for experiment in experiments() {
+        assert_same(&experiment.pixels(Pixels::Lazy), Saving::DelayedWork, 10);
+    }
+}
+
+#[test]
+fn tokens_that_find_an_empty_bin_go_on_when_two_payments_would_have_let_them() {
+    for experiment in experiments() {
+        assert_same(&experiment.pixels(Pixels::Lazy), Saving::EmptyBins, 10);
+    }
+    let few = Experiment::new(MachineConfig::small_hmd(), RenderingControl::stereo(), mig(12));
+    assert_same(&few.pixels(Pixels::Lazy), Saving::EmptyBins, 20);
+}
+
+#[test]
 fn regions_without_primitives_look_as_if_they_had_been_drawn() {
     for experiment in experiments() {
         assert_same(&experiment.pixels(Pixels::All), Saving::EmptyRegions, 10);
@@ -119,5 +135,8 @@ fn savings_are_known_by_their_names() {
         assert_eq!(saving.name().parse(), Ok(saving));
     }
     let error = "idleness".parse::<Saving>().expect_err("no saving");
-    assert_eq!(error, "expected idle-boards, transfers, empty-regions, repeated-code, found \"idleness\"");
+    assert_eq!(
+        error,
+        "expected idle-boards, transfers, empty-regions, repeated-code, delayed-work, empty-bins, found \"idleness\""
+    );
 }

@@ -9,8 +9,8 @@ use pxpl5_gp::GpTiming;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
 use pxpl5_run::{
-    ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureEnd, Pipeline, RenderingControl, Summary,
-    WARM_UP_PICTURES,
+    ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureEnd, Pipeline, RenderingControl, Samples,
+    Summary, WARM_UP_PICTURES, retraces,
 };
 use pxpl5_sim::Time;
 use pxpl5_wire::{MAX_MESSAGE_WORDS, PeriodNumber, RegionGrid, RegionId};
@@ -395,13 +395,15 @@ impl StereoModel {
         let shown: Vec<_> = frames.iter().filter(|frame| frame.shown_ns < end_ns).skip(WARM_UP_PICTURES).collect();
         let due = self.due(frames, fields);
         let field_ms = self.field_ns * 1e-6;
+        let eye_swap_latencies_ms: Samples = shown.iter().flat_map(|frame| self.eye_swap_latencies_ms(frame)).collect();
         Summary {
             latencies_ms: shown.iter().map(|frame| (frame.shown_ns - frame.transform_ns[0]) * 1e-6).collect(),
             field_ms,
             updates_hz: due.and_then(|due| due.updates_hz(field_ms)),
             due,
             eye_latencies_ms: shown.iter().flat_map(|frame| self.eye_latencies_ms(frame)).collect(),
-            eye_swap_latencies_ms: shown.iter().flat_map(|frame| self.eye_swap_latencies_ms(frame)).collect(),
+            eye_retraces: eye_swap_latencies_ms.iter().map(|ms| retraces(*ms, field_ms)).collect(),
+            eye_swap_latencies_ms,
             region_copy_us: self.copy_ns.iter().sum::<f64>() / self.copy_ns.len() as f64 * 1e-3,
             first_copy_ms: mean_ms(&shown, |frame| frame.copy_length_ns(0)),
             last_copy_ms: if self.eyes > 1 { mean_ms(&shown, |frame| frame.copy_length_ns(1)) } else { 0.0 },

@@ -10,7 +10,7 @@ use pxpl5_gp::GpTiming;
 use pxpl5_machine::{ConfigError, MachineConfig};
 use pxpl5_renderer::CommandKind;
 use pxpl5_run::{
-    ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureEnd, Pipeline, Slats, Summary,
+    ClosedForm, DuePictures, Estimates, Experiment, ExperimentError, PictureEnd, Pipeline, Samples, Slats, Summary,
     WARM_UP_PERIODS, WARM_UP_PICTURES,
 };
 use pxpl5_sim::Time;
@@ -312,12 +312,13 @@ fn summary(fields: u64, model: &SlatsModel, times: FieldTimes) -> Summary {
     let field_ms = model.field_ns * 1e-6;
     let due = model.due(times, fields);
     Summary {
-        latencies_ms: if times.in_time { vec![field_ms; pictures as usize] } else { Vec::new() },
+        latencies_ms: std::iter::repeat_n(field_ms, if times.in_time { pictures as usize } else { 0 }).collect(),
         field_ms,
         updates_hz: due.and_then(|due| due.updates_hz(field_ms)),
         due,
-        eye_latencies_ms: Vec::new(),
-        eye_swap_latencies_ms: Vec::new(),
+        eye_latencies_ms: Samples::default(),
+        eye_swap_latencies_ms: Samples::default(),
+        eye_retraces: Samples::default(),
         region_copy_us: model.region_ns * 1e-3,
         first_copy_ms: length_ms(times.top),
         last_copy_ms: times.bottom.map_or(0.0, length_ms),

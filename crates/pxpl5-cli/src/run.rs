@@ -10,7 +10,7 @@ use crate::terminal::{print, warn};
 use clap::Args;
 use pxpl5::results::{origin_lines, quantities_csv};
 use pxpl5::tracking::time::PS_PER_MS;
-use pxpl5::{ExperimentFile, HeadReport, Level, Measured, Outcome, Plan, Report, Results, Saving, SurfaceId};
+use pxpl5::{ExperimentFile, HeadReport, Keep, Level, Measured, Outcome, Plan, Report, Results, Saving, SurfaceId};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -31,8 +31,8 @@ pub(crate) struct RunArgs {
     /// Worker threads for --pixels all; default: one a core; 0: the thread that simulates computes the pixels.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=1024))]
     threads: Option<u64>,
-    /// Do without a saving, to see what it is worth: idle-boards, transfers, empty-regions or repeated-code; may be
-    /// repeated.
+    /// Do without a saving, to see what it is worth: idle-boards, transfers, empty-regions, repeated-code, delayed-work or
+    /// empty-bins; may be repeated.
     #[arg(long, value_name = "SAVING")]
     without: Vec<Saving>,
     /// Write report.json, results.csv, pictures.csv, experiment.toml, timeline.svg and the last pictures into this folder.
@@ -54,7 +54,9 @@ pub(crate) fn run(args: RunArgs) -> Result<(), CliError> {
     let plan = plan(args.snapshot.experiment(args.settings.gather()?)?)?;
     warn(&plan.out_of_range(), args.quiet);
     let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
-    let how = How { threads: args.threads, without: &args.without, budget: args.budget, quiet: args.quiet };
+    // Files list every picture; the report needs statistics only, however long the run is.
+    let keep = if folder.is_some() { Keep::Everything } else { Keep::Statistics };
+    let how = How { threads: args.threads, without: &args.without, keep, budget: args.budget, quiet: args.quiet };
     let Simulated { outcome, too_short } = args.snapshot.simulate(&plan, how)?;
     let results = Results::of_run(outcome);
     let Some((_, report)) = &results.run else { return Err(no_events()) };

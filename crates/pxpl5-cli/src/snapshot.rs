@@ -7,7 +7,8 @@ use crate::output::OutputFile;
 use crate::terminal::progress;
 use clap::Args;
 use pxpl5::{
-    ExperimentError, ExperimentFile, Host, Machine, Outcome, PeriodNumber, Pixels, Plan, Saving, Snapshot, Workstation,
+    ExperimentError, ExperimentFile, Host, Keep, Machine, Outcome, PeriodNumber, Pixels, Plan, Saving, Snapshot,
+    Workstation,
 };
 use std::path::{Path, PathBuf};
 
@@ -32,6 +33,8 @@ pub(crate) struct How<'a> {
     pub(crate) threads: Option<u64>,
     /// Savings to do without.
     pub(crate) without: &'a [Saving],
+    /// What of the observations is kept.
+    pub(crate) keep: Keep,
     pub(crate) budget: BudgetArgs,
     pub(crate) quiet: bool,
 }
@@ -106,7 +109,7 @@ impl SnapshotArgs {
         let mut saving = self.saving(plan)?;
         let scene = plan.load_scene()?;
         let host = how.threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
-        let experiment = plan.experiment(scene.clone()).host(host);
+        let experiment = plan.experiment(scene.clone()).host(host).keep(how.keep);
         let mut experiment = how.without.iter().fold(experiment, |experiment, saving| experiment.without(*saving));
         let hash = experiment.config_hash();
         let restored = self.restored(plan)?;

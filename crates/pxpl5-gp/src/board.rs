@@ -6,7 +6,7 @@ use crate::memory::Memory;
 use crate::probe::Mark;
 use crate::processor::{CodeVersion, Processor};
 use crate::timing::GpTiming;
-use pxpl5_sim::{Blocked, Context, Phase, Span};
+use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{Message, NodeId, PeriodNumber};
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -32,8 +32,8 @@ pub enum GpEvent {
     },
     /// The programs look at what has arrived.
     Poll,
-    /// The running work ends, if it is still of this generation.
-    WorkEnds(u64),
+    /// The running work may end: where an interrupt has delayed it, it does so later.
+    WorkEnds,
 }
 
 /// What leaves the board for others.
@@ -63,7 +63,10 @@ struct Task {
 pub struct GpBoard {
     shared: Rc<RefCell<Shared>>,
     tasks: Vec<Task>,
-    announced: Option<u64>,
+    /// Instants of the ends of work that are scheduled, the next one last: one, or one more for each interruption.
+    announced: Vec<Time>,
+    /// Whether every end of work is announced anew when an interrupt has moved it.
+    announces_every_end: bool,
     poll_pending: bool,
     cycle: Span,
     fault: Option<Fault>,
@@ -81,7 +84,7 @@ impl GpBoard {
     pub fn new(node: NodeId, timing: GpTiming, cycle: Span) -> Self {
         let shared = Shared {
             node,
-            now: pxpl5_sim::Time::ZERO,
+            now: Time::ZERO,
             timing,
             cpu: Cpu::default(),
             memory: Memory::new(node, timing.memory_bytes, timing.bin_bytes),
@@ -99,9 +102,18 @@ impl GpBoard {
             issued: 0,
             progress: 0,
             waits: [Wait::NONE; 2],
+            pays_one_by_one: false,
         };
         let shared = Rc::new(RefCell::new(shared));
-        Self { shared, tasks: Vec::new(), announced: None, poll_pending: false, cycle, fault: None }
+        Self {
+            shared,
+            tasks: Vec::new(),
+            announced: Vec::new(),
+            announces_every_end: false,
+            poll_pending: false,
+            cycle,
+            fault: None,
+        }
     }
 
     /// Has the time of [`Work`](crate::Work) come from this code on such a core from now on, whatever the timing table says.
@@ -115,6 +127,16 @@ impl GpBoard {
         if let Some(processor) = &mut self.shared.borrow_mut().processor {
             processor.count_every_clock();
         }
+    }
+
+    /// Has every end of work announced anew when an interrupt has moved it, from now on.
+    pub const fn announce_every_end(&mut self) {
+        self.announces_every_end = true;
+    }
+
+    /// Has programs pay for messages one after the other from now on, where they could pay for several at once.
+    pub fn pay_one_by_one(&mut self) {
+        self.shared.borrow_mut().pays_one_by_one = true;
     }
 
     /// A handle to the board for a program of a priority.
@@ -147,8 +169,7 @@ impl GpBoard {
                 self.wake(Cause::Arrival, context);
             }
             GpEvent::Poll => self.work(context),
-            GpEvent::WorkEnds(generation) if self.announced == Some(generation) => self.work(context),
-            GpEvent::WorkEnds(_) => {}
+            GpEvent::WorkEnds => self.end_of_work(context),
         }
     }
 
@@ -179,17 +200,33 @@ impl GpBoard {
             shared.cpu.settle(shared.now);
         }
         self.poll_until_quiet();
-        let shared = &mut *self.shared.borrow_mut();
-        if let Some(batch) = shared.next_batch() {
+        let batch = self.shared.borrow_mut().next_batch();
+        if let Some(batch) = batch {
             for (place, ChainLink { message, hold }) in (0..).zip(batch.links) {
                 let ticket = batch.ticket.0 << PLACE_BITS | place;
                 context.output(context.now() + self.cycle, GpOutput::Send { message, ticket, hold });
             }
         }
-        let end = shared.cpu.next_end().filter(|end| self.announced != Some(end.1));
-        if let Some((time, generation)) = end {
-            self.announced = Some(generation);
-            context.schedule(time, Phase::Work, GpEvent::WorkEnds(generation));
+        let end = self.shared.borrow().cpu.next_end();
+        self.announce(end, context);
+    }
+
+    /// An end of work was announced for now: it is one, or it is announced again.
+    fn end_of_work(&mut self, context: &mut Context<GpEvent, GpOutput>) {
+        let now = context.now();
+        self.announced.retain(|at| *at > now);
+        let end = self.shared.borrow().cpu.next_end();
+        if end == Some(now) { self.work(context) } else { self.announce(end, context) }
+    }
+
+    /// Has an event at the end of work, or one before it at which it is asked for again: interrupts delay the work below them
+    /// time and again, and each delay would else leave an event behind.
+    fn announce(&mut self, end: Option<Time>, context: &mut Context<GpEvent, GpOutput>) {
+        let Some(end) = end else { return };
+        let is_known = |at: &Time| if self.announces_every_end { *at == end } else { *at <= end };
+        if !self.announced.iter().any(is_known) {
+            self.announced.push(end);
+            context.schedule(end, Phase::Work, GpEvent::WorkEnds);
         }
     }
 
@@ -253,7 +290,7 @@ impl GpBoard {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use pxpl5_sim::{TestBench, Time};
+    use pxpl5_sim::TestBench;
     use pxpl5_wire::Body;
 
     const CYCLE: Span = Span(25_000);

@@ -20,7 +20,6 @@ impl Priority {
 pub(crate) struct Cpu {
     remaining: [Option<Span>; 2],
     running: Option<(Priority, Time)>,
-    generation: u64,
     busy: Span,
 }
 
@@ -47,9 +46,6 @@ impl Cpu {
 
     fn dispatch(&mut self, now: Time) {
         let first = Priority::ALL.into_iter().find(|priority| self.remaining[*priority as usize].is_some());
-        if self.running.map(|(priority, _)| priority) != first {
-            self.generation += 1;
-        }
         self.running = first.map(|priority| (priority, now));
     }
 
@@ -58,10 +54,10 @@ impl Cpu {
         self.remaining[priority as usize].is_none()
     }
 
-    /// When the running work ends, and the generation of that answer.
-    pub(crate) fn next_end(&self) -> Option<(Time, u64)> {
+    /// When the running work ends, if nothing interrupts it.
+    pub(crate) fn next_end(&self) -> Option<Time> {
         let (priority, since) = self.running?;
-        Some((since + self.remaining[priority as usize]?, self.generation))
+        Some(since + self.remaining[priority as usize]?)
     }
 
     /// Time spent so far.
@@ -79,10 +75,10 @@ mod tests {
         let mut cpu = Cpu::default();
         cpu.begin(Priority::Foreground, Span(100), Time(0));
         cpu.begin(Priority::Interrupt, Span(30), Time(40));
-        assert_eq!(cpu.next_end().map(|end| end.0), Some(Time(70)));
+        assert_eq!(cpu.next_end(), Some(Time(70)));
         cpu.settle(Time(70));
         assert!(cpu.is_done(Priority::Interrupt) && !cpu.is_done(Priority::Foreground));
-        assert_eq!(cpu.next_end().map(|end| end.0), Some(Time(130)));
+        assert_eq!(cpu.next_end(), Some(Time(130)));
         cpu.settle(Time(129));
         assert!(!cpu.is_done(Priority::Foreground));
         cpu.settle(Time(130));

@@ -95,6 +95,8 @@ pub(crate) struct Shared {
     /// Counts completed waits, so that the board polls until nothing moves.
     pub(crate) progress: u64,
     pub(crate) waits: [Wait; 2],
+    /// Whether programs pay for messages one after the other, though nothing happens between.
+    pub(crate) pays_one_by_one: bool,
 }
 
 /// What a program waits for: its name, and what can end the wait.
@@ -245,9 +247,25 @@ impl Gp {
 
     /// Waits for the next message in order of arrival and pays the software cost of receiving it.
     pub async fn receive(&self) -> Received {
-        let received = self.until("a message", || self.shared.borrow_mut().inbox.pop_front()).await;
-        self.spend(Span::from_ns(self.timing().message_ns)).await;
+        let received = self.next_message().await;
+        self.spend_message().await;
         received
+    }
+
+    /// Waits for the next message in order of arrival, without cost; pay for it with [`Gp::spend_message`].
+    pub async fn next_message(&self) -> Received {
+        self.until("a message", || self.shared.borrow_mut().inbox.pop_front()).await
+    }
+
+    /// Whether this program may pay for several messages at once: no other of its board comes between.
+    #[must_use]
+    pub fn pays_at_once(&self) -> bool {
+        self.priority == Priority::Interrupt && !self.shared.borrow().pays_one_by_one
+    }
+
+    /// Pays the software cost of so many messages in a row.
+    pub async fn spend_messages(&self, count: u64) {
+        self.spend(Span::from_ns(self.timing().message_ns) * count).await;
     }
 
     /// Takes a message if one has arrived, without cost; pay for it with [`Gp::spend_message`].

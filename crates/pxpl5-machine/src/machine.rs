@@ -192,6 +192,8 @@ impl Machine {
             Saving::Transfers => self.record.ring.move_every_word(),
             Saving::EmptyRegions => self.record.renderers.iter_mut().for_each(Renderer::draw_every_region),
             Saving::RepeatedCode => self.processors.iter_mut().for_each(GpBoard::count_every_clock),
+            Saving::DelayedWork => self.processors.iter_mut().for_each(GpBoard::announce_every_end),
+            Saving::EmptyBins => self.processors.iter_mut().for_each(GpBoard::pay_one_by_one),
         }
     }
 
@@ -200,6 +202,12 @@ impl Machine {
         self.record.observation.traffic = Some(Box::default());
         self.record.ring.watch();
         self.record.renderers.iter_mut().for_each(Renderer::watch_fifo);
+    }
+
+    /// Gives up marks, arrivals and swaps before an instant: nobody will ask for them. No time changes.
+    pub fn forget_before(&mut self, instant: Time) {
+        let Record { observation, displays, .. } = &mut self.record;
+        observation.forget_before(instant, |period| displays[0].tick(period));
     }
 
     /// Its boards and everything observed so far.
@@ -316,6 +324,12 @@ impl Machine {
         if blocked.iter().any(|b| b.waits_for != "a retrace") {
             self.failure = Some(RunError::Deadlock { time: now, blocked });
         }
+    }
+
+    /// Ticks of the first display, up to the last one, between which nothing happened but ticks.
+    #[must_use]
+    pub const fn idle_ticks(&self) -> u64 {
+        self.idle_ticks
     }
 
     /// Whether nothing is under way but the displays and the boards' clock: perhaps only until the next tick.
@@ -472,6 +486,12 @@ impl Machine {
     #[must_use]
     pub const fn events(&self) -> u64 {
         self.queue.events_taken()
+    }
+
+    /// Events that wait.
+    #[must_use]
+    pub fn pending_events(&self) -> usize {
+        self.queue.len()
     }
 
     /// Waits for the worker that computes pixels; the number of regions that it computed.

@@ -47,6 +47,19 @@ pub struct Observation {
     pub swaps: Vec<Swap>,
     /// Messages and FIFOs, if they were recorded.
     pub traffic: Option<Box<Traffic>>,
+    /// What is still known of records that were given up.
+    pub forgotten: Forgotten,
+}
+
+/// What is known of records that were given up so that a long run has room: see [`Machine::forget_before`](crate::Machine::forget_before).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Forgotten {
+    /// Marks and arrivals before this instant are gone.
+    pub before: Time,
+    /// As many swaps of every surface that swaps are gone: frames, where all of a frame's surfaces are swapped.
+    pub frames: u64,
+    /// Most regions that were there of one picture when records were given up.
+    pub most_regions: u32,
 }
 
 /// A stage of one picture and surface, from the first board that began it to the last one that ended it.
@@ -96,7 +109,8 @@ impl Observation {
         spans.into_values().collect()
     }
 
-    /// The ticks at which frame after frame was swapped in on all of the first `surfaces` surfaces.
+    /// The ticks at which frame after frame was swapped in on all of the first `surfaces` surfaces, from the first frame behind
+    /// [`Forgotten::frames`] on.
     #[must_use]
     pub fn swap_ticks(&self, surfaces: usize) -> Vec<PeriodNumber> {
         let mut ticks: Vec<PeriodNumber> = self.swaps_of(SurfaceId(0)).collect();
@@ -106,7 +120,41 @@ impl Observation {
         ticks
     }
 
-    /// The ticks at which a surface was swapped.
+    /// Most regions that have arrived of one picture, in the whole run.
+    #[must_use]
+    pub fn most_regions_of_a_picture(&self) -> u32 {
+        let mut of_pictures: BTreeMap<PictureNumber, u32> = BTreeMap::new();
+        self.arrivals.iter().for_each(|arrival| *of_pictures.entry(arrival.target.picture).or_default() += 1);
+        of_pictures.into_values().max().unwrap_or_default().max(self.forgotten.most_regions)
+    }
+
+    /// Marks, arrivals and swaps that are held.
+    #[must_use]
+    pub fn records(&self) -> usize {
+        self.marks.len() + self.arrivals.len() + self.swaps.len()
+    }
+
+    /// Gives up what was before an instant; `tick` tells when a period begins.
+    pub(crate) fn forget_before(&mut self, instant: Time, tick: impl Fn(PeriodNumber) -> Time) {
+        let most_regions = self.most_regions_of_a_picture();
+        self.marks.retain(|mark| mark.time >= instant);
+        self.arrivals.retain(|arrival| arrival.last_part_at >= instant);
+        let mut swapped: BTreeMap<SurfaceId, u64> = BTreeMap::new();
+        self.swaps
+            .iter()
+            .for_each(|swap| *swapped.entry(swap.surface).or_default() += u64::from(tick(swap.tick) < instant));
+        let gone = swapped.values().copied().min().unwrap_or_default();
+        swapped.values_mut().for_each(|left| *left = gone);
+        self.swaps.retain(|swap| {
+            let left = swapped.get_mut(&swap.surface).filter(|left| **left > 0);
+            left.map(|left| *left -= 1).is_none()
+        });
+        self.marks.shrink_to(2 * self.marks.len());
+        self.arrivals.shrink_to(2 * self.arrivals.len());
+        self.forgotten = Forgotten { before: instant, frames: self.forgotten.frames + gone, most_regions };
+    }
+
+    /// The ticks at which a surface was swapped, of swaps that are held.
     pub fn swaps_of(&self, surface: SurfaceId) -> impl Iterator<Item = PeriodNumber> {
         self.swaps.iter().filter(move |swap| swap.surface == surface).map(|swap| swap.tick)
     }

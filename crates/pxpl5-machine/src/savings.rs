@@ -6,7 +6,7 @@ use std::str::FromStr;
 /// A saving that an experiment can give up (`Experiment::without`). None of them changes a time or a pixel that is
 /// seen, which `tests/savings.rs` shows by doing without each; `cargo bench --bench savings` measures what they are worth.
 ///
-/// What nobody looks at is the fifth saving: `Pixels` of the experiment.
+/// What nobody looks at is one more saving: `Pixels` of the experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Saving {
     /// Boards sleep until something happens to them. Without it every processor polls its programs and the ring its
@@ -21,11 +21,18 @@ pub enum Saving {
     /// Code that repeats with all it needs in the caches takes the clocks that were counted before (cycle level). Without it
     /// the i860s count every clock.
     RepeatedCode,
+    /// Work that interrupts delay is looked at when it would have ended without them. Without it each delay announces the end
+    /// anew, and leaves an event behind.
+    DelayedWork,
+    /// A token that finds an empty bin is paid for once, receiving and sending together. Without it the processor is asked
+    /// between the two.
+    EmptyBins,
 }
 
 impl Saving {
     /// Every saving that an experiment can give up.
-    pub const ALL: [Self; 4] = [Self::IdleBoards, Self::Transfers, Self::EmptyRegions, Self::RepeatedCode];
+    pub const ALL: [Self; 6] =
+        [Self::IdleBoards, Self::Transfers, Self::EmptyRegions, Self::RepeatedCode, Self::DelayedWork, Self::EmptyBins];
 
     /// The name by which the command knows it.
     #[must_use]
@@ -35,6 +42,8 @@ impl Saving {
             Self::Transfers => "transfers",
             Self::EmptyRegions => "empty-regions",
             Self::RepeatedCode => "repeated-code",
+            Self::DelayedWork => "delayed-work",
+            Self::EmptyBins => "empty-bins",
         }
     }
 }

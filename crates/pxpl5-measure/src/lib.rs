@@ -31,14 +31,12 @@ mod too_heavy;
 pub use budget::Budget;
 pub use causes::{ErrorCauses, ErrorPart};
 pub use errors::{FieldError, PixelErrors, Showing, UNJUDGED_FIELDS, pixel_errors};
-pub use latency::{
-    LATENCY_PARTS, LatencyParts, NamedStatistics, PartDefinition, SurfaceStatistics, latency_by_surface, latency_parts,
-};
+pub use latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_parts};
 pub use latency_curve::LatencyCurve;
 pub use measured::Measured;
 pub use percentiles::Percentiles;
 pub use pictures::{picture, screen, side_by_side};
-pub use pxpl5_run::Outcome;
+pub use pxpl5_run::{LATENCY_PARTS, LatencyParts, Outcome, PartDefinition};
 pub use quantity::{Measure, QUANTITIES, Quantity, Results};
 pub use raster::{RasterOffsets, Vdrt};
 pub use registration::Registration;

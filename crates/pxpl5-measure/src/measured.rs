@@ -2,10 +2,10 @@
 
 use crate::Report;
 use crate::errors::{PixelErrors, pixel_errors};
-use crate::latency::{LatencyParts, SurfaceStatistics, latency_by_surface, latency_parts};
+use crate::latency::{SurfaceStatistics, latency_by_surface, latency_parts};
 use crate::pictures::picture;
 use image::RgbImage;
-use pxpl5_run::Outcome;
+use pxpl5_run::{LatencyParts, Outcome};
 use pxpl5_wire::SurfaceId;
 
 /// What is most often asked of an [`Outcome`].

@@ -4,8 +4,7 @@ use crate::Report;
 use crate::summary::summary;
 use parameters::nearest;
 use pxpl5_gp::Stage;
-use pxpl5_machine::StageSpan;
-use pxpl5_run::{DuePictures, Outcome, Statistics, Summary};
+use pxpl5_run::{DuePictures, Outcome, Summary};
 
 /// A quantity that can be measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,7 +106,7 @@ pub static QUANTITIES: [Quantity; 39] = [
         s.copy_begins_ms
     }),
     of_summary("eye_ms", "from the start of an eye's TRANSFORM to the end of its COPY; mean; none for Slats", |s| {
-        Statistics::of(s.eye_latencies_ms.iter().copied()).mean
+        s.eye_latencies_ms.statistics().mean
     }),
     of_run(
         "to_light_ms",
@@ -208,11 +207,6 @@ impl Results {
 
 /// Mean over the pictures after the warm-up.
 fn stage_ms(outcome: &Outcome, stage: Stage) -> Option<f64> {
-    let first = outcome.steady_pictures().first()?.picture;
-    let last = outcome.steady_pictures().last()?.picture;
-    let steady = |span: &StageSpan| span.stage == stage && (first..=last).contains(&span.picture);
-    let spans = outcome.stages().into_iter().filter(steady);
-    let mut times = spans.filter_map(|span| Some((span.end? - span.begin).as_ms())).peekable();
-    times.peek()?;
-    Some(Statistics::of(times).mean)
+    let (_, samples) = outcome.tally().stage_ms.iter().find(|(of, _)| *of == stage)?;
+    (samples.count() > 0).then(|| samples.statistics().mean)
 }

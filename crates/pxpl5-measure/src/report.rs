@@ -142,9 +142,6 @@ impl Report {
     }
 }
 
-/// How many of the late regions a report lists.
-const LATE_REGIONS_LISTED: usize = 20;
-
 impl Report {
     /// Name and version of the layout.
     pub const SCHEMA: &'static str = "pxpl5-report/2";
@@ -158,7 +155,7 @@ impl Report {
         let pipeline = outcome.pipeline();
         let record = outcome.record();
         let due = outcome.due();
-        let late = pipeline.late_regions(record, outcome.end());
+        let tally = outcome.tally();
         Self {
             schema: Self::SCHEMA.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -182,7 +179,7 @@ impl Report {
             triangles: scene.triangles().len(),
             spheres: scene.spheres().len(),
             fields: outcome.fields(),
-            pictures: outcome.complete_pictures().count(),
+            pictures: tally.complete as usize,
             latency_fields: outcome.latency_fields().defined(pipeline.latency_definition()),
             latency_ms: outcome.latency_ms().defined(pipeline.latency_definition()),
             latency_parts_ms: latency_part_statistics(outcome),
@@ -194,8 +191,8 @@ impl Report {
             missed_retraces: due.map(|due| due.not_shown()),
             too_heavy: due.and_then(|due| TooHeavy::of(experiment, &due)),
             ends_complete: outcome.ends_complete(),
-            late_regions: late.len(),
-            first_late_regions: late.into_iter().take(LATE_REGIONS_LISTED).collect(),
+            late_regions: tally.late_regions as usize,
+            first_late_regions: tally.first_late_regions.clone(),
             display_counters: record.display().counters(),
             head: outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())),
             trace_hash: record.trace_hash().to_string(),

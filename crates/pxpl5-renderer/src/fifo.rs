@@ -140,6 +140,12 @@ impl InputFifo {
         while let Some(work) = self.in_transit.pop_front() {
             let words = work.words_each;
             let span = work.span_each;
+            if let (Some(free_at), Some(span_each), None) = (self.free_at, span, &self.changes)
+                && u64::from(words) <= self.depth
+            {
+                self.run_freely(work, free_at, span_each);
+                continue;
+            }
             for entered in 0..work.count {
                 let Some(complete) = self.arrival(words) else {
                     self.in_transit.push_front(EqualCommands { count: work.count - entered, ..work });
@@ -159,6 +165,40 @@ impl InputFifo {
             progress.accepted = Some(self.last_word_at);
         }
         progress
+    }
+
+    /// Takes commands none of which waits for more than the one before it, since none blocks: what [`InputFifo::arrival`] and
+    /// [`InputFifo::start`] say of each, in one loop. Nobody watches, and each fits.
+    fn run_freely(&mut self, work: EqualCommands, mut free_at: Time, span: Span) {
+        debug_assert!(
+            self.waiting.is_empty() && self.words_left == self.words_in,
+            "only behind a block does anything wait"
+        );
+        let words = u64::from(work.words_each);
+        let on_channel = self.word * words;
+        let mut words_in = self.words_in;
+        let mut complete = self.last_word_at;
+        for _ in 0..work.count {
+            let last = words_in + words - 1;
+            complete += on_channel;
+            if last >= self.depth {
+                for (made_room_for, left_at) in self.left.from(words_in) {
+                    if *made_room_for > last {
+                        break;
+                    }
+                    complete = complete.max(*left_at + self.word * (last - (*made_room_for).max(words_in) + 1));
+                }
+            }
+            let start = free_at.max(complete);
+            self.left.push(words_in + self.depth, start);
+            words_in += words;
+            free_at = start + span;
+        }
+        self.words_in = words_in;
+        self.words_left = words_in;
+        self.last_word_at = complete;
+        self.free_at = Some(free_at);
+        self.busy += span * u64::from(work.count);
     }
 
     /// When the next `words` words have all entered; `None` while that depends on a blocking command.

@@ -12,7 +12,6 @@
 
 use pxpl5_wire::PeriodNumber;
 use serde::Serialize;
-use std::collections::BTreeMap;
 
 /// What became of a picture that was begun, the best first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -67,8 +66,41 @@ pub struct DuePictures {
     pub missed: u64,
 }
 
-/// What became of each picture due, `None` where there was none, with its period.
-type Ends = Vec<(u64, Option<PictureEnd>)>;
+/// What became of the pictures of each period: a byte for a period, so that 10^7 fields take 10 MB.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct PictureEnds {
+    /// Of each period, 0 for no picture, else one more than the place of the best end among all ends.
+    of_periods: Vec<u8>,
+}
+
+impl PictureEnds {
+    const ALL: [PictureEnd; 3] = [PictureEnd::Shown, PictureEnd::Late, PictureEnd::Incomplete];
+
+    /// A picture that should be seen in a period ended so.
+    pub(crate) fn note(&mut self, period: PeriodNumber, end: PictureEnd) {
+        let place = period.0 as usize;
+        if self.of_periods.len() <= place {
+            self.of_periods.resize(place + 1, 0);
+        }
+        let best = &mut self.of_periods[place];
+        let code = end as u8 + 1;
+        *best = if *best == 0 { code } else { code.min(*best) };
+    }
+
+    /// The best end of the pictures of some periods.
+    fn best(&self, periods: std::ops::RangeInclusive<u64>) -> Option<PictureEnd> {
+        let last = (*periods.end()).min((self.of_periods.len() as u64).checked_sub(1)?);
+        let of_periods = self.of_periods.get(*periods.start() as usize..=last as usize)?;
+        let best = of_periods.iter().copied().filter(|code| *code > 0).min()?;
+        Self::ALL.get(usize::from(best) - 1).copied()
+    }
+
+    /// The first period at or behind `start` with a picture.
+    fn first_from(&self, start: u64) -> Option<u64> {
+        let behind = self.of_periods.get(start as usize..)?;
+        behind.iter().position(|code| *code > 0).map(|place| start + place as u64)
+    }
+}
 
 impl DuePictures {
     /// Counts them. `pictures` gives the period in which each picture that was begun should be seen, and its end;
@@ -81,37 +113,40 @@ impl DuePictures {
         periods_a_picture: u64,
         reached: PeriodNumber,
     ) -> Option<Self> {
-        let periods = reached.0;
-        let every = periods_a_picture.max(1);
-        let middle = WARM_UP_PERIODS + periods.checked_sub(WARM_UP_PERIODS)? / 2;
-        let mut begun: BTreeMap<u64, PictureEnd> = BTreeMap::new();
-        for (period, end) in pictures.filter(|(period, _)| *period < reached) {
-            let best = begun.entry(period.0).or_insert(end);
-            *best = end.min(*best);
-        }
-        let first_picture = begun.keys().next().copied().unwrap_or_default();
-        let start = first_picture.clamp(WARM_UP_PERIODS, middle).max(every - 1);
-        let ends = ends_of_due(&begun, start, every, periods);
-        let in_time_first = ends.iter().take_while(|(period, end)| *end == Some(PictureEnd::Shown) && *period < middle);
-        let all_in_time = ends.iter().all(|(_, end)| *end == Some(PictureEnd::Shown));
-        let left_out = if all_in_time { 0 } else { in_time_first.count() };
-        Self::of_ends(&ends[left_out..], every)
+        let mut ends = PictureEnds::default();
+        pictures.filter(|(period, _)| *period < reached).for_each(|(period, end)| ends.note(period, end));
+        Self::of_ends(&ends, periods_a_picture, reached)
     }
 
-    fn of_ends(ends: &[(u64, Option<PictureEnd>)], every: u64) -> Option<Self> {
-        let [(first_due, _), ..] = ends else { return None };
-        let number_of = |wanted: Option<PictureEnd>| ends.iter().filter(|(_, end)| *end == wanted).count() as u64;
-        let due = ends.len() as u64;
-        let first_period = (first_due + 1).saturating_sub(every);
+    /// Counts them, from the ends of all pictures of periods before `reached`.
+    pub(crate) fn of_ends(ends: &PictureEnds, periods_a_picture: u64, reached: PeriodNumber) -> Option<Self> {
+        let every = periods_a_picture.max(1);
+        let periods = reached.0;
+        let middle = WARM_UP_PERIODS + periods.checked_sub(WARM_UP_PERIODS)? / 2;
+        let first_picture = ends.first_from(0).filter(|period| *period < periods).unwrap_or_default();
+        let start = first_picture.clamp(WARM_UP_PERIODS, middle).max(every - 1);
+        // The first picture there says in which periods pictures are due.
+        let anchor = ends.first_from(start).filter(|period| *period < periods).unwrap_or(start);
+        let due = (start + (anchor - start) % every..periods).step_by(every as usize);
+        let end_of = |period: u64| ends.best((period + 1).saturating_sub(every)..=period);
+        let is_shown = |period: &u64| end_of(*period) == Some(PictureEnd::Shown);
+        let in_time_first = due.clone().take_while(|period| is_shown(period) && *period < middle);
+        let left_out = if due.clone().all(|period| is_shown(&period)) { 0 } else { in_time_first.count() };
+        let mut judged = due.skip(left_out).peekable();
+        let first_period = (*judged.peek()? + 1).saturating_sub(every);
+        let mut counts = [0; 4];
+        judged.for_each(|period| counts[end_of(period).map_or(3, |end| end as usize)] += 1);
+        let [shown, late, incomplete, missed] = counts;
+        let due: u64 = counts.iter().sum();
         Some(Self {
             first_period: PeriodNumber(first_period),
             last_period: PeriodNumber(first_period + due * every - 1),
             periods_a_picture: every,
             due,
-            shown: number_of(Some(PictureEnd::Shown)),
-            late: number_of(Some(PictureEnd::Late)),
-            incomplete: number_of(Some(PictureEnd::Incomplete)),
-            missed: number_of(None),
+            shown,
+            late,
+            incomplete,
+            missed,
         })
     }
 
@@ -140,15 +175,4 @@ impl DuePictures {
         let window_ms = (self.due * self.periods_a_picture) as f64 * period_ms;
         (self.shown > 0).then_some(self.shown as f64 * 1e3 / window_ms)
     }
-}
-
-/// What became of the picture due in each `every`-th period from `start` on; the first picture there says in which.
-fn ends_of_due(begun: &BTreeMap<u64, PictureEnd>, start: u64, every: u64, periods: u64) -> Ends {
-    let anchor = begun.range(start..).next().map_or(start, |(period, _)| *period);
-    let due = (start + (anchor - start) % every..periods).step_by(every as usize);
-    due.map(|period| {
-        let since_last = begun.range((period + 1).saturating_sub(every)..=period);
-        (period, since_last.map(|(_, end)| *end).min())
-    })
-    .collect()
 }

@@ -60,7 +60,7 @@ pub enum ExperimentError {
     #[error("{0}")]
     Stopped(String),
     /// The run ended early; what was observed until then is kept.
-    #[error("{error} ({} pictures had been shown)", partial.pictures().len())]
+    #[error("{error} ({} pictures had been shown)", partial.tally().pictures)]
     Run {
         /// What the machine could not do.
         error: RunError,

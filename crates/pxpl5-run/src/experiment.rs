@@ -3,6 +3,7 @@
 use crate::fingerprint::Fingerprint;
 use crate::head::Head;
 use crate::host::{BareHost, Host};
+use crate::keep::Keep;
 use crate::level::Level;
 use crate::pipeline::Pipeline;
 use crate::raster::Raster;
@@ -52,6 +53,7 @@ pub struct Experiment {
     pub(crate) host: Arc<dyn Host>,
     pub(crate) shuffle: Option<u64>,
     pub(crate) traffic: bool,
+    pub(crate) keep: Keep,
     pub(crate) given_up: BTreeSet<Saving>,
     pub(crate) level: Level,
     pub(crate) head: Option<Arc<Head>>,
@@ -89,6 +91,7 @@ impl Experiment {
             host: Arc::new(BareHost),
             shuffle: None,
             traffic: false,
+            keep: Keep::Everything,
             given_up: BTreeSet::new(),
             level: Level::Transaction,
             head: None,
@@ -136,6 +139,13 @@ impl Experiment {
     #[must_use]
     pub const fn record_traffic(mut self, record: bool) -> Self {
         self.traffic = record;
+        self
+    }
+
+    /// What of the observations is kept: [`Keep::Everything`], the default, or [`Keep::Statistics`] for runs of any length.
+    #[must_use]
+    pub const fn keep(mut self, keep: Keep) -> Self {
+        self.keep = keep;
         self
     }
 

@@ -3,8 +3,12 @@
 use crate::due::{DuePictures, WARM_UP_PERIODS, WINDOW_DEFINITION};
 use crate::experiment::{Experiment, WARM_UP_PICTURES};
 use crate::head_views::HeadViews;
+use crate::latency::{LatencyParts, parts};
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::statistics::Statistics;
+use crate::summary::Summary;
+use crate::tally::{Tally, of_picture};
+use crate::window::{Window, field_ms};
 use pxpl5_machine::{Observation, Record, StageSpan};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PeriodNumber;
@@ -16,6 +20,7 @@ pub struct Outcome {
     experiment: Experiment,
     record: Record,
     head: Option<Arc<HeadViews>>,
+    tally: Tally,
     pictures: Vec<PictureTimes>,
     reached: PeriodNumber,
     host_seconds: Option<f64>,
@@ -26,12 +31,19 @@ impl Outcome {
         experiment: Experiment,
         record: Record,
         head: Option<Arc<HeadViews>>,
+        window: Window,
         reached: PeriodNumber,
         host_seconds: Option<f64>,
     ) -> Self {
         let end = record.tick(experiment.end());
-        let pictures = experiment.pipeline.pictures(&record, end);
-        Self { experiment, record, head, pictures, reached, host_seconds }
+        let (tally, pictures) = window.close(experiment.pipeline.as_ref(), &record, (end, reached));
+        Self { experiment, record, head, tally, pictures, reached, host_seconds }
+    }
+
+    /// What was summed up over the whole run.
+    #[must_use]
+    pub const fn tally(&self) -> &Tally {
+        &self.tally
     }
 
     /// The experiment that was run, as it was asked for.
@@ -40,27 +52,29 @@ impl Outcome {
         &self.experiment
     }
 
-    /// All pictures that were begun and judged, complete or not.
+    /// All pictures that were begun and judged, complete or not; of a run that keeps statistics only ([`Keep`](crate::Keep)) the last
+    /// of [`Tally::pictures`].
     #[must_use]
     pub fn pictures(&self) -> &[PictureTimes] {
         &self.pictures
     }
 
-    /// The pictures after the first [`WARM_UP_PICTURES`].
+    /// Those of them behind the first [`WARM_UP_PICTURES`] of the run.
     #[must_use]
     pub fn steady_pictures(&self) -> &[PictureTimes] {
-        self.pictures.get(WARM_UP_PICTURES..).unwrap_or_default()
+        let taken_before = self.tally.pictures as usize - self.pictures.len();
+        self.pictures.get(WARM_UP_PICTURES.saturating_sub(taken_before)..).unwrap_or_default()
     }
 
-    /// Those of them that were complete in time: the others have no latency.
+    /// Those of the steady ones that were complete in time: the others have no latency.
     pub fn complete_pictures(&self) -> impl Iterator<Item = &PictureTimes> {
         self.steady_pictures().iter().filter(|times| times.is_shown())
     }
 
     /// Complete pictures that were shown in the whole run, the warm-up included.
     #[must_use]
-    pub fn shown(&self) -> u64 {
-        self.pictures.iter().filter(|times| times.is_shown()).count() as u64
+    pub const fn shown(&self) -> u64 {
+        self.tally.shown
     }
 
     /// The pictures that were due, and what became of them; `None` of a pipeline whose pictures never are, and of a run that
@@ -68,8 +82,7 @@ impl Outcome {
     #[must_use]
     pub fn due(&self) -> Option<DuePictures> {
         let every = self.pipeline().periods_a_picture(&self.record)?;
-        let ends = self.pictures.iter().map(|times| (self.period_of(times), times.end));
-        DuePictures::count(ends, every, self.reached)
+        DuePictures::of_ends(self.tally.ends(), every, self.reached)
     }
 
     /// When a picture is due here, what it takes to be in time, and which are counted.
@@ -90,8 +103,7 @@ impl Outcome {
             return self.due()?.updates_hz(self.field_ms());
         }
         let judged = PeriodNumber(WARM_UP_PERIODS)..self.reached;
-        let shown = self.pictures.iter().filter(|times| times.is_shown() && judged.contains(&self.period_of(times)));
-        let pictures = shown.count() as f64 / self.pipeline().updates_per_picture(&self.record);
+        let pictures = self.tally.shown_later() as f64 / self.pipeline().updates_per_picture(&self.record);
         let window_ms = judged.end.since(judged.start) as f64 * self.field_ms();
         (pictures > 0.0).then_some(pictures * 1e3 / window_ms)
     }
@@ -103,13 +115,7 @@ impl Outcome {
         let (_, fields_of_a_screen) = self.record.display().rows_lit(PeriodNumber::FIRST);
         let of_a_pass = self.pipeline().updates_per_picture(&self.record).ceil() as usize;
         let needed = of_a_pass.max(fields_of_a_screen as usize);
-        let last = self.pictures.iter().rev().take(needed);
-        self.pictures.len() >= needed && last.into_iter().all(PictureTimes::is_shown)
-    }
-
-    /// The period of the first display in which a picture is shown.
-    fn period_of(&self, times: &PictureTimes) -> PeriodNumber {
-        self.record.display().period_at(times.shown_at)
+        self.tally.shown_in_a_row >= needed as u64
     }
 
     /// The machine's boards as they stand at the end, and everything observed.
@@ -169,20 +175,48 @@ impl Outcome {
     /// Latency in milliseconds over the complete pictures after the warm-up, as the pipeline defines it.
     #[must_use]
     pub fn latency_ms(&self) -> Statistics {
-        Statistics::of(self.complete_pictures().map(|times| (times.shown_at - times.transform_at).as_ms()))
+        self.tally.latency_ms.statistics()
     }
 
     /// The same in periods of the first display: for NTSC, fields of 1001/60000 s.
     #[must_use]
     pub fn latency_fields(&self) -> Statistics {
-        let field_ms = self.field_ms();
-        let fields = |times: &PictureTimes| (times.shown_at - times.transform_at).as_ms() / field_ms;
-        Statistics::of(self.complete_pictures().map(fields))
+        self.tally.latency_ms.statistics_in(self.field_ms())
+    }
+
+    /// The parts of the latency of the complete pictures after the warm-up, as far as they are kept.
+    #[must_use]
+    pub fn latency_parts(&self) -> Vec<LatencyParts> {
+        let stages = self.stages();
+        let parts =
+            self.complete_pictures().map(|times| parts(&self.record, times, of_picture(&stages, times.picture)));
+        parts.collect()
+    }
+
+    /// The few numbers that every level of modelling gives, over the pictures after the warm-up.
+    #[must_use]
+    pub fn summary(&self) -> Summary {
+        let tally = &self.tally;
+        let [first_copy, last_copy] = &tally.copy_ms;
+        let mean_or_none = |mean: f64| if mean.is_nan() { 0.0 } else { mean };
+        Summary {
+            latencies_ms: tally.latency_ms.clone(),
+            field_ms: self.field_ms(),
+            updates_hz: self.updates_hz(),
+            due: self.due(),
+            eye_latencies_ms: tally.eye_ms.clone(),
+            eye_swap_latencies_ms: tally.eye_swap_ms.clone(),
+            eye_retraces: tally.eye_retraces.clone(),
+            region_copy_us: tally.region_copy_us(),
+            first_copy_ms: mean_or_none(first_copy.statistics().mean),
+            last_copy_ms: mean_or_none(last_copy.statistics().mean),
+            copy_begins_ms: tally.copy_begins_ms.statistics().mean,
+        }
     }
 
     /// A period of the first display in milliseconds, from 60,000 of them.
     #[must_use]
     pub fn field_ms(&self) -> f64 {
-        self.record.tick(PeriodNumber(60_000)).since(Time::ZERO).as_ms() / 60_000.0
+        field_ms(&self.record)
     }
 }

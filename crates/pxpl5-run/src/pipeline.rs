@@ -118,6 +118,12 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// The pictures that were begun and, at `end`, are shown or have missed their time, in order.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes>;
 
+    /// Whether [`Pipeline::pictures`] and [`Pipeline::late_regions`] give the same for what happened later when records before an
+    /// instant have been given up ([`Machine::forget_before`]): only then can a long run do without them.
+    fn can_forget(&self) -> bool {
+        false
+    }
+
     /// Regions that missed their deadline before `end`.
     fn late_regions(&self, _record: &Record, _end: Time) -> Vec<LateRegion> {
         Vec::new()

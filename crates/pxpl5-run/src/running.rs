@@ -2,7 +2,7 @@
 
 use crate::display_list::{display_list, hmd_before, views};
 use crate::error::ExperimentError;
-use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
+use crate::experiment::{Experiment, FIELDS_RANGE, Pixels, WARM_UP_PICTURES};
 use crate::head::Head;
 use crate::head_views::{FIELDS_WITH_HEAD, HeadViews};
 use crate::level::{Level, with_clocks_of_instructions};
@@ -10,6 +10,7 @@ use crate::outcome::Outcome;
 use crate::pipeline::Setup;
 use crate::preparation::Preparation;
 use crate::views::{FrameStarts, ReportTimes};
+use crate::window::Window;
 use pxpl5_machine::{DEADLOCK_TICKS, Machine, MachineConfig, RunError};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
@@ -132,6 +133,7 @@ impl Experiment {
     ) -> Result<Outcome, ExperimentError> {
         let begun_s = self.host.seconds();
         let (mut machine, head) = self.assemble(preparation.clone())?;
+        let mut window = Window::new(self, machine.record());
         let mut result = Ok(());
         for field in self.stops(stops) {
             let until = machine.record().tick(field);
@@ -140,9 +142,10 @@ impl Experiment {
                 break;
             }
             at(field, &mut machine)?;
+            window.look(self.pipeline.as_ref(), &mut machine, until);
         }
         // Where frames are begun on demand, a host without a further report is at rest for good reason.
-        if result.is_ok() && !self.on_demand && machine.is_at_rest() {
+        if result.is_ok() && !self.on_demand && self.may_be_stuck(&machine) {
             result = self.deadlock(preparation).map_or(Ok(()), Err);
         }
         machine.finish_pixels();
@@ -150,12 +153,18 @@ impl Experiment {
         let record = machine.into_record();
         let stopped = result.as_ref().err().map(|error| record.display().period_at(error.time()));
         let reached = stopped.unwrap_or(self.end()).min(self.end());
-        let outcome = Outcome::new(self.clone(), record, head, reached, host_seconds);
+        let outcome = Outcome::new(self.clone(), record, head, window, reached, host_seconds);
         match result {
             Err(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
-            Ok(()) if outcome.steady_pictures().is_empty() => Err(self.too_short(outcome)),
+            Ok(()) if outcome.tally().pictures <= WARM_UP_PICTURES as u64 => Err(self.too_short(outcome)),
             Ok(()) => Ok(outcome),
         }
+    }
+
+    /// Whether a machine at the end of the run may never go on. A pipeline that waits for a swap is at rest until the next tick; only
+    /// a run that was over soon could have come to rest for ever in the last periods before its end, and not before.
+    fn may_be_stuck(&self, machine: &Machine) -> bool {
+        machine.is_at_rest() && (self.fields <= SHORT_RUN || machine.idle_ticks() >= IDLE_TICKS)
     }
 
     /// Whether a machine that is at rest at the end of the run, which may be too short to tell, would be so for ever: the run
@@ -163,23 +172,41 @@ impl Experiment {
     fn deadlock(&self, preparation: Preparation) -> Option<RunError> {
         let longer = Self { fields: self.fields + DEADLOCK_TICKS + 2, pixels: Pixels::Off, ..self.clone() };
         let (mut machine, _) = longer.assemble(preparation).ok()?;
-        let end = machine.record().tick(longer.end());
-        machine.run_until(end).err().filter(|error| matches!(error, RunError::Deadlock { .. }))
+        for field in longer.stops(&[]) {
+            let until = machine.record().tick(field);
+            if let Err(error) = machine.run_until(until) {
+                return Some(error).filter(|error| matches!(error, RunError::Deadlock { .. }));
+            }
+            machine.forget_before(until);
+        }
+        None
     }
 
     fn too_short(&self, partial: Outcome) -> ExperimentError {
         let needed = self.estimates.and_then(|estimates| (estimates.fields_needed)(self));
-        let pictures = partial.pictures().len();
+        let pictures = partial.tally().pictures as usize;
         ExperimentError::TooShort { fields: self.fields, pictures, needed, partial: Box::new(partial) }
     }
 
     /// Fields at which to stop: those asked for, every so many for the progress, the last.
-    fn stops(&self, asked: &[PeriodNumber]) -> BTreeSet<PeriodNumber> {
+    fn stops(&self, asked: &[PeriodNumber]) -> impl Iterator<Item = PeriodNumber> {
         let end = self.end();
-        let regular = PeriodNumber(PROGRESS_FIELDS).until(end).step_by(PROGRESS_FIELDS as usize);
-        asked.iter().copied().filter(|field| *field < end).chain(regular).chain([end]).collect()
+        let mut asked: BTreeSet<PeriodNumber> = asked.iter().copied().filter(|field| *field < end).collect();
+        let mut regular =
+            PeriodNumber(PROGRESS_FIELDS).until(end).step_by(PROGRESS_FIELDS as usize).chain([end]).peekable();
+        std::iter::from_fn(move || {
+            let next = regular.peek().into_iter().chain(asked.first()).copied().min()?;
+            regular.next_if_eq(&next);
+            asked.remove(&next);
+            Some(next)
+        })
     }
 }
+
+/// Fields of a run that may be over before a deadlock has been noticed, and ticks without work from which on a longer one may be in one
+/// that it was too short to notice.
+const SHORT_RUN: u64 = 2 * DEADLOCK_TICKS;
+const IDLE_TICKS: u64 = 2;
 
 /// Fields between two reports of progress.
 const PROGRESS_FIELDS: u64 = 60;

@@ -1,13 +1,14 @@
 //! What came of an experiment as a few numbers, whatever the level of modelling.
 
 use crate::due::DuePictures;
+use crate::samples::Samples;
 use crate::statistics::Statistics;
 
 /// What came of an experiment at any level of modelling, over the pictures after the warm-up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// Latency of every complete picture as its pipeline defines it, milliseconds.
-    pub latencies_ms: Vec<f64>,
+    pub latencies_ms: Samples,
     /// A period of the display, milliseconds: an NTSC field.
     pub field_ms: f64,
     /// Whole pictures shown a second, over the window of `due`; `None` where none was shown.
@@ -15,10 +16,12 @@ pub struct Summary {
     /// The pictures that were due, and what became of them; `None` where none was.
     pub due: Option<DuePictures>,
     /// From the start of an eye's TRANSFORM to the end of its COPY, milliseconds; empty where eyes have none of their own.
-    pub eye_latencies_ms: Vec<f64>,
+    pub eye_latencies_ms: Samples,
     /// From the start of an eye's TRANSFORM to the retrace at which its picture is swapped in, milliseconds; empty where eyes have none
     /// of their own.
-    pub eye_swap_latencies_ms: Vec<f64>,
+    pub eye_swap_latencies_ms: Samples,
+    /// The same in retraces: up to and with the one of the swap.
+    pub eye_retraces: Samples,
     /// Port time of a region of 15,360 pixels, microseconds.
     pub region_copy_us: f64,
     /// First to last word of a picture's first copy (see [`Pipeline::copy_part`](crate::Pipeline::copy_part)), milliseconds.
@@ -33,26 +36,26 @@ impl Summary {
     /// The latencies' mean, deviation, least and greatest, milliseconds.
     #[must_use]
     pub fn latency_ms(&self) -> Statistics {
-        Statistics::of(self.latencies_ms.iter().copied())
+        self.latencies_ms.statistics()
     }
 
     /// The mean over both eyes, each from the start of its own TRANSFORM to the swap, milliseconds; of nothing where eyes have none of
     /// their own.
     #[must_use]
     pub fn eye_latency_ms(&self) -> Statistics {
-        Statistics::of(self.eye_swap_latencies_ms.iter().copied())
+        self.eye_swap_latencies_ms.statistics()
     }
 
     /// The same in retraces: up to and with the one of the swap.
     #[must_use]
     pub fn eye_retraces(&self) -> Statistics {
-        Statistics::of(self.eye_swap_latencies_ms.iter().map(|ms| retraces(*ms, self.field_ms)))
+        self.eye_retraces.statistics()
     }
 
     /// Latency in periods of the display: for NTSC, fields of 1001/60000 s.
     #[must_use]
     pub fn latency_fields(&self) -> Statistics {
-        Statistics::of(self.latencies_ms.iter().map(|ms| ms / self.field_ms))
+        self.latencies_ms.statistics_in(self.field_ms)
     }
 }
 

@@ -30,6 +30,7 @@
 
 mod clock;
 mod context;
+mod heap;
 mod queue;
 mod random;
 mod time;

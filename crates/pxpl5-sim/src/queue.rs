@@ -1,8 +1,7 @@
 //! The event queue; its ordering contract stands in the crate's documentation.
 
+use crate::heap::{Keyed, QuadHeap};
 use crate::{Time, mix};
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 /// The three steps of one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -16,7 +15,7 @@ pub enum Phase {
 }
 
 /// When an event is due and where it is kept: 24 bytes, so that the heap moves little.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug)]
 struct Due {
     time: Time,
     /// Phase in the upper bits, then the order of scheduling, or a hash of it.
@@ -24,12 +23,18 @@ struct Due {
     slot: u32,
 }
 
+impl Keyed for Due {
+    fn key(&self) -> u128 {
+        u128::from(self.time.0) << 64 | u128::from(self.order)
+    }
+}
+
 const PHASE_SHIFT: u32 = 62;
 
 /// Events in order of (time, phase), ties in order of scheduling or shuffled.
 #[derive(Debug)]
 pub struct EventQueue<E> {
-    heap: BinaryHeap<Reverse<Due>>,
+    heap: QuadHeap<Due>,
     /// An event that comes before all of the heap: what is scheduled next often is, and need not go through it.
     next: Option<Due>,
     events: Vec<Option<E>>,
@@ -43,7 +48,7 @@ pub struct EventQueue<E> {
 impl<E> Default for EventQueue<E> {
     fn default() -> Self {
         Self {
-            heap: BinaryHeap::new(),
+            heap: QuadHeap::default(),
             next: None,
             events: Vec::new(),
             free: Vec::new(),
@@ -79,14 +84,15 @@ impl<E> EventQueue<E> {
         self.sequence += 1;
         let slot = self.keep(event);
         let due = Due { time, order, slot };
-        let for_heap = if self.first().is_none_or(|first| due < first) { self.next.replace(due) } else { Some(due) };
+        let for_heap =
+            if self.first().is_none_or(|first| due.key() < first.key()) { self.next.replace(due) } else { Some(due) };
         if let Some(due) = for_heap {
-            self.heap.push(Reverse(due));
+            self.heap.push(due);
         }
     }
 
     fn first(&self) -> Option<Due> {
-        self.next.or_else(|| self.heap.peek().map(|Reverse(due)| *due))
+        self.next.or_else(|| self.heap.peek().copied())
     }
 
     fn keep(&mut self, event: E) -> u32 {
@@ -100,7 +106,7 @@ impl<E> EventQueue<E> {
 
     /// Takes the next event and moves the present to it.
     pub fn next_event(&mut self) -> Option<(Time, Phase, E)> {
-        let due = self.next.take().or_else(|| self.heap.pop().map(|Reverse(due)| due))?;
+        let due = self.next.take().or_else(|| self.heap.pop())?;
         self.now = due.time;
         self.popped += 1;
         self.free.push(due.slot);

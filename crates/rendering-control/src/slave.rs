@@ -159,8 +159,20 @@ async fn token_program(
     state: SharedSlaveState,
 ) -> Result<(), Fault> {
     loop {
-        let received = gp.receive().await;
-        match StageOrder::read(&received, gp.node())? {
+        let received = gp.next_message().await;
+        let order = StageOrder::read(&received, gp.node());
+        if let Ok(StageOrder::Token(token)) = order
+            && gp.pays_at_once()
+            && bin_messages(&config, &state, token).is_empty()
+        {
+            // The token goes on when it has been received and sent, and nothing of this level happens between.
+            gp.spend_messages(2).await;
+            pass_on(&gp, &config, index, token);
+            free_bins(&gp, &state, token.drawing)?;
+            continue;
+        }
+        gp.spend_message().await;
+        match order? {
             StageOrder::Send(view) => state.borrow_mut().views.push_back(view),
             StageOrder::Edit(frame) => {
                 let state = &mut *state.borrow_mut();
@@ -179,12 +191,23 @@ async fn token_program(
 
 /// Sends this slave's bin of the token's region, then passes the token on.
 async fn walk(gp: &Gp, config: &RenderingControlConfig, index: usize, state: &SharedSlaveState, token: Token) {
-    let pass = state.borrow().bins[(token.drawing.0 % 2) as usize].clone();
     let renderer = config.renderers[usize::from(token.renderer)];
-    for list in pass.iter().flat_map(|pass| messages(config, pass, token)) {
+    for list in bin_messages(config, state, token) {
         gp.clump_buffer_free().await;
         gp.send(renderer, list.words(), Body::Commands(list)).await;
     }
+    gp.spend_message().await;
+    pass_on(gp, config, index, token);
+}
+
+/// What this slave has for the token's region.
+fn bin_messages(config: &RenderingControlConfig, state: &SharedSlaveState, token: Token) -> Vec<CommandList> {
+    let pass = &state.borrow().bins[(token.drawing.0 % 2) as usize];
+    pass.as_ref().map_or_else(Vec::new, |pass| messages(config, pass, token))
+}
+
+/// Sends a token on that has been paid for.
+fn pass_on(gp: &Gp, config: &RenderingControlConfig, index: usize, token: Token) {
     let last = token.slaves_left == 1;
     let next = Token { slaves_left: token.slaves_left - 1, ..token };
     let (receiver, order) = if last {
@@ -193,7 +216,7 @@ async fn walk(gp: &Gp, config: &RenderingControlConfig, index: usize, state: &Sh
         (config.slaves[(index + 1) % config.slaves.len()], StageOrder::Token(next))
     };
     let (words, body) = order.message();
-    gp.send(receiver, words, body).await;
+    gp.send_prepared(vec![(receiver, words, body)]);
 }
 
 /// Frees a drawing's commands and bins when the tokens of all its regions have been here.

@@ -133,7 +133,7 @@ impl Pipeline for Frameless {
             let count = last.get(&arrival.target.picture).map_or(0, |entry| entry.0) + 1;
             last.insert(arrival.target.picture, (count, arrival.last_part_at, arrival.target));
         }
-        let batch = last.values().map(|entry| entry.0).max().unwrap_or(1);
+        let batch = observation.most_regions_of_a_picture().max(1);
         let times = samples(record).filter_map(|mark| {
             let (blocks, copied_at, target) = last.get(&mark.picture)?;
             Some(PictureTimes {
@@ -149,6 +149,10 @@ impl Pipeline for Frameless {
         let mut times: Vec<_> = times.filter(|times| times.is_shown() && times.shown_at <= end).collect();
         times.sort_by_key(|times| times.shown_at);
         times
+    }
+
+    fn can_forget(&self) -> bool {
+        true
     }
 
     fn light(&self, _: &Record, times: &PictureTimes) -> Time {
@@ -169,9 +173,7 @@ impl Pipeline for Frameless {
 
     /// A pass is a whole picture.
     fn updates_per_picture(&self, record: &Record) -> f64 {
-        let mut of_update: BTreeMap<PictureNumber, u32> = BTreeMap::new();
-        record.observation().arrivals.iter().for_each(|a| *of_update.entry(a.target.picture).or_default() += 1);
-        f64::from(self.blocks()) / f64::from(of_update.into_values().max().unwrap_or(1))
+        f64::from(self.blocks()) / f64::from(record.observation().most_regions_of_a_picture().max(1))
     }
 }
 

@@ -200,6 +200,10 @@ impl Pipeline for Jitp {
         times.filter(|times| video.retrace(times.picture.period_drawn_for().next()) <= end).collect()
     }
 
+    fn can_forget(&self) -> bool {
+        true
+    }
+
     fn late_regions(&self, record: &Record, end: Time) -> Vec<LateRegion> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         late_regions(display, record, end, |video, arrival| due(video, &arrival.target))

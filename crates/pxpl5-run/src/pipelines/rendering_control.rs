@@ -152,14 +152,20 @@ impl Pipeline for RenderingControl {
 
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes> {
         let stages = record.stages();
-        let shown = record.observation().swap_ticks(self.eyes());
+        let observation = record.observation();
+        let shown = observation.swap_ticks(self.eyes());
         let shown = shown.iter().map(|tick| record.tick(*tick));
         PictureNumber::FIRST
+            .after(observation.forgotten.frames)
             .onwards()
             .zip(shown)
             .filter(|(_, shown_at)| *shown_at < end)
             .filter_map(|(frame, at)| times(&stages, frame, at))
             .collect()
+    }
+
+    fn can_forget(&self) -> bool {
+        true
     }
 
     /// What COPY of all eyes takes, since one of them is copied at a time: of a stereo pair 31.2 ms, two fields (TR94).
@@ -203,8 +209,11 @@ fn copy_span(record: &Record, surface: &Surface) -> Span {
         .sum()
 }
 
+/// Times of a frame; `stages` are in order of picture.
 fn times(stages: &[StageSpan], frame: PictureNumber, shown_at: Time) -> Option<PictureTimes> {
-    let of = |stage: Stage| stages.iter().filter(move |s| s.picture == frame && s.stage == stage);
+    let first = stages.partition_point(|span| span.picture < frame);
+    let of_frame = stages[first..].iter().take_while(|span| span.picture == frame);
+    let of = |stage: Stage| of_frame.clone().filter(move |span| span.stage == stage);
     Some(PictureTimes {
         picture: frame,
         view: ViewNumber::taken_for(frame),

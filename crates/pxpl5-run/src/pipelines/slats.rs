@@ -174,6 +174,10 @@ impl Pipeline for Slats {
         times.filter(judged).collect()
     }
 
+    fn can_forget(&self) -> bool {
+        true
+    }
+
     fn late_regions(&self, record: &Record, end: Time) -> Vec<LateRegion> {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let due =

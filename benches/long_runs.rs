@@ -1,0 +1,49 @@
+//! What a field costs in a short run and in a long one, in one process: the goal is the same to 2 %. An element is a field; the
+//! run keeps statistics only (`Keep::Statistics`), as `pxpl5 run` without `--out` does.
+
+#![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
+
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use pxpl5::{Experiment, Frameless, Keep, MachineConfig, Pixels, RenderingControl, Slats, scene, scene::Scene};
+use std::hint::black_box;
+
+/// A scene of so many triangles; 0 for all that it has.
+fn scene_of(name: &str, triangles: usize) -> Scene {
+    let scene = scene::builtin(name).expect("built in");
+    if triangles > 0 { scene.decimated(triangles).expect("so many") } else { scene }
+}
+
+/// With the fields of a short run; a long one has twenty times as many.
+fn experiments() -> [(&'static str, Experiment, u64); 3] {
+    let small = MachineConfig::small_hmd;
+    [
+        ("rendering-control-mig", Experiment::new(small(), RenderingControl::stereo(), scene_of("mig", 0)), 250),
+        ("slats-60", Experiment::new(MachineConfig::slats(), Slats::split(), scene_of("mig", 60)), 500),
+        ("frameless", Experiment::new(small(), Frameless::new(), scene_of("full-screen:4", 0)), 25),
+    ]
+}
+
+fn long_runs(criterion: &mut Criterion) {
+    for (name, experiment, short) in experiments() {
+        let experiment = experiment.pixels(Pixels::Off).keep(Keep::Statistics);
+        let mut group = criterion.benchmark_group(format!("long-runs/{name}"));
+        for (length, fields) in [("short", short), ("twenty times as long", 20 * short)] {
+            let experiment = experiment.clone().fields(fields);
+            group.throughput(Throughput::Elements(fields));
+            group.bench_function(BenchmarkId::from_parameter(length), |b| {
+                b.iter(|| black_box(experiment.run().expect("it runs").tally().pictures));
+            });
+        }
+        group.finish();
+    }
+}
+
+fn quick() -> Criterion {
+    Criterion::default()
+        .sample_size(10)
+        .warm_up_time(std::time::Duration::from_millis(300))
+        .measurement_time(std::time::Duration::from_secs(4))
+}
+
+criterion_group! { name = benches; config = quick(); targets = long_runs }
+criterion_main!(benches);

@@ -1,0 +1,15 @@
+//! What a run keeps of what was observed.
+
+/// What is kept of a run. No time, trace or statistic depends on it but in the last digits of means over more than
+/// [`KEPT_SAMPLES`](crate::KEPT_SAMPLES) pictures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Keep {
+    /// Every mark, arrival, swap and picture: for timelines, traces, and lists of pictures. 2 KB (Slats) to 100 KB (frameless) a
+    /// field.
+    #[default]
+    Everything,
+    /// Statistics of the whole run, and everything of its last pictures: memory and time a field do not depend on the length of
+    /// the run. What follows a head keeps everything, since its pixels are judged when the run is over; so does a run whose
+    /// messages are recorded, and a pipeline that cannot do without ([`Pipeline::can_forget`](crate::Pipeline::can_forget)).
+    Statistics,
+}

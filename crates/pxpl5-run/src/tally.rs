@@ -1,0 +1,288 @@
+//! What a run is said to have been in the end, summed up while it goes on.
+//!
+//! Pictures are taken in the order in which they are shown, each once, when everything that belongs to it has been observed. What
+//! is held does not grow with the run but for a byte a period ([`PictureEnds`]), where samples have a limit.
+
+use crate::due::{PictureEnds, WARM_UP_PERIODS};
+use crate::experiment::WARM_UP_PICTURES;
+use crate::latency::{ENDS, LATENCY_PARTS, Pair, WHOSE, pair, parts};
+use crate::pipeline::{PictureTimes, Pipeline};
+use crate::samples::Samples;
+use crate::summary::retraces;
+use pxpl5_gp::Stage;
+use pxpl5_machine::{Arrival, LateRegion, Record, StageSpan};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{PeriodNumber, PictureNumber, SurfaceId};
+use std::collections::BTreeMap;
+
+/// How many of the late regions are listed.
+pub const LATE_REGIONS_LISTED: usize = 20;
+
+/// Sums over a whole run. Latencies are those of complete pictures after the warm-up, in milliseconds.
+#[derive(Clone, Debug)]
+pub struct Tally {
+    /// Pictures that were begun and judged, complete or not.
+    pub pictures: u64,
+    /// Complete pictures that were shown, the warm-up included.
+    pub shown: u64,
+    /// Complete pictures after the warm-up.
+    pub complete: u64,
+    /// Complete pictures since the last one that was not.
+    pub shown_in_a_row: u64,
+    /// From the start of TRANSFORM to the light, or as the pipeline defines it.
+    pub latency_ms: Samples,
+    /// The parts of [`LATENCY_PARTS`], in that order.
+    pub parts_ms: Vec<Samples>,
+    /// From the start of an eye's TRANSFORM to the end of its COPY, of all pictures.
+    pub eye_ms: Samples,
+    /// From the start of an eye's TRANSFORM to the swap of its picture.
+    pub eye_swap_ms: Samples,
+    /// The same in retraces, that of the swap included.
+    pub eye_retraces: Samples,
+    /// First to last word of a picture's first and of its second copy, of all pictures.
+    pub copy_ms: [Samples; 2],
+    /// From the start of a picture to the first word of its first copy.
+    pub copy_begins_ms: Samples,
+    /// Time of TRANSFORM and of RENDER, of all pictures.
+    pub stage_ms: [(Stage, Samples); 2],
+    /// Regions that came after their deadline.
+    pub late_regions: u64,
+    /// The first of them, [`LATE_REGIONS_LISTED`] at most.
+    pub first_late_regions: Vec<LateRegion>,
+    /// Marks, arrivals and swaps that were gone through, once for each time: what it costs to sum up.
+    pub records_looked_at: u64,
+    /// Of surfaces and pairs of them, in the order of [`WHOSE`] and [`ENDS`].
+    surfaces_ms: Vec<Samples>,
+    ends: PictureEnds,
+    /// Complete pictures of periods behind the warm-up and before the end.
+    shown_later: u64,
+    /// The picture of the first that was steady, and the last one whose stages were counted.
+    first_steady: Option<PictureNumber>,
+    stages_to: Option<PictureNumber>,
+    /// Port time of all regions, and their pixels.
+    region_ms: f64,
+    region_pixels: u64,
+    /// The period at whose begin the run ends, and a period in milliseconds.
+    end: PeriodNumber,
+    field_ms: f64,
+}
+
+/// Latency of a surface, or of a pair of them.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfaceLatency<'a> {
+    /// The surface with whose TRANSFORM it begins.
+    pub first: usize,
+    /// The surface that ends it.
+    pub last: usize,
+    /// `end_of_copy`, `swap` or `light`.
+    pub until: &'static str,
+    /// The same in words.
+    pub event: &'static str,
+    /// The numbers.
+    pub ms: &'a Samples,
+}
+
+/// First and last word of regions that are copied one after the other: an eye of Rendering Control, a half of Slats.
+struct CopySpan {
+    begin: Time,
+    end: Time,
+}
+
+/// Copies by picture and place in it.
+type Copies = BTreeMap<(PictureNumber, u8), CopySpan>;
+
+impl Tally {
+    /// Of nothing yet, of a run that ends at a period's begin, with so many samples of each kind at most.
+    pub(crate) fn new(end: PeriodNumber, field_ms: f64, limit: usize) -> Self {
+        let none = || Samples::keeping(limit);
+        Self {
+            pictures: 0,
+            shown: 0,
+            complete: 0,
+            shown_in_a_row: 0,
+            latency_ms: none(),
+            parts_ms: LATENCY_PARTS.map(|_| none()).to_vec(),
+            eye_ms: none(),
+            eye_swap_ms: none(),
+            eye_retraces: none(),
+            copy_ms: [none(), none()],
+            copy_begins_ms: none(),
+            stage_ms: [Stage::Transform, Stage::Render].map(|stage| (stage, none())),
+            late_regions: 0,
+            first_late_regions: Vec::new(),
+            records_looked_at: 0,
+            surfaces_ms: vec![none(); WHOSE.len() * ENDS.len()],
+            ends: PictureEnds::default(),
+            shown_later: 0,
+            first_steady: None,
+            stages_to: None,
+            region_ms: 0.0,
+            region_pixels: 0,
+            end,
+            field_ms,
+        }
+    }
+
+    /// The run ends in an earlier period.
+    pub(crate) fn end_early(&mut self, reached: PeriodNumber) {
+        self.end = self.end.min(reached);
+    }
+
+    /// Takes pictures, in the order in which they are shown, of which the record has everything.
+    pub(crate) fn take(&mut self, pipeline: &dyn Pipeline, record: &Record, pictures: &[PictureTimes]) {
+        let warm_up = (WARM_UP_PICTURES as u64).saturating_sub(self.pictures) as usize;
+        pictures.iter().for_each(|times| self.count(record, times));
+        let Some((steady, last)) = pictures.get(warm_up..).zip(pictures.last()) else { return };
+        let Some(first) = self.first_steady.or_else(|| steady.first().map(|times| times.picture)) else { return };
+        self.first_steady = Some(first);
+        let stages = record.stages();
+        self.take_copies(pipeline, record, steady);
+        let complete = steady.iter().filter(|times| times.is_shown());
+        complete.clone().for_each(|times| self.take_complete(record, times, of_picture(&stages, times.picture)));
+        self.take_eye_swaps(&stages, complete);
+        self.take_stages(&stages, first, last.picture);
+    }
+
+    fn count(&mut self, record: &Record, times: &PictureTimes) {
+        let period = record.display().period_at(times.shown_at);
+        self.pictures += 1;
+        if period < self.end {
+            self.ends.note(period, times.end);
+        }
+        self.shown_in_a_row = if times.is_shown() { self.shown_in_a_row + 1 } else { 0 };
+        self.shown += u64::from(times.is_shown());
+        let is_later = (PeriodNumber(WARM_UP_PERIODS)..self.end).contains(&period);
+        self.shown_later += u64::from(times.is_shown() && is_later);
+    }
+
+    fn take_complete(&mut self, record: &Record, times: &PictureTimes, stages: &[StageSpan]) {
+        self.complete += 1;
+        self.latency_ms.push((times.shown_at - times.transform_at).as_ms());
+        let spans = parts(record, times, stages).spans;
+        self.parts_ms.iter_mut().zip(spans).for_each(|(samples, span)| samples.push(span.as_ms()));
+        if stages.is_empty() {
+            return;
+        }
+        if let Some(pair) = pair(record, times.shown_at, stages) {
+            self.take_pair(&pair);
+        }
+    }
+
+    fn take_pair(&mut self, pair: &Pair) {
+        let latencies = WHOSE.into_iter().flat_map(|whose| ENDS.map(|end| (whose, end)));
+        for (samples, ((first, last), (_, _, end))) in self.surfaces_ms.iter_mut().zip(latencies) {
+            samples.push((end(pair, last) - pair.transform_at[first]).as_ms());
+        }
+    }
+
+    /// Latencies of both surfaces and of the pair; none where surfaces have no TRANSFORM of their own.
+    pub fn latencies_of_surfaces(&self) -> impl Iterator<Item = SurfaceLatency<'_>> {
+        let latencies = WHOSE.into_iter().flat_map(|whose| ENDS.map(|end| (whose, end)));
+        let with = self.surfaces_ms.iter().zip(latencies).filter(|(ms, _)| ms.count() > 0);
+        with.map(|(ms, ((first, last), (until, event, _)))| SurfaceLatency { first, last, until, event, ms })
+    }
+
+    fn take_copies(&mut self, pipeline: &dyn Pipeline, record: &Record, steady: &[PictureTimes]) {
+        let copies = copies(pipeline, record);
+        for times in steady {
+            for (samples, place) in self.copy_ms.iter_mut().zip(0..) {
+                let span = copies.get(&(times.picture, place));
+                samples.extend(span.map(|span| (span.end - span.begin).as_ms()));
+            }
+            let first = copies.get(&(times.picture, 0));
+            self.copy_begins_ms.extend(first.map(|first| first.begin.since(times.transform_at).as_ms()));
+        }
+    }
+
+    /// From an eye's first TRANSFORM on any slave to the swap of its picture.
+    fn take_eye_swaps<'a>(&mut self, stages: &[StageSpan], complete: impl Iterator<Item = &'a PictureTimes>) {
+        let shown: BTreeMap<PictureNumber, Time> = complete.map(|times| (times.picture, times.shown_at)).collect();
+        let mut begins: BTreeMap<(PictureNumber, SurfaceId), Time> = BTreeMap::new();
+        let transforms =
+            stages.iter().filter(|span| span.stage == Stage::Transform && shown.contains_key(&span.picture));
+        for stage in transforms {
+            let Some(eye) = stage.surface else { continue };
+            let begin = begins.entry((stage.picture, eye)).or_insert(stage.begin);
+            *begin = stage.begin.min(*begin);
+        }
+        for ((picture, _), begin) in &begins {
+            let ms = shown[picture].since(*begin).as_ms();
+            self.eye_swap_ms.push(ms);
+            self.eye_retraces.push(retraces(ms, self.field_ms));
+        }
+    }
+
+    /// Stages of the pictures behind those whose stages were taken before, up to `last`.
+    fn take_stages(&mut self, stages: &[StageSpan], first: PictureNumber, last: PictureNumber) {
+        let begin = stages.partition_point(|span| match self.stages_to {
+            Some(to) => span.picture <= to,
+            None => span.picture < first,
+        });
+        let end = stages.partition_point(|span| span.picture <= last);
+        let fresh = stages.get(begin..end).unwrap_or_default();
+        self.stages_to = self.stages_to.max(Some(last));
+        for (stage, samples) in &mut self.stage_ms {
+            let spans = fresh.iter().filter(|span| span.stage == *stage);
+            samples.extend(spans.filter_map(|span| Some((span.end? - span.begin).as_ms())));
+        }
+        let of_eyes = fresh.iter().filter(|span| span.stage == Stage::Transform && span.surface.is_some());
+        self.eye_ms.extend(of_eyes.filter_map(|span| {
+            let copy = of_picture(stages, span.picture)
+                .iter()
+                .find(|copy| copy.stage == Stage::Copy && copy.surface == span.surface)?;
+            Some(copy.end?.since(span.begin).as_ms())
+        }));
+    }
+
+    /// Takes regions that have arrived, each once; a message occupies a channel for `message`.
+    pub(crate) fn take_arrivals(&mut self, arrivals: &[Arrival], message: Span) {
+        for arrival in arrivals {
+            let [_, _, width, height] = arrival.target.grid.rectangle(arrival.target.region);
+            self.region_ms += (arrival.last_part_at - arrival.first_part_at + message).as_ms();
+            self.region_pixels += u64::from(width * height);
+        }
+    }
+
+    /// Takes regions that came too late, each once.
+    pub(crate) fn take_late(&mut self, late: &[LateRegion]) {
+        self.late_regions += late.len() as u64;
+        let room = LATE_REGIONS_LISTED - self.first_late_regions.len();
+        self.first_late_regions.extend(late.iter().take(room));
+    }
+
+    /// Port time of a region of 15,360 pixels, microseconds.
+    #[must_use]
+    pub fn region_copy_us(&self) -> f64 {
+        self.region_ms * 1e3 * 15_360.0 / self.region_pixels.max(1) as f64
+    }
+
+    pub(crate) const fn ends(&self) -> &PictureEnds {
+        &self.ends
+    }
+
+    /// Complete pictures of periods behind the warm-up: [`WARM_UP_PERIODS`].
+    pub(crate) const fn shown_later(&self) -> u64 {
+        self.shown_later
+    }
+}
+
+/// The stages of a picture; all of them are in order of picture.
+pub(crate) fn of_picture(stages: &[StageSpan], picture: PictureNumber) -> &[StageSpan] {
+    let first = stages.partition_point(|span| span.picture < picture);
+    let count = stages[first..].iter().take_while(|span| span.picture == picture).count();
+    &stages[first..first + count]
+}
+
+fn copies(pipeline: &dyn Pipeline, record: &Record) -> Copies {
+    let message = record.message_span();
+    let mut copies = Copies::new();
+    for arrival in &record.observation().arrivals {
+        let place = pipeline.copy_part(arrival);
+        let begin = arrival.begins_at(message);
+        let fresh = CopySpan { begin, end: arrival.last_part_at };
+        let span = copies.entry((arrival.target.picture, place)).or_insert(fresh);
+        span.begin = span.begin.min(begin);
+        span.end = span.end.max(arrival.last_part_at);
+    }
+    copies
+}

@@ -1,0 +1,113 @@
+//! A run that keeps statistics only says the same as one that keeps everything, holds no more records the longer it is, and
+//! handles no more of them a field.
+
+use pxpl5_machine::{LateRegion, MachineConfig};
+use pxpl5_run::{
+    Experiment, Frameless, Jitp, Keep, Outcome, Pipeline, Pixels, RenderingControl, Samples, Slats, Viewpoint,
+};
+use pxpl5_scene::Scene;
+use std::sync::Arc;
+
+fn scene(name: &str, triangles: usize) -> Scene {
+    let scene = pxpl5_scene::builtin(name).expect("built in");
+    if triangles > 0 { scene.decimated(triangles).expect("it has so many") } else { scene }
+}
+
+fn experiment(machine: MachineConfig, pipeline: impl Pipeline, scene: Scene, fields: u64) -> Experiment {
+    Experiment::with(machine, Arc::new(pipeline), Arc::new(scene)).fields(fields).pixels(Pixels::Off)
+}
+
+/// Long enough that records are given up several times.
+fn experiments() -> [(&'static str, Experiment); 6] {
+    let small = MachineConfig::small_hmd;
+    let slats = MachineConfig::slats;
+    [
+        ("rendering control", experiment(small(), RenderingControl::stereo(), scene("mig", 0), 2_500)),
+        ("one eye", experiment(small(), RenderingControl::mono(), scene("mig", 60), 4_000)),
+        ("slats", experiment(slats(), Slats::split(), scene("mig", 60), 2_500)),
+        ("slats with too much", experiment(slats(), Slats::split(), scene("mig", 250), 2_500)),
+        ("frameless", experiment(small(), Frameless::new(), scene("full-screen:4", 0), 150)),
+        ("jitp", experiment(small(), Jitp::new(Viewpoint::Strip, true), scene("full-screen:4", 0), 400)),
+    ]
+}
+
+fn run(experiment: &Experiment, keep: Keep) -> Outcome {
+    experiment.clone().keep(keep).run().expect("it runs")
+}
+
+/// Everything that is said of a run over all of it.
+fn said(outcome: &Outcome) -> Vec<String> {
+    let tally = outcome.tally();
+    let all: Vec<&Samples> =
+        [&tally.latency_ms, &tally.eye_ms, &tally.eye_swap_ms, &tally.eye_retraces, &tally.copy_begins_ms]
+            .into_iter()
+            .chain(&tally.parts_ms)
+            .chain(&tally.copy_ms)
+            .chain(tally.stage_ms.iter().map(|(_, samples)| samples))
+            .chain(tally.latencies_of_surfaces().map(|latency| latency.ms))
+            .collect();
+    let late: &[LateRegion] = &tally.first_late_regions;
+    let counts = [tally.pictures, tally.shown, tally.complete, tally.shown_in_a_row, tally.late_regions];
+    let mut said: Vec<String> = all.iter().map(|samples| format!("{:?}", samples.statistics())).collect();
+    said.push(format!("{counts:?} {late:?} {:?} {:?}", tally.region_copy_us(), outcome.due()));
+    said.push(format!("{:?} {} {}", outcome.updates_hz(), outcome.ends_complete(), outcome.record().trace_hash()));
+    said
+}
+
+#[test]
+fn what_is_kept_changes_nothing_that_is_said() {
+    for (name, experiment) in experiments() {
+        let everything = run(&experiment, Keep::Everything);
+        let statistics = run(&experiment, Keep::Statistics);
+        assert_eq!(said(&everything), said(&statistics), "{name}");
+        let forgotten = statistics.record().observation().forgotten;
+        assert!(forgotten.before.0 > 0, "{name}: records were given up");
+        assert!(everything.tally().pictures > 100, "{name}: there is something to be said");
+        let all = everything.pictures();
+        assert_eq!(
+            statistics.pictures(),
+            &all[all.len() - statistics.pictures().len()..],
+            "{name}: the last ones are kept"
+        );
+    }
+}
+
+/// Most records and most events that wait, at any stop of a run; records that were looked at, of all; events.
+fn work(experiment: &Experiment, fields: u64) -> [u64; 4] {
+    let mut most = [0, 0];
+    let watched = experiment.clone().fields(fields).keep(Keep::Statistics).run_stopping(&[], |_, machine| {
+        most[0] = most[0].max(machine.record().observation().records() as u64);
+        most[1] = most[1].max(machine.pending_events() as u64);
+        Ok(())
+    });
+    let outcome = watched.expect("it runs");
+    [most[0], most[1], outcome.tally().records_looked_at, outcome.record().events()]
+}
+
+#[test]
+fn twenty_times_the_fields_hold_no_more_and_take_twenty_times_the_work() {
+    let small = MachineConfig::small_hmd;
+    for (name, experiment, fields) in [
+        ("slats", experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1), 300),
+        ("rendering control", experiment(small(), RenderingControl::mono(), scene("mig", 12), 1), 800),
+        (
+            "frameless",
+            experiment(small(), Frameless { block: 64, ..Frameless::new() }, scene("full-screen:4", 0), 1),
+            150,
+        ),
+    ] {
+        let [_, _, _, events] = work(&experiment, fields);
+        let [records_5, waiting_5, looked_at_5, _] = work(&experiment, 5 * fields);
+        let [records_20, waiting_20, looked_at_20, events_20] = work(&experiment, 20 * fields);
+        // A head's sway changes what is visible a little; 60 fields may come between two looks.
+        assert!(
+            records_20 <= records_5 + records_5 / 20,
+            "{name}: {records_20} records, {records_5} in a quarter of the time"
+        );
+        assert!(waiting_20 <= 2 * waiting_5, "{name}: {waiting_20} events wait, {waiting_5} in a quarter of the time");
+        let looks = looked_at_20 as f64 / (4 * looked_at_5) as f64;
+        assert!(looks < 1.25, "{name}: {looks} times the records looked at a field");
+        let growth = events_20 as f64 / (20 * events) as f64;
+        assert!((growth - 1.0).abs() < 0.02, "{name}: {growth} times the events a field");
+    }
+}
