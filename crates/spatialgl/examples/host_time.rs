@@ -15,6 +15,7 @@ fn processor_ns() -> Option<u64> {
 }
 
 fn main() {
+    let wanted = std::env::args().nth(1);
     let commands = record_scene(&builtin("head").expect("built in"), 384.0, true).expect("valid");
     let plain = VolumeConfig { strobes: Strobes::Mirror, ..VolumeConfig::plain() };
     let paper = VolumeConfig { strobes: Strobes::Mirror, ..VolumeConfig::paper() };
@@ -24,7 +25,10 @@ fn main() {
         ("binned and tiled", along, &paper),
         ("binned and tiled, jittered", jittered, &paper),
         ("plain", along, &plain),
-    ] {
+    ]
+    .into_iter()
+    .filter(|(name, ..)| wanted.as_ref().is_none_or(|wanted| wanted == name))
+    {
         let config_of_display = SweptConfig::perspecta(SliceClip::Hyperbolic(0.25), projection);
         let display = SweptDisplay::new(config_of_display).expect("valid");
         let mut times: Vec<u64> = (0..7)

@@ -2,6 +2,7 @@
 
 mod compare;
 mod figures;
+mod heads;
 mod look;
 mod run;
 mod settings;
