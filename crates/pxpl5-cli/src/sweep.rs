@@ -41,7 +41,7 @@ pub(crate) struct SweepArgs {
     quiet: bool,
 }
 
-fn shard(text: &str) -> Result<Shard, String> {
+pub(crate) fn shard(text: &str) -> Result<Shard, String> {
     let parts = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
     let shard = parts.and_then(|(number, of)| Shard::new(number, of));
     shard.ok_or_else(|| format!("expected a share such as 2/8, from 1/8 to 8/8, found `{text}`"))
