@@ -48,7 +48,8 @@ pub(crate) fn read(words: &[Word]) -> Option<StoreMessage<'_>> {
 #[must_use]
 pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Word]>>> {
     let batches = batch_messages(planes, tiling, planes.slices())?;
-    let in_order = |batch: BatchMessages| std::iter::once(batch.map).chain(batch.tiles.into_iter().map(|tile| tile.words));
+    let in_order =
+        |batch: BatchMessages| std::iter::once(batch.map).chain(batch.tiles.into_iter().map(|tile| tile.words));
     Some(batches.into_iter().flat_map(in_order).collect())
 }
 

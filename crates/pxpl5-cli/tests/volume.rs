@@ -209,7 +209,8 @@ fn a_sweep_that_makes_no_sense_is_refused_before_anything_is_drawn() {
 #[test]
 fn a_head_before_the_volume_has_a_report_a_figure_and_a_film() {
     let folder = Folder::new("volume-head");
-    let arguments = ["--head", "slide:0.2", "--latency", "50", "--seconds", "0.5", "--frames", "3", "--size", "32", "--out", "h"];
+    let arguments =
+        ["--head", "slide:0.2", "--latency", "50", "--seconds", "0.5", "--frames", "3", "--size", "32", "--out", "h"];
     let output = folder.run(&volume("view", &arguments));
     assert!(output.status.success(), "{}", err(&output));
     assert_eq!(names(&folder.0.join("h")), ["errors.csv", "errors.svg", "eyes.png", "report.json"]);

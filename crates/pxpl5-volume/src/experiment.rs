@@ -6,8 +6,8 @@ use crate::pixel_planes::{ArrayKind, PixelPlanesRenderer, SliceBounds, SliceTraf
 use crate::settings::VolumeSettings;
 use pxpl5_scene::Scene;
 use spatialgl::{
-    CommandBuffer, HostRenderer, SliceRenderer, SpatialDisplay, Supersampled, SweptDisplay, VolumeFrame, Workers, record_scene,
-    render_volume,
+    CommandBuffer, HostRenderer, SliceRenderer, SpatialDisplay, Supersampled, SweptDisplay, VolumeFrame, Workers,
+    record_scene, render_volume,
 };
 use std::time::Instant;
 

@@ -191,7 +191,8 @@ impl<'a> HeadBefore<'a> {
     /// Instants, evenly spread from one latency on.
     fn instants(&self, question: &HeadQuestion) -> Result<Vec<u64>, VolumeError> {
         let HeadQuestion { seconds, instants, .. } = *question;
-        let wrong = |what, expected: &str, found: String| VolumeError::Missing { what, expected: expected.to_owned(), found };
+        let wrong =
+            |what, expected: &str, found: String| VolumeError::Missing { what, expected: expected.to_owned(), found };
         if !(seconds > 0.0 && seconds <= 3600.0) {
             return Err(wrong("length", "above 0 s and at most an hour", seconds.to_string()));
         }
@@ -250,7 +251,13 @@ impl<'a> HeadBefore<'a> {
     /// # Errors
     ///
     /// [`VolumeError`] for a side that is no multiple of 8, and an eye within the display.
-    pub fn picture(&self, time_ps: u64, side: u32, exposure: f64, workers: &dyn Workers) -> Result<RgbImage, VolumeError> {
+    pub fn picture(
+        &self,
+        time_ps: u64,
+        side: u32,
+        exposure: f64,
+        workers: &dyn Workers,
+    ) -> Result<RgbImage, VolumeError> {
         let mut shown = Vec::new();
         for eye in [-1.0, 1.0] {
             shown.push(self.look(time_ps, eye, side)?.picture(self.volume, Some(exposure), workers)?);

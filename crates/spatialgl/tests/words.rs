@@ -1,8 +1,8 @@
 //! Numeric cases 23 and 24: the words that the projector gets.
 
 use spatialgl::{
-    Combine, CommandBuffer, OneThread, PlaneStack, SliceImage, SliceRenderer, SliceStats, SliceView,
-    SliceWork, Tiling, VolumeConfig, render_volume,
+    Combine, CommandBuffer, OneThread, PlaneStack, SliceImage, SliceRenderer, SliceStats, SliceView, SliceWork, Tiling,
+    VolumeConfig, render_volume,
 };
 
 /// Gives each pixel the colour of its place, and nothing else.

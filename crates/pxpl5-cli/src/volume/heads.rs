@@ -102,7 +102,10 @@ fn errors_csv(study: &HeadStudy) -> String {
 /// Angles over time: one figure that compares latency with voxels and dither.
 fn errors_svg(study: &HeadStudy, motion: &str) -> String {
     let axes = Axes {
-        title: format!("{}, head {motion}: a head-mounted display {:.0} ms late, and a volume", study.scene, study.latency_ms),
+        title: format!(
+            "{}, head {motion}: a head-mounted display {:.0} ms late, and a volume",
+            study.scene, study.latency_ms
+        ),
         across: "time, s".to_owned(),
         up: "angle seen by the eye, degrees".to_owned(),
     };

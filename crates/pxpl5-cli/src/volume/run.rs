@@ -88,7 +88,14 @@ fn bounds(planes: &PixelPlanesReport) -> String {
     let _ = writeln!(
         text,
         "\nOne volume event by event\n{:>10} {:>11} {:>13} {:>12} {:>11} {:>16} {:>17} {:>16}",
-        "renderers", "processors", "ms", "over bound", "volumes/s", "renderers busy", "processors busy", "channels busy"
+        "renderers",
+        "processors",
+        "ms",
+        "over bound",
+        "volumes/s",
+        "renderers busy",
+        "processors busy",
+        "channels busy"
     );
     for row in &planes.simulated {
         let _ = writeln!(

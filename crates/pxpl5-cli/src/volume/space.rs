@@ -52,9 +52,8 @@ impl VolumeSpace {
         };
         let mut settings: BTreeMap<String, Value> = leaves(file).into_iter().collect();
         for assignment in sets {
-            let (path, value) = assignment
-                .split_once('=')
-                .ok_or_else(|| wrong("--set", "PATH=VALUE", "an equals sign", assignment))?;
+            let (path, value) =
+                assignment.split_once('=').ok_or_else(|| wrong("--set", "PATH=VALUE", "an equals sign", assignment))?;
             settings.insert(path.trim().to_owned(), Value::from(value.trim()));
         }
         let axes = axes(sweep, place)?;
@@ -126,11 +125,17 @@ fn axes(mut sweep: Table, place: &str) -> Result<Vec<Axis>, CliError> {
     axes.extend(Some(together).filter(|axis| !axis.paths.is_empty()));
     if let Some(seeds) = sweep.remove("seeds") {
         let count = seeds.as_integer().and_then(|count| u64::try_from(count).ok()).filter(|count| *count > 0);
-        let count = count.ok_or_else(|| wrong(place, "sweep.seeds", "a number of seeds from 1 on", &seeds.to_string()))?;
+        let count =
+            count.ok_or_else(|| wrong(place, "sweep.seeds", "a number of seeds from 1 on", &seeds.to_string()))?;
         axes.push(Axis { paths: vec!["seed".to_owned()], values: vec![Values::Range { from: 1, step: 1, count }] });
     }
     if let Some(key) = sweep.keys().next() {
-        return Err(wrong(place, &format!("sweep.{key}"), "one of sweep.grid, sweep.together, sweep.seeds", "another key"));
+        return Err(wrong(
+            place,
+            &format!("sweep.{key}"),
+            "one of sweep.grid, sweep.together, sweep.seeds",
+            "another key",
+        ));
     }
     check_axes(&axes, place)?;
     Ok(axes)
@@ -166,8 +171,15 @@ fn values(path: &str, value: &Value, place: &str) -> Result<Values, CliError> {
             let known = range.keys().all(|key| ["from", "to", "step"].contains(&key.as_str()));
             let length = whole("to").zip(whole("from")).and_then(|(to, from)| to.checked_sub(from));
             match (whole("from"), step, length.filter(|length| known && *length >= 0)) {
-                (Some(from), Some(step), Some(length)) => Ok(Values::Range { from, step, count: (length / step) as u64 + 1 }),
-                _ => Err(wrong(path, place, "whole numbers { from, to, step } with from <= to and step > 0", &value.to_string())),
+                (Some(from), Some(step), Some(length)) => {
+                    Ok(Values::Range { from, step, count: (length / step) as u64 + 1 })
+                }
+                _ => Err(wrong(
+                    path,
+                    place,
+                    "whole numbers { from, to, step } with from <= to and step > 0",
+                    &value.to_string(),
+                )),
             }
         }
         other => Err(wrong(place, path, "a list with values, or { from, to, step }", &other.to_string())),

@@ -81,7 +81,11 @@ fn summarise(args: &SweepArgs, store: &Store, total: usize) -> Result<usize, Cli
     let failed: Vec<&Row> = ours.filter(|row| row.status == Status::Failed).collect();
     if let Some(first) = failed.first() {
         let error = first.error.as_deref().unwrap_or_default();
-        complain(&format!("pxpl5: {} of {total} points could not be drawn; point {}: {error}\n", failed.len(), first.point));
+        complain(&format!(
+            "pxpl5: {} of {total} points could not be drawn; point {}: {error}\n",
+            failed.len(),
+            first.point
+        ));
     }
     if !args.quiet {
         print(&format!("{total} points are in {}.\n", args.out.join(ROWS_FILE).display()))?;
@@ -107,7 +111,8 @@ fn definitions(space: &VolumeSpace) -> Result<BTreeMap<String, String>, CliError
     for name in &space.measure {
         if !known(name) {
             let numbers = report.as_object().into_iter().flatten().filter(|(_, value)| value.is_number());
-            let names: Vec<&str> = numbers.map(|(name, _)| name.as_str()).filter(|name| *name != "host_seconds").collect();
+            let names: Vec<&str> =
+                numbers.map(|(name, _)| name.as_str()).filter(|name| *name != "host_seconds").collect();
             let names = names.join(", ");
             return Err(CliError::usage(format!("measure: expected numbers of the report ({names}), found {name}")));
         }
@@ -122,7 +127,8 @@ fn value_of<'a>(report: &'a Value, path: &str) -> Option<&'a Value> {
 
 fn header(space: &VolumeSpace, measure: BTreeMap<String, String>) -> Result<Header, CliError> {
     let json_of = |value: &toml::Value| serde_json::to_value(value).unwrap_or_default();
-    let settings: BTreeMap<&String, Value> = space.settings.iter().map(|(path, value)| (path, json_of(value))).collect();
+    let settings: BTreeMap<&String, Value> =
+        space.settings.iter().map(|(path, value)| (path, json_of(value))).collect();
     let axes: Vec<Value> = space
         .axes
         .iter()

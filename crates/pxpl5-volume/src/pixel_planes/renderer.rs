@@ -160,8 +160,7 @@ impl PixelPlanesRenderer {
             one.command.encode(&self.layout, &mut words);
             commands += 1;
         }
-        let mut work =
-            RendererWork { regions: 1, commands, ..RendererWork::default() };
+        let mut work = RendererWork { regions: 1, commands, ..RendererWork::default() };
         work.command_words = (words.len() + halftone_words(&self.layout).len()) as u64;
         if commands == 0 {
             work.clocks = self.empty_clocks();

@@ -228,12 +228,8 @@ impl<'a> Machine<'a> {
         let lists = self.lists(slice);
         let last = lists.len().saturating_sub(1);
         for (i, list) in lists.into_iter().enumerate() {
-            let message = Message {
-                source: NodeId(number as u16),
-                destination,
-                words: list.words(),
-                body: Body::Commands(list),
-            };
+            let message =
+                Message { source: NodeId(number as u16), destination, words: list.words(), body: Body::Commands(list) };
             let request = Request { message, ticket: (i == last).then_some(1), hold: i != last, order: i as u32 };
             self.request(now + self.cycle, request);
         }
@@ -276,8 +272,7 @@ impl<'a> Machine<'a> {
     fn copy(&self, slice: usize, region: usize) -> CopyOrder {
         let [columns, rows] = self.traffic.size.map(|side| side.div_ceil(REGION_SIZE));
         let side = 32;
-        let grid =
-            RegionGrid { width: columns * side, height: rows * side, region_width: side, region_height: side };
+        let grid = RegionGrid { width: columns * side, height: rows * side, region_width: side, region_height: side };
         let target = CopyTarget {
             frame_buffer: self.display_node(),
             buffer: 0,
@@ -357,12 +352,8 @@ impl<'a> Machine<'a> {
         let last = tiles.len().saturating_sub(1);
         for (i, words) in tiles.into_iter().enumerate() {
             let body = Body::Words(words);
-            let message = Message {
-                source: message.source,
-                destination: message.destination,
-                words: words_of(&body),
-                body,
-            };
+            let message =
+                Message { source: message.source, destination: message.destination, words: words_of(&body), body };
             let request = Request { message, ticket: (i == last).then_some(0), hold: i != last, order: i as u32 };
             self.request(at, request);
         }
@@ -390,7 +381,8 @@ impl<'a> Machine<'a> {
             100.0 * sum / (ms * spans.len() as f64).max(f64::MIN_POSITIVE)
         };
         let (faults, _) = self.display.faults();
-        let is_shown = self.display.counters().iter().any(|counter| counter.name == "volumes swapped" && counter.count == 1);
+        let is_shown =
+            self.display.counters().iter().any(|counter| counter.name == "volumes swapped" && counter.count == 1);
         SimulatedRow {
             renderers,
             processors,

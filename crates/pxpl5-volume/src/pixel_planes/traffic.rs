@@ -29,7 +29,12 @@ impl SliceTraffic {
     /// The messages of a volume that a renderer has drawn, of the slices that it has drawn. `None` if its tiles cannot be sent (see
     /// [`perspecta::volume_messages`]).
     #[must_use]
-    pub fn of(renderer: &PixelPlanesRenderer, views: &[SliceView], frame: &VolumeFrame, tiling: Tiling) -> Option<Self> {
+    pub fn of(
+        renderer: &PixelPlanesRenderer,
+        views: &[SliceView],
+        frame: &VolumeFrame,
+        tiling: Tiling,
+    ) -> Option<Self> {
         let size = frame.planes.size();
         let loads = renderer.loads(views);
         let batches = batch_messages(&frame.planes, tiling, views.len() as u32)?;
