@@ -61,13 +61,13 @@ fn a_turning_head_is_off_by_its_rate_times_the_latency() {
 }
 
 /// In the plane of a slice the pixel is at most half a pixel off along both edges; across, half the distance to the next slice, at
-/// most the rim's 64 px x sin(2.5 degrees) = 2.79 px. One pixel is 254/128 mm.
+/// most the rim's 64 px x sin(5 degrees) = 5.58 px (36 slices are 10 degrees apart). One pixel is 254/128 mm.
 #[test]
 fn voxels_are_off_by_their_own_size_and_no_more() {
     let study = study(&Still(Pose::IDENTITY), &QUESTION);
     let pixel_mm = 254.0 / 128.0;
     assert!((study.voxel_mm - pixel_mm).abs() < 1e-12);
-    let most_mm = pixel_mm * (0.5f64 + 64.0 * 2.5f64.to_radians().sin());
+    let most_mm = pixel_mm * (0.5f64 + 64.0 * 5.0f64.to_radians().sin());
     let least_distance_mm = 508.0 - 127.0;
     let sample = study.samples[0];
     let most_deg = (most_mm.hypot(pixel_mm / 2.0) / least_distance_mm).atan().to_degrees();
