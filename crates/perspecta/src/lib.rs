@@ -40,6 +40,6 @@ mod timing;
 mod viewer;
 
 pub use error::PerspectaError;
-pub use protocol::volume_messages;
+pub use protocol::{BatchMessages, TileMessage, batch_messages, volume_messages};
 pub use timing::PerspectaConfig;
 pub use viewer::{Camera, Light, ViewOptions, film, view_planes, view_undithered};

@@ -47,6 +47,35 @@ pub(crate) fn read(words: &[Word]) -> Option<StoreMessage<'_>> {
 /// large for a message, or more than 65,536 a slice.
 #[must_use]
 pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Word]>>> {
+    let batches = batch_messages(planes, tiling, planes.slices())?;
+    let in_order =
+        |batch: BatchMessages| std::iter::once(batch.map).chain(batch.tiles.into_iter().map(|tile| tile.words));
+    Some(batches.into_iter().flat_map(in_order).collect())
+}
+
+/// The messages of a batch of slices.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BatchMessages {
+    /// Which tiles are coming; it must arrive before they do.
+    pub map: Arc<[Word]>,
+    /// The tiles that hold something, slice by slice.
+    pub tiles: Vec<TileMessage>,
+}
+
+/// The message of one tile.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TileMessage {
+    /// Number of its slice in the turn.
+    pub slice: u32,
+    /// Number of the tile in the slice, row by row from the top left.
+    pub tile: u32,
+    /// All its words, with those before the pixels.
+    pub words: Arc<[Word]>,
+}
+
+/// The messages of the first so many slices, batch by batch; the last batch may be short. `None` as of [`volume_messages`].
+#[must_use]
+pub fn batch_messages(planes: &BitPlanes, tiling: Tiling, slices: u32) -> Option<Vec<BatchMessages>> {
     let tile = tiling.tile?;
     let grid = tiling.grid(planes.size());
     let fits = tile * tile / 8 + HEADER_WORDS as u32 <= MAX_MESSAGE_WORDS && grid.tiles() <= 0x1_0000;
@@ -54,18 +83,25 @@ pub fn volume_messages(planes: &BitPlanes, tiling: Tiling) -> Option<Vec<Arc<[Wo
     if !fits || !map_fits || tiling.batch == 0 {
         return None;
     }
-    let mut messages = Vec::new();
-    for first in (0..planes.slices()).step_by(tiling.batch as usize) {
-        let slices = tiling.batch.min(planes.slices() - first);
-        let batch: Vec<&[Word]> = (first..first + slices).map(|k| planes.slice(k)).collect();
-        let is_lit = |number: &u32| batch.iter().any(|words| has_light(words, planes.size(), &grid, *number));
-        let lit: Vec<u32> = (0..grid.tiles()).filter(is_lit).collect();
-        messages.push(map_message(first, slices, tile, grid.tiles(), &lit));
-        for (k, words) in (first..).zip(&batch) {
-            messages.extend(lit.iter().map(|number| tile_message(k, *number, tile, words, planes.size(), &grid)));
-        }
+    let end = slices.min(planes.slices());
+    let firsts = (0..end).step_by(tiling.batch as usize);
+    Some(firsts.map(|first| batch(planes, first, tiling.batch.min(end - first), tile, &grid)).collect())
+}
+
+fn batch(planes: &BitPlanes, first: u32, slices: u32, tile: u32, grid: &TileGrid) -> BatchMessages {
+    let size = planes.size();
+    let is_lit = |number: &u32| (first..first + slices).any(|k| has_light(planes.slice(k), size, grid, *number));
+    let lit: Vec<u32> = (0..grid.tiles()).filter(is_lit).collect();
+    let of_tile = |slice: u32, number: u32| TileMessage {
+        slice,
+        tile: number,
+        words: tile_message(slice, number, tile, planes.slice(slice), size, grid),
+    };
+    let tiles = (first..first + slices).flat_map(|k| lit.iter().map(move |number| (k, *number)));
+    BatchMessages {
+        map: map_message(first, slices, tile, grid.tiles(), &lit),
+        tiles: tiles.map(|(k, number)| of_tile(k, number)).collect(),
     }
-    Some(messages)
 }
 
 fn map_message(first: u32, slices: u32, tile: u32, tiles: u32, lit: &[u32]) -> Arc<[Word]> {

@@ -6,7 +6,7 @@ use crate::terminal::{complain, print, progress, warn};
 use clap::Args;
 use pxpl5::sweep::{ROWS_FILE, RunOptions, Shard, Store, Sweep};
 use pxpl5::{ExperimentFile, Parameter};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Run an experiment at every point of a space of settings.
 ///
@@ -41,7 +41,7 @@ pub(crate) struct SweepArgs {
     quiet: bool,
 }
 
-fn shard(text: &str) -> Result<Shard, String> {
+pub(crate) fn shard(text: &str) -> Result<Shard, String> {
     let parts = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
     let shard = parts.and_then(|(number, of)| Shard::new(number, of));
     shard.ok_or_else(|| format!("expected a share such as 2/8, from 1/8 to 8/8, found `{text}`"))
@@ -64,7 +64,8 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     let options = RunOptions { shard: args.shard, threads: args.threads.map_or(cores, |threads| threads as usize) };
     pxpl5::sweep::run(&sweep, &mut store, options, |_| bar.inc(1))?;
     bar.finish_and_clear();
-    let failed = summarise(&args, &store, total)?;
+    let failed = tell_failures(&store, args.shard, total, "simulated")?;
+    tell_place(&args.out, total, args.quiet)?;
     store.finish()?;
     if failed >= total { Err(CliError::failure("no point could be simulated")) } else { Ok(()) }
 }
@@ -111,16 +112,17 @@ fn quoted(word: &str) -> String {
     if is_plain { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
-/// Says where the rows are, and how many of them hold nothing but a reason: so many are given.
-fn summarise(args: &SweepArgs, store: &Store, total: u64) -> Result<u64, CliError> {
-    let path = args.out.join(ROWS_FILE);
-    let failed = store.failed(args.shard).count() as u64;
-    if let Some(point) = store.failed(args.shard).next() {
+/// Says how many points of a shard hold nothing but a reason, and the first of them; so many are given.
+pub(crate) fn tell_failures(store: &Store, shard: Shard, total: u64, done: &str) -> Result<u64, CliError> {
+    let failed = store.failed(shard).count() as u64;
+    if let Some(point) = store.failed(shard).next() {
         let error = store.row(point)?.and_then(|row| row.error).unwrap_or_default();
-        complain(&format!("pxpl5: {failed} of {total} points could not be simulated; point {point}: {error}\n"));
-    }
-    if !args.quiet {
-        print(&format!("{total} points are in {}.\n", path.display()))?;
+        complain(&format!("pxpl5: {failed} of {total} points could not be {done}; point {point}: {error}\n"));
     }
     Ok(failed)
+}
+
+/// Says where the rows are.
+pub(crate) fn tell_place(out: &Path, total: u64, quiet: bool) -> Result<(), CliError> {
+    if quiet { Ok(()) } else { print(&format!("{total} points are in {}.\n", out.join(ROWS_FILE).display())) }
 }

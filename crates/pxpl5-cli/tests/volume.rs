@@ -156,6 +156,86 @@ fn what_is_wrong_with_an_option_is_said_before_anything_is_drawn_and_the_exit_co
     }
 }
 
+/// Three clips by two sizes of tiles, interrupted after two points: the finished file is the same however it came about.
+#[test]
+fn a_sweep_is_the_same_file_after_an_interruption() {
+    let folder = Folder::new("volume-sweep");
+    folder.file(
+        "s.toml",
+        "title = \"t\"\nmeasure = [\"lit_voxels\", \"model_ms.gpu.ms\"]\n[display]\nslices = 12\nwidth = 64\nheight = 64\n\
+         [sweep.grid]\nclip.variant = [\"exact\", \"hyperbolic\", \"cone\"]\ntile.size = { from = 16, to = 32, step = 16 }\n",
+    );
+    let whole = folder.run(&["volume", "sweep", "s.toml", "--out", "whole"]);
+    assert!(whole.status.success(), "{}", err(&whole));
+    assert!(err(&whole).contains("2 of 6 points could not be drawn; point 4"), "{}", err(&whole));
+    let rows = std::fs::read(folder.0.join("whole/rows.jsonl")).expect("written");
+    let text = String::from_utf8(rows.clone()).expect("text");
+    let lines: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    assert_eq!((lines.len(), &lines[0]["points"]), (7, &Value::from(6)));
+    assert!(lines[1]["measured"]["lit_voxels"].as_f64() < lines[3]["measured"]["lit_voxels"].as_f64());
+    std::fs::create_dir(folder.0.join("again")).expect("ours");
+    let begun: String = text.split_inclusive('\n').take(3).collect::<String>() + "{\"point\":2,";
+    std::fs::write(folder.0.join("again/rows.jsonl"), begun).expect("ours");
+    let refused = folder.run(&["volume", "sweep", "s.toml", "--out", "again"]);
+    assert_eq!(refused.status.code(), Some(2), "{}", err(&refused));
+    let resumed = folder.run(&["volume", "sweep", "s.toml", "--out", "again", "--resume"]);
+    assert!(resumed.status.success(), "{}", err(&resumed));
+    assert_eq!(std::fs::read(folder.0.join("again/rows.jsonl")).expect("written"), rows);
+    let csv = std::fs::read_to_string(folder.0.join("again/results.csv")).expect("written");
+    assert!(csv.contains("point,status,clip.variant,tile.size,lit_voxels,model_ms.gpu.ms"), "{csv}");
+}
+
+#[test]
+fn a_sweep_that_makes_no_sense_is_refused_before_anything_is_drawn() {
+    let folder = Folder::new("volume-sweep-refused");
+    for (text, part) in [
+        ("scene = \"mig\"\n", "sweep.grid"),
+        ("[sweep.grid]\nclip.bias = [1]\n", "clip.bias"),
+        ("[sweep.grid]\ntile.size = []\n", "a list with values"),
+        ("[sweep.grid]\ntile.size = { from = 3, to = 1 }\n", "from <= to"),
+        ("measure = [\"lit\"]\n[sweep.grid]\ntile.size = [8]\n", "lit_voxels"),
+        ("measure = [\"host_seconds\"]\n[sweep.grid]\ntile.size = [8]\n", "host_seconds"),
+        ("[sweep]\ngird = 1\n", "sweep.gird"),
+        ("[sweep", "TOML"),
+    ] {
+        folder.file("s.toml", text);
+        let output = folder.run(&["volume", "sweep", "s.toml", "--out", "o"]);
+        assert_eq!(output.status.code(), Some(2), "{text}: {}", err(&output));
+        assert!(err(&output).contains(part), "{text}: {}", err(&output));
+        assert!(!folder.0.join("o").exists(), "{text}");
+    }
+}
+
+#[test]
+fn a_head_before_the_volume_has_a_report_a_figure_and_a_film() {
+    let folder = Folder::new("volume-head");
+    let arguments =
+        ["--head", "slide:0.2", "--latency", "50", "--seconds", "0.5", "--frames", "3", "--size", "32", "--out", "h"];
+    let output = folder.run(&volume("view", &arguments));
+    assert!(output.status.success(), "{}", err(&output));
+    assert_eq!(names(&folder.0.join("h")), ["errors.csv", "errors.svg", "eyes.png", "report.json"]);
+    let report: Value =
+        serde_json::from_slice(&std::fs::read(folder.0.join("h/report.json")).expect("written")).expect("JSON");
+    assert_eq!(report["schema"], "pxpl5-volume-head/1");
+    assert_eq!((&report["latency_ms"], report["samples"].as_array().map(Vec::len)), (&Value::from(50.0), Some(24)));
+    let csv = std::fs::read_to_string(folder.0.join("h/errors.csv")).expect("written");
+    assert_eq!(csv.lines().count(), 1 + 24);
+    assert_eq!(picture(&folder, "h/eyes.png").dimensions(), (64, 64));
+    for (arguments, part) in [
+        (&["--head", "jump", "--out", "o"][..], "synthetic:SEED"),
+        (&["--head", "still", "--size", "100", "--out", "o"], "multiple of 8"),
+        (&["--head", "still", "--latency", "-1", "--out", "o"], "0 to 10000"),
+        (&["--head", "still", "--seconds", "0", "--out", "o"], "above 0 s"),
+        (&["--latency", "5", "--out", "o.png"], "--head"),
+        (&["--head", "nowhere.csv", "--out", "o"], "nowhere.csv"),
+    ] {
+        let output = folder.run(&volume("view", arguments));
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", err(&output));
+        assert!(err(&output).contains(part), "{arguments:?}: {}", err(&output));
+        assert!(!folder.0.join("o").exists() && !folder.0.join("o.png").exists(), "{arguments:?}");
+    }
+}
+
 #[test]
 fn numbers_that_no_source_allows_are_warned_of() {
     let folder = Folder::new("volume-warning");

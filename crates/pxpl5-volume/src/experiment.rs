@@ -2,12 +2,12 @@
 
 use crate::choices::RendererKind;
 use crate::error::VolumeError;
-use crate::pixel_planes::{ArrayKind, PixelPlanesRenderer, SliceBounds};
+use crate::pixel_planes::{ArrayKind, PixelPlanesRenderer, SliceBounds, SliceTraffic};
 use crate::settings::VolumeSettings;
 use pxpl5_scene::Scene;
 use spatialgl::{
-    CommandBuffer, HostRenderer, SliceRenderer, Supersampled, SweptDisplay, VolumeFrame, Workers, record_scene,
-    render_volume,
+    CommandBuffer, HostRenderer, SliceRenderer, SpatialDisplay, Supersampled, SweptDisplay, VolumeFrame, Workers,
+    record_scene, render_volume,
 };
 use std::time::Instant;
 
@@ -26,6 +26,8 @@ pub struct Volume {
     pub frame: VolumeFrame,
     /// What the renderers of Pixel-Planes 5 did for it, if they drew it.
     pub bounds: Option<SliceBounds>,
+    /// The messages of the same volume, if they drew it and its tiles can be sent.
+    pub traffic: Option<SliceTraffic>,
     /// Seconds that this computer took to draw it.
     pub host_seconds: f64,
 }
@@ -58,19 +60,22 @@ impl Volume {
         let draw = |renderer: &dyn SliceRenderer| render_volume(&display, &commands, &config, renderer, workers);
         let started = Instant::now();
         let mut bounds = None;
+        let mut traffic = None;
         let frame = match (settings.renderer, settings.draw.samples) {
             (RendererKind::Host, 1) => draw(&HostRenderer)?,
             (RendererKind::Host, samples) => draw(&Supersampled::new(HostRenderer, samples as u32)?)?,
             (RendererKind::PixelPlanes, _) => {
                 let renderer = PixelPlanesRenderer::new(settings, ArrayKind::Lanes)?;
                 let frame = draw(&renderer)?;
-                bounds = Some(SliceBounds::of(renderer.work(), &frame, config.tiling));
+                let drawn = &display.views()[..frame.stats.slices.len()];
+                traffic = SliceTraffic::of(&renderer, drawn, &frame, config.tiling);
+                bounds = Some(SliceBounds::of(renderer.work(), &frame, config.tiling, traffic.as_ref()));
                 frame
             }
         };
         let host_seconds = started.elapsed().as_secs_f64();
         let settings = settings.clone();
-        Ok(Self { settings, scene: scene.to_owned(), display, commands, frame, bounds, host_seconds })
+        Ok(Self { settings, scene: scene.to_owned(), display, commands, frame, bounds, traffic, host_seconds })
     }
 
     /// A slice of the turn.

@@ -136,7 +136,7 @@ impl VolumeSettings {
     }
 
     fn table_mut(&mut self, prefix: &str, name: &str) -> Option<&mut dyn ParameterTable> {
-        let tables: [(&str, &mut dyn ParameterTable); 8] = [
+        let tables: [(&str, &mut dyn ParameterTable); 9] = [
             ("display", &mut self.display),
             ("display", &mut self.sweep),
             ("clip", &mut self.clip_numbers),
@@ -145,6 +145,7 @@ impl VolumeSettings {
             ("tile", &mut self.tile),
             ("draw", &mut self.draw),
             ("gpu", &mut self.gpu),
+            ("viewer", &mut self.viewer),
         ];
         let found = tables.into_iter().find(|(own, table)| *own == prefix && table.get(name).is_ok());
         found.map(|(_, table)| table)

@@ -67,3 +67,19 @@ parameters::parameter_table! {
         phase_deg: f64 = 0.0, "deg", Assumed, 0.0..=360.0 in -360.0..=360.0, "open in the paper";
     }
 }
+
+parameters::parameter_table! {
+    /// Who stands before the display, and the head-mounted display that it is compared with.
+    pub struct ViewerNumbers {
+        /// Diameter of the volume.
+        diameter_mm: f64 = 254.0, "mm", Assumed, 200.0..=500.0 in 1.0..=100000.0, "open in the paper; 768 px over 10 inches in SPIE 4297";
+        /// Distance of the head from the middle of the volume where a motion begins.
+        distance_mm: f64 = 508.0, "mm", Assumed, 300.0..=2000.0 in 1.0..=1000000.0, "four radii, as other views";
+        /// Distance between both eyes.
+        eye_separation_mm: f64 = 62.0, "mm", Assumed, 55.0..=70.0 in 0.0..=1000.0, "a mean head";
+        /// Width of the head-mounted display's picture; its height is three quarters of it.
+        hmd_width_px: 640, "px", Published, 640..=640 in 8..=16000, "TR94: 640 x 480";
+        /// Angle between the left and the right edge of that picture.
+        hmd_angle_deg: f64 = 60.0, "deg", Assumed, 30.0..=100.0 in 1.0..=170.0, "published in JITP's example";
+    }
+}

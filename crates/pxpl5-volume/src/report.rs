@@ -1,7 +1,7 @@
 //! What a volume's report says: `pxpl5-volume/1`.
 
 use crate::experiment::Volume;
-use crate::pixel_planes::{BoundRow, SliceBounds};
+use crate::pixel_planes::{BoundRow, SimulatedRow, SliceBounds, SliceTraffic, simulate};
 use crate::settings::VolumeSettings;
 use parameters::Value;
 use serde::Serialize;
@@ -101,21 +101,25 @@ pub struct PixelPlanesReport {
     pub counts: SliceBounds,
     /// What the milliseconds of the bounds are.
     pub definition: &'static str,
-    /// Volumes a second with more and more boards.
+    /// Volumes a second with more and more boards, by the slowest part alone.
     pub bounds: Vec<BoundRow>,
+    /// The same machines event by event; none if the volume's tiles cannot be sent.
+    pub simulated: Vec<SimulatedRow>,
 }
 
 /// Renderers and graphics processors of the bounds; the third is the largest machine that was built.
 const BOARDS: [[u64; 2]; 5] = [[1, 4], [5, 13], [20, 50], [20, 13], [5, 50]];
 
-const BOUNDS: &str = "renderers: clocks of clears, triangles and halftones / 40 MHz; ring: words of commands and of occupied tiles with \
-                      their overhead; processors: slice triangles as triangles of a frame, and commands as entries of bins; each by itself, \
-                      without events";
+const BOUNDS: &str = "renderers: clocks of clears, triangles and halftones and of the moves to the backing store / 40 MHz; ring: words of commands and of occupied tiles with \
+                      their overhead; processors: slice triangles as triangles of a frame, and commands as entries of bins; each by itself. \
+                      simulated: one volume through the ring, the renderers and the display, event by event";
 
 impl PixelPlanesReport {
-    fn of(counts: SliceBounds) -> Self {
+    fn of(counts: SliceBounds, traffic: Option<&SliceTraffic>) -> Self {
         let bounds = BOARDS.map(|[renderers, processors]| counts.with(renderers, processors));
-        Self { counts, definition: BOUNDS, bounds: bounds.to_vec() }
+        let rows = |traffic| BOARDS.iter().filter_map(move |[r, p]| simulate(traffic, &counts, *r, *p).ok()).collect();
+        let simulated = traffic.map(rows).unwrap_or_default();
+        Self { counts, definition: BOUNDS, bounds: bounds.to_vec(), simulated }
     }
 }
 
@@ -209,7 +213,7 @@ impl Volume {
             projection: settings.projection_text(),
             seed: settings.seed,
             renderer: settings.renderer_text(),
-            pixel_planes: self.bounds.map(PixelPlanesReport::of),
+            pixel_planes: self.bounds.map(|counts| PixelPlanesReport::of(counts, self.traffic.as_ref())),
             samples: stats.samples,
             triangles: stats.primitives,
             slices_rendered: stats.slices_rendered,

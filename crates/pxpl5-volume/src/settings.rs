@@ -2,7 +2,7 @@
 
 use crate::choices::{ClipKind, Named, ProjectionKind, RendererKind};
 use crate::error::VolumeError;
-use crate::numbers::{ClipNumbers, DrawNumbers, EyeNumbers, JitterNumbers, SweepNumbers, TileNumbers};
+use crate::numbers::{ClipNumbers, DrawNumbers, EyeNumbers, JitterNumbers, SweepNumbers, TileNumbers, ViewerNumbers};
 use parameters::ParameterTable;
 use perspecta::PerspectaConfig;
 use spatialgl::{
@@ -55,6 +55,8 @@ pub struct VolumeSettings {
     pub renderer: RendererKind,
     /// Rates and times of the host and its GPU.
     pub gpu: GpuTiming,
+    /// Who stands before the display; decides nothing of the volume.
+    pub viewer: ViewerNumbers,
 }
 
 /// A table and the first part of its paths.
@@ -85,11 +87,12 @@ impl VolumeSettings {
             is_lit: true,
             renderer: RendererKind::Host,
             gpu: GpuTiming::PAPERS,
+            viewer: ViewerNumbers::PAPERS,
         }
     }
 
     /// All tables of numbers, with the first part of their paths.
-    pub(crate) fn tables(&self) -> [NamedTable<'_>; 8] {
+    pub(crate) fn tables(&self) -> [NamedTable<'_>; 9] {
         [
             ("display", &self.display),
             ("display", &self.sweep),
@@ -99,6 +102,7 @@ impl VolumeSettings {
             ("tile", &self.tile),
             ("draw", &self.draw),
             ("gpu", &self.gpu),
+            ("viewer", &self.viewer),
         ]
     }
 

@@ -1,14 +1,16 @@
 //! Slices on the renderers of Pixel-Planes 5: the program's clocks, both pixel arrays, the host's picture, the bounds.
 
-use pxpl5_renderer::{CommandKind, Layout};
+use pxpl5_renderer::isa::Operand;
+use pxpl5_renderer::{BitSerial, CommandKind, EMPTY_PLANE, Lanes, Layout, PixelArray};
 use pxpl5_volume::pixel_planes::{
-    ArrayKind, PixelPlanesRenderer, RendererWork, SliceBounds, SliceCorner, SliceTriangle,
+    ArrayKind, PixelPlanesRenderer, RendererWork, SliceBounds, SliceCorner, SliceTraffic, SliceTriangle,
+    halftone_clocks, halftone_words, lit_field, simulate, threshold_field,
 };
 use pxpl5_volume::spatialgl::{
-    Bin, ClipQuadratic, CommandBuffer, Context, Coverage, HalfWedge, HostRenderer, SliceImage, SliceRenderer,
-    SliceWork, SpatialDisplay, Topology, Vertex, VertexBuffer,
+    Bin, ClipQuadratic, CommandBuffer, Context, Coverage, HalfWedge, Halftone, HostRenderer, OneThread, SliceImage,
+    SliceRenderer, SliceWork, SpatialDisplay, Topology, Vertex, VertexBuffer, render_volume,
 };
-use pxpl5_volume::{ProjectionKind, VolumeSettings};
+use pxpl5_volume::{ProjectionKind, Volume, VolumeSettings};
 
 /// A corner in sixteenths of a pixel of the image, its distance off the slice in pixels, and its colour.
 type Corner = ([i32; 2], f64, [u8; 3]);
@@ -138,7 +140,7 @@ fn clocks_and_words_are_those_of_the_programs() {
     let work = renderer.work();
     assert_eq!((work.regions, work.triangles, work.commands, work.left_out), (36, 1, 1, 0));
     assert_eq!(work.clocks, 36 * (6 + 62 + 72) + 238);
-    assert_eq!(work.command_words, 36 * (2 + 5) + 38);
+    assert_eq!(work.command_words, 36 * (2 + 5 + 12) + 38);
     // Clearing all regions of 198 slices: 11.05 ms of one renderer.
     let layout = Layout::rendering_control_phong();
     let clears = 198 * 36 * CommandKind::Clear.clocks(&layout).expect("every layout");
@@ -149,7 +151,7 @@ fn clocks_and_words_are_those_of_the_programs() {
 /// of eight; renderers and processors divide their work.
 #[test]
 fn bounds_follow_from_counts() {
-    let bounds = SliceBounds { work: RendererWork::default(), tiles: 11_405, tile_words: 128 };
+    let bounds = SliceBounds { work: RendererWork::default(), tiles: 11_405, tile_words: 128, copies: 0 };
     let row = bounds.with(1, 1);
     assert!((row.ms[1] - 11_405.0 * 7.2e-3 / 8.0).abs() < 1e-9 && (row.ms[1] - 10.3).abs() < 0.05, "{row:?}");
     assert_eq!(row.limited_by, "ring");
@@ -159,6 +161,103 @@ fn bounds_follow_from_counts() {
     assert!((row.ms[0] - 10_000.0).abs() < 1e-6 && row.limited_by == "renderers");
     assert!((row.ms[2] - 1_000.0 * (21.7e-3 + 1e-3) / 5.0).abs() < 1e-9);
     assert!((row.volumes_hz - 0.1).abs() < 1e-9);
+    // A region on its way to the backing store keeps its renderer for 2,040 clocks, 51 us.
+    let copying = SliceBounds { copies: 1_000, ..bounds }.with(10, 5);
+    assert!((copying.ms[0] - row.ms[0] - 1_000.0 * 0.051 / 10.0).abs() < 1e-6);
+}
+
+/// The program of the halftone: enable all 6, compare eight bits 12, store Enable 6, for three channels; 12 words. On both arrays it
+/// gives the bits of the host's halftone, for every level on every threshold of Bayer's matrix.
+#[test]
+fn the_halftones_program_gives_the_hosts_bits_in_72_clocks() {
+    let layout = Layout::rendering_control_phong();
+    assert_eq!(halftone_clocks(&layout), 3 * (6 + 12 + 6));
+    assert_eq!(halftone_words(&layout).len(), 3 * (1 + 2 + 1));
+    let matrix = Halftone::bayer(8).expect("a size");
+    halftone_on(&mut Lanes::new(&layout), &layout, &matrix);
+    halftone_on(&mut BitSerial::new(&layout), &layout, &matrix);
+}
+
+/// Pixel (x, y) holds level 2 x + y / 64 in red, its complement in green and x in blue.
+fn halftone_on(array: &mut impl PixelArray, layout: &Layout, matrix: &Halftone) {
+    let levels = |x: u32, y: u32| [(2 * x + y / 64) as u8, !((2 * x + y / 64) as u8), x as u8];
+    let mut load = |field: Operand, value: &dyn Fn(u32, u32) -> u8| {
+        for bit in 0..usize::from(field.width) {
+            let mut plane = EMPTY_PLANE;
+            for (x, y) in (0..128).flat_map(|y| (0..128).map(move |x| (x, y))) {
+                plane[(2 * y + x / 64) as usize] |= u64::from(value(x, y) >> bit & 1) << (x % 64);
+            }
+            array.set_plane(usize::from(field.address) + bit, &plane);
+        }
+    };
+    load(threshold_field(layout), &|x, y| matrix.threshold(x, y));
+    for channel in 0..3 {
+        load(layout.component(channel), &|x, y| levels(x, y)[usize::from(channel)]);
+    }
+    let executed = array.execute(&halftone_words(layout)).expect("legal");
+    assert_eq!(executed.clocks, halftone_clocks(layout));
+    for channel in 0..3 {
+        let plane = array.plane(usize::from(lit_field(layout, channel).address));
+        for (x, y) in (0..128).flat_map(|y| (0..128).map(move |x| (x, y))) {
+            let bit = plane[(2 * y + x / 64) as usize] >> (x % 64) & 1 == 1;
+            let level = levels(x, y)[usize::from(channel)];
+            assert_eq!(bit, level > matrix.threshold(x, y), "channel {channel} at {x}, {y}");
+        }
+    }
+}
+
+/// A volume of few slices, drawn by the renderers and sent: every tile arrives at the display, which understands all of it; no part
+/// is faster than its bound; and one renderer with one processor needs about as long as the slower of both.
+#[test]
+fn a_simulated_volume_arrives_whole_and_is_never_faster_than_its_bounds() {
+    let mut settings = settings();
+    for (path, text) in [("display.slices", "24"), ("display.width", "256"), ("display.height", "256")] {
+        settings.set(path, text, "test").expect("a setting");
+    }
+    settings.set("on", "pixel-planes", "test").expect("a setting");
+    let scene = pxpl5_scene::builtin("mig").expect("built in");
+    let volume = Volume::draw(&settings, &scene, &OneThread).expect("drawn");
+    let traffic = volume.traffic.as_ref().expect("32 x 32 pixels fit a message");
+    let bounds = volume.bounds.expect("renderers drew it");
+    // A tile is sent for all four slices of its batch if any pixel of theirs is lit: what dither leaves dark is not.
+    let planes = &volume.frame.planes;
+    let is_lit = |batch: u32, tile: u32| {
+        let pixels = (0..32).flat_map(|y| (0..32).map(move |x| (tile % 8 * 32 + x, tile / 8 * 32 + y)));
+        (4 * batch..4 * batch + 4).any(|k| pixels.clone().any(|(x, y)| planes.pixel(k, x, y) != 0))
+    };
+    let lit = (0..6).flat_map(|batch| (0..64).map(move |tile| (batch, tile))).filter(|(b, t)| is_lit(*b, *t)).count();
+    assert_eq!(bounds.tiles, 4 * lit as u64);
+    for (renderers, processors) in [(1, 1), (1, 8), (4, 4), (8, 50)] {
+        let row = simulate(traffic, &bounds, renderers, processors).expect("few boards");
+        assert_eq!(row.faults, 0, "{row:?}");
+        assert!(row.over_bound_percent >= 0.0, "{row:?}");
+        assert!(row.renderers_busy_percent <= 100.0 && row.processors_busy_percent <= 100.0, "{row:?}");
+    }
+    let least = simulate(traffic, &bounds, 1, 1).expect("few boards");
+    assert!(least.over_bound_percent < 25.0, "{least:?}");
+    let more = simulate(traffic, &bounds, 4, 4).expect("few boards");
+    assert!(more.ms < least.ms, "{more:?}");
+}
+
+#[test]
+fn more_boards_than_a_ring_has_ports_are_refused() {
+    let settings = settings();
+    let traffic = SliceTraffic::of(
+        &PixelPlanesRenderer::new(&settings, ArrayKind::Lanes).expect("supported"),
+        &[],
+        &render_volume(
+            &settings.swept_display().expect("valid"),
+            &CommandBuffer::default(),
+            &settings.volume_config().expect("valid"),
+            &HostRenderer,
+            &OneThread,
+        )
+        .expect("a dark volume"),
+        settings.volume_config().expect("valid").tiling,
+    );
+    let bounds = SliceBounds { work: RendererWork::default(), tiles: 0, tile_words: 128, copies: 0 };
+    let error = simulate(&traffic.expect("tiles fit"), &bounds, 60_000, 6_000).expect_err("too many");
+    assert!(error.to_string().contains("66001"), "{error}");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use spatialgl::{
     CommandBuffer, HostRenderer, Jitter, OneThread, Projection, SliceClip, SliceView, SliceVolume, SpatialDisplay,
     Strobes, SweptConfig, SweptDisplay, Threads, VolumeConfig, Workers, record_scene, render_volume,
 };
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::num::NonZero;
 use std::time::Duration;
 
@@ -49,19 +49,19 @@ fn volumes(c: &mut Criterion) {
     group.finish();
 }
 
-/// Distances from the two boundary planes, and the brightness.
+/// Numbers that are linear over a triangle.
 #[derive(Clone, Copy)]
-struct Carried([f32; 3]);
+struct Carried<const N: usize>([f32; N]);
 
-impl Interpolate for Carried {
+impl<const N: usize> Interpolate for Carried<N> {
     #[inline(always)]
     fn lerp2(Self(a): Self, Self(b): Self, x: f32, y: f32) -> Self {
-        Self([0, 1, 2].map(|i| a[i] * x + b[i] * y))
+        Self(std::array::from_fn(|i| a[i] * x + b[i] * y))
     }
 
     #[inline(always)]
     fn lerp3(Self(a): Self, Self(b): Self, Self(c): Self, x: f32, y: f32, z: f32) -> Self {
-        Self([0, 1, 2].map(|i| a[i] * x + b[i] * y + c[i] * z))
+        Self(std::array::from_fn(|i| a[i] * x + b[i] * y + c[i] * z))
     }
 }
 
@@ -73,21 +73,35 @@ struct EucSlice<'a> {
     accepted: Cell<u64>,
 }
 
+impl<'a> EucSlice<'a> {
+    fn new(view: &'a SliceView, commands: &'a CommandBuffer) -> Self {
+        let SliceVolume::Wedge(planes, _) = view.volume else { panic!("a slice of a swept display") };
+        Self { commands, view, planes: [planes.a, planes.b], accepted: Cell::new(0) }
+    }
+
+    /// Clip coordinates of a vertex, and its distances from the two boundary planes.
+    #[inline(always)]
+    fn placed(&self, vertex: u32) -> ([f32; 4], [f32; 2]) {
+        let world = self.commands.positions()[vertex as usize];
+        let clip = self.view.projection * self.view.local(DVec3::from_array(world)).extend(1.0);
+        let planes = self.planes.map(|plane| (plane[0] * world[0] + plane[1] * world[2]) as f32);
+        (clip.as_vec4().to_array(), planes)
+    }
+}
+
 impl euc::Pipeline for EucSlice<'_> {
     type Vertex = u32;
-    type VsOut = Carried;
+    type VsOut = Carried<3>;
     type Pixel = u32;
 
     #[inline(always)]
-    fn vert(&self, vertex: &u32) -> ([f32; 4], Carried) {
-        let world = self.commands.positions()[*vertex as usize];
-        let clip = self.view.projection * self.view.local(DVec3::from_array(world)).extend(1.0);
-        let [a, b] = self.planes.map(|plane| (plane[0] * world[0] + plane[1] * world[2]) as f32);
-        (clip.as_vec4().to_array(), Carried([a, b, 200.0]))
+    fn vert(&self, vertex: &u32) -> ([f32; 4], Carried<3>) {
+        let (clip, [a, b]) = self.placed(*vertex);
+        (clip, Carried([a, b, 200.0]))
     }
 
     #[inline(always)]
-    fn frag(&self, Carried([a, b, light]): &Carried) -> u32 {
+    fn frag(&self, Carried([a, b, light]): &Carried<3>) -> u32 {
         let is_accepted = a * b + 0.25 >= 0.0;
         self.accepted.set(self.accepted.get() + u64::from(is_accepted));
         if is_accepted { *light as u32 } else { 0 }
@@ -99,17 +113,74 @@ impl euc::Pipeline for EucSlice<'_> {
     }
 }
 
+/// The same slice, noting which pixels an accepted fragment covers: the window's coordinates are carried to the fragment, since a
+/// target cannot tell what was rejected.
+struct EucCoverage<'a> {
+    slice: EucSlice<'a>,
+    covered: RefCell<Vec<bool>>,
+}
+
+impl euc::Pipeline for EucCoverage<'_> {
+    type Vertex = u32;
+    type VsOut = Carried<4>;
+    type Pixel = u32;
+
+    fn vert(&self, vertex: &u32) -> ([f32; 4], Carried<4>) {
+        let (clip, [a, b]) = self.slice.placed(*vertex);
+        (clip, Carried([a, b, 384.0 * (1.0 + clip[0]), 384.0 * (1.0 - clip[1])]))
+    }
+
+    fn frag(&self, Carried([a, b, x, y]): &Carried<4>) -> u32 {
+        if a * b + 0.25 >= 0.0 {
+            self.covered.borrow_mut()[*y as usize * 768 + *x as usize] = true;
+        }
+        0
+    }
+
+    fn get_depth_strategy(&self) -> DepthStrategy {
+        DepthStrategy::None
+    }
+}
+
 /// Fragments that `euc` accepts in 198 slices: no bins, no dither, no packing.
 fn draw_by_euc(display: &SweptDisplay, commands: &CommandBuffer, indices: &[u32], target: &mut Buffer2d<u32>) -> u64 {
-    let mut accepted = 0;
-    for view in &display.views()[..198] {
-        let SliceVolume::Wedge(planes, _) = view.volume else { continue };
+    let views = display.views()[..198].iter();
+    let accepted = views.map(|view| {
         target.clear(0);
-        let slice = EucSlice { commands, view, planes: [planes.a, planes.b], accepted: Cell::new(0) };
+        let slice = EucSlice::new(view, commands);
         slice.draw::<Triangles<'_, (f32,), BackfaceCullingDisabled>, _>(indices, target, None);
-        accepted += slice.accepted.get();
+        slice.accepted.get()
+    });
+    accepted.sum()
+}
+
+/// Most pixels that one of both may cover alone, percent of those that any covers: `euc` works in single precision and has a
+/// rule of its own for samples on edges.
+const MOST_DIFFERING_PERCENT: f64 = 2.0;
+
+/// Pixels that only one of both covers, of all that any covers, in the slices of half a turn.
+fn differing_percent(
+    display: &SweptDisplay,
+    commands: &CommandBuffer,
+    indices: &[u32],
+    target: &mut Buffer2d<u32>,
+) -> f64 {
+    let config = VolumeConfig { keeps_colours: true, ..half(VolumeConfig::paper()) };
+    let frame = render_volume(display, commands, &config, &HostRenderer, &OneThread).expect("valid");
+    let colours = frame.colours.expect("they were to be kept");
+    let mut either = 0usize;
+    let mut one_alone = 0usize;
+    for (view, own) in display.views().iter().zip(&colours) {
+        let covered = RefCell::new(vec![false; 768 * 768]);
+        let slice = EucCoverage { slice: EucSlice::new(view, commands), covered };
+        slice.draw::<Triangles<'_, (f32,), BackfaceCullingDisabled>, _>(indices, target, None);
+        let theirs = slice.covered.into_inner();
+        let common = own.iter().filter(|sample| theirs[sample.pixel as usize]).count();
+        let covered = theirs.iter().filter(|is_covered| **is_covered).count();
+        either += own.len() + covered - common;
+        one_alone += own.len() + covered - 2 * common;
     }
-    accepted
+    100.0 * one_alone as f64 / either as f64
 }
 
 /// The same slices by a published rasteriser with the clip in its fragment program.
@@ -120,9 +191,9 @@ fn peers(c: &mut Criterion) {
     let indices = scene.triangles().as_flattened().to_vec();
     let mut target = Buffer2d::new([768, 768], 0);
     let paper = half(VolumeConfig::paper());
-    let theirs = draw_by_euc(&orthographic, &commands, &indices, &mut target) as f64;
-    let own = draw(&orthographic, &commands, &paper, &OneThread) as f64;
-    assert!((theirs / own - 1.0).abs() < 0.05, "not the same slices: {theirs} and {own} fragments");
+    let differing = differing_percent(&orthographic, &commands, &indices, &mut target);
+    assert!(differing < MOST_DIFFERING_PERCENT, "not the same slices: {differing} % of the covered pixels differ");
+    println!("{differing:.3} % of the pixels that either covers are covered by one alone");
     let mut group = c.benchmark_group("peers/198 slices of the head");
     group.sample_size(10).sampling_mode(SamplingMode::Flat).measurement_time(Duration::from_secs(10));
     group.bench_function("euc 0.5", |b| b.iter(|| draw_by_euc(&orthographic, &commands, &indices, &mut target)));

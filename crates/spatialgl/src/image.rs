@@ -57,6 +57,12 @@ impl SliceImage {
         self.stencil[at / 8] != 0
     }
 
+    /// The same of the pixels from one to before another, the numbers of which are multiples of 8.
+    #[inline(always)]
+    pub(crate) fn is_marked_between(&self, from: usize, to: usize) -> bool {
+        self.stencil[from / 8..to / 8].iter().fold(0, |any, byte| any | byte) != 0
+    }
+
     /// Makes the eight pixels from one on dark and clears their stencil and depth.
     #[inline(always)]
     pub(crate) fn darken_eight(&mut self, at: usize) {

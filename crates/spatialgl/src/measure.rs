@@ -3,6 +3,7 @@
 use crate::command::CommandBuffer;
 use crate::curve::plane_curve;
 use crate::frame::{BitPlanes, ColourSample, VolumeFrame};
+use crate::raster::Bin;
 use crate::view::{SliceView, SpatialDisplay};
 use glam::DVec3;
 use serde::Serialize;
@@ -30,20 +31,31 @@ impl Connected {
 pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<Connected> {
     let colours = frame.colours.as_ref()?;
     let size = display.target_size();
+    let all = Bin::new(commands, (0..commands.primitives() as u32).collect());
     let mut found = Connected::default();
     for (view, drawn) in display.views().iter().zip(colours) {
         let around = Around::new(size, drawn);
-        for triangle in commands.triangles() {
-            let local = triangle.map(|corner| view.local(DVec3::from_array(corner)).to_array());
-            if let Some((ends, _)) = plane_curve(local, view.volume.middle()) {
-                around.samples(view, ends, |_, is_shown| {
-                    found.samples += 1;
-                    found.shown += u64::from(is_shown);
-                });
-            }
-        }
+        each_curve(view, commands, &all, |ends| {
+            around.samples(view, ends, |_, is_shown| {
+                found.samples += 1;
+                found.shown += u64::from(is_shown);
+            });
+        });
     }
     Some(found)
+}
+
+/// Calls for both ends of every triangle's intersection with the plane of a slice.
+fn each_curve(view: &SliceView, commands: &CommandBuffer, all: &Bin, mut each: impl FnMut([[f64; 3]; 2])) {
+    let middle = view.volume.middle();
+    let row = view.view.transpose().z_axis.to_array();
+    for primitive in all.clusters().flat_map(|cluster| cluster.reaching(&row, [middle, middle])) {
+        let Some(triangle) = commands.triangle(primitive) else { continue };
+        let local = triangle.corners.map(|corner| view.local(DVec3::from_array(corner)).to_array());
+        if let Some((ends, _)) = plane_curve(local, middle) {
+            each(ends);
+        }
+    }
 }
 
 /// How alike the gaps of neighbouring slices are: the correlation, over the rows of the image, of the shares of a row's
@@ -54,11 +66,12 @@ pub fn connected(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: 
 pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, frame: &VolumeFrame) -> Option<f64> {
     let colours = frame.colours.as_ref()?;
     let size = display.target_size();
+    let all = Bin::new(commands, (0..commands.primitives() as u32).collect());
     let rows: Vec<Vec<Connected>> = display
         .views()
         .iter()
         .zip(colours)
-        .map(|(view, drawn)| rows_of_slice(view, commands, &Around::new(size, drawn), size[1]))
+        .map(|(view, drawn)| rows_of_slice(view, commands, &all, &Around::new(size, drawn), size[1]))
         .collect();
     let pairs = rows.windows(2).filter_map(|pair| correlation(&pair[0], &pair[1]));
     let (sum, count) = pairs.fold((0.0, 0u32), |(sum, count), value| (sum + value, count + 1));
@@ -66,17 +79,20 @@ pub fn gap_correlation(display: &dyn SpatialDisplay, commands: &CommandBuffer, f
 }
 
 /// Samples of each row of a slice's image.
-fn rows_of_slice(view: &SliceView, commands: &CommandBuffer, around: &Around, height: u32) -> Vec<Connected> {
+fn rows_of_slice(
+    view: &SliceView,
+    commands: &CommandBuffer,
+    all: &Bin,
+    around: &Around,
+    height: u32,
+) -> Vec<Connected> {
     let mut rows = vec![Connected::default(); height as usize];
-    for triangle in commands.triangles() {
-        let local = triangle.map(|corner| view.local(DVec3::from_array(corner)).to_array());
-        if let Some((ends, _)) = plane_curve(local, view.volume.middle()) {
-            around.samples(view, ends, |y, is_shown| {
-                rows[y as usize].samples += 1;
-                rows[y as usize].shown += u64::from(is_shown);
-            });
-        }
-    }
+    each_curve(view, commands, all, |ends| {
+        around.samples(view, ends, |y, is_shown| {
+            rows[y as usize].samples += 1;
+            rows[y as usize].shown += u64::from(is_shown);
+        });
+    });
     rows
 }
 

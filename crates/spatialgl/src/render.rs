@@ -235,6 +235,9 @@ impl<'a> Volume<'a> {
         let width = image.size()[0];
         let is_sparse = self.is_sparse();
         for y in top..bottom {
+            if is_sparse && !image.is_marked_between((y * width + left) as usize, (y * width + right) as usize) {
+                continue;
+            }
             for x in (left..right).step_by(8) {
                 let at = (y * width + x) as usize;
                 if is_sparse && !image.is_marked_at(at) {

@@ -78,13 +78,15 @@ impl TileGrid {
     pub(crate) fn mark(&self, image: &SliceImage, tiles: &mut [bool]) {
         let row_bytes = self.size[0] as usize / 8;
         let tile_bytes = self.tile as usize / 8;
-        for (y, row) in image.stencil.chunks(row_bytes).enumerate() {
-            if row.iter().fold(0, |any, byte| any | byte) == 0 {
-                continue;
+        let rows_of_tiles = image.stencil.chunks(row_bytes * self.tile as usize);
+        let mut any = vec![0u8; row_bytes];
+        for (rows, tiles) in rows_of_tiles.zip(tiles.chunks_mut(self.columns as usize)) {
+            any.fill(0);
+            for row in rows.chunks_exact(row_bytes) {
+                any.iter_mut().zip(row).for_each(|(any, byte)| *any |= byte);
             }
-            let first = y / self.tile as usize * self.columns as usize;
-            for (column, bytes) in row.chunks(tile_bytes).enumerate() {
-                tiles[first + column] |= bytes.iter().fold(0, |any, byte| any | byte) != 0;
+            for (is_marked, bytes) in tiles.iter_mut().zip(any.chunks(tile_bytes)) {
+                *is_marked |= bytes.iter().any(|byte| *byte != 0);
             }
         }
     }

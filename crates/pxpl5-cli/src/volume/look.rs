@@ -1,5 +1,6 @@
 //! `pxpl5 volume view` and `pxpl5 volume film`.
 
+use super::heads::{self, HeadArgs};
 use super::settings::{VolumeSettingArgs, origin};
 use super::slices::{say, write};
 use crate::error::CliError;
@@ -39,7 +40,11 @@ struct EyeArgs {
 #[command(after_help = "Examples:
   pxpl5 volume view --scene head --azimuth 40 --elevation 25 --out view.png
   pxpl5 volume view --scene head --cut 0:90 --out cutaway.png
-  pxpl5 volume view --scene mig --undithered --lambert --out undithered.png")]
+  pxpl5 volume view --scene mig --undithered --lambert --out undithered.png
+  pxpl5 volume view --scene mig --head synthetic:1 --seconds 4 --latency 60 --out out/head
+
+With --head, DIR gets report.json, errors.csv, errors.svg and eyes.png, a film: above what the left and the right eye see of the
+volume, below what a head-mounted display of that latency would show them.")]
 pub(super) struct ViewArgs {
     #[command(flatten)]
     volume: VolumeSettingArgs,
@@ -51,7 +56,9 @@ pub(super) struct ViewArgs {
     /// Steps of 255 for one lit pixel of one slice; default: so that 98 % of the picture stays below white.
     #[arg(long, value_name = "STEPS", allow_negative_numbers = true)]
     exposure: Option<f64>,
-    /// The file to write (PNG).
+    #[command(flatten)]
+    head: HeadArgs,
+    /// The file to write (PNG); with --head a folder.
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
@@ -98,6 +105,9 @@ impl EyeArgs {
 }
 
 pub(super) fn view(args: ViewArgs) -> Result<(), CliError> {
+    if let Some(motion) = &args.head.head {
+        return heads::run(motion, &args.head, &args.volume, args.eye.size, &args.out);
+    }
     let exposure = args.exposure.filter(|steps| steps.is_finite() && *steps > 0.0);
     if let (Some(found), None) = (args.exposure, exposure) {
         return Err(CliError::usage(format!("--exposure: expected a number above 0, found {found}")));

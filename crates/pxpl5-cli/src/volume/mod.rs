@@ -2,10 +2,13 @@
 
 mod compare;
 mod figures;
+mod heads;
 mod look;
 mod run;
 mod settings;
 mod slices;
+mod space;
+mod sweep;
 
 use crate::error::CliError;
 use clap::{Args, Subcommand};
@@ -40,6 +43,8 @@ enum VolumeCommand {
     Film(look::FilmArgs),
     /// Compare all clips and projections.
     Compare(compare::CompareArgs),
+    /// Draw a volume at every point of a space of settings.
+    Sweep(sweep::SweepArgs),
     /// Measure the paper's figures and draw its drawings anew.
     Figures(figures::FiguresArgs),
 }
@@ -52,6 +57,7 @@ pub(crate) fn run(args: VolumeArgs) -> Result<(), CliError> {
         VolumeCommand::View(args) => look::view(args),
         VolumeCommand::Film(args) => look::film(args),
         VolumeCommand::Compare(args) => compare::run(args),
+        VolumeCommand::Sweep(args) => sweep::run(args),
         VolumeCommand::Figures(args) => figures::run(args),
     }
 }

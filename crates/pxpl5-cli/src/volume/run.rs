@@ -82,6 +82,35 @@ fn bounds(planes: &PixelPlanesReport) -> String {
             row.renderers, row.processors, row.volumes_hz, row.limited_by
         );
     }
+    if planes.simulated.is_empty() {
+        return text;
+    }
+    let _ = writeln!(
+        text,
+        "\nOne volume event by event\n{:>10} {:>11} {:>13} {:>12} {:>11} {:>16} {:>17} {:>16}",
+        "renderers",
+        "processors",
+        "ms",
+        "over bound",
+        "volumes/s",
+        "renderers busy",
+        "processors busy",
+        "channels busy"
+    );
+    for row in &planes.simulated {
+        let _ = writeln!(
+            text,
+            "{:>10} {:>11} {:>13.1} {:>10.1} % {:>11.2} {:>14.1} % {:>15.1} % {:>14.1} %",
+            row.renderers,
+            row.processors,
+            row.ms,
+            row.over_bound_percent,
+            row.volumes_hz,
+            row.renderers_busy_percent,
+            row.processors_busy_percent,
+            row.channels_busy_percent
+        );
+    }
     text
 }
 

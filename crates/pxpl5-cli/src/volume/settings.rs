@@ -154,16 +154,16 @@ pub(super) fn png(picture: &RgbImage, volume: &Volume) -> Result<Vec<u8>, CliErr
 
 /// What every picture of a volume says of itself.
 pub(super) fn origin(volume: &Volume) -> Vec<(&'static str, String)> {
-    let report = volume.report();
-    let overrides: Vec<String> = report.overrides.iter().map(|set| format!("{}={}", set.path, set.value)).collect();
+    let settings = &volume.settings;
+    let overrides: Vec<String> = settings.overrides().iter().map(|set| format!("{}={}", set.path, set.value)).collect();
     vec![
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("scene", report.scene),
-        ("clip", report.clip),
-        ("projection", report.projection.to_owned()),
-        ("seed", report.seed.to_string()),
-        ("volume_hash", report.volume_hash),
+        ("scene", volume.scene.clone()),
+        ("clip", settings.clip_text()),
+        ("projection", settings.projection_text().to_owned()),
+        ("seed", settings.seed.to_string()),
+        ("volume_hash", format!("{:016x}", volume.frame.planes.hash())),
         ("overrides", overrides.join(" ")),
-        ("beyond_paper", report.beyond_paper.join(", ")),
+        ("beyond_paper", settings.beyond_paper().join(", ")),
     ]
 }

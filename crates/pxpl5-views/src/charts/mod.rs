@@ -3,7 +3,7 @@
 //! | chart | shows |
 //! |---|---|
 //! | [`level_chart`] | speed against error of the levels of modelling |
-//! | [`curve_chart`], [`point_chart`] | anything over anything: a comparison's errors over time, latency or share of pixels |
+//! | [`curve_chart`], [`decade_chart`], [`point_chart`] | anything over anything: a comparison's errors over time, latency or share of pixels |
 //! | [`histogram`] | how the latencies of a run are spread |
 //! | [`part_bar`] | where the latency of a run goes |
 
@@ -17,7 +17,7 @@ pub(crate) use histogram::histogram_element;
 pub use levels::{SpeedAndError, level_chart};
 pub use parts::{MeanPart, part_bar};
 pub(crate) use parts::{colour_of_part, part_bar_element};
-pub use plane::{ChartAxes, Curve, MarkedPoint, curve_chart, point_chart};
+pub use plane::{ChartAxes, Curve, MarkedPoint, curve_chart, decade_chart, point_chart};
 
 /// Round numbers from 0 to a greatest: steps of 1, 2 or 5 times a power of ten, of which there are at most ten.
 fn ticks(greatest: f64) -> Vec<f64> {

@@ -67,6 +67,28 @@ pub fn curve_chart(axes: &ChartAxes, curves: &[Curve]) -> String {
     svg::finished(&svg)
 }
 
+/// An SVG: curves with a legend, the upward axis in powers of ten; what is not above 0 breaks its line.
+#[must_use]
+pub fn decade_chart(axes: &ChartAxes, curves: &[Curve]) -> String {
+    let in_decades = |curve: &Curve| {
+        let up = |(across, up): &(f64, f64)| (*across, if *up > 0.0 { up.log10() } else { f64::NAN });
+        Curve { name: curve.name.clone(), points: curve.points.iter().map(up).collect() }
+    };
+    let curves: Vec<Curve> = curves.iter().map(in_decades).collect();
+    let known = curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1)).filter(|up| up.is_finite());
+    let lowest = known.fold(f64::INFINITY, f64::min).floor();
+    let lowest = if lowest.is_finite() { lowest } else { 0.0 };
+    let mut plane = Plane::reaching(curves.iter().flat_map(|curve| curve.points.iter().copied()));
+    plane.up = plane.up.ceil().max(lowest + 1.0);
+    plane.lowest = Some(lowest);
+    let mut svg = plane.empty(axes);
+    for (i, curve) in curves.iter().enumerate() {
+        svg.add_line(&plane.course(&curve.points, colour(i), dash(i)));
+        legend(&mut svg, i, &curve.name);
+    }
+    svg::finished(&svg)
+}
+
 /// An SVG: points with their intervals and a legend. Both axes begin at 0.
 #[must_use]
 pub fn point_chart(axes: &ChartAxes, points: &[MarkedPoint]) -> String {
@@ -94,11 +116,13 @@ fn legend(svg: &mut Element, i: usize, name: &str) {
 struct Plane {
     across: f64,
     up: f64,
+    /// The lowest power of ten, where the upward axis has powers of ten; it begins at 0 otherwise.
+    lowest: Option<f64>,
 }
 
 impl Plane {
     fn reaching(points: impl Iterator<Item = (f64, f64)>) -> Self {
-        let mut plane = Self { across: 1e-9, up: 1e-9 };
+        let mut plane = Self { across: 1e-9, up: 1e-9, lowest: None };
         for (across, up) in points {
             // `max` leaves out what is no number.
             plane.across = plane.across.max(across);
@@ -112,7 +136,15 @@ impl Plane {
     }
 
     fn y(&self, up: f64) -> f64 {
-        FLOOR - up / self.up * (FLOOR - TOP)
+        let lowest = self.lowest.unwrap_or(0.0);
+        FLOOR - (up - lowest) / (self.up - lowest) * (FLOOR - TOP)
+    }
+
+    /// Where lines are drawn across, and what stands beside them.
+    fn levels(&self) -> Vec<(f64, f64)> {
+        let Some(lowest) = self.lowest else { return ticks(self.up).into_iter().map(|value| (value, value)).collect() };
+        let powers = (lowest as i32)..=(self.up as i32);
+        powers.map(|power| (f64::from(power), 10f64.powi(power))).collect()
     }
 
     fn empty(&self, axes: &ChartAxes) -> Element {
@@ -122,10 +154,10 @@ impl Plane {
         svg.add_line(&Element::new("rect").with("width", WIDTH).with("height", HEIGHT).with("fill", "white"));
         let title = Element::new("text").with("x", LEFT).with("y", 22).with("font-size", 15);
         svg.add_line(&title.text(&axes.title));
-        for value in ticks(self.up) {
+        for (value, label) in self.levels() {
             let y = self.y(value);
             svg.add(&line(format_args!("M{LEFT} {}H{RIGHT}", Tenths(y)), "#ddd"));
-            svg.add_line(&anchored(LEFT - 6.0, Tenths(y + 4.0), "end").text(value));
+            svg.add_line(&anchored(LEFT - 6.0, Tenths(y + 4.0), "end").text(label));
         }
         for value in ticks(self.across) {
             let x = Tenths(self.x(value));
@@ -190,6 +222,16 @@ mod tests {
         let courses = attributes(&svg, "path", "d");
         let course = courses.iter().find(|d| d.contains('L')).expect("the curve");
         assert_eq!(course, "M64.0 428.0L233.0 238.0M571.0 48.0L740.0 48.0");
+    }
+
+    /// 0.1 to 100 are three decades: 1 stands a third of the way up, and 0 has no place.
+    #[test]
+    fn decades_are_equally_high() {
+        let points = vec![(0.0, 0.1), (1.0, 1.0), (2.0, 0.0), (3.0, 100.0), (4.0, 10.0)];
+        let svg = decade_chart(&axes(), &[Curve { name: "error".to_owned(), points }]);
+        let courses = attributes(&svg, "path", "d");
+        let course = courses.iter().find(|d| d.contains('L')).expect("the curve");
+        assert_eq!(course, "M64.0 428.0L233.0 301.3M571.0 48.0L740.0 174.7");
     }
 
     #[test]

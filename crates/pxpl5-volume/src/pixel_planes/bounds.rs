@@ -1,7 +1,9 @@
 //! Volumes a second against renderers and graphics processors: the bound of each part by itself.
 
 use super::renderer::RendererWork;
+use super::traffic::SliceTraffic;
 use pxpl5_gp::GpTiming;
+use pxpl5_renderer::RendererTiming;
 use pxpl5_renderer::isa::timing::CLOCK_HZ;
 use pxpl5_ring::RingTiming;
 use pxpl5_wire::MAX_MESSAGE_WORDS;
@@ -11,7 +13,7 @@ use spatialgl::{Tiling, VolumeFrame};
 /// Milliseconds that each part needs for a volume if it has nothing to wait for.
 ///
 /// ```text
-/// renderers   clocks of clears, triangles and halftones / 40 MHz / renderers
+/// renderers   (clocks of clears, triangles and halftones + copies x backing block) / 40 MHz / renderers
 /// ring in     (command words + overhead of messages) t_word / channels that may end at renderers
 /// ring out    (words of occupied tiles + overhead of one message each) t_word / channels
 /// processors  (slice triangles t_triangle + commands t_bin_entry) / processors
@@ -27,6 +29,8 @@ pub struct SliceBounds {
     pub tiles: u64,
     /// Words of a tile.
     pub tile_words: u64,
+    /// Regions of which any tile is sent: each moves to the backing store first, where its renderer waits for it.
+    pub copies: u64,
 }
 
 /// The bounds with so many boards.
@@ -45,18 +49,21 @@ pub struct BoundRow {
 }
 
 impl SliceBounds {
-    /// Those of a volume that renderers drew: its occupied tiles are sent for every slice of their batch.
+    /// Those of a volume that renderers drew: its occupied tiles are sent for every slice of their batch. Without traffic (tiles
+    /// that cannot be sent) nothing is copied.
     #[must_use]
-    pub fn of(work: RendererWork, frame: &VolumeFrame, tiling: Tiling) -> Self {
+    pub fn of(work: RendererWork, frame: &VolumeFrame, tiling: Tiling, traffic: Option<&SliceTraffic>) -> Self {
         let tile_words = tiling.grid(frame.planes.size()).words(0);
-        let tiles = frame.stats.pixels_packed / 8 / tile_words.max(1);
-        Self { work, tiles, tile_words }
+        let packed = frame.stats.pixels_packed / 8 / tile_words.max(1);
+        let tiles = traffic.map_or(packed, SliceTraffic::tiles);
+        Self { work, tiles, tile_words, copies: traffic.map_or(0, SliceTraffic::copies) }
     }
 
     /// The bounds with so many renderers and graphics processors, each 1 or more.
     #[must_use]
     pub fn with(&self, renderers: u64, processors: u64) -> BoundRow {
-        let renderer_ms = self.work.clocks as f64 / CLOCK_HZ as f64 * 1e3 / renderers.max(1) as f64;
+        let clocks = self.work.clocks + self.copies * RendererTiming::PAPERS.backing_block_clocks;
+        let renderer_ms = clocks as f64 / CLOCK_HZ as f64 * 1e3 / renderers.max(1) as f64;
         let gp = GpTiming::PAPERS;
         let gp_ns = self.work.triangles * gp.triangle_ns + self.work.commands * gp.bin_entry_ns;
         let ms = [renderer_ms, self.ring_ms(), gp_ns as f64 / 1e6 / processors.max(1) as f64];

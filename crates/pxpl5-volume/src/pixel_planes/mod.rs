@@ -7,13 +7,20 @@
 //!  bounds of renderers, ring, processors <--counted clocks and words---------------- colours of each region
 //! ```
 //!
-//! What is drawn is drawn by the emulated pixel arrays, and its clocks are those of the instructions. Volumes a second are
-//! **bounds** of each part by itself: no event of the ring or of a processor is simulated here.
+//! What is drawn is drawn by the emulated pixel arrays, and its clocks are those of the instructions. Volumes a second are known in
+//! two ways: [`SliceBounds`], what each part needs by itself, and [`simulate()`], the messages of the volume through the ring and the
+//! boards, event by event, which is never faster.
 
 mod bounds;
 mod command;
+mod halftone;
 mod renderer;
+mod simulation;
+mod traffic;
 
 pub use bounds::{BoundRow, SliceBounds};
 pub use command::{CLIP_FRACTION_BITS, SliceCorner, SliceTriangle};
-pub use renderer::{ArrayKind, PixelPlanesRenderer, RendererWork, supported};
+pub use halftone::{halftone_clocks, halftone_program, halftone_words, lit_field, threshold_field};
+pub use renderer::{ArrayKind, PixelPlanesRenderer, RendererWork, SliceLoad, supported};
+pub use simulation::{SimulatedRow, simulate};
+pub use traffic::SliceTraffic;

@@ -1,6 +1,7 @@
 //! Slices region by region on the emulated pixel arrays.
 
 use super::command::{SliceCorner, SliceTriangle};
+use super::halftone::{halftone_clocks, halftone_words};
 use crate::error::VolumeError;
 use crate::settings::VolumeSettings;
 use crate::{ClipKind, ProjectionKind};
@@ -9,6 +10,7 @@ use pxpl5_wire::format::SUBPIXEL_BITS;
 use pxpl5_wire::{REGION_SIZE, Word};
 use serde::Serialize;
 use spatialgl::{Combine, HalfWedge, SliceImage, SliceRenderer, SliceStats, SliceView, SliceWork};
+use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 /// Which of the two pixel arrays draws.
@@ -47,11 +49,24 @@ pub struct PixelPlanesRenderer {
     bias: f64,
     kind: ArrayKind,
     work: Mutex<RendererWork>,
+    loads: Mutex<HashMap<ViewKey, SliceLoad>>,
 }
 
-/// Clocks to halftone a region from a resident plane of thresholds: for each channel enable all, compare eight bits, store
-/// Enable (derived: 3 x (6 + 12 + 6)).
-pub(super) const HALFTONE_CLOCKS: u64 = 72;
+/// What a slice asks of a renderer.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SliceLoad {
+    /// Triangles that anything of the slice can have.
+    pub triangles: u64,
+    /// Commands of triangles in each region, row by row from the top left.
+    pub commands: Vec<u32>,
+}
+
+/// The numbers of a slice's view: what tells it from the display's other slices.
+type ViewKey = [u64; 16];
+
+fn key_of(view: &SliceView) -> ViewKey {
+    view.view.to_cols_array().map(f64::to_bits)
+}
 
 /// Checks that these settings are what the renderers draw.
 ///
@@ -90,13 +105,21 @@ impl PixelPlanesRenderer {
         let wedge = HalfWedge::new(settings.display.slices as u32, settings.radius());
         let work = Mutex::new(RendererWork::default());
         let layout = Layout::rendering_control_phong();
-        Ok(Self { layout, wedge, bias: settings.clip_numbers.bias_px2, kind, work })
+        let loads = Mutex::new(HashMap::new());
+        Ok(Self { layout, wedge, bias: settings.clip_numbers.bias_px2, kind, work, loads })
     }
 
     /// What was done since it was made.
     #[must_use]
     pub fn work(&self) -> RendererWork {
         *self.work.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What these slices asked for when they were drawn last; nothing of one that was not.
+    #[must_use]
+    pub fn loads(&self, views: &[SliceView]) -> Vec<SliceLoad> {
+        let loads = self.loads.lock().unwrap_or_else(PoisonError::into_inner);
+        views.iter().map(|view| loads.get(&key_of(view)).cloned().unwrap_or_default()).collect()
     }
 
     /// The slice's triangles that anything of the slice can have, as commands with the pixels that they can touch.
@@ -137,14 +160,14 @@ impl PixelPlanesRenderer {
             one.command.encode(&self.layout, &mut words);
             commands += 1;
         }
-        let mut work =
-            RendererWork { regions: 1, commands, command_words: words.len() as u64, ..RendererWork::default() };
+        let mut work = RendererWork { regions: 1, commands, ..RendererWork::default() };
+        work.command_words = (words.len() + halftone_words(&self.layout).len()) as u64;
         if commands == 0 {
             work.clocks = self.empty_clocks();
             return work;
         }
         let (clocks, colours) = self.execute(&words, within);
-        work.clocks = clocks + HALFTONE_CLOCKS;
+        work.clocks = clocks + halftone_clocks(&self.layout);
         for (at, colour) in (0u32..).zip(colours.iter()).filter(|(_, colour)| **colour != 0) {
             let [_, red, green, blue] = colour.to_be_bytes();
             image.draw_pixel(left + at % within[0], top + at / within[0], [red, green, blue], Combine::Last);
@@ -161,7 +184,7 @@ impl PixelPlanesRenderer {
 
     /// Clocks of a region on which nothing is drawn: it is selected, cleared and halftoned all the same.
     fn empty_clocks(&self) -> u64 {
-        self.clocks(CommandKind::SelectRegion) + self.clocks(CommandKind::Clear) + HALFTONE_CLOCKS
+        self.clocks(CommandKind::SelectRegion) + self.clocks(CommandKind::Clear) + halftone_clocks(&self.layout)
     }
 
     fn clocks(&self, kind: CommandKind) -> u64 {
@@ -214,11 +237,15 @@ impl SliceRenderer for PixelPlanesRenderer {
         let size = image.size();
         let (placed, left_out) = self.commands(work, view, size);
         let mut done = RendererWork { triangles: placed.len() as u64, left_out, ..RendererWork::default() };
+        let mut load = SliceLoad { triangles: done.triangles, commands: Vec::new() };
         for top in (0..size[1]).step_by(REGION_SIZE as usize) {
             for left in (0..size[0]).step_by(REGION_SIZE as usize) {
-                done = done.and(self.region([left, top], &placed, image));
+                let region = self.region([left, top], &placed, image);
+                load.commands.push(region.commands as u32);
+                done = done.and(region);
             }
         }
+        self.loads.lock().unwrap_or_else(PoisonError::into_inner).insert(key_of(view), load);
         let mut total = self.work.lock().unwrap_or_else(PoisonError::into_inner);
         *total = total.and(done);
         let drawn = image.marked();

@@ -1,18 +1,72 @@
 //! The primitives of a bin in clusters with a sphere around each, so that most are rejected without being looked at.
 
+use super::setup::along;
 use crate::command::CommandBuffer;
 
 /// Primitives of one cluster; neighbours in a mesh are mostly neighbours in its list.
-pub(super) const CLUSTER: usize = 8;
+const CLUSTER: usize = 8;
 
 /// Pixels by which a sphere is larger than it must be, against rounding.
 const SLACK: f64 = 1e-6;
 
 /// A ball around everything that some primitives can draw.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ball {
-    pub(super) centre: [f64; 3],
-    pub(super) radius: f64,
+struct Ball {
+    centre: [f64; 3],
+    radius: f64,
+}
+
+/// Balls around each primitive of a cluster, side by side, so that one test takes all of them.
+#[derive(Clone, Copy, Debug, Default)]
+struct BallLanes {
+    centre: [[f64; CLUSTER]; 3],
+    radius: [f64; CLUSTER],
+}
+
+/// A cluster of a bin: primitives that follow each other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cluster<'a> {
+    ball: &'a Ball,
+    each: &'a BallLanes,
+    primitives: &'a [u32],
+}
+
+impl<'a> Cluster<'a> {
+    /// The primitives that can reach any s of a range, given the row of a view that makes s of a point; those left out cannot.
+    #[inline(always)]
+    pub(crate) fn reaching(&self, row: &[f64; 4], [low, high]: [f64; 2]) -> Reaching<'a> {
+        let distance = along(row, self.ball.centre);
+        if (distance - self.ball.radius > high) | (distance + self.ball.radius < low) {
+            return Reaching { rest: 0, primitives: self.primitives };
+        }
+        let [x, y, z] = &self.each.centre;
+        let mut lanes = [0u64; CLUSTER];
+        for i in 0..CLUSTER {
+            let distance = row[0] * x[i] + row[1] * y[i] + row[2] * z[i] + row[3];
+            let is_off = (distance - self.each.radius[i] > high) | (distance + self.each.radius[i] < low);
+            lanes[i] = if is_off { 0 } else { 1 << i };
+        }
+        let there = (1 << self.primitives.len()) - 1;
+        Reaching { rest: lanes.iter().fold(0, |mask, lane| mask | lane) & there, primitives: self.primitives }
+    }
+}
+
+/// Some primitives of a cluster, in their order.
+pub(crate) struct Reaching<'a> {
+    rest: u64,
+    primitives: &'a [u32],
+}
+
+impl Iterator for Reaching<'_> {
+    type Item = u32;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<u32> {
+        let at = self.rest.trailing_zeros() as usize;
+        let primitive = *self.primitives.get(at)?;
+        self.rest &= self.rest - 1;
+        Some(primitive)
+    }
 }
 
 /// The primitives of a recording that a group of slices draws, in their order.
@@ -20,6 +74,7 @@ pub(super) struct Ball {
 pub struct Bin {
     primitives: Vec<u32>,
     balls: Vec<Ball>,
+    each: Vec<BallLanes>,
 }
 
 impl Bin {
@@ -30,7 +85,8 @@ impl Bin {
     #[must_use]
     pub fn new(commands: &CommandBuffer, primitives: Vec<u32>) -> Self {
         let balls = primitives.chunks(CLUSTER).map(|cluster| ball(commands, cluster)).collect();
-        Self { primitives, balls }
+        let each = primitives.chunks(CLUSTER).map(|cluster| balls_of_each(commands, cluster)).collect();
+        Self { primitives, balls, each }
     }
 
     /// Numbers of the primitives.
@@ -39,10 +95,24 @@ impl Bin {
         &self.primitives
     }
 
-    /// The primitives cluster by cluster, each with its ball.
-    pub(super) fn clusters(&self) -> impl Iterator<Item = (&Ball, &[u32])> {
-        self.balls.iter().zip(self.primitives.chunks(CLUSTER))
+    /// The primitives cluster by cluster.
+    #[inline(always)]
+    pub(crate) fn clusters(&self) -> impl Iterator<Item = Cluster<'_>> {
+        let balls = self.balls.iter().zip(&self.each);
+        balls.zip(self.primitives.chunks(CLUSTER)).map(|((ball, each), primitives)| Cluster { ball, each, primitives })
     }
+}
+
+fn balls_of_each(commands: &CommandBuffer, cluster: &[u32]) -> BallLanes {
+    let mut lanes = BallLanes::default();
+    for (i, primitive) in cluster.iter().enumerate() {
+        let Ball { centre, radius } = ball(commands, std::slice::from_ref(primitive));
+        for (axis, lane) in lanes.centre.iter_mut().enumerate() {
+            lane[i] = centre[axis];
+        }
+        lanes.radius[i] = radius;
+    }
+    lanes
 }
 
 fn ball(commands: &CommandBuffer, cluster: &[u32]) -> Ball {

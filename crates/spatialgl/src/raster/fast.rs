@@ -54,12 +54,9 @@ fn render_pass(
     let [low, high] = view.reach.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let positions = &work.commands.positions;
     stats.draws += work.bin.primitives().len() as u64;
-    for (ball, cluster) in work.bin.clusters() {
-        let distance = along(&transform.rows[2], ball.centre);
-        if distance - ball.radius > high || distance + ball.radius < low {
-            continue;
-        }
-        for primitive in cluster.iter().map(|i| &work.commands.primitives[*i as usize]) {
+    for cluster in work.bin.clusters() {
+        for primitive in cluster.reaching(&transform.rows[2], [low, high]) {
+            let primitive = &work.commands.primitives[primitive as usize];
             let mode = Mode { test, combine: primitive.combine, clips_first, hides: view.hides };
             if primitive.shape == Shape::Triangle {
                 let [a, b, c] = primitive.vertices;

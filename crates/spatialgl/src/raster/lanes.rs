@@ -244,14 +244,15 @@ impl Setup {
     #[inline(always)]
     fn weights_of_block(&self, first: u32, width: u32) -> [EachLane; 3] {
         let columns = f64::from(width);
+        let per_column = 1.0 / columns;
         let left = f64::from(self.bounds.x[0]) + 0.5;
         let top = f64::from(self.bounds.y[0]) + 0.5;
         let mut x = [0.0; LANES];
         let mut y = [0.0; LANES];
         for i in 0..LANES {
             let number = f64::from(first) + i as f64;
-            // Whole numbers below 72: half a column more keeps the quotient's rounding away from a whole number.
-            let row = ((number + 0.5) / columns).floor();
+            // Whole numbers below 72: half a column more keeps the rounding of both away from a whole number.
+            let row = ((number + 0.5) * per_column).floor();
             x[i] = left + (number - row * columns);
             y[i] = top + row;
         }

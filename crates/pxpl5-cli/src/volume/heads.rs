@@ -1,0 +1,151 @@
+//! `pxpl5 volume view --head`.
+
+use super::settings::{VolumeSettingArgs, origin};
+use crate::error::CliError;
+use crate::output::OutputFolder;
+use crate::terminal::{print, progress};
+use clap::Args;
+use pxpl5::lab::motion;
+use pxpl5::views::Animation;
+use pxpl5::views::charts::{ChartAxes, Curve, decade_chart};
+use pxpl5::views::results::csv_table;
+use pxpl5::volume::heads::{HeadBefore, HeadQuestion, HeadSample, HeadStudy};
+use std::path::Path;
+
+/// A user who moves around the volume.
+#[derive(Args, Debug)]
+pub(super) struct HeadArgs {
+    /// Look along a motion of a head, beside a head-mounted display: still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum,
+    /// synthetic:SEED or a recording (FILE.csv, FILE.txt or FILE.tum).
+    #[arg(long, value_name = "MOTION", conflicts_with_all = ["azimuth", "elevation", "distance", "cut", "lambert", "undithered", "exposure"])]
+    pub(super) head: Option<String>,
+    /// Latency of the head-mounted display, ms; default: that of the volume by the model of its time.
+    #[arg(long, value_name = "MS", requires = "head", allow_negative_numbers = true)]
+    latency: Option<f64>,
+    /// Length of what is looked at, seconds.
+    #[arg(long, value_name = "S", requires = "head", default_value_t = 2.0, allow_negative_numbers = true)]
+    seconds: f64,
+    /// Pictures of the film; errors are taken at eight times as many instants.
+    #[arg(long, value_name = "N", requires = "head", default_value_t = 24, value_parser = clap::value_parser!(u32).range(2..=2000))]
+    frames: u32,
+}
+
+/// Instants at which errors are taken, for one picture of the film.
+const INSTANTS_PER_FRAME: u32 = 8;
+
+pub(super) fn run(
+    name: &str,
+    args: &HeadArgs,
+    options: &VolumeSettingArgs,
+    side: u32,
+    out: &Path,
+) -> Result<(), CliError> {
+    if !side.is_multiple_of(8) {
+        return Err(CliError::usage(format!("--size: expected a multiple of 8 with --head, found {side}")));
+    }
+    let motion = motion(name).map_err(|error| CliError::usage(format!("--head: {error}")))?;
+    let mut folder = OutputFolder::open(out)?;
+    let settings = options.settings.gather()?;
+    let volume = options.draw(&settings)?;
+    let threads = options.settings.threads();
+    let before = HeadBefore::new(&volume, motion.as_ref(), args.latency)?;
+    let question =
+        HeadQuestion { latency_ms: args.latency, seconds: args.seconds, instants: args.frames * INSTANTS_PER_FRAME };
+    let study = before.study(&question)?;
+    let json = serde_json::to_string_pretty(&study).map_err(CliError::failure)? + "\n";
+    folder.put("report.json", json.as_bytes())?;
+    folder.put("errors.csv", errors_csv(&study).as_bytes())?;
+    folder.put("errors.svg", errors_svg(&study, name).as_bytes())?;
+    let instants = before.film_instants(&question, args.frames)?;
+    let exposure = before.exposure(instants[0], side, &threads)?;
+    let mut bytes = Vec::new();
+    let rate = (f64::from(args.frames - 1) / args.seconds).round().clamp(1.0, 1000.0) as u16;
+    let size = (2 * side, 2 * side);
+    let mut film =
+        Animation::begin(&mut bytes, size, args.frames, (1, rate), &origin(&volume)).map_err(CliError::failure)?;
+    let bar = progress(u64::from(args.frames), "pictures", options.settings.quiet);
+    for time_ps in instants {
+        film.add(&before.picture(time_ps, side, exposure, &threads)?).map_err(CliError::failure)?;
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    film.finish().map_err(CliError::failure)?;
+    folder.put("eyes.png", &bytes)?;
+    folder.commit()?;
+    if options.settings.quiet { Ok(()) } else { print(&text(&study, name, out)) }
+}
+
+/// Columns of errors.csv, and what stands in them.
+type Column = (&'static str, fn(&HeadSample) -> Option<f64>);
+
+const COLUMNS: [Column; 12] = [
+    ("time_s", |sample| Some(sample.time_s)),
+    ("azimuth_deg", |sample| Some(sample.azimuth_deg)),
+    ("elevation_deg", |sample| Some(sample.elevation_deg)),
+    ("distance_mm", |sample| Some(sample.distance_mm)),
+    ("hmd_mean_deg", |sample| sample.hmd_mean_deg),
+    ("hmd_worst_deg", |sample| sample.hmd_worst_deg),
+    ("hmd_mean_px", |sample| sample.hmd_mean_px),
+    ("hmd_mean_mm", |sample| sample.hmd_mean_mm),
+    ("voxel_mean_deg", |sample| Some(sample.voxel_mean_deg)),
+    ("voxel_worst_deg", |sample| Some(sample.voxel_worst_deg)),
+    ("voxel_mean_mm", |sample| Some(sample.voxel_mean_mm)),
+    ("dither_cell_deg", |sample| Some(sample.dither_cell_deg)),
+];
+
+fn errors_csv(study: &HeadStudy) -> String {
+    let cell = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.6}"));
+    let rows = study.samples.iter().map(|sample| COLUMNS.map(|(_, value)| cell(value(sample))));
+    csv_table("", COLUMNS.map(|(name, _)| name), rows)
+}
+
+/// Angles over time: one figure that compares latency with voxels and dither.
+fn errors_svg(study: &HeadStudy, motion: &str) -> String {
+    let axes = ChartAxes {
+        title: format!(
+            "{}, head {motion}: a head-mounted display {:.0} ms late, and a volume",
+            study.scene, study.latency_ms
+        ),
+        across: "time, s".to_owned(),
+        up: "angle seen by the eye, degrees".to_owned(),
+    };
+    let curve = |name: &str, value: &dyn Fn(&HeadSample) -> Option<f64>| Curve {
+        name: name.to_owned(),
+        points: study.samples.iter().map(|sample| (sample.time_s, value(sample).unwrap_or(f64::NAN))).collect(),
+    };
+    let curves = [
+        curve("head-mounted: worst", &|sample| sample.hmd_worst_deg),
+        curve("head-mounted: mean", &|sample| sample.hmd_mean_deg),
+        curve("one of its pixels", &|_| Some(study.hmd_pixel_deg)),
+        curve("volume: dither cell", &|sample| Some(sample.dither_cell_deg)),
+        curve("volume: worst voxel", &|sample| Some(sample.voxel_worst_deg)),
+        curve("volume: mean voxel", &|sample| Some(sample.voxel_mean_deg)),
+    ];
+    decade_chart(&axes, &curves)
+}
+
+fn mean(study: &HeadStudy, value: impl Fn(&HeadSample) -> Option<f64>) -> f64 {
+    let values: Vec<f64> = study.samples.iter().filter_map(value).collect();
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+fn text(study: &HeadStudy, motion: &str, out: &Path) -> String {
+    let own = study.volume_latency_ms.map_or_else(|| "unknown".to_owned(), |ms| format!("{ms:.1} ms"));
+    format!(
+        "{} before a head that moves as {motion}, {} instants\n\
+         head-mounted display, {:.1} ms late ({}): {:.3} degrees on the mean, {:.1} of its pixels, {:.1} mm\n\
+         volume: voxels {:.4} degrees off on the mean, {:.3} mm; a dither cell {:.3} degrees; what changes in it shows {own} later\n\
+         {}: report.json, errors.csv, errors.svg, eyes.png.\n",
+        study.scene,
+        study.samples.len(),
+        study.latency_ms,
+        study.latency_is,
+        mean(study, |sample| sample.hmd_mean_deg),
+        mean(study, |sample| sample.hmd_mean_px),
+        mean(study, |sample| sample.hmd_mean_mm),
+        mean(study, |sample| Some(sample.voxel_mean_deg)),
+        mean(study, |sample| Some(sample.voxel_mean_mm)),
+        mean(study, |sample| Some(sample.dither_cell_deg)),
+        out.display()
+    )
+}
