@@ -109,8 +109,8 @@ impl Observation {
         spans.into_values().collect()
     }
 
-    /// The ticks at which frame after frame was swapped in on all of the first `surfaces` surfaces, from the first frame behind
-    /// [`Forgotten::frames`] on.
+    /// The ticks at which frame after frame was swapped in on all of the first `surfaces` surfaces, from the first that was not
+    /// given up.
     #[must_use]
     pub fn swap_ticks(&self, surfaces: usize) -> Vec<PeriodNumber> {
         let mut ticks: Vec<PeriodNumber> = self.swaps_of(SurfaceId(0)).collect();
