@@ -134,9 +134,9 @@ fn retraces_stand_where_the_formula_puts_them() {
     let is_line = |node: &roxmltree::Node| node.attribute("class") == Some("retrace") && node.has_tag_name("path");
     let places = document.descendants().filter(is_line).filter_map(|node| node.attribute("d"));
     let found: Vec<f64> = places.map(|d| d[1..].split(' ').next().expect("x").parse().expect("a number")).collect();
-    // The axis is 960 - 152 - 14 units long; retrace n is at n x 1001/60000 s.
+    // The axis is 960 - 172 - 14 units long; retrace n is at n x 1001/60000 s.
     let fields = timeline.retraces.len() - 1;
-    let expected = (0..=fields).map(|n| 152.0 + 794.0 * n as f64 / fields as f64);
+    let expected = (0..=fields).map(|n| 172.0 + 774.0 * n as f64 / fields as f64);
     // The last line is the legend's.
     for (found, expected) in found.iter().zip(expected) {
         assert!((found - expected).abs() < 0.011, "{found} instead of {expected}");

@@ -24,9 +24,9 @@ use std::time::Instant;
 /// can the command fails.
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
-  pxpl5 volume sweep experiments/sweep-volume.toml --out out/volumes
-  pxpl5 volume sweep experiments/sweep-volume.toml --out out/volumes --resume     after an interruption
-  pxpl5 volume sweep experiments/sweep-volume.toml --out out/one --shard 1/4      one of four shares; see `pxpl5 merge`
+  pxpl5 volume sweep experiments/volumes/sweep.toml --out out/volumes
+  pxpl5 volume sweep experiments/volumes/sweep.toml --out out/volumes --resume     after an interruption
+  pxpl5 volume sweep experiments/volumes/sweep.toml --out out/one --shard 1/4      one of four shares; see `pxpl5 merge`
 
 The file has `scene`, `triangles`, `title`, `measure` (numbers of the report pxpl5-volume/1, such as lit_voxels or model_ms.gpu.ms),
 any setting by its path, and [sweep.grid], [sweep.together] and sweep.seeds as files of `pxpl5 sweep`.")]
