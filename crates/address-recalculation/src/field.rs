@@ -60,7 +60,7 @@ impl Field<'_> {
         let faces: Vec<FaceSet> = self.shown.memories.iter().map(|memory| drawn(memory, &wanted)).collect();
         let mut memories: Vec<&FaceSet> = faces.iter().collect();
         let background = if self.optics.config.has_background_memory { memories.pop() } else { None };
-        let lookup = Lookup::new(&self.optics.config, &self.optics.table, memories, background);
+        let mut lookup = Lookup::new(&self.optics.config, &self.optics.table, memories, background);
         let mut stats = LookStats::default();
         let mut colours = vec![0; self.optics.table.width() as usize];
         for run in runs {

@@ -1,5 +1,8 @@
 //! The fast path: runs of pixels looked up together, equal to the hardware's words in every bit.
 //!
+//! Depths are compared texel by texel and once ([`Composed`]), in pieces of a row, when the first pixel asks: a picture reads each
+//! texel several times.
+//!
 //! Directions are sums of three products below 2^53, so doubles hold them exactly. A quotient needs no correction: it is a
 //! multiple of 1/(2F) with F below 2^(v + m - 1), v and m being the bits of vector and matrix, and less than 2^q; a double near
 //! it is at most 2^(q - 54) wrong. With v + m + q <= 53 that is less than 1/(2F), so rounding never reaches the next whole number.
@@ -67,12 +70,7 @@ impl<'a> Addressing<'a> {
         if !self.is_exact {
             return None;
         }
-        let mut filled = [[0; LANES]; 3];
-        for (lanes, axis) in filled.iter_mut().zip(vectors) {
-            lanes.fill(axis[0]);
-            lanes[..axis.len()].copy_from_slice(axis);
-        }
-        let lanes = addresses(&self.unit, &filled, matrix);
+        let lanes = addresses(&self.unit, &vectors.map(filled), matrix);
         lanes.is_inside.then_some(lanes)
     }
 
@@ -108,15 +106,23 @@ impl<'a> Addressing<'a> {
     }
 }
 
+/// Eight lanes of up to eight numbers; those that are left take the first.
+fn filled(axis: &[i32]) -> Each<i32> {
+    axis.try_into().unwrap_or_else(|_| {
+        let mut lanes = [axis[0]; LANES];
+        lanes[..axis.len()].copy_from_slice(axis);
+        lanes
+    })
+}
+
 /// What pixels are made of while orientation and shown buffers stay the same.
 #[derive(Clone, Debug)]
 pub struct Lookup<'a> {
     addressing: Addressing<'a>,
     composition: Composition,
     memories: Vec<&'a FaceSet>,
-    /// Those memories' words.
-    words: Vec<&'a [u64]>,
     background: Option<&'a FaceSet>,
+    composed: Composed,
 }
 
 impl<'a> Lookup<'a> {
@@ -133,16 +139,15 @@ impl<'a> Lookup<'a> {
     ) -> Self {
         let texels = config.timing.face_texels as u32;
         assert!(memories.iter().chain(&background).all(|faces| faces.texels() == texels), "faces of {texels} texels");
-        let words = memories.iter().map(|faces| faces.words()).collect();
         let addressing = Addressing::new(config, table);
-        Self { addressing, composition: config.composition(), memories, words, background }
+        Self { addressing, composition: config.composition(), memories, background, composed: Composed::new(texels) }
     }
 
     /// Looks up pixels from one on, in the order of lines, for one orientation: colours as 0x00RRGGBB.
     ///
     /// # Panics
     /// For a run that does not lie in the table.
-    pub fn run(&self, first: usize, matrix: &MatrixWords, out: &mut [u32]) -> LookStats {
+    pub fn run(&mut self, first: usize, matrix: &MatrixWords, out: &mut [u32]) -> LookStats {
         let mut stats = LookStats::default();
         let vectors = self.addressing.table.run(first, out.len());
         for (group, pixels) in out.chunks_mut(LANES).enumerate() {
@@ -175,7 +180,7 @@ impl<'a> Lookup<'a> {
         Some(nearest.0)
     }
 
-    fn group(&self, vectors: [&[i32]; 3], matrix: &MatrixWords, out: &mut [u32]) -> LookStats {
+    fn group(&mut self, vectors: [&[i32]; 3], matrix: &MatrixWords, out: &mut [u32]) -> LookStats {
         if self.composition.order == CompositionOrder::DepthFirst
             && let Some(lanes) = self.addressing.lanes(vectors, matrix)
         {
@@ -203,60 +208,89 @@ impl<'a> Lookup<'a> {
         self.composition.pixel(&Gathered { memories: &memories, behind, weights })
     }
 
-    fn pixels(&self, lanes: &Addresses) -> Each<u32> {
-        let four = self.nearest(lanes);
-        if self.addressing.unit.weight_bits == 0 {
-            four[0]
-        } else {
-            mix(&four, lanes, self.addressing.unit.weight_bits as u32)
+    fn pixels(&mut self, lanes: &Addresses) -> Each<u32> {
+        let unit = self.addressing.unit;
+        let reach = if unit.weight_bits == 0 { 0 } else { unit.geometry.texels as usize };
+        if !self.composed.holds(&lanes.index, reach) {
+            self.compose(&lanes.index, reach);
         }
+        let four = gather(&self.composed.colours, &lanes.index, reach);
+        if unit.weight_bits == 0 { four[0] } else { mix(&four, lanes, unit.weight_bits as u32) }
     }
 
-    /// The composed colours of the four texels of each lane; of the first alone where nothing is interpolated.
-    fn nearest(&self, lanes: &Addresses) -> [Each<u32>; 4] {
-        let reach =
-            if self.addressing.unit.weight_bits == 0 { 0 } else { self.addressing.unit.geometry.texels as usize };
-        let mut best = [[0; LANES]; 4];
-        for words in &self.words {
-            compare(&mut best, words, &lanes.index, reach);
+    fn compose(&mut self, index: &Each<u32>, reach: usize) {
+        let memories = &self.memories;
+        let behind = self.background.map(FaceSet::words);
+        for piece in index.iter().flat_map(|first| [*first as usize, *first as usize + reach]).map(|n| n / PIECE) {
+            if !std::mem::replace(&mut self.composed.is_done[piece], true) {
+                let start = piece * PIECE;
+                let colours = &mut self.composed.colours;
+                let end = (start + PIECE + 1).min(colours.len());
+                compose(&mut colours[start..end], memories, behind, self.composition.background, start);
+            }
         }
-        let mut behind = [[0; LANES]; 4];
-        if let Some(faces) = self.background {
-            compare(&mut behind, faces.words(), &lanes.index, reach);
-        }
-        colours(&best, &behind, self.composition.background)
     }
 }
 
-/// Puts the nearer texels of a memory in the place of what other memories have; `reach` texels down lies the next row, or none
-/// where nothing is interpolated.
+/// Texels that are composed at once.
+const PIECE: usize = 16;
+
+/// What all memories show together, texel by texel, as far as pixels have asked for it: neighbouring pixels share texels, so that
+/// each texel's depths are compared once and not by each of its readers.
+#[derive(Clone, Debug)]
+struct Composed {
+    colours: Vec<u32>,
+    /// Of each piece, whether its texels and the one after them are there.
+    is_done: Vec<bool>,
+}
+
+impl Composed {
+    fn new(texels: u32) -> Self {
+        let all = 6 * (texels * texels) as usize;
+        Self { colours: vec![0; all], is_done: vec![false; all.div_ceil(PIECE)] }
+    }
+
+    /// Whether the footprints that begin at these texels are there; `reach` texels down lies the next row.
+    #[inline(always)]
+    fn holds(&self, index: &Each<u32>, reach: usize) -> bool {
+        index.iter().fold(true, |holds, first| {
+            let first = *first as usize;
+            holds & self.is_done[first / PIECE] & self.is_done[(first + reach) / PIECE]
+        })
+    }
+}
+
+/// Composes a run of texels from one on: the nearest of all memories, what is behind them where all are empty.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn compare(best: &mut [Each<u64>; 4], words: &[u64], index: &Each<u32>, reach: usize) {
+fn compose(out: &mut [u32], memories: &[&FaceSet], behind: Option<&[u64]>, background: u32, start: usize) {
+    let here = start..start + out.len();
+    let mut best = [0; PIECE + 1];
+    for faces in memories {
+        for (best, word) in best.iter_mut().zip(&faces.words()[here.clone()]) {
+            *best = nearer(*best, *word);
+        }
+    }
+    let mut far = [background; PIECE + 1];
+    for (far, word) in far.iter_mut().zip(behind.map_or(&[][..], |words| &words[here])) {
+        *far = shown(*word, background);
+    }
+    for ((out, best), far) in out.iter_mut().zip(best).zip(far) {
+        *out = shown(best, far);
+    }
+}
+
+/// The colours of the four texels of each lane; `reach` texels down lies the next row, or none where nothing is interpolated.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+fn gather(colours: &[u32], index: &Each<u32>, reach: usize) -> [Each<u32>; 4] {
     let right = usize::from(reach > 0);
-    let mut read = [[0; LANES]; 4];
+    let mut four = [[0; LANES]; 4];
     for (lane, first) in index.iter().enumerate() {
         let first = *first as usize;
-        let square = &words[first..=first + reach + right];
-        read[0][lane] = square[0];
-        read[1][lane] = square[right];
-        read[2][lane] = square[reach];
-        read[3][lane] = square[reach + right];
-    }
-    for (best, read) in best.iter_mut().zip(&read) {
-        for (best, read) in best.iter_mut().zip(read) {
-            *best = nearer(*best, *read);
-        }
-    }
-}
-
-/// The colours of four texels of each lane, or what is behind those that are empty.
-#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
-fn colours(best: &[Each<u64>; 4], behind: &[Each<u64>; 4], background: u32) -> [Each<u32>; 4] {
-    let mut four = [[0; LANES]; 4];
-    for k in 0..4 {
-        for lane in 0..LANES {
-            four[k][lane] = shown(best[k][lane], shown(behind[k][lane], background));
-        }
+        let square = &colours[first..=first + reach + right];
+        four[0][lane] = square[0];
+        four[1][lane] = square[right];
+        four[2][lane] = square[reach];
+        four[3][lane] = square[reach + right];
     }
     four
 }

@@ -19,7 +19,7 @@ fn by_lookup(
     behind: Option<&FaceSet>,
 ) -> (Vec<u32>, [u64; 2]) {
     let table = config.table().expect("valid");
-    let lookup = Lookup::new(config, &table, memories.iter().collect(), behind);
+    let mut lookup = Lookup::new(config, &table, memories.iter().collect(), behind);
     let mut pixels = vec![0; 31 * 14];
     let stats = lookup.run(0, &orientation.words(config.timing.matrix_bits), &mut pixels);
     (pixels, [stats.split, stats.conflicts])

@@ -154,7 +154,7 @@ fn the_nearest_texel_is_at_most_1_087_pixels_away_in_the_middle() {
 fn look(config: &ArpConfig, orientation: &Orientation, memories: &[FaceSet], behind: Option<&FaceSet>) -> Vec<u32> {
     let table = config.table().expect("valid");
     let mut pixels = vec![0; (table.width() * table.height()) as usize];
-    let lookup = Lookup::new(config, &table, memories.iter().collect(), behind);
+    let mut lookup = Lookup::new(config, &table, memories.iter().collect(), behind);
     lookup.run(0, &orientation.words(config.timing.matrix_bits), &mut pixels);
     pixels
 }

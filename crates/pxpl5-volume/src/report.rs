@@ -111,7 +111,7 @@ pub struct PixelPlanesReport {
 const BOARDS: [[u64; 2]; 5] = [[1, 4], [5, 13], [20, 50], [20, 13], [5, 50]];
 
 const BOUNDS: &str = "renderers: clocks of clears, triangles and halftones and of the moves to the backing store / 40 MHz; ring: words of commands and of occupied tiles with \
-                      their overhead; processors: slice triangles as triangles of a frame, and commands as entries of bins; each by itself. \
+                      their overhead; port: the tiles at the display's one port; processors: slice triangles as triangles of a frame, and commands as entries of bins; each by itself. \
                       simulated: one volume through the ring, the renderers and the display, event by event";
 
 impl PixelPlanesReport {

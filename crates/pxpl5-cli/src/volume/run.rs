@@ -60,7 +60,7 @@ pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
 fn bounds(planes: &PixelPlanesReport) -> String {
     let work = &planes.counts.work;
     let mut text = format!(
-        "\nPixel-Planes 5: {} slice triangles, {} commands in {} regions, {} left out, {} clocks\n{:>10} {:>11} {:>13} {:>9} {:>14} \
+        "\nPixel-Planes 5: {} slice triangles, {} commands in {} regions, {} left out, {} clocks\n{:>10} {:>11} {:>13} {:>9} {:>9} {:>14} \
          {:>11}  limited by\n",
         work.triangles,
         work.commands,
@@ -71,14 +71,15 @@ fn bounds(planes: &PixelPlanesReport) -> String {
         "processors",
         "renderers, ms",
         "ring, ms",
+        "port, ms",
         "processors, ms",
         "volumes/s"
     );
     for row in &planes.bounds {
-        let [renderers, ring, processors] = row.ms;
+        let [renderers, ring, port, processors] = row.ms;
         let _ = writeln!(
             text,
-            "{:>10} {:>11} {renderers:>13.1} {ring:>9.1} {processors:>14.1} {:>11.2}  {}",
+            "{:>10} {:>11} {renderers:>13.1} {ring:>9.1} {port:>9.1} {processors:>14.1} {:>11.2}  {}",
             row.renderers, row.processors, row.volumes_hz, row.limited_by
         );
     }

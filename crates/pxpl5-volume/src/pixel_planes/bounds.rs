@@ -16,6 +16,7 @@ use spatialgl::{Tiling, VolumeFrame};
 /// renderers   (clocks of clears, triangles and halftones + copies x backing block) / 40 MHz / renderers
 /// ring in     (command words + overhead of messages) t_word / channels that may end at renderers
 /// ring out    (words of occupied tiles + overhead of one message each) t_word / channels
+/// port        (the same words) t_word: the display takes one message after the other
 /// processors  (slice triangles t_triangle + commands t_bin_entry) / processors
 /// ```
 ///
@@ -40,11 +41,11 @@ pub struct BoundRow {
     pub renderers: u64,
     /// Graphics processors that share the triangles.
     pub processors: u64,
-    /// Milliseconds: renderers, ring (both ways), processors.
-    pub ms: [f64; 3],
+    /// Milliseconds: renderers, ring (both ways), the display's port, processors.
+    pub ms: [f64; 4],
     /// Volumes a second if nothing but the slowest of them limits.
     pub volumes_hz: f64,
-    /// The slowest: `renderers`, `ring` or `processors`.
+    /// The slowest: `renderers`, `ring`, `port` or `processors`; of equals the first.
     pub limited_by: &'static str,
 }
 
@@ -66,9 +67,10 @@ impl SliceBounds {
         let renderer_ms = clocks as f64 / CLOCK_HZ as f64 * 1e3 / renderers.max(1) as f64;
         let gp = GpTiming::PAPERS;
         let gp_ns = self.work.triangles * gp.triangle_ns + self.work.commands * gp.bin_entry_ns;
-        let ms = [renderer_ms, self.ring_ms(), gp_ns as f64 / 1e6 / processors.max(1) as f64];
-        let names = ["renderers", "ring", "processors"];
-        let slowest = if ms[0] >= ms[1] && ms[0] >= ms[2] { 0 } else { usize::from(ms[2] > ms[1]) + 1 };
+        let gp_ms = gp_ns as f64 / 1e6 / processors.max(1) as f64;
+        let ms = [renderer_ms, self.ring_ms(), self.port_ms(), gp_ms];
+        let names = ["renderers", "ring", "port", "processors"];
+        let slowest = (1..ms.len()).fold(0, |slowest, part| if ms[part] > ms[slowest] { part } else { slowest });
         BoundRow { renderers, processors, ms, volumes_hz: 1e3 / ms[slowest], limited_by: names[slowest] }
     }
 
@@ -77,10 +79,22 @@ impl SliceBounds {
         let ring = RingTiming::PAPERS;
         let messages = self.work.command_words.div_ceil(u64::from(MAX_MESSAGE_WORDS)).max(self.work.regions);
         let words_in = self.work.command_words + messages * ring.overhead_words;
-        let words_out = self.tiles * (self.tile_words + ring.overhead_words);
-        let ms = |words: u64| (words * ring.word_ns) as f64 / 1e6;
-        let alone = ms(words_in) / ring.fifo_channels as f64;
-        let together = ms(words_in + words_out) / ring.channels as f64;
+        let alone = milliseconds(words_in) / ring.fifo_channels as f64;
+        let together = milliseconds(words_in + self.words_out()) / ring.channels as f64;
         alone.max(together)
     }
+
+    /// The display has one port, at which one message at a time arrives.
+    fn port_ms(&self) -> f64 {
+        milliseconds(self.words_out())
+    }
+
+    /// Words of the occupied tiles, and of what goes before each.
+    fn words_out(&self) -> u64 {
+        self.tiles * (self.tile_words + RingTiming::PAPERS.overhead_words)
+    }
+}
+
+fn milliseconds(words: u64) -> f64 {
+    (words * RingTiming::PAPERS.word_ns) as f64 / 1e6
 }
