@@ -276,3 +276,22 @@ fn angles_of_faces_and_pixels() {
     let [across, ..] = Lens::Flat.view(&PICTURE, 320, 240);
     assert!((2.0 * across.atan().to_degrees() - 0.1034).abs() < 5e-5);
 }
+
+/// docs/guide/address-recalculation.md follows the upper left pixel of a head that looks 30 degrees to the left: 28,377 is 32,767 cos 30
+/// degrees, 16,383 its sine (in doubles just below 16,383.5); all that follows was computed from these words by hand.
+#[test]
+fn the_life_of_a_pixel_in_the_guide() {
+    let half = 15_f64.to_radians();
+    let matrix = Orientation::from_quaternion([0.0, half.sin(), 0.0, half.cos()]).expect("a rotation").words(16);
+    assert_eq!(matrix.0, [[28_377, 0, 16_383], [0, 32_767, 0], [-16_383, 0, 28_377]]);
+    let turned = matrix.turn([-15_326, 11_488, -26_586]);
+    assert_eq!(turned, [-870_464_340, 376_427_296, -503_345_064]);
+    let timing = ArpTiming { face_texels: 512, ..ArpTiming::PAPERS };
+    let footprint = AddressUnit::new(&timing).footprint(turned).expect("a direction");
+    let texels = footprint.texels.map(|texel| texel.expect("on the face"));
+    assert!(texels.iter().all(|texel| texel.face == CubeFace::NegX));
+    assert_eq!(texels.map(|texel| [texel.column, texel.row]), [[402, 145], [403, 145], [402, 146], [403, 146]]);
+    assert_eq!(texels.map(|texel| texel.bank()), [2, 3, 0, 1]);
+    assert_eq!(footprint.fractions, [15, 4]);
+    assert_eq!(footprint.weights(4), [12, 180, 4, 60]);
+}
