@@ -41,7 +41,7 @@
 //! }
 //! let shown_ps = 1_050_000_000_000;
 //! assert!(predictor.predict(shown_ps).is_finite());
-//! # Ok::<(), tracking::ConfigError>(())
+//! # Ok::<(), tracking::SettingError>(())
 //! ```
 //!
 //! # Not modelled
