@@ -160,18 +160,19 @@ impl FaceView {
     fn row(&self, row: i64, range: [i64; 2], reciprocal: Linear, shade: &Shade, faces: &mut FaceSet) {
         let y = self.columns.middle(row);
         let first = TexelAddress { face: self.face, column: range[0] as u32, row: row as u32 };
-        let depth = Linear { x: reciprocal.x * self.depth[1], y: 0.0, c: self.depth[0] + reciprocal.row(y) * self.depth[1] };
-        let columns = range[0]..range[1];
+        let depth =
+            Linear { x: reciprocal.x * self.depth[1], y: 0.0, c: self.depth[0] + reciprocal.row(y) * self.depth[1] };
+        let columns = range[0] as i32..range[1] as i32;
         match shade {
             Shade::Flat(colour) => {
-                let texels = columns.map(|column| (*colour, word(depth, self.columns.middle(column))));
+                let texels = columns.map(|column| (*colour, word(depth, self.columns.middle(column.into()))));
                 faces.keep_nearer(first, texels);
             }
             Shade::Smooth(parts) => {
                 let rows = parts.map(|part| part.row(y));
                 let along = reciprocal.row(y);
                 let texels = columns.map(|column| {
-                    let x = self.columns.middle(column);
+                    let x = self.columns.middle(column.into());
                     let distance = 1.0 / (reciprocal.x * x + along);
                     let [red, green, blue] = [0, 1, 2].map(|i| byte((parts[i].x * x + rows[i]) * distance));
                     (red << 16 | green << 8 | blue, word(depth, x))
