@@ -36,7 +36,7 @@ const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ),
     (
         "lab",
-        &["pxpl5-lab", "pxpl5-volume"],
+        &["pxpl5-lab", "pxpl5-volume", "pxpl5-arp"],
         &["ground", "boards", "geometry", "firmware", "world", "volume", "machine", "run", "measure"],
     ),
     ("views", &["pxpl5-views"], &["ground", "boards", "world", "machine", "run", "measure"]),
