@@ -24,9 +24,9 @@
 
 mod content;
 mod error;
-//pub mod figures;
+pub mod figures;
 mod look;
-//pub mod pictures;
+pub mod pictures;
 mod report;
 mod settings;
 mod simulation;

@@ -13,6 +13,8 @@ pub struct Tears {
     pub after: Vec<f64>,
     /// By how much warping turns each vertex of a warped memory, radians.
     pub stretch: Vec<f64>,
+    /// The widest tear as drawn, radians, and the vertex at which it gapes, an index into [`World::vertices`].
+    pub widest: Option<(f64, u32)>,
 }
 
 /// What shows each segment: the memory's number.
@@ -40,7 +42,11 @@ impl Tears {
             for pair in memories.windows(2) {
                 let [Some(fast), Some(slow)] = [&shown[pair[0]], &shown[pair[1]]] else { continue };
                 tears.before.push(angle(vertex - fast.eye, vertex - slow.eye));
-                tears.after.push(angle(fast.direction(vertex), slow.direction(vertex)));
+                let gap = angle(fast.direction(vertex), slow.direction(vertex));
+                tears.after.push(gap);
+                if tears.widest.is_none_or(|(widest, _)| gap > widest) {
+                    tears.widest = Some((gap, shared.vertex));
+                }
             }
         }
         for content in shown.iter().flatten().filter(|content| content.warp.is_some()) {

@@ -38,8 +38,8 @@ pub struct WalkTally {
     pub moved_objects: Option<u64>,
     /// Angles at shared vertices, of all frames.
     pub tears: Tears,
-    /// The widest tear of each frame as drawn, radians.
-    pub widest: Vec<f64>,
+    /// The widest tear of each frame as drawn, radians, and the vertex where it gapes; `None` where no memories meet.
+    pub widest: Vec<Option<(f64, u32)>>,
     /// Which memories were due, shown and missed in each frame.
     pub outcomes: Vec<FrameOutcome>,
 }
@@ -74,7 +74,7 @@ impl WalkTally {
             }
         }
         let tears = Tears::of(simulation.world(), simulation.shown());
-        self.widest.push(tears.after.iter().copied().fold(0.0, f64::max));
+        self.widest.push(tears.widest);
         self.tears.before.extend(tears.before);
         self.tears.after.extend(tears.after);
         self.tears.stretch.extend(tears.stretch.into_iter().max_by(f64::total_cmp));
