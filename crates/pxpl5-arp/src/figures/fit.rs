@@ -13,8 +13,8 @@ pub const RATES_HZ: [f64; 4] = [60.0, 39.25, 28.21, 16.15];
 /// The memory whose rate the side of a cell is fitted to.
 pub const RATE_FITTED: usize = 1;
 
-/// Sides that are tried, tenths of a metre: those between which the second rate falls from 60 Hz to a third of it on any walk.
-const TENTHS: std::ops::RangeInclusive<u32> = 30..=90;
+/// Sides that are tried, tenths of a metre.
+const TENTHS: std::ops::RangeInclusive<u32> = 10..=120;
 
 /// Updates a second of each memory on a walk of a metre a second: the policy alone, nothing is drawn.
 ///

@@ -33,10 +33,14 @@ pub fn straight_edge(lens: Lens) -> Result<[f64; 2], ExperimentError> {
         let mut row = vec![0; picture.width as usize];
         let words = Orientation::IDENTITY.words(config.timing.matrix_bits);
         lookup.run((y * picture.width) as usize, &words, &mut row);
-        let Some(x) = row.iter().position(|colour| colour & 0xFF > 0x7F) else { continue };
-        points[0].push([x as f64, f64::from(y)]);
-        let seen = config.lens.view(&picture, x as u32, y);
-        points[1].push([seen[0] / -seen[2] * focal, seen[1] / seen[2] * focal]);
+        let Some(x) = row.iter().position(|colour| colour & 0xFF > 0x7F).filter(|x| *x > 0) else { continue };
+        // Where between two pixels the edge is half bright.
+        let [dark, bright] = [x - 1, x].map(|x| f64::from(row[x] & 0xFF));
+        let share = (127.5 - dark) / (bright - dark);
+        points[0].push([x as f64 - 1.0 + share, f64::from(y)]);
+        let [left, right] = [x - 1, x].map(|x| DVec3::from_array(config.lens.view(&picture, x as u32, y)));
+        let seen = left.lerp(right, share);
+        points[1].push([seen.x / -seen.z * focal, seen.y / seen.z * focal]);
     }
     Ok(points.map(|points| bend(&points)))
 }

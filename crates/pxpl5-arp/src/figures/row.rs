@@ -47,7 +47,7 @@ pub struct Row {
     pub ours: f64,
     /// How it came to be.
     pub standing: Standing,
-    /// Whether ours agrees: within 1 percent, or as its shape demands.
+    /// Whether ours agrees: within 1 percent; of what cannot be reproduced, whether its shape is as printed.
     pub is_met: bool,
 }
 

@@ -40,7 +40,7 @@ impl Views<'_> {
             picture(width, &winners, |winner| winner.map_or(0, |memory| MEMORY_COLOURS[usize::from(memory % 8)]));
         for (pixel, tint) in seen.pixels_mut().zip(tints.pixels()) {
             let grey = pixel.0.iter().map(|part| u32::from(*part)).sum::<u32>() / 3;
-            pixel.0 = tint.0.map(|part| (u32::from(part) * (64 + grey) / 320).min(255) as u8);
+            pixel.0 = tint.0.map(|part| (u32::from(part) * (128 + grey) / 320).min(255) as u8);
         }
         Ok(seen)
     }

@@ -70,7 +70,8 @@ pub(super) fn scene(is_full: bool) -> Scene {
         triangles: solid.mesh.triangles,
         spheres: Vec::new(),
         structures: solid.structures,
-        lighting: Lighting::over_the_shoulder(),
+        // Lamps all over the ceiling: little shade, or it would be black itself.
+        lighting: Lighting { ambient: 0.6, diffuse: 0.4, ..Lighting::over_the_shoulder() },
         motion: HeadMotion::new(standing, Sway::none()).expect("pxpl5-scene: constants are in range"),
         path,
     };
