@@ -192,7 +192,7 @@ fn include(range: &mut [f64; 2], value: f64) {
 #[inline(always)]
 fn word(depth: Linear, x: f64) -> u32 {
     let depth = depth.x * x + depth.c;
-    if depth >= 0.0 && depth < 1.0 { (depth * f64::from(DEPTH_FARTHEST)) as u32 } else { DEPTH_FARTHEST }
+    if (0.0..1.0).contains(&depth) { (depth * f64::from(DEPTH_FARTHEST)) as u32 } else { DEPTH_FARTHEST }
 }
 
 /// A part of a colour, rounded to the nearest.

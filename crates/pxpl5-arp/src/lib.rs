@@ -43,4 +43,4 @@ pub use settings::{PolicyKind, Settings, SourceKind};
 pub use simulation::{FrameOutcome, Simulation};
 pub use tears::{Percentiles, Tears};
 pub use walk::{MemoryTally, WalkTally, at_frames, walk};
-pub use world::{Object, Segment, SharedVertex, World};
+pub use world::{Object, Segment, SharedVertex, Tint, World};

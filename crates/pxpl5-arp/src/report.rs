@@ -2,7 +2,7 @@
 
 use crate::settings::{PolicyKind, Settings};
 use crate::tears::Percentiles;
-use crate::walk::WalkTally;
+use crate::walk::{MemoryTally, WalkTally};
 use crate::world::World;
 use address_recalculation::{ArpConfig, ArpTiming, Latch, LookStats};
 use cube_faces::Drawing;
@@ -172,10 +172,13 @@ fn latency(parts: &[&'static str]) -> Latency {
 fn memories(settings: &Settings, tally: &WalkTally) -> Vec<MemoryReport> {
     let timing = &settings.display.timing;
     let bytes = 2 * 6 * timing.face_texels.pow(2) * (timing.colour_bits + timing.depth_bits) / 8;
-    let frames = tally.frames as f64;
-    let report = |memory: &crate::walk::MemoryTally| {
+    tally.memories.iter().map(|memory| MemoryReport::of(memory, tally.frames as f64, settings, bytes)).collect()
+}
+
+impl MemoryReport {
+    fn of(memory: &MemoryTally, frames: f64, settings: &Settings, bytes: u64) -> Self {
         let updates = memory.updates as f64;
-        MemoryReport {
+        Self {
             updates_hz: updates * settings.numbers.frame_hz / frames,
             period_frames: (memory.updates > 0).then(|| frames / updates),
             segments: memory.segment_frames as f64 / frames,
@@ -185,8 +188,7 @@ fn memories(settings: &Settings, tally: &WalkTally) -> Vec<MemoryReport> {
             eye_age_mm: memory.age_m * 1e3 / frames,
             bytes,
         }
-    };
-    tally.memories.iter().map(report).collect()
+    }
 }
 
 fn priority(world: &World, settings: &Settings, tally: &WalkTally, looked: Option<&Looked>) -> PriorityReport {

@@ -16,6 +16,19 @@ struct Unit {
     radius: f64,
 }
 
+impl Unit {
+    /// As an eye sees it that moves at a speed, m/s.
+    fn seen(&self, eye: DVec3, speed: f64) -> SeenObject {
+        let distance_m = self.centre.distance(eye);
+        SeenObject { distance_m, radius_m: self.radius, speed, turn: 0.0, animation_s: f64::INFINITY }
+    }
+
+    fn of(world: &World, segments: std::ops::Range<usize>) -> Self {
+        let (centre, radius) = world.bounding_sphere(segments.clone());
+        Self { segments, centre, radius }
+    }
+}
+
 /// A policy and its state.
 #[derive(Clone, Debug)]
 enum Policy {
@@ -176,17 +189,8 @@ impl<'a> Simulation<'a> {
             Policy::Cells(cells) => cells.frame(eye),
             Policy::Objects(objects) => {
                 let threshold = Threshold::of_degrees(self.settings.numbers.theta_deg);
-                let period = |unit: &Unit| {
-                    let seen = SeenObject {
-                        distance_m: unit.centre.distance(eye),
-                        radius_m: unit.radius,
-                        speed,
-                        turn: 0.0,
-                        animation_s: f64::INFINITY,
-                    };
-                    threshold.period(&seen).least()
-                };
-                let periods: Vec<f64> = self.units.iter().map(period).collect();
+                let seen = self.units.iter().map(|unit| unit.seen(eye, speed));
+                let periods: Vec<f64> = seen.map(|object| threshold.period(&object).least()).collect();
                 objects.frame(self.frames, &periods)
             }
         }
@@ -229,12 +233,8 @@ impl<'a> Simulation<'a> {
 }
 
 fn units(world: &World, is_segmented: bool) -> Vec<Unit> {
-    let of = |segments: std::ops::Range<usize>| {
-        let (centre, radius) = world.bounding_sphere(segments.clone());
-        Unit { segments, centre, radius }
-    };
     if is_segmented {
-        return (0..world.segments.len()).map(|i| of(i..i + 1)).collect();
+        return (0..world.segments.len()).map(|i| Unit::of(world, i..i + 1)).collect();
     }
-    world.objects.iter().map(|object| of(object.segments.clone())).collect()
+    world.objects.iter().map(|object| Unit::of(world, object.segments.clone())).collect()
 }

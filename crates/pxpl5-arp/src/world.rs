@@ -37,6 +37,18 @@ pub struct SharedVertex {
     pub segments: Vec<usize>,
 }
 
+/// What colours of triangles stand for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tint {
+    /// The scene's own, in its light.
+    #[default]
+    Shaded,
+    /// The object.
+    Objects,
+    /// The cell.
+    Cells,
+}
+
 /// A scene cut at the borders of cells.
 #[derive(Clone, Debug)]
 pub struct World {
@@ -52,6 +64,8 @@ pub struct World {
     pub shared: Vec<SharedVertex>,
     /// Colour of what nothing is drawn on.
     pub background: u32,
+    /// What colours are drawn with.
+    pub tint: Tint,
 }
 
 impl World {
@@ -69,6 +83,7 @@ impl World {
             objects: Vec::new(),
             shared: Vec::new(),
             background: packed(scene.lighting().background.map(f64::from)),
+            tint: Tint::Shaded,
         };
         for structure in scene.structures() {
             world.add(scene, structure, side_m)?;
@@ -113,8 +128,23 @@ impl World {
         segments: &'a [usize],
         place: impl Fn(DVec3) -> DVec3 + 'a,
     ) -> impl Iterator<Item = [Corner; 3]> + 'a {
-        let corner = move |i: u32| Corner { place: place(self.vertices[i as usize]), colour: self.colours[i as usize] };
-        segments.iter().flat_map(|i| &self.segments[*i].triangles).map(move |three| three.map(&corner))
+        let all = segments.iter().flat_map(move |i| self.segments[*i].triangles.iter().map(move |three| (*i, three)));
+        all.map(move |(segment, three)| {
+            let tint = self.tint_of(segment);
+            three.map(|i| {
+                let colour = tint.unwrap_or(self.colours[i as usize]);
+                Corner { place: place(self.vertices[i as usize]), colour }
+            })
+        })
+    }
+
+    fn tint_of(&self, segment: usize) -> Option<u32> {
+        let Segment { object, cell, .. } = &self.segments[segment];
+        match self.tint {
+            Tint::Shaded => None,
+            Tint::Objects => Some(distinct(*object as u64)),
+            Tint::Cells => Some(distinct((cell.x + 1_000_000) as u64 * 31 + (cell.z + 1_000_000) as u64)),
+        }
     }
 
     /// Centre of the box around some segments, and distance from it to their farthest vertex, m.
@@ -127,6 +157,12 @@ impl World {
         let centre = (low + high) / 2.0;
         (centre, places.iter().map(|place| place.distance(centre)).fold(0.0, f64::max))
     }
+}
+
+/// A colour for a number, unlike those of its neighbours: steps of the golden ratio round a colour circle.
+fn distinct(number: u64) -> u32 {
+    let hue = (number as f64 * 0.618_033_988_749_895).fract() * 6.0;
+    packed([0.0, 2.0, 4.0].map(|shift| 70.0 + 160.0 * (((hue + shift) % 6.0 - 3.0).abs() - 1.0).clamp(0.0, 1.0)))
 }
 
 fn refuse_what_is_not_still(scene: &Scene) -> Result<(), ExperimentError> {

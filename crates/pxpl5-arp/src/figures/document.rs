@@ -21,7 +21,21 @@ pub fn markdown(all: &Experiments, rows: &[Row]) -> String {
          screen, and {:.2} as it is seen through that lens (less than a pixel: straight).",
         all.lens_px[0], all.lens_px[1]
     );
+    pictures(&mut text);
     text
+}
+
+fn pictures(text: &mut String) {
+    text.push_str(
+        "\n## Pictures\n\n\
+         Made by the same command with `--out DIR` (which writes more: the faces of each memory, the difference, a lens, cells and\n\
+         updates as drawings, a colour for each object and cell).\n\n\
+         ![Six faces](pictures/arp-faces.png)\n\nThe six faces around the eye, drawn at once: PosY above NegZ, then NegX, NegZ, PosX, PosZ, NegY below NegZ.\n\n\
+         ![Memories](pictures/arp-memories.png)\n\nWhich memory won each pixel: 0 (60 Hz) red, 1 yellow, 2 green, 3 (slowest) blue; black is a tear.\n\n\
+         ![Tears](pictures/arp-tears.png)\n\nCut and not warped, cleared to white: pieces drawn from different places gape.\n\n\
+         ![Warped](pictures/arp-warped.png)\n\nThe same frame warped.\n\n\
+         ![Errors](pictures/arp-error.png)\n\nBy how much each pixel is off because its memory was drawn from another place; the scale goes to two pixels.\n",
+    );
 }
 
 fn head(text: &mut String, rows: &[Row]) {

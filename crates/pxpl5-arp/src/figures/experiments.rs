@@ -9,7 +9,7 @@ use crate::walk::{WalkTally, at_frames, walk};
 use crate::world::World;
 use address_recalculation::Lens;
 use glam::{DMat3, DQuat, DVec3};
-use priority_rendering::{Objects, PriorityTiming, SeenObject, SizeRule, Threshold};
+use priority_rendering::{Objects, PriorityTiming, SizeRule, Threshold};
 use pxpl5_scene::{Scene, builtin};
 use tracking::motion::Walk;
 
@@ -127,13 +127,8 @@ const POINTS: usize = 20_000;
 pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
     let numbers = PriorityTiming { memories, ..PriorityTiming::PAPERS };
     let threshold = Threshold::of_degrees(numbers.theta_deg);
-    let period = |point: usize| {
-        let distance_m = 100.0 * libm::sqrt((point as f64 + 0.5) / POINTS as f64);
-        threshold
-            .period(&SeenObject { distance_m, radius_m: 0.0, speed, turn: 0.0, animation_s: f64::INFINITY })
-            .translation_s
-    };
-    let periods: Vec<f64> = (0..POINTS).map(period).collect();
+    let distances = (0..POINTS).map(|point| 100.0 * libm::sqrt((point as f64 + 0.5) / POINTS as f64));
+    let periods: Vec<f64> = distances.map(|distance_m| threshold.way(distance_m) / speed).collect();
     let mut objects = Objects::new(&numbers, POINTS);
     let frames = 64;
     (0..frames).for_each(|frame| {
@@ -158,11 +153,12 @@ pub struct SizeRow {
 pub fn size_rows() -> Vec<SizeRow> {
     let threshold = Threshold::of_degrees(PriorityTiming::PAPERS.theta_deg);
     let sizes = [0.1, 0.2, 0.5, 1.0, 1.4, 1.5, 1.9, 2.0, 5.0, 10.0, 20.0];
-    let row = |size: f64| {
-        let radius = size * 10.0 / 2.0;
-        let by = |size: SizeRule| Threshold { size, ..threshold }.way_of_size(10.0, radius);
-        let size_s = [by(SizeRule::Disc), by(SizeRule::Sphere)];
-        SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
-    };
-    sizes.map(row).to_vec()
+    sizes.map(|size| size_row(&threshold, size)).to_vec()
+}
+
+fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
+    let radius = size * 10.0 / 2.0;
+    let rules = [SizeRule::Disc, SizeRule::Sphere];
+    let size_s = rules.map(|rule| Threshold { size: rule, ..*threshold }.way_of_size(10.0, radius));
+    SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
 }

@@ -119,13 +119,14 @@ fn first_size(all: &Experiments) -> f64 {
 }
 
 fn table_1(all: &Experiments) -> Vec<Row> {
-    let rates = &all.fits[1].3;
-    let row = |memory: usize| {
-        let standing = if memory == RATE_FITTED { Standing::Fitted } else { Standing::Checked };
-        let statement = format!("update rate of memory {memory} (q = 1, cells of {:.1} m)", all.fits[1].2);
-        Row::number("A12", &statement, "Hz", [RATES_HZ[memory], rates[memory]], standing)
-    };
-    (0..4).map(row).collect()
+    (0..4).map(|memory| rate(all, memory)).collect()
+}
+
+fn rate(all: &Experiments, memory: usize) -> Row {
+    let standing = if memory == RATE_FITTED { Standing::Fitted } else { Standing::Checked };
+    let (_, _, side, rates) = &all.fits[1];
+    let statement = format!("update rate of memory {memory} (q = 1, cells of {side:.1} m)");
+    Row::number("A12", &statement, "Hz", [RATES_HZ[memory], rates[memory]], standing)
 }
 
 fn table_2(all: &Experiments) -> Vec<Row> {

@@ -1,5 +1,6 @@
 //! What people look at: unfolded faces, the eye, which memory won, tears, errors, cells from above, updates.
 
+mod colours;
 mod faces;
 mod plan;
 mod views;
@@ -15,15 +16,11 @@ use crate::settings::Settings;
 use crate::simulation::Simulation;
 use crate::tears::Tears;
 use crate::walk::{at_frames, walk};
-use crate::world::World;
+use crate::world::{Tint, World};
 use address_recalculation::Lens;
 use glam::{DQuat, DVec3};
 use image::RgbImage;
 use priority_rendering::Falloff;
-
-/// Colours of memories 0 to 7, told apart by those who see fewer colours too.
-pub(crate) const MEMORY_COLOURS: [u32; 8] =
-    [0x00D5_5E00, 0x00E6_9F00, 0x0000_9E73, 0x0056_B4E9, 0x0000_72B2, 0x00CC_79A7, 0x00F0_E442, 0x0099_9999];
 
 /// A picture, with the name of its file.
 #[derive(Clone, Debug)]
@@ -70,6 +67,24 @@ pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, ExperimentError> {
     let tally = walk(&world, &torn, frame + 60, &eye)?;
     pictures.push(Picture::Drawing("updates".to_owned(), updates_svg(&tally, frame.saturating_sub(60)..frame + 60)));
     pictures.extend(gaps);
+    pictures.extend(tinted(world, &torn, eye(frame), orientation)?);
+    Ok(pictures)
+}
+
+/// The eye's picture with a colour for each object, and with one for each cell.
+fn tinted(
+    mut world: World,
+    settings: &Settings,
+    eye: DVec3,
+    orientation: DQuat,
+) -> Result<Vec<Picture>, ExperimentError> {
+    let mut pictures = Vec::new();
+    for (tint, name) in [(Tint::Objects, "objects"), (Tint::Cells, "cells-seen")] {
+        world.tint = tint;
+        let faces = Faces::of(&shown(&world, settings, 0..1, &|_| eye)?)?;
+        let seen = Views { faces: &faces, orientation }.seen(Lens::Flat)?;
+        pictures.push(Picture::Pixels(name.to_owned(), seen));
+    }
     Ok(pictures)
 }
 

@@ -1,11 +1,12 @@
 //! What the eye sees, and what is wrong with it.
 
-use super::MEMORY_COLOURS;
+use super::colours::MEMORY_COLOURS;
 use crate::content::angle;
 use crate::error::ExperimentError;
 use crate::look::{Faces, picture, rgb};
 use crate::simulation::Simulation;
 use address_recalculation::{Lens, Picture};
+use cube_faces::CubeView;
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage};
 
@@ -53,26 +54,32 @@ impl Views<'_> {
     /// As [`Views::seen`].
     pub fn errors(&self, simulation: &Simulation<'_>, eye: DVec3) -> Result<RgbImage, ExperimentError> {
         let view = simulation.settings().view()?;
-        let geometry = view.geometry;
-        let screen: Picture = simulation.settings().display.picture();
-        let focal = f64::from(screen.width) / 2.0 / libm::tan(screen.horizontal_deg.to_radians() / 2.0);
-        let off = |x: u32, y: u32| {
-            let head = DVec3::from_array(Lens::Flat.view(&screen, x, y));
-            let ray = self.orientation * head;
-            let texel = geometry.texel(ray.to_array())?;
-            let texels = self.faces.memories.iter().zip(simulation.shown());
-            let seen = texels.filter_map(|(faces, content)| Some((faces.texel(texel)?.1, content.as_ref()?.eye)));
-            let (depth, from) = seen.min_by_key(|(depth, _)| *depth)?;
-            let axis = DVec3::from_array(texel.face.forward().map(|component| component as f64));
-            let place = from + ray * (view.depth.distance_m(depth) / ray.dot(axis));
-            Some(angle(place - from, place - eye) * focal)
-        };
+        let screen = simulation.settings().display.picture();
         let bar = 24;
         Ok(RgbImage::from_fn(screen.width, screen.height + bar, |x, y| match y.checked_sub(screen.height) {
             Some(_) => heat(2.0 * f64::from(x) / f64::from(screen.width), x % (screen.width / 8) == 0),
-            None => off(x, y).map_or(rgb(0x0000_0040), |pixels| heat(pixels, false)),
+            None => {
+                let ray = self.orientation * DVec3::from_array(Lens::Flat.view(&screen, x, y));
+                self.off(simulation, &view, ray, eye).map_or(rgb(0x0000_0040), |off| heat(off * focal(&screen), false))
+            }
         }))
     }
+
+    /// Angle between where a ray's place is seen and where it is seen from the eye, radians; `None` where there is nothing.
+    fn off(&self, simulation: &Simulation<'_>, view: &CubeView, ray: DVec3, eye: DVec3) -> Option<f64> {
+        let texel = view.geometry.texel(ray.to_array())?;
+        let texels = self.faces.memories.iter().zip(simulation.shown());
+        let seen = texels.filter_map(|(faces, content)| Some((faces.texel(texel)?.1, content.as_ref()?.eye)));
+        let (depth, from) = seen.min_by_key(|(depth, _)| *depth)?;
+        let axis = DVec3::from_array(texel.face.forward().map(|component| component as f64));
+        let place = from + ray * (view.depth.distance_m(depth) / ray.dot(axis));
+        Some(angle(place - from, place - eye))
+    }
+}
+
+/// Pixels of a radian in the middle of a picture.
+fn focal(screen: &Picture) -> f64 {
+    f64::from(screen.width) / 2.0 / libm::tan(screen.horizontal_deg.to_radians() / 2.0)
 }
 
 /// From black over red and yellow to white at two pixels; blue marks every quarter of a pixel on the scale.

@@ -2,7 +2,8 @@ use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::{Motion, Synthetic};
+use super::Motion;
+use super::synthetic::Synthetic;
 use crate::error::SettingError;
 use crate::identity::{SettingSink, write_vector};
 use crate::pose::Pose;
