@@ -1,6 +1,6 @@
 //! The figures as a document.
 
-use super::experiments::{EXPERIMENT_FRAMES, Experiments, Walked};
+use super::experiments::{EXPERIMENT_FRAMES, Experiments, Fit, Slowed, Walked};
 use super::row::{Row, Standing};
 use std::fmt::Write as _;
 
@@ -111,7 +111,7 @@ fn fits(text: &mut String, all: &Experiments) {
          | inner rings | cascade | side | memory 0 | 1 (fitted) | 2 | 3 | error of 2 and 3 |\n|---|---|---|---|---|---|---|---|\n\
          | published | | | 60.00 | 39.25 | 28.21 | 16.15 | |\n"
     );
-    for (rings, has_cascade, side, rates) in &all.fits {
+    for Fit { inner_rings, has_cascade, cell_m, rates_hz: rates } in &all.fits {
         let cascade = if *has_cascade { "on" } else { "off" };
         let errors =
             [(rates[2] / 28.21 - 1.0), (rates[3] / 16.15 - 1.0)].map(|error| format!("{:+.1} %", 100.0 * error));
@@ -119,7 +119,7 @@ fn fits(text: &mut String, all: &Experiments) {
         let errors = errors.join(", ");
         let _ = writeln!(
             text,
-            "| {rings} | {cascade} | {side:.1} m | {first} | {second} | {third} | {fourth} | {errors} |"
+            "| {inner_rings} | {cascade} | {cell_m:.1} m | {first} | {second} | {third} | {fourth} | {errors} |"
         );
     }
 }
@@ -166,8 +166,8 @@ fn slowed(text: &mut String, all: &Experiments) {
         "\n## E8: a renderer that is too slow\n\nThe torn walk, 1,800 frames; memories are served in rising order. Rotation is looked up in what is shown, however old:\n\
          its error does not know the renderer.\n\n| triangles a second | rates, Hz | retraces missed |\n|---|---|---|\n"
     );
-    for (rate, rates, missed) in &all.slowed {
-        let rates: Vec<String> = rates.iter().map(|rate| format!("{rate:.1}")).collect();
+    for Slowed { triangles_per_s: rate, rates_hz, missed } in &all.slowed {
+        let rates: Vec<String> = rates_hz.iter().map(|rate| format!("{rate:.1}")).collect();
         let missed: Vec<String> = missed.iter().map(u64::to_string).collect();
         let _ = writeln!(text, "| {rate:.0} | {} | {} |", rates.join(", "), missed.join(", "));
     }

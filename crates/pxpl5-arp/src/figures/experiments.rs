@@ -29,17 +29,41 @@ pub struct Walked {
     pub report: Report,
 }
 
+/// A side of a cell that was fitted to one rate of table 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// Rings of cells around the home cell in memory 0.
+    pub inner_rings: u64,
+    /// Whether an update of a memory makes all faster ones due.
+    pub has_cascade: bool,
+    /// The side, m.
+    pub cell_m: f64,
+    /// Updates a second of each memory.
+    pub rates_hz: Vec<f64>,
+}
+
+/// A renderer that is too slow or nearly so.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slowed {
+    /// Triangles that it draws a second.
+    pub triangles_per_s: f64,
+    /// Pictures a second of each memory.
+    pub rates_hz: Vec<f64>,
+    /// Retraces at which an update was not whole, of each memory.
+    pub missed: Vec<u64>,
+}
+
 /// Results of everything that is simulated.
 #[derive(Clone, Debug)]
 pub struct Experiments {
-    /// Fits of the side of a cell: inner rings, cascade, side and rates.
-    pub fits: Vec<(u64, bool, f64, Vec<f64>)>,
+    /// Fits of the side of a cell, the second one as published: one inner ring, no cascade.
+    pub fits: Vec<Fit>,
     /// Segments of the gallery with cells of 5 m, and with those that were fitted.
     pub segments: [usize; 2],
     /// Cut and torn, cut and warped, uncut, warped without cascade; cells as fitted without cascade.
     pub walks: Vec<Walked>,
-    /// A renderer that is slowed down: triangles a second, rate and retraces missed of each memory.
-    pub slowed: Vec<(f64, Vec<f64>, Vec<u64>)>,
+    /// A renderer that is slowed down.
+    pub slowed: Vec<Slowed>,
     /// Reduction of point objects: 4 memories at 1 m/s, 5 at 0.37 m/s.
     pub reductions: [f64; 2],
     /// Which component of validity decides, by size over distance.
@@ -77,10 +101,10 @@ impl Experiments {
         let (scene, path) = gallery()?;
         let mut fits = Vec::new();
         for (inner_rings, has_cascade) in [(0, false), (1, false), (1, true), (2, false), (2, true)] {
-            let (cell_m, rates) = fitted_cell_m(&scene, &path, inner_rings, has_cascade, EXPERIMENT_FRAMES)?;
-            fits.push((inner_rings, has_cascade, cell_m, rates));
+            let (cell_m, rates_hz) = fitted_cell_m(&scene, &path, inner_rings, has_cascade, EXPERIMENT_FRAMES)?;
+            fits.push(Fit { inner_rings, has_cascade, cell_m, rates_hz });
         }
-        let side = fits[1].2;
+        let side = fits[1].cell_m;
         let world = World::new(&scene, side)?;
         let cells = Settings::CELLS.with_cells(side);
         let kinds = [
@@ -108,13 +132,13 @@ impl Experiments {
 }
 
 /// The torn walk with renderers of less and less triangles a second.
-fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<(f64, Vec<f64>, Vec<u64>)>, ExperimentError> {
+fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<Slowed>, ExperimentError> {
     let mut all = Vec::new();
     for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {
         let settings = Settings { source: SourceKind::Timed { triangles_per_s }, ..settings.clone() };
         let tally = walk(world, &settings, 1_800, at_frames(path, 1.0, 60.0))?;
         let missed = tally.memories.iter().map(|memory| memory.missed).collect();
-        all.push((triangles_per_s, tally.rates_hz(60.0), missed));
+        all.push(Slowed { triangles_per_s, rates_hz: tally.rates_hz(60.0), missed });
     }
     Ok(all)
 }

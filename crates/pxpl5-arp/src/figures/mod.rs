@@ -7,7 +7,9 @@ mod lens;
 mod row;
 
 pub use document::markdown;
-pub use experiments::{EXPERIMENT_FRAMES, Experiments, SizeRow, point_objects_reduction, size_rows};
+pub use experiments::{
+    EXPERIMENT_FRAMES, Experiments, Fit, SizeRow, Slowed, Walked, point_objects_reduction, size_rows,
+};
 pub(crate) use experiments::{gallery, looking_at};
 pub use fit::{RATE_FITTED, RATES_HZ, fitted_cell_m, policy_rates_hz};
 pub use lens::straight_edge;

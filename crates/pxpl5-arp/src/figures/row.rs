@@ -1,6 +1,6 @@
 //! Rows: what is printed, what comes out.
 
-use super::experiments::Experiments;
+use super::experiments::{Experiments, Fit};
 use super::fit::{RATE_FITTED, RATES_HZ};
 use priority_rendering::{draws_per_s, saved_percent};
 use serde::Serialize;
@@ -124,9 +124,9 @@ fn table_1(all: &Experiments) -> Vec<Row> {
 
 fn rate(all: &Experiments, memory: usize) -> Row {
     let standing = if memory == RATE_FITTED { Standing::Fitted } else { Standing::Checked };
-    let (_, _, side, rates) = &all.fits[1];
-    let statement = format!("update rate of memory {memory} (q = 1, cells of {side:.1} m)");
-    Row::number("A12", &statement, "Hz", [RATES_HZ[memory], rates[memory]], standing)
+    let Fit { cell_m, rates_hz, .. } = &all.fits[1];
+    let statement = format!("update rate of memory {memory} (q = 1, cells of {cell_m:.1} m)");
+    Row::number("A12", &statement, "Hz", [RATES_HZ[memory], rates_hz[memory]], standing)
 }
 
 fn table_2(all: &Experiments) -> Vec<Row> {

@@ -42,8 +42,8 @@ const FRAMES: u64 = 1_800;
 /// [`ExperimentError`], where a lens, scene or number is none; those here are.
 pub fn all(experiments: &Experiments) -> Result<Vec<Picture>, ExperimentError> {
     let (scene, path) = gallery()?;
-    let mut world = World::new(&scene, experiments.fits[1].2)?;
-    let torn = Settings::CELLS.with_cells(experiments.fits[1].2);
+    let mut world = World::new(&scene, experiments.fits[1].cell_m)?;
+    let torn = Settings::CELLS.with_cells(experiments.fits[1].cell_m);
     let eye = at_frames(&path, 1.0, 60.0);
     let background = world.background;
     world.background = WHITE;
