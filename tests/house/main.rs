@@ -24,7 +24,7 @@ const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ("geometry", &["pxpl5-geometry", "pphigs"], &["ground", "boards", "geometry"]),
     (
         "firmware",
-        &["rendering-control", "slats", "jitp", "priority-rendering", "pxpl5-oracle"],
+        &["rendering-control", "slats", "jitp", "priority-rendering", "cube-faces", "pxpl5-oracle"],
         &["ground", "boards", "geometry"],
     ),
     ("machine", &["pxpl5-machine"], &["ground", "boards"]),
@@ -36,7 +36,7 @@ const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ),
     (
         "lab",
-        &["pxpl5-lab", "pxpl5-volume"],
+        &["pxpl5-lab", "pxpl5-volume", "pxpl5-arp"],
         &["ground", "boards", "geometry", "firmware", "world", "volume", "machine", "run", "measure"],
     ),
     ("views", &["pxpl5-views"], &["ground", "boards", "world", "machine", "run", "measure"]),

@@ -106,6 +106,23 @@ impl FaceSet {
         }
     }
 
+    /// Draws a run of texels of one row from one on, colour and depth in 24 bits each: where something as near is there already it
+    /// stays.
+    ///
+    /// # Panics
+    /// For a run that does not lie in a row.
+    pub fn keep_nearer(&mut self, first: TexelAddress, texels: impl ExactSizeIterator<Item = (u32, u32)>) {
+        let count = texels.len();
+        assert!(first.column as usize + count <= self.texels as usize && first.row < self.texels, "{first:?}");
+        let start = first.index(self.texels);
+        for (kept, (colour, depth)) in self.words[start..start + count].iter_mut().zip(texels) {
+            let drawn = word(self.format, colour, depth);
+            if nearness(drawn) > nearness(*kept) {
+                *kept = drawn;
+            }
+        }
+    }
+
     /// Colour and kept depth of a texel; `None` of an empty one.
     #[must_use]
     pub fn texel(&self, texel: TexelAddress) -> Option<(u32, u32)> {

@@ -1,5 +1,6 @@
 //! Head motions, trackers and predictors by name.
 
+use glam::{DVec3, Vec3};
 use std::fs::File;
 use std::io;
 use std::path::Path;
@@ -8,7 +9,7 @@ use thiserror::Error;
 use tracking::Pose;
 use tracking::config::Tables;
 use tracking::motion::{
-    End, Motion, Pan, Pendulum, Recording, RecordingError, RecordingFormat, Sinusoid, Slide, Still, Synthetic,
+    End, Motion, Pan, Pendulum, Recording, RecordingError, RecordingFormat, Sinusoid, Slide, Still, Synthetic, Walk,
 };
 use tracking::predict::PredictorKind;
 use tracking::tracker::TrackerConfig;
@@ -38,6 +39,14 @@ pub enum MotionError {
         /// What was expected.
         expected: &'static str,
     },
+    /// A walk through a scene that has no path.
+    #[error(
+        "`{found}` walks along the scene's path, and this scene has none; expected a scene with a path, such as gallery"
+    )]
+    NoPath {
+        /// The motion.
+        found: String,
+    },
     /// A recording cannot be opened.
     #[error("{path} cannot be opened: {error}")]
     Open {
@@ -57,8 +66,8 @@ pub enum MotionError {
 }
 
 /// Every motion that [`motion`] knows, as help and errors say it.
-pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED or a recording \
-                           (FILE.csv, FILE.txt or FILE.tum)";
+pub const MOTIONS: &str = "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S (or \
+                           walk:M_PER_S:SEED) along the scene's path, or a recording (FILE.csv, FILE.txt or FILE.tum)";
 
 /// Fastest slide, metres per second, and highest frequency of a sine, Hz.
 const FASTEST_SLIDE: f64 = 100.0;
@@ -73,6 +82,37 @@ pub struct Replay {
     pub end: End,
 }
 
+/// Whether the name of a motion is that of a walk along the scene's path.
+#[must_use]
+pub fn is_walk(name: &str) -> bool {
+    name.split(':').next() == Some("walk")
+}
+
+/// `walk:M_PER_S` along a closed path, looking ahead, or `walk:M_PER_S:SEED`, looking around as `synthetic:SEED` turns; an empty path
+/// is none.
+///
+/// # Errors
+///
+/// [`MotionError`] for a scene without a path, and for what is no speed or seed.
+pub fn walk(text: &str, path: &[Vec3]) -> Result<Walk, MotionError> {
+    let expected =
+        "a walk of -100 to 100 metres per second, such as walk:1, and a seed to look around by, such as walk:1:7";
+    let wrong = || MotionError::Number { found: text.to_owned(), expected };
+    let numbers = text.strip_prefix("walk:").ok_or_else(wrong)?;
+    let speed = numbers.split(':').next().and_then(|speed| within(speed, FASTEST_SLIDE)).ok_or_else(wrong)?;
+    let seed = match numbers.split_once(':') {
+        Some((_, seed)) => Some(seed.parse().map_err(|_| wrong())?),
+        None => None,
+    };
+    let no_path = |_| MotionError::NoPath { found: text.to_owned() };
+    let corners: Vec<DVec3> = path.iter().map(|corner| corner.as_dvec3()).collect();
+    let ahead = Walk::new(&corners, speed).map_err(no_path)?;
+    Ok(match seed {
+        Some(seed) => ahead.looking_around(seed),
+        None => ahead,
+    })
+}
+
 /// Whether the name of a motion is the path of a recording.
 #[must_use]
 pub fn is_recording(name: &str) -> bool {
@@ -81,7 +121,7 @@ pub fn is_recording(name: &str) -> bool {
 }
 
 /// `still`, `pan:DEG_PER_S`, `slide:M_PER_S` (to the right), `sine:DEG:HZ` (of the yaw), `pendulum`, `synthetic:SEED`, or the path
-/// of a recording that ends in `.csv`, `.txt` or `.tum` ([`Recording::read`]).
+/// of a recording that ends in `.csv`, `.txt` or `.tum` ([`Recording::read`]). Walks need a scene: [`walk`].
 ///
 /// # Errors
 ///
@@ -123,6 +163,7 @@ pub fn replayed(text: &str, replay: &Replay) -> Result<Arc<dyn Motion + Send + S
             let seed = seed.parse().map_err(|_| number(seed, "a seed of 0 to 2^64 - 1, such as synthetic:1"))?;
             Arc::new(Synthetic::recorded_use(seed))
         }
+        ("walk", _) => return Err(MotionError::NoPath { found: text.to_owned() }),
         _ if is_recording(text) => Arc::new(recording(Path::new(text), replay)?),
         _ => return Err(MotionError::Unknown { what: "motion", found: text.to_owned(), expected: MOTIONS }),
     })

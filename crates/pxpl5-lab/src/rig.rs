@@ -165,6 +165,7 @@ fn lamp() -> Scene {
         structures: vec![structure],
         lighting,
         motion: motion.expect("a still head is in range"),
+        path: Vec::new(),
     })
     .expect("a quadrangle is a scene")
 }

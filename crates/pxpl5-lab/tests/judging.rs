@@ -82,6 +82,7 @@ fn wheel(hinge: Hinge) -> Scene {
         }],
         lighting: Lighting::over_the_shoulder(),
         motion: motion.expect("in range"),
+        path: Vec::new(),
     })
     .expect("a scene")
 }

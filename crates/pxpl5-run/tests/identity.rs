@@ -45,6 +45,7 @@ fn parts() -> SceneParts {
         structures: vec![structure],
         lighting: Lighting { towards_light: Vec3::Z, ambient: 0.25, diffuse: 0.75, background: [4, 5, 6] },
         motion: HeadMotion::new(HeadPath::Pan { eye: Vec3::ZERO, deg_per_s: 30.0 }, Sway::none()).expect("in range"),
+        path: Vec::new(),
     }
 }
 

@@ -174,7 +174,7 @@ pub enum SceneError {
     Part {
         /// Name of the scene.
         scene: String,
-        /// "vertex", "triangle", "sphere" or "structure".
+        /// "vertex", "triangle", "sphere", "structure" or "corner of the path".
         what: &'static str,
         /// Which of them, counted from 0.
         index: usize,

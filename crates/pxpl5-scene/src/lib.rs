@@ -23,6 +23,7 @@
 //! | `mig` | 417 | | published TR94 |
 //! | `molecules` | 2,620 | 1,219 | assumed |
 //! | `head` | 59,592 | | assumed |
+//! | `gallery`, `gallery:full` | 112, 572 | | assumed |
 //! | `full-screen:N` | N | | published TR94 for N = 12 |
 //! | `typical:N` | N | | published TR94 for their size |
 //! | `sphere:N` | N | | |

@@ -102,6 +102,8 @@ pub struct SceneParts {
     pub lighting: Lighting,
     /// How a head moves that looks at this scene.
     pub motion: HeadMotion,
+    /// Corners of the closed path on which somebody can walk through the scene, places of the eyes in metres; empty without one.
+    pub path: Vec<Vec3>,
 }
 
 /// A checked scene: every index is in range, every number finite, every normal of unit length, every radius above zero.
@@ -164,6 +166,13 @@ impl Scene {
     #[must_use]
     pub fn motion(&self) -> &HeadMotion {
         &self.parts.motion
+    }
+
+    /// Corners of the closed path on which somebody can walk through the scene, places of the eyes in metres; empty where there is
+    /// none.
+    #[must_use]
+    pub fn path(&self) -> &[Vec3] {
+        &self.parts.path
     }
 
     /// The same scene, all of whose structures drop their back faces: right for surfaces without holes that are seen from outside; of
@@ -269,6 +278,7 @@ impl SceneParts {
         self.check_structures()?;
         self.check_vertices()?;
         self.check_spheres()?;
+        self.check_path()?;
         self.structures.iter().try_for_each(|s| self.check_triangles(s))
     }
 
@@ -305,6 +315,13 @@ impl SceneParts {
             }
         }
         Ok(())
+    }
+
+    fn check_path(&self) -> Result<(), SceneError> {
+        match self.path.iter().position(|corner| !corner.is_finite()) {
+            Some(i) => Err(self.fault("corner of the path", i, "a finite place", self.path[i])),
+            None => Ok(()),
+        }
     }
 
     fn check_structures(&self) -> Result<(), SceneError> {

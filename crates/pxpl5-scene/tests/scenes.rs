@@ -33,6 +33,9 @@ fn each_scene_has_the_stated_number_of_primitives() {
     assert_eq!(counts("full-screen:1"), (1, 0));
     assert_eq!(counts("aircraft"), (100, 0));
     assert_eq!(counts("typical:37"), (37, 0));
+    // Six sides of two triangles, ten boxes without a lower side; 30 whole boxes and ten more without.
+    assert_eq!(counts("gallery"), (6 * 2 + 10 * 10, 0));
+    assert_eq!(counts("gallery:full"), (112 + 30 * 12 + 10 * 10, 0));
 }
 
 #[test]
@@ -40,6 +43,14 @@ fn every_listed_name_is_had_with_n_replaced() {
     for (name, sentence) in names() {
         scene(&name.replace('N', "12"));
         assert!(sentence.ends_with('.'), "{sentence}");
+    }
+}
+
+#[test]
+fn a_gallery_alone_has_a_path() {
+    for (name, _) in names() {
+        let has_path = !scene(&name.replace('N', "12")).path().is_empty();
+        assert_eq!(has_path, name.starts_with("gallery"), "{name}");
     }
 }
 

@@ -12,7 +12,8 @@ mod row;
 mod trial;
 
 pub use crate::head_names::{
-    MOTIONS, MotionError, Replay, TRACKERS, is_recording, motion, predictor, replayed, tracker, tracker_by,
+    MOTIONS, MotionError, Replay, TRACKERS, is_recording, is_walk, motion, predictor, replayed, tracker, tracker_by,
+    walk,
 };
 pub use gallery::LastPicture;
 pub use pictures::{EdgePictures, as_seen, edge_pictures, edge_scene};

@@ -60,6 +60,7 @@ pub fn edge_scene(yaw_deg: f64) -> Scene {
         structures: vec![structure],
         lighting: Lighting { background: [0; 3], ..Lighting::over_the_shoulder() },
         motion: motion.expect("a still head is in range"),
+        path: Vec::new(),
     })
     .expect("a quadrangle is a scene")
 }

@@ -1,8 +1,9 @@
 //! The head in front of the pipeline: how it moves, its tracker and predictor, and the raster before its eyes.
 
+use super::plan::SceneChoice;
 use super::read::{beside, plain, wrong};
 use super::{ExperimentFile, FileError, tracking_numbers};
-use crate::head_names::{Replay, is_recording, predictor, replayed, tracker_by};
+use crate::head_names::{Replay, is_recording, is_walk, predictor, replayed, tracker_by, walk};
 use pxpl5_machine::Parameter;
 use pxpl5_run::{Aim, Head, Pipeline, Raster};
 use std::sync::Arc;
@@ -53,7 +54,7 @@ impl HeadChoice {
         refuse_replay_of_others(file, &motion_name)?;
         let tracker_name = file.text("head.tracker")?.unwrap_or(TRACKER).to_owned();
         let predict = file.text("head.predict")?.unwrap_or(PREDICT).to_owned();
-        let moving = replayed(&motion_name, &replay).map_err(|error| refused(file, "head.motion", &error))?;
+        let moving = moving(file, &motion_name, &replay)?;
         let tables = tracking_numbers::read(file, &tracker_name)?;
         let by_name = tracker_by(&tables, &tracker_name);
         let (of_tracker, own_table) = by_name.map_err(|error| refused(file, "head.tracker", &error))?;
@@ -114,6 +115,19 @@ impl HeadChoice {
 
 /// What keys of columns begin with.
 pub(super) const COLUMNS: &str = "head.columns.";
+
+/// The motion of a name; a walk reads the path of the scene.
+fn moving(
+    file: &ExperimentFile,
+    name: &str,
+    replay: &Replay,
+) -> Result<Arc<dyn tracking::motion::Motion + Send + Sync>, FileError> {
+    if !is_walk(name) {
+        return replayed(name, replay).map_err(|error| refused(file, "head.motion", &error));
+    }
+    let path = SceneChoice::read(file)?.path()?;
+    Ok(Arc::new(walk(name, &path).map_err(|error| refused(file, "head.motion", &error))?))
+}
 
 /// How a recording is to be read.
 fn replay(file: &ExperimentFile) -> Result<Replay, FileError> {

@@ -34,8 +34,8 @@ const COMMON: &[(&str, &str)] = &[
     ("motion.deg_per_s", "rate of turn: pan, orbit"),
     (
         "head.motion",
-        "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED or a recording (.csv, .txt, .tum), relative to the \
-         experiment file, seen through a tracker",
+        "still, pan:DEG_PER_S, slide:M_PER_S, sine:DEG:HZ, pendulum, synthetic:SEED, walk:M_PER_S or walk:M_PER_S:SEED along the scene's path, \
+         or a recording (.csv, .txt, .tum), relative to the experiment file, seen through a tracker",
     ),
     ("head.end", "what comes after a recording: error (a longer run is refused), hold or loop"),
     ("head.axes", "axes of a recording: opengl, optical, euroc or robot; default what is usual for its kind of file"),

@@ -39,7 +39,7 @@ pub struct SceneChoice {
 const MODEL_FILES: [&str; 4] = ["ply", "obj", "pdb", "ent"];
 
 impl SceneChoice {
-    fn read(file: &ExperimentFile) -> Result<Self, FileError> {
+    pub(super) fn read(file: &ExperimentFile) -> Result<Self, FileError> {
         let how = "a built-in scene (`pxpl5 scenes` lists them) or a model file (.ply, .obj, .pdb)";
         let name = file.text("scene")?.ok_or(FileError::Missing { key: "scene", how })?;
         let folder = file.get("scene").map(|setting| setting.folder.clone()).unwrap_or_default();
@@ -60,6 +60,11 @@ impl SceneChoice {
     /// [`FileError`] for an unknown scene, an unusable file, or more primitives to keep than there are.
     pub fn load(&self) -> Result<Arc<Scene>, FileError> {
         self.prepared(Arc::new(self.load_whole()?))
+    }
+
+    /// Corners of the scene's closed path; model files have none.
+    pub(super) fn path(&self) -> Result<Vec<glam::Vec3>, FileError> {
+        if is_file(&self.name) { Ok(Vec::new()) } else { Ok(pxpl5_scene::builtin(&self.name)?.path().to_vec()) }
     }
 
     pub(crate) fn load_whole(&self) -> Result<Scene, FileError> {

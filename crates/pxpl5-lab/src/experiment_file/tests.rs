@@ -138,6 +138,35 @@ fn a_motion_is_round_the_scene() {
 }
 
 #[test]
+fn a_walk_goes_along_the_path_of_the_scene_and_begins_where_the_scene_does() {
+    let text = "pipeline = \"slats\"\nscene = \"gallery\"\nhead.motion = \"walk:1\"\n";
+    let walking = plan(text);
+    let head = walking.head.as_ref().expect("a head").head();
+    let scene = walking.load_scene().expect("built in");
+    let first = scene.path()[0].as_dvec3();
+    assert_eq!(head.motion().pose(0).position, first);
+    assert_eq!(scene.motion().pose(0).position, first);
+    assert!(head.motion().pose(0).angle_deg(&scene.motion().pose(0)) < 1e-3);
+    let second = scene.path()[1].as_dvec3();
+    let after = head.motion().pose(5_000_000_000_000).position;
+    assert!(((after - first).length() - 5.0).abs() < 1e-9 && (after - first).cross(second - first).length() < 1e-9);
+}
+
+#[test]
+fn a_walk_through_a_scene_without_a_path_is_refused_and_so_is_a_speed_that_is_none() {
+    let refused = |scene: &str, motion: &str| {
+        let text = format!("pipeline = \"slats\"\nscene = \"{scene}\"\nhead.motion = \"{motion}\"\n");
+        let error = ExperimentFile::parse(&text, "e.toml").and_then(|file| file.resolve()).expect_err("refused");
+        error.to_string()
+    };
+    assert!(refused("mig", "walk:1").contains("this scene has none; expected a scene with a path, such as gallery"));
+    for motion in ["walk:", "walk:fast", "walk:101", "walk:1:x"] {
+        let error = refused("gallery", motion);
+        assert!(error.contains("-100 to 100 metres per second") && error.contains(motion), "{error}");
+    }
+}
+
+#[test]
 fn a_scene_file_is_relative_to_the_experiment_file() {
     let folder = std::env::temp_dir().join(format!("pxpl5-relative-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("writable");

@@ -35,6 +35,7 @@ pub(super) fn scene() -> Scene {
         structures: Vec::new(),
         lighting: Lighting { background: [92, 140, 200], ..Lighting::over_the_shoulder() },
         motion: fly_through(),
+        path: Vec::new(),
     };
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }

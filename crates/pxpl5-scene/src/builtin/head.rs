@@ -35,6 +35,7 @@ pub(super) fn scene() -> Scene {
         structures: Vec::new(),
         lighting: Lighting::over_the_shoulder(),
         motion: HeadMotion::looking_at(glam::Vec3::ZERO, FIT_RADIUS_M),
+        path: Vec::new(),
     };
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }

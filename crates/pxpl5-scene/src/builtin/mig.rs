@@ -66,6 +66,7 @@ fn finish(mut solid: Solid) -> Scene {
         structures: solid.structures,
         lighting: Lighting { background: [92, 140, 200], ..Lighting::over_the_shoulder() },
         motion: fly_through(),
+        path: Vec::new(),
     };
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }

@@ -2,6 +2,7 @@
 
 mod aircraft;
 mod full_screen;
+mod gallery;
 mod head;
 mod head_shape;
 mod mig;
@@ -16,7 +17,7 @@ use crate::config::{LEAST_SPHERE_TRIANGLES, MAX_TRIANGLES};
 use crate::error::SceneError;
 use crate::scene::Scene;
 
-const NAMES: [(&str, &str); 8] = [
+const NAMES: [(&str, &str); 10] = [
     (
         "aircraft",
         "A swept-wing jet of 100 triangles, few enough for Slats; whole and closed, on the fly-through of mig.",
@@ -31,6 +32,11 @@ const NAMES: [(&str, &str); 8] = [
         "room",
         "A room of 4 triangles, whose walls are 2 m from the viewer and meet in corners 6 m away: world content wherever the head turns.",
     ),
+    (
+        "gallery",
+        "A hall of 40 x 40 x 4 m with ten partitions, all of large quadrangles, and a closed path through it: 112 triangles to walk among.",
+    ),
+    ("gallery:full", "The same hall with 30 frames on its partitions and ten benches."),
     (
         FULL_SCREEN,
         "N triangles, each covering the whole screen of both eyes wherever the head turns; 12 make the trivial scene of TR94.",
@@ -64,6 +70,8 @@ pub fn builtin(name: &str) -> Result<Scene, SceneError> {
         "molecules" => Ok(molecules::scene()),
         "head" => Ok(head::scene()),
         "room" => Ok(room::scene()),
+        "gallery" => Ok(gallery::scene(false)),
+        "gallery:full" => Ok(gallery::scene(true)),
         _ => counted(name),
     }
 }

@@ -164,6 +164,7 @@ fn fitted(mut solid: Solid, mut spheres: Vec<Sphere>) -> Scene {
         lighting: Lighting::over_the_shoulder(),
         // Half as high as wide: seen from nearer than a ball it fills the width of the view.
         motion: HeadMotion::looking_at(glam::Vec3::ZERO, 0.8 * FIT_RADIUS_M),
+        path: Vec::new(),
     };
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }

@@ -32,6 +32,7 @@ pub(super) fn scene(
         structures: vec![structure],
         lighting: Lighting::over_the_shoulder(),
         motion: HeadMotion::new(path, Sway::none()).expect("pxpl5-scene: constants are in range"),
+        path: Vec::new(),
     };
     Scene::new(parts).expect("pxpl5-scene: generators check what they make")
 }

@@ -173,6 +173,7 @@ fn seen_by(motion: HeadMotion, name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> 
         structures: Vec::new(),
         lighting: Lighting::over_the_shoulder(),
         motion,
+        path: Vec::new(),
     };
     Scene::new(parts).expect("pxpl5-scene: readers check what they make")
 }

@@ -9,6 +9,7 @@ mod slide;
 mod spline;
 mod still;
 mod synthetic;
+mod walk;
 
 pub use pan::Pan;
 pub use pendulum::Pendulum;
@@ -18,6 +19,7 @@ pub use sinusoid::Sinusoid;
 pub use slide::Slide;
 pub use still::Still;
 pub use synthetic::{Band, Synthetic, SyntheticConfig};
+pub use walk::Walk;
 
 use glam::DVec3;
 use std::fmt::Debug;

@@ -1,0 +1,213 @@
+//! Drawing into six faces.
+
+use crate::depth::DepthRange;
+use crate::edges::{Columns, Edges, Linear};
+use address_recalculation::{CubeFace, DEPTH_FARTHEST, FaceGeometry, FaceSet, TexelAddress};
+use glam::DVec3;
+
+/// A corner of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corner {
+    /// Its place in the world, m.
+    pub place: DVec3,
+    /// Its colour, shaded: 0x00RRGGBB.
+    pub colour: u32,
+}
+
+/// What was drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Drawing {
+    /// Triangles that were handed in.
+    pub triangles: u64,
+    /// Faces that triangles may reach, all triangles together: a renderer transforms a triangle once for each.
+    pub on_faces: u64,
+    /// Texels that triangles took, hidden or not.
+    pub texels: u64,
+}
+
+impl Drawing {
+    /// Adds another drawing.
+    pub const fn add(&mut self, other: Self) {
+        self.triangles += other.triangles;
+        self.on_faces += other.on_faces;
+        self.texels += other.texels;
+    }
+}
+
+/// The size of faces and the depths that they show.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CubeView {
+    /// Texels and guard.
+    pub geometry: FaceGeometry,
+    /// Near and far.
+    pub depth: DepthRange,
+}
+
+/// A face with its axes, and what all triangles on it share.
+struct FaceView {
+    face: CubeFace,
+    axes: [DVec3; 3],
+    columns: Columns,
+    texels: i64,
+    tangent: f64,
+    near_m: f64,
+    depth: [f64; 2],
+}
+
+/// Colours over a face.
+enum Shade {
+    /// The same everywhere.
+    Flat(u32),
+    /// Red, green and blue, each divided by w.
+    Smooth([Linear; 3]),
+}
+
+impl CubeView {
+    /// Draws triangles as an eye sees them; of two on a texel the nearer one stays, the first on ties.
+    ///
+    /// # Panics
+    /// For faces of another size.
+    pub fn draw(&self, eye: DVec3, triangles: impl IntoIterator<Item = [Corner; 3]>, faces: &mut FaceSet) -> Drawing {
+        assert_eq!(faces.texels(), self.geometry.texels, "faces of another size");
+        let views = CubeFace::ALL.map(|face| self.face(face));
+        let mut drawing = Drawing::default();
+        for corners in triangles {
+            drawing.triangles += 1;
+            let seen = corners.map(|corner| corner.place - eye);
+            let colours = corners.map(|corner| corner.colour);
+            for view in &views {
+                if let Some(places) = view.in_sight(seen) {
+                    drawing.on_faces += 1;
+                    drawing.texels += view.triangle(places, colours, faces);
+                }
+            }
+        }
+        drawing
+    }
+
+    fn face(&self, face: CubeFace) -> FaceView {
+        let axis = |axis: [i64; 3]| DVec3::from_array(axis.map(|component| component as f64));
+        let inner = f64::from(self.geometry.inner());
+        let columns = Columns { first: (1.0 - 2.0 * f64::from(self.geometry.guard)) / inner - 1.0, step: 2.0 / inner };
+        FaceView {
+            face,
+            axes: [axis(face.right()), -axis(face.up()), axis(face.forward())],
+            columns,
+            texels: i64::from(self.geometry.texels),
+            tangent: self.geometry.tangent(),
+            near_m: self.depth.near_m(),
+            depth: self.depth.linear(),
+        }
+    }
+}
+
+impl FaceView {
+    /// Corners in the face's axes, unless all lie beyond one side of what the face shows.
+    fn in_sight(&self, seen: [DVec3; 3]) -> Option<[DVec3; 3]> {
+        let places = seen.map(|v| DVec3::from_array(self.axes.map(|axis| v.dot(axis))));
+        let all = |is_out: &dyn Fn(&DVec3) -> bool| places.iter().all(is_out);
+        let is_out = all(&|p| p.z < self.near_m)
+            || all(&|p| p.x > self.tangent * p.z)
+            || all(&|p| -p.x > self.tangent * p.z)
+            || all(&|p| p.y > self.tangent * p.z)
+            || all(&|p| -p.y > self.tangent * p.z);
+        (!is_out && places.iter().all(|p| p.is_finite())).then_some(places)
+    }
+
+    /// The rows that a triangle may reach: those of its part before the near plane, and one more on each side.
+    fn rows(&self, places: [DVec3; 3]) -> [i64; 2] {
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        for (i, place) in places.iter().enumerate() {
+            let next = places[(i + 1) % 3];
+            if place.z >= self.near_m {
+                include(&mut range, place.y / place.z);
+            }
+            if (place.z >= self.near_m) != (next.z >= self.near_m) {
+                let share = (self.near_m - place.z) / (next.z - place.z);
+                include(&mut range, (place.y + (next.y - place.y) * share) / self.near_m);
+            }
+        }
+        let row = |y: f64| (y - self.columns.first) / self.columns.step;
+        let last = self.texels as f64;
+        [(row(range[0]) - 1.0).clamp(0.0, last).floor() as i64, (row(range[1]) + 2.0).clamp(0.0, last).ceil() as i64]
+    }
+
+    /// Draws a triangle; how many texels it took.
+    fn triangle(&self, places: [DVec3; 3], colours: [u32; 3], faces: &mut FaceSet) -> u64 {
+        let Some(edges) = Edges::new(places) else { return 0 };
+        let reciprocal = edges.reciprocal();
+        let shade = shade(&edges, colours);
+        let [first, end] = self.rows(places);
+        let mut texels = 0;
+        for row in first..end {
+            let y = self.columns.middle(row);
+            let mut range = [0, self.texels];
+            for edge in edges.edges {
+                edge.narrow(edge.row(y), self.columns, &mut range);
+                if range[0] >= range[1] {
+                    break;
+                }
+            }
+            if range[0] < range[1] {
+                texels += (range[1] - range[0]) as u64;
+                self.row(row, range, reciprocal, &shade, faces);
+            }
+        }
+        texels
+    }
+
+    /// A run of texels, without those nearer than near and farther than far.
+    fn row(&self, row: i64, range: [i64; 2], reciprocal: Linear, shade: &Shade, faces: &mut FaceSet) {
+        let y = self.columns.middle(row);
+        let first = TexelAddress { face: self.face, column: range[0] as u32, row: row as u32 };
+        let depth =
+            Linear { x: reciprocal.x * self.depth[1], y: 0.0, c: self.depth[0] + reciprocal.row(y) * self.depth[1] };
+        let columns = range[0] as i32..range[1] as i32;
+        match shade {
+            Shade::Flat(colour) => {
+                let texels = columns.map(|column| (*colour, word(depth, self.columns.middle(column.into()))));
+                faces.keep_nearer(first, texels);
+            }
+            Shade::Smooth(parts) => {
+                let rows = parts.map(|part| part.row(y));
+                let along = reciprocal.row(y);
+                let texels = columns.map(|column| {
+                    let x = self.columns.middle(column.into());
+                    let distance = 1.0 / (reciprocal.x * x + along);
+                    let [red, green, blue] = [0, 1, 2].map(|i| byte((parts[i].x * x + rows[i]) * distance));
+                    (red << 16 | green << 8 | blue, word(depth, x))
+                });
+                faces.keep_nearer(first, texels);
+            }
+        }
+    }
+}
+
+fn include(range: &mut [f64; 2], value: f64) {
+    range[0] = range[0].min(value);
+    range[1] = range[1].max(value);
+}
+
+/// The depth at a place of a row in 24 bits; the farthest, which draws nothing, beyond near and far.
+#[inline(always)]
+fn word(depth: Linear, x: f64) -> u32 {
+    let depth = depth.x * x + depth.c;
+    if (0.0..1.0).contains(&depth) { (depth * f64::from(DEPTH_FARTHEST)) as u32 } else { DEPTH_FARTHEST }
+}
+
+/// A part of a colour, rounded to the nearest.
+#[inline(always)]
+fn byte(part: f64) -> u32 {
+    (part.clamp(0.0, 255.0) + 0.5) as u32
+}
+
+fn shade(edges: &Edges, colours: [u32; 3]) -> Shade {
+    if colours[0] == colours[1] && colours[0] == colours[2] {
+        return Shade::Flat(colours[0] & 0x00FF_FFFF);
+    }
+    let part = |shift: u32| {
+        let parts = colours.map(|colour| f64::from(colour >> shift & 0xFF) / edges.determinant);
+        Linear::sum(edges.edges, parts)
+    };
+    Shade::Smooth([16, 8, 0].map(part))
+}

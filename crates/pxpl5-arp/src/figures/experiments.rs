@@ -1,0 +1,188 @@
+//! Experiments E2 to E9 of an ideal renderer, run once for all rows.
+
+use super::fit::fitted_cell_m;
+use super::lens::straight_edge;
+use crate::error::ExperimentError;
+use crate::report::Report;
+use crate::settings::{Settings, SourceKind};
+use crate::walk::{WalkTally, at_frames, walk};
+use crate::world::World;
+use address_recalculation::Lens;
+use glam::{DMat3, DQuat, DVec3};
+use priority_rendering::{Objects, PriorityTiming, SizeRule, Threshold};
+use pxpl5_scene::{Scene, builtin};
+use tracking::motion::Walk;
+
+/// Frames of each walk: two minutes, four fifths of a round. The specification asks for 1,800 at least.
+pub const EXPERIMENT_FRAMES: u64 = 7_200;
+
+/// A walk of an experiment and what it gave.
+#[derive(Clone, Debug)]
+pub struct Walked {
+    /// What it is called.
+    pub name: &'static str,
+    /// What it was made of.
+    pub settings: Settings,
+    /// What was counted.
+    pub tally: WalkTally,
+    /// The same as a report.
+    pub report: Report,
+}
+
+/// A side of a cell that was fitted to one rate of table 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// Rings of cells around the home cell in memory 0.
+    pub inner_rings: u64,
+    /// Whether an update of a memory makes all faster ones due.
+    pub has_cascade: bool,
+    /// The side, m.
+    pub cell_m: f64,
+    /// Updates a second of each memory.
+    pub rates_hz: Vec<f64>,
+}
+
+/// A renderer that is too slow or nearly so.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slowed {
+    /// Triangles that it draws a second.
+    pub triangles_per_s: f64,
+    /// Pictures a second of each memory.
+    pub rates_hz: Vec<f64>,
+    /// Retraces at which an update was not whole, of each memory.
+    pub missed: Vec<u64>,
+}
+
+/// Results of everything that is simulated.
+#[derive(Clone, Debug)]
+pub struct Experiments {
+    /// Fits of the side of a cell, the second one as published: one inner ring, no cascade.
+    pub fits: Vec<Fit>,
+    /// Segments of the gallery with cells of 5 m, and with those that were fitted.
+    pub segments: [usize; 2],
+    /// Cut and torn, cut and warped, uncut, warped without cascade; cells as fitted without cascade.
+    pub walks: Vec<Walked>,
+    /// A renderer that is slowed down.
+    pub slowed: Vec<Slowed>,
+    /// Reduction of point objects: 4 memories at 1 m/s, 5 at 0.37 m/s.
+    pub reductions: [f64; 2],
+    /// Which component of validity decides, by size over distance.
+    pub sizes: Vec<SizeRow>,
+    /// How an edge bends on the screen and through the lens, pixels.
+    pub lens_px: [f64; 2],
+}
+
+/// The gallery and its path.
+pub(crate) fn gallery() -> Result<(Scene, Walk), ExperimentError> {
+    let scene = builtin("gallery").map_err(|error| ExperimentError::Scene {
+        scene: "gallery".to_owned(),
+        expected: "a built-in scene",
+        found: error.to_string(),
+    })?;
+    let corners: Vec<DVec3> = scene.path().iter().map(|corner| corner.as_dvec3()).collect();
+    let path = Walk::new(&corners, 1.0)?;
+    Ok((scene, path))
+}
+
+/// A head that looks at a point, upright.
+pub(crate) fn looking_at(eye: DVec3, point: DVec3) -> DQuat {
+    let back = (eye - point).normalize_or(DVec3::Z);
+    let right = DVec3::Y.cross(back).normalize_or(DVec3::X);
+    DQuat::from_mat3(&DMat3::from_cols(right, back.cross(right), back)).normalize()
+}
+
+impl Experiments {
+    /// Runs all of them.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError`], where a scene or number is none; those here are.
+    pub fn run() -> Result<Self, ExperimentError> {
+        let (scene, path) = gallery()?;
+        let mut fits = Vec::new();
+        for (inner_rings, has_cascade) in [(0, false), (1, false), (1, true), (2, false), (2, true)] {
+            let (cell_m, rates_hz) = fitted_cell_m(&scene, &path, inner_rings, has_cascade, EXPERIMENT_FRAMES)?;
+            fits.push(Fit { inner_rings, has_cascade, cell_m, rates_hz });
+        }
+        let side = fits[1].cell_m;
+        let world = World::new(&scene, side)?;
+        let cells = Settings::CELLS.with_cells(side);
+        let kinds = [
+            ("cut, torn", cells.clone()),
+            ("cut, warped", Settings::WARPED.with_cells(side)),
+            ("uncut", Settings { is_segmented: false, ..cells.clone() }),
+            ("cut, warped without cascade", Settings { has_cascade: false, ..Settings::WARPED.with_cells(side) }),
+        ];
+        let mut walks = Vec::new();
+        for (name, settings) in kinds {
+            let tally = walk(&world, &settings, EXPERIMENT_FRAMES, at_frames(&path, 1.0, 60.0))?;
+            let report = Report::of(&world, &settings, &tally, None);
+            walks.push(Walked { name, settings, tally, report });
+        }
+        Ok(Self {
+            segments: [World::new(&scene, 5.0)?.segments.len(), world.segments.len()],
+            slowed: slowed(&world, &cells, &path)?,
+            fits,
+            walks,
+            reductions: [point_objects_reduction(1.0, 4), point_objects_reduction(0.37, 5)],
+            sizes: size_rows(),
+            lens_px: straight_edge(Lens::Radial { k1: 0.32, k2: 0.0 })?,
+        })
+    }
+}
+
+/// The torn walk with renderers of less and less triangles a second.
+fn slowed(world: &World, settings: &Settings, path: &Walk) -> Result<Vec<Slowed>, ExperimentError> {
+    let mut all = Vec::new();
+    for triangles_per_s in [100_000.0, 20_000.0, 10_000.0, 5_000.0, 2_500.0] {
+        let settings = Settings { source: SourceKind::Timed { triangles_per_s }, ..settings.clone() };
+        let tally = walk(world, &settings, 1_800, at_frames(path, 1.0, 60.0))?;
+        let missed = tally.memories.iter().map(|memory| memory.missed).collect();
+        all.push(Slowed { triangles_per_s, rates_hz: tally.rates_hz(60.0), missed });
+    }
+    Ok(all)
+}
+
+/// Points on a disc of 100 m around a walker, evenly by area.
+const POINTS: usize = 20_000;
+
+/// 60 times the points over the draws of a second, at a speed (m/s) and with so many memories.
+#[must_use]
+pub fn point_objects_reduction(speed: f64, memories: u64) -> f64 {
+    let numbers = PriorityTiming { memories, ..PriorityTiming::PAPERS };
+    let threshold = Threshold::of_degrees(numbers.theta_deg);
+    let distances = (0..POINTS).map(|point| 100.0 * libm::sqrt((point as f64 + 0.5) / POINTS as f64));
+    let periods: Vec<f64> = distances.map(|distance_m| threshold.way(distance_m) / speed).collect();
+    let mut objects = Objects::new(&numbers, POINTS);
+    let frames = 64;
+    (0..frames).for_each(|frame| {
+        objects.frame(frame, &periods);
+    });
+    frames as f64 * POINTS as f64 / objects.counts()[1] as f64
+}
+
+/// Validity of an object of some size at 10 m before somebody who walks towards it at 1 m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SizeRow {
+    /// Diameter over distance of the middle.
+    pub size_over_distance: f64,
+    /// Translation, by the middle's distance, s.
+    pub translation_s: f64,
+    /// Size, by the disc and by the sphere, s.
+    pub size_s: [f64; 2],
+}
+
+/// Rows from 0.1 to 20.
+#[must_use]
+pub fn size_rows() -> Vec<SizeRow> {
+    let threshold = Threshold::of_degrees(PriorityTiming::PAPERS.theta_deg);
+    let sizes = [0.1, 0.2, 0.5, 1.0, 1.4, 1.5, 1.9, 2.0, 5.0, 10.0, 20.0];
+    sizes.map(|size| size_row(&threshold, size)).to_vec()
+}
+
+fn size_row(threshold: &Threshold, size: f64) -> SizeRow {
+    let radius = size * 10.0 / 2.0;
+    let rules = [SizeRule::Disc, SizeRule::Sphere];
+    let size_s = rules.map(|rule| Threshold { size: rule, ..*threshold }.way_of_size(10.0, radius));
+    SizeRow { size_over_distance: size, translation_s: threshold.way(10.0), size_s }
+}

@@ -1,0 +1,97 @@
+//! What the eye sees: faces of what memories show, looked up through the display.
+
+use crate::error::ExperimentError;
+use crate::simulation::Simulation;
+use address_recalculation::{ArpConfig, FaceSet, LensTable, LookStats, Lookup, Orientation};
+use cube_faces::Drawing;
+use glam::DQuat;
+use image::{Rgb, RgbImage};
+
+/// Faces of all memories, drawn because somebody looks.
+#[derive(Clone, Debug)]
+pub struct Faces {
+    /// Of each memory, empty before its first picture.
+    pub memories: Vec<FaceSet>,
+    /// What was drawn.
+    pub drawing: Drawing,
+    config: ArpConfig,
+    background: u32,
+}
+
+impl Faces {
+    /// Draws what memories show.
+    ///
+    /// # Errors
+    ///
+    /// As [`crate::Settings::view`].
+    pub fn of(simulation: &Simulation<'_>) -> Result<Self, ExperimentError> {
+        let settings = simulation.settings();
+        let view = settings.view()?;
+        let mut drawing = Drawing::default();
+        let mut memories = Vec::new();
+        for content in simulation.shown() {
+            let mut faces = FaceSet::new(view.geometry.texels, settings.display.format());
+            if let Some(content) = content {
+                drawing.add(content.draw(simulation.world(), &view, &mut faces));
+            }
+            memories.push(faces);
+        }
+        let background = simulation.world().background;
+        Ok(Self { memories, drawing, config: ArpConfig { background, ..settings.display.clone() }, background })
+    }
+
+    /// Colour of what nothing is drawn on.
+    #[must_use]
+    pub const fn background(&self) -> u32 {
+        self.background
+    }
+
+    /// The display with another lens.
+    #[must_use]
+    pub fn through(mut self, lens: address_recalculation::Lens) -> Self {
+        self.config.lens = lens;
+        self
+    }
+
+    /// The picture for an orientation, latched once for all of it.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError::Display`] for a lens or an orientation that there cannot be.
+    pub fn seen(&self, orientation: DQuat) -> Result<(RgbImage, LookStats), ExperimentError> {
+        let table = self.config.table()?;
+        let words = Orientation::from_quaternion(orientation.to_array())?.words(self.config.timing.matrix_bits);
+        let mut pixels = vec![0; (table.width() * table.height()) as usize];
+        let stats = self.lookup(&table).run(0, &words, &mut pixels);
+        Ok((picture(table.width(), &pixels, |colour| *colour), stats))
+    }
+
+    /// Which memory won each pixel, row by row; `None` where all are empty.
+    ///
+    /// # Errors
+    ///
+    /// As [`Faces::seen`].
+    pub fn winners(&self, orientation: DQuat) -> Result<(u32, Vec<Option<u8>>), ExperimentError> {
+        let table = self.config.table()?;
+        let words = Orientation::from_quaternion(orientation.to_array())?.words(self.config.timing.matrix_bits);
+        let mut winners = vec![None; (table.width() * table.height()) as usize];
+        self.lookup(&table).winners(0, &words, &mut winners);
+        Ok((table.width(), winners))
+    }
+
+    fn lookup<'a>(&'a self, table: &'a LensTable) -> Lookup<'a> {
+        Lookup::new(&self.config, table, self.memories.iter().collect(), None)
+    }
+}
+
+/// A picture of rows of this width.
+pub(crate) fn picture<T>(width: u32, pixels: &[T], colour: impl Fn(&T) -> u32) -> RgbImage {
+    let height = pixels.len() as u32 / width;
+    RgbImage::from_fn(width, height, |x, y| rgb(colour(&pixels[(y * width + x) as usize])))
+}
+
+/// A colour 0x00RRGGBB.
+pub(crate) fn rgb(colour: u32) -> Rgb<u8> {
+    let [_, red, green, blue] = colour.to_be_bytes();
+    Rgb([red, green, blue])
+}

@@ -1,0 +1,31 @@
+//! The six faces unfolded.
+
+use crate::look::rgb;
+use address_recalculation::{CubeFace, FaceSet, TexelAddress};
+use image::RgbImage;
+
+/// Where each face lies, in faces from the left and from the top: neighbours join.
+const PLACES: [(CubeFace, u32, u32); 6] = [
+    (CubeFace::PosY, 1, 0),
+    (CubeFace::NegX, 0, 1),
+    (CubeFace::NegZ, 1, 1),
+    (CubeFace::PosX, 2, 1),
+    (CubeFace::PosZ, 3, 1),
+    (CubeFace::NegY, 1, 2),
+];
+
+/// A cross of four by three faces, empty texels in a colour of their own.
+#[must_use]
+pub fn cross(faces: &FaceSet, empty: u32) -> RgbImage {
+    let size = faces.texels();
+    let mut picture = RgbImage::from_pixel(4 * size, 3 * size, rgb(0));
+    for (face, across, down) in PLACES {
+        for row in 0..size {
+            for column in 0..size {
+                let colour = faces.texel(TexelAddress { face, column, row }).map_or(empty, |texel| texel.0);
+                picture.put_pixel(across * size + column, down * size + row, rgb(colour));
+            }
+        }
+    }
+    picture
+}

@@ -1,0 +1,101 @@
+//! What the eye sees, and what is wrong with it.
+
+use super::colours::MEMORY_COLOURS;
+use crate::content::angle;
+use crate::error::ExperimentError;
+use crate::look::{Faces, picture, rgb};
+use crate::simulation::Simulation;
+use address_recalculation::{Lens, Picture};
+use cube_faces::CubeView;
+use glam::{DQuat, DVec3};
+use image::{Rgb, RgbImage};
+
+/// A look at faces.
+#[derive(Clone, Copy, Debug)]
+pub struct Views<'a> {
+    /// Of all memories.
+    pub faces: &'a Faces,
+    /// Of the head.
+    pub orientation: DQuat,
+}
+
+impl Views<'_> {
+    /// Through a lens.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError::Display`] for a lens that there cannot be.
+    pub fn seen(&self, lens: Lens) -> Result<RgbImage, ExperimentError> {
+        Ok(self.faces.clone().through(lens).seen(self.orientation)?.0)
+    }
+
+    /// The eye's picture tinted in the colour of the memory that won each pixel.
+    ///
+    /// # Errors
+    ///
+    /// As [`Views::seen`].
+    pub fn memories(&self) -> Result<RgbImage, ExperimentError> {
+        let mut seen = self.seen(Lens::Flat)?;
+        let (width, winners) = self.faces.clone().through(Lens::Flat).winners(self.orientation)?;
+        let tints =
+            picture(width, &winners, |winner| winner.map_or(0, |memory| MEMORY_COLOURS[usize::from(memory % 8)]));
+        for (pixel, tint) in seen.pixels_mut().zip(tints.pixels()) {
+            let grey = pixel.0.iter().map(|part| u32::from(*part)).sum::<u32>() / 3;
+            pixel.0 = tint.0.map(|part| (u32::from(part) * (128 + grey) / 320).min(255) as u8);
+        }
+        Ok(seen)
+    }
+
+    /// By how many pixels of the middle each pixel is off because its memory was drawn from another place: black for none, white for
+    /// two and more; the scale stands below.
+    ///
+    /// # Errors
+    ///
+    /// As [`Views::seen`].
+    pub fn errors(&self, simulation: &Simulation<'_>, eye: DVec3) -> Result<RgbImage, ExperimentError> {
+        let view = simulation.settings().view()?;
+        let screen = simulation.settings().display.picture();
+        let bar = 24;
+        Ok(RgbImage::from_fn(screen.width, screen.height + bar, |x, y| match y.checked_sub(screen.height) {
+            Some(_) => heat(2.0 * f64::from(x) / f64::from(screen.width), x % (screen.width / 8) == 0),
+            None => {
+                let ray = self.orientation * DVec3::from_array(Lens::Flat.view(&screen, x, y));
+                self.off(simulation, &view, ray, eye).map_or(rgb(0x0000_0040), |off| heat(off * focal(&screen), false))
+            }
+        }))
+    }
+
+    /// Angle between where a ray's place is seen and where it is seen from the eye, radians; `None` where there is nothing.
+    fn off(&self, simulation: &Simulation<'_>, view: &CubeView, ray: DVec3, eye: DVec3) -> Option<f64> {
+        let texel = view.geometry.texel(ray.to_array())?;
+        let texels = self.faces.memories.iter().zip(simulation.shown());
+        let seen = texels.filter_map(|(faces, content)| Some((faces.texel(texel)?.1, content.as_ref()?.eye)));
+        let (depth, from) = seen.min_by_key(|(depth, _)| *depth)?;
+        let axis = DVec3::from_array(texel.face.forward().map(|component| component as f64));
+        let place = from + ray * (view.depth.distance_m(depth) / ray.dot(axis));
+        Some(angle(place - from, place - eye))
+    }
+}
+
+/// Pixels of a radian in the middle of a picture.
+fn focal(screen: &Picture) -> f64 {
+    f64::from(screen.width) / 2.0 / libm::tan(screen.horizontal_deg.to_radians() / 2.0)
+}
+
+/// From black over red and yellow to white at two pixels; blue marks every quarter of a pixel on the scale.
+fn heat(pixels: f64, is_mark: bool) -> Rgb<u8> {
+    if is_mark {
+        return Rgb([0, 128, 255]);
+    }
+    let share = (pixels / 2.0).clamp(0.0, 1.0) * 3.0;
+    Rgb([0.0, 1.0, 2.0].map(|from: f64| ((share - from).clamp(0.0, 1.0) * 255.0) as u8))
+}
+
+/// Half the difference of two pictures around grey.
+#[must_use]
+pub fn difference(first: &RgbImage, second: &RgbImage) -> RgbImage {
+    RgbImage::from_fn(first.width(), first.height(), |x, y| {
+        let [a, b] = [first, second].map(|picture| picture.get_pixel(x, y).0.map(i32::from));
+        Rgb([0, 1, 2].map(|part| (128 + (a[part] - b[part]) / 2).clamp(0, 255) as u8))
+    })
+}

@@ -1,0 +1,240 @@
+//! Frames of a walk: what is due, what is drawn, what is shown.
+
+use crate::content::{Content, warp};
+use crate::error::ExperimentError;
+use crate::settings::{PolicyKind, Settings, SourceKind};
+use crate::source::{Job, Queue};
+use crate::world::World;
+use glam::DVec3;
+use priority_rendering::{Cells, Dealing, Falloff, Objects, SeenObject, Threshold, Update};
+
+/// What is drawn and dealt as one: an object, or a segment of one.
+#[derive(Clone, Debug)]
+struct Unit {
+    segments: std::ops::Range<usize>,
+    centre: DVec3,
+    radius: f64,
+}
+
+impl Unit {
+    /// As an eye sees it that moves at a speed, m/s.
+    fn seen(&self, eye: DVec3, speed: f64) -> SeenObject {
+        let distance_m = self.centre.distance(eye);
+        SeenObject { distance_m, radius_m: self.radius, speed, turn: 0.0, animation_s: f64::INFINITY }
+    }
+
+    fn of(world: &World, segments: std::ops::Range<usize>) -> Self {
+        let (centre, radius) = world.bounding_sphere(segments.clone());
+        Self { segments, centre, radius }
+    }
+}
+
+/// A policy and its state.
+#[derive(Clone, Debug)]
+enum Policy {
+    Full,
+    Objects(Objects),
+    Cells(Cells),
+}
+
+/// What happened in a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameOutcome {
+    /// The place of the eye.
+    pub eye: DVec3,
+    /// The memories that became due.
+    pub due: Vec<bool>,
+    /// The memories whose new picture is shown from this frame (ideal) or from the next one on.
+    pub swapped: Vec<bool>,
+    /// The memories whose update was not whole at the retrace.
+    pub missed: Vec<bool>,
+    /// Whether cells were dealt anew.
+    pub deals_anew: bool,
+}
+
+/// A walk through a world, frame by frame.
+#[derive(Clone, Debug)]
+pub struct Simulation<'a> {
+    world: &'a World,
+    settings: Settings,
+    units: Vec<Unit>,
+    policy: Policy,
+    queue: Queue,
+    shown: Vec<Option<Content>>,
+    frames: u64,
+    before: Option<DVec3>,
+}
+
+impl<'a> Simulation<'a> {
+    /// Before the first frame; the world must have been cut with the settings' cells.
+    ///
+    /// # Errors
+    ///
+    /// As [`Settings::check`].
+    pub fn new(world: &'a World, settings: &Settings) -> Result<Self, ExperimentError> {
+        settings.check()?;
+        let units = units(world, settings.is_segmented);
+        let policy = match settings.policy {
+            PolicyKind::Full => Policy::Full,
+            PolicyKind::Objects => Policy::Objects(Objects::new(&settings.numbers, units.len())),
+            PolicyKind::Cells => Policy::Cells(Cells::new(&settings.numbers, world.cells(), settings.has_cascade)),
+        };
+        let memories = settings.memories();
+        Ok(Self {
+            world,
+            settings: settings.clone(),
+            units,
+            policy,
+            queue: Queue::new(memories),
+            shown: vec![None; memories],
+            frames: 0,
+            before: None,
+        })
+    }
+
+    /// The world that is walked through.
+    #[must_use]
+    pub const fn world(&self) -> &'a World {
+        self.world
+    }
+
+    /// What it was made of.
+    #[must_use]
+    pub const fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// What each memory shows; `None` before its first picture.
+    #[must_use]
+    pub fn shown(&self) -> &[Option<Content>] {
+        &self.shown
+    }
+
+    /// How cells are dealt now.
+    #[must_use]
+    pub const fn dealing(&self) -> Option<&Dealing> {
+        match &self.policy {
+            Policy::Cells(cells) => Some(cells.dealing()),
+            Policy::Full | Policy::Objects(_) => None,
+        }
+    }
+
+    /// Objects that changed their memory since the beginning, with the policy that has them.
+    #[must_use]
+    pub const fn moved_objects(&self) -> Option<u64> {
+        match &self.policy {
+            Policy::Objects(objects) => Some(objects.counts()[0]),
+            Policy::Full | Policy::Cells(_) => None,
+        }
+    }
+
+    /// A frame with the eye at a place.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError::Priority`] for a falloff that has no length.
+    pub fn frame(&mut self, eye: DVec3) -> Result<FrameOutcome, ExperimentError> {
+        let update = self.update(eye);
+        let contents = self.contents(&update, eye)?;
+        let mut outcome = FrameOutcome {
+            eye,
+            due: update.due.clone(),
+            swapped: vec![false; update.due.len()],
+            missed: vec![false; update.due.len()],
+            deals_anew: update.deals_anew,
+        };
+        match self.settings.source {
+            SourceKind::Ideal => {
+                for (memory, content) in contents {
+                    self.shown[memory] = Some(content);
+                    outcome.swapped[memory] = true;
+                }
+            }
+            SourceKind::Timed { triangles_per_s } => self.draw(contents, &update, triangles_per_s, &mut outcome),
+        }
+        self.frames += 1;
+        self.before = Some(eye);
+        Ok(outcome)
+    }
+
+    fn draw(
+        &mut self,
+        contents: Vec<(usize, Content)>,
+        update: &Update,
+        triangles_per_s: f64,
+        outcome: &mut FrameOutcome,
+    ) {
+        for (memory, content) in contents {
+            let work_s = content.triangles(self.world) as f64 / triangles_per_s;
+            let together = if update.together[memory] { update.together_bits() } else { 0 };
+            self.queue.put(memory, Job { content, work_s, left_s: work_s, together });
+        }
+        self.queue.work(self.settings.numbers.frame_s());
+        for (memory, shown) in self.queue.retrace().into_iter().enumerate() {
+            match shown {
+                Some(Ok(content)) => {
+                    self.shown[memory] = Some(content);
+                    outcome.swapped[memory] = true;
+                }
+                Some(Err(())) => outcome.missed[memory] = true,
+                None => {}
+            }
+        }
+    }
+
+    fn update(&mut self, eye: DVec3) -> Update {
+        let speed = self.before.map_or(0.0, |before| before.distance(eye) * self.settings.numbers.frame_hz);
+        match &mut self.policy {
+            Policy::Full => Update { due: vec![true], together: vec![false], deals_anew: false },
+            Policy::Cells(cells) => cells.frame(eye),
+            Policy::Objects(objects) => {
+                let threshold = Threshold::of_degrees(self.settings.numbers.theta_deg);
+                let seen = self.units.iter().map(|unit| unit.seen(eye, speed));
+                let periods: Vec<f64> = seen.map(|object| threshold.period(&object).least()).collect();
+                objects.frame(self.frames, &periods)
+            }
+        }
+    }
+
+    /// What is drawn into the memories that are due.
+    fn contents(&self, update: &Update, eye: DVec3) -> Result<Vec<(usize, Content)>, ExperimentError> {
+        let mut segments = vec![Vec::new(); update.due.len()];
+        for (number, unit) in self.units.iter().enumerate() {
+            segments[self.memory(number)].extend(unit.segments.clone());
+        }
+        let due = segments.into_iter().enumerate().filter(|(memory, _)| update.due[*memory]);
+        due.map(|(memory, segments)| Ok((memory, Content { eye, segments, warp: self.warp(memory, eye)? }))).collect()
+    }
+
+    fn warp(
+        &self,
+        memory: usize,
+        eye: DVec3,
+    ) -> Result<Option<(priority_rendering::RegionWarp, Dealing, usize)>, ExperimentError> {
+        let Policy::Cells(cells) = &self.policy else { return Ok(None) };
+        let is_warped = self.settings.falloff != Falloff::None && self.settings.is_segmented;
+        match cells.drawn_from(memory + 1) {
+            Some(slower) if is_warped => Ok(warp(&self.settings, cells.dealing(), memory, [eye, slower])?),
+            _ => Ok(None),
+        }
+    }
+
+    /// The memory that a unit is in now.
+    fn memory(&self, unit: usize) -> usize {
+        match &self.policy {
+            Policy::Full => 0,
+            Policy::Objects(objects) => objects.memory(unit).unwrap_or(0),
+            Policy::Cells(cells) => {
+                let inside = &self.world.segments[self.units[unit].segments.clone()];
+                inside.iter().map(|segment| cells.dealing().memory(segment.cell)).min().unwrap_or(0)
+            }
+        }
+    }
+}
+
+fn units(world: &World, is_segmented: bool) -> Vec<Unit> {
+    if is_segmented {
+        return (0..world.segments.len()).map(|i| Unit::of(world, i..i + 1)).collect();
+    }
+    world.objects.iter().map(|object| Unit::of(world, object.segments.clone())).collect()
+}

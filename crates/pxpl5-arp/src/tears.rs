@@ -1,0 +1,83 @@
+//! How wide cuts gape between memories that were drawn from different places.
+
+use crate::content::{Content, angle};
+use crate::world::World;
+use serde::Serialize;
+
+/// Angles at the vertices that memories share, in one frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tears {
+    /// Between both directions of each shared vertex if it were not warped, radians.
+    pub before: Vec<f64>,
+    /// The same as it is drawn, radians.
+    pub after: Vec<f64>,
+    /// By how much warping turns each vertex of a warped memory, radians.
+    pub stretch: Vec<f64>,
+    /// The widest tear as drawn, radians, and the vertex at which it gapes, an index into [`World::vertices`].
+    pub widest: Option<(f64, u32)>,
+}
+
+/// What shows each segment: the memory's number.
+fn holders(world: &World, shown: &[Option<Content>]) -> Vec<Option<usize>> {
+    let mut holders = vec![None; world.segments.len()];
+    for (memory, content) in shown.iter().enumerate() {
+        for segment in content.iter().flat_map(|content| &content.segments) {
+            holders[*segment] = Some(memory);
+        }
+    }
+    holders
+}
+
+impl Tears {
+    /// Of what memories show.
+    #[must_use]
+    pub fn of(world: &World, shown: &[Option<Content>]) -> Self {
+        let holders = holders(world, shown);
+        let mut tears = Self::default();
+        for shared in &world.shared {
+            let mut memories: Vec<usize> = shared.segments.iter().filter_map(|segment| holders[*segment]).collect();
+            memories.sort_unstable();
+            memories.dedup();
+            let vertex = world.vertices[shared.vertex as usize];
+            for pair in memories.windows(2) {
+                let [Some(fast), Some(slow)] = [&shown[pair[0]], &shown[pair[1]]] else { continue };
+                tears.before.push(angle(vertex - fast.eye, vertex - slow.eye));
+                let gap = angle(fast.direction(vertex), slow.direction(vertex));
+                tears.after.push(gap);
+                if tears.widest.is_none_or(|(widest, _)| gap > widest) {
+                    tears.widest = Some((gap, shared.vertex));
+                }
+            }
+        }
+        for content in shown.iter().flatten().filter(|content| content.warp.is_some()) {
+            let vertices =
+                content.segments.iter().flat_map(|segment| world.segments[*segment].triangles.iter().flatten());
+            let places = vertices.map(|vertex| world.vertices[*vertex as usize]);
+            tears.stretch.extend(places.map(|place| angle(place - content.eye, content.direction(place))));
+        }
+        tears
+    }
+}
+
+/// Percentiles, in texels of 90 degrees over a face's edge.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Percentiles {
+    /// Half of all are at most so wide.
+    pub p50: f64,
+    /// Nineteen of twenty.
+    pub p95: f64,
+    /// All.
+    pub max: f64,
+}
+
+impl Percentiles {
+    /// Of angles in radians, with a texel of so many degrees; `None` of none.
+    #[must_use]
+    pub fn of(angles: &[f64], texel_deg: f64) -> Option<Self> {
+        let mut sorted = angles.to_vec();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let last = sorted.len().checked_sub(1)?;
+        let at = |share: f64| sorted[(share * last as f64).round() as usize].to_degrees() / texel_deg;
+        Some(Self { p50: at(0.5), p95: at(0.95), max: at(1.0) })
+    }
+}

@@ -1,0 +1,209 @@
+//! A scene cut at the borders of cells.
+
+use crate::error::ExperimentError;
+use cube_faces::Corner;
+use glam::DVec3;
+use priority_rendering::{Cell, Segmentation};
+use pxpl5_scene::{Frame, Lighting, Scene, Structure, Vertex};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// What an object has in a cell.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    /// The object that it was cut from.
+    pub object: usize,
+    /// Where it lies.
+    pub cell: Cell,
+    /// Its triangles, indices into [`World::vertices`].
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// A structure of the scene.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// Its name.
+    pub name: String,
+    /// Its segments, indices into [`World::segments`].
+    pub segments: Range<usize>,
+}
+
+/// A vertex of a cut that cells share.
+#[derive(Clone, Debug)]
+pub struct SharedVertex {
+    /// Index into [`World::vertices`].
+    pub vertex: u32,
+    /// The segments that hold it, at least two.
+    pub segments: Vec<usize>,
+}
+
+/// What colours of triangles stand for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tint {
+    /// The scene's own, in its light.
+    #[default]
+    Shaded,
+    /// The object.
+    Objects,
+    /// The cell.
+    Cells,
+}
+
+/// A scene cut at the borders of cells.
+#[derive(Clone, Debug)]
+pub struct World {
+    /// Places, m: of each object its own, then those that its cuts made.
+    pub vertices: Vec<DVec3>,
+    /// Shaded colours of the vertices.
+    pub colours: Vec<u32>,
+    /// All segments, object by object.
+    pub segments: Vec<Segment>,
+    /// The scene's structures.
+    pub objects: Vec<Object>,
+    /// Where segments of an object meet.
+    pub shared: Vec<SharedVertex>,
+    /// Colour of what nothing is drawn on.
+    pub background: u32,
+    /// What colours are drawn with.
+    pub tint: Tint,
+}
+
+impl World {
+    /// Cuts a scene with cells of this side, m.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError`] for spheres, for what moves with the head or by itself, and for what cannot be cut.
+    pub fn new(scene: &Scene, side_m: f64) -> Result<Self, ExperimentError> {
+        refuse_what_is_not_still(scene)?;
+        let mut world = Self {
+            vertices: Vec::new(),
+            colours: Vec::new(),
+            segments: Vec::new(),
+            objects: Vec::new(),
+            shared: Vec::new(),
+            background: packed(scene.lighting().background.map(f64::from)),
+            tint: Tint::Shaded,
+        };
+        for structure in scene.structures() {
+            world.add(scene, structure, side_m)?;
+        }
+        world.shared = shared(&world.segments);
+        Ok(world)
+    }
+
+    fn add(&mut self, scene: &Scene, structure: &Structure, side_m: f64) -> Result<(), ExperimentError> {
+        let first = self.vertices.len() as u32;
+        let own = &scene.vertices()[structure.vertices.clone()];
+        let places: Vec<DVec3> = own.iter().map(|vertex| vertex.position.as_dvec3()).collect();
+        let begin = structure.vertices.start as u32;
+        let triangles: Vec<[u32; 3]> =
+            scene.triangles()[structure.triangles.clone()].iter().map(|three| three.map(|i| i - begin)).collect();
+        let cut = Segmentation::new(&places, &triangles, side_m)?;
+        let mut colours: Vec<[f64; 3]> = own.iter().map(|vertex| shaded(vertex, scene.lighting())).collect();
+        for made in &cut.cuts {
+            let [from, to] = made.between.map(|i| colours[i as usize]);
+            colours.push([0, 1, 2].map(|part| from[part] + (to[part] - from[part]) * made.share));
+        }
+        self.vertices.extend(&cut.vertices);
+        self.colours.extend(colours.into_iter().map(packed));
+        let object = self.objects.len();
+        let segments = self.segments.len();
+        self.segments.extend(cut.segments.into_iter().map(|(cell, triangles)| {
+            let triangles = triangles.into_iter().map(|three| three.map(|i| i + first)).collect();
+            Segment { object, cell, triangles }
+        }));
+        self.objects.push(Object { name: structure.name.clone(), segments: segments..self.segments.len() });
+        Ok(())
+    }
+
+    /// Cells in which there is something.
+    pub fn cells(&self) -> impl Iterator<Item = Cell> {
+        self.segments.iter().map(|segment| segment.cell)
+    }
+
+    /// Triangles of some segments, where each vertex is drawn.
+    pub fn triangles<'a>(
+        &'a self,
+        segments: &'a [usize],
+        place: impl Fn(DVec3) -> DVec3 + 'a,
+    ) -> impl Iterator<Item = [Corner; 3]> + 'a {
+        let all = segments.iter().flat_map(move |i| self.segments[*i].triangles.iter().map(move |three| (*i, three)));
+        all.map(move |(segment, three)| {
+            let tint = self.tint_of(segment);
+            three.map(|i| {
+                let colour = tint.unwrap_or(self.colours[i as usize]);
+                Corner { place: place(self.vertices[i as usize]), colour }
+            })
+        })
+    }
+
+    fn tint_of(&self, segment: usize) -> Option<u32> {
+        let Segment { object, cell, .. } = &self.segments[segment];
+        match self.tint {
+            Tint::Shaded => None,
+            Tint::Objects => Some(distinct(*object as u64)),
+            Tint::Cells => Some(distinct((cell.x + 1_000_000) as u64 * 31 + (cell.z + 1_000_000) as u64)),
+        }
+    }
+
+    /// Centre of the box around some segments, and distance from it to their farthest vertex, m.
+    #[must_use]
+    pub fn bounding_sphere(&self, segments: Range<usize>) -> (DVec3, f64) {
+        let corners = self.segments[segments].iter().flat_map(|segment| segment.triangles.iter().flatten());
+        let places: Vec<DVec3> = corners.map(|i| self.vertices[*i as usize]).collect();
+        let low = places.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let high = places.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let centre = (low + high) / 2.0;
+        (centre, places.iter().map(|place| place.distance(centre)).fold(0.0, f64::max))
+    }
+}
+
+/// A colour for a number, unlike those of its neighbours: steps of the golden ratio round a colour circle.
+fn distinct(number: u64) -> u32 {
+    let hue = (number as f64 * 0.618_033_988_749_895).fract() * 6.0;
+    packed([0.0, 2.0, 4.0].map(|shift| 70.0 + 160.0 * (((hue + shift) % 6.0 - 3.0).abs() - 1.0).clamp(0.0, 1.0)))
+}
+
+fn refuse_what_is_not_still(scene: &Scene) -> Result<(), ExperimentError> {
+    let refused = |expected: &'static str, found: String| {
+        Err(ExperimentError::Scene { scene: scene.name().to_owned(), expected, found })
+    };
+    if !scene.spheres().is_empty() {
+        return refused("triangles alone: faces have no spheres", format!("{} spheres", scene.spheres().len()));
+    }
+    for structure in scene.structures() {
+        if structure.frame == Frame::Head {
+            return refused("structures fixed to the world", format!("{}, fixed to the head", structure.name));
+        }
+        if structure.hinge.is_some() {
+            return refused("structures that do not move", format!("{}, on a hinge", structure.name));
+        }
+    }
+    Ok(())
+}
+
+/// A vertex in the light of its scene, parts from 0 to 255.
+fn shaded(vertex: &Vertex, light: &Lighting) -> [f64; 3] {
+    let square = f64::from(vertex.normal.dot(light.towards_light)).max(0.0);
+    let part = f64::from(light.ambient) + f64::from(light.diffuse) * square;
+    vertex.colour.map(|colour| f64::from(colour) * part)
+}
+
+fn packed(parts: [f64; 3]) -> u32 {
+    parts.iter().fold(0, |colour, part| colour << 8 | part.round().clamp(0.0, 255.0) as u32)
+}
+
+fn shared(segments: &[Segment]) -> Vec<SharedVertex> {
+    let mut holders: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for (number, segment) in segments.iter().enumerate() {
+        for vertex in segment.triangles.iter().flatten() {
+            let held = holders.entry(*vertex).or_default();
+            if held.last() != Some(&number) {
+                held.push(number);
+            }
+        }
+    }
+    let shared = holders.into_iter().filter(|(_, segments)| segments.len() > 1);
+    shared.map(|(vertex, segments)| SharedVertex { vertex, segments }).collect()
+}

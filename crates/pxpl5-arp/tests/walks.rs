@@ -1,0 +1,323 @@
+//! Walks: properties and hard cases of the policies with a source of faces.
+
+use address_recalculation::{CubeFace, FaceSet, TexelAddress};
+use glam::{DQuat, DVec3};
+use priority_rendering::Falloff;
+use pxpl5_arp::{
+    ExperimentError, Faces, PolicyKind, Report, Settings, Simulation, SourceKind, Tears, World, at_frames, walk,
+};
+use pxpl5_scene::{Scene, builtin};
+use std::sync::LazyLock;
+use tracking::motion::Walk;
+
+static SCENE: LazyLock<Scene> = LazyLock::new(|| builtin("gallery").expect("built in"));
+static WORLD: LazyLock<World> = LazyLock::new(|| World::new(&SCENE, 5.0).expect("it can be cut"));
+
+static PATH: LazyLock<Walk> = LazyLock::new(|| {
+    let corners: Vec<DVec3> = SCENE.path().iter().map(|corner| corner.as_dvec3()).collect();
+    Walk::new(&corners, 1.0).expect("a path")
+});
+
+fn small(settings: Settings) -> Settings {
+    let mut settings = settings;
+    settings.display.timing.face_texels = 128;
+    settings
+}
+
+fn simulated(settings: &Settings) -> Simulation<'static> {
+    Simulation::new(&WORLD, settings).expect("settings")
+}
+
+fn all_texels(faces: &FaceSet) -> impl Iterator<Item = Option<(u32, u32)>> + '_ {
+    let size = faces.texels();
+    let places = move |face| (0..size * size).map(move |k| TexelAddress { face, column: k % size, row: k / size });
+    CubeFace::ALL.into_iter().flat_map(places).map(|texel| faces.texel(texel))
+}
+
+#[test]
+fn the_gallery_has_150_to_250_segments_with_cells_of_5_m() {
+    assert!((150..=250).contains(&WORLD.segments.len()), "{}", WORLD.segments.len());
+    let full = World::new(&builtin("gallery:full").expect("built in"), 5.0).expect("it can be cut");
+    assert!(full.segments.len() > WORLD.segments.len() + 40, "{}", full.segments.len());
+}
+
+#[test]
+fn memories_drawn_from_one_place_are_the_drawing_of_one_memory_bit_for_bit() {
+    let eye = PATH.place(12.3);
+    let mut cells = simulated(&small(Settings::CELLS));
+    cells.frame(eye).expect("drawn");
+    let faces = Faces::of(&cells).expect("drawn");
+    let view = cells.settings().view().expect("a range");
+    let mut one = FaceSet::new(128, cells.settings().display.format());
+    let in_order: Vec<usize> = cells.shown().iter().flatten().flat_map(|content| content.segments.clone()).collect();
+    assert_eq!(in_order.len(), WORLD.segments.len());
+    view.draw(eye, WORLD.triangles(&in_order, |vertex| vertex), &mut one);
+    let mut composite = FaceSet::new(128, cells.settings().display.format());
+    for face in CubeFace::ALL {
+        for k in 0..128 * 128 {
+            let texel = TexelAddress { face, column: k % 128, row: k / 128 };
+            let nearest =
+                faces.memories.iter().filter_map(|memory| memory.texel(texel)).min_by_key(|(_, depth)| *depth);
+            if let Some((colour, depth)) = nearest {
+                composite.set(texel, colour, depth);
+            }
+        }
+    }
+    assert!(composite == one);
+    assert!(all_texels(&one).all(|texel| texel.is_some()), "a hall is seen everywhere");
+}
+
+#[test]
+fn with_the_eye_still_nothing_is_due_whatever_the_head_does() {
+    for settings in [Settings::CELLS, Settings::WARPED] {
+        let mut simulation = simulated(&settings);
+        let eye = PATH.place(3.0);
+        assert!(simulation.frame(eye).expect("drawn").due[0]);
+        for _ in 0..40 {
+            assert!(!simulation.frame(eye).expect("drawn").due.contains(&true), "{:?}", settings.policy);
+        }
+    }
+}
+
+#[test]
+fn with_the_eye_still_objects_around_it_alone_are_due() {
+    // From inside of a bounding sphere an image is wrong at once (3.6), also when nobody moves: floor, ceiling and walls of the
+    // gallery are such objects.
+    let mut simulation = simulated(&Settings::OBJECTS);
+    let eye = PATH.place(3.0);
+    simulation.frame(eye).expect("drawn");
+    for _ in 0..40 {
+        assert_eq!(simulation.frame(eye).expect("drawn").due, [true, false, false, false]);
+    }
+}
+
+#[test]
+fn the_picture_after_a_turn_is_a_redraw_for_that_orientation_whatever_the_renderer() {
+    // A renderer that is far too slow has drawn all memories once; then the eye stands still and the head turns.
+    let eye = PATH.place(30.0);
+    let ideal = small(Settings::CELLS);
+    let slow = Settings { source: SourceKind::Timed { triangles_per_s: 700.0 }, ..ideal.clone() };
+    let mut simulations = [simulated(&ideal), simulated(&slow)];
+    for simulation in &mut simulations {
+        for _ in 0..200 {
+            simulation.frame(eye).expect("drawn");
+        }
+    }
+    let faces = simulations.each_ref().map(|simulation| Faces::of(simulation).expect("drawn"));
+    for degrees in [0.0_f64, 12.0, 90.0, 180.0] {
+        let turned = DQuat::from_rotation_y(degrees.to_radians());
+        let [redrawn, stalled] = faces.each_ref().map(|faces| faces.seen(turned).expect("a rotation").0);
+        assert!(redrawn == stalled, "{degrees}");
+    }
+}
+
+#[test]
+fn no_vertex_of_any_memory_is_ever_off_by_more_than_theta() {
+    // Chord: a point at distance d is off by at most asin(2 sin(theta / 2)), 1.2e-6 of theta more than theta.
+    let theta = Settings::CELLS.numbers.theta_deg.to_radians();
+    let bound = (2.0 * (theta / 2.0).sin()).asin() * (1.0 + 1e-9);
+    let mut simulation = simulated(&Settings::CELLS);
+    let eye = at_frames(&PATH, 1.0, 60.0);
+    let mut worst: f64 = 0.0;
+    for frame in 0..2_000 {
+        let outcome = simulation.frame(eye(frame)).expect("drawn");
+        for content in simulation.shown().iter().skip(1).flatten() {
+            for segment in &content.segments {
+                for vertex in WORLD.segments[*segment].triangles.iter().flatten() {
+                    let place = WORLD.vertices[*vertex as usize];
+                    worst = worst.max((place - outcome.eye).angle_between(place - content.eye));
+                }
+            }
+        }
+    }
+    assert!(worst <= bound && worst > theta / 2.0, "{worst} {bound}");
+}
+
+#[test]
+fn each_segment_is_in_one_memory_in_every_frame_also_when_cells_are_dealt_anew() {
+    for settings in
+        [Settings::CELLS, Settings::WARPED, Settings { is_segmented: false, ..Settings::CELLS }, Settings::OBJECTS]
+    {
+        let mut simulation = simulated(&settings);
+        let eye = at_frames(&PATH, 3.0, 60.0);
+        for frame in 0..700 {
+            simulation.frame(eye(frame)).expect("drawn");
+            let mut held: Vec<usize> =
+                simulation.shown().iter().flatten().flat_map(|content| content.segments.clone()).collect();
+            held.sort_unstable();
+            assert!(held.iter().copied().eq(0..WORLD.segments.len()), "{:?} frame {frame}", settings.policy);
+        }
+    }
+}
+
+#[test]
+fn warped_with_cascade_no_cut_gapes_and_without_it_some_do() {
+    let eye = at_frames(&PATH, 1.0, 60.0);
+    for falloff in [Falloff::Linear, Falloff::Smoothstep, Falloff::Step] {
+        let warped = Settings { falloff, ..Settings::WARPED };
+        let tally = walk(&WORLD, &warped, 1_800, &eye).expect("walked");
+        let widest = tally.tears.after.iter().copied().fold(0.0, f64::max);
+        assert!(widest < 1e-12, "{falloff:?}: {widest}");
+    }
+    let texel = Settings::WARPED.texel_deg().to_radians();
+    let no_cascade = Settings { has_cascade: false, ..Settings::WARPED };
+    let [torn, stale] = [Settings::CELLS, no_cascade].map(|settings| {
+        let tally = walk(&WORLD, &settings, 1_800, &eye).expect("walked");
+        tally.tears.after.into_iter().fold(0.0, f64::max) / texel
+    });
+    // At once drawn, a tear is at most a texel wide (theta = 90/512 degrees).
+    assert!(torn > 0.3 && torn <= 1.0 + 1e-6, "{torn}");
+    assert!(stale > torn, "{stale}");
+}
+
+#[test]
+fn uncut_nothing_tears_and_the_fastest_memory_draws_more() {
+    let eye = at_frames(&PATH, 1.0, 60.0);
+    let uncut = walk(&WORLD, &Settings { is_segmented: false, ..Settings::CELLS }, 600, &eye).expect("walked");
+    let cut = walk(&WORLD, &Settings::CELLS, 600, &eye).expect("walked");
+    assert!(uncut.tears.after.is_empty());
+    assert!(uncut.memories[0].segment_frames > 2 * cut.memories[0].segment_frames);
+    assert!(uncut.draws_per_s(60.0) > cut.draws_per_s(60.0));
+}
+
+#[test]
+fn a_jump_of_a_kilometre_deals_once_and_leaves_no_tear() {
+    let mut simulation = simulated(&Settings::WARPED);
+    simulation.frame(PATH.place(0.0)).expect("drawn");
+    let far = DVec3::new(1_000.0, 1.7, 0.0);
+    assert!(simulation.frame(far).expect("drawn").deals_anew);
+    assert!(!simulation.frame(far).expect("drawn").deals_anew);
+    assert!(Tears::of(&WORLD, simulation.shown()).after.iter().all(|gap| *gap < 1e-12));
+}
+
+#[test]
+fn forty_millimetres_to_and_fro_across_a_border_deal_at_most_once() {
+    let eye = |frame: u64| DVec3::new(5.0 + if frame.is_multiple_of(2) { -0.02 } else { 0.02 }, 1.7, 2.0);
+    let tally = walk(&WORLD, &Settings::CELLS, 600, eye).expect("walked");
+    assert!(tally.redeals <= 1, "{}", tally.redeals);
+}
+
+#[test]
+fn odd_places_of_the_eye_are_places_like_others() {
+    let mut simulation = simulated(&small(Settings::WARPED));
+    let places = [
+        DVec3::new(5.0, 1.7, 5.0),      // a corner of cells
+        DVec3::new(-7.0, 1.5, -17.2),   // near or in a partition
+        DVec3::new(20.0, 1.7, 0.0),     // in a wall
+        DVec3::new(0.0, 0.0, 0.0),      // on the floor
+        DVec3::new(-300.0, 90.0, 77.0), // outside of the world
+        WORLD.vertices[40],             // on a vertex
+    ];
+    for place in places {
+        simulation.frame(place).expect("drawn");
+        let seen = Faces::of(&simulation).and_then(|faces| faces.seen(DQuat::IDENTITY));
+        assert!(seen.is_ok(), "{place}");
+    }
+}
+
+#[test]
+fn a_tiny_threshold_draws_everything_always_and_a_huge_one_nothing_again() {
+    let rates = |theta_deg: f64| {
+        let mut settings = Settings::CELLS;
+        settings.numbers.theta_deg = theta_deg;
+        let tally = walk(&WORLD, &settings, 600, at_frames(&PATH, 1.0, 60.0)).expect("walked");
+        tally.memories.iter().map(|memory| memory.updates).collect::<Vec<u64>>()
+    };
+    assert_eq!(rates(1e-6), [600; 4]);
+    // Three metres within a cell: memory 1 begins 6 m away at least, so it would be due after 2 x 6 sin(45 deg) = 8.5 m.
+    let mut settings = Settings::CELLS;
+    settings.numbers.theta_deg = 90.0;
+    let inside = |frame: u64| DVec3::new(1.0 + 0.005 * frame as f64, 1.7, 2.5);
+    let tally = walk(&WORLD, &settings, 600, inside).expect("walked");
+    assert_eq!(tally.memories.iter().map(|memory| memory.updates).collect::<Vec<u64>>(), [600, 1, 1, 1]);
+}
+
+#[test]
+fn one_memory_draws_all_and_eight_draw_less_than_four() {
+    let draws = |memories: u64| {
+        let settings = Settings::CELLS.with_memories(memories);
+        walk(&WORLD, &settings, 900, at_frames(&PATH, 1.0, 60.0)).expect("walked").draws_per_s(60.0)
+    };
+    assert_eq!(draws(1), 60.0 * WORLD.segments.len() as f64);
+    assert!(draws(8) < draws(4) && draws(4) < draws(2), "{} {} {}", draws(8), draws(4), draws(2));
+}
+
+#[test]
+fn a_renderer_that_is_slowed_down_misses_slow_memories_first_and_shows_nothing_half_drawn() {
+    let missed = |triangles_per_s: f64| {
+        let settings = Settings { source: SourceKind::Timed { triangles_per_s }, ..Settings::CELLS };
+        let tally = walk(&WORLD, &settings, 900, at_frames(&PATH, 1.0, 60.0)).expect("walked");
+        tally.memories.iter().map(|memory| memory.missed).collect::<Vec<u64>>()
+    };
+    assert_eq!(missed(1e6), [0; 4]);
+    let few = missed(20_000.0);
+    assert!(few[3] > few[0] && few.windows(2).all(|pair| pair[0] <= pair[1]), "{few:?}");
+    assert!(missed(3_000.0)[0] > few[0]);
+    // Before its first whole picture a memory shows nothing at all.
+    let slow = Settings { source: SourceKind::Timed { triangles_per_s: 3_000.0 }, ..Settings::CELLS };
+    let mut simulation = simulated(&slow);
+    let outcome = simulation.frame(PATH.place(0.0)).expect("drawn");
+    assert!(outcome.missed[3] && simulation.shown()[3].is_none());
+}
+
+#[test]
+fn what_faces_cannot_show_is_refused_by_name() {
+    let refused = |name: &str| World::new(&builtin(name).expect("built in"), 5.0).expect_err("refused").to_string();
+    assert!(refused("molecules").contains("triangles alone"));
+    assert!(refused("mig").contains("structures that do not move"));
+    assert!(refused("full-screen:3").contains("fixed to the head"));
+    let rate = Settings { source: SourceKind::Timed { triangles_per_s: f64::NAN }, ..Settings::CELLS };
+    assert!(matches!(Simulation::new(&WORLD, &rate), Err(ExperimentError::Rate(_))));
+    let mut cells = Settings::CELLS;
+    cells.numbers.falloff_m = 6.0;
+    let error = Simulation::new(&WORLD, &cells).expect_err("refused").to_string();
+    assert!(error.contains("priority.falloff_m") && error.contains("found 6"), "{error}");
+}
+
+#[test]
+fn the_report_has_every_key_of_the_schema_and_null_for_what_was_not_judged() {
+    let settings = Settings { policy: PolicyKind::Cells, ..Settings::WARPED };
+    let tally = walk(&WORLD, &settings, 300, at_frames(&PATH, 1.0, 60.0)).expect("walked");
+    let report = serde_json::to_value(Report::of(&WORLD, &settings, &tally, None)).expect("JSON");
+    assert_eq!(report["schema"], "pxpl5-arp/1");
+    for key in [
+        "face_texels",
+        "latch",
+        "pipeline_ns",
+        "matrix_loads",
+        "matrix_refused",
+        "footprints_split",
+        "bank_conflicts",
+        "memories",
+        "priority",
+        "tears_px",
+        "rotation_latency_ms",
+        "translation_latency_ms",
+        "sampling_error_px",
+    ] {
+        assert!(report.get(key).is_some(), "{key}");
+    }
+    for key in
+        ["updates_hz", "period_frames", "segments", "triangles", "regions_copied", "missed", "eye_age_mm", "bytes"]
+    {
+        assert!(report["memories"][3].get(key).is_some(), "{key}");
+    }
+    for key in [
+        "policy",
+        "theta_deg",
+        "cell_m",
+        "draws_per_s",
+        "saved_percent",
+        "moved_objects",
+        "redeals",
+        "faces_per_primitive",
+    ] {
+        assert!(report["priority"].get(key).is_some(), "{key}");
+    }
+    // 26 stages of 25 ns; both buffers of 6 x 512 x 512 texels of 6 bytes.
+    assert_eq!(
+        (report["pipeline_ns"].as_f64(), report["memories"][0]["bytes"].as_u64()),
+        (Some(650.0), Some(18_874_368))
+    );
+    assert!(report["memories"][0]["regions_copied"].is_null() && report["rotation_latency_ms"]["total"].is_null());
+}

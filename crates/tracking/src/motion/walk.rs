@@ -1,0 +1,160 @@
+use std::sync::Arc;
+
+use glam::{DMat3, DQuat, DVec3};
+
+use super::Motion;
+use super::synthetic::Synthetic;
+use crate::error::SettingError;
+use crate::identity::{SettingSink, write_vector};
+use crate::pose::Pose;
+use crate::time::seconds;
+
+/// How far ahead on the path the eyes rest, m. Assumed: a corner is turned to before it is reached, at up to 76 degrees a second
+/// and 1 m/s where it is square, well within what a head does.
+const AHEAD_M: f64 = 1.5;
+
+/// Least way between two corners, m: shorter ones have no direction.
+const LEAST_LEG_M: f64 = 1e-3;
+
+/// A head that walks at a steady speed along a closed path, from its first corner at time 0, and looks at the point of the path that
+/// it will reach next; or looks around as it goes.
+#[derive(Clone, Debug)]
+pub struct Walk {
+    corners: Arc<[DVec3]>,
+    /// Way from the first corner to each, and at last the whole way round, m.
+    ways: Vec<f64>,
+    m_per_s: f64,
+    glances: Option<Synthetic>,
+}
+
+impl Walk {
+    /// Along these corners and back to the first, at -100 to 100 m/s; negative speeds walk the other way round.
+    ///
+    /// # Errors
+    ///
+    /// [`SettingError`] for a speed beyond those, a coordinate beyond 1e6 m, or a way from one corner to the next of less than 1 mm,
+    /// as a path of fewer than two corners has.
+    pub fn new(corners: &[DVec3], m_per_s: f64) -> Result<Self, SettingError> {
+        SettingError::check("speed of the walk", m_per_s, -100.0, 100.0)?;
+        for coordinate in corners.iter().flat_map(DVec3::to_array) {
+            SettingError::check("coordinate of the path", coordinate, -1e6, 1e6)?;
+        }
+        SettingError::check("corners of the path", corners.len() as f64, 2.0, 1e6)?;
+        let mut ways = vec![0.0];
+        for (i, corner) in corners.iter().enumerate() {
+            let leg = corner.distance(corners[(i + 1) % corners.len()]);
+            SettingError::check("leg of the path", leg, LEAST_LEG_M, 1e7)?;
+            ways.push(ways[i] + leg);
+        }
+        Ok(Self { corners: corners.into(), ways, m_per_s, glances: None })
+    }
+
+    /// The same walk, on which the head turns away from its path as [`Synthetic::recorded_use`] of this seed turns.
+    #[must_use]
+    pub fn looking_around(mut self, seed: u64) -> Self {
+        self.glances = Some(Synthetic::recorded_use(seed));
+        self
+    }
+
+    /// The whole way round, m.
+    #[must_use]
+    pub fn length_m(&self) -> f64 {
+        self.ways[self.corners.len()]
+    }
+
+    /// The place so far from the first corner, m; rounds without end, in both directions.
+    #[must_use]
+    pub fn place(&self, way_m: f64) -> DVec3 {
+        let way = rounded(way_m, self.length_m());
+        let leg = self.ways.partition_point(|begin| *begin <= way).clamp(1, self.corners.len()) - 1;
+        let share = ((way - self.ways[leg]) / (self.ways[leg + 1] - self.ways[leg])).clamp(0.0, 1.0);
+        self.corners[leg].lerp(self.corners[(leg + 1) % self.corners.len()], share)
+    }
+}
+
+/// A way within one round.
+fn rounded(way: f64, round: f64) -> f64 {
+    let rest = libm::fmod(way, round);
+    if rest < 0.0 { rest + round } else { rest }
+}
+
+/// Upright, looking at a point; along -z from the point itself.
+fn looking_at(eye: DVec3, point: DVec3) -> DQuat {
+    let back = (eye - point).normalize_or(DVec3::Z);
+    let right = DVec3::Y.cross(back).normalize_or(DVec3::X);
+    DQuat::from_mat3(&DMat3::from_cols(right, back.cross(right), back)).normalize()
+}
+
+impl Motion for Walk {
+    fn pose(&self, t_ps: u64) -> Pose {
+        let way = self.m_per_s * seconds(t_ps);
+        let position = self.place(way);
+        let ahead = looking_at(position, self.place(way + AHEAD_M.copysign(self.m_per_s)));
+        let glance = self.glances.as_ref().map_or(DQuat::IDENTITY, |head| head.pose(t_ps).orientation);
+        Pose { position, orientation: (ahead * glance).normalize() }
+    }
+
+    fn identify(&self, settings: &mut SettingSink) {
+        let Self { corners, ways: _, m_per_s, glances } = self;
+        settings("motion", &"walk");
+        settings("motion.m_per_s", m_per_s);
+        corners.iter().for_each(|corner| write_vector(settings, "motion.corner", *corner));
+        if let Some(glances) = glances {
+            glances.identify(settings);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::time::PS_PER_S;
+
+    fn square() -> Walk {
+        let corners = [[0.0, 1.7, 0.0], [4.0, 1.7, 0.0], [4.0, 1.7, 4.0], [0.0, 1.7, 4.0]].map(DVec3::from_array);
+        Walk::new(&corners, 1.0).expect("a path")
+    }
+
+    #[test]
+    fn after_five_metres_it_is_one_metre_beyond_the_first_corner_and_after_a_round_at_the_start() {
+        let walk = square();
+        assert_eq!(walk.length_m(), 16.0);
+        assert!(walk.pose(5 * PS_PER_S).position.distance(DVec3::new(4.0, 1.7, 1.0)) < 1e-12);
+        assert!(walk.pose(16 * PS_PER_S).position.distance(DVec3::new(0.0, 1.7, 0.0)) < 1e-12);
+        assert!(walk.place(-1.0).distance(DVec3::new(0.0, 1.7, 1.0)) < 1e-12);
+    }
+
+    #[test]
+    fn it_looks_ahead_and_turns_into_a_corner_without_a_jump() {
+        let walk = square();
+        let gaze = |t_ps: u64| walk.pose(t_ps).orientation * DVec3::NEG_Z;
+        assert!(gaze(PS_PER_S).distance(DVec3::X) < 1e-12);
+        assert!(gaze(4 * PS_PER_S).distance(DVec3::Z) < 1e-12);
+        // 0.75 m before a square corner the point ahead is as far behind it: half of the turn is done.
+        let half = DVec3::new(1.0, 0.0, 1.0).normalize();
+        assert!(gaze(13 * PS_PER_S / 4).distance(half) < 1e-12);
+        // At most 2 v / AHEAD_M rad/s, where half of the turn is done: 0.0222 rad in a frame.
+        for frame in 0..960_u64 {
+            let [before, after] = [frame, frame + 1].map(|n| gaze(n * PS_PER_S / 60));
+            assert!(before.angle_between(after) < 2.0 / AHEAD_M / 60.0 * 1.01, "{frame}");
+        }
+    }
+
+    #[test]
+    fn looking_around_changes_the_gaze_and_not_the_way() {
+        let around = square().looking_around(3);
+        let poses = [around.pose(PS_PER_S), square().pose(PS_PER_S)];
+        assert_eq!(poses[0].position, poses[1].position);
+        assert!(poses[0].angle_deg(&poses[1]) > 0.1);
+    }
+
+    #[test]
+    fn what_is_no_path_is_refused() {
+        assert!(Walk::new(&[], 1.0).is_err());
+        assert!(Walk::new(&[DVec3::ZERO], 1.0).is_err());
+        assert!(Walk::new(&[DVec3::ZERO, DVec3::ZERO], 1.0).is_err());
+        assert!(Walk::new(&[DVec3::ZERO, DVec3::X * 1e7], 1.0).is_err());
+        assert!(Walk::new(&[DVec3::ZERO, DVec3::X * f64::NAN], 1.0).is_err());
+        assert!(Walk::new(&[DVec3::ZERO, DVec3::X], f64::NAN).is_err());
+    }
+}
