@@ -13,7 +13,7 @@
 //! ```
 //!
 //! ```
-//! use i860::{Config, Cpu, Outcome, Ram, assemble};
+//! use i860::{Config, Cpu, Ram, RunEnd, assemble};
 //!
 //! let program = assemble("sum.s", 0x1000, "
 //!         mov     10, r5
@@ -24,7 +24,7 @@
 //! let mut memory = Ram::new(0, 1 << 16);
 //! memory.load(0x1000, &program.bytes).unwrap();
 //! let mut cpu = Cpu::at(Config::cycle(), 0x1000);
-//! assert_eq!(cpu.run(&mut memory, program.symbol("end"), 1000), Outcome::Stopped);
+//! assert_eq!(cpu.run(&mut memory, program.symbol("end"), 1000), RunEnd::Stopped);
 //! assert_eq!(cpu.state.r[6], 55);
 //! println!("{}", cpu.profile());
 //! ```
