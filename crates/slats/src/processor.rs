@@ -9,7 +9,7 @@ use pphigs::{
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage, Ticket};
 use pxpl5_wire::{
-    Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyOrder, CopyWay, Eye, FieldParity, NodeId, PeriodNumber, PictureNumber,
+    Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyContent, CopyOrder, CopyWay, Eye, FieldParity, NodeId, PeriodNumber, PictureNumber,
     Word, swap_request,
 };
 use std::cell::RefCell;
@@ -305,6 +305,7 @@ impl SlatsProcessor {
             context: bound.context,
             way: CopyWay::FromPixelMemory,
             acknowledge: None,
+            content: CopyContent::Colour,
         }
     }
 }
