@@ -130,12 +130,7 @@ async fn transform(
 }
 
 /// Keeps the updates and the leave that arrive, and walks with every token.
-async fn token_program(
-    gp: Gp,
-    config: CubeControlConfig,
-    index: usize,
-    state: SharedSlaveState,
-) -> Result<(), Fault> {
+async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: SharedSlaveState) -> Result<(), Fault> {
     loop {
         let received = gp.next_message().await;
         let order = UpdateOrder::read(&received, gp.node());

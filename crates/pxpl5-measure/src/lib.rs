@@ -27,6 +27,7 @@ mod screen;
 mod shown;
 mod summary;
 mod too_heavy;
+mod turned;
 
 pub use budget::Budget;
 pub use causes::{ErrorCauses, ErrorPart};

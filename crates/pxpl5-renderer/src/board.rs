@@ -6,8 +6,8 @@ use crate::job::{ArrayPool, NoPixels, PixelJob};
 use crate::timing::RendererTiming;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{
-    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyContent, CopyOrder, CopyTarget, CopyWay,
-    MAX_MESSAGE_WORDS, Message, NodeId, PixelSource, RegionPixels,
+    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyContent, CopyOrder, CopyTarget,
+    CopyWay, MAX_MESSAGE_WORDS, Message, NodeId, PixelSource, RegionPixels,
 };
 use std::collections::VecDeque;
 use std::sync::{Arc, OnceLock};
@@ -242,7 +242,13 @@ impl Renderer {
     /// they are there.
     fn store_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
         let Some(blocks) = self.unstored.front().map(|copy| u64::from(copy.order.content.words())) else { return };
-        let held: u64 = self.stored.iter().map(|copy| &copy.order).chain(&self.copying).map(|order| u64::from(order.content.words())).sum();
+        let held: u64 = self
+            .stored
+            .iter()
+            .map(|copy| &copy.order)
+            .chain(&self.copying)
+            .map(|order| u64::from(order.content.words()))
+            .sum();
         if self.storing || held + blocks > self.timing.backing_regions() {
             return;
         }

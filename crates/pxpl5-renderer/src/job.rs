@@ -213,7 +213,16 @@ mod tests {
         let mut words = Vec::new();
         commands.iter().for_each(|command| command.encode(&pool.layout, &mut words).expect("it fits"));
         let lists: Vec<Arc<dyn CommandWords>> = vec![Arc::new(GivenWords(words))];
-        PixelJob { pool: Arc::clone(pool), lists, cleared: true, kept: true, target, content: CopyContent::Colour, done: OnceLock::new() }.pixels()
+        PixelJob {
+            pool: Arc::clone(pool),
+            lists,
+            cleared: true,
+            kept: true,
+            target,
+            content: CopyContent::Colour,
+            done: OnceLock::new(),
+        }
+        .pixels()
     }
 
     #[test]

@@ -324,5 +324,11 @@ pub(crate) fn copy_order(
     region: RegionId,
     way: CopyWay,
 ) -> CopyOrder {
-    CopyOrder { target: config.target(drawing, region), context: 0, way, acknowledge: Some(config.master), content: CopyContent::Colour }
+    CopyOrder {
+        target: config.target(drawing, region),
+        context: 0,
+        way,
+        acknowledge: Some(config.master),
+        content: CopyContent::Colour,
+    }
 }
