@@ -14,6 +14,7 @@ mod budget;
 mod causes;
 mod content;
 mod errors;
+mod faces_report;
 mod latency;
 mod latency_curve;
 mod measured;
@@ -31,6 +32,7 @@ mod turned;
 
 pub use budget::Budget;
 pub use causes::{ErrorCauses, ErrorPart};
+pub use faces_report::{FacesReport, MemoryReport, RotationPart};
 pub use errors::{FieldError, PixelErrors, Showing, UNJUDGED_FIELDS, pixel_errors};
 pub use latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_parts};
 pub use latency_curve::LatencyCurve;
