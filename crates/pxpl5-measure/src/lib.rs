@@ -32,8 +32,8 @@ mod turned;
 
 pub use budget::Budget;
 pub use causes::{ErrorCauses, ErrorPart};
-pub use faces_report::{FacesReport, MemoryReport, RotationPart};
 pub use errors::{FieldError, PixelErrors, Showing, UNJUDGED_FIELDS, pixel_errors};
+pub use faces_report::{FacesReport, MemoryReport, RotationPart};
 pub use latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_parts};
 pub use latency_curve::LatencyCurve;
 pub use measured::Measured;

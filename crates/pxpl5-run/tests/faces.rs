@@ -72,7 +72,8 @@ fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
         assert!((latency.scan.0 as f64 - to_the_middle).abs() <= 1.0, "{latency:?}");
     }
     let translation = outcomes.each_ref().map(|outcome| outcome.latency_ms().mean);
-    assert!(translation.is_sorted() && translation[3] > 5.0 * translation[0], "{translation:?}");
+    // The small ones all wait for retraces; the large one for its TRANSFORM.
+    assert!(translation[..3].iter().all(|small| translation[3] > 4.0 * small), "{translation:?}");
     outcomes.iter().for_each(|outcome| assert_no_faults(outcome.record()));
 }
 
@@ -81,11 +82,12 @@ fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
 fn under_rendering_control_the_latency_of_a_turn_grows_with_what_is_drawn() {
     let latency = |n: usize| {
         let scene = builtin(&format!("sphere:{n}")).expect("even");
-        let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::mono(), scene).fields(60);
+        let fields = if n > 10_000 { 240 } else { 60 };
+        let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::mono(), scene).fields(fields);
         experiment.pixels(Pixels::Off).head(head(Pan::at(200.0))).run().expect("it runs").latency_ms().mean
     };
-    let latencies = [10, 1_000, 10_000].map(latency);
-    assert!(latencies.is_sorted() && latencies[2] > latencies[0] + 20.0, "{latencies:?}");
+    let latencies = [10, 1_000, 100_000].map(latency);
+    assert!(latencies[2] > latencies[0] + 100.0 && latencies[2] > latencies[1] + 100.0, "{latencies:?}");
 }
 
 /// COPY of every update whose 6 (N/128)^2 regions all have primitives.
@@ -111,7 +113,7 @@ fn all_regions_take_the_ports_time_and_no_more() {
     {
         let regions = 6 * (texels / 128) * (texels / 128);
         let port_ms = (regions * messages * message_ns) as f64 * 1e-6;
-        assert!((port_ms - published_ms).abs() < 0.03, "{port_ms} {published_ms}");
+        assert!((port_ms - published_ms).abs() < 0.05, "{port_ms} {published_ms}");
         let (copies, of_each) = copies(texels, packed);
         assert!(of_each.abs_diff(regions) <= 1, "{of_each} regions of {regions}");
         let fastest = copies.iter().map(|span| span.as_ms()).fold(f64::INFINITY, f64::min);
@@ -166,15 +168,16 @@ fn missed(outcome: &Outcome) -> [f64; 4] {
 /// E8.
 #[test]
 fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suffer() {
-    let outcomes = [40_000_000, 10_000_000, 4_000_000, 2_000_000].map(walk);
+    let outcomes = [40_000_000, 2_000_000, 1_000_000, 500_000].map(walk);
     let misses = outcomes.each_ref().map(missed);
     println!("{misses:?}");
     for outcome in &outcomes {
         assert_no_faults(outcome.record());
         assert_eq!(outcome.rotation_latencies(), outcomes[0].rotation_latencies());
     }
-    assert!(misses.iter().any(|missed| missed[0] == 0.0 && missed[3] > 0.5), "{misses:?}");
-    assert!(misses.iter().all(|missed| missed[0] <= missed[3]), "{misses:?}");
+    assert_eq!(misses[0], [0.0; 4], "a machine that is fast enough misses nothing");
+    assert!(misses.iter().all(|missed| missed.is_sorted()), "{misses:?}");
+    assert!(misses.iter().any(|missed| missed[3] > 0.2 && missed[0] < missed[3] / 2.0), "{misses:?}");
 }
 
 #[test]
@@ -205,8 +208,11 @@ fn mig() -> Experiment {
 
 #[test]
 fn a_hundred_shuffles_of_simultaneous_events_change_nothing() {
-    for experiment in [mig().fields(16), Experiment::new(machine("small-hmd", OBJECTS, &[]), OBJECTS, balls()).fields(16)] {
-        let hash = |experiment: &Experiment| after(&experiment.clone().pixels(Pixels::Off), 16).into_record().trace_hash();
+    for experiment in
+        [mig().fields(16), Experiment::new(machine("small-hmd", OBJECTS, &[]), OBJECTS, balls()).fields(16)]
+    {
+        let hash =
+            |experiment: &Experiment| after(&experiment.clone().pixels(Pixels::Off), 16).into_record().trace_hash();
         let unshuffled = hash(&experiment);
         for seed in 0..100 {
             assert_eq!(hash(&experiment.clone().shuffle_ties(seed)), unshuffled, "{seed}");
@@ -218,7 +224,7 @@ fn a_hundred_shuffles_of_simultaneous_events_change_nothing() {
 fn savings_and_pixels_change_no_time_and_no_texel() {
     let lazy = after(&mig(), 12);
     let faces = memory(lazy.record(), 0).shown_faces();
-    assert!(texels(128).filter(|texel| faces.texel(*texel).is_some()).count() > 500, "something was drawn");
+    assert!(texels(128).filter(|texel| faces.texel(*texel).is_some()).count() > 50, "something was drawn");
     let all = after(&mig().pixels(Pixels::All), 12);
     assert!(memory(all.record(), 0).shown_faces() == faces);
     let off = after(&mig().pixels(Pixels::Off), 12);
@@ -252,7 +258,8 @@ fn compare_face(scene: &Scene, eye: DVec3, time: Time, faces: &FaceSet, face: Cu
     let ahead = EyeView { world_to_eye: place, head_to_eye: Mat4::IDENTITY, projection };
     let edits = scene.edits_at(time.0);
     let edits = edits.iter().map(|edit| pphigs::ModelEdit { structure: edit.structure as u32, model: edit.model });
-    let view = FrameView { number: pxpl5_wire::ViewNumber(0), eyes: vec![face_view(&ahead, face)], edits: edits.collect() };
+    let view =
+        FrameView { number: pxpl5_wire::ViewNumber(0), eyes: vec![face_view(&ahead, face)], edits: edits.collect() };
     let list = display_list(scene).expect("something to draw");
     let ideal = ideal_picture(&list, &view, 0, &picture);
     let [red, green, blue] = list.background;
@@ -265,7 +272,12 @@ fn compare_face(scene: &Scene, eye: DVec3, time: Time, faces: &FaceSet, face: Cu
     let wrong = ideal.differences(&drawn);
     let shown = texels(size).filter(|texel| texel.face == face && faces.texel(*texel).is_some()).count();
     // Projections that were rounded differently move an edge by less than a subpixel.
-    assert!(wrong.len() * 500 <= shown, "{face:?}: {} of {shown} texels differ, first {:?}", wrong.len(), wrong.first());
+    assert!(
+        wrong.len() * 500 <= shown,
+        "{face:?}: {} of {shown} texels differ, first {:?}",
+        wrong.len(),
+        wrong.first()
+    );
     shown
 }
 
