@@ -170,13 +170,14 @@ fn missed(outcome: &Outcome) -> [f64; 4] {
 fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suffer() {
     let outcomes = [40_000_000, 2_000_000, 1_000_000, 500_000].map(walk);
     let misses = outcomes.each_ref().map(missed);
-    println!("{misses:?}");
     for outcome in &outcomes {
         assert_no_faults(outcome.record());
         assert_eq!(outcome.rotation_latencies(), outcomes[0].rotation_latencies());
     }
     assert_eq!(misses[0], [0.0; 4], "a machine that is fast enough misses nothing");
-    assert!(misses.iter().all(|missed| missed.is_sorted()), "{misses:?}");
+    // Where the slowest miss up to half of their retraces the order is strict; beyond, memory 0 is still the least late.
+    assert!(misses[..3].iter().all(|missed| missed.is_sorted()) && misses[2][2] > 5.0 * misses[2][1], "{misses:?}");
+    assert!(misses[3][1..].iter().all(|missed| *missed > 2.0 * misses[3][0]), "{misses:?}");
     assert!(misses.iter().any(|missed| missed[3] > 0.2 && missed[0] < missed[3] / 2.0), "{misses:?}");
 }
 
@@ -201,15 +202,15 @@ fn after(experiment: &Experiment, fields: u64) -> Machine {
     machine
 }
 
-fn mig() -> Experiment {
+fn ball() -> Experiment {
     let config = machine("small-hmd", FULL, &[("arp.face_texels", 128)]);
-    Experiment::new(config, FULL, builtin("mig").expect("built in"))
+    Experiment::new(config, FULL, builtin("sphere:1000").expect("even"))
 }
 
 #[test]
 fn a_hundred_shuffles_of_simultaneous_events_change_nothing() {
     for experiment in
-        [mig().fields(16), Experiment::new(machine("small-hmd", OBJECTS, &[]), OBJECTS, balls()).fields(16)]
+        [ball().fields(16), Experiment::new(machine("small-hmd", OBJECTS, &[]), OBJECTS, balls()).fields(16)]
     {
         let hash =
             |experiment: &Experiment| after(&experiment.clone().pixels(Pixels::Off), 16).into_record().trace_hash();
@@ -222,14 +223,14 @@ fn a_hundred_shuffles_of_simultaneous_events_change_nothing() {
 
 #[test]
 fn savings_and_pixels_change_no_time_and_no_texel() {
-    let lazy = after(&mig(), 12);
+    let lazy = after(&ball(), 16);
     let faces = memory(lazy.record(), 0).shown_faces();
     assert!(texels(128).filter(|texel| faces.texel(*texel).is_some()).count() > 50, "something was drawn");
-    let all = after(&mig().pixels(Pixels::All), 12);
+    let all = after(&ball().pixels(Pixels::All), 16);
     assert!(memory(all.record(), 0).shown_faces() == faces);
-    let off = after(&mig().pixels(Pixels::Off), 12);
+    let off = after(&ball().pixels(Pixels::Off), 16);
     for saving in pxpl5_machine::Saving::ALL {
-        let without = after(&mig().without(saving), 12);
+        let without = after(&ball().without(saving), 16);
         assert_eq!(without.record().trace_hash(), lazy.record().trace_hash(), "{saving}");
         assert!(memory(without.record(), 0).shown_faces() == faces, "{saving}");
     }
