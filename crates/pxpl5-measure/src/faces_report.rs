@@ -2,7 +2,6 @@
 
 use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
 use pxpl5_run::{Outcome, RotationLatency, Statistics};
-use pxpl5_wire::Eye;
 use serde::Serialize;
 
 /// An address recalculation pipeline and its memories over a run.
@@ -71,7 +70,7 @@ impl FacesReport {
             counters.iter().find(|counter| counter.name == name).map_or(0, |counter| counter.count)
         };
         let latencies = outcome.rotation_latencies();
-        let memories = display.memories(Eye::Left).iter().enumerate();
+        let memories = outcome.display_memories().iter().enumerate();
         Some(Self {
             schema: Self::SCHEMA,
             face_texels: timing.face_texels,

@@ -3,10 +3,10 @@
 use crate::face_notes::FaceNote;
 use crate::latched_head::{LatchedHead, ORIENTATION_WORDS, RotationLatency};
 use crate::outcome::Outcome;
-use address_recalculation::AddressRecalculationPipeline;
+use address_recalculation::{AddressRecalculationPipeline, DisplayMemory};
 use pxpl5_display::Display;
 use pxpl5_machine::Record;
-use pxpl5_wire::{FieldParity, NodeId, PeriodNumber};
+use pxpl5_wire::{Eye, FieldParity, NodeId, PeriodNumber};
 
 /// What a display memory shows.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,6 +69,12 @@ impl LatchedHead {
 }
 
 impl Outcome {
+    /// The memories of a display with faces, the one that is drawn most often first; none of any other display.
+    #[must_use]
+    pub fn display_memories(&self) -> &[DisplayMemory] {
+        display(self.record()).map_or(&[], |display| display.memories(Eye::Left))
+    }
+
     /// The rotation latency of the middle pixel of every field from the first that has one: empty without a tracked head, and
     /// where the display takes no faces.
     #[must_use]

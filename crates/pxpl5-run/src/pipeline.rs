@@ -47,7 +47,7 @@ pub struct Setup {
     pub wanted: ViewsWanted,
     /// The head alone, for displays that turn with it.
     pub poses: Poses,
-    /// Which structures of the scene move by themselves.
+    /// Which structures of the scene move by themselves, or with the head.
     pub moving: Arc<[bool]>,
     /// Where pipelines that draw faces say what they drew.
     pub notes: FaceNotes,

@@ -13,6 +13,7 @@ use crate::preparation::Preparation;
 use crate::views::{FrameStarts, ReportTimes};
 use crate::window::Window;
 use pxpl5_machine::{ConfigError, DEADLOCK_TICKS, Machine, MachineConfig, RunError};
+use pxpl5_scene::{Frame, Structure};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
@@ -90,7 +91,9 @@ impl Experiment {
         let pixels = self.pixels != Pixels::Off;
         let poses = poses(&self.scene, self.seed);
         let notes = FaceNotes::default();
-        let moving = self.scene.structures().iter().map(|structure| structure.hinge.is_some()).collect();
+        // What is fixed to the head moves with it.
+        let moves = |structure: &Structure| structure.hinge.is_some() || structure.frame == Frame::Head;
+        let moving = self.scene.structures().iter().map(moves).collect();
         let setup =
             Setup { list, views, wanted, poses, moving, notes, aim, reports, starts, host: config.host, pixels };
         let Some(head) = preparation.head.or_else(|| self.head.clone()) else { return Ok((setup, None)) };

@@ -137,7 +137,7 @@ fn balls() -> Scene {
         hinge: None,
         culls_back_faces: false,
     };
-    let motion = builtin("room").expect("built in").motion().clone();
+    let motion = *builtin("room").expect("built in").motion();
     let parts = SceneParts {
         name: "balls".to_owned(),
         vertices: Vec::new(),
