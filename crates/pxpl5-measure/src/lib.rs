@@ -13,6 +13,7 @@
 mod budget;
 mod causes;
 mod content;
+mod drawn;
 mod errors;
 mod faces_report;
 mod latency;

@@ -1,7 +1,7 @@
 //! What pixels show that were looked up in faces around an eye: positions that memories were drawn from, in the direction that was
 //! latched.
 
-use crate::shown::{FacesSeen, Moment};
+use crate::drawn::{FacesSeen, Moment};
 use glam::DQuat;
 use pxpl5_run::{Cause, Estimator, FaceHistory, HeadViews, LatchedHead, Outcome};
 use pxpl5_sim::Time;
