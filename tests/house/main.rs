@@ -24,7 +24,7 @@ const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ("geometry", &["pxpl5-geometry", "pphigs"], &["ground", "boards", "geometry"]),
     (
         "firmware",
-        &["rendering-control", "slats", "jitp", "priority-rendering", "cube-faces", "pxpl5-oracle"],
+        &["rendering-control", "slats", "jitp", "priority-rendering", "cube-faces", "cube-control", "pxpl5-oracle"],
         &["ground", "boards", "geometry"],
     ),
     ("machine", &["pxpl5-machine"], &["ground", "boards"]),

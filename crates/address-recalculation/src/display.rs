@@ -31,14 +31,14 @@ impl EyeBoards {
         ShownBuffers { memories: self.memories.iter().map(|memory| (memory.kind(), memory.shown())).collect() }
     }
 
-    /// Swaps what can be swapped: alone, or all memories of a set that are ready at this retrace.
-    fn retrace(&mut self, now: Time) -> Vec<u8> {
+    /// Swaps what can be swapped: alone, or all memories of a set that are ready at this retrace. Which, and to which buffer.
+    fn retrace(&mut self, now: Time) -> Vec<(usize, u8)> {
         let ready: Vec<Option<u8>> = self.memories.iter().map(|memory| memory.is_ready(now)).collect();
         let all_ready =
             |set: u8| (0..u8::BITS as usize).all(|k| set >> k & 1 == 0 || matches!(ready.get(k), Some(Some(_))));
         let may_swap: Vec<bool> = ready.iter().map(|set| set.is_some_and(all_ready)).collect();
-        let memories = self.memories.iter_mut().zip(may_swap);
-        memories.filter_map(|(memory, may_swap)| memory.retrace(may_swap, now)).collect()
+        let memories = (0..).zip(self.memories.iter_mut().zip(may_swap));
+        memories.filter_map(|(k, (memory, may_swap))| Some((k, memory.retrace(may_swap, now)?))).collect()
     }
 }
 
@@ -113,8 +113,9 @@ impl AddressRecalculationPipeline {
                 boards.scanned.pop_front();
             }
             boards.latch.forget_before(Time(oldest.0.saturating_sub(self.optics.config.timing.depth().0)));
-            for buffer in boards.retrace(now) {
-                context.output(at, DisplayOutput::Swapped { surface, buffer, tick });
+            for (memory, buffer) in boards.retrace(now) {
+                let port = self.nodes[surface * self.optics.config.ports_of_an_eye() + memory];
+                context.output(at, DisplayOutput::Updated { surface, port, buffer, tick });
             }
         }
     }
@@ -307,6 +308,14 @@ impl DisplayConfig for ArpConfig {
 
     fn remember(&mut self, periods: u64) {
         self.fields_kept = periods;
+    }
+
+    fn show_behind_all(&mut self, background: u32) {
+        self.background = background & 0x00FF_FFFF;
+    }
+
+    fn takes_faces(&self) -> bool {
+        true
     }
 
     fn equals(&self, other: &dyn DisplayConfig) -> bool {

@@ -157,6 +157,15 @@ impl DisplayMemory {
         2 * 6 * u64::from(self.kind.face_texels).pow(2) * bits / 8
     }
 
+    /// The six faces that are shown now, all their regions computed.
+    #[must_use]
+    pub fn shown_faces(&self) -> FaceSet {
+        let wanted = vec![true; region_grid(self.kind.face_texels).regions() as usize];
+        let mut faces = FaceSet::new(self.kind.face_texels, self.kind.format);
+        self.kind.draw(&self.shown(), &wanted, &mut faces);
+        faces
+    }
+
     pub(crate) const fn kind(&self) -> MemoryKind {
         self.kind
     }

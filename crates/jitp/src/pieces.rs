@@ -6,7 +6,8 @@ use pphigs::PrimitiveCounts;
 use pxpl5_geometry::Viewport;
 use pxpl5_renderer::{Clear, Command, CommandKind, CopyRegion, Layout, SelectRegion};
 use pxpl5_wire::{
-    CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, CopyWay, MAX_MESSAGE_WORDS, RegionId, Word,
+    CommandList, CommandRun, CommandWords, CopyContent, CopyOrder, CopyTarget, CopyWay, MAX_MESSAGE_WORDS, RegionId,
+    Word,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -91,7 +92,13 @@ pub(crate) fn messages(
     let lists = parts(counts).into_iter().map(|part| {
         let runs = part.runs();
         let copies = if part.last {
-            vec![CopyOrder { target, context: 0, way: CopyWay::FromPixelMemory, acknowledge: None }]
+            vec![CopyOrder {
+                target,
+                context: 0,
+                way: CopyWay::FromPixelMemory,
+                acknowledge: None,
+                content: CopyContent::Colour,
+            }]
         } else {
             Vec::new()
         };

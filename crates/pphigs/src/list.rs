@@ -108,6 +108,17 @@ impl Share {
         PrimitiveCounts { triangles: self.triangles.len() as u32, spheres: self.spheres.len() as u32 }
     }
 
+    /// The same of the structures that are chosen by their place in the display list.
+    #[must_use]
+    pub fn chosen_counts(&self, chosen: &[bool]) -> PrimitiveCounts {
+        let mut counts = PrimitiveCounts::default();
+        for (structure, _) in self.list.structures.iter().zip(chosen).filter(|(_, chosen)| **chosen) {
+            counts.triangles += self.held_triangles(&structure.triangles).len() as u32;
+            counts.spheres += self.held_spheres(&structure.spheres).len() as u32;
+        }
+        counts
+    }
+
     /// The share cut into pieces of at most `size` primitives, triangles first.
     ///
     /// # Panics
@@ -148,16 +159,16 @@ impl Share {
         self.places(&self.triangles, of)
     }
 
-    pub(crate) fn held_triangles(&self, of: &Range<usize>) -> impl Iterator<Item = usize> + use<> {
+    pub(crate) fn held_triangles(&self, of: &Range<usize>) -> impl ExactSizeIterator<Item = usize> + use<> {
         self.held(&self.triangles, of)
     }
 
-    pub(crate) fn held_spheres(&self, of: &Range<usize>) -> impl Iterator<Item = usize> + use<> {
+    pub(crate) fn held_spheres(&self, of: &Range<usize>) -> impl ExactSizeIterator<Item = usize> + use<> {
         self.held(&self.spheres, of)
     }
 
     /// Numbers of the primitives of `of` that are among the held ones `positions`.
-    fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl Iterator<Item = usize> + use<> {
+    fn held(&self, positions: &Range<usize>, of: &Range<usize>) -> impl ExactSizeIterator<Item = usize> + use<> {
         let first = self.first;
         let step = self.step;
         self.places(positions, of).map(move |k| first + k * step)

@@ -43,18 +43,25 @@ pub struct Pass {
     stats: SetupStats,
     /// Makes the words of triangles; `None` where nobody wants pixels.
     encoder: Option<Encoder>,
+    touching: Option<[Vec<u32>; 2]>,
 }
 
 impl Share {
     /// One TRANSFORM of all held primitives for one eye.
     #[must_use]
     pub fn transform(&self, view: &FrameView, eye: usize, picture: Picture) -> Arc<Pass> {
-        Arc::new(Pass::new(self.clone(), view, eye, picture))
+        Arc::new(Pass::new(self.clone(), view, eye, picture, None))
+    }
+
+    /// The same of the primitives of some structures: those whose place in the display list is chosen.
+    #[must_use]
+    pub fn transform_chosen(&self, view: &FrameView, eye: usize, picture: Picture, chosen: &[bool]) -> Arc<Pass> {
+        Arc::new(Pass::new(self.clone(), view, eye, picture, Some(chosen)))
     }
 }
 
 impl Pass {
-    fn new(share: Share, view: &FrameView, eye: usize, picture: Picture) -> Self {
+    fn new(share: Share, view: &FrameView, eye: usize, picture: Picture, chosen: Option<&[bool]>) -> Self {
         let regions = picture.viewport.grid().regions() as usize;
         let placed = place_once(&share.list, view, eye, picture.viewport);
         let bins = if picture.pixels { vec![Bin::default(); regions] } else { Vec::new() };
@@ -67,20 +74,24 @@ impl Pass {
             screen_counts: PrimitiveCounts::default(),
             stats: SetupStats::default(),
             encoder: picture.pixels.then(|| Encoder::for_picture(&picture)).flatten(),
+            touching: chosen.map(|_| Default::default()),
         };
-        pass.binitize();
+        pass.binitize(chosen);
         pass
     }
 
-    fn binitize(&mut self) {
+    fn binitize(&mut self, chosen: Option<&[bool]>) {
         let mut stats = SetupStats::default();
         let placed = Arc::clone(&self.placed);
         let share = self.share.clone();
-        for (place, transform) in drawn(&placed) {
+        let is_chosen = |structure: usize| chosen.is_none_or(|chosen| chosen.get(structure) == Some(&true));
+        for (_, place) in placed.iter().enumerate().filter(|(structure, _)| is_chosen(*structure)) {
+            let Some(transform) = &place.transform else { continue };
             self.bin_triangles(place, transform, &share, &mut stats);
             for number in share.held_spheres(&place.structure.spheres) {
                 if let Some(sphere) = transform.sphere(&share.list.spheres[number], &mut stats) {
                     self.put_sphere(sphere.regions, number as u32);
+                    self.note_touching(1, number as u32);
                 }
             }
         }
@@ -96,6 +107,7 @@ impl Pass {
             if let (Touch::Region(region), RegionBinning::Touched) = (touch, self.picture.binning) {
                 in_one_region += 1;
                 self.put_in(region, BinEntry { triangle: number as u32, piece: Some(0) });
+                self.note_touching(0, number as u32);
                 continue;
             }
             let triangle = number as u32;
@@ -112,6 +124,9 @@ impl Pass {
                         self.put_piece(mask, triangle, &mut pieces);
                     }
                 }
+            }
+            if pieces > 0 {
+                self.note_touching(0, triangle);
             }
             if pieces == 0 && self.picture.binning == RegionBinning::All {
                 self.put_triangle(RegionMask::EMPTY, BinEntry { triangle, piece: None });
@@ -144,6 +159,14 @@ impl Pass {
             self.put_in(region, entry);
         }
         self.screen_counts.triangles += 1;
+    }
+
+    /// A triangle (kind 0) or sphere (1) is in some bin.
+    #[inline(always)]
+    fn note_touching(&mut self, kind: usize, number: u32) {
+        if let Some(touching) = &mut self.touching {
+            touching[kind].push(number);
+        }
     }
 
     #[inline(always)]
@@ -189,6 +212,12 @@ impl Pass {
     #[must_use]
     pub fn transformed(&self) -> PrimitiveCounts {
         self.share.counts()
+    }
+
+    /// Triangles and spheres that are in some bin, by rising numbers in the display list; `None` of a pass over all structures.
+    #[must_use]
+    pub const fn touching(&self) -> Option<&[Vec<u32>; 2]> {
+        self.touching.as_ref()
     }
 
     /// What happened to the primitives.

@@ -42,13 +42,22 @@ impl Corners {
 
 /// Views of a display list that graphics processors asked for lately. All of them ask for the same ones, and get the
 /// same transformed vertices; only the host's time is saved by it.
-#[derive(Debug, Default)]
-pub struct RecentViews(Mutex<VecDeque<(ViewKey, Arc<[PlacedStructure]>)>>);
+#[derive(Debug)]
+pub struct RecentViews {
+    views: Mutex<VecDeque<(ViewKey, Arc<[PlacedStructure]>)>>,
+    kept: usize,
+}
+
+impl Default for RecentViews {
+    fn default() -> Self {
+        Self::keeping(RECENT)
+    }
+}
 
 /// A clone holds none.
 impl Clone for RecentViews {
     fn clone(&self) -> Self {
-        Self::default()
+        Self::keeping(self.kept)
     }
 }
 
@@ -64,18 +73,24 @@ pub(crate) struct ViewKey {
 }
 
 impl RecentViews {
+    /// None yet; so many will be kept, at least one.
+    #[must_use]
+    pub fn keeping(views: usize) -> Self {
+        Self { views: Mutex::default(), kept: views.max(1) }
+    }
+
     /// The structures of a view, placed by `place` unless somebody asked for the same view lately.
     pub(crate) fn find_or_place(
         &self,
         key: ViewKey,
         place: impl FnOnce() -> Vec<PlacedStructure>,
     ) -> Arc<[PlacedStructure]> {
-        let mut recent = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut recent = self.views.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, placed)) = recent.iter().find(|(known, _)| *known == key) {
             return Arc::clone(placed);
         }
         let placed: Arc<[PlacedStructure]> = place().into();
-        recent.truncate(RECENT - 1);
+        recent.truncate(self.kept - 1);
         recent.push_front((key, Arc::clone(&placed)));
         placed
     }

@@ -6,9 +6,9 @@
 
 // ANCHOR: imports
 use pxpl5_cli::pxpl5::firmware::{
-    Body, CopyOrder, CopyTarget, CopyWay, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture, PictureNumber,
-    Priority, RegionBinning, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport, region_messages,
-    swap_request,
+    Body, CopyContent, CopyOrder, CopyTarget, CopyWay, DisplayList, Fault, FrameView, Gp, Layout, Lines, Picture,
+    PictureNumber, Priority, RegionBinning, RegionEnvelope, RegionId, Shading, Share, Stage, ViewNumber, Viewport,
+    region_messages, swap_request,
 };
 use pxpl5_cli::pxpl5::{
     ConfigError, Goal, Key, KeyValue, KeyValues, LimitCriterion, Machine, PictureEnd, PictureTimes, Pipeline,
@@ -65,7 +65,13 @@ async fn firmware(
         let buffer = (frame.next().0 % 2) as u8;
         for region in (0..grid.regions() as u16).map(RegionId) {
             let target = CopyTarget { frame_buffer, buffer, lines: Lines::Frame, grid, region, picture: frame };
-            let copy = CopyOrder { target, context: 0, way: CopyWay::ThroughBacking, acknowledge: Some(gp.node()) };
+            let copy = CopyOrder {
+                target,
+                context: 0,
+                way: CopyWay::ThroughBacking,
+                acknowledge: Some(gp.node()),
+                content: CopyContent::Colour,
+            };
             let envelope = RegionEnvelope { begin: true, shade: true, copy: Some(copy) };
             let renderer = ports.renderers[usize::from(region.0) % ports.renderers.len()];
             for message in region_messages(&pass, region, 0, envelope) {

@@ -49,6 +49,14 @@ pub trait DisplayConfig: Any + Debug + Send + Sync {
     /// Has it remember so many past periods, where it remembers any; 2 unless said.
     fn remember(&mut self, _periods: u64) {}
 
+    /// Tells it what is to be seen where nothing is drawn, 0x00RRGGBB; without effect where pictures hold their own background.
+    fn show_behind_all(&mut self, _background: u32) {}
+
+    /// Whether it shows faces of a cube around the head, with depth, instead of pictures of what an eye sees.
+    fn takes_faces(&self) -> bool {
+        false
+    }
+
     /// Whether two displays are of one kind and of the same numbers.
     fn equals(&self, other: &dyn DisplayConfig) -> bool {
         self.name() == other.name() && values(self.tables()) == values(other.tables())

@@ -73,6 +73,18 @@ pub enum DisplayOutput {
         /// The period that begins with the tick.
         tick: PeriodNumber,
     },
+    /// What is behind one of several ports of a surface (a display memory) shows its other buffer from a tick on; the first graphics
+    /// processor is told by a line of that port.
+    Updated {
+        /// The surface that is made of it, counted from the display's first.
+        surface: usize,
+        /// The port.
+        port: NodeId,
+        /// The buffer that is shown now.
+        buffer: u8,
+        /// The period that begins with the tick.
+        tick: PeriodNumber,
+    },
 }
 
 /// Where a display puts what it schedules for itself and what leaves it.

@@ -9,6 +9,7 @@
 //! **Not here:** the computer that the simulation runs on. Clocks, threads and files are handed in ([`PixelWorker`]).
 
 mod config;
+mod host_line;
 mod machine;
 mod observation;
 mod pixels;
@@ -19,6 +20,7 @@ mod savings;
 mod traffic;
 
 pub use config::{ConfigError, FirmwareTable, MachineConfig, NamedTable, Parameter};
+pub use host_line::HostLine;
 pub use machine::{DEADLOCK_TICKS, Machine, RunError};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
 pub use pixels::{PixelWorker, SameThread};

@@ -11,6 +11,7 @@
 //! ```
 
 use crate::config::{ConfigError, MachineConfig};
+use crate::host_line::HostLine;
 use crate::observation::{Arrival, Swap};
 use crate::pixels::PixelWorker;
 use crate::ports::Ports;
@@ -22,6 +23,7 @@ use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput}
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
 use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time};
 use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, SurfaceId};
+use std::collections::BTreeMap;
 use thiserror::Error;
 
 /// An event of any board.
@@ -32,6 +34,8 @@ enum Event {
     FromRing(RingOutput),
     Gp(usize, GpEvent),
     Renderer(usize, RendererEvent),
+    /// What the host says to the first display past the ring.
+    HostLine,
     /// What a display scheduled for itself.
     Display(usize, DisplayEvent),
     /// The tick of a display's clock that begins a period.
@@ -96,6 +100,10 @@ pub struct Machine {
     contexts: Contexts,
     /// Swaps of each surface so far.
     swaps: Vec<u64>,
+    /// Updates that were shown of what is behind each port, where a surface has several.
+    updates: BTreeMap<NodeId, u64>,
+    /// What the host says to the first display past the ring.
+    host_line: Option<Box<dyn HostLine>>,
     pixels: Option<Box<dyn PixelWorker>>,
     /// Whether every edge of the boards' clock is an event.
     every_edge: bool,
@@ -158,6 +166,8 @@ impl Machine {
             },
             queue: EventQueue::new(),
             contexts: Contexts::default(),
+            updates: BTreeMap::new(),
+            host_line: None,
             pixels: None,
             every_edge: false,
             failure: None,
@@ -249,6 +259,11 @@ impl Machine {
         self.processors[usize::from(node.0)].load(level, program);
     }
 
+    /// Plugs a line from the host into the first display, past the ring; to be called before the machine is switched on.
+    pub fn plug_host_line(&mut self, line: Box<dyn HostLine>) {
+        self.host_line = Some(line);
+    }
+
     /// Switches on: every board's programs begin at time zero, and so does the first period of every display.
     pub fn switch_on(&mut self) {
         for board in 0..self.processors.len() {
@@ -264,6 +279,7 @@ impl Machine {
         if self.every_edge {
             self.queue.schedule(Time::ZERO, Phase::Work, Event::Edge);
         }
+        self.schedule_host_line(Time::ZERO);
     }
 
     /// Runs up to, and not including, an instant.
@@ -283,12 +299,13 @@ impl Machine {
     }
 
     fn handle(&mut self, now: Time, event: Event) {
-        self.work_events += u64::from(!matches!(event, Event::Edge | Event::Tick(..) | Event::Display(..)));
+        self.work_events += u64::from(!is_of_displays(&event));
         match event {
             Event::Ring(event) => self.ring_event(now, event),
             Event::FromRing(output) => self.bring(now, output),
             Event::Gp(board, event) => self.gp_event(now, board, event),
             Event::Renderer(board, event) => self.renderer_event(now, board, event),
+            Event::HostLine => self.host_says(now),
             Event::Display(display, event) => self.display_event(now, display, event),
             Event::Tick(display, period) => self.tick(now, display, period),
             Event::Edge => self.edge(now),
@@ -335,7 +352,7 @@ impl Machine {
     /// Whether nothing is under way but the displays and the boards' clock: perhaps only until the next tick.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
-        self.queue.pending().all(|event| matches!(event, Event::Edge | Event::Tick(..) | Event::Display(..)))
+        self.queue.pending().all(is_of_displays)
     }
 
     /// Who waits for what.
@@ -411,6 +428,23 @@ impl Machine {
         }
     }
 
+    /// The host's words reach a port of the first display, and the next ones are on their way.
+    fn host_says(&mut self, now: Time) {
+        let Some(line) = &mut self.host_line else { return };
+        let words = line.words(now);
+        self.schedule_host_line(now);
+        let port = 0;
+        let facts: Vec<u64> = [8].into_iter().chain(words.iter().map(|word| u64::from(*word))).collect();
+        self.record.hash.record(now, &facts);
+        self.display_event(now, 0, DisplayEvent::Delivered { port, body: Body::Words(words) });
+    }
+
+    fn schedule_host_line(&mut self, after: Time) {
+        if let Some(at) = self.host_line.as_ref().and_then(|line| line.next(after)) {
+            self.queue.schedule(at, Phase::Arrive, Event::HostLine);
+        }
+    }
+
     fn gp_event(&mut self, now: Time, board: usize, event: GpEvent) {
         let Self { processors, contexts: Contexts { gp: context, .. }, queue, .. } = self;
         let processor = &mut processors[board];
@@ -451,7 +485,7 @@ impl Machine {
     }
 
     fn display_event(&mut self, now: Time, display: usize, event: DisplayEvent) {
-        let Self { record, contexts: Contexts { display: context, .. }, queue, swaps, .. } = self;
+        let Self { record, contexts: Contexts { display: context, .. }, queue, swaps, updates, .. } = self;
         let first_surface = record.first_surface(display);
         record.displays[display].handle(event, context.at(now));
         schedule_own(queue, context, |event| Event::Display(display, event));
@@ -467,9 +501,18 @@ impl Machine {
                     let from = record.ports.displays[display][surface];
                     let surface = SurfaceId((first_surface + surface) as u16);
                     record.hash.record(time, &[6, u64::from(surface.0), u64::from(buffer), tick.0]);
-                    record.observation.swaps.push(Swap { surface, tick });
+                    record.observation.swaps.push(Swap { surface, port: from, tick });
                     swaps[surface.index()] += 1;
                     let status = GpEvent::Status { from, value: swaps[surface.index()] };
+                    queue.schedule(time, Phase::Arrive, Event::Gp(1, status));
+                }
+                DisplayOutput::Updated { surface, port, buffer, tick } => {
+                    let surface = SurfaceId((first_surface + surface) as u16);
+                    record.hash.record(time, &[7, u64::from(port.0), u64::from(buffer), tick.0]);
+                    record.observation.swaps.push(Swap { surface, port, tick });
+                    let updates = updates.entry(port).or_default();
+                    *updates += 1;
+                    let status = GpEvent::Status { from: port, value: *updates };
                     queue.schedule(time, Phase::Arrive, Event::Gp(1, status));
                 }
             }
@@ -505,6 +548,11 @@ fn schedule_own<E, O>(queue: &mut EventQueue<Event>, context: &mut Context<E, O>
     for (time, phase, event) in context.drain_events() {
         queue.schedule(time, phase, event_of(event));
     }
+}
+
+/// Whether an event is one of displays or clocks alone: what goes on in a machine whose programs all wait.
+const fn is_of_displays(event: &Event) -> bool {
+    matches!(event, Event::Edge | Event::Tick(..) | Event::Display(..) | Event::HostLine)
 }
 
 /// Hands a region over when its first message is on its way.

@@ -3,7 +3,7 @@
 use crate::traffic::Traffic;
 use pxpl5_gp::{Mark, Stage, StageEdge};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId};
+use pxpl5_wire::{CopyTarget, NodeId, PeriodNumber, PictureNumber, SurfaceId};
 use std::collections::BTreeMap;
 
 /// A region that has arrived at a display.
@@ -32,6 +32,8 @@ impl Arrival {
 pub struct Swap {
     /// The surface that shows its other buffer.
     pub surface: SurfaceId,
+    /// The port of the ring that fills it, or that part of it which swapped.
+    pub port: NodeId,
     /// The period from whose begin on it does.
     pub tick: PeriodNumber,
 }

@@ -29,6 +29,8 @@ pub(crate) struct Contents {
 /// A structure of the scene.
 #[derive(Debug)]
 struct Body {
+    /// Its place in the scene.
+    structure: usize,
     hinge: Option<Hinge>,
     patches: Vec<Patch>,
     spheres: Vec<(DVec3, f64)>,
@@ -54,23 +56,45 @@ struct Ray {
 
 impl Contents {
     pub(crate) fn of(scene: &Scene) -> Self {
-        let in_world = scene.structures().iter().filter(|structure| structure.frame == Frame::World);
-        Self { bodies: in_world.map(|structure| Body::of(scene, structure)).collect() }
+        let structures = scene.structures().iter().enumerate();
+        let in_world = structures.filter(|(_, structure)| structure.frame == Frame::World);
+        Self { bodies: in_world.map(|(place, structure)| Body::of(scene, place, structure)).collect() }
     }
 
     /// What the ray from an eye meets first, with its objects where they are at a time; `direction` goes 1 m deep into the view.
     /// `None` where there is nothing between the near and the far plane.
     pub(crate) fn met(&self, origin: DVec3, direction: DVec3, objects_at: Time) -> Option<Content> {
+        self.nearest(origin, direction, objects_at, |_| true).map(|(_, content)| content)
+    }
+
+    /// The same of some structures, by their place in the scene, with its depth.
+    pub(crate) fn met_of(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        objects_at: Time,
+        structures: &[bool],
+    ) -> Option<(f64, Content)> {
+        self.nearest(origin, direction, objects_at, |structure| structures.get(structure) == Some(&true))
+    }
+
+    fn nearest(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        objects_at: Time,
+        is_wanted: impl Fn(usize) -> bool,
+    ) -> Option<(f64, Content)> {
         let hmd = HmdConfig::unc();
         let mut nearest = (hmd.far_m, None);
-        for (i, body) in self.bodies.iter().enumerate() {
+        for (i, body) in self.bodies.iter().enumerate().filter(|(_, body)| is_wanted(body.structure)) {
             let to_body = body.model(objects_at).inverse();
             let ray = Ray { origin: to_body.transform_point3(origin), direction: to_body.transform_vector3(direction) };
             if let Some(depth) = body.met(&ray, (hmd.near_m, nearest.0)) {
                 nearest = (depth, Some(Content { point: ray.origin + ray.direction * depth, body: Some(i) }));
             }
         }
-        nearest.1
+        nearest.1.map(|content| (nearest.0, content))
     }
 
     /// Where a point is in the world at a time.
@@ -81,12 +105,13 @@ impl Contents {
 }
 
 impl Body {
-    fn of(scene: &Scene, structure: &Structure) -> Self {
+    fn of(scene: &Scene, place: usize, structure: &Structure) -> Self {
         let corner = |vertex: u32| scene.vertices()[vertex as usize].position.as_dvec3();
         let triangles = scene.triangles()[structure.triangles.clone()].iter();
         let triangles: Vec<[DVec3; 3]> = triangles.map(|triangle| triangle.map(corner)).collect();
         let spheres = scene.spheres()[structure.spheres.clone()].iter();
         Self {
+            structure: place,
             hinge: structure.hinge,
             patches: triangles.chunks(PATCH).map(Patch::of).collect(),
             spheres: spheres.map(|sphere| (sphere.centre.as_dvec3(), f64::from(sphere.radius))).collect(),

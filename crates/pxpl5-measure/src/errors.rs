@@ -181,7 +181,7 @@ impl PixelErrors {
         let Some(head) = outcome.head() else { return Self::default() };
         let shown = Shown::of_run(outcome, head);
         let seen = views_seen(outcome, &shown);
-        let shown = shown.with_poses(head, &seen, Estimator::new(head, Some(cause)));
+        let shown = shown.with_poses(head, &seen, cause);
         Self::judged(outcome, head, showing, &shown, Some(cause))
     }
 
@@ -205,14 +205,14 @@ impl PixelErrors {
 }
 
 /// What the pixels of a run show, as it is shown.
-enum Content<'a> {
-    Plain(&'a Shown<'a>),
-    Shifted(&'a Shown<'a>, RasterOffsets<'a>),
+enum Content<'a, 's> {
+    Plain(&'a Shown<'s>),
+    Shifted(&'a Shown<'s>, RasterOffsets<'a>),
     Ideal(Estimator<'a>),
 }
 
-impl<'a> Content<'a> {
-    fn new(outcome: &'a Outcome, showing: Showing, shown: &'a Shown<'a>, estimator: Estimator<'a>) -> Self {
+impl<'a, 's> Content<'a, 's> {
+    fn new(outcome: &'a Outcome, showing: Showing, shown: &'a Shown<'s>, estimator: Estimator<'a>) -> Self {
         match showing {
             Showing::Plain => Self::Plain(shown),
             Showing::RasterOffset => Self::Shifted(shown, RasterOffsets::of_run(outcome, shown, estimator)),

@@ -13,7 +13,9 @@
 mod budget;
 mod causes;
 mod content;
+mod drawn;
 mod errors;
+mod faces_report;
 mod latency;
 mod latency_curve;
 mod measured;
@@ -27,10 +29,12 @@ mod screen;
 mod shown;
 mod summary;
 mod too_heavy;
+mod turned;
 
 pub use budget::Budget;
 pub use causes::{ErrorCauses, ErrorPart};
 pub use errors::{FieldError, PixelErrors, Showing, UNJUDGED_FIELDS, pixel_errors};
+pub use faces_report::{FacesReport, MemoryReport, RotationPart};
 pub use latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_parts};
 pub use latency_curve::LatencyCurve;
 pub use measured::Measured;

@@ -54,7 +54,7 @@ const EYE_RETRACES: &str = "the same in retraces: those of that time, the one of
 const ERROR_PX: &str = "distance of a pixel's content from where it should be when it lights, over a grid of pixels and all fields, where a picture is shown that was complete in time; only with a head.motion";
 
 /// All quantities. Those that need events have no value at the analytic level.
-pub static QUANTITIES: [Quantity; 39] = [
+pub static QUANTITIES: [Quantity; 40] = [
     of_summary("latency_fields.mean", LATENCY, |s| s.latency_fields().mean),
     of_summary("latency_fields.sd", LATENCY, |s| s.latency_fields().sd),
     of_summary("latency_fields.min", LATENCY, |s| s.latency_fields().min),
@@ -119,6 +119,11 @@ pub static QUANTITIES: [Quantity; 39] = [
     of_run("error_px.p99", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.p99)),
     of_run("error_px.max", ERROR_PX, |_, r| Some(r.head.as_ref()?.error.pixels.max)),
     of_run("error_deg.mean", "error_px as an angle", |_, r| Some(r.head.as_ref()?.error.degrees.mean)),
+    of_run(
+        "rotation_ms",
+        "from the measurement of an orientation to the light of the picture's middle; mean; only of a display with faces around the head",
+        |_, r| Some(r.arp.as_ref()?.rotation_latency_ms?.mean),
+    ),
     of_run("late_regions", "regions that came after their deadline", |_, r| Some(r.late_regions as f64)),
     of_run(
         "lines_never_shown",

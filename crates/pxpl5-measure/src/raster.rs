@@ -121,6 +121,6 @@ fn pose_of_field(display: &dyn Display, shown: &Shown<'_>, field: PeriodNumber) 
     let (y, _) = display.rows_lit(field);
     match shown.drawn(x, y, field, display.lights(0, x, y, field)?)? {
         Drawn::View(moment) => Some(moment.pose),
-        Drawn::Between { .. } | Drawn::Shifted(..) => None,
+        Drawn::Between { .. } | Drawn::Shifted(..) | Drawn::Faces(_) => None,
     }
 }

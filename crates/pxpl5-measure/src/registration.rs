@@ -1,7 +1,7 @@
 //! How far a pixel's content is from where it should be at the moment when it lights.
 
 use crate::content::{Content, Contents};
-use crate::shown::{Drawn, Moment, Seen, Shown, view_of};
+use crate::shown::{Drawn, FacesSeen, Moment, Seen, Shown, view_of};
 use glam::{DVec2, DVec3};
 use pxpl5_run::{HeadViews, Outcome};
 use pxpl5_sim::Time;
@@ -42,10 +42,26 @@ impl<'a> Judge<'a> {
         met.unwrap_or_else(|| Content::fixed(position + direction * self.distance_m))
     }
 
+    /// The nearest of what stands at a place of several memories, of the lowest where they are alike; a point at the distance of what
+    /// has none where all are empty.
+    fn nearest(&self, faces: &FacesSeen, place: DVec2) -> Content {
+        let direction = self.direction(place);
+        let met = faces.memories.iter().filter_map(|(moment, structures)| {
+            let Pose { position, orientation } = moment.pose;
+            self.contents.met_of(position, orientation * direction, moment.objects_at, structures)
+        });
+        let nearest = met.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, content)| content);
+        nearest.unwrap_or_else(|| {
+            let Pose { position, orientation } = faces.memories[0].0.pose;
+            Content::fixed(position + orientation * direction * self.distance_m)
+        })
+    }
+
     /// What stands at a place of what was drawn.
     fn content(&self, drawn: &Drawn, place: DVec2) -> Content {
         match drawn {
             Drawn::View(moment) => self.met(moment, place),
+            Drawn::Faces(faces) => self.nearest(faces, place),
             Drawn::Shifted(moment, shift) => self.met(moment, place - *shift),
             Drawn::Between { from, to, part, on_screen } => {
                 let between = between(from, to, *part);

@@ -2,6 +2,7 @@
 
 use crate::budget::Budget;
 use crate::errors::{PixelErrors, pixel_errors};
+use crate::faces_report::FacesReport;
 use crate::latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, latency_part_statistics};
 use crate::too_heavy::TooHeavy;
 use parameters::Value;
@@ -83,6 +84,9 @@ pub struct Report {
     /// From the head to light; nothing of a run without a tracker.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub head: Option<HeadReport>,
+    /// Of a display with faces around the head; nothing of any other.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arp: Option<FacesReport>,
     /// Hash of everything that happened.
     pub trace_hash: String,
     /// Events of the simulation that were handled.
@@ -195,6 +199,7 @@ impl Report {
             first_late_regions: tally.first_late_regions.clone(),
             display_counters: record.display().counters(),
             head: outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())),
+            arp: FacesReport::of(outcome),
             trace_hash: record.trace_hash().to_string(),
             events: record.events(),
             host_seconds: outcome.host_seconds(),

@@ -1,52 +1,17 @@
 //! What each pixel of a run shows, and for which pose it was drawn.
 
+pub(crate) use crate::drawn::{Drawn, FacesSeen, Moment};
 use crate::screen::Screen;
-use glam::DVec2;
+use crate::turned::TurnedFaces;
 use pxpl5_display::{Display, Surface};
-use pxpl5_run::{Estimator, HeadViews, Outcome, Sampled, Source};
+use pxpl5_run::{Cause, Estimator, HeadViews, Outcome, Sampled, Source};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
-use tracking::Pose;
 use tracking::view::HmdView;
 
-/// What a view was drawn for: a pose, and the time for which moving objects were placed.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Moment {
-    pub(crate) pose: Pose,
-    pub(crate) objects_at: Time,
-}
-
-/// What a pixel was drawn for.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Drawn {
-    View(Moment),
-    Between {
-        from: Moment,
-        to: Moment,
-        part: f64,
-        on_screen: bool,
-    },
-    /// A picture that is shifted on its way to the screen.
-    Shifted(Moment, DVec2),
-}
-
-impl Drawn {
-    /// The instant that it was drawn for; what is shifted on its way is drawn for the instant of its light.
-    pub(crate) fn instant(&self, light: Time) -> Time {
-        match self {
-            Self::View(moment) => moment.objects_at,
-            Self::Between { from, to, part, .. } => {
-                let ahead_ps = to.objects_at.since(from.objects_at).0 as f64 * part;
-                Time(from.objects_at.0 + ahead_ps as u64)
-            }
-            Self::Shifted(..) => light,
-        }
-    }
-}
-
 /// What a pixel shows, as far as it can be judged.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum Seen {
     /// Nothing yet, or nothing that is known.
     Nothing,
@@ -65,21 +30,27 @@ pub(crate) struct Shown<'a> {
     /// Pictures that were complete in time.
     complete: BTreeSet<PictureNumber>,
     moments: BTreeMap<ViewNumber, Moment>,
+    /// Of a display with faces.
+    faces: Option<TurnedFaces<'a>>,
 }
 
 impl<'a> Shown<'a> {
-    pub(crate) fn of_run(outcome: &'a Outcome, head: &HeadViews) -> Self {
+    pub(crate) fn of_run(outcome: &'a Outcome, head: &'a HeadViews) -> Self {
         Self {
             outcome,
             screen: Screen::of_record(outcome.record()),
             views: outcome.pictures().iter().map(|times| (times.picture, times.view)).collect(),
             complete: outcome.pictures().iter().filter(|times| times.is_shown()).map(|times| times.picture).collect(),
             moments: head.sampled().into_iter().map(|sampled| (sampled.number, moment_of(&sampled))).collect(),
+            faces: TurnedFaces::of_run(outcome, head),
         }
     }
 
     /// What a pixel that lights at `at` shows, and whether its picture was complete in time.
     pub(crate) fn seen(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Seen {
+        if self.faces.is_some() {
+            return self.drawn(x, y, field, at).map_or(Seen::Nothing, Seen::Complete);
+        }
         match self.screen.shown(x, y, field, at) {
             Some(target) if !self.complete.contains(&target.picture) => Seen::Incomplete,
             _ => self.drawn(x, y, field, at).map_or(Seen::Nothing, Seen::Complete),
@@ -87,18 +58,23 @@ impl<'a> Shown<'a> {
     }
 
     /// The same run with the poses that some of its views would have had; all others show nothing.
-    pub(crate) fn with_poses(self, head: &HeadViews, of: &BTreeSet<ViewNumber>, mut estimator: Estimator<'_>) -> Self {
+    pub(crate) fn with_poses(self, head: &'a HeadViews, of: &BTreeSet<ViewNumber>, without: Cause) -> Self {
+        let mut estimator = Estimator::new(head, Some(without));
         let mut sampled: Vec<Sampled> = head.sampled().into_iter().filter(|s| of.contains(&s.number)).collect();
         sampled.sort_by_key(|sampled| sampled.known);
         let moments = sampled.into_iter().map(|sampled| {
             let pose = estimator.pose(sampled.known, sampled.objects_at);
             (sampled.number, Moment { pose, objects_at: sampled.objects_at })
         });
-        Self { moments: moments.collect(), ..self }
+        let faces = self.faces.map(|faces| faces.without(without));
+        Self { moments: moments.collect(), faces, ..self }
     }
 
     /// The views that a pixel shows which lights at `at`: one, or two between which it stands; none before anything came.
     pub(crate) fn views_at(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Vec<ViewNumber> {
+        if let Some(faces) = &self.faces {
+            return faces.views_at(field);
+        }
         match self.source(x, y, field, at) {
             Some(Source::View(number)) => vec![number],
             Some(Source::Between { from, to, .. }) => vec![from, to],
@@ -115,6 +91,9 @@ impl<'a> Shown<'a> {
     /// What a pixel that lights at `at` shows; `None` before anything came.
     pub(crate) fn drawn(&self, x: u32, y: u32, field: PeriodNumber, at: Time) -> Option<Drawn> {
         let moment = |number: ViewNumber| self.moments.get(&number).copied();
+        if let Some(faces) = &self.faces {
+            return faces.drawn(x, y, field, moment).map(Drawn::Faces);
+        }
         Some(match self.source(x, y, field, at)? {
             Source::View(number) => Drawn::View(moment(number)?),
             Source::Between { from, to, part, on_screen } => {

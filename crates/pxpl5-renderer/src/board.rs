@@ -6,8 +6,8 @@ use crate::job::{ArrayPool, NoPixels, PixelJob};
 use crate::timing::RendererTiming;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{
-    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder, CopyTarget, CopyWay,
-    MAX_MESSAGE_WORDS, Message, NodeId, PixelSource, RegionPixels,
+    Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyContent, CopyOrder, CopyTarget,
+    CopyWay, MAX_MESSAGE_WORDS, Message, NodeId, PixelSource, RegionPixels,
 };
 use std::collections::VecDeque;
 use std::sync::{Arc, OnceLock};
@@ -195,14 +195,15 @@ impl Renderer {
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
         let ContextLog { cleared, drawn, lists } = self.logs[usize::from(order.context) % MAX_CONTEXTS].clone();
         if lists.is_empty() {
-            return Arc::new(NoPixels { pixels: width * height });
+            return Arc::new(NoPixels { words: width * height * order.content.words() });
         }
         Arc::new(PixelJob {
             pool: Arc::clone(&self.pool),
             lists,
             cleared,
-            kept: self.keeps_empty_regions && !drawn,
+            kept: self.keeps_empty_regions && !drawn && order.content == CopyContent::Colour,
             target: order.target,
+            content: order.content,
             done: OnceLock::new(),
         })
     }
@@ -237,15 +238,22 @@ impl Renderer {
         self.transfer_next(context);
     }
 
-    /// Moves a finished region's colours to the backing store when there is a place for them; the controller is free when
+    /// Moves a finished region's colours (and depths, a block of their own) to the backing store when there is a place for them; the controller is free when
     /// they are there.
     fn store_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
-        let held = self.stored.len() + usize::from(self.copying.is_some());
-        if self.storing || self.unstored.is_empty() || held as u64 >= self.timing.backing_regions() {
+        let Some(blocks) = self.unstored.front().map(|copy| u64::from(copy.order.content.words())) else { return };
+        let held: u64 = self
+            .stored
+            .iter()
+            .map(|copy| &copy.order)
+            .chain(&self.copying)
+            .map(|order| u64::from(order.content.words()))
+            .sum();
+        if self.storing || held + blocks > self.timing.backing_regions() {
             return;
         }
         self.storing = true;
-        let stored_at = context.now() + self.timing.backing_block();
+        let stored_at = context.now() + self.timing.backing_block() * blocks;
         context.schedule(stored_at, Phase::Work, RendererEvent::Stored);
         let progress = self.fifo.resume(stored_at);
         self.report(progress, context);
@@ -275,10 +283,10 @@ impl Renderer {
     ) {
         self.copying = Some(*order);
         let [_, _, width, height] = order.target.grid.rectangle(order.target.region);
-        let pixels = width * height;
-        let parts = pixels.div_ceil(MAX_MESSAGE_WORDS);
+        let all = width * height * order.content.words();
+        let parts = all.div_ceil(MAX_MESSAGE_WORDS);
         for part in 0..parts {
-            let words = MAX_MESSAGE_WORDS.min(pixels - part * MAX_MESSAGE_WORDS);
+            let words = MAX_MESSAGE_WORDS.min(all - part * MAX_MESSAGE_WORDS);
             let body = Body::Pixels(RegionPixels { target: order.target, image: Arc::clone(image), part, parts });
             let message = Message { source: self.node, destination: order.target.frame_buffer, words, body };
             let last = part + 1 == parts;

@@ -1,7 +1,8 @@
 //! Pixels of one region, computed when somebody looks.
 
 use crate::{Command, Lanes, Layout, PixelArray};
-use pxpl5_wire::{CommandWords, CopyTarget, PixelSource, Word};
+use pxpl5_wire::format::Z_BITS;
+use pxpl5_wire::{CommandWords, CopyContent, CopyTarget, PixelSource, Word};
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -84,6 +85,8 @@ pub(crate) struct PixelJob {
     pub(crate) kept: bool,
     /// Where the pixels go.
     pub(crate) target: CopyTarget,
+    /// What of each pixel is sent.
+    pub(crate) content: CopyContent,
     pub(crate) done: OnceLock<Arc<[Word]>>,
 }
 
@@ -133,8 +136,23 @@ impl PixelJob {
                 copied = outputs.into_iter().rfind(|output| output.target == self.target);
             }
             let [width, height] = self.size();
-            copied.map_or_else(|| array.read_colour(width, height), |output| output.pixels)
+            let colours = copied.map_or_else(|| array.read_colour(width, height), |output| output.pixels);
+            match self.content {
+                CopyContent::Colour => colours,
+                CopyContent::ColourAndDepth => colours.iter().copied().chain(self.depths(array)).collect(),
+                CopyContent::Packed => colours.iter().zip(self.depths(array)).map(packed).collect(),
+            }
         })
+    }
+
+    /// The depths of the region's pixels in 24 bits, 0 at the near plane; what a layout does not hold of them is 1 at the far plane
+    /// and 0 elsewhere.
+    fn depths(&self, array: &Lanes) -> Vec<Word> {
+        let [width, height] = self.size();
+        let missing = Z_BITS - u32::from(self.pool.layout.plan().z.width);
+        let farthest = (1 << (Z_BITS - missing)) - 1;
+        let widened = |depth: &Word| if *depth == farthest { DEPTH_FARTHEST } else { depth << missing };
+        array.read_depth(width, height).iter().map(widened).collect()
     }
 }
 
@@ -144,15 +162,23 @@ impl PixelSource for PixelJob {
     }
 }
 
+/// The farthest depth in 24 bits.
+const DEPTH_FARTHEST: Word = (1 << Z_BITS) - 1;
+
+/// A colour in 5, 6 and 5 bits below the upper 16 of 24 bits of depth.
+fn packed((colour, depth): (&Word, Word)) -> Word {
+    (depth >> 8) << 16 | (colour >> 8 & 0xF800) | (colour >> 5 & 0x07E0) | (colour >> 3 & 0x001F)
+}
+
 /// A region that was copied while pixels were switched off.
 #[derive(Debug)]
 pub(crate) struct NoPixels {
-    pub(crate) pixels: u32,
+    pub(crate) words: u32,
 }
 
 impl PixelSource for NoPixels {
     fn pixels(&self) -> Arc<[Word]> {
-        vec![0; self.pixels as usize].into()
+        vec![0; self.words as usize].into()
     }
 }
 
@@ -187,7 +213,16 @@ mod tests {
         let mut words = Vec::new();
         commands.iter().for_each(|command| command.encode(&pool.layout, &mut words).expect("it fits"));
         let lists: Vec<Arc<dyn CommandWords>> = vec![Arc::new(GivenWords(words))];
-        PixelJob { pool: Arc::clone(pool), lists, cleared: true, kept: true, target, done: OnceLock::new() }.pixels()
+        PixelJob {
+            pool: Arc::clone(pool),
+            lists,
+            cleared: true,
+            kept: true,
+            target,
+            content: CopyContent::Colour,
+            done: OnceLock::new(),
+        }
+        .pixels()
     }
 
     #[test]

@@ -100,6 +100,15 @@ impl Lanes {
     }
 }
 
+impl Lanes {
+    /// The depth of the selected context in as many bits as the layout has for it, row by row, of the left top `width` x `height`
+    /// pixels.
+    pub(crate) fn read_depth(&self, width: u32, height: u32) -> Arc<[Word]> {
+        let depth = self.controller.bits(self.layout.plan().z);
+        depth.map_or_else(|_| Arc::default(), |field| self.colour(field, width, height))
+    }
+}
+
 /// The left top `width` x `height` of all pixels.
 fn rectangle(pixels: &[Word], width: u32, height: u32) -> Arc<[Word]> {
     const WIDTH: usize = REGION_SIZE as usize;

@@ -1,6 +1,6 @@
 //! From a scene to what graphics processors hold and hosts send.
 
-use crate::views::{Views, ViewsWanted};
+use crate::views::{Poses, Views, ViewsWanted};
 use pphigs::{DisplayList, DisplayStructure, EyeView, FrameView, MAX_EDITS, ModelEdit, ModelFrame, RecentViews};
 use pxpl5_display::Surface;
 use pxpl5_geometry::{Culling, WorldSphere};
@@ -72,6 +72,12 @@ pub(crate) fn hmd_before(surface: Option<&Surface>) -> Hmd {
     let unc = HmdConfig::unc();
     let config = surface.map_or(unc, |surface| HmdConfig { width_px: surface.width, height_px: surface.height, ..unc });
     Hmd::new(config).expect("a surface has pixels")
+}
+
+/// The scene's own head motion with a seed, which a host follows without any delay.
+pub(crate) fn poses(scene: &Scene, seed: u64) -> Poses {
+    let motion: HeadMotion = scene.motion().with_seed(seed);
+    Arc::new(move |known, _| motion.pose(known.0))
 }
 
 /// The views of the scene's own head motion with a seed: as sampled, and for the moment when they are seen.

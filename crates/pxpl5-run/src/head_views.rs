@@ -3,7 +3,7 @@
 use crate::display_list::view;
 use crate::head::Head;
 use crate::rehearsal::Rehearsal;
-use crate::views::{ReportTimes, Views, ViewsWanted};
+use crate::views::{Poses, ReportTimes, Views, ViewsWanted};
 use glam::{DQuat, DVec3};
 use pphigs::FrameView;
 use pxpl5_scene::{Hmd, Scene};
@@ -129,6 +129,30 @@ impl HeadViews {
         )
     }
 
+    /// What its host knows of the head alone; the predictor is one of its own.
+    pub(crate) fn poses(this: &Arc<Self>) -> Poses {
+        let follower = Mutex::new(this.follower());
+        let views = Arc::clone(this);
+        Arc::new(move |known, at| {
+            let mut follower = follower.lock().unwrap_or_else(PoisonError::into_inner);
+            views.in_scene(&follower.pose(known, at, &views.start))
+        })
+    }
+
+    /// When what a report says was true, by the report's arrival at the host; `None` where there is no such report.
+    #[must_use]
+    pub fn measured_at(&self, arrived: Time) -> Option<Time> {
+        let place = self.reports.partition_point(|report| report.arrives_ps < arrived.0);
+        self.reports.get(place).map(|report| Time(report.measured_ps))
+    }
+
+    /// The last report that had reached the host by an instant; `None` before the first.
+    #[must_use]
+    pub fn report_by(&self, instant: Time) -> Option<Time> {
+        let next = self.reports.partition_point(|report| report.arrives_ps <= instant.0);
+        self.reports[..next].last().map(|report| Time(report.arrives_ps))
+    }
+
     fn state(&self) -> MutexGuard<'_, (Follower<'static>, Vec<Sampled>)> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -153,7 +177,9 @@ impl HeadViews {
         self.reports.get(next).map(|report| Time(report.arrives_ps))
     }
 
-    fn report_after(&self, after: Time) -> Option<Time> {
+    /// The first report that reaches the host after an instant; `None` if none does.
+    #[must_use]
+    pub fn report_after(&self, after: Time) -> Option<Time> {
         let next = self.reports.partition_point(|report| report.arrives_ps <= after.0);
         self.reports.get(next).map(|report| Time(report.arrives_ps))
     }

@@ -2,6 +2,7 @@
 
 use crate::due::{DuePictures, WARM_UP_PERIODS, WINDOW_DEFINITION};
 use crate::experiment::{Experiment, WARM_UP_PICTURES};
+use crate::face_notes::FaceNotes;
 use crate::head_views::HeadViews;
 use crate::latency::{LatencyParts, parts};
 use crate::pipeline::{PictureTimes, Pipeline};
@@ -20,6 +21,7 @@ pub struct Outcome {
     experiment: Experiment,
     record: Record,
     head: Option<Arc<HeadViews>>,
+    notes: FaceNotes,
     tally: Tally,
     pictures: Vec<PictureTimes>,
     reached: PeriodNumber,
@@ -30,14 +32,14 @@ impl Outcome {
     pub(crate) fn new(
         experiment: Experiment,
         record: Record,
-        head: Option<Arc<HeadViews>>,
+        (head, notes): (Option<Arc<HeadViews>>, FaceNotes),
         window: Window,
         reached: PeriodNumber,
         host_seconds: Option<f64>,
     ) -> Self {
         let end = record.tick(experiment.end());
         let (tally, pictures) = window.close(experiment.pipeline.as_ref(), &record, (end, reached));
-        Self { experiment, record, head, tally, pictures, reached, host_seconds }
+        Self { experiment, record, head, notes, tally, pictures, reached, host_seconds }
     }
 
     /// What was summed up over the whole run.
@@ -128,6 +130,12 @@ impl Outcome {
     #[must_use]
     pub fn head(&self) -> Option<&HeadViews> {
         self.head.as_deref()
+    }
+
+    /// The updates of display memories that were asked for, in order; none of a pipeline that draws no faces.
+    #[must_use]
+    pub const fn face_notes(&self) -> &FaceNotes {
+        &self.notes
     }
 
     /// Time that the run took on this host, in seconds; `None` on a host without a clock.

@@ -1,8 +1,10 @@
 //! Pipelines as experiments see them.
 
 use crate::due::PictureEnd;
+use crate::face_notes::FaceNotes;
 use crate::keys::KeyValue;
-use crate::views::{FrameStarts, ReportTimes, Views, ViewsWanted};
+use crate::views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
+use address_recalculation::Latch;
 use image::RgbImage;
 use pphigs::{DisplayList, Shading};
 use pxpl5_display::{Aim, LightSpan};
@@ -43,6 +45,12 @@ pub struct Setup {
     pub views: Views,
     /// The same for firmware that knows when a view will be seen.
     pub wanted: ViewsWanted,
+    /// The head alone, for displays that turn with it.
+    pub poses: Poses,
+    /// Which structures of the scene move by themselves, or with the head.
+    pub moving: Arc<[bool]>,
+    /// Where pipelines that draw faces say what they drew.
+    pub notes: FaceNotes,
     /// For which instant of what is shown from it a view is drawn, for firmware that knows when that is.
     pub aim: Aim,
     /// When the host has something new.
@@ -106,6 +114,13 @@ pub trait Pipeline: Any + Debug + Send + Sync {
     /// The machine with what the pipeline's variant changes in it, such as the time of its code.
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         config
+    }
+
+    /// Whether it draws faces of a cube around the head, for a display that takes them
+    /// ([`DisplayConfig::takes_faces`](pxpl5_display::DisplayConfig::takes_faces)), and before what such a display latches the
+    /// orientation.
+    fn draws_faces(&self) -> Option<Latch> {
+        None
     }
 
     /// Loads its programs onto the boards.

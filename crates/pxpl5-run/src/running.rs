@@ -1,21 +1,30 @@
 //! Running an experiment.
 
-use crate::display_list::{display_list, hmd_before, views};
+use crate::display_list::{display_list, hmd_before, poses, views};
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels, WARM_UP_PICTURES};
+use crate::face_notes::FaceNotes;
 use crate::head::Head;
 use crate::head_views::{FIELDS_WITH_HEAD, HeadViews};
 use crate::level::{Level, with_clocks_of_instructions};
 use crate::outcome::Outcome;
-use crate::pipeline::Setup;
+use crate::pipeline::{Pipeline, Setup};
 use crate::preparation::Preparation;
 use crate::views::{FrameStarts, ReportTimes};
 use crate::window::Window;
-use pxpl5_machine::{DEADLOCK_TICKS, Machine, MachineConfig, RunError};
+use pxpl5_machine::{ConfigError, DEADLOCK_TICKS, Machine, MachineConfig, RunError};
+use pxpl5_scene::{Frame, Structure};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
 use std::sync::Arc;
+
+/// A machine with its programs, and what is written of a run while it goes on.
+struct Assembled {
+    machine: Machine,
+    head: Option<Arc<HeadViews>>,
+    notes: FaceNotes,
+}
 
 impl Experiment {
     /// Builds the machine, switched on, with the pipeline's programs loaded; with prediction, after a rehearsal.
@@ -24,15 +33,19 @@ impl Experiment {
     ///
     /// [`ExperimentError`] for a machine, scene or number of fields that cannot be simulated.
     pub fn build(&self) -> Result<Machine, ExperimentError> {
-        Ok(self.assemble(self.prepare()?)?.0)
+        Ok(self.assemble(self.prepare()?)?.machine)
     }
 
-    fn assemble(&self, preparation: Preparation) -> Result<(Machine, Option<Arc<HeadViews>>), ExperimentError> {
+    fn assemble(&self, preparation: Preparation) -> Result<Assembled, ExperimentError> {
         let expected = if self.head.is_some() { (FIELDS_RANGE.0, FIELDS_WITH_HEAD) } else { FIELDS_RANGE };
         if !(expected.0..=expected.1).contains(&self.fields) {
             return Err(ExperimentError::Fields { expected, found: self.fields });
         }
-        let adapted = self.pipeline.adapt(self.config.clone());
+        let mut adapted = self.pipeline.adapt(self.config.clone());
+        check_faces(&adapted, self.pipeline.as_ref())?;
+        let [red, green, blue] = self.scene.lighting().background;
+        let background = u32::from_be_bytes([0, red, green, blue]);
+        adapted.displays.iter_mut().for_each(|display| display.show_behind_all(background));
         let layout = self.pipeline.layout();
         let config = match self.level {
             Level::Analytic => return Err(ExperimentError::Level),
@@ -44,6 +57,7 @@ impl Experiment {
             machine.run_code();
         }
         let (setup, head) = self.setup(&config, &machine, preparation)?;
+        let notes = setup.notes.clone();
         self.pipeline.load(&mut machine, &setup)?;
         if let Some(seed) = self.shuffle {
             machine.shuffle_ties(seed);
@@ -56,7 +70,7 @@ impl Experiment {
             machine.record_traffic();
         }
         machine.switch_on();
-        Ok((machine, head))
+        Ok(Assembled { machine, head, notes })
     }
 
     fn setup(
@@ -75,13 +89,19 @@ impl Experiment {
         let starts: FrameStarts = Arc::new(Some);
         let aim = self.aim();
         let pixels = self.pixels != Pixels::Off;
-        let setup = Setup { list, views, wanted, aim, reports, starts, host: config.host, pixels };
+        let poses = poses(&self.scene, self.seed);
+        let notes = FaceNotes::default();
+        // What is fixed to the head moves with it.
+        let moves = |structure: &Structure| structure.hinge.is_some() || structure.frame == Frame::Head;
+        let moving = self.scene.structures().iter().map(moves).collect();
+        let setup =
+            Setup { list, views, wanted, poses, moving, notes, aim, reports, starts, host: config.host, pixels };
         let Some(head) = preparation.head.or_else(|| self.head.clone()) else { return Ok((setup, None)) };
         let until = machine.record().tick(self.end());
         check_recording(&head, until)?;
         let head = Arc::new(HeadViews::new(head, &self.scene, (hmd, eyes), until, preparation.rehearsal));
         let (views, wanted, reports) = HeadViews::functions(&head);
-        let setup = Setup { views, wanted, reports, ..setup };
+        let setup = Setup { views, wanted, reports, poses: HeadViews::poses(&head), ..setup };
         if !self.on_demand {
             return Ok((setup, Some(head)));
         }
@@ -132,7 +152,7 @@ impl Experiment {
         mut at: impl FnMut(PeriodNumber, &mut Machine) -> Result<(), ExperimentError>,
     ) -> Result<Outcome, ExperimentError> {
         let begun_s = self.host.seconds();
-        let (mut machine, head) = self.assemble(preparation.clone())?;
+        let Assembled { mut machine, head, notes } = self.assemble(preparation.clone())?;
         let mut window = Window::new(self, machine.record());
         let mut result = Ok(());
         for field in self.stops(stops) {
@@ -153,7 +173,7 @@ impl Experiment {
         let record = machine.into_record();
         let stopped = result.as_ref().err().map(|error| record.display().period_at(error.time()));
         let reached = stopped.unwrap_or(self.end()).min(self.end());
-        let outcome = Outcome::new(self.clone(), record, head, window, reached, host_seconds);
+        let outcome = Outcome::new(self.clone(), record, (head, notes), window, reached, host_seconds);
         match result {
             Err(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
             Ok(()) if outcome.tally().pictures <= WARM_UP_PICTURES as u64 => Err(self.too_short(outcome)),
@@ -171,7 +191,7 @@ impl Experiment {
     /// is repeated for as long as that takes, so that the record of this one ends where it was asked to.
     fn deadlock(&self, preparation: Preparation) -> Option<RunError> {
         let longer = Self { fields: self.fields + DEADLOCK_TICKS + 2, pixels: Pixels::Off, ..self.clone() };
-        let (mut machine, _) = longer.assemble(preparation).ok()?;
+        let Assembled { mut machine, .. } = longer.assemble(preparation).ok()?;
         for field in longer.stops(&[]) {
             let until = machine.record().tick(field);
             if let Err(error) = machine.run_until(until) {
@@ -210,6 +230,26 @@ const IDLE_TICKS: u64 = 2;
 
 /// Fields between two reports of progress.
 const PROGRESS_FIELDS: u64 = 60;
+
+/// A display that shows faces needs a pipeline that draws them, and the other way round.
+///
+/// # Errors
+///
+/// [`ConfigError`] says what was expected of the pipeline and what was found.
+pub fn check_faces(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), ConfigError> {
+    let Some(display) = config.displays.first() else { return Ok(()) };
+    let name = display.name();
+    let pipeline_name = pipeline.name();
+    match (display.takes_faces(), pipeline.draws_faces().is_some()) {
+        (true, false) => Err(ConfigError::Board(format!(
+            "display {name} shows six faces around the head: expected a pipeline that draws faces, such as arp-full, found {pipeline_name}"
+        ))),
+        (false, true) => Err(ConfigError::Board(format!(
+            "{pipeline_name} draws six faces around the head: expected the display arp, found {name}"
+        ))),
+        _ => Ok(()),
+    }
+}
 
 /// A motion that ends must not end before the run.
 fn check_recording(head: &Head, until: Time) -> Result<(), ExperimentError> {

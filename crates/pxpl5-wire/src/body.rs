@@ -51,8 +51,33 @@ pub struct CopyOrder {
     pub context: u8,
     /// The way of its colours.
     pub way: CopyWay,
+    /// What of its pixels is sent.
+    pub content: CopyContent,
     /// Who is told, by a message of [`COPY_ACKNOWLEDGEMENT_WORDS`], when the last pixel has arrived.
     pub acknowledge: Option<NodeId>,
+}
+
+/// What of a region's pixels a copy sends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum CopyContent {
+    /// A word a pixel: its colour.
+    #[default]
+    Colour,
+    /// Two words a pixel: the colours of all pixels, then their depths of 24 bits.
+    ColourAndDepth,
+    /// A word a pixel: the upper half of its depth above its colour in 5, 6 and 5 bits.
+    Packed,
+}
+
+impl CopyContent {
+    /// Words that a pixel takes: on the ring, and of 32 bits in the backing store.
+    #[must_use]
+    pub const fn words(self) -> u32 {
+        match self {
+            Self::Colour | Self::Packed => 1,
+            Self::ColourAndDepth => 2,
+        }
+    }
 }
 
 /// The way of a region's colours from pixel memory to the frame buffer.
@@ -170,7 +195,8 @@ pub struct RegionPixels {
 
 /// Pixels of a region, computed when somebody looks.
 pub trait PixelSource: Debug + Send + Sync {
-    /// One word a pixel, 0x00RRGGBB, row by row, `width * height` of the region's rectangle.
+    /// One word a pixel, 0x00RRGGBB, row by row, `width * height` of the region's rectangle; of a copy with depth
+    /// ([`CopyContent`]) the words that it says.
     fn pixels(&self) -> Arc<[Word]>;
 }
 

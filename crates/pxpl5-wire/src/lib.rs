@@ -25,9 +25,9 @@ mod number;
 mod region;
 
 pub use body::{
-    Body, COPY_ACKNOWLEDGEMENT, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyOrder,
-    CopyTarget, CopyWay, FieldParity, Lines, Message, PixelSource, RegionPixels, SWAP_REQUEST, read_swap_request,
-    swap_request,
+    Body, COPY_ACKNOWLEDGEMENT, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyContent,
+    CopyOrder, CopyTarget, CopyWay, FieldParity, Lines, Message, PixelSource, RegionPixels, SWAP_REQUEST,
+    read_swap_request, swap_request,
 };
 pub use expression::{Linear, Quadratic};
 pub use number::{PeriodNumber, PictureNumber, ViewNumber};

@@ -5,7 +5,7 @@ use crate::protocol::{RegionEnd, StageOrder, Token};
 use crate::rules::{Completed, EyeDrawing};
 use pphigs::copy_message;
 use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
-use pxpl5_wire::{Body, CopyOrder, CopyWay, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
+use pxpl5_wire::{Body, CopyContent, CopyOrder, CopyWay, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
 use std::collections::VecDeque;
 
 /// What a renderer is doing, as far as the master knows.
@@ -324,5 +324,11 @@ pub(crate) fn copy_order(
     region: RegionId,
     way: CopyWay,
 ) -> CopyOrder {
-    CopyOrder { target: config.target(drawing, region), context: 0, way, acknowledge: Some(config.master) }
+    CopyOrder {
+        target: config.target(drawing, region),
+        context: 0,
+        way,
+        acknowledge: Some(config.master),
+        content: CopyContent::Colour,
+    }
 }

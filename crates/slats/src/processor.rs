@@ -9,8 +9,8 @@ use pphigs::{
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage, Ticket};
 use pxpl5_wire::{
-    Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyOrder, CopyWay, Eye, FieldParity, NodeId, PeriodNumber, PictureNumber,
-    Word, swap_request,
+    Body, COPY_ACKNOWLEDGEMENT, CommandList, CopyContent, CopyOrder, CopyWay, Eye, FieldParity, NodeId, PeriodNumber,
+    PictureNumber, Word, swap_request,
 };
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -305,6 +305,7 @@ impl SlatsProcessor {
             context: bound.context,
             way: CopyWay::FromPixelMemory,
             acknowledge: None,
+            content: CopyContent::Colour,
         }
     }
 }

@@ -26,7 +26,7 @@ pub fn straight_edge(lens: Lens) -> Result<[f64; 2], ExperimentError> {
     view.draw(DVec3::ZERO, edge, &mut faces);
     let table = config.table()?;
     let picture = config.picture();
-    let lookup = Lookup::new(&config, &table, vec![&faces], None);
+    let mut lookup = Lookup::new(&config, &table, vec![&faces], None);
     let mut points = [Vec::new(), Vec::new()];
     let focal = f64::from(picture.width) / 2.0 / libm::tan(picture.horizontal_deg.to_radians() / 2.0);
     for y in 0..picture.height {

@@ -12,7 +12,7 @@ use pxpl5_machine::{ConfigError, MachineConfig, Parameter};
 use pxpl5_measure::{Measure, Results};
 use pxpl5_run::{
     Experiment, ExperimentError, FIELDS_RANGE, FIELDS_WITH_HEAD, Key, KeyValue, KeyValues, Level, LimitCriterion,
-    Pipeline, PipelineEntry, PipelineSettings, Pixels, Registry, out_of_range,
+    Pipeline, PipelineEntry, PipelineSettings, Pixels, Registry, check_faces, out_of_range,
 };
 use pxpl5_scene::{Placement, Scene};
 use std::path::Path;
@@ -275,6 +275,8 @@ impl ExperimentFile {
         let mut machine = self.registry().machine_of(machine);
         if let Some(display) = self.display()? {
             machine.displays = vec![display];
+            let place = self.get("display").map_or("display", |setting| &setting.place);
+            check_faces(&machine, pipeline).map_err(|error| refused(place, error))?;
         }
         let mut machine = pipeline.adapt(machine);
         if let Some(code) = self.choice("machine.code", &CODES)? {

@@ -1,10 +1,13 @@
 //! The pipelines of the papers. A new one is one more file here, or in a user's crate, and one more line below.
 
+mod face_plan;
+mod faces;
 mod frameless;
 mod jitp;
 mod rendering_control;
 mod slats;
 
+pub use faces::{FacePipeline, FacePolicy};
 pub use frameless::Frameless;
 pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
 pub use rendering_control::{FinishedRegions, RenderingControl};
@@ -20,6 +23,7 @@ use std::any::Any;
 pub(crate) fn entries() -> Vec<PipelineEntry> {
     let mut all = vec![rendering_control::ENTRY, slats::ENTRY, frameless::ENTRY];
     all.extend(jitp::ENTRIES);
+    all.extend(faces::ENTRIES);
     all
 }
 

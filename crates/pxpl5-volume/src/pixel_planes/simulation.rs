@@ -30,8 +30,8 @@ use pxpl5_renderer::{ArrayPool, CommandKind, Layout, Renderer, RendererEvent, Re
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput, RingTiming};
 use pxpl5_sim::{Clock, Context, Cycles, EventQueue, Phase, Span, Time};
 use pxpl5_wire::{
-    Body, CommandList, CommandRun, CopyOrder, CopyTarget, CopyWay, Lines, MAX_MESSAGE_WORDS, Message, NodeId,
-    PeriodNumber, PictureNumber, REGION_SIZE, RegionGrid, RegionId, Word, swap_request,
+    Body, CommandList, CommandRun, CopyContent, CopyOrder, CopyTarget, CopyWay, Lines, MAX_MESSAGE_WORDS, Message,
+    NodeId, PeriodNumber, PictureNumber, REGION_SIZE, RegionGrid, RegionId, Word, swap_request,
 };
 use serde::Serialize;
 use std::collections::VecDeque;
@@ -281,7 +281,7 @@ impl<'a> Machine<'a> {
             region: RegionId(region as u16),
             picture: PictureNumber(slice as u64),
         };
-        CopyOrder { target, context: 0, way: CopyWay::ThroughBacking, acknowledge: None }
+        CopyOrder { target, context: 0, way: CopyWay::ThroughBacking, acknowledge: None, content: CopyContent::Colour }
     }
 
     fn ring_event(&mut self, now: Time, event: RingEvent) {

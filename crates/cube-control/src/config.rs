@@ -1,0 +1,79 @@
+//! Who takes part.
+
+use crate::update::FaceUpdate;
+use address_recalculation::{CubeFace, region_grid};
+use pphigs::{Picture, Share};
+use pxpl5_wire::{CopyContent, CopyTarget, Lines, NodeId, RegionGrid, RegionId};
+use std::sync::Arc;
+
+/// The boards that take part, and the kind of faces that they make.
+#[derive(Clone, Debug)]
+pub struct CubeControlConfig {
+    /// Node of the host interface, which sends updates.
+    pub host: NodeId,
+    /// Node of the GP that begins every stage.
+    pub master: NodeId,
+    /// Nodes of the slave GPs, at least one.
+    pub slaves: Vec<NodeId>,
+    /// Nodes of the renderers, at least one.
+    pub renderers: Vec<NodeId>,
+    /// The port of each display memory.
+    pub memories: Vec<NodeId>,
+    /// What is drawn of each face.
+    pub picture: Picture,
+    /// What of a texel goes over the ring.
+    pub content: CopyContent,
+    /// Finished regions that a renderer keeps in its backing store while their memory is not available, and goes on with the next
+    /// region; 0 where it waits for the copy with the region in pixel memory.
+    pub regions_stored: usize,
+}
+
+/// Bytes of program, stacks and message buffers on a GP (assumed, as under Rendering Control).
+pub(crate) const PROGRAM_BYTES: u64 = 1 << 20;
+
+impl CubeControlConfig {
+    /// Texels along an edge of a face.
+    #[must_use]
+    pub const fn face_texels(&self) -> u32 {
+        self.picture.viewport.grid().width
+    }
+
+    /// All six faces, one under the other.
+    pub(crate) const fn grid(&self) -> RegionGrid {
+        region_grid(self.face_texels())
+    }
+
+    /// Regions of one face.
+    pub(crate) const fn face_regions(&self) -> u16 {
+        self.picture.viewport.grid().regions() as u16
+    }
+
+    /// Regions of all faces.
+    #[must_use]
+    pub const fn regions(&self) -> u16 {
+        self.face_regions() * CubeFace::ALL.len() as u16
+    }
+
+    /// The face that a region of all is on, and its number there.
+    pub(crate) const fn on_face(&self, region: RegionId) -> (usize, RegionId) {
+        ((region.0 / self.face_regions()) as usize, RegionId(region.0 % self.face_regions()))
+    }
+
+    /// Where a region of an update goes.
+    pub(crate) fn target(&self, update: &FaceUpdate, region: RegionId) -> CopyTarget {
+        CopyTarget {
+            frame_buffer: self.memories[usize::from(update.memory)],
+            buffer: update.buffer,
+            lines: Lines::Frame,
+            grid: self.grid(),
+            region,
+            picture: update.number,
+        }
+    }
+
+    /// The primitives that slave `index` holds.
+    #[must_use]
+    pub fn share(&self, list: &Arc<pphigs::DisplayList>, index: usize) -> Share {
+        Share::new(Arc::clone(list), index, self.slaves.len())
+    }
+}

@@ -1,0 +1,116 @@
+//! TRANSFORM for six faces.
+
+use crate::config::CubeControlConfig;
+use crate::update::FaceUpdate;
+use address_recalculation::CubeFace;
+use glam::{Mat4, Vec4};
+use pphigs::{BIN_ENTRY_BYTES, EyeView, FrameView, Pass, PrimitiveCounts, Share, TransformCost};
+use pxpl5_gp::{GpTiming, Processor, ProcessorFault, Work};
+use pxpl5_sim::Span;
+use pxpl5_wire::RegionId;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// What an eye that is not turned sees through a face: the same view, turned to the face's axes. Structures that are fixed to the head
+/// are where they are before a head that is not turned.
+#[must_use]
+pub fn face_view(ahead: &EyeView, face: CubeFace) -> EyeView {
+    let turn = to_face(face);
+    EyeView {
+        world_to_eye: turn * ahead.world_to_eye,
+        head_to_eye: turn * ahead.head_to_eye,
+        projection: ahead.projection,
+    }
+}
+
+/// World axes to the axes of a face: to the right, up, and out of the picture.
+fn to_face(face: CubeFace) -> Mat4 {
+    let [right, up, forward] = [face.right(), face.up(), face.forward()].map(|axis| axis.map(|i| i as f32));
+    let column = |i: usize| Vec4::new(right[i], up[i], -forward[i], 0.0);
+    Mat4::from_cols(column(0), column(1), column(2), Vec4::W)
+}
+
+/// Bins of an update: for each region of six faces the screen primitives of one slave that touch it.
+#[derive(Clone, Debug)]
+pub struct CubePass {
+    update: Arc<FaceUpdate>,
+    faces: Vec<Arc<Pass>>,
+    transformed: PrimitiveCounts,
+}
+
+impl CubePass {
+    /// One TRANSFORM of the primitives of a share that the update's memory holds, for six faces.
+    #[must_use]
+    pub fn new(config: &CubeControlConfig, share: &Share, update: &Arc<FaceUpdate>) -> Self {
+        let ahead = update.view.eyes.first();
+        let faces = CubeFace::ALL.iter().flat_map(|face| ahead.map(|ahead| face_view(ahead, *face)));
+        let view = FrameView { eyes: faces.collect(), ..update.view.clone() };
+        let pass = |face: usize| share.transform_chosen(&view, face, config.picture, &update.structures);
+        let faces: Vec<Arc<Pass>> = (0..view.eyes.len()).map(pass).collect();
+        let held = share.chosen_counts(&update.structures);
+        let transformed = PrimitiveCounts {
+            triangles: transformed(&faces, 0, held.triangles),
+            spheres: transformed(&faces, 1, held.spheres),
+        };
+        Self { update: Arc::clone(update), faces, transformed }
+    }
+
+    /// The update that they are of.
+    #[must_use]
+    pub fn update(&self) -> &FaceUpdate {
+        &self.update
+    }
+
+    pub(crate) fn face(&self, face: usize) -> Option<&Arc<Pass>> {
+        self.faces.get(face)
+    }
+
+    /// Entries of each region's bin, in the order of all six faces.
+    #[must_use]
+    pub fn entries(&self, config: &CubeControlConfig) -> Vec<u32> {
+        let entries = |region: RegionId| {
+            let (face, region) = config.on_face(region);
+            self.face(face).map_or(0, |pass| pass.counts(region).total())
+        };
+        (0..config.regions()).map(|region| entries(RegionId(region))).collect()
+    }
+
+    /// Primitives that are transformed, each counted once for each face that it touches, and once if it touches none.
+    #[must_use]
+    pub const fn transformed(&self) -> PrimitiveCounts {
+        self.transformed
+    }
+
+    pub(crate) fn command_bytes(&self) -> u64 {
+        self.faces.iter().map(|pass| pass.command_bytes()).sum()
+    }
+
+    pub(crate) fn bin_bytes(&self) -> u64 {
+        self.all_entries() * BIN_ENTRY_BYTES
+    }
+
+    fn all_entries(&self) -> u64 {
+        self.faces.iter().map(|pass| pass.entries()).sum()
+    }
+}
+
+/// Transformations of so many held primitives of a kind (triangles 0, spheres 1).
+fn transformed(faces: &[Arc<Pass>], kind: usize, held: u32) -> u32 {
+    let touching = || faces.iter().filter_map(|pass| Some(&pass.touching()?[kind]));
+    let anywhere: BTreeSet<u32> = touching().flatten().copied().collect();
+    let nowhere = held.saturating_sub(anywhere.len() as u32);
+    touching().map(|numbers| numbers.len() as u32).sum::<u32>() + nowhere
+}
+
+impl Work for CubePass {
+    /// The pass over the display list, each primitive once for each face that it touches, and each entry in a bin.
+    fn by_table(&self, timing: &GpTiming) -> Span {
+        let cost = TransformCost { entries: self.all_entries(), ..TransformCost::pass_over(self.transformed) };
+        cost.span(timing)
+    }
+
+    /// There is no code for six faces: the table's time.
+    fn by_code(&self, timing: &GpTiming, _: &mut Processor) -> Result<Span, ProcessorFault> {
+        Ok(self.by_table(timing))
+    }
+}

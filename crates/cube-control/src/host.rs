@@ -1,0 +1,62 @@
+//! The host: which update is next, and SEND.
+
+use crate::config::CubeControlConfig;
+use crate::protocol::UpdateOrder;
+use crate::update::FaceUpdate;
+use pxpl5_gp::{Fault, Gp, HostTiming, Stage};
+use pxpl5_sim::Time;
+use pxpl5_wire::PictureNumber;
+
+/// What a host that is ready for an update does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Planned {
+    /// It sends this one now.
+    Send(FaceUpdate),
+    /// It asks again at a later instant.
+    Wait(Time),
+    /// It never sends any more.
+    Nothing,
+}
+
+/// Sends update after update over the link and the ring to all GPs. SEND of an update may not begin before EDIT of the one before has
+/// finished (TR94). `plan` is asked with the number of the next update whenever the host is ready for it, in the order of time.
+///
+/// # Errors
+///
+/// [`Fault::Protocol`] when something else than the master's answer arrives.
+pub async fn host(
+    gp: Gp,
+    config: CubeControlConfig,
+    timing: HostTiming,
+    mut plan: impl FnMut(PictureNumber, Time) -> Planned,
+) -> Result<(), Fault> {
+    let mut next = PictureNumber::FIRST;
+    loop {
+        let update = match plan(next, gp.now()) {
+            Planned::Send(update) => update,
+            Planned::Wait(until) => {
+                gp.spend(until.since(gp.now())).await;
+                continue;
+            }
+            Planned::Nothing => return Ok(()),
+        };
+        send(&gp, &config, timing, update).await;
+        let received = gp.receive().await;
+        if UpdateOrder::read(&received, gp.node())? != UpdateOrder::EditsDone(next) {
+            return Err(Fault::Protocol { node: gp.node(), found: format!("while update {next} is being edited") });
+        }
+        next = next.next();
+    }
+}
+
+async fn send(gp: &Gp, config: &CubeControlConfig, timing: HostTiming, update: FaceUpdate) {
+    let number = update.number;
+    gp.begin(Stage::Sample, number, None);
+    gp.begin(Stage::Send, number, None);
+    let (words, body) = UpdateOrder::Send(update).message();
+    gp.spend(timing.link_span(words)).await;
+    let receivers = config.slaves.iter().chain([&config.master]);
+    let sent = gp.send_batch(receivers.map(|node| (*node, words, body.clone())).collect()).await;
+    gp.accepted(sent).await;
+    gp.end(Stage::Send, number, None);
+}

@@ -1,0 +1,353 @@
+//! The master GP: it synchronises host, slaves, renderers and display memories.
+
+use crate::config::{CubeControlConfig, PROGRAM_BYTES};
+use crate::protocol::{RegionEnd, Token, UpdateOrder};
+use crate::rules::Completed;
+use crate::update::FaceUpdate;
+use address_recalculation::{begin_update, swap_together};
+use pphigs::copy_message;
+use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
+use pxpl5_wire::{Body, CopyOrder, CopyTarget, CopyWay, PictureNumber, RegionId, SurfaceId, swap_request};
+use std::collections::VecDeque;
+
+/// What a renderer is doing, as far as the master knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum RendererUse {
+    Idle,
+    /// A token for it is with the slaves.
+    Receiving,
+    /// It holds a finished region in pixel memory that waits for a memory.
+    Holding(CopyTarget),
+}
+
+/// An update on its way.
+#[derive(Debug)]
+struct UnderWay {
+    update: FaceUpdate,
+    /// How many updates of the same memory came before it: that many swaps make its buffer free.
+    before: u64,
+    /// Slaves that have applied its edits, and slaves that have transformed it.
+    edited: usize,
+    transformed: usize,
+    /// Entries of each region's bin, of all slaves that have transformed it.
+    entries: Vec<u64>,
+    /// Whether its memory has been told which regions come.
+    announced: bool,
+    /// Regions that have not arrived; `None` before it is known which come.
+    missing: Option<u64>,
+}
+
+impl UnderWay {
+    /// Its regions, the heaviest first: those with primitives, or one.
+    fn regions(&self) -> VecDeque<RegionId> {
+        let mut regions: Vec<usize> = (0..self.entries.len()).filter(|region| self.entries[*region] > 0).collect();
+        if regions.is_empty() {
+            regions.push(0);
+        }
+        regions.sort_by_key(|region| std::cmp::Reverse(self.entries[*region]));
+        regions.into_iter().map(|region| RegionId(region as u16)).collect()
+    }
+}
+
+/// RENDER of one update.
+#[derive(Debug)]
+struct Rendering {
+    number: PictureNumber,
+    /// Regions without a renderer yet, heaviest first.
+    unassigned: VecDeque<RegionId>,
+    /// All its regions.
+    regions: u16,
+    /// Tokens that are with the slaves.
+    tokens_out: u16,
+}
+
+struct CubeMaster {
+    gp: Gp,
+    config: CubeControlConfig,
+    completed: Completed,
+    /// The update whose EDIT comes next.
+    next_edit: PictureNumber,
+    /// Updates from `completed.copied` on.
+    under_way: VecDeque<UnderWay>,
+    /// Updates of each memory so far.
+    of_memories: Vec<u64>,
+    rendering: Option<Rendering>,
+    renderers: Vec<RendererUse>,
+    /// Finished regions in the backing store of each renderer that wait for a memory, the oldest first.
+    stored: Vec<VecDeque<CopyTarget>>,
+    next_slave: usize,
+    /// Swaps at the last look.
+    swaps_known: u64,
+}
+
+/// Runs the master.
+///
+/// # Errors
+///
+/// [`Fault::Protocol`] for a message that no board sends, [`Fault::Memory`] if the program does not fit.
+pub async fn master(gp: Gp, config: CubeControlConfig) -> Result<(), Fault> {
+    gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
+    let mut master = CubeMaster::new(gp, config);
+    loop {
+        while master.begin_one().await {}
+        if let Some(received) = master.wait().await {
+            master.gp.spend_message().await;
+            master.note(&received).await?;
+        }
+    }
+}
+
+impl CubeMaster {
+    fn new(gp: Gp, config: CubeControlConfig) -> Self {
+        Self {
+            completed: Completed::default(),
+            next_edit: PictureNumber::FIRST,
+            under_way: VecDeque::new(),
+            of_memories: vec![0; config.memories.len()],
+            rendering: None,
+            renderers: vec![RendererUse::Idle; config.renderers.len()],
+            stored: vec![VecDeque::new(); config.renderers.len()],
+            next_slave: 0,
+            swaps_known: 0,
+            gp,
+            config,
+        }
+    }
+
+    /// Waits for a message or for a memory to swap.
+    async fn wait(&self) -> Option<Received> {
+        self.gp.until("a message or a swap", || self.message_or_swap()).await
+    }
+
+    /// `Some(Some(message))`, or `Some(None)` when memories have swapped since the last look.
+    fn message_or_swap(&self) -> Option<Option<Received>> {
+        match self.gp.take_message() {
+            Some(received) => Some(Some(received)),
+            None => (self.swaps() > self.swaps_known).then_some(None),
+        }
+    }
+
+    fn swaps(&self) -> u64 {
+        self.config.memories.iter().map(|node| self.gp.status(*node)).sum()
+    }
+
+    fn under_way(&self, update: PictureNumber) -> Option<&UnderWay> {
+        self.under_way.get(self.place(update)?)
+    }
+
+    fn under_way_mut(&mut self, update: PictureNumber) -> Option<&mut UnderWay> {
+        let place = self.place(update)?;
+        self.under_way.get_mut(place)
+    }
+
+    fn place(&self, update: PictureNumber) -> Option<usize> {
+        update.0.checked_sub(self.completed.copied).map(|place| place as usize)
+    }
+
+    /// Begins the most urgent thing that the rules allow; false when there is none.
+    async fn begin_one(&mut self) -> bool {
+        self.swaps_known = self.swaps();
+        self.begin_render();
+        if let Some(place) = self.update_to_announce() {
+            self.announce(place).await;
+        } else if let Some((renderer, target, way)) = self.copy_that_may_begin() {
+            self.copy(renderer, target, way).await;
+        } else if let Some((renderer, region)) = self.region_that_may_begin() {
+            self.send_token(renderer, region).await;
+        } else if self.completed.may_edit(self.next_edit) {
+            self.edit().await;
+        } else {
+            return false;
+        }
+        true
+    }
+
+    async fn edit(&mut self) {
+        let update = self.next_edit;
+        self.next_edit = update.next();
+        let (words, body) = UpdateOrder::Edit(update).message();
+        self.gp.send_batch(self.config.slaves.iter().map(|node| (*node, words, body.clone())).collect()).await;
+    }
+
+    /// The first update that is transformed, and whose memory shows the one before it.
+    fn update_to_announce(&self) -> Option<usize> {
+        self.under_way.iter().position(|one| {
+            let is_known = one.transformed == self.config.slaves.len();
+            let port = self.config.memories[usize::from(one.update.memory)];
+            is_known && !one.announced && self.gp.status(port) >= one.before
+        })
+    }
+
+    /// Tells a memory which regions come, and asks it to show them when they are there.
+    async fn announce(&mut self, place: usize) {
+        let texels = self.config.face_texels();
+        let one = &mut self.under_way[place];
+        one.announced = true;
+        let regions: Vec<RegionId> = one.regions().into();
+        let FaceUpdate { memory, buffer, together, .. } = one.update;
+        let map = begin_update(texels, buffer, &regions);
+        let request = if together == 0 { swap_request(buffer) } else { swap_together(buffer, together) };
+        let messages = [map, request].map(|words| (words.len() as u32, Body::Words(words)));
+        self.gp.send_groups(vec![(self.config.memories[usize::from(memory)], messages.into())]).await;
+    }
+
+    /// Sorts the regions of the next update, heaviest first.
+    fn begin_render(&mut self) {
+        let number = PictureNumber(self.completed.rendered);
+        if self.rendering.is_some() || !self.completed.may_render(number) {
+            return;
+        }
+        let Some(one) = self.under_way_mut(number) else { return };
+        let unassigned = one.regions();
+        let regions = unassigned.len() as u16;
+        one.missing = Some(unassigned.len() as u64);
+        self.gp.begin(Stage::Render, number, Some(SurfaceId(0)));
+        self.rendering = Some(Rendering { number, unassigned, regions, tokens_out: 0 });
+    }
+
+    fn region_that_may_begin(&self) -> Option<(usize, RegionId)> {
+        let region = *self.rendering.as_ref()?.unassigned.front()?;
+        let renderer = self.renderers.iter().position(|state| *state == RendererUse::Idle)?;
+        Some((renderer, region))
+    }
+
+    /// Gives the token of a region to the next slave in turn.
+    async fn send_token(&mut self, renderer: usize, region: RegionId) {
+        let Some(rendering) = &mut self.rendering else { return };
+        rendering.unassigned.pop_front();
+        rendering.tokens_out += 1;
+        let update = rendering.number;
+        let of = rendering.regions;
+        self.renderers[renderer] = RendererUse::Receiving;
+        let slave = self.config.slaves[self.next_slave];
+        self.next_slave = (self.next_slave + 1) % self.config.slaves.len();
+        let slaves_left = self.config.slaves.len() as u16;
+        let end = self.end_of(renderer, update);
+        let token = Token { update, region, renderer: renderer as u16, slaves_left, of, end };
+        let (words, body) = UpdateOrder::Token(token).message();
+        self.gp.send(slave, words, body).await;
+    }
+
+    fn is_announced(&self, update: PictureNumber) -> bool {
+        self.under_way(update).is_none_or(|one| one.announced)
+    }
+
+    /// What becomes of a region when its last commands are executed.
+    fn end_of(&self, renderer: usize, update: PictureNumber) -> RegionEnd {
+        if self.is_announced(update) {
+            RegionEnd::Copied
+        } else if self.stored[renderer].len() < self.config.regions_stored {
+            RegionEnd::Stored
+        } else {
+            RegionEnd::Held
+        }
+    }
+
+    /// Of each renderer what has waited longest: what is in its backing store, then what is in its pixel memory.
+    fn copy_that_may_begin(&self) -> Option<(usize, CopyTarget, CopyWay)> {
+        (0..self.renderers.len()).find_map(|renderer| {
+            let (target, way) = match (self.stored[renderer].front(), self.renderers[renderer]) {
+                (Some(target), _) => (*target, CopyWay::FromBacking),
+                (None, RendererUse::Holding(target)) => (target, CopyWay::ThroughBacking),
+                _ => return None,
+            };
+            self.is_announced(target.picture).then_some((renderer, target, way))
+        })
+    }
+
+    /// Sends the copy command of a region whose memory was not available in time for the last slave.
+    async fn copy(&mut self, renderer: usize, target: CopyTarget, way: CopyWay) {
+        match way {
+            CopyWay::FromBacking => drop(self.stored[renderer].pop_front()),
+            _ => self.renderers[renderer] = RendererUse::Idle,
+        }
+        let order = copy_order(&self.config, target, way);
+        let list = copy_message(self.config.picture.layout, vec![order], self.config.picture.pixels);
+        self.gp.send(self.config.renderers[renderer], list.words(), Body::Commands(list)).await;
+    }
+
+    async fn note(&mut self, received: &Received) -> Result<(), Fault> {
+        match UpdateOrder::read(received, self.gp.node())? {
+            UpdateOrder::Send(update) => self.note_sent(update),
+            UpdateOrder::Edited(update) => self.note_edited(update).await,
+            UpdateOrder::Transformed(update, entries) => self.note_transformed(update, &entries),
+            UpdateOrder::Accepted(token) => self.note_accepted(token),
+            UpdateOrder::Copied { update } => self.note_copied(update),
+            other => return Err(Fault::Protocol { node: self.gp.node(), found: format!("at the master: {other:?}") }),
+        }
+        Ok(())
+    }
+
+    fn note_sent(&mut self, update: FaceUpdate) {
+        self.completed.sent = update.number.next().0;
+        let of_memory = &mut self.of_memories[usize::from(update.memory)];
+        let before = *of_memory;
+        *of_memory += 1;
+        let entries = vec![0; usize::from(self.config.regions())];
+        let fresh = UnderWay { update, before, edited: 0, transformed: 0, entries, announced: false, missing: None };
+        self.under_way.push_back(fresh);
+    }
+
+    async fn note_edited(&mut self, update: PictureNumber) {
+        let slaves = self.config.slaves.len();
+        let Some(one) = self.under_way_mut(update) else { return };
+        one.edited += 1;
+        if one.edited == slaves {
+            let (words, body) = UpdateOrder::EditsDone(update).message();
+            self.gp.send(self.config.host, words, body).await;
+        }
+    }
+
+    fn note_transformed(&mut self, update: PictureNumber, entries: &[u32]) {
+        let slaves = self.config.slaves.len();
+        let Some(one) = self.under_way_mut(update) else { return };
+        one.transformed += 1;
+        one.entries.iter_mut().zip(entries).for_each(|(sum, n)| *sum += u64::from(*n));
+        while self.under_way(PictureNumber(self.completed.transformed)).is_some_and(|one| one.transformed == slaves) {
+            self.completed.transformed += 1;
+        }
+    }
+
+    fn note_accepted(&mut self, token: Token) {
+        let renderer = usize::from(token.renderer);
+        let target = self.under_way(token.update).map(|one| self.config.target(&one.update, token.region));
+        self.renderers[renderer] = match (token.end, target) {
+            (RegionEnd::Held, Some(target)) => RendererUse::Holding(target),
+            _ => RendererUse::Idle,
+        };
+        if let (RegionEnd::Stored, Some(target)) = (token.end, target) {
+            self.stored[renderer].push_back(target);
+        }
+        let Some(rendering) = &mut self.rendering else { return };
+        rendering.tokens_out -= 1;
+        if rendering.tokens_out == 0 && rendering.unassigned.is_empty() {
+            self.gp.end(Stage::Render, rendering.number, Some(SurfaceId(0)));
+            self.completed.rendered += 1;
+            self.rendering = None;
+            self.forget_copied();
+        }
+    }
+
+    /// A region of an update, whose number ends so, has arrived.
+    fn note_copied(&mut self, low: u32) {
+        let of_update = |one: &&mut UnderWay| one.update.number.to_words()[0] == low;
+        if let Some(missing) = self.under_way.iter_mut().find(of_update).and_then(|one| one.missing.as_mut()) {
+            *missing = missing.saturating_sub(1);
+        }
+        self.forget_copied();
+    }
+
+    /// Updates whose last region has arrived are over when their last commands have been accepted too.
+    fn forget_copied(&mut self) {
+        while self.completed.rendered > self.completed.copied
+            && self.under_way.front().is_some_and(|one| one.missing == Some(0))
+        {
+            self.under_way.pop_front();
+            self.completed.copied += 1;
+        }
+    }
+}
+
+pub(crate) fn copy_order(config: &CubeControlConfig, target: CopyTarget, way: CopyWay) -> CopyOrder {
+    CopyOrder { target, context: 0, way, acknowledge: Some(config.master), content: config.content }
+}

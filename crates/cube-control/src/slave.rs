@@ -1,0 +1,212 @@
+//! A slave GP: EDIT and TRANSFORM for six faces in the foreground, tokens in the background.
+
+use crate::config::{CubeControlConfig, PROGRAM_BYTES};
+use crate::faces::CubePass;
+use crate::master::copy_order;
+use crate::protocol::{Token, UpdateOrder};
+use crate::update::FaceUpdate;
+use pphigs::{RegionEnvelope, Share, region_messages};
+use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
+use pxpl5_sim::Span;
+use pxpl5_wire::{Body, CommandList, PictureNumber, SurfaceId};
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// What both programs of a slave share.
+#[derive(Debug, Default)]
+struct SlaveState {
+    updates: VecDeque<FaceUpdate>,
+    /// The first update whose EDIT may not begin yet.
+    next_edit: PictureNumber,
+    /// The two bin contexts, and how many tokens have been here for each.
+    bins: [Option<CubePass>; 2],
+    tokens: [u16; 2],
+}
+
+impl SlaveState {
+    /// A token of a context has been here; whether it was the last, and the context is empty now.
+    fn is_emptied(&mut self, context: usize, of: u16) -> bool {
+        self.tokens[context] += 1;
+        let is_last = self.tokens[context] == of;
+        if is_last {
+            self.tokens[context] = 0;
+            self.bins[context] = None;
+        }
+        is_last
+    }
+}
+
+type SharedSlaveState = Rc<RefCell<SlaveState>>;
+
+/// The bin context of an update.
+const fn context_of(update: PictureNumber) -> usize {
+    (update.0 % 2) as usize
+}
+
+/// The programs of slave number `index`, for both levels of its board.
+///
+/// Each fails with [`Fault::Memory`] when display list, commands or bins do not fit, and with [`Fault::Protocol`] for
+/// a message that no board sends.
+pub fn slave(
+    gp: &Gp,
+    config: &CubeControlConfig,
+    share: Share,
+    index: usize,
+) -> [(Priority, impl Future<Output = Result<(), Fault>> + use<>); 2] {
+    let state = SharedSlaveState::default();
+    [Priority::Interrupt, Priority::Foreground].map(|level| {
+        let gp = gp.at_priority(level);
+        let config = config.clone();
+        let share = share.clone();
+        let state = Rc::clone(&state);
+        let program = async move {
+            match level {
+                Priority::Foreground => transform_program(gp, config, share, state).await,
+                Priority::Interrupt => token_program(gp, config, index, state).await,
+            }
+        };
+        (level, program)
+    })
+}
+
+async fn transform_program(
+    gp: Gp,
+    config: CubeControlConfig,
+    share: Share,
+    state: SharedSlaveState,
+) -> Result<(), Fault> {
+    gp.reserve(Account::Program, PROGRAM_BYTES, None)?;
+    gp.reserve(Account::DisplayList, share.bytes(), None)?;
+    loop {
+        let update = Arc::new(edit(&gp, &config, &state).await);
+        transform(&gp, &config, &share, &state, &update).await?;
+    }
+}
+
+/// EDIT: applies the edits of the next update and tells the master.
+async fn edit(gp: &Gp, config: &CubeControlConfig, state: &SharedSlaveState) -> FaceUpdate {
+    let update = gp.until("SEND of an update and leave to EDIT", || next_edit(&mut state.borrow_mut())).await;
+    let number = update.number;
+    gp.begin(Stage::Edit, number, None);
+    gp.spend(Span::from_ns(gp.timing().edit_ns) * update.view.edits.len() as u64).await;
+    gp.end(Stage::Edit, number, None);
+    tell_master(gp, config, &UpdateOrder::Edited(number)).await;
+    update
+}
+
+fn next_edit(state: &mut SlaveState) -> Option<FaceUpdate> {
+    let may_begin = state.updates.front()?.number < state.next_edit;
+    if may_begin { state.updates.pop_front() } else { None }
+}
+
+/// TRANSFORM: makes commands of all held primitives of the update for each face that they touch and puts them into bins, when there is
+/// room for them: where the bins of two updates do not fit side by side, this waits until RENDER of the one before has freed its own.
+async fn transform(
+    gp: &Gp,
+    config: &CubeControlConfig,
+    share: &Share,
+    state: &SharedSlaveState,
+    update: &Arc<FaceUpdate>,
+) -> Result<(), Fault> {
+    let number = update.number;
+    let context = context_of(number);
+    let surface = Some(SurfaceId(0));
+    let pass = CubePass::new(config, share, update);
+    let account = context as u8;
+    let other_is_empty = || state.borrow().bins[context ^ 1].is_none();
+    let has_room = || gp.has_room_for_bins(account, pass.bin_bytes()) || other_is_empty();
+    gp.until("room in the bins", || has_room().then_some(())).await;
+    gp.begin(Stage::Transform, number, surface);
+    gp.reserve(Account::Commands(account), pass.command_bytes(), None)?;
+    gp.reserve(Account::Bins(account), pass.bin_bytes(), None)?;
+    gp.work(&pass).await?;
+    let entries = pass.entries(config);
+    state.borrow_mut().bins[context] = Some(pass);
+    gp.end(Stage::Transform, number, surface);
+    tell_master(gp, config, &UpdateOrder::Transformed(number, entries)).await;
+    Ok(())
+}
+
+/// Keeps the updates and the leave that arrive, and walks with every token.
+async fn token_program(gp: Gp, config: CubeControlConfig, index: usize, state: SharedSlaveState) -> Result<(), Fault> {
+    loop {
+        let received = gp.next_message().await;
+        let order = UpdateOrder::read(&received, gp.node());
+        if let Ok(UpdateOrder::Token(token)) = order
+            && gp.pays_at_once()
+            && bin_messages(&config, &state, token).is_empty()
+        {
+            // The token goes on when it has been received and sent, and nothing of this level happens between.
+            gp.spend_messages(2).await;
+            pass_on(&gp, &config, index, token);
+            free_bins(&gp, &state, token)?;
+            continue;
+        }
+        gp.spend_message().await;
+        match order? {
+            UpdateOrder::Send(update) => state.borrow_mut().updates.push_back(update),
+            UpdateOrder::Edit(update) => state.borrow_mut().next_edit = update.next(),
+            UpdateOrder::Token(token) => {
+                walk(&gp, &config, index, &state, token).await;
+                free_bins(&gp, &state, token)?;
+            }
+            other => return Err(Fault::Protocol { node: gp.node(), found: format!("at a slave: {other:?}") }),
+        }
+    }
+}
+
+/// Sends this slave's bin of the token's region, then passes the token on.
+async fn walk(gp: &Gp, config: &CubeControlConfig, index: usize, state: &SharedSlaveState, token: Token) {
+    let renderer = config.renderers[usize::from(token.renderer)];
+    for list in bin_messages(config, state, token) {
+        gp.clump_buffer_free().await;
+        gp.send(renderer, list.words(), Body::Commands(list)).await;
+    }
+    gp.spend_message().await;
+    pass_on(gp, config, index, token);
+}
+
+/// What this slave has for the token's region: the first slave begins the region, the last one ends it.
+fn bin_messages(config: &CubeControlConfig, state: &SharedSlaveState, token: Token) -> Vec<CommandList> {
+    let state = state.borrow();
+    let Some(pass) = &state.bins[context_of(token.update)] else { return Vec::new() };
+    let (face, region) = config.on_face(token.region);
+    let last = token.slaves_left == 1;
+    let target = config.target(pass.update(), token.region);
+    let envelope = RegionEnvelope {
+        begin: usize::from(token.slaves_left) == config.slaves.len(),
+        shade: last,
+        copy: token.end.way().filter(|_| last).map(|way| copy_order(config, target, way)),
+    };
+    pass.face(face).map_or_else(Vec::new, |pass| region_messages(pass, region, 0, envelope))
+}
+
+/// Sends a token on that has been paid for.
+fn pass_on(gp: &Gp, config: &CubeControlConfig, index: usize, token: Token) {
+    let last = token.slaves_left == 1;
+    let next = Token { slaves_left: token.slaves_left - 1, ..token };
+    let (receiver, order) = if last {
+        (config.master, UpdateOrder::Accepted(next))
+    } else {
+        (config.slaves[(index + 1) % config.slaves.len()], UpdateOrder::Token(next))
+    };
+    let (words, body) = order.message();
+    gp.send_prepared(vec![(receiver, words, body)]);
+}
+
+/// Frees an update's commands and bins when all its tokens have been here.
+fn free_bins(gp: &Gp, state: &SharedSlaveState, token: Token) -> Result<(), Fault> {
+    let context = context_of(token.update);
+    if state.borrow_mut().is_emptied(context, token.of) {
+        gp.reserve(Account::Commands(context as u8), 0, None)?;
+        gp.reserve(Account::Bins(context as u8), 0, None)?;
+    }
+    Ok(())
+}
+
+async fn tell_master(gp: &Gp, config: &CubeControlConfig, order: &UpdateOrder) {
+    let (words, body) = order.message();
+    gp.send(config.master, words, body).await;
+}

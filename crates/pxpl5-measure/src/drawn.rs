@@ -1,0 +1,53 @@
+//! For which pose a pixel was drawn.
+
+use glam::DVec2;
+use pxpl5_sim::Time;
+use std::sync::Arc;
+use tracking::Pose;
+
+/// What a view was drawn for: a pose, and the time for which moving objects were placed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment {
+    pub(crate) pose: Pose,
+    pub(crate) objects_at: Time,
+}
+
+/// What a pixel was drawn for.
+#[derive(Clone, Debug)]
+pub(crate) enum Drawn {
+    View(Moment),
+    Between {
+        from: Moment,
+        to: Moment,
+        part: f64,
+        on_screen: bool,
+    },
+    /// A picture that is shifted on its way to the screen.
+    Shifted(Moment, DVec2),
+    /// Faces around the eye, looked up in the newest direction: the nearest of what several memories show.
+    Faces(FacesSeen),
+}
+
+/// What a pixel of a display with faces was looked up in.
+#[derive(Clone, Debug)]
+pub(crate) struct FacesSeen {
+    /// For each memory, from the lowest, the pose of its eye in the latched direction, and which structures of the scene it holds.
+    pub(crate) memories: Vec<(Moment, Arc<[bool]>)>,
+    /// The instant that the direction was predicted for.
+    pub(crate) aimed_at: Time,
+}
+
+impl Drawn {
+    /// The instant that it was drawn for; what is shifted on its way is drawn for the instant of its light.
+    pub(crate) fn instant(&self, light: Time) -> Time {
+        match self {
+            Self::View(moment) => moment.objects_at,
+            Self::Between { from, to, part, .. } => {
+                let ahead_ps = to.objects_at.since(from.objects_at).0 as f64 * part;
+                Time(from.objects_at.0 + ahead_ps as u64)
+            }
+            Self::Shifted(..) => light,
+            Self::Faces(faces) => faces.aimed_at,
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! What a display with faces did, as numbers.
+
+use address_recalculation::{AddressRecalculationPipeline, DisplayMemory, Latch};
+use pxpl5_run::{Outcome, RotationLatency, Statistics};
+use serde::Serialize;
+
+/// An address recalculation pipeline and its memories over a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FacesReport {
+    /// Name and version of this record's layout.
+    pub schema: &'static str,
+    /// Texels along an edge of a face, guard texels included.
+    pub face_texels: u64,
+    /// Before what the orientation is latched.
+    pub latch: Latch,
+    /// From the latch to the light of the first pixel, nanoseconds.
+    pub pipeline_ns: f64,
+    /// Orientations that the display took.
+    pub matrix_loads: u64,
+    /// Orientations that it refused.
+    pub matrix_refused: u64,
+    /// Its memories, the one that is drawn most often first.
+    pub memories: Vec<MemoryReport>,
+    /// From the measurement of an orientation to the light of the picture's middle, milliseconds; nothing without a tracked head.
+    pub rotation_latency_ms: Option<Statistics>,
+    /// Its parts, which add up to it.
+    pub rotation_latency_parts_ms: Vec<RotationPart>,
+}
+
+/// A part of the latency of rotation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RotationPart {
+    /// Its name: see [`RotationLatency`].
+    pub name: &'static str,
+    /// Over the middle pixel of all fields, milliseconds.
+    #[serde(flatten)]
+    pub statistics: Statistics,
+}
+
+/// A display memory over a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MemoryReport {
+    /// Updates that were shown, a second.
+    pub updates_hz: f64,
+    /// Periods of the display from one to the next; nothing where none was shown.
+    pub period_frames: Option<f64>,
+    /// Structures that it held at its last update.
+    pub segments: usize,
+    /// Regions that came.
+    pub regions_copied: u64,
+    /// Retraces at which an update that had been asked for was not whole.
+    pub missed: u64,
+    /// From the first retrace that each late update missed to the one that showed it, summed up, milliseconds.
+    pub lateness_ms: f64,
+    /// Bytes of both its buffers.
+    pub bytes: u64,
+}
+
+impl FacesReport {
+    /// Name and version of the layout.
+    pub const SCHEMA: &'static str = "pxpl5-arp/1";
+
+    /// Of a run; `None` where its display takes no faces.
+    #[must_use]
+    pub fn of(outcome: &Outcome) -> Option<Self> {
+        let display: &AddressRecalculationPipeline = outcome.record().display_of_kind()?;
+        let timing = &display.config().timing;
+        let counted = |name: &str| {
+            let counters = outcome.record().display().counters();
+            counters.iter().find(|counter| counter.name == name).map_or(0, |counter| counter.count)
+        };
+        let latencies = outcome.rotation_latencies();
+        let memories = outcome.display_memories().iter().enumerate();
+        Some(Self {
+            schema: Self::SCHEMA,
+            face_texels: timing.face_texels,
+            latch: display.config().latch,
+            pipeline_ns: timing.depth().as_ms() * 1e6,
+            matrix_loads: counted("matrix loads"),
+            matrix_refused: counted("matrices refused"),
+            memories: memories.map(|(k, memory)| MemoryReport::of(outcome, k, memory)).collect(),
+            rotation_latency_ms: (!latencies.is_empty())
+                .then(|| Statistics::of(latencies.iter().map(|latency| latency.total().as_ms()))),
+            rotation_latency_parts_ms: parts(&latencies),
+        })
+    }
+}
+
+fn parts(latencies: &[RotationLatency]) -> Vec<RotationPart> {
+    let names = latencies.first().map(|first| first.parts().map(|(name, _)| name));
+    let of = |(place, name): (usize, &'static str)| RotationPart {
+        name,
+        statistics: Statistics::of(latencies.iter().map(|latency| latency.parts()[place].1.as_ms())),
+    };
+    names.into_iter().flatten().enumerate().map(of).collect()
+}
+
+impl MemoryReport {
+    fn of(outcome: &Outcome, k: usize, memory: &DisplayMemory) -> Self {
+        let stats = memory.stats();
+        let seconds = outcome.fields() as f64 * outcome.field_ms() * 1e-3;
+        let notes = outcome.face_notes().all();
+        let last = notes.iter().rfind(|note| note.memory == k);
+        Self {
+            updates_hz: stats.swaps as f64 / seconds,
+            period_frames: (stats.swaps > 0).then(|| outcome.fields() as f64 / stats.swaps as f64),
+            segments: last.map_or(0, |note| note.structures.iter().filter(|held| **held).count()),
+            regions_copied: stats.regions,
+            missed: stats.missed,
+            lateness_ms: stats.lateness.as_ms(),
+            bytes: memory.bytes(),
+        }
+    }
+}

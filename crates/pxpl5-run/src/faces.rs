@@ -1,0 +1,91 @@
+//! What was drawn onto faces around a head, and where the time of a turn goes.
+
+use crate::face_notes::FaceNote;
+use crate::latched_head::{LatchedHead, ORIENTATION_WORDS, RotationLatency};
+use crate::outcome::Outcome;
+use address_recalculation::{AddressRecalculationPipeline, DisplayMemory};
+use pxpl5_display::Display;
+use pxpl5_machine::Record;
+use pxpl5_wire::{Eye, FieldParity, NodeId, PeriodNumber};
+
+/// What a display memory shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShownMemory {
+    /// The update that is shown.
+    pub note: FaceNote,
+    /// The period from whose begin on it is shown.
+    pub from: PeriodNumber,
+}
+
+/// What every memory of a run showed from when on.
+#[derive(Clone, Debug, Default)]
+pub struct FaceHistory {
+    memories: Vec<Vec<ShownMemory>>,
+}
+
+impl FaceHistory {
+    /// Of a run; `None` where its display takes no faces.
+    #[must_use]
+    pub fn of(outcome: &Outcome) -> Option<Self> {
+        let display = display(outcome.record())?;
+        let notes = outcome.face_notes().all();
+        let memories = (0..).zip(display.nodes()).map(|(memory, port)| shown(outcome.record(), &notes, memory, *port));
+        Some(Self { memories: memories.collect() })
+    }
+
+    /// What each memory that shows something shows in a period, the lowest first.
+    pub fn at(&self, period: PeriodNumber) -> impl Iterator<Item = &ShownMemory> {
+        self.memories.iter().filter_map(move |shown| {
+            let after = shown.partition_point(|shown| shown.from <= period);
+            shown[..after].last()
+        })
+    }
+
+    /// Everything that a memory showed, in order.
+    #[must_use]
+    pub fn memory(&self, memory: usize) -> &[ShownMemory] {
+        self.memories.get(memory).map_or(&[], Vec::as_slice)
+    }
+}
+
+/// The updates of a memory are shown in their order, each by a swap.
+fn shown(record: &Record, notes: &[FaceNote], memory: usize, port: NodeId) -> Vec<ShownMemory> {
+    let swaps = record.observation().swaps.iter().filter(|swap| swap.port == port);
+    let of_memory = notes.iter().filter(|note| note.memory == memory);
+    of_memory.zip(swaps).map(|(note, swap)| ShownMemory { note: note.clone(), from: swap.tick }).collect()
+}
+
+pub(crate) fn display(record: &Record) -> Option<&AddressRecalculationPipeline> {
+    record.display_of_kind()
+}
+
+impl LatchedHead {
+    /// Of a run; `None` where its display takes no faces.
+    #[must_use]
+    pub fn of(outcome: &Outcome) -> Option<Self> {
+        let link = outcome.record().config().host.link_span(ORIENTATION_WORDS);
+        Self::before(outcome.record().display(), link, outcome.experiment().aim())
+    }
+}
+
+impl Outcome {
+    /// The memories of a display with faces, the one that is drawn most often first; none of any other display.
+    #[must_use]
+    pub fn display_memories(&self) -> &[DisplayMemory] {
+        display(self.record()).map_or(&[], |display| display.memories(Eye::Left))
+    }
+
+    /// The rotation latency of the middle pixel of every field from the first that has one: empty without a tracked head, and
+    /// where the display takes no faces.
+    #[must_use]
+    pub fn rotation_latencies(&self) -> Vec<RotationLatency> {
+        let Some((latched, head)) = LatchedHead::of(self).zip(self.head()) else { return Vec::new() };
+        let Some(surface) = self.record().display().surfaces().first() else { return Vec::new() };
+        let x = surface.width / 2;
+        let of_field = |field: PeriodNumber| {
+            let y = surface.height / 2 + FieldParity::of_field(field).first_line();
+            latched.latency(head, x, y, field)
+        };
+        PeriodNumber::FIRST.until(PeriodNumber(self.fields())).filter_map(of_field).collect()
+    }
+}

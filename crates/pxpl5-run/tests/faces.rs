@@ -1,0 +1,311 @@
+//! Six faces drawn by Pixel-Planes 5 for a display that turns with the head: when, how fast, and whether they are right.
+
+use address_recalculation::{AddressRecalculationPipeline, CubeFace, DisplayMemory, FaceSet, TexelAddress};
+use cube_control::face_view;
+use glam::{DVec3, Mat4, Vec3};
+use pphigs::{EyeView, FrameView, Picture, RegionBinning, Shading};
+use pxpl5_geometry::Viewport;
+use pxpl5_gp::Stage;
+use pxpl5_machine::{Machine, MachineConfig, Record};
+use pxpl5_oracle::ideal_picture;
+use pxpl5_renderer::Layout;
+use pxpl5_run::{
+    Experiment, ExperimentError, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, RenderingControl,
+    display_list,
+};
+use pxpl5_scene::{HeadMotion, Lighting, Scene, SceneParts, Sphere, Structure, builtin};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{Eye, Lines, PeriodNumber, RegionGrid};
+use std::sync::Arc;
+use tracking::motion::{Motion, Pan, Slide};
+use tracking::predict::PredictorKind;
+use tracking::tracker::TrackerConfig;
+
+const FULL: FacePipeline = FacePipeline::new(FacePolicy::Full);
+const OBJECTS: FacePipeline = FacePipeline::new(FacePolicy::Objects);
+
+/// 13 GPs and 5 renderers with the display, and some of its numbers.
+fn machine(preset: &str, pipeline: FacePipeline, numbers: &[(&str, u64)]) -> MachineConfig {
+    let mut config = pipeline.adapt(MachineConfig::preset(preset).expect("listed"));
+    for (path, value) in numbers {
+        config.set(path, *value).expect("a number of the machine");
+    }
+    config
+}
+
+fn head(motion: impl Motion + Send + Sync + 'static) -> Head {
+    Head::new(Arc::new(motion), TrackerConfig::ideal(), PredictorKind::None, 1).expect("in range")
+}
+
+fn display(record: &Record) -> &AddressRecalculationPipeline {
+    record.display_of_kind().expect("the display arp")
+}
+
+fn memory(record: &Record, k: usize) -> &DisplayMemory {
+    &display(record).memories(Eye::Left)[k]
+}
+
+fn assert_no_faults(record: &Record) {
+    assert_eq!(record.display().faults(), (0, None));
+}
+
+/// E1: a ball of more and more triangles.
+#[test]
+fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
+    let run = |n: usize| {
+        let scene = builtin(&format!("sphere:{n}")).expect("even");
+        let config = machine("small-hmd", FULL, &[]);
+        let fields = if n > 10_000 { 240 } else { 60 };
+        let experiment = Experiment::new(config, FULL, scene).fields(fields).pixels(Pixels::Off);
+        experiment.head(head(Pan::at(200.0))).run().expect("it runs")
+    };
+    let outcomes = [10, 100, 1_000, 100_000].map(run);
+    let turns = outcomes.each_ref().map(|outcome| outcome.rotation_latencies()[..55].to_vec());
+    assert!(turns[1..].iter().all(|other| *other == turns[0]));
+    for latency in &turns[0] {
+        // Nine words at 5 MB/s; 8 + 16 stages of 25 ns where one memory needs no comparator; 132 whole lines of 780 pixels of
+        // 11/135 us from the field's first pixel to its middle.
+        assert_eq!((latency.host, latency.pipeline), (Span(7_200_000), Span(600_000)));
+        let parts: u64 = latency.parts().iter().map(|(_, span)| span.0).sum();
+        assert_eq!(latency.total(), Span(parts));
+        let to_the_middle = (120.0 * 780.0 + 320.0) * 11e6 / 135.0;
+        assert!((latency.scan.0 as f64 - to_the_middle).abs() <= 1.0, "{latency:?}");
+    }
+    let translation = outcomes.each_ref().map(|outcome| outcome.latency_ms().mean);
+    // The small ones all wait for retraces; the large one for its TRANSFORM.
+    assert!(translation[..3].iter().all(|small| translation[3] > 4.0 * small), "{translation:?}");
+    outcomes.iter().for_each(|outcome| assert_no_faults(outcome.record()));
+}
+
+/// The other half of E1: there turning costs what drawing costs.
+#[test]
+fn under_rendering_control_the_latency_of_a_turn_grows_with_what_is_drawn() {
+    let latency = |n: usize| {
+        let scene = builtin(&format!("sphere:{n}")).expect("even");
+        let fields = if n > 10_000 { 240 } else { 60 };
+        let experiment = Experiment::new(MachineConfig::small_hmd(), RenderingControl::mono(), scene).fields(fields);
+        experiment.pixels(Pixels::Off).head(head(Pan::at(200.0))).run().expect("it runs").latency_ms().mean
+    };
+    let latencies = [10, 1_000, 100_000].map(latency);
+    assert!(latencies[2] > latencies[0] + 100.0 && latencies[2] > latencies[1] + 100.0, "{latencies:?}");
+}
+
+/// COPY of every update whose 6 (N/128)^2 regions all have primitives.
+fn copies(texels: u64, packed: bool) -> (Vec<Span>, u64) {
+    let bits = if packed { 16 } else { 24 };
+    let numbers = [("arp.face_texels", texels), ("arp.depth_bits", bits), ("arp.colour_bits", bits)];
+    let config = machine("design-maximum", FULL, &numbers);
+    let experiment = Experiment::new(config, FULL, builtin("room").expect("built in")).fields(90).pixels(Pixels::Off);
+    let outcome = experiment.run().expect("it runs");
+    assert_no_faults(outcome.record());
+    let stages = outcome.stages();
+    let spans = stages.iter().filter(|span| span.stage == Stage::Copy).filter_map(|span| Some(span.end? - span.begin));
+    let regions = memory(outcome.record(), 0).stats().regions;
+    (spans.collect(), regions / stages.iter().filter(|span| span.stage == Stage::Copy).count() as u64)
+}
+
+/// Section 5's table: 32 messages of 1,024 words, 50 ns a word and 0.8 us a message.
+#[test]
+fn all_regions_take_the_ports_time_and_no_more() {
+    let message_ns = 1_024 * 50 + 800;
+    for (texels, packed, messages, published_ms) in
+        [(128, false, 32, 9.98), (256, false, 32, 39.94), (512, false, 32, 159.7), (256, true, 16, 39.94 / 2.0)]
+    {
+        let regions = 6 * (texels / 128) * (texels / 128);
+        let port_ms = (regions * messages * message_ns) as f64 * 1e-6;
+        assert!((port_ms - published_ms).abs() < 0.05, "{port_ms} {published_ms}");
+        let (copies, of_each) = copies(texels, packed);
+        assert!(of_each.abs_diff(regions) <= 1, "{of_each} regions of {regions}");
+        let fastest = copies.iter().map(|span| span.as_ms()).fold(f64::INFINITY, f64::min);
+        // The port is never idle between the first and the last region of an update, but for the last's begin.
+        assert!(copies.iter().skip(1).all(|span| span.as_ms() >= 0.999 * port_ms || texels == 512), "{copies:?}");
+        assert!(fastest >= 0.5 * port_ms && fastest <= 1.05 * port_ms, "{texels}: {fastest} {port_ms}");
+    }
+}
+
+/// Balls of 1 m radius ahead whose nearest points are 2, 13, 27 and 46 m away: objects of memories 0 to 3 for a viewer who walks past
+/// at 1 m/s (their borders are 10.87, 21.73 and 43.46 m).
+fn balls() -> Scene {
+    let places = [3.0, 14.0, 28.0, 47.0];
+    let ball = |z: f32| Sphere { centre: Vec3::new(0.0, 0.0, -z), radius: 1.0, colour: [200, 120, 40] };
+    let structure = |i: usize| Structure {
+        name: format!("ball {i}"),
+        vertices: 0..0,
+        triangles: 0..0,
+        spheres: i..i + 1,
+        frame: pxpl5_scene::Frame::World,
+        hinge: None,
+        culls_back_faces: false,
+    };
+    let motion = *builtin("room").expect("built in").motion();
+    let parts = SceneParts {
+        name: "balls".to_owned(),
+        vertices: Vec::new(),
+        triangles: Vec::new(),
+        spheres: places.map(ball).to_vec(),
+        structures: (0..4).map(structure).collect(),
+        lighting: Lighting::over_the_shoulder(),
+        motion,
+        path: Vec::new(),
+    };
+    Scene::new(parts).expect("in range")
+}
+
+/// A walk at 1 m/s before the balls, with renderers whose clock runs at a part of 40 MHz.
+fn walk(clock_hz: u64) -> Outcome {
+    let numbers = [("arp.face_texels", 128), ("renderer.clock_hz", clock_hz)];
+    let experiment = Experiment::new(machine("small-hmd", OBJECTS, &numbers), OBJECTS, balls());
+    experiment.fields(240).pixels(Pixels::Off).head(head(Slide::right_at(1.0))).run().expect("it runs")
+}
+
+/// Retraces that updates of each memory missed, of all that were shown or missed.
+fn missed(outcome: &Outcome) -> [f64; 4] {
+    std::array::from_fn(|k| {
+        let stats = memory(outcome.record(), k).stats();
+        stats.missed as f64 / (stats.missed + stats.swaps) as f64
+    })
+}
+
+/// E8.
+#[test]
+fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suffer() {
+    let outcomes = [40_000_000, 2_000_000, 1_000_000, 500_000].map(walk);
+    let misses = outcomes.each_ref().map(missed);
+    for outcome in &outcomes {
+        assert_no_faults(outcome.record());
+        assert_eq!(outcome.rotation_latencies(), outcomes[0].rotation_latencies());
+    }
+    assert_eq!(misses[0], [0.0; 4], "a machine that is fast enough misses nothing");
+    // Where the slowest miss up to half of their retraces the order is strict; beyond, memory 0 is still the least late.
+    assert!(misses[..3].iter().all(|missed| missed.is_sorted()) && misses[2][2] > 5.0 * misses[2][1], "{misses:?}");
+    assert!(misses[3][1..].iter().all(|missed| *missed > 2.0 * misses[3][0]), "{misses:?}");
+    assert!(misses.iter().any(|missed| missed[3] > 0.2 && missed[0] < missed[3] / 2.0), "{misses:?}");
+}
+
+#[test]
+fn objects_go_into_the_slowest_memory_that_keeps_them_right() {
+    let outcome = walk(40_000_000);
+    let notes = outcome.face_notes().all();
+    let held = |k: usize| notes.iter().rfind(|note| note.memory == k).map(|note| note.structures.to_vec());
+    for k in 0..4 {
+        let expected: Vec<bool> = (0..4).map(|structure| structure == k).collect();
+        assert_eq!(held(k), Some(expected), "memory {k}");
+    }
+    let updates: Vec<usize> = (0..4).map(|k| notes.iter().filter(|note| note.memory == k).count()).collect();
+    assert!(updates.windows(2).all(|pair| pair[0] > pair[1]), "{updates:?}");
+}
+
+fn after(experiment: &Experiment, fields: u64) -> Machine {
+    let mut machine = experiment.build().expect("valid");
+    let end = machine.record().tick(PeriodNumber(fields));
+    machine.run_until(end).expect("it runs");
+    machine.finish_pixels();
+    machine
+}
+
+fn ball() -> Experiment {
+    let config = machine("small-hmd", FULL, &[("arp.face_texels", 128)]);
+    Experiment::new(config, FULL, builtin("sphere:1000").expect("even"))
+}
+
+#[test]
+fn a_hundred_shuffles_of_simultaneous_events_change_nothing() {
+    for experiment in
+        [ball().fields(16), Experiment::new(machine("small-hmd", OBJECTS, &[]), OBJECTS, balls()).fields(16)]
+    {
+        let hash =
+            |experiment: &Experiment| after(&experiment.clone().pixels(Pixels::Off), 16).into_record().trace_hash();
+        let unshuffled = hash(&experiment);
+        for seed in 0..100 {
+            assert_eq!(hash(&experiment.clone().shuffle_ties(seed)), unshuffled, "{seed}");
+        }
+    }
+}
+
+#[test]
+fn savings_and_pixels_change_no_time_and_no_texel() {
+    let lazy = after(&ball(), 16);
+    let faces = memory(lazy.record(), 0).shown_faces();
+    assert!(texels(128).filter(|texel| faces.texel(*texel).is_some()).count() > 50, "something was drawn");
+    let all = after(&ball().pixels(Pixels::All), 16);
+    assert!(memory(all.record(), 0).shown_faces() == faces);
+    let off = after(&ball().pixels(Pixels::Off), 16);
+    for saving in pxpl5_machine::Saving::ALL {
+        let without = after(&ball().without(saving), 16);
+        assert_eq!(without.record().trace_hash(), lazy.record().trace_hash(), "{saving}");
+        assert!(memory(without.record(), 0).shown_faces() == faces, "{saving}");
+    }
+    for other in [all, off] {
+        assert_eq!(other.record().trace_hash(), lazy.record().trace_hash());
+    }
+}
+
+fn texels(size: u32) -> impl Iterator<Item = TexelAddress> {
+    CubeFace::ALL.into_iter().flat_map(move |face| {
+        (0..size).flat_map(move |row| (0..size).map(move |column| TexelAddress { face, column, row }))
+    })
+}
+
+/// A face of the machine against the ideal renderer's picture of the same view; the number of texels that are not empty.
+fn compare_face(scene: &Scene, eye: DVec3, time: Time, faces: &FaceSet, face: CubeFace) -> usize {
+    let size = faces.texels();
+    let grid = RegionGrid { width: size, height: size, region_width: 128, region_height: 128 };
+    let viewport = Viewport::new(grid, Lines::Frame).expect("a face");
+    let layout = Layout::rendering_control_phong();
+    let picture = Picture { viewport, shading: Shading::Phong, binning: RegionBinning::Touched, layout, pixels: true };
+    // One guard texel on each side; near and far plane of the head-mounted display.
+    let half_angle = (f64::from(size) / f64::from(size - 2)).atan();
+    let projection = glam::DMat4::perspective_rh(2.0 * half_angle, 1.0, 0.05, 50.0).as_mat4();
+    let place = Mat4::from_translation(-eye.as_vec3());
+    let ahead = EyeView { world_to_eye: place, head_to_eye: Mat4::IDENTITY, projection };
+    let edits = scene.edits_at(time.0);
+    let edits = edits.iter().map(|edit| pphigs::ModelEdit { structure: edit.structure as u32, model: edit.model });
+    let view =
+        FrameView { number: pxpl5_wire::ViewNumber(0), eyes: vec![face_view(&ahead, face)], edits: edits.collect() };
+    let list = display_list(scene).expect("something to draw");
+    let ideal = ideal_picture(&list, &view, 0, &picture);
+    let [red, green, blue] = list.background;
+    let background = u32::from_be_bytes([0, red, green, blue]);
+    let drawn = image::RgbImage::from_fn(size, size, |column, row| {
+        let colour = faces.texel(TexelAddress { face, column, row }).map_or(background, |(colour, _)| colour);
+        let [_, red, green, blue] = colour.to_be_bytes();
+        image::Rgb([red, green, blue])
+    });
+    let wrong = ideal.differences(&drawn);
+    let shown = texels(size).filter(|texel| texel.face == face && faces.texel(*texel).is_some()).count();
+    // Projections that were rounded differently move an edge by less than a subpixel.
+    assert!(
+        wrong.len() * 500 <= shown,
+        "{face:?}: {} of {shown} texels differ, first {:?}",
+        wrong.len(),
+        wrong.first()
+    );
+    shown
+}
+
+/// The oracle: every face of what is shown, against a redraw for the place from which it was drawn.
+#[test]
+fn the_machines_faces_are_those_of_an_ideal_renderer() {
+    for (name, faces_with_something) in [("mig", 1), ("room", 6)] {
+        let scene = builtin(name).expect("built in");
+        let config = machine("small-hmd", FULL, &[]);
+        let outcome = Experiment::new(config, FULL, scene.clone()).fields(40).run().expect("it runs");
+        assert_no_faults(outcome.record());
+        let shown = outcome.pictures().last().expect("a picture");
+        let sampled = shown.sampled_at.expect("it was sent");
+        let motion: HeadMotion = scene.motion().with_seed(1);
+        let eye = motion.pose(sampled.0).position;
+        let faces = memory(outcome.record(), 0).shown_faces();
+        let drawn = CubeFace::ALL.map(|face| compare_face(&scene, eye, sampled, &faces, face));
+        assert!(drawn.iter().filter(|texels| **texels > 100).count() >= faces_with_something, "{name}: {drawn:?}");
+    }
+}
+
+#[test]
+fn a_display_of_faces_needs_a_pipeline_that_draws_them() {
+    let config = machine("small-hmd", FULL, &[]);
+    let error = Experiment::new(config, RenderingControl::mono(), balls()).run().expect_err("no faces");
+    let ExperimentError::Config(error) = error else { panic!("{error}") };
+    let text = error.to_string();
+    assert!(text.contains("display arp") && text.contains("arp-full") && text.contains("rendering-control"), "{text}");
+}
