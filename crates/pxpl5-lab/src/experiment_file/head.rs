@@ -1,7 +1,7 @@
 //! The head in front of the pipeline: how it moves, its tracker and predictor, and the raster before its eyes.
 
-use super::plan::SceneChoice;
 use super::read::{beside, plain, wrong};
+use super::scene::SceneChoice;
 use super::{ExperimentFile, FileError, tracking_numbers};
 use crate::head_names::{Replay, is_recording, is_walk, predictor, replayed, tracker_by, walk};
 use pxpl5_machine::Parameter;

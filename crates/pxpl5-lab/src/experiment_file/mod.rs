@@ -30,6 +30,7 @@ mod keys;
 mod motion;
 mod plan;
 mod read;
+mod scene;
 mod text;
 mod tracking_numbers;
 
@@ -37,9 +38,10 @@ pub use error::FileError;
 pub use head::HeadChoice;
 pub use keys::FileKey;
 pub use motion::{MotionChoice, PathChoice};
-pub(crate) use plan::is_file;
-pub use plan::{Outputs, Plan, Published, SceneChoice};
+pub use plan::{Outputs, Plan, Published};
 pub(crate) use read::{beside, plain};
+pub use scene::SceneChoice;
+pub(crate) use scene::is_file;
 pub use text::Settings;
 pub use tracking_numbers::tracking_parameters;
 

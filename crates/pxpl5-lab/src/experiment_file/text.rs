@@ -1,7 +1,8 @@
 //! A plan written out in full.
 
 use super::motion::PathChoice;
-use super::plan::{PIXELS, Plan, is_file};
+use super::plan::{PIXELS, Plan};
+use super::scene::is_file;
 use crate::compare::is_recording;
 use parameters::Value as Number;
 use pxpl5_machine::{MachineConfig, Parameter};

@@ -1,0 +1,84 @@
+//! The scene of an experiment.
+
+use super::motion::MotionChoice;
+use super::read::{beside, wrong};
+use super::{ExperimentFile, FileError};
+use pxpl5_scene::{Placement, Scene};
+use std::path::Path;
+use std::sync::Arc;
+
+/// The scene that is drawn, how much of it, and how the head moves before it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneChoice {
+    /// A built-in scene's name or a model file's path.
+    pub name: String,
+    /// Whether a model file is moved and scaled into the view; a built-in scene is where it is.
+    pub placement: Placement,
+    /// To how many primitives it is decimated; `None` for all.
+    pub triangles: Option<usize>,
+    /// Whether all its structures drop their back faces.
+    pub culled: bool,
+    /// How the head moves.
+    pub motion: MotionChoice,
+}
+
+/// Extensions of model files.
+const MODEL_FILES: [&str; 4] = ["ply", "obj", "pdb", "ent"];
+
+impl SceneChoice {
+    pub(super) fn read(file: &ExperimentFile) -> Result<Self, FileError> {
+        let how = "a built-in scene (`pxpl5 scenes` lists them) or a model file (.ply, .obj, .pdb)";
+        let name = file.text("scene")?.ok_or(FileError::Missing { key: "scene", how })?;
+        let folder = file.get("scene").map(|setting| setting.folder.clone()).unwrap_or_default();
+        let name = if is_file(name) { beside(&folder, name) } else { name.to_owned() };
+        let triangles = file.integer("triangles", 1..=u64::from(u32::MAX))?.map(|n| n as usize);
+        let placement = if file.flag("fit")?.unwrap_or(true) { Placement::Fitted } else { Placement::AsInFile };
+        if let (Some(setting), false) = (file.get("fit"), is_file(&name)) {
+            return Err(wrong("fit", setting, "nothing: only model files are fitted into the view"));
+        }
+        let culled = file.flag("cull")?.unwrap_or(false);
+        Ok(Self { name, placement, triangles, culled, motion: MotionChoice::read(file)? })
+    }
+
+    /// Generates it or reads its file.
+    ///
+    /// # Errors
+    ///
+    /// [`FileError`] for an unknown scene, an unusable file, or more primitives to keep than there are.
+    pub fn load(&self) -> Result<Arc<Scene>, FileError> {
+        self.prepared(Arc::new(self.load_whole()?))
+    }
+
+    /// Corners of the scene's closed path; model files have none.
+    pub(super) fn path(&self) -> Result<Vec<glam::Vec3>, FileError> {
+        if is_file(&self.name) { Ok(Vec::new()) } else { Ok(pxpl5_scene::builtin(&self.name)?.path().to_vec()) }
+    }
+
+    pub(crate) fn load_whole(&self) -> Result<Scene, FileError> {
+        let whole = match is_file(&self.name) {
+            true => pxpl5_scene::load_placed(&self.name, self.placement)?,
+            false => pxpl5_scene::builtin(&self.name)?,
+        };
+        Ok(if self.culled { whole.culled() } else { whole })
+    }
+
+    /// The whole scene decimated and moved as chosen.
+    pub(crate) fn prepared(&self, whole: Arc<Scene>) -> Result<Arc<Scene>, FileError> {
+        let scene = match self.triangles {
+            Some(n) => Arc::new(whole.decimated(n)?),
+            None => whole,
+        };
+        if self.motion == MotionChoice::default() {
+            return Ok(scene);
+        }
+        let motion = self.motion.motion(&scene)?;
+        let parts = Arc::unwrap_or_clone(scene).into_parts();
+        Ok(Arc::new(Scene::new(pxpl5_scene::SceneParts { motion, ..parts })?))
+    }
+}
+
+/// Whether a scene's name is a path: it has a model file's extension, or a separator.
+pub(crate) fn is_file(name: &str) -> bool {
+    let extension = Path::new(name).extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    name.contains(['/', std::path::MAIN_SEPARATOR]) || extension.is_some_and(|e| MODEL_FILES.contains(&e.as_str()))
+}
