@@ -208,7 +208,8 @@ fn lists_name_what_is_built_in() {
     let folder = Folder::new("lists");
     let scenes = json(&folder.run(&["scenes", "--json"]));
     let known: Vec<_> = scenes["scenes"].as_array().expect("a list").iter().map(|scene| &scene["name"]).collect();
-    let expected = ["aircraft", "mig", "molecules", "head", "room", "full-screen:N", "typical:N", "sphere:N"];
+    let of_one_size = ["aircraft", "mig", "molecules", "head", "room", "gallery", "gallery:full"];
+    let expected = [&of_one_size[..], &["full-screen:N", "typical:N", "sphere:N"]].concat();
     assert_eq!(known, expected);
     let machines = json(&folder.run(&["machines", "--json"]));
     // TR94: 13 GPs and 5 renderers.

@@ -64,10 +64,13 @@ impl LatchedHead {
         self.aim.instant(&LightSpan { tick: self.scan.retrace(field), first, last })
     }
 
-    /// The report that a pixel was turned by, and the instant that its orientation was predicted for; `None` before the first.
+    /// The report that a pixel was turned by, and the instant that its orientation was predicted for. Before the first report it is
+    /// what the host knows at the beginning of time; `None` before that is loaded.
     #[must_use]
     pub fn turned_by(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<(Time, Time)> {
-        let report = head.report_by(self.report_of(self.latches(x, y, field)?))?;
+        let latched = self.latches(x, y, field)?;
+        let before_any = (latched >= self.loaded(Time::ZERO)).then_some(Time::ZERO);
+        let report = head.report_by(self.report_of(latched)).or(before_any)?;
         Some((report, self.aimed(report, head.report_after(report))))
     }
 

@@ -121,7 +121,7 @@ fn projection(display: &ArpConfig) -> Mat4 {
     Mat4::from_cols(x, y, z, w)
 }
 
-/// The host's own line to the display: an orientation for each report.
+/// The host's own line to the display: the orientation that the head begins with, then one for each report.
 struct OrientationLine {
     reports: ReportTimes,
     poses: Poses,
@@ -136,6 +136,10 @@ impl fmt::Debug for OrientationLine {
 
 impl HostLine for OrientationLine {
     fn next(&self, after: Time) -> Option<Time> {
+        let first = self.latched.loaded(Time::ZERO);
+        if after < first {
+            return Some(first);
+        }
         (self.reports)(self.latched.report_of(after)).map(|report| self.latched.loaded(report))
     }
 
