@@ -47,10 +47,22 @@ fn aimed(aim: Aim, (first_field, first_row): (u64, u64), (last_field, last_row):
     }
 }
 
-/// What a pixel shows: number of its view, and the instant that it is drawn for.
+/// The ideal tracker reports every millisecond, at once. An orientation takes nine words of four bytes at 5 MB/s to the register of a
+/// display with faces, which is latched 26 stages of 25 ns before its first pixel, with one memory 24.
+const REPORT_S: f64 = 1e-3;
+const ORIENTATION_S: f64 = 36.0 / 5e6;
+const STAGE_S: f64 = 25e-9;
+
+/// What a pixel shows: when the newest measurement was made that it rests on, and the instant that it is drawn for.
 struct Content {
-    view: ViewNumber,
+    measured: Measurement,
     drawn_for: f64,
+}
+
+/// A measurement, by the view that rests on it or by itself.
+enum Measurement {
+    Of(ViewNumber),
+    At(f64),
 }
 
 /// A run, and what is known of it.
@@ -96,6 +108,9 @@ impl Run {
 
     fn content(&self, field: u64, row: u64, x: u64) -> Content {
         let all = ((field, 0), (field, 239));
+        if self.pipeline.starts_with("arp-") {
+            return self.content_of_faces(field, row, x);
+        }
         let (view, (first, last)) = match self.pipeline {
             "rendering-control" => {
                 let (begun, view) = self.newest(field);
@@ -109,7 +124,34 @@ impl Run {
             }
             _ => (ViewNumber(field * 256), ((field, row), (field, row))),
         };
-        Content { view, drawn_for: aimed(self.aim, first, last) }
+        Content { measured: Measurement::Of(view), drawn_for: aimed(self.aim, first, last) }
+    }
+
+    /// Faces are turned by the newest orientation in the register: before a field predicted for its aim, before a line or a pixel for
+    /// the middle of the while until the next report is there.
+    fn content_of_faces(&self, field: u64, row: u64, x: u64) -> Content {
+        let stages = if self.pipeline.starts_with("arp-full") { 24.0 } else { 26.0 };
+        let depth = stages * STAGE_S;
+        let (first_row, first_x) = match self.pipeline {
+            name if name.ends_with("-pixel") => (row, x),
+            name if name.ends_with("-line") => (row, 0),
+            _ => (0, 0),
+        };
+        let latched = beam(field, first_row, first_x) - depth;
+        let measured = ((latched - ORIENTATION_S) / REPORT_S).floor() * REPORT_S;
+        let drawn_for = match self.pipeline {
+            "arp-full" | "arp-priority" => aimed(self.aim, (field, 0), (field, 239)),
+            _ => measured + ORIENTATION_S + REPORT_S / 2.0 + depth,
+        };
+        Content { measured: Measurement::At(measured), drawn_for }
+    }
+
+    /// When the newest measurement was made that a pixel's content rests on.
+    fn measured_at(&self, content: &Content) -> f64 {
+        match content.measured {
+            Measurement::At(at) => at,
+            Measurement::Of(view) => self.sampled[&view].measured_at.expect("reports came").0 as f64 * 1e-12,
+        }
     }
 
     /// The random order decides when a block is drawn: the instant is taken from the run.
@@ -118,7 +160,7 @@ impl Run {
         let arrivals = &self.blocks[&(y / 16 * 40 + x / 16)];
         let (_, view) = arrivals.iter().rev().find(|arrival| arrival.0 <= beam(field, row, x)).expect("drawn by now");
         let predicted_for = self.sampled[view].predicted_for.expect("predicted");
-        Content { view: *view, drawn_for: predicted_for.0 as f64 * 1e-12 }
+        Content { measured: Measurement::Of(*view), drawn_for: predicted_for.0 as f64 * 1e-12 }
     }
 
     /// The pixels that are judged: five by five of every field, as [`PixelErrors`] says.
@@ -229,7 +271,7 @@ fn a_sinusoid_is_wrong_by_its_distance_from_a_straight_line_and_by_scan_out() {
     for pipeline in pipelines() {
         let run = Run::new(pipeline, Aim::Middle, Shaking);
         let turned = |content: &Content, at: f64| {
-            let measured_at = run.sampled[&content.view].measured_at.expect("reports came").0 as f64 * 1e-12;
+            let measured_at = run.measured_at(content);
             let slope = (yaw(measured_at) - yaw(measured_at - BASELINE_S)) / BASELINE_S;
             yaw(at) - (yaw(measured_at) + slope * (content.drawn_for - measured_at))
         };
