@@ -42,8 +42,8 @@ fn tolerance(a: &DuePictures, b: &DuePictures) -> f64 {
 fn every_picture_due_ends_in_one_way_and_no_heavier_load_misses_less() {
     for pipeline in pipelines() {
         let counts: Vec<_> = LOADS.iter().map(|triangles| due(pipeline, *triangles, 60)).collect();
-        if pipeline == "frameless" {
-            assert!(counts.iter().all(Option::is_none), "no picture of frameless rendering is ever due");
+        if pipeline == "frameless" || pipeline.starts_with("arp-") {
+            assert!(counts.iter().all(Option::is_none), "no picture of {pipeline} is ever due");
             continue;
         }
         let counts: Vec<DuePictures> = counts.into_iter().map(|due| due.expect("60 fields are enough")).collect();
