@@ -24,7 +24,7 @@ fn query() -> CompareQuery {
         shared.set(key, value, "bench").expect("known");
     }
     shared.set("fields", 600, "bench").expect("known");
-    CompareQuery { shared, seeds: vec![1], limits: false, pictures: false }
+    CompareQuery { shared, only: Vec::new(), seeds: vec![1], limits: false, pictures: false }
 }
 
 /// 10 s of head motion on the Mig, all pipelines with every predictor and every cause of error turned off in turn; no pixels.

@@ -443,7 +443,7 @@ fn comparison(fields: u64) -> CompareQuery {
         shared.set(key, value, "test").expect("known");
     }
     shared.set("fields", i64::try_from(fields).expect("few"), "test").expect("known");
-    CompareQuery { shared, seeds: vec![1], limits: false, pictures: false }
+    CompareQuery { shared, only: Vec::new(), seeds: vec![1], limits: false, pictures: false }
 }
 
 #[test]

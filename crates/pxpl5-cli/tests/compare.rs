@@ -78,8 +78,12 @@ fn boards_triangles_seeds_and_any_setting_are_those_of_the_command_line() {
         "--seed",
         "7",
         "--no-limits",
+        "--only",
+        "slats,ideal",
         "--json",
     ]));
+    let names: Vec<_> = rows(&json).iter().filter_map(|row| row["pipeline"].as_str()).collect();
+    assert_eq!(names, ["slats", "ideal"]);
     assert_eq!(json["boards"], serde_json::json!([17, 9]));
     assert_eq!(json["seeds"], serde_json::json!([7]));
     assert!(json["triangles"].as_u64().is_some_and(|n| (40..=60).contains(&n)), "{}", json["triangles"]);
@@ -88,8 +92,9 @@ fn boards_triangles_seeds_and_any_setting_are_those_of_the_command_line() {
 #[test]
 fn what_is_too_heavy_for_a_pipeline_says_so_and_what_it_could_draw_as_limit_does() {
     let settings = ["--machine", "small-hmd", "--set", "fields=24"];
+    let only = ["--only", "slats,jitp-scanline-racing"];
     let json = json(&compare(
-        &[settings.as_slice(), &["--scene", "mig", "--seeds", "1", "--head", "still", "--json"]].concat(),
+        &[settings.as_slice(), &["--scene", "mig", "--seeds", "1", "--head", "still", "--json"], &only].concat(),
     ));
     let racing = row(&json, "jitp-scanline-racing");
     let could = racing["triangles_possible"].as_u64().expect("limits are searched for");
@@ -107,7 +112,10 @@ fn what_is_too_heavy_for_a_pipeline_says_so_and_what_it_could_draw_as_limit_does
 fn a_folder_gets_the_tables_the_drawings_of_the_run_and_the_four_pictures() {
     let out = folder("files");
     let path = out.to_str().expect("a plain path");
-    let output = compare(&["--fields", "24", "--seeds", "2", "--scene", "full-screen:2", "--no-limits", "--out", path]);
+    let shown = ["rendering-control", "slats", "vdrt", "frameless", "jitp-field", "jitp-scanline-racing"];
+    let only = shown.join(",");
+    let settings = ["--fields", "24", "--seeds", "2", "--scene", "full-screen:2", "--no-limits", "--only", &only];
+    let output = compare(&[settings.as_slice(), &["--out", path]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = |name: &str| std::fs::read_to_string(out.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
     let json: Value = serde_json::from_str(&text("comparison.json")).expect("JSON");
@@ -127,7 +135,7 @@ fn a_folder_gets_the_tables_the_drawings_of_the_run_and_the_four_pictures() {
         assert!(drawing.contains("rendering-control") && drawing.contains("jitp-field"), "{name}");
     }
     let gallery = text("gallery.html");
-    for name in ["rendering-control", "slats", "vdrt", "frameless", "jitp-field", "jitp-scanline-racing"] {
+    for name in shown {
         assert!(gallery.contains(&format!("{name}: ")), "{name} is not in the gallery");
         let picture = image::open(out.join(format!("picture-{name}.png"))).expect("two triangles are complete");
         assert_eq!((picture.width(), picture.height()), (640, 480));
@@ -149,6 +157,7 @@ fn what_is_wrong_with_an_option_is_said_and_the_exit_code_is_2() {
         (["--fields", "3"], "found 3"),
         (["--seeds", "0"], "--seeds"),
         (["--pipeline", "slats"], "pxpl5 run --pipeline"),
+        (["--only", "slats,vdtr"], "found `vdtr`, did you mean `vdrt`?"),
         (["--machine", "smal-hmd"], "small-hmd"),
     ] {
         let output = compare(&arguments);

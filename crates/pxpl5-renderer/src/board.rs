@@ -238,8 +238,8 @@ impl Renderer {
         self.transfer_next(context);
     }
 
-    /// Moves a finished region's colours (and depths, a block of their own) to the backing store when there is a place for them; the controller is free when
-    /// they are there.
+    /// Moves a finished region's colours (and depths, a block of their own) to the backing store when there is a place for them; the
+    /// controller is free when they are there.
     fn store_next(&mut self, context: &mut Context<RendererEvent, RendererOutput>) {
         let Some(blocks) = self.unstored.front().map(|copy| u64::from(copy.order.content.words())) else { return };
         let held: u64 = self

@@ -20,12 +20,16 @@ use std::path::PathBuf;
   pxpl5 compare --head head.csv --predict none --out out/compare
   pxpl5 compare --machine design-maximum --gps 34 --set gp.triangle_ns=20000 --seeds 10 --json
   pxpl5 compare --fields 60 --seeds 1 --no-limits
+  pxpl5 compare --only slats,vdrt,jitp-scanline-racing --head pan:200
 
 Every pipeline gets the same settings, a run for each seed. A head of `synthetic` moves otherwise in every one of them. Pipelines have the
 values of their papers; to run one of them alone, with its own keys and pictures: pxpl5 run --pipeline jitp-scanline-racing.")]
 pub(crate) struct CompareArgs {
     #[command(flatten)]
     settings: SettingArgs,
+    /// Rows that are run; all where none is named.
+    #[arg(long, value_name = "ROW,...", value_delimiter = ',')]
+    only: Vec<String>,
     /// Seeds of tracker, host and synthetic motion: so many runs of each pipeline, from --seed on. The interval of a mean needs two
     /// or more.
     #[arg(long, default_value_t = LEAST_SEEDS as u64, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000))]
@@ -73,7 +77,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let shared = with_defaults(args.settings.gather()?)?;
     let first = shared.seed()?;
     let seeds = (first..=first.saturating_add(args.seeds - 1)).collect();
-    let query = CompareQuery { shared, seeds, limits: !args.no_limits, pictures: folder.is_some() };
+    let query = CompareQuery { shared, only: args.only, seeds, limits: !args.no_limits, pictures: folder.is_some() };
     let bar = terminal::progress(0, "runs", args.quiet);
     let comparison = query.run(|done, of| {
         bar.set_length(of);

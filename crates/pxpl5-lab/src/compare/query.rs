@@ -7,6 +7,7 @@ use super::trial::Trial;
 use crate::experiment_file::{ExperimentFile, FileError, Plan, plain};
 use crate::limit::LimitQuery;
 use crate::parallel;
+use parameters::nearest;
 use pxpl5_measure::{Showing, UNJUDGED_FIELDS};
 use pxpl5_run::{FIELDS_WITH_HEAD, Goal, Pixels};
 use pxpl5_scene::Scene;
@@ -24,6 +25,8 @@ pub struct CompareQuery {
     /// Machine, scene, head and fields, with the registry whose pipelines are compared; no pipeline. A `head.motion` of
     /// `synthetic` is a motion of its own for every seed.
     pub shared: ExperimentFile,
+    /// Names of the rows that are run; all where there is none.
+    pub only: Vec<String>,
     /// Seeds of tracker, host and motion: a run for each.
     pub seeds: Vec<u64>,
     /// Whether the most triangles that each row can draw are searched for.
@@ -53,6 +56,16 @@ pub enum CompareError {
     /// The registry has no pipeline that is compared.
     #[error("expected a registry with a pipeline that is compared, found none")]
     NoPipeline,
+    /// A row was asked for that there is not.
+    #[error("expected one of {expected}; found `{found}`, did you mean `{nearest}`?")]
+    Row {
+        /// Names of all rows.
+        expected: String,
+        /// The name given.
+        found: String,
+        /// The row whose name is most like it.
+        nearest: String,
+    },
     /// There is nothing to track.
     #[error("expected a head.motion, found none: without a head there is no error to compare")]
     NoHead,
@@ -90,9 +103,9 @@ impl CompareQuery {
     ///
     /// [`CompareError`] when a setting is wrong, or the run too short to judge anything.
     pub fn run(&self, finished: impl Fn(u64, u64) + Sync) -> Result<Comparison, CompareError> {
-        let any = self.any_plan()?;
+        let contenders = self.contenders()?;
+        let any = self.any_plan(&contenders)?;
         let scene = any.load_scene()?;
-        let contenders = contenders(&any.registry);
         let runs = self.runs(&contenders);
         let searches = if self.limits { contenders.len() } else { 0 };
         let all = (runs.len() + searches) as u64;
@@ -128,10 +141,23 @@ impl CompareQuery {
         })
     }
 
+    /// The rows that are run, in the order of all.
+    fn contenders(&self) -> Result<Vec<Contender>, CompareError> {
+        let mut chosen = contenders(self.shared.registry());
+        let names: Vec<String> = chosen.iter().map(|contender| contender.name.clone()).collect();
+        for found in &self.only {
+            if !names.contains(found) {
+                let nearest = nearest(found, names.iter().map(String::as_str)).unwrap_or_default().to_owned();
+                return Err(CompareError::Row { expected: names.join(", "), found: found.clone(), nearest });
+            }
+        }
+        chosen.retain(|contender| self.only.is_empty() || self.only.contains(&contender.name));
+        Ok(chosen)
+    }
+
     /// The settings checked with some pipeline.
-    fn any_plan(&self) -> Result<Plan, CompareError> {
+    fn any_plan(&self, contenders: &[Contender]) -> Result<Plan, CompareError> {
         let seed = *self.seeds.first().ok_or(CompareError::NoSeed)?;
-        let contenders = contenders(self.shared.registry());
         let first = contenders.first().ok_or(CompareError::NoPipeline)?;
         let plan = first.plan(&self.shared, seed)?;
         if plan.head.is_none() {
