@@ -21,9 +21,11 @@ mod machines;
 mod merge;
 mod options;
 mod output;
+mod plot;
 mod readings;
 mod report;
 mod rig;
+mod rows;
 mod run;
 mod scenes;
 mod settings;
@@ -86,6 +88,8 @@ enum Command {
     Sweep(sweep::SweepArgs),
     /// Join the shards of a sweep.
     Merge(merge::MergeArgs),
+    /// Draw what a sweep or a comparison found, with intervals: SVG, PNG or PDF, and the numbers as CSV.
+    Plot(plot::PlotArgs),
     /// Measure latency from outside: pendulum and photodiodes, beside the system's time stamps.
     Rig(rig::RigArgs),
     /// Make one page of a results folder.
@@ -134,6 +138,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Machines(args)) => machines::run(args),
         Some(Command::Sweep(args)) => sweep::run(args),
         Some(Command::Merge(args)) => merge::run(args),
+        Some(Command::Plot(args)) => plot::run(args),
         Some(Command::Rig(args)) => rig::run(args),
         Some(Command::Report(args)) => report::run(args),
         Some(Command::Trace(args)) => trace::run(args),

@@ -5,10 +5,11 @@ mod tables;
 
 use crate::error::CliError;
 use crate::output::OutputFile;
+use crate::rows::folder_of;
 use crate::terminal::print;
 use clap::Args;
 use pxpl5::views::page;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Make one self-contained HTML page of a results folder.
 #[derive(Args, Debug)]
@@ -46,10 +47,4 @@ pub(crate) fn run(args: ReportArgs) -> Result<(), CliError> {
         return Ok(());
     }
     print(&format!("Written to {}.\n", path.display()))
-}
-
-/// The folder of a results file, or the folder itself.
-fn folder_of(results: &Path) -> &Path {
-    let folder = if results.is_file() { results.parent() } else { None };
-    folder.map_or(results, |folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
 }

@@ -1,19 +1,15 @@
 //! Folders of sweeps and comparisons, as tables.
 
 use crate::error::CliError;
+use crate::rows::{self, ResultRows, Row, RowsKind};
 use pxpl5::sweep::ROWS_FILE;
 use pxpl5::views::page::{PagePicture, PageTable};
-use serde_json::{Map, Value};
+use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-const COMPARISON_FILE: &str = "comparison.json";
-
 /// Rows of a sweep that a page holds: more are for a table program.
 const MOST_ROWS: usize = 5_000;
-
-/// Makes a table of a file's text, or says what is wrong with it.
-type Reader = fn(&str) -> Result<PageTable, String>;
 
 /// The tables of a folder; nothing where it holds neither a sweep nor a comparison.
 ///
@@ -21,93 +17,45 @@ type Reader = fn(&str) -> Result<PageTable, String>;
 ///
 /// When its file cannot be read, or is none of these.
 pub(super) fn of(folder: &Path) -> Result<Option<Vec<PageTable>>, CliError> {
-    let readers: [(&str, Reader); 2] = [(ROWS_FILE, sweep), (COMPARISON_FILE, comparison)];
-    for (name, read) in readers {
-        let path = folder.join(name);
-        if path.is_file() {
-            let problem = |what: String| CliError::failure(format!("{}: {what}", path.display()));
-            let text = fs::read_to_string(&path).map_err(|error| problem(error.to_string()))?;
-            let table = read(&text).map_err(problem)?;
-            return Ok(Some(vec![with_pictures(table, folder)]));
-        }
-    }
-    Ok(None)
+    let Some(results) = rows::of(folder)? else { return Ok(None) };
+    let table = match results.kind {
+        RowsKind::Sweep => sweep(&results),
+        RowsKind::Comparison => comparison(&results),
+    };
+    Ok(Some(vec![with_pictures(table, folder)]))
 }
 
-fn parsed(text: &str, what: &str) -> Result<Map<String, Value>, String> {
-    let value = serde_json::from_str(text).map_err(|error| format!("{what}: {error}"))?;
-    if let Value::Object(object) = value { Ok(object) } else { Err(format!("{what}: expected a JSON object")) }
-}
-
-fn expect_schema(object: &Map<String, Value>, expected: &str) -> Result<(), String> {
-    let found = object.get("schema").and_then(Value::as_str).unwrap_or("none");
-    let is_expected = found.rsplit_once('/').is_some_and(|(name, _)| name == expected);
-    if is_expected { Ok(()) } else { Err(format!("schema: expected {expected}, found {found}")) }
-}
-
-/// Header and rows of a sweep; the last line of one that was interrupted may be torn and is left out.
-fn sweep(text: &str) -> Result<PageTable, String> {
-    let mut lines = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
-    let header = parsed(lines.next().unwrap_or_default(), "line 1")?;
-    expect_schema(&header, "pxpl5-sweep")?;
-    let rows: Vec<Map<String, Value>> =
-        lines.enumerate().map(|(n, line)| parsed(line, &format!("line {}", n + 2))).collect::<Result<_, _>>()?;
-    let told = rows.len().min(MOST_ROWS);
-    let flat: Vec<Vec<(String, String)>> = rows[..told].iter().map(sweep_cells).collect();
-    let points = header.get("points").and_then(Value::as_u64).unwrap_or_default();
-    let mut about = vec![format!("{} of {points} points.", rows.len())];
-    if told < rows.len() {
+/// A row for each point.
+fn sweep(results: &ResultRows) -> PageTable {
+    let told = results.rows.len().min(MOST_ROWS);
+    let flat: Vec<Vec<(String, String)>> = results.rows[..told].iter().map(cells).collect();
+    let points = results.about.get("points").and_then(Value::as_u64).unwrap_or_default();
+    let mut about = vec![format!("{} of {points} points.", results.rows.len())];
+    if told < results.rows.len() {
         about.push(format!("The first {told} are shown; {ROWS_FILE} and results.csv hold all."));
     }
-    about.extend(header.get("settings").map(|settings| format!("All points: {}", pairs(settings))));
-    let title = header.get("title").and_then(Value::as_str).unwrap_or("Sweep");
-    Ok(tabular(title, about, &flat))
-}
-
-/// Point, what varies, what was measured, and why there is nothing, if so.
-fn sweep_cells(row: &Map<String, Value>) -> Vec<(String, String)> {
-    let mut cells = Vec::new();
-    for key in ["point", "status", "parameters", "measured", "error"] {
-        match row.get(key) {
-            Some(Value::Object(inner)) => cells.extend(inner.iter().map(|(key, value)| (key.clone(), shown(value)))),
-            Some(Value::Null) | None => {}
-            Some(value) => cells.push((key.to_owned(), shown(value))),
-        }
-    }
-    cells
+    about.extend(results.about.get("settings").map(|settings| format!("All points: {}", pairs(settings))));
+    let title = results.about.get("title").and_then(Value::as_str).unwrap_or("Sweep");
+    tabular(title, about, &flat)
 }
 
 /// A row for each pipeline, a column for each value; what is a text about the row stands behind the numbers.
-fn comparison(text: &str) -> Result<PageTable, String> {
-    let all = parsed(text, "the file")?;
-    expect_schema(&all, "pxpl5-comparison")?;
-    let rows = all.get("pipelines").and_then(Value::as_array).ok_or("expected a list `pipelines`")?;
-    let flat: Vec<Vec<(String, String)>> = rows.iter().map(comparison_cells).collect();
-    let around = all.iter().filter(|(key, value)| *key != "schema" && !value.is_array() && !value.is_object());
+fn comparison(results: &ResultRows) -> PageTable {
+    let flat: Vec<Vec<(String, String)>> = results.rows.iter().map(numbers_first).collect();
+    let around =
+        results.about.iter().filter(|(key, value)| *key != "schema" && !value.is_array() && !value.is_object());
     let about = around.map(|(key, value)| format!("{key}: {}", shown(value))).collect::<Vec<_>>().join(", ");
-    Ok(tabular("Comparison", vec![about], &flat))
+    tabular("Comparison", vec![about], &flat)
 }
 
-fn comparison_cells(row: &Value) -> Vec<(String, String)> {
-    let mut cells = Vec::new();
-    flatten("", row, &mut cells);
+fn cells(row: &Row) -> Vec<(String, String)> {
+    row.iter().map(|(key, value)| (key.clone(), shown(value))).collect()
+}
+
+fn numbers_first(row: &Row) -> Vec<(String, String)> {
     let (texts, numbers): (Vec<_>, Vec<_>) =
-        cells.into_iter().partition(|(key, _)| key.ends_with("definition") || key == "failure");
+        cells(row).into_iter().partition(|(key, _)| key.ends_with("definition") || key == "failure");
     numbers.into_iter().chain(texts).collect()
-}
-
-/// Every single value with its path; lists are left to the file.
-fn flatten(path: &str, value: &Value, cells: &mut Vec<(String, String)>) {
-    match value {
-        Value::Object(inner) => {
-            for (key, value) in inner {
-                let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-                flatten(&path, value, cells);
-            }
-        }
-        Value::Array(_) => {}
-        value => cells.push((path.to_owned(), shown(value))),
-    }
 }
 
 /// Columns in the order in which rows bring them.

@@ -2,22 +2,30 @@
 //!
 //! | chart | shows |
 //! |---|---|
+//! | [`Chart`] | series of points over two axes, evenly or in powers of ten, for a screen or a column of a paper |
 //! | [`level_chart`] | speed against error of the levels of modelling |
 //! | [`curve_chart`], [`decade_chart`], [`point_chart`] | anything over anything: a comparison's errors over time, latency or share of pixels |
 //! | [`histogram`] | how the latencies of a run are spread |
 //! | [`part_bar`] | where the latency of a run goes |
+//!
+//! All but the last two, whose bars tell what they are under a pointer, are drawn by the crate `plotters`.
 
+mod chart;
 mod histogram;
 mod levels;
+mod look;
 mod parts;
 mod plane;
+mod scale;
 
+pub use chart::{Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesLook};
 pub use histogram::histogram;
 pub(crate) use histogram::histogram_element;
 pub use levels::{SpeedAndError, level_chart};
 pub use parts::{MeanPart, part_bar};
 pub(crate) use parts::{colour_of_part, part_bar_element};
-pub use plane::{ChartAxes, Curve, MarkedPoint, curve_chart, decade_chart, point_chart};
+pub use plane::{Curve, MarkedPoint, curve_chart, decade_chart, point_chart};
+pub use scale::AxisScale;
 
 /// Round numbers from 0 to a greatest: steps of 1, 2 or 5 times a power of ten, of which there are at most ten.
 fn ticks(greatest: f64) -> Vec<f64> {

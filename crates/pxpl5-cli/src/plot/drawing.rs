@@ -1,0 +1,55 @@
+//! Groups as series of a chart.
+
+use super::PlotArgs;
+use super::question::{Group, text};
+use pxpl5::views::charts::{AxisScale, Chart, ChartAxes, ChartPoint, ChartSeries, ChartSize, SeriesLook};
+
+/// The chart of some groups; numbers across are in order, names as they came.
+pub(super) fn chart(args: &PlotArgs, groups: &[Group]) -> Chart {
+    let names = names_across(groups);
+    let mut curves: Vec<&[String]> = Vec::new();
+    for group in groups {
+        if !curves.contains(&group.by.as_slice()) {
+            curves.push(&group.by);
+        }
+    }
+    let series = curves.iter().map(|by| series_of(by, groups, names.as_deref())).collect();
+    let axes = ChartAxes {
+        title: args.title.clone(),
+        across: args.x_label.clone().unwrap_or_else(|| args.x.clone()),
+        up: args.y_label.clone().unwrap_or_else(|| args.y.clone()),
+    };
+    let across = names.map_or_else(|| args.x_scale.scale(), AxisScale::Names);
+    Chart { axes, across, up: args.y_scale.scale(), series, size: ChartSize::Column { width_mm: args.width } }
+}
+
+/// What stands across if it is not all numbers: each once, as it came.
+fn names_across(groups: &[Group]) -> Option<Vec<String>> {
+    if groups.iter().all(|group| group.x.is_number() || group.x.is_null()) {
+        return None;
+    }
+    let mut names: Vec<String> = Vec::new();
+    for name in groups.iter().map(|group| text(&group.x)) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    Some(names)
+}
+
+fn series_of(by: &[String], groups: &[Group], names: Option<&[String]>) -> ChartSeries {
+    let across = |group: &Group| match names {
+        Some(names) => {
+            let name = text(&group.x);
+            names.iter().position(|known| *known == name).map_or(f64::NAN, |place| place as f64)
+        }
+        None => group.x.as_f64().unwrap_or(f64::NAN),
+    };
+    let own = groups.iter().filter(|group| group.by == by && group.n > 0);
+    let mut points: Vec<ChartPoint> =
+        own.map(|group| ChartPoint { at: (across(group), group.mean), interval: group.interval }).collect();
+    points.sort_by(|one, other| one.at.0.total_cmp(&other.at.0));
+    let is_curve = names.is_none() && points.len() > 1;
+    let look = if is_curve { SeriesLook::Band } else { SeriesLook::Points };
+    ChartSeries { name: by.join(", "), points, look }
+}

@@ -1,0 +1,200 @@
+//! `pxpl5 plot`: a figure of a sweep or a comparison, as it goes into a paper.
+
+mod drawing;
+mod formats;
+mod question;
+
+use crate::error::CliError;
+use crate::output::OutputFolder;
+use crate::rows::{self, ResultRows, RowsKind};
+use crate::terminal::{complain, print};
+use formats::Format;
+use pxpl5::results::csv_table;
+use pxpl5::views::charts::AxisScale;
+use question::{Group, Question};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+
+/// Draw what a sweep or a comparison found, with intervals, and write the numbers beside it.
+///
+/// Three files: the figure; FIG.csv with mean, standard deviation, n and the 95 % interval of the mean (Student's t) of every place; FIG.json
+/// with where they come from.
+#[derive(clap::Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 plot out/slats --x triangles --y missed_retraces --by copy --where code=1994 --out fig.svg
+  pxpl5 plot out/gps --x machine.n_gps --y latency_fields.mean --band seed --by pipeline --out fig.pdf
+  pxpl5 plot out/compare --x head_to_light_ms.mean --y error.mean_px.mean --by pipeline --y-scale log --out fig.png
+
+What varies and is named by neither --x, --by nor --band is an error. What was not judged is no 0: such rows are counted in the column
+`missing`, and a place without any number is not drawn.")]
+pub(crate) struct PlotArgs {
+    /// What `pxpl5 sweep --out` or `pxpl5 compare --out` wrote: the folder, or its rows.jsonl or comparison.json.
+    #[arg(value_name = "DIR|FILE")]
+    results: PathBuf,
+    /// The column to the right, a number or a name.
+    #[arg(long, value_name = "COLUMN")]
+    x: String,
+    /// The column upwards, a number.
+    #[arg(long, value_name = "COLUMN")]
+    y: String,
+    /// A curve for each value, or combination of values, of these columns.
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',')]
+    by: Vec<String>,
+    /// The mean is taken over these columns, and its interval is drawn as a band.
+    #[arg(long, value_name = "COLUMN,...", value_delimiter = ',', default_value = "seed")]
+    band: Vec<String>,
+    /// Only rows with this value; may be repeated.
+    #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = pair)]
+    only: Vec<(String, String)>,
+    /// The figure: .svg, .png (300 dots an inch) or .pdf.
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Width of the figure, millimetres: 84 is a column of most journals, 174 two of them.
+    #[arg(long, value_name = "MM", default_value_t = 84.0, value_parser = width)]
+    width: f64,
+    /// How the axis to the right goes.
+    #[arg(long, value_name = "SCALE", value_enum, default_value_t = ScaleName::Even)]
+    x_scale: ScaleName,
+    /// How the axis upwards goes.
+    #[arg(long, value_name = "SCALE", value_enum, default_value_t = ScaleName::Even)]
+    y_scale: ScaleName,
+    /// What stands at the axis to the right; default: the column's name.
+    #[arg(long, value_name = "TEXT")]
+    x_label: Option<String>,
+    /// What stands at the axis upwards; default: the column's name.
+    #[arg(long, value_name = "TEXT")]
+    y_label: Option<String>,
+    /// What stands above; default: nothing.
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    title: String,
+    /// Print nothing but errors.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+/// How an axis goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum ScaleName {
+    /// Evenly, from the least number to the greatest.
+    Even,
+    /// Evenly, from 0.
+    Zero,
+    /// In powers of ten; what is not above 0 is left out.
+    Log,
+}
+
+impl ScaleName {
+    const fn scale(self) -> AxisScale {
+        match self {
+            Self::Even => AxisScale::Fitted,
+            Self::Zero => AxisScale::FromZero,
+            Self::Log => AxisScale::Decades,
+        }
+    }
+}
+
+/// Least and greatest width, millimetres.
+const WIDTHS_MM: (f64, f64) = (40.0, 400.0);
+
+fn width(text: &str) -> Result<f64, String> {
+    let (low, high) = WIDTHS_MM;
+    let found = text.parse().ok().filter(|mm: &f64| (low..=high).contains(mm));
+    found.ok_or(format!("expected {low} to {high} millimetres, found {text}"))
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or(format!("expected COLUMN=VALUE, found {text}"))?;
+    Ok((name.to_owned(), value.to_owned()))
+}
+
+/// Draws and writes.
+///
+/// # Errors
+///
+/// When there are no rows, a name is none of theirs, nothing could be drawn, or a file cannot be written.
+pub(crate) fn run(args: PlotArgs) -> Result<(), CliError> {
+    let format = Format::of(&args.out)?;
+    let folder = rows::folder_of(&args.results);
+    let results = rows::of(folder)?.ok_or_else(|| no_rows(folder))?;
+    let question = args.question(results.kind);
+    let groups = question.groups(&results)?;
+    let missing: usize = groups.iter().map(|group| group.missing).sum();
+    if groups.iter().all(|group| group.n == 0) {
+        let y = &args.y;
+        return Err(CliError::failure(format!("none of {missing} rows has a number under {y}: nothing was drawn")));
+    }
+    let svg = drawing::chart(&args, &groups).svg();
+    let figure = formats::bytes(&svg, format)?;
+    write(&args, &results, (&figure, &csv(&question, &groups)))?;
+    if missing > 0 {
+        complain(&format!("pxpl5: {missing} rows have no number under {} and are left out of the means\n", args.y));
+    }
+    if args.quiet {
+        return Ok(());
+    }
+    let places = groups.iter().filter(|group| group.n > 0).count();
+    print(&format!("{places} places are drawn in {}, the numbers are beside it.\n", args.out.display()))
+}
+
+fn no_rows(folder: &Path) -> CliError {
+    let folder = folder.display();
+    CliError::failure(format!(
+        "{folder}: neither rows.jsonl nor comparison.json; expected what `pxpl5 sweep --out` or `pxpl5 compare --out` writes"
+    ))
+}
+
+impl PlotArgs {
+    fn question(&self, kind: RowsKind) -> Question {
+        let mut by = self.by.clone();
+        if kind == RowsKind::Comparison && by.is_empty() {
+            by.push("pipeline".to_owned());
+        }
+        let only = self.only.clone();
+        Question { x: self.x.clone(), y: self.y.clone(), by, band: self.band.clone(), only }
+    }
+}
+
+/// The three files, or none.
+fn write(args: &PlotArgs, results: &ResultRows, (figure, csv): (&[u8], &str)) -> Result<(), CliError> {
+    let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
+    let parent = args.out.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let (Some(figure_name), Some(csv_name), Some(json_name)) =
+        (name(&args.out), name(&args.out.with_extension("csv")), name(&args.out.with_extension("json")))
+    else {
+        return Err(CliError::usage(format!("{} is no file name", args.out.display())));
+    };
+    let only: Vec<String> = args.only.iter().map(|(name, value)| format!("{name}={value}")).collect();
+    let origin = json!({
+        "schema": "pxpl5-plot/1",
+        "version": env!("CARGO_PKG_VERSION"),
+        "results": args.results.display().to_string(),
+        "x": args.x, "y": args.y, "by": args.by, "band": args.band, "where": only,
+        "interval": "95 % of the mean, Student's t",
+        "about": results.about,
+    });
+    let origin = serde_json::to_string_pretty(&origin).map_err(CliError::failure)? + "\n";
+    let mut folder = OutputFolder::open(parent)?;
+    folder.put(&figure_name, figure)?;
+    folder.put(&csv_name, csv.as_bytes())?;
+    folder.put(&json_name, origin.as_bytes())?;
+    folder.commit()
+}
+
+/// The groups as a table that opens everywhere: names first, what is no number is empty.
+fn csv(question: &Question, groups: &[Group]) -> String {
+    let columns = ["mean", "sd", "n", "low", "high", "missing"].map(str::to_owned);
+    let names = question.by.iter().cloned().chain([question.x.clone()]).chain(columns);
+    let number = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
+    let rows = groups.iter().map(|group| {
+        let numbers = [
+            number(group.mean),
+            number(group.sd),
+            group.n.to_string(),
+            number(group.interval.0),
+            number(group.interval.1),
+            group.missing.to_string(),
+        ];
+        group.by.iter().cloned().chain([question::text(&group.x)]).chain(numbers).collect::<Vec<_>>()
+    });
+    csv_table("", names, rows)
+}

@@ -1,0 +1,135 @@
+//! What a plot is asked for, and groups of rows that answer it.
+
+use crate::error::CliError;
+use crate::rows::{ResultRows, Row, RowsKind, value};
+use parameters::nearest;
+use pxpl5::Statistics;
+use pxpl5::compare::MeanInterval;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Columns and what they are for.
+#[derive(Clone, Debug)]
+pub(super) struct Question {
+    /// What goes to the right.
+    pub(super) x: String,
+    /// What goes up.
+    pub(super) y: String,
+    /// A curve for each combination of these.
+    pub(super) by: Vec<String>,
+    /// Over these is the mean taken.
+    pub(super) band: Vec<String>,
+    /// Rows that count: names and the texts of values.
+    pub(super) only: Vec<(String, String)>,
+}
+
+/// The rows of one place of one curve.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    /// Values of the question's `by`, as texts.
+    pub(super) by: Vec<String>,
+    pub(super) x: Value,
+    /// Rows with a number.
+    pub(super) n: usize,
+    /// Rows without: they failed, or nothing was judged.
+    pub(super) missing: usize,
+    /// No numbers where n is 0.
+    pub(super) mean: f64,
+    /// No number where n is less than 2, or the rows do not tell it.
+    pub(super) sd: f64,
+    /// 95 % interval of the mean; no numbers as `sd`.
+    pub(super) interval: (f64, f64),
+}
+
+impl Question {
+    /// The groups, in the order in which rows bring them.
+    ///
+    /// # Errors
+    ///
+    /// A name that no row has, or something else that varies within a group.
+    pub(super) fn groups(&self, results: &ResultRows) -> Result<Vec<Group>, CliError> {
+        self.check_names(results)?;
+        let counted: Vec<&Row> = results.rows.iter().filter(|row| self.counts(row)).collect();
+        if counted.is_empty() {
+            return Err(CliError::usage("no row is left by --where"));
+        }
+        let mut places: BTreeMap<(Vec<String>, String), usize> = BTreeMap::new();
+        let mut found: Vec<(Vec<String>, Value, Vec<&Row>)> = Vec::new();
+        for row in counted {
+            let by: Vec<String> = self.by.iter().map(|name| value(row, name).map_or_else(String::new, text)).collect();
+            let x = value(row, &self.x).cloned().unwrap_or(Value::Null);
+            let place = *places.entry((by.clone(), text(&x))).or_insert(found.len());
+            if place == found.len() {
+                found.push((by, x, Vec::new()));
+            }
+            found[place].2.push(row);
+        }
+        found.into_iter().map(|(by, x, rows)| self.group(results, by, x, &rows)).collect()
+    }
+
+    fn counts(&self, row: &Row) -> bool {
+        self.only.iter().all(|(name, wanted)| value(row, name).is_some_and(|found| text(found) == *wanted))
+    }
+
+    fn check_names(&self, results: &ResultRows) -> Result<(), CliError> {
+        let known: BTreeSet<&str> = results.rows.iter().flatten().map(|(key, _)| key.as_str()).collect();
+        let only = self.only.iter().map(|(name, _)| name);
+        for name in [&self.x, &self.y].into_iter().chain(&self.by).chain(only) {
+            if !known.contains(name.as_str()) {
+                let near = nearest(name, known.iter().copied()).unwrap_or("nothing");
+                let all = known.iter().copied().collect::<Vec<_>>().join(", ");
+                return Err(CliError::usage(format!("no row has `{name}`; did you mean `{near}`? There are: {all}")));
+            }
+        }
+        Ok(())
+    }
+
+    fn group(&self, results: &ResultRows, by: Vec<String>, x: Value, rows: &[&Row]) -> Result<Group, CliError> {
+        let numbers: Vec<f64> = rows.iter().filter_map(|row| value(row, &self.y).and_then(Value::as_f64)).collect();
+        let missing = rows.len() - numbers.len();
+        if results.kind == RowsKind::Comparison {
+            return Ok(self.of_row(by, x, rows[0], missing));
+        }
+        self.check_others(results, rows)?;
+        let of_all = MeanInterval::of(&numbers);
+        let sd = if numbers.len() < 2 { f64::NAN } else { Statistics::of(numbers.iter().copied()).sd };
+        let interval = (of_all.low, of_all.high);
+        Ok(Group { by, x, n: numbers.len(), missing, mean: of_all.mean, sd, interval })
+    }
+
+    /// A row of a comparison is a mean over seeds already, with its interval beside it.
+    fn of_row(&self, by: Vec<String>, x: Value, row: &Row, missing: usize) -> Group {
+        let number = |name: &str| value(row, name).and_then(Value::as_f64);
+        let mean = number(&self.y).unwrap_or(f64::NAN);
+        let beside = |name: &str| self.y.strip_suffix(".mean").and_then(|path| number(&format!("{path}.{name}")));
+        let interval = (beside("low").unwrap_or(f64::NAN), beside("high").unwrap_or(f64::NAN));
+        let n = beside("n").map_or(usize::from(missing == 0), |n| n as usize);
+        Group { by, x, n, missing, mean, sd: beside("sd").unwrap_or(f64::NAN), interval }
+    }
+
+    /// Whatever varies among the points of a group must be what the mean is taken over.
+    fn check_others(&self, results: &ResultRows, rows: &[&Row]) -> Result<(), CliError> {
+        let axes = results.about.get("axes").and_then(Value::as_array).into_iter().flatten();
+        let paths = axes.filter_map(|axis| axis["paths"].as_array()).flatten().filter_map(Value::as_str);
+        let named = |path: &str| path == self.x || self.by.iter().chain(&self.band).any(|name| name == path);
+        for path in paths.filter(|path| !named(path)) {
+            let values: BTreeSet<String> = rows.iter().filter_map(|row| value(row, path)).map(text).collect();
+            if values.len() > 1 {
+                let values = values.into_iter().collect::<Vec<_>>().join(", ");
+                return Err(CliError::usage(format!(
+                    "{path} varies too ({values}): draw a curve for each with --by {path}, choose one with --where {path}=VALUE, or \
+                     take the mean over it with --band {path}"
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A value as it is written in a name.
+pub(super) fn text(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,122 @@
+//! Rows of a results folder: what `pxpl5 sweep` and `pxpl5 compare` wrote.
+
+use crate::error::CliError;
+use pxpl5::sweep::ROWS_FILE;
+use serde_json::{Map, Value};
+use std::fs;
+use std::path::Path;
+
+const COMPARISON_FILE: &str = "comparison.json";
+
+/// A row: names and values in the order of the file.
+pub(crate) type Row = Vec<(String, Value)>;
+
+/// What the rows are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RowsKind {
+    /// A row for each point.
+    Sweep,
+    /// A row for each way to fight latency, a value for each path in it; lists are left to the file.
+    Comparison,
+}
+
+/// All rows of a folder.
+#[derive(Debug)]
+pub(crate) struct ResultRows {
+    pub(crate) kind: RowsKind,
+    /// The header of a sweep; of a comparison everything but its rows.
+    pub(crate) about: Map<String, Value>,
+    pub(crate) rows: Vec<Row>,
+}
+
+/// The rows of a folder; nothing where it holds neither a sweep nor a comparison.
+///
+/// # Errors
+///
+/// When its file cannot be read, or is none of these.
+pub(crate) fn of(folder: &Path) -> Result<Option<ResultRows>, CliError> {
+    type Reader = fn(&str) -> Result<ResultRows, String>;
+    let readers: [(&str, Reader); 2] = [(ROWS_FILE, sweep), (COMPARISON_FILE, comparison)];
+    for (name, read) in readers {
+        let path = folder.join(name);
+        if path.is_file() {
+            let problem = |what: String| CliError::failure(format!("{}: {what}", path.display()));
+            let text = fs::read_to_string(&path).map_err(|error| problem(error.to_string()))?;
+            return read(&text).map(Some).map_err(problem);
+        }
+    }
+    Ok(None)
+}
+
+/// The folder of a results file, or the folder itself.
+pub(crate) fn folder_of(results: &Path) -> &Path {
+    let folder = if results.is_file() { results.parent() } else { None };
+    folder.map_or(results, |folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
+}
+
+/// The value of a row under a name.
+pub(crate) fn value<'a>(row: &'a Row, name: &str) -> Option<&'a Value> {
+    row.iter().find(|(key, _)| key == name).map(|(_, value)| value)
+}
+
+fn parsed(text: &str, what: &str) -> Result<Map<String, Value>, String> {
+    let value = serde_json::from_str(text).map_err(|error| format!("{what}: {error}"))?;
+    if let Value::Object(object) = value { Ok(object) } else { Err(format!("{what}: expected a JSON object")) }
+}
+
+fn expect_schema(object: &Map<String, Value>, expected: &str) -> Result<(), String> {
+    let found = object.get("schema").and_then(Value::as_str).unwrap_or("none");
+    let is_expected = found.rsplit_once('/').is_some_and(|(name, _)| name == expected);
+    if is_expected { Ok(()) } else { Err(format!("schema: expected {expected}, found {found}")) }
+}
+
+/// Header and rows of a sweep; the last line of one that was interrupted may be torn and is left out.
+fn sweep(text: &str) -> Result<ResultRows, String> {
+    let mut lines = text.split_inclusive('\n').filter(|line| line.ends_with('\n'));
+    let about = parsed(lines.next().unwrap_or_default(), "line 1")?;
+    expect_schema(&about, "pxpl5-sweep")?;
+    let row = |(n, line): (usize, &str)| parsed(line, &format!("line {}", n + 2)).map(of_point);
+    let rows = lines.enumerate().map(row).collect::<Result<_, _>>()?;
+    Ok(ResultRows { kind: RowsKind::Sweep, about, rows })
+}
+
+/// Point, what varies, what was measured, and why there is nothing, if so.
+fn of_point(mut point: Map<String, Value>) -> Row {
+    let mut row = Row::new();
+    for key in ["point", "status", "parameters", "measured", "error"] {
+        match point.remove(key) {
+            Some(Value::Object(inner)) => row.extend(inner),
+            Some(Value::Null) | None => {}
+            Some(value) => row.push((key.to_owned(), value)),
+        }
+    }
+    row
+}
+
+fn comparison(text: &str) -> Result<ResultRows, String> {
+    let mut about = parsed(text, "the file")?;
+    expect_schema(&about, "pxpl5-comparison")?;
+    let Some(Value::Array(pipelines)) = about.remove("pipelines") else {
+        return Err("expected a list `pipelines`".to_owned());
+    };
+    let rows = pipelines.into_iter().map(|pipeline| {
+        let mut row = Row::new();
+        flatten("", pipeline, &mut row);
+        row
+    });
+    Ok(ResultRows { kind: RowsKind::Comparison, rows: rows.collect(), about })
+}
+
+/// Every single value with its path.
+fn flatten(path: &str, value: Value, row: &mut Row) {
+    match value {
+        Value::Object(inner) => {
+            for (key, value) in inner {
+                let path = if path.is_empty() { key } else { format!("{path}.{key}") };
+                flatten(&path, value, row);
+            }
+        }
+        Value::Array(_) => {}
+        value => row.push((path.to_owned(), value)),
+    }
+}

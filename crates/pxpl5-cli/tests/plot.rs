@@ -1,0 +1,146 @@
+//! `pxpl5 plot` as a user starts it, on rows whose means are known by hand.
+
+mod support;
+
+use serde_json::{Value, json};
+use support::{Folder, err, out};
+
+/// A sweep of three seeds at three places of two curves: `measured` says what each point has.
+fn sweep(folder: &Folder, measured: impl Fn(&str, u64, u64) -> Value) {
+    let axes =
+        [("copy", json!([["whole"], ["split"]])), ("n", json!([[1], [2], [4]])), ("seed", json!([[1], [2], [3]]))];
+    let axes: Vec<Value> = axes.iter().map(|(path, steps)| json!({"paths": [path], "steps": steps})).collect();
+    let mut text = json!({"schema": "pxpl5-sweep/1", "points": 18, "title": "t", "axes": axes}).to_string() + "\n";
+    for copy in ["whole", "split"] {
+        for n in [1, 2, 4] {
+            for seed in [1, 2, 3] {
+                let row = json!({
+                    "point": 0, "status": "done", "parameters": {"copy": copy, "n": n, "seed": seed},
+                    "measured": {"latency": measured(copy, n, seed)}, "error": null
+                });
+                text += &(row.to_string() + "\n");
+            }
+        }
+    }
+    folder.file("rows.jsonl", text);
+}
+
+/// The seeds are 1, 2, 3 above ten times the place: mean 2, standard deviation 1, and of two degrees of freedom the 97.5th
+/// percentile of Student's t is 4.302653 (any table of it), so that half of the interval is 4.302653 / sqrt(3) = 2.484138.
+#[test]
+fn means_deviations_and_intervals_are_those_of_the_seeds() {
+    let folder = Folder::new("plot-means");
+    sweep(&folder, |copy, n, seed| json!(10 * n + seed + if copy == "split" { 100 } else { 0 }));
+    let run = folder.run(&["plot", ".", "--x", "n", "--y", "latency", "--by", "copy", "--out", "fig.svg"]);
+    assert!(run.status.success(), "{}", err(&run));
+    assert!(out(&run).contains("6 places"), "{}", out(&run));
+    assert_eq!(folder.names(), ["fig.csv", "fig.json", "fig.svg", "rows.jsonl"]);
+    let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
+    let mut lines = table.lines();
+    assert_eq!(lines.next(), Some("copy,n,mean,sd,n,low,high,missing"));
+    for (line, (copy, n, mean)) in lines.by_ref().zip([
+        ("whole", "1", 12.0),
+        ("whole", "2", 22.0),
+        ("whole", "4", 42.0),
+        ("split", "1", 112.0),
+        ("split", "2", 122.0),
+        ("split", "4", 142.0),
+    ]) {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!((cells[0], cells[1], cells[4], cells[7]), (copy, n, "3", "0"), "{line}");
+        let number = |i: usize| cells[i].parse::<f64>().expect("a number");
+        let expected = [mean, 1.0, mean - 2.484_138, mean + 2.484_138];
+        for (found, expected) in [2, 3, 5, 6].map(number).into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-5, "{line}: {expected}");
+        }
+    }
+    let origin: Value =
+        serde_json::from_slice(&std::fs::read(folder.0.join("fig.json")).expect("written")).expect("JSON");
+    assert_eq!((&origin["about"]["title"], &origin["by"]), (&json!("t"), &json!(["copy"])));
+    let svg = std::fs::read_to_string(folder.0.join("fig.svg")).expect("written");
+    assert!(svg.contains("width=\"84mm\"") && svg.contains("whole") && svg.contains("split"));
+    // Two bands, two curves and their samples.
+    assert_eq!(svg.matches("<polygon").count(), 2 + 4, "and the triangles of the second curve with its sample");
+}
+
+#[test]
+fn what_was_not_judged_is_no_zero() {
+    let folder = Folder::new("plot-null");
+    sweep(&folder, |copy, n, seed| if (copy, n) == ("split", 4) || seed == 3 { Value::Null } else { json!(seed) });
+    let run = folder.run(&["plot", "rows.jsonl", "--x", "n", "--y", "latency", "--by", "copy", "--out", "fig.svg"]);
+    assert!(run.status.success(), "{}", err(&run));
+    assert!(err(&run).contains("8 rows have no number"), "{}", err(&run));
+    let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
+    assert!(table.ends_with("split,4,,,0,,,3\n"), "{table}");
+    assert!(table.contains("whole,1,1.5,"), "{table}");
+    sweep(&folder, |_, _, _| Value::Null);
+    let run = folder.run(&["plot", ".", "--x", "n", "--y", "latency", "--by", "copy", "--out", "none.svg"]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(err(&run).contains("none of 18 rows has a number") && !folder.names().contains(&"none.svg".to_owned()));
+}
+
+/// 84 mm are 992 dots of 1/300 inch, and 238.11 points of 1/72.
+#[test]
+fn figures_have_their_width_in_every_format() {
+    let folder = Folder::new("plot-formats");
+    sweep(&folder, |_, n, seed| json!(n * seed));
+    for name in ["fig.png", "fig.pdf"] {
+        let run = folder.run(&["plot", ".", "--x", "n", "--y", "latency", "--by", "copy", "--out", name]);
+        assert!(run.status.success(), "{}", err(&run));
+    }
+    let picture = image::open(folder.0.join("fig.png")).expect("a picture").into_rgb8();
+    assert_eq!(picture.width(), 992);
+    let dark = picture.pixels().filter(|pixel| pixel.0.iter().all(|value| *value < 64)).count();
+    assert!(dark > 2_000, "axes, names and a black curve, not {dark} dots: is there a typeface?");
+    let pdf = std::fs::read(folder.0.join("fig.pdf")).expect("written");
+    assert!(pdf.starts_with(b"%PDF"));
+    let text = String::from_utf8_lossy(&pdf);
+    let rest = text.split_once("/MediaBox [0 0 ").expect("a page").1;
+    let width: f64 = rest.split(' ').next().and_then(|width| width.parse().ok()).expect("a number");
+    assert!((width - 84.0 / 25.4 * 72.0).abs() < 0.1, "{width}");
+}
+
+#[test]
+fn what_is_asked_wrongly_is_said_and_nothing_is_written() {
+    let folder = Folder::new("plot-wrong");
+    sweep(&folder, |_, n, _| json!(n));
+    for (arguments, says) in [
+        (["--x", "n", "--y", "latncy", "--out", "a.svg"], "did you mean `latency`?"),
+        (
+            ["--x", "n", "--y", "latency", "--out", "a.svg"],
+            "copy varies too (split, whole): draw a curve for each with --by copy",
+        ),
+        (["--x", "n", "--y", "latency", "--out", "a.gif"], "ends in .svg, .png or .pdf, found a.gif"),
+        (["--x", "n", "--y", "latency", "--width", "7"], "expected 40 to 400 millimetres, found 7"),
+        (["--x", "n", "--y", "latency", "--where", "copy"], "expected COLUMN=VALUE, found copy"),
+    ] {
+        let run = folder.run(&[&["plot", "."], &arguments[..]].concat());
+        assert_eq!(run.status.code(), Some(2), "{arguments:?}: {}", err(&run));
+        assert!(err(&run).contains(says), "{}", err(&run));
+    }
+    assert_eq!(folder.names(), ["rows.jsonl"]);
+    let run = folder.run(&["plot", "/", "--x", "n", "--y", "latency", "--out", "a.svg"]);
+    assert!(err(&run).contains("neither rows.jsonl nor comparison.json"), "{}", err(&run));
+    let chosen = ["plot", ".", "--x", "n", "--y", "latency", "--where", "copy=split", "--out", "a.svg"];
+    assert!(folder.run(&chosen).status.success());
+    let over = ["plot", ".", "--x", "n", "--y", "latency", "--band", "seed,copy", "--out", "b.svg"];
+    assert!(folder.run(&over).status.success());
+    assert!(std::fs::read_to_string(folder.0.join("b.csv")).expect("written").contains("\n1,1,0,6,"));
+}
+
+/// A comparison's rows are means over seeds, with their intervals beside them.
+#[test]
+fn a_comparison_is_a_point_for_each_pipeline() {
+    let folder = Folder::new("plot-comparison");
+    let row = |name: &str, ms: f64, px: f64| json!({"pipeline": name, "head_to_light_ms": {"mean": ms}, "error": {"mean_px": {"mean": px, "low": px - 1.0, "high": px + 1.0, "n": 5}}});
+    let comparison = json!({"schema": "pxpl5-comparison/2", "scene": "mig", "pipelines": [row("slats", 50.0, 8.0), row("jitp-field", 40.0, 7.0)]});
+    folder.file("comparison.json", comparison.to_string());
+    let run =
+        folder.run(&["plot", ".", "--x", "head_to_light_ms.mean", "--y", "error.mean_px.mean", "--out", "fig.svg"]);
+    assert!(run.status.success(), "{}", err(&run));
+    let table = std::fs::read_to_string(folder.0.join("fig.csv")).expect("written");
+    assert_eq!(
+        table,
+        "pipeline,head_to_light_ms.mean,mean,sd,n,low,high,missing\nslats,50.0,8,,5,7,9,0\njitp-field,40.0,7,,5,6,8,0\n"
+    );
+}

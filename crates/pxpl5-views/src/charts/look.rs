@@ -1,0 +1,59 @@
+//! What tells one series of a chart from the next, whatever colours its reader sees.
+
+use plotters::backend::DrawingBackend;
+use plotters::coord::CoordTranslate;
+use plotters::drawing::{DrawingArea, DrawingAreaErrorKind};
+use plotters::element::{Circle, Cross, TriangleMarker};
+use plotters::style::{Color, RGBColor, ShapeStyle};
+
+/// Colours that people with any colour vision tell apart (Okabe and Ito 2008, its yellow darker); beyond them lines are dashed.
+const COLOURS: [u32; 8] = [0x00_0000, 0xe6_9f00, 0x56_b4e9, 0x00_9e73, 0x00_72b2, 0xd5_5e00, 0xcc_79a7, 0xb8_a900];
+
+/// Dashes and gaps in tenths of the height of text.
+const DASHES: [Option<(u32, u32)>; 3] = [None, Some((5, 3)), Some((2, 3))];
+
+/// Colour, dashes and mark of a series.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Look {
+    place: usize,
+    pub(super) colour: RGBColor,
+    /// Height of text in units of the drawing.
+    pub(super) em: u32,
+}
+
+impl Look {
+    /// That of the series at this place, from 0.
+    pub(super) fn of(place: usize, em: u32) -> Self {
+        let [_, red, green, blue] = COLOURS[place % COLOURS.len()].to_be_bytes();
+        Self { place, colour: RGBColor(red, green, blue), em }
+    }
+
+    pub(super) fn stroke(&self) -> ShapeStyle {
+        self.colour.stroke_width(self.em / 8)
+    }
+
+    /// Lengths of dashes and gaps; `None` for a line without.
+    pub(super) fn dashes(&self) -> Option<(u32, u32)> {
+        let dashes = DASHES[self.place / COLOURS.len() % DASHES.len()];
+        dashes.map(|(on, off)| (on * self.em / 10, off * self.em / 10))
+    }
+
+    /// Draws a disc, a triangle, a cross or a ring, in turn.
+    pub(super) fn mark<B, C>(
+        &self,
+        area: &DrawingArea<B, C>,
+        at: C::From,
+    ) -> Result<(), DrawingAreaErrorKind<B::ErrorType>>
+    where
+        B: DrawingBackend,
+        C: CoordTranslate,
+    {
+        let size = self.em * 3 / 8;
+        match self.place % 4 {
+            0 => area.draw(&Circle::new(at, size, self.colour.filled())),
+            1 => area.draw(&TriangleMarker::new(at, size, self.colour.filled())),
+            2 => area.draw(&Cross::new(at, size, self.stroke())),
+            _ => area.draw(&Circle::new(at, size, self.stroke())),
+        }
+    }
+}
