@@ -20,6 +20,7 @@ impl Linear {
     }
 
     /// The constant part along a row.
+    #[inline(always)]
     pub(crate) fn row(self, y: f64) -> f64 {
         self.y * y + self.c
     }
@@ -60,27 +61,43 @@ impl Edges {
 
 impl Linear {
     /// Whether a middle at x of a row belongs to the inner side; on the edge itself that of the larger x, then of the larger y.
+    #[inline(always)]
     fn takes(self, x: f64, row: f64) -> bool {
         let value = self.x * x + row;
         value > 0.0 || (value == 0.0 && (self.x > 0.0 || (self.x == 0.0 && self.y > 0.0)))
     }
+}
+
+/// An edge, and about where it crosses a row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossing {
+    pub(crate) edge: Linear,
+    /// Columns for each unit of the row's constant part, and the column of the middle.
+    columns_of: f64,
+    middle: f64,
+}
+
+impl Crossing {
+    pub(crate) fn new(edge: Linear, columns: Columns) -> Self {
+        Self { edge, columns_of: -1.0 / (edge.x * columns.step), middle: -columns.first / columns.step }
+    }
 
     /// Narrows a range of columns to those that this edge takes; columns have their middles at `first + column * step`.
     ///
-    /// `takes` is monotone along a row, also as it is rounded: the quotient finds the place to within a column or two, and the
+    /// `takes` is monotone along a row, also as it is rounded: the crossing is found to within a column or two, and the
     /// function itself decides.
-    pub(crate) fn narrow(self, row: f64, columns: Columns, range: &mut [i64; 2]) {
-        if self.x == 0.0 {
-            if !self.takes(0.0, row) {
+    #[inline(always)]
+    pub(crate) fn narrow(&self, row: f64, columns: Columns, range: &mut [i64; 2]) {
+        if self.edge.x == 0.0 {
+            if !self.edge.takes(0.0, row) {
                 range[1] = range[0];
             }
             return;
         }
-        let at = ((-row / self.x - columns.first) / columns.step).clamp(range[0] as f64 - 1.0, range[1] as f64 + 1.0);
+        let at = (row * self.columns_of + self.middle).clamp(range[0] as f64 - 1.0, range[1] as f64 + 1.0);
         let mut border = at.floor() as i64;
-        let is_left = self.x > 0.0;
-        let takes = |column: i64| self.takes(columns.middle(column), row);
-        if is_left {
+        let takes = |column: i64| self.edge.takes(columns.middle(column), row);
+        if self.edge.x > 0.0 {
             while border > range[0] && takes(border - 1) {
                 border -= 1;
             }
@@ -108,6 +125,7 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
+    #[inline(always)]
     pub(crate) fn middle(self, column: i64) -> f64 {
         self.first + column as f64 * self.step
     }

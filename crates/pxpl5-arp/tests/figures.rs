@@ -79,6 +79,6 @@ fn slow_memories_miss_first() {
 fn the_document_is_fresh() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/address-recalculation.md");
     let kept = std::fs::read_to_string(path).expect("docs/address-recalculation.md");
-    let how = "stale: run `cargo run -p pxpl5-arp --example arp -- --write docs/address-recalculation.md`";
+    let how = "stale: run `pxpl5 arp figures --write docs/address-recalculation.md`";
     assert!(kept == markdown(&FIGURES.0, &FIGURES.1), "{how}");
 }
