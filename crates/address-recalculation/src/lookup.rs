@@ -58,24 +58,27 @@ impl<'a> Addressing<'a> {
         self.unit.footprint(matrix.turn(vector))
     }
 
-    /// Where the footprints of up to [`BATCH`] pixels begin; `None` of words that are too wide.
-    fn batch(&self, vectors: [&[i32]; 3], matrix: &MatrixWords) -> Option<Batch> {
-        self.is_exact.then(|| addresses(&self.unit, vectors, matrix))
+    /// Where the footprints of up to [`BATCH`] pixels begin; false, and nothing, for words that are too wide.
+    fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
+        if self.is_exact {
+            addresses(batch, &self.unit, vectors, matrix);
+        }
+        self.is_exact
     }
 
     /// Marks the pieces of 128 x 128 texels that a run of pixels reads, in the order of [`crate::region_grid`].
     pub(crate) fn mark(&self, first: usize, count: usize, matrix: &MatrixWords, touched: &mut [bool]) {
         let vectors = self.table.run(first, count);
+        let mut batch = Batch::new();
         for start in (0..count).step_by(BATCH) {
             let here = start..(start + BATCH).min(count);
             let vectors = vectors.map(|axis| &axis[here.clone()]);
-            let by_itself = |i: usize| vectors.map(|axis| axis[i]);
-            match self.batch(vectors, matrix) {
-                Some(batch) => {
-                    batch.inside().for_each(|index| self.mark_square(index, touched));
-                    batch.left().for_each(|i| self.mark_footprint(by_itself(i), matrix, touched));
-                }
-                None => (0..here.len()).for_each(|i| self.mark_footprint(by_itself(i), matrix, touched)),
+            let is_filled = self.fill(&mut batch, vectors, matrix);
+            if is_filled {
+                batch.inside().for_each(|index| self.mark_square(index, touched));
+            }
+            for i in (0..here.len()).filter(|i| !is_filled || batch.leaves(*i)) {
+                self.mark_footprint(vectors.map(|axis| axis[i]), matrix, touched);
             }
         }
     }
@@ -107,6 +110,7 @@ pub struct Lookup<'a> {
     memories: Vec<&'a FaceSet>,
     background: Option<&'a FaceSet>,
     composed: Composed,
+    batch: Batch,
 }
 
 impl<'a> Lookup<'a> {
@@ -124,7 +128,14 @@ impl<'a> Lookup<'a> {
         let texels = config.timing.face_texels as u32;
         assert!(memories.iter().chain(&background).all(|faces| faces.texels() == texels), "faces of {texels} texels");
         let addressing = Addressing::new(config, table);
-        Self { addressing, composition: config.composition(), memories, background, composed: Composed::new(texels) }
+        Self {
+            addressing,
+            composition: config.composition(),
+            memories,
+            background,
+            composed: Composed::new(texels),
+            batch: Batch::new(),
+        }
     }
 
     /// Looks up pixels from one on, in the order of lines, for one orientation: colours as 0x00RRGGBB.
@@ -166,20 +177,20 @@ impl<'a> Lookup<'a> {
 
     fn group(&mut self, vectors: [&[i32]; 3], matrix: &MatrixWords, out: &mut [u32]) -> LookStats {
         let mut stats = LookStats::default();
-        let mut by_itself = |lookup: &Self, i: usize| {
-            let footprint = lookup.addressing.footprint(vectors.map(|axis| axis[i]), matrix);
-            footprint.map_or(lookup.composition.background, |footprint| {
-                stats.count(&footprint);
-                lookup.pixel(&footprint)
-            })
-        };
-        let is_depth_first = self.composition.order == CompositionOrder::DepthFirst;
-        match self.addressing.batch(vectors, matrix).filter(|_| is_depth_first) {
-            Some(batch) => {
-                self.pixels(&batch, out);
-                batch.left().for_each(|i| out[i] = by_itself(self, i));
+        let is_filled = self.composition.order == CompositionOrder::DepthFirst
+            && self.addressing.fill(&mut self.batch, vectors, matrix);
+        if is_filled {
+            self.pixels(out);
+            if !self.batch.is_left() {
+                return stats;
             }
-            None => (0..out.len()).for_each(|i| out[i] = by_itself(self, i)),
+        }
+        for (i, pixel) in out.iter_mut().enumerate().filter(|(i, _)| !is_filled || self.batch.leaves(*i)) {
+            let footprint = self.addressing.footprint(vectors.map(|axis| axis[i]), matrix);
+            *pixel = footprint.map_or(self.composition.background, |footprint| {
+                stats.count(&footprint);
+                self.pixel(&footprint)
+            });
         }
         stats
     }
@@ -194,23 +205,27 @@ impl<'a> Lookup<'a> {
         self.composition.pixel(&Gathered { memories: &memories, behind, weights })
     }
 
-    fn pixels(&mut self, batch: &Batch, out: &mut [u32]) {
+    fn pixels(&mut self, out: &mut [u32]) {
         let unit = self.addressing.unit;
         let reach = if unit.weight_bits == 0 { 0 } else { unit.geometry.texels as usize };
-        for first in &batch.index[..batch.count] {
-            for piece in [*first as usize / PIECE, (*first as usize + reach) / PIECE] {
-                if !self.composed.is_done[piece] {
-                    self.compose(piece);
-                }
+        let mut last = [usize::MAX; 2];
+        for i in 0..self.batch.count {
+            let first = self.batch.index[i] as usize;
+            let pieces = [first / PIECE, (first + reach) / PIECE];
+            if pieces != last {
+                last = pieces;
+                pieces.into_iter().for_each(|piece| self.compose(piece));
             }
         }
-        mixed(&self.composed.colours, batch, reach, unit.weight_bits as u32, out);
+        mixed(&self.composed.colours, &self.batch, reach, unit.weight_bits as u32, out);
     }
 
-    #[cold]
+    /// Composes a piece that nobody has asked for yet.
     fn compose(&mut self, piece: usize) {
+        if std::mem::replace(&mut self.composed.is_done[piece], true) {
+            return;
+        }
         let behind = self.background.map(FaceSet::words);
-        self.composed.is_done[piece] = true;
         let start = piece * PIECE;
         let colours = &mut self.composed.colours;
         let end = (start + PIECE + 1).min(colours.len());

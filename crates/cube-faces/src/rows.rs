@@ -94,15 +94,23 @@ fn compute(triangle: &OnFace, y: f64, first: i64, count: usize, run: &mut Run) {
     }
 }
 
+/// The whole part of a number of 0 to 2^32: added to 2^52 it is what its lowest bits hold. A cast would ask for each number by itself
+/// whether it is one.
+#[inline(always)]
+fn whole_part(number: f64) -> u32 {
+    (number.floor() + 4_503_599_627_370_496.0).to_bits() as u32
+}
+
 /// A depth in 24 bits; the farthest, which draws nothing, beyond near and far.
 #[inline(always)]
 fn depth_word(depth: f64) -> u32 {
-    let word = (depth * f64::from(DEPTH_FARTHEST)) as i32 as u32;
+    let word = whole_part(depth * f64::from(DEPTH_FARTHEST));
     if (depth >= 0.0) & (depth < 1.0) { word } else { DEPTH_FARTHEST }
 }
 
 /// A part of a colour, rounded to the nearest.
 #[inline(always)]
 fn byte(part: f64) -> u32 {
-    (part.clamp(0.0, 255.0) + 0.5) as i32 as u32
+    let part = if part > 0.0 { part } else { 0.0 };
+    whole_part(if part < 255.0 { part } else { 255.0 } + 0.5)
 }
