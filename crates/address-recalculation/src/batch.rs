@@ -28,9 +28,11 @@ pub(crate) struct Batch {
     met: Met,
 }
 
-/// Directions by the axes of the faces that they meet, and the places there.
+/// Viewing vectors, turned; by the axes of the faces that they meet; the places there.
 #[derive(Clone, Debug)]
 struct Met {
+    vectors: [Each<i32>; 3],
+    turned: [Each<f64>; 3],
     face: Each<i32>,
     forward: Each<f64>,
     right: Each<f64>,
@@ -41,11 +43,14 @@ struct Met {
 
 impl Batch {
     pub(crate) const fn new() -> Self {
+        let none = [0.0; BATCH];
         let met = Met {
+            vectors: [[0; BATCH]; 3],
+            turned: [none; 3],
             face: [0; BATCH],
-            forward: [0.0; BATCH],
-            right: [0.0; BATCH],
-            down: [0.0; BATCH],
+            forward: none,
+            right: none,
+            down: none,
             column: [0; BATCH],
             row: [0; BATCH],
         };
@@ -69,30 +74,39 @@ impl Batch {
     }
 }
 
-/// Looks up to [`BATCH`] directions up.
+/// Looks up to [`BATCH`] directions up. Every step takes all lanes, whose number is known; those behind the last pixel hold what was
+/// there before.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 pub(crate) fn addresses(batch: &mut Batch, unit: &AddressUnit, vectors: [&[i32]; 3], matrix: &MatrixWords) {
-    let count = vectors[0].len().min(BATCH);
-    batch.count = count;
-    meetings(&mut batch.met, vectors, matrix, count);
-    places(&mut batch.met.column, unit, &batch.met.right, &batch.met.forward, count);
-    places(&mut batch.met.row, unit, &batch.met.down, &batch.met.forward, count);
-    footprints(batch, unit, count);
+    batch.count = vectors[0].len().min(BATCH);
+    let met = &mut batch.met;
+    for (lanes, axis) in met.vectors.iter_mut().zip(vectors) {
+        lanes[..batch.count].copy_from_slice(&axis[..batch.count]);
+    }
+    for (out, row) in met.turned.iter_mut().zip(&matrix.0) {
+        turn(out, &met.vectors, row);
+    }
+    meet(met);
+    places(&mut met.column, unit, &met.right, &met.forward);
+    places(&mut met.row, unit, &met.down, &met.forward);
+    footprints(batch, unit);
 }
 
+/// A component of all directions, exactly.
 #[inline(always)]
-fn meetings(met: &mut Met, vectors: [&[i32]; 3], matrix: &MatrixWords, count: usize) {
-    let m = matrix.0.map(|row| row.map(f64::from));
-    let [xs, ys, zs] = vectors.map(|axis| &axis[..count]);
-    let face = &mut met.face[..count];
-    let forward = &mut met.forward[..count];
-    let rights = &mut met.right[..count];
-    let down = &mut met.down[..count];
-    for i in 0..count {
-        let v = [f64::from(xs[i]), f64::from(ys[i]), f64::from(zs[i])];
-        let x = m[0][0] * v[0] + m[0][1] * v[1] + m[0][2] * v[2];
-        let y = m[1][0] * v[0] + m[1][1] * v[1] + m[1][2] * v[2];
-        let z = m[2][0] * v[0] + m[2][1] * v[1] + m[2][2] * v[2];
+fn turn(out: &mut Each<f64>, [x, y, z]: &[Each<i32>; 3], row: &[i32; 3]) {
+    let [a, b, c] = row.map(f64::from);
+    for i in 0..BATCH {
+        out[i] = a * f64::from(x[i]) + b * f64::from(y[i]) + c * f64::from(z[i]);
+    }
+}
+
+/// The face of each direction: its longest component, on ties x before y before z.
+#[inline(always)]
+fn meet(met: &mut Met) {
+    let Met { turned: [xs, ys, zs], face, forward, right, down, .. } = met;
+    for i in 0..BATCH {
+        let [x, y, z] = [xs[i], ys[i], zs[i]];
         let [ax, ay, az] = [x.abs(), y.abs(), z.abs()];
         let is_x = (ax >= ay) & (ax >= az);
         let is_y = !is_x & (ay >= az);
@@ -102,8 +116,8 @@ fn meetings(met: &mut Met, vectors: [&[i32]; 3], matrix: &MatrixWords, count: us
         face[i] = (if is_x { 0 } else { axis }) + i32::from(is_negative);
         forward[i] = longest.abs();
         // To the right lie z, x and -x on the positive faces of x, y and z; below lie -y, -z and -y.
-        let right = select(is_x, z, -x);
-        rights[i] = select(is_y, x, select(is_negative, -right, right));
+        let aside = select(is_x, z, -x);
+        right[i] = select(is_y, x, select(is_negative, -aside, aside));
         down[i] = select(is_y, select(is_negative, z, -z), -y);
     }
 }
@@ -122,45 +136,38 @@ fn whole_part(number: f64) -> i32 {
 
 /// Places between the middles of texels in parts of 2^quotient_bits.
 #[inline(always)]
-fn places(out: &mut Each<i32>, unit: &AddressUnit, side: &Each<f64>, forward: &Each<f64>, count: usize) {
+fn places(out: &mut Each<i32>, unit: &AddressUnit, side: &Each<f64>, forward: &Each<f64>) {
     let q = unit.quotient_bits as u32;
     let scale = f64::from(1_u32 << q);
     let largest = scale - 1.0;
     let half = if unit.weight_bits == 0 { 0 } else { 1 << (q - 1) };
     let inner = unit.geometry.inner() as i32;
     let first = ((unit.geometry.guard as i32) << q) + inner / 2 - half;
-    let pairs = side[..count].iter().zip(&forward[..count]);
-    for (out, (side, forward)) in out[..count].iter_mut().zip(pairs) {
-        let quotient = (forward + side) * scale / (2.0 * forward);
-        *out = first + whole_part(select(quotient < largest, quotient, largest)) * inner;
+    for i in 0..BATCH {
+        let quotient = (forward[i] + side[i]) * scale / (2.0 * forward[i]);
+        out[i] = first + whole_part(select(quotient < largest, quotient, largest)) * inner;
     }
 }
 
 #[inline(always)]
-fn footprints(batch: &mut Batch, unit: &AddressUnit, count: usize) {
+fn footprints(batch: &mut Batch, unit: &AddressUnit) {
     let q = unit.quotient_bits as u32;
     let size = unit.geometry.texels as i32;
     let last = if unit.weight_bits == 0 { size - 1 } else { size - 2 };
     let below = (unit.quotient_bits - unit.weight_bits) as u32;
     let part = (1_u32 << q) - 1;
     let rounding = (1_u32 << below) >> 1;
-    let Batch { index, right, down, leaves, met, .. } = batch;
-    let [index, right, down] = [index, right, down].map(|each| &mut each[..count]);
-    let leaves = &mut leaves[..count];
-    let [face, columns, rows] = [&met.face, &met.column, &met.row].map(|each| &each[..count]);
-    let mut left = 0;
-    for i in 0..count {
-        let column = columns[i] >> q;
-        let row = rows[i] >> q;
+    let Batch { count, index, right, down, leaves, met, .. } = batch;
+    for i in 0..BATCH {
+        let column = met.column[i] >> q;
+        let row = met.row[i] >> q;
         // The sign of a number below 0, or of what is left up to the last.
-        let leave = (column | row | (last - column) | (last - row)) >> 31;
-        left |= leave;
-        leaves[i] = leave;
-        index[i] = (((face[i] * size + row) * size + column) & !leave) as u32;
-        right[i] = ((columns[i] as u32 & part) + rounding) >> below;
-        down[i] = ((rows[i] as u32 & part) + rounding) >> below;
+        leaves[i] = (column | row | (last - column) | (last - row)) >> 31;
+        index[i] = (((met.face[i] * size + row) * size + column) & !leaves[i]) as u32;
+        right[i] = ((met.column[i] as u32 & part) + rounding) >> below;
+        down[i] = ((met.row[i] as u32 & part) + rounding) >> below;
     }
-    batch.is_left = left != 0;
+    batch.is_left = leaves[..*count].iter().fold(0, |any, leaves| any | leaves) != 0;
 }
 
 /// The colours of footprints, weighed; `reach` texels down lies the next row, or none where nothing is interpolated.

@@ -37,6 +37,9 @@ impl LookStats {
     }
 }
 
+/// Pixels that are looked up together at least.
+const FEWEST: usize = 4;
+
 /// Which texels pixels read.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Addressing<'a> {
@@ -58,12 +61,14 @@ impl<'a> Addressing<'a> {
         self.unit.footprint(matrix.turn(vector))
     }
 
-    /// Where the footprints of up to [`BATCH`] pixels begin; false, and nothing, for words that are too wide.
+    /// Where the footprints of up to [`BATCH`] pixels begin; false, and nothing, for words that are too wide and for so few pixels that
+    /// each by itself is faster.
     fn fill(&self, batch: &mut Batch, vectors: [&[i32]; 3], matrix: &MatrixWords) -> bool {
-        if self.is_exact {
+        let is_worth_it = self.is_exact && vectors[0].len() >= FEWEST;
+        if is_worth_it {
             addresses(batch, &self.unit, vectors, matrix);
         }
-        self.is_exact
+        is_worth_it
     }
 
     /// Marks the pieces of 128 x 128 texels that a run of pixels reads, in the order of [`crate::region_grid`].
@@ -233,8 +238,8 @@ impl<'a> Lookup<'a> {
     }
 }
 
-/// Texels that are composed at once.
-const PIECE: usize = 16;
+/// Texels that are composed at once, a part of 128.
+const PIECE: usize = 32;
 
 /// What all memories show together, texel by texel, as far as pixels have asked for it: neighbouring pixels share texels, so that
 /// each texel's depths are compared once and not by each of its readers.
@@ -252,22 +257,25 @@ impl Composed {
     }
 }
 
-/// Composes a run of texels from one on: the nearest of all memories, what is behind them where all are empty.
+/// Composes a piece and the texel after it: the nearest of all memories, what is behind them where all are empty.
 #[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
 fn compose(out: &mut [u32], memories: &[&FaceSet], behind: Option<&[u64]>, background: u32, start: usize) {
-    let here = start..start + out.len();
-    let mut best = [0; PIECE + 1];
+    let piece = |words: &[u64]| words[start..].first_chunk::<PIECE>().copied().unwrap_or([0; PIECE]);
+    let mut best = [0; PIECE];
     for faces in memories {
-        for (best, word) in best.iter_mut().zip(&faces.words()[here.clone()]) {
+        let words = piece(faces.words());
+        for (best, word) in best.iter_mut().zip(&words) {
             *best = nearer(*best, *word);
         }
     }
-    let mut far = [background; PIECE + 1];
-    for (far, word) in far.iter_mut().zip(behind.map_or(&[][..], |words| &words[here])) {
-        *far = shown(*word, background);
+    let far = behind.map_or([0; PIECE], piece);
+    for ((out, best), far) in out.iter_mut().zip(&best).zip(&far) {
+        *out = shown(*best, shown(*far, background));
     }
-    for ((out, best), far) in out.iter_mut().zip(best).zip(far) {
-        *out = shown(best, far);
+    if let Some(after) = out.get_mut(PIECE) {
+        let at = |words: &[u64]| words[start + PIECE];
+        let nearest = memories.iter().fold(0, |best, faces| nearer(best, at(faces.words())));
+        *after = shown(nearest, shown(behind.map_or(0, at), background));
     }
 }
 

@@ -59,19 +59,12 @@ impl Edges {
     }
 }
 
-impl Linear {
-    /// Whether a middle at x of a row belongs to the inner side; on the edge itself that of the larger x, then of the larger y.
-    #[inline(always)]
-    fn takes(self, x: f64, row: f64) -> bool {
-        let value = self.x * x + row;
-        value > 0.0 || (value == 0.0 && (self.x > 0.0 || (self.x == 0.0 && self.y > 0.0)))
-    }
-}
-
 /// An edge, and about where it crosses a row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
     pub(crate) edge: Linear,
+    /// Whether the edge itself belongs to the inner side: that of the larger x, then of the larger y.
+    has_edge: bool,
     /// Columns for each unit of the row's constant part, and the column of the middle.
     columns_of: f64,
     middle: f64,
@@ -79,7 +72,15 @@ pub(crate) struct Crossing {
 
 impl Crossing {
     pub(crate) fn new(edge: Linear, columns: Columns) -> Self {
-        Self { edge, columns_of: -1.0 / (edge.x * columns.step), middle: -columns.first / columns.step }
+        let has_edge = edge.x > 0.0 || (edge.x == 0.0 && edge.y > 0.0);
+        Self { edge, has_edge, columns_of: -1.0 / (edge.x * columns.step), middle: -columns.first / columns.step }
+    }
+
+    /// Whether a middle at x of a row belongs to the inner side.
+    #[inline(always)]
+    fn takes(&self, x: f64, row: f64) -> bool {
+        let value = self.edge.x * x + row;
+        value > 0.0 || (value == 0.0 && self.has_edge)
     }
 
     /// Narrows a range of columns to those that this edge takes; columns have their middles at `first + column * step`.
@@ -89,31 +90,38 @@ impl Crossing {
     #[inline(always)]
     pub(crate) fn narrow(&self, row: f64, columns: Columns, range: &mut [i64; 2]) {
         if self.edge.x == 0.0 {
-            if !self.edge.takes(0.0, row) {
+            if !self.takes(0.0, row) {
                 range[1] = range[0];
             }
             return;
         }
         let at = (row * self.columns_of + self.middle).clamp(range[0] as f64 - 1.0, range[1] as f64 + 1.0);
-        let mut border = at.floor() as i64;
-        let takes = |column: i64| self.edge.takes(columns.middle(column), row);
-        if self.edge.x > 0.0 {
-            while border > range[0] && takes(border - 1) {
-                border -= 1;
-            }
-            while border < range[1] && !takes(border) {
-                border += 1;
-            }
+        let border = at.floor() as i64 + 1;
+        let is_left = self.edge.x > 0.0;
+        let sides = [border - 1, border].map(|column| self.takes(columns.middle(column), row));
+        // Nearly always the border lies between these two.
+        let border = if sides == [!is_left, is_left] { border } else { self.search(border, row, columns, *range) };
+        if is_left {
             range[0] = range[0].max(border);
         } else {
-            while border < range[1] && takes(border) {
-                border += 1;
-            }
-            while border > range[0] && !takes(border - 1) {
-                border -= 1;
-            }
             range[1] = range[1].min(border);
         }
+    }
+
+    /// The border from a column on, within a range.
+    #[cold]
+    #[inline(never)]
+    fn search(&self, from: i64, row: f64, columns: Columns, range: [i64; 2]) -> i64 {
+        let is_left = self.edge.x > 0.0;
+        let is_before = |column: i64| self.takes(columns.middle(column), row) != is_left;
+        let mut border = from.clamp(range[0] - 1, range[1] + 1);
+        while border > range[0] && !is_before(border - 1) {
+            border -= 1;
+        }
+        while border < range[1] && is_before(border) {
+            border += 1;
+        }
+        border
     }
 }
 

@@ -7,8 +7,8 @@ use multiversion::multiversion;
 /// Texels whose colours and depths are computed before they are kept.
 const RUN: usize = 64;
 
-/// Texels are computed in multiples of this: the doubles in a vector of the widest unit.
-const LANES: usize = 8;
+/// Texels are computed in multiples of this: the doubles in a vector.
+const LANES: usize = 4;
 
 /// Colours over a face.
 pub(crate) enum Shade {
