@@ -37,6 +37,7 @@
 //! | [`lab`] | questions over many experiments: [`figures`], [`levels`], [`limit`], [`compare`], [`sweep`], experiment files |
 //! | [`oracle`] | what should be on the screen: an ideal renderer of one process |
 //! | [`views`] | what people look at: timelines, traces, tables, charts, report pages, films |
+//! | [`arp`] | a walk through a scene behind a display that turns with the head: policies, tears, warping, figures, pictures |
 //! | [`volume`] | the same scenes as slices of a spinning volumetric display: settings, reports, variants, figures |
 //! | [`scene`], [`tracking`] | what is drawn, and who looks at it |
 //! | [`firmware`] | what a pipeline of one's own is written with |
@@ -47,6 +48,7 @@
 //! **Not modelled:** see the data sheet at the head of each board's crate, and ACCURACY.md for what comes out wrong.
 
 pub use pxpl5_analytic as analytic;
+pub use pxpl5_arp as arp;
 pub use pxpl5_display as display;
 pub use pxpl5_lab as lab;
 pub use pxpl5_machine as machine;

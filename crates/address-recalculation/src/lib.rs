@@ -68,6 +68,7 @@
 //! Pose and Regan, ACSC 2005. Word lengths, stages, face sizes and lenses are not printed and assumed here.
 
 mod address;
+mod batch;
 mod composition;
 mod config;
 mod display;

@@ -110,16 +110,16 @@ impl FaceSet {
     /// stays.
     ///
     /// # Panics
-    /// For a run that does not lie in a row.
-    pub fn keep_nearer(&mut self, first: TexelAddress, texels: impl ExactSizeIterator<Item = (u32, u32)>) {
-        let count = texels.len();
+    /// For a run that does not lie in a row, and for fewer depths than colours.
+    #[inline(always)]
+    pub fn keep_nearer(&mut self, first: TexelAddress, colours: &[u32], depths: &[u32]) {
+        let count = colours.len();
         assert!(first.column as usize + count <= self.texels as usize && first.row < self.texels, "{first:?}");
         let start = first.index(self.texels);
-        for (kept, (colour, depth)) in self.words[start..start + count].iter_mut().zip(texels) {
-            let drawn = word(self.format, colour, depth);
-            if nearness(drawn) > nearness(*kept) {
-                *kept = drawn;
-            }
+        let depths = &depths[..count];
+        for ((kept, colour), depth) in self.words[start..start + count].iter_mut().zip(colours).zip(depths) {
+            let drawn = word(self.format, *colour, *depth);
+            *kept = if nearness(drawn) > nearness(*kept) { drawn } else { *kept };
         }
     }
 
@@ -138,6 +138,7 @@ impl FaceSet {
 }
 
 /// The word of a texel; 0 where it is empty.
+#[inline(always)]
 pub(crate) const fn word(format: TexelFormat, colour: u32, depth: u32) -> u64 {
     let farthest = DEPTH_FARTHEST >> (24 - format.depth_bits);
     let nearness = farthest - format.kept_depth(depth);
@@ -145,6 +146,7 @@ pub(crate) const fn word(format: TexelFormat, colour: u32, depth: u32) -> u64 {
 }
 
 /// How much nearer than the farthest a word's texel is; 0 for an empty one.
+#[inline(always)]
 pub(crate) const fn nearness(word: u64) -> u32 {
     (word >> 32) as u32
 }

@@ -148,3 +148,27 @@ fn split_footprints_are_counted_without_a_guard_alone() {
     assert!(counts[0][0] > 0 && counts[0][1] > 0 && counts[0][1] <= counts[0][0], "{counts:?}");
     assert_eq!(counts[1], [0, 0]);
 }
+
+/// A run of pixels with an orientation of its own may be of any length: those that are looked up together and those by themselves.
+#[test]
+fn a_picture_is_the_same_in_runs_of_any_length() {
+    for guard_texels in [0, 1] {
+        let timing = ArpTiming { face_texels: 128, guard_texels, ..ArpTiming::PAPERS };
+        let config = ArpConfig { timing, scan: SMALL, ..ArpConfig::MACHINE };
+        let faces: Vec<FaceSet> = (0..4).map(|seed| noise(&config, &mut SplitMix64::new(seed))).collect();
+        let orientation = turned(DQuat::from_rotation_y(0.7) * DQuat::from_rotation_x(0.6));
+        let (whole, stats) = by_lookup(&config, &orientation, &faces, None);
+        let table = config.table().expect("valid");
+        for length in [1, 2, 3, 4, 5, 8, 63, 64, 65, 129] {
+            let mut lookup = Lookup::new(&config, &table, faces.iter().collect(), None);
+            let mut pixels = vec![0; whole.len()];
+            let mut found = [0; 2];
+            for (run, out) in pixels.chunks_mut(length).enumerate() {
+                let stats = lookup.run(run * length, &orientation.words(config.timing.matrix_bits), out);
+                found = [found[0] + stats.split, found[1] + stats.conflicts];
+            }
+            assert!(pixels == whole, "runs of {length}, guard {guard_texels}");
+            assert_eq!(found, stats, "runs of {length}");
+        }
+    }
+}

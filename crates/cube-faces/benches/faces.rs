@@ -63,7 +63,7 @@ fn plain(eye: DVec3, triangles: &[[Corner; 3]], faces: &mut FaceSet) {
                     let distance = (c - a).dot(q) * scale;
                     if u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.1 {
                         let depth = (1.001 * (1.0 - 0.1 / distance) * 16_777_215.0) as u32;
-                        faces.keep_nearer(address, [(corners[0].colour, depth)].into_iter());
+                        faces.keep_nearer(address, &[corners[0].colour], &[depth]);
                     }
                 }
             }

@@ -20,6 +20,7 @@ impl Linear {
     }
 
     /// The constant part along a row.
+    #[inline(always)]
     pub(crate) fn row(self, y: f64) -> f64 {
         self.y * y + self.c
     }
@@ -58,45 +59,69 @@ impl Edges {
     }
 }
 
-impl Linear {
-    /// Whether a middle at x of a row belongs to the inner side; on the edge itself that of the larger x, then of the larger y.
-    fn takes(self, x: f64, row: f64) -> bool {
-        let value = self.x * x + row;
-        value > 0.0 || (value == 0.0 && (self.x > 0.0 || (self.x == 0.0 && self.y > 0.0)))
+/// An edge, and about where it crosses a row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossing {
+    pub(crate) edge: Linear,
+    /// Whether the edge itself belongs to the inner side: that of the larger x, then of the larger y.
+    has_edge: bool,
+    /// Columns for each unit of the row's constant part, and the column of the middle.
+    columns_of: f64,
+    middle: f64,
+}
+
+impl Crossing {
+    pub(crate) fn new(edge: Linear, columns: Columns) -> Self {
+        let has_edge = edge.x > 0.0 || (edge.x == 0.0 && edge.y > 0.0);
+        Self { edge, has_edge, columns_of: -1.0 / (edge.x * columns.step), middle: -columns.first / columns.step }
+    }
+
+    /// Whether a middle at x of a row belongs to the inner side.
+    #[inline(always)]
+    fn takes(&self, x: f64, row: f64) -> bool {
+        let value = self.edge.x * x + row;
+        value > 0.0 || (value == 0.0 && self.has_edge)
     }
 
     /// Narrows a range of columns to those that this edge takes; columns have their middles at `first + column * step`.
     ///
-    /// `takes` is monotone along a row, also as it is rounded: the quotient finds the place to within a column or two, and the
+    /// `takes` is monotone along a row, also as it is rounded: the crossing is found to within a column or two, and the
     /// function itself decides.
-    pub(crate) fn narrow(self, row: f64, columns: Columns, range: &mut [i64; 2]) {
-        if self.x == 0.0 {
+    #[inline(always)]
+    pub(crate) fn narrow(&self, row: f64, columns: Columns, range: &mut [i64; 2]) {
+        if self.edge.x == 0.0 {
             if !self.takes(0.0, row) {
                 range[1] = range[0];
             }
             return;
         }
-        let at = ((-row / self.x - columns.first) / columns.step).clamp(range[0] as f64 - 1.0, range[1] as f64 + 1.0);
-        let mut border = at.floor() as i64;
-        let is_left = self.x > 0.0;
-        let takes = |column: i64| self.takes(columns.middle(column), row);
+        let at = (row * self.columns_of + self.middle).clamp(range[0] as f64 - 1.0, range[1] as f64 + 1.0);
+        let border = at.floor() as i64 + 1;
+        let is_left = self.edge.x > 0.0;
+        let sides = [border - 1, border].map(|column| self.takes(columns.middle(column), row));
+        // Nearly always the border lies between these two.
+        let border = if sides == [!is_left, is_left] { border } else { self.search(border, row, columns, *range) };
         if is_left {
-            while border > range[0] && takes(border - 1) {
-                border -= 1;
-            }
-            while border < range[1] && !takes(border) {
-                border += 1;
-            }
             range[0] = range[0].max(border);
         } else {
-            while border < range[1] && takes(border) {
-                border += 1;
-            }
-            while border > range[0] && !takes(border - 1) {
-                border -= 1;
-            }
             range[1] = range[1].min(border);
         }
+    }
+
+    /// The border from a column on, within a range.
+    #[cold]
+    #[inline(never)]
+    fn search(&self, from: i64, row: f64, columns: Columns, range: [i64; 2]) -> i64 {
+        let is_left = self.edge.x > 0.0;
+        let is_before = |column: i64| self.takes(columns.middle(column), row) != is_left;
+        let mut border = from.clamp(range[0] - 1, range[1] + 1);
+        while border > range[0] && !is_before(border - 1) {
+            border -= 1;
+        }
+        while border < range[1] && is_before(border) {
+            border += 1;
+        }
+        border
     }
 }
 
@@ -108,6 +133,7 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
+    #[inline(always)]
     pub(crate) fn middle(self, column: i64) -> f64 {
         self.first + column as f64 * self.step
     }

@@ -26,6 +26,7 @@
 
 mod depth;
 mod edges;
+mod rows;
 mod view;
 
 pub use depth::{DepthError, DepthRange};

@@ -1,8 +1,9 @@
 //! Drawing into six faces.
 
 use crate::depth::DepthRange;
-use crate::edges::{Columns, Edges, Linear};
-use address_recalculation::{CubeFace, DEPTH_FARTHEST, FaceGeometry, FaceSet, TexelAddress};
+use crate::edges::{Columns, Crossing, Edges, Linear};
+use crate::rows::{OnFace, Shade, draw};
+use address_recalculation::{CubeFace, FaceGeometry, FaceSet};
 use glam::DVec3;
 
 /// A corner of a triangle.
@@ -52,14 +53,6 @@ struct FaceView {
     tangent: f64,
     near_m: f64,
     depth: [f64; 2],
-}
-
-/// Colours over a face.
-enum Shade {
-    /// The same everywhere.
-    Flat(u32),
-    /// Red, green and blue, each divided by w.
-    Smooth([Linear; 3]),
 }
 
 impl CubeView {
@@ -135,70 +128,22 @@ impl FaceView {
     /// Draws a triangle; how many texels it took.
     fn triangle(&self, places: [DVec3; 3], colours: [u32; 3], faces: &mut FaceSet) -> u64 {
         let Some(edges) = Edges::new(places) else { return 0 };
-        let reciprocal = edges.reciprocal();
-        let shade = shade(&edges, colours);
-        let [first, end] = self.rows(places);
-        let mut texels = 0;
-        for row in first..end {
-            let y = self.columns.middle(row);
-            let mut range = [0, self.texels];
-            for edge in edges.edges {
-                edge.narrow(edge.row(y), self.columns, &mut range);
-                if range[0] >= range[1] {
-                    break;
-                }
-            }
-            if range[0] < range[1] {
-                texels += (range[1] - range[0]) as u64;
-                self.row(row, range, reciprocal, &shade, faces);
-            }
-        }
-        texels
-    }
-
-    /// A run of texels, without those nearer than near and farther than far.
-    fn row(&self, row: i64, range: [i64; 2], reciprocal: Linear, shade: &Shade, faces: &mut FaceSet) {
-        let y = self.columns.middle(row);
-        let first = TexelAddress { face: self.face, column: range[0] as u32, row: row as u32 };
-        let depth =
-            Linear { x: reciprocal.x * self.depth[1], y: 0.0, c: self.depth[0] + reciprocal.row(y) * self.depth[1] };
-        let columns = range[0] as i32..range[1] as i32;
-        match shade {
-            Shade::Flat(colour) => {
-                let texels = columns.map(|column| (*colour, word(depth, self.columns.middle(column.into()))));
-                faces.keep_nearer(first, texels);
-            }
-            Shade::Smooth(parts) => {
-                let rows = parts.map(|part| part.row(y));
-                let along = reciprocal.row(y);
-                let texels = columns.map(|column| {
-                    let x = self.columns.middle(column.into());
-                    let distance = 1.0 / (reciprocal.x * x + along);
-                    let [red, green, blue] = [0, 1, 2].map(|i| byte((parts[i].x * x + rows[i]) * distance));
-                    (red << 16 | green << 8 | blue, word(depth, x))
-                });
-                faces.keep_nearer(first, texels);
-            }
-        }
+        let triangle = OnFace {
+            face: self.face,
+            columns: self.columns,
+            texels: self.texels,
+            crossings: edges.edges.map(|edge| Crossing::new(edge, self.columns)),
+            reciprocal: edges.reciprocal(),
+            depth: self.depth,
+            shade: shade(&edges, colours),
+        };
+        draw(&triangle, self.rows(places), faces)
     }
 }
 
 fn include(range: &mut [f64; 2], value: f64) {
     range[0] = range[0].min(value);
     range[1] = range[1].max(value);
-}
-
-/// The depth at a place of a row in 24 bits; the farthest, which draws nothing, beyond near and far.
-#[inline(always)]
-fn word(depth: Linear, x: f64) -> u32 {
-    let depth = depth.x * x + depth.c;
-    if (0.0..1.0).contains(&depth) { (depth * f64::from(DEPTH_FARTHEST)) as u32 } else { DEPTH_FARTHEST }
-}
-
-/// A part of a colour, rounded to the nearest.
-#[inline(always)]
-fn byte(part: f64) -> u32 {
-    (part.clamp(0.0, 255.0) + 0.5) as u32
 }
 
 fn shade(edges: &Edges, colours: [u32; 3]) -> Shade {

@@ -35,7 +35,34 @@ pub enum ExperimentError {
     /// A renderer that draws nothing.
     #[error("source.triangles_per_s: expected more than 0, found {0}")]
     Rate(f64),
-    /// A picture that cannot be written.
-    #[error("{0}")]
-    Picture(String),
+    /// There is no setting of this path.
+    #[error("{place}: there is no key `{found}`; did you mean `{nearest}`?")]
+    UnknownKey {
+        /// The option or file that named it.
+        place: String,
+        /// The path that nobody knows.
+        found: String,
+        /// The nearest valid one.
+        nearest: String,
+    },
+    /// A setting was given a value that it cannot have.
+    #[error("{place}: {key}: expected {expected}, found {found}")]
+    Value {
+        /// The option or file that gave it.
+        place: String,
+        /// Path of the setting.
+        key: String,
+        /// What values it takes, in words.
+        expected: String,
+        /// The value that was given.
+        found: String,
+    },
+}
+
+impl ExperimentError {
+    /// Whether the scene is at fault and not what was asked for.
+    #[must_use]
+    pub const fn is_of_scene(&self) -> bool {
+        matches!(self, Self::Scene { .. })
+    }
 }

@@ -93,6 +93,16 @@ pub fn walk(
     frames: u64,
     eye: impl Fn(u64) -> DVec3,
 ) -> Result<WalkTally, ExperimentError> {
+    Ok(walked(world, settings, frames, eye)?.1)
+}
+
+/// The same, with what memories show at the end.
+pub(crate) fn walked<'a>(
+    world: &'a World,
+    settings: &Settings,
+    frames: u64,
+    eye: impl Fn(u64) -> DVec3,
+) -> Result<(Simulation<'a>, WalkTally), ExperimentError> {
     let mut simulation = Simulation::new(world, settings)?;
     let mut tally = WalkTally {
         frames: 0,
@@ -108,7 +118,7 @@ pub fn walk(
         tally.count(&simulation, outcome);
     }
     tally.moved_objects = simulation.moved_objects();
-    Ok(tally)
+    Ok((simulation, tally))
 }
 
 /// Where a walker is at the beginning of each frame.

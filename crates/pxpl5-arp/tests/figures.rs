@@ -1,6 +1,8 @@
 //! The papers' figures: which are fitted, which are checked, and that the document says what comes out.
 
 use pxpl5_arp::figures::{Experiments, RATE_FITTED, RATES_HZ, Row, Standing, all, markdown};
+use pxpl5_arp::pictures::{OF_FIGURES, Picture, all as all_pictures};
+use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
 static FIGURES: LazyLock<(Experiments, Vec<Row>)> = LazyLock::new(|| all().expect("experiments"));
@@ -76,9 +78,30 @@ fn slow_memories_miss_first() {
 }
 
 #[test]
+fn there_is_a_row_of_every_experiment_and_every_picture_of_the_papers_figures() {
+    let experiments: BTreeSet<&str> = FIGURES.1.iter().map(|row| row.experiment).collect();
+    assert_eq!(experiments.into_iter().collect::<Vec<_>>(), ["E1", "E2", "E3", "E4", "E5", "E6", "E7", "E8", "E9"]);
+    let pictures = all_pictures(&FIGURES.0).expect("drawn");
+    let names: BTreeSet<&str> = pictures
+        .iter()
+        .map(|picture| match picture {
+            Picture::Pixels(name, _) | Picture::Drawing(name, _) => name.as_str(),
+        })
+        .collect();
+    for (experiment, _, expected) in OF_FIGURES {
+        assert!(expected.iter().all(|name| names.contains(name)), "{experiment}: {names:?}");
+    }
+}
+
+#[test]
+fn pictures_that_must_be_the_same_are_the_same_in_every_bit() {
+    assert_eq!((FIGURES.0.composite_differs, FIGURES.0.turned_differ), (0, 0));
+}
+
+#[test]
 fn the_document_is_fresh() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/address-recalculation.md");
     let kept = std::fs::read_to_string(path).expect("docs/address-recalculation.md");
-    let how = "stale: run `cargo run -p pxpl5-arp --example arp -- --write docs/address-recalculation.md`";
+    let how = "stale: run `pxpl5 arp figures --write docs/address-recalculation.md`";
     assert!(kept == markdown(&FIGURES.0, &FIGURES.1), "{how}");
 }

@@ -5,7 +5,8 @@ use crate::output::OutputFile;
 use crate::terminal::{advance, print, progress};
 use clap::Args;
 use pxpl5::Level;
-use pxpl5::figures::{Bench, FigureRow, Figures, markdown, mean_error_percent, run_all_with};
+use pxpl5::arp::figures::Row;
+use pxpl5::figures::{Bench, FigureFamily, FigureRow, Figures, markdown, mean_error_percent, run_all_with};
 use serde_json::json;
 use std::fmt::Write;
 use std::fs;
@@ -38,18 +39,23 @@ pub(crate) fn run(args: FiguresArgs) -> Result<(), CliError> {
     let figures = figures.map_err(CliError::failure)?;
     file.map(|file| file.write(markdown(&figures).as_bytes())).transpose()?;
     if let Some(path) = &args.check {
-        check(path, &figures)?;
+        fresh(path, &markdown(&figures), "figures")?;
     }
-    print(&if args.json { json_text(&figures) } else { text(&figures.rows) })
+    print(&if args.json { json_text(&figures) } else { text(&figures) })
 }
 
-fn check(path: &Path, figures: &Figures) -> Result<(), CliError> {
+/// That a generated document is what a subcommand writes.
+///
+/// # Errors
+///
+/// When it cannot be read, or is another text.
+pub(crate) fn fresh(path: &Path, document: &str, subcommand: &str) -> Result<(), CliError> {
     let kept = fs::read_to_string(path).map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
-    if kept == markdown(figures) {
+    if kept == document {
         return Ok(());
     }
     let path = path.display();
-    Err(CliError::failure(format!("{path} is stale: run `pxpl5 figures --write {path}`")))
+    Err(CliError::failure(format!("{path} is stale: run `pxpl5 {subcommand} --write {path}`")))
 }
 
 fn json_text(figures: &Figures) -> String {
@@ -57,12 +63,51 @@ fn json_text(figures: &Figures) -> String {
         "schema": "pxpl5-figures/1",
         "mean_error_percent_of_free_checks": mean_error_percent(&figures.rows),
         "figures": figures.rows,
+        "families": figures.families,
         "intervals": figures.intervals,
     });
     format!("{object:#}\n")
 }
 
-fn text(rows: &[FigureRow]) -> String {
+fn text(figures: &Figures) -> String {
+    let mut text = own(&figures.rows);
+    figures.families.iter().for_each(|family| text.push_str(&of_family(family)));
+    text
+}
+
+/// Rows of a family under its title.
+fn of_family(family: &FigureFamily) -> String {
+    format!("\n{} ({})\n{}", family.title, family.document, family_rows(&family.rows))
+}
+
+/// Rows of a family, and how many of them are missed.
+pub(crate) fn family_rows(rows: &[Row]) -> String {
+    let mut text = format!(
+        "{:<3} {:<7} {:>10} {:>10}  {:<7} {:>8}  {:<34} {}\n",
+        "", "#", "published", "simulated", "unit", "error", "standing", "what"
+    );
+    for row in rows {
+        let error = row.error_percent().map_or_else(String::new, |error| format!("{error:+.1}%"));
+        let published = if row.published.is_nan() { "-".to_owned() } else { format!("{:.2}", row.published) };
+        let miss = if row.is_met { "" } else { "miss: " };
+        let _ = writeln!(
+            text,
+            "{:<3} {:<7} {published:>10} {:>10.2}  {:<7} {error:>8}  {:<34} {miss}{}",
+            row.experiment,
+            row.id,
+            row.ours,
+            row.unit,
+            row.standing.text(),
+            row.statement
+        );
+    }
+    let missed = rows.iter().filter(|row| !row.is_met).count();
+    let _ = writeln!(text, "{} rows, {missed} missed", rows.len());
+    text
+}
+
+/// Rows of Pixel-Planes 5.
+fn own(rows: &[FigureRow]) -> String {
     let mut text = format!(
         "{:<4} {:>10} {:>10}  {:<13} {:>8}  {:<22} {:<7} {}\n",
         "#", "published", "simulated", "unit", "error", "interval", "standing", "what"

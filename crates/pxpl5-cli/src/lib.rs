@@ -6,6 +6,7 @@
 //! Exit codes: 0 when all went well, 1 when something failed, 2 when the command line or an experiment file is wrong.
 //! Results go to standard output, everything else to standard error.
 
+mod arp;
 mod budget;
 mod check;
 mod compare;
@@ -15,6 +16,7 @@ mod error;
 mod figures;
 mod film;
 mod i860;
+mod leaves;
 mod levels;
 mod limit;
 mod machines;
@@ -100,6 +102,8 @@ enum Command {
     Film(film::FilmArgs),
     /// Draw a scene as slices of a spinning volumetric display.
     Volume(volume::VolumeArgs),
+    /// Walk through a scene behind a display that turns with the head.
+    Arp(arp::ArpArgs),
     /// Work with programs of the graphics processor's CPU.
     I860(i860::I860Args),
     /// Print a completion script for a shell.
@@ -144,6 +148,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Trace(args)) => trace::run(args),
         Some(Command::Film(args)) => film::run(args),
         Some(Command::Volume(args)) => volume::run(args),
+        Some(Command::Arp(args)) => arp::run(args),
         Some(Command::I860(args)) => i860::run(args),
         Some(Command::Completions(args)) => completions::run(args),
     }
@@ -196,6 +201,7 @@ mod tests {
             (include_str!("../../../docs/guide/head-to-light.md"), 5),
             (include_str!("../../../docs/guide/figures.md"), 5),
             (include_str!("../../../docs/guide/assembler.md"), 3),
+            (include_str!("../../../docs/guide/address-recalculation.md"), 5),
             (include_str!("../../../README.md"), 7),
         ] {
             let found = parses(page);

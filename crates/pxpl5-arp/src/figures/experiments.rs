@@ -1,5 +1,6 @@
 //! Experiments E2 to E9 of an ideal renderer, run once for all rows.
 
+use super::compared::{composite_differs, turned_differ};
 use super::fit::fitted_cell_m;
 use super::lens::straight_edge;
 use crate::error::ExperimentError;
@@ -70,6 +71,10 @@ pub struct Experiments {
     pub sizes: Vec<SizeRow>,
     /// How an edge bends on the screen and through the lens, pixels.
     pub lens_px: [f64; 2],
+    /// Texels in which four memories, drawn at once from one place, together are not what one memory shows.
+    pub composite_differs: u64,
+    /// Pixels that a stalled renderer changes in what a head sees that turns.
+    pub turned_differ: u64,
 }
 
 /// The gallery and its path.
@@ -127,6 +132,8 @@ impl Experiments {
             reductions: [point_objects_reduction(1.0, 4), point_objects_reduction(0.37, 5)],
             sizes: size_rows(),
             lens_px: straight_edge(Lens::Radial { k1: 0.32, k2: 0.0 })?,
+            composite_differs: composite_differs(&world, &cells, path.place(12.3))?,
+            turned_differ: turned_differ(&world, &cells, path.place(30.0))?,
         })
     }
 }

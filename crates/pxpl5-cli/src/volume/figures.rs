@@ -2,6 +2,7 @@
 
 use super::settings::load;
 use crate::error::CliError;
+use crate::figures::fresh;
 use crate::output::{OutputFile, OutputFolder};
 use crate::terminal::{advance, print, progress};
 use clap::Args;
@@ -10,7 +11,7 @@ use pxpl5::views::png_bytes;
 use pxpl5::volume::figures::{Drawing, FigureRow, Figures, all, drawings, markdown};
 use pxpl5::volume::spatialgl::Threads;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Measure the figures of the SpatialGL paper beside the model's, and draw its drawings anew.
@@ -58,7 +59,7 @@ pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
     }
     folder.map(OutputFolder::commit).transpose()?;
     if let Some(path) = &args.check {
-        check(path, &figures)?;
+        fresh(path, &markdown(&figures), "volume figures")?;
     }
     match (args.json, args.quiet) {
         (true, _) => print(&(serde_json::to_string_pretty(&figures).map_err(CliError::failure)? + "\n")),
@@ -77,16 +78,6 @@ fn draw(folder: &mut OutputFolder, scenes: &[Arc<Scene>]) -> Result<(), CliError
     }
     let texts = [("about", "figures 4 to 12, row by row".to_owned())];
     folder.put("figures.png", &png_bytes(&Drawing::sheet(&drawn), &texts).map_err(CliError::failure)?)
-}
-
-fn check(path: &Path, figures: &Figures) -> Result<(), CliError> {
-    let kept =
-        std::fs::read_to_string(path).map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?;
-    if kept == markdown(figures) {
-        return Ok(());
-    }
-    let path = path.display();
-    Err(CliError::failure(format!("{path} is stale: run `pxpl5 volume figures --write {path}`")))
 }
 
 fn text(figures: &Figures) -> String {

@@ -1,6 +1,7 @@
 //! The file of a sweep of volumes: settings that all points share, and the axes of those that change.
 
 use crate::error::CliError;
+use crate::leaves::{leaves, plain};
 use pxpl5::sweep::{Axis, MAX_POINTS, Values};
 use pxpl5::volume::VolumeSettings;
 use std::collections::BTreeMap;
@@ -77,11 +78,6 @@ impl VolumeSpace {
         }
         settings
     }
-}
-
-/// A value as `--set` writes it.
-pub(super) fn plain(value: &Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
 fn wrong(place: &str, key: &str, expected: &str, found: &str) -> CliError {
@@ -184,18 +180,4 @@ fn values(path: &str, value: &Value, place: &str) -> Result<Values, CliError> {
         }
         other => Err(wrong(place, path, "a list with values, or { from, to, step }", &other.to_string())),
     }
-}
-
-/// Paths and values; a table with `from` is a range, any other one part of the path.
-fn leaves(table: Table) -> Vec<(String, Value)> {
-    let mut all = Vec::new();
-    for (key, value) in table {
-        match value {
-            Value::Table(inner) if !inner.contains_key("from") => {
-                all.extend(leaves(inner).into_iter().map(|(path, value)| (format!("{key}.{path}"), value)));
-            }
-            value => all.push((key, value)),
-        }
-    }
-    all
 }

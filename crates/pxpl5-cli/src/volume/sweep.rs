@@ -1,8 +1,9 @@
 //! `pxpl5 volume sweep`: the folder, its rows and how it goes on are those of `pxpl5 sweep`.
 
 use super::settings::load;
-use super::space::{VolumeSpace, plain};
+use super::space::VolumeSpace;
 use crate::error::CliError;
+use crate::leaves::plain;
 use crate::sweep::{shard, tell_failures, tell_place};
 use crate::terminal::progress;
 use clap::Args;

@@ -13,6 +13,7 @@ pub fn markdown(figures: &Figures) -> String {
     head(&mut text, rows);
     rows.iter().for_each(|row| line(&mut text, row));
     misses(&mut text, rows);
+    figures.families.iter().for_each(|family| text.push_str(&family.markdown()));
     of_readings(&mut text, &figures.readings);
     sensitivity(&mut text, &figures.intervals);
     experiments(&mut text, rows);

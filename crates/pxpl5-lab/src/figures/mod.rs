@@ -4,6 +4,8 @@
 //!   FIGURES (data) --> Bench::measure (one experiment each) --> Row: published, simulated, error, interval, standing
 //! ```
 //!
+//! Papers about other systems are families of rows ([`FigureFamily`]), which come with the others.
+//!
 //! All rows come from the same machine parameters. Rows 5, 6 and 3 describe machines with other loads or costs than
 //! the presets; their experiments change what the statement itself changes, and nothing else.
 //!
@@ -11,6 +13,7 @@
 
 mod applications;
 mod document;
+mod family;
 mod heads;
 mod measure;
 mod measured;
@@ -19,6 +22,7 @@ mod row;
 mod table;
 
 pub use document::markdown;
+pub use family::FigureFamily;
 pub use measure::Bench;
 pub use measured::{Detail, FigureValue};
 pub use reading::{FieldCount, ROOM, Reading, Samples};
@@ -48,6 +52,8 @@ pub struct Figures {
     pub rows: Vec<FigureRow>,
     /// What the open parameters do to each figure but the one of the scenes.
     pub intervals: Vec<Interval>,
+    /// Figures of papers about other systems than Pixel-Planes 5.
+    pub families: Vec<FigureFamily>,
     /// What all readings make of the figures of Rendering Control, at the analytic level.
     pub readings: Readings,
 }
@@ -65,13 +71,14 @@ pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
     run_all_with(bench, |_, _| {})
 }
 
-/// The same; `finished` hears how many of all steps are done: one for each figure, one for the intervals and one for the readings.
+/// The same; `finished` hears how many of all steps are done: one for each figure, and one each for the
+/// intervals, the readings and the families.
 ///
 /// # Errors
 ///
 /// As [`run_all`].
 pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, FigureError> {
-    let steps = FIGURES.len() as u64 + 2;
+    let steps = FIGURES.len() as u64 + 3;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
     let rows = crate::parallel::map(&FIGURES, |figure| {
@@ -86,7 +93,9 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
     let readings = readings::run(&bench.clone().with_mig(SEEDS, FRAMES), 0, |_, _| {});
     let readings = readings.map_err(|error| FigureError { id: "7".to_owned(), reason: error.to_string() })?;
     step();
-    Ok(Figures { rows, intervals, readings })
+    let families = vec![FigureFamily::address_recalculation(bench)?];
+    step();
+    Ok(Figures { rows, intervals, families, readings })
 }
 
 /// A figure with what the bench gives for it.

@@ -1,0 +1,242 @@
+//! Runs of pixels, each step a loop over all of them, so that a vector unit takes several at a time.
+//!
+//! Directions are sums of three products below 2^53, so doubles hold them exactly. A quotient needs no correction: it is a
+//! multiple of 1/(2F) with F below 2^(v + m - 1), v and m being the bits of vector and matrix, and less than 2^q; a double near
+//! it is at most 2^(q - 54) wrong. With v + m + q <= 53 that is less than 1/(2F), so rounding never reaches the next whole number.
+
+use crate::address::AddressUnit;
+use crate::orientation::MatrixWords;
+use multiversion::multiversion;
+
+/// Pixels that are looked up together: enough to hide what a call costs, few enough to stay in the first cache.
+pub(crate) const BATCH: usize = 64;
+
+type Each<T> = [T; BATCH];
+
+/// Where the footprints of pixels begin, and their fractions.
+#[derive(Clone, Debug)]
+pub(crate) struct Batch {
+    /// How many pixels there are.
+    pub(crate) count: usize,
+    /// The upper left texel of each; the first of all for one that leaves its face.
+    pub(crate) index: Each<u32>,
+    right: Each<u32>,
+    down: Each<u32>,
+    /// Not 0 for a footprint that leaves its face, which has no numbers here.
+    leaves: Each<i32>,
+    is_left: bool,
+    met: Met,
+}
+
+/// Viewing vectors, turned; by the axes of the faces that they meet; the places there.
+#[derive(Clone, Debug)]
+struct Met {
+    vectors: [Each<i32>; 3],
+    turned: [Each<f64>; 3],
+    face: Each<i32>,
+    forward: Each<f64>,
+    right: Each<f64>,
+    down: Each<f64>,
+    column: Each<i32>,
+    row: Each<i32>,
+}
+
+impl Batch {
+    pub(crate) const fn new() -> Self {
+        let none = [0.0; BATCH];
+        let met = Met {
+            vectors: [[0; BATCH]; 3],
+            turned: [none; 3],
+            face: [0; BATCH],
+            forward: none,
+            right: none,
+            down: none,
+            column: [0; BATCH],
+            row: [0; BATCH],
+        };
+        let zero = [0; BATCH];
+        Self { count: 0, index: zero, right: zero, down: zero, leaves: [0; BATCH], is_left: false, met }
+    }
+
+    /// The upper left texels of those that stay on their face.
+    pub(crate) fn inside(&self) -> impl Iterator<Item = u32> + '_ {
+        (0..self.count).filter(|i| self.leaves[*i] == 0).map(|i| self.index[i])
+    }
+
+    /// Whether the footprint of a pixel leaves its face.
+    pub(crate) const fn leaves(&self, pixel: usize) -> bool {
+        self.leaves[pixel] != 0
+    }
+
+    /// Whether one of them does.
+    pub(crate) const fn is_left(&self) -> bool {
+        self.is_left
+    }
+}
+
+/// Looks up to [`BATCH`] directions up. Every step takes all lanes, whose number is known; those behind the last pixel hold what was
+/// there before.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+pub(crate) fn addresses(batch: &mut Batch, unit: &AddressUnit, vectors: [&[i32]; 3], matrix: &MatrixWords) {
+    batch.count = vectors[0].len().min(BATCH);
+    let met = &mut batch.met;
+    for (lanes, axis) in met.vectors.iter_mut().zip(vectors) {
+        lanes[..batch.count].copy_from_slice(&axis[..batch.count]);
+    }
+    for (out, row) in met.turned.iter_mut().zip(&matrix.0) {
+        turn(out, &met.vectors, row);
+    }
+    meet(met);
+    places(&mut met.column, unit, &met.right, &met.forward);
+    places(&mut met.row, unit, &met.down, &met.forward);
+    footprints(batch, unit);
+}
+
+/// A component of all directions, exactly.
+#[inline(always)]
+fn turn(out: &mut Each<f64>, [x, y, z]: &[Each<i32>; 3], row: &[i32; 3]) {
+    let [a, b, c] = row.map(f64::from);
+    for i in 0..BATCH {
+        out[i] = a * f64::from(x[i]) + b * f64::from(y[i]) + c * f64::from(z[i]);
+    }
+}
+
+/// The face of each direction: its longest component, on ties x before y before z.
+#[inline(always)]
+fn meet(met: &mut Met) {
+    let Met { turned: [xs, ys, zs], face, forward, right, down, .. } = met;
+    for i in 0..BATCH {
+        let [x, y, z] = [xs[i], ys[i], zs[i]];
+        let [ax, ay, az] = [x.abs(), y.abs(), z.abs()];
+        let is_x = (ax >= ay) & (ax >= az);
+        let is_y = !is_x & (ay >= az);
+        let longest = select(is_x, x, select(is_y, y, z));
+        let is_negative = longest < 0.0;
+        let axis = if is_y { 2 } else { 4 };
+        face[i] = (if is_x { 0 } else { axis }) + i32::from(is_negative);
+        forward[i] = longest.abs();
+        // To the right lie z, x and -x on the positive faces of x, y and z; below lie -y, -z and -y.
+        let aside = select(is_x, z, -x);
+        right[i] = select(is_y, x, select(is_negative, -aside, aside));
+        down[i] = select(is_y, select(is_negative, z, -z), -y);
+    }
+}
+
+#[inline(always)]
+const fn select(condition: bool, yes: f64, no: f64) -> f64 {
+    if condition { yes } else { no }
+}
+
+/// The whole part of a number of 0 to 2^32: added to 2^52 it is what its lowest bits hold. A cast would ask for each number by itself
+/// whether it is one.
+#[inline(always)]
+fn whole_part(number: f64) -> i32 {
+    (number.floor() + 4_503_599_627_370_496.0).to_bits() as i32
+}
+
+/// Places between the middles of texels in parts of 2^quotient_bits.
+#[inline(always)]
+fn places(out: &mut Each<i32>, unit: &AddressUnit, side: &Each<f64>, forward: &Each<f64>) {
+    let q = unit.quotient_bits as u32;
+    let scale = f64::from(1_u32 << q);
+    let largest = scale - 1.0;
+    let half = if unit.weight_bits == 0 { 0 } else { 1 << (q - 1) };
+    let inner = unit.geometry.inner() as i32;
+    let first = ((unit.geometry.guard as i32) << q) + inner / 2 - half;
+    for i in 0..BATCH {
+        let quotient = (forward[i] + side[i]) * scale / (2.0 * forward[i]);
+        out[i] = first + whole_part(select(quotient < largest, quotient, largest)) * inner;
+    }
+}
+
+#[inline(always)]
+fn footprints(batch: &mut Batch, unit: &AddressUnit) {
+    let q = unit.quotient_bits as u32;
+    let size = unit.geometry.texels as i32;
+    let last = if unit.weight_bits == 0 { size - 1 } else { size - 2 };
+    let below = (unit.quotient_bits - unit.weight_bits) as u32;
+    let part = (1_u32 << q) - 1;
+    let rounding = (1_u32 << below) >> 1;
+    let Batch { count, index, right, down, leaves, met, .. } = batch;
+    for i in 0..BATCH {
+        let column = met.column[i] >> q;
+        let row = met.row[i] >> q;
+        // The sign of a number below 0, or of what is left up to the last.
+        leaves[i] = (column | row | (last - column) | (last - row)) >> 31;
+        index[i] = (((met.face[i] * size + row) * size + column) & !leaves[i]) as u32;
+        right[i] = ((met.column[i] as u32 & part) + rounding) >> below;
+        down[i] = ((met.row[i] as u32 & part) + rounding) >> below;
+    }
+    batch.is_left = leaves[..*count].iter().fold(0, |any, leaves| any | leaves) != 0;
+}
+
+/// The colours of footprints, weighed; `reach` texels down lies the next row, or none where nothing is interpolated.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u32, out: &mut [u32]) {
+    if weight_bits == 0 {
+        for (out, first) in out.iter_mut().zip(&batch.index) {
+            *out = colours[*first as usize];
+        }
+        return;
+    }
+    let count = out.len().min(BATCH);
+    let mut four = [[0; BATCH]; 4];
+    for i in 0..count {
+        let first = batch.index[i] as usize;
+        let upper = &colours[first..first + 2];
+        let lower = &colours[first + reach..first + reach + 2];
+        four[0][i] = upper[0];
+        four[1][i] = upper[1];
+        four[2][i] = lower[0];
+        four[3][i] = lower[1];
+    }
+    if weight_bits <= WEIGHTS_OF_TWO {
+        two(&four, batch, weight_bits, &mut out[..count]);
+    } else {
+        each(&four, batch, weight_bits, &mut out[..count]);
+    }
+}
+
+/// Bits of a fraction up to which two parts of a colour, 16 bits apart, are weighed in one product: 255 x 4^4 and half of it are
+/// below 2^16.
+const WEIGHTS_OF_TWO: u32 = 4;
+
+/// Weighs red and blue together, and green.
+#[inline(always)]
+fn two(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) {
+    let one = 1 << weight_bits;
+    let half = (1 << (2 * weight_bits)) >> 1;
+    let count = out.len().min(BATCH);
+    for i in 0..count {
+        let [right, down] = [batch.right[i], batch.down[i]];
+        let weights = [(one - right) * (one - down), right * (one - down), (one - right) * down, right * down];
+        let mut outer = half | half << 16;
+        let mut green = half;
+        for k in 0..4 {
+            outer += (four[k][i] & 0x00FF_00FF) * weights[k];
+            green += (four[k][i] >> 8 & 0xFF) * weights[k];
+        }
+        out[i] = (outer >> (2 * weight_bits) & 0x00FF_00FF) | (green >> (2 * weight_bits)) << 8;
+    }
+}
+
+/// Weighs red, green and blue each by itself.
+#[inline(always)]
+fn each(four: &[Each<u32>; 4], batch: &Batch, weight_bits: u32, out: &mut [u32]) {
+    let one = 1 << weight_bits;
+    let half = (1 << (2 * weight_bits)) >> 1;
+    let count = out.len().min(BATCH);
+    for i in 0..count {
+        let [right, down] = [batch.right[i], batch.down[i]];
+        let weights = [(one - right) * (one - down), right * (one - down), (one - right) * down, right * down];
+        let mut pixel = 0;
+        for shift in [16, 8, 0] {
+            let mut sum = half;
+            for k in 0..4 {
+                sum += (four[k][i] >> shift & 0xFF) * weights[k];
+            }
+            pixel |= sum >> (2 * weight_bits) << shift;
+        }
+        out[i] = pixel;
+    }
+}

@@ -1,0 +1,116 @@
+//! The rows of a triangle on a face: which texels it takes, and their colours and depths, several at a time.
+
+use crate::edges::{Columns, Crossing, Linear};
+use address_recalculation::{CubeFace, DEPTH_FARTHEST, FaceSet, TexelAddress};
+use multiversion::multiversion;
+
+/// Texels whose colours and depths are computed before they are kept.
+const RUN: usize = 64;
+
+/// Texels are computed in multiples of this: the doubles in a vector.
+const LANES: usize = 4;
+
+/// Colours over a face.
+pub(crate) enum Shade {
+    /// The same everywhere.
+    Flat(u32),
+    /// Red, green and blue, each divided by w.
+    Smooth([Linear; 3]),
+}
+
+/// A triangle on a face.
+pub(crate) struct OnFace {
+    pub(crate) face: CubeFace,
+    pub(crate) columns: Columns,
+    /// Texels of a row.
+    pub(crate) texels: i64,
+    pub(crate) crossings: [Crossing; 3],
+    /// 1/w.
+    pub(crate) reciprocal: Linear,
+    /// Depth of what lies at 1/w: a + b/w, between 0 and 1 where something is drawn.
+    pub(crate) depth: [f64; 2],
+    pub(crate) shade: Shade,
+}
+
+/// Colours and depths of a run of texels.
+struct Run {
+    colours: [u32; RUN],
+    depths: [u32; RUN],
+}
+
+/// Draws the rows from one to another; how many texels they took.
+#[multiversion(targets("x86_64+avx2+avx512f+avx512bw+avx512dq+avx512vl", "x86_64+avx2"))]
+pub(crate) fn draw(triangle: &OnFace, rows: [i64; 2], faces: &mut FaceSet) -> u64 {
+    let mut run = Run { colours: [0; RUN], depths: [0; RUN] };
+    let mut texels = 0;
+    for row in rows[0]..rows[1] {
+        let y = triangle.columns.middle(row);
+        let mut range = [0, triangle.texels];
+        for crossing in &triangle.crossings {
+            crossing.narrow(crossing.edge.row(y), triangle.columns, &mut range);
+            if range[0] >= range[1] {
+                break;
+            }
+        }
+        let mut first = range[0];
+        while first < range[1] {
+            let count = ((range[1] - first) as usize).min(RUN);
+            compute(triangle, y, first, count, &mut run);
+            let address = TexelAddress { face: triangle.face, column: first as u32, row: row as u32 };
+            faces.keep_nearer(address, &run.colours[..count], &run.depths[..count]);
+            first += count as i64;
+            texels += count as u64;
+        }
+    }
+    texels
+}
+
+/// Colours and depths from a column on; a few more than asked for.
+#[inline(always)]
+fn compute(triangle: &OnFace, y: f64, first: i64, count: usize, run: &mut Run) {
+    let whole = count.next_multiple_of(LANES).min(RUN);
+    let mut places = [0.0; RUN];
+    for (i, place) in places[..whole].iter_mut().enumerate() {
+        *place = triangle.columns.first + (first as i32 + i as i32) as f64 * triangle.columns.step;
+    }
+    let along = [triangle.reciprocal.x, triangle.reciprocal.row(y)];
+    let [near, scale] = triangle.depth;
+    let depth = [along[0] * scale, near + along[1] * scale];
+    for (word, x) in run.depths[..whole].iter_mut().zip(&places[..whole]) {
+        *word = depth_word(depth[0] * x + depth[1]);
+    }
+    match &triangle.shade {
+        Shade::Flat(colour) => run.colours[..whole].fill(*colour),
+        Shade::Smooth(parts) => {
+            let rows = parts.map(|part| part.row(y));
+            for (colour, x) in run.colours[..whole].iter_mut().zip(&places[..whole]) {
+                let distance = 1.0 / (along[0] * x + along[1]);
+                let red = byte((parts[0].x * x + rows[0]) * distance);
+                let green = byte((parts[1].x * x + rows[1]) * distance);
+                let blue = byte((parts[2].x * x + rows[2]) * distance);
+                *colour = red << 16 | green << 8 | blue;
+            }
+        }
+    }
+}
+
+/// The whole part of a number of 0 to 2^32: added to 2^52 it is what its lowest bits hold. A cast would ask for each number by itself
+/// whether it is one.
+#[inline(always)]
+fn whole_part(number: f64) -> u32 {
+    (number.floor() + 4_503_599_627_370_496.0).to_bits() as u32
+}
+
+/// A depth in 24 bits; the farthest, which draws nothing, beyond near and far.
+#[inline(always)]
+fn depth_word(depth: f64) -> u32 {
+    let word = whole_part(depth * f64::from(DEPTH_FARTHEST));
+    if (depth >= 0.0) & (depth < 1.0) { word } else { DEPTH_FARTHEST }
+}
+
+/// A part of a colour, rounded to the nearest.
+#[inline(always)]
+fn byte(part: f64) -> u32 {
+    let part = if part > 0.0 { part } else { 0.0 };
+    whole_part(if part < 255.0 { part } else { 255.0 } + 0.5)
+}

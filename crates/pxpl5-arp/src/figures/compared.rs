@@ -1,0 +1,65 @@
+//! Pictures that must be the same in every bit.
+
+use crate::error::ExperimentError;
+use crate::look::Faces;
+use crate::settings::{Settings, SourceKind};
+use crate::simulation::Simulation;
+use crate::world::World;
+use address_recalculation::{CubeFace, FaceSet, TexelAddress};
+use glam::{DQuat, DVec3};
+
+/// Texels along an edge of the faces that are compared.
+const TEXELS: u32 = 128;
+
+fn small(settings: &Settings) -> Settings {
+    let mut settings = settings.clone();
+    settings.display.timing.face_texels = u64::from(TEXELS);
+    settings
+}
+
+/// Texels of all faces in which the composite of all memories, drawn at once from one place, is not what one memory shows for which
+/// the same was drawn in the order of the memories.
+pub(super) fn composite_differs(world: &World, settings: &Settings, eye: DVec3) -> Result<u64, ExperimentError> {
+    let settings = small(settings);
+    let mut simulation = Simulation::new(world, &settings)?;
+    simulation.frame(eye)?;
+    let faces = Faces::of(&simulation)?;
+    let in_order: Vec<usize> =
+        simulation.shown().iter().flatten().flat_map(|content| content.segments.clone()).collect();
+    let mut one = FaceSet::new(TEXELS, settings.display.format());
+    settings.view()?.draw(eye, world.triangles(&in_order, |vertex| vertex), &mut one);
+    let all = CubeFace::ALL
+        .into_iter()
+        .flat_map(|face| (0..TEXELS * TEXELS).map(move |k| TexelAddress { face, column: k % TEXELS, row: k / TEXELS }));
+    let composed = |texel| {
+        let shown = faces.memories.iter().filter_map(|memory| memory.texel(texel));
+        shown.min_by_key(|(_, depth)| *depth)
+    };
+    Ok(all.filter(|texel| composed(*texel) != one.texel(*texel)).count() as u64)
+}
+
+/// Frames until a renderer of [`STALLED_TRIANGLES_PER_S`] has drawn all memories once.
+const FRAMES: u64 = 200;
+const STALLED_TRIANGLES_PER_S: f64 = 700.0;
+
+/// Pixels that differ between an ideal renderer and one that has long stalled, after turns of a head whose eye stands still.
+pub(super) fn turned_differ(world: &World, settings: &Settings, eye: DVec3) -> Result<u64, ExperimentError> {
+    let ideal = small(settings);
+    let source = SourceKind::Timed { triangles_per_s: STALLED_TRIANGLES_PER_S };
+    let stalled = Settings { source, ..ideal.clone() };
+    let mut seen = Vec::new();
+    for settings in [ideal, stalled] {
+        let mut simulation = Simulation::new(world, &settings)?;
+        for _ in 0..FRAMES {
+            simulation.frame(eye)?;
+        }
+        seen.push(Faces::of(&simulation)?);
+    }
+    let mut differ = 0;
+    for degrees in [12.0_f64, 90.0, 180.0] {
+        let turned = DQuat::from_rotation_y(degrees.to_radians());
+        let [first, second] = [seen[0].seen(turned)?.0, seen[1].seen(turned)?.0];
+        differ += first.pixels().zip(second.pixels()).filter(|(a, b)| a != b).count() as u64;
+    }
+    Ok(differ)
+}

@@ -1,0 +1,231 @@
+//! What a walk is made of, by path.
+
+use crate::error::ExperimentError;
+use crate::settings::{PolicyKind, Settings, SourceKind};
+use address_recalculation::{CompositionOrder, Latch, Lens, Picture};
+use parameters::{Entry, ParameterInfo, ParameterTable, Value, nearest};
+use priority_rendering::Falloff;
+use std::collections::BTreeMap;
+
+parameters::parameter_table! {
+    /// How fast and how long somebody walks.
+    pub struct WalkNumbers {
+        /// Speed along the scene's path.
+        m_per_s: f64 = 1.0, "m/s", Published, 0.0..=3.0 in 0.0..=100.0, "CPR05 4.2: a walker";
+        /// Length of the walk.
+        frames: 1_800, "frames", Assumed, 60..=100_000 in 1..=1_000_000, "half a minute; table 1 is compared over two minutes";
+    }
+}
+
+/// Paths of choices, which stand in no table.
+const CHOICES: [&str; 8] =
+    ["policy", "segment", "warp", "priority.cascade", "source", "arp.latch", "arp.lens", "arp.order"];
+
+/// A walk that can be taken: settings by path over defaults that depend on each other.
+///
+/// What is not said follows: cascade is on where cells are warped, objects are cut under `cells` alone, a falloff is as long as a cell.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// How fast and how long.
+    pub walk: WalkNumbers,
+    chosen: Settings,
+    is_segmented: Option<bool>,
+    has_cascade: Option<bool>,
+    said: BTreeMap<String, String>,
+}
+
+/// A table and the first part of its paths.
+type NamedTable<'a> = (&'static str, &'a dyn ParameterTable);
+
+impl Plan {
+    /// Cells, cut and warped, an ideal renderer, half a minute at 1 m/s.
+    #[must_use]
+    pub fn usual() -> Self {
+        Self {
+            walk: WalkNumbers::PAPERS,
+            chosen: Settings::WARPED,
+            is_segmented: None,
+            has_cascade: None,
+            said: BTreeMap::new(),
+        }
+    }
+
+    fn tables(&self) -> [NamedTable<'_>; 4] {
+        [
+            ("walk", &self.walk),
+            ("priority", &self.chosen.numbers),
+            ("arp", &self.chosen.display.timing),
+            ("arp_scan", &self.chosen.display.scan),
+        ]
+    }
+
+    /// All paths that [`Self::set`] knows.
+    #[must_use]
+    pub fn keys(&self) -> Vec<String> {
+        let numbers = self.numbers().into_iter().map(|(path, _)| path);
+        CHOICES.iter().map(|key| (*key).to_owned()).chain(numbers).collect()
+    }
+
+    /// All numbers with their paths, as they are now.
+    #[must_use]
+    pub fn numbers(&self) -> Vec<(String, Entry)> {
+        let tables = self.tables().into_iter();
+        let all = tables.flat_map(|(prefix, table)| table.entries().into_iter().map(move |entry| (prefix, entry)));
+        all.map(|(prefix, entry)| (format!("{prefix}.{}", entry.info.name), entry)).collect()
+    }
+
+    /// What was said, by path.
+    #[must_use]
+    pub const fn said(&self) -> &BTreeMap<String, String> {
+        &self.said
+    }
+
+    /// Sets a path to a value; `place` says in errors where it was given, such as `--set`.
+    ///
+    /// # Errors
+    ///
+    /// [`ExperimentError::UnknownKey`] with the nearest path, or [`ExperimentError::Value`].
+    pub fn set(&mut self, path: &str, text: &str, place: &str) -> Result<(), ExperimentError> {
+        let done = match path {
+            "policy" => choose(&mut self.chosen.policy, &PolicyKind::ALL, text),
+            "warp" => choose(&mut self.chosen.falloff, &Falloff::ALL, text),
+            "arp.latch" => choose(&mut self.chosen.display.latch, &Latch::ALL, text),
+            "arp.order" => choose(&mut self.chosen.display.order, &CompositionOrder::ALL, text),
+            "segment" => is_on(text).map(|is_on| self.is_segmented = Some(is_on)),
+            "priority.cascade" => is_on(text).map(|is_on| self.has_cascade = Some(is_on)),
+            "source" => source(text).map(|source| self.chosen.source = source),
+            "arp.lens" => lens(text).map(|lens| self.chosen.display.lens = lens),
+            _ => self.set_number(path, text, place)?,
+        };
+        done.map_err(|expected| wrong(path, text, place, expected))?;
+        self.said.insert(path.to_owned(), text.to_owned());
+        Ok(())
+    }
+
+    /// Sets `path=value`, as after `--set`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::set`], and [`ExperimentError::Value`] without an equals sign.
+    pub fn assign(&mut self, assignment: &str, place: &str) -> Result<(), ExperimentError> {
+        match assignment.split_once('=') {
+            Some((path, text)) => self.set(path.trim(), text.trim(), place),
+            None => Err(wrong("PATH=VALUE", assignment, place, "an equals sign".to_owned())),
+        }
+    }
+
+    /// The same behind a lens that was read from a file of this name.
+    #[must_use]
+    pub fn behind(mut self, lens: Lens, name: &str) -> Self {
+        self.chosen.display.lens = lens;
+        self.said.insert("arp.lens".to_owned(), format!("table:{name}"));
+        self
+    }
+
+    /// Size and angle of the picture, for which a lens may have a table.
+    #[must_use]
+    pub fn picture(&self) -> Picture {
+        self.chosen.display.picture()
+    }
+
+    /// The settings, with what was not said.
+    ///
+    /// # Errors
+    ///
+    /// As [`Settings::check`].
+    pub fn settings(&self) -> Result<Settings, ExperimentError> {
+        let mut settings = self.chosen.clone();
+        let is_of_cells = settings.policy == PolicyKind::Cells;
+        settings.is_segmented = self.is_segmented.unwrap_or(is_of_cells);
+        let is_warped = is_of_cells && settings.is_segmented && settings.falloff != Falloff::None;
+        settings.has_cascade = self.has_cascade.unwrap_or(is_warped);
+        if !self.said.contains_key("priority.falloff_m") {
+            settings.numbers.falloff_m = settings.numbers.cell_m;
+        }
+        if settings.policy == PolicyKind::Full {
+            settings = settings.with_memories(1);
+        }
+        settings.check()?;
+        Ok(settings)
+    }
+
+    /// A number of a table, or that there is none of this path; what was expected of a value that it cannot have.
+    fn set_number(&mut self, path: &str, text: &str, place: &str) -> Result<Result<(), String>, ExperimentError> {
+        let Some((_, Entry { info, value: now })) = self.numbers().into_iter().find(|(key, _)| key == path) else {
+            let keys = self.keys();
+            let nearest = nearest(path, keys.iter().map(String::as_str)).unwrap_or_default().to_owned();
+            return Err(ExperimentError::UnknownKey { place: place.to_owned(), found: path.to_owned(), nearest });
+        };
+        let is_real = matches!(now, Value::Real(_));
+        let value = if is_real { text.parse().map(Value::Real).ok() } else { text.parse().map(Value::Whole).ok() };
+        let Some(value) = value.filter(|value| Entry { info, value: *value }.is_within_limits()) else {
+            return Ok(Err(expected_of(info)));
+        };
+        let name = info.name;
+        let prefix = path.split('.').next().unwrap_or_default();
+        let table: &mut dyn ParameterTable = match prefix {
+            "walk" => &mut self.walk,
+            "priority" => &mut self.chosen.numbers,
+            "arp" => &mut self.chosen.display.timing,
+            _ => &mut self.chosen.display.scan,
+        };
+        let done = table.set(name, value).map_err(|_| expected_of(info));
+        // The policy's memories are the display's.
+        match (path, value) {
+            ("priority.memories" | "arp.display_memories", Value::Whole(memories)) => {
+                self.chosen = self.chosen.clone().with_memories(memories);
+            }
+            _ => {}
+        }
+        Ok(done)
+    }
+}
+
+fn expected_of(info: &ParameterInfo) -> String {
+    let (least, most) = info.limits;
+    let kind = if matches!(info.papers, Value::Whole(_)) { "a whole number" } else { "a number" };
+    format!("{kind} of {least} to {most} {}", info.unit)
+}
+
+fn choose<T: Copy>(choice: &mut T, all: &[(&'static str, T)], text: &str) -> Result<(), String> {
+    let found = all.iter().find(|(name, _)| *name == text);
+    let names = || all.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+    *choice = found.ok_or_else(names)?.1;
+    Ok(())
+}
+
+fn is_on(text: &str) -> Result<bool, String> {
+    match text {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err("on or off".to_owned()),
+    }
+}
+
+/// `ideal`, or the triangles that are drawn in a second.
+fn source(text: &str) -> Result<SourceKind, String> {
+    if text == "ideal" {
+        return Ok(SourceKind::Ideal);
+    }
+    let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
+    let timed = rate.map(|triangles_per_s| SourceKind::Timed { triangles_per_s });
+    timed.ok_or_else(|| "ideal, or triangles a second".to_owned())
+}
+
+fn lens(text: &str) -> Result<Lens, String> {
+    let expected = || "flat, equidistant, radial:K1 or radial:K1:K2".to_owned();
+    let mut parts = text.split(':');
+    let name = parts.next();
+    let numbers: Vec<f64> = parts.map(str::parse).collect::<Result<_, _>>().map_err(|_| expected())?;
+    match (name, numbers.as_slice()) {
+        (Some("flat"), []) => Ok(Lens::Flat),
+        (Some("equidistant"), []) => Ok(Lens::Equidistant),
+        (Some("radial"), [k1]) => Ok(Lens::Radial { k1: *k1, k2: 0.0 }),
+        (Some("radial"), [k1, k2]) => Ok(Lens::Radial { k1: *k1, k2: *k2 }),
+        _ => Err(expected()),
+    }
+}
+
+fn wrong(key: &str, found: &str, place: &str, expected: String) -> ExperimentError {
+    ExperimentError::Value { place: place.to_owned(), key: key.to_owned(), expected, found: found.to_owned() }
+}

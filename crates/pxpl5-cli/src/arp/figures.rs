@@ -1,0 +1,61 @@
+//! `pxpl5 arp figures`.
+
+use super::settings::put;
+use crate::error::CliError;
+use crate::figures::{family_rows, fresh};
+use crate::output::{OutputFile, OutputFolder};
+use crate::terminal::{print, progress};
+use clap::Args;
+use pxpl5::arp::{figures, pictures};
+use serde_json::json;
+use std::path::PathBuf;
+
+/// Measure the papers' figures with an ideal renderer, and draw their pictures.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 arp figures
+  pxpl5 arp figures --json
+  pxpl5 arp figures --out out/arp                               all pictures
+  pxpl5 arp figures --write docs/address-recalculation.md
+  pxpl5 arp figures --check docs/address-recalculation.md       fails when the file is not what the figures give")]
+pub(super) struct FiguresArgs {
+    /// Print one JSON object.
+    #[arg(long)]
+    json: bool,
+    /// Write the document of all figures to this file.
+    #[arg(long, value_name = "FILE", conflicts_with = "check")]
+    write: Option<PathBuf>,
+    /// Compare the document with this file.
+    #[arg(long, value_name = "FILE")]
+    check: Option<PathBuf>,
+    /// Write all pictures into this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print nothing but errors (and the object of --json).
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+pub(super) fn run(args: FiguresArgs) -> Result<(), CliError> {
+    let document = args.write.as_deref().map(OutputFile::open).transpose()?;
+    let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
+    let bar = progress(2, "walks and pictures", args.quiet);
+    let (experiments, rows) = figures::all()?;
+    bar.inc(1);
+    let markdown = figures::markdown(&experiments, &rows);
+    document.map(|document| document.write(markdown.as_bytes())).transpose()?;
+    if let Some(mut folder) = folder {
+        let origin = [("scene", "gallery".to_owned()), ("about", "figures of address recalculation".to_owned())];
+        put(&mut folder, &pictures::all(&experiments)?, &origin)?;
+        folder.commit()?;
+    }
+    bar.finish_and_clear();
+    if let Some(path) = &args.check {
+        fresh(path, &markdown, "arp figures")?;
+    }
+    match (args.json, args.quiet) {
+        (true, _) => print(&format!("{:#}\n", json!({ "schema": "pxpl5-arp-figures/1", "figures": rows }))),
+        (false, true) => Ok(()),
+        (false, false) => print(&family_rows(&rows)),
+    }
+}

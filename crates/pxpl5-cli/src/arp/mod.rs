@@ -1,0 +1,48 @@
+//! `pxpl5 arp`: a walk behind a display that turns with the head.
+
+mod compare;
+mod figures;
+mod run;
+mod settings;
+
+use crate::error::CliError;
+use clap::{Args, Subcommand};
+use pxpl5::arp::ExperimentError;
+
+/// Walk through a scene behind a display that turns with the head (address recalculation, priority rendering, region warping).
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 arp run --scene gallery --warp linear --out out/walk
+  pxpl5 arp run --policy objects --set walk.frames=3600 --json
+  pxpl5 arp compare --scene gallery --out out/policies
+  pxpl5 arp figures
+
+Faces are drawn by an ideal renderer here. `pxpl5 run --pipeline arp-priority` has Pixel-Planes 5 draw them.")]
+pub(crate) struct ArpArgs {
+    #[command(subcommand)]
+    command: ArpCommand,
+}
+
+#[derive(Subcommand, Debug)]
+enum ArpCommand {
+    /// Walk once and print what was drawn, how often, and how far cuts gape.
+    Run(run::RunArgs),
+    /// Compare all policies and warps on one walk.
+    Compare(compare::CompareArgs),
+    /// Measure the papers' figures and draw their pictures.
+    Figures(figures::FiguresArgs),
+}
+
+pub(crate) fn run(args: ArpArgs) -> Result<(), CliError> {
+    match args.command {
+        ArpCommand::Run(args) => run::run(args),
+        ArpCommand::Compare(args) => compare::run(args),
+        ArpCommand::Figures(args) => figures::run(args),
+    }
+}
+
+impl From<ExperimentError> for CliError {
+    fn from(error: ExperimentError) -> Self {
+        if error.is_of_scene() { Self::failure(error) } else { Self::usage(error) }
+    }
+}

@@ -1,0 +1,143 @@
+//! `pxpl5 arp run`.
+
+use super::settings::{WalkArgs, put};
+use crate::error::CliError;
+use crate::output::OutputFolder;
+use crate::terminal::{advance, print, progress};
+use clap::Args;
+use pxpl5::arp::pictures::of_walk;
+use pxpl5::arp::{MemoryReport, Percentiles, WalkOutcome};
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Walk once and print what was drawn, how often, and how far cuts gape.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 arp run --scene gallery --out out/walk --json
+  pxpl5 arp run --scene gallery:full --policy objects --segment off
+  pxpl5 arp run --warp none --set priority.cell_m=5.1 --set walk.frames=7200
+  pxpl5 arp run --lens radial:0.32 --latch line --set arp.face_texels=1024
+  pxpl5 arp run --source 20000                             a renderer of 20,000 triangles a second")]
+pub(super) struct RunArgs {
+    #[command(flatten)]
+    walk: WalkArgs,
+    /// Write into this folder: report.json, frames.csv, faces of all memories, what the eye sees with and without a lens, which memory
+    /// won, errors, cells from above, cuts as wires, updates, and the walk torn, warped and without cuts.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the report as one JSON object.
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: RunArgs) -> Result<(), CliError> {
+    let folder = args.out.as_deref().map(OutputFolder::open).transpose()?;
+    let (scene, plan) = args.walk.gather()?;
+    let bar = progress(plan.walk.frames, "frames", args.walk.quiet);
+    let outcome = WalkOutcome::of(&scene, &plan, |done, of| advance(&bar, done, of));
+    bar.finish_and_clear();
+    let outcome = outcome?;
+    let json = serde_json::to_string_pretty(&outcome.report).map_err(CliError::failure)? + "\n";
+    if let Some(mut folder) = folder {
+        folder.put("report.json", json.as_bytes())?;
+        folder.put("frames.csv", frames_csv(&outcome).as_bytes())?;
+        let walk = &plan.walk;
+        let pictures = of_walk(outcome.world.clone(), &outcome.path, &outcome.settings, walk.m_per_s, walk.frames)?;
+        put(&mut folder, &pictures, &origin(&outcome))?;
+        folder.commit()?;
+    }
+    match (args.json, args.walk.quiet) {
+        (true, _) => print(&json),
+        (false, true) => Ok(()),
+        (false, false) => print(&text(&outcome, args.out.as_deref())),
+    }
+}
+
+fn origin(outcome: &WalkOutcome) -> Vec<(&'static str, String)> {
+    let report = &outcome.report;
+    let settings: Vec<String> = report.settings.iter().map(|(path, value)| format!("{path}={value}")).collect();
+    vec![
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("scene", report.scene.clone()),
+        ("frames", report.frames.to_string()),
+        ("m_per_s", report.m_per_s.to_string()),
+        ("settings", settings.join(" ")),
+    ]
+}
+
+/// A line for each frame: where the eye was, and of each memory whether it was due, shown and missed.
+fn frames_csv(outcome: &WalkOutcome) -> String {
+    let memories = outcome.tally.memories.len();
+    let columns = (0..memories).map(|k| format!(",due_{k},shown_{k},missed_{k}")).collect::<String>();
+    let mut text = format!("frame,x_m,y_m,z_m,deals_anew{columns}\n");
+    for (number, frame) in outcome.tally.outcomes.iter().enumerate() {
+        let [x, y, z] = frame.eye.to_array();
+        let _ = write!(text, "{number},{x},{y},{z},{}", u8::from(frame.deals_anew));
+        for k in 0..memories {
+            let [due, shown, missed] = [&frame.due, &frame.swapped, &frame.missed].map(|list| u8::from(list[k]));
+            let _ = write!(text, ",{due},{shown},{missed}");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn text(outcome: &WalkOutcome, out: Option<&Path>) -> String {
+    let walk = &outcome.report;
+    let report = &walk.report;
+    let mut text = format!(
+        "{} ({} triangles in {} segments): {} frames at {} m/s, policy {}\n\n{:>6} {:>10} {:>10} {:>10} {:>8} {:>12}\n",
+        walk.scene,
+        walk.triangles,
+        walk.segments,
+        walk.frames,
+        walk.m_per_s,
+        report.priority.policy,
+        "memory",
+        "updates/s",
+        "segments",
+        "triangles",
+        "missed",
+        "eye age, mm"
+    );
+    report.memories.iter().enumerate().for_each(|(k, memory)| line(&mut text, k, memory));
+    let priority = &report.priority;
+    let rows = [
+        ("segments drawn a second", format!("{:.0} ({:.1} % saved)", priority.draws_per_s, priority.saved_percent)),
+        ("triangles drawn a second", format!("{:.0}", outcome.triangles_per_s())),
+        ("cells dealt anew", or_none(priority.redeals.map(|n| n.to_string()))),
+        ("objects that changed memory", or_none(priority.moved_objects.map(|n| n.to_string()))),
+        ("cuts unwarped, texels", widths(report.tears_px.before)),
+        ("cuts as drawn, texels", widths(report.tears_px.after)),
+        ("stretched by warping, texels", widths(report.tears_px.stretch)),
+        ("latch to light", format!("{} ns, before each {}", report.pipeline_ns, report.latch)),
+        ("bytes of a memory", report.memories.first().map_or(0, |memory| memory.bytes).to_string()),
+    ];
+    text.push('\n');
+    for (name, value) in rows {
+        let _ = writeln!(text, "{name:<29} {value}");
+    }
+    if let Some(path) = out {
+        let _ = writeln!(text, "\nWritten to {}.", path.display());
+    }
+    text
+}
+
+fn line(text: &mut String, number: usize, memory: &MemoryReport) {
+    let MemoryReport { updates_hz, segments, missed, eye_age_mm, .. } = memory;
+    let triangles = or_none(memory.triangles.map(|triangles| format!("{triangles:.0}")));
+    let _ = writeln!(
+        text,
+        "{number:>6} {updates_hz:>10.2} {segments:>10.1} {triangles:>10} {missed:>8} {eye_age_mm:>12.2}"
+    );
+}
+
+fn or_none(text: Option<String>) -> String {
+    text.unwrap_or_else(|| "-".to_owned())
+}
+
+/// Half of all, nineteen of twenty, the widest; what is below a millionth is rounding.
+pub(super) fn widths(widths: Option<Percentiles>) -> String {
+    let number = |width: f64| if width < 1e-6 { "0".to_owned() } else { format!("{width:.2}") };
+    or_none(widths.map(|Percentiles { p50, p95, max }| [p50, p95, max].map(number).join(", ")))
+}

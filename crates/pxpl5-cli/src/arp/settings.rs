@@ -1,0 +1,165 @@
+//! Options that say what a walk is; each stands for a path of `--set`.
+
+use crate::error::CliError;
+use crate::leaves::{leaves, plain};
+use crate::output::OutputFolder;
+use crate::terminal::warn;
+use clap::Args;
+use pxpl5::arp::Plan;
+use pxpl5::arp::address_recalculation::Lens;
+use pxpl5::arp::pictures::Picture;
+use pxpl5::scene::{Placement, Scene};
+use pxpl5::views::png_bytes;
+use pxpl5::{MotionChoice, Parameter, SceneChoice};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The scene and the settings that differ from the usual ones.
+#[derive(Args, Debug)]
+pub(super) struct WalkArgs {
+    /// A TOML file of settings by path, with `scene`; options go before it.
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// A built-in scene with a path (gallery, gallery:full); default gallery.
+    #[arg(long, value_name = "NAME|FILE")]
+    scene: Option<String>,
+    /// Who decides what is drawn when: full, objects or cells; default cells.
+    #[arg(long, value_name = "POLICY")]
+    policy: Option<String>,
+    /// Whether objects are cut at the borders of cells: on or off; default on with cells, off with objects.
+    #[arg(long, value_name = "ON|OFF")]
+    segment: Option<String>,
+    /// How vertices near cuts are moved: none, linear, smoothstep or step; default linear.
+    #[arg(long, value_name = "FALLOFF")]
+    warp: Option<String>,
+    /// Before what the orientation is latched: field, line or pixel; default field.
+    #[arg(long, value_name = "LATCH")]
+    latch: Option<String>,
+    /// What lies before the eye: flat, radial:K1, radial:K1:K2, equidistant, or table:FILE with a vector for each pixel; default flat.
+    #[arg(long, value_name = "LENS", allow_hyphen_values = true)]
+    lens: Option<String>,
+    /// Who draws faces: ideal, or so many triangles a second; default ideal.
+    #[arg(long, value_name = "SOURCE")]
+    source: Option<String>,
+    /// Set any number or choice by its path, such as priority.theta_deg=0.1, priority.cell_m=8, priority.inner_rings=2,
+    /// priority.cascade=off, arp.face_texels=1024, walk.m_per_s=0.5 or walk.frames=3600; may be repeated.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    sets: Vec<String>,
+    /// Print nothing but errors (and the object of --json).
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+/// Path of the lens, whose table may be a file.
+const LENS: &str = "arp.lens";
+
+/// Paths, values, and where each was given.
+type Said = Vec<(String, String, String)>;
+
+impl WalkArgs {
+    /// The scene and its plan; numbers that no source allows are warned of.
+    ///
+    /// # Errors
+    ///
+    /// Which file, option or setting is wrong, what was expected and what was found.
+    pub(super) fn gather(&self) -> Result<(Arc<Scene>, Plan), CliError> {
+        let (scene, said) = self.said()?;
+        let mut plan = Plan::usual();
+        let mut table = None;
+        for (path, value, place) in &said {
+            match value.strip_prefix("table:").filter(|_| path == LENS) {
+                Some(file) => table = Some(file),
+                None => plan.set(path, value, place)?,
+            }
+        }
+        if let Some(file) = table {
+            let lens = read_lens(Path::new(file), &plan)?;
+            plan = plan.behind(lens, file);
+        }
+        plan.settings()?;
+        warn(&out_of_range(&plan), self.quiet);
+        Ok((load(self.scene.as_deref().unwrap_or(&scene))?, plan))
+    }
+
+    /// The file's scene, and all settings: the file's, then those of options, then those of `--set`.
+    fn said(&self) -> Result<(String, Said), CliError> {
+        let mut said = Said::new();
+        let mut scene = "gallery".to_owned();
+        if let Some(path) = &self.file {
+            let place = path.display().to_string();
+            let text = std::fs::read_to_string(path)
+                .map_err(|error| CliError::failure(format!("{place}: cannot be read: {error}")))?;
+            let file = toml::from_str(&text).map_err(|error| CliError::usage(format!("{place}: {error}")))?;
+            for (path, value) in leaves(file) {
+                match path.as_str() {
+                    "scene" => scene = plain(&value),
+                    _ => said.push((path, plain(&value), place.clone())),
+                }
+            }
+        }
+        let options = [
+            ("policy", "--policy", &self.policy),
+            ("segment", "--segment", &self.segment),
+            ("warp", "--warp", &self.warp),
+            ("arp.latch", "--latch", &self.latch),
+            (LENS, "--lens", &self.lens),
+            ("source", "--source", &self.source),
+        ];
+        for (path, option, text) in options {
+            said.extend(text.iter().map(|text| (path.to_owned(), text.clone(), option.to_owned())));
+        }
+        for assignment in &self.sets {
+            let (path, value) = assignment
+                .split_once('=')
+                .ok_or_else(|| CliError::usage(format!("--set: expected PATH=VALUE, found {assignment}")))?;
+            said.push((path.trim().to_owned(), value.trim().to_owned(), "--set".to_owned()));
+        }
+        Ok((scene, said))
+    }
+}
+
+fn read_lens(path: &Path, plan: &Plan) -> Result<Lens, CliError> {
+    let failed = |error: &dyn std::fmt::Display| CliError::failure(format!("{}: {error}", path.display()));
+    let file = File::open(path).map_err(|error| failed(&error))?;
+    Lens::read(BufReader::new(file), &plan.picture()).map_err(|error| failed(&error))
+}
+
+fn out_of_range(plan: &Plan) -> Vec<Parameter> {
+    let numbers = plan.numbers().into_iter().filter(|(_, entry)| !entry.is_in_range());
+    numbers.map(|(path, entry)| Parameter { path, info: *entry.info, value: entry.value, read_only: false }).collect()
+}
+
+fn load(name: &str) -> Result<Arc<Scene>, CliError> {
+    let choice = SceneChoice {
+        name: name.to_owned(),
+        placement: Placement::AsInFile,
+        triangles: None,
+        culled: false,
+        motion: MotionChoice::default(),
+    };
+    Ok(choice.load()?)
+}
+
+/// Writes pictures into a folder, each with where it comes from.
+///
+/// # Errors
+///
+/// When one cannot be encoded or written.
+pub(super) fn put(
+    folder: &mut OutputFolder,
+    pictures: &[Picture],
+    origin: &[(&'static str, String)],
+) -> Result<(), CliError> {
+    for picture in pictures {
+        match picture {
+            Picture::Pixels(name, pixels) => {
+                let png = png_bytes(pixels, origin).map_err(CliError::failure)?;
+                folder.put(&format!("{name}.png"), &png)?;
+            }
+            Picture::Drawing(name, text) => folder.put(&format!("{name}.svg"), text.as_bytes())?,
+        }
+    }
+    Ok(())
+}

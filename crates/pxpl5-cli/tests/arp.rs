@@ -1,0 +1,161 @@
+//! `pxpl5 arp`: files, JSON, exit codes.
+
+mod support;
+
+use image::RgbImage;
+use serde_json::Value;
+use support::{Folder, err, json, names, out};
+
+/// Faces of 128 texels, a picture of 160 x 120, two seconds.
+const SMALL: [&str; 10] = [
+    "--set",
+    "arp.face_texels=128",
+    "--set",
+    "arp_scan.visible_pixels=160",
+    "--set",
+    "arp_scan.visible_lines=60",
+    "--set",
+    "walk.frames=120",
+    "--set",
+    "walk.m_per_s=3",
+];
+
+fn arp<'a>(command: &'a str, arguments: &[&'a str]) -> Vec<&'a str> {
+    [&["arp", command], arguments, &SMALL].concat()
+}
+
+fn picture(folder: &Folder, name: &str) -> RgbImage {
+    image::open(folder.0.join(name)).unwrap_or_else(|error| panic!("{name}: {error}")).to_rgb8()
+}
+
+#[test]
+fn run_prints_one_json_object_and_writes_the_same_with_all_pictures() {
+    let folder = Folder::new("arp-run");
+    let report = json(&folder.run(&arp("run", &["--warp", "none", "--json", "--out", "a/b"])));
+    assert_eq!(report["schema"], "pxpl5-arp/1");
+    assert_eq!((&report["scene"], &report["frames"]), (&Value::from("gallery"), &Value::from(120)));
+    assert_eq!(
+        (&report["priority"]["policy"], &report["settings"]["warp"]),
+        (&Value::from("cells"), &Value::from("none"))
+    );
+    assert_eq!(report["memories"].as_array().map(Vec::len), Some(4));
+    assert_eq!(report["memories"][0]["updates_hz"], 60.0);
+    assert!(report["tears_px"]["after"]["max"].as_f64() > Some(0.0), "{report}");
+    let written = folder.0.join("a/b");
+    assert_eq!(
+        names(&written),
+        [
+            "cells-seen.png",
+            "cells.svg",
+            "cuts.svg",
+            "difference.png",
+            "error.png",
+            "eye-flat.png",
+            "eye.png",
+            "faces-0.png",
+            "faces-1.png",
+            "faces-2.png",
+            "faces-3.png",
+            "faces-whole.png",
+            "frames.csv",
+            "memories.png",
+            "objects.png",
+            "report.json",
+            "tears.png",
+            "unsegmented.png",
+            "updates.svg",
+            "warped.png",
+        ]
+    );
+    let kept: Value =
+        serde_json::from_slice(&std::fs::read(written.join("report.json")).expect("written")).expect("JSON");
+    assert_eq!(kept, report);
+    let frames = std::fs::read_to_string(written.join("frames.csv")).expect("written");
+    assert_eq!(frames.lines().count(), 1 + 120);
+    let shown: u32 = frames.lines().skip(1).filter_map(|line| line.split(',').nth(6)?.parse::<u32>().ok()).sum();
+    assert_eq!(shown, 120, "memory 0 is drawn in every frame");
+    assert_eq!(picture(&folder, "a/b/faces-0.png").dimensions(), (4 * 128, 3 * 128));
+    assert_eq!(picture(&folder, "a/b/eye.png").dimensions(), (160, 120));
+}
+
+#[test]
+fn run_prints_a_table_and_nothing_when_quiet() {
+    let folder = Folder::new("arp-text");
+    let text = out(&folder.run(&arp("run", &["--policy", "objects"])));
+    for part in ["policy objects", "updates/s", "objects that changed memory", "cells dealt anew              -"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    assert_eq!(out(&folder.run(&arp("run", &["--quiet"]))), "");
+}
+
+#[test]
+fn a_warped_walk_has_no_tear_and_a_slow_renderer_misses_retraces() {
+    let folder = Folder::new("arp-warped");
+    let warped = json(&folder.run(&arp("run", &["--json"])));
+    assert!(warped["tears_px"]["after"]["max"].as_f64() < Some(1e-6), "{warped}");
+    assert!(warped["tears_px"]["before"]["max"].as_f64() > Some(0.1), "{warped}");
+    let slow = json(&folder.run(&arp("run", &["--source", "3000", "--json"])));
+    assert!(slow["memories"][3]["missed"].as_u64() > Some(10), "{slow}");
+}
+
+#[test]
+fn settings_come_from_a_file_then_from_options_then_from_set() {
+    let folder = Folder::new("arp-file");
+    folder.file(
+        "walk.toml",
+        "scene = \"gallery\"\npolicy = \"objects\"\n[priority]\ncell_m = 6.0\nmemories = 3\n[walk]\nm_per_s = 0.5\n",
+    );
+    let report = json(&folder.run(&arp("run", &["walk.toml", "--policy", "cells", "--json"])));
+    assert_eq!(report["priority"]["policy"], "cells");
+    assert_eq!(report["priority"]["cell_m"], 6.0);
+    assert_eq!(report["memories"].as_array().map(Vec::len), Some(3));
+    assert_eq!(report["m_per_s"], 3.0, "--set goes before the file");
+}
+
+#[test]
+fn compare_lists_every_policy_and_warp_and_writes_its_files() {
+    let folder = Folder::new("arp-compare");
+    let comparison = json(&folder.run(&arp("compare", &["--json", "--out", "o"])));
+    assert_eq!(comparison["schema"], "pxpl5-arp-comparison/1");
+    let rows = comparison["rows"].as_array().expect("a list");
+    assert_eq!(rows.len(), 9);
+    let row = |name: &str| rows.iter().find(|row| row["variant"] == name).expect("listed");
+    assert_eq!(row("full")["saved_percent"], 0.0);
+    assert!(row("cells, torn")["draws_per_s"].as_f64() < row("cells, uncut")["draws_per_s"].as_f64());
+    assert!(row("cells, warped")["tears"]["max"].as_f64() < row("cells, torn")["tears"]["max"].as_f64());
+    assert!(row("objects")["tears"].is_null());
+    assert_eq!(names(&folder.0.join("o")), ["comparison.json", "rows.csv"]);
+    let text = out(&folder.run(&arp("compare", &[])));
+    assert!(text.contains("cells, smoothstep") && text.contains("stretch, texels"), "{text}");
+}
+
+#[test]
+fn what_is_wrong_is_named_with_what_was_expected_and_found() {
+    let folder = Folder::new("arp-wrong");
+    folder.file("bad.toml", "polcy = \"cells\"\n");
+    for (arguments, code, parts) in [
+        (vec!["arp", "run", "--set", "priority.cel_m=5"], 2, vec!["--set", "`priority.cel_m`", "`priority.cell_m`"]),
+        (vec!["arp", "run", "--set", "priority.cell_m=-1"], 2, vec!["priority.cell_m", "expected", "found -1"]),
+        (vec!["arp", "run", "--set", "priority.cell_m"], 2, vec!["PATH=VALUE", "priority.cell_m"]),
+        (vec!["arp", "run", "--set", "priority.falloff_m=9"], 2, vec!["priority.falloff_m", "at most", "found 9"]),
+        (
+            vec!["arp", "run", "--set", "arp.face_texels=500"],
+            2,
+            vec!["arp.face_texels", "a multiple of 128", "found 500"],
+        ),
+        (vec!["arp", "run", "--policy", "objekts"], 2, vec!["--policy", "full, objects, cells", "found objekts"]),
+        (vec!["arp", "run", "--warp", "curved"], 2, vec!["--warp", "linear, smoothstep, step", "found curved"]),
+        (vec!["arp", "run", "--lens", "radial:-0.3"], 2, vec!["arp.lens", "expected"]),
+        (vec!["arp", "run", "--lens", "table:none.txt"], 1, vec!["none.txt"]),
+        (vec!["arp", "run", "bad.toml"], 2, vec!["bad.toml", "`polcy`", "`policy`"]),
+        (vec!["arp", "run", "missing.toml"], 1, vec!["missing.toml"]),
+        (vec!["arp", "run", "--scene", "mig"], 1, vec!["mig", "a path to walk along", "found none"]),
+    ] {
+        let output = folder.run(&[&arguments[..], &["--out", "o"]].concat());
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", err(&output));
+        for part in parts {
+            assert!(err(&output).contains(part), "{arguments:?} lacks {part}: {}", err(&output));
+        }
+        assert_eq!(folder.names(), ["bad.toml"], "{arguments:?}: nothing is left");
+    }
+}

@@ -1,0 +1,116 @@
+//! Figures of papers about other systems: rows of their own kind, printed and kept beside those of Pixel-Planes 5.
+
+use super::measured::{Result, scene_named};
+use super::{Bench, FigureError};
+use pxpl5_arp::figures::{Experiments, Row, Standing, missed, rows, table};
+use pxpl5_run::{
+    Experiment, ExperimentError, FacePipeline, FacePolicy, Head, Outcome, Pipeline, Pixels, RenderingControl,
+    RotationLatency,
+};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::sync::Arc;
+use tracking::motion::Pan;
+use tracking::predict::PredictorKind;
+use tracking::tracker::TrackerConfig;
+
+/// Figures of one group of papers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FigureFamily {
+    /// What they are about.
+    pub title: &'static str,
+    /// The document that has more of them.
+    pub document: &'static str,
+    /// Experiment by experiment.
+    pub rows: Vec<Row>,
+}
+
+/// Triangles of the balls before which the head of E1 turns; the papers' drawing ends at 1,000.
+const TRIANGLES: [u32; 4] = [10, 100, 1_000, 10_000];
+
+/// A field, ms: pictures of Rendering Control wait for retraces, so what grows by less than that may not be seen.
+const FIELD_MS: f64 = 1001.0 / 60.0;
+
+/// Fields of a run of E1, and the first ones, which all of them have in common.
+const FIELDS: u64 = 60;
+const COMPARED: usize = 55;
+
+impl FigureFamily {
+    /// Address recalculation, priority rendering, region warping: E1 on Pixel-Planes 5, E2 to E9 with an ideal renderer. What follows
+    /// from the papers' tables by arithmetic alone is left to the document.
+    ///
+    /// # Errors
+    ///
+    /// [`FigureError`] names the experiment.
+    pub fn address_recalculation(bench: &Bench) -> std::result::Result<Self, FigureError> {
+        let failed = |reason: String| FigureError { id: "E1".to_owned(), reason };
+        let mut all = turning(bench).map_err(|error| failed(error.to_string()))?;
+        let experiments = Experiments::run().map_err(|error| failed(error.to_string()))?;
+        all.extend(rows(&experiments).into_iter().filter(|row| row.standing != Standing::Formula));
+        Ok(Self {
+            title: "Address recalculation and priority rendering",
+            document: "docs/address-recalculation.md",
+            rows: all,
+        })
+    }
+
+    /// Its part of ACCURACY.md.
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        let shapes = self.rows.iter().filter(|row| row.standing == Standing::Shape).count();
+        let mut text = String::new();
+        let _ = write!(
+            text,
+            "\n## {}\n\n\
+             Experiments E1 to E9 of the papers by Regan, Pose and Chow; [{}]({}) has what stands behind\n\
+             them, what follows from the tables alone, and E10, the pictures. E1 is Pixel-Planes 5 with that display, the others an ideal\n\
+             renderer. *Met* is within 1 %. Of {shapes} rows the conditions are not printed: they *cannot be reproduced*, and the shape of the\n\
+             papers' drawings and tables is checked instead. {} of the {} others are missed.\n\n{}\n{}",
+            self.title,
+            self.document,
+            self.document,
+            self.rows.iter().filter(|row| row.standing != Standing::Shape && !row.is_met).count(),
+            self.rows.len() - shapes,
+            table(&self.rows),
+            missed(&self.rows)
+        );
+        text
+    }
+}
+
+/// E1: the latency of a turn behind the display and under Rendering Control, with more and more triangles.
+fn turning(bench: &Bench) -> Result<Vec<Row>> {
+    let mut turns = Vec::new();
+    let mut drawn_ms = Vec::new();
+    for triangles in TRIANGLES {
+        let faces = FacePipeline::new(FacePolicy::Full);
+        let machine = faces.adapt(bench.machine("small-hmd")?);
+        let latencies = turned(Experiment::new(machine, faces, scene_named(&format!("sphere:{triangles}"))?))?;
+        turns.push(totals_ps(&latencies.rotation_latencies()));
+        let scene = scene_named(&format!("sphere:{triangles}"))?;
+        let drawn = turned(Experiment::new(bench.machine("small-hmd")?, RenderingControl::stereo(), scene))?;
+        drawn_ms.push(drawn.latency_ms().mean);
+    }
+    let same =
+        "greatest difference between the latencies of a turn with 10, 100, 1,000 and 10,000 triangles, field by field";
+    let differences = turns.iter().flat_map(|turn| turn.iter().zip(&turns[0]).map(|(a, b)| a.abs_diff(*b)));
+    let greatest = differences.max().filter(|_| turns.iter().all(|turn| turn.len() == COMPARED));
+    let grows = "latency of a picture with 10,000 triangles under Rendering Control less that with 10";
+    let growth = drawn_ms[3] - drawn_ms[0];
+    let rows = [
+        Row::number("A4", same, "ps", [0.0, greatest.map_or(f64::NAN, |ps| ps as f64)], Standing::Checked),
+        Row::shape("fig. 1", grows, "ms", [f64::NAN, growth], growth > FIELD_MS),
+    ];
+    Ok(rows.map(|row| row.of("E1")).to_vec())
+}
+
+/// A head that turns with 200 degrees a second.
+fn turned(experiment: Experiment) -> Result<Outcome> {
+    let head = Head::new(Arc::new(Pan::at(200.0)), TrackerConfig::ideal(), PredictorKind::None, 1);
+    let head = head.map_err(|error| ExperimentError::Scene(error.to_string()))?;
+    experiment.head(head).fields(FIELDS).pixels(Pixels::Off).run()
+}
+
+fn totals_ps(latencies: &[RotationLatency]) -> Vec<u64> {
+    latencies.iter().take(COMPARED).map(|latency| latency.total().0).collect()
+}
