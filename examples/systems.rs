@@ -120,8 +120,9 @@ fn triangles(outcome: &Outcome) -> u64 {
     }
     let of_structures = scene.structures().iter().map(|structure| structure.triangles.len() as u64);
     let of_structures: Vec<u64> = of_structures.collect();
-    let held =
-        |structures: &[bool]| of_structures.iter().zip(structures).filter(|(_, held)| **held).map(|(n, _)| n).sum();
+    let held = |structures: &[bool]| {
+        of_structures.iter().zip(structures).filter(|(_, held)| **held).map(|(n, _)| *n).sum::<u64>()
+    };
     notes.iter().map(|note| held(&note.structures)).sum::<u64>()
 }
 
