@@ -230,3 +230,38 @@ fn the_published_figures_show_what_they_were_drawn_for() {
         assert!((slats.report().latency_fields.statistics.mean - 1.0).abs() < 1e-9);
     }
 }
+
+/// Balls of a model walk past four display memories; each has a row of its own, and the trace a heading.
+#[test]
+fn each_display_memory_has_a_row_of_what_it_received_and_showed() {
+    let registry = pxpl5::registry();
+    let entry = registry.pipeline("arp-cells").expect("listed");
+    let config = registry.machine_of(MachineConfig::preset(entry.preset).expect("a preset"));
+    let pipeline = (entry.build)(&pxpl5::PipelineSettings::default());
+    let room = std::sync::Arc::new(scene::builtin("room").expect("built in"));
+    let outcome = Experiment::with(config, pipeline, room).fields(60).pixels(Pixels::Off).run().expect("it runs");
+    let options = TimelineOptions { fields: Some(12), ..TimelineOptions::default() };
+    let timeline = Timeline::of(&outcome, &options);
+    let history = pxpl5::run::FaceHistory::of(&outcome).expect("a display with faces");
+    let mut received = 0;
+    for k in 0..4 {
+        let row = timeline.rows.iter().find(|row| row.name == format!("arp port {k}")).expect("a row a memory");
+        received += row.bars.len();
+        // What the firmware's notes say that the memory shows, from swap to swap.
+        let swapped = |at: Time| history.memory(k).iter().find(|shown| outcome.record().tick(shown.from) == at);
+        for shown in &row.shown {
+            let noted = swapped(shown.begin).expect("a swap");
+            assert_eq!(noted.note.picture, shown.picture, "memory {k}");
+        }
+        assert!(row.shown.windows(2).all(|pair| pair[0].end == pair[1].begin), "memory {k}");
+        assert!(row.bars.windows(2).all(|pair| pair[0].picture < pair[1].picture), "memory {k}");
+    }
+    assert!(received > 4, "{received}");
+    assert!(timeline.rows.iter().all(|row| row.name != "display"), "no row for all memories together");
+    let drawing = svg(&outcome, &options);
+    assert!(drawing.contains("arp port 3") && drawing.contains("shows "));
+    let trace = pxpl5::views::trace_export::Trace::of(&outcome);
+    let shown = trace.tracks.iter().filter(|track| track.name == "shown").count();
+    let memories = (0..4).filter(|k| !history.memory(*k).is_empty()).count();
+    assert_eq!(shown, memories);
+}

@@ -21,10 +21,10 @@ const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ),
     ("world", &["tracking", "pxpl5-scene"], &["ground", "world"]),
     ("volume", &["spatialgl", "perspecta"], &["ground", "world", "volume"]),
-    ("geometry", &["pxpl5-geometry", "pphigs"], &["ground", "boards", "geometry"]),
+    ("geometry", &["pxpl5-geometry", "pphigs", "priority-rendering"], &["ground", "boards", "geometry"]),
     (
         "firmware",
-        &["rendering-control", "slats", "jitp", "priority-rendering", "cube-faces", "cube-control", "pxpl5-oracle"],
+        &["rendering-control", "slats", "jitp", "cube-faces", "cube-control", "pxpl5-oracle"],
         &["ground", "boards", "geometry"],
     ),
     ("machine", &["pxpl5-machine"], &["ground", "boards"]),

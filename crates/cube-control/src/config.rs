@@ -1,6 +1,7 @@
 //! Who takes part.
 
 use crate::update::FaceUpdate;
+use crate::warp::WarpedLists;
 use address_recalculation::{CubeFace, region_grid};
 use pphigs::{Picture, Share};
 use pxpl5_wire::{CopyContent, CopyTarget, Lines, NodeId, RegionGrid, RegionId};
@@ -23,13 +24,9 @@ pub struct CubeControlConfig {
     pub picture: Picture,
     /// What of a texel goes over the ring.
     pub content: CopyContent,
-    /// Finished regions that a renderer keeps in its backing store while their memory is not available, and goes on with the next
-    /// region; 0 where it waits for the copy with the region in pixel memory.
-    pub regions_stored: usize,
+    /// What slaves keep for each other of updates that are warped; empty at first.
+    pub warped: WarpedLists,
 }
-
-/// Bytes of program, stacks and message buffers on a GP (assumed, as under Rendering Control).
-pub(crate) const PROGRAM_BYTES: u64 = 1 << 20;
 
 impl CubeControlConfig {
     /// Texels along an edge of a face.

@@ -45,6 +45,7 @@ impl CubePass {
         let ahead = update.view.eyes.first();
         let faces = CubeFace::ALL.iter().flat_map(|face| ahead.map(|ahead| face_view(ahead, *face)));
         let view = FrameView { eyes: faces.collect(), ..update.view.clone() };
+        let share = &placed(config, share, update);
         let pass = |face: usize| share.transform_chosen(&view, face, config.picture, &update.structures);
         let faces: Vec<Arc<Pass>> = (0..view.eyes.len()).map(pass).collect();
         let held = share.chosen_counts(&update.structures);
@@ -92,6 +93,15 @@ impl CubePass {
     fn all_entries(&self) -> u64 {
         self.faces.iter().map(|pass| pass.entries()).sum()
     }
+}
+
+/// The share with its vertices where the update wants them.
+fn placed(config: &CubeControlConfig, share: &Share, update: &FaceUpdate) -> Share {
+    let Some(warp) = &update.warp else { return share.clone() };
+    let is_edited = |place: usize| update.view.edits.iter().any(|edit| edit.structure as usize == place);
+    let is_still = |place: usize| update.structures.get(place) == Some(&true) && !is_edited(place);
+    let memory = usize::from(update.memory);
+    share.with_list(config.warped.list(share.list(), update.number, (warp, memory), is_still))
 }
 
 /// Transformations of so many held primitives of a kind (triangles 0, spheres 1).

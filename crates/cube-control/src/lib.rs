@@ -26,10 +26,14 @@
 //!   copied when the one before it in the same memory is shown. The swap is asked for when the update begins: the display shows it at
 //!   the first retrace at which it is whole, and counts those that it missed. Updates of a group name each other and swap together.
 //!
+//! - **Warping.** An update may say how its vertices are moved ([`FaceWarp`]): each slave moves those that it transforms, so that on
+//!   the border to a slower memory they are seen in the direction from which that one was drawn. Spheres and what moves by itself stay
+//!   where they are.
+//!
 //! # Not modelled
 //!
 //! Code of the i860 for the six transformations (the table's times are used at every level); attribute traversal beyond a
-//! cost per edit. Structures that are fixed to the head are drawn as if the head were not turned.
+//! cost per edit; the time of moving vertices, some twenty floating-point operations beside the thousand of a triangle.
 //!
 //! Sources: TR94 for the firmware; Chow, Pose and Regan 2005 for memories, updates and groups. Nobody has built the whole.
 
@@ -41,6 +45,7 @@ mod protocol;
 mod rules;
 mod slave;
 mod update;
+mod warp;
 
 pub use config::CubeControlConfig;
 pub use faces::{CubePass, face_view};
@@ -48,3 +53,4 @@ pub use host::{Planned, host};
 pub use master::master;
 pub use slave::slave;
 pub use update::FaceUpdate;
+pub use warp::{FaceWarp, WarpedLists};

@@ -1,11 +1,11 @@
 //! The master GP: it synchronises host, slaves, renderers and display memories.
 
-use crate::config::{CubeControlConfig, PROGRAM_BYTES};
-use crate::protocol::{RegionEnd, Token, UpdateOrder};
+use crate::config::CubeControlConfig;
+use crate::protocol::{Token, UpdateOrder};
 use crate::rules::Completed;
 use crate::update::FaceUpdate;
 use address_recalculation::{begin_update, swap_together};
-use pphigs::copy_message;
+use pphigs::{PROGRAM_BYTES, copy_message};
 use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
 use pxpl5_wire::{Body, CopyOrder, CopyTarget, CopyWay, PictureNumber, RegionId, SurfaceId, swap_request};
 use std::collections::VecDeque;
@@ -73,8 +73,6 @@ struct CubeMaster {
     of_memories: Vec<u64>,
     rendering: Option<Rendering>,
     renderers: Vec<RendererUse>,
-    /// Finished regions in the backing store of each renderer that wait for a memory, the oldest first.
-    stored: Vec<VecDeque<CopyTarget>>,
     next_slave: usize,
     /// Swaps at the last look.
     swaps_known: u64,
@@ -106,7 +104,6 @@ impl CubeMaster {
             of_memories: vec![0; config.memories.len()],
             rendering: None,
             renderers: vec![RendererUse::Idle; config.renderers.len()],
-            stored: vec![VecDeque::new(); config.renderers.len()],
             next_slave: 0,
             swaps_known: 0,
             gp,
@@ -150,8 +147,8 @@ impl CubeMaster {
         self.begin_render();
         if let Some(place) = self.update_to_announce() {
             self.announce(place).await;
-        } else if let Some((renderer, target, way)) = self.copy_that_may_begin() {
-            self.copy(renderer, target, way).await;
+        } else if let Some((renderer, target)) = self.copy_that_may_begin() {
+            self.copy(renderer, target).await;
         } else if let Some((renderer, region)) = self.region_that_may_begin() {
             self.send_token(renderer, region).await;
         } else if self.completed.may_edit(self.next_edit) {
@@ -222,8 +219,8 @@ impl CubeMaster {
         let slave = self.config.slaves[self.next_slave];
         self.next_slave = (self.next_slave + 1) % self.config.slaves.len();
         let slaves_left = self.config.slaves.len() as u16;
-        let end = self.end_of(renderer, update);
-        let token = Token { update, region, renderer: renderer as u16, slaves_left, of, end };
+        let copies = self.is_announced(update);
+        let token = Token { update, region, renderer: renderer as u16, slaves_left, of, copies };
         let (words, body) = UpdateOrder::Token(token).message();
         self.gp.send(slave, words, body).await;
     }
@@ -232,36 +229,18 @@ impl CubeMaster {
         self.under_way(update).is_none_or(|one| one.announced)
     }
 
-    /// What becomes of a region when its last commands are executed.
-    fn end_of(&self, renderer: usize, update: PictureNumber) -> RegionEnd {
-        if self.is_announced(update) {
-            RegionEnd::Copied
-        } else if self.stored[renderer].len() < self.config.regions_stored {
-            RegionEnd::Stored
-        } else {
-            RegionEnd::Held
-        }
-    }
-
-    /// Of each renderer what has waited longest: what is in its backing store, then what is in its pixel memory.
-    fn copy_that_may_begin(&self) -> Option<(usize, CopyTarget, CopyWay)> {
-        (0..self.renderers.len()).find_map(|renderer| {
-            let (target, way) = match (self.stored[renderer].front(), self.renderers[renderer]) {
-                (Some(target), _) => (*target, CopyWay::FromBacking),
-                (None, RendererUse::Holding(target)) => (target, CopyWay::ThroughBacking),
-                _ => return None,
-            };
-            self.is_announced(target.picture).then_some((renderer, target, way))
+    /// A region that a renderer holds, whose memory is available now.
+    fn copy_that_may_begin(&self) -> Option<(usize, CopyTarget)> {
+        self.renderers.iter().enumerate().find_map(|(renderer, state)| match state {
+            RendererUse::Holding(target) => self.is_announced(target.picture).then_some((renderer, *target)),
+            RendererUse::Idle | RendererUse::Receiving => None,
         })
     }
 
     /// Sends the copy command of a region whose memory was not available in time for the last slave.
-    async fn copy(&mut self, renderer: usize, target: CopyTarget, way: CopyWay) {
-        match way {
-            CopyWay::FromBacking => drop(self.stored[renderer].pop_front()),
-            _ => self.renderers[renderer] = RendererUse::Idle,
-        }
-        let order = copy_order(&self.config, target, way);
+    async fn copy(&mut self, renderer: usize, target: CopyTarget) {
+        self.renderers[renderer] = RendererUse::Idle;
+        let order = copy_order(&self.config, target);
         let list = copy_message(self.config.picture.layout, vec![order], self.config.picture.pixels);
         self.gp.send(self.config.renderers[renderer], list.words(), Body::Commands(list)).await;
     }
@@ -311,13 +290,8 @@ impl CubeMaster {
     fn note_accepted(&mut self, token: Token) {
         let renderer = usize::from(token.renderer);
         let target = self.under_way(token.update).map(|one| self.config.target(&one.update, token.region));
-        self.renderers[renderer] = match (token.end, target) {
-            (RegionEnd::Held, Some(target)) => RendererUse::Holding(target),
-            _ => RendererUse::Idle,
-        };
-        if let (RegionEnd::Stored, Some(target)) = (token.end, target) {
-            self.stored[renderer].push_back(target);
-        }
+        let held = target.filter(|_| !token.copies);
+        self.renderers[renderer] = held.map_or(RendererUse::Idle, RendererUse::Holding);
         let Some(rendering) = &mut self.rendering else { return };
         rendering.tokens_out -= 1;
         if rendering.tokens_out == 0 && rendering.unassigned.is_empty() {
@@ -348,6 +322,7 @@ impl CubeMaster {
     }
 }
 
-pub(crate) fn copy_order(config: &CubeControlConfig, target: CopyTarget, way: CopyWay) -> CopyOrder {
+pub(crate) fn copy_order(config: &CubeControlConfig, target: CopyTarget) -> CopyOrder {
+    let way = CopyWay::ThroughBacking;
     CopyOrder { target, context: 0, way, acknowledge: Some(config.master), content: config.content }
 }

@@ -2,7 +2,7 @@
 
 use crate::update::FaceUpdate;
 use pxpl5_gp::{Fault, Received};
-use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, CopyWay, NodeId, PictureNumber, RegionId, Word};
+use pxpl5_wire::{Body, COPY_ACKNOWLEDGEMENT, NodeId, PictureNumber, RegionId, Word};
 
 const SEND: Word = 0x101;
 const EDIT: Word = 0x102;
@@ -24,32 +24,8 @@ pub(crate) struct Token {
     pub(crate) slaves_left: u16,
     /// Tokens of this update.
     pub(crate) of: u16,
-    /// The command that the last slave adds.
-    pub(crate) end: RegionEnd,
-}
-
-/// What becomes of a region when its last commands are executed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum RegionEnd {
-    /// It stays in pixel memory, and the renderer waits.
-    Held,
-    /// It goes into the backing store and stays there.
-    Stored,
-    /// It is copied to its memory.
-    Copied,
-}
-
-impl RegionEnd {
-    const ALL: [Self; 3] = [Self::Held, Self::Stored, Self::Copied];
-
-    /// The way that a copy command says; `None` where there is no command.
-    pub(crate) const fn way(self) -> Option<CopyWay> {
-        match self {
-            Self::Held => None,
-            Self::Stored => Some(CopyWay::IntoBacking),
-            Self::Copied => Some(CopyWay::ThroughBacking),
-        }
-    }
+    /// Whether the last slave adds the copy command; else the region stays in pixel memory, and the renderer waits.
+    pub(crate) copies: bool,
 }
 
 /// Everything that host, master, slaves and renderers tell each other.
@@ -126,27 +102,26 @@ fn numbered(tag: Word, update: PictureNumber) -> Vec<Word> {
 
 /// The number of a [`numbered`] message.
 fn number_of(words: &[Word]) -> Option<PictureNumber> {
-    let low = *words.get(1)?;
-    let high = *words.get(2)?;
-    Some(PictureNumber(u64::from(low) | u64::from(high) << 32))
+    let [_, low, high] = *words.first_chunk()?;
+    Some(PictureNumber::from_words(low, high))
 }
 
 impl Token {
     fn words(self, tag: Word) -> Vec<Word> {
         let places = u32::from(self.region.0) | u32::from(self.renderer) << 16;
         let counts = u32::from(self.slaves_left) | u32::from(self.of) << 16;
-        [numbered(tag, self.update), vec![places, counts, self.end as Word]].concat()
+        [numbered(tag, self.update), vec![places, counts, self.copies.into()]].concat()
     }
 
     fn read(words: &[Word]) -> Option<Self> {
-        let [_, _, _, places, counts, end] = *words else { return None };
+        let [_, _, _, places, counts, copies] = *words else { return None };
         Some(Self {
             update: number_of(words)?,
             region: RegionId(places as u16),
             renderer: (places >> 16) as u16,
             slaves_left: counts as u16,
             of: (counts >> 16) as u16,
-            end: *RegionEnd::ALL.get(end as usize)?,
+            copies: matches!(copies, 0 | 1).then_some(copies == 1)?,
         })
     }
 }
@@ -167,11 +142,10 @@ mod tests {
     #[test]
     fn every_order_survives_its_words() {
         let update = PictureNumber(1 << 33);
-        let token =
-            Token { update, region: RegionId(95), renderer: 4, slaves_left: 12, of: 96, end: RegionEnd::Stored };
+        let token = Token { update, region: RegionId(95), renderer: 4, slaves_left: 12, of: 96, copies: true };
         let view = FrameView { number: ViewNumber(3), eyes: Vec::new(), edits: Vec::new() };
         let structures = (0..70).map(|i| i % 3 == 0).collect();
-        let sent = FaceUpdate { number: update, memory: 3, buffer: 1, together: 0b1011, view, structures };
+        let sent = FaceUpdate { number: update, memory: 3, buffer: 1, together: 0b1011, view, structures, warp: None };
         let orders = [
             UpdateOrder::Send(sent),
             UpdateOrder::Edit(PictureNumber(1)),

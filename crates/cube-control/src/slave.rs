@@ -1,11 +1,11 @@
 //! A slave GP: EDIT and TRANSFORM for six faces in the foreground, tokens in the background.
 
-use crate::config::{CubeControlConfig, PROGRAM_BYTES};
+use crate::config::CubeControlConfig;
 use crate::faces::CubePass;
 use crate::master::copy_order;
 use crate::protocol::{Token, UpdateOrder};
 use crate::update::FaceUpdate;
-use pphigs::{RegionEnvelope, Share, region_messages};
+use pphigs::{PROGRAM_BYTES, RegionEnvelope, Share, region_messages};
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, PictureNumber, SurfaceId};
@@ -178,7 +178,7 @@ fn bin_messages(config: &CubeControlConfig, state: &SharedSlaveState, token: Tok
     let envelope = RegionEnvelope {
         begin: usize::from(token.slaves_left) == config.slaves.len(),
         shade: last,
-        copy: token.end.way().filter(|_| last).map(|way| copy_order(config, target, way)),
+        copy: (last && token.copies).then(|| copy_order(config, target)),
     };
     pass.face(face).map_or_else(Vec::new, |pass| region_messages(pass, region, 0, envelope))
 }

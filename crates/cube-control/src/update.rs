@@ -1,5 +1,6 @@
 //! What is drawn at a time: an update of one display memory.
 
+use crate::warp::{FaceWarp, WARP_WORDS};
 use pphigs::FrameView;
 use pxpl5_wire::{PictureNumber, Word};
 
@@ -18,18 +19,26 @@ pub struct FaceUpdate {
     pub view: FrameView,
     /// Structures of the display list that the memory holds.
     pub structures: Vec<bool>,
+    /// How its vertices are moved to meet the slower memory; `None` where they stay.
+    pub warp: Option<FaceWarp>,
 }
+
+/// The bit that says that a warp follows the structures.
+const WARPED: Word = 1 << 24;
 
 /// Words before the structures.
 const HEADER: usize = 4;
 
 impl FaceUpdate {
-    /// Number (two words), memory with buffer and group, count of structures; a bit for each structure; the view.
+    /// Number (two words), memory with buffer and group, count of structures; a bit for each structure; the warp, if any;
+    /// the view.
     pub(crate) fn to_words(&self) -> Vec<Word> {
         let [low, high] = self.number.to_words();
         let place = u32::from(self.memory) | u32::from(self.buffer) << 8 | u32::from(self.together) << 16;
+        let place = place | self.warp.map_or(0, |_| WARPED);
         let mut words = vec![low, high, place, self.structures.len() as Word];
         words.extend(self.structures.chunks(32).map(bits));
+        words.extend(self.warp.iter().flat_map(|warp| warp.to_words()));
         words.extend(self.view.to_words());
         words
     }
@@ -38,15 +47,22 @@ impl FaceUpdate {
     pub(crate) fn from_words(words: &[Word]) -> Option<Self> {
         let [low, high, place, count] = *words.first_chunk::<HEADER>()?;
         let rest = &words[HEADER..];
-        let (map, view) = rest.split_at_checked((count as usize).div_ceil(32))?;
+        let (map, rest) = rest.split_at_checked((count as usize).div_ceil(32))?;
+        let warp_words = if place & WARPED == 0 { 0 } else { WARP_WORDS };
+        let (warp, view) = rest.split_at_checked(warp_words)?;
+        let warp = match warp.first_chunk() {
+            Some(words) => Some(FaceWarp::from_words(words)?),
+            None => None,
+        };
         let structures = (0..count as usize).map(|i| map[i / 32] >> (i % 32) & 1 == 1).collect();
         Some(Self {
-            number: PictureNumber(u64::from(low) | u64::from(high) << 32),
+            number: PictureNumber::from_words(low, high),
             memory: place as u8,
             buffer: (place >> 8) as u8,
             together: (place >> 16) as u8,
             view: FrameView::from_words(view).ok()?,
             structures,
+            warp,
         })
     }
 }

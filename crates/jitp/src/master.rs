@@ -2,7 +2,7 @@
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint, Wanted};
 use crate::protocol::DrawingOrder;
-use pphigs::{FrameView, PrimitiveCounts, TransformCost};
+use pphigs::{FrameView, PROGRAM_BYTES, PrimitiveCounts, TransformCost};
 use pxpl5_display::LightSpan;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage};
 use pxpl5_sim::{Span, Time};
@@ -10,9 +10,6 @@ use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::rc::Rc;
-
-/// Bytes of program, stacks and message buffers on a GP (assumed).
-pub(crate) const PROGRAM_BYTES: u64 = 1 << 20;
 
 #[derive(Debug, Default)]
 struct MasterState {

@@ -2,10 +2,9 @@
 
 use crate::config::{DrawingSchedule, JitpConfig, Viewpoint};
 use crate::drawing::{DrawnList, Ends};
-use crate::master::PROGRAM_BYTES;
 use crate::pieces::{messages, window};
 use crate::protocol::DrawingOrder;
-use pphigs::{DisplayList, FrameView, PrimitiveCounts, Share, TransformCost};
+use pphigs::{DisplayList, FrameView, PROGRAM_BYTES, PrimitiveCounts, Share, TransformCost};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::{Account, Fault, Firmware, Gp, Priority, Stage, Ticket};
 use pxpl5_sim::{Span, Time};

@@ -174,6 +174,10 @@ impl Pass {
 /// Bytes of a pointer in a bin: the commands that it points to are held once, for all regions (TR94).
 pub const BIN_ENTRY_BYTES: u64 = 4;
 
+/// Bytes that program, stacks and message buffers take of a GP's memory under every firmware. Assumed: no paper says it; TR94's GPs
+/// have 8 MB each, in which a megabyte decides nothing.
+pub const PROGRAM_BYTES: u64 = 1 << 20;
+
 fn bytes(kind: CommandKind, count: u32) -> u64 {
     4 * u64::from(kind.words()) * u64::from(count)
 }

@@ -36,7 +36,9 @@ mod structure;
 mod view;
 
 pub use code::{KernelOutput, Transforming};
-pub use commands::{BIN_ENTRY_BYTES, RegionEnvelope, copy_message, gouraud_sphere, region_messages, shade};
+pub use commands::{
+    BIN_ENTRY_BYTES, PROGRAM_BYTES, RegionEnvelope, copy_message, gouraud_sphere, region_messages, shade,
+};
 pub use cost::TransformCost;
 pub use counts::PrimitiveCounts;
 pub use list::{DisplayList, Share};

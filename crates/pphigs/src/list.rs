@@ -102,6 +102,12 @@ impl Share {
         &self.list
     }
 
+    /// The same primitives of another list, whose structures divide it alike: with vertices in other places.
+    #[must_use]
+    pub fn with_list(&self, list: Arc<DisplayList>) -> Self {
+        Self { list, ..self.clone() }
+    }
+
     /// Numbers of primitives that the GP holds of it.
     #[must_use]
     pub fn counts(&self) -> PrimitiveCounts {

@@ -37,14 +37,26 @@ fn beam(field: u64, row: u64, x: u64) -> f64 {
 
 /// The instant of some rows that an aim means.
 fn aimed(aim: Aim, (first_field, first_row): (u64, u64), (last_field, last_row): (u64, u64)) -> f64 {
-    let first = beam(first_field, first_row, 0);
-    let last = beam(last_field, last_row, 639);
+    aimed_between(aim, first_field, beam(first_field, first_row, 0), beam(last_field, last_row, 639))
+}
+
+/// The instant that an aim means of what lights from a first to a last pixel.
+fn aimed_between(aim: Aim, field: u64, first: f64, last: f64) -> f64 {
     match aim {
         Aim::Middle => (first + last) / 2.0,
         Aim::FirstPixel => first,
         Aim::LastPixel => last,
-        Aim::Retrace => retrace(first_field),
+        Aim::Retrace => retrace(field),
     }
+}
+
+/// Pixels whose orientation one load of the host brings, where pixels latch: it sends nine words, then the next nine, and begins anew with
+/// each line, which has room for eight.
+fn of_one_load(x: u64) -> (u64, u64) {
+    let pixels = ORIENTATION_S / (LINE_S / 780.0);
+    let load = (x as f64 / pixels).floor().min(7.0);
+    let last = if load < 7.0 { ((load + 1.0) * pixels).ceil() as u64 - 1 } else { 639 };
+    ((load * pixels).ceil() as u64, last)
 }
 
 /// The ideal tracker reports every millisecond, at once. An orientation takes nine words of four bytes at 5 MB/s to the register of a
@@ -127,22 +139,22 @@ impl Run {
         Content { measured: Measurement::Of(view), drawn_for: aimed(self.aim, first, last) }
     }
 
-    /// Faces are turned by the newest orientation in the register: before a field predicted for its aim, before a line or a pixel for
-    /// the middle of the while until the next report is there.
+    /// Faces are turned by the newest orientation in the register: predicted for the aim in its field, in its line, or in the pixels for
+    /// which the host's line to the display brings one. A load is in the register when the first of them latches, or a moment before.
     fn content_of_faces(&self, field: u64, row: u64, x: u64) -> Content {
         let stages = if self.pipeline.starts_with("arp-full") { 24.0 } else { 26.0 };
         let depth = stages * STAGE_S;
-        let (first_row, first_x) = match self.pipeline {
-            name if name.ends_with("-pixel") => (row, x),
-            name if name.ends_with("-line") => (row, 0),
-            _ => (0, 0),
+        let (loaded_for, first, last) = match self.pipeline {
+            name if name.ends_with("-pixel") => {
+                let (first, last) = of_one_load(x);
+                let loads = (first as f64 * LINE_S / 780.0 / ORIENTATION_S).floor();
+                (beam(field, row, 0) + loads * ORIENTATION_S, beam(field, row, first), beam(field, row, last))
+            }
+            name if name.ends_with("-line") => (beam(field, row, 0), beam(field, row, 0), beam(field, row, 639)),
+            _ => (beam(field, 0, 0), beam(field, 0, 0), beam(field, 239, 639)),
         };
-        let latched = beam(field, first_row, first_x) - depth;
-        let measured = ((latched - ORIENTATION_S) / REPORT_S).floor() * REPORT_S;
-        let drawn_for = match self.pipeline {
-            "arp-full" | "arp-priority" => aimed(self.aim, (field, 0), (field, 239)),
-            _ => measured + ORIENTATION_S + REPORT_S / 2.0 + depth,
-        };
+        let measured = ((loaded_for - depth - ORIENTATION_S) / REPORT_S).floor() * REPORT_S;
+        let drawn_for = aimed_between(self.aim, field, first, last);
         Content { measured: Measurement::At(measured), drawn_for }
     }
 

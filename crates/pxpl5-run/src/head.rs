@@ -9,7 +9,7 @@ use std::fmt;
 use std::sync::Arc;
 use tracking::SettingError;
 use tracking::motion::Motion;
-use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Training, tune};
+use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Training, Tuned, tune};
 use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
 
 /// Why a head cannot be simulated.
@@ -22,8 +22,8 @@ enum Numbers {
     Given,
     /// They are found when the experiment is run, for the interval that its pipeline has to predict over.
     ToBeTuned,
-    /// They were found so, if there was anything to find.
-    Tuned(Option<Training>),
+    /// They were found so, if there was anything to find; those of turns by themselves, where turns are predicted over another interval.
+    Tuned(Option<Training>, Option<Training>),
 }
 
 /// How a predictor is tuned, in names of experiments; the numbers follow from it and from everything else there.
@@ -204,8 +204,13 @@ impl Head {
         self.predictor.identify(&mut add);
         match self.numbers {
             Numbers::ToBeTuned if self.predicts() => hash.setting("predictor.tuned", TUNING),
-            Numbers::Tuned(Some(training)) => hash.setting("predictor.tuned_on", format_args!("{training:?}")),
-            Numbers::Given | Numbers::ToBeTuned | Numbers::Tuned(None) => {}
+            Numbers::Tuned(of_all, of_turns) => {
+                of_all.iter().for_each(|training| hash.setting("predictor.tuned_on", format_args!("{training:?}")));
+                of_turns
+                    .iter()
+                    .for_each(|training| hash.setting("predictor.turns_tuned_on", format_args!("{training:?}")));
+            }
+            Numbers::Given | Numbers::ToBeTuned => {}
         }
         if let Some(metres) = self.judge_at_m {
             hash.setting("judge_at_m", metres);
@@ -240,7 +245,24 @@ impl Head {
     pub(crate) fn tuned_for(&self, interval_ps: u64) -> Self {
         let tuned = tune(self.motion.as_ref(), &self.tracker, interval_ps, &self.predictor, self.seed);
         let tuned = tuned.expect("checked by Head::new");
-        Self { predictor: tuned.config, numbers: Numbers::Tuned(tuned.training), ..self.clone() }
+        Self { predictor: tuned.config, numbers: Numbers::Tuned(tuned.training, None), ..self.clone() }
+    }
+
+    /// The same with numbers for orientations with which its predictor errs least in turns so far ahead; those for places stay.
+    pub(crate) fn tuned_for_turns(&self, interval_ps: u64) -> Self {
+        let tuned = tune(self.motion.as_ref(), &self.tracker, interval_ps, &self.predictor, self.seed);
+        let Tuned { config: of_turns, training } = tuned.expect("checked by Head::new");
+        let own = self.predictor;
+        let start =
+            Start { turn: of_turns.start.turn, turn_acceleration: of_turns.start.turn_acceleration, ..own.start };
+        let predictor = PredictorConfig {
+            orientation_baseline: of_turns.orientation_baseline,
+            orientation_jerk: of_turns.orientation_jerk,
+            start,
+            ..own
+        };
+        let of_all = if let Numbers::Tuned(of_all, _) = self.numbers { of_all } else { None };
+        Self { predictor, numbers: Numbers::Tuned(of_all, training), ..self.clone() }
     }
 
     /// The predictor with its numbers: in an outcome those with which it ran.
@@ -252,7 +274,13 @@ impl Head {
     /// On what its predictor was tuned; `None` where its numbers were given, or before the experiment is run.
     #[must_use]
     pub const fn training(&self) -> Option<&Training> {
-        if let Numbers::Tuned(Some(training)) = &self.numbers { Some(training) } else { None }
+        if let Numbers::Tuned(Some(training), _) = &self.numbers { Some(training) } else { None }
+    }
+
+    /// On what the numbers of orientations were tuned by themselves, for a display that latches turns alone; `None` elsewhere.
+    #[must_use]
+    pub const fn training_of_turns(&self) -> Option<&Training> {
+        if let Numbers::Tuned(_, Some(training)) = &self.numbers { Some(training) } else { None }
     }
 
     /// Which filter makes poses of the tracker's reports.

@@ -1,6 +1,7 @@
 //! Which orientation a display with faces latched when.
 
 use crate::head_views::HeadViews;
+use crate::load_schedule::LoadSchedule;
 use address_recalculation::{AddressRecalculationPipeline, Latch, Scan};
 use pxpl5_display::{Aim, Display, LightSpan};
 use pxpl5_sim::{Span, Time};
@@ -9,10 +10,14 @@ use pxpl5_wire::{FieldParity, PeriodNumber};
 /// Words that an orientation takes on the host's own line.
 pub(crate) const ORIENTATION_WORDS: u32 = 9;
 
-/// Which of a tracker's reports is in a display's orientation register when.
+/// Which of a tracker's reports is in a display's orientation register when, and for which instant it is predicted.
+///
+/// A display that latches fields gets an orientation for each report. One that latches lines or pixels gets more than there are reports:
+/// the host predicts from the newest report for every line, or for as many parts of a line as its own line to the display carries.
 #[derive(Clone, Copy, Debug)]
 pub struct LatchedHead {
     scan: Scan,
+    schedule: Option<LoadSchedule>,
     latch: Latch,
     depth: Span,
     link: Span,
@@ -24,7 +29,10 @@ impl LatchedHead {
     pub(crate) fn before(display: &dyn Display, link: Span, aim: Aim) -> Option<Self> {
         let display: &AddressRecalculationPipeline = (display as &dyn std::any::Any).downcast_ref()?;
         let config = display.config();
-        Some(Self { scan: config.scan().ok()?, latch: config.latch, depth: config.timing.depth(), link, aim })
+        let scan = config.scan().ok()?;
+        let depth = config.timing.depth();
+        let schedule = LoadSchedule::new(scan, depth, config.latch, link, aim);
+        Some(Self { scan, schedule, latch: config.latch, depth, link, aim })
     }
 
     /// When a report's orientation is in the register.
@@ -33,26 +41,41 @@ impl LatchedHead {
         report + self.link
     }
 
-    /// The report whose orientation comes into the register at an instant.
-    pub(crate) fn report_of(&self, loaded: Time) -> Time {
-        Time(loaded.0.saturating_sub(self.link.0))
-    }
-
     /// When a pixel's orientation is latched; `None` for one that the field does not scan.
     #[must_use]
     pub fn latches(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Time> {
         self.scan.latches(self.latch, x, y, field)
     }
 
-    /// The instant that the orientation of a report is predicted for: that of the aim in the first field that latches it; where lines
-    /// or pixels latch, the middle of all that light before the next report is there.
-    #[must_use]
-    pub fn aimed(&self, report: Time, next: Option<Time>) -> Time {
-        let loaded = self.loaded(report);
-        if self.latch != Latch::Field {
-            let replaced = next.map_or(loaded, |next| self.loaded(next));
-            return Time(loaded.0.midpoint(replaced.0)) + self.depth;
+    /// When an orientation is in the register for the first time after an instant: the first one as soon as the machine runs, then one
+    /// for each report, or for each line or as many pixels as the host's line carries. `reports` gives the first report after an instant.
+    pub(crate) fn next(&self, after: Time, reports: impl Fn(Time) -> Option<Time>) -> Option<Time> {
+        let first = self.loaded(Time::ZERO);
+        if after < first {
+            return Some(first);
         }
+        match self.schedule {
+            Some(schedule) => Some(schedule.loaded(schedule.next(after))),
+            None => reports(self.sent(after)).map(|report| self.loaded(report)),
+        }
+    }
+
+    /// What the host knew when it sent what is in the register from an instant on, and the instant that it predicted for.
+    pub(crate) fn predicted(&self, loaded: Time) -> (Time, Time) {
+        let aimed = match self.schedule {
+            Some(schedule) => schedule.aimed(schedule.at(loaded)),
+            None => self.aimed_at_field(loaded),
+        };
+        (self.sent(loaded), aimed)
+    }
+
+    /// When the host sends what is in the register from an instant on.
+    fn sent(&self, loaded: Time) -> Time {
+        Time(loaded.0.saturating_sub(self.link.0))
+    }
+
+    /// The instant of the aim in the first field that latches what is in the register from an instant on.
+    fn aimed_at_field(&self, loaded: Time) -> Time {
         let mut field = self.scan.field_at(loaded);
         let y = |field: PeriodNumber| FieldParity::of_field(field).first_line();
         while self.latches(0, y(field), field).is_none_or(|at| at < loaded) {
@@ -64,21 +87,26 @@ impl LatchedHead {
         self.aim.instant(&LightSpan { tick: self.scan.retrace(field), first, last })
     }
 
-    /// The report that a pixel was turned by, and the instant that its orientation was predicted for. Before the first report it is
-    /// what the host knows at the beginning of time; `None` before that is loaded.
+    /// What the host knew when it sent the orientation that a pixel was turned by (all reports that had come by then), and the instant
+    /// that it predicted for. Before the first report it knows the head's start; `None` before anything is loaded.
     #[must_use]
     pub fn turned_by(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<(Time, Time)> {
         let latched = self.latches(x, y, field)?;
+        if let Some(schedule) = self.schedule {
+            let load = schedule.load_of(x, y, field)?;
+            return Some((self.sent(schedule.loaded(load)), schedule.aimed(load)));
+        }
         let before_any = (latched >= self.loaded(Time::ZERO)).then_some(Time::ZERO);
-        let report = head.report_by(self.report_of(latched)).or(before_any)?;
-        Some((report, self.aimed(report, head.report_after(report))))
+        let report = head.report_by(self.sent(latched)).or(before_any)?;
+        Some((report, self.aimed_at_field(self.loaded(report))))
     }
 
     /// Where the time from the measurement of an orientation to the light of a pixel goes; `None` before the first report.
     #[must_use]
     pub fn latency(&self, head: &HeadViews, x: u32, y: u32, field: PeriodNumber) -> Option<RotationLatency> {
         let latched = self.latches(x, y, field)?;
-        let report = head.report_by(self.report_of(latched))?;
+        let (known, _) = self.turned_by(head, x, y, field)?;
+        let report = head.report_by(known)?;
         let measured = head.measured_at(report)?;
         let scanned = self.scan.lights(x, y, field)?;
         let loaded = self.loaded(report);
@@ -99,7 +127,7 @@ pub struct RotationLatency {
     pub tracker: Span,
     /// From there until the orientation is in the display's register.
     pub host: Span,
-    /// From there until it is latched.
+    /// From there until it is latched. Where lines or pixels latch the host keeps the report as long and predicts from it.
     pub wait_for_latch: Span,
     /// The stages of the display's pipeline.
     pub pipeline: Span,

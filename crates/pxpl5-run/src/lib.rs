@@ -11,6 +11,7 @@
 //!
 //! **Not here:** the computer that it runs on. A clock and threads are handed in by a [`Host`]; scenes come as values.
 
+mod cut;
 mod display_list;
 mod displays;
 mod due;
@@ -29,6 +30,7 @@ mod keys;
 mod latched_head;
 mod latency;
 mod level;
+mod load_schedule;
 mod outcome;
 mod papers;
 mod pipeline;
@@ -45,6 +47,7 @@ mod tally;
 mod views;
 mod window;
 
+pub use cut::CutScene;
 pub use display_list::{display_list, views};
 pub use due::{DuePictures, PictureEnd, WARM_UP_PERIODS, WINDOW_DEFINITION};
 pub use error::ExperimentError;

@@ -1,5 +1,6 @@
 //! Pipelines as experiments see them.
 
+use crate::cut::CutScene;
 use crate::due::PictureEnd;
 use crate::face_notes::FaceNotes;
 use crate::keys::KeyValue;
@@ -7,10 +8,12 @@ use crate::views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};
 use address_recalculation::Latch;
 use image::RgbImage;
 use pphigs::{DisplayList, Shading};
+use priority_rendering::Cell;
 use pxpl5_display::{Aim, LightSpan};
 use pxpl5_gp::HostTiming;
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
+use pxpl5_scene::Scene;
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 use std::any::Any;
@@ -49,6 +52,8 @@ pub struct Setup {
     pub poses: Poses,
     /// Which structures of the scene move by themselves, or with the head.
     pub moving: Arc<[bool]>,
+    /// The cells that each of them lies in, where the pipeline has cut the scene ([`Pipeline::cut`]); else empty.
+    pub cells: Arc<[Vec<Cell>]>,
     /// Where pipelines that draw faces say what they drew.
     pub notes: FaceNotes,
     /// For which instant of what is shown from it a view is drawn, for firmware that knows when that is.
@@ -123,6 +128,15 @@ pub trait Pipeline: Any + Debug + Send + Sync {
         None
     }
 
+    /// The scene as its host loads it, cut into pieces that are drawn at different times; `None` where it loads what it is given.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError`] for a scene that cannot be cut.
+    fn cut(&self, _scene: &Arc<Scene>, _config: &MachineConfig) -> Result<Option<CutScene>, ConfigError> {
+        Ok(None)
+    }
+
     /// Loads its programs onto the boards.
     ///
     /// # Errors
@@ -132,6 +146,12 @@ pub trait Pipeline: Any + Debug + Send + Sync {
 
     /// The pictures that were begun and, at `end`, are shown or have missed their time, in order.
     fn pictures(&self, record: &Record, end: Time) -> Vec<PictureTimes>;
+
+    /// Periods of the first display before `end` in which what was drawn earlier is shown in a direction of their own: each is a picture
+    /// for which nothing had to be drawn, and a run that shows some has shown something.
+    fn turned_periods(&self, _record: &Record, _end: Time) -> u64 {
+        0
+    }
 
     /// Whether [`Pipeline::pictures`] and [`Pipeline::late_regions`] give the same for what happened later when records before an
     /// instant have been given up ([`Machine::forget_before`]): only then can a long run do without them.

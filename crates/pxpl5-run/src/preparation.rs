@@ -3,12 +3,13 @@
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, Pixels};
 use crate::head::Head;
+use crate::latched_head::LatchedHead;
 use crate::outcome::Outcome;
 use crate::rehearsal::Rehearsal;
 use crate::statistics::Statistics;
 use pxpl5_display::{Aim, LightSpan};
 use pxpl5_sim::Time;
-use pxpl5_wire::ViewNumber;
+use pxpl5_wire::{FieldParity, PeriodNumber, ViewNumber};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -38,10 +39,10 @@ impl Experiment {
             return Ok(Preparation::default());
         }
         let outcome = if knows_when_seen { self.short_rehearsal(head)? } else { self.rehearsal(head, self.fields)? };
-        let interval_ps = interval_ps(&outcome, head.aim()).filter(|_| head.is_to_be_tuned());
+        let tuned = head.is_to_be_tuned().then(|| tuned(head, &outcome)).flatten();
         Ok(Preparation {
             rehearsal: (!knows_when_seen).then(|| rehearsed(&outcome, head.aim())),
-            head: interval_ps.map(|interval_ps| Arc::new(head.tuned_for(interval_ps))),
+            head: tuned.map(Arc::new),
         })
     }
 
@@ -60,6 +61,31 @@ impl Experiment {
     }
 }
 
+/// A head whose predictor errs least so far ahead as a run had to predict: places over the interval of pictures; orientations too, or
+/// over that of a display that latches turns alone. `None` where there is no interval.
+fn tuned(head: &Head, outcome: &Outcome) -> Option<Head> {
+    let of_pictures = interval_ps(outcome, head.aim()).map(|interval_ps| head.tuned_for(interval_ps));
+    match turn_interval_ps(outcome) {
+        Some(interval_ps) => Some(of_pictures.as_ref().unwrap_or(head).tuned_for_turns(interval_ps)),
+        None => of_pictures,
+    }
+}
+
+/// Mean time from the instant at which an orientation was true to the one that it is latched for, over the middle pixel of all fields,
+/// to the nearest millisecond; `None` where the display latches none, and before the first report.
+fn turn_interval_ps(outcome: &Outcome) -> Option<u64> {
+    let latched = LatchedHead::of(outcome)?;
+    let head = outcome.head()?;
+    let surface = outcome.record().display().surfaces().first()?;
+    let of_field = |field: PeriodNumber| {
+        let y = surface.height / 2 + FieldParity::of_field(field).first_line();
+        let (known, aimed) = latched.turned_by(head, surface.width / 2, y, field)?;
+        let measured = head.measured_at(head.report_by(known)?)?;
+        Some(aimed.since(measured).as_ms())
+    };
+    rounded(PeriodNumber::FIRST.until(PeriodNumber(outcome.fields())).filter_map(of_field))
+}
+
 /// Mean time from the instant at which the newest report of a view was true to the one that the view is drawn for, to the nearest
 /// millisecond; `None` where no picture was complete whose view had a report.
 fn interval_ps(outcome: &Outcome, aim: Aim) -> Option<u64> {
@@ -69,9 +95,14 @@ fn interval_ps(outcome: &Outcome, aim: Aim) -> Option<u64> {
     let complete: BTreeSet<ViewNumber> = outcome.complete_pictures().map(|times| times.view).collect();
     let shown = shown(outcome).into_iter().filter(|(view, _)| complete.contains(view));
     let each = shown.filter_map(|(view, shown)| Some(aim.instant(&shown).since(*measured.get(&view)?).as_ms()));
-    let intervals = Statistics::of(each);
-    let steps = (intervals.mean * 1e9 / INTERVAL_STEP_PS as f64).round();
-    intervals.mean.is_finite().then_some(steps as u64 * INTERVAL_STEP_PS)
+    rounded(each)
+}
+
+/// The mean of intervals, ms, in whole steps; `None` of none.
+fn rounded(intervals: impl Iterator<Item = f64>) -> Option<u64> {
+    let mean_ms = Statistics::of(intervals).mean;
+    let steps = (mean_ms * 1e9 / INTERVAL_STEP_PS as f64).round();
+    mean_ms.is_finite().then_some(steps as u64 * INTERVAL_STEP_PS)
 }
 
 /// What an aim makes of a run without prediction.

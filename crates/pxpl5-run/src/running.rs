@@ -1,5 +1,6 @@
 //! Running an experiment.
 
+use crate::cut::moves;
 use crate::display_list::{display_list, hmd_before, poses, views};
 use crate::error::ExperimentError;
 use crate::experiment::{Experiment, FIELDS_RANGE, Pixels, WARM_UP_PICTURES};
@@ -13,7 +14,6 @@ use crate::preparation::Preparation;
 use crate::views::{FrameStarts, ReportTimes};
 use crate::window::Window;
 use pxpl5_machine::{ConfigError, DEADLOCK_TICKS, Machine, MachineConfig, RunError};
-use pxpl5_scene::{Frame, Structure};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 use std::collections::BTreeSet;
@@ -83,23 +83,24 @@ impl Experiment {
         let hmd = hmd_before(surface.as_ref());
         let eyes = self.pipeline.eyes();
         let period = config.host.view_period_ns * 1_000;
-        let list = Arc::new(display_list(&self.scene).map_err(ExperimentError::Scene)?);
-        let (views, wanted) = views(&self.scene, self.seed, hmd, eyes);
+        let cut = self.pipeline.cut(&self.scene, config)?;
+        let scene = cut.as_ref().map_or(&self.scene, |cut| &cut.scene);
+        let list = Arc::new(display_list(scene).map_err(ExperimentError::Scene)?);
+        let (views, wanted) = views(scene, self.seed, hmd, eyes);
         let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
         let starts: FrameStarts = Arc::new(Some);
         let aim = self.aim();
         let pixels = self.pixels != Pixels::Off;
-        let poses = poses(&self.scene, self.seed);
+        let poses = poses(scene, self.seed);
         let notes = FaceNotes::default();
-        // What is fixed to the head moves with it.
-        let moves = |structure: &Structure| structure.hinge.is_some() || structure.frame == Frame::Head;
-        let moving = self.scene.structures().iter().map(moves).collect();
-        let setup =
-            Setup { list, views, wanted, poses, moving, notes, aim, reports, starts, host: config.host, pixels };
+        let moving = scene.structures().iter().map(moves).collect();
+        let cells = cut.as_ref().map_or_else(Arc::default, |cut| Arc::clone(&cut.cells));
+        let host = config.host;
+        let setup = Setup { list, views, wanted, poses, moving, cells, notes, aim, reports, starts, host, pixels };
         let Some(head) = preparation.head.or_else(|| self.head.clone()) else { return Ok((setup, None)) };
         let until = machine.record().tick(self.end());
         check_recording(&head, until)?;
-        let head = Arc::new(HeadViews::new(head, &self.scene, (hmd, eyes), until, preparation.rehearsal));
+        let head = Arc::new(HeadViews::new(head, scene, (hmd, eyes), until, preparation.rehearsal));
         let (views, wanted, reports) = HeadViews::functions(&head);
         let setup = Setup { views, wanted, reports, poses: HeadViews::poses(&head), ..setup };
         if !self.on_demand {
@@ -176,7 +177,7 @@ impl Experiment {
         let outcome = Outcome::new(self.clone(), record, (head, notes), window, reached, host_seconds);
         match result {
             Err(error) => Err(ExperimentError::Run { error, partial: Box::new(outcome) }),
-            Ok(()) if outcome.tally().pictures <= WARM_UP_PICTURES as u64 => Err(self.too_short(outcome)),
+            Ok(()) if shown_in(&outcome) <= WARM_UP_PICTURES as u64 => Err(self.too_short(outcome)),
             Ok(()) => Ok(outcome),
         }
     }
@@ -221,6 +222,11 @@ impl Experiment {
             Some(next)
         })
     }
+}
+
+/// Pictures of a run, those included for which nothing had to be drawn.
+fn shown_in(outcome: &Outcome) -> u64 {
+    outcome.tally().pictures.max(outcome.pipeline().turned_periods(outcome.record(), outcome.end()))
 }
 
 /// Fields of a run that may be over before a deadlock has been noticed, and ticks without work from which on a longer one may be in one

@@ -34,6 +34,7 @@ mod frame_time;
 mod markup;
 pub mod page;
 mod picture;
+mod ports;
 pub mod results;
 mod svg;
 pub mod timeline;

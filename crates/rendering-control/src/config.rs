@@ -26,9 +26,6 @@ pub struct RenderingControlConfig {
     pub regions_stored: usize,
 }
 
-/// Bytes of program, stacks and message buffers on a GP (assumed).
-pub(crate) const PROGRAM_BYTES: u64 = 1 << 20;
-
 impl RenderingControlConfig {
     /// Eyes of a frame: 1 or 2.
     #[must_use]

@@ -1,9 +1,9 @@
 //! The master GP: it synchronises host, slaves, renderers and frame buffers.
 
-use crate::config::{PROGRAM_BYTES, RenderingControlConfig};
+use crate::config::RenderingControlConfig;
 use crate::protocol::{RegionEnd, StageOrder, Token};
 use crate::rules::{Completed, EyeDrawing};
-use pphigs::copy_message;
+use pphigs::{PROGRAM_BYTES, copy_message};
 use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
 use pxpl5_wire::{Body, CopyContent, CopyOrder, CopyWay, NodeId, PictureNumber, RegionId, SurfaceId, swap_request};
 use std::collections::VecDeque;

@@ -1,10 +1,10 @@
 //! A slave GP: EDIT and TRANSFORM in the foreground, tokens in the background.
 
-use crate::config::{PROGRAM_BYTES, RenderingControlConfig};
+use crate::config::RenderingControlConfig;
 use crate::master::copy_order;
 use crate::protocol::{StageOrder, Token};
 use crate::rules::EyeDrawing;
-use pphigs::{BIN_ENTRY_BYTES, FrameView, Pass, RegionEnvelope, Share, Transforming, region_messages};
+use pphigs::{BIN_ENTRY_BYTES, FrameView, PROGRAM_BYTES, Pass, RegionEnvelope, Share, Transforming, region_messages};
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage};
 use pxpl5_sim::Span;
 use pxpl5_wire::{Body, CommandList, PictureNumber, RegionId};

@@ -4,8 +4,8 @@ use crate::bind::{Binding, BoundRegion};
 use crate::config::SlatsConfig;
 use crate::schedule::CopySchedule;
 use pphigs::{
-    FrameView, Pass, Picture, RegionEnvelope, Share, TransformCost, Transforming, ViewWordsError, copy_message,
-    region_messages,
+    FrameView, PROGRAM_BYTES, Pass, Picture, RegionEnvelope, Share, TransformCost, Transforming, ViewWordsError,
+    copy_message, region_messages,
 };
 use pxpl5_gp::{Account, Fault, Gp, Priority, Stage, Ticket};
 use pxpl5_wire::{
@@ -19,9 +19,6 @@ use std::sync::Arc;
 
 /// Primitives of a clump: what fits into one message (TR94).
 pub const CLUMP: usize = 30;
-
-/// Bytes of program, stacks and message buffers on a GP (assumed).
-const PROGRAM_BYTES: u64 = 1 << 20;
 
 /// First word of the message that tells the leading GP that a field's clumps have been accepted.
 const CLUMPS_ACCEPTED: Word = 0x000C_1A3D;

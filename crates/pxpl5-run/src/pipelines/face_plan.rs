@@ -3,10 +3,9 @@
 use crate::face_notes::{FaceNote, FaceNotes};
 use crate::pipeline::Setup;
 use address_recalculation::Scan;
-use cube_control::{FaceUpdate, Planned};
-use glam::{DMat3, DVec3, Mat4};
-use pphigs::{DisplayList, DisplayStructure, EyeView, FrameView};
-use priority_rendering::{Objects, PriorityTiming, SeenObject, Threshold};
+use cube_control::{FaceUpdate, FaceWarp, Planned};
+use glam::{DMat3, DVec3, Mat3, Mat4};
+use pphigs::{EyeView, FrameView, ModelFrame};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::VecDeque;
@@ -19,16 +18,24 @@ pub(super) struct Updates {
     pub(super) notes: FaceNotes,
     /// Updates of each memory so far.
     sent: Vec<u64>,
+    /// Whether something is fixed to the head, so that it must be known where that looks.
+    has_head_frame: bool,
 }
 
 impl Updates {
     pub(super) fn new(setup: &Setup, projection: Mat4, memories: usize) -> Self {
-        Self { setup: setup.clone(), projection, notes: setup.notes.clone(), sent: vec![0; memories] }
+        let has_head_frame = setup.list.structures.iter().any(|structure| structure.frame == ModelFrame::Head);
+        Self { setup: setup.clone(), projection, notes: setup.notes.clone(), sent: vec![0; memories], has_head_frame }
+    }
+
+    /// The view of an update that is sent now.
+    pub(super) fn view(&self, number: PictureNumber, now: Time) -> FrameView {
+        (self.setup.views)(ViewNumber::taken_for(number), now)
     }
 
     /// The next update of a memory, from where the eye is known to be now.
     fn of_memory(&mut self, number: PictureNumber, now: Time, due: &Due) -> FaceUpdate {
-        let view = (self.setup.views)(ViewNumber::taken_for(number), now);
+        let view = due.view.clone().unwrap_or_else(|| self.view(number, now));
         let buffer = (self.sent[due.memory] + 1) % 2;
         self.sent[due.memory] += 1;
         self.notes.write(FaceNote {
@@ -43,31 +50,38 @@ impl Updates {
             memory: due.memory as u8,
             buffer: buffer as u8,
             together: due.together,
-            view: ahead(&view, self.projection),
+            view: self.ahead(&view),
             structures: due.structures.to_vec(),
+            warp: due.warp,
         }
+    }
+
+    /// The view of an eye in the same place that is not turned: world axes are its own. What is fixed to the head is drawn where the head
+    /// is known to look, and turns with all else until it is drawn again.
+    fn ahead(&self, view: &FrameView) -> FrameView {
+        let eye = view.eyes.first();
+        let place = eye.map_or(DVec3::ZERO, |eye| place(&eye.world_to_eye));
+        let turned = |eye: &EyeView| Mat4::from_mat3(Mat3::from_mat4(eye.world_to_eye).transpose()) * eye.head_to_eye;
+        let head_to_eye = eye.filter(|_| self.has_head_frame).map_or(Mat4::IDENTITY, turned);
+        let world_to_eye = Mat4::from_translation(-place.as_vec3());
+        FrameView { eyes: vec![EyeView { world_to_eye, head_to_eye, projection: self.projection }], ..view.clone() }
     }
 }
 
 /// A memory that is to be drawn.
 #[derive(Clone, Debug)]
-struct Due {
-    memory: usize,
-    together: u8,
-    structures: Arc<[bool]>,
-    at: Time,
-}
-
-/// The view of an eye in the same place that is not turned: world axes are its own.
-fn ahead(view: &FrameView, projection: Mat4) -> FrameView {
-    let place = view.eyes.first().map_or(DVec3::ZERO, |eye| place(&eye.world_to_eye));
-    let eye =
-        EyeView { world_to_eye: Mat4::from_translation(-place.as_vec3()), head_to_eye: Mat4::IDENTITY, projection };
-    FrameView { eyes: vec![eye], ..view.clone() }
+pub(super) struct Due {
+    pub(super) memory: usize,
+    pub(super) together: u8,
+    pub(super) structures: Arc<[bool]>,
+    pub(super) at: Time,
+    /// The view that it is drawn from; `None` for the newest as it is sent.
+    pub(super) view: Option<FrameView>,
+    pub(super) warp: Option<FaceWarp>,
 }
 
 /// Where an eye is whose matrix turns and moves the world.
-fn place(world_to_eye: &Mat4) -> DVec3 {
+pub(super) fn place(world_to_eye: &Mat4) -> DVec3 {
     let matrix = world_to_eye.as_dmat4();
     -(DMat3::from_mat4(matrix).transpose() * matrix.w_axis.truncate())
 }
@@ -89,111 +103,56 @@ impl Full {
             None => Planned::Nothing,
             Some(start) if start > now => Planned::Wait(start),
             Some(_) => {
-                let due = Due { memory: 0, together: 0, structures: Arc::clone(&self.structures), at: now };
+                let due = Due {
+                    memory: 0,
+                    together: 0,
+                    structures: Arc::clone(&self.structures),
+                    at: now,
+                    view: None,
+                    warp: None,
+                };
                 Planned::Send(self.updates.of_memory(number, now, &due))
             }
         }
     }
 }
 
-/// Priority rendering by objects: a structure is in the slowest memory in which its image stays right.
+/// A policy that says at the begin of a cycle what is due.
+pub(super) trait DuePolicy {
+    /// Memories to be drawn, in the order in which they are sent: the first one as this update.
+    fn begin(&mut self, updates: &Updates, number: PictureNumber, now: Time) -> VecDeque<Due>;
+}
+
+/// Priority rendering: what a policy finds due, in cycles.
 ///
 /// A cycle begins when every memory that the cycle before found due has been sent, but not in the field in which that one began; the
 /// memories that are due then are sent in rising order. With a machine that is fast enough a cycle is a field, and begins with it.
-pub(super) struct ByObjects {
+pub(super) struct Cycles<P> {
     updates: Updates,
     scan: Scan,
-    policy: Objects,
-    threshold: Threshold,
-    spheres: Vec<ObjectSphere>,
+    policy: P,
     pending: VecDeque<Due>,
-    cycle: u64,
-    /// The field at whose begin the last cycle began, and where the eye was.
-    began: Option<(PeriodNumber, DVec3)>,
+    /// The field in which the last cycle began.
+    began: Option<PeriodNumber>,
 }
 
-/// A sphere around a structure that does not move.
-#[derive(Clone, Copy, Debug)]
-struct ObjectSphere {
-    centre: DVec3,
-    radius_m: f64,
-}
-
-/// The sphere around the middle of a structure's box that holds all of it.
-fn sphere_around(list: &DisplayList, structure: &DisplayStructure) -> ObjectSphere {
-    let corners = list.triangles[structure.triangles.clone()].iter().flatten();
-    let points = corners.map(|corner| (list.positions[*corner as usize].as_dvec3(), 0.0));
-    let spheres = list.spheres[structure.spheres.clone()].iter();
-    let all: Vec<(DVec3, f64)> =
-        points.chain(spheres.map(|sphere| (sphere.centre.as_dvec3(), f64::from(sphere.radius)))).collect();
-    let low = all.iter().fold(DVec3::INFINITY, |low, (at, radius)| low.min(*at - DVec3::splat(*radius)));
-    let high = all.iter().fold(DVec3::NEG_INFINITY, |high, (at, radius)| high.max(*at + DVec3::splat(*radius)));
-    if all.is_empty() {
-        return ObjectSphere { centre: DVec3::ZERO, radius_m: 0.0 };
-    }
-    let centre = (low + high) / 2.0;
-    let radius_m = all.iter().map(|(at, radius)| centre.distance(*at) + radius).fold(0.0, f64::max);
-    ObjectSphere { centre, radius_m }
-}
-
-impl ByObjects {
-    pub(super) fn new(updates: Updates, scan: Scan, timing: &PriorityTiming) -> Self {
-        let list = &updates.setup.list;
-        let spheres: Vec<ObjectSphere> =
-            list.structures.iter().map(|structure| sphere_around(list, structure)).collect();
-        Self {
-            policy: Objects::new(timing, spheres.len()),
-            threshold: Threshold::of_degrees(timing.theta_deg),
-            spheres,
-            updates,
-            scan,
-            pending: VecDeque::new(),
-            cycle: 0,
-            began: None,
-        }
+impl<P: DuePolicy> Cycles<P> {
+    pub(super) const fn new(updates: Updates, scan: Scan, policy: P) -> Self {
+        Self { updates, scan, policy, pending: VecDeque::new(), began: None }
     }
 
     pub(super) fn next(&mut self, number: PictureNumber, now: Time) -> Planned {
-        if let Some(due) = self.pending.pop_front() {
-            return Planned::Send(self.updates.of_memory(number, now, &due));
+        if self.pending.is_empty() {
+            let field = self.scan.field_at(now);
+            if self.began.is_some_and(|began| began >= field) {
+                return Planned::Wait(self.scan.retrace(field.next()));
+            }
+            self.began = Some(field);
+            self.pending = self.policy.begin(&self.updates, number, now);
         }
-        let field = self.scan.field_at(now);
-        let next = self.scan.retrace(field.next());
-        if self.began.is_some_and(|(began, _)| began >= field) {
-            return Planned::Wait(next);
+        match self.pending.pop_front() {
+            Some(due) => Planned::Send(self.updates.of_memory(number, now, &due)),
+            None => Planned::Wait(self.scan.retrace(self.scan.field_at(now).next())),
         }
-        self.begin_cycle(field, now);
-        self.pending
-            .pop_front()
-            .map_or(Planned::Wait(next), |due| Planned::Send(self.updates.of_memory(number, now, &due)))
-    }
-
-    /// Asks the policy what is due.
-    fn begin_cycle(&mut self, field: PeriodNumber, now: Time) {
-        let known = (self.updates.setup.poses)(now, now);
-        let eye = known.position;
-        // Without a cycle before there is no speed yet.
-        let speed = self.began.map_or(0.0, |(before, from)| {
-            let seconds = self.scan.retrace(field).since(self.scan.retrace(before)).as_ms() * 1e-3;
-            eye.distance(from) / seconds
-        });
-        let periods: Vec<f64> = (0..self.spheres.len()).map(|i| self.period_s(i, eye, speed)).collect();
-        let update = self.policy.frame(self.cycle, &periods);
-        self.cycle += 1;
-        self.began = Some((field, eye));
-        for memory in update.memories() {
-            let structures = (0..self.spheres.len()).map(|i| self.policy.memory(i) == Some(memory)).collect();
-            let together = if update.together[memory] { update.together_bits() } else { 0 };
-            self.pending.push_back(Due { memory, together, structures, at: now });
-        }
-    }
-
-    /// For how long the image of a structure is right; one that moves by itself is never.
-    fn period_s(&self, structure: usize, eye: DVec3, speed: f64) -> f64 {
-        let ObjectSphere { centre, radius_m } = self.spheres[structure];
-        let moves = self.updates.setup.moving.get(structure) == Some(&true);
-        let animation_s = if moves { 0.0 } else { f64::INFINITY };
-        let seen = SeenObject { distance_m: eye.distance(centre), radius_m, speed, turn: 0.0, animation_s };
-        self.threshold.period(&seen).least()
     }
 }

@@ -1,24 +1,27 @@
 //! Six faces of the cube around the eye, drawn by Pixel-Planes 5 for a display that turns with the head.
 
-use super::face_plan::{ByObjects, Full, Updates};
-use crate::due::PictureEnd;
+use super::face_cells::ByCells;
+use super::face_objects::ByObjects;
+use super::face_plan::{Cycles, Full, Updates};
+use super::{SHADING, shading_or, shading_value, swapped_in};
+use crate::cut::CutScene;
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::latched_head::{LatchedHead, ORIENTATION_WORDS};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use crate::views::{Poses, ReportTimes};
 use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Orientation, orientation_message};
-use cube_control::{CubeControlConfig, Planned, host, master, slave};
+use cube_control::{CubeControlConfig, Planned, WarpedLists, host, master, slave};
 use glam::{Mat4, Vec4};
 use pphigs::{DisplayList, Picture, RecentViews, RegionBinning, Shading};
-use priority_rendering::PriorityTiming;
+use priority_rendering::{Falloff, PriorityError, PriorityTiming};
 use pxpl5_geometry::Viewport;
-use pxpl5_gp::{Priority, Stage};
-use pxpl5_machine::{ConfigError, HostLine, Machine, MachineConfig, NamedTable, Record, StageSpan};
+use pxpl5_gp::Priority;
+use pxpl5_machine::{ConfigError, HostLine, Machine, MachineConfig, NamedTable, Record};
 use pxpl5_renderer::Layout;
-use pxpl5_scene::HmdConfig;
+use pxpl5_scene::{HmdConfig, Scene};
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyContent, Lines, NodeId, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber, Word};
+use pxpl5_wire::{CopyContent, Lines, NodeId, PictureNumber, REGION_SIZE, RegionGrid, Word};
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -31,6 +34,10 @@ pub enum FacePolicy {
     Full,
     /// A structure is in the slowest memory in which its image stays right (CPR05).
     Objects,
+    /// A structure is in the memory of its cell, which lies around the user's (CPR05).
+    Cells,
+    /// The same, with vertices moved so that memories meet at their borders.
+    CellsWarped,
 }
 
 /// Faces drawn by Pixel-Planes 5 for an address recalculation pipeline.
@@ -42,13 +49,18 @@ pub struct FacePipeline {
     pub latch: Latch,
     /// Where colours are computed.
     pub shading: Shading,
+    /// Whether structures are cut at the borders of cells, where there are cells; else all of a structure is in the fastest memory of any
+    /// of its cells.
+    pub segmented: bool,
+    /// How warping falls off from the border to a slower memory, where cells are warped.
+    pub falloff: Falloff,
 }
 
 impl FacePipeline {
     /// With a policy and the latch of the papers: before each field.
     #[must_use]
     pub const fn new(policy: FacePolicy) -> Self {
-        Self { policy, latch: Latch::Field, shading: Shading::Phong }
+        Self { policy, latch: Latch::Field, shading: Shading::Phong, segmented: true, falloff: Falloff::Linear }
     }
 
     fn config(self, machine: &Machine, pixels: bool) -> Result<CubeControlConfig, ConfigError> {
@@ -72,7 +84,7 @@ impl FacePipeline {
             memories: ports.display()[..display.timing.display_memories as usize].to_vec(),
             picture,
             content: if display.format().words() == 1 { CopyContent::Packed } else { CopyContent::ColourAndDepth },
-            regions_stored: 0,
+            warped: WarpedLists::default(),
         })
     }
 
@@ -85,16 +97,34 @@ impl FacePipeline {
             let mut full = Full::new(updates);
             return Ok(Box::new(move |number, now| full.next(number, now)));
         }
-        let table = machine.record().config().firmware_table::<PriorityTiming>();
-        let timing = PriorityTiming {
-            memories: display.timing.display_memories,
-            ..table.copied().unwrap_or(PriorityTiming::PAPERS)
-        };
-        timing.check().map_err(|error| ConfigError::Board(error.to_string()))?;
+        let timing =
+            PriorityTiming { memories: display.timing.display_memories, ..priority_timing(machine.record().config())? };
         let scan = display.scan().map_err(|error| ConfigError::Board(error.to_string()))?;
-        let mut by_objects = ByObjects::new(updates, scan, &timing);
-        Ok(Box::new(move |number, now| by_objects.next(number, now)))
+        if self.policy == FacePolicy::Objects {
+            let policy = ByObjects::new(&setup.list, scan, &timing);
+            let mut cycles = Cycles::new(updates, scan, policy);
+            return Ok(Box::new(move |number, now| cycles.next(number, now)));
+        }
+        let falloff = if self.policy == FacePolicy::CellsWarped { self.falloff } else { Falloff::None };
+        let policy = ByCells::new(&updates, &timing, falloff);
+        let mut cycles = Cycles::new(updates, scan, policy);
+        Ok(Box::new(move |number, now| cycles.next(number, now)))
     }
+
+    const fn has_cells(self) -> bool {
+        matches!(self.policy, FacePolicy::Cells | FacePolicy::CellsWarped)
+    }
+}
+
+/// The numbers of the policies, checked.
+fn priority_timing(config: &MachineConfig) -> Result<PriorityTiming, ConfigError> {
+    let timing = config.firmware_table().copied().unwrap_or(PriorityTiming::PAPERS);
+    timing.check().map_err(refused)?;
+    Ok(timing)
+}
+
+fn refused(error: PriorityError) -> ConfigError {
+    ConfigError::Board(error.to_string())
 }
 
 type Plan = Box<dyn FnMut(PictureNumber, Time) -> Planned>;
@@ -121,7 +151,7 @@ fn projection(display: &ArpConfig) -> Mat4 {
     Mat4::from_cols(x, y, z, w)
 }
 
-/// The host's own line to the display: the orientation that the head begins with, then one for each report.
+/// The host's own line to the display: the orientation that the head begins with, then one for each report, or predicted ones.
 struct OrientationLine {
     reports: ReportTimes,
     poses: Poses,
@@ -136,17 +166,12 @@ impl fmt::Debug for OrientationLine {
 
 impl HostLine for OrientationLine {
     fn next(&self, after: Time) -> Option<Time> {
-        let first = self.latched.loaded(Time::ZERO);
-        if after < first {
-            return Some(first);
-        }
-        (self.reports)(self.latched.report_of(after)).map(|report| self.latched.loaded(report))
+        self.latched.next(after, |instant| (self.reports)(instant))
     }
 
     fn words(&mut self, now: Time) -> Arc<[Word]> {
-        let report = self.latched.report_of(now);
-        let aimed = self.latched.aimed(report, (self.reports)(report));
-        let turned = (self.poses)(report, aimed).orientation;
+        let (known, aimed) = self.latched.predicted(now);
+        let turned = (self.poses)(known, aimed).orientation;
         let rows = Orientation::from_quaternion(turned.to_array()).map_or([[f64::NAN; 3]; 3], |turned| turned.rows());
         orientation_message(rows)
     }
@@ -163,8 +188,15 @@ impl Pipeline for FacePipeline {
     }
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
-        let (shading, _) = SHADINGS[usize::from(self.shading == SHADINGS[1].1)];
-        vec![("shading", KeyValue::Name(shading))]
+        let mut settings = vec![("shading", shading_value(self.shading))];
+        if self.has_cells() {
+            settings.push((SEGMENT.name, KeyValue::Flag(self.segmented)));
+        }
+        if self.policy == FacePolicy::CellsWarped {
+            let (name, _) = Falloff::ALL[self.falloff as usize];
+            settings.push((WARP.name, KeyValue::Name(name)));
+        }
+        settings
     }
 
     fn eyes(&self) -> usize {
@@ -200,6 +232,15 @@ impl Pipeline for FacePipeline {
         config
     }
 
+    fn cut(&self, scene: &Arc<Scene>, config: &MachineConfig) -> Result<Option<CutScene>, ConfigError> {
+        if !self.has_cells() {
+            return Ok(None);
+        }
+        let side_m = priority_timing(config)?.cell_m;
+        let cut = if self.segmented { CutScene::segmented(scene, side_m) } else { CutScene::whole(scene, side_m) };
+        cut.map(Some).map_err(refused)
+    }
+
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
         let config = self.config(machine, setup.pixels)?;
         let mut list = DisplayList::clone(&setup.list);
@@ -232,7 +273,14 @@ impl Pipeline for FacePipeline {
         let stages = record.stages();
         let swaps = record.observation().swaps.iter().filter(|swap| swap.port == *port);
         let shown = updates_of(record, *port).into_iter().zip(swaps.map(|swap| record.tick(swap.tick)));
-        shown.filter(|(_, at)| *at < end).filter_map(|(picture, at)| times(&stages, picture, at)).collect()
+        shown.filter(|(_, at)| *at < end).filter_map(|(picture, at)| swapped_in(&stages, picture, at)).collect()
+    }
+
+    /// From the first swap of any memory on, one in each field, with the orientation that was latched.
+    fn turned_periods(&self, record: &Record, end: Time) -> u64 {
+        let first = record.observation().swaps.iter().map(|swap| swap.tick).min();
+        let after = record.display().period_at(end);
+        first.map_or(0, |first| after.since(first.min(after)))
     }
 
     fn latency_definition(&self) -> &'static str {
@@ -258,48 +306,47 @@ fn updates_of(record: &Record, port: NodeId) -> Vec<PictureNumber> {
     first.into_keys().collect()
 }
 
-/// Times of an update; `stages` are in order of picture.
-fn times(stages: &[StageSpan], picture: PictureNumber, shown_at: Time) -> Option<PictureTimes> {
-    let first = stages.partition_point(|span| span.picture < picture);
-    let of_update = stages[first..].iter().take_while(|span| span.picture == picture);
-    let of = |stage: Stage| of_update.clone().filter(move |span| span.stage == stage);
-    Some(PictureTimes {
-        picture,
-        view: ViewNumber::taken_for(picture),
-        sampled_at: of(Stage::Sample).map(|s| s.begin).min(),
-        transform_at: of(Stage::Transform).map(|s| s.begin).min()?,
-        copied_at: of(Stage::Copy).filter_map(|s| s.end).max(),
-        shown_at,
-        end: PictureEnd::Shown,
-    })
-}
-
-const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
-
-const KEYS: &[Key] = &[Key {
-    name: "shading",
-    about: "phong or gouraud",
-    values: KeyValues::Names(&[SHADINGS[0].0, SHADINGS[1].0]),
-    sets: &[],
-}];
-
 /// Names by policy and latch.
-const NAMES: [[&str; 3]; 2] =
-    [["arp-full", "arp-full-line", "arp-full-pixel"], ["arp-priority", "arp-priority-line", "arp-priority-pixel"]];
+const NAMES: [[&str; 3]; 4] = [
+    ["arp-full", "arp-full-line", "arp-full-pixel"],
+    ["arp-priority", "arp-priority-line", "arp-priority-pixel"],
+    ["arp-cells", "arp-cells-line", "arp-cells-pixel"],
+    ["arp-cells-warp", "arp-cells-warp-line", "arp-cells-warp-pixel"],
+];
+
+/// Ways in which warping can fall off, as [`Falloff`] has them behind none.
+const FALLOFFS: [&str; 3] = [Falloff::ALL[1].0, Falloff::ALL[2].0, Falloff::ALL[3].0];
+
+const SEGMENT: Key = Key {
+    name: "segment",
+    about: "cut structures at the borders of cells (without, all of one is drawn as often as its nearest part): true or false",
+    values: KeyValues::Flag,
+    sets: &[],
+};
+
+const WARP: Key = Key {
+    name: "warp",
+    about: "how the displacement of vertices falls off from a border to a slower memory: linear, smoothstep or step",
+    values: KeyValues::Names(&FALLOFFS),
+    sets: &[],
+};
+
+/// Keys by policy.
+const KEYS: [&[Key]; 4] = [&[SHADING], &[SHADING], &[SHADING, SEGMENT], &[SHADING, SEGMENT, WARP]];
 
 const TABLES: &[NamedTable] = &[("priority", || Box::new(PriorityTiming::PAPERS))];
 
 const fn entry(
-    name: &'static str,
+    (policy, latch): (FacePolicy, Latch),
     about: &'static str,
     build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
 ) -> PipelineEntry {
     PipelineEntry {
-        name,
+        name: NAMES[policy as usize][latch as usize],
         family: "arp",
         about,
         preset: "small-hmd",
-        keys: KEYS,
+        keys: KEYS[policy as usize],
         build,
         limit: |_| LimitCriterion { goal: Goal::RateHz(20.0), scene: TestScene::Typical, fields: 60 },
         tables: TABLES,
@@ -310,27 +357,45 @@ const fn entry(
 
 fn build(policy: FacePolicy, latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     let new = FacePipeline::new(policy);
-    let shading = SHADINGS.iter().find(|(name, _)| settings.name("shading") == Some(name));
-    Arc::new(FacePipeline { latch, shading: shading.map_or(new.shading, |(_, shading)| *shading), ..new })
+    let falloff = Falloff::ALL.into_iter().find(|(name, _)| settings.name(WARP.name) == Some(name));
+    Arc::new(FacePipeline {
+        latch,
+        shading: shading_or(settings, new.shading),
+        segmented: settings.flag(SEGMENT.name).unwrap_or(new.segmented),
+        falloff: falloff.map_or(new.falloff, |(_, falloff)| falloff),
+        ..new
+    })
 }
 
-const FULL: FacePolicy = FacePolicy::Full;
-const OBJECTS: FacePolicy = FacePolicy::Objects;
+/// An entry for a policy and a latch.
+macro_rules! entry {
+    ($policy:ident, $latch:ident, $about:literal) => {
+        entry((FacePolicy::$policy, Latch::$latch), $about, |settings| {
+            build(FacePolicy::$policy, Latch::$latch, settings)
+        })
+    };
+}
 
 /// Address recalculation pipelines fed by Pixel-Planes 5 in the registry.
-pub(super) const ENTRIES: [PipelineEntry; 6] = [
-    entry(NAMES[0][0], "six faces in one memory, looked up by the orientation of each field (VRAIS 93)", |settings| {
-        build(FULL, Latch::Field, settings)
-    }),
-    entry(NAMES[0][1], "the same, with an orientation for each line", |settings| build(FULL, Latch::Line, settings)),
-    entry(NAMES[0][2], "the same, with an orientation for each pixel", |settings| build(FULL, Latch::Pixel, settings)),
-    entry(
-        NAMES[1][0],
-        "six faces in several memories, objects in the slowest that keeps them right (SIGGRAPH 94)",
-        |settings| build(OBJECTS, Latch::Field, settings),
+pub(super) const ENTRIES: [PipelineEntry; 12] = [
+    entry!(Full, Field, "six faces in one memory, looked up by the orientation of each field (VRAIS 93)"),
+    entry!(Full, Line, "the same, with an orientation for each line"),
+    entry!(Full, Pixel, "the same, with orientations as often as the host's line carries them, latched by pixel"),
+    entry!(Objects, Field, "six faces in several memories, objects in the slowest that keeps them right (SIGGRAPH 94)"),
+    entry!(Objects, Line, "the same, with an orientation for each line"),
+    entry!(Objects, Pixel, "the same, with orientations as often as the host's line carries them, latched by pixel"),
+    entry!(
+        Cells,
+        Field,
+        "objects cut at the borders of square cells, near cells drawn often, far ones seldom (ACSC 2005)"
     ),
-    entry(NAMES[1][1], "the same, with an orientation for each line", |settings| build(OBJECTS, Latch::Line, settings)),
-    entry(NAMES[1][2], "the same, with an orientation for each pixel", |settings| {
-        build(OBJECTS, Latch::Pixel, settings)
-    }),
+    entry!(Cells, Line, "the same, with an orientation for each line"),
+    entry!(Cells, Pixel, "the same, with orientations as often as the host's line carries them, latched by pixel"),
+    entry!(CellsWarped, Field, "cells whose vertices are moved so that memories meet at their borders (ACSC 2005)"),
+    entry!(CellsWarped, Line, "the same, with an orientation for each line"),
+    entry!(
+        CellsWarped,
+        Pixel,
+        "the same, with orientations as often as the host's line carries them, latched by pixel"
+    ),
 ];

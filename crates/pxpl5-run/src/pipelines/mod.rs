@@ -1,5 +1,7 @@
 //! The pipelines of the papers. A new one is one more file here, or in a user's crate, and one more line below.
 
+mod face_cells;
+mod face_objects;
 mod face_plan;
 mod faces;
 mod frameless;
@@ -13,11 +15,16 @@ pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
 pub use rendering_control::{FinishedRegions, RenderingControl};
 pub use slats::{Code, Slats};
 
+use crate::due::PictureEnd;
+use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
+use crate::pipeline::PictureTimes;
 use crate::registry::PipelineEntry;
+use pphigs::Shading;
 use pxpl5_framebuffer::{NtscDisplay, Video};
 use pxpl5_gp::{Mark, Stage};
-use pxpl5_machine::{Arrival, ConfigError, LateRegion, Record};
+use pxpl5_machine::{Arrival, ConfigError, LateRegion, Record, StageSpan};
 use pxpl5_sim::Time;
+use pxpl5_wire::{PictureNumber, ViewNumber};
 use std::any::Any;
 
 pub(crate) fn entries() -> Vec<PipelineEntry> {
@@ -32,6 +39,44 @@ fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, Confi
     (record.display() as &dyn Any).downcast_ref().ok_or_else(|| {
         let found = record.display().name();
         ConfigError::Board(format!("{pipeline} draws single fields: expected the display ntsc, found {found}"))
+    })
+}
+
+/// Where colours are computed, by its names, the default first.
+const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
+
+/// The key of pipelines that can shade in both ways.
+const SHADING: Key = Key {
+    name: "shading",
+    about: "phong or gouraud",
+    values: KeyValues::Names(&[SHADINGS[0].0, SHADINGS[1].0]),
+    sets: &[],
+};
+
+/// The value of [`SHADING`] that stands for a shading.
+fn shading_value(shading: Shading) -> KeyValue {
+    KeyValue::Name(SHADINGS[usize::from(shading == SHADINGS[1].1)].0)
+}
+
+/// The shading that was given, or else this one.
+fn shading_or(settings: &PipelineSettings, default: Shading) -> Shading {
+    let given = SHADINGS.iter().find(|(name, _)| settings.name(SHADING.name) == Some(name));
+    given.map_or(default, |(_, shading)| *shading)
+}
+
+/// Times of a picture that a swap shows, drawn from a view of its own; `stages` are in order of picture. `None` before its TRANSFORM.
+fn swapped_in(stages: &[StageSpan], picture: PictureNumber, shown_at: Time) -> Option<PictureTimes> {
+    let first = stages.partition_point(|span| span.picture < picture);
+    let own = stages[first..].iter().take_while(|span| span.picture == picture);
+    let of = |stage: Stage| own.clone().filter(move |span| span.stage == stage);
+    Some(PictureTimes {
+        picture,
+        view: ViewNumber::taken_for(picture),
+        sampled_at: of(Stage::Sample).map(|s| s.begin).min(),
+        transform_at: of(Stage::Transform).map(|s| s.begin).min()?,
+        copied_at: of(Stage::Copy).filter_map(|s| s.end).max(),
+        shown_at,
+        end: PictureEnd::Shown,
     })
 }
 

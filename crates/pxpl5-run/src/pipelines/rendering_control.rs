@@ -1,6 +1,6 @@
 //! Rendering Control on the emulated machine.
 
-use crate::due::PictureEnd;
+use super::{SHADING, shading_or, shading_value, swapped_in};
 use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
@@ -8,11 +8,11 @@ use image::RgbImage;
 use pphigs::{Picture, RegionBinning, Shading};
 use pxpl5_display::Surface;
 use pxpl5_geometry::Viewport;
-use pxpl5_gp::{Priority, Stage};
-use pxpl5_machine::{Arrival, ConfigError, Machine, Record, StageSpan};
+use pxpl5_gp::Priority;
+use pxpl5_machine::{Arrival, ConfigError, Machine, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId, ViewNumber};
+use pxpl5_wire::{Lines, MAX_MESSAGE_WORDS, PictureNumber, RegionId, SurfaceId};
 use rendering_control::{RenderingControlConfig, host, master, slave};
 use std::sync::Arc;
 
@@ -113,9 +113,8 @@ impl Pipeline for RenderingControl {
     }
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
-        let (shading, _) = SHADINGS[usize::from(self.shading == SHADINGS[1].1)];
         let finished = KeyValue::Name(self.finished.name());
-        vec![("mono", KeyValue::Flag(self.mono)), ("shading", KeyValue::Name(shading)), ("finished", finished)]
+        vec![("mono", KeyValue::Flag(self.mono)), ("shading", shading_value(self.shading)), ("finished", finished)]
     }
 
     fn eyes(&self) -> usize {
@@ -160,7 +159,7 @@ impl Pipeline for RenderingControl {
             .onwards()
             .zip(shown)
             .filter(|(_, shown_at)| *shown_at < end)
-            .filter_map(|(frame, at)| times(&stages, frame, at))
+            .filter_map(|(frame, at)| swapped_in(&stages, frame, at))
             .collect()
     }
 
@@ -209,24 +208,6 @@ fn copy_span(record: &Record, surface: &Surface) -> Span {
         .sum()
 }
 
-/// Times of a frame; `stages` are in order of picture.
-fn times(stages: &[StageSpan], frame: PictureNumber, shown_at: Time) -> Option<PictureTimes> {
-    let first = stages.partition_point(|span| span.picture < frame);
-    let of_frame = stages[first..].iter().take_while(|span| span.picture == frame);
-    let of = |stage: Stage| of_frame.clone().filter(move |span| span.stage == stage);
-    Some(PictureTimes {
-        picture: frame,
-        view: ViewNumber::taken_for(frame),
-        sampled_at: of(Stage::Sample).map(|s| s.begin).min(),
-        transform_at: of(Stage::Transform).map(|s| s.begin).min()?,
-        copied_at: of(Stage::Copy).filter_map(|s| s.end).max(),
-        shown_at,
-        end: PictureEnd::Shown,
-    })
-}
-
-const SHADINGS: [(&str, Shading); 2] = [("phong", Shading::Phong), ("gouraud", Shading::Gouraud)];
-
 /// Rendering Control in the registry.
 pub(super) const ENTRY: PipelineEntry = PipelineEntry {
     name: "rendering-control",
@@ -240,12 +221,7 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
             values: KeyValues::Flag,
             sets: &[],
         },
-        Key {
-            name: "shading",
-            about: "phong or gouraud",
-            values: KeyValues::Names(&[SHADINGS[0].0, SHADINGS[1].0]),
-            sets: &[],
-        },
+        SHADING,
         Key {
             name: "finished",
             about: "what becomes of a finished region whose frame buffer is not available: wait in pixel memory, or store (the renderer goes on with the next)",
@@ -262,10 +238,9 @@ pub(super) const ENTRY: PipelineEntry = PipelineEntry {
 
 fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     let stereo = RenderingControl::stereo();
-    let shading = SHADINGS.iter().find(|(name, _)| settings.name("shading") == Some(name));
     Arc::new(RenderingControl {
         mono: settings.flag("mono").unwrap_or(stereo.mono),
-        shading: shading.map_or(stereo.shading, |(_, shading)| *shading),
+        shading: shading_or(settings, stereo.shading),
         finished: match settings.name("finished") {
             Some("store") => FinishedRegions::Store,
             _ => FinishedRegions::Wait,

@@ -33,6 +33,7 @@ impl Timeline {
         let to = display.tick(periods.end);
         for row in &mut rows {
             row.bars.retain(|bar| bar.begin < to && bar.end >= from);
+            row.shown.retain(|shown| shown.begin < to && shown.end > from);
             set_lanes(row, (to - from) / TOUCHING);
         }
         let mut timeline = Self {

@@ -18,8 +18,9 @@ const GAP: i64 = 18;
 /// Height of the row of samples and of what stands below the rows.
 const TRACKER: i64 = 14;
 const FOOT: i64 = 84;
-/// Height of the strip that shows when a port receives.
+/// Height of the strip that shows when a port receives, and of the one that says what it shows.
 const STRIP: i64 = 6;
+const SHOWN: i64 = 18;
 
 /// Periods that are numbered without the word `field`, for want of room.
 const CROWDED: usize = 10;
@@ -48,6 +49,7 @@ pub(super) fn document(timeline: &Timeline, words: &Words) -> String {
     drawing.for_each_row(Drawing::row);
     drawing.axis();
     drawing.for_each_row(Drawing::bars);
+    drawing.for_each_row(Drawing::shown);
     drawing.samples();
     drawing.scans();
     timeline.arrows.iter().for_each(|arrow| drawing.arrow(arrow));
@@ -139,8 +141,23 @@ impl<'a> Drawing<'a> {
 
     fn row(&mut self, row: &TimelineRow, top: i64) {
         let height = height_of(row);
-        self.name(row.name, top, height);
+        self.name(&row.name, top, LANE * row.lanes as i64);
         self.out.add_line(&rectangle("row", [LEFT, top, WIDTH - LEFT - RIGHT, height].map(Units::whole)));
+    }
+
+    /// What a port shows, from swap to swap, below what it receives.
+    fn shown(&mut self, row: &TimelineRow, top: i64) {
+        let y = Units::whole(top + LANE * row.lanes as i64);
+        for shown in &row.shown {
+            let [x, end] = [shown.begin.max(self.timeline.from), shown.end].map(|time| self.x(time));
+            let class = format!("scan {}", emphasis(Some(shown.picture) == self.timeline.picture));
+            let about = hint(format_args!("shows {} from {} ms", shown.picture, milliseconds(shown.begin)));
+            self.out.add_line(&rectangle(&class, [x, y, end - x, Units::whole(SHOWN)]).child(&about));
+            if (end - x).0 / 100 >= 8 * shown.picture.to_string().len() as i64 {
+                let place = [Units(x.0.midpoint(end.0)), y + Units::whole(SHOWN - 4)];
+                self.out.add_line(&caption("mid", place).text(shown.picture));
+            }
+        }
     }
 
     fn bars(&mut self, row: &TimelineRow, top: i64) {
@@ -263,7 +280,7 @@ fn outermost(height: i64) -> Element {
 }
 
 const fn height_of(row: &TimelineRow) -> i64 {
-    LANE * row.lanes as i64
+    LANE * row.lanes as i64 + if row.shown.is_empty() { 0 } else { SHOWN }
 }
 
 const fn emphasis(chosen: bool) -> &'static str {

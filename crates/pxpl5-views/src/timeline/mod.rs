@@ -11,6 +11,7 @@
 //! | graphics processors | EDIT and TRANSFORM, from the first board that begins to the last one that ends |
 //! | renderers | RENDER: commands to the renderers, until the last is accepted |
 //! | each surface of the displays (frame buffer, left and right) | COPY, from the first word of the first region to the last pixel of the last; the strip below is dark where the port receives |
+//! | each port of a display that has more of them than surfaces (a display memory) | COPY as above; below it what the port shows, from a swap to the next |
 //! | beam | what the first display shows, from its first light of a period to its last, and how far down the beam is |
 //!
 //! Where bars of one row overlap in time, the row has lanes.
@@ -24,6 +25,7 @@ mod options;
 mod rows;
 mod style;
 
+pub use crate::ports::PortShown;
 pub use model::{Arrow, Bar, DrawingPlace, Scan, Timeline, TimelineRow};
 pub use options::{MAX_FIELDS, TimelineOptions};
 

@@ -1,5 +1,6 @@
 //! What a timeline shows, before it is drawn.
 
+use crate::ports::PortShown;
 use pxpl5_display::Surface;
 use pxpl5_gp::Stage;
 use pxpl5_sim::Time;
@@ -32,11 +33,13 @@ pub struct Bar {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimelineRow {
     /// What stands left of it.
-    pub name: &'static str,
+    pub name: String,
     /// Its stages in order of begin.
     pub bars: Vec<Bar>,
     /// How many bars stand above each other at most.
     pub lanes: usize,
+    /// What it showed, of a port that is swapped by itself; else nothing.
+    pub shown: Vec<PortShown>,
 }
 
 /// A period of the first display, in which its first surface is lit.

@@ -2,11 +2,12 @@
 
 use super::model::{Bar, TimelineRow};
 use super::options::TimelineOptions;
+use crate::ports::{DisplayPort, display_ports, is_behind_ports, shown};
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, Record, StageSpan};
 use pxpl5_run::Outcome;
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::{PictureNumber, SurfaceId};
+use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
 /// All rows of a run, from the host to the last surface.
@@ -17,16 +18,25 @@ pub(super) fn rows(outcome: &Outcome, stages: &[StageSpan], options: &TimelineOp
     }
     rows.push(stage_row("graphics processors", outcome, stages, &[Stage::Edit, Stage::Transform]));
     rows.push(stage_row("renderers", outcome, stages, &[Stage::Render]));
-    rows.extend(outcome.record().surfaces().map(|(id, surface)| row(surface.title, copies(outcome, id))));
+    let ports = display_ports(outcome.record());
+    let surfaces = outcome.record().surfaces().filter(|(id, _)| !is_behind_ports(outcome.record(), *id));
+    rows.extend(surfaces.map(|(id, surface)| row(surface.title, copies(outcome, |arrival| arrival.surface == id))));
+    rows.extend(ports.iter().map(|port| port_row(outcome, port)));
     rows
 }
 
-fn row(name: &'static str, mut bars: Vec<Bar>) -> TimelineRow {
+fn row(name: &str, mut bars: Vec<Bar>) -> TimelineRow {
     bars.sort_by_key(|bar| (bar.begin, bar.picture, bar.surface));
-    TimelineRow { name, bars, lanes: 1 }
+    TimelineRow { name: name.to_owned(), bars, lanes: 1, shown: Vec::new() }
 }
 
-fn stage_row(name: &'static str, outcome: &Outcome, stages: &[StageSpan], wanted: &[Stage]) -> TimelineRow {
+/// What a port that is swapped by itself received, and what it showed.
+fn port_row(outcome: &Outcome, port: &DisplayPort) -> TimelineRow {
+    let bars = copies(outcome, |arrival| arrival.target.frame_buffer == port.node);
+    TimelineRow { shown: shown(outcome, port.node), ..row(&port.name, bars) }
+}
+
+fn stage_row(name: &str, outcome: &Outcome, stages: &[StageSpan], wanted: &[Stage]) -> TimelineRow {
     let spans = stages.iter().filter(|span| wanted.contains(&span.stage));
     row(name, spans.map(|span| stage_bar(outcome, span)).collect())
 }
@@ -53,11 +63,11 @@ fn has_many_surfaces(record: &Record) -> bool {
 /// Copies of one surface by picture and part of it.
 type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
-/// COPY of each picture to a surface; two bars where the surface received two parts of it one after the other.
-fn copies(outcome: &Outcome, surface: SurfaceId) -> Vec<Bar> {
+/// COPY of each picture to a surface or a port; two bars where it received two parts of it one after the other.
+fn copies(outcome: &Outcome, is_there: impl Fn(&Arrival) -> bool) -> Vec<Bar> {
     let message = outcome.record().message_span();
     let mut parts = Parts::new();
-    for arrival in outcome.observation().arrivals.iter().filter(|arrival| arrival.surface == surface) {
+    for arrival in outcome.observation().arrivals.iter().filter(|arrival| is_there(arrival)) {
         let begin = arrival.begins_at(message);
         let key = (arrival.target.picture, outcome.pipeline().copy_part(arrival));
         let bar = parts.entry(key).or_insert_with(|| copy_bar(outcome.record(), arrival, begin));

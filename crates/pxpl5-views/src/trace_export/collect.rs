@@ -4,6 +4,7 @@ use super::flows::connect;
 use super::groups::{Group, groups, named};
 use super::model::{Events, Slice, Trace, Track};
 use super::slices::{apart, message_slice, region_slice, stage_name, stage_slice};
+use crate::ports::{display_ports, shown as shown_by};
 use crate::results::origin;
 use pxpl5_display::Display;
 use pxpl5_gp::{Mark, Stage, StageEdge};
@@ -51,9 +52,30 @@ impl Trace {
     /// What a board does, and what comes and goes at its port.
     fn port(&mut self, outcome: &Outcome, groups: &[Group], group: usize, node: NodeId) {
         self.stages(outcome, group, node);
+        if display_ports(outcome.record()).iter().any(|port| port.node == node) {
+            self.memory(outcome, group, node);
+        }
         let Some(traffic) = outcome.observation().traffic.as_deref() else { return };
         self.messages(traffic, groups, group, node);
         self.fifo(outcome.record(), traffic, group, node);
+    }
+
+    /// What a port that is swapped by itself received and showed.
+    fn memory(&mut self, outcome: &Outcome, group: usize, node: NodeId) {
+        let message = outcome.record().message_span();
+        let arrivals = outcome.observation().arrivals.iter().filter(|arrival| arrival.target.frame_buffer == node);
+        self.track(group, "COPY", Events::Slices(apart(arrivals.map(|arrival| region_slice(arrival, message)))));
+        let shown = shown_by(outcome, node);
+        let swaps = shown.iter().map(|shown| (shown.begin, "swap".to_owned()));
+        self.track(group, "swaps", Events::Instants(swaps.collect()));
+        let slices = shown.iter().map(|shown| Slice {
+            name: format!("shows {}", shown.picture),
+            begin: shown.begin,
+            end: shown.end,
+            picture: Some(shown.picture),
+            flow: None,
+        });
+        self.track(group, "shown", Events::Slices(slices.collect()));
     }
 
     /// The stages that a board marked; one without an end is left out.

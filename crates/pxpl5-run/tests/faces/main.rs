@@ -1,5 +1,8 @@
 //! Six faces drawn by Pixel-Planes 5 for a display that turns with the head: when, how fast, and whether they are right.
 
+mod cells;
+mod turning;
+
 use address_recalculation::{AddressRecalculationPipeline, CubeFace, DisplayMemory, FaceSet, TexelAddress};
 use cube_control::face_view;
 use glam::{DVec3, Mat4, Vec3};
@@ -52,14 +55,21 @@ fn assert_no_faults(record: &Record) {
 /// E1: a ball of more and more triangles.
 #[test]
 fn the_latency_of_a_turn_is_the_same_to_the_picosecond_whatever_is_drawn() {
-    let run = |n: usize| {
+    let run = |pipeline: FacePipeline, n: usize| {
         let scene = builtin(&format!("sphere:{n}")).expect("even");
-        let config = machine("small-hmd", FULL, &[]);
+        let config = machine("small-hmd", pipeline, &[]);
         let fields = if n > 10_000 { 240 } else { 60 };
-        let experiment = Experiment::new(config, FULL, scene).fields(fields).pixels(Pixels::Off);
+        let experiment = Experiment::new(config, pipeline, scene).fields(fields).pixels(Pixels::Off);
         experiment.head(head(Pan::at(200.0))).run().expect("it runs")
     };
-    let outcomes = [10, 100, 1_000, 100_000].map(run);
+    let outcomes = [10, 100, 1_000, 100_000].map(|n| run(FULL, n));
+    // Four memories have a comparator of two stages; else cells change nothing of a turn.
+    let of_cells = [10, 100_000].map(|n| run(cells::CELLS, n));
+    for (latency, of_cells) in outcomes[0].rotation_latencies()[..55].iter().zip(of_cells[0].rotation_latencies()) {
+        assert_eq!(of_cells.pipeline, latency.pipeline + Span(50_000));
+        assert_eq!(of_cells.scan, latency.scan);
+    }
+    assert_eq!(of_cells[0].rotation_latencies()[..55], of_cells[1].rotation_latencies()[..55]);
     let turns = outcomes.each_ref().map(|outcome| outcome.rotation_latencies()[..55].to_vec());
     assert!(turns[1..].iter().all(|other| *other == turns[0]));
     for latency in &turns[0] {
@@ -152,9 +162,9 @@ fn balls() -> Scene {
 }
 
 /// A walk at 1 m/s before the balls, with renderers whose clock runs at a part of 40 MHz.
-fn walk(clock_hz: u64) -> Outcome {
+fn walk(pipeline: FacePipeline, clock_hz: u64) -> Outcome {
     let numbers = [("arp.face_texels", 128), ("renderer.clock_hz", clock_hz)];
-    let experiment = Experiment::new(machine("small-hmd", OBJECTS, &numbers), OBJECTS, balls());
+    let experiment = Experiment::new(machine("small-hmd", pipeline, &numbers), pipeline, balls());
     experiment.fields(240).pixels(Pixels::Off).head(head(Slide::right_at(1.0))).run().expect("it runs")
 }
 
@@ -169,7 +179,7 @@ fn missed(outcome: &Outcome) -> [f64; 4] {
 /// E8.
 #[test]
 fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suffer() {
-    let outcomes = [40_000_000, 2_000_000, 1_000_000, 500_000].map(walk);
+    let outcomes = [40_000_000, 2_000_000, 1_000_000, 500_000].map(|clock_hz| walk(OBJECTS, clock_hz));
     let misses = outcomes.each_ref().map(missed);
     for outcome in &outcomes {
         assert_no_faults(outcome.record());
@@ -184,7 +194,7 @@ fn when_renderers_are_too_slow_slow_memories_miss_first_and_turning_does_not_suf
 
 #[test]
 fn objects_go_into_the_slowest_memory_that_keeps_them_right() {
-    let outcome = walk(40_000_000);
+    let outcome = walk(OBJECTS, 40_000_000);
     let notes = outcome.face_notes().all();
     let held = |k: usize| notes.iter().rfind(|note| note.memory == k).map(|note| note.structures.to_vec());
     for k in 0..4 {
@@ -210,9 +220,9 @@ fn ball() -> Experiment {
 
 #[test]
 fn a_hundred_shuffles_of_simultaneous_events_change_nothing() {
-    for experiment in
-        [ball().fields(16), Experiment::new(machine("small-hmd", OBJECTS, &[]), OBJECTS, balls()).fields(16)]
-    {
+    let others = [OBJECTS, cells::CELLS, cells::WARPED]
+        .map(|pipeline| Experiment::new(machine("small-hmd", pipeline, &[]), pipeline, balls()).fields(16));
+    for experiment in others.into_iter().chain([ball().fields(16)]) {
         let hash =
             |experiment: &Experiment| after(&experiment.clone().pixels(Pixels::Off), 16).into_record().trace_hash();
         let unshuffled = hash(&experiment);

@@ -1,0 +1,138 @@
+//! Region warping: what a slave moves before it transforms.
+
+use glam::{DVec3, Vec3};
+use pphigs::{DisplayList, ModelFrame};
+use priority_rendering::{Cell, Dealing, Falloff, PriorityError, RegionWarp};
+use pxpl5_wire::{PictureNumber, Word};
+use std::collections::{BTreeSet, VecDeque};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// How the vertices of an update are moved so that it meets the slower memory, which was drawn from another place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaceWarp {
+    /// How cells are dealt to memories.
+    pub dealing: Dealing,
+    /// How the displacement falls with the distance from the border to the slower memory.
+    pub falloff: Falloff,
+    /// Distance from the border within which vertices are moved, m.
+    pub length_m: f64,
+    /// Where this update is drawn from.
+    pub drawn_from: DVec3,
+    /// Where the slower memory was drawn from.
+    pub slower_from: DVec3,
+}
+
+/// Words of a warp: home cell, rings, memories, falloff, two lengths, two places.
+pub(crate) const WARP_WORDS: usize = 7 + 2 * (2 + 6);
+
+impl FaceWarp {
+    /// Where a vertex of a memory is drawn.
+    ///
+    /// # Errors
+    ///
+    /// [`PriorityError`] for a falloff without a length.
+    pub fn moved(&self, vertex: DVec3, memory: usize) -> Result<DVec3, PriorityError> {
+        let warp = RegionWarp::new(self.falloff, self.length_m, self.drawn_from, self.slower_from)?;
+        Ok(warp.moved(vertex, self.dealing.to_slower(vertex, memory)))
+    }
+
+    pub(crate) fn to_words(self) -> Vec<Word> {
+        let Dealing { home, side_m, inner_rings, memories } = self.dealing;
+        let falloff = Falloff::ALL.iter().position(|(_, falloff)| *falloff == self.falloff).unwrap_or_default();
+        let cell = [home.x, home.z].map(|number| halves(number as u64)).concat();
+        let counts = [inner_rings as Word, memories as Word, falloff as Word];
+        let reals =
+            [[side_m, self.length_m].to_vec(), self.drawn_from.to_array().into(), self.slower_from.to_array().into()];
+        let reals = reals.concat().into_iter().flat_map(|real: f64| halves(real.to_bits()));
+        cell.into_iter().chain(counts).chain(reals).collect()
+    }
+
+    /// `None` for words that are no warp.
+    pub(crate) fn from_words(words: &[Word; WARP_WORDS]) -> Option<Self> {
+        let (whole, reals) = words.split_first_chunk::<7>()?;
+        let [x_low, x_high, z_low, z_high, inner_rings, memories, falloff] = *whole;
+        let cell = |low: Word, high: Word| joined(low, high) as i64;
+        let reals: Vec<f64> = reals.chunks_exact(2).map(|pair| f64::from_bits(joined(pair[0], pair[1]))).collect();
+        let [side_m, length_m, places @ ..] = &reals[..] else { return None };
+        Some(Self {
+            dealing: Dealing {
+                home: Cell { x: cell(x_low, x_high), z: cell(z_low, z_high) },
+                side_m: *side_m,
+                inner_rings: inner_rings.into(),
+                memories: memories as usize,
+            },
+            falloff: Falloff::ALL.get(falloff as usize)?.1,
+            length_m: *length_m,
+            drawn_from: DVec3::from_slice(places.get(..3)?),
+            slower_from: DVec3::from_slice(places.get(3..6)?),
+        })
+    }
+}
+
+/// The low word first.
+const fn halves(number: u64) -> [Word; 2] {
+    [number as Word, (number >> 32) as Word]
+}
+
+const fn joined(low: Word, high: Word) -> u64 {
+    low as u64 | (high as u64) << 32
+}
+
+/// Display lists with moved vertices. All slaves move the same ones alike; only the host's time is saved by keeping them.
+#[derive(Clone, Debug, Default)]
+pub struct WarpedLists(Arc<Mutex<VecDeque<(PictureNumber, Arc<DisplayList>)>>>);
+
+/// Updates whose lists are kept: one that is transformed while a slower slave is at the one before.
+const KEPT: usize = 2;
+
+impl WarpedLists {
+    /// The list of an update, whose `chosen` structures are in a memory; `moved` are structures that have a place of their own.
+    pub(crate) fn list(
+        &self,
+        list: &Arc<DisplayList>,
+        number: PictureNumber,
+        (warp, memory): (&FaceWarp, usize),
+        is_still: impl Fn(usize) -> bool,
+    ) -> Arc<DisplayList> {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, warped)) = kept.iter().find(|(known, _)| *known == number) {
+            return Arc::clone(warped);
+        }
+        let mut warped = DisplayList::clone(list);
+        let structures = list.structures.iter().enumerate();
+        let still = structures.filter(|(place, structure)| structure.frame == ModelFrame::World && is_still(*place));
+        let corners = still.flat_map(|(_, structure)| list.triangles[structure.triangles.clone()].iter().flatten());
+        let vertices: BTreeSet<u32> = corners.copied().collect();
+        for vertex in vertices {
+            let place = &mut warped.positions[vertex as usize];
+            *place = warp.moved(place.as_dvec3(), memory).map_or(*place, |moved: DVec3| single(moved));
+        }
+        let warped = Arc::new(warped);
+        kept.truncate(KEPT - 1);
+        kept.push_front((number, Arc::clone(&warped)));
+        warped
+    }
+}
+
+fn single(place: DVec3) -> Vec3 {
+    place.as_vec3()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_warp_survives_its_words() {
+        let dealing = Dealing { home: Cell { x: -3, z: 1 << 40 }, side_m: 5.0, inner_rings: 1, memories: 4 };
+        let warp = FaceWarp {
+            dealing,
+            falloff: Falloff::Smoothstep,
+            length_m: 4.5,
+            drawn_from: DVec3::new(0.1, 1.7, -2.0),
+            slower_from: DVec3::new(0.0, -1.7, 1e6),
+        };
+        let words: [Word; WARP_WORDS] = warp.to_words().try_into().expect("as many as are said");
+        assert_eq!(FaceWarp::from_words(&words), Some(warp));
+    }
+}

@@ -1,0 +1,211 @@
+//! When a host loads which orientation into a display that latches lines or pixels.
+
+use address_recalculation::{Latch, Scan};
+use pxpl5_display::{Aim, LightSpan};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{FieldParity, PeriodNumber};
+
+/// Orientations that a host predicts for parts of a field, each there when its first pixel is latched.
+///
+/// A line has one. Where pixels latch, as many as the host's line carries, one after the other; it is idle from the last one of a
+/// line to the next line. Where one takes longer than a line, it serves as many lines as it takes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LoadSchedule {
+    scan: Scan,
+    /// All stages of the display.
+    depth: Span,
+    /// From one load to the next in a line.
+    link: Span,
+    /// Lines of a field that a load serves, and loads in a line.
+    lines: u32,
+    loads: u32,
+    aim: Aim,
+}
+
+/// A load: its first line among those of the field, and which one it is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Load {
+    field: PeriodNumber,
+    line: u32,
+    number: u32,
+}
+
+impl LoadSchedule {
+    /// `None` where a field is latched as a whole: its host loads what it knows when it knows it.
+    pub(crate) fn new(scan: Scan, depth: Span, latch: Latch, link: Span, aim: Aim) -> Option<Self> {
+        let line = scan.lights(0, 2, PeriodNumber::FIRST)?.since(scan.lights(0, 0, PeriodNumber::FIRST)?);
+        let lines = link.0.div_ceil(line.0.max(1)).max(1) as u32;
+        let loads = match latch {
+            Latch::Field => return None,
+            Latch::Line => 1,
+            Latch::Pixel => (line.0 / link.0.max(1)).clamp(1, u64::from(scan.width())) as u32,
+        };
+        Some(Self { scan, depth, link, lines, loads, aim })
+    }
+
+    /// Lines of a field.
+    const fn height(&self) -> u32 {
+        self.scan.height() / 2
+    }
+
+    /// When a pixel of a line of a field lights.
+    fn light(&self, x: u32, line: u32, field: PeriodNumber) -> Time {
+        let y = 2 * line + FieldParity::of_field(field).first_line();
+        self.scan.lights(x, y, field).unwrap_or_else(|| self.scan.retrace(field))
+    }
+
+    /// The load that a pixel is turned by; `None` for one that the field does not scan.
+    pub(crate) fn load_of(&self, x: u32, y: u32, field: PeriodNumber) -> Option<Load> {
+        let into_line = self.scan.lights(x, y, field)?.since(self.light(0, y / 2, field));
+        let number = (into_line.0 / self.link.0.max(1)).min(u64::from(self.loads) - 1) as u32;
+        Some(Load { field, line: y / 2 / self.lines * self.lines, number })
+    }
+
+    /// When a load is in the register: as its first pixel is latched, or a pixel's time before.
+    pub(crate) fn loaded(&self, load: Load) -> Time {
+        let first = self.light(0, load.line, load.field) + self.link * u64::from(load.number);
+        Time(first.0.saturating_sub(self.depth.0))
+    }
+
+    /// The instant that a load is predicted for: what the aim says of the light of its pixels.
+    pub(crate) fn aimed(&self, load: Load) -> Time {
+        let Load { field, line, number } = load;
+        let last_line = (line + self.lines).min(self.height()) - 1;
+        let after =
+            if number + 1 == self.loads { self.scan.width() } else { self.first_pixel(line, number + 1, field) };
+        let light = LightSpan {
+            tick: self.scan.retrace(field),
+            first: self.light(self.first_pixel(line, number, field), line, field),
+            last: self.light(after.saturating_sub(1), last_line, field),
+        };
+        self.aim.instant(&light)
+    }
+
+    /// The first pixel of a line that lights when a load of it can be latched.
+    fn first_pixel(&self, line: u32, number: u32, field: PeriodNumber) -> u32 {
+        let from = self.light(0, line, field) + self.link * u64::from(number);
+        partition(self.scan.width() - 1, |x| self.light(x, line, field) < from)
+    }
+
+    /// The first load that is in the register after an instant.
+    pub(crate) fn next(&self, after: Time) -> Load {
+        let mut field = self.scan.field_at(after);
+        loop {
+            let groups = self.height().div_ceil(self.lines);
+            let begun = |group: u32| self.loaded(Load { field, line: group * self.lines, number: 0 }) <= after;
+            let groups_begun = partition(groups, begun);
+            if let Some(group) = groups_begun.checked_sub(1) {
+                let line = group * self.lines;
+                let loads_begun = partition(self.loads, |number| self.loaded(Load { field, line, number }) <= after);
+                if loads_begun < self.loads {
+                    return Load { field, line, number: loads_begun };
+                }
+            }
+            if groups_begun < groups {
+                return Load { field, line: groups_begun * self.lines, number: 0 };
+            }
+            field = field.next();
+        }
+    }
+
+    /// The load that is in the register from exactly this instant on, or the first one after it.
+    pub(crate) fn at(&self, loaded: Time) -> Load {
+        self.next(Time(loaded.0.saturating_sub(1)))
+    }
+}
+
+/// How many of the numbers below `end` satisfy what the first ones alone do.
+fn partition(end: u32, is_first: impl Fn(u32) -> bool) -> u32 {
+    let mut from = 0;
+    let mut to = end;
+    while from < to {
+        let middle = u32::midpoint(from, to);
+        if is_first(middle) {
+            from = middle + 1;
+        } else {
+            to = middle;
+        }
+    }
+    from
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use address_recalculation::ArpConfig;
+
+    fn schedule(latch: Latch, link_ns: u64) -> LoadSchedule {
+        let config = ArpConfig::MACHINE;
+        let scan = config.scan().expect("in range");
+        let link = Span::from_ns(link_ns);
+        LoadSchedule::new(scan, config.timing.depth(), latch, link, Aim::Middle).expect("no field")
+    }
+
+    /// Every load in order, of two fields.
+    fn all(schedule: &LoadSchedule) -> Vec<Load> {
+        let mut at = Time::ZERO;
+        let mut found = Vec::new();
+        loop {
+            let load = schedule.next(at);
+            if load.field > PeriodNumber(1) {
+                return found;
+            }
+            at = schedule.loaded(load);
+            found.push(load);
+        }
+    }
+
+    /// Nine words take 7.2 us, of which a line of 63.56 us has room for 8; the last one begins before the 640 pixels of 52.1 us end.
+    #[test]
+    fn a_line_has_one_load_and_with_pixels_as_many_as_the_line_carries() {
+        for (latch, link_ns, expected) in [
+            (Latch::Line, 7_200, 2 * 240),
+            (Latch::Pixel, 7_200, 2 * 240 * 8),
+            (Latch::Line, 100_000, 2 * 120),
+            (Latch::Pixel, 100_000, 2 * 120),
+            (Latch::Pixel, 40_000, 2 * 240),
+        ] {
+            let schedule = schedule(latch, link_ns);
+            let loads = all(&schedule);
+            assert_eq!(loads.len(), expected, "{latch:?} {link_ns}");
+            for pair in loads.windows(2) {
+                let apart = schedule.loaded(pair[1]).since(schedule.loaded(pair[0]));
+                assert!(apart >= Span::from_ns(link_ns), "{pair:?}: {apart:?}");
+            }
+            for load in loads {
+                assert_eq!(schedule.at(schedule.loaded(load)), load);
+            }
+        }
+    }
+
+    #[test]
+    fn a_pixels_load_is_there_when_it_is_latched_and_no_later_one_is() {
+        for latch in [Latch::Line, Latch::Pixel] {
+            let schedule = schedule(latch, 7_200);
+            for (x, y, field) in
+                [(0, 0, 0), (1, 0, 0), (88, 0, 0), (89, 0, 0), (639, 479, 1), (320, 240, 2), (620, 2, 0)]
+            {
+                let field = PeriodNumber(field);
+                let load = schedule.load_of(x, y, field).expect("scanned");
+                let latched = schedule.scan.latches(latch, x, y, field).expect("scanned");
+                assert!(schedule.loaded(load) <= latched, "{x} {y}");
+                let next = schedule.next(schedule.loaded(load));
+                assert!(schedule.loaded(next) > latched, "{x} {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_load_is_predicted_for_the_middle_of_its_pixels() {
+        let pixel_ps = 81_481.5;
+        let line = schedule(Latch::Line, 7_200);
+        let load = line.load_of(17, 2, PeriodNumber::FIRST).expect("scanned");
+        let first = line.light(0, 1, PeriodNumber::FIRST).0 as f64;
+        assert!((line.aimed(load).0 as f64 - first - 319.5 * pixel_ps).abs() < 100.0);
+        // 7.2 us are 88.4 pixels: the third load of a line has those from 177 to 265.
+        let pixels = schedule(Latch::Pixel, 7_200);
+        let load = pixels.load_of(200, 2, PeriodNumber::FIRST).expect("scanned");
+        assert_eq!(load.number, 2);
+        assert!((pixels.aimed(load).0 as f64 - first - 221.0 * pixel_ps).abs() < 100.0);
+    }
+}

@@ -1,0 +1,111 @@
+//! Policy `cells`: structures in cells of the world, dealt to memories around the user's.
+
+use super::face_plan::{Due, DuePolicy, Updates, place};
+use cube_control::FaceWarp;
+use glam::DVec3;
+use pphigs::FrameView;
+use priority_rendering::{Cell, Cells, Falloff, PriorityTiming};
+use pxpl5_sim::Time;
+use pxpl5_wire::PictureNumber;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// Region priority rendering: a structure is in the fastest memory of any of its cells; what moves by itself in memory 0.
+///
+/// All memories of a cycle are drawn from one place of the eye, so that the places that warping knows are those that are drawn from. With
+/// warping, memories of a cycle swap together: one that were shown before its neighbour would be warped for a place that nobody sees.
+pub(super) struct ByCells {
+    policy: Cells,
+    cells: Arc<[Vec<Cell>]>,
+    falloff: Falloff,
+    length_m: f64,
+    /// Where each memory was last drawn from.
+    drawn_from: Vec<DVec3>,
+    /// Whether each memory held anything in its last update.
+    held: Vec<bool>,
+    has_moving: bool,
+}
+
+impl ByCells {
+    pub(super) fn new(updates: &Updates, timing: &PriorityTiming, falloff: Falloff) -> Self {
+        let cells = Arc::clone(&updates.setup.cells);
+        let memories = timing.memories as usize;
+        Self {
+            policy: Cells::new(timing, cells.iter().flatten().copied(), falloff != Falloff::None),
+            has_moving: updates.setup.moving.iter().any(|moves| *moves),
+            cells,
+            falloff,
+            length_m: timing.falloff_m,
+            drawn_from: vec![DVec3::ZERO; memories],
+            held: vec![false; memories],
+        }
+    }
+
+    /// The memory of a structure.
+    fn memory(&self, structure: usize) -> usize {
+        let cells = self.cells.get(structure).into_iter().flatten();
+        cells.map(|cell| self.policy.dealing().memory(*cell)).min().unwrap_or(0)
+    }
+
+    /// How an update meets the slower memory.
+    fn warp(&self, memory: usize) -> Option<FaceWarp> {
+        let slower_from = *self.drawn_from.get(memory + 1).filter(|_| self.falloff != Falloff::None)?;
+        Some(FaceWarp {
+            dealing: *self.policy.dealing(),
+            falloff: self.falloff,
+            length_m: self.length_m,
+            drawn_from: self.drawn_from[memory],
+            slower_from,
+        })
+    }
+
+    /// Memories that are drawn now; what was empty and is empty still need not be.
+    fn drawn(&mut self, due: &[bool], of_memories: &[Arc<[bool]>]) -> Vec<usize> {
+        let mut drawn = Vec::new();
+        for (memory, structures) in of_memories.iter().enumerate().filter(|(memory, _)| due[*memory]) {
+            let holds = structures.contains(&true);
+            if std::mem::replace(&mut self.held[memory], holds) || holds {
+                drawn.push(memory);
+            }
+        }
+        drawn
+    }
+}
+
+impl DuePolicy for ByCells {
+    fn begin(&mut self, updates: &Updates, number: PictureNumber, now: Time) -> VecDeque<Due> {
+        let eye = (updates.setup.poses)(now, now).position;
+        let mut update = self.policy.frame(eye);
+        update.due[0] |= self.has_moving;
+        if !update.due.contains(&true) {
+            return VecDeque::new();
+        }
+        let view = updates.view(number, now);
+        let from = view.eyes.first().map_or(eye, |eye| place(&eye.world_to_eye));
+        for (drawn_from, _) in self.drawn_from.iter_mut().zip(&update.due).filter(|(_, due)| **due) {
+            *drawn_from = from;
+        }
+        let memories: Vec<usize> = (0..self.cells.len()).map(|structure| self.memory(structure)).collect();
+        let of_memory = |memory: usize| memories.iter().map(|held_by| *held_by == memory).collect();
+        let of_memories: Vec<Arc<[bool]>> = (0..update.due.len()).map(of_memory).collect();
+        let drawn = self.drawn(&update.due, &of_memories);
+        let all_together = self.falloff != Falloff::None && drawn.len() > 1;
+        let together = drawn.iter().filter(|memory| all_together || update.together[**memory]);
+        let bits = together.fold(0, |bits, memory| bits | 1 << memory);
+        let due = drawn.iter().map(|memory| self.due(*memory, bits, &of_memories[*memory], (now, &view)));
+        due.collect()
+    }
+}
+
+impl ByCells {
+    fn due(&self, memory: usize, together: u8, structures: &Arc<[bool]>, (at, view): (Time, &FrameView)) -> Due {
+        Due {
+            memory,
+            together: if together >> memory & 1 == 1 { together } else { 0 },
+            structures: Arc::clone(structures),
+            at,
+            view: Some(view.clone()),
+            warp: self.warp(memory),
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! A head that turns before faces that need no drawing.
+
+use super::{FULL, OBJECTS, after, assert_no_faults, head, machine, memory, texels};
+use address_recalculation::CubeFace;
+use pxpl5_run::{Experiment, FacePipeline, FacePolicy, Pixels};
+use pxpl5_scene::builtin;
+use tracking::motion::{Pan, Still};
+
+/// With the eye at rest a ball that is far enough is drawn once, into the slowest memory, and nothing is ever in memory 0.
+#[test]
+fn an_empty_memory_0_is_content_and_every_retrace_a_picture() {
+    let scene = builtin("sphere:1000").expect("even");
+    let experiment = Experiment::new(machine("small-hmd", OBJECTS, &[]), OBJECTS, scene).fields(60);
+    let outcome = experiment.pixels(Pixels::Off).head(head(Pan::at(200.0))).run().expect("it has shown something");
+    assert_no_faults(outcome.record());
+    let swaps: Vec<u64> = (0..4).map(|k| memory(outcome.record(), k).stats().swaps).collect();
+    assert_eq!(swaps, [0, 0, 0, 1]);
+    assert_eq!((outcome.shown(), outcome.updates_hz()), (0, None), "no update of memory 0");
+    assert!(outcome.latency_ms().mean.is_nan());
+    assert!(outcome.pipeline().turned_periods(outcome.record(), outcome.end()) > 50);
+    assert_eq!(outcome.rotation_latencies().len(), 60);
+}
+
+/// A rectangle before the head's eyes, wherever they look.
+#[test]
+fn what_is_fixed_to_the_head_is_drawn_where_it_looks() {
+    for policy in [FacePolicy::Full, FacePolicy::Objects, FacePolicy::Cells] {
+        let pipeline = FacePipeline::new(policy);
+        let run = |deg_per_s: f64| {
+            let scene = builtin("full-screen:2").expect("built in");
+            let config = machine("small-hmd", pipeline, &[("arp.face_texels", 128)]);
+            let head = if deg_per_s == 0.0 { head(Still(tracking::Pose::IDENTITY)) } else { head(Pan::at(deg_per_s)) };
+            // Half a second at 180 deg/s.
+            after(&Experiment::new(config, pipeline, scene).head(head), 30).into_record()
+        };
+        let drawn_on = |deg_per_s: f64| {
+            let faces = memory(&run(deg_per_s), 0).shown_faces();
+            CubeFace::ALL.map(|face| texels(128).filter(|t| t.face == face && faces.texel(*t).is_some()).count())
+        };
+        let still = drawn_on(0.0);
+        let turned = drawn_on(180.0);
+        let most = |counts: [usize; 6]| CubeFace::ALL[(0..6).max_by_key(|face| counts[*face]).expect("six")];
+        assert_eq!(most(still), CubeFace::NegZ, "{policy:?}: {still:?}");
+        assert_eq!(most(turned), CubeFace::NegX, "{policy:?}: {turned:?}");
+    }
+}
+
+/// Loads of a display that latches lines, or pixels, with a tracker that reports once a field.
+#[test]
+fn a_host_predicts_for_every_line_and_for_as_many_pixels_as_its_line_carries() {
+    use address_recalculation::Latch;
+    for (latch, expected) in [(Latch::Field, 1.0), (Latch::Line, 240.0), (Latch::Pixel, 8.0 * 240.0)] {
+        let pipeline = FacePipeline { latch, ..FULL };
+        let scene = builtin("sphere:10").expect("even");
+        let experiment = Experiment::new(machine("small-hmd", pipeline, &[]), pipeline, scene).fields(60);
+        let tracker = tracking::tracker::TrackerConfig::optical_ceiling();
+        let kind = tracking::predict::PredictorKind::Kalman;
+        let head = pxpl5_run::Head::new(std::sync::Arc::new(Pan::at(200.0)), tracker, kind, 1).expect("in range");
+        let outcome = experiment.pixels(Pixels::Off).head(head).run().expect("it runs");
+        let counters = outcome.record().display().counters();
+        let loads = counters.iter().find(|counter| counter.name == "matrix loads").expect("counted").count;
+        assert!((loads as f64 / 60.0 - expected).abs() < 0.05 * expected.max(2.0), "{latch:?}: {loads}");
+        let refused = counters.iter().find(|counter| counter.name == "matrices refused").expect("counted").count;
+        assert_eq!(refused, 0);
+        let tuned = outcome.head().expect("tracked").head();
+        let ahead_ms =
+            |training: Option<&tracking::predict::Training>| training.expect("tuned").interval_ps / 1_000_000_000;
+        // 33 ms of the tracker and up to a field more, against TRANSFORM, RENDER, COPY and retraces besides.
+        assert!((33..=60).contains(&ahead_ms(tuned.training_of_turns())), "{:?}", tuned.training_of_turns());
+        assert!(ahead_ms(tuned.training()) > ahead_ms(tuned.training_of_turns()));
+    }
+}
