@@ -1,5 +1,7 @@
-//! What a run may take of this computer: estimated while it is young, and refused before it is felt.
+//! What a run may take of this computer: estimated before it starts and while it is young, and refused before it is felt.
 
+use crate::error::CliError;
+use crate::estimate::{Estimate, Work};
 use clap::Args;
 use std::time::Instant;
 
@@ -44,6 +46,19 @@ pub(crate) struct Watch {
 }
 
 impl BudgetArgs {
+    /// Refuses a run before it starts, by what it is estimated to take.
+    ///
+    /// # Errors
+    ///
+    /// The estimate, and what to do about it.
+    pub(crate) fn admit(&self, work: &Work) -> Result<(), CliError> {
+        let Estimate { bytes, seconds } = work.estimate();
+        match self.excess(bytes / 1e6, seconds) {
+            Some(reason) => Err(CliError::failure(format!("{reason}; estimated before it starts, nothing was written"))),
+            None => Ok(()),
+        }
+    }
+
     /// Of a run of so many fields, which begins now.
     pub(crate) fn watch(self, fields: u64) -> Watch {
         Watch { budget: self, fields, begun: Instant::now(), bytes_before: resident_bytes() }
@@ -81,19 +96,25 @@ impl BudgetArgs {
     fn refusal(&self, taken: Taken, part: f64) -> Option<String> {
         let megabytes = taken.bytes / part / 1e6;
         let seconds = taken.seconds / part;
-        if taken.bytes > TELLING_BYTES && megabytes > self.max_memory as f64 {
-            let most = self.max_memory;
+        let megabytes = if taken.bytes > TELLING_BYTES { megabytes } else { 0.0 };
+        let seconds = if taken.seconds > TELLING_SECONDS { seconds } else { 0.0 };
+        self.excess(megabytes, seconds)
+    }
+
+    /// What is more than allowed, if anything is.
+    fn excess(&self, megabytes: f64, seconds: f64) -> Option<String> {
+        let most = self.max_memory;
+        if megabytes > most as f64 {
             return Some(format!(
                 "the run is expected to take {megabytes:.0} MB, more than {most}: simulate fewer fields, or allow it with --max-memory"
             ));
         }
-        if taken.seconds > TELLING_SECONDS && seconds > self.max_seconds as f64 {
-            let most = self.max_seconds;
-            return Some(format!(
+        let most = self.max_seconds;
+        (seconds > most as f64).then(|| {
+            format!(
                 "the run is expected to take {seconds:.0} s, more than {most}: simulate fewer fields, or allow it with --max-seconds"
-            ));
-        }
-        None
+            )
+        })
     }
 }
 

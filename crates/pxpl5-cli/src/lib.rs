@@ -13,6 +13,7 @@ mod compare;
 mod completions;
 mod demo;
 mod error;
+mod estimate;
 mod figures;
 mod film;
 mod i860;

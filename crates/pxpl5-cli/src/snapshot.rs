@@ -1,6 +1,7 @@
 //! Running an experiment, with a snapshot saved or restored on the way.
 
 use crate::budget::{BudgetArgs, YOUNG};
+use crate::estimate::Work;
 use crate::error::CliError;
 use crate::options::registry;
 use crate::output::OutputFile;
@@ -108,6 +109,7 @@ impl SnapshotArgs {
     pub(crate) fn simulate(&self, plan: &Plan, how: How<'_>) -> Result<Simulated, CliError> {
         let mut saving = self.saving(plan)?;
         let scene = plan.load_scene()?;
+        how.budget.admit(&Work::of(plan, &scene, how.keep == Keep::Everything))?;
         let host = how.threads.map_or_else(Workstation::new, |threads| Workstation::with_threads(threads as usize));
         let experiment = plan.experiment(scene.clone()).host(host).keep(how.keep);
         let mut experiment = how.without.iter().fold(experiment, |experiment, saving| experiment.without(*saving));

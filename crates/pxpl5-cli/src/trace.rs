@@ -1,6 +1,7 @@
 //! `pxpl5 trace`.
 
 use crate::budget::{BudgetArgs, YOUNG};
+use crate::estimate::Work;
 use crate::error::CliError;
 use crate::output::OutputFile;
 use crate::settings::SettingArgs;
@@ -46,7 +47,9 @@ pub(crate) fn run(args: TraceArgs) -> Result<(), CliError> {
     warn(&plan.out_of_range(), args.quiet);
     let file = OutputFile::open(&args.out)?;
     let bar = progress(plan.fields, "fields", args.quiet);
-    let experiment = plan.experiment(plan.load_scene()?).record_traffic(true);
+    let scene = plan.load_scene()?;
+    args.budget.admit(&Work::of(&plan, &scene, true))?;
+    let experiment = plan.experiment(scene).record_traffic(true);
     let watch = args.budget.watch(plan.fields);
     let outcome = experiment.run_stopping(&YOUNG.map(|field| PeriodNumber::FIRST.after(field)), |field, _| {
         let done = field.since(PeriodNumber::FIRST);

@@ -147,6 +147,25 @@ fn a_run_that_takes_too_much_is_refused_with_an_estimate() {
     }
 }
 
+/// What takes much by what it is, and not by how long it is, is known before it starts.
+#[test]
+fn batches_and_processors_by_the_thousand_are_estimated_before_the_run() {
+    let folder = Folder::new("estimate");
+    let frameless = ["run", "--pipeline", "frameless", "--scene", "full-screen:4", "--fields", "120", "--out", "o"];
+    for (set, limit, least, most) in [
+        (["--batch", "65535"], ["--max-memory", "300"], 316, 632),
+        (["--gps", "1000"], ["--max-memory", "100"], 101, 300),
+        (["--gps", "1000"], ["--max-seconds", "5"], 5, 40),
+    ] {
+        let output = folder.run(&[&frameless[..], &set, &limit].concat());
+        let text = err(&output);
+        assert!(output.status.code() == Some(1) && text.contains("estimated before it starts"), "{set:?}: {text}");
+        let number = text.split("expected to take ").nth(1).and_then(|rest| rest.split(' ').next()?.parse().ok());
+        assert!(number.is_some_and(|number: u64| (least..=most).contains(&number)), "{set:?}: {text}");
+        assert!(folder.names().is_empty(), "{set:?} left {:?}", folder.names());
+    }
+}
+
 /// What a screen cannot have is refused; what it can have runs, however odd.
 #[test]
 fn numbers_that_once_hung_or_panicked_are_refused_or_run() {

@@ -37,6 +37,14 @@ pub const MAX_COORDINATE: f64 = 1e15;
 /// Assumed, 16 MiB to 1 GiB: a parsed model needs up to seven times its file, and a run should stay under 2 GiB.
 pub const MAX_FILE_BYTES: u64 = 256 << 20;
 
+/// Memory that an imported model may take while it is read, in sizes of its file. What would take more is refused.
+///
+/// Assumed, from 6.5 (a list of triangles of two bytes a corner, and the file itself, take it) upwards.
+pub const MEMORY_TIMES_FILE: u64 = 7;
+
+/// Bytes that a model may take on top of that, whatever its size: small files are nobody's trouble. Assumed, any.
+pub const MEMORY_FLOOR_BYTES: u64 = 4 << 20;
+
 /// Colour of imported surfaces without one of their own: 8-bit red, green, blue. Assumed, any.
 pub const DEFAULT_COLOUR: [u8; 3] = [200, 196, 188];
 

@@ -59,6 +59,16 @@ pub enum LoadError {
         /// The limit in bytes.
         expected: u64,
     },
+    /// The model takes more memory than [`crate::config::MEMORY_TIMES_FILE`] times its file: corners that repeat without end.
+    #[error("{file}: expected a model that takes at most {expected} bytes, as its size allows, found {found}")]
+    TooMuchMemory {
+        /// Name of the file, as it was given.
+        file: String,
+        /// The limit in bytes.
+        expected: u64,
+        /// What the model would take, in bytes.
+        found: u64,
+    },
     /// The file has no bytes, or nothing but white space.
     #[error("{file}: expected a model, found an empty file")]
     Empty {

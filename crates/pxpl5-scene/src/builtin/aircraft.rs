@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::mig::{RADIUS_M, fly_through};
 use super::solid::Colour;
-use crate::import::{Mesh, Normals};
+use crate::import::Mesh;
 use crate::scene::{Lighting, Scene, SceneParts, bounding_sphere};
 use crate::trig;
 
@@ -67,7 +67,7 @@ fn fuselage() -> Mesh {
         }
         mesh.fan(&[last + side, last + next, nose]);
     }
-    mesh.complete_normals(Normals::OfVertices);
+    mesh.complete_normals();
     mesh
 }
 

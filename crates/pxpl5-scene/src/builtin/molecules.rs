@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::solid::{Colour, Solid};
 use crate::config::FIT_RADIUS_M;
-use crate::import::{Atom, Placement, Source, read_atoms};
+use crate::import::{Atom, Source, read_atoms};
 use crate::motion::HeadMotion;
 use crate::scene::{Lighting, Scene, SceneParts, Sphere, bounding_sphere};
 
@@ -23,7 +23,7 @@ const APART: f64 = 25.0;
 const HELIX_STEP: f64 = 6.2;
 
 pub(super) fn scene() -> Scene {
-    let source = Source { name: "1mbn.pdb", bytes: MYOGLOBIN, placement: Placement::Fitted };
+    let source = Source { name: "1mbn.pdb", bytes: MYOGLOBIN };
     let atoms = read_atoms(&source).expect("pxpl5-scene: the stored molecule is sound");
     let (centre, _) = bounding_sphere(atoms.iter().map(|a| (a.position, a.element.radius)));
     let mut spheres: Vec<Sphere> = atoms

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::edit::Hinge;
-use crate::import::{Mesh, Normals};
+use crate::import::Mesh;
 use crate::scene::{Frame, Structure};
 
 pub(super) type Colour = [u8; 3];
@@ -109,12 +109,11 @@ impl Solid {
     }
 
     pub(super) fn append(&mut self, mut part: Mesh) {
-        part.complete_normals(Normals::OfVertices);
+        part.complete_normals();
         let base = self.mesh.positions.len() as u32;
         self.mesh.positions.append(&mut part.positions);
         self.mesh.normals.append(&mut part.normals);
         self.mesh.colours.append(&mut part.colours);
-        self.mesh.points.extend(part.points.iter().map(|p| p + base));
         let triangles = part.triangles.iter().map(|t| t.map(|corner| corner + base));
         self.mesh.triangles.extend(triangles);
     }

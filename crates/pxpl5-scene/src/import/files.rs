@@ -4,7 +4,7 @@
 use std::fs::{self, File};
 use std::path::Path;
 
-use super::{Format, Placement, placed_from_reader};
+use super::{Format, Placement, read_placed};
 use crate::error::LoadError;
 use crate::scene::Scene;
 
@@ -38,7 +38,7 @@ pub fn load_placed(path: impl AsRef<Path>, placement: Placement) -> Result<Scene
         return Err(LoadError::NotAFile { file, found });
     }
     let opened = File::open(path).map_err(|source| LoadError::Io { file: file.clone(), source })?;
-    placed_from_reader(opened, format, &file, placement)
+    read_placed(opened, metadata.len(), format, &file, placement)
 }
 
 /// The most telling fault of a path without a known extension.

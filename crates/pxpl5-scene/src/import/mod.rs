@@ -3,6 +3,7 @@
 #[cfg(feature = "files")]
 mod files;
 mod mesh;
+mod model;
 mod obj;
 mod pdb;
 mod placement;
@@ -17,14 +18,16 @@ use glam::DVec3;
 #[cfg(feature = "files")]
 pub use files::{load, load_placed};
 use mesh::Fit;
-pub(crate) use mesh::{Mesh, Normals, fitted_scene};
+pub(crate) use mesh::{Mesh, fitted_scene};
+use model::Model;
 pub(crate) use pdb::{Atom, read_atoms};
 pub use placement::Placement;
 pub(crate) use source::Source;
 
 use crate::config::MAX_FILE_BYTES;
 use crate::error::LoadError;
-use crate::scene::{Scene, Sphere};
+use crate::motion::HeadMotion;
+use crate::scene::Scene;
 
 impl Placement {
     /// What is done to the coordinates of balls (centre, radius) that the model consists of.
@@ -35,10 +38,11 @@ impl Placement {
         }
     }
 
-    fn scene(self, name: &str, mesh: Mesh, spheres: Vec<Sphere>) -> Scene {
+    /// How the head moves that looks at a model placed so.
+    fn motion(self) -> HeadMotion {
         match self {
-            Self::Fitted => fitted_scene(name, mesh, spheres),
-            Self::AsInFile => mesh::unfitted_scene(name, mesh, spheres),
+            Self::Fitted => mesh::seeing_fitted(),
+            Self::AsInFile => mesh::standing_at_the_origin(),
         }
     }
 }
@@ -97,10 +101,28 @@ pub fn placed_from_reader(
     name: &str,
     placement: Placement,
 ) -> Result<Scene, LoadError> {
-    let mut bytes = Vec::new();
+    read_placed(reader, 0, format, name, placement)
+}
+
+/// As [`placed_from_reader`], of something that has about `size` bytes.
+fn read_placed(
+    reader: impl Read,
+    size: u64,
+    format: Format,
+    name: &str,
+    placement: Placement,
+) -> Result<Scene, LoadError> {
+    let mut bytes = Vec::with_capacity(size.min(MAX_FILE_BYTES) as usize + 1);
     let mut limited = reader.take(MAX_FILE_BYTES + 1);
     limited.read_to_end(&mut bytes).map_err(|source| LoadError::Io { file: name.to_owned(), source })?;
-    placed_from_bytes(&bytes, format, name, placement)
+    match read(&bytes, format, name, placement)? {
+        Content::Scene(scene) => Ok(*scene),
+        Content::Mesh(model) => {
+            let size = bytes.len();
+            drop(bytes);
+            model.into_scene(name, size, placement)
+        }
+    }
 }
 
 /// Reads a model from memory; `name` stands for it in errors and as the name of the scene.
@@ -112,7 +134,8 @@ pub fn placed_from_reader(
 ///
 /// # Errors
 ///
-/// [`LoadError`] says what is wrong, and where. No bytes make it panic, or take more than fifteen times their size.
+/// [`LoadError`] says what is wrong, and where. No bytes make it panic, or take more than [`crate::config::MEMORY_TIMES_FILE`]
+/// times their size, their own included.
 pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, LoadError> {
     placed_from_bytes(bytes, format, name, Placement::Fitted)
 }
@@ -123,16 +146,30 @@ pub fn from_bytes(bytes: &[u8], format: Format, name: &str) -> Result<Scene, Loa
 ///
 /// As [`from_bytes`].
 pub fn placed_from_bytes(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Result<Scene, LoadError> {
-    let source = Source { name, bytes, placement };
+    match read(bytes, format, name, placement)? {
+        Content::Mesh(model) => model.into_scene(name, bytes.len(), placement),
+        Content::Scene(scene) => Ok(*scene),
+    }
+}
+
+/// What a file has been read to.
+enum Content {
+    /// Not a scene yet: making it takes memory, for which the file's bytes can be given up.
+    Mesh(Model),
+    Scene(Box<Scene>),
+}
+
+fn read(bytes: &[u8], format: Format, name: &str, placement: Placement) -> Result<Content, LoadError> {
+    let source = Source { name, bytes };
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(LoadError::TooLarge { file: name.to_owned(), expected: MAX_FILE_BYTES });
     }
     if bytes.iter().all(u8::is_ascii_whitespace) {
         return Err(LoadError::Empty { file: name.to_owned() });
     }
-    match format {
-        Format::Ply => ply::read(&source),
-        Format::Obj => obj::read(&source),
-        Format::Pdb => pdb::read(&source),
-    }
+    Ok(match format {
+        Format::Ply => Content::Mesh(ply::read(&source)?),
+        Format::Obj => Content::Mesh(obj::read(&source)?),
+        Format::Pdb => Content::Scene(Box::new(pdb::read(&source, placement)?)),
+    })
 }

@@ -2,79 +2,105 @@
 //!
 //! Read here and not by a library: the well-kept one, tobj, reports no line, no expectation and no finding.
 
-use std::collections::HashMap;
+use std::hash::{BuildHasher, RandomState};
 
 use glam::DVec3;
+use hashbrown::HashTable;
 
+use super::Source;
+use super::model::{Corner, Model, Places, direction};
 use super::source::excerpt;
-use super::{Mesh, Source};
-use crate::config::DEFAULT_COLOUR;
 use crate::error::{FilePlace, LoadError};
-use crate::scene::Scene;
 
-pub(super) fn read(source: &Source<'_>) -> Result<Scene, LoadError> {
-    let mut reader = Reader::new(source);
+pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
+    let mut reader = Reader::new(source)?;
     for (number, line) in source.lines()? {
         reader.line(FilePlace::Line(number), line)?;
     }
-    reader.into_mesh().into_scene(source)
+    let mut model = reader.model;
+    model.corners.shrink_to_fit();
+    Ok(model)
 }
 
 struct Reader<'a> {
     source: &'a Source<'a>,
-    points: Vec<DVec3>,
-    normals: Vec<DVec3>,
-    /// Vertex of the mesh by its corner. Looked up only, never walked, so its order shows nowhere.
-    vertices: HashMap<Corner, u32>,
-    /// The corners in the order of their vertices.
-    corners: Vec<Corner>,
-    mesh: Mesh,
+    /// The vertices by their corners, in 5 bytes each: the corners themselves are the model's. Looked up only, never walked, so
+    /// its order shows nowhere.
+    vertices: HashTable<u32>,
+    hasher: RandomState,
+    model: Model,
 }
 
-/// A point, and its normal counted from 1; 0 for none. Short, since a file can have many times more of them than points.
-type Corner = (u32, u32);
+/// How many of what there are in a file: the lists of a model are as long from the begin, since lists that grow are copied.
+#[derive(Default)]
+struct Counts {
+    points: usize,
+    normals: usize,
+    triangles: usize,
+}
+
+impl Counts {
+    /// Looks at the words of all lines and at no number.
+    fn of(source: &Source<'_>) -> Result<Self, LoadError> {
+        let mut counts = Self::default();
+        for (_, line) in source.lines()? {
+            let mut words = words(line);
+            match words.next() {
+                Some("v") => counts.points += 1,
+                Some("vn") => counts.normals += 1,
+                Some("f") => counts.triangles += words.count().saturating_sub(2),
+                _ => {}
+            }
+        }
+        Ok(counts)
+    }
+}
+
+/// The words of a line in front of its comment.
+fn words(line: &str) -> impl Iterator<Item = &str> {
+    line.split('#').next().unwrap_or_default().split_whitespace()
+}
 
 impl<'a> Reader<'a> {
-    fn new(source: &'a Source<'a>) -> Self {
-        Self {
-            source,
-            points: Vec::new(),
-            normals: Vec::new(),
-            vertices: HashMap::new(),
-            corners: Vec::new(),
-            mesh: Mesh::default(),
-        }
-    }
-
-    /// The vertices with their places and normals, when all of them are known and nothing is looked up any more.
-    fn into_mesh(self) -> Mesh {
-        let Self { points, normals, vertices, corners, mut mesh, .. } = self;
-        drop(vertices);
-        mesh.positions.reserve_exact(corners.len());
-        for (point, normal) in corners {
-            let direction = if normal == 0 { DVec3::ZERO } else { normals[normal as usize - 1] };
-            mesh.push_on_point(point, points[point as usize], direction, DEFAULT_COLOUR);
-        }
-        mesh
+    fn new(source: &'a Source<'a>) -> Result<Self, LoadError> {
+        let counts = Counts::of(source)?;
+        let mut model = Model::new(Places::Double(Vec::new()));
+        model.places.reserve_exact(counts.points);
+        model.normals.reserve_exact(counts.normals);
+        model.triangles.reserve_exact(counts.triangles);
+        Ok(Self { source, vertices: HashTable::new(), hasher: RandomState::new(), model })
     }
 
     fn line(&mut self, at: FilePlace, line: &str) -> Result<(), LoadError> {
-        let line = line.split('#').next().unwrap_or_default();
-        let mut words = line.split_whitespace();
+        let mut words = words(line);
         match words.next() {
-            Some("v") => self.points.push(self.vector(at, words)?),
-            Some("vn") => self.normals.push(self.vector(at, words)?),
-            Some("f") => {
-                let corners = words.map(|word| self.corner(at, word));
-                let corners: Vec<u32> = corners.collect::<Result<_, _>>()?;
-                if corners.len() < 3 {
-                    let found = format!("{} in {}", corners.len(), excerpt(line));
-                    return Err(self.source.syntax(at, "a face of at least 3 corners", found));
-                }
-                self.mesh.fan(&corners);
-            }
+            Some("v") => self.model.places.push(self.vector(at, words)?),
+            Some("vn") => self.model.normals.push(direction(self.vector(at, words)?)),
+            Some("f") => self.face(at, line, words)?,
             // Texture coordinates, groups, objects, materials, smoothing groups, curves.
             _ => {}
+        }
+        Ok(())
+    }
+
+    /// Cuts a polygon into triangles that share its first corner.
+    fn face<'w>(&mut self, at: FilePlace, line: &str, words: impl Iterator<Item = &'w str>) -> Result<(), LoadError> {
+        let mut known = [0; 2];
+        let mut count = 0;
+        for word in words {
+            let corner = self.corner(at, word)?;
+            match count {
+                0 | 1 => known[count] = corner,
+                _ => {
+                    self.model.triangles.push([known[0], known[1], corner]);
+                    known[1] = corner;
+                }
+            }
+            count += 1;
+        }
+        if count < 3 {
+            let found = format!("{count} in {}", excerpt(line.split('#').next().unwrap_or_default()));
+            return Err(self.source.syntax(at, "a face of at least 3 corners", found));
         }
         Ok(())
     }
@@ -95,21 +121,30 @@ impl<'a> Reader<'a> {
     fn corner(&mut self, at: FilePlace, word: &str) -> Result<u32, LoadError> {
         let mut fields = word.splitn(3, '/');
         let point = fields.next().unwrap_or_default();
-        let point = self.index(at, "vertices", point, self.points.len())?;
+        let point = self.index(at, "vertices", point, self.model.places.len())?;
         let normal = match fields.nth(1) {
             None | Some("") => 0,
-            Some(normal) => self.index(at, "normals", normal, self.normals.len())? + 1,
+            Some(normal) => self.index(at, "normals", normal, self.model.normals.len())? + 1,
         };
         Ok(self.vertex((point, normal)))
     }
 
+    /// The vertex of a corner: a new one where there is none yet.
     fn vertex(&mut self, corner: Corner) -> u32 {
-        let next = self.corners.len() as u32;
-        let vertex = *self.vertices.entry(corner).or_insert(next);
-        if vertex == next {
-            self.corners.push(corner);
+        let corners = &mut self.model.corners;
+        let hash = self.hasher.hash_one(corner);
+        if let Some(&known) = self.vertices.find(hash, |&vertex| corners[vertex as usize] == corner) {
+            return known;
         }
-        vertex
+        let next = corners.len() as u32;
+        if corners.len() == corners.capacity() {
+            // By an eighth, not twice: a file can consist of corners.
+            corners.reserve_exact(corners.len() / 8 + 1024);
+        }
+        corners.push(corner);
+        let hasher = &self.hasher;
+        self.vertices.insert_unique(hash, next, |&vertex| hasher.hash_one(corners[vertex as usize]));
+        next
     }
 
     /// 1 is the first of the file; -1 the last so far.

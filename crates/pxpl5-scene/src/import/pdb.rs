@@ -4,9 +4,9 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 
-use super::mesh::Fit;
+use super::mesh::{Fit, seen_by};
 use super::source::excerpt;
-use super::{Mesh, Source};
+use super::{Placement, Source};
 use crate::error::{FilePlace, LoadError};
 use crate::scene::{Scene, Sphere};
 
@@ -61,14 +61,14 @@ const ELEMENTS: [Element; 20] = [
 /// Any other element. Assumed: within the range of the table.
 const OTHER: Element = element("?", 1.80, [255, 20, 147]);
 
-pub(super) fn read(source: &Source<'_>) -> Result<Scene, LoadError> {
+pub(super) fn read(source: &Source<'_>, placement: Placement) -> Result<Scene, LoadError> {
     let atoms = read_atoms(source)?;
     if atoms.is_empty() {
         return Err(LoadError::NothingToDraw { file: source.name.to_owned(), expected: "atom" });
     }
-    let fit = source.placement.fit(atoms.iter().map(|a| (a.position, a.element.radius)));
+    let fit = placement.fit(atoms.iter().map(|a| (a.position, a.element.radius)));
     let spheres = atoms.iter().map(|a| a.sphere(a.position, &fit)).collect();
-    Ok(source.placement.scene(source.name, Mesh::default(), spheres))
+    Ok(seen_by(placement.motion(), source.name, Vec::new(), Vec::new(), spheres))
 }
 
 impl Atom {

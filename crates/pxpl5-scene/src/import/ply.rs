@@ -1,6 +1,6 @@
 //! PLY: the library reads header and rows; here is what rows mean, and where a faulty one stands.
 
-use std::io::{BufRead, Cursor, ErrorKind};
+use std::io::{Cursor, ErrorKind};
 
 use glam::DVec3;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
@@ -8,15 +8,15 @@ use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
+use super::Source;
+use super::model::{Model, Places, check_triangles, direction};
 use super::source::excerpt;
-use super::{Mesh, Source};
 use crate::config::DEFAULT_COLOUR;
 use crate::error::{FilePlace, LoadError};
-use crate::scene::Scene;
 
-pub(super) fn read(source: &Source<'_>) -> Result<Scene, LoadError> {
+pub(super) fn read(source: &Source<'_>) -> Result<Model, LoadError> {
     let mut rows = Rows::after_header(source)?;
-    let mut mesh = Mesh::default();
+    let mut mesh = Model::new(Places::Single(Vec::new()));
     let elements: Vec<ElementDef> = rows.header.elements.values().cloned().collect();
     for element in &elements {
         rows.check_length(element)?;
@@ -28,7 +28,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Scene, LoadError> {
         }
     }
     rows.check_end()?;
-    mesh.into_scene(source)
+    Ok(mesh)
 }
 
 /// The rows of all elements, one after the other.
@@ -38,8 +38,15 @@ struct Rows<'a> {
     cursor: Cursor<&'a [u8]>,
     /// Number of the next line, in an ASCII file.
     line: u64,
-    text: String,
+    text: &'a str,
+    /// Most numbers that a list may have: of so many vertices no face and no strips need more.
+    longest_list: usize,
 }
+
+/// Numbers that a list may have whatever the file, and for each vertex on top of that. Assumed: strips of single triangles take 8
+/// corners for each vertex of a closed surface.
+const LIST: usize = 1 << 16;
+const LIST_PER_VERTEX: usize = 8;
 
 impl<'a> Rows<'a> {
     fn after_header(source: &'a Source<'a>) -> Result<Self, LoadError> {
@@ -56,7 +63,7 @@ impl<'a> Rows<'a> {
         if header.encoding == Encoding::Ascii {
             source.text(source.bytes.len())?;
         }
-        Ok(Self { source, header, line, cursor, text: String::new() })
+        Ok(Self { source, header, line, cursor, text: "", longest_list: LIST })
     }
 
     fn place(&self) -> FilePlace {
@@ -85,11 +92,12 @@ impl<'a> Rows<'a> {
         let row = match self.header.encoding {
             Encoding::Ascii => {
                 self.next_line(element)?;
-                if let Some(surplus) = surplus(&self.text, element) {
+                lists(self.text, element).try_for_each(|length| self.check_list(at, length))?;
+                if let Some(surplus) = surplus(self.text, element) {
                     let expected = format!("the end of {}", row_of(element));
                     return Err(self.source.syntax(at, expected, excerpt(surplus)));
                 }
-                parser.read_ascii_element(&self.text, element)
+                parser.read_ascii_element(self.text, element)
             }
             Encoding::BinaryLittleEndian => parser.read_little_endian_element(&mut self.cursor, element),
             Encoding::BinaryBigEndian => parser.read_big_endian_element(&mut self.cursor, element),
@@ -105,68 +113,116 @@ impl<'a> Rows<'a> {
             (_, ErrorKind::InvalidData) | (Encoding::BinaryLittleEndian | Encoding::BinaryBigEndian, _) => {
                 self.source.syntax(at, expected, message(error))
             }
-            (Encoding::Ascii, _) => self.source.syntax(at, expected, excerpt(&self.text)),
+            (Encoding::Ascii, _) => self.source.syntax(at, expected, excerpt(self.text)),
         }
     }
 
     /// Blank lines are passed over.
     fn next_line(&mut self, element: &ElementDef) -> Result<(), LoadError> {
         loop {
-            self.text.clear();
-            let read = self.cursor.read_line(&mut self.text);
-            if !matches!(read, Ok(1..)) {
+            let begin = self.cursor.position() as usize;
+            let rest = &self.source.bytes[begin..];
+            if rest.is_empty() {
                 let at = self.place();
                 return Err(self.source.truncated(at, row_of(element), "the end of the file"));
             }
+            let length = rest.iter().position(|&byte| byte == b'\n').map_or(rest.len(), |end| end + 1);
+            self.cursor.set_position((begin + length) as u64);
             self.line += 1;
+            // All of an ASCII file is text: the header's reader has looked.
+            self.text = std::str::from_utf8(&rest[..length]).unwrap_or_default();
             if !self.text.trim().is_empty() {
                 return Ok(());
             }
         }
     }
 
-    fn vertices(&mut self, element: &ElementDef, mesh: &mut Mesh) -> Result<(), LoadError> {
+    /// Refuses a list before it is held twice: corners of a byte or two that go round and round take many times the file.
+    fn check_list(&self, at: FilePlace, length: usize) -> Result<(), LoadError> {
+        if length <= self.longest_list {
+            return Ok(());
+        }
+        let expected = format!("a list of at most {} numbers, {LIST} and {LIST_PER_VERTEX} for each vertex", self.longest_list);
+        Err(self.source.syntax(at, expected, length.to_string()))
+    }
+
+    fn vertices(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), LoadError> {
         for axis in ["x", "y", "z"] {
             if !element.properties.contains_key(axis) {
                 let expected = format!("a property {axis:?} of \"vertex\"");
                 return Err(self.source.syntax(FilePlace::Line(1), expected, "none"));
             }
         }
+        let first = mesh.places.len();
+        if first == 0 && !has_single_places(element) {
+            mesh.places = Places::Double(Vec::new());
+        }
+        let has = |names: [&str; 3]| names.iter().any(|name| element.properties.contains_key(*name));
+        let has_normals = has(["nx", "ny", "nz"]);
+        let has_colours = has(["red", "green", "blue"]) || has(["diffuse_red", "diffuse_green", "diffuse_blue"]);
+        mesh.places.reserve_exact(element.count);
+        mesh.normals.reserve_exact(if has_normals { element.count } else { 0 });
+        mesh.colours.reserve_exact(if has_colours { element.count } else { 0 });
         for _ in 0..element.count {
             let (at, row) = self.next::<VertexRow>(element)?;
-            let position = self.source.coordinates(at, row.position)?;
+            mesh.places.push(self.source.coordinates(at, row.position)?.into());
             let normal = self.source.coordinates(at, row.normal)?;
-            mesh.push(position.into(), DVec3::from_array(normal), row.colour);
+            if has_normals {
+                mesh.normals.push(direction(DVec3::from_array(normal)));
+            }
+            if has_colours {
+                mesh.colours.push(row.colour);
+            }
+        }
+        self.longest_list = LIST + LIST_PER_VERTEX * mesh.places.len();
+        Ok(())
+    }
+
+    /// Cuts polygons into triangles that share their first corners.
+    fn faces(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), LoadError> {
+        for _ in 0..element.count {
+            let (at, row) = self.next::<FaceRow>(element)?;
+            if row.len() < 3 {
+                let found = format!("{}", row.len());
+                return Err(self.source.syntax(at, "a face of at least 3 corners", found));
+            }
+            self.check_list(at, row.len())?;
+            check_triangles(self.source, mesh.triangles.len(), row.len() - 2)?;
+            let first = self.corner(at, &row, 0, mesh)?;
+            let mut before = self.corner(at, &row, 1, mesh)?;
+            for n in 2..row.len() {
+                let corner = self.corner(at, &row, n, mesh)?;
+                push(&mut mesh.triangles, [first, before, corner]);
+                before = corner;
+            }
         }
         Ok(())
     }
 
-    fn faces(&mut self, element: &ElementDef, mesh: &mut Mesh) -> Result<(), LoadError> {
-        let count = mesh.positions.len();
-        for _ in 0..element.count {
-            let (at, row) = self.next::<FaceRow>(element)?;
-            if row.corners.len() < 3 {
-                let found = format!("{}", row.corners.len());
-                return Err(self.source.syntax(at, "a face of at least 3 corners", found));
-            }
-            let corners = row.corners.iter();
-            let corners = corners.map(|&c| self.source.index(at, "vertices", c, count, c));
-            mesh.fan(&corners.collect::<Result<Vec<u32>, _>>()?);
-        }
-        Ok(())
+    fn corner(&self, at: FilePlace, row: &FaceRow, n: usize, mesh: &Model) -> Result<u32, LoadError> {
+        let corner = row.corner(n);
+        self.source.index(at, "vertices", corner, mesh.places.len(), corner)
     }
 
     /// Corners of strips, which -1 parts: each but the first two of a strip ends a triangle, of which every other one is turned.
-    fn strips(&mut self, element: &ElementDef, mesh: &mut Mesh) -> Result<(), LoadError> {
-        let count = mesh.positions.len();
+    fn strips(&mut self, element: &ElementDef, mesh: &mut Model) -> Result<(), LoadError> {
         for _ in 0..element.count {
             let (at, row) = self.next::<FaceRow>(element)?;
-            for strip in row.corners.split(|&corner| corner == -1) {
-                let corners = strip.iter().map(|&c| self.source.index(at, "vertices", c, count, c));
-                let corners: Vec<u32> = corners.collect::<Result<_, _>>()?;
-                for (n, three) in corners.windows(3).enumerate() {
-                    let turned = n % 2;
-                    mesh.triangles.push([three[turned], three[1 - turned], three[2]]);
+            self.check_list(at, row.len())?;
+            check_triangles(self.source, mesh.triangles.len(), row.len())?;
+            let mut strip = Vec::with_capacity(3);
+            let mut turned = 0;
+            for n in 0..row.len() {
+                if row.corner(n) == -1 {
+                    strip.clear();
+                    turned = 0;
+                    continue;
+                }
+                strip.push(self.corner(at, &row, n, mesh)?);
+                if let [_, _, last] = strip[..] {
+                    push(&mut mesh.triangles, [strip[turned], strip[1 - turned], last]);
+                    strip.remove(0);
+                    turned = 1 - turned;
                 }
             }
         }
@@ -188,6 +244,23 @@ impl<'a> Rows<'a> {
     fn skip(&mut self, element: &ElementDef) -> Result<(), LoadError> {
         (0..element.count).try_for_each(|_| self.next::<Skipped>(element).map(|_| ()))
     }
+}
+
+/// Adds a triangle to a list that grows by an eighth, not twice: a file can consist of them.
+fn push(triangles: &mut Vec<[u32; 3]>, triangle: [u32; 3]) {
+    if triangles.len() == triangles.capacity() {
+        triangles.reserve_exact(triangles.len() / 8 + 1024);
+    }
+    triangles.push(triangle);
+}
+
+/// Whether single precision holds the places of an element's rows exactly.
+fn has_single_places(element: &ElementDef) -> bool {
+    let is_double = |axis: &str| {
+        let kind = element.properties.get(axis).map(|property| &property.data_type);
+        matches!(kind, Some(PropertyType::Scalar(ScalarType::Int | ScalarType::UInt | ScalarType::Double)))
+    };
+    !["x", "y", "z"].into_iter().any(is_double)
 }
 
 /// Such as: a row of "vertex" (x y z).
@@ -216,6 +289,20 @@ fn check_header(source: &Source<'_>, header: &str) -> Result<(), LoadError> {
         }
     }
     Ok(())
+}
+
+/// How long the lists of a row say that they are.
+fn lists<'t>(row: &'t str, element: &'t ElementDef) -> impl Iterator<Item = usize> + 't {
+    let mut words = row.split_whitespace();
+    element.properties.values().filter_map(move |property| {
+        let first = words.next()?;
+        if !matches!(property.data_type, PropertyType::List(..)) {
+            return None;
+        }
+        let count: usize = first.parse().ok()?;
+        count.checked_sub(1).map(|last| words.nth(last));
+        Some(count)
+    })
 }
 
 /// What stands in a row behind the numbers of its element.
@@ -331,34 +418,57 @@ fn number(property: &Property) -> Option<f64> {
     })
 }
 
+/// Corners as the file has them: in a file of a byte each, another list of them would be many times as long.
 struct FaceRow {
-    corners: Vec<i64>,
+    corners: Property,
 }
 
 impl PropertyAccess for FaceRow {
     fn new() -> Self {
-        Self { corners: Vec::new() }
+        Self { corners: Property::ListUChar(Vec::new()) }
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
         if !matches!(name, "vertex_indices" | "vertex_index") {
             return PropertyAccessResult::Ignored;
         }
-        self.corners = match property {
-            Property::ListChar(list) => widen(list),
-            Property::ListUChar(list) => widen(list),
-            Property::ListShort(list) => widen(list),
-            Property::ListUShort(list) => widen(list),
-            Property::ListInt(list) => widen(list),
-            Property::ListUInt(list) => widen(list),
+        match property {
+            Property::ListChar(_)
+            | Property::ListUChar(_)
+            | Property::ListShort(_)
+            | Property::ListUShort(_)
+            | Property::ListInt(_)
+            | Property::ListUInt(_) => self.corners = property,
             _ => return PropertyAccessResult::UnsupportedType,
-        };
+        }
         PropertyAccessResult::Set
     }
 }
 
-fn widen<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
-    list.into_iter().map(Into::into).collect()
+impl FaceRow {
+    fn len(&self) -> usize {
+        match &self.corners {
+            Property::ListChar(list) => list.len(),
+            Property::ListUChar(list) => list.len(),
+            Property::ListShort(list) => list.len(),
+            Property::ListUShort(list) => list.len(),
+            Property::ListInt(list) => list.len(),
+            Property::ListUInt(list) => list.len(),
+            _ => 0,
+        }
+    }
+
+    fn corner(&self, n: usize) -> i64 {
+        match &self.corners {
+            Property::ListChar(list) => list[n].into(),
+            Property::ListUChar(list) => list[n].into(),
+            Property::ListShort(list) => list[n].into(),
+            Property::ListUShort(list) => list[n].into(),
+            Property::ListInt(list) => list[n].into(),
+            Property::ListUInt(list) => list[n].into(),
+            _ => -1,
+        }
+    }
 }
 
 struct Skipped;

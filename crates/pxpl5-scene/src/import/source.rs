@@ -1,13 +1,11 @@
 //! The file being read: its name, its bytes, and the errors that point into it.
 
-use super::placement::Placement;
 use crate::config::MAX_COORDINATE;
 use crate::error::{FilePlace, LoadError};
 
 pub(crate) struct Source<'a> {
     pub(crate) name: &'a str,
     pub(crate) bytes: &'a [u8],
-    pub(crate) placement: Placement,
 }
 
 impl<'a> Source<'a> {
