@@ -161,7 +161,7 @@ fn write(mut folder: OutputFolder, plan: &Plan, results: &Results) -> Result<Pat
         format!("{}{}", origin_lines(report, "# "), plan.settings_for_any_folder()).as_bytes(),
     )?;
     if plan.output.csv {
-        folder.put("results.csv", quantities_csv(report, &plan.measure, results).as_bytes())?;
+        folder.put("results.csv", quantities_csv(&plan.measure, results).as_bytes())?;
         folder.put("pictures.csv", pxpl5::results::csv(outcome).as_bytes())?;
     }
     #[cfg(feature = "parquet")]

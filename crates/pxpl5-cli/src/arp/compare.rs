@@ -40,7 +40,7 @@ pub(super) fn run(args: CompareArgs) -> Result<(), CliError> {
     if let Some(mut folder) = folder {
         folder.put("comparison.json", json.as_bytes())?;
         let rows = comparison.rows.iter().map(|row| COLUMNS.map(|(name, cell)| (name, cell(row)).1));
-        folder.put("rows.csv", csv_table("", COLUMNS.map(|(name, _)| name), rows).as_bytes())?;
+        folder.put("rows.csv", csv_table(COLUMNS.map(|(name, _)| name), rows).as_bytes())?;
         folder.commit()?;
     }
     match (args.json, args.walk.quiet) {

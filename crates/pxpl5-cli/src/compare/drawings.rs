@@ -118,7 +118,7 @@ fn rows_csv(comparison: &Comparison) -> String {
         );
         cells
     });
-    csv_table("", columns, rows)
+    csv_table(columns, rows)
 }
 
 /// A row for each field of each pipeline, of the first seed.
@@ -134,7 +134,7 @@ fn errors_csv(comparison: &Comparison) -> String {
             ]
         })
     });
-    csv_table("", ["pipeline", "field", "time_s", "error_px_mean", "error_px_centre"], rows)
+    csv_table(["pipeline", "field", "time_s", "error_px_mean", "error_px_centre"], rows)
 }
 
 /// What is no number is empty.

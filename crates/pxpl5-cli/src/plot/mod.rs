@@ -196,5 +196,5 @@ fn csv(question: &Question, groups: &[Group]) -> String {
         ];
         group.by.iter().cloned().chain([question::text(&group.x)]).chain(numbers).collect::<Vec<_>>()
     });
-    csv_table("", names, rows)
+    csv_table(names, rows)
 }

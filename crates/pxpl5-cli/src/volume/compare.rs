@@ -101,7 +101,7 @@ fn over_exact(row: &VariantRow, rings: std::ops::Range<usize>) -> String {
 
 fn rows_csv(comparison: &VolumeComparison) -> String {
     let rows = comparison.variants.iter().map(|row| COLUMNS.map(|(_, cell)| cell(row)));
-    csv_table("", COLUMNS.map(|(name, _)| name), rows)
+    csv_table(COLUMNS.map(|(name, _)| name), rows)
 }
 
 fn text(comparison: &VolumeComparison) -> String {

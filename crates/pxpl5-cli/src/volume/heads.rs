@@ -96,7 +96,7 @@ const COLUMNS: [Column; 12] = [
 fn errors_csv(study: &HeadStudy) -> String {
     let cell = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.6}"));
     let rows = study.samples.iter().map(|sample| COLUMNS.map(|(_, value)| cell(value(sample))));
-    csv_table("", COLUMNS.map(|(name, _)| name), rows)
+    csv_table(COLUMNS.map(|(name, _)| name), rows)
 }
 
 /// Angles over time: one figure that compares latency with voxels and dither.

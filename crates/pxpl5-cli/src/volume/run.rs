@@ -125,7 +125,7 @@ fn slices_csv(volume: &Volume) -> String {
         let [generated, accepted] = fragments;
         [slice.to_string(), stats.draws.to_string(), generated, accepted, stats.added.to_string()]
     });
-    csv_table("", columns, rows)
+    csv_table(columns, rows)
 }
 
 /// What is not known of a volume that no GPU drew.

@@ -5,7 +5,6 @@ use super::{Header, Status, SweepRow};
 /// Which columns there are: the settings that differ and the quantities that were measured.
 #[derive(Debug)]
 pub(super) struct Table<'a> {
-    header: &'a Header,
     parameters: Vec<&'a str>,
     measured: Vec<&'a str>,
 }
@@ -13,27 +12,16 @@ pub(super) struct Table<'a> {
 impl<'a> Table<'a> {
     pub(super) fn of(header: &'a Header) -> Self {
         Self {
-            header,
             parameters: header.axes.iter().flat_map(|axis| &axis.paths).map(String::as_str).collect(),
             measured: header.measure.keys().map(String::as_str).collect(),
         }
     }
 
-    /// Comments, and the names of the columns.
+    /// The names of the columns; where the rows come from stands in the header of `rows.jsonl`.
     pub(super) fn head(&self) -> Vec<u8> {
-        let header = self.header;
-        let origin = [
-            ("machine", header.machine.clone()),
-            ("config_hash", header.config_hash.clone()),
-            ("version", header.version.clone()),
-            ("level", header.level.clone()),
-            ("seed", header.seed.to_string()),
-        ];
-        let comments: String = origin.iter().map(|(key, value)| format!("# {key}: {value}\n")).collect();
         let settings = self.parameters.iter().chain(&self.measured).copied();
         let columns = ["point", "status"].into_iter().chain(settings).chain(["trace_hash", "error"]);
-        let names = line_of_cells(columns.map(str::to_owned));
-        [comments.into_bytes(), names].concat()
+        line_of_cells(columns.map(str::to_owned))
     }
 
     /// The line of a row.

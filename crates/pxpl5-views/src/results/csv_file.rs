@@ -2,27 +2,21 @@
 
 use csv::WriterBuilder;
 
-/// A table as CSV: lines of comment as they are, a line of names, a line for each row. Lines end with a line feed, and a
-/// value with a comma, a quote or a line break in it stands in quotes.
-///
-/// `comments` is empty, or lines that begin with `#` and end with a line feed, such as
-/// [`origin_lines`](super::origin_lines) gives.
+/// A table as CSV: a line of names, a line for each row, and nothing else, so that pandas, R and spreadsheets open it as it is; where
+/// it comes from stands in the file beside it. Lines end with a line feed, and a value with a comma, a quote or a line break in it
+/// stands in quotes.
 ///
 /// ```
 /// let rows = [["updates_hz", "59.94"], ["a, b", ""]];
-/// let text = pxpl5_views::results::csv_table("# seed: 1\n", ["quantity", "value"], rows);
-/// assert_eq!(text, "# seed: 1\nquantity,value\nupdates_hz,59.94\n\"a, b\",\n");
+/// let text = pxpl5_views::results::csv_table(["quantity", "value"], rows);
+/// assert_eq!(text, "quantity,value\nupdates_hz,59.94\n\"a, b\",\n");
 /// ```
 #[must_use]
-pub fn csv_table<Row>(
-    comments: &str,
-    columns: impl IntoIterator<Item: AsRef<[u8]>>,
-    rows: impl IntoIterator<Item = Row>,
-) -> String
+pub fn csv_table<Row>(columns: impl IntoIterator<Item: AsRef<[u8]>>, rows: impl IntoIterator<Item = Row>) -> String
 where
     Row: IntoIterator<Item: AsRef<[u8]>>,
 {
-    let mut writer = WriterBuilder::new().flexible(true).from_writer(comments.as_bytes().to_vec());
+    let mut writer = WriterBuilder::new().flexible(true).from_writer(Vec::new());
     // Memory can be written, and rows of any length are taken.
     let _ = writer.write_record(columns);
     for row in rows {
@@ -37,12 +31,12 @@ mod tests {
 
     #[test]
     fn quotes_are_doubled_and_stand_in_quotes() {
-        let text = csv_table("", ["a"], [["say \"no\""], ["two\nlines"]]);
+        let text = csv_table(["a"], [["say \"no\""], ["two\nlines"]]);
         assert_eq!(text, "a\n\"say \"\"no\"\"\"\n\"two\nlines\"\n");
     }
 
     #[test]
     fn a_table_without_rows_has_its_names() {
-        assert_eq!(csv_table("# c\n", ["a", "b"], [] as [[&str; 2]; 0]), "# c\na,b\n");
+        assert_eq!(csv_table(["a", "b"], [] as [[&str; 2]; 0]), "a,b\n");
     }
 }

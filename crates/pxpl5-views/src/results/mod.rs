@@ -1,7 +1,7 @@
 //! Results as tables: a row for each picture that was shown, as CSV and, with the feature `parquet`, as Parquet.
 //!
-//! Both open with what the file can be made again from ([`origin`]): CSV with lines of comment that begin with `#`,
-//! Parquet with the file's key-value metadata (keys `pxpl5.machine` and so on). All times are whole picoseconds of
+//! What the file can be made again from ([`origin`]) stands in `report.json` and `experiment.toml` beside CSV, and in Parquet's own
+//! key-value metadata (keys `pxpl5.machine` and so on). All times are whole picoseconds of
 //! simulated time, so nothing is rounded. [`columns`] is the schema; its name and version stand in [`SCHEMA`].
 //!
 //! [`csv_table`] is the writer of every CSV file; [`quantities_csv`] is the table of what an experiment measured.

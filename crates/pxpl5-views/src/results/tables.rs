@@ -1,17 +1,15 @@
 //! The tables of a run as CSV.
 
 use super::csv_file::csv_table;
-use super::origin::origin_lines;
-use super::pictures::{SCHEMA, columns, rows};
-use pxpl5_measure::{Measure, Report, Results};
+use super::pictures::{columns, rows};
+use pxpl5_measure::{Measure, Results};
 use pxpl5_run::Outcome;
 
-/// The pictures as CSV: lines of comment, a line of names, a line for each picture; lines end with a line feed.
+/// The pictures as CSV: a line of names, a line for each picture; lines end with a line feed.
 #[must_use]
 pub fn csv(outcome: &Outcome) -> String {
-    let comments = format!("# schema: {SCHEMA}\n{}", origin_lines(&Report::of(outcome), "# "));
     let names = columns().into_iter().map(|column| column.name);
-    csv_table(&comments, names, rows(outcome).into_iter().map(as_text))
+    csv_table(names, rows(outcome).into_iter().map(as_text))
 }
 
 fn as_text(row: Vec<Option<u64>>) -> Vec<String> {
@@ -21,10 +19,10 @@ fn as_text(row: Vec<Option<u64>>) -> Vec<String> {
 /// Quantities of a run in long form as CSV: a line for each with its value, empty where the run shows none, and its
 /// definition.
 #[must_use]
-pub fn quantities_csv(report: &Report, measures: &[Measure], results: &Results) -> String {
+pub fn quantities_csv(measures: &[Measure], results: &Results) -> String {
     let rows = measures.iter().map(|measure| {
         let value = measure.of(results).map_or_else(String::new, |value| value.to_string());
         [measure.name().to_owned(), value, measure.definition().to_owned()]
     });
-    csv_table(&origin_lines(report, "# "), ["quantity", "value", "definition"], rows)
+    csv_table(["quantity", "value", "definition"], rows)
 }
