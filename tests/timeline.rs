@@ -231,15 +231,19 @@ fn the_published_figures_show_what_they_were_drawn_for() {
     }
 }
 
-/// Balls of a model walk past four display memories; each has a row of its own, and the trace a heading.
+/// A walk sideways through a hall that lies in all four memories; each has a row of its own, and the trace a heading.
 #[test]
 fn each_display_memory_has_a_row_of_what_it_received_and_showed() {
     let registry = pxpl5::registry();
     let entry = registry.pipeline("arp-cells").expect("listed");
     let config = registry.machine_of(MachineConfig::preset(entry.preset).expect("a preset"));
     let pipeline = (entry.build)(&pxpl5::PipelineSettings::default());
-    let room = std::sync::Arc::new(scene::builtin("room").expect("built in"));
-    let outcome = Experiment::with(config, pipeline, room).fields(60).pixels(Pixels::Off).run().expect("it runs");
+    let hall = std::sync::Arc::new(scene::builtin("gallery").expect("built in"));
+    let motion = std::sync::Arc::new(pxpl5::tracking::motion::Slide::right_at(1.0));
+    let tracker = pxpl5::tracking::tracker::TrackerConfig::ideal();
+    let head = pxpl5::Head::new(motion, tracker, pxpl5::tracking::predict::PredictorKind::None, 1).expect("in range");
+    let experiment = Experiment::with(config, pipeline, hall).fields(60).pixels(Pixels::Off).head(head);
+    let outcome = experiment.run().expect("it runs");
     let options = TimelineOptions { fields: Some(12), ..TimelineOptions::default() };
     let timeline = Timeline::of(&outcome, &options);
     let history = pxpl5::run::FaceHistory::of(&outcome).expect("a display with faces");
@@ -256,7 +260,7 @@ fn each_display_memory_has_a_row_of_what_it_received_and_showed() {
         assert!(row.shown.windows(2).all(|pair| pair[0].end == pair[1].begin), "memory {k}");
         assert!(row.bars.windows(2).all(|pair| pair[0].picture < pair[1].picture), "memory {k}");
     }
-    assert!(received > 4, "{received}");
+    assert!(received > 8, "{received}");
     assert!(timeline.rows.iter().all(|row| row.name != "display"), "no row for all memories together");
     let drawing = svg(&outcome, &options);
     assert!(drawing.contains("arp port 3") && drawing.contains("shows "));

@@ -34,8 +34,8 @@ impl EyeBoards {
     /// Swaps what can be swapped: alone, or all memories of a set that are ready at this retrace. Which, and to which buffer.
     fn retrace(&mut self, now: Time) -> Vec<(usize, u8)> {
         let ready: Vec<Option<u8>> = self.memories.iter().map(|memory| memory.is_ready(now)).collect();
-        let all_ready =
-            |set: u8| (0..u8::BITS as usize).all(|k| set >> k & 1 == 0 || matches!(ready.get(k), Some(Some(_))));
+        // An update of another set, or of none, does not stand for the one that this set waits for.
+        let all_ready = |set: u8| (0..u8::BITS as usize).all(|k| set >> k & 1 == 0 || ready.get(k) == Some(&Some(set)));
         let may_swap: Vec<bool> = ready.iter().map(|set| set.is_some_and(all_ready)).collect();
         let memories = (0..).zip(self.memories.iter_mut().zip(may_swap));
         memories.filter_map(|(k, (memory, may_swap))| Some((k, memory.retrace(may_swap, now)?))).collect()

@@ -225,6 +225,23 @@ fn memories_that_exchanged_objects_swap_together_or_not_at_all() {
     assert_eq!(missed, [1, 1]);
 }
 
+/// Where another update of the first memory stood for the one that belongs to the set, that one would wait for ever.
+#[test]
+fn an_update_of_another_set_does_not_stand_for_one_of_this() {
+    let mut bench = Bench::new(&CONFIG);
+    let buffers = |bench: &Bench| [0, 1].map(|k| bench.arp().memories(Eye::Left)[k].shown_buffer());
+    bench.begin(0, 1, &[]);
+    bench.begin(1, 1, &[]);
+    bench.words(Time(1_000), 0, swap_request(1));
+    bench.words(Time(1_000), 1, swap_together(1, 0b11));
+    bench.tick(1);
+    assert_eq!(buffers(&bench), [1, 0], "the first memory's older update is shown alone");
+    bench.begin(0, 0, &[]);
+    bench.words(bench.arp().tick(PeriodNumber(1)), 0, swap_together(0, 0b11));
+    bench.tick(2);
+    assert_eq!(buffers(&bench), [0, 1]);
+}
+
 #[test]
 fn memories_are_composed_by_depth_over_the_ring() {
     for (depths, expected) in

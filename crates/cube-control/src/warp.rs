@@ -1,6 +1,6 @@
 //! Region warping: what a slave moves before it transforms.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use pphigs::{DisplayList, ModelFrame};
 use priority_rendering::{Cell, Dealing, Falloff, PriorityError, RegionWarp};
 use pxpl5_wire::{PictureNumber, Word};
@@ -80,13 +80,16 @@ const fn joined(low: Word, high: Word) -> u64 {
 
 /// Display lists with moved vertices. All slaves move the same ones alike; only the host's time is saved by keeping them.
 #[derive(Clone, Debug, Default)]
-pub struct WarpedLists(Arc<Mutex<VecDeque<(PictureNumber, Arc<DisplayList>)>>>);
+pub struct WarpedLists(Arc<Mutex<Kept>>);
+
+/// Lists by the update that they are of, the newest first.
+type Kept = VecDeque<(PictureNumber, Arc<DisplayList>)>;
 
 /// Updates whose lists are kept: one that is transformed while a slower slave is at the one before.
 const KEPT: usize = 2;
 
 impl WarpedLists {
-    /// The list of an update, whose `chosen` structures are in a memory; `moved` are structures that have a place of their own.
+    /// The list of an update of a memory, in which vertices of the structures that are still are moved.
     pub(crate) fn list(
         &self,
         list: &Arc<DisplayList>,
@@ -105,17 +108,13 @@ impl WarpedLists {
         let vertices: BTreeSet<u32> = corners.copied().collect();
         for vertex in vertices {
             let place = &mut warped.positions[vertex as usize];
-            *place = warp.moved(place.as_dvec3(), memory).map_or(*place, |moved: DVec3| single(moved));
+            *place = warp.moved(place.as_dvec3(), memory).map_or(*place, |moved| moved.as_vec3());
         }
         let warped = Arc::new(warped);
         kept.truncate(KEPT - 1);
         kept.push_front((number, Arc::clone(&warped)));
         warped
     }
-}
-
-fn single(place: DVec3) -> Vec3 {
-    place.as_vec3()
 }
 
 #[cfg(test)]

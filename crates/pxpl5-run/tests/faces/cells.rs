@@ -155,6 +155,27 @@ fn pieces_tear_and_warped_ones_meet() {
     assert_eq!(torn(&warped), 0);
 }
 
+/// Updates of each memory by the rule alone, with an ideal source: at every retrace the eye is where the ideal tracker's last report
+/// says, a millisecond apart; memory k is due when it has gone farther than 2 d sin(theta / 2). The border of the cells behind the eye,
+/// 5.5 m away and 5 m more for each memory, is the nearest all the way.
+fn updates_by_the_rule(fields: u64) -> [u64; 4] {
+    let half_theta = (90.0_f64 / 512.0).to_radians() / 2.0;
+    let mut updates = [0; 4];
+    for (k, count) in updates.iter_mut().enumerate() {
+        let distance_m = if k == 0 { 0.0 } else { 5.5 + 5.0 * (k as f64 - 1.0) };
+        let mut from_m = f64::NEG_INFINITY;
+        for field in 0..fields {
+            let eye_m = (field as f64 * 1001.0 / 60.0).floor() * 1e-3;
+            if eye_m - from_m > 2.0 * distance_m * half_theta.sin() {
+                *count += 1;
+                from_m = eye_m;
+            }
+        }
+    }
+    updates
+}
+
+/// Where the machine is fast enough it does what an ideal source does.
 #[test]
 fn far_cells_are_drawn_less_often_than_near_ones() {
     let [plain, warped] = [CELLS, WARPED].map(|pipeline| along_the_wall(pipeline, 90.0 / 512.0));
@@ -163,6 +184,10 @@ fn far_cells_are_drawn_less_often_than_near_ones() {
     println!("updates {plain:?} {warped:?}");
     // With warping memories of a cycle are shown together, so that the fastest waits for the others.
     assert!(warped[0] <= plain[0]);
+    let ideal = updates_by_the_rule(200);
+    println!("by the rule {ideal:?}");
+    // The last ones are not shown yet when the run ends.
+    assert!(plain.iter().zip(ideal).all(|(found, ideal)| ideal.abs_diff(*found) <= 2), "{plain:?} {ideal:?}");
     assert!(plain[0] > 190 && plain.windows(2).all(|pair| pair[0] >= pair[1]), "{plain:?}");
     assert!(plain[0] > plain[1] && plain[1] > plain[2], "{plain:?}");
 }
