@@ -172,7 +172,7 @@ fn simultaneous_events_commute() {
 
 /// A board that remembers more than the last two fields.
 fn remembering() -> Board {
-    Board::with(FrameBufferConfig { remembered_fields: 8, ..FrameBufferConfig::NTSC })
+    Board::with(FrameBufferConfig { fields_kept: 8, ..FrameBufferConfig::NTSC })
 }
 
 /// Two fields of one frame, written in one colour each.
