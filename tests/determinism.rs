@@ -1,6 +1,6 @@
 //! Same input, same trace: whatever the ties, the threads and the pixels.
 
-use pxpl5::{Experiment, MachineConfig, Measured, Pixels, RenderingControl, Slats, Workstation, scene};
+use pxpl5::{Experiment, Frameless, MachineConfig, Measured, Pixels, RenderingControl, Slats, Workstation, scene};
 
 fn pipelines() -> [Experiment; 3] {
     let mig = scene::builtin("mig").expect("built in");
@@ -51,4 +51,45 @@ fn pixels_and_threads_change_no_time_and_threads_no_pixel() {
             }
         }
     }
+}
+
+/// The whole report, without what the host and the order of ties make of it: the seconds that it took, and how many events were
+/// scheduled in vain.
+fn report(experiment: &Experiment) -> serde_json::Value {
+    let mut report = serde_json::to_value(experiment.run().expect("it runs").report()).expect("it is data");
+    let fields = report.as_object_mut().expect("an object");
+    fields.remove("host_seconds");
+    fields.remove("events");
+    report
+}
+
+/// Machines in which more happens at one instant than on any that was built.
+fn machines_of_many_ties() -> [Experiment; 2] {
+    let scene = scene::builtin("full-screen:4").expect("built in");
+    let crowded = MachineConfig { n_renderers: 1_000, ..MachineConfig::small_hmd() };
+    let mut instant = MachineConfig::small_hmd();
+    instant.set("renderer.backing_block_clocks", 0u64).expect("within its limits");
+    let mig = scene::builtin("mig").expect("built in");
+    [
+        Experiment::new(crowded, Frameless::new(), scene).fields(8).pixels(Pixels::Off),
+        Experiment::new(instant, RenderingControl::mono(), mig).fields(16).pixels(Pixels::Off),
+    ]
+}
+
+#[test]
+fn no_number_of_a_report_depends_on_ties_however_many_there_are() {
+    for experiment in machines_of_many_ties().into_iter().chain(pipelines().map(|e| e.pixels(Pixels::Off))) {
+        let unshuffled = report(&experiment);
+        for seed in 0..6 {
+            assert_eq!(report(&experiment.clone().shuffle_ties(seed)), unshuffled, "{seed}");
+        }
+    }
+}
+
+/// The statistics are in the hash: who sums in another order is found out.
+#[test]
+fn a_report_hash_is_more_than_the_trace() {
+    let [experiment, ..] = pipelines();
+    let outcome = experiment.pixels(Pixels::Off).run().expect("it runs");
+    assert_ne!(outcome.report().trace_hash, outcome.record().trace_hash().to_string());
 }

@@ -176,3 +176,39 @@ fn no_file_has_more_than_600_lines_and_only_the_command_prints() {
 fn architecture_describes_the_crates_as_they_are() {
     document::check(&workspace());
 }
+
+/// Functions that each host computes in its own way, by its own library. Square roots are exact everywhere.
+const OF_THE_HOSTS_LIBRARY: [&str; 26] = [
+    ".sin()", ".cos()", ".tan()", ".sin_cos()", ".asin()", ".acos()", ".atan()", ".atan2(", ".sinh()", ".cosh()", ".tanh()",
+    ".exp()", ".exp2()", ".exp_m1()", ".ln()", ".ln_1p()", ".log(", ".log2()", ".log10()", ".powf(", ".powi(", ".cbrt()",
+    ".hypot(", ".slerp(", "::from_rotation_", "::from_axis_angle(",
+];
+
+/// Where one of them is called and no simulated number depends on it.
+const ACCEPTED_PLACES: [(&str, &str, &str); 1] = [(
+    "parameters",
+    "value.rs",
+    "2f64.powi(64) is a power of two, which every library gives exactly; it tells whether a setting is a whole number",
+)];
+
+/// Same input, same trace on every host: what is simulated takes transcendental functions from `libm`, which is compiled along.
+#[test]
+fn nothing_simulated_calls_a_transcendental_function_of_the_host() {
+    let members = workspace();
+    let simulated: BTreeSet<String> =
+        ["pxpl5-measure", "pxpl5-analytic", "pxpl5-volume", "pxpl5-arp"].iter().flat_map(|top| closure(&members, top)).collect();
+    let mut found = Vec::new();
+    for member in members.iter().filter(|member| simulated.contains(&member.name)) {
+        for file in member.files.iter().filter(|file| !file.path.contains("tests")) {
+            let product = source::code(&source::product(&file.text));
+            for function in OF_THE_HOSTS_LIBRARY.iter().filter(|function| product.contains(**function)) {
+                let accepted =
+                    ACCEPTED_PLACES.iter().any(|(name, end, _)| *name == member.name && file.path.ends_with(end));
+                if !accepted {
+                    found.push(format!("{} of {}: {function}", file.path, member.name));
+                }
+            }
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}

@@ -3,7 +3,7 @@
 mod support;
 
 use proptest::prelude::*;
-use pxpl5_framebuffer::{FrameBufferEvent, SeenField, SeenLateRegion};
+use pxpl5_framebuffer::{FrameBufferConfig, FrameBufferEvent, SeenField, SeenLateRegion};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber, RegionGrid};
 use std::sync::Arc;
@@ -168,4 +168,92 @@ fn simultaneous_events_commute() {
         })
         .collect();
     assert!(results.iter().all(|result| *result == results[0]));
+}
+
+/// A board that remembers more than the last two fields.
+fn remembering() -> Board {
+    Board::with(FrameBufferConfig { fields_kept: 8, ..FrameBufferConfig::NTSC })
+}
+
+/// Two fields of one frame, written in one colour each.
+fn two_fields() -> Board {
+    let mut board = Board::new();
+    board.retraces(0..=6);
+    for (parity, first) in [(FieldParity::Even, RED), (FieldParity::Odd, GREEN)] {
+        for region in 0..RegionGrid::FIELD.regions() as u16 {
+            let field = support::field_target(0, parity, region, 0);
+            board.region(Time(MESSAGE.0 * 16 * u64::from(region + 1)), field, &support::colour(first));
+        }
+    }
+    board.run();
+    board
+}
+
+const RED: u32 = 0x00_00_ff;
+const GREEN: u32 = 0x00_ff_00;
+
+#[test]
+fn two_fields_of_a_frame_lie_between_each_other_whichever_is_named_first() {
+    let board = two_fields();
+    let seen = |field| board.device.seen(PeriodNumber(field)).expect("remembered");
+    let even = seen(4).picture();
+    let odd = seen(5).picture();
+    assert_ne!(even.get_pixel(9, 9), odd.get_pixel(9, 9), "the fields can be told apart");
+    for frame in [seen(4).interlaced_with(&seen(5)), seen(5).interlaced_with(&seen(4))] {
+        assert_eq!(frame.dimensions(), (640, 480));
+        for (x, y) in [(0, 0), (9, 1), (9, 18), (639, 479)] {
+            let field = if y % 2 == 0 { &even } else { &odd };
+            assert_eq!(frame.get_pixel(x, y), field.get_pixel(x, y / 2), "({x}, {y})");
+        }
+    }
+}
+
+/// Of two fields of the same lines the later one is shown, on a black frame.
+#[test]
+fn two_fields_of_the_same_lines_give_the_later_one() {
+    let mut board = remembering();
+    board.retraces(0..=6);
+    let early = support::field_target(0, FieldParity::Even, 0, 0);
+    board.region(Time(MESSAGE.0 * 16), early, &support::colour(RED));
+    let between = board.device.video().retrace(PeriodNumber(3));
+    let late = support::field_target(0, FieldParity::Even, 0, 1);
+    board.region(between + MESSAGE * 16, late, &support::colour(GREEN));
+    board.run();
+    let seen = |field| board.device.seen(PeriodNumber(field)).expect("remembered");
+    let expected = seen(4).picture();
+    assert_ne!(seen(2).picture().get_pixel(5, 5), expected.get_pixel(5, 5), "they differ");
+    for frame in [seen(2).interlaced_with(&seen(4)), seen(4).interlaced_with(&seen(2))] {
+        assert_eq!(frame.get_pixel(5, 10), expected.get_pixel(5, 5));
+        assert_eq!(frame.get_pixel(5, 11).0, [0, 0, 0], "lines of the other field are black");
+    }
+}
+
+#[test]
+fn a_field_knows_which_buffer_was_scanned_and_the_last_one_is_the_last_scanned() {
+    let mut board = remembering();
+    assert_eq!(board.device.scanning(), None);
+    assert!(board.device.last_seen().is_none() && board.device.displayed() == 0);
+    board.retraces(0..=6);
+    let swapped = board.device.video().retrace(PeriodNumber(4));
+    board.swap(Time(swapped.0 - 1), 1);
+    board.run();
+    let buffers: Vec<u8> = (2..6).map(|field| board.device.seen(PeriodNumber(field)).expect("remembered").buffer()).collect();
+    assert_eq!(buffers, [0, 0, 1, 1]);
+    assert_eq!(board.device.last_seen().map(|seen| seen.field()), Some(PeriodNumber(5)));
+    assert_eq!(board.device.scanning(), Some(PeriodNumber(6)));
+    assert_eq!(board.device.displayed(), 1);
+}
+
+/// A region that came whole before its field, or began after it, is not late in it; the one between is.
+#[test]
+fn late_is_what_came_while_its_field_was_scanned() {
+    for (last, is_late) in [(BEGINS, false), (BEGINS + MESSAGE.0 * 60, true), (ENDS + MESSAGE.0 * 16, false)] {
+        let mut board = remembering();
+        board.retraces(0..=FIELD + 2);
+        let top = support::field_target(0, FieldParity::Odd, 0, 0);
+        board.region(Time(last), top, &support::colour(RED));
+        board.run();
+        let seen = board.device.seen(PeriodNumber(FIELD)).expect("remembered");
+        assert_eq!(!seen.late_regions().is_empty(), is_late, "{last}");
+    }
 }

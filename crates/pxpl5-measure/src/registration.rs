@@ -98,7 +98,7 @@ fn between(from: &Moment, to: &Moment, part: f64) -> Moment {
 
 /// Angle between two vectors, exact for small ones too.
 fn angle_between(a: DVec3, b: DVec3) -> f64 {
-    a.cross(b).length().atan2(a.dot(b))
+    libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
 /// Judges single pixels of a run.

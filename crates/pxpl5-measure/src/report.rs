@@ -8,6 +8,7 @@ use crate::too_heavy::TooHeavy;
 use parameters::Value;
 use pxpl5_display::Counter;
 use pxpl5_machine::{LateRegion, Parameter};
+use pxpl5_sim::{Time, TraceHash};
 use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -87,7 +88,7 @@ pub struct Report {
     /// Of a display with faces around the head; nothing of any other.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arp: Option<FacesReport>,
-    /// Hash of everything that happened.
+    /// Hash of everything that happened, and of the statistics above.
     pub trace_hash: String,
     /// Events of the simulation that were handled.
     pub events: u64,
@@ -160,7 +161,7 @@ impl Report {
         let record = outcome.record();
         let due = outcome.due();
         let tally = outcome.tally();
-        Self {
+        let mut report = Self {
             schema: Self::SCHEMA.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             machine: config.preset.clone(),
@@ -200,9 +201,24 @@ impl Report {
             display_counters: record.display().counters(),
             head: outcome.head().and_then(|views| HeadReport::of_head(outcome, views.head())),
             arp: FacesReport::of(outcome),
-            trace_hash: record.trace_hash().to_string(),
+            trace_hash: String::new(),
             events: record.events(),
             host_seconds: outcome.host_seconds(),
-        }
+        };
+        report.hash_statistics(record.trace_hash());
+        report
+    }
+
+    /// Takes the statistics into the hash: what is reported follows from what happened, but in an order of its own, and a sum of
+    /// floating-point numbers in another order is another one.
+    fn hash_statistics(&mut self, mut hash: TraceHash) {
+        let latencies = (&self.latency_fields, &self.latency_ms, &self.latency_parts_ms, &self.latency_by_eye_ms);
+        let pictures = (self.pictures, self.shown, &self.updates_hz, &self.due, self.missed_retraces, self.ends_complete);
+        let late = (self.late_regions, &self.first_late_regions, &self.display_counters);
+        // Numbers print with as many digits as tell them apart.
+        let text = format!("{latencies:?}{pictures:?}{late:?}{:?}{:?}", self.head, self.arp);
+        let facts: Vec<u64> = [9].into_iter().chain(text.bytes().map(u64::from)).collect();
+        hash.record(Time::ZERO, &facts);
+        self.trace_hash = hash.to_string();
     }
 }

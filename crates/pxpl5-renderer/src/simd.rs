@@ -117,7 +117,7 @@ pub(crate) trait SimdVector: Copy {
     fn store_words(self, to: &mut [u64]);
     /// All bits of lane i are bit i of `bits`.
     fn spread(bits: u64) -> Self;
-    /// All bits of each lane are its bit `t`.
+    /// All bits of each lane are its bit `t`, 0 to 31.
     fn bit(self, t: u32) -> Self;
     /// Bit i is the sign of lane i.
     fn signs(self) -> u32;
@@ -125,9 +125,9 @@ pub(crate) trait SimdVector: Copy {
     fn or(self, other: Self) -> Self;
     fn and(self, other: Self) -> Self;
     fn xor(self, other: Self) -> Self;
-    /// Shifts zeros in from the left.
+    /// Shifts zeros in from the left; by 32 and more nothing is left but zeros.
     fn shift_right(self, by: u32) -> Self;
-    /// Shifts zeros in from the right.
+    /// Shifts zeros in from the right; by 32 and more nothing is left but zeros.
     fn shift_left(self, by: u32) -> Self;
     /// Where self >= 0 and `new` < `old`, signed.
     fn passes(self, new: Self, old: Self) -> Self::Mask;
@@ -241,12 +241,13 @@ impl SimdVector for PortableVector {
 
     #[inline(always)]
     fn shift_right(self, by: u32) -> Self {
-        self.map(|v| (v as u32 >> by) as i32)
+        // A processor's own shift takes the count modulo 32, a vector unit's does not.
+        if by < 32 { self.map(|v| (v as u32 >> by) as i32) } else { Self::splat(0) }
     }
 
     #[inline(always)]
     fn shift_left(self, by: u32) -> Self {
-        self.map(|v| v << by)
+        if by < 32 { self.map(|v| v << by) } else { Self::splat(0) }
     }
 
     #[inline(always)]
@@ -269,5 +270,44 @@ impl SimdVector for PortableVector {
     #[inline(always)]
     fn store_mask(mask: Self, to: &mut [u8]) {
         to[..8].copy_from_slice(&mask.0.map(|m| m as u8));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both shifts of as many numbers as the unit has lanes, or fewer.
+    struct Shifts {
+        values: [u32; 16],
+        by: u32,
+    }
+
+    impl VectorKernel for Shifts {
+        type Output = [[u32; 8]; 2];
+
+        #[inline(always)]
+        fn run<V: SimdVector>(self) -> Self::Output {
+            let vector = V::load(&self.values);
+            [vector.shift_right(self.by), vector.shift_left(self.by)].map(|shifted| {
+                let mut words = [0; 8];
+                shifted.store_words(&mut words[..V::LANES / 2]);
+                std::array::from_fn(|k| (words[k / 2] >> (32 * (k % 2))) as u32)
+            })
+        }
+    }
+
+    #[test]
+    fn every_unit_shifts_by_every_count_and_leaves_zeros_from_32_on() {
+        let values: [u32; 16] = std::array::from_fn(|k| 0x9E37_79B9_u32.wrapping_mul(k as u32 * 2 + 1) | 0x8000_0001);
+        // All that a byte can say, and counts that are small in their lowest bits.
+        for by in (0..=255).chain([256, 1 << 16, 1 << 31, (1 << 31) + 1, u32::MAX]) {
+            let right = |value: u32| (u64::from(value) << 32).checked_shr(by).map_or(0, |wide| (wide >> 32) as u32);
+            let left = |value: u32| u64::from(value).checked_shl(by).unwrap_or(0) as u32;
+            let expected = [std::array::from_fn(|k| right(values[k])), std::array::from_fn(|k| left(values[k]))];
+            for vectors in Vectors::available() {
+                assert_eq!(PresentVectors::or_portable(vectors).run(Shifts { values, by }), expected, "{vectors:?} {by}");
+            }
+        }
     }
 }

@@ -173,14 +173,14 @@ impl PredictorConfig {
 
     fn kalman(&self) -> Box<dyn Predictor> {
         let position = Belief {
-            measurement: self.position_noise_m.powi(2),
-            jerk: self.position_jerk.powi(2),
-            start: (self.start.speed.powi(2), self.start.acceleration.powi(2)),
+            measurement: square(self.position_noise_m),
+            jerk: square(self.position_jerk),
+            start: (square(self.start.speed), square(self.start.acceleration)),
         };
         let orientation = Belief {
-            measurement: self.orientation_noise_deg.to_radians().powi(2),
-            jerk: self.orientation_jerk.powi(2),
-            start: (self.start.turn.powi(2), self.start.turn_acceleration.powi(2)),
+            measurement: square(self.orientation_noise_deg.to_radians()),
+            jerk: square(self.orientation_jerk),
+            start: (square(self.start.turn), square(self.start.turn_acceleration)),
         };
         Box::new(GatedFilters::new(
             PositionKalman::new(position),
@@ -189,4 +189,9 @@ impl PredictorConfig {
             self.gate,
         ))
     }
+}
+
+/// A product, not a power: how those are rounded is left to the host.
+fn square(x: f64) -> f64 {
+    x * x
 }

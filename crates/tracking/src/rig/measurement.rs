@@ -53,7 +53,7 @@ impl Latency {
         let spans: Vec<f64> = passes.iter().map(span).map(|(from, to)| span_s(from, to)).collect();
         let n = spans.len();
         let mean_s = spans.iter().sum::<f64>() / n as f64;
-        let variance = spans.iter().map(|s| (s - mean_s).powi(2)).sum::<f64>() / (n as f64 - 1.0);
+        let variance = spans.iter().map(|s| (s - mean_s) * (s - mean_s)).sum::<f64>() / (n as f64 - 1.0);
         Self {
             n,
             mean_s,
