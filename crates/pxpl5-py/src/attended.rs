@@ -68,7 +68,9 @@ pub(crate) fn attended<T: Send + 'static>(
         match result {
             Ok(result) => return Ok(result),
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => return Err(failed_run("a bug of the emulator: its thread panicked")),
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(failed_run("a bug of the emulator: its thread panicked"));
+            }
         }
     }
 }

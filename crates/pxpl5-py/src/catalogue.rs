@@ -53,12 +53,15 @@ pub(crate) fn machine_parameters<'py>(
         machine.set(&path, value).map_err(wrong_setting)?;
     }
     machine.check().map_err(wrong_setting)?;
-    python(py, &json!({
-        "n_gps": machine.n_gps,
-        "n_renderers": machine.n_renderers,
-        "parameters": described(&machine.parameters()),
-        "warnings": machine.out_of_range().iter().map(Parameter::warning).collect::<Vec<_>>(),
-    }))
+    python(
+        py,
+        &json!({
+            "n_gps": machine.n_gps,
+            "n_renderers": machine.n_renderers,
+            "parameters": described(&machine.parameters()),
+            "warnings": machine.out_of_range().iter().map(Parameter::warning).collect::<Vec<_>>(),
+        }),
+    )
 }
 
 /// Parameters as objects: path, value, unit, standing, range, source and whether they are only listed.

@@ -9,8 +9,8 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use pxpl5::machine::PixelWorker;
 use pxpl5::{
-    Experiment as Native, ExperimentError, Host, Keep, Measure, PeriodNumber, Pipeline, Plan, Results, Workstation, levels,
-    registry,
+    Experiment as Native, ExperimentError, Host, Keep, Measure, PeriodNumber, Pipeline, Plan, Results, Workstation,
+    levels, registry,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -107,7 +107,7 @@ impl Experiment {
         let result = attended(py, progress, true, move |told| run(&native, workstation, asked, told));
         self.check()?;
         match result? {
-            Ok(outcome) => Outcome::of(outcome, &self.plan.measure),
+            Ok(outcome) => Ok(Outcome::of(outcome, &self.plan.measure)),
             Err(error) => Err(exception(py, *error, &self.plan.measure)),
         }
     }
@@ -202,8 +202,10 @@ fn exception(py: Python<'_>, error: ExperimentError, measures: &[Measure]) -> Py
     };
     let exception = raised(name, &text);
     let value = exception.value(py);
-    let partial = Outcome::of(*partial, measures).and_then(|outcome| Py::new(py, outcome));
-    let set = partial.and_then(|partial| value.setattr("_native", partial)).and_then(|()| value.setattr("fields_needed", needed));
+    let partial = Py::new(py, Outcome::of(*partial, measures));
+    let set = partial
+        .and_then(|partial| value.setattr("_native", partial))
+        .and_then(|()| value.setattr("fields_needed", needed));
     match set {
         Ok(()) => exception,
         Err(error) => error,

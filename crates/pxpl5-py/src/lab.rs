@@ -40,7 +40,8 @@ pub(crate) fn figure<'py>(
         let ids: Vec<&str> = FIGURES.iter().map(|figure| figure.id).collect();
         return Err(wrong_setting(format!("there is no figure {id}; expected one of {}", ids.join(", "))));
     };
-    let measured = attended(py, progress, false, move |_| Bench::new(level).measure(figure.id).map_err(|e| e.to_string()))?;
+    let measured =
+        attended(py, progress, false, move |_| Bench::new(level).measure(figure.id).map_err(|e| e.to_string()))?;
     let measured = measured.map_err(|error| failed_run(format!("figure {id}: {error}")))?;
     python(py, &row(&FigureRow::new(figure, measured)))
 }
@@ -67,7 +68,8 @@ pub(crate) fn figures<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let level = self::level(level)?;
-    let figures = attended(py, progress, false, move |told| run_all_with(&Bench::new(level), |done, of| told.tell(done, of)))?;
+    let figures =
+        attended(py, progress, false, move |told| run_all_with(&Bench::new(level), |done, of| told.tell(done, of)))?;
     let rows: Vec<serde_json::Value> = figures.map_err(failed_run)?.rows.iter().map(row).collect();
     python(py, &rows)
 }
@@ -114,22 +116,27 @@ pub(crate) fn limit<'py>(
     if let Some(name) = test_scene {
         let found = TestScene::ALL.into_iter().find(|scene| scene.name() == name);
         let expected = TestScene::ALL.map(TestScene::name).join(" or ");
-        query.criterion.scene = found.ok_or_else(|| wrong_setting(format!("scene: expected {expected}, found {name}")))?;
+        query.criterion.scene =
+            found.ok_or_else(|| wrong_setting(format!("scene: expected {expected}, found {name}")))?;
     }
     if thinned {
         query.model = Some(py.detach(|| Model::load(plan.scene)).map_err(wrong_setting)?);
     }
-    let drawn = query.model.as_ref().map_or(query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned());
+    let drawn =
+        query.model.as_ref().map_or(query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned());
     let criterion = query.criterion;
     let found = attended(py, None, false, move |_| query.search().map_err(|error| error.to_string()))?;
     let Limit { triangles, first_miss, monotone, tried } = found.map_err(wrong_setting)?;
-    python(py, &json!({
-        "triangles": triangles,
-        "first_miss": first_miss,
-        "monotone": monotone,
-        "tried": tried,
-        "goal": criterion.goal,
-        "fields": criterion.fields,
-        "scene": drawn,
-    }))
+    python(
+        py,
+        &json!({
+            "triangles": triangles,
+            "first_miss": first_miss,
+            "monotone": monotone,
+            "tried": tried,
+            "goal": criterion.goal,
+            "fields": criterion.fields,
+            "scene": drawn,
+        }),
+    )
 }

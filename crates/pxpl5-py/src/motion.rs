@@ -212,7 +212,9 @@ fn own_format(
     let n = times_s.len();
     if positions.dim() != (n, 3) || quaternions.dim() != (n, 4) {
         let found = format!("{:?} and {:?}", positions.dim(), quaternions.dim());
-        return Err(wrong_setting(format!("positions and quaternions: expected shapes ({n}, 3) and ({n}, 4), found {found}")));
+        return Err(wrong_setting(format!(
+            "positions and quaternions: expected shapes ({n}, 3) and ({n}, 4), found {found}"
+        )));
     }
     let mut text = String::from("time_s,x,y,z,qw,qx,qy,qz\n");
     for ((time, position), turn) in times_s.iter().zip(positions.rows()).zip(quaternions.rows()) {

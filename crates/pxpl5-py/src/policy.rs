@@ -74,7 +74,9 @@ fn checked(found: Vec<Assignment>, regions: u16, renderers: usize) -> PyResult<V
         *known = true;
     }
     match seen.iter().position(|seen| !seen) {
-        Some(missing) => Err(wrong_setting(format!("a policy: expected all {regions} regions, found none for region {missing}"))),
+        Some(missing) => {
+            Err(wrong_setting(format!("a policy: expected all {regions} regions, found none for region {missing}")))
+        }
         None => Ok(found),
     }
 }
@@ -123,11 +125,7 @@ struct Drawing {
     asked: Arc<Asked>,
 }
 
-async fn firmware(
-    gp: Gp,
-    drawing: Drawing,
-    mut view: impl FnMut(ViewNumber, Time) -> FrameView,
-) -> Result<(), Fault> {
+async fn firmware(gp: Gp, drawing: Drawing, mut view: impl FnMut(ViewNumber, Time) -> FrameView) -> Result<(), Fault> {
     let Drawing { ports, list, picture, asked } = drawing;
     let share = Share::new(list, 0, 1);
     let frame_buffer = ports.display()[0];
@@ -172,7 +170,8 @@ fn envelope(
     let grid = picture.viewport.grid();
     let target = CopyTarget { frame_buffer, buffer, lines: Lines::Frame, grid, region, picture: frame };
     let acknowledge = Some(gp.node());
-    let copy = CopyOrder { target, context: 0, way: CopyWay::ThroughBacking, acknowledge, content: CopyContent::Colour };
+    let copy =
+        CopyOrder { target, context: 0, way: CopyWay::ThroughBacking, acknowledge, content: CopyContent::Colour };
     RegionEnvelope { begin: true, shade: true, copy: Some(copy) }
 }
 

@@ -60,7 +60,8 @@ impl Program {
     fn listing(&self) -> String {
         let words = self.program.words().into_iter();
         let lines = (self.program.base..).step_by(4).zip(words).map(|(address, word)| {
-            let labels = self.program.labels.iter().filter(|(_, at)| *at == address).map(|(name, _)| format!("{name}:\n"));
+            let labels =
+                self.program.labels.iter().filter(|(_, at)| *at == address).map(|(name, _)| format!("{name}:\n"));
             let labels: String = labels.collect();
             format!("{labels}  {address:08x}  {word:08x}  {}\n", i860::disassemble(word, address))
         });
@@ -70,7 +71,12 @@ impl Program {
     /// Where it stands, how long it is, and its labels.
     fn __repr__(&self) -> String {
         let labels: Vec<&str> = self.program.labels.iter().map(|(name, _)| name.as_str()).collect();
-        format!("<pxpl5.Program of {} bytes at {:#x}: {}>", self.program.bytes.len(), self.program.base, labels.join(", "))
+        format!(
+            "<pxpl5.Program of {} bytes at {:#x}: {}>",
+            self.program.bytes.len(),
+            self.program.base,
+            labels.join(", ")
+        )
     }
 }
 
@@ -88,7 +94,10 @@ impl Processor {
         let Ok(name) = place.extract::<String>() else { return place.extract() };
         self.program.symbol(&name).ok_or_else(|| {
             let labels: Vec<&str> = self.program.labels.iter().map(|(name, _)| name.as_str()).collect();
-            wrong_setting(format!("expected a label of the program ({}) or an address, found `{name}`", labels.join(", ")))
+            wrong_setting(format!(
+                "expected a label of the program ({}) or an address, found `{name}`",
+                labels.join(", ")
+            ))
         })
     }
 }

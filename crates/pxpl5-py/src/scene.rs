@@ -202,7 +202,9 @@ fn indices(array: ArrayView2<'_, i64>, vertices: usize) -> PyResult<Vec<[u32; 3]
         for (corner, found) in corners.iter_mut().zip(row) {
             let index = u32::try_from(*found).ok().filter(|index| (*index as usize) < vertices);
             *corner = index.ok_or_else(|| {
-                wrong_setting(format!("triangle {number}: expected an index of one of {vertices} vertices, found {found}"))
+                wrong_setting(format!(
+                    "triangle {number}: expected an index of one of {vertices} vertices, found {found}"
+                ))
             })?;
         }
         all.push(corners);

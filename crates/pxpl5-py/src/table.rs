@@ -76,7 +76,8 @@ impl Table {
     }
 
     fn column_index(&self, name: &str) -> PyResult<usize> {
-        let unknown = |_| PyKeyError::new_err(format!("there is no column `{name}`; expected {}", self.names().join(", ")));
+        let unknown =
+            |_| PyKeyError::new_err(format!("there is no column `{name}`; expected {}", self.names().join(", ")));
         self.batch.schema().index_of(name).map_err(unknown)
     }
 }
@@ -188,7 +189,9 @@ impl Table {
     fn row<'py>(&self, py: Python<'py>, number: usize) -> PyResult<Bound<'py, PyDict>> {
         if number >= self.batch.num_rows() {
             let rows = self.batch.num_rows();
-            return Err(pyo3::exceptions::PyIndexError::new_err(format!("expected a row below {rows}, found {number}")));
+            return Err(pyo3::exceptions::PyIndexError::new_err(format!(
+                "expected a row below {rows}, found {number}"
+            )));
         }
         let row = PyDict::new(py);
         for (name, column) in self.names().iter().zip(self.batch.columns()) {
@@ -262,9 +265,12 @@ fn cell<'py>(py: Python<'py>, column: &ArrayRef, row: usize) -> PyResult<Bound<'
     let value = match column.data_type() {
         DataType::Int64 => any.downcast_ref::<Int64Array>().map(|values| Value::from(values.value(row))),
         DataType::Float64 => {
-            return any.downcast_ref::<Float64Array>().map_or(f64::NAN, |values| values.value(row)).into_pyobject(py).map(
-                |value| value.into_any(),
-            ).map_err(Into::into);
+            return any
+                .downcast_ref::<Float64Array>()
+                .map_or(f64::NAN, |values| values.value(row))
+                .into_pyobject(py)
+                .map(|value| value.into_any())
+                .map_err(Into::into);
         }
         DataType::Boolean => any.downcast_ref::<BooleanArray>().map(|values| Value::from(values.value(row))),
         _ => any.downcast_ref::<StringArray>().map(|values| Value::from(values.value(row))),

@@ -112,7 +112,8 @@ impl Volume {
             return Err(wrong_setting(format!("size: expected 1 to 8192 pixels, found {size}")));
         }
         let look = Look::around(&self.volume.settings, azimuth_deg, elevation_deg, size);
-        let picture = py.detach(|| look.picture(&self.volume, None, &Threads::all()).map_err(|error| error.to_string()));
+        let picture =
+            py.detach(|| look.picture(&self.volume, None, &Threads::all()).map_err(|error| error.to_string()));
         Picture::of(py, picture.map_err(wrong_setting)?, Vec::new())
     }
 
