@@ -161,7 +161,7 @@ class Experiment:
         settings: Mapping[str, object] | None = None,
         **keys: object,
     ) -> None:
-        given = {"fields": fields, "seed": seed, "level": level, "pixels": pixels, "triangles": triangles}
+        given: dict[str, object] = {"fields": fields, "seed": seed, "level": level, "pixels": pixels, "triangles": triangles}
         given |= {"measure": None if measure is None else list(measure), **keys, **(settings or {})}
         made = Made()
         made.put_all(pipeline, scene, machine, head, given)

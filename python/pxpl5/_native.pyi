@@ -6,7 +6,38 @@ from typing import Any, final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__: list[str]
+__all__ = [
+    "Experiment",
+    "Motion",
+    "Outcome",
+    "Picture",
+    "Processor",
+    "Program",
+    "Scene",
+    "Settings",
+    "Store",
+    "Sweep",
+    "Table",
+    "Volume",
+    "assemble",
+    "builtin_scenes",
+    "compare",
+    "disassemble",
+    "displays",
+    "figure",
+    "figure_ids",
+    "figures",
+    "keys",
+    "limit",
+    "machine_parameters",
+    "pipelines",
+    "presets",
+    "quantities",
+    "table_of_rows",
+    "tracking_parameters",
+    "volume_figures",
+    "volume_keys",
+]
 
 def builtin_scenes() -> list[tuple[str, str]]: ...
 def displays() -> list[str]: ...
@@ -78,6 +109,7 @@ class Outcome:
     def trace_hash(self) -> str: ...
     @property
     def config_hash(self) -> str: ...
+    def subject(self) -> tuple[str, str, str]: ...
     def report(self) -> dict[str, Any]: ...
     def report_json(self) -> str: ...
     def quantity(self, name: str) -> float | None: ...

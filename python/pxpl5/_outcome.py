@@ -185,8 +185,8 @@ class Outcome:
         return self._native.page(name)
 
     def __repr__(self) -> str:
-        report = self.report
-        return f"<pxpl5.Outcome {report['pipeline']} on {report['machine']}, {report['scene']}: {report['trace_hash']}>"
+        pipeline, machine, scene = self._native.subject()
+        return f"<pxpl5.Outcome {pipeline} on {machine}, {scene}: {self.trace_hash}>"
 
     def _repr_html_(self) -> str:
         both = self._native.both()

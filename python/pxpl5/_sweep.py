@@ -255,7 +255,7 @@ def _on_cluster(space: SweepSpace, store: _native.Store, client: Client, told: A
         return future
 
     first = [submit(chunk) for _, chunk in zip(range(MOST_WAITING), todo, strict=False)]
-    waiting = as_completed(first)
+    waiting: Any = as_completed(first)  # type: ignore[no-untyped-call]
     for future in waiting:
         rows = _rows_of(future, given.pop(future.key), submit, waiting)
         for line, seconds in rows:

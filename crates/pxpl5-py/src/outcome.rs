@@ -50,6 +50,18 @@ impl Outcome {
         run.ok_or_else(|| wrong_setting("the analytic level has no events"))
     }
 
+    /// What can be said of the outcome at once, without its report.
+    fn look<T: Send>(&self, py: Python<'_>, at: impl Fn(&pxpl5::Outcome) -> T + Send + Sync) -> PyResult<T> {
+        let looked = py.detach(|| {
+            let outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
+            outcome.as_ref().map(&at)
+        });
+        match looked {
+            Some(looked) => Ok(looked),
+            None => Ok(at(self.run(py)?.0)),
+        }
+    }
+
     /// A surface by its label (`left`, `right`) or number.
     fn surface(&self, py: Python<'_>, name: &str) -> PyResult<SurfaceId> {
         let (outcome, _) = self.run(py)?;
@@ -70,13 +82,22 @@ impl Outcome {
     /// Hash of everything that happened: the same as that of the command and of Rust.
     #[getter]
     fn trace_hash(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(self.run(py)?.1.trace_hash.clone())
+        self.look(py, |outcome| outcome.record().trace_hash().to_string())
     }
 
     /// Name of everything on which the trace depends.
     #[getter]
     fn config_hash(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(self.run(py)?.1.config_hash.clone())
+        self.look(py, |outcome| outcome.experiment().config_hash().to_string())
+    }
+
+    /// Names of the pipeline, the machine's preset and the scene.
+    fn subject(&self, py: Python<'_>) -> PyResult<(String, String, String)> {
+        self.look(py, |outcome| {
+            let experiment = outcome.experiment();
+            let pipeline = outcome.pipeline().name().to_owned();
+            (pipeline, experiment.config().preset.clone(), experiment.scene().name().to_owned())
+        })
     }
 
     /// Everything as numbers: the dictionary of `pxpl5 run --json`.
