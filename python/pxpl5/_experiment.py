@@ -114,7 +114,8 @@ class PolicyPipeline:
     seconds), ``columns`` (regions in a row), ``primitives`` (a list, how many each region has, row by row) and ``renderers`` (how
     many there are). It returns a list of (region, renderer) with every region once, in the order in which they are sent.
 
-    What it raises ends the run, and is raised there. The same frame must always get the same answer.
+    What it raises ends the run, and is raised there. The same frame must always get the same answer: a run may be repeated to tell
+    whether it is stuck, or when views are seen.
     """
 
     def __init__(self, policy: Policy, *, shading: str = "phong") -> None:

@@ -45,7 +45,8 @@ class SweepSpace:
 
     - ``base``: keys of an experiment with their values, such as ``{"pipeline": "slats", "scene": "mig"}``; a :class:`Machine` under
       ``machine`` stands for its preset and its changes.
-    - ``grid``: keys with the values that they take, lists or :class:`Range`: all combinations, the last key fastest.
+    - ``grid``: keys with the values that they take, lists or :class:`Range`: all combinations, the
+      last key in the order of the alphabet fastest.
     - ``together``: keys that change in step, lists of one length.
     - ``seeds``: so many seeds from 1 on for every point.
 

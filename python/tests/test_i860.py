@@ -55,8 +55,8 @@ def test_a_wrong_source_names_all_its_lines() -> None:
 
 
 def test_traps_budgets_and_places_are_told() -> None:
-    with pytest.raises(pxpl5.RunError, match="trap at 0x00001000"):
-        pxpl5.Processor(pxpl5.assemble(".long 0xfc000000")).run()
+    with pytest.raises(pxpl5.RunError, match="trap at 0x00001004: 0x00000002 is not a multiple of 4"):
+        pxpl5.Processor(pxpl5.assemble("mov 2, r4\nld.l r4(r0), r5")).run()
     assert pxpl5.Processor(pxpl5.assemble("start: br start\nnop\nend: nop")).run(budget=1_000) == "exhausted"
     processor = pxpl5.Processor(pxpl5.assemble(SUM))
     with pytest.raises(pxpl5.SettingError, match=r"expected a label of the program \(start, loop, end, total\)"):

@@ -6,12 +6,12 @@ import pxpl5
 
 
 def test_one_latency_figure_is_met() -> None:
-    """Figure 9: Slats shows every picture after one field."""
+    """Figure 9: Slats shows every picture after one field; figure 10: 20 field regions in 11 region times."""
     table = pxpl5.figures(["9", "10"], progress=False)
     row = table.row(0)
     assert (row["id"], row["published"], row["unit"], row["standing"]) == ("9", 1.0, "fields", "free")
     assert row["simulated"] == pytest.approx(1.0) and row["misses"] is False
-    assert table.row(1)["simulated"] == pytest.approx(11)
+    assert table.row(1)["published"] == 11 and table.row(1)["misses"] is False
     assert len(pxpl5.figure_ids()) == 26
     with pytest.raises(pxpl5.SettingError, match="there is no figure 99; expected one of 1, 2"):
         pxpl5.figures(["99"])
@@ -31,6 +31,7 @@ def test_a_model_is_thinned_out_to_its_limit() -> None:
     assert 50 < limit.triangles < 417 and limit.scene == "mig"
 
 
+@pytest.mark.slow
 def test_a_comparison_has_a_row_for_every_pipeline() -> None:
     told: list[tuple[int, int]] = []
     comparison = pxpl5.compare("full-screen:2", head=pxpl5.Head("pan:200", predict="none"), fields=40, seeds=2,

@@ -18,14 +18,23 @@ def by_one(frame: dict[str, Any]) -> list[tuple[int, int]]:
 
 
 def run(policy: pxpl5.PolicyPipeline, **keywords: Any) -> pxpl5.Outcome:
-    return pxpl5.Experiment(policy, "full-screen:12", machine="small-hmd", fields=60, **keywords).run(progress=False)
+    keywords = {"scene": "full-screen:12", "machine": "small-hmd", "fields": 60, **keywords}
+    return pxpl5.Experiment(policy, **keywords).run(progress=False)
 
 
-def test_five_renderers_are_faster_than_one() -> None:
-    """20 regions of a 640 x 480 screen: on one renderer its regions follow one after the other."""
+def render_ms(outcome: pxpl5.Outcome) -> float:
+    """Mean time of RENDER over the pictures after the warm-up."""
+    spans = [row["end_ps"] - row["begin_ps"] for row in outcome.stages.rows() if row["stage"] == "render" and row["picture"] > 4]
+    return sum(spans) / len(spans) / 1e9
+
+
+def test_five_renderers_take_their_commands_faster_than_one() -> None:
+    """Shading alone takes a renderer 95 us a region: 1.9 ms for 20 regions on one, 0.4 on five (README). The port of the frame
+    buffer, 15.6 ms for them, hides it: the latency is one field for both."""
     five = run(pxpl5.PolicyPipeline(dealt), pixels="off")
     one = run(pxpl5.PolicyPipeline(by_one), pixels="off")
-    assert five.latency_ms.mean < one.latency_ms.mean
+    assert render_ms(five) < 1.9 < render_ms(one)
+    assert five.latency_fields.mean == pytest.approx(one.latency_fields.mean) == pytest.approx(1, abs=1e-5)
 
 
 def test_a_policy_changes_no_pixel_of_the_first_picture() -> None:
@@ -42,7 +51,10 @@ def test_a_policy_sees_the_frame() -> None:
         return dealt(frame)
 
     run(pxpl5.PolicyPipeline(watching), pixels="off")
-    assert [frame["frame"] for frame in seen] == list(range(len(seen)))
+    # A short run that ends at rest is repeated, to tell whether it is stuck: the frames come again then.
+    frames = [frame["frame"] for frame in seen]
+    again = frames.index(0, 1) if 0 in frames[1:] else len(frames)
+    assert frames[:again] == list(range(again)) and again > 20
     # Twelve triangles that each cover the whole screen, in 5 x 4 regions.
     assert seen[0]["primitives"] == [12] * 20 and (seen[0]["columns"], seen[0]["renderers"]) == (5, 5)
     assert seen[1]["time_s"] > seen[0]["time_s"] > 0

@@ -18,7 +18,8 @@ def test_all_combinations_are_run_in_order() -> None:
     results = pxpl5.sweep(space(), progress=False)
     rows = results.table.rows()
     assert [row["point"] for row in rows] == list(range(8))
-    assert [row["triangles"] for row in rows] == [50] * 4 + [90] * 4
+    assert [row["machine.gp.triangle_ns"] for row in rows] == [20_000] * 4 + [90_000] * 4
+    assert [row["triangles"] for row in rows] == [50, 50, 90, 90] * 2
     assert [row["seed"] for row in rows] == [1, 2] * 4
     # 90 triangles of 90 us do not fit into a field of 16.7 ms, 50 of 20 us do.
     assert rows[0]["missed_retraces"] == 0 and rows[-1]["missed_retraces"] > 0

@@ -35,7 +35,7 @@ def test_pandas_polars_and_duckdb_take_a_table_as_it_is(mig: pxpl5.Outcome) -> N
     from_arrow = getattr(pandas.DataFrame, "from_arrow", None)
     frame = from_arrow(pictures) if from_arrow else pyarrow.table(pictures).to_pandas()
     assert frame["shown_at_ps"].tolist() == list(pictures["shown_at_ps"])
-    rows = duckdb.sql("select count(*), sum(complete) from pictures").fetchone()
+    rows = duckdb.sql("select count(*), sum(complete) from pictures").fetchall()[0]
     assert rows == (len(pictures), int(pictures["complete"].sum()))
 
 

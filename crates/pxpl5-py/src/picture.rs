@@ -81,7 +81,7 @@ impl Picture {
         Ok(PyBytes::new(py, &bytes))
     }
 
-    /// For notebooks.
+    /// What notebooks show: the picture as PNG.
     fn _repr_png_<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         self.png(py)
     }

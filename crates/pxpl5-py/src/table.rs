@@ -32,9 +32,6 @@ impl Column {
         Self { name: name.to_owned(), about: about.to_owned(), values: Arc::new(StringArray::from(values)) }
     }
 
-    pub(crate) fn real(name: &str, about: &str, values: Vec<Option<f64>>) -> Self {
-        Self { name: name.to_owned(), about: about.to_owned(), values: Arc::new(Float64Array::from(values)) }
-    }
 }
 
 /// Rows of named, typed columns.
