@@ -8,13 +8,13 @@ import pxpl5
 
 # A file of its own format, of EuRoC or TUM, or arrays: seconds, metres, quaternions with the real part first.
 if len(sys.argv) > 1:
-    motion = pxpl5.Motion.recording(sys.argv[1], end="hold")
+    motion = pxpl5.Motion.recording(sys.argv[1])
 else:
     times = np.linspace(0, 4, 241)
     angle = np.radians(20) * np.sin(2 * np.pi * 0.5 * times)
     none = np.zeros_like(times)
     turns = np.column_stack([np.cos(angle / 2), none, np.sin(angle / 2), none])
-    motion = pxpl5.Motion.from_arrays(times, np.zeros((len(times), 3)), turns, end="hold")
+    motion = pxpl5.Motion.from_arrays(times, np.zeros((len(times), 3)), turns)
 
 for pipeline in ("rendering-control", "slats", "jitp-scanline-racing"):
     for predict in ("none", "kalman"):
