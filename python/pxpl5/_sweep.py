@@ -227,6 +227,17 @@ def chunks(points: Sequence[int], costs: Sequence[float], most_s: float = CHUNK_
     return made
 
 
+#: Points whose costs are estimated at a time: workers begin before all are.
+ESTIMATED = 1_000
+
+
+def _chunked(space: SweepSpace, points: Sequence[int]) -> Iterator[list[int]]:
+    """Points as chunks, estimated as they are asked for."""
+    for begin in range(0, len(points), ESTIMATED):
+        some = points[begin : begin + ESTIMATED]
+        yield from chunks(some, space.costs(some))
+
+
 #: Sweeps that this process has made already, by text and path: a worker makes each once.
 _KNOWN: dict[tuple[str, str], _native.Sweep] = {}
 
@@ -246,7 +257,7 @@ def _on_cluster(space: SweepSpace, store: _native.Store, client: Client, told: A
     path = "" if space._path == Path() else fspath(space._path)
     missing = store.missing()
     done = space.points - len(missing)
-    todo = iter(chunks(missing, space.costs(missing)))
+    todo = _chunked(space, missing)
     given: dict[Any, list[int]] = {}
 
     def submit(chunk: list[int]) -> Any:

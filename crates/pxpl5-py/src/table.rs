@@ -31,7 +31,6 @@ impl Column {
     pub(crate) fn text(name: &str, about: &str, values: Vec<Option<String>>) -> Self {
         Self { name: name.to_owned(), about: about.to_owned(), values: Arc::new(StringArray::from(values)) }
     }
-
 }
 
 /// Rows of named, typed columns.

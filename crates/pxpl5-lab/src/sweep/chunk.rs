@@ -3,6 +3,7 @@
 use super::point::{Scenes, SweepRow};
 use super::{Status, Sweep};
 use pxpl5_run::{Experiment, Level};
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 /// What an experiment costs on a host of about 3 GHz, in seconds; only ratios matter, since they size chunks. Assumed, from the
@@ -34,11 +35,20 @@ impl Sweep {
     }
 
     /// About how many seconds each of some points will take, by the analytic level where the pipeline has a closed form: how many
-    /// pictures there will be, of how many primitives. A point that is no experiment costs next to nothing.
+    /// pictures there will be, of how many primitives. A point that is no experiment costs next to nothing. Points that differ in
+    /// their seed alone are taken to cost the same.
     #[must_use]
     pub fn costs(&self, points: &[u64]) -> Vec<f64> {
         let scenes = Scenes::default();
-        points.iter().map(|point| self.cost(*point, &scenes)).collect()
+        let mut known: BTreeMap<String, f64> = BTreeMap::new();
+        let mut costs = Vec::with_capacity(points.len());
+        for point in points {
+            let mut settings = self.space().settings(*point);
+            settings.remove("seed");
+            let cost = *known.entry(format!("{settings:?}")).or_insert_with(|| self.cost(*point, &scenes));
+            costs.push(cost);
+        }
+        costs
     }
 
     fn cost(&self, point: u64, scenes: &Scenes) -> f64 {
@@ -81,5 +91,41 @@ impl SweepRow {
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.status == Status::Done
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::ExperimentFile;
+    use crate::sweep::{RunOptions, Shard, Store, Sweep, run};
+
+    fn sweep(text: &str) -> Sweep {
+        Sweep::new(ExperimentFile::parse(text, "test").expect("settings")).expect("a space")
+    }
+
+    const SPACE: &str =
+        "pipeline = \"slats\"\nscene = \"typical:60\"\nfields = 20\n[sweep.grid]\ntriangles = [20, 40, 0]\n";
+
+    #[test]
+    fn rows_of_some_points_are_those_of_the_whole_sweep() {
+        let sweep = sweep(SPACE);
+        let folder = std::env::temp_dir().join(format!("pxpl5-chunk-{}", std::process::id()));
+        let mut store = Store::open(&folder, sweep.header().expect("a header"), true).expect("a folder");
+        run(&sweep, &mut store, RunOptions { shard: Shard::ALL, threads: 2 }, |_| {}).expect("it can be written");
+        for (row, seconds) in sweep.rows(&[2, 0, 1]) {
+            assert_eq!(store.row(row.point).expect("readable"), Some(row.clone()));
+            assert!(seconds >= 0.0 && row.is_done() == (row.point != 2), "{row:?}");
+        }
+        drop(store);
+        std::fs::remove_dir_all(folder).expect("it is ours");
+    }
+
+    #[test]
+    fn costs_grow_with_fields_and_primitives_and_not_with_seeds() {
+        let text = "pipeline = \"rendering-control\"\nscene = \"typical:2000\"\n[sweep]\nseeds = 2\n[sweep.grid]\n\
+                    fields = [60, 600]\ntriangles = [20, 2000]\n";
+        let costs = sweep(text).costs(&(0..8).collect::<Vec<_>>());
+        let [a, same, heavy, _, long, _, both, _] = costs[..] else { panic!("8 points, found {}", costs.len()) };
+        assert!(a == same && a < heavy && a < long && heavy < both && long < both, "{costs:?}");
     }
 }
