@@ -100,7 +100,7 @@ pub mod firmware {
     };
     pub use pxpl5_geometry::Viewport;
     pub use pxpl5_gp::{Fault, Firmware, Gp, GpTiming, HostTiming, Mark, Priority, Received, Stage, StageEdge, Ticket};
-    pub use pxpl5_renderer::{CommandKind, Layout};
+    pub use pxpl5_renderer::{CommandKind, Layout, PixelArray};
     pub use pxpl5_wire::{
         Body, CommandList, CopyContent, CopyOrder, CopyTarget, CopyWay, FieldParity, Lines, NodeId, PeriodNumber,
         PictureNumber, RegionGrid, RegionId, ViewNumber, Word, swap_request,

@@ -4,6 +4,7 @@ use crate::command::CommandKind;
 use crate::fifo::{EqualCommands, InputFifo, Progress};
 use crate::job::{ArrayPool, NoPixels, PixelJob};
 use crate::timing::RendererTiming;
+use crate::{Lanes, PixelArray};
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{
     Body, COPY_ACKNOWLEDGEMENT_WORDS, CommandList, CommandRun, CommandWords, CopyContent, CopyOrder, CopyTarget,
@@ -321,6 +322,23 @@ impl Renderer {
     #[must_use]
     pub const fn busy(&self) -> Span {
         self.fifo.busy()
+    }
+
+    /// Pixel memory with what has been sent to each region context since it was cleared; `None` where no context was sent pixels'
+    /// words, as where pixels are off.
+    #[must_use]
+    pub fn pixel_memory(&self) -> Option<Lanes> {
+        if self.logs.iter().all(|log| log.lists.is_empty()) {
+            return None;
+        }
+        let mut array = Lanes::new(self.pool.layout());
+        for list in self.logs.iter().flat_map(|log| &log.lists) {
+            let mut words = Vec::new();
+            list.append_words(&mut words);
+            // A fault stops the list, as on the hardware; what was drawn before stays.
+            let _ = array.execute(&words);
+        }
+        Some(array)
     }
 
     /// Draws regions without primitives anew each time from now on, instead of keeping them.

@@ -47,6 +47,10 @@ impl ArrayPool {
         Arc::new(Self { layout, idle: Mutex::default(), empty_regions: Mutex::default() })
     }
 
+    pub(crate) const fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
     fn with_idle_array<T>(&self, work: impl FnOnce(&mut ArrayAndWords) -> T) -> T {
         let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut borrowed = idle.unwrap_or_else(|| ArrayAndWords { array: Lanes::new(&self.layout), words: Vec::new() });

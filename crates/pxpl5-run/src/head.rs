@@ -107,6 +107,12 @@ impl Head {
         })
     }
 
+    /// Moves otherwise: the same tracker and predictor before another motion.
+    #[must_use]
+    pub fn moving(self, motion: Arc<dyn Motion + Send + Sync>) -> Self {
+        Self { motion, ..self }
+    }
+
     /// Has the numbers of its predictor tuned when the experiment is run; they are searched from the present ones.
     #[must_use]
     pub const fn tuned(mut self) -> Self {

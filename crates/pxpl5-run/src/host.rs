@@ -10,6 +10,12 @@ pub trait Host: Debug + Send + Sync {
         None
     }
 
+    /// Whether nobody wants the result any more. Runs ask now and then, rehearsals too, and end with
+    /// [`ExperimentError::Stopped`](crate::ExperimentError::Stopped).
+    fn is_given_up(&self) -> bool {
+        false
+    }
+
     /// Who computes the pixels of [`Pixels::All`](crate::Pixels::All).
     fn pixel_worker(&self) -> Box<dyn PixelWorker> {
         Box::new(SameThread::default())

@@ -162,6 +162,9 @@ impl Experiment {
             if result.is_err() {
                 break;
             }
+            if self.host.is_given_up() {
+                return Err(ExperimentError::Stopped("the run was given up".to_owned()));
+            }
             at(field, &mut machine)?;
             window.look(self.pipeline.as_ref(), &mut machine, until);
         }

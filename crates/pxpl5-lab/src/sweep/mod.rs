@@ -21,6 +21,7 @@
 //!
 //! Random sampling and adaptive refinement of the space; points of one sweep on several hosts other than by shards.
 
+mod chunk;
 mod error;
 mod header;
 mod inputs;

@@ -45,7 +45,7 @@ pub(super) struct Scenes(Mutex<BTreeMap<String, Arc<Scene>>>);
 
 impl Scenes {
     /// The scene of a plan, loaded once for all points that share it.
-    fn scene_of(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
+    pub(super) fn scene_of(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
         // Loading under the lock: nobody else should load the same.
         let mut loaded = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let whole = match loaded.get(&plan.scene.name) {

@@ -18,5 +18,5 @@ pub(crate) use origin::count_of;
 pub use origin::{origin, origin_lines};
 #[cfg(feature = "parquet")]
 pub use parquet::parquet;
-pub use pictures::{Column, SCHEMA, columns};
+pub use pictures::{Column, SCHEMA, columns, rows};
 pub use tables::{csv, quantities_csv};

@@ -60,8 +60,9 @@ pub fn columns() -> Vec<Column> {
     columns
 }
 
-/// The rows: a value for each of [`columns`].
-pub(super) fn rows(outcome: &Outcome) -> Vec<Vec<Option<u64>>> {
+/// The rows, one for each picture that was begun: a value for each of [`columns`], `None` where it is missing.
+#[must_use]
+pub fn rows(outcome: &Outcome) -> Vec<Vec<Option<u64>>> {
     let parts: BTreeMap<PictureNumber, LatencyParts> =
         latency_parts(outcome).into_iter().map(|parts| (parts.picture, parts)).collect();
     let pictures = outcome.pictures().iter().enumerate();

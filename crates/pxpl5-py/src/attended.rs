@@ -1,0 +1,97 @@
+//! Work without the interpreter's lock, while the calling thread reports progress and listens for Ctrl-C.
+
+use crate::errors::failed_run;
+use pyo3::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::time::Duration;
+
+/// How far some work is, and whether somebody still wants it.
+#[derive(Debug, Default)]
+pub(crate) struct Progress {
+    done: AtomicU64,
+    of: AtomicU64,
+    given_up: AtomicBool,
+}
+
+impl Progress {
+    /// Says how many of all steps are done.
+    pub(crate) fn tell(&self, done: u64, of: u64) {
+        self.of.store(of, Ordering::Relaxed);
+        self.done.fetch_max(done, Ordering::Relaxed);
+    }
+
+    /// Whether nobody wants the result any more.
+    pub(crate) fn is_given_up(&self) -> bool {
+        self.given_up.load(Ordering::Relaxed)
+    }
+}
+
+/// From one look at progress and Ctrl-C to the next.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Does some work on a thread of its own. `callback` is called with how many of all steps are done, at most twenty times a second
+/// and at the end.
+///
+/// Ctrl-C, or an exception of the callback, gives the work up: it is raised once the work has noticed, or at once where the work
+/// cannot notice (`waits` is false), which then goes on unheard.
+///
+/// # Errors
+///
+/// `KeyboardInterrupt`, what the callback raises, and a bug of ours as `RunError`.
+pub(crate) fn attended<T: Send + 'static>(
+    py: Python<'_>,
+    callback: Option<&Bound<'_, PyAny>>,
+    waits: bool,
+    work: impl FnOnce(Arc<Progress>) -> T + Send + 'static,
+) -> PyResult<T> {
+    let progress = Arc::new(Progress::default());
+    let (sender, mut results) = sync_channel(1);
+    let told = Arc::clone(&progress);
+    let worker = std::thread::Builder::new().name("pxpl5".to_owned()).stack_size(STACK_BYTES).spawn(move || {
+        // Nobody listens to work that was given up.
+        let _ = sender.send(work(told));
+    });
+    worker.map_err(|error| failed_run(format!("no thread can be started: {error}")))?;
+    let mut told = None;
+    loop {
+        let result = py.detach(|| wait(&mut results));
+        let looked = py.check_signals().and_then(|()| tell(callback, &progress, &mut told));
+        if let Err(error) = looked {
+            progress.given_up.store(true, Ordering::Relaxed);
+            if waits {
+                py.detach(|| end(&mut results));
+            }
+            return Err(error);
+        }
+        match result {
+            Ok(result) => return Ok(result),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => {
+                return Err(failed_run("a bug of the emulator: its thread panicked"));
+            }
+        }
+    }
+}
+
+/// As main threads have it: the emulator was never run with less.
+const STACK_BYTES: usize = 8 << 20;
+
+// Unique borrows, since a receiver may be sent to another thread, but not shared.
+
+fn wait<T>(results: &mut Receiver<T>) -> Result<T, RecvTimeoutError> {
+    results.recv_timeout(LOOK)
+}
+
+fn end<T>(results: &mut Receiver<T>) -> Option<T> {
+    results.recv().ok()
+}
+
+/// Calls back with what is new.
+fn tell(callback: Option<&Bound<'_, PyAny>>, progress: &Progress, told: &mut Option<(u64, u64)>) -> PyResult<()> {
+    let now = (progress.done.load(Ordering::Relaxed), progress.of.load(Ordering::Relaxed));
+    let Some(callback) = callback.filter(|_| now.1 > 0 && *told != Some(now)) else { return Ok(()) };
+    *told = Some(now);
+    callback.call1(now).map(drop)
+}

@@ -1,0 +1,142 @@
+//! Questions over many experiments: figures, limits, comparison.
+
+use crate::attended::attended;
+use crate::catalogue::python;
+use crate::errors::{failed_run, wrong_setting};
+use crate::settings::Settings;
+use pxpl5::compare::CompareQuery;
+use pxpl5::figures::{Bench, FIGURES, FigureRow, run_all_with};
+use pxpl5::limit::{Limit, LimitQuery, Model};
+use pxpl5::{Goal, Level, TestScene};
+use pyo3::prelude::*;
+use serde_json::json;
+
+/// The level of modelling of a name.
+fn level(name: &str) -> PyResult<Level> {
+    let names = Level::ALL.map(Level::name).join(", ");
+    let found = Level::ALL.into_iter().find(|level| level.name() == name);
+    found.ok_or_else(|| wrong_setting(format!("level: expected {names}, found {name}")))
+}
+
+/// Numbers of the published figures, such as 4b, each with what the paper states.
+#[pyfunction]
+pub(crate) fn figure_ids() -> Vec<(&'static str, &'static str)> {
+    FIGURES.iter().map(|figure| (figure.id, figure.statement)).collect()
+}
+
+/// A published figure by its number, measured at a level: a dictionary with published, simulated, unit and more.
+///
+/// Raises :class:`pxpl5.SettingError` for a number that there is not, :class:`pxpl5.RunError` where its experiment gives nothing.
+#[pyfunction]
+#[pyo3(signature = (id, level = "transaction", progress = None))]
+pub(crate) fn figure<'py>(
+    py: Python<'py>,
+    id: &str,
+    level: &str,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let level = self::level(level)?;
+    let Some(figure) = FIGURES.iter().find(|figure| figure.id == id) else {
+        let ids: Vec<&str> = FIGURES.iter().map(|figure| figure.id).collect();
+        return Err(wrong_setting(format!("there is no figure {id}; expected one of {}", ids.join(", "))));
+    };
+    let measured =
+        attended(py, progress, false, move |_| Bench::new(level).measure(figure.id).map_err(|e| e.to_string()))?;
+    let measured = measured.map_err(|error| failed_run(format!("figure {id}: {error}")))?;
+    python(py, &row(&FigureRow::new(figure, measured)))
+}
+
+fn row(row: &FigureRow) -> serde_json::Value {
+    let mut value = serde_json::to_value(row).unwrap_or_default();
+    if let Some(object) = value.as_object_mut() {
+        object.insert("misses".to_owned(), row.misses().into());
+        let [low, high] = row.interval.map_or([None, None], |[low, high]| [Some(low), Some(high)]);
+        object.insert("low".to_owned(), low.into());
+        object.insert("high".to_owned(), high.into());
+    }
+    value
+}
+
+/// All published figures with their intervals: a list of dictionaries. It takes minutes.
+///
+/// Raises :class:`pxpl5.RunError` where an experiment gives nothing.
+#[pyfunction]
+#[pyo3(signature = (level = "transaction", progress = None))]
+pub(crate) fn figures<'py>(
+    py: Python<'py>,
+    level: &str,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let level = self::level(level)?;
+    let figures =
+        attended(py, progress, false, move |told| run_all_with(&Bench::new(level), |done, of| told.tell(done, of)))?;
+    let rows: Vec<serde_json::Value> = figures.map_err(failed_run)?.rows.iter().map(row).collect();
+    python(py, &rows)
+}
+
+/// Every way to fight latency side by side: a dictionary whose `pipelines` lists a row for each.
+///
+/// Raises :class:`pxpl5.SettingError` for a setting that is wrong.
+#[pyfunction]
+#[pyo3(signature = (settings, seeds, limits, progress = None))]
+pub(crate) fn compare<'py>(
+    py: Python<'py>,
+    settings: &Settings,
+    seeds: Vec<u64>,
+    limits: bool,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let query = CompareQuery { shared: settings.file.clone(), seeds, limits, pictures: false };
+    let comparison = attended(py, progress, false, move |told| query.run(|done, of| told.tell(done, of)))?;
+    python(py, &comparison.map_err(wrong_setting)?)
+}
+
+/// The most triangles that a pipeline draws in time: a dictionary with triangles, first_miss, monotone, tried, goal and scene.
+///
+/// ``scene`` is full-screen, typical, or None for the settings' own one thinned out; ``rate_hz`` or ``latency_fields`` replace the
+/// pipeline's own goal, ``fields`` the length of each run.
+///
+/// Raises :class:`pxpl5.SettingError` for a setting that is wrong.
+#[pyfunction]
+#[pyo3(signature = (settings, *, test_scene = None, thinned = false, rate_hz = None, latency_fields = None, fields = None))]
+pub(crate) fn limit<'py>(
+    py: Python<'py>,
+    settings: &Settings,
+    test_scene: Option<&str>,
+    thinned: bool,
+    rate_hz: Option<f64>,
+    latency_fields: Option<f64>,
+    fields: Option<u64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let plan = settings.plan()?;
+    let mut query = LimitQuery::of_plan(&plan);
+    query.criterion.fields = fields.unwrap_or(query.criterion.fields);
+    let own = query.criterion.goal;
+    query.criterion.goal = rate_hz.map(Goal::RateHz).or(latency_fields.map(Goal::LatencyFields)).unwrap_or(own);
+    if let Some(name) = test_scene {
+        let found = TestScene::ALL.into_iter().find(|scene| scene.name() == name);
+        let expected = TestScene::ALL.map(TestScene::name).join(" or ");
+        query.criterion.scene =
+            found.ok_or_else(|| wrong_setting(format!("scene: expected {expected}, found {name}")))?;
+    }
+    if thinned {
+        query.model = Some(py.detach(|| Model::load(plan.scene)).map_err(wrong_setting)?);
+    }
+    let drawn =
+        query.model.as_ref().map_or(query.criterion.scene.name().to_owned(), |model| model.whole.name().to_owned());
+    let criterion = query.criterion;
+    let found = attended(py, None, false, move |_| query.search().map_err(|error| error.to_string()))?;
+    let Limit { triangles, first_miss, monotone, tried } = found.map_err(wrong_setting)?;
+    python(
+        py,
+        &json!({
+            "triangles": triangles,
+            "first_miss": first_miss,
+            "monotone": monotone,
+            "tried": tried,
+            "goal": criterion.goal,
+            "fields": criterion.fields,
+            "scene": drawn,
+        }),
+    )
+}

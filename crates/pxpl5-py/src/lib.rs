@@ -1,0 +1,68 @@
+//! The Python package `pxpl5`, as far as it is native: the façade `pxpl5` with its values as Python's.
+//!
+//! ```text
+//!   python/pxpl5/*.py   what users import: keywords, docstrings, notebooks, progress, Dask
+//!        |
+//!   pxpl5._native       this crate: settings in; outcomes, pictures, tables, processors out
+//!        |
+//!   pxpl5, i860         the library
+//! ```
+//!
+//! # Behaviour
+//!
+//! - What takes long runs on a thread of its own without the interpreter's lock; the calling thread reports progress and listens
+//!   for Ctrl-C ([`attended`]).
+//! - Pictures go to NumPy without a copy of their pixels; tables go through the Arrow PyCapsule interface without a copy of their
+//!   columns. Vertices that come from NumPy are copied once.
+//! - Errors are exceptions of `pxpl5._errors`, with the words of the library.
+//!
+//! **Not here:** numbers, models and file formats. What only Python needs (defaults of keywords, HTML) is in python/pxpl5.
+
+mod attended;
+mod catalogue;
+mod errors;
+mod experiment;
+mod lab;
+mod motion;
+mod outcome;
+mod picture;
+mod policy;
+mod processor;
+mod scene;
+mod settings;
+mod sweep;
+mod table;
+mod volume;
+
+use pyo3::prelude::*;
+
+/// The native part of pxpl5; use the package `pxpl5`.
+#[pymodule]
+mod _native {
+    #[pymodule_export]
+    use crate::catalogue::{
+        builtin_scenes, displays, keys, machine_parameters, pipelines, presets, quantities, tracking_parameters,
+    };
+    #[pymodule_export]
+    use crate::experiment::Experiment;
+    #[pymodule_export]
+    use crate::lab::{compare, figure, figure_ids, figures, limit};
+    #[pymodule_export]
+    use crate::motion::Motion;
+    #[pymodule_export]
+    use crate::outcome::Outcome;
+    #[pymodule_export]
+    use crate::picture::Picture;
+    #[pymodule_export]
+    use crate::processor::{Processor, Program, assemble, disassemble};
+    #[pymodule_export]
+    use crate::scene::Scene;
+    #[pymodule_export]
+    use crate::settings::Settings;
+    #[pymodule_export]
+    use crate::sweep::{Store, Sweep};
+    #[pymodule_export]
+    use crate::table::{Table, table_of_rows};
+    #[pymodule_export]
+    use crate::volume::{Volume, volume_figures, volume_keys};
+}

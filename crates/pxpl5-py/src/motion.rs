@@ -1,0 +1,226 @@
+//! How heads move: by name, from recordings, from arrays, as Python says.
+
+use crate::errors::wrong_setting;
+use glam::{DQuat, DVec3};
+use numpy::ndarray::{Array2, ArrayView1, ArrayView2};
+use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use pxpl5::tracking::motion::{Columns, End, Motion as Moving, Recording, RecordingFormat};
+use pxpl5::tracking::time::{nearest_ps, seconds};
+use pxpl5::tracking::{Pose, SettingSink};
+use pyo3::prelude::*;
+use std::collections::BTreeMap;
+use std::fmt::{self, Write as _};
+use std::fs::File;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A motion of the head: its pose at every instant of simulated time.
+///
+/// A pose is seven numbers: x, y, z in metres, and the unit quaternion w, x, y, z that turns the head's axes into the world's. Axes
+/// are right-handed, y up; a head looks along its own -z.
+#[pyclass(frozen, module = "pxpl5")]
+pub(crate) struct Motion {
+    pub(crate) moving: Arc<dyn Moving + Send + Sync>,
+    /// Where a Python callable leaves what it raised.
+    pub(crate) called: Option<Arc<Called>>,
+    about: String,
+}
+
+impl Motion {
+    fn of(moving: Arc<dyn Moving + Send + Sync>, about: String) -> Self {
+        Self { moving, called: None, about }
+    }
+}
+
+#[pymethods]
+impl Motion {
+    /// A motion by its name: ``still``, ``pan:DEG_PER_S``, ``slide:M_PER_S``, ``sine:DEG:HZ``, ``pendulum``, ``synthetic:SEED``, or
+    /// the path of a recording. (Walks need a scene: give their name to the experiment.)
+    ///
+    /// Raises :class:`pxpl5.SettingError` with what was expected and what was found.
+    #[new]
+    fn new(name: &str) -> PyResult<Self> {
+        Ok(Self::of(pxpl5::compare::motion(name).map_err(wrong_setting)?, name.to_owned()))
+    }
+
+    /// A recording: a file of the own format, of EuRoC or TUM, told by its contents; with ``columns`` any table, whose columns
+    /// are given by name or number (``t``, ``t_ms``, ``t_us`` or ``t_ns``; ``x``, ``y``, ``z`` or ``x_mm`` ..; ``qw``, ``qx``, ``qy``, ``qz``).
+    /// ``end`` says what comes after the last sample: ``hold``, ``loop``, or None: no run may go on.
+    ///
+    /// Raises :class:`pxpl5.SettingError` with line and column, what was expected and what was found.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, columns = None, end = None))]
+    fn recording(path: PathBuf, columns: Option<BTreeMap<String, String>>, end: Option<&str>) -> PyResult<Self> {
+        let mut chosen = Columns::default();
+        for (field, column) in columns.unwrap_or_default() {
+            chosen.map(&field, &column).map_err(wrong_setting)?;
+        }
+        let name = path.display().to_string();
+        let file = File::open(&path).map_err(|error| wrong_setting(format!("{name} cannot be opened: {error}")))?;
+        let format = RecordingFormat { columns: chosen, axes: None };
+        let recording = Recording::read_as(file, &format).map_err(|error| wrong_setting(format!("{name}: {error}")))?;
+        Ok(Self::of(Arc::new(recording.ending(end_named(end)?)), name))
+    }
+
+    /// A recording of arrays: ``times_s`` of shape (n,), rising, seconds from the begin of the run; ``positions`` of shape (n, 3), metres;
+    /// ``quaternions`` of shape (n, 4), w, x, y, z. Straight lines between positions, slerp between orientations. ``end`` as in
+    /// :meth:`recording`.
+    ///
+    /// Raises :class:`pxpl5.SettingError` with the sample (as line, from 2) that is wrong.
+    #[staticmethod]
+    #[pyo3(signature = (times_s, positions, quaternions, *, end = None))]
+    fn from_arrays(
+        times_s: PyReadonlyArray1<'_, f64>,
+        positions: PyReadonlyArray2<'_, f64>,
+        quaternions: PyReadonlyArray2<'_, f64>,
+        end: Option<&str>,
+    ) -> PyResult<Self> {
+        let text = own_format(&times_s.as_array(), &positions.as_array(), &quaternions.as_array())?;
+        let recording = Recording::read(text.as_bytes()).map_err(|error| wrong_setting(format!("arrays: {error}")))?;
+        Ok(Self::of(Arc::new(recording.ending(end_named(end)?)), "arrays".to_owned()))
+    }
+
+    /// A motion of a callable: ``pose(time_s)`` gives (x, y, z, w, i, j, k) for an instant in seconds, always the same for the same one.
+    /// It is called from another thread, a few thousand times for a second of simulated time. ``name`` is part of the experiment's name, as
+    /// are the poses at 512 instants of the first 64 s.
+    ///
+    /// What it raises ends the run, and is raised there.
+    #[staticmethod]
+    #[pyo3(signature = (pose, *, name = "callable"))]
+    fn from_callable(pose: Py<PyAny>, name: &str) -> Self {
+        let called = Arc::new(Called { pose, name: name.to_owned(), raised: Mutex::default() });
+        Self { moving: called.clone(), called: Some(called), about: name.to_owned() }
+    }
+
+    /// The poses at some instants: ``times_s`` of shape (n,), seconds, 0 or later; gives shape (n, 7): x, y, z, w, i, j, k.
+    ///
+    /// Raises what a callable raises.
+    fn poses<'py>(&self, py: Python<'py>, times_s: PyReadonlyArray1<'py, f64>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let times = times_s.as_array();
+        let poses: Vec<f64> = times.iter().flat_map(|time| numbers(&self.moving.pose(nearest_ps(*time)))).collect();
+        self.check()?;
+        let poses = Array2::from_shape_vec((times.len(), 7), poses).map_err(wrong_setting)?;
+        Ok(PyArray2::from_owned_array(py, poses))
+    }
+
+    /// When it ends, seconds, if no run may go on after that; None where it goes on for ever.
+    #[getter]
+    fn ends_s(&self) -> Option<f64> {
+        self.moving.ends_ps().map(seconds)
+    }
+
+    /// What it was made of.
+    fn __repr__(&self) -> String {
+        format!("<pxpl5.Motion {}>", self.about)
+    }
+}
+
+impl Motion {
+    /// Raises what a callable has raised since this was asked last.
+    pub(crate) fn check(&self) -> PyResult<()> {
+        match &self.called {
+            Some(called) => called.check(),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A motion that a Python callable says.
+pub(crate) struct Called {
+    pose: Py<PyAny>,
+    name: String,
+    raised: Mutex<Option<PyErr>>,
+}
+
+impl Called {
+    /// Whether it has raised something that nobody has heard of yet.
+    pub(crate) fn has_raised(&self) -> bool {
+        self.raised.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+    }
+
+    pub(crate) fn check(&self) -> PyResult<()> {
+        let raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner).take();
+        raised.map_or(Ok(()), Err)
+    }
+
+    fn asked(&self, t_ps: u64) -> PyResult<Pose> {
+        let found: [f64; 7] = Python::attach(|py| self.pose.call1(py, (seconds(t_ps),))?.extract(py))?;
+        let [x, y, z, w, i, j, k] = found;
+        let turn = DQuat::from_xyzw(i, j, k, w);
+        let length = turn.length();
+        if !found.iter().all(|number| number.is_finite()) || (length - 1.0).abs() > UNIT {
+            let expected = "expected seven finite numbers, x, y, z and a unit quaternion w, i, j, k";
+            return Err(wrong_setting(format!("{} at {} s: {expected}, found {found:?}", self.name, seconds(t_ps))));
+        }
+        Ok(Pose { position: DVec3::new(x, y, z), orientation: turn.normalize() })
+    }
+}
+
+/// How far a quaternion's length may be from 1: what a few digits leave.
+const UNIT: f64 = 1e-3;
+
+impl fmt::Debug for Called {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Called").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+impl Moving for Called {
+    /// After an exception the head stands still: the run is given up.
+    fn pose(&self, t_ps: u64) -> Pose {
+        if self.has_raised() {
+            return Pose::IDENTITY;
+        }
+        self.asked(t_ps).unwrap_or_else(|error| {
+            *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+            Pose::IDENTITY
+        })
+    }
+
+    fn identify(&self, settings: &mut SettingSink) {
+        settings("motion", &format_args!("callable {}", self.name));
+        for sample in 0..SAMPLES {
+            let pose = numbers(&self.pose(sample * SAMPLE_PS)).map(|number| number.to_string()).join(" ");
+            settings("motion.pose", &pose);
+        }
+    }
+}
+
+/// The instants by which callables are told apart: every eighth of a second.
+const SAMPLES: u64 = 512;
+const SAMPLE_PS: u64 = 125_000_000_000;
+
+fn numbers(pose: &Pose) -> [f64; 7] {
+    let [x, y, z] = pose.position.to_array();
+    let [i, j, k, w] = pose.orientation.to_array();
+    [x, y, z, w, i, j, k]
+}
+
+fn end_named(name: Option<&str>) -> PyResult<End> {
+    let Some(name) = name else { return Ok(End::default()) };
+    let found = End::NAMES.iter().find(|(known, _)| *known == name).map(|(_, end)| *end);
+    let names: Vec<&str> = End::NAMES.iter().map(|(name, _)| *name).collect();
+    found.ok_or_else(|| wrong_setting(format!("end: expected {}, found {name}", names.join(" or "))))
+}
+
+/// The arrays as the library's own format has them: a number is written so that the same one is read.
+fn own_format(
+    times_s: &ArrayView1<'_, f64>,
+    positions: &ArrayView2<'_, f64>,
+    quaternions: &ArrayView2<'_, f64>,
+) -> PyResult<String> {
+    let n = times_s.len();
+    if positions.dim() != (n, 3) || quaternions.dim() != (n, 4) {
+        let found = format!("{:?} and {:?}", positions.dim(), quaternions.dim());
+        return Err(wrong_setting(format!(
+            "positions and quaternions: expected shapes ({n}, 3) and ({n}, 4), found {found}"
+        )));
+    }
+    let mut text = String::from("time_s,x,y,z,qw,qx,qy,qz\n");
+    for ((time, position), turn) in times_s.iter().zip(positions.rows()).zip(quaternions.rows()) {
+        let values = [*time].into_iter().chain(position.iter().copied()).chain(turn.iter().copied());
+        let values: Vec<String> = values.map(|value| value.to_string()).collect();
+        let _ = writeln!(text, "{}", values.join(","));
+    }
+    Ok(text)
+}

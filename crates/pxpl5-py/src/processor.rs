@@ -1,0 +1,262 @@
+//! The i860: assembler, disassembler, and a processor with memory.
+
+use crate::errors::{failed_run, not_assembled, wrong_setting};
+use i860::{AddressProfile, Config, Cpu, Program as NativeProgram, Ram, RunEnd};
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::collections::BTreeMap;
+
+/// An assembled i860 program: bytes from an address on, labels and source lines.
+#[pyclass(frozen, module = "pxpl5")]
+pub(crate) struct Program {
+    program: NativeProgram,
+}
+
+/// Assembles i860 source; ``base`` is the address of the first byte, ``name`` stands for the text in errors.
+///
+/// Raises :class:`pxpl5.AssemblyError` with every line that is wrong.
+#[pyfunction]
+#[pyo3(signature = (source, *, base = 0x1000, name = "source.s"))]
+pub(crate) fn assemble(source: &str, base: u32, name: &str) -> PyResult<Program> {
+    let program = i860::assemble(name, base, source).map_err(not_assembled)?;
+    Ok(Program { program })
+}
+
+/// The instruction of a 32-bit word as text; ``address`` is where it stands, for targets of branches.
+#[pyfunction]
+#[pyo3(signature = (word, address = 0))]
+pub(crate) fn disassemble(word: u32, address: u32) -> String {
+    i860::disassemble(word, address)
+}
+
+#[pymethods]
+impl Program {
+    /// Address of the first byte.
+    #[getter]
+    fn base(&self) -> u32 {
+        self.program.base
+    }
+
+    /// The contents from :attr:`base` on, gaps included.
+    #[getter]
+    fn bytes<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.program.bytes)
+    }
+
+    /// The contents as words: shape (n,), uint32.
+    #[getter]
+    fn words<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_vec(py, self.program.words())
+    }
+
+    /// Labels and constants by name.
+    #[getter]
+    fn symbols(&self) -> BTreeMap<String, u32> {
+        self.program.symbols.clone()
+    }
+
+    /// A line for each word: address, word, instruction.
+    fn listing(&self) -> String {
+        let words = self.program.words().into_iter();
+        let lines = (self.program.base..).step_by(4).zip(words).map(|(address, word)| {
+            let labels =
+                self.program.labels.iter().filter(|(_, at)| *at == address).map(|(name, _)| format!("{name}:\n"));
+            let labels: String = labels.collect();
+            format!("{labels}  {address:08x}  {word:08x}  {}\n", i860::disassemble(word, address))
+        });
+        lines.collect()
+    }
+
+    /// Where it stands, how long it is, and its labels.
+    fn __repr__(&self) -> String {
+        let labels: Vec<&str> = self.program.labels.iter().map(|(name, _)| name.as_str()).collect();
+        format!(
+            "<pxpl5.Program of {} bytes at {:#x}: {}>",
+            self.program.bytes.len(),
+            self.program.base,
+            labels.join(", ")
+        )
+    }
+}
+
+/// An i860 with its clock, its caches and memory from address 0 on, a program in it.
+#[pyclass(module = "pxpl5")]
+pub(crate) struct Processor {
+    cpu: Cpu,
+    memory: Ram,
+    program: NativeProgram,
+}
+
+impl Processor {
+    /// A label of the program, or an address.
+    fn place(&self, place: &Bound<'_, PyAny>) -> PyResult<u32> {
+        let Ok(name) = place.extract::<String>() else { return place.extract() };
+        self.program.symbol(&name).ok_or_else(|| {
+            let labels: Vec<&str> = self.program.labels.iter().map(|(name, _)| name.as_str()).collect();
+            wrong_setting(format!(
+                "expected a label of the program ({}) or an address, found `{name}`",
+                labels.join(", ")
+            ))
+        })
+    }
+}
+
+/// Most bytes of memory: 1 GiB.
+const MOST_MEMORY: usize = 1 << 30;
+
+#[pymethods]
+impl Processor {
+    /// A processor with a program in ``memory`` bytes (8 MiB, as a board's; at most 1 GiB), at its label ``start`` or at ``entry``, a
+    /// label or an address.
+    ///
+    /// Raises :class:`pxpl5.SettingError` for a program that does not fit, and for what is no label.
+    #[new]
+    #[pyo3(signature = (program, *, memory = 0x0080_0000, entry = None))]
+    fn new(program: &Program, memory: usize, entry: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let program = program.program.clone();
+        if memory > MOST_MEMORY {
+            return Err(wrong_setting(format!("memory: expected at most {MOST_MEMORY} bytes, found {memory}")));
+        }
+        let mut ram = Ram::new(0, memory);
+        let (base, size) = (program.base, program.bytes.len());
+        ram.load(base, &program.bytes)
+            .map_err(|_| wrong_setting(format!("{size} bytes at {base:#x} do not fit {memory:#x} bytes of memory")))?;
+        let start = program.symbol("start").unwrap_or(base);
+        let mut made = Self { cpu: Cpu::at(Config::cycle(), start), memory: ram, program };
+        made.cpu.watch(Some(AddressProfile::new(base, size.div_ceil(4))));
+        if let Some(entry) = entry {
+            made.cpu.state.pc = made.place(entry)?;
+        }
+        Ok(made)
+    }
+
+    /// Runs to ``stop``, a label or an address (default: label ``end``, or the end of the program), at most ``budget`` instructions, and
+    /// without the interpreter's lock. Gives ``stopped`` or ``exhausted``.
+    ///
+    /// Raises :class:`pxpl5.RunError` for a trap, with its cause and place, and :class:`pxpl5.SettingError` for what is no label.
+    #[pyo3(signature = (stop = None, *, budget = 10_000_000))]
+    fn run(&mut self, py: Python<'_>, stop: Option<&Bound<'_, PyAny>>, budget: u64) -> PyResult<&'static str> {
+        let end = self.program.base.wrapping_add(self.program.bytes.len() as u32);
+        let stop = match stop {
+            Some(stop) => self.place(stop)?,
+            None => self.program.symbol("end").unwrap_or(end),
+        };
+        let mut left = budget;
+        // In pieces, so that Ctrl-C is heard.
+        while left > 0 {
+            let piece = left.min(PIECE);
+            let Self { cpu, memory, .. } = self;
+            match py.detach(|| cpu.run(memory, Some(stop), piece)) {
+                RunEnd::Stopped => return Ok("stopped"),
+                RunEnd::Trapped(trap) => return Err(failed_run(trap)),
+                RunEnd::Exhausted => left -= piece,
+            }
+            py.check_signals()?;
+        }
+        Ok("exhausted")
+    }
+
+    /// Executes an instruction, or a pair in dual-instruction mode, with the slot of a delayed branch; gives the new program counter.
+    ///
+    /// Raises :class:`pxpl5.RunError` for a trap.
+    fn step(&mut self) -> PyResult<u32> {
+        let Self { cpu, memory, .. } = self;
+        cpu.step(memory).map_err(failed_run)?;
+        Ok(self.cpu.state.pc)
+    }
+
+    /// Address of the next instruction.
+    #[getter]
+    fn pc(&self) -> u32 {
+        self.cpu.state.pc
+    }
+
+    /// Integer registers: shape (32,), uint32. A copy.
+    #[getter]
+    fn r<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_slice(py, &self.cpu.state.r)
+    }
+
+    /// Floating-point registers as bits: shape (32,), uint32; ``.view(numpy.float32)`` are their values. A copy.
+    #[getter]
+    fn f<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_slice(py, &self.cpu.state.f)
+    }
+
+    /// Puts a value into an integer register, 1 to 31.
+    ///
+    /// Raises :class:`pxpl5.SettingError` for another number; register 0 stays 0.
+    fn set_r(&mut self, number: usize, value: u32) -> PyResult<()> {
+        if !(1..32).contains(&number) {
+            return Err(wrong_setting(format!("register: expected 1 to 31, found {number}")));
+        }
+        self.cpu.state.r[number] = value;
+        Ok(())
+    }
+
+    /// Clocks since the begin, freezes included.
+    #[getter]
+    fn clocks(&self) -> u64 {
+        self.cpu.clocks()
+    }
+
+    /// Instructions executed; a pair counts two.
+    #[getter]
+    fn instructions(&self) -> u64 {
+        self.cpu.instructions()
+    }
+
+    /// Where the clocks went: instructions, issue, bus_requests, page_misses, instruction_misses, data_misses, and clocks by label.
+    fn profile<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let profile = self.cpu.profile();
+        let all = PyDict::new(py);
+        all.set_item("clocks", profile.clocks())?;
+        all.set_item("instructions", profile.instructions)?;
+        all.set_item("issue", profile.issue)?;
+        all.set_item("bus_requests", profile.bus_requests)?;
+        all.set_item("page_misses", profile.page_misses)?;
+        all.set_item("instruction_misses", profile.instruction_misses)?;
+        all.set_item("data_misses", profile.data_misses)?;
+        let labels: Vec<(&str, u32)> = self.program.labels.iter().map(|(name, at)| (name.as_str(), *at)).collect();
+        let by_label = self.cpu.watched().map(|watched| watched.by_label(&labels)).unwrap_or_default();
+        all.set_item("by_label", by_label.into_iter().collect::<BTreeMap<_, _>>())?;
+        Ok(all)
+    }
+
+    /// Words of memory from a label or an address on, a multiple of 4: shape (count,), uint32. A copy.
+    ///
+    /// Raises :class:`pxpl5.SettingError` where no memory is.
+    #[pyo3(signature = (place, count = 1))]
+    fn read<'py>(
+        &self,
+        py: Python<'py>,
+        place: &Bound<'py, PyAny>,
+        count: usize,
+    ) -> PyResult<Bound<'py, PyArray1<u32>>> {
+        let address = self.place(place)?;
+        let words = self.memory.words(address, count);
+        let words = words.map_err(|_| wrong_setting(format!("{count} words at {address:#x} are not all in memory")))?;
+        Ok(PyArray1::from_vec(py, words))
+    }
+
+    /// Puts 32-bit words into memory from a label or an address on.
+    ///
+    /// Raises :class:`pxpl5.SettingError` where no memory is; nothing is written then.
+    fn write(&mut self, place: &Bound<'_, PyAny>, words: Vec<u32>) -> PyResult<()> {
+        let address = self.place(place)?;
+        let count = words.len();
+        let written = self.memory.load_words(address, &words);
+        written.map_err(|_| wrong_setting(format!("{count} words at {address:#x} are not all in memory")))?;
+        self.cpu.invalidate_code();
+        Ok(())
+    }
+
+    /// Where it is, and after how many clocks.
+    fn __repr__(&self) -> String {
+        format!("<pxpl5.Processor at {:#010x} after {} clocks>", self.cpu.state.pc, self.cpu.clocks())
+    }
+}
+
+/// Instructions between two looks at Ctrl-C: some tens of milliseconds.
+const PIECE: u64 = 2_000_000;

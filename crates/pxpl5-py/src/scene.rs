@@ -1,0 +1,278 @@
+//! Scenes: built in, from files, from arrays.
+
+use crate::errors::wrong_setting;
+use glam::Vec3;
+use numpy::ndarray::{Array2, ArrayView2};
+use numpy::{PyArray2, PyReadonlyArray2};
+use pxpl5::scene::{self, HeadMotion, Lighting, Placement, SceneParts, Sphere, Vertex};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// What is drawn: triangles and spheres, in metres, with a light and a head that looks at it. It does not change.
+///
+/// Axes are right-handed, y up; who looks from the default place looks along -z. Triangles are anticlockwise seen from outside.
+#[pyclass(frozen, module = "pxpl5")]
+pub(crate) struct Scene {
+    pub(crate) scene: Arc<scene::Scene>,
+}
+
+impl Scene {
+    pub(crate) fn of(scene: scene::Scene) -> Self {
+        Self { scene: Arc::new(scene) }
+    }
+}
+
+#[pymethods]
+impl Scene {
+    /// A built-in scene, such as ``mig`` or ``full-screen:12``; :func:`pxpl5.builtin_scenes` lists them.
+    ///
+    /// Raises :class:`pxpl5.SettingError` for a name that there is not.
+    #[staticmethod]
+    fn builtin(py: Python<'_>, name: String) -> PyResult<Self> {
+        py.detach(|| scene::builtin(&name)).map(Self::of).map_err(wrong_setting)
+    }
+
+    /// A model file (PLY, OBJ or PDB), by its extension. It is moved and scaled into the view of both eyes; with ``fit=False`` it
+    /// stays where its coordinates say, in metres.
+    ///
+    /// Raises :class:`pxpl5.SettingError` with the file, the place in it, what was expected and what was found.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, fit = true))]
+    fn load(py: Python<'_>, path: PathBuf, fit: bool) -> PyResult<Self> {
+        let placement = if fit { Placement::Fitted } else { Placement::AsInFile };
+        py.detach(|| scene::load_placed(path, placement)).map(Self::of).map_err(wrong_setting)
+    }
+
+    /// A scene of arrays, which are copied.
+    ///
+    /// - ``vertices``: shape (n, 3), metres, floating point; ``triangles``: shape (m, 3), indices of vertices from 0.
+    /// - ``normals``: shape (n, 3), any length above 0; None for the mean of the adjacent triangles, weighted by area.
+    /// - ``colours``: shape (n, 3), red, green and blue, 0 to 255; None for a light grey.
+    /// - ``spheres``: shape (k, 4), centre and radius, metres; ``sphere_colours``: shape (k, 3), 0 to 255.
+    /// - ``fit``: moves and scales it as model files are; else it stays, and the head looks at it from where all of it is seen.
+    ///
+    /// Raises :class:`pxpl5.SettingError` with the first vertex, triangle or sphere that is wrong.
+    #[staticmethod]
+    #[pyo3(signature = (vertices, triangles, *, normals = None, colours = None, spheres = None, sphere_colours = None,
+                        fit = true, name = "arrays"))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn from_arrays(
+        vertices: PyReadonlyArray2<'_, f64>,
+        triangles: PyReadonlyArray2<'_, i64>,
+        normals: Option<PyReadonlyArray2<'_, f64>>,
+        colours: Option<PyReadonlyArray2<'_, u8>>,
+        spheres: Option<PyReadonlyArray2<'_, f64>>,
+        sphere_colours: Option<PyReadonlyArray2<'_, u8>>,
+        fit: bool,
+        name: &str,
+    ) -> PyResult<Self> {
+        let mut positions = points("vertices", vertices.as_array())?;
+        let triangles = indices(triangles.as_array(), positions.len())?;
+        let mut balls = balls(spheres.as_ref().map(PyReadonlyArray2::as_array))?;
+        if fit {
+            fit_into_view(&mut positions, &mut balls);
+        }
+        let normals = match &normals {
+            Some(normals) => lengthened(points("normals", normals.as_array())?)?,
+            None => mean_normals(&positions, &triangles),
+        };
+        let colours = rgb("colours", colours.as_ref().map(PyReadonlyArray2::as_array), positions.len())?;
+        let of_spheres = rgb("sphere_colours", sphere_colours.as_ref().map(PyReadonlyArray2::as_array), balls.len())?;
+        same_length("normals", normals.len(), positions.len())?;
+        let corners = positions.iter().zip(&normals).zip(&colours);
+        let vertices: Vec<Vertex> = corners
+            .map(|((position, normal), colour)| Vertex { position: *position, normal: *normal, colour: *colour })
+            .collect();
+        let spheres: Vec<Sphere> = balls
+            .iter()
+            .zip(&of_spheres)
+            .map(|((centre, radius), colour)| Sphere { centre: *centre, radius: *radius, colour: *colour })
+            .collect();
+        let (centre, radius) = ball_around(&positions, &balls);
+        let parts = SceneParts {
+            name: name.to_owned(),
+            vertices,
+            triangles,
+            spheres,
+            structures: Vec::new(),
+            lighting: Lighting::over_the_shoulder(),
+            motion: HeadMotion::seeing_whole(centre, f64::from(radius.max(f32::MIN_POSITIVE))),
+            path: Vec::new(),
+        };
+        scene::Scene::new(parts).map(Self::of).map_err(wrong_setting)
+    }
+
+    /// Its name, as reports show it.
+    #[getter]
+    fn name(&self) -> &str {
+        self.scene.name()
+    }
+
+    /// Places of the vertices: shape (n, 3), float32, metres. A copy.
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f32>> {
+        table(py, self.scene.vertices().iter().map(|vertex| vertex.position.to_array()))
+    }
+
+    /// Normals of the vertices: shape (n, 3), float32, of unit length. A copy.
+    #[getter]
+    fn normals<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f32>> {
+        table(py, self.scene.vertices().iter().map(|vertex| vertex.normal.to_array()))
+    }
+
+    /// Red, green and blue of the vertices: shape (n, 3), uint8. A copy.
+    #[getter]
+    fn colours<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u8>> {
+        table(py, self.scene.vertices().iter().map(|vertex| vertex.colour))
+    }
+
+    /// The triangles: shape (m, 3), uint32, indices of vertices. A copy.
+    #[getter]
+    fn triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u32>> {
+        table(py, self.scene.triangles().iter().copied())
+    }
+
+    /// The spheres: shape (k, 4), float32, centre and radius, metres. A copy.
+    #[getter]
+    fn spheres<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f32>> {
+        table(py, self.scene.spheres().iter().map(|s| [s.centre.x, s.centre.y, s.centre.z, s.radius]))
+    }
+
+    /// The same thinned out evenly to at most so many primitives, 1 or more.
+    ///
+    /// Raises :class:`pxpl5.SettingError` for more than there are.
+    fn decimated(&self, py: Python<'_>, primitives: usize) -> PyResult<Self> {
+        py.detach(|| self.scene.decimated(primitives)).map(Self::of).map_err(wrong_setting)
+    }
+
+    /// The same without triangles that face away from the eye: of surfaces without holes nothing is missing then.
+    fn culled(&self) -> Self {
+        Self::of(scene::Scene::clone(&self.scene).culled())
+    }
+
+    /// Its name, and how many triangles and spheres it has.
+    fn __repr__(&self) -> String {
+        let scene = &self.scene;
+        format!(
+            "<pxpl5.Scene {}: {} triangles, {} spheres>",
+            scene.name(),
+            scene.triangles().len(),
+            scene.spheres().len()
+        )
+    }
+}
+
+/// Rows of N values each as an array of shape (rows, N).
+fn table<'py, T: numpy::Element + Copy + Default, const N: usize>(
+    py: Python<'py>,
+    rows: impl ExactSizeIterator<Item = [T; N]>,
+) -> Bound<'py, PyArray2<T>> {
+    let count = rows.len();
+    let values: Vec<T> = rows.flatten().collect();
+    let array = Array2::from_shape_vec((count, N), values).unwrap_or_default();
+    PyArray2::from_owned_array(py, array)
+}
+
+fn with_columns<T>(name: &str, array: &ArrayView2<'_, T>, columns: usize) -> PyResult<()> {
+    let (rows, found) = array.dim();
+    if found == columns {
+        return Ok(());
+    }
+    Err(wrong_setting(format!("{name}: expected shape (n, {columns}), found ({rows}, {found})")))
+}
+
+fn same_length(name: &str, found: usize, expected: usize) -> PyResult<()> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(wrong_setting(format!("{name}: expected {expected} rows, one for each, found {found}")))
+}
+
+fn points(name: &str, array: ArrayView2<'_, f64>) -> PyResult<Vec<Vec3>> {
+    with_columns(name, &array, 3)?;
+    Ok(array.rows().into_iter().map(|row| Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32)).collect())
+}
+
+fn indices(array: ArrayView2<'_, i64>, vertices: usize) -> PyResult<Vec<[u32; 3]>> {
+    with_columns("triangles", &array, 3)?;
+    let mut all = Vec::with_capacity(array.nrows());
+    for (number, row) in array.rows().into_iter().enumerate() {
+        let mut corners = [0; 3];
+        for (corner, found) in corners.iter_mut().zip(row) {
+            let index = u32::try_from(*found).ok().filter(|index| (*index as usize) < vertices);
+            *corner = index.ok_or_else(|| {
+                wrong_setting(format!(
+                    "triangle {number}: expected an index of one of {vertices} vertices, found {found}"
+                ))
+            })?;
+        }
+        all.push(corners);
+    }
+    Ok(all)
+}
+
+fn balls(array: Option<ArrayView2<'_, f64>>) -> PyResult<Vec<(Vec3, f32)>> {
+    let Some(array) = array else { return Ok(Vec::new()) };
+    with_columns("spheres", &array, 4)?;
+    let ball = |row: numpy::ndarray::ArrayView1<'_, f64>| {
+        (Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32), row[3] as f32)
+    };
+    Ok(array.rows().into_iter().map(ball).collect())
+}
+
+/// What has no colour is light grey.
+const GREY: [u8; 3] = [200, 200, 200];
+
+fn rgb(name: &str, array: Option<ArrayView2<'_, u8>>, expected: usize) -> PyResult<Vec<[u8; 3]>> {
+    let Some(array) = array else { return Ok(vec![GREY; expected]) };
+    with_columns(name, &array, 3)?;
+    same_length(name, array.nrows(), expected)?;
+    Ok(array.rows().into_iter().map(|row| [row[0], row[1], row[2]]).collect())
+}
+
+/// Normals of unit length.
+fn lengthened(normals: Vec<Vec3>) -> PyResult<Vec<Vec3>> {
+    let unit = normals.iter().enumerate().map(|(number, normal)| {
+        let found = normal.try_normalize();
+        found.ok_or_else(|| wrong_setting(format!("normal {number}: expected a length above 0, found {normal}")))
+    });
+    unit.collect()
+}
+
+/// Mean of the adjacent triangles, weighted by area, as the importers have it; upwards where there is none.
+fn mean_normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut sums = vec![Vec3::ZERO; positions.len()];
+    for corners in triangles {
+        let [a, b, c] = corners.map(|corner| positions[corner as usize]);
+        let twice_area = (b - a).cross(c - a);
+        corners.iter().for_each(|corner| sums[*corner as usize] += twice_area);
+    }
+    sums.into_iter().map(|sum| sum.normalize_or(Vec3::Y)).collect()
+}
+
+/// Middle of the box around everything, and the farthest reach from it; 0 of nothing.
+fn ball_around(positions: &[Vec3], balls: &[(Vec3, f32)]) -> (Vec3, f32) {
+    let all = positions.iter().map(|position| (*position, 0.0)).chain(balls.iter().copied());
+    let low = all.clone().fold(Vec3::INFINITY, |low, (centre, radius)| low.min(centre - radius));
+    let high = all.clone().fold(Vec3::NEG_INFINITY, |high, (centre, radius)| high.max(centre + radius));
+    if low.cmpgt(high).any() {
+        return (Vec3::ZERO, 0.0);
+    }
+    let middle = (low + high) / 2.0;
+    (middle, all.map(|(centre, radius)| centre.distance(middle) + radius).fold(0.0, f32::max))
+}
+
+/// Moves the middle to the origin and the farthest reach to where that of model files is.
+fn fit_into_view(positions: &mut [Vec3], balls: &mut [(Vec3, f32)]) {
+    let (middle, radius) = ball_around(positions, balls);
+    if radius <= 0.0 || !radius.is_finite() {
+        return;
+    }
+    let scale = scene::config::IMPORT_RADIUS_M as f32 / radius;
+    positions.iter_mut().for_each(|position| *position = (*position - middle) * scale);
+    for (centre, radius) in balls {
+        *centre = (*centre - middle) * scale;
+        *radius *= scale;
+    }
+}

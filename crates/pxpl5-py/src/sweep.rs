@@ -1,0 +1,149 @@
+//! Sweeps: points, rows and the folder that keeps them.
+
+use crate::attended::attended;
+use crate::catalogue::python;
+use crate::errors::{failed_sweep, wrong_setting};
+use crate::settings::Settings;
+use pxpl5::sweep::{RunOptions, Shard, Store as NativeStore, Sweep as NativeSweep, SweepRow, run};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// An experiment at every point of a space of settings.
+#[pyclass(frozen, module = "pxpl5._native")]
+pub(crate) struct Sweep {
+    sweep: Arc<NativeSweep>,
+}
+
+#[pymethods]
+impl Sweep {
+    /// Of settings with a space.
+    ///
+    /// Raises :class:`pxpl5.SettingError` for a space that makes no sense.
+    #[new]
+    fn new(settings: &Settings) -> PyResult<Self> {
+        let sweep = NativeSweep::new(settings.file.clone()).map_err(wrong_setting)?;
+        Ok(Self { sweep: Arc::new(sweep) })
+    }
+
+    /// How many points there are.
+    #[getter]
+    fn points(&self) -> u64 {
+        self.sweep.space().points()
+    }
+
+    /// What all rows have in common: schema, version, machine, quantities with their definitions, axes.
+    ///
+    /// Raises :class:`pxpl5.SettingError` when no point is an experiment.
+    fn header<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let header = py.detach(|| self.sweep.header()).map_err(wrong_setting)?;
+        python(py, &header)
+    }
+
+    /// Simulates some points on this thread: for each its row as a line of JSON, and the seconds that it took.
+    fn rows(&self, py: Python<'_>, points: Vec<u64>) -> PyResult<Vec<(String, f64)>> {
+        let sweep = Arc::clone(&self.sweep);
+        let rows = attended(py, None, false, move |_| sweep.rows(&points))?;
+        Ok(rows.into_iter().map(|(row, seconds)| (line(&row), seconds)).collect())
+    }
+
+    /// About how many seconds each of some points will take, by the analytic level.
+    fn costs(&self, py: Python<'_>, points: Vec<u64>) -> PyResult<Vec<f64>> {
+        let sweep = Arc::clone(&self.sweep);
+        attended(py, None, false, move |_| sweep.costs(&points))
+    }
+}
+
+fn line(row: &SweepRow) -> String {
+    serde_json::to_string(row).unwrap_or_default()
+}
+
+/// The rows of a sweep in a folder: rows.jsonl, times.jsonl and, at the end, results.csv.
+#[pyclass(module = "pxpl5._native")]
+pub(crate) struct Store {
+    sweep: Arc<NativeSweep>,
+    store: Option<NativeStore>,
+}
+
+impl Store {
+    fn open_store(&mut self) -> PyResult<&mut NativeStore> {
+        self.store.as_mut().ok_or_else(|| failed_sweep("the store is closed"))
+    }
+}
+
+#[pymethods]
+impl Store {
+    /// Opens a folder, or makes it; finished points are kept to ``resume``.
+    ///
+    /// Raises :class:`pxpl5.SweepError` when it cannot be used, is in use, or holds another sweep.
+    #[new]
+    fn new(sweep: &Sweep, folder: PathBuf, resume: bool) -> PyResult<Self> {
+        let header = sweep.sweep.header().map_err(wrong_setting)?;
+        let store = NativeStore::open(&folder, header, resume).map_err(failed_sweep)?;
+        Ok(Self { sweep: Arc::clone(&sweep.sweep), store: Some(store) })
+    }
+
+    /// Numbers of the points that have no row yet, in order.
+    fn missing(&mut self) -> PyResult<Vec<u64>> {
+        let points = self.sweep.space().points();
+        let store = self.open_store()?;
+        Ok((0..points).filter(|point| !store.holds(*point)).collect())
+    }
+
+    /// Keeps a row, given as a line of JSON, and the seconds that it took; whether it was new. A point that has a row keeps it.
+    ///
+    /// Raises :class:`pxpl5.SweepError` for a line that is no row, and when it cannot be written.
+    fn append(&mut self, line: &str, seconds: f64) -> PyResult<bool> {
+        let row: SweepRow = serde_json::from_str(line).map_err(failed_sweep)?;
+        let points = self.sweep.space().points();
+        if row.point >= points {
+            return Err(failed_sweep(format!("expected a point below {points}, found {}", row.point)));
+        }
+        let store = self.open_store()?;
+        if store.holds(row.point) {
+            return Ok(false);
+        }
+        store.append(&row, seconds).map_err(failed_sweep)?;
+        Ok(true)
+    }
+
+    /// Simulates all points that have no row yet, so many at a time on threads of this computer. After Ctrl-C the rows of finished
+    /// points are in the folder; the points in hand end first.
+    ///
+    /// Raises :class:`pxpl5.SweepError`, KeyboardInterrupt.
+    #[pyo3(signature = (threads, progress = None))]
+    fn run(&mut self, py: Python<'_>, threads: usize, progress: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
+        let mut store = self.store.take().ok_or_else(|| failed_sweep("the store is closed"))?;
+        let sweep = Arc::clone(&self.sweep);
+        let (store, result) = attended(py, progress, true, move |told| {
+            let of = sweep.space().points();
+            let mut done = store.finished(Shard::ALL);
+            let options = RunOptions { shard: Shard::ALL, threads };
+            let result = run(&sweep, &mut store, options, |_| {
+                done += 1;
+                told.tell(done, of);
+            });
+            (store, result)
+        })?;
+        self.store = Some(store);
+        result.map_err(failed_sweep)
+    }
+
+    /// All rows, in order of their points, each as a line of JSON.
+    ///
+    /// Raises :class:`pxpl5.SweepError` when they cannot be read.
+    fn lines(&mut self) -> PyResult<Vec<String>> {
+        let points = self.sweep.space().points();
+        let store = self.open_store()?;
+        let rows = (0..points).filter_map(|point| store.row(point).transpose());
+        rows.map(|row| Ok(line(&row.map_err(failed_sweep)?))).collect()
+    }
+
+    /// Puts the rows in order of their points, writes results.csv, and closes the folder.
+    ///
+    /// Raises :class:`pxpl5.SweepError` when it cannot be written.
+    fn finish(&mut self) -> PyResult<()> {
+        let store = self.store.take().ok_or_else(|| failed_sweep("the store is closed"))?;
+        store.finish().map_err(failed_sweep)
+    }
+}

@@ -1,0 +1,155 @@
+"""Machines and their parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+
+from . import _html, _native
+from ._native import Table
+from ._tables import table_of
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number of a machine with its origin."""
+
+    #: Board and field, such as ``ring.word_ns``.
+    path: str
+    #: Its value, in :attr:`unit`.
+    value: float
+    #: Unit of the value and the range, such as ns.
+    unit: str
+    #: Published, derived or assumed.
+    standing: str
+    #: Least value that the sources allow.
+    low: float
+    #: Greatest value that the sources allow.
+    high: float
+    #: Where it comes from.
+    source: str
+    #: Whether it is listed only: what a part is, which nobody can set.
+    read_only: bool
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Least and greatest value that the sources allow, in :attr:`unit`."""
+        return (self.low, self.high)
+
+    @property
+    def in_range(self) -> bool:
+        """Whether the sources allow the value; the model takes more, and warns."""
+        return self.low <= self.value <= self.high
+
+
+PARAMETER_DEFINITIONS = {
+    "path": "board and field",
+    "value": "in the unit beside it",
+    "standing": "published, derived or assumed",
+    "low": "least value that the sources allow",
+    "high": "greatest value that the sources allow",
+    "read_only": "whether it is listed only",
+}
+
+
+def parameter_table(parameters: list[Parameter]) -> Table:
+    """Parameters as a table: path, value, unit, standing, low, high, source, read_only."""
+    rows = [asdict(parameter) for parameter in parameters]
+    for row in rows:
+        row.update({key: float(row[key]) for key in ("value", "low", "high")})
+    return table_of(rows, PARAMETER_DEFINITIONS)
+
+
+class Machine(Mapping[str, Parameter]):
+    """A machine: a preset, and the numbers of it that are otherwise.
+
+    ``machine["gp.triangle_ns"]`` is a :class:`Parameter`; ``machine["gp.triangle_ns"] = 30_000`` changes its value, and
+    ``machine.n_gps = 20`` the number of boards. What the sources do not allow is listed in :attr:`warnings`.
+
+    A pipeline may adapt the machine further (the time of its code): what is set here holds all the same.
+
+    Raises :class:`SettingError` for a preset, path or value that no machine has, with the nearest that there is.
+    """
+
+    def __init__(self, preset: str = "small-hmd", changes: Mapping[str, float] | None = None) -> None:
+        self._preset = preset
+        self._changes: dict[str, float] = {}
+        self._known = _native.machine_parameters(preset, dict(changes or {}))
+        self._changes.update(changes or {})
+
+    @property
+    def preset(self) -> str:
+        """The name of the preset, one of :func:`presets`."""
+        return self._preset
+
+    @property
+    def changes(self) -> dict[str, float]:
+        """What was set, by path, in the unit of each parameter. A copy."""
+        return dict(self._changes)
+
+    @property
+    def n_gps(self) -> int:
+        """Graphics processors, the master included."""
+        return int(self._known["n_gps"])
+
+    @n_gps.setter
+    def n_gps(self, number: int) -> None:
+        self["n_gps"] = number
+
+    @property
+    def n_renderers(self) -> int:
+        """Renderers, each an array of 128 x 128 pixels."""
+        return int(self._known["n_renderers"])
+
+    @n_renderers.setter
+    def n_renderers(self, number: int) -> None:
+        self["n_renderers"] = number
+
+    def __setitem__(self, path: str, value: float) -> None:
+        changes = {**self._changes, path: value}
+        self._known = _native.machine_parameters(self._preset, changes)
+        self._changes = changes
+
+    def replaced(self, changes: Mapping[str, float]) -> Machine:
+        """The same with some numbers otherwise, by path; this one stays as it is."""
+        return Machine(self._preset, {**self._changes, **changes})
+
+    @property
+    def parameters(self) -> list[Parameter]:
+        """All numbers in the order of the boards, those of firmware included."""
+        return [Parameter(**entry) for entry in self._known["parameters"]]
+
+    @property
+    def warnings(self) -> list[str]:
+        """Numbers that no source allows, each with range and source."""
+        return list(self._known["warnings"])
+
+    def table(self) -> Table:
+        """The parameters as a table: path, value, unit, standing, low, high, source, read_only."""
+        return parameter_table(self.parameters)
+
+    def __getitem__(self, path: str) -> Parameter:
+        for parameter in self.parameters:
+            if parameter.path == path:
+                return parameter
+        raise KeyError(path)
+
+    def __iter__(self) -> Iterator[str]:
+        return (parameter.path for parameter in self.parameters)
+
+    def __len__(self) -> int:
+        return len(self._known["parameters"])
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Machine) and self._known == other._known and self._preset == other._preset
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        changes = f", {self._changes}" if self._changes else ""
+        return f"<pxpl5.Machine {self._preset}: {self.n_gps} GPs, {self.n_renderers} renderers{changes}>"
+
+    def _repr_html_(self) -> str:
+        rows = [[p.path, p.value, p.unit, p.standing, f"{p.low:g} to {p.high:g}", p.source] for p in self.parameters]
+        head = ["parameter", "value", "unit", "standing", "range", "source"]
+        return _html.table(head, rows, f"{self._preset}: {self.n_gps} GPs, {self.n_renderers} renderers")

@@ -1,0 +1,71 @@
+"""Sweeps on this computer."""
+
+from pathlib import Path
+
+import pytest
+
+import pxpl5
+from pxpl5._sweep import chunks
+
+BASE = {"pipeline": "slats", "scene": "typical:100", "fields": 30, "measure": ["latency_fields.mean", "missed_retraces"]}
+
+
+def space() -> pxpl5.SweepSpace:
+    return pxpl5.SweepSpace(BASE, {"triangles": [50, 90], "machine.gp.triangle_ns": [20_000, 90_000]}, seeds=2)
+
+
+def test_all_combinations_are_run_in_order() -> None:
+    results = pxpl5.sweep(space(), progress=False)
+    rows = results.table.rows()
+    assert [row["point"] for row in rows] == list(range(8))
+    assert [row["machine.gp.triangle_ns"] for row in rows] == [20_000] * 4 + [90_000] * 4
+    assert [row["triangles"] for row in rows] == [50, 50, 90, 90] * 2
+    assert [row["seed"] for row in rows] == [1, 2] * 4
+    # 90 triangles of 90 us do not fit into a field of 16.7 ms, 50 of 20 us do.
+    assert rows[0]["missed_retraces"] == 0 and rows[-1]["missed_retraces"] > 0
+
+
+def test_threads_do_not_change_a_byte(tmp_path: Path) -> None:
+    files = []
+    for threads in (1, 2):
+        results = pxpl5.sweep(space(), out=tmp_path / str(threads), threads=threads, progress=False)
+        assert results.folder is not None
+        files.append([(results.folder / name).read_bytes() for name in ("rows.jsonl", "results.csv")])
+    assert files[0] == files[1]
+
+
+def test_an_interrupted_sweep_goes_on(tmp_path: Path) -> None:
+    whole = pxpl5.sweep(space(), out=tmp_path / "whole", progress=False)
+    out = tmp_path / "torn"
+    pxpl5.sweep(space(), out=out, progress=False)
+    lines = (out / "rows.jsonl").read_bytes().splitlines(keepends=True)
+    (out / "rows.jsonl").write_bytes(b"".join(lines[:4]) + lines[4][:20])
+    with pytest.raises(pxpl5.SweepError, match="3 finished points here already"):
+        pxpl5.sweep(space(), out=out, progress=False)
+    assert pxpl5.sweep(space(), out=out, resume=True, progress=False).lines == whole.lines
+    assert (out / "rows.jsonl").read_bytes() == (tmp_path / "whole" / "rows.jsonl").read_bytes()
+
+
+def test_a_point_that_cannot_be_run_says_why() -> None:
+    rows = pxpl5.sweep(pxpl5.SweepSpace(BASE, {"triangles": [50, 1_000_000]}), progress=False).table.rows()
+    assert [row["status"] for row in rows] == ["done", "failed"] and rows[1]["error"]
+
+
+def test_spaces_of_files_machines_and_ranges() -> None:
+    machine = pxpl5.Machine("slats", {"n_renderers": 6})
+    made = pxpl5.SweepSpace({**BASE, "machine": machine}, {"triangles": pxpl5.Range(10, 30, 10)})
+    assert made.points == 3 and 'machine.preset = "slats"' in made.text
+    with pytest.raises(pxpl5.SettingError, match="there is no key `trangles`; did you mean `triangles`"):
+        pxpl5.SweepSpace(BASE, {"trangles": [1]})
+
+
+def test_the_estimate_grows_with_the_work() -> None:
+    made = pxpl5.SweepSpace({**BASE, "scene": "typical:2000", "pipeline": "rendering-control"}, {"triangles": [20, 2000], "fields": [60, 600]})
+    cheap, long, heavy, both = made.costs([0, 1, 2, 3])
+    assert cheap < long < both and cheap < heavy < both
+
+
+def test_chunks_hold_every_point_once_and_no_more_than_is_said() -> None:
+    costs = [0.1, 0.2, 0.3, 5.0, 0.1, 0.1]
+    made = chunks(range(6), costs, 0.5)
+    assert made == [[0, 1], [2], [3], [4, 5]]
