@@ -86,7 +86,7 @@ pub(crate) fn compare<'py>(
     limits: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let query = CompareQuery { shared: settings.file.clone(), seeds, limits, pictures: false };
+    let query = CompareQuery { only: Vec::new(), shared: settings.file.clone(), seeds, limits, pictures: false };
     let comparison = attended(py, progress, false, move |told| query.run(|done, of| told.tell(done, of)))?;
     python(py, &comparison.map_err(wrong_setting)?)
 }
