@@ -66,21 +66,22 @@ pub(crate) fn machine_parameters<'py>(
 
 /// Parameters as objects: path, value, unit, standing, range, source and whether they are only listed.
 pub(crate) fn described(parameters: &[Parameter]) -> Vec<serde_json::Value> {
-    let one = |parameter: &Parameter| {
-        let info = &parameter.info;
-        let (low, high) = info.range;
-        json!({
-            "path": parameter.path,
-            "value": parameter.value,
-            "unit": info.unit,
-            "standing": info.standing.to_string(),
-            "low": low,
-            "high": high,
-            "source": info.source,
-            "read_only": parameter.read_only,
-        })
-    };
-    parameters.iter().map(one).collect()
+    parameters.iter().map(described_one).collect()
+}
+
+fn described_one(parameter: &Parameter) -> serde_json::Value {
+    let info = &parameter.info;
+    let (low, high) = info.range;
+    json!({
+        "path": parameter.path,
+        "value": parameter.value,
+        "unit": info.unit,
+        "standing": info.standing.to_string(),
+        "low": low,
+        "high": high,
+        "source": info.source,
+        "read_only": parameter.read_only,
+    })
 }
 
 /// Parameters of all trackers, of the host's port and of the predictors: dictionaries as in :func:`machine_parameters`.

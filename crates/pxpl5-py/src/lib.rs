@@ -11,7 +11,7 @@
 //! # Behaviour
 //!
 //! - What takes long runs on a thread of its own without the interpreter's lock; the calling thread reports progress and listens
-//!   for Ctrl-C ([`attended`]).
+//!   for Ctrl-C (attended.rs).
 //! - Pictures go to NumPy without a copy of their pixels; tables go through the Arrow PyCapsule interface without a copy of their
 //!   columns. Vertices that come from NumPy are copied once.
 //! - Errors are exceptions of `pxpl5._errors`, with the words of the library.

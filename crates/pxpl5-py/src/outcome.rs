@@ -138,11 +138,7 @@ impl Outcome {
     fn pictures(&self, py: Python<'_>) -> PyResult<Table> {
         let (outcome, _) = self.run(py)?;
         let (columns, rows) = py.detach(|| (columns(), rows(outcome)));
-        let column = |(i, column): (usize, pxpl5::results::Column)| {
-            let values = rows.iter().map(|row| row[i].map(u64::cast_signed)).collect();
-            Column::whole(&column.name, &column.definition, values)
-        };
-        Table::of(columns.into_iter().enumerate().map(column).collect())
+        Table::of(columns.iter().enumerate().map(|(i, column)| column_of(i, column, &rows)).collect())
     }
 
     /// A row for each stage of each picture.
@@ -267,6 +263,12 @@ impl Outcome {
         let errors = py.detach(|| outcome.pixel_errors());
         errors.map(|errors| python(py, &errors)).transpose()
     }
+}
+
+/// A column of the table of pictures.
+fn column_of(i: usize, column: &pxpl5::results::Column, rows: &[Vec<Option<u64>>]) -> Column {
+    let values = rows.iter().map(|row| row[i].map(u64::cast_signed)).collect();
+    Column::whole(&column.name, &column.definition, values)
 }
 
 fn numbers(stages: &[pxpl5::StageSpan], of: impl Fn(&pxpl5::StageSpan) -> Option<i64>) -> Vec<Option<i64>> {

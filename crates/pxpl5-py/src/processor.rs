@@ -119,7 +119,8 @@ impl Processor {
             return Err(wrong_setting(format!("memory: expected at most {MOST_MEMORY} bytes, found {memory}")));
         }
         let mut ram = Ram::new(0, memory);
-        let (base, size) = (program.base, program.bytes.len());
+        let base = program.base;
+        let size = program.bytes.len();
         ram.load(base, &program.bytes)
             .map_err(|_| wrong_setting(format!("{size} bytes at {base:#x} do not fit {memory:#x} bytes of memory")))?;
         let start = program.symbol("start").unwrap_or(base);

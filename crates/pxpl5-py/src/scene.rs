@@ -2,7 +2,7 @@
 
 use crate::errors::wrong_setting;
 use glam::Vec3;
-use numpy::ndarray::{Array2, ArrayView2};
+use numpy::ndarray::{Array2, ArrayView1, ArrayView2};
 use numpy::{PyArray2, PyReadonlyArray2};
 use pxpl5::scene::{self, HeadMotion, Lighting, Placement, SceneParts, Sphere, Vertex};
 use pyo3::prelude::*;
@@ -215,10 +215,12 @@ fn indices(array: ArrayView2<'_, i64>, vertices: usize) -> PyResult<Vec<[u32; 3]
 fn balls(array: Option<ArrayView2<'_, f64>>) -> PyResult<Vec<(Vec3, f32)>> {
     let Some(array) = array else { return Ok(Vec::new()) };
     with_columns("spheres", &array, 4)?;
-    let ball = |row: numpy::ndarray::ArrayView1<'_, f64>| {
-        (Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32), row[3] as f32)
-    };
     Ok(array.rows().into_iter().map(ball).collect())
+}
+
+/// Centre and radius.
+fn ball(row: ArrayView1<'_, f64>) -> (Vec3, f32) {
+    (Vec3::new(row[0] as f32, row[1] as f32, row[2] as f32), row[3] as f32)
 }
 
 /// What has no colour is light grey.

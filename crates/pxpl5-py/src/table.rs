@@ -99,7 +99,6 @@ fn column_of(name: &str, rows: &[Map<String, Value>], about: &str) -> Column {
     let known: Vec<Option<&Value>> = rows.iter().map(|row| row.get(name).filter(|value| !value.is_null())).collect();
     let all = |is: fn(&Value) -> bool| known.iter().flatten().all(|value| is(value));
     let none = known.iter().all(Option::is_none);
-    let (name, about) = (name.to_owned(), about.to_owned());
     let values: ArrayRef = if none || (!all(Value::is_i64) && all(Value::is_number)) {
         Arc::new(known.iter().map(|value| value.and_then(Value::as_f64)).collect::<Float64Array>())
     } else if all(Value::is_i64) {
@@ -109,7 +108,7 @@ fn column_of(name: &str, rows: &[Map<String, Value>], about: &str) -> Column {
     } else {
         Arc::new(known.iter().map(|value| value.map(plain)).collect::<StringArray>())
     };
-    Column { name, about, values }
+    Column { name: name.to_owned(), about: about.to_owned(), values }
 }
 
 fn plain(value: &Value) -> String {
