@@ -17,7 +17,7 @@ const SMALL: [&str; 10] = [
     "--set",
     "walk.frames=120",
     "--set",
-    "walk.m_per_s=3",
+    "walk.m_per_s=1",
 ];
 
 fn arp<'a>(command: &'a str, arguments: &[&'a str]) -> Vec<&'a str> {
@@ -109,7 +109,7 @@ fn settings_come_from_a_file_then_from_options_then_from_set() {
     assert_eq!(report["priority"]["policy"], "cells");
     assert_eq!(report["priority"]["cell_m"], 6.0);
     assert_eq!(report["memories"].as_array().map(Vec::len), Some(3));
-    assert_eq!(report["m_per_s"], 3.0, "--set goes before the file");
+    assert_eq!(report["m_per_s"], 1.0, "--set goes before the file");
 }
 
 #[test]
