@@ -10,7 +10,8 @@ fn layouts() -> [Layout; 3] {
 
 /// Operation codes are chosen evenly and modifiers are small, so that many words are instructions.
 fn likely_word() -> impl Strategy<Value = u32> {
-    let instruction = (0u32..64, 0u32..32, any::<u16>()).prop_map(|(op, modifier, low)| op << 24 | modifier << 16 | u32::from(low));
+    let instruction =
+        (0u32..64, 0u32..32, any::<u16>()).prop_map(|(op, modifier, low)| op << 24 | modifier << 16 | u32::from(low));
     prop_oneof![4 => instruction, 1 => any::<u32>(), 1 => 0u32..256]
 }
 
