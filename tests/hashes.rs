@@ -33,10 +33,12 @@ fn fnv(bytes: impl Iterator<Item = u8>) -> u64 {
 fn hashed(pipeline: &str, key: &str, fields: u64, scene: &str, triangles: u64) -> String {
     let text =
         format!("pipeline = \"{pipeline}\"\n{key}\nscene = \"{scene}\"\ntriangles = {triangles}\nfields = {fields}\n");
-    let plan = ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).unwrap_or_else(|e| panic!("{e}: {text}"));
+    let plan =
+        ExperimentFile::parse(&text, "test").and_then(|file| file.resolve()).unwrap_or_else(|e| panic!("{e}: {text}"));
     let outcome = plan.experiment(plan.load_scene().expect("built in")).run().unwrap_or_else(|e| panic!("{e}: {text}"));
     let surfaces = (0..outcome.record().surfaces().count() as u16).map(SurfaceId);
-    let pictures: Vec<u8> = surfaces.filter_map(|surface| outcome.picture(surface)).flat_map(|p| p.into_raw()).collect();
+    let pictures: Vec<u8> =
+        surfaces.filter_map(|surface| outcome.picture(surface)).flat_map(|p| p.into_raw()).collect();
     assert!(!pictures.is_empty(), "{text}");
     let hash = outcome.report().trace_hash;
     format!("{hash} {:016x} {pipeline} {} {scene}", fnv(pictures.into_iter()), key.replace(' ', ""))

@@ -54,7 +54,9 @@ impl BudgetArgs {
     pub(crate) fn admit(&self, work: &Work) -> Result<(), CliError> {
         let Estimate { bytes, seconds } = work.estimate();
         match self.excess(bytes / 1e6, seconds) {
-            Some(reason) => Err(CliError::failure(format!("{reason}; estimated before it starts, nothing was written"))),
+            Some(reason) => {
+                Err(CliError::failure(format!("{reason}; estimated before it starts, nothing was written")))
+            }
             None => Ok(()),
         }
     }

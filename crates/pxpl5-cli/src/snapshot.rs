@@ -1,8 +1,8 @@
 //! Running an experiment, with a snapshot saved or restored on the way.
 
 use crate::budget::{BudgetArgs, YOUNG};
-use crate::estimate::Work;
 use crate::error::CliError;
+use crate::estimate::Work;
 use crate::options::registry;
 use crate::output::OutputFile;
 use crate::terminal::progress;

@@ -1,8 +1,8 @@
 //! `pxpl5 trace`.
 
 use crate::budget::{BudgetArgs, YOUNG};
-use crate::estimate::Work;
 use crate::error::CliError;
+use crate::estimate::Work;
 use crate::output::OutputFile;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, progress, warn};

@@ -237,7 +237,8 @@ fn a_field_knows_which_buffer_was_scanned_and_the_last_one_is_the_last_scanned()
     let swapped = board.device.video().retrace(PeriodNumber(4));
     board.swap(Time(swapped.0 - 1), 1);
     board.run();
-    let buffers: Vec<u8> = (2..6).map(|field| board.device.seen(PeriodNumber(field)).expect("remembered").buffer()).collect();
+    let buffers: Vec<u8> =
+        (2..6).map(|field| board.device.seen(PeriodNumber(field)).expect("remembered").buffer()).collect();
     assert_eq!(buffers, [0, 0, 1, 1]);
     assert_eq!(board.device.last_seen().map(|seen| seen.field()), Some(PeriodNumber(5)));
     assert_eq!(board.device.scanning(), Some(PeriodNumber(6)));

@@ -8,8 +8,8 @@ use crate::too_heavy::TooHeavy;
 use parameters::Value;
 use pxpl5_display::Counter;
 use pxpl5_machine::{LateRegion, Parameter};
-use pxpl5_sim::{Time, TraceHash};
 use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster};
+use pxpl5_sim::{Time, TraceHash};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use tracking::predict::{PredictorConfig, Training};
@@ -213,7 +213,8 @@ impl Report {
     /// floating-point numbers in another order is another one.
     fn hash_statistics(&mut self, mut hash: TraceHash) {
         let latencies = (&self.latency_fields, &self.latency_ms, &self.latency_parts_ms, &self.latency_by_eye_ms);
-        let pictures = (self.pictures, self.shown, &self.updates_hz, &self.due, self.missed_retraces, self.ends_complete);
+        let pictures =
+            (self.pictures, self.shown, &self.updates_hz, &self.due, self.missed_retraces, self.ends_complete);
         let late = (self.late_regions, &self.first_late_regions, &self.display_counters);
         // Numbers print with as many digits as tell them apart.
         let text = format!("{latencies:?}{pictures:?}{late:?}{:?}{:?}", self.head, self.arp);

@@ -306,7 +306,11 @@ mod tests {
             let left = |value: u32| u64::from(value).checked_shl(by).unwrap_or(0) as u32;
             let expected = [std::array::from_fn(|k| right(values[k])), std::array::from_fn(|k| left(values[k]))];
             for vectors in Vectors::available() {
-                assert_eq!(PresentVectors::or_portable(vectors).run(Shifts { values, by }), expected, "{vectors:?} {by}");
+                assert_eq!(
+                    PresentVectors::or_portable(vectors).run(Shifts { values, by }),
+                    expected,
+                    "{vectors:?} {by}"
+                );
             }
         }
     }

@@ -5,8 +5,8 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::fmt::Write;
 use std::fs;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pxpl5_scene::config::{MEMORY_FLOOR_BYTES, MEMORY_TIMES_FILE};
 use pxpl5_scene::{LoadError, load};
@@ -172,7 +172,14 @@ fn ascii_ply_and_pdb_files_take_at_most_seven_times_their_size() {
     let atom = "ATOM      1  N   SER A   1      11.000  -2.000   0.500\n";
     is_accepted("atoms.pdb", atom.repeat(60_000).into_bytes());
     let others: String = (0..60_000)
-        .map(|n| format!("ATOM  {:5}  N {}SER A{:4}      11.000  -2.000   0.500\n", n % 100_000, ["A", "B"][n % 2], n % 9_999))
+        .map(|n| {
+            format!(
+                "ATOM  {:5}  N {}SER A{:4}      11.000  -2.000   0.500\n",
+                n % 100_000,
+                ["A", "B"][n % 2],
+                n % 9_999
+            )
+        })
         .collect();
     is_accepted("locations.pdb", others.into_bytes());
 }

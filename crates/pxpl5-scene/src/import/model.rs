@@ -84,7 +84,12 @@ impl Model {
     }
 
     /// A fitted scene of the mesh. The file's own bytes are not needed any more.
-    pub(super) fn into_scene(mut self, name: &str, file_bytes: usize, placement: Placement) -> Result<Scene, LoadError> {
+    pub(super) fn into_scene(
+        mut self,
+        name: &str,
+        file_bytes: usize,
+        placement: Placement,
+    ) -> Result<Scene, LoadError> {
         if self.triangles.is_empty() {
             return Err(LoadError::NothingToDraw { file: name.to_owned(), expected: "triangle" });
         }

@@ -142,7 +142,8 @@ impl<'a> Rows<'a> {
         if length <= self.longest_list {
             return Ok(());
         }
-        let expected = format!("a list of at most {} numbers, {LIST} and {LIST_PER_VERTEX} for each vertex", self.longest_list);
+        let expected =
+            format!("a list of at most {} numbers, {LIST} and {LIST_PER_VERTEX} for each vertex", self.longest_list);
         Err(self.source.syntax(at, expected, length.to_string()))
     }
 
