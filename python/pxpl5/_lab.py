@@ -189,6 +189,7 @@ def compare(
     machine: str | Machine = "small-hmd",
     head: str | Head = "synthetic",
     fields: int = 300,
+    only: Sequence[str] = (),
     seeds: int | Sequence[int] = 5,
     limits: bool = False,
     settings: Mapping[str, object] | None = None,
@@ -197,7 +198,7 @@ def compare(
 ) -> Comparison:
     """Every pipeline with the same settings, a run for each seed: errors in pixels by cause, latencies, and, on demand, limits.
 
-    A head of ``synthetic`` moves otherwise in every seed. A motion must have a name here, or be the path of a recording.
+    ``only`` names the rows that are run; all where it is empty. A head of ``synthetic`` moves otherwise in every seed. A motion must have a name here, or be the path of a recording.
 
     Raises :class:`SettingError` for a setting that is wrong, or a run too short to judge anything.
     """
@@ -211,4 +212,4 @@ def compare(
         made.put("head.tracker", "optical")
     numbers = list(range(1, seeds + 1)) if isinstance(seeds, int) else list(seeds)
     with reporting(progress, "runs") as told:
-        return Comparison(_native.compare(made.settings, numbers, limits, told))
+        return Comparison(_native.compare(made.settings, list(only), numbers, limits, told))

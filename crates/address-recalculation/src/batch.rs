@@ -181,8 +181,8 @@ pub(crate) fn mixed(colours: &[u32], batch: &Batch, reach: usize, weight_bits: u
     }
     let count = out.len().min(BATCH);
     let mut four = [[0; BATCH]; 4];
-    for i in 0..count {
-        let first = batch.index[i] as usize;
+    for (i, first) in batch.index[..count].iter().enumerate() {
+        let first = *first as usize;
         let upper = &colours[first..first + 2];
         let lower = &colours[first + reach..first + reach + 2];
         four[0][i] = upper[0];

@@ -105,7 +105,7 @@ fn whole_part(number: f64) -> u32 {
 #[inline(always)]
 fn depth_word(depth: f64) -> u32 {
     let word = whole_part(depth * f64::from(DEPTH_FARTHEST));
-    if (depth >= 0.0) & (depth < 1.0) { word } else { DEPTH_FARTHEST }
+    if (0.0..1.0).contains(&depth) { word } else { DEPTH_FARTHEST }
 }
 
 /// A part of a colour, rounded to the nearest.

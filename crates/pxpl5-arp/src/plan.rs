@@ -171,11 +171,8 @@ impl Plan {
         };
         let done = table.set(name, value).map_err(|_| expected_of(info));
         // The policy's memories are the display's.
-        match (path, value) {
-            ("priority.memories" | "arp.display_memories", Value::Whole(memories)) => {
-                self.chosen = self.chosen.clone().with_memories(memories);
-            }
-            _ => {}
+        if let ("priority.memories" | "arp.display_memories", Value::Whole(memories)) = (path, value) {
+            self.chosen = self.chosen.clone().with_memories(memories);
         }
         Ok(done)
     }

@@ -78,15 +78,16 @@ pub(crate) fn figures<'py>(
 ///
 /// Raises :class:`pxpl5.SettingError` for a setting that is wrong.
 #[pyfunction]
-#[pyo3(signature = (settings, seeds, limits, progress = None))]
+#[pyo3(signature = (settings, only, seeds, limits, progress = None))]
 pub(crate) fn compare<'py>(
     py: Python<'py>,
     settings: &Settings,
+    only: Vec<String>,
     seeds: Vec<u64>,
     limits: bool,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let query = CompareQuery { only: Vec::new(), shared: settings.file.clone(), seeds, limits, pictures: false };
+    let query = CompareQuery { shared: settings.file.clone(), only, seeds, limits, pictures: false };
     let comparison = attended(py, progress, false, move |told| query.run(|done, of| told.tell(done, of)))?;
     python(py, &comparison.map_err(wrong_setting)?)
 }

@@ -77,8 +77,8 @@ fn joined(record: &Record, size: u32) -> FaceSet {
     let mut all = faces[0].clone();
     for other in &faces[1..] {
         for texel in texels(size) {
-            if let Some(near) = other.texel(texel) {
-                all.keep_nearer(texel, [near].into_iter());
+            if let Some((colour, depth)) = other.texel(texel) {
+                all.keep_nearer(texel, &[colour], &[depth]);
             }
         }
     }

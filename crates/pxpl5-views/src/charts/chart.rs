@@ -268,7 +268,7 @@ fn draw_name<'a>(area: &Area<'a>, look: Look, series: &ChartSeries, (x, y): (i32
         match look.dashes() {
             None => area.draw(&PathElement::new(ends, look.stroke()))?,
             Some((on, off)) => {
-                area.draw(&plotters::element::DashedPathElement::new(ends.into_iter(), on, off, look.stroke()))?;
+                area.draw(&plotters::element::DashedPathElement::new(ends, on, off, look.stroke()))?;
             }
         }
         if series.look == SeriesLook::Band {
