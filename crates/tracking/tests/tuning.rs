@@ -4,7 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use tracking::Pose;
-use tracking::motion::{Motion, Pan, Sinusoid, Still, Synthetic};
+use tracking::motion::{End, Motion, Pan, Recording, Sinusoid, Still, Synthetic};
 use tracking::predict::{
     PredictionError, PredictorConfig, PredictorKind, gain, prediction_errors, training_seed, tune,
 };
@@ -120,6 +120,27 @@ fn tuning_gives_the_same_every_time_and_nothing_where_there_is_nothing_to_tune()
         ..PredictorConfig::for_tracker(PredictorKind::Kalman, tracker.config())
     };
     assert!(tune(&motion, &tracker, 80 * PS_PER_MS, &bad, 1).is_err());
+}
+
+/// Five seconds of a head that swings, written down 120 times a second: whether it stands still afterwards or no run may go on, there is
+/// nothing to learn from what comes after.
+#[test]
+fn a_recording_that_holds_its_end_teaches_what_moved_and_not_its_standing_still() {
+    let mut text = "time_s,x,y,z,qw,qx,qy,qz\n".to_owned();
+    for sample in 0..600 {
+        let time_s = f64::from(sample) / 120.0;
+        let half = 0.1 * (TAU * 0.7 * time_s).sin();
+        text += &format!("{time_s},{},0,1,{},0,{},0\n", 0.2 * (TAU * 0.5 * time_s).sin(), half.cos(), half.sin());
+    }
+    let recorded = || Recording::read(text.as_bytes()).unwrap();
+    let tracker = model(TrackerConfig::optical_ceiling());
+    for kind in [PredictorKind::ConstantVelocity, PredictorKind::Kalman] {
+        let base = PredictorConfig::for_tracker(kind, tracker.config());
+        let of = |end| tune(&recorded().ending(end), &tracker, 60 * PS_PER_MS, &base, JUDGED).unwrap();
+        assert_eq!(of(End::Hold), of(End::Refuse), "{kind:?}");
+        assert!(of(End::Hold).training.unwrap().seconds < 5.1);
+        assert!(of(End::Loop).training.unwrap().seconds > 50.0, "{kind:?}: it moves for ever");
+    }
 }
 
 /// A complex number, and what it takes here.

@@ -57,6 +57,12 @@ pub trait Motion: Debug {
         None
     }
 
+    /// When it has moved for the last time, ps, as far as that is known: a filter that is tuned on it learns nothing from a head that
+    /// stands still for ever. By default its end, if it has one.
+    fn moves_until_ps(&self) -> Option<u64> {
+        self.ends_ps()
+    }
+
     /// Another motion of the same kind, drawn with other random numbers: filters are tuned on it, so that they do not know
     /// the motion on which they are judged. `None` where there is only this one.
     fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
@@ -89,6 +95,9 @@ impl<M: Motion + ?Sized> Motion for &M {
     fn ends_ps(&self) -> Option<u64> {
         (**self).ends_ps()
     }
+    fn moves_until_ps(&self) -> Option<u64> {
+        (**self).moves_until_ps()
+    }
     fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
         (**self).sibling()
     }
@@ -109,6 +118,9 @@ impl<M: Motion + ?Sized> Motion for Box<M> {
     }
     fn ends_ps(&self) -> Option<u64> {
         (**self).ends_ps()
+    }
+    fn moves_until_ps(&self) -> Option<u64> {
+        (**self).moves_until_ps()
     }
     fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
         (**self).sibling()

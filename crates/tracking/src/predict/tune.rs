@@ -118,7 +118,7 @@ struct Lesson {
 impl Lesson {
     /// Of a motion behind a tracker; `None` where no report could be judged.
     fn of<M: Motion + ?Sized>(motion: &M, tracker: &TrackerModel, interval_ps: u64, seed: u64) -> Option<Self> {
-        let until_ps = motion.ends_ps().unwrap_or(u64::MAX).min(TRAINING_S * PS_PER_S);
+        let until_ps = motion.moves_until_ps().unwrap_or(u64::MAX).min(TRAINING_S * PS_PER_S);
         let settling_ps = (SETTLING_S * PS_PER_S).min(until_ps / 2);
         let in_time = |report: &TrackerReport| report.measured_ps.saturating_add(interval_ps) <= until_ps;
         let reports: Vec<TrackerReport> =

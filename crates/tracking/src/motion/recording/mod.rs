@@ -156,6 +156,9 @@ impl Motion for Recording {
     fn ends_ps(&self) -> Option<u64> {
         (self.end == End::Refuse).then_some(self.span_ps().1)
     }
+    fn moves_until_ps(&self) -> Option<u64> {
+        (self.end != End::Loop).then_some(self.span_ps().1)
+    }
     fn velocity(&self, t_ps: u64) -> DVec3 {
         let between = self.bracket(self.within(t_ps));
         between.map_or(DVec3::ZERO, |(a, b)| (b.1.position - a.1.position) / span_s(a.0, b.0))
