@@ -131,8 +131,14 @@ fn a_run_that_takes_too_much_is_refused_with_an_estimate() {
     let folder = Folder::new("budget");
     let slats = ["--pipeline", "slats", "--scene", "full-screen:20", "--fields", "10000000"];
     for (args, says) in [
-        (&["run", "--pixels", "off", "--out", "o", "--max-seconds", "60"][..], "--max-seconds"),
-        (&["trace", "--pixels", "off", "--out", "o/t", "--max-seconds", "60"], "--max-seconds"),
+        (
+            &["run", "--pixels", "off", "--out", "o", "--max-seconds", "60", "--max-memory", "1000000"][..],
+            "--max-seconds",
+        ),
+        (
+            &["trace", "--pixels", "off", "--out", "o/t", "--max-seconds", "60", "--max-memory", "1000000"],
+            "--max-seconds",
+        ),
         // However slow the host is, memory is what it is refused for.
         (
             &["trace", "--pixels", "off", "--out", "o/t", "--max-memory", "200", "--max-seconds", "1000000000"],
