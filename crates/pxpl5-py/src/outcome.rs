@@ -79,10 +79,10 @@ impl Outcome {
 
 #[pymethods]
 impl Outcome {
-    /// Hash of everything that happened: the same as that of the command and of Rust.
+    /// Hash of everything that happened, statistics included: the same as that of the command and of Rust.
     #[getter]
     fn trace_hash(&self, py: Python<'_>) -> PyResult<String> {
-        self.look(py, |outcome| outcome.record().trace_hash().to_string())
+        Ok(self.run(py)?.1.trace_hash.clone())
     }
 
     /// Name of everything on which the trace depends.
