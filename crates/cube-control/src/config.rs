@@ -18,17 +18,24 @@ pub struct CubeControlConfig {
     pub slaves: Vec<NodeId>,
     /// Nodes of the renderers, at least one.
     pub renderers: Vec<NodeId>,
-    /// The port of each display memory.
-    pub memories: Vec<NodeId>,
-    /// What is drawn of each face.
-    pub picture: Picture,
-    /// What of a texel goes over the ring.
-    pub content: CopyContent,
+    /// What they draw, and where it goes.
+    pub faces: Faces,
     /// What slaves keep for each other of updates that are warped; empty at first.
     pub warped: WarpedLists,
 }
 
-impl CubeControlConfig {
+/// The kind of faces that a display's memories take.
+#[derive(Clone, Debug)]
+pub struct Faces {
+    /// The port of each display memory.
+    pub memories: Vec<NodeId>,
+    /// What is drawn of each face.
+    pub picture: Picture,
+    /// What of a texel goes to a memory.
+    pub content: CopyContent,
+}
+
+impl Faces {
     /// Texels along an edge of a face.
     #[must_use]
     pub const fn face_texels(&self) -> u32 {
@@ -36,7 +43,8 @@ impl CubeControlConfig {
     }
 
     /// All six faces, one under the other.
-    pub(crate) const fn grid(&self) -> RegionGrid {
+    #[must_use]
+    pub const fn grid(&self) -> RegionGrid {
         region_grid(self.face_texels())
     }
 
@@ -52,12 +60,14 @@ impl CubeControlConfig {
     }
 
     /// The face that a region of all is on, and its number there.
-    pub(crate) const fn on_face(&self, region: RegionId) -> (usize, RegionId) {
+    #[must_use]
+    pub const fn on_face(&self, region: RegionId) -> (usize, RegionId) {
         ((region.0 / self.face_regions()) as usize, RegionId(region.0 % self.face_regions()))
     }
 
     /// Where a region of an update goes.
-    pub(crate) fn target(&self, update: &FaceUpdate, region: RegionId) -> CopyTarget {
+    #[must_use]
+    pub fn target(&self, update: &FaceUpdate, region: RegionId) -> CopyTarget {
         CopyTarget {
             frame_buffer: self.memories[usize::from(update.memory)],
             buffer: update.buffer,
@@ -67,7 +77,9 @@ impl CubeControlConfig {
             picture: update.number,
         }
     }
+}
 
+impl CubeControlConfig {
     /// The primitives that slave `index` holds.
     #[must_use]
     pub fn share(&self, list: &Arc<pphigs::DisplayList>, index: usize) -> Share {

@@ -46,7 +46,7 @@ impl CubePass {
         let faces = CubeFace::ALL.iter().flat_map(|face| ahead.map(|ahead| face_view(ahead, *face)));
         let view = FrameView { eyes: faces.collect(), ..update.view.clone() };
         let share = &placed(config, share, update);
-        let pass = |face: usize| share.transform_chosen(&view, face, config.picture, &update.structures);
+        let pass = |face: usize| share.transform_chosen(&view, face, config.faces.picture, &update.structures);
         let faces: Vec<Arc<Pass>> = (0..view.eyes.len()).map(pass).collect();
         let held = share.chosen_counts(&update.structures);
         let transformed = PrimitiveCounts {
@@ -70,10 +70,10 @@ impl CubePass {
     #[must_use]
     pub fn entries(&self, config: &CubeControlConfig) -> Vec<u32> {
         let entries = |region: RegionId| {
-            let (face, region) = config.on_face(region);
+            let (face, region) = config.faces.on_face(region);
             self.face(face).map_or(0, |pass| pass.counts(region).total())
         };
-        (0..config.regions()).map(|region| entries(RegionId(region))).collect()
+        (0..config.faces.regions()).map(|region| entries(RegionId(region))).collect()
     }
 
     /// Primitives that are transformed, each counted once for each face that it touches, and once if it touches none.
@@ -97,11 +97,7 @@ impl CubePass {
 
 /// The share with its vertices where the update wants them.
 fn placed(config: &CubeControlConfig, share: &Share, update: &FaceUpdate) -> Share {
-    let Some(warp) = &update.warp else { return share.clone() };
-    let is_edited = |place: usize| update.view.edits.iter().any(|edit| edit.structure as usize == place);
-    let is_still = |place: usize| update.structures.get(place) == Some(&true) && !is_edited(place);
-    let memory = usize::from(update.memory);
-    share.with_list(config.warped.list(share.list(), update.number, (warp, memory), is_still))
+    if update.warp.is_none() { share.clone() } else { share.with_list(config.warped.placed(share.list(), update)) }
 }
 
 /// Transformations of so many held primitives of a kind (triangles 0, spheres 1).

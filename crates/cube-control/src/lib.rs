@@ -47,7 +47,7 @@ mod slave;
 mod update;
 mod warp;
 
-pub use config::CubeControlConfig;
+pub use config::{CubeControlConfig, Faces};
 pub use faces::{CubePass, face_view};
 pub use host::{Planned, host};
 pub use master::master;

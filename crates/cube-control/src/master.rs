@@ -4,10 +4,9 @@ use crate::config::CubeControlConfig;
 use crate::protocol::{Token, UpdateOrder};
 use crate::rules::Completed;
 use crate::update::FaceUpdate;
-use address_recalculation::{begin_update, swap_together};
 use pphigs::{PROGRAM_BYTES, copy_message};
 use pxpl5_gp::{Account, Fault, Gp, Received, Stage};
-use pxpl5_wire::{Body, CopyOrder, CopyTarget, CopyWay, PictureNumber, RegionId, SurfaceId, swap_request};
+use pxpl5_wire::{Body, CopyOrder, CopyTarget, CopyWay, PictureNumber, RegionId, SurfaceId};
 use std::collections::VecDeque;
 
 /// What a renderer is doing, as far as the master knows.
@@ -101,7 +100,7 @@ impl CubeMaster {
             completed: Completed::default(),
             next_edit: PictureNumber::FIRST,
             under_way: VecDeque::new(),
-            of_memories: vec![0; config.memories.len()],
+            of_memories: vec![0; config.faces.memories.len()],
             rendering: None,
             renderers: vec![RendererUse::Idle; config.renderers.len()],
             next_slave: 0,
@@ -125,7 +124,7 @@ impl CubeMaster {
     }
 
     fn swaps(&self) -> u64 {
-        self.config.memories.iter().map(|node| self.gp.status(*node)).sum()
+        self.config.faces.memories.iter().map(|node| self.gp.status(*node)).sum()
     }
 
     fn under_way(&self, update: PictureNumber) -> Option<&UnderWay> {
@@ -170,22 +169,20 @@ impl CubeMaster {
     fn update_to_announce(&self) -> Option<usize> {
         self.under_way.iter().position(|one| {
             let is_known = one.transformed == self.config.slaves.len();
-            let port = self.config.memories[usize::from(one.update.memory)];
+            let port = self.config.faces.memories[usize::from(one.update.memory)];
             is_known && !one.announced && self.gp.status(port) >= one.before
         })
     }
 
     /// Tells a memory which regions come, and asks it to show them when they are there.
     async fn announce(&mut self, place: usize) {
-        let texels = self.config.face_texels();
+        let texels = self.config.faces.face_texels();
         let one = &mut self.under_way[place];
         one.announced = true;
         let regions: Vec<RegionId> = one.regions().into();
-        let FaceUpdate { memory, buffer, together, .. } = one.update;
-        let map = begin_update(texels, buffer, &regions);
-        let request = if together == 0 { swap_request(buffer) } else { swap_together(buffer, together) };
-        let messages = [map, request].map(|words| (words.len() as u32, Body::Words(words)));
-        self.gp.send_groups(vec![(self.config.memories[usize::from(memory)], messages.into())]).await;
+        let messages = one.update.announcement(texels, &regions).map(|words| (words.len() as u32, Body::Words(words)));
+        let port = self.config.faces.memories[usize::from(one.update.memory)];
+        self.gp.send_groups(vec![(port, messages.into())]).await;
     }
 
     /// Sorts the regions of the next update, heaviest first.
@@ -241,7 +238,7 @@ impl CubeMaster {
     async fn copy(&mut self, renderer: usize, target: CopyTarget) {
         self.renderers[renderer] = RendererUse::Idle;
         let order = copy_order(&self.config, target);
-        let list = copy_message(self.config.picture.layout, vec![order], self.config.picture.pixels);
+        let list = copy_message(self.config.faces.picture.layout, vec![order], self.config.faces.picture.pixels);
         self.gp.send(self.config.renderers[renderer], list.words(), Body::Commands(list)).await;
     }
 
@@ -262,7 +259,7 @@ impl CubeMaster {
         let of_memory = &mut self.of_memories[usize::from(update.memory)];
         let before = *of_memory;
         *of_memory += 1;
-        let entries = vec![0; usize::from(self.config.regions())];
+        let entries = vec![0; usize::from(self.config.faces.regions())];
         let fresh = UnderWay { update, before, edited: 0, transformed: 0, entries, announced: false, missing: None };
         self.under_way.push_back(fresh);
     }
@@ -289,7 +286,7 @@ impl CubeMaster {
 
     fn note_accepted(&mut self, token: Token) {
         let renderer = usize::from(token.renderer);
-        let target = self.under_way(token.update).map(|one| self.config.target(&one.update, token.region));
+        let target = self.under_way(token.update).map(|one| self.config.faces.target(&one.update, token.region));
         let held = target.filter(|_| !token.copies);
         self.renderers[renderer] = held.map_or(RendererUse::Idle, RendererUse::Holding);
         let Some(rendering) = &mut self.rendering else { return };
@@ -324,5 +321,5 @@ impl CubeMaster {
 
 pub(crate) fn copy_order(config: &CubeControlConfig, target: CopyTarget) -> CopyOrder {
     let way = CopyWay::ThroughBacking;
-    CopyOrder { target, context: 0, way, acknowledge: Some(config.master), content: config.content }
+    CopyOrder { target, context: 0, way, acknowledge: Some(config.master), content: config.faces.content }
 }

@@ -172,9 +172,9 @@ async fn walk(gp: &Gp, config: &CubeControlConfig, index: usize, state: &SharedS
 fn bin_messages(config: &CubeControlConfig, state: &SharedSlaveState, token: Token) -> Vec<CommandList> {
     let state = state.borrow();
     let Some(pass) = &state.bins[context_of(token.update)] else { return Vec::new() };
-    let (face, region) = config.on_face(token.region);
+    let (face, region) = config.faces.on_face(token.region);
     let last = token.slaves_left == 1;
-    let target = config.target(pass.update(), token.region);
+    let target = config.faces.target(pass.update(), token.region);
     let envelope = RegionEnvelope {
         begin: usize::from(token.slaves_left) == config.slaves.len(),
         shade: last,

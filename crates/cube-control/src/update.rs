@@ -1,8 +1,10 @@
 //! What is drawn at a time: an update of one display memory.
 
 use crate::warp::{FaceWarp, WARP_WORDS};
+use address_recalculation::{begin_update, swap_together};
 use pphigs::FrameView;
-use pxpl5_wire::{PictureNumber, Word};
+use pxpl5_wire::{PictureNumber, RegionId, Word, swap_request};
+use std::sync::Arc;
 
 /// An update of a display memory: what the host asks for.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +32,15 @@ const WARPED: Word = 1 << 24;
 const HEADER: usize = 4;
 
 impl FaceUpdate {
+    /// What its memory is told of it, for faces of so many texels: which regions come, and that they are to be shown when they are there.
+    #[must_use]
+    pub fn announcement(&self, face_texels: u32, regions: &[RegionId]) -> [Arc<[Word]>; 2] {
+        let map = begin_update(face_texels, self.buffer, regions);
+        let alone = || swap_request(self.buffer);
+        let request = if self.together == 0 { alone() } else { swap_together(self.buffer, self.together) };
+        [map, request]
+    }
+
     /// Number (two words), memory with buffer and group, count of structures; a bit for each structure; the warp, if any;
     /// the view.
     pub(crate) fn to_words(&self) -> Vec<Word> {

@@ -1,5 +1,6 @@
 //! Region warping: what a slave moves before it transforms.
 
+use crate::update::FaceUpdate;
 use glam::DVec3;
 use pphigs::{DisplayList, ModelFrame};
 use priority_rendering::{Cell, Dealing, Falloff, PriorityError, RegionWarp};
@@ -89,14 +90,13 @@ type Kept = VecDeque<(PictureNumber, Arc<DisplayList>)>;
 const KEPT: usize = 2;
 
 impl WarpedLists {
-    /// The list of an update of a memory, in which vertices of the structures that are still are moved.
-    pub(crate) fn list(
-        &self,
-        list: &Arc<DisplayList>,
-        number: PictureNumber,
-        (warp, memory): (&FaceWarp, usize),
-        is_still: impl Fn(usize) -> bool,
-    ) -> Arc<DisplayList> {
+    /// The list of an update, in which vertices of the structures that are still stand where the update wants them.
+    #[must_use]
+    pub fn placed(&self, list: &Arc<DisplayList>, update: &FaceUpdate) -> Arc<DisplayList> {
+        let Some(warp) = &update.warp else { return Arc::clone(list) };
+        let (number, memory) = (update.number, usize::from(update.memory));
+        let is_edited = |place: usize| update.view.edits.iter().any(|edit| edit.structure as usize == place);
+        let is_still = |place: usize| update.structures.get(place) == Some(&true) && !is_edited(place);
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, warped)) = kept.iter().find(|(known, _)| *known == number) {
             return Arc::clone(warped);

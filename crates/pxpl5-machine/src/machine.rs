@@ -22,7 +22,7 @@ use pxpl5_gp::{Fault, Firmware, Gp, GpBoard, GpEvent, GpOutput, Mark, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
 use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time};
-use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, SurfaceId};
+use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, RegionPixels, SurfaceId};
 use std::collections::BTreeMap;
 use thiserror::Error;
 
@@ -35,7 +35,7 @@ enum Event {
     Gp(usize, GpEvent),
     Renderer(usize, RendererEvent),
     /// What the host says to the first display past the ring.
-    HostLine,
+    HostLine(usize),
     /// What a display scheduled for itself.
     Display(usize, DisplayEvent),
     /// The tick of a display's clock that begins a period.
@@ -103,7 +103,7 @@ pub struct Machine {
     /// Updates that were shown of what is behind each port, where a surface has several.
     updates: BTreeMap<NodeId, u64>,
     /// What the host says to the first display past the ring.
-    host_line: Option<Box<dyn HostLine>>,
+    host_lines: Vec<Box<dyn HostLine>>,
     pixels: Option<Box<dyn PixelWorker>>,
     /// Whether every edge of the boards' clock is an event.
     every_edge: bool,
@@ -167,7 +167,7 @@ impl Machine {
             queue: EventQueue::new(),
             contexts: Contexts::default(),
             updates: BTreeMap::new(),
-            host_line: None,
+            host_lines: Vec::new(),
             pixels: None,
             every_edge: false,
             failure: None,
@@ -259,9 +259,9 @@ impl Machine {
         self.processors[usize::from(node.0)].load(level, program);
     }
 
-    /// Plugs a line from the host into the first display, past the ring; to be called before the machine is switched on.
+    /// Plugs one more line into the first display, past the ring; to be called before the machine is switched on.
     pub fn plug_host_line(&mut self, line: Box<dyn HostLine>) {
-        self.host_line = Some(line);
+        self.host_lines.push(line);
     }
 
     /// Switches on: every board's programs begin at time zero, and so does the first period of every display.
@@ -279,7 +279,7 @@ impl Machine {
         if self.every_edge {
             self.queue.schedule(Time::ZERO, Phase::Work, Event::Edge);
         }
-        self.schedule_host_line(Time::ZERO);
+        (0..self.host_lines.len()).for_each(|line| self.schedule_host_line(line, Time::ZERO));
     }
 
     /// Runs up to, and not including, an instant.
@@ -305,7 +305,7 @@ impl Machine {
             Event::FromRing(output) => self.bring(now, output),
             Event::Gp(board, event) => self.gp_event(now, board, event),
             Event::Renderer(board, event) => self.renderer_event(now, board, event),
-            Event::HostLine => self.host_says(now),
+            Event::HostLine(line) => self.host_says(now, line),
             Event::Display(display, event) => self.display_event(now, display, event),
             Event::Tick(display, period) => self.tick(now, display, period),
             Event::Edge => self.edge(now),
@@ -428,20 +428,20 @@ impl Machine {
         }
     }
 
-    /// The host's words reach a port of the first display, and the next ones are on their way.
-    fn host_says(&mut self, now: Time) {
-        let Some(line) = &mut self.host_line else { return };
-        let words = line.words(now);
-        self.schedule_host_line(now);
-        let port = 0;
-        let facts: Vec<u64> = [8].into_iter().chain(words.iter().map(|word| u64::from(*word))).collect();
-        self.record.hash.record(now, &facts);
-        self.display_event(now, 0, DisplayEvent::Delivered { port, body: Body::Words(words) });
+    /// Messages of a line of the host reach ports of the first display, and the next ones are on their way.
+    fn host_says(&mut self, now: Time, line: usize) {
+        let messages = self.host_lines[line].messages(now);
+        self.schedule_host_line(line, now);
+        for (port, body) in messages {
+            self.record.hash.record(now, &facts_of_line(port, &body));
+            compute_pixels(&mut self.pixels, &body);
+            self.display_event(now, 0, DisplayEvent::Delivered { port, body });
+        }
     }
 
-    fn schedule_host_line(&mut self, after: Time) {
-        if let Some(at) = self.host_line.as_ref().and_then(|line| line.next(after)) {
-            self.queue.schedule(at, Phase::Arrive, Event::HostLine);
+    fn schedule_host_line(&mut self, line: usize, after: Time) {
+        if let Some(at) = self.host_lines[line].next(after) {
+            self.queue.schedule(at, Phase::Arrive, Event::HostLine(line));
         }
     }
 
@@ -552,7 +552,7 @@ fn schedule_own<E, O>(queue: &mut EventQueue<Event>, context: &mut Context<E, O>
 
 /// Whether an event is one of displays or clocks alone: what goes on in a machine whose programs all wait.
 const fn is_of_displays(event: &Event) -> bool {
-    matches!(event, Event::Edge | Event::Tick(..) | Event::Display(..) | Event::HostLine)
+    matches!(event, Event::Edge | Event::Tick(..) | Event::Display(..) | Event::HostLine(_))
 }
 
 /// Hands a region over when its first message is on its way.
@@ -567,6 +567,17 @@ fn compute_pixels(worker: &mut Option<Box<dyn PixelWorker>>, body: &Body) {
 /// What of a message enters the trace, under a number for what happened to it.
 fn facts(kind: u64, message: &Message) -> [u64; 4] {
     [kind, u64::from(message.source.0), u64::from(message.destination.0), u64::from(message.words)]
+}
+
+/// What of a message that came to a port by a line of the host enters the trace.
+fn facts_of_line(port: usize, body: &Body) -> Vec<u64> {
+    match body {
+        Body::Words(words) => [8, port as u64].into_iter().chain(words.iter().map(|word| u64::from(*word))).collect(),
+        Body::Pixels(RegionPixels { target, part, .. }) => {
+            vec![9, port as u64, u64::from(target.region.0), target.picture.0, u64::from(*part)]
+        }
+        Body::Commands(_) => vec![10, port as u64],
+    }
 }
 
 /// What of a mark enters the trace.

@@ -25,5 +25,5 @@ mod shade;
 mod sphere;
 mod widths;
 
-pub use picture::{IdealPicture, Tie};
-pub use raster::ideal_picture;
+pub use picture::{DEPTH_FARTHEST, IdealPicture, Tie};
+pub use raster::{ideal_picture, ideal_picture_of};

@@ -2,12 +2,17 @@
 
 use crate::shade::Paint;
 use image::{Rgb, RgbImage};
+use pxpl5_wire::format::Z_BITS;
 use std::collections::BTreeMap;
+
+/// The depth of what nothing is drawn on: the farthest of 24 bits.
+pub const DEPTH_FARTHEST: u32 = (1 << Z_BITS) - 1;
 
 /// A picture as it should be.
 #[derive(Clone, Debug)]
 pub struct IdealPicture {
     image: RgbImage,
+    depths: Vec<u32>,
     ties: BTreeMap<[u32; 2], Vec<[u8; 3]>>,
 }
 
@@ -27,6 +32,12 @@ impl IdealPicture {
     #[must_use]
     pub const fn image(&self) -> &RgbImage {
         &self.image
+    }
+
+    /// The depth of every pixel in 24 bits, 0 at the near plane, row by row; [`DEPTH_FARTHEST`] where nothing is drawn.
+    #[must_use]
+    pub fn depths(&self) -> &[u32] {
+        &self.depths
     }
 
     /// The pixels at which the order of arrival decides, row by row.
@@ -88,8 +99,13 @@ impl DepthBuffer {
         }
     }
 
-    /// The picture over a background, each pixel coloured by `colour`.
-    pub(crate) fn finish(self, background: [u8; 3], colour: impl Fn(Paint) -> [u8; 3]) -> IdealPicture {
+    /// The picture over a background, each pixel coloured by `colour`, its depth of 24 bits made by `depth`.
+    pub(crate) fn finish(
+        self,
+        background: [u8; 3],
+        colour: impl Fn(Paint) -> [u8; 3],
+        depth: impl Fn(u32) -> u32,
+    ) -> IdealPicture {
         let width = self.width;
         let at = |x: u32, y: u32| self.nearest[(y * width + x) as usize].map(|nearest| colour(nearest.paint));
         let height = self.nearest.len() as u32 / width.max(1);
@@ -98,6 +114,7 @@ impl DepthBuffer {
             let first = at(*x, *y).into_iter();
             ([*y, *x], first.chain(others.iter().map(|paint| colour(*paint))).collect())
         });
-        IdealPicture { ties: ties.collect(), image }
+        let stored = |place: &Option<Nearest>| place.map_or(DEPTH_FARTHEST, |nearest| depth(nearest.depth));
+        IdealPicture { ties: ties.collect(), image, depths: self.nearest.iter().map(stored).collect() }
     }
 }

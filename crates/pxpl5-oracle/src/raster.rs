@@ -18,19 +18,35 @@ use std::ops::Range;
 /// If the view has no eye.
 #[must_use]
 pub fn ideal_picture(list: &DisplayList, view: &FrameView, eye: usize, picture: &Picture) -> IdealPicture {
+    ideal_picture_of(list, |_| true, view, eye, picture)
+}
+
+/// The same of some structures alone, chosen by their place in the list.
+///
+/// # Panics
+///
+/// As [`ideal_picture`].
+#[must_use]
+pub fn ideal_picture_of(
+    list: &DisplayList,
+    chosen: impl Fn(usize) -> bool,
+    view: &FrameView,
+    eye: usize,
+    picture: &Picture,
+) -> IdealPicture {
     let placed = place_all(list, view, eye, picture.viewport);
     let widths = Widths::of_layout(&picture.layout);
     let raster = Raster { list, picture, widths };
     let grid = picture.viewport.grid();
     let mut buffer = DepthBuffer::new(grid.width, grid.height, widths.stored_depth(u32::MAX));
-    for place in &placed {
+    for (_, place) in placed.iter().enumerate().filter(|(number, _)| chosen(*number)) {
         let Some(transform) = &place.transform else { continue };
         let placed = Placed { place, transform };
         place.structure.triangles.clone().for_each(|number| raster.triangle(&placed, number, &mut buffer));
         place.structure.spheres.clone().for_each(|number| raster.sphere(&placed, number, &mut buffer));
     }
     let shade = shade(placed.first().map(|first| &first.light));
-    buffer.finish(list.background, |paint| paint.colour(&shade))
+    buffer.finish(list.background, |paint| paint.colour(&shade), |stored| widths.sent_depth(stored))
 }
 
 struct Raster<'a> {

@@ -20,6 +20,11 @@ impl Widths {
     pub(crate) const fn stored_depth(self, depth: u32) -> u32 {
         depth >> (Z_FRACTION_BITS + Z_BITS - self.z_bits)
     }
+
+    /// A depth that pixel memory keeps as it is sent to a display, in 24 bits; what a layout does not hold of them is 0.
+    pub(crate) const fn sent_depth(self, stored: u32) -> u32 {
+        stored << (Z_BITS - self.z_bits)
+    }
 }
 
 /// Bits of the root for which a sphere's operands are computed.

@@ -141,11 +141,7 @@ impl PixelJob {
             }
             let [width, height] = self.size();
             let colours = copied.map_or_else(|| array.read_colour(width, height), |output| output.pixels);
-            match self.content {
-                CopyContent::Colour => colours,
-                CopyContent::ColourAndDepth => colours.iter().copied().chain(self.depths(array)).collect(),
-                CopyContent::Packed => colours.iter().zip(self.depths(array)).map(packed).collect(),
-            }
+            self.content.of(colours, || self.depths(array))
         })
     }
 
@@ -168,11 +164,6 @@ impl PixelSource for PixelJob {
 
 /// The farthest depth in 24 bits.
 const DEPTH_FARTHEST: Word = (1 << Z_BITS) - 1;
-
-/// A colour in 5, 6 and 5 bits below the upper 16 of 24 bits of depth.
-fn packed((colour, depth): (&Word, Word)) -> Word {
-    (depth >> 8) << 16 | (colour >> 8 & 0xF800) | (colour >> 5 & 0x07E0) | (colour >> 3 & 0x001F)
-}
 
 /// A region that was copied while pixels were switched off.
 #[derive(Debug)]

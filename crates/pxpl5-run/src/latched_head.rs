@@ -7,6 +7,14 @@ use pxpl5_display::{Aim, Display, LightSpan};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{FieldParity, PeriodNumber};
 
+/// When a field of a scan lights.
+pub(crate) fn lights_of(scan: &Scan, field: PeriodNumber) -> LightSpan {
+    let tick = scan.retrace(field);
+    let top = FieldParity::of_field(field).first_line();
+    let light = |x: u32, y: u32| scan.lights(x, y, field).unwrap_or(tick);
+    LightSpan { tick, first: light(0, top), last: light(scan.width() - 1, scan.height() - 2 + top) }
+}
+
 /// Words that an orientation takes on the host's own line.
 pub(crate) const ORIENTATION_WORDS: u32 = 9;
 
@@ -81,10 +89,7 @@ impl LatchedHead {
         while self.latches(0, y(field), field).is_none_or(|at| at < loaded) {
             field = field.next();
         }
-        let light = |x: u32, y: u32| self.scan.lights(x, y, field).unwrap_or(loaded);
-        let first = light(0, y(field));
-        let last = light(self.scan.width() - 1, self.scan.height() - 2 + y(field));
-        self.aim.instant(&LightSpan { tick: self.scan.retrace(field), first, last })
+        self.aim.instant(&lights_of(&self.scan, field))
     }
 
     /// What the host knew when it sent the orientation that a pixel was turned by (all reports that had come by then), and the instant

@@ -78,6 +78,21 @@ impl CopyContent {
             Self::ColourAndDepth => 2,
         }
     }
+
+    /// The words of a region, made of its pixels' colours (0x00RRGGBB) and, where they are sent, their depths of 24 bits.
+    #[must_use]
+    pub fn of(self, colours: Arc<[Word]>, depths: impl FnOnce() -> Vec<Word>) -> Arc<[Word]> {
+        match self {
+            Self::Colour => colours,
+            Self::ColourAndDepth => colours.iter().copied().chain(depths()).collect(),
+            Self::Packed => colours.iter().zip(depths()).map(packed).collect(),
+        }
+    }
+}
+
+/// A colour in 5, 6 and 5 bits below the upper 16 of 24 bits of depth.
+fn packed((colour, depth): (&Word, Word)) -> Word {
+    (depth >> 8) << 16 | (colour >> 8 & 0xF800) | (colour >> 5 & 0x07E0) | (colour >> 3 & 0x001F)
 }
 
 /// The way of a region's colours from pixel memory to the frame buffer.

@@ -1,27 +1,29 @@
 //! Six faces of the cube around the eye, drawn by Pixel-Planes 5 for a display that turns with the head.
 
 use super::face_cells::ByCells;
+use super::face_entries::{IDEAL_NAMES, NAMES, POLICIES, POLICY, SEGMENT, WARP};
 use super::face_objects::ByObjects;
 use super::face_plan::{Cycles, Full, Updates};
-use super::{SHADING, shading_or, shading_value, swapped_in};
+use super::ideal_faces::{All, IdealFaces, seen_next};
+use super::{shading_value, swapped_in};
 use crate::cut::CutScene;
-use crate::keys::{Key, KeyValue, KeyValues, PipelineSettings};
+use crate::due::PictureEnd;
+use crate::keys::KeyValue;
 use crate::latched_head::{LatchedHead, ORIENTATION_WORDS};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
-use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use crate::views::{Poses, ReportTimes};
 use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Orientation, orientation_message};
-use cube_control::{CubeControlConfig, Planned, WarpedLists, host, master, slave};
+use cube_control::{CubeControlConfig, Faces, Planned, WarpedLists, host, master, slave};
 use glam::{Mat4, Vec4};
 use pphigs::{DisplayList, Picture, RecentViews, RegionBinning, Shading};
 use priority_rendering::{Falloff, PriorityError, PriorityTiming};
 use pxpl5_geometry::Viewport;
 use pxpl5_gp::Priority;
-use pxpl5_machine::{ConfigError, HostLine, Machine, MachineConfig, NamedTable, Record};
+use pxpl5_machine::{ConfigError, HostLine, Machine, MachineConfig, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_scene::{HmdConfig, Scene};
 use pxpl5_sim::Time;
-use pxpl5_wire::{CopyContent, Lines, NodeId, PictureNumber, REGION_SIZE, RegionGrid, Word};
+use pxpl5_wire::{Body, CopyContent, Lines, NodeId, PictureNumber, REGION_SIZE, RegionGrid, ViewNumber};
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -40,9 +42,20 @@ pub enum FacePolicy {
     CellsWarped,
 }
 
-/// Faces drawn by Pixel-Planes 5 for an address recalculation pipeline.
+/// Who draws faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FaceSource {
+    /// Rendering Control's firmware on the machine.
+    PixelPlanes,
+    /// An ideal renderer, in no time, from what is known of the eye at each retrace: what remains wrong is wrong for other reasons.
+    Ideal,
+}
+
+/// Faces drawn for an address recalculation pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FacePipeline {
+    /// Who draws.
+    pub source: FaceSource,
     /// What is drawn when.
     pub policy: FacePolicy,
     /// Before what the display latches the orientation.
@@ -57,10 +70,11 @@ pub struct FacePipeline {
 }
 
 impl FacePipeline {
-    /// With a policy and the latch of the papers: before each field.
+    /// Drawn by the machine, with a policy and the latch of the papers: before each field.
     #[must_use]
     pub const fn new(policy: FacePolicy) -> Self {
-        Self { policy, latch: Latch::Field, shading: Shading::Phong, segmented: true, falloff: Falloff::Linear }
+        let source = FaceSource::PixelPlanes;
+        Self { source, policy, latch: Latch::Field, shading: Shading::Phong, segmented: true, falloff: Falloff::Linear }
     }
 
     fn config(self, machine: &Machine, pixels: bool) -> Result<CubeControlConfig, ConfigError> {
@@ -69,6 +83,17 @@ impl FacePipeline {
         if slaves.is_empty() {
             return Err(too_few_gps(1));
         }
+        Ok(CubeControlConfig {
+            host: ports.host,
+            master: *master,
+            slaves: slaves.to_vec(),
+            renderers: ports.renderers.clone(),
+            faces: self.faces(machine, pixels)?,
+            warped: WarpedLists::default(),
+        })
+    }
+
+    fn faces(self, machine: &Machine, pixels: bool) -> Result<Faces, ConfigError> {
         let display = display_of(machine.record())?.config();
         let texels = display.timing.face_texels as u32;
         let grid = RegionGrid { width: texels, height: texels, region_width: REGION_SIZE, region_height: REGION_SIZE };
@@ -76,15 +101,10 @@ impl FacePipeline {
             .map_err(|error| ConfigError::Board(format!("arp.face_texels: {error}")))?;
         let picture =
             Picture { viewport, shading: self.shading, binning: RegionBinning::Touched, layout: self.layout(), pixels };
-        Ok(CubeControlConfig {
-            host: ports.host,
-            master: *master,
-            slaves: slaves.to_vec(),
-            renderers: ports.renderers.clone(),
-            memories: ports.display()[..display.timing.display_memories as usize].to_vec(),
+        Ok(Faces {
+            memories: machine.ports().display()[..display.timing.display_memories as usize].to_vec(),
             picture,
             content: if display.format().words() == 1 { CopyContent::Packed } else { CopyContent::ColourAndDepth },
-            warped: WarpedLists::default(),
         })
     }
 
@@ -92,14 +112,20 @@ impl FacePipeline {
     fn plan(self, machine: &Machine, setup: &Setup) -> Result<Plan, ConfigError> {
         let display = display_of(machine.record())?.config();
         let projection = projection(display);
+        let scan = display.scan().map_err(|error| ConfigError::Board(error.to_string()))?;
+        let setup = &if self.source == FaceSource::Ideal { seen_next(setup, scan) } else { setup.clone() };
         let updates = Updates::new(setup, projection, display.timing.display_memories as usize);
+        if self.policy == FacePolicy::Full && self.source == FaceSource::Ideal {
+            let structures = vec![true; setup.list.structures.len()].into();
+            let mut cycles = Cycles::new(updates, scan, All { structures });
+            return Ok(Box::new(move |number, now| cycles.next(number, now)));
+        }
         if self.policy == FacePolicy::Full {
             let mut full = Full::new(updates);
             return Ok(Box::new(move |number, now| full.next(number, now)));
         }
         let timing =
             PriorityTiming { memories: display.timing.display_memories, ..priority_timing(machine.record().config())? };
-        let scan = display.scan().map_err(|error| ConfigError::Board(error.to_string()))?;
         if self.policy == FacePolicy::Objects {
             let policy = ByObjects::new(&setup.list, scan, &timing);
             let mut cycles = Cycles::new(updates, scan, policy);
@@ -127,7 +153,7 @@ fn refused(error: PriorityError) -> ConfigError {
     ConfigError::Board(error.to_string())
 }
 
-type Plan = Box<dyn FnMut(PictureNumber, Time) -> Planned>;
+pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> Planned>;
 
 fn too_few_gps(found: u64) -> ConfigError {
     ConfigError::Value { what: "n_gps of faces (a master and slaves)".to_owned(), expected: (2, 1_000), found }
@@ -151,6 +177,9 @@ fn projection(display: &ArpConfig) -> Mat4 {
     Mat4::from_cols(x, y, z, w)
 }
 
+/// The port of a display that orientations come to.
+const ORIENTATION_PORT: usize = 0;
+
 /// The host's own line to the display: the orientation that the head begins with, then one for each report, or predicted ones.
 struct OrientationLine {
     reports: ReportTimes,
@@ -169,17 +198,17 @@ impl HostLine for OrientationLine {
         self.latched.next(after, |instant| (self.reports)(instant))
     }
 
-    fn words(&mut self, now: Time) -> Arc<[Word]> {
+    fn messages(&mut self, now: Time) -> Vec<(usize, Body)> {
         let (known, aimed) = self.latched.predicted(now);
         let turned = (self.poses)(known, aimed).orientation;
         let rows = Orientation::from_quaternion(turned.to_array()).map_or([[f64::NAN; 3]; 3], |turned| turned.rows());
-        orientation_message(rows)
+        vec![(ORIENTATION_PORT, Body::Words(orientation_message(rows)))]
     }
 }
 
 impl Pipeline for FacePipeline {
     fn name(&self) -> &'static str {
-        let [field, line, pixel] = NAMES[self.policy as usize];
+        let [field, line, pixel] = self.names();
         match self.latch {
             Latch::Field => field,
             Latch::Line => line,
@@ -189,6 +218,9 @@ impl Pipeline for FacePipeline {
 
     fn settings(&self) -> Vec<(&'static str, KeyValue)> {
         let mut settings = vec![("shading", shading_value(self.shading))];
+        if self.source == FaceSource::Ideal {
+            settings.push((POLICY.name, KeyValue::Name(POLICIES[self.policy as usize])));
+        }
         if self.has_cells() {
             settings.push((SEGMENT.name, KeyValue::Flag(self.segmented)));
         }
@@ -219,7 +251,11 @@ impl Pipeline for FacePipeline {
     fn adapt(&self, config: MachineConfig) -> MachineConfig {
         let mut config = config;
         if config.displays.first().is_none_or(|display| !display.takes_faces()) {
-            config.displays = vec![Box::new(ArpConfig::MACHINE)];
+            let display = match self.source {
+                FaceSource::PixelPlanes => ArpConfig::MACHINE,
+                FaceSource::Ideal => ArpConfig::IDEAL,
+            };
+            config.displays = vec![Box::new(display)];
         }
         if let Some(display) =
             config.displays.first_mut().and_then(|d| (d.as_mut() as &mut dyn Any).downcast_mut::<ArpConfig>())
@@ -242,6 +278,10 @@ impl Pipeline for FacePipeline {
     }
 
     fn load(&self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+        self.plug_orientations(machine, setup);
+        if self.source == FaceSource::Ideal {
+            return self.plug_ideal_source(machine, setup);
+        }
         let config = self.config(machine, setup.pixels)?;
         let mut list = DisplayList::clone(&setup.list);
         list.recent = RecentViews::keeping(VIEWS_AT_A_TIME);
@@ -258,12 +298,6 @@ impl Pipeline for FacePipeline {
                 machine.load(*node, level, Box::pin(program));
             }
         }
-        let link = setup.host.link_span(ORIENTATION_WORDS);
-        if let Some(latched) = LatchedHead::before(machine.record().display(), link, setup.aim) {
-            let reports = Arc::clone(&setup.reports);
-            let poses = Arc::clone(&setup.poses);
-            machine.plug_host_line(Box::new(OrientationLine { reports, poses, latched }));
-        }
         Ok(())
     }
 
@@ -272,8 +306,14 @@ impl Pipeline for FacePipeline {
         let Some(port) = record.ports().display().first() else { return Vec::new() };
         let stages = record.stages();
         let swaps = record.observation().swaps.iter().filter(|swap| swap.port == *port);
-        let shown = updates_of(record, *port).into_iter().zip(swaps.map(|swap| record.tick(swap.tick)));
-        shown.filter(|(_, at)| *at < end).filter_map(|(picture, at)| swapped_in(&stages, picture, at)).collect()
+        let updates = updates_of(record, *port).into_iter().zip(swaps.map(|swap| record.tick(swap.tick)));
+        let shown = updates.filter(|(_, at)| *at < end);
+        match self.source {
+            FaceSource::PixelPlanes => {
+                shown.filter_map(|((picture, _), at)| swapped_in(&stages, picture, at)).collect()
+            }
+            FaceSource::Ideal => shown.map(|((picture, drawn), at)| drawn_at_once(picture, drawn, at)).collect(),
+        }
     }
 
     /// From the first swap of any memory on, one in each field, with the orientation that was latched.
@@ -284,7 +324,14 @@ impl Pipeline for FacePipeline {
     }
 
     fn latency_definition(&self) -> &'static str {
-        "of translation: from the start of TRANSFORM of an update of memory 0 on the first slave to the retrace at which it is swapped in"
+        match self.source {
+            FaceSource::PixelPlanes => {
+                "of translation: from the start of TRANSFORM of an update of memory 0 on the first slave to the retrace at which it is swapped in"
+            }
+            FaceSource::Ideal => {
+                "of translation: from the instant at which an update of memory 0 is drawn, in no time, to the retrace at which it is swapped in"
+            }
+        }
     }
 
     fn due_definition(&self) -> &'static str {
@@ -294,108 +341,68 @@ impl Pipeline for FacePipeline {
     fn has_one_pose(&self) -> bool {
         false
     }
+
+    fn knows_when_seen(&self) -> bool {
+        self.source == FaceSource::Ideal
+    }
+}
+
+impl FacePipeline {
+    const fn names(self) -> [&'static str; 3] {
+        match self.source {
+            FaceSource::PixelPlanes => NAMES[self.policy as usize],
+            FaceSource::Ideal => IDEAL_NAMES,
+        }
+    }
+
+    /// Orientations come by a line of their own, whoever draws.
+    fn plug_orientations(self, machine: &mut Machine, setup: &Setup) {
+        let link = setup.host.link_span(ORIENTATION_WORDS);
+        if let Some(latched) = LatchedHead::before(machine.record().display(), link, setup.aim) {
+            let reports = Arc::clone(&setup.reports);
+            let poses = Arc::clone(&setup.poses);
+            machine.plug_host_line(Box::new(OrientationLine { reports, poses, latched }));
+        }
+    }
+
+    fn plug_ideal_source(self, machine: &mut Machine, setup: &Setup) -> Result<(), ConfigError> {
+        let display = display_of(machine.record())?;
+        let scan = display.config().scan().map_err(|error| ConfigError::Board(error.to_string()))?;
+        let ideal = IdealFaces {
+            plan: self.plan(machine, setup)?,
+            faces: Arc::new(self.faces(machine, setup.pixels)?),
+            list: Arc::clone(&setup.list),
+            warped: WarpedLists::default(),
+            scan,
+            next: PictureNumber::FIRST,
+        };
+        machine.plug_host_line(Box::new(ideal));
+        Ok(())
+    }
+}
+
+/// Times of an update that was drawn in no time.
+const fn drawn_at_once(picture: PictureNumber, drawn: Time, shown_at: Time) -> PictureTimes {
+    PictureTimes {
+        picture,
+        view: ViewNumber::taken_for(picture),
+        sampled_at: Some(drawn),
+        transform_at: drawn,
+        copied_at: Some(drawn),
+        shown_at,
+        end: PictureEnd::Shown,
+    }
 }
 
 /// Views that slaves ask for at a time: six faces of two updates.
 const VIEWS_AT_A_TIME: usize = 12;
 
-/// The updates that a port got, in order: every update has a region at least.
-fn updates_of(record: &Record, port: NodeId) -> Vec<PictureNumber> {
+/// The updates that a port got, in order, and when the last message of the first region came: every update has a region at least.
+fn updates_of(record: &Record, port: NodeId) -> Vec<(PictureNumber, Time)> {
     let arrivals = record.observation().arrivals.iter().filter(|arrival| arrival.target.frame_buffer == port);
-    let first: BTreeMap<PictureNumber, ()> = arrivals.map(|arrival| (arrival.target.picture, ())).collect();
-    first.into_keys().collect()
-}
-
-/// Names by policy and latch.
-const NAMES: [[&str; 3]; 4] = [
-    ["arp-full", "arp-full-line", "arp-full-pixel"],
-    ["arp-priority", "arp-priority-line", "arp-priority-pixel"],
-    ["arp-cells", "arp-cells-line", "arp-cells-pixel"],
-    ["arp-cells-warp", "arp-cells-warp-line", "arp-cells-warp-pixel"],
-];
-
-/// Ways in which warping can fall off, as [`Falloff`] has them behind none.
-const FALLOFFS: [&str; 3] = [Falloff::ALL[1].0, Falloff::ALL[2].0, Falloff::ALL[3].0];
-
-const SEGMENT: Key = Key {
-    name: "segment",
-    about: "cut structures at the borders of cells (without, all of one is drawn as often as its nearest part): true or false",
-    values: KeyValues::Flag,
-    sets: &[],
-};
-
-const WARP: Key = Key {
-    name: "warp",
-    about: "how the displacement of vertices falls off from a border to a slower memory: linear, smoothstep or step",
-    values: KeyValues::Names(&FALLOFFS),
-    sets: &[],
-};
-
-/// Keys by policy.
-const KEYS: [&[Key]; 4] = [&[SHADING], &[SHADING], &[SHADING, SEGMENT], &[SHADING, SEGMENT, WARP]];
-
-const TABLES: &[NamedTable] = &[("priority", || Box::new(PriorityTiming::PAPERS))];
-
-const fn entry(
-    (policy, latch): (FacePolicy, Latch),
-    about: &'static str,
-    build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
-) -> PipelineEntry {
-    PipelineEntry {
-        name: NAMES[policy as usize][latch as usize],
-        family: "arp",
-        about,
-        preset: "small-hmd",
-        keys: KEYS[policy as usize],
-        build,
-        limit: |_| LimitCriterion { goal: Goal::RateHz(20.0), scene: TestScene::Typical, fields: 60 },
-        tables: TABLES,
-        closed_form: None,
-        compared: true,
+    let mut first = BTreeMap::new();
+    for arrival in arrivals {
+        first.entry(arrival.target.picture).or_insert(arrival.last_part_at);
     }
+    first.into_iter().collect()
 }
-
-fn build(policy: FacePolicy, latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
-    let new = FacePipeline::new(policy);
-    let falloff = Falloff::ALL.into_iter().find(|(name, _)| settings.name(WARP.name) == Some(name));
-    Arc::new(FacePipeline {
-        latch,
-        shading: shading_or(settings, new.shading),
-        segmented: settings.flag(SEGMENT.name).unwrap_or(new.segmented),
-        falloff: falloff.map_or(new.falloff, |(_, falloff)| falloff),
-        ..new
-    })
-}
-
-/// An entry for a policy and a latch.
-macro_rules! entry {
-    ($policy:ident, $latch:ident, $about:literal) => {
-        entry((FacePolicy::$policy, Latch::$latch), $about, |settings| {
-            build(FacePolicy::$policy, Latch::$latch, settings)
-        })
-    };
-}
-
-/// Address recalculation pipelines fed by Pixel-Planes 5 in the registry.
-pub(super) const ENTRIES: [PipelineEntry; 12] = [
-    entry!(Full, Field, "six faces in one memory, looked up by the orientation of each field (VRAIS 93)"),
-    entry!(Full, Line, "the same, with an orientation for each line"),
-    entry!(Full, Pixel, "the same, with orientations as often as the host's line carries them, latched by pixel"),
-    entry!(Objects, Field, "six faces in several memories, objects in the slowest that keeps them right (SIGGRAPH 94)"),
-    entry!(Objects, Line, "the same, with an orientation for each line"),
-    entry!(Objects, Pixel, "the same, with orientations as often as the host's line carries them, latched by pixel"),
-    entry!(
-        Cells,
-        Field,
-        "objects cut at the borders of square cells, near cells drawn often, far ones seldom (ACSC 2005)"
-    ),
-    entry!(Cells, Line, "the same, with an orientation for each line"),
-    entry!(Cells, Pixel, "the same, with orientations as often as the host's line carries them, latched by pixel"),
-    entry!(CellsWarped, Field, "cells whose vertices are moved so that memories meet at their borders (ACSC 2005)"),
-    entry!(CellsWarped, Line, "the same, with an orientation for each line"),
-    entry!(
-        CellsWarped,
-        Pixel,
-        "the same, with orientations as often as the host's line carries them, latched by pixel"
-    ),
-];

@@ -1,15 +1,17 @@
 //! The pipelines of the papers. A new one is one more file here, or in a user's crate, and one more line below.
 
 mod face_cells;
+mod face_entries;
 mod face_objects;
 mod face_plan;
 mod faces;
 mod frameless;
+mod ideal_faces;
 mod jitp;
 mod rendering_control;
 mod slats;
 
-pub use faces::{FacePipeline, FacePolicy};
+pub use faces::{FacePipeline, FacePolicy, FaceSource};
 pub use frameless::Frameless;
 pub use jitp::{Interpolation, Jitp, Viewpoint, region_at};
 pub use rendering_control::{FinishedRegions, RenderingControl};
@@ -30,7 +32,7 @@ use std::any::Any;
 pub(crate) fn entries() -> Vec<PipelineEntry> {
     let mut all = vec![rendering_control::ENTRY, slats::ENTRY, frameless::ENTRY];
     all.extend(jitp::ENTRIES);
-    all.extend(faces::ENTRIES);
+    all.extend(face_entries::ENTRIES);
     all
 }
 

@@ -1,0 +1,158 @@
+//! Address recalculation pipelines in the registry: names, keys, variants.
+
+use super::faces::{FacePipeline, FacePolicy, FaceSource};
+use super::{SHADING, shading_or};
+use crate::keys::{Key, KeyValues, PipelineSettings};
+use crate::pipeline::Pipeline;
+use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
+use address_recalculation::Latch;
+use priority_rendering::{Falloff, PriorityTiming};
+use pxpl5_machine::NamedTable;
+use std::sync::Arc;
+
+/// Names by policy and latch.
+pub(super) const NAMES: [[&str; 3]; 4] = [
+    ["arp-full", "arp-full-line", "arp-full-pixel"],
+    ["arp-priority", "arp-priority-line", "arp-priority-pixel"],
+    ["arp-cells", "arp-cells-line", "arp-cells-pixel"],
+    ["arp-cells-warp", "arp-cells-warp-line", "arp-cells-warp-pixel"],
+];
+
+/// Names of what an ideal renderer draws, by latch.
+pub(super) const IDEAL_NAMES: [&str; 3] = ["arp-ideal", "arp-ideal-line", "arp-ideal-pixel"];
+
+/// Policies by their names, in their order.
+pub(super) const POLICIES: [&str; 4] = ["full", "objects", "cells", "cells-warp"];
+
+pub(super) const POLICY: Key = Key {
+    name: "policy",
+    about: "what is drawn when: full, objects, cells or cells-warp",
+    values: KeyValues::Names(&POLICIES),
+    sets: &[],
+};
+
+/// Ways in which warping can fall off, as [`Falloff`] has them behind none.
+const FALLOFFS: [&str; 3] = [Falloff::ALL[1].0, Falloff::ALL[2].0, Falloff::ALL[3].0];
+
+pub(super) const SEGMENT: Key = Key {
+    name: "segment",
+    about: "cut structures at the borders of cells (without, all of one is drawn as often as its nearest part): true or false",
+    values: KeyValues::Flag,
+    sets: &[],
+};
+
+pub(super) const WARP: Key = Key {
+    name: "warp",
+    about: "how the displacement of vertices falls off from a border to a slower memory: linear, smoothstep or step",
+    values: KeyValues::Names(&FALLOFFS),
+    sets: &[],
+};
+
+/// Keys by policy.
+const KEYS: [&[Key]; 4] = [&[SHADING], &[SHADING], &[SHADING, SEGMENT], &[SHADING, SEGMENT, WARP]];
+
+/// Keys of an ideal source, which has any policy; those of cells mean something where there are cells.
+const IDEAL_KEYS: &[Key] = &[SHADING, POLICY, SEGMENT, WARP];
+
+const TABLES: &[NamedTable] = &[("priority", || Box::new(PriorityTiming::PAPERS))];
+
+const ALL_POLICIES: [FacePolicy; 4] =
+    [FacePolicy::Full, FacePolicy::Objects, FacePolicy::Cells, FacePolicy::CellsWarped];
+
+/// What entries have in common.
+const fn named(
+    name: &'static str,
+    about: &'static str,
+    keys: &'static [Key],
+    build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
+) -> PipelineEntry {
+    PipelineEntry {
+        name,
+        family: "arp",
+        about,
+        preset: "small-hmd",
+        keys,
+        build,
+        limit: |_| LimitCriterion { goal: Goal::RateHz(20.0), scene: TestScene::Typical, fields: 60 },
+        tables: TABLES,
+        closed_form: None,
+        compared: true,
+    }
+}
+
+const fn entry(
+    (policy, latch): (FacePolicy, Latch),
+    about: &'static str,
+    build: fn(&PipelineSettings) -> Arc<dyn Pipeline>,
+) -> PipelineEntry {
+    named(NAMES[policy as usize][latch as usize], about, KEYS[policy as usize], build)
+}
+
+const fn ideal(latch: Latch, about: &'static str, build: fn(&PipelineSettings) -> Arc<dyn Pipeline>) -> PipelineEntry {
+    named(IDEAL_NAMES[latch as usize], about, IDEAL_KEYS, build)
+}
+
+fn with_settings(new: FacePipeline, latch: Latch, settings: &PipelineSettings) -> FacePipeline {
+    let falloff = Falloff::ALL.into_iter().find(|(name, _)| settings.name(WARP.name) == Some(name));
+    FacePipeline {
+        latch,
+        shading: shading_or(settings, new.shading),
+        segmented: settings.flag(SEGMENT.name).unwrap_or(new.segmented),
+        falloff: falloff.map_or(new.falloff, |(_, falloff)| falloff),
+        ..new
+    }
+}
+
+fn build(policy: FacePolicy, latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
+    Arc::new(with_settings(FacePipeline::new(policy), latch, settings))
+}
+
+fn build_ideal(latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
+    let named = |name: &str| POLICIES.iter().position(|policy| *policy == name);
+    let policy = settings.name(POLICY.name).and_then(named).map_or(FacePolicy::Full, |place| ALL_POLICIES[place]);
+    Arc::new(with_settings(FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(policy) }, latch, settings))
+}
+
+/// An entry for a policy and a latch.
+macro_rules! entry {
+    ($policy:ident, $latch:ident, $about:literal) => {
+        entry((FacePolicy::$policy, Latch::$latch), $about, |settings| {
+            build(FacePolicy::$policy, Latch::$latch, settings)
+        })
+    };
+}
+
+/// Address recalculation pipelines in the registry.
+pub(super) const ENTRIES: [PipelineEntry; 15] = [
+    entry!(Full, Field, "six faces in one memory, looked up by the orientation of each field (VRAIS 93)"),
+    entry!(Full, Line, "the same, with an orientation for each line"),
+    entry!(Full, Pixel, "the same, with orientations as often as the host's line carries them, latched by pixel"),
+    entry!(Objects, Field, "six faces in several memories, objects in the slowest that keeps them right (SIGGRAPH 94)"),
+    entry!(Objects, Line, "the same, with an orientation for each line"),
+    entry!(Objects, Pixel, "the same, with orientations as often as the host's line carries them, latched by pixel"),
+    entry!(
+        Cells,
+        Field,
+        "objects cut at the borders of square cells, near cells drawn often, far ones seldom (ACSC 2005)"
+    ),
+    entry!(Cells, Line, "the same, with an orientation for each line"),
+    entry!(Cells, Pixel, "the same, with orientations as often as the host's line carries them, latched by pixel"),
+    entry!(CellsWarped, Field, "cells whose vertices are moved so that memories meet at their borders (ACSC 2005)"),
+    entry!(CellsWarped, Line, "the same, with an orientation for each line"),
+    entry!(
+        CellsWarped,
+        Pixel,
+        "the same, with orientations as often as the host's line carries them, latched by pixel"
+    ),
+    ideal(
+        Latch::Field,
+        "faces of an ideal renderer, in no time: what a faster machine could gain at most",
+        |settings| build_ideal(Latch::Field, settings),
+    ),
+    ideal(Latch::Line, "the same, with an orientation for each line", |settings| build_ideal(Latch::Line, settings)),
+    ideal(
+        Latch::Pixel,
+        "the same, with orientations as often as the host's line carries them, latched by pixel",
+        |settings| build_ideal(Latch::Pixel, settings),
+    ),
+];

@@ -1,0 +1,159 @@
+//! Faces that an ideal renderer draws in no time, and the host's line that brings them to the display.
+
+use super::face_plan::{Due, DuePolicy, Updates};
+use super::faces::Plan;
+use crate::latched_head::lights_of;
+use crate::pipeline::Setup;
+use address_recalculation::{CubeFace, Scan};
+use cube_control::{FaceUpdate, Faces, Planned, WarpedLists, face_view};
+use pphigs::{DisplayList, FrameView};
+use pxpl5_machine::HostLine;
+use pxpl5_oracle::ideal_picture_of;
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::{
+    Body, MAX_MESSAGE_WORDS, PeriodNumber, PictureNumber, PixelSource, REGION_SIZE, RegionId, RegionPixels, Word,
+};
+use std::collections::VecDeque;
+use std::fmt;
+use std::sync::{Arc, OnceLock};
+
+/// How long before a retrace an ideal renderer asks for views: the shortest time that there is.
+const BEFORE_RETRACE: Span = Span(1);
+
+/// What a policy asks for at each retrace, in the display's memories before it.
+///
+/// Everything is as on the machine (views, policies, the widths of pixels, the display's protocol) but for the time and the way that
+/// drawing takes: there is none.
+pub(super) struct IdealFaces {
+    pub(super) plan: Plan,
+    pub(super) faces: Arc<Faces>,
+    pub(super) list: Arc<DisplayList>,
+    pub(super) warped: WarpedLists,
+    pub(super) scan: Scan,
+    pub(super) next: PictureNumber,
+}
+
+impl fmt::Debug for IdealFaces {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("IdealFaces").field("faces", &self.faces).field("next", &self.next).finish_non_exhaustive()
+    }
+}
+
+impl HostLine for IdealFaces {
+    fn next(&self, after: Time) -> Option<Time> {
+        let field = self.scan.field_at(after + BEFORE_RETRACE);
+        Some(before(&self.scan, field.next()))
+    }
+
+    fn messages(&mut self, now: Time) -> Vec<(usize, Body)> {
+        let mut messages = Vec::new();
+        while let Planned::Send(update) = (self.plan)(self.next, now) {
+            self.next = self.next.next();
+            messages.extend(self.draw(update));
+        }
+        messages
+    }
+}
+
+/// The instant before a field begins.
+fn before(scan: &Scan, field: PeriodNumber) -> Time {
+    Time(scan.retrace(field).0.saturating_sub(BEFORE_RETRACE.0))
+}
+
+impl IdealFaces {
+    /// All regions of an update, announced and sent.
+    fn draw(&self, update: FaceUpdate) -> Vec<(usize, Body)> {
+        let port = usize::from(update.memory);
+        let regions: Vec<RegionId> = (0..self.faces.regions()).map(RegionId).collect();
+        let announcement = update.announcement(self.faces.face_texels(), &regions).map(Body::Words);
+        let list = self.warped.placed(&self.list, &update);
+        let drawn = Arc::new(DrawnCube { list, update, surfaces: Arc::clone(&self.faces), faces: Default::default() });
+        let parts = self.faces.content.words() * REGION_SIZE * REGION_SIZE / MAX_MESSAGE_WORDS;
+        let of_region = |region: RegionId| {
+            let target = self.faces.target(&drawn.update, region);
+            let image: Arc<dyn PixelSource> = Arc::new(DrawnRegion { cube: Arc::clone(&drawn), region });
+            (0..parts).map(move |part| Body::Pixels(RegionPixels { target, image: Arc::clone(&image), part, parts }))
+        };
+        let [begin, swap] = announcement;
+        let pixels = regions.iter().copied().flat_map(of_region);
+        [begin].into_iter().chain(pixels).chain([swap]).map(|body| (port, body)).collect()
+    }
+}
+
+/// The setup of a host whose updates are shown at the next retrace: it predicts for what that field lights.
+pub(super) fn seen_next(setup: &Setup, scan: Scan) -> Setup {
+    let wanted = Arc::clone(&setup.wanted);
+    let aim = setup.aim;
+    let views = move |number, now| {
+        let field = scan.field_at(now).next();
+        wanted(number, now, aim.instant(&lights_of(&scan, field)))
+    };
+    Setup { views: Arc::new(views), ..setup.clone() }
+}
+
+/// All of the scene in memory 0, in every cycle.
+pub(super) struct All {
+    pub(super) structures: Arc<[bool]>,
+}
+
+impl DuePolicy for All {
+    fn begin(&mut self, _: &Updates, _: PictureNumber, now: Time) -> VecDeque<Due> {
+        let structures = Arc::clone(&self.structures);
+        [Due { memory: 0, together: 0, structures, at: now, view: None, warp: None }].into()
+    }
+}
+
+/// The faces of an update, each computed when somebody looks at one of its regions.
+#[derive(Debug)]
+struct DrawnCube {
+    list: Arc<DisplayList>,
+    update: FaceUpdate,
+    surfaces: Arc<Faces>,
+    faces: [OnceLock<DrawnFace>; CubeFace::ALL.len()],
+}
+
+/// Colours (0x00RRGGBB) and depths (24 bits) of a face, row by row.
+#[derive(Debug)]
+struct DrawnFace {
+    colours: Vec<Word>,
+    depths: Vec<Word>,
+}
+
+impl DrawnCube {
+    fn face(&self, number: usize) -> &DrawnFace {
+        self.faces[number].get_or_init(|| {
+            let FaceUpdate { view, structures, .. } = &self.update;
+            let eyes = view.eyes.iter().map(|ahead| face_view(ahead, CubeFace::ALL[number])).collect();
+            let view = FrameView { eyes, ..view.clone() };
+            let is_held = |structure: usize| structures.get(structure) == Some(&true);
+            let ideal = ideal_picture_of(&self.list, is_held, &view, 0, &self.surfaces.picture);
+            let colours = ideal.image().pixels().map(|pixel| {
+                let [red, green, blue] = pixel.0;
+                Word::from_be_bytes([0, red, green, blue])
+            });
+            DrawnFace { colours: colours.collect(), depths: ideal.depths().to_vec() }
+        })
+    }
+}
+
+/// A region of an update's faces.
+#[derive(Debug)]
+struct DrawnRegion {
+    cube: Arc<DrawnCube>,
+    region: RegionId,
+}
+
+impl PixelSource for DrawnRegion {
+    fn pixels(&self) -> Arc<[Word]> {
+        let surfaces = &self.cube.surfaces;
+        let (face, region) = surfaces.on_face(self.region);
+        let [left, top, width, height] = surfaces.picture.viewport.grid().rectangle(region).map(|v| v as usize);
+        let face = self.cube.face(face);
+        let across = surfaces.face_texels() as usize;
+        let cut = |all: &[Word]| -> Vec<Word> {
+            let row = |y: usize| y * across + left..y * across + left + width;
+            (top..top + height).flat_map(|y| all[row(y)].iter().copied()).collect()
+        };
+        surfaces.content.of(cut(&face.colours).into(), || cut(&face.depths))
+    }
+}

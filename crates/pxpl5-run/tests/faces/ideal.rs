@@ -1,0 +1,97 @@
+//! Faces of an ideal renderer: the machine's, to the last bit, but for the time.
+
+use super::{FULL, after, assert_no_faults, cells, display, head, machine, memory, texels};
+use address_recalculation::Latch;
+use pxpl5_machine::MachineConfig;
+use pxpl5_run::{Experiment, FacePipeline, FacePolicy, FaceSource, Pipeline, Pixels};
+use pxpl5_scene::builtin;
+use tracking::motion::{Pan, Slide, Still};
+
+const IDEAL: FacePipeline = FacePipeline { source: FaceSource::Ideal, ..FULL };
+
+fn ideal(policy: FacePolicy) -> FacePipeline {
+    FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(policy) }
+}
+
+/// With one slave primitives come in the order of the display list, so that ties fall as they do in an ideal renderer.
+#[test]
+fn the_machine_and_the_ideal_renderer_fill_memories_with_the_same_bits() {
+    let one_slave = [("n_gps", 2), ("n_renderers", 1)];
+    let packed = [one_slave[0], one_slave[1], ("arp.depth_bits", 16), ("arp.colour_bits", 16)];
+    for (name, numbers, fields) in
+        [("mig", &one_slave[..], 60), ("room", &one_slave, 400), ("molecules", &one_slave, 400), ("room", &packed, 400)]
+    {
+        let numbers = [numbers, &[("arp.face_texels", 128)]].concat();
+        let run = |pipeline: FacePipeline, fields: u64| {
+            let config = machine("small-hmd", pipeline, &numbers);
+            let still = head(Still(tracking::Pose::IDENTITY));
+            after(&Experiment::new(config, pipeline, builtin(name).expect("built in")).head(still), fields)
+                .into_record()
+        };
+        let [drawn, ideal] = [run(FULL, fields), run(IDEAL, 4)];
+        [&drawn, &ideal].into_iter().for_each(assert_no_faults);
+        assert!(memory(&drawn, 0).stats().swaps > 0, "{name}: the machine has drawn it");
+        let [drawn, ideal] = [&drawn, &ideal].map(|record| memory(record, 0).shown_faces());
+        let shown = texels(128).filter(|texel| drawn.texel(*texel).is_some()).count();
+        let wrong: Vec<_> = texels(128).filter(|texel| drawn.texel(*texel) != ideal.texel(*texel)).collect();
+        assert!(shown > 1_000 && wrong.is_empty(), "{name}: {} of {shown}, {:?}", wrong.len(), wrong.first());
+    }
+}
+
+/// Every retrace shows what was drawn the instant before, in the memories that the policy found due.
+#[test]
+fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
+    for policy in [FacePolicy::Full, FacePolicy::Objects, FacePolicy::Cells, FacePolicy::CellsWarped] {
+        let pipeline = ideal(policy);
+        let config = machine("small-hmd", pipeline, &[("arp.face_texels", 128)]);
+        let experiment = Experiment::new(config, pipeline, builtin("gallery").expect("built in")).fields(60);
+        let outcome = experiment.pixels(Pixels::Off).head(head(Slide::right_at(1.0))).run().expect("it runs");
+        let record = outcome.record();
+        assert_no_faults(record);
+        let notes = outcome.face_notes().all();
+        let swaps = &record.observation().swaps;
+        // What was drawn for the retrace at the end of the run is not shown any more.
+        let shown: Vec<_> = notes.iter().filter(|note| note.due_at < record.tick(outcome.end())).collect();
+        assert!(shown.len() > 10 && swaps.len() >= shown.len() - 4, "{policy:?}: {} {}", shown.len(), swaps.len());
+        for (note, swap) in shown.iter().zip(swaps) {
+            assert_eq!(note.due_at.0 + 1, record.tick(swap.tick).0, "{policy:?}");
+            assert_eq!(display(record).nodes()[note.memory], swap.port, "{policy:?}");
+        }
+        let missed: u64 =
+            (0..4).filter_map(|k| Some(display(record).memories(pxpl5_wire::Eye::Left).get(k)?.stats().missed)).sum();
+        assert_eq!(missed, 0, "{policy:?}");
+        if policy == FacePolicy::Full {
+            let hz = outcome.updates_hz().expect("there were updates");
+            assert!((hz - 60.0 / 1.001).abs() < 1e-3, "{hz}");
+            assert!(outcome.latency_ms().max <= 1e-9, "{:?}", outcome.latency_ms());
+        }
+    }
+}
+
+/// Who draws means nothing to a turn.
+#[test]
+fn the_latency_of_a_turn_is_that_of_faces_drawn_by_the_machine() {
+    for latch in [Latch::Field, Latch::Line, Latch::Pixel] {
+        let turns = [FULL, IDEAL].map(|pipeline| {
+            let pipeline = FacePipeline { latch, ..pipeline };
+            let config = machine("small-hmd", pipeline, &[("arp.face_texels", 128)]);
+            let experiment = Experiment::new(config, pipeline, builtin("sphere:100").expect("even")).fields(30);
+            let outcome = experiment.pixels(Pixels::Off).head(head(Pan::at(200.0))).run().expect("it runs");
+            outcome.rotation_latencies()[2..].to_vec()
+        });
+        assert_eq!(turns[0], turns[1], "{latch:?}");
+    }
+}
+
+fn texels_of(config: &MachineConfig) -> String {
+    let settings = config.settings();
+    settings.iter().find(|(path, _)| path == "arp.face_texels").expect("a number of the display").1.to_string()
+}
+
+#[test]
+fn it_takes_faces_of_512_texels_unless_said_and_a_machine_of_any_size() {
+    let config = IDEAL.adapt(MachineConfig::preset("small-hmd").expect("listed"));
+    assert_eq!(texels_of(&config), "512");
+    assert_eq!(texels_of(&machine("small-hmd", IDEAL, &[("arp.face_texels", 256)])), "256");
+    assert_eq!(texels_of(&IDEAL.adapt(machine("small-hmd", cells::CELLS, &[]))), "256");
+}
