@@ -142,7 +142,8 @@ impl Run {
     /// Faces are turned by the newest orientation in the register: predicted for the aim in its field, in its line, or in the pixels for
     /// which the host's line to the display brings one. A load is in the register when the first of them latches, or a moment before.
     fn content_of_faces(&self, field: u64, row: u64, x: u64) -> Content {
-        let stages = if self.pipeline.starts_with("arp-full") { 24.0 } else { 26.0 };
+        let stages =
+            if ["arp-full", "arp-ideal"].iter().any(|one| self.pipeline.starts_with(one)) { 24.0 } else { 26.0 };
         let depth = stages * STAGE_S;
         let (loaded_for, first, last) = match self.pipeline {
             name if name.ends_with("-pixel") => {

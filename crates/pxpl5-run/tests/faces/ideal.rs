@@ -2,6 +2,7 @@
 
 use super::{FULL, after, assert_no_faults, cells, display, head, machine, memory, texels};
 use address_recalculation::Latch;
+use pxpl5_display::Display;
 use pxpl5_machine::MachineConfig;
 use pxpl5_run::{Experiment, FacePipeline, FacePolicy, FaceSource, Pipeline, Pixels};
 use pxpl5_scene::builtin;
@@ -13,14 +14,14 @@ fn ideal(policy: FacePolicy) -> FacePipeline {
     FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(policy) }
 }
 
-/// With one slave primitives come in the order of the display list, so that ties fall as they do in an ideal renderer.
+/// Of what does not move. With one slave primitives come in the order of the display list, so that ties fall as they do in an ideal renderer.
 #[test]
 fn the_machine_and_the_ideal_renderer_fill_memories_with_the_same_bits() {
     let one_slave = [("n_gps", 2), ("n_renderers", 1)];
     let packed = [one_slave[0], one_slave[1], ("arp.depth_bits", 16), ("arp.colour_bits", 16)];
-    for (name, numbers, fields) in
-        [("mig", &one_slave[..], 60), ("room", &one_slave, 400), ("molecules", &one_slave, 400), ("room", &packed, 400)]
-    {
+    let runs =
+        [("gallery", &one_slave[..]), ("sphere:1000", &one_slave), ("room", &one_slave), ("molecules", &one_slave)];
+    for (name, numbers) in runs.into_iter().chain([("room", &packed[..])]) {
         let numbers = [numbers, &[("arp.face_texels", 128)]].concat();
         let run = |pipeline: FacePipeline, fields: u64| {
             let config = machine("small-hmd", pipeline, &numbers);
@@ -28,13 +29,13 @@ fn the_machine_and_the_ideal_renderer_fill_memories_with_the_same_bits() {
             after(&Experiment::new(config, pipeline, builtin(name).expect("built in")).head(still), fields)
                 .into_record()
         };
-        let [drawn, ideal] = [run(FULL, fields), run(IDEAL, 4)];
+        let [drawn, ideal] = [run(FULL, 400), run(IDEAL, 4)];
         [&drawn, &ideal].into_iter().for_each(assert_no_faults);
         assert!(memory(&drawn, 0).stats().swaps > 0, "{name}: the machine has drawn it");
         let [drawn, ideal] = [&drawn, &ideal].map(|record| memory(record, 0).shown_faces());
         let shown = texels(128).filter(|texel| drawn.texel(*texel).is_some()).count();
         let wrong: Vec<_> = texels(128).filter(|texel| drawn.texel(*texel) != ideal.texel(*texel)).collect();
-        assert!(shown > 1_000 && wrong.is_empty(), "{name}: {} of {shown}, {:?}", wrong.len(), wrong.first());
+        assert!(shown > 100 && wrong.is_empty(), "{name}: {} of {shown}, {:?}", wrong.len(), wrong.first());
     }
 }
 
@@ -51,7 +52,7 @@ fn an_update_is_shown_at_the_retrace_for_which_it_is_drawn() {
         let notes = outcome.face_notes().all();
         let swaps = &record.observation().swaps;
         // What was drawn for the retrace at the end of the run is not shown any more.
-        let shown: Vec<_> = notes.iter().filter(|note| note.due_at < record.tick(outcome.end())).collect();
+        let shown: Vec<_> = notes.iter().filter(|note| note.due_at < outcome.end()).collect();
         assert!(shown.len() > 10 && swaps.len() >= shown.len() - 4, "{policy:?}: {} {}", shown.len(), swaps.len());
         for (note, swap) in shown.iter().zip(swaps) {
             assert_eq!(note.due_at.0 + 1, record.tick(swap.tick).0, "{policy:?}");
