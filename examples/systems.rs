@@ -10,7 +10,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 /// Pipelines with a setting of their own, in the order of the figure.
-const SYSTEMS: [(&str, Option<(&str, &str)>); 15] = [
+const SYSTEMS: [(&str, Option<(&str, &str)>); 17] = [
     ("rendering-control", Some(("mono", "true"))),
     ("slats", Some(("binning", "touched"))),
     ("frameless", None),
@@ -26,6 +26,8 @@ const SYSTEMS: [(&str, Option<(&str, &str)>); 15] = [
     ("arp-cells-line", None),
     ("arp-cells-warp", None),
     ("arp-cells-warp-line", None),
+    ("arp-ideal", None),
+    ("arp-ideal-line", None),
 ];
 
 /// Motions, what they are, and their names in experiment files.

@@ -16,6 +16,7 @@ use pxpl5_display::{
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Body, Eye, NodeId, PeriodNumber, RegionPixels, Word};
 use std::collections::VecDeque;
+use std::sync::OnceLock;
 
 /// The memories and the orientation of one eye.
 #[derive(Debug)]
@@ -284,7 +285,7 @@ impl DisplayConfig for ArpConfig {
     }
 
     fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
-        let table = self.table().map_err(refused)?;
+        Self::check(self).map_err(refused)?;
         let scan = self.scan().map_err(refused)?;
         let eyes = nodes.len() / self.ports_of_an_eye();
         if nodes.len() != self.ports(eyes) {
@@ -293,7 +294,7 @@ impl DisplayConfig for ArpConfig {
         }
         Ok(Box::new(AddressRecalculationPipeline {
             surfaces: Surface::of_frame_buffers(eyes, scan.width(), scan.height()),
-            optics: Optics { config: self.clone(), table, scan },
+            optics: Optics { config: self.clone(), table: OnceLock::new(), scan },
             nodes: nodes.to_vec(),
             eyes: (0..eyes).map(|_| boards(self)).collect(),
             fields: 0,

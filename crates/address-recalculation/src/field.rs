@@ -10,14 +10,23 @@ use crate::scan::{Latch, Scan};
 use crate::texel::FaceSet;
 use image::{Rgb, RgbImage};
 use pxpl5_wire::{FieldParity, PeriodNumber};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// What all fields of a display have in common.
 #[derive(Debug)]
 pub(crate) struct Optics {
     pub(crate) config: ArpConfig,
-    pub(crate) table: LensTable,
+    /// Computed when somebody looks.
+    pub(crate) table: OnceLock<LensTable>,
     pub(crate) scan: Scan,
+}
+
+impl Optics {
+    /// The viewing vectors of the lens, which was checked when the display was built.
+    fn table(&self) -> &LensTable {
+        let ArpConfig { lens, timing, .. } = &self.config;
+        self.table.get_or_init(|| LensTable::of_checked(lens, &self.config.picture(), timing.vector_bits))
+    }
 }
 
 /// The buffers that one eye's memories showed, the background memory last.
@@ -60,9 +69,9 @@ impl Field<'_> {
         let faces: Vec<FaceSet> = self.shown.memories.iter().map(|memory| drawn(memory, &wanted)).collect();
         let mut memories: Vec<&FaceSet> = faces.iter().collect();
         let background = if self.optics.config.has_background_memory { memories.pop() } else { None };
-        let mut lookup = Lookup::new(&self.optics.config, &self.optics.table, memories, background);
+        let mut lookup = Lookup::new(&self.optics.config, self.optics.table(), memories, background);
         let mut stats = LookStats::default();
-        let mut colours = vec![0; self.optics.table.width() as usize];
+        let mut colours = vec![0; self.optics.scan.width() as usize];
         for run in runs {
             let pixels = &mut colours[..run.count as usize];
             stats.add(lookup.run(self.place(&run), &run.matrix, pixels));
@@ -72,14 +81,14 @@ impl Field<'_> {
     }
 
     fn place(&self, run: &Run) -> usize {
-        run.y as usize * self.optics.table.width() as usize + run.x as usize
+        run.y as usize * self.optics.scan.width() as usize + run.x as usize
     }
 
     /// The pieces of the faces that the field's pixels read.
     fn wanted(&self, runs: &[Run]) -> Vec<bool> {
         let grid = region_grid(self.optics.config.timing.face_texels as u32);
         let mut wanted = vec![false; grid.regions() as usize];
-        let addressing = Addressing::new(&self.optics.config, &self.optics.table);
+        let addressing = Addressing::new(&self.optics.config, self.optics.table());
         for run in runs {
             addressing.mark(self.place(run), run.count as usize, &run.matrix, &mut wanted);
         }

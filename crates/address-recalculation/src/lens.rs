@@ -205,6 +205,11 @@ impl LensTable {
     /// As [`Lens::check`].
     pub fn new(lens: &Lens, picture: &Picture, vector_bits: u64) -> Result<Self, ArpError> {
         lens.check(picture)?;
+        Ok(Self::of_checked(lens, picture, vector_bits))
+    }
+
+    /// Of a lens that has been checked.
+    pub(crate) fn of_checked(lens: &Lens, picture: &Picture, vector_bits: u64) -> Self {
         let mut words = [Vec::new(), Vec::new(), Vec::new()];
         for y in 0..picture.height {
             for x in 0..picture.width {
@@ -214,7 +219,7 @@ impl LensTable {
                 }
             }
         }
-        Ok(Self { width: picture.width, height: picture.height, words })
+        Self { width: picture.width, height: picture.height, words }
     }
 
     /// Pixels of a line.

@@ -41,11 +41,13 @@ fn tolerance(a: &DuePictures, b: &DuePictures) -> f64 {
 #[test]
 fn every_picture_due_ends_in_one_way_and_no_heavier_load_misses_less() {
     for pipeline in pipelines() {
-        let counts: Vec<_> = LOADS.iter().map(|triangles| due(pipeline, *triangles, 60)).collect();
         if pipeline == "frameless" || pipeline.starts_with("arp-") {
+            let ends = [LOADS[0], LOADS[LOADS.len() - 1]];
+            let counts = ends.map(|triangles| due(pipeline, triangles, 60));
             assert!(counts.iter().all(Option::is_none), "no picture of {pipeline} is ever due");
             continue;
         }
+        let counts: Vec<_> = LOADS.iter().map(|triangles| due(pipeline, *triangles, 60)).collect();
         let counts: Vec<DuePictures> = counts.into_iter().map(|due| due.expect("60 fields are enough")).collect();
         for (due, triangles) in counts.iter().zip(LOADS) {
             assert_eq!(due.shown + due.late + due.incomplete + due.missed, due.due, "{pipeline}, {triangles}");

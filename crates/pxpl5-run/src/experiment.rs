@@ -6,6 +6,7 @@ use crate::host::{BareHost, Host};
 use crate::keep::Keep;
 use crate::level::Level;
 use crate::pipeline::Pipeline;
+use crate::preparation::Rehearsed;
 use crate::raster::Raster;
 use pxpl5_display::Aim;
 use pxpl5_machine::{MachineConfig, Parameter, Saving};
@@ -59,6 +60,7 @@ pub struct Experiment {
     pub(crate) head: Option<Arc<Head>>,
     pub(crate) on_demand: bool,
     pub(crate) estimates: Option<Estimates>,
+    pub(crate) rehearsed: Option<Arc<Rehearsed>>,
 }
 
 /// What a closed form can say of an experiment before or after it is run.
@@ -97,6 +99,7 @@ impl Experiment {
             head: None,
             on_demand: false,
             estimates: None,
+            rehearsed: None,
         }
     }
 

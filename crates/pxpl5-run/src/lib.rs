@@ -70,6 +70,7 @@ pub use pipelines::{
     Code, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp, RenderingControl,
     Slats, Viewpoint, region_at,
 };
+pub use preparation::Rehearsed;
 pub use pxpl5_display::{Aim, LightSpan};
 pub use raster::Raster;
 pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};

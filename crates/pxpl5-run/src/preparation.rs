@@ -30,44 +30,89 @@ pub(crate) struct Preparation {
     pub(crate) head: Option<Arc<Head>>,
 }
 
+/// What a run without prediction tells whoever predicts: the same for every predictor.
+#[derive(Clone, Debug)]
+pub struct Rehearsed {
+    rehearsal: Rehearsal,
+    interval_ps: Option<u64>,
+    turn_interval_ps: Option<u64>,
+}
+
 impl Experiment {
-    /// Runs without prediction, as far as somebody predicts who does not know what that run tells.
-    pub(crate) fn prepare(&self) -> Result<Preparation, ExperimentError> {
-        let Some(head) = self.head.as_ref().filter(|head| head.predicts()) else { return Ok(Preparation::default()) };
-        let knows_when_seen = self.pipeline.knows_when_seen();
-        if knows_when_seen && !head.is_to_be_tuned() {
-            return Ok(Preparation::default());
-        }
-        let outcome = if knows_when_seen { self.short_rehearsal(head)? } else { self.rehearsal(head, self.fields)? };
-        let tuned = head.is_to_be_tuned().then(|| tuned(head, &outcome)).flatten();
-        Ok(Preparation {
-            rehearsal: (!knows_when_seen).then(|| rehearsed(&outcome, head.aim())),
-            head: tuned.map(Arc::new),
-        })
+    /// With what a run without prediction tells, as far as its predictor needs it: what is run with another predictor afterwards
+    /// need not run without one again. Nothing else may be changed after this.
+    ///
+    /// # Errors
+    ///
+    /// As [`Experiment::run`].
+    pub fn rehearsed(self) -> Result<Self, ExperimentError> {
+        let Some(head) = self.rehearsing_head() else { return Ok(self) };
+        let rehearsed = Some(self.rehearse(head)?);
+        Ok(Self { rehearsed, ..self })
     }
 
-    fn rehearsal(&self, head: &Head, fields: u64) -> Result<Outcome, ExperimentError> {
+    /// What it was given by [`Experiment::rehearsed`].
+    #[must_use]
+    pub const fn rehearsal(&self) -> Option<&Arc<Rehearsed>> {
+        self.rehearsed.as_ref()
+    }
+
+    /// With what the same experiment with another predictor was given by [`Experiment::rehearsed`].
+    #[must_use]
+    pub fn rehearsed_as(self, rehearsed: Option<Arc<Rehearsed>>) -> Self {
+        Self { rehearsed, ..self }
+    }
+
+    /// Runs without prediction, as far as somebody predicts who does not know what that run tells.
+    pub(crate) fn prepare(&self) -> Result<Preparation, ExperimentError> {
+        let Some(head) = self.rehearsing_head() else { return Ok(Preparation::default()) };
+        let known = self.rehearsed.clone().map_or_else(|| self.rehearse(head), Ok)?;
+        let tuned = head.is_to_be_tuned().then(|| known.tuned(head)).flatten();
+        let rehearsal = (!self.pipeline.knows_when_seen()).then(|| known.rehearsal.clone());
+        Ok(Preparation { rehearsal, head: tuned.map(Arc::new) })
+    }
+
+    /// The head, where somebody predicts who does not know what a run without prediction tells.
+    fn rehearsing_head(&self) -> Option<&Arc<Head>> {
+        let needs = |head: &&Arc<Head>| !self.pipeline.knows_when_seen() || head.is_to_be_tuned();
+        self.head.as_ref().filter(|head| head.predicts()).filter(needs)
+    }
+
+    fn rehearse(&self, head: &Head) -> Result<Arc<Rehearsed>, ExperimentError> {
+        let knows_when_seen = self.pipeline.knows_when_seen();
+        let outcome =
+            if knows_when_seen { self.short_rehearsal(head)? } else { self.without_prediction(head, self.fields)? };
+        Ok(Arc::new(Rehearsed {
+            rehearsal: rehearsed(&outcome, head.aim()),
+            interval_ps: interval_ps(&outcome, head.aim()),
+            turn_interval_ps: turn_interval_ps(&outcome),
+        }))
+    }
+
+    fn without_prediction(&self, head: &Head, fields: u64) -> Result<Outcome, ExperimentError> {
         let plain = Some(Arc::new(head.without_prediction()));
         let plain = Self { head: plain, pixels: Pixels::Off, fields, ..self.clone() };
         plain.perform(Preparation::default(), &[], |_, _| Ok(()))
     }
 
     fn short_rehearsal(&self, head: &Head) -> Result<Outcome, ExperimentError> {
-        match self.rehearsal(head, self.fields.min(INTERVAL_FIELDS)) {
+        match self.without_prediction(head, self.fields.min(INTERVAL_FIELDS)) {
             Ok(outcome) if interval_ps(&outcome, head.aim()).is_some() => Ok(outcome),
-            Ok(_) | Err(ExperimentError::TooShort { .. }) => self.rehearsal(head, self.fields),
+            Ok(_) | Err(ExperimentError::TooShort { .. }) => self.without_prediction(head, self.fields),
             Err(error) => Err(error),
         }
     }
 }
 
-/// A head whose predictor errs least so far ahead as a run had to predict: places over the interval of pictures; orientations too, or
-/// over that of a display that latches turns alone. `None` where there is no interval.
-fn tuned(head: &Head, outcome: &Outcome) -> Option<Head> {
-    let of_pictures = interval_ps(outcome, head.aim()).map(|interval_ps| head.tuned_for(interval_ps));
-    match turn_interval_ps(outcome) {
-        Some(interval_ps) => Some(of_pictures.as_ref().unwrap_or(head).tuned_for_turns(interval_ps)),
-        None => of_pictures,
+impl Rehearsed {
+    /// A head whose predictor errs least so far ahead as the run had to predict: places over the interval of pictures; orientations too,
+    /// or over that of a display that latches turns alone. `None` where there is no interval.
+    fn tuned(&self, head: &Head) -> Option<Head> {
+        let of_pictures = self.interval_ps.map(|interval_ps| head.tuned_for(interval_ps));
+        match self.turn_interval_ps {
+            Some(interval_ps) => Some(of_pictures.as_ref().unwrap_or(head).tuned_for_turns(interval_ps)),
+            None => of_pictures,
+        }
     }
 }
 

@@ -194,7 +194,7 @@ impl CompareQuery {
         if let Some(Ok(first)) = trials.first()
             && !contender.is_reference()
         {
-            let experiment = plan.experiment(Arc::clone(scene));
+            let experiment = plan.experiment(Arc::clone(scene)).rehearsed_as(first.rehearsed.clone());
             row.predictors = predictor_means(&experiment, contender.showing, first.errors.pixels.mean);
         }
         if self.limits && !contender.is_reference() {

@@ -4,7 +4,7 @@ use super::contender::Contender;
 use super::gallery::LastPicture;
 use crate::experiment_file::{ExperimentFile, FileError, Plan};
 use pxpl5_measure::{Budget, ErrorCauses, Measured, PixelErrors, Showing};
-use pxpl5_run::{DuePictures, Outcome, Pixels};
+use pxpl5_run::{DuePictures, Outcome, Pixels, Rehearsed};
 use pxpl5_scene::Scene;
 use pxpl5_wire::ViewNumber;
 use std::collections::BTreeSet;
@@ -23,6 +23,8 @@ pub(super) struct Trial {
     pub(super) due: Option<DuePictures>,
     pub(super) late_regions: usize,
     pub(super) host_seconds: f64,
+    /// What the run knew before it.
+    pub(super) rehearsed: Option<Arc<Rehearsed>>,
     /// Of a run with pixels that showed something.
     pub(super) picture: Option<LastPicture>,
 }
@@ -41,7 +43,7 @@ impl Contender {
     /// Runs it once; what failed says why.
     pub(super) fn trial(&self, plan: &Plan, scene: &Arc<Scene>, pixels: Pixels) -> Result<Trial, String> {
         let experiment = plan.experiment(Arc::clone(scene)).pixels(pixels);
-        let outcome = experiment.run().map_err(|error| error.to_string())?;
+        let outcome = experiment.rehearsed().and_then(|it| it.run()).map_err(|error| error.to_string())?;
         Ok(Trial::of(&outcome, self.showing))
     }
 }
@@ -63,6 +65,7 @@ impl Trial {
             due: report.due.filter(|_| is_timed),
             late_regions: report.late_regions,
             host_seconds: outcome.host_seconds().unwrap_or_default(),
+            rehearsed: outcome.experiment().rehearsal().cloned(),
             picture: LastPicture::of(outcome, report.ends_complete).filter(|_| is_timed),
         }
     }

@@ -1,0 +1,43 @@
+//! A run without prediction tells every predictor the same.
+
+use pxpl5_machine::MachineConfig;
+use pxpl5_run::{Experiment, Head, PipelineSettings, Pixels, Registry};
+use pxpl5_scene::builtin;
+use std::sync::Arc;
+use tracking::motion::Synthetic;
+use tracking::predict::PredictorKind;
+use tracking::tracker::TrackerConfig;
+
+fn head(kind: PredictorKind) -> Head {
+    Head::new(Arc::new(Synthetic::recorded_use(1)), TrackerConfig::optical_ceiling(), kind, 1).expect("in range")
+}
+
+#[test]
+fn what_one_predictor_was_told_serves_another() {
+    let registry = Registry::of_papers();
+    for name in ["rendering-control", "slats", "jitp-field", "arp-full-line"] {
+        let pipeline = (registry.pipeline(name).expect("listed").build)(&PipelineSettings::default());
+        let config = pipeline.adapt(MachineConfig::small_hmd());
+        let scene = Arc::new(builtin("sphere:100").expect("even"));
+        let plain = Experiment::with(config, pipeline, scene).fields(70).pixels(Pixels::Off);
+        let of_kalman = plain.clone().head(head(PredictorKind::Kalman)).rehearsed().expect("it runs");
+        assert!(of_kalman.rehearsal().is_some(), "{name}");
+        for kind in [PredictorKind::Kalman, PredictorKind::ConstantVelocity] {
+            let alone = plain.clone().head(head(kind));
+            let told = alone.clone().rehearsed_as(of_kalman.rehearsal().cloned());
+            let [alone, told] = [alone, told].map(|experiment| experiment.run().expect("it runs"));
+            assert_eq!(alone.record().trace_hash(), told.record().trace_hash(), "{name}, {kind:?}");
+            let sampled = [&alone, &told].map(|outcome| outcome.head().expect("tracked").sampled());
+            assert_eq!(sampled[0], sampled[1], "{name}, {kind:?}");
+        }
+    }
+}
+
+#[test]
+fn whoever_does_not_predict_rehearses_nothing() {
+    let registry = Registry::of_papers();
+    let pipeline = (registry.pipeline("slats").expect("listed").build)(&PipelineSettings::default());
+    let scene = Arc::new(builtin("sphere:100").expect("even"));
+    let experiment = Experiment::with(MachineConfig::small_hmd(), pipeline, scene).head(head(PredictorKind::None));
+    assert!(experiment.rehearsed().expect("nothing to run").rehearsal().is_none());
+}
