@@ -1,10 +1,9 @@
 //! Some points of a sweep at a time, for whoever hands them out: their rows, and what they will cost.
 
-use super::point::{Scenes, SweepRow};
-use super::{Status, Sweep};
+use super::{Status, Sweep, SweepRow};
 use pxpl5_run::{Experiment, Level};
 use std::collections::BTreeMap;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What an experiment costs on a host of about 3 GHz, in seconds; only ratios matter, since they size chunks. Assumed, from the
 /// speeds of the README.
@@ -25,13 +24,21 @@ mod cost {
 }
 
 impl Sweep {
-    /// Simulates some points, one after the other on this thread; each row comes with the seconds that it took.
+    /// Simulates some points, one after the other on this thread, until so much time is over; each row comes with the seconds that
+    /// it took. The first point is always simulated, and none is broken off: so whoever asks for the rest again gets to the end.
     ///
     /// A row depends on the file and the point alone; what is wrong with a point, even a panic, becomes its row.
     #[must_use]
-    pub fn rows(&self, points: &[u64]) -> Vec<(SweepRow, f64)> {
-        let scenes = Scenes::default();
-        points.iter().map(|point| timed(|| self.row(*point, &scenes))).collect()
+    pub fn rows(&self, points: &[u64], at_most: Duration) -> Vec<(SweepRow, f64)> {
+        let begin = Instant::now();
+        let mut rows = Vec::new();
+        for point in points {
+            rows.push(timed(|| self.row(*point)));
+            if begin.elapsed() >= at_most {
+                break;
+            }
+        }
+        rows
     }
 
     /// About how many seconds each of some points will take, by the analytic level where the pipeline has a closed form: how many
@@ -39,21 +46,20 @@ impl Sweep {
     /// their seed alone are taken to cost the same.
     #[must_use]
     pub fn costs(&self, points: &[u64]) -> Vec<f64> {
-        let scenes = Scenes::default();
         let mut known: BTreeMap<String, f64> = BTreeMap::new();
         let mut costs = Vec::with_capacity(points.len());
         for point in points {
             let mut settings = self.space().settings(*point);
             settings.remove("seed");
-            let cost = *known.entry(format!("{settings:?}")).or_insert_with(|| self.cost(*point, &scenes));
+            let cost = *known.entry(format!("{settings:?}")).or_insert_with(|| self.cost(*point));
             costs.push(cost);
         }
         costs
     }
 
-    fn cost(&self, point: u64, scenes: &Scenes) -> f64 {
+    fn cost(&self, point: u64) -> f64 {
         let Ok(plan) = self.plan(point) else { return cost::POINT };
-        let Ok(scene) = scenes.scene_of(&plan) else { return cost::POINT };
+        let Ok(scene) = self.scenes.scene_of(&plan) else { return cost::POINT };
         if plan.level == Level::Analytic {
             return cost::POINT;
         }
@@ -98,6 +104,7 @@ impl SweepRow {
 mod tests {
     use crate::ExperimentFile;
     use crate::sweep::{RunOptions, Shard, Store, Sweep, run};
+    use std::time::Duration;
 
     fn sweep(text: &str) -> Sweep {
         Sweep::new(ExperimentFile::parse(text, "test").expect("settings")).expect("a space")
@@ -112,12 +119,41 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("pxpl5-chunk-{}", std::process::id()));
         let mut store = Store::open(&folder, sweep.header().expect("a header"), true).expect("a folder");
         run(&sweep, &mut store, RunOptions { shard: Shard::ALL, threads: 2 }, |_| {}).expect("it can be written");
-        for (row, seconds) in sweep.rows(&[2, 0, 1]) {
+        for (row, seconds) in sweep.rows(&[2, 0, 1], Duration::MAX) {
             assert_eq!(store.row(row.point).expect("readable"), Some(row.clone()));
             assert!(seconds >= 0.0 && row.is_done() == (row.point != 2), "{row:?}");
         }
         drop(store);
         std::fs::remove_dir_all(folder).expect("it is ours");
+    }
+
+    #[test]
+    fn without_time_one_point_is_simulated_and_the_rest_can_be_asked_for() {
+        let sweep = sweep(SPACE);
+        let mut left: &[u64] = &[1, 0, 2];
+        let mut found = Vec::new();
+        while !left.is_empty() {
+            let rows = sweep.rows(left, Duration::ZERO);
+            assert_eq!(rows.len(), 1);
+            found.extend(rows.into_iter().map(|(row, _)| row));
+            left = &left[1..];
+        }
+        let at_once: Vec<_> = sweep.rows(&[1, 0, 2], Duration::MAX).into_iter().map(|(row, _)| row).collect();
+        assert_eq!(found, at_once);
+    }
+
+    /// Whichever point loads the scene first: with and without its back faces it is not the same.
+    #[test]
+    fn a_row_does_not_depend_on_the_points_before_it() {
+        let text = "pipeline = \"slats\"\nscene = \"mig\"\ntriangles = 100\nfields = 20\n[sweep.grid]\ncull = [false, true]\n";
+        let rows = |points: &[u64]| {
+            let mut rows = sweep(text).rows(points, Duration::MAX);
+            rows.sort_by_key(|(row, _)| row.point);
+            rows.into_iter().map(|(row, _)| row).collect::<Vec<_>>()
+        };
+        let in_order = rows(&[0, 1]);
+        assert_ne!(in_order[0].trace_hash, in_order[1].trace_hash);
+        assert_eq!(rows(&[1, 0]), in_order);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::Sweep;
 use super::header::json;
 use crate::experiment_file::{FileError, Plan};
-use pxpl5_scene::Scene;
+use pxpl5_scene::{Placement, Scene};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -39,20 +39,24 @@ pub struct SweepRow {
     pub error: Option<String>,
 }
 
-/// Scenes that were loaded, by name: points mostly share one.
+/// Scenes that were loaded, by what decides on them: points mostly share one.
 #[derive(Debug, Default)]
-pub(super) struct Scenes(Mutex<BTreeMap<String, Arc<Scene>>>);
+pub(super) struct Scenes(Mutex<BTreeMap<SceneKey, Arc<Scene>>>);
+
+/// Name of a scene, whether it is placed as in its file, and whether it drops its back faces: what loading depends on.
+type SceneKey = (String, bool, bool);
 
 impl Scenes {
     /// The scene of a plan, loaded once for all points that share it.
     pub(super) fn scene_of(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
         // Loading under the lock: nobody else should load the same.
         let mut loaded = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let whole = match loaded.get(&plan.scene.name) {
+        let key = (plan.scene.name.clone(), plan.scene.placement == Placement::AsInFile, plan.scene.culled);
+        let whole = match loaded.get(&key) {
             Some(whole) => Arc::clone(whole),
             None => {
                 let whole = Arc::new(plan.scene.load_whole()?);
-                loaded.insert(plan.scene.name.clone(), Arc::clone(&whole));
+                loaded.insert(key, Arc::clone(&whole));
                 whole
             }
         };
@@ -76,8 +80,8 @@ impl Sweep {
     }
 
     /// Simulates a point; what is wrong with it, even a panic, becomes its row.
-    pub(super) fn row(&self, point: u64, scenes: &Scenes) -> SweepRow {
-        let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point, scenes)));
+    pub(super) fn row(&self, point: u64) -> SweepRow {
+        let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point)));
         let result = result.unwrap_or_else(|panic| Err(format!("a bug of the emulator: {}", panic_text(&*panic))));
         let parameters = self.space.settings(point).iter().map(|(path, value)| (path.clone(), json(value))).collect();
         let empty = SweepRow {
@@ -101,9 +105,9 @@ impl Sweep {
         }
     }
 
-    fn simulate(&self, point: u64, scenes: &Scenes) -> Result<Simulated, String> {
+    fn simulate(&self, point: u64) -> Result<Simulated, String> {
         let plan = self.plan(point).map_err(|error| error.to_string())?;
-        let scene = scenes.scene_of(&plan).map_err(|error| error.to_string())?;
+        let scene = self.scenes.scene_of(&plan).map_err(|error| error.to_string())?;
         let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
         // Nobody looks at the pictures of a sweep, and pixels change no time.
         let results = plan.run(scene).map_err(|error| error.to_string())?;
