@@ -25,6 +25,7 @@ mod chunk;
 mod error;
 mod header;
 mod inputs;
+mod joined;
 mod merge;
 mod point;
 mod points;

@@ -79,6 +79,15 @@ impl Sweep {
         file.resolve()
     }
 
+    /// The scene of a point's plan, loaded once for all points that share it.
+    ///
+    /// # Errors
+    ///
+    /// As [`crate::experiment_file::SceneChoice::load`].
+    pub fn scene(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
+        self.scenes.scene_of(plan)
+    }
+
     /// Simulates a point; what is wrong with it, even a panic, becomes its row.
     pub(super) fn row(&self, point: u64) -> SweepRow {
         let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point)));
