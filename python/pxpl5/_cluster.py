@@ -32,7 +32,7 @@ from . import _native
 from ._errors import SweepError
 
 if TYPE_CHECKING:
-    from distributed import Client, Future
+    from distributed import Client
 
     from ._sweep import SweepSpace
 
@@ -167,18 +167,18 @@ class Cluster:
     def __init__(self, space: SweepSpace, store: _native.Store, client: Client, told: Any) -> None:
         self._space = space
         self._store = store
-        self._client = client
+        self._client: Any = client
         self._told = told
         missing = store.missing()
         self._missing = set(missing)
         self._chunks = Chunks(space, missing)
         #: Chunks that were given up, to be handed out before others.
         self._again: list[list[int]] = []
-        self._given: dict[Any, tuple[Future, list[int]]] = {}
+        self._given: dict[Any, tuple[Any, list[int]]] = {}
         self._made = 0
         self._lost_alone: dict[int, int] = {}
         #: Messages with rows, and futures that ended, in the order in which they came.
-        self._news: queue.SimpleQueue[bytes | Future] = queue.SimpleQueue()
+        self._news: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._threads = 1
         self._looked_s = float("-inf")
         self._topic = f"pxpl5-{uuid.uuid4().hex}"
@@ -217,17 +217,17 @@ class Cluster:
         self._made += 1
         future = self._client.submit(compute, self._space.text, path, chunk, self._topic, every_s, key=key)
         self._given[key] = (future, chunk)
-        future.add_done_callback(self._news.put)  # type: ignore[no-untyped-call]
+        future.add_done_callback(self._news.put)
 
     def _cluster_threads(self) -> int:
         """Threads of all workers; of a cluster that has none just now, as many as it had."""
         now_s = time.monotonic()
         if now_s - self._looked_s > LOOK_S:
             self._looked_s = now_s
-            self._threads = sum(self._client.nthreads().values()) or self._threads  # type: ignore[no-untyped-call]
+            self._threads = sum(self._client.nthreads().values()) or self._threads
         return self._threads
 
-    def _take(self, news: bytes | Future) -> None:
+    def _take(self, news: Any) -> None:
         if isinstance(news, bytes):
             self._keep(unpacked(news))
         else:
@@ -241,12 +241,12 @@ class Cluster:
         if self._told is not None:
             self._told(self._space.points - len(self._missing), self._space.points)
 
-    def _end(self, future: Future) -> None:
+    def _end(self, future: Any) -> None:
         """Of a chunk that ended: its rows came before this news, on the same way. What has none is handed out again."""
         from distributed import KilledWorker
 
         _, chunk = self._given.pop(future.key)
-        error = future.exception() if future.status == "error" else None  # type: ignore[no-untyped-call]
+        error = future.exception() if future.status == "error" else None
         if error is not None and not isinstance(error, KilledWorker):
             raise error
         if future.status == "cancelled":
