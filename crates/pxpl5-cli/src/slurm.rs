@@ -120,7 +120,8 @@ impl Resources {
     fn of(sample: Sample, tasks: Option<u64>, threads: u64) -> Self {
         let Sample { points, mean_s, most_s, most_bytes } = sample;
         let work_s = mean_s * points as f64 / threads as f64;
-        let tasks = tasks.unwrap_or_else(|| even_tasks((work_s / TASK_S).ceil() as u64, points)).clamp(1, points.max(1));
+        let tasks =
+            tasks.unwrap_or_else(|| even_tasks((work_s / TASK_S).ceil() as u64, points)).clamp(1, points.max(1));
         let task_s = START_S + TIME_MARGIN * (work_s / tasks as f64 + most_s);
         let merge_s = START_S + MERGE_ROW_S * points as f64;
         let merge_bytes = MERGE_BYTES + MERGE_ROW_BYTES * points as f64 + MERGE_TASK_BYTES * tasks as f64;
@@ -275,7 +276,8 @@ mod tests {
     fn resources_follow_the_formulas() {
         let one = Resources::of(SAMPLED, None, 1);
         // 60 + 5 (18,000 / 21 + 3) = 4,361 s; 2 x 40 MB; 60 + 40e-6 x 20,000 = 60.8 s; 50 + 0.32 + 0.67 MB.
-        let expected = Resources { tasks: 21, threads: 1, minutes: 73, megabytes: 80, merge_minutes: 2, merge_megabytes: 51 };
+        let expected =
+            Resources { tasks: 21, threads: 1, minutes: 73, megabytes: 80, merge_minutes: 2, merge_megabytes: 51 };
         assert_eq!(one, expected);
         // Four threads: 4,500 s of work are 5 tasks, and 7 is the next number; 60 + 5 (4,500 / 7 + 3) = 3,289 s.
         let four = Resources::of(SAMPLED, None, 4);

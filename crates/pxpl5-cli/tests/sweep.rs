@@ -300,7 +300,8 @@ fn the_jobs_of_slurm_find_the_rows_of_the_whole_sweep() {
         assert!(Command::new("bash").arg("-n").arg(&path).status().expect("bash").success(), "{script}");
     }
     let array = read(&folder, "jobs/array.sh");
-    for line in ["#SBATCH --array=1-3", "#SBATCH --cpus-per-task=1", "#SBATCH --requeue", "#SBATCH --open-mode=append"] {
+    for line in ["#SBATCH --array=1-3", "#SBATCH --cpus-per-task=1", "#SBATCH --requeue", "#SBATCH --open-mode=append"]
+    {
         assert!(array.lines().any(|found| found == line), "{line}");
     }
 

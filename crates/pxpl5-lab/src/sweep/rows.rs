@@ -161,8 +161,7 @@ impl Scan {
 
     /// What the line holds.
     fn parsed<T: DeserializeOwned>(&self) -> Result<T, SweepError> {
-        serde_json::from_slice(&self.text)
-            .map_err(|error| self.damaged(format!("{} ({error})", excerpt(&self.text))))
+        serde_json::from_slice(&self.text).map_err(|error| self.damaged(format!("{} ({error})", excerpt(&self.text))))
     }
 
     fn damaged(&self, found: String) -> SweepError {
