@@ -3,13 +3,14 @@
 //! `cargo run --release --example point_costs -- OUT SWEEP.toml...` writes OUT/NAME/rows.jsonl for each sweep, for `pxpl5 plot`, and OUT/costs.md, the table
 //! of docs/sweeps.md. `scripts/costs` does all of it.
 
+use cpu_time::ThreadTime;
 use pxpl5::Fingerprint;
 use pxpl5::sweep::{Store, Sweep, SweepRow};
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 const USAGE: &str = "usage: point_costs OUT SWEEP.toml...";
 
@@ -61,9 +62,10 @@ fn measured(sweep: &Sweep) -> Result<Vec<Cost>, Box<dyn Error>> {
     // Scenes are loaded once: no point should pay for the others.
     let estimates = sweep.costs(&(0..sweep.space().points()).collect::<Vec<_>>());
     for (point, estimated_s) in (0..).zip(estimates) {
-        let begin = Watch::begin();
+        // CPU time: other work on the host counts for nothing.
+        let begin = ThreadTime::try_now()?;
         let rows = sweep.rows(&[point], Duration::MAX);
-        let measured_s = begin.seconds();
+        let measured_s = begin.try_elapsed()?.as_secs_f64();
         for (row, _) in rows.into_iter().filter(|(row, _)| row.is_done()) {
             let plan = sweep.plan(point)?;
             let head = if plan.head.is_some() { ", tracked head" } else { "" };
@@ -72,28 +74,6 @@ fn measured(sweep: &Sweep) -> Result<Vec<Cost>, Box<dyn Error>> {
         }
     }
     Ok(costs)
-}
-
-/// CPU time of this thread where the operating system tells it, so that other work on the host counts for nothing; else time.
-struct Watch {
-    begun: Instant,
-    cpu_s: Option<f64>,
-}
-
-impl Watch {
-    fn begin() -> Self {
-        Self { begun: Instant::now(), cpu_s: thread_cpu_s() }
-    }
-
-    fn seconds(&self) -> f64 {
-        let cpu_s = thread_cpu_s().zip(self.cpu_s).map(|(now, before)| now - before);
-        cpu_s.filter(|seconds| *seconds > 0.0).unwrap_or_else(|| self.begun.elapsed().as_secs_f64())
-    }
-}
-
-fn thread_cpu_s() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    Some(text.split_whitespace().next()?.parse::<f64>().ok()? * 1e-9)
 }
 
 /// Says of each point which share of its group has no greater ratio.

@@ -22,6 +22,7 @@
 //! Random sampling and adaptive refinement of the space; points of one sweep on several hosts other than by shards.
 
 mod chunk;
+mod cost;
 mod error;
 mod header;
 mod inputs;
