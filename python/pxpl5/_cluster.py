@@ -42,8 +42,13 @@ CHUNK_S = 0.5
 #: Seconds from one message with rows to the next: what a dying worker may lose besides the point in its hand.
 ROWS_S = 0.25
 
-#: Seconds that scheduler and client may spend on a chunk with its messages. Measured: docs/sweeps.md, "A million points".
-HANDING_S = 2e-3
+#: Seconds that a chunk must be long for each thread of the cluster, so that scheduler and client have half their time to spare: twice what they
+#: spend on a chunk with its messages. Measured: docs/sweeps.md, "A million points".
+HANDING_S = 7e-3
+
+#: Seconds that the estimate of a point takes, about (measured there), and which part of its time the client may estimate.
+ESTIMATE_S = 8e-4
+ESTIMATING = 0.1
 
 #: Most points of a chunk.
 MOST_POINTS = 1_000
@@ -108,17 +113,25 @@ class Pace:
     measured_s: float = 4e-3
     #: Seconds that were estimated for them.
     estimated_s: float = 1e-3
+    #: How many they were.
+    points: float = 0.0
 
     def learn(self, measured_s: float, estimated_s: float) -> None:
         """Takes a point in."""
         weight = 1 - min(1.0, measured_s / (20 * CHUNK_S))
         self.measured_s = self.measured_s * weight + measured_s
         self.estimated_s = self.estimated_s * weight + estimated_s
+        self.points = self.points * weight + 1
 
     @property
     def ratio(self) -> float:
         """Measured seconds for one that was estimated."""
         return self.measured_s / self.estimated_s
+
+    @property
+    def point_s(self) -> float:
+        """Seconds of a point in the mean; without end before anything is known."""
+        return self.measured_s / self.points if self.points else float("inf")
 
 
 @dataclass
@@ -143,15 +156,20 @@ class Chunks:
         if estimated_s is not None:
             self.pace.learn(measured_s, estimated_s)
 
-    def next(self, most_s: float) -> list[int]:
-        """The next points, at least one, that take about ``most_s`` seconds at most; none when all are handed out."""
+    def next(self, most_s: float, threads: int = 1) -> list[int]:
+        """The next points, at least one, that take about ``most_s`` seconds at most; none when all are handed out.
+
+        Where so many threads take points faster than all can be estimated, one point of several is, and the next are taken to cost the same.
+        """
         chunk: list[int] = []
         left_s = most_s
         while self._at < len(self.points) and len(chunk) < MOST_POINTS:
             point = self.points[self._at]
             if point not in self._costs:
-                some = self.points[self._at : self._at + ESTIMATED]
-                self._costs.update(zip(some, self.space.costs(some), strict=True))
+                each = max(1, round(threads * ESTIMATE_S / (ESTIMATING * self.pace.point_s)))
+                some = self.points[self._at : self._at + ESTIMATED * each]
+                costs = self.space.costs(some[::each])
+                self._costs.update((point, costs[number // each]) for number, point in enumerate(some))
             cost_s = self._costs[point] * self.pace.ratio
             if chunk and cost_s > left_s:
                 break
@@ -205,7 +223,7 @@ class Cluster:
         threads = self._cluster_threads()
         chunk_s = max(CHUNK_S, threads * HANDING_S)
         while len(self._given) < threads * (1 + WAITING):
-            chunk = self._again.pop() if self._again else self._chunks.next(chunk_s)
+            chunk = self._again.pop() if self._again else self._chunks.next(chunk_s, threads)
             if not chunk:
                 break
             self._submit(chunk, ROWS_S * chunk_s / CHUNK_S)

@@ -107,6 +107,21 @@ def test_chunks_follow_how_long_points_take() -> None:
     assert made.pace.ratio == before
 
 
+def test_a_large_cluster_has_some_points_estimated_for_all() -> None:
+    asked: list[list[int]] = []
+
+    class Asked(Space):
+        def costs(self, points: list[int]) -> list[float]:
+            asked.append(points)
+            return super().costs(points)
+
+    space: Any = Asked([0.1] * 2_000)
+    made = Chunks(space, list(range(2_000)), Pace(0.2, 0.2, 2.0))
+    # A thousand threads take 10,000 points of 0.1 s in a second. 0.1 s of that second are 125 estimates: of each 80th point.
+    assert [len(made.next(7.0, 1_000)) for _ in range(3)] == [70, 70, 70]
+    assert asked == [list(range(0, 2_000, 80))]
+
+
 def test_rows_survive_the_way_to_the_client() -> None:
     rows = [('{"point":0,"error":"2 µs"}', 0.25), ('{"point":1}', 1e-9)]
     assert unpacked(packed(rows)) == rows

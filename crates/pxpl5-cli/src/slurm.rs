@@ -39,8 +39,8 @@ const MOST_TASKS: u64 = 1_000;
 const SAMPLE: u64 = 300;
 /// Seconds to start a task and to load its scenes. Assumed.
 const START_S: f64 = 60.0;
-/// How much slower a node, and dearer a point, may be than estimated: a task that hits its limit is killed. Of 1,000 points, the dearest took less
-/// (docs/sweeps.md, "What a point costs").
+/// How much slower a node, and dearer its points, may be than estimated: a task that hits its limit is killed. Points of a pipeline together took at most
+/// three times their estimate (docs/sweeps.md, "What a point costs").
 const TIME_MARGIN: f64 = 5.0;
 /// How far estimates of memory are off at most (docs/hardening.md).
 const MEMORY_MARGIN: f64 = 2.0;
