@@ -33,6 +33,7 @@ mod points;
 mod replacement;
 mod rows;
 mod run;
+mod scenes;
 mod shard;
 mod space;
 mod store;
@@ -48,7 +49,7 @@ pub use space::{Axis, MAX_POINTS, SweepSpace, Values};
 pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};
 
 use crate::experiment_file::{ExperimentFile, FileError};
-use point::Scenes;
+use scenes::Scenes;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

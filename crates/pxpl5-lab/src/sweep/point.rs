@@ -3,12 +3,12 @@
 use super::Sweep;
 use super::header::json;
 use crate::experiment_file::{FileError, Plan};
-use pxpl5_scene::{Placement, Scene};
+use pxpl5_scene::Scene;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// Whether a point could be simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,32 +37,6 @@ pub struct SweepRow {
     pub trace_hash: Option<String>,
     /// Why it could not be simulated.
     pub error: Option<String>,
-}
-
-/// Scenes that were loaded, by what decides on them: points mostly share one.
-#[derive(Debug, Default)]
-pub(super) struct Scenes(Mutex<BTreeMap<SceneKey, Arc<Scene>>>);
-
-/// Name of a scene, whether it is placed as in its file, and whether it drops its back faces: what loading depends on.
-type SceneKey = (String, bool, bool);
-
-impl Scenes {
-    /// The scene of a plan, loaded once for all points that share it.
-    pub(super) fn scene_of(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
-        // Loading under the lock: nobody else should load the same.
-        let mut loaded = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let key = (plan.scene.name.clone(), plan.scene.placement == Placement::AsInFile, plan.scene.culled);
-        let whole = match loaded.get(&key) {
-            Some(whole) => Arc::clone(whole),
-            None => {
-                let whole = Arc::new(plan.scene.load_whole()?);
-                loaded.insert(key, Arc::clone(&whole));
-                whole
-            }
-        };
-        drop(loaded);
-        plan.scene.prepared(whole)
-    }
 }
 
 impl Sweep {
