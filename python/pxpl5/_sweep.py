@@ -11,6 +11,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from . import _native
+from ._cluster import Cluster
 from ._experiment import toml_of
 from ._machine import Machine
 from ._native import Table
@@ -19,14 +20,6 @@ from ._tables import table_of
 
 if TYPE_CHECKING:
     from distributed import Client
-
-#: Seconds of work, by the estimate, that a worker is given at a time: far above what handing it out costs (some milliseconds), far
-#: below what a lost worker may cost.
-CHUNK_S = 0.5
-
-#: Most chunks that wait at a cluster at a time; more would only load its scheduler.
-MOST_WAITING = 1_000
-
 
 @dataclass(frozen=True)
 class Range:
@@ -85,7 +78,7 @@ class SweepSpace:
         #: The text of an experiment file that says the same.
         self.text = text
         self._path = path
-        self._native = _made(text, fspath(path))
+        self._native = made(text, fspath(path))
 
     @property
     def points(self) -> int:
@@ -128,7 +121,7 @@ def _axis(values: Sequence[object] | Range) -> str:
     return toml_of(list(values))
 
 
-def _made(text: str, path: str) -> _native.Sweep:
+def made(text: str, path: str) -> _native.Sweep:
     """A sweep of its text; names of files in it are relative to the file's folder, if it is one."""
     settings = _native.Settings()
     if path in ("", "."):
@@ -183,10 +176,11 @@ def sweep(
       ``resume=True`` goes on. Without it nothing is kept but what is returned.
     - ``threads``: points at a time on this computer; default: one a core.
     - ``client``: a Dask client: its workers compute the points, in chunks of about half a second by the analytic level's estimate of
-      their cost. Points of lost workers are computed again. Workers need this package, and the files that the space names.
+      their cost and by how long points took so far. Rows come as they are finished; what a lost worker had not finished is computed
+      again, however many are lost. Workers need this package, and the files that the space names.
 
     The rows are the same bytes, whatever computed them and in whatever order. Raises :class:`SweepError` for a folder that cannot be
-    used, :class:`SettingError` when no point is an experiment.
+    used and for a point over which worker after worker dies, :class:`SettingError` when no point is an experiment.
     """
     if out is not None:
         return _swept(space, Path(out), resume, threads, client, progress, True)
@@ -208,92 +202,7 @@ def _swept(
         if client is None:
             store.run(threads or os.cpu_count() or 1, told)
         else:
-            _on_cluster(space, store, client, told)
+            Cluster(space, store, client, told).run()
     lines = store.lines()
     store.finish()
     return SweepResults(lines, folder if keeps else None, space.header())
-
-
-def chunks(points: Sequence[int], costs: Sequence[float], most_s: float = CHUNK_S) -> list[list[int]]:
-    """Points in order as chunks that cost about ``most_s`` seconds at most each; a dearer point is a chunk of its own."""
-    made: list[list[int]] = []
-    left = 0.0
-    for point, cost in zip(points, costs, strict=True):
-        if not made or cost > left:
-            made.append([])
-            left = most_s
-        made[-1].append(point)
-        left -= cost
-    return made
-
-
-#: Points whose costs are estimated at a time: workers begin before all are.
-ESTIMATED = 1_000
-
-
-def _chunked(space: SweepSpace, points: Sequence[int]) -> Iterator[list[int]]:
-    """Points as chunks, estimated as they are asked for."""
-    for begin in range(0, len(points), ESTIMATED):
-        some = points[begin : begin + ESTIMATED]
-        yield from chunks(some, space.costs(some))
-
-
-#: Sweeps that this process has made already, by text and path: a worker makes each once.
-_KNOWN: dict[tuple[str, str], _native.Sweep] = {}
-
-
-def compute(text: str, path: str, points: list[int]) -> list[tuple[str, float]]:
-    """What a worker does: the rows of some points as lines of JSON, and the seconds that each took."""
-    known = _KNOWN.get((text, path))
-    if known is None:
-        known = _KNOWN[(text, path)] = _made(text, path)
-    return known.rows(points)
-
-
-def _on_cluster(space: SweepSpace, store: _native.Store, client: Client, told: Any) -> None:
-    """Hands chunks out, keeps rows as they come, and hands out again what a cluster gave up."""
-    from distributed import as_completed
-
-    path = "" if space._path == Path() else fspath(space._path)
-    missing = store.missing()
-    done = space.points - len(missing)
-    todo = _chunked(space, missing)
-    given: dict[Any, list[int]] = {}
-
-    def submit(chunk: list[int]) -> Any:
-        # A pure function of its arguments: Dask computes it again when its worker is lost. Two equal calls are one to it.
-        future = client.submit(compute, space.text, path, chunk, pure=True, retries=RETRIES)
-        given[future.key] = chunk
-        return future
-
-    first = [submit(chunk) for _, chunk in zip(range(MOST_WAITING), todo, strict=False)]
-    waiting: Any = as_completed(first)  # type: ignore[no-untyped-call]
-    for future in waiting:
-        rows = _rows_of(future, given.pop(future.key), submit, waiting)
-        for line, seconds in rows:
-            done += store.append(line, seconds)
-        if told is not None:
-            told(done, space.points)
-        for chunk in todo:
-            waiting.add(submit(chunk))
-            break
-
-
-#: How often Dask itself computes a chunk again whose worker was lost, before it gives it up; then it is handed out in halves.
-RETRIES = 10
-
-
-def _rows_of(future: Any, chunk: list[int], submit: Any, waiting: Any) -> list[tuple[str, float]]:
-    """Rows of a chunk; of one that was given up because its workers died each time, none: it is handed out again, halved."""
-    from distributed import KilledWorker
-
-    try:
-        return list(future.result())
-    except KilledWorker:
-        future.release()
-        if len(chunk) == 1:
-            raise
-        middle = len(chunk) // 2
-        for half in (chunk[:middle], chunk[middle:]):
-            waiting.add(submit(half))
-        return []

@@ -1,11 +1,13 @@
 """Sweeps on this computer."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import pxpl5
-from pxpl5._sweep import chunks
+from pxpl5 import _native
+from pxpl5._cluster import Chunks, Pace, packed, unpacked
 
 BASE = {"pipeline": "slats", "scene": "typical:100", "fields": 30, "measure": ["latency_fields.mean", "missed_retraces"]}
 
@@ -65,7 +67,69 @@ def test_the_estimate_grows_with_the_work() -> None:
     assert cheap < long < both and cheap < heavy < both
 
 
+class Space:
+    """Points of known cost."""
+
+    def __init__(self, costs: list[float]) -> None:
+        self._costs = costs
+
+    def costs(self, points: list[int]) -> list[float]:
+        return [self._costs[point] for point in points]
+
+
+def all_chunks(made: Chunks, most_s: float) -> list[list[int]]:
+    return list(iter(lambda: made.next(most_s), []))
+
+
 def test_chunks_hold_every_point_once_and_no_more_than_is_said() -> None:
-    costs = [0.1, 0.2, 0.3, 5.0, 0.1, 0.1]
-    made = chunks(range(6), costs, 0.5)
-    assert made == [[0, 1], [2], [3], [4, 5]]
+    space: Any = Space([0.1, 0.2, 0.3, 5.0, 0.1, 0.1])
+    assert all_chunks(Chunks(space, list(range(6)), Pace(1.0, 1.0)), 0.5) == [[0, 1], [2], [3], [4, 5]]
+    # Points that take twice what is estimated.
+    assert all_chunks(Chunks(space, list(range(6)), Pace(2.0, 1.0)), 0.5) == [[0], [1], [2], [3], [4, 5]]
+    many: Any = Space([0.0] * 2_500)
+    assert [len(chunk) for chunk in all_chunks(Chunks(many, list(range(2_500))), 0.5)] == [1_000, 1_000, 500]
+
+
+def test_chunks_follow_how_long_points_take() -> None:
+    space: Any = Space([0.01] * 10_000)
+    made = Chunks(space, list(range(10_000)))
+    # Nothing is known: four times the estimate, so that 12 points of 0.04 s are half a second.
+    first = made.next(0.5)
+    assert len(first) == 12
+    # On this host they take ten times the estimate.
+    for _ in range(20):
+        for point in made.next(0.5):
+            made.learn(point, 0.1)
+    assert len(made.next(0.5)) == 5
+    # A second row of a point changes nothing.
+    before = made.pace.ratio
+    made.learn(12, 99.0)
+    assert made.pace.ratio == before
+
+
+def test_a_large_cluster_has_some_points_estimated_for_all() -> None:
+    asked: list[list[int]] = []
+
+    class Asked(Space):
+        def costs(self, points: list[int]) -> list[float]:
+            asked.append(points)
+            return super().costs(points)
+
+    space: Any = Asked([0.1] * 2_000)
+    made = Chunks(space, list(range(2_000)), Pace(0.2, 0.2, 2.0))
+    # A thousand threads take 10,000 points of 0.1 s in a second. 0.1 s of that second are 125 estimates: of each 80th point.
+    assert [len(made.next(7.0, 1_000)) for _ in range(3)] == [70, 70, 70]
+    assert asked == [list(range(0, 2_000, 80))]
+
+
+def test_rows_survive_the_way_to_the_client() -> None:
+    rows = [('{"point":0,"error":"2 µs"}', 0.25), ('{"point":1}', 1e-9)]
+    assert unpacked(packed(rows)) == rows
+
+
+def test_a_point_is_told_once_and_kept_once(tmp_path: Path) -> None:
+    made = space()
+    store = _native.Store(made._native, tmp_path, False)
+    [(line, seconds)] = made._native.rows([3], 0.0)
+    assert [store.append(line, seconds), store.append(line, seconds)] == [3, 3]
+    assert store.missing() == [0, 1, 2, 4, 5, 6, 7]

@@ -11,6 +11,9 @@ const USAGE: u8 = 2;
 /// Exit code of a command that was understood but failed.
 const FAILURE: u8 = 1;
 
+/// Another process is at work there; the same command may succeed later (`EX_TEMPFAIL` of sysexits.h).
+pub(crate) const BUSY: u8 = 75;
+
 /// A message and an exit code.
 #[derive(Debug)]
 pub(crate) struct CliError {
@@ -56,6 +59,7 @@ impl From<SweepError> for CliError {
     fn from(error: SweepError) -> Self {
         match error {
             SweepError::File(error) => error.into(),
+            SweepError::Locked { .. } => Self { code: BUSY, message: error.to_string() },
             SweepError::NotEmpty { .. } | SweepError::Foreign { .. } => Self::usage(error),
             _ => Self::failure(error),
         }

@@ -3,7 +3,8 @@
 //! A command with pipelines or displays of one's own is a binary that calls [`main`] with another registry:
 //! `docs/guide/own-pipeline.md` has a complete one.
 //!
-//! Exit codes: 0 when all went well, 1 when something failed, 2 when the command line or an experiment file is wrong.
+//! Exit codes: 0 when all went well, 1 when something failed, 2 when the command line or an experiment file is wrong, 75 when another
+//! process writes into the folder of a sweep.
 //! Results go to standard output, everything else to standard error.
 
 mod arp;
@@ -32,6 +33,7 @@ mod rows;
 mod run;
 mod scenes;
 mod settings;
+mod slurm;
 mod snapshot;
 mod sweep;
 mod table;
@@ -64,7 +66,7 @@ const EXAMPLES: &str = "Examples:
   pxpl5 run --pipeline rendering-control --scene bunny.ply --gps 24 --out out/bunny
   pxpl5 run experiments/figure-04.toml --set seed=7 --json
 
-Exit codes: 0 all went well, 1 something failed, 2 the command line or an experiment file is wrong.";
+Exit codes: 0 all went well, 1 something failed, 2 the command line or an experiment file is wrong, 75 another process writes there.";
 
 #[derive(Subcommand, Debug)]
 enum Command {

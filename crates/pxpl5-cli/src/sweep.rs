@@ -2,6 +2,7 @@
 
 use crate::error::CliError;
 use crate::options::registry;
+use crate::slurm::{self, Jobs, quoted};
 use crate::terminal::{complain, print, progress, warn};
 use clap::Args;
 use pxpl5::sweep::{ROWS_FILE, RunOptions, Shard, Store, Sweep};
@@ -16,7 +17,8 @@ use std::path::{Path, PathBuf};
 #[command(after_help = "Examples:
   pxpl5 sweep experiments/sweep-slats.toml --out out/slats
   pxpl5 sweep experiments/sweep-slats.toml --out out/slats --resume        after an interruption
-  pxpl5 sweep experiments/sweep-slats.toml --out out/slats-1 --shard 1/8   one of eight shares; see `pxpl5 merge`")]
+  pxpl5 sweep experiments/sweep-slats.toml --out out/slats-1 --shard 1/8   one of eight shares; see `pxpl5 merge`
+  pxpl5 sweep experiments/sweep-slats.toml --out out/slats --slurm jobs    as jobs of Slurm: bash jobs/submit.sh")]
 pub(crate) struct SweepArgs {
     /// Experiment file with a table `sweep`.
     #[arg(value_name = "FILE")]
@@ -30,7 +32,14 @@ pub(crate) struct SweepArgs {
     /// Run share I of N disjoint ones.
     #[arg(long, value_name = "I/N", value_parser = shard, default_value = "1/1")]
     shard: Shard,
-    /// Points at a time; default: one a core.
+    /// Run nothing, but write what submits the sweep to Slurm into DIR: an array of tasks, with time and memory by estimate, and a job
+    /// that joins their rows in --out.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["resume", "shard"])]
+    slurm: Option<PathBuf>,
+    /// Tasks of that array; default: by estimate, about a quarter of an hour each.
+    #[arg(long, value_name = "N", requires = "slurm", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    tasks: Option<u64>,
+    /// Points at a time; default: one a core, and one in a task of Slurm.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1024))]
     threads: Option<u64>,
     /// Set any key of the experiment file for all points; may be repeated.
@@ -54,6 +63,9 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     }
     let sweep = Sweep::new(file)?;
     warn(&supposed(&sweep), args.quiet);
+    if let Some(folder) = &args.slurm {
+        return write_jobs(&args, &sweep, folder);
+    }
     let mut store = Store::open(&args.out, sweep.header()?, args.resume)?;
     told_when_interrupted(&args)?;
     let total = args.shard.share_of(sweep.space().points());
@@ -68,6 +80,15 @@ pub(crate) fn run(args: SweepArgs) -> Result<(), CliError> {
     tell_place(&args.out, total, args.quiet)?;
     store.finish()?;
     if failed >= total { Err(CliError::failure("no point could be simulated")) } else { Ok(()) }
+}
+
+/// Writes the jobs of a sweep that could be run.
+fn write_jobs(args: &SweepArgs, sweep: &Sweep, folder: &Path) -> Result<(), CliError> {
+    sweep.header()?;
+    let threads = args.threads.unwrap_or(1);
+    let jobs = Jobs { file: &args.file, sets: &args.sets, out: &args.out, tasks: args.tasks, threads };
+    let written = slurm::write(sweep, &jobs, folder)?;
+    if args.quiet { Ok(()) } else { print(&written.text()) }
 }
 
 /// What no source allows at the first or the last point.
@@ -104,12 +125,6 @@ fn again(args: &SweepArgs) -> String {
     words.extend(args.sets.iter().map(|set| format!("--set {}", quoted(set))));
     words.push("--resume".to_owned());
     words.join(" ")
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let is_plain = word.chars().all(|c| c.is_alphanumeric() || "-_./=:,".contains(c)) && !word.is_empty();
-    if is_plain { word.to_owned() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }
 
 /// Says how many points of a shard hold nothing but a reason, and the first of them; so many are given.

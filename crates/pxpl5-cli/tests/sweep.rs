@@ -270,3 +270,83 @@ fn an_edited_model_is_not_mixed_with_what_was_made_of_it_before() {
     assert_eq!(output.status.code(), Some(2));
     assert!(err(&output).contains("results of another sweep"), "{}", err(&output));
 }
+
+/// Stands for `sbatch`: runs what is submitted, task after task, and notes with which options.
+const SBATCH: &str = "#!/bin/bash
+script=${@: -1}
+echo \"$@\" >> calls
+tasks=$(sed -n 's/^#SBATCH --array=1-//p' \"$script\")
+if [ -n \"$tasks\" ]; then
+    for task in $(seq \"$tasks\"); do SLURM_ARRAY_TASK_ID=$task bash \"$script\" >&2 || exit; done
+    echo '41;a-cluster'
+else
+    bash \"$script\" >&2 && echo 42
+fi
+";
+
+#[cfg(unix)]
+#[test]
+fn the_jobs_of_slurm_find_the_rows_of_the_whole_sweep() {
+    let folder = folder("slurm");
+    succeeds(&sweep(&folder, &["--out", "whole", "--set", "title=it's one"]));
+    let written =
+        folder.run(&["sweep", "s.toml", "--out", "a b", "--set", "title=it's one", "--slurm", "jobs", "--tasks", "3"]);
+    succeeds(&written);
+    assert!(out(&written).starts_with("3 tasks of 1 threads") && out(&written).ends_with("bash jobs/submit.sh\n"));
+    assert_eq!(names(&folder.0.join("jobs")), ["array.sh", "merge.sh", "submit.sh"]);
+    assert!(!folder.0.join("a b").exists(), "nothing is run");
+    for script in ["array.sh", "merge.sh", "submit.sh"] {
+        let path = folder.0.join("jobs").join(script);
+        assert!(Command::new("bash").arg("-n").arg(&path).status().expect("bash").success(), "{script}");
+    }
+    let array = read(&folder, "jobs/array.sh");
+    for line in ["#SBATCH --array=1-3", "#SBATCH --cpus-per-task=1", "#SBATCH --requeue", "#SBATCH --open-mode=append"]
+    {
+        assert!(array.lines().any(|found| found == line), "{line}");
+    }
+
+    let sbatch = folder.file("sbatch", SBATCH);
+    let executable = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+    fs::set_permissions(&sbatch, executable).expect("ours");
+    let path = format!("{}:{}", folder.0.display(), std::env::var("PATH").expect("a path"));
+    let submit = |options: &[&str]| {
+        let mut submit = Command::new("bash");
+        submit.arg("jobs/submit.sh").args(options).current_dir(&folder.0).env("PATH", &path).output().expect("bash")
+    };
+    let submitted = submit(&["--partition", "long"]);
+    succeeds(&submitted);
+    assert_eq!(out(&submitted), "array 41, merging 42\n");
+    let calls = "--parsable --partition long array.sh\n--parsable --dependency=afterany:41 --partition long merge.sh\n";
+    assert_eq!(read(&folder, "jobs/calls"), calls);
+    for name in ["rows.jsonl", "results.csv"] {
+        assert!(read(&folder, &format!("a b/{name}")) == read(&folder, &format!("whole/{name}")), "{name}");
+    }
+    // Submitted again, nothing is computed again.
+    let before = read(&folder, "a b/shard-2/times.jsonl");
+    succeeds(&submit(&[]));
+    assert_eq!(read(&folder, "a b/shard-2/times.jsonl"), before);
+}
+
+#[test]
+fn a_folder_in_use_is_told_from_what_cannot_succeed_later() {
+    let folder = folder("busy");
+    fs::create_dir(folder.0.join("a")).expect("ours");
+    let lock = fs::File::create(folder.0.join("a/.lock")).expect("ours");
+    lock.lock().expect("nobody else has it");
+    let refused = sweep(&folder, &["--out", "a", "--resume"]);
+    assert_eq!(refused.status.code(), Some(75));
+    assert!(err(&refused).contains("another process is writing here"), "{}", err(&refused));
+    drop(lock);
+    succeeds(&sweep(&folder, &["--out", "a", "--resume"]));
+}
+
+#[test]
+fn a_header_of_more_points_than_a_sweep_can_have_is_damage() {
+    let folder = folder("vast");
+    succeeds(&sweep(&folder, &["--out", "a"]));
+    let rows = read(&folder, "a/rows.jsonl").replacen("\"points\":64", "\"points\":9000000000000000000", 1);
+    fs::write(folder.0.join("a/rows.jsonl"), rows).expect("ours");
+    let output = folder.run(&["merge", "a", "--out", "b"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(err(&output).contains("a/rows.jsonl, line 1: "), "{}", err(&output));
+}

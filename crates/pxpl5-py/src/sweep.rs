@@ -8,6 +8,7 @@ use pxpl5::sweep::{RunOptions, Shard, Store as NativeStore, Sweep as NativeSweep
 use pyo3::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// An experiment at every point of a space of settings.
 #[pyclass(frozen, module = "pxpl5._native")]
@@ -40,10 +41,12 @@ impl Sweep {
         python(py, &header)
     }
 
-    /// Simulates some points on this thread: for each its row as a line of JSON, and the seconds that it took.
-    fn rows(&self, py: Python<'_>, points: Vec<u64>) -> PyResult<Vec<(String, f64)>> {
+    /// Simulates some points on this thread until so many seconds are over, at least the first: for each its row as a line of JSON,
+    /// and the seconds that it took.
+    fn rows(&self, py: Python<'_>, points: Vec<u64>, seconds: f64) -> PyResult<Vec<(String, f64)>> {
         let sweep = Arc::clone(&self.sweep);
-        let rows = attended(py, None, false, move |_| sweep.rows(&points))?;
+        let at_most = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+        let rows = attended(py, None, false, move |_| sweep.rows(&points, at_most))?;
         Ok(rows.into_iter().map(|(row, seconds)| (line(&row), seconds)).collect())
     }
 
@@ -90,21 +93,20 @@ impl Store {
         Ok((0..points).filter(|point| !store.holds(*point)).collect())
     }
 
-    /// Keeps a row, given as a line of JSON, and the seconds that it took; whether it was new. A point that has a row keeps it.
+    /// Keeps a row, given as a line of JSON, and the seconds that it took; the number of its point. A point that has a row keeps it.
     ///
     /// Raises :class:`pxpl5.SweepError` for a line that is no row, and when it cannot be written.
-    fn append(&mut self, line: &str, seconds: f64) -> PyResult<bool> {
+    fn append(&mut self, line: &str, seconds: f64) -> PyResult<u64> {
         let row: SweepRow = serde_json::from_str(line).map_err(failed_sweep)?;
         let points = self.sweep.space().points();
         if row.point >= points {
             return Err(failed_sweep(format!("expected a point below {points}, found {}", row.point)));
         }
         let store = self.open_store()?;
-        if store.holds(row.point) {
-            return Ok(false);
+        if !store.holds(row.point) {
+            store.append(&row, seconds).map_err(failed_sweep)?;
         }
-        store.append(&row, seconds).map_err(failed_sweep)?;
-        Ok(true)
+        Ok(row.point)
     }
 
     /// Simulates all points that have no row yet, so many at a time on threads of this computer. After Ctrl-C the rows of finished

@@ -22,15 +22,18 @@
 //! Random sampling and adaptive refinement of the space; points of one sweep on several hosts other than by shards.
 
 mod chunk;
+mod cost;
 mod error;
 mod header;
 mod inputs;
+mod joined;
 mod merge;
 mod point;
 mod points;
 mod replacement;
 mod rows;
 mod run;
+mod scenes;
 mod shard;
 mod space;
 mod store;
@@ -46,13 +49,17 @@ pub use space::{Axis, MAX_POINTS, SweepSpace, Values};
 pub use store::{RESULTS_FILE, ROWS_FILE, Store, TIMES_FILE};
 
 use crate::experiment_file::{ExperimentFile, FileError};
+use scenes::Scenes;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// An experiment file with a space of settings.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     base: ExperimentFile,
     space: SweepSpace,
+    /// What its points have loaded so far; clones share it.
+    scenes: Arc<Scenes>,
 }
 
 impl Sweep {
@@ -72,7 +79,7 @@ impl Sweep {
     /// [`FileError`] when it has none, or one that makes no sense.
     pub fn new(base: ExperimentFile) -> Result<Self, FileError> {
         let space = SweepSpace::read(&base)?;
-        Ok(Self { base, space })
+        Ok(Self { base, space, scenes: Arc::default() })
     }
 
     /// The settings that all points share.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// Whether a point could be simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -39,28 +39,6 @@ pub struct SweepRow {
     pub error: Option<String>,
 }
 
-/// Scenes that were loaded, by name: points mostly share one.
-#[derive(Debug, Default)]
-pub(super) struct Scenes(Mutex<BTreeMap<String, Arc<Scene>>>);
-
-impl Scenes {
-    /// The scene of a plan, loaded once for all points that share it.
-    pub(super) fn scene_of(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
-        // Loading under the lock: nobody else should load the same.
-        let mut loaded = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let whole = match loaded.get(&plan.scene.name) {
-            Some(whole) => Arc::clone(whole),
-            None => {
-                let whole = Arc::new(plan.scene.load_whole()?);
-                loaded.insert(plan.scene.name.clone(), Arc::clone(&whole));
-                whole
-            }
-        };
-        drop(loaded);
-        plan.scene.prepared(whole)
-    }
-}
-
 impl Sweep {
     /// The experiment at a point.
     ///
@@ -75,9 +53,18 @@ impl Sweep {
         file.resolve()
     }
 
+    /// The scene of a point's plan, loaded once for all points that share it.
+    ///
+    /// # Errors
+    ///
+    /// As [`crate::experiment_file::SceneChoice::load`].
+    pub fn scene(&self, plan: &Plan) -> Result<Arc<Scene>, FileError> {
+        self.scenes.scene_of(plan)
+    }
+
     /// Simulates a point; what is wrong with it, even a panic, becomes its row.
-    pub(super) fn row(&self, point: u64, scenes: &Scenes) -> SweepRow {
-        let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point, scenes)));
+    pub(super) fn row(&self, point: u64) -> SweepRow {
+        let result = catch_unwind(AssertUnwindSafe(|| self.simulate(point)));
         let result = result.unwrap_or_else(|panic| Err(format!("a bug of the emulator: {}", panic_text(&*panic))));
         let parameters = self.space.settings(point).iter().map(|(path, value)| (path.clone(), json(value))).collect();
         let empty = SweepRow {
@@ -101,9 +88,9 @@ impl Sweep {
         }
     }
 
-    fn simulate(&self, point: u64, scenes: &Scenes) -> Result<Simulated, String> {
+    fn simulate(&self, point: u64) -> Result<Simulated, String> {
         let plan = self.plan(point).map_err(|error| error.to_string())?;
-        let scene = scenes.scene_of(&plan).map_err(|error| error.to_string())?;
+        let scene = self.scenes.scene_of(&plan).map_err(|error| error.to_string())?;
         let config_hash = plan.experiment(scene.clone()).config_hash().to_string();
         // Nobody looks at the pictures of a sweep, and pixels change no time.
         let results = plan.run(scene).map_err(|error| error.to_string())?;

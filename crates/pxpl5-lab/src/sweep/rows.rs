@@ -1,7 +1,7 @@
 //! A file of rows: where each point's row begins is held, the rows themselves are read when they are asked for.
 
 use super::points::Points;
-use super::{Header, Status, SweepError, SweepRow};
+use super::{Header, MAX_POINTS, Status, SweepError, SweepRow};
 use serde::de::DeserializeOwned;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -16,8 +16,6 @@ pub(super) struct RowFile {
     places: Vec<u64>,
     finished: u64,
     failed: Points,
-    /// Points that have a second, equal row.
-    repeated: Vec<u64>,
     /// Bytes up to the end of the last whole line.
     whole_bytes: u64,
 }
@@ -25,9 +23,12 @@ pub(super) struct RowFile {
 impl RowFile {
     /// Reads a file through; a last line without an end is passed over.
     pub(super) fn open(path: &Path) -> Result<Self, SweepError> {
-        let file = File::open(path).map_err(SweepError::io(path, "cannot be read"))?;
-        let mut found = Self { path: path.to_owned(), ..Self::default() };
-        found.scan(BufReader::new(file))?;
+        let mut scan = Scan::open(path)?;
+        let mut found = Self { path: path.to_owned(), header: scan.header.take(), ..Self::default() };
+        while let Some((row, byte)) = scan.next()? {
+            found.check_and_add(&row, byte)?;
+        }
+        found.whole_bytes = scan.whole_bytes;
         Ok(found)
     }
 
@@ -39,48 +40,14 @@ impl RowFile {
         }
     }
 
-    fn scan(&mut self, mut file: BufReader<File>) -> Result<(), SweepError> {
-        let mut line = Vec::new();
-        for number in 1.. {
-            line.clear();
-            file.read_until(b'\n', &mut line).map_err(SweepError::io(&self.path, "cannot be read"))?;
-            if line.last() != Some(&b'\n') {
-                break;
-            }
-            match &self.header {
-                None => self.header = Some(self.parsed(&line, number)?),
-                Some(header) => {
-                    let points = header.points;
-                    self.check_and_add(&self.parsed(&line, number)?, points, number)?;
-                }
-            }
-            self.whole_bytes += line.len() as u64;
-        }
-        Ok(())
-    }
-
-    fn check_and_add(&mut self, row: &SweepRow, points: u64, line: usize) -> Result<(), SweepError> {
-        let path = self.path.display().to_string();
-        if row.point >= points {
-            return Err(SweepError::Damaged { path, line, found: format!("point {} of {points}", row.point) });
-        }
+    fn check_and_add(&mut self, row: &SweepRow, byte: u64) -> Result<(), SweepError> {
         if !self.holds(row.point) {
-            self.add(row, self.whole_bytes);
-        } else if self.reader()?.row(row.point)?.as_ref() == Some(row) {
-            self.repeated.push(row.point);
-        } else {
+            self.add(row, byte);
+        } else if self.reader()?.row(row.point)?.as_ref() != Some(row) {
+            let path = self.path.display().to_string();
             return Err(SweepError::Contradiction { point: row.point, first: path.clone(), second: path });
         }
         Ok(())
-    }
-
-    /// What a line of the file holds.
-    fn parsed<T: DeserializeOwned>(&self, line: &[u8], number: usize) -> Result<T, SweepError> {
-        serde_json::from_slice(line).map_err(|error| SweepError::Damaged {
-            path: self.path.display().to_string(),
-            line: number,
-            found: format!("{} ({error})", excerpt(line)),
-        })
     }
 
     /// Notes that a point's row begins at a byte.
@@ -96,25 +63,12 @@ impl RowFile {
         }
     }
 
-    pub(super) fn path(&self) -> &Path {
-        &self.path
-    }
-
     pub(super) const fn header(&self) -> Option<&Header> {
         self.header.as_ref()
     }
 
-    /// Whether not even a header is there.
-    pub(super) const fn is_empty(&self) -> bool {
-        self.header.is_none()
-    }
-
     pub(super) const fn whole_bytes(&self) -> u64 {
         self.whole_bytes
-    }
-
-    pub(super) fn repeated(&self) -> &[u64] {
-        &self.repeated
     }
 
     /// How many points have a row.
@@ -145,6 +99,73 @@ impl RowFile {
     pub(super) fn reader(&self) -> Result<RowReader<'_>, SweepError> {
         let file = File::open(&self.path).map_err(SweepError::io(&self.path, "cannot be read"))?;
         Ok(RowReader { rows: self, file: BufReader::new(file), at: 0 })
+    }
+}
+
+/// A file of rows from its beginning to the end of its last whole line.
+#[derive(Debug)]
+pub(super) struct Scan {
+    path: PathBuf,
+    file: BufReader<File>,
+    text: Vec<u8>,
+    /// Number of the line that was read last, from 1.
+    line: usize,
+    points: u64,
+    /// None of a file in which not even the header is whole.
+    pub(super) header: Option<Header>,
+    /// Bytes up to the end of the last whole line that was read.
+    pub(super) whole_bytes: u64,
+}
+
+impl Scan {
+    /// Opens a file and reads its header.
+    pub(super) fn open(path: &Path) -> Result<Self, SweepError> {
+        let file = File::open(path).map_err(SweepError::io(path, "cannot be read"))?;
+        let (file, text) = (BufReader::new(file), Vec::new());
+        let mut scan = Self { path: path.to_owned(), file, text, line: 0, points: 0, header: None, whole_bytes: 0 };
+        if scan.read_line()? {
+            let header: Header = scan.parsed()?;
+            if header.points > MAX_POINTS {
+                return Err(scan.damaged(format!("a sweep of {} points, more than {MAX_POINTS}", header.points)));
+            }
+            scan.points = header.points;
+            scan.header = Some(header);
+        }
+        Ok(scan)
+    }
+
+    /// The next row, and the byte at which it begins.
+    pub(super) fn next(&mut self) -> Result<Option<(SweepRow, u64)>, SweepError> {
+        let begin = self.whole_bytes;
+        if !self.read_line()? {
+            return Ok(None);
+        }
+        let row: SweepRow = self.parsed()?;
+        if row.point >= self.points {
+            return Err(self.damaged(format!("point {} of {}", row.point, self.points)));
+        }
+        Ok(Some((row, begin)))
+    }
+
+    /// Reads a line; none that has no end.
+    fn read_line(&mut self) -> Result<bool, SweepError> {
+        self.text.clear();
+        self.file.read_until(b'\n', &mut self.text).map_err(SweepError::io(&self.path, "cannot be read"))?;
+        let is_whole = self.text.last() == Some(&b'\n');
+        if is_whole {
+            self.line += 1;
+            self.whole_bytes += self.text.len() as u64;
+        }
+        Ok(is_whole)
+    }
+
+    /// What the line holds.
+    fn parsed<T: DeserializeOwned>(&self) -> Result<T, SweepError> {
+        serde_json::from_slice(&self.text).map_err(|error| self.damaged(format!("{} ({error})", excerpt(&self.text))))
+    }
+
+    fn damaged(&self, found: String) -> SweepError {
+        SweepError::Damaged { path: self.path.display().to_string(), line: self.line, found }
     }
 }
 

@@ -1,9 +1,8 @@
 //! Simulating the points of a sweep on all cores.
 
-use super::point::{Scenes, SweepRow};
 use super::points::Points;
 use super::shard::Shard;
-use super::{Store, Sweep, SweepError};
+use super::{Store, Sweep, SweepError, SweepRow};
 use crossbeam_channel::{Sender, bounded};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
@@ -38,7 +37,6 @@ pub fn run(
         finished: store.held(),
         next: AtomicU64::new(0),
         stop: AtomicBool::new(false),
-        scenes: Scenes::default(),
     };
     let (sender, rows) = bounded(WAITING_ROWS);
     thread::scope(|scope| {
@@ -68,7 +66,6 @@ struct Work<'a> {
     /// Number of the next point that somebody may take.
     next: AtomicU64,
     stop: AtomicBool,
-    scenes: Scenes,
 }
 
 impl Work<'_> {
@@ -77,7 +74,7 @@ impl Work<'_> {
         while !self.stop.load(Ordering::Relaxed) {
             let Some(point) = self.take() else { break };
             let begin = Instant::now();
-            let row = self.sweep.row(point, &self.scenes);
+            let row = self.sweep.row(point);
             if rows.send((row, begin.elapsed().as_secs_f64())).is_err() {
                 break;
             }
