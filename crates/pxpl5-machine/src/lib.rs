@@ -8,7 +8,9 @@
 //!
 //! **Not here:** the computer that the simulation runs on. Clocks, threads and files are handed in ([`PixelWorker`]).
 
+mod board;
 mod config;
+mod event;
 mod host_line;
 mod machine;
 mod observation;
@@ -19,6 +21,7 @@ mod record;
 mod savings;
 mod traffic;
 
+pub use board::{Board, Happening};
 pub use config::{ConfigError, FirmwareTable, MachineConfig, NamedTable, Parameter};
 pub use host_line::HostLine;
 pub use machine::{DEADLOCK_TICKS, Machine, RunError};
