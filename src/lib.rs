@@ -92,6 +92,13 @@ pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmOf, results, timeline, 
 pub use pxpl5_wire::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 pub use slats::CopySchedule;
 
+/// What somebody who looks at boards while they work sees: see [`Stepper`].
+pub mod looks {
+    pub use pxpl5_gp::{Account, BreakpointHit, GpBoard, GpLook, Priority, Processor, ProgramLook, WaitingMail};
+    pub use pxpl5_renderer::{Lanes, PixelArray, Plane, RendererLook};
+    pub use pxpl5_ring::{OnChannel, WaitReason, WaitingMessage};
+}
+
 /// What a pipeline of one's own is written with: firmware on graphics processors, display lists, commands for renderers, and
 /// what travels on the ring.
 pub mod firmware {

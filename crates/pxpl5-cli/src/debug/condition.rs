@@ -144,9 +144,13 @@ mod tests {
 
     #[test]
     fn comparisons_hold_at_their_bounds_as_they_say() {
-        for (relation, holds) in
-            [("<", [true, false, false]), ("<=", [true, true, false]), ("=", [false, true, false]), (">=", [false, true, true]), (">", [false, false, true])]
-        {
+        for (relation, holds) in [
+            ("<", [true, false, false]),
+            ("<=", [true, true, false]),
+            ("=", [false, true, false]),
+            (">=", [false, true, true]),
+            (">", [false, false, true]),
+        ] {
             let comparison = Comparison::parse(&[relation, "5"]).expect("known");
             assert_eq!([4, 5, 6].map(|value| comparison.holds(value)), holds, "{relation}");
         }
@@ -154,7 +158,9 @@ mod tests {
 
     #[test]
     fn what_is_no_condition_is_refused() {
-        for wrong in ["", "fifo", "fifo 0", "fifo 0 ~ 3", "channels >= x", "waits gp 1", "waits gp 1 for", "inbox 3 > 1"] {
+        for wrong in
+            ["", "fifo", "fifo 0", "fifo 0 ~ 3", "channels >= x", "waits gp 1", "waits gp 1 for", "inbox 3 > 1"]
+        {
             let words: Vec<&str> = wrong.split_whitespace().collect();
             assert!(Condition::parse(&words).is_err(), "{wrong}");
         }

@@ -59,6 +59,11 @@ pub(super) fn board<'a>(words: &'a [&'a str]) -> Result<(Board, &'a [&'a str]), 
     Ok((first.parse()?, rest))
 }
 
+/// An address: `0x` and hexadecimal digits.
+pub(super) fn address(text: &str) -> Option<u32> {
+    u32::from_str_radix(text.strip_prefix("0x")?, 16).ok()
+}
+
 /// A time in milliseconds to the nanosecond, as panes have it.
 pub(super) fn ms(at: Time) -> String {
     format!("{}.{:06} ms", at.0 / 1_000_000_000, at.0 % 1_000_000_000 / 1_000)
