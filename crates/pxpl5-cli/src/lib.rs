@@ -206,7 +206,6 @@ mod tests {
             (include_str!("../../../docs/guide/head-to-light.md"), 5),
             (include_str!("../../../docs/guide/figures.md"), 5),
             (include_str!("../../../docs/guide/assembler.md"), 3),
-            (include_str!("../../../docs/guide/debugger.md"), 3),
             (include_str!("../../../docs/guide/address-recalculation.md"), 5),
             (include_str!("../../../README.md"), 7),
         ] {

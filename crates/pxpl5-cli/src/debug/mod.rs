@@ -22,10 +22,10 @@ use std::path::PathBuf;
 #[derive(Args, Debug)]
 #[command(after_help = "Examples:
   pxpl5 debug --pipeline slats --scene mig --triangles 100
-  pxpl5 debug --pipeline slats --scene mig --do \"run to field 4; run until fifo 0 >= 200; show boards\"
+  pxpl5 debug --pipeline slats --scene mig --do help
   pxpl5 debug experiments/figure-07.toml --level cycle --do-file session.txt
 
-Type help for the commands; docs/guide/debugger.md explains them.")]
+docs/guide/debugger.md explains the commands.")]
 pub(crate) struct DebugArgs {
     #[command(flatten)]
     settings: SettingArgs,
