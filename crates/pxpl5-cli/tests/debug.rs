@@ -75,13 +75,22 @@ fn a_script_runs_to_times_fields_boards_and_conditions() {
     assert_eq!(text.lines().filter(|line| line.starts_with("> ")).count(), 7, "{text}");
 }
 
+/// A snapshot has the hash of what happened before its field, written by a run in one go.
 #[test]
-fn the_trace_at_the_end_is_that_of_the_run() {
-    let run = command(&[&["run"], &SLATS[1..], &["--json"]].concat()).output().expect("it starts");
-    let report: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
-    let hash = report["trace_hash"].as_str().expect("a hash");
-    let text = out(&session("step 500; run to field 5; show boards; seen left; enabled 0; run; show time"));
-    assert!(text.contains(&format!("trace   {hash}\n")), "{hash}: {text}");
+fn the_trace_is_that_of_the_run_however_often_somebody_looked() {
+    let folder = Folder::new("debug-trace");
+    let saved = folder.run(&[&["run"], &SLATS[1..], &["--save-at", "5", "--save", "s.json", "--quiet"]].concat());
+    assert!(saved.status.success(), "{}", err(&saved));
+    let snapshot = std::fs::read_to_string(folder.0.join("s.json")).expect("it was written");
+    let snapshot: serde_json::Value = serde_json::from_str(&snapshot).expect("JSON");
+    let line = format!("trace   {}\n", snapshot["trace_hash"].as_str().expect("a hash"));
+    for commands in [
+        "run to field 5; show time",
+        "step 500; next gp 0; show boards; run until region; seen left; enabled 0; step 3 lines; run to field 5; show time",
+    ] {
+        let text = out(&session(commands));
+        assert!(text.contains(&line), "{line}: {text}");
+    }
 }
 
 #[test]

@@ -56,6 +56,7 @@ function build() {
     machine?.free();
     machine = next;
     at("error").hidden = true;
+    at("run").inert = false;
   } catch (error) {
     at("error").textContent = error.message;
     at("error").hidden = false;
