@@ -18,61 +18,15 @@ use crate::observation::{Arrival, Swap};
 use crate::pixels::PixelWorker;
 use crate::ports::Ports;
 use crate::record::Record;
+use crate::run_error::RunError;
 use crate::savings::Saving;
 use pxpl5_display::{DisplayContext, DisplayEvent, DisplayOutput};
-use pxpl5_gp::{BreakpointHit, Fault, Firmware, Gp, GpBoard, GpEvent, GpOutput, Mark, Priority};
+use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, Mark, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
 use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time};
 use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, SurfaceId};
 use std::collections::{BTreeMap, BTreeSet};
-use thiserror::Error;
-
-/// Why a run ended early.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum RunError {
-    /// A program stopped: something did not fit, or a message made no sense.
-    #[error("{board} stopped at {time}: {fault}")]
-    Fault {
-        /// The board's name.
-        board: String,
-        /// When it stopped.
-        time: Time,
-        /// What it could not do.
-        fault: Fault,
-    },
-    /// Nothing can happen any more but ticks of the displays.
-    #[error("nothing can happen any more at {time}:{}", waits(blocked))]
-    Deadlock {
-        /// When that was noticed.
-        time: Time,
-        /// Who waits for what.
-        blocked: Vec<Blocked>,
-    },
-    /// The ring could not carry a message.
-    #[error("ring, at {time}: {reason}")]
-    Ring {
-        /// When it was asked to.
-        time: Time,
-        /// What is wrong with the message.
-        reason: String,
-    },
-}
-
-impl RunError {
-    /// When the run ended.
-    #[must_use]
-    pub const fn time(&self) -> Time {
-        match self {
-            Self::Fault { time, .. } | Self::Deadlock { time, .. } | Self::Ring { time, .. } => *time,
-        }
-    }
-}
-
-fn waits(blocked: &[Blocked]) -> String {
-    blocked.iter().map(|b| format!(" {} waits for {};", b.board, b.waits_for)).collect()
-}
 
 /// A whole machine at work: its boards and what was observed of them ([`Record`]), programs, and what is going to happen.
 #[derive(Debug)]

@@ -185,7 +185,7 @@ pub(super) fn ring(stepper: &Stepper) -> String {
 /// Stages that are shown.
 const STAGES: usize = 12;
 
-/// The last stages of pictures that have begun.
+/// The last stages of pictures that have begun, the newest first.
 pub(super) fn timeline(stepper: &Stepper) -> String {
     let record = stepper.record();
     let mut stages = record.stages();
@@ -193,7 +193,7 @@ pub(super) fn timeline(stepper: &Stepper) -> String {
     stages.sort_by_key(|stage| stage.begin);
     let first = stages.len().saturating_sub(STAGES);
     let mut text = String::new();
-    for stage in &stages[first..] {
+    for stage in stages[first..].iter().rev() {
         let surface = stage.surface.and_then(|id| record.surface(id)).map_or("", |surface| surface.label);
         let end = stage.end.map_or_else(|| "goes on".to_owned(), ms);
         let name = format!("{:?}", stage.stage).to_uppercase();
