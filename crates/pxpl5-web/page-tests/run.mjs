@@ -137,7 +137,7 @@ const TESTS = {
     const names = await run("return [...document.querySelectorAll('[name=pipeline] option')].map((option) => option.value)");
     for (const name of names) {
       const display = name.startsWith("arp") ? "arp" : "ntsc";
-      await open(`#pipeline=${name}&scene=full-screen:2&display=${display}&fields=60&at=250000000000`);
+      await open(`#pipeline=${name}&scene=aircraft&display=${display}&fields=60&at=300000000000`);
       assert.equal(await run("return document.getElementById('error').hidden"), true, `${name}: ${await text("error")}`);
       const colours = await lit();
       assert.ok(colours > 1, `${name}: ${colours} colours`);

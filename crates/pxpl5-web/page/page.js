@@ -232,7 +232,7 @@ function open() {
 }
 
 addEventListener("hashchange", open);
-await init();
+await init({ module_or_path: new URL("pxpl5_web_bg.wasm", import.meta.url) });
 const all = JSON.parse(catalog());
 choices("pipeline", all.pipelines);
 choices("scene", all.scenes);
