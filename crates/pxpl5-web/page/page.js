@@ -31,7 +31,7 @@ function choices(name, all) {
 function fromAddress() {
   const given = new URLSearchParams(location.hash.slice(1));
   const known = KEYS.filter((key) => given.get(key));
-  return known.length ? Object.fromEntries(known.map((key) => [key, given.get(key)])) : { ...FIRST };
+  return { ...FIRST, ...Object.fromEntries(known.map((key) => [key, given.get(key)])) };
 }
 
 function intoForm() {

@@ -25,7 +25,7 @@ fn span(text: &str) -> Option<Span> {
         return None;
     }
     let whole: u64 = whole.parse().ok()?;
-    let part: u64 = format!("{part:0<places$}").parse().or_else(|_| if places == 0 { Ok(0) } else { Err(()) }).ok()?;
+    let part: u64 = if places == 0 { 0 } else { format!("{part:0<places$}").parse().ok()? };
     whole.checked_mul(unit)?.checked_add(part).filter(|ps| *ps < u64::MAX / 4).map(Span)
 }
 
