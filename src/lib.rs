@@ -71,8 +71,8 @@ pub use pxpl5_lab::{
     readings, registry, rig, suitability, sweep, tracking_parameters,
 };
 pub use pxpl5_machine::{
-    Arrival, ConfigError, LateRegion, Machine, MachineConfig, Observation, PRESETS, Parameter, Ports, Preset, Record,
-    RunError, Saving, StageSpan, Swap, Traffic, Transfer,
+    Arrival, Board, ConfigError, Happening, LateRegion, Machine, MachineConfig, Observation, PRESETS, Parameter, Ports,
+    Preset, Record, RunError, Saving, StageSpan, Swap, Traffic, Transfer,
 };
 pub use pxpl5_measure::{
     Budget, ErrorCauses, ErrorPart, FieldError, HeadReport, LATENCY_PARTS, LatencyCurve, LatencyParts, Measure,
@@ -82,15 +82,22 @@ pub use pxpl5_measure::{
 pub use pxpl5_run::{
     Aim, BareHost, Cause, Code, DefinedStatistics, DuePictures, Estimates, Estimator, Experiment, ExperimentError,
     FIELDS_RANGE, FIELDS_WITH_HEAD, Fingerprint, FinishedRegions, Frameless, Goal, Head, HeadError, HeadViews, Host,
-    Interpolation, Jitp, Keep, Key, KeyValue, KeyValues, Level, LimitCriterion, Outcome, PictureEnd, PictureTimes,
-    Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry, RenderingControl, Sampled, Samples, Setup,
-    Slats, Source, Statistics, Summary, TestScene, Viewpoint, WARM_UP_PERIODS, WARM_UP_PICTURES, WINDOW_DEFINITION,
-    out_of_range,
+    Interpolation, Jitp, Keep, Key, KeyValue, KeyValues, Level, LimitCriterion, Outcome, Pause, PictureEnd,
+    PictureTimes, Pipeline, PipelineEntry, PipelineSettings, Pixels, Raster, Registry, RenderingControl, Sampled,
+    Samples, Setup, Slats, Source, Statistics, Stepper, Summary, TestScene, Viewpoint, WARM_UP_PERIODS,
+    WARM_UP_PICTURES, WINDOW_DEFINITION, out_of_range,
 };
 pub use pxpl5_sim::{Span, Time, TraceHash};
 pub use pxpl5_views::{FILM_PERIODS, Film, FilmError, FilmOf, results, timeline, trace_export};
 pub use pxpl5_wire::{Eye, PeriodNumber, PictureNumber, SurfaceId, ViewNumber};
 pub use slats::CopySchedule;
+
+/// What somebody who looks at boards while they work sees: see [`Stepper`].
+pub mod looks {
+    pub use pxpl5_gp::{Account, BreakpointHit, GpBoard, GpLook, Priority, Processor, ProgramLook, WaitingMail};
+    pub use pxpl5_renderer::{Lanes, PixelArray, Plane, RendererLook};
+    pub use pxpl5_ring::{OnChannel, WaitReason, WaitingMessage};
+}
 
 /// What a pipeline of one's own is written with: firmware on graphics processors, display lists, commands for renderers, and
 /// what travels on the ring.

@@ -42,7 +42,7 @@ const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     ("views", &["pxpl5-views"], &["ground", "boards", "world", "machine", "run", "measure"]),
     (
         "front",
-        &["pxpl5", "pxpl5-cli", "pxpl5-py"],
+        &["pxpl5", "pxpl5-cli", "pxpl5-py", "pxpl5-web"],
         &["ground", "boards", "geometry", "firmware", "world", "machine", "run", "measure", "lab", "views", "front"],
     ),
 ];

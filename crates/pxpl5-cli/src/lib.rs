@@ -12,6 +12,7 @@ mod budget;
 mod check;
 mod compare;
 mod completions;
+mod debug;
 mod demo;
 mod error;
 mod estimate;
@@ -101,6 +102,8 @@ enum Command {
     Report(report::ReportArgs),
     /// Run one experiment and write a trace of everything that happened.
     Trace(trace::TraceArgs),
+    /// Run one experiment in pieces and look at its boards between them.
+    Debug(debug::DebugArgs),
     /// Write what a viewer sees as an animated PNG.
     Film(film::FilmArgs),
     /// Draw a scene as slices of a spinning volumetric display.
@@ -149,6 +152,7 @@ fn run(command: Option<Command>) -> Result<(), CliError> {
         Some(Command::Rig(args)) => rig::run(args),
         Some(Command::Report(args)) => report::run(args),
         Some(Command::Trace(args)) => trace::run(args),
+        Some(Command::Debug(args)) => debug::run(args),
         Some(Command::Film(args)) => film::run(args),
         Some(Command::Volume(args)) => volume::run(args),
         Some(Command::Arp(args)) => arp::run(args),

@@ -126,6 +126,25 @@ pub trait Display: Any + Debug + Send + Sync {
         self.seen(surface, self.period_at(time))
     }
 
+    /// What stands before a viewer while the simulation is at `now`: what has been lit in the period that goes on, and what still
+    /// stands from before; black where nothing was lit yet. Looking changes nothing.
+    ///
+    /// Unless a display says it better, the buffer that is shown counts as filled when its period began, which is so of double
+    /// buffers.
+    fn seen_so_far(&self, surface: usize, now: Time) -> Option<RgbImage> {
+        let period = self.period_at(now);
+        let size = self.surfaces().get(surface)?;
+        let before = self.last_seen().and_then(|last| self.seen(surface, last));
+        let mut screen = before.unwrap_or_else(|| RgbImage::new(size.width, size.height));
+        let shown = self.shown(surface)?;
+        for (x, y, pixel) in screen.enumerate_pixels_mut() {
+            if self.lights(surface, x, y, period).is_some_and(|at| at <= now) {
+                *pixel = *shown.get_pixel(x, y);
+            }
+        }
+        Some(screen)
+    }
+
     /// The last period that [`Display::seen`] knows.
     fn last_seen(&self) -> Option<PeriodNumber>;
 

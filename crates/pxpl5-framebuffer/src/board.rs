@@ -102,6 +102,15 @@ impl FrameBuffer {
         self.seen.back().cloned()
     }
 
+    /// The field that is being scanned, as far as the beam has come at `now`: what has not arrived by then is not in it. `None` before
+    /// the first retrace.
+    #[must_use]
+    pub fn scanned_so_far(&self, now: Time) -> Option<SeenField> {
+        let buffer = self.displayed;
+        let regions: Regions = self.buffers[usize::from(buffer)].regions();
+        Some(SeenField { field: self.scanning?, buffer, ends_at: now, video: self.video, word: self.word, regions })
+    }
+
     /// The whole displayed buffer with everything that has arrived.
     #[must_use]
     pub fn displayed_frame(&self) -> BufferContents {

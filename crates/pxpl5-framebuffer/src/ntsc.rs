@@ -126,6 +126,15 @@ impl Display for NtscDisplay {
         Some(seen_at(&self.video, time, &fields))
     }
 
+    fn seen_so_far(&self, surface: usize, now: Time) -> Option<RgbImage> {
+        let board = self.boards.get(surface)?;
+        let period = self.video.field_at(now);
+        let oldest = period.before(2).unwrap_or(PeriodNumber::FIRST);
+        let before = oldest.until(period).filter_map(|field| board.seen(field));
+        let fields: Vec<SeenField> = before.chain(board.scanned_so_far(now)).collect();
+        Some(seen_at(&self.video, now, &fields))
+    }
+
     fn last_seen(&self) -> Option<PeriodNumber> {
         Some(self.boards.first()?.last_seen()?.field())
     }

@@ -2,14 +2,15 @@
 
 use crate::cpu::{Cpu, Priority};
 use crate::firmware::{Cause, ChainLink, Fault, Firmware, Gp, Received, Shared, Wait};
+use crate::look::GpLook;
 use crate::memory::Memory;
 use crate::probe::Mark;
-use crate::processor::{CodeVersion, Processor};
+use crate::processor::{BreakpointHit, CodeVersion, Processor};
 use crate::timing::GpTiming;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
 use pxpl5_wire::{Message, NodeId, PeriodNumber};
 use std::cell::RefCell;
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::fmt;
 use std::rc::Rc;
 use std::task::{Context as TaskContext, Poll, Waker};
@@ -275,6 +276,30 @@ impl GpBoard {
     #[must_use]
     pub fn memory_peak_bytes(&self) -> u64 {
         self.shared.borrow().memory.peak()
+    }
+
+    /// What the board does at an instant that is not before the last event. Looking changes nothing.
+    #[must_use]
+    pub fn look(&self, now: Time) -> GpLook {
+        GpLook::of(&self.shared.borrow(), self.tasks.iter().map(|task| task.priority), now)
+    }
+
+    /// Shows somebody the processor, where the time of work comes from code.
+    pub fn with_processor<T>(&self, look: impl FnOnce(&Processor) -> T) -> Option<T> {
+        self.shared.borrow().processor.as_deref().map(look)
+    }
+
+    /// Has calls keep what they find at some addresses of code ([`Processor::break_at`]); without a processor nothing happens.
+    pub fn break_at(&mut self, addresses: &BTreeSet<u32>) {
+        if let Some(processor) = &mut self.shared.borrow_mut().processor {
+            processor.break_at(addresses.clone());
+        }
+    }
+
+    /// Breakpoints that were met since the last call of this.
+    #[must_use]
+    pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
+        self.shared.borrow_mut().processor.as_mut().map(|processor| processor.take_hits()).unwrap_or_default()
     }
 
     /// What the board waits for.

@@ -60,6 +60,15 @@ impl Cpu {
         Some(since + self.remaining[priority as usize]?)
     }
 
+    /// What is left at an instant of the work of a priority; `None` where it has none.
+    pub(crate) fn left(&self, priority: Priority, now: Time) -> Option<Span> {
+        let left = self.remaining[priority as usize]?;
+        match self.running {
+            Some((running, since)) if running == priority => Some(Span(left.0.saturating_sub(now.since(since).0))),
+            _ => Some(left),
+        }
+    }
+
     /// Time spent so far.
     pub(crate) const fn busy(&self) -> Span {
         self.busy

@@ -34,6 +34,7 @@
 mod board;
 mod cpu;
 mod firmware;
+mod look;
 mod memory;
 mod probe;
 mod processor;
@@ -43,8 +44,9 @@ mod work;
 pub use board::{GpBoard, GpEvent, GpOutput, PLACE_BITS};
 pub use cpu::Priority;
 pub use firmware::{Fault, Firmware, Gp, Received, Ticket};
+pub use look::{GpLook, ProgramLook, WaitingMail};
 pub use memory::{Account, Memory, OutOfMemory};
 pub use probe::{Mark, Stage, StageEdge};
-pub use processor::{CodeVersion, Processor, ProcessorFault};
+pub use processor::{BreakpointHit, CodeVersion, KEPT_HITS, Processor, ProcessorFault};
 pub use timing::{GpTiming, HostTiming};
 pub use work::Work;

@@ -20,6 +20,10 @@ pub enum Account {
 impl Account {
     const SLOTS: usize = 6;
 
+    /// Every account, of both bin contexts.
+    pub const ALL: [Self; Self::SLOTS] =
+        [Self::Program, Self::DisplayList, Self::Commands(0), Self::Commands(1), Self::Bins(0), Self::Bins(1)];
+
     const fn slot(self) -> usize {
         match self {
             Self::Program => 0,
@@ -106,6 +110,12 @@ impl Memory {
     #[must_use]
     pub const fn room_for_bins(&self, context: u8) -> u64 {
         self.bins.saturating_sub(self.used[Account::Bins(context ^ 1).slot()])
+    }
+
+    /// Bytes in use by one account.
+    #[must_use]
+    pub const fn used_by(&self, account: Account) -> u64 {
+        self.used[account.slot()]
     }
 
     /// Bytes in use by all accounts.

@@ -1,9 +1,10 @@
 //! The board's i860 with its memory, where programs run and clocks are counted.
 
-use i860::{Cpu, Program, Ram, RunEnd, Trap};
+use i860::{Cpu, Program, Ram, RunEnd, State, Trap};
 use pxpl5_sim::Span;
 use pxpl5_wire::{NodeId, Word};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -114,7 +115,29 @@ pub struct Processor {
     loaded: Option<Arc<Program>>,
     /// Places of the output of both bin contexts.
     outputs: [Option<Range<u32>>; 2],
+    /// Addresses whose execution somebody wants to see, and what was seen since he last looked.
+    breakpoints: BTreeSet<u32>,
+    hits: Vec<BreakpointHit>,
 }
+
+/// An instruction at a breakpoint, about to be executed.
+///
+/// A call runs from its begin to its end at one instant of the board, which spends its clocks afterwards; so what a hit shows is kept,
+/// and the call goes on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BreakpointHit {
+    /// The port of the board.
+    pub gp: NodeId,
+    /// Address of the instruction.
+    pub address: u32,
+    /// Time since the begin of the call.
+    pub into_call: Span,
+    /// Registers, control registers and pipes.
+    pub state: Box<State>,
+}
+
+/// Hits that are kept until somebody looks; further ones of the same calls are not.
+pub const KEPT_HITS: usize = 64;
 
 impl fmt::Debug for Processor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -130,7 +153,17 @@ impl Processor {
     #[must_use]
     pub fn new(gp: NodeId, memory_bytes: u64, version: CodeVersion, core: i860::Config) -> Self {
         let ram = Ram::new(0, memory_bytes as usize);
-        Self { gp, version, core, cpu: Cpu::new(core), ram, loaded: None, outputs: [None, None] }
+        Self {
+            gp,
+            version,
+            core,
+            cpu: Cpu::new(core),
+            ram,
+            loaded: None,
+            outputs: [None, None],
+            breakpoints: BTreeSet::new(),
+            hits: Vec::new(),
+        }
     }
 
     /// Resets it to a processor that memoises nothing; every time stays the same.
@@ -225,11 +258,61 @@ impl Processor {
         for (number, value) in registers {
             state.r[*number] = *value;
         }
-        match self.cpu.run(&mut self.ram, Some(RETURN), budget) {
+        let end = if self.breakpoints.is_empty() {
+            self.cpu.run(&mut self.ram, Some(RETURN), budget)
+        } else {
+            self.run_watched(begin, budget)
+        };
+        match end {
             RunEnd::Stopped => Ok(Self::CLOCK * (self.cpu.clocks() - begin)),
             RunEnd::Trapped(trap) => Err(ProcessorFault::Trap { gp, trap }),
             RunEnd::Exhausted => Err(ProcessorFault::Endless { gp, address: self.cpu.state.pc, budget }),
         }
+    }
+
+    /// Runs one instruction (or pair, or branch with its slot) after the other, and keeps what it finds at breakpoints.
+    fn run_watched(&mut self, begin: u64, budget: u64) -> RunEnd {
+        let last = self.cpu.instructions().saturating_add(budget);
+        loop {
+            let address = self.cpu.state.pc;
+            if self.breakpoints.contains(&address) && self.hits.len() < KEPT_HITS {
+                let into_call = Self::CLOCK * (self.cpu.clocks() - begin);
+                let state = Box::new(self.cpu.state.clone());
+                self.hits.push(BreakpointHit { gp: self.gp, address, into_call, state });
+            }
+            match self.cpu.run(&mut self.ram, Some(RETURN), 1.min(last.saturating_sub(self.cpu.instructions()))) {
+                RunEnd::Exhausted if self.cpu.instructions() < last => {}
+                end => return end,
+            }
+        }
+    }
+
+    /// Has calls keep what they find at some addresses, instead of those given before. No clock changes.
+    pub fn break_at(&mut self, addresses: BTreeSet<u32>) {
+        self.breakpoints = addresses;
+    }
+
+    /// Hits since the last call of this, at most [`KEPT_HITS`].
+    pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
+        std::mem::take(&mut self.hits)
+    }
+
+    /// What the last call left in the registers; its program counter stands behind the return.
+    #[must_use]
+    pub const fn state(&self) -> &State {
+        &self.cpu.state
+    }
+
+    /// Clocks of all calls so far.
+    #[must_use]
+    pub fn clocks(&self) -> u64 {
+        self.cpu.clocks()
+    }
+
+    /// The program that was called last.
+    #[must_use]
+    pub const fn program(&self) -> Option<&Arc<Program>> {
+        self.loaded.as_ref()
     }
 
     fn load(&mut self, program: &Arc<Program>) -> Result<(), ProcessorFault> {

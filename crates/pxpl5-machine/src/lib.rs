@@ -8,7 +8,9 @@
 //!
 //! **Not here:** the computer that the simulation runs on. Clocks, threads and files are handed in ([`PixelWorker`]).
 
+mod board;
 mod config;
+mod event;
 mod host_line;
 mod machine;
 mod observation;
@@ -16,16 +18,19 @@ mod pixels;
 mod ports;
 mod preset;
 mod record;
+mod run_error;
 mod savings;
 mod traffic;
 
+pub use board::{Board, Happening};
 pub use config::{ConfigError, FirmwareTable, MachineConfig, NamedTable, Parameter};
 pub use host_line::HostLine;
-pub use machine::{DEADLOCK_TICKS, Machine, RunError};
+pub use machine::{DEADLOCK_TICKS, Machine};
 pub use observation::{Arrival, LateRegion, Observation, StageSpan, Swap};
 pub use pixels::{PixelWorker, SameThread};
 pub use ports::Ports;
 pub use preset::{PRESETS, Preset};
 pub use record::Record;
+pub use run_error::RunError;
 pub use savings::Saving;
 pub use traffic::{Traffic, Transfer};

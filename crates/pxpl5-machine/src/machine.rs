@@ -10,85 +10,23 @@
 //!                   +---- tick and swap status -----------+  (of the first display, to the first GP)
 //! ```
 
+use crate::board::{Board, Happening};
 use crate::config::{ConfigError, MachineConfig};
+use crate::event::Event;
 use crate::host_line::HostLine;
 use crate::observation::{Arrival, Swap};
 use crate::pixels::PixelWorker;
 use crate::ports::Ports;
 use crate::record::Record;
+use crate::run_error::RunError;
 use crate::savings::Saving;
 use pxpl5_display::{DisplayContext, DisplayEvent, DisplayOutput};
-use pxpl5_gp::{Fault, Firmware, Gp, GpBoard, GpEvent, GpOutput, Mark, Priority};
+use pxpl5_gp::{BreakpointHit, Firmware, Gp, GpBoard, GpEvent, GpOutput, Mark, Priority};
 use pxpl5_renderer::{ArrayPool, Layout, Renderer, RendererEvent, RendererOutput};
 use pxpl5_ring::{Request, Ring, RingEvent, RingOutput};
 use pxpl5_sim::{Blocked, Clock, Context, Cycles, EventQueue, Phase, Span, Time};
 use pxpl5_wire::{Body, Message, NodeId, PeriodNumber, RegionPixels, SurfaceId};
-use std::collections::BTreeMap;
-use thiserror::Error;
-
-/// An event of any board.
-#[derive(Debug)]
-enum Event {
-    Ring(RingEvent),
-    /// What the ring brings to a board.
-    FromRing(RingOutput),
-    Gp(usize, GpEvent),
-    Renderer(usize, RendererEvent),
-    /// What the host says to the first display past the ring.
-    HostLine(usize),
-    /// What a display scheduled for itself.
-    Display(usize, DisplayEvent),
-    /// The tick of a display's clock that begins a period.
-    Tick(usize, PeriodNumber),
-    /// An edge of the boards' clock, where every one of them counts.
-    Edge,
-}
-
-/// Why a run ended early.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum RunError {
-    /// A program stopped: something did not fit, or a message made no sense.
-    #[error("{board} stopped at {time}: {fault}")]
-    Fault {
-        /// The board's name.
-        board: String,
-        /// When it stopped.
-        time: Time,
-        /// What it could not do.
-        fault: Fault,
-    },
-    /// Nothing can happen any more but ticks of the displays.
-    #[error("nothing can happen any more at {time}:{}", waits(blocked))]
-    Deadlock {
-        /// When that was noticed.
-        time: Time,
-        /// Who waits for what.
-        blocked: Vec<Blocked>,
-    },
-    /// The ring could not carry a message.
-    #[error("ring, at {time}: {reason}")]
-    Ring {
-        /// When it was asked to.
-        time: Time,
-        /// What is wrong with the message.
-        reason: String,
-    },
-}
-
-impl RunError {
-    /// When the run ended.
-    #[must_use]
-    pub const fn time(&self) -> Time {
-        match self {
-            Self::Fault { time, .. } | Self::Deadlock { time, .. } | Self::Ring { time, .. } => *time,
-        }
-    }
-}
-
-fn waits(blocked: &[Blocked]) -> String {
-    blocked.iter().map(|b| format!(" {} waits for {};", b.board, b.waits_for)).collect()
-}
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A whole machine at work: its boards and what was observed of them ([`Record`]), programs, and what is going to happen.
 #[derive(Debug)]
@@ -288,18 +226,38 @@ impl Machine {
     ///
     /// [`RunError`]; everything observed before it is kept.
     pub fn run_until(&mut self, end: Time) -> Result<(), RunError> {
-        while self.queue.next_time().is_some_and(|time| time < end) {
-            let Some((now, _, event)) = self.queue.next_event() else { break };
-            self.handle(now, event);
-            if let Some(failure) = &self.failure {
-                return Err(failure.clone());
-            }
-        }
+        while self.step_before(end)?.is_some() {}
         Ok(())
     }
 
+    /// Handles the next event, if it is before an instant, and gives its time.
+    ///
+    /// # Errors
+    ///
+    /// [`RunError`], of this event or of one before: a machine that has failed goes on no more.
+    pub fn step_before(&mut self, end: Time) -> Result<Option<Time>, RunError> {
+        if let Some(failure) = &self.failure {
+            return Err(failure.clone());
+        }
+        if self.queue.next_time().is_none_or(|time| time >= end) {
+            return Ok(None);
+        }
+        let Some((now, _, event)) = self.queue.next_event() else { return Ok(None) };
+        self.handle(now, event);
+        match &self.failure {
+            Some(failure) => Err(failure.clone()),
+            None => Ok(Some(now)),
+        }
+    }
+
+    /// What will happen next; `None` where nothing will.
+    #[must_use]
+    pub fn next_happening(&self) -> Option<Happening> {
+        self.queue.peek().map(|(time, event)| event.happening(time, &self.record.ports))
+    }
+
     fn handle(&mut self, now: Time, event: Event) {
-        self.work_events += u64::from(!is_of_displays(&event));
+        self.work_events += u64::from(!event.is_of_displays());
         match event {
             Event::Ring(event) => self.ring_event(now, event),
             Event::FromRing(output) => self.bring(now, output),
@@ -352,20 +310,20 @@ impl Machine {
     /// Whether nothing is under way but the displays and the boards' clock: perhaps only until the next tick.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
-        self.queue.pending().all(is_of_displays)
+        self.queue.pending().all(Event::is_of_displays)
     }
 
     /// Who waits for what.
     #[must_use]
     pub fn blocked(&self) -> Vec<Blocked> {
-        let processors = self.processors.iter().enumerate().filter_map(|(i, board)| board.blocked(&self.name(i)));
+        let processors = self
+            .processors
+            .iter()
+            .enumerate()
+            .filter_map(|(i, board)| board.blocked(&Board::of_processor(i).to_string()));
         let renderers = self.record.renderers.iter().enumerate();
-        let renderers = renderers.filter_map(|(i, board)| board.blocked(&format!("renderer {i}")));
+        let renderers = renderers.filter_map(|(i, board)| board.blocked(&Board::Renderer(i).to_string()));
         processors.chain(renderers).chain(self.record.ring.blocked()).collect()
-    }
-
-    fn name(&self, processor: usize) -> String {
-        if processor == 0 { "host".to_owned() } else { format!("GP {}", processor - 1) }
     }
 
     fn ring_event(&mut self, now: Time, event: RingEvent) {
@@ -457,7 +415,7 @@ impl Machine {
         let fault = processor.fault().cloned();
         let marks = processor.take_marks();
         if let Some(fault) = fault {
-            self.failure = Some(RunError::Fault { board: self.name(board), time: now, fault });
+            self.failure = Some(RunError::Fault { board: Board::of_processor(board).to_string(), time: now, fault });
         }
         marks.iter().for_each(|mark| self.record.hash.record(mark.time, &facts_of(mark)));
         self.record.observation.marks.extend(marks);
@@ -525,6 +483,34 @@ impl Machine {
         &self.processors
     }
 
+    /// The host or a graphics processor; `None` for other boards, and those that it does not have.
+    #[must_use]
+    pub fn board(&self, board: Board) -> Option<&GpBoard> {
+        match board {
+            Board::Host => self.processors.first(),
+            Board::Gp(number) => self.processors.get(number + 1),
+            _ => None,
+        }
+    }
+
+    /// Has i860s keep what they find at some addresses of code, instead of those given before; no time changes. Where the time of work
+    /// does not come from code nothing is found.
+    pub fn break_at(&mut self, addresses: &BTreeSet<u32>) {
+        self.processors.iter_mut().for_each(|board| board.break_at(addresses));
+    }
+
+    /// Breakpoints that were met since the last call of this, by board.
+    #[must_use]
+    pub fn take_hits(&mut self) -> Vec<BreakpointHit> {
+        self.processors.iter_mut().flat_map(GpBoard::take_hits).collect()
+    }
+
+    /// Why the machine goes on no more, if it does not.
+    #[must_use]
+    pub const fn failure(&self) -> Option<&RunError> {
+        self.failure.as_ref()
+    }
+
     /// Events that the simulation has handled so far.
     #[must_use]
     pub const fn events(&self) -> u64 {
@@ -548,11 +534,6 @@ fn schedule_own<E, O>(queue: &mut EventQueue<Event>, context: &mut Context<E, O>
     for (time, phase, event) in context.drain_events() {
         queue.schedule(time, phase, event_of(event));
     }
-}
-
-/// Whether an event is one of displays or clocks alone: what goes on in a machine whose programs all wait.
-const fn is_of_displays(event: &Event) -> bool {
-    matches!(event, Event::Edge | Event::Tick(..) | Event::Display(..) | Event::HostLine(_))
 }
 
 /// Hands a region over when its first message is on its way.

@@ -1,5 +1,6 @@
 //! Which board is plugged in where.
 
+use crate::board::Board;
 use crate::config::MachineConfig;
 use pxpl5_wire::NodeId;
 
@@ -38,6 +39,18 @@ impl Ports {
     pub(crate) fn of_display(&self, node: NodeId) -> Option<(usize, usize)> {
         let has_node = |nodes: &Vec<NodeId>| nodes.binary_search(&node).ok();
         self.displays.iter().enumerate().find_map(|(display, nodes)| Some((display, has_node(nodes)?)))
+    }
+
+    /// The board that a port belongs to.
+    #[must_use]
+    pub fn board(&self, node: NodeId) -> Board {
+        if let Some((display, _)) = self.of_display(node) {
+            return Board::Display(display);
+        }
+        match self.renderers.binary_search(&node) {
+            Ok(renderer) => Board::Renderer(renderer),
+            Err(_) => Board::of_processor(usize::from(node.0)),
+        }
     }
 
     pub(crate) fn count(&self) -> u16 {

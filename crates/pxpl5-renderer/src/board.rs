@@ -1,8 +1,10 @@
 //! The board: input FIFO and controller on one side, the port to the frame buffers on the other.
 
 use crate::command::CommandKind;
+use crate::contents::{MAX_CONTEXTS, begins_with_clear, changes_pixels, has_primitives};
 use crate::fifo::{EqualCommands, InputFifo, Progress};
 use crate::job::{ArrayPool, NoPixels, PixelJob};
+use crate::look::{RendererLook, SentLists};
 use crate::timing::RendererTiming;
 use crate::{Lanes, PixelArray};
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
@@ -12,9 +14,6 @@ use pxpl5_wire::{
 };
 use std::collections::VecDeque;
 use std::sync::{Arc, OnceLock};
-
-/// Region contexts that pixel memory can be divided into.
-pub const MAX_CONTEXTS: usize = 8;
 
 /// What can happen to the board.
 #[derive(Clone, Debug)]
@@ -85,6 +84,8 @@ pub struct Renderer {
     storing: bool,
     /// Copies whose regions are in the backing store and wait for the transfer before them, or for their release.
     stored: VecDeque<PendingCopy>,
+    /// When somebody watches: what was sent, to know what of it has been executed.
+    sent: Option<SentLists>,
     stats: RendererStats,
 }
 
@@ -126,6 +127,7 @@ impl Renderer {
             unstored: VecDeque::new(),
             storing: false,
             stored: VecDeque::new(),
+            sent: None,
             stats,
         }
     }
@@ -141,7 +143,7 @@ impl Renderer {
     }
 
     fn announce(&mut self, message: Message, begins: Time, context: &mut Context<RendererEvent, RendererOutput>) {
-        self.stats.words += u64::from(message.words);
+        self.note(&message, context.now());
         let work = match message.body {
             Body::Commands(list) => self.take(list),
             // Words of no known command still occupy the FIFO and are thrown away.
@@ -152,6 +154,17 @@ impl Renderer {
         };
         let progress = self.fifo.message(begins, work);
         self.report(progress, context);
+    }
+
+    /// Keeps what somebody who watches must know of a message.
+    fn note(&mut self, message: &Message, now: Time) {
+        let first_word = self.stats.words;
+        self.stats.words += u64::from(message.words);
+        if let Some(sent) = &mut self.sent {
+            let started = self.fifo.passed(now).map_or(0, |passed| passed.started);
+            sent.add(message, first_word, started);
+            self.fifo.forget_before(now);
+        }
     }
 
     fn report(&self, progress: Progress, context: &mut Context<RendererEvent, RendererOutput>) {
@@ -349,6 +362,29 @@ impl Renderer {
     /// Keeps from now on when words come into the FIFO and leave it.
     pub fn watch_fifo(&mut self) {
         self.fifo.watch();
+        self.sent.get_or_insert_default();
+    }
+
+    /// What the board does at an instant that is not before the last event. Looking changes nothing.
+    #[must_use]
+    pub fn look(&self, now: Time) -> RendererLook {
+        let passed = self.fifo.passed(now);
+        RendererLook {
+            fifo_words: passed.map(|passed| (passed.entered - passed.started) as u32),
+            fifo_depth_words: self.timing.fifo_words as u32,
+            stands_at_copy: self.fifo.is_blocked(),
+            copying: self.copying,
+            stored_regions: self.stored.len() + self.unstored.len(),
+            busy: self.fifo.busy(),
+        }
+    }
+
+    /// The array as far as commands have started at an instant that is not before the last event: each counts as executed when it
+    /// starts. `None` where nobody [watches](Renderer::watch_fifo), and where no words of pixels were sent. Looking changes nothing.
+    #[must_use]
+    pub fn array_at(&self, now: Time) -> Option<Lanes> {
+        let started = self.fifo.passed(now)?.started;
+        self.sent.as_ref()?.executed(started, self.pool.layout())
     }
 
     /// When words of a whole command had come in (positive) and when a command started and its words left (negative)
@@ -365,27 +401,4 @@ impl Renderer {
             format!("frame buffer at node {} to take region {}", order.target.frame_buffer.0, order.target.region.0);
         Some(Blocked { board: name.to_owned(), waits_for })
     }
-}
-
-/// Whether a list changes pixels, and does not only select and copy.
-fn changes_pixels(runs: &[CommandRun]) -> bool {
-    has_other_than(&[CommandKind::SelectRegion, CommandKind::CopyRegion], runs)
-}
-
-/// Whether a list has anything but what is done to a whole region.
-fn has_primitives(runs: &[CommandRun]) -> bool {
-    use CommandKind::{Clear, CopyRegion, SelectRegion, Shade};
-    has_other_than(&[SelectRegion, Clear, Shade, CopyRegion], runs)
-}
-
-fn has_other_than(kinds: &[CommandKind], runs: &[CommandRun]) -> bool {
-    runs.iter().any(|run| CommandKind::from_opcode(run.opcode).is_none_or(|kind| !kinds.contains(&kind)))
-}
-
-/// Whether a list overwrites its whole context, so that nothing sent before can be seen any more.
-fn begins_with_clear(runs: &[CommandRun]) -> bool {
-    let kinds = runs.iter().map(|run| CommandKind::from_opcode(run.opcode));
-    kinds
-        .take_while(|kind| matches!(kind, Some(CommandKind::SelectRegion | CommandKind::Clear)))
-        .any(|kind| kind == Some(CommandKind::Clear))
 }

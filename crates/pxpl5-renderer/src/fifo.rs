@@ -80,8 +80,54 @@ pub(crate) struct InputFifo {
     /// When the controller is free; `None` while a blocking command runs.
     free_at: Option<Time>,
     busy: Span,
-    /// When somebody watches: times at which words of a whole command came in, and at which they left.
-    changes: Option<Vec<(Time, i64)>>,
+    /// When somebody watches.
+    watched: Option<Watched>,
+}
+
+/// What somebody who watches the FIFO wants to know; times may lie ahead.
+#[derive(Debug, Default)]
+struct Watched {
+    /// Times at which words of a whole command came in, and at which they left, since they were last asked for.
+    changes: Vec<(Time, i64)>,
+    entered: Course,
+    left: Course,
+}
+
+/// A sum that grows, as far back as somebody may still ask.
+#[derive(Debug, Default)]
+struct Course {
+    /// What it is from each of some instants on, in order.
+    steps: VecDeque<(Time, u64)>,
+    /// What it was before all of them, and what it will be after.
+    before: u64,
+    after: u64,
+}
+
+impl Course {
+    fn add(&mut self, at: Time, words: u32) {
+        self.after += u64::from(words);
+        self.steps.push_back((at, self.after));
+    }
+
+    fn at(&self, now: Time) -> u64 {
+        let steps = self.steps.partition_point(|step| step.0 <= now);
+        steps.checked_sub(1).map_or(self.before, |last| self.steps[last].1)
+    }
+
+    fn forget_before(&mut self, now: Time) {
+        self.before = self.at(now);
+        let gone = self.steps.partition_point(|step| step.0 <= now);
+        self.steps.drain(..gone);
+    }
+}
+
+/// Words of commands in a FIFO, counted since the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct WordsPassed {
+    /// Of commands that have come in whole.
+    pub(crate) entered: u64,
+    /// Of commands that have started.
+    pub(crate) started: u64,
 }
 
 impl InputFifo {
@@ -98,7 +144,7 @@ impl InputFifo {
             waiting: VecDeque::new(),
             free_at: Some(Time::ZERO),
             busy: Span::ZERO,
-            changes: None,
+            watched: None,
         }
     }
 
@@ -122,12 +168,26 @@ impl InputFifo {
     }
 
     pub(crate) fn watch(&mut self) {
-        self.changes.get_or_insert_default();
+        self.watched.get_or_insert_default();
+    }
+
+    /// What has passed at an instant that is not before the last event, where somebody watches.
+    pub(crate) fn passed(&self, now: Time) -> Option<WordsPassed> {
+        let watched = self.watched.as_ref()?;
+        Some(WordsPassed { entered: watched.entered.at(now), started: watched.left.at(now) })
+    }
+
+    /// Nobody will ask for anything before `now`.
+    pub(crate) fn forget_before(&mut self, now: Time) {
+        if let Some(Watched { entered, left, .. }) = &mut self.watched {
+            entered.forget_before(now);
+            left.forget_before(now);
+        }
     }
 
     /// What changed since the last time, in no order.
     pub(crate) fn take_changes(&mut self) -> Vec<(Time, i64)> {
-        self.changes.as_mut().map(std::mem::take).unwrap_or_default()
+        self.watched.as_mut().map(|watched| std::mem::take(&mut watched.changes)).unwrap_or_default()
     }
 
     /// Whether the controller stands at a blocking command.
@@ -140,7 +200,7 @@ impl InputFifo {
         while let Some(work) = self.in_transit.pop_front() {
             let words = work.words_each;
             let span = work.span_each;
-            if let (Some(free_at), Some(span_each), None) = (self.free_at, span, &self.changes)
+            if let (Some(free_at), Some(span_each), None) = (self.free_at, span, &self.watched)
                 && u64::from(words) <= self.depth
             {
                 self.run_freely(work, free_at, span_each);
@@ -153,8 +213,9 @@ impl InputFifo {
                 };
                 self.words_in += u64::from(words);
                 self.last_word_at = complete;
-                if let Some(changes) = &mut self.changes {
-                    changes.push((complete, i64::from(words)));
+                if let Some(watched) = &mut self.watched {
+                    watched.changes.push((complete, i64::from(words)));
+                    watched.entered.add(complete, words);
                 }
                 let blocks = self.start_or_wait(HeldCommand { words, span, complete });
                 progress.blocks = progress.blocks.or(blocks);
@@ -249,8 +310,9 @@ impl InputFifo {
         let start = free_at.max(command.complete);
         self.left.push(self.words_left + self.depth, start);
         self.words_left += u64::from(command.words);
-        if let Some(changes) = &mut self.changes {
-            changes.push((start, -i64::from(command.words)));
+        if let Some(watched) = &mut self.watched {
+            watched.changes.push((start, -i64::from(command.words)));
+            watched.left.add(start, command.words);
         }
         self.free_at = command.span.map(|span| start + span);
         if let Some(span) = command.span {

@@ -45,6 +45,7 @@
 //! (bit-serial instructions, Enable).
 
 mod board;
+mod contents;
 mod fifo;
 mod job;
 pub mod timing;
@@ -57,18 +58,21 @@ mod controller;
 pub mod isa;
 mod lanes;
 mod layout;
+mod look;
 mod simd;
 
 pub use array::{ArrayFault, EMPTY_PLANE, Executed, FaultKind, OutputRegion, PIXELS, PixelArray, Plane, execute_all};
 pub use bit_serial::BitSerial;
-pub use board::{MAX_CONTEXTS, Renderer, RendererEvent, RendererOutput, RendererStats};
+pub use board::{Renderer, RendererEvent, RendererOutput, RendererStats};
 pub use command::{
     Clear, Command, CommandKind, CopyRegion, LoadBacking, PhongSphereCommand, PhongTriangleCommand,
     PhongTriangleEncoder, SPECULAR_SQUARINGS, SelectRegion, Shade, SphereBody, SphereCommand, StoreBacking,
     TriangleCommand, TriangleEncoder, Unsupported,
 };
+pub use contents::MAX_CONTEXTS;
 pub use job::ArrayPool;
 pub use lanes::Lanes;
 pub use layout::{ContextPlan, FieldRange, Layout, LayoutError};
+pub use look::RendererLook;
 pub use simd::Vectors;
 pub use timing::RendererTiming;

@@ -6,6 +6,23 @@ use pxpl5_wire::{Message, NodeId};
 
 const UNKNOWN: Time = Time(u64::MAX);
 
+/// What somebody who looks sees on a channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OnChannel {
+    /// The channel, from 0.
+    pub channel: usize,
+    /// The port of the sender.
+    pub source: NodeId,
+    /// The port of the receiver.
+    pub destination: NodeId,
+    /// Length of the message in words.
+    pub words: u32,
+    /// When the channel was given to it.
+    pub granted: Time,
+    /// When the channel is free again; `None` until a receiver with a FIFO has said when it has room.
+    pub ends_at: Option<Time>,
+}
+
 /// A message that occupies a channel.
 #[derive(Clone, Debug)]
 pub(crate) struct MessageInFlight {
@@ -99,12 +116,32 @@ impl RingChannels {
         self.flight(channel).filter(|_| self.ends_at[channel] == UNKNOWN)
     }
 
+    /// What is on each channel after `now`, by channel.
+    pub(crate) fn on_channels(&self, now: Time) -> impl Iterator<Item = OnChannel> + '_ {
+        (0..self.flights.len()).filter_map(move |channel| {
+            let ends_at = self.end(channel);
+            let flight = self.flight(channel).filter(|_| ends_at.is_none_or(|end| end > now))?;
+            Some(flight.on_channel(channel, ends_at))
+        })
+    }
+
     pub(crate) fn all_unanswered(&self) -> impl Iterator<Item = WaitingMessage> + '_ {
         (0..self.flights.len()).filter_map(|channel| self.unanswered(channel)).map(MessageInFlight::waiting)
     }
 }
 
 impl MessageInFlight {
+    const fn on_channel(&self, channel: usize, ends_at: Option<Time>) -> OnChannel {
+        OnChannel {
+            channel,
+            source: self.source,
+            destination: self.destination,
+            words: self.words,
+            granted: self.granted,
+            ends_at,
+        }
+    }
+
     const fn waiting(&self) -> WaitingMessage {
         WaitingMessage {
             source: self.source,

@@ -1,6 +1,6 @@
 //! Ports and arbiter.
 
-use crate::channels::{MessageInFlight, RingChannels};
+use crate::channels::{MessageInFlight, OnChannel, RingChannels};
 use crate::{Refusals, Request, RingError, RingEvent, RingOutput, RingStats, RingTiming, WaitReason, WaitingMessage};
 use parameters::ParameterTable;
 use pxpl5_sim::{Blocked, Context, Phase, Span, Time};
@@ -147,6 +147,11 @@ impl Ring {
     #[must_use]
     pub fn busy_channels(&self) -> u32 {
         self.channels.busy()
+    }
+
+    /// The messages that occupy channels at an instant that is not before the last event, by channel. Looking changes nothing.
+    pub fn on_channels(&self, now: Time) -> impl Iterator<Item = OnChannel> + '_ {
+        self.channels.on_channels(now)
     }
 
     /// Whether nothing is in flight and nothing waits, as of the last grant or [`Ring::settle`].

@@ -11,6 +11,7 @@
 //!
 //! **Not here:** the computer that it runs on. A clock and threads are handed in by a [`Host`]; scenes come as values.
 
+mod assembly;
 mod cut;
 mod display_list;
 mod displays;
@@ -42,11 +43,14 @@ mod rehearsal;
 mod running;
 mod samples;
 mod statistics;
+mod stepper;
+mod stops;
 mod summary;
 mod tally;
 mod views;
 mod window;
 
+pub use assembly::check_faces;
 pub use cut::CutScene;
 pub use display_list::{display_list, views};
 pub use due::{DuePictures, PictureEnd, WARM_UP_PERIODS, WINDOW_DEFINITION};
@@ -75,9 +79,9 @@ pub use pxpl5_display::{Aim, LightSpan};
 pub use raster::Raster;
 pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};
 pub use rehearsal::Rehearsal;
-pub use running::check_faces;
 pub use samples::{KEPT_SAMPLES, Samples};
 pub use statistics::{DefinedStatistics, Statistics};
+pub use stepper::{Pause, Stepper};
 pub use summary::{Summary, retraces};
 pub use tally::{LATE_REGIONS_LISTED, SurfaceLatency, Tally};
 pub use views::{FrameStarts, Poses, ReportTimes, Views, ViewsWanted};

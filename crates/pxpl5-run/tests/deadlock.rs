@@ -1,9 +1,9 @@
 //! A run in which nobody can go on is a deadlock, however few fields were asked for, and names who waits for what.
 
 use pxpl5_gp::Priority;
-use pxpl5_machine::{ConfigError, Machine, MachineConfig, Record, RunError};
+use pxpl5_machine::{Board, ConfigError, Machine, MachineConfig, Record, RunError};
 use pxpl5_renderer::Layout;
-use pxpl5_run::{Experiment, ExperimentError, PictureTimes, Pipeline, Pixels, Setup, Slats};
+use pxpl5_run::{Experiment, ExperimentError, Pause, PictureTimes, Pipeline, Pixels, Setup, Slats};
 use pxpl5_scene::builtin;
 use pxpl5_sim::Time;
 
@@ -73,4 +73,20 @@ fn a_run_that_is_too_short_is_no_deadlock() {
         let error = run(Slats::split(), fields);
         assert!(matches!(error, ExperimentError::TooShort { .. }), "{fields} fields: {error}");
     }
+}
+
+/// The machine stands where it failed and can be looked at; going on changes nothing.
+#[test]
+fn a_stepper_stands_at_a_deadlock_and_gives_the_same_error_in_the_end() {
+    let scene = builtin("full-screen:1").expect("built in");
+    let experiment = Experiment::new(MachineConfig::slats(), Waiting, scene).fields(300).pixels(Pixels::Off);
+    let mut stepper = experiment.stepper().expect("it can be built");
+    let Pause::Failed(error) = stepper.run_to(stepper.end()) else { panic!("it waits for ever") };
+    assert_eq!((stepper.now(), stepper.failure()), (error.time(), Some(&error)));
+    let look = stepper.processor(Board::Gp(0)).expect("a graphics processor");
+    assert_eq!(look.programs[0].waits_for, "a message that nobody sends");
+    assert_eq!(stepper.step_event(), Pause::Failed(error.clone()));
+    let Err(ExperimentError::Run { error: whole, .. }) = experiment.run() else { panic!("it fails") };
+    assert_eq!(whole, error);
+    assert!(matches!(stepper.finish(), Err(ExperimentError::Run { error: last, .. }) if last == error));
 }

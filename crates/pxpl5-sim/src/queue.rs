@@ -130,6 +130,13 @@ impl<E> EventQueue<E> {
         self.first().map(|due| due.time)
     }
 
+    /// The next event and its time, without taking it.
+    #[must_use]
+    pub fn peek(&self) -> Option<(Time, &E)> {
+        let due = self.first()?;
+        Some((due.time, self.events[due.slot as usize].as_ref()?))
+    }
+
     /// The present: the time of the event taken last.
     #[must_use]
     pub const fn now(&self) -> Time {

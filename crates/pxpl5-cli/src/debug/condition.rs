@@ -1,0 +1,168 @@
+//! Conditions to run to.
+
+use super::words::{board, number};
+use pxpl5::{Board, Stepper};
+
+/// What must hold for the run to stop.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Condition {
+    /// A surface, or a display memory, has swapped.
+    Swap,
+    /// A region has arrived at a display.
+    Region,
+    /// The words that wait in a renderer's FIFO.
+    Fifo(usize, Comparison),
+    /// Messages that wait in the inbox of the host or a graphics processor.
+    Inbox(Board, Comparison),
+    /// Occupied channels of the ring.
+    Channels(Comparison),
+    /// A program of a board waits for something whose name begins so.
+    Waits(Board, String),
+}
+
+/// A number and how it is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Comparison {
+    relation: Relation,
+    bound: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Relation {
+    Less,
+    AtMost,
+    Equal,
+    AtLeast,
+    More,
+}
+
+/// What had happened when the run was told to go on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Before {
+    swaps: usize,
+    arrivals: usize,
+}
+
+impl Before {
+    pub(super) fn of(stepper: &Stepper) -> Self {
+        let observation = stepper.record().observation();
+        Self { swaps: observation.swaps.len(), arrivals: observation.arrivals.len() }
+    }
+}
+
+impl Condition {
+    /// # Errors
+    ///
+    /// What was expected, and what was found.
+    pub(super) fn parse(words: &[&str]) -> Result<Self, String> {
+        match words {
+            ["swap"] => Ok(Self::Swap),
+            ["region"] => Ok(Self::Region),
+            ["fifo", renderer, rest @ ..] => {
+                Ok(Self::Fifo(number("renderer", renderer)? as usize, Comparison::parse(rest)?))
+            }
+            ["channels", rest @ ..] => Comparison::parse(rest).map(Self::Channels),
+            ["inbox", rest @ ..] => {
+                let (board, rest) = board(rest)?;
+                Ok(Self::Inbox(board, Comparison::parse(rest)?))
+            }
+            ["waits", rest @ ..] => match board(rest)? {
+                (board, ["for", what @ ..]) if !what.is_empty() => Ok(Self::Waits(board, what.join(" "))),
+                (_, rest) => Err(format!("waits: expected BOARD for WORDS, found `{}`", rest.join(" "))),
+            },
+            words => Err(format!(
+                "expected swap, region, fifo R >= N, inbox BOARD >= N, channels >= N or waits BOARD for WORDS, found `{}`",
+                words.join(" ")
+            )),
+        }
+    }
+
+    /// What is wrong with it on a machine, if anything.
+    pub(super) fn check(&self, stepper: &Stepper) -> Result<(), String> {
+        let renderers = stepper.record().renderers().len();
+        match self {
+            Self::Fifo(renderer, _) if *renderer >= renderers => {
+                Err(format!("renderer: expected 0 to {}, found {renderer}", renderers - 1))
+            }
+            Self::Inbox(board, _) | Self::Waits(board, _) if stepper.processor(*board).is_none() => {
+                Err(format!("expected the host or a graphics processor of this machine, found {board}"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether it holds now.
+    pub(super) fn holds(&self, stepper: &Stepper, before: Before) -> bool {
+        let observation = stepper.record().observation();
+        match self {
+            Self::Swap => observation.swaps.len() > before.swaps,
+            Self::Region => observation.arrivals.len() > before.arrivals,
+            Self::Fifo(renderer, comparison) => {
+                let words = stepper.renderer(*renderer).and_then(|look| look.fifo_words);
+                words.is_some_and(|words| comparison.holds(u64::from(words)))
+            }
+            Self::Inbox(board, comparison) => {
+                stepper.processor(*board).is_some_and(|look| comparison.holds(look.inbox.len() as u64))
+            }
+            Self::Channels(comparison) => comparison.holds(stepper.channels().len() as u64),
+            Self::Waits(board, what) => stepper
+                .processor(*board)
+                .is_some_and(|look| look.programs.iter().any(|program| program.waits_for.starts_with(what.as_str()))),
+        }
+    }
+}
+
+impl Comparison {
+    fn parse(words: &[&str]) -> Result<Self, String> {
+        let refused = || format!("expected <, <=, =, >= or > and a number, found `{}`", words.join(" "));
+        let [relation, bound] = words else { return Err(refused()) };
+        let relation = match *relation {
+            "<" => Relation::Less,
+            "<=" => Relation::AtMost,
+            "=" | "==" => Relation::Equal,
+            ">=" => Relation::AtLeast,
+            ">" => Relation::More,
+            _ => return Err(refused()),
+        };
+        Ok(Self { relation, bound: number("bound", bound)? })
+    }
+
+    const fn holds(self, value: u64) -> bool {
+        match self.relation {
+            Relation::Less => value < self.bound,
+            Relation::AtMost => value <= self.bound,
+            Relation::Equal => value == self.bound,
+            Relation::AtLeast => value >= self.bound,
+            Relation::More => value > self.bound,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn comparisons_hold_at_their_bounds_as_they_say() {
+        for (relation, holds) in [
+            ("<", [true, false, false]),
+            ("<=", [true, true, false]),
+            ("=", [false, true, false]),
+            (">=", [false, true, true]),
+            (">", [false, false, true]),
+        ] {
+            let comparison = Comparison::parse(&[relation, "5"]).expect("known");
+            assert_eq!([4, 5, 6].map(|value| comparison.holds(value)), holds, "{relation}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_condition_is_refused() {
+        for wrong in
+            ["", "fifo", "fifo 0", "fifo 0 ~ 3", "channels >= x", "waits gp 1", "waits gp 1 for", "inbox 3 > 1"]
+        {
+            let words: Vec<&str> = wrong.split_whitespace().collect();
+            assert!(Condition::parse(&words).is_err(), "{wrong}");
+        }
+    }
+}

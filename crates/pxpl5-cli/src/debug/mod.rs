@@ -1,0 +1,95 @@
+//! `pxpl5 debug`: an experiment that goes on when it is told to, and shows what its boards do.
+
+mod command;
+mod condition;
+mod pixels;
+#[cfg(feature = "screen")]
+mod screen;
+mod session;
+mod views;
+mod words;
+
+use crate::error::CliError;
+use crate::settings::SettingArgs;
+use crate::terminal::{print, warn};
+use clap::Args;
+use command::split;
+use pxpl5::Workstation;
+use session::Session;
+use std::path::PathBuf;
+
+/// Run one experiment in pieces and look at its boards between them.
+#[derive(Args, Debug)]
+#[command(after_help = "Examples:
+  pxpl5 debug --pipeline slats --scene mig --triangles 100
+  pxpl5 debug --pipeline slats --scene mig --do help
+  pxpl5 debug experiments/figure-07.toml --level cycle --do-file session.txt
+
+docs/guide/debugger.md explains the commands.")]
+pub(crate) struct DebugArgs {
+    #[command(flatten)]
+    settings: SettingArgs,
+    /// Do these commands, divided by semicolons, print what they say, and end.
+    #[arg(long = "do", value_name = "COMMANDS")]
+    commands: Option<String>,
+    /// The same with the commands of a file, one a line.
+    #[arg(long, value_name = "FILE", conflicts_with = "commands")]
+    do_file: Option<PathBuf>,
+    /// Print no warnings.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+pub(crate) fn run(args: DebugArgs) -> Result<(), CliError> {
+    let script = script(args.commands, args.do_file)?;
+    let plan = args.settings.gather()?.resolve()?;
+    warn(&plan.out_of_range(), args.quiet);
+    let experiment = plan.experiment(plan.load_scene()?).host(Workstation::new()).record_traffic(true);
+    let session = Session::new(experiment.stepper()?);
+    match script {
+        Some(commands) => scripted(session, &commands),
+        None => on_screen(session),
+    }
+}
+
+/// The commands to be done, if any are given.
+fn script(commands: Option<String>, file: Option<PathBuf>) -> Result<Option<Vec<String>>, CliError> {
+    let text = match file {
+        None => commands,
+        Some(path) => {
+            let text = std::fs::read_to_string(&path);
+            Some(text.map_err(|error| CliError::failure(format!("{}: {error}", path.display())))?)
+        }
+    };
+    Ok(text.map(|text| split(&text)))
+}
+
+/// Does commands one after the other; the first that is not understood ends it.
+fn scripted(mut session: Session, commands: &[String]) -> Result<(), CliError> {
+    for command in commands {
+        print(&format!("> {command}\n"))?;
+        print(&session.obey(command).map_err(CliError::usage)?)?;
+        if session.is_over() {
+            break;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(feature = "screen")]
+fn on_screen(session: Session) -> Result<(), CliError> {
+    use std::io::IsTerminal;
+    if !std::io::stdout().is_terminal() {
+        return Err(no_terminal("standard output is no terminal"));
+    }
+    screen::run(session).map_err(|error| CliError::failure(format!("the terminal cannot be used: {error}")))
+}
+
+#[cfg(not(feature = "screen"))]
+fn on_screen(_: Session) -> Result<(), CliError> {
+    Err(no_terminal("this program was built without the feature `screen`"))
+}
+
+fn no_terminal(reason: &str) -> CliError {
+    CliError::usage(format!("{reason}: expected --do COMMANDS or --do-file FILE"))
+}

@@ -1,0 +1,97 @@
+//! Pixels: in a renderer's array, and before an eye.
+
+use super::words::below;
+use image::RgbImage;
+use pxpl5::looks::{PixelArray, Plane};
+use pxpl5::{Stepper, SurfaceId};
+use std::fmt::Write as _;
+
+/// Columns and rows of an array.
+const SIDE: u64 = 128;
+
+fn bit(plane: &Plane, x: u64, y: u64) -> u64 {
+    plane[(2 * y + x / 64) as usize] >> (x % 64) & 1
+}
+
+fn array(stepper: &Stepper, renderer: u64) -> Result<(impl PixelArray, usize), String> {
+    let number = below("renderer", &renderer.to_string(), stepper.record().renderers().len() as u64)? as usize;
+    let found = stepper.array(number).map(|array| (array, number));
+    found.ok_or_else(|| format!("renderer {number} has executed no commands that change pixels (or --pixels off)"))
+}
+
+/// The fields of a pixel's memory.
+pub(super) fn pixel(stepper: &Stepper, renderer: u64, x: u64, y: u64) -> Result<String, String> {
+    let x = below("column", &x.to_string(), SIDE)?;
+    let y = below("row", &y.to_string(), SIDE)?;
+    let (array, number) = array(stepper, renderer)?;
+    let enabled = if bit(&array.enable(), x, y) == 1 { "enabled" } else { "not enabled" };
+    let mut text = format!("renderer {number}, pixel ({x}, {y}): {enabled}\n");
+    for range in stepper.experiment().pipeline().layout().ranges() {
+        let bits = (0..range.width).map(|n| u128::from(bit(&array.plane((range.first + n) as usize), x, y)) << n);
+        let value: u128 = bits.take(128).sum();
+        let last = range.first + range.width - 1;
+        let digits = range.width.div_ceil(4) as usize;
+        let _ = writeln!(text, "bits {:>3} to {last:>3}  {:<18} {value:0digits$x}", range.first, range.name);
+    }
+    Ok(text)
+}
+
+/// Pixels that a character of the map stands for, across and down.
+const BLOCK: (u64, u64) = (2, 4);
+
+/// Which pixels are enabled: `#` all of a block, `+` some, `.` none.
+pub(super) fn enabled(stepper: &Stepper, renderer: u64) -> Result<String, String> {
+    let (array, number) = array(stepper, renderer)?;
+    let plane = array.enable();
+    let count: u32 = plane.iter().map(|word| word.count_ones()).sum();
+    let mut text = format!("renderer {number}: {count} of {} pixels enabled\n", SIDE * SIDE);
+    for row in 0..SIDE / BLOCK.1 {
+        let line = (0..SIDE / BLOCK.0).map(|column| {
+            let pixels = (0..BLOCK.0 * BLOCK.1).map(|n| (BLOCK.0 * column + n % BLOCK.0, BLOCK.1 * row + n / BLOCK.0));
+            match pixels.map(|(x, y)| bit(&plane, x, y)).sum() {
+                0 => '.',
+                all if all == BLOCK.0 * BLOCK.1 => '#',
+                _ => '+',
+            }
+        });
+        text.extend(line);
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+fn surface(stepper: &Stepper, label: &str) -> Result<SurfaceId, String> {
+    let surfaces: Vec<(SurfaceId, &str)> =
+        stepper.record().surfaces().map(|(id, surface)| (id, surface.label)).collect();
+    let found = surfaces.iter().find(|(_, known)| *known == label).map(|(id, _)| *id);
+    found.ok_or_else(|| {
+        let known: Vec<&str> = surfaces.iter().map(|(_, label)| *label).collect();
+        format!("surface: expected {}, found `{label}`", known.join(" or "))
+    })
+}
+
+/// What the beam has drawn so far.
+pub(super) fn seen(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
+    let id = surface(stepper, label)?;
+    let picture = stepper.seen(id).ok_or_else(|| format!("nothing can be said of {label}"))?;
+    picture_said(&picture, label, file)
+}
+
+/// What should be seen now.
+pub(super) fn ideal(stepper: &Stepper, label: &str, file: Option<&str>) -> Result<String, String> {
+    let id = surface(stepper, label)?;
+    let ideal = stepper.ideal_picture(id).ok_or_else(|| format!("there is no ideal picture of {label}"))?;
+    picture_said(ideal.image(), label, file)
+}
+
+fn picture_said(picture: &RgbImage, label: &str, file: Option<&str>) -> Result<String, String> {
+    let (width, height) = picture.dimensions();
+    let background = picture.get_pixel(0, 0);
+    let drawn = picture.pixels().filter(|pixel| *pixel != background).count();
+    let mut text = format!("{label}: {width} x {height} pixels, {drawn} other than that of the left top\n");
+    if let Some(file) = file {
+        picture.save_with_format(file, image::ImageFormat::Png).map_err(|error| format!("{file}: {error}"))?;
+        let _ = writeln!(text, "written to {file}");
+    }
+    Ok(text)
+}

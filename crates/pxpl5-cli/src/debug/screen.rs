@@ -1,0 +1,196 @@
+//! The debugger on a terminal: panes of what there is to see, what commands said, and a line to type them.
+
+use super::command::Pane;
+use super::session::Session;
+use ratatui::Frame;
+use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use ratatui::layout::{Constraint, Layout, Position, Rect};
+use ratatui::widgets::{Block, Paragraph};
+use std::io;
+use std::time::Duration;
+
+/// What somebody has typed and read.
+#[derive(Default)]
+struct Talk {
+    /// What was said, oldest first.
+    log: Vec<String>,
+    line: String,
+    /// Lines that were done, and how far back somebody has gone in them.
+    history: Vec<String>,
+    back: usize,
+    /// Lines by which the boards are scrolled.
+    scroll: u16,
+}
+
+/// Columns from which on panes stand beside each other.
+const WIDE: u16 = 100;
+
+/// Lines of the log that are kept.
+const LOG: usize = 2_000;
+
+/// Shows a session until somebody quits.
+///
+/// # Errors
+///
+/// When the terminal cannot be used.
+pub(super) fn run(session: Session) -> io::Result<()> {
+    let mut session = session.interrupted_by(key_waits);
+    let mut terminal = ratatui::try_init()?;
+    let mut talk = Talk {
+        log: vec!["help lists the commands; F7 steps an event, F8 a line, F9 a field".to_owned()],
+        ..Talk::default()
+    };
+    let result = (|| {
+        while !session.is_over() {
+            terminal.draw(|frame| draw(frame, &session, &talk))?;
+            if let Event::Key(key) = event::read()?
+                && key.kind == KeyEventKind::Press
+            {
+                pressed(&mut session, &mut talk, key);
+            }
+        }
+        Ok(())
+    })();
+    ratatui::try_restore()?;
+    result
+}
+
+/// Whether a key was pressed while the machine ran: the run stands still then.
+fn key_waits() -> bool {
+    event::poll(Duration::ZERO).unwrap_or(false)
+}
+
+fn pressed(session: &mut Session, talk: &mut Talk, key: KeyEvent) {
+    match key.code {
+        KeyCode::Char('c' | 'd') if key.modifiers.contains(KeyModifiers::CONTROL) => say(session, talk, "quit"),
+        KeyCode::Char(letter) => talk.line.push(letter),
+        KeyCode::Backspace => drop(talk.line.pop()),
+        KeyCode::Esc => talk.line.clear(),
+        KeyCode::Enter => {
+            let line = std::mem::take(&mut talk.line);
+            talk.history.push(line.clone());
+            talk.back = 0;
+            say(session, talk, &line);
+        }
+        KeyCode::Up => recall(talk, talk.back + 1),
+        KeyCode::Down => recall(talk, talk.back.saturating_sub(1)),
+        KeyCode::PageDown => talk.scroll = talk.scroll.saturating_add(5),
+        KeyCode::PageUp => talk.scroll = talk.scroll.saturating_sub(5),
+        KeyCode::F(7) => say(session, talk, "step"),
+        KeyCode::F(8) => say(session, talk, "step line"),
+        KeyCode::F(9) => say(session, talk, "step field"),
+        _ => {}
+    }
+}
+
+/// A line from the history, so many back; none at 0.
+fn recall(talk: &mut Talk, back: usize) {
+    talk.back = back.min(talk.history.len());
+    let place = talk.history.len() - talk.back;
+    talk.line = talk.history.get(place).cloned().unwrap_or_default();
+}
+
+fn say(session: &mut Session, talk: &mut Talk, line: &str) {
+    talk.log.push(format!("> {line}"));
+    let said = session.obey(line).unwrap_or_else(|error| error);
+    talk.log.extend(said.lines().map(str::to_owned));
+    let gone = talk.log.len().saturating_sub(LOG);
+    talk.log.drain(..gone);
+}
+
+fn draw(frame: &mut Frame<'_>, session: &Session, talk: &Talk) {
+    let rows = Layout::vertical([Constraint::Fill(3), Constraint::Fill(2), Constraint::Length(1)]);
+    let [machine, log, line] = rows.areas(frame.area());
+    for ((title, pane), area) in Pane::ALL.iter().zip(panes(machine)) {
+        let scroll = if *pane == Pane::Boards { talk.scroll } else { 0 };
+        let text = Paragraph::new(session.pane(*pane)).scroll((scroll, 0)).block(Block::bordered().title(*title));
+        frame.render_widget(text, area);
+    }
+    let shown = usize::from(log.height.saturating_sub(1));
+    let last = talk.log[talk.log.len().saturating_sub(shown)..].join("\n");
+    frame.render_widget(Paragraph::new(last).block(Block::new().title("commands")), log);
+    frame.render_widget(Paragraph::new(format!("> {}", talk.line)), line);
+    let column = 2 + talk.line.chars().count() as u16;
+    frame.set_cursor_position(Position::new(column.min(line.width.saturating_sub(1)), line.y));
+}
+
+/// Areas of the panes in their order: time, boards, waits, ring, timeline.
+fn panes(area: Rect) -> [Rect; 5] {
+    if area.width < WIDE {
+        let rows =
+            [Constraint::Length(8), Constraint::Fill(2), Constraint::Fill(1), Constraint::Fill(1), Constraint::Fill(1)];
+        return Layout::vertical(rows).areas(area);
+    }
+    let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).areas(area);
+    let [time, boards] = Layout::vertical([Constraint::Length(8), Constraint::Fill(1)]).areas(left);
+    let thirds = [Constraint::Fill(1), Constraint::Fill(1), Constraint::Fill(1)];
+    let [waits, ring, timeline] = Layout::vertical(thirds).areas(right);
+    [time, boards, waits, ring, timeline]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5::{Experiment, MachineConfig, Slats, scene};
+    use ratatui::Terminal;
+    use ratatui::backend::TestBackend;
+
+    fn session() -> Session {
+        let scene = scene::builtin("full-screen:2").expect("built in");
+        let experiment = Experiment::new(MachineConfig::slats(), Slats::whole(), scene).fields(8).record_traffic(true);
+        Session::new(experiment.stepper().expect("it can be built"))
+    }
+
+    fn shown(session: &Session, talk: &Talk, (width, height): (u16, u16)) -> String {
+        let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a screen of characters");
+        terminal.draw(|frame| draw(frame, session, talk)).expect("it can be drawn");
+        terminal.backend().to_string()
+    }
+
+    fn type_in(session: &mut Session, talk: &mut Talk, text: &str) {
+        text.chars().for_each(|letter| pressed(session, talk, KeyEvent::from(KeyCode::Char(letter))));
+        pressed(session, talk, KeyEvent::from(KeyCode::Enter));
+    }
+
+    #[test]
+    fn what_is_typed_is_done_and_every_pane_shows_the_machine() {
+        let mut session = session();
+        let mut talk = Talk::default();
+        type_in(&mut session, &mut talk, "run to field 4");
+        for size in [(80, 40), (160, 50)] {
+            let screen = shown(&session, &talk, size);
+            for words in [
+                "time",
+                "66.733333 ms, field 4 of 8",
+                "boards",
+                "GP 0",
+                "waits",
+                "ring",
+                "timeline",
+                "> run to field 4",
+            ] {
+                assert!(screen.contains(words), "{size:?} {words}:\n{screen}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_command_that_is_not_understood_is_said_and_ends_nothing() {
+        let mut session = session();
+        let mut talk = Talk::default();
+        type_in(&mut session, &mut talk, "jump");
+        assert!(talk.log.iter().any(|line| line.contains("found `jump`")) && !session.is_over());
+        pressed(&mut session, &mut talk, KeyEvent::from(KeyCode::Up));
+        assert_eq!(talk.line, "jump");
+        pressed(&mut session, &mut talk, KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL));
+        assert!(session.is_over());
+    }
+
+    #[test]
+    fn a_screen_of_any_size_can_be_drawn() {
+        let session = session();
+        for size in [(1, 1), (3, 2), (20, 5), (100, 9), (400, 120)] {
+            shown(&session, &Talk::default(), size);
+        }
+    }
+}

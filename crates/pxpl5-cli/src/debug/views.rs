@@ -1,0 +1,293 @@
+//! What there is to see of a run, as lines of text: of the screen's panes and of scripts alike.
+
+use super::words::{address, ms, us};
+use i860::Program;
+use pxpl5::looks::{GpBoard, GpLook, Priority, ProgramLook};
+use pxpl5::{Board, Stepper, Time};
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+/// Where the run stands, in a line, and what happened last where that was an event.
+pub(super) fn place(stepper: &Stepper) -> String {
+    let last = stepper.last().map_or_else(String::new, |last| format!(", {}: {}", last.board, last.what));
+    format!("{}, field {}{last}\n", ms(stepper.now()), stepper.period())
+}
+
+/// Time, beam, what comes next, and the hash of the trace so far.
+pub(super) fn time(stepper: &Stepper) -> String {
+    let mut text = String::new();
+    let fields = stepper.experiment().length();
+    let _ = writeln!(text, "now     {}, field {} of {fields}{}", ms(stepper.now()), stepper.period(), beam(stepper));
+    if let Some(error) = stepper.failure() {
+        let _ = writeln!(text, "failed  {error}");
+    }
+    if let Some(last) = stepper.last() {
+        let _ = writeln!(text, "last    {}: {}", last.board, last.what);
+    }
+    if let Some(next) = stepper.machine().next_happening() {
+        let _ = writeln!(text, "next    {} {}: {}", ms(next.time), next.board, next.what);
+    }
+    let _ = writeln!(text, "events  {}", stepper.machine().events());
+    let _ = writeln!(text, "trace   {}", stepper.record().trace_hash());
+    text
+}
+
+/// How far the first display's light has come in its period.
+fn beam(stepper: &Stepper) -> String {
+    let display = stepper.record().display();
+    let lines = display.surfaces().first().map_or(0, |surface| surface.height);
+    let lit = |line: &u32| display.lights(0, 0, *line, stepper.period()).is_some_and(|at| at <= stepper.now());
+    (0..lines).rev().find(lit).map_or_else(String::new, |line| format!(", beam in line {line}"))
+}
+
+/// A line for each board.
+pub(super) fn boards(stepper: &Stepper) -> String {
+    let gps = stepper.record().ports().gps.len();
+    let processors = [Board::Host].into_iter().chain((0..gps).map(Board::Gp));
+    let mut text = String::new();
+    for (board, look) in processors.filter_map(|board| Some((board, stepper.processor(board)?))) {
+        let _ = writeln!(text, "{:<12} {}", board.to_string(), processor_line(&look));
+    }
+    for number in 0..stepper.record().renderers().len() {
+        let _ = writeln!(text, "{:<12} {}", Board::Renderer(number).to_string(), renderer_line(stepper, number));
+    }
+    for number in 0..stepper.record().displays().len() {
+        let _ = writeln!(text, "{:<12} {}", Board::Display(number).to_string(), display_line(stepper, number));
+    }
+    text
+}
+
+/// What a processor's programs do, and what waits at it.
+fn processor_line(look: &GpLook) -> String {
+    let mut parts: Vec<String> = look.programs.iter().map(program).collect();
+    if parts.is_empty() {
+        return "no program".to_owned();
+    }
+    if !look.inbox.is_empty() {
+        parts.push(format!("inbox {}", look.inbox.len()));
+    }
+    let sending = look.unaccepted.len() + look.chains.iter().sum::<usize>();
+    if sending > 0 {
+        parts.push(format!("sends {sending}"));
+    }
+    parts.join("; ")
+}
+
+fn program(program: &ProgramLook) -> String {
+    let level = if program.priority == Priority::Interrupt { "interrupt " } else { "" };
+    match program.work_left {
+        Some(left) => format!("{level}works, {} left", us(left)),
+        None if program.waits_for.is_empty() => format!("{level}has not begun"),
+        None => format!("{level}waits for {}", program.waits_for),
+    }
+}
+
+fn renderer_line(stepper: &Stepper, number: usize) -> String {
+    let Some(look) = stepper.renderer(number) else { return String::new() };
+    let fifo = look.fifo_words.unwrap_or_default();
+    let mut text = format!("fifo {fifo}/{}", look.fifo_depth_words);
+    if let Some(order) = look.copying {
+        let display = stepper.record().ports().board(order.target.frame_buffer);
+        let _ =
+            write!(text, "; sends region {} of picture {} to {display}", order.target.region.0, order.target.picture);
+    }
+    if look.stands_at_copy {
+        text.push_str("; commands wait for a copy");
+    }
+    if look.stored_regions > 0 {
+        let _ = write!(text, "; {} in the backing store", look.stored_regions);
+    }
+    text
+}
+
+fn display_line(stepper: &Stepper, number: usize) -> String {
+    let display = &stepper.record().displays()[number];
+    let counters: Vec<String> =
+        display.counters().iter().map(|counter| format!("{} {}", counter.name, counter.count)).collect();
+    let (faults, _) = display.faults();
+    let faults = if faults > 0 { format!("; {faults} faults") } else { String::new() };
+    format!("{}: {}{faults}", display.name(), counters.join(", "))
+}
+
+/// What is said of one board.
+///
+/// # Errors
+///
+/// For a board that the machine does not have.
+pub(super) fn board(stepper: &Stepper, board: Board) -> Result<String, String> {
+    check(stepper, board)?;
+    let mut text = match board {
+        Board::Ring => return Ok(ring(stepper)),
+        Board::Renderer(number) => format!("{board}  {}\n", renderer_line(stepper, number)),
+        Board::Display(number) => format!("{board}  {}\n", display_line(stepper, number)),
+        Board::Host | Board::Gp(_) => String::new(),
+    };
+    if let Some(look) = stepper.processor(board) {
+        processor(stepper, board, &look, &mut text);
+    }
+    Ok(text)
+}
+
+fn processor(stepper: &Stepper, board: Board, look: &GpLook, text: &mut String) {
+    let ports = stepper.record().ports();
+    let _ = writeln!(text, "{board}  {}", processor_line(look));
+    for mail in &look.inbox {
+        let _ = writeln!(text, "inbox   from {}, arrived {}", ports.board(mail.source), ms(mail.arrived));
+    }
+    for node in &look.unaccepted {
+        let _ = writeln!(text, "sent    to {}, not accepted yet", ports.board(*node));
+    }
+    for (place, messages) in look.chains.iter().enumerate() {
+        let _ = writeln!(text, "queued  chain {place}: messages {messages}");
+    }
+    for (account, bytes) in look.memory.iter().filter(|(_, bytes)| *bytes > 0) {
+        let _ = writeln!(text, "memory  {}: {bytes} bytes", account);
+    }
+    let _ = writeln!(text, "busy    {} of {}", us(look.busy), us(stepper.now().since(Time::ZERO)));
+    if let Some(program) =
+        stepper.machine().board(board).and_then(|board| board.with_processor(|p| p.program().cloned())).flatten()
+    {
+        let _ = writeln!(text, "code    {} bytes at {:#010x}", program.bytes.len(), program.base);
+    }
+}
+
+/// Who waits for whom or what.
+pub(super) fn waits(stepper: &Stepper) -> String {
+    let blocked = stepper.machine().blocked();
+    blocked.iter().map(|wait| format!("{:<12} waits for {}\n", wait.board, wait.waits_for)).collect()
+}
+
+/// A line for each channel, and what waits for one.
+pub(super) fn ring(stepper: &Stepper) -> String {
+    let ports = stepper.record().ports();
+    let on = stepper.channels();
+    let mut text = String::new();
+    for channel in 0..stepper.record().config().ring.channels as usize {
+        let Some(message) = on.iter().find(|message| message.channel == channel) else {
+            let _ = writeln!(text, "{channel}  -");
+            continue;
+        };
+        let since = us(stepper.now().since(message.granted));
+        let end = message.ends_at.map_or_else(
+            || "until the receiver has room".to_owned(),
+            |end| format!("{} to go", us(end.since(stepper.now()))),
+        );
+        let [from, to] = [message.source, message.destination].map(|node| ports.board(node));
+        let _ = writeln!(text, "{channel}  {from} -> {to}, {} words, since {since}, {end}", message.words);
+    }
+    for message in stepper.record().ring().waiting() {
+        let waits = message.blocked(|node| ports.board(node).to_string());
+        let _ = writeln!(text, "   {} waits for {}", ports.board(message.source), waits.waits_for);
+    }
+    text
+}
+
+/// Stages that are shown.
+const STAGES: usize = 12;
+
+/// The last stages of pictures that have begun, the newest first.
+pub(super) fn timeline(stepper: &Stepper) -> String {
+    let record = stepper.record();
+    let mut stages = record.stages();
+    stages.retain(|stage| stage.begin <= stepper.now());
+    stages.sort_by_key(|stage| stage.begin);
+    let first = stages.len().saturating_sub(STAGES);
+    let mut text = String::new();
+    for stage in stages[first..].iter().rev() {
+        let surface = stage.surface.and_then(|id| record.surface(id)).map_or("", |surface| surface.label);
+        let end = stage.end.map_or_else(|| "goes on".to_owned(), ms);
+        let name = format!("{:?}", stage.stage).to_uppercase();
+        let _ = writeln!(
+            text,
+            "picture {:<4} {name:<10} {surface:<6} {} to {end}",
+            stage.picture.to_string(),
+            ms(stage.begin)
+        );
+    }
+    text
+}
+
+/// Whether a machine has a board.
+///
+/// # Errors
+///
+/// Which ones it has.
+pub(super) fn check(stepper: &Stepper, board: Board) -> Result<(), String> {
+    let record = stepper.record();
+    let (what, number, count) = match board {
+        Board::Host | Board::Ring => return Ok(()),
+        Board::Gp(number) => ("GP", number, record.ports().gps.len()),
+        Board::Renderer(number) => ("renderer", number, record.renderers().len()),
+        Board::Display(number) => ("display", number, record.displays().len()),
+    };
+    if number < count {
+        return Ok(());
+    }
+    Err(format!("expected {what} 0 to {}, found {board}", count - 1))
+}
+
+/// A board whose time comes from code.
+///
+/// # Errors
+///
+/// When it has no code.
+pub(super) fn with_code(stepper: &Stepper, board: Board) -> Result<&GpBoard, String> {
+    check(stepper, board)?;
+    let found = stepper.machine().board(board).filter(|gp| gp.with_processor(|_| ()).is_some());
+    found.ok_or_else(|| format!("expected a graphics processor that runs code (--level cycle), found {board}"))
+}
+
+fn program_of(board: &GpBoard) -> Option<Arc<Program>> {
+    board.with_processor(|processor| processor.program().cloned()).flatten()
+}
+
+/// Where the code of a board begins that it ran last.
+///
+/// # Errors
+///
+/// When it has run none.
+pub(super) fn base_of_code(stepper: &Stepper, board: Board) -> Result<u32, String> {
+    let program = program_of(with_code(stepper, board)?);
+    program.map(|program| program.base).ok_or_else(|| format!("{board} has run no code yet"))
+}
+
+/// An address, or a label of the code of a board, or of the first that has such a label.
+///
+/// # Errors
+///
+/// Which labels there are.
+pub(super) fn place_in_code(stepper: &Stepper, board: Option<Board>, text: &str) -> Result<u32, String> {
+    let all = (0..stepper.record().ports().gps.len()).map(Board::Gp);
+    let boards = board.map_or_else(|| all.collect(), |board| vec![board]);
+    let with_code: Vec<&GpBoard> = boards.iter().filter_map(|board| with_code(stepper, *board).ok()).collect();
+    if with_code.is_empty() {
+        return Err("expected a machine whose processors run code: --level cycle".to_owned());
+    }
+    if let Some(at) = address(text).map(|at| at & !3) {
+        return Ok(at);
+    }
+    let programs: Vec<Arc<Program>> = with_code.iter().filter_map(|board| program_of(board)).collect();
+    let found = programs.iter().find_map(|program| program.symbol(text));
+    found.ok_or_else(|| {
+        let labels = programs.first().map_or_else(Vec::new, |program| program.labels.clone());
+        let names: Vec<String> = labels.into_iter().map(|(name, _)| name).collect();
+        let names = if names.is_empty() { "no code has run yet".to_owned() } else { names.join(", ") };
+        format!("expected an address such as 0x1000 or a label ({names}), found `{text}`")
+    })
+}
+
+/// The labels at an address of a board's code.
+pub(super) fn labels(board: &GpBoard, at: u32) -> Vec<String> {
+    let labels = program_of(board).map_or_else(Vec::new, |program| program.labels.clone());
+    labels.into_iter().filter(|(_, place)| *place == at).map(|(name, _)| name).collect()
+}
+
+/// Words of a board's memory.
+///
+/// # Errors
+///
+/// When they are not all there.
+pub(super) fn words(board: &GpBoard, at: u32, count: u64) -> Result<Vec<u32>, String> {
+    let read = board.with_processor(|processor| processor.read(at, count as usize));
+    read.ok_or("no processor")?.map_err(|error| error.to_string())
+}

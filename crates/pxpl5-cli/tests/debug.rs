@@ -1,0 +1,158 @@
+//! `pxpl5 debug`: scripts, what they say, and what is refused; the guide's sessions are as it prints them.
+
+mod support;
+
+use std::path::{Path, PathBuf};
+use support::{Folder, command, err, out};
+
+const SLATS: [&str; 9] =
+    ["debug", "--pipeline", "slats", "--scene", "full-screen:2", "--fields", "8", "--machine", "slats"];
+
+fn page() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/guide/debugger.md")
+}
+
+/// The words of a line of the shell, with those in quotes kept together.
+fn words(line: &str) -> Vec<String> {
+    let parts = line.split('"').enumerate();
+    let words = parts.flat_map(|(n, part)| match n % 2 {
+        0 => part.split_whitespace().map(str::to_owned).collect(),
+        _ => vec![part.to_owned()],
+    });
+    words.collect()
+}
+
+/// Sessions of the guide: blocks whose first line is a command behind `$`.
+fn made_anew(text: &str) -> (String, usize) {
+    let mut made = String::new();
+    let mut sessions = 0;
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        made.push_str(line);
+        made.push('\n');
+        let Some(session) = line.strip_prefix("$ pxpl5 ") else { continue };
+        let args = words(session);
+        let args: Vec<&str> = args.iter().map(String::as_str).collect();
+        let output = command(&args).output().expect("it starts");
+        assert!(output.status.success(), "{session}: {}", err(&output));
+        made.push_str(&out(&output));
+        made.push_str("```\n");
+        sessions += 1;
+        lines.by_ref().find(|line| *line == "```").expect("the end of the block");
+    }
+    (made, sessions)
+}
+
+#[test]
+fn the_sessions_of_the_guide_are_what_the_debugger_prints() {
+    let text = std::fs::read_to_string(page()).expect("the page");
+    let (made, sessions) = made_anew(&text);
+    assert!(sessions >= 2, "{sessions}");
+    if std::env::var_os("PXPL5_UPDATE_GUIDE").is_some() {
+        std::fs::write(page(), &made).expect("the page can be written");
+        return;
+    }
+    assert!(made == text, "stale: PXPL5_UPDATE_GUIDE=1 cargo test --test debug");
+}
+
+fn session(commands: &str) -> std::process::Output {
+    command(&[&SLATS[..], &["--do", commands]].concat()).output().expect("it starts")
+}
+
+#[test]
+fn a_script_runs_to_times_fields_boards_and_conditions() {
+    let output = session(
+        "run to 20ms; run to field 3; next renderer 1; step 2 lines; run until fifo 0 >= 20; run until swap; run",
+    );
+    let text = out(&output);
+    assert!(output.status.success(), "{}", err(&output));
+    // An NTSC field is 1001/60000 s: three of them are 50.05 ms.
+    for line in
+        ["20.000000 ms, field 1\n", "50.050000 ms, field 3\n", "renderer 1: message announced\n", "the run is over"]
+    {
+        assert!(text.contains(line), "{line}: {text}");
+    }
+    assert_eq!(text.lines().filter(|line| line.starts_with("> ")).count(), 7, "{text}");
+}
+
+/// A snapshot has the hash of what happened before its field, written by a run in one go.
+#[test]
+fn the_trace_is_that_of_the_run_however_often_somebody_looked() {
+    let folder = Folder::new("debug-trace");
+    let saved = folder.run(&[&["run"], &SLATS[1..], &["--save-at", "5", "--save", "s.json", "--quiet"]].concat());
+    assert!(saved.status.success(), "{}", err(&saved));
+    let snapshot = std::fs::read_to_string(folder.0.join("s.json")).expect("it was written");
+    let snapshot: serde_json::Value = serde_json::from_str(&snapshot).expect("JSON");
+    let line = format!("trace   {}\n", snapshot["trace_hash"].as_str().expect("a hash"));
+    for commands in [
+        "run to field 5; show time",
+        "step 500; next gp 0; show boards; run until region; seen left; enabled 0; step 3 lines; run to field 5; show time",
+    ] {
+        let text = out(&session(commands));
+        assert!(text.contains(&line), "{line}: {text}");
+    }
+}
+
+#[test]
+fn a_wrong_command_says_what_was_expected_and_found() {
+    for (commands, said) in [
+        ("jump", "expected a command (run, next, step,"),
+        ("run to field 3; run to 10ms", "expected an instant not before now, 50.050000 ms, found 10.000000 ms"),
+        ("next renderer 99", "expected renderer 0 to"),
+        ("run until fifo 99 > 3", "renderer: expected 0 to"),
+        ("run until inbox ring > 3", "expected the host or a graphics processor of this machine, found ring"),
+        ("break start", "--level cycle"),
+        ("registers gp 0", "--level cycle"),
+        ("pixel 0 128 0", "column: expected 0 to 127, found 128"),
+        ("seen middle", "surface: expected left or right, found `middle`"),
+    ] {
+        let output = session(commands);
+        assert_eq!(output.status.code(), Some(2), "{commands}");
+        assert!(err(&output).contains(said), "{commands}: {}", err(&output));
+    }
+}
+
+#[test]
+fn without_a_terminal_it_says_how_to_go_on_without() {
+    let output = command(&SLATS).output().expect("it starts");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(err(&output).contains("expected --do COMMANDS or --do-file FILE"), "{}", err(&output));
+}
+
+#[test]
+fn pictures_are_written_and_a_script_may_be_a_file() {
+    let folder = Folder::new("debug");
+    folder.file("session.txt", "run to field 6   # the first pictures\nseen left left.png\nideal left ideal.png\n");
+    let output = folder.run(&[&SLATS[..], &["--do-file", "session.txt"]].concat());
+    assert!(output.status.success(), "{}", err(&output));
+    assert_eq!(folder.names(), ["ideal.png", "left.png", "session.txt"]);
+    let missing = folder.run(&[&SLATS[..], &["--do-file", "none.txt"]].concat());
+    assert_eq!(missing.status.code(), Some(1));
+    assert!(err(&missing).contains("none.txt"));
+}
+
+#[test]
+fn a_fault_of_the_machine_is_a_state_and_not_the_end_of_the_session() {
+    let args = ["debug", "--pipeline", "slats", "--scene", "full-screen:200000", "--fields", "8", "--pixels", "off"];
+    let output =
+        command(&[&args[..], &["--do", "run; show time; show waits; step"]].concat()).output().expect("it starts");
+    let text = out(&output);
+    assert!(output.status.success(), "{}", err(&output));
+    assert_eq!(text.matches("the machine cannot go on: GP").count(), 2, "{text}");
+    assert!(text.contains("failed  "), "{text}");
+}
+
+#[test]
+fn code_stops_at_breakpoints_and_shows_registers_code_and_memory() {
+    let args =
+        ["debug", "--pipeline", "slats", "--scene", "mig", "--triangles", "8", "--fields", "6", "--level", "cycle"];
+    let script = "run to field 2; break start; run; registers gp 0; disassemble gp 0 start 4; memory gp 0 start 4; delete start; run";
+    let output = command(&[&args[..], &["--do", script]].concat()).output().expect("it starts");
+    let text = out(&output);
+    assert!(output.status.success(), "{}", err(&output));
+    for words in
+        ["breakpoint: GP 0 at 0x", "at the breakpoint: pc 0x", "start:\n* 0x", "no breakpoints", "the run is over"]
+    {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+}

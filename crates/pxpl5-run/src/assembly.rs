@@ -1,0 +1,127 @@
+//! A machine with its programs, ready to run.
+
+use crate::cut::moves;
+use crate::display_list::{display_list, hmd_before, poses, views};
+use crate::error::ExperimentError;
+use crate::experiment::{Experiment, FIELDS_RANGE, Pixels};
+use crate::face_notes::FaceNotes;
+use crate::head::Head;
+use crate::head_views::{FIELDS_WITH_HEAD, HeadViews};
+use crate::level::{Level, with_clocks_of_instructions};
+use crate::pipeline::{Pipeline, Setup};
+use crate::preparation::Preparation;
+use crate::views::{FrameStarts, ReportTimes};
+use pxpl5_machine::{ConfigError, Machine, MachineConfig};
+use pxpl5_sim::Time;
+use std::sync::Arc;
+
+/// A machine with its programs, and what is written of a run while it goes on.
+pub(crate) struct Assembled {
+    pub(crate) machine: Machine,
+    pub(crate) head: Option<Arc<HeadViews>>,
+    pub(crate) notes: FaceNotes,
+}
+
+impl Experiment {
+    pub(crate) fn assemble(&self, preparation: Preparation) -> Result<Assembled, ExperimentError> {
+        let expected = if self.head.is_some() { (FIELDS_RANGE.0, FIELDS_WITH_HEAD) } else { FIELDS_RANGE };
+        if !(expected.0..=expected.1).contains(&self.fields) {
+            return Err(ExperimentError::Fields { expected, found: self.fields });
+        }
+        let mut adapted = self.pipeline.adapt(self.config.clone());
+        check_faces(&adapted, self.pipeline.as_ref())?;
+        let [red, green, blue] = self.scene.lighting().background;
+        let background = u32::from_be_bytes([0, red, green, blue]);
+        adapted.displays.iter_mut().for_each(|display| display.show_behind_all(background));
+        let layout = self.pipeline.layout();
+        let config = match self.level {
+            Level::Analytic => return Err(ExperimentError::Level),
+            Level::Transaction => adapted,
+            Level::Cycle => with_clocks_of_instructions(&adapted, &layout),
+        };
+        let mut machine = Machine::new(&config, self.pipeline.eyes(), layout)?;
+        if self.level == Level::Cycle {
+            machine.run_code();
+        }
+        let (setup, head) = self.setup(&config, &machine, preparation)?;
+        let notes = setup.notes.clone();
+        self.pipeline.load(&mut machine, &setup)?;
+        if let Some(seed) = self.shuffle {
+            machine.shuffle_ties(seed);
+        }
+        self.given_up.iter().for_each(|saving| machine.give_up(*saving));
+        if self.pixels == Pixels::All {
+            machine.compute_all_pixels(self.host.pixel_worker());
+        }
+        if self.traffic {
+            machine.record_traffic();
+        }
+        machine.switch_on();
+        Ok(Assembled { machine, head, notes })
+    }
+
+    fn setup(
+        &self,
+        config: &MachineConfig,
+        machine: &Machine,
+        preparation: Preparation,
+    ) -> Result<(Setup, Option<Arc<HeadViews>>), ExperimentError> {
+        let surface = machine.record().display().surfaces().first().cloned();
+        let hmd = hmd_before(surface.as_ref());
+        let eyes = self.pipeline.eyes();
+        let period = config.host.view_period_ns * 1_000;
+        let cut = self.pipeline.cut(&self.scene, config)?;
+        let scene = cut.as_ref().map_or(&self.scene, |cut| &cut.scene);
+        let list = Arc::new(display_list(scene).map_err(ExperimentError::Scene)?);
+        let (views, wanted) = views(scene, self.seed, hmd, eyes);
+        let reports: ReportTimes = Arc::new(move |after: Time| Some(Time((after.0 / period + 1) * period)));
+        let starts: FrameStarts = Arc::new(Some);
+        let aim = self.aim();
+        let pixels = self.pixels != Pixels::Off;
+        let poses = poses(scene, self.seed);
+        let notes = FaceNotes::default();
+        let moving = scene.structures().iter().map(moves).collect();
+        let cells = cut.as_ref().map_or_else(Arc::default, |cut| Arc::clone(&cut.cells));
+        let host = config.host;
+        let setup = Setup { list, views, wanted, poses, moving, cells, notes, aim, reports, starts, host, pixels };
+        let Some(head) = preparation.head.or_else(|| self.head.clone()) else { return Ok((setup, None)) };
+        let until = machine.record().tick(self.end());
+        check_recording(&head, until)?;
+        let head = Arc::new(HeadViews::new(head, scene, (hmd, eyes), until, preparation.rehearsal));
+        let (views, wanted, reports) = HeadViews::functions(&head);
+        let setup = Setup { views, wanted, reports, poses: HeadViews::poses(&head), ..setup };
+        if !self.on_demand {
+            return Ok((setup, Some(head)));
+        }
+        let asked = Arc::clone(&head);
+        Ok((Setup { starts: Arc::new(move |ready| asked.report_from(ready)), ..setup }, Some(head)))
+    }
+}
+
+/// A display that shows faces needs a pipeline that draws them, and the other way round.
+///
+/// # Errors
+///
+/// [`ConfigError`] says what was expected of the pipeline and what was found.
+pub fn check_faces(config: &MachineConfig, pipeline: &dyn Pipeline) -> Result<(), ConfigError> {
+    let Some(display) = config.displays.first() else { return Ok(()) };
+    let name = display.name();
+    let pipeline_name = pipeline.name();
+    match (display.takes_faces(), pipeline.draws_faces().is_some()) {
+        (true, false) => Err(ConfigError::Board(format!(
+            "display {name} shows six faces around the head: expected a pipeline that draws faces, such as arp-full, found {pipeline_name}"
+        ))),
+        (false, true) => Err(ConfigError::Board(format!(
+            "{pipeline_name} draws six faces around the head: expected the display arp, found {name}"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// A motion that ends must not end before the run.
+fn check_recording(head: &Head, until: Time) -> Result<(), ExperimentError> {
+    match head.motion.ends_ps().filter(|ends_ps| *ends_ps < until.0) {
+        Some(ends_ps) => Err(ExperimentError::Recording { recording: Time(ends_ps), run: until }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,49 @@
+//! What a visitor can choose.
+
+use serde_json::{Value, json};
+
+/// Motions of a head that need no recording, with what they are; the empty one is the scene's own.
+const MOTIONS: [(&str, &str); 5] = [
+    ("", "the scene's own motion, followed without delay"),
+    ("still", "a head that stands still"),
+    ("pan:100", "a turn at 100 degrees a second"),
+    ("sine:20:0.5", "to and fro by 20 degrees at half a hertz"),
+    ("synthetic:1", "somebody who looks around"),
+];
+
+/// Pipelines, scenes, displays and motions.
+pub(crate) fn catalog() -> Value {
+    let registry = pxpl5_lab::registry();
+    let pipelines = registry.pipelines().iter();
+    let scenes = pxpl5_scene::names().iter();
+    json!({
+        "pipelines": pipelines.map(|entry| json!({"name": entry.name, "about": entry.about})).collect::<Vec<_>>(),
+        "scenes": scenes.map(|(name, about)| json!({"name": example(name), "about": about})).collect::<Vec<_>>(),
+        "displays": registry.displays().iter().map(|entry| entry.name).collect::<Vec<_>>(),
+        "motions": MOTIONS.iter().map(|(name, about)| json!({"name": name, "about": about})).collect::<Vec<_>>(),
+    })
+}
+
+/// A scene's name with a number where it takes one.
+fn example(name: &str) -> String {
+    let (family, count) = name.split_once(':').unwrap_or((name, ""));
+    match count {
+        "N" if family == "full-screen" => "full-screen:12".to_owned(),
+        "N" => format!("{family}:100"),
+        _ => name.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_scene_of_the_list_can_be_built() {
+        let all = catalog();
+        let names =
+            all["scenes"].as_array().expect("a list").iter().map(|scene| scene["name"].as_str().expect("a name"));
+        assert!(names.clone().count() > 5);
+        names.for_each(|name| assert!(pxpl5_scene::builtin(name).is_ok(), "{name}"));
+    }
+}

@@ -1,0 +1,166 @@
+//! A run in pieces, with what the page asks of it.
+
+use crate::look;
+use pxpl5_lab::ExperimentFile;
+use pxpl5_machine::Board;
+use pxpl5_renderer::PixelArray;
+use pxpl5_run::{BareHost, Pause, Stepper};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::SurfaceId;
+use serde_json::Value;
+
+/// A running experiment.
+#[derive(Debug)]
+pub(crate) struct Session {
+    stepper: Stepper,
+    /// Whether all fields have been simulated.
+    is_over: bool,
+}
+
+impl Session {
+    /// Of settings as experiment files have them, one a line.
+    pub(crate) fn new(settings: &str) -> Result<Self, String> {
+        let mut file = ExperimentFile::new();
+        for setting in settings.lines().map(str::trim).filter(|setting| !setting.is_empty()) {
+            file.set_text(setting, "settings").map_err(|error| error.to_string())?;
+        }
+        let plan = file.resolve().map_err(|error| error.to_string())?;
+        let scene = plan.load_scene().map_err(|error| error.to_string())?;
+        let experiment = plan.experiment(scene).host(BareHost).record_traffic(true);
+        let stepper = experiment.stepper().map_err(|error| error.to_string())?;
+        Ok(Self { stepper, is_over: false })
+    }
+
+    pub(crate) fn run_for(&mut self, ps: u64) {
+        self.run_to(self.stepper.now().0.saturating_add(ps));
+    }
+
+    pub(crate) fn run_to(&mut self, ps: u64) {
+        // An instant behind the end is what says that the end has come.
+        let pause = self.stepper.run_to(Time(ps).min(self.stepper.end() + Span(1)));
+        self.note(&pause);
+    }
+
+    pub(crate) fn step(&mut self, of: &str) -> Result<(), String> {
+        let pause = match of {
+            "event" => self.stepper.step_event(),
+            "line" => self.stepper.step_line(),
+            "field" => self.stepper.step_period(),
+            _ => return Err(format!("expected event, line or field, found {of:?}")),
+        };
+        self.note(&pause);
+        Ok(())
+    }
+
+    fn note(&mut self, pause: &Pause) {
+        self.is_over |= *pause == Pause::End || self.stepper.now() == self.stepper.end();
+    }
+
+    pub(crate) fn state(&self) -> Value {
+        look::state(&self.stepper, self.is_over)
+    }
+
+    pub(crate) fn board(&self, name: &str) -> Result<Vec<String>, String> {
+        let board: Board = name.parse()?;
+        look::board(&self.stepper, board).ok_or_else(|| format!("this machine has no {board}"))
+    }
+
+    pub(crate) fn seen(&self, surface: u16) -> Vec<u8> {
+        self.stepper.seen(SurfaceId(surface)).map(|picture| rgba(&picture)).unwrap_or_default()
+    }
+
+    pub(crate) fn ideal(&self, surface: u16) -> Vec<u8> {
+        self.stepper.ideal_picture(SurfaceId(surface)).map(|picture| rgba(picture.image())).unwrap_or_default()
+    }
+
+    pub(crate) fn enabled(&self, renderer: usize) -> Vec<u8> {
+        let plane = self.stepper.array(renderer).map(|array| array.enable());
+        plane.map(|plane| plane.iter().flat_map(|word| word.to_le_bytes()).collect()).unwrap_or_default()
+    }
+}
+
+/// Bytes of a canvas.
+fn rgba(picture: &[u8]) -> Vec<u8> {
+    picture.chunks_exact(3).flat_map(|pixel| [pixel[0], pixel[1], pixel[2], u8::MAX]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pxpl5_run::ExperimentError;
+
+    const SETTINGS: &str = "pipeline=slats\nscene=full-screen:2\nfields=7\n";
+
+    /// The page's hash is that of a run in one go, as the command prints it.
+    #[test]
+    fn a_run_of_the_page_has_the_trace_hash_of_the_run() {
+        let mut session = Session::new(SETTINGS).expect("known settings");
+        while session.state()["over"] == false {
+            session.run_for(7_000_000_000);
+            let _ = (session.seen(0), session.enabled(0));
+        }
+        let plan = ExperimentFile::parse(
+            &SETTINGS.replace("slats", "\"slats\"").replace("full-screen:2", "\"full-screen:2\""),
+            "text",
+        )
+        .and_then(|file| file.resolve())
+        .expect("an experiment");
+        let outcome = match plan.experiment(plan.load_scene().expect("built in")).run() {
+            Err(ExperimentError::TooShort { partial, .. }) => *partial,
+            other => other.expect("it runs"),
+        };
+        assert_eq!(session.state()["trace_hash"], outcome.record().trace_hash().to_string());
+        assert_eq!(session.state()["config_hash"], outcome.experiment().config_hash().to_string());
+    }
+
+    #[test]
+    fn a_wrong_setting_is_refused_in_words() {
+        for (settings, said) in [
+            ("pipeline=slat", "slats"),
+            ("scene=migg", "mig"),
+            ("fields=0", "fields"),
+            ("nonsense", "expected path=value"),
+            ("pipeline=slats\ndisplay=arp", "arp"),
+        ] {
+            let error = Session::new(settings).expect_err(settings);
+            assert!(error.contains(said), "{settings}: {error}");
+        }
+    }
+
+    #[test]
+    fn pictures_are_as_large_as_the_surfaces_that_the_state_names() {
+        let mut session = Session::new(SETTINGS).expect("known settings");
+        session.run_for(60_000_000_000);
+        for (number, surface) in session.state()["surfaces"].as_array().expect("a list").iter().enumerate() {
+            let pixels = surface["width"].as_u64().expect("a number") * surface["height"].as_u64().expect("a number");
+            assert_eq!(session.seen(number as u16).len() as u64, 4 * pixels);
+            assert_eq!(session.ideal(number as u16).len() as u64, 4 * pixels);
+        }
+        assert!(session.seen(9).is_empty());
+        assert!((0..9).any(|renderer| session.enabled(renderer).len() == 128 * 16));
+    }
+
+    #[test]
+    fn every_board_of_the_state_can_be_asked_and_no_other() {
+        let mut session = Session::new(SETTINGS).expect("known settings");
+        session.run_for(40_000_000_000);
+        let state = session.state();
+        for board in state["boards"].as_array().expect("a list") {
+            let name = board["name"].as_str().expect("a name");
+            assert!(!session.board(name).expect("it is there").is_empty(), "{name}");
+        }
+        assert!(session.board("gp 99").is_err() && session.board("cpu").is_err());
+        assert!(session.step("pixel").is_err());
+    }
+
+    #[test]
+    fn a_machine_that_fails_is_a_state() {
+        let mut session =
+            Session::new("pipeline=slats\nscene=full-screen:200000\nfields=8\npixels=off").expect("known");
+        session.run_for(200_000_000_000);
+        let state = session.state();
+        assert!(state["failure"].as_str().is_some_and(|error| error.contains("GP")), "{state}");
+        session.run_for(1);
+        assert_eq!(session.state()["failure"], state["failure"]);
+    }
+}

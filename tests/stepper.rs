@@ -1,0 +1,263 @@
+//! A run in pieces is the run: how it is divided, and how often somebody looks, changes no trace and no picture.
+
+use pxpl5::machine::Board;
+use pxpl5::run::{Pause, Stepper};
+use pxpl5::{
+    Experiment, ExperimentError, ExperimentFile, MachineConfig, Measured, Outcome, PeriodNumber, Slats, Span,
+    SurfaceId, Time, registry, scene,
+};
+use pxpl5_renderer::PixelArray;
+use std::collections::BTreeSet;
+
+/// An experiment of these settings; `None` where the pipeline does not run on the display.
+fn experiment(settings: &[&str]) -> Option<Experiment> {
+    let mut file = ExperimentFile::new();
+    settings.iter().for_each(|setting| file.set_text(setting, "test").expect("known"));
+    let plan = file.resolve().ok()?;
+    let experiment = plan.experiment(plan.load_scene().expect("built in")).record_traffic(true);
+    experiment.build().is_ok().then_some(experiment)
+}
+
+/// Also of a run that was too short for statistics.
+fn outcome(result: Result<Outcome, ExperimentError>) -> Outcome {
+    match result {
+        Ok(outcome) => outcome,
+        Err(ExperimentError::TooShort { partial, .. }) => *partial,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Numbers that look random: an xorshift generator.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, n: u64) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 % n
+    }
+}
+
+/// Goes on by a piece of some kind.
+fn step(stepper: &mut Stepper, dice: &mut Dice) {
+    match dice.below(6) {
+        0 => stepper.run_to(stepper.now() + Span::from_us(dice.below(5_000))),
+        1 => (0..dice.below(200)).map(|_| stepper.step_event()).last().unwrap_or(Pause::Reached),
+        2 => stepper.step_line(),
+        3 => stepper.step_period(),
+        4 => {
+            let boards = [Board::Host, Board::Gp(0), Board::Gp(1), Board::Renderer(0), Board::Display(0), Board::Ring];
+            stepper.step_board(boards[dice.below(6) as usize])
+        }
+        _ => {
+            let channels = dice.below(4) as usize;
+            stepper.run_until(stepper.end(), |stepper, _| stepper.channels().len() > channels)
+        }
+    };
+}
+
+/// Looks at everything that there is to see.
+fn look(stepper: &Stepper, dice: &mut Dice) {
+    let processors = (0..60).map(Board::Gp).chain([Board::Host]).filter_map(|board| stepper.processor(board));
+    assert!(processors.count() > 1);
+    let renderers = stepper.record().renderers().len();
+    for renderer in (0..renderers).filter_map(|number| stepper.renderer(number)) {
+        assert!(renderer.fifo_words.is_some_and(|words| words <= renderer.fifo_depth_words), "{renderer:?}");
+    }
+    let most = stepper.record().config().ring.channels as usize;
+    assert!(stepper.channels().len() <= most);
+    let _ = (stepper.machine().blocked(), stepper.record().trace_hash(), stepper.record().stages());
+    if dice.below(12) == 0 {
+        let _ = stepper.array(dice.below(renderers as u64) as usize);
+        let _ = stepper.seen(SurfaceId(0));
+        let _ = stepper.ideal_picture(SurfaceId(0));
+    }
+}
+
+/// The run of an experiment in random pieces.
+fn in_pieces(experiment: &Experiment, seed: u64) -> Outcome {
+    let mut dice = Dice(seed);
+    let mut stepper = experiment.stepper().expect("it can be built");
+    while stepper.now() < stepper.end() {
+        step(&mut stepper, &mut dice);
+        look(&stepper, &mut dice);
+    }
+    outcome(stepper.finish())
+}
+
+fn assert_same(whole: &Outcome, pieces: &Outcome, name: &str) {
+    assert_eq!(whole.record().trace_hash(), pieces.record().trace_hash(), "{name}");
+    assert_eq!(whole.pictures(), pieces.pictures(), "{name}");
+    assert_eq!(whole.record().events(), pieces.record().events(), "{name}");
+    for (surface, _) in whole.record().surfaces() {
+        assert!(whole.picture(surface) == pieces.picture(surface), "{name}: {surface:?}");
+    }
+}
+
+#[test]
+fn every_pipeline_on_every_display_runs_in_pieces_as_in_one_go() {
+    let registry = registry();
+    let mut ran = BTreeSet::new();
+    for (pipeline, display) in registry
+        .pipelines()
+        .iter()
+        .flat_map(|pipeline| registry.displays().iter().map(move |display| (pipeline, display)))
+    {
+        let pipeline = format!("pipeline={}", pipeline.name);
+        let display = format!("display={}", display.name);
+        let settings = [pipeline.as_str(), display.as_str(), "scene=full-screen:2", "fields=7"];
+        let Some(experiment) = experiment(&settings) else { continue };
+        let whole = outcome(experiment.run());
+        let plain = outcome(experiment.clone().record_traffic(false).run());
+        assert_eq!(plain.record().trace_hash(), whole.record().trace_hash(), "{settings:?}");
+        (1..4).for_each(|seed| assert_same(&whole, &in_pieces(&experiment, seed), &format!("{settings:?}, {seed}")));
+        ran.extend([pipeline, display]);
+    }
+    let all = registry.pipelines().len() + registry.displays().len();
+    assert_eq!(ran.len(), all, "each was run at least once: {ran:?}");
+}
+
+#[test]
+fn a_tracked_head_with_prediction_is_followed_in_pieces_as_in_one_go() {
+    let settings = ["pipeline=slats", "scene=full-screen:2", "fields=7", "head.motion=synthetic:3"];
+    let experiment = experiment(&settings).expect("it can be built");
+    assert_same(&outcome(experiment.run()), &in_pieces(&experiment, 9), "head");
+}
+
+fn slats() -> Experiment {
+    let mig = scene::builtin("mig").expect("built in");
+    let mut machine = MachineConfig::slats();
+    machine.displays.iter_mut().for_each(|display| display.remember(8));
+    Experiment::new(machine, Slats::whole(), mig).fields(6).record_traffic(true)
+}
+
+#[test]
+fn a_line_step_ends_when_the_next_line_begins_to_light() {
+    let mut stepper = slats().stepper().expect("it can be built");
+    stepper.run_to(stepper.record().tick(PeriodNumber(3)));
+    // Odd fields scan the odd lines.
+    for line in [1, 3, 5] {
+        assert_eq!(stepper.step_line(), Pause::Reached);
+        assert_eq!(Some(stepper.now()), stepper.record().display().lights(0, 0, line, PeriodNumber(3)));
+    }
+    let last = stepper.record().display().lights(0, 0, 479, PeriodNumber(3)).expect("an odd line");
+    stepper.run_to(last);
+    stepper.step_line();
+    assert_eq!(stepper.now(), stepper.record().tick(PeriodNumber(4)));
+}
+
+#[test]
+fn an_event_is_taken_at_its_time_and_named_with_its_board() {
+    let mut stepper = slats().stepper().expect("it can be built");
+    assert_eq!(stepper.step_board(Board::Renderer(3)), Pause::Reached);
+    let last = stepper.last().expect("an event");
+    assert_eq!((last.board, last.time), (Board::Renderer(3), stepper.now()));
+    assert!(stepper.now() > Time::ZERO);
+    let next = stepper.machine().next_happening().expect("the machine is at work");
+    stepper.step_event();
+    assert_eq!(stepper.last(), Some(next));
+}
+
+/// What the beam has drawn at an instant is known then, and nothing that comes later is in it.
+#[test]
+fn what_has_been_drawn_so_far_is_what_the_whole_run_says_of_that_instant() {
+    let whole = outcome(slats().run());
+    let mut stepper = slats().stepper().expect("it can be built");
+    let mut lit = 0;
+    for us in (30_000..82_000).step_by(6_131) {
+        let at = Time::ZERO + Span::from_us(us);
+        stepper.run_to(at);
+        for surface in 0..2 {
+            let seen = stepper.seen(SurfaceId(surface)).expect("an eye");
+            let expected = whole.record().display().seen_at(usize::from(surface), at).expect("it is remembered");
+            assert!(seen == expected, "{surface} at {us} us");
+            lit += seen.pixels().filter(|pixel| pixel.0 != seen.get_pixel(0, 0).0).count();
+        }
+    }
+    assert!(lit > 1_000, "{lit} pixels of the aircraft");
+}
+
+/// The FIFO's course is found a second time by the record of traffic, whose sums are of the whole run.
+#[test]
+fn a_fifo_holds_what_the_record_of_traffic_says() {
+    let whole = outcome(slats().run());
+    let traffic = whole.record().observation().traffic.as_deref().expect("it was recorded");
+    let courses: Vec<_> = (0..4).map(|renderer| traffic.fifo_words(renderer)).collect();
+    let mut stepper = slats().stepper().expect("it can be built");
+    let mut most = 0;
+    for step in 0..400 {
+        stepper.run_to(Time::ZERO + Span::from_us(40_000 + step * 37));
+        for (renderer, course) in courses.iter().enumerate() {
+            let expected = course.iter().take_while(|change| change.0 <= stepper.now()).last().map_or(0, |last| last.1);
+            let found = stepper.renderer(renderer).and_then(|look| look.fifo_words).expect("traffic is recorded");
+            assert_eq!(i64::from(found), expected, "renderer {renderer} at {}", stepper.now());
+            most = most.max(found);
+        }
+    }
+    assert!(most > 30, "a triangle has waited: {most}");
+}
+
+#[test]
+fn an_array_whose_commands_have_all_started_is_what_was_sent() {
+    let mut stepper = slats().stepper().expect("it can be built");
+    stepper.run_to(stepper.record().tick(PeriodNumber(4)));
+    let started = |stepper: &Stepper, at: Time| stepper.record().renderers()[0].look(at).fifo_words == Some(0);
+    let end = stepper.end();
+    let pause = stepper.run_until(end, |stepper, _| {
+        stepper.renderer(0).is_some_and(|look| look.stands_at_copy) && started(stepper, stepper.now())
+    });
+    assert_eq!(pause, Pause::Reached);
+    let sent = stepper.record().renderers()[0].pixel_memory().expect("pixels are wanted");
+    let executed = stepper.array(0).expect("commands have started");
+    assert!((0..208).all(|bit| sent.plane(bit) == executed.plane(bit)));
+    assert!((0..208).any(|bit| executed.plane(bit).iter().any(|word| *word != 0)));
+}
+
+#[test]
+fn pixels_come_into_an_array_one_command_after_the_other() {
+    let mut stepper = slats().stepper().expect("it can be built");
+    stepper.run_to(stepper.record().tick(PeriodNumber(4)));
+    let mut enabled = BTreeSet::new();
+    let renderers = stepper.record().renderers().len();
+    for _ in 0..60 {
+        stepper.run_to(stepper.now() + Span::from_us(100));
+        let arrays = (0..renderers).filter_map(|renderer| stepper.array(renderer));
+        enabled.extend(arrays.map(|array| array.enable().iter().map(|word| word.count_ones()).sum::<u32>()));
+    }
+    assert!(enabled.len() > 3, "each triangle enables its own pixels: {enabled:?}");
+}
+
+#[test]
+fn breakpoints_show_registers_and_change_no_trace() {
+    let settings = ["pipeline=slats", "scene=mig", "triangles=12", "fields=6", "level=cycle", "pixels=off"];
+    let experiment = experiment(&settings).expect("it can be built");
+    let whole = outcome(experiment.run());
+    let mut stepper = experiment.stepper().expect("it can be built");
+    let has_code = |stepper: &Stepper, gp: usize| {
+        let board = stepper.machine().board(Board::Gp(gp))?;
+        board.with_processor(|processor| processor.program().cloned())?
+    };
+    stepper.run_until(stepper.end(), |stepper, _| (0..8).any(|gp| has_code(stepper, gp).is_some()));
+    let program = (0..8).find_map(|gp| has_code(&stepper, gp)).expect("code has run");
+    let address = program.symbol("start").expect("its entry");
+    stepper.break_at(BTreeSet::from([address]));
+    let mut met = 0;
+    while let Pause::Breakpoints(hits) = stepper.run_to(stepper.end()) {
+        assert!(hits.iter().all(|hit| hit.address == address && hit.state.pc == address), "{hits:?}");
+        assert_eq!(hits[0].into_call, Span::ZERO, "the entry comes first");
+        met += hits.len();
+    }
+    assert!(met > 10, "{met}");
+    assert_eq!(outcome(stepper.finish()).record().trace_hash(), whole.record().trace_hash());
+}
+
+#[test]
+fn a_stepper_stands_at_the_end_and_says_so() {
+    let mut stepper = slats().stepper().expect("it can be built");
+    assert_eq!(stepper.run_to(stepper.end() + Span(1)), Pause::End);
+    assert_eq!(stepper.now(), stepper.end());
+    assert_eq!(stepper.step_event(), Pause::End);
+    assert_eq!(stepper.run_to(Time::ZERO), Pause::Reached);
+    assert_eq!(stepper.now(), stepper.end(), "time does not go back");
+}
