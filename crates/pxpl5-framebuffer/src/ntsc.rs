@@ -10,6 +10,7 @@ use pxpl5_display::{
 };
 use pxpl5_sim::{Context, Time};
 use pxpl5_wire::{Body, Eye, FieldParity, NodeId, PeriodNumber, read_swap_request};
+use std::ops::Range;
 
 /// Frame buffers that share a sync generator: one for a single picture, two for the eyes of a stereo pair.
 ///
@@ -168,17 +169,35 @@ pub fn seen_at(video: &Video, time: Time, fields: &[SeenField]) -> RgbImage {
     let now = video.field_at(time);
     let ages = [0, 1, 2].map(|age| picture_of(fields, now.before(age)));
     let mut screen = RgbImage::new(video.width(), video.height());
-    for (x, y, pixel) in screen.enumerate_pixels_mut() {
-        let age = match video.when(x, y, now) {
-            Some(scanned_at) if scanned_at <= time => 0,
-            Some(_) => 2,
-            None => 1,
+    let row_bytes = video.width() as usize * 3;
+    for (y, row) in (0..).zip(screen.chunks_exact_mut(row_bytes)) {
+        let mut copy = |age: usize, bytes: Range<usize>| {
+            if let Some(field) = &ages[age] {
+                let first = (y / 2) as usize * row_bytes;
+                row[bytes.clone()].copy_from_slice(&field.as_raw()[first..][bytes]);
+            }
         };
-        if let Some(field) = &ages[age] {
-            *pixel = *field.get_pixel(x, y / 2);
+        if video.when(0, y, now).is_none() {
+            copy(1, 0..row_bytes);
+            continue;
         }
+        // The beam goes from left to right.
+        let has_been = |x: u32| video.when(x, y, now).is_some_and(|scanned_at| scanned_at <= time);
+        let scanned = first_without(video.width(), has_been) as usize * 3;
+        copy(0, 0..scanned);
+        copy(2, scanned..row_bytes);
     }
     screen
+}
+
+/// How many numbers from 0 on, of so many, have what all before one have and none behind it.
+fn first_without(count: u32, has: impl Fn(u32) -> bool) -> u32 {
+    let (mut low, mut high) = (0, count);
+    while low < high {
+        let middle = low.midpoint(high);
+        if has(middle) { low = middle + 1 } else { high = middle }
+    }
+    low
 }
 
 /// The lines of one of some fields.
