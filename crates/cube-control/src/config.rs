@@ -1,7 +1,7 @@
 //! Who takes part.
 
 use crate::update::FaceUpdate;
-use crate::warp::WarpedLists;
+use crate::warped_lists::WarpedLists;
 use address_recalculation::{CubeFace, region_grid};
 use pphigs::{Picture, Share};
 use pxpl5_wire::{CopyContent, CopyTarget, Lines, NodeId, RegionGrid, RegionId};

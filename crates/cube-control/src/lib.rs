@@ -46,6 +46,7 @@ mod rules;
 mod slave;
 mod update;
 mod warp;
+mod warped_lists;
 
 pub use config::{CubeControlConfig, Faces};
 pub use faces::{CubePass, face_view};
@@ -53,4 +54,5 @@ pub use host::{Planned, host};
 pub use master::master;
 pub use slave::slave;
 pub use update::FaceUpdate;
-pub use warp::{FaceWarp, WarpedLists};
+pub use warp::FaceWarp;
+pub use warped_lists::WarpedLists;

@@ -74,11 +74,10 @@ pub use pipelines::{
     Code, FacePipeline, FacePolicy, FaceSource, FinishedRegions, Frameless, Interpolation, Jitp, RenderingControl,
     Slats, Viewpoint, region_at,
 };
-pub use preparation::Rehearsed;
 pub use pxpl5_display::{Aim, LightSpan};
 pub use raster::Raster;
 pub use registry::{ClosedForm, DisplayEntry, Goal, LimitCriterion, PipelineEntry, Registry, TestScene};
-pub use rehearsal::Rehearsal;
+pub use rehearsal::{Rehearsal, Rehearsed};
 pub use samples::{KEPT_SAMPLES, Samples};
 pub use statistics::{DefinedStatistics, Statistics};
 pub use stepper::{Pause, Stepper};

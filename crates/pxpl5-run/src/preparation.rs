@@ -5,7 +5,7 @@ use crate::experiment::{Experiment, Pixels};
 use crate::head::Head;
 use crate::latched_head::LatchedHead;
 use crate::outcome::Outcome;
-use crate::rehearsal::Rehearsal;
+use crate::rehearsal::{Rehearsal, Rehearsed};
 use crate::statistics::Statistics;
 use pxpl5_display::{Aim, LightSpan};
 use pxpl5_sim::Time;
@@ -28,14 +28,6 @@ pub(crate) struct Preparation {
     pub(crate) rehearsal: Option<Rehearsal>,
     /// The head with its predictor tuned; `None` where there is nothing to tune.
     pub(crate) head: Option<Arc<Head>>,
-}
-
-/// What a run without prediction tells whoever predicts: the same for every predictor.
-#[derive(Clone, Debug)]
-pub struct Rehearsed {
-    rehearsal: Rehearsal,
-    interval_ps: Option<u64>,
-    turn_interval_ps: Option<u64>,
 }
 
 impl Experiment {
@@ -100,18 +92,6 @@ impl Experiment {
             Ok(outcome) if interval_ps(&outcome, head.aim()).is_some() => Ok(outcome),
             Ok(_) | Err(ExperimentError::TooShort { .. }) => self.without_prediction(head, self.fields),
             Err(error) => Err(error),
-        }
-    }
-}
-
-impl Rehearsed {
-    /// A head whose predictor errs least so far ahead as the run had to predict: places over the interval of pictures; orientations too,
-    /// or over that of a display that latches turns alone. `None` where there is no interval.
-    fn tuned(&self, head: &Head) -> Option<Head> {
-        let of_pictures = self.interval_ps.map(|interval_ps| head.tuned_for(interval_ps));
-        match self.turn_interval_ps {
-            Some(interval_ps) => Some(of_pictures.as_ref().unwrap_or(head).tuned_for_turns(interval_ps)),
-            None => of_pictures,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! For which instants views are drawn, known from a run without prediction.
 
+use crate::head::Head;
 use pxpl5_sim::Time;
 use pxpl5_wire::ViewNumber;
 use std::collections::BTreeMap;
@@ -23,5 +24,27 @@ impl Rehearsal {
     pub(crate) fn aimed_at(&self, number: ViewNumber, sampled_at: Time) -> Time {
         let expected = Time(sampled_at.0 + self.mean_lead_ps);
         self.aimed_at.get(&number).copied().filter(|at| *at >= sampled_at).unwrap_or(expected)
+    }
+}
+
+/// What a run without prediction tells whoever predicts: the same for every predictor.
+#[derive(Clone, Debug)]
+pub struct Rehearsed {
+    /// When each view is seen.
+    pub(crate) rehearsal: Rehearsal,
+    /// How far ahead views have to be predicted, and orientations that a display latches; `None` where nothing was.
+    pub(crate) interval_ps: Option<u64>,
+    pub(crate) turn_interval_ps: Option<u64>,
+}
+
+impl Rehearsed {
+    /// A head whose predictor errs least so far ahead as the run had to predict: places over the interval of pictures; orientations too,
+    /// or over that of a display that latches turns alone. `None` where there is no interval.
+    pub(crate) fn tuned(&self, head: &Head) -> Option<Head> {
+        let of_pictures = self.interval_ps.map(|interval_ps| head.tuned_for(interval_ps));
+        match self.turn_interval_ps {
+            Some(interval_ps) => Some(of_pictures.as_ref().unwrap_or(head).tuned_for_turns(interval_ps)),
+            None => of_pictures,
+        }
     }
 }

@@ -81,8 +81,8 @@ mod tests {
     /// Whichever point loads the scene first: with and without its back faces it is not the same.
     #[test]
     fn a_row_does_not_depend_on_the_points_before_it() {
-        let text =
-            "pipeline = \"slats\"\nscene = \"mig\"\ntriangles = 100\nfields = 20\n[sweep.grid]\ncull = [false, true]\n";
+        // Half of a ball's triangles are behind it.
+        let text = "pipeline = \"rendering-control\"\nscene = \"sphere:400\"\nfields = 20\n[sweep.grid]\ncull = [false, true]\n";
         let rows = |points: &[u64]| {
             let mut rows = sweep(text).rows(points, Duration::MAX);
             rows.sort_by_key(|(row, _)| row.point);

@@ -11,6 +11,9 @@ use pxpl5_wire::{PeriodNumber, PictureNumber, ViewNumber};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+/// What a host does when it is ready for an update.
+pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> Planned>;
+
 /// What all plans have in common: views, starts, and where updates are noted.
 pub(super) struct Updates {
     pub(super) setup: Setup,

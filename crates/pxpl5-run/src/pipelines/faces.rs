@@ -1,9 +1,9 @@
 //! Six faces of the cube around the eye, drawn by Pixel-Planes 5 for a display that turns with the head.
 
 use super::face_cells::ByCells;
-use super::face_entries::{IDEAL_NAMES, NAMES, POLICIES, POLICY, SEGMENT, WARP};
+use super::face_keys::{IDEAL_NAMES, NAMES, POLICIES, POLICY, SEGMENT, WARP};
 use super::face_objects::ByObjects;
-use super::face_plan::{Cycles, Full, Updates};
+use super::face_plan::{Cycles, Full, Plan, Updates};
 use super::ideal_faces::{All, IdealFaces, seen_next};
 use super::{shading_value, swapped_in};
 use crate::cut::CutScene;
@@ -13,7 +13,7 @@ use crate::latched_head::{LatchedHead, ORIENTATION_WORDS};
 use crate::pipeline::{PictureTimes, Pipeline, Setup};
 use crate::views::{Poses, ReportTimes};
 use address_recalculation::{AddressRecalculationPipeline, ArpConfig, Latch, Orientation, orientation_message};
-use cube_control::{CubeControlConfig, Faces, Planned, WarpedLists, host, master, slave};
+use cube_control::{CubeControlConfig, Faces, WarpedLists, host, master, slave};
 use glam::{Mat4, Vec4};
 use pphigs::{DisplayList, Picture, RecentViews, RegionBinning, Shading};
 use priority_rendering::{Falloff, PriorityError, PriorityTiming};
@@ -152,8 +152,6 @@ fn priority_timing(config: &MachineConfig) -> Result<PriorityTiming, ConfigError
 fn refused(error: PriorityError) -> ConfigError {
     ConfigError::Board(error.to_string())
 }
-
-pub(super) type Plan = Box<dyn FnMut(PictureNumber, Time) -> Planned>;
 
 fn too_few_gps(found: u64) -> ConfigError {
     ConfigError::Value { what: "n_gps of faces (a master and slaves)".to_owned(), expected: (2, 1_000), found }

@@ -1,7 +1,6 @@
 //! Faces that an ideal renderer draws in no time, and the host's line that brings them to the display.
 
-use super::face_plan::{Due, DuePolicy, Updates};
-use super::faces::Plan;
+use super::face_plan::{Due, DuePolicy, Plan, Updates};
 use crate::latched_head::lights_of;
 use crate::pipeline::Setup;
 use address_recalculation::{CubeFace, Scan};

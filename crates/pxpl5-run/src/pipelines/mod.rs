@@ -2,6 +2,7 @@
 
 mod face_cells;
 mod face_entries;
+mod face_keys;
 mod face_objects;
 mod face_plan;
 mod faces;
