@@ -117,8 +117,8 @@ mod tests {
     fn a_wrong_setting_is_refused_in_words() {
         for (settings, said) in [
             ("pipeline=slat", "slats"),
-            ("scene=migg", "mig"),
-            ("fields=0", "fields"),
+            ("pipeline=slats\nscene=migg", "the nearest is \"mig\""),
+            ("pipeline=slats\nscene=mig\nfields=0", "fields"),
             ("nonsense", "expected path=value"),
             ("pipeline=slats\ndisplay=arp", "arp"),
         ] {
