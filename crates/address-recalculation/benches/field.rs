@@ -77,7 +77,7 @@ fn field(c: &mut Criterion) {
     let mut group = c.benchmark_group("field");
     group.sample_size(20).throughput(Throughput::Elements(pixels as u64));
     // A look begins anew in each field: nothing is composed yet.
-    group.bench_function("eight pixels at a time", |b| b.iter(|| fresh().run(0, black_box(&matrix), &mut fast)));
+    group.bench_function("64 pixels at a time", |b| b.iter(|| fresh().run(0, black_box(&matrix), &mut fast)));
     group.bench_function("a plain loop", |b| {
         b.iter(|| plain(&table, &unit, black_box(&matrix), &memories, &mut slow));
     });

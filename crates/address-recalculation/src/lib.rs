@@ -54,7 +54,7 @@
 //! # Two of everything
 //!
 //! [`literal`] is the definition: registers of every stage, clock by clock, partial products, restoring dividers, banks. [`Lookup`]
-//! takes eight pixels at a time in doubles, which are exact for these words, and gives the same bits; tests/equal.rs holds them
+//! takes 64 pixels at a time in doubles, which are exact for these words, and gives the same bits; tests/equal.rs holds them
 //! together.
 //!
 //! # Not modelled
