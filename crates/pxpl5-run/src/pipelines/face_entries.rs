@@ -76,9 +76,13 @@ fn build_ideal(latch: Latch, settings: &PipelineSettings) -> Arc<dyn Pipeline> {
     Arc::new(with_settings(FacePipeline { source: FaceSource::Ideal, ..FacePipeline::new(policy) }, latch, settings))
 }
 
+/// What variants are that latch orientations more often than the one above them.
+const BY_LINE: &str = "the same, with an orientation for each line";
+const BY_PIXEL: &str = "the same, with orientations as often as the host's line carries them, latched by pixel";
+
 /// An entry for a policy and a latch.
 macro_rules! entry {
-    ($policy:ident, $latch:ident, $about:literal) => {
+    ($policy:ident, $latch:ident, $about:expr) => {
         entry((FacePolicy::$policy, Latch::$latch), $about, |settings| {
             build(FacePolicy::$policy, Latch::$latch, settings)
         })
@@ -88,34 +92,26 @@ macro_rules! entry {
 /// Address recalculation pipelines in the registry.
 pub(super) const ENTRIES: [PipelineEntry; 15] = [
     entry!(Full, Field, "six faces in one memory, looked up by the orientation of each field (VRAIS 93)"),
-    entry!(Full, Line, "the same, with an orientation for each line"),
-    entry!(Full, Pixel, "the same, with orientations as often as the host's line carries them, latched by pixel"),
+    entry!(Full, Line, BY_LINE),
+    entry!(Full, Pixel, BY_PIXEL),
     entry!(Objects, Field, "six faces in several memories, objects in the slowest that keeps them right (SIGGRAPH 94)"),
-    entry!(Objects, Line, "the same, with an orientation for each line"),
-    entry!(Objects, Pixel, "the same, with orientations as often as the host's line carries them, latched by pixel"),
+    entry!(Objects, Line, BY_LINE),
+    entry!(Objects, Pixel, BY_PIXEL),
     entry!(
         Cells,
         Field,
         "objects cut at the borders of square cells, near cells drawn often, far ones seldom (ACSC 2005)"
     ),
-    entry!(Cells, Line, "the same, with an orientation for each line"),
-    entry!(Cells, Pixel, "the same, with orientations as often as the host's line carries them, latched by pixel"),
+    entry!(Cells, Line, BY_LINE),
+    entry!(Cells, Pixel, BY_PIXEL),
     entry!(CellsWarped, Field, "cells whose vertices are moved so that memories meet at their borders (ACSC 2005)"),
-    entry!(CellsWarped, Line, "the same, with an orientation for each line"),
-    entry!(
-        CellsWarped,
-        Pixel,
-        "the same, with orientations as often as the host's line carries them, latched by pixel"
-    ),
+    entry!(CellsWarped, Line, BY_LINE),
+    entry!(CellsWarped, Pixel, BY_PIXEL),
     ideal(
         Latch::Field,
         "faces of an ideal renderer, in no time: what a faster machine could gain at most",
         |settings| build_ideal(Latch::Field, settings),
     ),
-    ideal(Latch::Line, "the same, with an orientation for each line", |settings| build_ideal(Latch::Line, settings)),
-    ideal(
-        Latch::Pixel,
-        "the same, with orientations as often as the host's line carries them, latched by pixel",
-        |settings| build_ideal(Latch::Pixel, settings),
-    ),
+    ideal(Latch::Line, BY_LINE, |settings| build_ideal(Latch::Line, settings)),
+    ideal(Latch::Pixel, BY_PIXEL, |settings| build_ideal(Latch::Pixel, settings)),
 ];

@@ -19,7 +19,7 @@ pub(super) const POLICIES: [&str; 4] = ["full", "objects", "cells", "cells-warp"
 
 pub(super) const POLICY: Key = Key {
     name: "policy",
-    about: "what is drawn when: full, objects, cells or cells-warp",
+    about: "what is drawn when: full, objects, cells or cells-warp (segment and warp mean nothing without cells)",
     values: KeyValues::Names(&POLICIES),
     sets: &[],
 };
