@@ -1,15 +1,16 @@
-//! Trace and pictures of 30 experiments, as hashes: nothing that is simulated changes unnoticed, on any host.
+//! Trace and pictures of 42 experiments, as hashes: nothing that is simulated changes unnoticed, on any host and with any vector unit.
 //!
 //! `tests/golden/hashes.txt` changes only by `PXPL5_UPDATE_HASHES=1 cargo test --test hashes`, and CHANGELOG.md says why then.
 
 use pxpl5::{ExperimentFile, Measured, SurfaceId};
+use pxpl5_renderer::Vectors;
 use std::fmt::Write as _;
 use std::path::Path;
 
 const UPDATE: &str = "PXPL5_UPDATE_HASHES";
 
 /// Pipelines with the fields in which something is shown.
-const PIPELINES: [(&str, &str, u64); 10] = [
+const PIPELINES: [(&str, &str, u64); 14] = [
     ("rendering-control", "mono = false", 14),
     ("rendering-control", "mono = true", 12),
     ("slats", "copy = \"whole\"", 12),
@@ -20,6 +21,10 @@ const PIPELINES: [(&str, &str, u64); 10] = [
     ("jitp-scanline", "strip_rows = 32", 12),
     ("jitp-dual-screen", "strip_rows = 64", 12),
     ("jitp-dual-view-racing", "strip_rows = 64", 12),
+    ("arp-full", "display = \"arp\"", 9),
+    ("arp-priority-line", "display = \"arp\"", 9),
+    ("arp-cells-warp", "display = \"arp\"", 9),
+    ("arp-ideal-pixel", "display = \"arp\"", 9),
 ];
 
 const SCENES: [(&str, u64); 3] = [("full-screen:8", 8), ("mig", 24), ("molecules", 30)];
@@ -44,22 +49,31 @@ fn hashed(pipeline: &str, key: &str, fields: u64, scene: &str, triangles: u64) -
     format!("{hash} {:016x} {pipeline} {} {scene}", fnv(pictures.into_iter()), key.replace(' ', ""))
 }
 
-#[test]
-fn trace_and_pictures_of_thirty_experiments_are_what_they_were() {
+/// All experiments, a line each.
+fn all_hashed() -> String {
     let mut text = String::new();
     for (pipeline, key, fields) in PIPELINES {
         for (scene, triangles) in SCENES {
             writeln!(text, "{}", hashed(pipeline, key, fields, scene, triangles)).expect("into a string");
         }
     }
+    text
+}
+
+#[test]
+fn trace_and_pictures_of_forty_two_experiments_are_what_they_were_on_every_vector_unit() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/hashes.txt");
     if std::env::var_os(UPDATE).is_some() {
-        std::fs::write(&path, &text).expect("tests/golden can be written");
+        std::fs::write(&path, all_hashed()).expect("tests/golden can be written");
     }
     let expected = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    assert_eq!(text.lines().count(), 30);
-    for (line, expected) in text.lines().zip(expected.lines()) {
-        assert_eq!(line, expected, "trace, pictures, experiment");
+    assert_eq!(expected.lines().count(), 42);
+    for vectors in Vectors::available() {
+        vectors.at_most();
+        let text = all_hashed();
+        for (line, expected) in text.lines().zip(expected.lines()) {
+            assert_eq!(line, expected, "trace, pictures, experiment on {vectors:?}");
+        }
+        assert_eq!(text, expected);
     }
-    assert_eq!(text, expected);
 }

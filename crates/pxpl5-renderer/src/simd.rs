@@ -8,8 +8,13 @@
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+use std::sync::atomic::{AtomicU8, Ordering};
+
+/// The best unit that an array takes by itself, as its place in [`Vectors`].
+static MOST: AtomicU8 = AtomicU8::new(Vectors::Avx512 as u8);
+
 /// The vector units that a kernel is compiled for. All give the same bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Vectors {
     /// What every processor of the target has.
@@ -28,11 +33,26 @@ impl Vectors {
         all.into_iter().filter(|vectors| vectors.present()).collect()
     }
 
-    /// The best unit that this processor has.
+    /// The best unit that this processor has and that [`Vectors::at_most`] allows.
     #[must_use]
     pub fn best() -> Self {
         let best = if Self::Avx2.present() { Self::Avx2 } else { Self::Portable };
-        if Self::Avx512.present() { Self::Avx512 } else { best }
+        let best = if Self::Avx512.present() { Self::Avx512 } else { best };
+        best.min(Self::from_rank(MOST.load(Ordering::Relaxed)))
+    }
+
+    /// From now on no pixel array of this process takes a better unit by itself, so that whole experiments can be run on each:
+    /// `tests/hashes.rs`. Arrays that exist keep theirs.
+    pub fn at_most(self) {
+        MOST.store(self as u8, Ordering::Relaxed);
+    }
+
+    const fn from_rank(rank: u8) -> Self {
+        match rank {
+            0 => Self::Portable,
+            1 => Self::Avx2,
+            _ => Self::Avx512,
+        }
     }
 
     #[cfg(target_arch = "x86_64")]
