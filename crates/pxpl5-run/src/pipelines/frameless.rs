@@ -9,7 +9,7 @@ use crate::registry::{Goal, LimitCriterion, PipelineEntry, TestScene};
 use jitp::{BlockOrder, DrawingSchedule, JitpConfig};
 use pphigs::{PrimitiveCounts, Share, TransformCost};
 use pxpl5_framebuffer::Video;
-use pxpl5_machine::{ConfigError, Machine, Record};
+use pxpl5_machine::{Arrival, ConfigError, Machine, Record};
 use pxpl5_renderer::Layout;
 use pxpl5_sim::Time;
 use pxpl5_wire::{CopyTarget, PictureNumber, RegionGrid, RegionId, ViewNumber};
@@ -128,11 +128,7 @@ impl Pipeline for Frameless {
         let Ok(display) = ntsc(record, self.name()) else { return Vec::new() };
         let observation = record.observation();
         let video = display.video();
-        let mut last: BTreeMap<PictureNumber, (u32, Time, CopyTarget)> = BTreeMap::new();
-        for arrival in &observation.arrivals {
-            let count = last.get(&arrival.target.picture).map_or(0, |entry| entry.0) + 1;
-            last.insert(arrival.target.picture, (count, arrival.last_part_at, arrival.target));
-        }
+        let last = last_blocks(&observation.arrivals);
         let batch = observation.most_regions_of_a_picture().max(1);
         let times = samples(record).filter_map(|mark| {
             let (blocks, copied_at, target) = last.get(&mark.picture)?;
@@ -147,7 +143,7 @@ impl Pipeline for Frameless {
             })
         });
         let mut times: Vec<_> = times.filter(|times| times.is_shown() && times.shown_at <= end).collect();
-        times.sort_by_key(|times| times.shown_at);
+        times.sort_by_key(|times| (times.shown_at, times.picture));
         times
     }
 
@@ -175,6 +171,20 @@ impl Pipeline for Frameless {
     fn updates_per_picture(&self, record: &Record) -> f64 {
         f64::from(self.blocks()) / f64::from(record.observation().most_regions_of_a_picture().max(1))
     }
+}
+
+/// How many blocks of each update have arrived, when the last of them had, and where it belongs. Two frame buffers may be done at one
+/// instant: then the higher port and region stand for the update, in whatever order they were noted.
+fn last_blocks(arrivals: &[Arrival]) -> BTreeMap<PictureNumber, (u32, Time, CopyTarget)> {
+    let mut last: BTreeMap<PictureNumber, (u32, Time, CopyTarget)> = BTreeMap::new();
+    for Arrival { last_part_at, target, .. } in arrivals {
+        let (count, at, of) = last.entry(target.picture).or_insert((0, *last_part_at, *target));
+        *count += 1;
+        if (*last_part_at, target.frame_buffer, target.region) > (*at, of.frame_buffer, of.region) {
+            (*at, *of) = (*last_part_at, *target);
+        }
+    }
+    last
 }
 
 /// Frameless rendering in the registry.
@@ -217,4 +227,35 @@ fn build(settings: &PipelineSettings) -> Arc<dyn Pipeline> {
         batch: settings.whole("batch").map_or(new.batch, |batch| batch as u32),
         seed: settings.whole("order_seed").unwrap_or(new.seed),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::last_blocks;
+    use pxpl5_machine::Arrival;
+    use pxpl5_sim::Time;
+    use pxpl5_wire::{CopyTarget, Lines, NodeId, PictureNumber, RegionGrid, RegionId, SurfaceId};
+
+    /// A block of update 3 that is there at `ns` at one of two ports.
+    fn block(port: u16, region: u16, ns: u64) -> Arrival {
+        let target = CopyTarget {
+            frame_buffer: NodeId(port),
+            buffer: 0,
+            lines: Lines::Frame,
+            grid: RegionGrid { region_width: 16, region_height: 16, ..RegionGrid::FRAME },
+            region: RegionId(region),
+            picture: PictureNumber(3),
+        };
+        let at = Time(ns * 1_000);
+        Arrival { surface: SurfaceId(port - 20), target, first_part_at: at, last_part_at: at }
+    }
+
+    #[test]
+    fn what_arrives_at_one_instant_counts_in_any_order() {
+        let [a, b, c] = [block(20, 7, 90), block(20, 9, 100), block(21, 4, 100)];
+        for order in [[a, b, c], [a, c, b], [b, a, c], [b, c, a], [c, a, b], [c, b, a]] {
+            let last = last_blocks(&order);
+            assert_eq!(last.into_iter().collect::<Vec<_>>(), [(PictureNumber(3), (3, c.last_part_at, c.target))]);
+        }
+    }
 }
