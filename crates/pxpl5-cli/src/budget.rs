@@ -52,7 +52,21 @@ impl BudgetArgs {
     ///
     /// The estimate, and what to do about it.
     pub(crate) fn admit(&self, work: &Work) -> Result<(), CliError> {
-        let Estimate { bytes, seconds } = work.estimate();
+        self.admit_estimate(work.estimate())
+    }
+
+    /// Refuses many runs before the first starts: their times one after the other, on so many threads; the memory of the largest on
+    /// each of them.
+    ///
+    /// # Errors
+    ///
+    /// As [`BudgetArgs::admit`].
+    pub(crate) fn admit_all(&self, runs: impl IntoIterator<Item = Work>, threads: usize) -> Result<(), CliError> {
+        let whole = Estimate::of_all(runs.into_iter().map(|work| work.estimate()), threads);
+        self.admit_estimate(whole)
+    }
+
+    fn admit_estimate(&self, Estimate { bytes, seconds }: Estimate) -> Result<(), CliError> {
         match self.excess(bytes / 1e6, seconds) {
             Some(reason) => {
                 Err(CliError::failure(format!("{reason}; estimated before it starts, nothing was written")))

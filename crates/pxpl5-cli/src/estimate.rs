@@ -62,6 +62,16 @@ const OVERHEAD_WORDS: u64 = 16;
 /// The shortest time between two blocks, nanoseconds: processors send messages for each. Derived: half of 12 us, of two at a time.
 const LEAST_BLOCK_NS: u64 = 6_000;
 
+impl Estimate {
+    /// Of runs that follow each other on so many threads: the sum of their times, the largest memory on each.
+    pub(crate) fn of_all(runs: impl Iterator<Item = Self>, threads: usize) -> Self {
+        let threads = threads.max(1) as f64;
+        let (bytes, seconds) =
+            runs.fold((0.0, 0.0), |(bytes, seconds): (f64, f64), run| (bytes.max(run.bytes), seconds + run.seconds));
+        Self { bytes: bytes * threads, seconds: seconds / threads }
+    }
+}
+
 impl Work {
     /// Of a checked experiment with its scene.
     pub(crate) fn of(plan: &Plan, scene: &Scene, keeps_everything: bool) -> Self {
@@ -136,6 +146,13 @@ mod tests {
         (Work { fields: 480, block: 16, primitives: 8, keeps_everything: true, ..SMALL }, 228.9),
         (Work { is_cycle_level: true, ..SMALL }, 18.6),
     ];
+
+    #[test]
+    fn many_runs_take_the_sum_of_their_times_and_the_largest_memory_of_each_thread() {
+        let runs = [(3e9, 10.0), (5e9, 20.0), (4e9, 30.0)].map(|(bytes, seconds)| Estimate { bytes, seconds });
+        assert_eq!(Estimate::of_all(runs.into_iter(), 2), Estimate { bytes: 10e9, seconds: 30.0 });
+        assert_eq!(Estimate::of_all(std::iter::empty(), 0), Estimate { bytes: 0.0, seconds: 0.0 });
+    }
 
     #[test]
     fn memory_is_estimated_to_a_factor_of_two() {

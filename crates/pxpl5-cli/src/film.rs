@@ -1,6 +1,8 @@
 //! `pxpl5 film`.
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::Work;
 use crate::output::OutputFile;
 use crate::settings::SettingArgs;
 use crate::terminal::{print, warn};
@@ -30,6 +32,8 @@ pub(crate) struct FilmArgs {
     /// How many fields it has.
     #[arg(long, value_name = "FIELDS", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     length: u64,
+    #[command(flatten)]
+    budget: BudgetArgs,
     /// Print nothing but errors.
     #[arg(long, short)]
     quiet: bool,
@@ -54,7 +58,9 @@ pub(crate) fn run(args: FilmArgs) -> Result<(), CliError> {
         Whose::Both => FilmOf::All,
     };
     let file = OutputFile::open(&args.out)?;
-    let experiment = plan.experiment(plan.load_scene()?).pixels(Pixels::Lazy).fields(args.from + args.length + 1);
+    let (scene, fields) = (plan.load_scene()?, args.from + args.length + 1);
+    args.budget.admit(&Work { fields, ..Work::of(&plan, &scene, true) })?;
+    let experiment = plan.experiment(scene).pixels(Pixels::Lazy).fields(fields);
     let texts = [("config_hash", experiment.config_hash().to_string()), ("settings", plan.settings().to_string())];
     let mut bytes = Vec::new();
     Film::new(experiment, PeriodNumber(args.from), args.length, eyes)

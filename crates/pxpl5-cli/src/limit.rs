@@ -1,11 +1,13 @@
 //! `pxpl5 limit`.
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::Work;
 use crate::options::{PipelineOptions, option_of, registry};
 use crate::terminal::{print, warn};
 use clap::Args;
 use pxpl5::limit::{Limit, LimitQuery, Model};
-use pxpl5::{ExperimentFile, Goal, LimitCriterion, TestScene};
+use pxpl5::{ExperimentFile, Goal, Level, LimitCriterion, TestScene};
 use serde_json::json;
 
 /// Find the most triangles that a pipeline draws in time.
@@ -55,6 +57,8 @@ pub(crate) struct LimitArgs {
     /// Set any key of an experiment file, such as machine.gp.triangle_ns=30000; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     sets: Vec<String>,
+    #[command(flatten)]
+    budget: BudgetArgs,
     /// Print one JSON object.
     #[arg(long)]
     json: bool,
@@ -65,6 +69,9 @@ pub(crate) fn run(args: LimitArgs) -> Result<(), CliError> {
     let limit = query.search()?;
     print(&if args.json { json_text(&query, limit) } else { text(&query, limit) })
 }
+
+/// Sizes that a search tries at most: twice the halvings of all that are possible.
+const SIZES: usize = 40;
 
 /// Fewer fields than this show no pictures behind the warm-up of any pipeline.
 const LEAST_FIELDS: u64 = 10;
@@ -80,8 +87,15 @@ impl LimitArgs {
         }
         let scene = self.test_scene().unwrap_or(query.criterion.scene);
         let goal = self.goal()?.unwrap_or(query.criterion.goal);
-        let model =
-            if self.scene.is_some() && self.test_scene().is_none() { Some(Model::load(plan.scene)?) } else { None };
+        let model = if self.scene.is_some() && self.test_scene().is_none() {
+            Some(Model::load(plan.scene.clone())?)
+        } else {
+            None
+        };
+        if query.level != Level::Analytic {
+            let size = Work { fields, ..Work::of(&plan, &*plan.load_scene()?, false) };
+            self.budget.admit_all([size; SIZES], 1)?;
+        }
         Ok(LimitQuery { criterion: LimitCriterion { goal, scene, fields }, model, ..query })
     }
 

@@ -172,6 +172,24 @@ fn batches_and_processors_by_the_thousand_are_estimated_before_the_run() {
     }
 }
 
+/// Commands that make many runs, or a long one, add them up before the first.
+#[test]
+fn films_comparisons_and_searches_are_estimated_before_the_first_run() {
+    let folder = Folder::new("many-runs");
+    for args in [
+        &["film", "--pipeline", "slats", "--scene", "mig", "--length", "10000", "--out", "f.png", "--max-seconds", "5"][..],
+        &["film", "--pipeline", "slats", "--scene", "mig", "--length", "10000", "--out", "f.png", "--max-memory", "30"],
+        &["compare", "--fields", "1200", "--seeds", "1000", "--max-seconds", "600", "--out", "o"],
+        &["limit", "--pipeline", "slats", "--fields", "100000", "--max-seconds", "600"],
+    ] {
+        let output = folder.run(args);
+        let text = err(&output);
+        assert_eq!(output.status.code(), Some(1), "{args:?}: {text}");
+        assert!(text.contains("expected to take") && text.contains("estimated before it starts"), "{args:?}: {text}");
+        assert!(folder.names().is_empty(), "{args:?} left {:?}", folder.names());
+    }
+}
+
 /// What a screen cannot have is refused; what it can have runs, however odd.
 #[test]
 fn numbers_that_once_hung_or_panicked_are_refused_or_run() {

@@ -4,7 +4,9 @@ mod drawings;
 mod gallery;
 mod table;
 
+use crate::budget::BudgetArgs;
 use crate::error::CliError;
+use crate::estimate::Work;
 use crate::output::OutputFolder;
 use crate::settings::SettingArgs;
 use crate::terminal;
@@ -44,6 +46,8 @@ pub(crate) struct CompareArgs {
     /// Speed of the pan of the pictures, degrees per second.
     #[arg(long, default_value_t = 200.0, value_name = "DEG_PER_S", allow_negative_numbers = true, value_parser = pan)]
     edge_pan: f64,
+    #[command(flatten)]
+    budget: BudgetArgs,
     /// Print JSON: an object whose `pipelines` lists a row each.
     #[arg(long)]
     json: bool,
@@ -78,6 +82,7 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
     let first = shared.seed()?;
     let seeds = (first..=first.saturating_add(args.seeds - 1)).collect();
     let query = CompareQuery { shared, only: args.only, seeds, limits: !args.no_limits, pictures: folder.is_some() };
+    admit(args.budget, &query)?;
     let bar = terminal::progress(0, "runs", args.quiet);
     let comparison = query.run(|done, of| {
         bar.set_length(of);
@@ -100,6 +105,16 @@ pub(crate) fn run(args: CompareArgs) -> Result<(), CliError> {
         (false, true) => Ok(()),
         (false, false) => terminal::print(&table::text(&comparison)),
     }
+}
+
+/// A tracked head's run is rehearsed to know when its views are seen: twice the fields.
+fn admit(budget: BudgetArgs, query: &CompareQuery) -> Result<(), CliError> {
+    let mut runs = Vec::new();
+    for plan in query.plans()? {
+        let work = Work::of(&plan, &*plan.load_scene()?, true);
+        runs.extend(query.seeds.iter().map(|_| Work { fields: 2 * work.fields, ..work }));
+    }
+    budget.admit_all(runs, std::thread::available_parallelism().map_or(1, usize::from))
 }
 
 /// The settings of all rows; what is not said has the defaults.

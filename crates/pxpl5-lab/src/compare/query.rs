@@ -141,6 +141,17 @@ impl CompareQuery {
         })
     }
 
+    /// What each row runs with the first seed, of those that can run: for whoever wants to know before what all of them take.
+    ///
+    /// # Errors
+    ///
+    /// As [`CompareQuery::run`].
+    pub fn plans(&self) -> Result<Vec<Plan>, CompareError> {
+        let contenders = self.contenders()?;
+        let seed = self.any_plan(&contenders)?.seed;
+        Ok(contenders.iter().filter_map(|contender| contender.plan(&self.shared, seed).ok()).collect())
+    }
+
     /// The rows that are run, in the order of all.
     fn contenders(&self) -> Result<Vec<Contender>, CompareError> {
         let mut chosen = contenders(self.shared.registry());
