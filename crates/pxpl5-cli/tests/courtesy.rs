@@ -177,7 +177,8 @@ fn batches_and_processors_by_the_thousand_are_estimated_before_the_run() {
 fn films_comparisons_and_searches_are_estimated_before_the_first_run() {
     let folder = Folder::new("many-runs");
     for args in [
-        &["film", "--pipeline", "slats", "--scene", "mig", "--length", "10000", "--out", "f.png", "--max-seconds", "5"][..],
+        &["film", "--pipeline", "slats", "--scene", "mig", "--length", "10000", "--out", "f.png", "--max-seconds", "5"]
+            [..],
         &["film", "--pipeline", "slats", "--scene", "mig", "--length", "10000", "--out", "f.png", "--max-memory", "30"],
         &["compare", "--fields", "1200", "--seeds", "1000", "--max-seconds", "600", "--out", "o"],
         &["limit", "--pipeline", "slats", "--fields", "100000", "--max-seconds", "600"],
