@@ -365,3 +365,20 @@ fn a_watched_ring_knows_after_every_event_how_many_channels_are_busy() {
     let expected = [(us(0), 1), (us(10), 2), (us(52), 1), (us(62), 0)];
     assert_eq!(busy.into_iter().collect::<Vec<_>>(), expected);
 }
+
+#[test]
+fn a_ring_is_idle_when_nothing_waits_and_nothing_is_on_a_channel() {
+    let mut ring = Ring::new(ONE_AT_A_TIME, 10, |_| true).expect("valid");
+    let mut bench = bench();
+    assert!(ring.is_idle());
+    bench.feed(us(1), Phase::Arrive, RingEvent::Request(request(1, 0, 1, 100)));
+    let mut was_idle = Vec::new();
+    bench.run(|event, context| {
+        ring.handle(event, context);
+        was_idle.push((context.now(), ring.is_idle()));
+    });
+    // It waits for its arbitration, and then occupies its channel for (16 + 100) x 50 ns.
+    assert_eq!(was_idle[..2], [(us(1), false), (us(1), false)]);
+    ring.settle(us(1) + Span::from_ns(5_800));
+    assert!(ring.is_idle());
+}
