@@ -56,9 +56,6 @@ impl RegionWrite {
         let outside = FrameBufferFault::Region { target, frame: [video.width(), video.height()] };
         let Some(rectangle) = rectangle(video, &target) else { return Err(outside) };
         let [_, _, width, height] = rectangle;
-        if width > REGION_SIZE || height > REGION_SIZE {
-            return Err(outside);
-        }
         let expected = (width * height).div_ceil(MAX_MESSAGE_WORDS);
         if pixels.parts != expected {
             let found = pixels.parts;

@@ -2,7 +2,7 @@
 
 use crate::{FrameBufferConfigError, VideoTiming};
 use pxpl5_sim::{Clock, Time};
-use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber, RegionGrid};
+use pxpl5_wire::{CopyTarget, FieldParity, Lines, PeriodNumber};
 
 /// Times of retraces, lines and pixels, all computed from zero.
 ///
@@ -107,16 +107,12 @@ pub(crate) const fn frame_line(lines: Lines, row: u32) -> u32 {
     }
 }
 
-/// Left, top, width and height of a region in the rows of its picture; `None` when it does not lie in the frame.
+/// Left, top, width and height of a region in the rows of its picture; `None` when it does not lie in the frame or is larger than a
+/// renderer's array.
 pub(crate) fn rectangle(video: &Video, target: &CopyTarget) -> Option<[u32; 4]> {
-    let RegionGrid { width, height, region_width, region_height } = target.grid;
     let rows = match target.lines {
         Lines::Frame => video.height(),
         Lines::Field(_) => video.height() / 2,
     };
-    let fits = (1..=video.width()).contains(&width) && (1..=rows).contains(&height);
-    if !fits || region_width == 0 || region_height == 0 {
-        return None;
-    }
-    (u32::from(target.region.0) < target.grid.regions()).then(|| target.grid.rectangle(target.region))
+    target.grid.rectangle_within(target.region, video.width(), rows)
 }

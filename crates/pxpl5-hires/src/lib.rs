@@ -39,6 +39,7 @@ struct HiRes {
     boards: Vec<DoubleBuffer>,
     scans: u64,
     faults: u64,
+    first_fault: Option<String>,
 }
 
 impl Display for HiRes {
@@ -82,7 +83,10 @@ impl Display for HiRes {
                     context.output(at, region);
                 }
                 BufferReceipt::Part => {}
-                BufferReceipt::Fault => self.faults += 1,
+                BufferReceipt::Fault(reason) => {
+                    self.faults += 1;
+                    self.first_fault.get_or_insert(reason);
+                }
             },
             DisplayEvent::Timer(_) => {}
         }
@@ -97,12 +101,12 @@ impl Display for HiRes {
     }
 
     fn shown(&self, surface: usize) -> Option<RgbImage> {
-        Some(self.boards.get(surface)?.picture(self.config.width as u32, self.config.height as u32))
+        Some(self.boards.get(surface)?.picture())
     }
 
     fn seen(&self, surface: usize, period: PeriodNumber) -> Option<RgbImage> {
         let board = self.boards.get(surface).filter(|_| self.last_seen() == Some(period))?;
-        Some(board.scanned_picture(self.config.width as u32, self.config.height as u32))
+        Some(board.scanned_picture())
     }
 
     fn last_seen(&self) -> Option<PeriodNumber> {
@@ -114,7 +118,7 @@ impl Display for HiRes {
     }
 
     fn faults(&self) -> (u64, Option<String>) {
-        (self.faults, None)
+        (self.faults, self.first_fault.clone())
     }
 }
 
@@ -139,8 +143,9 @@ impl DisplayConfig for HiResConfig {
         DisplayConfig::check(self)?;
         let frame = Clock::from_hz(self.refresh_hz).ok_or_else(|| DisplayError("hires.refresh_hz".to_owned()))?;
         let surfaces = Surface::of_frame_buffers(nodes.len(), self.width as u32, self.height as u32);
-        let boards = vec![DoubleBuffer::default(); nodes.len()];
-        Ok(Box::new(HiRes { config: *self, frame, nodes: nodes.to_vec(), surfaces, boards, scans: 0, faults: 0 }))
+        let boards = vec![DoubleBuffer::new(self.width as u32, self.height as u32); nodes.len()];
+        let nodes = nodes.to_vec();
+        Ok(Box::new(HiRes { config: *self, frame, nodes, surfaces, boards, scans: 0, faults: 0, first_fault: None }))
     }
 
     fn boxed(&self) -> Box<dyn DisplayConfig> {

@@ -131,7 +131,7 @@ impl DisplayConfig for CubeConfig {
 
     fn build(&self, nodes: &[NodeId]) -> Result<Box<dyn Display>, DisplayError> {
         let surfaces = FACES.map(|(label, title)| Surface { label, title, width: 256, height: 256 }).to_vec();
-        Ok(Box::new(Cube { nodes: nodes.to_vec(), surfaces, board: DoubleBuffer::default() }))
+        Ok(Box::new(Cube { nodes: nodes.to_vec(), surfaces, board: DoubleBuffer::new(256, 256) }))
     }
 
     fn boxed(&self) -> Box<dyn DisplayConfig> {

@@ -1,5 +1,6 @@
 //! How the screen is cut into regions.
 
+use crate::REGION_SIZE;
 use serde::{Deserialize, Serialize};
 
 /// For which eye a picture is drawn.
@@ -102,6 +103,21 @@ impl RegionGrid {
         let top = row * self.region_height;
         [left, top, min(self.region_width, self.width - left), min(self.region_height, self.height - top)]
     }
+
+    /// The same of numbers that came in a message, for a picture of `width` x `height`: `None` where the grid is empty or larger than
+    /// that, a region has no pixel or more than a renderer's array in a direction, or the grid has no such region.
+    #[must_use]
+    pub const fn rectangle_within(&self, region: RegionId, width: u32, height: u32) -> Option<[u32; 4]> {
+        let fits = 0 < self.width && self.width <= width && 0 < self.height && self.height <= height;
+        if !fits || self.region_width == 0 || self.region_height == 0 {
+            return None;
+        }
+        if region.0 as u64 >= self.columns() as u64 * self.rows() as u64 {
+            return None;
+        }
+        let [left, top, w, h] = self.rectangle(region);
+        if w <= REGION_SIZE && h <= REGION_SIZE { Some([left, top, w, h]) } else { None }
+    }
 }
 
 const fn min(a: u32, b: u32) -> u32 {
@@ -117,6 +133,25 @@ mod tests {
         let pixels: u32 = (0..20).map(|i| RegionGrid::FRAME.rectangle(RegionId(i))).map(|r| r[2] * r[3]).sum();
         assert_eq!((RegionGrid::FRAME.regions(), pixels), (20, 640 * 480));
         assert_eq!(RegionGrid::FRAME.rectangle(RegionId(19)), [512, 384, 128, 96]);
+    }
+
+    #[test]
+    fn what_a_message_says_of_a_region_is_looked_at_before_it_is_believed() {
+        let within = |grid: RegionGrid, region: u16| grid.rectangle_within(RegionId(region), 640, 480);
+        let frame = RegionGrid::FRAME;
+        assert_eq!(within(frame, 19), Some([512, 384, 128, 96]));
+        assert_eq!(within(frame, 20), None);
+        for grid in [
+            RegionGrid { width: 641, ..frame },
+            RegionGrid { height: u32::MAX, region_height: 1, ..frame },
+            RegionGrid { width: 0, ..frame },
+            RegionGrid { region_width: 0, ..frame },
+            RegionGrid { region_height: 0, ..frame },
+            RegionGrid { region_width: 129, ..frame },
+            RegionGrid { region_height: u32::MAX, ..frame },
+        ] {
+            assert_eq!(within(grid, 0), None, "{grid:?}");
+        }
     }
 
     #[test]
