@@ -90,6 +90,9 @@ fn text(plan: &Plan, results: &Results, report: &Report, written: Option<PathBuf
     if let Some(heavy) = &report.too_heavy {
         let _ = writeln!(text, "{heavy}\n");
     }
+    for fault in &report.display_faults {
+        let _ = writeln!(text, "WRONG: {fault}\n");
+    }
     text.push_str(&table(&[(report, comparison.as_ref())]));
     let _ = writeln!(text, "\nLatency: {}.", report.latency_ms.definition);
     let _ = writeln!(text, "Pictures due: {}.", report.due_definition);

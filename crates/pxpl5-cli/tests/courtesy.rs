@@ -209,6 +209,12 @@ fn numbers_that_once_hung_or_panicked_are_refused_or_run() {
         assert!(code == Some(2) && text.contains(set.split_once('=').expect("a setting").0), "{set}: {text}");
     }
     run("slats", "video.pixel_ps=4294967295");
+    // The papers' pipelines for single fields draw 640 x 480 pixels, whatever the screen has.
+    for (pipeline, set) in [("slats", "video.visible_pixels=639"), ("frameless", "video.visible_lines=239")] {
+        let (code, text) = run(pipeline, set);
+        let number = set.split_once('=').expect("a setting").1;
+        assert!(code == Some(2) && text.contains("640 x 480") && text.contains(number), "{set}: {text}");
+    }
     for lines in [1, 6] {
         run("jitp-dual-screen", &format!("video.visible_lines={lines}"));
         run("jitp-dual-view", &format!("video.visible_lines={lines}"));

@@ -7,7 +7,7 @@ use crate::latency::{NamedStatistics, SurfaceStatistics, latency_by_surface, lat
 use crate::too_heavy::TooHeavy;
 use parameters::Value;
 use pxpl5_display::Counter;
-use pxpl5_machine::{LateRegion, Parameter};
+use pxpl5_machine::{LateRegion, Parameter, Record};
 use pxpl5_run::{Aim, DefinedStatistics, DuePictures, Head, Outcome, Raster};
 use pxpl5_sim::{Time, TraceHash};
 use serde::Serialize;
@@ -39,6 +39,8 @@ pub struct Report {
     pub overrides: BTreeMap<String, Value>,
     /// What no source allows: each parameter outside its stated range, with range and source.
     pub warnings: Vec<String>,
+    /// What displays could not use of what came to them, and the first reason of each: then less is shown than was drawn.
+    pub display_faults: Vec<String>,
     /// Graphics processors of the machine, the master included.
     pub n_gps: usize,
     /// Renderer boards of the machine.
@@ -147,6 +149,14 @@ impl Report {
     }
 }
 
+fn faults(record: &Record) -> impl Iterator<Item = String> {
+    record.displays().iter().filter_map(|display| {
+        let (count, first) = display.faults();
+        let first = first.map(|reason| format!("; the first: {reason}")).unwrap_or_default();
+        (count > 0).then(|| format!("the display {} could not use {count} messages{first}", display.name()))
+    })
+}
+
 impl Report {
     /// Name and version of the layout.
     pub const SCHEMA: &'static str = "pxpl5-report/2";
@@ -178,6 +188,7 @@ impl Report {
             display: record.display().name().to_owned(),
             overrides: config.overrides(),
             warnings: experiment.out_of_range().iter().map(Parameter::warning).collect(),
+            display_faults: faults(record).collect(),
             n_gps: config.n_gps,
             n_renderers: config.n_renderers,
             scene: scene.name().to_owned(),

@@ -27,7 +27,7 @@ use pxpl5_framebuffer::{NtscDisplay, Video};
 use pxpl5_gp::{Mark, Stage};
 use pxpl5_machine::{Arrival, ConfigError, LateRegion, Record, StageSpan};
 use pxpl5_sim::Time;
-use pxpl5_wire::{PictureNumber, ViewNumber};
+use pxpl5_wire::{PictureNumber, RegionGrid, ViewNumber};
 use std::any::Any;
 
 pub(crate) fn entries() -> Vec<PipelineEntry> {
@@ -37,12 +37,23 @@ pub(crate) fn entries() -> Vec<PipelineEntry> {
     all
 }
 
-/// The display of a pipeline that is written for interlaced fields.
+/// The display of a pipeline that is written for interlaced fields of the papers' size.
 fn ntsc<'a>(record: &'a Record, pipeline: &str) -> Result<&'a NtscDisplay, ConfigError> {
-    (record.display() as &dyn Any).downcast_ref().ok_or_else(|| {
+    let display: &NtscDisplay = (record.display() as &dyn Any).downcast_ref().ok_or_else(|| {
         let found = record.display().name();
         ConfigError::Board(format!("{pipeline} draws single fields: expected the display ntsc, found {found}"))
-    })
+    })?;
+    let RegionGrid { width, height, .. } = RegionGrid::FRAME;
+    let [found_width, found_height] = [display.video().width(), display.video().height()];
+    if found_width < width || found_height < height {
+        let lines = height / 2;
+        return Err(ConfigError::Board(format!(
+            "{pipeline} draws {width} x {height} pixels: expected video.visible_pixels from {width} and video.visible_lines from {lines}, \
+             found {found_width} and {}",
+            found_height / 2
+        )));
+    }
+    Ok(display)
 }
 
 /// Where colours are computed, by its names, the default first.
