@@ -10,6 +10,11 @@ TRIANGLE_BYTES = 96
 COLOUR = 12
 NORMAL = 16
 
+// A vertex of a strip: as such a corner; the last word is 0 where it makes a triangle with the two before it. r16 is then the first
+// vertex and r17 the number of vertices, at least 3; behind the last one, two more may be read.
+VERTEX_BYTES = 32
+BEGINS = 28
+
 // A bin: the address of its next free word. An entry is the address of a command.
 
 // What the surface routine leaves: component k of corner n is a word, biased so that the double with the high word of

@@ -33,7 +33,6 @@ two     = fld.d P_TWO(r20)
 ra      = mul.dd ac, seed
 rb      = sub.dd two, ra
 rc      = mul.dd seed, rb
-doubted = ld.l R_DOUBT(r3)
 doubt   = or doubted, flat
 bias    = orh 0x4B40, r0
 bias8   = adds 8, bias

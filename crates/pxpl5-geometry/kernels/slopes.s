@@ -1,6 +1,4 @@
         // slopes before they are divided by the area, and values at corner 0
-turn    = ld.l R_SIDE(r3)
-side    = adds turn, r20
 depth0  = fld.d R_DEPTH(r3)
 depth1  = fld.d R_DEPTH(second)
 depth2  = fld.d R_DEPTH(third)

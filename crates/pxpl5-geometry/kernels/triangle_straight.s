@@ -341,7 +341,9 @@ high\@: nop
 // ---- a triangle
         .align  32
 start:  st.l    r1, SAVE(r2)
-next:   corner  0
+        counted
+next:   passover_straight
+        corner  0
         corner  1
         corner  2
         inside  0
@@ -400,7 +402,7 @@ oriented: edge  0, 0, 1
         finish  r16
         restate
         adds    COMMAND_BYTES, r18, r18
-done:   adds    TRIANGLE_BYTES, r16, r16
+done:   adds    LIST_STEP, r16, r16
         adds    -1, r17, r17
         btne    r0, r17, next
         ld.l    SAVE(r2), r1

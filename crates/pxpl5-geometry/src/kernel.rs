@@ -5,7 +5,8 @@
 //! not wholly inside the guard band it leaves to a clipper, which has no kernel; it does not flatten steep planes.
 //!
 //! ```text
-//!   display list (96 bytes a triangle) --+
+//!   display list (96 bytes a triangle, --+
+//!     or strips: 32 bytes a vertex)      |
 //!   parameter block ---------------------+--> kernel --> command words, bins, list for the clipper
 //! ```
 //!
@@ -15,6 +16,7 @@
 //! each choice. This crate does not assemble or run them.
 
 use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip, light, screen};
+use glam::Vec3;
 use pxpl5_wire::{Lines, RegionGrid, Word};
 
 /// How the code was made.
@@ -37,6 +39,15 @@ pub enum KernelSurface {
     Phong,
 }
 
+/// How the display list holds corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum KernelList {
+    /// Triangles, each with three corners of its own ([`display_list_words`]).
+    Triangles,
+    /// Strips, in which each vertex makes a triangle with the two before it ([`vertex_words`]).
+    Strips,
+}
+
 /// Code for one kind of triangle and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
@@ -44,6 +55,8 @@ pub struct Kernel {
     pub schedule: Schedule,
     /// Kind of triangle that it sets up.
     pub surface: KernelSurface,
+    /// Kind of display list that it reads.
+    pub list: KernelList,
     /// Whether the picture is a field instead of a frame.
     pub field: bool,
     /// Whether it puts commands into bins; else all of them go everywhere.
@@ -56,6 +69,9 @@ pub type Heads = [Word; 8];
 
 /// Words of a triangle in the display list.
 pub const TRIANGLE_WORDS: usize = 24;
+
+/// Words of a vertex of a strip in the display list.
+pub const VERTEX_WORDS: usize = 8;
 
 /// Words of the parameter block.
 pub const PARAMETER_WORDS: usize = 116;
@@ -70,12 +86,14 @@ const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
 const FLIP: Word = 0x9700_0000;
 
 impl Kernel {
-    /// The kernel for a picture; `None` where there is none: pictures other than NTSC frames and fields.
+    /// The kernel for a picture of triangles, each with corners of its own; `None` where there is none: pictures other than NTSC
+    /// frames and fields.
     #[must_use]
     pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
         let field = matches!(viewport.lines(), Lines::Field(_));
         let grid = if field { RegionGrid::FIELD } else { RegionGrid::FRAME };
-        (viewport.grid() == grid).then_some(Self { schedule, surface, field, binned })
+        let list = KernelList::Triangles;
+        (viewport.grid() == grid).then_some(Self { schedule, surface, list, field, binned })
     }
 
     /// The source in i860 assembly, with linear stretches where the schedule is [`Schedule::Dual`]; its entry is the label
@@ -84,7 +102,11 @@ impl Kernel {
     pub fn source(&self) -> String {
         let picture = if self.field { include_str!("../kernels/field.s") } else { include_str!("../kernels/frame.s") };
         let bins = if self.binned { include_str!("../kernels/bins.s") } else { include_str!("../kernels/unbinned.s") };
-        let common = [include_str!("../kernels/parameters.s"), picture, include_str!("../kernels/exact.s")];
+        let list = match self.list {
+            KernelList::Triangles => include_str!("../kernels/list_triangles.s"),
+            KernelList::Strips => include_str!("../kernels/list_strips.s"),
+        };
+        let common = [include_str!("../kernels/parameters.s"), list, picture, include_str!("../kernels/exact.s")];
         let bins_of_frames =
             if self.binned && !self.field { include_str!("../kernels/bins_scheduled.s") } else { bins };
         let triangle = match self.schedule {
@@ -106,25 +128,8 @@ impl Kernel {
     }
 
     fn dual(&self) -> Vec<&'static str> {
-        let (head, surface, words) = match self.surface {
-            KernelSurface::Gouraud => (
-                "COMMAND_BYTES = 120",
-                include_str!("../kernels/vertices_gouraud.s"),
-                include_str!("../kernels/command_gouraud.s"),
-            ),
-            KernelSurface::Phong => (
-                "COMMAND_BYTES = 128",
-                include_str!("../kernels/vertices_phong.s"),
-                include_str!("../kernels/command_phong.s"),
-            ),
-        };
-        // Window, eagerness, reserve and shake of the shortest schedules that were found.
-        let (vertices, setup) = match (self.surface, self.field) {
-            (KernelSurface::Gouraud, false) => (".linear 300 20 2 3 0", ".linear 150 20 1 8 0"),
-            (KernelSurface::Gouraud, true) => (".linear 300 20 2 3 0", ".linear 64 30 1 8 12"),
-            (KernelSurface::Phong, false) => (".linear 100 30 1 5 0", ".linear 300 30 1 8 4"),
-            (KernelSurface::Phong, true) => (".linear 100 30 1 5 0", ".linear 150 20 1 8 0"),
-        };
+        let strips = self.list == KernelList::Strips;
+        let (vertices, setup) = self.schedules();
         // With bins the expressions are restated for a field when the regions are known.
         let planes = match self.field && !self.binned {
             true => include_str!("../kernels/planes_field.s"),
@@ -135,21 +140,31 @@ impl Kernel {
             (true, true) => (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_field.s")),
             (true, false) => (include_str!("../kernels/regions_frame.s"), include_str!("../kernels/tail_frame.s")),
         };
+        let (doubt, doubted) = match strips {
+            false => (include_str!("../kernels/doubt_of_triangle.s"), include_str!("../kernels/doubted_triangle.s")),
+            true => (include_str!("../kernels/doubt_of_vertices.s"), include_str!("../kernels/doubted_vertices.s")),
+        };
+        let [command_bytes, before, surface, after, side, words] = self.dual_surface(strips);
         vec![
-            head,
+            command_bytes,
             include_str!("../kernels/scheduled_head.s"),
             "corners:",
             include_str!("../kernels/vertices_head.s"),
             vertices,
             include_str!("../kernels/vertices.s"),
+            before,
             surface,
+            after,
             include_str!("../kernels/vertices_end.s"),
+            doubt,
             include_str!("../kernels/scheduled_again.s"),
             include_str!("../kernels/setup_head.s"),
             setup,
+            doubted,
             include_str!("../kernels/setup.s"),
             include_str!("../kernels/reference.s"),
             include_str!("../kernels/corners.s"),
+            side,
             include_str!("../kernels/slopes.s"),
             include_str!("../kernels/edges.s"),
             planes,
@@ -158,6 +173,59 @@ impl Kernel {
             tail,
             include_str!("../kernels/scheduled_tail.s"),
         ]
+    }
+
+    /// What depends on the surface in the scheduled code: how long a command is; before the corners' surface, that, and after it;
+    /// the side of a triangle; words of the command.
+    fn dual_surface(&self, strips: bool) -> [&'static str; 6] {
+        match (self.surface, strips) {
+            (KernelSurface::Gouraud, false) => [
+                "COMMAND_BYTES = 120",
+                "",
+                include_str!("../kernels/vertices_gouraud.s"),
+                include_str!("../kernels/side_of_none.s"),
+                include_str!("../kernels/side_found.s"),
+                include_str!("../kernels/command_gouraud.s"),
+            ],
+            (KernelSurface::Gouraud, true) => [
+                "COMMAND_BYTES = 120",
+                "",
+                include_str!("../kernels/vertices_gouraud.s"),
+                "",
+                "side    = or r0, r20",
+                include_str!("../kernels/command_gouraud.s"),
+            ],
+            (KernelSurface::Phong, false) => [
+                "COMMAND_BYTES = 128",
+                include_str!("../kernels/side_of_triangle.s"),
+                include_str!("../kernels/normals_phong.s"),
+                include_str!("../kernels/colour_of_triangle.s"),
+                include_str!("../kernels/side_found.s"),
+                include_str!("../kernels/command_phong.s"),
+            ],
+            (KernelSurface::Phong, true) => [
+                "COMMAND_BYTES = 128",
+                "",
+                include_str!("../kernels/normals_phong.s"),
+                include_str!("../kernels/colour_of_vertices.s"),
+                include_str!("../kernels/side_of_vertices.s"),
+                include_str!("../kernels/command_phong.s"),
+            ],
+        }
+    }
+
+    /// Window, eagerness, reserve, slope and shake of the shortest schedules that were found, of both loops.
+    const fn schedules(&self) -> (&'static str, &'static str) {
+        use KernelList::{Strips, Triangles};
+        use KernelSurface::{Gouraud, Phong};
+        match (self.list, self.surface, self.field) {
+            (Triangles, Gouraud, false) => (".linear 300 20 2 3 0", ".linear 150 20 1 8 0"),
+            (Triangles, Gouraud, true) => (".linear 300 20 2 3 0", ".linear 64 30 1 8 12"),
+            (Triangles, Phong, false) => (".linear 100 30 1 5 0", ".linear 300 30 1 8 4"),
+            (Triangles, Phong, true) => (".linear 100 30 1 5 0", ".linear 150 20 1 8 0"),
+            (Strips, Gouraud, _) => (".linear 300 20 2 3 0", ".linear 150 20 1 8 0"),
+            (Strips, Phong, _) => (".linear 100 30 1 5 0", ".linear 150 20 1 8 0"),
+        }
     }
 
     /// Bytes of a command that it makes.
@@ -270,11 +338,20 @@ const fn halves(value: f64) -> [Word; 2] {
 #[must_use]
 pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
     let mut words = [0; TRIANGLE_WORDS];
-    for (n, corner) in words.chunks_exact_mut(8).enumerate() {
-        let [r, g, b] = triangle.colours[n].map(Word::from);
-        corner[..3].copy_from_slice(&triangle.positions[n].to_array().map(f32::to_bits));
-        corner[3] = r << 16 | g << 8 | b;
-        corner[4..7].copy_from_slice(&light::unit_normal(triangle.normals[n]).map(f32::to_bits));
+    for (n, corner) in words.chunks_exact_mut(VERTEX_WORDS).enumerate() {
+        let vertex = vertex_words(triangle.positions[n], triangle.normals[n], triangle.colours[n], false);
+        corner.copy_from_slice(&vertex);
     }
     words
+}
+
+/// A vertex of a strip as the display list holds it, its normal of unit length; the two that begin a strip make no triangle.
+///
+/// The corners of a triangle are, in this order, the vertex two before, the one before, and this one, whichever way round that is.
+#[must_use]
+pub fn vertex_words(position: Vec3, normal: Vec3, colour: [u8; 3], begins: bool) -> [Word; VERTEX_WORDS] {
+    let [x, y, z] = position.to_array().map(f32::to_bits);
+    let [nx, ny, nz] = light::unit_normal(normal).map(f32::to_bits);
+    let [r, g, b] = colour.map(Word::from);
+    [x, y, z, r << 16 | g << 8 | b, nx, ny, nz, Word::from(begins)]
 }
