@@ -47,7 +47,7 @@ slow:   fnop
         call    exact
         nop
 accepted: ld.l  AREA_WORD+4(r2), r22
-        call    box
+        nop
         shl     1, r22, r22
         bte     r0, r22, drop                // nothing to draw
         call    bins

@@ -74,12 +74,14 @@ pub const TRIANGLE_WORDS: usize = 24;
 pub const VERTEX_WORDS: usize = 8;
 
 /// Words of the parameter block.
-pub const PARAMETER_WORDS: usize = 116;
+pub const PARAMETER_WORDS: usize = 118;
 
 /// The constants of single precision whose bits the kernels know: 1.5 * 2^23 and 2^23.
 const ROUND_SINGLE: f32 = 12_582_912.0;
 const TWO_23: f32 = 8_388_608.0;
-/// 1.5 * 2^52.
+/// More than any distance of two corners within the guard band, in subpixels.
+const TWO_18: f32 = 262_144.0;
+/// 1.5 * 2^52, in single precision too.
 const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
 
 /// Less a biased integer, this word turns the order of integers round.
@@ -131,14 +133,26 @@ impl Kernel {
         let strips = self.list == KernelList::Strips;
         let (vertices, setup) = self.schedules();
         // With bins the expressions are restated for a field when the regions are known.
-        let planes = match self.field && !self.binned {
-            true => include_str!("../kernels/planes_field.s"),
-            false => include_str!("../kernels/planes_frame.s"),
+        let [edges, reference, planes] = match self.field && !self.binned {
+            true => [
+                include_str!("../kernels/edges_field.s"),
+                include_str!("../kernels/reference_field.s"),
+                include_str!("../kernels/planes_field.s"),
+            ],
+            false => [
+                include_str!("../kernels/edges_frame.s"),
+                include_str!("../kernels/reference_frame.s"),
+                include_str!("../kernels/planes_frame.s"),
+            ],
         };
         let (regions, tail) = match (self.binned, self.field) {
             (false, _) => (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_none.s")),
             (true, true) => (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_field.s")),
             (true, false) => (include_str!("../kernels/regions_frame.s"), include_str!("../kernels/tail_frame.s")),
+        };
+        let middle = match self.binned {
+            true => include_str!("../kernels/middle_seen.s"),
+            false => include_str!("../kernels/middle_anywhere.s"),
         };
         let (doubt, doubted) = match strips {
             false => (include_str!("../kernels/doubt_of_triangle.s"), include_str!("../kernels/doubted_triangle.s")),
@@ -162,14 +176,17 @@ impl Kernel {
             setup,
             doubted,
             include_str!("../kernels/setup.s"),
-            include_str!("../kernels/reference.s"),
+            middle,
             include_str!("../kernels/corners.s"),
             side,
             include_str!("../kernels/slopes.s"),
             include_str!("../kernels/edges.s"),
+            edges,
+            reference,
             planes,
             words,
             regions,
+            "        .endlinear",
             tail,
             include_str!("../kernels/scheduled_tail.s"),
         ]
@@ -218,14 +235,23 @@ impl Kernel {
     const fn schedules(&self) -> (&'static str, &'static str) {
         use KernelList::{Strips, Triangles};
         use KernelSurface::{Gouraud, Phong};
-        match (self.list, self.surface, self.field) {
-            (Triangles, Gouraud, false) => (".linear 300 20 2 3 0", ".linear 150 20 1 8 0"),
-            (Triangles, Gouraud, true) => (".linear 300 20 2 3 0", ".linear 64 30 1 8 12"),
-            (Triangles, Phong, false) => (".linear 100 30 1 5 0", ".linear 300 30 1 8 4"),
-            (Triangles, Phong, true) => (".linear 100 30 1 5 0", ".linear 150 20 1 8 0"),
-            (Strips, Gouraud, _) => (".linear 300 20 2 3 0", ".linear 150 20 1 8 0"),
-            (Strips, Phong, _) => (".linear 100 30 1 5 0", ".linear 150 20 1 8 0"),
-        }
+        let vertices = match (self.list, self.surface) {
+            (Triangles, Gouraud) => ".linear 300 20 2 3 0",
+            (Strips, Gouraud) => ".linear 300 30 2 3 0",
+            (Triangles, Phong) => ".linear 100 30 1 5 0",
+            (Strips, Phong) => ".linear 100 30 1 8 0",
+        };
+        let setup = match (self.list, self.surface, self.field) {
+            (_, Phong, true) if !self.binned => ".linear 300 20 2 8 0",
+            _ if !self.binned => ".linear 64 15 2 8 0",
+            (_, Gouraud, false) => ".linear 150 20 2 8 0",
+            (Triangles, Gouraud, true) => ".linear 64 15 2 8 0",
+            (Strips, Gouraud, true) => ".linear 64 20 1 8 0",
+            (Triangles, Phong, false) => ".linear 150 20 1 8 0",
+            (Strips, Phong, false) | (Triangles, Phong, true) => ".linear 300 30 1 8 0",
+            (Strips, Phong, true) => ".linear 150 20 2 8 0",
+        };
+        (vertices, setup)
     }
 
     /// Bytes of a command that it makes.
@@ -261,9 +287,9 @@ impl Kernel {
         let line = if self.binned { 0 } else { transform.viewport.first_line() };
         words.singles(364, &[ROUND_SINGLE - 16.0 * line as f32]);
         words.doubles(368, &[ROUND_DOUBLE + f64::from(DEPTH_NEAR), 16.0 * ROUND_DOUBLE]);
-        words.singles(384, &[2.0 * ROUND_SINGLE + 8.0, ROUND_SINGLE / 16.0]);
+        words.singles(384, &[2.0 * ROUND_SINGLE + 8.0]);
         words.doubles(440, &[16.0, -16.0]);
-        words.singles(456, &[screen::DEPTH_SCALE]);
+        words.singles(456, &[screen::DEPTH_SCALE, 1.0 / 16.0, ROUND_DOUBLE as f32, TWO_18]);
         self.sides().iter().zip([392, 416]).for_each(|((unit, less), at)| {
             words.doubles(at, &[*unit]);
             words.singles(at + 8, &[*unit as f32]);
