@@ -7,12 +7,12 @@
 mod kernel;
 
 use i860::timing::{DramTiming, FREEZES, Freeze};
-use i860::{Config, Profile};
-use kernel::{Bench, frame, triangles};
+use i860::{AddressProfile, Config, Profile, linear};
+use kernel::{Bench, Strip, frame, strips, triangles};
 use parameters::{ParameterTable, Value};
 use pxpl5::limit::{LimitQuery, test_scene};
 use pxpl5::{Experiment, Level, MachineConfig, PictureNumber, Pixels, Slats, TestScene};
-use pxpl5_geometry::kernel::{Kernel, KernelSurface, Schedule};
+use pxpl5_geometry::kernel::{Kernel, KernelList, KernelSurface, Schedule};
 use pxpl5_geometry::{Triangle, Viewport};
 use pxpl5_gp::Stage;
 
@@ -213,6 +213,140 @@ fn dram_sensitivity() {
     );
 }
 
+/// The scheduled kernel of Phong triangles, of strips or each with corners of its own.
+const fn scheduled_phong(list: KernelList) -> Kernel {
+    Kernel { surface: KernelSurface::Phong, list, ..frame(Schedule::Dual) }
+}
+
+/// Strips of so many triangles each, about a thousand triangles in all.
+fn strips_of(length: usize) -> Vec<Strip> {
+    strips(&vec![length; 1000 / length], 0.12, 1)
+}
+
+/// A bench whose caches are as they always are, ready to be measured.
+fn warm_strips(kernel: Kernel, config: Config, length: usize) -> Bench {
+    let mut bench = Bench::of_strips(kernel, Viewport::FRAME, config, &strips_of(length));
+    bench.run();
+    bench.cpu.clear_profile();
+    bench
+}
+
+fn strip_clocks(kernel: Kernel, config: Config, length: usize) -> f64 {
+    let mut bench = warm_strips(kernel, config, length);
+    bench.run();
+    bench.profile().clocks() as f64 / (1000 / length * length) as f64
+}
+
+/// Triangles that share vertices: what a vertex and a triangle cost, and what the resources allow.
+fn sharing() -> Result<(), Box<dyn std::error::Error>> {
+    println!("\n## Strips, steady state\n");
+    println!(
+        "A display list of strips, as T-meshes are: each vertex but the first two of a strip makes a triangle with the two before \
+         it. Frames, all tests and bins included; triangles of about 30 pixels. A corner is transformed once, 76 triangles of 78 \
+         corners are a batch; where a strip begins, two corners make no triangle, and the loop over commands passes over them.\n"
+    );
+    let kernel = |surface| Kernel { surface, ..scheduled_phong(KernelList::Strips) };
+    head(&[
+        "triangles in a strip",
+        "Phong: dual",
+        "every access a hit",
+        "straight",
+        "Gouraud: dual",
+        "every access a hit",
+        "straight",
+    ]);
+    for length in [1000, 100, 20, 8, 4] {
+        let cells = [KernelSurface::Phong, KernelSurface::Gouraud].map(|surface| {
+            let dual = kernel(surface);
+            let straight = Kernel { schedule: Schedule::Straight, ..dual };
+            let hits = strip_clocks(dual, without(&MEMORY_ROWS), length);
+            [strip_clocks(dual, Config::cycle(), length), hits, strip_clocks(straight, Config::cycle(), length)]
+        });
+        row(&[vec![length.to_string()], cells.concat().iter().map(|c| format!("{c:.0}")).collect()].concat());
+    }
+    steps();
+    strip_causes();
+    lower_bounds()
+}
+
+/// Clocks by part of the code, Phong, one long strip beside triangles of their own corners.
+fn steps() {
+    println!("\n### Clocks by step: one long strip, and triangles with corners of their own (Phong, dual)\n");
+    head(&["step", "strip", "own corners"]);
+    let labels = ["start", "corners", "again", "finished", "bins", "exact"];
+    let names = [
+        "begin a batch",
+        "corners",
+        "set-up, words and the bin of one region",
+        "triangles in doubt, in several regions or in none",
+        "bins of these",
+        "exact tests",
+    ];
+    let all = [KernelList::Strips, KernelList::Triangles].map(|list| {
+        let kernel = scheduled_phong(list);
+        let mut bench = match list {
+            KernelList::Strips => warm_strips(kernel, Config::cycle(), 1000),
+            KernelList::Triangles => {
+                let mut bench = Bench::new(kernel, Viewport::FRAME, Config::cycle(), &scene());
+                bench.run();
+                bench
+            }
+        };
+        let base = bench.program.base;
+        bench.cpu.watch(Some(AddressProfile::new(base, bench.program.bytes.len() / 4)));
+        bench.run();
+        let at = labels.map(|label| (label, bench.program.symbol(label).expect("label")));
+        bench.cpu.watched().map(|watched| watched.by_label(&at)).unwrap_or_default()
+    });
+    for (label, name) in labels.into_iter().zip(names) {
+        let clocks = |parts: &[(&str, u64)]| {
+            let sum: u64 = parts.iter().filter(|part| part.0 == label).map(|part| part.1).sum();
+            format!("{:.1}", sum as f64 / 1000.0)
+        };
+        row(&[name.to_owned(), clocks(&all[0]), clocks(&all[1])]);
+    }
+}
+
+/// Issue and freezes by cause of one long strip.
+fn strip_causes() {
+    println!("\n### Issue and freezes by cause: one long strip (Phong, dual)\n");
+    head(&["cause", "clocks a triangle"]);
+    let mut bench = warm_strips(scheduled_phong(KernelList::Strips), Config::cycle(), 1000);
+    bench.run();
+    let profile = bench.profile();
+    let share = |clocks: u64| format!("{:.1}", clocks as f64 / 1000.0);
+    row(&["issue".into(), share(profile.issue)]);
+    for (freeze, lost) in FREEZES.iter().zip(profile.frozen).filter(|(_, lost)| *lost > 0) {
+        row(&[format!("row {}: {}", freeze.number, freeze.condition), share(lost)]);
+    }
+    row(&["(instruction-cache misses, number)".into(), share(profile.instruction_misses)]);
+    row(&["(data-cache misses of loads, number)".into(), share(profile.data_misses)]);
+}
+
+/// What both halves of the pairs must do at least, beside the schedules.
+fn lower_bounds() -> Result<(), Box<dyn std::error::Error>> {
+    println!("\n### Lower bound of the resources (Phong, dual)\n");
+    println!(
+        "Slots that the operations of a stretch need in each half of the pairs (a product of doubles takes two); no schedule of \
+         these operations has fewer pairs than the greater number. A stretch over corners is for three of them: one triangle of its \
+         own corners, three of a strip.\n"
+    );
+    head(&["stretch", "floating-point slots", "core slots", "least pairs", "pairs of the schedule"]);
+    for (list, name) in [(KernelList::Strips, "strip"), (KernelList::Triangles, "own corners")] {
+        for (slots, part) in linear::slots(&scheduled_phong(list).source())?.iter().zip(["three corners", "set-up"]) {
+            let least = slots.floating.max(slots.core);
+            let cells = [slots.floating, slots.core, least, slots.pairs].map(|n| n.to_string());
+            row(&[vec![format!("{name}: {part}")], cells.to_vec()].concat());
+        }
+    }
+    println!(
+        "\nWhat is left: drains of the pipes, for which values wait that have 30 registers, and in memory the two loops that take \
+         turns in the instruction cache (a larger batch would not fit the data cache). An edge of a strip is computed for both of \
+         its triangles."
+    );
+    Ok(())
+}
+
 /// Time of TRANSFORM of a field of Slats in microseconds.
 fn transform_us(preset: &str, level: Level, triangles: u32) -> Result<f64, Box<dyn std::error::Error>> {
     let small = test_scene(TestScene::Typical, triangles);
@@ -315,6 +449,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     causes();
     freeze_sensitivity();
     dram_sensitivity();
+    sharing()?;
     board()?;
     sizes();
     Ok(())
