@@ -176,7 +176,8 @@ impl Pass {
 
     fn kernel(&self, version: CodeVersion) -> Option<Kernel> {
         let schedule = match version {
-            CodeVersion::Compiled => Schedule::Straight,
+            CodeVersion::Unoptimised => Schedule::Straight,
+            CodeVersion::Compiled => Schedule::Compiled,
             CodeVersion::Scheduled => Schedule::Dual,
         };
         let surface = match self.picture().shading {

@@ -13,7 +13,7 @@ use pxpl5_wire::{FieldParity, NodeId, RegionId, ViewNumber, Word};
 use std::sync::Arc;
 
 const MEMORY: u64 = 8 << 20;
-const VERSIONS: [CodeVersion; 2] = [CodeVersion::Compiled, CodeVersion::Scheduled];
+const VERSIONS: [CodeVersion; 3] = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
 
 /// Numbers in 0 to 1, the same on every host.
 struct Numbers(SplitMix64);

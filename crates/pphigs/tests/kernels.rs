@@ -88,6 +88,13 @@ fn the_straight_kernel_gives_the_native_words_and_bins() {
 }
 
 #[test]
+fn the_compiled_kernel_gives_the_native_words_and_bins() {
+    for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+        PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Compiled, surface, picture));
+    }
+}
+
+#[test]
 fn the_dual_kernel_gives_the_native_words_and_bins() {
     for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
         PICTURES.into_iter().for_each(|picture| assert_same_words(Schedule::Dual, surface, picture));
@@ -96,7 +103,7 @@ fn the_dual_kernel_gives_the_native_words_and_bins() {
 
 #[test]
 fn the_kernels_of_strips_give_the_native_words_and_bins() {
-    for schedule in [Schedule::Straight, Schedule::Dual] {
+    for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
         for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
             PICTURES.into_iter().for_each(|picture| assert_same_words_of_strips(schedule, surface, picture));
         }

@@ -22,9 +22,12 @@ use pxpl5_wire::{Lines, RegionGrid, Word};
 /// How the code was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Schedule {
-    /// As a compiler of 1989 would give it: every statement through the stack frame, everything inlined, larger than
+    /// As a compiler without optimisation would give it: every statement through the stack frame, everything inlined, larger than
     /// the instruction cache.
     Straight,
+    /// As a good compiler of about 1990 would give it: functions, loops, locals in registers, scalar operations
+    /// (kernels/compiled_rules.md).
+    Compiled,
     /// In dual-instruction mode, in two loops over batches that each fit the instruction cache. Most of it is linear code, which
     /// the i860's assembler does not know: what assembles it puts it in order first.
     Dual,
@@ -113,6 +116,7 @@ impl Kernel {
             if self.binned && !self.field { include_str!("../kernels/bins_scheduled.s") } else { bins };
         let triangle = match self.schedule {
             Schedule::Straight => [self.straight(), vec![bins]].concat(),
+            Schedule::Compiled => [self.compiled(), vec![bins]].concat(),
             // What is seldom needed comes last, so that bins do not share sets of the cache with the end of the second loop.
             Schedule::Dual => {
                 [self.dual(), vec![bins_of_frames, include_str!("../kernels/scheduled_doubt.s")]].concat()
@@ -127,6 +131,14 @@ impl Kernel {
             KernelSurface::Phong => include_str!("../kernels/phong.s"),
         };
         vec![include_str!("../kernels/surface.s"), surface, include_str!("../kernels/triangle_straight.s")]
+    }
+
+    fn compiled(&self) -> Vec<&'static str> {
+        let surface = match self.surface {
+            KernelSurface::Gouraud => include_str!("../kernels/compiled_gouraud.s"),
+            KernelSurface::Phong => include_str!("../kernels/compiled_phong.s"),
+        };
+        vec![surface, include_str!("../kernels/compiled.s")]
     }
 
     fn dual(&self) -> Vec<&'static str> {

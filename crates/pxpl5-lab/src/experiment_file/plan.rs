@@ -256,8 +256,9 @@ impl ExperimentFile {
     }
 }
 
-const CODES: [(&str, Option<CodeVersion>); 3] = [
+const CODES: [(&str, Option<CodeVersion>); 4] = [
     ("none", None),
+    (CodeVersion::Unoptimised.name(), Some(CodeVersion::Unoptimised)),
     (CodeVersion::Compiled.name(), Some(CodeVersion::Compiled)),
     (CodeVersion::Scheduled.name(), Some(CodeVersion::Scheduled)),
 ];
