@@ -70,12 +70,14 @@ pub struct KernelOutput {
 
 impl KernelOutput {
     /// Entries of all bins together.
-    fn entries(&self) -> u64 {
+    #[must_use]
+    pub fn entries(&self) -> u64 {
         self.bins.iter().map(|bin| u64::from(bin.end - bin.start) / 4).sum()
     }
 
     /// Number of triangles left to the clipper.
-    fn left_to_clipper(&self) -> u64 {
+    #[must_use]
+    pub fn left_to_clipper(&self) -> u64 {
         u64::from(self.clipped.end - self.clipped.start) / 4
     }
 }
@@ -130,7 +132,8 @@ impl Pass {
     /// What it takes by the table, but for the beginning of a pass over the display list.
     #[must_use]
     pub fn cost(&self) -> TransformCost {
-        TransformCost { entries: self.entries(), ..TransformCost::primitives(self.transformed()) }
+        let counted = TransformCost::primitives(self.transformed());
+        TransformCost { unguarded: self.unguarded(), entries: self.entries(), ..counted }
     }
 
     /// What the kernel does not do, so that it takes the table's time.
