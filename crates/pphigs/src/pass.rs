@@ -7,7 +7,7 @@ use crate::picture::{Picture, RegionBinning};
 use crate::placed::PlacedStructure;
 use crate::placing::place_once;
 use crate::view::FrameView;
-use pxpl5_geometry::{Culling, Light, RegionMask, SetupStats, Touch, Transform};
+use pxpl5_geometry::{Light, RegionMask, SetupStats, Touch, Transform};
 use pxpl5_wire::RegionId;
 use std::sync::Arc;
 
@@ -41,7 +41,7 @@ pub struct Pass {
     bins: Vec<Bin>,
     screen_counts: PrimitiveCounts,
     stats: SetupStats,
-    /// Triangles of structures that do not cull, not wholly inside the guard band.
+    /// Triangles not wholly inside the guard band.
     unguarded: u64,
     /// Makes the words of triangles; `None` where nobody wants pixels.
     encoder: Option<Encoder>,
@@ -92,9 +92,7 @@ impl Pass {
             let Some(transform) = &place.transform else { continue };
             let before = unguarded(&stats);
             self.bin_triangles(place, transform, &share, &mut stats);
-            if place.structure.culling == Culling::None {
-                self.unguarded += unguarded(&stats) - before;
-            }
+            self.unguarded += unguarded(&stats) - before;
             for number in share.held_spheres(&place.structure.spheres) {
                 if let Some(sphere) = transform.sphere(&share.list.spheres[number], &mut stats) {
                     self.put_sphere(sphere.regions, number as u32);
@@ -233,8 +231,7 @@ impl Pass {
         self.stats
     }
 
-    /// Triangles that code finds not wholly inside the guard band: those of structures that do not cull, since for the others
-    /// there is no code.
+    /// Triangles not wholly inside the guard band.
     pub(crate) const fn unguarded(&self) -> u64 {
         self.unguarded
     }
@@ -259,10 +256,6 @@ impl Pass {
 
     pub(crate) const fn share(&self) -> &Share {
         &self.share
-    }
-
-    pub(crate) fn placed(&self) -> &[PlacedStructure] {
-        &self.placed
     }
 
     pub(crate) const fn encoder(&self) -> Option<&Encoder> {

@@ -6,7 +6,7 @@ use glam::Vec3;
 use i860::Config;
 use kernel::{Bench, Output, Strip, frame, native, strips, triangles, triangles_of};
 use pxpl5_geometry::kernel::{Kernel, KernelList, KernelSurface, Schedule};
-use pxpl5_geometry::{Triangle, Viewport};
+use pxpl5_geometry::{Culling, Triangle, Viewport};
 use pxpl5_wire::FieldParity;
 
 /// Small, middling and large triangles, among them ones outside the guard band.
@@ -38,7 +38,7 @@ fn assert_same_words(schedule: Schedule, surface: KernelSurface, viewport: Viewp
 }
 
 fn assert_same_words_of(input: &[Triangle], schedule: Schedule, surface: KernelSurface, viewport: Viewport) {
-    let (expected, flattened) = native(surface, viewport, input);
+    let (expected, flattened) = native(surface, viewport, Culling::None, input);
     assert_eq!(flattened, 0, "the kernels do not flatten planes");
     let kernel = Kernel::for_picture(schedule, surface, &viewport, true).expect("frames and fields have kernels");
     let mut bench = Bench::new(kernel, viewport, Config::functional(), input);
@@ -66,7 +66,7 @@ fn strips_of_all_sizes() -> Vec<Strip> {
 fn assert_same_words_of_strips(schedule: Schedule, surface: KernelSurface, viewport: Viewport) {
     let input = strips_of_all_sizes();
     let (alone, places) = triangles_of(&input);
-    let (mut expected, flattened) = native(surface, viewport, &alone);
+    let (mut expected, flattened) = native(surface, viewport, Culling::None, &alone);
     assert_eq!(flattened, 0, "the kernels do not flatten planes");
     expected.clipped.iter_mut().for_each(|number| *number = places[*number]);
     assert!(!expected.clipped.is_empty() && 2 * expected.commands.len() > alone.len(), "{}", expected.commands.len());
@@ -106,6 +106,27 @@ fn the_kernels_of_strips_give_the_native_words_and_bins() {
     for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
         for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
             PICTURES.into_iter().for_each(|picture| assert_same_words_of_strips(schedule, surface, picture));
+        }
+    }
+}
+
+/// About half of the triangles face away; those that reach beyond the guard band are the clipper's, whichever way they face.
+#[test]
+fn kernels_that_cull_give_the_native_words_and_bins() {
+    let input = mixture();
+    for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
+        for surface in [KernelSurface::Gouraud, KernelSurface::Phong] {
+            for viewport in PICTURES {
+                let (expected, _) = native(surface, viewport, Culling::Back, &input);
+                let (all, _) = native(surface, viewport, Culling::None, &input);
+                let share = expected.commands.len() as f64 / all.commands.len() as f64;
+                assert!((0.4..0.6).contains(&share), "{share}");
+                let kernel = Kernel::for_picture(schedule, surface, &viewport, true).expect("frames and fields");
+                let kernel = Kernel { culls: true, ..kernel };
+                let mut bench = Bench::new(kernel, viewport, Config::functional(), &input);
+                bench.run();
+                assert_same_output(&bench.output(), &expected, kernel);
+            }
         }
     }
 }

@@ -130,6 +130,7 @@ each:   call    corner
         fsub.dd f20, f22, f20
         pfeq.dd f20, f0, f0
         bc      done                        // nothing to draw
+        facing_float f21, done
         pfgt.dd f0, f20, f0
         bnc     oriented
         fmov.ss f16, f24                    // make it clockwise

@@ -70,3 +70,4 @@ P_DEPTH_SCALE = 456       // single: far - near in depth units
 P_SIXTEENTH_S = 460       // single: 1 / 16
 P_ROUND52_S = 464         // single: 1.5 * 2^52
 P_TWO18     = 468         // single: 2^18, more than any distance in subpixels within the guard band
+P_CULL      = 472         // words: the area's high word, exclusive-or the first, and the second, is negative where it is not drawn

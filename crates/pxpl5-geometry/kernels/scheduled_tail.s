@@ -50,6 +50,7 @@ accepted: ld.l  AREA_WORD+4(r2), r22
         nop
         shl     1, r22, r22
         bte     r0, r22, drop                // nothing to draw
+        facing  AREA_WORD+4, drop
         call    bins
         nop
         bte     r0, r22, drop               // no region

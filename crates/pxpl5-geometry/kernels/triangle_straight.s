@@ -359,6 +359,7 @@ next:   passover_straight
         fld.d   AREA(r2), f8
         pfeq.dd f8, f0, f0
         bc      done                        // nothing to draw
+        facing  AREA+4, done
         pfgt.dd f0, f8, f0
         bnc     oriented
         swapwords SX                        // make it clockwise

@@ -15,6 +15,7 @@
 //! the normals. Registers and layouts stand in kernels/parameters.s. The sources are put together as a linker would, one file for
 //! each choice. This crate does not assemble or run them.
 
+use crate::transform::Turn;
 use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip, light, screen};
 use glam::Vec3;
 use pxpl5_wire::{Lines, RegionGrid, Word};
@@ -64,6 +65,8 @@ pub struct Kernel {
     pub field: bool,
     /// Whether it puts commands into bins; else all of them go everywhere.
     pub binned: bool,
+    /// Whether triangles that face away are not drawn.
+    pub culls: bool,
 }
 
 /// Instruction heads of a triangle's command, in the order of the kernel's parameter block: enable, edge, depth
@@ -77,7 +80,7 @@ pub const TRIANGLE_WORDS: usize = 24;
 pub const VERTEX_WORDS: usize = 8;
 
 /// Words of the parameter block.
-pub const PARAMETER_WORDS: usize = 118;
+pub const PARAMETER_WORDS: usize = 120;
 
 /// The constants of single precision whose bits the kernels know: 1.5 * 2^23 and 2^23.
 const ROUND_SINGLE: f32 = 12_582_912.0;
@@ -98,7 +101,7 @@ impl Kernel {
         let field = matches!(viewport.lines(), Lines::Field(_));
         let grid = if field { RegionGrid::FIELD } else { RegionGrid::FRAME };
         let list = KernelList::Triangles;
-        (viewport.grid() == grid).then_some(Self { schedule, surface, list, field, binned })
+        (viewport.grid() == grid).then_some(Self { schedule, surface, list, field, binned, culls: false })
     }
 
     /// The source in i860 assembly, with linear stretches where the schedule is [`Schedule::Dual`]; its entry is the label
@@ -111,7 +114,8 @@ impl Kernel {
             KernelList::Triangles => include_str!("../kernels/list_triangles.s"),
             KernelList::Strips => include_str!("../kernels/list_strips.s"),
         };
-        let common = [include_str!("../kernels/parameters.s"), list, picture, include_str!("../kernels/exact.s")];
+        let cull = if self.culls { include_str!("../kernels/cull.s") } else { include_str!("../kernels/cull_none.s") };
+        let common = [include_str!("../kernels/parameters.s"), list, picture, cull, include_str!("../kernels/exact.s")];
         let bins_of_frames =
             if self.binned && !self.field { include_str!("../kernels/bins_scheduled.s") } else { bins };
         let triangle = match self.schedule {
@@ -188,6 +192,8 @@ impl Kernel {
             setup,
             doubted,
             include_str!("../kernels/setup.s"),
+            if self.culls { include_str!("../kernels/doubt_culled.s") } else { include_str!("../kernels/doubt.s") },
+            include_str!("../kernels/box.s"),
             middle,
             include_str!("../kernels/corners.s"),
             side,
@@ -254,8 +260,8 @@ impl Kernel {
             (Strips, Phong) => ".linear 100 30 1 8 0",
         };
         let setup = match (self.list, self.surface, self.field) {
-            (_, Phong, true) if !self.binned => ".linear 300 20 2 8 0",
-            _ if !self.binned => ".linear 64 15 2 8 0",
+            (_, Phong, true) if !self.binned && !self.culls => ".linear 300 20 2 8 0",
+            _ if !self.binned || self.culls => ".linear 64 15 2 8 0",
             (_, Gouraud, false) => ".linear 150 20 2 8 0",
             (Triangles, Gouraud, true) => ".linear 64 15 2 8 0",
             (Strips, Gouraud, true) => ".linear 64 20 1 8 0",
@@ -302,6 +308,7 @@ impl Kernel {
         words.singles(384, &[2.0 * ROUND_SINGLE + 8.0]);
         words.doubles(440, &[16.0, -16.0]);
         words.singles(456, &[screen::DEPTH_SCALE, 1.0 / 16.0, ROUND_DOUBLE as f32, TWO_18]);
+        words.integers(472, &culled(transform.dropped));
         self.sides().iter().zip([392, 416]).for_each(|((unit, less), at)| {
             words.doubles(at, &[*unit]);
             words.singles(at + 8, &[*unit as f32]);
@@ -358,6 +365,17 @@ impl ParameterWords {
 
     fn doubles(&mut self, at: usize, values: &[f64]) {
         values.iter().enumerate().for_each(|(n, value)| self.integers(at + 8 * n, &halves(*value)));
+    }
+}
+
+/// What the area's high word is turned over and masked with, to be negative for triangles that are not drawn.
+const fn culled(dropped: Option<Turn>) -> [Word; 2] {
+    const SIGN: Word = 1 << 31;
+    match dropped {
+        None => [0, 0],
+        // A positive area is clockwise.
+        Some(Turn::Clockwise) => [SIGN, SIGN],
+        Some(Turn::Counterclockwise) => [0, SIGN],
     }
 }
 

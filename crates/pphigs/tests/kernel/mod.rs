@@ -27,7 +27,7 @@ const RETURN: u32 = 0x0800;
 /// The kernel of a schedule for Gouraud triangles in bins of a frame, which the report is about.
 pub(crate) const fn frame(schedule: Schedule) -> Kernel {
     let list = KernelList::Triangles;
-    Kernel { schedule, surface: KernelSurface::Gouraud, list, field: false, binned: true }
+    Kernel { schedule, surface: KernelSurface::Gouraud, list, field: false, binned: true, culls: false }
 }
 
 /// The kernel, assembled with its own options.
@@ -150,8 +150,13 @@ pub(crate) struct Output {
 
 /// What native code makes of the triangles: the commands of those wholly inside the guard band, their regions, and
 /// the numbers of the rest; and the number of planes flattened, which the kernels do not do.
-pub(crate) fn native(surface: KernelSurface, viewport: Viewport, triangles: &[Triangle]) -> (Output, u64) {
-    let transform = Transform::new(&view(), viewport, Culling::None).expect("finite");
+pub(crate) fn native(
+    surface: KernelSurface,
+    viewport: Viewport,
+    culling: Culling,
+    triangles: &[Triangle],
+) -> (Output, u64) {
+    let transform = Transform::new(&view(), viewport, culling).expect("finite");
     let light = light();
     let mut stats = SetupStats::default();
     let mut output = Output { commands: Vec::new(), regions: Vec::new(), clipped: Vec::new() };
@@ -231,7 +236,8 @@ impl Bench {
         let mut ram = Ram::new(0, MEMORY);
         let program = program(kernel);
         ram.load(CODE, &program.bytes).expect("fits");
-        let transform = Transform::new(&view(), viewport, Culling::None).expect("finite");
+        let culling = if kernel.culls { Culling::Back } else { Culling::None };
+        let transform = Transform::new(&view(), viewport, culling).expect("finite");
         let parameters = kernel.parameters(&transform, &light(), &heads(kernel.surface));
         ram.load_words(PARAMETERS, &parameters).expect("fits");
         assert!(4 * data.len() < (COMMANDS - TRIANGLES) as usize);

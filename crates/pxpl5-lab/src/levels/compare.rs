@@ -89,13 +89,25 @@ pub fn compare_with(finished: impl Fn(u64, u64)) -> Result<Vec<LevelReport>, Exp
     Ok(reports)
 }
 
+/// How far a figure is from that of the cycle level, percent; none where both have no value, or both are 0: pictures that are never in
+/// time have no latency.
+#[must_use]
+pub fn deviation_percent(value: f64, of_cycle: f64) -> f64 {
+    match (value.is_finite(), of_cycle.is_finite()) {
+        (true, true) if value == of_cycle => 0.0,
+        (true, true) => 100.0 * (value / of_cycle - 1.0).abs(),
+        (false, false) => 0.0,
+        _ => 100.0,
+    }
+}
+
 /// A level's figures beside those of the cycle level, and its speed on this host, now.
 fn report(
     (level, times_of_code): (Level, bool),
     rows: &[FigureRow],
     cycle: &[FigureRow],
 ) -> Result<LevelReport, ExperimentError> {
-    let deviations = rows.iter().zip(cycle).map(|(a, b)| 100.0 * (a.simulated / b.simulated - 1.0).abs());
+    let deviations = rows.iter().zip(cycle).map(|(a, b)| deviation_percent(a.simulated, b.simulated));
     let worst = deviations.clone().fold(0.0, f64::max);
     let (fields_per_host_second, configurations_per_host_second) = speed(level)?;
     Ok(LevelReport {

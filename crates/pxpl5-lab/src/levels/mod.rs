@@ -2,7 +2,7 @@
 
 mod compare;
 
-pub use compare::{LevelReport, cases, compare, compare_with};
+pub use compare::{LevelReport, cases, compare, compare_with, deviation_percent};
 
 use pxpl5_measure::summary;
 use pxpl5_run::{Experiment, ExperimentError, Level, Registry, Summary};
