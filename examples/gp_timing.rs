@@ -476,8 +476,9 @@ seed and Newton steps, snapping to 1/16 pixel, depth, light at the corners (or n
 orientation, three edge expressions, planes of depth and of three components, their restatement for a field, binning.
 *Straight* is code without optimisation: every statement through the stack frame and everything inlined. *Compiled* is
 what a good compiler of about 1990 makes of a plain C program, by rules that were written down before anything was
-measured (kernels/compiled_rules.md): functions, loops, locals in registers, scalar floating point. *Dual* is linear code put in order for dual-instruction mode (i860::linear), a batch of 26 triangles in two loops that each fit the
-4 KB instruction cache. All give the words of the native code bit for bit (crates/pphigs/tests/kernels.rs and code.rs).
+measured (kernels/compiled_rules.md): functions, loops, locals in registers, scalar floating point. *Dual* is linear code
+put in order for dual-instruction mode (i860::linear), a batch of 26 triangles in two loops that each fit the 4 KB
+instruction cache. All give the words of the native code bit for bit (crates/pphigs/tests/kernels.rs and code.rs).
 
 Not in the kernels: edits, the clipper (triangles not wholly inside the guard band go to a list), spheres, sending
 messages. So a figure of the whole program is expected to be larger than these.

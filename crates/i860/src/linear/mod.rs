@@ -47,8 +47,6 @@ mod parse;
 mod place;
 mod settings;
 
-use machine::Unit;
-use parse::Operation;
 use std::cell::RefCell;
 use std::fmt::Write as _;
 
@@ -83,8 +81,10 @@ pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
         source,
         |operations, pairs| {
             let floating = operations.iter().filter(|operation| operation.name.unit.is_floating());
-            let doubles =
-                floating.clone().filter(|operation| operation.name.unit == Unit::Multiplier { double: true }).count();
+            let doubles = floating
+                .clone()
+                .filter(|operation| operation.name.unit == machine::Unit::Multiplier { double: true })
+                .count();
             let floating = floating.count();
             found.push(Slots { floating: floating + doubles, core: operations.len() - floating, pairs: pairs.len() });
         },
@@ -116,7 +116,7 @@ pub fn schedule(source: &str) -> Result<String, LinearError> {
 /// Hands the operations of each stretch with their pairs to `linear`, and every other line to `other`, in order.
 fn stretches(
     source: &str,
-    mut linear: impl FnMut(&[Operation], &[(String, String)]),
+    mut linear: impl FnMut(&[parse::Operation], &[(String, String)]),
     mut other: impl FnMut(&str),
 ) -> Result<(), LinearError> {
     let mut pool = Vec::new();

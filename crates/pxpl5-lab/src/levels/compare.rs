@@ -1,6 +1,6 @@
 //! Speed against error: the same experiments at every level.
 
-use super::summarise;
+use super::{deviation_percent, summarise};
 use crate::figures::{Bench, FIGURES, Figure, FigureRow, mean_error_percent};
 use pxpl5_analytic::SlatsModel;
 use pxpl5_machine::MachineConfig;
@@ -87,18 +87,6 @@ pub fn compare_with(finished: impl Fn(u64, u64)) -> Result<Vec<LevelReport>, Exp
         }
     }
     Ok(reports)
-}
-
-/// How far a figure is from that of the cycle level, percent; none where both have no value, or both are 0: pictures that are never in
-/// time have no latency.
-#[must_use]
-pub fn deviation_percent(value: f64, of_cycle: f64) -> f64 {
-    match (value.is_finite(), of_cycle.is_finite()) {
-        (true, true) if value == of_cycle => 0.0,
-        (true, true) => 100.0 * (value / of_cycle - 1.0).abs(),
-        (false, false) => 0.0,
-        _ => 100.0,
-    }
 }
 
 /// A level's figures beside those of the cycle level, and its speed on this host, now.
