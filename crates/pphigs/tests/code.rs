@@ -98,7 +98,18 @@ fn of_code(processor: &Processor, output: &KernelOutput, region: usize, command_
 
 #[test]
 fn the_words_in_memory_are_those_of_the_native_firmware() {
-    let list = list(300);
+    assert_native_words(list(300));
+}
+
+/// Both structures leave out what faces away; the first is seen through other matrices than the second.
+#[test]
+fn code_leaves_out_what_faces_away() {
+    let mut list = Arc::unwrap_or_clone(list(300));
+    list.structures.iter_mut().for_each(|structure| structure.culling = Culling::Back);
+    assert_native_words(Arc::new(list));
+}
+
+fn assert_native_words(list: Arc<DisplayList>) {
     let view = view();
     let share = Share::new(Arc::clone(&list), 1, 3);
     for version in VERSIONS {
