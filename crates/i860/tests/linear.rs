@@ -1,6 +1,6 @@
 //! Linear code: what is computed does not depend on how it is scheduled, and nothing in it waits.
 
-use i860::linear::schedule;
+use i860::linear::{schedule, slots};
 use i860::timing::{FREEZES, Freeze};
 use i860::{Config, Cpu, Profile, Ram, RunEnd, assemble};
 
@@ -117,4 +117,21 @@ fn what_is_wrong_is_said_with_its_line() {
     let crowd: String = (0..4).map(|n| format!("v{n} = ld.l {n}(r4)\n")).collect();
     let uses = "s = adds v0, v1\nt = adds v2, v3\nu = adds s, t\nst.l u, 0(r4)";
     assert!(fault(&format!("{crowd}{uses}")).unwrap_err().contains("do not fit the registers"));
+}
+
+/// Two additions, a product of doubles that takes two slots, and four accesses of memory.
+#[test]
+fn slots_are_counted_by_unit_and_no_schedule_is_shorter() {
+    let source = "        .linear\n\
+        a = fld.d 0(r16)\n\
+        b = fld.d 8(r16)\n\
+        c = add.dd a, b\n\
+        d = mul.dd a, c\n\
+        e = sub.dd d, b\n\
+        fst.d e, 16(r16)\n\
+        prefetch 32(r16)\n\
+        .endlinear\n";
+    let [found] = slots(source).expect("it is a stretch").try_into().expect("one");
+    assert_eq!((found.floating, found.core), (4, 4));
+    assert!(found.pairs >= found.floating.max(found.core), "{found:?}");
 }

@@ -21,7 +21,7 @@ fn modes() -> [(&'static str, Config); 3] {
 fn kernels(c: &mut Criterion) {
     let mut group = c.benchmark_group("kernels");
     let input = triangles(500, 0.12, 1);
-    for schedule in [Schedule::Straight, Schedule::Dual] {
+    for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
         for (mode, config) in modes() {
             let prepare = || Bench::new(frame(schedule), Viewport::FRAME, config, &input);
             let instructions = run(prepare()).profile().instructions;

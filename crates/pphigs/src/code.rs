@@ -14,11 +14,12 @@ use crate::cost::TransformCost;
 use crate::list::Share;
 use crate::pass::Pass;
 use crate::picture::{RegionBinning, Shading};
+use crate::placed::PlacedStructure;
 use i860::Program;
 use pxpl5_geometry::kernel::{
     Heads, Kernel, KernelSurface, PARAMETER_WORDS, Schedule, TRIANGLE_WORDS, display_list_words,
 };
-use pxpl5_geometry::{Culling, Light, Transform};
+use pxpl5_geometry::{Culling, Transform};
 use pxpl5_gp::{CodeVersion, GpTiming, Processor, ProcessorFault, Work};
 use pxpl5_renderer::{Command, PhongTriangleCommand, TriangleCommand};
 use pxpl5_sim::Span;
@@ -70,12 +71,14 @@ pub struct KernelOutput {
 
 impl KernelOutput {
     /// Entries of all bins together.
-    fn entries(&self) -> u64 {
+    #[must_use]
+    pub fn entries(&self) -> u64 {
         self.bins.iter().map(|bin| u64::from(bin.end - bin.start) / 4).sum()
     }
 
     /// Number of triangles left to the clipper.
-    fn left_to_clipper(&self) -> u64 {
+    #[must_use]
+    pub fn left_to_clipper(&self) -> u64 {
         u64::from(self.clipped.end - self.clipped.start) / 4
     }
 }
@@ -130,13 +133,14 @@ impl Pass {
     /// What it takes by the table, but for the beginning of a pass over the display list.
     #[must_use]
     pub fn cost(&self) -> TransformCost {
-        TransformCost { entries: self.entries(), ..TransformCost::primitives(self.transformed()) }
+        let counted = TransformCost::primitives(self.transformed());
+        TransformCost { unguarded: self.unguarded(), entries: self.entries(), ..counted }
     }
 
     /// What the kernel does not do, so that it takes the table's time.
     fn cost_without_code(&self, output: &KernelOutput) -> TransformCost {
         TransformCost {
-            triangles: output.left_to_clipper() + self.culled_by_table(),
+            triangles: output.left_to_clipper(),
             entries: self.entries_without_code(output),
             ..TransformCost::primitives(self.transformed())
         }
@@ -150,14 +154,16 @@ impl Pass {
     /// [`ProcessorFault`] when the code does not come to its end, or its data do not fit.
     pub fn run_code(&self, processor: &mut Processor, context: u8) -> Result<Option<KernelOutput>, ProcessorFault> {
         let Some(kernel) = self.kernel(processor.version()) else { return Ok(None) };
-        let program = program(kernel);
         let heads = self.heads();
         let places = self.places(processor, kernel, context)?;
         processor.write(BIN_TABLE, &places.bins)?;
         let mut span = Span::ZERO;
         let mut command = places.commands;
         let mut clipped = places.clip_list;
-        for (transform, light, held) in self.calls() {
+        for (place, transform, held) in self.calls() {
+            let kernel = Kernel { culls: place.structure.culling != Culling::None, ..kernel };
+            let program = program(kernel);
+            let light = &place.light;
             let parameters: [Word; PARAMETER_WORDS] = kernel.parameters(transform, light, &heads);
             processor.write(PARAMETERS, &parameters)?;
             let first = DISPLAY_LIST + held.start as u32 * TRIANGLE_BYTES;
@@ -176,7 +182,8 @@ impl Pass {
 
     fn kernel(&self, version: CodeVersion) -> Option<Kernel> {
         let schedule = match version {
-            CodeVersion::Compiled => Schedule::Straight,
+            CodeVersion::Unoptimised => Schedule::Straight,
+            CodeVersion::Compiled => Schedule::Compiled,
             CodeVersion::Scheduled => Schedule::Dual,
         };
         let surface = match self.picture().shading {
@@ -202,18 +209,11 @@ impl Pass {
         [0, 1, 13, 17, 18, 22, 26, 30].map(|at| words.get(at).copied().unwrap_or_default())
     }
 
-    /// Triangles of structures that cull, which the kernel leaves to the table: it has no test of the facing.
-    fn culled_by_table(&self) -> u64 {
-        let culling = self.placed().iter().filter(|place| place.structure.culling != Culling::None);
-        culling.map(|place| self.share().held_places(&place.structure.triangles).len() as u64).sum()
-    }
-
     /// Structures with their triangles, counted in those that the GP holds.
-    fn calls(&self) -> impl Iterator<Item = (&Transform, &Light, Range<usize>)> {
-        let drawn = self.placed().iter().filter(|place| place.structure.culling == Culling::None);
-        drawn.filter_map(|place| {
+    fn calls(&self) -> impl Iterator<Item = (&PlacedStructure, &Transform, Range<usize>)> {
+        self.drawn().filter_map(|(place, transform)| {
             let held = self.share().held_places(&place.structure.triangles);
-            Some((place.transform.as_ref()?, &place.light, held)).filter(|call| !call.2.is_empty())
+            Some((place, transform, held)).filter(|call| !call.2.is_empty())
         })
     }
 

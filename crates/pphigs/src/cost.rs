@@ -15,18 +15,20 @@ pub struct TransformCost<N = u64> {
     pub triangles: N,
     /// Spheres transformed, seen or not, at [`GpTiming::sphere_ns`] each.
     pub spheres: N,
+    /// Triangles not wholly inside the guard band, at [`GpTiming::guard_ns`] each besides.
+    pub unguarded: N,
     /// Entries made in bins, one for each region that gets a primitive's commands, at [`GpTiming::bin_entry_ns`] each.
     pub entries: N,
 }
 
 impl TransformCost {
     /// The beginning of a pass over a display list, before its first primitive.
-    pub const PASS: Self = Self { passes: 1, triangles: 0, spheres: 0, entries: 0 };
+    pub const PASS: Self = Self { passes: 1, triangles: 0, spheres: 0, unguarded: 0, entries: 0 };
 
     /// Primitives transformed, without the beginning of their pass and without entries in bins.
     #[must_use]
     pub const fn primitives(counts: PrimitiveCounts) -> Self {
-        Self { passes: 0, triangles: counts.triangles as u64, spheres: counts.spheres as u64, entries: 0 }
+        Self { triangles: counts.triangles as u64, spheres: counts.spheres as u64, passes: 0, ..Self::PASS }
     }
 
     /// A whole pass over so many primitives, without entries in bins.
@@ -41,6 +43,7 @@ impl TransformCost {
         timing.pass_ns * self.passes
             + timing.triangle_ns * self.triangles
             + timing.sphere_ns * self.spheres
+            + timing.guard_ns * self.unguarded
             + timing.bin_entry_ns * self.entries
     }
 
@@ -56,7 +59,8 @@ impl TransformCost<f64> {
     #[must_use]
     pub fn ns(self, timing: &GpTiming) -> f64 {
         let primitives = timing.triangle_ns as f64 * self.triangles + timing.sphere_ns as f64 * self.spheres;
-        timing.pass_ns as f64 * self.passes + primitives + timing.bin_entry_ns as f64 * self.entries
+        let primitives = timing.pass_ns as f64 * self.passes + primitives + timing.guard_ns as f64 * self.unguarded;
+        primitives + timing.bin_entry_ns as f64 * self.entries
     }
 }
 
@@ -65,19 +69,22 @@ mod tests {
     use super::*;
 
     const TIMING: GpTiming =
-        GpTiming { pass_ns: 5_000, triangle_ns: 300, sphere_ns: 70, bin_entry_ns: 2, ..GpTiming::PAPERS };
+        GpTiming { pass_ns: 5_000, triangle_ns: 300, sphere_ns: 70, guard_ns: 40, bin_entry_ns: 2, ..GpTiming::PAPERS };
 
     #[test]
     fn a_transform_takes_the_time_of_its_pass_its_primitives_and_its_entries() {
-        let cost =
-            TransformCost { entries: 9, ..TransformCost::pass_over(PrimitiveCounts { triangles: 11, spheres: 13 }) };
-        assert_eq!(cost.span(&TIMING), Span::from_ns(5_000 + 11 * 300 + 13 * 70 + 9 * 2));
+        let cost = TransformCost {
+            unguarded: 4,
+            entries: 9,
+            ..TransformCost::pass_over(PrimitiveCounts { triangles: 11, spheres: 13 })
+        };
+        assert_eq!(cost.span(&TIMING), Span::from_ns(5_000 + 11 * 300 + 13 * 70 + 4 * 40 + 9 * 2));
         assert_eq!(TransformCost::PASS.ns(&TIMING), 5_000);
     }
 
     #[test]
     fn whole_means_take_the_time_of_counts() {
-        let means = TransformCost { passes: 1.0, triangles: 11.0, spheres: 13.0, entries: 9.0 };
-        assert_eq!(means.ns(&TIMING), 9_228.0);
+        let means = TransformCost { passes: 1.0, triangles: 11.0, spheres: 13.0, unguarded: 4.0, entries: 9.0 };
+        assert_eq!(means.ns(&TIMING), 9_388.0);
     }
 }

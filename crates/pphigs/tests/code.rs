@@ -13,7 +13,7 @@ use pxpl5_wire::{FieldParity, NodeId, RegionId, ViewNumber, Word};
 use std::sync::Arc;
 
 const MEMORY: u64 = 8 << 20;
-const VERSIONS: [CodeVersion; 2] = [CodeVersion::Compiled, CodeVersion::Scheduled];
+const VERSIONS: [CodeVersion; 3] = [CodeVersion::Unoptimised, CodeVersion::Compiled, CodeVersion::Scheduled];
 
 /// Numbers in 0 to 1, the same on every host.
 struct Numbers(SplitMix64);
@@ -98,7 +98,18 @@ fn of_code(processor: &Processor, output: &KernelOutput, region: usize, command_
 
 #[test]
 fn the_words_in_memory_are_those_of_the_native_firmware() {
-    let list = list(300);
+    assert_native_words(list(300));
+}
+
+/// Both structures leave out what faces away; the first is seen through other matrices than the second.
+#[test]
+fn code_leaves_out_what_faces_away() {
+    let mut list = Arc::unwrap_or_clone(list(300));
+    list.structures.iter_mut().for_each(|structure| structure.culling = Culling::Back);
+    assert_native_words(Arc::new(list));
+}
+
+fn assert_native_words(list: Arc<DisplayList>) {
     let view = view();
     let share = Share::new(Arc::clone(&list), 1, 3);
     for version in VERSIONS {

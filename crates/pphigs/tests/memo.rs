@@ -32,7 +32,7 @@ fn slower(row: &FreezeRow) -> FreezeRules {
 
 #[test]
 fn the_kernels_take_the_same_clocks_whatever_row_is_switched() {
-    for schedule in [Schedule::Straight, Schedule::Dual] {
+    for schedule in [Schedule::Straight, Schedule::Compiled, Schedule::Dual] {
         assert_same_kernel(FreezeRules::all(), schedule);
         for row in &FREEZES {
             assert_same_kernel(FreezeRules::all().without(row.id), schedule);

@@ -244,7 +244,7 @@ impl StereoModel {
         let triangles = self.largest_share(load.triangles);
         let spheres = self.largest_share(load.spheres);
         let entries = self.entries(load);
-        TransformCost { passes: 1.0, triangles, spheres, entries }.ns(&self.gp)
+        TransformCost { passes: 1.0, triangles, spheres, entries, ..TransformCost::default() }.ns(&self.gp)
     }
 
     /// Primitives that the slave with the most of them holds.

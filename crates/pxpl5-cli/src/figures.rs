@@ -63,6 +63,7 @@ fn json_text(figures: &Figures) -> String {
         "schema": "pxpl5-figures/1",
         "mean_error_percent_of_free_checks": mean_error_percent(&figures.rows),
         "figures": figures.rows,
+        "figures_with_times_of_code": figures.of_code,
         "families": figures.families,
         "intervals": figures.intervals,
     });

@@ -47,8 +47,9 @@ pub(crate) fn run(args: LevelsArgs) -> Result<(), CliError> {
     let reports = compare_with(|done, of| advance(&bar, done, of));
     bar.finish_and_clear();
     let reports = reports?;
+    let published = || reports.iter().filter(|report| !report.times_of_code);
     if let Some(file) = chart {
-        let levels: Vec<SpeedAndError> = reports.iter().map(speed_and_error).collect();
+        let levels: Vec<SpeedAndError> = published().map(speed_and_error).collect();
         file.write(level_chart(&levels).as_bytes())?;
     }
     print(&if args.json { json_text(&reports) } else { text(&reports) })
@@ -68,20 +69,22 @@ fn json_text(reports: &[LevelReport]) -> String {
 
 fn text(reports: &[LevelReport]) -> String {
     let mut text = format!(
-        "{:<12} {:>10} {:>16} {:>10} {:>22}\n",
+        "{:<24} {:>10} {:>16} {:>10} {:>22}\n",
         "level", "fields/s", "configurations/s", "error", "deviation from cycle"
     );
     for report in reports {
         let [mean, worst] = report.deviation_percent;
-        let name = format!("{:?}", report.level).to_lowercase();
+        let times = if report.times_of_code { ", times of code" } else { "" };
+        let name = format!("{}{times}", report.level.name());
         let _ = writeln!(
             text,
-            "{name:<12} {:>10.0} {:>16.0} {:>8.1} % {mean:>8.1} %, most {worst:>4.1} %",
+            "{name:<24} {:>10.0} {:>16.0} {:>8.1} % {mean:>8.1} %, most {worst:>4.1} %",
             report.fields_per_host_second, report.configurations_per_host_second, report.mean_error_percent
         );
     }
     text.push_str(
-        "\nfields/s: simulated NTSC fields per second of this host, without pixels; error: mean of the free checks\n",
+        "\nfields/s: simulated NTSC fields per second of this host, without pixels; error: mean of the free checks;\ndeviation: all figures from those of \
+         the cycle level with the same times in the table (published or fitted, or those of the i860 code)\n",
     );
     text
 }

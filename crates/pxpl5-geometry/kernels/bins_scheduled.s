@@ -64,48 +64,57 @@ bins:   firstpixel r24
         greatest 0, r5, r8, r11
         greatest 1, r6, r9, r12
         greatest 2, r7, r10, r13
-        mov     r0, r30
-rows:   subs    r30, r26, r0
-        bc      below                       // first row > this one
-        btne    3, r30, whole
+        bte     r0, r24, column             // to the first column
+        mov     r24, r29
+left:   adds    -1, r29, r29
+        adds    r5, r11, r11
+        adds    r6, r12, r12
+        adds    r7, r13, r13
+        btne    r0, r29, left
+column: bte     r0, r26, row                // to the first row
+        mov     r26, r29
+above:  adds    -1, r29, r29
+        adds    r8, r11, r11
+        adds    r9, r12, r12
+        adds    r10, r13, r13
+        btne    r0, r29, above
+row:    shl     2, r26, r31                 // place of the first region in the table
+        adds    r26, r31, r31
+        adds    r24, r31, r31
+        shl     2, r31, r31
+        adds    r19, r31, r31
+rows:   btne    3, r26, whole
         shorter r8, r11
         shorter r9, r12
         shorter r10, r13
 whole:  mov     r11, r14
         mov     r12, r15
         mov     r13, r4
-        mov     r0, r29
+        mov     r31, r30
+        mov     r24, r29
+columns: or     r14, r15, r23
+        or      r4, r23, r23
+        adds    1, r29, r28
+        subs    r23, r0, r0
+        bc      beside                      // 0 > a value
+        ld.l    0(r30), r23
+        adds    1, r22, r22
+        st.l    r18, 0(r23)
+        adds    4, r23, r23
+        st.l    r23, 0(r30)
+beside: bte     r25, r29, below             // the last column
+        mov     r28, r29
+        adds    r5, r14, r14
+        adds    r6, r15, r15
+        adds    r7, r4, r4
         br      columns
-        nop
+        adds    4, r30, r30
 below:  adds    r8, r11, r11
         adds    r9, r12, r12
         adds    r10, r13, r13
-        adds    1, r30, r30
-        subs    r27, r30, r0
-        bnc     rows
+        adds    20, r31, r31
+        bte     r27, r26, nowhere           // the last row
+        br      rows
+        adds    1, r26, r26
 nowhere: bri    r1
-        nop
-columns: subs   r29, r24, r0
-        bc      beside                      // first column > this one
-        or      r14, r15, r23
-        or      r4, r23, r23
-        subs    r23, r0, r0
-        bc      beside                      // 0 > a value
-        shl     2, r30, r23
-        adds    r30, r23, r23
-        adds    r29, r23, r23
-        shl     2, r23, r23
-        ld.l    r23(r19), r31
-        adds    r23, r19, r23
-        adds    1, r22, r22
-        st.l    r18, 0(r31)
-        adds    4, r31, r31
-        st.l    r31, 0(r23)
-beside: adds    r5, r14, r14
-        adds    r6, r15, r15
-        adds    r7, r4, r4
-        adds    1, r29, r29
-        subs    r25, r29, r0
-        bnc     columns
-        br      below
         nop

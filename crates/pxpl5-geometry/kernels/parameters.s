@@ -10,6 +10,11 @@ TRIANGLE_BYTES = 96
 COLOUR = 12
 NORMAL = 16
 
+// A vertex of a strip: as such a corner; the last word is 0 where it makes a triangle with the two before it. r16 is then the first
+// vertex and r17 the number of vertices, at least 3; behind the last one, two more may be read.
+VERTEX_BYTES = 32
+BEGINS = 28
+
 // A bin: the address of its next free word. An entry is the address of a command.
 
 // What the surface routine leaves: component k of corner n is a word, biased so that the double with the high word of
@@ -57,9 +62,12 @@ P_ROUND_LINE = 364        // 1.5 * 2^23, less 16 in a field that begins with lin
 P_DEPTH_BIAS = 368        // double: 1.5 * 2^52 + near
 P_ROUND56   = 376         // double: 1.5 * 2^56
 P_TURN      = 384         // single: 3 * 2^23 + 8
-P_ROUND19   = 388         // single: 1.5 * 2^19, of which the last bit is 1/16
 // The surface's words to the planes' values, as they are and turned over: unit (double), unit (single, and 4 bytes free), and half a
 // unit less 1.5 * 2^23 units (double).
 P_SIDES     = 392
 P_SIXTEENS  = 440         // doubles: 16, and -16 for triangles that are turned round
 P_DEPTH_SCALE = 456       // single: far - near in depth units
+P_SIXTEENTH_S = 460       // single: 1 / 16
+P_ROUND52_S = 464         // single: 1.5 * 2^52
+P_TWO18     = 468         // single: 2^18, more than any distance in subpixels within the guard band
+P_CULL      = 472         // words: the area's high word, exclusive-or the first, and the second, is negative where it is not drawn

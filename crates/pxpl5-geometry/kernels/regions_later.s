@@ -15,4 +15,3 @@ gf      = or gc, gd
 gg      = or ge, gf
 gh      = or gg, doubt
 r22     = shr 31, gh
-        .endlinear

@@ -1,11 +1,6 @@
         d.fnop
             adds    TRIANGLE_BYTES, r29, r29
-        d.fnop
-            adds    -1, r30, r30
-        d.fnop
-            adds    CORNERS_BYTES, r6, r6
-        d.fnop
-            btne    r0, r30, corners
+        morecorners
         d.fnop
             adds    RECORDS, r2, r3
         d.fnop
@@ -20,7 +15,8 @@ again:  d.fnop
         d.fnop
             ld.l    P_HEADS+4(r20), r25
         d.fnop
-            adds    48, r3, r4
+            adds    RECORD, r3, r4
         d.fnop
-            adds    96, r3, r5
+            adds    2*RECORD, r3, r5
 triangles:
+        passover

@@ -30,7 +30,7 @@ doubt:  call    exact
         nofarther r3
         nofarther r4
         nofarther r5
-        st.l    r0, R_DOUBT(r3)
+        decided
         .align  8
 more:   d.fnop
             nop

@@ -1,4 +1,4 @@
-// Triangles in dual-instruction mode, in batches of up to 16: a first loop takes their corners to records, a second one takes the
+// Triangles in dual-instruction mode, in batches: a first loop takes their corners to records, a second one takes the
 // records to the words of a command and to the bin of the region. Each loop fits the 4 KB instruction cache, the records of a batch fit the data
 // cache. Both are linear code (i860::linear) without a branch: what depends on the triangle is chosen by masks and by places in tables.
 // Triangles in doubt (near the planes of the clipper, without area, in more than one region) leave the loop.
@@ -13,8 +13,6 @@ BOX     = 40        // low x, high x, low y, high y
 SCRATCH = 64        // 16 bytes for each corner
 CLIP    = SCRATCH   // clip coordinates, for the exact tests
 RECORDS = 512
-BATCH_TRIANGLES = 26
-CORNERS_BYTES = 144
 
         .macro  edgeword k, n, to
         ld.l    8+16*\k+4*\n(r18), \to
@@ -24,11 +22,12 @@ CORNERS_BYTES = 144
 
         .align  32
 start:  st.l    r1, SAVE(r2)
+        counted
 batch:  mov     BATCH_TRIANGLES, r31
         subs    r17, r31, r0
         bnc     begun                       // a batch at least
         mov     r17, r31
-begun:  mov     r31, r30
+begun:  turns
         mov     r16, r29
         adds    RECORDS, r2, r6
         .align  8

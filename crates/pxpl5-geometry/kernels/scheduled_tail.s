@@ -1,15 +1,15 @@
         d.fnop
             adds    COMMAND_BYTES, r18, r18
+passed: d.fnop
+            adds    LIST_STEP, r16, r16
         d.fnop
-            adds    TRIANGLE_BYTES, r16, r16
+            adds    RECORD_STEP, r3, r3
         d.fnop
-            adds    CORNERS_BYTES, r3, r3
-        d.fnop
-            adds    CORNERS_BYTES, r4, r4
+            adds    RECORD_STEP, r4, r4
         d.fnop
             adds    -1, r31, r31
         d.fnop
-            adds    CORNERS_BYTES, r5, r5
+            adds    RECORD_STEP, r5, r5
         d.fnop
             btne    r0, r31, triangles
         fnop
@@ -28,7 +28,7 @@ slow:   fnop
             nop
         fnop
             st.l    r31, LEFT(r2)
-        ld.l    R_DOUBT(r3), r8
+        doubtful r8
         nop
         subs    r8, r0, r0
         bc      doubt                       // 0 > the words
@@ -47,18 +47,19 @@ slow:   fnop
         call    exact
         nop
 accepted: ld.l  AREA_WORD+4(r2), r22
-        call    box
+        nop
         shl     1, r22, r22
         bte     r0, r22, drop                // nothing to draw
+        facing  AREA_WORD+4, drop
         call    bins
         nop
         bte     r0, r22, drop               // no region
         restated_after
         adds    COMMAND_BYTES, r18, r18
 drop:   ld.l    LEFT(r2), r31
-        adds    TRIANGLE_BYTES, r16, r16
+        adds    LIST_STEP, r16, r16
         adds    -1, r31, r31
-        adds    CORNERS_BYTES, r3, r3
+        adds    RECORD_STEP, r3, r3
         bte     r0, r31, finished
         br      more
         nop

@@ -341,7 +341,9 @@ high\@: nop
 // ---- a triangle
         .align  32
 start:  st.l    r1, SAVE(r2)
-next:   corner  0
+        counted
+next:   passover_straight
+        corner  0
         corner  1
         corner  2
         inside  0
@@ -357,6 +359,7 @@ next:   corner  0
         fld.d   AREA(r2), f8
         pfeq.dd f8, f0, f0
         bc      done                        // nothing to draw
+        facing  AREA+4, done
         pfgt.dd f0, f8, f0
         bnc     oriented
         swapwords SX                        // make it clockwise
@@ -400,7 +403,7 @@ oriented: edge  0, 0, 1
         finish  r16
         restate
         adds    COMMAND_BYTES, r18, r18
-done:   adds    TRIANGLE_BYTES, r16, r16
+done:   adds    LIST_STEP, r16, r16
         adds    -1, r17, r17
         btne    r0, r17, next
         ld.l    SAVE(r2), r1

@@ -10,7 +10,3 @@ qg$i    = or qc$i, qf$i
 qh$i    = ld.l SCRATCH+16*$i(r2) !fh$i
 qi$i    = or qg$i, qh$i
         endfor
-qj      = or qi0, qi1
-qk      = or qj, qi2
-        st.l qk, R_DOUBT(r6)
-        .endlinear

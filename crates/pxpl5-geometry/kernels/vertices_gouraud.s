@@ -62,4 +62,3 @@ lf$k$i  = add.ss le$k$i, round
         endfor
         endfor
         prefetch TRIANGLE_BYTES+64(r29)
-        st.l r0, R_SIDE(r6)

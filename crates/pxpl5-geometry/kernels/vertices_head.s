@@ -11,5 +11,5 @@ R_SIDE    = 24
 R_DOUBT   = 28
 R_SURFACE = 32
 R_COLOUR  = 44
-RECORD    = 48
+R_BEGINS  = 48      // in strips alone: not 0 where the vertex makes no triangle with the two before
 

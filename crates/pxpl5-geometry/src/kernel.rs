@@ -5,7 +5,8 @@
 //! not wholly inside the guard band it leaves to a clipper, which has no kernel; it does not flatten steep planes.
 //!
 //! ```text
-//!   display list (96 bytes a triangle) --+
+//!   display list (96 bytes a triangle, --+
+//!     or strips: 32 bytes a vertex)      |
 //!   parameter block ---------------------+--> kernel --> command words, bins, list for the clipper
 //! ```
 //!
@@ -14,15 +15,20 @@
 //! the normals. Registers and layouts stand in kernels/parameters.s. The sources are put together as a linker would, one file for
 //! each choice. This crate does not assemble or run them.
 
+use crate::transform::Turn;
 use crate::{DEPTH_FAR, DEPTH_NEAR, Light, MAX_CLIP, NORMAL_UNIT, Transform, Triangle, Viewport, clip, light, screen};
+use glam::Vec3;
 use pxpl5_wire::{Lines, RegionGrid, Word};
 
 /// How the code was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Schedule {
-    /// As a compiler of 1989 would give it: every statement through the stack frame, everything inlined, larger than
+    /// As a compiler without optimisation would give it: every statement through the stack frame, everything inlined, larger than
     /// the instruction cache.
     Straight,
+    /// As a good compiler of about 1990 would give it: functions, loops, locals in registers, scalar operations
+    /// (kernels/compiled_rules.md).
+    Compiled,
     /// In dual-instruction mode, in two loops over batches that each fit the instruction cache. Most of it is linear code, which
     /// the i860's assembler does not know: what assembles it puts it in order first.
     Dual,
@@ -37,6 +43,15 @@ pub enum KernelSurface {
     Phong,
 }
 
+/// How the display list holds corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum KernelList {
+    /// Triangles, each with three corners of its own ([`display_list_words`]).
+    Triangles,
+    /// Strips, in which each vertex makes a triangle with the two before it ([`vertex_words`]).
+    Strips,
+}
+
 /// Code for one kind of triangle and picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
@@ -44,10 +59,14 @@ pub struct Kernel {
     pub schedule: Schedule,
     /// Kind of triangle that it sets up.
     pub surface: KernelSurface,
+    /// Kind of display list that it reads.
+    pub list: KernelList,
     /// Whether the picture is a field instead of a frame.
     pub field: bool,
     /// Whether it puts commands into bins; else all of them go everywhere.
     pub binned: bool,
+    /// Whether triangles that face away are not drawn.
+    pub culls: bool,
 }
 
 /// Instruction heads of a triangle's command, in the order of the kernel's parameter block: enable, edge, depth
@@ -57,25 +76,32 @@ pub type Heads = [Word; 8];
 /// Words of a triangle in the display list.
 pub const TRIANGLE_WORDS: usize = 24;
 
+/// Words of a vertex of a strip in the display list.
+pub const VERTEX_WORDS: usize = 8;
+
 /// Words of the parameter block.
-pub const PARAMETER_WORDS: usize = 116;
+pub const PARAMETER_WORDS: usize = 120;
 
 /// The constants of single precision whose bits the kernels know: 1.5 * 2^23 and 2^23.
 const ROUND_SINGLE: f32 = 12_582_912.0;
 const TWO_23: f32 = 8_388_608.0;
-/// 1.5 * 2^52.
+/// More than any distance of two corners within the guard band, in subpixels.
+const TWO_18: f32 = 262_144.0;
+/// 1.5 * 2^52, in single precision too.
 const ROUND_DOUBLE: f64 = 6_755_399_441_055_744.0;
 
 /// Less a biased integer, this word turns the order of integers round.
 const FLIP: Word = 0x9700_0000;
 
 impl Kernel {
-    /// The kernel for a picture; `None` where there is none: pictures other than NTSC frames and fields.
+    /// The kernel for a picture of triangles, each with corners of its own; `None` where there is none: pictures other than NTSC
+    /// frames and fields.
     #[must_use]
     pub fn for_picture(schedule: Schedule, surface: KernelSurface, viewport: &Viewport, binned: bool) -> Option<Self> {
         let field = matches!(viewport.lines(), Lines::Field(_));
         let grid = if field { RegionGrid::FIELD } else { RegionGrid::FRAME };
-        (viewport.grid() == grid).then_some(Self { schedule, surface, field, binned })
+        let list = KernelList::Triangles;
+        (viewport.grid() == grid).then_some(Self { schedule, surface, list, field, binned, culls: false })
     }
 
     /// The source in i860 assembly, with linear stretches where the schedule is [`Schedule::Dual`]; its entry is the label
@@ -84,11 +110,17 @@ impl Kernel {
     pub fn source(&self) -> String {
         let picture = if self.field { include_str!("../kernels/field.s") } else { include_str!("../kernels/frame.s") };
         let bins = if self.binned { include_str!("../kernels/bins.s") } else { include_str!("../kernels/unbinned.s") };
-        let common = [include_str!("../kernels/parameters.s"), picture, include_str!("../kernels/exact.s")];
+        let list = match self.list {
+            KernelList::Triangles => include_str!("../kernels/list_triangles.s"),
+            KernelList::Strips => include_str!("../kernels/list_strips.s"),
+        };
+        let cull = if self.culls { include_str!("../kernels/cull.s") } else { include_str!("../kernels/cull_none.s") };
+        let common = [include_str!("../kernels/parameters.s"), list, picture, cull, include_str!("../kernels/exact.s")];
         let bins_of_frames =
             if self.binned && !self.field { include_str!("../kernels/bins_scheduled.s") } else { bins };
         let triangle = match self.schedule {
             Schedule::Straight => [self.straight(), vec![bins]].concat(),
+            Schedule::Compiled => [self.compiled(), vec![bins]].concat(),
             // What is seldom needed comes last, so that bins do not share sets of the cache with the end of the second loop.
             Schedule::Dual => {
                 [self.dual(), vec![bins_of_frames, include_str!("../kernels/scheduled_doubt.s")]].concat()
@@ -105,59 +137,139 @@ impl Kernel {
         vec![include_str!("../kernels/surface.s"), surface, include_str!("../kernels/triangle_straight.s")]
     }
 
+    fn compiled(&self) -> Vec<&'static str> {
+        let surface = match self.surface {
+            KernelSurface::Gouraud => include_str!("../kernels/compiled_gouraud.s"),
+            KernelSurface::Phong => include_str!("../kernels/compiled_phong.s"),
+        };
+        vec![surface, include_str!("../kernels/compiled.s")]
+    }
+
     fn dual(&self) -> Vec<&'static str> {
-        let (head, surface, words) = match self.surface {
-            KernelSurface::Gouraud => (
-                "COMMAND_BYTES = 120",
-                include_str!("../kernels/vertices_gouraud.s"),
-                include_str!("../kernels/command_gouraud.s"),
-            ),
-            KernelSurface::Phong => (
-                "COMMAND_BYTES = 128",
-                include_str!("../kernels/vertices_phong.s"),
-                include_str!("../kernels/command_phong.s"),
-            ),
-        };
-        // Window, eagerness, reserve and shake of the shortest schedules that were found.
-        let (vertices, setup) = match (self.surface, self.field) {
-            (KernelSurface::Gouraud, false) => (".linear 300 20 2 3 0", ".linear 150 20 1 8 0"),
-            (KernelSurface::Gouraud, true) => (".linear 300 20 2 3 0", ".linear 64 30 1 8 12"),
-            (KernelSurface::Phong, false) => (".linear 100 30 1 5 0", ".linear 300 30 1 8 4"),
-            (KernelSurface::Phong, true) => (".linear 100 30 1 5 0", ".linear 150 20 1 8 0"),
-        };
+        let strips = self.list == KernelList::Strips;
+        let (vertices, setup) = self.schedules();
         // With bins the expressions are restated for a field when the regions are known.
-        let planes = match self.field && !self.binned {
-            true => include_str!("../kernels/planes_field.s"),
-            false => include_str!("../kernels/planes_frame.s"),
+        let [edges, reference, planes] = match self.field && !self.binned {
+            true => [
+                include_str!("../kernels/edges_field.s"),
+                include_str!("../kernels/reference_field.s"),
+                include_str!("../kernels/planes_field.s"),
+            ],
+            false => [
+                include_str!("../kernels/edges_frame.s"),
+                include_str!("../kernels/reference_frame.s"),
+                include_str!("../kernels/planes_frame.s"),
+            ],
         };
         let (regions, tail) = match (self.binned, self.field) {
             (false, _) => (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_none.s")),
             (true, true) => (include_str!("../kernels/regions_later.s"), include_str!("../kernels/tail_field.s")),
             (true, false) => (include_str!("../kernels/regions_frame.s"), include_str!("../kernels/tail_frame.s")),
         };
+        let middle = match self.binned {
+            true => include_str!("../kernels/middle_seen.s"),
+            false => include_str!("../kernels/middle_anywhere.s"),
+        };
+        let (doubt, doubted) = match strips {
+            false => (include_str!("../kernels/doubt_of_triangle.s"), include_str!("../kernels/doubted_triangle.s")),
+            true => (include_str!("../kernels/doubt_of_vertices.s"), include_str!("../kernels/doubted_vertices.s")),
+        };
+        let [command_bytes, before, surface, after, side, words] = self.dual_surface(strips);
         vec![
-            head,
+            command_bytes,
             include_str!("../kernels/scheduled_head.s"),
             "corners:",
             include_str!("../kernels/vertices_head.s"),
             vertices,
             include_str!("../kernels/vertices.s"),
+            before,
             surface,
+            after,
             include_str!("../kernels/vertices_end.s"),
+            doubt,
             include_str!("../kernels/scheduled_again.s"),
             include_str!("../kernels/setup_head.s"),
             setup,
+            doubted,
             include_str!("../kernels/setup.s"),
-            include_str!("../kernels/reference.s"),
+            if self.culls { include_str!("../kernels/doubt_culled.s") } else { include_str!("../kernels/doubt.s") },
+            include_str!("../kernels/box.s"),
+            middle,
             include_str!("../kernels/corners.s"),
+            side,
             include_str!("../kernels/slopes.s"),
             include_str!("../kernels/edges.s"),
+            edges,
+            reference,
             planes,
             words,
             regions,
+            "        .endlinear",
             tail,
             include_str!("../kernels/scheduled_tail.s"),
         ]
+    }
+
+    /// What depends on the surface in the scheduled code: how long a command is; before the corners' surface, that, and after it;
+    /// the side of a triangle; words of the command.
+    fn dual_surface(&self, strips: bool) -> [&'static str; 6] {
+        match (self.surface, strips) {
+            (KernelSurface::Gouraud, false) => [
+                "COMMAND_BYTES = 120",
+                "",
+                include_str!("../kernels/vertices_gouraud.s"),
+                include_str!("../kernels/side_of_none.s"),
+                include_str!("../kernels/side_found.s"),
+                include_str!("../kernels/command_gouraud.s"),
+            ],
+            (KernelSurface::Gouraud, true) => [
+                "COMMAND_BYTES = 120",
+                "",
+                include_str!("../kernels/vertices_gouraud.s"),
+                "",
+                "side    = or r0, r20",
+                include_str!("../kernels/command_gouraud.s"),
+            ],
+            (KernelSurface::Phong, false) => [
+                "COMMAND_BYTES = 128",
+                include_str!("../kernels/side_of_triangle.s"),
+                include_str!("../kernels/normals_phong.s"),
+                include_str!("../kernels/colour_of_triangle.s"),
+                include_str!("../kernels/side_found.s"),
+                include_str!("../kernels/command_phong.s"),
+            ],
+            (KernelSurface::Phong, true) => [
+                "COMMAND_BYTES = 128",
+                "",
+                include_str!("../kernels/normals_phong.s"),
+                include_str!("../kernels/colour_of_vertices.s"),
+                include_str!("../kernels/side_of_vertices.s"),
+                include_str!("../kernels/command_phong.s"),
+            ],
+        }
+    }
+
+    /// Window, eagerness, reserve, slope and shake of the shortest schedules that were found, of both loops.
+    const fn schedules(&self) -> (&'static str, &'static str) {
+        use KernelList::{Strips, Triangles};
+        use KernelSurface::{Gouraud, Phong};
+        let vertices = match (self.list, self.surface) {
+            (Triangles, Gouraud) => ".linear 300 20 2 3 0",
+            (Strips, Gouraud) => ".linear 300 30 2 3 0",
+            (Triangles, Phong) => ".linear 100 30 1 5 0",
+            (Strips, Phong) => ".linear 100 30 1 8 0",
+        };
+        let setup = match (self.list, self.surface, self.field) {
+            (_, Phong, true) if !self.binned && !self.culls => ".linear 300 20 2 8 0",
+            _ if !self.binned || self.culls => ".linear 64 15 2 8 0",
+            (_, Gouraud, false) => ".linear 150 20 2 8 0",
+            (Triangles, Gouraud, true) => ".linear 64 15 2 8 0",
+            (Strips, Gouraud, true) => ".linear 64 20 1 8 0",
+            (Triangles, Phong, false) => ".linear 150 20 1 8 0",
+            (Strips, Phong, false) | (Triangles, Phong, true) => ".linear 300 30 1 8 0",
+            (Strips, Phong, true) => ".linear 150 20 2 8 0",
+        };
+        (vertices, setup)
     }
 
     /// Bytes of a command that it makes.
@@ -193,9 +305,10 @@ impl Kernel {
         let line = if self.binned { 0 } else { transform.viewport.first_line() };
         words.singles(364, &[ROUND_SINGLE - 16.0 * line as f32]);
         words.doubles(368, &[ROUND_DOUBLE + f64::from(DEPTH_NEAR), 16.0 * ROUND_DOUBLE]);
-        words.singles(384, &[2.0 * ROUND_SINGLE + 8.0, ROUND_SINGLE / 16.0]);
+        words.singles(384, &[2.0 * ROUND_SINGLE + 8.0]);
         words.doubles(440, &[16.0, -16.0]);
-        words.singles(456, &[screen::DEPTH_SCALE]);
+        words.singles(456, &[screen::DEPTH_SCALE, 1.0 / 16.0, ROUND_DOUBLE as f32, TWO_18]);
+        words.integers(472, &culled(transform.dropped));
         self.sides().iter().zip([392, 416]).for_each(|((unit, less), at)| {
             words.doubles(at, &[*unit]);
             words.singles(at + 8, &[*unit as f32]);
@@ -255,6 +368,17 @@ impl ParameterWords {
     }
 }
 
+/// What the area's high word is turned over and masked with, to be negative for triangles that are not drawn.
+const fn culled(dropped: Option<Turn>) -> [Word; 2] {
+    const SIGN: Word = 1 << 31;
+    match dropped {
+        None => [0, 0],
+        // A positive area is clockwise.
+        Some(Turn::Clockwise) => [SIGN, SIGN],
+        Some(Turn::Counterclockwise) => [0, SIGN],
+    }
+}
+
 /// A row of the matrix of normals in units of the command's normal.
 fn normal_row(row: [f32; 3]) -> [f32; 4] {
     let [x, y, z] = row.map(|v| v * f32::from(NORMAL_UNIT));
@@ -270,11 +394,20 @@ const fn halves(value: f64) -> [Word; 2] {
 #[must_use]
 pub fn display_list_words(triangle: &Triangle) -> [Word; TRIANGLE_WORDS] {
     let mut words = [0; TRIANGLE_WORDS];
-    for (n, corner) in words.chunks_exact_mut(8).enumerate() {
-        let [r, g, b] = triangle.colours[n].map(Word::from);
-        corner[..3].copy_from_slice(&triangle.positions[n].to_array().map(f32::to_bits));
-        corner[3] = r << 16 | g << 8 | b;
-        corner[4..7].copy_from_slice(&light::unit_normal(triangle.normals[n]).map(f32::to_bits));
+    for (n, corner) in words.chunks_exact_mut(VERTEX_WORDS).enumerate() {
+        let vertex = vertex_words(triangle.positions[n], triangle.normals[n], triangle.colours[n], false);
+        corner.copy_from_slice(&vertex);
     }
     words
+}
+
+/// A vertex of a strip as the display list holds it, its normal of unit length; the two that begin a strip make no triangle.
+///
+/// The corners of a triangle are, in this order, the vertex two before, the one before, and this one, whichever way round that is.
+#[must_use]
+pub fn vertex_words(position: Vec3, normal: Vec3, colour: [u8; 3], begins: bool) -> [Word; VERTEX_WORDS] {
+    let [x, y, z] = position.to_array().map(f32::to_bits);
+    let [nx, ny, nz] = light::unit_normal(normal).map(f32::to_bits);
+    let [r, g, b] = colour.map(Word::from);
+    [x, y, z, r << 16 | g << 8 | b, nx, ny, nz, Word::from(begins)]
 }

@@ -13,8 +13,9 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CodeVersion {
-    /// As a compiler of 1989 would give it, larger than the instruction cache: the Slats of 1994 and 1995, whose code did
-    /// not fit it (I3D95).
+    /// As a compiler without optimisation would give it, nearly twice as large as the instruction cache.
+    Unoptimised,
+    /// As a good compiler of about 1990 would give it: the Slats of 1994 and 1995, whose code did not fit the instruction cache (I3D95).
     Compiled,
     /// Scheduled by hand in dual-instruction mode, in cache: optimised PPHIGS (TR94), and what Slats would have been with
     /// code that fits, faster by a factor of about 3 (I3D95).
@@ -26,6 +27,7 @@ impl CodeVersion {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Unoptimised => "unoptimised",
             Self::Compiled => "compiled",
             Self::Scheduled => "scheduled",
         }

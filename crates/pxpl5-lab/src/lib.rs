@@ -5,6 +5,7 @@
 //! | what do the published figures come out as, and how sure is that | [`figures`], [`intervals`], [`pipeline_figures`] |
 //! | which reading of the papers explains them | [`readings`] |
 //! | how do the levels of modelling differ | [`levels`] |
+//! | what times of primitives follow from code | [`code_times`] |
 //! | how many triangles, how fast does cost grow | [`limit`], [`growth`] |
 //! | which way to fight latency wins | [`compare`] |
 //! | what latency does one measure from outside | [`rig`] |
@@ -14,6 +15,7 @@
 //! [`registry`] lists the pipelines and displays of the papers with their closed forms; an experiment file may be read with
 //! another one.
 
+pub mod code_times;
 pub mod compare;
 mod experiment_file;
 pub mod figures;

@@ -189,7 +189,7 @@ impl MachineConfig {
         [self.n_gps as u64, self.n_renderers as u64]
     }
 
-    /// The name of the code that its processors run: `compiled`, `scheduled`, or `none`.
+    /// The name of the code that its processors run: `unoptimised`, `compiled`, `scheduled`, or `none`.
     #[must_use]
     pub const fn code_name(&self) -> &'static str {
         match self.code {

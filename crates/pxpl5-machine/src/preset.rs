@@ -98,6 +98,19 @@ impl MachineConfig {
         Ok(Self::from_preset(preset))
     }
 
+    /// The machine with the times of primitives that follow from the code that its preset runs, instead of those that were published
+    /// or fitted.
+    #[must_use]
+    pub fn with_times_of_code(self) -> Self {
+        let slats = self.preset.starts_with("slats");
+        let gp = match self.code {
+            Some(CodeVersion::Scheduled) if slats => self.gp.of_scheduled_gouraud(),
+            _ if slats => self.gp.of_compiled_gouraud(),
+            _ => self.gp.of_scheduled_phong(),
+        };
+        Self { gp, ..self }
+    }
+
     fn from_preset(preset: &Preset) -> Self {
         Self {
             preset: preset.name.to_owned(),

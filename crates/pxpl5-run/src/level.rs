@@ -11,7 +11,8 @@
 //!
 //! Of the graphics processor's code the triangle's way from the display list to commands and bins is i860 code
 //! (docs/gp-timing.md). The clipper, spheres, edits, the beginning of a pass and messages have none: there the table's
-//! times stay. Which code runs is a value of the machine ([`MachineConfig::code`]), whatever its table of times says.
+//! times stay. Which code runs is a value of the machine ([`MachineConfig::code`]), whatever its table of times says. The table may be
+//! that of the code ([`MachineConfig::with_times_of_code`]): then the transaction level says in the mean what the cycle level does.
 
 use pxpl5_machine::MachineConfig;
 use pxpl5_renderer::{CommandKind, Layout, RendererTiming};

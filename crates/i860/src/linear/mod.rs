@@ -47,6 +47,7 @@ mod parse;
 mod place;
 mod settings;
 
+use std::cell::RefCell;
 use std::fmt::Write as _;
 
 /// What is wrong with a linear stretch.
@@ -59,12 +60,65 @@ pub struct LinearError {
     pub reason: String,
 }
 
+/// What a stretch needs of the two halves of pairs, and how long its schedule is, in clocks without freezes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slots {
+    /// Floating-point operations, those of the multiplier with double sources twice: it takes one every second clock.
+    pub floating: usize,
+    /// Core operations. No schedule is shorter than the greater of both.
+    pub core: usize,
+    /// Pairs of the schedule.
+    pub pairs: usize,
+}
+
+/// The slots of each linear stretch of a source, in order.
+///
+/// # Errors
+/// As [`schedule`].
+pub fn slots(source: &str) -> Result<Vec<Slots>, LinearError> {
+    let mut found = Vec::new();
+    stretches(
+        source,
+        |operations, pairs| {
+            let floating = operations.iter().filter(|operation| operation.name.unit.is_floating());
+            let doubles = floating
+                .clone()
+                .filter(|operation| operation.name.unit == machine::Unit::Multiplier { double: true })
+                .count();
+            let floating = floating.count();
+            found.push(Slots { floating: floating + doubles, core: operations.len() - floating, pairs: pairs.len() });
+        },
+        |_| {},
+    )?;
+    Ok(found)
+}
+
 /// Replaces all linear stretches of a source by pairs; the rest stays as it is.
 ///
 /// # Errors
 /// [`LinearError`] for the first line that is not understood, or a stretch whose values do not fit the registers.
 pub fn schedule(source: &str) -> Result<String, LinearError> {
-    let mut out = String::with_capacity(source.len());
+    let out = RefCell::new(String::with_capacity(source.len()));
+    stretches(
+        source,
+        |_, pairs| {
+            for (floating, core) in pairs {
+                let _ = writeln!(out.borrow_mut(), "        d.{floating}\n            {core}");
+            }
+        },
+        |text| {
+            let _ = writeln!(out.borrow_mut(), "{text}");
+        },
+    )?;
+    Ok(out.into_inner())
+}
+
+/// Hands the operations of each stretch with their pairs to `linear`, and every other line to `other`, in order.
+fn stretches(
+    source: &str,
+    mut linear: impl FnMut(&[parse::Operation], &[(String, String)]),
+    mut other: impl FnMut(&str),
+) -> Result<(), LinearError> {
     let mut pool = Vec::new();
     let mut lines = source.lines().enumerate().map(|(n, text)| (n + 1, text));
     while let Some((line, text)) = lines.next() {
@@ -77,15 +131,10 @@ pub fn schedule(source: &str) -> Result<String, LinearError> {
                 let operations = parse::operations(&block)?;
                 let pairs =
                     place::pairs_of(&operations, &pool, settings).map_err(|reason| LinearError { line, reason })?;
-                for (floating, core) in pairs {
-                    let _ = writeln!(out, "        d.{floating}\n            {core}");
-                }
+                linear(&operations, &pairs);
             }
-            _ => {
-                out.push_str(text);
-                out.push('\n');
-            }
+            _ => other(text),
         }
     }
-    Ok(out)
+    Ok(())
 }

@@ -5,7 +5,7 @@
 
 use glam::{Mat4, Vec3};
 use i860::{Config, Cpu, Profile, Program, Ram, RunEnd, assemble, linear};
-use pxpl5_geometry::kernel::{Heads, Kernel, KernelSurface, Schedule, display_list_words};
+use pxpl5_geometry::kernel::{Heads, Kernel, KernelList, KernelSurface, Schedule, display_list_words, vertex_words};
 use pxpl5_geometry::{Culling, Light, SetupStats, Transform, Triangle, ViewTransform, Viewport};
 use pxpl5_renderer::{Command, Layout};
 use pxpl5_sim::SplitMix64;
@@ -23,11 +23,11 @@ const CLIP_LIST: u32 = 0x50_0000;
 const BINS: u32 = 0x60_0000;
 const BIN_BYTES: u32 = 0x1_8000;
 const RETURN: u32 = 0x0800;
-const TRIANGLE_BYTES: u32 = 96;
 
 /// The kernel of a schedule for Gouraud triangles in bins of a frame, which the report is about.
 pub(crate) const fn frame(schedule: Schedule) -> Kernel {
-    Kernel { schedule, surface: KernelSurface::Gouraud, field: false, binned: true }
+    let list = KernelList::Triangles;
+    Kernel { schedule, surface: KernelSurface::Gouraud, list, field: false, binned: true, culls: false }
 }
 
 /// The kernel, assembled with its own options.
@@ -79,6 +79,64 @@ pub(crate) fn triangles(count: usize, size: f32, seed: u64) -> Vec<Triangle> {
     (0..count).map(|_| numbers.triangle(size)).collect()
 }
 
+/// A strip: each vertex makes a triangle with the two before it.
+pub(crate) struct Strip {
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    colours: Vec<[u8; 3]>,
+}
+
+impl Strip {
+    /// Its triangles, each with corners of its own.
+    fn triangles(&self) -> impl Iterator<Item = Triangle> {
+        let corners = |first: usize| [first, first + 1, first + 2];
+        (2..self.positions.len()).map(move |last| Triangle {
+            positions: corners(last - 2).map(|n| self.positions[n]),
+            normals: corners(last - 2).map(|n| self.normals[n]),
+            colours: corners(last - 2).map(|n| self.colours[n]),
+        })
+    }
+
+    fn words(&self) -> Vec<u32> {
+        let vertex = |n: usize| vertex_words(self.positions[n], self.normals[n], self.colours[n], n < 2);
+        (0..self.positions.len()).flat_map(vertex).collect()
+    }
+}
+
+/// Strips of so many triangles each, whose vertices zigzag with steps of about `size` world units from somewhere around the middle of
+/// the picture.
+pub(crate) fn strips(lengths: &[usize], size: f32, seed: u64) -> Vec<Strip> {
+    let mut numbers = Numbers(SplitMix64::new(seed));
+    let strip = |length: &usize| {
+        let mut along = numbers.vector(2.4);
+        let mut vertex = |n: usize| {
+            // Turns round before it leaves the picture.
+            let way = along.abs().max_element() > 2.4;
+            along = if way { along * 0.9 } else { along + numbers.vector(0.5 * size) };
+            let side = Vec3::new(size, size, 0.0) * if n.is_multiple_of(2) { 0.5 } else { -0.5 };
+            (along + side, numbers.vector(1.0), numbers.colour())
+        };
+        let vertices: Vec<_> = (0..length + 2).map(&mut vertex).collect();
+        let positions = vertices.iter().map(|v| v.0).collect();
+        let normals = vertices.iter().map(|v| v.1).collect();
+        Strip { positions, normals, colours: vertices.iter().map(|v| v.2).collect() }
+    };
+    lengths.iter().map(strip).collect()
+}
+
+/// All triangles of strips, each with corners of its own, and for each the number of its first vertex in the display list.
+pub(crate) fn triangles_of(strips: &[Strip]) -> (Vec<Triangle>, Vec<usize>) {
+    let triangles = strips.iter().flat_map(Strip::triangles).collect();
+    let mut first = 0;
+    let mut places = Vec::new();
+    for strip in strips {
+        let vertices = strip.positions.len();
+        places.extend(first..first + vertices - 2);
+        first += vertices;
+    }
+    (triangles, places)
+}
+
 /// What a kernel left in memory.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Output {
@@ -86,14 +144,19 @@ pub(crate) struct Output {
     pub(crate) commands: Vec<Vec<u32>>,
     /// Regions of each command, by rising number.
     pub(crate) regions: Vec<Vec<u16>>,
-    /// Numbers of the triangles left to the clipper.
+    /// Numbers of the triangles left to the clipper; of strips, those of their first vertices.
     pub(crate) clipped: Vec<usize>,
 }
 
 /// What native code makes of the triangles: the commands of those wholly inside the guard band, their regions, and
 /// the numbers of the rest; and the number of planes flattened, which the kernels do not do.
-pub(crate) fn native(surface: KernelSurface, viewport: Viewport, triangles: &[Triangle]) -> (Output, u64) {
-    let transform = Transform::new(&view(), viewport, Culling::None).expect("finite");
+pub(crate) fn native(
+    surface: KernelSurface,
+    viewport: Viewport,
+    culling: Culling,
+    triangles: &[Triangle],
+) -> (Output, u64) {
+    let transform = Transform::new(&view(), viewport, culling).expect("finite");
     let light = light();
     let mut stats = SetupStats::default();
     let mut output = Output { commands: Vec::new(), regions: Vec::new(), clipped: Vec::new() };
@@ -148,7 +211,10 @@ pub(crate) struct Bench {
     /// The kernel with its symbols.
     pub(crate) program: Program,
     ram: Ram,
+    /// Triangles or vertices of strips.
     count: u32,
+    /// Bytes of each.
+    step: u32,
     command_bytes: u32,
     regions: u32,
 }
@@ -156,21 +222,32 @@ pub(crate) struct Bench {
 impl Bench {
     /// A processor with kernel, tables and triangles in its memory, ready to be called.
     pub(crate) fn new(kernel: Kernel, viewport: Viewport, config: Config, triangles: &[Triangle]) -> Bench {
+        let data: Vec<u32> = triangles.iter().flat_map(display_list_words).collect();
+        Bench::over(kernel, viewport, config, &data, triangles.len())
+    }
+
+    /// The same for the kernel of strips.
+    pub(crate) fn of_strips(kernel: Kernel, viewport: Viewport, config: Config, strips: &[Strip]) -> Bench {
+        let data: Vec<u32> = strips.iter().flat_map(Strip::words).collect();
+        Bench::over(kernel, viewport, config, &data, data.len() / 8)
+    }
+
+    fn over(kernel: Kernel, viewport: Viewport, config: Config, data: &[u32], count: usize) -> Bench {
         let mut ram = Ram::new(0, MEMORY);
         let program = program(kernel);
         ram.load(CODE, &program.bytes).expect("fits");
-        let transform = Transform::new(&view(), viewport, Culling::None).expect("finite");
+        let culling = if kernel.culls { Culling::Back } else { Culling::None };
+        let transform = Transform::new(&view(), viewport, culling).expect("finite");
         let parameters = kernel.parameters(&transform, &light(), &heads(kernel.surface));
         ram.load_words(PARAMETERS, &parameters).expect("fits");
-        let data: Vec<u32> = triangles.iter().flat_map(display_list_words).collect();
         assert!(4 * data.len() < (COMMANDS - TRIANGLES) as usize);
-        ram.load_words(TRIANGLES, &data).expect("fits");
+        ram.load_words(TRIANGLES, data).expect("fits");
         let regions = viewport.grid().regions();
         let bins: Vec<u32> = (0..regions).map(|n| BINS + n * BIN_BYTES).collect();
         ram.load_words(BIN_TABLE, &bins).expect("fits");
-        let count = triangles.len() as u32;
+        let step = (4 * data.len() / count) as u32;
         let command_bytes = kernel.command_bytes();
-        Bench { cpu: Cpu::new(config), program, ram, count, command_bytes, regions }
+        Bench { cpu: Cpu::new(config), program, ram, count: count as u32, step, command_bytes, regions }
     }
 
     fn call(&mut self, first: u32, count: u32, commands: u32, clip_list: u32) {
@@ -194,7 +271,7 @@ impl Bench {
         let mut clip_list = CLIP_LIST;
         for n in 0..self.count {
             self.cpu.empty_caches();
-            self.call(TRIANGLES + TRIANGLE_BYTES * n, 1, commands, clip_list);
+            self.call(TRIANGLES + self.step * n, 1, commands, clip_list);
             (commands, clip_list) = (self.cpu.state.r[18], self.cpu.state.r[21]);
         }
     }
@@ -222,7 +299,7 @@ impl Bench {
         Output {
             commands,
             regions: by_command.into_values().collect(),
-            clipped: clipped.iter().map(|at| ((at - TRIANGLES) / TRIANGLE_BYTES) as usize).collect(),
+            clipped: clipped.iter().map(|at| ((at - TRIANGLES) / self.step) as usize).collect(),
         }
     }
 }

@@ -59,7 +59,11 @@ const COMMON: &[(&str, &str)] = &[
     ("machine.preset", "a preset of `pxpl5 machines`"),
     (
         "machine.code",
-        "i860 code that the processors run at the cycle level: compiled, scheduled, or none (the table's times)",
+        "i860 code that the processors run at the cycle level: unoptimised, compiled, scheduled, or none (the table's times)",
+    ),
+    (
+        "machine.times",
+        "times of primitives in the table: papers (published or fitted), or code (those of the i860 code)",
     ),
     ("measure", "list of the quantities that go into tables and sweep rows"),
     ("output.pictures", "write the last pictures as PNG: true or false"),

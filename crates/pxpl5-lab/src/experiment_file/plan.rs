@@ -205,9 +205,14 @@ impl ExperimentFile {
         if let Some(code) = self.choice("machine.code", &CODES)? {
             machine.code = code;
         }
+        if self.choice("machine.times", &TIMES)? == Some(true) {
+            machine = machine.with_times_of_code();
+        }
         let adapted = machine.clone();
         for (path, setting) in &self.settings {
-            if let Some(parameter) = path.strip_prefix("machine.").filter(|path| !["preset", "code"].contains(path)) {
+            if let Some(parameter) =
+                path.strip_prefix("machine.").filter(|path| !["preset", "code", "times"].contains(path))
+            {
                 let value = self.parameter_value(path, setting)?;
                 self.refuse_twice(entry, &adapted, (path, parameter, setting), value)?;
                 machine.set(parameter, value).map_err(|error| refused(&setting.place, error))?;
@@ -256,11 +261,15 @@ impl ExperimentFile {
     }
 }
 
-const CODES: [(&str, Option<CodeVersion>); 3] = [
+const CODES: [(&str, Option<CodeVersion>); 4] = [
     ("none", None),
+    (CodeVersion::Unoptimised.name(), Some(CodeVersion::Unoptimised)),
     (CodeVersion::Compiled.name(), Some(CodeVersion::Compiled)),
     (CodeVersion::Scheduled.name(), Some(CodeVersion::Scheduled)),
 ];
+
+/// Whether the times of primitives are those of the code.
+const TIMES: [(&str, bool); 2] = [("papers", false), ("code", true)];
 
 fn refused(place: &str, error: ConfigError) -> FileError {
     FileError::Config { place: place.to_owned(), error }

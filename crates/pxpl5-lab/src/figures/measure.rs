@@ -9,7 +9,7 @@ use crate::limit::LimitQuery;
 use pphigs::{BIN_ENTRY_BYTES, Picture, RegionBinning, Shading, Share, TransformCost};
 use pxpl5_analytic::{StereoModel, stereo_loads};
 use pxpl5_geometry::Viewport;
-use pxpl5_machine::{ConfigError, MachineConfig};
+use pxpl5_machine::{ConfigError, MachineConfig, PRESETS};
 use pxpl5_renderer::Layout;
 use pxpl5_run::{
     Experiment, ExperimentError, Level, Pipeline, Pixels, Slats, Statistics, Summary, WARM_UP_PICTURES, display_list,
@@ -67,6 +67,19 @@ impl Bench {
     #[must_use]
     pub fn with_mig(self, seeds: u64, frames: u64) -> Self {
         Self { seeds, frames, ..self }
+    }
+
+    /// The same with the times of primitives that follow from the code that each preset runs.
+    #[must_use]
+    pub fn with_times_of_code(mut self) -> Self {
+        for preset in PRESETS {
+            let gp = MachineConfig::preset(preset.name).map(|machine| machine.with_times_of_code().gp).ok();
+            let times = gp.map(|gp| [gp.triangle_ns, gp.sphere_ns, gp.guard_ns, gp.bin_entry_ns]).into_iter().flatten();
+            let paths = ["triangle_ns", "sphere_ns", "guard_ns", "bin_entry_ns"]
+                .map(|name| format!("{}:gp.{name}", preset.name));
+            self.changes.extend(paths.into_iter().zip(times));
+        }
+        self
     }
 
     /// Measures a figure.

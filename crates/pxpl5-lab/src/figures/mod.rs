@@ -50,6 +50,8 @@ pub struct FigureError {
 pub struct Figures {
     /// In the order of [`FIGURES`].
     pub rows: Vec<FigureRow>,
+    /// The same with the times of primitives that follow from the i860 code, without intervals.
+    pub of_code: Vec<FigureRow>,
     /// What the open parameters do to each figure but the one of the scenes.
     pub intervals: Vec<Interval>,
     /// Figures of papers about other systems than Pixel-Planes 5.
@@ -78,7 +80,7 @@ pub fn run_all(bench: &Bench) -> Result<Figures, FigureError> {
 ///
 /// As [`run_all`].
 pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result<Figures, FigureError> {
-    let steps = FIGURES.len() as u64 + 3;
+    let steps = FIGURES.len() as u64 + 4;
     let done = AtomicU64::new(0);
     let step = || finished(done.fetch_add(1, Ordering::Relaxed) + 1, steps);
     let rows = crate::parallel::map(&FIGURES, |figure| {
@@ -87,6 +89,10 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
         row
     });
     let mut rows = rows.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let by_code = bench.clone().with_times_of_code();
+    let of_code = crate::parallel::map(&FIGURES, |figure| row_of(&by_code, figure));
+    let of_code = of_code.into_iter().collect::<Result<Vec<_>, _>>()?;
+    step();
     let intervals = intervals(bench);
     step();
     fill(&mut rows, &intervals);
@@ -95,7 +101,7 @@ pub fn run_all_with(bench: &Bench, finished: impl Fn(u64, u64) + Sync) -> Result
     step();
     let families = vec![FigureFamily::address_recalculation(bench)?];
     step();
-    Ok(Figures { rows, intervals, families, readings })
+    Ok(Figures { rows, of_code, intervals, families, readings })
 }
 
 /// A figure with what the bench gives for it.

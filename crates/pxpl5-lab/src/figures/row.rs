@@ -102,5 +102,6 @@ impl FigureRow {
 #[must_use]
 pub fn mean_error_percent(rows: &[FigureRow]) -> f64 {
     let free: Vec<_> = rows.iter().filter(|row| row.standing == "free").collect();
-    free.iter().map(|row| row.error_percent.abs()).sum::<f64>() / free.len().max(1) as f64
+    let errors = free.iter().map(|row| if row.simulated.is_finite() { row.error_percent.abs() } else { 100.0 });
+    errors.sum::<f64>() / free.len().max(1) as f64
 }

@@ -1,6 +1,6 @@
 //! Speed against error: the same experiments at every level.
 
-use super::summarise;
+use super::{deviation_percent, summarise};
 use crate::figures::{Bench, FIGURES, Figure, FigureRow, mean_error_percent};
 use pxpl5_analytic::SlatsModel;
 use pxpl5_machine::MachineConfig;
@@ -16,6 +16,8 @@ use std::time::Instant;
 pub struct LevelReport {
     /// The level that was timed and judged.
     pub level: Level,
+    /// Whether the times of primitives in the table are those of the code, instead of published or fitted ones.
+    pub times_of_code: bool,
     /// Simulated fields per second of this host's time, over the experiments of [`cases`], without pixels.
     pub fields_per_host_second: f64,
     /// Machine configurations per second: for the analytic level the field of Slats alone, for the others whole
@@ -23,7 +25,8 @@ pub struct LevelReport {
     pub configurations_per_host_second: f64,
     /// Mean absolute error over the figures that are free checks, percent.
     pub mean_error_percent: f64,
-    /// Mean and greatest absolute deviation of all figures from those of the cycle level, percent.
+    /// Mean and greatest absolute deviation of all figures from those of the cycle level with the same table, percent. At the cycle
+    /// level the table's times are those of what has no code.
     pub deviation_percent: [f64; 2],
     /// Every figure at this level.
     pub figures: Vec<(&'static str, f64)>,
@@ -67,30 +70,37 @@ pub fn compare() -> Result<Vec<LevelReport>, ExperimentError> {
 ///
 /// As [`compare`].
 pub fn compare_with(finished: impl Fn(u64, u64)) -> Result<Vec<LevelReport>, ExperimentError> {
-    let steps = (Level::ALL.len() * (FIGURES.len() + 1)) as u64;
+    let steps = (2 * Level::ALL.len() * (FIGURES.len() + 1)) as u64;
     let done = Cell::new(0);
     let step = || {
         done.set(done.get() + 1);
         finished(done.get(), steps);
     };
-    let rows: Vec<Vec<FigureRow>> =
-        Level::ALL.into_iter().map(|level| rows_of(level, &step)).collect::<Result<_, _>>()?;
-    let cycle = rows.last().cloned().unwrap_or_default();
-    let levels = Level::ALL.into_iter().zip(&rows).map(|(level, rows)| {
-        let report = report(level, rows, &cycle);
-        step();
-        report
-    });
-    levels.collect()
+    let mut reports = Vec::new();
+    for times_of_code in [false, true] {
+        let rows: Vec<Vec<FigureRow>> =
+            Level::ALL.into_iter().map(|level| rows_of(level, times_of_code, &step)).collect::<Result<_, _>>()?;
+        let cycle = rows.last().cloned().unwrap_or_default();
+        for (level, rows) in Level::ALL.into_iter().zip(&rows) {
+            reports.push(report((level, times_of_code), rows, &cycle)?);
+            step();
+        }
+    }
+    Ok(reports)
 }
 
 /// A level's figures beside those of the cycle level, and its speed on this host, now.
-fn report(level: Level, rows: &[FigureRow], cycle: &[FigureRow]) -> Result<LevelReport, ExperimentError> {
-    let deviations = rows.iter().zip(cycle).map(|(a, b)| 100.0 * (a.simulated / b.simulated - 1.0).abs());
+fn report(
+    (level, times_of_code): (Level, bool),
+    rows: &[FigureRow],
+    cycle: &[FigureRow],
+) -> Result<LevelReport, ExperimentError> {
+    let deviations = rows.iter().zip(cycle).map(|(a, b)| deviation_percent(a.simulated, b.simulated));
     let worst = deviations.clone().fold(0.0, f64::max);
     let (fields_per_host_second, configurations_per_host_second) = speed(level)?;
     Ok(LevelReport {
         level,
+        times_of_code,
         fields_per_host_second,
         configurations_per_host_second,
         mean_error_percent: mean_error_percent(rows),
@@ -99,8 +109,9 @@ fn report(level: Level, rows: &[FigureRow], cycle: &[FigureRow]) -> Result<Level
     })
 }
 
-fn rows_of(level: Level, step: &impl Fn()) -> Result<Vec<FigureRow>, ExperimentError> {
+fn rows_of(level: Level, times_of_code: bool, step: &impl Fn()) -> Result<Vec<FigureRow>, ExperimentError> {
     let bench = Bench::new(level).with_mig(MIG.0, MIG.1);
+    let bench = if times_of_code { bench.with_times_of_code() } else { bench };
     let row = |figure: &Figure| {
         let measured = bench.measure(figure.id)?;
         step();

@@ -22,3 +22,15 @@ pub fn summarise(registry: &Registry, experiment: &Experiment) -> Result<Summary
         None => Err(ExperimentError::Level),
     }
 }
+
+/// How far a figure is from that of the cycle level, percent; none where both have no value, or both are 0: pictures that are never in
+/// time have no latency.
+#[must_use]
+pub fn deviation_percent(value: f64, of_cycle: f64) -> f64 {
+    match (value.is_finite(), of_cycle.is_finite()) {
+        (true, true) if value == of_cycle => 0.0,
+        (true, true) => 100.0 * (value / of_cycle - 1.0).abs(),
+        (false, false) => 0.0,
+        _ => 100.0,
+    }
+}

@@ -1,4 +1,4 @@
-        // the pixel of reference: the middle of what is seen of the box
+        // the pixel of reference: the middle of what is in the picture of the box, or its nearest side
         for v lx hx
 $v_p     = shra 31, $v
 $v_q     = andnot $v_p, $v

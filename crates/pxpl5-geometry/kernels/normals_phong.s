@@ -1,14 +1,3 @@
-        // on the whole turned away? the place in the table of sides
-gf      = add.ss ge0, ge1
-gg      = add.ss gf, ge2
-@gg     fst.l gg, SIDE_WORD(r2)
-gh      = ld.l SIDE_WORD(r2) !gg
-gi      = shra 31, gh
-gj      = subs r0, gh
-gk      = shra 31, gj
-gl      = andnot gi, gk
-gm      = and 24, gl
-        st.l gm, R_SIDE(r6)
         // the normal in eye coordinates
         for i 0 1 2
 mx$i    = fld.l 32*$i+NORMAL(r29)
@@ -37,6 +26,3 @@ hf$k$i  = add.ss he$k$i, round
         fst.l hf$k$i, RECORD*$i+R_SURFACE+4*$k(r6)
         endfor
         endfor
-colour  = ld.l COLOUR(r29)
-        st.l colour, R_COLOUR(r6)
-        prefetch TRIANGLE_BYTES+64(r29) !last

@@ -1,0 +1,10 @@
+bias    = orh 0x4B40, r0
+bias8   = adds 8, bias
+lxa     = ld.l LOW_XY(r2) !low
+lya     = ld.l LOW_XY+4(r2) !low
+hxa     = ld.l HIGH_XY(r2) !high
+hya     = ld.l HIGH_XY+4(r2) !high
+lx      = subs lxa, bias
+ly      = subs lya, bias
+hx      = subs bias8, hxa
+hy      = subs bias8, hya

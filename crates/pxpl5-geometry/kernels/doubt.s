@@ -1,0 +1,1 @@
+doubt   = or doubted, flat

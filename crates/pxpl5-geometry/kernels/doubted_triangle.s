@@ -1,0 +1,1 @@
+doubted = ld.l R_DOUBT(r3)

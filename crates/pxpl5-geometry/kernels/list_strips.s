@@ -1,0 +1,53 @@
+// A display list of strips: each vertex makes a triangle with the two before it, but for those that begin a strip.
+
+LIST_STEP    = VERTEX_BYTES     // from one triangle to the next, which share two corners
+RECORD       = 56
+RECORD_STEP  = RECORD           // from the records of one to those of the next
+BATCH_TRIANGLES = 76            // of 78 corners
+
+// vertices to triangles
+        .macro  counted
+        adds    -2, r17, r17
+        .endm
+
+// each turn of the loop over corners makes three records, until there are two more than triangles
+        .macro  turns
+        adds    1, r31, r30
+        .endm
+        .macro  morecorners
+        d.fnop
+            adds    3*RECORD, r6, r6
+        d.fnop
+            adds    -3, r30, r30
+        d.fnop
+            nop
+        d.fnop
+            bnc     corners
+        .endm
+
+// not a triangle where the last corner begins a strip
+        .macro  passover
+        d.fnop
+            ld.l    R_BEGINS(r5), r8
+        d.fnop
+            nop
+        d.fnop
+            btne    r0, r8, passed
+        .endm
+        .macro  passover_straight
+        ld.l    2*VERTEX_BYTES+BEGINS(r16), r8
+        btne    r0, r8, done
+        .endm
+
+        .macro  doubtful to
+        ld.l    R_DOUBT(r3), \to
+        ld.l    R_DOUBT(r4), r9
+        ld.l    R_DOUBT(r5), r10
+        or      r9, \to, \to
+        or      r10, \to, \to
+        .endm
+        .macro  decided
+        st.l    r0, R_DOUBT(r3)
+        st.l    r0, R_DOUBT(r4)
+        st.l    r0, R_DOUBT(r5)
+        .endm

@@ -1,0 +1,1 @@
+        st.l r0, R_SIDE(r6)

@@ -1,0 +1,24 @@
+//! The timing table's constants that follow from code, held to the code.
+
+use pxpl5_gp::{CodeVersion, GpTiming};
+use pxpl5_lab::code_times::{CodeTimes, CodeUse, code_times};
+
+fn table(times: CodeTimes) -> [u64; 3] {
+    [times.triangle_ns, times.guard_ns, times.entry_ns].map(|ns| ns.round() as u64)
+}
+
+/// The constants change when the code or the i860 changes; the message says what they become.
+#[test]
+fn the_table_of_the_code_is_what_the_code_takes() {
+    let papers = GpTiming::PAPERS;
+    let uses = [
+        (CodeVersion::Scheduled, CodeUse::Pphigs, papers.of_scheduled_phong()),
+        (CodeVersion::Compiled, CodeUse::Slats, papers.of_compiled_gouraud()),
+        (CodeVersion::Scheduled, CodeUse::Slats, papers.of_scheduled_gouraud()),
+    ];
+    let measured = uses.map(|(version, of, _)| code_times(version, of).expect("the scenes are built in"));
+    let expected = measured.map(table);
+    let found = uses.map(|(_, _, gp)| [gp.triangle_ns, gp.guard_ns, gp.bin_entry_ns]);
+    assert_eq!(found, expected, "{measured:#?}");
+    assert!(uses.iter().all(|(_, _, gp)| gp.sphere_ns == gp.triangle_ns));
+}
