@@ -47,6 +47,20 @@ impl Traffic {
         sums.collect()
     }
 
+    /// Gives up what was before an instant: messages that had been taken, and changes; the state that the last of them left stays.
+    pub(crate) fn forget_before(&mut self, instant: Time) {
+        self.transfers.retain(|transfer| transfer.end >= instant);
+        let last = self.busy_channels.partition_point(|(time, _)| *time < instant).saturating_sub(1);
+        self.busy_channels.drain(..last);
+        let mut held: BTreeMap<usize, i64> = BTreeMap::new();
+        let old = self.fifo_changes.iter().filter(|change| change.1 < instant);
+        old.for_each(|(renderer, _, words)| *held.entry(*renderer).or_default() += words);
+        self.fifo_changes.retain(|change| change.1 >= instant);
+        let before = Time(instant.0.saturating_sub(1));
+        let held = held.into_iter().filter(|(_, words)| *words != 0);
+        self.fifo_changes.splice(..0, held.map(|(renderer, words)| (renderer, before, words)));
+    }
+
     pub(crate) fn channels(&mut self, time: Time, busy: u32) {
         match self.busy_channels.last_mut() {
             Some(last) if last.1 == busy => {}

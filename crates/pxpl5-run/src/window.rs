@@ -32,10 +32,13 @@ pub(crate) struct Window {
 
 impl Window {
     pub(crate) fn new(experiment: &Experiment, record: &Record) -> Self {
-        let forgets = experiment.keep == Keep::Statistics
-            && experiment.head.is_none()
-            && !experiment.traffic
-            && experiment.pipeline.can_forget();
+        let looks_back = experiment.head.is_some() || experiment.traffic;
+        let may_forget = match experiment.keep {
+            Keep::Everything => false,
+            Keep::Statistics => !looks_back,
+            Keep::Recent => true,
+        };
+        let forgets = may_forget && experiment.pipeline.can_forget();
         let limit = if forgets { KEPT_SAMPLES } else { usize::MAX };
         let tally = Tally::new(experiment.end(), field_ms(record), limit);
         Self { tally, forgets, taken_to: None, arrivals_taken: 0, next_look: LEAST_RECORDS }
