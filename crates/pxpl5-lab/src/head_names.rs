@@ -215,7 +215,10 @@ pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'stati
     })
 }
 
-/// `none`, `velocity`, `acceleration` or `kalman`.
+/// Every predictor that [`predictor`] knows, as help and errors say it.
+pub const PREDICTORS: &str = "none, velocity, acceleration or kalman";
+
+/// A predictor of [`PREDICTORS`].
 ///
 /// # Errors
 ///
@@ -227,8 +230,7 @@ pub fn predictor(name: &str) -> Result<PredictorKind, MotionError> {
         "acceleration" => PredictorKind::ConstantAcceleration,
         "kalman" => PredictorKind::Kalman,
         _ => {
-            let expected = "none, velocity, acceleration or kalman";
-            return Err(MotionError::Unknown { what: "predictor", found: name.to_owned(), expected });
+            return Err(MotionError::Unknown { what: "predictor", found: name.to_owned(), expected: PREDICTORS });
         }
     })
 }
