@@ -42,6 +42,7 @@ function startWorker() {
   worker.onmessage = ({ data }) => {
     const { done, failed } = asked.get(data.id);
     asked.delete(data.id);
+    document.documentElement.dataset.asked = asked.size;
     if (data.error === undefined) done(data.value);
     else failed(Object.assign(new Error(data.error), { broken: data.broken }));
   };
@@ -51,7 +52,11 @@ function startWorker() {
 function ask(operation, given) {
   numbers += 1;
   worker.postMessage({ id: numbers, operation, given });
-  return new Promise((done, failed) => asked.set(numbers, { done, failed }));
+  return new Promise((done, failed) => {
+    asked.set(numbers, { done, failed });
+    // Tests wait until nothing is asked any more.
+    document.documentElement.dataset.asked = asked.size;
+  });
 }
 
 // Settings.
@@ -209,6 +214,7 @@ function draw(seen) {
   at("time").textContent = `${(state.now_ps / 1e9).toFixed(6)} ms`;
   at("field").textContent = `${state.field} of ${state.fields}`;
   at("line").textContent = state.line ?? "-";
+  at("bytes").textContent = `${Math.round(seen.bytes / 1e6)} MB`;
   at("hash").textContent = states.map((one) => one.trace_hash).join(" ");
   const failed = states.find((one) => one.failure);
   const says = failed ? `The machine cannot go on: ${failed.failure}` : state.over ? "All fields have been simulated." : state.last;

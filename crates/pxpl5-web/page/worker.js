@@ -4,12 +4,13 @@ import init, { Files, WebMachine, catalog, glossary } from "./pxpl5_web.js";
 /** Milliseconds that a piece of a run may take before the page is told. */
 const PATIENCE = 40;
 
+let wasm = null;
 let machines = [];
 let volume = null;
 
 const OPERATIONS = {
   async open() {
-    await init({ module_or_path: new URL("pxpl5_web_bg.wasm", import.meta.url) });
+    wasm = await init({ module_or_path: new URL("pxpl5_web_bg.wasm", import.meta.url) });
     return { catalog: JSON.parse(catalog()), glossary: JSON.parse(glossary()) };
   },
   /** Builds a machine for each of some settings; where one of them is refused, the machines before stay. */
@@ -69,6 +70,7 @@ function look(want) {
   const renderers = want.renderers ? boards.filter((board) => board.kind === "renderer") : [];
   return {
     machines: seen,
+    bytes: wasm.memory.buffer.byteLength,
     boards,
     channels: want.boards ? JSON.parse(machine.channels()) : null,
     renderers: want.renderers ? renderers.map((_, number) => machine.renderer(number)) : null,
