@@ -12,8 +12,7 @@ impl Stepper {
     /// The boards that can be asked: host, graphics processors, renderers, displays.
     pub fn boards(&self) -> impl Iterator<Item = Board> + use<> {
         let record = self.record();
-        let [gps, renderers, displays] =
-            [record.ports().gps.len(), record.renderers().len(), record.displays().len()];
+        let [gps, renderers, displays] = [record.ports().gps.len(), record.renderers().len(), record.displays().len()];
         let processors = [Board::Host].into_iter().chain((0..gps).map(Board::Gp));
         processors.chain((0..renderers).map(Board::Renderer)).chain((0..displays).map(Board::Display))
     }
@@ -35,9 +34,11 @@ impl Stepper {
         let Some(look) = self.processor(board) else { return Vec::new() };
         let ports = self.record().ports();
         let mut lines: Vec<String> = Vec::new();
-        lines.extend(look.inbox.iter().map(|mail| {
-            format!("inbox   from {}, arrived {}", ports.board(mail.source), in_ms(mail.arrived))
-        }));
+        lines.extend(
+            look.inbox
+                .iter()
+                .map(|mail| format!("inbox   from {}, arrived {}", ports.board(mail.source), in_ms(mail.arrived))),
+        );
         lines.extend(look.unaccepted.iter().map(|node| format!("sent    to {}, not accepted yet", ports.board(*node))));
         let chains = look.chains.iter().enumerate();
         lines.extend(chains.map(|(place, messages)| format!("queued  chain {place}: messages {messages}")));

@@ -2,7 +2,7 @@
 
 use pxpl5_gp::Stage;
 use pxpl5_machine::StageSpan;
-use pxpl5_run::{SoFar, PictureTimes};
+use pxpl5_run::{PictureTimes, SoFar};
 use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 

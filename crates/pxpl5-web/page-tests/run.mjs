@@ -240,8 +240,8 @@ const TESTS = {
     await press("#show-ideal");
     await press("#show-error");
     assert.equal(await run("return document.querySelectorAll('#eyes figure:not([hidden])').length"), 6);
-    assert.ok((await lit("#eyes figure:nth-child(2) canvas")) > 3);
-    const said = await run("return document.querySelector('#eyes figure:nth-child(3) figcaption').textContent");
+    assert.ok((await lit("#eyes .eye figure:nth-child(2) canvas")) > 3);
+    const said = await run("return document.querySelector('#eyes .eye figure:nth-child(3) figcaption').textContent");
     assert.match(said, /^error: \d+\.\d\d % of full brightness in the mean, \d+\.\d % of the pixels differ$/);
   },
   async "the last pictures' latency is shown part by part, and the parts add up"() {
@@ -297,14 +297,14 @@ const TESTS = {
     assert.notEqual(await text("time"), before, "the machine before stays");
   },
   async "two pipelines run side by side on the same input"() {
-    await open("#pipeline=slats&beside=rendering-control&scene=aircraft&head.motion=pan:100&fields=120&at=400000000000");
+    await open("#pipeline=slats&beside=rendering-control&scene=aircraft&head.motion=sine:5:0.5&fields=120&at=400000000000");
     assert.equal(await run("return document.querySelectorAll('#eyes .machine').length"), 2);
     assert.ok((await lit("#eyes .machine:nth-child(2) canvas")) > 3);
     assert.equal((await text("hash")).split(" ").length, 2);
     await sameHash(".");
   },
   async "six faces are shown beside the eye that is looked up in them"() {
-    await open("#pipeline=arp-full&display=arp&scene=mig&head.motion=pan:50&fields=60&at=600000000000");
+    await open("#pipeline=arp-full&display=arp&scene=mig&head.motion=sine:10:0.5&fields=60&at=600000000000");
     await run("document.getElementById('faces-part').open = true");
     await later(100);
     await settled();
@@ -327,7 +327,7 @@ const TESTS = {
   },
   async "the cycle level shows the code of a board with the current instruction"() {
     await open("#pipeline=slats&scene=aircraft&level=cycle&fields=20&at=60000000000");
-    await press("#processors button:nth-child(3)");
+    await press("#processors button:nth-child(2)");
     assert.match(await text("board"), /^> 0x[0-9a-f]{8}  [0-9a-f]{8}  \S+/m);
   },
   async "terms are explained on focus"() {
@@ -373,7 +373,7 @@ const TESTS = {
     const media = (value) => ask("POST", `${session}/goog/cdp/execute`, {
       cmd: "Emulation.setEmulatedMedia", params: { features: [{ name: "prefers-color-scheme", value }] },
     });
-    await open("#pipeline=rendering-control&scene=mig&fields=120&head.motion=pan:50&at=500000000000");
+    await open("#pipeline=rendering-control&scene=mig&fields=120&head.motion=sine:10:0.5&at=500000000000");
     await press("#show-ideal");
     await press("#show-error");
     await press("#processors button:nth-child(2)");
@@ -381,9 +381,9 @@ const TESTS = {
     await media("dark");
     for (const width of [390, 1280, 2560]) await picture(`page-dark-${width}`, width, 3000);
     await media("light");
-    await open("#pipeline=slats&beside=rendering-control&scene=aircraft&fields=120&head.motion=pan:50&at=500000000000");
+    await open("#pipeline=slats&beside=rendering-control&scene=aircraft&fields=120&head.motion=sine:10:0.5&at=500000000000");
     await picture("two-1280", 1280, 2000);
-    await open("#pipeline=arp-full&display=arp&scene=mig&head.motion=pan:50&fields=60&at=600000000000");
+    await open("#pipeline=arp-full&display=arp&scene=mig&head.motion=sine:10:0.5&fields=60&at=600000000000");
     await run("document.getElementById('faces-part').open = true; document.getElementById('volume-part').open = true; document.getElementById('volume-draw').click()");
     await until("the volume", "document.getElementById('volume').hidden === false", 60000);
     await settled();

@@ -35,7 +35,7 @@ export function layOutEyes(place, states, names, record) {
       ];
       return { canvas, ideal, heat, numbers, figures };
     });
-    const row = make("div", { className: "eyes" }, ...eyes.flatMap((eye) => eye.figures));
+    const row = make("div", { className: "eyes" }, ...eyes.map((eye) => make("div", { className: "eye" }, ...eye.figures)));
     return { eyes, section: make("div", { className: "machine" }, make("h2", { textContent: names[n] }), row) };
   });
   place.replaceChildren(...machines.map((machine) => machine.section));
@@ -85,7 +85,7 @@ function card(board, choose) {
 }
 
 /** Height of the place for a title above a timeline's rows, which it has none of here. */
-const UNTITLED = 56;
+const UNTITLED = 42;
 
 /** A drawing of its own, whose style reaches nothing else of the page. */
 export function drawTimeline(place, svg) {

@@ -245,7 +245,7 @@ function layOut(states) {
   ["processors", "renderers", "displays"].forEach((place) => at(place).replaceChildren());
   const memories = states[0].memories;
   at("faces-part").hidden = memories === 0;
-  at("memory").replaceChildren(...Array.from({ length: memories }, (_, n) => new Option(n + 1 === memories ? `${n} (background)` : n, n)));
+  at("memory").replaceChildren(...Array.from({ length: memories }, (_, n) => new Option(n > 0 && n + 1 === memories ? `${n} (background)` : n, n)));
   at("whose").textContent = machines.length > 1 ? `of ${names()[0]}` : "";
 }
 
@@ -279,9 +279,9 @@ function drawNeeds() {
   if (recorded) {
     const blob = new Blob([csv(recorded)], { type: "text/csv" });
     const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(blob), download: RECORDED, textContent: RECORDED });
-    at("needs").append(" beside the file ", link);
+    at("needs").append(", beside the file ", link, ",");
   }
-  if (model) at("needs").append(` beside your file ${model}, which the link cannot carry`);
+  if (model) at("needs").append(`, beside your file ${model}, which the link cannot carry,`);
 }
 
 // Running.
@@ -450,7 +450,7 @@ at("volume-draw").addEventListener("click", async () => {
     const begun = performance.now();
     const [slices, width, height] = await ask("volume");
     at("volume-says").textContent = `${slices} slices drawn in ${((performance.now() - begun) / 1000).toFixed(1)} s`;
-    Object.assign(at("slice"), { max: slices - 1 });
+    Object.assign(at("slice"), { max: slices - 1, value: Math.round(slices / 4) });
     Object.assign(at("slice-picture"), { width, height });
     at("volume").hidden = false;
     await Promise.all([slice(), round()]);

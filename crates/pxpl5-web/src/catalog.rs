@@ -50,7 +50,9 @@ mod tests {
         let all = catalog();
         let of = |key: &str| all[key].as_array().expect("a list").clone();
         assert!(of("trackers").len() > 3 && of("predictors").len() > 3);
-        of("trackers").iter().for_each(|name| assert!(pxpl5_lab::tracker(name.as_str().expect("text")).is_ok(), "{name}"));
+        of("trackers")
+            .iter()
+            .for_each(|name| assert!(pxpl5_lab::tracker(name.as_str().expect("text")).is_ok(), "{name}"));
         of("predictors")
             .iter()
             .for_each(|name| assert!(pxpl5_lab::predictor(name.as_str().expect("text")).is_ok(), "{name}"));

@@ -32,7 +32,8 @@ mod tests {
         let glossary = glossary();
         assert!(used().len() > 15, "the page marks its terms");
         for term in used() {
-            let sentence = glossary[term].as_str().unwrap_or_else(|| panic!("docs/glossary.md does not explain {term}"));
+            let sentence =
+                glossary[term].as_str().unwrap_or_else(|| panic!("docs/glossary.md does not explain {term}"));
             assert!(sentence.ends_with('.') && sentence.len() < 260, "{term}: {sentence}");
         }
     }

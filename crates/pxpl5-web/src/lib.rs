@@ -228,4 +228,3 @@ impl WebVolume {
         self.0.seen(azimuth_deg, elevation_deg, side).map_err(refused)
     }
 }
-

@@ -171,8 +171,7 @@ mod tests {
 
     #[test]
     fn a_machine_that_fails_is_a_state() {
-        let mut session =
-            new("pipeline=slats\nscene=full-screen:200000\nfields=8\npixels=off").expect("known");
+        let mut session = new("pipeline=slats\nscene=full-screen:200000\nfields=8\npixels=off").expect("known");
         session.run_for(200_000_000_000);
         let state = session.state();
         assert!(state["failure"].as_str().is_some_and(|error| error.contains("GP")), "{state}");

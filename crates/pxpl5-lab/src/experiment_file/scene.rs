@@ -59,9 +59,7 @@ impl SceneChoice {
 
     pub(crate) fn load_whole(&self) -> Result<Scene, FileError> {
         let whole = match (&self.contents, Format::of_path(Path::new(&self.name))) {
-            (Some(bytes), Some(format)) => {
-                pxpl5_scene::placed_from_bytes(bytes, format, &self.name, self.placement)?
-            }
+            (Some(bytes), Some(format)) => pxpl5_scene::placed_from_bytes(bytes, format, &self.name, self.placement)?,
             _ if is_file(&self.name) => pxpl5_scene::load_placed(&self.name, self.placement)?,
             _ => pxpl5_scene::builtin(&self.name)?,
         };

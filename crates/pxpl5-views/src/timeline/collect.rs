@@ -7,7 +7,7 @@ use super::rows::{rows, set_lanes};
 use crate::updates::Updates;
 use pxpl5_display::Display;
 use pxpl5_gp::{Stage, StageEdge};
-use pxpl5_run::{Outcome, SoFar, PictureTimes, WARM_UP_PICTURES};
+use pxpl5_run::{Outcome, PictureTimes, SoFar, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
@@ -85,10 +85,8 @@ fn periods(
 ) -> Range<PeriodNumber> {
     let display = run.record().display();
     let begin = chosen.map_or(Time::ZERO, |times| sent_at.or(times.sampled_at).unwrap_or(times.transform_at));
-    let first = options
-        .first_field
-        .unwrap_or_else(|| display.period_at(begin))
-        .min(PeriodNumber::FIRST.after(run.fields()));
+    let first =
+        options.first_field.unwrap_or_else(|| display.period_at(begin)).min(PeriodNumber::FIRST.after(run.fields()));
     let last = chosen.map_or(first.after(LEAST_FIELDS), |times| display.period_at(times.shown_at).after(2));
     let count = options.fields.unwrap_or_else(|| last.since(first).max(LEAST_FIELDS));
     first..first.after(count.clamp(1, MAX_FIELDS))
