@@ -388,6 +388,10 @@ const TESTS = {
     await until("the volume", "document.getElementById('volume').hidden === false", 60000);
     await settled();
     await picture("faces-1280", 1280, 4000);
+    await ask("POST", `${session}/url`, { url: new URL("../docs/gallery.html", page).href });
+    await picture("gallery-1280", 1280, 4200);
+    await ask("POST", `${session}/url`, { url: new URL("../docs/index.html", page).href });
+    await picture("book-1280", 1280, 1200);
   },
   async "every link of the site leads to a page and a place on it"() {
     const wrong = brokenLinks(site);
