@@ -17,15 +17,16 @@
 
 mod catalog;
 mod code;
+mod files;
 mod glossary;
 mod look;
 mod pictures;
 mod session;
 mod volume;
 
+pub use files::Files;
+
 use session::Session;
-use std::collections::BTreeMap;
-use std::sync::Arc;
 use wasm_bindgen::prelude::{JsError, wasm_bindgen};
 
 /// What there is to choose, as JSON: pipelines, scenes, displays and motions, each with its name and what it is.
@@ -40,26 +41,6 @@ pub fn catalog() -> String {
 #[must_use]
 pub fn glossary() -> String {
     glossary::glossary().to_string()
-}
-
-/// Contents of files that settings may name: models (PLY, OBJ, PDB) and recordings of a head.
-#[wasm_bindgen]
-#[derive(Debug, Default)]
-pub struct Files(BTreeMap<String, Arc<[u8]>>);
-
-#[wasm_bindgen]
-impl Files {
-    /// No files.
-    #[wasm_bindgen(constructor)]
-    #[must_use]
-    pub fn new() -> Self {
-        Self::default()
-    }
-
-    /// Has a file of this name.
-    pub fn add(&mut self, name: &str, contents: &[u8]) {
-        self.0.insert(name.to_owned(), contents.into());
-    }
 }
 
 /// A running experiment of the page.

@@ -1,8 +1,9 @@
 //! A run in pieces, with what the page asks of it.
 
+use crate::files::Files;
+use crate::look;
 use crate::pictures::{self, Difference, rgba};
 use crate::volume::Volume;
-use crate::{Files, look};
 use pxpl5_lab::ExperimentFile;
 use pxpl5_machine::Board;
 use pxpl5_run::{BareHost, Keep, Pause, Stepper};
