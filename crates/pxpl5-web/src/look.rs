@@ -1,6 +1,7 @@
 //! What the page shows of the machine, as JSON and SVG.
 
-use crate::{code, pictures};
+use crate::code;
+use crate::pictures;
 use pxpl5_machine::Board;
 use pxpl5_run::{LATENCY_PARTS, Stepper};
 use pxpl5_views::timeline::{self, TimelineOptions};
