@@ -101,7 +101,8 @@ fn recent_records_of_a_watched_run_do_not_grow_with_it() {
         (most, stepper.record().trace_hash())
     };
     let [(short, _), (long, hash)] = [600, 1_800].map(most);
-    assert!(long <= short + short / 20, "{long} records, {short} in a third of the time");
+    // The next look is taken at twice what the last one left, which varies with what is visible; without looks it would be three times.
+    assert!(long <= short + short / 4, "{long} records, {short} in a third of the time");
     let everything = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1).fields(1_800);
     assert_eq!(hash, everything.run().expect("it runs").record().trace_hash());
 }
