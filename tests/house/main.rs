@@ -43,7 +43,10 @@ const FLOORS: [(&str, &[&str], &[&str]); 12] = [
     (
         "front",
         &["pxpl5", "pxpl5-cli", "pxpl5-py", "pxpl5-web"],
-        &["ground", "boards", "geometry", "firmware", "world", "machine", "run", "measure", "lab", "views", "front"],
+        &[
+            "ground", "boards", "geometry", "firmware", "world", "volume", "machine", "run", "measure", "lab", "views",
+            "front",
+        ],
     ),
 ];
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use std::fs::File;
-use std::io;
+use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
 use thiserror::Error;
@@ -177,8 +177,13 @@ fn within(text: &str, most: f64) -> Option<f64> {
 fn recording(path: &Path, replay: &Replay) -> Result<Recording, MotionError> {
     let name = || path.display().to_string();
     let file = File::open(path).map_err(|error| MotionError::Open { path: name(), error })?;
-    let recording = Recording::read_as(file, &replay.format);
-    Ok(recording.map_err(|error| MotionError::Load { path: name(), error })?.ending(replay.end))
+    recording_of(file, &name(), replay)
+}
+
+/// The recording that somebody can read; `name` stands for it in errors.
+pub(crate) fn recording_of(contents: impl Read, name: &str, replay: &Replay) -> Result<Recording, MotionError> {
+    let recording = Recording::read_as(contents, &replay.format);
+    Ok(recording.map_err(|error| MotionError::Load { path: name.to_owned(), error })?.ending(replay.end))
 }
 
 /// Every tracker that [`tracker`] knows, as help and errors say it.
@@ -210,7 +215,10 @@ pub fn tracker_by(tables: &Tables, name: &str) -> Result<(TrackerConfig, &'stati
     })
 }
 
-/// `none`, `velocity`, `acceleration` or `kalman`.
+/// Every predictor that [`predictor`] knows, as help and errors say it.
+pub const PREDICTORS: &str = "none, velocity, acceleration or kalman";
+
+/// A predictor of [`PREDICTORS`].
 ///
 /// # Errors
 ///
@@ -222,8 +230,7 @@ pub fn predictor(name: &str) -> Result<PredictorKind, MotionError> {
         "acceleration" => PredictorKind::ConstantAcceleration,
         "kalman" => PredictorKind::Kalman,
         _ => {
-            let expected = "none, velocity, acceleration or kalman";
-            return Err(MotionError::Unknown { what: "predictor", found: name.to_owned(), expected });
+            return Err(MotionError::Unknown { what: "predictor", found: name.to_owned(), expected: PREDICTORS });
         }
     })
 }

@@ -37,7 +37,7 @@ pub use experiment_file::{
     ExperimentFile, FileError, FileKey, HeadChoice, MotionChoice, Outputs, PathChoice, Plan, Published, SceneChoice,
     Settings, tracking_parameters,
 };
-pub use head_names::{MotionError, TRACKERS, motion, predictor, tracker};
+pub use head_names::{MotionError, PREDICTORS, TRACKERS, motion, predictor, tracker};
 pub use host::Workstation;
 pub use snapshot::{Snapshot, SnapshotError};
 pub use suitability::{Suitability, suitability};

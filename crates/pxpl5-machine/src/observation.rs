@@ -139,6 +139,9 @@ impl Observation {
     /// Gives up what was before an instant; `tick` tells when a period begins.
     pub(crate) fn forget_before(&mut self, instant: Time, tick: impl Fn(PeriodNumber) -> Time) {
         let most_regions = self.most_regions_of_a_picture();
+        if let Some(traffic) = &mut self.traffic {
+            traffic.forget_before(instant);
+        }
         self.marks.retain(|mark| mark.time >= instant);
         self.arrivals.retain(|arrival| arrival.last_part_at >= instant);
         let mut swapped: BTreeMap<SurfaceId, u64> = BTreeMap::new();

@@ -47,6 +47,26 @@ impl Traffic {
         sums.collect()
     }
 
+    /// Messages and changes that are held.
+    #[must_use]
+    pub fn records(&self) -> usize {
+        self.transfers.len() + self.busy_channels.len() + self.fifo_changes.len()
+    }
+
+    /// Gives up what was before an instant: messages that had been taken, and changes; the state that the last of them left stays.
+    pub(crate) fn forget_before(&mut self, instant: Time) {
+        self.transfers.retain(|transfer| transfer.end >= instant);
+        let last = self.busy_channels.partition_point(|(time, _)| *time < instant).saturating_sub(1);
+        self.busy_channels.drain(..last);
+        let mut held: BTreeMap<usize, i64> = BTreeMap::new();
+        let old = self.fifo_changes.iter().filter(|change| change.1 < instant);
+        old.for_each(|(renderer, _, words)| *held.entry(*renderer).or_default() += words);
+        self.fifo_changes.retain(|change| change.1 >= instant);
+        let before = Time(instant.0.saturating_sub(1));
+        let held = held.into_iter().filter(|(_, words)| *words != 0);
+        self.fifo_changes.splice(..0, held.map(|(renderer, words)| (renderer, before, words)));
+    }
+
     pub(crate) fn channels(&mut self, time: Time, busy: u32) {
         match self.busy_channels.last_mut() {
             Some(last) if last.1 == busy => {}
@@ -73,4 +93,40 @@ impl Traffic {
 
 fn transfer(message: &Message, begin: Time, end: Time) -> Transfer {
     Transfer { source: message.source, destination: message.destination, words: message.words, begin, end }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_given_up_leaves_the_state_that_it_led_to() {
+        let transfer = |end| Transfer {
+            source: NodeId(1),
+            destination: NodeId(2),
+            words: 9,
+            begin: Time(end - 1),
+            end: Time(end),
+        };
+        let mut traffic = Traffic {
+            transfers: vec![transfer(10), transfer(20), transfer(30)],
+            busy_channels: vec![(Time(5), 1), (Time(15), 2), (Time(25), 0)],
+            fifo_changes: vec![
+                (0, Time(4), 30),
+                (0, Time(9), -10),
+                (1, Time(6), 8),
+                (1, Time(7), -8),
+                (0, Time(22), -20),
+            ],
+            announced: BTreeMap::new(),
+        };
+        let before = traffic.fifo_words(0);
+        traffic.forget_before(Time(20));
+        assert_eq!(traffic.transfers, [transfer(20), transfer(30)]);
+        assert_eq!(traffic.busy_channels, [(Time(15), 2), (Time(25), 0)], "two channels were busy at 20");
+        assert_eq!(traffic.fifo_words(0), [(Time(19), 20), (Time(22), 0)]);
+        assert_eq!(traffic.fifo_words(0).last(), before.last());
+        assert!(traffic.fifo_words(1).is_empty(), "what came had gone");
+        assert_eq!(traffic.records(), 6);
+    }
 }

@@ -12,4 +12,7 @@ pub enum Keep {
     /// the run. What follows a head keeps everything, since its pixels are judged when the run is over; so does a run whose
     /// messages are recorded, and a pipeline that cannot do without ([`Pipeline::can_forget`](crate::Pipeline::can_forget)).
     Statistics,
+    /// As [`Keep::Statistics`], and where there is a head or messages are recorded too: what a page needs that shows a run as it goes on
+    /// for hours. Of such a run pixel errors can be told of its last pictures alone, and traffic of its last periods.
+    Recent,
 }

@@ -5,7 +5,7 @@ use crate::keep::Keep;
 use crate::pipeline::{PictureTimes, Pipeline};
 use crate::samples::KEPT_SAMPLES;
 use crate::tally::Tally;
-use pxpl5_machine::{Machine, Record};
+use pxpl5_machine::{Machine, Observation, Record};
 use pxpl5_sim::Time;
 use pxpl5_wire::PeriodNumber;
 
@@ -32,10 +32,13 @@ pub(crate) struct Window {
 
 impl Window {
     pub(crate) fn new(experiment: &Experiment, record: &Record) -> Self {
-        let forgets = experiment.keep == Keep::Statistics
-            && experiment.head.is_none()
-            && !experiment.traffic
-            && experiment.pipeline.can_forget();
+        let looks_back = experiment.head.is_some() || experiment.traffic;
+        let may_forget = match experiment.keep {
+            Keep::Everything => false,
+            Keep::Statistics => !looks_back,
+            Keep::Recent => true,
+        };
+        let forgets = may_forget && experiment.pipeline.can_forget();
         let limit = if forgets { KEPT_SAMPLES } else { usize::MAX };
         let tally = Tally::new(experiment.end(), field_ms(record), limit);
         Self { tally, forgets, taken_to: None, arrivals_taken: 0, next_look: LEAST_RECORDS }
@@ -43,7 +46,7 @@ impl Window {
 
     /// Sums up what nobody will change any more and gives up its records, if that is wanted and there are many.
     pub(crate) fn look(&mut self, pipeline: &dyn Pipeline, machine: &mut Machine, now: Time) {
-        if !self.forgets || machine.record().observation().records() < self.next_look {
+        if !self.forgets || held(machine.record().observation()) < self.next_look {
             return;
         }
         let record = machine.record();
@@ -54,7 +57,7 @@ impl Window {
             machine.forget_before(begin);
             self.arrivals_taken = machine.record().observation().arrivals.len();
         }
-        self.next_look = LEAST_RECORDS.max(2 * machine.record().observation().records());
+        self.next_look = LEAST_RECORDS.max(2 * held(machine.record().observation()));
     }
 
     /// Takes the pictures that are not held back; the instant from which on records are needed for those that are.
@@ -99,6 +102,11 @@ impl Window {
         self.tally.take(pipeline, record, &pictures);
         (self.tally, pictures)
     }
+}
+
+/// Records that are held, those of messages and FIFOs among them.
+fn held(observation: &Observation) -> usize {
+    observation.records() + observation.traffic.as_ref().map_or(0, |traffic| traffic.records())
 }
 
 /// So many periods as are held before an instant.

@@ -84,6 +84,29 @@ fn work(experiment: &Experiment, fields: u64) -> [u64; 4] {
     [most[0], most[1], outcome.tally().records_looked_at, outcome.record().events()]
 }
 
+/// A page watches messages, and keeps what the last periods need.
+#[test]
+fn recent_records_of_a_watched_run_do_not_grow_with_it() {
+    let most = |fields| {
+        let experiment = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1).fields(fields);
+        let mut stepper = experiment.keep(Keep::Recent).record_traffic(true).stepper().expect("it can be built");
+        let mut most = 0;
+        while stepper.now() < stepper.end() {
+            stepper.step_period();
+            let observation = stepper.record().observation();
+            let traffic = observation.traffic.as_ref().expect("recorded");
+            most = most.max(observation.records() + traffic.records());
+        }
+        assert!(!stepper.so_far().last_latencies(8).is_empty(), "the last pictures are known");
+        (most, stepper.record().trace_hash())
+    };
+    let [(short, _), (long, hash)] = [600, 1_800].map(most);
+    // The next look is taken at twice what the last one left, which varies with what is visible; without looks it would be three times.
+    assert!(long <= short + short / 4, "{long} records, {short} in a third of the time");
+    let everything = experiment(MachineConfig::slats(), Slats::split(), scene("mig", 60), 1).fields(1_800);
+    assert_eq!(hash, everything.run().expect("it runs").record().trace_hash());
+}
+
 #[test]
 fn twenty_times_the_fields_hold_no_more_and_take_twenty_times_the_work() {
     let small = MachineConfig::small_hmd;

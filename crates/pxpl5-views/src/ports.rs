@@ -2,7 +2,7 @@
 
 use pxpl5_display::Display;
 use pxpl5_machine::Record;
-use pxpl5_run::Outcome;
+use pxpl5_run::SoFar;
 use pxpl5_sim::Time;
 use pxpl5_wire::{NodeId, PictureNumber, SurfaceId};
 use std::collections::BTreeSet;
@@ -49,13 +49,13 @@ fn has_more_ports(display: &dyn Display) -> bool {
 }
 
 /// What a port showed: its pictures in the order in which they were begun, each from a swap to the next.
-pub(crate) fn shown(outcome: &Outcome, node: NodeId) -> Vec<PortShown> {
-    let observation = outcome.observation();
+pub(crate) fn shown(run: &SoFar<'_>, node: NodeId) -> Vec<PortShown> {
+    let observation = run.observation();
     let arrivals = observation.arrivals.iter().filter(|arrival| arrival.target.frame_buffer == node);
     let pictures: BTreeSet<PictureNumber> = arrivals.map(|arrival| arrival.target.picture).collect();
-    let swaps = observation.swaps.iter().filter(|swap| swap.port == node).map(|swap| outcome.record().tick(swap.tick));
+    let swaps = observation.swaps.iter().filter(|swap| swap.port == node).map(|swap| run.record().tick(swap.tick));
     let begins: Vec<Time> = swaps.collect();
-    let ends = begins.iter().skip(1).copied().chain([outcome.end()]);
+    let ends = begins.iter().skip(1).copied().chain([run.end()]);
     let all = pictures.into_iter().zip(begins.iter().zip(ends));
     all.map(|(picture, (begin, end))| PortShown { picture, begin: *begin, end }).collect()
 }

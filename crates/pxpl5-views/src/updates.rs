@@ -2,7 +2,7 @@
 
 use pxpl5_gp::Stage;
 use pxpl5_machine::StageSpan;
-use pxpl5_run::{Outcome, PictureTimes};
+use pxpl5_run::{PictureTimes, SoFar};
 use pxpl5_sim::Time;
 use pxpl5_wire::PictureNumber;
 
@@ -23,13 +23,13 @@ struct Received {
 }
 
 impl Updates {
-    pub(crate) fn of(outcome: &Outcome, stages: &[StageSpan]) -> Self {
+    pub(crate) fn of(run: &SoFar<'_>, stages: &[StageSpan]) -> Self {
         let sends = stages.iter().filter(|span| span.stage == Stage::Send);
-        let receive_span = outcome.receive_span();
+        let receive_span = run.receive_span();
         let mut received: Vec<Received> =
             sends.filter_map(|send| Some(Received { at: send.end? + receive_span, update: send.picture })).collect();
         received.sort_unstable();
-        Self { by_picture: host_samples(outcome), received }
+        Self { by_picture: host_samples(run), received }
     }
 
     /// The picture's own update, or the last that had reached the GP when the picture began.
@@ -44,7 +44,7 @@ impl Updates {
 }
 
 /// Whether it is the host that samples the poses of pictures.
-fn host_samples(outcome: &Outcome) -> bool {
-    let host = outcome.record().ports().host;
-    outcome.observation().marks.iter().any(|mark| mark.stage == Stage::Sample && mark.node == host)
+fn host_samples(run: &SoFar<'_>) -> bool {
+    let host = run.record().ports().host;
+    run.observation().marks.iter().any(|mark| mark.stage == Stage::Sample && mark.node == host)
 }

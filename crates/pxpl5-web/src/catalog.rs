@@ -17,11 +17,18 @@ pub(crate) fn catalog() -> Value {
     let pipelines = registry.pipelines().iter();
     let scenes = pxpl5_scene::names().iter();
     json!({
+        "trackers": names(pxpl5_lab::TRACKERS),
+        "predictors": names(pxpl5_lab::PREDICTORS),
         "pipelines": pipelines.map(|entry| json!({"name": entry.name, "about": entry.about})).collect::<Vec<_>>(),
         "scenes": scenes.map(|(name, about)| json!({"name": example(name), "about": about})).collect::<Vec<_>>(),
         "displays": registry.displays().iter().map(|entry| entry.name).collect::<Vec<_>>(),
         "motions": MOTIONS.iter().map(|(name, about)| json!({"name": name, "about": about})).collect::<Vec<_>>(),
     })
+}
+
+/// The names of a list in words: `optical, fastrak or ideal`.
+fn names(list: &str) -> Vec<&str> {
+    list.split([',', ' ']).filter(|word| !word.is_empty() && *word != "or").collect()
 }
 
 /// A scene's name with a number where it takes one.
@@ -37,6 +44,19 @@ fn example(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_tracker_and_predictor_of_the_lists_is_known() {
+        let all = catalog();
+        let of = |key: &str| all[key].as_array().expect("a list").clone();
+        assert!(of("trackers").len() > 3 && of("predictors").len() > 3);
+        of("trackers")
+            .iter()
+            .for_each(|name| assert!(pxpl5_lab::tracker(name.as_str().expect("text")).is_ok(), "{name}"));
+        of("predictors")
+            .iter()
+            .for_each(|name| assert!(pxpl5_lab::predictor(name.as_str().expect("text")).is_ok(), "{name}"));
+    }
 
     #[test]
     fn every_scene_of_the_list_can_be_built() {

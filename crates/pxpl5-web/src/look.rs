@@ -1,11 +1,13 @@
-//! What the page shows of the machine, as JSON.
+//! What the page shows of the machine, as JSON and SVG.
 
-use pxpl5_gp::{GpLook, Priority};
+use crate::code;
+use crate::pictures;
 use pxpl5_machine::Board;
-use pxpl5_run::Stepper;
+use pxpl5_run::{LATENCY_PARTS, Stepper};
+use pxpl5_views::timeline::{self, TimelineOptions};
 use serde_json::{Value, json};
 
-/// Everything that is shown at once, but pictures.
+/// Where the run stands and what is on the ring.
 pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
     let record = stepper.record();
     let surfaces = record
@@ -16,27 +18,19 @@ pub(crate) fn state(stepper: &Stepper, is_over: bool) -> Value {
         "end_ps": stepper.end().0,
         "field": stepper.period().0,
         "fields": stepper.experiment().length(),
-        "line": line(stepper),
+        "line": stepper.beam_line(),
         "over": is_over,
         "failure": stepper.failure().map(ToString::to_string),
         "last": stepper.last().map(|last| format!("{}: {}", last.board, last.what)),
         "trace_hash": record.trace_hash().to_string(),
         "config_hash": stepper.experiment().config_hash().to_string(),
-        "channels": channels(stepper),
-        "boards": boards(stepper),
         "surfaces": surfaces.collect::<Vec<_>>(),
+        "memories": pictures::memories(stepper),
     })
 }
 
-/// The last line of the first display that has begun to light in its period.
-fn line(stepper: &Stepper) -> Option<u32> {
-    let display = stepper.record().display();
-    let lines = display.surfaces().first()?.height;
-    (0..lines).rev().find(|line| display.lights(0, 0, *line, stepper.period()).is_some_and(|at| at <= stepper.now()))
-}
-
 /// A message or nothing for each channel of the ring.
-fn channels(stepper: &Stepper) -> Vec<Value> {
+pub(crate) fn channels(stepper: &Stepper) -> Value {
     let ports = stepper.record().ports();
     let on = stepper.channels();
     let channel = |number| {
@@ -44,94 +38,83 @@ fn channels(stepper: &Stepper) -> Vec<Value> {
         let [from, to] = [message.source, message.destination].map(|node| ports.board(node).to_string());
         Some(json!({"from": from, "to": to, "words": message.words}))
     };
-    (0..stepper.record().config().ring.channels as usize).map(|number| channel(number).unwrap_or(Value::Null)).collect()
+    let all = 0..stepper.record().config().ring.channels as usize;
+    all.map(|number| channel(number).unwrap_or(Value::Null)).collect()
 }
 
 /// A line for each board.
-fn boards(stepper: &Stepper) -> Vec<Value> {
-    let record = stepper.record();
-    let gps = (0..record.ports().gps.len()).map(Board::Gp);
-    let processors = [Board::Host].into_iter().chain(gps).filter_map(|board| {
-        let look = stepper.processor(board)?;
-        let works = look.programs.iter().any(|program| program.work_left.is_some());
-        Some(json!({"name": board.to_string(), "kind": "processor", "works": works, "does": does(&look), "inbox": look.inbox.len()}))
-    });
-    let renderers = (0..record.renderers().len()).filter_map(|number| {
-        let look = stepper.renderer(number)?;
-        let fifo = look.fifo_words.unwrap_or_default();
-        let sends = look.copying.map(|order| order.target.region.0);
-        Some(json!({
-            "name": Board::Renderer(number).to_string(), "kind": "renderer", "fifo": fifo, "depth": look.fifo_depth_words,
-            "sends_region": sends, "works": fifo > 0 || sends.is_some(), "does": renderer_does(fifo, sends, look.stands_at_copy),
-        }))
-    });
-    processors.chain(renderers).collect()
+pub(crate) fn boards(stepper: &Stepper) -> Value {
+    stepper.boards().filter_map(|board| Some(line(stepper, board, &stepper.says(board)?))).collect()
 }
 
-/// What the programs of a processor do, in words.
-fn does(look: &GpLook) -> String {
-    let program = |program: &pxpl5_gp::ProgramLook| {
-        let level = if program.priority == Priority::Interrupt { "interrupt " } else { "" };
-        match program.work_left {
-            Some(left) => format!("{level}works, {:.1} us left", left.0 as f64 / 1e6),
-            None if program.waits_for.is_empty() => format!("{level}has not begun"),
-            None => format!("{level}waits for {}", program.waits_for),
+fn line(stepper: &Stepper, board: Board, says: &str) -> Value {
+    let name = board.to_string();
+    match board {
+        Board::Renderer(number) => {
+            let look = stepper.renderer(number);
+            let fifo = look.and_then(|look| look.fifo_words).unwrap_or_default();
+            let works = fifo > 0 || look.is_some_and(|look| look.copying.is_some());
+            let depth = look.map_or(0, |look| look.fifo_depth_words);
+            json!({"name": name, "kind": "renderer", "does": says, "works": works, "fifo": fifo, "depth": depth})
         }
-    };
-    let programs: Vec<String> = look.programs.iter().map(program).collect();
-    if programs.is_empty() { "has no program".to_owned() } else { programs.join("; ") }
-}
-
-fn renderer_does(fifo: u32, sends: Option<u16>, stands_at_copy: bool) -> String {
-    let copy = sends.map_or_else(String::new, |region| format!("; sends region {region}"));
-    let stands = if stands_at_copy { "; commands wait for the copy" } else { "" };
-    format!("{fifo} words wait{copy}{stands}")
+        Board::Display(_) | Board::Ring => json!({"name": name, "kind": "display", "does": says, "works": true}),
+        Board::Host | Board::Gp(_) => {
+            let look = stepper.processor(board);
+            let works = look.is_some_and(|look| look.programs.iter().any(|program| program.work_left.is_some()));
+            json!({"name": name, "kind": "processor", "does": says, "works": works})
+        }
+    }
 }
 
 /// Everything of one board, line by line; `None` where the machine has no such board.
 pub(crate) fn board(stepper: &Stepper, board: Board) -> Option<Vec<String>> {
-    match board {
-        Board::Host | Board::Gp(_) => {
-            let look = stepper.processor(board)?;
-            let mut lines = vec![does(&look)];
-            lines.extend(processor(stepper, board, &look));
-            Some(lines)
-        }
-        Board::Renderer(number) => {
-            let look = stepper.renderer(number)?;
-            let fifo = look.fifo_words.unwrap_or_default();
-            let sends = look.copying.map(|order| order.target.region.0);
-            Some(vec![
-                renderer_does(fifo, sends, look.stands_at_copy),
-                format!("input FIFO: {fifo} of {} words", look.fifo_depth_words),
-                format!("regions in the backing store: {}", look.stored_regions),
-                format!("executing commands so far: {:.3} ms", look.busy.as_ms()),
-            ])
-        }
-        Board::Display(number) => {
-            let display = stepper.record().displays().get(number)?;
-            Some(display.counters().iter().map(|counter| format!("{}: {}", counter.name, counter.count)).collect())
-        }
-        Board::Ring => Some(vec![format!("occupied channels: {}", stepper.channels().len())]),
+    if board == Board::Ring {
+        return Some(vec![format!("occupied channels: {}", stepper.channels().len())]);
     }
+    let mut lines = vec![stepper.says(board)?];
+    lines.extend(stepper.details(board));
+    if let Board::Renderer(number) = board {
+        let look = stepper.renderer(number)?;
+        lines.push(format!("executing commands so far: {}", pxpl5_run::in_us(look.busy)));
+    }
+    lines.extend(code::lines(stepper, board));
+    Some(lines)
 }
 
-fn processor(stepper: &Stepper, board: Board, look: &GpLook) -> Vec<String> {
-    let ports = stepper.record().ports();
-    let mail = look.inbox.iter().map(|mail| format!("message from {} waits", ports.board(mail.source)));
-    let sent = look.unaccepted.iter().map(|node| format!("message to {} not accepted yet", ports.board(*node)));
-    let memory =
-        look.memory.iter().filter(|(_, bytes)| *bytes > 0).map(|(account, bytes)| format!("{account}: {bytes} bytes"));
-    let busy = format!("CPU busy so far: {:.3} ms", look.busy.as_ms());
-    let mut lines: Vec<String> = mail.chain(sent).chain(memory).chain([busy]).collect();
-    let state = stepper.machine().board(board).and_then(|gp| gp.with_processor(|i860| i860.state().clone()));
-    if let Some(state) = state {
-        lines.push(format!("i860 after its last call: pc {:#010x}, psr {:#010x}", state.pc, state.psr));
-        let rows = state.r.chunks(8).enumerate();
-        lines.extend(rows.map(|(row, eight)| {
-            let words: Vec<String> = eight.iter().map(|word| format!("{word:08x}")).collect();
-            format!("r{:<2} {}", 8 * row, words.join(" "))
-        }));
-    }
-    lines
+/// The fields of a pixel's memory, line by line; `None` where there is no such pixel, or nothing has been drawn yet.
+pub(crate) fn pixel(stepper: &Stepper, renderer: usize, x: u32, y: u32) -> Option<Vec<String>> {
+    let fields = stepper.pixel_fields(renderer, x, y)?.into_iter();
+    let lines = fields.map(|field| {
+        let last = field.first + field.width - 1;
+        let digits = field.width.div_ceil(4) as usize;
+        format!("bits {:>3} to {last:>3}  {:<18} {:0digits$x}", field.first, field.name, field.value)
+    });
+    Some(lines.collect())
+}
+
+/// The last periods as the papers draw them.
+pub(crate) fn timeline(stepper: &Stepper, fields: u64) -> String {
+    let run = stepper.so_far();
+    let newest = run.pictures().iter().rev().find(|times| times.is_shown() && times.shown_at <= stepper.now());
+    let options = TimelineOptions {
+        picture: newest.map(|times| times.picture),
+        first_field: stepper.period().before(fields.saturating_sub(1)).or(Some(pxpl5_wire::PeriodNumber::FIRST)),
+        fields: Some(fields),
+        ..TimelineOptions::default()
+    };
+    timeline::drawing(&run, &options)
+}
+
+/// Where the latency of the last complete pictures went, in milliseconds, the newest last.
+pub(crate) fn latencies(stepper: &Stepper, most: usize) -> Value {
+    let parts = LATENCY_PARTS.iter();
+    let pictures = stepper.so_far().last_latencies(most);
+    let rows = pictures.iter().map(|latency| {
+        let spans: Vec<f64> = latency.spans.iter().map(|span| span.as_ms()).collect();
+        json!({"picture": latency.picture.0, "ms": spans, "total_ms": latency.end().since(latency.begin).as_ms()})
+    });
+    json!({
+        "parts": parts.map(|part| json!({"name": part.name, "definition": part.definition})).collect::<Vec<_>>(),
+        "pictures": rows.collect::<Vec<_>>(),
+    })
 }

@@ -1,12 +1,14 @@
 //! A run in pieces, with what the page asks of it.
 
+use crate::files::Files;
 use crate::look;
+use crate::pictures::{self, Difference, rgba};
+use crate::volume::Volume;
 use pxpl5_lab::ExperimentFile;
 use pxpl5_machine::Board;
-use pxpl5_renderer::PixelArray;
-use pxpl5_run::{BareHost, Pause, Stepper};
+use pxpl5_run::{BareHost, Keep, Pause, Stepper};
 use pxpl5_sim::{Span, Time};
-use pxpl5_wire::SurfaceId;
+use pxpl5_wire::{Eye, SurfaceId};
 use serde_json::Value;
 
 /// A running experiment.
@@ -18,15 +20,18 @@ pub(crate) struct Session {
 }
 
 impl Session {
-    /// Of settings as experiment files have them, one a line.
-    pub(crate) fn new(settings: &str) -> Result<Self, String> {
+    /// Of settings as experiment files have them, one a line, with the contents of files that they may name.
+    pub(crate) fn new(settings: &str, files: &Files) -> Result<Self, String> {
         let mut file = ExperimentFile::new();
+        for (name, contents) in &files.0 {
+            file = file.with_contents(name, contents.clone());
+        }
         for setting in settings.lines().map(str::trim).filter(|setting| !setting.is_empty()) {
             file.set_text(setting, "settings").map_err(|error| error.to_string())?;
         }
         let plan = file.resolve().map_err(|error| error.to_string())?;
         let scene = plan.load_scene().map_err(|error| error.to_string())?;
-        let experiment = plan.experiment(scene).host(BareHost).record_traffic(true);
+        let experiment = plan.experiment(scene).host(BareHost).record_traffic(true).keep(Keep::Recent);
         let stepper = experiment.stepper().map_err(|error| error.to_string())?;
         Ok(Self { stepper, is_over: false })
     }
@@ -65,6 +70,10 @@ impl Session {
         look::board(&self.stepper, board).ok_or_else(|| format!("this machine has no {board}"))
     }
 
+    pub(crate) const fn stepper(&self) -> &Stepper {
+        &self.stepper
+    }
+
     pub(crate) fn seen(&self, surface: u16) -> Vec<u8> {
         self.stepper.seen(SurfaceId(surface)).map(|picture| rgba(&picture)).unwrap_or_default()
     }
@@ -73,15 +82,19 @@ impl Session {
         self.stepper.ideal_picture(SurfaceId(surface)).map(|picture| rgba(picture.image())).unwrap_or_default()
     }
 
-    pub(crate) fn enabled(&self, renderer: usize) -> Vec<u8> {
-        let plane = self.stepper.array(renderer).map(|array| array.enable());
-        plane.map(|plane| plane.iter().flat_map(|word| word.to_le_bytes()).collect()).unwrap_or_default()
+    pub(crate) fn difference(&self, surface: u16) -> Option<Difference> {
+        Difference::of(&self.stepper, SurfaceId(surface))
     }
-}
 
-/// Bytes of a canvas.
-fn rgba(picture: &[u8]) -> Vec<u8> {
-    picture.chunks_exact(3).flat_map(|pixel| [pixel[0], pixel[1], pixel[2], u8::MAX]).collect()
+    pub(crate) fn faces(&self, eye: usize, memory: usize) -> Vec<u8> {
+        let faces = Eye::BOTH.get(eye).and_then(|eye| pictures::faces(&self.stepper, *eye, memory));
+        faces.unwrap_or_default()
+    }
+
+    /// The scene of the run on the spinning display.
+    pub(crate) fn volume(&self) -> Result<Volume, String> {
+        Volume::draw(self.stepper.experiment().scene())
+    }
 }
 
 #[cfg(test)]
@@ -89,15 +102,19 @@ mod tests {
     use super::*;
     use pxpl5_run::ExperimentError;
 
+    fn new(settings: &str) -> Result<Session, String> {
+        Session::new(settings, &Files::default())
+    }
+
     const SETTINGS: &str = "pipeline=slats\nscene=full-screen:2\nfields=7\n";
 
     /// The page's hash is that of a run in one go, as the command prints it.
     #[test]
     fn a_run_of_the_page_has_the_trace_hash_of_the_run() {
-        let mut session = Session::new(SETTINGS).expect("known settings");
+        let mut session = new(SETTINGS).expect("known settings");
         while session.state()["over"] == false {
             session.run_for(7_000_000_000);
-            let _ = (session.seen(0), session.enabled(0));
+            let _ = (session.seen(0), pictures::renderer(session.stepper(), 0), look::timeline(session.stepper(), 4));
         }
         let plan = ExperimentFile::parse(
             &SETTINGS.replace("slats", "\"slats\"").replace("full-screen:2", "\"full-screen:2\""),
@@ -122,14 +139,14 @@ mod tests {
             ("nonsense", "expected path=value"),
             ("pipeline=slats\ndisplay=arp", "arp"),
         ] {
-            let error = Session::new(settings).expect_err(settings);
+            let error = new(settings).expect_err(settings);
             assert!(error.contains(said), "{settings}: {error}");
         }
     }
 
     #[test]
     fn pictures_are_as_large_as_the_surfaces_that_the_state_names() {
-        let mut session = Session::new(SETTINGS).expect("known settings");
+        let mut session = new(SETTINGS).expect("known settings");
         session.run_for(60_000_000_000);
         for (number, surface) in session.state()["surfaces"].as_array().expect("a list").iter().enumerate() {
             let pixels = surface["width"].as_u64().expect("a number") * surface["height"].as_u64().expect("a number");
@@ -137,15 +154,15 @@ mod tests {
             assert_eq!(session.ideal(number as u16).len() as u64, 4 * pixels);
         }
         assert!(session.seen(9).is_empty());
-        assert!((0..9).any(|renderer| session.enabled(renderer).len() == 128 * 16));
+        assert!((0..9).any(|renderer| pictures::renderer(session.stepper(), renderer).len() == 128 * 128 * 4));
     }
 
     #[test]
     fn every_board_of_the_state_can_be_asked_and_no_other() {
-        let mut session = Session::new(SETTINGS).expect("known settings");
+        let mut session = new(SETTINGS).expect("known settings");
         session.run_for(40_000_000_000);
-        let state = session.state();
-        for board in state["boards"].as_array().expect("a list") {
+        let boards = look::boards(session.stepper());
+        for board in boards.as_array().expect("a list") {
             let name = board["name"].as_str().expect("a name");
             assert!(!session.board(name).expect("it is there").is_empty(), "{name}");
         }
@@ -155,8 +172,7 @@ mod tests {
 
     #[test]
     fn a_machine_that_fails_is_a_state() {
-        let mut session =
-            Session::new("pipeline=slats\nscene=full-screen:200000\nfields=8\npixels=off").expect("known");
+        let mut session = new("pipeline=slats\nscene=full-screen:200000\nfields=8\npixels=off").expect("known");
         session.run_for(200_000_000_000);
         let state = session.state();
         assert!(state["failure"].as_str().is_some_and(|error| error.contains("GP")), "{state}");

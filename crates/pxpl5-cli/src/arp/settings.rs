@@ -138,6 +138,7 @@ fn load(name: &str) -> Result<Arc<Scene>, CliError> {
         triangles: None,
         culled: false,
         motion: MotionChoice::default(),
+        contents: None,
     };
     Ok(choice.load()?)
 }

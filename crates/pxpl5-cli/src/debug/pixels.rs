@@ -2,16 +2,13 @@
 
 use super::words::below;
 use image::RgbImage;
-use pxpl5::looks::{PixelArray, Plane};
+use pxpl5::looks::PixelArray;
+use pxpl5::run::bit_of;
 use pxpl5::{Stepper, SurfaceId};
 use std::fmt::Write as _;
 
 /// Columns and rows of an array.
 const SIDE: u64 = 128;
-
-fn bit(plane: &Plane, x: u64, y: u64) -> u64 {
-    plane[(2 * y + x / 64) as usize] >> (x % 64) & 1
-}
 
 fn array(stepper: &Stepper, renderer: u64) -> Result<(impl PixelArray, usize), String> {
     let number = below("renderer", &renderer.to_string(), stepper.record().renderers().len() as u64)? as usize;
@@ -24,14 +21,12 @@ pub(super) fn pixel(stepper: &Stepper, renderer: u64, x: u64, y: u64) -> Result<
     let x = below("column", &x.to_string(), SIDE)?;
     let y = below("row", &y.to_string(), SIDE)?;
     let (array, number) = array(stepper, renderer)?;
-    let enabled = if bit(&array.enable(), x, y) == 1 { "enabled" } else { "not enabled" };
+    let enabled = if bit_of(&array.enable(), x as u32, y as u32) { "enabled" } else { "not enabled" };
     let mut text = format!("renderer {number}, pixel ({x}, {y}): {enabled}\n");
-    for range in stepper.experiment().pipeline().layout().ranges() {
-        let bits = (0..range.width).map(|n| u128::from(bit(&array.plane((range.first + n) as usize), x, y)) << n);
-        let value: u128 = bits.take(128).sum();
-        let last = range.first + range.width - 1;
-        let digits = range.width.div_ceil(4) as usize;
-        let _ = writeln!(text, "bits {:>3} to {last:>3}  {:<18} {value:0digits$x}", range.first, range.name);
+    for field in stepper.pixel_fields(number, x as u32, y as u32).unwrap_or_default() {
+        let last = field.first + field.width - 1;
+        let digits = field.width.div_ceil(4) as usize;
+        let _ = writeln!(text, "bits {:>3} to {last:>3}  {:<18} {:0digits$x}", field.first, field.name, field.value);
     }
     Ok(text)
 }
@@ -48,7 +43,7 @@ pub(super) fn enabled(stepper: &Stepper, renderer: u64) -> Result<String, String
     for row in 0..SIDE / BLOCK.1 {
         let line = (0..SIDE / BLOCK.0).map(|column| {
             let pixels = (0..BLOCK.0 * BLOCK.1).map(|n| (BLOCK.0 * column + n % BLOCK.0, BLOCK.1 * row + n / BLOCK.0));
-            match pixels.map(|(x, y)| bit(&plane, x, y)).sum() {
+            match pixels.map(|(x, y)| u64::from(bit_of(&plane, x as u32, y as u32))).sum() {
                 0 => '.',
                 all if all == BLOCK.0 * BLOCK.1 => '#',
                 _ => '+',

@@ -1,9 +1,10 @@
 //! What there is to see of a run, as lines of text: of the screen's panes and of scripts alike.
 
-use super::words::{address, ms, us};
+use super::words::address;
 use i860::Program;
-use pxpl5::looks::{GpBoard, GpLook, Priority, ProgramLook};
-use pxpl5::{Board, Stepper, Time};
+use pxpl5::looks::GpBoard;
+use pxpl5::run::{in_ms as ms, in_us as us};
+use pxpl5::{Board, Stepper};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -17,7 +18,8 @@ pub(super) fn place(stepper: &Stepper) -> String {
 pub(super) fn time(stepper: &Stepper) -> String {
     let mut text = String::new();
     let fields = stepper.experiment().length();
-    let _ = writeln!(text, "now     {}, field {} of {fields}{}", ms(stepper.now()), stepper.period(), beam(stepper));
+    let beam = stepper.beam_line().map_or_else(String::new, |line| format!(", beam in line {line}"));
+    let _ = writeln!(text, "now     {}, field {} of {fields}{}", ms(stepper.now()), stepper.period(), beam);
     if let Some(error) = stepper.failure() {
         let _ = writeln!(text, "failed  {error}");
     }
@@ -32,81 +34,10 @@ pub(super) fn time(stepper: &Stepper) -> String {
     text
 }
 
-/// How far the first display's light has come in its period.
-fn beam(stepper: &Stepper) -> String {
-    let display = stepper.record().display();
-    let lines = display.surfaces().first().map_or(0, |surface| surface.height);
-    let lit = |line: &u32| display.lights(0, 0, *line, stepper.period()).is_some_and(|at| at <= stepper.now());
-    (0..lines).rev().find(lit).map_or_else(String::new, |line| format!(", beam in line {line}"))
-}
-
 /// A line for each board.
 pub(super) fn boards(stepper: &Stepper) -> String {
-    let gps = stepper.record().ports().gps.len();
-    let processors = [Board::Host].into_iter().chain((0..gps).map(Board::Gp));
-    let mut text = String::new();
-    for (board, look) in processors.filter_map(|board| Some((board, stepper.processor(board)?))) {
-        let _ = writeln!(text, "{:<12} {}", board.to_string(), processor_line(&look));
-    }
-    for number in 0..stepper.record().renderers().len() {
-        let _ = writeln!(text, "{:<12} {}", Board::Renderer(number).to_string(), renderer_line(stepper, number));
-    }
-    for number in 0..stepper.record().displays().len() {
-        let _ = writeln!(text, "{:<12} {}", Board::Display(number).to_string(), display_line(stepper, number));
-    }
-    text
-}
-
-/// What a processor's programs do, and what waits at it.
-fn processor_line(look: &GpLook) -> String {
-    let mut parts: Vec<String> = look.programs.iter().map(program).collect();
-    if parts.is_empty() {
-        return "no program".to_owned();
-    }
-    if !look.inbox.is_empty() {
-        parts.push(format!("inbox {}", look.inbox.len()));
-    }
-    let sending = look.unaccepted.len() + look.chains.iter().sum::<usize>();
-    if sending > 0 {
-        parts.push(format!("sends {sending}"));
-    }
-    parts.join("; ")
-}
-
-fn program(program: &ProgramLook) -> String {
-    let level = if program.priority == Priority::Interrupt { "interrupt " } else { "" };
-    match program.work_left {
-        Some(left) => format!("{level}works, {} left", us(left)),
-        None if program.waits_for.is_empty() => format!("{level}has not begun"),
-        None => format!("{level}waits for {}", program.waits_for),
-    }
-}
-
-fn renderer_line(stepper: &Stepper, number: usize) -> String {
-    let Some(look) = stepper.renderer(number) else { return String::new() };
-    let fifo = look.fifo_words.unwrap_or_default();
-    let mut text = format!("fifo {fifo}/{}", look.fifo_depth_words);
-    if let Some(order) = look.copying {
-        let display = stepper.record().ports().board(order.target.frame_buffer);
-        let _ =
-            write!(text, "; sends region {} of picture {} to {display}", order.target.region.0, order.target.picture);
-    }
-    if look.stands_at_copy {
-        text.push_str("; commands wait for a copy");
-    }
-    if look.stored_regions > 0 {
-        let _ = write!(text, "; {} in the backing store", look.stored_regions);
-    }
-    text
-}
-
-fn display_line(stepper: &Stepper, number: usize) -> String {
-    let display = &stepper.record().displays()[number];
-    let counters: Vec<String> =
-        display.counters().iter().map(|counter| format!("{} {}", counter.name, counter.count)).collect();
-    let (faults, _) = display.faults();
-    let faults = if faults > 0 { format!("; {faults} faults") } else { String::new() };
-    format!("{}: {}{faults}", display.name(), counters.join(", "))
+    let lines = stepper.boards().filter_map(|board| Some((board.to_string(), stepper.says(board)?)));
+    lines.map(|(name, says)| format!("{name:<12} {says}\n")).collect()
 }
 
 /// What is said of one board.
@@ -116,39 +47,9 @@ fn display_line(stepper: &Stepper, number: usize) -> String {
 /// For a board that the machine does not have.
 pub(super) fn board(stepper: &Stepper, board: Board) -> Result<String, String> {
     check(stepper, board)?;
-    let mut text = match board {
-        Board::Ring => return Ok(ring(stepper)),
-        Board::Renderer(number) => format!("{board}  {}\n", renderer_line(stepper, number)),
-        Board::Display(number) => format!("{board}  {}\n", display_line(stepper, number)),
-        Board::Host | Board::Gp(_) => String::new(),
-    };
-    if let Some(look) = stepper.processor(board) {
-        processor(stepper, board, &look, &mut text);
-    }
-    Ok(text)
-}
-
-fn processor(stepper: &Stepper, board: Board, look: &GpLook, text: &mut String) {
-    let ports = stepper.record().ports();
-    let _ = writeln!(text, "{board}  {}", processor_line(look));
-    for mail in &look.inbox {
-        let _ = writeln!(text, "inbox   from {}, arrived {}", ports.board(mail.source), ms(mail.arrived));
-    }
-    for node in &look.unaccepted {
-        let _ = writeln!(text, "sent    to {}, not accepted yet", ports.board(*node));
-    }
-    for (place, messages) in look.chains.iter().enumerate() {
-        let _ = writeln!(text, "queued  chain {place}: messages {messages}");
-    }
-    for (account, bytes) in look.memory.iter().filter(|(_, bytes)| *bytes > 0) {
-        let _ = writeln!(text, "memory  {}: {bytes} bytes", account);
-    }
-    let _ = writeln!(text, "busy    {} of {}", us(look.busy), us(stepper.now().since(Time::ZERO)));
-    if let Some(program) =
-        stepper.machine().board(board).and_then(|board| board.with_processor(|p| p.program().cloned())).flatten()
-    {
-        let _ = writeln!(text, "code    {} bytes at {:#010x}", program.bytes.len(), program.base);
-    }
+    let Some(says) = stepper.says(board) else { return Ok(ring(stepper)) };
+    let details: String = stepper.details(board).iter().map(|line| format!("{line}\n")).collect();
+    Ok(format!("{board}  {says}\n{details}"))
 }
 
 /// Who waits for whom or what.

@@ -64,16 +64,6 @@ pub(super) fn address(text: &str) -> Option<u32> {
     u32::from_str_radix(text.strip_prefix("0x")?, 16).ok()
 }
 
-/// A time in milliseconds to the nanosecond, as panes have it.
-pub(super) fn ms(at: Time) -> String {
-    format!("{}.{:06} ms", at.0 / 1_000_000_000, at.0 % 1_000_000_000 / 1_000)
-}
-
-/// A span in microseconds to the nanosecond.
-pub(super) fn us(span: Span) -> String {
-    format!("{}.{:03} us", span.0 / 1_000_000, span.0 % 1_000_000 / 1_000)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -143,6 +143,7 @@ pub(super) fn load(name: &str, triangles: Option<u64>) -> Result<Arc<Scene>, Cli
         triangles: triangles.map(|triangles| triangles as usize),
         culled: false,
         motion: MotionChoice::default(),
+        contents: None,
     };
     Ok(choice.load()?)
 }

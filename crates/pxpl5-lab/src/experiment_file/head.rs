@@ -3,7 +3,7 @@
 use super::read::{beside, plain, wrong};
 use super::scene::SceneChoice;
 use super::{ExperimentFile, FileError, tracking_numbers};
-use crate::head_names::{Replay, is_recording, is_walk, predictor, replayed, tracker_by, walk};
+use crate::head_names::{Replay, is_recording, is_walk, predictor, recording_of, replayed, tracker_by, walk};
 use pxpl5_machine::Parameter;
 use pxpl5_run::{Aim, Head, Pipeline, Raster};
 use std::sync::Arc;
@@ -122,6 +122,10 @@ fn moving(
     name: &str,
     replay: &Replay,
 ) -> Result<Arc<dyn tracking::motion::Motion + Send + Sync>, FileError> {
+    if let Some(contents) = file.contents(name).filter(|_| is_recording(name)) {
+        let recording = recording_of(&**contents, name, replay);
+        return Ok(Arc::new(recording.map_err(|error| refused(file, "head.motion", &error))?));
+    }
     if !is_walk(name) {
         return replayed(name, replay).map_err(|error| refused(file, "head.motion", &error));
     }

@@ -72,6 +72,8 @@ pub struct ExperimentFile {
     pub(crate) sweep: Option<Setting>,
     /// Where each key within the table `sweep` was given, by path.
     pub(crate) sweep_places: BTreeMap<String, String>,
+    /// Contents of files that are at hand, by name.
+    contents: BTreeMap<String, Arc<[u8]>>,
 }
 
 impl ExperimentFile {
@@ -84,7 +86,8 @@ impl ExperimentFile {
     /// No settings; with the pipelines and displays of a registry.
     #[must_use]
     pub fn with(registry: Arc<Registry>) -> Self {
-        Self { registry, settings: BTreeMap::new(), sweep: None, sweep_places: BTreeMap::new() }
+        let contents = BTreeMap::new();
+        Self { registry, settings: BTreeMap::new(), sweep: None, sweep_places: BTreeMap::new(), contents }
     }
 
     /// The pipelines and displays that it may name.
@@ -169,6 +172,18 @@ impl ExperimentFile {
     /// [`FileError::UnknownKey`] with the nearest valid path.
     pub fn set(&mut self, path: &str, value: impl Into<Value>, place: &str) -> Result<(), FileError> {
         self.put(path, value.into(), place.to_owned(), Path::new(""))
+    }
+
+    /// Has the contents of a model or of a recording at hand, which are then taken wherever a setting names that file: for a host without
+    /// files, such as a browser.
+    #[must_use]
+    pub fn with_contents(mut self, name: impl Into<String>, contents: impl Into<Arc<[u8]>>) -> Self {
+        self.contents.insert(name.into(), contents.into());
+        self
+    }
+
+    pub(super) fn contents(&self, name: &str) -> Option<&Arc<[u8]>> {
+        self.contents.get(name)
     }
 
     /// Where a key was set: a line, an option; `None` of one that was not.

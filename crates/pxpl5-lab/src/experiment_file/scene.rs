@@ -3,7 +3,7 @@
 use super::motion::MotionChoice;
 use super::read::{beside, wrong};
 use super::{ExperimentFile, FileError};
-use pxpl5_scene::{Placement, Scene};
+use pxpl5_scene::{Format, Placement, Scene};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -20,6 +20,8 @@ pub struct SceneChoice {
     pub culled: bool,
     /// How the head moves.
     pub motion: MotionChoice,
+    /// What the model file contains, where that is at hand ([`ExperimentFile::with_contents`]) and not to be asked of the host.
+    pub contents: Option<Arc<[u8]>>,
 }
 
 /// Extensions of model files.
@@ -37,7 +39,8 @@ impl SceneChoice {
             return Err(wrong("fit", setting, "nothing: only model files are fitted into the view"));
         }
         let culled = file.flag("cull")?.unwrap_or(false);
-        Ok(Self { name, placement, triangles, culled, motion: MotionChoice::read(file)? })
+        let contents = file.contents(&name).cloned();
+        Ok(Self { name, placement, triangles, culled, motion: MotionChoice::read(file)?, contents })
     }
 
     /// Generates it or reads its file.
@@ -55,9 +58,10 @@ impl SceneChoice {
     }
 
     pub(crate) fn load_whole(&self) -> Result<Scene, FileError> {
-        let whole = match is_file(&self.name) {
-            true => pxpl5_scene::load_placed(&self.name, self.placement)?,
-            false => pxpl5_scene::builtin(&self.name)?,
+        let whole = match (&self.contents, Format::of_path(Path::new(&self.name))) {
+            (Some(bytes), Some(format)) => pxpl5_scene::placed_from_bytes(bytes, format, &self.name, self.placement)?,
+            _ if is_file(&self.name) => pxpl5_scene::load_placed(&self.name, self.placement)?,
+            _ => pxpl5_scene::builtin(&self.name)?,
         };
         Ok(if self.culled { whole.culled() } else { whole })
     }

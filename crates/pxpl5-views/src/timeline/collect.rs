@@ -7,7 +7,7 @@ use super::rows::{rows, set_lanes};
 use crate::updates::Updates;
 use pxpl5_display::Display;
 use pxpl5_gp::{Stage, StageEdge};
-use pxpl5_run::{Outcome, PictureTimes, WARM_UP_PICTURES};
+use pxpl5_run::{Outcome, PictureTimes, SoFar, WARM_UP_PICTURES};
 use pxpl5_sim::Time;
 use pxpl5_wire::{PeriodNumber, PictureNumber};
 use std::ops::Range;
@@ -22,13 +22,19 @@ impl Timeline {
     /// The part of a run that the options ask for.
     #[must_use]
     pub fn of(outcome: &Outcome, options: &TimelineOptions) -> Self {
-        let record = outcome.record();
+        Self::so_far(&outcome.so_far(), options)
+    }
+
+    /// The part of a run that the options ask for, as far as it has come.
+    #[must_use]
+    pub fn so_far(run: &SoFar<'_>, options: &TimelineOptions) -> Self {
+        let record = run.record();
         let display = record.display();
-        let chosen = chosen(outcome.pictures(), options.picture);
-        let stages = outcome.stages();
-        let mut rows = rows(outcome, &stages, options);
-        let update = chosen.and_then(|times| Updates::of(outcome, &stages).shown_by(times));
-        let periods = periods(outcome, options, chosen, sent_at(&rows, update));
+        let chosen = chosen(run.pictures(), options.picture);
+        let stages = run.stages();
+        let mut rows = rows(run, &stages, options);
+        let update = chosen.and_then(|times| Updates::of(run, &stages).shown_by(times));
+        let periods = periods(run, options, chosen, sent_at(&rows, update));
         let from = display.tick(periods.start);
         let to = display.tick(periods.end);
         for row in &mut rows {
@@ -40,11 +46,11 @@ impl Timeline {
             from,
             to,
             retraces: periods.start.until(periods.end.next()).map(|period| (period, display.tick(period))).collect(),
-            samples: (!options.without_host).then(|| samples(outcome, from..to)),
+            samples: (!options.without_host).then(|| samples(run, from..to)),
             scans: periods
                 .start
                 .until(periods.end)
-                .filter_map(|period| scan(display, outcome.pictures(), period))
+                .filter_map(|period| scan(display, run.pictures(), period))
                 .collect(),
             surfaces: record.surfaces().map(|(_, surface)| surface.clone()).collect(),
             rows,
@@ -72,24 +78,22 @@ fn sent_at(rows: &[TimelineRow], update: Option<PictureNumber>) -> Option<Time> 
 
 /// The periods of the first display that are drawn.
 fn periods(
-    outcome: &Outcome,
+    run: &SoFar<'_>,
     options: &TimelineOptions,
     chosen: Option<&PictureTimes>,
     sent_at: Option<Time>,
 ) -> Range<PeriodNumber> {
-    let display = outcome.record().display();
+    let display = run.record().display();
     let begin = chosen.map_or(Time::ZERO, |times| sent_at.or(times.sampled_at).unwrap_or(times.transform_at));
-    let first = options
-        .first_field
-        .unwrap_or_else(|| display.period_at(begin))
-        .min(PeriodNumber::FIRST.after(outcome.fields()));
+    let first =
+        options.first_field.unwrap_or_else(|| display.period_at(begin)).min(PeriodNumber::FIRST.after(run.fields()));
     let last = chosen.map_or(first.after(LEAST_FIELDS), |times| display.period_at(times.shown_at).after(2));
     let count = options.fields.unwrap_or_else(|| last.since(first).max(LEAST_FIELDS));
     first..first.after(count.clamp(1, MAX_FIELDS))
 }
 
-fn samples(outcome: &Outcome, within: Range<Time>) -> Vec<(PictureNumber, Time)> {
-    let marks = outcome.observation().marks.iter();
+fn samples(run: &SoFar<'_>, within: Range<Time>) -> Vec<(PictureNumber, Time)> {
+    let marks = run.observation().marks.iter();
     let begun = marks.filter(|mark| mark.stage == Stage::Send && mark.edge == StageEdge::Begin);
     begun.filter(|mark| within.contains(&mark.time)).map(|mark| (mark.picture, mark.time)).collect()
 }

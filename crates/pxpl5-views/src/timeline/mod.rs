@@ -32,7 +32,7 @@ pub use options::{MAX_FIELDS, TimelineOptions};
 use crate::results::{count_of, origin_lines};
 use draw::Words;
 use pxpl5_measure::Report;
-use pxpl5_run::Outcome;
+use pxpl5_run::{Outcome, SoFar};
 
 /// Draws a run as an SVG document, 960 units wide; of a run without a picture it shows the first periods.
 #[must_use]
@@ -45,6 +45,13 @@ pub fn svg(outcome: &Outcome, options: &TimelineOptions) -> String {
         origin: origin_lines(&report, ""),
     };
     draw::document(&Timeline::of(outcome, options), &words)
+}
+
+/// Draws a run as far as it has come, without words around it.
+#[must_use]
+pub fn drawing(run: &SoFar<'_>, options: &TimelineOptions) -> String {
+    let title = options.title.clone().unwrap_or_default();
+    draw::document(&Timeline::so_far(run, options), &Words { title, subtitle: String::new(), origin: String::new() })
 }
 
 fn primitives(report: &Report) -> String {

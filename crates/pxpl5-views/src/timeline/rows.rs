@@ -5,23 +5,23 @@ use super::options::TimelineOptions;
 use crate::ports::{DisplayPort, display_ports, is_behind_ports, shown};
 use pxpl5_gp::Stage;
 use pxpl5_machine::{Arrival, Record, StageSpan};
-use pxpl5_run::Outcome;
+use pxpl5_run::SoFar;
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::PictureNumber;
 use std::collections::BTreeMap;
 
 /// All rows of a run, from the host to the last surface.
-pub(super) fn rows(outcome: &Outcome, stages: &[StageSpan], options: &TimelineOptions) -> Vec<TimelineRow> {
+pub(super) fn rows(run: &SoFar<'_>, stages: &[StageSpan], options: &TimelineOptions) -> Vec<TimelineRow> {
     let mut rows = Vec::new();
     if !options.without_host {
-        rows.push(stage_row("host", outcome, stages, &[Stage::Send]));
+        rows.push(stage_row("host", run, stages, &[Stage::Send]));
     }
-    rows.push(stage_row("graphics processors", outcome, stages, &[Stage::Edit, Stage::Transform]));
-    rows.push(stage_row("renderers", outcome, stages, &[Stage::Render]));
-    let ports = display_ports(outcome.record());
-    let surfaces = outcome.record().surfaces().filter(|(id, _)| !is_behind_ports(outcome.record(), *id));
-    rows.extend(surfaces.map(|(id, surface)| row(surface.title, copies(outcome, |arrival| arrival.surface == id))));
-    rows.extend(ports.iter().map(|port| port_row(outcome, port)));
+    rows.push(stage_row("graphics processors", run, stages, &[Stage::Edit, Stage::Transform]));
+    rows.push(stage_row("renderers", run, stages, &[Stage::Render]));
+    let ports = display_ports(run.record());
+    let surfaces = run.record().surfaces().filter(|(id, _)| !is_behind_ports(run.record(), *id));
+    rows.extend(surfaces.map(|(id, surface)| row(surface.title, copies(run, |arrival| arrival.surface == id))));
+    rows.extend(ports.iter().map(|port| port_row(run, port)));
     rows
 }
 
@@ -31,25 +31,25 @@ fn row(name: &str, mut bars: Vec<Bar>) -> TimelineRow {
 }
 
 /// What a port that is swapped by itself received, and what it showed.
-fn port_row(outcome: &Outcome, port: &DisplayPort) -> TimelineRow {
-    let bars = copies(outcome, |arrival| arrival.target.frame_buffer == port.node);
-    TimelineRow { shown: shown(outcome, port.node), ..row(&port.name, bars) }
+fn port_row(run: &SoFar<'_>, port: &DisplayPort) -> TimelineRow {
+    let bars = copies(run, |arrival| arrival.target.frame_buffer == port.node);
+    TimelineRow { shown: shown(run, port.node), ..row(&port.name, bars) }
 }
 
-fn stage_row(name: &str, outcome: &Outcome, stages: &[StageSpan], wanted: &[Stage]) -> TimelineRow {
+fn stage_row(name: &str, run: &SoFar<'_>, stages: &[StageSpan], wanted: &[Stage]) -> TimelineRow {
     let spans = stages.iter().filter(|span| wanted.contains(&span.stage));
-    row(name, spans.map(|span| stage_bar(outcome, span)).collect())
+    row(name, spans.map(|span| stage_bar(run, span)).collect())
 }
 
-fn stage_bar(outcome: &Outcome, span: &StageSpan) -> Bar {
+fn stage_bar(run: &SoFar<'_>, span: &StageSpan) -> Bar {
     Bar {
         stage: span.stage,
         picture: span.picture,
-        surface: span.surface.filter(|_| has_many_surfaces(outcome.record())),
+        surface: span.surface.filter(|_| has_many_surfaces(run.record())),
         bottom: None,
         first_line: 0,
         begin: span.begin,
-        end: span.end.unwrap_or(outcome.end()).max(span.begin),
+        end: span.end.unwrap_or(run.end()).max(span.begin),
         lane: 0,
         receiving: Vec::new(),
     }
@@ -64,16 +64,16 @@ fn has_many_surfaces(record: &Record) -> bool {
 type Parts = BTreeMap<(PictureNumber, u8), Bar>;
 
 /// COPY of each picture to a surface or a port; two bars where it received two parts of it one after the other.
-fn copies(outcome: &Outcome, is_there: impl Fn(&Arrival) -> bool) -> Vec<Bar> {
-    let message = outcome.record().message_span();
+fn copies(run: &SoFar<'_>, is_there: impl Fn(&Arrival) -> bool) -> Vec<Bar> {
+    let message = run.record().message_span();
     let mut parts = Parts::new();
-    for arrival in outcome.observation().arrivals.iter().filter(|arrival| is_there(arrival)) {
+    for arrival in run.observation().arrivals.iter().filter(|arrival| is_there(arrival)) {
         let begin = arrival.begins_at(message);
-        let key = (arrival.target.picture, outcome.pipeline().copy_part(arrival));
-        let bar = parts.entry(key).or_insert_with(|| copy_bar(outcome.record(), arrival, begin));
+        let key = (arrival.target.picture, run.pipeline().copy_part(arrival));
+        let bar = parts.entry(key).or_insert_with(|| copy_bar(run.record(), arrival, begin));
         bar.begin = bar.begin.min(begin);
         bar.end = bar.end.max(arrival.last_part_at);
-        bar.first_line = bar.first_line.min(first_line(outcome.record(), arrival));
+        bar.first_line = bar.first_line.min(first_line(run.record(), arrival));
         bar.receiving.push((begin, arrival.last_part_at));
     }
     name_halves(&mut parts);

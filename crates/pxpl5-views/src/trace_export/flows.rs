@@ -19,7 +19,7 @@ struct Stop {
 
 /// Gives slices their places in the flows of the pictures that were shown.
 pub(super) fn connect(trace: &mut Trace, outcome: &Outcome) {
-    let updates = Updates::of(outcome, &outcome.stages());
+    let updates = Updates::of(&outcome.so_far(), &outcome.stages());
     let sends = firsts(trace, &[Stage::Send]);
     let stages = firsts(trace, &[Stage::Transform, Stage::Render, Stage::Copy]);
     let shown = first_shown(trace);

@@ -1,0 +1,161 @@
+//! What boards of a run that stands do, in words: as the debugger and the page say it.
+
+use crate::stepper::Stepper;
+use pxpl5_gp::{GpLook, Priority, ProgramLook};
+use pxpl5_machine::Board;
+use pxpl5_renderer::{FieldRange, PixelArray, Plane};
+use pxpl5_sim::{Span, Time};
+use pxpl5_wire::REGION_SIZE;
+use std::fmt::Write as _;
+
+impl Stepper {
+    /// The boards that can be asked: host, graphics processors, renderers, displays.
+    pub fn boards(&self) -> impl Iterator<Item = Board> + use<> {
+        let record = self.record();
+        let [gps, renderers, displays] = [record.ports().gps.len(), record.renderers().len(), record.displays().len()];
+        let processors = [Board::Host].into_iter().chain((0..gps).map(Board::Gp));
+        processors.chain((0..renderers).map(Board::Renderer)).chain((0..displays).map(Board::Display))
+    }
+
+    /// What a board does, in a line; `None` of the ring, and of a board that the machine does not have.
+    #[must_use]
+    pub fn says(&self, board: Board) -> Option<String> {
+        match board {
+            Board::Host | Board::Gp(_) => Some(processor_line(&self.processor(board)?)),
+            Board::Renderer(number) => self.renderer_line(number),
+            Board::Display(number) => self.display_line(number),
+            Board::Ring => None,
+        }
+    }
+
+    /// What there is to say of a processor besides its line, each with its kind before it; empty for other boards.
+    #[must_use]
+    pub fn details(&self, board: Board) -> Vec<String> {
+        let Some(look) = self.processor(board) else { return Vec::new() };
+        let ports = self.record().ports();
+        let mut lines: Vec<String> = Vec::new();
+        lines.extend(
+            look.inbox
+                .iter()
+                .map(|mail| format!("inbox   from {}, arrived {}", ports.board(mail.source), in_ms(mail.arrived))),
+        );
+        lines.extend(look.unaccepted.iter().map(|node| format!("sent    to {}, not accepted yet", ports.board(*node))));
+        let chains = look.chains.iter().enumerate();
+        lines.extend(chains.map(|(place, messages)| format!("queued  chain {place}: messages {messages}")));
+        let memory = look.memory.iter().filter(|(_, bytes)| *bytes > 0);
+        lines.extend(memory.map(|(account, bytes)| format!("memory  {account}: {bytes} bytes")));
+        lines.push(format!("busy    {} of {}", in_us(look.busy), in_us(self.now().since(Time::ZERO))));
+        let gp = self.machine().board(board);
+        let program = gp.and_then(|gp| gp.with_processor(|processor| processor.program().cloned())).flatten();
+        lines.extend(program.map(|code| format!("code    {} bytes at {:#010x}", code.bytes.len(), code.base)));
+        lines
+    }
+
+    /// The last line of the first display's first surface that has begun to light in its period.
+    #[must_use]
+    pub fn beam_line(&self) -> Option<u32> {
+        let display = self.record().display();
+        let lines = display.surfaces().first()?.height;
+        let lit = |line: &u32| display.lights(0, 0, *line, self.period()).is_some_and(|at| at <= self.now());
+        (0..lines).rev().find(lit)
+    }
+
+    /// The fields of a pixel's memory in a renderer's array, as far as its commands have started; `None` as of [`Stepper::array`], and
+    /// beside the array.
+    #[must_use]
+    pub fn pixel_fields(&self, renderer: usize, x: u32, y: u32) -> Option<Vec<PixelField>> {
+        if x >= REGION_SIZE || y >= REGION_SIZE {
+            return None;
+        }
+        let array = self.array(renderer)?;
+        let layout = self.experiment().pipeline().layout();
+        let ranges = layout.ranges().into_iter();
+        let fields = ranges.map(|FieldRange { name, first, width }| {
+            let bits = (0..width).map(|n| u128::from(bit_of(&array.plane((first + n) as usize), x, y)) << n);
+            PixelField { name, first, width, value: bits.take(128).sum() }
+        });
+        Some(fields.collect())
+    }
+
+    fn renderer_line(&self, number: usize) -> Option<String> {
+        let look = self.renderer(number)?;
+        let mut text = format!("fifo {}/{}", look.fifo_words.unwrap_or_default(), look.fifo_depth_words);
+        if let Some(order) = look.copying {
+            let display = self.record().ports().board(order.target.frame_buffer);
+            let (region, picture) = (order.target.region.0, order.target.picture);
+            let _ = write!(text, "; sends region {region} of picture {picture} to {display}");
+        }
+        if look.stands_at_copy {
+            text.push_str("; commands wait for a copy");
+        }
+        if look.stored_regions > 0 {
+            let _ = write!(text, "; {} in the backing store", look.stored_regions);
+        }
+        Some(text)
+    }
+
+    fn display_line(&self, number: usize) -> Option<String> {
+        let display = self.record().displays().get(number)?;
+        let counters: Vec<String> =
+            display.counters().iter().map(|counter| format!("{} {}", counter.name, counter.count)).collect();
+        let (faults, _) = display.faults();
+        let faults = if faults > 0 { format!("; {faults} faults") } else { String::new() };
+        Some(format!("{}: {}{faults}", display.name(), counters.join(", ")))
+    }
+}
+
+/// A field of a pixel's memory and what it holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PixelField {
+    /// What the layout calls it.
+    pub name: String,
+    /// Its first bit of the 208.
+    pub first: u32,
+    /// How many bits it has.
+    pub width: u32,
+    /// What they are, the first one lowest.
+    pub value: u128,
+}
+
+/// The bit of a pixel, column `x` and row `y` of the array, in a plane.
+#[must_use]
+pub const fn bit_of(plane: &Plane, x: u32, y: u32) -> bool {
+    plane[(2 * y + x / 64) as usize] >> (x % 64) & 1 == 1
+}
+
+/// What a processor's programs do, and what waits at it.
+fn processor_line(look: &GpLook) -> String {
+    let mut parts: Vec<String> = look.programs.iter().map(program).collect();
+    if parts.is_empty() {
+        return "no program".to_owned();
+    }
+    if !look.inbox.is_empty() {
+        parts.push(format!("inbox {}", look.inbox.len()));
+    }
+    let sending = look.unaccepted.len() + look.chains.iter().sum::<usize>();
+    if sending > 0 {
+        parts.push(format!("sends {sending}"));
+    }
+    parts.join("; ")
+}
+
+fn program(program: &ProgramLook) -> String {
+    let level = if program.priority == Priority::Interrupt { "interrupt " } else { "" };
+    match program.work_left {
+        Some(left) => format!("{level}works, {} left", in_us(left)),
+        None if program.waits_for.is_empty() => format!("{level}has not begun"),
+        None => format!("{level}waits for {}", program.waits_for),
+    }
+}
+
+/// An instant in milliseconds to the nanosecond: `16.683333 ms`.
+#[must_use]
+pub fn in_ms(at: Time) -> String {
+    format!("{}.{:06} ms", at.0 / 1_000_000_000, at.0 % 1_000_000_000 / 1_000)
+}
+
+/// A span in microseconds to the nanosecond: `21.700 us`.
+#[must_use]
+pub fn in_us(span: Span) -> String {
+    format!("{}.{:03} us", span.0 / 1_000_000, span.0 % 1_000_000 / 1_000)
+}

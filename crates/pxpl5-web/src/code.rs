@@ -1,0 +1,38 @@
+//! The i860 of a board that runs code: registers, and the instructions around where its last call ended.
+
+use i860::disassemble;
+use pxpl5_gp::Processor;
+use pxpl5_machine::Board;
+use pxpl5_run::Stepper;
+
+/// Instructions that are shown before and behind.
+const BEFORE: u32 = 8;
+const AFTER: u32 = 8;
+
+/// Lines of registers and code; none of a board without a processor, which there is at the cycle level alone.
+pub(crate) fn lines(stepper: &Stepper, board: Board) -> Vec<String> {
+    stepper.machine().board(board).and_then(|gp| gp.with_processor(of)).unwrap_or_default()
+}
+
+fn of(processor: &Processor) -> Vec<String> {
+    let state = processor.state();
+    let mut lines = vec![format!("i860 after its last call: pc {:#010x}, psr {:#010x}", state.pc, state.psr)];
+    let rows = state.r.chunks(8).enumerate();
+    lines.extend(rows.map(|(row, eight)| {
+        let words: Vec<String> = eight.iter().map(|word| format!("{word:08x}")).collect();
+        format!("r{:<2} {}", 8 * row, words.join(" "))
+    }));
+    let Some(program) = processor.program() else { return lines };
+    // A call ends where it returns to, outside of its code: then its begin is shown.
+    let end = program.base + program.bytes.len() as u32;
+    let at = if (program.base..end).contains(&state.pc) { state.pc & !3 } else { program.base };
+    let begin = at.saturating_sub(4 * BEFORE).max(program.base);
+    for address in (begin..end.min(at + 4 * AFTER)).step_by(4) {
+        let Ok(words) = processor.read(address, 1) else { break };
+        let labels = program.labels.iter().filter(|(_, place)| *place == address);
+        lines.extend(labels.map(|(name, _)| format!("{name}:")));
+        let mark = if address == at { '>' } else { ' ' };
+        lines.push(format!("{mark} {address:#010x}  {:08x}  {}", words[0], disassemble(words[0], address)));
+    }
+    lines
+}

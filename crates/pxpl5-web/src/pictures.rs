@@ -1,0 +1,131 @@
+//! Pictures as bytes of a canvas: red, green, blue, 255 for each pixel, row by row.
+
+use address_recalculation::{AddressRecalculationPipeline, CubeFace, TexelAddress};
+use image::RgbImage;
+use pxpl5_renderer::PixelArray;
+use pxpl5_run::{Stepper, bit_of};
+use pxpl5_wire::{Eye, REGION_SIZE, SurfaceId};
+use serde_json::{Value, json};
+
+/// Bytes of a picture.
+pub(crate) fn rgba(picture: &RgbImage) -> Vec<u8> {
+    let mut bytes = vec![u8::MAX; picture.len() / 3 * 4];
+    for (four, three) in bytes.chunks_exact_mut(4).zip(picture.chunks_exact(3)) {
+        four[..3].copy_from_slice(three);
+    }
+    bytes
+}
+
+const fn opaque([red, green, blue]: [u8; 3]) -> [u8; 4] {
+    [red, green, blue, u8::MAX]
+}
+
+/// What a viewer sees beside what he should see: a heat map of the largest difference of a colour, and numbers.
+pub(crate) struct Difference {
+    pub(crate) heat: Vec<u8>,
+    pixels: usize,
+    differing: usize,
+    /// Sum of the differences, in steps of 255.
+    sum: u64,
+}
+
+impl Difference {
+    /// `None` where one of both cannot be said.
+    pub(crate) fn of(stepper: &Stepper, surface: SurfaceId) -> Option<Self> {
+        let seen = stepper.seen(surface)?;
+        let ideal = stepper.ideal_picture(surface)?;
+        let both = seen.pixels().zip(ideal.image().pixels());
+        let mut difference = Self { heat: Vec::new(), pixels: seen.pixels().len(), differing: 0, sum: 0 };
+        for (seen, ideal) in both {
+            let largest = seen.0.iter().zip(ideal.0).map(|(a, b)| a.abs_diff(b)).max().unwrap_or_default();
+            difference.differing += usize::from(largest > 0);
+            difference.sum += u64::from(largest);
+            difference.heat.extend(opaque(heat(largest)));
+        }
+        Some(difference)
+    }
+
+    /// Share of the pixels that differ, and the mean of all pixels' largest differences, both in percent.
+    pub(crate) fn numbers(&self) -> Value {
+        let pixels = self.pixels.max(1) as f64;
+        json!({
+            "differing_percent": 100.0 * self.differing as f64 / pixels,
+            "mean_percent": 100.0 * self.sum as f64 / (255.0 * pixels),
+        })
+    }
+}
+
+/// Black where nothing differs, then red, yellow, white.
+fn heat(difference: u8) -> [u8; 3] {
+    let rising = |from: u16| (u16::from(difference).saturating_sub(from) * 3).min(255) as u8;
+    [rising(0), rising(85), rising(170)]
+}
+
+/// The 128 x 128 pixels of a renderer as far as its commands have started: their colours, and in green the pixels that the command
+/// before the one that has not started has left enabled. Empty before its first command.
+pub(crate) fn renderer(stepper: &Stepper, number: usize) -> Vec<u8> {
+    let Some(array) = stepper.array(number) else { return Vec::new() };
+    let colours = array.read_colour(REGION_SIZE, REGION_SIZE);
+    let enabled = array.enable();
+    let pixels = (0..REGION_SIZE * REGION_SIZE).zip(colours.iter());
+    pixels
+        .flat_map(|(at, word)| {
+            let [_, red, green, blue] = word.to_be_bytes();
+            let is_on = bit_of(&enabled, at % REGION_SIZE, at / REGION_SIZE);
+            opaque(if is_on { ENABLED } else { [red, green, blue] })
+        })
+        .collect()
+}
+
+/// Colour of an enabled pixel.
+const ENABLED: [u8; 3] = [79, 209, 165];
+
+/// Side of a face in the picture of six, pixels.
+pub(crate) const FACE_SIDE: u32 = 128;
+
+/// Where the faces stand in a cross of 4 x 3: left, ahead, right, behind in the middle row, above and below ahead.
+const CROSS: [(CubeFace, u32, u32); 6] = [
+    (CubeFace::PosY, 1, 0),
+    (CubeFace::NegX, 0, 1),
+    (CubeFace::NegZ, 1, 1),
+    (CubeFace::PosX, 2, 1),
+    (CubeFace::PosZ, 3, 1),
+    (CubeFace::NegY, 1, 2),
+];
+
+/// How many display memories an eye has; 0 of a display that looks no pixels up.
+pub(crate) fn memories(stepper: &Stepper) -> usize {
+    let display = stepper.record().display_of_kind::<AddressRecalculationPipeline>();
+    display.map_or(0, |display| display.memories(Eye::Left).len())
+}
+
+/// The six faces that a display memory shows to an eye now, each of [`FACE_SIDE`] pixels, as a cross; `None` where there is no such
+/// memory.
+pub(crate) fn faces(stepper: &Stepper, eye: Eye, memory: usize) -> Option<Vec<u8>> {
+    let display = stepper.record().display_of_kind::<AddressRecalculationPipeline>()?;
+    let faces = display.memories(eye).get(memory)?.shown_faces();
+    let step = faces.texels() / FACE_SIDE;
+    let mut cross = RgbImage::from_pixel(4 * FACE_SIDE, 3 * FACE_SIDE, image::Rgb([40, 44, 48]));
+    for (face, column, row) in CROSS {
+        for (x, y) in (0..FACE_SIDE * FACE_SIDE).map(|at| (at % FACE_SIDE, at / FACE_SIDE)) {
+            let texel = TexelAddress { face, column: x * step, row: y * step };
+            let colour = faces.texel(texel).map_or(0, |(colour, _)| colour);
+            let [_, red, green, blue] = colour.to_be_bytes();
+            cross.put_pixel(column * FACE_SIDE + x, row * FACE_SIDE + y, image::Rgb([red, green, blue]));
+        }
+    }
+    Some(rgba(&cross))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heat_goes_from_black_over_red_and_yellow_to_white() {
+        assert_eq!(heat(0), [0, 0, 0]);
+        assert_eq!(heat(85), [255, 0, 0]);
+        assert_eq!(heat(170), [255, 255, 0]);
+        assert_eq!(heat(255), [255, 255, 255]);
+    }
+}
