@@ -38,6 +38,8 @@ pub struct DoubleBuffer {
     scanned: Regions,
     /// The last request, and when it arrived.
     requested: Option<(Time, u8)>,
+    faults: u64,
+    first_fault: Option<String>,
 }
 
 /// What a message was to a [`DoubleBuffer`].
@@ -47,8 +49,8 @@ pub enum BufferReceipt {
     Region(RegionPixels, Time),
     /// Another message of a region, or a request to swap.
     Part,
-    /// Nothing that it can use, and why.
-    Fault(String),
+    /// Nothing that it can use: see [`DoubleBuffer::faults`].
+    Fault,
 }
 
 impl DoubleBuffer {
@@ -62,6 +64,8 @@ impl DoubleBuffer {
             shown: 0,
             scanned: Regions::new(),
             requested: None,
+            faults: 0,
+            first_fault: None,
         }
     }
 
@@ -72,7 +76,17 @@ impl DoubleBuffer {
             Body::Words(words) => self.receive_request(&words, now),
             Body::Commands(_) => Err("commands for a renderer".to_owned()),
         };
-        receipt.unwrap_or_else(BufferReceipt::Fault)
+        receipt.unwrap_or_else(|reason| {
+            self.faults += 1;
+            self.first_fault.get_or_insert(reason);
+            BufferReceipt::Fault
+        })
+    }
+
+    /// Messages that it could not use, and what was wrong with the first.
+    #[must_use]
+    pub fn faults(&self) -> (u64, Option<&str>) {
+        (self.faults, self.first_fault.as_deref())
     }
 
     fn receive_pixels(&mut self, pixels: RegionPixels, now: Time) -> Result<BufferReceipt, String> {
@@ -168,6 +182,7 @@ mod tests {
     fn a_third_buffer_is_a_fault() {
         let mut buffers = DoubleBuffer::new(640, 480);
         let receipt = buffers.receive(Body::Words(swap_request(2)), Time(1));
-        assert!(matches!(receipt, BufferReceipt::Fault(reason) if reason == "expected buffer 0 or 1, found 2"));
+        assert!(matches!(receipt, BufferReceipt::Fault));
+        assert_eq!(buffers.faults(), (1, Some("expected buffer 0 or 1, found 2")));
     }
 }

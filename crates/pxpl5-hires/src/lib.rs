@@ -38,8 +38,6 @@ struct HiRes {
     surfaces: Vec<Surface>,
     boards: Vec<DoubleBuffer>,
     scans: u64,
-    faults: u64,
-    first_fault: Option<String>,
 }
 
 impl Display for HiRes {
@@ -82,11 +80,7 @@ impl Display for HiRes {
                     let region = DisplayOutput::RegionArrived { surface: port, target, first_part_at, last_part_at };
                     context.output(at, region);
                 }
-                BufferReceipt::Part => {}
-                BufferReceipt::Fault(reason) => {
-                    self.faults += 1;
-                    self.first_fault.get_or_insert(reason);
-                }
+                BufferReceipt::Part | BufferReceipt::Fault => {}
             },
             DisplayEvent::Timer(_) => {}
         }
@@ -118,7 +112,8 @@ impl Display for HiRes {
     }
 
     fn faults(&self) -> (u64, Option<String>) {
-        (self.faults, self.first_fault.clone())
+        let each = || self.boards.iter().map(DoubleBuffer::faults);
+        (each().map(|(count, _)| count).sum(), each().find_map(|(_, first)| first.map(str::to_owned)))
     }
 }
 
@@ -144,8 +139,7 @@ impl DisplayConfig for HiResConfig {
         let frame = Clock::from_hz(self.refresh_hz).ok_or_else(|| DisplayError("hires.refresh_hz".to_owned()))?;
         let surfaces = Surface::of_frame_buffers(nodes.len(), self.width as u32, self.height as u32);
         let boards = vec![DoubleBuffer::new(self.width as u32, self.height as u32); nodes.len()];
-        let nodes = nodes.to_vec();
-        Ok(Box::new(HiRes { config: *self, frame, nodes, surfaces, boards, scans: 0, faults: 0, first_fault: None }))
+        Ok(Box::new(HiRes { config: *self, frame, nodes: nodes.to_vec(), surfaces, boards, scans: 0 }))
     }
 
     fn boxed(&self) -> Box<dyn DisplayConfig> {
