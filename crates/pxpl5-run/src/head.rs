@@ -10,7 +10,7 @@ use std::sync::Arc;
 use tracking::SettingError;
 use tracking::motion::Motion;
 use tracking::predict::{Predictor, PredictorConfig, PredictorKind, Start, Training, Tuned, tune};
-use tracking::tracker::{TrackerConfig, TrackerModel, TrackerReport};
+use tracking::tracker::{Reports, TrackerConfig, TrackerModel, TrackerReport};
 
 /// Why a head cannot be simulated.
 pub type HeadError = SettingError;
@@ -186,6 +186,13 @@ impl Head {
             Some(reports) => reports.iter().copied().take_while(in_time).collect(),
             None => self.tracker.reports(self.motion.as_ref(), self.seed).take_while(in_time).collect(),
         }
+    }
+
+    /// The same reports one after the other, of a motion that is not known ahead; `None` of others. When they arrive is known: it does not depend
+    /// on what they say.
+    pub(crate) fn reports_as_it_moves(&self) -> Option<Reports<Arc<dyn Motion + Send + Sync>>> {
+        let is_live = self.motion.grows() && self.reports.is_none();
+        is_live.then(|| self.tracker.reports(Arc::clone(&self.motion), self.seed))
     }
 
     /// For which instant of what is shown from them views are predicted.

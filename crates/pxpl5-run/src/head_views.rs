@@ -12,8 +12,9 @@ use pxpl5_wire::ViewNumber;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tracking::Pose;
+use tracking::motion::Motion;
 use tracking::predict::Predictor;
-use tracking::tracker::TrackerReport;
+use tracking::tracker::{Reports, TrackerReport};
 
 /// Most fields of a run with a tracker: its reports are held in memory. An hour and more.
 pub const FIELDS_WITH_HEAD: u64 = 250_000;
@@ -47,6 +48,8 @@ struct Newest {
 /// Reports fed to a predictor as time goes on.
 pub(crate) struct Follower<'a> {
     reports: Arc<[TrackerReport]>,
+    /// Of a head that moves while the run goes on: the same reports, each made when it has arrived.
+    as_it_moves: Option<Reports<Arc<dyn Motion + Send + Sync>>>,
     next: usize,
     predictor: Box<dyn Predictor + 'a>,
     newest: Newest,
@@ -54,12 +57,20 @@ pub(crate) struct Follower<'a> {
 
 impl<'a> Follower<'a> {
     pub(crate) fn new(reports: Arc<[TrackerReport]>, predictor: Box<dyn Predictor + 'a>) -> Self {
-        Self { reports, next: 0, predictor, newest: Newest::default() }
+        Self { reports, as_it_moves: None, next: 0, predictor, newest: Newest::default() }
+    }
+
+    /// Of a head; its motion may become known while the run goes on.
+    fn of_head(head: &Head, reports: Arc<[TrackerReport]>) -> Follower<'static> {
+        let follower = Follower::new(reports, head.build_predictor());
+        Follower { as_it_moves: head.reports_as_it_moves(), ..follower }
     }
 
     /// Takes what had arrived by `known`; asked for earlier times it does not forget.
     fn follow(&mut self, known: Time) {
         while let Some(report) = self.reports.get(self.next).filter(|report| report.arrives_ps <= known.0) {
+            let made = self.as_it_moves.as_mut().and_then(Iterator::next);
+            let report = made.as_ref().unwrap_or(report);
             let accepted = self.predictor.counts().accepted;
             self.predictor.observe(report);
             if self.predictor.counts().accepted > accepted {
@@ -115,7 +126,7 @@ impl HeadViews {
         let of_scene = scene.motion().pose(0);
         let base = Pose { orientation: of_scene.orientation.normalize(), ..of_scene };
         let start = head.motion.pose(0);
-        let state = Mutex::new((Follower::new(Arc::clone(&reports), head.build_predictor()), Vec::new()));
+        let state = Mutex::new((Follower::of_head(&head, Arc::clone(&reports)), Vec::new()));
         Self { head, scene: Arc::clone(scene), hmd, eyes, reports, rehearsal, base, start, state }
     }
 
@@ -226,7 +237,7 @@ impl HeadViews {
     }
 
     pub(crate) fn follower(&self) -> Follower<'static> {
-        Follower::new(Arc::clone(&self.reports), self.head.build_predictor())
+        Follower::of_head(&self.head, Arc::clone(&self.reports))
     }
 
     pub(crate) const fn reports(&self) -> &Arc<[TrackerReport]> {

@@ -1,5 +1,6 @@
 //! Where the head is at any instant: closed forms, a seeded generator, and replay of recorded traces.
 
+mod growing;
 mod pan;
 mod pendulum;
 mod recording;
@@ -11,6 +12,7 @@ mod still;
 mod synthetic;
 mod walk;
 
+pub use growing::{Growing, GrowthError};
 pub use pan::Pan;
 pub use pendulum::Pendulum;
 pub use recording::{Axes, Columns, End, Recording, RecordingError, RecordingFormat};
@@ -23,6 +25,7 @@ pub use walk::Walk;
 
 use glam::DVec3;
 use std::fmt::Debug;
+use std::sync::Arc;
 
 use crate::identity::{SettingSink, write_pose};
 use crate::pose::Pose;
@@ -63,6 +66,11 @@ pub trait Motion: Debug {
         self.ends_ps()
     }
 
+    /// Whether it is only known as far as a run has come ([`Growing`]): then nobody may ask ahead.
+    fn grows(&self) -> bool {
+        false
+    }
+
     /// Another motion of the same kind, drawn with other random numbers: filters are tuned on it, so that they do not know
     /// the motion on which they are judged. `None` where there is only this one.
     fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
@@ -85,53 +93,39 @@ pub trait Motion: Debug {
     }
 }
 
-impl<M: Motion + ?Sized> Motion for &M {
-    fn pose(&self, t_ps: u64) -> Pose {
-        (**self).pose(t_ps)
-    }
-    fn identify(&self, settings: &mut SettingSink) {
-        (**self).identify(settings);
-    }
-    fn ends_ps(&self) -> Option<u64> {
-        (**self).ends_ps()
-    }
-    fn moves_until_ps(&self) -> Option<u64> {
-        (**self).moves_until_ps()
-    }
-    fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
-        (**self).sibling()
-    }
-    fn velocity(&self, t_ps: u64) -> DVec3 {
-        (**self).velocity(t_ps)
-    }
-    fn angular_velocity(&self, t_ps: u64) -> DVec3 {
-        (**self).angular_velocity(t_ps)
-    }
+/// What points to a motion is that motion.
+macro_rules! forward {
+    ($($pointer:ty),*) => {$(
+        impl<M: Motion + ?Sized> Motion for $pointer {
+            fn pose(&self, t_ps: u64) -> Pose {
+                (**self).pose(t_ps)
+            }
+            fn identify(&self, settings: &mut SettingSink) {
+                (**self).identify(settings);
+            }
+            fn ends_ps(&self) -> Option<u64> {
+                (**self).ends_ps()
+            }
+            fn moves_until_ps(&self) -> Option<u64> {
+                (**self).moves_until_ps()
+            }
+            fn grows(&self) -> bool {
+                (**self).grows()
+            }
+            fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
+                (**self).sibling()
+            }
+            fn velocity(&self, t_ps: u64) -> DVec3 {
+                (**self).velocity(t_ps)
+            }
+            fn angular_velocity(&self, t_ps: u64) -> DVec3 {
+                (**self).angular_velocity(t_ps)
+            }
+        }
+    )*};
 }
 
-impl<M: Motion + ?Sized> Motion for Box<M> {
-    fn pose(&self, t_ps: u64) -> Pose {
-        (**self).pose(t_ps)
-    }
-    fn identify(&self, settings: &mut SettingSink) {
-        (**self).identify(settings);
-    }
-    fn ends_ps(&self) -> Option<u64> {
-        (**self).ends_ps()
-    }
-    fn moves_until_ps(&self) -> Option<u64> {
-        (**self).moves_until_ps()
-    }
-    fn sibling(&self) -> Option<Box<dyn Motion + Send + Sync>> {
-        (**self).sibling()
-    }
-    fn velocity(&self, t_ps: u64) -> DVec3 {
-        (**self).velocity(t_ps)
-    }
-    fn angular_velocity(&self, t_ps: u64) -> DVec3 {
-        (**self).angular_velocity(t_ps)
-    }
-}
+forward!(&M, Box<M>, Arc<M>);
 
 /// Checks the closed forms of velocity and angular velocity against the pose alone.
 #[cfg(test)]

@@ -10,16 +10,16 @@ use crate::rotation;
 impl TrackerModel {
     /// What the host receives while the head follows `motion`, in order of arrival. It ends when the tracker falls
     /// silent for good. One (model, motion, seed) gives one sequence on every host.
-    pub fn reports<'a, M: Motion + ?Sized>(&'a self, motion: &'a M, seed: u64) -> Reports<'a, M> {
-        Reports::new(self, motion, seed)
+    pub fn reports<M: Motion>(&self, motion: M, seed: u64) -> Reports<M> {
+        Reports::new(self.clone(), motion, seed)
     }
 }
 
 /// Reports of a tracker in order of arrival: see [`TrackerModel::reports`].
 #[derive(Clone, Debug)]
-pub struct Reports<'a, M: ?Sized> {
-    model: &'a TrackerModel,
-    motion: &'a M,
+pub struct Reports<M> {
+    model: TrackerModel,
+    motion: M,
     noise: u64,
     /// Systematic error: metres, and a rotation vector in radians.
     bias: (DVec3, DVec3),
@@ -32,8 +32,8 @@ pub struct Reports<'a, M: ?Sized> {
     crashes: bool,
 }
 
-impl<'a, M: Motion + ?Sized> Reports<'a, M> {
-    pub(super) fn new(model: &'a TrackerModel, motion: &'a M, seed: u64) -> Self {
+impl<M: Motion> Reports<M> {
+    fn new(model: TrackerModel, motion: M, seed: u64) -> Self {
         let config = model.config();
         let poll_phase_ps = match config.host {
             HostLine::Polled { period_ps } => below(bits(stream(seed, 1), 0), period_ps),
@@ -44,8 +44,6 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
             _ => None,
         });
         Self {
-            model,
-            motion,
             noise: stream(seed, 2),
             bias: bias(config, stream(seed, 4)),
             faults: stream(seed, 3),
@@ -55,6 +53,8 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
             line_free_ps: 0,
             silent_from_ps: silence.min().unwrap_or(u64::MAX),
             crashes: config.host == HostLine::InterruptPerCharacter,
+            model,
+            motion,
         }
     }
 
@@ -113,11 +113,10 @@ impl<'a, M: Motion + ?Sized> Reports<'a, M> {
 
     /// Whether the solution is lost; an interval of loss is skipped in one step.
     fn is_lost(&mut self, solution: u64, sync_ps: u64) -> bool {
-        let model = self.model;
-        for (i, fault) in model.config().faults.iter().enumerate() {
+        for (i, fault) in self.model.config().faults.iter().enumerate() {
             match *fault {
                 TrackerFault::Dropout { from_ps, to_ps } if (from_ps..to_ps).contains(&sync_ps) => {
-                    self.next_solution = model.solution_at(to_ps);
+                    self.next_solution = self.model.solution_at(to_ps);
                     return true;
                 }
                 TrackerFault::RandomDropout { probability } if self.strikes(i, solution, probability) => return true,
@@ -181,7 +180,7 @@ fn bias(config: &TrackerConfig, seed: u64) -> (DVec3, DVec3) {
     (DVec3::new(a, b, c) * config.position_bias_m, turn)
 }
 
-impl<M: Motion + ?Sized> Iterator for Reports<'_, M> {
+impl<M: Motion> Iterator for Reports<M> {
     type Item = TrackerReport;
 
     fn next(&mut self) -> Option<TrackerReport> {

@@ -120,6 +120,11 @@ impl Recording {
         self.samples.len()
     }
 
+    /// Goes on with the samples of another one, all of which are later.
+    pub(super) fn append(&mut self, more: &Self) {
+        self.samples.extend_from_slice(&more.samples);
+    }
+
     /// Where in the recording an instant is.
     fn within(&self, t_ps: u64) -> u64 {
         let (first_ps, last_ps) = self.span_ps();
