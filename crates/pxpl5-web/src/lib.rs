@@ -74,6 +74,16 @@ impl WebMachine {
         self.0.run_to(ps as u64);
     }
 
+    /// Says how a head goes on that is moved on the page (`head.motion=live.csv`): rows of a recording with its head line, the last of which is
+    /// not before the instant to which the machine runs next.
+    ///
+    /// # Errors
+    ///
+    /// For rows that are none, that are not later than those before, and for another head.
+    pub fn moved(&self, rows: &str) -> Result<(), JsError> {
+        self.0.moved(rows).map_err(refused)
+    }
+
     /// Goes on by one `event`, `line` or `field`.
     ///
     /// # Errors

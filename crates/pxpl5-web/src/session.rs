@@ -6,10 +6,15 @@ use crate::pictures::{self, Difference, rgba};
 use crate::volume::Volume;
 use pxpl5_lab::ExperimentFile;
 use pxpl5_machine::Board;
-use pxpl5_run::{BareHost, Keep, Pause, Stepper};
+use pxpl5_run::{BareHost, Experiment, Keep, Pause, Stepper};
 use pxpl5_sim::{Span, Time};
 use pxpl5_wire::{Eye, SurfaceId};
 use serde_json::Value;
+use std::sync::Arc;
+use tracking::motion::{Growing, Recording};
+
+/// The name of a recording that goes on while the run does: a head that is moved on the page.
+const LIVE: &str = "live.csv";
 
 /// A running experiment.
 #[derive(Debug)]
@@ -17,6 +22,8 @@ pub(crate) struct Session {
     stepper: Stepper,
     /// Whether all fields have been simulated.
     is_over: bool,
+    /// The head's motion, where it is moved on the page.
+    moves: Option<Growing>,
 }
 
 impl Session {
@@ -32,8 +39,22 @@ impl Session {
         let plan = file.resolve().map_err(|error| error.to_string())?;
         let scene = plan.load_scene().map_err(|error| error.to_string())?;
         let experiment = plan.experiment(scene).host(BareHost).record_traffic(true).keep(Keep::Recent);
+        let live =
+            files.0.get(LIVE).filter(|_| settings.lines().any(|line| line.trim() == format!("head.motion={LIVE}")));
+        let (experiment, moves) = match live {
+            Some(begin) => moved_on_the_page(experiment, begin)?,
+            None => (experiment, None),
+        };
         let stepper = experiment.stepper().map_err(|error| error.to_string())?;
-        Ok(Self { stepper, is_over: false })
+        Ok(Self { stepper, is_over: false, moves })
+    }
+
+    /// Says how the head that is moved on the page goes on: rows of its recording, the last of which is not before the instant to which
+    /// the machine will run next.
+    pub(crate) fn moved(&self, rows: &str) -> Result<(), String> {
+        let moves = self.moves.as_ref().ok_or("this head is not moved on the page")?;
+        let more = Recording::read(rows.as_bytes()).map_err(|error| error.to_string())?;
+        moves.extend(&more).map_err(|error| error.to_string())
     }
 
     pub(crate) fn run_for(&mut self, ps: u64) {
@@ -97,6 +118,18 @@ impl Session {
     }
 }
 
+/// The experiment with a head that begins as a recording does. Nothing can be known of it ahead, so that nothing is predicted.
+fn moved_on_the_page(experiment: Experiment, begin: &[u8]) -> Result<(Experiment, Option<Growing>), String> {
+    let Some(head) = experiment.tracked_head().cloned() else { return Ok((experiment, None)) };
+    if head.predicts() {
+        return Err("a head that is moved now is not known ahead: expected head.predict=none".to_owned());
+    }
+    let begin = Recording::read(begin).map_err(|error| error.to_string())?;
+    let moves = Growing::new(begin);
+    let head = Arc::unwrap_or_clone(head).moving(Arc::new(moves.clone()));
+    Ok((experiment.head(head), Some(moves)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -128,6 +161,60 @@ mod tests {
         };
         assert_eq!(session.state()["trace_hash"], outcome.record().trace_hash().to_string());
         assert_eq!(session.state()["config_hash"], outcome.experiment().config_hash().to_string());
+    }
+
+    /// A sample sixty times a second, as the page makes them.
+    fn row(n: u64) -> String {
+        let half = f64::sin(n as f64 / 9.0) / 8.0;
+        format!("{:.6},0,0,0,{:.9},0,{:.9},0\n", n as f64 / 60.0, half.cos(), half.sin())
+    }
+
+    fn rows(numbers: impl Iterator<Item = u64>) -> String {
+        format!("time_s,x,y,z,qw,qx,qy,qz\n{}", numbers.map(row).collect::<String>())
+    }
+
+    fn with_file(name: &str, rows: String) -> Files {
+        Files([(name.to_owned(), rows.into_bytes().into())].into_iter().collect())
+    }
+
+    /// The promise of the link: what was moved while the machine ran is, as a recording, the same run.
+    #[test]
+    fn a_head_that_is_moved_while_the_machine_runs_is_its_recording() {
+        for pipeline in
+            ["slats", "rendering-control", "jitp-scanline", "frameless", "arp-full-line", "arp-priority-pixel"]
+        {
+            let display = if pipeline.starts_with("arp") { "arp" } else { "ntsc" };
+            let settings = |motion: &str| {
+                format!(
+                    "pipeline={pipeline}\ndisplay={display}\nscene=full-screen:2\nfields=9\nhead.motion={motion}\nhead.end=hold\n\
+                     head.tracker=fastrak\nhead.predict=none\n"
+                )
+            };
+            let mut live = Session::new(&settings(LIVE), &with_file(LIVE, rows(0..1))).expect("known");
+            for field in 1..=10 {
+                live.moved(&rows(field..field + 1)).expect("later");
+                live.run_to(field * 16_666_600_000);
+            }
+            let mut recorded =
+                Session::new(&settings("recorded.csv"), &with_file("recorded.csv", rows(0..11))).expect("known");
+            recorded.run_to(10 * 16_666_600_000);
+            assert_eq!(live.state()["trace_hash"], recorded.state()["trace_hash"], "{pipeline}");
+            assert_eq!(live.seen(0), recorded.seen(0), "{pipeline}");
+        }
+    }
+
+    #[test]
+    fn a_head_cannot_be_moved_back_in_time_or_where_it_is_not_moved_here() {
+        let settings =
+            "pipeline=slats\nscene=full-screen:2\nfields=9\nhead.motion=live.csv\nhead.end=hold\nhead.predict=none\n";
+        let session = Session::new(settings, &with_file(LIVE, rows(0..3))).expect("known");
+        assert!(session.moved(&rows(2..3)).is_err_and(|error| error.contains("expected samples after")));
+        assert!(session.moved("nothing").is_err());
+        assert!(session.moved(&rows(3..5)).is_ok());
+        assert!(new(SETTINGS).expect("known").moved(&rows(1..2)).is_err());
+        let predicted = settings.replace("none", "velocity");
+        let error = Session::new(&predicted, &with_file(LIVE, rows(0..1))).expect_err("it is not known ahead");
+        assert!(error.contains("head.predict=none"), "{error}");
     }
 
     #[test]
